@@ -1,0 +1,51 @@
+# mso_add_library(NAME SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...])
+# A library of libs/NAME with its public headers in libs/NAME/include/NAME, known as mrpt_semantic_octree::NAME.
+function(mso_add_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  add_library(${name} SHARED ${ARG_SOURCES})
+  add_library(mrpt_semantic_octree::${name} ALIAS ${name})
+  target_include_directories(${name} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/mrpt_semantic_octree>)
+  target_link_libraries(${name} PUBLIC ${ARG_DEPENDS} PRIVATE $<BUILD_INTERFACE:mso_settings> ${ARG_PRIVATE_DEPENDS})
+  set_target_properties(${name} PROPERTIES OUTPUT_NAME mso_${name}
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+endfunction()
+
+# mso_add_app(NAME SOURCES ... [DEPENDS ...]): an executable of apps/NAME.
+function(mso_add_app name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE mso_settings ${ARG_DEPENDS} CLI11::CLI11 nlohmann_json::nlohmann_json)
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
+# mso_add_test(NAME SOURCES ... [DEPENDS ...]): one GoogleTest program, each of its cases one ctest.
+# Tests find the sources through MSO_SOURCE_DIR, the programs through MSO_BIN_DIR, and data that is not in
+# the repository through the environment variable SEMANTIC_OCTREE_DATA.
+function(mso_add_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE mso_settings ${ARG_DEPENDS} GTest::gtest GTest::gtest_main rapidcheck
+    nlohmann_json::nlohmann_json)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test/support)
+  target_compile_definitions(${name} PRIVATE
+    MSO_SOURCE_DIR="${PROJECT_SOURCE_DIR}" MSO_BIN_DIR="${CMAKE_BINARY_DIR}/bin" MSO_LIB_DIR="${CMAKE_BINARY_DIR}/lib")
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+  include(GoogleTest)
+  gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT})
+endfunction()
+
+# mso_add_benchmark(NAME SOURCES ... [DEPENDS ...]): a Google Benchmark program.
+function(mso_add_benchmark name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  if(NOT MSO_BUILD_BENCHMARKS)
+    return()
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE mso_settings ${ARG_DEPENDS} benchmark::benchmark benchmark::benchmark_main)
+endfunction()
