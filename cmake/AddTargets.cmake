@@ -7,9 +7,13 @@ function(mso_add_library name)
   target_include_directories(${name} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/mrpt_semantic_octree>)
+  target_compile_features(${name} PUBLIC cxx_std_17)
   target_link_libraries(${name} PUBLIC ${ARG_DEPENDS} PRIVATE $<BUILD_INTERFACE:mso_settings> ${ARG_PRIVATE_DEPENDS})
   set_target_properties(${name} PROPERTIES OUTPUT_NAME mso_${name}
-    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")
+  set_property(GLOBAL APPEND PROPERTY MSO_LIBRARIES ${name})
+  install(TARGETS ${name} EXPORT mrpt_semantic_octree LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mrpt_semantic_octree)
 endfunction()
 
 # mso_add_app(NAME SOURCES ... [DEPENDS ...]): an executable of apps/NAME.
@@ -17,6 +21,7 @@ function(mso_add_app name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE mso_settings ${ARG_DEPENDS} CLI11::CLI11 nlohmann_json::nlohmann_json)
+  set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
