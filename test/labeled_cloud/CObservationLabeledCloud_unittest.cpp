@@ -67,7 +67,8 @@ TEST(CObservationLabeledCloud, streamsSoftLabelsAndCloudsWithoutLabelsAndEmptyOn
   obs.cloud.probabilities.clear();
   obs.cloud.classes.clear();
   expectSame(obs, *readBack(streamed(obs)));
-  expectSame(CObservationLabeledCloud(), *readBack(streamed(CObservationLabeledCloud())));
+  const CObservationLabeledCloud empty;
+  expectSame(empty, *readBack(streamed(empty)));
 }
 
 TEST(CObservationLabeledCloud, takesThirteenBytesPerPointAndAllClassIds) {
