@@ -1,0 +1,18 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+/** What each library may include beside itself and the standard library: the first part of an
+ * include's path, such as `mrpt` in <mrpt/poses/CPose3D.h>. */
+using IncludeTable = std::map<std::string, std::set<std::string>>;
+
+/** The boundaries between this project's libraries (see doc/development.md). */
+const IncludeTable& includeTable();
+
+/** The includes in the libraries of folder `libs` that the table does not allow, each as
+ * "library/src/File.cpp:12: what is wrong". A library without a row in the table is one, too. */
+std::vector<std::string> forbiddenIncludes(const std::filesystem::path& libs,
+                                           const IncludeTable& table);

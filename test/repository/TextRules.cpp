@@ -1,0 +1,43 @@
+#include "TextRules.h"
+
+#include <regex>
+
+#include "SourceTree.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> linesThatMatch(const std::regex& pattern, const std::string& problem,
+                                        const fs::path& root) {
+  std::vector<std::string> findings;
+  for (const fs::path& file : textFiles(root))
+    for (const SourceLine& line : linesOf(file))
+      if (std::regex_search(line.text, pattern))
+        findings.push_back(line.where(root) + ": " + problem);
+  return findings;
+}
+
+}  // namespace
+
+std::vector<std::string> linesWithTrailingSpace(const fs::path& root) {
+  static const std::regex pattern(R"([ \t\r]$)");
+  return linesThatMatch(pattern, "space at the end of the line", root);
+}
+
+std::vector<std::string> linesTiedToAMachine(const fs::path& root) {
+  static const std::regex pattern(
+      R"((^|[^\w.}])/(work|home|root|tmp|Users|mnt)/|(deb|ftp|security|archive)\.(debian|ubuntu)\.)");
+  return linesThatMatch(pattern, "a path or a server of one machine", root);
+}
+
+std::vector<std::string> filesLongerThan(std::size_t maxLines, const fs::path& root) {
+  std::vector<std::string> findings;
+  for (const fs::path& file : textFiles(root)) {
+    const std::size_t count = isCppFile(file) ? linesOf(file).size() : 0;
+    if (count <= maxLines) continue;
+    findings.push_back(file.lexically_relative(root).string() + ":" + std::to_string(count) +
+                       ": more than " + std::to_string(maxLines) + " lines");
+  }
+  return findings;
+}

@@ -1,0 +1,118 @@
+// The rules that this repository sets itself, and that each rule sees what breaks it.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "IncludeRules.h"
+#include "TextRules.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Findings = std::vector<std::string>;
+
+/** A folder of one test, removed at its end. */
+class Repository : public testing::Test {
+ protected:
+  const fs::path root = MSO_SOURCE_DIR;
+  const fs::path scratch =
+      fs::path(testing::TempDir()) /
+      (std::string("repository-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+
+  void SetUp() override { fs::remove_all(scratch); }
+  void TearDown() override { fs::remove_all(scratch); }
+
+  void write(const std::string& file, const std::string& text) const {
+    fs::create_directories((scratch / file).parent_path());
+    std::ofstream(scratch / file) << text;
+  }
+
+  /** What this project consists of, without what a build or a user puts beside it. */
+  std::vector<fs::path> projectFolders() const {
+    std::vector<fs::path> folders;
+    for (const auto* name : {".ci", "apps", "cmake", "config", "doc", "libs", "rawlog-samples",
+                             "scripts", "test", "README.md", "CHANGELOG.md", "CMakeLists.txt",
+                             "CMakePresets.json", "debian-packages.txt", "run-demo", "run-tests"})
+      if (fs::exists(root / name)) folders.push_back(root / name);
+    return folders;
+  }
+};
+
+}  // namespace
+
+TEST_F(Repository, librariesIncludeOnlyWhatTheirRowAllows) {
+  EXPECT_EQ(forbiddenIncludes(root / "libs", includeTable()), Findings());
+}
+
+TEST_F(Repository, anIncludeAcrossABoundaryIsFound) {
+  write("pure/include/pure/Good.h", "#include <Eigen/Core>\n#include <pure/Other.h>\n");
+  write("pure/src/Bad.cpp", "#include <vector>\n  #  include <mrpt/poses/CPose3D.h>\n");
+  EXPECT_EQ(forbiddenIncludes(scratch, {{"pure", {"Eigen"}}}),
+            Findings{"pure/src/Bad.cpp:2: pure may not include mrpt/poses/CPose3D.h"});
+}
+
+TEST_F(Repository, aQuotedIncludeReachesOnlyFilesBesideIt) {
+  write("pure/src/Near.h", "");
+  write("pure/src/Bad.cpp", "#include \"Near.h\"\n#include \"../../other/src/Far.h\"\n");
+  write("other/src/Far.h", "");
+  EXPECT_EQ(forbiddenIncludes(scratch, {{"pure", {}}, {"other", {}}}),
+            Findings{"pure/src/Bad.cpp:2: pure may not include ../../other/src/Far.h"});
+}
+
+TEST_F(Repository, aLibraryThatPrintsIsFound) {
+  write("pure/src/Bad.cpp", "#include <iostream>\n");
+  EXPECT_EQ(forbiddenIncludes(scratch, {{"pure", {}}}),
+            Findings{"pure/src/Bad.cpp:1: prints: <iostream> belongs to applications"});
+}
+
+TEST_F(Repository, aLibraryWithoutARowIsFound) {
+  write("fresh/src/File.cpp", "#include <vector>\n");
+  EXPECT_EQ(forbiddenIncludes(scratch, {}),
+            Findings{"fresh/src/File.cpp:1: library fresh has no row in the table of includes"});
+}
+
+TEST_F(Repository, sourcesOfLibrariesAndApplicationsStayShort) {
+  EXPECT_EQ(filesLongerThan(300, root / "libs"), Findings());
+  EXPECT_EQ(filesLongerThan(300, root / "apps"), Findings());
+}
+
+TEST_F(Repository, aLongSourceIsFound) {
+  write("Long.cpp", "1\n2\n3\n");
+  write("Short.h", "1\n2\n");
+  EXPECT_EQ(filesLongerThan(2, scratch), Findings{"Long.cpp:3: more than 2 lines"});
+}
+
+TEST_F(Repository, noLineEndsWithSpace) {
+  for (const fs::path& folder : projectFolders())
+    EXPECT_EQ(linesWithTrailingSpace(folder), Findings()) << folder;
+}
+
+TEST_F(Repository, aLineThatEndsWithSpaceIsFound) {
+  write("file.txt", "good\nbad \nbad\t\n");
+  EXPECT_EQ(linesWithTrailingSpace(scratch),
+            (Findings{"file.txt:2: space at the end of the line",
+                      "file.txt:3: space at the end of the line"}));
+}
+
+TEST_F(Repository, nothingIsTiedToOneMachine) {
+  for (const fs::path& folder : projectFolders())
+    EXPECT_EQ(linesTiedToAMachine(folder), Findings()) << folder;
+}
+
+TEST_F(Repository, whatIsTiedToOneMachineIsFound) {
+  write("file.txt",
+        "cd /"
+        "home/me\nhttps://deb."
+        "debian.org\na/tmp/b /usr/share/mrpt\n");
+  EXPECT_EQ(linesTiedToAMachine(scratch),
+            (Findings{"file.txt:1: a path or a server of one machine",
+                      "file.txt:2: a path or a server of one machine"}));
+}
+
+TEST_F(Repository, everyApplicationHasAReadme) {
+  for (const auto& entry : fs::directory_iterator(root / "apps")) {
+    if (!fs::exists(entry.path() / "CMakeLists.txt")) continue;
+    EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path();
+  }
+}
