@@ -11,7 +11,7 @@ const IncludeTable& includeTable() {
   static const IncludeTable table = {
       {"tree_abstraction", {"Eigen"}},
       {"semantic_octree", {"Eigen", "octomap", "tree_abstraction"}},
-      {"labeled_cloud", {"Eigen", "mrpt", "opencv2", "semantic_octree"}},
+      {"labeled_cloud", {"Eigen", "mrpt", "opencv2", "yaml-cpp", "semantic_octree"}},
       {"semantic_map",
        {"Eigen", "mrpt", "octomap", "opencv2", "labeled_cloud", "semantic_octree",
         "tree_abstraction"}},
