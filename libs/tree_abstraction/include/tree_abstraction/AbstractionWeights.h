@@ -1,0 +1,46 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace tree_abstraction {
+
+/** One information the abstraction keeps or drops: a variable made of classes, and its weight.
+ *
+ * Classes are 0..K, where 0 is free space. The variable's outcomes are the groups and, if they
+ * leave any class over, the rest. So {{3}} is "class 3 or not", {{1, 2}} "1 or 2, or not", {{1, 2},
+ * {5}} tells three things apart, and {{0}, {1}, ..., {K}} is the whole class variable. */
+struct InformationTerm {
+  std::string name;
+  /** > 0: relevant (beta), worth keeping; < 0: irrelevant (-gamma), worth dropping; 0: measured
+   * only. */
+  double weight = 0;
+  std::vector<std::vector<int>> groups;
+};
+
+/** Relevant information "one of `classes` or not". \throw std::invalid_argument beta < 0 or not
+ * finite. */
+InformationTerm relevant(std::string name, double beta, std::vector<int> classes);
+/** Irrelevant information "one of `classes` or not". \throw std::invalid_argument gamma < 0 or not
+ * finite. */
+InformationTerm irrelevant(std::string name, double gamma, std::vector<int> classes);
+/** The whole class variable with its K + 1 outcomes. */
+InformationTerm wholeClassVariable(std::string name, double weight, int numClasses);
+
+/** What the optimal abstraction T* maximizes: J(T) = sum_t weight_t I_t(T) - alpha I_X(T). */
+struct AbstractionWeights {
+  std::vector<InformationTerm> terms;
+  /** Price of a nat of I_X, the entropy of the leaf that holds a random point of space; >= 0. */
+  double alpha = 0;
+
+  /** Checks all fields for a map of numClasses classes (K; free space not counted).
+   * \throw std::invalid_argument naming the field and its value: a weight or alpha that is not
+   * finite, alpha < 0, a term without a group, an empty group, a class outside 0..K, a class in two
+   * groups of a term, two terms of one name, or a class that one yes-or-no term rewards and another
+   * one penalizes. */
+  void validate(int numClasses) const;
+
+  /** G-values up to this count as 0, so that rounding does not expand a tie (units of J). */
+  double eps() const;
+};
+
+}  // namespace tree_abstraction

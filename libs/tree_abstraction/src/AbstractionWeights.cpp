@@ -1,0 +1,95 @@
+#include "tree_abstraction/AbstractionWeights.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+namespace tree_abstraction {
+namespace {
+
+[[noreturn]] void reject(const std::string& field, const std::string& what) {
+  throw std::invalid_argument("AbstractionWeights: " + field + ": " + what);
+}
+
+std::string quoted(const InformationTerm& term) { return "term '" + term.name + "'"; }
+
+void requireFinite(const std::string& field, double value) {
+  if (!std::isfinite(value)) reject(field, std::to_string(value) + " is not a finite number");
+}
+
+void requireNotNegative(const std::string& field, double value) {
+  requireFinite(field, value);
+  if (value < 0) reject(field, std::to_string(value) + " is negative");
+}
+
+void validateGroups(const InformationTerm& term, int numClasses) {
+  if (term.groups.empty()) reject(quoted(term) + ", groups", "no group of classes");
+  std::set<int> seen;
+  for (const auto& group : term.groups) {
+    if (group.empty()) reject(quoted(term) + ", groups", "a group without a class");
+    for (const int id : group) {
+      const std::string name = quoted(term) + ", class " + std::to_string(id);
+      if (id < 0 || id > numClasses) reject(name, "not in 0.." + std::to_string(numClasses));
+      if (!seen.insert(id).second) reject(name, "in more than one group");
+    }
+  }
+}
+
+/** Terms of several groups are left out: they tell classes apart and may well overlap with others.
+ */
+void requireNoContradiction(const std::vector<InformationTerm>& terms) {
+  std::map<int, const InformationTerm*> rewarded;
+  for (const auto& term : terms) {
+    if (term.groups.size() != 1 || !(term.weight > 0)) continue;
+    for (const int id : term.groups.front()) rewarded[id] = &term;
+  }
+  for (const auto& term : terms) {
+    if (term.groups.size() != 1 || !(term.weight < 0)) continue;
+    for (const int id : term.groups.front()) {
+      const auto other = rewarded.find(id);
+      if (other == rewarded.end()) continue;
+      reject(quoted(term) + ", class " + std::to_string(id),
+             "irrelevant here and relevant in " + quoted(*other->second));
+    }
+  }
+}
+
+}  // namespace
+
+InformationTerm relevant(std::string name, double beta, std::vector<int> classes) {
+  requireNotNegative("weight of relevant '" + name + "'", beta);
+  return {std::move(name), beta, {std::move(classes)}};
+}
+
+InformationTerm irrelevant(std::string name, double gamma, std::vector<int> classes) {
+  requireNotNegative("weight of irrelevant '" + name + "'", gamma);
+  return {std::move(name), 0.0 - gamma, {std::move(classes)}};
+}
+
+InformationTerm wholeClassVariable(std::string name, double weight, int numClasses) {
+  InformationTerm term{std::move(name), weight, {}};
+  for (int id = 0; id <= numClasses; ++id) term.groups.push_back({id});
+  return term;
+}
+
+void AbstractionWeights::validate(int numClasses) const {
+  requireNotNegative("alpha", alpha);
+  std::set<std::string> names;
+  for (const auto& term : terms) {
+    requireFinite(quoted(term) + ", weight", term.weight);
+    if (!names.insert(term.name).second) reject(quoted(term), "two terms of this name");
+    validateGroups(term, numClasses);
+  }
+  requireNoContradiction(terms);
+}
+
+double AbstractionWeights::eps() const {
+  // About a thousand roundings of the largest value that enters a G-value.
+  constexpr double kRelativeEps = 1e-12;
+  double sum = alpha;
+  for (const auto& term : terms) sum += std::abs(term.weight);
+  return kRelativeEps * sum;
+}
+
+}  // namespace tree_abstraction

@@ -1,0 +1,118 @@
+#include "tree_abstraction/AlphaPath.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace tree_abstraction {
+namespace {
+
+bool isTie(double larger, double smaller) {
+  constexpr double kTolerance = 1e-12;
+  return larger == smaller || larger - smaller <= kTolerance * smaller;
+}
+
+void requireSize(const std::string& field, std::size_t size, std::size_t expected) {
+  if (size == expected) return;
+  throw std::invalid_argument("AlphaPath: " + std::to_string(size) + " " + field + ", expected " +
+                              std::to_string(expected) + ", one for each node");
+}
+
+void requireCosts(const std::vector<double>& costs) {
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    if (costs[i] >= 0 && std::isfinite(costs[i])) continue;
+    throw std::invalid_argument("AlphaPath: cost of node " + std::to_string(i) + " is " +
+                                std::to_string(costs[i]) + ", expected a finite number >= 0");
+  }
+}
+
+}  // namespace
+
+AlphaPath::AlphaPath(std::vector<double> tau) : m_tau(std::move(tau)), m_end{0} {
+  for (std::size_t i = 0; i < m_tau.size(); ++i) {
+    if (std::isnan(m_tau[i])) {
+      throw std::invalid_argument("AlphaPath: tau of node " + std::to_string(i) +
+                                  " is not a number");
+    }
+    if (m_tau[i] > 0) m_order.push_back(static_cast<std::int32_t>(i));
+  }
+  const auto tauOf = [this](std::int32_t i) { return m_tau[static_cast<std::size_t>(i)]; };
+  std::sort(m_order.begin(), m_order.end(), [&](std::int32_t a, std::int32_t b) {
+    return tauOf(a) != tauOf(b) ? tauOf(a) > tauOf(b) : a < b;
+  });
+  for (std::size_t i = 1; i <= m_order.size(); ++i) {
+    if (i == m_order.size() || !isTie(tauOf(m_order[i - 1]), tauOf(m_order[i]))) m_end.push_back(i);
+  }
+}
+
+double AlphaPath::lowestAlpha(std::size_t k) const {
+  const std::size_t end = m_end.at(k);
+  return end == m_order.size() ? 0.0 : m_tau[static_cast<std::size_t>(m_order[end])];
+}
+
+double AlphaPath::highestAlpha(std::size_t k) const {
+  const std::size_t end = m_end.at(k);
+  return end == 0 ? std::numeric_limits<double>::infinity()
+                  : m_tau[static_cast<std::size_t>(m_order[end - 1])];
+}
+
+double AlphaPath::alpha(std::size_t k) const {
+  const double low = lowestAlpha(k), high = highestAlpha(k);
+  if (std::isfinite(high)) return low + 0.5 * (high - low);
+  return low > 0 ? 2.0 * low : 1.0;
+}
+
+std::vector<char> AlphaPath::expanded(std::size_t k) const {
+  std::vector<char> mask(m_tau.size(), false);
+  for (std::size_t i = 0; i < m_end.at(k); ++i) mask[static_cast<std::size_t>(m_order[i])] = true;
+  return mask;
+}
+
+std::vector<double> AlphaPath::totals(const std::vector<double>& amounts, double base) const {
+  requireSize("amounts", amounts.size(), m_tau.size());
+  std::vector<double> sums{base};
+  double sum = base;
+  for (std::size_t k = 1; k < numTrees(); ++k) {
+    for (std::size_t i = m_end[k - 1]; i < m_end[k]; ++i) {
+      sum += amounts[static_cast<std::size_t>(m_order[i])];
+    }
+    sums.push_back(sum);
+  }
+  return sums;
+}
+
+std::size_t AlphaPath::largestWithin(double budget, const std::vector<double>& costs,
+                                     double base) const {
+  requireCosts(costs);
+  if (!(budget >= base)) {
+    throw std::invalid_argument("AlphaPath: budget is " + std::to_string(budget) +
+                                ", expected at least what the roots alone cost, " +
+                                std::to_string(base));
+  }
+  const auto sums = totals(costs, base);  // ascending
+  const auto beyond = std::upper_bound(sums.begin(), sums.end(), budget);
+  return static_cast<std::size_t>(beyond - sums.begin()) - 1;
+}
+
+std::size_t AlphaPath::largestWithLeaves(std::size_t wanted, const std::vector<double>& addedLeaves,
+                                         std::size_t numRoots) const {
+  requireSize("counts of added leaves", addedLeaves.size(), m_tau.size());
+  double all = static_cast<double>(numRoots);
+  for (const double added : addedLeaves) all += added;
+  if (static_cast<double>(wanted) > all) {
+    throw std::invalid_argument("AlphaPath: " + std::to_string(wanted) +
+                                " leaves wanted, but the whole tree has only " +
+                                std::to_string(static_cast<std::size_t>(all)));
+  }
+  return largestWithin(static_cast<double>(wanted), addedLeaves, static_cast<double>(numRoots));
+}
+
+std::vector<char> expandedAt(const std::vector<double>& tau, double alpha, double eps) {
+  std::vector<char> mask(tau.size());
+  for (std::size_t i = 0; i < tau.size(); ++i) mask[i] = tau[i] > alpha + eps;
+  return mask;
+}
+
+}  // namespace tree_abstraction
