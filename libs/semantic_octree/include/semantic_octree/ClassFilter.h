@@ -1,0 +1,66 @@
+#pragma once
+#include <semantic_octree/ClassBelief.h>
+#include <semantic_octree/FilterParameters.h>
+#include <vector>
+
+namespace semantic_octree {
+
+/** Bayes filter over {free, class 1, ..., class K} of one cell, truncated to the `Named` likeliest
+ * classes.
+ *
+ * An observation z adds ln(p(z | class k) / p(z | free)) to each h_k, which is then clamped. A class
+ * seen for the first time leaves the rest with the rest's value; if more than `Named` classes are
+ * named, the least likely one (largest id on a tie) joins the rest, whose value becomes the logarithm
+ * of the mean odds of its members.
+ *
+ * With Real = float, increments, clamps and the prior are multiples of 2^-20, so that adding them is
+ * exact: without clamping the order of observations does not matter, not even to the last bit. */
+template <typename Real, int Named = 3>
+class ClassFilter {
+ public:
+  using Belief = ClassBelief<Real, Named>;
+
+  /** \throw std::invalid_argument K < 1 or bad parameters. */
+  ClassFilter(int numClasses, const FilterParameters& parameters);
+
+  int numClasses() const { return m_numClasses; }
+
+  /** A return with a class label ended in the cell. */
+  void hit(Belief& b, ClassId id) const;
+  /** A return without a label ended in the cell: every class gains equally. */
+  void hit(Belief& b) const { addToAll(b, m_hitUnlabeled); }
+  /** A return with a soft label ended in the cell. \param q K probabilities of classes 1..K. */
+  void hit(Belief& b, const float* q) const;
+  /** A beam passed through the cell. */
+  void miss(Belief& b) const { addToAll(b, m_miss); }
+
+  /** Cell whose classes are equally likely, given its occupancy's log-odds. */
+  Belief uniform(Real occupancyLogOdds) const;
+  /** The log-odds that uniform() of a cell had, given its rest. */
+  Real occupancyOfUniform(Real rest) const { return rest + m_logNumClasses; }
+
+  /** Occupancy log-odds of a cell without a class record after another miss or unlabeled hit: the
+   * same as the filter's on uniform(), without the detour. */
+  Real occupancyAfterMiss(Real v) const { return clampOccupancy(v + m_miss); }
+  Real occupancyAfterUnlabeledHit(Real v) const { return clampOccupancy(v + m_hitUnlabeled); }
+  /** The value that further misses leave as it is. */
+  Real lowestOccupancy() const { return m_min + m_logNumClasses; }
+
+ private:
+  Real clamp(Real h) const { return std::min(m_max, std::max(m_min, h)); }
+  Real clampOccupancy(Real v) const {
+    return std::min(m_max + m_logNumClasses, std::max(m_min + m_logNumClasses, v));
+  }
+  void addToAll(Belief& b, Real increment) const;
+  void name(Belief& b, ClassId id, Real logOdds) const;
+
+  int m_numClasses;
+  Real m_logNumClasses, m_min, m_max;
+  Real m_hitSame, m_hitOther, m_hitUnlabeled, m_miss;
+  double m_softLabelFloor;
+};
+
+extern template class ClassFilter<float>;
+extern template class ClassFilter<double>;
+
+}  // namespace semantic_octree

@@ -1,0 +1,33 @@
+#pragma once
+
+namespace semantic_octree {
+
+/** Sensor and classifier model of the class filter. */
+struct FilterParameters {
+  enum class Increments {
+    /** Log-likelihood ratios of the probabilities below: occupancy follows the binary Bayes filter. */
+    LikelihoodConsistent,
+    /** The constants published with SSMI (Asgharivaskasi, Atanasov, "Active Bayesian Multi-class
+     * Mapping from Range and Semantic Segmentation Observations"): +1 for the observed class, -0.1
+     * for all others, -0.1 for a miss. The probabilities below are not used. */
+    Ssmi
+  };
+  Increments increments = Increments::LikelihoodConsistent;
+
+  /** Share of labels that name the true class, (1/K, 1). */
+  double accuracy = 0.9;
+  /** P(a return ends in the cell | the cell is occupied and a beam reaches it). */
+  double hitProbability = 0.6;
+  /** P(a return ends in the cell | the cell is free and a beam reaches it). */
+  double falseAlarmProbability = 0.1;
+  /** Each class's log-odds stay within ln(q / (1 - q)) of these two. */
+  double minProbability = 0.0001, maxProbability = 0.9999;
+  /** Soft labels are raised to this before their logarithm is taken. */
+  double softLabelFloor = 0.001;
+
+  /** \throw std::invalid_argument naming the parameter and its value. */
+  void validate(int numClasses) const;
+  bool operator==(const FilterParameters& o) const;
+};
+
+}  // namespace semantic_octree

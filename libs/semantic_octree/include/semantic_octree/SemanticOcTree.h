@@ -1,0 +1,144 @@
+#pragma once
+#include <octomap/OccupancyOcTreeBase.h>
+#include <semantic_octree/ClassFilter.h>
+#include <semantic_octree/InsertionOptions.h>
+#include <semantic_octree/LabeledCloud.h>
+#include <semantic_octree/SemanticOcTreeNode.h>
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace semantic_octree {
+
+class NodeStore;
+class Scan;
+
+/** What the map knows about a place. */
+struct CellState {
+  enum class Status { Unknown, Free, Occupied };
+  Status status = Status::Unknown;
+  /** p(occupied); 0.5 where unknown. Occupied means above 0.5. */
+  double occupancy = 0.5;
+  /** Class with the largest probability, lowest id on a tie; kNoClass where no class was ever seen. */
+  ClassId likeliestClass = kNoClass;
+  /** Its probability p(class), among free space and all classes. */
+  double probability = 0;
+};
+
+/** First occupied voxel along a ray. */
+struct RayHit {
+  octomap::OcTreeKey key;
+  octomap::point3d center;  ///< of the voxel, meters, map frame
+  CellState state;
+};
+
+/** Semantic octree: OctoMap's tree of 16 levels whose leaves hold a Bayesian distribution over free
+ * space and K classes (see ClassFilter).
+ *
+ * Reading is OctoMap's: keys, iterators, search, ray casts. Space without a node is unknown. The tree
+ * changes through the functions below only; OctoMap's own insertion and editing are not available.
+ * Not thread safe, except for reading from several threads. */
+class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode> {
+ public:
+  using Base = octomap::OccupancyOcTreeBase<SemanticOcTreeNode>;
+  using Node = SemanticOcTreeNode;
+  using Belief = ClassBelief<float>;
+
+  /** \param voxelSize edge of a voxel (the resolution), meters
+   * \throw std::invalid_argument voxel size not positive, no classes, or bad filter parameters. */
+  SemanticOcTree(double voxelSize, ClassTable classes, const FilterParameters& filter = {});
+  ~SemanticOcTree() override;
+  SemanticOcTree(const SemanticOcTree& o);
+  SemanticOcTree& operator=(SemanticOcTree o);
+  void swap(SemanticOcTree& o);
+
+  // --- Reading, as in OctoMap ---
+  using Base::leaf_bbx_iterator;
+  using Base::leaf_iterator;
+  using Base::tree_iterator;
+  using Base::begin_leafs;
+  using Base::begin_leafs_bbx;
+  using Base::begin_tree;
+  using Base::castRay;
+  using Base::computeRayKeys;
+  using Base::coordToKey;
+  using Base::coordToKeyChecked;
+  using Base::end_leafs;
+  using Base::end_leafs_bbx;
+  using Base::end_tree;
+  using Base::getMetricMax;
+  using Base::getMetricMin;
+  using Base::getNodeChild;
+  using Base::getNodeSize;
+  using Base::getNumLeafNodes;
+  using Base::getResolution;
+  using Base::getTreeDepth;
+  using Base::isNodeOccupied;
+  using Base::keyToCoord;
+  using Base::nodeChildExists;
+  using Base::nodeHasChildren;
+  const Node* root() const { return Base::root; }
+  const Node* search(const octomap::OcTreeKey& key, unsigned depth = 0) const {
+    return Base::search(key, depth);
+  }
+  std::string getTreeType() const override { return "SemanticOcTree"; }
+  /** Number of nodes, inner nodes and leaves. */
+  std::size_t size() const override { return tree_size; }
+  bool empty() const { return Base::root == nullptr; }
+  /** Bytes held by nodes, class records and bookkeeping. */
+  std::size_t memoryUsage() const override;
+
+  const ClassTable& classes() const { return m_classes; }
+  int numClasses() const { return m_classes.size(); }
+  const FilterParameters& filterParameters() const { return m_parameters; }
+
+  // --- Classes ---
+  /** State of the cell that contains a point (meters, map frame), or of its ancestor at a depth
+   * (0: the finest). An inner node's occupancy is its most occupied leaf's, its classes those of the
+   * mixture of its known leaves by volume. */
+  CellState query(double x, double y, double z, unsigned depth = 0) const;
+  CellState query(const octomap::OcTreeKey& key, unsigned depth = 0) const;
+  CellState query(const Node& node) const;
+  /** The class record of a leaf; for a leaf without one, classes that are equally likely. */
+  Belief belief(const Node& leaf) const;
+  /** K + 1 probabilities, [0] = free space: a leaf's distribution, or the mixture of the known leaves
+   * below an inner node weighted by volume. */
+  std::vector<double> distribution(const Node& node) const;
+  /** First occupied voxel along a ray. \param direction any length \param maxRange meters, 0: none
+   * \return nothing if there is none, or if unknown space comes first and is not ignored. */
+  std::optional<RayHit> castRay(const octomap::point3d& origin, const octomap::point3d& direction,
+                                double maxRange = 0, bool ignoreUnknown = true) const;
+
+  // --- Changing ---
+  /** Inserts a scan: each voxel is updated at most once. Voxels in which returns end are hit (see
+   * HitVotes for their class), voxels that beams cross are free unless hit.
+   * \param cloud points in the sensor's frame
+   * \throw std::out_of_range the sensor is outside the map
+   * \throw std::invalid_argument vectors of different lengths, or a class that is not in the table. */
+  InsertionReport insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
+                         const InsertionOptions& options = {});
+  void clear() override;
+  /** Whether children that agree are merged (default). Only an empty tree can be changed.
+   * \throw std::logic_error the tree is not empty. */
+  void setPruning(bool on);
+
+ protected:
+  SemanticOcTree* create() const override { return new SemanticOcTree(resolution, m_classes, m_parameters); }
+
+ private:
+  friend class TreeReader;
+  /** After the store's nodes changed. */
+  void attachRoot();
+
+  ClassTable m_classes;
+  FilterParameters m_parameters;
+  ClassFilter<float> m_filter;
+  bool m_pruning = true;
+  std::unique_ptr<NodeStore> m_store;
+  std::unique_ptr<Scan> m_scan;  ///< buffers of the last insertion
+};
+
+}  // namespace semantic_octree

@@ -1,0 +1,148 @@
+#include <semantic_octree/ClassFilter.h>
+
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace semantic_octree {
+namespace {
+
+void require(bool ok, const char* field, double value, const char* expected) {
+  if (!ok)
+    throw std::invalid_argument(std::string("filter: ") + field + " = " + std::to_string(value) +
+                                ", expected " + expected);
+}
+
+/** Nearest value of the grid on which float additions are exact; doubles stay as they are. */
+template <typename Real>
+Real onGrid(double x) {
+  if constexpr (std::is_same_v<Real, float>) return static_cast<float>(std::round(x * 1048576.0) / 1048576.0);
+  return static_cast<Real>(x);
+}
+
+double logit(double p) { return std::log(p / (1 - p)); }
+
+}  // namespace
+
+void FilterParameters::validate(int numClasses) const {
+  const auto inside = [](double p) { return p > 0 && p < 1; };
+  require(numClasses >= 1 && numClasses <= kMaxClasses, "number of classes", numClasses, "1 to 254");
+  require(inside(minProbability) && minProbability < 0.5, "minProbability", minProbability,
+          "a probability below 0.5");
+  require(inside(maxProbability) && maxProbability > 0.5, "maxProbability", maxProbability,
+          "a probability above 0.5");
+  require(inside(softLabelFloor), "softLabelFloor", softLabelFloor, "a probability");
+  if (increments == Increments::Ssmi) return;
+  require(inside(hitProbability), "hitProbability", hitProbability, "a probability");
+  require(inside(falseAlarmProbability) && falseAlarmProbability < hitProbability,
+          "falseAlarmProbability", falseAlarmProbability, "a probability below hitProbability");
+  require(inside(accuracy) && (numClasses == 1 || accuracy * numClasses > 1), "accuracy", accuracy,
+          "a probability above 1 / number of classes");
+}
+
+bool FilterParameters::operator==(const FilterParameters& o) const {
+  return increments == o.increments && accuracy == o.accuracy && hitProbability == o.hitProbability &&
+         falseAlarmProbability == o.falseAlarmProbability && minProbability == o.minProbability &&
+         maxProbability == o.maxProbability && softLabelFloor == o.softLabelFloor;
+}
+
+template <typename Real, int Named>
+ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
+    : m_numClasses(numClasses), m_softLabelFloor(p.softLabelFloor) {
+  p.validate(numClasses);
+  const double K = numClasses;
+  double same = 1, other = -0.1, unlabeled = 0, miss = -0.1;
+  if (p.increments == FilterParameters::Increments::LikelihoodConsistent) {
+    unlabeled = std::log(p.hitProbability / p.falseAlarmProbability);
+    const double accuracy = numClasses == 1 ? 1.0 : p.accuracy;
+    same = unlabeled + std::log(accuracy * K);
+    other = numClasses == 1 ? unlabeled : unlabeled + std::log((1 - accuracy) * K / (K - 1));
+    miss = std::log((1 - p.hitProbability) / (1 - p.falseAlarmProbability));
+  } else {
+    unlabeled = std::log((std::exp(same) + (K - 1) * std::exp(other)) / K);
+  }
+  m_logNumClasses = onGrid<Real>(std::log(K));
+  m_min = onGrid<Real>(logit(p.minProbability));
+  m_max = onGrid<Real>(logit(p.maxProbability));
+  m_hitSame = onGrid<Real>(same);
+  m_hitOther = onGrid<Real>(other);
+  m_hitUnlabeled = onGrid<Real>(unlabeled);
+  m_miss = onGrid<Real>(miss);
+}
+
+template <typename Real, int Named>
+auto ClassFilter<Real, Named>::uniform(Real occupancyLogOdds) const -> Belief {
+  Belief b;
+  b.rest = occupancyLogOdds - m_logNumClasses;
+  return b;
+}
+
+template <typename Real, int Named>
+void ClassFilter<Real, Named>::addToAll(Belief& b, Real increment) const {
+  for (int i = 0; i < b.count; ++i) b.logOdds[i] = clamp(b.logOdds[i] + increment);
+  b.rest = clamp(b.rest + increment);
+  b.sort();  // clamping can make values equal, and then the ids decide
+}
+
+template <typename Real, int Named>
+void ClassFilter<Real, Named>::hit(Belief& b, ClassId id) const {
+  const Real observed = clamp(b.logOddsOf(id) + m_hitSame);
+  const int index = b.indexOf(id);
+  for (int i = 0; i < b.count; ++i) b.logOdds[i] = clamp(b.logOdds[i] + m_hitOther);
+  b.rest = clamp(b.rest + m_hitOther);
+  if (index >= 0)
+    b.logOdds[index] = observed, b.sort();
+  else
+    name(b, id, observed);
+}
+
+template <typename Real, int Named>
+void ClassFilter<Real, Named>::name(Belief& b, ClassId id, Real logOdds) const {
+  if (b.count < Named) {
+    b.ids[b.count] = id;
+    b.logOdds[b.count++] = logOdds;
+    return b.sort();
+  }
+  // The least likely of the Named + 1 joins the m - 1 classes that stay unnamed.
+  const int last = Named - 1;
+  const bool newcomerIsLeast =
+      logOdds != b.logOdds[last] ? logOdds < b.logOdds[last] : id > b.ids[last];
+  const double evicted = newcomerIsLeast ? logOdds : b.logOdds[last];
+  const int others = b.unnamed(m_numClasses) - 1;
+  const double top = std::max<double>(evicted, b.rest);
+  const double odds = others * std::exp(b.rest - top) + std::exp(evicted - top);
+  b.rest = clamp(onGrid<Real>(top + std::log(odds / (others + 1))));
+  if (newcomerIsLeast) return;
+  b.ids[last] = id;
+  b.logOdds[last] = logOdds;
+  b.sort();
+}
+
+template <typename Real, int Named>
+void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
+  const double K = m_numClasses;
+  std::vector<Real> h(m_numClasses + 1);
+  for (int k = 1; k <= m_numClasses; ++k)
+    h[k] = clamp(onGrid<Real>(b.logOddsOf(static_cast<ClassId>(k)) + m_hitUnlabeled +
+                              std::log(K * std::max<double>(q[k - 1], m_softLabelFloor))));
+  std::vector<ClassId> order(m_numClasses);
+  std::iota(order.begin(), order.end(), ClassId{1});
+  const int named = std::min(Named, m_numClasses);
+  std::partial_sort(order.begin(), order.begin() + named, order.end(), [&](ClassId i, ClassId j) {
+    return h[i] != h[j] ? h[i] > h[j] : i < j;
+  });
+  b = Belief();
+  for (; b.count < named; ++b.count) {
+    b.ids[b.count] = order[b.count];
+    b.logOdds[b.count] = h[order[b.count]];
+  }
+  if (named == m_numClasses) return;
+  double odds = 0;
+  for (int i = named; i < m_numClasses; ++i) odds += std::exp(h[order[i]]);
+  b.rest = clamp(onGrid<Real>(std::log(odds / (m_numClasses - named))));
+}
+
+template class ClassFilter<float>;
+template class ClassFilter<double>;
+
+}  // namespace semantic_octree

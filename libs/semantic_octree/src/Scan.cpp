@@ -1,0 +1,164 @@
+#include "Scan.h"
+
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "RayMarking.h"
+
+namespace semantic_octree {
+namespace {
+
+void checkSizes(const LabeledCloud& cloud, int numClasses) {
+  const auto fail = [&](const char* what, std::size_t size, std::size_t expected) {
+    throw std::invalid_argument(std::string("labeled cloud: ") + std::to_string(size) + " " + what +
+                                ", expected " + std::to_string(expected) + " or none");
+  };
+  const std::size_t n = cloud.size();
+  if (!cloud.classes.empty() && cloud.classes.size() != n) fail("classes", cloud.classes.size(), n);
+  if (!cloud.probabilities.empty() && cloud.probabilities.size() != n * numClasses)
+    fail("probabilities", cloud.probabilities.size(), n * numClasses);
+  for (const ClassId id : cloud.classes)
+    if (id > numClasses)
+      throw std::invalid_argument("labeled cloud: class " + std::to_string(id) +
+                                  " is above the number of classes, " + std::to_string(numClasses));
+}
+
+}  // namespace
+
+void Scan::set(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor, double resolution,
+               int numClasses, const InsertionOptions& options) {
+  checkSizes(cloud, numClasses);
+  m_beams.compute(cloud, T_map_sensor, resolution, options);
+  m_free.resize(options.threads);
+  m_hits.cover(m_beams.lowest, m_beams.highest);
+  markHits(options);
+  markFree(options, options.carvingMargin / resolution);
+  summarize();
+  vote(cloud, numClasses);
+}
+
+void Scan::markHits(const InsertionOptions& options) {
+  const bool onePerVoxel = options.rays == InsertionOptions::Rays::EndVoxels;
+  if (onePerVoxel) m_clippedEnds.coverLike(m_hits);
+  m_endBits.clear();
+  m_carving.clear();
+  const Eigen::Array3d gridOrigin = m_hits.origin();
+  for (std::size_t i = 0; i < m_beams.ends.size(); ++i) {
+    const BeamEnd& beam = m_beams.ends[i];
+    const std::uint64_t bit = m_hits.bitOf((beam.end - gridOrigin).cast<int>());
+    m_endBits.push_back(bit);
+    bool seen = false;
+    if (beam.isReturn)
+      seen = m_hits.testAndSet(bit);
+    else if (onePerVoxel)
+      seen = m_clippedEnds.testAndSet(bit);
+    if (!(onePerVoxel && seen)) m_carving.push_back(static_cast<std::uint32_t>(i));
+  }
+  if (!onePerVoxel) return;
+  for (const std::uint64_t bit : m_endBits) m_clippedEnds.words()[bit >> 6] = 0;
+}
+
+void Scan::markFree(const InsertionOptions& options, double margin) {
+  std::vector<std::thread> helpers;
+  for (int i = 0; i < options.threads; ++i) m_free[i].coverLike(m_hits);
+  for (int i = 1; i < options.threads; ++i)
+    helpers.emplace_back([=, &options] { markFreePart(i, options, margin); });
+  markFreePart(0, options, margin);
+  for (std::thread& helper : helpers) helper.join();
+}
+
+void Scan::markFreePart(int part, const InsertionOptions& options, double margin) {
+  TileGrid& grid = m_free[part];
+  const Eigen::Array3d gridOrigin = grid.origin(), begin = m_beams.origin - gridOrigin;
+  const bool toCenter = options.rays == InsertionOptions::Rays::EndVoxels;
+  const std::size_t first = m_carving.size() * part / options.threads;
+  const std::size_t last = m_carving.size() * (part + 1) / options.threads;
+  for (std::size_t i = first; i < last; ++i) {
+    const BeamEnd& beam = m_beams.ends[m_carving[i]];
+    Eigen::Array3d end = beam.end - gridOrigin;
+    if (toCenter) end = end.floor() + 0.5;
+    if (beam.isReturn && margin > 0) {
+      const double length = (end - begin).matrix().norm();
+      if (length <= margin) continue;
+      end = begin + (end - begin) * (1 - margin / length);
+    }
+    markRay(grid, begin, end);
+  }
+}
+
+void Scan::summarize() {
+  m_pyramid.cover(m_hits);
+  m_firstHit.resize(m_hits.size());
+  std::uint32_t hits = 0;
+  for (std::size_t tile = 0; tile < m_hits.size(); ++tile) {
+    m_firstHit[tile] = hits;
+    const CubeContent content = summarizeTile(tile);
+    m_pyramid.set(tile, content);
+    if (content.hit())
+      for (int w = 0; w < TileGrid::kWords; ++w) hits += __builtin_popcountll(m_hits.tile(tile)[w]);
+  }
+  m_beams.report.hitVoxels = hits;
+  m_pyramid.build();
+}
+
+CubeContent Scan::summarizeTile(std::size_t tile) {
+  std::uint64_t* const free = m_free[0].tile(tile);
+  for (std::size_t i = 1; i < m_free.size(); ++i)
+    for (int w = 0; w < TileGrid::kWords; ++w) {
+      free[w] |= m_free[i].tile(tile)[w];
+      m_free[i].tile(tile)[w] = 0;
+    }
+  const std::uint64_t* const hit = m_hits.tile(tile);
+  std::uint64_t anyFree = 0, anyHit = 0, allFree = ~std::uint64_t(0);
+  for (int w = 0; w < TileGrid::kWords; ++w) {
+    free[w] &= ~hit[w];  // a voxel that is hit is not also missed
+    anyFree |= free[w];
+    anyHit |= hit[w];
+    allFree &= free[w];
+  }
+  CubeContent content;
+  if (anyFree | anyHit) content.flags |= CubeContent::kAny;
+  if (anyHit) content.flags |= CubeContent::kHit;
+  if (~allFree) content.flags |= CubeContent::kNotAllFree;
+  if (anyFree)
+    for (int w = 0; w < TileGrid::kWords; ++w)
+      m_beams.report.freeVoxels += __builtin_popcountll(free[w]);
+  return content;
+}
+
+void Scan::vote(const LabeledCloud& cloud, int numClasses) {
+  m_votes.start(m_beams.report.hitVoxels, cloud, numClasses);
+  for (std::size_t i = 0; i < m_beams.ends.size(); ++i)
+    if (m_beams.ends[i].isReturn) m_votes.add(rankOf(m_endBits[i]), m_beams.ends[i].point);
+  m_votes.finish();
+}
+
+std::uint32_t Scan::rankOf(std::uint64_t bit) const {
+  const std::size_t tile = bit / 512;
+  const std::uint64_t* const hit = m_hits.tile(tile);
+  const int word = static_cast<int>(bit >> 6 & 7);
+  std::uint32_t rank = m_firstHit[tile];
+  for (int w = 0; w < word; ++w) rank += __builtin_popcountll(hit[w]);
+  return rank + __builtin_popcountll(hit[word] & ((std::uint64_t(1) << (bit & 63)) - 1));
+}
+
+void Scan::clear() {
+  constexpr std::size_t bytesPerTile = TileGrid::kWords * sizeof(std::uint64_t);
+  for (std::size_t tile = 0; tile < m_hits.size(); ++tile) {
+    if (!m_pyramid.tile(tile).any()) continue;
+    std::memset(m_free[0].tile(tile), 0, bytesPerTile);
+    if (m_pyramid.tile(tile).hit()) std::memset(m_hits.tile(tile), 0, bytesPerTile);
+  }
+}
+
+std::size_t Scan::bytes() const {
+  std::size_t bytes = m_hits.bytes() + m_clippedEnds.bytes() + m_pyramid.bytes();
+  for (const TileGrid& grid : m_free) bytes += grid.bytes();
+  return bytes + m_endBits.capacity() * sizeof(std::uint64_t) +
+         (m_carving.capacity() + m_firstHit.capacity()) * sizeof(std::uint32_t);
+}
+
+}  // namespace semantic_octree

@@ -1,0 +1,193 @@
+#include "ScanMerger.h"
+
+#include <atomic>
+#include <thread>
+
+#include "AbstractionUpkeep.h"
+
+namespace semantic_octree {
+namespace {
+
+constexpr int kWordDepth = 14, kByteDepth = 15;
+/** Threads share cubes of 64 voxels' side. */
+constexpr int kSharedLevel = 3;
+
+int depthOf(const ScanCube& cube) { return ScanPyramid::kTopLevel - cube.level; }
+
+VoxelIndex childPosition(const VoxelIndex& p, int i) {
+  return p * 2 + VoxelIndex(i & 1, i >> 1 & 1, i >> 2);
+}
+
+/** Calls f(i, position) for the children of a cube that the scan touched. */
+template <typename F>
+void forEachTouchedChild(const Scan& scan, const ScanCube& cube, F f) {
+  for (int i = 0; i < 8; ++i) {
+    const VoxelIndex position = childPosition(cube.position, i);
+    if (scan.pyramid().at(cube.level - 1, position).any()) f(i, position);
+  }
+}
+
+}  // namespace
+
+bool ScanMerger::merge(const ScanCube& cube) {
+  const CubeContent content = m_scan.pyramid().at(cube.level, cube.position);
+  const Whole whole = updateWhole(*cube.node, cube.isNew, content.allFree(), content.hit());
+  if (whole != Whole::Descend) return whole == Whole::Changed;
+  if (cube.level == 0) return mergeTile(cube);
+  Octant& octant = childrenOf(*cube.node, cube.isNew);
+  bool changed = false;
+  forEachTouchedChild(m_scan, cube, [&](int i, const VoxelIndex& position) {
+    const bool isNew = !octant.has(i);
+    changed |= merge({&m_arena.createChild(octant, i), isNew, cube.level - 1, position});
+  });
+  return finish(*cube.node, depthOf(cube), changed);
+}
+
+ScanMerger::Whole ScanMerger::updateWhole(Node& node, bool isNew, bool allFree, bool anyHit) {
+  if (anyHit || !m_target.pruning || (!isNew && !node.isLeaf())) return Whole::Descend;
+  if (!isNew && !node.hasClassRecord() && node.getValue() <= m_filter.lowestOccupancy())
+    return Whole::Unchanged;  // free for certain, and seen free once more
+  if (!allFree) return Whole::Descend;
+  return miss(node) || isNew ? Whole::Changed : Whole::Unchanged;
+}
+
+Octant& ScanMerger::childrenOf(Node& node, bool isNew) {
+  if (!node.isLeaf()) return m_store.octant(node);
+  return isNew ? m_arena.createOctant(node) : m_arena.expand(node);
+}
+
+bool ScanMerger::finish(Node& node, int depth, bool changed) {
+  if (m_target.pruning && m_arena.prune(node)) return changed;
+  if (!changed) return false;
+  m_store.updateOccupancy(node);
+  if (m_target.upkeep) m_target.upkeep->recompute(m_store, node, depth);
+  return true;
+}
+
+bool ScanMerger::mergeTile(const ScanCube& cube) {
+  const std::size_t tile = m_scan.pyramid().tileIndex(cube.position);
+  const std::uint64_t *free = m_scan.freeBits(tile), *hit = m_scan.hitBits(tile);
+  m_nextHit = m_scan.firstHit(tile);
+  Octant& octant = childrenOf(*cube.node, cube.isNew);
+  bool changed = false;
+  for (int i = 0; i < 8; ++i) {
+    if (!(free[i] | hit[i])) continue;
+    const bool isNew = !octant.has(i);
+    changed |= mergeWord(m_arena.createChild(octant, i), isNew, free[i], hit[i]);
+  }
+  return finish(*cube.node, depthOf(cube), changed);
+}
+
+bool ScanMerger::mergeWord(Node& node, bool isNew, std::uint64_t free, std::uint64_t hit) {
+  const Whole whole = updateWhole(node, isNew, !~free, hit);
+  if (whole != Whole::Descend) return whole == Whole::Changed;
+  Octant& octant = childrenOf(node, isNew);
+  bool changed = false;
+  for (int i = 0; i < 8; ++i, free >>= 8, hit >>= 8) {
+    if (!((free | hit) & 0xff)) continue;
+    const bool isNewChild = !octant.has(i);
+    changed |= mergeByte(m_arena.createChild(octant, i), isNewChild, free & 0xff, hit & 0xff);
+  }
+  return finish(node, kWordDepth, changed);
+}
+
+bool ScanMerger::mergeByte(Node& node, bool isNew, unsigned free, unsigned hit) {
+  const Whole whole = updateWhole(node, isNew, free == 0xff, hit);
+  if (whole != Whole::Descend) return whole == Whole::Changed;
+  Octant& octant = childrenOf(node, isNew);
+  bool changed = false;
+  for (unsigned voxels = free | hit; voxels; voxels &= voxels - 1) {
+    const int i = __builtin_ctz(voxels);
+    changed |= !octant.has(i);
+    Node& voxel = m_arena.createChild(octant, i);
+    changed |= hit >> i & 1 ? this->hit(voxel) : miss(voxel);
+  }
+  return finish(node, kByteDepth, changed);
+}
+
+bool ScanMerger::hit(Node& leaf) {
+  const std::uint32_t rank = m_nextHit++;
+  return hit(leaf, m_scan.votes().softLabelOf(rank), m_scan.votes().classOf(rank));
+}
+
+bool ScanMerger::hit(Node& leaf, const float* softLabel, ClassId id) {
+  const float before = leaf.getValue();
+  if (!softLabel && id == kNoClass && !leaf.hasClassRecord()) {
+    leaf.setValue(m_filter.occupancyAfterUnlabeledHit(before));
+    return leaf.getValue() != before;
+  }
+  Belief belief = leaf.hasClassRecord() ? m_store.record(leaf) : m_filter.uniform(before);
+  const Belief old = belief;
+  if (softLabel)
+    m_filter.hit(belief, softLabel);
+  else if (id != kNoClass)
+    m_filter.hit(belief, id);
+  else
+    m_filter.hit(belief);
+  if (leaf.hasClassRecord() && belief == old) return false;
+  m_arena.setRecord(leaf, belief);
+  leaf.setValue(belief.occupancyLogOdds(m_filter.numClasses()));
+  return true;
+}
+
+bool ScanMerger::miss(Node& leaf) {
+  if (!leaf.hasClassRecord()) {
+    const float before = leaf.getValue();
+    leaf.setValue(m_filter.occupancyAfterMiss(before));
+    return leaf.getValue() != before;
+  }
+  Belief& belief = m_store.record(leaf);
+  m_filter.miss(belief);
+  if (belief.isUniform()) {  // at the floor: the record says no more than the occupancy does
+    leaf.setValue(m_filter.occupancyOfUniform(belief.rest));
+    m_arena.dropRecord(leaf);
+  } else {
+    leaf.setValue(belief.occupancyLogOdds(m_filter.numClasses()));
+  }
+  return true;
+}
+
+void ScanMerger::collect(const ScanCube& cube, std::vector<ScanCube>& parts) {
+  if (cube.level == kSharedLevel) return parts.push_back(cube);
+  Octant& octant = childrenOf(*cube.node, cube.isNew);
+  forEachTouchedChild(m_scan, cube, [&](int i, const VoxelIndex& position) {
+    const bool isNew = !octant.has(i);
+    collect({&m_arena.createChild(octant, i), isNew, cube.level - 1, position}, parts);
+  });
+}
+
+bool ScanMerger::finishAbove(const ScanCube& cube, const std::vector<char>& changed, std::size_t& next) {
+  if (cube.level == kSharedLevel) return changed[next++];
+  Octant& octant = m_store.octant(*cube.node);
+  bool anyChanged = false;
+  forEachTouchedChild(m_scan, cube, [&](int i, const VoxelIndex& position) {
+    anyChanged |= finishAbove({&octant.nodes[i], false, cube.level - 1, position}, changed, next);
+  });
+  return finish(*cube.node, depthOf(cube), anyChanged);
+}
+
+void mergeScan(const MergeTarget& target, const Scan& scan, Node& root, bool isNew, int threads) {
+  ScanMerger first(target, scan, target.store.arena(0));
+  const ScanCube whole{&root, isNew, ScanPyramid::kTopLevel, VoxelIndex(0, 0, 0)};
+  std::vector<ScanCube> parts;
+  first.collect(whole, parts);
+
+  std::vector<char> changed(parts.size());
+  std::atomic<std::size_t> nextPart{0};
+  const auto work = [&](ScanMerger& merger) {
+    for (std::size_t i; (i = nextPart++) < parts.size();) changed[i] = merger.merge(parts[i]);
+  };
+  std::vector<std::thread> helpers;
+  for (int i = 1; i < threads; ++i)
+    helpers.emplace_back([&, arena = &target.store.arena(i)] {
+      ScanMerger merger(target, scan, *arena);
+      work(merger);
+    });
+  work(first);
+  for (std::thread& helper : helpers) helper.join();
+
+  std::size_t next = 0;
+  first.finishAbove(whole, changed, next);
+}
+
+}  // namespace semantic_octree

@@ -1,0 +1,76 @@
+#pragma once
+#include <semantic_octree/ClassFilter.h>
+
+#include <vector>
+
+#include "NodeStore.h"
+#include "Scan.h"
+
+namespace semantic_octree {
+
+class AbstractionUpkeep;
+
+/** What a scan is merged into. */
+struct MergeTarget {
+  NodeStore& store;
+  const ClassFilter<float>& filter;
+  /** Keeps inner nodes' bookkeeping up to date; null: there is none. */
+  const AbstractionUpkeep* upkeep;
+  /** Children that agree are merged; off: every known leaf is a voxel. */
+  bool pruning;
+};
+
+/** A cube of the scan (see ScanPyramid) and the tree's node for it. */
+struct ScanCube {
+  Node* node;
+  bool isNew;  ///< the node was made for this scan: its value means nothing yet
+  int level;
+  VoxelIndex position;
+};
+
+/** Carries a scan's voxels into a subtree, in the thread that owns the arena.
+ *
+ * The tree is descended once per tile of 8 x 8 x 8 voxels; on the way back up each inner node below
+ * which something changed is pruned or recomputed once. A cube that the tree holds as one leaf and
+ * that the scan saw free as a whole gets one update: the same values as updating its voxels one by
+ * one and pruning. */
+class ScanMerger {
+ public:
+  ScanMerger(const MergeTarget& target, const Scan& scan, NodeArena& arena)
+      : m_target(target), m_store(target.store), m_filter(target.filter), m_scan(scan), m_arena(arena) {}
+
+  /** \return whether anything changed */
+  bool merge(const ScanCube& cube);
+
+ private:
+  enum class Whole { Unchanged, Changed, Descend };
+  Whole updateWhole(Node& node, bool isNew, bool allFree, bool anyHit);
+  Octant& childrenOf(Node& node, bool isNew);
+  /** Prunes or recomputes an inner node. \return changed */
+  bool finish(Node& node, int depth, bool changed);
+
+  bool mergeTile(const ScanCube& cube);
+  bool mergeWord(Node& node, bool isNew, std::uint64_t free, std::uint64_t hit);
+  bool mergeByte(Node& node, bool isNew, unsigned free, unsigned hit);
+  bool hit(Node& leaf);
+  bool hit(Node& leaf, const float* softLabel, ClassId id);
+  bool miss(Node& leaf);
+
+  friend void mergeScan(const MergeTarget&, const Scan&, Node& root, bool isNew, int threads);
+  void collect(const ScanCube& cube, std::vector<ScanCube>& parts);
+  bool finishAbove(const ScanCube& cube, const std::vector<char>& changed, std::size_t& next);
+
+  const MergeTarget& m_target;
+  NodeStore& m_store;
+  const ClassFilter<float>& m_filter;
+  const Scan& m_scan;
+  NodeArena& m_arena;
+  std::uint32_t m_nextHit = 0;  ///< rank of the next hit voxel in the current tile
+};
+
+/** Merges a scan into the whole tree. The cubes of one level are shared among the threads, then the
+ * nodes above them are finished; the result does not depend on the number of threads.
+ * \param isNew the tree was empty */
+void mergeScan(const MergeTarget& target, const Scan& scan, Node& root, bool isNew, int threads);
+
+}  // namespace semantic_octree

@@ -1,0 +1,105 @@
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "NodeStore.h"
+#include "Scan.h"
+#include "ScanMerger.h"
+
+namespace semantic_octree {
+namespace {
+
+double positive(double meters) {
+  if (!(meters > 0) || !std::isfinite(meters))
+    throw std::invalid_argument("resolution = " + std::to_string(meters) +
+                                " m, expected a positive number");
+  return meters;
+}
+
+}  // namespace
+
+void InsertionOptions::validate() const {
+  const auto require = [](bool ok, const char* name, double value, const char* expected) {
+    if (!ok)
+      throw std::invalid_argument(std::string("insertion: ") + name + " = " + std::to_string(value) +
+                                  ", expected " + expected);
+  };
+  require(maxRange >= 0 && std::isfinite(maxRange), "maxRange", maxRange, "meters, or 0 for no limit");
+  require(minRange >= 0 && std::isfinite(minRange), "minRange", minRange, "meters, or 0");
+  require(carvingMargin >= 0 && std::isfinite(carvingMargin), "carvingMargin", carvingMargin,
+          "meters, or 0");
+  require(threads >= 1 && threads <= 256, "threads", threads, "1 to 256");
+}
+
+SemanticOcTree::SemanticOcTree(double voxelSize, ClassTable classes, const FilterParameters& filter)
+    : Base(positive(voxelSize)), m_classes(std::move(classes)), m_parameters(filter),
+      m_filter(m_classes.size(), filter), m_store(std::make_unique<NodeStore>(0)),
+      m_scan(std::make_unique<Scan>()) {
+  clearKeyRays();  // OctoMap keeps a large buffer for an insertion that is not used here
+}
+
+SemanticOcTree::~SemanticOcTree() { Base::root = nullptr; }
+
+SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
+    : SemanticOcTree(o.resolution, o.m_classes, o.m_parameters) {
+  m_pruning = o.m_pruning;
+  if (o.empty()) return;
+  m_store->arena(0).copy(*o.m_store, *o.root(), m_store->root());
+  attachRoot();
+}
+
+SemanticOcTree& SemanticOcTree::operator=(SemanticOcTree o) {
+  swap(o);
+  return *this;
+}
+
+void SemanticOcTree::swap(SemanticOcTree& o) {
+  const double resolutionBefore = resolution;
+  Base::setResolution(o.resolution);
+  o.Base::setResolution(resolutionBefore);
+  std::swap(Base::root, o.Base::root);
+  std::swap(tree_size, o.tree_size);
+  size_changed = o.size_changed = true;
+  std::swap(m_classes, o.m_classes);
+  std::swap(m_parameters, o.m_parameters);
+  std::swap(m_filter, o.m_filter);
+  std::swap(m_pruning, o.m_pruning);
+  std::swap(m_store, o.m_store);
+  std::swap(m_scan, o.m_scan);
+}
+
+void SemanticOcTree::clear() {
+  Base::root = nullptr;
+  m_store = std::make_unique<NodeStore>(m_store->stateBytes());
+  tree_size = 0;
+  size_changed = true;
+}
+
+void SemanticOcTree::setPruning(bool on) {
+  if (!empty()) throw std::logic_error("pruning can be switched in an empty tree only");
+  m_pruning = on;
+}
+
+std::size_t SemanticOcTree::memoryUsage() const { return m_store->bytes(); }
+
+InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
+                                       const InsertionOptions& options) {
+  options.validate();
+  m_scan->set(cloud, T_map_sensor, resolution, numClasses(), options);
+  if (m_scan->hasVoxels()) {
+    const MergeTarget target{*m_store, m_filter, nullptr, m_pruning};
+    mergeScan(target, *m_scan, m_store->root(), empty(), options.threads);
+    attachRoot();
+  }
+  m_scan->clear();
+  return m_scan->report();
+}
+
+void SemanticOcTree::attachRoot() {
+  Base::root = &m_store->root();
+  tree_size = m_store->numNodes();
+  size_changed = true;
+}
+
+}  // namespace semantic_octree

@@ -1,0 +1,51 @@
+#include "TileGrid.h"
+
+#include <stdexcept>
+
+namespace semantic_octree {
+namespace {
+
+constexpr int kTileSide = 8, kBitsPerTile = 512, kHalfMap = 32768;
+
+/** Bits 0, 1, 2 of a coordinate moved to Morton positions 0, 3, 6. */
+std::uint64_t spread(int v) { return (v & 1) | (v & 2) << 2 | (v & 4) << 4; }
+
+int floorToTile(int voxel) { return voxel & ~(kTileSide - 1); }
+
+}  // namespace
+
+void TileGrid::cover(const VoxelIndex& lowest, const VoxelIndex& highest) {
+  std::size_t stride = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    m_firstVoxel[axis] = floorToTile(lowest[axis] - 1);
+    m_firstTile[axis] = (m_firstVoxel[axis] + kHalfMap) >> 3;
+    m_numTiles[axis] = (floorToTile(highest[axis] + 1) - m_firstVoxel[axis]) / kTileSide + 1;
+    m_offsets[axis].resize(static_cast<std::size_t>(m_numTiles[axis]) * kTileSide);
+    for (std::size_t i = 0; i < m_offsets[axis].size(); ++i)
+      m_offsets[axis][i] = (i >> 3) * stride * kBitsPerTile + (spread(static_cast<int>(i)) << axis);
+    stride *= static_cast<std::size_t>(m_numTiles[axis]);
+  }
+  m_size = stride;
+  reserve(m_size);
+}
+
+void TileGrid::coverLike(const TileGrid& o) {
+  m_firstVoxel = o.m_firstVoxel;
+  m_firstTile = o.m_firstTile;
+  m_numTiles = o.m_numTiles;
+  m_size = o.m_size;
+  for (int axis = 0; axis < 3; ++axis) m_offsets[axis] = o.m_offsets[axis];
+  reserve(m_size);
+}
+
+void TileGrid::reserve(std::size_t tiles) {
+  if (tiles <= m_capacity) return;
+  // calloc: pages that no ray touches cost nothing.
+  m_bits.reset(static_cast<std::uint64_t*>(std::calloc(tiles * kWords, sizeof(std::uint64_t))));
+  m_capacity = m_bits ? tiles : 0;
+  if (!m_bits)
+    throw std::length_error("scan too large to insert: " + std::to_string(m_numTiles.prod()) +
+                            " tiles of 8 x 8 x 8 voxels; set a maximum range");
+}
+
+}  // namespace semantic_octree
