@@ -1,0 +1,16 @@
+#pragma once
+#include <exception>
+#include <string>
+
+namespace labeled_cloud {
+
+/** What an exception says, without the call stack that MRPT appends to its own. */
+inline std::string messageOf(const std::exception& e) {
+  const std::string text = e.what(), begin = "Message:  ", end = "\nLocation:";
+  const std::size_t from = text.find(begin);
+  if (from == std::string::npos) return text;
+  const std::size_t start = from + begin.size();
+  return text.substr(start, text.find(end, start) - start);
+}
+
+}  // namespace labeled_cloud

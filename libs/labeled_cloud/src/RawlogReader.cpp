@@ -1,0 +1,70 @@
+#include <labeled_cloud/CObservationLabeledCloud.h>
+#include <labeled_cloud/RawlogReader.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include <stdexcept>
+
+#include "GzipInputStream.h"
+#include "MrptMessage.h"
+
+namespace labeled_cloud {
+
+using mrpt::serialization::CSerializable;
+
+RawlogReader::RawlogReader(const std::filesystem::path& file)
+    : m_file(file), m_stream(std::make_unique<GzipInputStream>(file)) {
+  registerObservations();
+}
+
+RawlogReader::~RawlogReader() = default;
+
+std::uint64_t RawlogReader::bytesRead() const { return m_stream->getPosition(); }
+std::uint64_t RawlogReader::bytesTotal() const { return m_stream->getTotalBytesCount(); }
+
+void RawlogReader::fail(const std::string& what) {
+  m_ended = true;
+  throw std::runtime_error(m_file.string() + ": " + what + " (object " +
+                           std::to_string(m_objects + 1) + ", near byte " +
+                           std::to_string(bytesRead()) + ")");
+}
+
+/** The next object, null at the end of a file that is whole. */
+CSerializable::Ptr RawlogReader::readObject() {
+  const std::uint64_t begin = m_stream->delivered();
+  std::string problem;
+  try {
+    auto archive = mrpt::serialization::archiveFrom(*m_stream);
+    if (auto object = archive.ReadObject()) return object;
+    problem = "an empty object";
+  } catch (const mrpt::serialization::CExceptionEOF& e) {
+    if (m_stream->delivered() > begin) problem = "the file is cut off";
+  } catch (const std::exception& e) {
+    problem = messageOf(e);
+  }
+  if (!m_stream->damage().empty()) problem = m_stream->damage();
+  if (!problem.empty()) fail(problem);
+  if (m_objects == 0) fail("the rawlog is empty");
+  m_ended = true;
+  return nullptr;
+}
+
+std::optional<RawlogEntry> RawlogReader::next() {
+  if (m_ended) return std::nullopt;
+  const CSerializable::Ptr object = readObject();
+  if (!object) return std::nullopt;
+
+  RawlogEntry entry;
+  if (const auto actions = std::dynamic_pointer_cast<mrpt::obs::CActionCollection>(object))
+    entry.actions = actions;
+  else if (const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object))
+    entry.observations.assign(frame->begin(), frame->end());
+  else if (const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object))
+    entry.observations.push_back(observation);
+  else
+    fail(std::string("a ") + object->GetRuntimeClass()->className + " does not belong in a rawlog");
+  ++m_objects;
+  return entry;
+}
+
+}  // namespace labeled_cloud
