@@ -27,7 +27,7 @@ double logit(double p) { return std::log(p / (1 - p)); }
 void FilterParameters::validate(int numClasses) const {
   const auto inside = [](double p) { return p > 0 && p < 1; };
   require(numClasses >= 1 && numClasses <= kMaxClasses, "number of classes", numClasses, "1 to 254");
-  require(inside(minProbability) && minProbability < 0.5, "minProbability", minProbability,
+  require(inside(minOccupancy) && minOccupancy < 0.5, "minOccupancy", minOccupancy,
           "a probability below 0.5");
   require(inside(maxProbability) && maxProbability > 0.5, "maxProbability", maxProbability,
           "a probability above 0.5");
@@ -42,7 +42,7 @@ void FilterParameters::validate(int numClasses) const {
 
 bool FilterParameters::operator==(const FilterParameters& o) const {
   return increments == o.increments && accuracy == o.accuracy && hitProbability == o.hitProbability &&
-         falseAlarmProbability == o.falseAlarmProbability && minProbability == o.minProbability &&
+         falseAlarmProbability == o.falseAlarmProbability && minOccupancy == o.minOccupancy &&
          maxProbability == o.maxProbability && softLabelFloor == o.softLabelFloor;
 }
 
@@ -62,7 +62,7 @@ ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
     unlabeled = std::log((std::exp(same) + (K - 1) * std::exp(other)) / K);
   }
   m_logNumClasses = onGrid<Real>(std::log(K));
-  m_min = onGrid<Real>(logit(p.minProbability));
+  m_min = onGrid<Real>(logit(p.minOccupancy)) - m_logNumClasses;
   m_max = onGrid<Real>(logit(p.maxProbability));
   m_hitSame = onGrid<Real>(same);
   m_hitOther = onGrid<Real>(other);

@@ -20,8 +20,11 @@ struct FilterParameters {
   double hitProbability = 0.6;
   /** P(a return ends in the cell | the cell is free and a beam reaches it). */
   double falseAlarmProbability = 0.1;
-  /** Each class's log-odds stay within ln(q / (1 - q)) of these two. */
-  double minProbability = 0.0001, maxProbability = 0.9999;
+  /** p(occupied) of a cell that was seen free for long: each class's log-odds stay above
+   * ln(q / (1 - q)) - ln K. As OctoMap's lower clamping: a larger value merges more free space. */
+  double minOccupancy = 0.12;
+  /** Each class's log-odds stay below ln(q / (1 - q)), OctoMap's upper clamping. */
+  double maxProbability = 0.97;
   /** Soft labels are raised to this before their logarithm is taken. */
   double softLabelFloor = 0.001;
 
