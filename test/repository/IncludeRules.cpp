@@ -11,7 +11,8 @@ const IncludeTable& includeTable() {
   static const IncludeTable table = {
       {"tree_abstraction", {"Eigen"}},
       {"semantic_octree", {"Eigen", "octomap", "tree_abstraction"}},
-      {"labeled_cloud", {"Eigen", "mrpt", "opencv2", "yaml-cpp", "semantic_octree"}},
+      {"labeled_cloud",
+       {"Eigen", "mrpt", "opencv2", "png.h", "yaml-cpp", "zlib.h", "semantic_octree"}},
       {"semantic_map",
        {"Eigen", "mrpt", "octomap", "opencv2", "labeled_cloud", "semantic_octree",
         "tree_abstraction"}},

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <set>
 
 #include "IncludeRules.h"
+#include "SourceTree.h"
 #include "TextRules.h"
 
 namespace fs = std::filesystem;
@@ -114,5 +116,13 @@ TEST_F(Repository, everyApplicationHasAReadme) {
   for (const auto& entry : fs::directory_iterator(root / "apps")) {
     if (!fs::exists(entry.path() / "CMakeLists.txt")) continue;
     EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path();
+  }
+}
+
+TEST_F(Repository, everyPackageIsListedOnce) {
+  std::set<std::string> seen;
+  for (const SourceLine& line : linesOf(root / "debian-packages.txt")) {
+    if (line.text.empty() || line.text.front() == '#') continue;
+    EXPECT_TRUE(seen.insert(line.text).second) << line.text << " in line " << line.number;
   }
 }
