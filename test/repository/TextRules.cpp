@@ -41,3 +41,15 @@ std::vector<std::string> filesLongerThan(std::size_t maxLines, const fs::path& r
   }
   return findings;
 }
+
+std::vector<std::string> brokenLinks(const fs::path& markdownFile) {
+  static const std::regex link(R"(\]\(([^):#]+)[^):]*\))");
+  std::vector<std::string> findings;
+  const fs::path folder = markdownFile.parent_path();
+  for (const SourceLine& line : linesOf(markdownFile)) {
+    for (std::sregex_iterator it(line.text.begin(), line.text.end(), link), end; it != end; ++it)
+      if (!fs::exists(folder / (*it)[1].str()))
+        findings.push_back(line.where(folder) + ": no file " + (*it)[1].str());
+  }
+  return findings;
+}

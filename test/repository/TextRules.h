@@ -11,3 +11,6 @@ std::vector<std::string> linesTiedToAMachine(const std::filesystem::path& root);
 
 /** C++ files with more lines than that. */
 std::vector<std::string> filesLongerThan(std::size_t maxLines, const std::filesystem::path& root);
+
+/** Links of a Markdown file to files that do not exist. */
+std::vector<std::string> brokenLinks(const std::filesystem::path& markdownFile);

@@ -112,6 +112,21 @@ TEST_F(Repository, whatIsTiedToOneMachineIsFound) {
                       "file.txt:2: a path or a server of one machine"}));
 }
 
+TEST_F(Repository, linksBetweenDocumentsLeadSomewhere) {
+  for (const fs::path& folder : projectFolders()) {
+    for (const fs::path& file : textFiles(folder)) {
+      if (file.extension() != ".md") continue;
+      EXPECT_EQ(brokenLinks(file), Findings());
+    }
+  }
+}
+
+TEST_F(Repository, aLinkThatLeadsNowhereIsFound) {
+  write("there.md", "");
+  write("file.md", "[a](there.md) [b](there.md#part)\n[c](https://x.org/y) ![d](gone.png)\n");
+  EXPECT_EQ(brokenLinks(scratch / "file.md"), Findings{"file.md:2: no file gone.png"});
+}
+
 TEST_F(Repository, everyApplicationHasAReadme) {
   for (const auto& entry : fs::directory_iterator(root / "apps")) {
     if (!fs::exists(entry.path() / "CMakeLists.txt")) continue;
