@@ -1,0 +1,128 @@
+#pragma once
+#include <labeled_cloud/LabelImage.h>
+#include <labeled_cloud/LabeledScan.h>
+#include <mrpt/maps/CMetricMap.h>
+#include <mrpt/system/COutputLogger.h>
+#include <semantic_map/MapOptions.h>
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace semantic_map {
+
+/** What came of an observation. */
+struct InsertionResult {
+  /** Why it was refused; empty: it was not. */
+  std::string refusal;
+  /** What became of its pixels or points on the way to a cloud. */
+  labeled_cloud::ScanCounts conversion;
+  /** A labeler was asked and had no labels for it: it counts for occupancy only. */
+  bool labelsMissing = false;
+  /** What became of the cloud's points in the map. */
+  semantic_octree::InsertionReport map;
+
+  bool inserted() const { return refusal.empty(); }
+};
+
+/** A semantic octree map as MRPT knows maps: in an .ini file, as part of a CMultiMetricMap, in an
+ * archive, in a scene.
+ *
+ * In an .ini file it is `semanticOctoMap_count=1`, with the sections
+ *
+ *     [<prefix>_semanticOctoMap_00_creationOpts]
+ *     resolution = 0.1           // edge of a voxel, m
+ *     classes    = classes.yaml  // class table, relative to the WORKING directory; empty: one
+ * class, "occupied"
+ *     [<prefix>_semanticOctoMap_00_insertOpts]       // TInsertionOptions
+ *     [<prefix>_semanticOctoMap_00_likelihoodOpts]   // TLikelihoodOptions
+ *     [<prefix>_semanticOctoMap_00_renderOpts]       // TRenderingOptions
+ *
+ * Keys that are not options, values that are out of range and class tables that cannot be read are
+ * errors that name section, key and value.
+ *
+ * Observations: see labeled_cloud::ScanConverter for the kinds and their labels. */
+class CSemanticOctoMap : public mrpt::maps::CMetricMap {
+  DEFINE_SERIALIZABLE(CSemanticOctoMap, semantic_map)
+ public:
+  /** A map of one class, "occupied", with voxels of 0.1 m. */
+  CSemanticOctoMap();
+  /** \param resolution edge of a voxel, m
+   * \throw std::invalid_argument resolution not positive, no classes, or bad filter parameters. */
+  CSemanticOctoMap(double resolution, const semantic_octree::ClassTable& classes,
+                   const semantic_octree::FilterParameters& filter = {});
+  explicit CSemanticOctoMap(semantic_octree::SemanticOcTree tree);
+  ~CSemanticOctoMap() override;
+  CSemanticOctoMap(const CSemanticOctoMap& o);
+  CSemanticOctoMap& operator=(const CSemanticOctoMap& o);
+
+  const semantic_octree::SemanticOcTree& tree() const { return m_tree; }
+  semantic_octree::SemanticOcTree& tree() { return m_tree; }
+  /** Replaces the map's contents, its resolution, classes and filter parameters. */
+  void setTree(semantic_octree::SemanticOcTree tree);
+
+  TInsertionOptions insertionOptions;
+  TLikelihoodOptions likelihoodOptions;
+  TRenderingOptions renderingOptions;
+
+  /** Where labels of depth images come from; null: from the observations themselves. Copies of the
+   * map share it; archives do not hold it. */
+  void setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> labeler);
+
+  /** What came of the last observation given to insertObservation().
+   *
+   * insertObservation() returns false for an observation that it refuses. One of another class than
+   * those above is none of this map's business and passes in silence; for any other, the reason
+   * goes to logger() as a warning, unless it is the same as for the observation before. */
+  const InsertionResult& lastInsertion() const { return m_lastInsertion; }
+  mrpt::system::COutputLogger& logger() { return m_logger; }
+
+  /** Inserts a scan that was converted already; fires no event.
+   * \throw std::exception the reason why it is refused; the map is then as it was. */
+  semantic_octree::InsertionReport insertScan(const labeled_cloud::LabeledScan& scan,
+                                              const mrpt::poses::CPose3D& T_map_robot);
+
+  bool isEmpty() const override { return m_tree.empty(); }
+  /** One line: resolution, classes, leaves, bytes. */
+  std::string asString() const override;
+  /** Boxes in the classes' colors, see renderingOptions; nothing if
+   * genericMapParams.enableSaveAs3DObject is false. */
+  void getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const override;
+  /** Writes PREFIX.semantic, the map's own file, and PREFIX.3Dscene.
+   * \throw std::runtime_error a file cannot be written. */
+  void saveMetricMapRepresentationToFile(const std::string& prefix) const override;
+
+  MAP_DEFINITION_START(CSemanticOctoMap)
+  double resolution = 0.1;
+  std::string classes;
+  TInsertionOptions insertionOpts;
+  TLikelihoodOptions likelihoodOpts;
+  TRenderingOptions renderOpts;
+  void saveToConfigFile(mrpt::config::CConfigFileBase& target,
+                        const std::string& sectionPrefix) const override;
+  MAP_DEFINITION_END(CSemanticOctoMap)
+
+ private:
+  void internal_clear() override;
+  bool internal_insertObservation(
+      const mrpt::obs::CObservation& observation,
+      const std::optional<const mrpt::poses::CPose3D>& T_map_robot) override;
+  double internal_computeObservationLikelihood(
+      const mrpt::obs::CObservation& observation,
+      const mrpt::poses::CPose3D& T_map_robot) const override;
+  bool internal_canComputeObservationLikelihood(
+      const mrpt::obs::CObservation& observation) const override;
+
+  semantic_octree::SemanticOcTree m_tree;
+  std::shared_ptr<labeled_cloud::ImageLabeler> m_labeler;
+  InsertionResult m_lastInsertion;
+  mrpt::system::COutputLogger m_logger;
+};
+
+/** Registers the map and labeled_cloud's observation with MRPT's factories. Called when the library
+ * is loaded; call it where the linker may drop a library of which nothing else is used. May be
+ * called any number of times. */
+void registerMaps();
+
+}  // namespace semantic_map

@@ -1,0 +1,58 @@
+#pragma once
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+
+namespace semantic_map {
+
+/** What all pictures of a map have in common. */
+struct PictureStyle {
+  /** Size of the map's part of the picture, pixels; the legend stands to its right. */
+  int width = 1600, height = 1200;
+  /** Names and colors of the classes that the picture shows. */
+  bool legend = true;
+  /** Written above the legend. */
+  std::string title;
+  /** Cells with their center above are not drawn, m. Without: nothing is cut off, except the
+   * ceiling of a map that lies under one (an indoor map). */
+  std::optional<double> maxHeight;
+  /** Cells count as occupied above this occupancy. */
+  double minOccupancy = 0.5;
+
+  /** \throw std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+/** The map from above, +x to the right and +y up: per column the highest occupied cell in the color
+ * of its likeliest class (gray: none), shaded by the relief; with a scale bar and the axes.
+ * \return BGR, 8 bits. An empty map gives an empty sheet.
+ * \throw std::invalid_argument as PictureStyle::validate(). */
+cv::Mat renderTopView(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style = {});
+
+/** Where a perspective view is taken from. */
+struct Viewpoint {
+  /** Direction in which the camera looks, degrees from +x towards +y. */
+  double heading = 60;
+  /** How far it looks down, degrees, (0, 90]. */
+  double tilt = 35;
+  /** Above 1: nearer than what shows the whole map. */
+  double zoom = 1;
+
+  /** \throw std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+/** The map in perspective, rendered without a display.
+ * \return BGR, 8 bits. An empty map gives an empty sheet.
+ * \throw std::invalid_argument bad style or viewpoint
+ * \throw std::runtime_error no OpenGL context can be made, not even in software. */
+cv::Mat renderPerspective(const semantic_octree::SemanticOcTree& tree,
+                          const PictureStyle& style = {}, const Viewpoint& viewpoint = {});
+
+/** Writes a PNG. The file is complete or untouched. \throw std::runtime_error naming the file. */
+void savePicture(const cv::Mat& picture, const std::filesystem::path& file);
+
+}  // namespace semantic_map
