@@ -49,6 +49,12 @@ SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
   attachRoot();
 }
 
+SemanticOcTree::SemanticOcTree(SemanticOcTree&& o)
+    : SemanticOcTree(o.resolution, o.m_classes, o.m_parameters) {
+  m_pruning = o.m_pruning;
+  swap(o);
+}
+
 SemanticOcTree& SemanticOcTree::operator=(SemanticOcTree o) {
   swap(o);
   return *this;

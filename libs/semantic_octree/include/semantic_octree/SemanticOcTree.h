@@ -52,6 +52,8 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   SemanticOcTree(double voxelSize, ClassTable classes, const FilterParameters& filter = {});
   ~SemanticOcTree() override;
   SemanticOcTree(const SemanticOcTree& o);
+  /** Leaves an empty map of the same kind behind. */
+  SemanticOcTree(SemanticOcTree&& o);
   SemanticOcTree& operator=(SemanticOcTree o);
   void swap(SemanticOcTree& o);
 
@@ -124,6 +126,7 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   /** Whether children that agree are merged (default). Only an empty tree can be changed.
    * \throw std::logic_error the tree is not empty. */
   void setPruning(bool on);
+  bool pruning() const { return m_pruning; }
 
  protected:
   SemanticOcTree* create() const override { return new SemanticOcTree(resolution, m_classes, m_parameters); }

@@ -1,0 +1,85 @@
+#include <semantic_octree/TreeFile.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "TreeReader.h"
+#include "TreeWriter.h"
+
+namespace semantic_octree {
+namespace {
+
+namespace fs = std::filesystem;
+
+void writeWhole(const SemanticOcTree& tree, const fs::path& path) {
+  errno = 0;
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  if (!out) throw std::runtime_error(std::strerror(errno));
+  writeTree(out, tree);
+  out.close();
+  if (!out) throw std::runtime_error("the file could not be written completely");
+}
+
+void checkBeginning(std::istream& in) {
+  std::array<char, kMagic.size()> magic{};
+  readBytes(in, magic.data(), magic.size());
+  if (magic != kMagic) throw std::runtime_error("not a semantic octree map");
+  std::uint32_t version = 0;
+  readBytes(in, reinterpret_cast<char*>(&version), sizeof(version));
+  if (version != kVersion)
+    throw std::runtime_error("version " + std::to_string(version) + " of the format, expected " +
+                             std::to_string(kVersion));
+}
+
+SemanticOcTree readWhole(const fs::path& path) {
+  if (fs::is_directory(path)) throw std::runtime_error("it is a folder");
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(std::strerror(errno));
+  if (in.peek() == std::ifstream::traits_type::eof()) throw std::runtime_error("the file is empty");
+  SemanticOcTree tree = readTree(in);
+  if (in.peek() != std::ifstream::traits_type::eof())
+    throw std::runtime_error("altered: bytes after the end of the map");
+  return tree;
+}
+
+}  // namespace
+
+void writeTree(std::ostream& out, const SemanticOcTree& tree) {
+  out.write(kMagic.data(), kMagic.size());
+  out.write(reinterpret_cast<const char*>(&kVersion), sizeof(kVersion));
+  TreeWriter(out, tree).write();
+}
+
+SemanticOcTree readTree(std::istream& in) {
+  checkBeginning(in);
+  try {
+    return TreeReader(in).read();
+  } catch (const std::invalid_argument& e) {
+    throw std::runtime_error(std::string("altered: ") + e.what());
+  }
+}
+
+void saveTree(const SemanticOcTree& tree, const std::string& path) {
+  const fs::path beside = path + ".tmp";
+  try {
+    writeWhole(tree, beside);
+    fs::rename(beside, path);
+  } catch (const std::exception& e) {
+    std::error_code ignored;
+    fs::remove(beside, ignored);
+    throw std::runtime_error("cannot save map '" + path + "': " + e.what());
+  }
+}
+
+SemanticOcTree loadTree(const std::string& path) {
+  try {
+    return readWhole(path);
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error("cannot load map '" + path + "': " + e.what());
+  }
+}
+
+}  // namespace semantic_octree
