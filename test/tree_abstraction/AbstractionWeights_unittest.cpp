@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+#include <tree_abstraction/TermSet.h>
+
+#include <cmath>
+#include <limits>
+
+#include "RandomTrees.h"
+
+using namespace tree_abstraction;
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/** Message of the exception that validation for 4 classes throws; empty if it throws none. */
+std::string rejection(const AbstractionWeights& weights) {
+  try {
+    weights.validate(4);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expectRejected(const AbstractionWeights& weights, const std::vector<std::string>& words) {
+  const std::string message = rejection(weights);
+  EXPECT_NE(message, "");
+  for (const auto& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
+}
+
+std::vector<double> project(const InformationTerm& term, const std::vector<double>& p) {
+  const TermSet terms({{term}, 0.0}, static_cast<int>(p.size()) - 1);
+  std::vector<double> row(terms.width(), kNan);
+  terms.project(p.data(), row.data());
+  return row;
+}
+
+const std::vector<double> kDistribution = {0.5, 0.25, 0.125, 0.0625, 0.0625};
+
+}  // namespace
+
+TEST(AbstractionWeights, acceptsOverlapThatContradictsNothing) {
+  EXPECT_EQ(rejection({{relevant("road", 1, {1}), relevant("drivable", 2, {1, 2}),
+                        irrelevant("tree", 0.3, {3}), wholeClassVariable("all", -0.1, 4)},
+                       0.5}),
+            "");
+  EXPECT_EQ(rejection({}), "");
+  EXPECT_EQ(rejection({{{"measured", 0, {{1}}}, irrelevant("one", 1, {1})}, 0}), "");
+}
+
+TEST(AbstractionWeights, rejectsNumbersThatAreNotFiniteAndNamesThem) {
+  expectRejected({{}, kNan}, {"alpha", "nan"});
+  expectRejected({{}, kInfinity}, {"alpha", "inf"});
+  expectRejected({{}, -0.1}, {"alpha", "-0.1"});
+  expectRejected({{{"road", kNan, {{1}}}}, 1}, {"'road'", "weight", "nan"});
+  expectRejected({{{"road", -kInfinity, {{1}}}}, 1}, {"'road'", "weight", "inf"});
+}
+
+TEST(AbstractionWeights, relevantAndIrrelevantTakeWeightsThatAreNotNegative) {
+  EXPECT_EQ(relevant("a", 2, {1}).weight, 2);
+  EXPECT_EQ(irrelevant("a", 2, {1}).weight, -2);
+  EXPECT_FALSE(std::signbit(irrelevant("a", 0, {1}).weight));
+  for (const double bad : {-1.0, kNan, kInfinity}) {
+    EXPECT_THROW(relevant("a", bad, {1}), std::invalid_argument);
+    EXPECT_THROW(irrelevant("a", bad, {1}), std::invalid_argument);
+  }
+}
+
+TEST(AbstractionWeights, rejectsGroupsThatMakeNoVariable) {
+  expectRejected({{{"road", 1, {}}}, 0}, {"'road'", "no group"});
+  expectRejected({{{"road", 1, {{1}, {}}}}, 0}, {"'road'", "without a class"});
+  expectRejected({{{"road", 1, {{5}}}}, 0}, {"'road'", "class 5", "0..4"});
+  expectRejected({{{"road", 1, {{-1}}}}, 0}, {"'road'", "class -1", "0..4"});
+  expectRejected({{{"road", 1, {{1, 2}, {2}}}}, 0}, {"'road'", "class 2", "more than one group"});
+  expectRejected({{{"road", 1, {{1, 1}}}}, 0}, {"'road'", "class 1", "more than one group"});
+}
+
+TEST(AbstractionWeights, rejectsTwoTermsOfOneName) {
+  expectRejected({{relevant("road", 1, {1}), relevant("road", 1, {2})}, 0},
+                 {"'road'", "two terms"});
+}
+
+TEST(AbstractionWeights, rejectsAClassThatIsRelevantAndIrrelevant) {
+  expectRejected({{irrelevant("street", 1, {2, 1}), relevant("road", 1, {1})}, 0},
+                 {"'street'", "class 1", "'road'"});
+}
+
+TEST(AbstractionWeights, epsGrowsWithTheWeights) {
+  const AbstractionWeights weights{{relevant("a", 2, {1}), irrelevant("b", 1, {2})}, 0.5};
+  EXPECT_NEAR(weights.eps(), 3.5e-12, 1e-24);
+}
+
+TEST(TermSet, yesOrNoTermsKeepTheirGroupsProbability) {
+  EXPECT_EQ(project(relevant("a", 1, {1}), kDistribution), std::vector<double>{0.25});
+  EXPECT_EQ(project(relevant("a", 1, {3, 1}), kDistribution), std::vector<double>{0.3125});
+}
+
+TEST(TermSet, otherTermsKeepEveryOutcomeTheRestLast) {
+  EXPECT_EQ(project({"a", 1, {{2}, {4, 1}}}, kDistribution),
+            (std::vector<double>{0.125, 0.3125, 0.5625}));
+  EXPECT_EQ(project(wholeClassVariable("all", 1, 4), kDistribution), kDistribution);
+}
+
+TEST(TermSet, rowsHoldTheTermsOneAfterTheOther) {
+  const TermSet terms({{relevant("a", 1, {1}), {"b", 1, {{2}, {3}}}, irrelevant("c", 1, {4})}, 0},
+                      4);
+  ASSERT_EQ(terms.size(), 3u);
+  EXPECT_EQ(terms.width(), 5u);
+  EXPECT_TRUE(terms.slot(0).isBinary());
+  EXPECT_EQ(terms.slot(1).offset, 1u);
+  EXPECT_EQ(terms.slot(1).width, 3u);
+  EXPECT_EQ(terms.slot(2).offset, 4u);
+  std::vector<double> row(5);
+  terms.project(kDistribution.data(), row.data());
+  EXPECT_EQ(row, (std::vector<double>{0.25, 0.125, 0.0625, 0.8125, 0.0625}));
+}
+
+TEST(TermSet, measuresAgreeWithThoseOfTheOutcomes) {
+  const TermSet terms({{relevant("a", 1, {1}), wholeClassVariable("all", 1, 4)}, 0}, 4);
+  random_trees::Engine random(3);
+  const auto p = random_trees::makeDistribution(5, random);
+  const auto q = random_trees::makeDistribution(5, random);
+  std::vector<double> rows(2 * terms.width());
+  terms.project(p.data(), rows.data());
+  terms.project(q.data(), rows.data() + terms.width());
+  EXPECT_EQ(terms.entropy(0, rows.data()), binaryEntropy(p[1]));
+  EXPECT_EQ(terms.entropy(1, rows.data()), entropy(p.data(), 5));
+  const double pi[] = {0.25, 0.75}, ones[] = {p[1], q[1]};
+  EXPECT_EQ(terms.divergence(0, pi, rows.data(), 2), binaryJensenShannon(pi, ones, 2));
+  std::vector<double> all = p;
+  all.insert(all.end(), q.begin(), q.end());
+  EXPECT_EQ(terms.divergence(1, pi, rows.data(), 2), jensenShannon(pi, all.data(), 2, 5, 5));
+}
+
+TEST(TermSet, rejectsWhatTheWeightsReject) {
+  EXPECT_THROW(TermSet({{relevant("a", 1, {5})}, 0}, 4), std::invalid_argument);
+}

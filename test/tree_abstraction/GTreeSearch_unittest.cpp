@@ -1,0 +1,272 @@
+#include <gtest/gtest.h>
+#include <tree_abstraction/GTreeSearch.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "BruteForce.h"
+#include "RandomTrees.h"
+
+using namespace tree_abstraction;
+using random_trees::Engine;
+using random_trees::Shape;
+
+namespace {
+
+constexpr DivergenceForm kForms[] = {DivergenceForm::Stable, DivergenceForm::Fast};
+
+std::vector<VectorTree::Node> sorted(std::vector<VectorTree::Node> nodes) {
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+
+/** Checks value and minimality of both forms; tells how many optimal trees there are. */
+std::size_t expectAgreesWithBruteForce(const VectorTree& tree, const AbstractionWeights& weights) {
+  const auto best = brute_force::optimize(tree, weights);
+  EXPECT_EQ(static_cast<double>(best.numTrees), brute_force::countTrees(tree));
+  EXPECT_TRUE(best.intersectionIsOptimal);
+  for (const auto form : kForms) {
+    const auto found = findOptimalTree(tree, weights, {form});
+    EXPECT_NEAR(found.objective, best.objective, 1e-13);
+    EXPECT_EQ(sorted(found.interior()), best.inAll);
+    EXPECT_NEAR(brute_force::objective(tree, weights, found.interior()), best.objective, 1e-13);
+    const double j = found.optimal.objective(weights) - found.roots.objective(weights);
+    EXPECT_NEAR(j, best.objective, 1e-13);
+  }
+  return best.numOptimal;
+}
+
+struct Tally {
+  int trees = 0, withTies = 0, expandedPartly = 0;
+};
+
+/** Trees of this shape that brute force can manage, one a seed. */
+Tally checkShape(const Shape& shape, int numSeeds) {
+  Tally tally;
+  for (int seed = 1; seed <= numSeeds; ++seed) {
+    SCOPED_TRACE(seed);
+    Engine random(static_cast<unsigned>(seed));
+    const auto tree = random_trees::makeTree(shape, random);
+    const auto weights = random_trees::makeWeights(shape, random);
+    if (brute_force::countTrees(tree) > 2e5) continue;
+    ++tally.trees;
+    if (expectAgreesWithBruteForce(tree, weights) > 1) ++tally.withTies;
+    const auto found = findOptimalTree(tree, weights);
+    const auto count = found.optimal.numLeaves;
+    if (count > tree.roots().size() && count < found.full.numLeaves) ++tally.expandedPartly;
+  }
+  return tally;
+}
+
+}  // namespace
+
+TEST(GTreeSearch, agreesWithBruteForceOnFullQuadtreesOfDepthThree) {
+  const Tally tally = checkShape({}, 25);
+  EXPECT_EQ(tally.trees, 25);
+  EXPECT_GE(tally.expandedPartly, 8);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnQuadtreesFullOfTies) {
+  Shape shape;
+  shape.splitProbability = 0.8;
+  shape.numClasses = 1;
+  shape.tieRich = true;
+  const Tally tally = checkShape(shape, 300);
+  EXPECT_EQ(tally.trees, 300);
+  EXPECT_GE(tally.withTies, 40);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnSparseOctreesOfDepthTwo) {
+  Shape shape{2, 8, 8, 0.6};
+  shape.missingProbability = 0.4;
+  shape.numClasses = 3;
+  const Tally tally = checkShape(shape, 200);
+  EXPECT_EQ(tally.trees, 200);
+  EXPECT_GE(tally.expandedPartly, 20);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnSparseOctreesOfDepthThree) {
+  Shape shape{3, 8, 8, 0.3};
+  shape.missingProbability = 0.3;
+  const Tally tally = checkShape(shape, 150);
+  EXPECT_GE(tally.trees, 80);
+  EXPECT_GE(tally.expandedPartly, 20);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnOctreesFullOfTiesWithMissingChildren) {
+  Shape shape{3, 8, 8, 0.25};
+  shape.missingProbability = 0.2;
+  shape.numClasses = 1;
+  shape.tieRich = true;
+  EXPECT_GE(checkShape(shape, 150).withTies, 5);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnTernaryTrees) {
+  EXPECT_GE(checkShape({3, 3, 3, 0.9}, 60).expandedPartly, 20);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnTreesOfMixedArity) {
+  Shape shape{4, 1, 4, 0.6};
+  shape.missingProbability = 0.2;
+  EXPECT_GE(checkShape(shape, 120).expandedPartly, 30);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnForestsWhoseFrameIsFree) {
+  Shape shape{2, 4, 4, 0.7};
+  shape.numRoots = 3;
+  EXPECT_GE(checkShape(shape, 80).expandedPartly, 20);
+}
+
+TEST(GTreeSearch, looksAheadBeyondASplitThatDoesNotPayByItself) {
+  VectorTree tree(1);
+  const auto root = tree.addInner(VectorTree::kNoParent);
+  for (int i = 0; i < 8; ++i) {
+    const auto block = tree.addInner(root);
+    for (int k = 0; k < 8; ++k) tree.addLeaf(block, 1.0, {1.0 - k % 2, 1.0 * (k % 2)});
+  }
+  const auto found = findOptimalTree(tree, {{relevant("one", 8, {1})}, 1.0});
+  EXPECT_EQ(found.information.divergence[0], 0.0);
+  EXPECT_EQ(found.interior().size(), 9u);
+}
+
+TEST(GTreeSearch, objectiveOfTheLeavesEqualsGAtTheRootInLargeTrees) {
+  for (const auto form : kForms) {
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      Engine random(seed);
+      const Shape shape{5, 8, 8, 0.7};
+      const auto tree = random_trees::makeTree(shape, random);
+      auto weights = random_trees::makeWeights(shape, random);
+      weights.alpha *= 0.1;
+      const auto found = findOptimalTree(tree, weights, {form});
+      ASSERT_GT(found.objective, 0.0);
+      EXPECT_NEAR(brute_force::objective(tree, weights, {}), 0.0, 1e-12);
+      EXPECT_NEAR(found.optimal.objective(weights), found.objective, 1e-9 * found.objective);
+      EXPECT_NEAR(found.values.g[0], found.objective, 1e-12);
+    }
+  }
+}
+
+TEST(GTreeSearch, noSingleExpansionOrCollapseImproves) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Engine random(seed);
+    const Shape shape{4, 4, 4, 0.8};
+    const auto tree = random_trees::makeTree(shape, random);
+    const auto weights = random_trees::makeWeights(shape, random);
+    const auto found = findOptimalTree(tree, weights);
+    const auto interior = found.interior();
+    const double best = brute_force::objective(tree, weights, interior);
+    for (const auto leaf : found.leaves()) {
+      if (tree.children(leaf).empty()) continue;
+      auto more = interior;
+      more.push_back(leaf);
+      EXPECT_LE(brute_force::objective(tree, weights, more), best + 1e-13);
+    }
+    for (const auto node : interior) {
+      const auto isInterior = [&](auto child) {
+        return std::find(interior.begin(), interior.end(), child) != interior.end();
+      };
+      const auto& children = tree.children(node);
+      if (std::any_of(children.begin(), children.end(), isInterior)) continue;
+      auto fewer = interior;
+      fewer.erase(std::find(fewer.begin(), fewer.end(), node));
+      EXPECT_LT(brute_force::objective(tree, weights, fewer), best);
+    }
+  }
+}
+
+TEST(GTreeSearch, randomTreesNeverExceedTheOptimum) {
+  Engine random(5);
+  const Shape shape{4, 8, 8, 0.5};
+  const auto tree = random_trees::makeTree(shape, random);
+  const auto weights = random_trees::makeWeights(shape, random);
+  const auto found = findOptimalTree(tree, weights);
+  for (int i = 0; i < 500; ++i) {
+    std::vector<char> expanded(found.tree.size(), false);
+    const double probability = random_trees::uniform(random);
+    double j = 0;
+    for (std::size_t n = 0; n < expanded.size(); ++n) {
+      const bool reached = n == 0 || expanded[static_cast<std::size_t>(found.tree.parent[n])];
+      expanded[n] = reached && !found.tree.isLeaf(n) && random_trees::uniform(random) < probability;
+      if (expanded[n]) j += found.values.gain[n] - weights.alpha * found.values.price[n];
+    }
+    EXPECT_LE(j, found.objective + 1e-13);
+  }
+}
+
+TEST(GTreeSearch, keepsTheRootAloneIfRelevanceIsNotWorthItsPrice) {
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    Engine random(seed);
+    Shape shape;
+    shape.numClasses = 3;
+    const auto tree = random_trees::makeTree(shape, random);
+    // JS of a variable never exceeds H(Pi), hence beta <= alpha never pays.
+    const auto found = findOptimalTree(
+        tree, {{relevant("a", 0.5, {1}), relevant("b", 0.5, {2}), irrelevant("c", 1, {3})}, 1.0});
+    EXPECT_EQ(found.optimal.numLeaves, 1u);
+    EXPECT_EQ(found.objective, 0.0);
+  }
+}
+
+TEST(GTreeSearch, keepsEverythingInformativeAtNoPrice) {
+  Engine random(4);
+  const auto tree = random_trees::makeTree({}, random);
+  const auto found = findOptimalTree(tree, {{wholeClassVariable("all", 1, 2)}, 0.0});
+  EXPECT_EQ(found.optimal.numLeaves, 64u);
+  ASSERT_TRUE(found.retention[0].has_value());
+  EXPECT_EQ(*found.retention[0], 1.0);
+}
+
+TEST(GTreeSearch, reportsNoRetentionOfInformationThatIsNotThere) {
+  VectorTree tree(2);
+  const auto root = tree.addInner(VectorTree::kNoParent);
+  tree.addLeaf(root, 1, {1, 0, 0});
+  tree.addLeaf(root, 1, {0, 1, 0});
+  const auto found =
+      findOptimalTree(tree, {{relevant("there", 1, {1}), relevant("absent", 1, {2})}, 0.1});
+  EXPECT_TRUE(found.retention[0].has_value());
+  EXPECT_FALSE(found.retention[1].has_value());
+}
+
+TEST(GTreeSearch, countsALeafAboveSomethingKnownAsKnown) {
+  VectorTree tree(1);
+  const auto root = tree.addInner(VectorTree::kNoParent);
+  const auto half = tree.addInner(root);
+  tree.addLeaf(half, 1, {0.5, 0.5});
+  tree.addMissing(half, 1, {0.5, 0.5});
+  const auto empty = tree.addInner(root);
+  tree.addMissing(empty, 1, {0.5, 0.5});
+  const auto found = findOptimalTree(tree, {{relevant("one", 1, {1})}, 1.0});
+  EXPECT_EQ(found.full.numLeaves, 3u);
+  EXPECT_EQ(found.full.numKnownLeaves, 1u);
+  EXPECT_EQ(found.optimal.numKnownLeaves, 1u);
+  EXPECT_TRUE(found.tree.known[1]);
+  EXPECT_FALSE(found.tree.known[2]);
+}
+
+TEST(GTreeSearch, leavesOfTheOptimumCoverTheTreeOnce) {
+  Engine random(9);
+  const Shape shape{4, 2, 5, 0.7};
+  const auto tree = random_trees::makeTree(shape, random);
+  const auto found = findOptimalTree(tree, random_trees::makeWeights(shape, random));
+  double covered = 0;
+  for (std::size_t n = 0; n < found.tree.size(); ++n) {
+    if (found.isOptimalLeaf(n)) covered += found.information.probability[n];
+  }
+  EXPECT_NEAR(covered, 1.0, 1e-14);
+  EXPECT_EQ(found.leaves().size(), found.optimal.numLeaves);
+}
+
+TEST(GTreeSearch, passesGThroughFrameNodesWithASingleChild) {
+  Engine random(2);
+  const auto weights = AbstractionWeights{{relevant("one", 1, {1})}, 0.05};
+  VectorTree plain(1), framed(1);
+  const auto top = framed.addInner(framed.addInner(VectorTree::kNoParent));
+  for (auto* tree : {&plain, &framed}) {
+    const auto root = tree->addInner(tree == &framed ? top : VectorTree::kNoParent);
+    tree->addLeaf(root, 1, {0.9, 0.1});
+    tree->addLeaf(root, 1, {0.1, 0.9});
+  }
+  const auto a = findOptimalTree(plain, weights), b = findOptimalTree(framed, weights);
+  EXPECT_EQ(a.objective, b.objective);
+  EXPECT_EQ(b.interior().size(), 3u);
+}

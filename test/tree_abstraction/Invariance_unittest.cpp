@@ -1,0 +1,188 @@
+#include <gtest/gtest.h>
+#include <tree_abstraction/GTreeSearch.h>
+
+#include <algorithm>
+#include <map>
+
+#include "RandomTrees.h"
+
+using namespace tree_abstraction;
+using random_trees::Engine;
+using random_trees::Shape;
+using Node = VectorTree::Node;
+
+namespace {
+
+/** Copies of a tree with a change, remembering which node became which. */
+class Copier {
+ public:
+  explicit Copier(const VectorTree& from) : m_from(from), m_to(from.numClasses()) {}
+
+  template <class CopyChildren>
+  VectorTree copy(const CopyChildren& copyChildren) {
+    copyNode(0, VectorTree::kNoParent, copyChildren);
+    return m_to;
+  }
+  const std::map<Node, Node>& originals() const { return m_originals; }
+
+  void copyLeaf(Node leaf, Node parent, double factor) {
+    std::vector<double> p;
+    m_from.distribution(leaf, p);
+    m_originals[m_to.addLeaf(parent, factor * m_from.weight(leaf), p)] = leaf;
+  }
+  template <class CopyChildren>
+  void copyNode(Node n, Node parent, const CopyChildren& copyChildren) {
+    if (m_from.children(n).empty()) return copyLeaf(n, parent, 1.0);
+    const Node inner = m_to.addInner(parent);
+    m_originals[inner] = n;
+    copyChildren(*this, n, inner);
+  }
+  /** A leaf becomes a subtree of equal leaves: what pruning would undo. */
+  void copyLeafUnpruned(Node leaf, Node parent, int levels) {
+    if (levels == 0) return copyLeaf(leaf, parent, m_factor);
+    const Node inner = m_to.addInner(parent);
+    m_originals[inner] = leaf;
+    m_factor /= 8;
+    for (int i = 0; i < 8; ++i) copyLeafUnpruned(leaf, inner, levels - 1);
+    m_factor *= 8;
+  }
+
+ private:
+  const VectorTree& m_from;
+  VectorTree m_to;
+  std::map<Node, Node> m_originals;
+  double m_factor = 1.0;
+};
+
+struct Example {
+  VectorTree tree;
+  AbstractionWeights weights;
+};
+
+Example makeExample(unsigned seed) {
+  Engine random(seed);
+  const Shape shape{4, 8, 8, 0.4};
+  auto tree = random_trees::makeTree(shape, random);
+  auto weights = random_trees::makeWeights(shape, random);
+  return {std::move(tree), std::move(weights)};
+}
+
+std::vector<Node> sortedOriginals(const std::vector<Node>& nodes, const Copier& copier) {
+  std::vector<Node> originals;
+  for (const Node n : nodes) originals.push_back(copier.originals().at(n));
+  std::sort(originals.begin(), originals.end());
+  return originals;
+}
+
+std::vector<Node> sorted(std::vector<Node> nodes) {
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+
+}  // namespace
+
+TEST(Invariance, scalingAllWeightsScalesTheObjectiveAndKeepsTheTree) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const auto [tree, weights] = makeExample(seed);
+    const auto found = findOptimalTree(tree, weights);
+    for (const double factor : {1e-6, 0.1, 7.0, 1e9}) {
+      auto scaled = weights;
+      scaled.alpha *= factor;
+      for (auto& term : scaled.terms) term.weight *= factor;
+      const auto again = findOptimalTree(tree, scaled);
+      EXPECT_EQ(again.expanded, found.expanded);
+      EXPECT_NEAR(again.objective, factor * found.objective, 1e-12 * factor);
+    }
+  }
+}
+
+TEST(Invariance, theUnitOfWeightDoesNotMatter) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const auto [tree, weights] = makeExample(seed);
+    Copier copier(tree);
+    const auto scaleLeaves = [&](auto& self, Copier& c, Node n, Node inner) -> void {
+      for (const Node child : tree.children(n)) {
+        if (tree.children(child).empty()) {
+          c.copyLeaf(child, inner, 1000.0);
+        } else {
+          c.copyNode(child, inner, [&](Copier& cc, Node m, Node i) { self(self, cc, m, i); });
+        }
+      }
+    };
+    const auto heavy =
+        copier.copy([&](Copier& c, Node n, Node inner) { scaleLeaves(scaleLeaves, c, n, inner); });
+    const auto found = findOptimalTree(tree, weights), again = findOptimalTree(heavy, weights);
+    EXPECT_EQ(sortedOriginals(again.interior(), copier), sorted(found.interior()));
+    EXPECT_NEAR(again.objective, found.objective, 1e-13);
+  }
+}
+
+TEST(Invariance, theOrderOfChildrenDoesNotMatter) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const auto [tree, weights] = makeExample(seed);
+    Copier copier(tree);
+    const auto reverse = [&](auto& self, Copier& c, Node n, Node inner) -> void {
+      auto children = tree.children(n);
+      std::reverse(children.begin(), children.end());
+      std::swap(children.front(), children[children.size() / 2]);
+      for (const Node child : children) {
+        c.copyNode(child, inner, [&](Copier& cc, Node m, Node i) { self(self, cc, m, i); });
+      }
+    };
+    const auto permuted =
+        copier.copy([&](Copier& c, Node n, Node inner) { reverse(reverse, c, n, inner); });
+    const auto found = findOptimalTree(tree, weights), again = findOptimalTree(permuted, weights);
+    EXPECT_EQ(sortedOriginals(again.interior(), copier), sorted(found.interior()));
+    EXPECT_NEAR(again.objective, found.objective, 1e-13);
+  }
+}
+
+TEST(Invariance, mergingEqualLeavesBeforehandChangesNothingBitForBit) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const auto [tree, weights] = makeExample(seed);
+    Copier copier(tree);
+    const auto unprune = [&](auto& self, Copier& c, Node n, Node inner) -> void {
+      for (const Node child : tree.children(n)) {
+        if (tree.children(child).empty()) {
+          c.copyLeafUnpruned(child, inner, child % 3);
+        } else {
+          c.copyNode(child, inner, [&](Copier& cc, Node m, Node i) { self(self, cc, m, i); });
+        }
+      }
+    };
+    const auto unpruned =
+        copier.copy([&](Copier& c, Node n, Node inner) { unprune(unprune, c, n, inner); });
+    ASSERT_GT(unpruned.size(), tree.size());
+    for (const auto form : {DivergenceForm::Stable, DivergenceForm::Fast}) {
+      const auto found = findOptimalTree(tree, weights, {form});
+      const auto again = findOptimalTree(unpruned, weights, {form});
+      EXPECT_EQ(sortedOriginals(again.interior(), copier), sorted(found.interior()));
+      EXPECT_EQ(again.objective, found.objective);
+      for (std::size_t t = 0; t < weights.terms.size(); ++t) {
+        EXPECT_NEAR(again.full.information[t], found.full.information[t], 1e-14);
+      }
+    }
+  }
+}
+
+TEST(Invariance, informationOfTheTreeFollowsTheChainRuleAndDataProcessing) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const auto [tree, weights] = makeExample(seed);
+    AbstractionWeights measures{{wholeClassVariable("all", 1, 2), relevant("one", 1, {1})}, 0.1};
+    const auto found = findOptimalTree(tree, measures);
+    // Chain rule: the sum over interior nodes is the entropy at the root less that of the leaves.
+    const TermSet terms(measures, 2);
+    for (std::size_t t = 0; t < 2; ++t) {
+      double left = terms.entropy(t, found.tree.row(0));
+      for (std::size_t n = 0; n < found.tree.size(); ++n) {
+        if (found.isOptimalLeaf(n)) {
+          left -= found.information.probability[n] * terms.entropy(t, found.tree.row(n));
+        }
+      }
+      EXPECT_NEAR(found.optimal.information[t], left, 1e-13);
+    }
+    EXPECT_LE(found.optimal.information[0], found.full.information[0]);
+    EXPECT_LE(found.full.information[1], found.full.information[0] + 1e-15);
+    EXPECT_LE(found.full.information[0], found.full.leafEntropy);
+  }
+}

@@ -1,0 +1,42 @@
+#pragma once
+#include <tree_abstraction/CollapseAlphas.h>
+#include <tree_abstraction/GTreeSearch.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "RandomTrees.h"
+
+/** What the tests of collapseAlphas() and of AlphaPath share. */
+namespace path_examples {
+
+using namespace tree_abstraction;
+using random_trees::Engine;
+using random_trees::Shape;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+inline std::vector<double> tausOf(const Abstraction& found) {
+  return collapseAlphas(found.tree.parent, found.values.gain, found.values.price);
+}
+
+/** Children - 1 of each inner node. */
+inline std::vector<double> addedLeaves(const BreadthFirstTree& tree) {
+  std::vector<double> added;
+  for (const int children : tree.numChildren) added.push_back(std::max(0, children - 1));
+  return added;
+}
+
+/** A sparse octree searched at alpha = 0. */
+inline Abstraction makeExample(unsigned seed) {
+  Engine random(seed);
+  const Shape shape{4, 8, 8, 0.5};
+  const auto tree = random_trees::makeTree(shape, random);
+  auto weights = random_trees::makeWeights(shape, random);
+  weights.alpha = 0;
+  return findOptimalTree(tree, weights);
+}
+
+}  // namespace path_examples

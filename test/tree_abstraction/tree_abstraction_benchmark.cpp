@@ -1,0 +1,141 @@
+#include <benchmark/benchmark.h>
+#include <tree_abstraction/AlphaPath.h>
+#include <tree_abstraction/CollapseAlphas.h>
+#include <tree_abstraction/GTreeSearch.h>
+
+#include "RandomTrees.h"
+
+using namespace tree_abstraction;
+
+namespace {
+
+constexpr std::size_t kFamilies = 1024;
+
+/** Four yes-or-no terms, as an outdoor map has. */
+AbstractionWeights fourTerms() {
+  return {{relevant("a", 1, {1}), relevant("b", 1, {2}), irrelevant("c", 0.3, {3}),
+           irrelevant("d", 0.3, {4})},
+          0.01};
+}
+
+/** Rows of eight children each. */
+std::vector<double> makeRows(std::size_t width) {
+  random_trees::Engine random(1);
+  std::vector<double> rows(kFamilies * 8 * width);
+  for (double& p : rows) p = random_trees::uniform(random);
+  return rows;
+}
+
+/** One parent with 4 terms: mixture, entropies anew, and JS in the form a map keeps up to date. */
+void fastDivergenceOfFourTerms(benchmark::State& state) {
+  constexpr std::size_t kTerms = 4;
+  const auto rows = makeRows(kTerms);
+  std::vector<double> entropies;
+  for (const double p : rows) entropies.push_back(binaryEntropy(p));
+  std::size_t i = 0;
+  double mixed[kTerms], divergence[kTerms];
+  for (auto _ : state) {
+    const std::size_t first = (i++ % kFamilies) * 8 * kTerms;
+    mixEightRows(rows.data() + first, kTerms, mixed);
+    for (std::size_t t = 0; t < kTerms; ++t) {
+      divergence[t] =
+          entropyDropOfEight(binaryEntropy(mixed[t]), entropies.data() + first + t, kTerms);
+    }
+    benchmark::DoNotOptimize(divergence);
+  }
+}
+BENCHMARK(fastDivergenceOfFourTerms);
+
+void stableDivergenceOfFourTerms(benchmark::State& state) {
+  constexpr std::size_t kTerms = 4;
+  const auto rows = makeRows(kTerms);
+  const std::vector<double> pi(8, 0.125);
+  std::size_t i = 0;
+  double divergence[kTerms];
+  for (auto _ : state) {
+    const std::size_t first = (i++ % kFamilies) * 8 * kTerms;
+    for (std::size_t t = 0; t < kTerms; ++t) {
+      divergence[t] = binaryJensenShannon(pi.data(), rows.data() + first + t, 8, kTerms);
+    }
+    benchmark::DoNotOptimize(divergence);
+  }
+}
+BENCHMARK(stableDivergenceOfFourTerms);
+
+struct Example {
+  TermSet terms;
+  BreadthFirstTree tree;
+};
+
+const Example& example() {
+  static const Example instance = [] {
+    random_trees::Engine random(1);
+    random_trees::Shape shape{7, 8, 8, 0.65};
+    shape.numClasses = 4;
+    const auto tree = random_trees::makeTree(shape, random);
+    std::vector<VectorTree::Node> nodes;
+    TermSet terms(fourTerms(), 4);
+    auto flat = layOutBreadthFirst(tree, terms, nodes);
+    return Example{std::move(terms), std::move(flat)};
+  }();
+  return instance;
+}
+
+void countNodes(benchmark::State& state) {
+  const auto nodes = static_cast<double>(example().tree.size());
+  state.counters["nodes"] = nodes;
+  state.counters["time/node"] = benchmark::Counter(
+      nodes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void informationOfTree(benchmark::State& state, DivergenceForm form) {
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(computeInformation(example().tree, example().terms, form));
+  }
+  countNodes(state);
+}
+BENCHMARK_CAPTURE(informationOfTree, stable, DivergenceForm::Stable)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(informationOfTree, fast, DivergenceForm::Fast)->Unit(benchmark::kMillisecond);
+
+void searchWithoutLogarithms(benchmark::State& state) {
+  const auto information = computeInformation(example().tree, example().terms);
+  const auto weights = fourTerms();
+  for (auto _ : state) {
+    const auto values = computeG(example().tree, information, weights);
+    benchmark::DoNotOptimize(expandedNodes(example().tree, values, weights.eps()));
+  }
+  countNodes(state);
+}
+BENCHMARK(searchWithoutLogarithms)->Unit(benchmark::kMillisecond);
+
+/** Inner nodes only, as an octree hands them over. */
+void wholeAlphaPath(benchmark::State& state) {
+  const auto& tree = example().tree;
+  const auto information = computeInformation(tree, example().terms);
+  const auto values = computeG(tree, information, fourTerms());
+  std::vector<std::int32_t> index(tree.size(), -1), parents;
+  std::vector<double> gains, prices;
+  for (std::size_t n = 0; n < tree.size(); ++n) {
+    if (tree.isLeaf(n)) continue;
+    index[n] = static_cast<std::int32_t>(parents.size());
+    parents.push_back(n == 0 ? -1 : index[static_cast<std::size_t>(tree.parent[n])]);
+    gains.push_back(values.gain[n]);
+    prices.push_back(values.price[n]);
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(collapseAlphas(parents, gains, prices));
+  state.counters["innerNodes"] = static_cast<double>(parents.size());
+  state.counters["time/inner"] = benchmark::Counter(
+      static_cast<double>(parents.size()),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(wholeAlphaPath)->Unit(benchmark::kMillisecond);
+
+void sortedAlphaPath(benchmark::State& state) {
+  const auto information = computeInformation(example().tree, example().terms);
+  const auto values = computeG(example().tree, information, fourTerms());
+  const auto tau = collapseAlphas(example().tree.parent, values.gain, values.price);
+  for (auto _ : state) benchmark::DoNotOptimize(AlphaPath(tau));
+}
+BENCHMARK(sortedAlphaPath)->Unit(benchmark::kMillisecond);
+
+}  // namespace
