@@ -1,0 +1,58 @@
+#pragma once
+#include <labeled_cloud/LabelImage.h>
+#include <mrpt/core/Clock.h>
+
+#include <filesystem>
+#include <map>
+#include <vector>
+
+namespace labeled_cloud {
+
+struct LabelFolderOptions {
+  enum class Match {
+    /** File names are times in seconds ("12.250.png"); the nearest one counts. */
+    Time,
+    /** The label image is named like the observation's external image, ending apart. */
+    Name
+  };
+  Match match = Match::Time;
+  /** Match::Time: largest difference to the observation's time, s. */
+  double tolerance = 0.02;
+
+  /** \throw std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+/** Label images in a folder: PNG, TIFF, PGM or BMP, one for each depth image and of its size.
+ *
+ * - gray with 8 or 16 bits: the values are raw ids of the class table
+ * - with a palette: so are the palette's indices, whatever its colors
+ * - in color: colors of the class table; black, where no class has it, is raw id 0 */
+class LabelFolder : public ImageLabeler {
+ public:
+  /** \throw std::runtime_error naming the folder or file: no such folder, no label image in it, or
+   * (Match::Time) a file whose name is not a time, or two of one time. */
+  LabelFolder(const std::filesystem::path& folder, const semantic_octree::ClassTable& table,
+              const LabelFolderOptions& options = {});
+
+  /** \throw std::runtime_error naming the file: unreadable, of another kind, or an id or color that
+   * the class table does not know; or (Match::Name) the observation has no external image. */
+  std::optional<LabelImage> label(const mrpt::obs::CObservation3DRangeScan& scan) override;
+
+ private:
+  std::optional<std::filesystem::path> nearest(mrpt::Clock::time_point time) const;
+  std::optional<std::filesystem::path> named(const mrpt::obs::CObservation3DRangeScan& scan) const;
+
+  std::filesystem::path m_folder;
+  semantic_octree::ClassTable m_table;
+  LabelFolderOptions m_options;
+  std::map<mrpt::Clock::time_point, std::filesystem::path> m_byTime;
+  std::map<std::string, std::filesystem::path> m_byName;
+};
+
+/** Reads one label image, see LabelFolder.
+ * \throw std::runtime_error naming the file, and pixel and value where one is to blame. */
+LabelImage readLabelImage(const std::filesystem::path& file,
+                          const semantic_octree::ClassTable& table);
+
+}  // namespace labeled_cloud

@@ -1,0 +1,64 @@
+#pragma once
+#include <labeled_cloud/CObservationLabeledCloud.h>
+#include <labeled_cloud/LabelImage.h>
+#include <labeled_cloud/LabeledScan.h>
+#include <semantic_octree/ClassTable.h>
+
+#include <memory>
+#include <optional>
+
+namespace labeled_cloud {
+
+class PixelRays;
+
+struct ScanConverterOptions {
+  /** Depth images: one point for each block of this many pixels squared, the block's nearest; it
+   * keeps the label of its own pixel. */
+  int decimation = 1;
+  /** Depth images: leave out pixels between a surface in front and one behind that lie on neither,
+   * farther from both than this share of their depth. 0: keep all. */
+  double flyingPixelThreshold = 0;
+
+  /** \throw std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+/** Makes labeled clouds of observations.
+ *
+ * - CObservation3DRangeScan: the range image, or the 3D points where there is none, each point with
+ *   the label of its pixel in the DEPTH image. Labels come from the ImageLabeler given, else from
+ *   the observation's pixelLabels.
+ * - CObservationLabeledCloud: as it is. Where it names its classes, they are found by name in the
+ *   class table; otherwise its class ids are those of the table.
+ * - CObservationPointCloud, CObservationVelodyneScan: points without a class, which count for
+ *   occupancy only.
+ *
+ * Externally stored data is loaded, and unloaded at the end. */
+class ScanConverter {
+ public:
+  explicit ScanConverter(const semantic_octree::ClassTable& table,
+                         const ScanConverterOptions& options = {},
+                         std::shared_ptr<ImageLabeler> labeler = nullptr);
+  ~ScanConverter();
+
+  /** Whether convert() makes a scan of observations of this class. */
+  static bool accepts(const mrpt::obs::CObservation& observation);
+
+  /** The observation's scan, or nothing if it is of another class than those above.
+   * \throw std::runtime_error why an observation of these classes cannot be used: no range data, no
+   * calibration, labels of another size than the depth image, an unknown class, an external file
+   * that is missing. */
+  std::optional<LabeledScan> convert(const mrpt::obs::CObservation& observation);
+
+ private:
+  void addRangeScan(const mrpt::obs::CObservation3DRangeScan& observation, LabeledScan& scan);
+  void addLabeledCloud(const CObservationLabeledCloud& observation, LabeledScan& scan) const;
+
+  semantic_octree::ClassTable m_table;
+  ScanConverterOptions m_options;
+  std::shared_ptr<ImageLabeler> m_labeler;
+  /** Of the camera met last. */
+  std::unique_ptr<PixelRays> m_rays;
+};
+
+}  // namespace labeled_cloud

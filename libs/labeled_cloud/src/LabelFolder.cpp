@@ -1,0 +1,93 @@
+#include <labeled_cloud/LabelFolder.h>
+
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+namespace labeled_cloud {
+
+namespace fs = std::filesystem;
+using mrpt::Clock;
+using mrpt::obs::CObservation3DRangeScan;
+
+namespace {
+
+bool isLabelImage(const fs::path& file) {
+  static const std::set<std::string> kEndings = {".png", ".tif", ".tiff", ".pgm", ".bmp"};
+  return fs::is_regular_file(file) && kEndings.count(file.extension().string());
+}
+
+Clock::time_point timeInName(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  double seconds = 0;
+  const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), seconds);
+  if (error != std::errc() || end != stem.data() + stem.size() || !std::isfinite(seconds))
+    throw std::runtime_error(file.string() + ": the label image's name is not a time in seconds");
+  return Clock::fromDouble(seconds);
+}
+
+/** Name of the first image of the observation that is stored in a file of its own. */
+std::string externalName(const CObservation3DRangeScan& scan) {
+  if (scan.hasIntensityImage && scan.intensityImage.isExternallyStored())
+    return scan.intensityImage.getExternalStorageFile();
+  if (scan.rangeImage_isExternallyStored()) return scan.rangeImage_getExternalStorageFile("");
+  throw std::runtime_error("the observation '" + scan.sensorLabel +
+                           "' has no external image after which a label image could be named");
+}
+
+}  // namespace
+
+void LabelFolderOptions::validate() const {
+  if (!(tolerance >= 0))
+    throw std::invalid_argument("label folder: tolerance = " + std::to_string(tolerance) +
+                                " s, must be 0 or more");
+}
+
+LabelFolder::LabelFolder(const fs::path& folder, const semantic_octree::ClassTable& table,
+                         const LabelFolderOptions& options)
+    : m_folder(folder), m_table(table), m_options(options) {
+  m_options.validate();
+  if (!fs::is_directory(folder))
+    throw std::runtime_error(folder.string() + ": there is no such folder of label images");
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (!isLabelImage(entry.path())) continue;
+    const bool added = m_options.match == LabelFolderOptions::Match::Time
+                           ? m_byTime.emplace(timeInName(entry.path()), entry.path()).second
+                           : m_byName.emplace(entry.path().stem().string(), entry.path()).second;
+    if (!added)
+      throw std::runtime_error(entry.path().string() + ": a second label image of this " +
+                               (m_byName.empty() ? "time" : "name"));
+  }
+  if (m_byTime.empty() && m_byName.empty())
+    throw std::runtime_error(folder.string() + ": no label image in this folder");
+}
+
+std::optional<fs::path> LabelFolder::nearest(Clock::time_point time) const {
+  std::optional<fs::path> best;
+  Clock::duration least = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(m_options.tolerance));
+  const auto consider = [&](const auto& candidate) {
+    const auto apart = candidate.first < time ? time - candidate.first : candidate.first - time;
+    if (apart <= least) least = apart, best = candidate.second;
+  };
+  const auto after = m_byTime.lower_bound(time);
+  if (after != m_byTime.end()) consider(*after);
+  if (after != m_byTime.begin()) consider(*std::prev(after));
+  return best;
+}
+
+std::optional<fs::path> LabelFolder::named(const CObservation3DRangeScan& scan) const {
+  const auto found = m_byName.find(fs::path(externalName(scan)).stem().string());
+  if (found == m_byName.end()) return std::nullopt;
+  return found->second;
+}
+
+std::optional<LabelImage> LabelFolder::label(const CObservation3DRangeScan& scan) {
+  const bool byTime = m_options.match == LabelFolderOptions::Match::Time;
+  const auto file = byTime ? nearest(scan.timestamp) : named(scan);
+  if (!file) return std::nullopt;
+  return readLabelImage(*file, m_table);
+}
+
+}  // namespace labeled_cloud

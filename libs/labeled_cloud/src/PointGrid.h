@@ -1,0 +1,40 @@
+#pragma once
+#include <mrpt/obs/CObservation3DRangeScan.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <vector>
+
+#include "PixelRays.h"
+
+namespace labeled_cloud {
+
+/** A depth image as points in the camera's frame (x forward), one for each pixel. */
+struct PointGrid {
+  int rows = 0, cols = 0;
+  /** rows x cols, row-major, meters. */
+  std::vector<Eigen::Vector3f> points;
+
+  PointGrid(int rows_, int cols_)
+      : rows(rows_), cols(cols_), points(std::size_t(rows_) * cols_, noReturn()) {}
+
+  static Eigen::Vector3f noReturn() { return Eigen::Vector3f::Constant(NAN); }
+  static bool isReturn(const Eigen::Vector3f& p) { return p.allFinite() && !p.isZero(0); }
+};
+
+/** Points of the range image. \throw std::invalid_argument the rays are of another size. */
+PointGrid unproject(const mrpt::obs::CObservation3DRangeScan& scan, const PixelRays& rays);
+
+/** The observation's 3D points at their pixels: by their pixel indices, or in order if there is one
+ * point for each pixel. Points without pixels: a single row.
+ * \throw std::invalid_argument a point's pixel is outside the camera's image. */
+PointGrid gridOfPoints(const mrpt::obs::CObservation3DRangeScan& scan);
+
+/** Removes points that hang between two surfaces at a depth edge: in a row or a column, strictly
+ * between both neighbors in depth, and continuing neither side's surface, be it flat or slanted
+ * (slanted planes are straight lines in 1/depth along rows and columns).
+ * \param threshold what counts as "not the same": a share of the inverse depth.
+ * \return number of points removed */
+std::size_t removeFlyingPixels(PointGrid& grid, double threshold);
+
+}  // namespace labeled_cloud
