@@ -122,6 +122,7 @@ LabelImage readPixels(const std::string& file, const ClassTable& table) {
 
 LabelImage readLabelImage(const std::filesystem::path& file, const ClassTable& table) {
   try {
+    if (!std::filesystem::is_regular_file(file)) throw std::runtime_error("there is no such file");
     const PngHeader header = readPngHeader(file.string());
     if (header.narrowGray)
       throw std::runtime_error("gray with fewer than 8 bits: save it with 8 or with a palette");

@@ -1,0 +1,203 @@
+#include <gtest/gtest.h>
+#include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/ScanConverter.h>
+#include <png.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "DepthCamera.h"
+#include "TemporaryFolder.h"
+
+using namespace labeled_cloud;
+using semantic_octree::ClassId;
+using semantic_octree::ClassTable;
+
+namespace {
+
+ClassTable roadGrassSky() {
+  ClassTable table;
+  table.add("road", {255, 0, 0});
+  table.add("grass", {0, 255, 1});
+  table.add("sky", {0, 0, 255});
+  table.fold(0, 0);
+  table.fold(40000, 3);
+  return table;
+}
+
+std::filesystem::path save(const TemporaryFolder& folder, const std::string& name,
+                           const cv::Mat& m) {
+  cv::imwrite((folder / name).string(), m);
+  return folder / name;
+}
+
+/** A PNG with a palette: indices and one RGB entry for each. */
+std::filesystem::path savePalette(const TemporaryFolder& folder, const std::string& name, int cols,
+                                  std::vector<std::uint8_t> indices,
+                                  const std::vector<std::uint8_t>& rgb) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = cols;
+  png.height = static_cast<png_uint_32>(indices.size()) / cols;
+  png.format = PNG_FORMAT_RGB_COLORMAP;
+  png.colormap_entries = static_cast<png_uint_32>(rgb.size()) / 3;
+  png_image_write_to_file(&png, (folder / name).c_str(), 0, indices.data(), 0, rgb.data());
+  return folder / name;
+}
+
+std::string errorReading(const std::filesystem::path& file) {
+  const std::string error = errorOf([&] { readLabelImage(file, roadGrassSky()); });
+  EXPECT_EQ(error.rfind(file.string() + ": ", 0), 0u) << "does not name the file: " << error;
+  return error;
+}
+
+mrpt::obs::CObservation3DRangeScan::Ptr scanAt(double time) {
+  auto scan = DepthCamera().see([](int, int) { return 1; });
+  scan->timestamp = mrpt::Clock::fromDouble(time);
+  return scan;
+}
+
+cv::Mat filledWith(int id) { return cv::Mat(40, 60, CV_8UC1, cv::Scalar(id)); }
+
+}  // namespace
+
+TEST(LabelImages, ofEightAndSixteenBitsHoldRawIds) {
+  const TemporaryFolder folder;
+  const auto narrow = readLabelImage(
+      save(folder, "8.png", (cv::Mat_<std::uint8_t>(2, 3) << 0, 1, 2, 3, 2, 1)), roadGrassSky());
+  EXPECT_EQ(narrow.rows, 2);
+  EXPECT_EQ(narrow.cols, 3);
+  EXPECT_EQ(narrow.classes, (std::vector<ClassId>{0, 1, 2, 3, 2, 1}));
+  const auto wide = readLabelImage(
+      save(folder, "16.png", (cv::Mat_<std::uint16_t>(1, 3) << 40000, 1, 0)), roadGrassSky());
+  EXPECT_EQ(wide.classes, (std::vector<ClassId>{3, 1, 0}));
+  EXPECT_EQ(wide.origin, (folder / "16.png").string());
+}
+
+TEST(LabelImages, inColorHoldColorsOfTheTableAndBlackForNone) {
+  const TemporaryFolder folder;
+  const cv::Mat bgr = (cv::Mat_<cv::Vec3b>(1, 4) << cv::Vec3b(0, 0, 255), cv::Vec3b(1, 255, 0),
+                       cv::Vec3b(255, 0, 0), cv::Vec3b(0, 0, 0));
+  const std::vector<ClassId> expected{1, 2, 3, 0};
+  EXPECT_EQ(readLabelImage(save(folder, "c.png", bgr), roadGrassSky()).classes, expected);
+  cv::Mat bgra(1, 4, CV_8UC4);
+  for (int i = 0; i < 4; ++i) {
+    const auto p = bgr.at<cv::Vec3b>(0, i);
+    bgra.at<cv::Vec4b>(0, i) = {p[0], p[1], p[2], 128};
+  }
+  EXPECT_EQ(readLabelImage(save(folder, "a.png", bgra), roadGrassSky()).classes, expected);
+}
+
+TEST(LabelImages, withAPaletteHoldItsIndicesWhateverItsColors) {
+  const TemporaryFolder folder;
+  // two entries share a color: only the indices tell them apart
+  const auto file =
+      savePalette(folder, "p.png", 3, {0, 1, 2, 3, 1, 0}, {0, 0, 0, 9, 9, 9, 9, 9, 9, 255, 0, 0});
+  EXPECT_EQ(readLabelImage(file, roadGrassSky()).classes, (std::vector<ClassId>{0, 1, 2, 3, 1, 0}));
+}
+
+TEST(LabelImages, anIdOrColorThatTheTableDoesNotKnowIsNamedWithItsPixel) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(
+      contains(errorReading(save(folder, "8.png", (cv::Mat_<std::uint8_t>(2, 2) << 1, 1, 1, 77))),
+               "raw class id 77 is not in the class table (pixel in row 1, column 1)"));
+  EXPECT_TRUE(contains(
+      errorReading(save(folder, "c.png", (cv::Mat_<cv::Vec3b>(1, 1) << cv::Vec3b(3, 2, 1)))),
+      "color (1, 2, 3) is not in the class table"));
+  ClassTable lenient = roadGrassSky();
+  lenient.setUnknownRawId(ClassTable::UnknownRawId::NoClass);
+  EXPECT_EQ(readLabelImage(folder / "8.png", lenient).classes, (std::vector<ClassId>{1, 1, 1, 0}));
+  EXPECT_EQ(readLabelImage(folder / "c.png", lenient).classes, (std::vector<ClassId>{0}));
+}
+
+TEST(LabelImages, thatCannotBeUsedAreNamed) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(contains(errorReading(folder.write("text.png", "no image")), "cannot be read"));
+  EXPECT_TRUE(contains(errorReading(folder / "missing.png"), "no such file"));
+  EXPECT_TRUE(contains(errorReading(save(folder, "16.png", cv::Mat(1, 1, CV_16UC3, cv::Scalar(1)))),
+                       "expected ids"));
+  cv::imwrite((folder / "bit.png").string(), cv::Mat(8, 8, CV_8UC1, cv::Scalar(255)),
+              {cv::IMWRITE_PNG_BILEVEL, 1});
+  EXPECT_TRUE(contains(errorReading(folder / "bit.png"), "gray with fewer than 8 bits"));
+  savePalette(folder, "p.png", 2, {1, 1}, {0, 0, 0, 9, 9, 9});
+  const std::string whole = folder.read("p.png");
+  errorReading(folder.write("cut.png", whole.substr(0, whole.size() - 20)));
+  cv::Mat ids(200, 200, CV_8UC1);
+  cv::randu(ids, 1, 4);
+  save(folder, "gray.png", ids);
+  errorReading(folder.write("half.png", folder.read("gray.png").substr(0, 3000)));
+}
+
+TEST(LabelFolder, findsTheNearestInTime) {
+  const TemporaryFolder folder;
+  save(folder, "10.00.png", filledWith(1));
+  save(folder, "10.10.png", filledWith(2));
+  save(folder, "1700000000.123456.png", filledWith(3));
+  folder.write("README.txt", "not a label image");
+  LabelFolderOptions options;
+  options.tolerance = 0.06;
+  LabelFolder labels(folder.path(), roadGrassSky(), options);
+  EXPECT_EQ(labels.label(*scanAt(10.04))->classes[0], 1);
+  EXPECT_EQ(labels.label(*scanAt(10.051))->classes[0], 2);
+  EXPECT_EQ(labels.label(*scanAt(9.95))->classes[0], 1);
+  EXPECT_EQ(labels.label(*scanAt(1700000000.123456))->classes[0], 3);
+  EXPECT_FALSE(labels.label(*scanAt(9.93)));
+  EXPECT_FALSE(labels.label(*scanAt(10.2)));
+}
+
+TEST(LabelFolder, findsTheOneNamedLikeTheExternalImage) {
+  const TemporaryFolder folder;
+  save(folder, "frame_7.png", filledWith(2));
+  LabelFolderOptions options;
+  options.match = LabelFolderOptions::Match::Name;
+  LabelFolder labels(folder.path(), roadGrassSky(), options);
+  auto scan = scanAt(1);
+  EXPECT_TRUE(contains(errorOf([&] { labels.label(*scan); }), "'cam' has no external image"));
+  scan->hasIntensityImage = true;
+  scan->intensityImage.setExternalStorage("frame_7.jpg");
+  EXPECT_EQ(labels.label(*scan)->classes[0], 2);
+  scan->intensityImage.setExternalStorage("frame_8.jpg");
+  EXPECT_FALSE(labels.label(*scan));
+}
+
+TEST(LabelFolder, goesBeforeTheObservationsOwnLabelsAndIsAskedForEachScan) {
+  const TemporaryFolder folder;
+  save(folder, "10.png", filledWith(2));
+  ScanConverter converter(roadGrassSky(), {},
+                          std::make_shared<LabelFolder>(folder.path(), roadGrassSky()));
+  auto scan = scanAt(10);
+  DepthCamera().label(*scan, [](int, int) { return 1; });
+  EXPECT_EQ(converter.convert(*scan)->cloud.classes[0], 2);
+  scan->timestamp = mrpt::Clock::fromDouble(11);
+  EXPECT_TRUE(converter.convert(*scan)->labelsMissing);
+}
+
+TEST(LabelFolder, aLabelImageOfAnotherSizeIsNamed) {
+  const TemporaryFolder folder;
+  save(folder, "10.png", cv::Mat(20, 60, CV_8UC1, cv::Scalar(1)));
+  ScanConverter converter(roadGrassSky(), {},
+                          std::make_shared<LabelFolder>(folder.path(), roadGrassSky()));
+  const std::string error = errorOf([&] { converter.convert(*scanAt(10)); });
+  EXPECT_TRUE(
+      contains(error, "10.png: the label image has 60 x 20 pixels, the depth image 60 x 40"))
+      << error;
+}
+
+TEST(LabelFolder, badFoldersAndNamesAreNamed) {
+  const auto error = [](const std::filesystem::path& path) {
+    return errorOf([&] { LabelFolder(path, roadGrassSky()); });
+  };
+  EXPECT_TRUE(contains(error("/nowhere/labels"), "/nowhere/labels: there is no such folder"));
+  const TemporaryFolder folder;
+  EXPECT_TRUE(contains(error(folder.path()), "no label image in this folder"));
+  save(folder, "1.5.png", filledWith(1));
+  save(folder, "1.50.png", filledWith(1));
+  EXPECT_TRUE(contains(error(folder.path()), "a second label image of this time"));
+  save(folder, "frame.png", filledWith(1));
+  std::filesystem::remove(folder / "1.50.png");
+  EXPECT_TRUE(contains(error(folder.path()), "frame.png: the label image's name is not a time"));
+  LabelFolderOptions options;
+  options.tolerance = -1;
+  EXPECT_TRUE(
+      contains(errorOf([&] { LabelFolder(folder.path(), {}, options); }), "tolerance = -1"));
+}

@@ -1,0 +1,409 @@
+#include <gtest/gtest.h>
+#include <labeled_cloud/ScanConverter.h>
+#include <mrpt/maps/CSimplePointsMap.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/obs/CObservationVelodyneScan.h>
+
+#include <opencv2/calib3d.hpp>
+#include <random>
+
+#include "DepthCamera.h"
+#include "RawlogFile.h"
+#include "TemporaryFolder.h"
+#include "labeled_cloud/RawlogReader.h"
+
+using namespace labeled_cloud;
+using Eigen::Vector3f;
+using mrpt::obs::CObservation3DRangeScan;
+using semantic_octree::ClassId;
+using semantic_octree::ClassTable;
+
+namespace {
+
+ClassTable abc() {
+  ClassTable table;
+  for (const char* name : {"a", "b", "c"}) table.add(name, {});
+  return table;
+}
+
+LabeledScan convert(const mrpt::obs::CObservation& obs, const ScanConverterOptions& options = {}) {
+  return *ScanConverter(abc(), options).convert(obs);
+}
+
+std::string errorConverting(const mrpt::obs::CObservation& obs, const ClassTable& table = abc()) {
+  return errorOf([&] { ScanConverter(table).convert(obs); });
+}
+
+/** Closed form of the pinhole: x forward, y left, z up. */
+Vector3f pinhole(const DepthCamera& camera, double row, double col, double depth) {
+  return Eigen::Vector3d(depth, depth * (camera.cx - col) / camera.f,
+                         depth * (camera.cy - row) / camera.f)
+      .cast<float>();
+}
+
+/** A pole in front of a wall, class a and b. */
+constexpr double kPole = 1, kWall = 3;
+bool onPole(int, int col) { return col >= 23 && col < 30; }
+CObservation3DRangeScan::Ptr poleBeforeWall(const DepthCamera& camera) {
+  auto scan = camera.see([](int r, int c) { return onPole(r, c) ? kPole : kWall; });
+  camera.label(*scan, [](int r, int c) { return onPole(r, c) ? 1 : 2; });
+  return scan;
+}
+
+/** Points whose class is not that of the surface at their depth. */
+std::size_t bled(const LabeledScan& scan) {
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < scan.cloud.size(); ++i)
+    wrong += scan.cloud.classes[i] != (scan.cloud.points[i].x() < 2 ? 1 : 2);
+  return wrong;
+}
+
+}  // namespace
+
+TEST(RangeImages, pointsLieWhereThePinholeModelPutsThem) {
+  const DepthCamera camera;
+  const auto depth = [](int r, int c) { return 1 + 0.05 * r + 0.01 * c; };
+  const auto scan = convert(*camera.see(depth));
+  ASSERT_EQ(scan.cloud.size(), std::size_t(camera.rows * camera.cols));
+  for (int r = 0, i = 0; r < camera.rows; ++r)
+    for (int c = 0; c < camera.cols; ++c, ++i)
+      EXPECT_LT((scan.cloud.points[i] - pinhole(camera, r, c, depth(r, c))).norm(), 1e-5);
+}
+
+TEST(RangeImages, rangesAlongTheRayAreNoDepths) {
+  const DepthCamera camera;
+  auto obs = camera.see([](int, int) { return 2; });
+  obs->range_is_depth = false;
+  for (const Vector3f& p : convert(*obs).cloud.points) EXPECT_NEAR(p.norm(), 2, 1e-5);
+}
+
+TEST(RangeImages, lensDistortionIsTakenOut) {
+  const DepthCamera camera;
+  const std::vector<double> k = {-0.3, 0.1, 0.002, -0.001, 0.02};
+  auto obs = camera.see([](int, int) { return 2; });
+  obs->cameraParams.setDistortionPlumbBob(k[0], k[1], k[2], k[3], k[4]);
+  const auto scan = convert(*obs);
+  std::vector<cv::Point3d> optical;
+  for (const Vector3f& p : scan.cloud.points) optical.emplace_back(-p.y(), -p.z(), p.x());
+  std::vector<cv::Point2d> pixels;
+  const cv::Matx33d K(camera.f, 0, camera.cx, 0, camera.f, camera.cy, 0, 0, 1);
+  cv::projectPoints(optical, cv::Vec3d(), cv::Vec3d(), K, k, pixels);
+  for (int r = 0, i = 0; r < camera.rows; ++r)
+    for (int c = 0; c < camera.cols; ++c, ++i)
+      EXPECT_LT(std::hypot(pixels[i].x - c, pixels[i].y - r), 1e-3) << r << " " << c;
+}
+
+TEST(RangeImages, agreeWithMrptsOwnUnprojection) {
+  auto obs = DepthCamera().see([](int r, int c) { return 1 + 0.05 * r + 0.01 * c; });
+  mrpt::maps::CSimplePointsMap map;
+  obs->unprojectInto(map);
+  const auto scan = convert(*obs);
+  ASSERT_EQ(map.size(), scan.cloud.size());
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    float x, y, z;
+    map.getPoint(i, x, y, z);
+    EXPECT_LT((scan.cloud.points[i] - Vector3f(x, y, z)).norm(), 1e-5);
+  }
+}
+
+TEST(RangeImages, keepPoseTimeAndLabel) {
+  auto obs = DepthCamera().see([](int, int) { return 1; });
+  obs->sensorPose = mrpt::poses::CPose3D(1, 2, 3, 0.1, 0.2, 0.3);
+  const auto scan = convert(*obs);
+  EXPECT_EQ(scan.T_robot_sensor, obs->sensorPose);
+  EXPECT_EQ(scan.timestamp, obs->timestamp);
+  EXPECT_EQ(scan.sensorLabel, "cam");
+}
+
+TEST(RangeImages, pixelsWithoutRangeAreDroppedAndCounted) {
+  const auto scan = convert(*DepthCamera().see([](int r, int) { return r < 3 ? 0 : 1; }));
+  EXPECT_EQ(scan.counts.invalid, 3u * 60);
+  EXPECT_EQ(scan.counts.points, 37u * 60);
+  EXPECT_EQ(scan.cloud.size(), 37u * 60);
+}
+
+TEST(RangeImages, eachPointHasTheLabelOfItsOwnPixelInEveryWidthOfBitField) {
+  const DepthCamera camera;
+  const auto labelOf = [](int r, int c) { return (7 * r + c) % 4 - 1 < 0 ? -1 : (7 * r + c) % 4; };
+  auto obs = camera.see([](int r, int) { return r % 5 == 0 ? 0 : 2; });
+  const auto check = [&] {
+    const auto scan = convert(*obs);
+    std::size_t i = 0, labeled = 0;
+    for (int r = 0; r < camera.rows; ++r)
+      for (int c = 0; c < camera.cols; ++c) {
+        if (r % 5 == 0) continue;
+        const int expected = std::max(0, labelOf(r, c));
+        labeled += expected > 0;
+        ASSERT_EQ(scan.cloud.classes[i++], expected);
+      }
+    EXPECT_EQ(scan.counts.labeled, labeled);
+    EXPECT_FALSE(scan.labelsMissing);
+  };
+  camera.label<1>(*obs, labelOf), check();
+  camera.label<2>(*obs, labelOf), check();
+  camera.label<4>(*obs, labelOf), check();
+  camera.label<8>(*obs, labelOf), check();
+}
+
+TEST(RangeImages, labelsGoByTheirNamesAndTheLowestOfSeveralCounts) {
+  const DepthCamera camera;
+  auto obs = camera.see([](int, int) { return 2; });
+  camera.label(*obs, [](int r, int) { return r == 0 ? 63 : 0; });
+  obs->pixelLabels->setLabelName(63, "c");
+  obs->pixelLabels->setLabelName(0, "b");
+  obs->pixelLabels->setLabel(1, 0, 63);
+  const auto scan = convert(*obs);
+  EXPECT_EQ(scan.cloud.classes[0], 3);
+  EXPECT_EQ(scan.cloud.classes[60], 2);
+}
+
+TEST(RangeImages, withoutLabelsAllPointsCountForOccupancyOnly) {
+  const auto scan = convert(*DepthCamera().see([](int, int) { return 2; }));
+  EXPECT_TRUE(scan.labelsMissing);
+  EXPECT_TRUE(scan.cloud.classes.empty());
+  EXPECT_EQ(scan.counts.labeled, 0u);
+}
+
+TEST(RangeImages, aLabelThatTheTableDoesNotKnowIsNamedOrIsNoClass) {
+  const DepthCamera camera;
+  auto obs = camera.see([](int, int) { return 2; });
+  camera.label(*obs, [](int, int) { return 41; });
+  EXPECT_TRUE(contains(errorConverting(*obs), "raw class id 41 is not in the class table"));
+  ClassTable lenient = abc();
+  lenient.setUnknownRawId(ClassTable::UnknownRawId::NoClass);
+  EXPECT_EQ(ScanConverter(lenient).convert(*obs)->counts.labeled, 0u);
+  obs->pixelLabels->setLabelName(41, "zebra");
+  EXPECT_TRUE(contains(errorConverting(*obs), "label 41 is named 'zebra'"))
+      << errorConverting(*obs);
+  EXPECT_EQ(ScanConverter(lenient).convert(*obs)->counts.labeled, 0u);
+}
+
+TEST(RangeImages, unusableOnesSayWhy) {
+  const DepthCamera camera;
+  auto obs = camera.see([](int, int) { return 2; });
+  obs->hasRangeImage = false;
+  EXPECT_EQ(errorConverting(*obs),
+            "mrpt::obs::CObservation3DRangeScan 'cam' at 10.000000 s: it has neither a range image "
+            "nor 3D points");
+  obs->hasRangeImage = true;
+  obs->cameraParams.ncols = 61;
+  EXPECT_TRUE(contains(errorConverting(*obs), "has 60 x 40 pixels")) << errorConverting(*obs);
+  EXPECT_TRUE(contains(errorConverting(*obs), "calibrated for 61 x 40"));
+  obs->cameraParams.setIntrinsicParamsFromValues(0, 0, 0, 0);
+  EXPECT_TRUE(contains(errorConverting(*obs), "not calibrated: fx = 0"));
+  obs = camera.see([](int, int) { return 2; });
+  DepthCamera other;
+  other.rows = 20;
+  other.label(*obs, [](int, int) { return 1; });
+  EXPECT_TRUE(contains(errorConverting(*obs),
+                       "the label image has 60 x 20 pixels, the depth image "
+                       "60 x 40"));
+}
+
+TEST(RangeImages, externallyStoredOnesAreLoadedAndUnloaded) {
+  const TemporaryFolder folder;
+  auto obs = DepthCamera().see([](int r, int c) { return 1 + 0.01 * r + 0.02 * c; });
+  const auto inMemory = convert(*obs).cloud.points;
+  mrpt::img::CImage::setImagesPathBase(folder.path().string());
+  obs->rangeImage_convertToExternalStorage("range.bin", folder.path().string() + "/");
+  obs->unload();
+  ASSERT_EQ(obs->rangeImage.size(), 0);
+  EXPECT_EQ(convert(*obs).cloud.points, inMemory);
+  EXPECT_EQ(obs->rangeImage.size(), 0);
+  std::filesystem::remove(folder / "range.bin");
+  EXPECT_TRUE(contains(errorConverting(*obs), "range.bin")) << errorConverting(*obs);
+}
+
+TEST(Points3d, atTheirPixelsOrInOrderTakeThePixelsLabels) {
+  const DepthCamera camera;
+  auto obs = poleBeforeWall(camera);
+  const auto expected = convert(*obs);
+  obs->hasRangeImage = false;
+  obs->hasPoints3D = true;
+  for (int r = 0; r < camera.rows; ++r)
+    for (int c = 0; c < camera.cols; ++c) {
+      const Vector3f p = pinhole(camera, r, c, onPole(r, c) ? kPole : kWall);
+      obs->points3D_x.push_back(p.x());
+      obs->points3D_y.push_back(p.y());
+      obs->points3D_z.push_back(p.z());
+    }
+  EXPECT_EQ(convert(*obs).cloud.classes, expected.cloud.classes);
+  EXPECT_EQ(convert(*obs).cloud.size(), expected.cloud.size());
+
+  auto sparse = std::make_shared<CObservation3DRangeScan>(*obs);
+  sparse->points3D_x = {1, NAN, 0}, sparse->points3D_y = {0, 0, 0}, sparse->points3D_z = {0, 0, 0};
+  sparse->points3D_idxs_x = {26, 3, 4}, sparse->points3D_idxs_y = {7, 3, 4};
+  const auto one = convert(*sparse);
+  ASSERT_EQ(one.cloud.size(), 1u);
+  EXPECT_EQ(one.cloud.classes[0], 1);
+  sparse->points3D_idxs_x = {25, 60, 4};
+  EXPECT_TRUE(contains(errorConverting(*sparse), "row 3, column 60"));
+}
+
+TEST(Points3d, withoutPixelsCannotBeLabeledButCountForOccupancy) {
+  const DepthCamera camera;
+  auto obs = poleBeforeWall(camera);
+  obs->hasRangeImage = false;
+  obs->hasPoints3D = true;
+  obs->points3D_x = {1, 2}, obs->points3D_y = {0, 0}, obs->points3D_z = {0, 0};
+  EXPECT_TRUE(contains(errorConverting(*obs), "the label image has 60 x 40 pixels"));
+  obs->pixelLabels.reset();
+  EXPECT_EQ(convert(*obs).counts.points, 2u);
+}
+
+TEST(Decimation, takesTheNearestPointOfEachBlockAndNoLabelBleeds) {
+  const auto obs = poleBeforeWall(DepthCamera());
+  for (const int d : {2, 3, 4, 5, 7}) {
+    ScanConverterOptions options;
+    options.decimation = d;
+    const auto scan = convert(*obs, options);
+    EXPECT_EQ(scan.cloud.size(), std::size_t((40 + d - 1) / d) * ((60 + d - 1) / d));
+    EXPECT_EQ(bled(scan), 0u) << "decimation " << d;
+  }
+}
+
+TEST(Decimation, keepsTheGeometryOfThePixelItTook) {
+  const DepthCamera camera;
+  const auto obs = poleBeforeWall(camera);
+  ScanConverterOptions options;
+  options.decimation = 4;
+  for (const Vector3f& p : convert(*obs, options).cloud.points) {
+    const double col = camera.cx - p.y() / p.x() * camera.f,
+                 row = camera.cy - p.z() / p.x() * camera.f;
+    EXPECT_NEAR(col, std::round(col), 1e-3);
+    EXPECT_NEAR(row, std::round(row), 1e-3);
+    EXPECT_EQ(p.x() < 2, onPole(0, static_cast<int>(std::lround(col))));
+  }
+}
+
+TEST(Decimation, ofMrptItselfDoesBleed) {  // why there is one of our own
+  const DepthCamera camera;
+  auto obs = poleBeforeWall(camera);
+  obs->points3D_idxs_x.clear();
+  mrpt::obs::T3DPointsProjectionParams params;
+  params.decimation = 4;
+  obs->unprojectInto(*obs, params);
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < obs->points3D_x.size(); ++i)
+    wrong += (obs->points3D_x[i] < 2) != onPole(obs->points3D_idxs_y[i], obs->points3D_idxs_x[i]);
+  EXPECT_GT(wrong, 0u);
+}
+
+namespace {
+
+ScanConverterOptions withoutFlying() {
+  ScanConverterOptions options;
+  options.flyingPixelThreshold = 0.03;
+  return options;
+}
+
+}  // namespace
+
+TEST(FlyingPixels, betweenTwoSurfacesAreRemovedAndCountedAndNothingElse) {
+  for (const int width : {1, 2}) {
+    const auto depth = [width](int, int c) {
+      if (c >= 20 && c < 20 + width) return 1 + 2.0 * (c - 19) / (width + 1);
+      return c < 20 ? 1.0 : 3.0;
+    };
+    const auto scan = convert(*DepthCamera().see(depth), withoutFlying());
+    EXPECT_EQ(scan.counts.flying, std::size_t(40 * width)) << "width " << width;
+    for (const Vector3f& p : scan.cloud.points)
+      EXPECT_LT(std::min(std::abs(p.x() - 1), std::abs(p.x() - 3)), 1e-3);
+  }
+  const auto all = convert(*DepthCamera().see([](int, int c) {
+    return c < 20 ? 1 : c == 20 ? 2 : 3;
+  }));
+  EXPECT_EQ(all.counts.flying, 0u);
+  EXPECT_EQ(all.cloud.size(), 2400u);
+}
+
+TEST(FlyingPixels, sharpEdgesThinPolesAndSlantedGroundStay) {
+  const DepthCamera camera;
+  const auto ground = [&](int r, int) {  // 1 m below the camera, seen at ever flatter angles
+    return r > camera.cy + 1 ? camera.f / (r - camera.cy) : 0;
+  };
+  EXPECT_EQ(convert(*poleBeforeWall(camera), withoutFlying()).counts.flying, 0u);
+  EXPECT_EQ(convert(*camera.see(ground), withoutFlying()).counts.flying, 0u);
+  const auto pole = camera.see([](int, int c) { return c == 30 ? 1 : 3; });
+  EXPECT_EQ(convert(*pole, withoutFlying()).counts.flying, 0u);
+}
+
+TEST(LabeledClouds, areTakenAsTheyAreExceptUnusablePoints) {
+  CObservationLabeledCloud obs;
+  obs.sensorPose = mrpt::poses::CPose3D(0, 0, 2, 0, 0, 0);
+  obs.cloud.points = {{1, 2, 3}, {NAN, 0, 0}, {0, 0, 0}, {0, INFINITY, 0}, {4, 5, 6}};
+  obs.cloud.classes = {3, 1, 1, 1, 0};
+  const auto scan = convert(obs);
+  EXPECT_EQ(scan.cloud.points, (std::vector<Vector3f>{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(scan.cloud.classes, (std::vector<ClassId>{3, 0}));
+  EXPECT_EQ(scan.counts.invalid, 3u);
+  EXPECT_EQ(scan.counts.labeled, 1u);
+  EXPECT_EQ(scan.T_robot_sensor.z(), 2);
+}
+
+TEST(LabeledClouds, classesGoByTheirNames) {
+  CObservationLabeledCloud obs;
+  obs.cloud.points = {{1, 0, 0}, {2, 0, 0}};
+  obs.cloud.classes = {1, 2};
+  obs.classNames = {"c", "a", "unheard-of"};
+  EXPECT_EQ(convert(obs).cloud.classes, (std::vector<ClassId>{3, 1}));
+  obs.cloud.probabilities = {0.25f, 0.75f, 0, 1, 0, 0};
+  EXPECT_EQ(convert(obs).cloud.probabilities, (std::vector<float>{0.75f, 0, 0.25f, 0, 0, 1}));
+  EXPECT_EQ(convert(obs).counts.labeled, 2u);
+  obs.cloud.classes = {1, 3};
+  EXPECT_TRUE(contains(errorConverting(obs), "its class 'unheard-of' is not in the table"));
+}
+
+TEST(LabeledClouds, aClassBeyondTheTableIsNamed) {
+  CObservationLabeledCloud obs;
+  obs.cloud.points = {{1, 0, 0}};
+  obs.cloud.classes = {4};
+  EXPECT_TRUE(contains(errorConverting(obs), "its class 4 is not one of 1..3"));
+}
+
+TEST(UnlabeledClouds, countForOccupancyOnly) {
+  auto map = mrpt::maps::CSimplePointsMap::Create();
+  map->insertPoint(1, 2, 3);
+  map->insertPoint(0, 0, 0);
+  map->insertPoint(NAN, 2, 3);
+  mrpt::obs::CObservationPointCloud obs;
+  EXPECT_TRUE(contains(errorConverting(obs), "it holds no point cloud"));
+  obs.pointcloud = map;
+  obs.sensorPose = mrpt::poses::CPose3D(5, 0, 0, 0, 0, 0);
+  const auto scan = convert(obs);
+  EXPECT_EQ(scan.cloud.points, (std::vector<Vector3f>{{1, 2, 3}}));
+  EXPECT_EQ(scan.counts.invalid, 2u);
+  EXPECT_EQ(scan.counts.labeled, 0u);
+  EXPECT_EQ(scan.T_robot_sensor.x(), 5);
+}
+
+TEST(UnlabeledClouds, rawVelodynePacketsAreUnpacked) {
+  const std::filesystem::path file = "/usr/share/mrpt/datasets/test_velodyne_VLP16.rawlog";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "needs Debian's mrpt-common";
+  RawlogReader reader(file);
+  std::size_t scans = 0;
+  while (const auto entry = reader.next())
+    for (const auto& obs : entry->observations)
+      if (dynamic_cast<const mrpt::obs::CObservationVelodyneScan*>(obs.get())) {
+        ++scans;
+        EXPECT_GT(convert(*obs).counts.points, 10000u);
+      }
+  EXPECT_GT(scans, 0u);
+}
+
+TEST(ScanConverter, otherObservationsAreNoneOfItsBusiness) {
+  const mrpt::obs::CObservation2DRangeScan laser;
+  EXPECT_FALSE(ScanConverter::accepts(laser));
+  EXPECT_FALSE(ScanConverter(abc()).convert(laser));
+}
+
+TEST(ScanConverter, badOptionsAreNamed) {
+  ScanConverterOptions options;
+  options.decimation = 0;
+  EXPECT_TRUE(contains(errorOf([&] { ScanConverter(abc(), options); }), "decimation = 0"));
+  options = {};
+  options.flyingPixelThreshold = -0.5;
+  EXPECT_TRUE(
+      contains(errorOf([&] { ScanConverter(abc(), options); }), "flyingPixelThreshold = -0.5"));
+}
