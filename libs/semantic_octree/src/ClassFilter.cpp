@@ -85,6 +85,13 @@ void ClassFilter<Real, Named>::addToAll(Belief& b, Real increment) const {
 }
 
 template <typename Real, int Named>
+void ClassFilter<Real, Named>::hit(Belief& b) const {
+  Real highest = b.count > 0 ? b.logOdds[0] : b.rest;
+  if (b.unnamed(m_numClasses) > 0) highest = std::max(highest, b.rest);
+  addToAll(b, std::min(m_hitUnlabeled, m_max - highest));
+}
+
+template <typename Real, int Named>
 void ClassFilter<Real, Named>::hit(Belief& b, ClassId id) const {
   const Real observed = clamp(b.logOddsOf(id) + m_hitSame);
   const int index = b.indexOf(id);

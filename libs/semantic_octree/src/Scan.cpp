@@ -24,6 +24,9 @@ void checkSizes(const LabeledCloud& cloud, int numClasses) {
     if (id > numClasses)
       throw std::invalid_argument("labeled cloud: class " + std::to_string(id) +
                                   " is above the number of classes, " + std::to_string(numClasses));
+  for (const float q : cloud.probabilities)
+    if (!(q >= 0 && q <= 1))
+      throw std::invalid_argument("labeled cloud: a class probability of " + std::to_string(q));
 }
 
 }  // namespace

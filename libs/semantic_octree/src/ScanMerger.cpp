@@ -138,8 +138,9 @@ bool ScanMerger::miss(Node& leaf) {
   }
   Belief& belief = m_store.record(leaf);
   m_filter.miss(belief);
-  if (belief.isUniform()) {  // at the floor: the record says no more than the occupancy does
-    leaf.setValue(m_filter.occupancyOfUniform(belief.rest));
+  const float uniform = m_filter.occupancyOfUniform(belief.rest);
+  if (belief.isUniform() && uniform <= m_filter.lowestOccupancy()) {
+    leaf.setValue(uniform);  // free for certain: the record says no more than the occupancy does
     m_arena.dropRecord(leaf);
   } else {
     leaf.setValue(belief.occupancyLogOdds(m_filter.numClasses()));

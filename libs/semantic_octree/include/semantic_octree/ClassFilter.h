@@ -27,8 +27,10 @@ class ClassFilter {
 
   /** A return with a class label ended in the cell. */
   void hit(Belief& b, ClassId id) const;
-  /** A return without a label ended in the cell: every class gains equally. */
-  void hit(Belief& b) const { addToAll(b, m_hitUnlabeled); }
+  /** A return without a label ended in the cell: every class gains equally. Where the likeliest class
+   * is near its upper limit, all gain as much as that one can, so that points that say nothing about
+   * classes do not level them. */
+  void hit(Belief& b) const;
   /** A return with a soft label ended in the cell. \param q K probabilities of classes 1..K. */
   void hit(Belief& b, const float* q) const;
   /** A beam passed through the cell. */
