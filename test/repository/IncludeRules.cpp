@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 const IncludeTable& includeTable() {
   static const IncludeTable table = {
       {"tree_abstraction", {"Eigen"}},
-      {"semantic_octree", {"Eigen", "octomap", "tree_abstraction"}},
+      {"semantic_octree", {"Eigen", "octomap", "zlib.h", "tree_abstraction"}},
       {"labeled_cloud",
        {"Eigen", "mrpt", "opencv2", "png.h", "yaml-cpp", "zlib.h", "semantic_octree"}},
       {"semantic_map",
