@@ -1,0 +1,31 @@
+#include <labeled_cloud/RawlogWriter.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include "GzipOutputStream.h"
+
+namespace labeled_cloud {
+
+namespace {
+
+/** Of 1 to 9: labeled clouds hardly shrink more at higher levels, which take several times longer.
+ */
+constexpr int kCompression = 2;
+
+}  // namespace
+
+RawlogWriter::RawlogWriter(const std::filesystem::path& file)
+    : m_file(file), m_stream(std::make_unique<GzipOutputStream>(m_file.path(), kCompression)) {}
+
+RawlogWriter::~RawlogWriter() = default;
+
+void RawlogWriter::write(const mrpt::serialization::CSerializable& object) {
+  auto archive = mrpt::serialization::archiveFrom(*m_stream);
+  archive << object;
+}
+
+void RawlogWriter::finish() {
+  m_stream->close();
+  m_file.commit();
+}
+
+}  // namespace labeled_cloud

@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+#include <labeled_cloud/CObservationLabeledCloud.h>
+#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/RawlogWriter.h>
+
+#include "TemporaryFolder.h"
+
+using namespace labeled_cloud;
+
+TEST(RawlogWriter, theFileAppearsWhenItIsCompleteAndReplacesTheOldOne) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.rawlog", "old");
+  {
+    RawlogWriter writer(file);
+    writer.write(CObservationLabeledCloud());
+    EXPECT_EQ(folder.read("a.rawlog"), "old");
+    writer.finish();
+  }
+  RawlogReader reader(file);
+  EXPECT_TRUE(reader.next());
+  EXPECT_FALSE(reader.next());
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.rawlog.tmp"));
+}
+
+TEST(RawlogWriter, whatWasThereStaysIfItIsNotFinished) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.rawlog", "old");
+  CObservationLabeledCloud bad;
+  bad.cloud.classes = {1};
+  EXPECT_ANY_THROW(RawlogWriter(file).write(bad));
+  EXPECT_EQ(folder.read("a.rawlog"), "old");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.rawlog.tmp"));
+}
+
+TEST(RawlogWriter, anUnwritablePlaceIsNamed) {
+  EXPECT_TRUE(contains(errorOf([] { RawlogWriter("/nowhere/a.rawlog"); }), "/nowhere/a.rawlog"));
+}
+
+TEST(RawlogWriter, aFullDiskIsNoticed) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs /dev/full";
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.rawlog", "old");
+  std::filesystem::create_symlink("/dev/full", folder / "a.rawlog.tmp");
+  RawlogWriter writer(file);
+  writer.write(CObservationLabeledCloud());
+  EXPECT_TRUE(contains(errorOf([&] { writer.finish(); }), "disk full"));
+  EXPECT_EQ(folder.read("a.rawlog"), "old");
+}
