@@ -1,11 +1,107 @@
 #pragma once
+#include <semantic_octree/ClassFilter.h>
+
+#include <deque>
+
+#include "Cell.h"
+#include "DensityField.h"
 #include "NodeStore.h"
+#include "RowLayout.h"
 
 namespace semantic_octree {
 
+/** Bookkeeping of an inner node. Behind it stand the node's row (see RowLayout) and the terms'
+ * divergences. All of it is a function of the children alone. */
+struct InnerState {
+  double density;       ///< mean density of p(x) in the cell; p(n) = density * volume, unnormalized
+  double gain;          ///< G_Pi; above the blocks, if they are free, the mean of the children's
+  double splitEntropy;  ///< H(Pi), nats
+  std::uint32_t isExpanded;    ///< in the optimal tree if the parent is
+  std::uint32_t changedBelow;  ///< since the last report of changes
+
+  double* row() { return reinterpret_cast<double*>(this + 1); }
+  const double* row() const { return reinterpret_cast<const double*>(this + 1); }
+};
+
+/** Computes inner nodes' bookkeeping: weight, class mixture, divergences, and the G-value
+ *   G_Pi(n) = max(0, sum_t weight_t JS_t(n) - alpha H(Pi_n) + sum_c Pi_c G_Pi(c)).
+ * A node is recomputed from its eight children, never adjusted, so that the order of updates leaves
+ * no trace. */
 class AbstractionUpkeep {
  public:
-  void recompute(NodeStore&, Node&, int) const {}
+  AbstractionUpkeep(const AbstractionOptions& options, const ClassFilter<float>& filter,
+                    double resolution);
+
+  const AbstractionOptions& options() const { return m_options; }
+  const RowLayout& layout() const { return m_layout; }
+  std::size_t stateBytes() const;
+  double* divergences(InnerState& s) const { return s.row() + m_layout.rowSize(); }
+  const double* divergences(const InnerState& s) const { return s.row() + m_layout.rowSize(); }
+
+  /** Depth of the blocks' nodes: at this depth and below, unknown space has weight. */
+  int blockDepth() const { return m_blockDepth; }
+  /** Above the blocks, and free of charge. */
+  bool isFreeFrame(int depth) const {
+    return depth < m_blockDepth && m_options.frame == AbstractionOptions::Frame::Free;
+  }
+
+  /** Density of a leaf's, or a missing child's, cell. */
+  double leafDensity(const Cell& cell) const { return m_density.mean(cell); }
+  double missingDensity(const Cell& cell) const {
+    return cell.depth > m_blockDepth ? m_options.unknownWeight * m_density.mean(cell) : 0.0;
+  }
+  const DensityField& density() const { return m_density; }
+
+  /** New weights of the same terms, and alpha. What is kept of nodes is then out of date in its
+   * gains only: see reweigh(). */
+  void setWeights(const std::vector<double>& termWeights, double alpha);
+  void setRegions(std::vector<Region> regions, double resolution);
+
+  /** sum_t weight_t JS_t of a node. */
+  double weightedDivergence(const InnerState& s) const;
+  /** Sets the gain from divergences, split entropy and the mean of the children's gains. */
+  void settleGain(InnerState& s, int depth, double childrensGain) const;
+
+  /** One thread's part: buffers, and rows of frequent values. */
+  class Worker {
+   public:
+    explicit Worker(const AbstractionUpkeep& upkeep);
+    void recompute(NodeStore& store, Node& inner, const Cell& cell);
+    /** A node and all inner nodes below. */
+    void recomputeAll(NodeStore& store, Node& node, const Cell& cell);
+    /** Nodes in whose cell the density is not what it was. \return whether there were any */
+    bool recomputeWhereChanged(NodeStore& store, Node& node, const Cell& cell,
+                               const DensityField& before);
+    /** Gains only, of a node and all inner nodes below, from what is kept. */
+    void reweigh(NodeStore& store, Node& inner, const Cell& cell);
+    /** Row of a leaf; valid until the next call for the same child number. */
+    const double* leafRow(const NodeStore& store, const Node& leaf, int child);
+
+   private:
+    struct Children {
+      const double* rows[8];
+      double densities[8], gains[8];
+    };
+    void gather(NodeStore& store, const Node& inner, const Cell& cell, Children& c);
+    const double* uniformRow(float occupancyLogOdds, int child);
+
+    const AbstractionUpkeep& m_upkeep;
+    std::vector<double> m_scratch;      ///< eight rows
+    std::vector<double> m_frequent;     ///< rows of leaves without a class record
+    std::vector<float> m_frequentKeys;  ///< their values; NaN where there is none
+  };
+  /** The i-th thread's; made when first asked for (not thread safe). */
+  Worker& worker(int i);
+
+ private:
+  AbstractionOptions m_options;
+  RowLayout m_layout;
+  ClassFilter<float> m_filter;
+  int m_blockDepth;
+  double m_eps;
+  std::vector<double> m_weights;  ///< in the layout's order
+  DensityField m_density;
+  std::deque<Worker> m_workers;
 };
 
 }  // namespace semantic_octree

@@ -16,7 +16,8 @@ void require(bool ok, const char* field, double value, const char* expected) {
 /** Nearest value of the grid on which float additions are exact; doubles stay as they are. */
 template <typename Real>
 Real onGrid(double x) {
-  if constexpr (std::is_same_v<Real, float>) return static_cast<float>(std::round(x * 1048576.0) / 1048576.0);
+  if constexpr (std::is_same_v<Real, float>)
+    return static_cast<float>(std::round(x * 1048576.0) / 1048576.0);
   return static_cast<Real>(x);
 }
 
@@ -26,7 +27,8 @@ double logit(double p) { return std::log(p / (1 - p)); }
 
 void FilterParameters::validate(int numClasses) const {
   const auto inside = [](double p) { return p > 0 && p < 1; };
-  require(numClasses >= 1 && numClasses <= kMaxClasses, "number of classes", numClasses, "1 to 254");
+  require(numClasses >= 1 && numClasses <= kMaxClasses, "number of classes", numClasses,
+          "1 to 254");
   require(inside(minOccupancy) && minOccupancy < 0.5, "minOccupancy", minOccupancy,
           "a probability below 0.5");
   require(inside(maxProbability) && maxProbability > 0.5, "maxProbability", maxProbability,
@@ -41,9 +43,10 @@ void FilterParameters::validate(int numClasses) const {
 }
 
 bool FilterParameters::operator==(const FilterParameters& o) const {
-  return increments == o.increments && accuracy == o.accuracy && hitProbability == o.hitProbability &&
-         falseAlarmProbability == o.falseAlarmProbability && minOccupancy == o.minOccupancy &&
-         maxProbability == o.maxProbability && softLabelFloor == o.softLabelFloor;
+  return increments == o.increments && accuracy == o.accuracy &&
+         hitProbability == o.hitProbability && falseAlarmProbability == o.falseAlarmProbability &&
+         minOccupancy == o.minOccupancy && maxProbability == o.maxProbability &&
+         softLabelFloor == o.softLabelFloor;
 }
 
 template <typename Real, int Named>
@@ -135,9 +138,8 @@ void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
   std::vector<ClassId> order(m_numClasses);
   std::iota(order.begin(), order.end(), ClassId{1});
   const int named = std::min(Named, m_numClasses);
-  std::partial_sort(order.begin(), order.begin() + named, order.end(), [&](ClassId i, ClassId j) {
-    return h[i] != h[j] ? h[i] > h[j] : i < j;
-  });
+  std::partial_sort(order.begin(), order.begin() + named, order.end(),
+                    [&](ClassId i, ClassId j) { return h[i] != h[j] ? h[i] > h[j] : i < j; });
   b = Belief();
   for (; b.count < named; ++b.count) {
     b.ids[b.count] = order[b.count];

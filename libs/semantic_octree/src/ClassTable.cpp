@@ -7,9 +7,11 @@ namespace semantic_octree {
 
 ClassId ClassTable::add(const std::string& name, Color color) {
   if (name.empty()) throw std::invalid_argument("class table: a class without a name");
-  if (m_ids.count(name)) throw std::invalid_argument("class table: two classes named '" + name + "'");
+  if (m_ids.count(name))
+    throw std::invalid_argument("class table: two classes named '" + name + "'");
   if (size() == kMaxClasses)
-    throw std::invalid_argument("class table: more than " + std::to_string(kMaxClasses) + " classes");
+    throw std::invalid_argument("class table: more than " + std::to_string(kMaxClasses) +
+                                " classes");
   m_entries.push_back({name, color});
   return m_ids[name] = static_cast<ClassId>(size());
 }
@@ -35,9 +37,9 @@ std::optional<ClassId> ClassTable::find(Color color) const {
 
 void ClassTable::fold(std::uint32_t rawId, ClassId id) {
   if (id != kNoClass && !contains(id))
-    throw std::invalid_argument("class table: raw id " + std::to_string(rawId) + " folds to class " +
-                                std::to_string(id) + ", which is not one of 1.." +
-                                std::to_string(size()));
+    throw std::invalid_argument("class table: raw id " + std::to_string(rawId) +
+                                " folds to class " + std::to_string(id) +
+                                ", which is not one of 1.." + std::to_string(size()));
   if (!m_folds.emplace(rawId, id).second)
     throw std::invalid_argument("class table: raw id " + std::to_string(rawId) + " folds twice");
 }
@@ -47,7 +49,8 @@ ClassId ClassTable::fromRaw(std::uint32_t rawId) const {
   if (it != m_folds.end()) return it->second;
   if (rawId >= 1 && rawId <= static_cast<std::uint32_t>(size())) return static_cast<ClassId>(rawId);
   if (m_unknownRawId == UnknownRawId::NoClass) return kNoClass;
-  throw std::invalid_argument("raw class id " + std::to_string(rawId) + " is not in the class table");
+  throw std::invalid_argument("raw class id " + std::to_string(rawId) +
+                              " is not in the class table");
 }
 
 bool ClassTable::operator==(const ClassTable& o) const {

@@ -52,7 +52,9 @@ void HitVotes::settleMixed() {
   std::size_t mostVotes = 0;
   for (std::size_t i = 0, end; i < m_ballots.size(); i = end) {
     const Ballot& b = m_ballots[i];
-    for (end = i; end < m_ballots.size() && m_ballots[end].voxel == b.voxel && m_ballots[end].id == b.id;) ++end;
+    for (end = i;
+         end < m_ballots.size() && m_ballots[end].voxel == b.voxel && m_ballots[end].id == b.id;)
+      ++end;
     if (i == 0 || m_ballots[i - 1].voxel != b.voxel) mostVotes = 0;
     if (end - i <= mostVotes) continue;
     mostVotes = end - i;

@@ -1,6 +1,6 @@
 #pragma once
-#include <cstdint>
 #include <semantic_octree/LabeledCloud.h>
+#include <cstdint>
 #include <vector>
 
 namespace semantic_octree {

@@ -28,7 +28,10 @@ void NodeStore::updateOccupancy(Node& inner) {
 }
 
 NodeArena::NodeArena(NodeStore& store)
-    : m_store(store), m_octants(store.m_octants), m_records(store.m_records), m_states(store.m_states) {}
+    : m_store(store),
+      m_octants(store.m_octants),
+      m_records(store.m_records),
+      m_states(store.m_states) {}
 
 Octant& NodeArena::createOctant(Node& node) {
   Octant* octant = m_octants.allocate();

@@ -33,7 +33,8 @@ class NodeStore {
   /** \param stateBytes size of an inner node's bookkeeping, 0 for none. */
   explicit NodeStore(std::size_t stateBytes);
 
-  /** Nodes are memory that goes with the store; OctoMap wants to see a node childless when it goes. */
+  /** Nodes are memory that goes with the store; OctoMap wants to see a node childless when it goes.
+   */
   ~NodeStore() { m_root.children = nullptr; }
 
   Node& root() { return m_root; }

@@ -65,7 +65,8 @@ class BlockPool {
 class RecordPool {
  public:
   explicit RecordPool(std::size_t stride)
-      : m_stride(stride), m_directory(static_cast<std::byte**>(std::calloc(kMaxChunks, sizeof(void*)))) {
+      : m_stride(stride),
+        m_directory(static_cast<std::byte**>(std::calloc(kMaxChunks, sizeof(void*)))) {
     if (!m_directory) throw std::bad_alloc();
   }
   ~RecordPool() {

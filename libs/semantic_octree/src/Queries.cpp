@@ -68,7 +68,8 @@ std::optional<RayHit> SemanticOcTree::castRay(const octomap::point3d& origin,
                                               const octomap::point3d& direction, double maxRange,
                                               bool ignoreUnknown) const {
   octomap::point3d end;
-  if (empty() || !Base::castRay(origin, direction, end, ignoreUnknown, maxRange)) return std::nullopt;
+  if (empty() || !Base::castRay(origin, direction, end, ignoreUnknown, maxRange))
+    return std::nullopt;
   const octomap::OcTreeKey key = coordToKey(end);
   return RayHit{key, keyToCoord(key), query(key)};
 }

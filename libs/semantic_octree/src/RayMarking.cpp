@@ -14,7 +14,8 @@ struct Axis {
   double delta;   ///< ray parameter from border to border
 
   Axis(double begin, double end)
-      : index(static_cast<int>(begin)), step(end > begin ? 1 : -1),
+      : index(static_cast<int>(begin)),
+        step(end > begin ? 1 : -1),
         remaining((static_cast<int>(end) - index) * step) {
     if (remaining <= 0) {
       remaining = step = 0;

@@ -6,8 +6,9 @@
 
 namespace semantic_octree {
 
-/** One scan turned into voxels: which were seen free, which were hit and with what class. Its buffers
- * are reused from scan to scan; their size is bounded by the box that the scan's beams cross. */
+/** One scan turned into voxels: which were seen free, which were hit and with what class. Its
+ * buffers are reused from scan to scan; their size is bounded by the box that the scan's beams
+ * cross. */
 class Scan {
  public:
   /** Replaces the content by this cloud's.

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace semantic_octree {
+#include "Cell.h"
 
-using VoxelIndex = Eigen::Array3i;  ///< key minus 32768: floor(coordinate / resolution)
+namespace semantic_octree {
 
 /** End of one beam, in voxel units of the map (coordinate / resolution). */
 struct BeamEnd {

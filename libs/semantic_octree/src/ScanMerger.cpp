@@ -3,44 +3,35 @@
 #include <atomic>
 #include <thread>
 
-#include "AbstractionUpkeep.h"
-
 namespace semantic_octree {
 namespace {
 
-constexpr int kWordDepth = 14, kByteDepth = 15;
 /** Threads share cubes of 64 voxels' side. */
-constexpr int kSharedLevel = 3;
+constexpr int kSharedDepth = 10;
 
-int depthOf(const ScanCube& cube) { return ScanPyramid::kTopLevel - cube.level; }
-
-VoxelIndex childPosition(const VoxelIndex& p, int i) {
-  return p * 2 + VoxelIndex(i & 1, i >> 1 & 1, i >> 2);
-}
-
-/** Calls f(i, position) for the children of a cube that the scan touched. */
+/** Calls f(i, cell) for the children of a cube that the scan touched. */
 template <typename F>
 void forEachTouchedChild(const Scan& scan, const ScanCube& cube, F f) {
   for (int i = 0; i < 8; ++i) {
-    const VoxelIndex position = childPosition(cube.position, i);
-    if (scan.pyramid().at(cube.level - 1, position).any()) f(i, position);
+    const Cell cell = cube.cell.child(i);
+    if (scan.pyramid().at(cube.level() - 1, cell.index).any()) f(i, cell);
   }
 }
 
 }  // namespace
 
 bool ScanMerger::merge(const ScanCube& cube) {
-  const CubeContent content = m_scan.pyramid().at(cube.level, cube.position);
+  const CubeContent content = cube.content(m_scan);
   const Whole whole = updateWhole(*cube.node, cube.isNew, content.allFree(), content.hit());
   if (whole != Whole::Descend) return whole == Whole::Changed;
-  if (cube.level == 0) return mergeTile(cube);
+  if (cube.level() == 0) return mergeTile(cube);
   Octant& octant = childrenOf(*cube.node, cube.isNew);
   bool changed = false;
-  forEachTouchedChild(m_scan, cube, [&](int i, const VoxelIndex& position) {
+  forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
     const bool isNew = !octant.has(i);
-    changed |= merge({&m_arena.createChild(octant, i), isNew, cube.level - 1, position});
+    changed |= merge({&m_arena.createChild(octant, i), isNew, cell});
   });
-  return finish(*cube.node, depthOf(cube), changed);
+  return finish(*cube.node, cube.cell, changed);
 }
 
 ScanMerger::Whole ScanMerger::updateWhole(Node& node, bool isNew, bool allFree, bool anyHit) {
@@ -56,16 +47,16 @@ Octant& ScanMerger::childrenOf(Node& node, bool isNew) {
   return isNew ? m_arena.createOctant(node) : m_arena.expand(node);
 }
 
-bool ScanMerger::finish(Node& node, int depth, bool changed) {
+bool ScanMerger::finish(Node& node, const Cell& cell, bool changed) {
   if (m_target.pruning && m_arena.prune(node)) return changed;
   if (!changed) return false;
   m_store.updateOccupancy(node);
-  if (m_target.upkeep) m_target.upkeep->recompute(m_store, node, depth);
+  if (m_upkeep) m_upkeep->recompute(m_store, node, cell);
   return true;
 }
 
 bool ScanMerger::mergeTile(const ScanCube& cube) {
-  const std::size_t tile = m_scan.pyramid().tileIndex(cube.position);
+  const std::size_t tile = m_scan.pyramid().tileIndex(cube.cell.index);
   const std::uint64_t *free = m_scan.freeBits(tile), *hit = m_scan.hitBits(tile);
   m_nextHit = m_scan.firstHit(tile);
   Octant& octant = childrenOf(*cube.node, cube.isNew);
@@ -73,28 +64,30 @@ bool ScanMerger::mergeTile(const ScanCube& cube) {
   for (int i = 0; i < 8; ++i) {
     if (!(free[i] | hit[i])) continue;
     const bool isNew = !octant.has(i);
-    changed |= mergeWord(m_arena.createChild(octant, i), isNew, free[i], hit[i]);
+    changed |=
+        mergeWord({&m_arena.createChild(octant, i), isNew, cube.cell.child(i)}, free[i], hit[i]);
   }
-  return finish(*cube.node, depthOf(cube), changed);
+  return finish(*cube.node, cube.cell, changed);
 }
 
-bool ScanMerger::mergeWord(Node& node, bool isNew, std::uint64_t free, std::uint64_t hit) {
-  const Whole whole = updateWhole(node, isNew, !~free, hit);
+bool ScanMerger::mergeWord(const ScanCube& cube, std::uint64_t free, std::uint64_t hit) {
+  const Whole whole = updateWhole(*cube.node, cube.isNew, !~free, hit);
   if (whole != Whole::Descend) return whole == Whole::Changed;
-  Octant& octant = childrenOf(node, isNew);
+  Octant& octant = childrenOf(*cube.node, cube.isNew);
   bool changed = false;
   for (int i = 0; i < 8; ++i, free >>= 8, hit >>= 8) {
     if (!((free | hit) & 0xff)) continue;
-    const bool isNewChild = !octant.has(i);
-    changed |= mergeByte(m_arena.createChild(octant, i), isNewChild, free & 0xff, hit & 0xff);
+    const bool isNew = !octant.has(i);
+    changed |= mergeByte({&m_arena.createChild(octant, i), isNew, cube.cell.child(i)}, free & 0xff,
+                         hit & 0xff);
   }
-  return finish(node, kWordDepth, changed);
+  return finish(*cube.node, cube.cell, changed);
 }
 
-bool ScanMerger::mergeByte(Node& node, bool isNew, unsigned free, unsigned hit) {
-  const Whole whole = updateWhole(node, isNew, free == 0xff, hit);
+bool ScanMerger::mergeByte(const ScanCube& cube, unsigned free, unsigned hit) {
+  const Whole whole = updateWhole(*cube.node, cube.isNew, free == 0xff, hit);
   if (whole != Whole::Descend) return whole == Whole::Changed;
-  Octant& octant = childrenOf(node, isNew);
+  Octant& octant = childrenOf(*cube.node, cube.isNew);
   bool changed = false;
   for (unsigned voxels = free | hit; voxels; voxels &= voxels - 1) {
     const int i = __builtin_ctz(voxels);
@@ -102,7 +95,7 @@ bool ScanMerger::mergeByte(Node& node, bool isNew, unsigned free, unsigned hit) 
     Node& voxel = m_arena.createChild(octant, i);
     changed |= hit >> i & 1 ? this->hit(voxel) : miss(voxel);
   }
-  return finish(node, kByteDepth, changed);
+  return finish(*cube.node, cube.cell, changed);
 }
 
 bool ScanMerger::hit(Node& leaf) {
@@ -149,29 +142,31 @@ bool ScanMerger::miss(Node& leaf) {
 }
 
 void ScanMerger::collect(const ScanCube& cube, std::vector<ScanCube>& parts) {
-  if (cube.level == kSharedLevel) return parts.push_back(cube);
+  if (cube.cell.depth == kSharedDepth) return parts.push_back(cube);
   Octant& octant = childrenOf(*cube.node, cube.isNew);
-  forEachTouchedChild(m_scan, cube, [&](int i, const VoxelIndex& position) {
+  forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
     const bool isNew = !octant.has(i);
-    collect({&m_arena.createChild(octant, i), isNew, cube.level - 1, position}, parts);
+    collect({&m_arena.createChild(octant, i), isNew, cell}, parts);
   });
 }
 
-bool ScanMerger::finishAbove(const ScanCube& cube, const std::vector<char>& changed, std::size_t& next) {
-  if (cube.level == kSharedLevel) return changed[next++];
+bool ScanMerger::finishAbove(const ScanCube& cube, const std::vector<char>& changed,
+                             std::size_t& next) {
+  if (cube.cell.depth == kSharedDepth) return changed[next++];
   Octant& octant = m_store.octant(*cube.node);
   bool anyChanged = false;
-  forEachTouchedChild(m_scan, cube, [&](int i, const VoxelIndex& position) {
-    anyChanged |= finishAbove({&octant.nodes[i], false, cube.level - 1, position}, changed, next);
+  forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
+    anyChanged |= finishAbove({&octant.nodes[i], false, cell}, changed, next);
   });
-  return finish(*cube.node, depthOf(cube), anyChanged);
+  return finish(*cube.node, cube.cell, anyChanged);
 }
 
 void mergeScan(const MergeTarget& target, const Scan& scan, Node& root, bool isNew, int threads) {
-  ScanMerger first(target, scan, target.store.arena(0));
-  const ScanCube whole{&root, isNew, ScanPyramid::kTopLevel, VoxelIndex(0, 0, 0)};
+  std::deque<ScanMerger> mergers;
+  for (int i = 0; i < threads; ++i) mergers.emplace_back(target, scan, i);
+  const ScanCube whole{&root, isNew, Cell()};
   std::vector<ScanCube> parts;
-  first.collect(whole, parts);
+  mergers[0].collect(whole, parts);
 
   std::vector<char> changed(parts.size());
   std::atomic<std::size_t> nextPart{0};
@@ -179,16 +174,12 @@ void mergeScan(const MergeTarget& target, const Scan& scan, Node& root, bool isN
     for (std::size_t i; (i = nextPart++) < parts.size();) changed[i] = merger.merge(parts[i]);
   };
   std::vector<std::thread> helpers;
-  for (int i = 1; i < threads; ++i)
-    helpers.emplace_back([&, arena = &target.store.arena(i)] {
-      ScanMerger merger(target, scan, *arena);
-      work(merger);
-    });
-  work(first);
+  for (int i = 1; i < threads; ++i) helpers.emplace_back([&work, &m = mergers[i]] { work(m); });
+  work(mergers[0]);
   for (std::thread& helper : helpers) helper.join();
 
   std::size_t next = 0;
-  first.finishAbove(whole, changed, next);
+  mergers[0].finishAbove(whole, changed, next);
 }
 
 }  // namespace semantic_octree

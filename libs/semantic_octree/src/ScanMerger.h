@@ -3,19 +3,18 @@
 
 #include <vector>
 
+#include "AbstractionUpkeep.h"
 #include "NodeStore.h"
 #include "Scan.h"
 
 namespace semantic_octree {
-
-class AbstractionUpkeep;
 
 /** What a scan is merged into. */
 struct MergeTarget {
   NodeStore& store;
   const ClassFilter<float>& filter;
   /** Keeps inner nodes' bookkeeping up to date; null: there is none. */
-  const AbstractionUpkeep* upkeep;
+  AbstractionUpkeep* upkeep;
   /** Children that agree are merged; off: every known leaf is a voxel. */
   bool pruning;
 };
@@ -24,11 +23,13 @@ struct MergeTarget {
 struct ScanCube {
   Node* node;
   bool isNew;  ///< the node was made for this scan: its value means nothing yet
-  int level;
-  VoxelIndex position;
+  Cell cell;
+
+  int level() const { return ScanPyramid::kTopLevel - cell.depth; }
+  CubeContent content(const Scan& scan) const { return scan.pyramid().at(level(), cell.index); }
 };
 
-/** Carries a scan's voxels into a subtree, in the thread that owns the arena.
+/** Carries a scan's voxels into a subtree, in one thread.
  *
  * The tree is descended once per tile of 8 x 8 x 8 voxels; on the way back up each inner node below
  * which something changed is pruned or recomputed once. A cube that the tree holds as one leaf and
@@ -36,8 +37,14 @@ struct ScanCube {
  * one and pruning. */
 class ScanMerger {
  public:
-  ScanMerger(const MergeTarget& target, const Scan& scan, NodeArena& arena)
-      : m_target(target), m_store(target.store), m_filter(target.filter), m_scan(scan), m_arena(arena) {}
+  /** \param thread number of the thread that it works in */
+  ScanMerger(const MergeTarget& target, const Scan& scan, int thread)
+      : m_target(target),
+        m_store(target.store),
+        m_filter(target.filter),
+        m_scan(scan),
+        m_arena(target.store.arena(thread)),
+        m_upkeep(target.upkeep ? &target.upkeep->worker(thread) : nullptr) {}
 
   /** \return whether anything changed */
   bool merge(const ScanCube& cube);
@@ -47,11 +54,11 @@ class ScanMerger {
   Whole updateWhole(Node& node, bool isNew, bool allFree, bool anyHit);
   Octant& childrenOf(Node& node, bool isNew);
   /** Prunes or recomputes an inner node. \return changed */
-  bool finish(Node& node, int depth, bool changed);
+  bool finish(Node& node, const Cell& cell, bool changed);
 
   bool mergeTile(const ScanCube& cube);
-  bool mergeWord(Node& node, bool isNew, std::uint64_t free, std::uint64_t hit);
-  bool mergeByte(Node& node, bool isNew, unsigned free, unsigned hit);
+  bool mergeWord(const ScanCube& cube, std::uint64_t free, std::uint64_t hit);
+  bool mergeByte(const ScanCube& cube, unsigned free, unsigned hit);
   bool hit(Node& leaf);
   bool hit(Node& leaf, const float* softLabel, ClassId id);
   bool miss(Node& leaf);
@@ -65,6 +72,7 @@ class ScanMerger {
   const ClassFilter<float>& m_filter;
   const Scan& m_scan;
   NodeArena& m_arena;
+  AbstractionUpkeep::Worker* m_upkeep;
   std::uint32_t m_nextHit = 0;  ///< rank of the next hit voxel in the current tile
 };
 

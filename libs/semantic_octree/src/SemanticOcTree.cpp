@@ -3,7 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "AbstractionUpkeep.h"
 #include "NodeStore.h"
+#include "ReportedTree.h"
 #include "Scan.h"
 #include "ScanMerger.h"
 
@@ -22,10 +24,11 @@ double positive(double meters) {
 void InsertionOptions::validate() const {
   const auto require = [](bool ok, const char* name, double value, const char* expected) {
     if (!ok)
-      throw std::invalid_argument(std::string("insertion: ") + name + " = " + std::to_string(value) +
-                                  ", expected " + expected);
+      throw std::invalid_argument(std::string("insertion: ") + name + " = " +
+                                  std::to_string(value) + ", expected " + expected);
   };
-  require(maxRange >= 0 && std::isfinite(maxRange), "maxRange", maxRange, "meters, or 0 for no limit");
+  require(maxRange >= 0 && std::isfinite(maxRange), "maxRange", maxRange,
+          "meters, or 0 for no limit");
   require(minRange >= 0 && std::isfinite(minRange), "minRange", minRange, "meters, or 0");
   require(carvingMargin >= 0 && std::isfinite(carvingMargin), "carvingMargin", carvingMargin,
           "meters, or 0");
@@ -33,8 +36,11 @@ void InsertionOptions::validate() const {
 }
 
 SemanticOcTree::SemanticOcTree(double voxelSize, ClassTable classes, const FilterParameters& filter)
-    : Base(positive(voxelSize)), m_classes(std::move(classes)), m_parameters(filter),
-      m_filter(m_classes.size(), filter), m_store(std::make_unique<NodeStore>(0)),
+    : Base(positive(voxelSize)),
+      m_classes(std::move(classes)),
+      m_parameters(filter),
+      m_filter(m_classes.size(), filter),
+      m_store(std::make_unique<NodeStore>(0)),
       m_scan(std::make_unique<Scan>()) {
   clearKeyRays();  // OctoMap keeps a large buffer for an insertion that is not used here
 }
@@ -44,6 +50,7 @@ SemanticOcTree::~SemanticOcTree() { Base::root = nullptr; }
 SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
     : SemanticOcTree(o.resolution, o.m_classes, o.m_parameters) {
   m_pruning = o.m_pruning;
+  if (o.hasAbstraction()) setAbstraction(o.m_upkeep->options());
   if (o.empty()) return;
   m_store->arena(0).copy(*o.m_store, *o.root(), m_store->root());
   attachRoot();
@@ -72,6 +79,8 @@ void SemanticOcTree::swap(SemanticOcTree& o) {
   std::swap(m_filter, o.m_filter);
   std::swap(m_pruning, o.m_pruning);
   std::swap(m_store, o.m_store);
+  std::swap(m_upkeep, o.m_upkeep);
+  std::swap(m_reported, o.m_reported);
   std::swap(m_scan, o.m_scan);
 }
 
@@ -87,14 +96,36 @@ void SemanticOcTree::setPruning(bool on) {
   m_pruning = on;
 }
 
+void SemanticOcTree::setAbstraction(const AbstractionOptions& options) {
+  options.validate(numClasses());
+  m_upkeep = std::make_unique<AbstractionUpkeep>(options, m_filter, resolution);
+  m_reported = std::make_unique<ReportedTree>();
+  rebuildStore();
+  if (!empty()) m_upkeep->worker(0).recomputeAll(*m_store, m_store->root(), Cell());
+}
+
+void SemanticOcTree::dropAbstraction() {
+  m_upkeep = nullptr;
+  m_reported = nullptr;
+  rebuildStore();
+}
+
+void SemanticOcTree::rebuildStore() {
+  auto store = std::make_unique<NodeStore>(m_upkeep ? m_upkeep->stateBytes() : 0);
+  if (!empty()) store->arena(0).copy(*m_store, *root(), store->root());
+  std::swap(m_store, store);
+  if (!empty()) attachRoot();
+}
+
 std::size_t SemanticOcTree::memoryUsage() const { return m_store->bytes(); }
 
-InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
+InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
+                                       const Eigen::Isometry3d& T_map_sensor,
                                        const InsertionOptions& options) {
   options.validate();
   m_scan->set(cloud, T_map_sensor, resolution, numClasses(), options);
   if (m_scan->hasVoxels()) {
-    const MergeTarget target{*m_store, m_filter, nullptr, m_pruning};
+    const MergeTarget target{*m_store, m_filter, m_upkeep.get(), m_pruning};
     mergeScan(target, *m_scan, m_store->root(), empty(), options.threads);
     attachRoot();
   }

@@ -10,13 +10,14 @@
 namespace semantic_octree {
 
 /** One bit per voxel of a box of space, in tiles of 8 x 8 x 8 voxels. Inside a tile the bits are in
- * Morton order (x lowest): a 64-bit word is a 4 x 4 x 4 block, a byte the eight children of a node. */
+ * Morton order (x lowest): a 64-bit word is a 4 x 4 x 4 block, a byte the eight children of a node.
+ */
 class TileGrid {
  public:
   static constexpr int kWords = 8;  ///< per tile
 
-  /** Covers the box of voxels [lowest, highest], and one voxel more on each side. All bits are 0 (the
-   * user of a bit clears it). \throw std::length_error the box is too large for memory. */
+  /** Covers the box of voxels [lowest, highest], and one voxel more on each side. All bits are 0
+   * (the user of a bit clears it). \throw std::length_error the box is too large for memory. */
   void cover(const VoxelIndex& lowest, const VoxelIndex& highest);
   /** Covers the same box as another grid. */
   void coverLike(const TileGrid& o);
@@ -28,7 +29,8 @@ class TileGrid {
   std::uint64_t* tile(std::size_t i) { return m_bits.get() + i * kWords; }
   const std::uint64_t* tile(std::size_t i) const { return m_bits.get() + i * kWords; }
 
-  /** Position of a bit = sum of three table entries at the voxel's coordinates relative to the grid. */
+  /** Position of a bit = sum of three table entries at the voxel's coordinates relative to the
+   * grid. */
   const std::uint64_t* xOffsets() const { return m_offsets[0].data(); }
   const std::uint64_t* yOffsets() const { return m_offsets[1].data(); }
   const std::uint64_t* zOffsets() const { return m_offsets[2].data(); }

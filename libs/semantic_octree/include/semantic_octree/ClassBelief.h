@@ -1,10 +1,18 @@
 #pragma once
+#include <semantic_octree/ClassTable.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <semantic_octree/ClassTable.h>
 
 namespace semantic_octree {
+
+/** Probabilities of a truncated distribution. */
+template <int Named = 3>
+struct TruncatedDistribution {
+  double free = 1;
+  double rest = 0;  ///< of each class that is not named
+  std::array<double, Named> named{};
+};
 
 /** Truncated class distribution of one cell: the log-odds h_k = ln(p(class k) / p(free)) of the
  * `Named` likeliest classes, and one value that each of the other classes has.
@@ -35,28 +43,38 @@ struct ClassBelief {
 
   /** All classes are equally likely. */
   bool isUniform() const {
-    return std::all_of(logOdds.begin(), logOdds.begin() + count, [this](Real h) { return h == rest; });
+    return std::all_of(logOdds.begin(), logOdds.begin() + count,
+                       [this](Real h) { return h == rest; });
   }
 
   /** ln(p(occupied) / p(free)) = ln sum_k e^h_k. */
   Real occupancyLogOdds(int K) const {
     const double m = maxLogOdds(K);
-    return static_cast<Real>(m + std::log(sumExp(m, K)));
+    double sum = unnamed(K) * std::exp(rest - m);
+    for (int i = 0; i < count; ++i) sum += std::exp(logOdds[i] - m);
+    return static_cast<Real>(m + std::log(sum));
   }
 
-  /** p(free). */
-  double freeProbability(int K) const {
-    const double m = std::max(0.0, maxLogOdds(K)), free = std::exp(-m);
-    return free / (free + sumExp(m, K));
+  /** Softmax of the log-odds (free space has log-odds 0). */
+  TruncatedDistribution<Named> probabilities(int K) const {
+    const double m = std::max(0.0, maxLogOdds(K));
+    TruncatedDistribution<Named> p;
+    p.free = std::exp(-m);
+    p.rest = std::exp(rest - m);
+    double sum = p.free + unnamed(K) * p.rest;
+    for (int i = 0; i < count; ++i) sum += p.named[i] = std::exp(logOdds[i] - m);
+    p.free /= sum;
+    p.rest /= sum;
+    for (int i = 0; i < count; ++i) p.named[i] /= sum;
+    return p;
   }
 
   /** Writes K + 1 probabilities, p[0] = free. */
   void distribution(int K, double* p) const {
-    const double m = std::max(0.0, maxLogOdds(K)), free = std::exp(-m);
-    const double scale = 1.0 / (free + sumExp(m, K));
-    p[0] = free * scale;
-    std::fill(p + 1, p + K + 1, std::exp(rest - m) * scale);
-    for (int i = 0; i < count; ++i) p[ids[i]] = std::exp(logOdds[i] - m) * scale;
+    const TruncatedDistribution<Named> q = probabilities(K);
+    p[0] = q.free;
+    std::fill(p + 1, p + K + 1, q.rest);
+    for (int i = 0; i < count; ++i) p[ids[i]] = q.named[i];
   }
 
   bool operator==(const ClassBelief& o) const {
@@ -80,11 +98,6 @@ struct ClassBelief {
     double m = unnamed(K) > 0 ? rest : logOdds[0];
     for (int i = 0; i < count; ++i) m = std::max<double>(m, logOdds[i]);
     return m;
-  }
-  double sumExp(double m, int K) const {
-    double sum = unnamed(K) * std::exp(rest - m);
-    for (int i = 0; i < count; ++i) sum += std::exp(logOdds[i] - m);
-    return sum;
   }
 };
 

@@ -8,13 +8,14 @@ namespace semantic_octree {
 /** Bayes filter over {free, class 1, ..., class K} of one cell, truncated to the `Named` likeliest
  * classes.
  *
- * An observation z adds ln(p(z | class k) / p(z | free)) to each h_k, which is then clamped. A class
- * seen for the first time leaves the rest with the rest's value; if more than `Named` classes are
- * named, the least likely one (largest id on a tie) joins the rest, whose value becomes the logarithm
- * of the mean odds of its members.
+ * An observation z adds ln(p(z | class k) / p(z | free)) to each h_k, which is then clamped. A
+ * class seen for the first time leaves the rest with the rest's value; if more than `Named` classes
+ * are named, the least likely one (largest id on a tie) joins the rest, whose value becomes the
+ * logarithm of the mean odds of its members.
  *
- * With Real = float, increments, clamps and the prior are multiples of 2^-20, so that adding them is
- * exact: without clamping the order of observations does not matter, not even to the last bit. */
+ * With Real = float, increments, clamps and the prior are multiples of 2^-20, so that adding them
+ * is exact: without clamping the order of observations does not matter, not even to the last bit.
+ */
 template <typename Real, int Named = 3>
 class ClassFilter {
  public:
@@ -27,9 +28,9 @@ class ClassFilter {
 
   /** A return with a class label ended in the cell. */
   void hit(Belief& b, ClassId id) const;
-  /** A return without a label ended in the cell: every class gains equally. Where the likeliest class
-   * is near its upper limit, all gain as much as that one can, so that points that say nothing about
-   * classes do not level them. */
+  /** A return without a label ended in the cell: every class gains equally. Where the likeliest
+   * class is near its upper limit, all gain as much as that one can, so that points that say
+   * nothing about classes do not level them. */
   void hit(Belief& b) const;
   /** A return with a soft label ended in the cell. \param q K probabilities of classes 1..K. */
   void hit(Belief& b, const float* q) const;

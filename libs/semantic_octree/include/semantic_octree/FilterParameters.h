@@ -5,7 +5,8 @@ namespace semantic_octree {
 /** Sensor and classifier model of the class filter. */
 struct FilterParameters {
   enum class Increments {
-    /** Log-likelihood ratios of the probabilities below: occupancy follows the binary Bayes filter. */
+    /** Log-likelihood ratios of the probabilities below: occupancy follows the binary Bayes filter.
+     */
     LikelihoodConsistent,
     /** The constants published with SSMI (Asgharivaskasi, Atanasov, "Active Bayesian Multi-class
      * Mapping from Range and Semantic Segmentation Observations"): +1 for the observed class, -0.1

@@ -28,11 +28,11 @@ struct InsertionOptions {
 
 /** What became of a scan. */
 struct InsertionReport {
-  std::size_t points = 0;          ///< in the cloud
+  std::size_t points = 0;            ///< in the cloud
   std::size_t skippedNotFinite = 0;  ///< NaN or infinite
-  std::size_t skippedNear = 0;     ///< nearer than minRange
-  std::size_t skippedOutside = 0;  ///< end outside the map's 16 levels
-  std::size_t beyondRange = 0;     ///< carved only
+  std::size_t skippedNear = 0;       ///< nearer than minRange
+  std::size_t skippedOutside = 0;    ///< end outside the map's 16 levels
+  std::size_t beyondRange = 0;       ///< carved only
   std::size_t hitVoxels = 0, freeVoxels = 0;
 };
 

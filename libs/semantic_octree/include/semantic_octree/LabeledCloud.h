@@ -1,7 +1,7 @@
 #pragma once
+#include <semantic_octree/ClassTable.h>
 #include <Eigen/Core>
 #include <cstddef>
-#include <semantic_octree/ClassTable.h>
 #include <vector>
 
 namespace semantic_octree {
@@ -14,7 +14,8 @@ struct LabeledCloud {
   std::vector<Eigen::Vector3f> points;
   /** N class ids, kNoClass = the point counts for occupancy only. Empty: no point has a class. */
   std::vector<ClassId> classes;
-  /** Soft labels, N x K row-major, each row sums to 1 (all zero: no class). Empty: `classes` holds. */
+  /** Soft labels, N x K row-major, each row sums to 1 (all zero: no class). Empty: `classes` holds.
+   */
   std::vector<float> probabilities;
 
   std::size_t size() const { return points.size(); }

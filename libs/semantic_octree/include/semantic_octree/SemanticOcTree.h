@@ -1,5 +1,6 @@
 #pragma once
 #include <octomap/OccupancyOcTreeBase.h>
+#include <semantic_octree/AbstractionOptions.h>
 #include <semantic_octree/ClassFilter.h>
 #include <semantic_octree/InsertionOptions.h>
 #include <semantic_octree/LabeledCloud.h>
@@ -13,7 +14,9 @@
 
 namespace semantic_octree {
 
+class AbstractionUpkeep;
 class NodeStore;
+class ReportedTree;
 class Scan;
 
 /** What the map knows about a place. */
@@ -22,7 +25,8 @@ struct CellState {
   Status status = Status::Unknown;
   /** p(occupied); 0.5 where unknown. Occupied means above 0.5. */
   double occupancy = 0.5;
-  /** Class with the largest probability, lowest id on a tie; kNoClass where no class was ever seen. */
+  /** Class with the largest probability, lowest id on a tie; kNoClass where no class was ever seen.
+   */
   ClassId likeliestClass = kNoClass;
   /** Its probability p(class), among free space and all classes. */
   double probability = 0;
@@ -38,9 +42,9 @@ struct RayHit {
 /** Semantic octree: OctoMap's tree of 16 levels whose leaves hold a Bayesian distribution over free
  * space and K classes (see ClassFilter).
  *
- * Reading is OctoMap's: keys, iterators, search, ray casts. Space without a node is unknown. The tree
- * changes through the functions below only; OctoMap's own insertion and editing are not available.
- * Not thread safe, except for reading from several threads. */
+ * Reading is OctoMap's: keys, iterators, search, ray casts. Space without a node is unknown. The
+ * tree changes through the functions below only; OctoMap's own insertion and editing are not
+ * available. Not thread safe, except for reading from several threads. */
 class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode> {
  public:
   using Base = octomap::OccupancyOcTreeBase<SemanticOcTreeNode>;
@@ -58,9 +62,6 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   void swap(SemanticOcTree& o);
 
   // --- Reading, as in OctoMap ---
-  using Base::leaf_bbx_iterator;
-  using Base::leaf_iterator;
-  using Base::tree_iterator;
   using Base::begin_leafs;
   using Base::begin_leafs_bbx;
   using Base::begin_tree;
@@ -80,8 +81,11 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   using Base::getTreeDepth;
   using Base::isNodeOccupied;
   using Base::keyToCoord;
+  using Base::leaf_bbx_iterator;
+  using Base::leaf_iterator;
   using Base::nodeChildExists;
   using Base::nodeHasChildren;
+  using Base::tree_iterator;
   const Node* root() const { return Base::root; }
   const Node* search(const octomap::OcTreeKey& key, unsigned depth = 0) const {
     return Base::search(key, depth);
@@ -99,15 +103,15 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
 
   // --- Classes ---
   /** State of the cell that contains a point (meters, map frame), or of its ancestor at a depth
-   * (0: the finest). An inner node's occupancy is its most occupied leaf's, its classes those of the
-   * mixture of its known leaves by volume. */
+   * (0: the finest). An inner node's occupancy is its most occupied leaf's, its classes those of
+   * the mixture of its known leaves by volume. */
   CellState query(double x, double y, double z, unsigned depth = 0) const;
   CellState query(const octomap::OcTreeKey& key, unsigned depth = 0) const;
   CellState query(const Node& node) const;
   /** The class record of a leaf; for a leaf without one, classes that are equally likely. */
   Belief belief(const Node& leaf) const;
-  /** K + 1 probabilities, [0] = free space: a leaf's distribution, or the mixture of the known leaves
-   * below an inner node weighted by volume. */
+  /** K + 1 probabilities, [0] = free space: a leaf's distribution, or the mixture of the known
+   * leaves below an inner node weighted by volume. */
   std::vector<double> distribution(const Node& node) const;
   /** First occupied voxel along a ray. \param direction any length \param maxRange meters, 0: none
    * \return nothing if there is none, or if unknown space comes first and is not ignored. */
@@ -119,7 +123,8 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
    * HitVotes for their class), voxels that beams cross are free unless hit.
    * \param cloud points in the sensor's frame
    * \throw std::out_of_range the sensor is outside the map
-   * \throw std::invalid_argument vectors of different lengths, or a class that is not in the table. */
+   * \throw std::invalid_argument vectors of different lengths, or a class that is not in the table.
+   */
   InsertionReport insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
                          const InsertionOptions& options = {});
   void clear() override;
@@ -128,11 +133,24 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   void setPruning(bool on);
   bool pruning() const { return m_pruning; }
 
+  /** Keeps the class mixtures and G-values of inner nodes from now on: insert() updates them in the
+   * same pass. See Abstraction for what can be had from them.
+   * \throw std::invalid_argument bad options. */
+  void setAbstraction(const AbstractionOptions& options);
+  /** Keeps them no longer. */
+  void dropAbstraction();
+  bool hasAbstraction() const { return m_upkeep != nullptr; }
+
  protected:
-  SemanticOcTree* create() const override { return new SemanticOcTree(resolution, m_classes, m_parameters); }
+  SemanticOcTree* create() const override {
+    return new SemanticOcTree(resolution, m_classes, m_parameters);
+  }
 
  private:
+  friend class Abstraction;
   friend class TreeReader;
+  /** Moves all nodes to a store with room for (or without) bookkeeping. */
+  void rebuildStore();
   /** After the store's nodes changed. */
   void attachRoot();
 
@@ -141,6 +159,8 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   ClassFilter<float> m_filter;
   bool m_pruning = true;
   std::unique_ptr<NodeStore> m_store;
+  std::unique_ptr<AbstractionUpkeep> m_upkeep;  ///< null: no abstraction is kept
+  std::unique_ptr<ReportedTree> m_reported;
   std::unique_ptr<Scan> m_scan;  ///< buffers of the last insertion
 };
 

@@ -1,0 +1,108 @@
+#pragma once
+#include <semantic_octree/SemanticOcTree.h>
+#include <tree_abstraction/AlphaPath.h>
+
+#include <optional>
+#include <vector>
+
+namespace semantic_octree {
+
+class AbstractionUpkeep;
+
+/** A leaf of the optimal tree: a cube of the map. */
+struct LeafCell {
+  octomap::OcTreeKey key;  ///< as OctoMap's iterators give it
+  unsigned depth = 0;
+  /** The map's node for the cube, or for a larger cube around it that is a leaf of the map. Valid
+   * until the map changes. */
+  const SemanticOcTreeNode* node = nullptr;
+
+  /** The same cube (whatever node stands for it). */
+  bool operator==(const LeafCell& o) const { return key == o.key && depth == o.depth; }
+};
+
+/** What a tree tells, and what it costs. */
+struct TreeMeasures {
+  double splitInformation = 0;      ///< I_X, nats
+  std::vector<double> information;  ///< I_t of each term, nats
+  std::size_t knownLeaves = 0;
+  std::size_t allLeaves = 0;  ///< with those that stand for unknown space
+};
+
+struct AbstractionMeasures {
+  TreeMeasures full, compressed;
+  /** J of the optimal tree: sum_t weight_t I_t - alpha I_X, counted from the roots of the blocks
+   * where the frame above them is free (nats). */
+  double objective = 0;
+
+  /** Share of a term's information that the compressed tree keeps; none where there is none to keep
+   * (below 1e-12 nats). */
+  std::optional<double> retention(std::size_t term) const;
+};
+
+/** Leaves that came and went between two calls. */
+struct TreeChange {
+  std::vector<LeafCell> removed;  ///< `node` is null
+  std::vector<LeafCell> added;
+};
+
+/** The optimal pruned tree of a map that keeps G-values (SemanticOcTree::setAbstraction): the
+ * maximum of J(T) = sum_t weight_t I_t(T) - alpha I_X(T) over all trees that can be had by turning
+ * inner nodes into leaves; the smallest one if several have it. (Larsson et al.,
+ * "Information-theoretic Abstraction of Semantic Octree Models", problem (10), algorithm 1.)
+ *
+ * A view: it holds nothing but the map, which must outlive it. */
+class Abstraction {
+ public:
+  /** \throw std::logic_error the map keeps no G-values. */
+  explicit Abstraction(SemanticOcTree& map);
+
+  const AbstractionOptions& options() const;
+
+  /** Leaves of the optimal tree in OctoMap's order (depth first). Visits inner nodes that the tree
+   * expands, and its leaves. */
+  std::vector<LeafCell> leaves() const;
+  /** J of the optimal tree, see AbstractionMeasures. */
+  double objective() const;
+  /** Visits all inner nodes. */
+  AbstractionMeasures measures() const;
+
+  /** Mixture of the known leaves in a cube by volume: K + 1 probabilities, [0] = free. */
+  std::vector<double> distribution(const LeafCell& leaf) const;
+  /** Known part of a cube's volume, (0, 1]. */
+  double knownShare(const LeafCell& leaf) const;
+
+  /** The optimal tree as a map of its own. A leaf is as occupied as its most occupied voxel (safe
+   * for collision checks); its classes are those of the known voxels' mixture, truncated as
+   * everywhere. */
+  SemanticOcTree compressedMap() const;
+
+  /** What changed in leaves() since the last call (at first: since the map was empty), in time
+   * proportional to the nodes that scans touched and the leaves that changed. */
+  TreeChange takeChange();
+
+  /** New alpha: visits inner nodes, recomputes no divergence. \throw std::invalid_argument */
+  void setAlpha(double alpha);
+  /** New weights, in the order of the options' terms: the same. \throw std::invalid_argument */
+  void setWeights(const std::vector<double>& termWeights, double alpha);
+  /** New regions: recomputes the cells whose density changes and what is above them. */
+  void setRegions(const std::vector<Region>& regions);
+
+  /** All optimal trees over alpha, for the present weights and regions. Its costs count the leaves:
+   * see AlphaPath::largestWithLeaves. */
+  struct Path {
+    tree_abstraction::AlphaPath trees;
+    std::vector<double> addedLeaves;  ///< by expanding each node: known children - 1
+    std::size_t numRoots;             ///< leaves when nothing is expanded
+    /** Alpha of the largest optimal tree with at most this many known leaves.
+     * \throw std::invalid_argument fewer than the roots, or more than the full tree has. */
+    double alphaForLeaves(std::size_t wanted) const;
+  };
+  Path alphaPath() const;
+
+ private:
+  SemanticOcTree& m_map;
+  AbstractionUpkeep& m_upkeep;
+};
+
+}  // namespace semantic_octree

@@ -1,0 +1,184 @@
+#include <semantic_octree/Abstraction.h>
+#include <tree_abstraction/CollapseAlphas.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "OptimalTree.h"
+#include "ReportedTree.h"
+
+namespace semantic_octree {
+namespace {
+
+AbstractionUpkeep& upkeepOf(AbstractionUpkeep* upkeep) {
+  if (!upkeep) throw std::logic_error("the map keeps no G-values: call setAbstraction() first");
+  return *upkeep;
+}
+
+/** p(n) of a node per unit of density: its share of the whole map's volume. */
+double volumeOf(const Cell& cell) { return std::ldexp(1.0, -3 * cell.depth); }
+
+/** Calls f(node, cell) for all inner nodes, parents first. */
+template <typename F>
+void forEachInner(const Node& node, const Cell& cell, const F& f) {
+  if (node.isLeaf()) return;
+  f(node, cell);
+  for (int i = 0; i < 8; ++i)
+    if (const Node* child = NodeStore::child(node, i)) forEachInner(*child, cell.child(i), f);
+}
+
+int numChildren(const Node& inner) {
+  int n = 0;
+  for (int i = 0; i < 8; ++i) n += NodeStore::octant(inner).has(i);
+  return n;
+}
+
+double knownVolume(const Node& node) {
+  if (node.isLeaf()) return 1;
+  double sum = 0;
+  for (int i = 0; i < 8; ++i)
+    if (const Node* child = NodeStore::child(node, i)) sum += knownVolume(*child);
+  return sum / 8;
+}
+
+}  // namespace
+
+std::optional<double> AbstractionMeasures::retention(std::size_t term) const {
+  if (full.information[term] < 1e-12) return std::nullopt;
+  return compressed.information[term] / full.information[term];
+}
+
+Abstraction::Abstraction(SemanticOcTree& map)
+    : m_map(map), m_upkeep(upkeepOf(map.m_upkeep.get())) {}
+
+const AbstractionOptions& Abstraction::options() const { return m_upkeep.options(); }
+
+std::vector<LeafCell> Abstraction::leaves() const {
+  std::vector<LeafCell> leaves;
+  if (m_map.empty()) return leaves;
+  OptimalTree(*m_map.m_store, m_upkeep)
+      .forEachLeaf(*m_map.root(), Cell(), [&](const Node& node, const Cell& cell) {
+        leaves.push_back(leafCell(&node, cell));
+      });
+  return leaves;
+}
+
+double Abstraction::objective() const {
+  return m_map.empty() || m_map.root()->isLeaf()
+             ? 0.0
+             : m_map.m_store->state<InnerState>(*m_map.root())->gain;
+}
+
+AbstractionMeasures Abstraction::measures() const {
+  AbstractionMeasures m;
+  const std::size_t numTerms = options().weights.terms.size();
+  m.full.information.assign(numTerms, 0.0);
+  m.compressed.information.assign(numTerms, 0.0);
+  if (m_map.empty()) return m;
+  m.objective = objective();
+  m.full.knownLeaves = m.full.allLeaves = m.compressed.knownLeaves = m.compressed.allLeaves = 1;
+  if (m_map.root()->isLeaf()) return m;
+  const NodeStore& store = *m_map.m_store;
+  const double total = store.state<InnerState>(*m_map.root())->density;
+  const auto count = [&](TreeMeasures& tree, const Node& node, const Cell& cell, double p) {
+    const InnerState& s = *store.state<InnerState>(node);
+    const double* js = m_upkeep.divergences(s);
+    tree.splitInformation += p * s.splitEntropy;
+    for (std::size_t t = 0; t < numTerms; ++t)
+      tree.information[t] += p * js[m_upkeep.layout().positionOf(static_cast<int>(t))];
+    tree.knownLeaves += numChildren(node) - 1;
+    tree.allLeaves += (cell.depth < m_upkeep.blockDepth() ? numChildren(node) : 8) - 1;
+  };
+  const auto visit = [&](const auto& self, const Node& node, const Cell& cell,
+                         bool inOptimal) -> void {
+    if (node.isLeaf()) return;
+    const double p =
+        total > 0 ? store.state<InnerState>(node)->density * volumeOf(cell) / total : 0.0;
+    count(m.full, node, cell, p);
+    inOptimal = inOptimal && store.state<InnerState>(node)->isExpanded;
+    if (inOptimal) count(m.compressed, node, cell, p);
+    for (int i = 0; i < 8; ++i)
+      if (const Node* child = NodeStore::child(node, i))
+        self(self, *child, cell.child(i), inOptimal);
+  };
+  visit(visit, *m_map.root(), Cell(), true);
+  return m;
+}
+
+std::vector<double> Abstraction::distribution(const LeafCell& leaf) const {
+  return m_map.distribution(*leaf.node);
+}
+
+double Abstraction::knownShare(const LeafCell& leaf) const { return knownVolume(*leaf.node); }
+
+TreeChange Abstraction::takeChange() {
+  if (m_map.empty()) return m_map.m_reported->clear(*m_map.m_store, m_upkeep);
+  return m_map.m_reported->update(*m_map.m_store, m_upkeep, m_map.m_store->root());
+}
+
+void Abstraction::setAlpha(double alpha) {
+  std::vector<double> weights;
+  for (const auto& term : options().weights.terms) weights.push_back(term.weight);
+  setWeights(weights, alpha);
+}
+
+void Abstraction::setWeights(const std::vector<double>& termWeights, double alpha) {
+  tree_abstraction::AbstractionWeights weights = options().weights;
+  if (termWeights.size() != weights.terms.size())
+    throw std::invalid_argument("abstraction: " + std::to_string(termWeights.size()) +
+                                " weights, expected one for each of the " +
+                                std::to_string(weights.terms.size()) + " terms");
+  for (std::size_t t = 0; t < termWeights.size(); ++t) weights.terms[t].weight = termWeights[t];
+  weights.alpha = alpha;
+  weights.validate(m_map.numClasses());
+  m_upkeep.setWeights(termWeights, alpha);
+  if (!m_map.empty() && !m_map.root()->isLeaf())
+    m_upkeep.worker(0).reweigh(*m_map.m_store, m_map.m_store->root(), Cell());
+}
+
+void Abstraction::setRegions(const std::vector<Region>& regions) {
+  for (const Region& region : regions) region.validate();
+  const DensityField before = m_upkeep.density();
+  m_upkeep.setRegions(regions, m_map.getResolution());
+  if (!m_map.empty())
+    m_upkeep.worker(0).recomputeWhereChanged(*m_map.m_store, m_map.m_store->root(), Cell(), before);
+}
+
+Abstraction::Path Abstraction::alphaPath() const {
+  std::vector<std::int32_t> parents;
+  std::vector<double> gains, prices, addedLeaves;
+  std::size_t numRoots = 0;
+  const NodeStore& store = *m_map.m_store;
+  const double total =
+      m_map.empty() || m_map.root()->isLeaf() ? 1 : store.state<InnerState>(*m_map.root())->density;
+  const auto visit = [&](const auto& self, const Node& node, const Cell& cell,
+                         std::int32_t parent) -> void {
+    if (parent < 0 && !m_upkeep.isFreeFrame(cell.depth)) ++numRoots;
+    if (node.isLeaf()) {
+      if (m_upkeep.isFreeFrame(cell.depth))
+        numRoots += std::size_t(1) << 3 * (m_upkeep.blockDepth() - cell.depth);
+      return;
+    }
+    std::int32_t index = parent;
+    if (!m_upkeep.isFreeFrame(cell.depth)) {
+      const InnerState& s = *store.state<InnerState>(node);
+      const double p = total > 0 ? s.density * volumeOf(cell) / total : 0.0;
+      index = static_cast<std::int32_t>(parents.size());
+      parents.push_back(parent);
+      gains.push_back(p * m_upkeep.weightedDivergence(s));
+      prices.push_back(p * s.splitEntropy);
+      addedLeaves.push_back(numChildren(node) - 1);
+    }
+    for (int i = 0; i < 8; ++i)
+      if (const Node* child = NodeStore::child(node, i)) self(self, *child, cell.child(i), index);
+  };
+  if (!m_map.empty()) visit(visit, *m_map.root(), Cell(), -1);
+  return {tree_abstraction::AlphaPath(tree_abstraction::collapseAlphas(parents, gains, prices)),
+          std::move(addedLeaves), numRoots};
+}
+
+double Abstraction::Path::alphaForLeaves(std::size_t wanted) const {
+  return trees.alpha(trees.largestWithLeaves(wanted, addedLeaves, numRoots));
+}
+
+}  // namespace semantic_octree

@@ -1,0 +1,25 @@
+#pragma once
+
+namespace semantic_octree {
+
+/** Sizes of the rows that the abstraction keeps per node, in doubles, padded to whole vectors.
+ *
+ * A row holds the probabilities of the terms' outcomes: first those of yes-or-no terms (one each),
+ * then those of terms with more outcomes. Behind it stand the terms' entropies in the same order:
+ * `row[width] | entropies[terms]`. An inner node appends its divergences. */
+struct RowSizes {
+  static constexpr int kLanes = 4;
+  static constexpr int pad(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
+  int width = 0;   ///< padded number of probabilities
+  int terms = 0;   ///< padded number of terms
+  int binary = 0;  ///< padded number of yes-or-no terms
+};
+
+/** mix[i] = mean of eight children's row[i], over probabilities and entropies alike. */
+void meanOfEight(const double* const children[8], int size, double* mix);
+/** mix[i] = sum of share[c] * child c's row[i]. */
+void weightedMean(const double* const children[8], const double shares[8], int size, double* mix);
+/** Entropies of yes-or-no variables, nats; n a multiple of RowSizes::kLanes. */
+void binaryEntropies(const double* p, int n, double* h);
+
+}  // namespace semantic_octree

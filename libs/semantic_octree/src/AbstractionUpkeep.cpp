@@ -1,0 +1,233 @@
+#include "AbstractionUpkeep.h"
+
+#include <tree_abstraction/Information.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace semantic_octree {
+namespace {
+
+constexpr std::size_t kFrequentRows = 1024;
+constexpr double kLogEight = 3 * tree_abstraction::kLn2;
+
+/** Depth of the largest nodes whose edge does not exceed this many meters; 0 without blocks. */
+int depthOfBlocks(double blockSize, double resolution) {
+  if (blockSize <= 0) return 0;
+  int depth = kTreeDepth;
+  while (depth > 0 &&
+         resolution * std::ldexp(1.0, kTreeDepth - depth + 1) <= blockSize * (1 + 1e-9))
+    --depth;
+  return depth;
+}
+
+double sumOfEight(const double* x) {
+  return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
+}
+
+/** Shares Pi of eight children. \return whether all are 1/8 */
+bool sharesOf(const double* densities, double* shares) {
+  const double total = sumOfEight(densities);
+  const bool equal =
+      std::all_of(densities + 1, densities + 8, [&](double d) { return d == densities[0]; });
+  for (int i = 0; i < 8; ++i) shares[i] = equal ? 0.125 : densities[i] / total;
+  return equal;
+}
+
+double weightedSumOfEight(const double* shares, const double* x) {
+  double products[8];
+  for (int i = 0; i < 8; ++i) products[i] = shares[i] * x[i];
+  return sumOfEight(products);
+}
+
+double entropyOfShares(const double* shares) {
+  double terms[8];
+  for (int i = 0; i < 8; ++i) terms[i] = tree_abstraction::xLogX(shares[i]);
+  return 0.0 - sumOfEight(terms);
+}
+
+}  // namespace
+
+AbstractionUpkeep::AbstractionUpkeep(const AbstractionOptions& options,
+                                     const ClassFilter<float>& filter, double resolution)
+    : m_options(options),
+      m_layout(options, filter.numClasses()),
+      m_filter(filter),
+      m_blockDepth(depthOfBlocks(options.blockSize, resolution)),
+      m_density(options.regions, resolution) {
+  std::vector<double> termWeights;
+  for (const auto& term : options.weights.terms) termWeights.push_back(term.weight);
+  setWeights(termWeights, options.weights.alpha);
+}
+
+std::size_t AbstractionUpkeep::stateBytes() const {
+  return sizeof(InnerState) + (m_layout.rowSize() + m_layout.sizes().terms) * sizeof(double);
+}
+
+void AbstractionUpkeep::setWeights(const std::vector<double>& termWeights, double alpha) {
+  m_weights.assign(m_layout.sizes().terms, 0.0);
+  for (std::size_t t = 0; t < termWeights.size(); ++t) {
+    m_options.weights.terms[t].weight = termWeights[t];
+    m_weights[m_layout.positionOf(static_cast<int>(t))] = termWeights[t];
+  }
+  m_options.weights.alpha = alpha;
+  m_eps = m_options.weights.eps();
+}
+
+void AbstractionUpkeep::setRegions(std::vector<Region> regions, double resolution) {
+  m_options.regions = regions;
+  m_density = DensityField(std::move(regions), resolution);
+}
+
+AbstractionUpkeep::Worker& AbstractionUpkeep::worker(int i) {
+  while (static_cast<int>(m_workers.size()) <= i) m_workers.emplace_back(*this);
+  return m_workers[i];
+}
+
+double AbstractionUpkeep::weightedDivergence(const InnerState& s) const {
+  const double* js = divergences(s);
+  double sum = 0;
+  for (std::size_t t = 0; t < m_weights.size(); ++t) sum += m_weights[t] * js[t];
+  return sum;
+}
+
+void AbstractionUpkeep::settleGain(InnerState& s, int depth, double childrensGain) const {
+  const std::uint32_t before = s.isExpanded;
+  if (isFreeFrame(depth)) {
+    s.gain = childrensGain;
+    s.isExpanded = 1;
+  } else {
+    const double gain =
+        childrensGain - m_options.weights.alpha * s.splitEntropy + weightedDivergence(s);
+    s.gain = std::max(gain, 0.0);
+    s.isExpanded = gain > m_eps;
+  }
+  s.changedBelow |= s.isExpanded != before;
+}
+
+AbstractionUpkeep::Worker::Worker(const AbstractionUpkeep& upkeep)
+    : m_upkeep(upkeep),
+      m_scratch(8 * upkeep.layout().rowSize()),
+      m_frequent(kFrequentRows * upkeep.layout().rowSize()),
+      m_frequentKeys(kFrequentRows, std::numeric_limits<float>::quiet_NaN()) {}
+
+const double* AbstractionUpkeep::Worker::uniformRow(float value, int child) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  const std::size_t slot = (bits * 2654435769u) >> 22;
+  const int size = m_upkeep.layout().rowSize();
+  const bool isFree = std::isnan(m_frequentKeys[slot]);
+  double* row = &m_frequent[slot * size];
+  if (m_frequentKeys[slot] == value) return row;
+  if (!isFree) row = &m_scratch[child * size];  // another value's place, whose row may be in use
+  m_upkeep.layout().rowOf(m_upkeep.m_filter.uniform(value), row);
+  if (isFree) m_frequentKeys[slot] = value;
+  return row;
+}
+
+const double* AbstractionUpkeep::Worker::leafRow(const NodeStore& store, const Node& leaf,
+                                                 int child) {
+  if (!leaf.hasClassRecord()) return uniformRow(leaf.getValue(), child);
+  double* row = &m_scratch[child * m_upkeep.layout().rowSize()];
+  m_upkeep.layout().rowOf(store.record(leaf), row);
+  return row;
+}
+
+void AbstractionUpkeep::Worker::gather(NodeStore& store, const Node& inner, const Cell& cell,
+                                       Children& c) {
+  const Octant& octant = NodeStore::octant(inner);
+  for (int i = 0; i < 8; ++i) {
+    const Node& child = octant.nodes[i];
+    c.gains[i] = 0;
+    if (!octant.has(i)) {
+      c.rows[i] = m_upkeep.layout().unknownRow();
+      c.densities[i] = m_upkeep.missingDensity(cell.child(i));
+    } else if (child.isLeaf()) {
+      c.rows[i] = leafRow(store, child, i);
+      c.densities[i] = m_upkeep.leafDensity(cell.child(i));
+    } else {
+      const InnerState& s = *store.state<InnerState>(child);
+      c.rows[i] = s.row();
+      c.densities[i] = s.density;
+      c.gains[i] = s.gain;
+    }
+  }
+}
+
+void AbstractionUpkeep::Worker::recompute(NodeStore& store, Node& inner, const Cell& cell) {
+  const RowLayout& layout = m_upkeep.layout();
+  Children c;
+  gather(store, inner, cell, c);
+  InnerState& s = *store.state<InnerState>(inner);
+  double shares[8];
+  const bool equalShares = sharesOf(c.densities, shares);
+  s.density = sumOfEight(c.densities) * 0.125;
+  s.splitEntropy = equalShares ? kLogEight : entropyOfShares(shares);
+  if (equalShares)
+    meanOfEight(c.rows, layout.rowSize(), s.row());
+  else
+    weightedMean(c.rows, shares, layout.rowSize(), s.row());
+
+  double* const entropies = s.row() + layout.sizes().width;
+  double* const js = m_upkeep.divergences(s);
+  std::copy(entropies, entropies + layout.sizes().terms, js);  // the children's, so far
+  layout.fillEntropies(s.row());
+  for (int t = 0; t < layout.sizes().terms; ++t) js[t] = std::max(0.0, entropies[t] - js[t]);
+  if (s.density == 0) {
+    s.splitEntropy = 0;
+    std::fill(js, js + layout.sizes().terms, 0.0);
+  }
+  s.changedBelow = 1;
+  m_upkeep.settleGain(s, cell.depth, weightedSumOfEight(shares, c.gains));
+}
+
+void AbstractionUpkeep::Worker::recomputeAll(NodeStore& store, Node& node, const Cell& cell) {
+  if (node.isLeaf()) return;
+  Octant& octant = NodeStore::octant(node);
+  for (int i = 0; i < 8; ++i)
+    if (octant.has(i)) recomputeAll(store, octant.nodes[i], cell.child(i));
+  recompute(store, node, cell);
+}
+
+bool AbstractionUpkeep::Worker::recomputeWhereChanged(NodeStore& store, Node& node,
+                                                      const Cell& cell,
+                                                      const DensityField& before) {
+  if (DensityField::sameIn(before, m_upkeep.density(), cell)) return false;
+  if (node.isLeaf()) return true;
+  Octant& octant = NodeStore::octant(node);
+  bool changed = false;
+  for (int i = 0; i < 8; ++i) {
+    const Cell child = cell.child(i);
+    changed |= octant.has(i) ? recomputeWhereChanged(store, octant.nodes[i], child, before)
+                             : !DensityField::sameIn(before, m_upkeep.density(), child);
+  }
+  if (changed) recompute(store, node, cell);
+  return changed;
+}
+
+void AbstractionUpkeep::Worker::reweigh(NodeStore& store, Node& inner, const Cell& cell) {
+  double densities[8], gains[8], shares[8];
+  Octant& octant = NodeStore::octant(inner);
+  InnerState& s = *store.state<InnerState>(inner);
+  bool changedBelow = false;
+  for (int i = 0; i < 8; ++i) {
+    const Node& child = octant.nodes[i];
+    gains[i] = 0;
+    if (octant.has(i) && !child.isLeaf()) {
+      reweigh(store, octant.nodes[i], cell.child(i));
+      const InnerState& below = *store.state<InnerState>(child);
+      densities[i] = below.density;
+      gains[i] = below.gain;
+      changedBelow |= below.changedBelow != 0;
+    } else {
+      densities[i] = octant.has(i) ? m_upkeep.leafDensity(cell.child(i))
+                                   : m_upkeep.missingDensity(cell.child(i));
+    }
+  }
+  sharesOf(densities, shares);
+  s.changedBelow |= changedBelow;
+  m_upkeep.settleGain(s, cell.depth, weightedSumOfEight(shares, gains));
+}
+
+}  // namespace semantic_octree
