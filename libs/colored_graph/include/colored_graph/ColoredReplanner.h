@@ -1,0 +1,44 @@
+#pragma once
+#include <colored_graph/CostModel.h>
+#include <colored_graph/PathResult.h>
+#include <colored_graph/SearchOptions.h>
+
+#include <memory>
+
+namespace colored_graph {
+
+/** COLPA*: keeps the optimal path while the graph changes and the start moves.
+ *
+ * Lifelong planning A* (Koenig, Likhachev, Furcy 2004) over cost vectors, from the goal as in D*
+ * Lite: what was found before stays, and only vertices whose cost to the goal changed and matters
+ * for the path are looked at again. It follows the graph's change log, so nobody has to tell it
+ * what changed. Edges are lazy: unevaluated ones count with their lower bound, those on the best
+ * path are evaluated from the start on, and the path is repaired until all of its edges are
+ * evaluated; a path that is optimal under lower bounds and has none left is optimal (LazySP, Dellin
+ * and Srinivasa 2016). */
+class ColoredReplanner {
+ public:
+  /** \param graph must outlive the replanner.
+   * \throw std::invalid_argument model or options invalid. */
+  ColoredReplanner(ColoredGraph& graph, VertexId start, VertexId goal, const CostModel& model,
+                   const SearchOptions& options = {});
+  ~ColoredReplanner();
+  ColoredReplanner(ColoredReplanner&&) noexcept;
+  ColoredReplanner& operator=(ColoredReplanner&&) noexcept;
+
+  /** The optimal path in the graph as it is now, equal to findColoredPath()'s in cost and number of
+   * edges. After Cancelled or TimeLimit the next call goes on where this one stopped.
+   * \throw std::invalid_argument as findColoredPath(). */
+  PathResult solve();
+
+  /** The robot has moved; takes effect in the next solve(). */
+  void moveStart(VertexId start);
+
+ private:
+  class Impl;
+  template <int N>
+  class Search;
+  std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace colored_graph

@@ -1,0 +1,69 @@
+#include "PathAssembly.h"
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace colored_graph {
+namespace {
+
+template <class Passable>
+bool reaches(const ColoredGraph& graph, VertexId from, VertexId to, const Passable& passable) {
+  std::vector<bool> seen(graph.vertexIdEnd(), false);
+  std::vector<VertexId> open{from};
+  seen[from] = true;
+  while (!open.empty()) {
+    const VertexId v = open.back();
+    open.pop_back();
+    if (v == to) return true;
+    for (const Incidence& i : graph.incident(v)) {
+      if (seen[i.neighbor] || !passable(i.edge)) continue;
+      seen[i.neighbor] = true;
+      open.push_back(i.neighbor);
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::optional<SearchStatus> missingEnd(const ColoredGraph& graph, VertexId start, VertexId goal) {
+  if (!graph.containsVertex(start)) return SearchStatus::StartNotInGraph;
+  if (!graph.containsVertex(goal)) return SearchStatus::GoalNotInGraph;
+  return std::nullopt;
+}
+
+PathResult assemblePath(const ColoredGraph& graph, VertexId start, std::vector<EdgeId> edges) {
+  PathResult result;
+  result.status = SearchStatus::Found;
+  result.vertices = {start};
+  result.lengthPerClass.assign(graph.classes(), 0);
+  for (const EdgeId e : edges) {
+    const Edge& edge = graph.edge(e);
+    result.vertices.push_back(edge.other(result.vertices.back()));
+    for (const Stretch& s : edge.profile) result.lengthPerClass[s.classId] += s.length;
+  }
+  result.edges = std::move(edges);
+  return result;
+}
+
+SearchStatus diagnose(const ColoredGraph& graph, VertexId start, VertexId goal,
+                      const std::function<bool(EdgeId)>& allowed) {
+  if (reaches(graph, start, goal, allowed)) return SearchStatus::CostOverflow;
+  const auto notBlocked = [&](EdgeId e) { return graph.edge(e).state != EdgeState::Blocked; };
+  return reaches(graph, start, goal, notBlocked) ? SearchStatus::OnlyForbidden
+                                                 : SearchStatus::NotConnected;
+}
+
+void evaluateEdge(ColoredGraph& graph, EdgeId e,
+                  const std::function<std::optional<EdgeProfile>(EdgeId)>& evaluate) {
+  if (!evaluate)
+    throw std::invalid_argument("SearchOptions: edge " + std::to_string(e) +
+                                " is unevaluated, and there is no function to evaluate it");
+  if (std::optional<EdgeProfile> profile = evaluate(e))
+    graph.setProfile(e, std::move(*profile));
+  else
+    graph.setBlocked(e);
+}
+
+}  // namespace colored_graph

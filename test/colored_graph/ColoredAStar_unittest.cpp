@@ -1,0 +1,272 @@
+#include <colored_graph/ColoredAStar.h>
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <set>
+
+#include "Oracles.h"
+#include "PlaneGraph.h"
+
+using namespace colored_graph;
+using oracles::Tuple;
+
+namespace {
+
+std::optional<Tuple> costOf(const PathResult& result) {
+  return result.found() ? std::optional<Tuple>(result.cost) : std::nullopt;
+}
+
+/** The path leads from start to goal along its edges, and costs what it says. */
+void expectSound(const ColoredGraph& graph, const CostModel& model, VertexId start, VertexId goal,
+                 const PathResult& result) {
+  ASSERT_TRUE(result.found());
+  ASSERT_EQ(result.vertices.size(), result.edges.size() + 1);
+  ASSERT_EQ(result.vertices.front(), start);
+  ASSERT_EQ(result.vertices.back(), goal);
+  Tuple cost = oracles::zero(model);
+  std::vector<Length> lengths(graph.classes(), 0);
+  for (std::size_t i = 0; i < result.edges.size(); ++i) {
+    const Edge& edge = graph.edge(result.edges[i]);
+    ASSERT_EQ((std::set<VertexId>{edge.a, edge.b}),
+              (std::set<VertexId>{result.vertices[i], result.vertices[i + 1]}));
+    const auto step = oracles::edgeCost(graph, model, result.edges[i]);
+    ASSERT_TRUE(step);
+    cost = oracles::sum(cost, *step);
+    for (const Stretch& s : edge.profile) lengths[s.classId] += s.length;
+  }
+  EXPECT_EQ(result.cost, cost);
+  EXPECT_EQ(result.lengthPerClass, lengths);
+}
+
+ColoredAStarOptions boundedBy(const PlaneGraph& plane, bool worstRank) {
+  ColoredAStarOptions options;
+  options.lengthBound = [&plane](VertexId a, VertexId b) { return plane.bound(a, b); };
+  options.boundWorstRank = worstRank;
+  return options;
+}
+
+/** The graph on which the two costs disagree; its numbers were computed apart from this library. */
+struct GrassAndRoad {
+  GrassAndRoad() {
+    for (int v = 0; v < 10; ++v) graph.addVertex(0);
+    const int edges[][4] = {{0, 1, 0, 100}, {1, 2, 2, 10},  {2, 3, 2, 10},  {3, 9, 0, 100},
+                            {0, 4, 0, 100}, {4, 5, 2, 90},  {5, 9, 0, 100}, {0, 6, 1, 300},
+                            {6, 7, 1, 300}, {7, 9, 1, 300}, {0, 8, 1, 500}, {8, 9, 1, 500}};
+    for (const auto& e : edges) graph.addEdge(e[0], e[1], {{static_cast<ClassId>(e[2]), e[3]}});
+  }
+  Tuple solve(CostKind kind) {
+    const CostModel model{ClassOrder(3, {{0}, {1}, {2}}), EdgeModel::Sweep, kind};
+    return findColoredPath(graph, 0, 9, model).cost;
+  }
+  ColoredGraph graph{3};
+};
+
+}  // namespace
+
+TEST(ColoredAStar, findsTheKnownOptimaOfBothCosts) {
+  GrassAndRoad world;
+  EXPECT_EQ(world.solve(CostKind::Count), (Tuple{0, 2, 1000}));
+  EXPECT_EQ(world.solve(CostKind::ArcLength), (Tuple{0, 900, 900}));  // none of it in class 0
+  for (const VertexId v : {6, 7, 8}) world.graph.removeVertex(v);
+  EXPECT_EQ(world.solve(CostKind::Count), (Tuple{1, 0, 290}));
+  EXPECT_EQ(world.solve(CostKind::ArcLength), (Tuple{20, 0, 220}));  // 200 of it in class 0
+}
+
+TEST(ColoredAStar, equalsTupleDijkstraOnTenThousandRandomGraphs) {
+  int found = 0, zeroLength = 0, notFound = 0;
+  for (unsigned seed = 0; seed < 10000; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 23, seed % 67, 2 + seed % 5);
+    const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
+    for (const CostModel& model : allModels(plane.randomOrder())) {
+      const auto expected = oracles::tupleDijkstra(plane.graph, model, start, goal);
+      for (const bool worstRank : {false, true}) {
+        const PathResult result =
+            findColoredPath(plane.graph, start, goal, model, boundedBy(plane, worstRank));
+        ASSERT_EQ(costOf(result), expected) << "seed " << seed;
+        if (expected) expectSound(plane.graph, model, start, goal, result);
+      }
+      ASSERT_EQ(costOf(findColoredPath(plane.graph, start, goal, model)), expected) << seed;
+      found += expected && start != goal;
+      notFound += !expected;
+      zeroLength += expected && start != goal && expected->back() == 0;
+    }
+    if (HasFatalFailure()) FAIL() << "seed " << seed;
+  }
+  EXPECT_GT(found, 20000);
+  EXPECT_GT(notFound, 5000);
+  EXPECT_GT(zeroLength, 500);
+}
+
+TEST(ColoredAStar, equalsExactScalarization) {
+  for (unsigned seed = 0; seed < 1000; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 23, seed % 67, 4);
+    const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
+    for (const CostModel& model : allModels(plane.randomOrder())) {
+      const auto expected = oracles::scalarShortest(plane.graph, model, start, goal);
+      const PathResult result = findColoredPath(plane.graph, start, goal, model);
+      ASSERT_EQ(result.found(), expected.has_value()) << "seed " << seed;
+      if (expected) {
+        ASSERT_TRUE(oracles::scalar(result.cost) == *expected) << "seed " << seed;
+      }
+    }
+  }
+}
+
+TEST(ColoredAStar, equalsTheBestOfAllSimplePaths) {
+  for (unsigned seed = 0; seed < 1000; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 8, seed % 19, 3);
+    const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
+    for (const CostModel& model : allModels(plane.randomOrder())) {
+      const auto expected = oracles::bestOfAllPaths(plane.graph, model, start, goal);
+      ASSERT_EQ(costOf(findColoredPath(plane.graph, start, goal, model)), expected)
+          << "seed " << seed;
+    }
+  }
+}
+
+TEST(ColoredAStar, worksWithEveryNumberOfRanks) {
+  for (int ranks = 1; ranks <= kMaxRanks; ++ranks) {
+    ColoredGraph graph(kMaxRanks);
+    std::vector<std::vector<ClassId>> order;
+    for (int r = 0; r < ranks; ++r) order.push_back({static_cast<ClassId>(r)});
+    for (int v = 0; v <= ranks; ++v) graph.addVertex(0);
+    for (int r = 0; r < ranks; ++r) graph.addEdge(r, r + 1, {{static_cast<ClassId>(r), 10 + r}});
+    const CostModel model{ClassOrder(kMaxRanks, order), EdgeModel::Sweep, CostKind::ArcLength};
+    const PathResult result = findColoredPath(graph, 0, static_cast<VertexId>(ranks), model);
+    ASSERT_TRUE(result.found());
+    ASSERT_EQ(result.cost.size(), static_cast<std::size_t>(ranks));
+    for (int r = 1; r < ranks; ++r) EXPECT_EQ(result.cost[ranks - 1 - r], 10 + r);
+    EXPECT_EQ(result.cost.back(), ranks * 10 + ranks * (ranks - 1) / 2);
+  }
+}
+
+TEST(ColoredAStar, edgeModelsSeeWhatTheyShould) {
+  ColoredGraph graph(4);
+  graph.addVertex(0);
+  graph.addVertex(1);
+  graph.addEdge(0, 1, {{0, 40}, {2, 10}, {1, 50}, {3, 0}});
+  const ClassOrder order(4, {{0}, {1}, {2}, {3}});
+  const auto cost = [&](EdgeModel edges, CostKind kind) {
+    return findColoredPath(graph, 0, 1, {order, edges, kind}).cost;
+  };
+  EXPECT_EQ(cost(EdgeModel::Endpoint, CostKind::Count), (Tuple{0, 0, 1, 100}));
+  EXPECT_EQ(cost(EdgeModel::Endpoint, CostKind::ArcLength), (Tuple{0, 0, 100, 100}));
+  EXPECT_EQ(cost(EdgeModel::Sweep, CostKind::Count), (Tuple{1, 0, 0, 100}));
+  EXPECT_EQ(cost(EdgeModel::Sweep, CostKind::ArcLength), (Tuple{100, 0, 0, 100}));
+  EXPECT_EQ(cost(EdgeModel::Profile, CostKind::Count), (Tuple{1, 1, 1, 100}));
+  EXPECT_EQ(cost(EdgeModel::Profile, CostKind::ArcLength), (Tuple{0, 10, 50, 100}));
+}
+
+TEST(ColoredAStar, endPointsHideAForbiddenClassThatTheOthersSee) {
+  ColoredGraph graph(2);
+  graph.addVertex(0);
+  graph.addVertex(0);
+  graph.addEdge(0, 1, {{0, 5}, {1, 1}});
+  const ClassOrder onlyFirst(2, {{0}});
+  EXPECT_TRUE(findColoredPath(graph, 0, 1, {onlyFirst, EdgeModel::Endpoint}).found());
+  EXPECT_FALSE(findColoredPath(graph, 0, 1, {onlyFirst, EdgeModel::Sweep}).found());
+  EXPECT_FALSE(findColoredPath(graph, 0, 1, {onlyFirst, EdgeModel::Profile}).found());
+}
+
+TEST(ColoredAStar, lowerClassesDecideWhenBadLengthsAreEqual) {
+  // With floating-point sums, 0.1 + 0.2 > 0.3 would choose the upper way, long in class 1.
+  ColoredGraph graph(3);
+  for (int v = 0; v < 3; ++v) graph.addVertex(0);
+  graph.addEdge(0, 1, {{2, lengthUp(0.1)}});
+  graph.addEdge(1, 2, {{2, lengthUp(0.2)}});
+  graph.addEdge(0, 2, {{2, lengthUp(0.3)}, {1, lengthUp(7)}});
+  const CostModel model{ClassOrder(3, {{0}, {1}, {2}}), EdgeModel::Profile, CostKind::ArcLength};
+  EXPECT_EQ(findColoredPath(graph, 0, 2, model).vertices, (std::vector<VertexId>{0, 1, 2}));
+}
+
+TEST(ColoredAStar, keepsVerticesOfEqualKeys) {
+  // A queue that takes equal keys for the same entry loses one of the two ways.
+  ColoredGraph graph(1);
+  for (int v = 0; v < 6; ++v) graph.addVertex(0);
+  for (VertexId v = 1; v <= 4; ++v) graph.addEdge(5, v, {{0, 10}});
+  graph.addEdge(4, 0, {{0, 10}});
+  const CostModel model{ClassOrder(1, {{0}})};
+  EXPECT_EQ(findColoredPath(graph, 0, 5, model).cost, Tuple{20});
+  EXPECT_EQ(findColoredPath(graph, 3, 5, model).cost, Tuple{10});
+}
+
+TEST(ColoredAStar, tiesGoToFewerEdgesThenToSmallerIds) {
+  ColoredGraph graph(1);
+  for (int v = 0; v < 7; ++v) graph.addVertex(0);
+  const CostModel model{ClassOrder(1, {{0}})};
+  graph.addEdge(0, 1, {{0, 10}});
+  graph.addEdge(1, 2, {{0, 10}});
+  graph.addEdge(2, 6, {{0, 10}});
+  graph.addEdge(0, 5, {{0, 15}});
+  graph.addEdge(5, 6, {{0, 15}});
+  EXPECT_EQ(findColoredPath(graph, 0, 6, model).vertices, (std::vector<VertexId>{0, 5, 6}));
+  graph.addEdge(4, 6, {{0, 1}});
+  graph.addEdge(0, 4, {{0, 29}});
+  EXPECT_EQ(findColoredPath(graph, 0, 6, model).vertices, (std::vector<VertexId>{0, 4, 6}));
+  graph.addEdge(0, 4, {{0, 29}});  // a parallel edge of a larger id
+  EXPECT_EQ(findColoredPath(graph, 0, 6, model).edges, (std::vector<EdgeId>{6, 5}));
+}
+
+TEST(ColoredAStar, pathDoesNotDependOnTheOrderOfInsertion) {
+  EXPECT_TRUE(rc::check([] {
+    const int vertices = *rc::gen::inRange(2, 15);
+    struct Line {
+      VertexId a, b;
+      Length length;
+    };
+    std::vector<Line> lines;
+    for (VertexId a = 0; a < static_cast<VertexId>(vertices); ++a)
+      for (VertexId b = a + 1; b < static_cast<VertexId>(vertices); ++b)
+        if (*rc::gen::inRange(0, 2)) lines.push_back({a, b, *rc::gen::inRange<Length>(0, 4)});
+    const auto solve = [&] {
+      ColoredGraph graph(1);
+      for (int v = 0; v < vertices; ++v) graph.addVertex(0);
+      for (const Line& l : lines) graph.addEdge(l.a, l.b, {{0, l.length}});
+      return findColoredPath(graph, 0, 1, {ClassOrder(1, {{0}})}).vertices;
+    };
+    const auto first = solve();
+    std::shuffle(lines.begin(), lines.end(), std::mt19937(*rc::gen::arbitrary<unsigned>()));
+    RC_ASSERT(solve() == first);
+  }));
+}
+
+TEST(ColoredAStar, boundsSaveExpansions) {
+  std::size_t none = 0, length = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 400, 20000, 40, 5);
+    const CostModel model{ClassOrder(5, {{0, 1, 2, 3, 4}})};
+    none += findColoredPath(plane.graph, 0, 1, model).statistics.expansions;
+    length +=
+        findColoredPath(plane.graph, 0, 1, model, boundedBy(plane, false)).statistics.expansions;
+  }
+  EXPECT_LT(length, none / 2);
+}
+
+TEST(ColoredAStar, worstRankBoundLooksAcrossABarrier) {
+  // Two halves of a strip, joined by edges of the worst class: without the bound the whole half
+  // at the goal is searched before the barrier is crossed.
+  ColoredGraph graph(2);
+  const int width = 60, height = 20;
+  const auto id = [&](int x, int y) { return static_cast<VertexId>(y * width + x); };
+  for (int i = 0; i < width * height; ++i) graph.addVertex(0);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const ClassId across = x + 1 == width / 2 ? 1 : 0;
+      if (x + 1 < width) graph.addEdge(id(x, y), id(x + 1, y), {{across, 10}});
+      if (y + 1 < height) graph.addEdge(id(x, y), id(x, y + 1), {{0, 10}});
+    }
+  const CostModel model{ClassOrder(2, {{0}, {1}})};
+  ColoredAStarOptions options;
+  options.lengthBound = [&](VertexId a, VertexId b) -> Length {
+    const int dx = static_cast<int>(a % width) - static_cast<int>(b % width);
+    const int dy = static_cast<int>(a / width) - static_cast<int>(b / width);
+    return 10 * (std::abs(dx) + std::abs(dy));
+  };
+  const VertexId start = id(width / 2 - 5, 10), goal = id(width / 2 + 5, 10);
+  const PathResult without = findColoredPath(graph, start, goal, model, options);
+  options.boundWorstRank = true;
+  const PathResult with = findColoredPath(graph, start, goal, model, options);
+  EXPECT_EQ(with.cost, without.cost);
+  EXPECT_LT(with.statistics.expansions * 10, without.statistics.expansions);
+}

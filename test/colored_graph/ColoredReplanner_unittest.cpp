@@ -1,0 +1,233 @@
+#include <colored_graph/ColoredAStar.h>
+#include <colored_graph/ColoredReplanner.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "Oracles.h"
+#include "PlaneGraph.h"
+
+using namespace colored_graph;
+
+namespace {
+
+std::optional<oracles::Tuple> costOf(const PathResult& result) {
+  return result.found() ? std::optional<oracles::Tuple>(result.cost) : std::nullopt;
+}
+
+constexpr double kReach = 5;  // cells
+
+PlaneGraph town(unsigned seed) { return randomPlaneGraph(seed, 150, 8000, 24, kReach); }
+
+/** Inserts a vertex with some edges, as a refined cell of the map would. */
+void insertVertex(PlaneGraph& plane) {
+  plane.addVertex();
+  for (int i = 0; i < 400; ++i) plane.addEdge(kReach);
+}
+
+/** One random change of a vertex or an edge; start and goal stay. */
+void change(PlaneGraph& plane, VertexId start, VertexId goal) {
+  ColoredGraph& graph = plane.graph;
+  const EdgeId e = plane.randomEdge();
+  switch (plane.below(8)) {
+    case 0:
+      graph.setVertexClass(plane.randomVertex(), plane.randomClass());
+      break;
+    case 1:
+      graph.setBlocked(e);
+      break;
+    case 2:
+      graph.removeEdge(e);
+      break;
+    case 3:
+      plane.addEdge(kReach);
+      break;
+    case 4: {
+      const VertexId v = plane.randomVertex();
+      if (v != start && v != goal && graph.vertexCount() > 120) graph.removeVertex(v);
+      break;
+    }
+    case 5:
+      if (graph.vertexCount() < 180) insertVertex(plane);
+      break;
+    default:
+      graph.setProfile(e, plane.randomProfile(graph.edge(e).a, graph.edge(e).b));
+  }
+}
+
+SearchOptions boundedBy(const PlaneGraph& plane) {
+  SearchOptions options;
+  options.lengthBound = [&plane](VertexId a, VertexId b) { return plane.bound(a, b); };
+  return options;
+}
+
+ColoredAStarOptions fromScratch(const SearchOptions& options) {
+  ColoredAStarOptions scratch;
+  static_cast<SearchOptions&>(scratch) = options;
+  return scratch;
+}
+
+struct Tally {
+  std::size_t incremental = 0, scratch = 0, found = 0;
+};
+
+/** `changes` random changes, each followed by a comparison with a search from scratch. */
+void compare(unsigned seed, const CostModel& model, int changes, bool moving, Tally& tally) {
+  PlaneGraph plane = town(seed);
+  VertexId start = 0;
+  const VertexId goal = 1;
+  const SearchOptions options = boundedBy(plane);
+  ColoredReplanner replanner(plane.graph, start, goal, model, options);
+  replanner.solve();
+  for (int i = 0; i < changes; ++i) {
+    change(plane, start, goal);
+    const PathResult result = replanner.solve();
+    const PathResult scratch =
+        findColoredPath(plane.graph, start, goal, model, fromScratch(options));
+    ASSERT_EQ(costOf(result), oracles::tupleDijkstra(plane.graph, model, start, goal))
+        << "seed " << seed << ", change " << i;
+    ASSERT_EQ(result.status, scratch.status);
+    ASSERT_EQ(result.edges, scratch.edges) << "seed " << seed << ", change " << i;
+    ASSERT_EQ(result.lengthPerClass, scratch.lengthPerClass);
+    tally.incremental += result.statistics.expansions;
+    tally.scratch += scratch.statistics.expansions;
+    tally.found += result.found();
+    if (!moving || i % 3) continue;
+    const bool jump = !result.found() || result.vertices.size() < 3;
+    start = jump ? plane.randomVertex() : result.vertices[1];
+    replanner.moveStart(start);
+  }
+}
+
+void compareAll(bool moving) {
+  Tally tally;
+  unsigned seed = moving ? 1000 : 0;
+  for (int repeat = 0; repeat < 4; ++repeat)
+    for (const CostModel& model : allModels(town(seed).randomOrder())) {
+      compare(seed++, model, 210, moving, tally);  // 24 times
+      if (::testing::Test::HasFatalFailure()) return;
+    }
+  const double ratio = double(tally.incremental) / double(tally.scratch);
+  ::testing::Test::RecordProperty("expansionsRelativeToScratch", std::to_string(ratio));
+  EXPECT_LT(ratio, 0.7);
+  EXPECT_GT(tally.found, 3000u);
+}
+
+}  // namespace
+
+TEST(ColoredReplanner, equalsScratchAfterEachOfFiveThousandChanges) { compareAll(false); }
+
+TEST(ColoredReplanner, equalsScratchAfterEachOfFiveThousandChangesWithAMovingStart) {
+  compareAll(true);
+}
+
+TEST(ColoredReplanner, savesExpansionsEvenWhenManyEdgesChangeAtOnce) {
+  Tally tally;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    PlaneGraph plane = town(seed);
+    const CostModel model{ClassOrder(PlaneGraph::kClasses, {{0}, {1}, {2}, {3}, {4}})};
+    const SearchOptions options = boundedBy(plane);
+    ColoredReplanner replanner(plane.graph, 0, 1, model, options);
+    replanner.solve();
+    for (int round = 0; round < 20; ++round) {
+      for (std::size_t i = 0; i < plane.graph.edgeCount() * 6 / 100; ++i) {
+        const EdgeId e = plane.randomEdge();
+        plane.graph.setProfile(e,
+                               plane.randomProfile(plane.graph.edge(e).a, plane.graph.edge(e).b));
+      }
+      const PathResult result = replanner.solve();
+      const PathResult scratch = findColoredPath(plane.graph, 0, 1, model, fromScratch(options));
+      ASSERT_EQ(result.edges, scratch.edges) << "seed " << seed << ", round " << round;
+      tally.incremental += result.statistics.expansions;
+      tally.scratch += scratch.statistics.expansions;
+    }
+  }
+  const double ratio = double(tally.incremental) / double(tally.scratch);
+  RecordProperty("expansionsRelativeToScratch", std::to_string(ratio));
+  EXPECT_LT(ratio, 0.7);
+}
+
+TEST(ColoredReplanner, staysExactWithLazyEdgesThatChange) {
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    PlaneGraph plane = town(seed);
+    ColoredGraph graph = plane.graph;
+    const VertexId start = 0, goal = 1;
+    const CostModel model = allModels(plane.randomOrder())[seed % 6];
+    SearchOptions options = boundedBy(plane);
+    options.evaluate = [&](EdgeId e) -> std::optional<EdgeProfile> {
+      if (plane.graph.edge(e).state == EdgeState::Blocked) return std::nullopt;
+      return plane.graph.edge(e).profile;
+    };
+    ColoredReplanner replanner(graph, start, goal, model, options);
+    for (int i = 0; i < 50; ++i) {
+      for (int changes = 0; changes < 5; ++changes) {  // the map changes below an edge
+        const EdgeId e = plane.randomEdge();
+        const VertexId a = graph.edge(e).a, b = graph.edge(e).b;
+        plane.graph.setProfile(e, plane.randomProfile(a, b));
+        graph.setUnevaluated(e, plane.bound(a, b));
+      }
+      for (EdgeId e = 0; i == 0 && e < graph.edgeIdEnd(); ++e)
+        graph.setUnevaluated(e, plane.bound(graph.edge(e).a, graph.edge(e).b));
+      ASSERT_EQ(costOf(replanner.solve()), oracles::tupleDijkstra(plane.graph, model, start, goal))
+          << "seed " << seed << ", round " << i;
+    }
+  }
+}
+
+TEST(ColoredReplanner, startsOverWhenTheLogHasForgottenChanges) {
+  PlaneGraph plane = town(3);
+  const CostModel model{plane.randomOrder()};
+  ColoredReplanner replanner(plane.graph, 0, 1, model, boundedBy(plane));
+  replanner.solve();
+  for (int i = 0; i < 2000; ++i) change(plane, 0, 1);
+  ASSERT_GT(plane.graph.changes().begin(), 10000u);
+  EXPECT_EQ(costOf(replanner.solve()), oracles::tupleDijkstra(plane.graph, model, 0, 1));
+}
+
+TEST(ColoredReplanner, expandsNothingWhenNothingChanged) {
+  PlaneGraph plane = town(4);
+  const CostModel model{plane.randomOrder()};
+  ColoredReplanner replanner(plane.graph, 0, 1, model, boundedBy(plane));
+  const PathResult first = replanner.solve();
+  const PathResult second = replanner.solve();
+  EXPECT_GT(first.statistics.expansions, 0u);
+  EXPECT_EQ(second.statistics.expansions, 0u);
+  EXPECT_EQ(second.edges, first.edges);
+}
+
+TEST(ColoredReplanner, severalFollowTheSameGraph) {
+  PlaneGraph plane = town(5);
+  const auto models = allModels(plane.randomOrder());
+  std::vector<ColoredReplanner> replanners;
+  for (const CostModel& model : models)
+    replanners.emplace_back(plane.graph, 0, 1, model, boundedBy(plane));
+  for (int i = 0; i < 60; ++i) {
+    change(plane, 0, 1);
+    const std::size_t which = static_cast<std::size_t>(i) % models.size();
+    ASSERT_EQ(costOf(replanners[which].solve()),
+              oracles::tupleDijkstra(plane.graph, models[which], 0, 1));
+  }
+}
+
+TEST(ColoredReplanner, aReusedIdIsANewPlace) {
+  // 0 - 1 - 2 on a line; vertex 1 moves far away under the same id and must not keep its old bound.
+  ColoredGraph graph(1);
+  std::vector<Length> place{0, 10, 20, 15};
+  for (int v = 0; v < 4; ++v) graph.addVertex(0);
+  graph.addEdge(0, 1, {{0, 10}});
+  graph.addEdge(1, 2, {{0, 10}});
+  graph.addEdge(0, 3, {{0, 25}});
+  graph.addEdge(3, 2, {{0, 5}});
+  SearchOptions options;
+  options.lengthBound = [&](VertexId a, VertexId b) { return std::abs(place[a] - place[b]); };
+  const CostModel model{ClassOrder(1, {{0}})};
+  ColoredReplanner replanner(graph, 0, 2, model, options);
+  EXPECT_EQ(replanner.solve().cost, oracles::Tuple{20});
+  graph.removeVertex(1);
+  place[1] = 2;
+  ASSERT_EQ(graph.addVertex(0), 1u);
+  graph.addEdge(0, 1, {{0, 2}});
+  graph.addEdge(1, 3, {{0, 13}});
+  EXPECT_EQ(replanner.solve().cost, oracles::Tuple{20});
+  EXPECT_EQ(replanner.solve().vertices, (std::vector<VertexId>{0, 1, 3, 2}));
+}

@@ -1,0 +1,93 @@
+#include <colored_graph/CostVector.h>
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+using colored_graph::CostVector;
+using Cost = CostVector<4>;
+
+namespace {
+
+constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
+
+Cost make(const std::vector<std::int64_t>& parts) {
+  Cost cost;
+  for (int i = 0; i < 4; ++i) cost[i] = parts[i];
+  return cost;
+}
+
+/** Few different numbers, so that vectors share their first components. */
+std::vector<std::int64_t> smallParts() {
+  return *rc::gen::container<std::vector<std::int64_t>>(
+      4, rc::gen::element<std::int64_t>(0, 1, 2, 3, kLargest / 2));
+}
+
+/** The same, some near the limit. */
+std::vector<std::int64_t> parts() {
+  return *rc::gen::container<std::vector<std::int64_t>>(
+      4, rc::gen::element<std::int64_t>(0, 1, 2, 3, kLargest / 2, kLargest - 1, kLargest));
+}
+
+}  // namespace
+
+TEST(CostVector, worstClassDecidesFirst) {
+  EXPECT_LT(make({0, 9, 9, 9}), make({1, 0, 0, 0}));
+  EXPECT_LT(make({1, 0, 9, 9}), make({1, 1, 0, 0}));
+  EXPECT_GT(make({1, 0, 0, 0}), make({0, 9, 9, 9}));
+  EXPECT_GE(make({1, 0, 0, 0}), make({0, 9, 9, 9}));
+  EXPECT_LE(make({0, 9, 9, 9}), make({1, 0, 0, 0}));
+}
+
+TEST(CostVector, isStrictlyAndTotallyOrderedLikeASequence) {
+  EXPECT_TRUE(rc::check([] {
+    const auto l = parts(), r = parts();
+    RC_ASSERT((make(l) < make(r)) == (l < r));
+    RC_ASSERT((make(l) > make(r)) == (l > r));
+    RC_ASSERT((make(l) <= make(r)) == (l <= r));
+    RC_ASSERT((make(l) >= make(r)) == (l >= r));
+    RC_ASSERT((make(l) == make(r)) == (l == r));
+    RC_ASSERT((make(l) != make(r)) == (l != r));
+  }));
+}
+
+TEST(CostVector, addsPartByPartAndOverflowsToInfinity) {
+  EXPECT_TRUE(rc::check([] {
+    const auto l = parts(), r = parts();
+    bool overflows = false;
+    std::vector<std::int64_t> sums;
+    for (int i = 0; i < 4; ++i) {
+      overflows = overflows || l[i] > kLargest - r[i];
+      if (!overflows) sums.push_back(l[i] + r[i]);
+    }
+    const Cost sum = make(l) + make(r);
+    RC_ASSERT(sum == (overflows ? Cost::infinite() : make(sums)));
+    RC_ASSERT(sum == make(r) + make(l));
+    RC_ASSERT(sum >= make(l));
+  }));
+}
+
+TEST(CostVector, additionKeepsTheOrderWithinTheRange) {
+  EXPECT_TRUE(rc::check([] {
+    const auto l = smallParts(), r = smallParts();
+    const Cost shift = make({0, 1, 5, kLargest / 2});
+    RC_ASSERT((make(l) < make(r)) == (make(l) + shift < make(r) + shift));
+  }));
+}
+
+TEST(CostVector, infinityIsAboveAllAndStays) {
+  const Cost infinite = Cost::infinite();
+  EXPECT_TRUE(infinite.isInfinite());
+  EXPECT_FALSE(make({kLargest, 0, 0, 0}).isInfinite());
+  EXPECT_LT(make({kLargest, kLargest, kLargest, kLargest - 1}), infinite);
+  EXPECT_EQ(infinite + Cost(), infinite);
+  EXPECT_EQ(infinite + infinite, infinite);
+  EXPECT_EQ(infinite + make({0, 0, 0, 1}), infinite);
+}
+
+TEST(CostVector, needsNoHeap) {
+  EXPECT_TRUE(std::is_trivially_copyable_v<Cost>);
+  EXPECT_EQ(sizeof(CostVector<5>), 40u);
+}

@@ -1,0 +1,146 @@
+#include <colored_graph/ColoredAStar.h>
+#include <colored_graph/ColoredReplanner.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <stdexcept>
+
+#include "Oracles.h"
+#include "PlaneGraph.h"
+
+using namespace colored_graph;
+
+namespace {
+
+/** A graph whose edges nobody has looked at yet, and what they turn out to be. */
+struct LazyWorld {
+  explicit LazyWorld(PlaneGraph& plane) : graph(plane.graph), truth(plane.graph) {
+    for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) {
+      if (graph.containsEdge(e)) graph.setUnevaluated(e, minLength(plane, e));
+    }
+    options.lengthBound = [&plane](VertexId a, VertexId b) { return plane.bound(a, b); };
+    options.evaluate = [this](EdgeId e) -> std::optional<EdgeProfile> {
+      ++calls[e];
+      if (truth.edge(e).state == EdgeState::Blocked) return std::nullopt;
+      return truth.edge(e).profile;
+    };
+  }
+  Length minLength(const PlaneGraph& plane, EdgeId e) const {
+    // Half of the edges promise no more than the straight line rounded down.
+    const Length line = plane.bound(truth.edge(e).a, truth.edge(e).b);
+    return e % 2 || truth.edge(e).state == EdgeState::Blocked ? line : truth.edge(e).length;
+  }
+  int evaluated() const {
+    int sum = 0;
+    for (const auto& [e, times] : calls) sum += times;
+    return sum;
+  }
+  bool anyTwice() const {
+    for (const auto& [e, times] : calls)
+      if (times > 1) return true;
+    return false;
+  }
+
+  ColoredGraph graph;
+  ColoredGraph truth;
+  std::map<EdgeId, int> calls;
+  ColoredAStarOptions options;
+};
+
+std::optional<oracles::Tuple> costOf(const PathResult& result) {
+  return result.found() ? std::optional<oracles::Tuple>(result.cost) : std::nullopt;
+}
+
+bool allEvaluated(const ColoredGraph& graph, const PathResult& result) {
+  for (const EdgeId e : result.edges)
+    if (graph.edge(e).state != EdgeState::Usable) return false;
+  return true;
+}
+
+}  // namespace
+
+TEST(LazyEdges, searchFindsTheOptimumOfTheTruth) {
+  for (unsigned seed = 0; seed < 3000; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 23, seed % 67, 2 + seed % 5);
+    const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
+    for (const CostModel& model : allModels(plane.randomOrder())) {
+      LazyWorld world(plane);
+      world.options.boundWorstRank = seed % 2;
+      const PathResult result = findColoredPath(world.graph, start, goal, model, world.options);
+      ASSERT_EQ(costOf(result), oracles::tupleDijkstra(plane.graph, model, start, goal))
+          << "seed " << seed;
+      ASSERT_TRUE(allEvaluated(world.graph, result)) << "seed " << seed;
+      ASSERT_FALSE(world.anyTwice()) << "seed " << seed;
+      ASSERT_EQ(result.statistics.edgesEvaluated, static_cast<std::size_t>(world.evaluated()));
+    }
+  }
+}
+
+TEST(LazyEdges, replannerFindsTheOptimumOfTheTruth) {
+  for (unsigned seed = 0; seed < 3000; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 23, seed % 67, 2 + seed % 5);
+    const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
+    for (const CostModel& model : allModels(plane.randomOrder())) {
+      LazyWorld world(plane);
+      ColoredReplanner replanner(world.graph, start, goal, model, world.options);
+      const PathResult result = replanner.solve();
+      ASSERT_EQ(costOf(result), oracles::tupleDijkstra(plane.graph, model, start, goal))
+          << "seed " << seed;
+      ASSERT_TRUE(allEvaluated(world.graph, result)) << "seed " << seed;
+      ASSERT_FALSE(world.anyTwice()) << "seed " << seed;
+    }
+  }
+}
+
+TEST(LazyEdges, fewAreEvaluated) {
+  std::size_t edges = 0, search = 0, replanner = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 200, 6000, 30, 6);
+    const CostModel model{ClassOrder(5, {{0}, {1}, {2}, {3}, {4}})};
+    LazyWorld forSearch(plane), forReplanner(plane);
+    edges += plane.graph.edgeCount();
+    search +=
+        findColoredPath(forSearch.graph, 0, 1, model, forSearch.options).statistics.edgesEvaluated;
+    replanner += ColoredReplanner(forReplanner.graph, 0, 1, model, forReplanner.options)
+                     .solve()
+                     .statistics.edgesEvaluated;
+  }
+  RecordProperty("evaluatedBySearch", std::to_string(double(search) / double(edges)));
+  RecordProperty("evaluatedByReplanner", std::to_string(double(replanner) / double(edges)));
+  EXPECT_LT(search, edges / 2);
+  EXPECT_LT(replanner, search);
+}
+
+TEST(LazyEdges, answersAreKeptForTheNextSearch) {
+  PlaneGraph plane = randomPlaneGraph(7, 50, 600, 10);
+  LazyWorld world(plane);
+  const CostModel model{ClassOrder(5, {{0}, {1}, {2}, {3}, {4}})};
+  const PathResult first = findColoredPath(world.graph, 0, 1, model, world.options);
+  const PathResult second = findColoredPath(world.graph, 0, 1, model, world.options);
+  EXPECT_GT(first.statistics.edgesEvaluated, 0u);
+  EXPECT_EQ(second.statistics.edgesEvaluated, 0u);
+  EXPECT_EQ(second.cost, first.cost);
+}
+
+TEST(LazyEdges, aSearchThatNeedsThemAsksForTheFunction) {
+  ColoredGraph graph(1);
+  graph.addVertex(0);
+  graph.addVertex(0);
+  graph.addUnevaluatedEdge(0, 1, 5);
+  const CostModel model{ClassOrder(1, {{0}})};
+  EXPECT_THROW(findColoredPath(graph, 0, 1, model), std::invalid_argument);
+  EXPECT_THROW(ColoredReplanner(graph, 0, 1, model).solve(), std::invalid_argument);
+}
+
+TEST(LazyEdges, anEvaluationThatContradictsTheBoundIsRefused) {
+  ColoredGraph graph(1);
+  graph.addVertex(0);
+  graph.addVertex(0);
+  graph.addUnevaluatedEdge(0, 1, 5);
+  const CostModel model{ClassOrder(1, {{0}})};
+  ColoredAStarOptions options;
+  options.evaluate = [](EdgeId) { return EdgeProfile{{0, 4}}; };
+  EXPECT_THROW(findColoredPath(graph, 0, 1, model, options), std::invalid_argument);
+  EXPECT_THROW(ColoredReplanner(graph, 0, 1, model, options).solve(), std::invalid_argument);
+  EXPECT_EQ(graph.edge(0).state, EdgeState::Unevaluated);
+}

@@ -1,0 +1,136 @@
+#pragma once
+#include <colored_graph/CostModel.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+// Slow and simple ways to the optimal cost, written without the library's cost vectors.
+namespace oracles {
+
+using colored_graph::ColoredGraph;
+using colored_graph::CostKind;
+using colored_graph::CostModel;
+using colored_graph::EdgeId;
+using colored_graph::EdgeModel;
+using colored_graph::EdgeState;
+using colored_graph::VertexId;
+
+/** (worst rank, ..., rank 1; total length); std::vector compares it as it should be compared. */
+using Tuple = std::vector<std::int64_t>;
+
+inline Tuple zero(const CostModel& model) { return Tuple(model.order.ranks(), 0); }
+
+inline Tuple sum(Tuple l, const Tuple& r) {
+  for (std::size_t i = 0; i < l.size(); ++i) l[i] += r[i];
+  return l;
+}
+
+/** The stretches of the edge as the model sees them: (rank, length). */
+inline std::vector<std::pair<int, std::int64_t>> stretchesSeen(const ColoredGraph& graph,
+                                                               const CostModel& model, EdgeId e) {
+  const colored_graph::Edge& edge = graph.edge(e);
+  std::vector<std::pair<int, std::int64_t>> own;
+  for (const auto& s : edge.profile) own.push_back({model.order.rank(s.classId), s.length});
+  if (model.edges == EdgeModel::Profile) return own;
+  std::set<int> ranks{model.order.rank(graph.vertexClass(edge.a)),
+                      model.order.rank(graph.vertexClass(edge.b))};
+  if (model.edges == EdgeModel::Sweep)
+    for (const auto& s : own) ranks.insert(s.first);
+  return {{*ranks.rbegin(), edge.length}};
+}
+
+/** Cost of an evaluated edge, or nothing if it cannot be used. */
+inline std::optional<Tuple> edgeCost(const ColoredGraph& graph, const CostModel& model, EdgeId e) {
+  if (graph.edge(e).state != EdgeState::Usable) return std::nullopt;
+  Tuple perRank(model.order.ranks(), 0), total(1, 0);
+  for (const auto& [rank, length] : stretchesSeen(graph, model, e)) {
+    if (rank >= model.order.ranks()) return std::nullopt;
+    perRank[rank] = model.kind == CostKind::Count ? 1 : perRank[rank] + length;
+    total[0] += length;
+  }
+  Tuple cost(perRank.rbegin(), perRank.rend() - 1);
+  cost.push_back(total[0]);
+  return cost;
+}
+
+inline std::optional<Tuple> tupleDijkstra(const ColoredGraph& graph, const CostModel& model,
+                                          VertexId start, VertexId goal) {
+  std::vector<std::optional<Tuple>> best(graph.vertexIdEnd());
+  std::set<std::pair<Tuple, VertexId>> open{{zero(model), start}};
+  best[start] = zero(model);
+  while (!open.empty()) {
+    const auto [cost, v] = *open.begin();
+    open.erase(open.begin());
+    if (v == goal) return cost;
+    for (const auto& i : graph.incident(v)) {
+      const auto step = edgeCost(graph, model, i.edge);
+      if (!step) continue;
+      const Tuple next = sum(cost, *step);
+      std::optional<Tuple>& known = best[i.neighbor];
+      if (known && *known <= next) continue;
+      if (known) open.erase({*known, i.neighbor});
+      known = next;
+      open.insert({next, i.neighbor});
+    }
+  }
+  return std::nullopt;
+}
+
+__extension__ typedef unsigned __int128 BigInt;
+constexpr int kDigitBits = 24;  // every component of every path stays below 2^24 in these tests
+
+/** sum of n_k B^k: for at most 5 ranks. */
+inline BigInt scalar(const Tuple& cost) {
+  BigInt value = 0;
+  for (const std::int64_t part : cost) value = (value << kDigitBits) + static_cast<BigInt>(part);
+  return value;
+}
+
+/** Bellman-Ford on the scalars. */
+inline std::optional<BigInt> scalarShortest(const ColoredGraph& graph, const CostModel& model,
+                                            VertexId start, VertexId goal) {
+  std::vector<std::optional<BigInt>> best(graph.vertexIdEnd());
+  best[start] = 0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) {
+      if (!graph.containsEdge(e)) continue;
+      const auto cost = edgeCost(graph, model, e);
+      if (!cost) continue;
+      const auto relax = [&](VertexId from, VertexId to) {
+        if (!best[from] || (best[to] && *best[to] <= *best[from] + scalar(*cost))) return;
+        best[to] = *best[from] + scalar(*cost);
+        changed = true;
+      };
+      relax(graph.edge(e).a, graph.edge(e).b);
+      relax(graph.edge(e).b, graph.edge(e).a);
+    }
+  }
+  return best[goal];
+}
+
+/** The least cost over all simple paths, one by one. */
+inline void enumerate(const ColoredGraph& graph, const CostModel& model, VertexId v, VertexId goal,
+                      const Tuple& cost, std::vector<bool>& used, std::optional<Tuple>& best) {
+  if (v == goal) best = best ? std::min(*best, cost) : cost;
+  used[v] = true;
+  for (const auto& i : graph.incident(v)) {
+    const auto step = edgeCost(graph, model, i.edge);
+    if (step && !used[i.neighbor])
+      enumerate(graph, model, i.neighbor, goal, sum(cost, *step), used, best);
+  }
+  used[v] = false;
+}
+
+inline std::optional<Tuple> bestOfAllPaths(const ColoredGraph& graph, const CostModel& model,
+                                           VertexId start, VertexId goal) {
+  std::vector<bool> used(graph.vertexIdEnd(), false);
+  std::optional<Tuple> best;
+  enumerate(graph, model, start, goal, zero(model), used, best);
+  return best;
+}
+
+}  // namespace oracles

@@ -1,0 +1,205 @@
+#include <colored_graph/ColoredAStar.h>
+#include <colored_graph/ColoredReplanner.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string>
+#include <thread>
+
+#include "Oracles.h"
+#include "PlaneGraph.h"
+
+using namespace colored_graph;
+
+namespace {
+
+struct Problem {
+  ColoredGraph& graph;
+  VertexId start, goal;
+  CostModel model;
+  SearchOptions options;
+};
+
+PathResult searchOnce(const Problem& p) {
+  ColoredAStarOptions options;
+  static_cast<SearchOptions&>(options) = p.options;
+  return findColoredPath(p.graph, p.start, p.goal, p.model, options);
+}
+
+PathResult replanOnce(const Problem& p) {
+  return ColoredReplanner(p.graph, p.start, p.goal, p.model, p.options).solve();
+}
+
+/** What holds for the search from scratch and for the incremental one alike. */
+class SearchStatusOf : public ::testing::TestWithParam<PathResult (*)(const Problem&)> {
+ protected:
+  PathResult solve(VertexId start, VertexId goal) {
+    return GetParam()({graph, start, goal, model, options});
+  }
+
+  /** A chain of n vertices. */
+  void chain(int n) {
+    for (int v = 0; v < n; ++v) graph.addVertex(0);
+    for (VertexId v = 1; v < static_cast<VertexId>(n); ++v) graph.addEdge(v - 1, v, {{0, 10}});
+  }
+
+  ColoredGraph graph{3};
+  CostModel model{ClassOrder(3, {{0}, {1}}), EdgeModel::Sweep, CostKind::ArcLength};
+  SearchOptions options;
+};
+
+}  // namespace
+
+TEST_P(SearchStatusOf, missingEndsAreNamed) {
+  chain(3);
+  EXPECT_EQ(solve(7, 0).status, SearchStatus::StartNotInGraph);
+  EXPECT_EQ(solve(0, 7).status, SearchStatus::GoalNotInGraph);
+  graph.removeVertex(2);
+  EXPECT_EQ(solve(2, 0).status, SearchStatus::StartNotInGraph);
+  EXPECT_EQ(solve(0, kNoVertex).status, SearchStatus::GoalNotInGraph);
+}
+
+TEST_P(SearchStatusOf, startAtTheGoalIsAPathWithoutEdges) {
+  chain(2);
+  const PathResult result = solve(1, 1);
+  EXPECT_EQ(result.status, SearchStatus::Found);
+  EXPECT_EQ(result.vertices, std::vector<VertexId>{1});
+  EXPECT_TRUE(result.edges.empty());
+  EXPECT_EQ(result.cost, (oracles::Tuple{0, 0}));
+  EXPECT_EQ(result.lengthPerClass, (std::vector<Length>{0, 0, 0}));
+}
+
+TEST_P(SearchStatusOf, separatePartsAreNotConnected) {
+  chain(3);
+  const VertexId lonely = graph.addVertex(0);
+  EXPECT_EQ(solve(0, lonely).status, SearchStatus::NotConnected);
+  graph.setBlocked(1);
+  const PathResult result = solve(0, 2);
+  EXPECT_EQ(result.status, SearchStatus::NotConnected);
+  EXPECT_TRUE(result.vertices.empty());
+  EXPECT_TRUE(result.cost.empty());
+}
+
+TEST_P(SearchStatusOf, aForbiddenClassInTheWayIsNamed) {
+  chain(3);
+  graph.setProfile(1, {{2, 10}});
+  EXPECT_EQ(solve(0, 2).status, SearchStatus::OnlyForbidden);
+  graph.setProfile(1, {{1, 10}});
+  graph.setVertexClass(1, 2);
+  EXPECT_EQ(solve(0, 2).status, SearchStatus::OnlyForbidden);
+  model.edges = EdgeModel::Profile;
+  EXPECT_EQ(solve(0, 2).status, SearchStatus::Found);
+}
+
+TEST_P(SearchStatusOf, aForbiddenClassInTheWayOfAnUnevaluatedEdgeIsNamed) {
+  chain(2);
+  graph.setUnevaluated(0, 5);
+  options.evaluate = [](EdgeId) { return EdgeProfile{{2, 10}}; };
+  EXPECT_EQ(solve(0, 1).status, SearchStatus::OnlyForbidden);
+  graph.setUnevaluated(0, 5);
+  options.evaluate = [](EdgeId) { return std::nullopt; };
+  EXPECT_EQ(solve(0, 1).status, SearchStatus::NotConnected);
+}
+
+TEST_P(SearchStatusOf, overflowIsNoPathAndSaysSo) {
+  chain(4);
+  const Length huge = Length{1} << 62;
+  graph.setProfile(0, {{1, huge}});
+  graph.setProfile(1, {{1, huge - 1}});
+  EXPECT_EQ(solve(0, 2).cost, (oracles::Tuple{huge + (huge - 1), huge + (huge - 1)}));
+  graph.setProfile(2, {{1, 1}});
+  EXPECT_EQ(solve(0, 3).status, SearchStatus::CostOverflow);
+}
+
+TEST_P(SearchStatusOf, cancelStopsTheSearch) {
+  chain(1000);
+  int asked = 0;
+  options.cancelled = [&] { return ++asked > 3; };
+  const PathResult result = solve(0, 999);
+  EXPECT_EQ(result.status, SearchStatus::Cancelled);
+  EXPECT_TRUE(result.vertices.empty());
+  EXPECT_GT(result.statistics.expansions, 0u);
+  EXPECT_LT(result.statistics.expansions, 500u);
+}
+
+TEST_P(SearchStatusOf, timeLimitStopsTheSearchBetweenSlowEvaluations) {
+  chain(1000);
+  for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) graph.setUnevaluated(e, 10);
+  options.timeLimit = 0.03;
+  options.evaluate = [](EdgeId) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return EdgeProfile{{0, 10}};
+  };
+  const PathResult result = solve(0, 999);
+  EXPECT_EQ(result.status, SearchStatus::TimeLimit);
+  EXPECT_GT(result.statistics.edgesEvaluated, 0u);
+  EXPECT_LT(result.statistics.edgesEvaluated, 8u);
+}
+
+TEST_P(SearchStatusOf, noTimeIsATimeLimit) {
+  chain(3);
+  options.timeLimit = 0;
+  EXPECT_EQ(solve(0, 2).status, SearchStatus::TimeLimit);
+}
+
+TEST_P(SearchStatusOf, badOptionsAreRefused) {
+  chain(2);
+  for (const double limit : {-1.0, std::nan("")}) {
+    options.timeLimit = limit;
+    EXPECT_THROW(solve(0, 1), std::invalid_argument);
+  }
+  options.timeLimit = 1;
+  model.order = ClassOrder(2, {{0}, {1}});
+  EXPECT_THROW(solve(0, 1), std::invalid_argument);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothSearches, SearchStatusOf, ::testing::Values(&searchOnce, &replanOnce),
+                         [](const auto& p) { return p.index == 0 ? "scratch" : "replanner"; });
+
+TEST(SearchStatus, replannerGoesOnAfterACancel) {
+  PlaneGraph plane = randomPlaneGraph(11, 300, 9000, 30, 4);
+  const CostModel model{ClassOrder(PlaneGraph::kClasses, {{0, 1}, {2}, {3, 4}})};
+  bool stop = true;
+  SearchOptions options;
+  int asked = 0;
+  options.cancelled = [&] { return stop && ++asked > 2; };
+  ColoredReplanner replanner(plane.graph, 0, 1, model, options);
+  const PathResult cancelled = replanner.solve();
+  ASSERT_EQ(cancelled.status, SearchStatus::Cancelled);
+  plane.graph.setBlocked(plane.graph.incident(0).front().edge);
+  stop = false;
+  const PathResult result = replanner.solve();
+  const auto expected = oracles::tupleDijkstra(plane.graph, model, 0, 1);
+  ASSERT_TRUE(expected);
+  EXPECT_EQ(result.cost, *expected);
+  const PathResult whole = ColoredReplanner(plane.graph, 0, 1, model).solve();
+  EXPECT_LT(result.statistics.expansions, whole.statistics.expansions);
+}
+
+TEST(SearchStatus, replannerNoticesThatAnEndWentAndCameBack) {
+  ColoredGraph graph(1);
+  for (int v = 0; v < 3; ++v) graph.addVertex(0);
+  graph.addEdge(0, 1, {{0, 10}});
+  graph.addEdge(1, 2, {{0, 10}});
+  ColoredReplanner replanner(graph, 0, 2, {ClassOrder(1, {{0}})});
+  EXPECT_EQ(replanner.solve().cost, oracles::Tuple{20});
+  graph.removeVertex(2);
+  EXPECT_EQ(replanner.solve().status, SearchStatus::GoalNotInGraph);
+  ASSERT_EQ(graph.addVertex(0), 2u);
+  EXPECT_EQ(replanner.solve().status, SearchStatus::NotConnected);
+  graph.addEdge(0, 2, {{0, 7}});
+  EXPECT_EQ(replanner.solve().cost, oracles::Tuple{7});
+  replanner.moveStart(1);
+  EXPECT_EQ(replanner.solve().cost, oracles::Tuple{17});
+}
+
+TEST(SearchStatus, everyStatusHasItsOwnWords) {
+  std::set<std::string> words;
+  for (int s = 0; s <= static_cast<int>(SearchStatus::TimeLimit); ++s)
+    words.insert(describe(static_cast<SearchStatus>(s)));
+  EXPECT_EQ(words.size(), 8u);
+  EXPECT_EQ(words.count("unknown status"), 0u);
+}
