@@ -12,6 +12,8 @@
 
 namespace semantic_map {
 
+struct CachedConverter;
+
 /** What came of an observation. */
 struct InsertionResult {
   /** Why it was refused; empty: it was not. */
@@ -31,16 +33,13 @@ struct InsertionResult {
  *
  * In an .ini file it is `semanticOctoMap_count=1`, with the sections
  *
- *     [<prefix>_semanticOctoMap_00_creationOpts]
- *     resolution = 0.1           // edge of a voxel, m
- *     classes    = classes.yaml  // class table, relative to the WORKING directory; empty: one
- * class, "occupied"
- *     [<prefix>_semanticOctoMap_00_insertOpts]       // TInsertionOptions
- *     [<prefix>_semanticOctoMap_00_likelihoodOpts]   // TLikelihoodOptions
- *     [<prefix>_semanticOctoMap_00_renderOpts]       // TRenderingOptions
+ *     [<prefix>_semanticOctoMap_00_creationOpts]     TCreationOptions
+ *     [<prefix>_semanticOctoMap_00_insertOpts]       TInsertionOptions
+ *     [<prefix>_semanticOctoMap_00_likelihoodOpts]   TLikelihoodOptions
+ *     [<prefix>_semanticOctoMap_00_renderOpts]       TRenderingOptions
  *
- * Keys that are not options, values that are out of range and class tables that cannot be read are
- * errors that name section, key and value.
+ * All of them may be absent. Other sections with this prefix, keys that are not options, and values
+ * that are out of range are errors that name section, key and value.
  *
  * Observations: see labeled_cloud::ScanConverter for the kinds and their labels. */
 class CSemanticOctoMap : public mrpt::maps::CMetricMap {
@@ -56,6 +55,9 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   ~CSemanticOctoMap() override;
   CSemanticOctoMap(const CSemanticOctoMap& o);
   CSemanticOctoMap& operator=(const CSemanticOctoMap& o);
+
+  /** The class table of maps for which none is given: "occupied". */
+  static semantic_octree::ClassTable occupancyOnly();
 
   const semantic_octree::SemanticOcTree& tree() const { return m_tree; }
   semantic_octree::SemanticOcTree& tree() { return m_tree; }
@@ -94,8 +96,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   void saveMetricMapRepresentationToFile(const std::string& prefix) const override;
 
   MAP_DEFINITION_START(CSemanticOctoMap)
-  double resolution = 0.1;
-  std::string classes;
+  TCreationOptions creationOpts;
   TInsertionOptions insertionOpts;
   TLikelihoodOptions likelihoodOpts;
   TRenderingOptions renderOpts;
@@ -114,10 +115,18 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   bool internal_canComputeObservationLikelihood(
       const mrpt::obs::CObservation& observation) const override;
 
+  void copyAllButTree(const CSemanticOctoMap& o);
+  labeled_cloud::ScanConverter& converter() const;
+  void insertAccepted(const mrpt::obs::CObservation& observation,
+                      const mrpt::poses::CPose3D& T_map_robot);
+  /** \throw std::logic_error the options ask for another filter than that of a map with content. */
+  void useFilterOfOptions();
+
   semantic_octree::SemanticOcTree m_tree;
   std::shared_ptr<labeled_cloud::ImageLabeler> m_labeler;
   InsertionResult m_lastInsertion;
-  mrpt::system::COutputLogger m_logger;
+  mrpt::system::COutputLogger m_logger{"CSemanticOctoMap"};
+  mutable std::unique_ptr<CachedConverter> m_converter;
 };
 
 /** Registers the map and labeled_cloud's observation with MRPT's factories. Called when the library

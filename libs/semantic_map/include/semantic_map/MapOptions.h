@@ -10,78 +10,80 @@
 
 namespace semantic_map {
 
-/** Options with names, which go into an .ini section, into an archive, and onto a screen.
+/** Options with names, which go into a section of an .ini file, into an archive, and onto a screen.
  *
  * Reading is strict where MRPT is silent: a key of the section that is not an option, and a value
- * that cannot be read or is out of range, are std::runtime_error naming section, key and value. The
- * options are then what they were before. Keys that are absent leave their option as it is. */
-class TOptions : public mrpt::config::CLoadableOptions {
+ * that cannot be read or is out of range, are errors, and the options are then what they were
+ * before. Keys that are absent leave their option as it is. */
+template <class Derived>
+class TNamedOptions : public mrpt::config::CLoadableOptions {
  public:
+  /** \throw std::runtime_error naming section, key and value. */
   void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
-                          const std::string& section) override = 0;
+                          const std::string& section) override;
   void saveToConfigFile(mrpt::config::CConfigFileBase& target,
-                        const std::string& section) const override = 0;
-  void dumpToTextStream(std::ostream& out) const override = 0;
-  virtual void writeTo(mrpt::serialization::CArchive& out) const = 0;
+                        const std::string& section) const override;
+  void dumpToTextStream(std::ostream& out) const override;
+
+  void writeTo(mrpt::serialization::CArchive& out) const;
   /** \throw std::exception the archive ends, or holds values that are out of range. */
-  virtual void readFrom(mrpt::serialization::CArchive& in) = 0;
+  void readFrom(mrpt::serialization::CArchive& in);
+};
+
+/** What a map is made of: section `[..._creationOpts]`. */
+struct TCreationOptions : public TNamedOptions<TCreationOptions> {
+  /** Edge of a voxel, m. */
+  double resolution = 0.1;
+  /** File of the class table, relative to the WORKING directory: MRPT does not tell where the .ini
+   * file is. Empty: a single class, "occupied". */
+  std::string classes;
+
+  /** \throw std::invalid_argument naming the option and its value. */
+  void validate() const;
 };
 
 /** How observations become part of the map: section `[..._insertOpts]`. */
-struct TInsertionOptions : public TOptions {
+struct TInsertionOptions : public TNamedOptions<TInsertionOptions> {
   /** Keys: rays (All or EndVoxels), maxRange, minRange, carvingMargin, threads. */
   semantic_octree::InsertionOptions scan;
   /** Keys: decimation, flyingPixelThreshold. */
   labeled_cloud::ScanConverterOptions conversion;
   /** Keys: increments (LikelihoodConsistent or Ssmi), accuracy, hitProbability,
-   * falseAlarmProbability, minOccupancy, maxProbability, softLabelFloor. A map that is not empty
-   * refuses observations if they are no longer those that it was built with. */
+   * falseAlarmProbability, minOccupancy, maxProbability, softLabelFloor. They can change only while
+   * the map is empty; otherwise it refuses observations until they are again its own. */
   semantic_octree::FilterParameters filter;
 
-  /** \throw std::invalid_argument naming the option and its value. */
+  /** Checks all but what depends on the number of classes.
+   * \throw std::invalid_argument naming the option and its value. */
   void validate() const;
-  void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
-                          const std::string& section) override;
-  void saveToConfigFile(mrpt::config::CConfigFileBase& target,
-                        const std::string& section) const override;
-  void dumpToTextStream(std::ostream& out) const override;
-  void writeTo(mrpt::serialization::CArchive& out) const override;
-  void readFrom(mrpt::serialization::CArchive& in) override;
 };
 
 /** How an observation is compared with the map: section `[..._likelihoodOpts]`. */
-struct TLikelihoodOptions : public TOptions {
-  /** Only one of that many points counts. */
+struct TLikelihoodOptions : public TNamedOptions<TLikelihoodOptions> {
+  /** One of that many points counts. */
   int decimation = 10;
   /** Whether the classes of points are compared with those of the map, or occupancy alone. */
   bool useLabels = true;
-  /** Each point's log-likelihood is multiplied by it: neighboring points are not independent, (0,
-   * 1]. */
+  /** Each point's log-likelihood is multiplied by it, for neighboring points are not independent,
+   * (0, 1]. */
   double pointWeight = 1.0;
 
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
-  void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
-                          const std::string& section) override;
-  void saveToConfigFile(mrpt::config::CConfigFileBase& target,
-                        const std::string& section) const override;
-  void dumpToTextStream(std::ostream& out) const override;
-  void writeTo(mrpt::serialization::CArchive& out) const override;
-  void readFrom(mrpt::serialization::CArchive& in) override;
 };
 
 /** What the map's 3D object shows: section `[..._renderOpts]`. */
-struct TRenderingOptions : public TOptions {
+struct TRenderingOptions : public TNamedOptions<TRenderingOptions> {
   enum class Coloring {
-    Class,        ///< color of the likeliest class; gray where no class was seen
+    Class,        ///< color of the likeliest class, gray where no class was seen
     Probability,  ///< of the likeliest class: red (0) over yellow to green (1)
     Height        ///< blue (lowest) to red (highest)
   };
   Coloring coloring = Coloring::Class;
   bool occupied = true;
-  /** Free space, drawn translucent: much of it, so off by default. */
+  /** Free space, drawn translucent. There is much of it. */
   bool free = false;
-  /** Cells count as occupied from this occupancy on. */
+  /** Cells are occupied above this occupancy, else free. */
   double minOccupancy = 0.5;
   /** Occupied cells whose likeliest class is less probable than this are left out. */
   double minProbability = 0;
@@ -91,13 +93,11 @@ struct TRenderingOptions : public TOptions {
 
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
-  void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
-                          const std::string& section) override;
-  void saveToConfigFile(mrpt::config::CConfigFileBase& target,
-                        const std::string& section) const override;
-  void dumpToTextStream(std::ostream& out) const override;
-  void writeTo(mrpt::serialization::CArchive& out) const override;
-  void readFrom(mrpt::serialization::CArchive& in) override;
 };
+
+extern template class TNamedOptions<TCreationOptions>;
+extern template class TNamedOptions<TInsertionOptions>;
+extern template class TNamedOptions<TLikelihoodOptions>;
+extern template class TNamedOptions<TRenderingOptions>;
 
 }  // namespace semantic_map

@@ -1,0 +1,132 @@
+#include <labeled_cloud/ScanConverter.h>
+#include <mrpt/core/initializer.h>
+#include <semantic_map/CSemanticOctoMap.h>
+
+#include <sstream>
+#include <stdexcept>
+
+#include "CachedConverter.h"
+#include "SensorPose.h"
+
+MRPT_INITIALIZER(registerSemanticMaps) { semantic_map::registerMaps(); }
+
+namespace semantic_map {
+
+using labeled_cloud::LabeledScan;
+using labeled_cloud::ScanConverter;
+using mrpt::poses::CPose3D;
+using semantic_octree::ClassTable;
+using semantic_octree::SemanticOcTree;
+
+void registerMaps() {
+  labeled_cloud::registerObservations();
+  mrpt::rtti::registerClass(CLASS_ID(CSemanticOctoMap));
+}
+
+CSemanticOctoMap::CSemanticOctoMap()
+    : CSemanticOctoMap(TCreationOptions().resolution, occupancyOnly()) {}
+
+CSemanticOctoMap::CSemanticOctoMap(double resolution, const ClassTable& classes,
+                                   const semantic_octree::FilterParameters& filter)
+    : CSemanticOctoMap(SemanticOcTree(resolution, classes, filter)) {}
+
+CSemanticOctoMap::CSemanticOctoMap(SemanticOcTree tree) : m_tree(std::move(tree)) {
+  insertionOptions.filter = m_tree.filterParameters();
+}
+
+CSemanticOctoMap::~CSemanticOctoMap() = default;
+
+// Those who observe a map do not observe its copies, which is why the base class is not copied.
+CSemanticOctoMap::CSemanticOctoMap(const CSemanticOctoMap& o) : CSemanticOctoMap(o.m_tree) {
+  copyAllButTree(o);
+}
+
+CSemanticOctoMap& CSemanticOctoMap::operator=(const CSemanticOctoMap& o) {
+  if (this == &o) return *this;
+  m_tree = o.m_tree;
+  copyAllButTree(o);
+  return *this;
+}
+
+void CSemanticOctoMap::copyAllButTree(const CSemanticOctoMap& o) {
+  genericMapParams = o.genericMapParams;
+  insertionOptions = o.insertionOptions;
+  likelihoodOptions = o.likelihoodOptions;
+  renderingOptions = o.renderingOptions;
+  m_labeler = o.m_labeler;
+  m_lastInsertion = o.m_lastInsertion;
+}
+
+void CSemanticOctoMap::setTree(SemanticOcTree tree) {
+  m_tree = std::move(tree);
+  insertionOptions.filter = m_tree.filterParameters();
+}
+
+void CSemanticOctoMap::setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> labeler) {
+  m_labeler = std::move(labeler);
+}
+
+void CSemanticOctoMap::internal_clear() { m_tree.clear(); }
+
+std::string CSemanticOctoMap::asString() const {
+  std::ostringstream text;
+  text << "CSemanticOctoMap: voxels of " << m_tree.getResolution() << " m, " << m_tree.numClasses()
+       << " classes, " << m_tree.getNumLeafNodes() << " leaves, " << m_tree.memoryUsage()
+       << " bytes";
+  return text.str();
+}
+
+ScanConverter& CSemanticOctoMap::converter() const {
+  const auto& options = insertionOptions.conversion;
+  if (!m_converter || !m_converter->isFor(m_tree.classes(), options))
+    m_converter = std::make_unique<CachedConverter>(m_tree.classes(), options, m_labeler);
+  return m_converter->converter;
+}
+
+bool CSemanticOctoMap::internal_insertObservation(const mrpt::obs::CObservation& observation,
+                                                  const std::optional<const CPose3D>& T_map_robot) {
+  const std::string refusalBefore = m_lastInsertion.refusal;
+  m_lastInsertion = {};
+  if (!ScanConverter::accepts(observation)) {
+    m_lastInsertion.refusal =
+        std::string("a semantic octree map takes no ") + observation.GetRuntimeClass()->className;
+    return false;
+  }
+  try {
+    insertAccepted(observation, T_map_robot.value_or(CPose3D()));
+  } catch (const std::exception& e) {
+    m_lastInsertion.refusal = e.what();
+    if (m_lastInsertion.refusal != refusalBefore)
+      m_logger.logStr(mrpt::system::LVL_WARN, "Observation refused: " + m_lastInsertion.refusal);
+  }
+  return m_lastInsertion.inserted();
+}
+
+void CSemanticOctoMap::insertAccepted(const mrpt::obs::CObservation& observation,
+                                      const CPose3D& T_map_robot) {
+  const LabeledScan scan = *converter().convert(observation);
+  m_lastInsertion.conversion = scan.counts;
+  m_lastInsertion.labelsMissing = scan.labelsMissing;
+  m_lastInsertion.map = insertScan(scan, T_map_robot);
+}
+
+semantic_octree::InsertionReport CSemanticOctoMap::insertScan(const LabeledScan& scan,
+                                                              const CPose3D& T_map_robot) {
+  if (scan.cloud.empty())
+    throw std::invalid_argument("no point with a usable range (" +
+                                std::to_string(scan.counts.invalid) + " without)");
+  const auto T_map_sensor = sensorPose(T_map_robot, scan.T_robot_sensor);
+  useFilterOfOptions();
+  return m_tree.insert(scan.cloud, T_map_sensor, insertionOptions.scan);
+}
+
+void CSemanticOctoMap::useFilterOfOptions() {
+  if (insertionOptions.filter == m_tree.filterParameters()) return;
+  if (!m_tree.empty())
+    throw std::logic_error(
+        "the filter parameters in insertionOptions are not those that the map was built with; they "
+        "can change only while the map is empty");
+  m_tree = SemanticOcTree(m_tree.getResolution(), m_tree.classes(), insertionOptions.filter);
+}
+
+}  // namespace semantic_map

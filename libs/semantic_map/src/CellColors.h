@@ -1,0 +1,28 @@
+#pragma once
+#include <mrpt/img/TColor.h>
+#include <semantic_map/MapOptions.h>
+#include <semantic_octree/SemanticOcTree.h>
+
+namespace semantic_map {
+
+/** Of cells where no class was ever seen. */
+constexpr semantic_octree::Color kColorWithoutClass{150, 150, 150};
+
+/** Color of the likeliest class. */
+semantic_octree::Color classColor(const semantic_octree::ClassTable& classes,
+                                  semantic_octree::ClassId id);
+
+/** Colors of occupied cells in a scene. */
+class CellColors {
+ public:
+  CellColors(const semantic_octree::SemanticOcTree& tree, const TRenderingOptions& options);
+  /** \param height of the cell's center, m */
+  mrpt::img::TColor operator()(const semantic_octree::CellState& state, double height) const;
+
+ private:
+  const semantic_octree::ClassTable& m_classes;
+  TRenderingOptions::Coloring m_coloring;
+  double m_lowest = 0, m_highest = 0;
+};
+
+}  // namespace semantic_map

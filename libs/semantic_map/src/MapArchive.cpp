@@ -1,0 +1,49 @@
+#include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <istream>
+#include <ostream>
+
+#include "ArchiveStream.h"
+
+IMPLEMENTS_SERIALIZABLE(CSemanticOctoMap, CMetricMap, semantic_map)
+
+namespace semantic_map {
+
+using mrpt::serialization::CArchive;
+
+uint8_t CSemanticOctoMap::serializeGetVersion() const { return 0; }
+
+void CSemanticOctoMap::serializeTo(CArchive& out) const {
+  out << genericMapParams;
+  insertionOptions.writeTo(out);
+  likelihoodOptions.writeTo(out);
+  renderingOptions.writeTo(out);
+  ArchiveStreambuf buffer(out);
+  std::ostream stream(&buffer);
+  stream.exceptions(std::ios::badbit);  // rethrows what the archive threw
+  semantic_octree::writeTree(stream, m_tree);
+}
+
+void CSemanticOctoMap::serializeFrom(CArchive& in, uint8_t version) {
+  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  mrpt::maps::TMapGenericParams generic;
+  TInsertionOptions insertion;
+  TLikelihoodOptions likelihood;
+  TRenderingOptions rendering;
+  in >> generic;
+  insertion.readFrom(in);
+  likelihood.readFrom(in);
+  rendering.readFrom(in);
+  ArchiveStreambuf buffer(in);
+  std::istream stream(&buffer);
+  m_tree = semantic_octree::readTree(stream);
+
+  genericMapParams = generic;
+  insertionOptions = insertion;
+  likelihoodOptions = likelihood;
+  renderingOptions = rendering;
+  m_lastInsertion = {};
+}
+
+}  // namespace semantic_map

@@ -1,0 +1,184 @@
+#include <mrpt/config/CConfigFileBase.h>
+#include <mrpt/serialization/CArchive.h>
+#include <mrpt/system/string_utils.h>
+#include <semantic_map/MapOptions.h>
+
+#include <cmath>
+#include <ostream>
+#include <stdexcept>
+
+#include "OptionFields.h"
+#include "OptionText.h"
+
+namespace semantic_map {
+
+using mrpt::config::CConfigFileBase;
+using mrpt::serialization::CArchive;
+
+namespace {
+
+/** The value without a comment behind it, which MRPT leaves there. */
+std::string withoutComment(const std::string& value) {
+  std::size_t end = value.size();
+  for (const char* mark : {"//", "#", ";"})
+    for (const char* blank : {" ", "\t"})
+      end = std::min(end, value.find(std::string(blank) + mark));
+  return mrpt::system::trim(value.substr(0, end));
+}
+
+template <class Derived>
+std::vector<std::string> keysOf(const Derived& options) {
+  std::vector<std::string> keys;
+  OptionFields<Derived>::visit(
+      options, [&keys](const char* key, const auto&, const char*) { keys.push_back(key); });
+  return keys;
+}
+
+/** Options that MRPT itself reads from a section of the map. */
+std::vector<std::string> foreignKeys(const TCreationOptions&) {
+  return {"enableSaveAs3DObject", "enableObservationLikelihood", "enableObservationInsertion"};
+}
+template <class Other>
+std::vector<std::string> foreignKeys(const Other&) {
+  return {};
+}
+
+[[noreturn]] void fail(const std::string& section, const std::string& what) {
+  throw std::runtime_error("[" + section + "] " + what);
+}
+
+template <class Derived>
+void refuseUnknownKeys(const Derived& options, const CConfigFileBase& source,
+                       const std::string& section) {
+  auto known = keysOf(options);
+  for (const std::string& key : foreignKeys(options)) known.push_back(key);
+  std::vector<std::string> present;
+  source.getAllKeys(section, present);
+  for (const std::string& key : present) {
+    const auto same = [&key](const std::string& k) { return mrpt::system::strCmpI(k, key); };
+    if (std::any_of(known.begin(), known.end(), same)) continue;
+    std::string list;
+    for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
+    fail(section, "unknown key '" + key + "'; known are " + list);
+  }
+}
+
+/** Enumerations as one byte, numbers as they are. */
+template <class Value>
+void writeValue(CArchive& out, const Value& value) {
+  if constexpr (std::is_enum_v<Value>)
+    out.WriteAs<std::uint8_t>(static_cast<int>(value));
+  else if constexpr (std::is_same_v<Value, int>)
+    out.WriteAs<std::int32_t>(value);
+  else
+    out << value;
+}
+
+template <class Value>
+void readValue(CArchive& in, Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    const std::size_t number = in.ReadAs<std::uint8_t>();
+    if (number >= namesOf(value).size())
+      throw std::runtime_error("there is no value " + std::to_string(number));
+    value = static_cast<Value>(number);
+  } else if constexpr (std::is_same_v<Value, int>) {
+    value = in.ReadAs<std::int32_t>();
+  } else {
+    in >> value;
+  }
+}
+
+void require(bool fine, const char* option, double value, const char* expected) {
+  if (!fine)
+    throw std::invalid_argument(std::string(option) + " is " + formatOption(value) + ", expected " +
+                                expected);
+}
+
+bool isProbability(double p) { return p >= 0 && p <= 1; }
+
+}  // namespace
+
+template <class Derived>
+void TNamedOptions<Derived>::loadFromConfigFile(const CConfigFileBase& source,
+                                                const std::string& section) {
+  Derived loaded = static_cast<Derived&>(*this);
+  refuseUnknownKeys(loaded, source, section);
+  OptionFields<Derived>::visit(loaded, [&](const char* key, auto& value, const char*) {
+    if (!source.keyExists(section, key)) return;
+    const std::string text = withoutComment(source.read_string(section, key, ""));
+    try {
+      parseOption(text, value);
+    } catch (const std::invalid_argument& expected) {
+      fail(section, std::string(key) + " is '" + text + "', expected " + expected.what());
+    }
+  });
+  try {
+    loaded.validate();
+  } catch (const std::invalid_argument& e) {
+    fail(section, e.what());
+  }
+  static_cast<Derived&>(*this) = loaded;
+}
+
+template <class Derived>
+void TNamedOptions<Derived>::saveToConfigFile(CConfigFileBase& target,
+                                              const std::string& section) const {
+  OptionFields<Derived>::visit(static_cast<const Derived&>(*this),
+                               [&](const char* key, const auto& value, const char* explanation) {
+                                 target.write(section, key, formatOption(value),
+                                              mrpt::config::MRPT_SAVE_NAME_PADDING(),
+                                              mrpt::config::MRPT_SAVE_VALUE_PADDING(), explanation);
+                               });
+}
+
+template <class Derived>
+void TNamedOptions<Derived>::dumpToTextStream(std::ostream& out) const {
+  OptionFields<Derived>::visit(static_cast<const Derived&>(*this),
+                               [&](const char* key, const auto& value, const char* explanation) {
+                                 out << "  " << key << " = " << formatOption(value) << "  // "
+                                     << explanation << "\n";
+                               });
+}
+
+template <class Derived>
+void TNamedOptions<Derived>::writeTo(CArchive& out) const {
+  OptionFields<Derived>::visit(
+      static_cast<const Derived&>(*this),
+      [&out](const char*, const auto& value, const char*) { writeValue(out, value); });
+}
+
+template <class Derived>
+void TNamedOptions<Derived>::readFrom(CArchive& in) {
+  Derived read = static_cast<Derived&>(*this);
+  OptionFields<Derived>::visit(
+      read, [&in](const char*, auto& value, const char*) { readValue(in, value); });
+  read.validate();
+  static_cast<Derived&>(*this) = read;
+}
+
+void TCreationOptions::validate() const {
+  require(std::isfinite(resolution) && resolution > 0, "resolution", resolution, "more than 0 m");
+}
+
+void TInsertionOptions::validate() const {
+  scan.validate();
+  conversion.validate();
+}
+
+void TLikelihoodOptions::validate() const {
+  require(decimation >= 1, "decimation", decimation, "1 or more");
+  require(pointWeight > 0 && pointWeight <= 1, "pointWeight", pointWeight, "above 0, up to 1");
+}
+
+void TRenderingOptions::validate() const {
+  require(isProbability(minOccupancy), "minOccupancy", minOccupancy, "0 to 1");
+  require(isProbability(minProbability), "minProbability", minProbability, "0 to 1");
+  require(minHeight <= maxHeight, "minHeight", minHeight, "at most maxHeight");
+}
+
+template class TNamedOptions<TCreationOptions>;
+template class TNamedOptions<TInsertionOptions>;
+template class TNamedOptions<TLikelihoodOptions>;
+template class TNamedOptions<TRenderingOptions>;
+
+}  // namespace semantic_map

@@ -1,0 +1,76 @@
+#include <labeled_cloud/StagedFile.h>
+#include <mrpt/opengl/COctoMapVoxels.h>
+#include <mrpt/opengl/COpenGLScene.h>
+#include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <stdexcept>
+
+#include "CellColors.h"
+
+namespace semantic_map {
+
+using mrpt::opengl::COctoMapVoxels;
+using semantic_octree::CellState;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+/** Fills a set of boxes with the cells that the options ask for. */
+class VoxelSets {
+ public:
+  VoxelSets(const SemanticOcTree& tree, const TRenderingOptions& options)
+      : m_options(options), m_color(tree, options) {
+    m_voxels->resizeVoxelSets(2);
+    m_voxels->setVisualizationMode(COctoMapVoxels::FIXED);
+    m_voxels->enableLights(true);
+    m_voxels->enableCubeTransparency(true);
+  }
+
+  void add(const CellState& state, const mrpt::math::TPoint3Df& center, double size) {
+    if (center.z < m_options.minHeight || center.z > m_options.maxHeight) return;
+    const bool occupied = state.occupancy > m_options.minOccupancy;
+    if (!(occupied ? m_options.occupied : m_options.free)) return;
+    if (occupied && state.probability < m_options.minProbability) return;
+    m_voxels->push_back_Voxel(
+        occupied ? mrpt::opengl::VOXEL_SET_OCCUPIED : mrpt::opengl::VOXEL_SET_FREESPACE,
+        {center, size, occupied ? m_color(state, center.z) : mrpt::img::TColor(160, 200, 230, 25)});
+  }
+
+  COctoMapVoxels::Ptr take() { return m_voxels; }
+
+ private:
+  TRenderingOptions m_options;
+  CellColors m_color;
+  COctoMapVoxels::Ptr m_voxels = COctoMapVoxels::Create();
+};
+
+}  // namespace
+
+void CSemanticOctoMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const {
+  if (!genericMapParams.enableSaveAs3DObject || m_tree.empty()) return;
+  VoxelSets sets(m_tree, renderingOptions);
+  for (auto it = m_tree.begin_leafs(), end = m_tree.end_leafs(); it != end; ++it)
+    sets.add(m_tree.query(*it), {float(it.getX()), float(it.getY()), float(it.getZ())},
+             it.getSize());
+  const auto voxels = sets.take();
+  double low[3], high[3];
+  m_tree.getMetricMin(low[0], low[1], low[2]);
+  m_tree.getMetricMax(high[0], high[1], high[2]);
+  voxels->setBoundingBox({low[0], low[1], low[2]}, {high[0], high[1], high[2]});
+  o.insert(voxels);
+}
+
+void CSemanticOctoMap::saveMetricMapRepresentationToFile(const std::string& prefix) const {
+  semantic_octree::saveTree(m_tree, prefix + ".semantic");
+  labeled_cloud::StagedFile file(prefix + ".3Dscene");
+  mrpt::opengl::COpenGLScene scene;
+  const auto objects = mrpt::opengl::CSetOfObjects::Create();
+  getVisualizationInto(*objects);
+  scene.insert(objects);
+  if (!scene.saveToFile(file.path().string()))
+    throw std::runtime_error("cannot write '" + file.path().string() + "'");
+  file.commit();
+}
+
+}  // namespace semantic_map

@@ -1,0 +1,67 @@
+#pragma once
+#include <semantic_map/MapOptions.h>
+
+namespace semantic_map {
+
+/** Calls visit(key, option, explanation) for each option, in the order in which archives hold them.
+ * The one place that knows the options' names. \tparam Options may be const */
+template <class Derived>
+struct OptionFields;
+
+template <>
+struct OptionFields<TCreationOptions> {
+  template <class Options, class Visitor>
+  static void visit(Options& o, Visitor&& visit) {
+    visit("resolution", o.resolution, "edge of a voxel, m");
+    visit("classes", o.classes, "class table, relative to the working directory");
+  }
+};
+
+template <>
+struct OptionFields<TInsertionOptions> {
+  template <class Options, class Visitor>
+  static void visit(Options& o, Visitor&& visit) {
+    visit("rays", o.scan.rays, "All, or one for each of EndVoxels (faster)");
+    visit("maxRange", o.scan.maxRange, "m, returns beyond it only carve; 0: no limit");
+    visit("minRange", o.scan.minRange, "m, nearer returns are ignored");
+    visit("carvingMargin", o.scan.carvingMargin, "m before a return that are not carved");
+    visit("threads", o.scan.threads, "that share the work on a scan");
+    visit("decimation", o.conversion.decimation,
+          "one point for a block of that many pixels squared");
+    visit("flyingPixelThreshold", o.conversion.flyingPixelThreshold,
+          "share of their depth by which pixels at depth edges may hang in the air; 0: keep all");
+    visit("increments", o.filter.increments, "LikelihoodConsistent, or the constants of Ssmi");
+    visit("accuracy", o.filter.accuracy, "share of labels that name the true class");
+    visit("hitProbability", o.filter.hitProbability, "P(return | cell occupied and reached)");
+    visit("falseAlarmProbability", o.filter.falseAlarmProbability, "P(return | cell free)");
+    visit("minOccupancy", o.filter.minOccupancy, "occupancy of what was seen free for long");
+    visit("maxProbability", o.filter.maxProbability, "of a class that was seen for long");
+    visit("softLabelFloor", o.filter.softLabelFloor, "least probability in a soft label");
+  }
+};
+
+template <>
+struct OptionFields<TLikelihoodOptions> {
+  template <class Options, class Visitor>
+  static void visit(Options& o, Visitor&& visit) {
+    visit("decimation", o.decimation, "one of that many points counts");
+    visit("useLabels", o.useLabels, "compare classes too, not only occupancy");
+    visit("pointWeight", o.pointWeight, "factor on each point's log-likelihood");
+  }
+};
+
+template <>
+struct OptionFields<TRenderingOptions> {
+  template <class Options, class Visitor>
+  static void visit(Options& o, Visitor&& visit) {
+    visit("coloring", o.coloring, "Class, Probability or Height");
+    visit("occupied", o.occupied, "show occupied cells");
+    visit("free", o.free, "show free cells");
+    visit("minOccupancy", o.minOccupancy, "above it, cells are occupied");
+    visit("minProbability", o.minProbability, "of the likeliest class of occupied cells");
+    visit("minHeight", o.minHeight, "m, lower cells are left out");
+    visit("maxHeight", o.maxHeight, "m, higher cells are left out");
+  }
+};
+
+}  // namespace semantic_map

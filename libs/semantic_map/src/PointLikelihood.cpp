@@ -1,0 +1,58 @@
+#include "PointLikelihood.h"
+
+#include <cmath>
+
+namespace semantic_map {
+
+using semantic_octree::ClassId;
+using semantic_octree::kNoClass;
+using semantic_octree::SemanticOcTree;
+
+PointLikelihood::PointLikelihood(const SemanticOcTree& tree)
+    : m_tree(tree),
+      m_hit(tree.filterParameters().hitProbability),
+      m_falseAlarm(tree.filterParameters().falseAlarmProbability),
+      m_accuracy(tree.numClasses() == 1 ? 1 : tree.filterParameters().accuracy) {}
+
+const SemanticOcTree::Node* PointLikelihood::find(const Eigen::Vector3d& point) const {
+  octomap::OcTreeKey key;
+  if (!m_tree.coordToKeyChecked(point.x(), point.y(), point.z(), key)) return nullptr;
+  return m_tree.search(key);
+}
+
+PointLikelihood::Cell PointLikelihood::cell(const SemanticOcTree::Node* node, ClassId id) const {
+  const int K = m_tree.numClasses();
+  if (!node) return {0.5, 0.5 / K};
+  const auto belief = m_tree.belief(*node);
+  const double free = belief.freeProbability(K);
+  return {free, id == kNoClass ? 0 : free * std::exp(double(belief.logOddsOf(id)))};
+}
+
+double PointLikelihood::labeled(const Cell& cell) const {
+  const int K = m_tree.numClasses();
+  const double ofOthers = 1 - cell.free - cell.ofClass;
+  const double wrong = K == 1 ? 0 : (1 - m_accuracy) / (K - 1);
+  return cell.free * m_falseAlarm + m_hit * K * (m_accuracy * cell.ofClass + wrong * ofOthers);
+}
+
+double PointLikelihood::operator()(const Eigen::Vector3d& point) const {
+  return unlabeled(cell(find(point), kNoClass).free);
+}
+
+double PointLikelihood::operator()(const Eigen::Vector3d& point, ClassId label) const {
+  if (label == kNoClass) return (*this)(point);
+  return labeled(cell(find(point), label));
+}
+
+double PointLikelihood::operator()(const Eigen::Vector3d& point, const float* label) const {
+  const auto* node = find(point);
+  double sum = 0, total = 0;
+  for (int k = 1; k <= m_tree.numClasses(); ++k) {
+    if (label[k - 1] <= 0) continue;
+    total += label[k - 1];
+    sum += label[k - 1] * labeled(cell(node, static_cast<ClassId>(k)));
+  }
+  return total > 0 ? sum / total : unlabeled(cell(node, kNoClass).free);
+}
+
+}  // namespace semantic_map
