@@ -1,0 +1,51 @@
+#pragma once
+#include <semantic_octree/ClassTable.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "FrameRange.h"
+
+namespace dataset2rawlog {
+
+/** What all data sets have in common. */
+struct Conversion {
+  std::filesystem::path output;
+  /** Class table file; empty: the data set's ids are the classes (PCD only). */
+  std::filesystem::path classes;
+  FrameRange frames;
+  /** Share of the labels that is replaced by random other classes, and with which seed. */
+  double labelNoise = 0;
+  std::uint64_t seed = 1;
+};
+
+/** What went into the rawlog. */
+struct Summary {
+  std::size_t scans = 0, points = 0, labeled = 0;
+  /** Frames that had no pose or no labels at their time. */
+  std::size_t skipped = 0;
+};
+
+/** A sequence in SemanticKITTI's layout: velodyne/, labels/, calib.txt, poses.txt, times.txt.
+ * Each scan becomes a CObservationRobotPose (the LiDAR's pose inv(Tr) * P * Tr) and a
+ * CObservationLabeledCloud.
+ * \throw std::runtime_error naming file and value of whatever is missing or malformed. */
+Summary convertSemanticKitti(const std::filesystem::path& sequence, const Conversion& conversion);
+
+/** A sequence in the layout of TUM RGB-D with label images: depth.txt, label.txt, groundtruth.txt,
+ * camera.ini and perhaps rgb.txt. The poses are those of the optical frame (x right, y down, z
+ * forward); the robot's frame is the camera's with x forward, y left, z up.
+ * \param withLabels false: CObservation3DRangeScan without labels (label.txt is not read).
+ * True: with pixelLabels if these can hold all classes (64), else a CObservationLabeledCloud.
+ * \throw std::runtime_error as above. */
+Summary convertTumSequence(const std::filesystem::path& folder, bool withLabels,
+                           const Conversion& conversion);
+
+/** Labeled point clouds as ASCII PCD with the fields x, y, z, label, in the world's frame;
+ * VIEWPOINT is the sensor's pose. A file a scan, one second apart. \throw std::runtime_error as
+ * above. */
+Summary convertLabeledPcds(const std::vector<std::filesystem::path>& files,
+                           const Conversion& conversion);
+
+}  // namespace dataset2rawlog

@@ -1,0 +1,132 @@
+#include <labeled_cloud/ClassTableFile.h>
+
+#include <Eigen/Geometry>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+#include "Conversion.h"
+#include "Output.h"
+#include "TextFile.h"
+
+namespace dataset2rawlog {
+
+namespace fs = std::filesystem;
+using semantic_octree::ClassId;
+using semantic_octree::ClassTable;
+using semantic_octree::kMaxClasses;
+using semantic_octree::LabeledCloud;
+
+namespace {
+
+/** What the header of a PCD file says. */
+struct PcdHeader {
+  /** Columns of x, y, z, label. */
+  std::size_t x = 0, y = 0, z = 0, label = 0;
+  std::size_t points = 0;
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+  /** Index of the first line of data. */
+  std::size_t dataBegin = 0;
+};
+
+/** Header entries by their first word, up to and with DATA. */
+std::map<std::string, TextLine> splitHeader(const fs::path& file,
+                                            const std::vector<TextLine>& lines,
+                                            std::size_t& dataBegin) {
+  std::map<std::string, TextLine> entries;
+  for (dataBegin = 0; dataBegin < lines.size() && !entries.count("DATA"); ++dataBegin) {
+    const auto& [text, where] = lines[dataBegin];
+    const std::size_t space = std::min(text.find(' '), text.size());
+    entries[text.substr(0, space)] = {text.substr(space), where};
+  }
+  for (const char* key : {"FIELDS", "POINTS", "DATA"})
+    if (!entries.count(key))
+      throw std::runtime_error(file.string() + ": no " + key + " in the PCD header");
+  return entries;
+}
+
+std::size_t columnOf(const TextLine& fields, const std::string& name) {
+  std::istringstream stream(fields.text);
+  std::string field;
+  for (std::size_t column = 0; stream >> field; ++column)
+    if (field == name) return column;
+  throw std::runtime_error(fields.where + ": no field '" + name + "'");
+}
+
+Eigen::Isometry3d viewpoint(const TextLine& line) {
+  const auto v = numbersOf(line, 7);
+  const Eigen::Quaterniond q(v[3], v[4], v[5], v[6]);
+  if (std::abs(q.norm() - 1) > 0.01)
+    throw std::runtime_error(line.where + ": the quaternion's length is not 1");
+  return Eigen::Translation3d(v[0], v[1], v[2]) * q.normalized();
+}
+
+PcdHeader readHeader(const fs::path& file, const std::vector<TextLine>& lines) {
+  PcdHeader header;
+  const auto entries = splitHeader(file, lines, header.dataBegin);
+  if (entries.at("DATA").text != " ascii")
+    throw std::runtime_error(entries.at("DATA").where + ": expected 'DATA ascii'");
+  const TextLine& fields = entries.at("FIELDS");
+  header.x = columnOf(fields, "x");
+  header.y = columnOf(fields, "y");
+  header.z = columnOf(fields, "z");
+  header.label = columnOf(fields, "label");
+  header.points = static_cast<std::size_t>(numbersOf(entries.at("POINTS"), 1)[0]);
+  const auto view = entries.find("VIEWPOINT");
+  if (view != entries.end()) header.T_world_sensor = viewpoint(view->second);
+  return header;
+}
+
+ClassId classOf(double label, const ClassTable& table) {
+  if (!(label >= 0 && label < 4294967296.0 && label == std::floor(label)))
+    throw std::invalid_argument("label " + std::to_string(label) + " is no class id");
+  const auto raw = static_cast<std::uint32_t>(label);
+  if (!table.empty()) return table.fromRaw(raw);
+  if (raw > static_cast<std::uint32_t>(kMaxClasses))
+    throw std::invalid_argument("label " + std::to_string(raw) + " is not one of 0..254");
+  return static_cast<ClassId>(raw);
+}
+
+/** Appends the point of one line. Values behind those of the header's fields are left alone. */
+void addPoint(const TextLine& line, const PcdHeader& header,
+              const Eigen::Isometry3d& T_sensor_world, const ClassTable& table,
+              LabeledCloud& cloud) try {
+  std::istringstream stream(line.text);
+  std::vector<double> v;
+  for (std::string word; stream >> word;) v.push_back(std::stod(word));
+  if (v.size() <= std::max({header.x, header.y, header.z, header.label}))
+    throw std::invalid_argument("too few values");
+  const Eigen::Vector3d p_world(v[header.x], v[header.y], v[header.z]);
+  cloud.points.push_back((T_sensor_world * p_world).cast<float>());
+  cloud.classes.push_back(classOf(v[header.label], table));
+} catch (const std::exception& e) {
+  throw std::runtime_error(line.where + ": '" + line.text + "': " + e.what());
+}
+
+}  // namespace
+
+Summary convertLabeledPcds(const std::vector<fs::path>& files, const Conversion& conversion) {
+  const ClassTable table =
+      conversion.classes.empty() ? ClassTable() : labeled_cloud::loadClassTable(conversion.classes);
+  Output output(conversion, table);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!conversion.frames.contains(i)) continue;
+    const auto lines = readLines(files[i]);
+    const PcdHeader header = readHeader(files[i], lines);
+    if (lines.size() - header.dataBegin != header.points)
+      throw std::runtime_error(files[i].string() + ": " +
+                               std::to_string(lines.size() - header.dataBegin) +
+                               " lines of data for " + std::to_string(header.points) + " points");
+    LabeledCloud cloud;
+    const Eigen::Isometry3d T_sensor_world = header.T_world_sensor.inverse();
+    for (std::size_t k = header.dataBegin; k < lines.size(); ++k)
+      addPoint(lines[k], header, T_sensor_world, table, cloud);
+    const auto time = mrpt::Clock::fromDouble(static_cast<double>(i));
+    const mrpt::math::CMatrixDouble44 pose(header.T_world_sensor.matrix());
+    output.writePose(time, mrpt::poses::CPose3D(pose));
+    output.writeCloud(time, "pcd", std::move(cloud));
+  }
+  return output.finish();
+}
+
+}  // namespace dataset2rawlog

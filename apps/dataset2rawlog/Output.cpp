@@ -1,0 +1,55 @@
+#include "Output.h"
+
+#include <mrpt/obs/CObservationRobotPose.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace dataset2rawlog {
+
+using semantic_octree::kNoClass;
+
+Output::Output(const Conversion& conversion, const semantic_octree::ClassTable& table)
+    : m_writer(conversion.output),
+      m_noise(conversion.labelNoise, conversion.seed, table.size()),
+      m_file(conversion.output) {
+  for (int id = 1; id <= table.size(); ++id) m_classNames.push_back(table.name(id));
+}
+
+void Output::writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D& T_map_robot) {
+  mrpt::obs::CObservationRobotPose pose;
+  pose.timestamp = time;
+  pose.sensorLabel = "ground truth";
+  pose.pose.mean = T_map_robot;
+  m_writer.write(pose);
+}
+
+void Output::writeCloud(mrpt::Clock::time_point time, const std::string& sensorLabel,
+                        semantic_octree::LabeledCloud cloud) {
+  labeled_cloud::CObservationLabeledCloud observation;
+  observation.timestamp = time;
+  observation.sensorLabel = sensorLabel;
+  observation.classNames = m_classNames;
+  observation.cloud = std::move(cloud);
+  auto& classes = observation.cloud.classes;
+  m_noise.apply(classes);
+  const auto unlabeled = std::count(classes.begin(), classes.end(), kNoClass);
+  writeScan(observation, observation.cloud.size(), classes.size() - unlabeled);
+}
+
+void Output::writeScan(const mrpt::obs::CObservation& observation, std::size_t points,
+                       std::size_t labeled) {
+  m_writer.write(observation);
+  ++m_summary.scans;
+  m_summary.points += points;
+  m_summary.labeled += labeled;
+}
+
+Summary Output::finish() {
+  if (m_summary.scans == 0)
+    throw std::runtime_error(m_file.string() + ": not written, no frame was selected");
+  m_writer.finish();
+  return m_summary;
+}
+
+}  // namespace dataset2rawlog

@@ -1,0 +1,106 @@
+#include <labeled_cloud/ClassTableFile.h>
+
+#include <Eigen/Geometry>
+#include <fstream>
+#include <stdexcept>
+
+#include "Conversion.h"
+#include "Output.h"
+#include "TextFile.h"
+
+namespace dataset2rawlog {
+
+namespace fs = std::filesystem;
+using semantic_octree::ClassTable;
+using semantic_octree::LabeledCloud;
+
+namespace {
+
+using Matrix34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+
+/** A rigid motion from the twelve numbers of a 3x4 row-major matrix. */
+Eigen::Isometry3d poseOf(const TextLine& line) {
+  const auto numbers = numbersOf(line, 12);
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.affine() = Eigen::Map<const Matrix34>(numbers.data());
+  const Eigen::Matrix3d R = T.linear();
+  if (!(R * R.transpose()).isIdentity(1e-3) || R.determinant() < 0)
+    throw std::runtime_error(line.where + ": the first three columns are no rotation");
+  // The files round to six digits: the nearest rotation keeps inverse and product rigid.
+  T.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  return T;
+}
+
+/** `Tr` of calib.txt: T_camera_lidar. */
+Eigen::Isometry3d readLidarToCamera(const fs::path& file) {
+  for (const TextLine& line : readLines(file))
+    if (line.text.rfind("Tr:", 0) == 0) return poseOf(line);
+  throw std::runtime_error(file.string() + ": no line 'Tr:'");
+}
+
+template <typename T>
+std::vector<T> readBinary(const fs::path& file, std::size_t valuesEach) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw std::runtime_error(file.string() + ": cannot be opened");
+  const auto bytes = fs::file_size(file);
+  if (bytes == 0 || bytes % (valuesEach * sizeof(T)) != 0)
+    throw std::runtime_error(file.string() + ": " + std::to_string(bytes) +
+                             " bytes, expected a multiple of " +
+                             std::to_string(valuesEach * sizeof(T)));
+  std::vector<T> values(bytes / sizeof(T));
+  stream.read(reinterpret_cast<char*>(values.data()), bytes);
+  if (!stream) throw std::runtime_error(file.string() + ": cannot be read");
+  return values;
+}
+
+LabeledCloud readScan(const fs::path& pointFile, const fs::path& labelFile,
+                      const ClassTable& table) {
+  const auto xyzr = readBinary<float>(pointFile, 4);
+  const auto labels = readBinary<std::uint32_t>(labelFile, 1);
+  if (labels.size() != xyzr.size() / 4)
+    throw std::runtime_error(labelFile.string() + ": " + std::to_string(labels.size()) +
+                             " labels for " + std::to_string(xyzr.size() / 4) + " points");
+  LabeledCloud cloud;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    cloud.points.emplace_back(xyzr[4 * i], xyzr[4 * i + 1], xyzr[4 * i + 2]);
+    try {
+      cloud.classes.push_back(table.fromRaw(labels[i] & 0xffff));  // above: the instance's number
+    } catch (const std::invalid_argument& e) {
+      throw std::runtime_error(labelFile.string() + ": point " + std::to_string(i) + ": " +
+                               e.what());
+    }
+  }
+  return cloud;
+}
+
+std::string sixDigits(std::size_t number) {
+  const std::string digits = std::to_string(number);
+  return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
+}
+
+}  // namespace
+
+Summary convertSemanticKitti(const fs::path& sequence, const Conversion& conversion) {
+  const ClassTable table = labeled_cloud::loadClassTable(conversion.classes);
+  const Eigen::Isometry3d Tr = readLidarToCamera(sequence / "calib.txt");
+  const auto poses = readLines(sequence / "poses.txt");
+  const auto times = readLines(sequence / "times.txt");
+  if (poses.size() != times.size())
+    throw std::runtime_error((sequence / "times.txt").string() + ": " +
+                             std::to_string(times.size()) + " times for " +
+                             std::to_string(poses.size()) + " poses");
+  Output output(conversion, table);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!conversion.frames.contains(i)) continue;
+    const auto time = mrpt::Clock::fromDouble(numbersOf(times[i], 1)[0]);
+    const Eigen::Isometry3d T_map_lidar = Tr.inverse() * poseOf(poses[i]) * Tr;
+    const std::string name = sixDigits(i);
+    output.writePose(time, mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_map_lidar.matrix())));
+    output.writeCloud(time, "velodyne",
+                      readScan(sequence / "velodyne" / (name + ".bin"),
+                               sequence / "labels" / (name + ".label"), table));
+  }
+  return output.finish();
+}
+
+}  // namespace dataset2rawlog

@@ -1,0 +1,212 @@
+#include <labeled_cloud/ClassTableFile.h>
+#include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/ScanConverter.h>
+#include <labeled_cloud/Trajectory.h>
+#include <mrpt/config/CConfigFile.h>
+
+#include <algorithm>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "Conversion.h"
+#include "Output.h"
+#include "TextFile.h"
+
+namespace dataset2rawlog {
+
+namespace fs = std::filesystem;
+using labeled_cloud::LabelImage;
+using mrpt::obs::CObservation3DRangeScan;
+using mrpt::obs::TPixelLabelInfo;
+using mrpt::poses::CPose3D;
+using semantic_octree::ClassTable;
+using semantic_octree::kNoClass;
+
+namespace {
+
+constexpr int kMaxPixelLabels = 64;
+/** Largest difference between a depth image's time and that of what belongs to it, s. */
+constexpr double kTimeTolerance = 0.02;
+
+using ImageList = std::map<double, fs::path>;
+
+/** Reads "time file" lines; the files are relative to the list's folder. */
+ImageList readImageList(const fs::path& list) {
+  ImageList images;
+  for (const TextLine& line : readLines(list)) {
+    std::istringstream stream(line.text);
+    double time;
+    std::string file;
+    if (!(stream >> time >> file))
+      throw std::runtime_error(line.where + ": expected 'time file', found '" + line.text + "'");
+    images[time] = list.parent_path() / file;
+  }
+  if (images.empty()) throw std::runtime_error(list.string() + ": no image in this list");
+  return images;
+}
+
+std::optional<fs::path> nearest(const ImageList& images, double time) {
+  std::optional<fs::path> best;
+  double least = kTimeTolerance;
+  const auto consider = [&](const auto& image) {
+    const double apart = std::abs(image.first - time);
+    if (apart <= least) least = apart, best = image.second;
+  };
+  const auto after = images.lower_bound(time);
+  if (after != images.end()) consider(*after);
+  if (after != images.begin()) consider(*std::prev(after));
+  return best;
+}
+
+struct Camera {
+  mrpt::img::TCamera intrinsics;
+  /** Value of a depth image's pixel at one meter. */
+  double depthFactor = 0;
+};
+
+Camera readCamera(const fs::path& file) try {
+  if (!fs::is_regular_file(file)) throw std::runtime_error("cannot be opened");
+  const mrpt::config::CConfigFile config(file.string());
+  Camera camera;
+  camera.intrinsics.loadFromConfigFile("CAMERA_PARAMS", config);
+  camera.depthFactor = config.read_double("CAMERA_PARAMS", "depth_factor", 5000);
+  if (!(camera.depthFactor > 0)) throw std::runtime_error("depth_factor must be above 0");
+  return camera;
+} catch (const std::exception& e) {
+  throw std::runtime_error(file.string() + ": " + e.what());
+}
+
+CObservation3DRangeScan readDepth(const fs::path& file, const Camera& camera) {
+  const cv::Mat depth =
+      fs::exists(file) ? cv::imread(file.string(), cv::IMREAD_UNCHANGED) : cv::Mat();
+  if (depth.type() != CV_16UC1 || depth.empty())
+    throw std::runtime_error(file.string() + ": expected a depth image of 16 bits");
+  CObservation3DRangeScan scan;
+  scan.sensorLabel = "camera";
+  scan.cameraParams = scan.cameraParamsIntensity = camera.intrinsics;
+  scan.hasRangeImage = true;
+  scan.rangeUnits = static_cast<float>(1 / camera.depthFactor);
+  scan.maxRange = 65535 * scan.rangeUnits;
+  scan.rangeImage_setSize(depth.rows, depth.cols);
+  for (int row = 0; row < depth.rows; ++row)
+    std::copy_n(depth.ptr<std::uint16_t>(row), depth.cols, &scan.rangeImage(row, 0));
+  return scan;
+}
+
+void addColor(const fs::path& file, CObservation3DRangeScan& scan) {
+  if (!fs::exists(file) || !scan.intensityImage.loadFromFile(file.string()))
+    throw std::runtime_error(file.string() + ": cannot be read as an image");
+  scan.hasIntensityImage = true;
+}
+
+/** Bit c - 1 stands for class c, by its name. */
+template <unsigned BYTES>
+void setPixelLabels(const LabelImage& labels, const ClassTable& table,
+                    CObservation3DRangeScan& scan) {
+  auto info = std::make_shared<TPixelLabelInfo<BYTES>>();
+  info->setSize(labels.rows, labels.cols);
+  for (int id = 1; id <= table.size(); ++id) info->setLabelName(id - 1, table.name(id));
+  for (int row = 0, i = 0; row < labels.rows; ++row)
+    for (int col = 0; col < labels.cols; ++col, ++i)
+      if (labels.classes[i] != kNoClass) info->setLabel(row, col, labels.classes[i] - 1);
+  scan.pixelLabels = info;
+}
+
+/** Gives the same label image to every scan. */
+class OneImage : public labeled_cloud::ImageLabeler {
+ public:
+  explicit OneImage(const LabelImage& image) : m_image(image) {}
+  std::optional<LabelImage> label(const CObservation3DRangeScan&) override { return m_image; }
+
+ private:
+  LabelImage m_image;
+};
+
+/** The camera's frame with x forward, y left, z up, in the optical one (x right, y down, z
+ * forward). */
+CPose3D opticalFromForward() {
+  using mrpt::DEG2RAD;
+  return -CPose3D(0, 0, 0, DEG2RAD(-90.0), 0, DEG2RAD(-90.0));
+}
+
+class TumConverter {
+ public:
+  TumConverter(const fs::path& folder, bool withLabels, const Conversion& conversion)
+      : m_conversion(conversion),
+        m_camera(readCamera(folder / "camera.ini")),
+        m_depth(readImageList(folder / "depth.txt")),
+        m_trajectory(
+            labeled_cloud::loadTumTrajectory(folder / "groundtruth.txt", {kTimeTolerance, 1.0})) {
+    if (withLabels) m_labels = readImageList(folder / "label.txt");
+    if (fs::exists(folder / "rgb.txt")) m_color = readImageList(folder / "rgb.txt");
+    if (withLabels || !conversion.classes.empty())
+      m_table = labeled_cloud::loadClassTable(conversion.classes);
+  }
+
+  Summary run() {
+    // Colors must stay what they were: a network, or a palette, may depend on them.
+    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(true);
+    Output output(m_conversion, m_table);
+    std::size_t frame = 0;
+    for (const auto& [time, file] : m_depth)
+      if (m_conversion.frames.contains(frame++)) writeFrame(time, file, output);
+    return output.finish();
+  }
+
+ private:
+  void writeFrame(double seconds, const fs::path& depthFile, Output& output) {
+    const auto time = mrpt::Clock::fromDouble(seconds);
+    const auto T_world_optical = m_trajectory.at(time);
+    const auto labelFile = nearest(m_labels, seconds);
+    if (!T_world_optical || (!m_labels.empty() && !labelFile)) return output.skip();
+
+    CObservation3DRangeScan scan = readDepth(depthFile, m_camera);
+    scan.timestamp = time;
+    if (const auto color = nearest(m_color, seconds)) addColor(*color, scan);
+    output.writePose(time, *T_world_optical + opticalFromForward());
+    if (labelFile)
+      writeLabeled(scan, labeled_cloud::readLabelImage(*labelFile, m_table), output);
+    else
+      output.writeScan(scan, pointsOf(scan), 0);
+  }
+
+  void writeLabeled(CObservation3DRangeScan& scan, LabelImage labels, Output& output) {
+    if (m_table.size() > kMaxPixelLabels) {
+      labeled_cloud::ScanConverter converter(m_table, {}, std::make_shared<OneImage>(labels));
+      return output.writeCloud(scan.timestamp, scan.sensorLabel, converter.convert(scan)->cloud);
+    }
+    output.noise().apply(labels.classes);
+    const int bytes = (m_table.size() + 7) / 8;
+    if (bytes == 1)
+      setPixelLabels<1>(labels, m_table, scan);
+    else if (bytes == 2)
+      setPixelLabels<2>(labels, m_table, scan);
+    else if (bytes <= 4)
+      setPixelLabels<4>(labels, m_table, scan);
+    else
+      setPixelLabels<8>(labels, m_table, scan);
+    const auto counts = labeled_cloud::ScanConverter(m_table).convert(scan)->counts;
+    output.writeScan(scan, counts.points, counts.labeled);
+  }
+
+  static std::size_t pointsOf(const CObservation3DRangeScan& scan) {
+    const auto* pixels = scan.rangeImage.data();
+    return scan.rangeImage.size() - std::count(pixels, pixels + scan.rangeImage.size(), 0);
+  }
+
+  const Conversion& m_conversion;
+  Camera m_camera;
+  ImageList m_depth, m_color, m_labels;
+  labeled_cloud::Trajectory m_trajectory;
+  ClassTable m_table;
+};
+
+}  // namespace
+
+Summary convertTumSequence(const fs::path& folder, bool withLabels, const Conversion& conversion) {
+  return TumConverter(folder, withLabels, conversion).run();
+}
+
+}  // namespace dataset2rawlog

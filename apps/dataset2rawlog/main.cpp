@@ -1,0 +1,101 @@
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <iomanip>
+#include <iostream>
+
+#include "Conversion.h"
+
+namespace {
+
+using namespace dataset2rawlog;
+
+struct Cli {
+  CLI::App app{"Turns data sets of labeled scans into MRPT rawlogs."};
+  Conversion conversion;
+  std::string frames;
+  std::filesystem::path folder;
+  std::vector<std::filesystem::path> pcds;
+  bool noLabels = false;
+  std::function<Summary()> convert;
+
+  Cli() {
+    app.require_subcommand(1);
+    addSemanticKitti();
+    addTum();
+    addPcd();
+  }
+
+ private:
+  CLI::App* add(const std::string& name, const std::string& what, std::function<Summary()> action) {
+    CLI::App* command = app.add_subcommand(name, what);
+    command->add_option("--frames", frames, "Frames to take, counted from 0 (\"0:2:\": all even)")
+        ->type_name("FIRST:STEP:LAST");
+    command->add_option("--label-noise", conversion.labelNoise,
+                        "Share of the labels to replace by random other classes, 0..1");
+    command->add_option("--seed", conversion.seed, "Seed of the label noise");
+    command->callback([this, action] { convert = action; });
+    return command;
+  }
+
+  void addClasses(CLI::App* command) {
+    command->add_option("--classes", conversion.classes, "Class table (YAML)");
+  }
+
+  void addSemanticKitti() {
+    CLI::App* command = add("semantic-kitti", "A sequence of SemanticKITTI",
+                            [this] { return convertSemanticKitti(folder, conversion); });
+    addClasses(command);
+    command->get_option("--classes")->required();
+    command->add_option("SEQUENCE_DIR", folder, "velodyne/, labels/, calib.txt ...")->required();
+    command->add_option("OUT.rawlog", conversion.output)->required();
+  }
+
+  void addTum() {
+    CLI::App* command = add("tum", "A TUM RGB-D sequence with label images", [this] {
+      if (!noLabels && conversion.classes.empty())
+        throw std::invalid_argument("--classes is required, except with --no-labels");
+      return convertTumSequence(folder, !noLabels, conversion);
+    });
+    addClasses(command);
+    command->add_flag("--no-labels", noLabels, "Depth and color only");
+    command->add_option("DIR", folder, "depth.txt, label.txt, groundtruth.txt ...")->required();
+    command->add_option("OUT.rawlog", conversion.output)->required();
+  }
+
+  void addPcd() {
+    CLI::App* command = add("pcd", "ASCII PCD files with x, y, z and label", [this] {
+      if (pcds.size() < 2) throw std::invalid_argument("expected FILE... and then OUT.rawlog");
+      conversion.output = pcds.back();
+      pcds.pop_back();
+      return convertLabeledPcds(pcds, conversion);
+    });
+    addClasses(command);
+    command->add_option("FILE... OUT.rawlog", pcds, "The scans in order, then the rawlog")
+        ->required();
+  }
+};
+
+void run(Cli& cli) {
+  if (!cli.frames.empty()) cli.conversion.frames = parseFrameRange(cli.frames);
+  const Summary summary = cli.convert();
+  const double share = summary.points ? 100.0 * summary.labeled / summary.points : 0;
+  std::cout << cli.conversion.output.string() << ": " << summary.scans << " scans, "
+            << summary.points << " points, " << std::fixed << std::setprecision(1) << share
+            << " % with a class\n";
+  if (summary.skipped > 0)
+    std::cout << summary.skipped << " frames skipped: no pose or no label image at their time\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Cli cli;
+  CLI11_PARSE(cli.app, argc, argv);
+  try {
+    run(cli);
+    return 0;
+  } catch (const std::exception& e) {
+    std::cerr << "dataset2rawlog: " << e.what() << "\n";
+    return 1;
+  }
+}
