@@ -76,18 +76,19 @@ AbstractionMeasures Abstraction::measures() const {
   m.compressed.information.assign(numTerms, 0.0);
   if (m_map.empty()) return m;
   m.objective = objective();
-  m.full.knownLeaves = m.full.allLeaves = m.compressed.knownLeaves = m.compressed.allLeaves = 1;
+  for (auto* tree : {&m.full, &m.compressed}) tree->numLeaves = tree->numKnownLeaves = 1;
   if (m_map.root()->isLeaf()) return m;
   const NodeStore& store = *m_map.m_store;
   const double total = store.state<InnerState>(*m_map.root())->density;
-  const auto count = [&](TreeMeasures& tree, const Node& node, const Cell& cell, double p) {
+  const auto count = [&](tree_abstraction::TreeMeasures& tree, const Node& node, const Cell& cell,
+                         double p) {
     const InnerState& s = *store.state<InnerState>(node);
     const double* js = m_upkeep.divergences(s);
-    tree.splitInformation += p * s.splitEntropy;
+    tree.leafEntropy += p * s.splitEntropy;
     for (std::size_t t = 0; t < numTerms; ++t)
       tree.information[t] += p * js[m_upkeep.layout().positionOf(static_cast<int>(t))];
-    tree.knownLeaves += numChildren(node) - 1;
-    tree.allLeaves += (cell.depth < m_upkeep.blockDepth() ? numChildren(node) : 8) - 1;
+    tree.numKnownLeaves += numChildren(node) - 1;
+    tree.numLeaves += (cell.depth < m_upkeep.blockDepth() ? numChildren(node) : 8) - 1;
   };
   const auto visit = [&](const auto& self, const Node& node, const Cell& cell,
                          bool inOptimal) -> void {

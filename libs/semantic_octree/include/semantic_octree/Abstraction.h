@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_octree/SemanticOcTree.h>
 #include <tree_abstraction/AlphaPath.h>
+#include <tree_abstraction/GTreeSearch.h>
 
 #include <optional>
 #include <vector>
@@ -21,16 +22,10 @@ struct LeafCell {
   bool operator==(const LeafCell& o) const { return key == o.key && depth == o.depth; }
 };
 
-/** What a tree tells, and what it costs. */
-struct TreeMeasures {
-  double splitInformation = 0;      ///< I_X, nats
-  std::vector<double> information;  ///< I_t of each term, nats
-  std::size_t knownLeaves = 0;
-  std::size_t allLeaves = 0;  ///< with those that stand for unknown space
-};
-
+/** What the optimal tree keeps of what the whole map tells. Known leaves are nodes, all leaves
+ * count unknown space too: a missing child of an inner node is a leaf. */
 struct AbstractionMeasures {
-  TreeMeasures full, compressed;
+  tree_abstraction::TreeMeasures full, compressed;
   /** J of the optimal tree: sum_t weight_t I_t - alpha I_X, counted from the roots of the blocks
    * where the frame above them is free (nats). */
   double objective = 0;

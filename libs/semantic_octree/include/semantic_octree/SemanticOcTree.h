@@ -118,6 +118,11 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   std::optional<RayHit> castRay(const octomap::point3d& origin, const octomap::point3d& direction,
                                 double maxRange = 0, bool ignoreUnknown = true) const;
 
+  /** The same map to the last bit: resolution, classes, parameters, nodes, class records and, where
+   * both keep it, the abstraction's bookkeeping. */
+  bool operator==(const SemanticOcTree& o) const;
+  bool operator!=(const SemanticOcTree& o) const { return !(*this == o); }
+
   // --- Changing ---
   /** Inserts a scan: each voxel is updated at most once. Voxels in which returns end are hit (see
    * HitVotes for their class), voxels that beams cross are free unless hit.

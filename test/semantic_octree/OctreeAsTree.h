@@ -1,0 +1,74 @@
+#pragma once
+#include <semantic_octree/Abstraction.h>
+
+#include <cmath>
+#include <vector>
+
+/** A semantic octree as tree_abstraction's search sees a tree: an independent way to its optimal
+ * tree, with distributions of all classes, logarithms of the standard library, and no bookkeeping.
+ *
+ * Nodes at `rootDepth` are the roots (0: the whole map is one tree); unknown space weighs
+ * `unknownWeight` times its volume below `rootDepth`, nothing above it. */
+class OctreeAsTree {
+ public:
+  struct Node {
+    const semantic_octree::SemanticOcTreeNode* node;  ///< null: unknown space
+    int depth;
+    std::array<int, 3> index;
+  };
+
+  OctreeAsTree(const semantic_octree::SemanticOcTree& map, int rootDepth, int blockDepth,
+               double unknownWeight = 1)
+      : m_map(map),
+        m_rootDepth(rootDepth),
+        m_blockDepth(blockDepth),
+        m_unknownWeight(unknownWeight) {}
+
+  /** Unknown space is class K + 1. */
+  int numClasses() const { return m_map.numClasses() + 1; }
+  bool isKnown(const Node& leaf) const { return leaf.node != nullptr; }
+  double weight(const Node& leaf) const {
+    const double volume = std::ldexp(1.0, -3 * leaf.depth);
+    if (leaf.node) return volume;
+    return leaf.depth > m_blockDepth ? m_unknownWeight * volume : 0.0;
+  }
+  void distribution(const Node& leaf, std::vector<double>& p) const {
+    if (leaf.node) {
+      p = m_map.distribution(*leaf.node);
+      p.push_back(0);
+    } else {
+      p.assign(numClasses() + 1, 0.0);
+      p.back() = 1;
+    }
+  }
+  template <class F>
+  void forEachRoot(const F& f) const {
+    if (m_map.root()) forEachRootBelow({m_map.root(), 0, {0, 0, 0}}, f);
+  }
+  template <class F>
+  void forEachChild(const Node& n, const F& f) const {
+    if (!n.node || n.node->isLeaf()) return;
+    for (unsigned i = 0; i < 8; ++i) f(child(n, i));
+  }
+
+ private:
+  Node child(const Node& n, unsigned i) const {
+    const bool exists = m_map.nodeChildExists(n.node, i);
+    const int bits[3] = {static_cast<int>(i & 1), static_cast<int>(i >> 1 & 1),
+                         static_cast<int>(i >> 2)};
+    return {exists ? m_map.getNodeChild(n.node, i) : nullptr,
+            n.depth + 1,
+            {2 * n.index[0] + bits[0], 2 * n.index[1] + bits[1], 2 * n.index[2] + bits[2]}};
+  }
+  template <class F>
+  void forEachRootBelow(const Node& n, const F& f) const {
+    if (n.depth == m_rootDepth) return f(n);
+    forEachChild(n, [&](const Node& c) {
+      if (c.node) forEachRootBelow(c, f);
+    });
+  }
+
+  const semantic_octree::SemanticOcTree& m_map;
+  int m_rootDepth, m_blockDepth;
+  double m_unknownWeight;
+};
