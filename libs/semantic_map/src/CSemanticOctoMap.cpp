@@ -55,6 +55,7 @@ void CSemanticOctoMap::copyAllButTree(const CSemanticOctoMap& o) {
   renderingOptions = o.renderingOptions;
   m_labeler = o.m_labeler;
   m_lastInsertion = o.m_lastInsertion;
+  m_converter.reset();
 }
 
 void CSemanticOctoMap::setTree(SemanticOcTree tree) {
@@ -64,6 +65,7 @@ void CSemanticOctoMap::setTree(SemanticOcTree tree) {
 
 void CSemanticOctoMap::setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> labeler) {
   m_labeler = std::move(labeler);
+  m_converter.reset();
 }
 
 void CSemanticOctoMap::internal_clear() { m_tree.clear(); }

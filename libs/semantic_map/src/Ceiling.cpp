@@ -1,0 +1,47 @@
+#include <algorithm>
+#include <map>
+
+#include "MapCells.h"
+
+namespace semantic_map {
+namespace {
+
+/** Room below a ceiling, m. */
+constexpr float kRoom = 1.2f;
+/** Ceilings are that flat: most of it within these, m. */
+constexpr float kFlat = 0.4f;
+
+/** The two uppermost surfaces of one column, m: centers of their highest cells. */
+struct Column {
+  float top = -std::numeric_limits<float>::infinity(), next = top;
+
+  void add(float z) {
+    if (z > top) std::swap(z, top);
+    if (top - z > kRoom) next = std::max(next, z);
+  }
+};
+
+/** Heights of what hangs over something with room between. */
+std::vector<float> hangingSurfaces(const std::vector<MapCell>& cells, std::size_t& columns) {
+  std::map<std::pair<std::uint16_t, std::uint16_t>, Column> byPlace;
+  for (const MapCell& cell : cells) byPlace[{cell.key[0], cell.key[1]}].add(cell.center.z());
+  columns = byPlace.size();
+  std::vector<float> heights;
+  for (const auto& [place, column] : byPlace)
+    if (column.next > -std::numeric_limits<float>::infinity()) heights.push_back(column.top);
+  return heights;
+}
+
+}  // namespace
+
+double heightUnderCeiling(const std::vector<MapCell>& cells) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::size_t columns = 0;
+  std::vector<float> heights = hangingSurfaces(cells, columns);
+  if (columns == 0 || heights.size() * 2 < columns) return kNone;
+  std::sort(heights.begin(), heights.end());
+  const float lower = heights[heights.size() / 5], upper = heights[heights.size() * 4 / 5];
+  return upper - lower < kFlat ? lower - kFlat / 2 : kNone;
+}
+
+}  // namespace semantic_map

@@ -1,0 +1,79 @@
+#include "MapCells.h"
+
+#include <algorithm>
+
+namespace semantic_map {
+
+using semantic_octree::CellState;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+/** More than that are smaller than a pixel. */
+constexpr std::size_t kMostCells = 600'000;
+
+template <class Action>
+void forEachOccupied(const SemanticOcTree& tree, unsigned depth, double minOccupancy,
+                     Action action) {
+  for (auto it = tree.begin_leafs(static_cast<unsigned char>(depth)), end = tree.end_leafs();
+       it != end; ++it)
+    if (it->getOccupancy() > minOccupancy) action(it);
+}
+
+unsigned depthToDraw(const SemanticOcTree& tree, double minOccupancy) {
+  for (unsigned depth = tree.getTreeDepth(); depth > 1; --depth) {
+    std::size_t count = 0;
+    forEachOccupied(tree, depth, minOccupancy, [&count](const auto&) { ++count; });
+    if (count <= kMostCells) return depth;
+  }
+  return 1;
+}
+
+void cutOff(MapCells& map, double maxHeight) {
+  map.maxHeight = maxHeight;
+  const auto above = [maxHeight](const MapCell& cell) { return cell.center.z() > maxHeight; };
+  map.cells.erase(std::remove_if(map.cells.begin(), map.cells.end(), above), map.cells.end());
+}
+
+}  // namespace
+
+std::vector<std::size_t> MapCells::countClasses(int numClasses) const {
+  std::vector<std::size_t> count(numClasses + 1, 0);
+  for (const MapCell& cell : cells) ++count[cell.id];
+  return count;
+}
+
+MapCells collectCells(const SemanticOcTree& tree, const PictureStyle& style) {
+  MapCells map;
+  map.minOccupancy = style.minOccupancy;
+  map.depth = depthToDraw(tree, style.minOccupancy);
+  forEachOccupied(tree, map.depth, style.minOccupancy, [&](const auto& it) {
+    map.cells.push_back({it.getKey(), it.getDepth(),
+                         Eigen::Vector3d(it.getX(), it.getY(), it.getZ()).cast<float>(),
+                         float(it.getSize()), tree.query(*it).likeliestClass});
+  });
+  cutOff(map, style.maxHeight ? *style.maxHeight : heightUnderCeiling(map.cells));
+  return map;
+}
+
+Extent extentOf(const std::vector<MapCell>& cells) {
+  constexpr double kFar = 0.002;
+  Extent extent;
+  std::vector<float> values(cells.size());
+  const auto atRank = [&values](double share) {
+    const auto nth = values.begin() + std::ptrdiff_t(share * double(values.size() - 1) + 0.5);
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto edges = [&](float sign) {
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        values[i] = cells[i].center[axis] + sign * cells[i].size / 2;
+    };
+    edges(-1), extent.low[axis] = atRank(kFar);
+    edges(+1), extent.high[axis] = atRank(1 - kFar);
+  }
+  return extent;
+}
+
+}  // namespace semantic_map
