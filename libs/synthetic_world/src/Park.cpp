@@ -37,9 +37,9 @@ void benches(SceneBuilder& b, const Road& path) {
 }
 
 void kiosk(SceneBuilder& b) {
-  const Eigen::Vector2d at(-27, 21.5);
+  const Eigen::Vector2d at(-31.5, 25.6);
   b.cover.paintDisk(kSidewalk, at, 5.5);
-  b.add(house(b.onGround(at), -0.8 - M_PI / 2 + M_PI, {6, 5}, 1, b.random));
+  b.add(house(b.onGround(at), -0.74 - M_PI / 2, {6, 5}, 1, b.random));
 }
 
 }  // namespace

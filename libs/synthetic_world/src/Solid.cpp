@@ -55,7 +55,8 @@ bool Solid::isWindow(const Polyhedron::Face& face, const Eigen::Vector3d& p) con
   const double above = p.z() - *m_windowFloor,
                inStorey = above - kStorey * std::floor(above / kStorey);
   if (above < 0 || inStorey < kWindowLow || inStorey > kWindowHigh) return false;
-  if (p.z() + kStorey - inStorey > high()) return false;  // a storey that is not a whole one
+  // A storey that is not a whole one has none; a whole one may end at the very top.
+  if (p.z() + kStorey - inStorey > high() + 0.1) return false;
   const double u = -face.normal.y() * p.x() + face.normal.x() * p.y() - face.u0;
   const int count = static_cast<int>(face.width / kWindowPitch);
   const double margin = (face.width - count * kWindowPitch) / 2,

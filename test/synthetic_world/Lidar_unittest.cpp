@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+#include <synthetic_world/Drive.h>
+#include <synthetic_world/Lidar.h>
+
+#include "SmallWorld.h"
+
+namespace {
+
+using namespace synthetic_world;
+using V = Eigen::Vector3d;
+
+Eigen::Isometry3d raised(double height) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation().z() = height;
+  return T;
+}
+
+TEST(Lidar, ringsOnFlatGroundAreCirclesOfKnownRadius) {
+  LidarOptions options;
+  options.rings = 5, options.columns = 360, options.lowest = -30, options.highest = -10;
+  const LabeledCloud cloud = scanLidar(small_world::flat(), raised(2), options);
+  ASSERT_EQ(cloud.size(), 5u * 360u);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double elevation = (10 + 5.0 * static_cast<double>(i / 360)) * M_PI / 180;
+    EXPECT_NEAR(cloud.points[i].head<2>().norm(), 2 / std::tan(elevation), 1e-4);
+    EXPECT_NEAR(cloud.points[i].z(), -2, 1e-5);
+    EXPECT_EQ(cloud.classes[i], kGrass);
+  }
+}
+
+TEST(Lidar, columnsTurnLeftFromAhead) {
+  LidarOptions options;
+  options.columns = 4, options.rings = 1, options.lowest = options.highest = 0;
+  EXPECT_NEAR((options.beam(0, 0) - V::UnitX()).norm(), 0, 1e-12);
+  EXPECT_NEAR((options.beam(0, 1) - V::UnitY()).norm(), 0, 1e-12);
+}
+
+TEST(Lidar, pointsAreOnSurfacesOfTheirClass) {
+  for (const std::string& name : sceneNames()) {
+    const Scene scene = makeScene(name, 6);
+    const Eigen::Isometry3d T = Drive(scene).T_world_robot(40) * raised(1.8);
+    const LabeledCloud cloud = scanLidar(scene.world, T, LidarOptions());
+    int wrong = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const PointTruth truth = scene.world.at(T * cloud.points[i].cast<double>(), 1e-4);
+      EXPECT_EQ(truth.state, PointTruth::State::Surface);
+      wrong += truth.id != cloud.classes[i];
+    }
+    EXPECT_GT(cloud.size(), 15000u);
+    EXPECT_LE(wrong, static_cast<int>(cloud.size() / 2000)) << name;
+  }
+}
+
+TEST(Lidar, returnsOutsideItsRangesAreLost) {
+  LidarOptions options;
+  options.minRange = 3, options.maxRange = 12;
+  const LabeledCloud cloud = scanLidar(small_world::withWall(), raised(1.5), options);
+  ASSERT_FALSE(cloud.empty());
+  for (const auto& p : cloud.points) {
+    EXPECT_GE(p.norm(), 3 - 1e-5);
+    EXPECT_LE(p.norm(), 12 + 1e-5);
+  }
+}
+
+TEST(Lidar, badOptionsAreNamed) {
+  using small_world::messageOf;
+  const auto message = [](auto change) {
+    LidarOptions options;
+    change(options);
+    return messageOf([&] { scanLidar(small_world::flat(), raised(1), options); });
+  };
+  EXPECT_NE(message([](auto& o) { o.rings = 0; }).find("LiDAR: rings"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.columns = 0; }).find("LiDAR: columns"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.lowest = 20; }).find("LiDAR: lowest"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.highest = 90; }).find("LiDAR: highest"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.minRange = NAN; }).find("LiDAR: minRange"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.maxRange = 0; }).find("LiDAR: maxRange"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.noise.range = -1; }).find("sensor noise: range"),
+            std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+#include <synthetic_world/Random.h>
+#include <synthetic_world/Shapes.h>
+
+#include <Eigen/Geometry>
+
+namespace {
+
+using namespace synthetic_world;
+using V = Eigen::Vector3d;
+
+const Polygon kOutline = rectangle({0.3, -0.2}, 0.7, 2.4, 1.2);
+
+struct Named {
+  const char* name;
+  Shape shape;
+};
+const Named kShapes[] = {
+    {"box", Polyhedron(kOutline, kOutline, -0.5, 1)},
+    {"stump", Polyhedron(kOutline, rectangle({0.3, -0.2}, 0.7, 1.2, 0.5), -0.5, 1)},
+    {"gable", Polyhedron::gable({0.3, -0.2}, 0.7, 2.4, 1.6, -0.5, 1)},
+    {"cylinder", Shaft{{0.2, 0.1}, 0.8, 0.8, -1, 1}},
+    {"cone", Shaft{{0.2, 0.1}, 1.1, 0, -1, 1}},
+    {"funnel", Shaft{{0.2, 0.1}, 0.3, 0.9, -1, 1}},
+    {"ball", Spheroid{{0.1, 0.2, 0.3}, 0.9, 0.9}},
+    {"spheroid", Spheroid{{0.1, 0.2, 0.3}, 0.8, 1.3}}};
+
+class EveryShape : public testing::TestWithParam<Named> {
+ protected:
+  double signedDistance(const V& p) const {
+    return std::visit([&](const auto& s) { return s.signedDistance(p); }, GetParam().shape);
+  }
+  std::optional<Entry> enter(const V& o, const V& d) const {
+    return std::visit([&](const auto& s) { return s.enter(o, d); }, GetParam().shape);
+  }
+  std::optional<Section> section(double low, double high) const {
+    return std::visit([&](const auto& s) { return s.section(low, high); }, GetParam().shape);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape, testing::ValuesIn(kShapes),
+                         [](const auto& tested) { return tested.param.name; });
+
+V randomPoint(Random& random, double reach) {
+  return {random.uniform(-reach, reach), random.uniform(-reach, reach),
+          random.uniform(-reach, reach)};
+}
+
+/** Range at which small steps along a ray first are inside; the signed distance is the oracle. */
+template <class SignedDistance>
+std::optional<double> march(const SignedDistance& f, const V& o, const V& d) {
+  for (double t = 0; t < 8; t += 0.002)
+    if (f(o + t * d) <= 0) return t;
+  return std::nullopt;
+}
+
+TEST_P(EveryShape, raysEnterWhereMarchingFindsTheInside) {
+  Random random(11);
+  int entered = 0;
+  for (int i = 0; i < 400; ++i) {
+    const V o = randomPoint(random, 3), d = (randomPoint(random, 1.2) - o).normalized();
+    const auto entry = enter(o, d);
+    const auto marched = march([&](const V& p) { return signedDistance(p); }, o, d);
+    if (marched) {
+      ASSERT_TRUE(entry) << i;
+      EXPECT_NEAR(entry->range, *marched, 0.003) << i;
+      ++entered;
+    } else if (entry) {  // between two steps: it must graze
+      EXPECT_GT(signedDistance(o + (entry->range + 0.001) * d), -0.002) << i;
+    }
+  }
+  EXPECT_GT(entered, 100);
+}
+
+TEST_P(EveryShape, normalsPointOutward) {
+  Random random(12);
+  for (int i = 0; i < 300; ++i) {
+    const V o = randomPoint(random, 3), d = (randomPoint(random, 0.8) - o).normalized();
+    const auto entry = enter(o, d);
+    if (!entry || entry->range == 0) continue;
+    const V p = o + entry->range * d;
+    EXPECT_NEAR(entry->normal.norm(), 1, 1e-9);
+    EXPECT_LE(entry->normal.dot(d), 1e-9);
+    EXPECT_NEAR(signedDistance(p), 0, 1e-9);
+    EXPECT_NEAR(signedDistance(p + 0.01 * entry->normal), 0.01, 2e-4);
+  }
+}
+
+TEST_P(EveryShape, raysThatStartInsideEnterAtOnce) {
+  const auto entry = enter(V(0.2, 0, 0), V::UnitX());
+  ASSERT_TRUE(entry);
+  EXPECT_EQ(entry->range, 0);
+}
+
+TEST_P(EveryShape, raysDoNotEnterWhatIsBehindThem) {
+  EXPECT_FALSE(enter(V(4, 0, 0), V::UnitX()));
+  EXPECT_FALSE(enter(V(0.2, 0.1, 4), V::UnitZ()));
+}
+
+TEST_P(EveryShape, signedDistanceNeverExceedsTheDistance) {
+  // 1-Lipschitz along any line; that of the spheroid is of first order only.
+  const double most = std::string(GetParam().name) == "spheroid" ? 1.5 : 1;
+  Random random(13);
+  for (int i = 0; i < 2000; ++i) {
+    const V a = randomPoint(random, 2), b = a + 0.3 * randomPoint(random, 1);
+    EXPECT_LE(std::abs(signedDistance(a) - signedDistance(b)), most * (a - b).norm() + 1e-9);
+  }
+}
+
+TEST_P(EveryShape, sectionHoldsEverythingBetweenItsHeights) {
+  Random random(14);
+  for (const auto& [low, high] : {std::pair(-0.4, 0.1), std::pair(0.3, 0.9)}) {
+    const auto cut = section(low, high);
+    ASSERT_TRUE(cut);
+    for (int i = 0; i < 3000; ++i) {
+      V p = randomPoint(random, 1.6);
+      p.z() = random.uniform(low, high);
+      if (signedDistance(p) > 0) continue;
+      EXPECT_LT(cut->distanceTo(rectangle(p.head<2>(), 0, 1e-6, 1e-6)), 1e-5);
+    }
+  }
+  EXPECT_FALSE(section(2, 3));
+  EXPECT_FALSE(section(-3, -2));
+}
+
+TEST(Shapes, sectionsOfRoundShapesAreTight) {
+  const Spheroid ball{{0, 0, 2}, 1, 1};
+  EXPECT_NEAR(ball.section(0, 1.4)->radius, 0.8, 1e-12);  // 3-4-5
+  EXPECT_NEAR(ball.section(0, 2.5)->radius, 1, 1e-12);
+  const Shaft cone{{0, 0}, 2, 0, 0, 4};
+  EXPECT_NEAR(cone.section(1, 9)->radius, 1.5, 1e-12);
+}
+
+TEST(Shapes, polyhedraRefuseBadInput) {
+  const Polygon clockwise(kOutline.rbegin(), kOutline.rend());
+  EXPECT_THROW(Polyhedron(clockwise, clockwise, 0, 1), std::invalid_argument);
+  EXPECT_THROW(Polyhedron(kOutline, {{0, 0}, {1, 0}, {0, 1}}, 0, 1), std::invalid_argument);
+  EXPECT_THROW(Polyhedron(kOutline, kOutline, 1, 1), std::invalid_argument);
+  EXPECT_THROW(Polyhedron::gable({0, 0}, 0, 1, 1, 2, 1), std::invalid_argument);
+}
+
+}  // namespace
