@@ -133,6 +133,20 @@ TEST(CollapseAlphas, copesWithALongChain) {
   for (const double t : tau) ASSERT_EQ(t, 1.0);
 }
 
+TEST(CollapseAlphas, copesWithANodeOfManyChildrenInOrder) {
+  const std::size_t n = 300000;
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<std::int32_t> parents(n, 0);
+    std::vector<double> gains(n), prices(n, 1.0);
+    parents[0] = -1;
+    for (std::size_t i = 1; i < n; ++i)
+      gains[i] = static_cast<double>(n) + sign * static_cast<double>(i);
+    gains[0] = 1e6;
+    const auto tau = collapseAlphas(parents, gains, prices);
+    for (std::size_t i = 1; i < n; ++i) ASSERT_EQ(tau[i], gains[i]);
+  }
+}
+
 TEST(CollapseAlphas, worksForOtherPrices) {
   const auto found = makeExample(4);
   const auto leaves = addedLeaves(found.tree);

@@ -117,6 +117,37 @@ TEST(GTreeSearch, agreesWithBruteForceOnForestsWhoseFrameIsFree) {
   EXPECT_GE(checkShape(shape, 80).expandedPartly, 20);
 }
 
+TEST(GTreeSearch, measuresOfAForestAreThoseOfItsLeavesTheFrameIncluded) {
+  Engine random(8);
+  Shape shape{2, 4, 4, 0.7};
+  shape.numRoots = 5;
+  const auto tree = random_trees::makeTree(shape, random);
+  const AbstractionWeights weights{{relevant("one", 1, {1})}, 0.01};
+  const auto found = findOptimalTree(tree, weights);
+  double leafEntropy = 0, left = 0, p = 0;
+  for (std::size_t n = 0; n < found.tree.size(); ++n) {
+    const double share = found.information.probability[n];
+    if (n < 5) p += share * found.tree.row(n)[0];
+    if (!found.isOptimalLeaf(n)) continue;
+    leafEntropy -= xLogX(share);
+    left += share * binaryEntropy(found.tree.row(n)[0]);
+  }
+  EXPECT_NEAR(found.optimal.leafEntropy, leafEntropy, 1e-14);
+  EXPECT_NEAR(found.optimal.information[0], binaryEntropy(p) - left, 1e-14);
+  EXPECT_GT(found.roots.information[0], 0.0);
+}
+
+TEST(GTreeSearch, findsNothingInEqualLeavesOfUnequalWeights) {
+  VectorTree tree(1);
+  const auto root = tree.addInner(VectorTree::kNoParent);
+  for (const double weight : {0.1, 0.7, 1.3}) tree.addLeaf(root, weight, {0.7, 0.3});
+  for (const auto form : kForms) {
+    const auto found = findOptimalTree(tree, {{relevant("one", 1, {1})}, 0.0}, {form});
+    EXPECT_EQ(found.values.v[0], 0.0);
+    EXPECT_EQ(found.optimal.numLeaves, 1u);
+  }
+}
+
 TEST(GTreeSearch, looksAheadBeyondASplitThatDoesNotPayByItself) {
   VectorTree tree(1);
   const auto root = tree.addInner(VectorTree::kNoParent);

@@ -3,13 +3,15 @@
 #include <tree_abstraction/CollapseAlphas.h>
 #include <tree_abstraction/GTreeSearch.h>
 
+#include <cmath>
+
 #include "RandomTrees.h"
 
 using namespace tree_abstraction;
 
 namespace {
 
-constexpr std::size_t kFamilies = 1024;
+constexpr std::size_t kFamilies = 64;
 
 /** Four yes-or-no terms, as an outdoor map has. */
 AbstractionWeights fourTerms() {
@@ -108,34 +110,43 @@ void searchWithoutLogarithms(benchmark::State& state) {
 }
 BENCHMARK(searchWithoutLogarithms)->Unit(benchmark::kMillisecond);
 
-/** Inner nodes only, as an octree hands them over. */
-void wholeAlphaPath(benchmark::State& state) {
-  const auto& tree = example().tree;
-  const auto information = computeInformation(tree, example().terms);
-  const auto values = computeG(tree, information, fourTerms());
-  std::vector<std::int32_t> index(tree.size(), -1), parents;
+/** The inner nodes of a full octree, with gains that make about half of them pay at alpha 0.1. */
+struct InnerNodes {
+  std::vector<std::int32_t> parents;
   std::vector<double> gains, prices;
-  for (std::size_t n = 0; n < tree.size(); ++n) {
-    if (tree.isLeaf(n)) continue;
-    index[n] = static_cast<std::int32_t>(parents.size());
-    parents.push_back(n == 0 ? -1 : index[static_cast<std::size_t>(tree.parent[n])]);
-    gains.push_back(values.gain[n]);
-    prices.push_back(values.price[n]);
+
+  explicit InnerNodes(std::int32_t size) : gains(1, 0.1), prices(1, std::log(8.0)) {
+    random_trees::Engine random(1);
+    parents.push_back(-1);
+    for (std::int32_t i = 1; i < size; ++i) {
+      parents.push_back((i - 1) / 8);
+      prices.push_back(prices[static_cast<std::size_t>(parents.back())] / 8);
+      gains.push_back(prices.back() * 0.2 * random_trees::uniform(random));
+    }
   }
-  for (auto _ : state) benchmark::DoNotOptimize(collapseAlphas(parents, gains, prices));
-  state.counters["innerNodes"] = static_cast<double>(parents.size());
+};
+
+void countInnerNodes(benchmark::State& state) {
   state.counters["time/inner"] = benchmark::Counter(
-      static_cast<double>(parents.size()),
+      static_cast<double>(state.range(0)),
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-BENCHMARK(wholeAlphaPath)->Unit(benchmark::kMillisecond);
+
+void wholeAlphaPath(benchmark::State& state) {
+  const InnerNodes nodes(static_cast<std::int32_t>(state.range(0)));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(collapseAlphas(nodes.parents, nodes.gains, nodes.prices));
+  }
+  countInnerNodes(state);
+}
+BENCHMARK(wholeAlphaPath)->Arg(1 << 15)->Arg(1 << 20)->Unit(benchmark::kMillisecond);
 
 void sortedAlphaPath(benchmark::State& state) {
-  const auto information = computeInformation(example().tree, example().terms);
-  const auto values = computeG(example().tree, information, fourTerms());
-  const auto tau = collapseAlphas(example().tree.parent, values.gain, values.price);
+  const InnerNodes nodes(static_cast<std::int32_t>(state.range(0)));
+  const auto tau = collapseAlphas(nodes.parents, nodes.gains, nodes.prices);
   for (auto _ : state) benchmark::DoNotOptimize(AlphaPath(tau));
+  countInnerNodes(state);
 }
-BENCHMARK(sortedAlphaPath)->Unit(benchmark::kMillisecond);
+BENCHMARK(sortedAlphaPath)->Arg(1 << 15)->Arg(1 << 20)->Unit(benchmark::kMillisecond);
 
 }  // namespace

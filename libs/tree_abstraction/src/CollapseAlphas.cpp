@@ -72,8 +72,7 @@ class BundleHeaps {
   std::vector<Links> m_links;
 };
 
-/** The alpha where gain - alpha * price reaches 0. Without a price and a gain: worth what is below
- * it. */
+/** The alpha where gain - alpha * price is 0. A node without both is worth what is below it. */
 double breakEven(double gain, double price) {
   if (price > 0) return gain / price;
   return gain > 0 ? kInfinity : -kInfinity;

@@ -161,11 +161,11 @@ TreeMeasures measure(const BreadthFirstTree& tree, const TermSet& terms,
 
 std::vector<std::optional<double>> retention(const TreeMeasures& kept, const TreeMeasures& full) {
   constexpr double kNothing = 1e-12;
-  std::vector<std::optional<double>> shares(full.information.size());
-  for (std::size_t t = 0; t < shares.size(); ++t) {
-    if (full.information[t] >= kNothing) shares[t] = kept.information[t] / full.information[t];
+  std::vector<std::optional<double>> ratios(full.information.size());
+  for (std::size_t t = 0; t < ratios.size(); ++t) {
+    if (full.information[t] >= kNothing) ratios[t] = kept.information[t] / full.information[t];
   }
-  return shares;
+  return ratios;
 }
 
 bool Abstraction::isOptimalLeaf(std::size_t n) const {

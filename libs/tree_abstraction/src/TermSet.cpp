@@ -1,20 +1,8 @@
 #include "tree_abstraction/TermSet.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace tree_abstraction {
-
-double jensenShannon(const Eigen::Ref<const Eigen::VectorXd>& pi, const ChildRows& p) {
-  if (pi.size() != p.rows()) {
-    throw std::invalid_argument("jensenShannon: " + std::to_string(pi.size()) + " shares for " +
-                                std::to_string(p.rows()) + " children");
-  }
-  const auto children = static_cast<std::size_t>(p.rows());
-  const auto outcomes = static_cast<std::size_t>(p.cols());
-  return jensenShannon(pi.data(), p.data(), children, outcomes, outcomes);
-}
-
 namespace {
 
 /** The classes 0..K that are in none of the groups. */
@@ -39,8 +27,9 @@ TermSet::TermSet(const AbstractionWeights& weights, int numClasses) : m_numClass
     if (term.groups.size() > 1 && !rest.empty()) outcomes.push_back(rest);
     m_slots.push_back({m_width, outcomes.size()});
     for (const auto& outcome : outcomes) {
-      for (const int id : outcome)
+      for (const int id : outcome) {
         m_contributions.push_back({static_cast<std::size_t>(id), m_width});
+      }
       ++m_width;
     }
   }

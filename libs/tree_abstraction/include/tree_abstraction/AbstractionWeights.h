@@ -7,21 +7,21 @@ namespace tree_abstraction {
 /** One information the abstraction keeps or drops: a variable made of classes, and its weight.
  *
  * Classes are 0..K, where 0 is free space. The variable's outcomes are the groups and, if they
- * leave any class over, the rest. So {{3}} is "class 3 or not", {{1, 2}} "1 or 2, or not", {{1, 2},
- * {5}} tells three things apart, and {{0}, {1}, ..., {K}} is the whole class variable. */
+ * leave any class over, the rest. So {{3}} is "class 3 or not", {{1, 2}} is "1 or 2, or not",
+ * {{1, 2}, {5}} tells three things apart, and {{0}, {1}, ..., {K}} is the whole class variable. */
 struct InformationTerm {
   std::string name;
-  /** > 0: relevant (beta), worth keeping; < 0: irrelevant (-gamma), worth dropping; 0: measured
-   * only. */
+  /** > 0: relevant (beta), to be kept; < 0: irrelevant (-gamma), to be dropped; 0: measured only.
+   */
   double weight = 0;
   std::vector<std::vector<int>> groups;
 };
 
-/** Relevant information "one of `classes` or not". \throw std::invalid_argument beta < 0 or not
- * finite. */
+/** Relevant information "one of `classes` or not".
+ * \throw std::invalid_argument beta < 0 or not finite. */
 InformationTerm relevant(std::string name, double beta, std::vector<int> classes);
-/** Irrelevant information "one of `classes` or not". \throw std::invalid_argument gamma < 0 or not
- * finite. */
+/** Irrelevant information "one of `classes` or not".
+ * \throw std::invalid_argument gamma < 0 or not finite. */
 InformationTerm irrelevant(std::string name, double gamma, std::vector<int> classes);
 /** The whole class variable with its K + 1 outcomes. */
 InformationTerm wholeClassVariable(std::string name, double weight, int numClasses);
@@ -39,7 +39,7 @@ struct AbstractionWeights {
    * one penalizes. */
   void validate(int numClasses) const;
 
-  /** G-values up to this count as 0, so that rounding does not expand a tie (units of J). */
+  /** G-values (per unit of p(n)) up to this count as 0: rounding must not expand a tie. */
   double eps() const;
 };
 

@@ -42,8 +42,7 @@ struct BreadthFirstTree {
   void aggregate();
 };
 
-/** Shares of the parent's weight for `n` children of these weights: sum 1; even if all weigh
- * nothing. */
+/** Shares of n children in their common weight: of sum 1, and equal if none has any weight. */
 void shares(const double* weights, std::size_t n, std::vector<double>& pi);
 
 /** Lays out a tree. `nodes[i]` becomes the tree's own handle of node i.
@@ -51,13 +50,12 @@ void shares(const double* weights, std::size_t n, std::vector<double>& pi);
  * Tree is any type with
  *   - `Node`: a handle that can be copied;
  *   - `int numClasses() const`: K;
- *   - `forEachRoot(f) const`, `forEachChild(Node, f) const`: call f(Node) for each, in a fixed
- * order. A missing child with a weight is handed out as a leaf that is not known; one without may
- * be left out. No children: a leaf. Arity and depth are free;
- *   - `bool isKnown(Node leaf) const`;
+ *   - `forEachRoot(f) const` and `forEachChild(Node, f) const`: call f(Node), in a fixed order;
+ *   - `bool isKnown(Node leaf) const`: false for missing children;
  *   - `double weight(Node leaf) const`: >= 0, for instance the volume;
- *   - `void distribution(Node leaf, std::vector<double>& p) const`: probabilities of classes 0..K
- * into p. */
+ *   - `void distribution(Node leaf, std::vector<double>& p) const`: the K + 1 probabilities.
+ * A node without children is a leaf; arity and depth are free. A missing child is handed out as a
+ * leaf, too, or left out if it has no weight. */
 template <class Tree>
 BreadthFirstTree layOutBreadthFirst(const Tree& tree, const TermSet& terms,
                                     std::vector<typename Tree::Node>& nodes) {

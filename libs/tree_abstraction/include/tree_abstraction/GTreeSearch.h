@@ -67,8 +67,7 @@ std::vector<char> expandedNodes(const BreadthFirstTree& tree, const GValues& val
 /** Measures of the tree with these interior nodes (closed towards the roots). */
 TreeMeasures measure(const BreadthFirstTree& tree, const TermSet& terms,
                      const NodeInformation& information, const std::vector<char>& expanded);
-/** Share of each term's information that `kept` retains; none where `full` has less than 1e-12
- * nats. */
+/** Share of each term's information that `kept` retains; none where `full` is below 1e-12 nats. */
 std::vector<std::optional<double>> retention(const TreeMeasures& kept, const TreeMeasures& full);
 
 /** An optimal tree with all that led to it. Per-node vectors go by the breadth-first index. */

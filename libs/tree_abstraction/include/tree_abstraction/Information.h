@@ -32,18 +32,21 @@ inline double entropy(const Eigen::Ref<const Eigen::VectorXd>& p) {
   return entropy(p.data(), static_cast<std::size_t>(p.size()));
 }
 
+/** term(first) + ... + term(first + n - 1), by halves all the way down. */
+template <class Term>
+double sumByHalves(std::size_t first, std::size_t n, const Term& term) {
+  if (n == 0) return 0.0;
+  if (n == 1) return term(first);
+  return sumByHalves(first, n / 2, term) + sumByHalves(first + n / 2, n - n / 2, term);
+}
+
 /** Sum of term(0) ... term(n - 1) by halves: ((a+b)+(c+d))+((e+f)+(g+h)) for eight. Eight equal
  * terms thus give exactly eight times the term, as the parent of eight equal octree nodes needs. */
 template <class Term>
-double pairwiseSum(std::size_t n, const Term& term, std::size_t first = 0) {
-  if (n == 8) {
-    return ((term(first) + term(first + 1)) + (term(first + 2) + term(first + 3))) +
-           ((term(first + 4) + term(first + 5)) + (term(first + 6) + term(first + 7)));
-  }
-  if (n == 0) return 0.0;
-  if (n == 1) return term(first);
-  const std::size_t half = n / 2;
-  return pairwiseSum(half, term, first) + pairwiseSum(n - half, term, first + half);
+double pairwiseSum(std::size_t n, const Term& term) {
+  if (n != 8) return sumByHalves(0, n, term);
+  // Written out, the octree's case is inlined.
+  return ((term(0) + term(1)) + (term(2) + term(3))) + ((term(4) + term(5)) + (term(6) + term(7)));
 }
 
 }  // namespace tree_abstraction

@@ -1,0 +1,18 @@
+#include "tree_abstraction/Divergence.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace tree_abstraction {
+
+double jensenShannon(const Eigen::Ref<const Eigen::VectorXd>& pi, const ChildRows& p) {
+  if (pi.size() != p.rows()) {
+    throw std::invalid_argument("jensenShannon: " + std::to_string(pi.size()) + " shares for " +
+                                std::to_string(p.rows()) + " children");
+  }
+  const auto children = static_cast<std::size_t>(p.rows());
+  const auto outcomes = static_cast<std::size_t>(p.cols());
+  return jensenShannon(pi.data(), p.data(), children, outcomes, outcomes);
+}
+
+}  // namespace tree_abstraction
