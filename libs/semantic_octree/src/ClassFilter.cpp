@@ -81,29 +81,33 @@ auto ClassFilter<Real, Named>::uniform(Real occupancyLogOdds) const -> Belief {
 }
 
 template <typename Real, int Named>
-void ClassFilter<Real, Named>::addToAll(Belief& b, Real increment) const {
-  for (int i = 0; i < b.count; ++i) b.logOdds[i] = clamp(b.logOdds[i] + increment);
-  b.rest = clamp(b.rest + increment);
-  b.sort();  // clamping can make values equal, and then the ids decide
+void ClassFilter<Real, Named>::limit(Belief& b) const {
+  Real highest = b.unnamed(m_numClasses) > 0 ? b.rest : b.logOdds[0];
+  for (int i = 0; i < b.count; ++i) highest = std::max(highest, b.logOdds[i]);
+  const Real excess = std::max(Real(0), highest - m_max);
+  for (int i = 0; i < b.count; ++i) b.logOdds[i] = std::max(m_min, b.logOdds[i] - excess);
+  b.rest = std::max(m_min, b.rest - excess);
+  b.sort();
 }
 
 template <typename Real, int Named>
-void ClassFilter<Real, Named>::hit(Belief& b) const {
-  Real highest = b.count > 0 ? b.logOdds[0] : b.rest;
-  if (b.unnamed(m_numClasses) > 0) highest = std::max(highest, b.rest);
-  addToAll(b, std::min(m_hitUnlabeled, m_max - highest));
+void ClassFilter<Real, Named>::addToAll(Belief& b, Real increment) const {
+  for (int i = 0; i < b.count; ++i) b.logOdds[i] += increment;
+  b.rest += increment;
+  limit(b);
 }
 
 template <typename Real, int Named>
 void ClassFilter<Real, Named>::hit(Belief& b, ClassId id) const {
-  const Real observed = clamp(b.logOddsOf(id) + m_hitSame);
+  const Real observed = b.logOddsOf(id) + m_hitSame;
   const int index = b.indexOf(id);
-  for (int i = 0; i < b.count; ++i) b.logOdds[i] = clamp(b.logOdds[i] + m_hitOther);
-  b.rest = clamp(b.rest + m_hitOther);
+  for (int i = 0; i < b.count; ++i) b.logOdds[i] += m_hitOther;
+  b.rest += m_hitOther;
   if (index >= 0)
-    b.logOdds[index] = observed, b.sort();
+    b.logOdds[index] = observed;
   else
     name(b, id, observed);
+  limit(b);
 }
 
 template <typename Real, int Named>
@@ -111,7 +115,7 @@ void ClassFilter<Real, Named>::name(Belief& b, ClassId id, Real logOdds) const {
   if (b.count < Named) {
     b.ids[b.count] = id;
     b.logOdds[b.count++] = logOdds;
-    return b.sort();
+    return;
   }
   // The least likely of the Named + 1 joins the m - 1 classes that stay unnamed.
   const int last = Named - 1;
@@ -121,11 +125,10 @@ void ClassFilter<Real, Named>::name(Belief& b, ClassId id, Real logOdds) const {
   const int others = b.unnamed(m_numClasses) - 1;
   const double top = std::max<double>(evicted, b.rest);
   const double odds = others * std::exp(b.rest - top) + std::exp(evicted - top);
-  b.rest = clamp(onGrid<Real>(top + std::log(odds / (others + 1))));
+  b.rest = onGrid<Real>(top + std::log(odds / (others + 1)));
   if (newcomerIsLeast) return;
   b.ids[last] = id;
   b.logOdds[last] = logOdds;
-  b.sort();
 }
 
 template <typename Real, int Named>
@@ -133,8 +136,10 @@ void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
   const double K = m_numClasses;
   std::vector<Real> h(m_numClasses + 1);
   for (int k = 1; k <= m_numClasses; ++k)
-    h[k] = clamp(onGrid<Real>(b.logOddsOf(static_cast<ClassId>(k)) + m_hitUnlabeled +
-                              std::log(K * std::max<double>(q[k - 1], m_softLabelFloor))));
+    h[k] = onGrid<Real>(b.logOddsOf(static_cast<ClassId>(k)) + m_hitUnlabeled +
+                        std::log(K * std::max<double>(q[k - 1], m_softLabelFloor)));
+  const Real excess = std::max(Real(0), *std::max_element(h.begin() + 1, h.end()) - m_max);
+  for (Real& x : h) x = std::max(m_min, x - excess);
   std::vector<ClassId> order(m_numClasses);
   std::iota(order.begin(), order.end(), ClassId{1});
   const int named = std::min(Named, m_numClasses);
@@ -148,7 +153,7 @@ void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
   if (named == m_numClasses) return;
   double odds = 0;
   for (int i = named; i < m_numClasses; ++i) odds += std::exp(h[order[i]]);
-  b.rest = clamp(onGrid<Real>(std::log(odds / (m_numClasses - named))));
+  b.rest = onGrid<Real>(std::log(odds / (m_numClasses - named)));
 }
 
 template class ClassFilter<float>;

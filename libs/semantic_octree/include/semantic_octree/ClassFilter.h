@@ -8,14 +8,17 @@ namespace semantic_octree {
 /** Bayes filter over {free, class 1, ..., class K} of one cell, truncated to the `Named` likeliest
  * classes.
  *
- * An observation z adds ln(p(z | class k) / p(z | free)) to each h_k, which is then clamped. A
- * class seen for the first time leaves the rest with the rest's value; if more than `Named` classes
- * are named, the least likely one (largest id on a tie) joins the rest, whose value becomes the
- * logarithm of the mean odds of its members.
+ * An observation z adds ln(p(z | class k) / p(z | free)) to each h_k. Then, if the likeliest class
+ * is above its limit, all are lowered by the excess (clamping one by one would make equal what is
+ * not, where hits raise all of them), and each is clamped from below.
  *
- * With Real = float, increments, clamps and the prior are multiples of 2^-20, so that adding them
- * is exact: without clamping the order of observations does not matter, not even to the last bit.
- */
+ * A class seen for the first time leaves the rest with the rest's value; if more than `Named`
+ * classes are named, the least likely one (largest id on a tie) joins the rest, whose value becomes
+ * the logarithm of the mean odds of its members.
+ *
+ * With Real = float, increments, limits and the prior are multiples of 2^-20, so that adding them
+ * is exact: away from the limits the order of observations does not matter, not even to the last
+ * bit. */
 template <typename Real, int Named = 3>
 class ClassFilter {
  public:
@@ -28,10 +31,8 @@ class ClassFilter {
 
   /** A return with a class label ended in the cell. */
   void hit(Belief& b, ClassId id) const;
-  /** A return without a label ended in the cell: every class gains equally. Where the likeliest
-   * class is near its upper limit, all gain as much as that one can, so that points that say
-   * nothing about classes do not level them. */
-  void hit(Belief& b) const;
+  /** A return without a label ended in the cell: every class gains equally. */
+  void hit(Belief& b) const { addToAll(b, m_hitUnlabeled); }
   /** A return with a soft label ended in the cell. \param q K probabilities of classes 1..K. */
   void hit(Belief& b, const float* q) const;
   /** A beam passed through the cell. */
@@ -50,11 +51,12 @@ class ClassFilter {
   Real lowestOccupancy() const { return m_min + m_logNumClasses; }
 
  private:
-  Real clamp(Real h) const { return std::min(m_max, std::max(m_min, h)); }
   Real clampOccupancy(Real v) const {
     return std::min(m_max + m_logNumClasses, std::max(m_min + m_logNumClasses, v));
   }
   void addToAll(Belief& b, Real increment) const;
+  /** Puts all values into their limits and restores the order. */
+  void limit(Belief& b) const;
   void name(Belief& b, ClassId id, Real logOdds) const;
 
   int m_numClasses;

@@ -24,7 +24,7 @@ struct FilterParameters {
   /** p(occupied) of a cell that was seen free for long: each class's log-odds stay above
    * ln(q / (1 - q)) - ln K. As OctoMap's lower clamping: a larger value merges more free space. */
   double minOccupancy = 0.12;
-  /** Each class's log-odds stay below ln(q / (1 - q)), OctoMap's upper clamping. */
+  /** The likeliest class's log-odds stay below ln(q / (1 - q)), as OctoMap's upper clamping. */
   double maxProbability = 0.97;
   /** Soft labels are raised to this before their logarithm is taken. */
   double softLabelFloor = 0.001;
