@@ -1,0 +1,76 @@
+#pragma once
+#include <semantic_octree/FilterParameters.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+/** Bayes filter over {free, class 1, ..., class K} that keeps every class's log-odds: the oracle of
+ * the truncated filter, written from the formulas. */
+class ExactFilter {
+ public:
+  ExactFilter(int K, const semantic_octree::FilterParameters& p, double occupancyLogOdds = 0)
+      : m_h(K, occupancyLogOdds - std::log(K)) {
+    m_lowest = logit(p.minOccupancy) - std::log(K);
+    m_highest = logit(p.maxProbability);
+    m_floor = p.softLabelFloor;
+    if (p.increments == semantic_octree::FilterParameters::Increments::Ssmi) {
+      m_same = 1, m_other = m_miss = -0.1;
+      m_unlabeled = std::log((std::exp(m_same) + (K - 1) * std::exp(m_other)) / K);
+      return;
+    }
+    m_unlabeled = std::log(p.hitProbability / p.falseAlarmProbability);
+    m_same = m_unlabeled + (K > 1 ? std::log(K * p.accuracy) : 0);
+    m_other = m_unlabeled + (K > 1 ? std::log(K * (1 - p.accuracy) / (K - 1)) : 0);
+    m_miss = std::log((1 - p.hitProbability) / (1 - p.falseAlarmProbability));
+  }
+
+  void hit(int id) {
+    for (int k = 1; k <= K(); ++k) m_h[k - 1] += k == id ? m_same : m_other;
+    limit();
+  }
+  void hit() { addToAll(m_unlabeled); }
+  void miss() { addToAll(m_miss); }
+  void hit(const std::vector<float>& q) {
+    for (int k = 1; k <= K(); ++k)
+      m_h[k - 1] += m_unlabeled + std::log(K() * std::max<double>(q[k - 1], m_floor));
+    limit();
+  }
+
+  int K() const { return static_cast<int>(m_h.size()); }
+  double logOdds(int k) const { return m_h[k - 1]; }
+  double occupancyLogOdds() const {
+    double odds = 0;
+    for (const double h : m_h) odds += std::exp(h);
+    return std::log(odds);
+  }
+  /** [0] = free. */
+  std::vector<double> distribution() const {
+    std::vector<double> p{1};
+    double sum = 1;
+    for (const double h : m_h) p.push_back(std::exp(h)), sum += p.back();
+    for (double& x : p) x /= sum;
+    return p;
+  }
+
+ private:
+  static double logit(double p) { return std::log(p / (1 - p)); }
+  void addToAll(double increment) {
+    for (double& h : m_h) h += increment;
+    limit();
+  }
+  void limit() {
+    const double excess = *std::max_element(m_h.begin(), m_h.end()) - m_highest;
+    for (double& h : m_h) h = std::max(m_lowest, h - std::max(0.0, excess));
+  }
+
+  std::vector<double> m_h;
+  double m_lowest, m_highest, m_floor, m_same, m_other, m_unlabeled, m_miss;
+};
+
+/** Total variation distance of two distributions. */
+inline double totalVariation(const std::vector<double>& p, const std::vector<double>& q) {
+  double sum = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) sum += std::fabs(p[i] - q[i]);
+  return sum / 2;
+}
