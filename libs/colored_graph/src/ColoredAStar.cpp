@@ -59,7 +59,7 @@ class ColoredAStar {
     bool isVertex() const { return edge == kNoEdge; }
     /** Vertices go before edges: a way that is known is worth more than one that may tie it. */
     bool operator>(const Entry& o) const {
-      if (estimate != o.estimate) return estimate > o.estimate;
+      if (const int order = compare(estimate, o.estimate)) return order > 0;
       return std::make_tuple(!isVertex(), vertex, edge) >
              std::make_tuple(!o.isVertex(), o.vertex, o.edge);
     }
@@ -85,9 +85,12 @@ class ColoredAStar {
   void expand(VertexId from) {
     ++m_statistics.expansions;
     m_labels[from].open = false;
+    const Cost before = m_labels[from].toGoal;
     for (const Incidence& i : m_graph.incident(from)) {
-      const Cost cost = m_labels[from].toGoal + m_costs(i.edge);
-      if (!improves(cost, from, i.edge, m_labels[i.neighbor])) continue;
+      const Label& to = m_labels[i.neighbor];
+      if (to.toGoal < before) continue;  // whatever the edge costs, and most are on the way back
+      const Cost cost = before + m_costs(i.edge);
+      if (!improves(cost, from, i.edge, to)) continue;
       if (m_graph.edge(i.edge).state == EdgeState::Unevaluated)
         m_queue.push({cost + startToVertex(i.neighbor), i.neighbor, i.edge});
       else
@@ -114,7 +117,7 @@ class ColoredAStar {
   /** Ties go to the smaller next vertex: its edges count one more, so this makes no cycle. */
   static bool improves(const Cost& cost, VertexId next, EdgeId edge, const Label& label) {
     if (cost.isInfinite()) return false;
-    if (cost != label.toGoal) return cost < label.toGoal;
+    if (const int order = compare(cost, label.toGoal)) return order < 0;
     return std::tie(next, edge) < std::tie(label.next, label.nextEdge);
   }
 

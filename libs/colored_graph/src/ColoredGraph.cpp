@@ -139,16 +139,12 @@ void ColoredGraph::setUnevaluated(EdgeId e, Length minLength) {
   logEdge(e);
 }
 
-VertexId ColoredGraph::checked(VertexId v) const {
-  if (!containsVertex(v))
-    throw std::out_of_range("ColoredGraph: vertex " + std::to_string(v) + " is not in the graph");
-  return v;
+void ColoredGraph::refuseVertex(VertexId v) {
+  throw std::out_of_range("ColoredGraph: vertex " + std::to_string(v) + " is not in the graph");
 }
 
-EdgeId ColoredGraph::checkedEdge(EdgeId e) const {
-  if (!containsEdge(e))
-    throw std::out_of_range("ColoredGraph: edge " + std::to_string(e) + " is not in the graph");
-  return e;
+void ColoredGraph::refuseEdge(EdgeId e) {
+  throw std::out_of_range("ColoredGraph: edge " + std::to_string(e) + " is not in the graph");
 }
 
 void ColoredGraph::checkClass(ClassId id) const {

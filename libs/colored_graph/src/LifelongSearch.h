@@ -68,7 +68,8 @@ class LifelongSearch {
     Length distance;
     bool operator==(const Key& o) const { return distance == o.distance && estimate == o.estimate; }
     bool operator<(const Key& o) const {
-      return estimate == o.estimate ? distance > o.distance : estimate < o.estimate;
+      const int order = compare(estimate, o.estimate);
+      return order != 0 ? order < 0 : distance > o.distance;
     }
   };
 
@@ -167,7 +168,9 @@ class LifelongSearch {
   /** A vertex whose g fell offers itself to a neighbor. */
   void lowerRhs(const Incidence& i, VertexId next) {
     Node& node = m_nodes[i.neighbor];
-    const Cost cost = m_nodes[next].g + m_costs(i.edge);
+    const Cost& before = m_nodes[next].g;
+    if (node.rhs < before) return;  // whatever the edge costs
+    const Cost cost = before + m_costs(i.edge);
     if (!(cost < node.rhs)) return;
     node.rhs = cost;
     node.next = next;
@@ -187,7 +190,9 @@ class LifelongSearch {
   std::pair<Cost, Incidence> bestStep(VertexId v) const {
     std::pair<Cost, Incidence> best{Cost::infinite(), {kNoVertex, kNoEdge}};
     for (const Incidence& i : m_graph.incident(v)) {
-      const Cost cost = m_nodes[i.neighbor].g + m_costs(i.edge);
+      const Cost& after = m_nodes[i.neighbor].g;
+      if (best.first < after || after.isInfinite()) continue;  // whatever the edge costs
+      const Cost cost = after + m_costs(i.edge);
       const bool tie =
           cost == best.first && !cost.isInfinite() &&
           std::tie(i.neighbor, i.edge) < std::tie(best.second.neighbor, best.second.edge);

@@ -101,8 +101,16 @@ class ColoredGraph {
     std::uint32_t atA, atB;  // where the edge stands in the lists of its two vertices
   };
 
-  VertexId checked(VertexId v) const;
-  EdgeId checkedEdge(EdgeId e) const;
+  VertexId checked(VertexId v) const {
+    if (!containsVertex(v)) refuseVertex(v);
+    return v;
+  }
+  EdgeId checkedEdge(EdgeId e) const {
+    if (!containsEdge(e)) refuseEdge(e);
+    return e;
+  }
+  [[noreturn]] static void refuseVertex(VertexId v);
+  [[noreturn]] static void refuseEdge(EdgeId e);
   void checkClass(ClassId id) const;
   Length checkedLength(const EdgeProfile& profile) const;
   EdgeId insert(Edge edge);

@@ -25,18 +25,18 @@ class CostVector {
   std::int64_t operator[](int i) const { return m_parts[i]; }
   std::int64_t& operator[](int i) { return m_parts[i]; }
 
-  friend bool operator==(const CostVector& l, const CostVector& r) {
-    return l.m_parts == r.m_parts;
-  }
-  friend bool operator!=(const CostVector& l, const CostVector& r) { return !(l == r); }
-  friend bool operator<(const CostVector& l, const CostVector& r) {
+  /** Negative, 0 or positive, as l is less than, equal to or greater than r. */
+  friend int compare(const CostVector& l, const CostVector& r) {
     for (int i = 0; i < N; ++i)
-      if (l.m_parts[i] != r.m_parts[i]) return l.m_parts[i] < r.m_parts[i];
-    return false;
+      if (l.m_parts[i] != r.m_parts[i]) return l.m_parts[i] < r.m_parts[i] ? -1 : 1;
+    return 0;
   }
-  friend bool operator>(const CostVector& l, const CostVector& r) { return r < l; }
-  friend bool operator<=(const CostVector& l, const CostVector& r) { return !(r < l); }
-  friend bool operator>=(const CostVector& l, const CostVector& r) { return !(l < r); }
+  friend bool operator==(const CostVector& l, const CostVector& r) { return compare(l, r) == 0; }
+  friend bool operator!=(const CostVector& l, const CostVector& r) { return compare(l, r) != 0; }
+  friend bool operator<(const CostVector& l, const CostVector& r) { return compare(l, r) < 0; }
+  friend bool operator>(const CostVector& l, const CostVector& r) { return compare(l, r) > 0; }
+  friend bool operator<=(const CostVector& l, const CostVector& r) { return compare(l, r) <= 0; }
+  friend bool operator>=(const CostVector& l, const CostVector& r) { return compare(l, r) >= 0; }
 
   friend CostVector operator+(const CostVector& l, const CostVector& r) {
     CostVector sum;
