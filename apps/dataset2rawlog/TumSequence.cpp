@@ -118,7 +118,7 @@ void setPixelLabels(const LabelImage& labels, const ClassTable& table,
 class OneImage : public labeled_cloud::ImageLabeler {
  public:
   explicit OneImage(const LabelImage& image) : m_image(image) {}
-  std::optional<LabelImage> label(const CObservation3DRangeScan&) override { return m_image; }
+  std::optional<LabelImage> label(const mrpt::obs::CObservation&) override { return m_image; }
 
  private:
   LabelImage m_image;

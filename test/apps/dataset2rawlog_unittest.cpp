@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/ClassTableFile.h>
+#include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <labeled_cloud/RawlogTrajectory.h>
 #include <labeled_cloud/ScanConverter.h>
@@ -69,9 +70,10 @@ struct PosedScan {
   }
 };
 
-std::vector<PosedScan> readScans(const fs::path& rawlog, const ClassTable& table) {
+std::vector<PosedScan> readScans(const fs::path& rawlog, const ClassTable& table,
+                                 std::shared_ptr<ImageLabeler> labeler = nullptr) {
   const Trajectory trajectory = readTrajectory({rawlog});
-  ScanConverter converter(table);
+  ScanConverter converter(table, {}, labeler);
   RawlogReader reader(rawlog);
   std::vector<PosedScan> scans;
   while (const auto entry = reader.next())
@@ -459,6 +461,19 @@ TEST(Tum, framesOfARealFlatAgreeWithEachOther) {
                                     folder / "out.rawlog", table);
   ASSERT_EQ(scans.size(), 5u);
   EXPECT_GE(agreement(scans, 0.05), 0.98);
+
+  // The same through depth images and a folder of label images.
+  const fs::path flat = sharedDataDir() / "replica_apartment_0";
+  const RunResult plain = dataset2rawlog("tum --no-labels --frames 0:5:20 " + quoted(flat) + " " +
+                                         quoted(folder / "plain.rawlog"));
+  ASSERT_EQ(plain.status, 0) << plain.output;
+  const auto labels = std::make_shared<LabelFolder>(flat / "label", table);
+  const auto same = readScans(folder / "plain.rawlog", table, labels);
+  ASSERT_EQ(same.size(), 5u);
+  for (std::size_t s = 0; s < 5; ++s) {
+    EXPECT_EQ(same[s].scan.cloud.classes, scans[s].scan.cloud.classes);
+    EXPECT_EQ(same[s].scan.cloud.points, scans[s].scan.cloud.points);
+  }
 }
 
 // ---------------------------------------------------------------------------------------- PCD

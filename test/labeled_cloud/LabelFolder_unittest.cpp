@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/ScanConverter.h>
+#include <mrpt/obs/CObservationImage.h>
 #include <png.h>
 
 #include <opencv2/core.hpp>
@@ -158,6 +159,18 @@ TEST(LabelFolder, findsTheOneNamedLikeTheExternalImage) {
   EXPECT_EQ(labels.label(*scan)->classes[0], 2);
   scan->intensityImage.setExternalStorage("frame_8.jpg");
   EXPECT_FALSE(labels.label(*scan));
+}
+
+TEST(LabelFolder, servesCamerasWithoutDepthToo) {
+  const TemporaryFolder folder;
+  save(folder, "10.png", filledWith(2));
+  mrpt::obs::CObservationImage picture;
+  picture.timestamp = mrpt::Clock::fromDouble(10);
+  EXPECT_EQ(LabelFolder(folder.path(), roadGrassSky()).label(picture)->classes[0], 2);
+  LabelFolderOptions options;
+  options.match = LabelFolderOptions::Match::Name;
+  picture.image.setExternalStorage("10.jpg");
+  EXPECT_EQ(LabelFolder(folder.path(), roadGrassSky(), options).label(picture)->classes[0], 2);
 }
 
 TEST(LabelFolder, goesBeforeTheObservationsOwnLabelsAndIsAskedForEachScan) {

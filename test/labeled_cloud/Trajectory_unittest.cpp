@@ -184,6 +184,7 @@ TEST(RawlogTrajectory, movementsIn3dCountToo) {
   moved.actions = mrpt::obs::CActionCollection::Create();
   moved.actions->insert(action);
   seen.observations = {odometry(1, {})};
+  seen.isFrame = true;
   RawlogTrajectory path;
   path.add(moved);
   path.add(seen);
@@ -203,6 +204,14 @@ TEST(RawlogTrajectory, aRawlogWithoutPosesIsAnErrorThatSaysWhatIsMissing) {
   const auto file = writeRawlog(folder / "a.rawlog", {frame({})});
   const std::string error = errorOf([&] { readTrajectory({file}); });
   EXPECT_TRUE(contains(error, "a.rawlog: no robot poses")) << error;
+}
+
+TEST(RawlogTrajectory, aPoseThatIsNotFiniteIsNamedWithItsFile) {
+  const TemporaryFolder folder;
+  const auto file =
+      writeRawlog(folder / "a.rawlog", {robotPose(1, CPose3D(INFINITY, 0, 0, 0, 0, 0))});
+  const std::string error = errorOf([&] { readTrajectory({file}); });
+  EXPECT_TRUE(contains(error, "a.rawlog: trajectory: the pose at 1.0")) << error;
 }
 
 TEST(RawlogTrajectory, readsTheOdometryOfARealRobotsRawlog) {

@@ -1,4 +1,5 @@
 #include <labeled_cloud/EmbeddedLabels.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 
 #include <array>
 #include <stdexcept>
@@ -63,11 +64,12 @@ bool convert(const TPixelLabelInfoBase& labels, ClassOfLabel& classOf, LabelImag
 
 }  // namespace
 
-std::optional<LabelImage> EmbeddedLabels::label(const mrpt::obs::CObservation3DRangeScan& scan) {
-  if (!scan.pixelLabels) return std::nullopt;
-  const TPixelLabelInfoBase& labels = *scan.pixelLabels;
+std::optional<LabelImage> EmbeddedLabels::label(const mrpt::obs::CObservation& observation) {
+  const auto* scan = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation);
+  if (!scan || !scan->pixelLabels) return std::nullopt;
+  const TPixelLabelInfoBase& labels = *scan->pixelLabels;
   LabelImage image;
-  image.origin = "pixelLabels of '" + scan.sensorLabel + "'";
+  image.origin = "pixelLabels of '" + scan->sensorLabel + "'";
   ClassOfLabel classOf(m_table, labels);
   try {
     if (!convert<1>(labels, classOf, image) && !convert<2>(labels, classOf, image) &&

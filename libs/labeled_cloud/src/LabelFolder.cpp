@@ -1,4 +1,6 @@
 #include <labeled_cloud/LabelFolder.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationImage.h>
 
 #include <charconv>
 #include <cmath>
@@ -9,7 +11,9 @@ namespace labeled_cloud {
 
 namespace fs = std::filesystem;
 using mrpt::Clock;
+using mrpt::obs::CObservation;
 using mrpt::obs::CObservation3DRangeScan;
+using mrpt::obs::CObservationImage;
 
 namespace {
 
@@ -28,11 +32,15 @@ Clock::time_point timeInName(const fs::path& file) {
 }
 
 /** Name of the first image of the observation that is stored in a file of its own. */
-std::string externalName(const CObservation3DRangeScan& scan) {
-  if (scan.hasIntensityImage && scan.intensityImage.isExternallyStored())
-    return scan.intensityImage.getExternalStorageFile();
-  if (scan.rangeImage_isExternallyStored()) return scan.rangeImage_getExternalStorageFile("");
-  throw std::runtime_error("the observation '" + scan.sensorLabel +
+std::string externalName(const CObservation& observation) {
+  if (const auto* picture = dynamic_cast<const CObservationImage*>(&observation))
+    if (picture->image.isExternallyStored()) return picture->image.getExternalStorageFile();
+  if (const auto* scan = dynamic_cast<const CObservation3DRangeScan*>(&observation)) {
+    if (scan->hasIntensityImage && scan->intensityImage.isExternallyStored())
+      return scan->intensityImage.getExternalStorageFile();
+    if (scan->rangeImage_isExternallyStored()) return scan->rangeImage_getExternalStorageFile("");
+  }
+  throw std::runtime_error("the observation '" + observation.sensorLabel +
                            "' has no external image after which a label image could be named");
 }
 
@@ -77,15 +85,15 @@ std::optional<fs::path> LabelFolder::nearest(Clock::time_point time) const {
   return best;
 }
 
-std::optional<fs::path> LabelFolder::named(const CObservation3DRangeScan& scan) const {
-  const auto found = m_byName.find(fs::path(externalName(scan)).stem().string());
+std::optional<fs::path> LabelFolder::named(const CObservation& observation) const {
+  const auto found = m_byName.find(fs::path(externalName(observation)).stem().string());
   if (found == m_byName.end()) return std::nullopt;
   return found->second;
 }
 
-std::optional<LabelImage> LabelFolder::label(const CObservation3DRangeScan& scan) {
+std::optional<LabelImage> LabelFolder::label(const CObservation& observation) {
   const bool byTime = m_options.match == LabelFolderOptions::Match::Time;
-  const auto file = byTime ? nearest(scan.timestamp) : named(scan);
+  const auto file = byTime ? nearest(observation.timestamp) : named(observation);
   if (!file) return std::nullopt;
   return readLabelImage(*file, m_table);
 }

@@ -55,14 +55,16 @@ std::optional<RawlogEntry> RawlogReader::next() {
   if (!object) return std::nullopt;
 
   RawlogEntry entry;
-  if (const auto actions = std::dynamic_pointer_cast<mrpt::obs::CActionCollection>(object))
+  if (const auto actions = std::dynamic_pointer_cast<mrpt::obs::CActionCollection>(object)) {
     entry.actions = actions;
-  else if (const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object))
+  } else if (const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object)) {
     entry.observations.assign(frame->begin(), frame->end());
-  else if (const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object))
+    entry.isFrame = true;
+  } else if (const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object)) {
     entry.observations.push_back(observation);
-  else
+  } else {
     fail(std::string("a ") + object->GetRuntimeClass()->className + " does not belong in a rawlog");
+  }
   ++m_objects;
   return entry;
 }

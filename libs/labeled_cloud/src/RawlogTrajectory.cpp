@@ -16,7 +16,7 @@ RawlogTrajectory::RawlogTrajectory(const TrajectoryOptions& options)
 
 void RawlogTrajectory::add(const RawlogEntry& entry) {
   if (entry.actions) move(*entry.actions);
-  addFrame(entry.observations);
+  if (entry.isFrame) addFrame(entry.observations);
   for (const CObservation::Ptr& observation : entry.observations) {
     if (const auto pose = std::dynamic_pointer_cast<CObservationRobotPose>(observation))
       m_robotPoses.insert(pose->timestamp, pose->pose.mean);
@@ -55,12 +55,24 @@ const Trajectory& RawlogTrajectory::trajectory() const {
   }
 }
 
+namespace {
+
+void addNaming(const std::filesystem::path& file, const RawlogEntry& entry, RawlogTrajectory& to) {
+  try {
+    to.add(entry);
+  } catch (const std::invalid_argument& e) {
+    throw std::runtime_error(file.string() + ": " + e.what());
+  }
+}
+
+}  // namespace
+
 Trajectory readTrajectory(const std::vector<std::filesystem::path>& rawlogs,
                           const TrajectoryOptions& options) {
   RawlogTrajectory collected(options);
   for (const auto& file : rawlogs) {
     RawlogReader reader(file);
-    while (const auto entry = reader.next()) collected.add(*entry);
+    while (const auto entry = reader.next()) addNaming(file, *entry, collected);
   }
   if (collected.trajectory().empty())
     throw std::runtime_error(

@@ -14,7 +14,7 @@ class EmbeddedLabels : public ImageLabeler {
 
   /** \throw std::runtime_error a label of a pixel is not in the class table (and the table takes
    * that for an error). */
-  std::optional<LabelImage> label(const mrpt::obs::CObservation3DRangeScan& scan) override;
+  std::optional<LabelImage> label(const mrpt::obs::CObservation& observation) override;
 
  private:
   semantic_octree::ClassTable m_table;

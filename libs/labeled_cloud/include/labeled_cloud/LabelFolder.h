@@ -23,7 +23,7 @@ struct LabelFolderOptions {
   void validate() const;
 };
 
-/** Label images in a folder: PNG, TIFF, PGM or BMP, one for each depth image and of its size.
+/** Label images in a folder (PNG, TIFF, PGM or BMP), one for each image of a camera, of its size.
  *
  * - gray with 8 or 16 bits: the values are raw ids of the class table
  * - with a palette: so are the palette's indices, whatever its colors
@@ -37,11 +37,11 @@ class LabelFolder : public ImageLabeler {
 
   /** \throw std::runtime_error naming the file: unreadable, of another kind, or an id or color that
    * the class table does not know; or (Match::Name) the observation has no external image. */
-  std::optional<LabelImage> label(const mrpt::obs::CObservation3DRangeScan& scan) override;
+  std::optional<LabelImage> label(const mrpt::obs::CObservation& observation) override;
 
  private:
   std::optional<std::filesystem::path> nearest(mrpt::Clock::time_point time) const;
-  std::optional<std::filesystem::path> named(const mrpt::obs::CObservation3DRangeScan& scan) const;
+  std::optional<std::filesystem::path> named(const mrpt::obs::CObservation& observation) const;
 
   std::filesystem::path m_folder;
   semantic_octree::ClassTable m_table;

@@ -1,5 +1,5 @@
 #pragma once
-#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservation.h>
 #include <semantic_octree/ClassTable.h>
 
 #include <optional>
@@ -23,10 +23,10 @@ class ImageLabeler {
  public:
   virtual ~ImageLabeler() = default;
 
-  /** The classes of the pixels of the observation's DEPTH image, or nothing if this labeler has
-   * none for it.
+  /** The label image of an observation that has an image, or nothing if there is none for it. The
+   * labels of a CObservation3DRangeScan are those of its DEPTH image's pixels.
    * \throw std::runtime_error the label image is there but cannot be used: names it and why. */
-  virtual std::optional<LabelImage> label(const mrpt::obs::CObservation3DRangeScan& scan) = 0;
+  virtual std::optional<LabelImage> label(const mrpt::obs::CObservation& observation) = 0;
 };
 
 }  // namespace labeled_cloud

@@ -16,8 +16,10 @@ class GzipInputStream;
 struct RawlogEntry {
   /** The robot's movement since the entry before; null if the entry holds observations. */
   mrpt::obs::CActionCollection::Ptr actions;
-  /** Those of a sensory frame (all from the pose after the actions), or a single one. */
+  /** Those of a sensory frame (all from the pose after the movement before), or a single one. */
   std::vector<mrpt::obs::CObservation::Ptr> observations;
+  /** The observations are a sensory frame. */
+  bool isFrame = false;
 };
 
 /** Reads a rawlog of either kind (action/sensory-frame pairs or plain observations), compressed or

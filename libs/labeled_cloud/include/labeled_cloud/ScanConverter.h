@@ -2,6 +2,7 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/LabeledScan.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semantic_octree/ClassTable.h>
 
 #include <memory>

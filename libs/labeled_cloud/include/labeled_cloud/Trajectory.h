@@ -3,6 +3,7 @@
 #include <mrpt/poses/CPose3D.h>
 
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 
