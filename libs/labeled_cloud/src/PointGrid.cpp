@@ -54,49 +54,49 @@ PointGrid gridOfPoints(const CObservation3DRangeScan& scan) {
 
 namespace {
 
-/** Inverse depths along one row or column. */
-class Line {
- public:
-  Line(const std::vector<float>& w, std::size_t first, std::size_t step, int length)
-      : m_w(w), m_first(first), m_step(step), m_length(length) {}
+/** How far removeFlyingPixels() looks around a pixel. */
+constexpr int kReach = 3;
 
-  /** Inverse depth, NaN outside the image and where nothing was seen. */
-  float operator[](int i) const { return i < 0 || i >= m_length ? NAN : m_w[m_first + i * m_step]; }
+/** Inverse depths, NaN where nothing was seen and in a border of kReach pixels around the image. */
+struct InverseDepths {
+  std::size_t stride;
+  std::vector<float> values;
 
- private:
-  const std::vector<float>& m_w;
-  std::size_t m_first, m_step;
-  int m_length;
+  explicit InverseDepths(const PointGrid& grid)
+      : stride(grid.cols + 2 * kReach), values(stride * (grid.rows + 2 * kReach), NAN) {
+    for (int row = 0; row < grid.rows; ++row)
+      for (int col = 0; col < grid.cols; ++col)
+        values[index(row, col)] = 1 / grid.points[std::size_t(row) * grid.cols + col].x();
+  }
+  std::size_t index(int row, int col) const { return (row + kReach) * stride + col + kReach; }
 };
 
-/** Whether pixel i continues the surface on the side of SIDE (-1 or 1): as near as its neighbor, or
- * on the plane through the next three pixels. */
-bool continues(const Line& w, int i, int side, float tolerance) {
-  const float here = w[i], a = w[i + side], b = w[i + 2 * side], c = w[i + 3 * side];
+/** Whether the pixel at W continues the surface that begins STEP beside it: as near as its
+ * neighbor, or on the plane through the next three pixels. */
+bool continues(const float* w, std::ptrdiff_t step, float tolerance) {
+  const float here = w[0], a = w[step], b = w[2 * step], c = w[3 * step];
   if (std::abs(here - a) <= tolerance) return true;
   return std::abs(here - 2 * a + b) <= tolerance && std::abs(a - 2 * b + c) <= tolerance;
 }
 
-bool isFlying(const Line& w, int i, float threshold) {
-  const float here = w[i], tolerance = threshold * here;
-  if (!((here - w[i - 1]) * (w[i + 1] - here) > 0)) return false;  // also where one is missing
-  return !continues(w, i, -1, tolerance) && !continues(w, i, 1, tolerance);
+/** Along the line of pixels that are STEP apart. */
+bool isFlying(const float* w, std::ptrdiff_t step, float threshold) {
+  if (!((w[0] - w[-step]) * (w[step] - w[0]) > 0)) return false;  // also where one is missing
+  const float tolerance = threshold * w[0];
+  return !continues(w, -step, tolerance) && !continues(w, step, tolerance);
 }
 
 }  // namespace
 
 std::size_t removeFlyingPixels(PointGrid& grid, double threshold) {
-  std::vector<float> inverse(grid.points.size());
-  for (std::size_t i = 0; i < inverse.size(); ++i) inverse[i] = 1 / grid.points[i].x();
-
+  const InverseDepths inverse(grid);
+  const auto share = static_cast<float>(threshold);
+  const auto down = static_cast<std::ptrdiff_t>(inverse.stride);
   std::size_t removed = 0;
   for (int row = 0; row < grid.rows; ++row)
     for (int col = 0; col < grid.cols; ++col) {
-      const Line alongRow(inverse, std::size_t(row) * grid.cols, 1, grid.cols);
-      const Line alongColumn(inverse, col, grid.cols, grid.rows);
-      if (!isFlying(alongRow, col, static_cast<float>(threshold)) &&
-          !isFlying(alongColumn, row, static_cast<float>(threshold)))
-        continue;
+      const float* w = &inverse.values[inverse.index(row, col)];
+      if (!isFlying(w, 1, share) && !isFlying(w, down, share)) continue;
       grid.points[std::size_t(row) * grid.cols + col] = PointGrid::noReturn();
       ++removed;
     }

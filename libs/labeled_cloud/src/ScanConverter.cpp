@@ -65,6 +65,11 @@ std::optional<std::size_t> nearestOfBlock(const PointGrid& grid, int top, int le
 }
 
 void addPoints(const PointGrid& grid, const LabelImage* labels, int decimation, LabeledScan& scan) {
+  const auto blocks = [decimation](int n) {
+    return std::size_t((n + decimation - 1) / decimation);
+  };
+  scan.cloud.points.reserve(blocks(grid.rows) * blocks(grid.cols));
+  if (labels) scan.cloud.classes.reserve(scan.cloud.points.capacity());
   for (int row = 0; row < grid.rows; row += decimation)
     for (int col = 0; col < grid.cols; col += decimation) {
       const auto pixel = nearestOfBlock(grid, row, col, decimation);
