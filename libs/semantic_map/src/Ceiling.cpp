@@ -32,6 +32,13 @@ std::vector<float> hangingSurfaces(const std::vector<MapCell>& cells, std::size_
   return heights;
 }
 
+/** The lowest height at which a flat surface of a room's size begins; heights are sorted. */
+float lowestFlatSurface(const std::vector<float>& heights, std::size_t size) {
+  for (std::size_t i = 0; i + size <= heights.size(); ++i)
+    if (heights[i + size - 1] - heights[i] < kFlat / 2) return heights[i];
+  return heights.front();
+}
+
 }  // namespace
 
 double heightUnderCeiling(const std::vector<MapCell>& cells) {
@@ -41,7 +48,8 @@ double heightUnderCeiling(const std::vector<MapCell>& cells) {
   if (columns == 0 || heights.size() * 2 < columns) return kNone;
   std::sort(heights.begin(), heights.end());
   const float lower = heights[heights.size() / 5], upper = heights[heights.size() * 4 / 5];
-  return upper - lower < kFlat ? lower - kFlat / 2 : kNone;
+  if (upper - lower > kFlat) return kNone;
+  return lowestFlatSurface(heights, std::max<std::size_t>(1, columns / 20)) - kFlat / 2;
 }
 
 }  // namespace semantic_map

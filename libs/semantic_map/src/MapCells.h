@@ -39,8 +39,8 @@ struct Extent {
 };
 Extent extentOf(const std::vector<MapCell>& cells);
 
-/** The height under the ceiling if the cells are those of an indoor map: if most columns end in a
- * surface at nearly one height with room to stand below. Infinite otherwise. */
+/** The height under the lowest ceiling if the cells are those of an indoor map: if most columns end
+ * in a surface at nearly one height with room to stand below. Infinite otherwise. */
 double heightUnderCeiling(const std::vector<MapCell>& cells);
 
 }  // namespace semantic_map

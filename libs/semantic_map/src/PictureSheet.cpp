@@ -27,8 +27,23 @@ void write(cv::Mat& picture, const std::string& text, cv::Point leftMiddle) {
   cv::putText(picture, text, leftMiddle + cv::Point(0, 6), kFont, kTextSize, kInk, 1, cv::LINE_AA);
 }
 
+/** Upper left corner of a place of that size in the corner of the picture with least in it. */
+cv::Point emptiestCorner(const cv::Mat& picture, cv::Size size) {
+  const int right = picture.cols - size.width, bottom = picture.rows - size.height;
+  cv::Point best(0, bottom);
+  int least = size.area() + 1;
+  for (const cv::Point corner : {cv::Point(0, bottom), {right, bottom}, {right, 0}, {0, 0}}) {
+    const cv::Rect place = cv::Rect(corner, size) & cv::Rect({0, 0}, picture.size());
+    cv::Mat empty;
+    cv::inRange(picture(place), kPaper, kPaper, empty);
+    const int filled = place.area() - cv::countNonZero(empty);
+    if (filled < least) best = corner, least = filled;
+  }
+  return best;
+}
+
 /** Text and lines stay readable on any class's color. */
-void drawHalo(cv::Mat& picture, cv::Rect area) {
+void brighten(cv::Mat& picture, cv::Rect area) {
   area &= cv::Rect({0, 0}, picture.size());
   cv::Mat part = picture(area);
   cv::addWeighted(part, 0.25, cv::Mat(part.size(), part.type(), kPaper), 0.75, 0, part);
@@ -60,11 +75,12 @@ std::vector<LegendEntry> legendOf(const semantic_octree::ClassTable& classes,
                                   const std::vector<std::size_t>& counts) {
   std::vector<std::size_t> order(counts.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
+  std::stable_sort(order.begin() + 1, order.end(),
                    [&counts](std::size_t a, std::size_t b) { return counts[a] > counts[b]; });
+  std::rotate(order.begin(), order.begin() + 1, order.end());
   std::vector<LegendEntry> entries;
   for (const std::size_t i : order) {
-    if (counts[i] == 0) break;
+    if (counts[i] == 0) continue;
     const auto id = static_cast<ClassId>(i);
     const auto color = classColor(classes, id);
     entries.push_back({i == 0 ? "no class" : classes.name(id),
@@ -101,21 +117,25 @@ void drawScaleBar(cv::Mat& picture, double pixelsPerMeter) {
   const double meters = roundLength(picture.cols / pixelsPerMeter / 5);
   const int length = std::max(1, int(std::lround(meters * pixelsPerMeter)));
   const std::string text = lengthName(meters);
-  const int right = picture.cols - kMargin, bottom = picture.rows - kMargin;
   const int width = std::max(length, textWidth(text));
-  drawHalo(picture, {right - width - 8, bottom - 30, width + 16, 40});
-  cv::rectangle(picture, {right - length, bottom - 4, length, 4}, kInk, cv::FILLED);
-  for (const int x : {right - length, right - 2})
-    cv::rectangle(picture, {x, bottom - 9, 2, 9}, kInk, cv::FILLED);
-  write(picture, text, {right - (length + textWidth(text)) / 2, bottom - 19});
+  const cv::Size size(width + 2 * kMargin, 2 * kRow + 4);
+  const cv::Point corner = emptiestCorner(picture, size);
+  brighten(picture, {corner, size});
+  const cv::Point left = corner + cv::Point(kMargin + (width - length) / 2, size.height - kMargin);
+  cv::rectangle(picture, {left.x, left.y - 4, length, 4}, kInk, cv::FILLED);
+  for (const int x : {left.x, left.x + length - 2})
+    cv::rectangle(picture, {x, left.y - 9, 2, 9}, kInk, cv::FILLED);
+  write(picture, text, {left.x + (length - textWidth(text)) / 2, left.y - 20});
 }
 
 void drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions) {
   constexpr double kLength = 46;
-  const cv::Point2d origin(kMargin + 50, picture.rows - kMargin - 50);
+  constexpr int kSize = 132;
+  const cv::Point corner = emptiestCorner(picture, {kSize, kSize});
+  brighten(picture, {corner, cv::Size(kSize, kSize)});
+  const cv::Point2d origin = cv::Point2d(corner) + cv::Point2d(kSize / 2.0, kSize / 2.0);
   const std::array<cv::Scalar, 3> colors = {cv::Scalar(40, 40, 200), cv::Scalar(40, 140, 40),
                                             cv::Scalar(200, 80, 30)};
-  drawHalo(picture, {int(origin.x) - 62, int(origin.y) - 62, 124, 124});
   for (int axis = 0; axis < 3; ++axis) {
     if (cv::norm(directions[axis]) < 0.1) continue;
     const cv::Point2d tip = origin + kLength * directions[axis];

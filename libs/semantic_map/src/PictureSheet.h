@@ -15,8 +15,8 @@ struct LegendEntry {
   cv::Scalar color;
 };
 
-/** The classes that are there, the most frequent first, and "no class". \param counts see
- * MapCells::countClasses() */
+/** The classes that are there, the most frequent first, and "no class" at the end. \param counts
+ * see MapCells::countClasses() */
 std::vector<LegendEntry> legendOf(const semantic_octree::ClassTable& classes,
                                   const std::vector<std::size_t>& counts);
 
@@ -24,11 +24,11 @@ std::vector<LegendEntry> legendOf(const semantic_octree::ClassTable& classes,
 cv::Mat withLegend(const cv::Mat& picture, const std::string& title,
                    const std::vector<LegendEntry>& entries);
 
-/** A bar of 1, 2 or 5 times a power of ten meters at the lower right. */
+/** A bar of 1, 2 or 5 times a power of ten meters in the emptiest corner. */
 void drawScaleBar(cv::Mat& picture, double pixelsPerMeter);
 
-/** The map's axes at the lower left. \param directions of x, y, z in the picture (x right, y down),
- * at most of length 1; those that point at the viewer are left out */
+/** The map's axes in the emptiest corner. \param directions of x, y, z in the picture (x right, y
+ * down), at most of length 1; those that point at the viewer are left out */
 void drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions);
 
 }  // namespace semantic_map

@@ -87,8 +87,8 @@ cv::Mat renderTopView(const SemanticOcTree& tree, const PictureStyle& style) {
   const double scale = std::min(double(style.width - 2 * kBorder) / columns.color.cols,
                                 double(style.height - 2 * kBorder) / columns.color.rows);
   cv::Mat picture = onPaper(scaledBy(columns.color, scale), kBorder);
-  drawScaleBar(picture, scale / columns.cell);
   drawAxes(picture, {cv::Point2d(1, 0), cv::Point2d(0, -1), cv::Point2d(0, 0)});
+  drawScaleBar(picture, scale / columns.cell);
   if (!style.legend) return picture;
   return withLegend(picture, style.title,
                     legendOf(tree.classes(), map.countClasses(tree.numClasses())));
