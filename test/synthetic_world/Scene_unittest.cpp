@@ -19,7 +19,8 @@ class EveryScene : public testing::TestWithParam<std::tuple<std::string, int>> {
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene,
                          testing::Combine(testing::ValuesIn(sceneNames()), testing::Range(1, 6)),
                          [](const auto& tested) {
-                           return std::get<0>(tested.param) + std::to_string(std::get<1>(tested.param));
+                           return std::get<0>(tested.param) +
+                                  std::to_string(std::get<1>(tested.param));
                          });
 
 TEST_P(EveryScene, routeStaysOnTheRoadAndClearOfEverything) {

@@ -1,0 +1,44 @@
+#pragma once
+#include <synthetic_world/Camera.h>
+#include <synthetic_world/Lidar.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+namespace synth_rawlog {
+
+/** The command line. */
+struct Cli {
+  std::filesystem::path output;  // the rawlog; empty if only the truth is asked
+  std::string scene = "village";
+  std::uint64_t seed = 1;
+  double hills = 1;  // factor
+
+  std::string sensor = "both";  // camera, lidar, both
+  int frames = 0;               // 0: one round
+  double rate = 2;              // frames a second
+  double speed = 2.5;           // m/s
+  double start = 0;             // m along the route
+  bool odometry = false;
+  double odometryNoise = 0.01;  // share of each movement
+
+  synthetic_world::CameraOptions camera;
+  double cameraPitch = 8;  // degrees down
+  synthetic_world::LidarOptions lidar;
+  synthetic_world::SensorNoise noise{0.01, 0, 0};
+
+  std::filesystem::path truthQuery, picture;
+  double tolerance = 0.05;  // m
+
+  bool wantsCamera() const { return sensor != "lidar"; }
+  bool wantsLidar() const { return sensor != "camera"; }
+};
+
+/** Declares all options; parsing fills `cli`. */
+void addOptions(CLI::App& app, Cli& cli);
+
+/** Brings the parsed values into the sensors' options and checks what CLI11 cannot.
+ * \throw std::invalid_argument naming the value. */
+void complete(Cli& cli);
+
+}  // namespace synth_rawlog

@@ -1,0 +1,117 @@
+// Drives a robot through a synthetic world and writes what its labeled sensors see.
+#include <synthetic_world/Drive.h>
+#include <synthetic_world/Shading.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "Cli.h"
+#include "DriveLog.h"
+#include "Observations.h"
+#include "TruthFiles.h"
+
+namespace synth_rawlog {
+namespace {
+
+constexpr double kStartTime = 1704067200;  // 2024-01-01, UTC
+
+Eigen::Isometry3d T_robot_camera(double pitchDegrees) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() << 0.25, 0, 1.4;
+  T.rotate(Eigen::AngleAxisd(pitchDegrees * M_PI / 180, Eigen::Vector3d::UnitY()));
+  return T;
+}
+
+Eigen::Isometry3d T_robot_lidar() {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() << 0, 0, 1.8;
+  return T;
+}
+
+std::filesystem::path beside(std::filesystem::path rawlog, const char* extension) {
+  return rawlog.replace_extension(extension);
+}
+
+std::vector<mrpt::obs::CObservation::Ptr> sense(const Cli& cli, const synthetic_world::World& world,
+                                                const Eigen::Isometry3d& T_world_robot,
+                                                std::uint64_t frame) {
+  std::vector<mrpt::obs::CObservation::Ptr> seen;
+  if (cli.wantsCamera()) {
+    const Eigen::Isometry3d mount = T_robot_camera(cli.cameraPitch);
+    const auto image = renderCamera(world, T_world_robot * mount, cli.camera, {cli.seed, frame});
+    seen.push_back(rangeScan(image, cli.camera, mount));
+  }
+  if (cli.wantsLidar()) {
+    const Eigen::Isometry3d mount = T_robot_lidar();
+    seen.push_back(
+        labeledCloud(scanLidar(world, T_world_robot * mount, cli.lidar, {cli.seed, frame}), mount));
+  }
+  return seen;
+}
+
+void writeRawlog(const Cli& cli, const synthetic_world::Scene& scene) {
+  const synthetic_world::Drive drive(scene, cli.speed, cli.start);
+  const int frames =
+      cli.frames > 0 ? cli.frames : static_cast<int>(std::ceil(drive.duration() * cli.rate));
+  DriveLog rawlog(cli.output, cli.odometry, cli.odometryNoise, cli.seed);
+  TrajectoryWriter trajectory(beside(cli.output, ".tum"));
+  for (int k = 0; k < frames; ++k) {
+    const double time = k / cli.rate;
+    const Eigen::Isometry3d T_world_robot = drive.T_world_robot(time);
+    rawlog.write(mrpt::Clock::fromDouble(kStartTime + time), T_world_robot,
+                 sense(cli, scene.world, T_world_robot, static_cast<std::uint64_t>(k)));
+    trajectory.write(kStartTime + time, toMrpt(T_world_robot));
+  }
+  rawlog.finish();
+  trajectory.commit();
+  writeTruth(cli, frames, beside(cli.output, ".truth.yaml"));
+  std::cout << cli.output.string() << ": " << frames << " frames of " << cli.scene << ", "
+            << cli.speed * frames / cli.rate << " m of way\n";
+}
+
+/** Colors on the left, classes on the right. */
+void writePicture(const Cli& cli, const synthetic_world::World& world) {
+  const synthetic_world::TopView view = renderTopView(world, 0.15);
+  const int size = view.color.width;
+  synthetic_world::Image<synthetic_world::Color> both(2 * size, size);
+  for (int row = 0; row < size; ++row)
+    for (int column = 0; column < size; ++column) {
+      const synthetic_world::ClassId id = view.labels.at(row, column);
+      both.at(row, column) = view.color.at(row, column);
+      if (id != synthetic_world::kNoClass)
+        both.at(row, size + column) = synthetic_world::classTable().color(id);
+    }
+  // MRPT takes the format from the extension, which is why this is no StagedFile.
+  const std::filesystem::path staged = cli.picture.string() + ".tmp.png";
+  if (!toMrpt(both).saveToFile(staged.string()))
+    throw std::runtime_error(staged.string() + ": cannot be written");
+  std::filesystem::rename(staged, cli.picture);
+}
+
+void run(const Cli& cli) {
+  const synthetic_world::Scene scene = synthetic_world::makeScene(cli.scene, cli.seed, cli.hills);
+  if (!cli.output.empty()) writeRawlog(cli, scene);
+  if (!cli.picture.empty()) writePicture(cli, scene.world);
+  if (!cli.truthQuery.empty()) {
+    std::ifstream points(cli.truthQuery);
+    answerTruth(scene.world, cli.tolerance, points, cli.truthQuery.string(), std::cout);
+  }
+}
+
+}  // namespace
+}  // namespace synth_rawlog
+
+int main(int argc, char** argv) {
+  CLI::App app("A labeled camera and LiDAR in a synthetic world, written to a rawlog");
+  synth_rawlog::Cli cli;
+  synth_rawlog::addOptions(app, cli);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    synth_rawlog::complete(cli);
+    synth_rawlog::run(cli);
+  } catch (const std::exception& e) {
+    std::cerr << "synth-rawlog: " << e.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

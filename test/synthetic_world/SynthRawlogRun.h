@@ -1,0 +1,80 @@
+#pragma once
+#include <labeled_cloud/CObservationLabeledCloud.h>
+#include <labeled_cloud/RawlogReader.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationRobotPose.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+/** Runs of the program synth-rawlog, and what they leave behind. */
+namespace synth_rawlog_run {
+
+namespace fs = std::filesystem;
+
+inline std::string contents(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/** A folder that goes away with this object. */
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "synth_rawlog_XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
+    m_path = name;
+  }
+  ~Folder() { fs::remove_all(m_path); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  fs::path operator/(const std::string& name) const { return m_path / name; }
+  const fs::path& path() const { return m_path; }
+
+ private:
+  fs::path m_path;
+};
+
+struct Outcome {
+  int status;
+  std::string out, error;
+};
+
+/** Runs the program in the folder with these arguments. */
+inline Outcome run(const Folder& folder, const std::string& arguments) {
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && '" MSO_BIN_DIR "/synth-rawlog' " + arguments +
+                              " >out.txt 2>error.txt";
+  const int status = std::system(command.c_str());
+  return {status, contents(folder / "out.txt"), contents(folder / "error.txt")};
+}
+
+/** All observations of a rawlog, those of sensory frames too, in their order. */
+inline std::vector<mrpt::obs::CObservation::Ptr> observationsOf(const fs::path& rawlog) {
+  labeled_cloud::registerObservations();
+  std::vector<mrpt::obs::CObservation::Ptr> all;
+  labeled_cloud::RawlogReader reader(rawlog);
+  while (const auto entry = reader.next())
+    all.insert(all.end(), entry->observations.begin(), entry->observations.end());
+  return all;
+}
+
+template <class T>
+std::vector<typename T::Ptr> only(const std::vector<mrpt::obs::CObservation::Ptr>& observations) {
+  std::vector<typename T::Ptr> result;
+  for (const auto& o : observations)
+    if (const auto t = std::dynamic_pointer_cast<T>(o)) result.push_back(t);
+  return result;
+}
+
+/** The label bits of a pixel: bit i is class i. */
+inline std::uint32_t labelBits(const mrpt::obs::CObservation3DRangeScan& scan, int row,
+                               int column) {
+  return dynamic_cast<const mrpt::obs::TPixelLabelInfo<4>&>(*scan.pixelLabels)
+      .pixelLabels(row, column);
+}
+
+}  // namespace synth_rawlog_run

@@ -1,0 +1,215 @@
+#include <gtest/gtest.h>
+#include <labeled_cloud/RawlogTrajectory.h>
+#include <mrpt/containers/yaml.h>
+#include <synthetic_world/Scene.h>
+
+#include "SynthRawlogRun.h"
+
+namespace {
+
+using namespace synth_rawlog_run;
+using labeled_cloud::CObservationLabeledCloud;
+using mrpt::obs::CObservation3DRangeScan;
+using mrpt::obs::CObservationRobotPose;
+using mrpt::poses::CPose3D;
+using synthetic_world::makeScene;
+using synthetic_world::PointTruth;
+
+const std::string kSmall =
+    " --frames 3 --rate 1 --speed 8 --width 64 --height 48 --rings 8 --columns 90 ";
+
+TEST(SynthRawlog, writesPoseCameraAndLidarOfEachFrame) {
+  const Folder folder;
+  ASSERT_EQ(run(folder, "x.rawlog --scene campus" + kSmall).status, 0);
+  const auto all = observationsOf(folder / "x.rawlog");
+  ASSERT_EQ(all.size(), 9u);
+  EXPECT_EQ(only<CObservationRobotPose>(all).size(), 3u);
+  EXPECT_EQ(only<CObservation3DRangeScan>(all).size(), 3u);
+  EXPECT_EQ(only<CObservationLabeledCloud>(all).size(), 3u);
+  for (int i = 0; i < 9; ++i) {
+    EXPECT_EQ(all[i]->sensorLabel, (std::array{"ROBOT", "CAMERA", "LIDAR"}[i % 3]));
+    EXPECT_NEAR(mrpt::Clock::toDouble(all[i]->timestamp), 1704067200 + i / 3, 1e-6);
+  }
+  for (const auto& cloud : only<CObservationLabeledCloud>(all)) EXPECT_NO_THROW(cloud->validate());
+}
+
+TEST(SynthRawlog, sensorOptionChoosesWhatIsWritten) {
+  const Folder folder;
+  ASSERT_EQ(run(folder, "x.rawlog --sensor camera" + kSmall).status, 0);
+  EXPECT_TRUE(only<CObservationLabeledCloud>(observationsOf(folder / "x.rawlog")).empty());
+  ASSERT_EQ(run(folder, "x.rawlog --sensor lidar" + kSmall).status, 0);
+  EXPECT_TRUE(only<CObservation3DRangeScan>(observationsOf(folder / "x.rawlog")).empty());
+}
+
+TEST(SynthRawlog, unprojectedDepthsLandOnSurfacesOfTheirLabels) {
+  const Folder folder;
+  ASSERT_EQ(run(folder, "x.rawlog --scene village --seed 3 --range-noise 0" + kSmall).status, 0);
+  const auto scene = makeScene("village", 3);
+  const auto all = observationsOf(folder / "x.rawlog");
+  const auto poses = only<CObservationRobotPose>(all);
+  const auto scans = only<CObservation3DRangeScan>(all);
+  for (int k = 0; k < 3; ++k) {
+    auto& scan = *scans[k];
+    mrpt::obs::T3DPointsProjectionParams params;
+    params.takeIntoAccountSensorPoseOnRobot = true;
+    params.robotPoseInTheWorld = poses[k]->pose.mean;
+    scan.unprojectInto(scan, params);
+    ASSERT_GT(scan.points3D_x.size(), 1000u);
+    int wrong = 0;
+    for (std::size_t i = 0; i < scan.points3D_x.size(); ++i) {
+      const Eigen::Vector3d p(scan.points3D_x[i], scan.points3D_y[i], scan.points3D_z[i]);
+      const PointTruth truth = scene.world.at(p, 0.003);  // depths are whole millimeters
+      EXPECT_EQ(truth.state, PointTruth::State::Surface) << p.transpose();
+      const auto bits = labelBits(scan, scan.points3D_idxs_y[i], scan.points3D_idxs_x[i]);
+      wrong += bits != 1u << truth.id;
+    }
+    EXPECT_LE(wrong, static_cast<int>(scan.points3D_x.size() / 200));  // at borders
+  }
+}
+
+TEST(SynthRawlog, lidarPointsLandOnSurfacesOfTheirClasses) {
+  const Folder folder;
+  ASSERT_EQ(run(folder, "x.rawlog --scene park --hills 2 --range-noise 0" + kSmall).status, 0);
+  const auto scene = makeScene("park", 1, 2);
+  const auto all = observationsOf(folder / "x.rawlog");
+  const auto poses = only<CObservationRobotPose>(all);
+  const auto clouds = only<CObservationLabeledCloud>(all);
+  for (int k = 0; k < 3; ++k) {
+    const CPose3D T_map_sensor = poses[k]->pose.mean + clouds[k]->sensorPose;
+    ASSERT_GT(clouds[k]->cloud.size(), 200u);
+    int wrong = 0;
+    for (std::size_t i = 0; i < clouds[k]->cloud.size(); ++i) {
+      const auto& q = clouds[k]->cloud.points[i];
+      const auto p = T_map_sensor.composePoint(mrpt::math::TPoint3D(q.x(), q.y(), q.z()));
+      const PointTruth truth = scene.world.at({p.x, p.y, p.z}, 1e-3);
+      EXPECT_EQ(truth.state, PointTruth::State::Surface);
+      wrong += truth.id != clouds[k]->cloud.classes[i];
+    }
+    EXPECT_LE(wrong, 3);
+  }
+}
+
+TEST(SynthRawlog, sameCommandWritesTheSameBytes) {
+  const Folder folder;
+  const std::string noise = kSmall + " --label-noise 0.1 --dropout 0.1 ";
+  for (const std::string kind : {"", "--odometry"}) {
+    ASSERT_EQ(run(folder, "a.rawlog" + noise + kind).status, 0);
+    ASSERT_EQ(run(folder, "b.rawlog" + noise + kind).status, 0);
+    EXPECT_EQ(contents(folder / "a.rawlog"), contents(folder / "b.rawlog"));
+    EXPECT_EQ(contents(folder / "a.tum"), contents(folder / "b.tum"));
+  }
+  ASSERT_EQ(run(folder, "b.rawlog" + noise + "--odometry --seed 10").status, 0);
+  EXPECT_NE(contents(folder / "a.rawlog"), contents(folder / "b.rawlog"));
+}
+
+TEST(SynthRawlog, trueTrajectoryStandsBesideTheRawlog) {
+  const Folder folder;
+  ASSERT_EQ(run(folder, "x.rawlog --scene park" + kSmall).status, 0);
+  const auto poses = only<CObservationRobotPose>(observationsOf(folder / "x.rawlog"));
+  const auto trajectory = labeled_cloud::loadTumTrajectory(folder / "x.tum");
+  EXPECT_EQ(trajectory.size(), poses.size());
+  for (const auto& pose : poses) {
+    const auto T = trajectory.at(pose->timestamp);
+    ASSERT_TRUE(T);
+    EXPECT_LT((T->asVectorVal() - pose->pose.mean.asVectorVal()).array().abs().maxCoeff(), 1e-6);
+  }
+}
+
+TEST(SynthRawlog, movementsSumUpToTheTrueWayWithoutNoiseOnly) {
+  const Folder folder;
+  const auto endOf = [&](const std::string& noise) {
+    const std::string arguments = "x.rawlog --odometry --odometry-noise " + noise + kSmall;
+    EXPECT_EQ(run(folder, arguments).status, 0);
+    const auto trajectory = labeled_cloud::readTrajectory({folder / "x.rawlog"});
+    return *trajectory.at(mrpt::Clock::fromDouble(1704067202));
+  };
+  const CPose3D exact = endOf("0"), noisy = endOf("0.05");
+  ASSERT_EQ(run(folder, "y.rawlog" + kSmall).status, 0);
+  const auto poses = only<CObservationRobotPose>(observationsOf(folder / "y.rawlog"));
+  const CPose3D way = poses[2]->pose.mean - poses[0]->pose.mean;
+  EXPECT_LT((exact.asVectorVal() - way.asVectorVal()).array().abs().maxCoeff(), 1e-9);
+  EXPECT_GT(noisy.distanceTo(way), 0.01);
+  EXPECT_LT(noisy.distanceTo(way), 3);
+}
+
+TEST(SynthRawlog, truthFileNamesTheWorldAndItsClasses) {
+  const Folder folder;
+  ASSERT_EQ(run(folder, "x.rawlog --scene park --seed 12 --hills 0.5" + kSmall).status, 0);
+  const auto truth = mrpt::containers::yaml::FromFile((folder / "x.truth.yaml").string());
+  EXPECT_EQ(truth["scene"].as<std::string>(), "park");
+  EXPECT_EQ(truth["seed"].as<int>(), 12);
+  EXPECT_EQ(truth["hills"].as<double>(), 0.5);
+  EXPECT_EQ(truth["frames"].as<int>(), 3);
+  EXPECT_EQ(truth["classes"].asSequence().size(), 22u);
+}
+
+TEST(SynthRawlog, answersWhatIsAtPoints) {
+  const Folder folder;
+  const auto scene = makeScene("village", 1);
+  const Eigen::Vector2d at = scene.route.at(60);
+  const double ground = scene.world.groundHeight(at.x(), at.y());
+  std::ofstream(folder / "points.txt") << std::setprecision(12) << "# x y z\n\n"
+                                       << at.x() << ' ' << at.y() << ' ' << ground + 0.01 << '\n'
+                                       << at.x() << ' ' << at.y() << ' ' << ground + 1 << '\n'
+                                       << at.x() << ' ' << at.y() << ' ' << ground - 1 << '\n';
+  const Outcome outcome = run(folder, "--truth-query points.txt");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  std::istringstream lines(outcome.out);
+  for (const std::string expected : {"surface 1 road", "free 0 -", "underground 1 road"}) {
+    std::string line;
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_EQ(line.substr(line.size() - expected.size()), expected);
+  }
+}
+
+TEST(SynthRawlog, pictureOfTheWorldIsWritten) {
+  const Folder folder;
+  ASSERT_EQ(run(folder, "--scene park --picture p.png").status, 0);
+  mrpt::img::CImage image;
+  ASSERT_TRUE(image.loadFromFile((folder / "p.png").string()));
+  EXPECT_EQ(image.getWidth(), 2 * image.getHeight());
+}
+
+TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
+  const Folder folder;
+  std::ofstream(folder / "short.txt") << "1 2 3\n4 5\n";
+  std::ofstream(folder / "nan.txt") << "1 2 nan\n";
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "nothing to do"},
+      {"x.rawlog --scene moon", "moon"},
+      {"x.rawlog --sensor nose", "nose"},
+      {"x.rawlog --frames 0", "--frames"},
+      {"x.rawlog --rate 0", "--rate"},
+      {"x.rawlog --speed -1", "--speed"},
+      {"x.rawlog --hills 3", "--hills"},
+      {"x.rawlog --width 1", "camera: width"},
+      {"x.rawlog --fov 200", "camera: horizontalFov"},
+      {"x.rawlog --camera-range 100", "--camera-range is 100"},
+      {"x.rawlog --rings 0", "LiDAR: rings"},
+      {"x.rawlog --range-noise -1", "sensor noise: range"},
+      {"x.rawlog --label-noise 2", "sensor noise: label"},
+      {"x.rawlog --dropout nan", "sensor noise: dropout"},
+      {"x.rawlog --unknown 1", "--unknown"},
+      {"absent/x.rawlog", "absent/x.rawlog"},
+      {"--picture absent/p.png", "absent/p.png"},
+      {"--truth-query absent.txt", "absent.txt"},
+      {"--truth-query short.txt", "short.txt, line 2"},
+      {"--truth-query nan.txt", "nan.txt, line 1"}};
+  for (const auto& [arguments, reason] : cases) {
+    const Outcome outcome = run(folder, arguments);
+    EXPECT_NE(outcome.status, 0) << arguments;
+    EXPECT_NE(outcome.error.find(reason), std::string::npos) << arguments << ": " << outcome.error;
+  }
+  EXPECT_FALSE(fs::exists(folder / "x.rawlog"));
+}
+
+TEST(SynthRawlog, failureLeavesWhatWasThere) {
+  const Folder folder;
+  std::ofstream(folder / "x.rawlog") << "precious";
+  fs::create_directory(folder / "x.tum.tmp");  // so that the trajectory cannot be written
+  EXPECT_NE(run(folder, "x.rawlog" + kSmall).status, 0);
+  EXPECT_EQ(contents(folder / "x.rawlog"), "precious");
+  EXPECT_FALSE(fs::exists(folder / "x.rawlog.tmp"));
+}
+
+}  // namespace
