@@ -1,0 +1,61 @@
+#pragma once
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "ExactFilter.h"
+#include "SmallScans.h"
+
+/** Voxel coordinates: floor(coordinate / resolution). */
+using VoxelId = std::array<int, 3>;
+
+inline octomap::OcTreeKey keyOf(const VoxelId& v) {
+  const auto key = [](int i) { return static_cast<octomap::key_type>(i + 32768); };
+  return {key(v[0]), key(v[1]), key(v[2])};
+}
+
+/** What a scan says of space, found ray by ray and point by point. */
+struct PlainScan {
+  std::map<VoxelId, std::vector<std::size_t>> hits;  ///< points that end in the voxel
+  std::set<VoxelId> free;
+};
+PlainScan plainScan(const PosedCloud& scan, double resolution,
+                    const semantic_octree::InsertionOptions& options);
+
+/** A map without a tree: every voxel on its own, one insertion after the other. Slow and simple. */
+class PlainMap {
+ public:
+  struct Voxel {
+    float value = 0;  ///< occupancy, log-odds
+    std::optional<semantic_octree::ClassBelief<float>> record;
+    ExactFilter exact;           ///< of all K classes, in double
+    std::set<int> classesSeen;   ///< beyond three, `exact` and `record` part
+    bool hadSoftLabels = false;  ///< these name all classes at once
+  };
+
+  PlainMap(double resolution, int K, const semantic_octree::FilterParameters& parameters = {})
+      : m_resolution(resolution), m_parameters(parameters), m_filter(K, parameters) {}
+  void insert(const PosedCloud& scan, const semantic_octree::InsertionOptions& options);
+
+  const std::map<VoxelId, Voxel>& voxels() const { return m_voxels; }
+  double resolution() const { return m_resolution; }
+  int numClasses() const { return m_filter.numClasses(); }
+
+ private:
+  Voxel& voxel(const VoxelId& id);
+  void hit(Voxel& v, const std::vector<std::size_t>& points,
+           const semantic_octree::LabeledCloud& cloud) const;
+  void hitSoft(Voxel& v, const std::vector<std::size_t>& points,
+               const semantic_octree::LabeledCloud& cloud) const;
+  void hitUnlabeled(Voxel& v) const;
+  void miss(Voxel& v) const;
+
+  double m_resolution;
+  semantic_octree::FilterParameters m_parameters;
+  semantic_octree::ClassFilter<float> m_filter;
+  std::map<VoxelId, Voxel> m_voxels;
+};
+
+/** Expects that a tree holds the same voxels with the same values and records, to the last bit. */
+void expectSame(const semantic_octree::SemanticOcTree& tree, const PlainMap& plain);
