@@ -6,19 +6,24 @@ namespace semantic_octree {
  *
  * A row holds the probabilities of the terms' outcomes: first those of yes-or-no terms (one each),
  * then those of terms with more outcomes. Behind it stand the terms' entropies in the same order:
- * `row[width] | entropies[terms]`. An inner node appends its divergences. */
+ * `probabilities[width] | entropies[terms]`. An inner node appends its divergences. */
 struct RowSizes {
   static constexpr int kLanes = 4;
   static constexpr int pad(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
   int width = 0;   ///< padded number of probabilities
   int terms = 0;   ///< padded number of terms
   int binary = 0;  ///< padded number of yes-or-no terms
+
+  int row() const { return width + terms; }
 };
 
-/** mix[i] = mean of eight children's row[i], over probabilities and entropies alike. */
-void meanOfEight(const double* const children[8], int size, double* mix);
-/** mix[i] = sum of share[c] * child c's row[i]. */
-void weightedMean(const double* const children[8], const double shares[8], int size, double* mix);
+/** The row of a node from its eight children's, probabilities and entropies of yes-or-no terms, and
+ * all divergences (of terms with more outcomes: so far the mean of the children's entropies). */
+void mixEqualShares(const double* const children[8], const RowSizes& sizes, double* row,
+                    double* js);
+void mixShares(const double* const children[8], const double shares[8], const RowSizes& sizes,
+               double* row, double* js);
+
 /** Entropies of yes-or-no variables, nats; n a multiple of RowSizes::kLanes. */
 void binaryEntropies(const double* p, int n, double* h);
 

@@ -137,26 +137,25 @@ const double* AbstractionUpkeep::Worker::leafRow(const NodeStore& store, const N
 void AbstractionUpkeep::Worker::gather(NodeStore& store, const Node& inner, const Cell& cell,
                                        Children& c) {
   const Octant& octant = NodeStore::octant(inner);
+  const bool uniform = m_upkeep.density().isUniform();
+  const double missing = m_upkeep.missingDensity(cell.depth + 1);
   for (int i = 0; i < 8; ++i) {
     const Node& child = octant.nodes[i];
     c.gains[i] = 0;
-    if (!octant.has(i)) {
-      c.rows[i] = m_upkeep.layout().unknownRow();
-      c.densities[i] = m_upkeep.missingDensity(cell.child(i));
-    } else if (child.isLeaf()) {
-      c.rows[i] = leafRow(store, child, i);
-      c.densities[i] = m_upkeep.leafDensity(cell.child(i));
-    } else {
+    if (octant.has(i) && !child.isLeaf()) {
       const InnerState& s = *store.state<InnerState>(child);
       c.rows[i] = s.row();
       c.densities[i] = s.density;
       c.gains[i] = s.gain;
+    } else {
+      c.rows[i] = octant.has(i) ? leafRow(store, child, i) : m_upkeep.layout().unknownRow();
+      c.densities[i] = octant.has(i) ? 1.0 : missing;
+      if (!uniform) c.densities[i] *= m_upkeep.density().mean(cell.child(i));
     }
   }
 }
 
 void AbstractionUpkeep::Worker::recompute(NodeStore& store, Node& inner, const Cell& cell) {
-  const RowLayout& layout = m_upkeep.layout();
   Children c;
   gather(store, inner, cell, c);
   InnerState& s = *store.state<InnerState>(inner);
@@ -164,19 +163,11 @@ void AbstractionUpkeep::Worker::recompute(NodeStore& store, Node& inner, const C
   const bool equalShares = sharesOf(c.densities, shares);
   s.density = sumOfEight(c.densities) * 0.125;
   s.splitEntropy = equalShares ? kLogEight : entropyOfShares(shares);
-  if (equalShares)
-    meanOfEight(c.rows, layout.rowSize(), s.row());
-  else
-    weightedMean(c.rows, shares, layout.rowSize(), s.row());
-
-  double* const entropies = s.row() + layout.sizes().width;
   double* const js = m_upkeep.divergences(s);
-  std::copy(entropies, entropies + layout.sizes().terms, js);  // the children's, so far
-  layout.fillEntropies(s.row());
-  for (int t = 0; t < layout.sizes().terms; ++t) js[t] = std::max(0.0, entropies[t] - js[t]);
+  m_upkeep.layout().mix(c.rows, shares, equalShares, s.row(), js);
   if (s.density == 0) {
     s.splitEntropy = 0;
-    std::fill(js, js + layout.sizes().terms, 0.0);
+    std::fill(js, js + m_upkeep.layout().sizes().terms, 0.0);
   }
   s.changedBelow = 1;
   m_upkeep.settleGain(s, cell.depth, weightedSumOfEight(shares, c.gains));
@@ -210,6 +201,7 @@ void AbstractionUpkeep::Worker::reweigh(NodeStore& store, Node& inner, const Cel
   double densities[8], gains[8], shares[8];
   Octant& octant = NodeStore::octant(inner);
   InnerState& s = *store.state<InnerState>(inner);
+  const double missing = m_upkeep.missingDensity(cell.depth + 1);
   bool changedBelow = false;
   for (int i = 0; i < 8; ++i) {
     const Node& child = octant.nodes[i];
@@ -221,8 +213,7 @@ void AbstractionUpkeep::Worker::reweigh(NodeStore& store, Node& inner, const Cel
       gains[i] = below.gain;
       changedBelow |= below.changedBelow != 0;
     } else {
-      densities[i] = octant.has(i) ? m_upkeep.leafDensity(cell.child(i))
-                                   : m_upkeep.missingDensity(cell.child(i));
+      densities[i] = (octant.has(i) ? 1.0 : missing) * m_upkeep.density().mean(cell.child(i));
     }
   }
   sharesOf(densities, shares);

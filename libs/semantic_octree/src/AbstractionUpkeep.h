@@ -45,10 +45,9 @@ class AbstractionUpkeep {
     return depth < m_blockDepth && m_options.frame == AbstractionOptions::Frame::Free;
   }
 
-  /** Density of a leaf's, or a missing child's, cell. */
-  double leafDensity(const Cell& cell) const { return m_density.mean(cell); }
-  double missingDensity(const Cell& cell) const {
-    return cell.depth > m_blockDepth ? m_options.unknownWeight * m_density.mean(cell) : 0.0;
+  /** Weight of unknown space at a depth relative to known space. */
+  double missingDensity(int depth) const {
+    return depth > m_blockDepth ? m_options.unknownWeight : 0.0;
   }
   const DensityField& density() const { return m_density; }
 

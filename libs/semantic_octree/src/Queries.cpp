@@ -1,6 +1,8 @@
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 #include "NodeStore.h"
 
@@ -27,6 +29,18 @@ bool anyClassSeen(const Node& node) {
   for (int i = 0; i < 8; ++i)
     if (const Node* child = NodeStore::child(node, i); child && anyClassSeen(*child)) return true;
   return false;
+}
+
+/** Meters along a unit vector until the border of the map is near. */
+double distanceToBorder(const octomap::point3d& origin, const octomap::point3d& direction,
+                        double resolution) {
+  double distance = HUGE_VAL;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    if (direction(axis) == 0) continue;
+    const double border = std::copysign(32768 * resolution, direction(axis));
+    distance = std::min(distance, (border - origin(axis)) / direction(axis));
+  }
+  return distance - 2 * resolution;
 }
 
 }  // namespace
@@ -67,10 +81,17 @@ CellState SemanticOcTree::query(double x, double y, double z, unsigned depth) co
 std::optional<RayHit> SemanticOcTree::castRay(const octomap::point3d& origin,
                                               const octomap::point3d& direction, double maxRange,
                                               bool ignoreUnknown) const {
+  const octomap::point3d unit = direction.normalized();
+  if (!(unit.norm() > 0.5) || !std::isfinite(unit.norm()))
+    throw std::invalid_argument("ray cast: a direction that is zero or not finite");
+  octomap::OcTreeKey key;
+  if (empty() || !coordToKeyChecked(origin, key)) return std::nullopt;
+  // OctoMap prints a warning when a ray gets to the map's border, and so none may.
+  const double inside = distanceToBorder(origin, unit, resolution);
+  const double range = maxRange > 0 ? std::min(maxRange, inside) : inside;
   octomap::point3d end;
-  if (empty() || !Base::castRay(origin, direction, end, ignoreUnknown, maxRange))
-    return std::nullopt;
-  const octomap::OcTreeKey key = coordToKey(end);
+  if (range <= 0 || !Base::castRay(origin, unit, end, ignoreUnknown, range)) return std::nullopt;
+  key = coordToKey(end);
   return RayHit{key, keyToCoord(key), query(key)};
 }
 

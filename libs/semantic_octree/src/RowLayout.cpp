@@ -1,8 +1,8 @@
 #include "RowLayout.h"
 
-#include <algorithm>
+#include <tree_abstraction/Information.h>
 
-#include "FastLog.h"
+#include <algorithm>
 
 namespace semantic_octree {
 namespace {
@@ -86,16 +86,27 @@ void RowLayout::rowOf(const Belief& belief, double* row) const {
   fillEntropies(row);
 }
 
+void RowLayout::mix(const double* const children[8], const double shares[8], bool equal,
+                    double* row, double* js) const {
+  if (equal)
+    mixEqualShares(children, m_sizes, row, js);
+  else
+    mixShares(children, shares, m_sizes, row, js);
+  fillWideEntropies(row);
+  const double* const h = row + m_sizes.width;
+  for (int t = m_sizes.binary; t < m_sizes.terms; ++t) js[t] = std::max(0.0, h[t] - js[t]);
+}
+
 void RowLayout::fillEntropies(double* row) const {
+  binaryEntropies(row, m_sizes.binary, row + m_sizes.width);
+  fillWideEntropies(row);
+}
+
+void RowLayout::fillWideEntropies(double* row) const {
   double* const h = row + m_sizes.width;
-  binaryEntropies(row, m_sizes.binary, h);
-  for (const WideTerm& term : m_wideTerms) {
-    double sum = 0;
-    for (int i = 0; i < term.width; ++i) sum -= fastXLogX(row[term.first + i]);
-    h[term.position] = sum;
-  }
-  for (int i = m_sizes.binary + static_cast<int>(m_wideTerms.size()); i < m_sizes.terms; ++i)
-    h[i] = 0;
+  for (int t = m_sizes.binary; t < m_sizes.terms; ++t) h[t] = 0;
+  for (const WideTerm& term : m_wideTerms)
+    h[term.position] = tree_abstraction::entropy(row + term.first, term.width);
 }
 
 }  // namespace semantic_octree

@@ -17,7 +17,7 @@ class RowLayout {
 
   const RowSizes& sizes() const { return m_sizes; }
   /** Doubles of a row: probabilities and entropies. */
-  int rowSize() const { return m_sizes.width + m_sizes.terms; }
+  int rowSize() const { return m_sizes.row(); }
   int numTerms() const { return static_cast<int>(m_order.size()); }
   /** Where term t of the options stands among the entropies and divergences. */
   int positionOf(int term) const { return m_order[term]; }
@@ -25,8 +25,10 @@ class RowLayout {
   /** Row of a cell. */
   void rowOf(const Belief& belief, double* row) const;
   const double* unknownRow() const { return m_unknownRow.data(); }
-  /** Fills in the entropies behind the probabilities. */
-  void fillEntropies(double* row) const;
+  /** Row and divergences of a node from its children's rows and shares; `equal`: each share is 1/8.
+   */
+  void mix(const double* const children[8], const double shares[8], bool equal, double* row,
+           double* js) const;
 
  private:
   /** Entry of a row = p(free) * free + number of classes * p(rest) + what named classes exceed it
@@ -37,6 +39,9 @@ class RowLayout {
   struct WideTerm {
     int position, first, width;
   };
+  /** Fills in the entropies behind the probabilities. */
+  void fillEntropies(double* row) const;
+  void fillWideEntropies(double* row) const;
   void addTerm(const tree_abstraction::TermSet& terms, std::size_t term, int firstEntry);
 
   int m_numClasses;

@@ -1,6 +1,7 @@
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "AbstractionUpkeep.h"
@@ -42,6 +43,8 @@ SemanticOcTree::SemanticOcTree(double voxelSize, ClassTable classes, const Filte
       m_filter(m_classes.size(), filter),
       m_store(std::make_unique<NodeStore>(0)),
       m_scan(std::make_unique<Scan>()) {
+  // OctoMap counts what equals the threshold as occupied; here even odds are not.
+  occ_prob_thres_log = std::numeric_limits<float>::min();
   clearKeyRays();  // OctoMap keeps a large buffer for an insertion that is not used here
 }
 

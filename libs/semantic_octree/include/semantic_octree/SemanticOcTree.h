@@ -113,8 +113,10 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   /** K + 1 probabilities, [0] = free space: a leaf's distribution, or the mixture of the known
    * leaves below an inner node weighted by volume. */
   std::vector<double> distribution(const Node& node) const;
-  /** First occupied voxel along a ray. \param direction any length \param maxRange meters, 0: none
-   * \return nothing if there is none, or if unknown space comes first and is not ignored. */
+  /** First occupied voxel along a ray. \param direction any length \param maxRange meters from the
+   * origin to the voxel's center, 0: none
+   * \return nothing if there is none, or if unknown space comes first and is not ignored
+   * \throw std::invalid_argument the direction is zero or not finite. */
   std::optional<RayHit> castRay(const octomap::point3d& origin, const octomap::point3d& direction,
                                 double maxRange = 0, bool ignoreUnknown = true) const;
 
