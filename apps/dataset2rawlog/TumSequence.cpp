@@ -2,17 +2,12 @@
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
-#include <mrpt/config/CConfigFile.h>
 
 #include <algorithm>
-#include <map>
-#include <opencv2/imgcodecs.hpp>
-#include <sstream>
-#include <stdexcept>
 
 #include "Conversion.h"
 #include "Output.h"
-#include "TextFile.h"
+#include "TumFiles.h"
 
 namespace dataset2rawlog {
 
@@ -27,79 +22,6 @@ using semantic_octree::kNoClass;
 namespace {
 
 constexpr int kMaxPixelLabels = 64;
-/** Largest difference between a depth image's time and that of what belongs to it, s. */
-constexpr double kTimeTolerance = 0.02;
-
-using ImageList = std::map<double, fs::path>;
-
-/** Reads "time file" lines; the files are relative to the list's folder. */
-ImageList readImageList(const fs::path& list) {
-  ImageList images;
-  for (const TextLine& line : readLines(list)) {
-    std::istringstream stream(line.text);
-    double time;
-    std::string file;
-    if (!(stream >> time >> file))
-      throw std::runtime_error(line.where + ": expected 'time file', found '" + line.text + "'");
-    images[time] = list.parent_path() / file;
-  }
-  if (images.empty()) throw std::runtime_error(list.string() + ": no image in this list");
-  return images;
-}
-
-std::optional<fs::path> nearest(const ImageList& images, double time) {
-  std::optional<fs::path> best;
-  double least = kTimeTolerance;
-  const auto consider = [&](const auto& image) {
-    const double apart = std::abs(image.first - time);
-    if (apart <= least) least = apart, best = image.second;
-  };
-  const auto after = images.lower_bound(time);
-  if (after != images.end()) consider(*after);
-  if (after != images.begin()) consider(*std::prev(after));
-  return best;
-}
-
-struct Camera {
-  mrpt::img::TCamera intrinsics;
-  /** Value of a depth image's pixel at one meter. */
-  double depthFactor = 0;
-};
-
-Camera readCamera(const fs::path& file) try {
-  if (!fs::is_regular_file(file)) throw std::runtime_error("cannot be opened");
-  const mrpt::config::CConfigFile config(file.string());
-  Camera camera;
-  camera.intrinsics.loadFromConfigFile("CAMERA_PARAMS", config);
-  camera.depthFactor = config.read_double("CAMERA_PARAMS", "depth_factor", 5000);
-  if (!(camera.depthFactor > 0)) throw std::runtime_error("depth_factor must be above 0");
-  return camera;
-} catch (const std::exception& e) {
-  throw std::runtime_error(file.string() + ": " + e.what());
-}
-
-CObservation3DRangeScan readDepth(const fs::path& file, const Camera& camera) {
-  const cv::Mat depth =
-      fs::exists(file) ? cv::imread(file.string(), cv::IMREAD_UNCHANGED) : cv::Mat();
-  if (depth.type() != CV_16UC1 || depth.empty())
-    throw std::runtime_error(file.string() + ": expected a depth image of 16 bits");
-  CObservation3DRangeScan scan;
-  scan.sensorLabel = "camera";
-  scan.cameraParams = scan.cameraParamsIntensity = camera.intrinsics;
-  scan.hasRangeImage = true;
-  scan.rangeUnits = static_cast<float>(1 / camera.depthFactor);
-  scan.maxRange = 65535 * scan.rangeUnits;
-  scan.rangeImage_setSize(depth.rows, depth.cols);
-  for (int row = 0; row < depth.rows; ++row)
-    std::copy_n(depth.ptr<std::uint16_t>(row), depth.cols, &scan.rangeImage(row, 0));
-  return scan;
-}
-
-void addColor(const fs::path& file, CObservation3DRangeScan& scan) {
-  if (!fs::exists(file) || !scan.intensityImage.loadFromFile(file.string()))
-    throw std::runtime_error(file.string() + ": cannot be read as an image");
-  scan.hasIntensityImage = true;
-}
 
 /** Bit c - 1 stands for class c, by its name. */
 template <unsigned BYTES>
@@ -197,7 +119,7 @@ class TumConverter {
   }
 
   const Conversion& m_conversion;
-  Camera m_camera;
+  DepthCamera m_camera;
   ImageList m_depth, m_color, m_labels;
   labeled_cloud::Trajectory m_trajectory;
   ClassTable m_table;

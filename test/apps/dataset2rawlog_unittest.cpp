@@ -445,7 +445,8 @@ TEST(Tum, badInputIsNamed) {
   failureWith("depth/a.png", "no image");
   failureWith("label/b.png", "no image");
   failureWith("rgb/b.png", "no image");
-  failureWith("camera.ini", "[CAMERA_PARAMS]\n");
+  const std::string noCamera = failureWith("camera.ini", "[CAMERA_PARAMS]\n");
+  EXPECT_FALSE(contains(noCamera, "stack")) << noCamera;
   EXPECT_TRUE(contains(failureWith("depth.txt", "1.0\n"), "depth.txt:1: expected 'time file'"));
   EXPECT_TRUE(contains(failureWith("depth.txt", "# none\n"), "no image in this list"));
   EXPECT_TRUE(contains(failureWith("groundtruth.txt", "1 2 3\n"), "groundtruth.txt:1"));

@@ -1,4 +1,5 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
+#include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
@@ -6,7 +7,6 @@
 #include <stdexcept>
 
 #include "GzipInputStream.h"
-#include "MrptMessage.h"
 
 namespace labeled_cloud {
 

@@ -1,11 +1,11 @@
 #include <labeled_cloud/EmbeddedLabels.h>
+#include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
 #include <stdexcept>
 
-#include "MrptMessage.h"
 #include "PointGrid.h"
 
 namespace labeled_cloud {

@@ -4,7 +4,7 @@
 
 namespace labeled_cloud {
 
-/** What an exception says, without the call stack that MRPT appends to its own. */
+/** What an exception says, without the call stack that MRPT appends to the text of its own. */
 inline std::string messageOf(const std::exception& e) {
   const std::string text = e.what(), begin = "Message:  ", end = "\nLocation:";
   const std::size_t from = text.find(begin);

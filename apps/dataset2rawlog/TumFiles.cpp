@@ -1,0 +1,80 @@
+#include "TumFiles.h"
+
+#include <labeled_cloud/MrptMessage.h>
+#include <mrpt/config/CConfigFile.h>
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "TextFile.h"
+
+namespace dataset2rawlog {
+
+namespace fs = std::filesystem;
+using mrpt::obs::CObservation3DRangeScan;
+
+ImageList readImageList(const fs::path& list) {
+  ImageList images;
+  for (const TextLine& line : readLines(list)) {
+    std::istringstream stream(line.text);
+    double time;
+    std::string file;
+    if (!(stream >> time >> file))
+      throw std::runtime_error(line.where + ": expected 'time file', found '" + line.text + "'");
+    images[time] = list.parent_path() / file;
+  }
+  if (images.empty()) throw std::runtime_error(list.string() + ": no image in this list");
+  return images;
+}
+
+std::optional<fs::path> nearest(const ImageList& images, double time) {
+  std::optional<fs::path> best;
+  double least = kTimeTolerance;
+  const auto consider = [&](const auto& image) {
+    const double apart = std::abs(image.first - time);
+    if (apart <= least) least = apart, best = image.second;
+  };
+  const auto after = images.lower_bound(time);
+  if (after != images.end()) consider(*after);
+  if (after != images.begin()) consider(*std::prev(after));
+  return best;
+}
+
+DepthCamera readCamera(const fs::path& file) try {
+  if (!fs::is_regular_file(file)) throw std::runtime_error("cannot be opened");
+  const mrpt::config::CConfigFile config(file.string());
+  DepthCamera camera;
+  camera.intrinsics.loadFromConfigFile("CAMERA_PARAMS", config);
+  camera.depthFactor = config.read_double("CAMERA_PARAMS", "depth_factor", 5000);
+  if (!(camera.depthFactor > 0)) throw std::runtime_error("depth_factor must be above 0");
+  return camera;
+} catch (const std::exception& e) {
+  throw std::runtime_error(file.string() + ": " + labeled_cloud::messageOf(e));
+}
+
+CObservation3DRangeScan readDepth(const fs::path& file, const DepthCamera& camera) {
+  const cv::Mat depth =
+      fs::exists(file) ? cv::imread(file.string(), cv::IMREAD_UNCHANGED) : cv::Mat();
+  if (depth.type() != CV_16UC1 || depth.empty())
+    throw std::runtime_error(file.string() + ": expected a depth image of 16 bits");
+  CObservation3DRangeScan scan;
+  scan.sensorLabel = "camera";
+  scan.cameraParams = scan.cameraParamsIntensity = camera.intrinsics;
+  scan.hasRangeImage = true;
+  scan.rangeUnits = static_cast<float>(1 / camera.depthFactor);
+  scan.maxRange = 65535 * scan.rangeUnits;
+  scan.rangeImage_setSize(depth.rows, depth.cols);
+  for (int row = 0; row < depth.rows; ++row)
+    std::copy_n(depth.ptr<std::uint16_t>(row), depth.cols, &scan.rangeImage(row, 0));
+  return scan;
+}
+
+void addColor(const fs::path& file, CObservation3DRangeScan& scan) {
+  if (!fs::exists(file) || !scan.intensityImage.loadFromFile(file.string()))
+    throw std::runtime_error(file.string() + ": cannot be read as an image");
+  scan.hasIntensityImage = true;
+}
+
+}  // namespace dataset2rawlog
