@@ -1,0 +1,265 @@
+#include <gtest/gtest.h>
+
+#include "PlainMap.h"
+#include "RandomScans.h"
+
+using namespace semantic_octree;
+
+namespace {
+
+constexpr double kResolution = 0.25;
+constexpr int K = 5;
+
+InsertionOptions insertion() {
+  InsertionOptions options;
+  options.maxRange = 6;
+  return options;
+}
+
+/** The same scans in a pruned tree, an unpruned one and a plain map. */
+struct ThreeMaps {
+  SemanticOcTree pruned{kResolution, numberedClasses(K)}, unpruned = pruned;
+  PlainMap plain{kResolution, K};
+
+  explicit ThreeMaps(unsigned seed) {
+    unpruned.setPruning(false);
+    std::mt19937 random(seed);
+    for (int place = 0; place < 3; ++place) {
+      const PosedCloud scan = randomScan(random);
+      for (int repeat = 0; repeat < 4; ++repeat) {
+        pruned.insert(scan.cloud, scan.T_map_sensor, insertion());
+        unpruned.insert(scan.cloud, scan.T_map_sensor, insertion());
+        plain.insert(scan, insertion());
+      }
+    }
+  }
+};
+
+const ThreeMaps& maps() {
+  static const ThreeMaps maps(1);
+  return maps;
+}
+
+void expectSameState(const CellState& a, const CellState& b) {
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.occupancy, b.occupancy);
+  EXPECT_EQ(a.likeliestClass, b.likeliestClass);
+  EXPECT_NEAR(a.probability, b.probability, 1e-12);
+}
+
+octomap::point3d randomPoint(std::mt19937& random, double spread) {
+  const auto coordinate = [&] { return static_cast<float>(between(random, -spread, spread)); };
+  const float x = coordinate(), y = coordinate(), z = coordinate();
+  return {x, y, z};
+}
+
+/** First occupied voxel of the plain map along a ray, by all border crossings in order. */
+std::optional<VoxelId> castPlainRay(const PlainMap& map, const octomap::point3d& origin,
+                                    const octomap::point3d& direction, double maxRange,
+                                    bool ignoreUnknown) {
+  const octomap::point3d unit = direction.normalized();
+  std::vector<std::pair<double, int>> crossings;
+  VoxelId v;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double begin = origin(axis) / map.resolution(), slope = unit(axis) / map.resolution();
+    v[axis] = static_cast<int>(std::floor(begin));
+    for (int n = 0; n < 100 && slope != 0; ++n)
+      crossings.emplace_back(((slope > 0 ? v[axis] + 1 + n : v[axis] - n) - begin) / slope, axis);
+  }
+  std::sort(crossings.begin(), crossings.end());
+  std::size_t next = 0;
+  do {
+    double squaredDistance = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double center = (v[axis] + 0.5) * map.resolution();
+      squaredDistance += (center - origin(axis)) * (center - origin(axis));
+    }
+    if (next > 0 && maxRange > 0 && squaredDistance > maxRange * maxRange) return std::nullopt;
+    const auto found = map.voxels().find(v);
+    if (found != map.voxels().end() && found->second.value > 0) return v;
+    if (found == map.voxels().end() && !ignoreUnknown) return std::nullopt;
+    const int axis = crossings[next].second;
+    v[axis] += unit(axis) > 0 ? 1 : -1;
+  } while (++next < 200);
+  return std::nullopt;
+}
+
+}  // namespace
+
+TEST(Queries, prunedTreeAnswersEveryQueryLikeTheUnpruned) {
+  const auto& [pruned, unpruned, plain] = maps();
+  EXPECT_LT(pruned.size(), unpruned.size());
+  std::mt19937 random(2);
+  for (int i = 0; i < 5000; ++i) {
+    const octomap::point3d p = randomPoint(random, 8);
+    for (const unsigned depth : {0u, 16u, 15u, 14u, 12u})
+      expectSameState(pruned.query(p.x(), p.y(), p.z(), depth),
+                      unpruned.query(p.x(), p.y(), p.z(), depth));
+  }
+}
+
+TEST(Queries, prunedTreeCastsRaysLikeTheUnpruned) {
+  const auto& [pruned, unpruned, plain] = maps();
+  std::mt19937 random(3);
+  for (int i = 0; i < 2000; ++i) {
+    const octomap::point3d origin = randomPoint(random, 4), direction = randomPoint(random, 1);
+    const bool ignoreUnknown = i % 2;
+    const auto a = pruned.castRay(origin, direction, 5, ignoreUnknown);
+    const auto b = unpruned.castRay(origin, direction, 5, ignoreUnknown);
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (!a) continue;
+    EXPECT_EQ(a->key, b->key);
+    expectSameState(a->state, b->state);
+  }
+}
+
+TEST(Queries, tellTheStateOfEveryVoxel) {
+  const auto& [tree, unpruned, plain] = maps();
+  for (const auto& [id, voxel] : plain.voxels()) {
+    const CellState state = tree.query(keyOf(id));
+    EXPECT_NEAR(state.occupancy, 1 / (1 + std::exp(-voxel.value)), 1e-6);
+    EXPECT_EQ(state.status,
+              voxel.value > 0 ? CellState::Status::Occupied : CellState::Status::Free);
+    if (!voxel.record) {
+      EXPECT_EQ(state.likeliestClass, kNoClass);
+      continue;
+    }
+    std::vector<double> p(K + 1);
+    voxel.record->distribution(K, p.data());
+    const auto best = std::max_element(p.begin() + 1, p.end());
+    EXPECT_EQ(state.likeliestClass, best - p.begin());
+    EXPECT_EQ(state.probability, *best);
+  }
+}
+
+TEST(Queries, ofPlacesWithoutANodeSayUnknown) {
+  const SemanticOcTree& tree = maps().pruned;
+  for (const double x : {100.0, -8000.0, 1e9, -1e30, HUGE_VAL, std::nan("")}) {
+    const CellState state = tree.query(x, 0, 0);
+    EXPECT_EQ(state.status, CellState::Status::Unknown) << x;
+    EXPECT_EQ(state.occupancy, 0.5);
+    EXPECT_EQ(state.likeliestClass, kNoClass);
+  }
+  const SemanticOcTree empty(0.1, numberedClasses(2));
+  EXPECT_EQ(empty.query(0, 0, 0).status, CellState::Status::Unknown);
+  EXPECT_EQ(empty.root(), nullptr);
+  EXPECT_EQ(empty.begin_leafs(), empty.end_leafs());
+  EXPECT_FALSE(empty.castRay({0, 0, 0}, {1, 0, 0}));
+}
+
+TEST(Queries, ofAnInnerNodeMixItsKnownLeavesByVolumeAndTakeTheHighestOccupancy) {
+  const auto& [tree, unpruned, plain] = maps();
+  for (const unsigned depth : {15u, 14u, 12u}) {
+    std::map<VoxelId, std::pair<std::vector<double>, float>>
+        cells;  // sum of distributions, maximum
+    const int shift = static_cast<int>(16 - depth);
+    for (const auto& [id, voxel] : plain.voxels()) {
+      auto& [sum, highest] = cells
+                                 .emplace(VoxelId{id[0] >> shift, id[1] >> shift, id[2] >> shift},
+                                          std::make_pair(std::vector<double>(K + 1), -HUGE_VALF))
+                                 .first->second;
+      const auto p = tree.distribution(*tree.search(keyOf(id)));
+      for (int k = 0; k <= K; ++k) sum[k] += p[k];
+      highest = std::max(highest, voxel.value);
+    }
+    for (const auto& [cell, expected] : cells) {
+      const VoxelId inside{cell[0] << shift, cell[1] << shift, cell[2] << shift};
+      const auto* const node = tree.search(keyOf(inside), depth);
+      ASSERT_NE(node, nullptr);
+      EXPECT_EQ(node->getValue(), expected.second);
+      const std::vector<double> p = tree.distribution(*node);
+      double total = 0;
+      for (const double x : expected.first) total += x;
+      for (int k = 0; k <= K; ++k) EXPECT_NEAR(p[k], expected.first[k] / total, 1e-9);
+    }
+  }
+}
+
+TEST(Queries, iteratorsVisitEachVoxelOnce) {
+  const auto& [pruned, unpruned, plain] = maps();
+  std::set<VoxelId> visited;
+  for (auto leaf = unpruned.begin_leafs(); leaf != unpruned.end_leafs(); ++leaf) {
+    const octomap::OcTreeKey key = leaf.getKey();
+    EXPECT_EQ(leaf.getDepth(), 16u);
+    EXPECT_TRUE(visited.insert({key[0] - 32768, key[1] - 32768, key[2] - 32768}).second);
+  }
+  EXPECT_EQ(visited.size(), plain.voxels().size());
+  for (const auto& voxel : plain.voxels()) EXPECT_TRUE(visited.count(voxel.first));
+  EXPECT_EQ(unpruned.getNumLeafNodes(), plain.voxels().size());
+  std::size_t nodes = 0;
+  for (auto node = pruned.begin_tree(); node != pruned.end_tree(); ++node) ++nodes;
+  EXPECT_EQ(nodes, pruned.size());
+}
+
+TEST(Queries, boxIteratorsVisitTheLeavesThatTouchTheBox) {
+  const auto& [pruned, unpruned, plain] = maps();
+  std::mt19937 random(4);
+  for (int round = 0; round < 30; ++round) {
+    VoxelId low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = static_cast<int>(between(random, -20, 10));
+      high[axis] = low[axis] + static_cast<int>(between(random, 0, 15));
+    }
+    std::size_t expected = 0, found = 0;
+    for (const auto& [id, voxel] : plain.voxels()) {
+      bool inside = true;
+      for (int axis = 0; axis < 3; ++axis)
+        inside &= id[axis] >= low[axis] && id[axis] <= high[axis];
+      expected += inside;
+    }
+    for (auto leaf = unpruned.begin_leafs_bbx(keyOf(low), keyOf(high)),
+              end = unpruned.end_leafs_bbx();
+         leaf != end; ++leaf)
+      ++found;
+    EXPECT_EQ(found, expected);
+  }
+}
+
+TEST(Queries, rayCastsFindTheFirstOccupiedVoxel) {
+  const auto& [tree, unpruned, plain] = maps();
+  std::mt19937 random(5);
+  int hits = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const octomap::point3d origin = randomPoint(random, 5), direction = randomPoint(random, 1);
+    const double maxRange = i % 3 == 0 ? 0 : between(random, 0.5, 6);
+    const bool ignoreUnknown = i % 2;
+    const auto expected = castPlainRay(plain, origin, direction, maxRange, ignoreUnknown);
+    const auto hit = tree.castRay(origin, direction, maxRange, ignoreUnknown);
+    ASSERT_EQ(hit.has_value(), expected.has_value()) << "ray " << i;
+    if (!hit) continue;
+    ++hits;
+    EXPECT_EQ(hit->key, keyOf(*expected)) << "ray " << i;
+    EXPECT_EQ(hit->state.status, CellState::Status::Occupied);
+    EXPECT_LT(hit->center.distance(tree.keyToCoord(hit->key)), 1e-6);
+  }
+  EXPECT_GT(hits, 150);
+}
+
+TEST(Queries, rayCastsFromOutsideOrToTheBorderFindNothingAndPrintNothing) {
+  const SemanticOcTree& tree = maps().pruned;
+  testing::internal::CaptureStderr();
+  EXPECT_FALSE(tree.castRay({1e6f, 0, 0}, {-1, 0, 0}));
+  EXPECT_FALSE(tree.castRay({NAN, 0, 0}, {-1, 0, 0}));
+  EXPECT_FALSE(tree.castRay({0, 0, 100}, {0, 0, 1}));
+  EXPECT_FALSE(tree.castRay({8190, 8190, -8190}, {1, 1, -1}));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_THROW(tree.castRay({0, 0, 0}, {0, 0, 0}), std::invalid_argument);
+  EXPECT_THROW(tree.castRay({0, 0, 0}, {NAN, 0, 1}), std::invalid_argument);
+}
+
+TEST(Queries, callAVoxelOfEvenOddsFree) {
+  FilterParameters even;  // a hit and a miss cancel out
+  even.hitProbability = 0.75;
+  even.falseAlarmProbability = 0.25;
+  SemanticOcTree tree(1.0, numberedClasses(1), even);
+  LabeledCloud hit, miss;
+  hit.points = {{2.5f, 0.5f, 0.5f}};
+  miss.points = {{5.5f, 0.5f, 0.5f}};
+  tree.insert(hit, Eigen::Isometry3d::Identity());
+  tree.insert(miss, Eigen::Isometry3d::Identity());
+  const auto* const node = tree.search(tree.coordToKey(2.5, 0.5, 0.5));
+  EXPECT_EQ(node->getValue(), 0);
+  EXPECT_FALSE(tree.isNodeOccupied(node));
+  EXPECT_EQ(tree.query(*node).status, CellState::Status::Free);
+  EXPECT_EQ(tree.castRay({0.5f, 0.5f, 0.5f}, {1, 0, 0})->key, tree.coordToKey(5.5, 0.5, 0.5));
+}
