@@ -28,9 +28,9 @@ double sumOfEight(const double* x) {
 
 /** Shares Pi of eight children. \return whether all are 1/8 */
 bool sharesOf(const double* densities, double* shares) {
-  const double total = sumOfEight(densities);
-  const bool equal =
-      std::all_of(densities + 1, densities + 8, [&](double d) { return d == densities[0]; });
+  bool equal = true;
+  for (int i = 1; i < 8; ++i) equal &= densities[i] == densities[0];
+  const double total = equal ? 8 * densities[0] : sumOfEight(densities);
   for (int i = 0; i < 8; ++i) shares[i] = equal ? 0.125 : densities[i] / total;
   return equal;
 }
@@ -112,46 +112,44 @@ AbstractionUpkeep::Worker::Worker(const AbstractionUpkeep& upkeep)
       m_frequent(kFrequentRows * upkeep.layout().rowSize()),
       m_frequentKeys(kFrequentRows, std::numeric_limits<float>::quiet_NaN()) {}
 
-const double* AbstractionUpkeep::Worker::uniformRow(float value, int child) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  const std::size_t slot = (bits * 2654435769u) >> 22;
-  const int size = m_upkeep.layout().rowSize();
+const double* AbstractionUpkeep::Worker::newUniformRow(float value, std::size_t slot, int child) {
+  // A place that is taken stays so: the row there may be in use.
   const bool isFree = std::isnan(m_frequentKeys[slot]);
-  double* row = &m_frequent[slot * size];
-  if (m_frequentKeys[slot] == value) return row;
-  if (!isFree) row = &m_scratch[child * size];  // another value's place, whose row may be in use
+  double* row = isFree ? frequentRow(slot) : &m_scratch[child * m_upkeep.layout().rowSize()];
   m_upkeep.layout().rowOf(m_upkeep.m_filter.uniform(value), row);
   if (isFree) m_frequentKeys[slot] = value;
   return row;
 }
 
-const double* AbstractionUpkeep::Worker::leafRow(const NodeStore& store, const Node& leaf,
-                                                 int child) {
-  if (!leaf.hasClassRecord()) return uniformRow(leaf.getValue(), child);
+const double* AbstractionUpkeep::Worker::recordRow(const Belief& record, int child) {
   double* row = &m_scratch[child * m_upkeep.layout().rowSize()];
-  m_upkeep.layout().rowOf(store.record(leaf), row);
+  m_upkeep.layout().rowOf(record, row);
   return row;
 }
 
 void AbstractionUpkeep::Worker::gather(NodeStore& store, const Node& inner, const Cell& cell,
                                        Children& c) {
   const Octant& octant = NodeStore::octant(inner);
-  const bool uniform = m_upkeep.density().isUniform();
   const double missing = m_upkeep.missingDensity(cell.depth + 1);
+  const double* const unknownRow = m_upkeep.layout().unknownRow();
+  const bool uniform = m_upkeep.density().isUniform();
   for (int i = 0; i < 8; ++i) {
     const Node& child = octant.nodes[i];
-    c.gains[i] = 0;
     if (octant.has(i) && !child.isLeaf()) {
       const InnerState& s = *store.state<InnerState>(child);
       c.rows[i] = s.row();
       c.densities[i] = s.density;
       c.gains[i] = s.gain;
-    } else {
-      c.rows[i] = octant.has(i) ? leafRow(store, child, i) : m_upkeep.layout().unknownRow();
-      c.densities[i] = octant.has(i) ? 1.0 : missing;
-      if (!uniform) c.densities[i] *= m_upkeep.density().mean(cell.child(i));
+      continue;
     }
+    c.gains[i] = 0;
+    c.densities[i] = octant.has(i) ? 1.0 : missing;
+    if (!uniform) c.densities[i] *= m_upkeep.density().mean(cell.child(i));
+    if (!octant.has(i))
+      c.rows[i] = unknownRow;
+    else
+      c.rows[i] = child.hasClassRecord() ? recordRow(store.record(child), i)
+                                         : uniformRow(child.getValue(), i);
   }
 }
 

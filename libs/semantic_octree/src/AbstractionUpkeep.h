@@ -73,8 +73,6 @@ class AbstractionUpkeep {
                                const DensityField& before);
     /** Gains only, of a node and all inner nodes below, from what is kept. */
     void reweigh(NodeStore& store, Node& inner, const Cell& cell);
-    /** Row of a leaf; valid until the next call for the same child number. */
-    const double* leafRow(const NodeStore& store, const Node& leaf, int child);
 
    private:
     struct Children {
@@ -82,7 +80,23 @@ class AbstractionUpkeep {
       double densities[8], gains[8];
     };
     void gather(NodeStore& store, const Node& inner, const Cell& cell, Children& c);
-    const double* uniformRow(float occupancyLogOdds, int child);
+    /** Row of a leaf without a class record: a few values make up most of a map. */
+    const double* uniformRow(float occupancyLogOdds, int child) {
+      const std::size_t slot = slotOf(occupancyLogOdds);
+      if (m_frequentKeys[slot] == occupancyLogOdds) return frequentRow(slot);
+      return newUniformRow(occupancyLogOdds, slot, child);
+    }
+    /** Row of a leaf with one. */
+    const double* recordRow(const Belief& record, int child);
+    const double* newUniformRow(float occupancyLogOdds, std::size_t slot, int child);
+    static std::size_t slotOf(float value) {
+      std::uint32_t bits;
+      std::memcpy(&bits, &value, sizeof bits);
+      return (bits * 2654435769u) >> 22;
+    }
+    double* frequentRow(std::size_t slot) {
+      return &m_frequent[slot * m_upkeep.layout().rowSize()];
+    }
 
     const AbstractionUpkeep& m_upkeep;
     std::vector<double> m_scratch;      ///< eight rows

@@ -92,6 +92,7 @@ void RowLayout::mix(const double* const children[8], const double shares[8], boo
     mixEqualShares(children, m_sizes, row, js);
   else
     mixShares(children, shares, m_sizes, row, js);
+  if (m_wideTerms.empty()) return;
   fillWideEntropies(row);
   const double* const h = row + m_sizes.width;
   for (int t = m_sizes.binary; t < m_sizes.terms; ++t) js[t] = std::max(0.0, h[t] - js[t]);

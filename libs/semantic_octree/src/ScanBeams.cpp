@@ -21,8 +21,9 @@ void ScanBeams::compute(const LabeledCloud& cloud, const Eigen::Isometry3d& T_ma
   origin = sensor.array() / resolution;
   if (!T_map_sensor.matrix().allFinite() || !insideMap(origin)) {
     std::ostringstream what;
-    what << "sensor at (" << sensor.transpose() << ") m is outside the map, which reaches "
-         << kHalfMap * resolution << " m from its origin";
+    what << "sensor at (" << sensor.x() << ", " << sensor.y() << ", " << sensor.z()
+         << ") m is outside the map, which reaches " << kHalfMap * resolution
+         << " m from its origin";
     throw std::out_of_range(what.str());
   }
   report = InsertionReport();
