@@ -137,14 +137,18 @@ TEST(GTreeSearch, measuresOfAForestAreThoseOfItsLeavesTheFrameIncluded) {
   EXPECT_GT(found.roots.information[0], 0.0);
 }
 
-TEST(GTreeSearch, findsNothingInEqualLeavesOfUnequalWeights) {
-  VectorTree tree(1);
-  const auto root = tree.addInner(VectorTree::kNoParent);
-  for (const double weight : {0.1, 0.7, 1.3}) tree.addLeaf(root, weight, {0.7, 0.3});
-  for (const auto form : kForms) {
-    const auto found = findOptimalTree(tree, {{relevant("one", 1, {1})}, 0.0}, {form});
-    EXPECT_EQ(found.values.v[0], 0.0);
-    EXPECT_EQ(found.optimal.numLeaves, 1u);
+TEST(GTreeSearch, findsExactlyNothingInEqualLeavesOfUnequalWeights) {
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    Engine random(seed);
+    VectorTree tree(1);
+    const auto root = tree.addInner(VectorTree::kNoParent);
+    const double p = random_trees::uniform(random);
+    for (int i = 0; i < 5; ++i) tree.addLeaf(root, random_trees::uniform(random), {1 - p, p});
+    for (const auto form : kForms) {
+      const auto found = findOptimalTree(tree, {{relevant("one", 1, {1})}, 0.0}, {form});
+      EXPECT_EQ(found.values.v[0], 0.0);
+      EXPECT_EQ(found.optimal.numLeaves, 1u);
+    }
   }
 }
 
