@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+
+#include "PlainMap.h"
+#include "RandomScans.h"
+#include "TemporaryFolder.h"
+
+using namespace semantic_octree;
+
+namespace {
+
+/** Expects that an insertion is refused, saying so, and that the map is what it was. */
+void expectRefused(const std::string& words, const LabeledCloud& cloud,
+                   const Eigen::Isometry3d& T_map_sensor = Eigen::Isometry3d::Identity(),
+                   const InsertionOptions& options = {}) {
+  SemanticOcTree tree(0.1, numberedClasses(3));
+  LabeledCloud good;
+  good.points = {{1.f, 2.f, 0.3f}};
+  good.classes = {2};
+  tree.insert(good, Eigen::Isometry3d::Identity());
+  SemanticOcTree before = tree;
+  const std::string error = errorOf([&] { tree.insert(cloud, T_map_sensor, options); });
+  EXPECT_TRUE(contains(error, words)) << error;
+  EXPECT_TRUE(tree == before);
+  // Nothing of the refused scan may come up with the next one.
+  tree.insert(good, Eigen::Isometry3d::Identity());
+  before.insert(good, Eigen::Isometry3d::Identity());
+  EXPECT_TRUE(tree == before);
+}
+
+LabeledCloud threePoints() {
+  LabeledCloud cloud;
+  cloud.points = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  return cloud;
+}
+
+Eigen::Isometry3d at(double x, double y, double z) {
+  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+  T_map_sensor.translation() << x, y, z;
+  return T_map_sensor;
+}
+
+std::string refusal(void (*change)(InsertionOptions&)) {
+  InsertionOptions options;
+  change(options);
+  return errorOf([&] { options.validate(); });
+}
+
+}  // namespace
+
+TEST(BadInput, sensorOutsideTheMapIsRefused) {
+  expectRefused("sensor at (4000, 0, 0) m", threePoints(), at(4000, 0, 0));
+  expectRefused("outside the map", threePoints(), at(0, -3277, 0));
+  expectRefused("outside the map", threePoints(), at(0, 0, 3276.8));
+  expectRefused("outside the map", threePoints(), at(0, 0, NAN));
+  Eigen::Isometry3d twisted = at(0, 0, 0);
+  twisted.linear()(0, 0) = INFINITY;
+  expectRefused("sensor", threePoints(), twisted);
+}
+
+TEST(BadInput, vectorsOfDifferentLengthsAreRefused) {
+  LabeledCloud cloud = threePoints();
+  cloud.classes = {1, 2};
+  expectRefused("2 classes, expected 3", cloud);
+  cloud.classes.clear();
+  cloud.probabilities.assign(8, 0.1f);
+  expectRefused("8 probabilities, expected 9", cloud);
+}
+
+TEST(BadInput, classesThatTheTableDoesNotKnowAreRefused) {
+  LabeledCloud cloud = threePoints();
+  cloud.classes = {1, 3, 4};
+  expectRefused("class 4", cloud);
+}
+
+TEST(BadInput, probabilitiesThatAreNoneAreRefused) {
+  for (const float bad : {-0.1f, 1.5f, NAN}) {
+    LabeledCloud cloud = threePoints();
+    cloud.probabilities.assign(9, 0.3f);
+    cloud.probabilities[7] = bad;
+    expectRefused("probability", cloud);
+  }
+}
+
+TEST(BadInput, scansTooLargeForMemoryAreRefused) {
+  LabeledCloud cloud;
+  cloud.points = {{3276, 3276, 3276}, {-3276, -3276, -3276}};
+  expectRefused("too large", cloud);
+}
+
+TEST(BadInput, insertionOptionsAreRefusedByName) {
+  EXPECT_EQ(errorOf([] { InsertionOptions().validate(); }), "");
+  const auto names = [](const std::string& error, const char* name) {
+    return contains(error, name);
+  };
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.maxRange = -1; }), "maxRange = -1");
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.maxRange = NAN; }), "maxRange");
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.minRange = -2; }), "minRange = -2");
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.carvingMargin = HUGE_VAL; }),
+               "carvingMargin");
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.threads = 0; }), "threads = 0");
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.threads = 257; }), "threads");
+  InsertionOptions options;
+  options.threads = 0;
+  expectRefused("threads", threePoints(), at(0, 0, 0), options);
+}
+
+TEST(BadInput, treesThatCannotBeAreRefused) {
+  for (const double resolution : {0.0, -0.1, static_cast<double>(NAN), HUGE_VAL})
+    EXPECT_TRUE(
+        contains(errorOf([&] { SemanticOcTree(resolution, numberedClasses(2)); }), "resolution"))
+        << resolution;
+  EXPECT_TRUE(
+      contains(errorOf([] { SemanticOcTree(0.1, ClassTable()); }), "number of classes = 0"));
+}

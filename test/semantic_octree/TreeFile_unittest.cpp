@@ -1,0 +1,333 @@
+#include <gtest/gtest.h>
+#include <semantic_octree/TreeFile.h>
+#include <sys/resource.h>
+#include <zlib.h>
+
+#include <cstring>
+#include <sstream>
+
+#include "PlainMap.h"
+#include "RandomScans.h"
+#include "TemporaryFolder.h"
+
+using namespace semantic_octree;
+
+namespace {
+
+ClassTable classesWithFolds() {
+  ClassTable classes;
+  classes.add("road", {1, 2, 3});
+  classes.add("Straße, naß", {255, 255, 255});
+  for (int i = 3; i <= 5; ++i) classes.add("class " + std::to_string(i), {0, 0, 0});
+  classes.fold(40, 1);
+  classes.fold(4000000000u, 2);
+  classes.fold(0, kNoClass);
+  classes.setUnknownRawId(ClassTable::UnknownRawId::NoClass);
+  return classes;
+}
+
+SemanticOcTree someTree(bool pruning = true, int numScans = 3, double resolution = 0.37) {
+  FilterParameters parameters;
+  parameters.accuracy = 0.71;
+  parameters.hitProbability = 0.62;
+  parameters.falseAlarmProbability = 0.21;
+  parameters.minOccupancy = 0.13;
+  parameters.maxProbability = 0.95;
+  parameters.softLabelFloor = 0.003;
+  SemanticOcTree tree(resolution, classesWithFolds(), parameters);
+  tree.setPruning(pruning);
+  std::mt19937 random(1);
+  for (int i = 0; i < numScans; ++i) {
+    const PosedCloud scan = randomScan(random);
+    for (int repeat = 0; repeat < 3; ++repeat) tree.insert(scan.cloud, scan.T_map_sensor);
+  }
+  return tree;
+}
+
+std::string bytesOf(const SemanticOcTree& tree) {
+  std::ostringstream out;
+  writeTree(out, tree);
+  return out.str();
+}
+
+/** What loading a file with this content says. */
+std::string loadError(const TemporaryFolder& folder, const std::string& content) {
+  const std::string path = folder.write("bad.semantic", content).string();
+  const std::string error = errorOf([&] { loadTree(path); });
+  EXPECT_TRUE(error.empty() || contains(error, path)) << error;
+  return error;
+}
+
+template <typename T>
+void append(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+/** A file with a right checksum around any content. */
+std::string fileAround(const std::string& content) {
+  std::string file = "SEMOCTRE";
+  append(file, std::uint32_t(1));
+  std::uint32_t crc = 0;
+  for (const std::string& block : {content, std::string()}) {
+    std::string part;
+    append(part, static_cast<std::uint32_t>(block.size()));
+    part += block;
+    crc = static_cast<std::uint32_t>(crc32(crc, reinterpret_cast<const unsigned char*>(part.data()),
+                                           static_cast<uInt>(part.size())));
+    append(file, static_cast<std::uint32_t>(block.size()));
+    append(file, crc);
+    file += block;
+  }
+  return file;
+}
+
+struct Header {
+  double resolution = 0.5;
+  std::uint8_t pruning = 1, increments = 0, policy = 0;
+  double accuracy = 0.9;
+  std::vector<std::string> names = {"a", "b"};
+  std::uint32_t numFolds = 0;
+  std::uint64_t numNodes = 0;
+};
+
+std::string contentOf(const Header& h, const std::string& nodes = {}) {
+  std::string bytes;
+  append(bytes, h.resolution);
+  append(bytes, h.pruning);
+  append(bytes, h.increments);
+  for (const double x : {h.accuracy, 0.6, 0.1, 0.12, 0.97, 0.001}) append(bytes, x);
+  append(bytes, static_cast<std::uint8_t>(h.names.size()));
+  for (const std::string& name : h.names) {
+    append(bytes, static_cast<std::uint16_t>(name.size()));
+    bytes += name + "rgb";
+  }
+  append(bytes, h.policy);
+  append(bytes, h.numFolds);
+  append(bytes, h.numNodes);
+  return bytes + nodes;
+}
+
+}  // namespace
+
+TEST(TreeFile, bringsEveryBitBack) {
+  const TemporaryFolder folder;
+  for (const bool pruning : {true, false}) {
+    const SemanticOcTree tree = someTree(pruning);
+    saveTree(tree, folder / "map.semantic");
+    const SemanticOcTree loaded = loadTree(folder / "map.semantic");
+    EXPECT_TRUE(loaded == tree);
+    EXPECT_EQ(loaded.size(), tree.size());
+    EXPECT_EQ(loaded.pruning(), pruning);
+    EXPECT_EQ(loaded.classes(), tree.classes());
+    EXPECT_EQ(loaded.filterParameters(), tree.filterParameters());
+    EXPECT_EQ(loaded.getResolution(), tree.getResolution());
+    EXPECT_EQ(bytesOf(loaded), bytesOf(tree));
+  }
+}
+
+TEST(TreeFile, loadedMapsGoOnLikeTheSavedOnes) {
+  SemanticOcTree tree = someTree();
+  std::stringstream stream;
+  writeTree(stream, tree);
+  SemanticOcTree loaded = readTree(stream);
+  std::mt19937 random(9);
+  const PosedCloud scan = randomScan(random);
+  tree.insert(scan.cloud, scan.T_map_sensor);
+  loaded.insert(scan.cloud, scan.T_map_sensor);
+  EXPECT_TRUE(loaded == tree);
+}
+
+TEST(TreeFile, bringsEmptyMapsAndManyClassesBack) {
+  for (const int classes : {1, 2, 3, 254}) {
+    SemanticOcTree tree(0.1, numberedClasses(classes));
+    std::stringstream stream;
+    writeTree(stream, tree);
+    EXPECT_TRUE(readTree(stream) == tree);
+    RandomScanOptions options;
+    options.classes = classes;
+    std::mt19937 random(classes);
+    const PosedCloud scan = randomScan(random, options);
+    for (int i = 0; i < 5; ++i) tree.insert(scan.cloud, scan.T_map_sensor);
+    writeTree(stream, tree);
+    EXPECT_TRUE(readTree(stream) == tree);
+  }
+}
+
+TEST(TreeFile, readsNoMoreThanItsOwnBytes) {
+  const SemanticOcTree tree = someTree();
+  std::stringstream stream;
+  stream << "before";
+  writeTree(stream, tree);
+  writeTree(stream, tree);
+  stream << "after";
+  std::string word(6, ' ');
+  stream.read(word.data(), 6);
+  EXPECT_TRUE(readTree(stream) == tree);
+  EXPECT_TRUE(readTree(stream) == tree);
+  stream >> word;
+  EXPECT_EQ(word, "after");
+}
+
+TEST(TreeFile, isCompact) {
+  const SemanticOcTree tree = someTree(true, 20);
+  EXPECT_LT(static_cast<double>(bytesOf(tree).size()), 8.0 * static_cast<double>(tree.size()));
+}
+
+TEST(TreeFile, thatIsMissingOrNoFileIsRefusedByName) {
+  const TemporaryFolder folder;
+  const std::string missing = folder / "missing.semantic";
+  EXPECT_EQ(errorOf([&] { loadTree(missing); }),
+            "cannot load map '" + missing + "': No such file or directory");
+  EXPECT_TRUE(contains(errorOf([&] { loadTree(folder.path()); }), "folder"));
+}
+
+TEST(TreeFile, thatIsEmptyOrNoMapIsRefused) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(contains(loadError(folder, ""), "empty"));
+  EXPECT_TRUE(contains(loadError(folder, "SEMO"), "truncated"));
+  EXPECT_TRUE(
+      contains(loadError(folder, "# Octomap OcTree file\nid OcTree\n"), "not a semantic octree"));
+}
+
+TEST(TreeFile, ofANewerVersionIsRefused) {
+  const TemporaryFolder folder;
+  std::string bytes = bytesOf(someTree());
+  bytes[8] = 2;
+  EXPECT_TRUE(contains(loadError(folder, bytes), "version 2 of the format, expected 1"));
+}
+
+TEST(TreeFile, truncatedAnywhereIsRefused) {
+  const TemporaryFolder folder;
+  const std::string bytes = bytesOf(someTree(false, 1, 0.1));
+  ASSERT_GT(bytes.size(), 65536u) << "several blocks";
+  for (std::size_t length = 1; length < bytes.size();
+       length += length < 300 || length + 300 > bytes.size() ? 1 : 997)
+    ASSERT_TRUE(contains(loadError(folder, bytes.substr(0, length)), "truncated")) << length;
+}
+
+TEST(TreeFile, withAnyByteAlteredIsRefused) {
+  std::string bytes = bytesOf(someTree(true, 1));
+  for (std::size_t i = 0; i < bytes.size(); i += i < 500 || i + 100 > bytes.size() ? 1 : 311)
+    for (const char flip : {'\x01', '\x80'}) {
+      bytes[i] = static_cast<char>(bytes[i] ^ flip);
+      std::istringstream in(bytes);
+      ASSERT_THROW(readTree(in), std::runtime_error) << "byte " << i;
+      bytes[i] = static_cast<char>(bytes[i] ^ flip);
+    }
+}
+
+TEST(TreeFile, withBlocksExchangedIsRefused) {
+  const TemporaryFolder folder;
+  const std::string bytes = bytesOf(someTree(false, 3, 0.1));
+  constexpr std::size_t begin = 12, block = 65536 + 8;
+  ASSERT_GT(bytes.size(), begin + 2 * block);
+  // Blocks are as full as whole values allow; find their lengths.
+  std::uint32_t first = 0, second = 0;
+  std::memcpy(&first, &bytes[begin], 4);
+  std::memcpy(&second, &bytes[begin + 8 + first], 4);
+  const std::string a = bytes.substr(begin, 8 + first),
+                    b = bytes.substr(begin + 8 + first, 8 + second);
+  const std::string rest = bytes.substr(begin + a.size() + b.size());
+  EXPECT_EQ(loadError(folder, bytes.substr(0, begin) + a + b + rest), "");
+  EXPECT_NE(loadError(folder, bytes.substr(0, begin) + b + a + rest), "");
+  EXPECT_NE(loadError(folder, bytes.substr(0, begin) + a + rest), "");
+  EXPECT_NE(loadError(folder, bytes.substr(0, begin) + a + b + b + rest), "");
+}
+
+TEST(TreeFile, withMoreBytesBehindIsRefused) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(contains(loadError(folder, bytesOf(someTree()) + "x"), "after the end"));
+}
+
+TEST(TreeFile, ofSenselessContentIsRefusedEvenIfItsChecksumsAreRight) {
+  const TemporaryFolder folder;
+  const auto error = [&](const Header& h, const std::string& nodes = {}) {
+    return loadError(folder, fileAround(contentOf(h, nodes)));
+  };
+  const auto with = [](auto change) {
+    Header h;
+    change(h);
+    return h;
+  };
+  EXPECT_EQ(error({}), "");
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.resolution = -1; })), "resolution"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.resolution = NAN; })), "resolution"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.pruning = 2; })), "pruning"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.increments = 7; })), "increments"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.accuracy = 3; })), "accuracy"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.names = {}; })), "number of classes"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.names = {"a", "a"}; })), "two classes"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.policy = 2; })), "unknown raw id"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.numFolds = 4000000000u; })), "altered"));
+  EXPECT_TRUE(contains(error({}, "more"), "more content"));
+}
+
+TEST(TreeFile, ofBrokenNodesIsRefusedEvenIfItsChecksumsAreRight) {
+  const TemporaryFolder folder;
+  const auto error = [&](std::uint64_t numNodes, const std::string& nodes) {
+    Header h;
+    h.numNodes = numNodes;
+    return loadError(folder, fileAround(contentOf(h, nodes)));
+  };
+  const auto bytes = [](auto... values) {
+    std::string b;
+    (append(b, values), ...);
+    return b;
+  };
+  using u8 = std::uint8_t;
+  using u16 = std::uint16_t;
+  EXPECT_EQ(error(1, bytes(u8(1), 0.5f)), "");
+  EXPECT_EQ(error(2, bytes(u8(3), u16(1), 0.5f)), "");
+  EXPECT_EQ(error(1, bytes(u8(2), 0.5f, u8(1), -1.f, u8(2), 1.f)), "");
+  EXPECT_TRUE(contains(error(1, ""), "ends too early"));
+  EXPECT_TRUE(contains(error(1, bytes(u8(0))), "no root"));
+  EXPECT_TRUE(contains(error(1, bytes(u8(4))), "node kind"));
+  EXPECT_TRUE(contains(error(1, bytes(u8(1), NAN)), "not finite"));
+  EXPECT_TRUE(contains(error(1, bytes(u8(3), u16(0))), "without children"));
+  EXPECT_TRUE(contains(error(3, bytes(u8(3), u16(1), 0.5f)), "2 nodes, expected 3"));
+  EXPECT_TRUE(contains(error(~0ull, bytes(u8(3), u16(1), 0.5f)), "nodes, expected"));
+  EXPECT_TRUE(contains(error(1, bytes(u8(2), 0.5f, u8(3), -1.f, u8(2), 1.f)), "named classes"));
+  EXPECT_TRUE(contains(error(1, bytes(u8(2), 0.5f, u8(1), -1.f, u8(3), 1.f)), "class = 3"));
+  std::string chain = bytes(u8(3));
+  for (int i = 0; i < 17; ++i) chain += bytes(u16(3));
+  EXPECT_TRUE(contains(error(18, chain), "16 levels"));
+}
+
+TEST(TreeFile, savedOverAnotherReplacesItAndLeavesNothingBeside) {
+  const TemporaryFolder folder;
+  saveTree(someTree(true, 1), folder / "map.semantic");
+  saveTree(someTree(true, 2), folder / "map.semantic");
+  EXPECT_TRUE(loadTree(folder / "map.semantic") == someTree(true, 2));
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    ++files;
+  EXPECT_EQ(files, 1u);
+}
+
+TEST(TreeFile, thatCannotBeWrittenLeavesTheOldOneAlone) {
+  const TemporaryFolder folder;
+  const std::string nowhere = folder / "missing/map.semantic";
+  const SemanticOcTree small = someTree(true, 1);
+  EXPECT_EQ(errorOf([&] { saveTree(small, nowhere); }),
+            "cannot save map '" + nowhere + "': No such file or directory");
+
+  const std::string path = folder / "map.semantic";
+  saveTree(small, path);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit tight = before;
+  tight.rlim_cur = 4096;  // as a full disk
+  signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &tight);
+  const std::string error = errorOf([&] { saveTree(someTree(true, 3), path); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_TRUE(contains(error, "cannot save map '" + path + "'")) << error;
+  EXPECT_TRUE(loadTree(path) == small);
+  EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
+}
+
+TEST(TreeFile, streamThatTakesNothingIsNoticed) {
+  std::ostringstream out;
+  out.setstate(std::ios::badbit);
+  EXPECT_THROW(writeTree(out, someTree()), std::runtime_error);
+}

@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+
+#include "PlainMap.h"
+#include "RandomScans.h"
+
+using namespace semantic_octree;
+
+namespace {
+
+SemanticOcTree someTree(unsigned seed, double resolution = 0.3, int classes = 5) {
+  std::mt19937 random(seed);
+  SemanticOcTree tree(resolution, numberedClasses(classes));
+  for (int i = 0; i < 3; ++i) {
+    const PosedCloud scan = randomScan(random);
+    tree.insert(scan.cloud, scan.T_map_sensor);
+  }
+  return tree;
+}
+
+void insertOne(SemanticOcTree& tree, unsigned seed, const InsertionOptions& options = {}) {
+  std::mt19937 random(seed);
+  const PosedCloud scan = randomScan(random);
+  tree.insert(scan.cloud, scan.T_map_sensor, options);
+}
+
+}  // namespace
+
+TEST(Tree, copiesShareNothing) {
+  SemanticOcTree original = someTree(1);
+  const SemanticOcTree copy = original, second = original;
+  EXPECT_TRUE(copy == original);
+  insertOne(original, 2);
+  EXPECT_FALSE(copy == original);
+  EXPECT_TRUE(copy == second);
+  original.clear();
+  EXPECT_TRUE(copy == second);
+}
+
+TEST(Tree, copiesGoOnLikeTheOriginal) {
+  SemanticOcTree original = someTree(3), copy = original;
+  for (unsigned seed = 10; seed < 15; ++seed) {
+    insertOne(original, seed);
+    insertOne(copy, seed);
+  }
+  EXPECT_TRUE(copy == original);
+  EXPECT_EQ(copy.size(), original.size());
+}
+
+TEST(Tree, assignmentReplacesEverything) {
+  const SemanticOcTree a = someTree(4, 0.3);
+  SemanticOcTree b = someTree(5, 0.5, 9);
+  b = a;
+  EXPECT_TRUE(a == b);
+  EXPECT_EQ(b.getResolution(), 0.3);
+  EXPECT_EQ(b.numClasses(), 5);
+  const SemanticOcTree& self = b;
+  b = self;
+  EXPECT_TRUE(a == b);
+}
+
+TEST(Tree, movingLeavesAnEmptyMapOfTheSameKindBehind) {
+  SemanticOcTree original = someTree(6);
+  const SemanticOcTree copy = original;
+  const SemanticOcTree moved = std::move(original);
+  EXPECT_TRUE(moved == copy);
+  EXPECT_TRUE(original.empty());
+  EXPECT_EQ(original.getResolution(), 0.3);
+  insertOne(original, 7);
+  SemanticOcTree fresh(0.3, numberedClasses(5));
+  insertOne(fresh, 7);
+  EXPECT_TRUE(original == fresh);
+}
+
+TEST(Tree, swappingExchangesEverything) {
+  SemanticOcTree a = someTree(8, 0.3), b = someTree(9, 0.5, 9);
+  const SemanticOcTree copyOfA = a, copyOfB = b;
+  a.swap(b);
+  EXPECT_TRUE(a == copyOfB);
+  EXPECT_TRUE(b == copyOfA);
+  EXPECT_EQ(a.coordToKey(10.0), octomap::key_type(32768 + 20));
+  insertOne(a, 10);
+  SemanticOcTree expected = copyOfB;
+  insertOne(expected, 10);
+  EXPECT_TRUE(a == expected);
+}
+
+TEST(Tree, clearedStartsAnew) {
+  SemanticOcTree tree = someTree(11);
+  tree.clear();
+  EXPECT_TRUE(tree.empty());
+  EXPECT_EQ(tree.size(), 0u);
+  EXPECT_EQ(tree.getNumLeafNodes(), 0u);
+  tree.clear();
+  insertOne(tree, 12);
+  SemanticOcTree fresh(0.3, numberedClasses(5));
+  insertOne(fresh, 12);
+  EXPECT_TRUE(tree == fresh);
+}
+
+TEST(Tree, differsFromAnotherInEachPart) {
+  const SemanticOcTree tree = someTree(13);
+  EXPECT_FALSE(tree == someTree(14));
+  EXPECT_FALSE(tree == someTree(13, 0.31));
+  EXPECT_FALSE(SemanticOcTree(0.1, numberedClasses(5)) == SemanticOcTree(0.1, numberedClasses(6)));
+  FilterParameters other;
+  other.accuracy = 0.8;
+  EXPECT_FALSE(SemanticOcTree(0.1, numberedClasses(5)) ==
+               SemanticOcTree(0.1, numberedClasses(5), other));
+  SemanticOcTree unpruned(0.1, numberedClasses(5));
+  unpruned.setPruning(false);
+  EXPECT_FALSE(SemanticOcTree(0.1, numberedClasses(5)) == unpruned);
+}
+
+TEST(Tree, countsItsNodesAndMemory) {
+  SemanticOcTree tree = someTree(15);
+  std::size_t nodes = 0;
+  for (auto node = tree.begin_tree(); node != tree.end_tree(); ++node) ++nodes;
+  EXPECT_EQ(tree.size(), nodes);
+  EXPECT_GT(tree.memoryUsage(), nodes * sizeof(SemanticOcTree::Node));
+  EXPECT_EQ(tree.getTreeType(), "SemanticOcTree");
+}
+
+TEST(Tree, mergesSpaceThatWasSeenFreeForLong) {
+  SemanticOcTree tree(0.1, numberedClasses(2));
+  for (int i = 0; i < 6; ++i) {
+    PosedCloud scan;  // a dense fan of beams: everything within 3 m is seen free
+    for (int azimuth = 0; azimuth < 720; ++azimuth)
+      for (int elevation = -179; elevation < 180; ++elevation) {
+        const double a = azimuth * M_PI / 360, e = elevation * M_PI / 360;
+        scan.cloud.points.push_back(Eigen::Vector3d(3.2 * std::cos(e) * std::cos(a),
+                                                    3.2 * std::cos(e) * std::sin(a),
+                                                    3.2 * std::sin(e))
+                                        .cast<float>());
+      }
+    tree.insert(scan.cloud, scan.T_map_sensor);
+  }
+  // A ball of 32 voxels' radius; what lies near its surface stays fine.
+  const double voxels = 4.0 / 3 * M_PI * 32 * 32 * 32;
+  EXPECT_LT(static_cast<double>(tree.size()), voxels / 3);
+  EXPECT_LT(tree.search(tree.coordToKey(0.1, 0.1, 0.1))->getValue(), -1.9);
+}
+
+TEST(Tree, pruningIsChosenWhileTheTreeIsEmpty) {
+  SemanticOcTree tree = someTree(16);
+  EXPECT_TRUE(tree.pruning());
+  EXPECT_THROW(tree.setPruning(false), std::logic_error);
+  tree.clear();
+  tree.setPruning(false);
+  EXPECT_FALSE(tree.pruning());
+  insertOne(tree, 17);
+  EXPECT_FALSE(SemanticOcTree(tree).pruning());
+}
