@@ -198,7 +198,7 @@ TEST(TreeFile, ofANewerVersionIsRefused) {
 
 TEST(TreeFile, truncatedAnywhereIsRefused) {
   const TemporaryFolder folder;
-  const std::string bytes = bytesOf(someTree(false, 1, 0.1));
+  const std::string bytes = bytesOf(someTree(false, 2, 0.1));
   ASSERT_GT(bytes.size(), 65536u) << "several blocks";
   for (std::size_t length = 1; length < bytes.size();
        length += length < 300 || length + 300 > bytes.size() ? 1 : 997)
