@@ -201,10 +201,10 @@ TEST(ColoredAStar, tiesGoToFewerEdgesThenToSmallerIds) {
   graph.addEdge(0, 5, {{0, 15}});
   graph.addEdge(5, 6, {{0, 15}});
   EXPECT_EQ(findColoredPath(graph, 0, 6, model).vertices, (std::vector<VertexId>{0, 5, 6}));
-  graph.addEdge(4, 6, {{0, 1}});
-  graph.addEdge(0, 4, {{0, 29}});
+  graph.addEdge(4, 6, {{0, 29}});  // reached later than 5
+  graph.addEdge(0, 4, {{0, 1}});
   EXPECT_EQ(findColoredPath(graph, 0, 6, model).vertices, (std::vector<VertexId>{0, 4, 6}));
-  graph.addEdge(0, 4, {{0, 29}});  // a parallel edge of a larger id
+  graph.addEdge(0, 4, {{0, 1}});  // a parallel edge of a larger id
   EXPECT_EQ(findColoredPath(graph, 0, 6, model).edges, (std::vector<EdgeId>{6, 5}));
 }
 

@@ -111,6 +111,21 @@ TEST(LazyEdges, fewAreEvaluated) {
   EXPECT_LT(replanner, search);
 }
 
+TEST(LazyEdges, anEdgeThatHasBecomeUselessIsNotEvaluated) {
+  ColoredGraph graph(1);
+  for (int v = 0; v < 4; ++v) graph.addVertex(0);
+  graph.addUnevaluatedEdge(3, 2, 1);
+  graph.addUnevaluatedEdge(2, 1, 1);
+  const EdgeId detour =
+      graph.addUnevaluatedEdge(3, 1, 10);  // queued before 1 is reached by way of 2
+  graph.addUnevaluatedEdge(1, 0, 100);
+  ColoredAStarOptions options;
+  options.evaluate = [&](EdgeId e) { return EdgeProfile{{0, graph.edge(e).length}}; };
+  const CostModel model{ClassOrder(1, {{0}})};
+  EXPECT_EQ(findColoredPath(graph, 0, 3, model, options).statistics.edgesEvaluated, 3u);
+  EXPECT_EQ(graph.edge(detour).state, EdgeState::Unevaluated);
+}
+
 TEST(LazyEdges, answersAreKeptForTheNextSearch) {
   PlaneGraph plane = randomPlaneGraph(7, 50, 600, 10);
   LazyWorld world(plane);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -177,6 +178,24 @@ TEST(SearchStatus, replannerGoesOnAfterACancel) {
   EXPECT_EQ(result.cost, *expected);
   const PathResult whole = ColoredReplanner(plane.graph, 0, 1, model).solve();
   EXPECT_LT(result.statistics.expansions, whole.statistics.expansions);
+}
+
+TEST(SearchStatus, replannerRecoversFromAFunctionThatThrows) {
+  PlaneGraph plane = randomPlaneGraph(11, 300, 9000, 30, 4);
+  const CostModel model{ClassOrder(PlaneGraph::kClasses, {{0, 1}, {2}, {3, 4}})};
+  const auto expected = oracles::tupleDijkstra(plane.graph, model, 0, 1);
+  ASSERT_TRUE(expected);
+  for (int last = 1; last < 150; ++last) {  // wherever it happens
+    int calls = 0;
+    SearchOptions options;
+    options.lengthBound = [&](VertexId a, VertexId b) {
+      if (++calls == last) throw std::runtime_error("no bound today");
+      return plane.bound(a, b);
+    };
+    ColoredReplanner replanner(plane.graph, 0, 1, model, options);
+    EXPECT_THROW(replanner.solve(), std::runtime_error);
+    EXPECT_EQ(replanner.solve().cost, *expected) << "thrown by call " << last;
+  }
 }
 
 TEST(SearchStatus, replannerNoticesThatAnEndWentAndCameBack) {

@@ -38,7 +38,7 @@ class LifelongSearch {
     m_statistics = {};
     PathResult result;
     const auto missing = missingEnd(m_graph, m_start, m_goal);
-    const SearchStatus status = missing ? *missing : repair();
+    const SearchStatus status = missing ? *missing : repairOrForget();
     if (status == SearchStatus::Found) {
       result = assemblePath(m_graph, m_start, bestEdges());
       result.cost = m_costs.trimmed(m_nodes[m_start].g);
@@ -72,6 +72,16 @@ class LifelongSearch {
       return order != 0 ? order < 0 : distance > o.distance;
     }
   };
+
+  /** A user's function that throws may leave the invariants broken: the next call starts over. */
+  SearchStatus repairOrForget() {
+    try {
+      return repair();
+    } catch (...) {
+      m_nodes.clear();
+      throw;
+    }
+  }
 
   SearchStatus repair() {
     StopCheck stop(m_options);
