@@ -29,7 +29,7 @@ TEST(World, surfacesHiddenInASolidAreInside) {
   const World world = small_world::flat(
       {{Spheroid{{0, 0, 4}, 2, 2}, kCanopy}, {Shaft{{0, 0}, 0.3, 0.3, 0, 5}, kTrunk}});
   EXPECT_EQ(world.at({0.3, 0, 1}), (PointTruth{State::Surface, kTrunk}));
-  EXPECT_EQ(world.at({0.3, 0, 4}).state, State::Inside);
+  EXPECT_EQ(world.at({0.3, 0, 4}), (PointTruth{State::Inside, kCanopy}));
 }
 
 TEST(World, movablesAreTrue) {
