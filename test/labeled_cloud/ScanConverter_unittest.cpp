@@ -260,6 +260,10 @@ TEST(Decimation, takesTheNearestPointOfEachBlockAndNoLabelBleeds) {
     const auto scan = convert(*obs, options);
     EXPECT_EQ(scan.cloud.size(), std::size_t((40 + d - 1) / d) * ((60 + d - 1) / d));
     EXPECT_EQ(bled(scan), 0u) << "decimation " << d;
+    std::size_t near = 0;
+    for (const Vector3f& p : scan.cloud.points) near += p.x() < 2;
+    const int columns = 29 / d - 23 / d + 1;  // blocks that the pole touches
+    EXPECT_EQ(near, std::size_t(columns * ((40 + d - 1) / d))) << "decimation " << d;
   }
 }
 
@@ -311,6 +315,11 @@ TEST(FlyingPixels, betweenTwoSurfacesAreRemovedAndCountedAndNothingElse) {
     for (const Vector3f& p : scan.cloud.points)
       EXPECT_LT(std::min(std::abs(p.x() - 1), std::abs(p.x() - 3)), 1e-3);
   }
+  // two pixels on a line with the surface behind them are no surface of their own
+  const auto band = DepthCamera().see([](int, int c) {
+    return c < 20 ? 1.0 : c == 20 ? 9.0 / 7 : c == 21 ? 9.0 / 5 : 3.0;
+  });
+  EXPECT_EQ(convert(*band, withoutFlying()).counts.flying, 80u);
   const auto all = convert(*DepthCamera().see([](int, int c) {
     return c < 20 ? 1 : c == 20 ? 2 : 3;
   }));
