@@ -128,7 +128,9 @@ void CSemanticOctoMap::useFilterOfOptions() {
     throw std::logic_error(
         "the filter parameters in insertionOptions are not those that the map was built with; they "
         "can change only while the map is empty");
-  m_tree = SemanticOcTree(m_tree.getResolution(), m_tree.classes(), insertionOptions.filter);
+  SemanticOcTree tree(m_tree.getResolution(), m_tree.classes(), insertionOptions.filter);
+  tree.setPruning(m_tree.pruning());
+  m_tree = std::move(tree);
 }
 
 }  // namespace semantic_map

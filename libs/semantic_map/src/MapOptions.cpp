@@ -3,6 +3,7 @@
 #include <mrpt/system/string_utils.h>
 #include <semantic_map/MapOptions.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ostream>
 #include <stdexcept>
@@ -19,11 +20,11 @@ namespace {
 
 /** The value without a comment behind it, which MRPT leaves there. */
 std::string withoutComment(const std::string& value) {
-  std::size_t end = value.size();
-  for (const char* mark : {"//", "#", ";"})
-    for (const char* blank : {" ", "\t"})
-      end = std::min(end, value.find(std::string(blank) + mark));
-  return mrpt::system::trim(value.substr(0, end));
+  const std::string text = " " + value;
+  std::size_t end = text.size();
+  for (const char* mark : {" //", " #", " ;", "\t//", "\t#", "\t;"})
+    end = std::min(end, text.find(mark));
+  return mrpt::system::trim(text.substr(0, end));
 }
 
 template <class Derived>
@@ -125,9 +126,9 @@ void TNamedOptions<Derived>::saveToConfigFile(CConfigFileBase& target,
                                               const std::string& section) const {
   OptionFields<Derived>::visit(static_cast<const Derived&>(*this),
                                [&](const char* key, const auto& value, const char* explanation) {
-                                 target.write(section, key, formatOption(value),
-                                              mrpt::config::MRPT_SAVE_NAME_PADDING(),
-                                              mrpt::config::MRPT_SAVE_VALUE_PADDING(), explanation);
+                                 // No padding, which MRPT would take for a part of the key.
+                                 target.write(section, key, formatOption(value), -1, -1,
+                                              explanation);
                                });
 }
 

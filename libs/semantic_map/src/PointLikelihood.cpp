@@ -24,8 +24,9 @@ PointLikelihood::Cell PointLikelihood::cell(const SemanticOcTree::Node* node, Cl
   const int K = m_tree.numClasses();
   if (!node) return {0.5, 0.5 / K};
   const auto belief = m_tree.belief(*node);
-  const double free = belief.freeProbability(K);
-  return {free, id == kNoClass ? 0 : free * std::exp(double(belief.logOddsOf(id)))};
+  const auto p = belief.probabilities(K);
+  const int named = belief.indexOf(id);
+  return {p.free, named < 0 ? p.rest : p.named[named]};
 }
 
 double PointLikelihood::labeled(const Cell& cell) const {

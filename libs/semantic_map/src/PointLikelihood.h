@@ -23,7 +23,7 @@ class PointLikelihood {
   double operator()(const Eigen::Vector3d& point, const float* label) const;
 
  private:
-  /** Occupancy and, if CLASS_ID is a class, its probability. */
+  /** Probabilities of free space and of one class. */
   struct Cell {
     double free, ofClass;
   };

@@ -1,0 +1,168 @@
+#include <gtest/gtest.h>
+#include <mrpt/config/CConfigFileMemory.h>
+#include <mrpt/maps/CMultiMetricMap.h>
+
+#include <sstream>
+
+#include "SmallMaps.h"
+#include "TemporaryFolder.h"
+
+using mrpt::maps::CMultiMetricMap;
+using mrpt::maps::TSetOfMetricMapInitializers;
+using semantic_map::CSemanticOctoMap;
+using semantic_map::TRenderingOptions;
+using semantic_octree::FilterParameters;
+using semantic_octree::InsertionOptions;
+
+namespace {
+
+CSemanticOctoMap::Ptr mapOf(const std::string& ini) {
+  TSetOfMetricMapInitializers definitions;
+  definitions.loadFromConfigFile(mrpt::config::CConfigFileMemory(ini), "Maps");
+  const CMultiMetricMap maps(definitions);
+  return maps.mapByClass<CSemanticOctoMap>();
+}
+
+/** One map with a line in one of its sections. */
+std::string withLine(const std::string& section, const std::string& line) {
+  return "[Maps]\nsemanticOctoMap_count = 1\n[Maps_semanticOctoMap_00_" + section + "]\n" + line +
+         "\n";
+}
+
+void expectRefused(const std::string& section, const std::string& line,
+                   const std::vector<std::string>& parts) {
+  const std::string error = errorOf([&] { mapOf(withLine(section, line)); });
+  for (const std::string& part : parts)
+    EXPECT_TRUE(contains(error, part)) << "'" << error << "' lacks '" << part << "'";
+}
+
+const char* const kClasses =
+    "classes:\n  - {id: 1, name: road, color: [200, 30, 30]}\n"
+    "  - {id: 2, name: tree, color: [30, 180, 60]}\n";
+
+}  // namespace
+
+TEST(MapDefinition, bothNamesMakeTheMap) {
+  EXPECT_TRUE(mapOf("[Maps]\nsemanticOctoMap_count = 1\n"));
+  EXPECT_TRUE(mapOf("[Maps]\nsemantic_map::CSemanticOctoMap_count = 1\n"));
+  EXPECT_FALSE(mapOf("[Maps]\npointsMap_count = 1\n"));
+}
+
+TEST(MapDefinition, withoutSectionsTheDefaultsHold) {
+  const auto map = mapOf("[Maps]\nsemanticOctoMap_count = 1\n");
+  EXPECT_EQ(map->tree().getResolution(), 0.1);
+  EXPECT_EQ(map->tree().numClasses(), 1);
+  EXPECT_TRUE(map->tree().filterParameters() == FilterParameters());
+  EXPECT_TRUE(map->isEmpty());
+}
+
+TEST(MapDefinition, everyOptionIsReadFromItsSection) {
+  const TemporaryFolder folder;
+  const auto classes = folder.write("classes.yaml", kClasses);
+  const auto map = mapOf(
+      "[Maps]\nsemanticOctoMap_count = 1\n"
+      "[Maps_semanticOctoMap_00_creationOpts]\nresolution = 0.25 // m\nclasses = " +
+      classes.string() +
+      "\nenableSaveAs3DObject = false\n"
+      "[Maps_semanticOctoMap_00_insertOpts]\nrays = EndVoxels\nmaxRange = 30\nminRange = 0.5\n"
+      "carvingMargin = 0.2\nthreads = 2\ndecimation = 3\nflyingPixelThreshold = 0.05\n"
+      "increments = ssmi\naccuracy = 0.8\nhitProbability = 0.7\nfalseAlarmProbability = 0.2\n"
+      "minOccupancy = 0.2\nmaxProbability = 0.9\nsoftLabelFloor = 0.01\n"
+      "[Maps_semanticOctoMap_00_likelihoodOpts]\ndecimation = 7\nuseLabels = false\n"
+      "pointWeight = 0.5\n"
+      "[Maps_semanticOctoMap_00_renderOpts]\ncoloring = Height\noccupied = no\nfree = yes\n"
+      "minOccupancy = 0.6\nminProbability = 0.4\nminHeight = -1\nmaxHeight = inf\n");
+  const auto& insertion = map->insertionOptions;
+  EXPECT_EQ(map->tree().getResolution(), 0.25);
+  EXPECT_EQ(map->tree().classes().name(2), "tree");
+  EXPECT_FALSE(map->genericMapParams.enableSaveAs3DObject);
+  EXPECT_EQ(insertion.scan.rays, InsertionOptions::Rays::EndVoxels);
+  EXPECT_EQ(insertion.scan.maxRange, 30);
+  EXPECT_EQ(insertion.scan.minRange, 0.5);
+  EXPECT_EQ(insertion.scan.carvingMargin, 0.2);
+  EXPECT_EQ(insertion.scan.threads, 2);
+  EXPECT_EQ(insertion.conversion.decimation, 3);
+  EXPECT_EQ(insertion.conversion.flyingPixelThreshold, 0.05);
+  FilterParameters filter;
+  filter.increments = FilterParameters::Increments::Ssmi;
+  filter.accuracy = 0.8, filter.hitProbability = 0.7, filter.falseAlarmProbability = 0.2;
+  filter.minOccupancy = 0.2, filter.maxProbability = 0.9, filter.softLabelFloor = 0.01;
+  EXPECT_TRUE(map->tree().filterParameters() == filter);
+  EXPECT_EQ(map->likelihoodOptions.decimation, 7);
+  EXPECT_FALSE(map->likelihoodOptions.useLabels);
+  EXPECT_EQ(map->likelihoodOptions.pointWeight, 0.5);
+  EXPECT_EQ(map->renderingOptions.coloring, TRenderingOptions::Coloring::Height);
+  EXPECT_FALSE(map->renderingOptions.occupied);
+  EXPECT_TRUE(map->renderingOptions.free);
+  EXPECT_EQ(map->renderingOptions.minOccupancy, 0.6);
+  EXPECT_EQ(map->renderingOptions.minProbability, 0.4);
+  EXPECT_EQ(map->renderingOptions.minHeight, -1);
+  EXPECT_EQ(map->renderingOptions.maxHeight, INFINITY);
+}
+
+TEST(MapDefinition, anUnknownKeyIsNamedWithItsSectionAndTheKnownOnes) {
+  expectRefused("creationOpts", "resolutoin = 0.1",
+                {"Maps_semanticOctoMap_00_creationOpts", "'resolutoin'", "resolution, classes"});
+  expectRefused("insertOpts", "maxrage = 3", {"_insertOpts", "'maxrage'", "maxRange"});
+  expectRefused("likelihoodOpts", "foo = 3", {"_likelihoodOpts", "'foo'"});
+  expectRefused("renderOpts", "decimation = 3", {"_renderOpts", "'decimation'"});
+}
+
+TEST(MapDefinition, anUnknownSectionIsNamed) {
+  expectRefused("insertionOpts", "maxRange = 3",
+                {"Maps_semanticOctoMap_00_insertionOpts", "unknown section", "insertOpts"});
+}
+
+TEST(MapDefinition, aBadValueIsNamedWithWhatWasExpected) {
+  expectRefused("creationOpts", "resolution = wide", {"creationOpts", "resolution", "'wide'"});
+  expectRefused("creationOpts", "resolution = 0", {"creationOpts", "resolution", "0"});
+  expectRefused("creationOpts", "resolution = nan", {"resolution"});
+  expectRefused("insertOpts", "rays = Some", {"rays", "'Some'", "All or EndVoxels"});
+  expectRefused("insertOpts", "threads = 1.5", {"threads", "'1.5'", "whole number"});
+  expectRefused("insertOpts", "maxRange = -1", {"insertOpts", "maxRange", "-1"});
+  expectRefused("insertOpts", "decimation = 0", {"decimation", "0"});
+  expectRefused("insertOpts", "accuracy = 1.5", {"accuracy", "1.5"});
+  expectRefused("likelihoodOpts", "useLabels = maybe", {"useLabels", "'maybe'", "true or false"});
+  expectRefused("likelihoodOpts", "pointWeight = 0", {"pointWeight", "0"});
+  expectRefused("renderOpts", "minHeight = 5\nmaxHeight = 2", {"minHeight", "5", "maxHeight"});
+}
+
+TEST(MapDefinition, aClassTableThatIsMissingIsNamed) {
+  expectRefused("creationOpts", "classes = no/such.yaml", {"no/such.yaml"});
+}
+
+TEST(MapDefinition, whatIsSavedIsReadBack) {
+  CSemanticOctoMap::TMapDefinition definition, read;
+  definition.creationOpts.resolution = 0.1 + 0.2;  // not a short decimal
+  definition.insertionOpts.scan.maxRange = 1.0 / 3;
+  definition.insertionOpts.filter.accuracy = 0.7;
+  definition.likelihoodOpts.useLabels = false;
+  definition.renderOpts.coloring = TRenderingOptions::Coloring::Probability;
+  definition.genericMapParams.enableObservationLikelihood = false;
+  mrpt::config::CConfigFileMemory file;
+  definition.saveToConfigFile(file, "M");
+  read.loadFromConfigFile(mrpt::config::CConfigFileMemory(file.getContent()), "M");
+  EXPECT_EQ(read.creationOpts.resolution, 0.1 + 0.2);
+  EXPECT_EQ(read.insertionOpts.scan.maxRange, 1.0 / 3);
+  EXPECT_TRUE(read.insertionOpts.filter == definition.insertionOpts.filter);
+  EXPECT_FALSE(read.likelihoodOpts.useLabels);
+  EXPECT_EQ(read.renderOpts.coloring, TRenderingOptions::Coloring::Probability);
+  EXPECT_EQ(read.renderOpts.maxHeight, INFINITY);
+  EXPECT_FALSE(read.genericMapParams.enableObservationLikelihood);
+}
+
+TEST(MapDefinition, theDumpShowsEveryOption) {
+  std::ostringstream dump;
+  CSemanticOctoMap::TMapDefinition().dumpToTextStream(dump);
+  for (const char* option : {"resolution = 0.1", "maxRange = 0", "rays = All", "accuracy = 0.9",
+                             "useLabels = true", "coloring = Class"})
+    EXPECT_TRUE(contains(dump.str(), option)) << option;
+}
+
+TEST(MapOptions, aRefusedSectionLeavesTheOptionsAsTheyWere) {
+  semantic_map::TInsertionOptions options;
+  options.scan.maxRange = 12;
+  const mrpt::config::CConfigFileMemory file("[S]\nmaxRange = 5\ndecimation = 0\n");
+  EXPECT_THROW(options.loadFromConfigFile(file, "S"), std::runtime_error);
+  EXPECT_EQ(options.scan.maxRange, 12);
+}

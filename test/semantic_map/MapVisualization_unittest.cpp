@@ -1,0 +1,108 @@
+#include <gtest/gtest.h>
+#include <mrpt/opengl/COctoMapVoxels.h>
+#include <mrpt/opengl/COpenGLScene.h>
+#include <semantic_octree/TreeFile.h>
+
+#include "SmallMaps.h"
+#include "TemporaryFolder.h"
+
+using mrpt::opengl::COctoMapVoxels;
+using semantic_map::CSemanticOctoMap;
+using semantic_map::TRenderingOptions;
+
+namespace {
+
+/** One wall voxel at x = 3, one road voxel at x = -2, 1 m higher. */
+CSemanticOctoMap twoVoxels() {
+  CSemanticOctoMap map(0.1, threeClasses());
+  map.insertObservation(labeledPoints({{3.05f, 0.05f, 0.05f}, {-2.05f, 0.05f, 1.05f}}, {3, 1}));
+  return map;
+}
+
+COctoMapVoxels::Ptr voxelsOf(const CSemanticOctoMap& map) {
+  mrpt::opengl::CSetOfObjects objects;
+  map.getVisualizationInto(objects);
+  return objects.getByClass<COctoMapVoxels>();
+}
+
+constexpr auto kOccupied = mrpt::opengl::VOXEL_SET_OCCUPIED;
+constexpr auto kFree = mrpt::opengl::VOXEL_SET_FREESPACE;
+
+}  // namespace
+
+TEST(MapVisualization, occupiedCellsAreBoxesInTheirClassesColors) {
+  const auto voxels = voxelsOf(twoVoxels());
+  ASSERT_TRUE(voxels);
+  ASSERT_EQ(voxels->getVoxelCount(kOccupied), 2u);
+  EXPECT_EQ(voxels->getVoxelCount(kFree), 0u);
+  for (int i = 0; i < 2; ++i) {
+    const auto& voxel = voxels->getVoxel(kOccupied, i);
+    const bool wall = voxel.coords.x > 0;
+    EXPECT_NEAR(voxel.coords.x, wall ? 3.05 : -2.05, 1e-5);
+    EXPECT_NEAR(voxel.side_length, 0.1, 1e-9);
+    EXPECT_EQ(voxel.color, wall ? mrpt::img::TColor(40, 60, 210) : mrpt::img::TColor(200, 30, 30));
+  }
+}
+
+TEST(MapVisualization, nothingIsDrawnWhereMrptSaysSo) {
+  CSemanticOctoMap map = twoVoxels();
+  map.genericMapParams.enableSaveAs3DObject = false;
+  EXPECT_FALSE(voxelsOf(map));
+  EXPECT_FALSE(voxelsOf(CSemanticOctoMap()));
+}
+
+TEST(MapVisualization, optionsChooseTheCells) {
+  CSemanticOctoMap map = twoVoxels();
+  map.renderingOptions.free = true;
+  EXPECT_GT(voxelsOf(map)->getVoxelCount(kFree), 10u);
+  map.renderingOptions = {};
+  map.renderingOptions.occupied = false;
+  EXPECT_EQ(voxelsOf(map)->getVoxelCount(kOccupied), 0u);
+  map.renderingOptions = {};
+  map.renderingOptions.maxHeight = 0.5;
+  EXPECT_EQ(voxelsOf(map)->getVoxelCount(kOccupied), 1u);
+  map.renderingOptions = {};
+  map.renderingOptions.minHeight = 0.5;
+  EXPECT_EQ(voxelsOf(map)->getVoxelCount(kOccupied), 1u);
+  map.renderingOptions = {};
+  map.renderingOptions.minProbability = 0.99;
+  EXPECT_EQ(voxelsOf(map)->getVoxelCount(kOccupied), 0u);
+  map.renderingOptions = {};
+  map.renderingOptions.minOccupancy = 0.99;
+  EXPECT_EQ(voxelsOf(map)->getVoxelCount(kOccupied), 0u);
+}
+
+TEST(MapVisualization, colorsCanShowHeightOrProbability) {
+  CSemanticOctoMap map = twoVoxels();
+  map.renderingOptions.coloring = TRenderingOptions::Coloring::Height;
+  const auto byHeight = voxelsOf(map);
+  for (int i = 0; i < 2; ++i) {
+    const auto& voxel = byHeight->getVoxel(kOccupied, i);
+    EXPECT_EQ(voxel.color.R > voxel.color.B, voxel.coords.z > 0.5);
+  }
+  map.renderingOptions.coloring = TRenderingOptions::Coloring::Probability;
+  const double p = map.tree().query(3.05, 0.05, 0.05).probability;
+  EXPECT_NEAR(voxelsOf(map)->getVoxel(kOccupied, 0).color.R, std::min(255.0, 255 * (2 - 2 * p)), 1);
+}
+
+TEST(MapVisualization, savesItsOwnFileAndAScene) {
+  const TemporaryFolder folder;
+  const CSemanticOctoMap map = twoVoxels();
+  map.saveMetricMapRepresentationToFile((folder / "map").string());
+  const CSemanticOctoMap read(semantic_octree::loadTree((folder / "map.semantic").string()));
+  EXPECT_TRUE(bytesOf(read) == bytesOf(map));
+  mrpt::opengl::COpenGLScene scene;
+  ASSERT_TRUE(scene.loadFromFile((folder / "map.3Dscene").string()));
+  EXPECT_TRUE(scene.getByClass<mrpt::opengl::CSetOfObjects>()->getByClass<COctoMapVoxels>());
+}
+
+TEST(MapVisualization, anUnwritablePlaceIsAnError) {
+  EXPECT_THROW(twoVoxels().saveMetricMapRepresentationToFile("/no/such/folder/map"),
+               std::runtime_error);
+}
+
+TEST(MapVisualization, theMapDescribesItselfInALine) {
+  const std::string text = twoVoxels().asString();
+  EXPECT_TRUE(contains(text, "0.1 m")) << text;
+  EXPECT_TRUE(contains(text, "3 classes")) << text;
+}
