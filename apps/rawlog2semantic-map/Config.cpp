@@ -1,0 +1,97 @@
+#include "Config.h"
+
+#include <labeled_cloud/MrptMessage.h>
+#include <mrpt/config/CConfigFile.h>
+
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+#include "IniSection.h"
+
+namespace rawlog2semantic_map {
+
+namespace fs = std::filesystem;
+using mrpt::config::CConfigFileBase;
+
+namespace {
+
+void refuseUnknownSections(const CConfigFileBase& ini) {
+  static const std::set<std::string> kKnown = {"map", "insertion", "trajectory", "labels",
+                                               "pictures"};
+  std::vector<std::string> sections, keys;
+  ini.getAllSections(sections);
+  for (const std::string& section : sections) {
+    if (kKnown.count(section)) continue;
+    ini.getAllKeys(section, keys);
+    if (section.empty() && keys.empty()) continue;
+    throw std::runtime_error("unknown section [" + section +
+                             "]; known are [map], [insertion], [trajectory], [labels], [pictures]");
+  }
+}
+
+void readTrajectory(const CConfigFileBase& ini, Config& config) {
+  IniSection section(ini, "trajectory");
+  section.read("tolerance", config.trajectory.tolerance);
+  section.read("maxGap", config.trajectory.maxGap);
+  section.finish();
+  config.trajectory.validate();
+}
+
+void readLabels(const CConfigFileBase& ini, Config& config) {
+  using Match = labeled_cloud::LabelFolderOptions::Match;
+  IniSection section(ini, "labels");
+  std::string match = "Time";
+  section.read("match", match);
+  section.read("tolerance", config.labels.tolerance);
+  section.finish();
+  if (match != "Time" && match != "Name")
+    throw std::runtime_error("[labels] match is '" + match + "', expected Time or Name");
+  config.labels.match = match == "Time" ? Match::Time : Match::Name;
+  config.labels.validate();
+}
+
+void readPictures(const CConfigFileBase& ini, Config& config) {
+  IniSection section(ini, "pictures");
+  section.read("width", config.pictures.width);
+  section.read("height", config.pictures.height);
+  section.read("title", config.pictures.title);
+  double maxHeight = HUGE_VAL;
+  section.read("maxHeight", maxHeight);
+  if (maxHeight < HUGE_VAL) config.pictures.maxHeight = maxHeight;
+  section.read("minOccupancy", config.pictures.minOccupancy);
+  section.read("heading", config.view.heading);
+  section.read("tilt", config.view.tilt);
+  section.read("zoom", config.view.zoom);
+  section.finish();
+  config.pictures.validate();
+  config.view.validate();
+}
+
+Config readConfig(const fs::path& file) {
+  Config config;
+  const mrpt::config::CConfigFile ini(file.string());
+  refuseUnknownSections(ini);
+  config.map.loadFromConfigFile(ini, "map");
+  config.insertion.loadFromConfigFile(ini, "insertion");
+  readTrajectory(ini, config);
+  readLabels(ini, config);
+  readPictures(ini, config);
+  if (!config.map.classes.empty())
+    config.map.classes = (file.parent_path() / config.map.classes).lexically_normal();
+  return config;
+}
+
+}  // namespace
+
+Config loadConfig(const fs::path& file) {
+  if (!fs::is_regular_file(file) || !std::ifstream(file))
+    throw std::runtime_error(file.string() + ": cannot be read");
+  try {
+    return readConfig(file);
+  } catch (const std::exception& e) {
+    throw std::runtime_error(file.string() + ": " + labeled_cloud::messageOf(e));
+  }
+}
+
+}  // namespace rawlog2semantic_map

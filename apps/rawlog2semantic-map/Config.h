@@ -1,0 +1,26 @@
+#pragma once
+#include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/Trajectory.h>
+#include <semantic_map/MapOptions.h>
+#include <semantic_map/MapPictures.h>
+
+#include <filesystem>
+
+namespace rawlog2semantic_map {
+
+/** What the .ini file says: one member a section. */
+struct Config {
+  semantic_map::TCreationOptions map;           // [map]
+  semantic_map::TInsertionOptions insertion;    // [insertion]
+  labeled_cloud::TrajectoryOptions trajectory;  // [trajectory]
+  labeled_cloud::LabelFolderOptions labels;     // [labels]
+  semantic_map::PictureStyle pictures;          // [pictures]
+  semantic_map::Viewpoint view;                 // [pictures] too
+};
+
+/** Reads the file; `map.classes` is then relative to the working directory, not to the file.
+ * \throw std::runtime_error naming the file, and section, key and value where they are to blame:
+ * unreadable, an unknown section or key, a value that cannot be read or is out of range. */
+Config loadConfig(const std::filesystem::path& file);
+
+}  // namespace rawlog2semantic_map

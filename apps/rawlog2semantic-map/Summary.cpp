@@ -1,0 +1,99 @@
+#include "Summary.h"
+
+#include <semantic_octree/MapContents.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rawlog2semantic_map {
+
+using nlohmann::ordered_json;
+using semantic_octree::MapContents;
+using semantic_octree::SemanticOcTree;
+
+void Summary::add(const labeled_cloud::ScanCounts& counts) {
+  conversion.points += counts.points;
+  conversion.labeled += counts.labeled;
+  conversion.invalid += counts.invalid;
+  conversion.flying += counts.flying;
+}
+
+void Summary::add(const semantic_octree::InsertionReport& report) {
+  insertion.points += report.points;
+  insertion.skippedNotFinite += report.skippedNotFinite;
+  insertion.skippedNear += report.skippedNear;
+  insertion.skippedOutside += report.skippedOutside;
+  insertion.beyondRange += report.beyondRange;
+  insertion.hitVoxels += report.hitVoxels;
+  insertion.freeVoxels += report.freeVoxels;
+}
+
+std::size_t Summary::numSkipped() const { return read - inserted; }
+
+std::string Summary::skippedText() const {
+  std::string text = std::to_string(numSkipped()) + " skipped";
+  const char* separator = " (";
+  for (const auto& [reason, count] : skipped) {
+    text += separator + std::to_string(count) + " " + reason;
+    separator = ", ";
+  }
+  return skipped.empty() ? text : text + ")";
+}
+
+namespace {
+
+/** The smallest value that at least this share of the values do not exceed. */
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const double rank = std::ceil(share * static_cast<double>(values.size()));
+  return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+ordered_json timesJson(const std::vector<double>& milliseconds) {
+  return {{"median", quantile(milliseconds, 0.5)}, {"percentile95", quantile(milliseconds, 0.95)}};
+}
+
+ordered_json pointsJson(const Summary& s) {
+  return {{"read", s.conversion.points + s.conversion.invalid + s.conversion.flying},
+          {"withoutRange", s.conversion.invalid},
+          {"flying", s.conversion.flying},
+          {"tooNear", s.insertion.skippedNear},
+          {"outsideTheMap", s.insertion.skippedOutside},
+          {"beyondMaxRange", s.insertion.beyondRange},
+          {"labeled", s.conversion.labeled}};
+}
+
+ordered_json mapJson(const SemanticOcTree& tree) {
+  const MapContents contents = contentsOf(tree);
+  ordered_json classes = ordered_json::object();
+  for (int id = 1; id <= tree.numClasses(); ++id)
+    classes[tree.classes().name(static_cast<semantic_octree::ClassId>(id))] =
+        contents.voxelsOfClass[id];
+  return {{"resolution", tree.getResolution()},
+          {"leaves", contents.leaves},
+          {"innerNodes", contents.innerNodes},
+          {"bytes", contents.bytes},
+          {"freeVoxels", contents.freeVoxels},
+          {"occupiedVoxels", contents.occupiedVoxels},
+          {"occupiedWithoutClass", contents.voxelsOfClass[0]},
+          {"voxelsPerClass", classes}};
+}
+
+}  // namespace
+
+ordered_json toJson(const Summary& s, const SemanticOcTree& tree) {
+  return {
+      {"rawlogs", s.rawlogs},
+      {"observations",
+       {{"read", s.read},
+        {"inserted", s.inserted},
+        {"insertedWithoutLabels", s.withoutLabels},
+        {"skipped", s.skipped}}},
+      {"points", pointsJson(s)},
+      {"millisecondsPerScan",
+       {{"conversion", timesJson(s.conversionTimes)}, {"insertion", timesJson(s.insertionTimes)}}},
+      {"map", mapJson(tree)}};
+}
+
+}  // namespace rawlog2semantic_map

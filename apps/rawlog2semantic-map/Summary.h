@@ -1,0 +1,37 @@
+#pragma once
+#include <labeled_cloud/LabeledScan.h>
+#include <semantic_octree/InsertionOptions.h>
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace rawlog2semantic_map {
+
+/** What became of the observations on their way into the map. */
+struct Summary {
+  std::vector<std::string> rawlogs;
+  std::size_t read = 0, inserted = 0;
+  /** Number of observations that were not inserted, by the reason. */
+  std::map<std::string, std::size_t> skipped;
+  /** Depth images for which there were labels in a folder, but none for them. */
+  std::size_t withoutLabels = 0;
+  /** Sums over the scans that were inserted. */
+  labeled_cloud::ScanCounts conversion;
+  semantic_octree::InsertionReport insertion;
+  /** Of each inserted scan: making the cloud, inserting it, milliseconds. */
+  std::vector<double> conversionTimes, insertionTimes;
+
+  void add(const labeled_cloud::ScanCounts& counts);
+  void add(const semantic_octree::InsertionReport& report);
+  std::size_t numSkipped() const;
+  /** "3 skipped (2 outside the trajectory, 1 CObservationImage)" */
+  std::string skippedText() const;
+};
+
+/** The summary with what the map holds, for summary.json. */
+nlohmann::ordered_json toJson(const Summary& summary, const semantic_octree::SemanticOcTree& tree);
+
+}  // namespace rawlog2semantic_map

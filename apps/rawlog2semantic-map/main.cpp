@@ -1,0 +1,128 @@
+// Makes a semantic octree map, pictures of it and a summary from labeled rawlogs.
+#include <labeled_cloud/ClassTableFile.h>
+#include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/MrptMessage.h>
+#include <labeled_cloud/RawlogTrajectory.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <optional>
+
+#include "Config.h"
+#include "MapBuilder.h"
+#include "OutputFolder.h"
+
+namespace rawlog2semantic_map {
+namespace {
+
+namespace fs = std::filesystem;
+using semantic_map::CSemanticOctoMap;
+using semantic_octree::ClassTable;
+using semantic_octree::SemanticOcTree;
+
+struct Cli {
+  fs::path config, output, labels, trajectory, classes;
+  std::optional<double> resolution, maxRange;
+  std::vector<fs::path> rawlogs;
+
+  void addTo(CLI::App& app) {
+    app.add_option("--config", config, "Options (.ini)")->required();
+    app.add_option("--output", output, "Folder of the results, created if need be")->required();
+    app.add_option("--labels", labels, "Folder of label images, instead of labels in the rawlog");
+    app.add_option("--trajectory", trajectory,
+                   "Poses of the robot (TUM format), instead of those in the rawlog");
+    app.add_option("--classes", classes, "Class table (YAML), instead of the configuration's");
+    app.add_option("--resolution", resolution, "Edge of a voxel, m");
+    app.add_option("--max-range", maxRange,
+                   "Returns beyond it only carve free space, m; 0: no limit");
+    app.add_option("INPUT.rawlog", rawlogs, "Rawlogs that continue each other")->required();
+  }
+};
+
+Config configOf(const Cli& cli) {
+  Config config = loadConfig(cli.config);
+  if (!cli.classes.empty()) config.map.classes = cli.classes.string();
+  if (cli.resolution) config.map.resolution = *cli.resolution;
+  if (cli.maxRange) config.insertion.scan.maxRange = *cli.maxRange;
+  config.map.validate();
+  config.insertion.validate();
+  return config;
+}
+
+labeled_cloud::Trajectory trajectoryOf(const Cli& cli, const Config& config) {
+  if (!cli.trajectory.empty())
+    return labeled_cloud::loadTumTrajectory(cli.trajectory, config.trajectory);
+  std::cout << "Reading the robot's poses" << std::endl;
+  return labeled_cloud::readTrajectory(cli.rawlogs, config.trajectory);
+}
+
+Summary buildMap(const Cli& cli, const Config& config, CSemanticOctoMap& map) {
+  const ClassTable& table = map.tree().classes();
+  std::shared_ptr<labeled_cloud::ImageLabeler> labeler;
+  if (!cli.labels.empty())
+    labeler = std::make_shared<labeled_cloud::LabelFolder>(cli.labels, table, config.labels);
+  labeled_cloud::ScanConverter converter(table, config.insertion.conversion, labeler);
+  const labeled_cloud::Trajectory trajectory = trajectoryOf(cli, config);
+  MapBuilder builder(map, converter, trajectory);
+  builder.insert(cli.rawlogs);
+  if (builder.summary().inserted == 0)
+    throw std::runtime_error("nothing to map: no observation was inserted, " +
+                             builder.summary().skippedText());
+  return builder.summary();
+}
+
+void writeJson(const nlohmann::ordered_json& json, const fs::path& file) {
+  std::ofstream out(file);
+  out << json.dump(2) << '\n';
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+/** A map is worth keeping where it cannot be drawn: says why not instead of throwing. */
+std::string drawPictures(const SemanticOcTree& tree, const Config& config,
+                         const OutputFolder& output) {
+  semantic_map::savePicture(renderTopView(tree, config.pictures), output.staged("top.png"));
+  try {
+    semantic_map::savePicture(renderPerspective(tree, config.pictures, config.view),
+                              output.staged("view.png"));
+  } catch (const std::exception& e) {
+    return "view.png: " + labeled_cloud::messageOf(e);
+  }
+  return {};
+}
+
+void run(const Cli& cli) {
+  const Config config = configOf(cli);
+  const ClassTable table = config.map.classes.empty()
+                               ? CSemanticOctoMap::occupancyOnly()
+                               : labeled_cloud::loadClassTable(config.map.classes);
+  CSemanticOctoMap map(config.map.resolution, table, config.insertion.filter);
+  map.insertionOptions = config.insertion;
+  OutputFolder output(cli.output);
+
+  const Summary summary = buildMap(cli, config, map);
+  saveTree(map.tree(), output.staged("map.semantic"));
+  writeJson(toJson(summary, map.tree()), output.staged("summary.json"));
+  const std::string problem = drawPictures(map.tree(), config, output);
+  output.commit({"map.semantic", "summary.json", "top.png", "view.png"});
+  if (!problem.empty()) throw std::runtime_error(problem);
+  std::cout << cli.output.string() << ": " << map.asString() << std::endl;
+}
+
+}  // namespace
+}  // namespace rawlog2semantic_map
+
+int main(int argc, char** argv) {
+  CLI::App app("Makes a semantic octree map, pictures and a summary from labeled rawlogs");
+  rawlog2semantic_map::Cli cli;
+  cli.addTo(app);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    rawlog2semantic_map::run(cli);
+    return 0;
+  } catch (const std::exception& e) {
+    std::cerr << "rawlog2semantic-map: " << labeled_cloud::messageOf(e) << std::endl;
+    return 1;
+  }
+}

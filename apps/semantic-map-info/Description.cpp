@@ -1,0 +1,98 @@
+#include "Description.h"
+
+#include <semantic_octree/MapContents.h>
+
+#include <iomanip>
+
+namespace semantic_map_info {
+
+using nlohmann::ordered_json;
+using semantic_octree::ClassId;
+using semantic_octree::FilterParameters;
+using semantic_octree::MapContents;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+ordered_json parametersJson(const FilterParameters& p) {
+  if (p.increments == FilterParameters::Increments::Ssmi)
+    return {{"increments", "Ssmi"},
+            {"minOccupancy", p.minOccupancy},
+            {"maxProbability", p.maxProbability}};
+  return {
+      {"increments", "LikelihoodConsistent"}, {"accuracy", p.accuracy},
+      {"hitProbability", p.hitProbability},   {"falseAlarmProbability", p.falseAlarmProbability},
+      {"minOccupancy", p.minOccupancy},       {"maxProbability", p.maxProbability},
+      {"softLabelFloor", p.softLabelFloor}};
+}
+
+ordered_json boxJson(const MapContents& contents) {
+  if (contents.box.isEmpty()) return nullptr;
+  const Eigen::Vector3d low = contents.box.min(), high = contents.box.max();
+  return {{"min", {low.x(), low.y(), low.z()}}, {"max", {high.x(), high.y(), high.z()}}};
+}
+
+ordered_json classesJson(const SemanticOcTree& map, const MapContents& contents) {
+  ordered_json classes = ordered_json::array();
+  for (int id = 1; id <= map.numClasses(); ++id) {
+    const auto& table = map.classes();
+    const auto& color = table.color(static_cast<ClassId>(id));
+    classes.push_back({{"id", id},
+                       {"name", table.name(static_cast<ClassId>(id))},
+                       {"color", {color.r, color.g, color.b}},
+                       {"voxels", contents.voxelsOfClass[id]}});
+  }
+  return classes;
+}
+
+void printBox(const ordered_json& box, std::ostream& out) {
+  if (box.is_null()) {
+    out << "nothing is known yet\n";
+    return;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    out << (axis ? ", " : "") << "xyz"[axis] << " " << box["min"][axis].get<double>() << " to "
+        << box["max"][axis].get<double>();
+  out << " m\n";
+}
+
+}  // namespace
+
+ordered_json describe(const SemanticOcTree& map) {
+  const MapContents contents = contentsOf(map);
+  return {{"resolution", map.getResolution()},
+          {"nodes", map.size()},
+          {"leaves", contents.leaves},
+          {"innerNodes", contents.innerNodes},
+          {"bytes", contents.bytes},
+          {"boundingBox", boxJson(contents)},
+          {"freeVoxels", contents.freeVoxels},
+          {"occupiedVoxels", contents.occupiedVoxels},
+          {"occupiedWithoutClass", contents.voxelsOfClass[0]},
+          {"filter", parametersJson(map.filterParameters())},
+          {"classes", classesJson(map, contents)}};
+}
+
+void printText(const std::string& name, const ordered_json& d, std::ostream& out) {
+  out << name << "\n"
+      << "  resolution    " << d["resolution"] << " m\n"
+      << "  known space   ";
+  printBox(d["boundingBox"], out);
+  out << "  nodes         " << d["nodes"] << " (" << d["leaves"] << " leaves, " << d["innerNodes"]
+      << " inner nodes)\n"
+      << "  memory        " << d["bytes"] << " bytes\n"
+      << "  voxels        " << d["occupiedVoxels"] << " occupied, " << d["freeVoxels"] << " free\n"
+      << "  filter       ";
+  for (const auto& [key, value] : d["filter"].items())
+    out << " " << key << " " << (value.is_string() ? value.get<std::string>() : value.dump());
+  out << "\n  occupied voxels by likeliest class (of " << d["classes"].size() << " classes)\n";
+  const auto line = [&out](const std::string& id, const ordered_json& voxels,
+                           const std::string& label) {
+    out << std::setw(7) << id << " " << std::setw(10) << voxels << "  " << label << "\n";
+  };
+  for (const auto& c : d["classes"])
+    if (c["voxels"] > 0) line(c["id"].dump(), c["voxels"], c["name"]);
+  if (d["occupiedWithoutClass"] > 0) line("-", d["occupiedWithoutClass"], "(no class was seen)");
+}
+
+}  // namespace semantic_map_info

@@ -1,0 +1,17 @@
+#pragma once
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+
+namespace semantic_map_info {
+
+/** All there is to say about a map but its voxels. */
+nlohmann::ordered_json describe(const semantic_octree::SemanticOcTree& map);
+
+/** The same for people. \param description what describe() returned */
+void printText(const std::string& name, const nlohmann::ordered_json& description,
+               std::ostream& out);
+
+}  // namespace semantic_map_info

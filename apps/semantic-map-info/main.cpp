@@ -1,0 +1,59 @@
+// Says what is in a semantic octree map, as a whole or at points.
+#include <semantic_octree/TreeFile.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "Description.h"
+#include "PointQuery.h"
+
+namespace semantic_map_info {
+namespace {
+
+struct Cli {
+  std::filesystem::path map, query;
+  bool json = false;
+
+  void addTo(CLI::App& app) {
+    app.add_option("MAP", map, "A map's own file (.semantic)")->required();
+    CLI::Option* asJson = app.add_flag("--json", json, "As JSON");
+    app.add_option("--query", query, "File of lines `x y z`, m: what the map knows there")
+        ->excludes(asJson);
+  }
+};
+
+void run(const Cli& cli) {
+  const auto map = semantic_octree::loadTree(cli.map.string());
+  if (!cli.query.empty()) {
+    std::ifstream points(cli.query);
+    if (!points || std::filesystem::is_directory(cli.query))
+      throw std::runtime_error(cli.query.string() + ": cannot be read");
+    std::ostringstream answers;  // all of them, or none
+    answerPoints(map, points, cli.query.string(), answers);
+    std::cout << answers.str();
+  } else if (cli.json) {
+    std::cout << describe(map).dump(2) << '\n';
+  } else {
+    printText(cli.map.string(), describe(map), std::cout);
+  }
+}
+
+}  // namespace
+}  // namespace semantic_map_info
+
+int main(int argc, char** argv) {
+  CLI::App app("Says what is in a semantic octree map");
+  semantic_map_info::Cli cli;
+  cli.addTo(app);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    semantic_map_info::run(cli);
+    return 0;
+  } catch (const std::exception& e) {
+    std::cerr << "semantic-map-info: " << e.what() << '\n';
+    return 1;
+  }
+}
