@@ -1,0 +1,91 @@
+#include "Comparison.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <stdexcept>
+
+#include "ChildProcess.h"
+
+namespace insertion_benchmark {
+namespace {
+
+double cpuMilliseconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+double wallMilliseconds() {
+  return std::chrono::duration<double, std::milli>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+double percentile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+enum Figure { kCpuMedian, kCpu95, kWallMedian, kMapBytes, kPeakBytes, kTouched, kNumFigures };
+
+/** One turn: the figures of one contestant that inserts all scans. */
+std::vector<double> runTurn(const Entry& entry, const Scene& scene, const Settings& settings) {
+  const std::unique_ptr<Contestant> contestant = entry.create(scene, settings);
+  const double before = residentBytes();
+  resetPeak();
+  std::vector<double> cpu, wall;
+  for (std::size_t i = 0; i < scene.scans.size(); ++i) {
+    const double cpuBegin = cpuMilliseconds(), wallBegin = wallMilliseconds();
+    contestant->insert(i);
+    wall.push_back(wallMilliseconds() - wallBegin);
+    cpu.push_back(cpuMilliseconds() - cpuBegin);
+  }
+  std::vector<double> figures(kNumFigures);
+  figures[kPeakBytes] = peakBytes() - before;
+  figures[kMapBytes] = residentBytes() - before;
+  figures[kCpuMedian] = median(cpu);
+  figures[kCpu95] = percentile(cpu, 0.95);
+  figures[kWallMedian] = median(wall);
+  figures[kTouched] = static_cast<double>(contestant->touchedVoxels());
+  return figures;
+}
+
+}  // namespace
+
+double median(std::vector<double> values) { return percentile(std::move(values), 0.5); }
+
+double Result::cpu() const { return median(cpuMedians); }
+double Result::wall() const { return median(wallMedians); }
+double Result::cpu95thPercentile() const { return median(cpu95thPercentiles); }
+double Result::spread() const {
+  const auto [least, most] = std::minmax_element(cpuMedians.begin(), cpuMedians.end());
+  return (*most - *least) / cpu();
+}
+
+std::vector<Result> compare(const std::vector<Entry>& entries, const Scene& scene,
+                            const Settings& settings, int repeats,
+                            const std::function<void(const std::string&)>& onTurn) {
+  std::vector<Result> results(entries.size());
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      onTurn(entries[i].name);
+      Result& r = results[i];
+      r.name = entries[i].name;
+      try {
+        const std::vector<double> figures =
+            runInChild([&] { return runTurn(entries[i], scene, settings); });
+        r.cpuMedians.push_back(figures.at(kCpuMedian));
+        r.cpu95thPercentiles.push_back(figures.at(kCpu95));
+        r.wallMedians.push_back(figures.at(kWallMedian));
+        r.mapBytes = figures.at(kMapBytes);
+        r.peakBytes = figures.at(kPeakBytes);
+        r.touchedVoxels = figures.at(kTouched);
+      } catch (const std::exception& e) {
+        throw std::runtime_error(r.name + ": " + e.what());
+      }
+    }
+  return results;
+}
+
+}  // namespace insertion_benchmark

@@ -1,0 +1,46 @@
+#pragma once
+#include <semantic_octree/InsertionOptions.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "Scene.h"
+
+namespace insertion_benchmark {
+
+struct Settings {
+  double resolution = 0.2, maxRange = 25;  ///< meters
+  semantic_octree::InsertionOptions::Rays rays = semantic_octree::InsertionOptions::Rays::All;
+  int terms = 4;  ///< information terms that are kept up to date
+  int threads = 1;
+};
+
+/** Something that scans are inserted into. */
+class Contestant {
+ public:
+  virtual ~Contestant() = default;
+  /** The i-th scan of the scene: this is timed. The constructor, which may bring the scans into a
+   * form of its own, is not. */
+  virtual void insert(std::size_t scan) = 0;
+  /** Voxels that were touched, if this is known. */
+  virtual std::size_t touchedVoxels() const { return 0; }
+};
+
+struct Entry {
+  std::string name;
+  std::function<std::unique_ptr<Contestant>(const Scene&, const Settings&)> create;
+};
+
+/** A float array that beams are traced through: each voxel on the way is touched, nothing more. */
+std::unique_ptr<Contestant> denseTraversal(const Scene& scene, const Settings& settings);
+std::unique_ptr<Contestant> semanticOcTree(const Scene& scene, const Settings& settings);
+std::unique_ptr<Contestant> semanticOcTreeWithAbstraction(const Scene& scene,
+                                                          const Settings& settings);
+std::unique_ptr<Contestant> octomapOcTree(const Scene& scene, const Settings& settings);
+std::unique_ptr<Contestant> octomapDiscretized(const Scene& scene, const Settings& settings);
+std::unique_ptr<Contestant> octomapColorOcTree(const Scene& scene, const Settings& settings);
+std::unique_ptr<Contestant> mrptOctoMap(const Scene& scene, const Settings& settings);
+
+}  // namespace insertion_benchmark

@@ -1,0 +1,84 @@
+#include "Report.h"
+
+#include <cmath>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+namespace insertion_benchmark {
+namespace {
+
+/** CPU time of the reference, NaN if it did not run. */
+double referenceCpu(const std::vector<Result>& results, const std::string& reference) {
+  for (const Result& r : results)
+    if (r.name == reference) return r.cpu();
+  return NAN;
+}
+
+const char* nameOf(semantic_octree::InsertionOptions::Rays rays) {
+  return rays == semantic_octree::InsertionOptions::Rays::All ? "all" : "endpoints";
+}
+
+/** A number, or a dash if it is not known. */
+std::string number(double value, int decimals) {
+  if (!std::isfinite(value)) return "-";
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(decimals) << value;
+  return out.str();
+}
+
+double bytesPerVoxel(const Result& r, const Conditions& c) {
+  return c.touchedVoxels > 0 ? r.mapBytes / c.touchedVoxels : NAN;
+}
+
+}  // namespace
+
+void printTable(std::ostream& out, const Conditions& c, const std::vector<Result>& results,
+                const std::string& reference) {
+  out << c.scene << ": " << c.scans << " scans, " << c.points << " points; resolution "
+      << c.settings.resolution << " m, range " << c.settings.maxRange << " m, rays "
+      << nameOf(c.settings.rays) << ", " << c.settings.threads << " thread(s), " << c.settings.terms
+      << " terms, " << c.repeats << " repeats, load average " << c.loadAverage << "\n\n"
+      << std::left << std::setw(34) << "" << std::right << std::setw(10) << "CPU ms" << std::setw(9)
+      << "spread" << std::setw(10) << "95 %" << std::setw(10) << "wall ms" << std::setw(10)
+      << "ratio" << std::setw(12) << "bytes/vox" << std::setw(10) << "peak MB"
+      << "\n";
+  for (const Result& r : results)
+    out << std::left << std::setw(34) << r.name << std::right << std::setw(10) << number(r.cpu(), 1)
+        << std::setw(7) << number(100 * r.spread(), 0) << " %" << std::setw(10)
+        << number(r.cpu95thPercentile(), 1) << std::setw(10) << number(r.wall(), 1) << std::setw(10)
+        << number(r.cpu() / referenceCpu(results, reference), 2) << std::setw(12)
+        << number(bytesPerVoxel(r, c), 1) << std::setw(10) << number(r.peakBytes / 1e6, 0) << "\n";
+  out << "\nms per scan: median over the scans, then over the repeats. ratio: CPU time over that "
+         "of "
+      << reference << ".\n";
+}
+
+void printJson(std::ostream& out, const Conditions& c, const std::vector<Result>& results,
+               const std::string& reference) {
+  nlohmann::json json = {{"scene", c.scene},
+                         {"scans", c.scans},
+                         {"points", c.points},
+                         {"resolution", c.settings.resolution},
+                         {"max_range", c.settings.maxRange},
+                         {"rays", nameOf(c.settings.rays)},
+                         {"terms", c.settings.terms},
+                         {"threads", c.settings.threads},
+                         {"repeats", c.repeats},
+                         {"load_average", c.loadAverage},
+                         {"touched_voxels", c.touchedVoxels},
+                         {"ratio_to", reference}};
+  for (const Result& r : results)  // what is not known becomes null
+    json["contestants"].push_back({{"name", r.name},
+                                   {"cpu_ms", r.cpu()},
+                                   {"cpu_ms_of_repeats", r.cpuMedians},
+                                   {"cpu_ms_95th_percentile", r.cpu95thPercentile()},
+                                   {"wall_ms", r.wall()},
+                                   {"ratio", r.cpu() / referenceCpu(results, reference)},
+                                   {"map_bytes", r.mapBytes},
+                                   {"bytes_per_touched_voxel", bytesPerVoxel(r, c)},
+                                   {"peak_bytes", r.peakBytes}});
+  out << json.dump(2) << "\n";
+}
+
+}  // namespace insertion_benchmark

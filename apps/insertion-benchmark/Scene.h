@@ -1,0 +1,31 @@
+#pragma once
+#include <semantic_octree/LabeledCloud.h>
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <vector>
+
+namespace insertion_benchmark {
+
+struct PosedScan {
+  semantic_octree::LabeledCloud cloud;
+  Eigen::Isometry3d T_map_sensor;
+};
+
+struct Scene {
+  std::vector<PosedScan> scans;
+  int numClasses = 1;
+
+  std::size_t numPoints() const;
+};
+
+/** Reads a scene in the packed format (see README.md). \param maxScans 0: all
+ * \throw std::runtime_error naming the file and what is wrong. */
+Scene readSceneFile(const std::filesystem::path& file, std::size_t maxScans);
+
+/** The scans of a rawlog. \param classes a class table (YAML)
+ * \throw std::runtime_error */
+Scene readRawlog(const std::filesystem::path& file, const std::filesystem::path& classes,
+                 std::size_t maxScans);
+
+}  // namespace insertion_benchmark

@@ -1,0 +1,115 @@
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <iostream>
+
+#include "Report.h"
+
+namespace {
+
+using namespace insertion_benchmark;
+using semantic_octree::InsertionOptions;
+
+const char* const kReference = "semantic_octree with G";
+const char* const kTraversal = "bare traversal of all rays";
+
+std::vector<Entry> allEntries() {
+  return {{kTraversal, denseTraversal},
+          {"semantic_octree", semanticOcTree},
+          {kReference, semanticOcTreeWithAbstraction},
+          {"octomap::OcTree", octomapOcTree},
+          {"octomap::OcTree, discretized", octomapDiscretized},
+          {"octomap::ColorOcTree", octomapColorOcTree},
+          {"mrpt::maps::COctoMap", mrptOctoMap}};
+}
+
+struct Cli {
+  CLI::App app{"Measures the insertion of labeled scans, next to other maps, in one run."};
+  std::filesystem::path sceneFile, rawlog, classes;
+  Settings settings;
+  std::size_t scans = 0;
+  int repeats = 3;
+  std::string only;
+  bool json = false;
+
+  Cli() {
+    auto* const file = app.add_option("SCENE", sceneFile, "Scene file (see README.md)");
+    auto* const log = app.add_option("--rawlog", rawlog, "Labeled rawlog instead of a scene file");
+    file->excludes(log);
+    log->needs(app.add_option("--classes", classes, "Class table of the rawlog (YAML)"));
+    app.add_option("--resolution", settings.resolution, "Edge of a voxel, m")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_option("--range", settings.maxRange, "Maximum range, m; 0: none")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--scans", scans, "Number of scans; 0: all")->capture_default_str();
+    app.add_option("--rays", settings.rays,
+                   "Our rays: 'all', or one for each end voxel ('endpoints')")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, InsertionOptions::Rays>{
+            {"all", InsertionOptions::Rays::All},
+            {"endpoints", InsertionOptions::Rays::EndVoxels}}));
+    app.add_option("--terms", settings.terms, "Information terms to keep up to date")
+        ->check(CLI::Range(1, 8))
+        ->capture_default_str();
+    app.add_option("--threads", settings.threads, "Our threads")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    app.add_option("--repeats", repeats)->check(CLI::Range(1, 1000))->capture_default_str();
+    app.add_option("--only", only, "Contestants whose name contains this, and the bare traversal");
+    app.add_flag("--json", json, "JSON instead of a table");
+  }
+};
+
+std::vector<Entry> chosenEntries(const std::string& only) {
+  std::vector<Entry> entries = allEntries();
+  entries.erase(std::remove_if(entries.begin(), entries.end(),
+                               [&](const Entry& e) {
+                                 return e.name != kTraversal &&
+                                        e.name.find(only) == std::string::npos;
+                               }),
+                entries.end());
+  return entries;
+}
+
+int run(const Cli& cli) {
+  if (cli.sceneFile.empty() && cli.rawlog.empty())
+    throw std::runtime_error("neither a scene file nor --rawlog");
+  if (!cli.rawlog.empty() && cli.classes.empty())
+    throw std::runtime_error("--rawlog needs --classes");
+  const std::filesystem::path& file = cli.rawlog.empty() ? cli.sceneFile : cli.rawlog;
+  const Scene scene = cli.rawlog.empty() ? readSceneFile(file, cli.scans)
+                                         : readRawlog(file, cli.classes, cli.scans);
+  if (scene.scans.empty()) throw std::runtime_error(file.string() + ": no scans");
+
+  Conditions conditions{file.filename().string(),
+                        scene.scans.size(),
+                        scene.numPoints(),
+                        cli.settings,
+                        cli.repeats,
+                        0,
+                        0};
+  getloadavg(&conditions.loadAverage, 1);
+  const std::vector<Result> results =
+      compare(chosenEntries(cli.only), scene, cli.settings, cli.repeats, [&](const auto& name) {
+        if (isatty(STDERR_FILENO)) std::cerr << "\r\033[K" << name << std::flush;
+      });
+  if (isatty(STDERR_FILENO)) std::cerr << "\r\033[K";
+  conditions.touchedVoxels = results.front().touchedVoxels;
+  (cli.json ? printJson : printTable)(std::cout, conditions, results, kReference);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Cli cli;
+  CLI11_PARSE(cli.app, argc, argv);
+  try {
+    return run(cli);
+  } catch (const std::exception& e) {
+    std::cerr << "insertion-benchmark: " << e.what() << "\n";
+    return 1;
+  }
+}
