@@ -30,7 +30,7 @@ double sumOfEight(const double* x) {
 bool sharesOf(const double* densities, double* shares) {
   bool equal = true;
   for (int i = 1; i < 8; ++i) equal &= densities[i] == densities[0];
-  const double total = equal ? 8 * densities[0] : sumOfEight(densities);
+  const double total = sumOfEight(densities);
   for (int i = 0; i < 8; ++i) shares[i] = equal ? 0.125 : densities[i] / total;
   return equal;
 }
@@ -127,48 +127,48 @@ const double* AbstractionUpkeep::Worker::recordRow(const Belief& record, int chi
   return row;
 }
 
-void AbstractionUpkeep::Worker::gather(NodeStore& store, const Node& inner, const Cell& cell,
-                                       Children& c) {
+void AbstractionUpkeep::Worker::gatherRows(const NodeStore& store, const Node& inner,
+                                           const double** rows, double* gains) {
   const Octant& octant = NodeStore::octant(inner);
-  const double missing = m_upkeep.missingDensity(cell.depth + 1);
-  const double* const unknownRow = m_upkeep.layout().unknownRow();
-  const bool uniform = m_upkeep.density().isUniform();
   for (int i = 0; i < 8; ++i) {
     const Node& child = octant.nodes[i];
-    if (octant.has(i) && !child.isLeaf()) {
+    gains[i] = 0;
+    if (!octant.has(i)) {
+      rows[i] = m_upkeep.layout().unknownRow();
+    } else if (child.isLeaf()) {
+      rows[i] = child.hasClassRecord() ? recordRow(store.record(child), i)
+                                       : uniformRow(child.getValue(), i);
+    } else {
       const InnerState& s = *store.state<InnerState>(child);
-      c.rows[i] = s.row();
-      c.densities[i] = s.density;
-      c.gains[i] = s.gain;
-      continue;
+      rows[i] = s.row();
+      gains[i] = s.gain;
     }
-    c.gains[i] = 0;
-    c.densities[i] = octant.has(i) ? 1.0 : missing;
-    if (!uniform) c.densities[i] *= m_upkeep.density().mean(cell.child(i));
-    if (!octant.has(i))
-      c.rows[i] = unknownRow;
-    else
-      c.rows[i] = child.hasClassRecord() ? recordRow(store.record(child), i)
-                                         : uniformRow(child.getValue(), i);
   }
 }
 
 void AbstractionUpkeep::Worker::recompute(NodeStore& store, Node& inner, const Cell& cell) {
-  Children c;
-  gather(store, inner, cell, c);
   InnerState& s = *store.state<InnerState>(inner);
-  double shares[8];
-  const bool equalShares = sharesOf(c.densities, shares);
-  s.density = sumOfEight(c.densities) * 0.125;
-  s.splitEntropy = equalShares ? kLogEight : entropyOfShares(shares);
   double* const js = m_upkeep.divergences(s);
-  m_upkeep.layout().mix(c.rows, shares, equalShares, s.row(), js);
+  const double* rows[8];
+  double gains[8], densities[8], shares[8];
+  gatherRows(store, inner, rows, gains);
+  s.changedBelow = 1;
+  bool equalShares = m_upkeep.hasEqualShares(cell.depth);
+  if (equalShares) {
+    s.density = 1;
+  } else {
+    gatherDensities(store, inner, cell, densities);
+    equalShares = sharesOf(densities, shares);
+    s.density = sumOfEight(densities) * 0.125;
+  }
+  m_upkeep.layout().mix(rows, equalShares ? nullptr : shares, s.row(), js);
+  s.splitEntropy = equalShares ? kLogEight : entropyOfShares(shares);
   if (s.density == 0) {
     s.splitEntropy = 0;
     std::fill(js, js + m_upkeep.layout().sizes().terms, 0.0);
   }
-  s.changedBelow = 1;
-  m_upkeep.settleGain(s, cell.depth, weightedSumOfEight(shares, c.gains));
+  m_upkeep.settleGain(s, cell.depth,
+                      equalShares ? sumOfEight(gains) * 0.125 : weightedSumOfEight(shares, gains));
 }
 
 void AbstractionUpkeep::Worker::recomputeAll(NodeStore& store, Node& node, const Cell& cell) {
@@ -196,27 +196,47 @@ bool AbstractionUpkeep::Worker::recomputeWhereChanged(NodeStore& store, Node& no
 }
 
 void AbstractionUpkeep::Worker::reweigh(NodeStore& store, Node& inner, const Cell& cell) {
-  double densities[8], gains[8], shares[8];
-  Octant& octant = NodeStore::octant(inner);
   InnerState& s = *store.state<InnerState>(inner);
+  double gains[8] = {};
+  // The parents of voxels are most of all nodes: their children need not be looked at.
+  if (cell.depth < kTreeDepth - 1) reweighChildren(store, inner, cell, gains);
+  double childrensGain = sumOfEight(gains) * 0.125;
+  if (!m_upkeep.hasEqualShares(cell.depth)) {
+    double densities[8], shares[8];
+    gatherDensities(store, inner, cell, densities);
+    sharesOf(densities, shares);
+    childrensGain = weightedSumOfEight(shares, gains);
+  }
+  m_upkeep.settleGain(s, cell.depth, childrensGain);
+}
+
+void AbstractionUpkeep::Worker::reweighChildren(NodeStore& store, Node& inner, const Cell& cell,
+                                                double* gains) {
+  Octant& octant = NodeStore::octant(inner);
+  for (const Node& child : octant.nodes) store.prefetchInner(child);
+  std::uint32_t changed = store.state<InnerState>(inner)->changedBelow;
+  for (int i = 0; i < 8; ++i) {
+    Node& child = octant.nodes[i];
+    if (child.isLeaf()) continue;
+    reweigh(store, child, cell.child(i));
+    const InnerState& below = *store.state<InnerState>(child);
+    gains[i] = below.gain;
+    changed |= below.changedBelow;
+  }
+  store.state<InnerState>(inner)->changedBelow = changed;
+}
+
+void AbstractionUpkeep::Worker::gatherDensities(const NodeStore& store, const Node& inner,
+                                                const Cell& cell, double* densities) const {
+  const Octant& octant = NodeStore::octant(inner);
   const double missing = m_upkeep.missingDensity(cell.depth + 1);
-  bool changedBelow = false;
   for (int i = 0; i < 8; ++i) {
     const Node& child = octant.nodes[i];
-    gains[i] = 0;
-    if (octant.has(i) && !child.isLeaf()) {
-      reweigh(store, octant.nodes[i], cell.child(i));
-      const InnerState& below = *store.state<InnerState>(child);
-      densities[i] = below.density;
-      gains[i] = below.gain;
-      changedBelow |= below.changedBelow != 0;
-    } else {
+    if (octant.has(i) && !child.isLeaf())
+      densities[i] = store.state<InnerState>(child)->density;
+    else
       densities[i] = (octant.has(i) ? 1.0 : missing) * m_upkeep.density().mean(cell.child(i));
-    }
   }
-  sharesOf(densities, shares);
-  s.changedBelow |= changedBelow;
-  m_upkeep.settleGain(s, cell.depth, weightedSumOfEight(shares, gains));
 }
 
 }  // namespace semantic_octree

@@ -49,6 +49,10 @@ class AbstractionUpkeep {
   double missingDensity(int depth) const {
     return depth > m_blockDepth ? m_options.unknownWeight : 0.0;
   }
+  /** All eight children of a node at this depth weigh the same, known or not. */
+  bool hasEqualShares(int depth) const {
+    return m_density.isUniform() && missingDensity(depth + 1) == 1.0;
+  }
   const DensityField& density() const { return m_density; }
 
   /** New weights of the same terms, and alpha. What is kept of nodes is then out of date in its
@@ -75,11 +79,10 @@ class AbstractionUpkeep {
     void reweigh(NodeStore& store, Node& inner, const Cell& cell);
 
    private:
-    struct Children {
-      const double* rows[8];
-      double densities[8], gains[8];
-    };
-    void gather(NodeStore& store, const Node& inner, const Cell& cell, Children& c);
+    void gatherRows(const NodeStore& store, const Node& inner, const double** rows, double* gains);
+    void gatherDensities(const NodeStore& store, const Node& inner, const Cell& cell,
+                         double* densities) const;
+    void reweighChildren(NodeStore& store, Node& inner, const Cell& cell, double* gains);
     /** Row of a leaf without a class record: a few values make up most of a map. */
     const double* uniformRow(float occupancyLogOdds, int child) {
       const std::size_t slot = slotOf(occupancyLogOdds);

@@ -47,6 +47,15 @@ class NodeStore {
     const Octant& o = octant(inner);
     return o.has(i) ? &o.nodes[i] : nullptr;
   }
+  /** Brings an inner node's children and bookkeeping nearer to the processor. */
+  void prefetchInner(const Node& node) const {
+    if (node.isLeaf()) return;
+    __builtin_prefetch(node.children);
+    __builtin_prefetch(reinterpret_cast<const char*>(node.children) + 64);
+    __builtin_prefetch(reinterpret_cast<const char*>(node.children) + 128);
+    __builtin_prefetch(state<char>(node));
+    __builtin_prefetch(state<char>(node) + 64);
+  }
   /** An inner node is as occupied as its most occupied child. */
   static void updateOccupancy(Node& inner);
   const Belief& record(const Node& leaf) const { return *m_records.at<Belief>(leaf.m_index); }

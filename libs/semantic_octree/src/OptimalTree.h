@@ -26,6 +26,7 @@ class OptimalTree {
     if (isSplitAbove(node, cell)) {
       for (int i = 0; i < 8; ++i) forEachLeaf(node, cell.child(i), f);
     } else if (isExpanded(node)) {
+      for (const Node& child : NodeStore::octant(node).nodes) m_store.prefetchInner(child);
       for (int i = 0; i < 8; ++i)
         if (const Node* child = NodeStore::child(node, i)) forEachLeaf(*child, cell.child(i), f);
     } else {

@@ -86,12 +86,12 @@ void RowLayout::rowOf(const Belief& belief, double* row) const {
   fillEntropies(row);
 }
 
-void RowLayout::mix(const double* const children[8], const double shares[8], bool equal,
-                    double* row, double* js) const {
-  if (equal)
-    mixEqualShares(children, m_sizes, row, js);
-  else
+void RowLayout::mix(const double* const children[8], const double* shares, double* row,
+                    double* js) const {
+  if (shares)
     mixShares(children, shares, m_sizes, row, js);
+  else
+    mixEqualShares(children, m_sizes, row, js);
   if (m_wideTerms.empty()) return;
   fillWideEntropies(row);
   const double* const h = row + m_sizes.width;

@@ -25,10 +25,8 @@ class RowLayout {
   /** Row of a cell. */
   void rowOf(const Belief& belief, double* row) const;
   const double* unknownRow() const { return m_unknownRow.data(); }
-  /** Row and divergences of a node from its children's rows and shares; `equal`: each share is 1/8.
-   */
-  void mix(const double* const children[8], const double shares[8], bool equal, double* row,
-           double* js) const;
+  /** Row and divergences of a node from its children's rows and shares (null: each is 1/8). */
+  void mix(const double* const children[8], const double* shares, double* row, double* js) const;
 
  private:
   /** Entry of a row = p(free) * free + number of classes * p(rest) + what named classes exceed it
