@@ -198,6 +198,28 @@ TEST(SearchStatus, replannerRecoversFromAFunctionThatThrows) {
   }
 }
 
+TEST(SearchStatus, aBoundThatIsNoneEndsInAPathOrAnErrorNotInALoop) {
+  int refused = 0;
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 40, 300, 8);
+    const CostModel model{ClassOrder(PlaneGraph::kClasses, {{0, 1, 2, 3, 4}})};
+    SearchOptions options;
+    options.lengthBound = [&](VertexId a, VertexId b) { return 5 * plane.bound(a, b); };
+    ColoredReplanner replanner(plane.graph, 0, 1, model, options);
+    for (int changes = 0; changes < 10; ++changes) {
+      plane.graph.setBlocked(plane.randomEdge());
+      try {
+        const PathResult result = replanner.solve();
+        EXPECT_LE(result.vertices.size(), 40u);
+      } catch (const std::invalid_argument& error) {
+        EXPECT_STREQ(error.what(), "SearchOptions: lengthBound is not consistent");
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
 TEST(SearchStatus, replannerNoticesThatAnEndWentAndCameBack) {
   ColoredGraph graph(1);
   for (int v = 0; v < 3; ++v) graph.addVertex(0);

@@ -5,6 +5,7 @@
 #include "VertexHeap.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 
@@ -231,11 +232,13 @@ class LifelongSearch {
   // --- The path
 
   /** Only after computeShortestPath(): then every vertex on the way is consistent, and g falls
-   * with each step, if only by one edge. */
+   * with each step, if only by one edge; unless the lower bound of lengths was no such thing. */
   std::vector<EdgeId> bestEdges() const {
     std::vector<EdgeId> edges;
     for (VertexId v = m_start; v != m_goal;) {
       const Incidence step = bestStep(v).second;
+      if (step.edge == kNoEdge || edges.size() >= m_graph.vertexCount())
+        throw std::invalid_argument("SearchOptions: lengthBound is not consistent");
       edges.push_back(step.edge);
       v = step.neighbor;
     }

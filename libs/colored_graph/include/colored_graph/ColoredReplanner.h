@@ -28,7 +28,8 @@ class ColoredReplanner {
 
   /** The optimal path in the graph as it is now, equal to findColoredPath()'s in cost and number of
    * edges. After Cancelled or TimeLimit the next call goes on where this one stopped.
-   * \throw std::invalid_argument as findColoredPath(). */
+   * \throw std::invalid_argument as findColoredPath(), and where it is noticed that the lower bound
+   * of lengths is not consistent. After any exception the next call starts over. */
   PathResult solve();
 
   /** The robot has moved; takes effect in the next solve(). */
