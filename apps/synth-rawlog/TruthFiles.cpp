@@ -29,7 +29,7 @@ std::optional<Eigen::Vector3d> pointOf(const std::string& line, const std::strin
   std::istringstream in(line);
   Eigen::Vector3d p;
   std::string rest;
-  if (!(in >> p.x() >> p.y() >> p.z()) || in >> rest || !p.allFinite())
+  if (!(in >> p.x() >> p.y() >> p.z()) || in >> rest)
     throw std::runtime_error(where + ": three numbers expected: x y z");
   return p;
 }

@@ -26,7 +26,7 @@ class TrajectoryWriter {
 };
 
 /** Prints for each line "x y z" of the input: x y z, state, class id, class name.
- * \throw std::runtime_error naming the line that is not three finite numbers. */
+ * \throw std::runtime_error naming the line that is not three numbers. */
 void answerTruth(const synthetic_world::World& world, double tolerance, std::istream& points,
                  const std::string& name, std::ostream& out);
 

@@ -20,7 +20,7 @@ TEST(GroundCover, laterStrokesCoverEarlierOnes) {
   EXPECT_EQ(cover.at(0.9, -2.95), kLaneMarking);
   EXPECT_EQ(cover.at(1.05, -3), kRoad);  // a band has square ends
   EXPECT_EQ(cover.at(-1.05, -3), kRoad);
-  EXPECT_EQ(cover.at(-16.9, -3), kRoad);   // a stroke has round ones
+  EXPECT_EQ(cover.at(-16.9, -3), kRoad);  // a stroke has round ones
   EXPECT_EQ(cover.at(-16.9, -2), kGrass);
 }
 

@@ -174,6 +174,7 @@ TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
   const Folder folder;
   std::ofstream(folder / "short.txt") << "1 2 3\n4 5\n";
   std::ofstream(folder / "nan.txt") << "1 2 nan\n";
+  std::ofstream(folder / "long.txt") << "1 2 3 4\n";
   const std::pair<std::string, std::string> cases[] = {
       {"", "nothing to do"},
       {"x.rawlog --scene moon", "moon"},
@@ -194,6 +195,7 @@ TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
       {"--picture absent/p.png", "absent/p.png"},
       {"--truth-query absent.txt", "absent.txt"},
       {"--truth-query short.txt", "short.txt, line 2"},
+      {"--truth-query long.txt", "long.txt, line 1"},
       {"--truth-query nan.txt", "nan.txt, line 1"}};
   for (const auto& [arguments, reason] : cases) {
     const Outcome outcome = run(folder, arguments);

@@ -132,7 +132,7 @@ Color surfaceColor(const World& world, const Hit& hit) {
 }
 
 TopView renderTopView(const World& world, double metersPerPixel) {
-  const double edge = 2 * world.halfExtent(), pixels = std::ceil(edge / metersPerPixel);
+  const double edge = 2 * world.halfExtent(), pixels = std::floor(edge / metersPerPixel);
   if (!(metersPerPixel > 0) || pixels > 8192)
     throw std::invalid_argument("top view: metersPerPixel is " + std::to_string(metersPerPixel) +
                                 ", a positive number that leaves 8192 pixels or fewer expected");
