@@ -93,7 +93,7 @@ double AbstractionUpkeep::weightedDivergence(const InnerState& s) const {
 }
 
 void AbstractionUpkeep::settleGain(InnerState& s, int depth, double childrensGain) const {
-  const std::uint32_t before = s.isExpanded;
+  const std::uint8_t before = s.isExpanded;
   if (isFreeFrame(depth)) {
     s.gain = childrensGain;
     s.isExpanded = 1;
@@ -130,20 +130,27 @@ const double* AbstractionUpkeep::Worker::recordRow(const Belief& record, int chi
 void AbstractionUpkeep::Worker::gatherRows(const NodeStore& store, const Node& inner,
                                            const double** rows, double* gains) {
   const Octant& octant = NodeStore::octant(inner);
+  InnerState& state = *store.state<InnerState>(inner);
+  unsigned kinds = 0;
   for (int i = 0; i < 8; ++i) {
     const Node& child = octant.nodes[i];
     gains[i] = 0;
     if (!octant.has(i)) {
       rows[i] = m_upkeep.layout().unknownRow();
     } else if (child.isLeaf()) {
+      kinds |= 1u << 2 * i;
       rows[i] = child.hasClassRecord() ? recordRow(store.record(child), i)
                                        : uniformRow(child.getValue(), i);
     } else {
+      kinds |= 2u << 2 * i;
       const InnerState& s = *store.state<InnerState>(child);
       rows[i] = s.row();
       gains[i] = s.gain;
+      state.changedBelow |= s.changedBelow;
     }
   }
+  state.changedBelow |= state.childKinds != kinds;
+  state.childKinds = static_cast<std::uint16_t>(kinds);
 }
 
 void AbstractionUpkeep::Worker::recompute(NodeStore& store, Node& inner, const Cell& cell) {
@@ -152,7 +159,6 @@ void AbstractionUpkeep::Worker::recompute(NodeStore& store, Node& inner, const C
   const double* rows[8];
   double gains[8], densities[8], shares[8];
   gatherRows(store, inner, rows, gains);
-  s.changedBelow = 1;
   bool equalShares = m_upkeep.hasEqualShares(cell.depth);
   if (equalShares) {
     s.density = 1;
@@ -214,7 +220,7 @@ void AbstractionUpkeep::Worker::reweighChildren(NodeStore& store, Node& inner, c
                                                 double* gains) {
   Octant& octant = NodeStore::octant(inner);
   for (const Node& child : octant.nodes) store.prefetchInner(child);
-  std::uint32_t changed = store.state<InnerState>(inner)->changedBelow;
+  std::uint8_t changed = store.state<InnerState>(inner)->changedBelow;
   for (int i = 0; i < 8; ++i) {
     Node& child = octant.nodes[i];
     if (child.isLeaf()) continue;

@@ -16,8 +16,9 @@ struct InnerState {
   double density;       ///< mean density of p(x) in the cell; p(n) = density * volume, unnormalized
   double gain;          ///< G_Pi; above the blocks, if they are free, the mean of the children's
   double splitEntropy;  ///< H(Pi), nats
-  std::uint32_t isExpanded;    ///< in the optimal tree if the parent is
-  std::uint32_t changedBelow;  ///< since the last report of changes
+  std::uint16_t childKinds;   ///< two bits each: no child, a leaf, an inner node
+  std::uint8_t isExpanded;    ///< in the optimal tree if the parent is
+  std::uint8_t changedBelow;  ///< the optimal tree may have changed here since it was last reported
 
   double* row() { return reinterpret_cast<double*>(this + 1); }
   const double* row() const { return reinterpret_cast<const double*>(this + 1); }
@@ -79,6 +80,7 @@ class AbstractionUpkeep {
     void reweigh(NodeStore& store, Node& inner, const Cell& cell);
 
    private:
+    /** Also notes in the state whether children came, went or changed. */
     void gatherRows(const NodeStore& store, const Node& inner, const double** rows, double* gains);
     void gatherDensities(const NodeStore& store, const Node& inner, const Cell& cell,
                          double* densities) const;
