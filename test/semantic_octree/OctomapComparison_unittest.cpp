@@ -11,28 +11,6 @@ namespace {
 
 constexpr double kMaxRange = 12;
 
-/** A LiDAR between a ground plane and walls: grazing beams, most of them long. */
-PosedCloud streetScan(std::mt19937& random, const Eigen::Vector3d& place) {
-  PosedCloud scan;
-  scan.T_map_sensor = randomPose(random, 0.5);
-  const Eigen::Vector3d sensor = scan.T_map_sensor.translation();
-  scan.T_map_sensor.translation() += place;
-  for (int ring = 0; ring < 24; ++ring)
-    for (int column = 0; column < 360; ++column) {
-      const double elevation = -0.4 + 0.6 * ring / 24, azimuth = column * M_PI / 180 + 0.001;
-      const Eigen::Vector3d beam(std::cos(elevation) * std::cos(azimuth),
-                                 std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-      double range = 40;
-      if (beam.z() < 0) range = std::min(range, (-1.73 - sensor.z()) / beam.z());
-      if (beam.y() != 0)
-        range = std::min(range, ((beam.y() > 0 ? 6.01 : -7.02) - sensor.y()) / beam.y());
-      const Eigen::Vector3d point = place + sensor + beam * (range + between(random, -0.02, 0.02));
-      scan.cloud.points.push_back((scan.T_map_sensor.inverse() * point).cast<float>());
-      scan.cloud.classes.push_back(1);
-    }
-  return scan;
-}
-
 octomap::KeySet voxelsOf(const SemanticOcTree& tree, bool occupied) {
   octomap::KeySet keys;
   for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf)
@@ -86,8 +64,8 @@ void compare(const octomap::KeySet& ours, const octomap::KeySet& theirs,
 Differences differences(double resolution, const Eigen::Vector3d& place) {
   std::mt19937 random(17);
   Differences sum;
-  const PosedCloud scan = streetScan(random, place);
-  SemanticOcTree tree(resolution, numberedClasses(1));
+  const PosedCloud scan = streetScan(random, place, 24, 360);
+  SemanticOcTree tree(resolution, numberedClasses(2));
   tree.setPruning(false);
   InsertionOptions options;
   options.maxRange = kMaxRange;
