@@ -63,10 +63,9 @@ struct PosedScan {
   mrpt::poses::CPose3D T_map_robot;
 
   Vector3d inMap(std::size_t i) const {
-    const auto T = (T_map_robot + scan.T_robot_sensor)
-                       .getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>()
-                       .asEigen();
-    return (T * scan.cloud.points[i].cast<double>().homogeneous()).head<3>();
+    const auto T =
+        (T_map_robot + scan.T_robot_sensor).getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>();
+    return (T.asEigen() * scan.cloud.points[i].cast<double>().homogeneous()).head<3>();
   }
 };
 
