@@ -33,7 +33,7 @@ struct Entry {
   std::function<std::unique_ptr<Contestant>(const Scene&, const Settings&)> create;
 };
 
-/** A float array that beams are traced through: each voxel on the way is touched, nothing more. */
+/** A byte array that beams are traced through: each voxel on the way is touched, nothing more. */
 std::unique_ptr<Contestant> denseTraversal(const Scene& scene, const Settings& settings);
 std::unique_ptr<Contestant> semanticOcTree(const Scene& scene, const Settings& settings);
 std::unique_ptr<Contestant> semanticOcTreeWithAbstraction(const Scene& scene,
