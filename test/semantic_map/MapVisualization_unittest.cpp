@@ -85,6 +85,16 @@ TEST(MapVisualization, colorsCanShowHeightOrProbability) {
   EXPECT_NEAR(voxelsOf(map)->getVoxel(kOccupied, 0).color.R, std::min(255.0, 255 * (2 - 2 * p)), 1);
 }
 
+TEST(MapVisualization, theBoundingBoxHoldsAllNodes) {
+  const auto box = twoVoxels().boundingBox();
+  EXPECT_NEAR(box.min.x, -2.1, 1e-5);
+  EXPECT_NEAR(box.max.x, 3.1, 1e-5);
+  EXPECT_NEAR(box.max.z, 1.1, 1e-5);
+  const auto empty = CSemanticOctoMap().boundingBox();
+  EXPECT_EQ(empty.min.x, 0);
+  EXPECT_EQ(empty.max.x, 0);
+}
+
 TEST(MapVisualization, savesItsOwnFileAndAScene) {
   const TemporaryFolder folder;
   const CSemanticOctoMap map = twoVoxels();

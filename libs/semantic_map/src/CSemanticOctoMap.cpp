@@ -53,6 +53,7 @@ void CSemanticOctoMap::copyAllButTree(const CSemanticOctoMap& o) {
   insertionOptions = o.insertionOptions;
   likelihoodOptions = o.likelihoodOptions;
   renderingOptions = o.renderingOptions;
+  m_abstractionOptions = o.m_abstractionOptions;
   m_labeler = o.m_labeler;
   m_lastInsertion = o.m_lastInsertion;
   m_converter.reset();
@@ -61,6 +62,23 @@ void CSemanticOctoMap::copyAllButTree(const CSemanticOctoMap& o) {
 void CSemanticOctoMap::setTree(SemanticOcTree tree) {
   m_tree = std::move(tree);
   insertionOptions.filter = m_tree.filterParameters();
+  if (!m_tree.hasAbstraction()) m_abstractionOptions = {};
+}
+
+void CSemanticOctoMap::setAbstraction(const TAbstractionOptions& options) {
+  if (options.isSet())
+    m_tree.setAbstraction(options.forClasses(m_tree.classes()));
+  else
+    m_tree.dropAbstraction();
+  m_abstractionOptions = options;
+}
+
+CSemanticOctoMap::Ptr CSemanticOctoMap::compress() {
+  auto compressed = std::make_shared<CSemanticOctoMap>(abstraction().compressedMap());
+  const auto options = compressed->m_abstractionOptions;
+  compressed->copyAllButTree(*this);
+  compressed->m_abstractionOptions = options;
+  return compressed;
 }
 
 void CSemanticOctoMap::setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> labeler) {
@@ -131,6 +149,7 @@ void CSemanticOctoMap::useFilterOfOptions() {
   SemanticOcTree tree(m_tree.getResolution(), m_tree.classes(), insertionOptions.filter);
   tree.setPruning(m_tree.pruning());
   m_tree = std::move(tree);
+  setAbstraction(m_abstractionOptions);
 }
 
 }  // namespace semantic_map

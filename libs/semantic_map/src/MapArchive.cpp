@@ -19,6 +19,7 @@ void CSemanticOctoMap::serializeTo(CArchive& out) const {
   insertionOptions.writeTo(out);
   likelihoodOptions.writeTo(out);
   renderingOptions.writeTo(out);
+  m_abstractionOptions.writeTo(out);
   ArchiveStreambuf buffer(out);
   std::ostream stream(&buffer);
   stream.exceptions(std::ios::badbit);  // rethrows what the archive threw
@@ -31,14 +32,19 @@ void CSemanticOctoMap::serializeFrom(CArchive& in, uint8_t version) {
   TInsertionOptions insertion;
   TLikelihoodOptions likelihood;
   TRenderingOptions rendering;
+  TAbstractionOptions abstractions;
   in >> generic;
   insertion.readFrom(in);
   likelihood.readFrom(in);
   rendering.readFrom(in);
+  abstractions.readFrom(in);
   ArchiveStreambuf buffer(in);
   std::istream stream(&buffer);
-  m_tree = semantic_octree::readTree(stream);
+  semantic_octree::SemanticOcTree tree = semantic_octree::readTree(stream);
+  if (abstractions.isSet()) tree.setAbstraction(abstractions.forClasses(tree.classes()));
 
+  m_tree = std::move(tree);
+  m_abstractionOptions = abstractions;
   genericMapParams = generic;
   insertionOptions = insertion;
   likelihoodOptions = likelihood;

@@ -21,6 +21,7 @@ namespace {
 constexpr const char* kCreation = "_creationOpts";
 constexpr const char* kInsertion = "_insertOpts";
 constexpr const char* kLikelihood = "_likelihoodOpts";
+constexpr const char* kAbstraction = "_abstractionOpts";
 constexpr const char* kRendering = "_renderOpts";
 
 /** A misspelled section would leave all of its options at their defaults, unnoticed. */
@@ -31,9 +32,12 @@ void refuseUnknownSections(const CConfigFileBase& source, const std::string& pre
     if (!mrpt::system::strStartsI(section, prefix + "_")) continue;
     const std::string end = section.substr(prefix.size());
     const auto is = [&end](const char* known) { return mrpt::system::strCmpI(end, known); };
-    if (!is(kCreation) && !is(kInsertion) && !is(kLikelihood) && !is(kRendering))
-      throw std::runtime_error("[" + section + "] unknown section; known are " + prefix +
-                               "_creationOpts, ..._insertOpts, ..._likelihoodOpts, ..._renderOpts");
+    if (!is(kCreation) && !is(kInsertion) && !is(kLikelihood) && !is(kAbstraction) &&
+        !is(kRendering))
+      throw std::runtime_error(
+          "[" + section + "] unknown section; known are " + prefix +
+          "_creationOpts, ..._insertOpts, ..._likelihoodOpts, ..._abstractionOpts, "
+          "..._renderOpts");
   }
 }
 
@@ -53,6 +57,7 @@ void CSemanticOctoMap::TMapDefinition::loadFromConfigFile_map_specific(
   creationOpts.loadFromConfigFile(source, prefix + kCreation);
   insertionOpts.loadFromConfigFile(source, prefix + kInsertion);
   likelihoodOpts.loadFromConfigFile(source, prefix + kLikelihood);
+  abstractionOpts.loadFromConfigFile(source, prefix + kAbstraction);
   renderOpts.loadFromConfigFile(source, prefix + kRendering);
 }
 
@@ -62,6 +67,7 @@ void CSemanticOctoMap::TMapDefinition::saveToConfigFile(CConfigFileBase& target,
   creationOpts.saveToConfigFile(target, prefix + kCreation);
   insertionOpts.saveToConfigFile(target, prefix + kInsertion);
   likelihoodOpts.saveToConfigFile(target, prefix + kLikelihood);
+  abstractionOpts.saveToConfigFile(target, prefix + kAbstraction);
   renderOpts.saveToConfigFile(target, prefix + kRendering);
 }
 
@@ -73,6 +79,7 @@ void CSemanticOctoMap::TMapDefinition::dumpToTextStream_map_specific(std::ostrea
   dump(kCreation, creationOpts);
   dump(kInsertion, insertionOpts);
   dump(kLikelihood, likelihoodOpts);
+  dump(kAbstraction, abstractionOpts);
   dump(kRendering, renderOpts);
 }
 
@@ -87,6 +94,7 @@ CreatedMap CSemanticOctoMap::internal_CreateFromMapDefinition(
   map->insertionOptions = d.insertionOpts;
   map->likelihoodOptions = d.likelihoodOpts;
   map->renderingOptions = d.renderOpts;
+  map->setAbstraction(d.abstractionOpts);
   return CreatedMap(map.release());
 }
 

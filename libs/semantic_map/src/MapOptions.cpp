@@ -180,6 +180,7 @@ void TRenderingOptions::validate() const {
 template class TNamedOptions<TCreationOptions>;
 template class TNamedOptions<TInsertionOptions>;
 template class TNamedOptions<TLikelihoodOptions>;
+template class TNamedOptions<TAbstractionOptions>;
 template class TNamedOptions<TRenderingOptions>;
 
 }  // namespace semantic_map

@@ -47,6 +47,14 @@ class VoxelSets {
 
 }  // namespace
 
+mrpt::math::TBoundingBoxf CSemanticOctoMap::boundingBox() const {
+  double low[3] = {}, high[3] = {};
+  m_tree.getMetricMin(low[0], low[1], low[2]);
+  m_tree.getMetricMax(high[0], high[1], high[2]);
+  return {{float(low[0]), float(low[1]), float(low[2])},
+          {float(high[0]), float(high[1]), float(high[2])}};
+}
+
 void CSemanticOctoMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const {
   if (!genericMapParams.enableSaveAs3DObject || m_tree.empty()) return;
   VoxelSets sets(m_tree, renderingOptions);
@@ -54,10 +62,8 @@ void CSemanticOctoMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& o) cons
     sets.add(m_tree.query(*it), {float(it.getX()), float(it.getY()), float(it.getZ())},
              it.getSize());
   const auto voxels = sets.take();
-  double low[3], high[3];
-  m_tree.getMetricMin(low[0], low[1], low[2]);
-  m_tree.getMetricMax(high[0], high[1], high[2]);
-  voxels->setBoundingBox({low[0], low[1], low[2]}, {high[0], high[1], high[2]});
+  const auto box = boundingBox();
+  voxels->setBoundingBox(mrpt::math::TPoint3D(box.min), mrpt::math::TPoint3D(box.max));
   o.insert(voxels);
 }
 

@@ -51,6 +51,22 @@ struct OptionFields<TLikelihoodOptions> {
 };
 
 template <>
+struct OptionFields<TAbstractionOptions> {
+  template <class Options, class Visitor>
+  static void visit(Options& o, Visitor&& visit) {
+    visit("relevant", o.relevant, "classes worth keeping, \"road: 1, car+truck: 0.5\"");
+    visit("irrelevant", o.irrelevant, "classes worth dropping");
+    visit("everything", o.everything, "weight of the whole class variable");
+    visit("alpha", o.alpha, "price of compression, per nat of I_X");
+    visit("unknown", o.unknown, "OwnClass, Uniform or Prior");
+    visit("unknownWeight", o.unknownWeight, "of unknown space relative to known");
+    visit("blockSize", o.blockSize, "m, blocks inside which unknown space counts; 0: none");
+    visit("frame", o.frame, "nodes above the blocks: Free or Charged");
+    visit("regions", o.regions, "box x0 y0 z0 x1 y1 z1 weight; sphere x y z radius weight; ...");
+  }
+};
+
+template <>
 struct OptionFields<TRenderingOptions> {
   template <class Options, class Visitor>
   static void visit(Options& o, Visitor&& visit) {

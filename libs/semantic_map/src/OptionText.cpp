@@ -18,6 +18,16 @@ const std::vector<std::string>& namesOf(semantic_octree::FilterParameters::Incre
   return names;
 }
 
+const std::vector<std::string>& namesOf(semantic_octree::AbstractionOptions::Unknown) {
+  static const std::vector<std::string> names = {"OwnClass", "Uniform", "Prior"};
+  return names;
+}
+
+const std::vector<std::string>& namesOf(semantic_octree::AbstractionOptions::Frame) {
+  static const std::vector<std::string> names = {"Free", "Charged"};
+  return names;
+}
+
 const std::vector<std::string>& namesOf(TRenderingOptions::Coloring) {
   static const std::vector<std::string> names = {"Class", "Probability", "Height"};
   return names;

@@ -10,6 +10,8 @@ namespace semantic_map {
 /** The names of an enumeration's values, in their order from 0. */
 const std::vector<std::string>& namesOf(semantic_octree::InsertionOptions::Rays);
 const std::vector<std::string>& namesOf(semantic_octree::FilterParameters::Increments);
+const std::vector<std::string>& namesOf(semantic_octree::AbstractionOptions::Unknown);
+const std::vector<std::string>& namesOf(semantic_octree::AbstractionOptions::Frame);
 const std::vector<std::string>& namesOf(TRenderingOptions::Coloring);
 
 /** Values of options as text, without loss.

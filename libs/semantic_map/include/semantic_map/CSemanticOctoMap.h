@@ -2,8 +2,11 @@
 #include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/LabeledScan.h>
 #include <mrpt/maps/CMetricMap.h>
+#include <mrpt/math/TBoundingBox.h>
 #include <mrpt/system/COutputLogger.h>
 #include <semantic_map/MapOptions.h>
+#include <semantic_map/MrptVersion.h>
+#include <semantic_octree/Abstraction.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <memory>
@@ -36,10 +39,15 @@ struct InsertionResult {
  *     [<prefix>_semanticOctoMap_00_creationOpts]     TCreationOptions
  *     [<prefix>_semanticOctoMap_00_insertOpts]       TInsertionOptions
  *     [<prefix>_semanticOctoMap_00_likelihoodOpts]   TLikelihoodOptions
+ *     [<prefix>_semanticOctoMap_00_abstractionOpts]  TAbstractionOptions
  *     [<prefix>_semanticOctoMap_00_renderOpts]       TRenderingOptions
  *
  * All of them may be absent. Other sections with this prefix, keys that are not options, and values
  * that are out of range are errors that name section, key and value.
+ *
+ * The library is a plugin for MRPT's applications, by the name of libmrpt_semantic_octree.so:
+ * icp-slam, rbpf-slam, observations2map and pf-localization take it by LD_PRELOAD, rawlog-edit and
+ * rawlog-grabber by -p, RawLogViewer and SceneViewer3D by -l.
  *
  * Observations: see labeled_cloud::ScanConverter for the kinds and their labels. */
 class CSemanticOctoMap : public mrpt::maps::CMetricMap {
@@ -68,6 +76,16 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   TLikelihoodOptions likelihoodOptions;
   TRenderingOptions renderingOptions;
 
+  /** Keeps G-values from now on, or no longer if no weights are set.
+   * \throw std::invalid_argument naming the option and its value. */
+  void setAbstraction(const TAbstractionOptions& options);
+  const TAbstractionOptions& abstractionOptions() const { return m_abstractionOptions; }
+  /** The optimal tree for the abstraction options: its leaves, measures, changes; see there.
+   * \throw std::logic_error no weights are set. */
+  semantic_octree::Abstraction abstraction() { return semantic_octree::Abstraction(m_tree); }
+  /** The optimal tree as a map with the same options. \throw std::logic_error as above. */
+  Ptr compress();
+
   /** Where labels of depth images come from; null: from the observations themselves. Copies of the
    * map share it; archives do not hold it. */
   void setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> labeler);
@@ -88,6 +106,8 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   bool isEmpty() const override { return m_tree.empty(); }
   /** One line: resolution, classes, leaves, bytes. */
   std::string asString() const override;
+  /** Of all nodes, also free ones; from 0 to 0 if the map is empty. */
+  mrpt::math::TBoundingBoxf boundingBox() const MSO_OVERRIDE_SINCE_2_11_3;
   /** Boxes in the classes' colors, see renderingOptions; nothing if
    * genericMapParams.enableSaveAs3DObject is false. */
   void getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const override;
@@ -99,6 +119,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   TCreationOptions creationOpts;
   TInsertionOptions insertionOpts;
   TLikelihoodOptions likelihoodOpts;
+  TAbstractionOptions abstractionOpts;
   TRenderingOptions renderOpts;
   void saveToConfigFile(mrpt::config::CConfigFileBase& target,
                         const std::string& sectionPrefix) const override;
@@ -123,6 +144,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   void useFilterOfOptions();
 
   semantic_octree::SemanticOcTree m_tree;
+  TAbstractionOptions m_abstractionOptions;
   std::shared_ptr<labeled_cloud::ImageLabeler> m_labeler;
   InsertionResult m_lastInsertion;
   mrpt::system::COutputLogger m_logger{"CSemanticOctoMap"};

@@ -2,6 +2,8 @@
 #include <labeled_cloud/ScanConverter.h>
 #include <mrpt/config/CLoadableOptions.h>
 #include <mrpt/serialization/CArchive.h>
+#include <semantic_octree/AbstractionOptions.h>
+#include <semantic_octree/ClassTable.h>
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/InsertionOptions.h>
 
@@ -72,6 +74,35 @@ struct TLikelihoodOptions : public TNamedOptions<TLikelihoodOptions> {
   void validate() const;
 };
 
+/** What the map's optimal abstraction keeps: section `[..._abstractionOpts]`. Without any weights
+ * the map keeps no G-values. */
+struct TAbstractionOptions : public TNamedOptions<TAbstractionOptions> {
+  /** Classes worth keeping and worth dropping with their weights (beta, gamma), "road: 1, car:
+   * 0.5". Several classes that count as one are joined by "+": "road+parking: 1". */
+  std::string relevant, irrelevant;
+  /** Weight of the whole class variable (which class it is, or free); negative: worth dropping. */
+  double everything = 0;
+  /** Price of a nat of I_X. */
+  double alpha = 0.002;
+  semantic_octree::AbstractionOptions::Unknown unknown =
+      semantic_octree::AbstractionOptions::Unknown::OwnClass;
+  double unknownWeight = 1;  ///< relative to known space, [0, 1]
+  double blockSize = 6;      ///< m; 0: no blocks
+  semantic_octree::AbstractionOptions::Frame frame =
+      semantic_octree::AbstractionOptions::Frame::Free;
+  /** Regions of their own weight, m in the map's frame, separated by semicolons:
+   * "box x0 y0 z0 x1 y1 z1 weight", "sphere x y z radius weight",
+   * "corridor x0 y0 z0 x1 y1 z1 radius weight". */
+  std::string regions;
+
+  bool isSet() const { return !relevant.empty() || !irrelevant.empty() || everything != 0; }
+  /** The same for a map of these classes.
+   * \throw std::invalid_argument naming the option and its value. */
+  semantic_octree::AbstractionOptions forClasses(const semantic_octree::ClassTable& classes) const;
+  /** Checks all but what depends on the classes. \throw std::invalid_argument */
+  void validate() const;
+};
+
 /** What the map's 3D object shows: section `[..._renderOpts]`. */
 struct TRenderingOptions : public TNamedOptions<TRenderingOptions> {
   enum class Coloring {
@@ -98,6 +129,7 @@ struct TRenderingOptions : public TNamedOptions<TRenderingOptions> {
 extern template class TNamedOptions<TCreationOptions>;
 extern template class TNamedOptions<TInsertionOptions>;
 extern template class TNamedOptions<TLikelihoodOptions>;
+extern template class TNamedOptions<TAbstractionOptions>;
 extern template class TNamedOptions<TRenderingOptions>;
 
 }  // namespace semantic_map

@@ -10,6 +10,13 @@
 #define MSO_MRPT_AT_LEAST(MAJOR, MINOR, PATCH) \
   (MRPT_VERSION >= (((MAJOR) << 16) | ((MINOR) << 8) | (PATCH)))
 
+/** CMetricMap has no boundingBox() before. */
+#if MSO_MRPT_AT_LEAST(2, 11, 3)
+#define MSO_OVERRIDE_SINCE_2_11_3 override
+#else
+#define MSO_OVERRIDE_SINCE_2_11_3
+#endif
+
 namespace semantic_map {
 
 #if MSO_MRPT_AT_LEAST(2, 11, 3)
