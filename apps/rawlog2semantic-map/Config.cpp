@@ -17,8 +17,8 @@ using mrpt::config::CConfigFileBase;
 namespace {
 
 void refuseUnknownSections(const CConfigFileBase& ini) {
-  static const std::set<std::string> kKnown = {"map", "insertion", "trajectory", "labels",
-                                               "pictures"};
+  static const std::set<std::string> kKnown = {"map",        "insertion", "abstraction",
+                                               "trajectory", "labels",    "pictures"};
   std::vector<std::string> sections, keys;
   ini.getAllSections(sections);
   for (const std::string& section : sections) {
@@ -26,7 +26,8 @@ void refuseUnknownSections(const CConfigFileBase& ini) {
     ini.getAllKeys(section, keys);
     if (section.empty() && keys.empty()) continue;
     throw std::runtime_error("unknown section [" + section +
-                             "]; known are [map], [insertion], [trajectory], [labels], [pictures]");
+                             "]; known are [map], [insertion], [abstraction], [trajectory], "
+                             "[labels], [pictures]");
   }
 }
 
@@ -74,6 +75,7 @@ Config readConfig(const fs::path& file) {
   refuseUnknownSections(ini);
   config.map.loadFromConfigFile(ini, "map");
   config.insertion.loadFromConfigFile(ini, "insertion");
+  config.abstraction.loadFromConfigFile(ini, "abstraction");
   readTrajectory(ini, config);
   readLabels(ini, config);
   readPictures(ini, config);

@@ -10,12 +10,13 @@ namespace rawlog2semantic_map {
 
 /** What the .ini file says: one member a section. */
 struct Config {
-  semantic_map::TCreationOptions map;           // [map]
-  semantic_map::TInsertionOptions insertion;    // [insertion]
-  labeled_cloud::TrajectoryOptions trajectory;  // [trajectory]
-  labeled_cloud::LabelFolderOptions labels;     // [labels]
-  semantic_map::PictureStyle pictures;          // [pictures]
-  semantic_map::Viewpoint view;                 // [pictures] too
+  semantic_map::TCreationOptions map;             // [map]
+  semantic_map::TInsertionOptions insertion;      // [insertion]
+  semantic_map::TAbstractionOptions abstraction;  // [abstraction]
+  labeled_cloud::TrajectoryOptions trajectory;    // [trajectory]
+  labeled_cloud::LabelFolderOptions labels;       // [labels]
+  semantic_map::PictureStyle pictures;            // [pictures]
+  semantic_map::Viewpoint view;                   // [pictures] too
 };
 
 /** Reads the file; `map.classes` is then relative to the working directory, not to the file.

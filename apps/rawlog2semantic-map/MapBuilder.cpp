@@ -45,6 +45,11 @@ MapBuilder::MapBuilder(semantic_map::CSemanticOctoMap& map, labeled_cloud::ScanC
                        const labeled_cloud::Trajectory& trajectory)
     : m_map(map), m_converter(converter), m_trajectory(trajectory) {}
 
+void MapBuilder::timeWithoutAbstraction() {
+  m_plainMap = std::make_unique<semantic_map::CSemanticOctoMap>(m_map);
+  m_plainMap->setAbstraction({});
+}
+
 void MapBuilder::insert(const std::vector<fs::path>& rawlogs) {
   Progress progress("Mapping", totalSize(rawlogs));
   std::uint64_t bytesBefore = 0;
@@ -105,6 +110,18 @@ void MapBuilder::insertScan(const CObservation& observation, const CPose3D& T_ma
   m_summary.conversionTimes.push_back(conversionTime);
   m_summary.insertionTimes.push_back(insertionTime);
   ++m_summary.inserted;
+  if (m_map.tree().hasAbstraction()) noteAbstraction(scan, T_map_robot);
+}
+
+void MapBuilder::noteAbstraction(const LabeledScan& scan, const CPose3D& T_map_robot) {
+  AbstractionSummary& a = m_summary.abstraction;
+  semantic_octree::TreeChange change;
+  a.changeTimes.push_back(timeOf([&] { change = m_map.abstraction().takeChange(); }));
+  const std::size_t before = a.compressedLeaves.empty() ? 0 : a.compressedLeaves.back();
+  a.compressedLeaves.push_back(before + change.added.size() - change.removed.size());
+  a.leaves.push_back(m_map.tree().getNumLeafNodes());
+  if (m_plainMap)
+    a.insertionTimesWithout.push_back(timeOf([&] { m_plainMap->insertScan(scan, T_map_robot); }));
 }
 
 }  // namespace rawlog2semantic_map

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "Summary.h"
@@ -17,6 +18,9 @@ class MapBuilder {
   /** All three must outlive the builder. */
   MapBuilder(semantic_map::CSemanticOctoMap& map, labeled_cloud::ScanConverter& converter,
              const labeled_cloud::Trajectory& trajectory);
+
+  /** Also inserts each scan into a map that keeps no abstraction, for comparison. */
+  void timeWithoutAbstraction();
 
   /** Inserts all scans of the rawlogs, saying on the standard output how far it is.
    * \throw std::runtime_error naming the file: it is damaged, or a scan of it cannot be used. */
@@ -31,7 +35,11 @@ class MapBuilder {
   void insertScan(const mrpt::obs::CObservation& observation,
                   const mrpt::poses::CPose3D& T_map_robot);
 
+  void noteAbstraction(const labeled_cloud::LabeledScan& scan,
+                       const mrpt::poses::CPose3D& T_map_robot);
+
   semantic_map::CSemanticOctoMap& m_map;
+  std::unique_ptr<semantic_map::CSemanticOctoMap> m_plainMap;
   labeled_cloud::ScanConverter& m_converter;
   const labeled_cloud::Trajectory& m_trajectory;
   Summary m_summary;

@@ -80,10 +80,28 @@ ordered_json mapJson(const SemanticOcTree& tree) {
           {"voxelsPerClass", classes}};
 }
 
+ordered_json abstractionJson(const Summary& s) {
+  const AbstractionSummary& a = s.abstraction;
+  ordered_json scans = ordered_json::array();
+  for (std::size_t i = 0; i < a.leaves.size(); ++i) {
+    ordered_json scan = {{"leaves", a.leaves[i]},
+                         {"compressedLeaves", a.compressedLeaves[i]},
+                         {"insertionMilliseconds", s.insertionTimes[i]},
+                         {"changeMilliseconds", a.changeTimes[i]}};
+    if (!a.insertionTimesWithout.empty())
+      scan["insertionMillisecondsWithout"] = a.insertionTimesWithout[i];
+    scans.push_back(scan);
+  }
+  ordered_json json = {{"change", timesJson(a.changeTimes)}, {"scans", scans}};
+  if (!a.insertionTimesWithout.empty())
+    json["insertionWithout"] = timesJson(a.insertionTimesWithout);
+  return json;
+}
+
 }  // namespace
 
 ordered_json toJson(const Summary& s, const SemanticOcTree& tree) {
-  return {
+  ordered_json json = {
       {"rawlogs", s.rawlogs},
       {"observations",
        {{"read", s.read},
@@ -94,6 +112,8 @@ ordered_json toJson(const Summary& s, const SemanticOcTree& tree) {
       {"millisecondsPerScan",
        {{"conversion", timesJson(s.conversionTimes)}, {"insertion", timesJson(s.insertionTimes)}}},
       {"map", mapJson(tree)}};
+  if (tree.hasAbstraction()) json["abstraction"] = abstractionJson(s);
+  return json;
 }
 
 }  // namespace rawlog2semantic_map

@@ -10,6 +10,13 @@
 
 namespace rawlog2semantic_map {
 
+/** The abstraction along the way; one entry a scan. */
+struct AbstractionSummary {
+  std::vector<std::size_t> leaves, compressedLeaves;
+  /** Telling what changed in the optimal tree; inserting without upkeep, if that was tried: ms. */
+  std::vector<double> changeTimes, insertionTimesWithout;
+};
+
 /** What became of the observations on their way into the map. */
 struct Summary {
   std::vector<std::string> rawlogs;
@@ -23,6 +30,8 @@ struct Summary {
   semantic_octree::InsertionReport insertion;
   /** Of each inserted scan: making the cloud, inserting it, milliseconds. */
   std::vector<double> conversionTimes, insertionTimes;
+  /** Where an abstraction is kept, after each inserted scan. */
+  AbstractionSummary abstraction;
 
   void add(const labeled_cloud::ScanCounts& counts);
   void add(const semantic_octree::InsertionReport& report);

@@ -25,6 +25,7 @@ using semantic_octree::SemanticOcTree;
 struct Cli {
   fs::path config, output, labels, trajectory, classes;
   std::optional<double> resolution, maxRange;
+  bool compareUpkeep = false;
   std::vector<fs::path> rawlogs;
 
   void addTo(CLI::App& app) {
@@ -37,6 +38,8 @@ struct Cli {
     app.add_option("--resolution", resolution, "Edge of a voxel, m");
     app.add_option("--max-range", maxRange,
                    "Returns beyond it only carve free space, m; 0: no limit");
+    app.add_flag("--compare-upkeep", compareUpkeep,
+                 "Time each insertion without upkeep of the abstraction, too");
     app.add_option("INPUT.rawlog", rawlogs, "Rawlogs that continue each other")->required();
   }
 };
@@ -66,6 +69,7 @@ Summary buildMap(const Cli& cli, const Config& config, CSemanticOctoMap& map) {
   labeled_cloud::ScanConverter converter(table, config.insertion.conversion, labeler);
   const labeled_cloud::Trajectory trajectory = trajectoryOf(cli, config);
   MapBuilder builder(map, converter, trajectory);
+  if (cli.compareUpkeep) builder.timeWithoutAbstraction();
   builder.insert(cli.rawlogs);
   if (builder.summary().inserted == 0)
     throw std::runtime_error("nothing to map: no observation was inserted, " +
@@ -92,6 +96,13 @@ std::string drawPictures(const SemanticOcTree& tree, const Config& config,
   return {};
 }
 
+void writeCompressed(CSemanticOctoMap& map, const Config& config, const OutputFolder& output) {
+  const SemanticOcTree compressed = map.abstraction().compressedMap();
+  saveTree(compressed, output.staged("compressed.semantic"));
+  semantic_map::savePicture(renderTopView(compressed, config.pictures),
+                            output.staged("compressed.png"));
+}
+
 void run(const Cli& cli) {
   const Config config = configOf(cli);
   const ClassTable table = config.map.classes.empty()
@@ -99,13 +110,16 @@ void run(const Cli& cli) {
                                : labeled_cloud::loadClassTable(config.map.classes);
   CSemanticOctoMap map(config.map.resolution, table, config.insertion.filter);
   map.insertionOptions = config.insertion;
+  map.setAbstraction(config.abstraction);
   OutputFolder output(cli.output);
 
   const Summary summary = buildMap(cli, config, map);
   saveTree(map.tree(), output.staged("map.semantic"));
   writeJson(toJson(summary, map.tree()), output.staged("summary.json"));
   const std::string problem = drawPictures(map.tree(), config, output);
-  output.commit({"map.semantic", "summary.json", "top.png", "view.png"});
+  if (config.abstraction.isSet()) writeCompressed(map, config, output);
+  output.commit({"map.semantic", "summary.json", "top.png", "view.png", "compressed.semantic",
+                 "compressed.png"});
   if (!problem.empty()) throw std::runtime_error(problem);
   std::cout << cli.output.string() << ": " << map.asString() << std::endl;
 }

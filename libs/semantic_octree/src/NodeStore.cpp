@@ -19,6 +19,12 @@ std::size_t NodeStore::numNodes() const {
   return static_cast<std::size_t>(n);
 }
 
+std::size_t NodeStore::numInnerNodes() const {
+  long n = 0;
+  for (const NodeArena& arena : m_arenas) n += arena.innerNodes();
+  return static_cast<std::size_t>(n);
+}
+
 void NodeStore::updateOccupancy(Node& inner) {
   const Octant& o = octant(inner);
   float highest = -HUGE_VALF;
@@ -36,6 +42,7 @@ NodeArena::NodeArena(NodeStore& store)
 Octant& NodeArena::createOctant(Node& node) {
   Octant* octant = m_octants.allocate();
   node.children = octant->pointers;
+  ++m_inner;
   node.m_index = 0;
   if (m_store.m_stateBytes > 0) {
     node.m_index = m_states.allocate();
@@ -84,6 +91,7 @@ bool NodeArena::prune(Node& inner) {
   for (int i = 1; i < 8; ++i)
     if (octant.nodes[i].m_index) m_records.release(octant.nodes[i].m_index);
   m_octants.release(&octant);
+  --m_inner;
   m_nodes -= 8;
   return true;
 }

@@ -72,6 +72,7 @@ class NodeStore {
   std::size_t bytes() const { return m_octants.bytes() + m_records.bytes() + m_states.bytes(); }
   /** Nodes including the root. */
   std::size_t numNodes() const;
+  std::size_t numInnerNodes() const;
 
  private:
   friend class NodeArena;
@@ -102,7 +103,9 @@ class NodeArena {
   void dropRecord(Node& leaf);
   /** Copies everything below `from` (of another store) and its value to the childless node `to`. */
   void copy(const NodeStore& source, const Node& from, Node& to);
+  /** Made less removed; an arena may remove what another has made. */
   long nodes() const { return m_nodes; }
+  long innerNodes() const { return m_inner; }
 
  private:
   bool childrenAgree(const Octant& octant) const;
@@ -110,7 +113,7 @@ class NodeArena {
   NodeStore& m_store;
   BlockPool<Octant>::Arena m_octants;
   RecordPool::Arena m_records, m_states;
-  long m_nodes = 0;
+  long m_nodes = 0, m_inner = 0;
 };
 
 }  // namespace semantic_octree

@@ -120,6 +120,10 @@ void SemanticOcTree::rebuildStore() {
   if (!empty()) attachRoot();
 }
 
+std::size_t SemanticOcTree::getNumLeafNodes() const {
+  return empty() ? 0 : m_store->numNodes() - m_store->numInnerNodes();
+}
+
 std::size_t SemanticOcTree::memoryUsage() const { return m_store->bytes(); }
 
 InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,

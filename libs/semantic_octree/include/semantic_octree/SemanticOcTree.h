@@ -76,7 +76,6 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   using Base::getMetricMin;
   using Base::getNodeChild;
   using Base::getNodeSize;
-  using Base::getNumLeafNodes;
   using Base::getResolution;
   using Base::getTreeDepth;
   using Base::isNodeOccupied;
@@ -93,6 +92,8 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   std::string getTreeType() const override { return "SemanticOcTree"; }
   /** Number of nodes, inner nodes and leaves. */
   std::size_t size() const override { return tree_size; }
+  /** Number of leaves; takes no time, unlike OctoMap's. */
+  std::size_t getNumLeafNodes() const;
   bool empty() const { return Base::root == nullptr; }
   /** Bytes held by nodes, class records and bookkeeping. */
   std::size_t memoryUsage() const override;
