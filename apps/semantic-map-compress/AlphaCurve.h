@@ -1,0 +1,22 @@
+#pragma once
+#include "Compressor.h"
+
+namespace semantic_map_compress {
+
+/** One of a solution's optimal trees. */
+struct CurvePoint {
+  double alpha = 0;
+  std::size_t leaves = 0;  ///< known ones
+  /** Share of the information of the relevant and of the irrelevant terms, by their weights. None:
+   * there are no such terms. */
+  std::optional<double> relevant, irrelevant;
+};
+
+/** The compressor's present tree as a point of the curve of its present weights. */
+CurvePoint curvePoint(Compressor& compressor, const semantic_octree::AbstractionMeasures& measures);
+
+/** Optimal trees from the blocks alone (first) to alpha = 0 (last), evenly spread over the
+ * logarithm of the number of leaves. Leaves the compressor at another alpha. */
+std::vector<CurvePoint> alphaCurve(Compressor& compressor, const Solution& solution);
+
+}  // namespace semantic_map_compress

@@ -1,0 +1,56 @@
+#pragma once
+#include <semantic_octree/Abstraction.h>
+
+#include "TermCatalog.h"
+
+namespace semantic_map_compress {
+
+/** How small compressed maps are to be; at most one is set. None: each solution's own alpha. */
+struct Target {
+  std::optional<double> alpha;
+  std::optional<std::size_t> leaves;  ///< known leaves
+  std::optional<std::size_t> bytes;   ///< of the file
+};
+
+/** What the full and a compressed tree tell about one term. Nats. */
+struct KeptInformation {
+  double full = 0, kept = 0;
+  /** Share that is kept; none where there is none to keep. */
+  std::optional<double> share;
+};
+
+/** The optimal trees of one map for different weights. */
+class Compressor {
+ public:
+  /** The map keeps G-values from now on. \throw std::invalid_argument the map is empty. */
+  Compressor(semantic_octree::SemanticOcTree& map, const TermCatalog& catalog,
+             semantic_octree::AbstractionOptions space);
+
+  std::size_t numBatches() const { return m_catalog.numBatches(); }
+  /** Computes the information of this batch's terms in all nodes. */
+  void useBatch(std::size_t b);
+
+  /** The optimal tree is that of these weights from now on. */
+  void weigh(const Solution& solution, double alpha);
+  /** Alpha of the largest optimal tree within the target. For bytes: the next larger optimal tree
+   * does not fit. \throw std::runtime_error naming the solution: no alpha is given, or no tree is
+   * that small, or more leaves are wanted than there are. */
+  double alphaFor(const Solution& solution, const Target& target);
+
+  semantic_octree::Abstraction abstraction() { return semantic_octree::Abstraction(m_map); }
+  /** Adds what the measures say about the present batch's terms; one entry a term of the catalog.
+   */
+  void addKept(const semantic_octree::AbstractionMeasures& measures,
+               std::vector<KeptInformation>& kept) const;
+
+ private:
+  double alphaForLeaves(const Solution& solution, std::size_t wanted);
+  double alphaForBytes(const Solution& solution, std::size_t wanted);
+
+  semantic_octree::SemanticOcTree& m_map;
+  const TermCatalog& m_catalog;
+  semantic_octree::AbstractionOptions m_options;
+  std::size_t m_batch = 0;
+};
+
+}  // namespace semantic_map_compress

@@ -1,0 +1,27 @@
+#pragma once
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+namespace semantic_map_compress {
+
+/** Maps of the same place from above, side by side, each with its title. */
+class MapSheet {
+ public:
+  /** \param numMaps that will be added: the more, the smaller. */
+  explicit MapSheet(std::size_t numMaps);
+
+  void add(const semantic_octree::SemanticOcTree& map, const std::string& title);
+  /** All maps in rows, and to their right the first one's legend. BGR. */
+  cv::Mat picture() const;
+
+ private:
+  int m_columns;
+  cv::Size m_tile;
+  cv::Mat m_legend;
+  std::vector<cv::Mat> m_tiles;
+};
+
+}  // namespace semantic_map_compress

@@ -1,0 +1,42 @@
+#pragma once
+#include <yaml-cpp/yaml.h>
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <set>
+#include <string>
+
+namespace semantic_map_compress {
+
+/** A YAML file whose every key and value is checked. All functions throw std::runtime_error with
+ * file, line, and what was expected. */
+class StrictYaml {
+ public:
+  /** Reads the file: yaml-cpp's parser, because MRPT's stops at a syntax error in silence. */
+  explicit StrictYaml(const std::filesystem::path& file);
+
+  const YAML::Node& root() const { return m_root; }
+  [[noreturn]] void fail(const YAML::Node& where, const std::string& what) const;
+
+  /** The node is a map with these keys only, each at most once. */
+  void checkKeys(const YAML::Node& map, const std::set<std::string>& known) const;
+  /** The node is a map without a key twice. */
+  void checkMap(const YAML::Node& map) const;
+  void checkList(const YAML::Node& list, const std::string& field) const;
+  YAML::Node required(const YAML::Node& map, const std::string& key) const;
+
+  std::string text(const YAML::Node& node, const std::string& field) const;
+  /** A finite number. */
+  double number(const YAML::Node& node, const std::string& field) const;
+  double notNegative(const YAML::Node& node, const std::string& field) const;
+  /** [x, y, z] */
+  Eigen::Vector3d point(const YAML::Node& node, const std::string& field) const;
+
+ private:
+  [[noreturn]] void fail(const YAML::Mark& where, const std::string& what) const;
+
+  std::string m_file;
+  YAML::Node m_root;
+};
+
+}  // namespace semantic_map_compress

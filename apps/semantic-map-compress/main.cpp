@@ -1,0 +1,180 @@
+// Compresses a semantic octree map to its optimal trees for given weights of the classes.
+#include <labeled_cloud/MrptMessage.h>
+#include <semantic_map/MapPictures.h>
+#include <semantic_octree/MapContents.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+
+#include "../rawlog2semantic-map/OutputFolder.h"
+#include "Figures.h"
+#include "MapSheet.h"
+#include "Report.h"
+
+namespace semantic_map_compress {
+namespace {
+
+namespace fs = std::filesystem;
+using rawlog2semantic_map::OutputFolder;
+using semantic_octree::SemanticOcTree;
+
+struct Cli {
+  fs::path map, weights, output;
+  Target target;
+
+  void addTo(CLI::App& app) {
+    app.add_option("MAP", map, "A map's own file (.semantic)")->required();
+    app.add_option("--weights", weights, "Solutions: weights of classes (YAML)")->required();
+    app.add_option("--output", output, "Folder of the results, created if need be")->required();
+    auto* group = app.add_option_group("size", "Instead of each solution's own alpha");
+    group->add_option("--alpha", target.alpha, "Price of a leaf's entropy")
+        ->check(CLI::NonNegativeNumber);
+    group->add_option("--leaves", target.leaves, "The largest tree with at most this many leaves");
+    group->add_option("--bytes", target.bytes, "The largest tree whose file has at most these");
+    group->require_option(0, 1);
+  }
+};
+
+/** Puts everything about one solution into the folder. */
+class SolutionWriter {
+ public:
+  SolutionWriter(Compressor& compressor, const Target& target, const OutputFolder& output,
+                 MapSheet& sheet)
+      : m_compressor(compressor), m_target(target), m_output(output), m_sheet(sheet) {}
+
+  Compression write(const Solution& solution) const {
+    Compression c;
+    c.solution = solution;
+    c.alpha = m_compressor.alphaFor(solution, m_target);
+    c.times.add("chooseAlpha");
+    m_compressor.weigh(solution, c.alpha);
+    c.times.add("weigh");
+    c.measures = m_compressor.abstraction().measures();
+    m_compressor.addKept(c.measures, c.kept);
+    c.chosen = curvePoint(m_compressor, c.measures);
+    c.times.add("measure");
+    const SemanticOcTree compressed = m_compressor.abstraction().compressedMap();
+    c.times.add("extract");
+    const fs::path file = m_output.staged(solution.name + ".semantic");
+    saveTree(compressed, file.string());
+    c.bytes = fs::file_size(file);
+    c.times.add("save");
+    draw(compressed, c);
+    c.times.add("draw");
+    c.curve = alphaCurve(m_compressor, solution);
+    c.times.add("curve");
+    return c;
+  }
+
+ private:
+  void draw(const SemanticOcTree& compressed, const Compression& c) const {
+    semantic_map::PictureStyle style;
+    style.title = c.solution.name;
+    semantic_map::savePicture(semantic_map::renderTopView(compressed, style),
+                              m_output.staged(c.solution.name + ".top.png"));
+    m_sheet.add(compressed, c.solution.name + ": " +
+                                std::to_string(c.measures.compressed.numKnownLeaves) + " leaves");
+  }
+
+  Compressor& m_compressor;
+  const Target& m_target;
+  const OutputFolder& m_output;
+  MapSheet& m_sheet;
+};
+
+/** The classes that did not fit into the first batch. */
+void measureOtherBatches(Compressor& compressor, std::vector<Compression>& compressions) {
+  for (std::size_t b = 1; b < compressor.numBatches(); ++b) {
+    compressor.useBatch(b);
+    for (Compression& c : compressions) {
+      compressor.weigh(c.solution, c.alpha);
+      compressor.addKept(compressor.abstraction().measures(), c.kept);
+    }
+  }
+}
+
+void writeText(const std::string& text, const fs::path& file) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+/** Maps are worth keeping without figures: says what is wrong instead of throwing. */
+std::string drawFigures(const FullMap& map, const std::vector<Compression>& compressions,
+                        const TermCatalog& catalog, const OutputFolder& output) {
+  try {
+    drawRetained(map, compressions, catalog, output.staged("retained.png"));
+    drawWeights(compressions, catalog, output.staged("weights.png"));
+    drawCurves(compressions, output.staged("curves.png"));
+    return {};
+  } catch (const std::exception& e) {
+    return std::string("no figures retained.png, weights.png, curves.png: ") + e.what();
+  }
+}
+
+std::vector<std::string> fileNames(const std::vector<Solution>& solutions) {
+  std::vector<std::string> names = {"report.json",  "report.csv",  "maps.png",
+                                    "retained.png", "weights.png", "curves.png"};
+  for (const Solution& solution : solutions)
+    for (const char* ending : {".semantic", ".top.png"}) names.push_back(solution.name + ending);
+  return names;
+}
+
+void printSummary(const std::vector<Compression>& compressions) {
+  for (const Compression& c : compressions)
+    std::cout << c.solution.name << ": alpha " << c.alpha << ", "
+              << c.measures.compressed.numKnownLeaves << " of " << c.measures.full.numKnownLeaves
+              << " leaves (" << 100 * c.leafRatio() << " %), " << c.bytes << " bytes\n";
+}
+
+void run(const Cli& cli) {
+  StageTimes times;
+  SemanticOcTree map = semantic_octree::loadTree(cli.map.string());
+  const FullMap full{cli.map.string(), map.getResolution(), map.size(), fs::file_size(cli.map),
+                     contentsOf(map).voxelsOfClass};
+  const WeightsFile weights = loadWeights(cli.weights, map.classes());
+  times.add("load");
+  const TermCatalog catalog(map.classes(), weights.solutions);
+  Compressor compressor(map, catalog, weights.space);
+  times.add("computeInformation");
+
+  OutputFolder output(cli.output);
+  MapSheet sheet(1 + weights.solutions.size());
+  sheet.add(map, "full map: " + std::to_string(map.getNumLeafNodes()) + " leaves");
+  std::vector<Compression> compressions;
+  for (const Solution& solution : weights.solutions)
+    compressions.push_back(SolutionWriter(compressor, cli.target, output, sheet).write(solution));
+  times.add("solutions");
+  measureOtherBatches(compressor, compressions);
+  times.add("measureOtherClasses");
+
+  semantic_map::savePicture(sheet.picture(), output.staged("maps.png"));
+  const std::string problem = drawFigures(full, compressions, catalog, output);
+  times.add("figures");
+  writeText(toCsv(catalog, compressions), output.staged("report.csv"));
+  writeText(toJson(full, catalog, weights.space, compressions, times).dump(2) + "\n",
+            output.staged("report.json"));
+  output.commit(fileNames(weights.solutions));
+  printSummary(compressions);
+  if (!problem.empty()) throw std::runtime_error(problem);
+}
+
+}  // namespace
+}  // namespace semantic_map_compress
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Compresses a semantic octree map to what matters, for given weights of its classes");
+  semantic_map_compress::Cli cli;
+  cli.addTo(app);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    semantic_map_compress::run(cli);
+    return 0;
+  } catch (const std::exception& e) {
+    std::cerr << "semantic-map-compress: " << labeled_cloud::messageOf(e) << std::endl;
+    return 1;
+  }
+}
