@@ -317,6 +317,12 @@ namespace {
 
 constexpr int kRows = 6, kCols = 8;
 
+/** A pattern that JPEG would spoil. */
+cv::Vec3b colorOf(int r, int c) {
+  return cv::Vec3b(std::uint8_t(97 * r + 31 * c), std::uint8_t(53 * r + 89 * c),
+                   std::uint8_t(11 * r + 151 * c));
+}
+
 /** Two frames of a tilted plane of three classes, with the camera at two poses. */
 void writeSmallTum(const TemporaryFolder& folder) {
   folder.write("classes.yaml", kThreeClasses);
@@ -328,17 +334,18 @@ void writeSmallTum(const TemporaryFolder& folder) {
   folder.write("depth.txt", "# depth\n1.0 depth/a.png\n2.0 depth/b.png\n");
   folder.write("label.txt", "1.01 label/a.png\n1.99 label/b.png\n");
   folder.write("rgb.txt", "1.0 rgb/a.png\n2.0 rgb/b.png\n");
-  cv::Mat depth(kRows, kCols, CV_16UC1), label(kRows, kCols, CV_8UC1);
+  cv::Mat depth(kRows, kCols, CV_16UC1), label(kRows, kCols, CV_8UC1), color(kRows, kCols, CV_8UC3);
   for (int r = 0; r < kRows; ++r)
     for (int c = 0; c < kCols; ++c) {
       depth.at<std::uint16_t>(r, c) = r == 0 ? 0 : 2000 + 100 * r + 10 * c;
+      color.at<cv::Vec3b>(r, c) = colorOf(r, c);
       label.at<std::uint8_t>(r, c) = std::array{40, 70, 252, 0}[c % 4];
     }
   for (const char* part : {"depth", "label", "rgb"}) fs::create_directory(folder / part);
   for (const char* name : {"a.png", "b.png"}) {
     cv::imwrite((folder / "depth" / name).string(), depth);
     cv::imwrite((folder / "label" / name).string(), label);
-    cv::imwrite((folder / "rgb" / name).string(), cv::Mat(kRows, kCols, CV_8UC3, {10, 20, 30}));
+    cv::imwrite((folder / "rgb" / name).string(), color);
   }
 }
 
@@ -391,8 +398,10 @@ TEST(Tum, depthImagesWithPixelLabelsLandRightInTheWorld) {
   const auto all = observationsOf(folder / "out.rawlog");
   const auto scan = std::dynamic_pointer_cast<mrpt::obs::CObservation3DRangeScan>(all.at(1));
   ASSERT_TRUE(scan && scan->hasRangeImage && scan->hasPixelLabels() && scan->hasIntensityImage);
-  for (const int channel : {0, 1, 2})
-    EXPECT_EQ(scan->intensityImage.at<std::uint8_t>(2, 3, channel), 10 * (channel + 1));
+  for (int r = 0; r < kRows; ++r)
+    for (int c = 0; c < kCols; ++c)
+      for (const int channel : {0, 1, 2})
+        EXPECT_EQ(scan->intensityImage.at<std::uint8_t>(c, r, channel), colorOf(r, c)[channel]);
 }
 
 TEST(Tum, withMoreThan64ClassesTheyAreLabeledClouds) {

@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <nlohmann/json.hpp>
+
+#include "RunProgram.h"
+#include "TemporaryFolder.h"
+
+using semantic_octree::ClassTable;
+using semantic_octree::LabeledCloud;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+/** A map of one ray along x that ends in grass at (3.75, 0.25, 0.25), voxels of 0.5 m. */
+class SemanticMapInfo : public testing::Test {
+ protected:
+  void SetUp() override {
+    ClassTable table;
+    table.add("road", {255, 0, 0});
+    table.add("tall grass", {0, 255, 0});
+    SemanticOcTree tree(0.5, table);
+    LabeledCloud cloud;
+    cloud.points = {{3.5f, 0, 0}};
+    cloud.classes = {2};
+    tree.insert(cloud, Eigen::Isometry3d(Eigen::Translation3d(0.25, 0.25, 0.25)));
+    m_probability = tree.query(3.75, 0.25, 0.25).probability;
+    m_occupancy = tree.query(3.75, 0.25, 0.25).occupancy;
+    saveTree(tree, map());
+  }
+
+  std::string map() const { return (folder / "map.semantic").string(); }
+
+  ProgramRun query(const std::string& points) const {
+    folder.write("points.txt", points);
+    return runProgram("semantic-map-info", {map(), "--query", (folder / "points.txt").string()});
+  }
+
+  void expectRefusal(const ProgramRun& run, const std::vector<std::string>& parts) const {
+    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.output, "");
+    EXPECT_TRUE(contains(run.errors, "semantic-map-info: ")) << run.errors;
+    EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
+    for (const std::string& part : parts)
+      EXPECT_TRUE(contains(run.errors, part)) << part << " is not in: " << run.errors;
+  }
+
+  TemporaryFolder folder;
+  double m_probability, m_occupancy;
+};
+
+}  // namespace
+
+TEST_F(SemanticMapInfo, jsonHoldsWhatIsInTheMap) {
+  const ProgramRun run = runProgram("semantic-map-info", {map(), "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const auto json = nlohmann::json::parse(run.output);
+  EXPECT_EQ(json["resolution"], 0.5);
+  EXPECT_EQ(json["freeVoxels"], 7);
+  EXPECT_EQ(json["occupiedVoxels"], 1);
+  EXPECT_EQ(json["occupiedWithoutClass"], 0);
+  EXPECT_EQ(json["nodes"], json["leaves"].get<int>() + json["innerNodes"].get<int>());
+  EXPECT_EQ(json["boundingBox"]["min"], nlohmann::json({0, 0, 0}));
+  EXPECT_EQ(json["boundingBox"]["max"], nlohmann::json({4, 0.5, 0.5}));
+  EXPECT_EQ(json["filter"]["accuracy"], semantic_octree::FilterParameters().accuracy);
+  ASSERT_EQ(json["classes"].size(), 2u);
+  EXPECT_EQ(json["classes"][1]["name"], "tall grass");
+  EXPECT_EQ(json["classes"][1]["color"], nlohmann::json({0, 255, 0}));
+  EXPECT_EQ(json["classes"][0]["voxels"], 0);
+  EXPECT_EQ(json["classes"][1]["voxels"], 1);
+}
+
+TEST_F(SemanticMapInfo, textNamesResolutionSpaceAndClasses) {
+  const ProgramRun run = runProgram("semantic-map-info", {map()});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  for (const char* part : {"0.5 m", "x 0 to 4,", "1 occupied, 7 free", "tall grass"})
+    EXPECT_TRUE(contains(run.output, part)) << part << " is not in: " << run.output;
+  EXPECT_FALSE(contains(run.output, "road")) << run.output;
+}
+
+TEST_F(SemanticMapInfo, anEmptyMapIsDescribed) {
+  ClassTable table;
+  table.add("road", {255, 0, 0});
+  saveTree(SemanticOcTree(0.5, table), map());
+  const ProgramRun text = runProgram("semantic-map-info", {map()});
+  EXPECT_EQ(text.status, 0) << text.errors;
+  EXPECT_TRUE(contains(text.output, "nothing is known")) << text.output;
+  const ProgramRun json = runProgram("semantic-map-info", {map(), "--json"});
+  EXPECT_TRUE(nlohmann::json::parse(json.output)["boundingBox"].is_null());
+}
+
+TEST_F(SemanticMapInfo, pointsAreAnsweredWithStateClassAndOccupancy) {
+  const ProgramRun run = query("3.6 0.1 0.2\n\n# free:\n1.1 0.2 0.3  # here\n9 -9 9\n1e9 0 0\n");
+  ASSERT_EQ(run.status, 0) << run.errors;
+  std::istringstream lines(run.output);
+  double x, y, z, probability, occupancy;
+  std::string state, tall, grass;
+  int id;
+  lines >> x >> y >> z >> state >> id >> tall >> grass >> probability >> occupancy;
+  EXPECT_EQ(x, 3.6);
+  EXPECT_EQ(state, "occupied");
+  EXPECT_EQ(id, 2);
+  EXPECT_EQ(tall + " " + grass, "tall grass");
+  EXPECT_NEAR(probability, m_probability, 1e-5);
+  EXPECT_NEAR(occupancy, m_occupancy, 1e-5);
+  lines >> x >> y >> z >> state >> id >> grass >> probability >> occupancy;
+  EXPECT_EQ(state + grass, "free-");
+  EXPECT_LT(occupancy, 0.5);
+  for (int far = 0; far < 2; ++far) {
+    lines >> x >> y >> z >> state >> id >> grass >> probability >> occupancy;
+    EXPECT_EQ(state + grass, "unknown-");
+    EXPECT_EQ(occupancy, 0.5);
+  }
+}
+
+TEST_F(SemanticMapInfo, linesThatAreNoPointsAreRefusedByNumber) {
+  for (const char* line : {"1 2", "1 2 3 4", "1 2 x", "nan 0 0", "inf 0 0"})
+    expectRefusal(query(std::string("0 0 0\n") + line + "\n"), {"points.txt:2", line});
+}
+
+TEST_F(SemanticMapInfo, missingFilesAreRefusedByName) {
+  expectRefusal(runProgram("semantic-map-info", {(folder / "none.semantic").string()}),
+                {"none.semantic"});
+  expectRefusal(runProgram("semantic-map-info", {folder.path().string()}),
+                {folder.path().string()});
+  expectRefusal(runProgram("semantic-map-info", {map(), "--query", (folder / "none.txt").string()}),
+                {"none.txt"});
+}
+
+TEST_F(SemanticMapInfo, damagedMapsAreRefusedByName) {
+  const std::string whole = folder.read("map.semantic");
+  std::string altered = whole;
+  altered[altered.size() - 20] ^= 1;
+  for (const std::string& bytes :
+       {std::string(), std::string("no map"), altered, whole.substr(0, whole.size() / 2),
+        whole.substr(0, whole.size() - 1), whole + "x"}) {
+    folder.write("bad.semantic", bytes);
+    expectRefusal(runProgram("semantic-map-info", {(folder / "bad.semantic").string()}),
+                  {"bad.semantic"});
+  }
+}
