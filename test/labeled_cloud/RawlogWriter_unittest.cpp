@@ -43,6 +43,6 @@ TEST(RawlogWriter, aFullDiskIsNoticed) {
   std::filesystem::create_symlink("/dev/full", folder / "a.rawlog.tmp");
   RawlogWriter writer(file);
   writer.write(CObservationLabeledCloud());
-  EXPECT_TRUE(contains(errorOf([&] { writer.finish(); }), "disk full"));
+  ASSERT_TRUE(contains(errorOf([&] { writer.finish(); }), "disk full"));
   EXPECT_EQ(folder.read("a.rawlog"), "old");
 }

@@ -315,6 +315,8 @@ TEST(FlyingPixels, betweenTwoSurfacesAreRemovedAndCountedAndNothingElse) {
     for (const Vector3f& p : scan.cloud.points)
       EXPECT_LT(std::min(std::abs(p.x() - 1), std::abs(p.x() - 3)), 1e-3);
   }
+  const auto lying = DepthCamera().see([](int r, int) { return r < 20 ? 1 : r == 20 ? 2 : 3; });
+  EXPECT_EQ(convert(*lying, withoutFlying()).counts.flying, 60u);
   // two pixels on a line with the surface behind them are no surface of their own
   const auto band = DepthCamera().see([](int, int c) {
     return c < 20 ? 1.0 : c == 20 ? 9.0 / 7 : c == 21 ? 9.0 / 5 : 3.0;
