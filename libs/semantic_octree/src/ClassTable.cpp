@@ -42,12 +42,14 @@ void ClassTable::fold(std::uint32_t rawId, ClassId id) {
                                 ", which is not one of 1.." + std::to_string(size()));
   if (!m_folds.emplace(rawId, id).second)
     throw std::invalid_argument("class table: raw id " + std::to_string(rawId) + " folds twice");
+  if (id != kNoClass) m_hasOwnRawIds = false;
 }
 
 ClassId ClassTable::fromRaw(std::uint32_t rawId) const {
   const auto it = m_folds.find(rawId);
   if (it != m_folds.end()) return it->second;
-  if (rawId >= 1 && rawId <= static_cast<std::uint32_t>(size())) return static_cast<ClassId>(rawId);
+  if (m_hasOwnRawIds && rawId >= 1 && rawId <= static_cast<std::uint32_t>(size()))
+    return static_cast<ClassId>(rawId);
   if (m_unknownRawId == UnknownRawId::NoClass) return kNoClass;
   throw std::invalid_argument("raw class id " + std::to_string(rawId) +
                               " is not in the class table");

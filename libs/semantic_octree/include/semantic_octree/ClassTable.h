@@ -20,8 +20,8 @@ struct Color {
 
 /** The classes of a map, and how the ids of a data set ("raw ids") fold into them.
  *
- * Class ids are 1..K without gaps. Names are unique and not empty. Raw ids that are not folded
- * explicitly stand for the class of the same number. */
+ * Class ids are 1..K without gaps. Names are unique and not empty. In a table that folds no raw id to
+ * a class, raw ids are the classes' own. */
 class ClassTable {
  public:
   struct Entry {
@@ -51,7 +51,7 @@ class ClassTable {
   /** Raw id -> class id (or kNoClass).
    * \throw std::invalid_argument raw id folded already, or class id not in the table. */
   void fold(std::uint32_t rawId, ClassId id);
-  /** What to make of a raw id that neither fold() nor a class id covers. */
+  /** What to make of a raw id that the table does not know. */
   void setUnknownRawId(UnknownRawId policy) { m_unknownRawId = policy; }
   UnknownRawId unknownRawId() const { return m_unknownRawId; }
 
@@ -71,6 +71,7 @@ class ClassTable {
   std::vector<Entry> m_entries;
   std::map<std::string, ClassId> m_ids;
   std::map<std::uint32_t, ClassId> m_folds;
+  bool m_hasOwnRawIds = true;  ///< no raw id folds to a class
   UnknownRawId m_unknownRawId = UnknownRawId::Error;
 };
 
