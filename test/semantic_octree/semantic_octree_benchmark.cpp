@@ -152,6 +152,62 @@ BENCHMARK(insertAgain)
     ->ArgsProduct({{20, 10}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
 
+/** A scan into a map of that many other places. */
+void insertIntoLargeMap(benchmark::State& state) {
+  SemanticOcTree map(0.1, numberedClasses(K));
+  PosedCloud scan = street();
+  for (int i = 0; i < state.range(0); ++i) {
+    scan.T_map_sensor.translation() =
+        Eigen::Vector3d(-1200.0 + 60.0 * (i % 40), 60.0 * (i / 40), 0);
+    map.insert(scan.cloud, scan.T_map_sensor, insertion());
+  }
+  int step = 0;
+  for (auto _ : state) {  // new space each time, as on a drive
+    scan.T_map_sensor.translation() = Eigen::Vector3d(-1200 + 0.5 * step++, 2, 0);
+    map.insert(scan.cloud, scan.T_map_sensor, insertion());
+  }
+  state.counters["leaves"] = static_cast<double>(map.getNumLeafNodes());
+}
+BENCHMARK(insertIntoLargeMap)
+    ->ArgName("places")
+    ->Arg(1)
+    ->Arg(10)
+    ->Arg(80)
+    ->Iterations(40)
+    ->Unit(benchmark::kMillisecond);
+
+/** What the time grows with: 20 scans of a drive. */
+void insertDrive(benchmark::State& state, double resolution, double maxRange, int classes,
+                 int threads) {
+  PosedCloud scan = street();
+  for (std::size_t i = 0; i < scan.cloud.size(); ++i)
+    scan.cloud.classes[i] = static_cast<ClassId>(1 + i / 7 % classes);
+  InsertionOptions options;
+  options.maxRange = maxRange;
+  options.threads = threads;
+  for (auto _ : state) {
+    SemanticOcTree map(resolution, numberedClasses(classes));
+    for (int i = 0; i < 20; ++i) {
+      scan.T_map_sensor.translation().x() = 0.5 * i;
+      map.insert(scan.cloud, scan.T_map_sensor, options);
+    }
+  }
+}
+BENCHMARK_CAPTURE(insertDrive, range10m, 0.2, 10, 24, 1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertDrive, range25m, 0.2, 25, 24, 1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertDrive, range40m, 0.2, 40, 24, 1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertDrive, voxels40cm, 0.4, 25, 24, 1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertDrive, voxels10cm, 0.1, 25, 24, 1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertDrive, voxels5cm, 0.05, 25, 24, 1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertDrive, classes1, 0.2, 25, 1, 1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertDrive, classes254, 0.2, 25, 254, 1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertDrive, threads2, 0.2, 25, 24, 2)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(insertDrive, threads2At10cm, 0.1, 25, 24, 2)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
 void write(benchmark::State& state) {
   const SemanticOcTree map = streetMap(0.1, 2);
   std::int64_t bytes = 0;
