@@ -1,0 +1,67 @@
+#pragma once
+#include <gtest/gtest.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "RunProgram.h"
+#include "SmallRawlogs.h"
+#include "TemporaryFolder.h"
+
+inline const char* const kSmallConfig =
+    "[map]\n"
+    "resolution = 0.5\n"
+    "classes = classes.yaml\n"
+    "[pictures]\n"
+    "width = 300\n"
+    "height = 200\n";
+
+/** A folder with a configuration, a class table and a rawlog of one scan: road at (2, 0, 0), a car
+ * at (0, 3, 0), both from (1, 0, 0). */
+class Rawlog2SemanticMap : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder.write("small.ini", kSmallConfig);
+    folder.write("classes.yaml", kSmallTable);
+    writeSmallRawlog(folder / "small.rawlog", robotPose(10, 1.1), smallScan(10));
+  }
+
+  static labeled_cloud::CObservationLabeledCloud smallScan(double seconds) {
+    return labeledCloud(seconds, {{1.1f, 0.2f, 0.2f}, {-1, 3, 0.2f}}, {1, 3});
+  }
+
+  ProgramRun run(const std::string& rawlog = "small.rawlog",
+                 const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"--config", (folder / "small.ini").string(), "--output",
+                                          (folder / "out").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.push_back((folder / rawlog).string());
+    return runProgram("rawlog2semantic-map", arguments);
+  }
+
+  semantic_octree::SemanticOcTree map() const {
+    return semantic_octree::loadTree((folder / "out/map.semantic").string());
+  }
+  nlohmann::json summary() const { return nlohmann::json::parse(folder.read("out/summary.json")); }
+
+  /** Runs it where results are already; it must fail with one line that holds all of these, and
+   * leave the results as they were. */
+  void expectRefusal(const std::vector<std::string>& parts,
+                     const std::string& rawlog = "small.rawlog",
+                     const std::vector<std::string>& more = {}) const {
+    for (const char* name : {"map.semantic", "summary.json", "top.png", "view.png"})
+      folder.write(std::string("out/") + name, "of before");
+    const ProgramRun result = run(rawlog, more);
+    EXPECT_EQ(result.status, 1) << result.errors;
+    EXPECT_TRUE(contains(result.errors, "rawlog2semantic-map: ")) << result.errors;
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+    for (const std::string& part : parts)
+      EXPECT_TRUE(contains(result.errors, part)) << part << " is not in: " << result.errors;
+    for (const char* name : {"map.semantic", "summary.json", "top.png", "view.png"})
+      EXPECT_EQ(folder.read(std::string("out/") + name), "of before");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "out"), {}), 4);
+  }
+
+  TemporaryFolder folder;
+};

@@ -1,0 +1,134 @@
+// What rawlog2semantic-map says of bad input, and that it leaves what was there.
+#include <array>
+#include <opencv2/imgcodecs.hpp>
+
+#include "MappingFixture.h"
+
+namespace fs = std::filesystem;
+
+TEST_F(Rawlog2SemanticMap, aMissingRawlogIsRefused) {
+  expectRefusal({"none.rawlog"}, "none.rawlog");
+}
+
+TEST_F(Rawlog2SemanticMap, anEmptyRawlogIsRefused) {
+  folder.write("empty.rawlog", "");
+  expectRefusal({"empty.rawlog", "empty"}, "empty.rawlog");
+}
+
+TEST_F(Rawlog2SemanticMap, aTruncatedRawlogIsRefused) {
+  const std::string whole = folder.read("small.rawlog");
+  for (const std::size_t bytes : {whole.size() / 2, whole.size() - 1}) {
+    folder.write("cut.rawlog", whole.substr(0, bytes));
+    expectRefusal({"cut.rawlog", "cut off"}, "cut.rawlog");
+  }
+}
+
+TEST_F(Rawlog2SemanticMap, aCorruptRawlogIsRefused) {
+  std::string bytes = folder.read("small.rawlog");
+  bytes[bytes.size() / 2] ^= 0x55;
+  folder.write("corrupt.rawlog", bytes);
+  expectRefusal({"corrupt.rawlog"}, "corrupt.rawlog");
+  folder.write("text.rawlog", "This is no rawlog.");
+  expectRefusal({"text.rawlog: ", "object 1"}, "text.rawlog");
+}
+
+TEST_F(Rawlog2SemanticMap, aRawlogThatBreaksOffWhileItIsMappedLeavesNothing) {
+  const std::string whole = folder.read("small.rawlog");
+  folder.write("cut.rawlog", whole.substr(0, whole.size() - 1));
+  folder.write("poses.tum", "9 3.1 0 0 0 0 0 1\n11 5.1 0 0 0 0 0 1\n");
+  const std::vector<std::string> poses = {"--trajectory", (folder / "poses.tum").string()};
+  expectRefusal({"cut.rawlog", "cut off"}, "cut.rawlog", poses);
+  fs::remove_all(folder / "out");
+  EXPECT_EQ(run("cut.rawlog", poses).status, 1);
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST_F(Rawlog2SemanticMap, aRawlogWithoutPosesIsRefused) {
+  writeSmallRawlog(folder / "lost.rawlog", smallScan(10));
+  expectRefusal({"lost.rawlog", "no robot poses"}, "lost.rawlog");
+}
+
+TEST_F(Rawlog2SemanticMap, aRawlogOfWhichNothingCanBeInsertedIsRefused) {
+  writeSmallRawlog(folder / "late.rawlog", robotPose(10, 0), smallScan(20));
+  expectRefusal({"nothing to map", "1 outside the trajectory"}, "late.rawlog");
+}
+
+TEST_F(Rawlog2SemanticMap, aClassThatTheTableLacksIsRefused) {
+  folder.write("classes.yaml", "classes:\n  - {id: 1, name: road, color: [1, 2, 3]}\n");
+  expectRefusal({"small.rawlog: observation 2", "lidar", "car"});
+}
+
+TEST_F(Rawlog2SemanticMap, aLabelImageOfTheWrongSizeIsRefused) {
+  writeSmallRawlog(folder / "depth.rawlog", robotPose(10, 0), depthImage(10, 40, 40));
+  fs::create_directory(folder / "labels");
+  cv::imwrite((folder / "labels/10.00.png").string(), cv::Mat(40, 30, CV_8UC1, cv::Scalar(2)));
+  expectRefusal({"depth.rawlog: observation 2", "10.00.png", "30", "40"}, "depth.rawlog",
+                {"--labels", (folder / "labels").string()});
+}
+
+TEST_F(Rawlog2SemanticMap, anUnknownClassInALabelImageIsRefused) {
+  writeSmallRawlog(folder / "depth.rawlog", robotPose(10, 0), depthImage(10, 40, 40));
+  fs::create_directory(folder / "labels");
+  cv::imwrite((folder / "labels/10.00.png").string(), cv::Mat(40, 40, CV_8UC1, cv::Scalar(77)));
+  expectRefusal({"10.00.png", "77"}, "depth.rawlog", {"--labels", (folder / "labels").string()});
+}
+
+TEST_F(Rawlog2SemanticMap, aFolderWithoutLabelImagesIsRefused) {
+  expectRefusal({"no-labels"}, "small.rawlog", {"--labels", (folder / "no-labels").string()});
+}
+
+TEST_F(Rawlog2SemanticMap, anUnknownKeyIsRefusedWithFileSectionAndKey) {
+  const std::vector<std::pair<std::string, std::string>> wrong = {{"map", "resolutoin"},
+                                                                  {"insertion", "maxrnage"},
+                                                                  {"trajectory", "gap"},
+                                                                  {"labels", "folder"},
+                                                                  {"pictures", "size"}};
+  for (const auto& [section, key] : wrong) {
+    folder.write("small.ini", "[" + section + "]\n" + key + " = 1\n");
+    expectRefusal({"small.ini", "[" + section + "]", "'" + key + "'"});
+  }
+}
+
+TEST_F(Rawlog2SemanticMap, anUnknownSectionIsRefused) {
+  folder.write("small.ini", std::string(kSmallConfig) + "[inserting]\nmaxRange = 3\n");
+  expectRefusal({"small.ini", "[inserting]"});
+}
+
+TEST_F(Rawlog2SemanticMap, valuesOutOfRangeAreRefused) {
+  const std::vector<std::array<std::string, 3>> wrong = {
+      {"map", "resolution", "-0.1"},    {"map", "resolution", "fine"},
+      {"insertion", "accuracy", "1.5"}, {"insertion", "maxRange", "-1"},
+      {"trajectory", "tolerance", "x"}, {"labels", "match", "Guess"},
+      {"pictures", "width", "12.5"},    {"pictures", "tilt", "nan"}};
+  for (const auto& [section, key, value] : wrong) {
+    folder.write("small.ini", "[" + section + "]\n" + key + " = " + value + "\n");
+    expectRefusal({key});
+  }
+  folder.write("small.ini", kSmallConfig);
+  expectRefusal({"resolution"}, "small.rawlog", {"--resolution", "0"});
+  expectRefusal({"maxRange"}, "small.rawlog", {"--max-range", "-3"});
+}
+
+TEST_F(Rawlog2SemanticMap, missingFilesAreRefusedByName) {
+  expectRefusal({"none.yaml"}, "small.rawlog", {"--classes", (folder / "none.yaml").string()});
+  expectRefusal({"none.tum"}, "small.rawlog", {"--trajectory", (folder / "none.tum").string()});
+  fs::remove(folder / "small.ini");
+  expectRefusal({"small.ini"});
+}
+
+TEST_F(Rawlog2SemanticMap, anOutputFolderThatCannotBeWrittenIsRefusedByName) {
+  const fs::path file = folder.write("file", "of before");
+  for (const fs::path& output : {file, file / "below"}) {
+    const ProgramRun result =
+        runProgram("rawlog2semantic-map", {"--config", (folder / "small.ini").string(), "--output",
+                                           output.string(), (folder / "small.rawlog").string()});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_TRUE(contains(result.errors, output.string() + ": cannot write")) << result.errors;
+    EXPECT_EQ(folder.read("file"), "of before");
+  }
+}
+
+TEST_F(Rawlog2SemanticMap, aScanFromOutsideTheMapIsRefused) {
+  writeSmallRawlog(folder / "far.rawlog", robotPose(10, 1e6), smallScan(10));
+  expectRefusal({"far.rawlog: observation 2", "outside the map"}, "far.rawlog");
+}
