@@ -130,7 +130,12 @@ InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
                                        const Eigen::Isometry3d& T_map_sensor,
                                        const InsertionOptions& options) {
   options.validate();
-  m_scan->set(cloud, T_map_sensor, resolution, numClasses(), options);
+  try {
+    m_scan->set(cloud, T_map_sensor, resolution, numClasses(), options);
+  } catch (...) {
+    m_scan = std::make_unique<Scan>();  // half-filled buffers must not leak into the next scan
+    throw;
+  }
   if (m_scan->hasVoxels()) {
     const MergeTarget target{*m_store, m_filter, m_upkeep.get(), m_pruning};
     mergeScan(target, *m_scan, m_store->root(), empty(), options.threads);

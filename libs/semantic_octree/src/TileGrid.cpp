@@ -5,6 +5,8 @@
 namespace semantic_octree {
 namespace {
 
+/** A cube of 5000 voxels' side. */
+constexpr std::size_t kMostTiles = std::size_t(1) << 28;
 constexpr int kTileSide = 8, kBitsPerTile = 512, kHalfMap = 32768;
 
 /** Bits 0, 1, 2 of a coordinate moved to Morton positions 0, 3, 6. */
@@ -40,12 +42,15 @@ void TileGrid::coverLike(const TileGrid& o) {
 
 void TileGrid::reserve(std::size_t tiles) {
   if (tiles <= m_capacity) return;
+  m_capacity = 0;
+  m_bits.reset();
   // calloc: pages that no ray touches cost nothing.
-  m_bits.reset(static_cast<std::uint64_t*>(std::calloc(tiles * kWords, sizeof(std::uint64_t))));
-  m_capacity = m_bits ? tiles : 0;
+  if (tiles <= kMostTiles)
+    m_bits.reset(static_cast<std::uint64_t*>(std::calloc(tiles * kWords, sizeof(std::uint64_t))));
   if (!m_bits)
-    throw std::length_error("scan too large to insert: " + std::to_string(m_numTiles.prod()) +
+    throw std::length_error("scan too large to insert: " + std::to_string(tiles) +
                             " tiles of 8 x 8 x 8 voxels; set a maximum range");
+  m_capacity = tiles;
 }
 
 }  // namespace semantic_octree
