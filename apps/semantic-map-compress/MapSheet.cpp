@@ -1,7 +1,5 @@
 #include "MapSheet.h"
 
-#include <semantic_map/MapPictures.h>
-
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -33,13 +31,24 @@ semantic_map::PictureStyle styleOf(cv::Size size) {
 /** The part of a picture to the right of the map. */
 cv::Mat legendOf(const SemanticOcTree& map) {
   auto style = styleOf({1600, 1600});
-  const int mapWidth = renderTopView(map, style).cols;
+  const int mapWidth = topView(map, style).cols;
   style.legend = true;
-  const cv::Mat whole = renderTopView(map, style);
+  const cv::Mat whole = topView(map, style);
   return whole(cv::Rect(mapWidth, 0, whole.cols - mapWidth, whole.rows)).clone();
 }
 
 }  // namespace
+
+cv::Mat topView(const SemanticOcTree& map, const semantic_map::PictureStyle& style) {
+  constexpr double kMostColumns = 1e8;  // of voxels, which the renderer holds in memory
+  double lowX, lowY, lowZ, highX, highY, highZ;
+  map.getMetricMin(lowX, lowY, lowZ);
+  map.getMetricMax(highX, highY, highZ);
+  const double area = (highX - lowX) * (highY - lowY), voxel = map.getResolution();
+  if (area > kMostColumns * voxel * voxel)
+    return cv::Mat(style.height, style.width, CV_8UC3, kPaper);
+  return renderTopView(map, style);
+}
 
 MapSheet::MapSheet(std::size_t numMaps)
     : m_columns(std::max(1, static_cast<int>(std::ceil(std::sqrt(double(numMaps)))))) {
@@ -50,8 +59,8 @@ MapSheet::MapSheet(std::size_t numMaps)
 void MapSheet::add(const SemanticOcTree& map, const std::string& title) {
   if (m_tiles.empty()) m_legend = legendOf(map);
   cv::Mat tile;
-  cv::copyMakeBorder(onPaper(renderTopView(map, styleOf(m_tile)), m_tile), tile, kTitleHeight, 0, 0,
-                     0, cv::BORDER_CONSTANT, kPaper);
+  cv::copyMakeBorder(onPaper(topView(map, styleOf(m_tile)), m_tile), tile, kTitleHeight, 0, 0, 0,
+                     cv::BORDER_CONSTANT, kPaper);
   cv::putText(tile, title, {24, kTitleHeight - 10}, cv::FONT_HERSHEY_DUPLEX, 0.6, kInk, 1,
               cv::LINE_AA);
   m_tiles.push_back(tile);

@@ -1,11 +1,16 @@
 #pragma once
-#include <semantic_octree/SemanticOcTree.h>
+#include <semantic_map/MapPictures.h>
 
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 namespace semantic_map_compress {
+
+/** renderTopView(), but empty for a map whose leaves are too large to draw: of one that was
+ * compressed to its root. */
+cv::Mat topView(const semantic_octree::SemanticOcTree& map,
+                const semantic_map::PictureStyle& style);
 
 /** Maps of the same place from above, side by side, each with its title. */
 class MapSheet {

@@ -31,8 +31,10 @@ struct Cli {
     auto* group = app.add_option_group("size", "Instead of each solution's own alpha");
     group->add_option("--alpha", target.alpha, "Price of a leaf's entropy")
         ->check(CLI::NonNegativeNumber);
-    group->add_option("--leaves", target.leaves, "The largest tree with at most this many leaves");
-    group->add_option("--bytes", target.bytes, "The largest tree whose file has at most these");
+    group->add_option("--leaves", target.leaves, "The largest tree with at most this many leaves")
+        ->check(CLI::PositiveNumber);
+    group->add_option("--bytes", target.bytes, "The largest tree whose file has at most these")
+        ->check(CLI::PositiveNumber);
     group->require_option(0, 1);
   }
 };
@@ -72,7 +74,7 @@ class SolutionWriter {
   void draw(const SemanticOcTree& compressed, const Compression& c) const {
     semantic_map::PictureStyle style;
     style.title = c.solution.name;
-    semantic_map::savePicture(semantic_map::renderTopView(compressed, style),
+    semantic_map::savePicture(topView(compressed, style),
                               m_output.staged(c.solution.name + ".top.png"));
     m_sheet.add(compressed, c.solution.name + ": " +
                                 std::to_string(c.measures.compressed.numKnownLeaves) + " leaves");
