@@ -1,8 +1,12 @@
-# mso_add_library(NAME SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...])
+# PRECOMPILE below names headers of other projects that most sources of the target include: parsing them once
+# halves the time that a clean build takes. The preset "dev" goes without, so that each file says what it needs.
+
+# mso_add_library(NAME SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...] [PRECOMPILE ...])
 # A library of libs/NAME with its public headers in libs/NAME/include/NAME, known as mrpt_semantic_octree::NAME.
 function(mso_add_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;PRECOMPILE" ${ARGN})
   add_library(${name} SHARED ${ARG_SOURCES})
+  target_precompile_headers(${name} PRIVATE ${ARG_PRECOMPILE})
   add_library(mrpt_semantic_octree::${name} ALIAS ${name})
   target_include_directories(${name} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
@@ -25,15 +29,16 @@ function(mso_add_app name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# mso_add_test(NAME SOURCES ... [DEPENDS ...]): one GoogleTest program, each of its cases one ctest.
+# mso_add_test(NAME SOURCES ... [DEPENDS ...] [PRECOMPILE ...]): one GoogleTest program, each of its cases one ctest.
 # Tests find the sources through MSO_SOURCE_DIR, the programs through MSO_BIN_DIR, and data that is not in
 # the repository through the environment variable SEMANTIC_OCTREE_DATA.
 function(mso_add_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
   add_executable(${name} ${ARG_SOURCES})
+  target_precompile_headers(${name} PRIVATE <gtest/gtest.h> ${ARG_PRECOMPILE})
   target_link_libraries(${name} PRIVATE mso_settings ${ARG_DEPENDS} GTest::gtest GTest::gtest_main rapidcheck
     nlohmann_json::nlohmann_json)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test/support)
