@@ -28,13 +28,21 @@ semantic_map::PictureStyle styleOf(cv::Size size) {
   return style;
 }
 
+/** The rows from the top to the last that is not empty. */
+cv::Mat withoutEmptyEnd(const cv::Mat& picture) {
+  cv::Mat empty;
+  cv::inRange(picture, kPaper, kPaper, empty);
+  const int rows = cv::boundingRect(empty == 0).br().y;
+  return picture.rowRange(0, std::max(1, rows)).clone();
+}
+
 /** The part of a picture to the right of the map. */
 cv::Mat legendOf(const SemanticOcTree& map) {
   auto style = styleOf({1600, 1600});
   const int mapWidth = topView(map, style).cols;
   style.legend = true;
   const cv::Mat whole = topView(map, style);
-  return whole(cv::Rect(mapWidth, 0, whole.cols - mapWidth, whole.rows)).clone();
+  return withoutEmptyEnd(whole.colRange(mapWidth, whole.cols));
 }
 
 }  // namespace
