@@ -134,3 +134,29 @@ TEST(Insertion, givesTheSameMapWithAnyNumberOfThreads) {
       EXPECT_TRUE(trees[0] == trees[2]);
     }
 }
+
+TEST(Insertion, mergesVoxelsOfEqualClassRecordsAndPartsThemAgain) {
+  SemanticOcTree tree(1.0, numberedClasses(5));
+  PlainMap plain(1.0, 5);
+  const auto hitEightVoxels = [&](const std::vector<ClassId>& labels) {
+    PosedCloud scan;  // as many as there are labels
+    scan.T_map_sensor.translation() << 0.3, 0.2, 0.1;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      const Eigen::Vector3d center(4.5 + (i & 1), 6.5 + (i >> 1 & 1), 8.5 + (i >> 2));
+      scan.cloud.points.push_back((center - scan.T_map_sensor.translation()).cast<float>());
+    }
+    scan.cloud.classes = labels;
+    tree.insert(scan.cloud, scan.T_map_sensor);
+    plain.insert(scan, {});
+    expectSame(tree, plain);
+    std::size_t merged = 0;
+    for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf)
+      merged += leaf->hasClassRecord() && leaf.getDepth() == 15;
+    return merged;
+  };
+  EXPECT_EQ(hitEightVoxels({1, 1, 1, 1, 2, 2, 2, 2}), 0u) << "as occupied, not the same class";
+  EXPECT_EQ(hitEightVoxels({2, 2, 2, 2, 1, 1, 1, 1}), 1u) << "the same classes in another order";
+  EXPECT_EQ(hitEightVoxels({3, 3, 3, 3, 3, 3, 3, 3}), 1u);
+  EXPECT_EQ(hitEightVoxels({4}), 0u);
+  EXPECT_EQ(hitEightVoxels({5, 4, 4, 4, 4, 4, 4, 4}), 0u);
+}

@@ -188,3 +188,15 @@ TEST(SingleScans, takesAMillionPoints) {
   EXPECT_NEAR(static_cast<double>(report.hitVoxels + report.freeVoxels),
               4.0 / 3 * M_PI * 50 * 50 * 50, 30000);
 }
+
+TEST(SingleScans, ofBeamsShorterThanTheMarginCarveNothing) {
+  SemanticOcTree tree(0.1, numberedClasses(1));
+  LabeledCloud cloud;
+  cloud.points = {{1.05f, 0.02f, 0.03f}};
+  InsertionOptions options;
+  options.carvingMargin = 3;
+  const InsertionReport report = tree.insert(cloud, Eigen::Isometry3d::Identity(), options);
+  EXPECT_EQ(report.hitVoxels, 1u);
+  EXPECT_EQ(report.freeVoxels, 0u);
+  EXPECT_EQ(tree.getNumLeafNodes(), 1u);
+}
