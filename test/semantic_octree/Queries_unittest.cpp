@@ -163,7 +163,7 @@ TEST(Queries, ofAnInnerNodeMixItsKnownLeavesByVolumeAndTakeTheHighestOccupancy) 
       highest = std::max(highest, voxel.value);
     }
     for (const auto& [cell, expected] : cells) {
-      const VoxelId inside{cell[0] << shift, cell[1] << shift, cell[2] << shift};
+      const VoxelId inside{cell[0] * (1 << shift), cell[1] * (1 << shift), cell[2] * (1 << shift)};
       const auto* const node = tree.search(keyOf(inside), depth);
       ASSERT_NE(node, nullptr);
       EXPECT_EQ(node->getValue(), expected.second);
