@@ -22,6 +22,7 @@ ClassTable roadGrassSky() {
   table.add("grass", {0, 255, 1});
   table.add("sky", {0, 0, 255});
   table.fold(0, 0);
+  for (const int id : {1, 2, 3}) table.fold(id, static_cast<semantic_octree::ClassId>(id));
   table.fold(40000, 3);
   return table;
 }
