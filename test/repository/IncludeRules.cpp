@@ -14,9 +14,12 @@ const IncludeTable& includeTable() {
       {"labeled_cloud",
        {"Eigen", "mrpt", "opencv2", "png.h", "yaml-cpp", "zlib.h", "semantic_octree"}},
       {"semantic_map",
-       {"Eigen", "mrpt", "octomap", "opencv2", "labeled_cloud", "semantic_octree",
+       {"Eigen", "mrpt", "octomap", "opencv2", "zlib.h", "labeled_cloud", "semantic_octree",
         "tree_abstraction"}},
       {"colored_graph", {}},
+      {"semantic_planning",
+       {"Eigen", "mrpt", "octomap", "ompl", "yaml-cpp", "colored_graph", "semantic_octree",
+        "tree_abstraction"}},
       {"synthetic_world", {"Eigen", "semantic_octree"}},
   };
   return table;
