@@ -2,6 +2,7 @@
 #include <labeled_cloud/ScanConverter.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
+#include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
@@ -403,10 +404,36 @@ TEST(UnlabeledClouds, rawVelodynePacketsAreUnpacked) {
   EXPECT_GT(scans, 0u);
 }
 
+TEST(UnlabeledClouds, laserScansLieInTheSensorsPlaneAsMrptItselfPutsThem) {
+  for (const bool rightToLeft : {true, false}) {
+    mrpt::obs::CObservation2DRangeScan obs;
+    obs.aperture = 1.5f;
+    obs.maxRange = 10;
+    obs.rightToLeft = rightToLeft;
+    obs.sensorPose = mrpt::poses::CPose3D(5, 1, 2, 0.3, 0.2, 0.1);
+    obs.resizeScan(4);
+    const float ranges[] = {1, 2, 10, 3};
+    for (int i = 0; i < 4; ++i) obs.setScanRange(i, ranges[i]), obs.setScanRangeValidity(i, i != 2);
+    const auto scan = convert(obs);
+    EXPECT_EQ(scan.counts.invalid, 1u);
+    EXPECT_EQ(scan.counts.labeled, 0u);
+    mrpt::maps::CSimplePointsMap map;
+    map.insertionOptions.minDistBetweenLaserPoints = 0;
+    const auto T_sensor_robot = -obs.sensorPose;
+    map.loadFromRangeScan(obs, T_sensor_robot);
+    ASSERT_EQ(map.size(), scan.cloud.size());
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      Vector3f expected;
+      map.getPoint(i, expected.x(), expected.y(), expected.z());
+      EXPECT_LT((scan.cloud.points[i] - expected).norm(), 1e-5) << i;
+    }
+  }
+}
+
 TEST(ScanConverter, otherObservationsAreNoneOfItsBusiness) {
-  const mrpt::obs::CObservation2DRangeScan laser;
-  EXPECT_FALSE(ScanConverter::accepts(laser));
-  EXPECT_FALSE(ScanConverter(abc()).convert(laser));
+  const mrpt::obs::CObservationComment comment;
+  EXPECT_FALSE(ScanConverter::accepts(comment));
+  EXPECT_FALSE(ScanConverter(abc()).convert(comment));
 }
 
 TEST(ScanConverter, badOptionsAreNamed) {

@@ -1,19 +1,17 @@
 #include <labeled_cloud/EmbeddedLabels.h>
 #include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/ScanConverter.h>
-#include <mrpt/obs/CObservationPointCloud.h>
-#include <mrpt/obs/CObservationVelodyneScan.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "PointGrid.h"
+#include "UnlabeledPoints.h"
 
 namespace labeled_cloud {
 
 using mrpt::obs::CObservation;
 using mrpt::obs::CObservation3DRangeScan;
-using mrpt::obs::CObservationPointCloud;
-using mrpt::obs::CObservationVelodyneScan;
 using semantic_octree::ClassId;
 using semantic_octree::ClassTable;
 using semantic_octree::kNoClass;
@@ -79,29 +77,14 @@ void addPoints(const PointGrid& grid, const LabelImage* labels, int decimation, 
     }
 }
 
-template <typename Xs>
-void addUnlabeled(const Xs& xs, const Xs& ys, const Xs& zs, LabeledScan& scan) {
-  scan.cloud.points.reserve(xs.size());
-  for (std::size_t i = 0; i < xs.size(); ++i) {
-    const Eigen::Vector3f p(xs[i], ys[i], zs[i]);
-    if (PointGrid::isReturn(p)) scan.cloud.points.push_back(p);
-  }
-  scan.counts.invalid = xs.size() - scan.cloud.size();
-}
-
-void addPointCloud(const CObservationPointCloud& observation, LabeledScan& scan) {
-  if (!observation.pointcloud) throw std::invalid_argument("it holds no point cloud");
-  const auto& cloud = *observation.pointcloud;
-  addUnlabeled(cloud.getPointsBufferRef_x(), cloud.getPointsBufferRef_y(),
-               cloud.getPointsBufferRef_z(), scan);
-}
-
-void addVelodyne(const CObservationVelodyneScan& observation, LabeledScan& scan) {
-  CObservationVelodyneScan unpacked;
-  const bool ready = observation.point_cloud.size() > 0;
-  if (!ready) unpacked = observation, unpacked.generatePointCloud();
-  const auto& cloud = ready ? observation.point_cloud : unpacked.point_cloud;
-  addUnlabeled(cloud.x, cloud.y, cloud.z, scan);
+void addUnlabeled(const CObservation& observation, LabeledScan& scan) {
+  auto points = unlabeledPoints(observation);
+  const std::size_t read = points.size();
+  points.erase(std::remove_if(points.begin(), points.end(),
+                              [](const auto& p) { return !PointGrid::isReturn(p); }),
+               points.end());
+  scan.counts.invalid = read - points.size();
+  scan.cloud.points = std::move(points);
 }
 
 void countPoints(LabeledScan& scan) {
@@ -138,7 +121,7 @@ ScanConverter::~ScanConverter() = default;
 
 bool ScanConverter::accepts(const CObservation& observation) {
   return is<CObservation3DRangeScan>(observation) || is<CObservationLabeledCloud>(observation) ||
-         is<CObservationPointCloud>(observation) || is<CObservationVelodyneScan>(observation);
+         hasUnlabeledPoints(observation);
 }
 
 std::optional<LabeledScan> ScanConverter::convert(const CObservation& observation) try {
@@ -152,10 +135,8 @@ std::optional<LabeledScan> ScanConverter::convert(const CObservation& observatio
     addRangeScan(*range, scan);
   else if (const auto* labeled = dynamic_cast<const CObservationLabeledCloud*>(&observation))
     addLabeledCloud(*labeled, scan);
-  else if (const auto* cloud = dynamic_cast<const CObservationPointCloud*>(&observation))
-    addPointCloud(*cloud, scan);
   else
-    addVelodyne(dynamic_cast<const CObservationVelodyneScan&>(observation), scan);
+    addUnlabeled(observation, scan);
   countPoints(scan);
   return scan;
 } catch (const std::exception& e) {

@@ -31,8 +31,8 @@ struct ScanConverterOptions {
  *   the observation's pixelLabels.
  * - CObservationLabeledCloud: as it is. Where it names its classes, they are found by name in the
  *   class table; otherwise its class ids are those of the table.
- * - CObservationPointCloud, CObservationVelodyneScan: points without a class, which count for
- *   occupancy only.
+ * - CObservationPointCloud, CObservationVelodyneScan, CObservation2DRangeScan: points without a
+ *   class, which count for occupancy only.
  *
  * Externally stored data is loaded, and unloaded at the end. */
 class ScanConverter {
