@@ -1,7 +1,9 @@
 #pragma once
-#include <octomap/OcTreeKey.h>
-
 #include <Eigen/Core>
+#include <cstdint>
+
+// Uses <cstdint> without including it.
+#include <octomap/OcTreeKey.h>
 
 namespace semantic_octree {
 

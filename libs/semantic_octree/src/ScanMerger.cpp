@@ -23,8 +23,8 @@ void forEachTouchedChild(const Scan& scan, const ScanCube& cube, F f) {
 bool ScanMerger::merge(const ScanCube& cube) {
   const CubeContent content = cube.content(m_scan);
   const Whole whole = updateWhole(*cube.node, cube.isNew, content.allFree(), content.hit());
-  if (whole != Whole::Descend) return whole == Whole::Changed;
-  if (cube.level() == 0) return mergeTile(cube);
+  if (whole != Whole::Descend) return note(cube.cell, whole == Whole::Changed);
+  if (cube.level() == 0) return note(cube.cell, mergeTile(cube));
   Octant& octant = childrenOf(*cube.node, cube.isNew);
   bool changed = false;
   forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
@@ -32,6 +32,11 @@ bool ScanMerger::merge(const ScanCube& cube) {
     changed |= merge({&m_arena.createChild(octant, i), isNew, cell});
   });
   return finish(*cube.node, cube.cell, changed);
+}
+
+bool ScanMerger::note(const Cell& cube, bool changed) {
+  if (changed && m_target.touched) m_changed.push_back(cube);
+  return changed;
 }
 
 ScanMerger::Whole ScanMerger::updateWhole(Node& node, bool isNew, bool allFree, bool anyHit) {
@@ -178,6 +183,8 @@ void mergeScan(const MergeTarget& target, const Scan& scan, Node& root, bool isN
   work(mergers[0]);
   for (std::thread& helper : helpers) helper.join();
 
+  for (const ScanMerger& merger : mergers)
+    for (const Cell& cube : merger.m_changed) target.touched->add(cube);
   std::size_t next = 0;
   mergers[0].finishAbove(whole, changed, next);
 }

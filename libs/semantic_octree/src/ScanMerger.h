@@ -6,6 +6,7 @@
 #include "AbstractionUpkeep.h"
 #include "NodeStore.h"
 #include "Scan.h"
+#include "TouchedTiles.h"
 
 namespace semantic_octree {
 
@@ -15,6 +16,8 @@ struct MergeTarget {
   const ClassFilter<float>& filter;
   /** Keeps inner nodes' bookkeeping up to date; null: there is none. */
   AbstractionUpkeep* upkeep;
+  /** Is told where something changed; null: nobody wants to know. */
+  TouchedTiles* touched;
   /** Children that agree are merged; off: every known leaf is a voxel. */
   bool pruning;
 };
@@ -56,6 +59,9 @@ class ScanMerger {
   /** Prunes or recomputes an inner node. \return changed */
   bool finish(Node& node, const Cell& cell, bool changed);
 
+  /** Takes down that a cube changed. \return changed */
+  bool note(const Cell& cube, bool changed);
+
   bool mergeTile(const ScanCube& cube);
   bool mergeWord(const ScanCube& cube, std::uint64_t free, std::uint64_t hit);
   bool mergeByte(const ScanCube& cube, unsigned free, unsigned hit);
@@ -73,6 +79,7 @@ class ScanMerger {
   const Scan& m_scan;
   NodeArena& m_arena;
   AbstractionUpkeep::Worker* m_upkeep;
+  std::vector<Cell> m_changed;
   std::uint32_t m_nextHit = 0;  ///< rank of the next hit voxel in the current tile
 };
 

@@ -9,6 +9,7 @@
 #include "ReportedTree.h"
 #include "Scan.h"
 #include "ScanMerger.h"
+#include "TouchedTiles.h"
 
 namespace semantic_octree {
 namespace {
@@ -18,6 +19,13 @@ double positive(double meters) {
     throw std::invalid_argument("resolution = " + std::to_string(meters) +
                                 " m, expected a positive number");
   return meters;
+}
+
+/** Adds the tiles below a node. */
+void addTiles(const Node& node, const Cell& cell, TouchedTiles& tiles) {
+  if (node.isLeaf() || cell.depth == TouchedTiles::kDepth) return tiles.add(cell);
+  for (int i = 0; i < 8; ++i)
+    if (const Node* child = NodeStore::child(node, i)) addTiles(*child, cell.child(i), tiles);
 }
 
 }  // namespace
@@ -84,14 +92,24 @@ void SemanticOcTree::swap(SemanticOcTree& o) {
   std::swap(m_store, o.m_store);
   std::swap(m_upkeep, o.m_upkeep);
   std::swap(m_reported, o.m_reported);
+  std::swap(m_touched, o.m_touched);
   std::swap(m_scan, o.m_scan);
 }
 
 void SemanticOcTree::clear() {
   Base::root = nullptr;
   m_store = std::make_unique<NodeStore>(m_store->stateBytes());
+  if (m_touched) m_touched->take();
   tree_size = 0;
   size_changed = true;
+}
+
+std::vector<octomap::OcTreeKey> SemanticOcTree::takeTouchedTiles() {
+  if (!m_touched) {
+    m_touched = std::make_unique<TouchedTiles>();
+    if (!empty()) addTiles(*root(), Cell(), *m_touched);
+  }
+  return m_touched->take();
 }
 
 void SemanticOcTree::setPruning(bool on) {
@@ -137,7 +155,7 @@ InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
     throw;
   }
   if (m_scan->hasVoxels()) {
-    const MergeTarget target{*m_store, m_filter, m_upkeep.get(), m_pruning};
+    const MergeTarget target{*m_store, m_filter, m_upkeep.get(), m_touched.get(), m_pruning};
     mergeScan(target, *m_scan, m_store->root(), empty(), options.threads);
     attachRoot();
   }

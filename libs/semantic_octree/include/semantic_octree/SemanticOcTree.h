@@ -18,6 +18,7 @@ class AbstractionUpkeep;
 class NodeStore;
 class ReportedTree;
 class Scan;
+class TouchedTiles;
 
 /** What the map knows about a place. */
 struct CellState {
@@ -135,7 +136,12 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
    */
   InsertionReport insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
                          const InsertionOptions& options = {});
+  /** Removes all nodes. Tiles that were touched before are not reported any more. */
   void clear() override;
+  /** Lowest keys of the tiles of 8 x 8 x 8 voxels in which insert() changed something since the
+   * last call, sorted; keys are multiples of 8. The first call reports all tiles of the map that
+   * are known in part, and starts the record. */
+  std::vector<octomap::OcTreeKey> takeTouchedTiles();
   /** Whether children that agree are merged (default). Only an empty tree can be changed.
    * \throw std::logic_error the tree is not empty. */
   void setPruning(bool on);
@@ -169,7 +175,8 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   std::unique_ptr<NodeStore> m_store;
   std::unique_ptr<AbstractionUpkeep> m_upkeep;  ///< null: no abstraction is kept
   std::unique_ptr<ReportedTree> m_reported;
-  std::unique_ptr<Scan> m_scan;  ///< buffers of the last insertion
+  std::unique_ptr<TouchedTiles> m_touched;  ///< null: nobody asks for them
+  std::unique_ptr<Scan> m_scan;             ///< buffers of the last insertion
 };
 
 }  // namespace semantic_octree
