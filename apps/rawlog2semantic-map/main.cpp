@@ -2,6 +2,7 @@
 #include <labeled_cloud/ClassTableFile.h>
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/MrptMessage.h>
+#include <labeled_cloud/OutputFolder.h>
 #include <labeled_cloud/RawlogTrajectory.h>
 #include <semantic_octree/TreeFile.h>
 
@@ -12,12 +13,12 @@
 
 #include "Config.h"
 #include "MapBuilder.h"
-#include "OutputFolder.h"
 
 namespace rawlog2semantic_map {
 namespace {
 
 namespace fs = std::filesystem;
+using labeled_cloud::OutputFolder;
 using semantic_map::CSemanticOctoMap;
 using semantic_octree::ClassTable;
 using semantic_octree::SemanticOcTree;

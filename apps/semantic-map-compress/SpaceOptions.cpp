@@ -5,6 +5,7 @@
 
 namespace semantic_map_compress {
 
+using labeled_cloud::StrictYaml;
 using semantic_octree::AbstractionOptions;
 using semantic_octree::Region;
 

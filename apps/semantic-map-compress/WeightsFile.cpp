@@ -7,6 +7,7 @@
 
 namespace semantic_map_compress {
 
+using labeled_cloud::StrictYaml;
 using semantic_octree::ClassTable;
 using tree_abstraction::InformationTerm;
 

@@ -1,5 +1,6 @@
 // Compresses a semantic octree map to its optimal trees for given weights of the classes.
 #include <labeled_cloud/MrptMessage.h>
+#include <labeled_cloud/OutputFolder.h>
 #include <semantic_map/MapPictures.h>
 #include <semantic_octree/MapContents.h>
 #include <semantic_octree/TreeFile.h>
@@ -8,7 +9,6 @@
 #include <fstream>
 #include <iostream>
 
-#include "../rawlog2semantic-map/OutputFolder.h"
 #include "Figures.h"
 #include "MapSheet.h"
 #include "Report.h"
@@ -17,7 +17,7 @@ namespace semantic_map_compress {
 namespace {
 
 namespace fs = std::filesystem;
-using rawlog2semantic_map::OutputFolder;
+using labeled_cloud::OutputFolder;
 using semantic_octree::SemanticOcTree;
 
 struct Cli {

@@ -116,7 +116,7 @@ TEST(ClassTableFile, aSyntaxErrorOrATruncatedFileIsAnErrorAndNoShorterTable) {
 
 TEST(ClassTableFile, aMissingFileIsNamed) {
   EXPECT_EQ(errorOf([] { loadClassTable("/nowhere/t.yaml"); }),
-            "/nowhere/t.yaml: the class table cannot be opened");
+            "/nowhere/t.yaml: cannot be read");
 }
 
 TEST(ClassTableFile, savingWhereNothingCanBeWrittenNamesTheFileAndLeavesNothing) {

@@ -1,9 +1,9 @@
-#include "OutputFolder.h"
+#include <labeled_cloud/OutputFolder.h>
 
 #include <cstdlib>
 #include <stdexcept>
 
-namespace rawlog2semantic_map {
+namespace labeled_cloud {
 
 namespace fs = std::filesystem;
 
@@ -36,4 +36,4 @@ void OutputFolder::commit(const std::vector<std::string>& names) {
   }
 }
 
-}  // namespace rawlog2semantic_map
+}  // namespace labeled_cloud

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace rawlog2semantic_map {
+namespace labeled_cloud {
 
 /** The folder of the results. Files are written into a folder inside it and take their place at the
  * end, all of them: what was there stays if anything fails. */
@@ -28,4 +28,4 @@ class OutputFolder {
   bool m_createdFolder;
 };
 
-}  // namespace rawlog2semantic_map
+}  // namespace labeled_cloud

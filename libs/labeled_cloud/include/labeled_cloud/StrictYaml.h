@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-namespace semantic_map_compress {
+namespace labeled_cloud {
 
 /** A YAML file whose every key and value is checked. All functions throw std::runtime_error with
  * file, line, and what was expected. */
@@ -25,6 +25,15 @@ class StrictYaml {
   void checkList(const YAML::Node& list, const std::string& field) const;
   YAML::Node required(const YAML::Node& map, const std::string& key) const;
 
+  /** \param expected What to say if it is no T: "a class id". */
+  template <typename T>
+  T value(const YAML::Node& node, const std::string& expected) const {
+    try {
+      return node.as<T>();
+    } catch (const YAML::Exception&) {
+      fail(node, "expected " + expected + ", found " + quoted(node));
+    }
+  }
   std::string text(const YAML::Node& node, const std::string& field) const;
   /** A finite number. */
   double number(const YAML::Node& node, const std::string& field) const;
@@ -33,10 +42,11 @@ class StrictYaml {
   Eigen::Vector3d point(const YAML::Node& node, const std::string& field) const;
 
  private:
+  static std::string quoted(const YAML::Node& node);
   [[noreturn]] void fail(const YAML::Mark& where, const std::string& what) const;
 
   std::string m_file;
   YAML::Node m_root;
 };
 
-}  // namespace semantic_map_compress
+}  // namespace labeled_cloud

@@ -1,10 +1,10 @@
-#include "StrictYaml.h"
+#include <labeled_cloud/StrictYaml.h>
 
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
 
-namespace semantic_map_compress {
+namespace labeled_cloud {
 
 StrictYaml::StrictYaml(const std::filesystem::path& file) : m_file(file.string()) {
   std::ifstream stream(file);
@@ -31,7 +31,7 @@ void StrictYaml::checkMap(const YAML::Node& map) const {
   std::set<std::string> seen;
   for (const auto& entry : map) {
     const std::string key = text(entry.first, "a key");
-    if (!seen.insert(key).second) fail(entry.first, "'" + key + "' twice");
+    if (!seen.insert(key).second) fail(entry.first, "key '" + key + "' twice");
   }
 }
 
@@ -58,12 +58,14 @@ std::string StrictYaml::text(const YAML::Node& node, const std::string& field) c
   return node.Scalar();
 }
 
+std::string StrictYaml::quoted(const YAML::Node& node) {
+  return node.IsScalar() ? "'" + node.Scalar() + "'" : "something else";
+}
+
 double StrictYaml::number(const YAML::Node& node, const std::string& field) const {
   double value = NAN;
-  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value)) {
-    const std::string found = node.IsScalar() ? "'" + node.Scalar() + "'" : "something else";
-    fail(node, field + ": expected a number, found " + found);
-  }
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value))
+    fail(node, field + ": expected a number, found " + quoted(node));
   return value;
 }
 
@@ -78,4 +80,4 @@ Eigen::Vector3d StrictYaml::point(const YAML::Node& node, const std::string& fie
   return {number(node[0], field), number(node[1], field), number(node[2], field)};
 }
 
-}  // namespace semantic_map_compress
+}  // namespace labeled_cloud
