@@ -20,11 +20,12 @@ function(mso_add_library name)
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mrpt_semantic_octree)
 endfunction()
 
-# mso_add_app(NAME SOURCES ... [DEPENDS ...]): an executable of apps/NAME.
+# mso_add_app(NAME SOURCES ... [DEPENDS ...]): an executable of apps/NAME; its main.cpp knows MSO_VERSION.
 function(mso_add_app name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE mso_settings ${ARG_DEPENDS} CLI11::CLI11 nlohmann_json::nlohmann_json)
+  set_source_files_properties(main.cpp PROPERTIES COMPILE_DEFINITIONS MSO_VERSION="${PROJECT_VERSION}")
   set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()

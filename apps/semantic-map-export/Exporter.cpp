@@ -1,0 +1,147 @@
+#include "Exporter.h"
+
+#include <mrpt/io/CMemoryStream.h>
+#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt/serialization/CArchive.h>
+#include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_map/ExportClassMap.h>
+#include <semantic_map/ExportOctomap.h>
+#include <semantic_map/MapPictures.h>
+
+#include <algorithm>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+
+namespace semantic_map_export {
+
+namespace fs = std::filesystem;
+
+struct Exporter::Format {
+  const char* ending;
+  const char* description;
+  std::function<void(Exporter&, const fs::path&)> write;
+};
+
+const std::vector<Exporter::Format>& Exporter::allFormats() {
+  static const std::vector<Format> formats = {
+      {".ot", "OctoMap's tree, with colors of classes", &Exporter::writeOctree},
+      {".bt", "OctoMap's binary tree",
+       [](Exporter& e, const fs::path& file) {
+         e.stage(file, [&e](std::ostream& out) { semantic_map::writeBinaryOcTree(out, e.m_map); });
+       }},
+      {".ply", "points with class, probability and color",
+       [](Exporter& e, const fs::path& file) {
+         e.stage(file, [&e](std::ostream& out) {
+           semantic_map::writePly(out, e.m_map, e.m_options.points);
+         });
+       }},
+      {".csv", "the same as a table",
+       [](Exporter& e, const fs::path& file) {
+         e.stage(file, [&e](std::ostream& out) {
+           semantic_map::writeCsv(out, e.m_map, e.m_options.points);
+         });
+       }},
+      {".gridmap", "MRPT's 2D occupancy grid",
+       [](Exporter& e, const fs::path& file) {
+         e.stage(file, [&e](std::ostream& out) {
+           semantic_map::writeGridMap(out, semantic_map::gridOf(e.m_map, e.m_options.grid));
+         });
+       }},
+      {".yaml", "the same for ROS's map_server, with its .png beside", &Exporter::writeMapServer},
+      {".png", "classes from above, with a world file (.pgw) beside", &Exporter::writeClassMap},
+      {".3Dscene", "MRPT's scene", &Exporter::writeScene}};
+  return formats;
+}
+
+std::string Exporter::formats() {
+  std::string text;
+  for (const Format& format : allFormats())
+    text += std::string(text.empty() ? "" : "; ") + format.ending + ": " + format.description;
+  return text;
+}
+
+const Exporter::Format& Exporter::formatOf(const fs::path& file) {
+  std::string endings;
+  for (const Format& format : allFormats()) {
+    if (file.extension() == format.ending) return format;
+    endings += std::string(" ") + format.ending;
+  }
+  throw std::runtime_error(file.string() + ": the ending says no format, expected one of" +
+                           endings);
+}
+
+void Exporter::check(const fs::path& file) { formatOf(file); }
+
+void Exporter::write(const fs::path& file) {
+  try {
+    formatOf(file).write(*this, file);
+  } catch (const std::exception& e) {
+    const std::string message = e.what();
+    const bool named = message.find(file.stem().string()) != std::string::npos;
+    throw std::runtime_error(named ? message : file.string() + ": " + message);
+  }
+}
+
+std::vector<fs::path> Exporter::commit() {
+  std::vector<fs::path> files;
+  for (Staged& staged : m_staged) {
+    staged.file.commit();
+    files.push_back(staged.target);
+  }
+  m_staged.clear();
+  return files;
+}
+
+void Exporter::stage(const fs::path& file, const Writer& writer) {
+  const auto isSame = [&file](const Staged& s) { return s.target == file.lexically_normal(); };
+  if (std::any_of(m_staged.begin(), m_staged.end(), isSame))
+    throw std::runtime_error(file.string() + ": would be written twice");
+  const Staged& staged = m_staged.emplace_back(file.lexically_normal());
+  std::ofstream out(staged.file.path(), std::ios::binary);
+  writer(out);
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+void Exporter::writeOctree(const fs::path& file) {
+  stage(file, [this](std::ostream& out) {
+    m_options.colors ? semantic_map::writeColorOcTree(out, m_map)
+                     : semantic_map::writeOcTree(out, m_map);
+  });
+}
+
+void Exporter::writeClassMap(const fs::path& file) {
+  const auto classMap = semantic_map::classMapOf(m_map, m_options.maxHeight);
+  std::vector<std::uint8_t> png;
+  if (!cv::imencode(".png", classMap.picture, png)) throw std::runtime_error("cannot be encoded");
+  stage(file, [&png](std::ostream& out) {
+    out.write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
+  });
+  stage(fs::path(file).replace_extension(".pgw"),
+        [&classMap](std::ostream& out) { out << classMap.worldFile(); });
+}
+
+void Exporter::writeMapServer(const fs::path& file) {
+  const fs::path picture = fs::path(file).replace_extension(".png");
+  const auto files = semantic_map::mapServerFiles(semantic_map::gridOf(m_map, m_options.grid),
+                                                  picture.filename().string());
+  stage(file, [&files](std::ostream& out) { out << files.yaml; });
+  stage(picture, [&files](std::ostream& out) { out << files.png; });
+}
+
+void Exporter::writeScene(const fs::path& file) {
+  semantic_map::CSemanticOctoMap map(m_map);
+  if (m_options.maxHeight) map.renderingOptions.maxHeight = *m_options.maxHeight;
+  const auto objects = mrpt::opengl::CSetOfObjects::Create();
+  map.getVisualizationInto(*objects);
+  mrpt::opengl::COpenGLScene scene;
+  scene.insert(objects);
+  mrpt::io::CMemoryStream bytes;
+  mrpt::serialization::archiveFrom(bytes) << scene;
+  stage(file, [&bytes](std::ostream& out) {
+    out.write(reinterpret_cast<const char*>(bytes.getRawBufferData()),
+              std::streamsize(bytes.getTotalBytesCount()));
+  });
+}
+
+}  // namespace semantic_map_export

@@ -1,0 +1,83 @@
+// Writes a semantic octree map into files that other programs read.
+#include <labeled_cloud/MrptMessage.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "Exporter.h"
+
+namespace semantic_map_export {
+namespace {
+
+namespace fs = std::filesystem;
+using semantic_octree::ClassTable;
+
+struct Cli {
+  fs::path map;
+  std::vector<fs::path> files;
+  std::vector<std::string> ground;
+  ExportOptions options;
+
+  void addTo(CLI::App& app) {
+    app.add_option("MAP", map, "A map's own file (.semantic), compressed or not")->required();
+    app.add_option("FILE", files,
+                   "Files to write; their endings say what (" + Exporter::formats() + ")")
+        ->required();
+    app.add_flag("!--no-colors", options.colors, "An OcTree in .ot files, not a ColorOcTree");
+    app.add_flag("--free", options.points.free, "Free leaves too, in .ply and .csv files");
+    app.add_option("--max-height", options.maxHeight,
+                   "Nothing above is shown in .png and .3Dscene files, m");
+    auto* grid =
+        app.add_option_group("2D grids", "What is an obstacle in .gridmap and .yaml files");
+    grid->add_option("--low", options.grid.low, "... if it is that far above the ground, m")
+        ->capture_default_str();
+    grid->add_option("--high", options.grid.high, "... up to that far, m")->capture_default_str();
+    grid->add_option("--ground", ground,
+                     "A class that is ground; may be given several times. "
+                     "None: the lowest of each column is")
+        ->allow_extra_args(false);
+    grid->add_option("--window", options.grid.window, "What is narrower is no ground, m")
+        ->capture_default_str();
+    grid->add_option("--floor", options.grid.floor, "Height of a flat ground, m");
+  }
+};
+
+std::vector<semantic_octree::ClassId> classesNamed(const std::vector<std::string>& names,
+                                                   const ClassTable& classes) {
+  std::vector<semantic_octree::ClassId> ids;
+  for (const std::string& name : names) {
+    const auto id = classes.find(name);
+    if (!id) throw std::runtime_error("--ground: the map has no class '" + name + "'");
+    ids.push_back(*id);
+  }
+  return ids;
+}
+
+void run(const Cli& cli) {
+  for (const fs::path& file : cli.files) Exporter::check(file);
+  const auto map = semantic_octree::loadTree(cli.map.string());
+  ExportOptions options = cli.options;
+  options.grid.ground = classesNamed(cli.ground, map.classes());
+  Exporter exporter(map, options);
+  for (const fs::path& file : cli.files) exporter.write(file);
+  for (const fs::path& file : exporter.commit()) std::cout << file.string() << '\n';
+}
+
+}  // namespace
+}  // namespace semantic_map_export
+
+int main(int argc, char** argv) {
+  CLI::App app("Writes a semantic octree map into files that other programs read");
+  app.set_version_flag("--version", MSO_VERSION);
+  semantic_map_export::Cli cli;
+  cli.addTo(app);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    semantic_map_export::run(cli);
+    return 0;
+  } catch (const std::exception& e) {
+    std::cerr << "semantic-map-export: " << labeled_cloud::messageOf(e) << std::endl;
+    return 1;
+  }
+}

@@ -1,0 +1,89 @@
+#include <semantic_map/ExportPoints.h>
+
+#include <iomanip>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+
+#include "CellColors.h"
+
+namespace semantic_map {
+
+using semantic_octree::CellState;
+using semantic_octree::ClassId;
+using semantic_octree::ClassTable;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+template <class Action>
+void forEachPoint(const SemanticOcTree& tree, const PointOptions& options, Action action) {
+  for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf)
+    if (options.free || leaf->getLogOdds() > 0) action(leaf);
+}
+
+template <typename... Values>
+void writeBytes(std::ostream& out, const Values&... values) {
+  (out.write(reinterpret_cast<const char*>(&values), sizeof(values)), ...);
+}
+
+std::string onOneLine(std::string name) {
+  for (char& c : name)
+    if (c == '\n' || c == '\r') c = ' ';
+  return name;
+}
+
+void writePlyHeader(std::ostream& out, const ClassTable& classes, std::size_t points) {
+  out << "ply\nformat binary_little_endian 1.0\n";
+  for (int id = 1; id <= classes.size(); ++id)
+    out << "comment class " << id << " " << onOneLine(classes.name(static_cast<ClassId>(id)))
+        << "\n";
+  out << "element vertex " << points << "\n";
+  for (const char* property :
+       {"float x", "float y", "float z", "uchar red", "uchar green", "uchar blue", "uchar class",
+        "float probability", "float occupancy", "float size"})
+    out << "property " << property << "\n";
+  out << "end_header\n";
+}
+
+std::string quoted(const std::string& name) {
+  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+  std::string text = "\"";
+  for (const char c : name) text += c == '"' ? "\"\"" : std::string(1, c);
+  return text + '"';
+}
+
+void checked(const std::ostream& out) {
+  if (!out) throw std::runtime_error("cannot write the points");
+}
+
+}  // namespace
+
+void writePly(std::ostream& out, const SemanticOcTree& tree, const PointOptions& options) {
+  std::size_t points = 0;
+  forEachPoint(tree, options, [&points](const auto&) { ++points; });
+  writePlyHeader(out, tree.classes(), points);
+  forEachPoint(tree, options, [&](const auto& leaf) {
+    const CellState state = tree.query(*leaf);
+    const auto color = classColor(tree.classes(), state.likeliestClass);
+    writeBytes(out, float(leaf.getX()), float(leaf.getY()), float(leaf.getZ()), color.r, color.g,
+               color.b, state.likeliestClass, float(state.probability), float(state.occupancy),
+               float(leaf.getSize()));
+  });
+  checked(out);
+}
+
+void writeCsv(std::ostream& out, const SemanticOcTree& tree, const PointOptions& options) {
+  out << "x,y,z,size,occupancy,class,name,probability\n" << std::setprecision(7);
+  forEachPoint(tree, options, [&](const auto& leaf) {
+    const CellState state = tree.query(*leaf);
+    const ClassId id = state.likeliestClass;
+    out << leaf.getX() << ',' << leaf.getY() << ',' << leaf.getZ() << ',' << leaf.getSize() << ','
+        << state.occupancy << ',' << int{id} << ','
+        << (id == semantic_octree::kNoClass ? "" : quoted(tree.classes().name(id))) << ','
+        << state.probability << '\n';
+  });
+  checked(out);
+}
+
+}  // namespace semantic_map
