@@ -2,31 +2,23 @@
 
 #include <set>
 
-#include "RandomScans.h"
+#include "Voxels.h"
 
 using namespace semantic_octree;
 
 namespace {
 
-using TileKey = std::array<int, 3>;
+using Tiles = std::set<VoxelId>;  // lowest voxel of each
 
-/** Log-odds of every known voxel by tile, and what its class record says. */
-std::map<TileKey, std::map<TileKey, std::vector<double>>> voxelsByTile(const SemanticOcTree& map) {
-  std::map<TileKey, std::map<TileKey, std::vector<double>>> tiles;
-  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
-    const octomap::OcTreeKey first = leaf.getIndexKey();
-    const int edge = 1 << (16 - leaf.getDepth());
-    for (int x = first[0]; x < first[0] + edge; ++x)
-      for (int y = first[1]; y < first[1] + edge; ++y)
-        for (int z = first[2]; z < first[2] + edge; ++z)
-          tiles[{x & ~7, y & ~7, z & ~7}][{x, y, z}] = map.distribution(*leaf);
-  }
+std::map<VoxelId, std::map<VoxelId, std::vector<double>>> voxelsByTile(const SemanticOcTree& map) {
+  std::map<VoxelId, std::map<VoxelId, std::vector<double>>> tiles;
+  for (const auto& [v, p] : voxelsOf(map)) tiles[{v[0] & ~7, v[1] & ~7, v[2] & ~7}][v] = p;
   return tiles;
 }
 
-std::set<TileKey> tilesThatDiffer(const SemanticOcTree& before, const SemanticOcTree& after) {
+Tiles tilesThatDiffer(const SemanticOcTree& before, const SemanticOcTree& after) {
   const auto a = voxelsByTile(before);
-  std::set<TileKey> different;
+  Tiles different;
   for (const auto& [tile, voxels] : voxelsByTile(after)) {
     const auto old = a.find(tile);
     if (old == a.end() || old->second != voxels) different.insert(tile);
@@ -34,9 +26,9 @@ std::set<TileKey> tilesThatDiffer(const SemanticOcTree& before, const SemanticOc
   return different;
 }
 
-std::set<TileKey> asSet(const std::vector<octomap::OcTreeKey>& keys) {
-  std::set<TileKey> tiles;
-  for (const octomap::OcTreeKey& key : keys) tiles.insert({key[0], key[1], key[2]});
+Tiles asSet(const std::vector<octomap::OcTreeKey>& keys) {
+  Tiles tiles;
+  for (const octomap::OcTreeKey& k : keys) tiles.insert({k[0] - 32768, k[1] - 32768, k[2] - 32768});
   return tiles;
 }
 
@@ -56,6 +48,23 @@ TEST(TouchedTiles, areThoseInWhichAVoxelChanged) {
       EXPECT_EQ(asSet(map.takeTouchedTiles()), tilesThatDiffer(before, map)) << "scan " << i;
       EXPECT_TRUE(map.takeTouchedTiles().empty());
     }
+  }
+}
+
+TEST(TouchedTiles, areAllThoseInALargerCubeThatChangesAsAWhole) {
+  PosedCloud sphere;
+  for (double up = -1.55; up < 1.56; up += 0.02)
+    for (double around = 0; around < 6.28; around += 0.02)
+      sphere.cloud.points.emplace_back(13 * std::cos(up) * std::cos(around),
+                                       13 * std::cos(up) * std::sin(around), 13 * std::sin(up));
+  SemanticOcTree map(0.4, numberedClasses(5));
+  map.takeTouchedTiles();
+  for (int i = 0; i < 2; ++i) {
+    const SemanticOcTree before = map;
+    map.insert(sphere.cloud, sphere.T_map_sensor);
+    ASSERT_NE(map.search(octomap::OcTreeKey(32776, 32776, 32776), 12), nullptr);
+    EXPECT_TRUE(map.search(octomap::OcTreeKey(32776, 32776, 32776), 12)->isLeaf());
+    EXPECT_EQ(asSet(map.takeTouchedTiles()), tilesThatDiffer(before, map));
   }
 }
 

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "LogOddsGrid.h"
+
 namespace semantic_octree {
 namespace {
 
@@ -13,11 +15,10 @@ void require(bool ok, const char* field, double value, const char* expected) {
                                 ", expected " + expected);
 }
 
-/** Nearest value of the grid on which float additions are exact; doubles stay as they are. */
+/** Floats are put on the grid, doubles stay as they are. */
 template <typename Real>
-Real onGrid(double x) {
-  if constexpr (std::is_same_v<Real, float>)
-    return static_cast<float>(std::round(x * 1048576.0) / 1048576.0);
+Real rounded(double x) {
+  if constexpr (std::is_same_v<Real, float>) return onGrid(x);
   return static_cast<Real>(x);
 }
 
@@ -64,13 +65,13 @@ ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
   } else {
     unlabeled = std::log((std::exp(same) + (K - 1) * std::exp(other)) / K);
   }
-  m_logNumClasses = onGrid<Real>(std::log(K));
-  m_min = onGrid<Real>(logit(p.minOccupancy)) - m_logNumClasses;
-  m_max = onGrid<Real>(logit(p.maxProbability));
-  m_hitSame = onGrid<Real>(same);
-  m_hitOther = onGrid<Real>(other);
-  m_hitUnlabeled = onGrid<Real>(unlabeled);
-  m_miss = onGrid<Real>(miss);
+  m_logNumClasses = rounded<Real>(std::log(K));
+  m_min = rounded<Real>(logit(p.minOccupancy)) - m_logNumClasses;
+  m_max = rounded<Real>(logit(p.maxProbability));
+  m_hitSame = rounded<Real>(same);
+  m_hitOther = rounded<Real>(other);
+  m_hitUnlabeled = rounded<Real>(unlabeled);
+  m_miss = rounded<Real>(miss);
 }
 
 template <typename Real, int Named>
@@ -125,7 +126,7 @@ void ClassFilter<Real, Named>::name(Belief& b, ClassId id, Real logOdds) const {
   const int others = b.unnamed(m_numClasses) - 1;
   const double top = std::max<double>(evicted, b.rest);
   const double odds = others * std::exp(b.rest - top) + std::exp(evicted - top);
-  b.rest = onGrid<Real>(top + std::log(odds / (others + 1)));
+  b.rest = rounded<Real>(top + std::log(odds / (others + 1)));
   if (newcomerIsLeast) return;
   b.ids[last] = id;
   b.logOdds[last] = logOdds;
@@ -136,8 +137,8 @@ void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
   const double K = m_numClasses;
   std::vector<Real> h(m_numClasses + 1);
   for (int k = 1; k <= m_numClasses; ++k)
-    h[k] = onGrid<Real>(b.logOddsOf(static_cast<ClassId>(k)) + m_hitUnlabeled +
-                        std::log(K * std::max<double>(q[k - 1], m_softLabelFloor)));
+    h[k] = rounded<Real>(b.logOddsOf(static_cast<ClassId>(k)) + m_hitUnlabeled +
+                         std::log(K * std::max<double>(q[k - 1], m_softLabelFloor)));
   const Real excess = std::max(Real(0), *std::max_element(h.begin() + 1, h.end()) - m_max);
   for (Real& x : h) x = std::max(m_min, x - excess);
   std::vector<ClassId> order(m_numClasses);
@@ -153,7 +154,7 @@ void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
   if (named == m_numClasses) return;
   double odds = 0;
   for (int i = named; i < m_numClasses; ++i) odds += std::exp(h[order[i]]);
-  b.rest = onGrid<Real>(std::log(odds / (m_numClasses - named)));
+  b.rest = rounded<Real>(std::log(odds / (m_numClasses - named)));
 }
 
 template class ClassFilter<float>;

@@ -67,6 +67,14 @@ Octant& NodeArena::expand(Node& leaf) {
   return octant;
 }
 
+void NodeArena::removeOctant(Node& node) {
+  if (node.m_index) m_states.release(node.m_index);
+  node.m_index = 0;
+  m_octants.release(&NodeStore::octant(node));
+  node.children = nullptr;
+  --m_inner;
+}
+
 bool NodeArena::childrenAgree(const Octant& octant) const {
   const Node& first = octant.nodes[0];
   for (int i = 0; i < 8; ++i) {

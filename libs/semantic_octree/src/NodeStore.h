@@ -99,6 +99,13 @@ class NodeArena {
     if (!octant.has(i)) ++m_nodes;
     return octant.child(i);
   }
+  /** Takes back createChild() of a leaf without a record. */
+  void removeChild(Octant& octant, int i) {
+    octant.pointers[i] = nullptr;
+    --m_nodes;
+  }
+  /** Takes back createOctant() of a node without children. */
+  void removeOctant(Node& node);
   void setRecord(Node& leaf, const Belief& belief);
   void dropRecord(Node& leaf);
   /** Copies everything below `from` (of another store) and its value to the childless node `to`. */

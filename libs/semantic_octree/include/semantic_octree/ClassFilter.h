@@ -16,7 +16,7 @@ namespace semantic_octree {
  * classes are named, the least likely one (largest id on a tie) joins the rest, whose value becomes
  * the logarithm of the mean odds of its members.
  *
- * With Real = float, increments, limits and the prior are multiples of 2^-20, so that adding them
+ * With Real = float, increments, limits and the prior are multiples of 2^-18, so that adding them
  * is exact: away from the limits the order of observations does not matter, not even to the last
  * bit. */
 template <typename Real, int Named = 3>
@@ -45,18 +45,19 @@ class ClassFilter {
 
   /** Occupancy log-odds of a cell without a class record after another miss or unlabeled hit: the
    * same as the filter's on uniform(), without the detour. */
-  Real occupancyAfterMiss(Real v) const { return clampOccupancy(v + m_miss); }
-  Real occupancyAfterUnlabeledHit(Real v) const { return clampOccupancy(v + m_hitUnlabeled); }
+  Real occupancyAfterMiss(Real v) const { return limitedOccupancy(v + m_miss); }
+  Real occupancyAfterUnlabeledHit(Real v) const { return limitedOccupancy(v + m_hitUnlabeled); }
   /** The value that further misses leave as it is. */
   Real lowestOccupancy() const { return m_min + m_logNumClasses; }
-
- private:
-  Real clampOccupancy(Real v) const {
-    return std::min(m_max + m_logNumClasses, std::max(m_min + m_logNumClasses, v));
-  }
-  void addToAll(Belief& b, Real increment) const;
   /** Puts all values into their limits and restores the order. */
   void limit(Belief& b) const;
+  /** The same for the occupancy of a cell without a class record. */
+  Real limitedOccupancy(Real v) const {
+    return std::min(m_max + m_logNumClasses, std::max(m_min + m_logNumClasses, v));
+  }
+
+ private:
+  void addToAll(Belief& b, Real increment) const;
   void name(Belief& b, ClassId id, Real logOdds) const;
 
   int m_numClasses;

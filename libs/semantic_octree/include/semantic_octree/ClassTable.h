@@ -20,8 +20,8 @@ struct Color {
 
 /** The classes of a map, and how the ids of a data set ("raw ids") fold into them.
  *
- * Class ids are 1..K without gaps. Names are unique and not empty. In a table that folds no raw id to
- * a class, raw ids are the classes' own. */
+ * Class ids are 1..K without gaps. Names are unique and not empty. In a table that folds no raw id
+ * to a class, raw ids are the classes' own. */
 class ClassTable {
  public:
   struct Entry {

@@ -162,6 +162,7 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
 
  private:
   friend class Abstraction;
+  friend class TreeBuilder;
   friend class TreeReader;
   /** Moves all nodes to a store with room for (or without) bookkeeping. */
   void rebuildStore();

@@ -1,0 +1,49 @@
+#pragma once
+#include <octomap/OcTree.h>
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace semantic_octree {
+
+/** Whether a sum of evidence is put into the class filter's limits. */
+enum class Limits {
+  /** As after an insertion. */
+  Apply,
+  /** Left as it is, to be added to further maps; the next scan that meets a voxel limits it. */
+  Keep
+};
+
+/** Adds what maps of one frame know, as if each had been made of scans that the others have not
+ * seen: log-odds h_k - prior are summed voxel by voxel.
+ *
+ * The order of the maps leaves no trace, not even in the last bit. Neither does grouping, as long
+ * as partial sums are made with Limits::Keep, no voxel has more than three named classes, and no
+ * log-odds exceed 64 (ten maps that are all as sure as they can be).
+ * \throw std::invalid_argument no maps, or maps that differ in resolution, classes or filter
+ * parameters; says which. */
+SemanticOcTree merged(const std::vector<const SemanticOcTree*>& maps,
+                      Limits limits = Limits::Apply);
+
+/** The voxels whose centers are in a box (meters, map frame).
+ * \throw std::invalid_argument an empty box, or NaN. */
+SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box);
+
+/** The same map with voxels of 2^levels times the edge. A voxel is as occupied as the most occupied
+ * one in it, its classes are those of the known ones' mixture, as in Abstraction::compressedMap.
+ * \throw std::invalid_argument levels not 0 to 8. */
+SemanticOcTree coarsened(const SemanticOcTree& map, int levels);
+
+/** The map seen from another frame: a voxel takes the state of the one in which its center lies.
+ * \param T_new_old pose of the map's frame in the new one
+ * \throw std::invalid_argument the pose is not a rigid transformation
+ * \throw std::out_of_range a known part of the map would be outside the new one. */
+SemanticOcTree moved(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_old);
+
+/** Occupancy of a map of OctoMap's, put into the filter's limits; no voxel has a class.
+ * \throw std::invalid_argument a map of another number of levels than 16, bad parameters. */
+SemanticOcTree fromOccupancy(const octomap::OcTree& map, const ClassTable& classes,
+                             const FilterParameters& filter = {});
+
+}  // namespace semantic_octree
