@@ -11,6 +11,8 @@ find_package(ZLIB REQUIRED)
 find_package(mrpt-obs REQUIRED)
 find_package(mrpt-maps REQUIRED)
 find_package(mrpt-opengl REQUIRED)
+find_package(mrpt-graphs REQUIRED)
+find_package(ompl REQUIRED)
 
 include(ThirdPartyTargets)
 

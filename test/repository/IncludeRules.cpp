@@ -18,8 +18,8 @@ const IncludeTable& includeTable() {
         "tree_abstraction"}},
       {"colored_graph", {}},
       {"semantic_planning",
-       {"Eigen", "mrpt", "octomap", "ompl", "yaml-cpp", "colored_graph", "semantic_octree",
-        "tree_abstraction"}},
+       {"Eigen", "mrpt", "octomap", "ompl", "yaml-cpp", "colored_graph", "labeled_cloud",
+        "semantic_octree", "tree_abstraction"}},
       {"synthetic_world", {"Eigen", "semantic_octree"}},
   };
   return table;

@@ -1,0 +1,64 @@
+#pragma once
+#include <mrpt/math/TPose2D.h>
+
+#include <array>
+#include <memory>
+
+namespace semantic_planning {
+
+/** A place on a curve. */
+struct CurvePoint {
+  mrpt::math::TPose2D pose;  ///< meters, radians
+  double curvature = 0;      ///< 1/m, of the steering: positive to the left, whatever the gear
+  bool forward = true;
+};
+
+/** A shortest curve of a car that drives forwards and backwards (Reeds, Shepp, "Optimal paths for a
+ * car that goes both forwards and backwards", 1990): up to five arcs and straights. */
+class ReedsSheppCurve {
+ public:
+  struct Segment {
+    double length = 0;  ///< meters; negative: backwards
+    int turn = 0;       ///< 1: left, 0: straight, -1: right
+  };
+
+  ReedsSheppCurve(const mrpt::math::TPose2D& from, double turningRadius,
+                  const std::array<Segment, 5>& segments);
+
+  double length() const { return m_length; }  ///< meters
+  /** \param s arc length from the start, clamped to [0, length()], meters. */
+  CurvePoint at(double s) const;
+  /** The same curve from its end to its start. */
+  ReedsSheppCurve reversed() const;
+  const std::array<Segment, 5>& segments() const { return m_segments; }
+
+ private:
+  mrpt::math::TPose2D m_from;
+  double m_radius;
+  std::array<Segment, 5> m_segments;
+  double m_length;
+};
+
+/** Finds shortest curves. Not thread safe: one for each thread. */
+class ReedsShepp {
+ public:
+  /** \throw std::invalid_argument radius not positive. */
+  explicit ReedsShepp(double turningRadius);
+  ~ReedsShepp();
+  ReedsShepp(ReedsShepp&&) noexcept;
+
+  double turningRadius() const { return m_radius; }
+  /** Length of the shortest curve, meters: a metric. */
+  double distance(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
+  /** A lower bound of distance() that costs next to nothing. */
+  double lowerBound(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
+  /** A shortest curve; of several, always the same one. The one from b to a may be another. */
+  ReedsSheppCurve connect(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
+
+ private:
+  struct Space;
+  std::unique_ptr<Space> m_space;
+  double m_radius;
+};
+
+}  // namespace semantic_planning

@@ -1,0 +1,45 @@
+#pragma once
+#include <cstddef>
+#include <limits>
+
+namespace semantic_planning {
+
+/** Where a roadmap's vertices come from. */
+enum class GraphKind {
+  Compressed,      ///< ground in the leaves of the map's compressed tree
+                   ///< (SemanticOcTree::setAbstraction)
+  Halton,          ///< a Halton sequence; samples off the ground or in the way are dropped
+  HaltonDrivable,  ///< the same, and goes on until there are as many drivable vertices as asked for
+  HaltonByClass,   ///< the same, with half as many vertices in each worse rank as in the one before
+  Full             ///< the ground of the finest map, on a grid
+};
+
+/** How a roadmap is made. */
+struct RoadmapOptions {
+  GraphKind kind = GraphKind::Compressed;
+  /** Vertices, start and goal not counted; of Halton, samples. 0: all that Compressed and Full
+   * have, 1000 for the others. */
+  std::size_t vertices = 1000;
+  /** Most edges; 0: as many as the nearest neighbors give. Every vertex's nearest go first. */
+  std::size_t edges = 0;
+  /** Each vertex is connected with that many nearest ones in Reeds-Shepp distance. */
+  int neighbors = 10;
+  /** Longest edge, meters. */
+  double connectionRadius = 15;
+  /** Compressed, Full: headings at each point. */
+  int headings = 4;
+  /** Compressed: largest distance between points in a large leaf; Full: between points; meters. */
+  double spacing = 2;
+  /** Vertices lie within this distance from the line between start and goal, meters. */
+  double regionBuffer = 30;
+  /** Compressed: a vertex has the class of its leaf (as in the paper) instead of the finest map's
+   * ground. It matters for colored_graph::EdgeModel::Endpoint only. */
+  bool classOfLeaf = false;
+  /** Another value gives other vertices of the same kind. */
+  unsigned seed = 0;
+
+  /** \throw std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+}  // namespace semantic_planning

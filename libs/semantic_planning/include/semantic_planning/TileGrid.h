@@ -1,0 +1,72 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace semantic_planning {
+
+/** A column of the map: keys of its voxels in x and y. Differences may leave the range of keys. */
+struct Column {
+  int x = 0, y = 0;
+  bool operator==(const Column& o) const { return x == o.x && y == o.y; }
+  bool operator<(const Column& o) const { return x != o.x ? x < o.x : y < o.y; }
+};
+
+/** Columns come in square tiles of this edge, so that what changed can be told by tiles. */
+constexpr int kTileEdge = 16;
+constexpr int kTileColumns = kTileEdge * kTileEdge;
+
+inline Column tileOf(Column c) { return {c.x >> 4, c.y >> 4}; }
+inline Column firstColumnOf(Column tile) { return {tile.x * kTileEdge, tile.y * kTileEdge}; }
+inline int indexInTile(Column c) { return (c.y & 15) * kTileEdge + (c.x & 15); }
+
+/** One T for every tile within a rectangle, which grows as tiles are set. */
+template <class T>
+class TileGrid {
+ public:
+  /** Null outside of the rectangle. */
+  const T* find(Column tile) const {
+    const int x = tile.x - m_first.x, y = tile.y - m_first.y;
+    if (x < 0 || y < 0 || x >= m_width || y >= m_height) return nullptr;
+    return &m_tiles[static_cast<std::size_t>(y) * m_width + x];
+  }
+  T& at(Column tile) {
+    if (!find(tile)) growTo(tile);
+    return const_cast<T&>(*find(tile));
+  }
+
+  /** f(tile, T&) for all tiles of the rectangle. */
+  template <class F>
+  void forEach(F f) {
+    for (int y = 0; y < m_height; ++y)
+      for (int x = 0; x < m_width; ++x)
+        f(Column{m_first.x + x, m_first.y + y}, m_tiles[static_cast<std::size_t>(y) * m_width + x]);
+  }
+  template <class F>
+  void forEach(F f) const {
+    const_cast<TileGrid*>(this)->forEach([&](Column tile, const T& t) { f(tile, t); });
+  }
+
+ private:
+  void growTo(Column tile) {
+    TileGrid grown;
+    const bool none = m_tiles.empty();
+    const Column low{none ? tile.x : std::min(tile.x, m_first.x),
+                     none ? tile.y : std::min(tile.y, m_first.y)};
+    const Column high{none ? tile.x : std::max(tile.x, m_first.x + m_width - 1),
+                      none ? tile.y : std::max(tile.y, m_first.y + m_height - 1)};
+    grown.m_first = low;
+    grown.m_width = high.x - low.x + 1;
+    grown.m_height = high.y - low.y + 1;
+    grown.m_tiles.resize(static_cast<std::size_t>(grown.m_width) * grown.m_height);
+    forEach([&](Column t, T& value) { grown.at(t) = std::move(value); });
+    *this = std::move(grown);
+  }
+
+  Column m_first;
+  int m_width = 0, m_height = 0;
+  std::vector<T> m_tiles;
+};
+
+}  // namespace semantic_planning

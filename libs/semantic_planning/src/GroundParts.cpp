@@ -1,0 +1,93 @@
+#include "GroundParts.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+namespace semantic_planning {
+namespace {
+
+/** Half of a column's neighbors; the others look from their side. */
+constexpr std::array<Column, 4> kForward = {{{1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
+
+std::size_t rootOf(std::vector<std::size_t>& parent, std::size_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+void join(std::vector<std::size_t>& parent, std::size_t a, std::size_t b) {
+  const auto [low, high] = std::minmax(rootOf(parent, a), rootOf(parent, b));
+  parent[high] = low;
+}
+
+std::size_t numParts(const SurfaceTile& tile) {
+  std::size_t parts = 0;
+  for (const Surface& s : tile.surfaces) parts = std::max<std::size_t>(parts, s.part + 1);
+  return parts;
+}
+
+/** The drivable surface of a tile's column to which the wheels get from height z; or none. */
+int climbableIndex(const SurfaceTile& tile, int column, int z, int step) {
+  for (int i = tile.first[column]; i < tile.first[column + 1]; ++i)
+    if (tile.surfaces[i].drivable && std::abs(int(tile.surfaces[i].z) - z) <= step) return i;
+  return -1;
+}
+
+}  // namespace
+
+void markParts(Column tile, SurfaceTile& marked, const GroundShape& shape) {
+  std::vector<std::size_t> parent(marked.surfaces.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  forColumnsOf(tile, [&](Column c) {
+    const int index = indexInTile(c);
+    for (int i = marked.first[index]; i < marked.first[index + 1]; ++i)
+      for (const Column& d : kForward) {
+        const Column next{c.x + d.x, c.y + d.y};
+        if (!marked.surfaces[i].drivable || !(tileOf(next) == tile)) continue;
+        const int j = climbableIndex(marked, indexInTile(next), marked.surfaces[i].z, shape.step);
+        if (j >= 0) join(parent, i, j);
+      }
+  });
+  std::vector<std::uint16_t> number(parent.size());
+  std::uint16_t parts = 0;
+  for (std::size_t i = 0; i < parent.size(); ++i) {
+    const std::size_t root = rootOf(parent, i);
+    number[i] = root == i ? parts++ : number[root];
+    marked.surfaces[i].part = number[i];
+  }
+}
+
+GroundParts::GroundParts(const SurfaceGrid& surfaces, const GroundShape& shape) {
+  std::size_t parts = 0;
+  surfaces.forEach([&](Column tile, const SurfaceTile& t) {
+    m_firstOfTile.at(tile) = parts;
+    parts += numParts(t);
+  });
+  m_parent.resize(parts);
+  std::iota(m_parent.begin(), m_parent.end(), 0);
+  surfaces.forEach([&](Column tile, const SurfaceTile& t) {
+    if (!t.surfaces.empty()) joinAcrossBorders(surfaces, tile, shape);
+  });
+}
+
+void GroundParts::joinAcrossBorders(const SurfaceGrid& surfaces, Column tile,
+                                    const GroundShape& shape) {
+  forColumnsOf(tile, [&](Column c) {
+    const Column inTile{c.x & 15, c.y & 15};
+    if (inTile.x > 0 && inTile.x < kTileEdge - 1 && inTile.y < kTileEdge - 1) return;
+    for (const Surface& s : surfacesAt(surfaces, c))
+      for (const Column& d : kForward) {
+        const Column next{c.x + d.x, c.y + d.y};
+        const Surface* other = s.drivable ? surfaceNear(surfaces, next, s.z, shape.step) : nullptr;
+        if (other && other->drivable)
+          join(m_parent, *m_firstOfTile.find(tile) + s.part,
+               *m_firstOfTile.find(tileOf(next)) + other->part);
+      }
+  });
+}
+
+std::size_t GroundParts::partOf(Column c, const Surface& s) const {
+  return rootOf(m_parent, *m_firstOfTile.find(tileOf(c)) + s.part);
+}
+
+}  // namespace semantic_planning

@@ -1,0 +1,28 @@
+#pragma once
+#include "GroundShape.h"
+#include "SurfaceTile.h"
+
+#include <vector>
+
+namespace semantic_planning {
+
+/** Sets Surface::part: which drivable surfaces the wheels connect within the tile. */
+void markParts(Column tile, SurfaceTile& marked, const GroundShape& shape);
+
+/** Which parts of tiles belong together. */
+class GroundParts {
+ public:
+  /** \param surfaces with `part` set. */
+  GroundParts(const SurfaceGrid& surfaces, const GroundShape& shape);
+
+  /** The same number for all surfaces that drivable ground connects. */
+  std::size_t partOf(Column c, const Surface& s) const;
+
+ private:
+  void joinAcrossBorders(const SurfaceGrid& surfaces, Column tile, const GroundShape& shape);
+
+  TileGrid<std::size_t> m_firstOfTile;
+  mutable std::vector<std::size_t> m_parent;
+};
+
+}  // namespace semantic_planning

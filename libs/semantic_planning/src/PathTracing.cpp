@@ -1,0 +1,68 @@
+#include "PathTracing.h"
+
+#include <cmath>
+
+namespace semantic_planning {
+
+using colored_graph::PathResult;
+using colored_graph::SearchStatus;
+
+namespace {
+
+PlanStatus statusOf(SearchStatus status) {
+  switch (status) {
+    case SearchStatus::Found:
+      return PlanStatus::Found;
+    case SearchStatus::OnlyForbidden:
+      return PlanStatus::OnlyForbidden;
+    case SearchStatus::Cancelled:
+      return PlanStatus::Cancelled;
+    case SearchStatus::TimeLimit:
+      return PlanStatus::TimeLimit;
+    default:
+      return PlanStatus::NotConnected;
+  }
+}
+
+/** Appends a curve's points; its first is where the last one ended, perhaps in another gear. */
+void append(const std::vector<PathPoint>& curve, std::vector<PathPoint>& path) {
+  for (std::size_t i = path.empty() ? 0 : 1; i < curve.size(); ++i) {
+    PathPoint point = curve[i];
+    if (!path.empty()) {
+      const PathPoint& last = path.back();
+      point.arcLength = last.arcLength + std::hypot(point.x - last.x, point.y - last.y);
+    }
+    path.push_back(point);
+  }
+}
+
+}  // namespace
+
+std::vector<PathPoint> tracePath(const PathResult& path, const Roadmap& roadmap,
+                                 const EdgeChecker& checker) {
+  std::vector<PathPoint> points;
+  for (std::size_t i = 0; i < path.edges.size(); ++i) {
+    const auto from = path.vertices[i];
+    append(checker.trace(roadmap.curve(path.edges[i], from), roadmap.pose(from).z), points);
+  }
+  return points;
+}
+
+void describePath(const PathResult& path, const Roadmap& roadmap, const EdgeChecker& checker,
+                  PlanResult& result) {
+  result.status = statusOf(path.status);
+  result.search = path.statistics;
+  if (!path.found()) {
+    result.reason = describe(path.status);
+    return;
+  }
+  result.cost = path.cost;
+  for (const colored_graph::Length length : path.lengthPerClass) {
+    result.lengthPerClass.push_back(colored_graph::toMeters(length));
+    result.length += result.lengthPerClass.back();
+  }
+  for (const auto v : path.vertices) result.vertices.push_back(roadmap.pose(v).pose);
+  result.path = tracePath(path, roadmap, checker);
+}
+
+}  // namespace semantic_planning

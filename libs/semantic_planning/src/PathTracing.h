@@ -1,0 +1,15 @@
+#pragma once
+#include <semantic_planning/PlanResult.h>
+#include <semantic_planning/Roadmap.h>
+
+namespace semantic_planning {
+
+/** The poses along a path of the roadmap, with their arc lengths. */
+std::vector<PathPoint> tracePath(const colored_graph::PathResult& path, const Roadmap& roadmap,
+                                 const EdgeChecker& checker);
+
+/** Lengths, cost and poses of a search's result, or why there is none. */
+void describePath(const colored_graph::PathResult& path, const Roadmap& roadmap,
+                  const EdgeChecker& checker, PlanResult& result);
+
+}  // namespace semantic_planning

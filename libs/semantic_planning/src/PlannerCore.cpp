@@ -1,0 +1,199 @@
+#include "PlannerCore.h"
+
+#include <colored_graph/ColoredAStar.h>
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "PathTracing.h"
+
+namespace semantic_planning {
+
+using colored_graph::EdgeProfile;
+using colored_graph::kNoVertex;
+using colored_graph::PathResult;
+
+namespace {
+
+PlannerOptions validated(const PlannerOptions& options) {
+  options.validate();
+  return options;
+}
+
+void checkFinite(const char* what, const PlannerCore::Place& place) {
+  if (!std::isfinite(place.pose.x) || !std::isfinite(place.pose.y) ||
+      !std::isfinite(place.pose.phi) || !std::isfinite(place.z.value_or(0)))
+    throw std::invalid_argument(std::string(what) + ": x, y, heading or z is not a finite number");
+}
+
+/** The same trouble at the goal. */
+PlanStatus atGoal(PlanStatus start) {
+  switch (start) {
+    case PlanStatus::StartOffGround:
+      return PlanStatus::GoalOffGround;
+    case PlanStatus::StartBlocked:
+      return PlanStatus::GoalBlocked;
+    case PlanStatus::StartForbidden:
+      return PlanStatus::GoalForbidden;
+    default:
+      return start;
+  }
+}
+
+std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPose2D& pose) {
+  std::ostringstream reason;
+  reason << "the " << what << " (" << pose.x << ", " << pose.y << ") ";
+  if (status == PlanStatus::StartOffGround)
+    reason << "is not on drivable ground";
+  else if (status == PlanStatus::StartBlocked)
+    reason << "is blocked: the footprint, with its clearance, does not fit between obstacles";
+  else
+    reason << "is on ground of a class that the order forbids";
+  return reason.str();
+}
+
+}  // namespace
+
+PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
+                         const colored_graph::ClassOrder& order, const PlannerOptions& options)
+    : m_map(map),
+      m_options(validated(options)),
+      m_ground(map, options.vehicle, options.ground, order),
+      m_checker(m_ground, options.vehicle, order, options.reading),
+      m_model{order, options.edges, options.cost} {
+  if (options.roadmap.kind == GraphKind::Compressed && !map.hasAbstraction())
+    throw std::logic_error("SemanticPlanner: the map keeps no G-values (setAbstraction)");
+  map.takeTouchedTiles();  // the ground knows them all
+}
+
+const Roadmap& PlannerCore::roadmap() const {
+  if (!m_roadmap) throw std::logic_error("SemanticPlanner: nothing was planned yet");
+  return m_roadmap->roadmap();
+}
+
+PlanStatus PlannerCore::placed(const Place& place, std::optional<GroundPose>& pose) const {
+  pose = m_checker.place(place.pose, place.z);
+  if (!pose) return PlanStatus::StartOffGround;
+  if (m_checker.fit(*pose) != Fit::Free) return PlanStatus::StartBlocked;
+  const bool forbidden = order().rank(m_checker.classAt(*pose)) == colored_graph::kForbidden;
+  return forbidden ? PlanStatus::StartForbidden : PlanStatus::Found;
+}
+
+PlanStatus PlannerCore::check(const Place& place) const {
+  checkFinite("pose", place);
+  std::optional<GroundPose> pose;
+  return placed(place, pose);
+}
+
+bool PlannerCore::refuse(const Place& start, const Place& goal, PlanResult& result) {
+  checkFinite("start", start);
+  checkFinite("goal", goal);
+  result.status = placed(start, m_startPose);
+  if (result.status != PlanStatus::Found) {
+    result.reason = reasonOf("start", result.status, start.pose);
+    return true;
+  }
+  result.status = placed(goal, m_goalPose);
+  if (result.status == PlanStatus::Found) return false;
+  result.reason = reasonOf("goal", result.status, goal.pose);
+  result.status = atGoal(result.status);
+  return true;
+}
+
+std::optional<EdgeProfile> PlannerCore::evaluateTimed(colored_graph::EdgeId e) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto profile = m_roadmap->roadmap().evaluate(e);
+  m_evaluating += StageClock::millisecondsSince(begin);
+  return profile;
+}
+
+colored_graph::SearchOptions PlannerCore::searchOptions() {
+  colored_graph::SearchOptions search;
+  search.lengthBound = [this](VertexId a, VertexId b) {
+    return m_roadmap->roadmap().lengthBound(a, b);
+  };
+  search.evaluate = [this](colored_graph::EdgeId e) { return evaluateTimed(e); };
+  search.cancelled = m_options.cancelled;
+  search.timeLimit = m_options.timeLimit;
+  return search;
+}
+
+PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
+  StageClock clock;
+  PlanResult result;
+  m_replanner.reset();
+  m_roadmap.reset();
+  m_goalPlace = goal;
+  if (refuse(start, goal, result)) return result;
+  m_roadmap =
+      std::make_unique<MapRoadmap>(m_map, m_checker, m_options.roadmap, *m_startPose, *m_goalPose);
+  m_start = m_roadmap->roadmap().addGuest(*m_startPose);
+  m_goal = m_roadmap->roadmap().addGuest(*m_goalPose);
+  clock.end("roadmap");
+  m_evaluating = 0;
+  colored_graph::ColoredAStarOptions search;
+  static_cast<colored_graph::SearchOptions&>(search) = searchOptions();
+  finish(findColoredPath(m_roadmap->roadmap().graph(), m_start, m_goal, m_model, search), clock,
+         result);
+  return result;
+}
+
+void PlannerCore::finish(const PathResult& path, StageClock& clock, PlanResult& result) {
+  clock.end("search", "evaluateEdges", m_evaluating);
+  describePath(path, roadmap(), m_checker, result);
+  result.numVertices = roadmap().graph().vertexCount();
+  result.numEdges = roadmap().graph().edgeCount();
+  clock.end("path");
+  result.times = clock.take();
+}
+
+UpdateResult PlannerCore::update() {
+  StageClock clock;
+  UpdateResult result;
+  const auto touched = m_map.takeTouchedTiles();
+  const std::vector<Column> changed = m_ground.update(touched);
+  result.tilesTouched = touched.size();
+  result.tilesChanged = changed.size();
+  clock.end("ground");
+  if (m_roadmap) {
+    m_roadmap->update(changed);
+    const VertexPool::Counts vertices = m_roadmap->takeVertexCounts();
+    const Roadmap::Counts edges = m_roadmap->roadmap().takeCounts();
+    result.verticesInserted = vertices.inserted;
+    result.verticesRemoved = vertices.removed;
+    result.verticesRecolored = vertices.recolored;
+    result.edgesInserted = edges.edgesInserted;
+    result.edgesRemoved = edges.edgesRemoved;
+    result.edgesChanged = edges.edgesChanged;
+  }
+  clock.end("roadmap");
+  result.times = clock.take();
+  return result;
+}
+
+PlanResult PlannerCore::replan(const Place& start) {
+  StageClock clock;
+  PlanResult result;
+  roadmap();  // or nothing was planned
+  if (refuse(start, m_goalPlace, result)) return result;
+  Roadmap& map = m_roadmap->roadmap();
+  const VertexId before = m_start;
+  m_start = map.addGuest(*m_startPose);  // first, so that it is another id
+  map.removeGuest(before);
+  if (map.pose(m_goal).z != m_goalPose->z) {
+    map.removeGuest(m_goal);
+    m_goal = map.addGuest(*m_goalPose);
+    m_replanner.reset();
+  }
+  if (m_replanner)
+    m_replanner->moveStart(m_start);
+  else
+    m_replanner.emplace(map.graph(), m_start, m_goal, m_model, searchOptions());
+  clock.end("start");
+  m_evaluating = 0;
+  finish(m_replanner->solve(), clock, result);
+  return result;
+}
+
+}  // namespace semantic_planning

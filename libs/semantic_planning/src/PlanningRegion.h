@@ -1,0 +1,20 @@
+#pragma once
+#include <mrpt/math/TPose2D.h>
+
+namespace semantic_planning {
+
+/** A rectangle along the line from start to goal, with a buffer on all sides. */
+class PlanningRegion {
+ public:
+  PlanningRegion(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, double buffer);
+
+  bool contains(double x, double y) const;
+  /** \param u, v in [0, 1], along the line and across. */
+  mrpt::math::TPoint2D at(double u, double v) const;
+
+ private:
+  mrpt::math::TPose2D m_corner;  ///< its phi is the line's direction
+  double m_length, m_width;
+};
+
+}  // namespace semantic_planning

@@ -1,0 +1,111 @@
+#include <ompl/base/spaces/ReedsSheppStateSpace.h>
+#include <semantic_planning/ReedsShepp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "OptionChecks.h"
+
+namespace semantic_planning {
+
+using mrpt::math::TPose2D;
+using OmplSpace = ompl::base::ReedsSheppStateSpace;
+
+namespace {
+
+double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
+
+/** Where `s` meters (negative: backwards) along a segment lead. */
+TPose2D advance(const TPose2D& p, int turn, double s, double radius) {
+  if (turn == 0) return {p.x + s * std::cos(p.phi), p.y + s * std::sin(p.phi), p.phi};
+  const double phi = p.phi + turn * s / radius;
+  return {p.x + turn * radius * (std::sin(phi) - std::sin(p.phi)),
+          p.y - turn * radius * (std::cos(phi) - std::cos(p.phi)), wrapped(phi)};
+}
+
+}  // namespace
+
+ReedsSheppCurve::ReedsSheppCurve(const TPose2D& from, double turningRadius,
+                                 const std::array<Segment, 5>& segments)
+    : m_from(from), m_radius(turningRadius), m_segments(segments), m_length(0) {
+  for (const Segment& segment : segments) m_length += std::abs(segment.length);
+}
+
+CurvePoint ReedsSheppCurve::at(double s) const {
+  CurvePoint point{m_from};
+  double left = std::clamp(s, 0.0, m_length);
+  for (const Segment& segment : m_segments) {
+    if (segment.length == 0) continue;
+    const double length = std::min(left, std::abs(segment.length));
+    point.pose = advance(point.pose, segment.turn, std::copysign(length, segment.length), m_radius);
+    point.curvature = segment.turn / m_radius;
+    point.forward = segment.length > 0;
+    left -= length;
+    if (left <= 0) break;
+  }
+  return point;
+}
+
+ReedsSheppCurve ReedsSheppCurve::reversed() const {
+  std::array<Segment, 5> segments;
+  std::reverse_copy(m_segments.begin(), m_segments.end(), segments.begin());
+  for (Segment& segment : segments) segment.length = -segment.length;
+  return {at(m_length).pose, m_radius, segments};
+}
+
+struct ReedsShepp::Space {
+  explicit Space(double radius) : space(radius), a(&space), b(&space) {}
+
+  /** OMPL's states, which it allocates. */
+  struct State {
+    explicit State(OmplSpace* space)
+        : owner(space), state(space->allocState()->as<OmplSpace::StateType>()) {}
+    ~State() { owner->freeState(state); }
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    OmplSpace* owner;
+    OmplSpace::StateType* state;
+  };
+
+  static void set(State& s, const TPose2D& pose) {
+    s.state->setXY(pose.x, pose.y);
+    s.state->setYaw(pose.phi);
+  }
+  OmplSpace::ReedsSheppPath solve(const TPose2D& from, const TPose2D& to) {
+    set(a, from);
+    set(b, to);
+    return space.reedsShepp(a.state, b.state);
+  }
+
+  OmplSpace space;
+  State a, b;
+};
+
+ReedsShepp::ReedsShepp(double turningRadius) : m_radius(turningRadius) {
+  OptionChecks("ReedsShepp").positive("turningRadius", turningRadius);
+  m_space = std::make_unique<Space>(turningRadius);
+}
+
+ReedsShepp::~ReedsShepp() = default;
+ReedsShepp::ReedsShepp(ReedsShepp&&) noexcept = default;
+
+double ReedsShepp::distance(const TPose2D& a, const TPose2D& b) const {
+  return m_radius * m_space->solve(a, b).length();
+}
+
+double ReedsShepp::lowerBound(const TPose2D& a, const TPose2D& b) const {
+  return std::max(std::hypot(b.x - a.x, b.y - a.y), m_radius * std::abs(wrapped(b.phi - a.phi)));
+}
+
+ReedsSheppCurve ReedsShepp::connect(const TPose2D& a, const TPose2D& b) const {
+  const OmplSpace::ReedsSheppPath path = m_space->solve(a, b);
+  std::array<ReedsSheppCurve::Segment, 5> segments;
+  for (int i = 0; i < 5; ++i) {
+    const auto type = path.type_[i];
+    segments[i].turn = type == OmplSpace::RS_LEFT ? 1 : type == OmplSpace::RS_RIGHT ? -1 : 0;
+    segments[i].length = type == OmplSpace::RS_NOP ? 0 : m_radius * path.length_[i];
+  }
+  return {a, m_radius, segments};
+}
+
+}  // namespace semantic_planning

@@ -1,0 +1,178 @@
+#include <semantic_planning/Roadmap.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "TileMarks.h"
+
+namespace semantic_planning {
+
+using colored_graph::Edge;
+using colored_graph::EdgeProfile;
+using colored_graph::EdgeState;
+using colored_graph::Incidence;
+using colored_graph::Length;
+
+namespace {
+
+bool isSame(const EdgeProfile& l, const EdgeProfile& r) {
+  return std::equal(l.begin(), l.end(), r.begin(), r.end(), [](const auto& a, const auto& b) {
+    return a.classId == b.classId && a.length == b.length;
+  });
+}
+
+}  // namespace
+
+Roadmap::Roadmap(const EdgeChecker& checker, const RoadmapOptions& options)
+    : m_checker(checker),
+      m_graph(checker.order().classes()),
+      m_nearest(checker.reedsShepp(), options.neighbors, options.connectionRadius),
+      m_guestNeighbors(2 * static_cast<std::size_t>(options.neighbors)),
+      m_radius(options.connectionRadius) {}
+
+void Roadmap::keepPose(VertexId v, const GroundPose& pose) {
+  if (v >= m_poses.size()) m_poses.resize(v + 1);
+  m_poses[v] = pose;
+}
+
+std::vector<Roadmap::VertexId> Roadmap::add(const std::vector<GroundPose>& poses,
+                                            const std::vector<ClassId>& classes) {
+  std::vector<VertexId> ids;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    ids.push_back(m_graph.addVertex(classes[i]));
+    keepPose(ids.back(), poses[i]);
+  }
+  reconcile(m_nearest.insert(ids, poses));
+  reconcileGuests();
+  return ids;
+}
+
+void Roadmap::remove(const std::vector<VertexId>& vertices) {
+  const auto pairs = m_nearest.remove(vertices);
+  for (const VertexId v : vertices) {
+    m_counts.edgesRemoved += m_graph.incident(v).size();
+    m_graph.removeVertex(v);
+  }
+  reconcile(pairs);
+  reconcileGuests();
+}
+
+Roadmap::VertexId Roadmap::addGuest(const GroundPose& pose) {
+  const VertexId v = m_graph.addVertex(m_checker.classAt(pose));
+  keepPose(v, pose);
+  m_guests.insert(v);
+  reconcileGuest(v);
+  return v;
+}
+
+void Roadmap::removeGuest(VertexId v) {
+  m_graph.removeVertex(v);
+  m_guests.erase(v);
+}
+
+Roadmap::EdgeId Roadmap::edgeBetween(VertexId a, VertexId b) const {
+  for (const Incidence& i : m_graph.incident(a))
+    if (i.neighbor == b) return i.edge;
+  return colored_graph::kNoEdge;
+}
+
+void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
+  if (!m_graph.containsVertex(a) || !m_graph.containsVertex(b)) return;
+  const EdgeId edge = edgeBetween(a, b);
+  if (linked && edge == colored_graph::kNoEdge) {
+    const double length = m_checker.reedsShepp().distance(pose(a).pose, pose(b).pose);
+    const EdgeId e = m_graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(length));
+    if (e >= m_lengths.size()) m_lengths.resize(e + 1);
+    m_lengths[e] = length;
+    ++m_counts.edgesInserted;
+  } else if (!linked && edge != colored_graph::kNoEdge) {
+    m_graph.removeEdge(edge);
+    ++m_counts.edgesRemoved;
+  }
+}
+
+void Roadmap::reconcile(const std::vector<NearestPoses::Pair>& pairs) {
+  for (const auto& [a, b] : pairs) setLinked(a, b, m_nearest.linked(a, b));
+}
+
+void Roadmap::reconcileGuests() {
+  for (const VertexId guest : m_guests) reconcileGuest(guest);
+}
+
+void Roadmap::reconcileGuest(VertexId guest) {
+  std::set<VertexId> wanted;
+  for (const auto& n : m_nearest.nearestTo(pose(guest), m_guestNeighbors)) wanted.insert(n.id);
+  for (const VertexId other : m_guests)
+    if (other != guest &&
+        m_checker.reedsShepp().distance(pose(guest).pose, pose(other).pose) <= m_radius)
+      wanted.insert(other);
+  const std::vector<Incidence> present = m_graph.incident(guest);
+  for (const Incidence& i : present)
+    if (!wanted.count(i.neighbor)) setLinked(guest, i.neighbor, false);
+  for (const VertexId other : wanted) setLinked(guest, other, true);
+}
+
+void Roadmap::limitEdges(std::size_t most) {
+  std::vector<std::tuple<std::size_t, Length, EdgeId>> byWorth;
+  const auto place = [this](VertexId of, VertexId neighbor) {
+    std::size_t i = 0;
+    while (i < m_nearest.of(of).size() && m_nearest.of(of)[i].id != neighbor) ++i;
+    return i;
+  };
+  for (EdgeId e = 0; e < m_graph.edgeIdEnd(); ++e) {
+    if (!m_graph.containsEdge(e)) continue;
+    const Edge& edge = m_graph.edge(e);
+    if (m_guests.count(edge.a) || m_guests.count(edge.b)) continue;
+    byWorth.emplace_back(std::min(place(edge.a, edge.b), place(edge.b, edge.a)), edge.length, e);
+  }
+  std::sort(byWorth.begin(), byWorth.end());
+  for (std::size_t i = most; i < byWorth.size(); ++i) m_graph.removeEdge(std::get<2>(byWorth[i]));
+}
+
+void Roadmap::refresh(const std::vector<Column>& changedTiles) {
+  const TileMarks changed(m_checker.ground(), changedTiles);
+  for (EdgeId e = 0; e < m_graph.edgeIdEnd(); ++e) {
+    if (!m_graph.containsEdge(e) || m_graph.edge(e).state == EdgeState::Unevaluated) continue;
+    const Edge& edge = m_graph.edge(e);
+    const auto &a = pose(edge.a).pose, &b = pose(edge.b).pose;
+    // A curve stays within half its length of the middle between its ends.
+    const double margin = m_lengths[e] / 2 + m_checker.reach();
+    const double x = (a.x + b.x) / 2, y = (a.y + b.y) / 2;
+    if (changed.near(x, y, margin)) reevaluate(e);
+  }
+}
+
+void Roadmap::reevaluate(EdgeId e) {
+  const Edge before = m_graph.edge(e);
+  auto profile = evaluate(e);
+  const bool usable = before.state == EdgeState::Usable;
+  if (profile ? usable && isSame(*profile, before.profile) : !usable) return;
+  ++m_counts.edgesChanged;
+  if (profile)
+    m_graph.setProfile(e, std::move(*profile));
+  else
+    m_graph.setBlocked(e);
+}
+
+ReedsSheppCurve Roadmap::curve(EdgeId e, VertexId from) const {
+  const Edge& edge = m_graph.edge(e);
+  const auto [low, high] = std::minmax(edge.a, edge.b);
+  const ReedsSheppCurve canonical = m_checker.reedsShepp().connect(pose(low).pose, pose(high).pose);
+  return from == low ? canonical : canonical.reversed();
+}
+
+std::optional<EdgeProfile> Roadmap::evaluate(EdgeId e) const {
+  const Edge& edge = m_graph.edge(e);
+  const auto [low, high] = std::minmax(edge.a, edge.b);
+  return m_checker.profile(pose(low), pose(high));
+}
+
+Length Roadmap::lengthBound(VertexId a, VertexId b) const {
+  return colored_graph::lengthDown(m_checker.reedsShepp().lowerBound(pose(a).pose, pose(b).pose));
+}
+
+Roadmap::Counts Roadmap::takeCounts() { return std::exchange(m_counts, {}); }
+
+}  // namespace semantic_planning

@@ -1,0 +1,110 @@
+#include "VertexPool.h"
+
+#include <algorithm>
+
+#include "TileMarks.h"
+
+namespace semantic_planning {
+
+using colored_graph::kNoVertex;
+
+VertexPool::LeafId VertexPool::idOf(const semantic_octree::LeafCell& leaf) {
+  const int mask = ~((1 << (16 - leaf.depth)) - 1);
+  return {leaf.depth, leaf.key[0] & mask, leaf.key[1] & mask, leaf.key[2] & mask};
+}
+
+ClassId VertexPool::classOf(const Candidate& candidate) const {
+  return candidate.classId ? *candidate.classId : m_checker.classAt(candidate.pose);
+}
+
+bool VertexPool::isUsable(const Candidate& candidate) const {
+  return m_checker.fit(candidate.pose) == Fit::Free &&
+         m_checker.order().rank(classOf(candidate)) != colored_graph::kForbidden;
+}
+
+void VertexPool::add(const Candidate& candidate, std::optional<LeafId> leaf) {
+  std::size_t index = m_members.size();
+  if (m_free.empty()) {
+    m_members.emplace_back();
+  } else {
+    index = m_free.back();
+    m_free.pop_back();
+  }
+  m_members[index] = {candidate, kNoVertex, true};
+  if (leaf) m_ofLeaf[*leaf].push_back(index);
+  if (isUsable(candidate)) m_toInsert.push_back(index);
+}
+
+void VertexPool::dropVertex(Member& member) {
+  if (member.vertex != kNoVertex) m_toRemove.push_back(member.vertex);
+  member.vertex = kNoVertex;
+}
+
+void VertexPool::removeLeaf(const LeafId& leaf) {
+  const auto found = m_ofLeaf.find(leaf);
+  if (found == m_ofLeaf.end()) return;
+  for (const std::size_t index : found->second) {
+    dropVertex(m_members[index]);
+    m_members[index].present = false;
+    m_free.push_back(index);
+  }
+  m_ofLeaf.erase(found);
+}
+
+/** The ground may have gone up or down by what the wheels climb. */
+bool VertexPool::standsOnGround(Member& member) {
+  GroundPose& pose = member.candidate.pose;
+  const Ground& ground = m_checker.ground();
+  const Column column = ground.columnAt(pose.pose.x, pose.pose.y);
+  const Surface* s = ground.near(column, pose.z, ground.step());
+  if (!s || s->z == pose.z) return s != nullptr;
+  pose.z = s->z;
+  dropVertex(member);
+  return true;
+}
+
+void VertexPool::look(std::size_t index) {
+  Member& member = m_members[index];
+  if (!standsOnGround(member) || !isUsable(member.candidate)) return dropVertex(member);
+  if (member.vertex == kNoVertex) {
+    m_toInsert.push_back(index);
+  } else if (const ClassId id = classOf(member.candidate);
+             id != m_roadmap.graph().vertexClass(member.vertex)) {
+    m_roadmap.graph().setVertexClass(member.vertex, id);
+    ++m_counts.recolored;
+  }
+}
+
+void VertexPool::refresh(const std::vector<Column>& changedTiles) {
+  const TileMarks changed(m_checker.ground(), changedTiles);
+  for (std::size_t i = 0; i < m_members.size(); ++i) {
+    const auto& pose = m_members[i].candidate.pose.pose;
+    if (m_members[i].present && changed.near(pose.x, pose.y, m_checker.reach())) look(i);
+  }
+}
+
+void VertexPool::apply() {
+  std::vector<std::size_t> inserted;
+  std::vector<GroundPose> poses;
+  std::vector<ClassId> classes;
+  std::sort(m_toInsert.begin(), m_toInsert.end());
+  m_toInsert.erase(std::unique(m_toInsert.begin(), m_toInsert.end()), m_toInsert.end());
+  for (const std::size_t index : m_toInsert) {
+    const Member& member = m_members[index];
+    if (!member.present || member.vertex != kNoVertex || !isUsable(member.candidate)) continue;
+    inserted.push_back(index);
+    poses.push_back(member.candidate.pose);
+    classes.push_back(classOf(member.candidate));
+  }
+  if (!m_toRemove.empty()) m_roadmap.remove(m_toRemove);
+  if (!poses.empty()) {
+    const auto ids = m_roadmap.add(poses, classes);
+    for (std::size_t i = 0; i < ids.size(); ++i) m_members[inserted[i]].vertex = ids[i];
+  }
+  m_counts.inserted += poses.size();
+  m_counts.removed += m_toRemove.size();
+  m_toInsert.clear();
+  m_toRemove.clear();
+}
+
+}  // namespace semantic_planning
