@@ -1,7 +1,12 @@
 #include <gtest/gtest.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
+#include <atomic>
+#include <thread>
+
 #include "SmallMaps.h"
+#include "TemporaryFolder.h"
 
 using mrpt::poses::CPose3D;
 using semantic_map::CSemanticOctoMap;
@@ -108,9 +113,88 @@ TEST(MapLikelihood, theTruePoseIsLikelierThanItsSurroundings) {
   EXPECT_GT(at(0.3, 0.5), at(0.3, 0.6));
 }
 
-TEST(MapLikelihood, otherObservationsHaveNone) {
+TEST(MapLikelihood, beamsThatPassCountTooWhereAsked) {
+  CSemanticOctoMap map = mapOfOnePoint();
+  const auto& f = map.tree().filterParameters();
+  const auto passing = [&](double x) {
+    const double occupied = map.tree().query(x, 0.01, 0.01).occupancy;
+    return 1 - occupied * f.hitProbability - (1 - occupied) * f.falseAlarmProbability;
+  };
+  map.likelihoodOptions.beamStep = 1;
+  const double end = std::log(0.5 * (f.hitProbability + f.falseAlarmProbability));
+  EXPECT_NEAR(logLikelihood(map, {2.4f, 0.04f, 0.04f}, kNoClass),
+              std::log(passing(0.5)) + std::log(passing(1.5)) + std::log(1 - passing(2.4)), 1e-6);
+  // At 3.5 m it would have to come through the wall's voxel at 3 m.
+  map.likelihoodOptions.beamStep = 2.03;
+  EXPECT_NEAR(logLikelihood(map, {3.9f, 0.06f, 0.06f}, kNoClass),
+              std::log(passing(1.015)) + std::log(passing(3.045)) + end, 1e-6);
+}
+
+TEST(MapLikelihood, rangesAreLimitedAsForInsertion) {
+  CSemanticOctoMap map = mapOfOnePoint();
+  map.insertionOptions.scan.maxRange = 2;
+  EXPECT_EQ(logLikelihood(map, kSeen, 2), 0);
+  map.likelihoodOptions.beamStep = 4;
+  const double free = map.tree().query(2, 0.03, 0.03).occupancy;
+  EXPECT_EQ(logLikelihood(map, kSeen, 2), 0);
+  map.likelihoodOptions.beamStep = 3.8;
+  const auto& f = map.tree().filterParameters();
+  EXPECT_NEAR(logLikelihood(map, kSeen, 2),
+              std::log(1 - free * f.hitProbability - (1 - free) * f.falseAlarmProbability), 1e-6);
+  map.insertionOptions.scan.minRange = 4;
+  EXPECT_EQ(logLikelihood(map, kSeen, 2), 0);
+}
+
+TEST(MapLikelihood, anObservationThatChangedIsSeenAnew) {
   const CSemanticOctoMap map = mapOfOnePoint();
-  EXPECT_FALSE(map.canComputeObservationLikelihood(mrpt::obs::CObservationOdometry()));
-  EXPECT_TRUE(map.canComputeObservationLikelihood(labeledPoints({}, {})));
-  EXPECT_EQ(map.computeObservationLikelihood(mrpt::obs::CObservationOdometry(), CPose3D()), 0);
+  auto observation = labeledPoints({kSeen}, {2});
+  const auto ask = [&] { return map.computeObservationLikelihood(observation, CPose3D()); };
+  const double first = ask();
+  EXPECT_EQ(ask(), first);
+  observation.cloud.classes[0] = 1;
+  EXPECT_NEAR(ask(), logLikelihood(map, kSeen, 1), 1e-12);
+  observation.cloud.points[0].z() += 50;
+  EXPECT_NEAR(ask(), logLikelihood(map, observation.cloud.points[0], 1), 1e-12);
+  observation.sensorPose.z(-50);
+  EXPECT_NEAR(ask(), logLikelihood(map, kSeen, 1), 1e-12);
+  observation.cloud = labeledPoints({kSeen}, {2}).cloud;
+  observation.sensorPose = {};
+  EXPECT_EQ(ask(), first);
+}
+
+TEST(MapLikelihood, severalThreadsGetTheSameAnswers) {
+  CSemanticOctoMap map(0.1, threeClasses());
+  fill(map);
+  const auto one = labeledPoints({{1, 2, 0}, {3, -1, 0}}, {1, 2});
+  const auto other = labeledPoints({{-2, 2, 1}, {0, 1, 0}}, {3, 0});
+  const double ofOne = map.computeObservationLikelihood(one, CPose3D());
+  const double ofOther = map.computeObservationLikelihood(other, CPose3D());
+  std::atomic<int> wrong = 0;
+  const auto ask = [&] {
+    for (int i = 0; i < 500; ++i) {
+      wrong += map.computeObservationLikelihood(one, CPose3D()) != ofOne;
+      wrong += map.computeObservationLikelihood(other, CPose3D()) != ofOther;
+    }
+  };
+  std::thread a(ask), b(ask), c(ask);
+  a.join(), b.join(), c.join();
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(MapLikelihood, observationsThatCannotBeUsedTellNothing) {
+  CSemanticOctoMap map = mapOfOnePoint();
+  map.logger().logging_enable_console_output = false;
+  map.logger().logging_enable_keep_record = true;
+  const auto expectNone = [&map](const mrpt::obs::CObservation& observation) {
+    EXPECT_FALSE(map.canComputeObservationLikelihood(observation));
+    EXPECT_EQ(map.computeObservationLikelihood(observation, CPose3D()), 0);
+  };
+  expectNone(mrpt::obs::CObservationOdometry());
+  EXPECT_EQ(map.logger().getLogAsString(), "");
+  expectNone(labeledPoints({}, {}));
+  EXPECT_TRUE(contains(map.logger().getLogAsString(), "no point"));
+  expectNone(labeledPoints({kSeen}, {9}));
+  EXPECT_TRUE(contains(map.logger().getLogAsString(), "class"));
+  expectNone(mrpt::obs::CObservation3DRangeScan());
+  EXPECT_TRUE(map.canComputeObservationLikelihood(labeledPoints({kSeen}, {2})));
 }

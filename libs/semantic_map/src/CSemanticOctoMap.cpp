@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "CachedConverter.h"
+#include "LikelihoodCache.h"
 #include "SensorPose.h"
 
 MRPT_INITIALIZER(registerSemanticMaps) { semantic_map::registerMaps(); }
@@ -30,7 +31,8 @@ CSemanticOctoMap::CSemanticOctoMap(double resolution, const ClassTable& classes,
                                    const semantic_octree::FilterParameters& filter)
     : CSemanticOctoMap(SemanticOcTree(resolution, classes, filter)) {}
 
-CSemanticOctoMap::CSemanticOctoMap(SemanticOcTree tree) : m_tree(std::move(tree)) {
+CSemanticOctoMap::CSemanticOctoMap(SemanticOcTree tree)
+    : m_tree(std::move(tree)), m_likelihoodCache(std::make_unique<LikelihoodCache>()) {
   insertionOptions.filter = m_tree.filterParameters();
 }
 
@@ -57,6 +59,7 @@ void CSemanticOctoMap::copyAllButTree(const CSemanticOctoMap& o) {
   m_labeler = o.m_labeler;
   m_lastInsertion = o.m_lastInsertion;
   m_converter.reset();
+  m_likelihoodCache->clear();
 }
 
 void CSemanticOctoMap::setTree(SemanticOcTree tree) {
@@ -84,7 +87,10 @@ CSemanticOctoMap::Ptr CSemanticOctoMap::compress() {
 void CSemanticOctoMap::setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> labeler) {
   m_labeler = std::move(labeler);
   m_converter.reset();
+  m_likelihoodCache->clear();
 }
+
+void CSemanticOctoMap::auxParticleFilterCleanUp() { m_likelihoodCache->clear(); }
 
 void CSemanticOctoMap::internal_clear() { m_tree.clear(); }
 
@@ -96,7 +102,7 @@ std::string CSemanticOctoMap::asString() const {
   return text.str();
 }
 
-ScanConverter& CSemanticOctoMap::converter() const {
+ScanConverter& CSemanticOctoMap::converter() {
   const auto& options = insertionOptions.conversion;
   if (!m_converter || !m_converter->isFor(m_tree.classes(), options))
     m_converter = std::make_unique<CachedConverter>(m_tree.classes(), options, m_labeler);

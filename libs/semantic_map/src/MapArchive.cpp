@@ -12,7 +12,7 @@ namespace semantic_map {
 
 using mrpt::serialization::CArchive;
 
-uint8_t CSemanticOctoMap::serializeGetVersion() const { return 0; }
+uint8_t CSemanticOctoMap::serializeGetVersion() const { return 1; }
 
 void CSemanticOctoMap::serializeTo(CArchive& out) const {
   out << genericMapParams;
@@ -27,7 +27,7 @@ void CSemanticOctoMap::serializeTo(CArchive& out) const {
 }
 
 void CSemanticOctoMap::serializeFrom(CArchive& in, uint8_t version) {
-  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version != 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   mrpt::maps::TMapGenericParams generic;
   TInsertionOptions insertion;
   TLikelihoodOptions likelihood;

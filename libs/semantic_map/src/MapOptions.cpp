@@ -168,6 +168,7 @@ void TInsertionOptions::validate() const {
 
 void TLikelihoodOptions::validate() const {
   require(decimation >= 1, "decimation", decimation, "1 or more");
+  require(std::isfinite(beamStep) && beamStep >= 0, "beamStep", beamStep, "0 or more m");
   require(pointWeight > 0 && pointWeight <= 1, "pointWeight", pointWeight, "above 0, up to 1");
 }
 

@@ -46,6 +46,7 @@ struct OptionFields<TLikelihoodOptions> {
   static void visit(Options& o, Visitor&& visit) {
     visit("decimation", o.decimation, "one of that many points counts");
     visit("useLabels", o.useLabels, "compare classes too, not only occupancy");
+    visit("beamStep", o.beamStep, "m between places where a beam passes; 0: only its end counts");
     visit("pointWeight", o.pointWeight, "factor on each point's log-likelihood");
   }
 };

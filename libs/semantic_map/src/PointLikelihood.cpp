@@ -20,6 +20,11 @@ const SemanticOcTree::Node* PointLikelihood::find(const Eigen::Vector3d& point) 
   return m_tree.search(key);
 }
 
+double PointLikelihood::occupancy(const Eigen::Vector3d& point) const {
+  const auto* node = find(point);
+  return node ? node->getOccupancy() : 0.5;
+}
+
 PointLikelihood::Cell PointLikelihood::cell(const SemanticOcTree::Node* node, ClassId id) const {
   const int K = m_tree.numClasses();
   if (!node) return {0.5, 0.5 / K};
@@ -37,7 +42,11 @@ double PointLikelihood::labeled(const Cell& cell) const {
 }
 
 double PointLikelihood::operator()(const Eigen::Vector3d& point) const {
-  return unlabeled(cell(find(point), kNoClass).free);
+  return unlabeled(occupancy(point));
+}
+
+double PointLikelihood::passing(const Eigen::Vector3d& point) const {
+  return 1 - unlabeled(occupancy(point));
 }
 
 double PointLikelihood::operator()(const Eigen::Vector3d& point, ClassId label) const {
@@ -53,7 +62,7 @@ double PointLikelihood::operator()(const Eigen::Vector3d& point, const float* la
     total += label[k - 1];
     sum += label[k - 1] * labeled(cell(node, static_cast<ClassId>(k)));
   }
-  return total > 0 ? sum / total : unlabeled(cell(node, kNoClass).free);
+  return total > 0 ? sum / total : unlabeled(occupancy(point));
 }
 
 }  // namespace semantic_map

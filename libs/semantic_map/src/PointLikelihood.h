@@ -3,15 +3,8 @@
 
 namespace semantic_map {
 
-/** Likelihood that a return ends at a place of the map, by the sensor model of the map's filter.
- *
- * With S the state of the cell (free, or one of K classes),
- *
- *     p(return, label c | cell) = p(S = free) p_fa + p_hit sum_k p(S = k) K P(label c | k),
- *
- * where P(label c | k) is the accuracy for c = k and the rest of it shared by the others. The
- * factor K makes a label that says nothing equal to none. Without a label the sum is p(occupied).
- * Unknown space is as likely free as occupied, by any class. */
+/** Likelihood that a return ends at a place of the map, or that a beam passes through it, by the
+ * sensor model of the map's filter; see TLikelihoodOptions for the equations. */
 class PointLikelihood {
  public:
   explicit PointLikelihood(const semantic_octree::SemanticOcTree& tree);
@@ -21,6 +14,8 @@ class PointLikelihood {
   double operator()(const Eigen::Vector3d& point, semantic_octree::ClassId label) const;
   /** \param label K probabilities; all zero: no label */
   double operator()(const Eigen::Vector3d& point, const float* label) const;
+  /** Likelihood that the beam passes. */
+  double passing(const Eigen::Vector3d& point) const;
 
  private:
   /** Probabilities of free space and of one class. */
@@ -30,7 +25,10 @@ class PointLikelihood {
   Cell cell(const semantic_octree::SemanticOcTree::Node* node, semantic_octree::ClassId id) const;
   const semantic_octree::SemanticOcTree::Node* find(const Eigen::Vector3d& point) const;
   double labeled(const Cell& cell) const;
-  double unlabeled(double free) const { return free * m_falseAlarm + (1 - free) * m_hit; }
+  double occupancy(const Eigen::Vector3d& point) const;
+  double unlabeled(double occupancy) const {
+    return m_falseAlarm + occupancy * (m_hit - m_falseAlarm);
+  }
 
   const semantic_octree::SemanticOcTree& m_tree;
   double m_hit, m_falseAlarm, m_accuracy;

@@ -16,6 +16,7 @@
 namespace semantic_map {
 
 struct CachedConverter;
+class LikelihoodCache;
 
 /** What came of an observation. */
 struct InsertionResult {
@@ -49,7 +50,12 @@ struct InsertionResult {
  * icp-slam, rbpf-slam, observations2map and pf-localization take it by LD_PRELOAD, rawlog-edit and
  * rawlog-grabber by -p, RawLogViewer and SceneViewer3D by -l.
  *
- * Observations: see labeled_cloud::ScanConverter for the kinds and their labels. */
+ * Observations: see labeled_cloud::ScanConverter for the kinds and their labels, and
+ * TLikelihoodOptions for their likelihood. canComputeObservationLikelihood() is false for those of
+ * other kinds and for those that cannot be used (no points, an unknown class, ...), whose
+ * likelihood is 0 at every pose: they tell nothing, and the reason goes to logger() as a warning.
+ *
+ * Reading, drawing and likelihoods are safe from several threads at a time; all else is not. */
 class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   DEFINE_SERIALIZABLE(CSemanticOctoMap, semantic_map)
  public:
@@ -111,6 +117,8 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   /** Boxes in the classes' colors, see renderingOptions; nothing if
    * genericMapParams.enableSaveAs3DObject is false. */
   void getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const override;
+  /** Forgets the scan of the last observation whose likelihood was asked for. */
+  void auxParticleFilterCleanUp() override;
   /** Writes PREFIX.semantic, the map's own file, and PREFIX.3Dscene.
    * \throw std::runtime_error a file cannot be written. */
   void saveMetricMapRepresentationToFile(const std::string& prefix) const override;
@@ -137,7 +145,9 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
       const mrpt::obs::CObservation& observation) const override;
 
   void copyAllButTree(const CSemanticOctoMap& o);
-  labeled_cloud::ScanConverter& converter() const;
+  labeled_cloud::ScanConverter& converter();
+  std::shared_ptr<const labeled_cloud::LabeledScan> scanForLikelihood(
+      const mrpt::obs::CObservation& observation) const;
   void insertAccepted(const mrpt::obs::CObservation& observation,
                       const mrpt::poses::CPose3D& T_map_robot);
   /** \throw std::logic_error the options ask for another filter than that of a map with content. */
@@ -147,8 +157,9 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   TAbstractionOptions m_abstractionOptions;
   std::shared_ptr<labeled_cloud::ImageLabeler> m_labeler;
   InsertionResult m_lastInsertion;
-  mrpt::system::COutputLogger m_logger{"CSemanticOctoMap"};
-  mutable std::unique_ptr<CachedConverter> m_converter;
+  mutable mrpt::system::COutputLogger m_logger{"CSemanticOctoMap"};
+  std::unique_ptr<CachedConverter> m_converter;
+  std::unique_ptr<LikelihoodCache> m_likelihoodCache;
 };
 
 /** Registers the map and labeled_cloud's observation with MRPT's factories. Called when the library

@@ -60,12 +60,29 @@ struct TInsertionOptions : public TNamedOptions<TInsertionOptions> {
   void validate() const;
 };
 
-/** How an observation is compared with the map: section `[..._likelihoodOpts]`. */
+/** How an observation is compared with the map: section `[..._likelihoodOpts]`.
+ *
+ * The log-likelihood is that of the map's own filter, for which each cell that a beam meets gives
+ * an independent measurement. With S the state of a cell (free, or one of K classes), p_hit and
+ * p_fa the filter's hitProbability and falseAlarmProbability, a beam that ends in the cell has
+ *
+ *     p(return, label c | cell) = p(S = free) p_fa + p_hit sum_k p(S = k) K P(label c | k),
+ *
+ * where P(label c | k) is the accuracy for c = k and the rest of it shared by the others. The
+ * factor K makes a label that says nothing equal to none. Without a label, and without useLabels,
+ * the sum is p(occupied). A beam that passes has
+ *
+ *     p(no return | cell) = 1 - p(S = free) p_fa - p(S occupied) p_hit.
+ *
+ * Unknown space is as likely free as occupied, by any class. Ranges are limited as for insertion
+ * (minRange, maxRange, carvingMargin): where a beam longer than maxRange ends does not count. */
 struct TLikelihoodOptions : public TNamedOptions<TLikelihoodOptions> {
   /** One of that many points counts. */
   int decimation = 10;
   /** Whether the classes of points are compared with those of the map, or occupancy alone. */
   bool useLabels = true;
+  /** Distance between the places at which a beam is seen to pass, m; 0: only its end counts. */
+  double beamStep = 0;
   /** Each point's log-likelihood is multiplied by it, for neighboring points are not independent,
    * (0, 1]. */
   double pointWeight = 1.0;
