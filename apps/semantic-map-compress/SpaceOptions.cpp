@@ -11,16 +11,6 @@ using semantic_octree::Region;
 
 namespace {
 
-template <typename T>
-T choice(const StrictYaml& yaml, const YAML::Node& node, const std::string& field,
-         const std::map<std::string, T>& choices) {
-  const std::string found = yaml.text(node, field);
-  if (const auto it = choices.find(found); it != choices.end()) return it->second;
-  std::string expected;
-  for (const auto& [name, value] : choices) expected += (expected.empty() ? "" : ", ") + name;
-  yaml.fail(node, field + ": expected one of " + expected + ", found '" + found + "'");
-}
-
 void readShape(const StrictYaml& yaml, const YAML::Node& node, Region& region) {
   if (node["box"].IsDefined() + node["sphere"].IsDefined() + node["corridor"].IsDefined() != 1)
     yaml.fail(node, "region: expected one of box, sphere, corridor");
@@ -70,10 +60,10 @@ AbstractionOptions readSpace(const StrictYaml& yaml) {
   if (const YAML::Node size = root["block_size"])
     space.blockSize = yaml.notNegative(size, "block_size");
   if (const YAML::Node unknown = root["unknown"])
-    space.unknown = choice<Unknown>(yaml, unknown, "unknown",
-                                    {{"own_class", Unknown::OwnClass},
-                                     {"uniform", Unknown::Uniform},
-                                     {"prior", Unknown::Prior}});
+    space.unknown = yaml.choice<Unknown>(unknown, "unknown",
+                                         {{"own_class", Unknown::OwnClass},
+                                          {"uniform", Unknown::Uniform},
+                                          {"prior", Unknown::Prior}});
   if (const YAML::Node weight = root["unknown_weight"]) {
     space.unknownWeight = yaml.notNegative(weight, "unknown_weight");
     if (space.unknownWeight > 1)
@@ -81,7 +71,7 @@ AbstractionOptions readSpace(const StrictYaml& yaml) {
   }
   if (const YAML::Node frame = root["frame"])
     space.frame =
-        choice<Frame>(yaml, frame, "frame", {{"free", Frame::Free}, {"charged", Frame::Charged}});
+        yaml.choice<Frame>(frame, "frame", {{"free", Frame::Free}, {"charged", Frame::Charged}});
   if (const YAML::Node regions = root["regions"]) {
     yaml.checkList(regions, "regions");
     for (const auto& region : regions) space.regions.push_back(readRegion(yaml, region));

@@ -171,6 +171,7 @@ int main(int argc, char** argv) {
       "Compresses a semantic octree map to what matters, for given weights of its classes");
   semantic_map_compress::Cli cli;
   cli.addTo(app);
+  app.set_version_flag("--version", MSO_VERSION);
   CLI11_PARSE(app, argc, argv);
   try {
     semantic_map_compress::run(cli);

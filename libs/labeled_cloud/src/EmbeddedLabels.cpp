@@ -69,6 +69,7 @@ std::optional<LabelImage> EmbeddedLabels::label(const mrpt::obs::CObservation& o
   if (!scan || !scan->pixelLabels) return std::nullopt;
   const TPixelLabelInfoBase& labels = *scan->pixelLabels;
   LabelImage image;
+  image.view = m_view;
   image.origin = "pixelLabels of '" + scan->sensorLabel + "'";
   ClassOfLabel classOf(m_table, labels);
   try {

@@ -17,9 +17,18 @@ using mrpt::obs::CObservationImage;
 
 namespace {
 
+constexpr const char* kConfidence = ".confidence";
+
 bool isLabelImage(const fs::path& file) {
   static const std::set<std::string> kEndings = {".png", ".tif", ".tiff", ".pgm", ".bmp"};
-  return fs::is_regular_file(file) && kEndings.count(file.extension().string());
+  return fs::is_regular_file(file) && kEndings.count(file.extension().string()) &&
+         file.stem().extension() != kConfidence;
+}
+
+/** Where the confidences of a label image are. */
+fs::path confidencesOf(const fs::path& labels) {
+  return labels.parent_path() /
+         (labels.stem().string() + kConfidence + labels.extension().string());
 }
 
 Clock::time_point timeInName(const fs::path& file) {
@@ -69,6 +78,8 @@ LabelFolder::LabelFolder(const fs::path& folder, const semantic_octree::ClassTab
   }
   if (m_byTime.empty() && m_byName.empty())
     throw std::runtime_error(folder.string() + ": no label image in this folder");
+  const fs::path& first = m_byTime.empty() ? m_byName.begin()->second : m_byTime.begin()->second;
+  m_withConfidences = fs::exists(confidencesOf(first));
 }
 
 std::optional<fs::path> LabelFolder::nearest(Clock::time_point time) const {
@@ -91,11 +102,18 @@ std::optional<fs::path> LabelFolder::named(const CObservation& observation) cons
   return found->second;
 }
 
-std::optional<LabelImage> LabelFolder::label(const CObservation& observation) {
+std::optional<fs::path> LabelFolder::fileOf(const CObservation& observation) const {
   const bool byTime = m_options.match == LabelFolderOptions::Match::Time;
-  const auto file = byTime ? nearest(observation.timestamp) : named(observation);
+  return byTime ? nearest(observation.timestamp) : named(observation);
+}
+
+std::optional<LabelImage> LabelFolder::label(const CObservation& observation) {
+  const auto file = fileOf(observation);
   if (!file) return std::nullopt;
-  return readLabelImage(*file, m_table);
+  LabelImage image = readLabelImage(*file, m_table);
+  image.view = m_options.view;
+  if (m_withConfidences) readConfidences(confidencesOf(*file), image);
+  return image;
 }
 
 }  // namespace labeled_cloud

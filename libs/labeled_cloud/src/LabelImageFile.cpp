@@ -46,7 +46,8 @@ ClassId classOfColor(const ClassTable& table, std::uint32_t bgr) {
 /** Classes of an image whose pixel (row, col) has the value VALUE_AT(row, col). */
 template <typename ValueAt, typename LookUp>
 LabelImage classify(int rows, int cols, ValueAt valueAt, LookUp lookUp) {
-  LabelImage image{rows, cols, {}, {}};
+  LabelImage image;
+  image.rows = rows, image.cols = cols;
   image.classes.reserve(std::size_t(rows) * cols);
   Cached<LookUp> classOf(lookUp);
   for (int row = 0; row < rows; ++row)
@@ -133,6 +134,22 @@ LabelImage readLabelImage(const std::filesystem::path& file, const ClassTable& t
   } catch (const std::exception& e) {
     throw std::runtime_error(file.string() + ": " + e.what());
   }
+}
+
+void readConfidences(const std::filesystem::path& file, LabelImage& image) {
+  const cv::Mat pixels = std::filesystem::is_regular_file(file)
+                             ? cv::imread(file.string(), cv::IMREAD_UNCHANGED)
+                             : cv::Mat();
+  if (pixels.type() != CV_8UC1 && pixels.type() != CV_16UC1)
+    throw std::runtime_error(file.string() + ": expected confidences as gray of 8 or 16 bits");
+  if (pixels.rows != image.rows || pixels.cols != image.cols)
+    throw std::runtime_error(file.string() + ": " + std::to_string(pixels.cols) + " x " +
+                             std::to_string(pixels.rows) + " confidences for " +
+                             std::to_string(image.cols) + " x " + std::to_string(image.rows) +
+                             " labels");
+  cv::Mat1f shares;
+  pixels.convertTo(shares, CV_32F, pixels.depth() == CV_8U ? 1 / 255.0 : 1 / 65535.0);
+  image.confidences.assign(shares.begin(), shares.end());
 }
 
 }  // namespace labeled_cloud

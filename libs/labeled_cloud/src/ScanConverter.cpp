@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "ObservationName.h"
 #include "PointGrid.h"
 #include "UnlabeledPoints.h"
 
@@ -37,19 +38,6 @@ bool is(const CObservation& observation) {
   return dynamic_cast<const Observation*>(&observation) != nullptr;
 }
 
-std::string nameOf(const CObservation& o) {
-  return std::string(o.GetRuntimeClass()->className) + " '" + o.sensorLabel + "' at " +
-         std::to_string(mrpt::Clock::toDouble(o.timestamp)) + " s";
-}
-
-void checkSize(const LabelImage& labels, const PointGrid& grid) {
-  if (labels.rows == grid.rows && labels.cols == grid.cols) return;
-  throw std::invalid_argument(labels.origin + ": the label image has " +
-                              std::to_string(labels.cols) + " x " + std::to_string(labels.rows) +
-                              " pixels, the depth image " + std::to_string(grid.cols) + " x " +
-                              std::to_string(grid.rows));
-}
-
 /** Pixel of the nearest point of a block of the grid, if it has any. */
 std::optional<std::size_t> nearestOfBlock(const PointGrid& grid, int top, int left, int size) {
   std::optional<std::size_t> best;
@@ -62,19 +50,17 @@ std::optional<std::size_t> nearestOfBlock(const PointGrid& grid, int top, int le
   return best;
 }
 
-void addPoints(const PointGrid& grid, const LabelImage* labels, int decimation, LabeledScan& scan) {
+/** The pixels that become points. */
+std::vector<std::size_t> choosePixels(const PointGrid& grid, int decimation) {
   const auto blocks = [decimation](int n) {
     return std::size_t((n + decimation - 1) / decimation);
   };
-  scan.cloud.points.reserve(blocks(grid.rows) * blocks(grid.cols));
-  if (labels) scan.cloud.classes.reserve(scan.cloud.points.capacity());
+  std::vector<std::size_t> pixels;
+  pixels.reserve(blocks(grid.rows) * blocks(grid.cols));
   for (int row = 0; row < grid.rows; row += decimation)
-    for (int col = 0; col < grid.cols; col += decimation) {
-      const auto pixel = nearestOfBlock(grid, row, col, decimation);
-      if (!pixel) continue;
-      scan.cloud.points.push_back(grid.points[*pixel]);
-      if (labels) scan.cloud.classes.push_back(labels->classes[*pixel]);
-    }
+    for (int col = 0; col < grid.cols; col += decimation)
+      if (const auto pixel = nearestOfBlock(grid, row, col, decimation)) pixels.push_back(*pixel);
+  return pixels;
 }
 
 void addUnlabeled(const CObservation& observation, LabeledScan& scan) {
@@ -87,18 +73,6 @@ void addUnlabeled(const CObservation& observation, LabeledScan& scan) {
   scan.cloud.points = std::move(points);
 }
 
-void countPoints(LabeledScan& scan) {
-  const auto& cloud = scan.cloud;
-  scan.counts.points = cloud.size();
-  if (cloud.probabilities.empty()) {
-    for (const ClassId id : cloud.classes) scan.counts.labeled += id != kNoClass;
-    return;
-  }
-  const std::size_t k = cloud.probabilities.size() / cloud.size();
-  for (auto row = cloud.probabilities.begin(); row != cloud.probabilities.end(); row += k)
-    scan.counts.labeled += std::any_of(row, row + k, [](float p) { return p > 0; });
-}
-
 }  // namespace
 
 void ScanConverterOptions::validate() const {
@@ -108,6 +82,10 @@ void ScanConverterOptions::validate() const {
   if (!(flyingPixelThreshold >= 0 && flyingPixelThreshold < 1))
     throw std::invalid_argument("scan converter: flyingPixelThreshold = " +
                                 std::to_string(flyingPixelThreshold) + ", must be in [0, 1)");
+  if (!(occlusionParallax >= 0))
+    throw std::invalid_argument("scan converter: occlusionParallax = " +
+                                std::to_string(occlusionParallax) + " pixels, must be 0 or more");
+  labels.validate();
 }
 
 ScanConverter::ScanConverter(const ClassTable& table, const ScanConverterOptions& options,
@@ -137,7 +115,8 @@ std::optional<LabeledScan> ScanConverter::convert(const CObservation& observatio
     addLabeledCloud(*labeled, scan);
   else
     addUnlabeled(observation, scan);
-  countPoints(scan);
+  scan.counts.points = scan.cloud.size();
+  scan.countLabels();
   return scan;
 } catch (const std::exception& e) {
   throw std::runtime_error(nameOf(observation) + ": " + messageOf(e));
@@ -151,13 +130,15 @@ void ScanConverter::addRangeScan(const CObservation3DRangeScan& observation, Lab
   PointGrid grid =
       observation.hasRangeImage ? unproject(observation, *m_rays) : gridOfPoints(observation);
 
-  const auto labels = m_labeler->label(observation);
-  if (labels) checkSize(*labels, grid);
+  auto labels = m_labeler->label(observation);
   scan.labelsMissing = !labels;
   for (const auto& point : grid.points) scan.counts.invalid += !PointGrid::isReturn(point);
   if (m_options.flyingPixelThreshold > 0)
     scan.counts.flying = removeFlyingPixels(grid, m_options.flyingPixelThreshold);
-  addPoints(grid, labels ? &*labels : nullptr, m_options.decimation, scan);
+  const auto pixels = choosePixels(grid, m_options.decimation);
+  scan.cloud.points.reserve(pixels.size());
+  for (const std::size_t pixel : pixels) scan.cloud.points.push_back(grid.points[pixel]);
+  if (labels) addLabels(observation, grid, pixels, std::move(*labels), scan);
 }
 
 }  // namespace labeled_cloud

@@ -77,6 +77,7 @@ void ScanConverter::addLabeledCloud(const CObservationLabeledCloud& observation,
                        to.probabilities);
   }
   scan.counts.invalid = from.size() - to.size();
+  m_options.labels.apply(m_table.size(), {}, to);
 }
 
 }  // namespace labeled_cloud

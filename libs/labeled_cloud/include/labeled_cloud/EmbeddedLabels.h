@@ -5,12 +5,14 @@ namespace labeled_cloud {
 
 /** The labels in CObservation3DRangeScan::pixelLabels, which holds at most 64 classes.
  *
- * MRPT does not say which image they belong to: here they are those of the depth image's pixels.
+ * MRPT does not say which image they belong to: the depth image, unless told otherwise.
  * Label i stands for the class of its name in `pixelLabelNames`; where it has no name, for the raw
  * id i of the class table. A pixel without labels has no class, one with several has the lowest. */
 class EmbeddedLabels : public ImageLabeler {
  public:
-  explicit EmbeddedLabels(const semantic_octree::ClassTable& table) : m_table(table) {}
+  explicit EmbeddedLabels(const semantic_octree::ClassTable& table,
+                          LabelImage::View view = LabelImage::View::Depth)
+      : m_table(table), m_view(view) {}
 
   /** \throw std::runtime_error a label of a pixel is not in the class table (and the table takes
    * that for an error). */
@@ -18,6 +20,7 @@ class EmbeddedLabels : public ImageLabeler {
 
  private:
   semantic_octree::ClassTable m_table;
+  LabelImage::View m_view;
 };
 
 }  // namespace labeled_cloud

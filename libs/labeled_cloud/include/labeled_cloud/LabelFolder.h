@@ -18,6 +18,8 @@ struct LabelFolderOptions {
   Match match = Match::Time;
   /** Match::Time: largest difference to the observation's time, s. */
   double tolerance = 0.02;
+  /** Which image of a depth and color camera the labels belong to. */
+  LabelImage::View view = LabelImage::View::Depth;
 
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
@@ -27,7 +29,11 @@ struct LabelFolderOptions {
  *
  * - gray with 8 or 16 bits: the values are raw ids of the class table
  * - with a palette: so are the palette's indices, whatever its colors
- * - in color: colors of the class table; black, where no class has it, is raw id 0 */
+ * - in color: colors of the class table; black, where no class has it, is raw id 0
+ *
+ * Beside NAME.png may be NAME.confidence.png, gray with 8 or 16 bits: the probability that each
+ * label is right, from 0 to the largest value. Where the first image of a folder has one, all must.
+ */
 class LabelFolder : public ImageLabeler {
  public:
   /** \throw std::runtime_error naming the folder or file: no such folder, no label image in it, or
@@ -40,12 +46,14 @@ class LabelFolder : public ImageLabeler {
   std::optional<LabelImage> label(const mrpt::obs::CObservation& observation) override;
 
  private:
+  std::optional<std::filesystem::path> fileOf(const mrpt::obs::CObservation& observation) const;
   std::optional<std::filesystem::path> nearest(mrpt::Clock::time_point time) const;
   std::optional<std::filesystem::path> named(const mrpt::obs::CObservation& observation) const;
 
   std::filesystem::path m_folder;
   semantic_octree::ClassTable m_table;
   LabelFolderOptions m_options;
+  bool m_withConfidences = false;
   std::map<mrpt::Clock::time_point, std::filesystem::path> m_byTime;
   std::map<std::string, std::filesystem::path> m_byName;
 };
@@ -54,5 +62,9 @@ class LabelFolder : public ImageLabeler {
  * \throw std::runtime_error naming the file, and pixel and value where one is to blame. */
 LabelImage readLabelImage(const std::filesystem::path& file,
                           const semantic_octree::ClassTable& table);
+
+/** Gives a label image the confidences in FILE. \throw std::runtime_error naming the file: it is
+ * unreadable, not gray with 8 or 16 bits, or of another size. */
+void readConfidences(const std::filesystem::path& file, LabelImage& image);
 
 }  // namespace labeled_cloud

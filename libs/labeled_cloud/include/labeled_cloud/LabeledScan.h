@@ -1,10 +1,14 @@
 #pragma once
+#include <labeled_cloud/LabelImage.h>
 #include <mrpt/core/Clock.h>
+#include <mrpt/img/CImage.h>
+#include <mrpt/img/TCamera.h>
 #include <mrpt/poses/CPose3D.h>
 #include <semantic_octree/LabeledCloud.h>
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace labeled_cloud {
 
@@ -18,6 +22,17 @@ struct ScanCounts {
   std::size_t flying = 0;
 };
 
+/** A picture that points took their labels from. */
+struct LabeledPicture {
+  /** Empty if there is no color image of the label image's view. */
+  mrpt::img::CImage image;
+  LabelImage labels;
+  mrpt::img::TCamera camera;
+  /** The camera's optical frame (x right, y down, z forward) when the picture was taken, in that of
+   * the sensor when it saw the points. */
+  mrpt::poses::CPose3D T_sensor_camera;
+};
+
 /** One observation, ready for a map. */
 struct LabeledScan {
   /** Points in the sensor's frame, all finite. */
@@ -28,6 +43,11 @@ struct LabeledScan {
   ScanCounts counts;
   /** A labeler was asked and had no labels for this observation. */
   bool labelsMissing = false;
+  /** Where the labels come from, if that was asked for. */
+  std::vector<LabeledPicture> pictures;
+
+  /** Brings counts.labeled up to date. */
+  void countLabels();
 };
 
 }  // namespace labeled_cloud

@@ -1,6 +1,7 @@
 #pragma once
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/LabelImage.h>
+#include <labeled_cloud/LabelModel.h>
 #include <labeled_cloud/LabeledScan.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semantic_octree/ClassTable.h>
@@ -11,6 +12,7 @@
 namespace labeled_cloud {
 
 class PixelRays;
+struct PointGrid;
 
 struct ScanConverterOptions {
   /** Depth images: one point for each block of this many pixels squared, the block's nearest; it
@@ -19,6 +21,11 @@ struct ScanConverterOptions {
   /** Depth images: leave out pixels between a surface in front and one behind that lie on neither,
    * farther from both than this share of their depth. 0: keep all. */
   double flyingPixelThreshold = 0;
+  /** Depth images with labels in a color image of another camera: how many pixels a point in front
+   * must shift against one behind it, between the two views, to hide it. 0: nothing is hidden. */
+  double occlusionParallax = 1.5;
+  /** What the labels say. */
+  LabelModel labels;
 
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
@@ -27,8 +34,10 @@ struct ScanConverterOptions {
 /** Makes labeled clouds of observations.
  *
  * - CObservation3DRangeScan: the range image, or the 3D points where there is none, each point with
- *   the label of its pixel in the DEPTH image. Labels come from the ImageLabeler given, else from
- *   the observation's pixelLabels.
+ *   the label of its pixel in the image that the labels belong to. In a color image of another
+ *   camera that is the pixel it is projected to; points outside of it or hidden have no class.
+ *   Labels come from the ImageLabeler given, else from the observation's pixelLabels, which are
+ *   those of the depth image.
  * - CObservationLabeledCloud: as it is. Where it names its classes, they are found by name in the
  *   class table; otherwise its class ids are those of the table.
  * - CObservationPointCloud, CObservationVelodyneScan, CObservation2DRangeScan: points without a
@@ -47,12 +56,18 @@ class ScanConverter {
 
   /** The observation's scan, or nothing if it is of another class than those above.
    * \throw std::runtime_error why an observation of these classes cannot be used: no range data, no
-   * calibration, labels of another size than the depth image, an unknown class, an external file
+   * calibration, labels of another size than their image, an unknown class, an external file
    * that is missing. */
   std::optional<LabeledScan> convert(const mrpt::obs::CObservation& observation);
 
+  /** From now on, scans come with the pictures that their labels were taken from. */
+  void keepPictures(bool keep) { m_keepPictures = keep; }
+  const ScanConverterOptions& options() const { return m_options; }
+
  private:
   void addRangeScan(const mrpt::obs::CObservation3DRangeScan& observation, LabeledScan& scan);
+  void addLabels(const mrpt::obs::CObservation3DRangeScan& observation, const PointGrid& grid,
+                 const std::vector<std::size_t>& pixels, LabelImage labels, LabeledScan& scan);
   void addLabeledCloud(const CObservationLabeledCloud& observation, LabeledScan& scan) const;
 
   semantic_octree::ClassTable m_table;
@@ -60,6 +75,7 @@ class ScanConverter {
   std::shared_ptr<ImageLabeler> m_labeler;
   /** Of the camera met last. */
   std::unique_ptr<PixelRays> m_rays;
+  bool m_keepPictures = false;
 };
 
 }  // namespace labeled_cloud

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 
@@ -33,6 +34,16 @@ class StrictYaml {
     } catch (const YAML::Exception&) {
       fail(node, "expected " + expected + ", found " + quoted(node));
     }
+  }
+  /** One of some words. */
+  template <typename T>
+  T choice(const YAML::Node& node, const std::string& field,
+           const std::map<std::string, T>& choices) const {
+    const std::string found = text(node, field);
+    if (const auto it = choices.find(found); it != choices.end()) return it->second;
+    std::string expected;
+    for (const auto& [name, value] : choices) expected += (expected.empty() ? "" : ", ") + name;
+    fail(node, field + ": expected one of " + expected + ", found '" + found + "'");
   }
   std::string text(const YAML::Node& node, const std::string& field) const;
   /** A finite number. */

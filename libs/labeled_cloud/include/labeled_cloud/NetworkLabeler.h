@@ -1,0 +1,82 @@
+#pragma once
+#include <labeled_cloud/LabelImage.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace labeled_cloud {
+
+/** What a segmentation network expects and answers. */
+struct NetworkOptions {
+  enum class Fit {
+    /** The picture is stretched to the input's size. */
+    Stretch,
+    /** It is scaled to the input's width. If it is then higher than the input, its top rows are cut
+     * off; if lower, its last row is repeated below. */
+    Width
+  };
+  enum class Channels { Rgb, Bgr };
+  enum class Content {
+    Scores,         ///< a plane for each class; softmax makes them probabilities
+    Probabilities,  ///< a plane for each class
+    Ids             ///< one plane, numbers of `classes` from 0
+  };
+  enum class Labels {
+    Softmax,  ///< class probabilities (soft labels)
+    Argmax    ///< the likeliest class (hard labels)
+  };
+
+  /** The input in pixels. */
+  int width = 0, height = 0;
+  Fit fit = Fit::Stretch;
+  Channels channels = Channels::Rgb;
+  /** Each channel of the input is (value * scale - mean) / deviation, value 0..255; in the order of
+   * `channels`. */
+  double scale = 1 / 255.0;
+  std::array<double, 3> mean{0, 0, 0}, deviation{1, 1, 1};
+  /** Names of the layers; may be empty if there is only one. */
+  std::string input, output;
+  Content content = Content::Scores;
+  Labels labels = Labels::Softmax;
+  /** The class of each of the network's channels, kNoClass for those that mean none. Several may
+   * have the same class. */
+  std::vector<semantic_octree::ClassId> classes;
+  /** Pixels whose likeliest class is less probable than this have no class, [0, 1]. */
+  double minConfidence = 0;
+  /** Images that go through the network at once, where so many are waiting. */
+  int batch = 1;
+
+  /** \throw std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+/** Reads options from a YAML file, see doc/labels.md and config/networks/.
+ * \throw std::runtime_error naming file, line and what was expected; a class that the table lacks
+ * is named, too. */
+NetworkOptions loadNetworkOptions(const std::filesystem::path& file,
+                                  const semantic_octree::ClassTable& table);
+
+/** A segmentation network (ONNX) that labels the color images of observations. */
+class NetworkLabeler : public ImageLabeler {
+ public:
+  /** \param numClasses Of the class table.
+   * \throw std::runtime_error naming the file: there is none, or OpenCV cannot read it. */
+  NetworkLabeler(const std::filesystem::path& model, int numClasses, const NetworkOptions& options);
+  ~NetworkLabeler() override;
+
+  /** \throw std::runtime_error the observation's image cannot be read; or naming the network: it
+   * answers something else than the options say, as another number of classes. */
+  std::optional<LabelImage> label(const mrpt::obs::CObservation& observation) override;
+  std::vector<std::optional<LabelImage>> label(
+      const std::vector<const mrpt::obs::CObservation*>& observations) override;
+  std::size_t batch() const override;
+
+ private:
+  struct Network;
+  std::unique_ptr<Network> m_network;
+};
+
+}  // namespace labeled_cloud

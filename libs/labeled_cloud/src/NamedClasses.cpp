@@ -1,0 +1,39 @@
+#include "NamedClasses.h"
+
+#include <map>
+
+namespace labeled_cloud {
+
+using semantic_octree::ClassId;
+using semantic_octree::ClassTable;
+using semantic_octree::kNoClass;
+
+namespace {
+
+ClassId classNamed(const StrictYaml& yaml, const YAML::Node& node, const ClassTable& table) {
+  const std::string name = yaml.text(node, "a class");
+  if (name == "no_class") return kNoClass;
+  if (const auto id = table.find(name)) return *id;
+  yaml.fail(node, "'" + name + "' is no class of the table; `fold` can say which it is");
+}
+
+}  // namespace
+
+std::vector<ClassId> namedClasses(const StrictYaml& yaml, const ClassTable& table) {
+  std::map<std::string, ClassId> folds;
+  if (const YAML::Node fold = yaml.root()["fold"]) {
+    yaml.checkMap(fold);
+    for (const auto& entry : fold)
+      folds[entry.first.Scalar()] = classNamed(yaml, entry.second, table);
+  }
+  const YAML::Node names = yaml.required(yaml.root(), "classes");
+  yaml.checkList(names, "classes");
+  std::vector<ClassId> classes;
+  for (const auto& name : names) {
+    const auto folded = folds.find(yaml.text(name, "classes"));
+    classes.push_back(folded == folds.end() ? classNamed(yaml, name, table) : folded->second);
+  }
+  return classes;
+}
+
+}  // namespace labeled_cloud

@@ -1,0 +1,26 @@
+#pragma once
+#include <labeled_cloud/LabelImage.h>
+#include <semantic_octree/LabeledCloud.h>
+
+#include <vector>
+
+namespace labeled_cloud {
+
+/** The labels of a cloud's points, taken from one label image or several of the same kind. */
+class PointLabels {
+ public:
+  explicit PointLabels(std::size_t points) : m_points(points) {}
+
+  /** Gives a point the label of an image's cell. */
+  void take(std::size_t point, const LabelImage& image, std::size_t cell);
+
+  /** Puts classes or probabilities into the cloud; returns the classes' confidences. */
+  std::vector<float> moveTo(semantic_octree::LabeledCloud& cloud);
+
+ private:
+  std::size_t m_points;
+  std::vector<semantic_octree::ClassId> m_classes;
+  std::vector<float> m_confidences, m_probabilities;
+};
+
+}  // namespace labeled_cloud
