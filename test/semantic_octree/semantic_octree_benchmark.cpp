@@ -94,16 +94,21 @@ void softLabelHit(benchmark::State& state) {
 }
 BENCHMARK(softLabelHit);
 
-/** One ray of 100 m; items are voxels. */
-void markRayOfOneDirection(benchmark::State& state) {
+/** A fan of rays of 100 voxels; items are voxels. */
+void markFanOfRays(benchmark::State& state) {
   TileGrid grid;
-  grid.cover({-1000, -1000, -1000}, {1000, 1000, 1000});
+  grid.cover({-100, -100, -100}, {100, 100, 100});
   const Eigen::Array3d begin = Eigen::Array3d(0.3, 0.4, 0.5) - grid.origin();
-  const Eigen::Array3d end = begin + Eigen::Array3d(600, -330, 70);
-  for (auto _ : state) markRay(grid, begin, end);
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * 1000);
+  std::vector<Eigen::Array3d> ends;
+  std::int64_t voxels = 0;
+  for (double angle = 0; angle < 6; angle += 0.01) {
+    ends.push_back(begin + 90 * Eigen::Array3d(std::cos(angle), std::sin(angle), 0.1));
+    voxels += (ends.back().floor() - begin.floor()).abs().sum();
+  }
+  for (auto _ : state) markRays(grid, begin, ends.data(), ends.size());
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * voxels);
 }
-BENCHMARK(markRayOfOneDirection);
+BENCHMARK(markFanOfRays);
 
 /** Transforming, marking, summarizing and voting: all of an insertion but the tree. */
 void scanIntoVoxels(benchmark::State& state) {
@@ -122,7 +127,7 @@ void mergeIntoTree(benchmark::State& state) {
   NodeStore store(0);
   Scan scan;
   scan.set(street().cloud, street().T_map_sensor, resolution, K, insertion());
-  const MergeTarget target{store, filter, nullptr, true};
+  const MergeTarget target{store, filter, nullptr, nullptr, true};
   mergeScan(target, scan, store.root(), true, 1);
   for (auto _ : state) mergeScan(target, scan, store.root(), false, 1);
 }

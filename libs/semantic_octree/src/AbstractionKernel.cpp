@@ -2,15 +2,6 @@
 
 #include "Lanes.h"
 
-// One version for every processor and one for AVX2, chosen when the library is loaded. Both give
-// the same results to the last bit: multiplications and additions are never fused.
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_THREAD__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__AVX2__) && !defined(__clang__)
-#define MSO_VECTORIZED __attribute__((target_clones("avx2", "default")))
-#else
-#define MSO_VECTORIZED
-#endif
-
 namespace semantic_octree {
 namespace {
 

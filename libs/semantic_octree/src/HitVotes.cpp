@@ -19,7 +19,7 @@ void HitVotes::add(std::uint32_t voxel, std::uint32_t point) {
   if (!m_softSums.empty()) return addSoft(voxel, point);
   const ClassId id = m_cloud->classes.empty() ? kNoClass : m_cloud->classes[point];
   if (id == kNoClass) return;
-  m_ballots.push_back({voxel, id});
+  m_ballots.emplace_back(voxel, id);
   ClassId& first = m_classes[voxel];
   if (first == kNoClass)
     first = id;
@@ -44,21 +44,18 @@ void HitVotes::finish() {
 
 void HitVotes::settleMixed() {
   m_ballots.erase(std::remove_if(m_ballots.begin(), m_ballots.end(),
-                                 [this](const Ballot& b) { return !m_mixed[b.voxel]; }),
+                                 [this](const Ballot& b) { return !m_mixed[b.voxel()]; }),
                   m_ballots.end());
-  std::sort(m_ballots.begin(), m_ballots.end(), [](const Ballot& a, const Ballot& b) {
-    return a.voxel != b.voxel ? a.voxel < b.voxel : a.id < b.id;
-  });
+  std::sort(m_ballots.begin(), m_ballots.end(),
+            [](const Ballot& a, const Ballot& b) { return a.value < b.value; });
   std::size_t mostVotes = 0;
   for (std::size_t i = 0, end; i < m_ballots.size(); i = end) {
     const Ballot& b = m_ballots[i];
-    for (end = i;
-         end < m_ballots.size() && m_ballots[end].voxel == b.voxel && m_ballots[end].id == b.id;)
-      ++end;
-    if (i == 0 || m_ballots[i - 1].voxel != b.voxel) mostVotes = 0;
+    for (end = i; end < m_ballots.size() && m_ballots[end].value == b.value;) ++end;
+    if (i == 0 || m_ballots[i - 1].voxel() != b.voxel()) mostVotes = 0;
     if (end - i <= mostVotes) continue;
     mostVotes = end - i;
-    m_classes[b.voxel] = b.id;
+    m_classes[b.voxel()] = b.id();
   }
 }
 

@@ -24,9 +24,12 @@ class HitVotes {
   }
 
  private:
+  /** Voxel above class, in one number: quick to sort. */
   struct Ballot {
-    std::uint32_t voxel;
-    ClassId id;
+    std::uint64_t value;
+    Ballot(std::uint32_t voxel, ClassId id) : value(std::uint64_t(voxel) << 16 | id) {}
+    std::uint32_t voxel() const { return static_cast<std::uint32_t>(value >> 16); }
+    ClassId id() const { return static_cast<ClassId>(value & 0xffff); }
   };
   void addSoft(std::uint32_t voxel, std::uint32_t point);
   void settleMixed();

@@ -1,14 +1,15 @@
 #pragma once
+#include <Eigen/Core>
+#include <cstddef>
+
 #include "TileGrid.h"
 
 namespace semantic_octree {
 
-/** Sets the bit of every voxel from `begin`'s up to, but not including, `end`'s. Both in voxel
- * units relative to the grid, inside it.
- *
- * Traversal of Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing" (1987): at
- * each step the axis whose next voxel border is nearest along the ray advances (on a tie z before y
- * before x). */
-void markRay(TileGrid& grid, const Eigen::Array3d& begin, const Eigen::Array3d& end);
+/** Sets the bits of the voxels that rays from one point pass, the first one included, the one in
+ * which a ray ends left out (Amanatides, Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing").
+ * \param begin, ends voxel units relative to the grid, inside it */
+void markRays(TileGrid& grid, const Eigen::Array3d& begin, const Eigen::Array3d* ends,
+              std::size_t numRays);
 
 }  // namespace semantic_octree

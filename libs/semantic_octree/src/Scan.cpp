@@ -1,11 +1,13 @@
 #include "Scan.h"
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
+#include "BitCounts.h"
 #include "RayMarking.h"
 
 namespace semantic_octree {
@@ -77,9 +79,9 @@ void Scan::markFreePart(int part, const InsertionOptions& options, double margin
   TileGrid& grid = m_free[part];
   const Eigen::Array3d gridOrigin = grid.origin(), begin = m_beams.origin - gridOrigin;
   const bool toCenter = options.rays == InsertionOptions::Rays::EndVoxels;
-  const std::size_t first = m_carving.size() * part / options.threads;
   const std::size_t last = m_carving.size() * (part + 1) / options.threads;
-  for (std::size_t i = first; i < last; ++i) {
+  std::vector<Eigen::Array3d> ends;
+  for (std::size_t i = m_carving.size() * part / options.threads; i < last; ++i) {
     const BeamEnd& beam = m_beams.ends[m_carving[i]];
     Eigen::Array3d end = beam.end - gridOrigin;
     if (toCenter) end = end.floor() + 0.5;
@@ -88,21 +90,21 @@ void Scan::markFreePart(int part, const InsertionOptions& options, double margin
       if (length <= margin) continue;
       end = begin + (end - begin) * (1 - margin / length);
     }
-    markRay(grid, begin, end);
+    ends.push_back(end);
   }
+  markRays(grid, begin, ends.data(), ends.size());
 }
 
 void Scan::summarize() {
   m_pyramid.cover(m_hits);
   m_firstHit.resize(m_hits.size());
   std::uint32_t hits = 0;
-  for (std::size_t tile = 0; tile < m_hits.size(); ++tile) {
+  m_hits.forEachTile([&](std::size_t tile) {
     m_firstHit[tile] = hits;
     const CubeContent content = summarizeTile(tile);
     m_pyramid.set(tile, content);
-    if (content.hit())
-      for (int w = 0; w < TileGrid::kWords; ++w) hits += __builtin_popcountll(m_hits.tile(tile)[w]);
-  }
+    if (content.hit()) hits += countBits(m_hits.tile(tile), TileGrid::kWords);
+  });
   m_beams.report.hitVoxels = hits;
   m_pyramid.build();
 }
@@ -126,9 +128,7 @@ CubeContent Scan::summarizeTile(std::size_t tile) {
   if (anyFree | anyHit) content.flags |= CubeContent::kAny;
   if (anyHit) content.flags |= CubeContent::kHit;
   if (~allFree) content.flags |= CubeContent::kNotAllFree;
-  if (anyFree)
-    for (int w = 0; w < TileGrid::kWords; ++w)
-      m_beams.report.freeVoxels += __builtin_popcountll(free[w]);
+  if (anyFree) m_beams.report.freeVoxels += countBits(free, TileGrid::kWords);
   return content;
 }
 
@@ -141,20 +141,16 @@ void Scan::vote(const LabeledCloud& cloud, int numClasses) {
 
 std::uint32_t Scan::rankOf(std::uint64_t bit) const {
   const std::size_t tile = bit / 512;
-  const std::uint64_t* const hit = m_hits.tile(tile);
-  const int word = static_cast<int>(bit >> 6 & 7);
-  std::uint32_t rank = m_firstHit[tile];
-  for (int w = 0; w < word; ++w) rank += __builtin_popcountll(hit[w]);
-  return rank + __builtin_popcountll(hit[word] & ((std::uint64_t(1) << (bit & 63)) - 1));
+  return m_firstHit[tile] + countBitsBefore(m_hits.tile(tile), bit & 511);
 }
 
 void Scan::clear() {
   constexpr std::size_t bytesPerTile = TileGrid::kWords * sizeof(std::uint64_t);
-  for (std::size_t tile = 0; tile < m_hits.size(); ++tile) {
-    if (!m_pyramid.tile(tile).any()) continue;
+  m_hits.forEachTile([this](std::size_t tile) {
+    if (!m_pyramid.tile(tile).any()) return;
     std::memset(m_free[0].tile(tile), 0, bytesPerTile);
     if (m_pyramid.tile(tile).hit()) std::memset(m_hits.tile(tile), 0, bytesPerTile);
-  }
+  });
 }
 
 std::size_t Scan::bytes() const {

@@ -11,7 +11,15 @@ constexpr int kHalfMap = 32768;
 
 bool insideMap(const Eigen::Array3d& u) { return (u >= -kHalfMap).all() && (u < kHalfMap).all(); }
 
-VoxelIndex voxelOf(const Eigen::Array3d& u) { return u.floor().cast<int>(); }
+/** floor(), which is a function call on processors of the common denominator. */
+int floorOf(double x) {
+  const int towardsZero = static_cast<int>(x);
+  return towardsZero - (x < towardsZero);
+}
+
+VoxelIndex voxelOf(const Eigen::Array3d& u) {
+  return {floorOf(u.x()), floorOf(u.y()), floorOf(u.z())};
+}
 
 }  // namespace
 

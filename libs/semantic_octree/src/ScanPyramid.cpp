@@ -10,7 +10,9 @@ void ScanPyramid::cover(const TileGrid& grid) {
       l.first[axis] = grid.firstTile()[axis] >> level;
       l.size[axis] = (last[axis] >> level) - l.first[axis] + 1;
     }
-    l.cubes.assign(static_cast<std::size_t>(l.size.x()) * l.size.y() * l.size.z(), CubeContent());
+    l.strideY = level == 0 ? grid.stride(1) : l.size.x();
+    l.strideZ = level == 0 ? grid.stride(2) : l.strideY * l.size.y();
+    l.cubes.assign(l.strideZ * l.size.z(), CubeContent());
   }
 }
 

@@ -46,9 +46,10 @@ class ScanPyramid {
  private:
   struct Level {
     VoxelIndex first, size;
+    std::size_t strideY, strideZ;
     std::vector<CubeContent> cubes;
     std::size_t indexOf(const VoxelIndex& i) const {
-      return (static_cast<std::size_t>(i.z()) * size.y() + i.y()) * size.x() + i.x();
+      return i.z() * strideZ + i.y() * strideY + i.x();
     }
   };
   void buildLevel(int level);

@@ -7,10 +7,18 @@ namespace {
 
 /** A cube of 5000 voxels' side. */
 constexpr std::size_t kMostTiles = std::size_t(1) << 28;
+/** More tiles than fit along the slowest axis, in bits that never overflow. */
+constexpr std::size_t kAllTiles = (std::size_t(1) << 14) - 1;
 constexpr int kTileSide = 8, kBitsPerTile = 512, kHalfMap = 32768;
 
 /** Bits 0, 1, 2 of a coordinate moved to Morton positions 0, 3, 6. */
 std::uint64_t spread(int v) { return (v & 1) | (v & 2) << 2 | (v & 4) << 4; }
+
+std::size_t powerOfTwo(int atLeast) {
+  std::size_t power = 1;
+  while (power < static_cast<std::size_t>(atLeast)) power *= 2;
+  return power;
+}
 
 int floorToTile(int voxel) { return voxel & ~(kTileSide - 1); }
 
@@ -22,22 +30,27 @@ void TileGrid::cover(const VoxelIndex& lowest, const VoxelIndex& highest) {
     m_firstVoxel[axis] = floorToTile(lowest[axis] - 1);
     m_firstTile[axis] = (m_firstVoxel[axis] + kHalfMap) >> 3;
     m_numTiles[axis] = (floorToTile(highest[axis] + 1) - m_firstVoxel[axis]) / kTileSide + 1;
+    m_strides[axis] = stride;
     m_offsets[axis].resize(static_cast<std::size_t>(m_numTiles[axis]) * kTileSide);
     for (std::size_t i = 0; i < m_offsets[axis].size(); ++i)
       m_offsets[axis][i] = (i >> 3) * stride * kBitsPerTile + (spread(static_cast<int>(i)) << axis);
-    stride *= static_cast<std::size_t>(m_numTiles[axis]);
+    const std::size_t padded = powerOfTwo(m_numTiles[axis]);
+    const std::size_t tileBits = axis < 2 ? padded - 1 : kAllTiles;
+    m_fields[axis].mask =
+        static_cast<std::int64_t>((tileBits * stride * kBitsPerTile) | (spread(7) << axis));
+    stride *= padded;
   }
-  m_size = stride;
-  reserve(m_size);
+  reserve(size());
 }
 
 void TileGrid::coverLike(const TileGrid& o) {
   m_firstVoxel = o.m_firstVoxel;
   m_firstTile = o.m_firstTile;
   m_numTiles = o.m_numTiles;
-  m_size = o.m_size;
+  m_strides = o.m_strides;
+  m_fields = o.m_fields;
   for (int axis = 0; axis < 3; ++axis) m_offsets[axis] = o.m_offsets[axis];
-  reserve(m_size);
+  reserve(size());
 }
 
 void TileGrid::reserve(std::size_t tiles) {

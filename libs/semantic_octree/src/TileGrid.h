@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -11,7 +12,8 @@ namespace semantic_octree {
 
 /** One bit per voxel of a box of space, in tiles of 8 x 8 x 8 voxels. Inside a tile the bits are in
  * Morton order (x lowest): a 64-bit word is a 4 x 4 x 4 block, a byte the eight children of a node.
- */
+ * Rows and layers of tiles are padded to powers of two, so that each coordinate of a voxel has bits
+ * of its own in the position of the voxel's bit. */
 class TileGrid {
  public:
   static constexpr int kWords = 8;  ///< per tile
@@ -22,18 +24,36 @@ class TileGrid {
   /** Covers the same box as another grid. */
   void coverLike(const TileGrid& o);
 
+  /** Bits of a position that belong to one coordinate. */
+  struct Field {
+    std::int64_t mask;
+    /** What to add to the coordinate's part, which is then masked, to get the next or the previous
+     * voxel's: carries run through the bits between. */
+    std::int64_t up() const { return -mask; }
+    std::int64_t down() const { return -(mask & -mask); }
+  };
+  const Field& field(int axis) const { return m_fields[axis]; }
+
   /** First tile, in tiles (voxel / 8) of the map whose lowest voxel is 0 (OctoMap's keys). */
   const VoxelIndex& firstTile() const { return m_firstTile; }
   const VoxelIndex& numTiles() const { return m_numTiles; }
-  std::size_t size() const { return m_size; }
+  /** Tiles with padding: one above the largest index. */
+  std::size_t size() const { return m_strides[2] * m_numTiles.z(); }
+  /** Distance of neighbors' indices. */
+  std::size_t stride(int axis) const { return m_strides[axis]; }
+  /** Calls f(index) for every tile that is not padding. */
+  template <typename F>
+  void forEachTile(const F& f) const {
+    for (int z = 0; z < m_numTiles.z(); ++z)
+      for (int y = 0; y < m_numTiles.y(); ++y)
+        for (int x = 0; x < m_numTiles.x(); ++x) f(z * m_strides[2] + y * m_strides[1] + x);
+  }
   std::uint64_t* tile(std::size_t i) { return m_bits.get() + i * kWords; }
   const std::uint64_t* tile(std::size_t i) const { return m_bits.get() + i * kWords; }
 
   /** Position of a bit = sum of three table entries at the voxel's coordinates relative to the
    * grid. */
-  const std::uint64_t* xOffsets() const { return m_offsets[0].data(); }
-  const std::uint64_t* yOffsets() const { return m_offsets[1].data(); }
-  const std::uint64_t* zOffsets() const { return m_offsets[2].data(); }
+  const std::uint64_t* offsets(int axis) const { return m_offsets[axis].data(); }
   /** What to subtract from voxel units of the map to get coordinates relative to the grid. */
   Eigen::Array3d origin() const { return m_firstVoxel.cast<double>(); }
 
@@ -58,7 +78,9 @@ class TileGrid {
   void reserve(std::size_t tiles);
 
   VoxelIndex m_firstVoxel, m_firstTile, m_numTiles;
-  std::size_t m_size = 0, m_capacity = 0;
+  std::array<std::size_t, 3> m_strides{};
+  std::array<Field, 3> m_fields{};
+  std::size_t m_capacity = 0;
   std::unique_ptr<std::uint64_t[], Free> m_bits;
   std::vector<std::uint64_t> m_offsets[3];
 };
