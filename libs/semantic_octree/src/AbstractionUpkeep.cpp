@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace semantic_octree {
 namespace {
 
-constexpr std::size_t kFrequentRows = 1024;
 constexpr double kLogEight = 3 * tree_abstraction::kLn2;
 
 /** Depth of the largest nodes whose edge does not exceed this many meters; 0 without blocks. */
@@ -108,29 +106,25 @@ void AbstractionUpkeep::settleGain(InnerState& s, int depth, double childrensGai
 
 AbstractionUpkeep::Worker::Worker(const AbstractionUpkeep& upkeep)
     : m_upkeep(upkeep),
-      m_scratch(8 * upkeep.layout().rowSize()),
-      m_frequent(kFrequentRows * upkeep.layout().rowSize()),
-      m_frequentKeys(kFrequentRows, std::numeric_limits<float>::quiet_NaN()) {}
+      m_uniformRows(upkeep.layout().rowSize()),
+      m_recordRows(upkeep.layout().rowSize()) {}
 
-const double* AbstractionUpkeep::Worker::newUniformRow(float value, std::size_t slot, int child) {
-  // A place that is taken stays so: the row there may be in use.
-  const bool isFree = std::isnan(m_frequentKeys[slot]);
-  double* row = isFree ? frequentRow(slot) : &m_scratch[child * m_upkeep.layout().rowSize()];
-  m_upkeep.layout().rowOf(m_upkeep.m_filter.uniform(value), row);
-  if (isFree) m_frequentKeys[slot] = value;
-  return row;
-}
-
-const double* AbstractionUpkeep::Worker::recordRow(const Belief& record, int child) {
-  double* row = &m_scratch[child * m_upkeep.layout().rowSize()];
-  m_upkeep.layout().rowOf(record, row);
-  return row;
+const double* AbstractionUpkeep::Worker::rowOf(const NodeStore& store, const Node& leaf) {
+  const RowLayout& layout = m_upkeep.layout();
+  if (leaf.hasClassRecord())
+    return m_recordRows.row(store.record(leaf),
+                            [&](const Belief& b, double* row) { layout.rowOf(b, row); });
+  return m_uniformRows.row(leaf.getValue(), [&](float value, double* row) {
+    layout.rowOf(m_upkeep.m_filter.uniform(value), row);
+  });
 }
 
 void AbstractionUpkeep::Worker::gatherRows(const NodeStore& store, const Node& inner,
                                            const double** rows, double* gains) {
   const Octant& octant = NodeStore::octant(inner);
   InnerState& state = *store.state<InnerState>(inner);
+  m_uniformRows.release();
+  m_recordRows.release();
   unsigned kinds = 0;
   for (int i = 0; i < 8; ++i) {
     const Node& child = octant.nodes[i];
@@ -139,8 +133,7 @@ void AbstractionUpkeep::Worker::gatherRows(const NodeStore& store, const Node& i
       rows[i] = m_upkeep.layout().unknownRow();
     } else if (child.isLeaf()) {
       kinds |= 1u << 2 * i;
-      rows[i] = child.hasClassRecord() ? recordRow(store.record(child), i)
-                                       : uniformRow(child.getValue(), i);
+      rows[i] = rowOf(store, child);
     } else {
       kinds |= 2u << 2 * i;
       const InnerState& s = *store.state<InnerState>(child);

@@ -6,6 +6,7 @@
 #include "Cell.h"
 #include "DensityField.h"
 #include "NodeStore.h"
+#include "RowCache.h"
 #include "RowLayout.h"
 
 namespace semantic_octree {
@@ -85,28 +86,11 @@ class AbstractionUpkeep {
     void gatherDensities(const NodeStore& store, const Node& inner, const Cell& cell,
                          double* densities) const;
     void reweighChildren(NodeStore& store, Node& inner, const Cell& cell, double* gains);
-    /** Row of a leaf without a class record: a few values make up most of a map. */
-    const double* uniformRow(float occupancyLogOdds, int child) {
-      const std::size_t slot = slotOf(occupancyLogOdds);
-      if (m_frequentKeys[slot] == occupancyLogOdds) return frequentRow(slot);
-      return newUniformRow(occupancyLogOdds, slot, child);
-    }
-    /** Row of a leaf with one. */
-    const double* recordRow(const Belief& record, int child);
-    const double* newUniformRow(float occupancyLogOdds, std::size_t slot, int child);
-    static std::size_t slotOf(float value) {
-      std::uint32_t bits;
-      std::memcpy(&bits, &value, sizeof bits);
-      return (bits * 2654435769u) >> 22;
-    }
-    double* frequentRow(std::size_t slot) {
-      return &m_frequent[slot * m_upkeep.layout().rowSize()];
-    }
+    const double* rowOf(const NodeStore& store, const Node& leaf);
 
     const AbstractionUpkeep& m_upkeep;
-    std::vector<double> m_scratch;      ///< eight rows
-    std::vector<double> m_frequent;     ///< rows of leaves without a class record
-    std::vector<float> m_frequentKeys;  ///< their values; NaN where there is none
+    RowCache<float> m_uniformRows;  ///< of leaves without a class record, by their values
+    RowCache<Belief> m_recordRows;
   };
   /** The i-th thread's; made when first asked for (not thread safe). */
   Worker& worker(int i);

@@ -57,7 +57,7 @@ class RayLanes {
  private:
   /** Neighbors in a scan would often be in the same byte at the same time, so that one waits for
    * the other: each lane takes this many of them, one after the other. */
-  static constexpr std::ptrdiff_t kRaysAtATime = 32;
+  static constexpr std::ptrdiff_t kRaysAtATime = 128;
 
   struct Part {
     const Eigen::Array3d *next = nullptr, *end = nullptr;
