@@ -1,10 +1,15 @@
 # PRECOMPILE below names headers of other projects that most sources of the target include: parsing them once
 # halves the time that a clean build takes. The preset "dev" goes without, so that each file says what it needs.
 
-# mso_add_library(NAME SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...] [PRECOMPILE ...])
+# mso_add_library(NAME [PLUGIN] SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...] [PRECOMPILE ...])
 # A library of libs/NAME with its public headers in libs/NAME/include/NAME, known as mrpt_semantic_octree::NAME.
+# A PLUGIN is loaded by its name without a version, which is part of the library's package then.
 function(mso_add_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "PLUGIN" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;PRECOMPILE" ${ARGN})
+  set(link_component development)
+  if(ARG_PLUGIN)
+    set(link_component library)
+  endif()
   add_library(${name} SHARED ${ARG_SOURCES})
   target_precompile_headers(${name} PRIVATE ${ARG_PRECOMPILE})
   add_library(mrpt_semantic_octree::${name} ALIAS ${name})
@@ -16,8 +21,10 @@ function(mso_add_library name)
   set_target_properties(${name} PROPERTIES OUTPUT_NAME mso_${name}
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")
   set_property(GLOBAL APPEND PROPERTY MSO_LIBRARIES ${name})
-  install(TARGETS ${name} EXPORT mrpt_semantic_octree LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mrpt_semantic_octree)
+  install(TARGETS ${name} EXPORT mrpt_semantic_octree LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    COMPONENT library NAMELINK_COMPONENT ${link_component})
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mrpt_semantic_octree
+    COMPONENT development)
 endfunction()
 
 # mso_add_app(NAME SOURCES ... [DEPENDS ...]): an executable of apps/NAME; its main.cpp knows MSO_VERSION.
@@ -27,7 +34,8 @@ function(mso_add_app name)
   target_link_libraries(${name} PRIVATE mso_settings ${ARG_DEPENDS} CLI11::CLI11 nlohmann_json::nlohmann_json)
   set_source_files_properties(main.cpp PROPERTIES COMPILE_DEFINITIONS MSO_VERSION="${PROJECT_VERSION}")
   set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
-  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  set_property(GLOBAL APPEND PROPERTY MSO_APPS ${name})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
 endfunction()
 
 # mso_add_test(NAME SOURCES ... [DEPENDS ...] [PRECOMPILE ...]): one GoogleTest program, each of its cases one ctest.

@@ -11,11 +11,12 @@ configure_file(cmake/ThirdPartyTargets.cmake ${PROJECT_BINARY_DIR}/ThirdPartyTar
 export(EXPORT mrpt_semantic_octree NAMESPACE mrpt_semantic_octree::
   FILE ${PROJECT_BINARY_DIR}/mrpt_semantic_octree-targets.cmake)
 install(EXPORT mrpt_semantic_octree NAMESPACE mrpt_semantic_octree::
-  FILE mrpt_semantic_octree-targets.cmake DESTINATION ${package_dir})
+  FILE mrpt_semantic_octree-targets.cmake DESTINATION ${package_dir} COMPONENT development)
 install(FILES
   ${PROJECT_BINARY_DIR}/mrpt_semantic_octree-config.cmake
   ${PROJECT_BINARY_DIR}/mrpt_semantic_octree-config-version.cmake
   cmake/ThirdPartyTargets.cmake
-  DESTINATION ${package_dir})
-install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/mrpt_semantic_octree/config)
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  DESTINATION ${package_dir} COMPONENT development)
+install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/mrpt_semantic_octree/config
+  COMPONENT tools)
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT library)

@@ -105,6 +105,7 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   Cli cli;
+  cli.app.set_version_flag("--version", MSO_VERSION);
   CLI11_PARSE(cli.app, argc, argv);
   try {
     return run(cli);

@@ -78,7 +78,7 @@ void Exporter::write(const fs::path& file) {
     formatOf(file).write(*this, file);
   } catch (const std::exception& e) {
     const std::string message = e.what();
-    const bool named = message.find(file.stem().string()) != std::string::npos;
+    const bool named = message.find(file.stem().string() + ".") != std::string::npos;
     throw std::runtime_error(named ? message : file.string() + ": " + message);
   }
 }

@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
   CLI::App app("Says what is in a semantic octree map");
   semantic_map_info::Cli cli;
   cli.addTo(app);
+  app.set_version_flag("--version", MSO_VERSION);
   CLI11_PARSE(app, argc, argv);
   try {
     semantic_map_info::run(cli);

@@ -105,6 +105,7 @@ int main(int argc, char** argv) {
   CLI::App app("A labeled camera and LiDAR in a synthetic world, written to a rawlog");
   synth_rawlog::Cli cli;
   synth_rawlog::addOptions(app, cli);
+  app.set_version_flag("--version", MSO_VERSION);
   CLI11_PARSE(app, argc, argv);
   try {
     synth_rawlog::complete(cli);

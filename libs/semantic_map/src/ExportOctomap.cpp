@@ -68,7 +68,7 @@ void writeFull(std::ostream& out, const Tree& tree) {
 
 void writeColorOcTree(std::ostream& out, const SemanticOcTree& tree) {
   Copy<octomap::ColorOcTree, octomap::ColorOcTreeNode> copy(tree);
-  copy.updateInnerOccupancy();  // and colors
+  if (!tree.empty()) copy.updateInnerOccupancy();  // and colors
   writeFull(out, copy);
 }
 

@@ -3,7 +3,8 @@
 
 #include <iosfwd>
 
-/** \file The map's occupancy in OctoMap's file formats, node by node: the same resolution, leaves
+/** \file
+ * The map's occupancy in OctoMap's file formats, node by node: the same resolution, leaves
  * and log-odds. A log-odds of exactly 0, which OctoMap takes for occupied, becomes the next smaller
  * number. */
 

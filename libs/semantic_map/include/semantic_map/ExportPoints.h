@@ -3,7 +3,8 @@
 
 #include <iosfwd>
 
-/** \file One point for each leaf of the map: its center and what the map knows about it. */
+/** \file
+ * One point for each leaf of the map: its center and what the map knows about it. */
 
 namespace semantic_map {
 

@@ -1,0 +1,95 @@
+// Crops, coarsens and moves a semantic octree map, and imports maps of OctoMap's.
+#include <labeled_cloud/MrptMessage.h>
+#include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_map/ImportOctomap.h>
+#include <semantic_octree/MapOperations.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <optional>
+
+#include "PoseOfNumbers.h"
+
+namespace semantic_map_edit {
+namespace {
+
+namespace fs = std::filesystem;
+using semantic_map::CSemanticOctoMap;
+using semantic_octree::SemanticOcTree;
+
+struct Cli {
+  fs::path in, out, like;
+  std::optional<std::array<double, 6>> pose, box;
+  std::optional<double> resolution;
+
+  void addTo(CLI::App& app) {
+    app.add_option("MAP", in, "A map's own file (.semantic), or OctoMap's (.ot, .bt)")->required();
+    app.add_option("OUT", out, "The map to write (.semantic)")->required();
+    app.add_option("--pose", pose,
+                   "Where the map's origin is in the new map: x y z (m) yaw pitch roll (degrees)");
+    app.add_option("--box", box, "Keep what is in it: x0 y0 z0 x1 y1 z1 (m)");
+    app.add_option("--resolution", resolution,
+                   "Coarser voxels, m: 2, 4, 8 ... times those of the map");
+    app.add_option("--like", like,
+                   "For OctoMap's files: a map whose classes and filter the new one has");
+  }
+};
+
+SemanticOcTree import(const fs::path& file, const fs::path& like) {
+  const auto occupancy = semantic_map::readOctomapFile(file);
+  if (like.empty()) return fromOccupancy(*occupancy, CSemanticOctoMap::occupancyOnly());
+  const SemanticOcTree model = semantic_octree::loadTree(like.string());
+  return fromOccupancy(*occupancy, model.classes(), model.filterParameters());
+}
+
+SemanticOcTree load(const Cli& cli) {
+  if (cli.in.extension() == ".ot" || cli.in.extension() == ".bt") return import(cli.in, cli.like);
+  if (!cli.like.empty())
+    throw std::runtime_error("--like is for OctoMap's files (.ot, .bt), not for " +
+                             cli.in.string());
+  return semantic_octree::loadTree(cli.in.string());
+}
+
+Eigen::AlignedBox3d boxOf(const std::array<double, 6>& v) {
+  return {Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5])};
+}
+
+int levelsTo(double resolution, double mapResolution) {
+  const double levels = std::log2(resolution / mapResolution);
+  if (!(std::fabs(levels - std::round(levels)) < 1e-6) || levels < 0)
+    throw std::runtime_error("--resolution " + std::to_string(resolution) +
+                             ": expected 1, 2, 4, 8 "
+                             "... times the map's, " +
+                             std::to_string(mapResolution) + " m");
+  return static_cast<int>(std::lround(levels));
+}
+
+void run(const Cli& cli) {
+  SemanticOcTree map = load(cli);
+  if (cli.pose) map = moved(map, poseOfNumbers(*cli.pose));
+  if (cli.box) map = cropped(map, boxOf(*cli.box));
+  if (cli.resolution) map = coarsened(map, levelsTo(*cli.resolution, map.getResolution()));
+  saveTree(map, cli.out.string());
+  std::cout << cli.out.string() << ": " << CSemanticOctoMap(std::move(map)).asString() << '\n';
+}
+
+}  // namespace
+}  // namespace semantic_map_edit
+
+int main(int argc, char** argv) {
+  CLI::App app("Moves, crops and coarsens a semantic octree map, in this order; imports OctoMap's");
+  app.set_version_flag("--version", MSO_VERSION);
+  semantic_map_edit::Cli cli;
+  cli.addTo(app);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    semantic_map_edit::run(cli);
+    return 0;
+  } catch (const std::exception& e) {
+    std::cerr << "semantic-map-edit: " << labeled_cloud::messageOf(e) << std::endl;
+    return 1;
+  }
+}

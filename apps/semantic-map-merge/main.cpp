@@ -1,0 +1,92 @@
+// Adds semantic octree maps up.
+#include <labeled_cloud/MrptMessage.h>
+#include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_octree/MapOperations.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "MapPoses.h"
+
+namespace semantic_map_merge {
+namespace {
+
+namespace fs = std::filesystem;
+using semantic_map::CSemanticOctoMap;
+using semantic_octree::Limits;
+using semantic_octree::SemanticOcTree;
+
+struct Cli {
+  std::vector<fs::path> maps;
+  fs::path out, poses;
+  bool partial = false;
+
+  void addTo(CLI::App& app) {
+    app.add_option("MAP", maps, "Maps' own files (.semantic); the last one is written")
+        ->required()
+        ->expected(2, CLI::detail::expected_max_vector_size)
+        ->type_name("MAP... OUT");
+    app.add_option("--poses", poses, "File of lines `MAP x y z yaw pitch roll` (m, degrees)");
+    app.add_flag("--partial", partial,
+                 "The sum will be added to others: do not limit yet how sure it is");
+  }
+  void takeOut() {
+    out = maps.back();
+    maps.pop_back();
+  }
+};
+
+SemanticOcTree load(const fs::path& file, const std::map<fs::path, Eigen::Isometry3d>& poses) {
+  SemanticOcTree map = semantic_octree::loadTree(file.string());
+  const auto pose = poses.find(file);
+  if (pose != poses.end()) map = moved(map, pose->second);
+  std::cout << file.string() << ": " << map.getNumLeafNodes() << " leaves\n";
+  return map;
+}
+
+void checkAlike(const fs::path& first, const SemanticOcTree& a, const fs::path& second,
+                const SemanticOcTree& b) {
+  const auto differ = [&](const std::string& what) {
+    throw std::runtime_error(first.string() + " and " + second.string() + " have different " +
+                             what);
+  };
+  if (a.getResolution() != b.getResolution()) differ("resolutions");
+  if (a.classes() != b.classes()) differ("classes");
+  if (!(a.filterParameters() == b.filterParameters())) differ("filter parameters");
+}
+
+void run(const Cli& cli) {
+  std::map<fs::path, Eigen::Isometry3d> poses;
+  if (!cli.poses.empty()) poses = readMapPoses(cli.poses, cli.maps);
+  std::vector<SemanticOcTree> maps;
+  maps.reserve(cli.maps.size());
+  std::vector<const SemanticOcTree*> pointers;
+  for (const fs::path& file : cli.maps) {
+    maps.push_back(load(file, poses));
+    checkAlike(cli.maps.front(), maps.front(), file, maps.back());
+    pointers.push_back(&maps.back());
+  }
+  SemanticOcTree sum = merged(pointers, cli.partial ? Limits::Keep : Limits::Apply);
+  saveTree(sum, cli.out.string());
+  std::cout << cli.out.string() << ": " << CSemanticOctoMap(std::move(sum)).asString() << '\n';
+}
+
+}  // namespace
+}  // namespace semantic_map_merge
+
+int main(int argc, char** argv) {
+  CLI::App app("Adds semantic octree maps up");
+  app.set_version_flag("--version", MSO_VERSION);
+  semantic_map_merge::Cli cli;
+  cli.addTo(app);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    cli.takeOut();
+    semantic_map_merge::run(cli);
+    return 0;
+  } catch (const std::exception& e) {
+    std::cerr << "semantic-map-merge: " << labeled_cloud::messageOf(e) << std::endl;
+    return 1;
+  }
+}

@@ -1,0 +1,32 @@
+# cpack -G DEB: the Debian packages of this project, from a Release build.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME mrpt-semantic-octree)
+set(CPACK_PACKAGE_CONTACT "The authors of mrpt_semantic_octree <mrpt-semantic-octree@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+
+# A program's shlibs come from the packages of Debian, those of this project from the build tree.
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_COMPONENTS_ALL library development tools)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libmrpt-semantic-octree${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmrpt-semantic-octree-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+  "libeigen3-dev, libmrpt-maps-dev, libmrpt-obs-dev, libmrpt-opengl-dev, liboctomap-dev, libopencv-dev")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME mrpt-semantic-octree-tools)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS "gnuplot-nox, libegl1, libgl1-mesa-dri")
+
+include(CPack)
+cpack_add_component(library DESCRIPTION "Shared libraries, and the plugin for MRPT's applications")
+cpack_add_component(development DESCRIPTION "Headers and CMake files" DEPENDS library)
+cpack_add_component(tools DESCRIPTION "Command-line applications and their settings" DEPENDS library)

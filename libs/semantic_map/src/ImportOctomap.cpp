@@ -1,0 +1,120 @@
+#include <semantic_map/ImportOctomap.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace semantic_map {
+namespace {
+
+struct Header {
+  bool binary = false;
+  std::string type;
+  std::size_t size = 0;
+  double resolution = 0;
+};
+
+Header readHeader(std::istream& in) {
+  Header header;
+  std::string line;
+  std::getline(in, line);
+  header.binary = line.rfind("# Octomap OcTree binary file", 0) == 0;
+  if (!header.binary && line.rfind("# Octomap OcTree file", 0) != 0)
+    throw std::runtime_error("is no map of OctoMap's");
+  while (std::getline(in, line) && line != "data") {
+    std::istringstream words(line);
+    std::string key;
+    words >> key;
+    if (key == "id") words >> header.type;
+    if (key == "size") words >> header.size;
+    if (key == "res") words >> header.resolution;
+  }
+  if (!in || !std::isfinite(header.resolution) || header.resolution <= 0)
+    throw std::runtime_error("has a damaged header");
+  return header;
+}
+
+/** Follows the nodes of a file from the root down, for OctoMap believes whatever it reads. */
+class Nodes {
+ public:
+  /** \param payload bytes of a node before its children's; 0: a binary file */
+  Nodes(const std::string& bytes, std::size_t payload) : m_bytes(bytes), m_payload(payload) {
+    visit(0);
+    if (m_next != bytes.size()) throw std::runtime_error("has bytes that belong to no node");
+  }
+  std::size_t count() const { return m_count; }
+
+ private:
+  void visit(int depth) {
+    ++m_count;
+    if (depth > 16) throw std::runtime_error("has nodes below the lowest level");
+    const int inner = m_payload ? childrenOfFull() : childrenOfBinary();
+    for (int i = 0; i < inner; ++i) visit(depth + 1);
+  }
+  /** One bit for each child. \return number of children that follow */
+  int childrenOfFull() {
+    skip(m_payload);
+    return __builtin_popcount(byte());
+  }
+  /** Two bits for each child: none, free, occupied, or a node that follows. */
+  int childrenOfBinary() {
+    const unsigned bits = byte() | byte() << 8;
+    const unsigned one = bits & 0x5555, other = bits >> 1 & 0x5555;
+    m_count += __builtin_popcount(one ^ other);
+    return __builtin_popcount(one & other);
+  }
+  unsigned byte() {
+    skip(1);
+    return static_cast<unsigned char>(m_bytes[m_next - 1]);
+  }
+  void skip(std::size_t n) {
+    m_next += n;
+    if (m_next > m_bytes.size()) throw std::runtime_error("is cut off");
+  }
+
+  const std::string& m_bytes;
+  std::size_t m_payload, m_next = 0, m_count = 0;
+};
+
+/** The nodes of a ColorOcTree without their colors. */
+std::string withoutColors(const std::string& bytes) {
+  std::string plain;
+  for (std::size_t i = 0; i + 8 <= bytes.size(); i += 8) plain += bytes.substr(i, 4) + bytes[i + 7];
+  return plain;
+}
+
+std::unique_ptr<octomap::OcTree> readFrom(std::istream& in) {
+  const Header header = readHeader(in);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  auto tree = std::make_unique<octomap::OcTree>(header.resolution);
+  if (header.size == 0) return tree;
+  const bool colored = header.type == "ColorOcTree";
+  if (!colored && header.type != "OcTree")
+    throw std::runtime_error("holds a map of type '" + header.type +
+                             "', expected OcTree or ColorOcTree");
+  const std::size_t count = Nodes(bytes, header.binary ? 0 : colored ? 7 : 4).count();
+  if (count != header.size)
+    throw std::runtime_error("has " + std::to_string(count) + " nodes, its header says " +
+                             std::to_string(header.size));
+  std::istringstream nodes(colored ? withoutColors(bytes) : bytes);
+  header.binary ? tree->readBinaryData(nodes) : tree->readData(nodes);
+  return tree;
+}
+
+}  // namespace
+
+std::unique_ptr<octomap::OcTree> readOctomapFile(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in || std::filesystem::is_directory(file))
+    throw std::runtime_error(file.string() + ": cannot be read");
+  try {
+    return readFrom(in);
+  } catch (const std::exception& e) {
+    throw std::runtime_error(file.string() + ": " + e.what());
+  }
+}
+
+}  // namespace semantic_map

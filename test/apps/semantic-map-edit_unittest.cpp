@@ -1,0 +1,108 @@
+#include <octomap/ColorOcTree.h>
+#include <semantic_octree/MapOperations.h>
+
+#include "ExportFixture.h"
+
+using semantic_octree::CellState;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+class SemanticMapEdit : public MapTool {
+ protected:
+  ProgramRun edit(const std::string& in, const std::string& out,
+                  const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> arguments = {path(in), path(out)};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return runProgram("semantic-map-edit", arguments);
+  }
+  SemanticOcTree edited(const std::vector<std::string>& options,
+                        const std::string& in = "map.semantic") const {
+    const ProgramRun run = edit(in, "out.semantic", options);
+    EXPECT_EQ(run.status, 0) << run.errors;
+    return semantic_octree::loadTree(path("out.semantic"));
+  }
+};
+
+}  // namespace
+
+TEST_F(SemanticMapEdit, aBoxKeepsWhatIsInIt) {
+  const SemanticOcTree part = edited({"--box", "-3", "-2", "-1", "4", "1", "2"});
+  for (double x = -5.9; x < 6; x += 0.4)
+    for (double y = -3.9; y < 4; y += 0.4)
+      for (double z = -0.9; z < 3; z += 0.2) {
+        const bool in = x > -3 && x < 4 && y > -2 && y < 1 && z < 2;
+        const CellState was = map.query(x, y, z), is = part.query(x, y, z);
+        ASSERT_EQ(is.status, in ? was.status : CellState::Status::Unknown);
+        if (in) {
+          ASSERT_EQ(is.likeliestClass, was.likeliestClass);
+        }
+      }
+}
+
+TEST_F(SemanticMapEdit, aCoarserMapIsOccupiedWhereAnythingWas) {
+  const SemanticOcTree coarse = edited({"--resolution", "0.8"});
+  EXPECT_DOUBLE_EQ(coarse.getResolution(), 0.8);
+  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf)
+    if (map.isNodeOccupied(*leaf)) {
+      ASSERT_EQ(coarse.query(leaf.getX(), leaf.getY(), leaf.getZ()).status,
+                CellState::Status::Occupied);
+    }
+}
+
+TEST_F(SemanticMapEdit, aMapIsMovedByAPose) {
+  const SemanticOcTree turned = edited({"--pose", "1", "2", "0.4", "90", "0", "0"});
+  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf)
+    if (leaf.getDepth() == 16) {
+      ASSERT_EQ(turned.query(1 - leaf.getY(), 2 + leaf.getX(), 0.4 + leaf.getZ()).status,
+                map.query(*leaf).status);
+    }
+}
+
+TEST_F(SemanticMapEdit, octomapsFilesBecomeOccupancy) {
+  ASSERT_EQ(exportTo({"plain.ot"}, {"--no-colors"}).status, 0);
+  ASSERT_EQ(exportTo({"color.ot", "binary.bt"}).status, 0);
+  for (const char* name : {"plain.ot", "color.ot", "binary.bt"}) {
+    const SemanticOcTree imported = edited({}, name);
+    EXPECT_EQ(imported.numClasses(), 1);
+    for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf)
+      ASSERT_EQ(imported.query(leaf.getKey()).status, map.query(*leaf).status) << name;
+  }
+}
+
+TEST_F(SemanticMapEdit, anImportedMapCanBeLikeAnother) {
+  ASSERT_EQ(exportTo({"binary.bt"}).status, 0);
+  const SemanticOcTree imported = edited({"--like", path("map.semantic")}, "binary.bt");
+  EXPECT_EQ(imported.classes(), map.classes());
+  EXPECT_EQ(imported.filterParameters(), map.filterParameters());
+}
+
+TEST_F(SemanticMapEdit, filesThatAreNoMapsOfOctomapsAreRefused) {
+  ASSERT_EQ(exportTo({"whole.ot", "whole.bt"}).status, 0);
+  const std::string ot = folder.read("whole.ot"), bt = folder.read("whole.bt");
+  const auto refuse = [&](const std::string& name, const std::string& bytes) {
+    folder.write(name, bytes);
+    expectRefusal(edit(name, "out.semantic"), {name});
+  };
+  for (const std::string& bytes :
+       {std::string(), std::string("no map"), ot.substr(0, 60), ot.substr(0, ot.size() / 2),
+        ot.substr(0, ot.size() - 1), ot + "x", bt.substr(0, bt.size() - 1),
+        bt + std::string(400, '\xff'),
+        bt.substr(0, bt.size() / 2) + std::string(bt.size(), '\xff')})
+    refuse("bad.ot", bytes);
+  const std::size_t type = ot.find("ColorOcTree");
+  refuse("bad.ot", std::string(ot).replace(type, 11, "OcTreeStamp"));
+  expectRefusal(edit("none.bt", "out.semantic"), {"none.bt"});
+}
+
+TEST_F(SemanticMapEdit, badInputIsRefused) {
+  expectRefusal(edit("map.semantic", "out.semantic", {"--resolution", "0.5"}), {"0.5", "0.2"});
+  expectRefusal(edit("map.semantic", "out.semantic", {"--resolution", "0.1"}), {"0.1", "0.2"});
+  expectRefusal(edit("map.semantic", "out.semantic", {"--resolution", "-1"}), {"--resolution"});
+  expectRefusal(edit("map.semantic", "out.semantic", {"--box", "1", "0", "0", "0", "1", "1"}),
+                {"box"});
+  expectRefusal(edit("map.semantic", "out.semantic", {"--like", path("map.semantic")}), {"--like"});
+  expectRefusal(edit("none.semantic", "out.semantic"), {"none.semantic"});
+  expectRefusal(edit("map.semantic", "no/folder.semantic"), {"folder.semantic"});
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.semantic"));
+}

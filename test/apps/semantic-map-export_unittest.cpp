@@ -1,0 +1,233 @@
+#include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/maps/COccupancyGridMap2D.h>
+#include <mrpt/opengl/COctoMapVoxels.h>
+#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt/serialization/CArchive.h>
+#include <semantic_octree/Abstraction.h>
+
+#include <cstring>
+#include <opencv2/imgcodecs.hpp>
+
+#include "ExportFixture.h"
+
+namespace fs = std::filesystem;
+using mrpt::maps::COccupancyGridMap2D;
+using semantic_octree::CellState;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+class SemanticMapExport : public MapTool {
+ protected:
+  COccupancyGridMap2D readGrid(const std::string& name) const {
+    COccupancyGridMap2D grid;
+    mrpt::io::CFileGZInputStream file(path(name));
+    auto archive = mrpt::serialization::archiveFrom(file);
+    archive >> grid;
+    return grid;
+  }
+};
+
+std::size_t countOccupied(const SemanticOcTree& map) {
+  std::size_t count = 0;
+  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf)
+    count += map.isNodeOccupied(*leaf);
+  return count;
+}
+
+int obstacles(const COccupancyGridMap2D& grid) {
+  int count = 0;
+  for (unsigned cx = 0; cx < grid.getSizeX(); ++cx)
+    for (unsigned cy = 0; cy < grid.getSizeY(); ++cy)
+      count += grid.getCell(int(cx), int(cy)) < 0.45f;
+  return count;
+}
+
+#pragma pack(push, 1)
+struct Vertex {
+  float x, y, z;
+  std::uint8_t r, g, b, id;
+  float probability, occupancy, size;
+};
+#pragma pack(pop)
+
+std::vector<Vertex> verticesOf(const std::string& ply) {
+  const std::string end = "end_header\n";
+  const std::size_t start = ply.find(end) + end.size();
+  std::vector<Vertex> vertices((ply.size() - start) / sizeof(Vertex));
+  std::memcpy(vertices.data(), ply.data() + start, vertices.size() * sizeof(Vertex));
+  return vertices;
+}
+
+/** Whether anything occupied, or anything at all, is in a column between two heights. */
+bool anyIn(const SemanticOcTree& map, double x, double y, double low, double high,
+           CellState::Status status) {
+  for (double z = low; z < high; z += map.getResolution())
+    if (map.query(x, y, z).status == status) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_F(SemanticMapExport, pointsAreTheOccupiedLeavesWithWhatTheMapSaysThere) {
+  ASSERT_EQ(exportTo({"map.ply"}).status, 0);
+  const std::string ply = folder.read("map.ply");
+  EXPECT_TRUE(contains(ply, "comment class 3 grass, \"wet\"\n"));
+  const auto vertices = verticesOf(ply);
+  ASSERT_EQ(vertices.size(), countOccupied(map));
+  EXPECT_TRUE(contains(ply, "element vertex " + std::to_string(vertices.size()) + "\n"));
+  for (const Vertex& v : vertices) {
+    const CellState state = map.query(v.x, v.y, v.z);
+    ASSERT_EQ(state.status, CellState::Status::Occupied);
+    ASSERT_EQ(v.id, state.likeliestClass);
+    ASSERT_FLOAT_EQ(v.probability, float(state.probability));
+    ASSERT_FLOAT_EQ(v.occupancy, float(state.occupancy));
+    if (v.id == 1) {
+      ASSERT_EQ(int(v.r), 200);
+    }
+  }
+}
+
+TEST_F(SemanticMapExport, tablesHaveALinePerPointAndQuoteNames) {
+  ASSERT_EQ(exportTo({"map.csv", "all.csv"}).status, 0);
+  const std::string csv = folder.read("map.csv");
+  EXPECT_EQ(csv.rfind("x,y,z,size,occupancy,class,name,probability\n", 0), 0u);
+  EXPECT_TRUE(contains(csv, ",3,\"grass, \"\"wet\"\"\","));
+  EXPECT_EQ(std::size_t(std::count(csv.begin(), csv.end(), '\n')), countOccupied(map) + 1);
+  ASSERT_EQ(exportTo({"all.csv"}, {"--free"}).status, 0);
+  const std::string all = folder.read("all.csv");
+  EXPECT_EQ(std::size_t(std::count(all.begin(), all.end(), '\n')), map.getNumLeafNodes() + 1);
+}
+
+TEST_F(SemanticMapExport, gridsAreOccupiedAtPostsAndFreeOnTheGroundBetween) {
+  ASSERT_EQ(exportTo({"map.gridmap"}).status, 0);
+  const auto grid = readGrid("map.gridmap");
+  EXPECT_FLOAT_EQ(grid.getResolution(), 0.2f);
+  int occupied = 0, free = 0;
+  for (unsigned cx = 0; cx < grid.getSizeX(); ++cx)
+    for (unsigned cy = 0; cy < grid.getSizeY(); ++cy) {
+      const double x = grid.idx2x(int(cx)), y = grid.idx2y(int(cy));
+      if (std::fabs(x) > 7 || std::fabs(y) > 7) continue;
+      const float p = grid.getCell(int(cx), int(cy));
+      // The ground is within 0.1 m of 0, in voxels with centers at -0.1 and 0.1.
+      if (anyIn(map, x, y, 0.7, 1.7, CellState::Status::Occupied)) {
+        EXPECT_LT(p, 0.5) << x << " " << y;
+        ++occupied;
+      } else if (!anyIn(map, x, y, 0.1, 2.2, CellState::Status::Occupied) &&
+                 anyIn(map, x, y, -0.1, 0, CellState::Status::Occupied)) {
+        EXPECT_GT(p, 0.5) << x << " " << y;
+        ++free;
+      }
+    }
+  EXPECT_GT(occupied, 30);
+  EXPECT_GT(free, 1000);
+}
+
+TEST_F(SemanticMapExport, groundThatIsNamedNeverObstructs) {
+  ASSERT_EQ(exportTo({"all.gridmap"}).status, 0);
+  EXPECT_GT(obstacles(readGrid("all.gridmap")), 50);
+  ASSERT_EQ(exportTo({"none.gridmap"},
+                     {"--ground", "post", "--ground", "road", "--ground", "grass, \"wet\""})
+                .status,
+            0);
+  EXPECT_LT(obstacles(readGrid("none.gridmap")), 10);  // voxels where no class was seen
+}
+
+TEST_F(SemanticMapExport, aFloorTakesHeightsAsTheyAre) {
+  ASSERT_EQ(exportTo({"map.gridmap"}, {"--floor", "1.0", "--low", "0", "--high", "0.5"}).status, 0);
+  const auto grid = readGrid("map.gridmap");
+  for (unsigned cx = 0; cx < grid.getSizeX(); ++cx)
+    for (unsigned cy = 0; cy < grid.getSizeY(); ++cy) {
+      const double x = grid.idx2x(int(cx)), y = grid.idx2y(int(cy));
+      const bool any = anyIn(map, x, y, 1.1, 1.6, CellState::Status::Occupied);
+      ASSERT_EQ(grid.getCell(int(cx), int(cy)) < 0.5f, any) << x << " " << y;
+    }
+}
+
+TEST_F(SemanticMapExport, mrptLoadsTheMapServersGrid) {
+  ASSERT_EQ(exportTo({"map.gridmap", "ros.yaml"}).status, 0);
+  const auto grid = readGrid("map.gridmap");
+  COccupancyGridMap2D ros;
+  ASSERT_TRUE(ros.loadFromROSMapServerYAML(path("ros.yaml")));
+  ASSERT_EQ(ros.getSizeX(), grid.getSizeX());
+  ASSERT_EQ(ros.getSizeY(), grid.getSizeY());
+  EXPECT_NEAR(ros.getXMin(), grid.getXMin(), 1e-3);
+  EXPECT_NEAR(ros.getYMin(), grid.getYMin(), 1e-3);
+  for (int cx = 0; cx < int(grid.getSizeX()); ++cx)
+    for (int cy = 0; cy < int(grid.getSizeY()); ++cy)
+      if (std::fabs(grid.getCell(cx, cy) - 0.5f) > 0.1f) {
+        ASSERT_EQ(ros.getCell(cx, cy) > 0.5f, grid.getCell(cx, cy) > 0.5f) << cx << " " << cy;
+      }
+}
+
+TEST_F(SemanticMapExport, classMapsLieWhereTheirWorldFilesSay) {
+  ASSERT_EQ(exportTo({"top.png"}).status, 0);
+  const cv::Mat_<cv::Vec3b> picture = cv::imread(path("top.png"));
+  std::istringstream world(folder.read("top.pgw"));
+  double a, d, b, e, c, f;
+  world >> a >> d >> b >> e >> c >> f;
+  EXPECT_EQ(d, 0);
+  EXPECT_EQ(b, 0);
+  EXPECT_EQ(e, -a);
+  int looked = 0;
+  for (double x = -7; x < 7; x += 0.1937)
+    for (double y = -7; y < 7; y += 0.1937) {
+      double z = 3;
+      while (z > -1 && map.query(x, y, z).status != CellState::Status::Occupied) z -= 0.1;
+      const auto id = map.query(x, y, z).likeliestClass;
+      if (z <= -1 || id == 0) continue;
+      const auto color = map.classes().color(id);
+      const auto pixel = picture(int(std::lround((y - f) / e)), int(std::lround((x - c) / a)));
+      ASSERT_EQ(pixel, cv::Vec3b(color.b, color.g, color.r)) << x << " " << y;
+      ++looked;
+    }
+  EXPECT_GT(looked, 1000);
+}
+
+TEST_F(SemanticMapExport, scenesHoldABoxPerOccupiedLeaf) {
+  ASSERT_EQ(exportTo({"map.3Dscene"}).status, 0);
+  mrpt::opengl::COpenGLScene scene;
+  ASSERT_TRUE(scene.loadFromFile(path("map.3Dscene")));
+  const auto voxels = scene.getByClass<mrpt::opengl::COctoMapVoxels>();
+  ASSERT_TRUE(voxels);
+  EXPECT_EQ(voxels->getVoxelCount(mrpt::opengl::VOXEL_SET_OCCUPIED), countOccupied(map));
+}
+
+TEST_F(SemanticMapExport, compressedMapsAreMapsToo) {
+  SemanticOcTree full = map;
+  semantic_octree::AbstractionOptions options;
+  options.blockSize = 3.2;
+  options.weights.terms = {tree_abstraction::relevant("post", 1.0, {1})};
+  options.weights.alpha = 0.05;
+  full.setAbstraction(options);
+  const SemanticOcTree compressed = semantic_octree::Abstraction(full).compressedMap();
+  ASSERT_LT(compressed.getNumLeafNodes(), map.getNumLeafNodes() / 4);
+  saveTree(compressed, path("small.semantic"));
+  const ProgramRun run =
+      exportTo({"s.ot", "s.bt", "s.ply", "s.csv", "s.gridmap", "g.yaml", "s.png", "s.3Dscene"}, {},
+               "small.semantic");
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_EQ(verticesOf(folder.read("s.ply")).size(), countOccupied(compressed));
+  EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 10);
+}
+
+TEST_F(SemanticMapExport, badInputIsRefusedByName) {
+  expectRefusal(exportTo({"map.obj"}), {"map.obj", ".ply"});
+  expectRefusal(exportTo({"a.yaml", "a.png"}), {"a.png", "twice"});
+  expectRefusal(exportTo({"a.gridmap"}, {"--ground", "ice"}), {"--ground", "'ice'"});
+  expectRefusal(exportTo({"a.gridmap"}, {"--low", "2", "--high", "1"}), {"a.gridmap", "high"});
+  expectRefusal(exportTo({"no/folder.ply"}), {"folder.ply"});
+  expectRefusal(exportTo({"a.ply"}, {}, "none.semantic"), {"none.semantic"});
+  folder.write("bad.semantic", "no map");
+  expectRefusal(exportTo({"a.ply"}, {}, "bad.semantic"), {"bad.semantic"});
+  saveTree(SemanticOcTree(0.5, coloredClasses()), path("empty.semantic"));
+  for (const char* name : {"a.gridmap", "a.yaml", "a.png"})
+    expectRefusal(exportTo({name}, {}, "empty.semantic"), {name});
+}
+
+TEST_F(SemanticMapExport, whatWasThereStaysIfAnythingFails) {
+  folder.write("a.ply", "of before");
+  expectRefusal(exportTo({"a.ply", "no/folder.csv"}), {"folder.csv"});
+  EXPECT_EQ(folder.read("a.ply"), "of before");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
+}

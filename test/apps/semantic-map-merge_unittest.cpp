@@ -1,0 +1,162 @@
+#include <labeled_cloud/RawlogWriter.h>
+
+#include <array>
+#include <future>
+#include <numeric>
+#include <random>
+
+#include "ExportFixture.h"
+#include "SmallRawlogs.h"
+
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+/** Ten maps of one scan each. */
+class SemanticMapMerge : public testing::Test {
+ protected:
+  static constexpr int kMaps = 10;
+
+  void SetUp() override {
+    for (int i = 0; i < kMaps; ++i) saveTree(smallPlace(i, 1), path(name(i)));
+  }
+  static std::string name(int i) { return "scan" + std::to_string(i) + ".semantic"; }
+  std::string path(const std::string& file) const { return (folder / file).string(); }
+
+  ProgramRun merge(const std::vector<std::string>& names, const std::string& out,
+                   const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> arguments;
+    for (const std::string& map : names) arguments.push_back(path(map));
+    arguments.push_back(path(out));
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return runProgram("semantic-map-merge", arguments);
+  }
+  std::vector<std::string> all() const {
+    std::vector<std::string> names;
+    for (int i = 0; i < kMaps; ++i) names.push_back(name(i));
+    return names;
+  }
+  SemanticOcTree load(const std::string& file) const {
+    return semantic_octree::loadTree(path(file));
+  }
+
+  TemporaryFolder folder;
+};
+
+}  // namespace
+
+TEST_F(SemanticMapMerge, tenMapsGiveOneMapInAnyOrder) {
+  auto names = all();
+  ASSERT_EQ(merge(names, "sum.semantic").status, 0);
+  const std::string expected = folder.read("sum.semantic");
+  std::mt19937 random(5);
+  for (int i = 0; i < 3; ++i) {
+    std::shuffle(names.begin(), names.end(), random);
+    ASSERT_EQ(merge(names, "other.semantic").status, 0);
+    EXPECT_EQ(folder.read("other.semantic"), expected);
+  }
+}
+
+TEST_F(SemanticMapMerge, tenMapsGiveOneMapInAnyGroups) {
+  ASSERT_EQ(merge(all(), "sum.semantic").status, 0);
+  ASSERT_EQ(merge({name(7), name(2), name(9)}, "a.semantic", {"--partial"}).status, 0);
+  ASSERT_EQ(merge({name(0), "a.semantic", name(5)}, "b.semantic", {"--partial"}).status, 0);
+  ASSERT_EQ(merge({name(1), name(3)}, "c.semantic", {"--partial"}).status, 0);
+  ASSERT_EQ(merge({"c.semantic", name(4), name(8), "b.semantic", name(6)}, "d.semantic").status, 0);
+  EXPECT_EQ(folder.read("d.semantic"), folder.read("sum.semantic"));
+}
+
+TEST_F(SemanticMapMerge, theSumIsTheMapOfAllScansButForTheLimitsInBetween) {
+  ASSERT_EQ(merge(all(), "sum.semantic").status, 0);
+  const SemanticOcTree sum = load("sum.semantic"), whole = smallPlace(0, kMaps);
+  std::size_t leaves = 0, alike = 0;
+  for (auto leaf = whole.begin_leafs(); leaf != whole.end_leafs(); ++leaf) {
+    const auto ours = whole.query(*leaf), theirs = sum.query(leaf.getKey());
+    ASSERT_NE(theirs.status, semantic_octree::CellState::Status::Unknown);
+    ++leaves;
+    alike += ours.status == theirs.status;
+  }
+  EXPECT_GT(double(alike), 0.99 * double(leaves));
+}
+
+TEST_F(SemanticMapMerge, mapsAreAddedWhereTheirPosesPutThem) {
+  saveTree(smallPlace(0, 1), path("here.semantic"));
+  folder.write("poses.txt", "# name x y z yaw pitch roll\n\nscan0.semantic 4 -2 0.4 180 0 0\n");
+  ASSERT_EQ(
+      merge({"here.semantic", name(0)}, "sum.semantic", {"--poses", path("poses.txt")}).status, 0);
+  const SemanticOcTree sum = load("sum.semantic"), one = load(name(0));
+  int looked = 0;
+  for (auto leaf = one.begin_leafs(); leaf != one.end_leafs(); ++leaf) {
+    // 180 degrees about z, by whole voxels.
+    const double x = 4 - leaf.getX(), y = -2 - leaf.getY(), z = 0.4 + leaf.getZ();
+    if (one.query(x, y, z).status != semantic_octree::CellState::Status::Unknown) continue;
+    ASSERT_EQ(sum.query(x, y, z).status, one.query(*leaf).status) << x << " " << y << " " << z;
+    ++looked;
+  }
+  EXPECT_GT(looked, 1000);
+}
+
+TEST_F(SemanticMapMerge, fourProcessesOnFourRawlogsAddUpToTheMapOfAll) {
+  folder.write("config.ini",
+               "[map]\nresolution = 0.2\nclasses = classes.yaml\n"
+               "[pictures]\nwidth = 300\nheight = 200\n");
+  folder.write("classes.yaml", kSmallTable);
+  const auto scans = scansOfSmallPlace(4, 3000, 3, 3);
+  std::array<std::future<ProgramRun>, 4> runs;
+  for (int i = 0; i < 4; ++i) {
+    const std::string rawlog = path("drive" + std::to_string(i) + ".rawlog");
+    labeled_cloud::CObservationLabeledCloud cloud = labeledCloud(i, {}, {});
+    cloud.cloud = scans[i].cloud;
+    writeSmallRawlog(rawlog, robotPose(i, 1.2 * i), cloud);
+    runs[i] = std::async(std::launch::async, runProgram, "rawlog2semantic-map",
+                         std::vector<std::string>{"--config", path("config.ini"), "--output",
+                                                  path("part" + std::to_string(i)), rawlog});
+  }
+  for (auto& run : runs) EXPECT_EQ(run.get().status, 0);
+  ASSERT_EQ(merge({"part0/map.semantic", "part1/map.semantic", "part2/map.semantic",
+                   "part3/map.semantic"},
+                  "sum.semantic")
+                .status,
+            0);
+  ASSERT_EQ(
+      runProgram("rawlog2semantic-map",
+                 {"--config", path("config.ini"), "--output", path("all"), path("drive0.rawlog"),
+                  path("drive1.rawlog"), path("drive2.rawlog"), path("drive3.rawlog")})
+          .status,
+      0);
+  const SemanticOcTree sum = load("sum.semantic"), whole = load("all/map.semantic");
+  std::size_t leaves = 0, alike = 0;
+  for (auto leaf = whole.begin_leafs(); leaf != whole.end_leafs(); ++leaf, ++leaves)
+    alike += whole.query(*leaf).status == sum.query(leaf.getKey()).status;
+  EXPECT_GT(leaves, 1000u);
+  EXPECT_GT(double(alike), 0.99 * double(leaves));
+}
+
+TEST_F(SemanticMapMerge, mapsThatDoNotFitAreRefusedByName) {
+  saveTree(SemanticOcTree(0.1, coloredClasses()), path("fine.semantic"));
+  saveTree(SemanticOcTree(0.2, numberedClasses(3)), path("classes.semantic"));
+  semantic_octree::FilterParameters filter;
+  filter.accuracy = 0.7;
+  saveTree(SemanticOcTree(0.2, coloredClasses(), filter), path("filter.semantic"));
+  const auto refuse = [&](const std::string& map, const std::string& why) {
+    expectRefusal(merge({name(0), map}, "out.semantic"), {name(0), map, why});
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.semantic"));
+  };
+  refuse("fine.semantic", "resolution");
+  refuse("classes.semantic", "classes");
+  refuse("filter.semantic", "filter parameters");
+  expectRefusal(merge({name(0), "none.semantic"}, "out.semantic"), {"none.semantic"});
+}
+
+TEST_F(SemanticMapMerge, posesThatMakeNoSenseAreRefusedByLine) {
+  const auto refuse = [&](const std::string& line, const std::vector<std::string>& parts) {
+    folder.write("poses.txt", "# poses\n" + line + "\n");
+    std::vector<std::string> all = {"poses.txt:2"};
+    all.insert(all.end(), parts.begin(), parts.end());
+    expectRefusal(merge({name(0), name(1)}, "out.semantic", {"--poses", path("poses.txt")}), all);
+  };
+  refuse("scan0.semantic 1 2 3", {"yaw pitch roll"});
+  refuse("scan0.semantic 1 2 3 4 5 6 7", {"yaw pitch roll"});
+  refuse("scan0.semantic 1 2 x 4 5 6", {"yaw pitch roll"});
+  refuse("other.semantic 1 2 3 4 5 6", {"other.semantic", "none"});
+}
