@@ -2,7 +2,8 @@
 #include <mrpt/maps/CMetricMap.h>
 #include <mrpt/version.h>
 
-/** \file What differs between the releases of MRPT; everything else compiles with all of them. What
+/** \file
+ * What differs between the releases of MRPT; everything else compiles with all of them. What
  * differs for CMake stands in cmake/Dependencies.cmake. */
 
 /** MRPT_VERSION counts 0x258 for 2.5.8, and (major << 16) | (minor << 8) | patch from 2.10.2 on, so

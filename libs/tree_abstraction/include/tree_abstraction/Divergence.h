@@ -4,7 +4,8 @@
 
 #include "tree_abstraction/Information.h"
 
-/** \file Weighted Jensen-Shannon divergence of the children of a node, in nats:
+/** \file
+ * Weighted Jensen-Shannon divergence of the children of a node, in nats:
  *
  *     JS = h(q) - sum_i pi_i h(p_i),    q = sum_i pi_i p_i,
  *
@@ -29,15 +30,6 @@ inline double mixture(const double* pi, const double* p, std::size_t n, std::siz
 inline void mixRows(const double* pi, const double* rows, std::size_t n, std::size_t width,
                     double* out) {
   for (std::size_t k = 0; k < width; ++k) out[k] = mixture(pi, rows + k, n, width);
-}
-
-/** mixRows() of eight children of equal weight, bit for bit, without the weights. */
-inline void mixEightRows(const double* rows, std::size_t width, double* out) {
-  const double *a = rows, *b = a + width, *c = b + width, *d = c + width;
-  const double *e = d + width, *f = e + width, *g = f + width, *h = g + width;
-  for (std::size_t k = 0; k < width; ++k) {
-    out[k] = 0.125 * (((a[k] + b[k]) + (c[k] + d[k])) + ((e[k] + f[k]) + (g[k] + h[k])));
-  }
 }
 
 /** Whether all children that have a share (pi_i > 0) agree in `outcomes` doubles, bit for bit. */
@@ -103,13 +95,6 @@ inline double binaryJensenShannon(const double* pi, const double* p, std::size_t
 inline double entropyDrop(double mixtureEntropy, const double* pi, const double* entropies,
                           std::size_t n, std::size_t stride = 1) {
   return std::max(0.0, mixtureEntropy - mixture(pi, entropies, n, stride));
-}
-
-/** entropyDrop() of eight children of equal weight, bit for bit. Exactly 0 for equal children. */
-inline double entropyDropOfEight(double mixtureEntropy, const double* entropies,
-                                 std::size_t stride = 1) {
-  const double sum = pairwiseSum(8, [=](std::size_t i) { return entropies[i * stride]; });
-  return std::max(0.0, mixtureEntropy - 0.125 * sum);
 }
 
 /** Children's distributions as an Eigen matrix, one child a row. */

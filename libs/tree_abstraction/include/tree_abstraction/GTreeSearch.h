@@ -5,7 +5,8 @@
 
 #include "tree_abstraction/BreadthFirstTree.h"
 
-/** \file The optimal abstraction of a tree: G-tree search, after Larsson, Maity and Tsiotras.
+/** \file
+ * The optimal abstraction of a tree: G-tree search, after Larsson, Maity and Tsiotras.
  *
  * Among all trees that arise by pruning, T* maximizes
  *     J(T) = sum_t weight_t I_t(T) - alpha I_X(T) = sum over interior n of p(n) dJ(n),

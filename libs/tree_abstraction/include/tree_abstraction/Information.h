@@ -3,7 +3,8 @@
 #include <cmath>
 #include <cstddef>
 
-/** \file Shannon entropies in nats, inline and without allocation. */
+/** \file
+ * Shannon entropies in nats, inline and without allocation. */
 
 namespace tree_abstraction {
 
