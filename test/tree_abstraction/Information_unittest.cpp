@@ -50,7 +50,6 @@ Children drawChildren(std::size_t atLeast = 1) {
   return makeChildren(n, outcomes, *rc::gen::arbitrary<unsigned>());
 }
 
-const std::vector<double> kEighths(8, 0.125);
 
 }  // namespace
 
@@ -82,26 +81,12 @@ TEST(Information, pairwiseSumOfEightAddsByHalves) {
 
 TEST(Information, eightEqualChildrenMixToExactlyTheChild) {
   const double p = 0.1 / 3.0;
-  const std::vector<double> rows(16, p);
+  const std::vector<double> pi(8, 0.125), rows(16, p), h(8, binaryEntropy(p));
   double out[2];
-  mixEightRows(rows.data(), 2, out);
+  mixRows(pi.data(), rows.data(), 8, 2, out);
   EXPECT_EQ(out[0], p);
   EXPECT_EQ(out[1], p);
-  const std::vector<double> h(8, binaryEntropy(p));
-  EXPECT_EQ(entropyDropOfEight(binaryEntropy(p), h.data()), 0.0);
-}
-
-TEST(Information, shortcutsForEightEqualWeightsAgreeBitForBit) {
-  for (unsigned seed = 1; seed <= 100; ++seed) {
-    Children c = makeChildren(8, 5, seed);
-    c.pi = kEighths;
-    double out[5];
-    mixEightRows(c.rows.data(), 5, out);
-    EXPECT_EQ(c.mixed(), std::vector<double>(out, out + 5));
-    std::vector<double> h;
-    for (std::size_t i = 0; i < 8; ++i) h.push_back(entropy(c.rows.data() + 5 * i, 5));
-    EXPECT_EQ(c.fast(), entropyDropOfEight(entropy(out, 5), h.data()));
-  }
+  EXPECT_EQ(entropyDrop(binaryEntropy(p), pi.data(), h.data(), 8), 0.0);
 }
 
 TEST(Information, phiFollowsItsDefinitionAndItsSeriesAcrossTheSwitch) {
@@ -168,8 +153,6 @@ TEST(Information, aChildWithoutShareCountsNowhere) {
 TEST(Information, fastFormIsNeverNegative) {
   const double pi[] = {1.0}, h[] = {0.5};
   EXPECT_EQ(entropyDrop(0.5 - 1e-16, pi, h, 1), 0.0);
-  const std::vector<double> eight(8, 0.5);
-  EXPECT_EQ(entropyDropOfEight(0.5 - 1e-16, eight.data()), 0.0);
 }
 
 TEST(Information, divergenceIsBoundedByTheVariableAndByTheSplit) {
