@@ -1,0 +1,69 @@
+#include "StockApps.h"
+
+#include <mrpt/obs/CRawlog.h>
+#include <semantic_octree/TreeFile.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+
+namespace fs = std::filesystem;
+
+const std::string StockApps::kPlugin = std::string(MSO_LIB_DIR) + "/libmrpt_semantic_octree.so";
+
+StockApps::StockApps() {
+  for (const char* name : {"config", "rawlog-samples"})
+    fs::create_directory_symlink(fs::path(MSO_SOURCE_DIR) / name, folder / name);
+}
+
+StockApps::Run StockApps::run(const std::string& command, Plugin plugin) const {
+  const std::string environment =
+      plugin == Plugin::Preloaded ? "LD_PRELOAD='" + kPlugin + "' " : std::string();
+  folder.write("command", "cd '" + folder.path().string() + "'\nexport HOME=\"$PWD\"\n" +
+                              environment + command + "\n");
+  FILE* pipe =
+      popen(("timeout 60 sh '" + (folder / "command").string() + "' 2>&1 </dev/null").c_str(), "r");
+  Run result;
+  std::array<char, 4096> buffer;
+  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
+    result.output.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return result;
+}
+
+std::optional<semantic_octree::SemanticOcTree> StockApps::mapIn(
+    const std::string& subfolder) const {
+  if (!fs::exists(folder / subfolder)) return std::nullopt;
+  for (const auto& file : fs::recursive_directory_iterator(folder / subfolder))
+    if (file.path().extension() == ".semantic")
+      return semantic_octree::loadTree(file.path().string());
+  return std::nullopt;
+}
+
+std::string StockApps::shortRawlog(const std::string& dataset, std::size_t pairs) const {
+  mrpt::obs::CRawlog rawlog, first;
+  rawlog.loadFromRawLogFile("/usr/share/mrpt/datasets/" + dataset);
+  std::size_t entry = 0;
+  mrpt::obs::CActionCollection::Ptr actions;
+  mrpt::obs::CSensoryFrame::Ptr frame;
+  while (pairs-- > 0 && rawlog.getActionObservationPair(actions, frame, entry))
+    first.insert(actions), first.insert(frame);
+  const std::string file = (folder / "short.rawlog").string();
+  first.saveToRawLogFile(file);
+  return file;
+}
+
+std::string StockApps::configWith(const std::string& name, const std::string& section,
+                                  const std::string& line) const {
+  std::string text;
+  std::ifstream in(folder / ("config/stock-apps/" + name));
+  text.assign(std::istreambuf_iterator<char>(in), {});
+  const std::string head = "[" + section + "]\n";
+  const std::size_t place = text.find(head);
+  if (place == std::string::npos)
+    text += "\n" + head + line + "\n";
+  else
+    text.insert(place + head.size(), line + "\n");
+  return folder.write(name, text).string();
+}

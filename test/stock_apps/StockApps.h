@@ -1,0 +1,45 @@
+#pragma once
+#include <gtest/gtest.h>
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "TemporaryFolder.h"
+
+/** MRPT's applications as Debian ships them, in a folder of their own, where `config` and
+ * `rawlog-samples` are those of the sources: commands are written as in doc/stock-applications.md.
+ */
+class StockApps : public testing::Test {
+ protected:
+  enum class Plugin { Absent, Preloaded };
+
+  struct Run {
+    int status = -1;
+    std::string output;  ///< on both outputs
+  };
+
+  StockApps();
+
+  /** Runs a shell command in the folder, without a terminal, for a minute at most. */
+  Run run(const std::string& command, Plugin plugin = Plugin::Absent) const;
+  /** The semantic octree that an application left below a folder; none if there is none. */
+  std::optional<semantic_octree::SemanticOcTree> mapIn(const std::string& subfolder) const;
+  /** The first PAIRS of actions and observations of one of mrpt-common's rawlogs.
+   * (rawlog-edit --cut leaves a last pair without observations, at which icp-slam gives up.) */
+  std::string shortRawlog(const std::string& dataset, std::size_t pairs) const;
+  /** A configuration of config/stock-apps with a line more, or another, in one of its sections. */
+  std::string configWith(const std::string& name, const std::string& section,
+                         const std::string& line) const;
+
+  static const std::string kPlugin;
+  TemporaryFolder folder;
+};
+
+/** The laser scanner's round through a corridor that mrpt-common ships. */
+inline const char* const kLaserRawlog = "2006-01ENE-21-SENA_Telecom Faculty_one_loop_only.rawlog";
+
+/** Skips the running test, saying so, where a program or file of a Debian package is absent. */
+#define SKIP_WITHOUT(PATH, PACKAGE) \
+  if (!std::filesystem::exists(PATH)) GTEST_SKIP() << "needs " << (PATH) << " (package " PACKAGE ")"

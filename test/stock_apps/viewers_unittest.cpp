@@ -1,0 +1,109 @@
+#include <labeled_cloud/ClassTableFile.h>
+#include <labeled_cloud/RawlogWriter.h>
+#include <semantic_map/CSemanticOctoMap.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "StockApps.h"
+#include "VillageFrames.h"
+
+namespace {
+
+class Viewers : public StockApps {
+ protected:
+  void SetUp() override {
+    SKIP_WITHOUT("/usr/bin/RawLogViewer", "mrpt-apps");
+    SKIP_WITHOUT("/usr/bin/xvfb-run", "xvfb");
+    SKIP_WITHOUT("/usr/bin/xauth", "xauth");
+    SKIP_WITHOUT("/usr/bin/xdotool", "xdotool");
+    SKIP_WITHOUT("/usr/bin/import", "imagemagick");
+  }
+
+  /** The screen with a viewer on it, after a click at (x, y) and some turns of the wheel. */
+  cv::Mat screenOf(const std::string& viewer, cv::Point click, int scroll = 0) const {
+    std::filesystem::remove(folder / "screen.png");
+    const Run shown = run("xvfb-run -a -s '-screen 0 1280x800x24' " MSO_SOURCE_DIR
+                          "/test/stock_apps/viewer.sh screen.png " +
+                          std::to_string(click.x) + " " + std::to_string(click.y) + " " +
+                          std::to_string(scroll) + " " + viewer);
+    const cv::Mat screen = cv::imread((folder / "screen.png").string());
+    EXPECT_FALSE(screen.empty()) << shown.output;
+    return screen.empty() ? cv::Mat(800, 1280, CV_8UC3, cv::Scalar::all(0)) : screen;
+  }
+
+  static std::string withPlugin(const std::string& program) {
+    return program + " -l " + kPlugin + " ";
+  }
+
+  semantic_map::CSemanticOctoMap villageMap() const {
+    semantic_map::CSemanticOctoMap map(
+        0.4, labeled_cloud::loadClassTable(folder / "config/classes/synthetic.yaml"));
+    map.loadFromSimpleMap(villageFrames(3));
+    return map;
+  }
+
+  void cutVillage() const {
+    const Run cut = run("rawlog-edit -p " + kPlugin +
+                        " --cut --to-index 11 -i rawlog-samples/village.rawlog -o short.rawlog");
+    ASSERT_EQ(cut.status, 0) << cut.output;
+  }
+};
+
+/** Lines of text in RawLogViewer's list of a rawlog's objects: its name, and "[0] ...", ... */
+int linesOfText(const cv::Mat& screen) {
+  const cv::Mat list = screen(cv::Rect(40, 95, 9, 500));
+  int lines = 0;
+  bool before = false;
+  for (int row = 0; row < list.rows; ++row) {
+    bool dark = false;
+    for (int col = 0; col < list.cols; ++col) {
+      const auto p = list.at<cv::Vec3b>(row, col);
+      dark = dark || p[0] + p[1] + p[2] < 450;
+    }
+    lines += dark && !before;
+    before = dark;
+  }
+  return lines;
+}
+
+/** Share of a part of the viewers' 3D views that has a color, bright or dark. */
+double shareOf(const cv::Mat& screen, const semantic_octree::Color& color) {
+  const cv::Mat view = screen(cv::Rect(420, 380, 740, 230));
+  const double sum = color.r + color.g + color.b;
+  int count = 0;
+  for (int row = 0; row < view.rows; ++row)
+    for (int col = 0; col < view.cols; ++col) {
+      const auto p = view.at<cv::Vec3b>(row, col);
+      const double total = std::max(1, p[0] + p[1] + p[2]);
+      count += std::abs(p[2] / total - color.r / sum) < 0.02 &&
+               std::abs(p[1] / total - color.g / sum) < 0.02;
+    }
+  return double(count) / double(view.total());
+}
+
+constexpr semantic_octree::Color kGrass{138, 196, 84}, kCanopy{26, 112, 48};
+
+}  // namespace
+
+TEST_F(Viewers, rawLogViewerListsLabeledCloudsAndWithoutThePluginStopsAtTheFirst) {
+  cutVillage();
+  const cv::Point nowhere(300, 560);
+  EXPECT_EQ(linesOfText(screenOf(withPlugin("RawLogViewer") + "short.rawlog", nowhere)), 13);
+  EXPECT_EQ(linesOfText(screenOf("RawLogViewer short.rawlog", nowhere)), 3);
+}
+
+TEST_F(Viewers, rawLogViewerShowsAMapInAnArchive) {
+  labeled_cloud::RawlogWriter archive(folder / "map.rawlog");
+  archive.write(villageMap());
+  archive.finish();
+  const cv::Mat screen = screenOf(withPlugin("RawLogViewer") + "map.rawlog", {100, 122});
+  EXPECT_EQ(linesOfText(screen), 2);
+  EXPECT_GT(shareOf(screen, kGrass), 0.01);
+}
+
+TEST_F(Viewers, sceneViewer3DShowsAMapsSceneInItsClassesColors) {
+  villageMap().saveMetricMapRepresentationToFile((folder / "village").string());
+  const cv::Mat screen = screenOf(withPlugin("SceneViewer3D") + "village.3Dscene", {700, 400}, 15);
+  EXPECT_GT(shareOf(screen, kGrass), 0.05);
+  EXPECT_GT(shareOf(screen, kCanopy), 0.01);
+}
