@@ -18,6 +18,10 @@ struct Conversion {
   /** Share of the labels that is replaced by random other classes, and with which seed. */
   double labelNoise = 0;
   std::uint64_t seed = 1;
+  /** Whether scans come with their labels. */
+  bool labels = true;
+  /** Whether the cameras' images come along (SemanticKITTI only). */
+  bool images = false;
 };
 
 /** What went into the rawlog. */
@@ -28,19 +32,19 @@ struct Summary {
 };
 
 /** A sequence in SemanticKITTI's layout: velodyne/, labels/, calib.txt, poses.txt, times.txt.
- * Each scan becomes a CObservationRobotPose (the LiDAR's pose inv(Tr) * P * Tr) and a
- * CObservationLabeledCloud.
+ * Each scan becomes a CObservationRobotPose (the LiDAR's pose inv(Tr) * P * Tr), with
+ * `images` a CObservationImage, whose file of image_2/ is copied into the folder X_Images beside
+ * X.rawlog, and a CObservationLabeledCloud.
  * \throw std::runtime_error naming file and value of whatever is missing or malformed. */
 Summary convertSemanticKitti(const std::filesystem::path& sequence, const Conversion& conversion);
 
 /** A sequence in the layout of TUM RGB-D with label images: depth.txt, label.txt, groundtruth.txt,
  * camera.ini and perhaps rgb.txt. The poses are those of the optical frame (x right, y down, z
  * forward); the robot's frame is the camera's with x forward, y left, z up.
- * \param withLabels false: CObservation3DRangeScan without labels (label.txt is not read).
- * True: with pixelLabels if these can hold all classes (64), else a CObservationLabeledCloud.
+ * Without `labels`: CObservation3DRangeScan without labels (label.txt is not read).
+ * With them: with pixelLabels if these can hold all classes (64), else a CObservationLabeledCloud.
  * \throw std::runtime_error as above. */
-Summary convertTumSequence(const std::filesystem::path& folder, bool withLabels,
-                           const Conversion& conversion);
+Summary convertTumSequence(const std::filesystem::path& folder, const Conversion& conversion);
 
 /** Labeled point clouds as ASCII PCD with the fields x, y, z, label, in the world's frame;
  * VIEWPOINT is the sensor's pose. A file a scan, one second apart. \throw std::runtime_error as

@@ -23,6 +23,9 @@ class Output {
   void writeScan(const mrpt::obs::CObservation& observation, std::size_t points,
                  std::size_t labeled);
 
+  /** Adds what is no scan, as a picture. */
+  void writeOther(const mrpt::obs::CObservation& observation) { m_writer.write(observation); }
+
   void skip() { ++m_summary.skipped; }
   LabelNoise& noise() { return m_noise; }
 

@@ -2,9 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 
 #include "Conversion.h"
+#include "KittiCamera.h"
 #include "Output.h"
 #include "TextFile.h"
 
@@ -53,24 +55,24 @@ std::vector<T> readBinary(const fs::path& file, std::size_t valuesEach) {
   return values;
 }
 
-LabeledCloud readScan(const fs::path& pointFile, const fs::path& labelFile,
-                      const ClassTable& table) {
-  const auto xyzr = readBinary<float>(pointFile, 4);
-  const auto labels = readBinary<std::uint32_t>(labelFile, 1);
-  if (labels.size() != xyzr.size() / 4)
-    throw std::runtime_error(labelFile.string() + ": " + std::to_string(labels.size()) +
-                             " labels for " + std::to_string(xyzr.size() / 4) + " points");
+LabeledCloud readPoints(const fs::path& file) {
+  const auto xyzr = readBinary<float>(file, 4);
   LabeledCloud cloud;
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    cloud.points.emplace_back(xyzr[4 * i], xyzr[4 * i + 1], xyzr[4 * i + 2]);
-    try {
+  for (std::size_t i = 0; i < xyzr.size(); i += 4)
+    cloud.points.emplace_back(xyzr[i], xyzr[i + 1], xyzr[i + 2]);
+  return cloud;
+}
+
+void readLabels(const fs::path& file, const ClassTable& table, LabeledCloud& cloud) {
+  const auto labels = readBinary<std::uint32_t>(file, 1);
+  if (labels.size() != cloud.size())
+    throw std::runtime_error(file.string() + ": " + std::to_string(labels.size()) + " labels for " +
+                             std::to_string(cloud.size()) + " points");
+  for (std::size_t i = 0; i < labels.size(); ++i) try {
       cloud.classes.push_back(table.fromRaw(labels[i] & 0xffff));  // above: the instance's number
     } catch (const std::invalid_argument& e) {
-      throw std::runtime_error(labelFile.string() + ": point " + std::to_string(i) + ": " +
-                               e.what());
+      throw std::runtime_error(file.string() + ": point " + std::to_string(i) + ": " + e.what());
     }
-  }
-  return cloud;
 }
 
 std::string sixDigits(std::size_t number) {
@@ -81,7 +83,8 @@ std::string sixDigits(std::size_t number) {
 }  // namespace
 
 Summary convertSemanticKitti(const fs::path& sequence, const Conversion& conversion) {
-  const ClassTable table = labeled_cloud::loadClassTable(conversion.classes);
+  const ClassTable table =
+      conversion.labels ? labeled_cloud::loadClassTable(conversion.classes) : ClassTable();
   const Eigen::Isometry3d Tr = readLidarToCamera(sequence / "calib.txt");
   const auto poses = readLines(sequence / "poses.txt");
   const auto times = readLines(sequence / "times.txt");
@@ -90,15 +93,18 @@ Summary convertSemanticKitti(const fs::path& sequence, const Conversion& convers
                              std::to_string(times.size()) + " times for " +
                              std::to_string(poses.size()) + " poses");
   Output output(conversion, table);
+  std::optional<KittiCamera> camera;
+  if (conversion.images) camera.emplace(sequence, Tr, conversion.output);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!conversion.frames.contains(i)) continue;
     const auto time = mrpt::Clock::fromDouble(numbersOf(times[i], 1)[0]);
     const Eigen::Isometry3d T_map_lidar = Tr.inverse() * poseOf(poses[i]) * Tr;
     const std::string name = sixDigits(i);
     output.writePose(time, mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_map_lidar.matrix())));
-    output.writeCloud(time, "velodyne",
-                      readScan(sequence / "velodyne" / (name + ".bin"),
-                               sequence / "labels" / (name + ".label"), table));
+    if (camera) output.writeOther(camera->observe(name, time));
+    LabeledCloud cloud = readPoints(sequence / "velodyne" / (name + ".bin"));
+    if (conversion.labels) readLabels(sequence / "labels" / (name + ".label"), table, cloud);
+    output.writeCloud(time, "velodyne", std::move(cloud));
   }
   return output.finish();
 }

@@ -55,15 +55,15 @@ CPose3D opticalFromForward() {
 
 class TumConverter {
  public:
-  TumConverter(const fs::path& folder, bool withLabels, const Conversion& conversion)
+  TumConverter(const fs::path& folder, const Conversion& conversion)
       : m_conversion(conversion),
         m_camera(readCamera(folder / "camera.ini")),
         m_depth(readImageList(folder / "depth.txt")),
         m_trajectory(
             labeled_cloud::loadTumTrajectory(folder / "groundtruth.txt", {kTimeTolerance, 1.0})) {
-    if (withLabels) m_labels = readImageList(folder / "label.txt");
+    if (conversion.labels) m_labels = readImageList(folder / "label.txt");
     if (fs::exists(folder / "rgb.txt")) m_color = readImageList(folder / "rgb.txt");
-    if (withLabels || !conversion.classes.empty())
+    if (conversion.labels || !conversion.classes.empty())
       m_table = labeled_cloud::loadClassTable(conversion.classes);
   }
 
@@ -127,8 +127,8 @@ class TumConverter {
 
 }  // namespace
 
-Summary convertTumSequence(const fs::path& folder, bool withLabels, const Conversion& conversion) {
-  return TumConverter(folder, withLabels, conversion).run();
+Summary convertTumSequence(const fs::path& folder, const Conversion& conversion) {
+  return TumConverter(folder, conversion).run();
 }
 
 }  // namespace dataset2rawlog

@@ -15,7 +15,6 @@ struct Cli {
   std::string frames;
   std::filesystem::path folder;
   std::vector<std::filesystem::path> pcds;
-  bool noLabels = false;
   std::function<Summary()> convert;
 
   Cli() {
@@ -41,23 +40,34 @@ struct Cli {
     command->add_option("--classes", conversion.classes, "Class table (YAML)");
   }
 
+  void addNoLabels(CLI::App* command, const std::string& what) {
+    command->add_flag("!--no-labels", conversion.labels, what);
+  }
+
+  void requireClasses() const {
+    if (conversion.labels && conversion.classes.empty())
+      throw std::invalid_argument("--classes is required, except with --no-labels");
+  }
+
   void addSemanticKitti() {
-    CLI::App* command = add("semantic-kitti", "A sequence of SemanticKITTI",
-                            [this] { return convertSemanticKitti(folder, conversion); });
+    CLI::App* command = add("semantic-kitti", "A sequence of SemanticKITTI", [this] {
+      requireClasses();
+      return convertSemanticKitti(folder, conversion);
+    });
     addClasses(command);
-    command->get_option("--classes")->required();
+    addNoLabels(command, "The scans without their labels");
+    command->add_flag("--images", conversion.images, "The camera's images (image_2/) come along");
     command->add_option("SEQUENCE_DIR", folder, "velodyne/, labels/, calib.txt ...")->required();
     command->add_option("OUT.rawlog", conversion.output)->required();
   }
 
   void addTum() {
     CLI::App* command = add("tum", "A TUM RGB-D sequence with label images", [this] {
-      if (!noLabels && conversion.classes.empty())
-        throw std::invalid_argument("--classes is required, except with --no-labels");
-      return convertTumSequence(folder, !noLabels, conversion);
+      requireClasses();
+      return convertTumSequence(folder, conversion);
     });
     addClasses(command);
-    command->add_flag("--no-labels", noLabels, "Depth and color only");
+    addNoLabels(command, "Depth and color only");
     command->add_option("DIR", folder, "depth.txt, label.txt, groundtruth.txt ...")->required();
     command->add_option("OUT.rawlog", conversion.output)->required();
   }
@@ -90,6 +100,7 @@ void run(Cli& cli) {
 
 int main(int argc, char** argv) {
   Cli cli;
+  cli.app.set_version_flag("--version", MSO_VERSION);
   CLI11_PARSE(cli.app, argc, argv);
   try {
     run(cli);

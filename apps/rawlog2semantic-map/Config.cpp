@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "IniSection.h"
+#include "LabelConfig.h"
 
 namespace rawlog2semantic_map {
 
@@ -17,17 +18,17 @@ using mrpt::config::CConfigFileBase;
 namespace {
 
 void refuseUnknownSections(const CConfigFileBase& ini) {
-  static const std::set<std::string> kKnown = {"map",        "insertion", "abstraction",
-                                               "trajectory", "labels",    "pictures"};
+  static const std::set<std::string> kKnown = {"map",    "insertion", "abstraction", "trajectory",
+                                               "labels", "cameras",   "pictures"};
   std::vector<std::string> sections, keys;
   ini.getAllSections(sections);
   for (const std::string& section : sections) {
-    if (kKnown.count(section)) continue;
+    if (kKnown.count(section) || isCameraSection(section)) continue;
     ini.getAllKeys(section, keys);
     if (section.empty() && keys.empty()) continue;
     throw std::runtime_error("unknown section [" + section +
                              "]; known are [map], [insertion], [abstraction], [trajectory], "
-                             "[labels], [pictures]");
+                             "[labels], [cameras], [camera NAME], [pictures]");
   }
 }
 
@@ -37,19 +38,6 @@ void readTrajectory(const CConfigFileBase& ini, Config& config) {
   section.read("maxGap", config.trajectory.maxGap);
   section.finish();
   config.trajectory.validate();
-}
-
-void readLabels(const CConfigFileBase& ini, Config& config) {
-  using Match = labeled_cloud::LabelFolderOptions::Match;
-  IniSection section(ini, "labels");
-  std::string match = "Time";
-  section.read("match", match);
-  section.read("tolerance", config.labels.tolerance);
-  section.finish();
-  if (match != "Time" && match != "Name")
-    throw std::runtime_error("[labels] match is '" + match + "', expected Time or Name");
-  config.labels.match = match == "Time" ? Match::Time : Match::Name;
-  config.labels.validate();
 }
 
 void readPictures(const CConfigFileBase& ini, Config& config) {
@@ -77,7 +65,7 @@ Config readConfig(const fs::path& file) {
   config.insertion.loadFromConfigFile(ini, "insertion");
   config.abstraction.loadFromConfigFile(ini, "abstraction");
   readTrajectory(ini, config);
-  readLabels(ini, config);
+  readLabelConfig(ini, config);
   readPictures(ini, config);
   if (!config.map.classes.empty())
     config.map.classes = (file.parent_path() / config.map.classes).lexically_normal();

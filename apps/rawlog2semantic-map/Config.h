@@ -1,5 +1,8 @@
 #pragma once
+#include <labeled_cloud/CloudLabeler.h>
 #include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/LabelModel.h>
+#include <labeled_cloud/ScanStream.h>
 #include <labeled_cloud/Trajectory.h>
 #include <semantic_map/MapOptions.h>
 #include <semantic_map/MapPictures.h>
@@ -15,6 +18,9 @@ struct Config {
   semantic_map::TAbstractionOptions abstraction;  // [abstraction]
   labeled_cloud::TrajectoryOptions trajectory;    // [trajectory]
   labeled_cloud::LabelFolderOptions labels;       // [labels]
+  labeled_cloud::LabelModel labelModel;           // [labels] too
+  labeled_cloud::ScanStreamOptions stream;        // [labels] too
+  labeled_cloud::CloudLabelerOptions cameras;     // [cameras] and [camera NAME]
   semantic_map::PictureStyle pictures;            // [pictures]
   semantic_map::Viewpoint view;                   // [pictures] too
 };

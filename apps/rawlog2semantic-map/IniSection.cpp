@@ -27,9 +27,7 @@ void IniSection::read(const std::string& key, double& value) {
   if (text.empty()) return;
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || std::isnan(number))
-    throw std::runtime_error("[" + m_section + "] " + key + " is '" + text +
-                             "', expected a number");
+  if (*end != '\0' || std::isnan(number)) fail(key + " is '" + text + "', expected a number");
   value = number;
 }
 
@@ -37,9 +35,12 @@ void IniSection::read(const std::string& key, int& value) {
   double number = value;
   read(key, number);
   if (number != std::floor(number) || std::fabs(number) > 1e9)
-    throw std::runtime_error("[" + m_section + "] " + key + " is " + std::to_string(number) +
-                             ", expected a whole number");
+    fail(key + " is " + std::to_string(number) + ", expected a whole number");
   value = static_cast<int>(number);
+}
+
+void IniSection::fail(const std::string& what) const {
+  throw std::runtime_error("[" + m_section + "] " + what);
 }
 
 void IniSection::finish() const {
@@ -50,7 +51,7 @@ void IniSection::finish() const {
     if (std::any_of(m_known.begin(), m_known.end(), same)) continue;
     std::string list;
     for (const std::string& k : m_known) list += (list.empty() ? "" : ", ") + k;
-    throw std::runtime_error("[" + m_section + "] unknown key '" + key + "'; known are " + list);
+    fail("unknown key '" + key + "'; known are " + list);
   }
 }
 

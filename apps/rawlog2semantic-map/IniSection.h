@@ -18,6 +18,8 @@ class IniSection {
   void read(const std::string& key, int& value);
   void read(const std::string& key, std::string& value);
 
+  /** \throw std::runtime_error naming the section. */
+  [[noreturn]] void fail(const std::string& what) const;
   /** \throw std::runtime_error naming section and key: a key that was not read. */
   void finish() const;
 

@@ -1,6 +1,5 @@
 #pragma once
-#include <labeled_cloud/ScanConverter.h>
-#include <labeled_cloud/Trajectory.h>
+#include <labeled_cloud/ScanStream.h>
 #include <semantic_map/CSemanticOctoMap.h>
 
 #include <filesystem>
@@ -12,36 +11,34 @@
 
 namespace rawlog2semantic_map {
 
-/** Streams rawlogs into a map, observation by observation. */
+/** Inserts a stream of scans into a map; the next scans are made meanwhile. */
 class MapBuilder {
  public:
-  /** All three must outlive the builder. */
-  MapBuilder(semantic_map::CSemanticOctoMap& map, labeled_cloud::ScanConverter& converter,
-             const labeled_cloud::Trajectory& trajectory);
+  /** Is told of each scan that was inserted. */
+  using OnScan = std::function<void(const labeled_cloud::LabeledScan& scan,
+                                    const mrpt::poses::CPose3D& T_map_robot)>;
+
+  /** The map must outlive the builder. */
+  explicit MapBuilder(semantic_map::CSemanticOctoMap& map, OnScan onScan = {});
 
   /** Also inserts each scan into a map that keeps no abstraction, for comparison. */
   void timeWithoutAbstraction();
 
   /** Inserts all scans of the rawlogs, saying on the standard output how far it is.
    * \throw std::runtime_error naming the file: it is damaged, or a scan of it cannot be used. */
-  void insert(const std::vector<std::filesystem::path>& rawlogs);
+  void insert(const std::vector<std::filesystem::path>& rawlogs, labeled_cloud::ScanStream& stream);
 
   const Summary& summary() const { return m_summary; }
 
  private:
-  void insertRawlog(const std::filesystem::path& file,
-                    const std::function<void(std::uint64_t)>& onBytesRead);
-  void insertObservation(const mrpt::obs::CObservation& observation);
-  void insertScan(const mrpt::obs::CObservation& observation,
-                  const mrpt::poses::CPose3D& T_map_robot);
-
+  void add(const labeled_cloud::StreamedObservation& observation);
+  void insertScan(const labeled_cloud::StreamedObservation& observation);
   void noteAbstraction(const labeled_cloud::LabeledScan& scan,
                        const mrpt::poses::CPose3D& T_map_robot);
 
   semantic_map::CSemanticOctoMap& m_map;
+  OnScan m_onScan;
   std::unique_ptr<semantic_map::CSemanticOctoMap> m_plainMap;
-  labeled_cloud::ScanConverter& m_converter;
-  const labeled_cloud::Trajectory& m_trajectory;
   Summary m_summary;
 };
 

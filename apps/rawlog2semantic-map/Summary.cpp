@@ -28,7 +28,14 @@ void Summary::add(const semantic_octree::InsertionReport& report) {
   insertion.freeVoxels += report.freeVoxels;
 }
 
-std::size_t Summary::numSkipped() const { return read - inserted; }
+void Summary::addProblems(const std::vector<std::string>& more) {
+  constexpr std::size_t kMostListed = 100;
+  numProblems += more.size();
+  for (const std::string& problem : more)
+    if (problems.size() < kMostListed) problems.push_back(problem);
+}
+
+std::size_t Summary::numSkipped() const { return read - inserted - pictures; }
 
 std::string Summary::skippedText() const {
   std::string text = std::to_string(numSkipped()) + " skipped";
@@ -107,7 +114,9 @@ ordered_json toJson(const Summary& s, const SemanticOcTree& tree) {
        {{"read", s.read},
         {"inserted", s.inserted},
         {"insertedWithoutLabels", s.withoutLabels},
+        {"pictures", s.pictures},
         {"skipped", s.skipped}}},
+      {"problems", {{"count", s.numProblems}, {"first", s.problems}}},
       {"points", pointsJson(s)},
       {"millisecondsPerScan",
        {{"conversion", timesJson(s.conversionTimes)}, {"insertion", timesJson(s.insertionTimes)}}},

@@ -21,9 +21,14 @@ struct AbstractionSummary {
 struct Summary {
   std::vector<std::string> rawlogs;
   std::size_t read = 0, inserted = 0;
+  /** Pictures that were there to label scans. */
+  std::size_t pictures = 0;
+  /** What was wrong with observations that were left out: how often, and the first of them. */
+  std::size_t numProblems = 0;
+  std::vector<std::string> problems;
   /** Number of observations that were not inserted, by the reason. */
   std::map<std::string, std::size_t> skipped;
-  /** Depth images for which there were labels in a folder, but none for them. */
+  /** Scans for which labels were looked for and not found. */
   std::size_t withoutLabels = 0;
   /** Sums over the scans that were inserted. */
   labeled_cloud::ScanCounts conversion;
@@ -34,6 +39,7 @@ struct Summary {
   AbstractionSummary abstraction;
 
   void add(const labeled_cloud::ScanCounts& counts);
+  void addProblems(const std::vector<std::string>& more);
   void add(const semantic_octree::InsertionReport& report);
   std::size_t numSkipped() const;
   /** "3 skipped (2 outside the trajectory, 1 CObservationImage)" */

@@ -1,6 +1,5 @@
 // Makes a semantic octree map, pictures of it and a summary from labeled rawlogs.
 #include <labeled_cloud/ClassTableFile.h>
-#include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/OutputFolder.h>
 #include <labeled_cloud/RawlogTrajectory.h>
@@ -12,7 +11,10 @@
 #include <optional>
 
 #include "Config.h"
+#include "Labels.h"
 #include "MapBuilder.h"
+#include "Preview.h"
+#include "ScanLog.h"
 
 namespace rawlog2semantic_map {
 namespace {
@@ -24,15 +26,17 @@ using semantic_octree::ClassTable;
 using semantic_octree::SemanticOcTree;
 
 struct Cli {
-  fs::path config, output, labels, trajectory, classes;
+  fs::path config, output, trajectory, classes, confusion, saveLabeled, preview;
+  LabelSources labels;
   std::optional<double> resolution, maxRange;
+  std::size_t previewEvery = 10;
   bool compareUpkeep = false;
   std::vector<fs::path> rawlogs;
 
   void addTo(CLI::App& app) {
     app.add_option("--config", config, "Options (.ini)")->required();
     app.add_option("--output", output, "Folder of the results, created if need be")->required();
-    app.add_option("--labels", labels, "Folder of label images, instead of labels in the rawlog");
+    addLabelsTo(app);
     app.add_option("--trajectory", trajectory,
                    "Poses of the robot (TUM format), instead of those in the rawlog");
     app.add_option("--classes", classes, "Class table (YAML), instead of the configuration's");
@@ -43,6 +47,23 @@ struct Cli {
                  "Time each insertion without upkeep of the abstraction, too");
     app.add_option("INPUT.rawlog", rawlogs, "Rawlogs that continue each other")->required();
   }
+
+  void addLabelsTo(CLI::App& app) {
+    app.add_option(
+           "--labels", labels.folders,
+           "Label images, instead of labels in the rawlog; once for each camera, or for all")
+        ->type_name("[SENSOR=]FOLDER")
+        ->allow_extra_args(false);
+    app.add_option("--network", labels.network, "Network (ONNX) that labels the color images");
+    app.add_option("--network-config", labels.networkConfig, "What it expects and answers (YAML)");
+    app.add_option("--confusion", confusion,
+                   "Confusion matrix (YAML) of the classifier that gave the hard labels");
+    app.add_option("--save-labeled", saveLabeled, "Rawlog of the scans with their labels");
+    app.add_option("--preview", preview,
+                   "Folder of pictures: labels and points over the images they are from");
+    app.add_option("--preview-every", previewEvery, "Every so-manieth scan has pictures")
+        ->check(CLI::PositiveNumber);
+  }
 };
 
 Config configOf(const Cli& cli) {
@@ -50,6 +71,7 @@ Config configOf(const Cli& cli) {
   if (!cli.classes.empty()) config.map.classes = cli.classes.string();
   if (cli.resolution) config.map.resolution = *cli.resolution;
   if (cli.maxRange) config.insertion.scan.maxRange = *cli.maxRange;
+  if (!cli.preview.empty()) config.stream.picturesEvery = cli.previewEvery;
   config.map.validate();
   config.insertion.validate();
   return config;
@@ -62,19 +84,47 @@ labeled_cloud::Trajectory trajectoryOf(const Cli& cli, const Config& config) {
   return labeled_cloud::readTrajectory(cli.rawlogs, config.trajectory);
 }
 
-Summary buildMap(const Cli& cli, const Config& config, CSemanticOctoMap& map) {
+/** Where scans go beside the map. */
+class SideOutputs {
+ public:
+  SideOutputs(const Cli& cli, const ClassTable& table) {
+    if (!cli.saveLabeled.empty()) m_log.emplace(cli.saveLabeled, table);
+    if (!cli.preview.empty()) m_preview.emplace(cli.preview, table);
+  }
+  void write(const labeled_cloud::LabeledScan& scan, const mrpt::poses::CPose3D& T_map_robot) {
+    if (m_log) m_log->write(scan, T_map_robot);
+    if (m_preview) m_preview->write(scan);
+  }
+  void finish() {
+    if (m_log) m_log->finish();
+  }
+
+ private:
+  std::optional<ScanLog> m_log;
+  std::optional<Preview> m_preview;
+};
+
+Summary buildMap(const Cli& cli, Config config, CSemanticOctoMap& map) {
   const ClassTable& table = map.tree().classes();
-  std::shared_ptr<labeled_cloud::ImageLabeler> labeler;
-  if (!cli.labels.empty())
-    labeler = std::make_shared<labeled_cloud::LabelFolder>(cli.labels, table, config.labels);
+  if (!cli.confusion.empty())
+    config.labelModel.confusion = std::make_shared<labeled_cloud::ConfusionMatrix>(
+        labeled_cloud::loadConfusionMatrix(cli.confusion, table));
+  config.insertion.conversion.labels = config.labelModel;
+  const auto labeler = makeLabeler(cli.labels, table, config);
   labeled_cloud::ScanConverter converter(table, config.insertion.conversion, labeler);
   const labeled_cloud::Trajectory trajectory = trajectoryOf(cli, config);
-  MapBuilder builder(map, converter, trajectory);
+  labeled_cloud::CloudLabeler clouds(labeler, table.size(), config.labelModel, trajectory,
+                                     config.cameras);
+  labeled_cloud::ScanStream stream(cli.rawlogs, converter, trajectory, labeler ? &clouds : nullptr,
+                                   config.stream);
+  SideOutputs outputs(cli, table);
+  MapBuilder builder(map, [&outputs](const auto& scan, const auto& T) { outputs.write(scan, T); });
   if (cli.compareUpkeep) builder.timeWithoutAbstraction();
-  builder.insert(cli.rawlogs);
+  builder.insert(cli.rawlogs, stream);
   if (builder.summary().inserted == 0)
     throw std::runtime_error("nothing to map: no observation was inserted, " +
                              builder.summary().skippedText());
+  outputs.finish();
   return builder.summary();
 }
 
@@ -132,6 +182,7 @@ int main(int argc, char** argv) {
   CLI::App app("Makes a semantic octree map, pictures and a summary from labeled rawlogs");
   rawlog2semantic_map::Cli cli;
   cli.addTo(app);
+  app.set_version_flag("--version", MSO_VERSION);
   CLI11_PARSE(app, argc, argv);
   try {
     rawlog2semantic_map::run(cli);

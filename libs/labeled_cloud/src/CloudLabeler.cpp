@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "EigenPose.h"
+#include <labeled_cloud/EigenPose.h>
+#include <labeled_cloud/VisiblePixels.h>
 #include "ObservationName.h"
 #include "PointLabels.h"
-#include "VisiblePixels.h"
 
 namespace labeled_cloud {
 

@@ -3,10 +3,10 @@
 
 #include <stdexcept>
 
-#include "EigenPose.h"
+#include <labeled_cloud/EigenPose.h>
+#include <labeled_cloud/VisiblePixels.h>
 #include "PointGrid.h"
 #include "PointLabels.h"
-#include "VisiblePixels.h"
 
 namespace labeled_cloud {
 

@@ -1,4 +1,4 @@
-#include "VisiblePixels.h"
+#include <labeled_cloud/VisiblePixels.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,91 @@
+#include "Preview.h"
+
+#include <labeled_cloud/EigenPose.h>
+#include <labeled_cloud/LabelModel.h>
+#include <labeled_cloud/VisiblePixels.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+namespace rawlog2semantic_map {
+
+using labeled_cloud::LabeledPicture;
+using labeled_cloud::LabeledScan;
+using semantic_octree::ClassId;
+using semantic_octree::ClassTable;
+using semantic_octree::kNoClass;
+
+namespace {
+
+const cv::Vec3b kGray(128, 128, 128);
+
+cv::Vec3b colorOf(ClassId id, const ClassTable& classes) {
+  if (id == kNoClass) return kGray;
+  const auto& c = classes.color(id);
+  return {c.b, c.g, c.r};
+}
+
+/** The photograph, or black where there is none. */
+cv::Mat3b photograph(const LabeledPicture& picture) {
+  cv::Mat image;
+  if (!picture.image.isEmpty()) image = picture.image.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);
+  if (image.empty())
+    image = cv::Mat3b(picture.labels.pictureRows(), picture.labels.pictureCols(), cv::Vec3b());
+  if (image.channels() == 1) cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
+  return image;
+}
+
+cv::Mat3b withLabels(cv::Mat3b image, const LabeledPicture& picture, const ClassTable& classes) {
+  for (int row = 0; row < image.rows; ++row)
+    for (int col = 0; col < image.cols; ++col) {
+      const auto cell = picture.labels.cellAt(col, row);
+      const ClassId id = cell ? picture.labels.classOf(*cell) : kNoClass;
+      if (id != kNoClass) image(row, col) = image(row, col) / 2 + colorOf(id, classes) / 2;
+    }
+  return image;
+}
+
+cv::Mat3b withPoints(cv::Mat3b image, const LabeledPicture& picture,
+                     const semantic_octree::LabeledCloud& cloud, const ClassTable& classes) {
+  image = image / 2;
+  const auto T_camera_sensor = labeled_cloud::toEigen(picture.T_sensor_camera).inverse();
+  const auto pixels =
+      labeled_cloud::visiblePixels(cloud.points, T_camera_sensor, picture.camera, 0);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!pixels[i].allFinite()) continue;
+    const ClassId id = cloud.classes.empty() ? kNoClass : cloud.classes[i];
+    cv::circle(image, cv::Point(cvRound(pixels[i].x()), cvRound(pixels[i].y())),
+               id == kNoClass ? 0 : 1, cv::Scalar(colorOf(id, classes)), cv::FILLED);
+  }
+  return image;
+}
+
+}  // namespace
+
+Preview::Preview(const std::filesystem::path& folder, const ClassTable& classes)
+    : m_folder(folder), m_classes(classes) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw std::runtime_error(folder.string() + ": cannot be created: " + error.message());
+}
+
+void Preview::write(const LabeledScan& scan) {
+  if (scan.pictures.empty()) return;
+  auto cloud = scan.cloud;
+  labeled_cloud::LabelModel hard;
+  hard.kind = labeled_cloud::LabelModel::Kind::Hard;
+  hard.apply(m_classes.size(), {}, cloud);
+  for (const LabeledPicture& picture : scan.pictures) {
+    const cv::Mat3b image = photograph(picture);
+    cv::Mat sheet;
+    cv::vconcat(withLabels(image.clone(), picture, m_classes),
+                withPoints(image.clone(), picture, cloud, m_classes), sheet);
+    char name[32];
+    std::snprintf(name, sizeof name, "%06zu.png", m_written++);
+    if (!cv::imwrite((m_folder / name).string(), sheet))
+      throw std::runtime_error((m_folder / name).string() + ": cannot be written");
+  }
+}
+
+}  // namespace rawlog2semantic_map
