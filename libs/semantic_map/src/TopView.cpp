@@ -39,8 +39,18 @@ cv::Rect footprint(const MapCell& cell, const Extent& extent, const ColumnImage&
   return cv::Rect(left, top, size, size) & cv::Rect({0, 0}, columns.height.size());
 }
 
+/** Edge of a column, m: that of the finest cells, or larger if there would be more columns than
+ * memory is for. (One cell may be kilometers wide: a collapsed root.) */
+double columnSize(const Extent& extent, double finest) {
+  constexpr double kMostColumns = 32e6;
+  const Eigen::Vector2d size = (extent.high - extent.low).head<2>().cast<double>();
+  double cell = finest;
+  while (size.x() / cell * (size.y() / cell) > kMostColumns) cell *= 2;
+  return cell;
+}
+
 ColumnImage columnsOf(const SemanticOcTree& tree, const MapCells& map, const Extent& extent) {
-  ColumnImage columns = emptyColumns(extent, tree.getNodeSize(map.depth));
+  ColumnImage columns = emptyColumns(extent, columnSize(extent, tree.getNodeSize(map.depth)));
   for (const MapCell& cell : map.cells) {
     const cv::Rect area = footprint(cell, extent, columns);
     const auto color = classColor(tree.classes(), cell.id);
@@ -76,22 +86,34 @@ cv::Mat onPaper(const cv::Mat& map, int margin) {
 
 }  // namespace
 
-cv::Mat renderTopView(const SemanticOcTree& tree, const PictureStyle& style) {
+TopView takeTopView(const SemanticOcTree& tree, const PictureStyle& style) {
   style.validate();
+  TopView view;
   const MapCells map = collectCells(tree, style);
-  if (map.cells.empty()) return cv::Mat(style.height, style.width, CV_8UC3, kPaper);
-
-  ColumnImage columns = columnsOf(tree, map, extentOf(map.cells));
+  if (map.cells.empty()) {
+    view.picture = cv::Mat(style.height, style.width, CV_8UC3, kPaper);
+    return view;
+  }
+  const Extent extent = extentOf(map.cells);
+  ColumnImage columns = columnsOf(tree, map, extent);
   shadeByRelief(columns.color, columns.height, columns.cell);
   constexpr int kBorder = 24;
   const double scale = std::min(double(style.width - 2 * kBorder) / columns.color.cols,
                                 double(style.height - 2 * kBorder) / columns.color.rows);
-  cv::Mat picture = onPaper(scaledBy(columns.color, scale), kBorder);
-  drawAxes(picture, {cv::Point2d(1, 0), cv::Point2d(0, -1), cv::Point2d(0, 0)});
-  drawScaleBar(picture, scale / columns.cell);
-  if (!style.legend) return picture;
-  return withLegend(picture, style.title,
-                    legendOf(tree.classes(), map.countClasses(tree.numClasses())));
+  view.pixelsPerMeter = scale / columns.cell;
+  view.origin = {kBorder - extent.low.x() * view.pixelsPerMeter,
+                 kBorder + extent.high.y() * view.pixelsPerMeter};
+  view.picture = onPaper(scaledBy(columns.color, scale), kBorder);
+  drawAxes(view.picture, {cv::Point2d(1, 0), cv::Point2d(0, -1), cv::Point2d(0, 0)});
+  drawScaleBar(view.picture, view.pixelsPerMeter);
+  if (style.legend)
+    view.picture = withLegend(view.picture, style.title,
+                              legendOf(tree.classes(), map.countClasses(tree.numClasses())));
+  return view;
+}
+
+cv::Mat renderTopView(const SemanticOcTree& tree, const PictureStyle& style) {
+  return takeTopView(tree, style).picture;
 }
 
 }  // namespace semantic_map

@@ -29,18 +29,28 @@ void checkOrder(const semantic_octree::SemanticOcTree& map,
                                 " and unknown ground counts as one");
 }
 
+/** Marks the tiles that a cube of voxels touches. */
+void mark(Column low, int edge, TileGrid<char>& marks) {
+  const Column first = tileOf(low), last = tileOf({low.x + edge - 1, low.y + edge - 1});
+  if (std::max(last.x - first.x, last.y - first.y) > 1000)
+    throw std::invalid_argument("an occupied cell of the map is too large to be ground");
+  for (int y = first.y; y <= last.y; ++y)
+    for (int x = first.x; x <= last.x; ++x) marks.at({x, y}) = true;
+}
+
+/** The tiles with anything occupied, and those next to them: holes may be bridged there. */
 std::vector<Column> tilesOf(const semantic_octree::SemanticOcTree& map) {
-  std::vector<Column> tiles;
+  TileGrid<char> marks;
   for (auto it = map.begin_leafs(), end = map.end_leafs(); it != end; ++it) {
+    if (it->getLogOdds() <= 0) continue;
+    const int edge = 1 << (map.getTreeDepth() - it.getDepth());
     const auto low = it.getIndexKey();
-    const int edge = std::max(1, (1 << (map.getTreeDepth() - it.getDepth())) / kTileEdge);
-    const Column tile = tileOf({low[0], low[1]});
-    for (int y = 0; y < edge; ++y)
-      for (int x = 0; x < edge; ++x) tiles.push_back({tile.x + x, tile.y + y});
-    if (tiles.size() > 1000000) throw std::invalid_argument("the map is too large for its voxels");
+    mark({low[0] - kTileEdge, low[1] - kTileEdge}, edge + 2 * kTileEdge, marks);
   }
-  std::sort(tiles.begin(), tiles.end());
-  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  std::vector<Column> tiles;
+  marks.forEach([&](Column tile, char marked) {
+    if (marked) tiles.push_back(tile);
+  });
   return tiles;
 }
 

@@ -16,8 +16,9 @@ std::size_t rootOf(std::vector<std::size_t>& parent, std::size_t i) {
 }
 
 void join(std::vector<std::size_t>& parent, std::size_t a, std::size_t b) {
-  const auto [low, high] = std::minmax(rootOf(parent, a), rootOf(parent, b));
-  parent[high] = low;
+  a = rootOf(parent, a);
+  b = rootOf(parent, b);
+  parent[std::max(a, b)] = std::min(a, b);
 }
 
 std::size_t numParts(const SurfaceTile& tile) {

@@ -32,6 +32,21 @@ struct PictureStyle {
  * \throw std::invalid_argument as PictureStyle::validate(). */
 cv::Mat renderTopView(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style = {});
 
+/** A map from above, and where its points are in the picture. */
+struct TopView {
+  cv::Mat picture;  ///< as renderTopView() makes it
+  double pixelsPerMeter = 1;
+  cv::Point2d origin;  ///< pixels, of the map's point (0, 0)
+
+  /** \param x, y map frame, m eturn pixels */
+  cv::Point2d at(double x, double y) const {
+    return {origin.x + x * pixelsPerMeter, origin.y - y * pixelsPerMeter};
+  }
+};
+
+/** The same picture, for drawing on it. */
+TopView takeTopView(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style = {});
+
 /** Where a perspective view is taken from. */
 struct Viewpoint {
   /** Direction in which the camera looks, degrees from +x towards +y. */

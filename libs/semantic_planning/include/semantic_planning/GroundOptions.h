@@ -11,7 +11,7 @@ struct GroundOptions {
   double bridgeGap = 0.8;
   /** Wider holes up to this (meters) are bridged too, but their ground is of unknown class: the
    * vehicle's own shadow at the start, what parked cars hid. */
-  double unknownGap = 3.0;
+  double unknownGap = 4.0;
   /** Whether ground of a forbidden class keeps the whole footprint off, or the wheels only. */
   bool keepFootprintOffForbidden = false;
 

@@ -1,0 +1,23 @@
+#pragma once
+#include <semantic_planning/SemanticPlanner.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace semantic_map_plan {
+
+/** What the command line says. */
+struct Cli {
+  std::filesystem::path map, classes, vehicle, weights, output;
+  std::string solution;
+  mrpt::math::TPose2D start, goal;
+  std::optional<double> startZ, goalZ;
+  /** All but the vehicle. */
+  semantic_planning::PlannerOptions planner;
+
+  void addTo(CLI::App& app);
+};
+
+}  // namespace semantic_map_plan

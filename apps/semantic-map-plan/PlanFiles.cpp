@@ -1,0 +1,76 @@
+#include "PlanFiles.h"
+
+#include <semantic_planning/OrderFile.h>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace semantic_map_plan {
+
+using nlohmann::json;
+using semantic_octree::ClassTable;
+using semantic_planning::PathPoint;
+using semantic_planning::PlanResult;
+
+namespace {
+
+json lengthsByName(const PlanResult& plan, const ClassTable& classes) {
+  json lengths = json::object();
+  for (std::size_t id = 0; id < plan.lengthPerClass.size(); ++id)
+    if (plan.lengthPerClass[id] > 0)
+      lengths[groundName(static_cast<semantic_octree::ClassId>(id), classes)] =
+          plan.lengthPerClass[id];
+  return lengths;
+}
+
+/** The classes of each rank, best first. */
+json ranksOf(const colored_graph::ClassOrder& order, const ClassTable& classes) {
+  json ranks = json::array();
+  for (int rank = 0; rank < order.ranks(); ++rank) {
+    json names = json::array();
+    for (int id = 0; id < order.classes(); ++id)
+      if (order.rank(static_cast<colored_graph::ClassId>(id)) == rank)
+        names.push_back(groundName(static_cast<semantic_octree::ClassId>(id), classes));
+    ranks.push_back(names);
+  }
+  return ranks;
+}
+
+json timesOf(const semantic_planning::StageTimes& times) {
+  json stages = json::object();
+  for (const auto& [stage, milliseconds] : times) stages[stage] = milliseconds;
+  return stages;
+}
+
+}  // namespace
+
+std::string groundName(semantic_octree::ClassId id, const ClassTable& classes) {
+  return id == semantic_octree::kNoClass ? semantic_planning::kUnknownGround : classes.name(id);
+}
+
+std::string toCsv(const PlanResult& plan, const ClassTable& classes) {
+  std::ostringstream out;
+  out << "x,y,z,heading,curvature,gear,class,arc_length\n" << std::fixed << std::setprecision(4);
+  for (const PathPoint& p : plan.path)
+    out << p.x << ',' << p.y << ',' << p.z << ',' << p.heading * 180 / M_PI << ',' << p.curvature
+        << ',' << (p.forward ? "forward" : "backward") << ',' << groundName(p.classId, classes)
+        << ',' << p.arcLength << '\n';
+  return out.str();
+}
+
+json toJson(const PlanResult& plan, const colored_graph::ClassOrder& order,
+            const ClassTable& classes) {
+  return {{"status", nameOf(plan.status)},
+          {"reason", plan.reason},
+          {"cost", plan.cost},
+          {"ranks", ranksOf(order, classes)},
+          {"length", plan.length},
+          {"length_per_class", lengthsByName(plan, classes)},
+          {"vertices", plan.numVertices},
+          {"edges", plan.numEdges},
+          {"edges_evaluated", plan.search.edgesEvaluated},
+          {"expansions", plan.search.expansions},
+          {"milliseconds", timesOf(plan.times)}};
+}
+
+}  // namespace semantic_map_plan

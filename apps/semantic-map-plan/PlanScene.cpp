@@ -1,0 +1,59 @@
+#include "PlanScene.h"
+
+#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt/opengl/CPointCloud.h>
+#include <mrpt/opengl/CSetOfLines.h>
+#include <semantic_map/CSemanticOctoMap.h>
+
+#include <stdexcept>
+
+namespace semantic_map_plan {
+
+using namespace semantic_planning;
+
+namespace {
+
+constexpr double kAboveGround = 0.3;  // m, so that the ground does not hide lines
+
+mrpt::opengl::CPointCloud::Ptr verticesOf(const SemanticPlanner& planner) {
+  auto points = mrpt::opengl::CPointCloud::Create();
+  points->setName("vertices");
+  points->setPointSize(4);
+  points->setColor_u8(0, 40, 90);
+  const Roadmap& roadmap = planner.roadmap();
+  for (colored_graph::VertexId v = 0; v < roadmap.graph().vertexIdEnd(); ++v)
+    if (roadmap.graph().containsVertex(v)) {
+      const GroundPose& p = roadmap.pose(v);
+      points->insertPoint(p.pose.x, p.pose.y, planner.ground().centerOf(p.z) + kAboveGround);
+    }
+  return points;
+}
+
+mrpt::opengl::CSetOfLines::Ptr lineOf(const PlanResult& plan) {
+  auto line = mrpt::opengl::CSetOfLines::Create();
+  line->setName("path");
+  line->setLineWidth(4);
+  line->setColor_u8(20, 20, 20);
+  for (std::size_t i = 1; i < plan.path.size(); ++i) {
+    const PathPoint &a = plan.path[i - 1], &b = plan.path[i];
+    line->appendLine(a.x, a.y, a.z + kAboveGround, b.x, b.y, b.z + kAboveGround);
+  }
+  return line;
+}
+
+}  // namespace
+
+void saveScene(semantic_octree::SemanticOcTree map, const SemanticPlanner& planner,
+               const PlanResult& plan, const std::filesystem::path& file) {
+  const semantic_map::CSemanticOctoMap semanticMap(std::move(map));
+  auto cells = mrpt::opengl::CSetOfObjects::Create();
+  semanticMap.getVisualizationInto(*cells);
+  mrpt::opengl::COpenGLScene scene;
+  scene.insert(cells);
+  if (planner.hasRoadmap()) scene.insert(verticesOf(planner));
+  scene.insert(lineOf(plan));
+  if (!scene.saveToFile(file.string()))
+    throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+}  // namespace semantic_map_plan

@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+#include <semantic_planning/Ground.h>
+
+#include "PaintedWorld.h"
+
+using namespace semantic_planning;
+
+namespace {
+
+/** A floor with a slit from y = 0 to y = `width`. */
+class SlitFloor : public testing::Test {
+ protected:
+  void paint(double width) {
+    world.floor(-6, 6, -6, 0, PaintedWorld::Road);
+    world.floor(-6, 6, width, 6, PaintedWorld::Grass);
+  }
+
+  Ground ground(double bridgeGap, double unknownGap) {
+    GroundOptions options;
+    options.bridgeGap = bridgeGap;
+    options.unknownGap = unknownGap;
+    return Ground(world.map(), VehicleOptions(), options, {5, {{0, 1, 2, 3, 4}}});
+  }
+
+  PaintedWorld world;
+};
+
+}  // namespace
+
+TEST_F(SlitFloor, aNarrowSlitGetsTheClassOfItsNearerBorder) {
+  paint(0.8);
+  const Ground g = ground(1, 1);
+  const auto nearRoad = g.find(0, 0.1), nearGrass = g.find(0, 0.7);
+  ASSERT_TRUE(nearRoad && nearGrass);
+  EXPECT_TRUE(nearRoad->surface.bridged);
+  EXPECT_EQ(nearRoad->surface.classId, PaintedWorld::Road);
+  EXPECT_EQ(nearGrass->surface.classId, PaintedWorld::Grass);
+  EXPECT_TRUE(g.connected(*g.find(0, -1), *g.find(0, 2)));
+}
+
+TEST_F(SlitFloor, aWiderSlitIsUnknownGround) {
+  paint(1.4);
+  const auto middle = ground(1, 2).find(0, 0.7);
+  ASSERT_TRUE(middle);
+  EXPECT_EQ(middle->surface.classId, semantic_octree::kNoClass);
+}
+
+TEST_F(SlitFloor, aSlitWiderThanAllGapsStaysOpen) {
+  paint(2.4);
+  const Ground g = ground(1, 2);
+  EXPECT_FALSE(g.find(0, 1.2).has_value());
+  EXPECT_FALSE(g.connected(*g.find(0, -1), *g.find(0, 4)));
+}
+
+TEST_F(SlitFloor, whatStandsInTheSlitIsNotBridged) {
+  paint(0.8);
+  world.box(-6, 6, 0.4, 0.6, 0, 1, PaintedWorld::Wall);
+  const Ground g = ground(1, 1);
+  EXPECT_FALSE(g.connected(*g.find(0, -1), *g.find(0, 2)));
+}
+
+TEST_F(SlitFloor, aDitchIsNotBridged) {
+  paint(0.8);
+  world.box(-6, 6, 0, 0.8, -2, -1.8, PaintedWorld::Mud);  // seen from above: free space below
+  const Ground g = ground(1, 1);
+  EXPECT_FALSE(g.connected(*g.find(0, -1), *g.find(0, 2)));
+}

@@ -1,0 +1,206 @@
+#include <gtest/gtest.h>
+#include <semantic_planning/Ground.h>
+
+#include <cmath>
+#include <random>
+
+#include "PaintedWorld.h"
+
+using namespace semantic_planning;
+using semantic_octree::CellState;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+constexpr int kOrigin = 32768;
+
+colored_graph::ClassOrder anyClass() { return {5, {{0, 1, 2, 3, 4}}}; }
+
+/** A robot of 1 m in height that needs no room, and no bridges. */
+VehicleOptions smallVehicle() {
+  VehicleOptions vehicle;
+  vehicle.footprint = VehicleOptions::rectangle(-0.1, 0.1, 0.2);
+  vehicle.clearance = 0;
+  vehicle.maxSlope = 80;
+  return vehicle;
+}
+
+GroundOptions withoutBridges() {
+  GroundOptions options;
+  options.bridgeGap = options.unknownGap = 0;
+  return options;
+}
+
+Ground groundOf(const SemanticOcTree& map, const VehicleOptions& vehicle = smallVehicle(),
+                const GroundOptions& options = withoutBridges()) {
+  return Ground(map, vehicle, options, anyClass());
+}
+
+void addRubble(PaintedWorld& world, unsigned seed, int voxels) {
+  std::mt19937 random(seed);
+  for (int i = 0; i < voxels; ++i)
+    world.voxel(int(random() % 40) - 20, int(random() % 40) - 20, int(random() % 14) - 7,
+                PaintedWorld::Class(1 + random() % 4));
+}
+
+bool occupied(const SemanticOcTree& map, int x, int y, int z) {
+  const octomap::OcTreeKey key(std::uint16_t(kOrigin + x), std::uint16_t(kOrigin + y),
+                               std::uint16_t(kOrigin + z));
+  return map.query(key).status == CellState::Status::Occupied;
+}
+
+void expectSame(const Ground& a, const Ground& b) {
+  for (int x = -60; x < 60; ++x)
+    for (int y = -60; y < 60; ++y) {
+      const Column c{kOrigin + x, kOrigin + y};
+      const SurfaceRange s = a.surfaces(c), t = b.surfaces(c);
+      ASSERT_TRUE(std::equal(s.begin(), s.end(), t.begin(), t.end())) << x << ' ' << y;
+    }
+}
+
+}  // namespace
+
+TEST(Ground, surfacesAreTheOccupiedVoxelsWithHeadRoomOfAColumnScan) {
+  PaintedWorld world;
+  addRubble(world, 1, 3000);
+  const SemanticOcTree& map = world.map();
+  const Ground ground = groundOf(map);
+  std::size_t found = 0;
+  for (int x = -22; x < 22; ++x)
+    for (int y = -22; y < 22; ++y) {
+      std::vector<std::pair<int, int>> expected;
+      for (int z = -9; z < 9; ++z) {
+        bool top = occupied(map, x, y, z);
+        for (int above = 1; above <= 5; ++above) top = top && !occupied(map, x, y, z + above);
+        const octomap::OcTreeKey key(std::uint16_t(kOrigin + x), std::uint16_t(kOrigin + y),
+                                     std::uint16_t(kOrigin + z));
+        if (top) expected.emplace_back(kOrigin + z, map.query(key).likeliestClass);
+      }
+      std::vector<std::pair<int, int>> surfaces;
+      for (const Surface& s : ground.surfaces({kOrigin + x, kOrigin + y}))
+        surfaces.emplace_back(s.z, s.classId);
+      ASSERT_EQ(surfaces, expected) << x << ' ' << y;
+      found += surfaces.size();
+    }
+  EXPECT_GT(found, 1000u);
+}
+
+TEST(Ground, afterUpdatesItIsTheGroundReadAnew) {
+  PaintedWorld world;
+  addRubble(world, 2, 600);
+  world.floor(-6, 6, -6, 6, PaintedWorld::Road);
+  SemanticOcTree& map = world.map();
+  const GroundOptions bridged;
+  map.takeTouchedTiles();
+  Ground ground = groundOf(map, VehicleOptions(), bridged);
+  for (unsigned round = 0; round < 8; ++round) {
+    addRubble(world, 100 + round, 25);
+    world.map({0.05 + 0.3 * round, 0.05, 20});
+    ground.update(map.takeTouchedTiles());
+    expectSame(ground, groundOf(map, VehicleOptions(), bridged));
+  }
+}
+
+TEST(Ground, anUpdateTellsTheTilesThatChanged) {
+  PaintedWorld world;
+  world.floor(-20, 20, -20, 20, PaintedWorld::Road);
+  SemanticOcTree& map = world.map();
+  map.takeTouchedTiles();
+  Ground ground = groundOf(map);
+  EXPECT_TRUE(ground.update({}).empty());
+  world.box(8.1, 8.3, 8.1, 8.3, 0, 1, PaintedWorld::Wall).map({8.05, 8.05, 10});
+  const std::vector<Column> changed = ground.update(map.takeTouchedTiles());
+  const Column tile = tileOf(ground.columnAt(8.1, 8.1));
+  EXPECT_NE(std::find(changed.begin(), changed.end(), tile), changed.end());
+  EXPECT_LE(changed.size(), 4u);
+}
+
+TEST(Ground, roomIsTheDistanceToTheNearestColumnWithoutFreeGround) {
+  PaintedWorld world;
+  std::mt19937 random(5);
+  std::vector<std::vector<bool>> free(40, std::vector<bool>(40, true));
+  for (int i = 0; i < 40; ++i) free[random() % 40][random() % 40] = false;
+  for (int x = 0; x < 40; ++x)
+    for (int y = 0; y < 40; ++y)
+      if (free[x][y] || (x + y) % 2) {  // what is not free is a hole or a pillar
+        world.voxel(x, y, -1, PaintedWorld::Road);
+        for (int z = 0; z < 4 && !free[x][y]; ++z) world.voxel(x, y, z, PaintedWorld::Wall);
+      }
+  VehicleOptions vehicle = smallVehicle();
+  vehicle.clearance = 0.8;
+  const Ground ground = groundOf(world.map(), vehicle);
+  const int farthest = ground.farthestRoom();
+  for (int x = 0; x < 40; ++x)
+    for (int y = 0; y < 40; ++y) {
+      if (!free[x][y]) continue;
+      int nearest = farthest * farthest;
+      for (int u = -1; u <= 40; ++u)
+        for (int v = -1; v <= 40; ++v) {
+          const bool outside = u < 0 || v < 0 || u >= 40 || v >= 40;
+          const int dx = std::max(0, std::abs(u - x) - 1), dy = std::max(0, std::abs(v - y) - 1);
+          if (outside || !free[u][v]) nearest = std::min(nearest, dx * dx + dy * dy);
+        }
+      const Surface* s = ground.near({kOrigin + x, kOrigin + y}, kOrigin - 1, 0);
+      ASSERT_NE(s, nullptr);
+      EXPECT_EQ(s->room2, nearest) << x << ' ' << y;
+    }
+}
+
+TEST(Ground, steepGroundIsNotDrivable) {
+  const auto drivable = [](double slope, double limit) {
+    PaintedWorld world(0.1);
+    for (double x = 0; x < 6; x += 0.1) {
+      const double z = std::floor(x * std::tan(slope * M_PI / 180) / 0.1) * 0.1;
+      world.box(x, x + 0.1, -2, 2, z, z + 0.1, PaintedWorld::Road);
+    }
+    VehicleOptions vehicle = smallVehicle();
+    vehicle.maxSlope = limit;
+    const Ground ground = groundOf(world.map({3.05, 0.05, 20}), vehicle);
+    return ground.find(3.05, 0.05).has_value();
+  };
+  EXPECT_TRUE(drivable(15, 20));
+  EXPECT_FALSE(drivable(35, 20));
+  EXPECT_TRUE(drivable(35, 45));
+}
+
+TEST(Ground, aBridgeAndTheRoadBelowAreTwoLevels) {
+  PaintedWorld world;
+  world.floor(-10, 10, -2, 2, PaintedWorld::Road);
+  world.box(-1, 1, -6, 6, 3, 3.2, PaintedWorld::Grass);
+  // The scan from above does not see below the bridge: another one from the side does.
+  const Ground ground = groundOf(world.map({-9, 0.05, 2}));
+  const auto low = ground.find(0.1, 0.1), high = ground.find(0.1, 0.1, 3.0);
+  ASSERT_TRUE(low && high);
+  EXPECT_EQ(low->surface.classId, PaintedWorld::Road);
+  EXPECT_EQ(high->surface.classId, PaintedWorld::Grass);
+  EXPECT_FALSE(ground.connected(*low, *high));
+  EXPECT_TRUE(ground.connected(*low, *ground.find(-8, 1)));
+  EXPECT_TRUE(ground.connected(*high, *ground.find(0.1, 5, 3.0)));
+}
+
+TEST(Ground, stepsConnectUpToTheStepHeight) {
+  const auto connected = [](double stepHeight) {
+    PaintedWorld world(0.1);
+    world.box(-2, 0, -1, 1, -0.1, 0, PaintedWorld::Road);
+    world.box(0, 2, -1, 1, -0.1, 0.3, PaintedWorld::Road);
+    VehicleOptions vehicle = smallVehicle();
+    vehicle.stepHeight = stepHeight;
+    const Ground ground = groundOf(world.map(), vehicle);
+    return ground.connected(*ground.find(-1, 0), *ground.find(1, 0));
+  };
+  EXPECT_TRUE(connected(0.3));
+  EXPECT_FALSE(connected(0.2));
+}
+
+TEST(Ground, refusesAnOrderOfOtherClasses) {
+  PaintedWorld world;
+  EXPECT_THROW(Ground(world.map(), VehicleOptions(), GroundOptions(), {3, {{0, 1, 2}}}),
+               std::invalid_argument);
+}
+
+TEST(Ground, ofAnEmptyMapThereIsNone) {
+  PaintedWorld world;
+  const Ground ground = groundOf(world.map());
+  EXPECT_TRUE(ground.tiles().empty());
+  EXPECT_FALSE(ground.find(0, 0).has_value());
+}

@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+#include <semantic_planning/NearestPoses.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+using namespace semantic_planning;
+using colored_graph::VertexId;
+using mrpt::math::TPose2D;
+
+namespace {
+
+constexpr int kNeighbors = 4;
+constexpr double kRadius = 6;
+
+class NearestPosesTest : public testing::Test {
+ protected:
+  TPose2D randomPose() { return {m_at(m_random), m_at(m_random), m_heading(m_random)}; }
+
+  void insert(int count) {
+    std::vector<VertexId> ids;
+    std::vector<GroundPose> poses;
+    for (int i = 0; i < count; ++i) {
+      ids.push_back(m_next++);
+      poses.push_back({randomPose(), 0});
+      m_poses[ids.back()] = poses.back().pose;
+    }
+    nearest.insert(ids, poses);
+  }
+
+  void remove(int count) {
+    std::vector<VertexId> ids;
+    for (int i = 0; i < count && !m_poses.empty(); ++i) {
+      auto victim = std::next(m_poses.begin(), static_cast<int>(m_random() % m_poses.size()));
+      ids.push_back(victim->first);
+      m_poses.erase(victim);
+    }
+    nearest.remove(ids);
+  }
+
+  void expectLikeBruteForce() {
+    for (const auto& [id, pose] : m_poses) {
+      std::vector<NearestPoses::Neighbor> expected;
+      for (const auto& [other, otherPose] : m_poses) {
+        const double distance = shepp.distance(pose, otherPose);
+        if (other != id && distance <= kRadius) expected.push_back({other, distance});
+      }
+      std::sort(expected.begin(), expected.end());
+      if (expected.size() > kNeighbors) expected.resize(kNeighbors);
+      ASSERT_EQ(nearest.of(id).size(), expected.size());
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_NEAR(nearest.of(id)[i].distance, expected[i].distance, 1e-9);
+    }
+  }
+
+  ReedsShepp shepp{1};
+  NearestPoses nearest{shepp, kNeighbors, kRadius};
+
+ private:
+  std::mt19937 m_random{3};
+  std::uniform_real_distribution<double> m_at{-10, 10}, m_heading{-M_PI, M_PI};
+  std::map<VertexId, TPose2D> m_poses;
+  VertexId m_next = 0;
+};
+
+}  // namespace
+
+TEST_F(NearestPosesTest, areThoseOfBruteForceWhenInsertedAtOnce) {
+  insert(300);
+  expectLikeBruteForce();
+}
+
+TEST_F(NearestPosesTest, areThoseOfBruteForceWhilePosesComeAndGo) {
+  insert(60);
+  for (int round = 0; round < 12; ++round) {
+    remove(9);
+    expectLikeBruteForce();
+    insert(11);
+    expectLikeBruteForce();
+  }
+}
+
+TEST_F(NearestPosesTest, thoseOfAForeignPoseAreTheNearest) {
+  insert(200);
+  for (int i = 0; i < 20; ++i) {
+    const GroundPose pose{randomPose(), 0};
+    const auto found = nearest.nearestTo(pose, 7);
+    std::vector<double> expected;
+    for (VertexId v = 0; v < 200; ++v)
+      expected.push_back(shepp.distance(pose.pose, nearest.pose(v).pose));
+    std::sort(expected.begin(), expected.end());
+    for (std::size_t k = 0; k < found.size(); ++k)
+      EXPECT_NEAR(found[k].distance, expected[k], 1e-9);
+    EXPECT_TRUE(found.size() == 7 || expected[found.size()] > kRadius);
+  }
+}

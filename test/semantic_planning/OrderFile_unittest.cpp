@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+#include <semantic_planning/OrderFile.h>
+
+#include "PaintedWorld.h"
+#include "TemporaryFolder.h"
+
+using namespace semantic_planning;
+
+class OrderFile : public testing::Test {
+ protected:
+  std::string orderError(const std::string& text) const {
+    const auto file = folder.write("order.yaml", text);
+    return errorOf([&] { loadClassOrder(file, PaintedWorld::classTable()); });
+  }
+  std::string vehicleError(const std::string& text) const {
+    const auto file = folder.write("vehicle.yaml", text);
+    return errorOf([&] { loadVehicle(file); });
+  }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(OrderFile, ranksClassesAsListedAndForbidsTheOthers) {
+  const auto file =
+      folder.write("order.yaml", "best_to_worst:\n- [road, mud]\n- grass\n- unknown\n");
+  const auto order = loadClassOrder(file, PaintedWorld::classTable());
+  EXPECT_EQ(order.classes(), 5);
+  EXPECT_EQ(order.ranks(), 3);
+  EXPECT_EQ(order.rank(PaintedWorld::Road), 0);
+  EXPECT_EQ(order.rank(PaintedWorld::Mud), 0);
+  EXPECT_EQ(order.rank(PaintedWorld::Grass), 1);
+  EXPECT_EQ(order.rank(semantic_octree::kNoClass), 2);
+  EXPECT_EQ(order.rank(PaintedWorld::Wall), colored_graph::kForbidden);
+}
+
+TEST_F(OrderFile, isStrictAboutClassesAndKeys) {
+  EXPECT_TRUE(contains(orderError("best_to_worst: [road, lava]"), "no class 'lava'"));
+  EXPECT_TRUE(contains(orderError("best_to_worst:\n- road\n- lava"), "order.yaml:3"));
+  EXPECT_TRUE(contains(orderError("best_to_worst: [road]\nworse: [grass]"), "unknown key 'worse'"));
+  EXPECT_TRUE(contains(orderError("best_to_worst: [road, [grass, road]]"), "twice"));
+  EXPECT_TRUE(contains(orderError("best_to_worst: []"), "best_to_worst"));
+  EXPECT_TRUE(contains(orderError("best_to_worst: [road"), "order.yaml"));
+  EXPECT_TRUE(contains(orderError("{}"), "'best_to_worst' is missing"));
+  EXPECT_NE(errorOf([] { loadClassOrder("nowhere.yaml", PaintedWorld::classTable()); }), "");
+}
+
+TEST_F(OrderFile, aVehicleHasDefaultsForWhatIsNotSaid) {
+  const auto file =
+      folder.write("vehicle.yaml", "turning_radius: 3\nfootprint: [[0, -1], [2, 0], [0, 1]]\n");
+  const VehicleOptions vehicle = loadVehicle(file);
+  EXPECT_EQ(vehicle.turningRadius, 3);
+  EXPECT_EQ(vehicle.footprint.size(), 3u);
+  EXPECT_EQ(vehicle.height, VehicleOptions().height);
+}
+
+TEST_F(OrderFile, aVehicleIsReadStrictly) {
+  EXPECT_TRUE(contains(vehicleError("turning_radius: 0"), "turningRadius is 0"));
+  EXPECT_TRUE(contains(vehicleError("height: tall"), "height"));
+  EXPECT_TRUE(contains(vehicleError("wheels: 4"), "unknown key 'wheels'"));
+  EXPECT_TRUE(contains(vehicleError("footprint: [[0, 1, 2]]"), "expected [x, y]"));
+}
+
+TEST_F(OrderFile, thoseOfTheRepositoryLoad) {
+  const std::filesystem::path plans = std::filesystem::path(MSO_SOURCE_DIR) / "config/plan";
+  semantic_octree::ClassTable kitti;
+  for (const char* name : {"road", "parking", "sidewalk", "terrain"}) kitti.add(name, {});
+  EXPECT_EQ(loadClassOrder(plans / "semantic_kitti.yaml", kitti).ranks(), 5);
+  EXPECT_GT(loadVehicle(plans / "car.yaml").turningRadius, 1);
+}

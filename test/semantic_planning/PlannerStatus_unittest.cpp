@@ -1,0 +1,84 @@
+#include "PlannerFixture.h"
+#include "TemporaryFolder.h"
+
+using namespace semantic_planning;
+
+TEST_F(PlannerTest, saysWhyAStartOrGoalWillNotDo) {
+  paintCorner();
+  world.box(-10.4, -9.6, -13.4, -12.6, 0, 2, PaintedWorld::Wall);
+  world.floor(4, 8, -8, -4, PaintedWorld::Wall);  // forbidden, and flat
+  SemanticPlanner p = planner();
+  const TPose2D inWall = start, nearWall{-10, -12, 0}, outside{100, 0, 0}, forbidden{6, -6, 0};
+  EXPECT_EQ(p.plan(inWall, goal).status, PlanStatus::StartBlocked);
+  EXPECT_EQ(p.plan(nearWall, goal).status, PlanStatus::StartBlocked);
+  EXPECT_EQ(p.plan(outside, goal).status, PlanStatus::StartOffGround);
+  EXPECT_EQ(p.plan(forbidden, goal).status, PlanStatus::StartForbidden);
+  EXPECT_EQ(p.plan(goal, nearWall).status, PlanStatus::GoalBlocked);
+  EXPECT_EQ(p.plan(goal, outside).status, PlanStatus::GoalOffGround);
+  const PlanResult result = p.plan(goal, forbidden);
+  EXPECT_EQ(result.status, PlanStatus::GoalForbidden);
+  EXPECT_TRUE(contains(result.reason, "the goal (6, -6)")) << result.reason;
+  EXPECT_FALSE(p.hasRoadmap());
+}
+
+TEST_F(PlannerTest, saysThatAllWaysAreForbidden) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  world.floor(-1, 1, -15, 15, PaintedWorld::Wall);
+  start = {-10, 0, 0};
+  goal = {10, 0, 0};
+  EXPECT_EQ(plan().status, PlanStatus::OnlyForbidden);
+  options.ground.keepFootprintOffForbidden = true;
+  EXPECT_EQ(plan().status, PlanStatus::NotConnected);
+}
+
+TEST_F(PlannerTest, stopsWhenCancelledOrOutOfTime) {
+  paintCorner();
+  options.cancelled = [] { return true; };
+  EXPECT_EQ(plan().status, PlanStatus::Cancelled);
+  options.cancelled = nullptr;
+  options.timeLimit = 0;
+  EXPECT_EQ(plan().status, PlanStatus::TimeLimit);
+}
+
+TEST_F(PlannerTest, onAnEmptyMapTheStartIsOffGround) {
+  EXPECT_EQ(plan().status, PlanStatus::StartOffGround);
+}
+
+TEST_F(PlannerTest, refusesNumbersThatAreNone) {
+  paintCorner();
+  SemanticPlanner p = planner();
+  EXPECT_THROW(p.plan({NAN, 0, 0}, goal), std::invalid_argument);
+  EXPECT_THROW(p.plan(start, {0, INFINITY, 0}), std::invalid_argument);
+  EXPECT_THROW(p.plan(start, goal, NAN), std::invalid_argument);
+  EXPECT_THROW(p.check({0, 0, NAN}), std::invalid_argument);
+}
+
+TEST_F(PlannerTest, refusesBadOptionsNamingThem) {
+  paintCorner();
+  const auto refusal = [&](void (*spoil)(PlannerOptions&)) {
+    PlannerOptions spoiled = options;
+    spoil(spoiled);
+    return errorOf([&] { SemanticPlanner(map(), order, spoiled); });
+  };
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.vehicle.turningRadius = 0; }), "turningRadius"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.neighbors = 0; }), "neighbors is 0"));
+  EXPECT_TRUE(
+      contains(refusal([](auto& o) { o.roadmap.connectionRadius = NAN; }), "connectionRadius"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.ground.bridgeGap = -1; }), "bridgeGap is -1"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.reading.bound = 1; }), "bound"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.timeLimit = NAN; }), "timeLimit"));
+}
+
+TEST_F(PlannerTest, aCompressedGraphNeedsAMapWithGValues) {
+  paintCorner();
+  EXPECT_THROW(SemanticPlanner(world.map(), order, options), std::logic_error);
+  options.roadmap.kind = GraphKind::Full;
+  EXPECT_NO_THROW(SemanticPlanner(world.map(), order, options));
+}
+
+TEST_F(PlannerTest, thereIsNothingToReplanBeforeAPlan) {
+  paintCorner();
+  SemanticPlanner p = planner();
+  EXPECT_THROW(p.replan(start), std::logic_error);
+  EXPECT_THROW(p.roadmap(), std::logic_error);
+}

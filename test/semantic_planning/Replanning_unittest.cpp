@@ -1,0 +1,124 @@
+#include <random>
+
+#include "PlannerFixture.h"
+
+using namespace semantic_planning;
+using colored_graph::EdgeId;
+using colored_graph::EdgeState;
+
+namespace {
+
+/** The best cost in a copy of the roadmap's graph whose edges are all evaluated anew. */
+std::vector<std::int64_t> costFromScratch(const SemanticPlanner& planner,
+                                          const PlannerOptions& options,
+                                          const colored_graph::ClassOrder& order,
+                                          const PlanResult& plan) {
+  const Roadmap& roadmap = planner.roadmap();
+  colored_graph::ColoredGraph graph = roadmap.graph();
+  for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) {
+    if (!graph.containsEdge(e)) continue;
+    if (auto profile = roadmap.evaluate(e))
+      graph.setProfile(e, *profile);
+    else
+      graph.setBlocked(e);
+  }
+  const auto vertexAt = [&](const mrpt::math::TPose2D& pose) {
+    for (colored_graph::VertexId v = 0; v < graph.vertexIdEnd(); ++v)
+      if (graph.containsVertex(v) && roadmap.pose(v).pose == pose) return v;
+    return colored_graph::kNoVertex;
+  };
+  const auto from = vertexAt(plan.vertices.front()), to = vertexAt(plan.vertices.back());
+  return findColoredPath(graph, from, to, {order, options.edges, options.cost}).cost;
+}
+
+}  // namespace
+
+TEST_F(PlannerTest, replanningGoesAroundMudThatAppearsOnTheRoad) {
+  paintCorner();
+  SemanticPlanner p = planner();
+  ASSERT_EQ(meters(p.plan(start, goal), PaintedWorld::Grass), 0);
+  for (int i = 0; i < 6; ++i)
+    world.floor(-11.5, -8.5, -2, 2, PaintedWorld::Mud).map();  // until the classes have changed
+  const UpdateResult update = p.update();
+  EXPECT_GT(update.edgesChanged, 0u);
+  const PlanResult after = p.replan(start);
+  expectDrivable(after);
+  EXPECT_EQ(meters(after, PaintedWorld::Mud), 0);
+  EXPECT_GT(meters(after, PaintedWorld::Grass), 3);
+  EXPECT_EQ(after.cost, costFromScratch(p, options, order, after));
+}
+
+TEST_F(PlannerTest, replanningGoesAroundAWallThatAppears) {
+  paintCorner();
+  SemanticPlanner p = planner();
+  ASSERT_TRUE(p.plan(start, goal).found());
+  world.box(-13, -7, 0, 0.4, 0, 2, PaintedWorld::Wall).map();
+  p.update();
+  const PlanResult after = p.replan(start);
+  expectDrivable(after);
+  EXPECT_EQ(after.cost, costFromScratch(p, options, order, after));
+}
+
+TEST_F(PlannerTest, aMovingStartKeepsTheBestPath) {
+  paintCorner();
+  SemanticPlanner p = planner();
+  PlanResult result = p.plan(start, goal);
+  for (int i = 0; i < 6; ++i) {
+    const PathPoint& ahead = result.path[result.path.size() / 4];
+    start = {ahead.x, ahead.y, ahead.heading};
+    result = p.replan(start);
+    expectDrivable(result);
+    EXPECT_EQ(result.cost, costFromScratch(p, options, order, result));
+  }
+}
+
+TEST_F(PlannerTest, afterEveryChangeOfTheMapTheRepairedPathIsTheBest) {
+  paintCorner();
+  options.roadmap.vertices = 300;
+  SemanticPlanner p = planner();
+  ASSERT_TRUE(p.plan(start, goal).found());
+  std::mt19937 random(11);
+  const auto coordinate = [&] { return double(random() % 260) / 10 - 13; };
+  std::size_t inserted = 0, removed = 0;
+  for (int round = 0; round < 10; ++round) {
+    const double x = coordinate(), y = coordinate();
+    const bool wall = round % 2 && std::hypot(x - start.x, y - start.y) > 4 &&
+                      std::hypot(x - goal.x, y - goal.y) > 4;
+    for (int i = 0; i < 4; ++i) {
+      world.floor(x - 2, x + 2, y - 2, y + 2, round % 3 ? PaintedWorld::Mud : PaintedWorld::Road);
+      if (wall) world.box(x, x + 1, y - 1, y + 1, 0, 1, PaintedWorld::Wall);
+      world.map();
+    }
+    const UpdateResult update = p.update();
+    inserted += update.verticesInserted;
+    removed += update.verticesRemoved;
+    const PlanResult result = p.replan(start);
+    expectDrivable(result);
+    EXPECT_EQ(result.cost, costFromScratch(p, options, order, result)) << "round " << round;
+  }
+  EXPECT_GT(inserted, 0u);
+  EXPECT_GT(removed, 0u);
+}
+
+TEST_F(PlannerTest, theRoadmapFollowsTheCompressedTree) {
+  paintCorner();
+  options.roadmap.vertices = 0;
+  SemanticPlanner p = planner();
+  p.plan(start, goal);
+  for (int i = 0; i < 4; ++i) world.floor(0, 6, -8, -2, PaintedWorld::Road).map();
+  p.update();
+  p.replan(start);
+  SemanticPlanner fresh = planner();
+  fresh.plan(start, goal);
+  const auto poses = [](const Roadmap& roadmap) {
+    std::set<std::tuple<double, double, double, int>> all;
+    for (colored_graph::VertexId v = 0; v < roadmap.graph().vertexIdEnd(); ++v)
+      if (roadmap.graph().containsVertex(v)) {
+        const GroundPose& g = roadmap.pose(v);
+        all.emplace(g.pose.x, g.pose.y, g.pose.phi, g.z);
+      }
+    return all;
+  };
+  EXPECT_EQ(poses(p.roadmap()), poses(fresh.roadmap()));
+  EXPECT_EQ(p.roadmap().graph().edgeCount(), fresh.roadmap().graph().edgeCount());
+}

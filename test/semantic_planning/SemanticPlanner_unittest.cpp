@@ -1,0 +1,120 @@
+#include "PlannerFixture.h"
+
+using namespace semantic_planning;
+
+TEST_F(PlannerTest, keepsToTheRoadAroundTheCorner) {
+  paintCorner();
+  const PlanResult result = plan();
+  expectDrivable(result);
+  EXPECT_EQ(meters(result, PaintedWorld::Grass), 0);
+  EXPECT_GT(result.length, 35);
+}
+
+TEST_F(PlannerTest, takesTheStraightLineWhereClassesAreEqual) {
+  paintCorner();
+  order = {5, {{1, 2}, {4}, {0}}};
+  const PlanResult result = plan();
+  expectDrivable(result);
+  EXPECT_LT(result.length, 38);
+  EXPECT_GT(meters(result, PaintedWorld::Grass), 15);
+}
+
+TEST_F(PlannerTest, everyKindOfGraphFindsADrivablePath) {
+  paintCorner();
+  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Halton, GraphKind::HaltonDrivable,
+                               GraphKind::HaltonByClass, GraphKind::Full}) {
+    options.roadmap.kind = kind;
+    expectDrivable(plan());
+  }
+}
+
+TEST_F(PlannerTest, goesThroughTheGapInAWall) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  world.box(-1, -0.6, -15, 15, 0, 2, PaintedWorld::Wall);
+  PaintedWorld gap;  // the same with a gap of 2.4 m
+  gap.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  gap.box(-1, -0.6, -15, 3, 0, 2, PaintedWorld::Wall);
+  gap.box(-1, -0.6, 5.4, 15, 0, 2, PaintedWorld::Wall);
+  start = {-10, -10, 0};
+  goal = {10, -10, M_PI};
+  EXPECT_EQ(plan().status, PlanStatus::NotConnected);
+  world = std::move(gap);
+  expectDrivable(plan());
+}
+
+TEST_F(PlannerTest, drivesBelowABridgeAndOverIt) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  world.box(-2, 2, -14, 14, 3, 3.2, PaintedWorld::Road);
+  world.map({-14, 0.05, 2});
+  start = {-10, 0, 0};
+  goal = {10, 0, 0};
+  expectDrivable(plan());
+  SemanticPlanner p = planner();
+  const PlanResult above = p.plan({0, -12, M_PI / 2}, {0, 12, M_PI / 2}, 3.0, 3.0);
+  ASSERT_TRUE(above.found()) << above.reason;
+  for (const PathPoint& point : above.path) EXPECT_NEAR(point.z, 3.1, 0.05);
+  EXPECT_EQ(p.plan({0, -12, M_PI / 2}, {0, 12, M_PI / 2}, 0.0, 3.0).status,
+            PlanStatus::NotConnected);
+}
+
+TEST_F(PlannerTest, countsUnknownGroundAsAClassOfItsOwn) {
+  world.floor(-10, 10, -10, -1, PaintedWorld::Road);
+  world.floor(-10, 10, 1, 10, PaintedWorld::Road);
+  start = {-5, -5, 0};
+  goal = {5, 5, 0};
+  const PlanResult across = plan();
+  expectDrivable(across);
+  EXPECT_GE(across.lengthPerClass[semantic_octree::kNoClass], 1.9);
+  order = {5, {{1}, {2}, {4}}};
+  EXPECT_EQ(plan().status, PlanStatus::OnlyForbidden);
+}
+
+TEST_F(PlannerTest, takesTheWorseClassUnderTheWheels) {
+  world.floor(-10, 10, -10, 10, PaintedWorld::Road);
+  world.floor(-10, 10, 0.1, 0.3, PaintedWorld::Mud);  // a rut that one wheel would follow
+  start = {-9, 0, 0};
+  goal = {9, 0, 0};
+  const PlanResult result = plan();
+  expectDrivable(result);
+  EXPECT_LT(meters(result, PaintedWorld::Mud), 6);
+  EXPECT_GT(meters(result, PaintedWorld::Mud), 0);
+}
+
+TEST_F(PlannerTest, expectedLengthsAndCautionSeeWhatTheLikeliestClassHides) {
+  world.floor(-6, 6, -6, 6, PaintedWorld::Road);
+  world.map();
+  world.floor(-6, 6, -6, 6, PaintedWorld::Road).map();
+  world.floor(-1, 1, -6, 6, PaintedWorld::Grass).map();  // now road is likelier, and grass possible
+  start = {-4, 0, 0};
+  goal = {4, 0, 0};
+  EXPECT_EQ(meters(plan(), PaintedWorld::Grass), 0);
+  options.reading = {ClassReading::Kind::Expected, 0.01};
+  const double expected = meters(plan(), PaintedWorld::Grass);
+  EXPECT_GT(expected, 0.02);
+  EXPECT_LT(expected, 1);
+  options.reading = {ClassReading::Kind::Cautious, 0.01};
+  EXPECT_NEAR(meters(plan(), PaintedWorld::Grass), 2, 0.6);
+  options.reading = {ClassReading::Kind::Cautious, 0.9};
+  EXPECT_EQ(meters(plan(), PaintedWorld::Grass), 0);
+}
+
+TEST_F(PlannerTest, planningTwiceGivesTheSamePath) {
+  paintCorner();
+  const PlanResult a = plan(), b = plan();
+  ASSERT_EQ(a.path.size(), b.path.size());
+  EXPECT_EQ(a.cost, b.cost);
+  for (std::size_t i = 0; i < a.path.size(); ++i) EXPECT_EQ(a.path[i].x, b.path[i].x);
+}
+
+TEST_F(PlannerTest, verticesAndEdgesStayWithinTheirBudgets) {
+  paintCorner();
+  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::HaltonDrivable, GraphKind::Full}) {
+    options.roadmap.kind = kind;
+    options.roadmap.vertices = 300;
+    options.roadmap.edges = 900;
+    const PlanResult result = plan();
+    EXPECT_EQ(result.numVertices, 302u);  // with start and goal
+    EXPECT_GE(result.numEdges, 900u);
+    EXPECT_LE(result.numEdges, 900u + 4 * options.roadmap.neighbors + 1);
+  }
+}
