@@ -12,6 +12,7 @@ find_package(mrpt-obs REQUIRED)
 find_package(mrpt-maps REQUIRED)
 find_package(mrpt-opengl REQUIRED)
 find_package(mrpt-graphs REQUIRED)
+find_package(mrpt-nav REQUIRED)
 find_package(ompl REQUIRED)
 
 include(ThirdPartyTargets)

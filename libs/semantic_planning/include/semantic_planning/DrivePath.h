@@ -1,0 +1,47 @@
+#pragma once
+#include <semantic_planning/PlanResult.h>
+
+#include <vector>
+
+namespace semantic_planning {
+
+/** A planned path as it is driven: places by arc length, and stretches of one gear. */
+class DrivePath {
+ public:
+  DrivePath() = default;
+  /** \param points as PlanResult::path: headings are the vehicle's, also where it backs up. Gears
+   * and arc lengths are taken from the points' places. */
+  explicit DrivePath(std::vector<PathPoint> points);
+
+  bool empty() const { return m_points.size() < 2; }
+  double length() const { return empty() ? 0 : m_points.back().arcLength; }  ///< meters
+  const std::vector<PathPoint>& points() const { return m_points; }
+
+  /** The place at an arc length (meters, clamped); `forward` is the gear from there on. */
+  PathPoint at(double s) const;
+  /** Arc length of the place nearest to a pose, within [from, to]. A heading that is off by a
+   * radian counts as a meter. */
+  double nearest(const mrpt::math::TPose2D& pose, double from, double to) const;
+  /** Where the stretch around s ends: the next change of gear after s, or the path's end. */
+  double stretchEnd(double s) const;
+  /** Where the stretch that s is in or at the end of began. */
+  double stretchBegin(double s) const;
+
+  /** This path up to s, and then another that begins there. */
+  DrivePath upTo(double s, const DrivePath& then) const;
+
+  /** Every `spacing` meters or closer a place of the stretch around s, its end among them and s
+   * not. */
+  std::vector<PathPoint> waypoints(double s, double spacing) const;
+
+ private:
+  std::size_t segmentOf(double s) const;
+
+  std::vector<PathPoint> m_points;
+  std::vector<double> m_ends;  ///< of the stretches
+};
+
+/** The pose of a point of a path. */
+inline mrpt::math::TPose2D poseOf(const PathPoint& p) { return {p.x, p.y, p.heading}; }
+
+}  // namespace semantic_planning

@@ -1,0 +1,49 @@
+#pragma once
+#include <semantic_planning/DriveOptions.h>
+#include <semantic_planning/PlanResult.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+namespace semantic_planning {
+
+/** MRPT's CReactiveNavigationSystem, step by step: waypoints and obstacles go in, a command comes
+ * out. It drives forward only.
+ *
+ * MRPT takes the time from mrpt::Clock: let it tell the time of a simulation
+ * (mrpt::Clock::setActiveClock()), if there is one. */
+class ReactiveNavigator {
+ public:
+  struct Options {
+    std::filesystem::path config;            ///< MRPT's .ini, see config/reactive
+    std::vector<Eigen::Vector2d> footprint;  ///< corners in the vehicle's frame, meters
+    double margin = 0.1;                     ///< kept free around the footprint, meters
+    /** Speed and least radius of the trajectories, whatever the file says. */
+    double maxSpeed = 1, turningRadius = 0.8;  ///< m/s, meters
+    std::filesystem::path logFolder;           ///< for navlog files; empty: none
+  };
+  enum class Status { Idle, Driving, Arrived, Blocked };
+
+  /** Computes the trajectories, which takes a moment.
+   * \throw std::exception the file is missing, or what MRPT does not like about it. */
+  explicit ReactiveNavigator(const Options& options);
+  ~ReactiveNavigator();
+  ReactiveNavigator(ReactiveNavigator&&) noexcept;
+
+  /** Goes through these places one after the other, from now on.
+   * \param reach how near is near enough, meters */
+  void setWaypoints(const std::vector<PathPoint>& waypoints, double reach);
+  void cancel();
+
+  /** \param seconds of the clock that runs while navigating */
+  DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double seconds);
+  /** After the last step. */
+  Status status() const;
+
+ private:
+  struct Navigation;
+  std::unique_ptr<Navigation> m_navigation;
+};
+
+}  // namespace semantic_planning
