@@ -1,10 +1,9 @@
 #pragma once
 #include <semantic_octree/SemanticOcTree.h>
 
-#include <set>
-#include <string>
+#include <cmath>
+#include <map>
 #include <tuple>
-#include <vector>
 
 /** A world of labeled voxels, painted by hand, whose map is made by one scan from above. */
 class PaintedWorld {
@@ -36,20 +35,25 @@ class PaintedWorld {
   }
   /** Voxel by its number along each axis, counted from the origin. */
   PaintedWorld& voxel(int x, int y, int z, Class id) {
-    m_cloud.points.emplace_back(center(x), center(y), center(z));
-    m_cloud.classes.push_back(id);
+    m_painted[{x, y, z}] = id;
     return *this;
   }
 
   /** Inserts what was painted since the last call. \param sensor where the scan is taken from;
    * beams that come from below the ground would carve it. */
   semantic_octree::SemanticOcTree& map(const Eigen::Vector3d& sensor = {0.05, 0.05, 30}) {
-    if (m_cloud.empty()) return m_map;
+    if (m_painted.empty()) return m_map;
+    semantic_octree::LabeledCloud cloud;
+    for (const auto& [voxel, id] : m_painted) {
+      const auto [x, y, z] = voxel;
+      cloud.points.push_back(Eigen::Vector3f(center(x), center(y), center(z)) -
+                             sensor.cast<float>());
+      cloud.classes.push_back(id);
+    }
     Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
     T_map_sensor.translation() = sensor;
-    for (Eigen::Vector3f& p : m_cloud.points) p -= sensor.cast<float>();
-    m_map.insert(m_cloud, T_map_sensor);
-    m_cloud.clear();
+    m_map.insert(cloud, T_map_sensor);
+    m_painted.clear();
     return m_map;
   }
 
@@ -59,5 +63,5 @@ class PaintedWorld {
 
   double m_voxelSize;
   semantic_octree::SemanticOcTree m_map;
-  semantic_octree::LabeledCloud m_cloud;
+  std::map<std::tuple<int, int, int>, Class> m_painted;
 };

@@ -8,7 +8,7 @@ TEST_F(PlannerTest, saysWhyAStartOrGoalWillNotDo) {
   world.box(-10.4, -9.6, -13.4, -12.6, 0, 2, PaintedWorld::Wall);
   world.floor(4, 8, -8, -4, PaintedWorld::Wall);  // forbidden, and flat
   SemanticPlanner p = planner();
-  const TPose2D inWall = start, nearWall{-10, -12, 0}, outside{100, 0, 0}, forbidden{6, -6, 0};
+  const TPose2D inWall = start, nearWall{-10, -12.4, 0}, outside{100, 0, 0}, forbidden{6, -6, 0};
   EXPECT_EQ(p.plan(inWall, goal).status, PlanStatus::StartBlocked);
   EXPECT_EQ(p.plan(nearWall, goal).status, PlanStatus::StartBlocked);
   EXPECT_EQ(p.plan(outside, goal).status, PlanStatus::StartOffGround);

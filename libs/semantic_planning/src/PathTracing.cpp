@@ -1,7 +1,5 @@
 #include "PathTracing.h"
 
-#include <cmath>
-
 namespace semantic_planning {
 
 using colored_graph::PathResult;
@@ -26,13 +24,10 @@ PlanStatus statusOf(SearchStatus status) {
 
 /** Appends a curve's points; its first is where the last one ended, perhaps in another gear. */
 void append(const std::vector<PathPoint>& curve, std::vector<PathPoint>& path) {
+  const double begin = path.empty() ? 0 : path.back().arcLength;
   for (std::size_t i = path.empty() ? 0 : 1; i < curve.size(); ++i) {
-    PathPoint point = curve[i];
-    if (!path.empty()) {
-      const PathPoint& last = path.back();
-      point.arcLength = last.arcLength + std::hypot(point.x - last.x, point.y - last.y);
-    }
-    path.push_back(point);
+    path.push_back(curve[i]);
+    path.back().arcLength += begin;
   }
 }
 

@@ -29,6 +29,7 @@ class PlannerCore {
   const PlannerOptions& options() const { return m_options; }
   const colored_graph::ClassOrder& order() const { return m_checker.order(); }
   const Ground& ground() const { return m_ground; }
+  bool hasRoadmap() const { return m_roadmap != nullptr; }
   const Roadmap& roadmap() const;
 
  private:

@@ -37,6 +37,7 @@ PlanResult SemanticPlanner::replan(const mrpt::math::TPose2D& start, std::option
 const PlannerOptions& SemanticPlanner::options() const { return m_core->options(); }
 const colored_graph::ClassOrder& SemanticPlanner::order() const { return m_core->order(); }
 const Ground& SemanticPlanner::ground() const { return m_core->ground(); }
+bool SemanticPlanner::hasRoadmap() const { return m_core->hasRoadmap(); }
 const Roadmap& SemanticPlanner::roadmap() const { return m_core->roadmap(); }
 
 PlanStatus SemanticPlanner::check(const mrpt::math::TPose2D& pose, std::optional<double> z) const {

@@ -48,8 +48,8 @@ class EdgeChecker {
    * up. */
   std::optional<colored_graph::EdgeProfile> profile(const GroundPose& a, const GroundPose& b) const;
 
-  /** Points along a free curve at most half a voxel apart, from its start to its end, without
-   * their arc lengths. \param z of the ground at the start */
+  /** Points along a free curve at most half a voxel apart, from its start to its end, and wherever
+   * steering or gear change. \param z of the ground at the start */
   std::vector<PathPoint> trace(const ReedsSheppCurve& curve, int z) const;
 
   /** Columns that a curve's outcome may depend on lie within this distance of it, meters. */

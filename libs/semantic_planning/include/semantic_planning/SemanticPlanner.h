@@ -14,8 +14,6 @@
 
 namespace semantic_planning {
 
-class PlannerCore;
-
 struct PlannerOptions {
   VehicleOptions vehicle;
   GroundOptions ground;
@@ -31,6 +29,8 @@ struct PlannerOptions {
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };
+
+class PlannerCore;
 
 /** Plans paths of a vehicle over a semantic map that put classes before length.
  *
@@ -73,6 +73,8 @@ class SemanticPlanner {
   const PlannerOptions& options() const;
   const colored_graph::ClassOrder& order() const;
   const Ground& ground() const;
+  /** False before the first plan, and after one whose start or goal was refused. */
+  bool hasRoadmap() const;
   /** The roadmap of the last plan. \throw std::logic_error nothing was planned before. */
   const Roadmap& roadmap() const;
   /** Whether the vehicle can stand there: PlanStatus::Found, or what is the matter at a start. */
