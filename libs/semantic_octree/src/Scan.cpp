@@ -1,8 +1,8 @@
 #include "Scan.h"
 
-#include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -29,6 +29,22 @@ void checkSizes(const LabeledCloud& cloud, int numClasses) {
   for (const float q : cloud.probabilities)
     if (!(q >= 0 && q <= 1))
       throw std::invalid_argument("labeled cloud: a class probability of " + std::to_string(q));
+}
+
+/** As many ray ends as stay near the processor. */
+constexpr std::size_t kRaysInCache = 8192;
+
+/** Where a beam stops carving; nothing if it carves nothing. \param begin, end relative to the grid
+ */
+std::optional<Eigen::Array3d> endOfFree(const BeamEnd& beam, const Eigen::Array3d& begin,
+                                        const Eigen::Array3d& end, const InsertionOptions& options,
+                                        double margin) {
+  const bool toCenter = options.rays == InsertionOptions::Rays::EndVoxels;
+  const Eigen::Array3d last = toCenter ? end.floor() + 0.5 : end;
+  if (!beam.isReturn || margin <= 0) return last;
+  const double length = (last - begin).matrix().norm();
+  if (length <= margin) return std::nullopt;
+  return begin + (last - begin) * (1 - margin / length);
 }
 
 }  // namespace
@@ -78,21 +94,18 @@ void Scan::markFree(const InsertionOptions& options, double margin) {
 void Scan::markFreePart(int part, const InsertionOptions& options, double margin) {
   TileGrid& grid = m_free[part];
   const Eigen::Array3d gridOrigin = grid.origin(), begin = m_beams.origin - gridOrigin;
-  const bool toCenter = options.rays == InsertionOptions::Rays::EndVoxels;
   const std::size_t last = m_carving.size() * (part + 1) / options.threads;
   std::vector<Eigen::Array3d> ends;
+  ends.reserve(kRaysInCache);
   for (std::size_t i = m_carving.size() * part / options.threads; i < last; ++i) {
     const BeamEnd& beam = m_beams.ends[m_carving[i]];
-    Eigen::Array3d end = beam.end - gridOrigin;
-    if (toCenter) end = end.floor() + 0.5;
-    if (beam.isReturn && margin > 0) {
-      const double length = (end - begin).matrix().norm();
-      if (length <= margin) continue;
-      end = begin + (end - begin) * (1 - margin / length);
+    if (const auto end = endOfFree(beam, begin, beam.end - gridOrigin, options, margin))
+      ends.push_back(*end);
+    if (ends.size() == kRaysInCache || i + 1 == last) {
+      markRays(grid, begin, ends.data(), ends.size());
+      ends.clear();
     }
-    ends.push_back(end);
   }
-  markRays(grid, begin, ends.data(), ends.size());
 }
 
 void Scan::summarize() {
