@@ -113,6 +113,26 @@ TEST(MapDefinition, anUnknownSectionIsNamed) {
                 {"Maps_semanticOctoMap_00_insertionOpts", "unknown section", "insertOpts"});
 }
 
+TEST(MapDefinition, whatMrptLeavesOutInSilenceIsNamed) {
+  const auto refusal = [](const std::string& lines) {
+    return errorOf([&] { mapOf("[Maps]\nsemanticOctoMap_count = 1\n" + lines); });
+  };
+  const std::string unknown = refusal("pointMap_count = 1\n");
+  EXPECT_TRUE(contains(unknown, "pointMap_count: there is no map type")) << unknown;
+  EXPECT_EQ(refusal("pointMap_count = 0\npointsMap_count = 1\nother = 3\n"), "");
+  const std::string beyond = refusal("[Maps_semanticOctoMap_01_insertOpts]\nmaxRange = 3\n");
+  EXPECT_TRUE(contains(beyond, "Maps_semanticOctoMap_01_insertOpts") && contains(beyond, "is 1"))
+      << beyond;
+  EXPECT_TRUE(contains(refusal("[Maps_semanticOctoMap_0_insertOpts]\n"), "begin at 00"));
+  EXPECT_EQ(refusal("[Maps_pointsMap_07_insertOpts]\n[Other_semanticOctoMap_05_insertOpts]\n"), "");
+  EXPECT_TRUE(contains(errorOf([] {
+                         mapOf(
+                             "[Maps]\nsemantic_map::CSemanticOctoMap_count = 1\n"
+                             "[Maps_semantic_map::CSemanticOctoMap_1_insertOpts]\n");
+                       }),
+                       "begin at 00"));
+}
+
 TEST(MapDefinition, aBadValueIsNamedWithWhatWasExpected) {
   expectRefused("creationOpts", "resolution = wide", {"creationOpts", "resolution", "'wide'"});
   expectRefused("creationOpts", "resolution = 0", {"creationOpts", "resolution", "0"});

@@ -145,6 +145,23 @@ TEST(TopView, aSingleVoxelIsAPicture) {
   EXPECT_GT(count(renderPerspective(tree, plain()), kWall, 30), 10000);
 }
 
+TEST(TopView, aMapOfOneEnormousCellIsDrawnWithoutEnormousMemory) {
+  semantic_map::CSemanticOctoMap map(0.1, threeClasses());
+  semantic_map::TAbstractionOptions abstraction;
+  abstraction.relevant = "road: 1";
+  abstraction.alpha = 1;
+  abstraction.blockSize = 0;
+  abstraction.frame = semantic_octree::AbstractionOptions::Frame::Charged;
+  map.setAbstraction(abstraction);
+  fill(map);
+  const auto collapsed = map.compress();
+  ASSERT_EQ(collapsed->tree().getNumLeafNodes(), 1u);
+  const cv::Mat picture = renderTopView(collapsed->tree(), plain());
+  EXPECT_EQ(picture.rows, 600);
+  EXPECT_GT(count(picture, kPaper), 0);
+  EXPECT_LT(count(picture, kPaper), 100000);
+}
+
 TEST(PerspectiveView, showsTheMapFromItsViewpoint) {
   Viewpoint north, south;
   north.heading = 90, south.heading = -90;

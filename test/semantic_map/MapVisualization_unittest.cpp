@@ -3,6 +3,8 @@
 #include <mrpt/opengl/COpenGLScene.h>
 #include <semantic_octree/TreeFile.h>
 
+#include <cmath>
+
 #include "SmallMaps.h"
 #include "TemporaryFolder.h"
 
@@ -83,6 +85,39 @@ TEST(MapVisualization, colorsCanShowHeightOrProbability) {
   map.renderingOptions.coloring = TRenderingOptions::Coloring::Probability;
   const double p = map.tree().query(3.05, 0.05, 0.05).probability;
   EXPECT_NEAR(voxelsOf(map)->getVoxel(kOccupied, 0).color.R, std::min(255.0, 255 * (2 - 2 * p)), 1);
+}
+
+TEST(MapVisualization, colorsCanShowEntropy) {
+  CSemanticOctoMap map = twoVoxels();
+  map.renderingOptions.coloring = TRenderingOptions::Coloring::Entropy;
+  const auto p =
+      map.tree().distribution(*map.tree().search(map.tree().coordToKey(3.05, 0.05, 0.05)));
+  double entropy = 0;
+  for (const double q : p) entropy -= q * std::log(q);
+  const double certain = 1 - entropy / std::log(4.0);
+  const auto color = voxelsOf(map)->getVoxel(kOccupied, 0).color;
+  EXPECT_NEAR(color.R, std::min(255.0, 255 * (2 - 2 * certain)), 1);
+  EXPECT_NEAR(color.G, std::min(255.0, 255 * 2 * certain), 1);
+}
+
+TEST(MapVisualization, theCompressedMapCanBeShownInstead) {
+  CSemanticOctoMap map(0.2, threeClasses());
+  semantic_map::TAbstractionOptions abstraction;
+  abstraction.relevant = "road: 1";
+  abstraction.blockSize = 3.2;
+  map.setAbstraction(abstraction);
+  fill(map);
+  map.renderingOptions.free = true;
+  const auto count = [](const CSemanticOctoMap& m) {
+    return voxelsOf(m)->getVoxelCount(kOccupied) + voxelsOf(m)->getVoxelCount(kFree);
+  };
+  EXPECT_EQ(count(map), map.tree().getNumLeafNodes());
+  map.renderingOptions.compressed = true;
+  const auto compressed = map.compress();
+  EXPECT_EQ(count(map), compressed->tree().getNumLeafNodes());
+  EXPECT_LT(count(map), map.tree().getNumLeafNodes());
+  map.setAbstraction({});
+  EXPECT_EQ(count(map), map.tree().getNumLeafNodes());
 }
 
 TEST(MapVisualization, theBoundingBoxHoldsAllNodes) {

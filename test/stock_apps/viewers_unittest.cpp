@@ -104,6 +104,6 @@ TEST_F(Viewers, rawLogViewerShowsAMapInAnArchive) {
 TEST_F(Viewers, sceneViewer3DShowsAMapsSceneInItsClassesColors) {
   villageMap().saveMetricMapRepresentationToFile((folder / "village").string());
   const cv::Mat screen = screenOf(withPlugin("SceneViewer3D") + "village.3Dscene", {700, 400}, 15);
-  EXPECT_GT(shareOf(screen, kGrass), 0.05);
+  EXPECT_GT(shareOf(screen, kGrass), 0.02);
   EXPECT_GT(shareOf(screen, kCanopy), 0.01);
 }

@@ -17,10 +17,11 @@ class CellColors {
  public:
   CellColors(const semantic_octree::SemanticOcTree& tree, const TRenderingOptions& options);
   /** \param height of the cell's center, m */
-  mrpt::img::TColor operator()(const semantic_octree::CellState& state, double height) const;
+  mrpt::img::TColor operator()(const semantic_octree::SemanticOcTree::Node& node,
+                               double height) const;
 
  private:
-  const semantic_octree::ClassTable& m_classes;
+  const semantic_octree::SemanticOcTree& m_tree;
   TRenderingOptions::Coloring m_coloring;
   double m_lowest = 0, m_highest = 0;
 };

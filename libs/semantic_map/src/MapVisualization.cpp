@@ -20,26 +20,28 @@ namespace {
 class VoxelSets {
  public:
   VoxelSets(const SemanticOcTree& tree, const TRenderingOptions& options)
-      : m_options(options), m_color(tree, options) {
+      : m_tree(tree), m_options(options), m_color(tree, options) {
     m_voxels->resizeVoxelSets(2);
     m_voxels->setVisualizationMode(COctoMapVoxels::FIXED);
     m_voxels->enableLights(true);
     m_voxels->enableCubeTransparency(true);
   }
 
-  void add(const CellState& state, const mrpt::math::TPoint3Df& center, double size) {
+  void add(const SemanticOcTree::Node& node, const mrpt::math::TPoint3Df& center, double size) {
+    const CellState state = m_tree.query(node);
     if (center.z < m_options.minHeight || center.z > m_options.maxHeight) return;
     const bool occupied = state.occupancy > m_options.minOccupancy;
     if (!(occupied ? m_options.occupied : m_options.free)) return;
     if (occupied && state.probability < m_options.minProbability) return;
     m_voxels->push_back_Voxel(
         occupied ? mrpt::opengl::VOXEL_SET_OCCUPIED : mrpt::opengl::VOXEL_SET_FREESPACE,
-        {center, size, occupied ? m_color(state, center.z) : mrpt::img::TColor(160, 200, 230, 25)});
+        {center, size, occupied ? m_color(node, center.z) : mrpt::img::TColor(160, 200, 230, 25)});
   }
 
   COctoMapVoxels::Ptr take() { return m_voxels; }
 
  private:
+  const SemanticOcTree& m_tree;
   TRenderingOptions m_options;
   CellColors m_color;
   COctoMapVoxels::Ptr m_voxels = COctoMapVoxels::Create();
@@ -57,10 +59,15 @@ mrpt::math::TBoundingBoxf CSemanticOctoMap::boundingBox() const {
 
 void CSemanticOctoMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const {
   if (!genericMapParams.enableSaveAs3DObject || m_tree.empty()) return;
-  VoxelSets sets(m_tree, renderingOptions);
-  for (auto it = m_tree.begin_leafs(), end = m_tree.end_leafs(); it != end; ++it)
-    sets.add(m_tree.query(*it), {float(it.getX()), float(it.getY()), float(it.getZ())},
-             it.getSize());
+  if (!renderingOptions.compressed || !m_tree.hasAbstraction()) return draw(m_tree, o);
+  SemanticOcTree copy(m_tree);
+  draw(semantic_octree::Abstraction(copy).compressedMap(), o);
+}
+
+void CSemanticOctoMap::draw(const SemanticOcTree& tree, mrpt::opengl::CSetOfObjects& o) const {
+  VoxelSets sets(tree, renderingOptions);
+  for (auto it = tree.begin_leafs(), end = tree.end_leafs(); it != end; ++it)
+    sets.add(*it, {float(it.getX()), float(it.getY()), float(it.getZ())}, it.getSize());
   const auto voxels = sets.take();
   const auto box = boundingBox();
   voxels->setBoundingBox(mrpt::math::TPoint3D(box.min), mrpt::math::TPoint3D(box.max));

@@ -71,9 +71,10 @@ template <>
 struct OptionFields<TRenderingOptions> {
   template <class Options, class Visitor>
   static void visit(Options& o, Visitor&& visit) {
-    visit("coloring", o.coloring, "Class, Probability or Height");
+    visit("coloring", o.coloring, "Class, Probability, Height or Entropy");
     visit("occupied", o.occupied, "show occupied cells");
     visit("free", o.free, "show free cells");
+    visit("compressed", o.compressed, "show the optimal abstraction, where one is kept");
     visit("minOccupancy", o.minOccupancy, "above it, cells are occupied");
     visit("minProbability", o.minProbability, "of the likeliest class of occupied cells");
     visit("minHeight", o.minHeight, "m, lower cells are left out");

@@ -29,7 +29,7 @@ const std::vector<std::string>& namesOf(semantic_octree::AbstractionOptions::Fra
 }
 
 const std::vector<std::string>& namesOf(TRenderingOptions::Coloring) {
-  static const std::vector<std::string> names = {"Class", "Probability", "Height"};
+  static const std::vector<std::string> names = {"Class", "Probability", "Height", "Entropy"};
   return names;
 }
 

@@ -42,7 +42,7 @@ cv::Rect footprint(const MapCell& cell, const Extent& extent, const ColumnImage&
 /** Edge of a column, m: that of the finest cells, or larger if there would be more columns than
  * memory is for. (One cell may be kilometers wide: a collapsed root.) */
 double columnSize(const Extent& extent, double finest) {
-  constexpr double kMostColumns = 32e6;
+  constexpr double kMostColumns = 16e6;
   const Eigen::Vector2d size = (extent.high - extent.low).head<2>().cast<double>();
   double cell = finest;
   while (size.x() / cell * (size.y() / cell) > kMostColumns) cell *= 2;

@@ -117,6 +117,29 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   /** Boxes in the classes' colors, see renderingOptions; nothing if
    * genericMapParams.enableSaveAs3DObject is false. */
   void getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const override;
+  /** Pairs the points of a points map with the occupied voxels of this one, as CPointsMap does with
+   * its points: each with the voxel whose center is nearest (2D: seen from above), so that ICP can
+   * register scans against the map. globalIdx numbers the voxels of one result.
+   * \throw std::invalid_argument the other map is not, and has not, a points map; bad parameters.
+   */
+  void determineMatching2D(const mrpt::maps::CMetricMap* other,
+                           const mrpt::poses::CPose2D& T_this_other,
+                           mrpt::tfest::TMatchingPairList& pairs,
+                           const mrpt::maps::TMatchingParams& params,
+                           mrpt::maps::TMatchingExtraResults& extra) const override;
+  void determineMatching3D(const mrpt::maps::CMetricMap* other,
+                           const mrpt::poses::CPose3D& T_this_other,
+                           mrpt::tfest::TMatchingPairList& pairs,
+                           const mrpt::maps::TMatchingParams& params,
+                           mrpt::maps::TMatchingExtraResults& extra) const override;
+  /** Share of the other's points with an occupied voxel's center within params.maxDistForCorr.
+   * \throw std::invalid_argument as above. */
+  float compute3DMatchingRatio(const mrpt::maps::CMetricMap* other,
+                               const mrpt::poses::CPose3D& T_this_other,
+                               const mrpt::maps::TMatchingRatioParams& params) const override;
+  /** m^2, from above, to the center of an occupied voxel. \throw std::logic_error there is none. */
+  float squareDistanceToClosestCorrespondence(float x, float y) const override;
+
   /** Forgets the scan of the last observation whose likelihood was asked for. */
   void auxParticleFilterCleanUp() override;
   /** Writes PREFIX.semantic, the map's own file, and PREFIX.3Dscene.
@@ -144,6 +167,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   bool internal_canComputeObservationLikelihood(
       const mrpt::obs::CObservation& observation) const override;
 
+  void draw(const semantic_octree::SemanticOcTree& tree, mrpt::opengl::CSetOfObjects& o) const;
   void copyAllButTree(const CSemanticOctoMap& o);
   labeled_cloud::ScanConverter& converter();
   std::shared_ptr<const labeled_cloud::LabeledScan> scanForLikelihood(

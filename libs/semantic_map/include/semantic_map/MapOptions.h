@@ -125,12 +125,15 @@ struct TRenderingOptions : public TNamedOptions<TRenderingOptions> {
   enum class Coloring {
     Class,        ///< color of the likeliest class, gray where no class was seen
     Probability,  ///< of the likeliest class: red (0) over yellow to green (1)
-    Height        ///< blue (lowest) to red (highest)
+    Height,       ///< blue (lowest) to red (highest)
+    Entropy       ///< of free space and classes: green (certain) over yellow to red (all alike)
   };
   Coloring coloring = Coloring::Class;
   bool occupied = true;
   /** Free space, drawn translucent. There is much of it. */
   bool free = false;
+  /** The cells of the optimal abstraction, as long as the map keeps one, instead of its own. */
+  bool compressed = false;
   /** Cells are occupied above this occupancy, else free. */
   double minOccupancy = 0.5;
   /** Occupied cells whose likeliest class is less probable than this are left out. */

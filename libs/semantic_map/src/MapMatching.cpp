@@ -1,0 +1,145 @@
+#include <mrpt/maps/CSimplePointsMap.h>
+#include <semantic_map/CSemanticOctoMap.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "NearestOccupied.h"
+
+namespace semantic_map {
+
+using mrpt::maps::CMetricMap;
+using mrpt::maps::CPointsMap;
+using mrpt::maps::TMatchingExtraResults;
+using mrpt::maps::TMatchingParams;
+using mrpt::math::TPoint3D;
+using mrpt::tfest::TMatchingPairList;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+const CPointsMap& pointsOf(const CMetricMap* map) {
+  if (!map) throw std::invalid_argument("matching: no map to match with");
+  if (const auto* points = dynamic_cast<const CPointsMap*>(map)) return *points;
+  if (const CPointsMap* points = map->getAsSimplePointsMap()) return *points;
+  throw std::invalid_argument(
+      std::string("matching: a semantic octree map matches points maps, not ") +
+      map->GetRuntimeClass()->className);
+}
+
+/** Finds the pairs of points and voxels, as CPointsMap does for pairs of points. */
+class Matcher {
+ public:
+  Matcher(const SemanticOcTree& tree, NearestOccupied::Distance distance,
+          const TMatchingParams& params)
+      : m_tree(tree),
+        m_nearest(tree, distance),
+        m_weight(distance == NearestOccupied::Distance::InSpace ? 1 : 0),
+        m_params(params) {
+    if (params.decimation_other_map_points == 0 ||
+        params.offset_other_map_points >= params.decimation_other_map_points)
+      throw std::invalid_argument("matching: the offset must be below the decimation");
+    if (params.onlyUniqueRobust && !params.onlyKeepTheClosest)
+      throw std::invalid_argument("matching: onlyUniqueRobust needs onlyKeepTheClosest");
+  }
+
+  void match(const CPointsMap& points, const mrpt::poses::CPose3D& T_this_other) {
+    for (std::size_t i = m_params.offset_other_map_points; i < points.size();
+         i += m_params.decimation_other_map_points) {
+      TPoint3D local;
+      points.getPoint(i, local.x, local.y, local.z);
+      add(i, local, T_this_other.composePoint(local));
+    }
+  }
+
+  void results(std::size_t numPoints, TMatchingPairList& pairs, TMatchingExtraResults& extra) {
+    extra = {};
+    const auto found = double(m_pairs.size());
+    if (found > 0) extra.sumSqrDist = float(m_sumOfSquares / found);
+    if (numPoints > 0)
+      extra.correspondencesRatio =
+          float(double(m_params.decimation_other_map_points) * found / double(numPoints));
+    pairs.clear();
+    if (m_params.onlyUniqueRobust)
+      m_pairs.filterUniqueRobustPairs(m_voxels.size(), pairs);
+    else
+      pairs = std::move(m_pairs);
+  }
+
+ private:
+  double reach(const TPoint3D& point) const {
+    const TPoint3D from = point - m_params.angularDistPivotPoint;
+    return m_params.maxDistForCorrespondence +
+           m_params.maxAngularDistForCorrespondence *
+               std::sqrt(from.x * from.x + from.y * from.y + m_weight * from.z * from.z);
+  }
+
+  void add(std::size_t index, const TPoint3D& local, const TPoint3D& point) {
+    const auto voxel = m_nearest({point.x, point.y, point.z}, reach(point));
+    if (!voxel) return;
+    const Eigen::Vector3f global = voxel->center.cast<float>();
+    m_pairs.emplace_back(indexOf(voxel->center), index, global.x(), global.y(), global.z(),
+                         float(local.x), float(local.y), float(local.z));
+    m_pairs.back().errorSquareAfterTransformation = float(voxel->squaredDistance);
+    m_sumOfSquares += voxel->squaredDistance;
+  }
+
+  /** Numbers of voxels, in the order in which they are met. */
+  std::uint32_t indexOf(const Eigen::Vector3d& center) {
+    const auto key = m_tree.coordToKey(center.x(), center.y(), center.z());
+    return m_voxels.emplace(std::array{key[0], key[1], key[2]}, m_voxels.size()).first->second;
+  }
+
+  const SemanticOcTree& m_tree;
+  NearestOccupied m_nearest;
+  double m_weight;
+  TMatchingParams m_params;
+  TMatchingPairList m_pairs;
+  double m_sumOfSquares = 0;
+  std::map<std::array<octomap::key_type, 3>, std::uint32_t> m_voxels;
+};
+
+}  // namespace
+
+void CSemanticOctoMap::determineMatching2D(const CMetricMap* other,
+                                           const mrpt::poses::CPose2D& T_this_other,
+                                           TMatchingPairList& pairs, const TMatchingParams& params,
+                                           TMatchingExtraResults& extra) const {
+  const CPointsMap& points = pointsOf(other);
+  Matcher matcher(m_tree, NearestOccupied::Distance::FromAbove, params);
+  matcher.match(points, mrpt::poses::CPose3D(T_this_other));
+  matcher.results(points.size(), pairs, extra);
+}
+
+void CSemanticOctoMap::determineMatching3D(const CMetricMap* other,
+                                           const mrpt::poses::CPose3D& T_this_other,
+                                           TMatchingPairList& pairs, const TMatchingParams& params,
+                                           TMatchingExtraResults& extra) const {
+  const CPointsMap& points = pointsOf(other);
+  Matcher matcher(m_tree, NearestOccupied::Distance::InSpace, params);
+  matcher.match(points, T_this_other);
+  matcher.results(points.size(), pairs, extra);
+}
+
+float CSemanticOctoMap::compute3DMatchingRatio(
+    const CMetricMap* other, const mrpt::poses::CPose3D& T_this_other,
+    const mrpt::maps::TMatchingRatioParams& params) const {
+  TMatchingParams matching;
+  matching.maxDistForCorrespondence = params.maxDistForCorr;
+  TMatchingPairList pairs;
+  TMatchingExtraResults extra;
+  determineMatching3D(other, T_this_other, pairs, matching, extra);
+  return extra.correspondencesRatio;
+}
+
+float CSemanticOctoMap::squareDistanceToClosestCorrespondence(float x, float y) const {
+  const NearestOccupied nearest(m_tree, NearestOccupied::Distance::FromAbove);
+  const auto voxel = nearest({x, y, 0}, std::numeric_limits<double>::infinity());
+  if (!voxel) throw std::logic_error("the map has no occupied voxel");
+  return float(voxel->squaredDistance);
+}
+
+}  // namespace semantic_map

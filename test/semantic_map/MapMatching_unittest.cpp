@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+#include <mrpt/maps/CSimplePointsMap.h>
+
+#include <cmath>
+#include <set>
+
+#include "SmallMaps.h"
+#include "TemporaryFolder.h"
+
+using mrpt::maps::CSimplePointsMap;
+using mrpt::maps::TMatchingExtraResults;
+using mrpt::maps::TMatchingParams;
+using mrpt::poses::CPose2D;
+using mrpt::poses::CPose3D;
+using mrpt::tfest::TMatchingPairList;
+using semantic_map::CSemanticOctoMap;
+
+namespace {
+
+CSemanticOctoMap filledMap() {
+  CSemanticOctoMap map(0.2, threeClasses());
+  fill(map);
+  return map;
+}
+
+/** The centers of all occupied voxels, also of those that the tree has merged. */
+CSimplePointsMap voxelCenters(const CSemanticOctoMap& map) {
+  CSimplePointsMap points;
+  const auto& tree = map.tree();
+  const double voxel = tree.getResolution();
+  for (auto it = tree.begin_leafs(), end = tree.end_leafs(); it != end; ++it) {
+    if (!tree.isNodeOccupied(*it)) continue;
+    const int n = int(std::lround(it.getSize() / voxel));
+    const auto at = [&](double center, int i) {
+      return float(center - it.getSize() / 2 + (i + 0.5) * voxel);
+    };
+    for (int x = 0; x < n; ++x)
+      for (int y = 0; y < n; ++y)
+        for (int z = 0; z < n; ++z)
+          points.insertPoint(at(it.getX(), x), at(it.getY(), y), at(it.getZ(), z));
+  }
+  return points;
+}
+
+CSimplePointsMap somePoints() {
+  CSimplePointsMap points;
+  for (int i = 0; i < 500; ++i)
+    points.insertPoint(6 * std::sin(0.37f * float(i)), 5 * std::cos(0.71f * float(i)),
+                       2 * std::sin(0.13f * float(i)));
+  return points;
+}
+
+const CPose3D kPose(0.31, -0.17, 0.42, 0.7, 0.05, -0.03);
+
+/** The same pairs: other points, distances; which of several equally near voxels is open. */
+void expectSamePairs(const TMatchingPairList& pairs, const TMatchingPairList& expected) {
+  ASSERT_EQ(pairs.size(), expected.size());
+  ASSERT_GT(pairs.size(), 10u);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    EXPECT_EQ(pairs[i].localIdx, expected[i].localIdx);
+    EXPECT_EQ(pairs[i].local.x, expected[i].local.x);
+    EXPECT_NEAR(pairs[i].errorSquareAfterTransformation, expected[i].errorSquareAfterTransformation,
+                1e-4);
+  }
+}
+
+}  // namespace
+
+TEST(MapMatching, pairsPointsAndVoxelsAsAMapOfTheVoxelsCentersDoes) {
+  const CSemanticOctoMap map = filledMap();
+  TMatchingParams params;
+  params.maxDistForCorrespondence = 0.9f;
+  params.maxAngularDistForCorrespondence = 0.05f;
+  params.decimation_other_map_points = 3;
+  params.offset_other_map_points = 1;
+  TMatchingPairList pairs, expected;
+  TMatchingExtraResults extra, expectedExtra;
+  const auto points = somePoints();
+  map.determineMatching3D(&points, kPose, pairs, params, extra);
+  voxelCenters(map).determineMatching3D(&points, kPose, expected, params, expectedExtra);
+  expectSamePairs(pairs, expected);
+  EXPECT_NEAR(extra.correspondencesRatio, expectedExtra.correspondencesRatio, 1e-6);
+  EXPECT_NEAR(extra.sumSqrDist, expectedExtra.sumSqrDist, 1e-4);
+}
+
+TEST(MapMatching, seenFromAboveToo) {
+  const CSemanticOctoMap map = filledMap();
+  TMatchingParams params;
+  params.maxDistForCorrespondence = 0.3f;
+  TMatchingPairList pairs, expected;
+  TMatchingExtraResults extra, expectedExtra;
+  const auto points = somePoints();
+  map.determineMatching2D(&points, CPose2D(kPose), pairs, params, extra);
+  voxelCenters(map).determineMatching2D(&points, CPose2D(kPose), expected, params, expectedExtra);
+  expectSamePairs(pairs, expected);
+  for (const auto& [x, y] : {std::pair{0.f, 0.f}, {5.f, 1.f}, {-30.f, 2.f}})
+    EXPECT_NEAR(map.squareDistanceToClosestCorrespondence(x, y),
+                voxelCenters(map).squareDistanceToClosestCorrespondence(x, y), 1e-3);
+}
+
+TEST(MapMatching, eachVoxelOnceWhereAsked) {
+  const CSemanticOctoMap map = filledMap();
+  TMatchingParams params;
+  params.onlyUniqueRobust = true;
+  TMatchingPairList pairs;
+  TMatchingExtraResults extra;
+  const auto points = somePoints();
+  map.determineMatching3D(&points, kPose, pairs, params, extra);
+  std::set<std::uint32_t> voxels;
+  for (const auto& pair : pairs) voxels.insert(pair.globalIdx);
+  EXPECT_EQ(voxels.size(), pairs.size());
+  EXPECT_GT(pairs.size(), 10u);
+}
+
+TEST(MapMatching, itsOwnCentersMatchAllAndFarOnesNone) {
+  const CSemanticOctoMap map = filledMap();
+  const auto centers = voxelCenters(map);
+  EXPECT_EQ(map.compute3DMatchingRatio(&centers, CPose3D(), {}), 1.f);
+  EXPECT_EQ(map.compute3DMatchingRatio(&centers, CPose3D(0, 0, 100, 0, 0, 0), {}), 0.f);
+}
+
+TEST(MapMatching, whatCannotBeMatchedIsRefused) {
+  const CSemanticOctoMap map = filledMap();
+  EXPECT_TRUE(contains(errorOf([&] { map.compute3DMatchingRatio(&map, CPose3D(), {}); }),
+                       "CSemanticOctoMap"));
+  EXPECT_THROW(map.compute3DMatchingRatio(nullptr, CPose3D(), {}), std::invalid_argument);
+  EXPECT_THROW(CSemanticOctoMap().squareDistanceToClosestCorrespondence(0, 0), std::logic_error);
+  const CSimplePointsMap none;
+  EXPECT_EQ(map.compute3DMatchingRatio(&none, CPose3D(), {}), 0.f);
+}
