@@ -115,8 +115,7 @@ TEST(ClassTableFile, aSyntaxErrorOrATruncatedFileIsAnErrorAndNoShorterTable) {
 }
 
 TEST(ClassTableFile, aMissingFileIsNamed) {
-  EXPECT_EQ(errorOf([] { loadClassTable("/nowhere/t.yaml"); }),
-            "/nowhere/t.yaml: cannot be read");
+  EXPECT_EQ(errorOf([] { loadClassTable("/nowhere/t.yaml"); }), "/nowhere/t.yaml: cannot be read");
 }
 
 TEST(ClassTableFile, savingWhereNothingCanBeWrittenNamesTheFileAndLeavesNothing) {

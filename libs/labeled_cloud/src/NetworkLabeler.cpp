@@ -72,7 +72,6 @@ cv::Mat readBgr(const CObservation& observation) {
   const ColorImage color = colorImageOf(observation);
   cv::Mat pixels = color.image.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);
   color.image.unload();
-  if (pixels.empty()) throw std::runtime_error("its color image is empty");
   if (pixels.channels() == 1) cv::cvtColor(pixels, pixels, cv::COLOR_GRAY2BGR);
   if (pixels.channels() == 4) cv::cvtColor(pixels, pixels, cv::COLOR_BGRA2BGR);
   return pixels;
