@@ -33,9 +33,10 @@ class Repository : public testing::Test {
   /** What this project consists of, without what a build or a user puts beside it. */
   std::vector<fs::path> projectFolders() const {
     std::vector<fs::path> folders;
-    for (const auto* name : {".ci", "apps", "cmake", "config", "doc", "libs", "rawlog-samples",
-                             "scripts", "test", "README.md", "CHANGELOG.md", "CMakeLists.txt",
-                             "CMakePresets.json", "debian-packages.txt", "run-demo", "run-tests"})
+    for (const auto* name :
+         {".ci", "apps", "cmake", "config", "doc", "libs", "rawlog-samples", "scripts", "test",
+          "README.md", "CHANGELOG.md", "CMakeLists.txt", "CMakePresets.json", "Doxyfile",
+          "debian-packages.txt", "package.xml", "run-demo", "run-tests"})
       if (fs::exists(root / name)) folders.push_back(root / name);
     return folders;
   }
@@ -127,11 +128,31 @@ TEST_F(Repository, aLinkThatLeadsNowhereIsFound) {
   EXPECT_EQ(brokenLinks(scratch / "file.md"), Findings{"file.md:2: no file gone.png"});
 }
 
+TEST_F(Repository, theTutorialShowsTheConsumersSource) {
+  const auto textOf = [](const fs::path& file) {
+    std::string text;
+    for (const SourceLine& line : linesOf(file)) text += line.text + "\n";
+    return text;
+  };
+  const std::string source = textOf(root / "test/repository/consumer/main.cpp");
+  const std::string heart = source.substr(source.find("int main()"));
+  EXPECT_NE(textOf(root / "doc/handbook/embedding.md").find(heart), std::string::npos) << heart;
+}
+
 TEST_F(Repository, everyApplicationHasAReadme) {
   for (const auto& entry : fs::directory_iterator(root / "apps")) {
     if (!fs::exists(entry.path() / "CMakeLists.txt")) continue;
     EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path();
   }
+}
+
+TEST_F(Repository, packageXmlHasTheVersionOfTheProject) {
+  std::ifstream file(root / "VERSION");
+  std::string version;
+  std::getline(file, version);
+  std::string xml;
+  for (const SourceLine& line : linesOf(root / "package.xml")) xml += line.text;
+  EXPECT_NE(xml.find("<version>" + version + "</version>"), std::string::npos) << version;
 }
 
 TEST_F(Repository, everyPackageIsListedOnce) {
