@@ -1,0 +1,59 @@
+// The 2D grid of a real street, asked for the labeled points that the map was made of.
+#include <gtest/gtest.h>
+#include <labeled_cloud/ClassTableFile.h>
+#include <semantic_map/ExportGrid.h>
+
+#include "DataSets.h"
+#include "SharedData.h"
+
+using mrpt::maps::COccupancyGridMap2D;
+using semantic_octree::ClassTable;
+
+namespace {
+
+struct Share {
+  int points = 0, right = 0;
+  void add(bool isRight) { ++points, right += isRight; }
+  double value() const { return double(right) / points; }
+};
+
+/** Of points near the sensor, which is 1.73 m above the street: of the road in free cells, and of
+ * what stands there, half a meter to one and a half above it, in occupied ones. */
+void judge(const COccupancyGridMap2D& grid, const LabeledFrame& frame, const ClassTable& classes,
+           Share& road, Share& standing) {
+  for (std::size_t i = 0; i < frame.cloud.size(); ++i) {
+    const Eigen::Vector3f& p = frame.cloud.points[i];
+    const auto id = frame.cloud.classes[i];
+    if (frame.isMoving(i) || id == 0 || p.norm() > 12) continue;
+    const Eigen::Vector3d q = frame.T_map_sensor * p.cast<double>();
+    const float free = grid.getPos(float(q.x()), float(q.y()));
+    const std::string& name = classes.name(id);
+    if (name == "road") road.add(free > 0.5f);
+    if ((name == "car" || name == "building") && p.z() > -1.2f && p.z() < -0.3f)
+      standing.add(free < 0.5f);
+  }
+}
+
+}  // namespace
+
+TEST(StreetGrid, theRoadIsFreeAndCarsAndWallsAreOccupied) {
+  SKIP_WITHOUT_DATA("semantic_kitti");
+  const ClassTable classes = labeled_cloud::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
+                                                           "config/classes/semantic_kitti.yaml");
+  const auto frames = readSemanticKitti(sharedDataDir() / "semantic_kitti/00", classes);
+  semantic_octree::SemanticOcTree map(0.2, classes);
+  for (const LabeledFrame& frame : frames) map.insert(frame.cloud, frame.T_map_sensor);
+
+  semantic_map::GridOptions byClass;
+  for (const char* name : {"road", "sidewalk", "parking", "terrain"})
+    byClass.ground.push_back(*classes.find(name));
+  for (const auto& options : {semantic_map::GridOptions(), byClass}) {
+    const COccupancyGridMap2D grid = gridOf(map, options);
+    Share road, standing;
+    for (const LabeledFrame& frame : frames) judge(grid, frame, classes, road, standing);
+    EXPECT_GT(road.points, 10000);
+    EXPECT_GT(standing.points, 1000);
+    EXPECT_GT(road.value(), 0.98);
+    EXPECT_GT(standing.value(), 0.9);
+  }
+}
