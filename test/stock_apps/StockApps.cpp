@@ -22,7 +22,7 @@ StockApps::Run StockApps::run(const std::string& command, Plugin plugin) const {
   folder.write("command", "cd '" + folder.path().string() + "'\nexport HOME=\"$PWD\"\n" +
                               environment + command + "\n");
   FILE* pipe =
-      popen(("timeout 60 sh '" + (folder / "command").string() + "' 2>&1 </dev/null").c_str(), "r");
+      popen(("timeout 200 sh '" + (folder / "command").string() + "' 2>&1 </dev/null").c_str(), "r");
   Run result;
   std::array<char, 4096> buffer;
   while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))

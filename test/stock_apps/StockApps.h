@@ -22,7 +22,7 @@ class StockApps : public testing::Test {
 
   StockApps();
 
-  /** Runs a shell command in the folder, without a terminal, for a minute at most. */
+  /** Runs a shell command in the folder, without a terminal, for some minutes at most. */
   Run run(const std::string& command, Plugin plugin = Plugin::Absent) const;
   /** The semantic octree that an application left below a folder; none if there is none. */
   std::optional<semantic_octree::SemanticOcTree> mapIn(const std::string& subfolder) const;
