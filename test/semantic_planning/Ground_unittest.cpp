@@ -124,7 +124,7 @@ TEST(Ground, roomIsTheDistanceToTheNearestColumnWithoutFreeGround) {
     for (int y = 0; y < 40; ++y)
       if (free[x][y] || (x + y) % 2) {  // what is not free is a hole or a pillar
         world.voxel(x, y, -1, PaintedWorld::Road);
-        for (int z = 0; z < 4 && !free[x][y]; ++z) world.voxel(x, y, z, PaintedWorld::Wall);
+        for (int z = 0; z < 8 && !free[x][y]; ++z) world.voxel(x, y, z, PaintedWorld::Wall);
       }
   VehicleOptions vehicle = smallVehicle();
   vehicle.clearance = 0.8;

@@ -50,7 +50,7 @@ class PathChecker {
     const double sideways = -std::sin(middle) * (b.x - a.x) + std::cos(middle) * (b.y - a.y);
     const double ahead = std::cos(middle) * (b.x - a.x) + std::sin(middle) * (b.y - a.y);
     EXPECT_LE(std::abs(sideways), 0.02 * m_voxel);
-    if (step > 1e-6) EXPECT_EQ(ahead > 0, b.forward);
+    EXPECT_EQ(step <= 1e-6 || (ahead > 0) == b.forward, true);
     const double climb =
         std::max(m_voxel, std::floor(m_vehicle.stepHeight / m_voxel + 1e-6) * m_voxel);
     EXPECT_LE(std::abs(b.z - a.z), climb + 1e-6);

@@ -49,14 +49,23 @@ void addHeadings(Column column, int z, double priority, std::optional<ClassId> c
     candidates.push_back({{{x, y, heading}, z}, priority, classId});
 }
 
+/** Whether a leaf may hold points of the region. */
+bool nearRegion(const LeafCell& leaf, int size, const CandidateSearch& search) {
+  const double x = search.ground.centerOf(leaf.key[0]), y = search.ground.centerOf(leaf.key[1]);
+  return search.region.contains(x, y, size * search.ground.voxelSize());
+}
+
 ClassId likeliestIn(const LeafCell& leaf, const Abstraction& abstraction) {
   const std::vector<double> p = abstraction.distribution(leaf);
   return static_cast<ClassId>(std::max_element(p.begin() + 1, p.end()) - p.begin());
 }
 
+/** Large cells go before small ones: the middle of what is all alike comes before its border, where
+ * most leaves are. */
 double priorityOf(const Cell& cell, unsigned seed) {
   const auto edge = static_cast<unsigned>(cell.edge);
-  return dither(static_cast<unsigned>(cell.low.x) / edge, static_cast<unsigned>(cell.low.y) / edge,
+  return 1.0 / edge *
+         dither(static_cast<unsigned>(cell.low.x) / edge, static_cast<unsigned>(cell.low.y) / edge,
                 seed + edge);
 }
 
@@ -85,6 +94,7 @@ std::vector<Candidate> candidatesIn(const LeafCell& leaf, const Abstraction& abs
                                     const CandidateSearch& search) {
   if (!leaf.node || leaf.node->getLogOdds() <= 0) return {};
   const int size = 1 << (16 - leaf.depth);
+  if (!nearRegion(leaf, size, search)) return {};
   const int z = leaf.key[2] & ~(size - 1);
   const Column low{leaf.key[0] & ~(size - 1), leaf.key[1] & ~(size - 1)};
   const int largest = powerOfTwoWithin(search.options.spacing / search.ground.voxelSize());

@@ -51,8 +51,7 @@ bool MapRoadmap::reachable(const Candidate& candidate) const {
 }
 
 std::vector<MapRoadmap::Offer> MapRoadmap::compressedCandidates() {
-  Abstraction abstraction(m_map);
-  abstraction.takeChange();  // what leaves() tells is all there is
+  const Abstraction abstraction(m_map);
   std::vector<Offer> offers;
   for (const LeafCell& leaf : abstraction.leaves())
     for (const Candidate& candidate : candidatesIn(leaf, abstraction, search()))
@@ -66,14 +65,16 @@ std::vector<MapRoadmap::Offer> MapRoadmap::fullCandidates() const {
   return offers;
 }
 
-void MapRoadmap::takeByPriority(std::vector<Offer> offers) {
-  std::stable_sort(offers.begin(), offers.end(), [](const Offer& l, const Offer& r) {
-    return l.candidate.priority < r.candidate.priority;
-  });
+void MapRoadmap::takeByPriority(const std::vector<Offer>& offers) {
+  std::vector<std::pair<double, std::size_t>> sequence;
+  for (std::size_t i = 0; i < offers.size(); ++i)
+    sequence.emplace_back(offers[i].candidate.priority, i);
+  std::sort(sequence.begin(), sequence.end());
   std::size_t usable = 0;
-  for (const Offer& offer : offers) {
+  for (const auto& [priority, index] : sequence) {
+    const Offer& offer = offers[index];
     if (m_options.vertices > 0 && usable == m_options.vertices) {
-      m_lastPriority = offer.candidate.priority;
+      m_lastPriority = priority;
       return;
     }
     if (!reachable(offer.candidate)) continue;
@@ -106,10 +107,12 @@ void MapRoadmap::followLeaves() {
   Abstraction abstraction(m_map);
   const semantic_octree::TreeChange change = abstraction.takeChange();
   for (const LeafCell& leaf : change.removed) m_pool.removeLeaf(VertexPool::idOf(leaf));
-  for (const LeafCell& leaf : change.added)
+  for (const LeafCell& leaf : change.added) {
+    if (m_pool.holds(VertexPool::idOf(leaf))) continue;  // it came before the roadmap
     for (const Candidate& candidate : candidatesIn(leaf, abstraction, search()))
       if (candidate.priority < m_lastPriority && reachable(candidate))
         m_pool.add(candidate, VertexPool::idOf(leaf));
+  }
 }
 
 }  // namespace semantic_planning

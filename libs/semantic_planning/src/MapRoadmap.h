@@ -33,7 +33,7 @@ class MapRoadmap {
   bool reachable(const Candidate& candidate) const;
   std::vector<Offer> compressedCandidates();
   std::vector<Offer> fullCandidates() const;
-  void takeByPriority(std::vector<Offer> offers);
+  void takeByPriority(const std::vector<Offer>& offers);
   void takeHalton();
   void followLeaves();
 

@@ -17,9 +17,9 @@ PlanningRegion::PlanningRegion(const TPose2D& start, const TPose2D& goal, double
   m_corner = {corner.x, corner.y, direction};
 }
 
-bool PlanningRegion::contains(double x, double y) const {
+bool PlanningRegion::contains(double x, double y, double margin) const {
   const TPoint2D p = m_corner.inverseComposePoint(TPoint2D(x, y));
-  return p.x >= 0 && p.x <= m_length && p.y >= 0 && p.y <= m_width;
+  return p.x >= -margin && p.x <= m_length + margin && p.y >= -margin && p.y <= m_width + margin;
 }
 
 TPoint2D PlanningRegion::at(double u, double v) const {

@@ -8,7 +8,8 @@ class PlanningRegion {
  public:
   PlanningRegion(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, double buffer);
 
-  bool contains(double x, double y) const;
+  /** \param margin that a point may lie outside, meters */
+  bool contains(double x, double y, double margin = 0) const;
   /** \param u, v in [0, 1], along the line and across. */
   mrpt::math::TPoint2D at(double u, double v) const;
 

@@ -13,6 +13,8 @@ using OmplSpace = ompl::base::ReedsSheppStateSpace;
 
 namespace {
 
+constexpr double kRounding = 1e-9;  // m: sums of segments' lengths are not exact
+
 double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
 
 /** Where `s` meters (negative: backwards) along a segment lead. */
@@ -41,7 +43,7 @@ CurvePoint ReedsSheppCurve::at(double s) const {
     point.curvature = segment.turn / m_radius;
     point.forward = segment.length > 0;
     left -= length;
-    if (left <= 0) break;
+    if (left <= kRounding) break;
   }
   return point;
 }

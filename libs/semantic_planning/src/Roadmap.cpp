@@ -82,7 +82,8 @@ void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
   if (!m_graph.containsVertex(a) || !m_graph.containsVertex(b)) return;
   const EdgeId edge = edgeBetween(a, b);
   if (linked && edge == colored_graph::kNoEdge) {
-    const double length = m_checker.reedsShepp().distance(pose(a).pose, pose(b).pose);
+    const double length = m_nearest.distance(a, b).value_or(
+        m_checker.reedsShepp().distance(pose(a).pose, pose(b).pose));
     const EdgeId e = m_graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(length));
     if (e >= m_lengths.size()) m_lengths.resize(e + 1);
     m_lengths[e] = length;

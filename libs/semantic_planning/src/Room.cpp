@@ -48,6 +48,11 @@ class Obstacles {
 
 int between(int a, int b) { return std::max(0, std::abs(a - b) - 1); }
 
+/** How far ground may have gone up or down on the way: what differs by more is another level. */
+int levelTolerance(int columns, const GroundShape& shape) {
+  return std::min(shape.height, 2 * shape.step + 1 + static_cast<int>(shape.rise * columns));
+}
+
 /** Lowers the room of the tile's surfaces near an obstacle. */
 void stamp(const Obstacle& o, Column tile, SurfaceTile& measured, const GroundShape& shape) {
   const Column low = firstColumnOf(tile);
@@ -58,10 +63,11 @@ void stamp(const Obstacle& o, Column tile, SurfaceTile& measured, const GroundSh
     for (int x = std::max(low.x, o.column.x - reach); x < xEnd; ++x) {
       const int dx = between(x, o.column.x), dy = between(y, o.column.y);
       const int room2 = dx * dx + dy * dy;
+      const int tolerance = levelTolerance(std::max(dx, dy) + 1, shape);
       const int index = indexInTile({x, y});
       for (int i = measured.first[index]; i < measured.first[index + 1]; ++i) {
         Surface& s = measured.surfaces[i];
-        if (room2 < s.room2 && std::abs(int(s.z) - o.z) <= shape.height)
+        if (room2 < s.room2 && std::abs(int(s.z) - o.z) <= tolerance)
           s.room2 = static_cast<std::uint16_t>(room2);
       }
     }

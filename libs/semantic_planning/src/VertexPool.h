@@ -30,6 +30,7 @@ class VertexPool {
 
   /** Changes take effect in the roadmap with apply(). */
   void add(const Candidate& candidate, std::optional<LeafId> leaf = {});
+  bool holds(const LeafId& leaf) const { return m_ofLeaf.count(leaf) > 0; }
   void removeLeaf(const LeafId& leaf);
   /** Looks again at the poses near these tiles. */
   void refresh(const std::vector<Column>& changedTiles);

@@ -27,7 +27,7 @@ struct RoadmapOptions {
   /** Longest edge, meters. */
   double connectionRadius = 15;
   /** Compressed, Full: headings at each point. */
-  int headings = 4;
+  int headings = 1;
   /** Compressed: largest distance between points in a large leaf; Full: between points; meters. */
   double spacing = 2;
   /** Vertices lie within this distance from the line between start and goal, meters. */
