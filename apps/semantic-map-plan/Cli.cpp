@@ -83,6 +83,9 @@ void addJudgment(CLI::App& app, PlannerOptions& planner) {
       ->add_option("--bound", planner.reading.bound,
                    "cautious: the worst class above this probability counts; expected: none below")
       ->capture_default_str();
+  planner.shorten = true;
+  group->add_flag("!--as-found", planner.shorten,
+                  "Leave the path as the graph has it; else detours over its vertices are cut off");
   group->add_option("--time-limit", planner.timeLimit, "Of the search, s");
 }
 

@@ -22,8 +22,9 @@ PlanStatus statusOf(SearchStatus status) {
   }
 }
 
-/** Appends a curve's points; its first is where the last one ended, perhaps in another gear. */
-void append(const std::vector<PathPoint>& curve, std::vector<PathPoint>& path) {
+}  // namespace
+
+void appendCurve(const std::vector<PathPoint>& curve, std::vector<PathPoint>& path) {
   const double begin = path.empty() ? 0 : path.back().arcLength;
   for (std::size_t i = path.empty() ? 0 : 1; i < curve.size(); ++i) {
     path.push_back(curve[i]);
@@ -31,16 +32,24 @@ void append(const std::vector<PathPoint>& curve, std::vector<PathPoint>& path) {
   }
 }
 
-}  // namespace
-
 std::vector<PathPoint> tracePath(const PathResult& path, const Roadmap& roadmap,
                                  const EdgeChecker& checker) {
   std::vector<PathPoint> points;
   for (std::size_t i = 0; i < path.edges.size(); ++i) {
     const auto from = path.vertices[i];
-    append(checker.trace(roadmap.curve(path.edges[i], from), roadmap.pose(from).z), points);
+    appendCurve(checker.trace(roadmap.curve(path.edges[i], from), roadmap.pose(from).z), points);
   }
   return points;
+}
+
+void setLengths(const PathResult& path, PlanResult& result) {
+  result.cost = path.cost;
+  result.lengthPerClass.clear();
+  result.length = 0;
+  for (const colored_graph::Length length : path.lengthPerClass) {
+    result.lengthPerClass.push_back(colored_graph::toMeters(length));
+    result.length += result.lengthPerClass.back();
+  }
 }
 
 void describePath(const PathResult& path, const Roadmap& roadmap, const EdgeChecker& checker,
@@ -51,11 +60,8 @@ void describePath(const PathResult& path, const Roadmap& roadmap, const EdgeChec
     result.reason = describe(path.status);
     return;
   }
-  result.cost = path.cost;
-  for (const colored_graph::Length length : path.lengthPerClass) {
-    result.lengthPerClass.push_back(colored_graph::toMeters(length));
-    result.length += result.lengthPerClass.back();
-  }
+  setLengths(path, result);
+  result.roadmapCost = result.cost;
   for (const auto v : path.vertices) result.vertices.push_back(roadmap.pose(v).pose);
   result.path = tracePath(path, roadmap, checker);
 }

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "PathShortening.h"
 #include "PathTracing.h"
 
 namespace semantic_planning {
@@ -64,7 +65,8 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
       m_model{order, options.edges, options.cost} {
   if (options.roadmap.kind == GraphKind::Compressed && !map.hasAbstraction())
     throw std::logic_error("SemanticPlanner: the map keeps no G-values (setAbstraction)");
-  map.takeTouchedTiles();  // the ground knows them all
+  map.takeTouchedTiles();  // ground and roadmaps begin with the whole map
+  if (options.roadmap.kind == GraphKind::Compressed) semantic_octree::Abstraction(map).takeChange();
 }
 
 const Roadmap& PlannerCore::roadmap() const {
@@ -145,6 +147,11 @@ void PlannerCore::finish(const PathResult& path, StageClock& clock, PlanResult& 
   result.numVertices = roadmap().graph().vertexCount();
   result.numEdges = roadmap().graph().edgeCount();
   clock.end("path");
+  if (m_options.shorten && m_model.edges == colored_graph::EdgeModel::Profile &&
+      m_model.kind == colored_graph::CostKind::ArcLength) {
+    shortenPath(result, m_checker, m_model, m_options.roadmap.connectionRadius);
+    clock.end("shorten");
+  }
   result.times = clock.take();
 }
 
@@ -172,15 +179,22 @@ UpdateResult PlannerCore::update() {
   return result;
 }
 
+/** A start that stays where it is keeps what the search knows. */
+void PlannerCore::moveStart(Roadmap& map) {
+  const GroundPose& present = map.pose(m_start);
+  if (present.pose == m_startPose->pose && present.z == m_startPose->z) return;
+  const VertexId before = m_start;
+  m_start = map.addGuest(*m_startPose);  // first, so that it is another id
+  map.removeGuest(before);
+}
+
 PlanResult PlannerCore::replan(const Place& start) {
   StageClock clock;
   PlanResult result;
   roadmap();  // or nothing was planned
   if (refuse(start, m_goalPlace, result)) return result;
   Roadmap& map = m_roadmap->roadmap();
-  const VertexId before = m_start;
-  m_start = map.addGuest(*m_startPose);  // first, so that it is another id
-  map.removeGuest(before);
+  moveStart(map);
   if (map.pose(m_goal).z != m_goalPose->z) {
     map.removeGuest(m_goal);
     m_goal = map.addGuest(*m_goalPose);

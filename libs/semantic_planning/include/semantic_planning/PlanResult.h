@@ -47,10 +47,12 @@ struct PlanResult {
   /** Worst rank first: one number for each rank but rank 0, then the total length, in
    * colored_graph's units (0.1 mm) or edges. */
   std::vector<std::int64_t> cost;
+  /** Of the roadmap's best path, before it was shortened (PlannerOptions::shorten). */
+  std::vector<std::int64_t> roadmapCost;
   std::vector<double> lengthPerClass;         ///< meters by class id; [0]: unknown ground
   double length = 0;                          ///< meters
   std::vector<PathPoint> path;                ///< at most half a voxel apart
-  std::vector<mrpt::math::TPose2D> vertices;  ///< of the roadmap along the path
+  std::vector<mrpt::math::TPose2D> vertices;  ///< where its curves meet
   std::size_t numVertices = 0, numEdges = 0;  ///< of the roadmap
   colored_graph::SearchStatistics search;
   StageTimes times;

@@ -21,6 +21,9 @@ struct PlannerOptions {
   ClassReading reading;
   colored_graph::EdgeModel edges = colored_graph::EdgeModel::Profile;
   colored_graph::CostKind cost = colored_graph::CostKind::ArcLength;
+  /** Replaces detours over the roadmap's vertices by single curves where that makes the path
+   * better; with EdgeModel::Profile and CostKind::ArcLength only. */
+  bool shorten = false;
   /** Of a search, seconds. */
   double timeLimit = std::numeric_limits<double>::infinity();
   /** Asked often during a search, which stops when it answers true. */
