@@ -23,10 +23,9 @@ struct Cli {
   bool partial = false;
 
   void addTo(CLI::App& app) {
-    app.add_option("MAP", maps, "Maps' own files (.semantic); the last one is written")
+    app.add_option("MAP", maps, "Maps' own files (.semantic) and, as the last, the sum to write")
         ->required()
-        ->expected(2, CLI::detail::expected_max_vector_size)
-        ->type_name("MAP... OUT");
+        ->expected(2, CLI::detail::expected_max_vector_size);
     app.add_option("--poses", poses, "File of lines `MAP x y z yaw pitch roll` (m, degrees)");
     app.add_flag("--partial", partial,
                  "The sum will be added to others: do not limit yet how sure it is");
