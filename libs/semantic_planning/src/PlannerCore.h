@@ -40,6 +40,7 @@ class PlannerCore {
   bool refuse(const Place& start, const Place& goal, PlanResult& result);
   colored_graph::SearchOptions searchOptions();
   std::optional<colored_graph::EdgeProfile> evaluateTimed(colored_graph::EdgeId e);
+  void moveStart(Roadmap& map);
   void finish(const colored_graph::PathResult& path, StageClock& clock, PlanResult& result);
 
   semantic_octree::SemanticOcTree& m_map;
