@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
+#include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/maps/CMultiMetricMap.h>
+#include <mrpt/opengl/CSetOfObjects.h>
 
 #include "SmallMaps.h"
+#include "TemporaryFolder.h"
 
 using semantic_map::CSemanticOctoMap;
 using semantic_map::TRenderingOptions;
@@ -22,8 +26,35 @@ CSemanticOctoMap unusualMap() {
   map.likelihoodOptions.useLabels = false;
   map.renderingOptions.coloring = TRenderingOptions::Coloring::Height;
   map.renderingOptions.minHeight = -3;
+  map.renderingOptions.compressed = true;
+  map.likelihoodOptions.beamStep = 0.7;
+  map.likelihoodOptions.pointWeight = 0.4;
   fill(map);
   return map;
+}
+
+template <class Value>
+void append(std::string& bytes, const Value& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/** The bytes of what a map answers: states of places, likelihoods, matches, its scene, its
+ * compressed form, and what another scan makes of it. */
+std::string answersOf(CSemanticOctoMap& map) {
+  std::string bytes;
+  for (double x = -6; x < 6; x += 0.37)
+    for (double y = -6; y < 6; y += 0.41) {
+      const auto state = map.tree().query(x, y, 0.1);
+      append(bytes, state.occupancy), append(bytes, state.probability);
+      append(bytes, state.likeliestClass);
+      append(bytes, map.squareDistanceToClosestCorrespondence(float(x), float(y)));
+    }
+  const auto scan = labeledPoints({{4, 1, 0}, {-2, 3, 0.5f}, {0, -4, 1}, {1, 1, 1}}, {1, 2, 3, 0});
+  for (double x = -1; x < 1; x += 0.11)
+    append(bytes, map.computeObservationLikelihood(scan, mrpt::poses::CPose3D(x, 0, 0, x, 0, 0)));
+  bytes += bytesOf(*map.getVisualization()) + bytesOf(*map.compress()) + map.asString();
+  fill(map);
+  return bytes + bytesOf(map);
 }
 
 }  // namespace
@@ -107,4 +138,31 @@ TEST(MapArchive, multiMetricMapsCopyWithoutLoss) {
   ASSERT_TRUE(inside);
   EXPECT_NE(inside.get(), maps.maps[0].get());
   EXPECT_TRUE(bytesOf(*inside) == bytesOf(unusualMap()));
+}
+
+TEST(MapArchive, everyWayOfCopyingAnswersEveryQueryAlike) {
+  const TemporaryFolder folder;
+  CSemanticOctoMap map = unusualMap();
+  map.genericMapParams.enableSaveAs3DObject = true;
+  semantic_map::TAbstractionOptions abstraction;
+  abstraction.relevant = "road: 1";
+  map.setAbstraction(abstraction);
+  const std::string file = (folder / "map.gz").string();
+  {
+    mrpt::io::CFileGZOutputStream out(file);
+    mrpt::serialization::archiveFrom(out) << map;
+  }
+  CSemanticOctoMap fromFile, fromArchive;
+  mrpt::io::CFileGZInputStream in(file);
+  mrpt::serialization::archiveFrom(in).ReadObject(&fromFile);
+  readBytes(fromArchive, bytesOf(map));
+  mrpt::maps::CMultiMetricMap maps, copied;
+  maps.maps.push_back(std::make_shared<CSemanticOctoMap>(map));
+  copied = maps;
+  const auto duplicate = std::dynamic_pointer_cast<CSemanticOctoMap>(map.duplicateGetSmartPtr());
+  const std::string expected = answersOf(map);
+  EXPECT_TRUE(answersOf(fromFile) == expected);
+  EXPECT_TRUE(answersOf(fromArchive) == expected);
+  EXPECT_TRUE(answersOf(*copied.mapByClass<CSemanticOctoMap>()) == expected);
+  EXPECT_TRUE(answersOf(*duplicate) == expected);
 }
