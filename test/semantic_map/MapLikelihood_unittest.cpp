@@ -149,14 +149,15 @@ TEST(MapLikelihood, anObservationThatChangedIsSeenAnew) {
   const CSemanticOctoMap map = mapOfOnePoint();
   auto observation = labeledPoints({kSeen}, {2});
   const auto ask = [&] { return map.computeObservationLikelihood(observation, CPose3D()); };
+  // Copies remember no observation.
   const double first = ask();
   EXPECT_EQ(ask(), first);
   observation.cloud.classes[0] = 1;
-  EXPECT_NEAR(ask(), logLikelihood(map, kSeen, 1), 1e-12);
+  EXPECT_NEAR(ask(), logLikelihood(CSemanticOctoMap(map), kSeen, 1), 1e-12);
   observation.cloud.points[0].z() += 50;
-  EXPECT_NEAR(ask(), logLikelihood(map, observation.cloud.points[0], 1), 1e-12);
+  EXPECT_NEAR(ask(), logLikelihood(CSemanticOctoMap(map), observation.cloud.points[0], 1), 1e-12);
   observation.sensorPose.z(-50);
-  EXPECT_NEAR(ask(), logLikelihood(map, kSeen, 1), 1e-12);
+  EXPECT_NEAR(ask(), logLikelihood(CSemanticOctoMap(map), kSeen, 1), 1e-12);
   observation.cloud = labeledPoints({kSeen}, {2}).cloud;
   observation.sensorPose = {};
   EXPECT_EQ(ask(), first);
