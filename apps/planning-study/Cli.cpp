@@ -1,0 +1,96 @@
+#include "Cli.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "RoadmapTrials.h"
+
+namespace planning_study {
+
+using semantic_planning::GraphKind;
+
+namespace {
+
+std::map<std::string, GraphKind> graphNames() {
+  std::map<std::string, GraphKind> names;
+  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Halton, GraphKind::HaltonDrivable,
+                               GraphKind::HaltonByClass, GraphKind::Full})
+    names[nameOf(kind)] = kind;
+  return names;
+}
+
+void addGraphs(CLI::App& app, StudyOptions& study) {
+  auto* group = app.add_option_group("Graphs");
+  group->add_option("--budgets", study.budgets, "Vertices of each graph, separated by commas")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  group->add_option("--graphs", study.graphs, "Their kinds; the first is compared with the others")
+      ->delimiter(',')
+      ->transform(CLI::CheckedTransformer(graphNames(), CLI::ignore_case));
+  group->add_option("--edges-per-vertex", study.edgesPerVertex, "Most edges of all graphs")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  group->add_option("--reference", study.reference, "Vertices of the dense graph; 0: none")
+      ->capture_default_str();
+  auto& roadmap = study.planner.roadmap;
+  group->add_option("--neighbors", roadmap.neighbors, "Each vertex is connected with so many")
+      ->capture_default_str();
+  group->add_option("--headings", roadmap.headings, "At each point (compressed, full)")
+      ->capture_default_str();
+  group->add_option("--spacing", roadmap.spacing, "Between points in large leaves, m")
+      ->capture_default_str();
+}
+
+void addPeers(CLI::App& app, StudyOptions& study) {
+  auto* group = app.add_option_group("Peers");
+  group->add_flag("--peers", study.peers, "OMPL's PRM*, LazyPRM* and BIT*, too");
+  group->add_option("--peer-time", study.peerTime, "Of each, processor seconds")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  group->add_option("--peer-instances", study.peerInstances, "They get the first ones only")
+      ->capture_default_str();
+}
+
+std::string nameOf(const std::filesystem::path& map) {
+  const std::string stem = map.stem().string();
+  return stem == "map" ? std::filesystem::absolute(map).parent_path().filename().string() : stem;
+}
+
+}  // namespace
+
+Cli::Cli() {
+  study.planner.roadmap.headings = 1;  // as in the paper
+  study.graphs = {GraphKind::Compressed, GraphKind::Halton, GraphKind::HaltonDrivable,
+                  GraphKind::HaltonByClass, GraphKind::Full};
+}
+
+void Cli::addTo(CLI::App& app) {
+  app.add_option("MAP", maps, "Maps' own files (.semantic)")->required();
+  app.add_option("--classes", classes, "Classes from best to worst (YAML)")->required();
+  app.add_option("--vehicle", vehicle, "Its measures (YAML); none: a small robot");
+  app.add_option("--output", output, "Folder of the results, created if need be")->required();
+  app.add_option("--instances", study.instances, "Pairs of start and goal on each map")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--seed", study.seed, "Other instances")->capture_default_str();
+  app.add_option("--min-distance", study.minDistance, "From start to goal, m")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--minutes", study.minutes, "No new instance after these (of the clock)")
+      ->check(CLI::PositiveNumber);
+  addGraphs(app, study);
+  addPeers(app, study);
+}
+
+std::vector<std::string> namesOf(const std::vector<std::filesystem::path>& maps) {
+  std::vector<std::string> names;
+  for (const auto& map : maps) {
+    if (std::find(names.begin(), names.end(), nameOf(map)) != names.end())
+      throw std::runtime_error(map.string() + ": a second map that is called " + nameOf(map));
+    names.push_back(nameOf(map));
+  }
+  return names;
+}
+
+}  // namespace planning_study

@@ -1,0 +1,25 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "Study.h"
+
+namespace planning_study {
+
+/** What the command line says. */
+struct Cli {
+  std::vector<std::filesystem::path> maps;
+  std::filesystem::path classes, vehicle, output;
+  StudyOptions study;
+
+  Cli();
+  void addTo(CLI::App& app);
+};
+
+/** A short name for each map: the file's, or its folder's if the file is called "map".
+ * \throw std::runtime_error two have the same. */
+std::vector<std::string> namesOf(const std::vector<std::filesystem::path>& maps);
+
+}  // namespace planning_study

@@ -1,0 +1,144 @@
+#include "Study.h"
+
+#include <semantic_octree/Abstraction.h>
+#include <semantic_octree/TreeFile.h>
+#include <semantic_planning/OrderAbstraction.h>
+#include <semantic_planning/OrderFile.h>
+
+#include <sstream>
+#include <stdexcept>
+
+#include "CpuClock.h"
+#include "Peers.h"
+#include "RoadmapTrials.h"
+
+namespace planning_study {
+
+using semantic_octree::SemanticOcTree;
+using namespace semantic_planning;
+
+const char* const kReference = "reference";
+
+namespace {
+
+constexpr unsigned kReferenceSeed = 1;  // no vertices of the graphs that are compared with it
+
+template <class Value>
+void refuse(const char* field, const Value& value, const char* expected) {
+  std::ostringstream message;
+  message << "StudyOptions: " << field << " is " << value << ", expected " << expected;
+  throw std::invalid_argument(message.str());
+}
+
+PlannerOptions withGraph(const StudyOptions& study, GraphKind kind, std::size_t budget) {
+  PlannerOptions options = study.planner;
+  options.roadmap.kind = kind;
+  options.roadmap.vertices = budget;
+  options.roadmap.edges =
+      static_cast<std::size_t>(study.edgesPerVertex * static_cast<double>(budget));
+  return options;
+}
+
+void append(std::vector<Trial> more, std::vector<Trial>& trials) {
+  std::move(more.begin(), more.end(), std::back_inserter(trials));
+}
+
+void measurePreparation(SemanticOcTree& map, const colored_graph::ClassOrder& order,
+                        const StudyOptions& options, MapStudy& study) {
+  double begin = cpuMilliseconds();
+  map.setAbstraction(abstractionFor(order));
+  study.abstractionTime = cpuMilliseconds() - begin;
+  begin = cpuMilliseconds();
+  const Ground ground(map, options.planner.vehicle, options.planner.ground, order);
+  study.groundTime = cpuMilliseconds() - begin;
+  const auto measures = semantic_octree::Abstraction(map).measures();
+  study.leaves = measures.full.numKnownLeaves;
+  study.compressedLeaves = measures.compressed.numKnownLeaves;
+}
+
+}  // namespace
+
+void StudyOptions::validate() const {
+  if (instances == 0) refuse("instances", instances, "at least 1");
+  if (!(minDistance > 0)) refuse("minDistance", minDistance, "a positive number");
+  if (graphs.empty()) refuse("graphs", "empty", "at least one");
+  if (budgets.empty()) refuse("budgets", "empty", "at least one");
+  for (const std::size_t budget : budgets)
+    if (budget == 0) refuse("budgets", budget, "positive numbers");
+  if (!(edgesPerVertex > 0)) refuse("edgesPerVertex", edgesPerVertex, "a positive number");
+  if (!(minutes > 0)) refuse("minutes", minutes, "a positive number");
+  if (!(peerTime > 0)) refuse("peerTime", peerTime, "a positive number");
+}
+
+/** All planners of a map, which take turns at every instance. */
+class MapStudent::Contest {
+ public:
+  Contest(const std::string& file, const std::string& classesFile, const StudyOptions& options)
+      : m_options(options),
+        m_map(semantic_octree::loadTree(file)),
+        m_order(loadClassOrder(classesFile, m_map.classes())) {
+    study.ranks = m_order.ranks();
+    measurePreparation(m_map, m_order, options, study);
+    for (const std::size_t budget : options.budgets)
+      for (const GraphKind kind : options.graphs)
+        m_contestants.emplace_back(m_map, m_order, withGraph(options, kind, budget));
+    if (options.reference > 0) prepareReference();
+    const EdgeChecker checker(anyPlanner().ground(), options.planner.vehicle, m_order,
+                              options.planner.reading);
+    m_instances = drawInstances(checker, options.instances, options.minDistance, options.seed);
+  }
+
+  void runNextInstance() {
+    const std::size_t i = study.instances++;
+    for (Trial& trial : run(m_instances[i], m_options.peers && i < m_options.peerInstances)) {
+      trial.map = study.name;
+      trial.instance = i;
+      study.trials.push_back(std::move(trial));
+    }
+  }
+
+  MapStudy study;
+
+ private:
+  void prepareReference() {
+    auto dense = withGraph(m_options, GraphKind::HaltonDrivable, m_options.reference);
+    dense.roadmap.seed = kReferenceSeed;
+    dense.roadmap.edges = 0;
+    m_reference.emplace(m_map, m_order, dense);
+  }
+
+  std::vector<Trial> run(const Instance& instance, bool withPeers) {
+    std::vector<Trial> trials;
+    for (RoadmapTrials& contestant : m_contestants)
+      append(contestant.run(instance, {"endpoint", "sweep", "profile", kWeighted}), trials);
+    if (m_reference) {
+      trials.push_back(m_reference->run(instance, {"profile"}).front());
+      trials.back().graph = kReference;
+    }
+    if (withPeers) append(runPeers(anyPlanner(), instance, m_options.peerTime), trials);
+    return trials;
+  }
+
+  const SemanticPlanner& anyPlanner() const { return m_contestants.front().planner(); }
+
+  const StudyOptions& m_options;
+  SemanticOcTree m_map;
+  const colored_graph::ClassOrder m_order;
+  std::vector<RoadmapTrials> m_contestants;
+  std::optional<RoadmapTrials> m_reference;
+  std::vector<Instance> m_instances;
+};
+
+MapStudent::MapStudent(const std::string& name, const std::string& file,
+                       const std::string& classesFile, const StudyOptions& options)
+    : m_contest(std::make_unique<Contest>(file, classesFile, options)) {
+  m_contest->study.name = name;
+  m_contest->study.file = file;
+}
+MapStudent::~MapStudent() = default;
+MapStudent::MapStudent(MapStudent&&) noexcept = default;
+
+void MapStudent::runNextInstance() { m_contest->runNextInstance(); }
+const MapStudy& MapStudent::study() const { return m_contest->study; }
+
+}  // namespace planning_study

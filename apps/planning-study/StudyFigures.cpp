@@ -1,0 +1,145 @@
+#include "StudyFigures.h"
+
+#include "../semantic-map-compress/FigureScript.h"
+
+namespace planning_study {
+
+using nlohmann::ordered_json;
+using namespace semantic_map_compress;
+
+namespace {
+
+constexpr std::size_t kColumnWidth = 420, kRowHeight = 340;  // pixels
+constexpr double kBox = 0.15;                                // width; budgets stand at 0, 1, 2...
+
+std::ostringstream sheetFor(const ordered_json& study, std::size_t rows,
+                            const std::filesystem::path& file) {
+  const std::size_t maps = study["maps"].size();
+  auto out = scriptFor(file, maps * kColumnWidth, rows * kRowHeight + 40);
+  const auto& budgets = study["options"]["budgets"];
+  out << "set multiplot layout " << rows << ',' << maps << " columnsfirst margins "
+      << 0.2 / static_cast<double>(maps) << ",0.99,0.16,0.92 spacing "
+      << 0.2 / static_cast<double>(maps) << ",0.1\n"
+      << "set xtics " << tics(budgets.size(), [&](std::size_t i) { return budgets[i].dump(); })
+      << "\n"
+      << "set xrange [-0.5:" << static_cast<double>(budgets.size()) - 0.5 << "]\nunset key\n";
+  return out;
+}
+
+/** Of the judgment "profile"; null if there is none. */
+ordered_json wayOf(const ordered_json& map, const std::string& graph, const ordered_json& budget) {
+  for (const ordered_json& way : map["ways"])
+    if (way["judgment"] == "profile" && way["graph"] == graph && way["budget"] == budget)
+      return way;
+  return nullptr;
+}
+
+/** One curve or row of boxes for each graph. */
+class Plot {
+ public:
+  Plot(const ordered_json& study, const ordered_json& map) : m_study(study), m_map(map) {}
+
+  /** values(way) gives what stands after the abscissa in a line of data. */
+  template <class Values>
+  void write(std::ostream& out, const Values& values) const {
+    const auto& graphs = m_study["options"]["graphs"];
+    for (std::size_t g = 0; g < graphs.size(); ++g) {
+      out << "$g" << g << " << EOD\n";
+      const auto& budgets = m_study["options"]["budgets"];
+      for (std::size_t b = 0; b < budgets.size(); ++b) {
+        const ordered_json way = wayOf(m_map, graphs[g], budgets[b]);
+        if (way.is_null() || way["found"] == 0) continue;
+        out << static_cast<double>(b) + offset(g) << ' ' << values(way) << '\n';
+      }
+      out << "0 NaN NaN NaN NaN NaN\nEOD\n";
+    }
+  }
+
+  /** "plot" with these styles, of which the first is in the key. */
+  void plot(std::ostream& out, const std::vector<std::string>& styles) const {
+    const auto& graphs = m_study["options"]["graphs"];
+    out << "$dot << EOD\n0 1\nEOD\nplot ";  // gnuplot refuses axes without a valid point
+    for (std::size_t g = 0; g < graphs.size(); ++g)
+      for (std::size_t s = 0; s < styles.size(); ++s) {
+        const std::string title = s ? " notitle" : " title " + gnuplotText(graphs[g]);
+        out << "$g" << g << ' ' << styles[s] << " lc rgb '" << colorOf(g) << "'" << title << ", ";
+      }
+    out << "$dot with dots lc rgb '#ffffff' notitle\n";
+  }
+
+ private:
+  double offset(std::size_t graph) const {
+    return (static_cast<double>(graph) -
+            (static_cast<double>(m_study["options"]["graphs"].size()) - 1) / 2) *
+           kBox;
+  }
+
+  const ordered_json& m_study;
+  const ordered_json& m_map;
+};
+
+std::string box(const ordered_json& d) {
+  std::ostringstream out;
+  for (const char* part : {"quartile1", "percentile5", "percentile95", "quartile3", "median"})
+    out << d[part] << ' ';
+  return out.str();
+}
+
+std::string valueWithInterval(const ordered_json& estimate) {
+  std::ostringstream out;
+  out << 100 * estimate["value"].get<double>() << ' ' << 100 * estimate["low"].get<double>() << ' '
+      << 100 * estimate["high"].get<double>();
+  return out.str();
+}
+
+void label(std::ostream& out, bool first, const char* text) {
+  if (first)
+    out << "set ylabel " << gnuplotText(text) << " offset 1,0\n";
+  else
+    out << "unset ylabel\n";
+}
+
+}  // namespace
+
+void drawTimes(const ordered_json& study, const std::filesystem::path& file) {
+  auto out = sheetFor(study, 1, file);
+  out << "set logscale y\nset format y '%g'\nset boxwidth " << 0.85 * kBox
+      << "\nset style fill solid 0.35\nset xlabel 'vertices'\n";
+  bool first = true;
+  for (const ordered_json& map : study["maps"]) {
+    out << "set title " << gnuplotText(map["name"]) << '\n';
+    label(out, first, "planning time [ms]");
+    out << (first ? "set key top left samplen 1 Left reverse\n" : "unset key\n");
+    first = false;
+    const Plot plot(study, map);
+    plot.write(out, [](const ordered_json& way) { return box(way["milliseconds"]["planning"]); });
+    plot.plot(out, {"using 1:2:3:4:5 with candlesticks whiskerbars 0.5",
+                    "using 1:6:6:6:6 with candlesticks lw 2"});
+  }
+  out << "unset multiplot\n";
+  drawWithGnuplot(out.str());
+}
+
+void drawPaths(const ordered_json& study, const std::filesystem::path& file) {
+  auto out = sheetFor(study, 2, file);
+  bool first = true;
+  for (const ordered_json& map : study["maps"]) {
+    const Plot plot(study, map);
+    out << "set title " << gnuplotText(map["name"]) << "\nset yrange [0:103]\nunset xlabel\n";
+    label(out, first, "tasks solved [%]");
+    out << (first ? "set key bottom right samplen 1 Left reverse\n" : "unset key\n");
+    plot.write(out, [](const ordered_json& way) { return valueWithInterval(way["success"]); });
+    plot.plot(out,
+              {"using 1:2 with linespoints pt 7 lw 1.5", "using 1:2:3:4 with yerrorbars pt 7"});
+    out << "unset title\nset autoscale y\nset yrange [0:*]\nset xlabel 'vertices'\nunset key\n";
+    label(out, first, "outside the best rank [m]");
+    plot.write(out, [](const ordered_json& way) { return box(way["metersOutsideBest"]); });
+    plot.plot(out,
+              {"using 1:6 with linespoints pt 7 lw 1.5", "using 1:6:2:5 with yerrorbars pt 7"});
+    first = false;
+  }
+  out << "unset multiplot\n";
+  drawWithGnuplot(out.str());
+}
+
+}  // namespace planning_study

@@ -1,0 +1,49 @@
+#pragma once
+#include <colored_graph/ClassOrder.h>
+#include <colored_graph/Length.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace planning_study {
+
+using colored_graph::Length;
+
+/** What came of one instance, one way to plan, and one budget. */
+struct Trial {
+  std::string map;
+  std::size_t instance = 0;
+  double distance = 0;     ///< from start to goal, straight, meters
+  std::string judgment;    ///< how edges were judged: endpoint, sweep, profile, weighted
+  std::string graph;       ///< its kind, or the name of a peer
+  std::size_t budget = 0;  ///< vertices asked for; peers: milliseconds
+  std::string status;      ///< of the search, in words
+  bool found = false;
+  std::size_t vertices = 0, edges = 0, evaluated = 0, expansions = 0;
+  /** Processor time, milliseconds. */
+  double graphTime = 0, evaluationTime = 0, searchTime = 0;
+  /** Worst rank first, total last: what was minimized. */
+  std::vector<std::int64_t> cost;
+  /** The same for all: what the path goes over. Lengths in the worst rank, ..., in rank 1; total.
+   * Empty if there is no path. */
+  std::vector<Length> way;
+
+  double planningTime() const { return evaluationTime + searchTime; }
+  double totalTime() const { return graphTime + planningTime(); }
+};
+
+/** Trial::way of a path. */
+std::vector<Length> wayOf(const std::vector<Length>& lengthPerClass,
+                          const colored_graph::ClassOrder& order);
+
+/** Negative, 0 or positive, as the first is better than, equal to or worse than the other. No path
+ * is worse than any. \param part Trial::way or Trial::cost. */
+template <class Part>
+int compareTrials(const Trial& a, const Trial& b, Part part) {
+  if (a.found != b.found) return a.found ? -1 : 1;
+  if (!a.found || a.*part == b.*part) return 0;
+  return a.*part < b.*part ? -1 : 1;
+}
+
+}  // namespace planning_study

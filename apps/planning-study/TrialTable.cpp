@@ -1,0 +1,36 @@
+#include <sstream>
+
+#include "Summary.h"
+
+namespace planning_study {
+namespace {
+
+/** Numbers of a vector, in a column of their own. */
+template <class Numbers>
+void writeVector(std::ostream& out, const Numbers& numbers) {
+  out << ',';
+  for (std::size_t i = 0; i < numbers.size(); ++i) out << (i ? " " : "") << numbers[i];
+}
+
+void writeTrial(std::ostream& out, const Trial& t) {
+  out << t.map << ',' << t.instance << ',' << t.distance << ',' << t.judgment << ',' << t.graph
+      << ',' << t.budget << ',' << t.found << ",\"" << t.status << "\"," << t.vertices << ','
+      << t.edges << ',' << t.evaluated << ',' << t.expansions;
+  writeVector(out, t.cost);
+  writeVector(out, t.way);
+  out << ',' << t.graphTime << ',' << t.evaluationTime << ',' << t.searchTime << '\n';
+}
+
+}  // namespace
+
+std::string toCsv(const std::vector<MapStudy>& maps) {
+  std::ostringstream out;
+  out << "map,instance,distance [m],judgment,graph,budget,found,status,vertices,edges,"
+         "edges evaluated,expansions,cost [0.1 mm],way [0.1 mm],graph [ms],evaluation [ms],"
+         "search [ms]\n";
+  for (const MapStudy& map : maps)
+    for (const Trial& trial : map.trials) writeTrial(out, trial);
+  return out.str();
+}
+
+}  // namespace planning_study

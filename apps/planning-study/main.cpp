@@ -1,0 +1,88 @@
+// Compares kinds of graphs, and other planners, on random tasks over semantic maps.
+#include <labeled_cloud/MrptMessage.h>
+#include <labeled_cloud/OutputFolder.h>
+#include <semantic_planning/OrderFile.h>
+
+#include <chrono>
+#include <fstream>
+#include <iostream>
+
+#include "Cli.h"
+#include "StudyFigures.h"
+#include "StudyTables.h"
+#include "Summary.h"
+
+namespace planning_study {
+namespace {
+
+namespace fs = std::filesystem;
+
+void writeText(const std::string& text, const fs::path& file) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+/** Maps take turns, so that each has the same number of instances when time is over. */
+std::vector<MapStudy> studyMaps(const Cli& cli) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto minutes = [&] {
+    return std::chrono::duration<double, std::ratio<60>>(std::chrono::steady_clock::now() - begin);
+  };
+  const std::vector<std::string> names = namesOf(cli.maps);
+  std::vector<MapStudent> students;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    students.emplace_back(names[i], cli.maps[i].string(), cli.classes.string(), cli.study);
+  std::size_t done = 0;
+  while (done < cli.study.instances && (done == 0 || minutes().count() < cli.study.minutes)) {
+    for (MapStudent& student : students) student.runNextInstance();
+    if (++done % 10 == 0) std::cout << done << " of " << cli.study.instances << std::endl;
+  }
+  std::vector<MapStudy> studies;
+  for (const MapStudent& student : students) studies.push_back(student.study());
+  return studies;
+}
+
+/** Numbers are worth keeping without figures: says what is wrong instead of throwing. */
+std::string drawFigures(const nlohmann::ordered_json& study,
+                        const labeled_cloud::OutputFolder& output) {
+  try {
+    drawTimes(study, output.staged("times.png"));
+    drawPaths(study, output.staged("paths.png"));
+    return {};
+  } catch (const std::exception& e) {
+    return std::string("no figures times.png, paths.png: ") + e.what();
+  }
+}
+
+void run(Cli cli) {
+  cli.study.validate();
+  if (!cli.vehicle.empty()) cli.study.planner.vehicle = semantic_planning::loadVehicle(cli.vehicle);
+  labeled_cloud::OutputFolder output(cli.output);
+  const std::vector<MapStudy> studies = studyMaps(cli);
+  const nlohmann::ordered_json study = toJson(studies, cli.study);
+  writeText(toCsv(studies), output.staged("study.csv"));
+  writeText(study.dump(1) + "\n", output.staged("study.json"));
+  writeText(toMarkdown(study), output.staged("study.md"));
+  const std::string problem = drawFigures(study, output);
+  output.commit({"study.csv", "study.json", "study.md", "times.png", "paths.png"});
+  if (!problem.empty()) throw std::runtime_error(problem);
+}
+
+}  // namespace
+}  // namespace planning_study
+
+int main(int argc, char** argv) {
+  CLI::App app("Compares kinds of graphs, and other planners, on random tasks over semantic maps");
+  planning_study::Cli cli;
+  cli.addTo(app);
+  app.set_version_flag("--version", MSO_VERSION);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    planning_study::run(cli);
+    return 0;
+  } catch (const std::exception& e) {
+    std::cerr << "planning-study: " << labeled_cloud::messageOf(e) << std::endl;
+    return 1;
+  }
+}
