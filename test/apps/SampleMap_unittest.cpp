@@ -1,14 +1,11 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
-#include <labeled_cloud/RawlogReader.h>
-#include <labeled_cloud/ScanConverter.h>
-#include <labeled_cloud/Trajectory.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <nlohmann/json.hpp>
 
 #include "MapQuality.h"
 #include "RunProgram.h"
+#include "SampleScans.h"
 #include "TemporaryFolder.h"
 
 namespace fs = std::filesystem;
@@ -16,25 +13,6 @@ namespace fs = std::filesystem;
 namespace {
 
 const fs::path kSources = MSO_SOURCE_DIR;
-
-/** The LiDAR scans of the sample at their true poses. */
-std::vector<LabeledFrame> readSampleScans() {
-  const auto table = labeled_cloud::loadClassTable(kSources / "config/classes/synthetic.yaml");
-  const auto poses = labeled_cloud::loadTumTrajectory(kSources / "rawlog-samples/village.tum");
-  labeled_cloud::ScanConverter converter(table);
-  labeled_cloud::RawlogReader reader(kSources / "rawlog-samples/village.rawlog");
-  std::vector<LabeledFrame> frames;
-  while (const auto entry = reader.next())
-    for (const auto& observation : entry->observations) {
-      if (observation->sensorLabel != "LIDAR") continue;
-      const auto scan = converter.convert(*observation);
-      const auto pose = *poses.at(observation->timestamp) + scan->T_robot_sensor;
-      frames.push_back({scan->cloud, Eigen::Isometry3d::Identity(), {}});
-      frames.back().T_map_sensor.matrix() =
-          pose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen();
-    }
-  return frames;
-}
 
 }  // namespace
 

@@ -1,0 +1,152 @@
+// Labels from images and networks, through the whole application.
+#include <labeled_cloud/RawlogReader.h>
+
+#include <fstream>
+
+#include "CameraFixture.h"
+
+namespace fs = std::filesystem;
+
+TEST_F(CameraMapping, labelImagesOfACameraLabelTheScansOfAnotherSensor) {
+  ASSERT_EQ(run("camera.rawlog", labels()).status, 0);
+  expectLabeledMap();
+  EXPECT_EQ(summary()["observations"]["pictures"], 1);
+  EXPECT_EQ(summary()["observations"]["insertedWithoutLabels"], 0);
+}
+
+TEST_F(CameraMapping, aFolderMayBelongToOneCamera) {
+  ASSERT_EQ(run("camera.rawlog", {"--labels", "front=" + (folder / "labels").string()}).status, 0);
+  expectLabeledMap();
+  ASSERT_EQ(run("camera.rawlog", {"--labels", "rear=" + (folder / "labels").string()}).status, 0);
+  EXPECT_EQ(summary()["observations"]["insertedWithoutLabels"], 1);
+  EXPECT_EQ(map().query(4.1, 1.1, 0.1).likeliestClass, 0);
+}
+
+TEST_F(CameraMapping, aNetworkLabelsPicturesHardAndSoft) {
+  for (const char* kind : {"softmax", "argmax"}) {
+    const ProgramRun result = run("camera.rawlog", network(kind));
+    ASSERT_EQ(result.status, 0) << result.errors;
+    expectLabeledMap();
+  }
+}
+
+TEST_F(CameraMapping, withoutLabelsOrWithThemSkippedIsAnOption) {
+  ASSERT_EQ(run("camera.rawlog").status, 0);
+  EXPECT_EQ(summary()["map"]["occupiedWithoutClass"], 2);
+  configure("[labels]\nunlabeled = Skip\n");
+  EXPECT_TRUE(contains(run("camera.rawlog").errors, "1 without labels"));
+}
+
+TEST_F(CameraMapping, theIniFileMayCalibrateTheCamera) {
+  auto uncalibrated = picture(10.01);
+  uncalibrated.cameraParams = {};
+  uncalibrated.cameraPose = {};
+  writeSmallRawlog(folder / "camera.rawlog", robotPose(10, 0), unlabeledScan(10), uncalibrated);
+  expectRefusal({"camera.rawlog: observation 2", "'front' at 10.01", "not calibrated"},
+                "camera.rawlog", labels());
+  configure(
+      "[camera front]\ncols = 40\nrows = 40\nfx = 20\nfy = 20\ncx = 19.5\ncy = 19.5\n"
+      "pose_x = 0\npose_y = 0\npose_z = 0\npose_yaw = -90\npose_pitch = 0\npose_roll = -90\n");
+  ASSERT_EQ(run("camera.rawlog", labels()).status, 0);
+  expectLabeledMap();
+}
+
+TEST_F(CameraMapping, confidencesAndAConfusionMatrixChangeTheBelief) {
+  ASSERT_EQ(run("camera.rawlog", labels()).status, 0);
+  const auto belief = [this] { return map().query(4.1, 1.1, 0.1).probability; };
+  const double plain = belief();
+  cv::imwrite((folder / "labels/10.01.confidence.png").string(),
+              cv::Mat(40, 40, CV_8UC1, cv::Scalar(128)));
+  ASSERT_EQ(run("camera.rawlog", labels()).status, 0);
+  EXPECT_LT(belief(), plain);
+  fs::remove(folder / "labels/10.01.confidence.png");
+  folder.write("confusion.yaml",
+               "classes: [road, grass, car]\nconfusion: [[60, 40, 0], [40, 60, 0], [0, 0, 9]]\n");
+  auto arguments = labels();
+  arguments.insert(arguments.end(), {"--confusion", (folder / "confusion.yaml").string()});
+  ASSERT_EQ(run("camera.rawlog", arguments).status, 0);
+  EXPECT_LT(belief(), plain);
+}
+
+TEST_F(CameraMapping, theMapOfTheSavedLabelsIsTheSame) {
+  for (const auto& source : {labels(), network()}) {
+    auto arguments = source;
+    arguments.insert(arguments.end(), {"--save-labeled", (folder / "saved.rawlog").string()});
+    ASSERT_EQ(run("camera.rawlog", arguments).status, 0);
+    const std::string direct = folder.read("out/map.semantic");
+    ASSERT_EQ(run("saved.rawlog").status, 0);
+    EXPECT_EQ(folder.read("out/map.semantic"), direct);
+    EXPECT_EQ(summary()["points"]["labeled"], 2);
+  }
+}
+
+TEST_F(CameraMapping, previewsShowLabelsAndPointsOverThePicture) {
+  const fs::path preview = folder / "preview";
+  auto arguments = labels();
+  arguments.insert(arguments.end(), {"--preview", preview.string(), "--preview-every", "1"});
+  ASSERT_EQ(run("camera.rawlog", arguments).status, 0);
+  const cv::Mat3b sheet = cv::imread((preview / "000000.png").string());
+  ASSERT_EQ(sheet.size(), cv::Size(40, 80));
+  EXPECT_EQ(sheet(10, 5), cv::Vec3b(0, 0, 255));  // red over red
+  // (4.1, 1.1): 20 * 1.1 / 4.1 pixels to the left of the middle
+  EXPECT_EQ(sheet(40 + 19, 14), cv::Vec3b(0, 0, 255));
+  EXPECT_EQ(sheet(40 + 19, 25), cv::Vec3b(255, 0, 0));
+  EXPECT_NEAR(sheet(40 + 5, 5)[2], 127, 2);  // the darkened picture
+}
+
+TEST_F(CameraMapping, anExternalPictureIsReadFromTheFolderBesideTheRawlog) {
+  auto external = picture(10.01);
+  external.image = {};
+  external.image.setExternalStorage("front_1.png");
+  writeSmallRawlog(folder / "camera.rawlog", robotPose(10, 0), unlabeledScan(10), external);
+  expectRefusal({"'front' at 10.01", "front_1.png"}, "camera.rawlog", network());
+  fs::create_directory(folder / "camera_Images");
+  cv::imwrite((folder / "camera_Images/front_1.png").string(), redAndBlue());
+  ASSERT_EQ(run("camera.rawlog", network()).status, 0);
+  expectLabeledMap();
+  configure("[labels]\nmatch = Name\n");
+  fs::rename(folder / "labels/10.01.png", folder / "labels/front_1.png");
+  ASSERT_EQ(run("camera.rawlog", labels()).status, 0);
+  expectLabeledMap();
+}
+
+TEST_F(CameraMapping, whatCannotBeUsedIsNamedOrLeftOutAndCounted) {
+  const std::string skip = "[labels]\nonProblem = Skip\n";
+  cv::imwrite((folder / "labels/10.01.png").string(), cv::Mat(20, 20, CV_8UC1, cv::Scalar(1)));
+  expectRefusal({"10.01.png", "20 x 20", "40 x 40"}, "camera.rawlog", labels());
+  configure(skip);
+  ASSERT_EQ(run("camera.rawlog", labels()).status, 0);
+  EXPECT_EQ(summary()["problems"]["count"], 1);
+  EXPECT_TRUE(contains(summary()["problems"]["first"][0], "20 x 20"));
+  EXPECT_EQ(summary()["observations"]["insertedWithoutLabels"], 1);
+
+  configure("");
+  writeSmallRawlog(folder / "back.rawlog", robotPose(10, 0), robotPose(9, 0), smallScan(10),
+                   smallScan(9));
+  expectRefusal({"back.rawlog: observation 4", "1.000000 s before"}, "back.rawlog");
+  configure(skip);
+  ASSERT_EQ(run("back.rawlog").status, 0);
+  EXPECT_EQ(summary()["observations"]["inserted"], 1);
+  EXPECT_EQ(summary()["observations"]["skipped"]["unusable"], 1);
+}
+
+TEST_F(CameraMapping, badNetworksAndSourcesAreRefused) {
+  auto arguments = network();
+  expectRefusal({"--network and --network-config belong together"}, "camera.rawlog",
+                {arguments[0], arguments[1]});
+  const auto both = [&] {
+    auto all = arguments;
+    all.insert(all.end(), {"--labels", (folder / "labels").string()});
+    return all;
+  };
+  expectRefusal({"not from both"}, "camera.rawlog", both());
+  folder.write("net.yaml", "input: {width: 40, height: 40}\nclasses: [road, car]\n");
+  expectRefusal({"net.onnx", "answers 3 channels", "names 2 classes"}, "camera.rawlog", arguments);
+  arguments[1] = (folder / "none.onnx").string();
+  expectRefusal({"none.onnx: there is no such network"}, "camera.rawlog", arguments);
+  expectRefusal({"/none: there is no such folder"}, "camera.rawlog", {"--labels", "/none"});
+  configure("[camera front]\nfx = 20\n");
+  expectRefusal({"[camera front]", "cols is missing"}, "camera.rawlog", labels());
+  configure("[labels]\nkind = Wavy\n");
+  expectRefusal({"[labels]", "'Wavy'", "Hard or Soft"}, "camera.rawlog", labels());
+}
