@@ -11,11 +11,20 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-/** A point of the vehicle in the map's frame. */
-std::array<double, 2> placed(const TPose2D& pose, double x, double y) {
-  const double c = std::cos(pose.phi), s = std::sin(pose.phi);
-  return {pose.x + c * x - s * y, pose.y + s * x + c * y};
-}
+/** Takes points of the vehicle into the map's frame. */
+class Placement {
+ public:
+  explicit Placement(const TPose2D& pose)
+      : m_pose(pose), m_cos(std::cos(pose.phi)), m_sin(std::sin(pose.phi)) {}
+
+  std::array<double, 2> operator()(double x, double y) const {
+    return {m_pose.x + m_cos * x - m_sin * y, m_pose.y + m_sin * x + m_cos * y};
+  }
+
+ private:
+  const TPose2D& m_pose;
+  const double m_cos, m_sin;
+};
 
 /** Number of pieces, at most half a voxel long each. */
 int pieces(double length, double voxelSize) {
@@ -74,8 +83,9 @@ std::optional<GroundPose> EdgeChecker::place(const TPose2D& pose,
 }
 
 bool EdgeChecker::discsFit(const TPose2D& pose, int z) const {
+  const Placement placed(pose);
   for (const CheckedDisc& d : m_discs) {
-    const auto [x, y] = placed(pose, d.disc.x, d.disc.y);
+    const auto [x, y] = placed(d.disc.x, d.disc.y);
     const Surface* s = m_ground.near(m_ground.columnAt(x, y), z, d.tolerance);
     if (!s || !s->drivable || s->room2 < d.needed2) return false;
   }
@@ -90,8 +100,9 @@ Fit EdgeChecker::fit(const GroundPose& pose) const {
 
 template <class F>
 bool EdgeChecker::forWheels(const TPose2D& pose, int z, F f) const {
+  const Placement placed(pose);
   for (const double y : m_wheels) {
-    const auto [wx, wy] = placed(pose, 0, y);
+    const auto [wx, wy] = placed(0, y);
     const Column c = m_ground.columnAt(wx, wy);
     const Surface* s = m_ground.near(c, z, m_wheelTolerance);
     if (!s) return false;

@@ -1,6 +1,7 @@
 #include "MapRoadmap.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace semantic_planning {
 
@@ -66,12 +67,14 @@ std::vector<MapRoadmap::Offer> MapRoadmap::fullCandidates() const {
 }
 
 void MapRoadmap::takeByPriority(const std::vector<Offer>& offers) {
-  std::vector<std::pair<double, std::size_t>> sequence;
+  std::vector<std::pair<double, std::size_t>> queue;  // a heap: few of many are taken
   for (std::size_t i = 0; i < offers.size(); ++i)
-    sequence.emplace_back(offers[i].candidate.priority, i);
-  std::sort(sequence.begin(), sequence.end());
+    queue.emplace_back(offers[i].candidate.priority, i);
+  std::make_heap(queue.begin(), queue.end(), std::greater<>());
   std::size_t usable = 0;
-  for (const auto& [priority, index] : sequence) {
+  for (; !queue.empty(); queue.pop_back()) {
+    std::pop_heap(queue.begin(), queue.end(), std::greater<>());
+    const auto& [priority, index] = queue.back();
     const Offer& offer = offers[index];
     if (m_options.vertices > 0 && usable == m_options.vertices) {
       m_lastPriority = priority;

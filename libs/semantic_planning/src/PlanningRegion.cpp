@@ -8,22 +8,25 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 PlanningRegion::PlanningRegion(const TPose2D& start, const TPose2D& goal, double buffer) {
-  const double dx = goal.x - start.x, dy = goal.y - start.y;
-  const double direction = std::atan2(dy, dx);
-  m_length = std::hypot(dx, dy) + 2 * buffer;
+  const double dx = goal.x - start.x, dy = goal.y - start.y, distance = std::hypot(dx, dy);
+  m_along = distance > 0 ? TPoint2D(dx / distance, dy / distance) : TPoint2D(1, 0);
+  m_length = distance + 2 * buffer;
   m_width = 2 * buffer;
-  const TPoint2D corner =
-      TPose2D(start.x, start.y, direction).composePoint(TPoint2D(-buffer, -buffer));
-  m_corner = {corner.x, corner.y, direction};
+  m_corner = {start.x - buffer * (m_along.x - m_along.y),
+              start.y - buffer * (m_along.y + m_along.x)};
 }
 
 bool PlanningRegion::contains(double x, double y, double margin) const {
-  const TPoint2D p = m_corner.inverseComposePoint(TPoint2D(x, y));
-  return p.x >= -margin && p.x <= m_length + margin && p.y >= -margin && p.y <= m_width + margin;
+  const double dx = x - m_corner.x, dy = y - m_corner.y;
+  const double along = m_along.x * dx + m_along.y * dy, across = m_along.x * dy - m_along.y * dx;
+  return along >= -margin && along <= m_length + margin && across >= -margin &&
+         across <= m_width + margin;
 }
 
 TPoint2D PlanningRegion::at(double u, double v) const {
-  return m_corner.composePoint(TPoint2D(u * m_length, v * m_width));
+  const double along = u * m_length, across = v * m_width;
+  return {m_corner.x + m_along.x * along - m_along.y * across,
+          m_corner.y + m_along.y * along + m_along.x * across};
 }
 
 }  // namespace semantic_planning

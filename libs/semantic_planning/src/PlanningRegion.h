@@ -14,7 +14,7 @@ class PlanningRegion {
   mrpt::math::TPoint2D at(double u, double v) const;
 
  private:
-  mrpt::math::TPose2D m_corner;  ///< its phi is the line's direction
+  mrpt::math::TPoint2D m_corner, m_along;  ///< m_along: unit vector of the line
   double m_length, m_width;
 };
 
