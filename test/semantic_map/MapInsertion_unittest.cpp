@@ -132,8 +132,10 @@ TEST(MapInsertion, withoutAPoseTheRobotIsAtTheOrigin) {
 TEST(MapInsertion, labelsFromALabelerReplaceThoseOfTheObservation) {
   struct AllRoad : labeled_cloud::ImageLabeler {
     std::optional<labeled_cloud::LabelImage> label(const mrpt::obs::CObservation&) override {
-      return labeled_cloud::LabelImage{21, 21, std::vector<semantic_octree::ClassId>(21 * 21, 1),
-                                       "test"};
+      labeled_cloud::LabelImage image;
+      image.rows = image.cols = 21;
+      image.classes.assign(21 * 21, 1);
+      return image;
     }
   };
   CSemanticOctoMap map = quietMap();
