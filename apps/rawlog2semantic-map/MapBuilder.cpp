@@ -1,8 +1,10 @@
 #include "MapBuilder.h"
 
+#include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/ReadAhead.h>
 
 #include <chrono>
+#include <stdexcept>
 
 #include "Progress.h"
 
@@ -67,7 +69,7 @@ void MapBuilder::add(const StreamedObservation& observation) {
     ++m_summary.skipped[observation.skipped];
 }
 
-void MapBuilder::insertScan(const StreamedObservation& observation) {
+void MapBuilder::insertScan(const StreamedObservation& observation) try {
   const LabeledScan& scan = *observation.scan;
   m_summary.insertionTimes.push_back(
       timeOf([&] { m_summary.add(m_map.insertScan(scan, observation.T_map_robot)); }));
@@ -77,6 +79,8 @@ void MapBuilder::insertScan(const StreamedObservation& observation) {
   ++m_summary.inserted;
   if (m_map.tree().hasAbstraction()) noteAbstraction(scan, observation.T_map_robot);
   if (m_onScan) m_onScan(scan, observation.T_map_robot);
+} catch (const std::exception& e) {
+  throw std::runtime_error(observation.name + ": " + labeled_cloud::messageOf(e));
 }
 
 void MapBuilder::noteAbstraction(const LabeledScan& scan, const CPose3D& T_map_robot) {

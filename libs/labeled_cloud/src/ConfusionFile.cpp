@@ -32,9 +32,7 @@ void addRow(const StrictYaml& yaml, const YAML::Node& row, const std::vector<Cla
 
 ConfusionMatrix loadConfusionMatrix(const std::filesystem::path& file, const ClassTable& table) {
   const StrictYaml yaml(file);
-  std::set<std::string> keys = kNamedClassesKeys;
-  keys.insert("confusion");
-  yaml.checkKeys(yaml.root(), keys);
+  yaml.checkMap(yaml.root());
   const auto classes = namedClasses(yaml, table);
   const YAML::Node rows = yaml.required(yaml.root(), "confusion");
   if (!rows.IsSequence() || rows.size() != classes.size())

@@ -54,6 +54,7 @@ Points Lens::distort(const Points& rays) const {
     cv::projectPoints(points, none, none, m_K, plumbBob(), pixels);
     return pixels;
   }
+  pixels.reserve(rays.size());
   for (const cv::Point2d& ray : rays)
     pixels.emplace_back(m_K(0, 0) * ray.x + m_K(0, 2), m_K(1, 1) * ray.y + m_K(1, 2));
   return pixels;

@@ -89,14 +89,14 @@ bool ScanStream::isReady(const CObservation& observation) const {
 StreamedObservation ScanStream::take(const Waiting& waiting) {
   const CObservation& observation = *waiting.observation;
   StreamedObservation result;
+  result.name = m_rawlogs[m_file - 1].string() + ": observation " + std::to_string(waiting.number) +
+                " (" + observation.GetRuntimeClass()->className + " '" + observation.sensorLabel +
+                "')";
   result.bytesRead = m_bytesBefore + (m_reader ? m_reader->bytesRead() : 0);
   try {
     use(observation, result);
   } catch (const std::exception& e) {
-    const std::string problem = m_rawlogs[m_file - 1].string() + ": observation " +
-                                std::to_string(waiting.number) + " (" +
-                                observation.GetRuntimeClass()->className + " '" +
-                                observation.sensorLabel + "'): " + messageOf(e);
+    const std::string problem = result.name + ": " + messageOf(e);
     if (m_options.onProblem == ScanStreamOptions::OnProblem::Stop)
       throw std::runtime_error(problem);
     result.scan.reset();

@@ -18,8 +18,8 @@ constexpr float kNearest = 0.01f;
 
 /** A point within the image. */
 struct Candidate {
-  std::size_t point;
-  cv::Point2d pixel;
+  std::uint32_t point;
+  cv::Point2f pixel;
   float inverseDepth;
 };
 
@@ -31,17 +31,18 @@ std::vector<Candidate> inImage(const std::vector<Eigen::Vector3f>& points,
   const Eigen::Isometry3f T = T_camera_points.cast<float>();
   std::vector<cv::Point2d> rays;
   std::vector<Candidate> candidates;
+  rays.reserve(points.size()), candidates.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f p = T * points[i];
     if (!(p.z() > kNearest)) continue;
     const cv::Point2d ray(p.x() / p.z(), p.y() / p.z());
     if (!field.contains(ray)) continue;
     rays.push_back(ray);
-    candidates.push_back({i, {}, 1 / p.z()});
+    candidates.push_back({static_cast<std::uint32_t>(i), {}, 1 / p.z()});
   }
   const auto pixels = lens.distort(rays);
   for (std::size_t i = 0; i < pixels.size(); ++i) candidates[i].pixel = pixels[i];
-  const cv::Rect2d image(-0.5, -0.5, camera.ncols, camera.nrows);
+  const cv::Rect2f image(-0.5f, -0.5f, float(camera.ncols), float(camera.nrows));
   candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
                                   [&](const Candidate& c) { return !image.contains(c.pixel); }),
                    candidates.end());
@@ -62,27 +63,26 @@ class DepthBuffer {
   }
 
   /** How far from a point those may be that it is compared with, pixels. */
-  double reach() const { return 2 * m_edge; }
+  double reach() const { return 2.0 * m_edge; }
   float nearestAround(const Candidate& c) const { return m_nearest(cell(c)); }
 
  private:
   /** Mean distance of the points in the part of the image that they cover, in whole pixels. */
-  static double spacing(const std::vector<Candidate>& candidates,
-                        const mrpt::img::TCamera& camera) {
+  static float spacing(const std::vector<Candidate>& candidates, const mrpt::img::TCamera& camera) {
     constexpr int kBlock = 16;
     cv::Mat1b covered =
         cv::Mat1b::zeros(int(camera.nrows) / kBlock + 1, int(camera.ncols) / kBlock + 1);
     for (const Candidate& c : candidates)
       covered(int(c.pixel.y + 0.5) / kBlock, int(c.pixel.x + 0.5) / kBlock) = 1;
     const double pixels = double(kBlock) * kBlock * cv::countNonZero(covered);
-    return std::max(1.0, std::round(std::sqrt(pixels / double(candidates.size()))));
+    return std::max(1.f, std::round(float(std::sqrt(pixels / double(candidates.size())))));
   }
 
   cv::Point cell(const Candidate& c) const {
-    return {int((c.pixel.x + 0.5) / m_edge), int((c.pixel.y + 0.5) / m_edge)};
+    return {int((c.pixel.x + 0.5f) / m_edge), int((c.pixel.y + 0.5f) / m_edge)};
   }
 
-  double m_edge;
+  float m_edge;
   cv::Mat1f m_nearest;
 };
 
@@ -107,7 +107,7 @@ std::vector<Eigen::Vector2f> visiblePixels(const std::vector<Eigen::Vector3f>& p
   if (parallax > 0 && baseline > 0 && !candidates.empty())
     removeHidden(camera, baseline, parallax, candidates);
   std::vector<Eigen::Vector2f> pixels(points.size(), Eigen::Vector2f::Constant(NAN));
-  for (const Candidate& c : candidates) pixels[c.point] = {float(c.pixel.x), float(c.pixel.y)};
+  for (const Candidate& c : candidates) pixels[c.point] = {c.pixel.x, c.pixel.y};
   return pixels;
 }
 

@@ -34,8 +34,9 @@ class ConfusionMatrix {
  *     classes: [road, car]           # names in the table; `fold` as in a network's configuration
  *     confusion: [[90, 10], [5, 95]] # a row for each true class, a column for each answer
  *
- * Classes that the file does not name are as good as never seen.
- * \throw std::runtime_error naming file, line and what was expected. */
+ * Classes that the file does not name are as good as never seen. Other keys, as whoever measured
+ * may have added, are left alone. \throw std::runtime_error naming file, line and what was
+ * expected. */
 ConfusionMatrix loadConfusionMatrix(const std::filesystem::path& file,
                                     const semantic_octree::ClassTable& table);
 

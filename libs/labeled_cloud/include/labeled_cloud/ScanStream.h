@@ -27,6 +27,8 @@ struct ScanStreamOptions {
 
 /** What became of one observation of a rawlog. */
 struct StreamedObservation {
+  /** File, number, class and sensor, for messages. */
+  std::string name;
   /** The scan, or nothing: the observation was skipped, or is a picture. */
   std::optional<LabeledScan> scan;
   mrpt::poses::CPose3D T_map_robot;
