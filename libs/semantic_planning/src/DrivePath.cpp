@@ -63,12 +63,13 @@ PathPoint DrivePath::at(double s) const {
 }
 
 double DrivePath::nearest(const mrpt::math::TPose2D& pose, double from, double to) const {
-  constexpr double kStep = 0.02;  // m
+  constexpr double kStep = 0.02;          // m
+  constexpr double kHeadingWeight = 0.2;  // m/rad
   double best = std::numeric_limits<double>::infinity(), found = from;
   for (double s = from; s <= to + kStep / 2; s += kStep) {
     const PathPoint p = at(s);
     const double d = std::hypot(p.x - pose.x, p.y - pose.y) +
-                     std::abs(mrpt::math::wrapToPi(p.heading - pose.phi));
+                     kHeadingWeight * std::abs(mrpt::math::wrapToPi(p.heading - pose.phi));
     if (d < best) best = d, found = s;
   }
   return std::min(found, to);
@@ -87,10 +88,11 @@ double DrivePath::stretchBegin(double s) const {
   return begin;
 }
 
-DrivePath DrivePath::upTo(double s, const DrivePath& then) const {
-  std::vector<PathPoint> joined;
+DrivePath DrivePath::part(double from, double to, const DrivePath& then) const {
+  std::vector<PathPoint> joined{at(from)};
   for (const PathPoint& p : m_points)
-    if (p.arcLength < s - kSame) joined.push_back(p);
+    if (p.arcLength > from + kSame && p.arcLength < to - kSame) joined.push_back(p);
+  joined.push_back(at(to));
   joined.insert(joined.end(), then.m_points.begin(), then.m_points.end());
   return DrivePath(std::move(joined));
 }

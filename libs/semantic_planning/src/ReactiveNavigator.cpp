@@ -89,6 +89,13 @@ class Vehicle : public mrpt::nav::CRobot2NavInterface {
   void sendNewWaypointTargetEvent(int) override {}
 };
 
+/** Does not print how long everything took when it is gone. */
+class QuietNavigationSystem : public CReactiveNavigationSystem {
+ public:
+  using CReactiveNavigationSystem::CReactiveNavigationSystem;
+  ~QuietNavigationSystem() override { m_timlog_delays.clear(true); }
+};
+
 /** The outline, each corner moved away from the middle so that the edges move by the margin. */
 mrpt::math::CPolygon widened(const std::vector<Eigen::Vector2d>& footprint, double margin) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
@@ -125,8 +132,8 @@ struct ReactiveNavigator::Navigation {
       file.write("CReactiveNavigationSystem", name + "_v_max_mps", options.maxSpeed);
       file.write("CReactiveNavigationSystem", name + "_w_max_dps", turn);
     }
-    system.setMinLoggingLevel(mrpt::system::LVL_ERROR);
-    vehicle.setMinLoggingLevel(mrpt::system::LVL_ERROR);
+    system.logging_enable_console_output = false;
+    vehicle.logging_enable_console_output = false;
     system.enableRethrowNavExceptions(true);
     system.loadConfigFile(file);
     system.changeRobotShape(widened(options.footprint, options.margin));
@@ -135,7 +142,7 @@ struct ReactiveNavigator::Navigation {
 
   ScratchFolder scratch;
   Vehicle vehicle;
-  CReactiveNavigationSystem system;
+  QuietNavigationSystem system;
   bool started = false;
 };
 
@@ -169,7 +176,13 @@ DriveCommand ReactiveNavigator::step(const DriveState& state, const ObstaclePoin
   vehicle.state = state;
   vehicle.obstacles = obstacles;
   vehicle.seconds = seconds;
-  m_navigation->system.navigationStep();
+  try {
+    m_navigation->system.navigationStep();
+  } catch (const std::exception&) {
+    // MRPT throws, too, if the first places that it is asked for are beyond all its trajectories.
+    vehicle.blocked = true;
+    vehicle.command = {};
+  }
   return vehicle.command;
 }
 

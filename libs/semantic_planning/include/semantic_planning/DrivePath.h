@@ -19,16 +19,16 @@ class DrivePath {
 
   /** The place at an arc length (meters, clamped); `forward` is the gear from there on. */
   PathPoint at(double s) const;
-  /** Arc length of the place nearest to a pose, within [from, to]. A heading that is off by a
-   * radian counts as a meter. */
+  /** Arc length of the place nearest to a pose, within [from, to]. A heading that is off
+   * counts a little. */
   double nearest(const mrpt::math::TPose2D& pose, double from, double to) const;
   /** Where the stretch around s ends: the next change of gear after s, or the path's end. */
   double stretchEnd(double s) const;
   /** Where the stretch that s is in or at the end of began. */
   double stretchBegin(double s) const;
 
-  /** This path up to s, and then another that begins there. */
-  DrivePath upTo(double s, const DrivePath& then) const;
+  /** The part between two arc lengths, and then another path that begins at its end. */
+  DrivePath part(double from, double to, const DrivePath& then = {}) const;
 
   /** Every `spacing` meters or closer a place of the stretch around s, its end among them and s
    * not. */

@@ -1,0 +1,79 @@
+#include "Cli.h"
+
+#include <synthetic_world/Scene.h>
+
+#include <cmath>
+
+namespace semantic_map_drive {
+
+using mrpt::math::TPose2D;
+
+namespace {
+
+TPose2D parsePose(const std::string& text) {
+  const auto n = parseNumbers(text, 3, 3, "X,Y,DEG (meters and degrees)");
+  return {n[0], n[1], n[2] * M_PI / 180};
+}
+
+/** Hands each text to a function; what it throws is an error of the command line. */
+template <class Take>
+CLI::Option* addParsed(CLI::App& app, const std::string& name, const std::string& type, Take take,
+                       const std::string& description) {
+  return app
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [take, name](const std::vector<std::string>& texts) {
+            try {
+              for (const std::string& text : texts) take(text);
+            } catch (const std::invalid_argument& e) {
+              throw CLI::ValidationError(name, e.what());
+            }
+          },
+          description)
+      ->type_name(type);
+}
+
+}  // namespace
+
+void Cli::addTo(CLI::App& app) {
+  app.add_option("--scene,--world", scene, "Which synthetic world")
+      ->check(CLI::IsMember(synthetic_world::sceneNames()))
+      ->capture_default_str();
+  app.add_option("--seed", seed, "Of the world and of all noise")->capture_default_str();
+  app.add_option("--hills", hills, "Factor of the ground's heights; 0 is flat")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str();
+  app.add_option("--map", map, "What the robot knows of it (.semantic); none: nothing");
+  addParsed(
+      app, "--start", "X,Y,DEG", [this](auto& t) { start = parsePose(t), hasStart = true; },
+      "Where the robot is");
+  addParsed(
+      app, "--goal", "X,Y,DEG", [this](auto& t) { goal = parsePose(t), hasGoal = true; },
+      "Where it is to go");
+  app.add_option("--classes", classes,
+                 "Classes from best to worst (YAML); a second file is driven, too, to compare")
+      ->required()
+      ->expected(1, 2);
+  app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drive)")
+      ->required();
+  app.add_option("--output", output, "Folder of the results, created if need be")->required();
+  addParsed(
+      app, "--person", "T,X,Y,X2,Y2[,T2]",
+      [this](auto& t) { events.persons.push_back(parsePerson(t)); },
+      "Somebody walks from one place to another, from second T on, and is gone at T2");
+  addParsed(
+      app, "--roadblock", "T,X,Y,DEG,LENGTH",
+      [this](auto& t) { events.roadblocks.push_back(parseRoadblock(t)); },
+      "A barrier across a way, from second T on");
+  addParsed(
+      app, "--sensor-dropout", "T,T2", [this](auto& t) { events.dropouts.push_back(parseSpan(t)); },
+      "The sensors see nothing from second T to T2");
+  app.add_flag("--live", live, "Show the drive in a window");
+  app.add_flag("!--no-rawlog", rawlog, "Write no rawlog");
+  app.add_flag("!--no-pictures", pictures, "Write no pictures along the way, and no animation");
+  app.add_option("--study", study,
+                 "Instead of one drive, so many between places at random; a table of them")
+      ->check(CLI::Range(1, 1000));
+}
+
+}  // namespace semantic_map_drive

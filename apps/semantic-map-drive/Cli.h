@@ -1,0 +1,28 @@
+#pragma once
+#include <mrpt/math/TPose2D.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "Events.h"
+
+namespace semantic_map_drive {
+
+/** What the command line says. */
+struct Cli {
+  std::filesystem::path map, config, output;
+  std::vector<std::filesystem::path> classes;
+  std::string scene = "village";
+  std::uint64_t seed = 1;
+  double hills = 1;
+  mrpt::math::TPose2D start, goal;
+  bool hasStart = false, hasGoal = false, live = false, rawlog = true, pictures = true;
+  Events events;
+  int study = 0;  ///< pairs
+
+  void addTo(CLI::App& app);
+};
+
+}  // namespace semantic_map_drive

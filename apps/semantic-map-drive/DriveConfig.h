@@ -1,0 +1,48 @@
+#pragma once
+#include <semantic_octree/FilterParameters.h>
+#include <semantic_octree/InsertionOptions.h>
+#include <semantic_planning/DriveOptions.h>
+#include <semantic_planning/SemanticPlanner.h>
+#include <synthetic_world/Camera.h>
+#include <synthetic_world/Lidar.h>
+
+#include <filesystem>
+
+namespace semantic_map_drive {
+
+/** What the robot sees with. */
+struct SensorConfig {
+  bool hasCamera = true, hasLidar = true;
+  synthetic_world::CameraOptions camera;
+  double cameraPitch = 15;  ///< degrees down
+  synthetic_world::LidarOptions lidar;
+  double period = 0.5;  ///< s
+  std::uint64_t seed = 1;
+};
+
+/** When plans are made. */
+struct GuideConfig {
+  double period = 1.0;       ///< s between looks for a better path
+  double patience = 2.0;     ///< s for what stands in the way to go away, or to be driven around
+  double giveUpAfter = 4.0;  ///< s at rest without any path
+};
+
+/** Everything that the .ini file says. */
+struct DriveConfig {
+  double voxelSize = 0.2;  ///< m
+  semantic_octree::FilterParameters filter;
+  semantic_octree::InsertionOptions insertion;
+  SensorConfig sensors;
+  semantic_planning::PlannerOptions planner;
+  semantic_planning::DriveOptions drive;
+  GuideConfig guide;
+  double controlPeriod = 0.1;  ///< s
+  double timeLimit = 600;      ///< s of simulated time
+  std::filesystem::path reactive;
+};
+
+/** Reads a configuration; what is absent has its default. Files that it names are relative to it.
+ * \throw std::runtime_error naming file, section, key and value. */
+DriveConfig loadDriveConfig(const std::filesystem::path& file);
+
+}  // namespace semantic_map_drive

@@ -1,0 +1,186 @@
+#include "DriveLoop.h"
+
+#include <mrpt/core/Clock.h>
+#include <semantic_planning/ObstacleSensing.h>
+
+#include <cmath>
+
+#include "Stopwatch.h"
+
+namespace semantic_map_drive {
+
+using namespace semantic_planning;
+using mrpt::math::TPose2D;
+
+namespace {
+
+constexpr double kEpoch = 1704067200;  // 2024-01-01, UTC
+
+std::unique_ptr<Mapper> mapperOf(const DriveConfig& config, const colored_graph::ClassOrder& order,
+                                 std::optional<semantic_octree::SemanticOcTree> map) {
+  if (map) return std::make_unique<Mapper>(config, order, std::move(*map));
+  return std::make_unique<Mapper>(config, order);
+}
+
+ReactiveNavigator::Options reactiveOf(const DriveConfig& config,
+                                      const std::filesystem::path& navlogs) {
+  ReactiveNavigator::Options options;
+  options.config = config.reactive;
+  options.footprint = config.planner.vehicle.footprint;
+  options.margin = config.drive.margin;
+  options.maxSpeed = config.drive.maxSpeed;
+  options.turningRadius = config.drive.turningRadius;
+  options.logFolder = navlogs;
+  return options;
+}
+
+/** What counts as a collision: whatever is higher than a step. */
+synthetic_world::Footprint trueFootprint(const VehicleOptions& vehicle) {
+  synthetic_world::Footprint footprint;
+  footprint.outline.assign(vehicle.footprint.begin(), vehicle.footprint.end());
+  footprint.height = vehicle.height;
+  footprint.clearance = vehicle.stepHeight;
+  return footprint;
+}
+
+void setClock(double seconds) {
+  mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
+  mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(kEpoch + seconds));
+}
+
+}  // namespace
+
+const char* nameOf(DriveEnd end) {
+  switch (end) {
+    case DriveEnd::Arrived:
+      return "arrived";
+    case DriveEnd::Unreachable:
+      return "unreachable";
+    default:
+      return "time limit";
+  }
+}
+
+DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
+                     const colored_graph::ClassOrder& order, const TPose2D& start,
+                     const TPose2D& goal, Events events,
+                     std::optional<semantic_octree::SemanticOcTree> map,
+                     std::filesystem::path navlogs)
+    : m_config(config),
+      m_world(world),
+      m_events(std::move(events)),
+      m_start(start),
+      m_goal(goal),
+      m_sensors(config.sensors, false),
+      m_mapper(mapperOf(config, order, std::move(map))),
+      m_guide(std::make_unique<Guide>(config.guide, m_mapper->planner(), goal)),
+      m_controller(config.drive, reactiveOf(config, navlogs)),
+      m_robot(start, config.drive),
+      m_footprint(trueFootprint(config.planner.vehicle)) {
+  const auto classes = synthetic_world::classTable().size() + 1;
+  m_record.drivenPerClass.resize(classes);
+  m_record.plannedPerClass.resize(classes);
+  setClock(0);
+}
+
+Eigen::Isometry3d DriveLoop::T_world_robot() const {
+  const TPose2D& p = state().pose;
+  return m_world.poseOnGround(p.x, p.y, p.phi);
+}
+
+double DriveLoop::groundZ() const { return m_world.groundHeight(state().pose.x, state().pose.y); }
+
+const DriveRecord& DriveLoop::run() {
+  while (!isOver()) {
+    setClock(m_time);
+    m_world.setMovables(m_events.at(m_world, m_time));
+    if (m_time - m_lookedAt >= m_config.sensors.period - 1e-6) {
+      m_lookedAt = m_time;
+      sense();
+      guide();
+    }
+    drive();
+    m_time += m_config.controlPeriod;
+  }
+  m_record.replans = m_guide->replans();
+  for (DriveObserver* o : m_observers) o->onFinished(*this);
+  return m_record;
+}
+
+void DriveLoop::sense() {
+  if (!m_events.sensorsWork(m_time)) return;
+  Stopwatch watch;
+  const std::vector<Observation> seen = m_sensors.sense(m_world, T_world_robot());
+  note("simulate", watch.milliseconds());
+  for (const auto& [stage, ms] : m_mapper->insert(seen, T_world_robot())) note(stage, ms);
+  m_sensedAt = m_time;
+  for (DriveObserver* o : m_observers) o->onSensed(*this, seen);
+}
+
+void DriveLoop::guide() {
+  Stopwatch watch;
+  auto path = m_guide->update(state(), groundZ(), m_controller, m_time);
+  if (path) m_controller.setPath(std::move(*path));
+  if (m_guide->target() == Guide::Target::None) m_controller.setPath({});
+  note("replan", watch.milliseconds());
+}
+
+void DriveLoop::drive() {
+  Stopwatch watch;
+  const auto obstacles = senseObstacles(m_mapper->planner(), state().pose, groundZ());
+  note("obstacles", watch.milliseconds());
+  const DriveCommand command = m_controller.step(state(), obstacles, m_time - m_sensedAt, m_time);
+  note("react", watch.milliseconds());
+  addRow();
+  m_robot.drive(command, m_config.controlPeriod);
+}
+
+void DriveLoop::addRow() {
+  DriveRow row;
+  row.time = m_time;
+  row.pose = state().pose;
+  row.z = groundZ();
+  row.speed = state().speed;
+  row.turn = state().turn;
+  row.classId = m_world.groundClass(row.pose.x, row.pose.y);
+  row.clearance = m_world.clearance(m_footprint, row.pose.x, row.pose.y, row.pose.phi);
+  row.target = m_guide->target();
+  row.driver = m_controller.driver();
+  const DriveTracker& tracker = m_controller.tracker();
+  if (!tracker.path().empty()) row.offset = tracker.offset();
+  const double way = std::abs(row.speed) * m_config.controlPeriod;
+  m_record.drivenPerClass[row.classId] += way;
+  if (!tracker.path().empty()) {
+    const PathPoint p = tracker.path().at(tracker.progress());
+    m_record.plannedPerClass[m_world.groundClass(p.x, p.y)] += way;
+  }
+  m_record.length += way;
+  const bool touchedBefore = !m_record.rows.empty() && m_record.rows.back().clearance <= 0;
+  if (row.clearance <= 0 && !touchedBefore) ++m_record.collisions;
+  m_record.leastClearance = std::min(m_record.leastClearance, row.clearance);
+  m_record.rows.push_back(row);
+}
+
+bool DriveLoop::hasArrived() const {
+  const TPose2D& p = state().pose;
+  return m_guide->target() == Guide::Target::Goal && m_controller.tracker().finished() &&
+         !m_controller.tracker().path().empty() && std::abs(state().speed) < 0.05 &&
+         std::hypot(p.x - m_goal.x, p.y - m_goal.y) < 0.3;
+}
+
+bool DriveLoop::isOver() {
+  if (hasArrived()) {
+    m_record.end = DriveEnd::Arrived;
+    return true;
+  }
+  if (m_guide->gaveUp() && std::abs(state().speed) < 0.05) {
+    m_record.end = DriveEnd::Unreachable;
+    m_record.reason = m_guide->reason();
+    return true;
+  }
+  if (m_time < m_config.timeLimit) return false;
+  m_record.reason = "the time is over";
+  return true;
+}
+
+}  // namespace semantic_map_drive

@@ -1,0 +1,77 @@
+#pragma once
+#include <synthetic_world/Scene.h>
+
+#include "DriveRecord.h"
+#include "Events.h"
+#include "Mapper.h"
+#include "SimulatedRobot.h"
+
+namespace semantic_map_drive {
+
+class DriveLoop;
+
+/** Whoever looks on. */
+class DriveObserver {
+ public:
+  virtual ~DriveObserver() = default;
+  /** Sensors saw something, and the map has it. */
+  virtual void onSensed(const DriveLoop&, const std::vector<Observation>&) {}
+  /** At the end. */
+  virtual void onFinished(const DriveLoop&) {}
+};
+
+/** The closed loop, in simulated time: the world is seen, the map grows, plans change, the robot
+ * drives. The same input makes the same drive, however fast the machine is. */
+class DriveLoop {
+ public:
+  /** \param world changes as the events say
+   * \param map what the robot knows at the start; none: nothing */
+  DriveLoop(const DriveConfig& config, synthetic_world::World& world,
+            const colored_graph::ClassOrder& order, const mrpt::math::TPose2D& start,
+            const mrpt::math::TPose2D& goal, Events events,
+            std::optional<semantic_octree::SemanticOcTree> map = {},
+            std::filesystem::path navlogs = {});
+
+  void addObserver(DriveObserver& observer) { m_observers.push_back(&observer); }
+  void keepOriginals() { m_sensors = SimulatedSensors(m_config.sensors, true); }
+  const DriveRecord& run();
+
+  double time() const { return m_time; }
+  const DriveRecord& record() const { return m_record; }
+  const Mapper& mapper() const { return *m_mapper; }
+  const Guide& guide() const { return *m_guide; }
+  const semantic_planning::DriveController& controller() const { return m_controller; }
+  const mrpt::math::TPose2D& start() const { return m_start; }
+  const mrpt::math::TPose2D& goal() const { return m_goal; }
+  const DriveConfig& config() const { return m_config; }
+  const semantic_planning::DriveState& state() const { return m_robot.state(); }
+  Eigen::Isometry3d T_world_robot() const;
+
+ private:
+  void sense();
+  void guide();
+  void drive();
+  void addRow();
+  bool isOver();
+  bool hasArrived() const;
+  double groundZ() const;
+  void note(const std::string& stage, double milliseconds) {
+    m_record.times[stage].push_back(milliseconds);
+  }
+
+  DriveConfig m_config;
+  synthetic_world::World& m_world;
+  Events m_events;
+  mrpt::math::TPose2D m_start, m_goal;
+  SimulatedSensors m_sensors;
+  std::unique_ptr<Mapper> m_mapper;
+  std::unique_ptr<Guide> m_guide;
+  semantic_planning::DriveController m_controller;
+  SimulatedRobot m_robot;
+  synthetic_world::Footprint m_footprint;
+  DriveRecord m_record;
+  std::vector<DriveObserver*> m_observers;
+  double m_time = 0, m_sensedAt = -1e9, m_lookedAt = -1e9;
+};
+
+}  // namespace semantic_map_drive

@@ -1,0 +1,32 @@
+#pragma once
+#include <semantic_planning/SemanticPlanner.h>
+
+#include "SimulatedSensors.h"
+
+namespace semantic_map_drive {
+
+/** The robot's map and the planner on it. */
+class Mapper {
+ public:
+  /** Begins with an empty map. */
+  Mapper(const DriveConfig& config, const colored_graph::ClassOrder& order);
+  /** Goes on with a map. */
+  Mapper(const DriveConfig& config, const colored_graph::ClassOrder& order,
+         semantic_octree::SemanticOcTree map);
+
+  /** \return milliseconds of insert (with the compressed tree's upkeep) and of update (ground and
+   * roadmap) */
+  semantic_planning::StageTimes insert(const std::vector<Observation>& seen,
+                                       const Eigen::Isometry3d& T_map_robot);
+
+  const semantic_octree::SemanticOcTree& map() const { return m_map; }
+  semantic_planning::SemanticPlanner& planner() { return m_planner; }
+  const semantic_planning::SemanticPlanner& planner() const { return m_planner; }
+
+ private:
+  DriveConfig m_config;
+  semantic_octree::SemanticOcTree m_map;
+  semantic_planning::SemanticPlanner m_planner;
+};
+
+}  // namespace semantic_map_drive

@@ -1,0 +1,116 @@
+// Drives a robot through a synthetic world: it maps, compresses, plans and drives.
+#include <labeled_cloud/MrptMessage.h>
+#include <labeled_cloud/OutputFolder.h>
+#include <semantic_octree/TreeFile.h>
+#include <semantic_planning/OrderFile.h>
+
+#include <fstream>
+#include <iostream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "Animation.h"
+#include "Cli.h"
+#include "DriveFiles.h"
+#include "DriveLoop.h"
+#include "Recorder.h"
+
+namespace semantic_map_drive {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kNotArrived = 2;  // exit status
+
+void writeText(const std::string& text, const fs::path& file) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+void writePicture(const cv::Mat& picture, const fs::path& file) {
+  if (!cv::imwrite(file.string(), picture))
+    throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+void printSummary(const DriveRecord& record) {
+  std::cout << nameOf(record.end) << " after " << record.duration() << " s and " << record.length
+            << " m; " << record.replans << " replans, " << record.collisions
+            << " collisions, least clearance " << record.leastClearance << " m\n";
+  if (!record.reason.empty()) std::cout << record.reason << '\n';
+}
+
+/** The world and what is known of it, and one drive after the other in it. */
+class Program {
+ public:
+  explicit Program(const Cli& cli)
+      : m_cli(cli),
+        m_config(loadDriveConfig(cli.config)),
+        m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
+        m_output(cli.output),
+        m_picture(cli.start, cli.goal) {
+    if (!cli.map.empty()) m_map = semantic_octree::loadTree(cli.map.string());
+  }
+
+  int run() {
+    const DriveRecord first = drive(m_cli.classes[0], "drive");
+    if (m_cli.classes.size() > 1) {
+      const DriveRecord second = drive(m_cli.classes[1], "drive2");
+      m_picture.addTrack(m_last, first, {220, 60, 20});
+      writePicture(m_last, m_output.staged("both.png"));
+    }
+    m_output.commit({"drive.csv", "drive.json", "drive.png", "drive.gif", "drive.rawlog",
+                     "map.semantic", "drive2.csv", "drive2.json", "drive2.png", "drive2.gif",
+                     "both.png"});
+    return first.arrived() ? 0 : kNotArrived;
+  }
+
+ private:
+  DriveRecord drive(const fs::path& classes, const std::string& name) {
+    const auto order = semantic_planning::loadClassOrder(classes, synthetic_world::classTable());
+    DriveLoop loop(m_config, m_scene.world, order, m_cli.start, m_cli.goal, m_cli.events, m_map);
+    std::optional<Recorder> recorder;
+    if (m_cli.rawlog && name == "drive") {
+      loop.keepOriginals();
+      loop.addObserver(recorder.emplace(m_output.staged("drive.rawlog")));
+    }
+    Animation animation(m_picture, m_output.staged(name + "-frames"), 1);
+    if (m_cli.pictures) loop.addObserver(animation);
+    const DriveRecord record = loop.run();
+    writeText(toCsv(record), m_output.staged(name + ".csv"));
+    writeText(toJson(record, order).dump(2) + "\n", m_output.staged(name + ".json"));
+    if (name == "drive")
+      semantic_octree::saveTree(loop.mapper().map(), m_output.staged("map.semantic").string());
+    m_last = m_picture.draw(loop);
+    writePicture(m_last, m_output.staged(name + ".png"));
+    if (m_cli.pictures) animation.writeGif(m_output.staged(name + ".gif"));
+    printSummary(record);
+    return record;
+  }
+
+  const Cli& m_cli;
+  DriveConfig m_config;
+  synthetic_world::Scene m_scene;
+  labeled_cloud::OutputFolder m_output;
+  DrivePicture m_picture;
+  std::optional<semantic_octree::SemanticOcTree> m_map;
+  cv::Mat m_last;
+};
+
+}  // namespace
+}  // namespace semantic_map_drive
+
+int main(int argc, char** argv) {
+  CLI::App app("Drives a robot over a semantic map that grows while it drives");
+  semantic_map_drive::Cli cli;
+  cli.addTo(app);
+  app.set_version_flag("--version", MSO_VERSION);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (!cli.hasStart || !cli.hasGoal)
+      throw std::invalid_argument("--start and --goal are missing");
+    return semantic_map_drive::Program(cli).run();
+  } catch (const std::exception& e) {
+    std::cerr << "semantic-map-drive: " << labeled_cloud::messageOf(e) << std::endl;
+    return 1;
+  }
+}

@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+#include <semantic_planning/OrderFile.h>
+#include <synthetic_world/Objects.h>
+
+#include <cmath>
+
+#include "../../apps/semantic-map-drive/DriveFiles.h"
+#include "../../apps/semantic-map-drive/DriveLoop.h"
+
+using namespace semantic_map_drive;
+using mrpt::math::TPose2D;
+using semantic_planning::DriveController;
+using synthetic_world::World;
+
+namespace {
+
+const std::string kSource = MSO_SOURCE_DIR;
+
+DriveConfig smallConfig() {
+  DriveConfig config = loadDriveConfig(kSource + "/config/drive/synthetic.ini");
+  config.sensors.camera.width = 80;
+  config.sensors.camera.height = 60;
+  config.sensors.lidar.columns = 256;
+  config.insertion.maxRange = 10;
+  config.planner.roadmap.vertices = 300;
+  config.timeLimit = 90;
+  return config;
+}
+
+colored_graph::ClassOrder order() {
+  return semantic_planning::loadClassOrder(kSource + "/config/plan/synthetic.yaml",
+                                           synthetic_world::classTable());
+}
+
+/** Flat grass 40 m wide, with a road along x that is `width` wide, and things on it. */
+World plain(synthetic_world::Solids solids = {}, double width = 8) {
+  synthetic_world::GroundCover cover(20, synthetic_world::kGrass);
+  cover.paintBand(synthetic_world::kRoad, {-18, 0}, {18, 0}, width);
+  return World(synthetic_world::Terrain(20, {}), cover, std::move(solids));
+}
+
+/** A wall from a to b. */
+void addWall(synthetic_world::Solids& solids, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  const auto wall = synthetic_world::wallPanel({a.x(), a.y(), 0}, {b.x(), b.y(), 0}, 2);
+  solids.insert(solids.end(), wall.begin(), wall.end());
+}
+
+DriveRecord drive(World& world, const TPose2D& start, const TPose2D& goal, Events events = {},
+                  const DriveConfig& config = smallConfig()) {
+  DriveLoop loop(config, world, order(), start, goal, std::move(events));
+  return loop.run();
+}
+
+double leastSpeed(const DriveRecord& record, double from, double to) {
+  double least = 1e9;
+  for (const DriveRow& row : record.rows)
+    if (row.time >= from && row.time < to) least = std::min(least, std::abs(row.speed));
+  return least;
+}
+
+}  // namespace
+
+TEST(Drives, BeginWithoutAMapAndArriveOnTheRoad) {
+  World world = plain();
+  const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0});
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_LT(badLength(record.drivenPerClass, order()), 0.5);
+}
+
+TEST(Drives, AreTheSameEachTime) {
+  World world = plain();
+  EXPECT_EQ(toCsv(drive(world, {-6, 0, 0}, {0, 2, 0})), toCsv(drive(world, {-6, 0, 0}, {0, 2, 0})));
+}
+
+TEST(Drives, GetPastAPersonWhoStepsInFront) {
+  World world = plain();
+  Events events;
+  events.persons.push_back({4, 1e9, {0, 6}, {0, 0}, 1.5});
+  const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0}, events);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+}
+
+TEST(Drives, TakeAnotherWayWhenTheRoadIsBlocked) {
+  synthetic_world::Solids solids;  // two gaps in a wall across
+  addWall(solids, {0, -20}, {0, -6});
+  addWall(solids, {0, -3}, {0, 3});
+  addWall(solids, {0, 6}, {0, 20});
+  World world = plain(solids, 16);
+  Events events;
+  events.roadblocks.push_back({5, {0, 4.5}, 0, 3.4});
+  const DriveRecord record = drive(world, {-8, 4.5, 0}, {8, 4.5, 0}, events);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_GE(record.replans, 1);
+}
+
+TEST(Drives, StopAndSaySoWhereNoWayLeads) {
+  synthetic_world::Solids solids;
+  addWall(solids, {4, -4}, {12, -4});
+  addWall(solids, {12, -4}, {12, 4});
+  addWall(solids, {12, 4}, {4, 4});
+  addWall(solids, {4, 4}, {4, -4});
+  World world = plain(solids);
+  const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0});
+  EXPECT_NE(record.end, DriveEnd::Arrived);
+  EXPECT_FALSE(record.reason.empty());
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_LT(std::abs(record.rows.back().speed), 0.06);
+}
+
+TEST(Drives, SlowDownWhileTheSensorsAreOut) {
+  World world = plain();
+  Events events;
+  events.dropouts.push_back({6, 8});
+  const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0}, events);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_GT(leastSpeed(record, 5, 6), 0.7);
+  EXPECT_LT(leastSpeed(record, 7.5, 8.5), 0.5);
+}
+
+TEST(Drives, LeaveForbiddenGroundTheShortestWay) {
+  synthetic_world::GroundCover cover(20, synthetic_world::kRoad);
+  cover.paintBand(synthetic_world::kFlowerBed, {-12, 0}, {-2, 0}, 6);
+  World world(synthetic_world::Terrain(20, {}), cover, {});
+  const DriveRecord record = drive(world, {-8, 1, 1.57}, {8, 0, 0});
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_LT(record.drivenPerClass[synthetic_world::kFlowerBed], 3.5);
+}
