@@ -4,6 +4,7 @@
 #include <labeled_cloud/RawlogReader.h>
 #include <labeled_cloud/RawlogTrajectory.h>
 #include <labeled_cloud/ScanConverter.h>
+#include <mrpt/obs/CObservationImage.h>
 #include <sys/wait.h>
 
 #include <Eigen/Geometry>
@@ -180,6 +181,43 @@ TEST(SemanticKitti, posesAreThoseOfTheLidarAndClassesThoseOfTheTable) {
   // Second: (5, 0, -1) is (0.1, 1.2, 5.3) in the camera, (-5.3, 1.2, 2.1) in the first camera,
   // hence x = 2.1 - 0.3, y = 0.1 + 5.3, z = 0.2 - 1.2 in the first LiDAR.
   EXPECT_LT((scans[1].inMap(0) - Vector3d(1.8, 5.4, -1)).norm(), 1e-5);
+}
+
+TEST(SemanticKitti, imagesComeAlongAsFilesAndLabelsCanBeLeftOut) {
+  const TemporaryFolder folder;
+  writeSmallKitti(folder);
+  const fs::path out = folder / "out.rawlog";
+  const std::string arguments =
+      "semantic-kitti " + quoted(folder.path()) + " --no-labels --images " + quoted(out);
+  // P2 = K [I | t] with f = 10, center (3, 2), t = (0.5, 0, 0)
+  folder.write("calib.txt", std::string("P2: 10 0 3 5 0 10 2 0 0 0 1 0\n") + kTr);
+  EXPECT_TRUE(contains(failureOf(arguments), "image_2/000000.png: cannot be read as an image"));
+  fs::create_directory(folder / "image_2");
+  for (const char* name : {"image_2/000000.png", "image_2/000001.png"})
+    cv::imwrite((folder / name).string(), cv::Mat(4, 6, CV_8UC3, cv::Scalar(10, 20, 30)));
+  ASSERT_EQ(dataset2rawlog(arguments).status, 0);
+
+  RawlogReader reader(out);
+  std::size_t pictures = 0, clouds = 0;
+  while (const auto entry = reader.next())
+    for (const auto& o : entry->observations) {
+      if (const auto* cloud = dynamic_cast<const CObservationLabeledCloud*>(o.get())) {
+        EXPECT_TRUE(cloud->cloud.classes.empty());
+        ++clouds;
+      }
+      const auto* picture = dynamic_cast<const mrpt::obs::CObservationImage*>(o.get());
+      if (!picture) continue;
+      ++pictures;
+      EXPECT_EQ(picture->cameraParams.ncols, 6u);
+      EXPECT_EQ(picture->cameraParams.cx(), 3);
+      // The LiDAR's point (5, 0, -1) is (0.1, 1.2, 5.3) in the first camera, t further in this one.
+      mrpt::math::TPoint3D p;
+      picture->cameraPose.inverseComposePoint(5, 0, -1, p.x, p.y, p.z);
+      EXPECT_LT((Vector3d(p.x, p.y, p.z) - Vector3d(0.6, 1.2, 5.3)).norm(), 1e-6);
+      EXPECT_TRUE(fs::exists(folder / "out_Images" / picture->image.getExternalStorageFile()));
+    }
+  EXPECT_EQ(pictures, 2u);
+  EXPECT_EQ(clouds, 2u);
 }
 
 TEST(SemanticKitti, framesAreChosenByNumber) {
