@@ -62,8 +62,6 @@ Instance drawInstance(const EdgeChecker& checker, PoseDraw& draw, double minDist
 
 }  // namespace
 
-double Instance::distance() const { return std::hypot(goal.x - start.x, goal.y - start.y); }
-
 bool isFree(const EdgeChecker& checker, const TPose2D& pose) {
   const auto placed = checker.place(pose);
   return placed && checker.fit(*placed) == Fit::Free &&

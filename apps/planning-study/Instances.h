@@ -1,17 +1,12 @@
 #pragma once
-#include <mrpt/math/TPose2D.h>
 #include <semantic_planning/EdgeChecker.h>
 
 #include <cstdint>
 #include <vector>
 
-namespace planning_study {
+#include "Trial.h"
 
-/** A task for all planners. Meters, radians; map frame. */
-struct Instance {
-  mrpt::math::TPose2D start, goal;
-  double distance() const;
-};
+namespace planning_study {
 
 /** Whether the vehicle can stand there, on ground that is not forbidden. */
 bool isFree(const semantic_planning::EdgeChecker& checker, const mrpt::math::TPose2D& pose);

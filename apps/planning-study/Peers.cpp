@@ -42,7 +42,7 @@ Trial runPeer(const char* name, const semantic_planning::SemanticPlanner& planne
   trial.judgment = kWeighted;
   trial.graph = name;
   trial.budget = static_cast<std::size_t>(std::lround(1e3 * seconds));
-  trial.distance = instance.distance();
+  trial.task = instance;
   trial.status = solved.asString();
   trial.found = solved == ompl::base::PlannerStatus::EXACT_SOLUTION;
   trial.evaluated = problem.motionsChecked();

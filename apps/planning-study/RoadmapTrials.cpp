@@ -62,7 +62,7 @@ std::vector<Trial> RoadmapTrials::run(const Instance& instance,
   const Roadmap& roadmap = m_planner.roadmap();
   common.graph = nameOf(m_planner.options().roadmap.kind);
   common.budget = m_planner.options().roadmap.vertices;
-  common.distance = instance.distance();
+  common.task = instance;
   common.vertices = roadmap.graph().vertexCount();
   common.edges = roadmap.graph().edgeCount();
   const RoadmapTask task{roadmap, vertexAt(roadmap, instance.start),

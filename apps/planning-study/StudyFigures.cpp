@@ -9,20 +9,33 @@ using namespace semantic_map_compress;
 
 namespace {
 
-constexpr std::size_t kColumnWidth = 420, kRowHeight = 340;  // pixels
-constexpr double kBox = 0.15;                                // width; budgets stand at 0, 1, 2...
+constexpr std::size_t kColumnWidth = 420, kRowHeight = 320, kKeyHeight = 40;  // pixels
+constexpr double kBox = 0.15;  // width; budgets stand at 0, 1, 2...
+
+/** One line for all plots, below them. */
+void writeKey(std::ostream& out, const ordered_json& graphs) {
+  out << "unset key\n";
+  for (std::size_t g = 0; g < graphs.size(); ++g)
+    out << "set label " << gnuplotText(graphs[g]) << " at screen "
+        << (static_cast<double>(g) + 0.3) / static_cast<double>(graphs.size())
+        << ",0.035 point pt 5 ps 1.5 lc rgb '" << colorOf(g) << "' offset 1,0\n";
+}
 
 std::ostringstream sheetFor(const ordered_json& study, std::size_t rows,
                             const std::filesystem::path& file) {
-  const std::size_t maps = study["maps"].size();
-  auto out = scriptFor(file, maps * kColumnWidth, rows * kRowHeight + 40);
+  const auto maps = static_cast<double>(study["maps"].size());
+  const std::size_t height = rows * kRowHeight + kKeyHeight;
+  const auto share = [&](std::size_t pixels) {
+    return static_cast<double>(pixels) / static_cast<double>(height);
+  };
+  auto out = scriptFor(file, study["maps"].size() * kColumnWidth, height);
   const auto& budgets = study["options"]["budgets"];
-  out << "set multiplot layout " << rows << ',' << maps << " columnsfirst margins "
-      << 0.2 / static_cast<double>(maps) << ",0.99,0.16,0.92 spacing "
-      << 0.2 / static_cast<double>(maps) << ",0.1\n"
-      << "set xtics " << tics(budgets.size(), [&](std::size_t i) { return budgets[i].dump(); })
-      << "\n"
-      << "set xrange [-0.5:" << static_cast<double>(budgets.size()) - 0.5 << "]\nunset key\n";
+  out << "set multiplot layout " << rows << ',' << maps << " columnsfirst margins " << 0.17 / maps
+      << ",0.99," << share(kKeyHeight + 50) << ',' << 1 - share(40) << " spacing " << 0.17 / maps
+      << ',' << share(45) << "\nset xtics "
+      << tics(budgets.size(), [&](std::size_t i) { return budgets[i].dump(); })
+      << "\nset xrange [-0.5:" << static_cast<double>(budgets.size()) - 0.5 << "]\n";
+  writeKey(out, study["options"]["graphs"]);
   return out;
 }
 
@@ -55,16 +68,14 @@ class Plot {
     }
   }
 
-  /** "plot" with these styles, of which the first is in the key. */
+  /** "plot" with these styles. */
   void plot(std::ostream& out, const std::vector<std::string>& styles) const {
     const auto& graphs = m_study["options"]["graphs"];
     out << "$dot << EOD\n0 1\nEOD\nplot ";  // gnuplot refuses axes without a valid point
     for (std::size_t g = 0; g < graphs.size(); ++g)
-      for (std::size_t s = 0; s < styles.size(); ++s) {
-        const std::string title = s ? " notitle" : " title " + gnuplotText(graphs[g]);
-        out << "$g" << g << ' ' << styles[s] << " lc rgb '" << colorOf(g) << "'" << title << ", ";
-      }
-    out << "$dot with dots lc rgb '#ffffff' notitle\n";
+      for (const std::string& style : styles)
+        out << "$g" << g << ' ' << style << " lc rgb '" << colorOf(g) << "', ";
+    out << "$dot with dots lc rgb '#ffffff'\n";
   }
 
  private:
@@ -109,12 +120,12 @@ void drawTimes(const ordered_json& study, const std::filesystem::path& file) {
   for (const ordered_json& map : study["maps"]) {
     out << "set title " << gnuplotText(map["name"]) << '\n';
     label(out, first, "planning time [ms]");
-    out << (first ? "set key top left samplen 1 Left reverse\n" : "unset key\n");
-    first = false;
     const Plot plot(study, map);
     plot.write(out, [](const ordered_json& way) { return box(way["milliseconds"]["planning"]); });
     plot.plot(out, {"using 1:2:3:4:5 with candlesticks whiskerbars 0.5",
                     "using 1:6:6:6:6 with candlesticks lw 2"});
+    out << "unset label\n";
+    first = false;
   }
   out << "unset multiplot\n";
   drawWithGnuplot(out.str());
@@ -127,15 +138,15 @@ void drawPaths(const ordered_json& study, const std::filesystem::path& file) {
     const Plot plot(study, map);
     out << "set title " << gnuplotText(map["name"]) << "\nset yrange [0:103]\nunset xlabel\n";
     label(out, first, "tasks solved [%]");
-    out << (first ? "set key bottom right samplen 1 Left reverse\n" : "unset key\n");
     plot.write(out, [](const ordered_json& way) { return valueWithInterval(way["success"]); });
     plot.plot(out,
               {"using 1:2 with linespoints pt 7 lw 1.5", "using 1:2:3:4 with yerrorbars pt 7"});
-    out << "unset title\nset autoscale y\nset yrange [0:*]\nset xlabel 'vertices'\nunset key\n";
+    out << "unset title\nset autoscale y\nset yrange [0:*]\nset xlabel 'vertices'\n";
     label(out, first, "outside the best rank [m]");
     plot.write(out, [](const ordered_json& way) { return box(way["metersOutsideBest"]); });
     plot.plot(out,
               {"using 1:6 with linespoints pt 7 lw 1.5", "using 1:6:2:5 with yerrorbars pt 7"});
+    out << "unset label\n";
     first = false;
   }
   out << "unset multiplot\n";

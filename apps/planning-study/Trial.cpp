@@ -1,6 +1,10 @@
 #include "Trial.h"
 
+#include <cmath>
+
 namespace planning_study {
+
+double Instance::distance() const { return std::hypot(goal.x - start.x, goal.y - start.y); }
 
 std::vector<Length> wayOf(const std::vector<Length>& lengthPerClass,
                           const colored_graph::ClassOrder& order) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <colored_graph/ClassOrder.h>
 #include <colored_graph/Length.h>
+#include <mrpt/math/TPose2D.h>
 
 #include <cstdint>
 #include <string>
@@ -10,11 +11,17 @@ namespace planning_study {
 
 using colored_graph::Length;
 
+/** A task for all planners. Meters, radians; map frame. */
+struct Instance {
+  mrpt::math::TPose2D start, goal;
+  double distance() const;
+};
+
 /** What came of one instance, one way to plan, and one budget. */
 struct Trial {
   std::string map;
   std::size_t instance = 0;
-  double distance = 0;     ///< from start to goal, straight, meters
+  Instance task;
   std::string judgment;    ///< how edges were judged: endpoint, sweep, profile, weighted
   std::string graph;       ///< its kind, or the name of a peer
   std::size_t budget = 0;  ///< vertices asked for; peers: milliseconds

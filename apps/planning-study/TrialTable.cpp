@@ -12,10 +12,18 @@ void writeVector(std::ostream& out, const Numbers& numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i) out << (i ? " " : "") << numbers[i];
 }
 
+/** Meters and radians. */
+void writePose(std::ostream& out, const mrpt::math::TPose2D& pose) {
+  out << ',' << pose.x << ',' << pose.y << ',' << pose.phi;
+}
+
 void writeTrial(std::ostream& out, const Trial& t) {
-  out << t.map << ',' << t.instance << ',' << t.distance << ',' << t.judgment << ',' << t.graph
-      << ',' << t.budget << ',' << t.found << ",\"" << t.status << "\"," << t.vertices << ','
-      << t.edges << ',' << t.evaluated << ',' << t.expansions;
+  out << t.map << ',' << t.instance;
+  writePose(out, t.task.start);
+  writePose(out, t.task.goal);
+  out << ',' << t.judgment << ',' << t.graph << ',' << t.budget << ',' << t.found << ",\""
+      << t.status << "\"," << t.vertices << ',' << t.edges << ',' << t.evaluated << ','
+      << t.expansions;
   writeVector(out, t.cost);
   writeVector(out, t.way);
   out << ',' << t.graphTime << ',' << t.evaluationTime << ',' << t.searchTime << '\n';
@@ -25,7 +33,8 @@ void writeTrial(std::ostream& out, const Trial& t) {
 
 std::string toCsv(const std::vector<MapStudy>& maps) {
   std::ostringstream out;
-  out << "map,instance,distance [m],judgment,graph,budget,found,status,vertices,edges,"
+  out << "map,instance,start x,start y,start heading,goal x,goal y,goal "
+         "heading,judgment,graph,budget,found,status,vertices,edges,"
          "edges evaluated,expansions,cost [0.1 mm],way [0.1 mm],graph [ms],evaluation [ms],"
          "search [ms]\n";
   for (const MapStudy& map : maps)

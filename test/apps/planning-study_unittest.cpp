@@ -1,0 +1,215 @@
+#include <colored_graph/Length.h>
+#include <gtest/gtest.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <sstream>
+
+#include "../semantic_planning/PaintedWorld.h"
+#include "RunProgram.h"
+#include "TemporaryFolder.h"
+
+using nlohmann::json;
+
+namespace {
+
+using Row = std::map<std::string, std::string>;
+
+std::vector<std::string> split(const std::string& line, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream in(line);
+  for (std::string part; std::getline(in, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+std::vector<long long> numbers(const std::string& text) {
+  std::vector<long long> result;
+  for (const std::string& part : split(text, ' ')) result.push_back(std::stoll(part));
+  return result;
+}
+
+/** The way to plan that a row belongs to. */
+std::string wayOf(const Row& row) {
+  return row.at("judgment") + " " + row.at("graph") + " " + row.at("budget");
+}
+
+class PlanningStudy : public testing::Test {
+ protected:
+  void SetUp() override {
+    PaintedWorld world;  // grass with a road around a corner, and mud
+    world.floor(-12, 12, -12, 12, PaintedWorld::Grass);
+    world.floor(-10, -6, -12, 10, PaintedWorld::Road);
+    world.floor(-10, 12, 6, 10, PaintedWorld::Road);
+    world.floor(-3, 3, -6, 3, PaintedWorld::Mud);
+    saveTree(world.map(), path("map.semantic"));
+    folder.write("order.yaml", "best_to_worst: [road, grass, mud, unknown]\n");
+  }
+
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+
+  ProgramRun study(const std::vector<std::string>& more, const std::string& output = "out",
+                   const std::string& reference = "200") const {
+    std::vector<std::string> arguments = {path("map.semantic")};
+    const std::map<std::string, std::string> common = {
+        {"--classes", path("order.yaml")}, {"--output", path(output)}, {"--instances", "4"},
+        {"--min-distance", "8"},           {"--budgets", "60,120"},    {"--reference", reference}};
+    for (const auto& [name, value] : common) arguments.insert(arguments.end(), {name, value});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram("planning-study", arguments);
+  }
+
+  std::vector<Row> rows(const std::string& output = "out") const {
+    std::istringstream in(folder.read(output + "/study.csv"));
+    std::string line;
+    std::getline(in, line);
+    const auto names = split(line, ',');
+    std::vector<Row> result;
+    while (std::getline(in, line)) {
+      const auto cells = split(line, ',');
+      Row row;
+      for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = cells.at(i);
+      result.push_back(row);
+    }
+    return result;
+  }
+
+  /** All but the times. */
+  std::vector<Row> outcomes(const std::string& output) const {
+    auto result = rows(output);
+    for (Row& row : result)
+      for (const char* time : {"graph [ms]", "evaluation [ms]", "search [ms]"}) row.erase(time);
+    return result;
+  }
+
+  void expectRefused(const ProgramRun& run, const std::string& part) const {
+    EXPECT_NE(run.status, 0);
+    EXPECT_TRUE(contains(run.errors, part)) << run.errors;
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/study.csv"));
+  }
+
+  TemporaryFolder folder;
+};
+
+}  // namespace
+
+TEST_F(PlanningStudy, allWaysToPlanGetTheSameTasks) {
+  ASSERT_EQ(study({}).status, 0);
+  std::map<std::string, std::set<std::string>> tasksOfWay;
+  for (const Row& row : rows()) {
+    std::string task;
+    for (const char* part :
+         {"instance", "start x", "start y", "start heading", "goal x", "goal y", "goal heading"})
+      task += row.at(part) + " ";
+    EXPECT_TRUE(tasksOfWay[wayOf(row)].insert(task).second) << "twice: " << wayOf(row);
+  }
+  ASSERT_EQ(tasksOfWay.size(), 4u * 5 * 2 + 1);
+  for (const auto& [way, tasks] : tasksOfWay) EXPECT_EQ(tasks, tasksOfWay.begin()->second) << way;
+}
+
+TEST_F(PlanningStudy, equalSeedsGiveEqualResultsApartFromTimes) {
+  ASSERT_EQ(study({"--seed", "5"}, "first").status, 0);
+  ASSERT_EQ(study({"--seed", "5"}, "second").status, 0);
+  ASSERT_EQ(study({"--seed", "6"}, "other").status, 0);
+  EXPECT_EQ(outcomes("first"), outcomes("second"));
+  EXPECT_NE(outcomes("first"), outcomes("other"));
+}
+
+TEST_F(PlanningStudy, graphsKeepTheirBudgetsAndPathsAreNoShorterThanTheLine) {
+  ASSERT_EQ(study({}).status, 0);
+  constexpr int kGuests = 2, kGuestEdges = 2 * 20 + 1;
+  for (const Row& row : rows()) {
+    const int budget = std::stoi(row.at("budget"));
+    EXPECT_LE(std::stoi(row.at("vertices")), budget + kGuests);
+    if (row.at("graph") != "reference") {
+      EXPECT_LE(std::stoi(row.at("edges")), 5 * budget + kGuestEdges);
+    }
+    if (row.at("found") == "0") continue;
+    const double line = std::hypot(std::stod(row.at("goal x")) - std::stod(row.at("start x")),
+                                   std::stod(row.at("goal y")) - std::stod(row.at("start y")));
+    EXPECT_GE(line, 8 - 1e-3);
+    EXPECT_GE(colored_graph::toMeters(numbers(row.at("way [0.1 mm]")).back()), line - 1e-3);
+  }
+}
+
+TEST_F(PlanningStudy, noJudgmentFindsABetterWayInAGraphThanTheProfile) {
+  ASSERT_EQ(study({}).status, 0);
+  const auto all = rows();
+  std::map<std::string, std::vector<long long>> best;  // of a graph and a task
+  const auto keyOf = [](const Row& row) {
+    return row.at("graph") + " " + row.at("budget") + " " + row.at("instance");
+  };
+  for (const Row& row : all)
+    if (row.at("judgment") == "profile" && row.at("found") == "1")
+      best[keyOf(row)] = numbers(row.at("way [0.1 mm]"));
+  ASSERT_FALSE(best.empty());
+  for (const Row& row : all) {
+    EXPECT_EQ(row.at("found") == "1", best.count(keyOf(row)) == 1);
+    if (row.at("found") == "1") {
+      EXPECT_GE(numbers(row.at("way [0.1 mm]")), best[keyOf(row)]) << wayOf(row);
+    }
+  }
+}
+
+TEST_F(PlanningStudy, theSummaryIsThatOfTheTable) {
+  ASSERT_EQ(study({"--graphs", "halton-drivable,full"}).status, 0);
+  std::map<std::string, std::vector<double>> planning;
+  for (const Row& row : rows())
+    if (row.at("found") == "1")
+      planning[wayOf(row)].push_back(std::stod(row.at("evaluation [ms]")) +
+                                     std::stod(row.at("search [ms]")));
+  const json map = json::parse(folder.read("out/study.json")).at("maps").at(0);
+  EXPECT_EQ(map.at("ways").size(), 4u * 2 * 2 + 1);
+  for (const json& way : map.at("ways")) {
+    const auto& sample =
+        planning[way.at("judgment").get<std::string>() + " " + way.at("graph").get<std::string>() +
+                 " " + way.at("budget").dump()];
+    ASSERT_EQ(way.at("found"), sample.size());
+    if (sample.empty()) continue;
+    const double sum = std::accumulate(sample.begin(), sample.end(), 0.0);
+    EXPECT_NEAR(way.at("milliseconds").at("planning").at("mean").get<double>(),
+                sum / static_cast<double>(sample.size()), 1e-3 * sum);
+  }
+  for (const json& pair : map.at("pairs")) {
+    const json& order = pair.at("way");
+    EXPECT_EQ(
+        order.at("better").get<int>() + order.at("equal").get<int>() + order.at("worse").get<int>(),
+        4);
+  }
+}
+
+TEST_F(PlanningStudy, peersPlanTheFirstTasksAndFiguresAreDrawn) {
+  const ProgramRun run = study(
+      {"--graphs", "halton-drivable", "--peers", "--peer-time", "0.2", "--peer-instances", "1"},
+      "out", "0");
+  ASSERT_EQ(run.status, 0) << run.errors;
+  std::multiset<std::string> peers;
+  for (const Row& row : rows())
+    if (row.at("graph").back() == '*') peers.insert(row.at("graph") + row.at("instance"));
+  EXPECT_EQ(peers, (std::multiset<std::string>{"bit*0", "lazy-prm*0", "prm*0"}));
+  for (const char* name : {"study.md", "times.png", "paths.png"})
+    EXPECT_GT(std::filesystem::file_size(folder / (std::string("out/") + name)), 500u) << name;
+}
+
+TEST_F(PlanningStudy, badInputIsRefusedAndNothingWritten) {
+  folder.write("strange.yaml", "best_to_worst: [road, lava]\n");
+  expectRefused(runProgram("planning-study", {path("no.semantic"), "--classes", path("order.yaml"),
+                                              "--output", path("out")}),
+                "no.semantic");
+  expectRefused(runProgram("planning-study", {path("map.semantic"), "--classes",
+                                              path("strange.yaml"), "--output", path("out")}),
+                "lava");
+  expectRefused(study({"--graphs", "spiral"}), "spiral");
+  expectRefused(study({"--edges-per-vertex", "-1"}), "edges-per-vertex");
+  expectRefused(study({path("map.semantic")}), "a second map");
+}
+
+TEST_F(PlanningStudy, tasksThatAMapDoesNotOfferAreRefused) {
+  ProgramRun run =
+      runProgram("planning-study", {path("map.semantic"), "--classes", path("order.yaml"),
+                                    "--output", path("out"), "--min-distance", "500"});
+  expectRefused(run, "500");
+}
