@@ -127,7 +127,9 @@ void DriveLoop::guide() {
 
 void DriveLoop::drive() {
   Stopwatch watch;
-  const auto obstacles = senseObstacles(m_mapper->planner(), state().pose, groundZ());
+  ObstacleOptions options;
+  options.forbiddenGround = m_guide->target() != Guide::Target::WayOut;
+  const auto obstacles = senseObstacles(m_mapper->planner(), state().pose, groundZ(), options);
   note("obstacles", watch.milliseconds());
   const DriveCommand command = m_controller.step(state(), obstacles, m_time - m_sensedAt, m_time);
   note("react", watch.milliseconds());

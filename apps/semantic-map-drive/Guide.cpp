@@ -14,6 +14,7 @@ using mrpt::math::TPose2D;
 namespace {
 
 constexpr double kNearFrontier = 3;  // m: the next one is looked for before the robot stops
+constexpr double kBlind = 2;         // m: the sensors do not see the ground nearer than this
 constexpr double kAtGoal = 0.3;      // m
 
 /** A little ahead of where the last plan began, if it began just there: the roadmap takes no two
@@ -56,7 +57,7 @@ bool Guide::mustChange(const Situation& now, double stoppedFor) {
   const bool atGoal = m_target == Target::Goal && distance(now.state.pose, m_goal) < kAtGoal &&
                       !now.tracker.path().empty();
   if (now.tracker.finished()) return !atGoal;
-  if (m_target == Target::WayOut)
+  if (m_target == Target::WayOut && !m_blindOut)
     return m_planner.check(now.state.pose, now.z) == PlanStatus::Found;
   const bool blocked = isBlocked(now);
   if (!blocked) m_blockedSince = -1;
@@ -81,7 +82,7 @@ Guide::Departure Guide::departureOf(const Situation& now, bool anew) const {
 
 std::optional<DrivePath> Guide::choose(const Situation& now) {
   m_plannedAt = now.seconds;
-  if (m_planner.check(now.state.pose, now.z) != PlanStatus::Found) return wayOut(now);
+  if (m_planner.check(now.state.pose, now.z) != PlanStatus::Found) return wayOut(now, 0);
   const bool before = !now.tracker.finished();
   const Departure here = departureOf(now, true);
   std::optional<DrivePath> path = toGoal(here);
@@ -89,16 +90,20 @@ std::optional<DrivePath> Guide::choose(const Situation& now) {
     take(Target::Goal, now);
   else if ((path = toFrontier(here)))
     take(Target::Frontier, now);
+  else if (m_target == Target::None && m_plannedPaths == 0)
+    return wayOut(now, kBlind);
   else
     fail(now);
   if (path && before) ++m_replans;
   return path;
 }
 
-std::optional<DrivePath> Guide::wayOut(const Situation& now) {
-  DrivePath path = findWayOut(m_planner, now.state.pose, now.z);
+/** \param nearest 0, or, where the robot does not see what it stands on, how far it is blind */
+std::optional<DrivePath> Guide::wayOut(const Situation& now, double nearest) {
+  DrivePath path = findWayOut(m_planner, now.state.pose, now.z, 8, nearest);
+  m_blindOut = nearest > 0;
   if (path.empty()) {
-    m_reason = "the robot is where it must not be, and finds no way out";
+    if (!m_blindOut) m_reason = "the robot is where it must not be, and finds no way out";
     fail(now);
     return {};
   }
@@ -155,6 +160,7 @@ std::optional<DrivePath> Guide::improve(const Situation& now) {
 }
 
 void Guide::take(Target target, const Situation& now) {
+  if (target != Target::WayOut) ++m_plannedPaths;
   m_target = target;
   m_plannedAt = now.seconds;
   m_blockedSince = m_withoutSince = -1;

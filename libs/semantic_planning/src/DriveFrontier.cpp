@@ -180,7 +180,7 @@ std::vector<Frontier> findFrontiers(const SemanticPlanner& planner, const TPose2
     if (std::any_of(chosen.begin(), chosen.end(),
                     [&](const Frontier& c) { return isNear(c.pose); }))
       continue;
-    chosen.push_back(f);
+    if (planner.check(f.pose, f.z) == PlanStatus::Found) chosen.push_back(f);
   }
   return chosen;
 }

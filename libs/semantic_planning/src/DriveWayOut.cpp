@@ -48,11 +48,11 @@ class WayOutSearch {
                  m_order),
         m_checker(m_ground, m_vehicle, m_order, planner.options().reading) {}
 
-  DrivePath search(const TPose2D& from, double radius) {
+  DrivePath search(const TPose2D& from, double radius, double nearest) {
     const auto start = m_checker.place(from, m_z);
     if (!start) return {};
     constexpr double kStep = 0.4;  // m
-    for (double r = kStep; r <= radius && r < m_leastForbidden + 2; r += kStep)
+    for (double r = nearest + kStep; r <= radius && r < m_leastForbidden + nearest + 2; r += kStep)
       for (int direction = 0; direction < 16; ++direction)
         for (int heading = 0; heading < 8; ++heading) {
           const double to = from.phi + direction * M_PI / 8;
@@ -95,8 +95,9 @@ class WayOutSearch {
 
 }  // namespace
 
-DrivePath findWayOut(const SemanticPlanner& planner, const TPose2D& from, double z, double radius) {
-  return WayOutSearch(planner, z).search(from, radius);
+DrivePath findWayOut(const SemanticPlanner& planner, const TPose2D& from, double z, double radius,
+                     double nearest) {
+  return WayOutSearch(planner, z).search(from, radius, nearest);
 }
 
 }  // namespace semantic_planning
