@@ -68,12 +68,8 @@ void Cli::addTo(CLI::App& app) {
   addParsed(
       app, "--sensor-dropout", "T,T2", [this](auto& t) { events.dropouts.push_back(parseSpan(t)); },
       "The sensors see nothing from second T to T2");
-  app.add_flag("--live", live, "Show the drive in a window");
   app.add_flag("!--no-rawlog", rawlog, "Write no rawlog");
   app.add_flag("!--no-pictures", pictures, "Write no pictures along the way, and no animation");
-  app.add_option("--study", study,
-                 "Instead of one drive, so many between places at random; a table of them")
-      ->check(CLI::Range(1, 1000));
 }
 
 }  // namespace semantic_map_drive

@@ -18,9 +18,8 @@ struct Cli {
   std::uint64_t seed = 1;
   double hills = 1;
   mrpt::math::TPose2D start, goal;
-  bool hasStart = false, hasGoal = false, live = false, rawlog = true, pictures = true;
+  bool hasStart = false, hasGoal = false, rawlog = true, pictures = true;
   Events events;
-  int study = 0;  ///< pairs
 
   void addTo(CLI::App& app);
 };

@@ -108,6 +108,8 @@ void readPlanner(const CConfigFileBase& ini, const fs::path& folder,
   section.read("bridgeGap", planner.ground.bridgeGap);
   section.read("unknownGap", planner.ground.unknownGap);
   readYesNo(section, "keepOff", planner.ground.keepFootprintOffForbidden);
+  planner.shorten = true;
+  readYesNo(section, "shorten", planner.shorten);
   section.finish();
   planner.validate();
 }
