@@ -122,7 +122,11 @@ void DriveLoop::guide() {
   auto path = m_guide->update(state(), groundZ(), m_controller, m_time);
   if (path) m_controller.setPath(std::move(*path));
   if (m_guide->target() == Guide::Target::None) m_controller.setPath({});
-  note("replan", watch.milliseconds());
+  const double replan = watch.milliseconds();
+  note("replan", replan);
+  if (m_sensedAt == m_time)
+    note("insert+update+replan",
+         m_record.times["insert"].back() + m_record.times["update"].back() + replan);
 }
 
 void DriveLoop::drive() {

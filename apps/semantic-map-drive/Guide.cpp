@@ -112,8 +112,9 @@ std::optional<DrivePath> Guide::wayOut(const Situation& now, double nearest) {
 }
 
 std::optional<DrivePath> Guide::toGoal(const Departure& from) {
+  const TPose2D start = apart(from.pose, m_plans++);
   PlanResult plan =
-      m_planned ? m_planner.replan(from.pose, from.z) : m_planner.plan(from.pose, m_goal, from.z);
+      m_planned ? m_planner.replan(start, from.z) : m_planner.plan(start, m_goal, from.z);
   m_planned = m_planner.hasRoadmap();
   if (!plan.found()) {
     m_reason = plan.reason;
