@@ -118,7 +118,6 @@ struct ReactiveNavigator::Navigation {
     if (!std::filesystem::exists(options.config))
       throw std::runtime_error(options.config.string() + ": no such file");
     mrpt::config::CConfigFile file(options.config.string());
-    file.discardSavingChanges();
     const auto both = [&](const std::string& key, double value) {
       file.write("CAbstractPTGBasedReactive", key, value);
     };
@@ -132,6 +131,7 @@ struct ReactiveNavigator::Navigation {
       file.write("CReactiveNavigationSystem", name + "_v_max_mps", options.maxSpeed);
       file.write("CReactiveNavigationSystem", name + "_w_max_dps", turn);
     }
+    file.discardSavingChanges();  // or MRPT writes the file anew
     system.logging_enable_console_output = false;
     vehicle.logging_enable_console_output = false;
     system.enableRethrowNavExceptions(true);
