@@ -17,13 +17,6 @@ constexpr double kNearFrontier = 3;  // m: the next one is looked for before the
 constexpr double kBlind = 2;         // m: the sensors do not see the ground nearer than this
 constexpr double kAtGoal = 0.3;      // m
 
-/** A little ahead of where the last plan began, if it began just there: the roadmap takes no two
- * vertices at one place. */
-TPose2D apart(TPose2D pose, int count) {
-  pose.x += 1e-3 * (1 + count % 2);
-  return pose;
-}
-
 double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 }  // namespace
@@ -112,9 +105,8 @@ std::optional<DrivePath> Guide::wayOut(const Situation& now, double nearest) {
 }
 
 std::optional<DrivePath> Guide::toGoal(const Departure& from) {
-  const TPose2D start = apart(from.pose, m_plans++);
   PlanResult plan =
-      m_planned ? m_planner.replan(start, from.z) : m_planner.plan(start, m_goal, from.z);
+      m_planned ? m_planner.replan(from.pose, from.z) : m_planner.plan(from.pose, m_goal, from.z);
   m_planned = m_planner.hasRoadmap();
   if (!plan.found()) {
     m_reason = plan.reason;

@@ -67,7 +67,7 @@ class Guide {
   bool m_planned = false;                   ///< the planner's roadmap is for the goal
   std::vector<mrpt::math::TPose2D> m_seen;  ///< frontiers that were visited, or not to be reached
   double m_plannedAt = -1e9, m_blockedSince = -1, m_withoutSince = -1;
-  int m_replans = 0, m_plans = 0, m_plannedPaths = 0;
+  int m_replans = 0, m_plannedPaths = 0;
   bool m_blindOut = false;  ///< the way out leads to its end, whatever is below the robot
   bool m_gaveUp = false;
   std::string m_reason;

@@ -72,6 +72,17 @@ TEST_F(PlannerTest, aMovingStartKeepsTheBestPath) {
   }
 }
 
+TEST_F(PlannerTest, startAndGoalMayBeOnePlaceAndStayWhereTheyWere) {
+  paintCorner();
+  SemanticPlanner p = planner();
+  const PlanResult there = p.plan(start, start);
+  ASSERT_TRUE(there.found()) << there.reason;
+  EXPECT_EQ(there.length, 0);
+  const PlanResult first = p.plan(start, goal);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(p.replan(start).cost, first.cost);
+  EXPECT_EQ(p.replan(goal).length, 0);
+}
+
 TEST_F(PlannerTest, afterEveryChangeOfTheMapTheRepairedPathIsTheBest) {
   paintCorner();
   options.roadmap.vertices = 250;

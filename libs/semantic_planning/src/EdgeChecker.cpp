@@ -179,7 +179,9 @@ std::optional<EdgeProfile> EdgeChecker::profile(const GroundPose& a, const Groun
     if (!discsFit(pose, z) || !addClasses(pose, z, piece)) return std::nullopt;
   }
   if (std::abs(z - b.z) > m_ground.step()) return std::nullopt;
-  return rounded(curve.length());
+  EdgeProfile profile = rounded(curve.length());
+  if (profile.empty()) profile.push_back({classAt(a), 0});  // from a pose to itself
+  return profile;
 }
 
 EdgeProfile EdgeChecker::rounded(double total) const {
