@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace semantic_planning {
 namespace {
@@ -31,8 +32,9 @@ class TileBridging {
   std::vector<Offer> offers() {
     const int reach = static_cast<int>(m_shape.widestGap);
     forColumnsAround(m_tile, reach, [&](Column c) {
-      for (const Surface& s : surfacesAt(m_measured, c))
-        for (const Direction& d : kDirections) lookAcross(c, s, d);
+      for (const Direction& d : kDirections)
+        if (reachesTile(c, d, reach))
+          for (const Surface& s : surfacesAt(m_measured, c)) lookAcross(c, s, d);
     });
     return std::move(m_offers);
   }
@@ -40,6 +42,20 @@ class TileBridging {
  private:
   static Column along(Column c, const Direction& d, int n) {
     return {c.x + n * d.x, c.y + n * d.y};
+  }
+
+  /** Whether one of the next `reach` columns in a direction is in the tile. */
+  bool reachesTile(Column from, const Direction& d, int reach) const {
+    const Column first = firstColumnOf(m_tile);
+    int low = 1, high = reach;
+    for (const auto& [offset, step] : {std::pair{first.x - from.x, d.x}, {first.y - from.y, d.y}}) {
+      const int last = offset + kTileEdge - 1;
+      if (step == 0 && (offset > 0 || last < 0)) return false;
+      if (step == 0) continue;
+      low = std::max(low, step > 0 ? offset : -last);
+      high = std::min(high, step > 0 ? last : -offset);
+    }
+    return low <= high;
   }
 
   /** From a surface whose neighbor is missing to the next surface on the line. */
