@@ -5,9 +5,9 @@
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/nav/reactive/CReactiveNavigationSystem.h>
 #include <semantic_planning/ReactiveNavigator.h>
-#include <stdlib.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 
 namespace semantic_planning {
