@@ -11,14 +11,6 @@ using semantic_planning::GraphKind;
 
 namespace {
 
-std::map<std::string, GraphKind> graphNames() {
-  std::map<std::string, GraphKind> names;
-  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Halton, GraphKind::HaltonDrivable,
-                               GraphKind::HaltonByClass, GraphKind::Full})
-    names[nameOf(kind)] = kind;
-  return names;
-}
-
 void addGraphs(CLI::App& app, StudyOptions& study) {
   auto* group = app.add_option_group("Graphs");
   group->add_option("--budgets", study.budgets, "Vertices of each graph, separated by commas")
@@ -27,7 +19,9 @@ void addGraphs(CLI::App& app, StudyOptions& study) {
       ->capture_default_str();
   group->add_option("--graphs", study.graphs, "Their kinds; the first is compared with the others")
       ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(graphNames(), CLI::ignore_case));
+      ->transform(CLI::CheckedTransformer(semantic_planning::graphKinds(), CLI::ignore_case)
+                      .description("{compressed,full,halton,halton-by-class,halton-drivable}"))
+      ->type_name("TEXT");
   group->add_option("--edges-per-vertex", study.edgesPerVertex, "Most edges of all graphs")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

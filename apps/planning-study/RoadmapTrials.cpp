@@ -19,11 +19,6 @@ const char* nameOf(EdgeModel model) {
   return names[static_cast<int>(model)];
 }
 
-const char* nameOf(GraphKind kind) {
-  const char* names[] = {"compressed", "halton", "halton-drivable", "halton-by-class", "full"};
-  return names[static_cast<int>(kind)];
-}
-
 namespace {
 
 /** The planner shall make its graph, but not search it. */

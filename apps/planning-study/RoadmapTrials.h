@@ -9,7 +9,6 @@ namespace planning_study {
 /** How the edges of a graph count; all but the last: COA* with this model. */
 extern const char* const kWeighted;  ///< one number for all classes: rank k weighs 10^k
 const char* nameOf(colored_graph::EdgeModel model);
-const char* nameOf(semantic_planning::GraphKind kind);
 
 /** Plans with one kind of graph and one budget.
  *

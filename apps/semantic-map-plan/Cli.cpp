@@ -32,19 +32,19 @@ CLI::Option* addPose(CLI::App& app, const std::string& name, TPose2D& pose,
       ->type_name("X,Y,DEG");
 }
 
+/** \param option whose values have these names */
 template <class Value>
 void addChoice(CLI::Option* option, const std::map<std::string, Value>& names) {
-  option->transform(CLI::CheckedTransformer(names, CLI::ignore_case));
+  std::string list;
+  for (const auto& [name, value] : names) list += (list.empty() ? "{" : ",") + name;
+  CLI::CheckedTransformer transformer(names, CLI::ignore_case);
+  option->transform(transformer.description(list + "}"))->type_name("TEXT");
 }
 
 void addRoadmap(CLI::App& app, RoadmapOptions& roadmap) {
   auto* group = app.add_option_group("Graph");
   addChoice(group->add_option("--graph", roadmap.kind, "Where its vertices come from"),
-            std::map<std::string, GraphKind>{{"compressed", GraphKind::Compressed},
-                                             {"halton", GraphKind::Halton},
-                                             {"halton-drivable", GraphKind::HaltonDrivable},
-                                             {"halton-by-class", GraphKind::HaltonByClass},
-                                             {"full", GraphKind::Full}});
+            graphKinds());
   group->add_option("--vertices", roadmap.vertices, "How many; 0: all that the map offers")
       ->capture_default_str();
   group->add_option("--max-edges", roadmap.edges, "Most edges; 0: as the neighbors give")

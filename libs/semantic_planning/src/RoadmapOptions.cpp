@@ -4,6 +4,20 @@
 
 namespace semantic_planning {
 
+const char* nameOf(GraphKind kind) {
+  static const char* const names[] = {"compressed", "halton", "halton-drivable", "halton-by-class",
+                                      "full"};
+  return names[static_cast<int>(kind)];
+}
+
+std::map<std::string, GraphKind> graphKinds() {
+  std::map<std::string, GraphKind> kinds;
+  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Halton, GraphKind::HaltonDrivable,
+                               GraphKind::HaltonByClass, GraphKind::Full})
+    kinds[nameOf(kind)] = kind;
+  return kinds;
+}
+
 void RoadmapOptions::validate() const {
   const OptionChecks check("RoadmapOptions");
   check.within("neighbors", neighbors, 1, 1000);

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
 #include <limits>
+#include <map>
+#include <string>
 
 namespace semantic_planning {
 
@@ -13,6 +15,11 @@ enum class GraphKind {
   HaltonByClass,   ///< the same, with half as many vertices in each worse rank as in the one before
   Full             ///< the ground of the finest map, on a grid
 };
+
+/** In words for files and command lines: "compressed", "halton-drivable", ... */
+const char* nameOf(GraphKind kind);
+/** All kinds by their names. */
+std::map<std::string, GraphKind> graphKinds();
 
 /** How a roadmap is made. */
 struct RoadmapOptions {
