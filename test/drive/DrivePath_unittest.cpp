@@ -71,3 +71,13 @@ TEST(DriveTracker, StopsBeforeAnObstacle) {
   EXPECT_NEAR(tracker.freeAhead(state, {{1.5, 0}}), 1.5 - 0.55 - 0.1, 0.16);
   EXPECT_EQ(tracker.command(state, {{0.75, 0}}, 1).speed, 0);
 }
+
+TEST(DriveTracker, TooNearToAnObstacleOnlyTheWayOutIsNoApproach) {
+  const DriveTracker tracker = trackerOn(thereAndBack());
+  const ObstaclePoints ahead = {{0.58, 0.1}}, inside = {{0.5, 0}}, farOff = {{0.7, 0}};
+  for (const ObstaclePoints& near : {ahead, inside}) {
+    EXPECT_TRUE(tracker.approaches({0.5, 0}, near, 0.05));
+    EXPECT_FALSE(tracker.approaches({-0.5, 0}, near, 0.05));
+  }
+  EXPECT_FALSE(tracker.approaches({0.5, 0}, farOff, 0.05));
+}

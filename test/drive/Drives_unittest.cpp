@@ -73,13 +73,22 @@ TEST(Drives, AreTheSameEachTime) {
   EXPECT_EQ(toCsv(drive(world, {-6, 0, 0}, {0, 2, 0})), toCsv(drive(world, {-6, 0, 0}, {0, 2, 0})));
 }
 
-TEST(Drives, GetPastAPersonWhoStepsInFront) {
+TEST(Drives, GetPastAPersonWhoWalksOntoTheWay) {
   World world = plain();
   Events events;
   events.persons.push_back({4, 1e9, {0, 6}, {0, 0}, 1.5});
   const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0}, events);
   EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
   EXPECT_EQ(record.collisions, 0);
+}
+
+TEST(Drives, StopBeforeAPersonWhoStepsInFront) {
+  World world = plain();
+  Events events;  // there when the robot's front is 1.5 m away; to react and stop it takes 1.3 m
+  events.persons.push_back({12, 1e9, {0.9, 0.9}, {0.9, -0.6}, 1.5});
+  const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0}, events);
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_LT(record.leastClearance, 0.5);  // the person was in the way indeed
 }
 
 TEST(Drives, TakeAnotherWayWhenTheRoadIsBlocked) {

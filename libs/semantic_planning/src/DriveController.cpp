@@ -83,7 +83,8 @@ DriveCommand DriveController::guarded(const DriveCommand& wanted, const DriveSta
                                       const ObstaclePoints& obstacles) const {
   constexpr double kReaction = 0.3, kStep = 0.1;  // s
   const double margin = m_tracker.options().margin / 2;
-  if (!m_tracker.isFree({}, obstacles, margin)) return wanted;  // it has to get out
+  if (!m_tracker.isFree({}, obstacles, margin))  // it has to get out, not further in
+    return m_tracker.approaches(wanted, obstacles, margin) ? DriveCommand{} : wanted;
   const double stop = kReaction + std::abs(state.speed) / m_tracker.options().maxAcceleration;
   for (double t = kStep; t < stop; t += kStep) {
     const double slowing = t < kReaction ? t : kReaction + (t - kReaction) / 2;

@@ -72,6 +72,17 @@ bool DriveTracker::isFree(const TPose2D& relative, const ObstaclePoints& obstacl
   });
 }
 
+bool DriveTracker::approaches(const DriveCommand& command, const ObstaclePoints& obstacles,
+                              double margin) const {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& corner : m_footprint)
+    middle += corner / static_cast<double>(m_footprint.size());
+  return std::any_of(obstacles.begin(), obstacles.end(), [&](const Eigen::Vector2d& o) {
+    const Eigen::Vector2d motion(command.speed - command.turn * o.y(), command.turn * o.x());
+    return distance(m_footprint, o) < margin && motion.dot(o - middle) > 1e-6;
+  });
+}
+
 double DriveTracker::freeAhead(const DriveState& state, const ObstaclePoints& obstacles) const {
   constexpr double kStep = 0.15;  // m
   const double most = std::min(m_options.lookAhead, m_path.stretchEnd(m_progress) - m_progress);

@@ -31,6 +31,10 @@ class DriveTracker {
   DriveCommand command(const DriveState& state, const ObstaclePoints& obstacles,
                        double speedLimit) const;
 
+  /** Whether a command brings the footprint's middle nearer to an obstacle that is within a margin
+   * of the footprint. */
+  bool approaches(const DriveCommand& command, const ObstaclePoints& obstacles,
+                  double margin) const;
   /** Whether the footprint at a pose in the vehicle's frame, with a margin around it, is free. */
   bool isFree(const mrpt::math::TPose2D& relative, const ObstaclePoints& obstacles,
               double margin) const;
