@@ -107,6 +107,7 @@ class ClassIntegral : public ob::OptimizationObjective {
       : OptimizationObjective(space), m_oracle(oracle) {
     description_ = "integral of class weights";
     setCostThreshold(ob::Cost(0));  // go on until time is over
+    setCostToGoHeuristic(ob::goalRegionCostToGo);
   }
   ob::Cost stateCost(const ob::State*) const override { return identityCost(); }
   ob::Cost motionCost(const ob::State* a, const ob::State* b) const override {
