@@ -27,12 +27,11 @@ function(mso_add_library name)
     COMPONENT development)
 endfunction()
 
-# mso_add_app(NAME SOURCES ... [DEPENDS ...]): an executable of apps/NAME; its main.cpp knows MSO_VERSION.
+# mso_add_app(NAME SOURCES ... [DEPENDS ...]): an executable of apps/NAME.
 function(mso_add_app name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE mso_settings ${ARG_DEPENDS} CLI11::CLI11 nlohmann_json::nlohmann_json)
-  set_source_files_properties(main.cpp PROPERTIES COMPILE_DEFINITIONS MSO_VERSION="${PROJECT_VERSION}")
+  target_link_libraries(${name} PRIVATE mso_settings application ${ARG_DEPENDS} nlohmann_json::nlohmann_json)
   set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   set_property(GLOBAL APPEND PROPERTY MSO_APPS ${name})
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)

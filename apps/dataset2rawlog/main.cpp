@@ -1,8 +1,8 @@
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <iomanip>
 #include <iostream>
 
+#include "Application.h"
 #include "Conversion.h"
 
 namespace {
@@ -85,7 +85,7 @@ struct Cli {
   }
 };
 
-void run(Cli& cli) {
+int run(Cli& cli) {
   if (!cli.frames.empty()) cli.conversion.frames = parseFrameRange(cli.frames);
   const Summary summary = cli.convert();
   const double share = summary.points ? 100.0 * summary.labeled / summary.points : 0;
@@ -94,19 +94,12 @@ void run(Cli& cli) {
             << " % with a class\n";
   if (summary.skipped > 0)
     std::cout << summary.skipped << " frames skipped: no pose or no label image at their time\n";
+  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Cli cli;
-  cli.app.set_version_flag("--version", MSO_VERSION);
-  CLI11_PARSE(cli.app, argc, argv);
-  try {
-    run(cli);
-    return 0;
-  } catch (const std::exception& e) {
-    std::cerr << "dataset2rawlog: " << e.what() << "\n";
-    return 1;
-  }
+  return runApplication(cli.app, argc, argv, [&] { return run(cli); });
 }

@@ -1,9 +1,9 @@
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <iostream>
 
+#include "Application.h"
 #include "Report.h"
 
 namespace {
@@ -105,12 +105,5 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   Cli cli;
-  cli.app.set_version_flag("--version", MSO_VERSION);
-  CLI11_PARSE(cli.app, argc, argv);
-  try {
-    return run(cli);
-  } catch (const std::exception& e) {
-    std::cerr << "insertion-benchmark: " << e.what() << "\n";
-    return 1;
-  }
+  return runApplication(cli.app, argc, argv, [&] { return run(cli); });
 }

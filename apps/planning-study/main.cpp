@@ -1,5 +1,4 @@
 // Compares kinds of graphs, and other planners, on random tasks over semantic maps.
-#include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/OutputFolder.h>
 #include <semantic_planning/OrderFile.h>
 
@@ -7,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "Application.h"
 #include "Cli.h"
 #include "StudyFigures.h"
 #include "StudyTables.h"
@@ -55,7 +55,7 @@ std::string drawFigures(const nlohmann::ordered_json& study,
   }
 }
 
-void run(Cli cli) {
+int run(Cli cli) {
   cli.study.validate();
   if (!cli.vehicle.empty()) cli.study.planner.vehicle = semantic_planning::loadVehicle(cli.vehicle);
   labeled_cloud::OutputFolder output(cli.output);
@@ -67,6 +67,7 @@ void run(Cli cli) {
   const std::string problem = drawFigures(study, output);
   output.commit({"study.csv", "study.json", "study.md", "times.png", "paths.png"});
   if (!problem.empty()) throw std::runtime_error(problem);
+  return 0;
 }
 
 }  // namespace
@@ -76,13 +77,5 @@ int main(int argc, char** argv) {
   CLI::App app("Compares kinds of graphs, and other planners, on random tasks over semantic maps");
   planning_study::Cli cli;
   cli.addTo(app);
-  app.set_version_flag("--version", MSO_VERSION);
-  CLI11_PARSE(app, argc, argv);
-  try {
-    planning_study::run(cli);
-    return 0;
-  } catch (const std::exception& e) {
-    std::cerr << "planning-study: " << labeled_cloud::messageOf(e) << std::endl;
-    return 1;
-  }
+  return runApplication(app, argc, argv, [&] { return planning_study::run(cli); });
 }

@@ -5,11 +5,11 @@
 #include <labeled_cloud/RawlogTrajectory.h>
 #include <semantic_octree/TreeFile.h>
 
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 #include <optional>
 
+#include "Application.h"
 #include "Config.h"
 #include "Labels.h"
 #include "MapBuilder.h"
@@ -154,7 +154,7 @@ void writeCompressed(CSemanticOctoMap& map, const Config& config, const OutputFo
                             output.staged("compressed.png"));
 }
 
-void run(const Cli& cli) {
+int run(const Cli& cli) {
   const Config config = configOf(cli);
   const ClassTable table = config.map.classes.empty()
                                ? CSemanticOctoMap::occupancyOnly()
@@ -173,6 +173,7 @@ void run(const Cli& cli) {
                  "compressed.png"});
   if (!problem.empty()) throw std::runtime_error(problem);
   std::cout << cli.output.string() << ": " << map.asString() << std::endl;
+  return 0;
 }
 
 }  // namespace
@@ -182,13 +183,5 @@ int main(int argc, char** argv) {
   CLI::App app("Makes a semantic octree map, pictures and a summary from labeled rawlogs");
   rawlog2semantic_map::Cli cli;
   cli.addTo(app);
-  app.set_version_flag("--version", MSO_VERSION);
-  CLI11_PARSE(app, argc, argv);
-  try {
-    rawlog2semantic_map::run(cli);
-    return 0;
-  } catch (const std::exception& e) {
-    std::cerr << "rawlog2semantic-map: " << labeled_cloud::messageOf(e) << std::endl;
-    return 1;
-  }
+  return runApplication(app, argc, argv, [&] { return rawlog2semantic_map::run(cli); });
 }

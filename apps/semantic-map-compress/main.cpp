@@ -1,14 +1,13 @@
 // Compresses a semantic octree map to its optimal trees for given weights of the classes.
-#include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/OutputFolder.h>
 #include <semantic_map/MapPictures.h>
 #include <semantic_octree/MapContents.h>
 #include <semantic_octree/TreeFile.h>
 
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 
+#include "Application.h"
 #include "Figures.h"
 #include "MapSheet.h"
 #include "Report.h"
@@ -131,7 +130,7 @@ void printSummary(const std::vector<Compression>& compressions) {
               << " leaves (" << 100 * c.leafRatio() << " %), " << c.bytes << " bytes\n";
 }
 
-void run(const Cli& cli) {
+int run(const Cli& cli) {
   StageTimes times;
   SemanticOcTree map = semantic_octree::loadTree(cli.map.string());
   const FullMap full{cli.map.string(), map.getResolution(), map.size(), fs::file_size(cli.map),
@@ -161,6 +160,7 @@ void run(const Cli& cli) {
   output.commit(fileNames(weights.solutions));
   printSummary(compressions);
   if (!problem.empty()) throw std::runtime_error(problem);
+  return 0;
 }
 
 }  // namespace
@@ -171,13 +171,5 @@ int main(int argc, char** argv) {
       "Compresses a semantic octree map to what matters, for given weights of its classes");
   semantic_map_compress::Cli cli;
   cli.addTo(app);
-  app.set_version_flag("--version", MSO_VERSION);
-  CLI11_PARSE(app, argc, argv);
-  try {
-    semantic_map_compress::run(cli);
-    return 0;
-  } catch (const std::exception& e) {
-    std::cerr << "semantic-map-compress: " << labeled_cloud::messageOf(e) << std::endl;
-    return 1;
-  }
+  return runApplication(app, argc, argv, [&] { return semantic_map_compress::run(cli); });
 }

@@ -1,5 +1,4 @@
 // Drives a robot through a synthetic world: it maps, compresses, plans and drives.
-#include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/OutputFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/OrderFile.h>
@@ -9,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "Animation.h"
+#include "Application.h"
 #include "Cli.h"
 #include "DriveFiles.h"
 #include "DriveLoop.h"
@@ -103,14 +103,9 @@ int main(int argc, char** argv) {
   CLI::App app("Drives a robot over a semantic map that grows while it drives");
   semantic_map_drive::Cli cli;
   cli.addTo(app);
-  app.set_version_flag("--version", MSO_VERSION);
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return runApplication(app, argc, argv, [&] {
     if (!cli.hasStart || !cli.hasGoal)
       throw std::invalid_argument("--start and --goal are missing");
     return semantic_map_drive::Program(cli).run();
-  } catch (const std::exception& e) {
-    std::cerr << "semantic-map-drive: " << labeled_cloud::messageOf(e) << std::endl;
-    return 1;
-  }
+  });
 }

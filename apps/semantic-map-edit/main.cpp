@@ -1,16 +1,15 @@
 // Crops, coarsens and moves a semantic octree map, and imports maps of OctoMap's.
-#include <labeled_cloud/MrptMessage.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/TreeFile.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
 #include <iostream>
 #include <optional>
 
+#include "Application.h"
 #include "PoseOfNumbers.h"
 
 namespace semantic_map_edit {
@@ -67,13 +66,14 @@ int levelsTo(double resolution, double mapResolution) {
   return static_cast<int>(std::lround(levels));
 }
 
-void run(const Cli& cli) {
+int run(const Cli& cli) {
   SemanticOcTree map = load(cli);
   if (cli.pose) map = moved(map, poseOfNumbers(*cli.pose));
   if (cli.box) map = cropped(map, boxOf(*cli.box));
   if (cli.resolution) map = coarsened(map, levelsTo(*cli.resolution, map.getResolution()));
   saveTree(map, cli.out.string());
   std::cout << cli.out.string() << ": " << CSemanticOctoMap(std::move(map)).asString() << '\n';
+  return 0;
 }
 
 }  // namespace
@@ -81,15 +81,7 @@ void run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app("Moves, crops and coarsens a semantic octree map, in this order; imports OctoMap's");
-  app.set_version_flag("--version", MSO_VERSION);
   semantic_map_edit::Cli cli;
   cli.addTo(app);
-  CLI11_PARSE(app, argc, argv);
-  try {
-    semantic_map_edit::run(cli);
-    return 0;
-  } catch (const std::exception& e) {
-    std::cerr << "semantic-map-edit: " << labeled_cloud::messageOf(e) << std::endl;
-    return 1;
-  }
+  return runApplication(app, argc, argv, [&] { return semantic_map_edit::run(cli); });
 }

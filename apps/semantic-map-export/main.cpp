@@ -1,10 +1,9 @@
 // Writes a semantic octree map into files that other programs read.
-#include <labeled_cloud/MrptMessage.h>
 #include <semantic_octree/TreeFile.h>
 
-#include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "Application.h"
 #include "Exporter.h"
 
 namespace semantic_map_export {
@@ -54,7 +53,7 @@ std::vector<semantic_octree::ClassId> classesNamed(const std::vector<std::string
   return ids;
 }
 
-void run(const Cli& cli) {
+int run(const Cli& cli) {
   for (const fs::path& file : cli.files) Exporter::check(file);
   const auto map = semantic_octree::loadTree(cli.map.string());
   ExportOptions options = cli.options;
@@ -62,6 +61,7 @@ void run(const Cli& cli) {
   Exporter exporter(map, options);
   for (const fs::path& file : cli.files) exporter.write(file);
   for (const fs::path& file : exporter.commit()) std::cout << file.string() << '\n';
+  return 0;
 }
 
 }  // namespace
@@ -69,15 +69,7 @@ void run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app("Writes a semantic octree map into files that other programs read");
-  app.set_version_flag("--version", MSO_VERSION);
   semantic_map_export::Cli cli;
   cli.addTo(app);
-  CLI11_PARSE(app, argc, argv);
-  try {
-    semantic_map_export::run(cli);
-    return 0;
-  } catch (const std::exception& e) {
-    std::cerr << "semantic-map-export: " << labeled_cloud::messageOf(e) << std::endl;
-    return 1;
-  }
+  return runApplication(app, argc, argv, [&] { return semantic_map_export::run(cli); });
 }

@@ -1,12 +1,12 @@
 // Says what is in a semantic octree map, as a whole or at points.
 #include <semantic_octree/TreeFile.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <sstream>
 
+#include "Application.h"
 #include "Description.h"
 #include "PointQuery.h"
 
@@ -25,7 +25,7 @@ struct Cli {
   }
 };
 
-void run(const Cli& cli) {
+int run(const Cli& cli) {
   const auto map = semantic_octree::loadTree(cli.map.string());
   if (!cli.query.empty()) {
     std::ifstream points(cli.query);
@@ -39,6 +39,7 @@ void run(const Cli& cli) {
   } else {
     printText(cli.map.string(), describe(map), std::cout);
   }
+  return 0;
 }
 
 }  // namespace
@@ -48,13 +49,5 @@ int main(int argc, char** argv) {
   CLI::App app("Says what is in a semantic octree map");
   semantic_map_info::Cli cli;
   cli.addTo(app);
-  app.set_version_flag("--version", MSO_VERSION);
-  CLI11_PARSE(app, argc, argv);
-  try {
-    semantic_map_info::run(cli);
-    return 0;
-  } catch (const std::exception& e) {
-    std::cerr << "semantic-map-info: " << e.what() << '\n';
-    return 1;
-  }
+  return runApplication(app, argc, argv, [&] { return semantic_map_info::run(cli); });
 }

@@ -1,12 +1,11 @@
 // Adds semantic octree maps up.
-#include <labeled_cloud/MrptMessage.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/TreeFile.h>
 
-#include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "Application.h"
 #include "MapPoses.h"
 
 namespace semantic_map_merge {
@@ -55,7 +54,7 @@ void checkAlike(const fs::path& first, const SemanticOcTree& a, const fs::path& 
   if (!(a.filterParameters() == b.filterParameters())) differ("filter parameters");
 }
 
-void run(const Cli& cli) {
+int run(const Cli& cli) {
   std::map<fs::path, Eigen::Isometry3d> poses;
   if (!cli.poses.empty()) poses = readMapPoses(cli.poses, cli.maps);
   std::vector<SemanticOcTree> maps;
@@ -69,6 +68,7 @@ void run(const Cli& cli) {
   SemanticOcTree sum = merged(pointers, cli.partial ? Limits::Keep : Limits::Apply);
   saveTree(sum, cli.out.string());
   std::cout << cli.out.string() << ": " << CSemanticOctoMap(std::move(sum)).asString() << '\n';
+  return 0;
 }
 
 }  // namespace
@@ -76,16 +76,10 @@ void run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app("Adds semantic octree maps up");
-  app.set_version_flag("--version", MSO_VERSION);
   semantic_map_merge::Cli cli;
   cli.addTo(app);
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return runApplication(app, argc, argv, [&] {
     cli.takeOut();
-    semantic_map_merge::run(cli);
-    return 0;
-  } catch (const std::exception& e) {
-    std::cerr << "semantic-map-merge: " << labeled_cloud::messageOf(e) << std::endl;
-    return 1;
-  }
+    return semantic_map_merge::run(cli);
+  });
 }

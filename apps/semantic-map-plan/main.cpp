@@ -1,5 +1,4 @@
 // Plans a path of a vehicle over a semantic map, classes before length.
-#include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/OutputFolder.h>
 #include <semantic_map/MapPictures.h>
 #include <semantic_octree/TreeFile.h>
@@ -12,6 +11,7 @@
 #include <iostream>
 
 #include "../semantic-map-compress/WeightsFile.h"
+#include "Application.h"
 #include "Cli.h"
 #include "PlanFiles.h"
 #include "PlanPicture.h"
@@ -105,12 +105,5 @@ int main(int argc, char** argv) {
   CLI::App app("Plans a path of a vehicle over a semantic map that puts classes before length");
   semantic_map_plan::Cli cli;
   cli.addTo(app);
-  app.set_version_flag("--version", MSO_VERSION);
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return semantic_map_plan::run(cli);
-  } catch (const std::exception& e) {
-    std::cerr << "semantic-map-plan: " << labeled_cloud::messageOf(e) << std::endl;
-    return 1;
-  }
+  return runApplication(app, argc, argv, [&] { return semantic_map_plan::run(cli); });
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "Application.h"
 #include "Cli.h"
 #include "DriveLog.h"
 #include "Observations.h"
@@ -88,7 +89,7 @@ void writePicture(const Cli& cli, const synthetic_world::World& world) {
   std::filesystem::rename(staged, cli.picture);
 }
 
-void run(const Cli& cli) {
+int run(const Cli& cli) {
   const synthetic_world::Scene scene = synthetic_world::makeScene(cli.scene, cli.seed, cli.hills);
   if (!cli.output.empty()) writeRawlog(cli, scene);
   if (!cli.picture.empty()) writePicture(cli, scene.world);
@@ -96,6 +97,7 @@ void run(const Cli& cli) {
     std::ifstream points(cli.truthQuery);
     answerTruth(scene.world, cli.tolerance, points, cli.truthQuery.string(), std::cout);
   }
+  return 0;
 }
 
 }  // namespace
@@ -105,14 +107,8 @@ int main(int argc, char** argv) {
   CLI::App app("A labeled camera and LiDAR in a synthetic world, written to a rawlog");
   synth_rawlog::Cli cli;
   synth_rawlog::addOptions(app, cli);
-  app.set_version_flag("--version", MSO_VERSION);
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return runApplication(app, argc, argv, [&] {
     synth_rawlog::complete(cli);
-    synth_rawlog::run(cli);
-  } catch (const std::exception& e) {
-    std::cerr << "synth-rawlog: " << e.what() << '\n';
-    return 1;
-  }
-  return 0;
+    return synth_rawlog::run(cli);
+  });
 }
