@@ -1,15 +1,14 @@
-#include <ompl/base/spaces/ReedsSheppStateSpace.h>
 #include <semantic_planning/ReedsShepp.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "OptionChecks.h"
+#include "ReedsSheppWords.h"
 
 namespace semantic_planning {
 
 using mrpt::math::TPose2D;
-using OmplSpace = ompl::base::ReedsSheppStateSpace;
 
 namespace {
 
@@ -55,44 +54,16 @@ ReedsSheppCurve ReedsSheppCurve::reversed() const {
   return {at(m_length).pose, m_radius, segments};
 }
 
-struct ReedsShepp::Space {
-  explicit Space(double radius) : space(radius), a(&space), b(&space) {}
-
-  /** OMPL's states, which it allocates. */
-  struct State {
-    explicit State(OmplSpace* space)
-        : owner(space), state(space->allocState()->as<OmplSpace::StateType>()) {}
-    ~State() { owner->freeState(state); }
-    State(const State&) = delete;
-    State& operator=(const State&) = delete;
-    OmplSpace* owner;
-    OmplSpace::StateType* state;
-  };
-
-  static void set(State& s, const TPose2D& pose) {
-    s.state->setXY(pose.x, pose.y);
-    s.state->setYaw(pose.phi);
-  }
-  OmplSpace::ReedsSheppPath solve(const TPose2D& from, const TPose2D& to) {
-    set(a, from);
-    set(b, to);
-    return space.reedsShepp(a.state, b.state);
-  }
-
-  OmplSpace space;
-  State a, b;
-};
-
 ReedsShepp::ReedsShepp(double turningRadius) : m_radius(turningRadius) {
   OptionChecks("ReedsShepp").positive("turningRadius", turningRadius);
-  m_space = std::make_unique<Space>(turningRadius);
 }
 
-ReedsShepp::~ReedsShepp() = default;
-ReedsShepp::ReedsShepp(ReedsShepp&&) noexcept = default;
+TPose2D ReedsShepp::scaled(const TPose2D& pose) const {
+  return {pose.x / m_radius, pose.y / m_radius, pose.phi};
+}
 
 double ReedsShepp::distance(const TPose2D& a, const TPose2D& b) const {
-  return m_radius * m_space->solve(a, b).length();
+  return m_radius * shortestWordLength(scaled(a), scaled(b));
 }
 
 double ReedsShepp::lowerBound(const TPose2D& a, const TPose2D& b) const {
@@ -100,13 +71,10 @@ double ReedsShepp::lowerBound(const TPose2D& a, const TPose2D& b) const {
 }
 
 ReedsSheppCurve ReedsShepp::connect(const TPose2D& a, const TPose2D& b) const {
-  const OmplSpace::ReedsSheppPath path = m_space->solve(a, b);
+  const Word word = shortestWord(scaled(a), scaled(b));
   std::array<ReedsSheppCurve::Segment, 5> segments;
-  for (int i = 0; i < 5; ++i) {
-    const auto type = path.type_[i];
-    segments[i].turn = type == OmplSpace::RS_LEFT ? 1 : type == OmplSpace::RS_RIGHT ? -1 : 0;
-    segments[i].length = type == OmplSpace::RS_NOP ? 0 : m_radius * path.length_[i];
-  }
+  for (std::size_t i = 0; i < word.size(); ++i)
+    segments[i] = {m_radius * word[i].length, word[i].turn};
   return {a, m_radius, segments};
 }
 

@@ -2,7 +2,6 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <array>
-#include <memory>
 
 namespace semantic_planning {
 
@@ -39,16 +38,14 @@ class ReedsSheppCurve {
   double m_length;
 };
 
-/** Finds shortest curves. Not thread safe: one for each thread. */
+/** Finds shortest curves. */
 class ReedsShepp {
  public:
   /** \throw std::invalid_argument radius not positive. */
   explicit ReedsShepp(double turningRadius);
-  ~ReedsShepp();
-  ReedsShepp(ReedsShepp&&) noexcept;
 
   double turningRadius() const { return m_radius; }
-  /** Length of the shortest curve, meters: a metric. */
+  /** Length of the shortest curve, meters: a metric, and the same in both directions to the bit. */
   double distance(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
   /** A lower bound of distance() that costs next to nothing. */
   double lowerBound(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
@@ -56,8 +53,8 @@ class ReedsShepp {
   ReedsSheppCurve connect(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
 
  private:
-  struct Space;
-  std::unique_ptr<Space> m_space;
+  mrpt::math::TPose2D scaled(const mrpt::math::TPose2D& pose) const;
+
   double m_radius;
 };
 
