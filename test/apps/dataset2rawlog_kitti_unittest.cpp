@@ -1,0 +1,247 @@
+#include <gtest/gtest.h>
+#include <labeled_cloud/ClassTableFile.h>
+#include <labeled_cloud/RawlogReader.h>
+#include <mrpt/obs/CObservationImage.h>
+
+#include <array>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+
+#include "ConvertedScans.h"
+#include "SharedData.h"
+#include "TemporaryFolder.h"
+
+using namespace labeled_cloud;
+using Eigen::Vector3d;
+using semantic_octree::ClassId;
+using semantic_octree::ClassTable;
+namespace fs = std::filesystem;
+
+namespace {
+
+/** Tr of the small sequence: LiDAR (x forward, z up) to camera (z forward, y down), displaced. */
+const char* const kTr = "Tr: 0 -1 0 0.1 0 0 -1 0.2 1 0 0 0.3\n";
+
+template <typename T>
+std::string bytesOf(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+/** Two scans of three points; the camera drives 2 m forward and then turns left by 90 degrees. */
+void writeSmallKitti(const TemporaryFolder& folder) {
+  folder.write("classes.yaml", kThreeClasses);
+  folder.write("calib.txt", std::string("P0: 1 0 0 0 0 1 0 0 0 0 1 0\n") + kTr);
+  folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n0 0 -1 0 0 1 0 0 1 0 0 2\n");
+  folder.write("times.txt", "0.0\n1.5e-01\n");
+  const std::vector<float> points = {5, 0, -1, 0.5f, 0, 6, 0, 0.25f, 1, 2, 3, 0};
+  for (const char* name : {"000000", "000001"}) {
+    folder.write(std::string("velodyne/") + name + ".bin", bytesOf(points));
+    folder.write(std::string("labels/") + name + ".label",
+                 bytesOf<std::uint32_t>({40 | 7 << 16, 252, 0}));
+  }
+}
+
+std::string kittiArguments(const TemporaryFolder& folder) {
+  return "semantic-kitti " + quoted(folder.path()) + " --classes " +
+         quoted(folder / "classes.yaml");
+}
+
+std::string kittiFailure(const TemporaryFolder& folder) {
+  return failureOf(kittiArguments(folder) + " " + quoted(folder / "out.rawlog"));
+}
+
+}  // namespace
+
+TEST(SemanticKitti, posesAreThoseOfTheLidarAndClassesThoseOfTheTable) {
+  const TemporaryFolder folder;
+  writeSmallKitti(folder);
+  const auto scans = convertAndRead(kittiArguments(folder), folder / "out.rawlog",
+                                    loadClassTable(folder / "classes.yaml"));
+  ASSERT_EQ(scans.size(), 2u);
+  EXPECT_EQ(scans[0].scan.cloud.classes, (std::vector<ClassId>{1, 3, 0}));
+  EXPECT_EQ(scans[0].scan.timestamp, mrpt::Clock::fromDouble(0));
+  EXPECT_EQ(scans[1].scan.timestamp, mrpt::Clock::fromDouble(0.15));
+  // By hand. The camera is 0.3 m behind the LiDAR, 0.1 m to its left... : p_cam = (-y + 0.1,
+  // -z + 0.2, x + 0.3). First scan: the map's frame is the LiDAR's.
+  EXPECT_LT((scans[0].inMap(0) - Vector3d(5, 0, -1)).norm(), 1e-5);
+  // Second: (5, 0, -1) is (0.1, 1.2, 5.3) in the camera, (-5.3, 1.2, 2.1) in the first camera,
+  // hence x = 2.1 - 0.3, y = 0.1 + 5.3, z = 0.2 - 1.2 in the first LiDAR.
+  EXPECT_LT((scans[1].inMap(0) - Vector3d(1.8, 5.4, -1)).norm(), 1e-5);
+}
+
+TEST(SemanticKitti, imagesComeAlongAsFilesAndLabelsCanBeLeftOut) {
+  const TemporaryFolder folder;
+  writeSmallKitti(folder);
+  const fs::path out = folder / "out.rawlog";
+  const std::string arguments =
+      "semantic-kitti " + quoted(folder.path()) + " --no-labels --images " + quoted(out);
+  // P2 = K [I | t] with f = 10, center (3, 2), t = (0.5, 0, 0)
+  folder.write("calib.txt", std::string("P2: 10 0 3 5 0 10 2 0 0 0 1 0\n") + kTr);
+  EXPECT_TRUE(contains(failureOf(arguments), "image_2/000000.png: cannot be read as an image"));
+  fs::create_directory(folder / "image_2");
+  for (const char* name : {"image_2/000000.png", "image_2/000001.png"})
+    cv::imwrite((folder / name).string(), cv::Mat(4, 6, CV_8UC3, cv::Scalar(10, 20, 30)));
+  ASSERT_EQ(dataset2rawlog(arguments).status, 0);
+
+  RawlogReader reader(out);
+  std::size_t pictures = 0, clouds = 0;
+  while (const auto entry = reader.next())
+    for (const auto& o : entry->observations) {
+      if (const auto* cloud = dynamic_cast<const CObservationLabeledCloud*>(o.get())) {
+        EXPECT_TRUE(cloud->cloud.classes.empty());
+        ++clouds;
+      }
+      const auto* picture = dynamic_cast<const mrpt::obs::CObservationImage*>(o.get());
+      if (!picture) continue;
+      ++pictures;
+      EXPECT_EQ(picture->cameraParams.ncols, 6u);
+      EXPECT_EQ(picture->cameraParams.cx(), 3);
+      // The LiDAR's point (5, 0, -1) is (0.1, 1.2, 5.3) in the first camera, t further in this one.
+      mrpt::math::TPoint3D p;
+      picture->cameraPose.inverseComposePoint(5, 0, -1, p.x, p.y, p.z);
+      EXPECT_LT((Vector3d(p.x, p.y, p.z) - Vector3d(0.6, 1.2, 5.3)).norm(), 1e-6);
+      EXPECT_TRUE(fs::exists(folder / "out_Images" / picture->image.getExternalStorageFile()));
+    }
+  EXPECT_EQ(pictures, 2u);
+  EXPECT_EQ(clouds, 2u);
+}
+
+TEST(SemanticKitti, framesAreChosenByNumber) {
+  const TemporaryFolder folder;
+  writeSmallKitti(folder);
+  const ClassTable table = loadClassTable(folder / "classes.yaml");
+  const auto timesWith = [&](const std::string& frames) {
+    std::vector<double> times;
+    for (const auto& s : convertAndRead(kittiArguments(folder) + " --frames " + frames,
+                                        folder / "out.rawlog", table))
+      times.push_back(mrpt::Clock::toDouble(s.scan.timestamp));
+    return times;
+  };
+  EXPECT_EQ(timesWith("0:2:9").size(), 1u);
+  EXPECT_NEAR(timesWith("1:2:").at(0), 0.15, 1e-6);
+  EXPECT_EQ(timesWith("0:1:1").size(), 2u);
+  const auto failure = [&](const std::string& frames) {
+    return failureOf(kittiArguments(folder) + " --frames " + frames + " " + quoted(folder / "x"));
+  };
+  EXPECT_TRUE(contains(failure("0:0:3"), "--frames 0:0:3: STEP must be 1 or more"));
+  EXPECT_TRUE(contains(failure("3:1:2"), "LAST is before FIRST"));
+  EXPECT_TRUE(contains(failure("1-2"), "expected FIRST:STEP:LAST"));
+  EXPECT_TRUE(contains(failure("7:1:9"), "no frame was selected"));
+}
+
+TEST(SemanticKitti, badInputIsNamedAndTheOldRawlogStays) {
+  const auto failureWith = [](const std::string& file, const std::string& text) {
+    const TemporaryFolder folder;
+    writeSmallKitti(folder);
+    folder.write("out.rawlog", "old");
+    folder.write(file, text);
+    const std::string failure = kittiFailure(folder);
+    EXPECT_EQ(folder.read("out.rawlog"), "old");
+    EXPECT_FALSE(fs::exists(folder / "out.rawlog.tmp"));
+    EXPECT_TRUE(contains(failure, file)) << failure;
+    return failure;
+  };
+  const std::string label = "labels/000001.label", points = "velodyne/000001.bin";
+  EXPECT_TRUE(
+      contains(failureWith(label, bytesOf<std::uint32_t>({40, 10})), "2 labels for 3 points"));
+  EXPECT_TRUE(contains(failureWith(label, bytesOf<std::uint32_t>({40, 10, 1234})),
+                       "point 2: raw class id 1234 is not in the class table"));
+  EXPECT_TRUE(contains(failureWith(points, "seventeen bytes.."), "17 bytes, expected a multiple"));
+  EXPECT_TRUE(contains(failureWith(points, ""), "0 bytes"));
+  EXPECT_TRUE(contains(failureWith("calib.txt", "P0: 1 2 3\n"), "no line 'Tr:'"));
+  EXPECT_TRUE(
+      contains(failureWith("calib.txt", "Tr: 1 2 3\n"), ":1: expected 12 numbers, found 3"));
+  EXPECT_TRUE(contains(failureWith("calib.txt", "Tr: 2 0 0 0 0 1 0 0 0 0 1 0\n"), "no rotation"));
+  EXPECT_TRUE(
+      contains(failureWith("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 x 0 0 0 1 0 0 0 0 1 0\n"),
+               ":2: expected a number, found 'x'"));
+  EXPECT_TRUE(contains(failureWith("times.txt", "0\n"), "1 times for 2 poses"));
+  EXPECT_TRUE(contains(failureWith("classes.yaml", "classes: []"), "1 to 254 classes"));
+}
+
+TEST(SemanticKitti, missingFilesAreNamed) {
+  for (const char* file : {"labels/000001.label", "velodyne/000000.bin", "calib.txt", "poses.txt",
+                           "times.txt", "classes.yaml"}) {
+    const TemporaryFolder folder;
+    writeSmallKitti(folder);
+    fs::remove(folder / file);
+    EXPECT_TRUE(contains(kittiFailure(folder), file));
+  }
+}
+
+TEST(SemanticKitti, scansOfRealStreetsFallIntoPlaceAndOnlyWithTheCalibration) {
+  SKIP_WITHOUT_DATA("semantic_kitti");
+  const ClassTable table = loadClassTable(shippedTable("semantic_kitti.yaml"));
+  const std::string classes = " --classes " + quoted(shippedTable("semantic_kitti.yaml"));
+  for (const char* name : {"00", "07"}) {
+    const TemporaryFolder folder;
+    const fs::path real = sharedDataDir() / "semantic_kitti" / name;
+    const auto scans =
+        convertAndRead("semantic-kitti " + quoted(real) + classes, folder / "a.rawlog", table);
+    ASSERT_EQ(scans.size(), 10u);
+    const double right = agreement(scans, 0.2);
+    EXPECT_GE(right, 0.975) << name;
+
+    for (const char* part : {"velodyne", "labels", "poses.txt", "times.txt"})
+      fs::create_symlink(fs::absolute(real / part), folder / part);
+    folder.write("calib.txt", "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n");
+    const double wrong =
+        agreement(convertAndRead("semantic-kitti " + quoted(folder.path()) + classes,
+                                 folder / "b.rawlog", table),
+                  0.2);
+    EXPECT_LT(wrong, right - 0.02) << name;
+    std::cout << name << ": " << right << ", without Tr " << wrong << "\n";
+  }
+}
+
+TEST(LabelNoise, replacesThatShareByOtherClassesTheSameForASeed) {
+  const TemporaryFolder folder;
+  writeSmallKitti(folder);
+  const std::size_t n = 30000;
+  std::vector<float> points;
+  std::vector<std::uint32_t> labels;
+  for (std::size_t i = 0; i < n; ++i) {
+    points.insert(points.end(), {1, 2, 3, 0});
+    labels.push_back(std::array{40, 70, 10, 0}[i % 4]);
+  }
+  folder.write("velodyne/000000.bin", bytesOf(points));
+  folder.write("labels/000000.label", bytesOf(labels));
+  const ClassTable table = loadClassTable(folder / "classes.yaml");
+  const auto classesWith = [&](const std::string& options) {
+    return convertAndRead(kittiArguments(folder) + " --frames 0:1:0 " + options,
+                          folder / "out.rawlog", table)
+        .at(0)
+        .scan.cloud.classes;
+  };
+  const auto clean = classesWith(""), noisy = classesWith("--label-noise 0.3 --seed 5");
+  EXPECT_EQ(noisy, classesWith("--label-noise 0.3 --seed 5"));
+  EXPECT_NE(noisy, classesWith("--label-noise 0.3 --seed 6"));
+
+  std::map<std::pair<int, int>, double> changes;  // (before, after)
+  for (std::size_t i = 0; i < n; ++i) ++changes[{clean[i], noisy[i]}];
+  EXPECT_EQ((changes[{0, 0}]), n / 4.0);
+  for (const int before : {1, 2, 3})
+    for (const int after : {1, 2, 3})
+      EXPECT_NEAR((changes[{before, after}]) / (n / 4.0), before == after ? 0.7 : 0.15, 0.02);
+}
+
+TEST(LabelNoise, badSharesAreNamed) {
+  const TemporaryFolder folder;
+  writeSmallKitti(folder);
+  EXPECT_TRUE(
+      contains(failureOf(kittiArguments(folder) + " --label-noise 1.5 " + quoted(folder / "x")),
+               "--label-noise 1.5"));
+}
+
+TEST(StockRawlogEdit, readsTheRawlogs) {
+  if (runCommand("which rawlog-edit").status != 0) GTEST_SKIP() << "needs Debian's mrpt-apps";
+  const TemporaryFolder folder;
+  writeSmallKitti(folder);
+  const auto rawlog = folder / "out.rawlog";
+  ASSERT_EQ(dataset2rawlog(kittiArguments(folder) + " " + quoted(rawlog)).status, 0);
+  const CommandRun info = runCommand("rawlog-edit --info -i " + quoted(rawlog) + " -p " +
+                                     quoted(fs::path(MSO_LIB_DIR) / "libmso_labeled_cloud.so"));
+  EXPECT_EQ(info.status, 0) << info.output;
+  EXPECT_TRUE(contains(info.output, "Overall number of objects         : 4")) << info.output;
+  EXPECT_TRUE(contains(info.output, "velodyne")) << info.output;
+}

@@ -1,0 +1,79 @@
+#include <gtest/gtest.h>
+#include <labeled_cloud/ClassTableFile.h>
+
+#include "ConvertedScans.h"
+#include "SharedData.h"
+#include "TemporaryFolder.h"
+
+using namespace labeled_cloud;
+using Eigen::Vector3d;
+using semantic_octree::ClassId;
+using semantic_octree::ClassTable;
+namespace fs = std::filesystem;
+
+namespace {
+
+const char* const kPcdHead =
+    "# .PCD v0.7\nVERSION 0.7\nFIELDS intensity x y z label\nSIZE 4 4 4 4 4\nTYPE F F F F U\n"
+    "COUNT 1 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+    "VIEWPOINT 1 2 3 0.70710678 0 0 0.70710678\nPOINTS 2\nDATA ascii\n";
+
+}  // namespace
+
+TEST(Pcd, pointsComeBackInTheWorldAndTheSensorIsAtTheViewpoint) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.pcd", std::string(kPcdHead) + "9 5 6 7 3 -1\n9 1 2 3.5 0\n");
+  ClassTable table;
+  for (const char* name : {"a", "b", "c"}) table.add(name, {});
+  const auto scans =
+      convertAndRead("pcd " + quoted(file) + " " + quoted(file), folder / "out.rawlog", table);
+  ASSERT_EQ(scans.size(), 2u);
+  EXPECT_LT((scans[1].inMap(0) - Vector3d(5, 6, 7)).norm(), 1e-5);
+  // turned left by 90 degrees at (1, 2, 3): 4 m to its right is what lies 4 m ahead in the world
+  EXPECT_LT((scans[1].scan.cloud.points[0] - Eigen::Vector3f(4, -4, 4)).norm(), 1e-5);
+  EXPECT_EQ(scans[0].scan.cloud.classes, (std::vector<ClassId>{3, 0}));
+}
+
+TEST(Pcd, aClassTableFoldsTheLabels) {
+  const TemporaryFolder folder;
+  folder.write("classes.yaml", kThreeClasses);
+  const auto file = folder.write("a.pcd", std::string(kPcdHead) + "9 5 6 7 252\n9 1 2 4 70\n");
+  const auto scans =
+      convertAndRead("pcd --classes " + quoted(folder / "classes.yaml") + " " + quoted(file),
+                     folder / "out.rawlog", loadClassTable(folder / "classes.yaml"));
+  EXPECT_EQ(scans.at(0).scan.cloud.classes, (std::vector<ClassId>{3, 2}));
+}
+
+TEST(Pcd, badInputIsNamed) {
+  const auto failureWith = [](const std::string& text) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.pcd", text);
+    const std::string failure =
+        failureOf("pcd " + quoted(file) + " " + quoted(folder / "out.rawlog"));
+    EXPECT_TRUE(contains(failure, "a.pcd")) << failure;
+    return failure;
+  };
+  const std::string head = kPcdHead;
+  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 3\n"), "1 lines of data for 2 points"));
+  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 3\n9 5 6\n"), "a.pcd:13"));
+  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 3\n9 5 x 7 3\n"), "a.pcd:13"));
+  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 3\n9 5 6 7 255\n"), "label 255 is not one of"));
+  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 3\n9 5 6 7 -1\n"), "no class id"));
+  EXPECT_TRUE(
+      contains(failureWith("FIELDS x y z\nPOINTS 1\nDATA ascii\n1 2 3\n"), "no field 'label'"));
+  EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS 1\nDATA binary\n"), "DATA ascii"));
+  EXPECT_TRUE(contains(failureWith("nothing\n"), "no FIELDS"));
+  EXPECT_TRUE(contains(failureOf("pcd only_one"), "expected FILE... and then OUT.rawlog"));
+}
+
+TEST(Pcd, realOnesKeepTheirWorldCoordinates) {
+  SKIP_WITHOUT_DATA("sim_unstructured");
+  const TemporaryFolder folder;
+  ClassTable table;
+  for (const char* name : {"a", "b", "c"}) table.add(name, {});
+  const auto file = sharedDataDir() / "sim_unstructured/sim_unstructured_annotated_1.pcd";
+  const auto scans = convertAndRead("pcd " + quoted(file), folder / "out.rawlog", table);
+  ASSERT_EQ(scans.at(0).scan.counts.labeled, 3394u);
+  EXPECT_LT((scans[0].inMap(0) - Vector3d(1.3917038, 1.4300275, 0.19733357)).norm(), 1e-5);
+  EXPECT_NEAR(scans[0].T_map_robot.x(), 0.999984, 1e-6);
+}

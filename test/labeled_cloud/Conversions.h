@@ -1,0 +1,21 @@
+#pragma once
+#include <labeled_cloud/ScanConverter.h>
+
+#include "TemporaryFolder.h"
+
+/** Classes 1, 2, 3. */
+inline semantic_octree::ClassTable abc() {
+  semantic_octree::ClassTable table;
+  for (const char* name : {"a", "b", "c"}) table.add(name, {});
+  return table;
+}
+
+inline labeled_cloud::LabeledScan convert(const mrpt::obs::CObservation& obs,
+                                          const labeled_cloud::ScanConverterOptions& options = {}) {
+  return *labeled_cloud::ScanConverter(abc(), options).convert(obs);
+}
+
+inline std::string errorConverting(const mrpt::obs::CObservation& obs,
+                                   const semantic_octree::ClassTable& table = abc()) {
+  return errorOf([&] { labeled_cloud::ScanConverter(table).convert(obs); });
+}

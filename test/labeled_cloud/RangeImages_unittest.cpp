@@ -1,0 +1,215 @@
+#include <gtest/gtest.h>
+#include <mrpt/maps/CSimplePointsMap.h>
+
+#include <opencv2/calib3d.hpp>
+
+#include "Conversions.h"
+#include "PoleBeforeWall.h"
+
+using namespace labeled_cloud;
+using Eigen::Vector3f;
+using mrpt::obs::CObservation3DRangeScan;
+using semantic_octree::ClassId;
+using semantic_octree::ClassTable;
+
+namespace {
+
+/** Closed form of the pinhole: x forward, y left, z up. */
+Vector3f pinhole(const DepthCamera& camera, double row, double col, double depth) {
+  return Eigen::Vector3d(depth, depth * (camera.cx - col) / camera.f,
+                         depth * (camera.cy - row) / camera.f)
+      .cast<float>();
+}
+
+}  // namespace
+
+TEST(RangeImages, pointsLieWhereThePinholeModelPutsThem) {
+  const DepthCamera camera;
+  const auto depth = [](int r, int c) { return 1 + 0.05 * r + 0.01 * c; };
+  const auto scan = convert(*camera.see(depth));
+  ASSERT_EQ(scan.cloud.size(), std::size_t(camera.rows * camera.cols));
+  for (int r = 0, i = 0; r < camera.rows; ++r)
+    for (int c = 0; c < camera.cols; ++c, ++i)
+      EXPECT_LT((scan.cloud.points[i] - pinhole(camera, r, c, depth(r, c))).norm(), 1e-5);
+}
+
+TEST(RangeImages, rangesAlongTheRayAreNoDepths) {
+  const DepthCamera camera;
+  auto obs = camera.see([](int, int) { return 2; });
+  obs->range_is_depth = false;
+  for (const Vector3f& p : convert(*obs).cloud.points) EXPECT_NEAR(p.norm(), 2, 1e-5);
+}
+
+TEST(RangeImages, lensDistortionIsTakenOut) {
+  const DepthCamera camera;
+  const std::vector<double> k = {-0.3, 0.1, 0.002, -0.001, 0.02};
+  auto obs = camera.see([](int, int) { return 2; });
+  obs->cameraParams.setDistortionPlumbBob(k[0], k[1], k[2], k[3], k[4]);
+  const auto scan = convert(*obs);
+  std::vector<cv::Point3d> optical;
+  for (const Vector3f& p : scan.cloud.points) optical.emplace_back(-p.y(), -p.z(), p.x());
+  std::vector<cv::Point2d> pixels;
+  const cv::Matx33d K(camera.f, 0, camera.cx, 0, camera.f, camera.cy, 0, 0, 1);
+  cv::projectPoints(optical, cv::Vec3d(), cv::Vec3d(), K, k, pixels);
+  for (int r = 0, i = 0; r < camera.rows; ++r)
+    for (int c = 0; c < camera.cols; ++c, ++i)
+      EXPECT_LT(std::hypot(pixels[i].x - c, pixels[i].y - r), 1e-3) << r << " " << c;
+}
+
+TEST(RangeImages, agreeWithMrptsOwnUnprojection) {
+  auto obs = DepthCamera().see([](int r, int c) { return 1 + 0.05 * r + 0.01 * c; });
+  mrpt::maps::CSimplePointsMap map;
+  obs->unprojectInto(map);
+  const auto scan = convert(*obs);
+  ASSERT_EQ(map.size(), scan.cloud.size());
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    float x, y, z;
+    map.getPoint(i, x, y, z);
+    EXPECT_LT((scan.cloud.points[i] - Vector3f(x, y, z)).norm(), 1e-5);
+  }
+}
+
+TEST(RangeImages, keepPoseTimeAndLabel) {
+  auto obs = DepthCamera().see([](int, int) { return 1; });
+  obs->sensorPose = mrpt::poses::CPose3D(1, 2, 3, 0.1, 0.2, 0.3);
+  const auto scan = convert(*obs);
+  EXPECT_EQ(scan.T_robot_sensor, obs->sensorPose);
+  EXPECT_EQ(scan.timestamp, obs->timestamp);
+  EXPECT_EQ(scan.sensorLabel, "cam");
+}
+
+TEST(RangeImages, pixelsWithoutRangeAreDroppedAndCounted) {
+  const auto scan = convert(*DepthCamera().see([](int r, int) { return r < 3 ? 0 : 1; }));
+  EXPECT_EQ(scan.counts.invalid, 3u * 60);
+  EXPECT_EQ(scan.counts.points, 37u * 60);
+  EXPECT_EQ(scan.cloud.size(), 37u * 60);
+}
+
+TEST(RangeImages, eachPointHasTheLabelOfItsOwnPixelInEveryWidthOfBitField) {
+  const DepthCamera camera;
+  const auto labelOf = [](int r, int c) { return (7 * r + c) % 4 - 1 < 0 ? -1 : (7 * r + c) % 4; };
+  auto obs = camera.see([](int r, int) { return r % 5 == 0 ? 0 : 2; });
+  const auto check = [&] {
+    const auto scan = convert(*obs);
+    std::size_t i = 0, labeled = 0;
+    for (int r = 0; r < camera.rows; ++r)
+      for (int c = 0; c < camera.cols; ++c) {
+        if (r % 5 == 0) continue;
+        const int expected = std::max(0, labelOf(r, c));
+        labeled += expected > 0;
+        ASSERT_EQ(scan.cloud.classes[i++], expected);
+      }
+    EXPECT_EQ(scan.counts.labeled, labeled);
+    EXPECT_FALSE(scan.labelsMissing);
+  };
+  camera.label<1>(*obs, labelOf), check();
+  camera.label<2>(*obs, labelOf), check();
+  camera.label<4>(*obs, labelOf), check();
+  camera.label<8>(*obs, labelOf), check();
+}
+
+TEST(RangeImages, labelsGoByTheirNamesAndTheLowestOfSeveralCounts) {
+  const DepthCamera camera;
+  auto obs = camera.see([](int, int) { return 2; });
+  camera.label(*obs, [](int r, int) { return r == 0 ? 63 : 0; });
+  obs->pixelLabels->setLabelName(63, "c");
+  obs->pixelLabels->setLabelName(0, "b");
+  obs->pixelLabels->setLabel(1, 0, 63);
+  const auto scan = convert(*obs);
+  EXPECT_EQ(scan.cloud.classes[0], 3);
+  EXPECT_EQ(scan.cloud.classes[60], 2);
+}
+
+TEST(RangeImages, withoutLabelsAllPointsCountForOccupancyOnly) {
+  const auto scan = convert(*DepthCamera().see([](int, int) { return 2; }));
+  EXPECT_TRUE(scan.labelsMissing);
+  EXPECT_TRUE(scan.cloud.classes.empty());
+  EXPECT_EQ(scan.counts.labeled, 0u);
+}
+
+TEST(RangeImages, aLabelThatTheTableDoesNotKnowIsNamedOrIsNoClass) {
+  const DepthCamera camera;
+  auto obs = camera.see([](int, int) { return 2; });
+  camera.label(*obs, [](int, int) { return 41; });
+  EXPECT_TRUE(contains(errorConverting(*obs), "raw class id 41 is not in the class table"));
+  ClassTable lenient = abc();
+  lenient.setUnknownRawId(ClassTable::UnknownRawId::NoClass);
+  EXPECT_EQ(ScanConverter(lenient).convert(*obs)->counts.labeled, 0u);
+  obs->pixelLabels->setLabelName(41, "zebra");
+  EXPECT_TRUE(contains(errorConverting(*obs), "label 41 is named 'zebra'"))
+      << errorConverting(*obs);
+  EXPECT_EQ(ScanConverter(lenient).convert(*obs)->counts.labeled, 0u);
+}
+
+TEST(RangeImages, unusableOnesSayWhy) {
+  const DepthCamera camera;
+  auto obs = camera.see([](int, int) { return 2; });
+  obs->hasRangeImage = false;
+  EXPECT_EQ(errorConverting(*obs),
+            "mrpt::obs::CObservation3DRangeScan 'cam' at 10.000000 s: it has neither a range image "
+            "nor 3D points");
+  obs->hasRangeImage = true;
+  obs->cameraParams.ncols = 61;
+  EXPECT_TRUE(contains(errorConverting(*obs), "has 60 x 40 pixels")) << errorConverting(*obs);
+  EXPECT_TRUE(contains(errorConverting(*obs), "calibrated for 61 x 40"));
+  obs->cameraParams.setIntrinsicParamsFromValues(0, 0, 0, 0);
+  EXPECT_TRUE(contains(errorConverting(*obs), "not calibrated: fx = 0"));
+  obs = camera.see([](int, int) { return 2; });
+  DepthCamera other;
+  other.rows = 20;
+  other.label(*obs, [](int, int) { return 1; });
+  EXPECT_TRUE(contains(errorConverting(*obs),
+                       "the label image has 60 x 20 pixels, the depth image "
+                       "60 x 40"));
+}
+
+TEST(RangeImages, externallyStoredOnesAreLoadedAndUnloaded) {
+  const TemporaryFolder folder;
+  auto obs = DepthCamera().see([](int r, int c) { return 1 + 0.01 * r + 0.02 * c; });
+  const auto inMemory = convert(*obs).cloud.points;
+  mrpt::img::CImage::setImagesPathBase(folder.path().string());
+  obs->rangeImage_convertToExternalStorage("range.bin", folder.path().string() + "/");
+  obs->unload();
+  ASSERT_EQ(obs->rangeImage.size(), 0);
+  EXPECT_EQ(convert(*obs).cloud.points, inMemory);
+  EXPECT_EQ(obs->rangeImage.size(), 0);
+  std::filesystem::remove(folder / "range.bin");
+  EXPECT_TRUE(contains(errorConverting(*obs), "range.bin")) << errorConverting(*obs);
+}
+
+TEST(Points3d, atTheirPixelsOrInOrderTakeThePixelsLabels) {
+  const DepthCamera camera;
+  auto obs = poleBeforeWall(camera);
+  const auto expected = convert(*obs);
+  obs->hasRangeImage = false;
+  obs->hasPoints3D = true;
+  for (int r = 0; r < camera.rows; ++r)
+    for (int c = 0; c < camera.cols; ++c) {
+      const Vector3f p = pinhole(camera, r, c, onPole(r, c) ? kPole : kWall);
+      obs->points3D_x.push_back(p.x());
+      obs->points3D_y.push_back(p.y());
+      obs->points3D_z.push_back(p.z());
+    }
+  EXPECT_EQ(convert(*obs).cloud.classes, expected.cloud.classes);
+  EXPECT_EQ(convert(*obs).cloud.size(), expected.cloud.size());
+
+  auto sparse = std::make_shared<CObservation3DRangeScan>(*obs);
+  sparse->points3D_x = {1, NAN, 0}, sparse->points3D_y = {0, 0, 0}, sparse->points3D_z = {0, 0, 0};
+  sparse->points3D_idxs_x = {26, 3, 4}, sparse->points3D_idxs_y = {7, 3, 4};
+  const auto one = convert(*sparse);
+  ASSERT_EQ(one.cloud.size(), 1u);
+  EXPECT_EQ(one.cloud.classes[0], 1);
+  sparse->points3D_idxs_x = {25, 60, 4};
+  EXPECT_TRUE(contains(errorConverting(*sparse), "row 3, column 60"));
+}
+
+TEST(Points3d, withoutPixelsCannotBeLabeledButCountForOccupancy) {
+  const DepthCamera camera;
+  auto obs = poleBeforeWall(camera);
+  obs->hasRangeImage = false;
+  obs->hasPoints3D = true;
+  obs->points3D_x = {1, 2}, obs->points3D_y = {0, 0}, obs->points3D_z = {0, 0};
+  EXPECT_TRUE(contains(errorConverting(*obs), "the label image has 60 x 40 pixels"));
+  obs->pixelLabels.reset();
+  EXPECT_EQ(convert(*obs).counts.points, 2u);
+}
