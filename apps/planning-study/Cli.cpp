@@ -39,7 +39,8 @@ void addGraphs(CLI::App& app, StudyOptions& study) {
 void addPeers(CLI::App& app, StudyOptions& study) {
   auto* group = app.add_option_group("Peers");
   group->add_flag("--peers", study.peers, "OMPL's PRM*, LazyPRM* and BIT*, too");
-  group->add_option("--peer-time", study.peerTime, "Of each, processor seconds")
+  group->add_option("--peer-time", study.peerTimes, "Of each, processor seconds; several by commas")
+      ->delimiter(',')
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   group->add_option("--peer-instances", study.peerInstances, "They get the first ones only")
@@ -61,7 +62,9 @@ Cli::Cli() {
 
 void Cli::addTo(CLI::App& app) {
   app.add_option("MAP", maps, "Maps' own files (.semantic)")->required();
-  app.add_option("--classes", classes, "Classes from best to worst (YAML)")->required();
+  auto* what = app.add_option_group("What is done")->require_option(1);
+  what->add_option("--classes", classes, "Classes from best to worst (YAML)");
+  what->add_flag("--join", join, "MAPs are folders of results, of the same options: join them");
   app.add_option("--vehicle", vehicle, "Its measures (YAML); none: a small robot");
   app.add_option("--output", output, "Folder of the results, created if need be")->required();
   app.add_option("--instances", study.instances, "Pairs of start and goal on each map")
@@ -71,6 +74,9 @@ void Cli::addTo(CLI::App& app) {
   app.add_option("--min-distance", study.minDistance, "From start to goal, m")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option("--judgment-instances", study.judgmentInstances,
+                 "The first ones are planned with all judgments and over the dense graph, too")
+      ->type_name("UINT");
   app.add_option("--minutes", study.minutes, "No new instance after these (of the clock)")
       ->check(CLI::PositiveNumber);
   addGraphs(app, study);

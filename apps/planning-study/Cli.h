@@ -13,6 +13,7 @@ struct Cli {
   std::vector<std::filesystem::path> maps;
   std::filesystem::path classes, vehicle, output;
   StudyOptions study;
+  bool join = false;  ///< maps are folders of results
 
   Cli();
   void addTo(CLI::App& app);

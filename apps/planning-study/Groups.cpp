@@ -4,7 +4,7 @@ namespace planning_study {
 
 Groups groupsOf(const std::vector<Trial>& trials) {
   Groups groups;
-  for (const Trial& t : trials) groups[{t.judgment, t.graph, t.budget}][t.instance] = &t;
+  for (const Trial& t : trials) groups[{t.judgment, t.graph, t.budget, t.kept}][t.instance] = &t;
   return groups;
 }
 
@@ -14,7 +14,8 @@ const std::vector<std::pair<const char*, Measure>>& stages() {
       {"evaluation", [](const Trial& t) { return t.evaluationTime; }},
       {"search", [](const Trial& t) { return t.searchTime; }},
       {"planning", [](const Trial& t) { return t.planningTime(); }},
-      {"total", [](const Trial& t) { return t.totalTime(); }}};
+      {"total", [](const Trial& t) { return t.totalTime(); }},
+      {"firstPath", [](const Trial& t) { return t.timeToFirstPath(); }}};
   return stages;
 }
 
@@ -23,6 +24,17 @@ double metersOutsideBest(const Trial& trial) {
   for (std::size_t i = 0; i + 1 < trial.way.size(); ++i) sum += trial.way[i];
   return colored_graph::toMeters(sum);
 }
+
+double weightedMeters(const Trial& trial) {
+  double sum = meters(trial), weight = 1;
+  for (auto length = trial.way.rbegin() + 1; length != trial.way.rend(); ++length) {
+    weight *= 10;
+    sum += (weight - 1) * colored_graph::toMeters(*length);  // the total has it once
+  }
+  return sum;
+}
+
+double edgesEvaluated(const Trial& trial) { return static_cast<double>(trial.evaluated); }
 
 double meters(const Trial& trial) { return colored_graph::toMeters(trial.way.back()); }
 

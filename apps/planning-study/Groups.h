@@ -14,8 +14,10 @@ namespace planning_study {
 struct GroupKey {
   std::string judgment, graph;
   std::size_t budget = 0;
+  bool kept = false;  ///< Trial::kept
   bool operator<(const GroupKey& o) const {
-    return std::tie(judgment, graph, budget) < std::tie(o.judgment, o.graph, o.budget);
+    return std::tie(judgment, graph, budget, kept) <
+           std::tie(o.judgment, o.graph, o.budget, o.kept);
   }
 };
 
@@ -30,6 +32,8 @@ using Measure = double (*)(const Trial&);
 const std::vector<std::pair<const char*, Measure>>& stages();  ///< processor milliseconds
 double metersOutsideBest(const Trial& trial);  ///< along the path, in all ranks but the best
 double meters(const Trial& trial);             ///< of the path
+double weightedMeters(const Trial& trial);     ///< what the peers minimize: rank k weighs 10^k
+double edgesEvaluated(const Trial& trial);
 
 /** A measure of the trials of a group that found a path. */
 std::vector<double> sampleOf(const Group& group, Measure measure);

@@ -4,6 +4,8 @@
 #include <ompl/base/spaces/ReedsSheppStateSpace.h>
 #include <ompl/geometric/PathGeometric.h>
 
+#include <array>
+#include <map>
 #include <mutex>
 #include <tuple>
 
@@ -30,8 +32,8 @@ bool isBefore(const TPose2D& a, const TPose2D& b) {
 
 }  // namespace
 
-/** Locks, since OMPL's PRM* looks for solutions in a thread of its own. Remembers the last motion:
- * OMPL asks for its validity and then for its cost. */
+/** Locks, since OMPL's PRM* looks for solutions in a thread of its own. Remembers all motions: OMPL
+ * asks for the validity of one, then for its cost, and for that again with every path it finds. */
 class MotionOracle {
  public:
   explicit MotionOracle(const SemanticPlanner& planner)
@@ -46,26 +48,24 @@ class MotionOracle {
   std::optional<EdgeProfile> profile(TPose2D a, TPose2D b) {
     const std::lock_guard<std::mutex> lock(m_mutex);
     if (isBefore(b, a)) std::swap(a, b);
-    if (a == m_a && b == m_b) return m_profile;
-    ++m_checked;
-    m_a = a, m_b = b;
-    const auto from = m_checker.place(a), to = m_checker.place(b);
-    m_profile = from && to ? m_checker.profile(*from, *to) : std::nullopt;
-    return m_profile;
+    const auto [known, isNew] = m_known.try_emplace({a.x, a.y, a.phi, b.x, b.y, b.phi});
+    if (isNew) {
+      const auto from = m_checker.place(a), to = m_checker.place(b);
+      if (from && to) known->second = m_checker.profile(*from, *to);
+    }
+    return known->second;
   }
   std::optional<Length> cost(const TPose2D& a, const TPose2D& b) {
     const auto edge = profile(a, b);
     return edge ? weighted(*edge, m_checker.order()) : std::nullopt;
   }
   int classes() const { return m_checker.order().classes(); }
-  std::size_t checked() const { return m_checked; }
+  std::size_t checked() const { return m_known.size(); }
 
  private:
   std::mutex m_mutex;
   EdgeChecker m_checker;
-  TPose2D m_a, m_b;
-  std::optional<EdgeProfile> m_profile;
-  std::size_t m_checked = 0;
+  std::map<std::array<double, 6>, std::optional<EdgeProfile>> m_known;
 };
 
 namespace {
@@ -107,6 +107,7 @@ class ClassIntegral : public ob::OptimizationObjective {
       : OptimizationObjective(space), m_oracle(oracle) {
     description_ = "integral of class weights";
     setCostThreshold(ob::Cost(0));  // go on until time is over
+    // Without, BIT* draws no state that is nearer to the start than the goal is.
     setCostToGoHeuristic(ob::goalRegionCostToGo);
   }
   ob::Cost stateCost(const ob::State*) const override { return identityCost(); }

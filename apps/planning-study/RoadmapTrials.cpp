@@ -44,8 +44,9 @@ void search(const RoadmapTask& task, const std::string& judgment, Trial& trial) 
 }  // namespace
 
 RoadmapTrials::RoadmapTrials(semantic_octree::SemanticOcTree& map,
-                             const colored_graph::ClassOrder& order, PlannerOptions options)
-    : m_planner(map, order, withoutSearch(std::move(options))) {}
+                             const colored_graph::ClassOrder& order, PlannerOptions options,
+                             bool kept)
+    : m_planner(map, order, withoutSearch(std::move(options))), m_kept(kept) {}
 
 std::vector<Trial> RoadmapTrials::run(const Instance& instance,
                                       const std::vector<std::string>& judgments) {
@@ -58,6 +59,7 @@ std::vector<Trial> RoadmapTrials::run(const Instance& instance,
   common.graph = nameOf(m_planner.options().roadmap.kind);
   common.budget = m_planner.options().roadmap.vertices;
   common.task = instance;
+  common.kept = m_kept;
   common.vertices = roadmap.graph().vertexCount();
   common.edges = roadmap.graph().edgeCount();
   const RoadmapTask task{roadmap, vertexAt(roadmap, instance.start),

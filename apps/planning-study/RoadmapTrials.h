@@ -16,17 +16,20 @@ const char* nameOf(colored_graph::EdgeModel model);
  * evaluated, so that times do not depend on what was searched before. */
 class RoadmapTrials {
  public:
-  /** \param map must outlive this. \throw as SemanticPlanner's constructor */
+  /** \param map must outlive this. \param kept whether the planner remembers edges from one
+   * instance to the next \throw as SemanticPlanner's constructor */
   RoadmapTrials(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
-                semantic_planning::PlannerOptions options);
+                semantic_planning::PlannerOptions options, bool kept);
 
   /** \param judgments names of models, or kWeighted. \return one trial for each */
   std::vector<Trial> run(const Instance& instance, const std::vector<std::string>& judgments);
 
   const semantic_planning::SemanticPlanner& planner() const { return m_planner; }
+  bool kept() const { return m_kept; }
 
  private:
   semantic_planning::SemanticPlanner m_planner;
+  bool m_kept;
 };
 
 }  // namespace planning_study

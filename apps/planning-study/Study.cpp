@@ -21,6 +21,8 @@ const char* const kReference = "reference";
 
 namespace {
 
+const std::vector<std::string> kProfile = {"profile"};
+const std::vector<std::string> kAllJudgments = {"endpoint", "sweep", "profile", kWeighted};
 constexpr unsigned kReferenceSeed = 1;  // no vertices of the graphs that are compared with it
 
 template <class Value>
@@ -67,7 +69,8 @@ void StudyOptions::validate() const {
     if (budget == 0) refuse("budgets", budget, "positive numbers");
   if (!(edgesPerVertex > 0)) refuse("edgesPerVertex", edgesPerVertex, "a positive number");
   if (!(minutes > 0)) refuse("minutes", minutes, "a positive number");
-  if (!(peerTime > 0)) refuse("peerTime", peerTime, "a positive number");
+  for (const double time : peerTimes)
+    if (!(time > 0)) refuse("peerTimes", time, "positive numbers");
 }
 
 /** All planners of a map, which take turns at every instance. */
@@ -81,7 +84,8 @@ class MapStudent::Contest {
     measurePreparation(m_map, m_order, options, study);
     for (const std::size_t budget : options.budgets)
       for (const GraphKind kind : options.graphs)
-        m_contestants.emplace_back(m_map, m_order, withGraph(options, kind, budget));
+        for (const bool kept : {false, true})
+          m_contestants.emplace_back(m_map, m_order, withGraph(options, kind, budget), kept);
     if (options.reference > 0) prepareReference();
     const EdgeChecker checker(anyPlanner().ground(), options.planner.vehicle, m_order,
                               options.planner.reading);
@@ -90,7 +94,7 @@ class MapStudent::Contest {
 
   void runNextInstance() {
     const std::size_t i = study.instances++;
-    for (Trial& trial : run(m_instances[i], m_options.peers && i < m_options.peerInstances)) {
+    for (Trial& trial : run(i)) {
       trial.map = study.name;
       trial.instance = i;
       study.trials.push_back(std::move(trial));
@@ -104,18 +108,29 @@ class MapStudent::Contest {
     auto dense = withGraph(m_options, GraphKind::HaltonDrivable, m_options.reference);
     dense.roadmap.seed = kReferenceSeed;
     dense.roadmap.edges = 0;
-    m_reference.emplace(m_map, m_order, dense);
+    m_reference.emplace(m_map, m_order, dense, false);
   }
 
-  std::vector<Trial> run(const Instance& instance, bool withPeers) {
+  std::vector<Trial> run(std::size_t i) {
     std::vector<Trial> trials;
+    const bool allJudgments = i < m_options.judgmentInstances;
     for (RoadmapTrials& contestant : m_contestants)
-      append(contestant.run(instance, {"endpoint", "sweep", "profile", kWeighted}), trials);
-    if (m_reference) {
-      trials.push_back(m_reference->run(instance, {"profile"}).front());
+      append(contestant.run(m_instances[i],
+                            allJudgments && !contestant.kept() ? kAllJudgments : kProfile),
+             trials);
+    if (m_reference && allJudgments) {
+      trials.push_back(m_reference->run(m_instances[i], kProfile).front());
       trials.back().graph = kReference;
     }
-    if (withPeers) append(runPeers(anyPlanner(), instance, m_options.peerTime), trials);
+    if (m_options.peers && i < m_options.peerInstances) append(runPeers(m_instances[i]), trials);
+    return trials;
+  }
+
+  std::vector<Trial> runPeers(const Instance& instance) const {
+    std::vector<Trial> trials;
+    for (const double seconds : m_options.peerTimes)
+      for (const std::string& peer : peerNames())
+        trials.push_back(runPeer(peer, anyPlanner(), instance, seconds));
     return trials;
   }
 

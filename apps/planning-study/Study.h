@@ -23,9 +23,11 @@ struct StudyOptions {
   /** Vertices of the dense graph that costs are compared with; 0: none. */
   std::size_t reference = 5000;
   bool peers = false;
-  double peerTime = 0.5;           ///< of each, processor seconds
-  std::size_t peerInstances = 50;  ///< the first ones, for peers
+  std::vector<double> peerTimes = {0.5};  ///< of each, processor seconds
+  std::size_t peerInstances = 50;         ///< the first ones, for peers
 
+  /** The first ones, for the dense graph and for all judgments; the others: "profile" only. */
+  std::size_t judgmentInstances = std::numeric_limits<std::size_t>::max();
   double minutes = std::numeric_limits<double>::infinity();  ///< no new instance after these
 
   /** Vehicle, ground, neighbors...; kind and budgets are the study's. */

@@ -1,5 +1,7 @@
 #include "Summary.h"
 
+#include <algorithm>
+
 #include "Groups.h"
 #include "RoadmapTrials.h"
 
@@ -44,19 +46,20 @@ ordered_json groupJson(const GroupKey& key, const Group& group) {
   std::vector<double> found;
   for (const auto& [instance, trial] : group) found.push_back(trial->found);
   const auto sized = [&](Measure m) { return mean(sampleOf(group, m)); };
-  const auto evaluated = [](const Trial& t) { return static_cast<double>(t.evaluated); };
   return {{"judgment", key.judgment},
           {"graph", key.graph},
           {"budget", key.budget},
+          {"memory", memoryName(key.kept)},
           {"trials", group.size()},
           {"found", countFound(group)},
           {"success", share(found)},
           {"vertices", sized([](const Trial& t) { return static_cast<double>(t.vertices); })},
           {"edges", sized([](const Trial& t) { return static_cast<double>(t.edges); })},
-          {"edgesEvaluated", toJson(describe(sampleOf(group, evaluated)))},
+          {"edgesEvaluated", toJson(describe(sampleOf(group, edgesEvaluated)))},
           {"milliseconds", timesJson(group)},
           {"metersOutsideBest", toJson(describe(sampleOf(group, metersOutsideBest)))},
-          {"meters", toJson(describe(sampleOf(group, meters)))}};
+          {"meters", toJson(describe(sampleOf(group, meters)))},
+          {"weightedMeters", toJson(describe(sampleOf(group, weightedMeters)))}};
 }
 
 template <class Part>
@@ -102,7 +105,10 @@ ordered_json measureComparison(const Pairs& pairs, Measure measure) {
 }
 
 ordered_json keyJson(const GroupKey& key) {
-  return {{"judgment", key.judgment}, {"graph", key.graph}, {"budget", key.budget}};
+  return {{"judgment", key.judgment},
+          {"graph", key.graph},
+          {"budget", key.budget},
+          {"memory", memoryName(key.kept)}};
 }
 
 ordered_json pairJson(const GroupKey& keyA, const Group& a, const GroupKey& keyB, const Group& b) {
@@ -116,6 +122,8 @@ ordered_json pairJson(const GroupKey& keyA, const Group& a, const GroupKey& keyB
     json["cost"] = lexicographic(pairs, &Trial::cost);
   json["metersOutsideBest"] = measureComparison(pairs, metersOutsideBest);
   json["meters"] = measureComparison(pairs, meters);
+  json["weightedMeters"] = measureComparison(pairs, weightedMeters);
+  json["edgesEvaluated"] = measureComparison(pairs, edgesEvaluated);
   for (const auto& [name, stage] : stages())
     json["milliseconds"][name] = measureComparison(pairs, stage);
   return json;
@@ -123,14 +131,20 @@ ordered_json pairJson(const GroupKey& keyA, const Group& a, const GroupKey& keyB
 
 bool isPeer(const GroupKey& key) { return key.graph.back() == '*'; }
 
+/** Of the same graph: what a judgment, or remembering edges, changes. */
+bool differInOneThing(const GroupKey& a, const GroupKey& b) {
+  if (a.kept || b.kept) return a.kept && !b.kept && a.judgment == b.judgment;
+  return a.judgment != "profile" && b.judgment == "profile";
+}
+
 /** Which pairs of ways say something. */
 bool areCompared(const GroupKey& a, const GroupKey& b, const std::string& firstGraph) {
   if (a.graph == kReference || isPeer(a)) return false;
-  if (b.graph == kReference) return a.judgment == b.judgment;
-  if (isPeer(b)) return a.graph == firstGraph && a.judgment == "profile";
+  if (b.graph == kReference) return a.judgment == b.judgment && !a.kept;
+  if (isPeer(b)) return a.graph == firstGraph && a.judgment == "profile" && !a.kept;
   if (a.budget != b.budget) return false;
-  if (a.graph == b.graph) return a.judgment != "profile" && b.judgment == "profile";
-  return a.graph == firstGraph && a.judgment == b.judgment;
+  if (a.graph == b.graph) return differInOneThing(a, b);
+  return a.graph == firstGraph && a.judgment == b.judgment && a.kept == b.kept;
 }
 
 ordered_json mapJson(const MapStudy& map, const std::string& firstGraph) {
@@ -167,7 +181,8 @@ ordered_json optionsJson(const StudyOptions& options) {
           {"headings", roadmap.headings},
           {"spacing", roadmap.spacing},
           {"buffer", roadmap.regionBuffer},
-          {"peerSeconds", options.peers ? options.peerTime : 0},
+          {"judgmentInstances", std::min(options.instances, options.judgmentInstances)},
+          {"peerSeconds", options.peerTimes},
           {"peerInstances", options.peers ? options.peerInstances : 0}};
 }
 

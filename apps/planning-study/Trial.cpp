@@ -6,6 +6,8 @@ namespace planning_study {
 
 double Instance::distance() const { return std::hypot(goal.x - start.x, goal.y - start.y); }
 
+const char* memoryName(bool kept) { return kept ? "kept" : "cold"; }
+
 std::vector<Length> wayOf(const std::vector<Length>& lengthPerClass,
                           const colored_graph::ClassOrder& order) {
   std::vector<Length> way(order.ranks());

@@ -25,11 +25,14 @@ struct Trial {
   std::string judgment;    ///< how edges were judged: endpoint, sweep, profile, weighted
   std::string graph;       ///< its kind, or the name of a peer
   std::size_t budget = 0;  ///< vertices asked for; peers: milliseconds
-  std::string status;      ///< of the search, in words
+  /** Whether the planner remembers edges from the tasks before. */
+  bool kept = false;
+  std::string status;  ///< of the search, in words
   bool found = false;
   std::size_t vertices = 0, edges = 0, evaluated = 0, expansions = 0;
   /** Processor time, milliseconds. */
   double graphTime = 0, evaluationTime = 0, searchTime = 0;
+  double firstPathTime = 0;  ///< of peers, which go on until their time is over
   /** Worst rank first, total last: what was minimized. */
   std::vector<std::int64_t> cost;
   /** The same for all: what the path goes over. Lengths in the worst rank, ..., in rank 1; total.
@@ -38,7 +41,11 @@ struct Trial {
 
   double planningTime() const { return evaluationTime + searchTime; }
   double totalTime() const { return graphTime + planningTime(); }
+  double timeToFirstPath() const { return firstPathTime > 0 ? firstPathTime : totalTime(); }
 };
+
+/** Trial::kept in words: "kept" or "cold". */
+const char* memoryName(bool kept);
 
 /** Trial::way of a path. */
 std::vector<Length> wayOf(const std::vector<Length>& lengthPerClass,

@@ -21,12 +21,13 @@ void writeTrial(std::ostream& out, const Trial& t) {
   out << t.map << ',' << t.instance;
   writePose(out, t.task.start);
   writePose(out, t.task.goal);
-  out << ',' << t.judgment << ',' << t.graph << ',' << t.budget << ',' << t.found << ",\""
-      << t.status << "\"," << t.vertices << ',' << t.edges << ',' << t.evaluated << ','
-      << t.expansions;
+  out << ',' << t.judgment << ',' << t.graph << ',' << t.budget << ',' << memoryName(t.kept) << ','
+      << t.found << ",\"" << t.status << "\"," << t.vertices << ',' << t.edges << ',' << t.evaluated
+      << ',' << t.expansions;
   writeVector(out, t.cost);
   writeVector(out, t.way);
-  out << ',' << t.graphTime << ',' << t.evaluationTime << ',' << t.searchTime << '\n';
+  out << ',' << t.graphTime << ',' << t.evaluationTime << ',' << t.searchTime << ','
+      << t.timeToFirstPath() << '\n';
 }
 
 }  // namespace
@@ -34,9 +35,9 @@ void writeTrial(std::ostream& out, const Trial& t) {
 std::string toCsv(const std::vector<MapStudy>& maps) {
   std::ostringstream out;
   out << "map,instance,start x,start y,start heading,goal x,goal y,goal "
-         "heading,judgment,graph,budget,found,status,vertices,edges,"
+         "heading,judgment,graph,budget,memory,found,status,vertices,edges,"
          "edges evaluated,expansions,cost [0.1 mm],way [0.1 mm],graph [ms],evaluation [ms],"
-         "search [ms]\n";
+         "search [ms],first path [ms]\n";
   for (const MapStudy& map : maps)
     for (const Trial& trial : map.trials) writeTrial(out, trial);
   return out.str();

@@ -8,6 +8,7 @@
 
 #include "Application.h"
 #include "Cli.h"
+#include "Join.h"
 #include "StudyFigures.h"
 #include "StudyTables.h"
 #include "Summary.h"
@@ -55,16 +56,20 @@ std::string drawFigures(const nlohmann::ordered_json& study,
   }
 }
 
-int run(Cli cli) {
+JoinedStudy study(Cli cli) {
   cli.study.validate();
   if (!cli.vehicle.empty()) cli.study.planner.vehicle = semantic_planning::loadVehicle(cli.vehicle);
-  labeled_cloud::OutputFolder output(cli.output);
   const std::vector<MapStudy> studies = studyMaps(cli);
-  const nlohmann::ordered_json study = toJson(studies, cli.study);
-  writeText(toCsv(studies), output.staged("study.csv"));
-  writeText(study.dump(1) + "\n", output.staged("study.json"));
-  writeText(toMarkdown(study), output.staged("study.md"));
-  const std::string problem = drawFigures(study, output);
+  return {toJson(studies, cli.study), toCsv(studies)};
+}
+
+int run(const Cli& cli) {
+  labeled_cloud::OutputFolder output(cli.output);
+  const auto [json, csv] = cli.join ? joinStudies(cli.maps) : study(cli);
+  writeText(csv, output.staged("study.csv"));
+  writeText(json.dump(1) + "\n", output.staged("study.json"));
+  writeText(toMarkdown(json), output.staged("study.md"));
+  const std::string problem = drawFigures(json, output);
   output.commit({"study.csv", "study.json", "study.md", "times.png", "paths.png"});
   if (!problem.empty()) throw std::runtime_error(problem);
   return 0;

@@ -34,7 +34,8 @@ std::vector<long long> numbers(const std::string& text) {
 
 /** The way to plan that a row belongs to. */
 std::string wayOf(const Row& row) {
-  return row.at("judgment") + " " + row.at("graph") + " " + row.at("budget");
+  return row.at("judgment") + " " + row.at("graph") + " " + row.at("budget") + " " +
+         row.at("memory");
 }
 
 class PlanningStudy : public testing::Test {
@@ -81,7 +82,8 @@ class PlanningStudy : public testing::Test {
   std::vector<Row> outcomes(const std::string& output) const {
     auto result = rows(output);
     for (Row& row : result)
-      for (const char* time : {"graph [ms]", "evaluation [ms]", "search [ms]"}) row.erase(time);
+      for (const char* time : {"graph [ms]", "evaluation [ms]", "search [ms]", "first path [ms]"})
+        row.erase(time);
     return result;
   }
 
@@ -106,7 +108,8 @@ TEST_F(PlanningStudy, allWaysToPlanGetTheSameTasks) {
       task += row.at(part) + " ";
     EXPECT_TRUE(tasksOfWay[wayOf(row)].insert(task).second) << "twice: " << wayOf(row);
   }
-  ASSERT_EQ(tasksOfWay.size(), 4u * 5 * 2 + 1);
+  constexpr std::size_t kGraphs = 5, kJudgments = 4, kKept = 1, kBudgets = 2, kReference = 1;
+  ASSERT_EQ(tasksOfWay.size(), kGraphs * (kJudgments + kKept) * kBudgets + kReference);
   for (const auto& [way, tasks] : tasksOfWay) EXPECT_EQ(tasks, tasksOfWay.begin()->second) << way;
 }
 
@@ -162,11 +165,12 @@ TEST_F(PlanningStudy, theSummaryIsThatOfTheTable) {
       planning[wayOf(row)].push_back(std::stod(row.at("evaluation [ms]")) +
                                      std::stod(row.at("search [ms]")));
   const json map = json::parse(folder.read("out/study.json")).at("maps").at(0);
-  EXPECT_EQ(map.at("ways").size(), 4u * 2 * 2 + 1);
+  EXPECT_EQ(map.at("ways").size(), 5u * 2 * 2 + 1);
   for (const json& way : map.at("ways")) {
-    const auto& sample =
-        planning[way.at("judgment").get<std::string>() + " " + way.at("graph").get<std::string>() +
-                 " " + way.at("budget").dump()];
+    const auto& sample = planning[wayOf({{"judgment", way.at("judgment")},
+                                         {"graph", way.at("graph")},
+                                         {"budget", way.at("budget").dump()},
+                                         {"memory", way.at("memory")}})];
     ASSERT_EQ(way.at("found"), sample.size());
     if (sample.empty()) continue;
     const double sum = std::accumulate(sample.begin(), sample.end(), 0.0);
@@ -183,15 +187,53 @@ TEST_F(PlanningStudy, theSummaryIsThatOfTheTable) {
 
 TEST_F(PlanningStudy, peersPlanTheFirstTasksAndFiguresAreDrawn) {
   const ProgramRun run = study(
-      {"--graphs", "halton-drivable", "--peers", "--peer-time", "0.2", "--peer-instances", "1"},
+      {"--graphs", "halton-drivable", "--peers", "--peer-time", "0.1,0.3", "--peer-instances", "1"},
       "out", "0");
   ASSERT_EQ(run.status, 0) << run.errors;
   std::multiset<std::string> peers;
   for (const Row& row : rows())
-    if (row.at("graph").back() == '*') peers.insert(row.at("graph") + row.at("instance"));
-  EXPECT_EQ(peers, (std::multiset<std::string>{"bit*0", "lazy-prm*0", "prm*0"}));
+    if (row.at("graph").back() == '*')
+      peers.insert(row.at("graph") + row.at("instance") + " " + row.at("budget"));
+  EXPECT_EQ(peers, (std::multiset<std::string>{"bit*0 100", "bit*0 300", "lazy-prm*0 100",
+                                               "lazy-prm*0 300", "prm*0 100", "prm*0 300"}));
   for (const char* name : {"study.md", "times.png", "paths.png"})
     EXPECT_GT(std::filesystem::file_size(folder / (std::string("out/") + name)), 500u) << name;
+}
+
+TEST_F(PlanningStudy, rememberedEdgesChangeNoPath) {
+  ASSERT_EQ(study({}).status, 0);
+  std::map<std::string, std::map<std::string, std::string>> ways;  // of a graph and a task
+  for (const Row& row : rows())
+    if (row.at("judgment") == "profile" && row.at("graph") != "reference")
+      ways[row.at("graph") + " " + row.at("budget") + " " + row.at("instance")][row.at("memory")] =
+          row.at("way [0.1 mm]");
+  EXPECT_EQ(ways.size(), 5u * 2 * 4);
+  for (const auto& [task, way] : ways) EXPECT_EQ(way.at("kept"), way.at("cold")) << task;
+}
+
+TEST_F(PlanningStudy, theFirstTasksAloneAreJudgedInAllWays) {
+  ASSERT_EQ(study({"--judgment-instances", "1", "--graphs", "compressed"}).status, 0);
+  std::map<std::string, int> rowsOfTask;
+  for (const Row& row : rows()) ++rowsOfTask[row.at("instance")];
+  EXPECT_EQ(rowsOfTask,
+            (std::map<std::string, int>{{"0", (4 + 1) * 2 + 1}, {"1", 4}, {"2", 4}, {"3", 4}}));
+}
+
+TEST_F(PlanningStudy, studiesOfSeveralMapsAreJoined) {
+  const std::vector<std::string> few = {"--graphs", "halton", "--judgment-instances", "0"};
+  const auto joined = [&](const std::string& second) {
+    return runProgram("planning-study",
+                      {"--join", path("first"), path(second), "--output", path("out")});
+  };
+  ASSERT_EQ(study(few, "first").status, 0);
+  ASSERT_EQ(study({"--graphs", "full"}, "strange").status, 0);
+  expectRefused(joined("strange"), "other options");
+  expectRefused(joined("nothing"), "nothing");
+  ASSERT_EQ(study(few, "second").status, 0);
+  const ProgramRun run = joined("second");
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_EQ(rows().size(), rows("first").size() + rows("second").size());
+  EXPECT_EQ(json::parse(folder.read("out/study.json")).at("maps").size(), 2u);
 }
 
 TEST_F(PlanningStudy, badInputIsRefusedAndNothingWritten) {
