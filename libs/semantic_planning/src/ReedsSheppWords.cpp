@@ -59,9 +59,11 @@ class Centers {
         beyond4(beyond4),
         rho(std::sqrt(x * x + y * y)),
         tangent(std::sqrt(std::max(0.0, beyond4))),
-        m_x(rho < kSame ? 1 : x),
-        m_y(rho < kSame ? 0 : y) {}
+        m_x(x),
+        m_y(y),
+        m_theta(rho < kSame ? -view.half : kUnknown) {}
 
+  /** Direction; of the same circle, the start's heading. */
   double theta() { return m_theta == kUnknown ? m_theta = std::atan2(m_y, m_x) : m_theta; }
   /** Angle between theta and the inner tangent. */
   double delta() { return m_delta == kUnknown ? m_delta = std::atan2(2, tangent) : m_delta; }
@@ -71,7 +73,8 @@ class Centers {
 
  private:
   static constexpr double kUnknown = 10;
-  double m_x, m_y, m_theta = kUnknown, m_delta = kUnknown;
+  const double m_x, m_y;
+  double m_theta, m_delta = kUnknown;
 };
 
 /** What lies between a word's first and last arc: to the right, straight, to the left. Any of it

@@ -1,0 +1,196 @@
+#include <gtest/gtest.h>
+#include <semantic_planning/ReedsShepp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "ReedsSheppOracle.h"
+
+using mrpt::math::TPose2D;
+using semantic_planning::ReedsShepp;
+using semantic_planning::ReedsSheppCurve;
+
+namespace {
+
+using Pair = std::pair<TPose2D, TPose2D>;
+using Frame = TPose2D;  // where a pose is seen from
+
+TPose2D composed(const Frame& frame, const TPose2D& pose) {
+  const double c = std::cos(frame.phi), s = std::sin(frame.phi);
+  return {frame.x + c * pose.x - s * pose.y, frame.y + s * pose.x + c * pose.y,
+          std::remainder(frame.phi + pose.phi, 2 * M_PI)};
+}
+
+/** Drives the segments one after the other, seen from the start. */
+TPose2D endOf(const ReedsSheppCurve& curve, const TPose2D& from, double radius) {
+  TPose2D pose = from;
+  for (const auto& [length, turn] : curve.segments()) {
+    const double angle = length / radius;
+    pose = composed(pose, turn == 0 ? TPose2D{length, 0, 0}
+                                    : TPose2D{radius * std::sin(angle),
+                                              turn * radius * (1 - std::cos(angle)), turn * angle});
+  }
+  return pose;
+}
+
+double gap(const TPose2D& a, const TPose2D& b) {
+  return std::max(std::hypot(a.x - b.x, a.y - b.y),
+                  std::abs(std::remainder(a.phi - b.phi, 2 * M_PI)));
+}
+
+class Draws {
+ public:
+  double within(double most) {
+    return std::uniform_real_distribution<double>(-most, most)(m_random);
+  }
+  double heading() { return within(M_PI); }
+  /** One of the multiples up to `most`. */
+  double snapped(double step, int most) {
+    return step * std::uniform_int_distribution<int>(-most, most)(m_random);
+  }
+  TPose2D pose(double box) { return {within(box), within(box), heading()}; }
+  Pair pair(double box) { return {pose(box), pose(box)}; }
+  Pair offset(const TPose2D& goal) {
+    const TPose2D from = pose(5);
+    return {from, composed(from, goal)};
+  }
+
+ private:
+  std::mt19937 m_random{11};
+};
+
+using Pairs = std::vector<Pair>;
+
+/** In boxes from far below to far above the turning radius. */
+Pairs randomPairs(int each, double radius) {
+  Draws draw;
+  Pairs pairs;
+  for (const double box : {0.003, 0.1, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 1000.0})
+    for (int i = 0; i < each; ++i) pairs.push_back(draw.pair(box * radius));
+  return pairs;
+}
+
+/** Goals where words merge, vanish or tie, for a radius of 1. */
+Pairs degeneratePairs(int each) {
+  Draws draw;
+  Pairs pairs;
+  const auto add = [&](const TPose2D& goal) { pairs.push_back(draw.offset(goal)); };
+  const auto onGrid = [&]() {
+    return TPose2D{draw.snapped(1, 4), draw.snapped(1, 4), draw.snapped(M_PI / 2, 3)};
+  };
+  for (int i = 0; i < each; ++i) {
+    add({0, 0, 0});
+    add({draw.within(4), 0, 0});
+    add({0, draw.within(4), 0});
+    add({0, 0, draw.heading()});
+    add({draw.within(5), 0, draw.heading()});
+    add({draw.within(5), draw.within(5), M_PI});
+    add({draw.within(5), draw.within(5), 0});
+    add({draw.within(1e-7), draw.within(1e-7), draw.within(1e-7)});
+    add({draw.within(1e5), draw.within(1e5), draw.heading()});
+    const double turn = draw.heading();  // one arc alone
+    add({std::sin(turn), 1 - std::cos(turn), turn});
+    const TPose2D pose = draw.pose(3);
+    pairs.push_back({pose, {pose.x, pose.y, pose.phi + draw.snapped(2 * M_PI, 2)}});
+    pairs.push_back({onGrid(), onGrid()});
+  }
+  return pairs;
+}
+
+/** Of poses close to each other the length is as good as the root of the goal's rounding. */
+double tolerance(double length) { return 1e-9 * std::max(0.1, length); }
+
+}  // namespace
+
+TEST(ReedsSheppWords, areAsLongAsThoseOfOmpl) {
+  for (const double radius : {0.4, 1.0, 5.0}) {
+    const ReedsShepp shepp(radius);
+    const ReedsSheppOracle ompl(radius);
+    for (const auto& [a, b] : randomPairs(4000, radius)) {
+      const double expected = ompl.distance(a, b);
+      ASSERT_NEAR(shepp.distance(a, b), expected, 1e-9 * expected)
+          << radius << ": " << a << " to " << b;
+    }
+  }
+}
+
+TEST(ReedsSheppWords, areNowhereLongerThanThoseOfOmpl) {
+  const ReedsShepp shepp(1);
+  const ReedsSheppOracle ompl(1);
+  for (const auto& [a, b] : degeneratePairs(3000)) {
+    const double expected = ompl.distance(a, b);
+    ASSERT_LE(shepp.distance(a, b), expected + tolerance(expected)) << a << " to " << b;
+  }
+}
+
+TEST(ReedsSheppWords, leadToTheGoalInTheLengthOfTheDistance) {
+  for (const double radius : {0.4, 1.0, 5.0}) {
+    const ReedsShepp shepp(radius);
+    for (const Pairs& pairs : {randomPairs(1000, radius), degeneratePairs(1000)})
+      for (const auto& [a, b] : pairs) {
+        const ReedsSheppCurve curve = shepp.connect(a, b);
+        double sum = 0;
+        for (const auto& segment : curve.segments()) sum += std::abs(segment.length);
+        ASSERT_LT(gap(endOf(curve, a, radius), b), 1e-9) << radius << ": " << a << " to " << b;
+        ASSERT_DOUBLE_EQ(curve.length(), sum);
+        ASSERT_NEAR(sum, shepp.distance(a, b), 1e-9);
+      }
+  }
+}
+
+TEST(ReedsSheppWords, areAsLongOnTheWayBackToTheBit) {
+  const ReedsShepp shepp(1.3);
+  for (const Pairs& pairs : {randomPairs(2000, 1.3), degeneratePairs(1000)})
+    for (const auto& [a, b] : pairs) ASSERT_EQ(shepp.distance(a, b), shepp.distance(b, a));
+}
+
+TEST(ReedsSheppWords, doNotChangeWithTheFrameOrTheScale) {
+  const ReedsShepp shepp(1), large(2.5);
+  const auto enlarged = [](const TPose2D& p) { return TPose2D{2.5 * p.x, 2.5 * p.y, p.phi}; };
+  Draws draw;
+  for (const auto& [a, b] : randomPairs(1000, 1)) {
+    const double expected = shepp.distance(a, b);
+    const Frame frame = draw.pose(10);
+    ASSERT_NEAR(shepp.distance(composed(frame, a), composed(frame, b)), expected,
+                tolerance(expected));
+    ASSERT_NEAR(large.distance(enlarged(a), enlarged(b)), 2.5 * expected, 1e-9 * expected);
+  }
+}
+
+TEST(ReedsSheppWords, areAMetric) {
+  const ReedsShepp shepp(1);
+  Draws draw;
+  for (int i = 0; i < 20000; ++i) {
+    const TPose2D a = draw.pose(3), b = draw.pose(3), c = draw.pose(3);
+    ASSERT_LE(shepp.distance(a, c), shepp.distance(a, b) + shepp.distance(b, c) + 1e-9);
+    ASSERT_EQ(shepp.distance(a, a), 0);
+  }
+}
+
+TEST(ReedsSheppWords, ofOneArcAreAsLongAsItsTurn) {
+  const ReedsShepp shepp(1);
+  Draws draw;
+  for (int i = 0; i < 5000; ++i) {
+    const double turn = draw.heading();
+    const auto [a, b] = draw.offset({std::sin(turn), 1 - std::cos(turn), turn});
+    ASSERT_NEAR(shepp.distance(a, b), std::abs(turn), 1e-9) << a << " to " << b;
+  }
+}
+
+TEST(ReedsSheppWords, haveNoMoreSegmentsThanNeeded) {
+  const ReedsShepp shepp(1);
+  const TPose2D start{2, 1, 0.7};
+  const auto segmentsTo = [&](const TPose2D& goal) {
+    const auto segments = shepp.connect(start, composed(start, goal)).segments();
+    return std::count_if(segments.begin(), segments.end(),
+                         [](const auto& segment) { return segment.length != 0; });
+  };
+  EXPECT_EQ(segmentsTo({0, 0, 0}), 0);
+  EXPECT_EQ(segmentsTo({4, 0, 0}), 1);
+  EXPECT_EQ(segmentsTo({-4, 0, 0}), 1);
+  EXPECT_EQ(segmentsTo({4, 1, M_PI / 2}), 2);
+  EXPECT_EQ(segmentsTo({std::sin(1), 1 - std::cos(1), 1}), 1);
+}
