@@ -137,12 +137,13 @@ void readDrive(const CConfigFileBase& ini, const fs::path& folder, DriveConfig& 
     section.fail("turningRadius is larger than the planner's vehicle's");
 }
 
-void readGuide(const CConfigFileBase& ini, GuideConfig& guide) {
+void readGuide(const CConfigFileBase& ini, semantic_planning::GuideOptions& guide) {
   IniSection section(ini, "guide");
   section.read("period", guide.period);
   section.read("patience", guide.patience);
   section.read("giveUpAfter", guide.giveUpAfter);
   section.finish();
+  guide.validate();
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/InsertionOptions.h>
-#include <semantic_planning/DriveOptions.h>
+#include <semantic_planning/DriveGuide.h>
 #include <semantic_planning/SemanticPlanner.h>
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Lidar.h>
@@ -20,13 +20,6 @@ struct SensorConfig {
   std::uint64_t seed = 1;
 };
 
-/** When plans are made. */
-struct GuideConfig {
-  double period = 1.0;       ///< s between looks for a better path
-  double patience = 2.0;     ///< s for what stands in the way to go away, or to be driven around
-  double giveUpAfter = 4.0;  ///< s at rest without any path
-};
-
 /** Everything that the .ini file says. */
 struct DriveConfig {
   double voxelSize = 0.2;  ///< m
@@ -35,7 +28,7 @@ struct DriveConfig {
   SensorConfig sensors;
   semantic_planning::PlannerOptions planner;
   semantic_planning::DriveOptions drive;
-  GuideConfig guide;
+  semantic_planning::GuideOptions guide;
   double controlPeriod = 0.1;  ///< s
   double timeLimit = 600;      ///< s of simulated time
   std::filesystem::path reactive;

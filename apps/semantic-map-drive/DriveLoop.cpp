@@ -34,7 +34,13 @@ ReactiveNavigator::Options reactiveOf(const DriveConfig& config,
   return options;
 }
 
-/** What counts as a collision: whatever is higher than a step. */
+void setClock(double seconds) {
+  mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
+  mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(kEpoch + seconds));
+}
+
+}  // namespace
+
 synthetic_world::Footprint trueFootprint(const VehicleOptions& vehicle) {
   synthetic_world::Footprint footprint;
   footprint.outline.assign(vehicle.footprint.begin(), vehicle.footprint.end());
@@ -42,13 +48,6 @@ synthetic_world::Footprint trueFootprint(const VehicleOptions& vehicle) {
   footprint.clearance = vehicle.stepHeight;
   return footprint;
 }
-
-void setClock(double seconds) {
-  mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
-  mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(kEpoch + seconds));
-}
-
-}  // namespace
 
 const char* nameOf(DriveEnd end) {
   switch (end) {
@@ -73,7 +72,7 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_goal(goal),
       m_sensors(config.sensors, false),
       m_mapper(mapperOf(config, order, std::move(map))),
-      m_guide(std::make_unique<Guide>(config.guide, m_mapper->planner(), goal)),
+      m_guide(std::make_unique<DriveGuide>(config.guide, m_mapper->planner(), goal)),
       m_controller(config.drive, reactiveOf(config, navlogs)),
       m_robot(start, config.drive),
       m_footprint(trueFootprint(config.planner.vehicle)) {
@@ -119,9 +118,7 @@ void DriveLoop::sense() {
 
 void DriveLoop::guide() {
   Stopwatch watch;
-  auto path = m_guide->update(state(), groundZ(), m_controller, m_time);
-  if (path) m_controller.setPath(std::move(*path));
-  if (m_guide->target() == Guide::Target::None) m_controller.setPath({});
+  m_guide->update(state(), groundZ(), m_controller, m_time);
   const double replan = watch.milliseconds();
   note("replan", replan);
   if (m_sensedAt == m_time)
@@ -131,9 +128,8 @@ void DriveLoop::guide() {
 
 void DriveLoop::drive() {
   Stopwatch watch;
-  ObstacleOptions options;
-  options.forbiddenGround = m_guide->target() != Guide::Target::WayOut;
-  const auto obstacles = senseObstacles(m_mapper->planner(), state().pose, groundZ(), options);
+  const auto obstacles =
+      senseObstacles(m_mapper->planner(), state().pose, groundZ(), m_guide->obstacles());
   note("obstacles", watch.milliseconds());
   const DriveCommand command = m_controller.step(state(), obstacles, m_time - m_sensedAt, m_time);
   note("react", watch.milliseconds());
@@ -167,15 +163,8 @@ void DriveLoop::addRow() {
   m_record.rows.push_back(row);
 }
 
-bool DriveLoop::hasArrived() const {
-  const TPose2D& p = state().pose;
-  return m_guide->target() == Guide::Target::Goal && m_controller.tracker().finished() &&
-         !m_controller.tracker().path().empty() && std::abs(state().speed) < 0.05 &&
-         std::hypot(p.x - m_goal.x, p.y - m_goal.y) < 0.3;
-}
-
 bool DriveLoop::isOver() {
-  if (hasArrived()) {
+  if (m_guide->arrived(state(), m_controller)) {
     m_record.end = DriveEnd::Arrived;
     return true;
   }

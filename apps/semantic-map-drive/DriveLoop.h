@@ -10,6 +10,9 @@ namespace semantic_map_drive {
 
 class DriveLoop;
 
+/** What counts as a collision: whatever is higher than a step. */
+synthetic_world::Footprint trueFootprint(const semantic_planning::VehicleOptions& vehicle);
+
 /** Whoever looks on. */
 class DriveObserver {
  public:
@@ -39,7 +42,7 @@ class DriveLoop {
   double time() const { return m_time; }
   const DriveRecord& record() const { return m_record; }
   const Mapper& mapper() const { return *m_mapper; }
-  const Guide& guide() const { return *m_guide; }
+  const semantic_planning::DriveGuide& guide() const { return *m_guide; }
   const semantic_planning::DriveController& controller() const { return m_controller; }
   const mrpt::math::TPose2D& start() const { return m_start; }
   const mrpt::math::TPose2D& goal() const { return m_goal; }
@@ -53,7 +56,6 @@ class DriveLoop {
   void drive();
   void addRow();
   bool isOver();
-  bool hasArrived() const;
   double groundZ() const;
   void note(const std::string& stage, double milliseconds) {
     m_record.times[stage].push_back(milliseconds);
@@ -65,7 +67,7 @@ class DriveLoop {
   mrpt::math::TPose2D m_start, m_goal;
   SimulatedSensors m_sensors;
   std::unique_ptr<Mapper> m_mapper;
-  std::unique_ptr<Guide> m_guide;
+  std::unique_ptr<semantic_planning::DriveGuide> m_guide;
   semantic_planning::DriveController m_controller;
   SimulatedRobot m_robot;
   synthetic_world::Footprint m_footprint;

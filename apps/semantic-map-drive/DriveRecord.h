@@ -1,14 +1,12 @@
 #pragma once
 #include <mrpt/math/TPose2D.h>
 #include <semantic_octree/ClassTable.h>
-#include <semantic_planning/DriveController.h>
+#include <semantic_planning/DriveGuide.h>
 
 #include <limits>
 #include <map>
 #include <string>
 #include <vector>
-
-#include "Guide.h"
 
 namespace semantic_map_drive {
 
@@ -20,7 +18,7 @@ struct DriveRow {
   semantic_octree::ClassId classId = 0;  ///< true ground below the robot
   double clearance = 0;                  ///< m to the nearest true thing, at most 5
   double offset = 0;                     ///< m from the path
-  Guide::Target target = Guide::Target::None;
+  semantic_planning::DriveGuide::Target target = semantic_planning::DriveGuide::Target::None;
   semantic_planning::DriveController::Driver driver =
       semantic_planning::DriveController::Driver::Tracker;
 };

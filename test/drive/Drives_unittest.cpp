@@ -1,11 +1,10 @@
 #include <gtest/gtest.h>
-#include <semantic_planning/OrderFile.h>
-#include <synthetic_world/Objects.h>
 
 #include <cmath>
 
 #include "../../apps/semantic-map-drive/DriveFiles.h"
 #include "../../apps/semantic-map-drive/DriveLoop.h"
+#include "Plain.h"
 
 using namespace semantic_map_drive;
 using mrpt::math::TPose2D;
@@ -14,40 +13,9 @@ using synthetic_world::World;
 
 namespace {
 
-const std::string kSource = MSO_SOURCE_DIR;
-
-DriveConfig smallConfig() {
-  DriveConfig config = loadDriveConfig(kSource + "/config/drive/synthetic.ini");
-  config.sensors.camera.width = 80;
-  config.sensors.camera.height = 60;
-  config.sensors.lidar.columns = 256;
-  config.insertion.maxRange = 10;
-  config.planner.roadmap.vertices = 300;
-  config.timeLimit = 90;
-  return config;
-}
-
-colored_graph::ClassOrder order() {
-  return semantic_planning::loadClassOrder(kSource + "/config/plan/synthetic.yaml",
-                                           synthetic_world::classTable());
-}
-
-/** Flat grass 40 m wide, with a road along x that is `width` wide, and things on it. */
-World plain(synthetic_world::Solids solids = {}, double width = 8) {
-  synthetic_world::GroundCover cover(20, synthetic_world::kGrass);
-  cover.paintBand(synthetic_world::kRoad, {-18, 0}, {18, 0}, width);
-  return World(synthetic_world::Terrain(20, {}), cover, std::move(solids));
-}
-
-/** A wall from a to b. */
-void addWall(synthetic_world::Solids& solids, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const auto wall = synthetic_world::wallPanel({a.x(), a.y(), 0}, {b.x(), b.y(), 0}, 2);
-  solids.insert(solids.end(), wall.begin(), wall.end());
-}
-
 DriveRecord drive(World& world, const TPose2D& start, const TPose2D& goal, Events events = {},
                   const DriveConfig& config = smallConfig()) {
-  DriveLoop loop(config, world, order(), start, goal, std::move(events));
+  DriveLoop loop(config, world, syntheticOrder(), start, goal, std::move(events));
   return loop.run();
 }
 
@@ -65,7 +33,7 @@ TEST(Drives, BeginWithoutAMapAndArriveOnTheRoad) {
   const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0});
   EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
   EXPECT_EQ(record.collisions, 0);
-  EXPECT_LT(badLength(record.drivenPerClass, order()), 0.5);
+  EXPECT_LT(badLength(record.drivenPerClass, syntheticOrder()), 0.5);
 }
 
 TEST(Drives, AreTheSameEachTime) {

@@ -1,70 +1,98 @@
-#include "Guide.h"
-
 #include <semantic_planning/DriveFrontier.h>
+#include <semantic_planning/DriveGuide.h>
 #include <semantic_planning/DriveWayOut.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace semantic_map_drive {
+#include "OptionChecks.h"
 
-using namespace semantic_planning;
+namespace semantic_planning {
+
 using mrpt::math::TPose2D;
 
 namespace {
 
-constexpr double kNearFrontier = 3;  // m: the next one is looked for before the robot stops
+constexpr double kNearFrontier = 3;  // m: the next one is looked for before the vehicle stops
 constexpr double kBlind = 2;         // m: the sensors do not see the ground nearer than this
-constexpr double kAtGoal = 0.3;      // m
+constexpr double kAtRest = 0.05;     // m/s
 
 double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 }  // namespace
 
-const char* nameOf(Guide::Target target) {
+const char* nameOf(DriveGuide::Target target) {
   switch (target) {
-    case Guide::Target::Goal:
+    case DriveGuide::Target::Goal:
       return "goal";
-    case Guide::Target::Frontier:
+    case DriveGuide::Target::Frontier:
       return "frontier";
-    case Guide::Target::WayOut:
+    case DriveGuide::Target::WayOut:
       return "way out";
     default:
       return "none";
   }
 }
 
-Guide::Guide(const GuideConfig& config, SemanticPlanner& planner, const TPose2D& goal)
-    : m_config(config), m_planner(planner), m_check(planner), m_goal(goal) {}
+void GuideOptions::validate() const {
+  const OptionChecks check("GuideOptions");
+  check.notNegative("period", period);
+  check.notNegative("patience", patience);
+  check.notNegative("giveUpAfter", giveUpAfter);
+  check.positive("atGoal", atGoal);
+}
 
-std::optional<DrivePath> Guide::update(const DriveState& state, double z,
-                                       const DriveController& drive, double seconds) {
-  const Situation now{state, drive.tracker(), z, seconds};
-  if (mustChange(now, drive.stoppedFor(seconds))) return choose(now);
-  if (seconds - m_plannedAt < m_config.period || m_blockedSince >= 0) return {};
+DriveGuide::DriveGuide(const GuideOptions& options, SemanticPlanner& planner, const TPose2D& goal)
+    : m_options(options), m_planner(planner), m_check(planner), m_goal(goal) {
+  m_options.validate();
+}
+
+void DriveGuide::update(const DriveState& state, double z, DriveController& drive, double seconds) {
+  auto path = next({state, drive.tracker(), z, seconds, drive.stoppedFor(seconds)});
+  if (path) drive.setPath(std::move(*path));
+  if (m_target == Target::None) drive.setPath({});
+}
+
+bool DriveGuide::isNearGoal(const DriveState& state) const {
+  return m_target == Target::Goal && distance(state.pose, m_goal) < m_options.atGoal;
+}
+
+bool DriveGuide::arrived(const DriveState& state, const DriveController& drive) const {
+  return isNearGoal(state) && !drive.tracker().path().empty() && drive.tracker().finished() &&
+         std::abs(state.speed) < kAtRest;
+}
+
+ObstacleOptions DriveGuide::obstacles(ObstacleOptions usual) const {
+  if (m_target == Target::WayOut) usual.forbiddenGround = false;
+  return usual;
+}
+
+/** Another path than before, from where the vehicle is; or nothing if it is to go on. */
+std::optional<DrivePath> DriveGuide::next(const Situation& now) {
+  if (mustChange(now)) return choose(now);
+  if (now.seconds - m_plannedAt < m_options.period || m_blockedSince >= 0) return {};
   return improve(now);
 }
 
 /** The path is at its end, or was in the way of something for long. */
-bool Guide::mustChange(const Situation& now, double stoppedFor) {
-  const bool atGoal = m_target == Target::Goal && distance(now.state.pose, m_goal) < kAtGoal &&
-                      !now.tracker.path().empty();
-  if (now.tracker.finished()) return !atGoal;
+bool DriveGuide::mustChange(const Situation& now) {
+  if (now.tracker.finished()) return now.tracker.path().empty() || !isNearGoal(now.state);
   if (m_target == Target::WayOut && !m_blindOut)
     return m_planner.check(now.state.pose, now.z) == PlanStatus::Found;
   const bool blocked = isBlocked(now);
   if (!blocked) m_blockedSince = -1;
   if (blocked && m_blockedSince < 0) m_blockedSince = now.seconds;
-  if (blocked && now.seconds - m_blockedSince >= m_config.patience) return true;
-  return stoppedFor >= 2 * m_config.patience && now.seconds - m_plannedAt >= m_config.patience;
+  if (blocked && now.seconds - m_blockedSince >= m_options.patience) return true;
+  return now.stoppedFor >= 2 * m_options.patience &&
+         now.seconds - m_plannedAt >= m_options.patience;
 }
 
-bool Guide::isBlocked(const Situation& now) {
+bool DriveGuide::isBlocked(const Situation& now) {
   return !m_check.judge(now.tracker.path(), now.tracker.progress()).isFree();
 }
 
-/** \param anew from where the robot is, whatever its path */
-Guide::Departure Guide::departureOf(const Situation& now, bool anew) const {
+/** \param anew from where the vehicle is, whatever its path */
+DriveGuide::Departure DriveGuide::departureOf(const Situation& now, bool anew) const {
   if (anew || now.tracker.finished()) return {now.state.pose, now.z, {}};
   const DrivePath& path = now.tracker.path();
   const double here = now.tracker.progress();
@@ -73,7 +101,7 @@ Guide::Departure Guide::departureOf(const Situation& now, bool anew) const {
   return {poseOf(path.at(there)), path.at(there).z, path.part(here, there)};
 }
 
-std::optional<DrivePath> Guide::choose(const Situation& now) {
+std::optional<DrivePath> DriveGuide::choose(const Situation& now) {
   m_plannedAt = now.seconds;
   if (m_planner.check(now.state.pose, now.z) != PlanStatus::Found) return wayOut(now, 0);
   const bool before = !now.tracker.finished();
@@ -91,12 +119,12 @@ std::optional<DrivePath> Guide::choose(const Situation& now) {
   return path;
 }
 
-/** \param nearest 0, or, where the robot does not see what it stands on, how far it is blind */
-std::optional<DrivePath> Guide::wayOut(const Situation& now, double nearest) {
+/** \param nearest 0, or, where the vehicle does not see what it stands on, how far it is blind */
+std::optional<DrivePath> DriveGuide::wayOut(const Situation& now, double nearest) {
   DrivePath path = findWayOut(m_planner, now.state.pose, now.z, 8, nearest);
   m_blindOut = nearest > 0;
   if (path.empty()) {
-    if (!m_blindOut) m_reason = "the robot is where it must not be, and finds no way out";
+    if (!m_blindOut) m_reason = "the vehicle is where it must not be, and finds no way out";
     fail(now);
     return {};
   }
@@ -104,7 +132,7 @@ std::optional<DrivePath> Guide::wayOut(const Situation& now, double nearest) {
   return path;
 }
 
-std::optional<DrivePath> Guide::toGoal(const Departure& from) {
+std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
   PlanResult plan =
       m_planned ? m_planner.replan(from.pose, from.z) : m_planner.plan(from.pose, m_goal, from.z);
   m_planned = m_planner.hasRoadmap();
@@ -117,7 +145,7 @@ std::optional<DrivePath> Guide::toGoal(const Departure& from) {
   return path;
 }
 
-std::optional<DrivePath> Guide::toFrontier(const Departure& from) {
+std::optional<DrivePath> DriveGuide::toFrontier(const Departure& from) {
   for (const Frontier& f : findFrontiers(m_planner, from.pose, from.z, m_goal, m_seen)) {
     m_planned = false;
     PlanResult plan = m_planner.plan(from.pose, f.pose, from.z, f.z);
@@ -130,7 +158,7 @@ std::optional<DrivePath> Guide::toFrontier(const Departure& from) {
   return {};
 }
 
-std::optional<DrivePath> Guide::improve(const Situation& now) {
+std::optional<DrivePath> DriveGuide::improve(const Situation& now) {
   m_plannedAt = now.seconds;
   const DrivePath& path = now.tracker.path();
   const double here = now.tracker.progress();
@@ -152,17 +180,17 @@ std::optional<DrivePath> Guide::improve(const Situation& now) {
   return better;
 }
 
-void Guide::take(Target target, const Situation& now) {
+void DriveGuide::take(Target target, const Situation& now) {
   if (target != Target::WayOut) ++m_plannedPaths;
   m_target = target;
   m_plannedAt = now.seconds;
   m_blockedSince = m_withoutSince = -1;
 }
 
-void Guide::fail(const Situation& now) {
+void DriveGuide::fail(const Situation& now) {
   m_target = Target::None;
   if (m_withoutSince < 0) m_withoutSince = now.seconds;
-  m_gaveUp = now.seconds - m_withoutSince >= m_config.giveUpAfter;
+  m_gaveUp = now.seconds - m_withoutSince >= m_options.giveUpAfter;
 }
 
-}  // namespace semantic_map_drive
+}  // namespace semantic_planning
