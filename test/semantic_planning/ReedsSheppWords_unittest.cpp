@@ -176,7 +176,7 @@ TEST(ReedsSheppWords, ofOneArcAreAsLongAsItsTurn) {
   for (int i = 0; i < 5000; ++i) {
     const double turn = draw.heading();
     const auto [a, b] = draw.offset({std::sin(turn), 1 - std::cos(turn), turn});
-    ASSERT_NEAR(shepp.distance(a, b), std::abs(turn), 1e-9) << a << " to " << b;
+    ASSERT_NEAR(shepp.distance(a, b), std::abs(turn), 1e-12) << a << " to " << b;
   }
 }
 
