@@ -100,6 +100,11 @@ Pairs degeneratePairs(int each) {
   return pairs;
 }
 
+int used(const ReedsSheppCurve& curve) {
+  return static_cast<int>(std::count_if(curve.segments().begin(), curve.segments().end(),
+                                        [](const auto& segment) { return segment.length != 0; }));
+}
+
 /** Of poses close to each other the length is as good as the root of the goal's rounding. */
 double tolerance(double length) { return 1e-9 * std::max(0.1, length); }
 
@@ -170,13 +175,14 @@ TEST(ReedsSheppWords, areAMetric) {
   }
 }
 
-TEST(ReedsSheppWords, ofOneArcAreAsLongAsItsTurn) {
+TEST(ReedsSheppWords, ofOneArcAreNothingElse) {
   const ReedsShepp shepp(1);
   Draws draw;
   for (int i = 0; i < 5000; ++i) {
     const double turn = draw.heading();
     const auto [a, b] = draw.offset({std::sin(turn), 1 - std::cos(turn), turn});
     ASSERT_NEAR(shepp.distance(a, b), std::abs(turn), 1e-12) << a << " to " << b;
+    ASSERT_EQ(used(shepp.connect(a, b)), 1) << a << " to " << b;
   }
 }
 
@@ -184,9 +190,7 @@ TEST(ReedsSheppWords, haveNoMoreSegmentsThanNeeded) {
   const ReedsShepp shepp(1);
   const TPose2D start{2, 1, 0.7};
   const auto segmentsTo = [&](const TPose2D& goal) {
-    const auto segments = shepp.connect(start, composed(start, goal)).segments();
-    return std::count_if(segments.begin(), segments.end(),
-                         [](const auto& segment) { return segment.length != 0; });
+    return used(shepp.connect(start, composed(start, goal)));
   };
   EXPECT_EQ(segmentsTo({0, 0, 0}), 0);
   EXPECT_EQ(segmentsTo({4, 0, 0}), 1);
