@@ -80,6 +80,7 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
   m_record.drivenPerClass.resize(classes);
   m_record.plannedPerClass.resize(classes);
   setClock(0);
+  m_mapper->standOn(T_world_robot());
 }
 
 Eigen::Isometry3d DriveLoop::T_world_robot() const {

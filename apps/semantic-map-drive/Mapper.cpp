@@ -28,6 +28,24 @@ Mapper::Mapper(const DriveConfig& config, const ClassOrder& order, SemanticOcTre
       m_map(withAbstraction(std::move(map), order)),
       m_planner(m_map, order, config.planner) {}
 
+void Mapper::standOn(const Eigen::Isometry3d& T_map_robot) {
+  const semantic_planning::VehicleOptions& vehicle = m_config.planner.vehicle;
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : vehicle.footprint) box.extend(corner);
+  const double step = m_config.voxelSize / 2, below = 1e-3;
+  semantic_octree::LabeledCloud cloud;
+  for (double x = box.min().x() - vehicle.clearance; x < box.max().x() + vehicle.clearance;
+       x += step)
+    for (double y = box.min().y() - vehicle.clearance; y < box.max().y() + vehicle.clearance;
+         y += step) {
+      cloud.points.push_back(Eigen::Vector3d(x, y, -below).cast<float>());
+      cloud.classes.push_back(semantic_octree::kNoClass);
+    }
+  semantic_octree::InsertionOptions noRays;
+  noRays.carvingMargin = 1e3;
+  m_map.insert(cloud, T_map_robot, noRays);
+}
+
 semantic_planning::StageTimes Mapper::insert(const std::vector<Observation>& seen,
                                              const Eigen::Isometry3d& T_map_robot) {
   Stopwatch watch;

@@ -14,6 +14,10 @@ class Mapper {
   Mapper(const DriveConfig& config, const colored_graph::ClassOrder& order,
          semantic_octree::SemanticOcTree map);
 
+  /** The robot begins where it has room: there is ground, of whatever class, below its footprint and
+   * the clearance around it. Its sensors do not see that near. */
+  void standOn(const Eigen::Isometry3d& T_map_robot);
+
   /** \return milliseconds of insert (with the compressed tree's upkeep) and of update (ground and
    * roadmap) */
   semantic_planning::StageTimes insert(const std::vector<Observation>& seen,

@@ -1,0 +1,103 @@
+#include "StudyFiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace drive_study {
+
+using nlohmann::ordered_json;
+using semantic_map_drive::DriveEnd;
+
+namespace {
+
+std::string quoted(const std::string& text) { return '"' + text + '"'; }
+
+void addPose(std::ostream& out, const mrpt::math::TPose2D& pose) {
+  out << pose.x << ',' << pose.y << ',' << pose.phi * 180 / M_PI << ',';
+}
+
+ordered_json summaryOf(const std::vector<Trial>& trials) {
+  const auto count = [&trials](auto isOne) {
+    return std::count_if(trials.begin(), trials.end(), isOne);
+  };
+  const auto sum = [&trials](auto of) {
+    double total = 0;
+    for (const Trial& t : trials) total += of(t);
+    return total;
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (const Trial& t : trials) least = std::min(least, t.leastClearance);
+  const auto arrived = [](const Trial& t) { return t.end == DriveEnd::Arrived; };
+  return {
+      {"drives", trials.size()},
+      {"withPath", count([](const Trial& t) { return t.task.hasPath; })},
+      {"arrivedOfThese", count([&](const Trial& t) { return t.task.hasPath && arrived(t); })},
+      {"withoutPath", count([](const Trial& t) { return !t.task.hasPath; })},
+      {"saidSo",
+       count([](const Trial& t) { return !t.task.hasPath && t.end == DriveEnd::Unreachable; })},
+      {"arrivedNevertheless", count([&](const Trial& t) { return !t.task.hasPath && arrived(t); })},
+      {"collisions", sum([](const Trial& t) { return t.collisions; })},
+      {"leastClearance", least},
+      {"meters", sum([](const Trial& t) { return t.length; })},
+      {"metersInWorseClasses", sum([](const Trial& t) { return t.badDriven; })},
+      {"metersInWorseClassesPlanned", sum([](const Trial& t) { return t.badFollowed; })},
+      {"faults", count([](const Trial& t) { return !t.fault().empty(); })},
+      {"processorSeconds", sum([](const Trial& t) { return t.processorSeconds; })}};
+}
+
+}  // namespace
+
+std::string toCsv(const std::vector<Trial>& trials) {
+  std::ostringstream out;
+  out << "scene,number,start_x,start_y,start_deg,goal_x,goal_y,goal_deg,path,path_length,path_"
+         "worse,"
+         "end,fault,seconds,length,worse,worse_planned,collisions,clearance,replans,processor,"
+         "why_no_path,reason\n";
+  for (const Trial& t : trials) {
+    out << t.scene << ',' << t.number << ',';
+    addPose(out, t.task.start);
+    addPose(out, t.task.goal);
+    out << (t.task.hasPath ? "yes" : "no") << ',' << t.task.length << ',' << t.badBest << ','
+        << nameOf(t.end) << ',' << t.fault() << ',' << t.seconds << ',' << t.length << ','
+        << t.badDriven << ',' << t.badFollowed << ',' << t.collisions << ',' << t.leastClearance
+        << ',' << t.replans << ',' << t.processorSeconds << ',' << quoted(t.task.reason) << ','
+        << quoted(t.reason) << '\n';
+  }
+  return out.str();
+}
+
+ordered_json toJson(const std::vector<Trial>& trials) {
+  std::vector<std::string> scenes;
+  for (const Trial& t : trials)
+    if (std::find(scenes.begin(), scenes.end(), t.scene) == scenes.end()) scenes.push_back(t.scene);
+  ordered_json study;
+  for (const std::string& scene : scenes) {
+    std::vector<Trial> some;
+    for (const Trial& t : trials)
+      if (t.scene == scene) some.push_back(t);
+    study[scene] = summaryOf(some);
+  }
+  study["all"] = summaryOf(trials);
+  return study;
+}
+
+std::string toMarkdown(const ordered_json& study) {
+  std::ostringstream out;
+  out << "| scene |";
+  for (const auto& [name, value] : study["all"].items()) out << ' ' << name << " |";
+  out << "\n|---|";
+  for (std::size_t i = 0; i < study["all"].size(); ++i) out << "---|";
+  out << '\n';
+  for (const auto& [scene, numbers] : study.items()) {
+    out << "| " << scene << " |";
+    for (const auto& value : numbers) {
+      const double number = value.get<double>();
+      out << ' ' << std::round(number * 100) / 100 << " |";
+    }
+    out << '\n';
+  }
+  return out.str();
+}
+
+}  // namespace drive_study

@@ -1,0 +1,15 @@
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "Trial.h"
+
+namespace drive_study {
+
+/** A line for each drive. */
+std::string toCsv(const std::vector<Trial>& trials);
+/** Each scene's numbers, and those of all. */
+nlohmann::ordered_json toJson(const std::vector<Trial>& trials);
+/** The same as a table. */
+std::string toMarkdown(const nlohmann::ordered_json& study);
+
+}  // namespace drive_study

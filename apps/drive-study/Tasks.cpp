@@ -1,0 +1,96 @@
+#include "Tasks.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "../semantic-map-drive/DriveLoop.h"
+#include "TrueMap.h"
+
+namespace drive_study {
+
+using colored_graph::ClassOrder;
+using mrpt::math::TPose2D;
+using namespace semantic_planning;
+using synthetic_world::World;
+
+void TaskOptions::validate() const {
+  if (!(nearest > 0) || !(farthest > nearest))
+    throw std::invalid_argument("TaskOptions: distances from " + std::to_string(nearest) + " to " +
+                                std::to_string(farthest) + " m");
+}
+
+TaskDraw::TaskDraw(const World& world, const ClassOrder& order, const VehicleOptions& vehicle,
+                   const TaskOptions& options)
+    : m_world(world),
+      m_order(order),
+      m_footprint(semantic_map_drive::trueFootprint(vehicle)),
+      m_options(options),
+      m_random(options.seed) {
+  m_options.validate();
+}
+
+Task TaskDraw::next() {
+  constexpr int kMostTries = 100000;
+  for (int i = 0; i < kMostTries; ++i) {
+    Task task;
+    task.start = anyPose();
+    task.goal = anyPose();
+    const double distance = std::hypot(task.goal.x - task.start.x, task.goal.y - task.start.y);
+    if (distance < m_options.nearest || distance > m_options.farthest) continue;
+    if (isFree(task.start) && isFree(task.goal)) return task;
+  }
+  throw std::runtime_error(
+      "no start and goal on free ground, " + std::to_string(m_options.nearest) + " to " +
+      std::to_string(m_options.farthest) + " m apart, in " + std::to_string(kMostTries) + " draws");
+}
+
+TPose2D TaskDraw::anyPose() {
+  constexpr double kRim = 5;  // m
+  const double far = m_world.halfExtent() - kRim;
+  const double x = m_random.uniform(-far, far), y = m_random.uniform(-far, far);
+  return {x, y, m_random.uniform(-M_PI, M_PI)};
+}
+
+bool TaskDraw::isFree(const TPose2D& pose) const {
+  const auto isAllowed = [this](const mrpt::math::TPoint2D& p) {
+    return m_order.rank(m_world.groundClass(p.x, p.y)) != colored_graph::kForbidden;
+  };
+  for (const Eigen::Vector2d& corner : m_footprint.outline) {
+    const Eigen::Vector2d far = corner + m_options.room * corner.cwiseSign();
+    if (!isAllowed(pose.composePoint({far.x(), far.y()}))) return false;
+  }
+  return isAllowed({pose.x, pose.y}) &&
+         m_world.clearance(m_footprint, pose.x, pose.y, pose.phi) > m_options.room;
+}
+
+Oracle::Oracle(const World& world, const ClassOrder& order, const PlannerOptions& planner,
+               double voxelSize)
+    : m_world(world),
+      m_order(order),
+      m_options(planner),
+      m_map(trueMap(world, voxelSize, planner.vehicle.height)) {
+  m_options.roadmap.kind = GraphKind::HaltonDrivable;
+}
+
+SemanticPlanner& Oracle::plannerWith(std::size_t vertices) {
+  const auto found = m_planners.find(vertices);
+  if (found != m_planners.end()) return found->second;
+  m_options.roadmap.vertices = vertices;
+  return m_planners.emplace(vertices, SemanticPlanner(m_map, m_order, m_options)).first->second;
+}
+
+void Oracle::solve(Task& task) {
+  for (const std::size_t vertices : {2000, 8000}) {
+    const PlanResult plan = plannerWith(vertices).plan(task.start, task.goal);
+    task.hasPath = plan.found();
+    task.reason = plan.reason;
+    task.length = plan.length;
+    task.lengthPerClass.assign(synthetic_world::classTable().size() + 1, 0);
+    for (std::size_t i = 1; i < plan.path.size(); ++i)
+      task.lengthPerClass[m_world.groundClass(plan.path[i].x, plan.path[i].y)] +=
+          plan.path[i].arcLength - plan.path[i - 1].arcLength;
+    if (plan.status != PlanStatus::NotConnected) return;
+  }
+}
+
+}  // namespace drive_study

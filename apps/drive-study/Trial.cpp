@@ -1,0 +1,40 @@
+#include "Trial.h"
+
+#include "../semantic-map-drive/DriveFiles.h"
+#include "../semantic-map-drive/Stopwatch.h"
+
+namespace drive_study {
+
+using namespace semantic_map_drive;
+
+std::string Trial::fault() const {
+  constexpr double kMore = 1.05, kVoxel = 0.2;  // m: lengths are no better known
+  if (collisions > 0) return "collision";
+  if (task.hasPath && end != DriveEnd::Arrived) return "did not arrive";
+  if (!task.hasPath && end == DriveEnd::TimeLimit) return "did not say that there is no path";
+  if (badDriven > kMore * badFollowed + kVoxel) return "left its path for worse classes";
+  return {};
+}
+
+Trial runTrial(const DriveConfig& config, synthetic_world::World& world,
+               const colored_graph::ClassOrder& order, const Task& task) {
+  Stopwatch watch;
+  DriveLoop loop(config, world, order, task.start, task.goal, {});
+  const DriveRecord& record = loop.run();
+  Trial trial;
+  trial.task = task;
+  trial.end = record.end;
+  trial.reason = record.reason;
+  trial.seconds = record.duration();
+  trial.length = record.length;
+  trial.badDriven = badLength(record.drivenPerClass, order);
+  trial.badFollowed = badLength(record.plannedPerClass, order);
+  trial.badBest = badLength(task.lengthPerClass, order);
+  trial.leastClearance = record.leastClearance;
+  trial.collisions = record.collisions;
+  trial.replans = record.replans;
+  trial.processorSeconds = watch.milliseconds() / 1e3;
+  return trial;
+}
+
+}  // namespace drive_study

@@ -1,0 +1,29 @@
+#pragma once
+#include "../semantic-map-drive/DriveLoop.h"
+#include "Tasks.h"
+
+namespace drive_study {
+
+/** A task, and how the robot fared. */
+struct Trial {
+  std::string scene;
+  int number = 0;
+  Task task;
+  semantic_map_drive::DriveEnd end = semantic_map_drive::DriveEnd::TimeLimit;
+  std::string reason;                     ///< why it did not arrive
+  double seconds = 0, length = 0;         ///< of the drive, m
+  double badDriven = 0, badFollowed = 0;  ///< m off the best class: driven, and along its paths
+  double badBest = 0;                     ///< m off the best class along the task's path
+  double leastClearance = 0;              ///< m
+  int collisions = 0, replans = 0;
+  double processorSeconds = 0;
+
+  /** What is not as it has to be; empty: nothing. */
+  std::string fault() const;
+};
+
+/** Drives a task in a world, from an empty map. */
+Trial runTrial(const semantic_map_drive::DriveConfig& config, synthetic_world::World& world,
+               const colored_graph::ClassOrder& order, const Task& task);
+
+}  // namespace drive_study

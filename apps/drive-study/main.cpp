@@ -1,0 +1,107 @@
+// Drives through the synthetic worlds between random places, and counts what goes wrong.
+#include <labeled_cloud/OutputFolder.h>
+#include <semantic_planning/OrderFile.h>
+#include <synthetic_world/Scene.h>
+
+#include <fstream>
+#include <iostream>
+
+#include "Application.h"
+#include "StudyFiles.h"
+
+namespace drive_study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFaults = 2;  // exit status
+
+struct Cli {
+  fs::path classes, config, output;
+  std::vector<std::string> scenes = synthetic_world::sceneNames();
+  int pairs = 20;
+  std::vector<int> only;
+  std::uint64_t sceneSeed = 1;
+  TaskOptions tasks;
+
+  void addTo(CLI::App& app) {
+    app.add_option("--scenes", scenes, "Which synthetic worlds, separated by commas")
+        ->delimiter(',')
+        ->check(CLI::IsMember(synthetic_world::sceneNames()))
+        ->capture_default_str();
+    app.add_option("--pairs", pairs, "Of start and goal in each")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_option("--only", only, "Drive these of the pairs only (0, 1, ...)")->delimiter(',');
+    app.add_option("--seed", tasks.seed, "Other pairs")->capture_default_str();
+    app.add_option("--scene-seed", sceneSeed, "Other worlds")->capture_default_str();
+    app.add_option("--nearest", tasks.nearest, "From start to goal, m")->capture_default_str();
+    app.add_option("--farthest", tasks.farthest, "From start to goal, m")->capture_default_str();
+    app.add_option("--classes", classes, "Classes from best to worst (YAML)")->required();
+    app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drive)")
+        ->required();
+    app.add_option("--output", output, "Folder of the results, created if need be")->required();
+  }
+  bool wants(int number) const {
+    return only.empty() || std::find(only.begin(), only.end(), number) != only.end();
+  }
+};
+
+void writeText(const std::string& text, const fs::path& file) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+void print(const Trial& trial) {
+  const std::string fault = trial.fault();
+  std::cout << trial.scene << ' ' << trial.number << ": " << nameOf(trial.end) << " after "
+            << trial.seconds << " s and " << trial.length << " m; "
+            << (trial.task.hasPath ? "there is a path" : "there is no path")
+            << (fault.empty() ? "" : "; FAULT: " + fault) << std::endl;
+  for (const std::string& reason : {trial.task.reason, trial.reason})
+    if (!reason.empty()) std::cout << "  " << reason << std::endl;
+}
+
+void studyScene(const std::string& name, const Cli& cli,
+                const semantic_map_drive::DriveConfig& config, std::vector<Trial>& trials) {
+  synthetic_world::Scene scene = synthetic_world::makeScene(name, cli.sceneSeed);
+  const auto order = semantic_planning::loadClassOrder(cli.classes, synthetic_world::classTable());
+  TaskDraw draw(scene.world, order, config.planner.vehicle, cli.tasks);
+  Oracle oracle(scene.world, order, config.planner, config.voxelSize);
+  for (int i = 0; i < cli.pairs; ++i) {
+    Task task = draw.next();
+    if (!cli.wants(i)) continue;
+    oracle.solve(task);
+    Trial trial = runTrial(config, scene.world, order, task);
+    trial.scene = name;
+    trial.number = i;
+    print(trial);
+    trials.push_back(std::move(trial));
+  }
+}
+
+int run(const Cli& cli) {
+  const auto config = semantic_map_drive::loadDriveConfig(cli.config);
+  labeled_cloud::OutputFolder output(cli.output);
+  std::vector<Trial> trials;
+  for (const std::string& scene : cli.scenes) studyScene(scene, cli, config, trials);
+  const nlohmann::ordered_json study = toJson(trials);
+  writeText(toCsv(trials), output.staged("study.csv"));
+  writeText(study.dump(1) + "\n", output.staged("study.json"));
+  writeText(toMarkdown(study), output.staged("study.md"));
+  output.commit({"study.csv", "study.json", "study.md"});
+  const int faults = study["all"]["faults"];
+  std::cout << faults << " of " << trials.size() << " drives with a fault\n";
+  return faults == 0 ? 0 : kFaults;
+}
+
+}  // namespace
+}  // namespace drive_study
+
+int main(int argc, char** argv) {
+  CLI::App app("Drives through synthetic worlds between random places, and counts what goes wrong");
+  drive_study::Cli cli;
+  cli.addTo(app);
+  return runApplication(app, argc, argv, [&] { return drive_study::run(cli); });
+}
