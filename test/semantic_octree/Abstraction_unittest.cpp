@@ -227,6 +227,27 @@ TEST(Abstraction, pathOverAlphaLeadsToAWantedNumberOfLeaves) {
   EXPECT_THROW(path.alphaForLeaves(0), std::invalid_argument);
 }
 
+TEST(Abstraction, leavesInABoxAreThoseOfAllThatMeetIt) {
+  const AbstractionOptions options = someOptions(0.02);
+  SemanticOcTree map = mapOf(scansOfSmallPlace(3, 3000, K, 8), &options);
+  const Abstraction abstraction(map);
+  const octomap::OcTreeKey low(32760, 32750, 32760), high(32775, 32790, 32770);
+  for (const bool onlyOccupied : {false, true}) {
+    std::vector<LeafCell> expected;
+    for (const LeafCell& l : abstraction.leaves()) {
+      const int edge = 1 << (16 - l.depth);
+      bool meets = !onlyOccupied || l.node->getLogOdds() > 0;
+      for (int i = 0; i < 3; ++i) {
+        const int first = l.key[i] / edge * edge;
+        meets = meets && first <= high[i] && first + edge > low[i];
+      }
+      if (meets) expected.push_back(l);
+    }
+    EXPECT_GT(expected.size(), 10u);
+    EXPECT_EQ(abstraction.leavesIn(low, high, onlyOccupied), expected);
+  }
+}
+
 TEST(Abstraction, compressedMapHasTheOptimalLeavesAndAnswersQueries) {
   const AbstractionOptions options = someOptions(0.02);
   SemanticOcTree map = mapOf(scansOfSmallPlace(4, 4000, K, 6), &options);

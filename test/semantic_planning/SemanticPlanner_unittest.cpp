@@ -22,7 +22,7 @@ TEST_F(PlannerTest, takesTheStraightLineWhereClassesAreEqual) {
 TEST_F(PlannerTest, everyKindOfGraphFindsADrivablePath) {
   paintCorner();
   for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Halton, GraphKind::HaltonDrivable,
-                               GraphKind::HaltonByClass, GraphKind::Full}) {
+                               GraphKind::HaltonByClass, GraphKind::HaltonMap, GraphKind::Full}) {
     options.roadmap.kind = kind;
     expectDrivable(plan());
   }

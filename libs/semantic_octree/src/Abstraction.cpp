@@ -63,6 +63,24 @@ std::vector<LeafCell> Abstraction::leaves() const {
   return leaves;
 }
 
+std::vector<LeafCell> Abstraction::leavesIn(const octomap::OcTreeKey& low,
+                                            const octomap::OcTreeKey& high,
+                                            bool onlyOccupied) const {
+  std::vector<LeafCell> leaves;
+  if (m_map.empty()) return leaves;
+  const VoxelIndex first(low[0], low[1], low[2]), last(high[0], high[1], high[2]);
+  const auto isWanted = [&](const Node& node, const Cell& cell) {
+    const VoxelIndex lowest = cell.lowest();
+    return (!onlyOccupied || node.getLogOdds() > 0) && (lowest <= last).all() &&
+           (lowest + cell.edge() > first).all();
+  };
+  OptimalTree(*m_map.m_store, m_upkeep)
+      .forEachLeaf(*m_map.root(), Cell(), isWanted, [&](const Node& node, const Cell& cell) {
+        leaves.push_back(leafCell(&node, cell));
+      });
+  return leaves;
+}
+
 double Abstraction::objective() const {
   return m_map.empty() || m_map.root()->isLeaf()
              ? 0.0

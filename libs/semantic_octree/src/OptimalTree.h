@@ -20,18 +20,26 @@ class OptimalTree {
     return node.isLeaf() && m_upkeep.isFreeFrame(cell.depth);
   }
 
-  /** Calls f(node, cell) for each leaf in a cell, depth first. */
-  template <typename F>
-  void forEachLeaf(const Node& node, const Cell& cell, const F& f) const {
+  /** Calls f(node, cell) for each leaf in a cell, depth first. Does not go into nodes for which
+   * isWanted(node, cell) is false. */
+  template <typename F, typename W>
+  void forEachLeaf(const Node& node, const Cell& cell, const W& isWanted, const F& f) const {
+    if (!isWanted(node, cell)) return;
     if (isSplitAbove(node, cell)) {
-      for (int i = 0; i < 8; ++i) forEachLeaf(node, cell.child(i), f);
+      for (int i = 0; i < 8; ++i) forEachLeaf(node, cell.child(i), isWanted, f);
     } else if (isExpanded(node)) {
       for (const Node& child : NodeStore::octant(node).nodes) m_store.prefetchInner(child);
       for (int i = 0; i < 8; ++i)
-        if (const Node* child = NodeStore::child(node, i)) forEachLeaf(*child, cell.child(i), f);
+        if (const Node* child = NodeStore::child(node, i))
+          forEachLeaf(*child, cell.child(i), isWanted, f);
     } else {
       f(node, cell);
     }
+  }
+  template <typename F>
+  void forEachLeaf(const Node& node, const Cell& cell, const F& f) const {
+    forEachLeaf(
+        node, cell, [](const Node&, const Cell&) { return true; }, f);
   }
 
  private:

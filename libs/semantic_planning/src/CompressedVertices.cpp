@@ -24,6 +24,8 @@ double unit(std::uint32_t h) { return h / 4294967296.0; }
 struct Cell {
   Column low;
   int edge;
+
+  Column center() const { return {low.x + edge / 2, low.y + edge / 2}; }
 };
 
 /** The largest power of two of voxels that is no larger than this. */
@@ -33,26 +35,15 @@ int powerOfTwoWithin(double voxels) {
   return edge;
 }
 
-std::vector<Cell> cellsOf(Column low, int size, int largest) {
+/** f(cell) for the cells of a square (`size` columns from `low`) whose centers are in a tile. */
+template <class F>
+void forCellsOf(Column low, int size, int largest, Column tile, F f) {
   const int edge = std::min(size, largest);
-  std::vector<Cell> cells;
-  for (int y = 0; y < size; y += edge)
-    for (int x = 0; x < size; x += edge) cells.push_back({{low.x + x, low.y + y}, edge});
-  return cells;
-}
-
-void addHeadings(Column column, int z, double priority, std::optional<ClassId> classId,
-                 const CandidateSearch& search, std::vector<Candidate>& candidates) {
-  const double x = search.ground.centerOf(column.x), y = search.ground.centerOf(column.y);
-  if (!search.region.contains(x, y)) return;
-  for (const double heading : headingsAt(column, search.options))
-    candidates.push_back({{{x, y, heading}, z}, priority, classId});
-}
-
-/** Whether a leaf may hold points of the region. */
-bool nearRegion(const LeafCell& leaf, int size, const CandidateSearch& search) {
-  const double x = search.ground.centerOf(leaf.key[0]), y = search.ground.centerOf(leaf.key[1]);
-  return search.region.contains(x, y, size * search.ground.voxelSize());
+  const Column first = firstColumnOf(tile);
+  const auto begin = [&](int of, int at) { return std::max(of, at & ~(edge - 1)); };
+  for (int y = begin(low.y, first.y); y < std::min(low.y + size, first.y + kTileEdge); y += edge)
+    for (int x = begin(low.x, first.x); x < std::min(low.x + size, first.x + kTileEdge); x += edge)
+      if (const Cell cell{{x, y}, edge}; tileOf(cell.center()) == tile) f(cell);
 }
 
 ClassId likeliestIn(const LeafCell& leaf, const Abstraction& abstraction) {
@@ -81,45 +72,51 @@ double dither(unsigned x, unsigned y, unsigned seed) {
   return value - std::floor(value);
 }
 
-std::vector<double> headingsAt(Column point, const RoadmapOptions& options) {
-  const double first = unit(mixed(static_cast<std::uint32_t>(point.x),
-                                  static_cast<std::uint32_t>(point.y), options.seed));
-  std::vector<double> headings;
-  for (int i = 0; i < options.headings; ++i)
-    headings.push_back(std::remainder(2 * M_PI * (first + i) / options.headings, 2 * M_PI));
-  return headings;
-}
-
-std::vector<Candidate> candidatesIn(const LeafCell& leaf, const Abstraction& abstraction,
-                                    const CandidateSearch& search) {
-  if (!leaf.node || leaf.node->getLogOdds() <= 0) return {};
-  const int size = 1 << (16 - leaf.depth);
-  if (!nearRegion(leaf, size, search)) return {};
-  const int z = leaf.key[2] & ~(size - 1);
-  const Column low{leaf.key[0] & ~(size - 1), leaf.key[1] & ~(size - 1)};
-  const int largest = powerOfTwoWithin(search.options.spacing / search.ground.voxelSize());
-  std::optional<ClassId> classId;
-  if (search.options.classOfLeaf) classId = likeliestIn(leaf, abstraction);
+std::vector<Candidate> candidatesAt(const Spot& spot, const Ground& ground,
+                                    const RoadmapOptions& options) {
+  const double first = unit(mixed(static_cast<std::uint32_t>(spot.column.x),
+                                  static_cast<std::uint32_t>(spot.column.y), options.seed));
+  const double x = ground.centerOf(spot.column.x), y = ground.centerOf(spot.column.y);
   std::vector<Candidate> candidates;
-  for (const Cell& cell : cellsOf(low, size, largest)) {
-    const Column center{cell.low.x + cell.edge / 2, cell.low.y + cell.edge / 2};
-    for (const Surface& s : search.ground.surfaces(center))
-      if (s.drivable && s.z >= z && s.z < z + size)
-        addHeadings(center, s.z, priorityOf(cell, search.options.seed), classId, search,
-                    candidates);
+  for (int i = 0; i < options.headings; ++i) {
+    const double heading = std::remainder(2 * M_PI * (first + i) / options.headings, 2 * M_PI);
+    candidates.push_back({{{x, y, heading}, spot.z}, spot.classId});
   }
   return candidates;
 }
 
-std::vector<Candidate> gridCandidates(const CandidateSearch& search) {
-  const int edge = powerOfTwoWithin(search.options.spacing / search.ground.voxelSize());
-  std::vector<Candidate> candidates;
-  for (const Column& tile : search.ground.tiles())
-    for (const Cell& cell : cellsOf(firstColumnOf(tile), kTileEdge, edge))
-      for (const Surface& s : search.ground.surfaces(cell.low))
-        if (s.drivable)
-          addHeadings(cell.low, s.z, priorityOf(cell, search.options.seed), {}, search, candidates);
-  return candidates;
+std::vector<Spot> compressedSpots(Column tile, const Abstraction& abstraction, const Ground& ground,
+                                  const RoadmapOptions& options) {
+  const int largest = powerOfTwoWithin(options.spacing / ground.voxelSize());
+  const Column first = firstColumnOf(tile);
+  const auto key = [&](int offset, int z) {
+    return octomap::OcTreeKey(static_cast<std::uint16_t>(first.x + offset),
+                              static_cast<std::uint16_t>(first.y + offset),
+                              static_cast<std::uint16_t>(z));
+  };
+  std::vector<Spot> spots;
+  for (const LeafCell& leaf : abstraction.leavesIn(key(0, 0), key(kTileEdge - 1, 65535), true)) {
+    const int size = 1 << (16 - leaf.depth), z = leaf.key[2] & ~(size - 1);
+    std::optional<ClassId> classId;
+    if (options.classOfLeaf) classId = likeliestIn(leaf, abstraction);
+    const Column low{leaf.key[0] & ~(size - 1), leaf.key[1] & ~(size - 1)};
+    forCellsOf(low, size, largest, tile, [&](const Cell& cell) {
+      for (const Surface& s : ground.surfaces(cell.center()))
+        if (s.drivable && s.z >= z && s.z < z + size)
+          spots.push_back({cell.center(), s.z, classId, priorityOf(cell, options.seed)});
+    });
+  }
+  return spots;
+}
+
+std::vector<Spot> gridSpots(Column tile, const Ground& ground, const RoadmapOptions& options) {
+  const int edge = powerOfTwoWithin(options.spacing / ground.voxelSize());
+  std::vector<Spot> spots;
+  forCellsOf(firstColumnOf(tile), kTileEdge, edge, tile, [&](const Cell& cell) {
+    for (const Surface& s : ground.surfaces(cell.low))
+      if (s.drivable) spots.push_back({cell.low, s.z, {}, priorityOf(cell, options.seed)});
+  });
+  return spots;
 }
 
 }  // namespace semantic_planning

@@ -1,11 +1,15 @@
 #include <ompl/base/samplers/deterministic/HaltonSequence.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "Candidates.h"
 
 namespace semantic_planning {
 namespace {
+
+/** For each vertex asked for: draws in the region, and draws outside of it. */
+constexpr std::size_t kMostDraws = 1000, kMostSkips = 10000;
 
 /** Another sequence of the same evenness for every seed (Cranley, Patterson 1976). */
 std::vector<double> rotated(std::vector<double> draw, unsigned seed) {
@@ -26,26 +30,60 @@ bool keepsByClass(const Ground& ground, const Candidate& c, const colored_graph:
   return rank != colored_graph::kForbidden && draw < std::ldexp(1.0, -rank);
 }
 
-std::optional<Candidate> candidateAt(const CandidateSearch& search,
-                                     const std::vector<double>& draw) {
-  const mrpt::math::TPoint2D p = search.region.at(draw[0], draw[1]);
-  const auto point = search.ground.find(p.x, p.y);
+/** The rectangle of the tiles that hold ground. */
+class GroundRectangle {
+ public:
+  explicit GroundRectangle(const Ground& ground) : m_voxelSize(ground.voxelSize()) {
+    const std::vector<Column> tiles = ground.tiles();
+    const auto [left, right] = std::minmax_element(tiles.begin(), tiles.end());
+    const auto [bottom, top] = std::minmax_element(
+        tiles.begin(), tiles.end(), [](const Column& l, const Column& r) { return l.y < r.y; });
+    const Column first = firstColumnOf({left->x, bottom->y});
+    m_low = {lowest(ground, first.x), lowest(ground, first.y)};
+    m_width = (right->x - left->x + 1) * kTileEdge * m_voxelSize;
+    m_height = (top->y - bottom->y + 1) * kTileEdge * m_voxelSize;
+  }
+
+  mrpt::math::TPoint2D at(double u, double v) const {
+    return {m_low.x + u * m_width, m_low.y + v * m_height};
+  }
+
+ private:
+  double lowest(const Ground& ground, int key) const {
+    return ground.centerOf(key) - m_voxelSize / 2;
+  }
+
+  double m_voxelSize;
+  mrpt::math::TPoint2D m_low;
+  double m_width, m_height;
+};
+
+std::optional<Candidate> candidateAt(const Ground& ground, const mrpt::math::TPoint2D& p,
+                                     double turn) {
+  const auto point = ground.find(p.x, p.y);
   if (!point) return std::nullopt;
-  Candidate c;
-  c.pose = {{p.x, p.y, std::remainder(2 * M_PI * draw[2], 2 * M_PI)}, point->surface.z};
-  return c;
+  return Candidate{{{p.x, p.y, std::remainder(2 * M_PI * turn, 2 * M_PI)}, point->surface.z}, {}};
 }
 
 }  // namespace
 
-void drawHalton(const CandidateSearch& search, const colored_graph::ClassOrder& order,
+void drawHalton(const HaltonSearch& search, const colored_graph::ClassOrder& order,
                 const std::function<bool(const std::optional<Candidate>&)>& enough) {
+  const bool overMap = search.options.kind == GraphKind::HaltonMap;
+  const bool byClass = search.options.kind == GraphKind::HaltonByClass;
+  std::optional<GroundRectangle> rectangle;
+  if (overMap) rectangle.emplace(search.ground);
   ompl::base::HaltonSequence sequence(4);
-  const std::size_t most = 1000 * search.options.vertices;
-  for (std::size_t i = 0; i < most; ++i) {
+  std::size_t left = kMostDraws * search.options.vertices;
+  for (std::size_t skips = kMostSkips * search.options.vertices; left > 0 && skips > 0;) {
     const std::vector<double> draw = rotated(sequence.sample(), search.options.seed);
-    auto candidate = candidateAt(search, draw);
-    const bool byClass = search.options.kind == GraphKind::HaltonByClass;
+    const auto p = (overMap ? rectangle->at(draw[0], draw[1]) : search.region.at(draw[0], draw[1]));
+    if (overMap && !search.region.contains(p.x, p.y)) {
+      --skips;
+      continue;
+    }
+    --left;
+    auto candidate = candidateAt(search.ground, p, draw[2]);
     if (candidate && byClass && !keepsByClass(search.ground, *candidate, order, draw[3]))
       candidate.reset();
     if (enough(candidate)) return;

@@ -1,39 +1,37 @@
 #include "MapRoadmap.h"
 
 #include <algorithm>
-#include <functional>
+#include <limits>
+#include <queue>
 
 namespace semantic_planning {
-
-using semantic_octree::Abstraction;
-using semantic_octree::LeafCell;
 
 namespace {
 
 constexpr std::size_t kDefaultVertices = 1000;
+constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
+
+/** Whether a kind takes its vertices from a store. */
+bool isFinite(GraphKind kind) { return kind == GraphKind::Compressed || kind == GraphKind::Full; }
 
 RoadmapOptions withDefaults(RoadmapOptions options) {
-  const bool finite = options.kind == GraphKind::Compressed || options.kind == GraphKind::Full;
-  if (!finite && options.vertices == 0) options.vertices = kDefaultVertices;
+  if (!isFinite(options.kind) && options.vertices == 0) options.vertices = kDefaultVertices;
   return options;
 }
 
 }  // namespace
 
-MapRoadmap::MapRoadmap(semantic_octree::SemanticOcTree& map, const EdgeChecker& checker,
+MapRoadmap::MapRoadmap(CandidateStore& store, const EdgeChecker& checker,
                        const RoadmapOptions& options, const GroundPose& start,
                        const GroundPose& goal)
-    : m_map(map),
-      m_checker(checker),
+    : m_checker(checker),
       m_options(withDefaults(options)),
       m_region(start.pose, goal.pose, options.regionBuffer),
       m_start(start),
       m_roadmap(checker, m_options),
       m_pool(checker, m_roadmap) {
-  if (m_options.kind == GraphKind::Compressed)
-    takeByPriority(compressedCandidates());
-  else if (m_options.kind == GraphKind::Full)
-    takeByPriority(fullCandidates());
+  if (isFinite(m_options.kind))
+    takeByPriority(store);
   else
     takeHalton();
   m_pool.apply();
@@ -51,71 +49,72 @@ bool MapRoadmap::reachable(const Candidate& candidate) const {
   return from && to && ground.connected(*from, *to);
 }
 
-std::vector<MapRoadmap::Offer> MapRoadmap::compressedCandidates() {
-  const Abstraction abstraction(m_map);
-  std::vector<Offer> offers;
-  for (const LeafCell& leaf : abstraction.leaves())
-    for (const Candidate& candidate : candidatesIn(leaf, abstraction, search()))
-      offers.push_back({candidate, VertexPool::idOf(leaf)});
-  return offers;
+std::vector<Column> MapRoadmap::tilesOfRegion() const {
+  const Ground& ground = m_checker.ground();
+  const double edge = kTileEdge * ground.voxelSize();
+  std::vector<Column> tiles = ground.tiles();
+  const auto isOutside = [&](const Column& tile) {
+    const Column first = firstColumnOf(tile);
+    const double x = ground.centerOf(first.x) + edge / 2, y = ground.centerOf(first.y) + edge / 2;
+    return !m_region.contains(x, y, edge);
+  };
+  tiles.erase(std::remove_if(tiles.begin(), tiles.end(), isOutside), tiles.end());
+  return tiles;
 }
 
-std::vector<MapRoadmap::Offer> MapRoadmap::fullCandidates() const {
-  std::vector<Offer> offers;
-  for (const Candidate& candidate : gridCandidates(search())) offers.push_back({candidate, {}});
-  return offers;
-}
-
-void MapRoadmap::takeByPriority(const std::vector<Offer>& offers) {
-  std::vector<std::pair<double, std::size_t>> queue;  // a heap: few of many are taken
-  for (std::size_t i = 0; i < offers.size(); ++i)
-    queue.emplace_back(offers[i].candidate.priority, i);
-  std::make_heap(queue.begin(), queue.end(), std::greater<>());
+std::size_t MapRoadmap::take(const Spot& spot, std::size_t most) {
   std::size_t usable = 0;
-  for (; !queue.empty(); queue.pop_back()) {
-    std::pop_heap(queue.begin(), queue.end(), std::greater<>());
-    const auto& [priority, index] = queue.back();
-    const Offer& offer = offers[index];
-    if (m_options.vertices > 0 && usable == m_options.vertices) {
-      m_lastPriority = priority;
-      return;
-    }
-    if (!reachable(offer.candidate)) continue;
-    m_pool.add(offer.candidate, offer.leaf);
-    usable += m_pool.isUsable(offer.candidate);
+  for (const Candidate& candidate : candidatesAt(spot, m_checker.ground(), m_options)) {
+    const auto& pose = candidate.pose.pose;
+    if (usable == most || !m_region.contains(pose.x, pose.y) || !reachable(candidate)) break;
+    m_pool.add(candidate, spot);
+    usable += m_pool.isUsable(candidate);
   }
+  return usable;
+}
+
+/** Merges the tiles' lists, each of which is sorted. */
+void MapRoadmap::takeByPriority(CandidateStore& store) {
+  struct List {
+    const Spot *next, *end;
+    bool operator<(const List& o) const { return *o.next < *next; }  // the least on top
+  };
+  std::priority_queue<List> lists;
+  for (const Column& tile : tilesOfRegion())
+    if (const std::vector<Spot>& spots = store.in(tile); !spots.empty())
+      lists.push({spots.data(), spots.data() + spots.size()});
+  std::size_t left = m_options.vertices > 0 ? m_options.vertices : kUnlimited;
+  while (!lists.empty() && left > 0) {
+    List list = lists.top();
+    lists.pop();
+    left -= take(*list.next, left);
+    if (++list.next != list.end) lists.push(list);
+  }
+  if (!lists.empty()) m_lastPriority = lists.top().next->priority;
 }
 
 void MapRoadmap::takeHalton() {
   std::size_t draws = 0, usable = 0;
-  drawHalton(search(), m_checker.order(), [&](const std::optional<Candidate>& candidate) {
-    ++draws;
-    if (candidate && reachable(*candidate)) {
-      m_pool.add(*candidate);
-      usable += m_pool.isUsable(*candidate);
-    }
-    const bool plain = m_options.kind == GraphKind::Halton;
-    return (plain ? draws : usable) == m_options.vertices;
-  });
+  drawHalton({m_checker.ground(), m_options, m_region}, m_checker.order(),
+             [&](const std::optional<Candidate>& candidate) {
+               ++draws;
+               if (candidate && reachable(*candidate)) {
+                 m_pool.add(*candidate);
+                 usable += m_pool.isUsable(*candidate);
+               }
+               const bool plain = m_options.kind == GraphKind::Halton;
+               return (plain ? draws : usable) == m_options.vertices;
+             });
 }
 
-void MapRoadmap::update(const std::vector<Column>& changedTiles) {
+void MapRoadmap::update(const std::vector<Column>& changedTiles,
+                        const CandidateStore::Change& spots) {
+  for (const Spot& spot : spots.removed) m_pool.remove(spot);
+  for (const Spot& spot : spots.added)
+    if (spot.priority < m_lastPriority) take(spot, kUnlimited);
   m_pool.refresh(changedTiles);
-  if (m_options.kind == GraphKind::Compressed) followLeaves();
   m_pool.apply();
   m_roadmap.refresh(changedTiles);
-}
-
-void MapRoadmap::followLeaves() {
-  Abstraction abstraction(m_map);
-  const semantic_octree::TreeChange change = abstraction.takeChange();
-  for (const LeafCell& leaf : change.removed) m_pool.removeLeaf(VertexPool::idOf(leaf));
-  for (const LeafCell& leaf : change.added) {
-    if (m_pool.holds(VertexPool::idOf(leaf))) continue;  // it came before the roadmap
-    for (const Candidate& candidate : candidatesIn(leaf, abstraction, search()))
-      if (candidate.priority < m_lastPriority && reachable(candidate))
-        m_pool.add(candidate, VertexPool::idOf(leaf));
-  }
 }
 
 }  // namespace semantic_planning

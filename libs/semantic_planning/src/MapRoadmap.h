@@ -1,9 +1,7 @@
 #pragma once
-#include <semantic_octree/SemanticOcTree.h>
-
-#include <optional>
 #include <vector>
 
+#include "CandidateStore.h"
 #include "VertexPool.h"
 
 namespace semantic_planning {
@@ -11,40 +9,32 @@ namespace semantic_planning {
 /** A roadmap between a start and a goal, and what keeps it up to date with the map. */
 class MapRoadmap {
  public:
-  /** \param start, goal on the ground \throw std::logic_error GraphKind::Compressed, and the map
-   * keeps no G-values. */
-  MapRoadmap(semantic_octree::SemanticOcTree& map, const EdgeChecker& checker,
-             const RoadmapOptions& options, const GroundPose& start, const GroundPose& goal);
+  /** \param store, checker must outlive the roadmap \param start, goal on the ground */
+  MapRoadmap(CandidateStore& store, const EdgeChecker& checker, const RoadmapOptions& options,
+             const GroundPose& start, const GroundPose& goal);
 
   Roadmap& roadmap() { return m_roadmap; }
   const Roadmap& roadmap() const { return m_roadmap; }
   VertexPool::Counts takeVertexCounts() { return m_pool.takeCounts(); }
 
-  /** The ground changed in these tiles, and perhaps the compressed tree. */
-  void update(const std::vector<Column>& changedTiles);
+  /** The ground changed in these tiles, and so did spots. */
+  void update(const std::vector<Column>& changedTiles, const CandidateStore::Change& spots);
 
  private:
-  struct Offer {
-    Candidate candidate;
-    std::optional<VertexPool::LeafId> leaf;
-  };
-
-  CandidateSearch search() const { return {m_checker.ground(), m_options, m_region}; }
   bool reachable(const Candidate& candidate) const;
-  std::vector<Offer> compressedCandidates();
-  std::vector<Offer> fullCandidates() const;
-  void takeByPriority(const std::vector<Offer>& offers);
+  std::vector<Column> tilesOfRegion() const;
+  /** \return how many vertices it gives now, at most `most` */
+  std::size_t take(const Spot& spot, std::size_t most);
+  void takeByPriority(CandidateStore& store);
   void takeHalton();
-  void followLeaves();
 
-  semantic_octree::SemanticOcTree& m_map;
   const EdgeChecker& m_checker;
   const RoadmapOptions m_options;
   const PlanningRegion m_region;
   const GroundPose m_start;
   Roadmap m_roadmap;
   VertexPool m_pool;
-  double m_lastPriority = 1;  ///< candidates above it are not taken
+  double m_lastPriority = 1;  ///< spots from it on are not taken
 };
 
 }  // namespace semantic_planning

@@ -1,4 +1,5 @@
 #include <semantic_planning/NearestPoses.h>
+#include <semantic_planning/PosePair.h>
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +80,7 @@ void NearestPoses::relax(std::vector<Candidate>& candidates) {
   for (const Candidate& c : candidates) {
     const Entry &a = m_entries[c.a], &b = m_entries[c.b];
     if (c.bound > farthest(a) && c.bound > farthest(b)) continue;
-    const double distance = m_reedsShepp.distance(a.pose.pose, b.pose.pose);
+    const double distance = PosePair(a.pose, b.pose).distance(m_reedsShepp);
     offer(c.a, {c.b, distance});
     offer(c.b, {c.a, distance});
   }
@@ -94,10 +95,8 @@ std::vector<NearestPoses::Candidate> NearestPoses::candidatesOf(const std::vecto
   for (const VertexId a : open)
     forWithin(m_entries[a].pose.pose, radius, [&](VertexId b, double distance) {
       if (a == b || distance <= beyond || (isOpen[b] && b < a)) return;
-      const auto [low, high] = ordered(a, b);
-      const double bound =
-          m_reedsShepp.lowerBound(m_entries[low].pose.pose, m_entries[high].pose.pose);
-      if (bound <= m_radius) candidates.push_back({bound, low, high});
+      const double bound = m_reedsShepp.lowerBound(m_entries[a].pose.pose, m_entries[b].pose.pose);
+      if (bound <= m_radius) candidates.push_back({bound, a, b});
     });
   return candidates;
 }
@@ -179,7 +178,7 @@ std::vector<NearestPoses::Neighbor> NearestPoses::nearestTo(const GroundPose& po
   std::vector<Neighbor> nearest;
   for (const auto& [bound, id] : bounds) {
     if (nearest.size() == count && bound > nearest.back().distance) break;
-    const Neighbor n{id, m_reedsShepp.distance(pose.pose, m_entries[id].pose.pose)};
+    const Neighbor n{id, PosePair(pose, m_entries[id].pose).distance(m_reedsShepp)};
     if (n.distance > m_radius) continue;
     nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), n), n);
     if (nearest.size() > count) nearest.pop_back();

@@ -2,6 +2,7 @@
 
 #include <colored_graph/ColoredAStar.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -17,8 +18,11 @@ using colored_graph::PathResult;
 
 namespace {
 
-PlannerOptions validated(const PlannerOptions& options) {
+PlannerOptions validated(const PlannerOptions& options,
+                         const semantic_octree::SemanticOcTree& map) {
   options.validate();
+  if (options.roadmap.kind == GraphKind::Compressed && !map.hasAbstraction())
+    throw std::logic_error("SemanticPlanner: the map keeps no G-values (setAbstraction)");
   return options;
 }
 
@@ -54,19 +58,25 @@ std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPos
   return reason.str();
 }
 
+/** Where classes are read from the map itself, which may change below ground that does not. */
+void addTilesOf(const std::vector<octomap::OcTreeKey>& touched, std::vector<Column>& tiles) {
+  for (const octomap::OcTreeKey& key : touched) tiles.push_back(tileOf({key[0], key[1]}));
+  std::sort(tiles.begin(), tiles.end());
+  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+}
+
 }  // namespace
 
 PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
                          const colored_graph::ClassOrder& order, const PlannerOptions& options)
     : m_map(map),
-      m_options(validated(options)),
+      m_options(validated(options, map)),
       m_ground(map, options.vehicle, options.ground, order),
       m_checker(m_ground, options.vehicle, order, options.reading),
+      m_candidates(map, m_ground, options.roadmap),
+      m_edges(m_checker),
       m_model{order, options.edges, options.cost} {
-  if (options.roadmap.kind == GraphKind::Compressed && !map.hasAbstraction())
-    throw std::logic_error("SemanticPlanner: the map keeps no G-values (setAbstraction)");
-  map.takeTouchedTiles();  // ground and roadmaps begin with the whole map
-  if (options.roadmap.kind == GraphKind::Compressed) semantic_octree::Abstraction(map).takeChange();
+  map.takeTouchedTiles();  // the ground began with the whole map
 }
 
 const Roadmap& PlannerCore::roadmap() const {
@@ -105,7 +115,7 @@ bool PlannerCore::refuse(const Place& start, const Place& goal, PlanResult& resu
 
 std::optional<EdgeProfile> PlannerCore::evaluateTimed(colored_graph::EdgeId e) {
   const auto begin = std::chrono::steady_clock::now();
-  auto profile = m_roadmap->roadmap().evaluate(e);
+  auto profile = m_edges.profile(m_roadmap->roadmap().ends(e));
   m_evaluating += StageClock::millisecondsSince(begin);
   return profile;
 }
@@ -127,9 +137,10 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   m_replanner.reset();
   m_roadmap.reset();
   m_goalPlace = goal;
+  followMap(clock);
   if (refuse(start, goal, result)) return result;
-  m_roadmap =
-      std::make_unique<MapRoadmap>(m_map, m_checker, m_options.roadmap, *m_startPose, *m_goalPose);
+  m_roadmap = std::make_unique<MapRoadmap>(m_candidates, m_checker, m_options.roadmap, *m_startPose,
+                                           *m_goalPose);
   m_start = m_roadmap->roadmap().addGuest(*m_startPose);
   m_goal = m_roadmap->roadmap().addGuest(*m_goalPose);
   clock.end("roadmap");
@@ -146,6 +157,7 @@ void PlannerCore::finish(const PathResult& path, StageClock& clock, PlanResult& 
   describePath(path, roadmap(), m_checker, result);
   result.numVertices = roadmap().graph().vertexCount();
   result.numEdges = roadmap().graph().edgeCount();
+  result.edgesRemembered = m_edges.takeRemembered();
   clock.end("path");
   if (m_options.shorten && m_model.edges == colored_graph::EdgeModel::Profile &&
       m_model.kind == colored_graph::CostKind::ArcLength) {
@@ -155,16 +167,26 @@ void PlannerCore::finish(const PathResult& path, StageClock& clock, PlanResult& 
   result.times = clock.take();
 }
 
+PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
+  const auto touched = m_map.takeTouchedTiles();
+  MapChange change;
+  change.tilesTouched = touched.size();
+  change.tiles = m_ground.update(touched);
+  if (m_options.reading.kind != ClassReading::Kind::Likeliest) addTilesOf(touched, change.tiles);
+  clock.end("ground");
+  m_edges.groundChanged(change.tiles);
+  change.spots = m_candidates.update(touched, change.tiles);
+  return change;
+}
+
 UpdateResult PlannerCore::update() {
   StageClock clock;
   UpdateResult result;
-  const auto touched = m_map.takeTouchedTiles();
-  const std::vector<Column> changed = m_ground.update(touched);
-  result.tilesTouched = touched.size();
-  result.tilesChanged = changed.size();
-  clock.end("ground");
+  const MapChange change = followMap(clock);
+  result.tilesTouched = change.tilesTouched;
+  result.tilesChanged = change.tiles.size();
   if (m_roadmap) {
-    m_roadmap->update(changed);
+    m_roadmap->update(change.tiles, change.spots);
     const VertexPool::Counts vertices = m_roadmap->takeVertexCounts();
     const Roadmap::Counts edges = m_roadmap->roadmap().takeCounts();
     result.verticesInserted = vertices.inserted;

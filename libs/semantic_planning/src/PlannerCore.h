@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 
+#include "CandidateStore.h"
+#include "EdgeMemory.h"
 #include "MapRoadmap.h"
 #include "StageClock.h"
 
@@ -35,6 +37,13 @@ class PlannerCore {
  private:
   using VertexId = colored_graph::VertexId;
 
+  /** What the roadmap has to follow. */
+  struct MapChange {
+    std::size_t tilesTouched = 0;
+    std::vector<Column> tiles;  ///< of the ground
+    CandidateStore::Change spots;
+  };
+  MapChange followMap(StageClock& clock);
   PlanStatus placed(const Place& place, std::optional<GroundPose>& pose) const;
   /** Status and reason if nothing can be planned between these places. */
   bool refuse(const Place& start, const Place& goal, PlanResult& result);
@@ -47,6 +56,8 @@ class PlannerCore {
   const PlannerOptions m_options;
   Ground m_ground;
   EdgeChecker m_checker;
+  CandidateStore m_candidates;
+  EdgeMemory m_edges;
   colored_graph::CostModel m_model;
   std::unique_ptr<MapRoadmap> m_roadmap;
   std::optional<GroundPose> m_startPose, m_goalPose;

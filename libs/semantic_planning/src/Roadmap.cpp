@@ -83,7 +83,7 @@ void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
   const EdgeId edge = edgeBetween(a, b);
   if (linked && edge == colored_graph::kNoEdge) {
     const double length = m_nearest.distance(a, b).value_or(
-        m_checker.reedsShepp().distance(pose(a).pose, pose(b).pose));
+        PosePair(pose(a), pose(b)).distance(m_checker.reedsShepp()));
     const EdgeId e = m_graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(length));
     if (e >= m_lengths.size()) m_lengths.resize(e + 1);
     m_lengths[e] = length;
@@ -107,7 +107,7 @@ void Roadmap::reconcileGuest(VertexId guest) {
   for (const auto& n : m_nearest.nearestTo(pose(guest), m_guestNeighbors)) wanted.insert(n.id);
   for (const VertexId other : m_guests)
     if (other != guest &&
-        m_checker.reedsShepp().distance(pose(guest).pose, pose(other).pose) <= m_radius)
+        PosePair(pose(guest), pose(other)).distance(m_checker.reedsShepp()) <= m_radius)
       wanted.insert(other);
   const std::vector<Incidence> present = m_graph.incident(guest);
   for (const Incidence& i : present)
@@ -136,12 +136,7 @@ void Roadmap::refresh(const std::vector<Column>& changedTiles) {
   const TileMarks changed(m_checker.ground(), changedTiles);
   for (EdgeId e = 0; e < m_graph.edgeIdEnd(); ++e) {
     if (!m_graph.containsEdge(e) || m_graph.edge(e).state == EdgeState::Unevaluated) continue;
-    const Edge& edge = m_graph.edge(e);
-    const auto &a = pose(edge.a).pose, &b = pose(edge.b).pose;
-    // A curve stays within half its length of the middle between its ends.
-    const double margin = m_lengths[e] / 2 + m_checker.reach();
-    const double x = (a.x + b.x) / 2, y = (a.y + b.y) / 2;
-    if (changed.near(x, y, margin)) reevaluate(e);
+    if (changed.anyIn(squareAround(ends(e), m_lengths[e], m_checker))) reevaluate(e);
   }
 }
 
@@ -157,17 +152,17 @@ void Roadmap::reevaluate(EdgeId e) {
     m_graph.setBlocked(e);
 }
 
+PosePair Roadmap::ends(EdgeId e) const {
+  return {pose(m_graph.edge(e).a), pose(m_graph.edge(e).b)};
+}
+
 ReedsSheppCurve Roadmap::curve(EdgeId e, VertexId from) const {
-  const Edge& edge = m_graph.edge(e);
-  const auto [low, high] = std::minmax(edge.a, edge.b);
-  const ReedsSheppCurve canonical = m_checker.reedsShepp().connect(pose(low).pose, pose(high).pose);
-  return from == low ? canonical : canonical.reversed();
+  return ends(e).curveFrom(pose(from), m_checker.reedsShepp());
 }
 
 std::optional<EdgeProfile> Roadmap::evaluate(EdgeId e) const {
-  const Edge& edge = m_graph.edge(e);
-  const auto [low, high] = std::minmax(edge.a, edge.b);
-  return m_checker.profile(pose(low), pose(high));
+  const PosePair poses = ends(e);
+  return m_checker.profile(poses.first, poses.second);
 }
 
 Length Roadmap::lengthBound(VertexId a, VertexId b) const {

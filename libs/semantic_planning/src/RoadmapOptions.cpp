@@ -5,15 +5,15 @@
 namespace semantic_planning {
 
 const char* nameOf(GraphKind kind) {
-  static const char* const names[] = {"compressed", "halton", "halton-drivable", "halton-by-class",
-                                      "full"};
+  static const char* const names[] = {"compressed",      "halton",     "halton-drivable",
+                                      "halton-by-class", "halton-map", "full"};
   return names[static_cast<int>(kind)];
 }
 
 std::map<std::string, GraphKind> graphKinds() {
   std::map<std::string, GraphKind> kinds;
   for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Halton, GraphKind::HaltonDrivable,
-                               GraphKind::HaltonByClass, GraphKind::Full})
+                               GraphKind::HaltonByClass, GraphKind::HaltonMap, GraphKind::Full})
     kinds[nameOf(kind)] = kind;
   return kinds;
 }

@@ -8,11 +8,6 @@ namespace semantic_planning {
 
 using colored_graph::kNoVertex;
 
-VertexPool::LeafId VertexPool::idOf(const semantic_octree::LeafCell& leaf) {
-  const int mask = ~((1 << (16 - leaf.depth)) - 1);
-  return {leaf.depth, leaf.key[0] & mask, leaf.key[1] & mask, leaf.key[2] & mask};
-}
-
 ClassId VertexPool::classOf(const Candidate& candidate) const {
   return candidate.classId ? *candidate.classId : m_checker.classAt(candidate.pose);
 }
@@ -22,7 +17,7 @@ bool VertexPool::isUsable(const Candidate& candidate) const {
          m_checker.order().rank(classOf(candidate)) != colored_graph::kForbidden;
 }
 
-void VertexPool::add(const Candidate& candidate, std::optional<LeafId> leaf) {
+void VertexPool::add(const Candidate& candidate, const std::optional<Spot>& spot) {
   std::size_t index = m_members.size();
   if (m_free.empty()) {
     m_members.emplace_back();
@@ -31,7 +26,7 @@ void VertexPool::add(const Candidate& candidate, std::optional<LeafId> leaf) {
     m_free.pop_back();
   }
   m_members[index] = {candidate, kNoVertex, true};
-  if (leaf) m_ofLeaf[*leaf].push_back(index);
+  if (spot) m_ofSpot[*spot].push_back(index);
   if (isUsable(candidate)) m_toInsert.push_back(index);
 }
 
@@ -40,15 +35,15 @@ void VertexPool::dropVertex(Member& member) {
   member.vertex = kNoVertex;
 }
 
-void VertexPool::removeLeaf(const LeafId& leaf) {
-  const auto found = m_ofLeaf.find(leaf);
-  if (found == m_ofLeaf.end()) return;
+void VertexPool::remove(const Spot& spot) {
+  const auto found = m_ofSpot.find(spot);
+  if (found == m_ofSpot.end()) return;
   for (const std::size_t index : found->second) {
     dropVertex(m_members[index]);
     m_members[index].present = false;
     m_free.push_back(index);
   }
-  m_ofLeaf.erase(found);
+  m_ofSpot.erase(found);
 }
 
 /** The ground may have gone up or down by what the wheels climb. */
@@ -79,7 +74,7 @@ void VertexPool::refresh(const std::vector<Column>& changedTiles) {
   const TileMarks changed(m_checker.ground(), changedTiles);
   for (std::size_t i = 0; i < m_members.size(); ++i) {
     const auto& pose = m_members[i].candidate.pose.pose;
-    if (m_members[i].present && changed.near(pose.x, pose.y, m_checker.reach())) look(i);
+    if (m_members[i].present && changed.anyIn({pose.x, pose.y, m_checker.reach()})) look(i);
   }
 }
 

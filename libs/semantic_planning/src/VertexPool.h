@@ -3,7 +3,6 @@
 
 #include <map>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,9 +13,6 @@ namespace semantic_planning {
 /** The poses that are vertices of a roadmap whenever the ground lets them. */
 class VertexPool {
  public:
-  using LeafId = std::tuple<unsigned, int, int, int>;  ///< depth and lowest keys
-  static LeafId idOf(const semantic_octree::LeafCell& leaf);
-
   /** Counted since the last take. */
   struct Counts {
     std::size_t inserted = 0, removed = 0, recolored = 0;
@@ -29,9 +25,9 @@ class VertexPool {
   bool isUsable(const Candidate& candidate) const;
 
   /** Changes take effect in the roadmap with apply(). */
-  void add(const Candidate& candidate, std::optional<LeafId> leaf = {});
-  bool holds(const LeafId& leaf) const { return m_ofLeaf.count(leaf) > 0; }
-  void removeLeaf(const LeafId& leaf);
+  void add(const Candidate& candidate, const std::optional<Spot>& spot = {});
+  /** Removes what was added with this spot. */
+  void remove(const Spot& spot);
   /** Looks again at the poses near these tiles. */
   void refresh(const std::vector<Column>& changedTiles);
   void apply();
@@ -54,7 +50,7 @@ class VertexPool {
   Roadmap& m_roadmap;
   std::vector<Member> m_members;
   std::vector<std::size_t> m_free;
-  std::map<LeafId, std::vector<std::size_t>> m_ofLeaf;
+  std::map<Spot, std::vector<std::size_t>> m_ofSpot;
   std::vector<std::size_t> m_toInsert;
   std::vector<colored_graph::VertexId> m_toRemove;
   Counts m_counts;

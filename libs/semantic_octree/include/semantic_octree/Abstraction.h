@@ -57,6 +57,11 @@ class Abstraction {
   /** Leaves of the optimal tree in OctoMap's order (depth first). Visits inner nodes that the tree
    * expands, and its leaves. */
   std::vector<LeafCell> leaves() const;
+  /** Those of leaves() that have voxels in a box, in the same order; visits nothing outside.
+   * \param low, high keys of the box's lowest and highest voxels
+   * \param onlyOccupied leaves out, and does not visit, what is likelier free */
+  std::vector<LeafCell> leavesIn(const octomap::OcTreeKey& low, const octomap::OcTreeKey& high,
+                                 bool onlyOccupied) const;
   /** J of the optimal tree, see AbstractionMeasures. */
   double objective() const;
   /** Visits all inner nodes. */

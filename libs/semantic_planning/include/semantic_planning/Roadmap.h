@@ -2,6 +2,7 @@
 #include <colored_graph/ColoredGraph.h>
 #include <semantic_planning/EdgeChecker.h>
 #include <semantic_planning/NearestPoses.h>
+#include <semantic_planning/PosePair.h>
 #include <semantic_planning/RoadmapOptions.h>
 
 #include <optional>
@@ -14,8 +15,7 @@ namespace semantic_planning {
  *
  * An edge connects a with b if b is among the k nearest of a, or a among those of b; this holds
  * after every insertion and removal. Guests (start and goal) have edges to twice as many, but are
- * nobody's neighbors. Curves run from the smaller vertex id to the larger one (the one back may
- * differ, ReedsShepp::connect()). */
+ * nobody's neighbors. */
 class Roadmap {
  public:
   using VertexId = colored_graph::VertexId;
@@ -45,6 +45,8 @@ class Roadmap {
   /** For searches. */
   colored_graph::ColoredGraph& graph() { return m_graph; }
   const GroundPose& pose(VertexId v) const { return m_poses.at(v); }
+  /** What the edge connects. */
+  PosePair ends(EdgeId e) const;
   /** The edge's curve, from one of its ends to the other. */
   ReedsSheppCurve curve(EdgeId e, VertexId from) const;
   /** As colored_graph::SearchOptions::evaluate. */

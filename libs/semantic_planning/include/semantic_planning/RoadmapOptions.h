@@ -13,6 +13,8 @@ enum class GraphKind {
   Halton,          ///< a Halton sequence; samples off the ground or in the way are dropped
   HaltonDrivable,  ///< the same, and goes on until there are as many drivable vertices as asked for
   HaltonByClass,   ///< the same, with half as many vertices in each worse rank as in the one before
+  HaltonMap,       ///< as HaltonDrivable, but laid over the map's rectangle instead of the task's
+                   ///< region: the same poses come again in other tasks
   Full             ///< the ground of the finest map, on a grid
 };
 

@@ -1,0 +1,150 @@
+// What a planner keeps between plans must not show in its answers: they are those of a planner that
+// is made for each.
+#include <semantic_octree/Abstraction.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "PlannerFixture.h"
+
+using namespace semantic_planning;
+
+namespace {
+
+std::vector<double> numbersOf(const PlanResult& plan) {
+  std::vector<double> numbers = {
+      double(plan.status), double(plan.numVertices),       double(plan.numEdges),
+      plan.length,         double(plan.search.expansions), double(plan.search.edgesEvaluated)};
+  numbers.insert(numbers.end(), plan.cost.begin(), plan.cost.end());
+  numbers.insert(numbers.end(), plan.lengthPerClass.begin(), plan.lengthPerClass.end());
+  for (const PathPoint& p : plan.path)
+    for (const double n :
+         {p.x, p.y, p.z, p.heading, p.curvature, double(p.forward), double(p.classId), p.arcLength})
+      numbers.push_back(n);
+  return numbers;
+}
+
+using Numbers = std::set<std::vector<double>>;
+
+Numbers posesOf(const Roadmap& roadmap) {
+  Numbers poses;
+  for (colored_graph::VertexId v = 0; v < roadmap.graph().vertexIdEnd(); ++v)
+    if (roadmap.graph().containsVertex(v)) {
+      const GroundPose& g = roadmap.pose(v);
+      poses.insert({g.pose.x, g.pose.y, g.pose.phi, double(g.z)});
+    }
+  return poses;
+}
+
+std::size_t shared(const Numbers& l, const Numbers& r) {
+  return std::count_if(l.begin(), l.end(), [&](const auto& pose) { return r.count(pose) > 0; });
+}
+
+}  // namespace
+
+class RepeatedPlansTest : public PlannerTest {
+ protected:
+  double coordinate() { return double(m_random() % 260) / 10 - 13; }
+
+  /** Squares of another class that one scan does not always turn, walls, another compressed tree.
+   */
+  void changeMap() {
+    const double x = coordinate(), y = coordinate();
+    const auto id = m_random() % 2 ? PaintedWorld::Mud : PaintedWorld::Road;
+    for (unsigned i = m_random() % 3; i < 3; ++i) {
+      world.floor(x - 2, x + 2, y - 2, y + 2, id);
+      if (m_random() % 3 == 0) world.box(x, x + 1, y - 1, y + 1, 0, 1, PaintedWorld::Wall);
+      world.map();
+    }
+    if (m_random() % 3 == 0)
+      semantic_octree::Abstraction(world.map()).setAlpha(m_random() % 2 ? 0.005 : 0.1);
+  }
+  void expectAnswersOfFreshPlanners(int rounds) {
+    paintCorner();
+    options.roadmap.vertices = 200;
+    SemanticPlanner kept = planner();
+    for (int round = 0; round < rounds; ++round) {
+      const TPose2D from = round % 2 ? start : TPose2D(coordinate(), coordinate(), 1.0 * round);
+      const TPose2D to = round % 3 ? goal : TPose2D(coordinate(), coordinate(), 2.0 * round);
+      const PlanResult plan = kept.plan(from, to);
+      found += plan.found();
+      remembered += plan.edgesRemembered;
+      ASSERT_EQ(numbersOf(plan), numbersOf(planner().plan(from, to))) << "round " << round;
+      if (round % 4 == 3) continue;  // and once more in the same map
+      changeMap();
+      if (m_random() % 2) kept.update();
+      if (plan.found() && m_random() % 2) kept.replan(from);
+    }
+  }
+
+  int found = 0;
+  std::size_t remembered = 0;
+
+ private:
+  std::mt19937 m_random{5};
+};
+
+TEST_F(RepeatedPlansTest, planAsFreshPlannersDoWhateverWasBefore) {
+  expectAnswersOfFreshPlanners(16);
+  EXPECT_GT(found, 8);
+  EXPECT_GT(remembered, 100u);
+}
+
+TEST_F(RepeatedPlansTest, planAsFreshPlannersDoWithClassesThatTheGroundDoesNotTell) {
+  options.reading.kind = ClassReading::Kind::Expected;
+  expectAnswersOfFreshPlanners(8);
+  EXPECT_GT(remembered, 100u);
+}
+
+TEST_F(RepeatedPlansTest, planAsFreshPlannersDoWithClassesOfLeavesInMapsWithLargeOnes) {
+  options.roadmap.classOfLeaf = true;
+  options.edges = colored_graph::EdgeModel::Endpoint;
+  options.roadmap.spacing = 6.4;
+  auto abstraction = abstractionFor(order);
+  abstraction.blockSize = 12.8;
+  world.map().setAbstraction(abstraction);
+  expectAnswersOfFreshPlanners(8);
+}
+
+TEST_F(RepeatedPlansTest, planAsFreshPlannersDoOnTheFinestGround) {
+  options.roadmap.kind = GraphKind::Full;
+  expectAnswersOfFreshPlanners(6);
+}
+
+TEST_F(RepeatedPlansTest, anEdgeIsRememberedUntilTheGroundBelowItChanges) {
+  paintCorner();
+  SemanticPlanner p = planner();
+  const PlanResult first = p.plan(start, goal);
+  EXPECT_EQ(first.edgesRemembered, 0u);
+  const std::size_t asked = first.search.edgesEvaluated;
+  EXPECT_EQ(p.plan(start, goal).edgesRemembered, asked);
+  const PlanResult back = p.plan(goal, start);  // edges know no direction
+  EXPECT_GT(back.edgesRemembered, back.search.edgesEvaluated / 3);
+  world.box(10, 11, -6, -5, 0, 1, PaintedWorld::Wall).map();  // far from the path
+  const PlanResult third = p.plan(start, goal);
+  EXPECT_GT(third.edgesRemembered, 0u);
+  EXPECT_EQ(p.plan(start, goal).edgesRemembered, third.search.edgesEvaluated);
+  for (int i = 0; i < 6; ++i) world.floor(-15, 15, -15, 15, PaintedWorld::Mud).map();
+  EXPECT_EQ(p.plan(start, goal).edgesRemembered, 0u);
+}
+
+TEST_F(RepeatedPlansTest, theSamePosesComeAgainUnlessTheyBelongToTheTask) {
+  paintCorner();
+  options.roadmap.regionBuffer = 6;
+  for (const auto& [kind, again] : {std::pair(GraphKind::Compressed, true),
+                                    {GraphKind::HaltonMap, true},
+                                    {GraphKind::HaltonDrivable, false}}) {
+    options.roadmap.kind = kind;
+    SemanticPlanner p = planner();
+    p.plan(start, goal);
+    const Numbers before = posesOf(p.roadmap());
+    p.plan(start, {5, 10, 0});
+    const Numbers now = posesOf(p.roadmap());
+    EXPECT_EQ(now.size(), options.roadmap.vertices + 2);
+    if (again)
+      EXPECT_GT(shared(before, now), now.size() / 3) << nameOf(kind);
+    else
+      EXPECT_LT(shared(before, now), 10u);
+  }
+}
