@@ -7,19 +7,20 @@ using semantic_octree::SemanticOcTree;
 using Node = SemanticOcTree::Node;
 
 struct OpenRun {
-  int bottom, top;
+  int column, bottom, top;
   const Node* topNode;
 };
 
 class TileScan {
  public:
   TileScan(const SemanticOcTree& map, Column tile) : m_map(map), m_low(firstColumnOf(tile)) {
-    m_lowestFree.fill(kNeverFree);
+    m_last.fill(-1);
   }
 
   ColumnTile scan() {
     if (m_map.root()) visit(*m_map.root(), {0, 0}, 0, 1 << m_map.getTreeDepth());
-    return flatten();
+    sortRuns();
+    return std::move(m_tile);
   }
 
  private:
@@ -49,38 +50,51 @@ class TileScan {
       for (int x = std::max(low.x, m_low.x); x < xEnd; ++x) {
         const int column = indexInTile({x, y});
         if (occupied)
-          addRun(m_runs[column], {z, z + size - 1, &node});
+          addRun({column, z, z + size - 1, &node});
         else
-          m_lowestFree[column] = static_cast<std::uint16_t>(std::min<int>(m_lowestFree[column], z));
+          m_tile.lowestFree[column] =
+              static_cast<std::uint16_t>(std::min<int>(m_tile.lowestFree[column], z));
       }
   }
 
-  static void addRun(std::vector<OpenRun>& runs, const OpenRun& run) {
-    if (!runs.empty() && runs.back().top + 1 == run.bottom) {
-      runs.back().top = run.top;
-      runs.back().topNode = run.topNode;
+  void addRun(const OpenRun& run) {
+    int& last = m_last[run.column];
+    if (last >= 0 && m_runs[last].top + 1 == run.bottom) {
+      m_runs[last].top = run.top;
+      m_runs[last].topNode = run.topNode;
     } else {
-      runs.push_back(run);
+      last = static_cast<int>(m_runs.size());
+      m_runs.push_back(run);
     }
   }
 
-  ColumnTile flatten() const {
-    ColumnTile tile;
-    tile.lowestFree = m_lowestFree;
-    for (int column = 0; column < kTileColumns; ++column) {
-      for (const OpenRun& run : m_runs[column])
-        tile.runs.push_back({static_cast<std::uint16_t>(run.bottom),
-                             static_cast<std::uint16_t>(run.top),
-                             m_map.query(*run.topNode).likeliestClass});
-      tile.first[column + 1] = static_cast<std::uint16_t>(tile.runs.size());
-    }
-    return tile;
+  /** By column; within one they come from below. */
+  void sortRuns() {
+    for (const OpenRun& run : m_runs) ++m_tile.first[run.column + 1];
+    for (int column = 0; column < kTileColumns; ++column)
+      m_tile.first[column + 1] =
+          static_cast<std::uint16_t>(m_tile.first[column + 1] + m_tile.first[column]);
+    m_tile.runs.resize(m_runs.size());
+    auto next = m_tile.first;
+    for (const OpenRun& run : m_runs)
+      m_tile.runs[next[run.column]++] = {static_cast<std::uint16_t>(run.bottom),
+                                         static_cast<std::uint16_t>(run.top),
+                                         classOf(*run.topNode)};
+  }
+
+  /** SemanticOcTree::query()'s, without probabilities where one class is ahead of all. */
+  ClassId classOf(const Node& leaf) const {
+    if (!leaf.hasClassRecord()) return semantic_octree::kNoClass;
+    const SemanticOcTree::Belief belief = m_map.belief(leaf);
+    const bool isAhead = belief.count > 0 && belief.logOdds[0] > belief.rest;
+    return isAhead ? belief.ids[0] : m_map.query(leaf).likeliestClass;
   }
 
   const SemanticOcTree& m_map;
   const Column m_low;
-  std::array<std::vector<OpenRun>, kTileColumns> m_runs;
-  std::array<std::uint16_t, kTileColumns> m_lowestFree;
+  ColumnTile m_tile;
+  std::vector<OpenRun> m_runs;
+  std::array<int, kTileColumns> m_last;  ///< each column's run in m_runs
 };
 
 }  // namespace

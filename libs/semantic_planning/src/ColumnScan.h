@@ -3,6 +3,7 @@
 #include <semantic_planning/Surface.h>
 #include <semantic_planning/TileGrid.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -19,17 +20,19 @@ struct Run {
 
 constexpr std::uint16_t kNeverFree = 0xffff;
 
-/** What the map holds in a tile of columns. */
+/** What the map holds in a tile of columns; without anything said, that is nothing. */
 struct ColumnTile {
   std::vector<Run> runs;  ///< column by column, lowest first
   std::array<std::uint16_t, kTileColumns + 1> first{};
   /** Key of each column's lowest free voxel. */
-  std::array<std::uint16_t, kTileColumns> lowestFree{};
+  std::array<std::uint16_t, kTileColumns> lowestFree;
 
+  ColumnTile() { lowestFree.fill(kNeverFree); }
   const Run* begin(int column) const { return runs.data() + first[column]; }
   const Run* end(int column) const { return runs.data() + first[column + 1]; }
-  bool operator==(const ColumnTile& o) const {
-    return runs == o.runs && first == o.first && lowestFree == o.lowestFree;
+  bool sameColumn(int column, const ColumnTile& o) const {
+    return lowestFree[column] == o.lowestFree[column] &&
+           std::equal(begin(column), end(column), o.begin(column), o.end(column));
   }
 };
 

@@ -29,30 +29,49 @@ void checkOrder(const semantic_octree::SemanticOcTree& map,
                                 " and unknown ground counts as one");
 }
 
-/** Marks the tiles that a cube of voxels touches. */
-void mark(Column low, int edge, TileGrid<char>& marks) {
-  const Column first = tileOf(low), last = tileOf({low.x + edge - 1, low.y + edge - 1});
-  if (std::max(last.x - first.x, last.y - first.y) > 1000)
-    throw std::invalid_argument("an occupied cell of the map is too large to be ground");
-  for (int y = first.y; y <= last.y; ++y)
-    for (int x = first.x; x <= last.x; ++x) marks.at({x, y}) = true;
-}
+/** Finds the tiles with anything occupied, and those within a margin of columns: holes may be
+ * bridged there. */
+class TileSearch {
+ public:
+  TileSearch(const semantic_octree::SemanticOcTree& map, int margin)
+      : m_map(map), m_margin(margin) {}
 
-/** The tiles with anything occupied, and those next to them: holes may be bridged there. */
-std::vector<Column> tilesOf(const semantic_octree::SemanticOcTree& map) {
-  TileGrid<char> marks;
-  for (auto it = map.begin_leafs(), end = map.end_leafs(); it != end; ++it) {
-    if (it->getLogOdds() <= 0) continue;
-    const int edge = 1 << (map.getTreeDepth() - it.getDepth());
-    const auto low = it.getIndexKey();
-    mark({low[0] - kTileEdge, low[1] - kTileEdge}, edge + 2 * kTileEdge, marks);
+  std::vector<Column> find() {
+    if (m_map.root()) visit(*m_map.root(), {0, 0}, 1 << m_map.getTreeDepth());
+    std::vector<Column> tiles;
+    m_marks.forEach([&](Column tile, char marked) {
+      if (marked) tiles.push_back(tile);
+    });
+    return tiles;
   }
-  std::vector<Column> tiles;
-  marks.forEach([&](Column tile, char marked) {
-    if (marked) tiles.push_back(tile);
-  });
-  return tiles;
-}
+
+ private:
+  using Node = semantic_octree::SemanticOcTree::Node;
+
+  /** \param low its lowest keys \param size its edge */
+  void visit(const Node& node, Column low, int size) {
+    if (node.getLogOdds() <= 0) return;  // an inner node's is its most occupied leaf's
+    if (node.isLeaf() || size == kTileEdge) return mark(low, size);
+    const int half = size / 2;
+    for (unsigned i = 0; i < 8; ++i)
+      if (m_map.nodeChildExists(&node, i))
+        visit(*m_map.getNodeChild(&node, i),
+              {low.x + (i & 1 ? half : 0), low.y + (i & 2 ? half : 0)}, half);
+  }
+
+  void mark(Column low, int size) {
+    const Column first = tileOf({low.x - m_margin, low.y - m_margin});
+    const Column last = tileOf({low.x + size - 1 + m_margin, low.y + size - 1 + m_margin});
+    if (std::max(last.x - first.x, last.y - first.y) > 1000)
+      throw std::invalid_argument("an occupied cell of the map is too large to be ground");
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x) m_marks.at({x, y}) = true;
+  }
+
+  const semantic_octree::SemanticOcTree& m_map;
+  const int m_margin;
+  TileGrid<char> m_marks;
+};
 
 }  // namespace
 
@@ -81,7 +100,7 @@ Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions&
   m_step = shape.step;
   m_farthestRoom = shape.farthestRoom;
   m_tiles = std::make_unique<GroundTiles>(map, shape);
-  m_tiles->update(tilesOf(map));
+  m_tiles->update(TileSearch(map, std::max(kTileEdge, reachOfBridges(shape))).find());
 }
 
 Ground::~Ground() = default;

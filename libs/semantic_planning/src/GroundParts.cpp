@@ -34,28 +34,35 @@ int climbableIndex(const SurfaceTile& tile, int column, int z, int step) {
   return -1;
 }
 
-}  // namespace
-
-void markParts(Column tile, SurfaceTile& marked, const GroundShape& shape) {
-  std::vector<std::size_t> parent(marked.surfaces.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  forColumnsOf(tile, [&](Column c) {
-    const int index = indexInTile(c);
-    for (int i = marked.first[index]; i < marked.first[index + 1]; ++i)
-      for (const Column& d : kForward) {
-        const Column next{c.x + d.x, c.y + d.y};
-        if (!marked.surfaces[i].drivable || !(tileOf(next) == tile)) continue;
-        const int j = climbableIndex(marked, indexInTile(next), marked.surfaces[i].z, shape.step);
-        if (j >= 0) join(parent, i, j);
-      }
-  });
-  std::vector<std::uint16_t> number(parent.size());
+/** From 0 on, in the order of their first surfaces. \return the columns whose numbers changed. */
+ColumnBox numberParts(Column tile, std::vector<std::size_t>& parent, SurfaceTile& marked) {
+  ColumnBox changed;
   std::uint16_t parts = 0;
-  for (std::size_t i = 0; i < parent.size(); ++i) {
+  std::vector<std::uint16_t> number(parent.size());
+  forSurfacesOf(tile, marked, [&](Column c, std::size_t i) {
     const std::size_t root = rootOf(parent, i);
     number[i] = root == i ? parts++ : number[root];
+    if (marked.surfaces[i].part != number[i]) changed.add(c);
     marked.surfaces[i].part = number[i];
-  }
+  });
+  return changed;
+}
+
+}  // namespace
+
+ColumnBox markParts(Column tile, SurfaceTile& marked, const GroundShape& shape) {
+  std::vector<std::size_t> parent(marked.surfaces.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  forSurfacesOf(tile, marked, [&](Column c, std::size_t i) {
+    if (!marked.surfaces[i].drivable) return;
+    for (const Column& d : kForward) {
+      const Column next{c.x + d.x, c.y + d.y};
+      if (!(tileOf(next) == tile)) continue;
+      const int j = climbableIndex(marked, indexInTile(next), marked.surfaces[i].z, shape.step);
+      if (j >= 0) join(parent, i, j);
+    }
+  });
+  return numberParts(tile, parent, marked);
 }
 
 GroundParts::GroundParts(const SurfaceGrid& surfaces, const GroundShape& shape) {

@@ -1,4 +1,5 @@
 #pragma once
+#include "ColumnBox.h"
 #include "GroundShape.h"
 #include "SurfaceTile.h"
 
@@ -6,8 +7,9 @@
 
 namespace semantic_planning {
 
-/** Sets Surface::part: which drivable surfaces the wheels connect within the tile. */
-void markParts(Column tile, SurfaceTile& marked, const GroundShape& shape);
+/** Sets Surface::part: which drivable surfaces the wheels connect within the tile.
+ * \return the columns where it changed. */
+ColumnBox markParts(Column tile, SurfaceTile& marked, const GroundShape& shape);
 
 /** Which parts of tiles belong together. */
 class GroundParts {

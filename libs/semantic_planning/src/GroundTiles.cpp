@@ -2,82 +2,137 @@
 
 #include <algorithm>
 
-#include "Room.h"
 #include "Slope.h"
 
 namespace semantic_planning {
 namespace {
 
-/** The tiles that hold columns within `reach` of one of these tiles, sorted. */
-std::vector<Column> tilesAround(const std::vector<Column>& tiles, int reach) {
-  const int ring = (reach + kTileEdge - 1) / kTileEdge;
-  std::vector<Column> around;
-  for (const Column& t : tiles)
-    for (int y = -ring; y <= ring; ++y)
-      for (int x = -ring; x <= ring; ++x) around.push_back({t.x + x, t.y + y});
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
-  return around;
-}
-
-/** Those for which the stage answers that it made something else than before. */
+/** What a stage changed in some tiles. */
 template <class Stage>
-std::vector<Column> changedBy(const std::vector<Column>& tiles, Stage stage) {
-  std::vector<Column> changed;
+std::vector<ColumnBox> changedBy(const std::vector<Column>& tiles, Stage stage) {
+  std::vector<ColumnBox> changed;
   for (const Column& tile : tiles)
-    if (stage(tile)) changed.push_back(tile);
+    if (const ColumnBox box = stage(tile); !box.empty()) changed.push_back(box);
   return changed;
 }
 
-template <class Grid, class Tile>
-bool replace(Grid& grid, Column tile, Tile value) {
-  const Tile* before = grid.find(tile);
-  if (before ? *before == value : value == Tile()) return false;
-  grid.at(tile) = std::move(value);
-  return true;
+/** The columns of a tile for which f(index) is true. */
+template <class F>
+ColumnBox columnsWhere(Column tile, F f) {
+  ColumnBox box;
+  forColumnsOf(tile, [&](Column c) {
+    if (f(indexInTile(c))) box.add(c);
+  });
+  return box;
+}
+
+/** The tile of a grid, which is set only if there is anything to be in it. */
+template <class T>
+ColumnBox replace(TileGrid<T>& grid, Column tile, T value) {
+  static const T none{};
+  const T* before = grid.find(tile);
+  const ColumnBox changed =
+      columnsWhere(tile, [&](int i) { return !value.sameColumn(i, before ? *before : none); });
+  if (!changed.empty()) grid.at(tile) = std::move(value);
+  return changed;
+}
+
+void append(std::vector<ColumnBox>& boxes, const std::vector<ColumnBox>& more) {
+  boxes.insert(boxes.end(), more.begin(), more.end());
+}
+
+std::vector<Column> tilesOf(const std::vector<ColumnBox>& boxes) { return tilesWithin(boxes, 0); }
+
+/** The tiles that a bridge's hole crosses, with repetitions. */
+void addCrossed(const Bridge& bridge, std::vector<Column>& tiles) {
+  for (int i = 1; i < bridge.columns; ++i) {
+    const Column tile = tileOf(bridge.column(i));
+    if (i == 1 || !(tile == tiles.back())) tiles.push_back(tile);
+  }
+}
+
+/** Lets surfaces that stay keep what later stages found out about them. */
+void keepMarks(const SurfaceTile& before, SurfaceTile& tile) {
+  for (int column = 0; column < kTileColumns; ++column) {
+    const SurfaceRange kept = before.column(column);
+    if (tile.sameColumn(column, before))
+      std::copy(kept.begin(), kept.end(), tile.surfaces.begin() + tile.first[column]);
+  }
 }
 
 }  // namespace
 
 std::vector<Column> GroundTiles::update(const std::vector<Column>& tiles) {
-  const auto scanned = changedBy(tiles, [this](Column t) { return scan(t); });
-  const auto bridged = changedBy(tilesAround(scanned, static_cast<int>(m_shape.widestGap) + 1),
-                                 [this](Column t) { return bridge(t); });
-  auto sloped =
-      changedBy(tilesAround(bridged, m_shape.baseline), [this](Column t) { return markSlopes(t); });
-  auto changed = changedBy(tilesAround(sloped, m_shape.farthestRoom + 1),
-                           [this](Column t) { return finish(t); });
+  std::vector<ColumnBox> changed = updateSurfaces(tiles);
+  append(changed, updateRoom(changed));
   if (!changed.empty()) m_parts.reset();
+  return tilesOf(changed);
+}
+
+std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles) {
+  std::vector<Column> refilled;
+  const auto scanned = changedBy(tiles, [&](Column t) { return scan(t, refilled); });
+  const int reach = reachOfBridges(m_shape);
+  for (const Column& t : tilesWithin(scanned, {reach, reach, reach, 0})) findBridges(t, refilled);
+  sortOut(refilled);
+  auto changed = changedBy(refilled, [&](Column t) { return fill(t); });
+  const auto sloped = tilesWithin(changed, m_shape.baseline);
+  append(changed, changedBy(sloped, [&](Column t) { return markSlopes(t); }));
   return changed;
 }
 
-bool GroundTiles::scan(Column tile) {
+std::vector<ColumnBox> GroundTiles::updateRoom(const std::vector<ColumnBox>& changed) {
+  const auto obstacles =
+      changedBy(tilesWithin(changed, 1), [&](Column t) { return findObstacles(t); });
+  const std::vector<Column> tiles = tilesOf(changed);
+  std::vector<Column> measured = tilesWithin(obstacles, m_shape.farthestRoom);
+  measured.insert(measured.end(), tiles.begin(), tiles.end());
+  sortOut(measured);
+  auto finished = changedBy(measured, [&](Column t) { return measureRoom(t); });
+  append(finished, changedBy(tiles, [&](Column t) { return connect(t); }));
+  return finished;
+}
+
+ColumnBox GroundTiles::scan(Column tile, std::vector<Column>& refilled) {
   ColumnTile columns = scanColumns(m_map, tile);
-  SurfaceTile measured = measuredSurfaces(columns, m_shape);
-  const bool otherColumns = replace(m_columns, tile, std::move(columns));
-  const bool otherSurfaces = replace(m_measured, tile, std::move(measured));
-  return otherColumns || otherSurfaces;
+  if (!replace(m_measured, tile, measuredSurfaces(columns, m_shape)).empty())
+    refilled.push_back(tile);
+  return replace(m_columns, tile, std::move(columns));
 }
 
-bool GroundTiles::bridge(Column tile) {
-  return replace(m_bridged, tile, bridgedSurfaces(m_columns, m_measured, tile, m_shape));
+void GroundTiles::findBridges(Column tile, std::vector<Column>& refilled) {
+  std::vector<Bridge> found = bridgesFrom(m_columns, m_measured, tile, m_shape), different;
+  const std::vector<Bridge>* before = m_bridges.find(tile);
+  const std::vector<Bridge> none;
+  std::set_symmetric_difference(found.begin(), found.end(), (before ? *before : none).begin(),
+                                (before ? *before : none).end(), std::back_inserter(different));
+  for (const Bridge& bridge : different) addCrossed(bridge, refilled);
+  if (!different.empty()) m_bridges.at(tile) = std::move(found);
 }
 
-bool GroundTiles::markSlopes(Column tile) {
-  const SurfaceTile* bridged = m_bridged.find(tile);
-  if (!bridged) return false;
-  SurfaceTile marked = *bridged;
-  markDrivable(m_bridged, tile, marked, m_shape);
-  return replace(m_sloped, tile, std::move(marked));
+ColumnBox GroundTiles::fill(Column tile) {
+  SurfaceTile filled = bridgedSurfaces(m_bridges, m_measured, tile, m_shape);
+  if (const SurfaceTile* before = m_surfaces.find(tile)) keepMarks(*before, filled);
+  return replace(m_surfaces, tile, std::move(filled));
 }
 
-bool GroundTiles::finish(Column tile) {
-  const SurfaceTile* sloped = m_sloped.find(tile);
-  if (!sloped) return false;
-  SurfaceTile finished = *sloped;
-  measureRoom(m_sloped, tile, finished, m_shape);
-  markParts(tile, finished, m_shape);
-  return replace(m_surfaces, tile, std::move(finished));
+ColumnBox GroundTiles::markSlopes(Column tile) {
+  SurfaceTile* marked = m_surfaces.find(tile);
+  return marked ? markDrivable(m_surfaces, tile, *marked, m_shape) : ColumnBox();
+}
+
+ColumnBox GroundTiles::findObstacles(Column tile) {
+  return replace(m_obstacles, tile, obstaclesIn(m_surfaces, tile, m_shape));
+}
+
+ColumnBox GroundTiles::measureRoom(Column tile) {
+  SurfaceTile* measured = m_surfaces.find(tile);
+  return measured ? m_roomMeter.measure(m_obstacles, tile, *measured) : ColumnBox();
+}
+
+ColumnBox GroundTiles::connect(Column tile) {
+  SurfaceTile* connected = m_surfaces.find(tile);
+  return connected ? markParts(tile, *connected, m_shape) : ColumnBox();
 }
 
 const GroundParts& GroundTiles::parts() const {

@@ -1,51 +1,12 @@
 #include "Room.h"
 
 #include <algorithm>
-#include <tuple>
+#include <cstdlib>
 
 namespace semantic_planning {
 namespace {
 
-/** A column where the vehicle must not be, for surfaces at about the height z. */
-struct Obstacle {
-  Column column;
-  int z;
-  bool operator<(const Obstacle& o) const { return std::tie(column, z) < std::tie(o.column, o.z); }
-  bool operator==(const Obstacle& o) const { return column == o.column && z == o.z; }
-};
-
-class Obstacles {
- public:
-  Obstacles(const SurfaceGrid& surfaces, const GroundShape& shape)
-      : m_surfaces(surfaces), m_shape(shape) {}
-
-  /** All that are next to free ground and no farther from the tile than the farthest room. */
-  std::vector<Obstacle> around(Column tile) {
-    forColumnsAround(tile, m_shape.farthestRoom, [&](Column c) {
-      for (const Surface& s : surfacesAt(m_surfaces, c)) addAround(c, s);
-    });
-    std::sort(m_found.begin(), m_found.end());
-    m_found.erase(std::unique(m_found.begin(), m_found.end()), m_found.end());
-    return std::move(m_found);
-  }
-
- private:
-  bool isFree(const Surface& s) const { return s.drivable && !m_shape.keepOff[s.classId]; }
-
-  void addAround(Column c, const Surface& s) {
-    if (!isFree(s)) return m_found.push_back({c, s.z});
-    for (int y = -1; y <= 1; ++y)
-      for (int x = -1; x <= 1; ++x) {
-        const Column next{c.x + x, c.y + y};
-        if (!surfaceNear(m_surfaces, next, s.z, m_shape.step)) m_found.push_back({next, s.z});
-      }
-  }
-
-  const SurfaceGrid& m_surfaces;
-  const GroundShape& m_shape;
-  std::vector<Obstacle> m_found;
-};
-
+/** Columns between two columns along an axis. */
 int between(int a, int b) { return std::max(0, std::abs(a - b) - 1); }
 
 /** How far ground may have gone up or down on the way: what differs by more is another level. */
@@ -53,34 +14,114 @@ int levelTolerance(int columns, const GroundShape& shape) {
   return std::min(shape.height, 2 * shape.step + 1 + static_cast<int>(shape.rise * columns));
 }
 
-/** Lowers the room of the tile's surfaces near an obstacle. */
-void stamp(const Obstacle& o, Column tile, SurfaceTile& measured, const GroundShape& shape) {
-  const Column low = firstColumnOf(tile);
-  const int reach = shape.farthestRoom;
-  const int xEnd = std::min(low.x + kTileEdge, o.column.x + reach + 1);
-  const int yEnd = std::min(low.y + kTileEdge, o.column.y + reach + 1);
-  for (int y = std::max(low.y, o.column.y - reach); y < yEnd; ++y)
-    for (int x = std::max(low.x, o.column.x - reach); x < xEnd; ++x) {
-      const int dx = between(x, o.column.x), dy = between(y, o.column.y);
-      const int room2 = dx * dx + dy * dy;
-      const int tolerance = levelTolerance(std::max(dx, dy) + 1, shape);
-      const int index = indexInTile({x, y});
-      for (int i = measured.first[index]; i < measured.first[index + 1]; ++i) {
-        Surface& s = measured.surfaces[i];
-        if (room2 < s.room2 && std::abs(int(s.z) - o.z) <= tolerance)
-          s.room2 = static_cast<std::uint16_t>(room2);
-      }
+/** For each column of a tile the squared distance to the nearest column with any obstacle, however
+ * high; at most farthest squared. First within rows, then across them. */
+class FlatDistances {
+ public:
+  FlatDistances(const TileWindow<ObstacleTile>& obstacles, Column tile, int farthest)
+      : m_farthest(farthest), m_inRow((kTileEdge + 2 * farthest) * kTileEdge, farthest) {
+    const Column low = firstColumnOf(tile);
+    for (int row = 0; row < kTileEdge + 2 * farthest; ++row)
+      measureRow(obstacles, {low.x, low.y - farthest + row}, &m_inRow[row * kTileEdge]);
+    if (m_any) measureAcross();
+  }
+
+  bool any() const { return m_any; }
+  int operator[](int column) const { return m_squared[column]; }
+
+ private:
+  /** Each obstacle of the row lowers what is near it. \param low the row's first column in the tile
+   */
+  void measureRow(const TileWindow<ObstacleTile>& obstacles, Column low, int* row) {
+    for (int x = -m_farthest; x < kTileEdge + m_farthest; ++x) {
+      const Column c{low.x + x, low.y};
+      if (!obstacles.around(c).any(indexInTile(c))) continue;
+      m_any = true;
+      const int end = std::min(kTileEdge, x + m_farthest + 1);
+      for (int to = std::max(0, x - m_farthest); to < end; ++to)
+        row[to] = std::min(row[to], between(x, to));
     }
-}
+  }
+
+  void measureAcross() {
+    m_squared.fill(m_farthest * m_farthest);
+    for (int y = 0; y < kTileEdge; ++y)
+      for (int row = y; row <= y + 2 * m_farthest; ++row) {
+        const int dy = between(row, y + m_farthest);
+        const int* inRow = &m_inRow[row * kTileEdge];
+        int* squared = &m_squared[y * kTileEdge];
+        for (int x = 0; x < kTileEdge; ++x)
+          squared[x] = std::min(squared[x], dy * dy + inRow[x] * inRow[x]);
+      }
+  }
+
+  const int m_farthest;
+  bool m_any = false;
+  std::vector<int> m_inRow;
+  std::array<int, kTileColumns> m_squared;
+};
 
 }  // namespace
 
-void measureRoom(const SurfaceGrid& surfaces, Column tile, SurfaceTile& measured,
-                 const GroundShape& shape) {
-  const int farthest = shape.farthestRoom * shape.farthestRoom;
-  for (Surface& s : measured.surfaces) s.room2 = static_cast<std::uint16_t>(farthest);
-  if (measured.surfaces.empty()) return;
-  for (const Obstacle& o : Obstacles(surfaces, shape).around(tile)) stamp(o, tile, measured, shape);
+/** A tile's surroundings. */
+class RoomMeter::Tile {
+ public:
+  Tile(const RoomMeter& meter, const ObstacleGrid& obstacles, Column tile)
+      : m_meter(meter),
+        m_obstacles(obstacles, tile, meter.m_farthest),
+        m_flat(m_obstacles, tile, meter.m_farthest) {}
+
+  /** From the distance on at which the first obstacle of any height is. */
+  int room2(Column c, int z) const {
+    const int farthest = m_meter.m_farthest * m_meter.m_farthest;
+    if (!m_flat.any() || m_flat[indexInTile(c)] == farthest) return farthest;
+    const std::vector<Place>& places = m_meter.m_places;
+    const auto first = static_cast<std::ptrdiff_t>(m_meter.m_firstAt[m_flat[indexInTile(c)]]);
+    const auto nearest = std::find_if(places.begin() + first, places.end(), [&](const Place& p) {
+      return isObstacle({c.x + p.x, c.y + p.y}, z, p.tolerance);
+    });
+    return nearest == places.end() ? farthest : nearest->room2;
+  }
+
+ private:
+  bool isObstacle(Column c, int z, int tolerance) const {
+    const ObstacleTile& tile = m_obstacles.around(c);
+    const int column = indexInTile(c);
+    return std::any_of(tile.begin(column), tile.end(column),
+                       [&](int height) { return std::abs(height - z) <= tolerance; });
+  }
+
+  const RoomMeter& m_meter;
+  const TileWindow<ObstacleTile> m_obstacles;
+  const FlatDistances m_flat;
+};
+
+RoomMeter::RoomMeter(const GroundShape& shape) : m_farthest(shape.farthestRoom) {
+  const int farthest2 = m_farthest * m_farthest;
+  for (int y = -m_farthest; y <= m_farthest; ++y)
+    for (int x = -m_farthest; x <= m_farthest; ++x) {
+      const int dx = between(x, 0), dy = between(y, 0);
+      if (dx * dx + dy * dy < farthest2)
+        m_places.push_back({x, y, dx * dx + dy * dy, levelTolerance(std::max(dx, dy) + 1, shape)});
+    }
+  std::stable_sort(m_places.begin(), m_places.end(),
+                   [](const Place& l, const Place& r) { return l.room2 < r.room2; });
+  m_firstAt.resize(farthest2);
+  for (std::size_t i = m_places.size(); i-- > 0;) m_firstAt[m_places[i].room2] = i;
+}
+
+ColumnBox RoomMeter::measure(const ObstacleGrid& obstacles, Column tile,
+                             SurfaceTile& measured) const {
+  ColumnBox changed;
+  if (measured.surfaces.empty()) return changed;
+  const Tile surroundings(*this, obstacles, tile);
+  forSurfacesOf(tile, measured, [&](Column c, std::size_t i) {
+    Surface& s = measured.surfaces[i];
+    const auto room2 = static_cast<std::uint16_t>(surroundings.room2(c, s.z));
+    if (s.room2 != room2) changed.add(c);
+    s.room2 = room2;
+  });
+  return changed;
 }
 
 }  // namespace semantic_planning

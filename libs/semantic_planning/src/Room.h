@@ -1,12 +1,33 @@
 #pragma once
-#include "GroundShape.h"
-#include "SurfaceTile.h"
+#include <vector>
+
+#include "ColumnBox.h"
+#include "Obstacles.h"
 
 namespace semantic_planning {
 
-/** Sets Surface::room2 of a tile: exact, from the surfaces within the farthest room.
- * \param surfaces with `drivable` set. */
-void measureRoom(const SurfaceGrid& surfaces, Column tile, SurfaceTile& measured,
-                 const GroundShape& shape);
+/** Measures Surface::room2: from obstacles at about a surface's height, not farther than the
+ * farthest room. Exact. */
+class RoomMeter {
+ public:
+  explicit RoomMeter(const GroundShape& shape);
+
+  /** Sets the room of a tile's surfaces. \return the columns where it changed. */
+  ColumnBox measure(const ObstacleGrid& obstacles, Column tile, SurfaceTile& measured) const;
+
+ private:
+  class Tile;
+
+  /** A column to look at, seen from the surface's. */
+  struct Place {
+    int x, y;
+    int room2;
+    int tolerance;  ///< how far ground may have gone up or down on the way
+  };
+
+  int m_farthest;
+  std::vector<Place> m_places;         ///< nearest first
+  std::vector<std::size_t> m_firstAt;  ///< of m_places, by room2
+};
 
 }  // namespace semantic_planning

@@ -2,9 +2,12 @@
 #include <semantic_planning/Surface.h>
 #include <semantic_planning/TileGrid.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <vector>
+
+#include "TileWindow.h"
 
 namespace semantic_planning {
 
@@ -16,24 +19,42 @@ struct SurfaceTile {
   SurfaceRange column(int index) const {
     return {surfaces.data() + first[index], surfaces.data() + first[index + 1]};
   }
-  bool operator==(const SurfaceTile& o) const { return surfaces == o.surfaces && first == o.first; }
+  /** The same places, whatever else is known of them. */
+  bool sameColumn(int index, const SurfaceTile& o) const {
+    const SurfaceRange l = column(index), r = o.column(index);
+    return std::equal(l.begin(), l.end(), r.begin(), r.end(),
+                      [](const Surface& a, const Surface& b) {
+                        return a.z == b.z && a.classId == b.classId && a.bridged == b.bridged;
+                      });
+  }
 };
 
 using SurfaceGrid = TileGrid<SurfaceTile>;
+using SurfaceWindow = TileWindow<SurfaceTile>;
 
 inline SurfaceRange surfacesAt(const SurfaceGrid& grid, Column c) {
   const SurfaceTile* tile = grid.find(tileOf(c));
   return tile ? tile->column(indexInTile(c)) : SurfaceRange();
 }
 
-/** The column's surface nearest to z, at most `tolerance` off, the lower one on a tie; or null. */
-inline const Surface* surfaceNear(const SurfaceGrid& grid, Column c, int z, int tolerance) {
+inline SurfaceRange surfacesAt(const SurfaceWindow& window, Column c) {
+  return window.around(c).column(indexInTile(c));
+}
+
+/** Of a column's surfaces the nearest to z, at most `tolerance` off, the lower one on a tie; or
+ * null. */
+inline const Surface* surfaceNear(SurfaceRange column, int z, int tolerance) {
   const Surface* best = nullptr;
-  for (const Surface& s : surfacesAt(grid, c)) {
+  for (const Surface& s : column) {
     const int difference = std::abs(int(s.z) - z);
     if (difference <= tolerance && (!best || difference < std::abs(int(best->z) - z))) best = &s;
   }
   return best;
+}
+
+template <class Surfaces>
+const Surface* surfaceNear(const Surfaces& surfaces, Column c, int z, int tolerance) {
+  return surfaceNear(surfacesAt(surfaces, c), z, tolerance);
 }
 
 /** f(column) for all columns of a tile. */
@@ -44,12 +65,13 @@ void forColumnsOf(Column tile, F f) {
     for (int x = 0; x < kTileEdge; ++x) f(Column{low.x + x, low.y + y});
 }
 
-/** f(column) for all columns of a tile and those at most `margin` columns outside of it. */
+/** f(column, index) for all surfaces of a tile, in their order. */
 template <class F>
-void forColumnsAround(Column tile, int margin, F f) {
-  const Column low = firstColumnOf(tile);
-  for (int y = -margin; y < kTileEdge + margin; ++y)
-    for (int x = -margin; x < kTileEdge + margin; ++x) f(Column{low.x + x, low.y + y});
+void forSurfacesOf(Column tile, const SurfaceTile& surfaces, F f) {
+  forColumnsOf(tile, [&](Column c) {
+    const int index = indexInTile(c);
+    for (std::size_t i = surfaces.first[index]; i < surfaces.first[index + 1]; ++i) f(c, i);
+  });
 }
 
 }  // namespace semantic_planning

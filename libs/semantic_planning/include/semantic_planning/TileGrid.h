@@ -19,9 +19,13 @@ constexpr int kTileColumns = kTileEdge * kTileEdge;
 
 inline Column tileOf(Column c) { return {c.x >> 4, c.y >> 4}; }
 inline Column firstColumnOf(Column tile) { return {tile.x * kTileEdge, tile.y * kTileEdge}; }
+inline Column lastColumnOf(Column tile) {
+  return {tile.x * kTileEdge + kTileEdge - 1, tile.y * kTileEdge + kTileEdge - 1};
+}
 inline int indexInTile(Column c) { return (c.y & 15) * kTileEdge + (c.x & 15); }
 
-/** One T for every tile within a rectangle, which grows as tiles are set. */
+/** One T for every tile within a rectangle, which grows as tiles are set: by more than needed, so
+ * that it seldom does. */
 template <class T>
 class TileGrid {
  public:
@@ -31,9 +35,10 @@ class TileGrid {
     if (x < 0 || y < 0 || x >= m_width || y >= m_height) return nullptr;
     return &m_tiles[static_cast<std::size_t>(y) * m_width + x];
   }
+  T* find(Column tile) { return const_cast<T*>(static_cast<const TileGrid*>(this)->find(tile)); }
   T& at(Column tile) {
     if (!find(tile)) growTo(tile);
-    return const_cast<T&>(*find(tile));
+    return *find(tile);
   }
 
   /** f(tile, T&) for all tiles of the rectangle. */
@@ -49,16 +54,22 @@ class TileGrid {
   }
 
  private:
+  /** Makes a range of `size` from `first` on hold `at`. */
+  static void stretch(int at, int& first, int& size) {
+    if (size == 0) first = at;
+    const int spare = size / 4, end = first + size;
+    const int low = at < first ? at - spare : first;
+    size = (at < end ? end : at + 1 + spare) - low;
+    first = low;
+  }
+
   void growTo(Column tile) {
     TileGrid grown;
-    const bool none = m_tiles.empty();
-    const Column low{none ? tile.x : std::min(tile.x, m_first.x),
-                     none ? tile.y : std::min(tile.y, m_first.y)};
-    const Column high{none ? tile.x : std::max(tile.x, m_first.x + m_width - 1),
-                      none ? tile.y : std::max(tile.y, m_first.y + m_height - 1)};
-    grown.m_first = low;
-    grown.m_width = high.x - low.x + 1;
-    grown.m_height = high.y - low.y + 1;
+    grown.m_first = m_first;
+    grown.m_width = m_width;
+    grown.m_height = m_height;
+    stretch(tile.x, grown.m_first.x, grown.m_width);
+    stretch(tile.y, grown.m_first.y, grown.m_height);
     grown.m_tiles.resize(static_cast<std::size_t>(grown.m_width) * grown.m_height);
     forEach([&](Column t, T& value) { grown.at(t) = std::move(value); });
     *this = std::move(grown);

@@ -1,0 +1,108 @@
+#include "Bridges.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace semantic_planning {
+namespace {
+
+class BridgeSearch {
+ public:
+  BridgeSearch(const ColumnGrid& columns, const SurfaceGrid& measured, Column tile,
+               const GroundShape& shape)
+      : m_columns(columns, tile, reachOfBridges(shape)),
+        m_measured(measured, tile, reachOfBridges(shape)),
+        m_shape(shape) {}
+
+  std::vector<Bridge> from(Column tile) {
+    forColumnsOf(tile, [&](Column c) {
+      const SurfaceRange column = surfacesAt(m_measured, c);
+      if (column.empty()) return;
+      for (int d = 0; d < int(kDirections.size()); ++d)
+        for (const Surface& s : column) lookAcross(c, s, d);
+    });
+    return std::move(m_found);
+  }
+
+ private:
+  /** From a surface whose neighbor is missing to the next surface on the line. */
+  void lookAcross(Column from, const Surface& s, int direction) {
+    const double length = kDirections[direction].length;
+    Bridge bridge;
+    bridge.from = from;
+    bridge.direction = direction;
+    bridge.z = s.z;
+    bridge.classId = s.classId;
+    if (surfaceNear(m_measured, bridge.column(1), s.z, m_shape.step)) return;
+    while (!isInTheWay(bridge) && bridge.columns * length <= m_shape.widestGap) {
+      const int n = ++bridge.columns;
+      const int tolerance = m_shape.step + static_cast<int>(n * length * m_shape.rise);
+      const Surface* other = surfaceNear(m_measured, bridge.column(n), s.z, tolerance);
+      if (!other) continue;
+      bridge.otherZ = other->z;
+      bridge.otherClass = other->classId;
+      if (isOverHole(bridge)) m_found.push_back(bridge);
+      return;
+    }
+  }
+
+  /** Whether a bridge cannot go on over the column that it has come to, however high its other end
+   * may be. */
+  bool isInTheWay(const Bridge& begun) const {
+    const int n = begun.columns;
+    const double rise = kDirections[begun.direction].length * m_shape.rise;
+    const int change = static_cast<int>(std::ceil(n * rise + m_shape.step + 0.5));
+    return isInTheWay(begun.column(n), begun.z - change, begun.z + change);
+  }
+
+  bool isOverHole(const Bridge& bridge) const {
+    for (int i = 1; i < bridge.columns; ++i)
+      if (isInTheWay(bridge.column(i), bridge.height(i), bridge.height(i))) return false;
+    return true;
+  }
+
+  /** Whether, for every height from `low` to `high`, the column has something that stands in the
+   * way, or free space below. */
+  bool isInTheWay(Column c, int low, int high) const {
+    const ColumnTile& tile = m_columns.around(c);
+    const int column = indexInTile(c);
+    if (tile.lowestFree[column] < low - m_shape.step) return true;
+    return std::any_of(tile.begin(column), tile.end(column), [&](const Run& run) {
+      return run.bottom <= low + m_shape.height && run.top >= high - m_shape.step;
+    });
+  }
+
+  const TileWindow<ColumnTile> m_columns;
+  const SurfaceWindow m_measured;
+  const GroundShape& m_shape;
+  std::vector<Bridge> m_found;
+};
+
+}  // namespace
+
+int Bridge::height(int i) const {
+  return z + static_cast<int>(std::lround(double(int(otherZ) - z) * i / columns));
+}
+
+SurfaceTile measuredSurfaces(const ColumnTile& columns, const GroundShape& shape) {
+  SurfaceTile tile;
+  for (int column = 0; column < kTileColumns; ++column) {
+    for (const Run* run = columns.begin(column); run != columns.end(column); ++run) {
+      const Run* above = run + 1;
+      if (above != columns.end(column) && above->bottom <= run->top + shape.height) continue;
+      Surface s;
+      s.z = run->top;
+      s.classId = run->topClass;
+      tile.surfaces.push_back(s);
+    }
+    tile.first[column + 1] = static_cast<std::uint16_t>(tile.surfaces.size());
+  }
+  return tile;
+}
+
+std::vector<Bridge> bridgesFrom(const ColumnGrid& columns, const SurfaceGrid& measured, Column tile,
+                                const GroundShape& shape) {
+  return BridgeSearch(columns, measured, tile, shape).from(tile);
+}
+
+}  // namespace semantic_planning

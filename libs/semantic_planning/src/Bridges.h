@@ -1,0 +1,63 @@
+#pragma once
+#include <array>
+#include <tuple>
+#include <vector>
+
+#include "ColumnScan.h"
+#include "GroundShape.h"
+#include "SurfaceTile.h"
+
+namespace semantic_planning {
+
+using ColumnGrid = TileGrid<ColumnTile>;
+
+/** Top voxels with room above. */
+SurfaceTile measuredSurfaces(const ColumnTile& columns, const GroundShape& shape);
+
+/** Directions of bridges; the opposite ones are the same bridges from their other ends. */
+struct Direction {
+  int x, y;
+  double length;
+};
+constexpr std::array<Direction, 4> kDirections = {
+    {{1, 0, 1}, {0, 1, 1}, {1, 1, 1.41421356}, {-1, 1, 1.41421356}}};
+
+/** A line over a hole, from a surface to another one. */
+struct Bridge {
+  Column from;
+  int direction = 0;                ///< of kDirections
+  int columns = 1;                  ///< from one end to the other
+  std::uint16_t z = 0, otherZ = 0;  ///< of both ends
+  ClassId classId{}, otherClass{};
+
+  Column column(int i) const {
+    return {from.x + i * kDirections[direction].x, from.y + i * kDirections[direction].y};
+  }
+  double width() const { return (columns - 1) * kDirections[direction].length; }
+  int height(int i) const;
+  ClassId nearerClass(int i) const { return 2 * i <= columns ? classId : otherClass; }
+
+  /** By row, column, direction and height, then by the rest. */
+  bool operator<(const Bridge& o) const {
+    const auto key = [](const Bridge& b) {
+      return std::tie(b.from.y, b.from.x, b.direction, b.z, b.columns, b.otherZ, b.classId,
+                      b.otherClass);
+    };
+    return key(*this) < key(o);
+  }
+};
+
+using BridgeGrid = TileGrid<std::vector<Bridge>>;
+
+/** How many columns a bridge goes from its first end, at most. */
+inline int reachOfBridges(const GroundShape& shape) {
+  return static_cast<int>(shape.widestGap) + 1;
+}
+
+/** The bridges whose first end is in a tile: from each surface that lacks a neighbor in a direction
+ * to the next surface at about its height, where nothing stands in between and no free space was
+ * seen below. Sorted. */
+std::vector<Bridge> bridgesFrom(const ColumnGrid& columns, const SurfaceGrid& measured, Column tile,
+                                const GroundShape& shape);
+
+}  // namespace semantic_planning
