@@ -124,7 +124,6 @@ struct ReactiveNavigator::Navigation {
     const double turn = options.maxSpeed / options.turningRadius * 180 / M_PI;
     both("robotMax_V_mps", options.maxSpeed);
     both("robotMax_W_degps", turn);
-    file.write("CAbstractPTGBasedReactive", "ptg_cache_files_directory", scratch.path().string());
     const int count = file.read_int("CReactiveNavigationSystem", "PTG_COUNT", 0, true);
     for (int i = 0; i < count; ++i) {
       const std::string name = "PTG" + std::to_string(i);
@@ -136,6 +135,8 @@ struct ReactiveNavigator::Navigation {
     vehicle.logging_enable_console_output = false;
     system.enableRethrowNavExceptions(true);
     system.loadConfigFile(file);
+    // MRPT 2.5.8 does not read the key of this name.
+    system.params_abstract_ptg_navigator.ptg_cache_files_directory = scratch.path().string();
     system.changeRobotShape(widened(options.footprint, options.margin));
     system.initialize();
   }
