@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../../apps/semantic-map-drive/DriveFiles.h"
@@ -9,6 +10,7 @@
 using namespace semantic_map_drive;
 using mrpt::math::TPose2D;
 using semantic_planning::DriveController;
+using semantic_planning::DriveGuide;
 using synthetic_world::World;
 
 namespace {
@@ -24,6 +26,24 @@ double greatestSpeed(const DriveRecord& record, double from, double to) {
   for (const DriveRow& row : record.rows)
     if (row.time >= from && row.time < to) greatest = std::max(greatest, std::abs(row.speed));
   return greatest;
+}
+
+/** Somebody who steps into the robot's way when it passes x = `at`, `before` meters ahead of it. */
+Events::Person stepsInFront(const DriveRecord& record, double at, double before) {
+  const auto row = std::find_if(record.rows.begin(), record.rows.end(), [at](const DriveRow& r) {
+    return r.pose.x >= at && std::cos(r.pose.phi) > 0.8;
+  });
+  constexpr double kFront = 0.55, kAside = 0.9, kSpeed = 1.5;  // m, m, m/s
+  const auto placed = [&](double side) {
+    const auto p = row->pose.composePoint({kFront + before, side});
+    return Eigen::Vector2d(p.x, p.y);
+  };
+  return {row->time - kAside / kSpeed, 1e9, placed(kAside), placed(0), kSpeed};
+}
+
+bool hasTarget(const DriveRecord& record, DriveGuide::Target target) {
+  return std::any_of(record.rows.begin(), record.rows.end(),
+                     [target](const DriveRow& row) { return row.target == target; });
 }
 
 }  // namespace
@@ -50,13 +70,33 @@ TEST(Drives, GetPastAPersonWhoWalksOntoTheWay) {
   EXPECT_EQ(record.collisions, 0);
 }
 
-TEST(Drives, StopBeforeAPersonWhoStepsInFront) {
+TEST(Drives, GoBackAndAroundAPersonWhoStepsInFrontAndStays) {
   World world = plain();
-  Events events;  // there when the robot's front is 1.5 m away; to react and stop it takes 1.3 m
-  events.persons.push_back({12, 1e9, {0.9, 0.9}, {0.9, -0.6}, 1.5});
-  const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0}, events);
+  const TPose2D start(-8, 0, 0), goal(8, 0, 0);
+  Events events;  // to react and stop it takes 1.3 m
+  events.persons.push_back(stepsInFront(drive(world, start, goal), -1, 1.3));
+  const DriveRecord record = drive(world, start, goal, events);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
   EXPECT_EQ(record.collisions, 0);
   EXPECT_LT(record.leastClearance, 0.5);  // the person was in the way indeed
+  EXPECT_TRUE(hasTarget(record, DriveGuide::Target::Back));
+}
+
+TEST(Drives, LeaveAPersonToTheReactiveNavigatorWithoutANewPlan) {
+  World world = plain();
+  DriveConfig config = smallConfig();
+  config.guide.period = config.guide.patience = config.timeLimit;  // no other plan than the first
+  const TPose2D start(-6, 0, 0), goal(3, 0, 0);
+  Events events;
+  events.persons.push_back({2, 1e9, {-0.5, 1.5}, {-0.5, 0}, 1.5});
+  const DriveRecord record = drive(world, start, goal, events, config);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_EQ(record.replans, 0);
+  EXPECT_LT(record.leastClearance, 1);
+  EXPECT_TRUE(std::any_of(record.rows.begin(), record.rows.end(), [](const DriveRow& row) {
+    return row.driver == DriveController::Driver::Reactive;
+  }));
 }
 
 TEST(Drives, TakeAnotherWayWhenTheRoadIsBlocked) {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kWaypointSpacing = 1.2;  // m
 constexpr double kWaypointReach = 0.5;    // m
+constexpr double kWaypointRoom = 0.3;     // m around the footprint
 constexpr double kPause = 2;              // s
 
 /** Where a vehicle that keeps its speed and its turning is after some seconds, from (0, 0, 0). */
@@ -34,6 +35,7 @@ void DriveController::setPath(DrivePath path) {
 
 DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints& obstacles,
                                    double sensorAge, double seconds) {
+  m_track.add(state.pose);
   m_tracker.locate(state);
   const double limit = m_tracker.options().speedFor(sensorAge);
   const bool reactive = seconds >= m_reactiveAgain && wantsReactive(state, obstacles);
@@ -57,15 +59,33 @@ bool DriveController::wantsReactive(const DriveState& state,
          m_tracker.freeAhead(state, obstacles) < std::min(left, m_tracker.options().lookAhead);
 }
 
+bool DriveController::isOpen(const PathPoint& place, const DriveState& state,
+                             const ObstaclePoints& obstacles) const {
+  return m_tracker.isFree(poseOf(place) - state.pose, obstacles, kWaypointRoom);
+}
+
+/** To the end of the stretch, without those where something stands: they cannot be reached. */
+void DriveController::setWaypoints(const DriveState& state, const ObstaclePoints& obstacles) {
+  m_waypoints = m_tracker.path().waypoints(m_tracker.progress(), kWaypointSpacing);
+  m_waypoints.erase(
+      std::remove_if(m_waypoints.begin(), m_waypoints.end() - 1,
+                     [&](const PathPoint& p) { return !isOpen(p, state, obstacles); }),
+      m_waypoints.end() - 1);
+  m_reactive.setWaypoints(m_waypoints, kWaypointReach);
+}
+
 DriveCommand DriveController::driveReactively(const DriveState& state,
                                               const ObstaclePoints& obstacles, double speedLimit,
                                               double seconds) {
   const DrivePath& path = m_tracker.path();
   const double here = m_tracker.progress(), begin = path.stretchBegin(here + 1e-3);
-  if (m_reactiveFrom != begin) {
-    m_reactive.setWaypoints(path.waypoints(here, kWaypointSpacing), kWaypointReach);
-    m_reactiveFrom = begin;
-  }
+  const bool blocked =
+      m_waypoints.size() > 1 &&
+      std::any_of(m_waypoints.begin(), m_waypoints.end() - 1, [&](const PathPoint& p) {
+        return p.arcLength > here && !isOpen(p, state, obstacles);
+      });
+  if (m_reactiveFrom != begin || blocked) setWaypoints(state, obstacles);
+  m_reactiveFrom = begin;
   DriveCommand c = m_reactive.step(state, obstacles, seconds);
   if (m_reactive.status() != ReactiveNavigator::Status::Driving) {
     m_reactiveAgain = seconds + kPause;

@@ -1,4 +1,5 @@
 #pragma once
+#include <semantic_planning/DriveTrack.h>
 #include <semantic_planning/DriveTracker.h>
 #include <semantic_planning/ReactiveNavigator.h>
 
@@ -15,6 +16,8 @@ class DriveController {
   /** Follows this path from its beginning on, from now on. */
   void setPath(DrivePath path);
   const DriveTracker& tracker() const { return m_tracker; }
+  /** Where the vehicle was at each step(). */
+  const DriveTrack& track() const { return m_track; }
 
   /** \param sensorAge seconds since the last observation \param seconds the time */
   DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double sensorAge,
@@ -27,16 +30,21 @@ class DriveController {
 
  private:
   bool wantsReactive(const DriveState& state, const ObstaclePoints& obstacles) const;
+  void setWaypoints(const DriveState& state, const ObstaclePoints& obstacles);
+  bool isOpen(const PathPoint& place, const DriveState& state,
+              const ObstaclePoints& obstacles) const;
   DriveCommand driveReactively(const DriveState& state, const ObstaclePoints& obstacles,
                                double speedLimit, double seconds);
   DriveCommand guarded(const DriveCommand& wanted, const DriveState& state,
                        const ObstaclePoints& obstacles) const;
 
   DriveTracker m_tracker;
+  DriveTrack m_track;
   ReactiveNavigator m_reactive;
   Driver m_driver = Driver::Tracker;
   double m_movedAt = 0;
   double m_reactiveFrom = -1;  ///< beginning of the stretch that the reactive navigator drives
+  std::vector<PathPoint> m_waypoints;
   double m_reactiveAgain = 0;  ///< seconds: it is not asked before, as it found no way
 };
 
