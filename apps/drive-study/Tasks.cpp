@@ -1,5 +1,6 @@
 #include "Tasks.h"
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -12,6 +13,12 @@ using colored_graph::ClassOrder;
 using mrpt::math::TPose2D;
 using namespace semantic_planning;
 using synthetic_world::World;
+
+namespace {
+
+constexpr std::array<std::size_t, 2> kVertices = {2000, 8000};  // of the oracle's graphs
+
+}  // namespace
 
 void TaskOptions::validate() const {
   if (!(nearest > 0) || !(farthest > nearest))
@@ -79,8 +86,14 @@ SemanticPlanner& Oracle::plannerWith(std::size_t vertices) {
   return m_planners.emplace(vertices, SemanticPlanner(m_map, m_order, m_options)).first->second;
 }
 
+bool Oracle::accepts(const Task& task) {
+  const SemanticPlanner& planner = plannerWith(kVertices.front());
+  return planner.check(task.start) == PlanStatus::Found &&
+         planner.check(task.goal) == PlanStatus::Found;
+}
+
 void Oracle::solve(Task& task) {
-  for (const std::size_t vertices : {2000, 8000}) {
+  for (const std::size_t vertices : kVertices) {
     const PlanResult plan = plannerWith(vertices).plan(task.start, task.goal);
     task.hasPath = plan.found();
     task.reason = plan.reason;

@@ -55,6 +55,8 @@ class Oracle {
   Oracle(const synthetic_world::World& world, const colored_graph::ClassOrder& order,
          const semantic_planning::PlannerOptions& planner, double voxelSize);
 
+  /** Whether the robot could stand at start and goal if it knew everything. */
+  bool accepts(const Task& task);
   /** Sets the task's path, or why there is none. */
   void solve(Task& task);
 

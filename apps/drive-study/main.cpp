@@ -71,6 +71,7 @@ void studyScene(const std::string& name, const Cli& cli,
   Oracle oracle(scene.world, order, config.planner, config.voxelSize);
   for (int i = 0; i < cli.pairs; ++i) {
     Task task = draw.next();
+    while (!oracle.accepts(task)) task = draw.next();
     if (!cli.wants(i)) continue;
     oracle.solve(task);
     Trial trial = runTrial(config, scene.world, order, task);

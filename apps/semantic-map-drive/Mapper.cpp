@@ -30,15 +30,14 @@ Mapper::Mapper(const DriveConfig& config, const ClassOrder& order, SemanticOcTre
 
 void Mapper::standOn(const Eigen::Isometry3d& T_map_robot) {
   const semantic_planning::VehicleOptions& vehicle = m_config.planner.vehicle;
+  const double room = vehicle.clearance + m_config.voxelSize, step = m_config.voxelSize / 2;
+  constexpr double kBelow = 1e-3;  // m: in the voxel that holds the ground
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& corner : vehicle.footprint) box.extend(corner);
-  const double step = m_config.voxelSize / 2, below = 1e-3;
   semantic_octree::LabeledCloud cloud;
-  for (double x = box.min().x() - vehicle.clearance; x < box.max().x() + vehicle.clearance;
-       x += step)
-    for (double y = box.min().y() - vehicle.clearance; y < box.max().y() + vehicle.clearance;
-         y += step) {
-      cloud.points.push_back(Eigen::Vector3d(x, y, -below).cast<float>());
+  for (double x = box.min().x() - room; x < box.max().x() + room; x += step)
+    for (double y = box.min().y() - room; y < box.max().y() + room; y += step) {
+      cloud.points.push_back(Eigen::Vector3d(x, y, -kBelow).cast<float>());
       cloud.classes.push_back(semantic_octree::kNoClass);
     }
   semantic_octree::InsertionOptions noRays;

@@ -15,7 +15,7 @@ class Mapper {
          semantic_octree::SemanticOcTree map);
 
   /** The robot begins where it has room: there is ground, of whatever class, below its footprint and
-   * the clearance around it. Its sensors do not see that near. */
+   * around it, as far as the planner wants to know. Its sensors do not see that near. */
   void standOn(const Eigen::Isometry3d& T_map_robot);
 
   /** \return milliseconds of insert (with the compressed tree's upkeep) and of update (ground and
