@@ -17,6 +17,8 @@ constexpr double kNearFrontier = 3;  // m: the next one is looked for before the
 constexpr double kBlind = 2;         // m: the sensors do not see the ground nearer than this
 constexpr double kAtRest = 0.05;     // m/s
 constexpr double kSlow = 0.2;        // m/s
+constexpr double kBackBy = 1;        // m, beyond where planning is possible again
+constexpr int kTimesBack = 3;        // then it gives up
 
 double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
@@ -30,6 +32,8 @@ const char* nameOf(DriveGuide::Target target) {
       return "frontier";
     case DriveGuide::Target::WayOut:
       return "way out";
+    case DriveGuide::Target::Back:
+      return "back";
     default:
       return "none";
   }
@@ -49,7 +53,7 @@ DriveGuide::DriveGuide(const GuideOptions& options, SemanticPlanner& planner, co
 }
 
 void DriveGuide::update(const DriveState& state, double z, DriveController& drive, double seconds) {
-  auto path = next({state, drive.tracker(), z, seconds, drive.stoppedFor(seconds)});
+  auto path = next({state, drive.tracker(), drive.track(), z, seconds, drive.stoppedFor(seconds)});
   if (path) drive.setPath(std::move(*path));
   if (m_target == Target::None) drive.setPath({});
 }
@@ -71,6 +75,7 @@ ObstacleOptions DriveGuide::obstacles(ObstacleOptions usual) const {
 /** Another path than before, from where the vehicle is; or nothing if it is to go on. */
 std::optional<DrivePath> DriveGuide::next(const Situation& now) {
   if (mustChange(now)) return choose(now);
+  if (m_target == Target::Back) return {};
   if (now.seconds - m_plannedAt < m_options.period || m_blockedSince >= 0) return {};
   return improve(now);
 }
@@ -78,12 +83,17 @@ std::optional<DrivePath> DriveGuide::next(const Situation& now) {
 /** The path is at its end, or was in the way of something for long. */
 bool DriveGuide::mustChange(const Situation& now) {
   if (now.tracker.finished()) return now.tracker.path().empty() || !isNearGoal(now.state);
+  if (m_target == Target::Back) return isStuck(now);
   if (m_target == Target::WayOut && !m_blindOut)
-    return m_planner.check(now.state.pose, now.z) == PlanStatus::Found;
+    return isStuck(now) || m_planner.check(now.state.pose, now.z) == PlanStatus::Found;
   const bool blocked = isBlocked(now);
   if (!blocked) m_blockedSince = -1;
   if (blocked && m_blockedSince < 0) m_blockedSince = now.seconds;
   if (blocked && now.seconds - m_blockedSince >= m_options.patience) return true;
+  return isStuck(now);
+}
+
+bool DriveGuide::isStuck(const Situation& now) const {
   return now.stoppedFor >= 2 * m_options.patience &&
          now.seconds - m_plannedAt >= m_options.patience;
 }
@@ -125,6 +135,8 @@ std::optional<DrivePath> DriveGuide::choose(const Situation& now) {
     take(Target::Frontier, now);
   else if (m_target == Target::None && m_plannedPaths == 0)
     return wayOut(now, kBlind);
+  else if (m_blockedSince >= 0)
+    return goBack(now);
   else
     fail(now);
   if (path && before) ++m_replans;
@@ -137,11 +149,33 @@ std::optional<DrivePath> DriveGuide::wayOut(const Situation& now, double nearest
   m_blindOut = nearest > 0;
   if (path.empty()) {
     if (!m_blindOut) m_reason = "the vehicle is where it must not be, and finds no way out";
-    fail(now);
-    return {};
+    return goBack(now);
   }
   take(Target::WayOut, now);
   return path;
+}
+
+/** Along the vehicle's own track to where it can plan, and a little on: what is close to it may be
+ * out of its sensors' sight, and left nobody knows where. */
+std::optional<DrivePath> DriveGuide::goBack(const Situation& now) {
+  std::vector<PathPoint> points = now.track.back();
+  double z = now.z;
+  for (PathPoint& p : points) {
+    const auto ground = m_planner.ground().find(p.x, p.y, z);
+    if (ground) z = m_planner.ground().centerOf(ground->surface.z);
+    p.z = z;
+  }
+  const DrivePath track(std::move(points));
+  constexpr double kStep = 0.2;  // m
+  for (double s = kStep; s < track.length() && m_timesBack < kTimesBack; s += kStep) {
+    const PathPoint p = track.at(s);
+    if (m_planner.check(poseOf(p), p.z) != PlanStatus::Found) continue;
+    ++m_timesBack;
+    take(Target::Back, now);
+    return track.part(0, std::min(track.length(), s + kBackBy));
+  }
+  fail(now);
+  return {};
 }
 
 std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
@@ -193,7 +227,7 @@ std::optional<DrivePath> DriveGuide::improve(const Situation& now) {
 }
 
 void DriveGuide::take(Target target, const Situation& now) {
-  if (target != Target::WayOut) ++m_plannedPaths;
+  if (target == Target::Goal || target == Target::Frontier) ++m_plannedPaths, m_timesBack = 0;
   m_target = target;
   m_plannedAt = now.seconds;
   m_blockedSince = m_withoutSince = -1;

@@ -21,7 +21,8 @@ struct GuideOptions {
 };
 
 /** Decides which path to drive, as the map grows: to the goal, to a place from where to see more of
- * the way there, or out of where the vehicle must not be.
+ * the way there, or out of where the vehicle must not be; where there is no way out, as behind
+ * somebody who stepped in front, back along its own track until it can plan again.
  *
  *     while (!guide.gaveUp() && !guide.arrived(state, drive)) {
  *       map.insert(...);                          // what was seen
@@ -34,7 +35,7 @@ struct GuideOptions {
  * Poses are in the map's frame. */
 class DriveGuide {
  public:
-  enum class Target { None, Goal, Frontier, WayOut };
+  enum class Target { None, Goal, Frontier, WayOut, Back };
 
   /** \param planner must outlive the guide. \throw std::invalid_argument bad options. */
   DriveGuide(const GuideOptions& options, SemanticPlanner& planner,
@@ -65,6 +66,7 @@ class DriveGuide {
   struct Situation {
     const DriveState& state;
     const DriveTracker& tracker;
+    const DriveTrack& track;
     double z, seconds, stoppedFor;
   };
   /** Where a new path leaves the present one. */
@@ -77,11 +79,13 @@ class DriveGuide {
   std::optional<DrivePath> next(const Situation& now);
   bool mustChange(const Situation& now);
   bool isBlocked(const Situation& now);
+  bool isStuck(const Situation& now) const;
   Departure departureOf(const Situation& now, bool anew) const;
   static DrivePath untilRest(const Situation& now);
   std::optional<DrivePath> choose(const Situation& now);
   std::optional<DrivePath> improve(const Situation& now);
   std::optional<DrivePath> wayOut(const Situation& now, double nearest);
+  std::optional<DrivePath> goBack(const Situation& now);
   std::optional<DrivePath> toGoal(const Departure& from);
   std::optional<DrivePath> toFrontier(const Departure& from);
   bool isNearGoal(const DriveState& state) const;
@@ -98,12 +102,13 @@ class DriveGuide {
   std::vector<mrpt::math::TPose2D> m_seen;  ///< frontiers that were visited, or not to be reached
   double m_plannedAt = -1e9, m_blockedSince = -1, m_withoutSince = -1;
   int m_replans = 0, m_plannedPaths = 0;
+  int m_timesBack = 0;      ///< since a path was planned
   bool m_blindOut = false;  ///< the way out leads to its end, whatever is below the vehicle
   bool m_gaveUp = false;
   std::string m_reason;
 };
 
-/** "goal", "frontier", "way out" or "none". */
+/** "goal", "frontier", "way out", "back" or "none". */
 const char* nameOf(DriveGuide::Target target);
 
 }  // namespace semantic_planning
