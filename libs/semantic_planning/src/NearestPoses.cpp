@@ -10,7 +10,12 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-double onPlane(const TPose2D& a, const TPose2D& b) { return std::hypot(b.x - a.x, b.y - a.y); }
+double squared(double x) { return x * x; }
+
+/** Squared distance on the plane. */
+double onPlane2(const TPose2D& a, const TPose2D& b) {
+  return squared(b.x - a.x) + squared(b.y - a.y);
+}
 
 NearestPoses::Pair ordered(colored_graph::VertexId a, colored_graph::VertexId b) {
   return std::minmax(a, b);
@@ -28,22 +33,24 @@ NearestPoses::NearestPoses(const ReedsShepp& reedsShepp, int neighbors, double r
       m_radius(radius),
       m_cellSize(radius / 4) {}
 
-NearestPoses::Cell NearestPoses::cellOf(const TPose2D& pose) const {
+Column NearestPoses::cellOf(const TPose2D& pose) const {
   return {static_cast<int>(std::floor(pose.x / m_cellSize)),
           static_cast<int>(std::floor(pose.y / m_cellSize))};
 }
 
 template <class F>
 void NearestPoses::forWithin(const TPose2D& pose, double radius, F f) const {
-  const Cell low = cellOf({pose.x - radius, pose.y - radius, 0});
-  const Cell high = cellOf({pose.x + radius, pose.y + radius, 0});
-  for (int x = low.first; x <= high.first; ++x)
-    for (auto cell = m_cells.lower_bound({x, low.second});
-         cell != m_cells.end() && cell->first <= Cell{x, high.second}; ++cell)
-      for (const VertexId id : cell->second) {
-        const double distance = onPlane(pose, m_entries[id].pose.pose);
-        if (distance <= radius) f(id, distance);
+  const Column low = cellOf({pose.x - radius, pose.y - radius, 0});
+  const Column high = cellOf({pose.x + radius, pose.y + radius, 0});
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x) {
+      const std::vector<VertexId>* cell = m_cells.find({x, y});
+      if (!cell) continue;
+      for (const VertexId id : *cell) {
+        const double distance2 = onPlane2(pose, m_entries[id].pose.pose);
+        if (distance2 <= squared(radius)) f(id, distance2);
       }
+    }
 }
 
 double NearestPoses::farthest(const Entry& entry) const {
@@ -53,11 +60,13 @@ double NearestPoses::farthest(const Entry& entry) const {
 void NearestPoses::place(VertexId id, const GroundPose& pose) {
   if (id >= m_entries.size()) m_entries.resize(id + 1);
   m_entries[id] = {true, pose, {}};
-  m_cells[cellOf(pose.pose)].push_back(id);
+  m_cells.at(cellOf(pose.pose)).push_back(id);
+  ++m_present;
 }
 
 void NearestPoses::forget(VertexId id) {
-  std::vector<VertexId>& cell = m_cells[cellOf(m_entries[id].pose.pose)];
+  std::vector<VertexId>& cell = m_cells.at(cellOf(m_entries[id].pose.pose));
+  --m_present;
   cell.erase(std::find(cell.begin(), cell.end(), id));
   for (const Neighbor& n : m_entries[id].nearest) m_changed.push_back(ordered(id, n.id));
   m_entries[id] = Entry();
@@ -91,10 +100,11 @@ std::vector<NearestPoses::Candidate> NearestPoses::candidatesOf(const std::vecto
                                                                 double radius) const {
   std::vector<bool> isOpen(m_entries.size());
   for (const VertexId id : open) isOpen[id] = true;
+  const double beyond2 = beyond < 0 ? -1 : squared(beyond);
   std::vector<Candidate> candidates;
   for (const VertexId a : open)
-    forWithin(m_entries[a].pose.pose, radius, [&](VertexId b, double distance) {
-      if (a == b || distance <= beyond || (isOpen[b] && b < a)) return;
+    forWithin(m_entries[a].pose.pose, radius, [&](VertexId b, double distance2) {
+      if (a == b || distance2 <= beyond2 || (isOpen[b] && b < a)) return;
       const double bound = m_reedsShepp.lowerBound(m_entries[a].pose.pose, m_entries[b].pose.pose);
       if (bound <= m_radius) candidates.push_back({bound, a, b});
     });
@@ -103,19 +113,16 @@ std::vector<NearestPoses::Candidate> NearestPoses::candidatesOf(const std::vecto
 
 /** Where poses are dense there is no need to look at all within the radius: a disc that holds some
  * times the neighbors wanted, if they were spread evenly. */
-double NearestPoses::firstRadius(std::size_t poses) const {
-  const double area = static_cast<double>(m_cells.size()) * m_cellSize * m_cellSize;
-  const double wanted = 8.0 * static_cast<double>(m_count);
-  return std::min(m_radius, std::sqrt(wanted * area / (M_PI * static_cast<double>(poses + 1))));
+double NearestPoses::firstRadius() const {
+  std::size_t cells = 0;
+  m_cells.forEach([&](Column, const std::vector<VertexId>& cell) { cells += !cell.empty(); });
+  const double area = static_cast<double>(cells) * m_cellSize * m_cellSize;
+  const double wanted = 3.0 * static_cast<double>(m_count);
+  return std::min(m_radius, std::sqrt(wanted * area / (M_PI * static_cast<double>(m_present + 1))));
 }
 
-std::vector<NearestPoses::Pair> NearestPoses::insert(const std::vector<VertexId>& ids,
-                                                     const std::vector<GroundPose>& poses) {
-  const bool first = m_cells.empty();
-  for (std::size_t i = 0; i < ids.size(); ++i) place(ids[i], poses[i]);
-  std::vector<VertexId> open = ids;
-  double beyond = -1, radius = first ? firstRadius(ids.size()) : m_radius;
-  while (!open.empty() && beyond < m_radius) {
+void NearestPoses::complete(std::vector<VertexId> open, double radius) {
+  for (double beyond = -1; !open.empty() && beyond < m_radius;) {
     std::vector<Candidate> candidates = candidatesOf(open, beyond, radius);
     relax(candidates);
     beyond = radius;
@@ -124,6 +131,14 @@ std::vector<NearestPoses::Pair> NearestPoses::insert(const std::vector<VertexId>
                               [&](VertexId id) { return farthest(m_entries[id]) <= beyond; }),
                open.end());
   }
+}
+
+std::vector<NearestPoses::Pair> NearestPoses::insert(const std::vector<VertexId>& ids,
+                                                     const std::vector<GroundPose>& poses) {
+  const bool first = m_present == 0;
+  for (std::size_t i = 0; i < ids.size(); ++i) place(ids[i], poses[i]);
+  // New poses may be neighbors of what is farther from them than their own neighbors.
+  complete(ids, first ? firstRadius() : m_radius);
   return takeChanged();
 }
 
@@ -145,8 +160,7 @@ std::vector<NearestPoses::Pair> NearestPoses::remove(const std::vector<VertexId>
   lacking.erase(
       std::remove_if(lacking.begin(), lacking.end(), [this](VertexId id) { return !contains(id); }),
       lacking.end());
-  std::vector<Candidate> candidates = candidatesOf(lacking, -1, m_radius);
-  relax(candidates);
+  complete(lacking, firstRadius());
   return takeChanged();
 }
 

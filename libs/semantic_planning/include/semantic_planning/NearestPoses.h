@@ -1,8 +1,8 @@
 #pragma once
 #include <colored_graph/ColoredGraph.h>
 #include <semantic_planning/EdgeChecker.h>
+#include <semantic_planning/TileGrid.h>
 
-#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -52,10 +52,8 @@ class NearestPoses {
     VertexId a, b;
     bool operator<(const Candidate& o) const { return bound < o.bound; }
   };
-  using Cell = std::pair<int, int>;
-
-  Cell cellOf(const mrpt::math::TPose2D& pose) const;
-  /** f(id, distance on the plane) for all poses within a radius. */
+  Column cellOf(const mrpt::math::TPose2D& pose) const;
+  /** f(id, squared distance on the plane) for all poses within a radius. */
   template <class F>
   void forWithin(const mrpt::math::TPose2D& pose, double radius, F f) const;
   bool isFull(const Entry& entry) const { return entry.nearest.size() == m_count; }
@@ -69,14 +67,18 @@ class NearestPoses {
   /** Candidates that are farther than `beyond`, up to `radius`, for the entries still `open`. */
   std::vector<Candidate> candidatesOf(const std::vector<VertexId>& open, double beyond,
                                       double radius) const;
-  double firstRadius(std::size_t poses) const;
+  double firstRadius() const;
+  /** Finds the neighbors that entries lack, looking farther and farther, at first up to `radius`.
+   */
+  void complete(std::vector<VertexId> open, double radius);
   std::vector<Pair> takeChanged();
 
   const ReedsShepp& m_reedsShepp;
   std::size_t m_count;
   double m_radius, m_cellSize;
   std::vector<Entry> m_entries;
-  std::map<Cell, std::vector<VertexId>> m_cells;
+  TileGrid<std::vector<VertexId>> m_cells;
+  std::size_t m_present = 0;
   std::vector<Pair> m_changed;
 };
 
