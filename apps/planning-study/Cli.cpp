@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "RoadmapTrials.h"
-
 namespace planning_study {
 
 using semantic_planning::GraphKind;
@@ -74,9 +72,6 @@ void Cli::addTo(CLI::App& app) {
   app.add_option("--min-distance", study.minDistance, "From start to goal, m")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--judgment-instances", study.judgmentInstances,
-                 "The first ones are planned with all judgments and over the dense graph, too")
-      ->type_name("UINT");
   app.add_option("--minutes", study.minutes, "No new instance after these (of the clock)")
       ->check(CLI::PositiveNumber);
   addGraphs(app, study);

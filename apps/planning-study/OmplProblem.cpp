@@ -30,6 +30,20 @@ bool isBefore(const TPose2D& a, const TPose2D& b) {
   return std::tie(a.x, a.y, a.phi) < std::tie(b.x, b.y, b.phi);
 }
 
+/** Measures as quickly as our planner does: OMPL's own solver would cost the peers most of their
+ * time. */
+class Poses : public ob::ReedsSheppStateSpace {
+ public:
+  explicit Poses(double turningRadius)
+      : ReedsSheppStateSpace(turningRadius), m_reedsShepp(turningRadius) {}
+  double distance(const ob::State* a, const ob::State* b) const override {
+    return m_reedsShepp.distance(poseOf(a), poseOf(b));
+  }
+
+ private:
+  ReedsShepp m_reedsShepp;
+};
+
 }  // namespace
 
 /** Locks, since OMPL's PRM* looks for solutions in a thread of its own. Remembers all motions: OMPL
@@ -144,7 +158,7 @@ void setPose(const TPose2D& pose, ob::ScopedState<ob::SE2StateSpace>& state) {
 OmplProblem::OmplProblem(const SemanticPlanner& planner, const Instance& instance)
     : oracle(std::make_shared<MotionOracle>(planner)) {
   const PlannerOptions& options = planner.options();
-  auto poses = std::make_shared<ob::ReedsSheppStateSpace>(options.vehicle.turningRadius);
+  auto poses = std::make_shared<Poses>(options.vehicle.turningRadius);
   poses->setBounds(boundsOf(instance, options.roadmap.regionBuffer));
   space = std::make_shared<ob::SpaceInformation>(poses);
   space->setStateValidityChecker(std::make_shared<PoseValidity>(space, *oracle));

@@ -13,7 +13,7 @@
 
 #include "CpuClock.h"
 #include "OmplProblem.h"
-#include "RoadmapTrials.h"
+#include "RoadmapSearch.h"
 
 namespace planning_study {
 

@@ -1,5 +1,7 @@
 #include "RoadmapSearch.h"
 
+#include <chrono>
+
 #include "CpuClock.h"
 
 namespace planning_study {
@@ -9,27 +11,27 @@ using semantic_planning::Roadmap;
 
 namespace {
 
-/** Calls f and adds its time to a sum. */
-template <class F>
-auto timed(double& milliseconds, F f) {
-  const double begin = cpuMilliseconds();
-  auto result = f();
-  milliseconds += cpuMilliseconds() - begin;
-  return result;
-}
+using Clock = std::chrono::steady_clock;
+using Milliseconds = std::chrono::duration<double, std::milli>;
 
 template <class Evaluate>
 PathResult search(const RoadmapTask& task, ColoredGraph& graph, const CostModel& model,
                   const Evaluate& evaluate, Trial& trial) {
   ColoredAStarOptions options;
   options.lengthBound = [&](VertexId a, VertexId b) { return task.roadmap.lengthBound(a, b); };
+  Milliseconds evaluation{0};
   options.evaluate = [&](EdgeId e) {
-    return timed(trial.evaluationTime, [&] { return evaluate(e); });
+    const auto begin = Clock::now();
+    auto profile = evaluate(e);
+    evaluation += Clock::now() - begin;
+    return profile;
   };
-  const PathResult path = timed(trial.searchTime, [&] {
-    return findColoredPath(graph, task.start, task.goal, model, options);
-  });
-  trial.searchTime -= trial.evaluationTime;
+  const auto begin = Clock::now();
+  const double cpuBegin = cpuMilliseconds();
+  const PathResult path = findColoredPath(graph, task.start, task.goal, model, options);
+  const double cpu = cpuMilliseconds() - cpuBegin;
+  trial.evaluationTime = cpu * (evaluation / (Clock::now() - begin));
+  trial.searchTime = cpu - trial.evaluationTime;
   trial.found = path.found();
   trial.status = describe(path.status);
   trial.evaluated = path.statistics.edgesEvaluated;
@@ -79,6 +81,13 @@ class WeightedGraph {
 
 }  // namespace
 
+const char* nameOf(EdgeModel model) {
+  const char* names[] = {"endpoint", "sweep", "profile"};
+  return names[static_cast<int>(model)];
+}
+
+const char* const kWeighted = "weighted";
+
 std::optional<Length> weighted(const EdgeProfile& profile, const ClassOrder& order) {
   Length sum = 0;
   for (const Stretch& s : profile) {
@@ -92,6 +101,7 @@ std::optional<Length> weighted(const EdgeProfile& profile, const ClassOrder& ord
 }
 
 void searchColored(const RoadmapTask& task, EdgeModel model, Trial& trial) {
+  trial.judgment = nameOf(model);
   ColoredGraph graph = task.roadmap.graph();
   const auto evaluate = [&](EdgeId e) { return task.roadmap.evaluate(e); };
   const PathResult path =
@@ -100,6 +110,7 @@ void searchColored(const RoadmapTask& task, EdgeModel model, Trial& trial) {
 }
 
 void searchWeighted(const RoadmapTask& task, Trial& trial) {
+  trial.judgment = kWeighted;
   WeightedGraph graph(task.roadmap, task.order);
   const auto evaluate = [&](EdgeId e) { return graph.evaluate(e); };
   const ClassOrder one(1, {{0}});

@@ -13,6 +13,11 @@ struct RoadmapTask {
   const colored_graph::ClassOrder& order;
 };
 
+/** Trial::judgment of COA*. */
+const char* nameOf(colored_graph::EdgeModel model);
+/** Trial::judgment of one number for all classes: rank k weighs 10^k. */
+extern const char* const kWeighted;
+
 /** Both search a copy and put the outcome and the times into the trial. */
 void searchColored(const RoadmapTask& task, colored_graph::EdgeModel model, Trial& trial);
 /** Ordinary A*, by the same code with a single class: an edge costs the sum of 10^rank * length. */

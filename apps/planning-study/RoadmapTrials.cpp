@@ -1,5 +1,6 @@
 #include "RoadmapTrials.h"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "CpuClock.h"
@@ -12,18 +13,29 @@ using colored_graph::VertexId;
 using mrpt::math::TPose2D;
 using namespace semantic_planning;
 
-const char* const kWeighted = "weighted";
+/** Sees, as the one who may cancel it, when the planner begins to search. */
+class RoadmapTrials::SearchWatch {
+ public:
+  void expect(bool cancelSearch) {
+    m_cancel = cancelSearch;
+    m_begun = 0;
+  }
+  bool isCancelled() {
+    if (m_begun == 0) m_begun = cpuMilliseconds();
+    return m_cancel;
+  }
+  double begun() const { return m_begun; }
 
-const char* nameOf(EdgeModel model) {
-  const char* names[] = {"endpoint", "sweep", "profile"};
-  return names[static_cast<int>(model)];
-}
+ private:
+  bool m_cancel = false;
+  double m_begun = 0;
+};
 
 namespace {
 
-/** The planner shall make its graph, but not search it. */
-PlannerOptions withoutSearch(PlannerOptions options) {
-  options.cancelled = [] { return true; };
+template <class Watch>
+PlannerOptions watched(PlannerOptions options, Watch& watch) {
+  options.cancelled = [&watch] { return watch.isCancelled(); };
   return options;
 }
 
@@ -33,12 +45,25 @@ VertexId vertexAt(const Roadmap& roadmap, const TPose2D& pose) {
   throw std::logic_error("the graph has no vertex at the start or at the goal");
 }
 
-void search(const RoadmapTask& task, const std::string& judgment, Trial& trial) {
-  trial.judgment = judgment;
-  if (judgment == kWeighted) return searchWeighted(task, trial);
-  for (const EdgeModel model : {EdgeModel::Endpoint, EdgeModel::Sweep, EdgeModel::Profile})
-    if (judgment == nameOf(model)) return searchColored(task, model, trial);
-  throw std::logic_error("no judgment is called " + judgment);
+double stage(const PlanResult& plan, const std::string& name) {
+  double sum = 0;
+  for (const auto& [stage, milliseconds] : plan.times)
+    if (stage == name) sum += milliseconds;
+  return sum;
+}
+
+/** \param sinceSearchBegan processor milliseconds, shared out as the clock on the wall says */
+void splitTime(double sinceSearchBegan, const PlanResult& plan, Trial& trial) {
+  const double search = stage(plan, "search"), evaluation = stage(plan, "evaluateEdges");
+  const double scale = sinceSearchBegan / (search + evaluation + stage(plan, "path"));
+  trial.searchTime = scale * search;
+  trial.evaluationTime = scale * evaluation;
+}
+
+std::vector<Length> inUnits(const std::vector<double>& meters) {
+  std::vector<Length> lengths;
+  for (const double m : meters) lengths.push_back(std::llround(m / colored_graph::toMeters(1)));
+  return lengths;
 }
 
 }  // namespace
@@ -46,26 +71,56 @@ void search(const RoadmapTask& task, const std::string& judgment, Trial& trial) 
 RoadmapTrials::RoadmapTrials(semantic_octree::SemanticOcTree& map,
                              const colored_graph::ClassOrder& order, PlannerOptions options,
                              bool kept)
-    : m_planner(map, order, withoutSearch(std::move(options))), m_kept(kept) {}
+    : m_watch(std::make_unique<SearchWatch>()),
+      m_planner(map, order, watched(std::move(options), *m_watch)),
+      m_kept(kept) {}
 
-std::vector<Trial> RoadmapTrials::run(const Instance& instance,
-                                      const std::vector<std::string>& judgments) {
+RoadmapTrials::~RoadmapTrials() = default;
+RoadmapTrials::RoadmapTrials(RoadmapTrials&&) noexcept = default;
+
+Trial RoadmapTrials::trialOf(const Instance& instance, const PlanResult& plan, double begin) const {
+  if (!m_planner.hasRoadmap()) throw std::logic_error("the planner refused: " + plan.reason);
+  Trial trial;
+  trial.graphTime = m_watch->begun() - begin;
+  trial.judgment = nameOf(EdgeModel::Profile);
+  trial.graph = nameOf(m_planner.options().roadmap.kind);
+  trial.budget = m_planner.options().roadmap.vertices;
+  trial.task = instance;
+  trial.kept = m_kept;
+  trial.vertices = plan.numVertices;
+  trial.edges = plan.numEdges;
+  return trial;
+}
+
+Trial RoadmapTrials::plan(const Instance& instance) {
+  if (!m_kept) m_planner.forget();
+  m_watch->expect(false);
+  const double begin = cpuMilliseconds();
+  const PlanResult plan = m_planner.plan(instance.start, instance.goal);
+  const double end = cpuMilliseconds();
+  Trial trial = trialOf(instance, plan, begin);
+  splitTime(end - m_watch->begun(), plan, trial);
+  trial.found = plan.found();
+  trial.status = nameOf(plan.status);
+  trial.evaluated = plan.search.edgesEvaluated - plan.edgesRemembered;
+  trial.expansions = plan.search.expansions;
+  trial.cost = plan.cost;
+  if (trial.found) trial.way = wayOf(inUnits(plan.lengthPerClass), m_planner.order());
+  return trial;
+}
+
+std::vector<Trial> RoadmapTrials::judge(const Instance& instance) {
+  if (!m_kept) m_planner.forget();
+  m_watch->expect(true);
   const double begin = cpuMilliseconds();
   const PlanResult made = m_planner.plan(instance.start, instance.goal);
-  Trial common;
-  common.graphTime = cpuMilliseconds() - begin;
-  if (!m_planner.hasRoadmap()) throw std::logic_error("the planner refused: " + made.reason);
+  std::vector<Trial> trials(3, trialOf(instance, made, begin));
   const Roadmap& roadmap = m_planner.roadmap();
-  common.graph = nameOf(m_planner.options().roadmap.kind);
-  common.budget = m_planner.options().roadmap.vertices;
-  common.task = instance;
-  common.kept = m_kept;
-  common.vertices = roadmap.graph().vertexCount();
-  common.edges = roadmap.graph().edgeCount();
   const RoadmapTask task{roadmap, vertexAt(roadmap, instance.start),
                          vertexAt(roadmap, instance.goal), m_planner.order()};
-  std::vector<Trial> trials(judgments.size(), common);
-  for (std::size_t i = 0; i < judgments.size(); ++i) search(task, judgments[i], trials[i]);
+  searchColored(task, EdgeModel::Endpoint, trials[0]);
+  searchColored(task, EdgeModel::Sweep, trials[1]);
+  searchWeighted(task, trials[2]);
   return trials;
 }
 

@@ -1,33 +1,39 @@
 #pragma once
 #include <semantic_planning/SemanticPlanner.h>
 
+#include <memory>
+
 #include "Instances.h"
 #include "Trial.h"
 
 namespace planning_study {
 
-/** How the edges of a graph count; all but the last: COA* with this model. */
-extern const char* const kWeighted;  ///< one number for all classes: rank k weighs 10^k
-const char* nameOf(colored_graph::EdgeModel model);
-
-/** Plans with one kind of graph and one budget.
- *
- * The planner makes the graph; then every judgment searches a copy of it, in which nothing is
- * evaluated, so that times do not depend on what was searched before. */
+/** Plans with one kind of graph and one budget. */
 class RoadmapTrials {
  public:
-  /** \param map must outlive this. \param kept whether the planner remembers edges from one
-   * instance to the next \throw as SemanticPlanner's constructor */
+  /** \param map must outlive this. \param kept whether the planner remembers what it found for the
+   * instances before \throw as SemanticPlanner's constructor */
   RoadmapTrials(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
                 semantic_planning::PlannerOptions options, bool kept);
+  ~RoadmapTrials();
+  RoadmapTrials(RoadmapTrials&&) noexcept;
 
-  /** \param judgments names of models, or kWeighted. \return one trial for each */
-  std::vector<Trial> run(const Instance& instance, const std::vector<std::string>& judgments);
+  /** As a robot would: judgment "profile". */
+  Trial plan(const Instance& instance);
+  /** All other judgments. Each searches a copy of the same graph, in which nothing is evaluated, so
+   * that times do not depend on what was searched before. */
+  std::vector<Trial> judge(const Instance& instance);
 
   const semantic_planning::SemanticPlanner& planner() const { return m_planner; }
   bool kept() const { return m_kept; }
 
  private:
+  class SearchWatch;
+
+  Trial trialOf(const Instance& instance, const semantic_planning::PlanResult& plan,
+                double begin) const;
+
+  std::unique_ptr<SearchWatch> m_watch;
   semantic_planning::SemanticPlanner m_planner;
   bool m_kept;
 };

@@ -21,8 +21,6 @@ const char* const kReference = "reference";
 
 namespace {
 
-const std::vector<std::string> kProfile = {"profile"};
-const std::vector<std::string> kAllJudgments = {"endpoint", "sweep", "profile", kWeighted};
 constexpr unsigned kReferenceSeed = 1;  // no vertices of the graphs that are compared with it
 
 template <class Value>
@@ -113,13 +111,12 @@ class MapStudent::Contest {
 
   std::vector<Trial> run(std::size_t i) {
     std::vector<Trial> trials;
-    const bool allJudgments = i < m_options.judgmentInstances;
-    for (RoadmapTrials& contestant : m_contestants)
-      append(contestant.run(m_instances[i],
-                            allJudgments && !contestant.kept() ? kAllJudgments : kProfile),
-             trials);
-    if (m_reference && allJudgments) {
-      trials.push_back(m_reference->run(m_instances[i], kProfile).front());
+    for (RoadmapTrials& contestant : m_contestants) {
+      trials.push_back(contestant.plan(m_instances[i]));
+      if (!contestant.kept()) append(contestant.judge(m_instances[i]), trials);
+    }
+    if (m_reference) {
+      trials.push_back(m_reference->plan(m_instances[i]));
       trials.back().graph = kReference;
     }
     if (m_options.peers && i < m_options.peerInstances) append(runPeers(m_instances[i]), trials);

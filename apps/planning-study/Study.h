@@ -26,8 +26,6 @@ struct StudyOptions {
   std::vector<double> peerTimes = {0.5};  ///< of each, processor seconds
   std::size_t peerInstances = 50;         ///< the first ones, for peers
 
-  /** The first ones, for the dense graph and for all judgments; the others: "profile" only. */
-  std::size_t judgmentInstances = std::numeric_limits<std::size_t>::max();
   double minutes = std::numeric_limits<double>::infinity();  ///< no new instance after these
 
   /** Vehicle, ground, neighbors...; kind and budgets are the study's. */

@@ -40,9 +40,11 @@ std::ostringstream sheetFor(const ordered_json& study, std::size_t rows,
 }
 
 /** Of the judgment "profile"; null if there is none. */
-ordered_json wayOf(const ordered_json& map, const std::string& graph, const ordered_json& budget) {
+ordered_json wayOf(const ordered_json& map, const std::string& graph, const ordered_json& budget,
+                   const std::string& memory) {
   for (const ordered_json& way : map["ways"])
-    if (way["judgment"] == "profile" && way["graph"] == graph && way["budget"] == budget)
+    if (way["judgment"] == "profile" && way["graph"] == graph && way["budget"] == budget &&
+        way["memory"] == memory)
       return way;
   return nullptr;
 }
@@ -50,7 +52,9 @@ ordered_json wayOf(const ordered_json& map, const std::string& graph, const orde
 /** One curve or row of boxes for each graph. */
 class Plot {
  public:
-  Plot(const ordered_json& study, const ordered_json& map) : m_study(study), m_map(map) {}
+  /** \param memory "cold" or "kept" */
+  Plot(const ordered_json& study, const ordered_json& map, std::string memory = "cold")
+      : m_study(study), m_map(map), m_memory(std::move(memory)) {}
 
   /** values(way) gives what stands after the abscissa in a line of data. */
   template <class Values>
@@ -60,7 +64,7 @@ class Plot {
       out << "$g" << g << " << EOD\n";
       const auto& budgets = m_study["options"]["budgets"];
       for (std::size_t b = 0; b < budgets.size(); ++b) {
-        const ordered_json way = wayOf(m_map, graphs[g], budgets[b]);
+        const ordered_json way = wayOf(m_map, graphs[g], budgets[b], m_memory);
         if (way.is_null() || way["found"] == 0) continue;
         out << static_cast<double>(b) + offset(g) << ' ' << values(way) << '\n';
       }
@@ -87,6 +91,7 @@ class Plot {
 
   const ordered_json& m_study;
   const ordered_json& m_map;
+  const std::string m_memory;
 };
 
 std::string box(const ordered_json& d) {
@@ -113,18 +118,22 @@ void label(std::ostream& out, bool first, const char* text) {
 }  // namespace
 
 void drawTimes(const ordered_json& study, const std::filesystem::path& file) {
-  auto out = sheetFor(study, 1, file);
+  auto out = sheetFor(study, 2, file);
   out << "set logscale y\nset format y '%g'\nset boxwidth " << 0.85 * kBox
-      << "\nset style fill solid 0.35\nset xlabel 'vertices'\n";
+      << "\nset style fill solid 0.35\n";
   bool first = true;
   for (const ordered_json& map : study["maps"]) {
-    out << "set title " << gnuplotText(map["name"]) << '\n';
-    label(out, first, "planning time [ms]");
-    const Plot plot(study, map);
-    plot.write(out, [](const ordered_json& way) { return box(way["milliseconds"]["planning"]); });
-    plot.plot(out, {"using 1:2:3:4:5 with candlesticks whiskerbars 0.5",
-                    "using 1:6:6:6:6 with candlesticks lw 2"});
-    out << "unset label\n";
+    for (const char* memory : {"cold", "kept"}) {
+      const bool above = memory == std::string("cold");
+      out << "set title " << gnuplotText(map["name"].get<std::string>() + ", " + memory) << '\n'
+          << (above ? "unset xlabel\n" : "set xlabel 'vertices'\n");
+      label(out, first, "planning time [ms]");
+      const Plot plot(study, map, memory);
+      plot.write(out, [](const ordered_json& way) { return box(way["milliseconds"]["planning"]); });
+      plot.plot(out, {"using 1:2:3:4:5 with candlesticks whiskerbars 0.5",
+                      "using 1:6:6:6:6 with candlesticks lw 2"});
+      out << "unset label\n";
+    }
     first = false;
   }
   out << "unset multiplot\n";

@@ -8,7 +8,8 @@ namespace planning_study {
 // file. All: \throw std::runtime_error as semantic_map_compress::drawWithGnuplot().
 
 /** Box plots of the planning time of the tasks that were solved (quartiles, whiskers from the 5th
- * to the 95th percentile, median) over the budget of vertices. */
+ * to the 95th percentile, median) over the budget of vertices: above of planners that forget,
+ * below of planners that remember. */
 void drawTimes(const nlohmann::ordered_json& study, const std::filesystem::path& file);
 
 /** Above the success, below the meters outside the best rank, of the tasks that were solved, over

@@ -36,21 +36,22 @@ void head(std::ostream& out, const std::vector<std::string>& cells) {
 }
 
 void writeWays(std::ostream& out, const ordered_json& map) {
-  head(out, {"graph", "judgment", "budget", "solved %", "planning ms: mean", "deviation", "median",
-             "95th", "graph ms", "edges evaluated", "outside best m", "length m"});
+  head(out, {"graph", "judgment", "budget", "memory", "solved %", "planning ms: mean", "deviation",
+             "median", "95th", "graph ms", "edges evaluated", "outside best m", "length m"});
   for (const ordered_json& way : map["ways"]) {
     const auto &planning = way["milliseconds"]["planning"], &graph = way["milliseconds"]["graph"];
-    row(out, {way["graph"], way["judgment"], way["budget"].dump(), percent(way["success"]["value"]),
-              rounded(planning["mean"]), rounded(planning["deviation"]),
-              rounded(planning["median"]), rounded(planning["percentile95"]),
-              rounded(graph["mean"], 0), rounded(way["edgesEvaluated"]["mean"], 0),
-              rounded(way["metersOutsideBest"]["mean"]), rounded(way["meters"]["mean"])});
+    row(out, {way["graph"], way["judgment"], way["budget"].dump(), way["memory"],
+              percent(way["success"]["value"]), rounded(planning["mean"]),
+              rounded(planning["deviation"]), rounded(planning["median"]),
+              rounded(planning["percentile95"]), rounded(graph["mean"], 0),
+              rounded(way["edgesEvaluated"]["mean"], 0), rounded(way["metersOutsideBest"]["mean"]),
+              rounded(way["meters"]["mean"])});
   }
 }
 
 std::string nameOf(const ordered_json& key) {
   return key["graph"].get<std::string>() + " " + key["budget"].dump() + ", " +
-         key["judgment"].get<std::string>();
+         key["judgment"].get<std::string>() + ", " + key["memory"].get<std::string>();
 }
 
 void writePairs(std::ostream& out, const ordered_json& map) {

@@ -1,9 +1,7 @@
 #include "Summary.h"
 
-#include <algorithm>
-
 #include "Groups.h"
-#include "RoadmapTrials.h"
+#include "RoadmapSearch.h"
 
 namespace planning_study {
 
@@ -181,7 +179,6 @@ ordered_json optionsJson(const StudyOptions& options) {
           {"headings", roadmap.headings},
           {"spacing", roadmap.spacing},
           {"buffer", roadmap.regionBuffer},
-          {"judgmentInstances", std::min(options.instances, options.judgmentInstances)},
           {"peerSeconds", options.peerTimes},
           {"peerInstances", options.peers ? options.peerInstances : 0}};
 }

@@ -211,16 +211,8 @@ TEST_F(PlanningStudy, rememberedEdgesChangeNoPath) {
   for (const auto& [task, way] : ways) EXPECT_EQ(way.at("kept"), way.at("cold")) << task;
 }
 
-TEST_F(PlanningStudy, theFirstTasksAloneAreJudgedInAllWays) {
-  ASSERT_EQ(study({"--judgment-instances", "1", "--graphs", "compressed"}).status, 0);
-  std::map<std::string, int> rowsOfTask;
-  for (const Row& row : rows()) ++rowsOfTask[row.at("instance")];
-  EXPECT_EQ(rowsOfTask,
-            (std::map<std::string, int>{{"0", (4 + 1) * 2 + 1}, {"1", 4}, {"2", 4}, {"3", 4}}));
-}
-
 TEST_F(PlanningStudy, studiesOfSeveralMapsAreJoined) {
-  const std::vector<std::string> few = {"--graphs", "halton", "--judgment-instances", "0"};
+  const std::vector<std::string> few = {"--graphs", "halton"};
   const auto joined = [&](const std::string& second) {
     return runProgram("planning-study",
                       {"--join", path("first"), path(second), "--output", path("out")});

@@ -22,6 +22,8 @@ class CandidateStore {
   /** Least priority first. */
   const std::vector<Spot>& in(Column tile) { return made(tile).spots; }
 
+  void forget() { m_tiles = {}; }
+
   struct Change {
     std::vector<Spot> removed, added;
   };

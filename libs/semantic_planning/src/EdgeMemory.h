@@ -22,6 +22,8 @@ class EdgeMemory {
   /** The checker's answers may be others now where curves come near these tiles. */
   void groundChanged(const std::vector<Column>& tiles);
 
+  void forget() { m_answers.clear(); }
+
   /** Answers that were known, since the last call. */
   std::size_t takeRemembered() { return std::exchange(m_remembered, 0); }
 

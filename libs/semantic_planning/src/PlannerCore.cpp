@@ -167,6 +167,13 @@ void PlannerCore::finish(const PathResult& path, StageClock& clock, PlanResult& 
   result.times = clock.take();
 }
 
+void PlannerCore::forget() {
+  m_replanner.reset();
+  m_roadmap.reset();
+  m_candidates.forget();
+  m_edges.forget();
+}
+
 PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
   const auto touched = m_map.takeTouchedTiles();
   MapChange change;

@@ -26,6 +26,7 @@ class PlannerCore {
   PlanResult plan(const Place& start, const Place& goal);
   UpdateResult update();
   PlanResult replan(const Place& start);
+  void forget();
   PlanStatus check(const Place& place) const;
 
   const PlannerOptions& options() const { return m_options; }

@@ -34,6 +34,8 @@ PlanResult SemanticPlanner::replan(const mrpt::math::TPose2D& start, std::option
   return m_core->replan({start, startZ});
 }
 
+void SemanticPlanner::forget() { m_core->forget(); }
+
 const PlannerOptions& SemanticPlanner::options() const { return m_core->options(); }
 const colored_graph::ClassOrder& SemanticPlanner::order() const { return m_core->order(); }
 const Ground& SemanticPlanner::ground() const { return m_core->ground(); }

@@ -73,6 +73,10 @@ class SemanticPlanner {
    * of searching anew. \throw std::logic_error nothing was planned before. */
   PlanResult replan(const mrpt::math::TPose2D& start, std::optional<double> startZ = {});
 
+  /** Forgets all that plans before have found out, but for the ground: the next plan() takes as
+   * long as the first one. */
+  void forget();
+
   const PlannerOptions& options() const;
   const colored_graph::ClassOrder& order() const;
   const Ground& ground() const;
