@@ -34,3 +34,27 @@ TEST_F(PlannerTest, pathsThatAreCountedInEdgesAreLeftAsTheyAre) {
   const PlanResult result = plan();
   EXPECT_EQ(result.cost, result.roadmapCost);
 }
+
+TEST_F(PlannerTest, aPathThatOnlyBecomesShorterGetsNoMoreGearChanges) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  const auto gearChanges = [](const PlanResult& plan) {
+    int changes = 0;
+    for (std::size_t i = 1; i < plan.path.size(); ++i)
+      changes += plan.path[i].forward != plan.path[i - 1].forward;
+    return changes;
+  };
+  options.roadmap.vertices = 150;
+  int less = 0;
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    options.roadmap.seed = seed;
+    goal = {-10 + 1.5 * seed, 4, 2.0 * seed};
+    options.shorten = false;
+    const PlanResult asFound = plan();
+    options.shorten = true;
+    const PlanResult shortened = plan();
+    expectDrivable(shortened);
+    EXPECT_LE(gearChanges(shortened), gearChanges(asFound)) << "seed " << seed;
+    less += shortened.length < asFound.length;
+  }
+  EXPECT_GT(less, 8);
+}

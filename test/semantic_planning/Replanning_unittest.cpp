@@ -133,3 +133,33 @@ TEST_F(PlannerTest, theRoadmapFollowsTheCompressedTree) {
   EXPECT_EQ(poses(p.roadmap()), poses(fresh.roadmap()));
   EXPECT_EQ(p.roadmap().graph().edgeCount(), fresh.roadmap().graph().edgeCount());
 }
+
+TEST_F(PlannerTest, theBudgetOfEdgesHoldsAfterUpdatesAndTheBestOnesAreIn) {
+  paintCorner();
+  options.roadmap.kind = GraphKind::Full;
+  options.roadmap.vertices = 0;
+  options.roadmap.edges = 700;
+  SemanticPlanner p = planner();
+  p.plan(start, goal);
+  const auto edges = [&](const Roadmap& roadmap) {
+    std::set<std::pair<std::vector<double>, std::vector<double>>> all;
+    for (EdgeId e = 0; e < roadmap.graph().edgeIdEnd(); ++e) {
+      if (!roadmap.graph().containsEdge(e)) continue;
+      const PosePair ends = roadmap.ends(e);
+      const auto &a = ends.first.pose, &b = ends.second.pose;
+      if (a == start || b == start || a == goal || b == goal) continue;
+      all.insert({{a.x, a.y, a.phi}, {b.x, b.y, b.phi}});
+    }
+    return all;
+  };
+  EXPECT_EQ(edges(p.roadmap()).size(), 700u);
+  for (const double x : {-4.0, 3.0}) {
+    world.box(x, x + 4, -5, 5, 0, 1, PaintedWorld::Wall).map();
+    EXPECT_GT(p.update().verticesRemoved, 0u);
+    EXPECT_EQ(edges(p.roadmap()).size(), 700u);
+  }
+  p.replan(start);
+  SemanticPlanner fresh = planner();
+  fresh.plan(start, goal);
+  EXPECT_EQ(edges(p.roadmap()), edges(fresh.roadmap()));
+}

@@ -35,7 +35,6 @@ MapRoadmap::MapRoadmap(CandidateStore& store, const EdgeChecker& checker,
   else
     takeHalton();
   m_pool.apply();
-  if (m_options.edges > 0) m_roadmap.limitEdges(m_options.edges);
 }
 
 bool MapRoadmap::reachable(const Candidate& candidate) const {

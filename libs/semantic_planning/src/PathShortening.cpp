@@ -1,6 +1,7 @@
 #include "PathShortening.h"
 
 #include <colored_graph/ColoredAStar.h>
+#include <semantic_planning/PosePair.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,18 +33,45 @@ std::vector<GroundPose> stationsOf(const std::vector<PathPoint>& path, const Edg
   return stations;
 }
 
-/** All curves between the stations that are short enough; vertex i is station i. */
+int gearChanges(const std::vector<PathPoint>& path) {
+  int changes = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) changes += path[i].forward != path[i - 1].forward;
+  return changes;
+}
+
+bool changesGear(const ReedsSheppCurve& curve) {
+  bool forward = false, backward = false;
+  for (const ReedsSheppCurve::Segment& s : curve.segments()) {
+    forward |= s.length > 0;
+    backward |= s.length < 0;
+  }
+  return forward && backward;
+}
+
+/** Which curves between stations may become parts of the path. */
+struct CurveChoice {
+  double reach;    ///< the longest, meters
+  bool inOneGear;  ///< none that change gear on the way
+
+  bool allows(const PosePair& ends, const ReedsShepp& reedsShepp) const {
+    if (reedsShepp.lowerBound(ends.first.pose, ends.second.pose) > reach) return false;
+    return ends.distance(reedsShepp) <= reach &&
+           !(inOneGear && changesGear(ends.curveFrom(ends.first, reedsShepp)));
+  }
+};
+
+/** All curves between the stations that are allowed, and those from one to the next; vertex i is
+ * station i. */
 ColoredGraph graphOf(const std::vector<GroundPose>& stations, const EdgeChecker& checker,
-                     double reach) {
+                     const CurveChoice& choice) {
   ColoredGraph graph(checker.order().classes());
   for (const GroundPose& pose : stations) graph.addVertex(checker.classAt(pose));
   for (VertexId b = 1; b < stations.size(); ++b)
     for (VertexId a = 0; a < b; ++a) {
-      const auto &from = stations[a].pose, &to = stations[b].pose;
-      if (checker.reedsShepp().lowerBound(from, to) > reach) continue;
-      const double length = checker.reedsShepp().distance(from, to);
-      if (length <= reach || a + 1 == b)
-        graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(length));
+      const PosePair ends(stations[a], stations[b]);
+      if (a + 1 == b || choice.allows(ends, checker.reedsShepp()))
+        graph.addUnevaluatedEdge(a, b,
+                                 colored_graph::lengthDown(ends.distance(checker.reedsShepp())));
     }
   return graph;
 }
@@ -58,31 +86,52 @@ colored_graph::ColoredAStarOptions searchOptions(const ColoredGraph& graph,
   };
   options.evaluate = [&](colored_graph::EdgeId e) {
     const colored_graph::Edge& edge = graph.edge(e);
-    return checker.profile(stations[std::min(edge.a, edge.b)], stations[std::max(edge.a, edge.b)]);
+    const PosePair ends(stations[edge.a], stations[edge.b]);
+    return checker.profile(ends.first, ends.second);
   };
   return options;
+}
+
+/** A path of less cost over curves of a choice, if there is one. */
+std::optional<PlanResult> shortened(const PlanResult& before, const EdgeChecker& checker,
+                                    const colored_graph::CostModel& model,
+                                    const CurveChoice& choice) {
+  const std::vector<GroundPose> stations = stationsOf(before.path, checker);
+  ColoredGraph graph = graphOf(stations, checker, choice);
+  const auto last = static_cast<VertexId>(stations.size() - 1);
+  const auto path = findColoredPath(graph, 0, last, model, searchOptions(graph, stations, checker));
+  if (!path.found() || !(path.cost < before.cost)) return std::nullopt;
+  PlanResult after = before;
+  after.path.clear();
+  after.vertices = {stations.front().pose};
+  for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+    const GroundPose &from = stations[path.vertices[i - 1]], &to = stations[path.vertices[i]];
+    const auto curve = PosePair(from, to).curveFrom(from, checker.reedsShepp());
+    appendCurve(checker.trace(curve, from.z), after.path);
+    after.vertices.push_back(to.pose);
+  }
+  setLengths(path, after);
+  return after;
+}
+
+/** A gear change more is worth less way through a class worse than the best, not a shorter way. */
+bool isWorthIt(const PlanResult& before, const PlanResult& after) {
+  return gearChanges(after.path) <= gearChanges(before.path) ||
+         std::lexicographical_compare(after.cost.begin(), after.cost.end() - 1, before.cost.begin(),
+                                      before.cost.end() - 1);
 }
 
 /** \return whether the path became better */
 bool shortenOnce(PlanResult& result, const EdgeChecker& checker,
                  const colored_graph::CostModel& model, double reach) {
-  const std::vector<GroundPose> stations = stationsOf(result.path, checker);
-  ColoredGraph graph = graphOf(stations, checker, reach);
-  const auto last = static_cast<VertexId>(stations.size() - 1);
-  const auto path = findColoredPath(graph, 0, last, model, searchOptions(graph, stations, checker));
-  if (!path.found() || !(path.cost < result.cost)) return false;
-  std::vector<PathPoint> points;
-  result.vertices.clear();
-  for (std::size_t i = 0; i < path.vertices.size(); ++i) {
-    const GroundPose& pose = stations[path.vertices[i]];
-    result.vertices.push_back(pose.pose);
-    if (i + 1 == path.vertices.size()) break;
-    const auto& next = stations[path.vertices[i + 1]].pose;
-    appendCurve(checker.trace(checker.reedsShepp().connect(pose.pose, next), pose.z), points);
+  for (const bool inOneGear : {false, true}) {
+    auto after = shortened(result, checker, model, {reach, inOneGear});
+    if (!after) return false;
+    if (!isWorthIt(result, *after)) continue;
+    result = std::move(*after);
+    return true;
   }
-  result.path = std::move(points);
-  setLengths(path, result);
-  return true;
+  return false;
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ Roadmap::Roadmap(const EdgeChecker& checker, const RoadmapOptions& options)
       m_graph(checker.order().classes()),
       m_nearest(checker.reedsShepp(), options.neighbors, options.connectionRadius),
       m_guestNeighbors(2 * static_cast<std::size_t>(options.neighbors)),
+      m_mostEdges(options.edges),
       m_radius(options.connectionRadius) {}
 
 void Roadmap::keepPose(VertexId v, const GroundPose& pose) {
@@ -95,7 +96,10 @@ void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
 }
 
 void Roadmap::reconcile(const std::vector<NearestPoses::Pair>& pairs) {
-  for (const auto& [a, b] : pairs) setLinked(a, b, m_nearest.linked(a, b));
+  for (const auto& [a, b] : pairs)
+    if (const bool linked = m_nearest.linked(a, b); !linked || m_mostEdges == 0)
+      setLinked(a, b, linked);
+  if (m_mostEdges > 0) keepBestEdges();
 }
 
 void Roadmap::reconcileGuests() {
@@ -115,21 +119,22 @@ void Roadmap::reconcileGuest(VertexId guest) {
   for (const VertexId other : wanted) setLinked(guest, other, true);
 }
 
-void Roadmap::limitEdges(std::size_t most) {
-  std::vector<std::tuple<std::size_t, Length, EdgeId>> byWorth;
-  const auto place = [this](VertexId of, VertexId neighbor) {
-    std::size_t i = 0;
-    while (i < m_nearest.of(of).size() && m_nearest.of(of)[i].id != neighbor) ++i;
-    return i;
-  };
-  for (EdgeId e = 0; e < m_graph.edgeIdEnd(); ++e) {
-    if (!m_graph.containsEdge(e)) continue;
-    const Edge& edge = m_graph.edge(e);
-    if (m_guests.count(edge.a) || m_guests.count(edge.b)) continue;
-    byWorth.emplace_back(std::min(place(edge.a, edge.b), place(edge.b, edge.a)), edge.length, e);
+void Roadmap::keepBestEdges() {
+  using Worth = std::tuple<std::size_t, double, VertexId, VertexId>;
+  std::vector<Worth> pairs;
+  for (VertexId a = 0; a < m_graph.vertexIdEnd(); ++a) {
+    if (!m_nearest.contains(a)) continue;
+    const auto& nearest = m_nearest.of(a);
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const auto [low, high] = std::minmax(a, nearest[i].id);
+      pairs.emplace_back(i, nearest[i].distance, low, high);
+    }
   }
-  std::sort(byWorth.begin(), byWorth.end());
-  for (std::size_t i = most; i < byWorth.size(); ++i) m_graph.removeEdge(std::get<2>(byWorth[i]));
+  std::sort(pairs.begin(), pairs.end());
+  std::set<std::pair<VertexId, VertexId>> best;
+  for (const auto& [place, distance, a, b] : pairs)
+    if (best.size() < m_mostEdges) best.emplace(a, b);
+  for (const auto& [place, distance, a, b] : pairs) setLinked(a, b, best.count({a, b}) > 0);
 }
 
 void Roadmap::refresh(const std::vector<Column>& changedTiles) {

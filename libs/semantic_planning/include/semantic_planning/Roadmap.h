@@ -15,7 +15,11 @@ namespace semantic_planning {
  *
  * An edge connects a with b if b is among the k nearest of a, or a among those of b; this holds
  * after every insertion and removal. Guests (start and goal) have edges to twice as many, but are
- * nobody's neighbors. */
+ * nobody's neighbors.
+ *
+ * With RoadmapOptions::edges the best of these edges stay: every vertex's nearest first, then every
+ * vertex's second nearest, and so on; of those the shortest. They, too, are chosen anew after every
+ * insertion and removal. Guests' edges do not count. */
 class Roadmap {
  public:
   using VertexId = colored_graph::VertexId;
@@ -33,10 +37,6 @@ class Roadmap {
 
   VertexId addGuest(const GroundPose& pose);
   void removeGuest(VertexId v);
-
-  /** Keeps the best edges only: every vertex's nearest first, then every vertex's second nearest,
-   * and so on; of those the shortest. Guests' edges stay. */
-  void limitEdges(std::size_t most);
 
   /** Looks again at the edges that were evaluated over ground in these tiles. */
   void refresh(const std::vector<Column>& changedTiles);
@@ -63,6 +63,7 @@ class Roadmap {
  private:
   EdgeId edgeBetween(VertexId a, VertexId b) const;
   void setLinked(VertexId a, VertexId b, bool linked);
+  void keepBestEdges();
   void reconcile(const std::vector<NearestPoses::Pair>& pairs);
   void reconcileGuests();
   void reconcileGuest(VertexId guest);
@@ -72,7 +73,7 @@ class Roadmap {
   const EdgeChecker& m_checker;
   colored_graph::ColoredGraph m_graph;
   NearestPoses m_nearest;
-  std::size_t m_guestNeighbors;
+  std::size_t m_guestNeighbors, m_mostEdges;
   double m_radius;
   std::vector<GroundPose> m_poses;  ///< by vertex id
   std::vector<double> m_lengths;    ///< of the curves by edge id, meters

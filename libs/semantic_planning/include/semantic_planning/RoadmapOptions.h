@@ -29,7 +29,8 @@ struct RoadmapOptions {
   /** Vertices, start and goal not counted; of Halton, samples. 0: all that Compressed and Full
    * have, 1000 for the others. */
   std::size_t vertices = 1000;
-  /** Most edges; 0: as many as the nearest neighbors give. Every vertex's nearest go first. */
+  /** Most edges, start's and goal's not counted, also after updates; 0: as many as the nearest
+   * neighbors give. Every vertex's nearest go first. */
   std::size_t edges = 0;
   /** Each vertex is connected with that many nearest ones in Reeds-Shepp distance. */
   int neighbors = 10;
