@@ -1,4 +1,4 @@
-// Planning for a car over ten scans of SemanticKITTI 00.
+// Planning over ten scans of SemanticKITTI 00.
 #include <gtest/gtest.h>
 #include <labeled_cloud/ClassTableFile.h>
 #include <semantic_planning/OrderAbstraction.h>
@@ -6,6 +6,8 @@
 #include <semantic_planning/SemanticPlanner.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "../real_data/DataSets.h"
 #include "PathChecker.h"
@@ -18,25 +20,63 @@ namespace {
 
 const std::filesystem::path kConfig = std::filesystem::path(MSO_SOURCE_DIR) / "config";
 
-semantic_octree::SemanticOcTree streetMap() {
-  const auto table = labeled_cloud::loadClassTable(kConfig / "classes/semantic_kitti.yaml");
-  semantic_octree::SemanticOcTree map(0.2, table);
-  semantic_octree::InsertionOptions insertion;
-  insertion.maxRange = 50;
-  insertion.minRange = 2.5;
-  for (const LabeledFrame& frame : readSemanticKitti(sharedDataDir() / "semantic_kitti/00", table))
-    map.insert(frame.cloud, frame.T_map_sensor, insertion);
-  return map;
+class StreetPlan : public testing::Test {
+ protected:
+  void SetUp() override {
+    SKIP_WITHOUT_DATA("semantic_kitti");
+    if (!s_street) readStreet();
+    map.emplace(*s_street);
+    order.emplace(loadClassOrder(kConfig / "plan/semantic_kitti.yaml", map->classes()));
+    map->setAbstraction(abstractionFor(*order));
+  }
+
+  static void TearDownTestSuite() { s_street.reset(); }
+
+  static void readStreet() {
+    const auto table = labeled_cloud::loadClassTable(kConfig / "classes/semantic_kitti.yaml");
+    s_street.emplace(0.2, table);
+    semantic_octree::InsertionOptions insertion;
+    insertion.maxRange = 50;
+    insertion.minRange = 3;
+    for (const LabeledFrame& frame :
+         readSemanticKitti(sharedDataDir() / "semantic_kitti/00", table)) {
+      s_street->insert(frame.cloud, frame.T_map_sensor, insertion);
+      s_driven.push_back(frame.T_map_sensor);
+    }
+  }
+
+  double meters(const PlanResult& plan, const std::string& name) const {
+    return plan.lengthPerClass[*map->classes().find(name)];
+  }
+
+  static inline std::optional<semantic_octree::SemanticOcTree> s_street;
+  static inline std::vector<Eigen::Isometry3d> s_driven;
+  std::optional<semantic_octree::SemanticOcTree> map;
+  std::optional<colored_graph::ClassOrder> order;
+  PlannerOptions options;
+  const TPose2D start{-24, -14, M_PI / 4}, goal{-14, 15, 130 * M_PI / 180};
+};
+
+struct Box {
+  double west, east, south, north;  // m
+
+  bool contains(double x, double y) const { return x > west && x < east && y > south && y < north; }
+};
+
+bool goesThrough(const PlanResult& plan, const Box& box) {
+  return std::any_of(plan.path.begin(), plan.path.end(),
+                     [&](const PathPoint& p) { return box.contains(p.x, p.y); });
 }
 
 /** Labels the ground in a box anew, again and again, until that is its likeliest class. */
-void recolor(semantic_octree::SemanticOcTree& map, const Ground& ground, double x0, double x1,
-             double y0, double y1, const std::string& name) {
+void recolor(semantic_octree::SemanticOcTree& map, const Ground& ground, const Box& box,
+             const std::string& name) {
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-  T_map_sensor.translation() = Eigen::Vector3d((x0 + x1) / 2, (y0 + y1) / 2, 3);
+  T_map_sensor.translation() =
+      Eigen::Vector3d((box.west + box.east) / 2, (box.south + box.north) / 2, 3);
   semantic_octree::LabeledCloud cloud;
-  for (double x = x0; x < x1; x += ground.voxelSize())
-    for (double y = y0; y < y1; y += ground.voxelSize())
+  for (double x = box.west; x < box.east; x += ground.voxelSize())
+    for (double y = box.south; y < box.north; y += ground.voxelSize())
       if (const auto point = ground.find(x, y)) {
         const Eigen::Vector3d p(ground.centerOf(point->column.x), ground.centerOf(point->column.y),
                                 ground.centerOf(point->surface.z));
@@ -48,36 +88,54 @@ void recolor(semantic_octree::SemanticOcTree& map, const Ground& ground, double 
 
 }  // namespace
 
-TEST(StreetPlan, aCarKeepsToTheRoadAndGoesAroundWhereItIsClosed) {
-  SKIP_WITHOUT_DATA("semantic_kitti");
-  semantic_octree::SemanticOcTree map = streetMap();
-  const auto meters = [&](const PlanResult& plan, const std::string& name) {
-    return plan.lengthPerClass[*map.classes().find(name)];
-  };
-  const auto order = loadClassOrder(kConfig / "plan/semantic_kitti.yaml", map.classes());
-  PlannerOptions options;
+TEST_F(StreetPlan, theWayThatTheCarDroveIsFreeForIt) {
   options.vehicle = loadVehicle(kConfig / "plan/car.yaml");
-  map.setAbstraction(abstractionFor(order));
-  SemanticPlanner planner(map, order, options);
-  const TPose2D start(-24, -14, M_PI / 4), goal(-14, 15, 130 * M_PI / 180);
+  const SemanticPlanner planner(*map, *order, options);
+  for (const Eigen::Isometry3d& T_map_sensor : s_driven) {
+    const Eigen::Vector3d at = T_map_sensor.translation(), ahead = T_map_sensor.linear().col(0);
+    const TPose2D pose(at.x(), at.y(), std::atan2(ahead.y(), ahead.x()));
+    EXPECT_EQ(planner.check(pose), PlanStatus::Found) << at.transpose();
+  }
+}
 
+TEST_F(StreetPlan, aCarKeepsToTheRoadAndGoesAroundWhereItsLaneIsClosed) {
+  options.vehicle = loadVehicle(kConfig / "plan/car.yaml");
+  SemanticPlanner planner(*map, *order, options);
   const PlanResult open = planner.plan(start, goal);
   ASSERT_TRUE(open.found()) << open.reason;
   EXPECT_GT(meters(open, "road"), 0.95 * open.length);
-  PathChecker(map, options.vehicle).expectDrivable(open.path);
+  PathChecker(*map, options.vehicle).expectDrivable(open.path);
 
-  const double west = -13.5, east = -8.5, south = 9, north = 11;  // of what is closed
-  const auto inside = [&](const PathPoint& p) {
-    return p.x > west && p.x < east && p.y > south && p.y < north;
-  };
-  EXPECT_TRUE(std::any_of(open.path.begin(), open.path.end(), inside));
-  recolor(map, planner.ground(), west, east, south, north, "other-ground");
+  const Box lane{-13.5, -8.5, 9, 11};
+  EXPECT_TRUE(goesThrough(open, lane));
+  recolor(*map, planner.ground(), lane, "other-ground");
   const UpdateResult update = planner.update();
   EXPECT_GT(update.edgesChanged + update.edgesInserted + update.edgesRemoved, 0u);
   const PlanResult closed = planner.replan(start);
   ASSERT_TRUE(closed.found()) << closed.reason;
   EXPECT_EQ(meters(closed, "other-ground"), 0);
-  EXPECT_TRUE(std::none_of(closed.path.begin(), closed.path.end(), inside));
+  EXPECT_FALSE(goesThrough(closed, lane));
   EXPECT_GT(closed.cost, open.cost);
-  PathChecker(map, options.vehicle).expectDrivable(closed.path);
+  PathChecker(*map, options.vehicle).expectDrivable(closed.path);
+}
+
+TEST_F(StreetPlan, whereTheWholeStreetIsClosedASmallRobotGoesAroundBetweenTheTrees) {
+  options.vehicle = loadVehicle(kConfig / "drive/robot.yaml");
+  options.roadmap.regionBuffer = 12;
+  SemanticPlanner planner(*map, *order, options);
+  const PlanResult open = planner.plan(start, goal);
+  ASSERT_TRUE(open.found()) << open.reason;
+  EXPECT_EQ(meters(open, "terrain"), 0);
+
+  const Box street{-12, -2.5, 9, 11};  // with the sidewalk
+  EXPECT_TRUE(goesThrough(open, street));
+  recolor(*map, planner.ground(), street, "other-ground");
+  planner.update();
+  const PlanResult closed = planner.replan(start);
+  ASSERT_TRUE(closed.found()) << closed.reason;
+  EXPECT_FALSE(goesThrough(closed, street));
+  EXPECT_GT(meters(closed, "terrain"), 3);
+  EXPECT_EQ(meters(closed, "other-ground"), 0);
+  EXPECT_GT(closed.cost, open.cost);
+  PathChecker(*map, options.vehicle).expectDrivable(closed.path);
 }
