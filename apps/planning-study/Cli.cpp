@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "Choice.h"
+
 namespace planning_study {
 
 using semantic_planning::GraphKind;
@@ -15,11 +17,10 @@ void addGraphs(CLI::App& app, StudyOptions& study) {
       ->delimiter(',')
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  group->add_option("--graphs", study.graphs, "Their kinds; the first is compared with the others")
-      ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(semantic_planning::graphKinds(), CLI::ignore_case)
-                      .description("{compressed,full,halton,halton-by-class,halton-drivable}"))
-      ->type_name("TEXT");
+  addChoice(group->add_option("--graphs", study.graphs,
+                              "Their kinds; the first is compared with the others"),
+            semantic_planning::graphKinds())
+      ->delimiter(',');
   group->add_option("--edges-per-vertex", study.edgesPerVertex, "Most edges of all graphs")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -54,8 +55,8 @@ std::string nameOf(const std::filesystem::path& map) {
 
 Cli::Cli() {
   study.planner.roadmap.headings = 1;  // as in the paper
-  study.graphs = {GraphKind::Compressed, GraphKind::Halton, GraphKind::HaltonDrivable,
-                  GraphKind::HaltonByClass, GraphKind::Full};
+  study.graphs = {GraphKind::Compressed,    GraphKind::Halton,    GraphKind::HaltonDrivable,
+                  GraphKind::HaltonByClass, GraphKind::HaltonMap, GraphKind::Full};
 }
 
 void Cli::addTo(CLI::App& app) {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <map>
 
+#include "Choice.h"
+
 namespace semantic_map_plan {
 
 using namespace semantic_planning;
@@ -30,15 +32,6 @@ CLI::Option* addPose(CLI::App& app, const std::string& name, TPose2D& pose,
       .add_option_function<std::string>(
           name, [&pose](const std::string& text) { pose = parsePose(text); }, description)
       ->type_name("X,Y,DEG");
-}
-
-/** \param option whose values have these names */
-template <class Value>
-void addChoice(CLI::Option* option, const std::map<std::string, Value>& names) {
-  std::string list;
-  for (const auto& [name, value] : names) list += (list.empty() ? "{" : ",") + name;
-  CLI::CheckedTransformer transformer(names, CLI::ignore_case);
-  option->transform(transformer.description(list + "}"))->type_name("TEXT");
 }
 
 void addRoadmap(CLI::App& app, RoadmapOptions& roadmap) {
