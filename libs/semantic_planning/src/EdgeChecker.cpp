@@ -1,8 +1,10 @@
 #include <semantic_planning/EdgeChecker.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "CurveWalk.h"
+#include "GroundTiles.h"
 
 namespace semantic_planning {
 
@@ -10,21 +12,6 @@ using colored_graph::EdgeProfile;
 using mrpt::math::TPose2D;
 
 namespace {
-
-/** Takes points of the vehicle into the map's frame. */
-class Placement {
- public:
-  explicit Placement(const TPose2D& pose)
-      : m_pose(pose), m_cos(std::cos(pose.phi)), m_sin(std::sin(pose.phi)) {}
-
-  std::array<double, 2> operator()(double x, double y) const {
-    return {m_pose.x + m_cos * x - m_sin * y, m_pose.y + m_sin * x + m_cos * y};
-  }
-
- private:
-  const TPose2D& m_pose;
-  const double m_cos, m_sin;
-};
 
 /** Number of pieces, at most half a voxel long each. */
 int pieces(double length, double voxelSize) {
@@ -75,6 +62,10 @@ EdgeChecker::EdgeChecker(const Ground& ground, const VehicleOptions& vehicle,
   m_wheelTolerance = tolerance(vehicle.wheelTrack / 2);
 }
 
+inline const Surface* EdgeChecker::near(Column c, int z, int tolerance) const {
+  return surfaceNear(m_ground.layers().surfaces(), c, z, tolerance);
+}
+
 std::optional<GroundPose> EdgeChecker::place(const TPose2D& pose,
                                              std::optional<double> nearZ) const {
   const auto point = m_ground.find(pose.x, pose.y, nearZ);
@@ -82,29 +73,27 @@ std::optional<GroundPose> EdgeChecker::place(const TPose2D& pose,
   return GroundPose{pose, point->surface.z};
 }
 
-bool EdgeChecker::discsFit(const TPose2D& pose, int z) const {
-  const Placement placed(pose);
+bool EdgeChecker::discsFit(const Placement& placed, int z) const {
   for (const CheckedDisc& d : m_discs) {
     const auto [x, y] = placed(d.disc.x, d.disc.y);
-    const Surface* s = m_ground.near(m_ground.columnAt(x, y), z, d.tolerance);
+    const Surface* s = near(m_ground.columnAt(x, y), z, d.tolerance);
     if (!s || !s->drivable || s->room2 < d.needed2) return false;
   }
   return true;
 }
 
 Fit EdgeChecker::fit(const GroundPose& pose) const {
-  const Surface* s = m_ground.near(m_ground.columnAt(pose.pose.x, pose.pose.y), pose.z, 0);
+  const Surface* s = near(m_ground.columnAt(pose.pose.x, pose.pose.y), pose.z, 0);
   if (!s || !s->drivable) return Fit::OffGround;
-  return discsFit(pose.pose, pose.z) ? Fit::Free : Fit::Blocked;
+  return discsFit(Placement(pose.pose), pose.z) ? Fit::Free : Fit::Blocked;
 }
 
 template <class F>
-bool EdgeChecker::forWheels(const TPose2D& pose, int z, F f) const {
-  const Placement placed(pose);
+bool EdgeChecker::forWheels(const Placement& placed, int z, F f) const {
   for (const double y : m_wheels) {
     const auto [wx, wy] = placed(0, y);
     const Column c = m_ground.columnAt(wx, wy);
-    const Surface* s = m_ground.near(c, z, m_wheelTolerance);
+    const Surface* s = near(c, z, m_wheelTolerance);
     if (!s) return false;
     f(*s, c);
   }
@@ -124,9 +113,9 @@ ClassId EdgeChecker::read(Column c, const Surface& s) const {
   return worst;
 }
 
-std::optional<ClassId> EdgeChecker::worstUnderWheels(const TPose2D& pose, int z) const {
+std::optional<ClassId> EdgeChecker::worstUnderWheels(const Placement& placed, int z) const {
   std::optional<ClassId> worst;
-  const bool grounded = forWheels(pose, z, [&](const Surface& s, Column c) {
+  const bool grounded = forWheels(placed, z, [&](const Surface& s, Column c) {
     const ClassId id = read(c, s);
     if (!worst || m_order.rank(id) > m_order.rank(*worst)) worst = id;
   });
@@ -134,7 +123,7 @@ std::optional<ClassId> EdgeChecker::worstUnderWheels(const TPose2D& pose, int z)
 }
 
 ClassId EdgeChecker::classAt(const GroundPose& pose) const {
-  return worstUnderWheels(pose.pose, pose.z).value_or(semantic_octree::kNoClass);
+  return worstUnderWheels(Placement(pose.pose), pose.z).value_or(semantic_octree::kNoClass);
 }
 
 /** Spreads a length over the classes that a voxel may have. */
@@ -155,12 +144,12 @@ void EdgeChecker::addDistribution(Column c, const Surface& s, double length) con
     if (p[id] > least) m_lengths[id] += length * p[id] / sum;
 }
 
-bool EdgeChecker::addClasses(const TPose2D& pose, int z, double length) const {
+bool EdgeChecker::addClasses(const Placement& placed, int z, double length) const {
   if (m_reading.kind == ClassReading::Kind::Expected)
-    return forWheels(pose, z, [&](const Surface& s, Column c) {
+    return forWheels(placed, z, [&](const Surface& s, Column c) {
       addDistribution(c, s, length / static_cast<double>(m_wheels.size()));
     });
-  const auto worst = worstUnderWheels(pose, z);
+  const auto worst = worstUnderWheels(placed, z);
   if (worst) m_lengths[*worst] += length;
   return worst.has_value();
 }
@@ -171,13 +160,13 @@ std::optional<EdgeProfile> EdgeChecker::profile(const GroundPose& a, const Groun
   const double piece = curve.length() / n;
   std::fill(m_lengths.begin(), m_lengths.end(), 0.0);
   int z = a.z;
-  for (int i = 0; i < n; ++i) {
-    const TPose2D pose = curve.at((i + 0.5) * piece).pose;
-    const Surface* s = m_ground.near(m_ground.columnAt(pose.x, pose.y), z, m_ground.step());
-    if (!s) return std::nullopt;
+  const bool free = walkMiddles(curve, n, [&](const Placement& placed) {
+    const Surface* s = near(m_ground.columnAt(placed.x, placed.y), z, m_ground.step());
+    if (!s) return false;
     z = s->z;
-    if (!discsFit(pose, z) || !addClasses(pose, z, piece)) return std::nullopt;
-  }
+    return discsFit(placed, z) && addClasses(placed, z, piece);
+  });
+  if (!free) return std::nullopt;
   if (std::abs(z - b.z) > m_ground.step()) return std::nullopt;
   EdgeProfile profile = rounded(curve.length());
   if (profile.empty()) profile.push_back({classAt(a), 0});  // from a pose to itself
@@ -204,8 +193,7 @@ std::vector<PathPoint> EdgeChecker::trace(const ReedsSheppCurve& curve, int z) c
   std::vector<PathPoint> points;
   for (const double s : stations(curve, m_ground.voxelSize())) {
     const CurvePoint c = curve.at(s);
-    const Surface* surface =
-        m_ground.near(m_ground.columnAt(c.pose.x, c.pose.y), z, m_ground.step());
+    const Surface* surface = near(m_ground.columnAt(c.pose.x, c.pose.y), z, m_ground.step());
     if (surface) z = surface->z;
     PathPoint p;
     p.x = c.pose.x, p.y = c.pose.y, p.z = m_ground.centerOf(z), p.heading = c.pose.phi;

@@ -114,11 +114,6 @@ std::vector<Column> Ground::update(const std::vector<octomap::OcTreeKey>& touche
   return m_tiles->update(tiles);
 }
 
-Column Ground::columnAt(double x, double y) const {
-  return {static_cast<int>(std::floor(x / m_voxelSize)) + 32768,
-          static_cast<int>(std::floor(y / m_voxelSize)) + 32768};
-}
-
 SurfaceRange Ground::surfaces(Column c) const { return surfacesAt(m_tiles->surfaces(), c); }
 
 const Surface* Ground::near(Column c, int z, int tolerance) const {

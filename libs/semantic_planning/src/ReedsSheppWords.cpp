@@ -53,15 +53,15 @@ struct View {
 /** From the center of a word's first turning circle, one to the left, to that of its last. */
 class Centers {
  public:
-  /** \param beyond4 x * x + y * y - 4 without the rounding of x and y */
-  Centers(double x, double y, double beyond4, const View& view)
-      : view(view),
-        beyond4(beyond4),
+  /** \param rho2Less4 x * x + y * y - 4 without the rounding of x and y */
+  Centers(double x, double y, double rho2Less4, const View& words)
+      : view(words),
+        beyond4(rho2Less4),
         rho(std::sqrt(x * x + y * y)),
         tangent(std::sqrt(std::max(0.0, beyond4))),
         m_x(x),
         m_y(y),
-        m_theta(rho < kSame ? -view.half : kUnknown) {}
+        m_theta(rho < kSame ? -words.half : kUnknown) {}
 
   /** Direction; of the same circle, the start's heading. */
   double theta() { return m_theta == kUnknown ? m_theta = std::atan2(m_y, m_x) : m_theta; }
@@ -111,10 +111,9 @@ class Search {
       : m_turn(2 * std::abs(goal.half)), m_quarter(std::max(m_turn, kPi - m_turn)) {
     const double x = std::abs(goal.x), y = std::abs(goal.y), half = std::abs(goal.half);
     const View asNamed{half}, mirrored{-half, true};
-    const auto between = [](double x, double y, const View& view) {
-      return Centers(x, y, x * x + y * y - 4, view);
-    };
-    Centers ll = between(x - 2 * goal.s, y, asNamed), rr = between(x + 2 * goal.s, -y, mirrored);
+    const double behind = x - 2 * goal.s, ahead = x + 2 * goal.s;
+    Centers ll(behind, y, behind * behind + y * y - 4, asNamed);
+    Centers rr(ahead, -y, ahead * ahead + y * y - 4, mirrored);
     const double beyond4 = x * x + y * y - 4 * goal.s * goal.s, across = 4 * y * goal.c;
     Centers lr(x, y - 2 * goal.c, beyond4 - across, asNamed);
     Centers rl(x, -y - 2 * goal.c, beyond4 + across, mirrored);

@@ -11,6 +11,8 @@
 
 namespace semantic_planning {
 
+struct Placement;
+
 /** A pose on the ground. */
 struct GroundPose {
   mrpt::math::TPose2D pose;  ///< meters, radians; map frame
@@ -62,14 +64,15 @@ class EdgeChecker {
     int tolerance;  ///< voxels in height against the origin
   };
 
-  bool discsFit(const mrpt::math::TPose2D& pose, int z) const;
+  const Surface* near(Column c, int z, int tolerance) const;
+  bool discsFit(const Placement& placed, int z) const;
   /** f(surface, its column) for the ground under each wheel track; false if there is none. */
   template <class F>
-  bool forWheels(const mrpt::math::TPose2D& pose, int z, F f) const;
-  bool addClasses(const mrpt::math::TPose2D& pose, int z, double length) const;
+  bool forWheels(const Placement& placed, int z, F f) const;
+  bool addClasses(const Placement& placed, int z, double length) const;
   void addDistribution(Column c, const Surface& s, double length) const;
   ClassId read(Column c, const Surface& s) const;
-  std::optional<ClassId> worstUnderWheels(const mrpt::math::TPose2D& pose, int z) const;
+  std::optional<ClassId> worstUnderWheels(const Placement& placed, int z) const;
   /** \param lengths per class, meters */
   colored_graph::EdgeProfile rounded(double total) const;
 

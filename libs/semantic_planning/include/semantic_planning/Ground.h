@@ -45,7 +45,7 @@ class Ground {
   double voxelSize() const { return m_voxelSize; }
 
   /** The column that holds a point, map frame, meters. */
-  Column columnAt(double x, double y) const;
+  Column columnAt(double x, double y) const { return {keyOf(x), keyOf(y)}; }
   double centerOf(int key) const { return (key - 32768 + 0.5) * m_voxelSize; }
 
   SurfaceRange surfaces(Column c) const;
@@ -72,7 +72,16 @@ class Ground {
   /** The tiles that there are. */
   std::vector<Column> tiles() const;
 
+  /** Of use within the library only. */
+  const GroundTiles& layers() const { return *m_tiles; }
+
  private:
+  int keyOf(double meters) const {
+    const double voxels = meters / m_voxelSize;
+    const int towardsZero = static_cast<int>(voxels);
+    return towardsZero - (voxels < towardsZero) + 32768;
+  }
+
   std::unique_ptr<GroundTiles> m_tiles;
   const semantic_octree::SemanticOcTree& m_map;
   double m_voxelSize, m_clearance;

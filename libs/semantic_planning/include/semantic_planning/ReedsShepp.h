@@ -24,7 +24,9 @@ class ReedsSheppCurve {
   ReedsSheppCurve(const mrpt::math::TPose2D& from, double turningRadius,
                   const std::array<Segment, 5>& segments);
 
-  double length() const { return m_length; }  ///< meters
+  const mrpt::math::TPose2D& from() const { return m_from; }
+  double turningRadius() const { return m_radius; }  ///< meters
+  double length() const { return m_length; }         ///< meters
   /** \param s arc length from the start, clamped to [0, length()], meters. */
   CurvePoint at(double s) const;
   /** The same curve from its end to its start. */

@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+#include <semantic_planning/EdgeChecker.h>
+
+#include <cmath>
+#include <random>
+
+#include "PaintedWorld.h"
+
+using colored_graph::EdgeProfile;
+using mrpt::math::TPose2D;
+using namespace semantic_planning;
+
+namespace {
+
+/** Looks up everything at every half voxel, by public means only and without memory. */
+class DenseReference {
+ public:
+  DenseReference(const Ground& ground, const VehicleOptions& vehicle,
+                 const colored_graph::ClassOrder& order)
+      : m_ground(ground), m_vehicle(vehicle), m_order(order) {}
+
+  /** Classes along a curve with their lengths, or nothing if it is blocked. */
+  std::optional<std::map<ClassId, double>> lengths(const ReedsSheppCurve& curve, int z,
+                                                   int zEnd) const {
+    std::map<ClassId, double> lengths;
+    const int n = std::max(1, int(std::ceil(2 * curve.length() / m_ground.voxelSize())));
+    for (int i = 0; i < n; ++i) {
+      const TPose2D pose = curve.at((i + 0.5) * (curve.length() / n)).pose;
+      const Surface* s = under(pose, 0, 0, z, m_ground.step());
+      if (!s) return std::nullopt;
+      z = s->z;
+      const auto worst = worstClass(pose, z);
+      if (!discsFit(pose, z) || !worst) return std::nullopt;
+      lengths[*worst] += curve.length() / n;
+    }
+    if (std::abs(z - zEnd) > m_ground.step()) return std::nullopt;
+    return lengths;
+  }
+
+ private:
+  const Surface* under(const TPose2D& pose, double x, double y, int z, int tolerance) const {
+    const double c = std::cos(pose.phi), s = std::sin(pose.phi);
+    return m_ground.near(m_ground.columnAt(pose.x + c * x - s * y, pose.y + s * x + c * y), z,
+                         tolerance);
+  }
+  int tolerance(double x, double y) const {
+    const double rise = std::tan(m_vehicle.maxSlope * M_PI / 180) * std::hypot(x, y);
+    return m_ground.step() + int(std::ceil(rise / m_ground.voxelSize()));
+  }
+  bool discsFit(const TPose2D& pose, int z) const {
+    for (const Disc& d : coveringDiscs(m_vehicle.footprint)) {
+      const Surface* s = under(pose, d.x, d.y, z, tolerance(d.x, d.y));
+      if (!s || !m_ground.hasRoom(*s, d.radius)) return false;
+    }
+    return true;
+  }
+  std::optional<ClassId> worstClass(const TPose2D& pose, int z) const {
+    std::optional<ClassId> worst;
+    for (const double y : {-m_vehicle.wheelTrack / 2, m_vehicle.wheelTrack / 2}) {
+      const Surface* s = under(pose, 0, y, z, tolerance(0, y));
+      if (!s) return std::nullopt;
+      if (!worst || m_order.rank(s->classId) > m_order.rank(*worst)) worst = s->classId;
+    }
+    return worst;
+  }
+
+  const Ground& m_ground;
+  const VehicleOptions& m_vehicle;
+  const colored_graph::ClassOrder& m_order;
+};
+
+/** Road, grass and mud, walls, kerbs, a ramp onto a terrace, holes. */
+PaintedWorld roughWorld() {
+  PaintedWorld world;
+  world.floor(-8, 8, -8, 8, PaintedWorld::Grass);
+  world.floor(-8, 8, -1, 1.2, PaintedWorld::Road);
+  world.floor(2, 4, -8, 8, PaintedWorld::Mud);
+  world.box(-5, -4.4, 2, 6, 0, 1.6, PaintedWorld::Wall);
+  world.box(5, 5.4, -6, -5, 0, 0.8, PaintedWorld::Wall);
+  world.box(-6, -2, -6, -4, 0, 0.2, PaintedWorld::Road);  // a kerb high
+  for (int i = 0; i < 4; ++i)
+    world.box(0.8 * i, 8, 3, 7, 0.2 * i, 0.2 * (i + 1), PaintedWorld::Road);  // stairs
+  return world;
+}
+
+}  // namespace
+
+class EdgeCheckerTest : public testing::Test {
+ protected:
+  std::optional<GroundPose> draw() {
+    std::uniform_real_distribution<double> at(-8, 8), heading(-M_PI, M_PI);
+    return checker.place({at(random), at(random), heading(random)});
+  }
+  /** Often on a line of voxels, or a multiple of a right angle. */
+  std::optional<GroundPose> drawAligned() {
+    std::uniform_int_distribution<int> at(-80, 80), heading(-1, 2);
+    return checker.place({0.1 * at(random), 0.1 * at(random), heading(random) * M_PI / 2});
+  }
+  static bool isNear(const GroundPose& a, const GroundPose& b) {
+    return std::hypot(a.pose.x - b.pose.x, a.pose.y - b.pose.y) < 4;
+  }
+
+  void expectAsDense(const GroundPose& a, const GroundPose& b) {
+    const ReedsSheppCurve curve = checker.reedsShepp().connect(a.pose, b.pose);
+    const auto expected = DenseReference(ground, vehicle, order).lengths(curve, a.z, b.z);
+    const auto profile = checker.profile(a, b);
+    ASSERT_EQ(profile.has_value(), expected.has_value()) << a.pose << " to " << b.pose;
+    ++(profile ? free : blocked);
+    if (!profile) return;
+    for (const auto& part : *profile) {
+      const auto at = expected->find(part.classId);
+      ASSERT_NE(at, expected->end());
+      EXPECT_NEAR(double(part.length), at->second * kUnits, 2 + double(profile->size()));
+    }
+  }
+
+  static inline const double kUnits = double(colored_graph::lengthUp(1.0));
+  PaintedWorld world = roughWorld();
+  colored_graph::ClassOrder order{5, {{1}, {2}, {4}, {0}}};
+  VehicleOptions vehicle;
+  Ground ground{world.map(), vehicle, {}, order};
+  EdgeChecker checker{ground, vehicle, order, {}};
+  std::mt19937 random{5};
+  int free = 0, blocked = 0;
+};
+
+TEST_F(EdgeCheckerTest, seesWhatADenseLookSees) {
+  for (int i = 0; i < 20000 && !HasFatalFailure(); ++i) {
+    const auto a = draw(), b = draw();
+    if (a && b && isNear(*a, *b)) expectAsDense(*a, *b);
+  }
+  EXPECT_GT(free, 500);
+  EXPECT_GT(blocked, 500);
+}
+
+TEST_F(EdgeCheckerTest, seesWhatADenseLookSeesAlongLinesOfVoxels) {
+  for (int i = 0; i < 20000 && !HasFatalFailure(); ++i) {
+    const auto a = drawAligned(), b = drawAligned();
+    if (a && b && isNear(*a, *b)) expectAsDense(*a, *b);
+  }
+  EXPECT_GT(free, 500);
+  EXPECT_GT(blocked, 500);
+}
+
+TEST_F(EdgeCheckerTest, givesAnEdgeToItselfItsClass) {
+  const auto pose = checker.place({0, 0, 1});
+  const auto profile = checker.profile(*pose, *pose);
+  ASSERT_TRUE(profile);
+  ASSERT_EQ(profile->size(), 1u);
+  EXPECT_EQ(profile->front().classId, PaintedWorld::Road);
+  EXPECT_EQ(profile->front().length, 0);
+}
