@@ -101,6 +101,39 @@ TEST(Ground, afterUpdatesItIsTheGroundReadAnew) {
   }
 }
 
+TEST(Ground, aHoleThatNoBeamEnteredIsBridgedAfterAnUpdateAsInTheGroundReadAnew) {
+  PaintedWorld world;
+  const GroundOptions bridged;
+  SemanticOcTree& map = world.map();
+  map.takeTouchedTiles();
+  Ground ground = groundOf(map, VehicleOptions(), bridged);
+  world.floor(-3.2, 0, 0, 3.2, PaintedWorld::Road).map({-1.65, 1.65, 20});
+  ground.update(map.takeTouchedTiles());
+  world.floor(3.2, 6.4, 0, 3.2, PaintedWorld::Road).map({4.85, 1.65, 20});
+  ground.update(map.takeTouchedTiles());
+  expectSame(ground, groundOf(map, VehicleOptions(), bridged));
+  EXPECT_TRUE(ground.connected(*ground.find(-1, 1.6), *ground.find(5, 1.6)));
+}
+
+TEST(Ground, aSurfaceHasTheLikeliestClassOfItsVoxel) {
+  PaintedWorld world;
+  std::mt19937 random(6);
+  for (int scan = 0; scan < 6; ++scan) {
+    for (int x = 0; x < 16; ++x)
+      for (int y = 0; y < 16; ++y) world.voxel(x, y, -1, PaintedWorld::Class(1 + random() % 4));
+    world.map();
+  }
+  const Ground ground = groundOf(world.map());
+  for (int x = 0; x < 16; ++x)
+    for (int y = 0; y < 16; ++y) {
+      const octomap::OcTreeKey key(std::uint16_t(kOrigin + x), std::uint16_t(kOrigin + y),
+                                   std::uint16_t(kOrigin - 1));
+      const Surface* s = ground.near({key[0], key[1]}, key[2], 0);
+      ASSERT_NE(s, nullptr);
+      EXPECT_EQ(s->classId, world.map().query(key).likeliestClass) << x << ' ' << y;
+    }
+}
+
 TEST(Ground, anUpdateTellsTheTilesThatChanged) {
   PaintedWorld world;
   world.floor(-20, 20, -20, 20, PaintedWorld::Road);
