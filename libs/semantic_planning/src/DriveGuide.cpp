@@ -135,10 +135,8 @@ std::optional<DrivePath> DriveGuide::choose(const Situation& now) {
     take(Target::Frontier, now);
   else if (m_target == Target::None && m_plannedPaths == 0)
     return wayOut(now, kBlind);
-  else if (m_blockedSince >= 0)
-    return goBack(now);
   else
-    fail(now);
+    return goBack(now);
   if (path && before) ++m_replans;
   return path;
 }
@@ -192,16 +190,20 @@ std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
 }
 
 std::optional<DrivePath> DriveGuide::toFrontier(const Departure& from) {
+  std::vector<TPose2D> tried;
+  std::optional<DrivePath> path;
   for (const Frontier& f : findFrontiers(m_planner, from.pose, from.z, m_goal, m_seen)) {
     m_planned = false;
     PlanResult plan = m_planner.plan(from.pose, f.pose, from.z, f.z);
-    m_seen.push_back(f.pose);  // if it is not seen from there, it is not seen
+    tried.push_back(f.pose);  // if it is not seen from there, it is not seen
     if (!plan.found() || plan.length < 0.5) continue;
-    DrivePath path(plan.path);
+    path.emplace(plan.path);
     m_plan = std::move(plan);
-    return path;
+    break;
   }
-  return {};
+  // If there is no way to any, it may be for where the vehicle stands.
+  if (path || m_timesBack >= kTimesBack) m_seen.insert(m_seen.end(), tried.begin(), tried.end());
+  return path;
 }
 
 std::optional<DrivePath> DriveGuide::improve(const Situation& now) {
