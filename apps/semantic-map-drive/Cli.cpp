@@ -69,6 +69,7 @@ void Cli::addTo(CLI::App& app) {
       app, "--sensor-dropout", "T,T2", [this](auto& t) { events.dropouts.push_back(parseSpan(t)); },
       "The sensors see nothing from second T to T2");
   app.add_flag("!--no-rawlog", rawlog, "Write no rawlog");
+  app.add_flag("--navlog", navlog, "Write drive.reactivenavlog, for MRPT's navlog-viewer");
   app.add_flag("!--no-pictures", pictures, "Write no animation");
 }
 

@@ -18,7 +18,7 @@ struct Cli {
   std::uint64_t seed = 1;
   double hills = 1;
   mrpt::math::TPose2D start, goal;
-  bool hasStart = false, hasGoal = false, rawlog = true, pictures = true;
+  bool hasStart = false, hasGoal = false, rawlog = true, pictures = true, navlog = false;
   Events events;
 
   void addTo(CLI::App& app);

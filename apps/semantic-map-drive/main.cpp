@@ -53,6 +53,8 @@ class Program {
 
   int run() {
     const DriveRecord first = drive(m_cli.classes[0], "drive");
+    if (m_cli.navlog)
+      fs::rename(navlogs() / "log_000.reactivenavlog", m_output.staged("drive.reactivenavlog"));
     if (m_cli.classes.size() > 1) {
       const DriveRecord second = drive(m_cli.classes[1], "drive2");
       m_picture.addTrack(m_last, first, {220, 60, 20});
@@ -60,14 +62,18 @@ class Program {
     }
     m_output.commit({"drive.csv", "drive.json", "drive.png", "drive.gif", "drive.rawlog",
                      "map.semantic", "drive2.csv", "drive2.json", "drive2.png", "drive2.gif",
-                     "both.png"});
+                     "both.png", "drive.reactivenavlog"});
     return first.arrived() ? 0 : kNotArrived;
   }
 
  private:
+  /** MRPT gives its logs names of its own, and finishes them when the drive is gone. */
+  fs::path navlogs() const { return m_output.staged("navlogs"); }
+
   DriveRecord drive(const fs::path& classes, const std::string& name) {
     const auto order = semantic_planning::loadClassOrder(classes, synthetic_world::classTable());
-    DriveLoop loop(m_config, m_scene.world, order, m_cli.start, m_cli.goal, m_cli.events, m_map);
+    DriveLoop loop(m_config, m_scene.world, order, m_cli.start, m_cli.goal, m_cli.events, m_map,
+                   m_cli.navlog && name == "drive" ? navlogs() : fs::path());
     std::optional<Recorder> recorder;
     if (m_cli.rawlog && name == "drive") {
       loop.keepOriginals();

@@ -88,7 +88,7 @@ TEST(Drives, LeaveAPersonToTheReactiveNavigatorWithoutANewPlan) {
   config.guide.period = config.guide.patience = config.timeLimit;  // no other plan than the first
   const TPose2D start(-6, 0, 0), goal(3, 0, 0);
   Events events;
-  events.persons.push_back({2, 1e9, {-0.5, 1.5}, {-0.5, 0}, 1.5});
+  events.persons.push_back(stepsInFront(drive(world, start, goal, {}, config), -3, 2.5));
   const DriveRecord record = drive(world, start, goal, events, config);
   EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
   EXPECT_EQ(record.collisions, 0);

@@ -1,8 +1,6 @@
 #pragma once
+#include <semantic_planning/DriveOptions.h>
 #include <semantic_planning/SemanticPlanner.h>
-
-#include <Eigen/Core>
-#include <vector>
 
 namespace semantic_planning {
 
@@ -24,8 +22,13 @@ struct ObstacleOptions {
  * How high the ground is spreads from column to column, from below the vehicle on; over ground that
  * is not known the height stays as it was. Nothing is said of the unknown: it is no obstacle.
  * \param z height of the ground below the vehicle, meters */
-std::vector<Eigen::Vector2d> senseObstacles(const SemanticPlanner& planner,
-                                            const mrpt::math::TPose2D& pose, double z,
-                                            const ObstacleOptions& options = {});
+ObstaclePoints senseObstacles(const SemanticPlanner& planner, const mrpt::math::TPose2D& pose,
+                              double z, const ObstacleOptions& options = {});
+
+/** The same with heights above the ground there, meters: centers of the voxels that are in the way,
+ * for a vehicle that is not as wide at all heights. Where the ground itself is an obstacle, there
+ * is one at each height. */
+ObstaclePoints3 senseObstacles3(const SemanticPlanner& planner, const mrpt::math::TPose2D& pose,
+                                double z, const ObstacleOptions& options = {});
 
 }  // namespace semantic_planning

@@ -8,20 +8,31 @@
 
 namespace semantic_planning {
 
-/** MRPT's CReactiveNavigationSystem, step by step: waypoints and obstacles go in, a command comes
- * out. It drives forward only.
+/** MRPT's CReactiveNavigationSystem, or CReactiveNavigationSystem3D, step by step: waypoints and
+ * obstacles go in, a command comes out. It drives forward only.
  *
  * MRPT takes the time from mrpt::Clock: let it tell the time of a simulation
  * (mrpt::Clock::setActiveClock()), if there is one. */
 class ReactiveNavigator {
  public:
+  /** A part of a vehicle's shape that is the same from bottom to top. */
+  struct Slice {
+    double height = 0;                     ///< meters
+    std::vector<Eigen::Vector2d> outline;  ///< corners in the vehicle's frame, meters
+  };
   struct Options {
     std::filesystem::path config;            ///< MRPT's .ini, see config/reactive
     std::vector<Eigen::Vector2d> footprint;  ///< corners in the vehicle's frame, meters
-    double margin = 0.1;                     ///< kept free around the footprint, meters
+    /** From the ground up, if the shape is not the same at all heights: in place of the footprint,
+     * by CReactiveNavigationSystem3D. (Jaimez, Gonzalez-Jimenez and Blanco, "Efficient reactive
+     * navigation with exact collision determination for 3D robot shapes", 2015.) */
+    std::vector<Slice> slices;
+    double margin = 0.1;  ///< kept free around the footprint, meters
     /** Speed and least radius of the trajectories, whatever the file says. */
     double maxSpeed = 1, turningRadius = 0.8;  ///< m/s, meters
-    std::filesystem::path logFolder;           ///< for navlog files; empty: none
+    /** For what MRPT's navlog-viewer reads: log_000.reactivenavlog, or the next free number,
+     * complete when the navigator is gone. Empty: none. */
+    std::filesystem::path logFolder;
   };
   enum class Status { Idle, Driving, Arrived, Blocked };
 
@@ -36,8 +47,11 @@ class ReactiveNavigator {
   void setWaypoints(const std::vector<PathPoint>& waypoints, double reach);
   void cancel();
 
-  /** \param seconds of the clock that runs while navigating */
+  /** \param obstacles in the way of all slices
+   * \param seconds of the clock that runs while navigating */
   DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double seconds);
+  /** \param obstacles in the way of the slices at their heights */
+  DriveCommand step(const DriveState& state, const ObstaclePoints3& obstacles, double seconds);
   /** After the last step. */
   Status status() const;
 
