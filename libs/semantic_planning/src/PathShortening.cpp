@@ -39,39 +39,18 @@ int gearChanges(const std::vector<PathPoint>& path) {
   return changes;
 }
 
-bool changesGear(const ReedsSheppCurve& curve) {
-  bool forward = false, backward = false;
-  for (const ReedsSheppCurve::Segment& s : curve.segments()) {
-    forward |= s.length > 0;
-    backward |= s.length < 0;
-  }
-  return forward && backward;
-}
-
-/** Which curves between stations may become parts of the path. */
-struct CurveChoice {
-  double reach;    ///< the longest, meters
-  bool inOneGear;  ///< none that change gear on the way
-
-  bool allows(const PosePair& ends, const ReedsShepp& reedsShepp) const {
-    if (reedsShepp.lowerBound(ends.first.pose, ends.second.pose) > reach) return false;
-    return ends.distance(reedsShepp) <= reach &&
-           !(inOneGear && changesGear(ends.curveFrom(ends.first, reedsShepp)));
-  }
-};
-
-/** All curves between the stations that are allowed, and those from one to the next; vertex i is
- * station i. */
+/** All curves between the stations that are short enough; vertex i is station i. */
 ColoredGraph graphOf(const std::vector<GroundPose>& stations, const EdgeChecker& checker,
-                     const CurveChoice& choice) {
+                     double reach) {
   ColoredGraph graph(checker.order().classes());
   for (const GroundPose& pose : stations) graph.addVertex(checker.classAt(pose));
   for (VertexId b = 1; b < stations.size(); ++b)
     for (VertexId a = 0; a < b; ++a) {
       const PosePair ends(stations[a], stations[b]);
-      if (a + 1 == b || choice.allows(ends, checker.reedsShepp()))
-        graph.addUnevaluatedEdge(a, b,
-                                 colored_graph::lengthDown(ends.distance(checker.reedsShepp())));
+      if (checker.reedsShepp().lowerBound(ends.first.pose, ends.second.pose) > reach) continue;
+      const double length = ends.distance(checker.reedsShepp());
+      if (length <= reach || a + 1 == b)
+        graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(length));
     }
   return graph;
 }
@@ -92,12 +71,11 @@ colored_graph::ColoredAStarOptions searchOptions(const ColoredGraph& graph,
   return options;
 }
 
-/** A path of less cost over curves of a choice, if there is one. */
+/** A path of less cost, if there is one. */
 std::optional<PlanResult> shortened(const PlanResult& before, const EdgeChecker& checker,
-                                    const colored_graph::CostModel& model,
-                                    const CurveChoice& choice) {
+                                    const colored_graph::CostModel& model, double reach) {
   const std::vector<GroundPose> stations = stationsOf(before.path, checker);
-  ColoredGraph graph = graphOf(stations, checker, choice);
+  ColoredGraph graph = graphOf(stations, checker, reach);
   const auto last = static_cast<VertexId>(stations.size() - 1);
   const auto path = findColoredPath(graph, 0, last, model, searchOptions(graph, stations, checker));
   if (!path.found() || !(path.cost < before.cost)) return std::nullopt;
@@ -114,24 +92,14 @@ std::optional<PlanResult> shortened(const PlanResult& before, const EdgeChecker&
   return after;
 }
 
-/** A gear change more is worth less way through a class worse than the best, not a shorter way. */
-bool isWorthIt(const PlanResult& before, const PlanResult& after) {
-  return gearChanges(after.path) <= gearChanges(before.path) ||
-         std::lexicographical_compare(after.cost.begin(), after.cost.end() - 1, before.cost.begin(),
-                                      before.cost.end() - 1);
-}
-
-/** \return whether the path became better */
-bool shortenOnce(PlanResult& result, const EdgeChecker& checker,
-                 const colored_graph::CostModel& model, double reach) {
-  for (const bool inOneGear : {false, true}) {
-    auto after = shortened(result, checker, model, {reach, inOneGear});
-    if (!after) return false;
-    if (!isWorthIt(result, *after)) continue;
-    result = std::move(*after);
-    return true;
-  }
-  return false;
+/** Less way through classes worse than the best; then fewer gear changes; then a shorter way. */
+bool isBetter(const PlanResult& l, const PlanResult& r) {
+  const auto worth = [](const PlanResult& plan) {
+    std::vector<std::int64_t> worth = plan.cost;
+    worth.insert(worth.end() - 1, gearChanges(plan.path));
+    return worth;
+  };
+  return worth(l) < worth(r);
 }
 
 }  // namespace
@@ -139,8 +107,11 @@ bool shortenOnce(PlanResult& result, const EdgeChecker& checker,
 void shortenPath(PlanResult& result, const EdgeChecker& checker,
                  const colored_graph::CostModel& model, double reach) {
   constexpr int kMostRounds = 3;  // later ones gain little
-  for (int round = 0; round < kMostRounds && result.path.size() > 2; ++round)
-    if (!shortenOnce(result, checker, model, reach)) return;
+  for (int round = 0; round < kMostRounds && result.path.size() > 2; ++round) {
+    auto after = shortened(result, checker, model, reach);
+    if (!after || !isBetter(*after, result)) return;
+    result = std::move(*after);
+  }
 }
 
 }  // namespace semantic_planning
