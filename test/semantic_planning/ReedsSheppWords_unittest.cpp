@@ -152,6 +152,18 @@ TEST(ReedsSheppWords, areAsLongOnTheWayBackToTheBit) {
     for (const auto& [a, b] : pairs) ASSERT_EQ(shepp.distance(a, b), shepp.distance(b, a));
 }
 
+TEST(ReedsSheppWords, areTheSameOnTheWayBack) {
+  const ReedsShepp shepp(1);
+  for (const auto& [a, b] : randomPairs(1000, 1)) {
+    const auto there = shepp.connect(a, b).segments();
+    const auto back = shepp.connect(b, a).reversed().segments();
+    for (int i = 0; i < 5; ++i) {
+      ASSERT_NEAR(there[i].length, back[i].length, 1e-12) << a << " to " << b;
+      if (there[i].length != 0) ASSERT_EQ(there[i].turn, back[i].turn) << a << " to " << b;
+    }
+  }
+}
+
 TEST(ReedsSheppWords, doNotChangeWithTheFrameOrTheScale) {
   const ReedsShepp shepp(1), large(2.5);
   const auto enlarged = [](const TPose2D& p) { return TPose2D{2.5 * p.x, 2.5 * p.y, p.phi}; };

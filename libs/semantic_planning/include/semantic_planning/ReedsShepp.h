@@ -51,7 +51,9 @@ class ReedsShepp {
   double distance(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
   /** A lower bound of distance() that costs next to nothing. */
   double lowerBound(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
-  /** A shortest curve; of several, always the same one. The one from b to a may be another. */
+  /** A shortest curve. Where there are several, as left-right-left and right-left-right with two
+   * cusps between many poses close to each other, always the same one; but for goals straight ahead
+   * or aside the one from b to a may be another. */
   ReedsSheppCurve connect(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
 
  private:
