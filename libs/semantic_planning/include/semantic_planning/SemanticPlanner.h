@@ -45,9 +45,11 @@ class PlannerCore;
  *       plan = planner.replan(pose());
  *     }
  *
- * The first plan() reads the ground; a plan to another goal makes a roadmap of its own. Not thread
- * safe; the map must not change during a call, and what a planner's map tells about its changes
- * (takeTouchedTiles(), Abstraction::takeChange()) is for one planner only. */
+ * A plan to another goal makes a roadmap of its own. What does not depend on start and goal is kept
+ * for the next plan until the map changes there: points for vertices, and what was found about
+ * edges; answers are those of a new planner. Not thread safe; the map must not change during a
+ * call, and what a planner's map tells about its changes (takeTouchedTiles(),
+ * Abstraction::takeChange()) is for one planner only. */
 class SemanticPlanner {
  public:
   /** \param map must outlive the planner. With GraphKind::Compressed it has to keep G-values
@@ -60,8 +62,9 @@ class SemanticPlanner {
   ~SemanticPlanner();
   SemanticPlanner(SemanticPlanner&&) noexcept;
 
-  /** Plans from scratch. Heights (meters) tell which of several levels is meant; without, the
-   * lowest drivable one. \throw std::invalid_argument a number is not finite. */
+  /** Plans from scratch, over the map as it is now. Heights (meters) tell which of several levels
+   * is meant; without, the lowest drivable one. \throw std::invalid_argument a number is not
+   * finite. */
   PlanResult plan(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal,
                   std::optional<double> startZ = {}, std::optional<double> goalZ = {});
 
