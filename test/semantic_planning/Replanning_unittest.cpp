@@ -114,6 +114,8 @@ TEST_F(PlannerTest, afterEveryChangeOfTheMapTheRepairedPathIsTheBest) {
 TEST_F(PlannerTest, theRoadmapFollowsTheCompressedTree) {
   paintCorner();
   options.roadmap.vertices = 0;
+  options.roadmap.neighbors = 3;
+  options.shorten = false;
   SemanticPlanner p = planner();
   p.plan(start, goal);
   for (int i = 0; i < 4; ++i) world.floor(0, 6, -8, -2, PaintedWorld::Road).map();
