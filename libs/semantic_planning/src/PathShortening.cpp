@@ -95,9 +95,9 @@ std::optional<PlanResult> shortened(const PlanResult& before, const EdgeChecker&
 /** Less way through classes worse than the best; then fewer gear changes; then a shorter way. */
 bool isBetter(const PlanResult& l, const PlanResult& r) {
   const auto worth = [](const PlanResult& plan) {
-    std::vector<std::int64_t> worth = plan.cost;
-    worth.insert(worth.end() - 1, gearChanges(plan.path));
-    return worth;
+    std::vector<std::int64_t> terms = plan.cost;
+    terms.insert(terms.end() - 1, gearChanges(plan.path));
+    return terms;
   };
   return worth(l) < worth(r);
 }
