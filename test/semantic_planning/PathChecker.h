@@ -75,9 +75,11 @@ class PathChecker {
   void expectFreeColumn(const PathPoint& p, double x, double y, double distance) const {
     const double slope = std::tan(m_vehicle.maxSlope * M_PI / 180) * distance;
     const double climb = std::max(m_voxel, m_vehicle.stepHeight) + slope + m_voxel;
-    for (double z = p.z + climb; z < p.z + m_vehicle.height - slope; z += m_voxel / 2)
-      ASSERT_NE(m_map.query(x, y, z).status, semantic_octree::CellState::Status::Occupied)
+    for (double z = p.z + climb; z < p.z + m_vehicle.height - slope; z += m_voxel / 2) {
+      const auto* node = m_map.search(x, y, z);  // not query(), which computes all probabilities
+      ASSERT_FALSE(node && node->getLogOdds() > 0)
           << "at " << x << ' ' << y << ' ' << z << " from " << p.x << ' ' << p.y;
+    }
   }
 
   const semantic_octree::SemanticOcTree& m_map;
