@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "OptionChecks.h"
 
@@ -123,10 +124,13 @@ DrivePath DriveGuide::untilRest(const Situation& now) {
 }
 
 std::optional<DrivePath> DriveGuide::choose(const Situation& now) {
-  if (!now.tracker.finished() && std::abs(now.state.speed) > kSlow) return untilRest(now);
+  if (!now.tracker.finished() && std::abs(now.state.speed) > kSlow) {
+    m_leaving = true;
+    return untilRest(now);
+  }
   m_plannedAt = now.seconds;
   if (m_planner.check(now.state.pose, now.z) != PlanStatus::Found) return wayOut(now, 0);
-  const bool before = !now.tracker.finished();
+  const bool before = std::exchange(m_leaving, false) || !now.tracker.finished();
   const Departure here = departureOf(now, true);
   std::optional<DrivePath> path = toGoal(here);
   if (path)

@@ -104,6 +104,7 @@ class DriveGuide {
   int m_replans = 0, m_plannedPaths = 0;
   int m_timesBack = 0;      ///< since a path was planned
   bool m_blindOut = false;  ///< the way out leads to its end, whatever is below the vehicle
+  bool m_leaving = false;   ///< comes to rest before the end of its path
   bool m_gaveUp = false;
   std::string m_reason;
 };
