@@ -1,5 +1,6 @@
 #include "Config.h"
 
+#include <labeled_cloud/IniSection.h>
 #include <labeled_cloud/MrptMessage.h>
 #include <mrpt/config/CConfigFile.h>
 
@@ -7,12 +8,12 @@
 #include <set>
 #include <stdexcept>
 
-#include "IniSection.h"
 #include "LabelConfig.h"
 
 namespace rawlog2semantic_map {
 
 namespace fs = std::filesystem;
+using labeled_cloud::IniSection;
 using mrpt::config::CConfigFileBase;
 
 namespace {

@@ -1,16 +1,17 @@
 #include "LabelConfig.h"
 
+#include <labeled_cloud/IniSection.h>
+
 #include <array>
 #include <cmath>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 
-#include "IniSection.h"
-
 namespace rawlog2semantic_map {
 
 using labeled_cloud::CameraCalibration;
+using labeled_cloud::IniSection;
 using labeled_cloud::LabelImage;
 using labeled_cloud::LabelModel;
 using labeled_cloud::ScanStreamOptions;

@@ -1,5 +1,6 @@
 #include "DriveConfig.h"
 
+#include <labeled_cloud/IniSection.h>
 #include <labeled_cloud/MrptMessage.h>
 #include <mrpt/config/CConfigFile.h>
 #include <semantic_planning/OrderFile.h>
@@ -8,13 +9,11 @@
 #include <set>
 #include <stdexcept>
 
-#include "../rawlog2semantic-map/IniSection.h"
-
 namespace semantic_map_drive {
 
 namespace fs = std::filesystem;
+using labeled_cloud::IniSection;
 using mrpt::config::CConfigFileBase;
-using rawlog2semantic_map::IniSection;
 
 namespace {
 

@@ -1,6 +1,6 @@
+#include <labeled_cloud/IniSection.h>
 #include <mrpt/config/CConfigFileBase.h>
 #include <mrpt/serialization/CArchive.h>
-#include <mrpt/system/string_utils.h>
 #include <semantic_map/MapOptions.h>
 
 #include <algorithm>
@@ -13,27 +13,11 @@
 
 namespace semantic_map {
 
+using labeled_cloud::IniSection;
 using mrpt::config::CConfigFileBase;
 using mrpt::serialization::CArchive;
 
 namespace {
-
-/** The value without a comment behind it, which MRPT leaves there. */
-std::string withoutComment(const std::string& value) {
-  const std::string text = " " + value;
-  std::size_t end = text.size();
-  for (const char* mark : {" //", " #", " ;", "\t//", "\t#", "\t;"})
-    end = std::min(end, text.find(mark));
-  return mrpt::system::trim(text.substr(0, end));
-}
-
-template <class Derived>
-std::vector<std::string> keysOf(const Derived& options) {
-  std::vector<std::string> keys;
-  OptionFields<Derived>::visit(
-      options, [&keys](const char* key, const auto&, const char*) { keys.push_back(key); });
-  return keys;
-}
 
 /** Options that MRPT itself reads from a section of the map. */
 std::vector<std::string> foreignKeys(const TCreationOptions&) {
@@ -42,26 +26,6 @@ std::vector<std::string> foreignKeys(const TCreationOptions&) {
 template <class Other>
 std::vector<std::string> foreignKeys(const Other&) {
   return {};
-}
-
-[[noreturn]] void fail(const std::string& section, const std::string& what) {
-  throw std::runtime_error("[" + section + "] " + what);
-}
-
-template <class Derived>
-void refuseUnknownKeys(const Derived& options, const CConfigFileBase& source,
-                       const std::string& section) {
-  auto known = keysOf(options);
-  for (const std::string& key : foreignKeys(options)) known.push_back(key);
-  std::vector<std::string> present;
-  source.getAllKeys(section, present);
-  for (const std::string& key : present) {
-    const auto same = [&key](const std::string& k) { return mrpt::system::strCmpI(k, key); };
-    if (std::any_of(known.begin(), known.end(), same)) continue;
-    std::string list;
-    for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
-    fail(section, "unknown key '" + key + "'; known are " + list);
-  }
 }
 
 /** Enumerations as one byte, numbers as they are. */
@@ -103,20 +67,22 @@ template <class Derived>
 void TNamedOptions<Derived>::loadFromConfigFile(const CConfigFileBase& source,
                                                 const std::string& section) {
   Derived loaded = static_cast<Derived&>(*this);
-  refuseUnknownKeys(loaded, source, section);
-  OptionFields<Derived>::visit(loaded, [&](const char* key, auto& value, const char*) {
-    if (!source.keyExists(section, key)) return;
-    const std::string text = withoutComment(source.read_string(section, key, ""));
+  IniSection ini(source, section);
+  OptionFields<Derived>::visit(loaded, [&ini](const char* key, auto& value, const char*) {
+    const auto text = ini.text(key);
+    if (!text) return;
     try {
-      parseOption(text, value);
+      parseOption(*text, value);
     } catch (const std::invalid_argument& expected) {
-      fail(section, std::string(key) + " is '" + text + "', expected " + expected.what());
+      ini.fail(std::string(key) + " is '" + *text + "', expected " + expected.what());
     }
   });
+  for (const std::string& key : foreignKeys(loaded)) ini.text(key);
+  ini.finish();
   try {
     loaded.validate();
   } catch (const std::invalid_argument& e) {
-    fail(section, e.what());
+    ini.fail(e.what());
   }
   static_cast<Derived&>(*this) = loaded;
 }

@@ -1,33 +1,36 @@
-#include "IniSection.h"
-
+#include <labeled_cloud/IniSection.h>
 #include <mrpt/system/string_utils.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-namespace rawlog2semantic_map {
+namespace labeled_cloud {
 
 IniSection::IniSection(const mrpt::config::CConfigFileBase& source, std::string section)
     : m_source(source), m_section(std::move(section)) {}
 
-void IniSection::read(const std::string& key, std::string& value) {
+std::optional<std::string> IniSection::text(const std::string& key) {
   m_known.push_back(key);
-  if (!m_source.keyExists(m_section, key)) return;
-  std::string text = m_source.read_string(m_section, key, "");
-  // MRPT leaves comments behind values where they are.
+  if (!m_source.keyExists(m_section, key)) return std::nullopt;
+  const std::string line = " " + m_source.read_string(m_section, key, "");
+  std::size_t end = line.size();
   for (const char* mark : {" //", " #", " ;", "\t//", "\t#", "\t;"})
-    text.erase(std::min(text.find(mark), text.size()));
-  value = mrpt::system::trim(text);
+    end = std::min(end, line.find(mark));
+  return mrpt::system::trim(line.substr(0, end));
+}
+
+void IniSection::read(const std::string& key, std::string& value) {
+  if (const auto found = text(key)) value = *found;
 }
 
 void IniSection::read(const std::string& key, double& value) {
-  std::string text;
-  read(key, text);
-  if (text.empty()) return;
+  const auto found = text(key);
+  if (!found) return;
   char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || std::isnan(number)) fail(key + " is '" + text + "', expected a number");
+  const double number = std::strtod(found->c_str(), &end);
+  if (found->empty() || *end != '\0' || std::isnan(number))
+    fail(key + " is '" + *found + "', expected a number");
   value = number;
 }
 
@@ -55,4 +58,4 @@ void IniSection::finish() const {
   }
 }
 
-}  // namespace rawlog2semantic_map
+}  // namespace labeled_cloud

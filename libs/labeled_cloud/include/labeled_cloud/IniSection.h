@@ -1,16 +1,23 @@
 #pragma once
 #include <mrpt/config/CConfigFileBase.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
-namespace rawlog2semantic_map {
+namespace labeled_cloud {
 
-/** Reads a section of an .ini file into options, strictly: call read() for each option, then
- * finish(). Keys that are absent leave their option as it is. */
+/** Reads a section of an .ini file into options, strictly, where MRPT ignores keys it does not
+ * know: call read() or text() for each option, then finish(). Keys that are absent leave their
+ * option as it is. */
 class IniSection {
  public:
+  /** \param source must outlive the section. */
   IniSection(const mrpt::config::CConfigFileBase& source, std::string section);
+
+  /** The value without a comment behind it, which MRPT leaves there; nothing if the key is absent.
+   */
+  std::optional<std::string> text(const std::string& key);
 
   /** \throw std::runtime_error naming section, key and value: no number, or no number of this kind.
    */
@@ -29,4 +36,4 @@ class IniSection {
   std::vector<std::string> m_known;
 };
 
-}  // namespace rawlog2semantic_map
+}  // namespace labeled_cloud
