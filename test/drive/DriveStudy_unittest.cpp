@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../../apps/drive-study/StudyFiles.h"
+#include "../../apps/drive-study/TrueMap.h"
+#include "Plain.h"
+
+using namespace drive_study;
+using semantic_map_drive::DriveEnd;
+using synthetic_world::World;
+
+namespace {
+
+/** Flat grass with a road, and a yard with walls all around. */
+World withYard() {
+  synthetic_world::Solids solids;
+  addWall(solids, {6, -4}, {14, -4});
+  addWall(solids, {14, -4}, {14, 4});
+  addWall(solids, {14, 4}, {6, 4});
+  addWall(solids, {6, 4}, {6, -4});
+  return plain(solids);
+}
+
+Task solved(const World& world, const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal) {
+  const auto config = smallConfig();
+  const auto order = syntheticOrder();
+  Oracle oracle(world, order, config.planner, config.voxelSize);
+  Task task;
+  task.start = start;
+  task.goal = goal;
+  EXPECT_TRUE(oracle.accepts(task));
+  oracle.solve(task);
+  return task;
+}
+
+}  // namespace
+
+TEST(DriveStudy, TheTrueMapHasTheGroundAndWhatStandsOnIt) {
+  const World world = withYard();
+  const auto map = trueMap(world, 0.2, 1.4);
+  EXPECT_EQ(map.query(0.1, 0.1, 0.1).likeliestClass, synthetic_world::kRoad);
+  EXPECT_EQ(map.query(0.1, 9.1, 0.1).likeliestClass, synthetic_world::kGrass);
+  EXPECT_EQ(map.query(0.1, 0.1, 0.7).status, semantic_octree::CellState::Status::Unknown);
+  EXPECT_EQ(map.query(10.1, 4.0, 0.7).likeliestClass, synthetic_world::kWall);
+}
+
+TEST(DriveStudy, TheOracleKnowsWhereAPathLeads) {
+  const World world = withYard();
+  const Task free = solved(world, {-8, 0, 0}, {3, 0, 0});
+  EXPECT_TRUE(free.hasPath) << free.reason;
+  EXPECT_NEAR(free.lengthPerClass[synthetic_world::kRoad], 11, 0.5);
+  EXPECT_FALSE(solved(world, {-8, 0, 0}, {10, 0, 0}).hasPath);
+}
+
+TEST(DriveStudy, DrawsTasksWithRoomAroundThem) {
+  const World world = withYard();
+  const auto order = syntheticOrder();
+  const auto vehicle = smallConfig().planner.vehicle;
+  TaskOptions options;
+  options.nearest = 5;
+  TaskDraw draw(world, order, vehicle, options);
+  for (int i = 0; i < 20; ++i) {
+    const Task task = draw.next();
+    const double distance = std::hypot(task.goal.x - task.start.x, task.goal.y - task.start.y);
+    EXPECT_GE(distance, options.nearest);
+    EXPECT_LE(distance, options.farthest);
+    const auto footprint = semantic_map_drive::trueFootprint(vehicle);
+    EXPECT_GT(world.clearance(footprint, task.goal.x, task.goal.y, task.goal.phi), options.room);
+  }
+}
+
+TEST(DriveStudy, TellsFaults) {
+  Trial trial;
+  trial.task.hasPath = true;
+  trial.end = DriveEnd::Arrived;
+  trial.badFollowed = 10;
+  trial.badDriven = 10.5;
+  EXPECT_EQ(trial.fault(), "");
+  trial.badDriven = 11;
+  EXPECT_NE(trial.fault(), "");
+  trial.badDriven = 0;
+  trial.end = DriveEnd::Unreachable;
+  EXPECT_EQ(trial.fault(), "did not arrive");
+  trial.task.hasPath = false;
+  EXPECT_EQ(trial.fault(), "");
+  trial.end = DriveEnd::TimeLimit;
+  EXPECT_NE(trial.fault(), "");
+  trial.collisions = 1;
+  EXPECT_EQ(trial.fault(), "collision");
+}
+
+TEST(DriveStudy, DrivesATaskAndCountsIt) {
+  World world = withYard();
+  Trial trial =
+      runTrial(smallConfig(), world, syntheticOrder(), solved(world, {-8, 0, 0}, {3, 0, 0}));
+  trial.scene = "yard";
+  EXPECT_EQ(trial.fault(), "");
+  EXPECT_EQ(trial.end, DriveEnd::Arrived);
+  EXPECT_GE(trial.length, 10.7);
+  const auto study = toJson({trial});
+  EXPECT_EQ(study["yard"]["arrivedOfThese"], 1);
+  EXPECT_EQ(study["all"]["faults"], 0);
+  EXPECT_NE(toCsv({trial}).find("\nyard,0,-8,0,0,3,0,0,yes,"), std::string::npos);
+}
