@@ -21,11 +21,21 @@ void Animation::onFinished(const DriveLoop& loop) { shoot(loop); }
 
 void Animation::shoot(const DriveLoop& loop) {
   m_last = m_picture.draw(loop);
-  char name[32];
-  std::snprintf(name, sizeof name, "frame-%04d.png", m_frames++);
-  const std::filesystem::path file = m_folder / name;
+  const std::filesystem::path file = frame(m_frames++);
   if (!cv::imwrite(file.string(), m_last))
     throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+std::filesystem::path Animation::frame(int number) const {
+  char name[32];
+  std::snprintf(name, sizeof name, "frame-%04d.png", number);
+  return m_folder / name;
+}
+
+std::vector<std::filesystem::path> Animation::frames() const {
+  std::vector<std::filesystem::path> files;
+  for (int i = 0; i < m_frames; ++i) files.push_back(frame(i));
+  return files;
 }
 
 bool Animation::writeGif(const std::filesystem::path& file) const {

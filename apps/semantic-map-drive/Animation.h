@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <vector>
 
 #include "DrivePicture.h"
 
@@ -14,6 +15,8 @@ class Animation : public DriveObserver {
   void onSensed(const DriveLoop& loop, const std::vector<Observation>& seen) override;
   void onFinished(const DriveLoop& loop) override;
 
+  /** The frames so far, in order. */
+  std::vector<std::filesystem::path> frames() const;
   const cv::Mat& last() const { return m_last; }
   /** Makes a GIF of the frames, with ImageMagick. \return false if that is not installed, or fails
    */
@@ -21,6 +24,7 @@ class Animation : public DriveObserver {
 
  private:
   void shoot(const DriveLoop& loop);
+  std::filesystem::path frame(int number) const;
 
   DrivePicture m_picture;
   std::filesystem::path m_folder;

@@ -68,6 +68,8 @@ void Cli::addTo(CLI::App& app) {
   addParsed(
       app, "--sensor-dropout", "T,T2", [this](auto& t) { events.dropouts.push_back(parseSpan(t)); },
       "The sensors see nothing from second T to T2");
+  app.add_option("--picture-every", pictureEvery, "Keep a picture each so many seconds on the way")
+      ->check(CLI::PositiveNumber);
   app.add_flag("!--no-rawlog", rawlog, "Write no rawlog");
   app.add_flag("--navlog", navlog, "Write drive.reactivenavlog, for MRPT's navlog-viewer");
   app.add_flag("!--no-pictures", pictures, "Write no animation");

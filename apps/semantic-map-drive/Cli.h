@@ -16,7 +16,7 @@ struct Cli {
   std::vector<std::filesystem::path> classes;
   std::string scene = "village";
   std::uint64_t seed = 1;
-  double hills = 1;
+  double hills = 1, pictureEvery = 0;
   mrpt::math::TPose2D start, goal;
   bool hasStart = false, hasGoal = false, rawlog = true, pictures = true, navlog = false;
   Events events;

@@ -60,9 +60,12 @@ class Program {
       m_picture.addTrack(m_last, first, {220, 60, 20});
       writePicture(m_last, m_output.staged("both.png"));
     }
-    m_output.commit({"drive.csv", "drive.json", "drive.png", "drive.gif", "drive.rawlog",
-                     "map.semantic", "drive2.csv", "drive2.json", "drive2.png", "drive2.gif",
-                     "both.png", "drive.reactivenavlog"});
+    std::vector<std::string> names = {"drive.csv",  "drive.json",   "drive.png",
+                                      "drive.gif",  "drive.rawlog", "map.semantic",
+                                      "drive2.csv", "drive2.json",  "drive2.png",
+                                      "drive2.gif", "both.png",     "drive.reactivenavlog"};
+    names.insert(names.end(), m_onTheWay.begin(), m_onTheWay.end());
+    m_output.commit(names);
     return first.arrived() ? 0 : kNotArrived;
   }
 
@@ -81,6 +84,10 @@ class Program {
     }
     Animation animation(m_picture, m_output.staged(name + "-frames"), 1);
     if (m_cli.pictures) loop.addObserver(animation);
+    std::optional<Animation> onTheWay;
+    if (m_cli.pictureEvery > 0)
+      loop.addObserver(
+          onTheWay.emplace(m_picture, m_output.staged(name + "-way"), m_cli.pictureEvery));
     const DriveRecord record = loop.run();
     writeText(toCsv(record), m_output.staged(name + ".csv"));
     writeText(toJson(record, order).dump(2) + "\n", m_output.staged(name + ".json"));
@@ -89,8 +96,22 @@ class Program {
     m_last = m_picture.draw(loop);
     writePicture(m_last, m_output.staged(name + ".png"));
     if (m_cli.pictures) animation.writeGif(m_output.staged(name + ".gif"));
+    keepOnTheWay(name, onTheWay ? onTheWay->frames() : std::vector<fs::path>());
     printSummary(record);
     return record;
+  }
+
+  /** As drive-0000.png, drive-0001.png, ...; those of an earlier, longer drive go. */
+  void keepOnTheWay(const std::string& name, const std::vector<fs::path>& frames) {
+    const auto nameOf = [&name](std::size_t i) {
+      const std::string digits = std::to_string(i);
+      return name + "-" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits +
+             ".png";
+    };
+    for (std::size_t i = 0; i < frames.size() || fs::exists(m_cli.output / nameOf(i)); ++i) {
+      if (i < frames.size()) fs::rename(frames[i], m_output.staged(nameOf(i)));
+      m_onTheWay.push_back(nameOf(i));
+    }
   }
 
   const Cli& m_cli;
@@ -100,6 +121,7 @@ class Program {
   DrivePicture m_picture;
   std::optional<semantic_octree::SemanticOcTree> m_map;
   cv::Mat m_last;
+  std::vector<std::string> m_onTheWay;  ///< names of pictures
 };
 
 }  // namespace
