@@ -1,6 +1,9 @@
 #include "StudyFigures.h"
 
+#include <algorithm>
+
 #include "../semantic-map-compress/FigureScript.h"
+#include "Study.h"
 
 namespace planning_study {
 
@@ -108,11 +111,25 @@ std::string valueWithInterval(const ordered_json& estimate) {
   return out.str();
 }
 
-void label(std::ostream& out, bool first, const char* text) {
+void label(std::ostream& out, bool first, const std::string& text) {
   if (first)
-    out << "set ylabel " << gnuplotText(text) << " offset 1,0\n";
+    out << "set ylabel " << gnuplotText(text) << " offset 0,0\n";
   else
     out << "unset ylabel\n";
+}
+
+/** The same for all plots: from the least whisker to the largest. */
+std::string rangeOfTimes(const ordered_json& study) {
+  double low = 1e9, high = 0;
+  for (const ordered_json& map : study["maps"])
+    for (const ordered_json& way : map["ways"]) {
+      if (way["judgment"] != "profile" || way["graph"] == kReference || way["found"] == 0) continue;
+      low = std::min(low, way["milliseconds"]["planning"]["percentile5"].get<double>());
+      high = std::max(high, way["milliseconds"]["planning"]["percentile95"].get<double>());
+    }
+  std::ostringstream out;
+  if (high > 0) out << "set yrange [" << 0.9 * low << ':' << 1.1 * high << "]\n";
+  return out.str();
 }
 
 }  // namespace
@@ -120,19 +137,18 @@ void label(std::ostream& out, bool first, const char* text) {
 void drawTimes(const ordered_json& study, const std::filesystem::path& file) {
   auto out = sheetFor(study, 2, file);
   out << "set logscale y\nset format y '%g'\nset boxwidth " << 0.85 * kBox
-      << "\nset style fill solid 0.35\n";
+      << "\nset style fill solid 0.35\n"
+      << rangeOfTimes(study);
   bool first = true;
   for (const ordered_json& map : study["maps"]) {
-    for (const char* memory : {"cold", "kept"}) {
-      const bool above = memory == std::string("cold");
-      out << "set title " << gnuplotText(map["name"].get<std::string>() + ", " + memory) << '\n'
-          << (above ? "unset xlabel\n" : "set xlabel 'vertices'\n");
-      label(out, first, "planning time [ms]");
+    out << "set title " << gnuplotText(map["name"]) << "\nunset xlabel\n";
+    for (const std::string memory : {"cold", "kept"}) {
+      label(out, first, memory + ": planning time [ms]");
       const Plot plot(study, map, memory);
       plot.write(out, [](const ordered_json& way) { return box(way["milliseconds"]["planning"]); });
       plot.plot(out, {"using 1:2:3:4:5 with candlesticks whiskerbars 0.5",
                       "using 1:6:6:6:6 with candlesticks lw 2"});
-      out << "unset label\n";
+      out << "unset label\nunset title\nset xlabel 'vertices'\n";
     }
     first = false;
   }
@@ -150,7 +166,7 @@ void drawPaths(const ordered_json& study, const std::filesystem::path& file) {
     plot.write(out, [](const ordered_json& way) { return valueWithInterval(way["success"]); });
     plot.plot(out,
               {"using 1:2 with linespoints pt 7 lw 1.5", "using 1:2:3:4 with yerrorbars pt 7"});
-    out << "unset title\nset autoscale y\nset yrange [0:*]\nset xlabel 'vertices'\n";
+    out << "unset label\nunset title\nset autoscale y\nset yrange [0:*]\nset xlabel 'vertices'\n";
     label(out, first, "outside the best rank [m]");
     plot.write(out, [](const ordered_json& way) { return box(way["metersOutsideBest"]); });
     plot.plot(out,

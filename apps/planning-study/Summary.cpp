@@ -142,7 +142,7 @@ bool areCompared(const GroupKey& a, const GroupKey& b, const std::string& firstG
   if (isPeer(b)) return a.graph == firstGraph && a.judgment == "profile" && !a.kept;
   if (a.budget != b.budget) return false;
   if (a.graph == b.graph) return differInOneThing(a, b);
-  return a.graph == firstGraph && a.judgment == b.judgment && a.kept == b.kept;
+  return a.graph == firstGraph && a.judgment == b.judgment && (a.kept || !b.kept);
 }
 
 ordered_json mapJson(const MapStudy& map, const std::string& firstGraph) {

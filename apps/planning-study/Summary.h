@@ -8,7 +8,8 @@
 namespace planning_study {
 
 /** Everything about all maps: each way to plan, and pairs of ways. The first graph is compared with
- * each other one, each judgment of a graph with "profile", and the first graph with the peers. */
+ * each other one (kept with cold ones, too: memory is of no use to all), each judgment of a graph
+ * with "profile", and the first graph with the peers. */
 nlohmann::ordered_json toJson(const std::vector<MapStudy>& maps, const StudyOptions& options);
 
 /** One line a trial; the first line names the columns. Times are in the columns that end with

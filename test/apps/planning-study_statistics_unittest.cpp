@@ -96,6 +96,16 @@ TEST(StudyStatistics, metersOutsideTheBestRankLeaveTheTotalOut) {
   EXPECT_DOUBLE_EQ(meters(trial), 9);
 }
 
+TEST(StudyStatistics, aMeterOfAWorseRankWeighsTenTimesAsMuch) {
+  EXPECT_DOUBLE_EQ(weightedMeters(solved(0, {10000, 25000, 90000})), 100 * 1 + 10 * 2.5 + 5.5);
+}
+
+TEST(StudyStatistics, waysToPlanThatRememberAreWaysOfTheirOwn) {
+  std::vector<Trial> trials(2, solved(0, {1}));
+  trials[1].kept = true;
+  EXPECT_EQ(groupsOf(trials).size(), 2u);
+}
+
 TEST(StudyStatistics, pairsAreOfTheSameInstance) {
   const std::vector<Trial> a = {solved(0, {1}, 5), solved(2, {1}, 6), solved(3, {1}, 7)};
   std::vector<Trial> b = {solved(3, {1}, 70), solved(1, {1}, 60), solved(2, {1}, 50)};
