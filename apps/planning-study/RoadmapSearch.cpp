@@ -1,5 +1,7 @@
 #include "RoadmapSearch.h"
 
+#include <colored_graph/EdgeModelNames.h>
+
 #include <chrono>
 
 #include "CpuClock.h"
@@ -80,11 +82,6 @@ class WeightedGraph {
 };
 
 }  // namespace
-
-const char* nameOf(EdgeModel model) {
-  const char* names[] = {"endpoint", "sweep", "profile"};
-  return names[static_cast<int>(model)];
-}
 
 const char* const kWeighted = "weighted";
 

@@ -13,8 +13,6 @@ struct RoadmapTask {
   const colored_graph::ClassOrder& order;
 };
 
-/** Trial::judgment of COA*. */
-const char* nameOf(colored_graph::EdgeModel model);
 /** Trial::judgment of one number for all classes: rank k weighs 10^k. */
 extern const char* const kWeighted;
 

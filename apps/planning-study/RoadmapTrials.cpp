@@ -1,5 +1,7 @@
 #include "RoadmapTrials.h"
 
+#include <colored_graph/EdgeModelNames.h>
+
 #include <cmath>
 #include <stdexcept>
 

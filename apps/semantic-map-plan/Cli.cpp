@@ -1,5 +1,7 @@
 #include "Cli.h"
 
+#include <colored_graph/EdgeModelNames.h>
+
 #include <cmath>
 #include <map>
 
@@ -9,7 +11,6 @@ namespace semantic_map_plan {
 
 using namespace semantic_planning;
 using colored_graph::CostKind;
-using colored_graph::EdgeModel;
 using mrpt::math::TPose2D;
 
 namespace {
@@ -64,9 +65,7 @@ void addJudgment(CLI::App& app, PlannerOptions& planner) {
       group->add_option("--cost", planner.cost, "What is least, worst class first"),
       std::map<std::string, CostKind>{{"count", CostKind::Count}, {"length", CostKind::ArcLength}});
   addChoice(group->add_option("--edges", planner.edges, "Which classes an edge counts for"),
-            std::map<std::string, EdgeModel>{{"endpoint", EdgeModel::Endpoint},
-                                             {"sweep", EdgeModel::Sweep},
-                                             {"profile", EdgeModel::Profile}});
+            colored_graph::edgeModels());
   addChoice(
       group->add_option("--reading", planner.reading.kind, "What of a voxel's classes counts"),
       std::map<std::string, ClassReading::Kind>{{"likeliest", ClassReading::Kind::Likeliest},
