@@ -12,7 +12,7 @@ Animation::Animation(DrivePicture picture, std::filesystem::path folder, double 
 }
 
 void Animation::onSensed(const DriveLoop& loop, const std::vector<Observation>&) {
-  if (loop.time() < m_next) return;
+  if (loop.time() < m_next - 1e-6) return;
   m_next += m_period;
   shoot(loop);
 }
