@@ -125,6 +125,7 @@ void readDrive(const CConfigFileBase& ini, const fs::path& folder, DriveConfig& 
   section.read("exactEnd", drive.exactEnd);
   section.read("maxSensorAge", drive.maxSensorAge);
   readYesNo(section, "alwaysReactive", drive.alwaysReactive);
+  readYesNo(section, "compressedObstacles", config.compressedObstacles);
   std::string reactive;
   section.read("reactive", reactive);
   section.read("timeLimit", config.timeLimit);

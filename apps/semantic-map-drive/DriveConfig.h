@@ -29,8 +29,9 @@ struct DriveConfig {
   semantic_planning::PlannerOptions planner;
   semantic_planning::DriveOptions drive;
   semantic_planning::GuideOptions guide;
-  double controlPeriod = 0.1;  ///< s
-  double timeLimit = 600;      ///< s of simulated time
+  bool compressedObstacles = false;  ///< the compressed tree's leaves are obstacles
+  double controlPeriod = 0.1;        ///< s
+  double timeLimit = 600;            ///< s of simulated time
   std::filesystem::path reactive;
 };
 

@@ -129,8 +129,7 @@ void DriveLoop::guide() {
 
 void DriveLoop::drive() {
   Stopwatch watch;
-  const auto obstacles =
-      senseObstacles(m_mapper->planner(), state().pose, groundZ(), m_guide->obstacles());
+  const auto obstacles = m_mapper->obstacles(state().pose, groundZ(), m_guide->obstacles());
   note("obstacles", watch.milliseconds());
   const DriveCommand command = m_controller.step(state(), obstacles, m_time - m_sensedAt, m_time);
   note("react", watch.milliseconds());

@@ -1,5 +1,6 @@
 #include "Mapper.h"
 
+#include <semantic_planning/CompressedObstacles.h>
 #include <semantic_planning/OrderAbstraction.h>
 #include <synthetic_world/Classes.h>
 
@@ -54,6 +55,12 @@ semantic_planning::StageTimes Mapper::insert(const std::vector<Observation>& see
   m_planner.update();
   times.emplace_back("update", watch.milliseconds());
   return times;
+}
+
+semantic_planning::ObstaclePoints Mapper::obstacles(
+    const mrpt::math::TPose2D& pose, double z, const semantic_planning::ObstacleOptions& options) {
+  if (!m_config.compressedObstacles) return senseObstacles(m_planner, pose, z, options);
+  return senseCompressedObstacles(m_planner, semantic_octree::Abstraction(m_map), pose, z, options);
 }
 
 }  // namespace semantic_map_drive

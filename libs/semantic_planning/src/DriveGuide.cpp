@@ -242,7 +242,9 @@ void DriveGuide::take(Target target, const Situation& now) {
 void DriveGuide::fail(const Situation& now) {
   m_target = Target::None;
   if (m_withoutSince < 0) m_withoutSince = now.seconds;
-  m_gaveUp = now.seconds - m_withoutSince >= m_options.giveUpAfter;
+  if (m_gaveUp || now.seconds - m_withoutSince < m_options.giveUpAfter) return;
+  m_gaveUp = true;
+  if (explored() > 0) m_reason += "; frontiers explored: " + std::to_string(explored());
 }
 
 }  // namespace semantic_planning

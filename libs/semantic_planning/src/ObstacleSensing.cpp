@@ -1,10 +1,9 @@
 #include <semantic_planning/ObstacleSensing.h>
 
-#include <array>
 #include <cmath>
-#include <deque>
 
 #include "OptionChecks.h"
+#include "Surroundings.h"
 
 namespace semantic_planning {
 
@@ -13,74 +12,6 @@ void ObstacleOptions::validate() const {
 }
 
 namespace {
-
-constexpr std::array<Column, 4> kNeighbors = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-
-/** The columns around a vehicle, each with the height of the ground that leads there. */
-class Surroundings {
- public:
-  Surroundings(const Ground& ground, const mrpt::math::TPose2D& pose, int z, double radius)
-      : m_ground(ground),
-        m_center(ground.columnAt(pose.x, pose.y)),
-        m_reach(static_cast<int>(std::ceil(radius / ground.voxelSize()))),
-        m_edge(2 * m_reach + 1),
-        m_heights(static_cast<std::size_t>(m_edge) * m_edge, kNotReached) {
-    spread(z);
-  }
-
-  /** f(column, key of the ground's height, surface there or null) */
-  template <class F>
-  void forEach(F f) const {
-    for (int y = -m_reach; y <= m_reach; ++y)
-      for (int x = -m_reach; x <= m_reach; ++x) {
-        if (x * x + y * y > m_reach * m_reach) continue;
-        const Column c{m_center.x + x, m_center.y + y};
-        const int z = m_heights[indexOf(c)];
-        f(c, z, m_ground.near(c, z, m_ground.step()));
-      }
-  }
-
- private:
-  static constexpr int kNotReached = -1;
-  struct Step {
-    Column column;
-    int z;
-  };
-
-  bool contains(Column c) const {
-    return std::abs(c.x - m_center.x) <= m_reach && std::abs(c.y - m_center.y) <= m_reach;
-  }
-  std::size_t indexOf(Column c) const {
-    return static_cast<std::size_t>(c.y - m_center.y + m_reach) * m_edge +
-           (c.x - m_center.x + m_reach);
-  }
-
-  /** Over ground first, so that a detour over it counts for more than a jump over a gap. */
-  void spread(int z) {
-    std::deque<Step> next{{m_center, z}};
-    while (!next.empty()) {
-      const Step step = next.front();
-      next.pop_front();
-      int& height = m_heights[indexOf(step.column)];
-      if (height != kNotReached) continue;
-      const Surface* here = m_ground.near(step.column, step.z, m_ground.step());
-      height = here ? here->z : step.z;
-      for (const Column& d : kNeighbors) {
-        const Column c{step.column.x + d.x, step.column.y + d.y};
-        if (!contains(c) || m_heights[indexOf(c)] != kNotReached) continue;
-        if (m_ground.near(c, height, m_ground.step()))
-          next.push_front({c, height});
-        else
-          next.push_back({c, height});
-      }
-    }
-  }
-
-  const Ground& m_ground;
-  Column m_center;
-  int m_reach, m_edge;
-  std::vector<int> m_heights;
-};
 
 class ObstacleFinder {
  public:

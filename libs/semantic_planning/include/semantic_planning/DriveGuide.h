@@ -57,6 +57,9 @@ class DriveGuide {
    * ground that ground does not. \param usual options for all other ways */
   ObstacleOptions obstacles(ObstacleOptions usual = {}) const;
 
+  /** Places at the border of what is known that were driven to, or could not be reached. None is
+   * looked at twice, nor others within FrontierOptions::apart of it: exploring comes to an end. */
+  std::size_t explored() const { return m_seen.size(); }
   /** Paths that were given up for another one, before their end. */
   int replans() const { return m_replans; }
   /** The last plan that was found. */
