@@ -1,26 +1,36 @@
 #include <gtest/gtest.h>
 #include <semantic_planning/CompressedObstacles.h>
+#include <semantic_planning/OrderAbstraction.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
-#include "../semantic_planning/PlannerFixture.h"
+#include "../semantic_planning/PaintedWorld.h"
 
 using namespace semantic_planning;
 
 namespace {
 
 /** A road with a wall, a post, and mud, which is forbidden here. */
-class ObstacleSensing : public PlannerTest {
+class ObstacleSensing : public testing::Test {
  protected:
   ObstacleSensing() {
-    order = colored_graph::ClassOrder(5, {{1}, {2}, {0}});
     world.floor(-8, 8, -8, 8, PaintedWorld::Road);
     world.floor(2, 8, -8, -2, PaintedWorld::Mud);
     world.box(3, 3.2, -1, 5, 0, 1, PaintedWorld::Wall);
     world.box(-3, -2.8, 1, 1.2, 0, 1, PaintedWorld::Wall);
   }
+
+  semantic_octree::SemanticOcTree& map() {
+    semantic_octree::SemanticOcTree& m = world.map();
+    if (!m.hasAbstraction()) m.setAbstraction(abstractionFor(order));
+    return m;
+  }
+  SemanticPlanner planner() { return SemanticPlanner(map(), order, {}); }
+
+  PaintedWorld world;
+  colored_graph::ClassOrder order{5, {{1}, {2}, {0}}};
 };
 
 bool contains(const ObstaclePoints& points, double x, double y) {
