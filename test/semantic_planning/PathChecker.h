@@ -75,11 +75,17 @@ class PathChecker {
   void expectFreeColumn(const PathPoint& p, double x, double y, double distance) const {
     const double slope = std::tan(m_vehicle.maxSlope * M_PI / 180) * distance;
     const double climb = std::max(m_voxel, m_vehicle.stepHeight) + slope + m_voxel;
-    for (double z = p.z + climb; z < p.z + m_vehicle.height - slope; z += m_voxel / 2) {
-      const auto* node = m_map.search(x, y, z);  // not query(), which computes all probabilities
-      ASSERT_FALSE(node && node->getLogOdds() > 0)
+    for (double z = p.z + climb; z < p.z + m_vehicle.height - slope; z += m_voxel / 2)
+      ASSERT_FALSE(isOccupied(x, y, z))
           << "at " << x << ' ' << y << ' ' << z << " from " << p.x << ' ' << p.y;
-    }
+  }
+
+  /** As query() says, without computing all probabilities. */
+  bool isOccupied(double x, double y, double z) const {
+    octomap::OcTreeKey key;
+    if (!m_map.coordToKeyChecked(x, y, z, key)) return false;
+    const auto* node = m_map.search(key);
+    return node && node->getLogOdds() > 0;
   }
 
   const semantic_octree::SemanticOcTree& m_map;
