@@ -129,6 +129,15 @@ TEST_F(RepeatedPlansTest, anEdgeIsRememberedUntilTheGroundBelowItChanges) {
   EXPECT_EQ(p.plan(start, goal).edgesRemembered, 0u);
 }
 
+TEST_F(RepeatedPlansTest, edgesBetweenPosesOfTheTaskAreNotKept) {
+  paintCorner();
+  options.roadmap.kind = GraphKind::HaltonDrivable;
+  SemanticPlanner p = planner();
+  const PlanResult first = p.plan(start, goal), again = p.plan(start, goal);
+  EXPECT_EQ(again.edgesRemembered, 0u);
+  EXPECT_EQ(numbersOf(again), numbersOf(first));
+}
+
 TEST_F(RepeatedPlansTest, whatIsForgottenIsFoundOutAgain) {
   paintCorner();
   SemanticPlanner p = planner();

@@ -115,7 +115,9 @@ bool PlannerCore::refuse(const Place& start, const Place& goal, PlanResult& resu
 
 std::optional<EdgeProfile> PlannerCore::evaluateTimed(colored_graph::EdgeId e) {
   const auto begin = std::chrono::steady_clock::now();
-  auto profile = m_edges.profile(m_roadmap->roadmap().ends(e));
+  const Roadmap& map = m_roadmap->roadmap();
+  auto profile =
+      belongsToMap(m_options.roadmap.kind) ? m_edges.profile(map.ends(e)) : map.evaluate(e);
   m_evaluating += StageClock::millisecondsSince(begin);
   return profile;
 }

@@ -10,6 +10,10 @@ const char* nameOf(GraphKind kind) {
   return names[static_cast<int>(kind)];
 }
 
+bool belongsToMap(GraphKind kind) {
+  return kind == GraphKind::Compressed || kind == GraphKind::HaltonMap || kind == GraphKind::Full;
+}
+
 std::map<std::string, GraphKind> graphKinds() {
   std::map<std::string, GraphKind> kinds;
   for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Halton, GraphKind::HaltonDrivable,

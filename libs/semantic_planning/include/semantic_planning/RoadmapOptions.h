@@ -20,6 +20,8 @@ enum class GraphKind {
 
 /** In words for files and command lines: "compressed", "halton-drivable", ... */
 const char* nameOf(GraphKind kind);
+/** Whether a kind's poses belong to the map: they come again in plans for other tasks. */
+bool belongsToMap(GraphKind kind);
 /** All kinds by their names. */
 std::map<std::string, GraphKind> graphKinds();
 
