@@ -100,6 +100,7 @@ const DriveRecord& DriveLoop::run() {
       guide();
     }
     drive();
+    for (DriveObserver* o : m_observers) o->onDriven(*this);
     m_time += m_config.controlPeriod;
   }
   m_record.replans = m_guide->replans();

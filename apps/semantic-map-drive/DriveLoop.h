@@ -19,6 +19,8 @@ class DriveObserver {
   virtual ~DriveObserver() = default;
   /** Sensors saw something, and the map has it. */
   virtual void onSensed(const DriveLoop&, const std::vector<Observation>&) {}
+  /** The control made a step. */
+  virtual void onDriven(const DriveLoop&) {}
   /** At the end. */
   virtual void onFinished(const DriveLoop&) {}
 };
