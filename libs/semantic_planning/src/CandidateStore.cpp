@@ -45,11 +45,9 @@ void CandidateStore::addTilesOf(const LeafCell& leaf, std::vector<Column>& tiles
   const int size = 1 << (16 - leaf.depth), z = leaf.key[2] & ~(size - 1);
   const Column low{leaf.key[0] & ~(size - 1), leaf.key[1] & ~(size - 1)};
   const Column first = tileOf(low), last = tileOf({low.x + size - 1, low.y + size - 1});
-  for (int y = first.y; y <= last.y; ++y)
-    for (int x = first.x; x <= last.x; ++x)
-      if (const Tile* tile = m_tiles.find({x, y});
-          tile && tile->made && z <= tile->highest && z + size > tile->lowest)
-        tiles.push_back({x, y});
+  m_tiles.forEachIn(first, last, [&](Column c, const Tile& tile) {
+    if (tile.made && z <= tile.highest && z + size > tile.lowest) tiles.push_back(c);
+  });
 }
 
 /** Where leaves came or went, and where those that stayed may be of another class, or have become

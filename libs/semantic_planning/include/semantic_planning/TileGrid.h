@@ -41,12 +41,17 @@ class TileGrid {
     return *find(tile);
   }
 
+  /** f(tile, T&) for the tiles from low to high that are in the rectangle. */
+  template <class F>
+  void forEachIn(Column low, Column high, F f) {
+    for (int y = std::max(low.y, m_first.y); y <= std::min(high.y, m_first.y + m_height - 1); ++y)
+      for (int x = std::max(low.x, m_first.x); x <= std::min(high.x, m_first.x + m_width - 1); ++x)
+        f(Column{x, y}, *find({x, y}));
+  }
   /** f(tile, T&) for all tiles of the rectangle. */
   template <class F>
   void forEach(F f) {
-    for (int y = 0; y < m_height; ++y)
-      for (int x = 0; x < m_width; ++x)
-        f(Column{m_first.x + x, m_first.y + y}, m_tiles[static_cast<std::size_t>(y) * m_width + x]);
+    forEachIn(m_first, {m_first.x + m_width - 1, m_first.y + m_height - 1}, f);
   }
   template <class F>
   void forEach(F f) const {
