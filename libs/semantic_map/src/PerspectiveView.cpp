@@ -1,6 +1,5 @@
 #include <mrpt/opengl/CFBORender.h>
 #include <mrpt/opengl/COpenGLScene.h>
-#include <mrpt/opengl/CSetOfTriangles.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -24,13 +23,8 @@ struct Rendered {
   cv::Mat depth;  ///< 32 bit float, m; 0 where nothing is seen
 };
 
-COpenGLScene sceneOf(const std::vector<mrpt::opengl::TTriangle>& triangles,
-                     const PictureCamera& camera) {
+COpenGLScene sceneOf(const mrpt::opengl::CSetOfTriangles::Ptr& mesh, const PictureCamera& camera) {
   COpenGLScene scene;
-  const auto mesh = mrpt::opengl::CSetOfTriangles::Create();
-  mesh->insertTriangles(triangles);
-  mesh->enableLight(false);  // the colors are lit already
-  mesh->cullFaces(mrpt::opengl::TCullFace::NONE);
   scene.insert(mesh);
   const auto viewport = scene.getViewport();
   viewport->setCustomBackgroundColor(

@@ -1,11 +1,13 @@
 #include "VoxelMesh.h"
 
 #include <array>
+#include <vector>
 
 #include "CellColors.h"
 
 namespace semantic_map {
 
+using mrpt::opengl::CSetOfTriangles;
 using mrpt::opengl::TTriangle;
 using semantic_octree::SemanticOcTree;
 
@@ -91,7 +93,13 @@ class MeshBuilder {
     }
   }
 
-  std::vector<TTriangle> take() { return std::move(m_triangles); }
+  CSetOfTriangles::Ptr take() const {
+    const auto mesh = CSetOfTriangles::Create();
+    mesh->insertTriangles(m_triangles);
+    mesh->enableLight(false);  // the colors are lit already
+    mesh->cullFaces(mrpt::opengl::TCullFace::NONE);
+    return mesh;
+  }
 
  private:
   TTriangle::Vertex vertex(const Eigen::Vector3f& p, const Face& face, semantic_octree::ClassId id,
@@ -113,7 +121,7 @@ class MeshBuilder {
 
 }  // namespace
 
-std::vector<TTriangle> meshOf(const SemanticOcTree& tree, const MapCells& map) {
+CSetOfTriangles::Ptr meshOf(const SemanticOcTree& tree, const MapCells& map) {
   MeshBuilder mesh(tree.classes());
   for (const MapCell& cell : map.cells) {
     Neighborhood around(tree, map, cell);
@@ -121,6 +129,11 @@ std::vector<TTriangle> meshOf(const SemanticOcTree& tree, const MapCells& map) {
       if (!around.isFilled(face.normal)) mesh.addFace(cell, face, around);
   }
   return mesh.take();
+}
+
+CSetOfTriangles::Ptr meshOf(const SemanticOcTree& tree, const PictureStyle& style) {
+  style.validate();
+  return meshOf(tree, collectCells(tree, style));
 }
 
 }  // namespace semantic_map
