@@ -18,6 +18,7 @@ find_package(ompl REQUIRED)
 include(ThirdPartyTargets)
 
 if(MSO_BUILD_APPS)
+  find_package(mrpt-gui REQUIRED)
   find_package(CLI11 REQUIRED)
   find_package(nlohmann_json REQUIRED)
 endif()

@@ -18,7 +18,8 @@ struct Cli {
   std::uint64_t seed = 1;
   double hills = 1, pictureEvery = 0;
   mrpt::math::TPose2D start, goal;
-  bool hasStart = false, hasGoal = false, rawlog = true, pictures = true, navlog = false;
+  bool hasStart = false, hasGoal = false, rawlog = true, pictures = true, navlog = false,
+       live = false;
   Events events;
 
   void addTo(CLI::App& app);

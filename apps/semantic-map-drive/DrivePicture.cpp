@@ -26,6 +26,8 @@ void drawLine(cv::Mat& picture, const std::vector<cv::Point>& line, const cv::Sc
   cv::polylines(picture, line, false, color, 2, cv::LINE_AA);
 }
 
+}  // namespace
+
 std::string caption(const DriveLoop& loop) {
   const DriveRecord& record = loop.record();
   char text[120];
@@ -34,8 +36,6 @@ std::string caption(const DriveLoop& loop) {
                 speed, nameOf(loop.guide().target()));
   return text;
 }
-
-}  // namespace
 
 DrivePicture::DrivePicture(const TPose2D& start, const TPose2D& goal, int size) {
   m_left = std::min(start.x, goal.x) - kAround;

@@ -5,6 +5,9 @@
 
 namespace semantic_map_drive {
 
+/** Seconds, meters, speed, and where to. */
+std::string caption(const DriveLoop& loop);
+
 /** The drive from above: the robot's map in its classes' colors, start and goal, what is left of
  * the path, the driven track, and the robot. One picture is like the other in place and size. */
 class DrivePicture {

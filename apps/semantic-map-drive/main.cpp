@@ -12,6 +12,7 @@
 #include "Cli.h"
 #include "DriveFiles.h"
 #include "DriveLoop.h"
+#include "LiveWindow.h"
 #include "Recorder.h"
 
 namespace semantic_map_drive {
@@ -88,6 +89,8 @@ class Program {
     if (m_cli.pictureEvery > 0)
       loop.addObserver(
           onTheWay.emplace(m_picture, m_output.staged(name + "-way"), m_cli.pictureEvery));
+    std::optional<LiveWindow> window;
+    if (m_cli.live) loop.addObserver(window.emplace(m_scene.world, m_cli.start, m_cli.goal));
     const DriveRecord record = loop.run();
     writeText(toCsv(record), m_output.staged(name + ".csv"));
     writeText(toJson(record, order).dump(2) + "\n", m_output.staged(name + ".json"));
