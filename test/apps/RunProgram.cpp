@@ -30,7 +30,7 @@ void redirect(int descriptor, const std::filesystem::path& file, int flags) {
 ProgramRun runProgram(const std::string& name, const std::vector<std::string>& arguments) {
   const TemporaryFolder folder;
   const pid_t child = fork();
-  if (child == 0) execute(std::string(MSO_BIN_DIR) + "/" + name, arguments, folder);
+  if (child == 0) execute(std::filesystem::path(MSO_BIN_DIR) / name, arguments, folder);
   int status = 0;
   rusage usage{};
   wait4(child, &status, 0, &usage);

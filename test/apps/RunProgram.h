@@ -10,5 +10,6 @@ struct ProgramRun {
   long peakKilobytes = 0;  ///< most memory it ever held
 };
 
-/** Runs MSO_BIN_DIR/NAME with these arguments, without a terminal, and waits for its end. */
+/** Runs MSO_BIN_DIR/NAME (or a program of an absolute path) with these arguments, without a
+ * terminal, and waits for its end. */
 ProgramRun runProgram(const std::string& name, const std::vector<std::string>& arguments);

@@ -1,44 +1,8 @@
-#include <gtest/gtest.h>
+#include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/nav/reactive/CLogFileRecord.h>
+#include <mrpt/serialization/CArchive.h>
 
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-
-#include "RunProgram.h"
-#include "TemporaryFolder.h"
-
-namespace {
-
-const std::string kConfig = std::string(MSO_SOURCE_DIR) + "/config/";
-
-class SemanticMapDrive : public testing::Test {
- protected:
-  ProgramRun drive(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"--world",
-                                          "village",
-                                          "--start=-14,-19,10",
-                                          "--goal=-6,-17,20",
-                                          "--classes",
-                                          kConfig + "plan/synthetic.yaml",
-                                          "--config",
-                                          kConfig + "drive/synthetic.ini",
-                                          "--output",
-                                          path("drive"),
-                                          "--no-pictures"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram("semantic-map-drive", arguments);
-  }
-
-  nlohmann::json jsonIn(const std::string& file) const {
-    return nlohmann::json::parse(std::ifstream(path(file)));
-  }
-  bool has(const std::string& file) const { return std::filesystem::exists(path(file)); }
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-
-  TemporaryFolder folder;
-};
-
-}  // namespace
+#include "SemanticMapDrive.h"
 
 TEST_F(SemanticMapDrive, KeepsPicturesOnTheWayAndNoneOfALongerDrive) {
   ASSERT_EQ(drive({"--no-rawlog", "--picture-every", "5"}).status, 0);
@@ -63,6 +27,31 @@ TEST_F(SemanticMapDrive, WritesARawlogThatBecomesAMap) {
   EXPECT_NE(made.output.find(std::to_string(2 * cycles) + " scans inserted"), std::string::npos)
       << made.output;
   EXPECT_TRUE(has("map/map.semantic"));
+}
+
+TEST_F(SemanticMapDrive, ArrivesWithObstaclesOfTheCompressedTreeAndLogsWhatTheNavigatorDid) {
+  const std::string config = configWith("alwaysReactive = 1\ncompressedObstacles = 1\n");
+  const ProgramRun run = runProgram(
+      "semantic-map-drive",
+      argumentsWith({"--config", config, "--output", path("drive"), "--no-rawlog", "--navlog"}));
+  ASSERT_EQ(run.status, 0) << run.output << run.errors;
+  EXPECT_EQ(jsonIn("drive/drive.json")["collisions"], 0);
+  mrpt::io::CFileGZInputStream file(path("drive/drive.reactivenavlog"));
+  auto archive = mrpt::serialization::archiveFrom(file);
+  int records = 0, withObstacles = 0;
+  try {
+    for (;; ++records) {
+      mrpt::nav::CLogFileRecord record;
+      archive >> record;
+      withObstacles += record.WS_Obstacles.size() > 0;
+      // Between start and goal.
+      EXPECT_GT(record.robotPoseLocalization.x, -16);
+      EXPECT_LT(record.robotPoseLocalization.x, -5);
+    }
+  } catch (const std::exception&) {  // the end
+  }
+  EXPECT_GT(records, 20);
+  EXPECT_GT(withObstacles, 0);
 }
 
 TEST_F(SemanticMapDrive, SaysWhatIsMissing) {

@@ -1,0 +1,64 @@
+#include <opencv2/imgcodecs.hpp>
+
+#include "SemanticMapDrive.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kProgram = std::string(MSO_BIN_DIR) + "/semantic-map-drive";
+
+/** Some seconds, as a window shows them in real time. */
+class LiveDrive : public SemanticMapDrive {
+ protected:
+  std::vector<std::string> shortDrive(const std::string& output) const {
+    return argumentsWith(
+        {"--config", configWith("timeLimit = 4\n"), "--output", path(output), "--no-rawlog"});
+  }
+  std::string csvIn(const std::string& output) const { return folder.read(output + "/drive.csv"); }
+};
+
+/** Pixels of a color, as it is or in the shade. */
+int countPixels(const cv::Mat& screen, const cv::Vec3b& color) {
+  int count = 0;
+  for (auto it = screen.begin<cv::Vec3b>(); it != screen.end<cv::Vec3b>(); ++it)
+    count += cv::norm(*it, color, cv::NORM_INF) <= 3;
+  return count;
+}
+
+}  // namespace
+
+TEST_F(LiveDrive, IsShownInAWindowAndEndsAsWithout) {
+  for (const char* tool :
+       {"/usr/bin/xvfb-run", "/usr/bin/xauth", "/usr/bin/xdotool", "/usr/bin/import"})
+    if (!fs::exists(tool)) GTEST_SKIP() << "needs " << tool;
+  std::vector<std::string> command = {"-a",
+                                      "-s",
+                                      "-screen 0 1280x900x24",
+                                      MSO_SOURCE_DIR "/test/apps/live-window.sh",
+                                      path("screen.png"),
+                                      kProgram,
+                                      "--live"};
+  for (const std::string& argument : shortDrive("live")) command.push_back(argument);
+  const ProgramRun live = runProgram("/usr/bin/xvfb-run", command);
+  EXPECT_EQ(live.status, 2) << live.output << live.errors;  // not arrived in so short a time
+  const cv::Mat screen = cv::imread(path("screen.png"));
+  ASSERT_FALSE(screen.empty()) << live.errors;
+  EXPECT_GT(countPixels(screen, {40, 40, 220}), 100) << "the path";
+  EXPECT_GT(countPixels(screen, {104, 92, 92}), 5000) << "the road";
+
+  const ProgramRun without = runProgram("semantic-map-drive", shortDrive("without"));
+  EXPECT_EQ(without.status, 2);
+  EXPECT_EQ(live.output, without.output);
+  EXPECT_EQ(csvIn("live"), csvIn("without"));
+}
+
+TEST_F(LiveDrive, IsAnErrorWithoutADisplay) {
+  std::vector<std::string> command = {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", kProgram, "--live"};
+  for (const std::string& argument : shortDrive("live")) command.push_back(argument);
+  const ProgramRun run = runProgram("/usr/bin/env", command);
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.errors.find("--live: there is no display"), std::string::npos) << run.errors;
+  EXPECT_EQ(run.output, "");
+  EXPECT_FALSE(has("live"));
+}
