@@ -18,16 +18,16 @@ using mrpt::config::CConfigFileBase;
 namespace {
 
 void refuseUnknownSections(const CConfigFileBase& ini) {
-  static const std::set<std::string> kKnown = {"map",     "sensors", "camera", "lidar",
-                                               "planner", "drive",   "guide"};
+  static const std::set<std::string> kKnown = {"map",  "sensors", "camera", "lidar",
+                                               "pose", "planner", "drive",  "guide"};
   std::vector<std::string> sections, keys;
   ini.getAllSections(sections);
   for (const std::string& section : sections) {
     ini.getAllKeys(section, keys);
     if (kKnown.count(section) || (section.empty() && keys.empty())) continue;
     throw std::runtime_error("unknown section [" + section +
-                             "]; known are [map], [sensors], [camera], [lidar], [planner], "
-                             "[drive], [guide]");
+                             "]; known are [map], [sensors], [camera], [lidar], [pose], "
+                             "[planner], [drive], [guide]");
   }
 }
 
@@ -87,6 +87,18 @@ void readLidar(const CConfigFileBase& ini, SensorConfig& sensors) {
   readNoise(section, sensors.lidar.noise);
   section.finish();
   sensors.lidar.validate();
+}
+
+void readPose(const CConfigFileBase& ini, PoseOptions& pose) {
+  IniSection section(ini, "pose");
+  section.read("odometryNoise", pose.odometryNoise);
+  section.read("turnNoise", pose.turnNoise);
+  readYesNo(section, "correct", pose.correct);
+  section.read("particles", pose.particles);
+  section.read("points", pose.points);
+  section.read("pointWeight", pose.pointWeight);
+  section.finish();
+  pose.validate();
 }
 
 void readPlanner(const CConfigFileBase& ini, const fs::path& folder,
@@ -161,6 +173,7 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     readSensors(ini, config.sensors);
     readCamera(ini, config.sensors);
     readLidar(ini, config.sensors);
+    readPose(ini, config.pose);
     readPlanner(ini, file.parent_path(), config.planner);
     readDrive(ini, file.parent_path(), config);
     readGuide(ini, config.guide);

@@ -8,6 +8,8 @@
 
 #include <filesystem>
 
+#include "PoseOptions.h"
+
 namespace semantic_map_drive {
 
 /** What the robot sees with. */
@@ -16,8 +18,8 @@ struct SensorConfig {
   synthetic_world::CameraOptions camera;
   double cameraPitch = 15;  ///< degrees down
   synthetic_world::LidarOptions lidar;
-  double period = 0.5;  ///< s
-  std::uint64_t seed = 1;
+  double period = 0.5;     ///< s
+  std::uint64_t seed = 1;  ///< of the odometry's noise, too
 };
 
 /** Everything that the .ini file says. */
@@ -26,6 +28,7 @@ struct DriveConfig {
   semantic_octree::FilterParameters filter;
   semantic_octree::InsertionOptions insertion;
   SensorConfig sensors;
+  PoseOptions pose;
   semantic_planning::PlannerOptions planner;
   semantic_planning::DriveOptions drive;
   semantic_planning::GuideOptions guide;

@@ -1,11 +1,14 @@
 #include "DriveFiles.h"
 
+#include <mrpt/math/wrap2pi.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
 namespace semantic_map_drive {
 
+using mrpt::math::TPose2D;
 using semantic_planning::DriveController;
 using synthetic_world::classTable;
 
@@ -30,17 +33,33 @@ nlohmann::json timesToJson(std::vector<double> times) {
   return {{"cycles", times.size()}, {"median", at(0.5)}, {"p95", at(0.95)}, {"max", times.back()}};
 }
 
+/** How far poses of the rows are from the true ones. */
+nlohmann::json errorsToJson(const std::vector<DriveRow>& rows, TPose2D DriveRow::*pose) {
+  double sum = 0, largest = 0, turns = 0;
+  for (const DriveRow& r : rows) {
+    const TPose2D& p = r.*pose;
+    const double error = std::hypot(p.x - r.pose.x, p.y - r.pose.y);
+    sum += error;
+    largest = std::max(largest, error);
+    turns += std::abs(mrpt::math::wrapToPi(p.phi - r.pose.phi));
+  }
+  const double count = std::max<double>(1, static_cast<double>(rows.size()));
+  return {{"mean", sum / count}, {"largest", largest}, {"meanHeading", turns / count * 180 / M_PI}};
+}
+
 }  // namespace
 
 std::string toCsv(const DriveRecord& record) {
   std::ostringstream out;
-  out << "time,x,y,z,heading,speed,turn,class,clearance,offset,target,driver\n";
+  out << "time,x,y,z,heading,speed,turn,class,clearance,offset,target,driver,believedX,believedY,"
+         "believedHeading\n";
   for (const DriveRow& r : record.rows) {
     out << r.time << ',' << r.pose.x << ',' << r.pose.y << ',' << r.z << ','
         << r.pose.phi * 180 / M_PI << ',' << r.speed << ',' << r.turn << ','
         << nameOfClass(r.classId) << ',' << r.clearance << ',' << r.offset << ','
         << nameOf(r.target) << ','
-        << (r.driver == DriveController::Driver::Reactive ? "reactive" : "path") << '\n';
+        << (r.driver == DriveController::Driver::Reactive ? "reactive" : "path") << ','
+        << r.believed.x << ',' << r.believed.y << ',' << r.believed.phi * 180 / M_PI << '\n';
   }
   return out.str();
 }
@@ -59,6 +78,9 @@ nlohmann::json toJson(const DriveRecord& record, const colored_graph::ClassOrder
   json["replans"] = record.replans;
   json["collisions"] = record.collisions;
   json["leastClearance"] = record.leastClearance;
+  if (!record.exactPose)
+    json["poseError"] = {{"believed", errorsToJson(record.rows, &DriveRow::believed)},
+                         {"odometry", errorsToJson(record.rows, &DriveRow::odometry)}};
   for (const auto& [stage, times] : record.times) json["milliseconds"][stage] = timesToJson(times);
   return json;
 }

@@ -4,6 +4,7 @@
 #include <semantic_planning/ObstacleSensing.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "Stopwatch.h"
 
@@ -34,6 +35,20 @@ ReactiveNavigator::Options reactiveOf(const DriveConfig& config,
   return options;
 }
 
+std::string meters(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f m", value);
+  return text;
+}
+
+/** x, y and heading only. */
+Eigen::Isometry3d planar(const TPose2D& pose) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() << pose.x, pose.y, 0;
+  T.rotate(Eigen::AngleAxisd(pose.phi, Eigen::Vector3d::UnitZ()));
+  return T;
+}
+
 void setClock(double seconds) {
   mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
   mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(kEpoch + seconds));
@@ -53,6 +68,8 @@ const char* nameOf(DriveEnd end) {
   switch (end) {
     case DriveEnd::Arrived:
       return "arrived";
+    case DriveEnd::Astray:
+      return "astray";
     case DriveEnd::Unreachable:
       return "unreachable";
     default:
@@ -75,20 +92,35 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_guide(std::make_unique<DriveGuide>(config.guide, m_mapper->planner(), goal)),
       m_controller(config.drive, reactiveOf(config, navlogs)),
       m_robot(start, config.drive),
+      m_pose(start, config.pose, config.sensors.seed),
+      m_state(m_robot.state()),
       m_footprint(trueFootprint(config.planner.vehicle)) {
   const auto classes = synthetic_world::classTable().size() + 1;
   m_record.drivenPerClass.resize(classes);
   m_record.plannedPerClass.resize(classes);
+  m_record.exactPose = config.pose.isExact();
   setClock(0);
   m_mapper->standOn(T_world_robot());
 }
 
 Eigen::Isometry3d DriveLoop::T_world_robot() const {
-  const TPose2D& p = state().pose;
+  const TPose2D& p = m_robot.state().pose;
   return m_world.poseOnGround(p.x, p.y, p.phi);
 }
 
-double DriveLoop::groundZ() const { return m_world.groundHeight(state().pose.x, state().pose.y); }
+/** Height, roll and pitch are known. */
+Eigen::Isometry3d DriveLoop::T_level_robot() const {
+  return planar(m_robot.state().pose).inverse() * T_world_robot();
+}
+
+Eigen::Isometry3d DriveLoop::T_map_robot() const {
+  return m_record.exactPose ? T_world_robot() : planar(state().pose) * T_level_robot();
+}
+
+double DriveLoop::groundZ() const {
+  const TPose2D& p = m_robot.state().pose;
+  return m_world.groundHeight(p.x, p.y);
+}
 
 const DriveRecord& DriveLoop::run() {
   while (!isOver()) {
@@ -113,9 +145,18 @@ void DriveLoop::sense() {
   Stopwatch watch;
   const std::vector<Observation> seen = m_sensors.sense(m_world, T_world_robot());
   note("simulate", watch.milliseconds());
-  for (const auto& [stage, ms] : m_mapper->insert(seen, T_world_robot())) note(stage, ms);
+  localize(seen);
+  for (const auto& [stage, ms] : m_mapper->insert(seen, T_map_robot())) note(stage, ms);
   m_sensedAt = m_time;
   for (DriveObserver* o : m_observers) o->onSensed(*this, seen);
+}
+
+void DriveLoop::localize(const std::vector<Observation>& seen) {
+  if (m_record.exactPose || !m_config.pose.correct) return;
+  Stopwatch watch;
+  m_pose.correct(m_mapper->map(), seen, T_level_robot());
+  m_state.pose = m_pose.pose();
+  note("localize", watch.milliseconds());
 }
 
 void DriveLoop::guide() {
@@ -135,13 +176,24 @@ void DriveLoop::drive() {
   const DriveCommand command = m_controller.step(state(), obstacles, m_time - m_sensedAt, m_time);
   note("react", watch.milliseconds());
   addRow();
+  move(command);
+}
+
+void DriveLoop::move(const DriveCommand& command) {
+  const TPose2D before = m_robot.state().pose;
   m_robot.drive(command, m_config.controlPeriod);
+  m_state = m_robot.state();
+  if (m_record.exactPose) return;
+  m_pose.move(m_state.pose - before);
+  m_state.pose = m_pose.pose();
 }
 
 void DriveLoop::addRow() {
   DriveRow row;
   row.time = m_time;
-  row.pose = state().pose;
+  row.pose = m_robot.state().pose;
+  row.believed = state().pose;
+  row.odometry = m_record.exactPose ? row.pose : m_pose.odometry();
   row.z = groundZ();
   row.speed = state().speed;
   row.turn = state().turn;
@@ -164,9 +216,17 @@ void DriveLoop::addRow() {
   m_record.rows.push_back(row);
 }
 
+void DriveLoop::endAtGoal() {
+  const TPose2D& p = m_robot.state().pose;
+  const double off = std::hypot(p.x - m_goal.x, p.y - m_goal.y);
+  const bool arrived = m_record.exactPose || off < m_config.guide.atGoal;
+  m_record.end = arrived ? DriveEnd::Arrived : DriveEnd::Astray;
+  if (!arrived) m_record.reason = "it believes to have arrived, but is " + meters(off) + " off";
+}
+
 bool DriveLoop::isOver() {
   if (m_guide->arrived(state(), m_controller)) {
-    m_record.end = DriveEnd::Arrived;
+    endAtGoal();
     return true;
   }
   if (m_guide->gaveUp() && std::abs(state().speed) < 0.05) {

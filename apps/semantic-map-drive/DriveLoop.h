@@ -4,6 +4,7 @@
 #include "DriveRecord.h"
 #include "Events.h"
 #include "Mapper.h"
+#include "PoseFilter.h"
 #include "SimulatedRobot.h"
 
 namespace semantic_map_drive {
@@ -49,15 +50,22 @@ class DriveLoop {
   const mrpt::math::TPose2D& start() const { return m_start; }
   const mrpt::math::TPose2D& goal() const { return m_goal; }
   const DriveConfig& config() const { return m_config; }
-  const semantic_planning::DriveState& state() const { return m_robot.state(); }
+  /** With the pose that the robot believes to have. */
+  const semantic_planning::DriveState& state() const { return m_state; }
+  /** The true pose. */
   Eigen::Isometry3d T_world_robot() const;
 
  private:
   void sense();
+  void localize(const std::vector<Observation>& seen);
   void guide();
   void drive();
+  void move(const semantic_planning::DriveCommand& command);
   void addRow();
   bool isOver();
+  void endAtGoal();
+  Eigen::Isometry3d T_level_robot() const;
+  Eigen::Isometry3d T_map_robot() const;
   double groundZ() const;
   void note(const std::string& stage, double milliseconds) {
     m_record.times[stage].push_back(milliseconds);
@@ -72,6 +80,8 @@ class DriveLoop {
   std::unique_ptr<semantic_planning::DriveGuide> m_guide;
   semantic_planning::DriveController m_controller;
   SimulatedRobot m_robot;
+  PoseFilter m_pose;
+  semantic_planning::DriveState m_state;
   synthetic_world::Footprint m_footprint;
   DriveRecord m_record;
   std::vector<DriveObserver*> m_observers;

@@ -14,6 +14,8 @@ namespace semantic_map_drive {
 struct DriveRow {
   double time = 0;                       ///< s
   mrpt::math::TPose2D pose;              ///< true, map frame
+  mrpt::math::TPose2D believed;          ///< where the robot believes to be
+  mrpt::math::TPose2D odometry;          ///< where it would without correction
   double z = 0, speed = 0, turn = 0;     ///< m, m/s, rad/s
   semantic_octree::ClassId classId = 0;  ///< true ground below the robot
   double clearance = 0;                  ///< m to the nearest true thing, at most 5
@@ -23,13 +25,15 @@ struct DriveRow {
       semantic_planning::DriveController::Driver::Tracker;
 };
 
-enum class DriveEnd { Arrived, Unreachable, TimeLimit };
+/** Astray: it believes to have arrived, but has not. */
+enum class DriveEnd { Arrived, Astray, Unreachable, TimeLimit };
 const char* nameOf(DriveEnd end);
 
 /** A whole drive. */
 struct DriveRecord {
   DriveEnd end = DriveEnd::TimeLimit;
   std::string reason;
+  bool exactPose = true;  ///< the robot knows it
   std::vector<DriveRow> rows;
   std::vector<double> drivenPerClass;   ///< m, true ground along the driven way
   std::vector<double> plannedPerClass;  ///< m, true ground along the paths that it followed

@@ -1,4 +1,4 @@
-#include "PointLikelihood.h"
+#include <semantic_map/PointLikelihood.h>
 
 #include <cmath>
 
