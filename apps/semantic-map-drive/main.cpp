@@ -49,6 +49,7 @@ class Program {
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
         m_output(cli.output),
         m_picture(cli.start, cli.goal) {
+    m_config.sensors.seed = cli.seed;
     if (!cli.map.empty()) m_map = semantic_octree::loadTree(cli.map.string());
   }
 

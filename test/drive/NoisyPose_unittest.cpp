@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+#include <synthetic_world/Scene.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../../apps/semantic-map-drive/DriveFiles.h"
+#include "Plain.h"
+
+using namespace semantic_map_drive;
+using mrpt::math::TPose2D;
+
+namespace {
+
+DriveConfig noisyConfig(bool correct = true) {
+  DriveConfig config = smallConfig();
+  config.pose.odometryNoise = 0.1;
+  config.pose.turnNoise = 3;
+  config.pose.correct = correct;
+  return config;
+}
+
+DriveRecord drive(const DriveConfig& config) {
+  auto scene = synthetic_world::makeScene("village", 1);
+  DriveLoop loop(config, scene.world, syntheticOrder(), {-14, -19, 10 * M_PI / 180}, {0, -17, 0},
+                 {});
+  return loop.run();
+}
+
+double largestError(const DriveRecord& record, TPose2D DriveRow::*pose) {
+  double largest = 0;
+  for (const DriveRow& row : record.rows)
+    largest = std::max(largest, std::hypot((row.*pose).x - row.pose.x, (row.*pose).y - row.pose.y));
+  return largest;
+}
+
+}  // namespace
+
+TEST(NoisyPose, CorrectedByTheMapLeadsToTheGoal) {
+  const DriveRecord record = drive(noisyConfig());
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_LT(largestError(record, &DriveRow::believed), 0.6);
+  EXPECT_LT(largestError(record, &DriveRow::believed),
+            largestError(record, &DriveRow::odometry) / 2);
+  const auto error = toJson(record, syntheticOrder()).at("poseError");
+  EXPECT_EQ(error.at("believed").at("largest"), largestError(record, &DriveRow::believed));
+  EXPECT_GT(error.at("odometry").at("mean"), error.at("believed").at("mean"));
+}
+
+TEST(NoisyPose, WithoutCorrectionIsThatOfOdometry) {
+  const DriveRecord record = drive(noisyConfig(false));
+  const double error = largestError(record, &DriveRow::believed);
+  EXPECT_EQ(error, largestError(record, &DriveRow::odometry));
+  EXPECT_GT(error, 2 * largestError(drive(noisyConfig()), &DriveRow::believed));
+}
+
+TEST(NoisyPose, IsTheSameEachTime) {
+  DriveConfig config = noisyConfig();
+  config.timeLimit = 5;
+  const std::string first = toCsv(drive(config));
+  EXPECT_EQ(first, toCsv(drive(config)));
+  config.sensors.seed = 2;
+  EXPECT_NE(first, toCsv(drive(config)));
+}
+
+TEST(NoisyPose, WithoutNoiseIsExact) {
+  DriveConfig config = smallConfig();
+  config.timeLimit = 8;
+  const DriveRecord exact = drive(config);
+  EXPECT_EQ(largestError(exact, &DriveRow::believed), 0);
+  EXPECT_EQ(exact.times.count("localize"), 0u);
+  EXPECT_FALSE(toJson(exact, syntheticOrder()).contains("poseError"));
+  config.pose.correct = false;
+  EXPECT_EQ(toCsv(exact), toCsv(drive(config)));
+}
+
+TEST(NoisyPose, RefusesBadOptions) {
+  PoseOptions options;
+  options.odometryNoise = -0.1;
+  EXPECT_THROW(options.validate(), std::invalid_argument);
+  options = {};
+  options.pointWeight = 0;
+  EXPECT_THROW(options.validate(), std::invalid_argument);
+}
