@@ -52,7 +52,8 @@ std::string toCsv(const std::vector<Trial>& trials) {
   std::ostringstream out;
   out << "scene,number,start_x,start_y,start_deg,goal_x,goal_y,goal_deg,path,path_length,path_"
          "worse,"
-         "end,fault,seconds,length,worse,worse_planned,collisions,clearance,replans,processor,"
+         "end,fault,seconds,length,worse,worse_planned,collisions,clearance,replans,explored,"
+         "processor,"
          "why_no_path,reason\n";
   for (const Trial& t : trials) {
     out << t.scene << ',' << t.number << ',';
@@ -61,8 +62,8 @@ std::string toCsv(const std::vector<Trial>& trials) {
     out << (t.task.hasPath ? "yes" : "no") << ',' << t.task.length << ',' << t.badBest << ','
         << nameOf(t.end) << ',' << t.fault() << ',' << t.seconds << ',' << t.length << ','
         << t.badDriven << ',' << t.badFollowed << ',' << t.collisions << ',' << t.leastClearance
-        << ',' << t.replans << ',' << t.processorSeconds << ',' << quoted(t.task.reason) << ','
-        << quoted(t.reason) << '\n';
+        << ',' << t.replans << ',' << t.explored << ',' << t.processorSeconds << ','
+        << quoted(t.task.reason) << ',' << quoted(t.reason) << '\n';
   }
   return out.str();
 }

@@ -51,6 +51,13 @@ Task TaskDraw::next() {
       std::to_string(m_options.farthest) + " m apart, in " + std::to_string(kMostTries) + " draws");
 }
 
+Task TaskDraw::nextEnclosed() {
+  Task task = next();
+  task.enclosed = true;
+  task.reason = "barriers all around the goal";
+  return task;
+}
+
 TPose2D TaskDraw::anyPose() {
   constexpr double kRim = 5;  // m
   const double far = m_world.halfExtent() - kRim;

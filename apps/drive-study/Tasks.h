@@ -13,6 +13,7 @@ namespace drive_study {
 struct Task {
   mrpt::math::TPose2D start, goal;
   bool hasPath = false;
+  bool enclosed = false;               ///< by barriers around the goal
   std::string reason;                  ///< why not
   double length = 0;                   ///< of the path, meters
   std::vector<double> lengthPerClass;  ///< of the path, meters over the true ground
@@ -27,6 +28,9 @@ struct TaskOptions {
   void validate() const;
 };
 
+/** How far the barriers around an enclosed goal are from it, meters. */
+constexpr double kBarriersAt = 3;
+
 /** Draws starts and goals on free, allowed ground of the true world. */
 class TaskDraw {
  public:
@@ -36,6 +40,9 @@ class TaskDraw {
 
   /** Without a path. \throw std::runtime_error the world has no such places. */
   Task next();
+  /** With barriers all around the goal, and so without a path. \throw std::runtime_error as above
+   */
+  Task nextEnclosed();
 
  private:
   mrpt::math::TPose2D anyPose();

@@ -1,5 +1,7 @@
 #include "Trial.h"
 
+#include <utility>
+
 #include "../semantic-map-drive/DriveFiles.h"
 #include "../semantic-map-drive/Stopwatch.h"
 
@@ -19,12 +21,16 @@ std::string Trial::fault() const {
 Trial runTrial(const DriveConfig& config, synthetic_world::World& world,
                const colored_graph::ClassOrder& order, const Task& task) {
   Stopwatch watch;
-  DriveLoop loop(config, world, order, task.start, task.goal, {});
+  Events events;
+  if (task.enclosed) events.roadblocks = barriersAround({task.goal.x, task.goal.y}, kBarriersAt);
+  DriveLoop loop(config, world, order, task.start, task.goal, events);
   const DriveRecord& record = loop.run();
+  world.setMovables({});
   Trial trial;
   trial.task = task;
   trial.end = record.end;
   trial.reason = record.reason;
+  trial.explored = std::as_const(loop).guide().explored();
   trial.seconds = record.duration();
   trial.length = record.length;
   trial.badDriven = badLength(record.drivenPerClass, order);

@@ -11,6 +11,7 @@ struct Trial {
   Task task;
   semantic_map_drive::DriveEnd end = semantic_map_drive::DriveEnd::TimeLimit;
   std::string reason;                     ///< why it did not arrive
+  std::size_t explored = 0;               ///< frontiers
   double seconds = 0, length = 0;         ///< of the drive, m
   double badDriven = 0, badFollowed = 0;  ///< m off the best class: driven, and along its paths
   double badBest = 0;                     ///< m off the best class along the task's path
@@ -22,7 +23,7 @@ struct Trial {
   std::string fault() const;
 };
 
-/** Drives a task in a world, from an empty map. */
+/** Drives a task in a world, from an empty map. \param world is without barriers afterwards */
 Trial runTrial(const semantic_map_drive::DriveConfig& config, synthetic_world::World& world,
                const colored_graph::ClassOrder& order, const Task& task);
 

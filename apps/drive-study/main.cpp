@@ -19,7 +19,7 @@ constexpr int kFaults = 2;  // exit status
 struct Cli {
   fs::path classes, config, output;
   std::vector<std::string> scenes = synthetic_world::sceneNames();
-  int pairs = 20;
+  int pairs = 20, enclosed = 0;
   std::vector<int> only;
   std::uint64_t sceneSeed = 1;
   TaskOptions tasks;
@@ -30,7 +30,10 @@ struct Cli {
         ->check(CLI::IsMember(synthetic_world::sceneNames()))
         ->capture_default_str();
     app.add_option("--pairs", pairs, "Of start and goal in each")
-        ->check(CLI::PositiveNumber)
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--enclosed", enclosed, "And so many with barriers all around the goal")
+        ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     app.add_option("--only", only, "Drive these of the pairs only (0, 1, ...)")->delimiter(',');
     app.add_option("--seed", tasks.seed, "Other pairs")->capture_default_str();
@@ -69,11 +72,12 @@ void studyScene(const std::string& name, const Cli& cli,
   const auto order = semantic_planning::loadClassOrder(cli.classes, synthetic_world::classTable());
   TaskDraw draw(scene.world, order, config.planner.vehicle, cli.tasks);
   Oracle oracle(scene.world, order, config.planner, config.voxelSize);
-  for (int i = 0; i < cli.pairs; ++i) {
-    Task task = draw.next();
-    while (!oracle.accepts(task)) task = draw.next();
+  for (int i = 0; i < cli.pairs + cli.enclosed; ++i) {
+    const auto drawn = [&] { return i < cli.pairs ? draw.next() : draw.nextEnclosed(); };
+    Task task = drawn();
+    while (!oracle.accepts(task)) task = drawn();
     if (!cli.wants(i)) continue;
-    oracle.solve(task);
+    if (!task.enclosed) oracle.solve(task);
     Trial trial = runTrial(config, scene.world, order, task);
     trial.scene = name;
     trial.number = i;

@@ -48,6 +48,15 @@ bool Events::sensorsWork(double time) const {
                       [time](const Span& s) { return time >= s.begin && time < s.end; });
 }
 
+std::vector<Events::Roadblock> barriersAround(const Eigen::Vector2d& middle, double half) {
+  const double length = 2 * half;
+  const Eigen::Vector2d x(half, 0), y(0, half);
+  return {{0, middle + x, 0, length},
+          {0, middle - x, 0, length},
+          {0, middle + y, M_PI / 2, length},
+          {0, middle - y, M_PI / 2, length}};
+}
+
 std::vector<double> parseNumbers(const std::string& text, std::size_t least, std::size_t most,
                                  const std::string& expected) {
   std::vector<double> numbers;

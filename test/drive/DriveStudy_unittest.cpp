@@ -90,6 +90,21 @@ TEST(DriveStudy, TellsFaults) {
   EXPECT_EQ(trial.fault(), "collision");
 }
 
+TEST(DriveStudy, EnclosesGoalsWithBarriers) {
+  World world = plain();
+  Task task;
+  task.start = {-8, 0, 0};
+  task.goal = {4, 0, 0};
+  task.enclosed = true;
+  Trial trial = runTrial(smallConfig(), world, syntheticOrder(), task);
+  trial.scene = "plain";
+  EXPECT_EQ(trial.end, DriveEnd::Unreachable) << trial.reason;
+  EXPECT_EQ(toJson({trial})["plain"]["saidSo"], 1);
+  const auto config = smallConfig();
+  const auto footprint = semantic_map_drive::trueFootprint(config.planner.vehicle);
+  EXPECT_GT(world.clearance(footprint, 4 + kBarriersAt, 0, 0), 1);  // the barriers are gone
+}
+
 TEST(DriveStudy, DrivesATaskAndCountsIt) {
   World world = withYard();
   Trial trial =

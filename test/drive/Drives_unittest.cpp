@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "../../apps/semantic-map-drive/DriveFiles.h"
 #include "../../apps/semantic-map-drive/DriveLoop.h"
@@ -26,6 +27,13 @@ double greatestSpeed(const DriveRecord& record, double from, double to) {
   for (const DriveRow& row : record.rows)
     if (row.time >= from && row.time < to) greatest = std::max(greatest, std::abs(row.speed));
   return greatest;
+}
+
+/** Flat grass without an end that could be reached in time. */
+World open() {
+  constexpr double kHalf = 60;
+  return World(synthetic_world::Terrain(kHalf, {}),
+               synthetic_world::GroundCover(kHalf, synthetic_world::kGrass), {});
 }
 
 /** When the robot passes x = `at` ahead. */
@@ -137,9 +145,36 @@ TEST(Drives, StopAndSaySoWhereNoWayLeads) {
   World world = plain(solids);
   const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0});
   EXPECT_EQ(record.end, DriveEnd::Unreachable);
-  EXPECT_NE(record.reason.find("frontiers explored: "), std::string::npos) << record.reason;
+  EXPECT_EQ(record.reason, "the vehicle is enclosed by what it cannot pass");
   EXPECT_EQ(record.collisions, 0);
   EXPECT_LT(std::abs(record.rows.back().speed), 0.06);
+}
+
+TEST(Drives, StopWhereTheGoalIsSeenToBeEnclosedInAnOpenWorld) {
+  World world = open();
+  DriveConfig config = smallConfig();
+  config.timeLimit = 400;
+  Events events;
+  events.roadblocks = barriersAround({6, 0}, 3);
+  DriveLoop loop(config, world, syntheticOrder(), {-4, 0, 0}, {6, 0, 0}, events);
+  const DriveRecord record = loop.run();
+  EXPECT_EQ(record.end, DriveEnd::Unreachable);
+  EXPECT_EQ(record.reason.find("the goal, with "), 0u) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_LE(std::as_const(loop).guide().explored(), 15u);  // some at each side
+  EXPECT_LT(record.duration(), 120);
+}
+
+TEST(Drives, FindTheGapOnTheFarSideOfBarriersAroundTheGoal) {
+  World world = open();
+  Events events;
+  events.roadblocks = barriersAround({6, 0}, 3);
+  events.roadblocks.front() = {0, {9, -1.5}, 0, 3};  // leaves half of the side away from the start
+  DriveConfig config = smallConfig();
+  config.timeLimit = 200;
+  const DriveRecord record = drive(world, {-4, 0, 0}, {6, 0, 0}, events, config);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
 }
 
 TEST(Drives, SlowDownWhileTheSensorsAreOut) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <queue>
 
+#include "GoalRegion.h"
+
 namespace semantic_planning {
 
 using mrpt::math::TPose2D;
@@ -22,9 +24,8 @@ class GroundFlood {
       : m_planner(planner),
         m_ground(planner.ground()),
         m_center(m_ground.columnAt(from.x, from.y)),
-        m_reach(static_cast<int>(radius / m_ground.voxelSize())),
-        m_edge(2 * m_reach + 1),
-        m_places(static_cast<std::size_t>(m_edge) * m_edge) {
+        m_square(m_center, static_cast<int>(radius / m_ground.voxelSize())),
+        m_places(m_square.size()) {
     for (const Eigen::Vector2d& p : planner.options().vehicle.footprint)
       m_radius = std::min(m_radius, std::abs(p.y()));
     flood(z);
@@ -40,38 +41,32 @@ class GroundFlood {
   /** f(column, place) for all columns where the vehicle can get. */
   template <class F>
   void forEach(F f) const {
-    for (int y = -m_reach; y <= m_reach; ++y)
-      for (int x = -m_reach; x <= m_reach; ++x) {
-        const Column c{m_center.x + x, m_center.y + y};
-        if (const Place& p = at(c); p.done) f(c, p);
-      }
+    for (std::size_t i = 0; i < m_places.size(); ++i)
+      if (m_places[i].done) f(m_square.columnOf(i), m_places[i]);
   }
-  const Place& at(Column c) const { return m_places[indexOf(c)]; }
+  const Place& at(Column c) const { return m_places[m_square.indexOf(c)]; }
+
+  const ColumnSquare& square() const { return m_square; }
+  /** For each column of the square. */
+  std::vector<bool> reached() const {
+    std::vector<bool> reached(m_places.size());
+    for (std::size_t i = 0; i < m_places.size(); ++i) reached[i] = m_places[i].done;
+    return reached;
+  }
 
  private:
   using Open = std::pair<double, std::size_t>;
 
-  bool contains(Column c) const {
-    return std::abs(c.x - m_center.x) <= m_reach && std::abs(c.y - m_center.y) <= m_reach;
-  }
-  std::size_t indexOf(Column c) const {
-    return static_cast<std::size_t>(c.y - m_center.y + m_reach) * m_edge +
-           (c.x - m_center.x + m_reach);
-  }
-  Column columnOf(std::size_t i) const {
-    return {m_center.x - m_reach + static_cast<int>(i) % m_edge,
-            m_center.y - m_reach + static_cast<int>(i) / m_edge};
-  }
   bool isNear(Column c) const {  // where the vehicle stands there may be less room
     const double reach = 1.5 / m_ground.voxelSize();
     return std::hypot(c.x - m_center.x, c.y - m_center.y) < reach;
   }
 
   void offer(Column c, double cost, int z, Column from) {
-    Place& place = m_places[indexOf(c)];
+    Place& place = m_places[m_square.indexOf(c)];
     if (place.done || cost >= place.cost) return;
     place.cost = cost, place.z = z, place.from = from;
-    m_open.emplace(cost, indexOf(c));
+    m_open.emplace(cost, m_square.indexOf(c));
   }
 
   void flood(int z) {
@@ -82,14 +77,14 @@ class GroundFlood {
       m_open.pop();
       if (m_places[i].done) continue;
       m_places[i].done = true;
-      expand(columnOf(i), m_places[i]);
+      expand(m_square.columnOf(i), m_places[i]);
     }
   }
 
   void expand(Column c, const Place& place) {
     for (const Column& d : kNeighbors) {
       const Column next{c.x + d.x, c.y + d.y};
-      if (!contains(next)) continue;
+      if (!m_square.contains(next)) continue;
       const Surface* s = m_ground.near(next, place.z, m_ground.step());
       if (!s || !s->drivable || !(m_ground.hasRoom(*s, m_radius) || isNear(next))) continue;
       const colored_graph::Rank rank = m_planner.order().rank(s->classId);
@@ -102,7 +97,7 @@ class GroundFlood {
   const SemanticPlanner& m_planner;
   const Ground& m_ground;
   Column m_center;
-  int m_reach, m_edge;
+  ColumnSquare m_square;
   double m_radius = 1e3;
   std::vector<Place> m_places;
   std::priority_queue<Open, std::vector<Open>, std::greater<>> m_open;
@@ -110,9 +105,9 @@ class GroundFlood {
 
 class FrontierSearch {
  public:
-  FrontierSearch(const SemanticPlanner& planner, const GroundFlood& flood,
+  FrontierSearch(const SemanticPlanner& planner, const GroundFlood& flood, const GoalRegion& region,
                  const FrontierOptions& options)
-      : m_ground(planner.ground()), m_flood(flood), m_options(options) {}
+      : m_ground(planner.ground()), m_flood(flood), m_region(region), m_options(options) {}
 
   std::vector<Frontier> all(const TPose2D& goal) const {
     std::vector<Frontier> found;
@@ -140,13 +135,15 @@ class FrontierSearch {
     return true;
   }
 
-  /** In one of eight directions. */
+  /** Of the goal's region, in one of eight directions. */
   bool seesUnknown(Column c, int z) const {
     const int far = static_cast<int>(std::lround(1.4 / m_ground.voxelSize()));
     return std::any_of(kNeighbors.begin(), kNeighbors.end(), [&](const Column& d) {
-      for (int i = 2; i <= far; ++i) {
+      for (int i = 1; i <= far; ++i) {
         const Column there{c.x + i * d.x, c.y + i * d.y};
-        if (isUnknown(there, z)) return true;
+        if (!m_flood.square().contains(there)) return true;
+        if (m_region.isObstacle(there)) return false;
+        if (i > 1 && m_region.contains(there) && isUnknown(there, z)) return true;
       }
       return false;
     });
@@ -160,18 +157,25 @@ class FrontierSearch {
 
   const Ground& m_ground;
   const GroundFlood& m_flood;
+  const GoalRegion& m_region;
   const FrontierOptions& m_options;
 };
 
 }  // namespace
 
-std::vector<Frontier> findFrontiers(const SemanticPlanner& planner, const TPose2D& from, double z,
-                                    const TPose2D& goal, const std::vector<TPose2D>& avoid,
-                                    const FrontierOptions& options) {
-  const int key = static_cast<int>(std::floor(z / planner.ground().voxelSize())) + 32768;
+Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, double z,
+                          const TPose2D& goal, const std::vector<TPose2D>& avoid,
+                          const FrontierOptions& options) {
+  const double voxel = planner.ground().voxelSize();
+  const int key = static_cast<int>(std::floor(z / voxel)) + 32768;
   const GroundFlood flood(planner, from, key, options.radius);
-  std::vector<Frontier> chosen;
-  for (const Frontier& f : FrontierSearch(planner, flood, options).all(goal)) {
+  const GoalRegion region(planner, flood.square(), flood.reached(), from, z, goal);
+  Exploration found;
+  found.enclosed = region.isEnclosed();
+  if (!region.isOpen()) found.goalArea = region.columns() * voxel * voxel;
+  if (found.enclosed) return found;
+  std::vector<Frontier>& chosen = found.frontiers;
+  for (const Frontier& f : FrontierSearch(planner, flood, region, options).all(goal)) {
     const auto isNear = [&](const TPose2D& p) {
       return std::hypot(p.x - f.pose.x, p.y - f.pose.y) < options.apart;
     };
@@ -182,7 +186,7 @@ std::vector<Frontier> findFrontiers(const SemanticPlanner& planner, const TPose2
       continue;
     if (planner.check(f.pose, f.z) == PlanStatus::Found) chosen.push_back(f);
   }
-  return chosen;
+  return found;
 }
 
 }  // namespace semantic_planning

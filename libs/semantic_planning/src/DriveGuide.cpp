@@ -23,6 +23,14 @@ constexpr int kTimesBack = 3;        // then it gives up
 
 double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
+std::string reasonOf(const Exploration& enclosed) {
+  if (!std::isfinite(enclosed.goalArea)) return "the vehicle is enclosed by what it cannot pass";
+  const long area = std::lround(std::ceil(enclosed.goalArea));
+  return "the goal, with " + std::to_string(area) +
+         " square meters around it, "
+         "is enclosed by what the vehicle cannot pass";
+}
+
 }  // namespace
 
 const char* nameOf(DriveGuide::Target target) {
@@ -137,10 +145,12 @@ std::optional<DrivePath> DriveGuide::choose(const Situation& now) {
     take(Target::Goal, now);
   else if ((path = toFrontier(here)))
     take(Target::Frontier, now);
-  else if (m_target == Target::None && m_plannedPaths == 0)
+  else if (m_target == Target::None && m_plannedPaths == 0 && !(m_enclosed && m_blindOut))
     return wayOut(now, kBlind);
-  else
+  else if (!m_enclosed)
     return goBack(now);
+  else
+    fail(now);
   if (path && before) ++m_replans;
   return path;
 }
@@ -196,7 +206,10 @@ std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
 std::optional<DrivePath> DriveGuide::toFrontier(const Departure& from) {
   std::vector<TPose2D> tried;
   std::optional<DrivePath> path;
-  for (const Frontier& f : findFrontiers(m_planner, from.pose, from.z, m_goal, m_seen)) {
+  const Exploration places = findFrontiers(m_planner, from.pose, from.z, m_goal, m_seen);
+  m_enclosed = places.enclosed;
+  if (m_enclosed) m_reason = reasonOf(places);
+  for (const Frontier& f : places.frontiers) {
     m_planned = false;
     PlanResult plan = m_planner.plan(from.pose, f.pose, from.z, f.z);
     tried.push_back(f.pose);  // if it is not seen from there, it is not seen

@@ -49,7 +49,7 @@ class DriveGuide {
   Target target() const { return m_target; }
   /** The path to the goal is driven, and the vehicle stands. */
   bool arrived(const DriveState& state, const DriveController& drive) const;
-  /** No path, and nothing else to look at. */
+  /** No path, and nothing else to look at, or the goal is enclosed (findFrontiers()). */
   bool gaveUp() const { return m_gaveUp; }
   /** Why the last plan to the goal, or the way out, was not found. */
   const std::string& reason() const { return m_reason; }
@@ -108,6 +108,7 @@ class DriveGuide {
   int m_timesBack = 0;      ///< since a path was planned
   bool m_blindOut = false;  ///< the way out leads to its end, whatever is below the vehicle
   bool m_leaving = false;   ///< comes to rest before the end of its path
+  bool m_enclosed = false;  ///< no way leads to the goal, whatever else is seen
   bool m_gaveUp = false;
   std::string m_reason;
 };
