@@ -11,6 +11,7 @@ using namespace semantic_planning;
 namespace {
 
 constexpr double kAround = 12;     // m around start and goal
+constexpr double kBeside = 3;      // m beside a track
 constexpr double kCutAbove = 2.5;  // m above the robot: crowns of trees would hide the way
 const cv::Scalar kPaper(245, 245, 245), kPath(40, 40, 220), kTrack(20, 20, 20),
     kHalo(255, 255, 255), kStart(40, 150, 40), kGoal(30, 30, 200), kRobot(230, 120, 20);
@@ -37,12 +38,28 @@ std::string caption(const DriveLoop& loop) {
   return text;
 }
 
-DrivePicture::DrivePicture(const TPose2D& start, const TPose2D& goal, int size) {
-  m_left = std::min(start.x, goal.x) - kAround;
-  m_top = std::max(start.y, goal.y) + kAround;
-  const double width = std::abs(start.x - goal.x) + 2 * kAround;
-  const double height = std::abs(start.y - goal.y) + 2 * kAround;
-  m_scale = size / std::max(width, height);
+DrivePicture::DrivePicture(const TPose2D& start, const TPose2D& goal, int size)
+    : m_longerEdge(size), m_left(start.x), m_right(start.x), m_bottom(start.y), m_top(start.y) {
+  include(start, kAround);
+  include(goal, kAround);
+  fit();
+}
+
+void DrivePicture::include(const DriveRecord& record) {
+  for (const DriveRow& row : record.rows) include(row.pose, kBeside);
+  fit();
+}
+
+void DrivePicture::include(const TPose2D& pose, double margin) {
+  m_left = std::min(m_left, pose.x - margin);
+  m_right = std::max(m_right, pose.x + margin);
+  m_bottom = std::min(m_bottom, pose.y - margin);
+  m_top = std::max(m_top, pose.y + margin);
+}
+
+void DrivePicture::fit() {
+  const double width = m_right - m_left, height = m_top - m_bottom;
+  m_scale = m_longerEdge / std::max(width, height);
   m_size = {static_cast<int>(width * m_scale), static_cast<int>(height * m_scale)};
 }
 

@@ -14,6 +14,8 @@ class DrivePicture {
  public:
   /** \param size longer edge of the map's part, pixels */
   DrivePicture(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, int size = 560);
+  /** Makes room for a drive's track, too: another place and size from here on. */
+  void include(const DriveRecord& record);
 
   /** BGR. */
   cv::Mat draw(const DriveLoop& loop) const;
@@ -27,7 +29,12 @@ class DrivePicture {
   void drawPose(cv::Mat& picture, const mrpt::math::TPose2D& pose, const cv::Scalar& color) const;
   void drawRobot(cv::Mat& picture, const DriveLoop& loop) const;
 
-  double m_left, m_top, m_scale;  ///< meters, meters, pixels per meter
+  void include(const mrpt::math::TPose2D& pose, double margin);
+  void fit();
+
+  int m_longerEdge;
+  double m_left, m_right, m_bottom, m_top;  ///< meters
+  double m_scale = 0;                       ///< pixels per meter
   cv::Size m_size;
 };
 

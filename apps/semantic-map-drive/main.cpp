@@ -48,7 +48,8 @@ class Program {
         m_config(loadDriveConfig(cli.config)),
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
         m_output(cli.output),
-        m_picture(cli.start, cli.goal) {
+        m_picture(cli.start, cli.goal),
+        m_whole(m_picture) {
     m_config.sensors.seed = cli.seed;
     if (!cli.map.empty()) m_map = semantic_octree::loadTree(cli.map.string());
   }
@@ -59,7 +60,7 @@ class Program {
       fs::rename(navlogs() / "log_000.reactivenavlog", m_output.staged("drive.reactivenavlog"));
     if (m_cli.classes.size() > 1) {
       const DriveRecord second = drive(m_cli.classes[1], "drive2");
-      m_picture.addTrack(m_last, first, {220, 60, 20});
+      m_whole.addTrack(m_last, first, {220, 60, 20});
       writePicture(m_last, m_output.staged("both.png"));
     }
     std::vector<std::string> names = {"drive.csv",  "drive.json",   "drive.png",
@@ -97,7 +98,8 @@ class Program {
     writeText(toJson(record, order).dump(2) + "\n", m_output.staged(name + ".json"));
     if (name == "drive")
       semantic_octree::saveTree(loop.mapper().map(), m_output.staged("map.semantic").string());
-    m_last = m_picture.draw(loop);
+    m_whole.include(record);
+    m_last = m_whole.draw(loop);
     writePicture(m_last, m_output.staged(name + ".png"));
     if (m_cli.pictures) animation.writeGif(m_output.staged(name + ".gif"));
     keepOnTheWay(name, onTheWay ? onTheWay->frames() : std::vector<fs::path>());
@@ -122,7 +124,8 @@ class Program {
   DriveConfig m_config;
   synthetic_world::Scene m_scene;
   labeled_cloud::OutputFolder m_output;
-  DrivePicture m_picture;
+  DrivePicture m_picture;  ///< on the way
+  DrivePicture m_whole;    ///< of all that was driven
   std::optional<semantic_octree::SemanticOcTree> m_map;
   cv::Mat m_last;
   std::vector<std::string> m_onTheWay;  ///< names of pictures
