@@ -1,5 +1,7 @@
 #include "GoalRegion.h"
 
+#include <mrpt/math/TPolygon2D.h>
+#include <mrpt/math/TSegment2D.h>
 #include <semantic_planning/ObstacleSensing.h>
 
 #include <algorithm>
@@ -13,11 +15,16 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-/** Of the largest disc around the origin that a rectangular footprint covers; less or the same for
- * others. Meters. */
+/** Of the largest disc around the origin that the footprint covers, meters. */
 double innerRadius(const std::vector<Eigen::Vector2d>& footprint) {
+  const mrpt::math::TPoint2D origin(0, 0);
+  mrpt::math::TPolygon2D outline;
+  for (const Eigen::Vector2d& p : footprint) outline.emplace_back(p.x(), p.y());
+  if (!outline.contains(origin)) return 0;
+  std::vector<mrpt::math::TSegment2D> sides;
+  outline.getAsSegmentList(sides);
   double least = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector2d& p : footprint) least = std::min(least, p.cwiseAbs().minCoeff());
+  for (const auto& side : sides) least = std::min(least, side.distance(origin));
   return least;
 }
 
