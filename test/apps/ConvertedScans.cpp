@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <labeled_cloud/RawlogTrajectory.h>
-#include <sys/wait.h>
 
 #include <Eigen/Geometry>
 #include <array>
@@ -16,16 +15,6 @@ using namespace labeled_cloud;
 using semantic_octree::ClassId;
 using semantic_octree::ClassTable;
 namespace fs = std::filesystem;
-
-CommandRun runCommand(const std::string& command) {
-  CommandRun result;
-  FILE* pipe = popen((command + " 2>&1 </dev/null").c_str(), "r");
-  std::array<char, 4096> part;
-  while (const std::size_t n = fread(part.data(), 1, part.size(), pipe))
-    result.output.append(part.data(), n);
-  result.status = WEXITSTATUS(pclose(pipe));
-  return result;
-}
 
 CommandRun dataset2rawlog(const std::string& arguments) {
   return runCommand(std::string(MSO_BIN_DIR) + "/dataset2rawlog " + arguments);

@@ -6,12 +6,8 @@
 #include <string>
 #include <vector>
 
-/** What came of a command; output: what it printed, errors too. */
-struct CommandRun {
-  int status = -1;
-  std::string output;
-};
-CommandRun runCommand(const std::string& command);
+#include "ShellCommand.h"
+
 CommandRun dataset2rawlog(const std::string& arguments);
 /** Runs dataset2rawlog and expects failure; returns the message. */
 std::string failureOf(const std::string& arguments);

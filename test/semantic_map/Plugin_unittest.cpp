@@ -3,10 +3,9 @@
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <semantic_octree/TreeFile.h>
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 
+#include "ShellCommand.h"
 #include "SmallMaps.h"
 #include "TemporaryFolder.h"
 
@@ -14,27 +13,16 @@ namespace {
 
 const std::string kPlugin = std::string(MSO_LIB_DIR) + "/libmrpt_semantic_octree.so";
 
-/** What a shell command prints on both outputs. */
-std::string outputOf(const std::string& command) {
-  std::string output;
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  std::array<char, 256> buffer;
-  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
-    output.append(buffer.data(), n);
-  pclose(pipe);
-  return output;
-}
-
 }  // namespace
 
 TEST(Plugin, loadsIntoAProgramThatDoesNotKnowIt) {
   const std::string expected = "semantic_map::CSemanticOctoMap is filled\n";
-  EXPECT_EQ(outputOf(PLUGIN_HOST " " + kPlugin), expected);
-  EXPECT_EQ(outputOf("LD_PRELOAD=" + kPlugin + " " PLUGIN_HOST), expected);
+  EXPECT_EQ(runCommand(PLUGIN_HOST " " + kPlugin).output, expected);
+  EXPECT_EQ(runCommand("LD_PRELOAD=" + kPlugin + " " PLUGIN_HOST).output, expected);
 }
 
 TEST(Plugin, withoutItTheMapIsUnknown) {
-  const std::string output = outputOf(PLUGIN_HOST);
+  const std::string output = runCommand(PLUGIN_HOST).output;
   EXPECT_FALSE(contains(output, "is filled")) << output;
 }
 
@@ -53,9 +41,10 @@ TEST(Plugin, observations2mapMakesAMapOfASimpleMap) {
                                 "[Maps]\nsemanticOctoMap_count = 1\n"
                                 "[Maps_semanticOctoMap_00_creationOpts]\nresolution = 0.2\n");
 
-  const std::string output = outputOf("LD_PRELOAD=" + kPlugin + " observations2map " +
-                                      ini.string() + " " + (folder / "in.simplemap").string() +
-                                      " " + (folder / "out").string() + " -s Maps </dev/null");
+  const std::string output = runCommand("LD_PRELOAD=" + kPlugin + " observations2map " +
+                                        ini.string() + " " + (folder / "in.simplemap").string() +
+                                        " " + (folder / "out").string() + " -s Maps </dev/null")
+                                 .output;
   std::string found;
   for (const auto& file : std::filesystem::directory_iterator(folder.path()))
     if (file.path().extension() == ".semantic") found = file.path().string();

@@ -2,10 +2,6 @@
 
 #include <mrpt/obs/CRawlog.h>
 #include <semantic_octree/TreeFile.h>
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 
 namespace fs = std::filesystem;
 
@@ -16,20 +12,12 @@ StockApps::StockApps() {
     fs::create_directory_symlink(fs::path(MSO_SOURCE_DIR) / name, folder / name);
 }
 
-StockApps::Run StockApps::run(const std::string& command, Plugin plugin) const {
+CommandRun StockApps::run(const std::string& command, Plugin plugin) const {
   const std::string environment =
       plugin == Plugin::Preloaded ? "LD_PRELOAD='" + kPlugin + "' " : std::string();
   folder.write("command", "cd '" + folder.path().string() + "'\nexport HOME=\"$PWD\"\n" +
                               environment + command + "\n");
-  FILE* pipe =
-      popen(("timeout 200 sh '" + (folder / "command").string() + "' 2>&1 </dev/null").c_str(), "r");
-  Run result;
-  std::array<char, 4096> buffer;
-  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
-    result.output.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return result;
+  return runCommand("timeout 200 sh '" + (folder / "command").string() + "'");
 }
 
 std::optional<semantic_octree::SemanticOcTree> StockApps::mapIn(

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "ShellCommand.h"
 #include "TemporaryFolder.h"
 
 /** MRPT's applications as Debian ships them, in a folder of their own, where `config` and
@@ -15,15 +16,10 @@ class StockApps : public testing::Test {
  protected:
   enum class Plugin { Absent, Preloaded };
 
-  struct Run {
-    int status = -1;
-    std::string output;  ///< on both outputs
-  };
-
   StockApps();
 
   /** Runs a shell command in the folder, without a terminal, for some minutes at most. */
-  Run run(const std::string& command, Plugin plugin = Plugin::Absent) const;
+  CommandRun run(const std::string& command, Plugin plugin = Plugin::Absent) const;
   /** The semantic octree that an application left below a folder; none if there is none. */
   std::optional<semantic_octree::SemanticOcTree> mapIn(const std::string& subfolder) const;
   /** The first PAIRS of actions and observations of one of mrpt-common's rawlogs.

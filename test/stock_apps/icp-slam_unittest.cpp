@@ -10,7 +10,7 @@ class IcpSlam : public StockApps {
     SKIP_WITHOUT(std::string("/usr/share/mrpt/datasets/") + kLaserRawlog, "mrpt-common");
     rawlog = shortRawlog(kLaserRawlog, 60);
   }
-  Run slam(const std::string& ini, Plugin plugin) const {
+  CommandRun slam(const std::string& ini, Plugin plugin) const {
     return run("icp-slam '" + ini + "' '" + rawlog + "'", plugin);
   }
   std::string rawlog;
@@ -19,7 +19,7 @@ class IcpSlam : public StockApps {
 }  // namespace
 
 TEST_F(IcpSlam, aRealLaserScannerMakesASemanticOctree) {
-  const Run slammed = slam("config/stock-apps/icp-slam.ini", Plugin::Preloaded);
+  const CommandRun slammed = slam("config/stock-apps/icp-slam.ini", Plugin::Preloaded);
   ASSERT_EQ(slammed.status, 0) << slammed.output;
   const auto map = mapIn("icp-slam-output");
   ASSERT_TRUE(map) << slammed.output;
@@ -35,7 +35,7 @@ TEST_F(IcpSlam, aRealLaserScannerMakesASemanticOctree) {
 }
 
 TEST_F(IcpSlam, withoutThePluginThereIsNoSuchMapAndNobodySaysSo) {
-  const Run slammed = slam("config/stock-apps/icp-slam.ini", Plugin::Absent);
+  const CommandRun slammed = slam("config/stock-apps/icp-slam.ini", Plugin::Absent);
   EXPECT_EQ(slammed.status, 0);
   EXPECT_FALSE(mapIn("icp-slam-output"));
   EXPECT_TRUE(std::filesystem::exists(folder / "icp-slam-output/_finalmap_.simplemap"));
@@ -44,7 +44,7 @@ TEST_F(IcpSlam, withoutThePluginThereIsNoSuchMapAndNobodySaysSo) {
 TEST_F(IcpSlam, aMisspelledOptionStopsItWithTheReason) {
   const std::string ini =
       configWith("icp-slam.ini", "MappingApplication_semanticOctoMap_00_insertOpts", "maxRnage=9");
-  const Run slammed = slam(ini, Plugin::Preloaded);
+  const CommandRun slammed = slam(ini, Plugin::Preloaded);
   EXPECT_NE(slammed.status, 0);
   EXPECT_TRUE(contains(slammed.output, "maxRnage")) << slammed.output;
 }

@@ -16,7 +16,7 @@ class Observations2Map : public StockApps {
     ASSERT_TRUE(villageFrames(2).saveToFile((folder / "village.simplemap").string()));
     std::filesystem::create_directory(folder / "out");
   }
-  Run make(Plugin plugin) const {
+  CommandRun make(Plugin plugin) const {
     return run("observations2map config/stock-apps/observations2map.ini village.simplemap out/map",
                plugin);
   }
@@ -52,7 +52,7 @@ double shareOfLabelsIn(const semantic_octree::SemanticOcTree& map) {
 }  // namespace
 
 TEST_F(Observations2Map, theMapIsThatOfTheLibraryBitForBit) {
-  const Run made = make(Plugin::Preloaded);
+  const CommandRun made = make(Plugin::Preloaded);
   ASSERT_EQ(made.status, 0) << made.output;
   const auto map = mapIn("out");
   ASSERT_TRUE(map) << made.output;

@@ -11,7 +11,7 @@ class PfLocalization : public StockApps {
     SKIP_WITHOUT("/usr/bin/pf-localization", "mrpt-apps");
     SKIP_WITHOUT("/usr/share/mrpt/datasets/localization_demo.simplemap.gz", "mrpt-common");
   }
-  Run localize(Plugin plugin) const {
+  CommandRun localize(Plugin plugin) const {
     return run("pf-localization config/stock-apps/pf-localization.ini", plugin);
   }
 };
@@ -35,7 +35,7 @@ double distanceToEnd(const Estimate& e) { return std::hypot(e.x - 15.904, e.y + 
 }  // namespace
 
 TEST_F(PfLocalization, theParticlesFindTheRobotInASemanticOctreeOfARealBuilding) {
-  const Run localized = localize(Plugin::Preloaded);
+  const CommandRun localized = localize(Plugin::Preloaded);
   ASSERT_EQ(localized.status, 0) << localized.output;
   ASSERT_TRUE(mapIn("pf-localization-output_000_0003000"));
   const Estimate end = lastEstimate(localized.output);
@@ -44,7 +44,7 @@ TEST_F(PfLocalization, theParticlesFindTheRobotInASemanticOctreeOfARealBuilding)
 }
 
 TEST_F(PfLocalization, withoutThePluginTheParticlesKnowNothing) {
-  const Run localized = localize(Plugin::Absent);
+  const CommandRun localized = localize(Plugin::Absent);
   EXPECT_FALSE(mapIn("pf-localization-output_000_0003000"));
   EXPECT_FALSE(distanceToEnd(lastEstimate(localized.output)) < 0.3) << localized.output;
 }

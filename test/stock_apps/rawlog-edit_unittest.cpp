@@ -10,7 +10,7 @@ namespace {
 class RawlogEdit : public StockApps {
  protected:
   void SetUp() override { SKIP_WITHOUT("/usr/bin/rawlog-edit", "mrpt-apps"); }
-  Run edit(const std::string& arguments) const { return run("rawlog-edit " + arguments); }
+  CommandRun edit(const std::string& arguments) const { return run("rawlog-edit " + arguments); }
 };
 
 std::vector<mrpt::obs::CObservation::Ptr> observationsOf(const std::filesystem::path& file) {
@@ -26,21 +26,22 @@ const char* const kVillage = "rawlog-samples/village.rawlog";
 }  // namespace
 
 TEST_F(RawlogEdit, listsRawlogsWithLabeledClouds) {
-  const Run listed = edit(std::string("-p ") + kPlugin + " --info -i " + kVillage);
+  const CommandRun listed = edit(std::string("-p ") + kPlugin + " --info -i " + kVillage);
   EXPECT_EQ(listed.status, 0);
   EXPECT_TRUE(contains(listed.output, "Overall number of objects         : 72"));
   EXPECT_TRUE(contains(listed.output, "LIDAR /     24")) << listed.output;
 }
 
 TEST_F(RawlogEdit, describesTheClouds) {
-  const Run cut = edit(std::string("-p ") + kPlugin + " --describe -i " + kVillage);
+  const CommandRun cut = edit(std::string("-p ") + kPlugin + " --describe -i " + kVillage);
   EXPECT_TRUE(contains(cut.output, "labeled_cloud::CObservationLabeledCloud"));
   EXPECT_TRUE(contains(cut.output, "road: ")) << cut.output.substr(0, 3000);
 }
 
 TEST_F(RawlogEdit, cutsThemWithoutChangingABit) {
-  const Run cut = edit(std::string("-p ") + kPlugin + " --cut --from-index 3 --to-index 8 -i " +
-                       kVillage + " -o cut.rawlog");
+  const CommandRun cut =
+      edit(std::string("-p ") + kPlugin + " --cut --from-index 3 --to-index 8 -i " + kVillage +
+           " -o cut.rawlog");
   ASSERT_EQ(cut.status, 0) << cut.output;
   const auto before = observationsOf(folder / kVillage),
              after = observationsOf(folder / "cut.rawlog");
@@ -57,8 +58,8 @@ TEST_F(RawlogEdit, cutsThemWithoutChangingABit) {
 }
 
 TEST_F(RawlogEdit, picksThemByTheirSensorsLabel) {
-  const Run kept = edit(std::string("-p ") + kPlugin + " --keep-label LIDAR -i " + kVillage +
-                        " -o lidar.rawlog");
+  const CommandRun kept = edit(std::string("-p ") + kPlugin + " --keep-label LIDAR -i " + kVillage +
+                               " -o lidar.rawlog");
   ASSERT_EQ(kept.status, 0) << kept.output;
   const auto clouds = observationsOf(folder / "lidar.rawlog");
   EXPECT_EQ(clouds.size(), 24u);
@@ -67,7 +68,7 @@ TEST_F(RawlogEdit, picksThemByTheirSensorsLabel) {
 }
 
 TEST_F(RawlogEdit, withoutThePluginTheRawlogEndsAtTheFirstCloudAndTheStatusIsZero) {
-  const Run listed = edit(std::string("--info -i ") + kVillage);
+  const CommandRun listed = edit(std::string("--info -i ") + kVillage);
   EXPECT_EQ(listed.status, 0);
   EXPECT_TRUE(contains(listed.output, "which is not registered"));
   EXPECT_TRUE(contains(listed.output, "Overall number of objects         : 2"));

@@ -9,7 +9,7 @@ class RbpfSlam : public StockApps {
     SKIP_WITHOUT("/usr/bin/rbpf-slam", "mrpt-apps");
     SKIP_WITHOUT(std::string("/usr/share/mrpt/datasets/") + kLaserRawlog, "mrpt-common");
   }
-  Run slam(Plugin plugin) const {
+  CommandRun slam(Plugin plugin) const {
     return run("rbpf-slam config/stock-apps/rbpf-slam.ini '" + shortRawlog(kLaserRawlog, 60) + "'",
                plugin);
   }
@@ -18,7 +18,7 @@ class RbpfSlam : public StockApps {
 }  // namespace
 
 TEST_F(RbpfSlam, eachParticleBuildsWeighsAndCopiesASemanticOctree) {
-  const Run slammed = slam(Plugin::Preloaded);
+  const CommandRun slammed = slam(Plugin::Preloaded);
   ASSERT_EQ(slammed.status, 0) << slammed.output;
   const auto map = mapIn("rbpf-slam-output");
   ASSERT_TRUE(map) << slammed.output;

@@ -22,10 +22,10 @@ class Viewers : public StockApps {
   /** The screen with a viewer on it, after a click at (x, y) and some turns of the wheel. */
   cv::Mat screenOf(const std::string& viewer, cv::Point click, int scroll = 0) const {
     std::filesystem::remove(folder / "screen.png");
-    const Run shown = run("xvfb-run -a -s '-screen 0 1280x800x24' " MSO_SOURCE_DIR
-                          "/test/stock_apps/viewer.sh screen.png " +
-                          std::to_string(click.x) + " " + std::to_string(click.y) + " " +
-                          std::to_string(scroll) + " " + viewer);
+    const CommandRun shown = run("xvfb-run -a -s '-screen 0 1280x800x24' " MSO_SOURCE_DIR
+                                 "/test/stock_apps/viewer.sh screen.png " +
+                                 std::to_string(click.x) + " " + std::to_string(click.y) + " " +
+                                 std::to_string(scroll) + " " + viewer);
     const cv::Mat screen = cv::imread((folder / "screen.png").string());
     EXPECT_FALSE(screen.empty()) << shown.output;
     return screen.empty() ? cv::Mat(800, 1280, CV_8UC3, cv::Scalar::all(0)) : screen;
@@ -48,16 +48,18 @@ class Viewers : public StockApps {
                  "[planner]\nvehicle = config/drive/robot.yaml\n[drive]\n"
                  "reactive = config/reactive/robot.ini\ntimeLimit = " +
                      std::to_string(seconds) + "\n");
-    const Run drive = run(MSO_BIN_DIR
-                          "/semantic-map-drive --start=-14,-19,10 --goal=-6,-17,20 "
-                          "--classes config/plan/synthetic.yaml --config drive.ini --output drive "
-                          "--no-pictures");
+    const CommandRun drive =
+        run(MSO_BIN_DIR
+            "/semantic-map-drive --start=-14,-19,10 --goal=-6,-17,20 "
+            "--classes config/plan/synthetic.yaml --config drive.ini --output drive "
+            "--no-pictures");
     ASSERT_EQ(drive.status, 2) << drive.output;  // not arrived in so short a time
   }
 
   void cutVillage() const {
-    const Run cut = run("rawlog-edit -p " + kPlugin +
-                        " --cut --to-index 11 -i rawlog-samples/village.rawlog -o short.rawlog");
+    const CommandRun cut =
+        run("rawlog-edit -p " + kPlugin +
+            " --cut --to-index 11 -i rawlog-samples/village.rawlog -o short.rawlog");
     ASSERT_EQ(cut.status, 0) << cut.output;
   }
 };
