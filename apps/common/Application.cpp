@@ -1,6 +1,6 @@
 #include "Application.h"
 
-#include <labeled_cloud/MrptMessage.h>
+#include <strict_files/ErrorMessage.h>
 
 #include <filesystem>
 #include <iostream>
@@ -12,7 +12,7 @@ int runApplication(CLI::App& app, int argc, char** argv, const std::function<int
   try {
     return program();
   } catch (const std::exception& e) {
-    std::cerr << app.get_name() << ": " << labeled_cloud::messageOf(e) << std::endl;
+    std::cerr << app.get_name() << ": " << strict_files::messageOf(e) << std::endl;
     return 1;
   }
 }

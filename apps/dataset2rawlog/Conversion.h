@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/ClassTable.h>
+#include <semantic_types/ClassTable.h>
 
 #include <cstdint>
 #include <filesystem>

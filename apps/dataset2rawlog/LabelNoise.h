@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/ClassTable.h>
+#include <semantic_types/ClassTable.h>
 
 #include <cstdint>
 #include <random>
@@ -16,7 +16,7 @@ class LabelNoise {
    * \throw std::invalid_argument share out of range, or noise without a second class. */
   LabelNoise(double share, std::uint64_t seed, int classes);
 
-  void apply(std::vector<semantic_octree::ClassId>& labels);
+  void apply(std::vector<semantic_types::ClassId>& labels);
 
  private:
   double m_share;

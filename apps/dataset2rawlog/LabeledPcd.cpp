@@ -1,4 +1,4 @@
-#include <labeled_cloud/ClassTableFile.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <Eigen/Geometry>
 #include <map>
@@ -12,10 +12,10 @@
 namespace dataset2rawlog {
 
 namespace fs = std::filesystem;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::kMaxClasses;
-using semantic_octree::LabeledCloud;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::kMaxClasses;
+using semantic_types::LabeledCloud;
 
 namespace {
 
@@ -106,8 +106,9 @@ void addPoint(const TextLine& line, const PcdHeader& header,
 }  // namespace
 
 Summary convertLabeledPcds(const std::vector<fs::path>& files, const Conversion& conversion) {
-  const ClassTable table =
-      conversion.classes.empty() ? ClassTable() : labeled_cloud::loadClassTable(conversion.classes);
+  const ClassTable table = conversion.classes.empty()
+                               ? ClassTable()
+                               : semantic_types::loadClassTable(conversion.classes);
   Output output(conversion, table);
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!conversion.frames.contains(i)) continue;

@@ -7,9 +7,9 @@
 
 namespace dataset2rawlog {
 
-using semantic_octree::kNoClass;
+using semantic_types::kNoClass;
 
-Output::Output(const Conversion& conversion, const semantic_octree::ClassTable& table)
+Output::Output(const Conversion& conversion, const semantic_types::ClassTable& table)
     : m_writer(conversion.output),
       m_noise(conversion.labelNoise, conversion.seed, table.size()),
       m_file(conversion.output) {
@@ -25,7 +25,7 @@ void Output::writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D&
 }
 
 void Output::writeCloud(mrpt::Clock::time_point time, const std::string& sensorLabel,
-                        semantic_octree::LabeledCloud cloud) {
+                        semantic_types::LabeledCloud cloud) {
   labeled_cloud::CObservationLabeledCloud observation;
   observation.timestamp = time;
   observation.sensorLabel = sensorLabel;

@@ -10,14 +10,14 @@ namespace dataset2rawlog {
 /** The rawlog being written: poses and labeled clouds, with the label noise applied. */
 class Output {
  public:
-  Output(const Conversion& conversion, const semantic_octree::ClassTable& table);
+  Output(const Conversion& conversion, const semantic_types::ClassTable& table);
 
   /** Adds the robot's pose at a time. */
   void writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D& T_map_robot);
 
   /** Adds a cloud seen from the robot's origin, after its labels took the noise. */
   void writeCloud(mrpt::Clock::time_point time, const std::string& sensorLabel,
-                  semantic_octree::LabeledCloud cloud);
+                  semantic_types::LabeledCloud cloud);
 
   /** Adds another observation of so many points, whose labels took the noise already. */
   void writeScan(const mrpt::obs::CObservation& observation, std::size_t points,

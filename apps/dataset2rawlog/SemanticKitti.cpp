@@ -1,4 +1,4 @@
-#include <labeled_cloud/ClassTableFile.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <Eigen/Geometry>
 #include <fstream>
@@ -13,8 +13,8 @@
 namespace dataset2rawlog {
 
 namespace fs = std::filesystem;
-using semantic_octree::ClassTable;
-using semantic_octree::LabeledCloud;
+using semantic_types::ClassTable;
+using semantic_types::LabeledCloud;
 
 namespace {
 
@@ -84,7 +84,7 @@ std::string sixDigits(std::size_t number) {
 
 Summary convertSemanticKitti(const fs::path& sequence, const Conversion& conversion) {
   const ClassTable table =
-      conversion.labels ? labeled_cloud::loadClassTable(conversion.classes) : ClassTable();
+      conversion.labels ? semantic_types::loadClassTable(conversion.classes) : ClassTable();
   const Eigen::Isometry3d Tr = readLidarToCamera(sequence / "calib.txt");
   const auto poses = readLines(sequence / "poses.txt");
   const auto times = readLines(sequence / "times.txt");

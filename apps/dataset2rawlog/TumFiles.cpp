@@ -1,7 +1,7 @@
 #include "TumFiles.h"
 
-#include <labeled_cloud/MrptMessage.h>
 #include <mrpt/config/CConfigFile.h>
+#include <strict_files/ErrorMessage.h>
 
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
@@ -51,7 +51,7 @@ DepthCamera readCamera(const fs::path& file) try {
   if (!(camera.depthFactor > 0)) throw std::runtime_error("depth_factor must be above 0");
   return camera;
 } catch (const std::exception& e) {
-  throw std::runtime_error(file.string() + ": " + labeled_cloud::messageOf(e));
+  throw std::runtime_error(file.string() + ": " + strict_files::messageOf(e));
 }
 
 CObservation3DRangeScan readDepth(const fs::path& file, const DepthCamera& camera) {

@@ -1,7 +1,7 @@
-#include <labeled_cloud/ClassTableFile.h>
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <algorithm>
 
@@ -16,8 +16,8 @@ using labeled_cloud::LabelImage;
 using mrpt::obs::CObservation3DRangeScan;
 using mrpt::obs::TPixelLabelInfo;
 using mrpt::poses::CPose3D;
-using semantic_octree::ClassTable;
-using semantic_octree::kNoClass;
+using semantic_types::ClassTable;
+using semantic_types::kNoClass;
 
 namespace {
 
@@ -64,7 +64,7 @@ class TumConverter {
     if (conversion.labels) m_labels = readImageList(folder / "label.txt");
     if (fs::exists(folder / "rgb.txt")) m_color = readImageList(folder / "rgb.txt");
     if (conversion.labels || !conversion.classes.empty())
-      m_table = labeled_cloud::loadClassTable(conversion.classes);
+      m_table = semantic_types::loadClassTable(conversion.classes);
   }
 
   Summary run() {

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_planning/SemanticPlanner.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 #include <synthetic_world/Random.h>
 #include <synthetic_world/World.h>
 

@@ -6,7 +6,7 @@
 
 namespace drive_study {
 
-using semantic_octree::LabeledCloud;
+using semantic_types::LabeledCloud;
 using synthetic_world::PointTruth;
 using synthetic_world::World;
 
@@ -30,7 +30,7 @@ class TrueVoxels {
  private:
   double center(int i) const { return (i + 0.5) * m_voxelSize; }
 
-  void add(double x, double y, double z, semantic_octree::ClassId id) {
+  void add(double x, double y, double z, semantic_types::ClassId id) {
     m_cloud.points.push_back(Eigen::Vector3d(x, y, z).cast<float>());
     m_cloud.classes.push_back(id);
   }

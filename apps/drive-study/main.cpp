@@ -1,6 +1,6 @@
 // Drives through the synthetic worlds between random places, and counts what goes wrong.
-#include <labeled_cloud/OutputFolder.h>
-#include <semantic_planning/OrderFile.h>
+#include <semantic_planning/planner/OrderFile.h>
+#include <strict_files/OutputFolder.h>
 #include <synthetic_world/Scene.h>
 
 #include <fstream>
@@ -88,7 +88,7 @@ void studyScene(const std::string& name, const Cli& cli,
 
 int run(const Cli& cli) {
   const auto config = semantic_map_drive::loadDriveConfig(cli.config);
-  labeled_cloud::OutputFolder output(cli.output);
+  strict_files::OutputFolder output(cli.output);
   std::vector<Trial> trials;
   for (const std::string& scene : cli.scenes) studyScene(scene, cli, config, trials);
   const nlohmann::ordered_json study = toJson(trials);

@@ -1,7 +1,7 @@
-#include <labeled_cloud/ClassTableFile.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <labeled_cloud/RawlogTrajectory.h>
 #include <labeled_cloud/ScanConverter.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include "Scene.h"
 
@@ -22,7 +22,7 @@ Eigen::Isometry3d isometryOf(const mrpt::poses::CPose3D& pose) {
 
 Scene readRawlog(const std::filesystem::path& file, const std::filesystem::path& classes,
                  std::size_t maxScans) {
-  const semantic_octree::ClassTable table = labeled_cloud::loadClassTable(classes);
+  const semantic_types::ClassTable table = semantic_types::loadClassTable(classes);
   const labeled_cloud::Trajectory trajectory = labeled_cloud::readTrajectory({file});
   labeled_cloud::ScanConverter converter(table);
   labeled_cloud::RawlogReader reader(file);

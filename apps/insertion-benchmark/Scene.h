@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/LabeledCloud.h>
+#include <semantic_types/LabeledCloud.h>
 
 #include <Eigen/Geometry>
 #include <filesystem>
@@ -8,7 +8,7 @@
 namespace insertion_benchmark {
 
 struct PosedScan {
-  semantic_octree::LabeledCloud cloud;
+  semantic_types::LabeledCloud cloud;
   Eigen::Isometry3d T_map_sensor;
 };
 

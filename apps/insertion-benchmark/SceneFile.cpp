@@ -27,8 +27,8 @@ class SceneReader {
       Eigen::Vector3f& point = scan.cloud.points.emplace_back();
       read(point.data(), 3 * sizeof(float));
       const auto label = get<std::uint16_t>();
-      if (label > semantic_octree::kMaxClasses) fail("label " + std::to_string(label));
-      scan.cloud.classes.push_back(static_cast<semantic_octree::ClassId>(label));
+      if (label > semantic_types::kMaxClasses) fail("label " + std::to_string(label));
+      scan.cloud.classes.push_back(static_cast<semantic_types::ClassId>(label));
     }
     return scan;
   }

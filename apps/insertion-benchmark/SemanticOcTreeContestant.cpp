@@ -21,8 +21,8 @@ class OurContestant : public Contestant {
   }
 
  private:
-  static semantic_octree::ClassTable classes(int numClasses) {
-    semantic_octree::ClassTable table;
+  static semantic_types::ClassTable classes(int numClasses) {
+    semantic_types::ClassTable table;
     for (int id = 1; id <= numClasses; ++id) table.add("class " + std::to_string(id), {});
     return table;
   }

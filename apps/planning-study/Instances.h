@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_planning/EdgeChecker.h>
+#include <semantic_planning/roadmap/EdgeChecker.h>
 
 #include <cstdint>
 #include <vector>

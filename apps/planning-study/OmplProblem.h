@@ -1,7 +1,7 @@
 #pragma once
 #include <ompl/base/ProblemDefinition.h>
 #include <ompl/base/SpaceInformation.h>
-#include <semantic_planning/SemanticPlanner.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 
 #include "Instances.h"
 

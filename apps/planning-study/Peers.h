@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_planning/SemanticPlanner.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 #include <colored_graph/ColoredAStar.h>
-#include <semantic_planning/Roadmap.h>
+#include <semantic_planning/roadmap/Roadmap.h>
 
 #include "Trial.h"
 

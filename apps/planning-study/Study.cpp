@@ -2,8 +2,8 @@
 
 #include <semantic_octree/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
-#include <semantic_planning/OrderAbstraction.h>
-#include <semantic_planning/OrderFile.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_planning/planner/OrderFile.h>
 
 #include <sstream>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 #pragma once
 #include <colored_graph/ClassOrder.h>
-#include <semantic_planning/SemanticPlanner.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <cstdint>
 #include <limits>

@@ -1,6 +1,6 @@
 // Compares kinds of graphs, and other planners, on random tasks over semantic maps.
-#include <labeled_cloud/OutputFolder.h>
-#include <semantic_planning/OrderFile.h>
+#include <semantic_planning/planner/OrderFile.h>
+#include <strict_files/OutputFolder.h>
 
 #include <chrono>
 #include <fstream>
@@ -46,7 +46,7 @@ std::vector<MapStudy> studyMaps(const Cli& cli) {
 
 /** Numbers are worth keeping without figures: says what is wrong instead of throwing. */
 std::string drawFigures(const nlohmann::ordered_json& study,
-                        const labeled_cloud::OutputFolder& output) {
+                        const strict_files::OutputFolder& output) {
   try {
     drawTimes(study, output.staged("times.png"));
     drawPaths(study, output.staged("paths.png"));
@@ -64,7 +64,7 @@ JoinedStudy study(Cli cli) {
 }
 
 int run(const Cli& cli) {
-  labeled_cloud::OutputFolder output(cli.output);
+  strict_files::OutputFolder output(cli.output);
   const auto [json, csv] = cli.join ? joinStudies(cli.maps) : study(cli);
   writeText(csv, output.staged("study.csv"));
   writeText(json.dump(1) + "\n", output.staged("study.json"));

@@ -1,8 +1,8 @@
 #include "Config.h"
 
-#include <labeled_cloud/IniSection.h>
-#include <labeled_cloud/MrptMessage.h>
 #include <mrpt/config/CConfigFile.h>
+#include <strict_files/ErrorMessage.h>
+#include <strict_files/IniSection.h>
 
 #include <fstream>
 #include <set>
@@ -13,8 +13,8 @@
 namespace rawlog2semantic_map {
 
 namespace fs = std::filesystem;
-using labeled_cloud::IniSection;
 using mrpt::config::CConfigFileBase;
+using strict_files::IniSection;
 
 namespace {
 
@@ -81,7 +81,7 @@ Config loadConfig(const fs::path& file) {
   try {
     return readConfig(file);
   } catch (const std::exception& e) {
-    throw std::runtime_error(file.string() + ": " + labeled_cloud::messageOf(e));
+    throw std::runtime_error(file.string() + ": " + strict_files::messageOf(e));
   }
 }
 

@@ -1,6 +1,6 @@
 #include "LabelConfig.h"
 
-#include <labeled_cloud/IniSection.h>
+#include <strict_files/IniSection.h>
 
 #include <array>
 #include <cmath>
@@ -11,11 +11,11 @@
 namespace rawlog2semantic_map {
 
 using labeled_cloud::CameraCalibration;
-using labeled_cloud::IniSection;
 using labeled_cloud::LabelImage;
 using labeled_cloud::LabelModel;
 using labeled_cloud::ScanStreamOptions;
 using mrpt::config::CConfigFileBase;
+using strict_files::IniSection;
 
 namespace {
 

@@ -11,7 +11,7 @@ using labeled_cloud::ImageLabeler;
 using labeled_cloud::LabelFolder;
 using labeled_cloud::LabelImage;
 using labeled_cloud::NetworkLabeler;
-using semantic_octree::ClassTable;
+using semantic_types::ClassTable;
 
 namespace {
 

@@ -20,7 +20,7 @@ struct LabelSources {
 /** What finds the label images; null without any source.
  * \throw std::runtime_error naming what is missing or wrong: an option, a folder, a file. */
 std::shared_ptr<labeled_cloud::ImageLabeler> makeLabeler(const LabelSources& sources,
-                                                         const semantic_octree::ClassTable& table,
+                                                         const semantic_types::ClassTable& table,
                                                          const Config& config);
 
 }  // namespace rawlog2semantic_map

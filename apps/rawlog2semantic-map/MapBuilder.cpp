@@ -1,7 +1,7 @@
 #include "MapBuilder.h"
 
-#include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/ReadAhead.h>
+#include <strict_files/ErrorMessage.h>
 
 #include <chrono>
 #include <stdexcept>
@@ -80,7 +80,7 @@ void MapBuilder::insertScan(const StreamedObservation& observation) try {
   if (m_map.tree().hasAbstraction()) noteAbstraction(scan, observation.T_map_robot);
   if (m_onScan) m_onScan(scan, observation.T_map_robot);
 } catch (const std::exception& e) {
-  throw std::runtime_error(observation.name + ": " + labeled_cloud::messageOf(e));
+  throw std::runtime_error(observation.name + ": " + strict_files::messageOf(e));
 }
 
 void MapBuilder::noteAbstraction(const LabeledScan& scan, const CPose3D& T_map_robot) {

@@ -12,9 +12,9 @@ namespace rawlog2semantic_map {
 
 using labeled_cloud::LabeledPicture;
 using labeled_cloud::LabeledScan;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::kNoClass;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::kNoClass;
 
 namespace {
 
@@ -47,7 +47,7 @@ cv::Mat3b withLabels(cv::Mat3b image, const LabeledPicture& picture, const Class
 }
 
 cv::Mat3b withPoints(cv::Mat3b image, const LabeledPicture& picture,
-                     const semantic_octree::LabeledCloud& cloud, const ClassTable& classes) {
+                     const semantic_types::LabeledCloud& cloud, const ClassTable& classes) {
   image = image / 2;
   const auto T_camera_sensor = labeled_cloud::toEigen(picture.T_sensor_camera).inverse();
   const auto pixels =

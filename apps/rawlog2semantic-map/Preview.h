@@ -1,6 +1,6 @@
 #pragma once
 #include <labeled_cloud/LabeledScan.h>
-#include <semantic_octree/ClassTable.h>
+#include <semantic_types/ClassTable.h>
 
 #include <filesystem>
 
@@ -11,7 +11,7 @@ namespace rawlog2semantic_map {
 class Preview {
  public:
   /** Creates the folder if need be. \throw std::runtime_error naming it, if it cannot be. */
-  Preview(const std::filesystem::path& folder, const semantic_octree::ClassTable& classes);
+  Preview(const std::filesystem::path& folder, const semantic_types::ClassTable& classes);
 
   /** Writes a picture for each one that the scan's labels are from.
    * \throw std::runtime_error naming the file, if it cannot be written. */
@@ -19,7 +19,7 @@ class Preview {
 
  private:
   std::filesystem::path m_folder;
-  semantic_octree::ClassTable m_classes;
+  semantic_types::ClassTable m_classes;
   std::size_t m_written = 0;
 };
 

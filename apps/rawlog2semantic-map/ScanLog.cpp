@@ -5,10 +5,10 @@
 
 namespace rawlog2semantic_map {
 
-ScanLog::ScanLog(const std::filesystem::path& file, const semantic_octree::ClassTable& classes)
+ScanLog::ScanLog(const std::filesystem::path& file, const semantic_types::ClassTable& classes)
     : m_writer(file) {
   for (int id = 1; id <= classes.size(); ++id)
-    m_classNames.push_back(classes.name(static_cast<semantic_octree::ClassId>(id)));
+    m_classNames.push_back(classes.name(static_cast<semantic_types::ClassId>(id)));
 }
 
 void ScanLog::write(const labeled_cloud::LabeledScan& scan,

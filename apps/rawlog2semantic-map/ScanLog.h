@@ -1,7 +1,7 @@
 #pragma once
 #include <labeled_cloud/LabeledScan.h>
 #include <labeled_cloud/RawlogWriter.h>
-#include <semantic_octree/ClassTable.h>
+#include <semantic_types/ClassTable.h>
 
 #include <filesystem>
 #include <string>
@@ -14,7 +14,7 @@ namespace rawlog2semantic_map {
 class ScanLog {
  public:
   /** \throw std::runtime_error naming the file, if it cannot be written. */
-  ScanLog(const std::filesystem::path& file, const semantic_octree::ClassTable& classes);
+  ScanLog(const std::filesystem::path& file, const semantic_types::ClassTable& classes);
 
   void write(const labeled_cloud::LabeledScan& scan, const mrpt::poses::CPose3D& T_map_robot);
   /** Completes the file; without it there will be none. */

@@ -75,7 +75,7 @@ ordered_json mapJson(const SemanticOcTree& tree) {
   const MapContents contents = contentsOf(tree);
   ordered_json classes = ordered_json::object();
   for (int id = 1; id <= tree.numClasses(); ++id)
-    classes[tree.classes().name(static_cast<semantic_octree::ClassId>(id))] =
+    classes[tree.classes().name(static_cast<semantic_types::ClassId>(id))] =
         contents.voxelsOfClass[id];
   return {{"resolution", tree.getResolution()},
           {"leaves", contents.leaves},

@@ -1,9 +1,9 @@
 // Makes a semantic octree map, pictures of it and a summary from labeled rawlogs.
-#include <labeled_cloud/ClassTableFile.h>
-#include <labeled_cloud/MrptMessage.h>
-#include <labeled_cloud/OutputFolder.h>
 #include <labeled_cloud/RawlogTrajectory.h>
 #include <semantic_octree/TreeFile.h>
+#include <semantic_types/ClassTableFile.h>
+#include <strict_files/ErrorMessage.h>
+#include <strict_files/OutputFolder.h>
 
 #include <fstream>
 #include <iostream>
@@ -20,10 +20,10 @@ namespace rawlog2semantic_map {
 namespace {
 
 namespace fs = std::filesystem;
-using labeled_cloud::OutputFolder;
 using semantic_map::CSemanticOctoMap;
-using semantic_octree::ClassTable;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassTable;
+using strict_files::OutputFolder;
 
 struct Cli {
   fs::path config, output, trajectory, classes, confusion, saveLabeled, preview;
@@ -142,7 +142,7 @@ std::string drawPictures(const SemanticOcTree& tree, const Config& config,
     semantic_map::savePicture(renderPerspective(tree, config.pictures, config.view),
                               output.staged("view.png"));
   } catch (const std::exception& e) {
-    return "view.png: " + labeled_cloud::messageOf(e);
+    return "view.png: " + strict_files::messageOf(e);
   }
   return {};
 }
@@ -158,7 +158,7 @@ int run(const Cli& cli) {
   const Config config = configOf(cli);
   const ClassTable table = config.map.classes.empty()
                                ? CSemanticOctoMap::occupancyOnly()
-                               : labeled_cloud::loadClassTable(config.map.classes);
+                               : semantic_types::loadClassTable(config.map.classes);
   CSemanticOctoMap map(config.map.resolution, table, config.insertion.filter);
   map.insertionOptions = config.insertion;
   map.setAbstraction(config.abstraction);

@@ -5,9 +5,9 @@
 
 namespace semantic_map_compress {
 
-using labeled_cloud::StrictYaml;
 using semantic_octree::AbstractionOptions;
 using semantic_octree::Region;
+using strict_files::StrictYaml;
 
 namespace {
 

@@ -1,6 +1,6 @@
 #pragma once
-#include <labeled_cloud/StrictYaml.h>
 #include <semantic_octree/AbstractionOptions.h>
+#include <strict_files/StrictYaml.h>
 
 namespace semantic_map_compress {
 
@@ -8,6 +8,6 @@ namespace semantic_map_compress {
 const std::set<std::string>& spaceKeys();
 
 /** Reads them from the file's root. \throw std::runtime_error naming file, line, key and value. */
-semantic_octree::AbstractionOptions readSpace(const labeled_cloud::StrictYaml& yaml);
+semantic_octree::AbstractionOptions readSpace(const strict_files::StrictYaml& yaml);
 
 }  // namespace semantic_map_compress

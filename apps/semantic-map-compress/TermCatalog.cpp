@@ -13,12 +13,12 @@ constexpr std::size_t kMeasuredAtOnce = 25;
 
 }  // namespace
 
-TermCatalog::TermCatalog(const semantic_octree::ClassTable& classes,
+TermCatalog::TermCatalog(const semantic_types::ClassTable& classes,
                          const std::vector<Solution>& solutions)
     : m_numClasses(static_cast<std::size_t>(classes.size())) {
   add({kFreeSpace, 0, {{0}}});
   for (int id = 1; id <= classes.size(); ++id)
-    add({classes.name(static_cast<semantic_octree::ClassId>(id)), 0, {{id}}});
+    add({classes.name(static_cast<semantic_types::ClassId>(id)), 0, {{id}}});
   for (const Solution& solution : solutions)
     for (const InformationTerm& term : solution.terms)
       if (indexOf(term) == size()) add(term);

@@ -11,7 +11,7 @@ namespace semantic_map_compress {
  * that some solution weighs. */
 class TermCatalog {
  public:
-  TermCatalog(const semantic_octree::ClassTable& classes, const std::vector<Solution>& solutions);
+  TermCatalog(const semantic_types::ClassTable& classes, const std::vector<Solution>& solutions);
 
   std::size_t size() const { return m_terms.size(); }
   std::size_t numClasses() const { return m_numClasses; }

@@ -7,8 +7,8 @@
 
 namespace semantic_map_compress {
 
-using labeled_cloud::StrictYaml;
-using semantic_octree::ClassTable;
+using semantic_types::ClassTable;
+using strict_files::StrictYaml;
 using tree_abstraction::InformationTerm;
 
 namespace {
@@ -117,7 +117,7 @@ class Reader {
     if (name == kFreeSpace) return 0;
     std::string known = kFreeSpace;
     for (int id = 1; id <= m_classes.size(); ++id)
-      known += ", " + m_classes.name(static_cast<semantic_octree::ClassId>(id));
+      known += ", " + m_classes.name(static_cast<semantic_types::ClassId>(id));
     m_yaml.fail(node, "the map has no class '" + name + "', only " + known);
   }
 
@@ -137,7 +137,7 @@ class Reader {
   }
 
   std::string nameOf(int id) const {
-    return id == 0 ? kFreeSpace : m_classes.name(static_cast<semantic_octree::ClassId>(id));
+    return id == 0 ? kFreeSpace : m_classes.name(static_cast<semantic_types::ClassId>(id));
   }
 
   const StrictYaml m_yaml;

@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_octree/AbstractionOptions.h>
-#include <semantic_octree/ClassTable.h>
+#include <semantic_types/ClassTable.h>
 
 #include <filesystem>
 #include <optional>
@@ -32,6 +32,6 @@ struct WeightsFile {
  * a class that is not in the table, a weight or alpha that is not a number >= 0, a class both
  * relevant and irrelevant, a solution without weights, two solutions of one name. */
 WeightsFile loadWeights(const std::filesystem::path& file,
-                        const semantic_octree::ClassTable& classes);
+                        const semantic_types::ClassTable& classes);
 
 }  // namespace semantic_map_compress

@@ -1,8 +1,8 @@
 // Compresses a semantic octree map to its optimal trees for given weights of the classes.
-#include <labeled_cloud/OutputFolder.h>
 #include <semantic_map/MapPictures.h>
 #include <semantic_octree/MapContents.h>
 #include <semantic_octree/TreeFile.h>
+#include <strict_files/OutputFolder.h>
 
 #include <fstream>
 #include <iostream>
@@ -16,8 +16,8 @@ namespace semantic_map_compress {
 namespace {
 
 namespace fs = std::filesystem;
-using labeled_cloud::OutputFolder;
 using semantic_octree::SemanticOcTree;
+using strict_files::OutputFolder;
 
 struct Cli {
   fs::path map, weights, output;

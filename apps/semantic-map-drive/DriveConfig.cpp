@@ -1,9 +1,9 @@
 #include "DriveConfig.h"
 
-#include <labeled_cloud/IniSection.h>
-#include <labeled_cloud/MrptMessage.h>
 #include <mrpt/config/CConfigFile.h>
-#include <semantic_planning/OrderFile.h>
+#include <semantic_planning/planner/OrderFile.h>
+#include <strict_files/ErrorMessage.h>
+#include <strict_files/IniSection.h>
 
 #include <fstream>
 #include <set>
@@ -12,8 +12,8 @@
 namespace semantic_map_drive {
 
 namespace fs = std::filesystem;
-using labeled_cloud::IniSection;
 using mrpt::config::CConfigFileBase;
+using strict_files::IniSection;
 
 namespace {
 
@@ -127,7 +127,7 @@ void readPlanner(const CConfigFileBase& ini, const fs::path& folder,
 
 void readDrive(const CConfigFileBase& ini, const fs::path& folder, DriveConfig& config) {
   IniSection section(ini, "drive");
-  semantic_planning::DriveOptions& drive = config.drive;
+  semantic_driving::DriveOptions& drive = config.drive;
   section.read("maxSpeed", drive.maxSpeed);
   section.read("maxAcceleration", drive.maxAcceleration);
   section.read("maxSideAcceleration", drive.maxSideAcceleration);
@@ -149,7 +149,7 @@ void readDrive(const CConfigFileBase& ini, const fs::path& folder, DriveConfig& 
     section.fail("turningRadius is larger than the planner's vehicle's");
 }
 
-void readGuide(const CConfigFileBase& ini, semantic_planning::GuideOptions& guide) {
+void readGuide(const CConfigFileBase& ini, semantic_driving::GuideOptions& guide) {
   IniSection section(ini, "guide");
   section.read("period", guide.period);
   section.read("patience", guide.patience);
@@ -179,7 +179,7 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     readGuide(ini, config.guide);
     return config;
   } catch (const std::exception& e) {
-    throw std::runtime_error(file.string() + ": " + labeled_cloud::messageOf(e));
+    throw std::runtime_error(file.string() + ": " + strict_files::messageOf(e));
   }
 }
 

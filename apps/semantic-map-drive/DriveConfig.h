@@ -1,8 +1,8 @@
 #pragma once
+#include <semantic_driving/DriveGuide.h>
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/InsertionOptions.h>
-#include <semantic_planning/DriveGuide.h>
-#include <semantic_planning/SemanticPlanner.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Lidar.h>
 
@@ -30,8 +30,8 @@ struct DriveConfig {
   SensorConfig sensors;
   PoseOptions pose;
   semantic_planning::PlannerOptions planner;
-  semantic_planning::DriveOptions drive;
-  semantic_planning::GuideOptions guide;
+  semantic_driving::DriveOptions drive;
+  semantic_driving::GuideOptions guide;
   bool compressedObstacles = false;  ///< the compressed tree's leaves are obstacles
   double controlPeriod = 0.1;        ///< s
   double timeLimit = 600;            ///< s of simulated time

@@ -9,13 +9,13 @@
 namespace semantic_map_drive {
 
 using mrpt::math::TPose2D;
-using semantic_planning::DriveController;
+using semantic_driving::DriveController;
 using synthetic_world::classTable;
 
 namespace {
 
 std::string nameOfClass(std::size_t id) {
-  return id == 0 ? "unknown" : classTable().name(static_cast<semantic_octree::ClassId>(id));
+  return id == 0 ? "unknown" : classTable().name(static_cast<semantic_types::ClassId>(id));
 }
 
 nlohmann::json lengthsToJson(const std::vector<double>& perClass) {

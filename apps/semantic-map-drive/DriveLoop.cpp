@@ -1,7 +1,7 @@
 #include "DriveLoop.h"
 
 #include <mrpt/core/Clock.h>
-#include <semantic_planning/ObstacleSensing.h>
+#include <semantic_driving/ObstacleSensing.h>
 
 #include <cmath>
 #include <cstdio>
@@ -10,6 +10,7 @@
 
 namespace semantic_map_drive {
 
+using namespace semantic_driving;
 using namespace semantic_planning;
 using mrpt::math::TPose2D;
 

@@ -45,13 +45,13 @@ class DriveLoop {
   double time() const { return m_time; }
   const DriveRecord& record() const { return m_record; }
   const Mapper& mapper() const { return *m_mapper; }
-  const semantic_planning::DriveGuide& guide() const { return *m_guide; }
-  const semantic_planning::DriveController& controller() const { return m_controller; }
+  const semantic_driving::DriveGuide& guide() const { return *m_guide; }
+  const semantic_driving::DriveController& controller() const { return m_controller; }
   const mrpt::math::TPose2D& start() const { return m_start; }
   const mrpt::math::TPose2D& goal() const { return m_goal; }
   const DriveConfig& config() const { return m_config; }
   /** With the pose that the robot believes to have. */
-  const semantic_planning::DriveState& state() const { return m_state; }
+  const semantic_driving::DriveState& state() const { return m_state; }
   /** The true pose. */
   Eigen::Isometry3d T_world_robot() const;
 
@@ -60,7 +60,7 @@ class DriveLoop {
   void localize(const std::vector<Observation>& seen);
   void guide();
   void drive();
-  void move(const semantic_planning::DriveCommand& command);
+  void move(const semantic_driving::DriveCommand& command);
   void addRow();
   bool isOver();
   void endAtGoal();
@@ -77,11 +77,11 @@ class DriveLoop {
   mrpt::math::TPose2D m_start, m_goal;
   SimulatedSensors m_sensors;
   std::unique_ptr<Mapper> m_mapper;
-  std::unique_ptr<semantic_planning::DriveGuide> m_guide;
-  semantic_planning::DriveController m_controller;
+  std::unique_ptr<semantic_driving::DriveGuide> m_guide;
+  semantic_driving::DriveController m_controller;
   SimulatedRobot m_robot;
   PoseFilter m_pose;
-  semantic_planning::DriveState m_state;
+  semantic_driving::DriveState m_state;
   synthetic_world::Footprint m_footprint;
   DriveRecord m_record;
   std::vector<DriveObserver*> m_observers;

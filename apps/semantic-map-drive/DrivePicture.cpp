@@ -6,6 +6,7 @@
 namespace semantic_map_drive {
 
 using mrpt::math::TPose2D;
+using namespace semantic_driving;
 using namespace semantic_planning;
 
 namespace {
@@ -16,9 +17,9 @@ constexpr double kCutAbove = 2.5;  // m above the robot: crowns of trees would h
 const cv::Scalar kPaper(245, 245, 245), kPath(40, 40, 220), kTrack(20, 20, 20),
     kHalo(255, 255, 255), kStart(40, 150, 40), kGoal(30, 30, 200), kRobot(230, 120, 20);
 
-cv::Scalar colorOf(semantic_octree::ClassId id, const semantic_octree::ClassTable& classes) {
+cv::Scalar colorOf(semantic_types::ClassId id, const semantic_types::ClassTable& classes) {
   if (!classes.contains(id)) return {190, 190, 190};
-  const semantic_octree::Color c = classes.color(id);
+  const semantic_types::Color c = classes.color(id);
   return cv::Scalar(c.b, c.g, c.r);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <mrpt/math/TPose2D.h>
-#include <semantic_octree/ClassTable.h>
-#include <semantic_planning/DriveGuide.h>
+#include <semantic_driving/DriveGuide.h>
+#include <semantic_types/ClassTable.h>
 
 #include <limits>
 #include <map>
@@ -12,17 +12,17 @@ namespace semantic_map_drive {
 
 /** One step of the control. */
 struct DriveRow {
-  double time = 0;                       ///< s
-  mrpt::math::TPose2D pose;              ///< true, map frame
-  mrpt::math::TPose2D believed;          ///< where the robot believes to be
-  mrpt::math::TPose2D odometry;          ///< where it would without correction
-  double z = 0, speed = 0, turn = 0;     ///< m, m/s, rad/s
-  semantic_octree::ClassId classId = 0;  ///< true ground below the robot
-  double clearance = 0;                  ///< m to the nearest true thing, at most 5
-  double offset = 0;                     ///< m from the path
-  semantic_planning::DriveGuide::Target target = semantic_planning::DriveGuide::Target::None;
-  semantic_planning::DriveController::Driver driver =
-      semantic_planning::DriveController::Driver::Tracker;
+  double time = 0;                      ///< s
+  mrpt::math::TPose2D pose;             ///< true, map frame
+  mrpt::math::TPose2D believed;         ///< where the robot believes to be
+  mrpt::math::TPose2D odometry;         ///< where it would without correction
+  double z = 0, speed = 0, turn = 0;    ///< m, m/s, rad/s
+  semantic_types::ClassId classId = 0;  ///< true ground below the robot
+  double clearance = 0;                 ///< m to the nearest true thing, at most 5
+  double offset = 0;                    ///< m from the path
+  semantic_driving::DriveGuide::Target target = semantic_driving::DriveGuide::Target::None;
+  semantic_driving::DriveController::Driver driver =
+      semantic_driving::DriveController::Driver::Tracker;
 };
 
 /** Astray: it believes to have arrived, but has not. */

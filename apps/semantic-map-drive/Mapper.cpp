@@ -1,7 +1,7 @@
 #include "Mapper.h"
 
-#include <semantic_planning/CompressedObstacles.h>
-#include <semantic_planning/OrderAbstraction.h>
+#include <semantic_driving/CompressedObstacles.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
 #include <synthetic_world/Classes.h>
 
 #include "Stopwatch.h"
@@ -35,11 +35,11 @@ void Mapper::standOn(const Eigen::Isometry3d& T_map_robot) {
   constexpr double kBelow = 1e-3;  // m: in the voxel that holds the ground
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& corner : vehicle.footprint) box.extend(corner);
-  semantic_octree::LabeledCloud cloud;
+  semantic_types::LabeledCloud cloud;
   for (double x = box.min().x() - room; x < box.max().x() + room; x += step)
     for (double y = box.min().y() - room; y < box.max().y() + room; y += step) {
       cloud.points.push_back(Eigen::Vector3d(x, y, -kBelow).cast<float>());
-      cloud.classes.push_back(semantic_octree::kNoClass);
+      cloud.classes.push_back(semantic_types::kNoClass);
     }
   semantic_octree::InsertionOptions noRays;
   noRays.carvingMargin = 1e3;
@@ -57,8 +57,8 @@ semantic_planning::StageTimes Mapper::insert(const std::vector<Observation>& see
   return times;
 }
 
-semantic_planning::ObstaclePoints Mapper::obstacles(
-    const mrpt::math::TPose2D& pose, double z, const semantic_planning::ObstacleOptions& options) {
+semantic_driving::ObstaclePoints Mapper::obstacles(
+    const mrpt::math::TPose2D& pose, double z, const semantic_driving::ObstacleOptions& options) {
   if (!m_config.compressedObstacles) return senseObstacles(m_planner, pose, z, options);
   return senseCompressedObstacles(m_planner, semantic_octree::Abstraction(m_map), pose, z, options);
 }

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_planning/SemanticPlanner.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 
 #include "SimulatedSensors.h"
 
@@ -24,8 +24,8 @@ class Mapper {
                                        const Eigen::Isometry3d& T_map_robot);
 
   /** As senseObstacles(), of the full or the compressed tree as DriveConfig says. */
-  semantic_planning::ObstaclePoints obstacles(const mrpt::math::TPose2D& pose, double z,
-                                              const semantic_planning::ObstacleOptions& options);
+  semantic_driving::ObstaclePoints obstacles(const mrpt::math::TPose2D& pose, double z,
+                                             const semantic_driving::ObstacleOptions& options);
 
   const semantic_octree::SemanticOcTree& map() const { return m_map; }
   semantic_planning::SemanticPlanner& planner() { return m_planner; }

@@ -35,7 +35,7 @@ class PoseFilter {
  private:
   struct Point {
     Eigen::Vector3d place;  ///< level frame
-    semantic_octree::ClassId id;
+    semantic_types::ClassId id;
   };
   using Points = std::vector<Point>;
   using Particles = std::vector<Eigen::Vector3d>;  ///< differences from m_pose: m, m, rad

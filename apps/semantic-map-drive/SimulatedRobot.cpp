@@ -7,7 +7,7 @@
 
 namespace semantic_map_drive {
 
-using semantic_planning::DriveCommand;
+using semantic_driving::DriveCommand;
 
 namespace {
 
@@ -21,7 +21,7 @@ double towards(double from, double to, double most) {
 }  // namespace
 
 SimulatedRobot::SimulatedRobot(const mrpt::math::TPose2D& start,
-                               const semantic_planning::DriveOptions& limits)
+                               const semantic_driving::DriveOptions& limits)
     : m_limits(limits) {
   m_state.pose = start;
 }

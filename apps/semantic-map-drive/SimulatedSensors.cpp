@@ -6,7 +6,7 @@
 
 namespace semantic_map_drive {
 
-using semantic_octree::LabeledCloud;
+using semantic_types::LabeledCloud;
 using synthetic_world::CameraFrame;
 using synthetic_world::CameraOptions;
 using synthetic_world::World;

@@ -1,6 +1,6 @@
 #pragma once
 #include <mrpt/obs/CObservation.h>
-#include <semantic_octree/LabeledCloud.h>
+#include <semantic_types/LabeledCloud.h>
 #include <synthetic_world/World.h>
 
 #include <optional>
@@ -11,7 +11,7 @@ namespace semantic_map_drive {
 
 /** What one sensor saw, once. */
 struct Observation {
-  semantic_octree::LabeledCloud cloud;  ///< sensor frame
+  semantic_types::LabeledCloud cloud;  ///< sensor frame
   Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
   mrpt::obs::CObservation::Ptr original;  ///< for the rawlog; null if not asked for
 };

@@ -1,7 +1,7 @@
 // Drives a robot through a synthetic world: it maps, compresses, plans and drives.
-#include <labeled_cloud/OutputFolder.h>
 #include <semantic_octree/TreeFile.h>
-#include <semantic_planning/OrderFile.h>
+#include <semantic_planning/planner/OrderFile.h>
+#include <strict_files/OutputFolder.h>
 
 #include <fstream>
 #include <iostream>
@@ -123,7 +123,7 @@ class Program {
   const Cli& m_cli;
   DriveConfig m_config;
   synthetic_world::Scene m_scene;
-  labeled_cloud::OutputFolder m_output;
+  strict_files::OutputFolder m_output;
   DrivePicture m_picture;  ///< on the way
   DrivePicture m_whole;    ///< of all that was driven
   std::optional<semantic_octree::SemanticOcTree> m_map;

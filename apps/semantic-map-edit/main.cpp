@@ -39,9 +39,10 @@ struct Cli {
 
 SemanticOcTree import(const fs::path& file, const fs::path& like) {
   const auto occupancy = semantic_map::readOctomapFile(file);
-  if (like.empty()) return fromOccupancy(*occupancy, CSemanticOctoMap::occupancyOnly());
+  if (like.empty())
+    return semantic_octree::fromOccupancy(*occupancy, CSemanticOctoMap::occupancyOnly());
   const SemanticOcTree model = semantic_octree::loadTree(like.string());
-  return fromOccupancy(*occupancy, model.classes(), model.filterParameters());
+  return semantic_octree::fromOccupancy(*occupancy, model.classes(), model.filterParameters());
 }
 
 SemanticOcTree load(const Cli& cli) {

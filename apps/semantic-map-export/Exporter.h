@@ -1,7 +1,7 @@
 #pragma once
-#include <labeled_cloud/StagedFile.h>
 #include <semantic_map/ExportGrid.h>
 #include <semantic_map/ExportPoints.h>
+#include <strict_files/StagedFile.h>
 
 #include <filesystem>
 #include <functional>
@@ -53,7 +53,7 @@ class Exporter {
   struct Staged {
     explicit Staged(const std::filesystem::path& path) : target(path), file(path) {}
     std::filesystem::path target;
-    labeled_cloud::StagedFile file;
+    strict_files::StagedFile file;
   };
 
   const semantic_octree::SemanticOcTree& m_map;

@@ -10,7 +10,7 @@ namespace semantic_map_export {
 namespace {
 
 namespace fs = std::filesystem;
-using semantic_octree::ClassTable;
+using semantic_types::ClassTable;
 
 struct Cli {
   fs::path map;
@@ -42,9 +42,9 @@ struct Cli {
   }
 };
 
-std::vector<semantic_octree::ClassId> classesNamed(const std::vector<std::string>& names,
-                                                   const ClassTable& classes) {
-  std::vector<semantic_octree::ClassId> ids;
+std::vector<semantic_types::ClassId> classesNamed(const std::vector<std::string>& names,
+                                                  const ClassTable& classes) {
+  std::vector<semantic_types::ClassId> ids;
   for (const std::string& name : names) {
     const auto id = classes.find(name);
     if (!id) throw std::runtime_error("--ground: the map has no class '" + name + "'");

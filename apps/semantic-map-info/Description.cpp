@@ -7,10 +7,10 @@
 namespace semantic_map_info {
 
 using nlohmann::ordered_json;
-using semantic_octree::ClassId;
 using semantic_octree::FilterParameters;
 using semantic_octree::MapContents;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
 
 namespace {
 

@@ -8,7 +8,7 @@
 namespace semantic_map_info {
 
 using semantic_octree::CellState;
-using semantic_octree::kNoClass;
+using semantic_types::kNoClass;
 
 namespace {
 

@@ -1,6 +1,6 @@
 #include "PlanFiles.h"
 
-#include <semantic_planning/OrderFile.h>
+#include <semantic_planning/planner/OrderFile.h>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -8,9 +8,9 @@
 namespace semantic_map_plan {
 
 using nlohmann::json;
-using semantic_octree::ClassTable;
 using semantic_planning::PathPoint;
 using semantic_planning::PlanResult;
+using semantic_types::ClassTable;
 
 namespace {
 
@@ -18,7 +18,7 @@ json lengthsByName(const PlanResult& plan, const ClassTable& classes) {
   json lengths = json::object();
   for (std::size_t id = 0; id < plan.lengthPerClass.size(); ++id)
     if (plan.lengthPerClass[id] > 0)
-      lengths[groundName(static_cast<semantic_octree::ClassId>(id), classes)] =
+      lengths[groundName(static_cast<semantic_types::ClassId>(id), classes)] =
           plan.lengthPerClass[id];
   return lengths;
 }
@@ -30,7 +30,7 @@ json ranksOf(const colored_graph::ClassOrder& order, const ClassTable& classes) 
     json names = json::array();
     for (int id = 0; id < order.classes(); ++id)
       if (order.rank(static_cast<colored_graph::ClassId>(id)) == rank)
-        names.push_back(groundName(static_cast<semantic_octree::ClassId>(id), classes));
+        names.push_back(groundName(static_cast<semantic_types::ClassId>(id), classes));
     ranks.push_back(names);
   }
   return ranks;
@@ -44,8 +44,8 @@ json timesOf(const semantic_planning::StageTimes& times) {
 
 }  // namespace
 
-std::string groundName(semantic_octree::ClassId id, const ClassTable& classes) {
-  return id == semantic_octree::kNoClass ? semantic_planning::kUnknownGround : classes.name(id);
+std::string groundName(semantic_types::ClassId id, const ClassTable& classes) {
+  return id == semantic_types::kNoClass ? semantic_planning::kUnknownGround : classes.name(id);
 }
 
 std::string toCsv(const PlanResult& plan, const ClassTable& classes) {

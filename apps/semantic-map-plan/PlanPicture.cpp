@@ -10,7 +10,7 @@ namespace semantic_map_plan {
 using namespace semantic_planning;
 using colored_graph::EdgeState;
 using mrpt::math::TPose2D;
-using semantic_octree::ClassTable;
+using semantic_types::ClassTable;
 
 namespace {
 
@@ -18,7 +18,7 @@ const cv::Scalar kPathColor(20, 20, 20), kPathHalo(255, 255, 255);
 const cv::Scalar kStartColor(60, 160, 0), kGoalColor(30, 30, 220);
 
 cv::Scalar colorOf(ClassId id, const ClassTable& classes) {
-  if (id == semantic_octree::kNoClass) return {190, 190, 190};
+  if (id == semantic_types::kNoClass) return {190, 190, 190};
   const auto color = classes.color(id);
   return {double(color.b), double(color.g), double(color.r)};
 }

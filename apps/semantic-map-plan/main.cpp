@@ -1,9 +1,9 @@
 // Plans a path of a vehicle over a semantic map, classes before length.
-#include <labeled_cloud/OutputFolder.h>
 #include <semantic_map/MapPictures.h>
 #include <semantic_octree/TreeFile.h>
-#include <semantic_planning/OrderAbstraction.h>
-#include <semantic_planning/OrderFile.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_planning/planner/OrderFile.h>
+#include <strict_files/OutputFolder.h>
 
 #include <algorithm>
 #include <chrono>
@@ -56,7 +56,7 @@ void writeText(const std::string& text, const fs::path& file) {
 /** All results; of a plan that failed all but the path itself. */
 void write(const Cli& cli, const SemanticOcTree& map, const SemanticPlanner& planner,
            const PlanResult& plan, const nlohmann::json& report) {
-  labeled_cloud::OutputFolder output(cli.output);
+  strict_files::OutputFolder output(cli.output);
   writeText(report.dump(2) + "\n", output.staged("path.json"));
   if (plan.found()) writeText(toCsv(plan, map.classes()), output.staged("path.csv"));
   semantic_map::savePicture(drawPlan(map, planner, plan, cli.start, cli.goal),
@@ -65,12 +65,12 @@ void write(const Cli& cli, const SemanticOcTree& map, const SemanticPlanner& pla
   output.commit({"path.json", "path.csv", "plan.png", "plan.3Dscene"});
 }
 
-void printSummary(const PlanResult& plan, const semantic_octree::ClassTable& classes) {
+void printSummary(const PlanResult& plan, const semantic_types::ClassTable& classes) {
   std::cout << "Path of " << plan.length << " m:";
   for (std::size_t id = 0; id < plan.lengthPerClass.size(); ++id)
     if (plan.lengthPerClass[id] > 0)
       std::cout << ' ' << plan.lengthPerClass[id] << " m "
-                << groundName(static_cast<semantic_octree::ClassId>(id), classes);
+                << groundName(static_cast<semantic_types::ClassId>(id), classes);
   std::cout << "\nGraph of " << plan.numVertices << " vertices and " << plan.numEdges << " edges, "
             << plan.search.edgesEvaluated << " of them evaluated\n";
 }

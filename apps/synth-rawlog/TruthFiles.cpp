@@ -37,7 +37,7 @@ std::optional<Eigen::Vector3d> pointOf(const std::string& line, const std::strin
 }  // namespace
 
 void writeTruth(const Cli& cli, int frames, const std::filesystem::path& file) {
-  labeled_cloud::StagedFile staged(file);
+  strict_files::StagedFile staged(file);
   std::ofstream out(staged.path());
   out << "# The world that " << cli.output.filename().string() << " shows.\n"
       << "scene: " << cli.scene << "\nseed: " << cli.seed << "\nhills: " << cli.hills

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <iosfwd>
 
-#include <labeled_cloud/StagedFile.h>
+#include <strict_files/StagedFile.h>
 #include <synthetic_world/Scene.h>
 #include "Cli.h"
 
@@ -21,7 +21,7 @@ class TrajectoryWriter {
   void commit();
 
  private:
-  labeled_cloud::StagedFile m_file;
+  strict_files::StagedFile m_file;
   std::ofstream m_stream;
 };
 

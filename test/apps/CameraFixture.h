@@ -1,6 +1,6 @@
 #pragma once
-#include <labeled_cloud/ClassTableFile.h>
 #include <mrpt/obs/CObservationImage.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -48,7 +48,7 @@ class CameraMapping : public Rawlog2SemanticMap {
 
   std::vector<std::string> labels() const { return {"--labels", (folder / "labels").string()}; }
   std::vector<std::string> network(const std::string& kind = "softmax") const {
-    const auto table = labeled_cloud::loadClassTable(folder / "classes.yaml");
+    const auto table = semantic_types::loadClassTable(folder / "classes.yaml");
     folder.write("net.yaml", nearestColorConfig(40, 40, table, kind));
     return {"--network", saveNearestColorNetwork(folder / "net.onnx", 40, 40, table).string(),
             "--network-config", (folder / "net.yaml").string()};

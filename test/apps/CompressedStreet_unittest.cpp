@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
 #include <semantic_octree/TreeFile.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <nlohmann/json.hpp>
 
@@ -22,7 +22,7 @@ class CompressedStreet : public testing::Test {
     if (sharedDataDir().empty() || !fs::exists(sharedDataDir() / "semantic_kitti/00")) return;
     const fs::path sources = MSO_SOURCE_DIR;
     const auto table =
-        labeled_cloud::loadClassTable(sources / "config/classes/semantic_kitti.yaml");
+        semantic_types::loadClassTable(sources / "config/classes/semantic_kitti.yaml");
     SemanticOcTree map(0.2, table);
     InsertionOptions options;
     options.minRange = 2.5;

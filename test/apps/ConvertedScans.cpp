@@ -12,8 +12,8 @@
 #include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
 namespace fs = std::filesystem;
 
 CommandRun dataset2rawlog(const std::string& arguments) {

@@ -24,12 +24,12 @@ struct PosedScan {
 };
 
 std::vector<PosedScan> readScans(const std::filesystem::path& rawlog,
-                                 const semantic_octree::ClassTable& table,
+                                 const semantic_types::ClassTable& table,
                                  std::shared_ptr<labeled_cloud::ImageLabeler> labeler = nullptr);
 /** Runs dataset2rawlog with these arguments and the rawlog as its last one, and reads that. */
 std::vector<PosedScan> convertAndRead(const std::string& arguments,
                                       const std::filesystem::path& rawlog,
-                                      const semantic_octree::ClassTable& table);
+                                      const semantic_types::ClassTable& table);
 
 /** Share of the labeled points, in voxels seen by two scans or more, that have the class of most of
  * their voxel's points. */

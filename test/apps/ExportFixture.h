@@ -11,8 +11,8 @@
 #include "TemporaryFolder.h"
 
 /** Three classes with colors, the last with a name that must be quoted. */
-inline semantic_octree::ClassTable coloredClasses() {
-  semantic_octree::ClassTable table;
+inline semantic_types::ClassTable coloredClasses() {
+  semantic_types::ClassTable table;
   table.add("post", {200, 30, 10});
   table.add("road", {20, 40, 220});
   table.add("grass, \"wet\"", {10, 190, 40});

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <cmath>
 #include <random>
@@ -33,8 +33,8 @@ SemanticOcTree smallPlace() {
 }
 
 SemanticOcTree street() {
-  const auto table = labeled_cloud::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
-                                                   "config/classes/semantic_kitti.yaml");
+  const auto table = semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
+                                                    "config/classes/semantic_kitti.yaml");
   SemanticOcTree map(0.2, table);
   InsertionOptions options;
   options.minRange = 2.5;

@@ -2,9 +2,9 @@
 // application.
 #include <gtest/gtest.h>
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/ClassTableFile.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <cmath>
 
@@ -15,8 +15,8 @@
 namespace fs = std::filesystem;
 using labeled_cloud::CObservationLabeledCloud;
 using mrpt::obs::CObservation3DRangeScan;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
 
 namespace {
 
@@ -56,7 +56,7 @@ std::vector<double> answerFor(const mrpt::img::CImage& image, int col, int row,
 TEST(SampleNetwork, labelsTheVillageAsItsColorsSayHardAndSoft) {
   const fs::path rawlog = kSources / "rawlog-samples/village.rawlog";
   const fs::path classes = kSources / "config/classes/synthetic.yaml";
-  const ClassTable table = labeled_cloud::loadClassTable(classes);
+  const ClassTable table = semantic_types::loadClassTable(classes);
   const auto frames = readAll<CObservation3DRangeScan>(rawlog, "CAMERA");
   ASSERT_FALSE(frames.empty());
   const int rows = int(frames[0]->cameraParams.nrows), cols = int(frames[0]->cameraParams.ncols);

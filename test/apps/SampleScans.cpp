@@ -1,15 +1,15 @@
 #include "SampleScans.h"
 
-#include <labeled_cloud/ClassTableFile.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <filesystem>
 
 std::vector<LabeledFrame> readSampleScans() {
   const std::filesystem::path sources = MSO_SOURCE_DIR;
-  const auto table = labeled_cloud::loadClassTable(sources / "config/classes/synthetic.yaml");
+  const auto table = semantic_types::loadClassTable(sources / "config/classes/synthetic.yaml");
   const auto poses = labeled_cloud::loadTumTrajectory(sources / "rawlog-samples/village.tum");
   labeled_cloud::ScanConverter converter(table);
   labeled_cloud::RawlogReader reader(sources / "rawlog-samples/village.rawlog");

@@ -12,14 +12,14 @@
 constexpr int K = 6;
 inline const char* const kNames[K] = {"post", "road", "grass", "wall, low", "tree", "car"};
 
-inline semantic_octree::ClassTable namedClasses() {
-  semantic_octree::ClassTable table;
+inline semantic_types::ClassTable namedClasses() {
+  semantic_types::ClassTable table;
   for (const char* name : kNames)
     table.add(name, {static_cast<std::uint8_t>(40 * table.size()), 90, 120});
   return table;
 }
 
-inline semantic_octree::SemanticOcTree smallMap(const semantic_octree::ClassTable& table,
+inline semantic_octree::SemanticOcTree smallMap(const semantic_types::ClassTable& table,
                                                 int classes = K) {
   semantic_octree::SemanticOcTree map(0.2, table);
   for (const PosedCloud& scan : scansOfSmallPlace(3, 3000, classes, 7))

@@ -26,7 +26,7 @@ inline mrpt::obs::CObservationRobotPose robotPose(double seconds, double x) {
 /** A cloud of the class names above, seen from the robot's origin. */
 inline labeled_cloud::CObservationLabeledCloud labeledCloud(
     double seconds, const std::vector<Eigen::Vector3f>& points,
-    const std::vector<semantic_octree::ClassId>& classes) {
+    const std::vector<semantic_types::ClassId>& classes) {
   labeled_cloud::CObservationLabeledCloud observation;
   observation.timestamp = at(seconds);
   observation.sensorLabel = "lidar";

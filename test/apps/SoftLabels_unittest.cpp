@@ -1,8 +1,8 @@
 // What soft labels are worth, with a classifier that confuses classes but knows how sure it is.
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
 #include <labeled_cloud/LabelModel.h>
 #include <semantic_octree/SemanticOcTree.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <cmath>
 #include <random>
@@ -11,10 +11,10 @@
 #include "SampleScans.h"
 
 using labeled_cloud::LabelModel;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::LabeledCloud;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::LabeledCloud;
 
 namespace {
 
@@ -27,7 +27,7 @@ class ConfusedClassifier {
   LabeledCloud answer(const LabeledCloud& truth) {
     LabeledCloud cloud;
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      if (truth.classes[i] == semantic_octree::kNoClass) continue;
+      if (truth.classes[i] == semantic_types::kNoClass) continue;
       cloud.points.push_back(truth.points[i]);
       addRow(truth.classes[i], cloud.probabilities);
     }
@@ -60,7 +60,7 @@ struct Comparison {
 /** Accuracy of maps of the even scans, asked for the points of the odd ones. */
 Comparison compare(double resolution) {
   const ClassTable table =
-      labeled_cloud::loadClassTable(MSO_SOURCE_DIR "/config/classes/synthetic.yaml");
+      semantic_types::loadClassTable(MSO_SOURCE_DIR "/config/classes/synthetic.yaml");
   const auto frames = readSampleScans();
   LabelModel harden;
   harden.kind = LabelModel::Kind::Hard;
@@ -73,7 +73,7 @@ Comparison compare(double resolution) {
     harden.apply(table.size(), {}, hard.back());
     std::size_t next = 0;
     for (const ClassId id : frames[f].cloud.classes)
-      if (id != semantic_octree::kNoClass) right += hard.back().classes[next++] == id;
+      if (id != semantic_types::kNoClass) right += hard.back().classes[next++] == id;
     points += double(hard.back().size());
   }
   semantic_octree::FilterParameters filter;

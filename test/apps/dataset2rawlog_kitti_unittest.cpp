@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <mrpt/obs/CObservationImage.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <array>
 #include <map>
@@ -13,8 +13,8 @@
 
 using namespace labeled_cloud;
 using Eigen::Vector3d;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
 namespace fs = std::filesystem;
 
 namespace {

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include "ConvertedScans.h"
 #include "SharedData.h"
@@ -7,8 +7,8 @@
 
 using namespace labeled_cloud;
 using Eigen::Vector3d;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
 namespace fs = std::filesystem;
 
 namespace {

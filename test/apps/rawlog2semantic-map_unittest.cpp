@@ -106,7 +106,7 @@ TEST_F(Rawlog2SemanticMap, pointsThatAreNotFiniteAreSkippedAndCounted) {
 TEST_F(Rawlog2SemanticMap, memoryDoesNotGrowWithTheRawlog) {
   const auto writeScans = [this](const std::string& name, int scans) {
     std::vector<Vector3f> points(200000, {1.1f, 0.2f, 0.2f});
-    const std::vector<semantic_octree::ClassId> classes(points.size(), 1);
+    const std::vector<semantic_types::ClassId> classes(points.size(), 1);
     labeled_cloud::RawlogWriter writer(folder / name);
     writer.write(robotPose(0, 1.1));
     writer.write(robotPose(1000, 1.1));

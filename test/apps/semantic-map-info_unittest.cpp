@@ -6,9 +6,9 @@
 #include "RunProgram.h"
 #include "TemporaryFolder.h"
 
-using semantic_octree::ClassTable;
-using semantic_octree::LabeledCloud;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassTable;
+using semantic_types::LabeledCloud;
 
 namespace {
 

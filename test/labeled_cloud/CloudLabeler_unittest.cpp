@@ -9,7 +9,7 @@
 using namespace labeled_cloud;
 using mrpt::obs::CObservationImage;
 using mrpt::poses::CPose3D;
-using semantic_octree::ClassId;
+using semantic_types::ClassId;
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include "TemporaryFolder.h"
 
 /** Classes 1, 2, 3. */
-inline semantic_octree::ClassTable abc() {
-  semantic_octree::ClassTable table;
+inline semantic_types::ClassTable abc() {
+  semantic_types::ClassTable table;
   for (const char* name : {"a", "b", "c"}) table.add(name, {});
   return table;
 }
@@ -16,6 +16,6 @@ inline labeled_cloud::LabeledScan convert(const mrpt::obs::CObservation& obs,
 }
 
 inline std::string errorConverting(const mrpt::obs::CObservation& obs,
-                                   const semantic_octree::ClassTable& table = abc()) {
+                                   const semantic_types::ClassTable& table = abc()) {
   return errorOf([&] { labeled_cloud::ScanConverter(table).convert(obs); });
 }

@@ -9,8 +9,8 @@
 using namespace labeled_cloud;
 using Eigen::Vector3f;
 using mrpt::obs::CObservation3DRangeScan;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
 
 namespace {
 

@@ -11,8 +11,8 @@
 #include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
 
 namespace {
 
@@ -22,7 +22,7 @@ ClassTable roadGrassSky() {
   table.add("grass", {0, 255, 1});
   table.add("sky", {0, 0, 255});
   table.fold(0, 0);
-  for (const int id : {1, 2, 3}) table.fold(id, static_cast<semantic_octree::ClassId>(id));
+  for (const int id : {1, 2, 3}) table.fold(id, static_cast<semantic_types::ClassId>(id));
   table.fold(40000, 3);
   return table;
 }

@@ -4,9 +4,9 @@
 #include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::LabeledCloud;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::LabeledCloud;
 
 namespace {
 

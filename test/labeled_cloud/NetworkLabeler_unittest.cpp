@@ -12,7 +12,7 @@
 
 using namespace labeled_cloud;
 using mrpt::obs::CObservationImage;
-using semantic_octree::ClassTable;
+using semantic_types::ClassTable;
 
 namespace {
 

@@ -12,8 +12,8 @@
 using namespace labeled_cloud;
 using Eigen::Vector3f;
 using mrpt::obs::CObservation3DRangeScan;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
 
 TEST(LabeledClouds, areTakenAsTheyAreExceptUnusablePoints) {
   CObservationLabeledCloud obs;

@@ -15,8 +15,8 @@ using mrpt::poses::CPose3D;
 
 constexpr int kClasses = 24;
 
-semantic_octree::ClassTable manyClasses() {
-  semantic_octree::ClassTable table;
+semantic_types::ClassTable manyClasses() {
+  semantic_types::ClassTable table;
   for (int id = 1; id <= kClasses; ++id) table.add(std::to_string(id), {});
   return table;
 }
@@ -29,7 +29,7 @@ class Stripes : public labeled_cloud::ImageLabeler {
     const std::size_t cells = std::size_t(rows) * cols;
     if (soft) m_image.probabilities.assign(kClasses * cells, 1.f / kClasses);
     for (std::size_t i = 0; i < cells && !soft; ++i)
-      m_image.classes.push_back(static_cast<semantic_octree::ClassId>(1 + i / 16 % kClasses));
+      m_image.classes.push_back(static_cast<semantic_types::ClassId>(1 + i / 16 % kClasses));
   }
   std::optional<LabelImage> label(const mrpt::obs::CObservation&) override { return m_image; }
 

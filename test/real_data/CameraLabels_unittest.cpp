@@ -1,10 +1,10 @@
 // Labels painted into images come back to the points that they were painted from.
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
 #include <labeled_cloud/CloudLabeler.h>
 #include <labeled_cloud/EigenPose.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <mrpt/obs/CObservationImage.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <algorithm>
 #include <numeric>
@@ -15,9 +15,9 @@
 using labeled_cloud::LabeledScan;
 using labeled_cloud::LabelImage;
 using mrpt::poses::CPose3D;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::kNoClass;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::kNoClass;
 
 namespace {
 
@@ -48,8 +48,8 @@ struct PaintingCamera {
 };
 
 /** Paints each labeled point as a square of 2 RADIUS + 1 pixels, the nearest on top. */
-LabelImage paint(const semantic_octree::LabeledCloud& cloud,
-                 const Eigen::Isometry3d& T_camera_cloud, const PaintingCamera& c, int radius) {
+LabelImage paint(const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_camera_cloud,
+                 const PaintingCamera& c, int radius) {
   LabelImage image;
   image.rows = int(c.camera.nrows), image.cols = int(c.camera.ncols);
   image.classes.assign(std::size_t(image.rows) * image.cols, kNoClass);
@@ -100,7 +100,7 @@ Eigen::Isometry3d kittiCameraFromLidar() {
  * which the calibration is turned. */
 Share labelStreetByCamera(double wrong) {
   const ClassTable table =
-      labeled_cloud::loadClassTable(MSO_SOURCE_DIR "/config/classes/semantic_kitti.yaml");
+      semantic_types::loadClassTable(MSO_SOURCE_DIR "/config/classes/semantic_kitti.yaml");
   const Eigen::Isometry3d T_camera_lidar = kittiCameraFromLidar();
   const CPose3D T_lidar_camera(mrpt::math::CMatrixDouble44(T_camera_lidar.inverse().matrix()));
   const CPose3D turn(0, 0, 0, mrpt::DEG2RAD(wrong), 0, 0);
@@ -129,7 +129,7 @@ Share labelStreetByCamera(double wrong) {
 /** Labels a flat's depth images by the color image of a camera beside, painted from the labels. */
 Share labelFlatByColorCamera(double occlusionParallax) {
   const ClassTable table =
-      labeled_cloud::loadClassTable(MSO_SOURCE_DIR "/config/classes/replica_apartment.yaml");
+      semantic_types::loadClassTable(MSO_SOURCE_DIR "/config/classes/replica_apartment.yaml");
   const PaintingCamera color(640, 480, 300, 320, 240, -0.1);
   const CPose3D beside = CPose3D(0.02, -0.25, 0.05, mrpt::DEG2RAD(3.0), mrpt::DEG2RAD(-2.0), 0) +
                          mrpt::obs::CObservation3DRangeScan().relativePoseIntensityWRTDepth;
@@ -142,7 +142,7 @@ Share labelFlatByColorCamera(double occlusionParallax) {
     scan.hasPoints3D = true;
     scan.cameraParamsIntensity = color.camera;
     scan.relativePoseIntensityWRTDepth = beside;
-    semantic_octree::LabeledCloud cloud = frames[f].cloud;
+    semantic_types::LabeledCloud cloud = frames[f].cloud;
     for (auto& p : cloud.points) {  // the data set looks along z, MRPT along x
       p = Eigen::Vector3f(p.z(), -p.x(), -p.y());
       scan.points3D_x.push_back(p.x());

@@ -7,7 +7,7 @@
 /** A sequence of SemanticKITTI (velodyne/, labels/, poses.txt, calib.txt), classes folded by TABLE.
  */
 std::vector<LabeledFrame> readSemanticKitti(const std::filesystem::path& sequence,
-                                            const semantic_octree::ClassTable& table);
+                                            const semantic_types::ClassTable& table);
 
 /** The Replica flat as a TUM RGB-D sequence with class images: every pixel with a depth. */
 std::vector<LabeledFrame> readReplica(const std::filesystem::path& folder);

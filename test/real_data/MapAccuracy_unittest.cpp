@@ -1,6 +1,6 @@
 // How well maps with the default parameters answer real data that they were not made from.
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <map>
 #include <random>
@@ -11,18 +11,18 @@
 #include "SharedData.h"
 
 using semantic_octree::CellState;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::kNoClass;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::kNoClass;
 
 namespace {
 
 constexpr double kKittiResolution = 0.2, kKittiRange = 25, kReplicaResolution = 0.05;
 
 ClassTable shippedTable(const std::string& name) {
-  return labeled_cloud::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) / "config/classes" /
-                                       name);
+  return semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) / "config/classes" /
+                                        name);
 }
 
 /** Makes a map of the even frames and asks it for the points of the odd ones. */
@@ -101,7 +101,7 @@ TEST(MapAccuracy, theMapSeesThroughThirtyPercentOfWrongLabels) {
   SemanticOcTree map(kKittiResolution, table);
   std::mt19937 random(1);
   for (const LabeledFrame& frame : frames) {
-    semantic_octree::LabeledCloud noisy = frame.cloud;
+    semantic_types::LabeledCloud noisy = frame.cloud;
     disturb(noisy.classes, 0.3, table.size(), random);
     map.insert(noisy, frame.T_map_sensor);
   }

@@ -1,9 +1,9 @@
 // A real network on the pictures of a real street, through the programs.
 #include <gtest/gtest.h>
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/ClassTableFile.h>
 #include <labeled_cloud/LabelModel.h>
 #include <labeled_cloud/RawlogReader.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <fstream>
 #include <iterator>
@@ -17,11 +17,11 @@
 using labeled_cloud::CObservationLabeledCloud;
 using labeled_cloud::ConfusionMatrix;
 using labeled_cloud::LabelModel;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::kNoClass;
-using semantic_octree::LabeledCloud;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::kNoClass;
+using semantic_types::LabeledCloud;
 
 namespace {
 
@@ -29,7 +29,7 @@ const std::filesystem::path kConfig = std::filesystem::path(MSO_SOURCE_DIR) / "c
 constexpr double kResolution = 0.2;
 
 ClassTable kittiTable() {
-  return labeled_cloud::loadClassTable(kConfig / "classes/semantic_kitti.yaml");
+  return semantic_types::loadClassTable(kConfig / "classes/semantic_kitti.yaml");
 }
 
 /** The scans with the network's soft labels, as the programs save them. */

@@ -37,7 +37,7 @@ Eigen::Isometry3d readCameraFromLidar(const fs::path& calib) {
 bool isMovingClass(std::uint32_t rawId) { return rawId >= 252 && rawId <= 259; }
 
 LabeledFrame readFrame(const fs::path& sequence, const std::string& name,
-                       const semantic_octree::ClassTable& table) {
+                       const semantic_types::ClassTable& table) {
   LabeledFrame frame;
   const auto xyzr = readBinary<Eigen::Vector4f>(sequence / "velodyne" / (name + ".bin"));
   const auto labels = readBinary<std::uint32_t>(sequence / "labels" / (name + ".label"));
@@ -53,7 +53,7 @@ LabeledFrame readFrame(const fs::path& sequence, const std::string& name,
 }  // namespace
 
 std::vector<LabeledFrame> readSemanticKitti(const fs::path& sequence,
-                                            const semantic_octree::ClassTable& table) {
+                                            const semantic_types::ClassTable& table) {
   const Eigen::Isometry3d T_camera_lidar = readCameraFromLidar(sequence / "calib.txt");
   std::vector<LabeledFrame> frames;
   std::ifstream poses(sequence / "poses.txt");

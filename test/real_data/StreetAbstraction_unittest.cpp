@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
 #include <semantic_octree/Abstraction.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include "DataSets.h"
 #include "SharedData.h"
@@ -24,7 +24,7 @@ AbstractionOptions roadsNotPlants(const ClassTable& table) {
 TEST(StreetAbstraction, incrementalEqualsBatchAfterEveryScanAndPrunedEqualsUnpruned) {
   SKIP_WITHOUT_DATA("semantic_kitti");
   const ClassTable table =
-      labeled_cloud::loadClassTable(MSO_SOURCE_DIR "/config/classes/semantic_kitti.yaml");
+      semantic_types::loadClassTable(MSO_SOURCE_DIR "/config/classes/semantic_kitti.yaml");
   const AbstractionOptions options = roadsNotPlants(table);
   InsertionOptions insertion;
   insertion.maxRange = 25;

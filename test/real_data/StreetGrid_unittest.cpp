@@ -1,13 +1,13 @@
 // The 2D grid of a real street, asked for the labeled points that the map was made of.
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
 #include <semantic_map/ExportGrid.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include "DataSets.h"
 #include "SharedData.h"
 
 using mrpt::maps::COccupancyGridMap2D;
-using semantic_octree::ClassTable;
+using semantic_types::ClassTable;
 
 namespace {
 
@@ -38,8 +38,8 @@ void judge(const COccupancyGridMap2D& grid, const LabeledFrame& frame, const Cla
 
 TEST(StreetGrid, theRoadIsFreeAndCarsAndWallsAreOccupied) {
   SKIP_WITHOUT_DATA("semantic_kitti");
-  const ClassTable classes = labeled_cloud::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
-                                                           "config/classes/semantic_kitti.yaml");
+  const ClassTable classes = semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
+                                                            "config/classes/semantic_kitti.yaml");
   const auto frames = readSemanticKitti(sharedDataDir() / "semantic_kitti/00", classes);
   semantic_octree::SemanticOcTree map(0.2, classes);
   for (const LabeledFrame& frame : frames) map.insert(frame.cloud, frame.T_map_sensor);

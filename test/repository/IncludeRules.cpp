@@ -9,18 +9,33 @@ namespace fs = std::filesystem;
 
 const IncludeTable& includeTable() {
   static const IncludeTable table = {
+      {"strict_files", {"Eigen", "yaml-cpp"}},
+      {"semantic_types", {"Eigen", "yaml-cpp", "strict_files"}},
       {"tree_abstraction", {"Eigen"}},
-      {"semantic_octree", {"Eigen", "octomap", "zlib.h", "tree_abstraction"}},
+      {"semantic_octree",
+       {"Eigen", "octomap", "zlib.h", "semantic_types", "strict_files", "tree_abstraction"}},
       {"labeled_cloud",
-       {"Eigen", "mrpt", "opencv2", "png.h", "yaml-cpp", "zlib.h", "semantic_octree"}},
+       {"Eigen", "mrpt", "opencv2", "png.h", "yaml-cpp", "zlib.h", "semantic_types",
+        "strict_files"}},
       {"semantic_map",
        {"Eigen", "mrpt", "octomap", "opencv2", "zlib.h", "labeled_cloud", "semantic_octree",
-        "tree_abstraction"}},
+        "semantic_types", "strict_files", "tree_abstraction"}},
       {"colored_graph", {}},
-      {"semantic_planning",
-       {"Eigen", "mrpt", "octomap", "ompl", "yaml-cpp", "colored_graph", "labeled_cloud",
-        "semantic_octree", "tree_abstraction"}},
-      {"synthetic_world", {"Eigen", "semantic_octree"}},
+      {"semantic_planning/vehicle", {"Eigen", "mrpt", "semantic_types", "strict_files"}},
+      {"semantic_planning/ground",
+       {"Eigen", "mrpt", "octomap", "colored_graph", "semantic_octree", "semantic_types",
+        "strict_files", "semantic_planning/vehicle"}},
+      {"semantic_planning/roadmap",
+       {"Eigen", "mrpt", "octomap", "colored_graph", "semantic_octree", "semantic_types",
+        "strict_files", "semantic_planning/vehicle", "semantic_planning/ground"}},
+      {"semantic_planning/planner",
+       {"Eigen", "mrpt", "octomap", "yaml-cpp", "colored_graph", "semantic_octree",
+        "semantic_types", "strict_files", "tree_abstraction", "semantic_planning/vehicle",
+        "semantic_planning/ground", "semantic_planning/roadmap"}},
+      {"semantic_driving",
+       {"Eigen", "mrpt", "octomap", "colored_graph", "semantic_octree", "semantic_types",
+        "strict_files", "semantic_planning"}},
+      {"synthetic_world", {"Eigen", "semantic_types"}},
   };
   return table;
 }
@@ -39,17 +54,40 @@ std::optional<Include> parseInclude(const std::string& line) {
   return Include{match[1] == "\"", match[2]};
 }
 
+/** "library", or "library/room" for a file in a folder of include/library/ or of src/. */
+std::string roomOf(const fs::path& file, const fs::path& libs) {
+  const fs::path relative = file.lexically_relative(libs);
+  std::vector<std::string> parts(relative.begin(), relative.end());
+  parts.pop_back();
+  const std::string library = parts.front();
+  const std::size_t above = parts.size() > 1 && parts[1] == "include" ? 3 : 2;
+  return parts.size() > above ? library + "/" + parts[above] : library;
+}
+
+/** What the table calls the includes of a path: "mrpt", and the first two parts, "library/room". */
+std::vector<std::string> namesOf(const fs::path& path) {
+  std::vector<std::string> names;
+  const std::vector<std::string> parts(path.begin(), path.end());
+  if (!parts.empty()) names.push_back(parts[0]);
+  if (parts.size() > 2) names.push_back(parts[0] + "/" + parts[1]);
+  return names;
+}
+
 /** Why the include does not belong into this file, or nothing. */
 std::optional<std::string> objection(const Include& include, const fs::path& file,
-                                     const std::string& library,
+                                     const std::string& room,
                                      const std::set<std::string>& allowed) {
-  const std::string first = *fs::path(include.path).begin();
   if (include.path == "iostream") return "prints: <iostream> belongs to applications";
-  if (include.quoted && first != ".." && fs::exists(file.parent_path() / include.path)) return {};
-  if (first == library || allowed.count(first)) return {};
+  const fs::path library = *fs::path(room).begin();
+  const bool upwards = include.path.rfind("..", 0) == 0;
+  if (include.quoted && !upwards && fs::exists(file.parent_path() / include.path)) return {};
+  // Between the rooms of a library, quotes name a file from its src/ on.
+  const fs::path path = include.quoted && !upwards ? library / include.path : include.path;
+  for (const std::string& name : namesOf(path))
+    if (name == room || allowed.count(name)) return {};
   const bool standard = include.path.find_first_of("./") == std::string::npos;
   if (standard) return {};
-  return library + " may not include " + include.path;
+  return room + " may not include " + include.path;
 }
 
 }  // namespace
@@ -57,13 +95,12 @@ std::optional<std::string> objection(const Include& include, const fs::path& fil
 std::vector<std::string> forbiddenIncludes(const fs::path& libs, const IncludeTable& table) {
   std::vector<std::string> findings;
   for (const SourceLine& line : linesOfSources(libs)) {
-    const std::string library = *line.file.lexically_relative(libs).begin();
+    const std::string room = roomOf(line.file, libs);
     const auto include = parseInclude(line.text);
     if (!include) continue;
-    const auto row = table.find(library);
-    const auto problem = row == table.end()
-                             ? "library " + library + " has no row in the table of includes"
-                             : objection(*include, line.file, library, row->second);
+    const auto row = table.find(room);
+    const auto problem = row == table.end() ? room + " has no row in the table of includes"
+                                            : objection(*include, line.file, room, row->second);
     if (problem) findings.push_back(line.where(libs) + ": " + *problem);
   }
   return findings;

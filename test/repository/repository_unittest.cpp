@@ -63,6 +63,17 @@ TEST_F(Repository, aQuotedIncludeReachesOnlyFilesBesideIt) {
             Findings{"pure/src/Bad.cpp:2: pure may not include ../../other/src/Far.h"});
 }
 
+TEST_F(Repository, anIncludeBackUpBetweenTheRoomsOfALibraryIsFound) {
+  write("house/src/cellar/Bad.cpp",
+        "#include <house/attic/Roof.h>\n#include \"attic/Beams.h\"\n#include \"Near.h\"\n");
+  write("house/src/cellar/Near.h", "#include <house/cellar/Stone.h>\n");
+  write("house/src/attic/Good.cpp",
+        "#include <house/cellar/Stone.h>\n#include \"cellar/Near.h\"\n");
+  EXPECT_EQ(forbiddenIncludes(scratch, {{"house/cellar", {}}, {"house/attic", {"house/cellar"}}}),
+            (Findings{"house/src/cellar/Bad.cpp:1: house/cellar may not include house/attic/Roof.h",
+                      "house/src/cellar/Bad.cpp:2: house/cellar may not include attic/Beams.h"}));
+}
+
 TEST_F(Repository, aLibraryThatPrintsIsFound) {
   write("pure/src/Bad.cpp", "#include <iostream>\n");
   EXPECT_EQ(forbiddenIncludes(scratch, {{"pure", {}}}),
@@ -72,7 +83,7 @@ TEST_F(Repository, aLibraryThatPrintsIsFound) {
 TEST_F(Repository, aLibraryWithoutARowIsFound) {
   write("fresh/src/File.cpp", "#include <vector>\n");
   EXPECT_EQ(forbiddenIncludes(scratch, {}),
-            Findings{"fresh/src/File.cpp:1: library fresh has no row in the table of includes"});
+            Findings{"fresh/src/File.cpp:1: fresh has no row in the table of includes"});
 }
 
 TEST_F(Repository, sourcesOfLibrariesAndApplicationsStayShort) {

@@ -13,7 +13,7 @@
 using mrpt::poses::CPose3D;
 using semantic_map::CSemanticOctoMap;
 using semantic_octree::CellState;
-using semantic_octree::kNoClass;
+using semantic_types::kNoClass;
 using Status = CellState::Status;
 
 namespace {
@@ -27,7 +27,7 @@ const CPose3D kSensor(0, 0, 2, 0, M_PI / 2, 0);
 const Eigen::Vector3f kPoint(1.03f, 0.53f, 0.23f);
 
 /** The voxel of kPoint is occupied, the beam to it free, and nothing else anywhere. */
-void expectOnlyThePoint(const CSemanticOctoMap& map, semantic_octree::ClassId id) {
+void expectOnlyThePoint(const CSemanticOctoMap& map, semantic_types::ClassId id) {
   const auto& tree = map.tree();
   const CellState state = tree.query(10 - 0.53, 0.23, 2 - 1.03);
   EXPECT_EQ(state.status, Status::Occupied);

@@ -10,8 +10,8 @@
 
 using mrpt::poses::CPose3D;
 using semantic_map::CSemanticOctoMap;
-using semantic_octree::ClassId;
-using semantic_octree::kNoClass;
+using semantic_types::ClassId;
+using semantic_types::kNoClass;
 
 namespace {
 

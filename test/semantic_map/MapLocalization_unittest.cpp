@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <mrpt/obs/CObservationRobotPose.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <cmath>
 #include <random>
@@ -20,7 +20,7 @@ struct Village {
   static constexpr int kFirst = 6, kLast = 12, kLeftOut = 9;
 
   CSemanticOctoMap map{
-      0.2, labeled_cloud::loadClassTable(MSO_SOURCE_DIR "/config/classes/synthetic.yaml")};
+      0.2, semantic_types::loadClassTable(MSO_SOURCE_DIR "/config/classes/synthetic.yaml")};
   CPose3D T_map_robot;
   CObservationLabeledCloud::Ptr scan;
 

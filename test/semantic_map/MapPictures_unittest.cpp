@@ -11,8 +11,8 @@ using semantic_map::PictureStyle;
 using semantic_map::renderPerspective;
 using semantic_map::renderTopView;
 using semantic_map::Viewpoint;
-using semantic_octree::ClassId;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
 
 namespace {
 
@@ -21,7 +21,7 @@ const cv::Vec3b kRoad(30, 30, 200), kTree(60, 180, 30), kWall(210, 60, 40), kPap
 /** A field of 10 m x 6 m at z = 0.1: road for x < 5, trees beyond it; and HEIGHT above, if it is
  * not 0, a wall over all of it. */
 SemanticOcTree field(float height = 0) {
-  semantic_octree::LabeledCloud cloud;
+  semantic_types::LabeledCloud cloud;
   const auto add = [&cloud](float x, float y, float z, ClassId id) {
     cloud.points.emplace_back(x, y, z), cloud.classes.push_back(id);
   };
@@ -85,7 +85,7 @@ TEST(TopView, showsEachPlaceInItsClassesColor) {
 }
 
 TEST(TopView, yPointsUp) {
-  semantic_octree::LabeledCloud cloud;
+  semantic_types::LabeledCloud cloud;
   for (float t = 0.1f; t < 10; t += 0.2f)
     for (float s = 0.1f; s < 6; s += 0.2f)
       cloud.points.emplace_back(s, t, -0.9f), cloud.classes.push_back(t > 5 ? 3 : 1);
@@ -137,7 +137,7 @@ TEST(TopView, anEmptyMapIsAnEmptySheet) {
 }
 
 TEST(TopView, aSingleVoxelIsAPicture) {
-  semantic_octree::LabeledCloud cloud;
+  semantic_types::LabeledCloud cloud;
   cloud.points = {{1, 2, 3}}, cloud.classes = {3};
   SemanticOcTree tree(0.1, threeClasses());
   tree.insert(cloud, Eigen::Isometry3d::Identity());

@@ -7,8 +7,8 @@
 #include <string>
 
 /** road (red), tree (green), wall (blue) */
-inline semantic_octree::ClassTable threeClasses() {
-  semantic_octree::ClassTable table;
+inline semantic_types::ClassTable threeClasses() {
+  semantic_types::ClassTable table;
   table.add("road", {200, 30, 30});
   table.add("tree", {30, 180, 60});
   table.add("wall", {40, 60, 210});
@@ -17,7 +17,7 @@ inline semantic_octree::ClassTable threeClasses() {
 
 inline labeled_cloud::CObservationLabeledCloud labeledPoints(
     const std::vector<Eigen::Vector3f>& points,
-    const std::vector<semantic_octree::ClassId>& classes) {
+    const std::vector<semantic_types::ClassId>& classes) {
   labeled_cloud::CObservationLabeledCloud observation;
   observation.cloud.points = points;
   observation.cloud.classes = classes;
@@ -28,11 +28,11 @@ inline labeled_cloud::CObservationLabeledCloud labeledPoints(
 /** Points of all three classes around the robot, some seen from two poses. */
 inline void fill(semantic_map::CSemanticOctoMap& map) {
   std::vector<Eigen::Vector3f> points;
-  std::vector<semantic_octree::ClassId> classes;
+  std::vector<semantic_types::ClassId> classes;
   for (int i = 0; i < 400; ++i) {
     const float angle = 0.1f * float(i);
     points.emplace_back(5 * std::cos(angle), 4 * std::sin(angle), 0.01f * float(i) - 1);
-    classes.push_back(static_cast<semantic_octree::ClassId>(i % 4));
+    classes.push_back(static_cast<semantic_types::ClassId>(i % 4));
   }
   map.insertObservation(labeledPoints(points, classes),
                         mrpt::poses::CPose3D(0.3, 0.2, 1, 0.5, 0, 0));

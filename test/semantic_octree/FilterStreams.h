@@ -10,14 +10,14 @@
 struct Observation {
   enum class Kind { Hit, UnlabeledHit, Miss };
   Kind kind;
-  semantic_octree::ClassId id;
+  semantic_types::ClassId id;
 };
 
 /** A stream of hits of at most `distinct` classes out of K, unlabeled hits and misses. */
 inline std::vector<Observation> randomStream(std::mt19937& random, int length, int K,
                                              int distinct) {
-  std::vector<semantic_octree::ClassId> ids(K);
-  for (int k = 0; k < K; ++k) ids[k] = static_cast<semantic_octree::ClassId>(k + 1);
+  std::vector<semantic_types::ClassId> ids(K);
+  for (int k = 0; k < K; ++k) ids[k] = static_cast<semantic_types::ClassId>(k + 1);
   std::shuffle(ids.begin(), ids.end(), random);
   ids.resize(std::min(distinct, K));
   std::vector<Observation> stream;

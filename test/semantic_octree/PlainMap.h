@@ -45,9 +45,9 @@ class PlainMap {
  private:
   Voxel& voxel(const VoxelId& id);
   void hit(Voxel& v, const std::vector<std::size_t>& points,
-           const semantic_octree::LabeledCloud& cloud) const;
+           const semantic_types::LabeledCloud& cloud) const;
   void hitSoft(Voxel& v, const std::vector<std::size_t>& points,
-               const semantic_octree::LabeledCloud& cloud) const;
+               const semantic_types::LabeledCloud& cloud) const;
   void hitUnlabeled(Voxel& v) const;
   void miss(Voxel& v) const;
 

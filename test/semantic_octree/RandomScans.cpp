@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-using semantic_octree::ClassId;
+using semantic_types::ClassId;
 
 double between(std::mt19937& random, double low, double high) {
   return low + (high - low) * std::ldexp(static_cast<double>(random()), -32);
@@ -21,7 +21,7 @@ Eigen::Isometry3d randomPose(std::mt19937& random, double spread) {
 namespace {
 
 void addLabel(std::mt19937& random, const RandomScanOptions& o,
-              semantic_octree::LabeledCloud& cloud) {
+              semantic_types::LabeledCloud& cloud) {
   const bool unlabeled = between(random, 0, 1) < o.unlabeledShare;
   if (!o.softLabels) {
     cloud.classes.push_back(unlabeled ? 0 : static_cast<ClassId>(1 + random() % o.classes));

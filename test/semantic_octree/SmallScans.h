@@ -7,12 +7,12 @@
 
 /** A scan and where it was taken. */
 struct PosedCloud {
-  semantic_octree::LabeledCloud cloud;
+  semantic_types::LabeledCloud cloud;
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
 };
 
-inline semantic_octree::ClassTable numberedClasses(int K) {
-  semantic_octree::ClassTable table;
+inline semantic_types::ClassTable numberedClasses(int K) {
+  semantic_types::ClassTable table;
   for (int k = 1; k <= K; ++k) table.add("class " + std::to_string(k), {});
   return table;
 }
@@ -40,7 +40,7 @@ inline std::vector<PosedCloud> scansOfSmallPlace(int numScans, int pointsPerScan
       scan.cloud.points.push_back((scan.T_map_sensor.inverse() * p).cast<float>());
       int id = post ? 1 : 2 + (y > 0) % (classes - 1);
       if (uniform(random) < 0.1f) id = static_cast<int>(uniform(random) * (classes + 1));
-      scan.cloud.classes.push_back(static_cast<semantic_octree::ClassId>(std::min(id, classes)));
+      scan.cloud.classes.push_back(static_cast<semantic_types::ClassId>(std::min(id, classes)));
     }
     scans.push_back(std::move(scan));
   }

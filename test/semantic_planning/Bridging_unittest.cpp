@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_planning/Ground.h>
+#include <semantic_planning/ground/Ground.h>
 
 #include "PaintedWorld.h"
 
@@ -42,7 +42,7 @@ TEST_F(SlitFloor, aWiderSlitIsUnknownGround) {
   paint(1.4);
   const auto middle = ground(1, 2).find(0, 0.7);
   ASSERT_TRUE(middle);
-  EXPECT_EQ(middle->surface.classId, semantic_octree::kNoClass);
+  EXPECT_EQ(middle->surface.classId, semantic_types::kNoClass);
 }
 
 TEST_F(SlitFloor, aSlitWiderThanAllGapsStaysOpen) {

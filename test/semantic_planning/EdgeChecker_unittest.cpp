@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_planning/EdgeChecker.h>
+#include <semantic_planning/roadmap/EdgeChecker.h>
 
 #include <cmath>
 #include <random>

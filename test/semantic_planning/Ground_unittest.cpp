@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_planning/Ground.h>
+#include <semantic_planning/ground/Ground.h>
 
 #include <cmath>
 #include <random>

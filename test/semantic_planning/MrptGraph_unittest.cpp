@@ -1,4 +1,4 @@
-#include <semantic_planning/MrptGraph.h>
+#include <semantic_planning/roadmap/MrptGraph.h>
 
 #include "PlannerFixture.h"
 #include "TemporaryFolder.h"

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_planning/NearestPoses.h>
+#include <semantic_planning/roadmap/NearestPoses.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_planning/OrderFile.h>
+#include <semantic_planning/planner/OrderFile.h>
 
 #include "PaintedWorld.h"
 #include "TemporaryFolder.h"
@@ -29,7 +29,7 @@ TEST_F(OrderFile, ranksClassesAsListedAndForbidsTheOthers) {
   EXPECT_EQ(order.rank(PaintedWorld::Road), 0);
   EXPECT_EQ(order.rank(PaintedWorld::Mud), 0);
   EXPECT_EQ(order.rank(PaintedWorld::Grass), 1);
-  EXPECT_EQ(order.rank(semantic_octree::kNoClass), 2);
+  EXPECT_EQ(order.rank(semantic_types::kNoClass), 2);
   EXPECT_EQ(order.rank(PaintedWorld::Wall), colored_graph::kForbidden);
 }
 
@@ -62,7 +62,7 @@ TEST_F(OrderFile, aVehicleIsReadStrictly) {
 
 TEST_F(OrderFile, thoseOfTheRepositoryLoad) {
   const std::filesystem::path plans = std::filesystem::path(MSO_SOURCE_DIR) / "config/plan";
-  semantic_octree::ClassTable kitti;
+  semantic_types::ClassTable kitti;
   for (const char* name : {"road", "parking", "sidewalk", "terrain"}) kitti.add(name, {});
   EXPECT_EQ(loadClassOrder(plans / "semantic_kitti.yaml", kitti).ranks(), 5);
   EXPECT_GT(loadVehicle(plans / "car.yaml").turningRadius, 1);

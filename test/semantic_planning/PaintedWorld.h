@@ -8,13 +8,13 @@
 /** A world of labeled voxels, painted by hand, whose map is made by one scan from above. */
 class PaintedWorld {
  public:
-  enum Class : semantic_octree::ClassId { Road = 1, Grass, Wall, Mud };
+  enum Class : semantic_types::ClassId { Road = 1, Grass, Wall, Mud };
 
   explicit PaintedWorld(double voxelSize = 0.2)
       : m_voxelSize(voxelSize), m_map(voxelSize, classTable()) {}
 
-  static semantic_octree::ClassTable classTable() {
-    semantic_octree::ClassTable table;
+  static semantic_types::ClassTable classTable() {
+    semantic_types::ClassTable table;
     table.add("road", {90, 90, 100});
     table.add("grass", {100, 200, 80});
     table.add("wall", {200, 100, 60});
@@ -43,7 +43,7 @@ class PaintedWorld {
    * beams that come from below the ground would carve it. */
   semantic_octree::SemanticOcTree& map(const Eigen::Vector3d& sensor = {0.05, 0.05, 30}) {
     if (m_painted.empty()) return m_map;
-    semantic_octree::LabeledCloud cloud;
+    semantic_types::LabeledCloud cloud;
     for (const auto& [voxel, id] : m_painted) {
       const auto [x, y, z] = voxel;
       cloud.points.push_back(Eigen::Vector3f(center(x), center(y), center(z)) -

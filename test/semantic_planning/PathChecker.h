@@ -1,8 +1,8 @@
 #pragma once
 #include <gtest/gtest.h>
 #include <semantic_octree/SemanticOcTree.h>
-#include <semantic_planning/PlanResult.h>
-#include <semantic_planning/VehicleOptions.h>
+#include <semantic_planning/planner/PlanResult.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <colored_graph/ColoredAStar.h>
 #include <gtest/gtest.h>
-#include <semantic_planning/OrderAbstraction.h>
-#include <semantic_planning/SemanticPlanner.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 
 #include "PaintedWorld.h"
 #include "PathChecker.h"

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_planning/ReedsShepp.h>
+#include <semantic_planning/vehicle/ReedsShepp.h>
 
 #include <cmath>
 #include <random>

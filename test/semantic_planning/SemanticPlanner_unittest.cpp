@@ -64,7 +64,7 @@ TEST_F(PlannerTest, countsUnknownGroundAsAClassOfItsOwn) {
   goal = {5, 5, 0};
   const PlanResult across = plan();
   expectDrivable(across);
-  EXPECT_GE(across.lengthPerClass[semantic_octree::kNoClass], 1.9);
+  EXPECT_GE(across.lengthPerClass[semantic_types::kNoClass], 1.9);
   order = {5, {{1}, {2}, {4}}};
   EXPECT_EQ(plan().status, PlanStatus::OnlyForbidden);
 }

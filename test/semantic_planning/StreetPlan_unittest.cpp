@@ -1,9 +1,9 @@
 // Planning over ten scans of SemanticKITTI 00.
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
-#include <semantic_planning/OrderAbstraction.h>
-#include <semantic_planning/OrderFile.h>
-#include <semantic_planning/SemanticPlanner.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_planning/planner/OrderFile.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,7 @@ class StreetPlan : public testing::Test {
   static void TearDownTestSuite() { s_street.reset(); }
 
   static void readStreet() {
-    const auto table = labeled_cloud::loadClassTable(kConfig / "classes/semantic_kitti.yaml");
+    const auto table = semantic_types::loadClassTable(kConfig / "classes/semantic_kitti.yaml");
     s_street.emplace(0.2, table);
     semantic_octree::InsertionOptions insertion;
     insertion.maxRange = 50;
@@ -74,7 +74,7 @@ void recolor(semantic_octree::SemanticOcTree& map, const Ground& ground, const B
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   T_map_sensor.translation() =
       Eigen::Vector3d((box.west + box.east) / 2, (box.south + box.north) / 2, 3);
-  semantic_octree::LabeledCloud cloud;
+  semantic_types::LabeledCloud cloud;
   for (double x = box.west; x < box.east; x += ground.voxelSize())
     for (double y = box.south; y < box.north; y += ground.voxelSize())
       if (const auto point = ground.find(x, y)) {

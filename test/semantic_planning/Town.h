@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_planning/OrderAbstraction.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
 
 #include "PaintedWorld.h"
 

@@ -1,6 +1,6 @@
 // Looking at edges between poses in a town: as far from each other as neighbors of a roadmap are.
 #include <benchmark/benchmark.h>
-#include <semantic_planning/EdgeChecker.h>
+#include <semantic_planning/roadmap/EdgeChecker.h>
 
 #include <algorithm>
 #include <random>

@@ -1,7 +1,7 @@
 // Shortest curves between poses as far from each other as a roadmap's neighbors and candidates are,
 // next to OMPL's.
 #include <benchmark/benchmark.h>
-#include <semantic_planning/ReedsShepp.h>
+#include <semantic_planning/vehicle/ReedsShepp.h>
 
 #include <random>
 #include <vector>

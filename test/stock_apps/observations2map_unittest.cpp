@@ -1,8 +1,8 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/ClassTableFile.h>
 #include <mrpt/opengl/COctoMapVoxels.h>
 #include <mrpt/opengl/COpenGLScene.h>
 #include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include "StockApps.h"
 #include "VillageFrames.h"
@@ -25,7 +25,7 @@ class Observations2Map : public StockApps {
 /** The same map, made without the application. */
 semantic_octree::SemanticOcTree expectedMap() {
   semantic_map::CSemanticOctoMap map(
-      0.2, labeled_cloud::loadClassTable(MSO_SOURCE_DIR "/config/classes/synthetic.yaml"));
+      0.2, semantic_types::loadClassTable(MSO_SOURCE_DIR "/config/classes/synthetic.yaml"));
   map.insertionOptions.scan.maxRange = 30;
   map.insertionOptions.conversion.flyingPixelThreshold = 0.02;
   map.loadFromSimpleMap(villageFrames(2));
@@ -42,7 +42,7 @@ double shareOfLabelsIn(const semantic_octree::SemanticOcTree& map) {
   for (std::size_t i = 0; i < cloud->cloud.size(); ++i) {
     const auto& p = cloud->cloud.points[i];
     const auto at = T_map_sensor.composePoint({p.x(), p.y(), p.z()});
-    if (p.norm() > 29 || cloud->cloud.classes[i] == semantic_octree::kNoClass) continue;
+    if (p.norm() > 29 || cloud->cloud.classes[i] == semantic_types::kNoClass) continue;
     ++all;
     same += map.query(at.x, at.y, at.z).likeliestClass == cloud->cloud.classes[i];
   }

@@ -1,6 +1,6 @@
-#include <labeled_cloud/ClassTableFile.h>
 #include <labeled_cloud/RawlogWriter.h>
 #include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -37,7 +37,7 @@ class Viewers : public StockApps {
 
   semantic_map::CSemanticOctoMap villageMap() const {
     semantic_map::CSemanticOctoMap map(
-        0.4, labeled_cloud::loadClassTable(folder / "config/classes/synthetic.yaml"));
+        0.4, semantic_types::loadClassTable(folder / "config/classes/synthetic.yaml"));
     map.loadFromSimpleMap(villageFrames(3));
     return map;
   }
@@ -82,7 +82,7 @@ int linesOfText(const cv::Mat& screen) {
 }
 
 /** Share of a part of the viewers' 3D views that has a color, bright or dark. */
-double shareOf(const cv::Mat& screen, const semantic_octree::Color& color) {
+double shareOf(const cv::Mat& screen, const semantic_types::Color& color) {
   const cv::Mat view = screen(cv::Rect(420, 380, 740, 230));
   const double sum = color.r + color.g + color.b;
   int count = 0;
@@ -96,7 +96,7 @@ double shareOf(const cv::Mat& screen, const semantic_octree::Color& color) {
   return double(count) / double(view.total());
 }
 
-constexpr semantic_octree::Color kGrass{138, 196, 84}, kCanopy{26, 112, 48};
+constexpr semantic_types::Color kGrass{138, 196, 84}, kCanopy{26, 112, 48};
 
 }  // namespace
 

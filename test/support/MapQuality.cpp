@@ -6,7 +6,7 @@ void judge(const semantic_octree::SemanticOcTree& map, const LabeledFrame& frame
            MapQuality& quality) {
   for (std::size_t i = 0; i < frame.cloud.size(); ++i) {
     const Eigen::Vector3f& point = frame.cloud.points[i];
-    if (frame.cloud.classes[i] == semantic_octree::kNoClass || frame.isMoving(i)) continue;
+    if (frame.cloud.classes[i] == semantic_types::kNoClass || frame.isMoving(i)) continue;
     if (point.norm() > range) continue;
     ++quality.points;
     const Eigen::Vector3d p = frame.T_map_sensor * point.cast<double>();

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/ClassTable.h>
+#include <semantic_types/ClassTable.h>
 
 #include <filesystem>
 #include <string>
@@ -13,10 +13,10 @@ constexpr float kSharpness = 20;
  * -|p - c|^2 is 2 p c - |c|^2 but for what all classes share. */
 inline std::filesystem::path saveNearestColorNetwork(const std::filesystem::path& file, int rows,
                                                      int cols,
-                                                     const semantic_octree::ClassTable& table) {
+                                                     const semantic_types::ClassTable& table) {
   std::vector<float> weights, biases;
   for (int id = 1; id <= table.size(); ++id) {
-    const auto& c = table.color(static_cast<semantic_octree::ClassId>(id));
+    const auto& c = table.color(static_cast<semantic_types::ClassId>(id));
     float square = 0;
     for (const float value : {c.r / 255.f, c.g / 255.f, c.b / 255.f}) {
       weights.push_back(kSharpness * 2 * value);
@@ -34,11 +34,11 @@ inline std::filesystem::path saveNearestColorNetwork(const std::filesystem::path
 }
 
 /** The configuration that goes with it. */
-inline std::string nearestColorConfig(int rows, int cols, const semantic_octree::ClassTable& table,
+inline std::string nearestColorConfig(int rows, int cols, const semantic_types::ClassTable& table,
                                       const std::string& labels = "softmax") {
   std::string names;
   for (int id = 1; id <= table.size(); ++id)
-    names += (id > 1 ? ", " : "") + table.name(static_cast<semantic_octree::ClassId>(id));
+    names += (id > 1 ? ", " : "") + table.name(static_cast<semantic_types::ClassId>(id));
   return "input: {width: " + std::to_string(cols) + ", height: " + std::to_string(rows) +
          "}\noutput: {labels: " + labels + "}\nclasses: [" + names + "]\n";
 }

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/ClassTableFile.h>
+#include <semantic_types/ClassTableFile.h>
 #include <synthetic_world/Drive.h>
 #include <synthetic_world/Lidar.h>
 #include <synthetic_world/Shading.h>
@@ -109,8 +109,8 @@ TEST(Scene, walkerGoesToAndFro) {
 }
 
 TEST(Scene, classTableIsThatOfTheConfiguration) {
-  EXPECT_EQ(classTable(), labeled_cloud::loadClassTable(std::string(MSO_SOURCE_DIR) +
-                                                        "/config/classes/synthetic.yaml"));
+  EXPECT_EQ(classTable(), semantic_types::loadClassTable(std::string(MSO_SOURCE_DIR) +
+                                                         "/config/classes/synthetic.yaml"));
   EXPECT_EQ(classTable().size(), kClassCount);
   EXPECT_EQ(classTable().name(kPerson), "person");
   EXPECT_EQ(classTable().name(kFlowerBed), "flower-bed");

@@ -13,8 +13,8 @@ MRPT_INITIALIZER(registerLabeledCloudObservations) { labeled_cloud::registerObse
 namespace labeled_cloud {
 
 using mrpt::serialization::CArchive;
-using semantic_octree::ClassId;
-using semantic_octree::kMaxClasses;
+using semantic_types::ClassId;
+using semantic_types::kMaxClasses;
 
 void registerObservations() { mrpt::rtti::registerClass(CLASS_ID(CObservationLabeledCloud)); }
 

@@ -1,5 +1,5 @@
 #include <labeled_cloud/CloudLabeler.h>
-#include <labeled_cloud/MrptMessage.h>
+#include <strict_files/ErrorMessage.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -148,7 +148,7 @@ bool CloudLabeler::prepare(Picture& picture) try {
   if (!picture.usable) checkFit(*picture.labels, picture.camera);
   return picture.usable = true;
 } catch (const std::exception& e) {
-  const std::string problem = nameOf(*picture.observation) + ": " + messageOf(e);
+  const std::string problem = nameOf(*picture.observation) + ": " + strict_files::messageOf(e);
   picture.labels.reset();
   if (!m_options.skipProblems) throw std::runtime_error(problem);
   m_problems.push_back(problem);

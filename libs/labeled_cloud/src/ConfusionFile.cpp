@@ -1,5 +1,5 @@
 #include <labeled_cloud/LabelModel.h>
-#include <labeled_cloud/StrictYaml.h>
+#include <strict_files/StrictYaml.h>
 
 #include <stdexcept>
 
@@ -7,17 +7,17 @@
 
 namespace labeled_cloud {
 
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::kNoClass;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::kNoClass;
 
 namespace {
 
 using Counts = std::vector<std::vector<double>>;
 
 /** Adds the counts of one true class. */
-void addRow(const StrictYaml& yaml, const YAML::Node& row, const std::vector<ClassId>& classes,
-            std::vector<double>& counts) {
+void addRow(const strict_files::StrictYaml& yaml, const YAML::Node& row,
+            const std::vector<ClassId>& classes, std::vector<double>& counts) {
   yaml.checkList(row, "confusion");
   if (row.size() != classes.size())
     yaml.fail(row, "confusion: a row of " + std::to_string(row.size()) + " counts for " +
@@ -31,7 +31,7 @@ void addRow(const StrictYaml& yaml, const YAML::Node& row, const std::vector<Cla
 }  // namespace
 
 ConfusionMatrix loadConfusionMatrix(const std::filesystem::path& file, const ClassTable& table) {
-  const StrictYaml yaml(file);
+  const strict_files::StrictYaml yaml(file);
   yaml.checkMap(yaml.root());
   const auto classes = namedClasses(yaml, table);
   const YAML::Node rows = yaml.required(yaml.root(), "confusion");

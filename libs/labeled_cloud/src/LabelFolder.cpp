@@ -61,7 +61,7 @@ void LabelFolderOptions::validate() const {
                                 " s, must be 0 or more");
 }
 
-LabelFolder::LabelFolder(const fs::path& folder, const semantic_octree::ClassTable& table,
+LabelFolder::LabelFolder(const fs::path& folder, const semantic_types::ClassTable& table,
                          const LabelFolderOptions& options)
     : m_folder(folder), m_table(table), m_options(options) {
   m_options.validate();

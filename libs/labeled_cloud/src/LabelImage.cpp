@@ -4,8 +4,8 @@
 
 namespace labeled_cloud {
 
-using semantic_octree::ClassId;
-using semantic_octree::kNoClass;
+using semantic_types::ClassId;
+using semantic_types::kNoClass;
 
 std::optional<std::size_t> LabelImage::cellAt(double u, double v) const {
   const double col = std::floor((u + 0.5) * cells.scaleX);

@@ -8,10 +8,10 @@
 
 namespace labeled_cloud {
 
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::Color;
-using semantic_octree::kNoClass;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::Color;
+using semantic_types::kNoClass;
 
 namespace {
 

@@ -8,9 +8,9 @@
 
 namespace labeled_cloud {
 
-using semantic_octree::ClassId;
-using semantic_octree::kNoClass;
-using semantic_octree::LabeledCloud;
+using semantic_types::ClassId;
+using semantic_types::kNoClass;
+using semantic_types::LabeledCloud;
 
 namespace {
 

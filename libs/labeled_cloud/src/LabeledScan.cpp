@@ -4,8 +4,8 @@
 
 namespace labeled_cloud {
 
-using semantic_octree::ClassId;
-using semantic_octree::kNoClass;
+using semantic_types::ClassId;
+using semantic_types::kNoClass;
 
 void LabeledScan::countLabels() {
   counts.labeled = 0;

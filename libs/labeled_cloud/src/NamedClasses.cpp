@@ -4,13 +4,14 @@
 
 namespace labeled_cloud {
 
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::kNoClass;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::kNoClass;
 
 namespace {
 
-ClassId classNamed(const StrictYaml& yaml, const YAML::Node& node, const ClassTable& table) {
+ClassId classNamed(const strict_files::StrictYaml& yaml, const YAML::Node& node,
+                   const ClassTable& table) {
   const std::string name = yaml.text(node, "a class");
   if (name == "no_class") return kNoClass;
   if (const auto id = table.find(name)) return *id;
@@ -19,7 +20,7 @@ ClassId classNamed(const StrictYaml& yaml, const YAML::Node& node, const ClassTa
 
 }  // namespace
 
-std::vector<ClassId> namedClasses(const StrictYaml& yaml, const ClassTable& table) {
+std::vector<ClassId> namedClasses(const strict_files::StrictYaml& yaml, const ClassTable& table) {
   std::map<std::string, ClassId> folds;
   if (const YAML::Node fold = yaml.root()["fold"]) {
     yaml.checkMap(fold);

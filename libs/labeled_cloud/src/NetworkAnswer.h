@@ -18,7 +18,7 @@ class NetworkAnswer {
 
  private:
   cv::Mat planesOf(std::size_t image) const;
-  std::vector<semantic_octree::ClassId> classesOfIds(const cv::Mat& ids) const;
+  std::vector<semantic_types::ClassId> classesOfIds(const cv::Mat& ids) const;
 
   const NetworkOptions& m_options;
   const std::filesystem::path& m_network;

@@ -1,5 +1,5 @@
 #include <labeled_cloud/NetworkLabeler.h>
-#include <labeled_cloud/StrictYaml.h>
+#include <strict_files/StrictYaml.h>
 
 #include <stdexcept>
 
@@ -7,7 +7,7 @@
 
 namespace labeled_cloud {
 
-using semantic_octree::ClassTable;
+using semantic_types::ClassTable;
 
 namespace {
 
@@ -18,14 +18,15 @@ std::set<std::string> knownKeys() {
 }
 
 /** Three numbers, one for each channel. */
-void readChannels(const StrictYaml& yaml, const YAML::Node& node, const std::string& field,
-                  std::array<double, 3>& values) {
+void readChannels(const strict_files::StrictYaml& yaml, const YAML::Node& node,
+                  const std::string& field, std::array<double, 3>& values) {
   if (!node) return;
   const Eigen::Vector3d found = yaml.point(node, field);
   values = {found[0], found[1], found[2]};
 }
 
-void readInput(const StrictYaml& yaml, const YAML::Node& node, NetworkOptions& options) {
+void readInput(const strict_files::StrictYaml& yaml, const YAML::Node& node,
+               NetworkOptions& options) {
   yaml.checkKeys(node, {"width", "height", "fit", "channels", "scale", "mean", "std", "name"});
   options.width = yaml.value<int>(yaml.required(node, "width"), "width: pixels");
   options.height = yaml.value<int>(yaml.required(node, "height"), "height: pixels");
@@ -43,7 +44,8 @@ void readInput(const StrictYaml& yaml, const YAML::Node& node, NetworkOptions& o
   if (node["name"]) options.input = yaml.text(node["name"], "name");
 }
 
-void readOutput(const StrictYaml& yaml, const YAML::Node& node, NetworkOptions& options) {
+void readOutput(const strict_files::StrictYaml& yaml, const YAML::Node& node,
+                NetworkOptions& options) {
   if (!node) return;
   yaml.checkKeys(node, {"name", "content", "labels", "min_confidence"});
   using Content = NetworkOptions::Content;
@@ -64,7 +66,7 @@ void readOutput(const StrictYaml& yaml, const YAML::Node& node, NetworkOptions& 
 }  // namespace
 
 NetworkOptions loadNetworkOptions(const std::filesystem::path& file, const ClassTable& table) {
-  const StrictYaml yaml(file);
+  const strict_files::StrictYaml yaml(file);
   yaml.checkKeys(yaml.root(), knownKeys());
   NetworkOptions options;
   readInput(yaml, yaml.required(yaml.root(), "input"), options);

@@ -18,7 +18,7 @@ void PointLabels::take(std::size_t point, const LabelImage& image, std::size_t c
   m_confidences[point] = image.confidences[cell];
 }
 
-std::vector<float> PointLabels::moveTo(semantic_octree::LabeledCloud& cloud) {
+std::vector<float> PointLabels::moveTo(semantic_types::LabeledCloud& cloud) {
   cloud.classes = std::move(m_classes);
   cloud.probabilities = std::move(m_probabilities);
   return std::move(m_confidences);

@@ -1,6 +1,6 @@
 #pragma once
 #include <labeled_cloud/LabelImage.h>
-#include <semantic_octree/LabeledCloud.h>
+#include <semantic_types/LabeledCloud.h>
 
 #include <vector>
 
@@ -15,11 +15,11 @@ class PointLabels {
   void take(std::size_t point, const LabelImage& image, std::size_t cell);
 
   /** Puts classes or probabilities into the cloud; returns the classes' confidences. */
-  std::vector<float> moveTo(semantic_octree::LabeledCloud& cloud);
+  std::vector<float> moveTo(semantic_types::LabeledCloud& cloud);
 
  private:
   std::size_t m_points;
-  std::vector<semantic_octree::ClassId> m_classes;
+  std::vector<semantic_types::ClassId> m_classes;
   std::vector<float> m_confidences, m_probabilities;
 };
 

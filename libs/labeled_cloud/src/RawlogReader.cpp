@@ -1,8 +1,8 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
+#include <strict_files/ErrorMessage.h>
 
 #include <stdexcept>
 
@@ -40,7 +40,7 @@ CSerializable::Ptr RawlogReader::readObject() {
   } catch (const mrpt::serialization::CExceptionEOF& e) {
     if (m_stream->delivered() > begin) problem = "the file is cut off";
   } catch (const std::exception& e) {
-    problem = messageOf(e);
+    problem = strict_files::messageOf(e);
   }
   if (!m_stream->damage().empty()) problem = m_stream->damage();
   if (!problem.empty()) fail(problem);

@@ -1,6 +1,6 @@
 #include <labeled_cloud/EmbeddedLabels.h>
-#include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/ScanConverter.h>
+#include <strict_files/ErrorMessage.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -13,9 +13,9 @@ namespace labeled_cloud {
 
 using mrpt::obs::CObservation;
 using mrpt::obs::CObservation3DRangeScan;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::kNoClass;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::kNoClass;
 
 namespace {
 
@@ -119,7 +119,7 @@ std::optional<LabeledScan> ScanConverter::convert(const CObservation& observatio
   scan.countLabels();
   return scan;
 } catch (const std::exception& e) {
-  throw std::runtime_error(nameOf(observation) + ": " + messageOf(e));
+  throw std::runtime_error(nameOf(observation) + ": " + strict_files::messageOf(e));
 }
 
 void ScanConverter::addRangeScan(const CObservation3DRangeScan& observation, LabeledScan& scan) {

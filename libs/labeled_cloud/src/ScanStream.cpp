@@ -1,6 +1,6 @@
-#include <labeled_cloud/MrptMessage.h>
 #include <labeled_cloud/ScanStream.h>
 #include <mrpt/img/CImage.h>
+#include <strict_files/ErrorMessage.h>
 
 #include <chrono>
 #include <stdexcept>
@@ -96,7 +96,7 @@ StreamedObservation ScanStream::take(const Waiting& waiting) {
   try {
     use(observation, result);
   } catch (const std::exception& e) {
-    const std::string problem = result.name + ": " + messageOf(e);
+    const std::string problem = result.name + ": " + strict_files::messageOf(e);
     if (m_options.onProblem == ScanStreamOptions::OnProblem::Stop)
       throw std::runtime_error(problem);
     result.scan.reset();

@@ -9,8 +9,8 @@
 namespace semantic_map {
 
 using semantic_octree::AbstractionOptions;
-using semantic_octree::ClassTable;
 using semantic_octree::Region;
+using semantic_types::ClassTable;
 using tree_abstraction::InformationTerm;
 
 namespace {

@@ -16,8 +16,8 @@ namespace semantic_map {
 using labeled_cloud::LabeledScan;
 using labeled_cloud::ScanConverter;
 using mrpt::poses::CPose3D;
-using semantic_octree::ClassTable;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassTable;
 
 void registerMaps() {
   labeled_cloud::registerObservations();

@@ -5,18 +5,18 @@ namespace semantic_map {
 
 /** A converter and what it was made for: it keeps the rays of the camera met last. */
 struct CachedConverter {
-  CachedConverter(const semantic_octree::ClassTable& table_,
+  CachedConverter(const semantic_types::ClassTable& table_,
                   const labeled_cloud::ScanConverterOptions& options_,
                   const std::shared_ptr<labeled_cloud::ImageLabeler>& labeler)
       : table(table_), options(options_), converter(table_, options_, labeler) {}
 
-  bool isFor(const semantic_octree::ClassTable& t,
+  bool isFor(const semantic_types::ClassTable& t,
              const labeled_cloud::ScanConverterOptions& o) const {
     return o.decimation == options.decimation &&
            o.flyingPixelThreshold == options.flyingPixelThreshold && t == table;
   }
 
-  semantic_octree::ClassTable table;
+  semantic_types::ClassTable table;
   labeled_cloud::ScanConverterOptions options;
   labeled_cloud::ScanConverter converter;
 };

@@ -8,12 +8,12 @@
 
 namespace semantic_map {
 
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::Color;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::Color;
 
 Color classColor(const ClassTable& classes, ClassId id) {
-  return id == semantic_octree::kNoClass ? kColorWithoutClass : classes.color(id);
+  return id == semantic_types::kNoClass ? kColorWithoutClass : classes.color(id);
 }
 
 namespace {

@@ -6,11 +6,11 @@
 namespace semantic_map {
 
 /** Of cells where no class was ever seen. */
-constexpr semantic_octree::Color kColorWithoutClass{150, 150, 150};
+constexpr semantic_types::Color kColorWithoutClass{150, 150, 150};
 
 /** Color of the likeliest class. */
-semantic_octree::Color classColor(const semantic_octree::ClassTable& classes,
-                                  semantic_octree::ClassId id);
+semantic_types::Color classColor(const semantic_types::ClassTable& classes,
+                                 semantic_types::ClassId id);
 
 /** Colors of occupied cells in a scene. */
 class CellColors {

@@ -13,8 +13,8 @@
 
 namespace semantic_map {
 
-using semantic_octree::ClassId;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
 
 namespace {
 
@@ -44,7 +44,7 @@ HighestLeaves highestLeaves(const SemanticOcTree& tree, const ExportColumns& col
   return highest;
 }
 
-cv::Mat paint(const HighestLeaves& highest, const semantic_octree::ClassTable& classes) {
+cv::Mat paint(const HighestLeaves& highest, const semantic_types::ClassTable& classes) {
   cv::Mat_<cv::Vec3b> picture(highest.height.size());
   for (int row = 0; row < picture.rows; ++row)
     for (int col = 0; col < picture.cols; ++col) {

@@ -17,8 +17,8 @@
 namespace semantic_map {
 
 using mrpt::maps::COccupancyGridMap2D;
-using semantic_octree::ClassId;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
 
 namespace {
 

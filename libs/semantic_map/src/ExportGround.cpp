@@ -7,8 +7,8 @@
 
 namespace semantic_map {
 
-using semantic_octree::ClassId;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
 
 namespace {
 

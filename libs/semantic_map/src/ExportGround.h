@@ -14,7 +14,7 @@ struct ExportGround {
 };
 
 /** Whether a leaf is occupied and of one of these classes (any, if there are none). */
-bool isOccupiedBy(const std::vector<semantic_octree::ClassId>& classes,
+bool isOccupiedBy(const std::vector<semantic_types::ClassId>& classes,
                   const semantic_octree::SemanticOcTree& tree,
                   const semantic_octree::SemanticOcTree::Node& leaf);
 

@@ -10,9 +10,9 @@
 namespace semantic_map {
 
 using semantic_octree::CellState;
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
 
 namespace {
 
@@ -80,7 +80,7 @@ void writeCsv(std::ostream& out, const SemanticOcTree& tree, const PointOptions&
     const ClassId id = state.likeliestClass;
     out << leaf.getX() << ',' << leaf.getY() << ',' << leaf.getZ() << ',' << leaf.getSize() << ','
         << state.occupancy << ',' << int{id} << ','
-        << (id == semantic_octree::kNoClass ? "" : quoted(tree.classes().name(id))) << ','
+        << (id == semantic_types::kNoClass ? "" : quoted(tree.classes().name(id))) << ','
         << state.probability << '\n';
   });
   checked(out);

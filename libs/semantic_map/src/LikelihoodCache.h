@@ -17,7 +17,7 @@ class LikelihoodCache {
  public:
   /** What an observation's scan depends on. */
   struct Conversion {
-    const semantic_octree::ClassTable& classes;
+    const semantic_types::ClassTable& classes;
     const labeled_cloud::ScanConverterOptions& options;
     const std::shared_ptr<labeled_cloud::ImageLabeler>& labeler;
   };

@@ -13,7 +13,7 @@ struct MapCell {
   unsigned depth;
   Eigen::Vector3f center;  ///< m
   float size;              ///< edge, m
-  semantic_octree::ClassId id;
+  semantic_types::ClassId id;
 };
 
 /** What a picture shows of a map. */

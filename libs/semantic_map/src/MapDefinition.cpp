@@ -1,10 +1,10 @@
-#include <labeled_cloud/ClassTableFile.h>
 #include <mrpt/config/CConfigFileBase.h>
 #include <mrpt/core/format.h>
 #include <mrpt/maps/TMetricMapTypesRegistry.h>
 #include <mrpt/system/string_utils.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MrptVersion.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <algorithm>
 #include <ostream>
@@ -17,7 +17,7 @@ MAP_DEFINITION_REGISTER("semantic_map::CSemanticOctoMap,semanticOctoMap",
 namespace semantic_map {
 
 using mrpt::config::CConfigFileBase;
-using semantic_octree::ClassTable;
+using semantic_types::ClassTable;
 
 namespace {
 
@@ -95,7 +95,7 @@ void refuseUnknownNumbers(const CConfigFileBase& source, const PrefixParts& part
 
 }  // namespace
 
-semantic_octree::ClassTable CSemanticOctoMap::occupancyOnly() {
+semantic_types::ClassTable CSemanticOctoMap::occupancyOnly() {
   ClassTable table;
   table.add("occupied", {90, 120, 170});
   return table;
@@ -144,7 +144,7 @@ CreatedMap CSemanticOctoMap::internal_CreateFromMapDefinition(
   const auto& d = dynamic_cast<const TMapDefinition&>(definition);
   const ClassTable classes = d.creationOpts.classes.empty()
                                  ? occupancyOnly()
-                                 : labeled_cloud::loadClassTable(d.creationOpts.classes);
+                                 : semantic_types::loadClassTable(d.creationOpts.classes);
   auto map = std::make_unique<CSemanticOctoMap>(d.creationOpts.resolution, classes,
                                                 d.insertionOpts.filter);
   map->insertionOptions = d.insertionOpts;

@@ -9,8 +9,8 @@
 namespace semantic_map {
 
 using labeled_cloud::LabeledScan;
-using semantic_octree::LabeledCloud;
 using semantic_octree::SemanticOcTree;
+using semantic_types::LabeledCloud;
 
 namespace {
 

@@ -1,7 +1,7 @@
-#include <labeled_cloud/IniSection.h>
 #include <mrpt/config/CConfigFileBase.h>
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_map/MapOptions.h>
+#include <strict_files/IniSection.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,9 +13,9 @@
 
 namespace semantic_map {
 
-using labeled_cloud::IniSection;
 using mrpt::config::CConfigFileBase;
 using mrpt::serialization::CArchive;
+using strict_files::IniSection;
 
 namespace {
 

@@ -1,5 +1,5 @@
-#include <labeled_cloud/StagedFile.h>
 #include <semantic_map/MapPictures.h>
+#include <strict_files/StagedFile.h>
 
 #include <cmath>
 #include <fstream>
@@ -35,7 +35,7 @@ void savePicture(const cv::Mat& picture, const std::filesystem::path& file) {
   std::vector<std::uint8_t> png;
   if (!cv::imencode(".png", picture, png))
     throw std::runtime_error("cannot encode the picture for '" + file.string() + "'");
-  labeled_cloud::StagedFile staged(file);
+  strict_files::StagedFile staged(file);
   std::ofstream out(staged.path(), std::ios::binary);
   out.write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
   out.close();

@@ -1,8 +1,8 @@
-#include <labeled_cloud/StagedFile.h>
 #include <mrpt/opengl/COctoMapVoxels.h>
 #include <mrpt/opengl/COpenGLScene.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_octree/TreeFile.h>
+#include <strict_files/StagedFile.h>
 
 #include <stdexcept>
 
@@ -76,7 +76,7 @@ void CSemanticOctoMap::draw(const SemanticOcTree& tree, mrpt::opengl::CSetOfObje
 
 void CSemanticOctoMap::saveMetricMapRepresentationToFile(const std::string& prefix) const {
   semantic_octree::saveTree(m_tree, prefix + ".semantic");
-  labeled_cloud::StagedFile file(prefix + ".3Dscene");
+  strict_files::StagedFile file(prefix + ".3Dscene");
   mrpt::opengl::COpenGLScene scene;
   const auto objects = mrpt::opengl::CSetOfObjects::Create();
   getVisualizationInto(*objects);

@@ -9,7 +9,7 @@
 
 namespace semantic_map {
 
-using semantic_octree::ClassId;
+using semantic_types::ClassId;
 
 namespace {
 
@@ -71,7 +71,7 @@ void shortenLegend(std::vector<LegendEntry>& entries, std::size_t rows) {
 
 }  // namespace
 
-std::vector<LegendEntry> legendOf(const semantic_octree::ClassTable& classes,
+std::vector<LegendEntry> legendOf(const semantic_types::ClassTable& classes,
                                   const std::vector<std::size_t>& counts) {
   std::vector<std::size_t> order(counts.size());
   std::iota(order.begin(), order.end(), 0);

@@ -17,7 +17,7 @@ struct LegendEntry {
 
 /** The classes that are there, the most frequent first, and "no class" at the end. \param counts
  * see MapCells::countClasses() */
-std::vector<LegendEntry> legendOf(const semantic_octree::ClassTable& classes,
+std::vector<LegendEntry> legendOf(const semantic_types::ClassTable& classes,
                                   const std::vector<std::size_t>& counts);
 
 /** The picture with a legend to its right; as many entries as fit. */

@@ -4,9 +4,9 @@
 
 namespace semantic_map {
 
-using semantic_octree::ClassId;
-using semantic_octree::kNoClass;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
+using semantic_types::kNoClass;
 
 PointLikelihood::PointLikelihood(const SemanticOcTree& tree)
     : m_tree(tree),

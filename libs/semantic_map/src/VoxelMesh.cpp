@@ -70,7 +70,7 @@ int openness(Neighborhood& around, const Face& face, int su, int sv) {
 
 class MeshBuilder {
  public:
-  explicit MeshBuilder(const semantic_octree::ClassTable& classes) : m_classes(classes) {}
+  explicit MeshBuilder(const semantic_types::ClassTable& classes) : m_classes(classes) {}
 
   void addFace(const MapCell& cell, const Face& face, Neighborhood& around) {
     // Corners in the order that turns to the left seen from outside.
@@ -102,7 +102,7 @@ class MeshBuilder {
   }
 
  private:
-  TTriangle::Vertex vertex(const Eigen::Vector3f& p, const Face& face, semantic_octree::ClassId id,
+  TTriangle::Vertex vertex(const Eigen::Vector3f& p, const Face& face, semantic_types::ClassId id,
                            float brightness) const {
     TTriangle::Vertex v;
     v.xyzrgba.pt = {p.x(), p.y(), p.z()};
@@ -115,7 +115,7 @@ class MeshBuilder {
     return v;
   }
 
-  const semantic_octree::ClassTable& m_classes;
+  const semantic_types::ClassTable& m_classes;
   std::vector<TTriangle> m_triangles;
 };
 

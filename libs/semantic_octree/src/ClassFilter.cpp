@@ -28,8 +28,8 @@ double logit(double p) { return std::log(p / (1 - p)); }
 
 void FilterParameters::validate(int numClasses) const {
   const auto inside = [](double p) { return p > 0 && p < 1; };
-  require(numClasses >= 1 && numClasses <= kMaxClasses, "number of classes", numClasses,
-          "1 to 254");
+  require(numClasses >= 1 && numClasses <= semantic_types::kMaxClasses, "number of classes",
+          numClasses, "1 to 254");
   require(inside(minOccupancy) && minOccupancy < 0.5, "minOccupancy", minOccupancy,
           "a probability below 0.5");
   require(inside(maxProbability) && maxProbability > 0.5, "maxProbability", maxProbability,

@@ -4,6 +4,10 @@
 
 namespace semantic_octree {
 
+using semantic_types::ClassId;
+using semantic_types::kNoClass;
+using semantic_types::LabeledCloud;
+
 void HitVotes::start(std::size_t numVoxels, const LabeledCloud& cloud, int numClasses) {
   m_cloud = &cloud;
   m_numClasses = numClasses;

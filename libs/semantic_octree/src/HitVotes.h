@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/LabeledCloud.h>
+#include <semantic_types/LabeledCloud.h>
 #include <cstdint>
 #include <vector>
 
@@ -12,11 +12,11 @@ namespace semantic_octree {
 class HitVotes {
  public:
   /** \param numClasses K, used with soft labels only. */
-  void start(std::size_t numVoxels, const LabeledCloud& cloud, int numClasses);
+  void start(std::size_t numVoxels, const semantic_types::LabeledCloud& cloud, int numClasses);
   void add(std::uint32_t voxel, std::uint32_t point);
   void finish();
 
-  ClassId classOf(std::uint32_t voxel) const { return m_classes[voxel]; }
+  semantic_types::ClassId classOf(std::uint32_t voxel) const { return m_classes[voxel]; }
   /** Mean of the soft labels, K probabilities; null if there are none for this voxel. */
   const float* softLabelOf(std::uint32_t voxel) const {
     if (m_softSums.empty() || m_softCounts[voxel] == 0) return nullptr;
@@ -27,16 +27,19 @@ class HitVotes {
   /** Voxel above class, in one number: quick to sort. */
   struct Ballot {
     std::uint64_t value;
-    Ballot(std::uint32_t voxel, ClassId id) : value(std::uint64_t(voxel) << 16 | id) {}
+    Ballot(std::uint32_t voxel, semantic_types::ClassId id)
+        : value(std::uint64_t(voxel) << 16 | id) {}
     std::uint32_t voxel() const { return static_cast<std::uint32_t>(value >> 16); }
-    ClassId id() const { return static_cast<ClassId>(value & 0xffff); }
+    semantic_types::ClassId id() const {
+      return static_cast<semantic_types::ClassId>(value & 0xffff);
+    }
   };
   void addSoft(std::uint32_t voxel, std::uint32_t point);
   void settleMixed();
 
-  const LabeledCloud* m_cloud = nullptr;
+  const semantic_types::LabeledCloud* m_cloud = nullptr;
   int m_numClasses = 0;
-  std::vector<ClassId> m_classes;
+  std::vector<semantic_types::ClassId> m_classes;
   std::vector<Ballot> m_ballots;      ///< every vote, to recount where voxels are mixed
   std::vector<std::uint8_t> m_mixed;  ///< points of several classes
   std::vector<float> m_softSums;

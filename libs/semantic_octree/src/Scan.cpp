@@ -11,6 +11,9 @@
 #include "RayMarking.h"
 
 namespace semantic_octree {
+
+using semantic_types::ClassId;
+using semantic_types::LabeledCloud;
 namespace {
 
 void checkSizes(const LabeledCloud& cloud, int numClasses) {

@@ -14,8 +14,8 @@ class Scan {
   /** Replaces the content by this cloud's.
    * \throw std::out_of_range the sensor is outside the map
    * \throw std::invalid_argument sizes of the cloud's vectors do not match, or a class above K. */
-  void set(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor, double resolution,
-           int numClasses, const InsertionOptions& options);
+  void set(const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
+           double resolution, int numClasses, const InsertionOptions& options);
 
   const InsertionReport& report() const { return m_beams.report; }
   const ScanPyramid& pyramid() const { return m_pyramid; }
@@ -39,7 +39,7 @@ class Scan {
   void markFreePart(int part, const InsertionOptions& options, double margin);
   void summarize();
   CubeContent summarizeTile(std::size_t tile);
-  void vote(const LabeledCloud& cloud, int numClasses);
+  void vote(const semantic_types::LabeledCloud& cloud, int numClasses);
   std::uint32_t rankOf(std::uint64_t bit) const;
 
   ScanBeams m_beams;

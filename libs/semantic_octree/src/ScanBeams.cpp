@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 namespace semantic_octree {
+
+using semantic_types::LabeledCloud;
 namespace {
 
 constexpr int kHalfMap = 32768;

@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_octree/InsertionOptions.h>
-#include <semantic_octree/LabeledCloud.h>
+#include <semantic_types/LabeledCloud.h>
 
 #include <Eigen/Geometry>
 #include <array>
@@ -27,8 +27,8 @@ struct ScanBeams {
 
   /** Transforms a cloud and sorts out what cannot be used.
    * \throw std::out_of_range the sensor lies outside the map. */
-  void compute(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor, double resolution,
-               const InsertionOptions& options);
+  void compute(const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
+               double resolution, const InsertionOptions& options);
 };
 
 }  // namespace semantic_octree

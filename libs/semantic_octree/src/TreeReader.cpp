@@ -4,6 +4,9 @@
 
 namespace semantic_octree {
 
+using semantic_types::Color;
+using semantic_types::kMaxClasses;
+
 SemanticOcTree TreeReader::read() {
   const auto resolution = m_in.get<double>();
   const bool pruning = getUpTo(1, "pruning");

@@ -4,6 +4,8 @@
 
 namespace semantic_octree {
 
+using semantic_types::Color;
+
 void TreeWriter::write() {
   m_out.put(m_tree.getResolution());
   m_out.put(m_tree.pruning());

@@ -18,8 +18,8 @@ Eigen::Vector3d endOfBeam(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
-semantic_octree::LabeledCloud scanFrom(const Eigen::Isometry3d& T_map_sensor) {
-  semantic_octree::LabeledCloud cloud;
+semantic_types::LabeledCloud scanFrom(const Eigen::Isometry3d& T_map_sensor) {
+  semantic_types::LabeledCloud cloud;
   const Eigen::Vector3d sensor = T_map_sensor.translation();
   for (double x = -4.9; x < 25; x += 0.15)
     for (double y = -6.9; y < 7; y += 0.15) {

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/LabeledCloud.h>
+#include <semantic_types/LabeledCloud.h>
 
 #include <Eigen/Geometry>
 
@@ -7,9 +7,9 @@
  * on both sides and a wall across. */
 namespace world {
 
-constexpr semantic_octree::ClassId kRoad = 1, kGrass = 2, kWall = 3;
+constexpr semantic_types::ClassId kRoad = 1, kGrass = 2, kWall = 3;
 
 /** A scan with a class for each point. */
-semantic_octree::LabeledCloud scanFrom(const Eigen::Isometry3d& T_map_sensor);
+semantic_types::LabeledCloud scanFrom(const Eigen::Isometry3d& T_map_sensor);
 
 }  // namespace world

@@ -1,6 +1,6 @@
 // A small robot: it maps what it sees, compresses the map after each scan, and drives to its goal.
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_planning/SemanticPlanner.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <cmath>
 #include <iostream>
@@ -13,8 +13,8 @@ using semantic_planning::PlanResult;
 using semantic_planning::SemanticPlanner;
 
 /** The classes of the map, in the order of their ids. */
-semantic_octree::ClassTable makeClasses() {
-  semantic_octree::ClassTable classes;
+semantic_types::ClassTable makeClasses() {
+  semantic_types::ClassTable classes;
   classes.add("road", {128, 64, 128});
   classes.add("grass", {80, 180, 60});
   classes.add("wall", {120, 120, 120});

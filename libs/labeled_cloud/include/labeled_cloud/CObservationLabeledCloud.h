@@ -2,7 +2,7 @@
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/poses/CPose3D.h>
 #include <mrpt/serialization/CSerializable.h>
-#include <semantic_octree/LabeledCloud.h>
+#include <semantic_types/LabeledCloud.h>
 
 #include <string>
 #include <vector>
@@ -18,7 +18,7 @@ class CObservationLabeledCloud : public mrpt::obs::CObservation {
   DEFINE_SERIALIZABLE(CObservationLabeledCloud, labeled_cloud)
  public:
   /** The points in meters, in the sensor's frame. */
-  semantic_octree::LabeledCloud cloud;
+  semantic_types::LabeledCloud cloud;
   /** T_robot_sensor. */
   mrpt::poses::CPose3D sensorPose;
   /** Name of class i at [i - 1], for people and to tell class tables apart. May be empty. */

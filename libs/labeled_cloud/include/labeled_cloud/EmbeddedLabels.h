@@ -10,7 +10,7 @@ namespace labeled_cloud {
  * id i of the class table. A pixel without labels has no class, one with several has the lowest. */
 class EmbeddedLabels : public ImageLabeler {
  public:
-  explicit EmbeddedLabels(const semantic_octree::ClassTable& table,
+  explicit EmbeddedLabels(const semantic_types::ClassTable& table,
                           LabelImage::View view = LabelImage::View::Depth)
       : m_table(table), m_view(view) {}
 
@@ -19,7 +19,7 @@ class EmbeddedLabels : public ImageLabeler {
   std::optional<LabelImage> label(const mrpt::obs::CObservation& observation) override;
 
  private:
-  semantic_octree::ClassTable m_table;
+  semantic_types::ClassTable m_table;
   LabelImage::View m_view;
 };
 

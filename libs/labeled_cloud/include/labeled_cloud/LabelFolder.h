@@ -38,7 +38,7 @@ class LabelFolder : public ImageLabeler {
  public:
   /** \throw std::runtime_error naming the folder or file: no such folder, no label image in it, or
    * (Match::Time) a file whose name is not a time, or two of one time. */
-  LabelFolder(const std::filesystem::path& folder, const semantic_octree::ClassTable& table,
+  LabelFolder(const std::filesystem::path& folder, const semantic_types::ClassTable& table,
               const LabelFolderOptions& options = {});
 
   /** \throw std::runtime_error naming the file: unreadable, of another kind, or an id or color that
@@ -51,7 +51,7 @@ class LabelFolder : public ImageLabeler {
   std::optional<std::filesystem::path> named(const mrpt::obs::CObservation& observation) const;
 
   std::filesystem::path m_folder;
-  semantic_octree::ClassTable m_table;
+  semantic_types::ClassTable m_table;
   LabelFolderOptions m_options;
   bool m_withConfidences = false;
   std::map<mrpt::Clock::time_point, std::filesystem::path> m_byTime;
@@ -61,7 +61,7 @@ class LabelFolder : public ImageLabeler {
 /** Reads one label image, see LabelFolder.
  * \throw std::runtime_error naming the file, and pixel and value where one is to blame. */
 LabelImage readLabelImage(const std::filesystem::path& file,
-                          const semantic_octree::ClassTable& table);
+                          const semantic_types::ClassTable& table);
 
 /** Gives a label image the confidences in FILE. \throw std::runtime_error naming the file: it is
  * unreadable, not gray with 8 or 16 bits, or of another size. */

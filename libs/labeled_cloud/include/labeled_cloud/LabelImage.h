@@ -1,6 +1,6 @@
 #pragma once
 #include <mrpt/obs/CObservation.h>
-#include <semantic_octree/ClassTable.h>
+#include <semantic_types/ClassTable.h>
 
 #include <cstddef>
 #include <optional>
@@ -14,7 +14,7 @@ namespace labeled_cloud {
 struct LabelImage {
   int rows = 0, cols = 0;
   /** rows x cols, row-major; kNoClass where a cell has none. Empty if there are probabilities. */
-  std::vector<semantic_octree::ClassId> classes;
+  std::vector<semantic_types::ClassId> classes;
   /** rows x cols: probability that the class is right. Empty: nothing is known about that. */
   std::vector<float> confidences;
   /** K planes of rows x cols, plane k for class k + 1; they sum to 1, or to 0 where a cell has no
@@ -42,7 +42,7 @@ struct LabelImage {
    * if it has one. */
   std::optional<std::size_t> cellAt(double u, double v) const;
   /** The (likeliest) class of a cell. */
-  semantic_octree::ClassId classOf(std::size_t cell) const;
+  semantic_types::ClassId classOf(std::size_t cell) const;
 };
 
 /** Whatever finds the label image of an observation: a field of it, a folder of images, a network.

@@ -1,6 +1,6 @@
 #pragma once
-#include <semantic_octree/ClassTable.h>
-#include <semantic_octree/LabeledCloud.h>
+#include <semantic_types/ClassTable.h>
+#include <semantic_types/LabeledCloud.h>
 
 #include <filesystem>
 #include <memory>
@@ -20,7 +20,7 @@ class ConfusionMatrix {
 
   int size() const { return m_size; }
   /** K values that sum to 1, proportional to p(this class is answered | class k is true). */
-  const float* given(semantic_octree::ClassId answered) const {
+  const float* given(semantic_types::ClassId answered) const {
     return &m_rows[std::size_t(answered - 1) * m_size];
   }
 
@@ -38,7 +38,7 @@ class ConfusionMatrix {
  * may have added, are left alone. \throw std::runtime_error naming file, line and what was
  * expected. */
 ConfusionMatrix loadConfusionMatrix(const std::filesystem::path& file,
-                                    const semantic_octree::ClassTable& table);
+                                    const semantic_types::ClassTable& table);
 
 /** What labels say about a point's class.
  *
@@ -64,7 +64,7 @@ struct LabelModel {
    * \param confidences Per point the probability that its class is right; empty: not known.
    * \throw std::invalid_argument the confusion matrix is of another number of classes. */
   void apply(int numClasses, const std::vector<float>& confidences,
-             semantic_octree::LabeledCloud& cloud) const;
+             semantic_types::LabeledCloud& cloud) const;
 };
 
 }  // namespace labeled_cloud

@@ -4,7 +4,7 @@
 #include <mrpt/img/CImage.h>
 #include <mrpt/img/TCamera.h>
 #include <mrpt/poses/CPose3D.h>
-#include <semantic_octree/LabeledCloud.h>
+#include <semantic_types/LabeledCloud.h>
 
 #include <cstddef>
 #include <string>
@@ -36,7 +36,7 @@ struct LabeledPicture {
 /** One observation, ready for a map. */
 struct LabeledScan {
   /** Points in the sensor's frame, all finite. */
-  semantic_octree::LabeledCloud cloud;
+  semantic_types::LabeledCloud cloud;
   mrpt::poses::CPose3D T_robot_sensor;
   mrpt::Clock::time_point timestamp;
   std::string sensorLabel;

@@ -43,7 +43,7 @@ struct NetworkOptions {
   Labels labels = Labels::Softmax;
   /** The class of each of the network's channels, kNoClass for those that mean none. Several may
    * have the same class. */
-  std::vector<semantic_octree::ClassId> classes;
+  std::vector<semantic_types::ClassId> classes;
   /** Pixels whose likeliest class is less probable than this have no class, [0, 1]. */
   double minConfidence = 0;
   /** Images that go through the network at once, where so many are waiting. */
@@ -57,7 +57,7 @@ struct NetworkOptions {
  * \throw std::runtime_error naming file, line and what was expected; a class that the table lacks
  * is named, too. */
 NetworkOptions loadNetworkOptions(const std::filesystem::path& file,
-                                  const semantic_octree::ClassTable& table);
+                                  const semantic_types::ClassTable& table);
 
 /** A segmentation network (ONNX) that labels the color images of observations. */
 class NetworkLabeler : public ImageLabeler {

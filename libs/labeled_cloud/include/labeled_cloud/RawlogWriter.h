@@ -1,6 +1,6 @@
 #pragma once
-#include <labeled_cloud/StagedFile.h>
 #include <mrpt/serialization/CSerializable.h>
+#include <strict_files/StagedFile.h>
 
 #include <filesystem>
 #include <memory>
@@ -25,7 +25,7 @@ class RawlogWriter {
   void finish();
 
  private:
-  StagedFile m_file;
+  strict_files::StagedFile m_file;
   std::unique_ptr<GzipOutputStream> m_stream;
 };
 

@@ -4,7 +4,7 @@
 #include <labeled_cloud/LabelModel.h>
 #include <labeled_cloud/LabeledScan.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
-#include <semantic_octree/ClassTable.h>
+#include <semantic_types/ClassTable.h>
 
 #include <memory>
 #include <optional>
@@ -46,7 +46,7 @@ struct ScanConverterOptions {
  * Externally stored data is loaded, and unloaded at the end. */
 class ScanConverter {
  public:
-  explicit ScanConverter(const semantic_octree::ClassTable& table,
+  explicit ScanConverter(const semantic_types::ClassTable& table,
                          const ScanConverterOptions& options = {},
                          std::shared_ptr<ImageLabeler> labeler = nullptr);
   ~ScanConverter();
@@ -70,7 +70,7 @@ class ScanConverter {
                  const std::vector<std::size_t>& pixels, LabelImage labels, LabeledScan& scan);
   void addLabeledCloud(const CObservationLabeledCloud& observation, LabeledScan& scan) const;
 
-  semantic_octree::ClassTable m_table;
+  semantic_types::ClassTable m_table;
   ScanConverterOptions m_options;
   std::shared_ptr<ImageLabeler> m_labeler;
   /** Of the camera met last. */

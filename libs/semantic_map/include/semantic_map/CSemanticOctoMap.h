@@ -63,7 +63,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   CSemanticOctoMap();
   /** \param resolution edge of a voxel, m
    * \throw std::invalid_argument resolution not positive, no classes, or bad filter parameters. */
-  CSemanticOctoMap(double resolution, const semantic_octree::ClassTable& classes,
+  CSemanticOctoMap(double resolution, const semantic_types::ClassTable& classes,
                    const semantic_octree::FilterParameters& filter = {});
   explicit CSemanticOctoMap(semantic_octree::SemanticOcTree tree);
   ~CSemanticOctoMap() override;
@@ -71,7 +71,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   CSemanticOctoMap& operator=(const CSemanticOctoMap& o);
 
   /** The class table of maps for which none is given: "occupied". */
-  static semantic_octree::ClassTable occupancyOnly();
+  static semantic_types::ClassTable occupancyOnly();
 
   const semantic_octree::SemanticOcTree& tree() const { return m_tree; }
   semantic_octree::SemanticOcTree& tree() { return m_tree; }

@@ -15,7 +15,7 @@ struct GridOptions {
   double low = 0.3, high = 2.0;
   /** Classes that are ground and never obstruct. None: the lowest occupied voxel of each column is
    * taken for ground. */
-  std::vector<semantic_octree::ClassId> ground;
+  std::vector<semantic_types::ClassId> ground;
   /** What stands out of its surroundings is no ground: the ground's surface is opened
    * (morphologically) by a square of this edge, m. It should be wider than cars and narrower than
    * hills. */

@@ -3,9 +3,9 @@
 #include <mrpt/config/CLoadableOptions.h>
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_octree/AbstractionOptions.h>
-#include <semantic_octree/ClassTable.h>
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/InsertionOptions.h>
+#include <semantic_types/ClassTable.h>
 
 #include <limits>
 #include <string>
@@ -115,7 +115,7 @@ struct TAbstractionOptions : public TNamedOptions<TAbstractionOptions> {
   bool isSet() const { return !relevant.empty() || !irrelevant.empty() || everything != 0; }
   /** The same for a map of these classes.
    * \throw std::invalid_argument naming the option and its value. */
-  semantic_octree::AbstractionOptions forClasses(const semantic_octree::ClassTable& classes) const;
+  semantic_octree::AbstractionOptions forClasses(const semantic_types::ClassTable& classes) const;
   /** Checks all but what depends on the classes. \throw std::invalid_argument */
   void validate() const;
 };

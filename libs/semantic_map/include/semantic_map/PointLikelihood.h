@@ -11,7 +11,7 @@ class PointLikelihood {
 
   /** \param point map frame, m */
   double operator()(const Eigen::Vector3d& point) const;
-  double operator()(const Eigen::Vector3d& point, semantic_octree::ClassId label) const;
+  double operator()(const Eigen::Vector3d& point, semantic_types::ClassId label) const;
   /** \param label K probabilities; all zero: no label */
   double operator()(const Eigen::Vector3d& point, const float* label) const;
   /** Likelihood that the beam passes. */
@@ -22,7 +22,7 @@ class PointLikelihood {
   struct Cell {
     double free, ofClass;
   };
-  Cell cell(const semantic_octree::SemanticOcTree::Node* node, semantic_octree::ClassId id) const;
+  Cell cell(const semantic_octree::SemanticOcTree::Node* node, semantic_types::ClassId id) const;
   const semantic_octree::SemanticOcTree::Node* find(const Eigen::Vector3d& point) const;
   double labeled(const Cell& cell) const;
   double occupancy(const Eigen::Vector3d& point) const;

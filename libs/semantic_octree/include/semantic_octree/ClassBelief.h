@@ -1,10 +1,13 @@
 #pragma once
-#include <semantic_octree/ClassTable.h>
+#include <semantic_types/ClassTable.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace semantic_octree {
+
+using semantic_types::ClassId;
+using semantic_types::kNoClass;
 
 /** Probabilities of a truncated distribution. */
 template <int Named = 3>

@@ -3,8 +3,8 @@
 #include <semantic_octree/AbstractionOptions.h>
 #include <semantic_octree/ClassFilter.h>
 #include <semantic_octree/InsertionOptions.h>
-#include <semantic_octree/LabeledCloud.h>
 #include <semantic_octree/SemanticOcTreeNode.h>
+#include <semantic_types/LabeledCloud.h>
 
 #include <Eigen/Geometry>
 #include <memory>
@@ -13,6 +13,9 @@
 #include <vector>
 
 namespace semantic_octree {
+
+using semantic_types::ClassTable;
+using semantic_types::LabeledCloud;
 
 class AbstractionUpkeep;
 class NodeStore;

@@ -1,12 +1,12 @@
 #pragma once
-#include <semantic_octree/ClassTable.h>
+#include <semantic_types/ClassTable.h>
 
 namespace synthetic_world {
 
-using semantic_octree::ClassId;
-using semantic_octree::ClassTable;
-using semantic_octree::Color;
-using semantic_octree::kNoClass;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::Color;
+using semantic_types::kNoClass;
 
 /** The classes of every synthetic scene, in the order of config/classes/synthetic.yaml. */
 enum Class : ClassId {

@@ -1,11 +1,11 @@
 #pragma once
-#include <semantic_octree/LabeledCloud.h>
+#include <semantic_types/LabeledCloud.h>
 #include <synthetic_world/SensorNoise.h>
 #include <synthetic_world/World.h>
 
 namespace synthetic_world {
 
-using semantic_octree::LabeledCloud;
+using semantic_types::LabeledCloud;
 
 /** A LiDAR that turns around its z axis. Sensor frame: x ahead, y left, z up. */
 struct LidarOptions {

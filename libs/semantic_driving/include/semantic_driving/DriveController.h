@@ -1,0 +1,51 @@
+#pragma once
+#include <semantic_driving/DriveTrack.h>
+#include <semantic_driving/DriveTracker.h>
+#include <semantic_driving/ReactiveNavigator.h>
+
+namespace semantic_driving {
+
+/** Drives a path: MRPT's reactive navigator where that can (forward, and not to an exact pose), the
+ * tracker where the path goes backwards, shunts or ends. Whatever either of them wants, the vehicle
+ * does not go where it could not stop before an obstacle. */
+class DriveController {
+ public:
+  /** \throw std::exception bad options, or what the reactive navigator does not like. */
+  DriveController(const DriveOptions& options, const ReactiveNavigator::Options& reactive);
+
+  /** Follows this path from its beginning on, from now on. */
+  void setPath(DrivePath path);
+  const DriveTracker& tracker() const { return m_tracker; }
+  /** Where the vehicle was at each step(). */
+  const DriveTrack& track() const { return m_track; }
+
+  /** \param sensorAge seconds since the last observation \param seconds the time */
+  DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double sensorAge,
+                    double seconds);
+
+  enum class Driver { Tracker, Reactive };
+  Driver driver() const { return m_driver; }
+  /** Seconds since the vehicle last got on, although there is way left. */
+  double stoppedFor(double seconds) const { return seconds - m_movedAt; }
+
+ private:
+  bool wantsReactive(const DriveState& state, const ObstaclePoints& obstacles) const;
+  void setWaypoints(const DriveState& state, const ObstaclePoints& obstacles);
+  bool isOpen(const semantic_planning::PathPoint& place, const DriveState& state,
+              const ObstaclePoints& obstacles) const;
+  DriveCommand driveReactively(const DriveState& state, const ObstaclePoints& obstacles,
+                               double speedLimit, double seconds);
+  DriveCommand guarded(const DriveCommand& wanted, const DriveState& state,
+                       const ObstaclePoints& obstacles) const;
+
+  DriveTracker m_tracker;
+  DriveTrack m_track;
+  ReactiveNavigator m_reactive;
+  Driver m_driver = Driver::Tracker;
+  double m_movedAt = 0;
+  double m_reactiveFrom = -1;  ///< beginning of the stretch that the reactive navigator drives
+  std::vector<semantic_planning::PathPoint> m_waypoints;
+  double m_reactiveAgain = 0;  ///< seconds: it is not asked before, as it found no way
+};
+
+}  // namespace semantic_driving

@@ -1,0 +1,53 @@
+#pragma once
+#include <semantic_planning/planner/SemanticPlanner.h>
+
+#include <limits>
+#include <vector>
+
+namespace semantic_driving {
+
+/** How places to explore are looked for. */
+struct FrontierOptions {
+  double radius = 40;        ///< how far over known ground, meters
+  double unknownFactor = 2;  ///< what a meter through the unknown counts against one on rank 0
+  double apart = 3;          ///< between places, meters
+  std::size_t most = 6;      ///< places
+};
+
+/** A place at the border of what is known. */
+struct Frontier {
+  mrpt::math::TPose2D pose;  ///< headed as one comes there
+  double z = 0;              ///< height of the ground, meters
+  double cost = 0;           ///< weighted meters by way of it to the goal
+};
+
+/** Where looking may show a way to a goal. */
+struct Exploration {
+  std::vector<Frontier> frontiers;  ///< most promising first
+  /** No way leads to the goal: what is known to be in the way, or forbidden, is all around it, or
+   * around the vehicle. */
+  bool enclosed = false;
+  /** Around the goal, up to what encloses it or is reached, square meters; infinite if it leaves
+   * the radius: then, if there is no way, it is the vehicle that is enclosed, as it may seem where
+   * it does not see the ground that it stands on. */
+  double goalArea = std::numeric_limits<double>::infinity();
+};
+
+/** Places on drivable ground next to unknown space from which to see more of the way to a goal,
+ * most promising first: least way there, where rank r counts r + 1 times, and on through the
+ * unknown. (Yamauchi, "A frontier-based approach for autonomous exploration", 1997, with a goal.)
+ *
+ * Only what borders on the goal's region counts: a flood from the goal over all that is not known
+ * to be in the way, up to where the vehicle can get. A way to the goal leaves the known ground for
+ * the last time at that border. If nothing reached borders on the region, it is enclosed: what is
+ * in the way stays there, so that nothing that is yet to be seen opens a way. Gaps count as
+ * passable in doubt, as does all that is farther than the radius.
+ * \param from where the vehicle is, on ground of height z (meters)
+ * \param avoid places that are not looked for again, nor others within `apart` of them */
+Exploration findFrontiers(const semantic_planning::SemanticPlanner& planner,
+                          const mrpt::math::TPose2D& from, double z,
+                          const mrpt::math::TPose2D& goal,
+                          const std::vector<mrpt::math::TPose2D>& avoid,
+                          const FrontierOptions& options = {});
+
+}  // namespace semantic_driving

@@ -1,0 +1,53 @@
+#pragma once
+#include <semantic_driving/DriveOptions.h>
+#include <semantic_driving/DrivePath.h>
+
+namespace semantic_driving {
+
+/** Drives a path as it is, forward and backward stretches alike, and stops before what stands in
+ * its way. The path's curvature steers; errors in place and heading are corrected as in Samson,
+ * "Control of chained systems", 1995 (the law for a path given by its curvature). */
+class DriveTracker {
+ public:
+  /** \param footprint corners in the vehicle's frame, meters
+   * \throw std::invalid_argument bad options. */
+  DriveTracker(const DriveOptions& options, std::vector<Eigen::Vector2d> footprint);
+
+  void setPath(DrivePath path);
+  const DrivePath& path() const { return m_path; }
+  /** Arc length of the place on the path where the vehicle was last. */
+  double progress() const { return m_progress; }
+  /** Nothing is left of the path. */
+  bool finished() const;
+  /** Distance from the path at the last locate(), meters. */
+  double offset() const { return m_offset; }
+
+  /** Looks for the vehicle on the path, from where it was on. */
+  void locate(const DriveState& state);
+  /** Meters of the path ahead that are free of obstacles, up to the look-ahead and the end of the
+   * stretch. */
+  double freeAhead(const DriveState& state, const ObstaclePoints& obstacles) const;
+  /** \param speedLimit m/s */
+  DriveCommand command(const DriveState& state, const ObstaclePoints& obstacles,
+                       double speedLimit) const;
+
+  /** Whether a command brings the footprint's middle nearer to an obstacle that is within a margin
+   * of the footprint. */
+  bool approaches(const DriveCommand& command, const ObstaclePoints& obstacles,
+                  double margin) const;
+  /** Whether the footprint at a pose in the vehicle's frame, with a margin around it, is free. */
+  bool isFree(const mrpt::math::TPose2D& relative, const ObstaclePoints& obstacles,
+              double margin) const;
+  const DriveOptions& options() const { return m_options; }
+
+ private:
+  double speedAt(const semantic_planning::PathPoint& place, double left, double free,
+                 double limit) const;
+
+  DriveOptions m_options;
+  std::vector<Eigen::Vector2d> m_footprint;
+  DrivePath m_path;
+  double m_progress = 0, m_offset = 0;
+};
+
+}  // namespace semantic_driving

@@ -1,0 +1,16 @@
+#pragma once
+#include <semantic_driving/DrivePath.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
+
+namespace semantic_driving {
+
+/** From where a vehicle must not be, a way to where it may: over ground of a forbidden class, or
+ * too close to something. Of all Reeds-Shepp curves to places between `nearest` and `radius`
+ * (meters) from which the planner can plan, one with the least way over forbidden ground, and of
+ * those a shortest one. The curve keeps the footprint free, but no clearance. Empty if there is
+ * none. \param z height of the ground below the vehicle, meters */
+DrivePath findWayOut(const semantic_planning::SemanticPlanner& planner,
+                     const mrpt::math::TPose2D& from, double z, double radius = 8,
+                     double nearest = 0);
+
+}  // namespace semantic_driving

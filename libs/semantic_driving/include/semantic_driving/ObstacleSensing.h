@@ -1,0 +1,36 @@
+#pragma once
+#include <semantic_driving/DriveOptions.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
+
+namespace semantic_driving {
+
+/** What of the map is an obstacle to a vehicle that drives. */
+struct ObstacleOptions {
+  /** Radius of the surroundings, meters. */
+  double radius = 6;
+  /** Ground of forbidden classes, even when flat. */
+  bool forbiddenGround = true;
+
+  /** \throw std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+/** The obstacles around a vehicle, in its frame (x ahead, y left, meters): centers of columns where
+ * something occupied stands between the highest step and the vehicle's height above the ground
+ * there, where the ground is too steep, or of a forbidden class.
+ *
+ * How high the ground is spreads from column to column, from below the vehicle on; over ground that
+ * is not known the height stays as it was. Nothing is said of the unknown: it is no obstacle.
+ * \param z height of the ground below the vehicle, meters */
+ObstaclePoints senseObstacles(const semantic_planning::SemanticPlanner& planner,
+                              const mrpt::math::TPose2D& pose, double z,
+                              const ObstacleOptions& options = {});
+
+/** The same with heights above the ground there, meters: centers of the voxels that are in the way,
+ * for a vehicle that is not as wide at all heights. Where the ground itself is an obstacle, there
+ * is one at each height. */
+ObstaclePoints3 senseObstacles3(const semantic_planning::SemanticPlanner& planner,
+                                const mrpt::math::TPose2D& pose, double z,
+                                const ObstacleOptions& options = {});
+
+}  // namespace semantic_driving

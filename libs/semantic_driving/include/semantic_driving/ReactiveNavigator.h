@@ -1,0 +1,63 @@
+#pragma once
+#include <semantic_driving/DriveOptions.h>
+#include <semantic_planning/planner/PlanResult.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+namespace semantic_driving {
+
+/** MRPT's CReactiveNavigationSystem, or CReactiveNavigationSystem3D, step by step: waypoints and
+ * obstacles go in, a command comes out. It drives forward only.
+ *
+ * MRPT takes the time from mrpt::Clock: let it tell the time of a simulation
+ * (mrpt::Clock::setActiveClock()), if there is one. */
+class ReactiveNavigator {
+ public:
+  /** A part of a vehicle's shape that is the same from bottom to top. */
+  struct Slice {
+    double height = 0;                     ///< meters
+    std::vector<Eigen::Vector2d> outline;  ///< corners in the vehicle's frame, meters
+  };
+  struct Options {
+    std::filesystem::path config;            ///< MRPT's .ini, see config/reactive
+    std::vector<Eigen::Vector2d> footprint;  ///< corners in the vehicle's frame, meters
+    /** From the ground up, if the shape is not the same at all heights: in place of the footprint,
+     * by CReactiveNavigationSystem3D. (Jaimez, Gonzalez-Jimenez and Blanco, "Efficient reactive
+     * navigation with exact collision determination for 3D robot shapes", 2015.) */
+    std::vector<Slice> slices;
+    double margin = 0.1;  ///< kept free around the footprint, meters
+    /** Speed and least radius of the trajectories, whatever the file says. */
+    double maxSpeed = 1, turningRadius = 0.8;  ///< m/s, meters
+    /** For what MRPT's navlog-viewer reads: log_000.reactivenavlog, or the next free number,
+     * complete when the navigator is gone. Empty: none. */
+    std::filesystem::path logFolder;
+  };
+  enum class Status { Idle, Driving, Arrived, Blocked };
+
+  /** Computes the trajectories, which takes a moment.
+   * \throw std::exception the file is missing, or what MRPT does not like about it. */
+  explicit ReactiveNavigator(const Options& options);
+  ~ReactiveNavigator();
+  ReactiveNavigator(ReactiveNavigator&&) noexcept;
+
+  /** Goes through these places one after the other, from now on.
+   * \param reach how near is near enough, meters */
+  void setWaypoints(const std::vector<semantic_planning::PathPoint>& waypoints, double reach);
+  void cancel();
+
+  /** \param obstacles in the way of all slices
+   * \param seconds of the clock that runs while navigating */
+  DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double seconds);
+  /** \param obstacles in the way of the slices at their heights */
+  DriveCommand step(const DriveState& state, const ObstaclePoints3& obstacles, double seconds);
+  /** After the last step. */
+  Status status() const;
+
+ private:
+  struct Navigation;
+  std::unique_ptr<Navigation> m_navigation;
+};
+
+}  // namespace semantic_driving

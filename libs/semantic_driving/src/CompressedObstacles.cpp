@@ -1,0 +1,143 @@
+#include <semantic_driving/CompressedObstacles.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "Surroundings.h"
+
+namespace semantic_driving {
+
+using semantic_octree::Abstraction;
+using semantic_octree::LeafCell;
+using semantic_planning::Column;
+using semantic_planning::Ground;
+using semantic_planning::SemanticPlanner;
+using semantic_planning::Surface;
+
+namespace {
+
+/** A leaf as keys. */
+struct Cube {
+  explicit Cube(const LeafCell& leaf)
+      : edge(1 << (16 - leaf.depth)),
+        low{leaf.key[0] & ~(edge - 1), leaf.key[1] & ~(edge - 1)},
+        bottom(leaf.key[2] & ~(edge - 1)) {}
+
+  bool meets(int lowest, int highest) const { return bottom <= highest && bottom + edge > lowest; }
+  int edge;
+  Column low;
+  int bottom;
+};
+
+class CompressedFinder {
+ public:
+  CompressedFinder(const SemanticPlanner& planner, const Surroundings& surroundings,
+                   const ObstacleOptions& options)
+      : m_planner(planner),
+        m_ground(planner.ground()),
+        m_surroundings(surroundings),
+        m_options(options),
+        m_height(
+            static_cast<int>(std::ceil(planner.options().vehicle.height / m_ground.voxelSize()))),
+        m_low(surroundings.low()),
+        m_edge(surroundings.high().x - m_low.x + 1),
+        m_covered(static_cast<std::size_t>(m_edge) * m_edge, false) {}
+
+  /** All leaves that are in the way. */
+  void cover(const Abstraction& compressed) {
+    const Column high = m_surroundings.high();
+    const auto key = [](Column c, int z) {
+      const auto part = [](int k) {
+        return static_cast<octomap::key_type>(std::clamp(k, 0, 65535));
+      };
+      return octomap::OcTreeKey(part(c.x), part(c.y), part(z));
+    };
+    int lowest = 65535, highest = 0;
+    m_surroundings.forEach([&](Column, int z, const Surface*) {
+      lowest = std::min(lowest, z), highest = std::max(highest, z);
+    });
+    const int step = m_ground.step();
+    for (const LeafCell& leaf :
+         compressed.leavesIn(key(m_low, lowest - step), key(high, highest + m_height + step), true))
+      if (const Cube cube(leaf); isInTheWay(cube)) mark(cube);
+    m_surroundings.forEach([&](Column c, int, const Surface* s) {  // no leaf is there
+      if (s && s->bridged && !s->drivable) m_covered[indexOf(c)] = true;
+    });
+  }
+
+  /** f(column) for what is covered and next to what is not. */
+  template <class F>
+  void forBorder(F f) const {
+    m_surroundings.forEach([&](Column c, int, const Surface*) {
+      const auto covered = [&](int x, int y) {
+        const Column next{c.x + x, c.y + y};
+        return m_surroundings.isWithinRadius(next) && m_covered[indexOf(next)];
+      };
+      const bool inside = covered(1, 0) && covered(-1, 0) && covered(0, 1) && covered(0, -1);
+      if (covered(0, 0) && !inside) f(c);
+    });
+  }
+
+ private:
+  std::size_t indexOf(Column c) const {
+    return static_cast<std::size_t>(c.y - m_low.y) * m_edge + (c.x - m_low.x);
+  }
+  template <class Predicate>
+  bool anyColumn(const Cube& cube, Predicate predicate) const {
+    for (int y = cube.low.y; y < cube.low.y + cube.edge; ++y)
+      for (int x = cube.low.x; x < cube.low.x + cube.edge; ++x)
+        if (m_surroundings.contains({x, y}) && predicate(Column{x, y})) return true;
+    return false;
+  }
+
+  bool isInTheWay(const Cube& cube) const {
+    const int step = m_ground.step();
+    return anyColumn(cube, [&](Column c) {
+      const int z = m_surroundings.height(c);
+      const Surface* s = m_ground.near(c, z, step);
+      if (!s) return cube.meets(z + step + 1, z + m_height);
+      return isBad(*s) && cube.meets(s->z, s->z);
+    });
+  }
+  bool isBad(const Surface& s) const {
+    return !s.drivable || (m_options.forbiddenGround && !s.bridged &&
+                           m_planner.order().rank(s.classId) == colored_graph::kForbidden);
+  }
+  void mark(const Cube& cube) {
+    anyColumn(cube, [&](Column c) {
+      m_covered[indexOf(c)] = true;
+      return false;
+    });
+  }
+
+  const SemanticPlanner& m_planner;
+  const Ground& m_ground;
+  const Surroundings& m_surroundings;
+  const ObstacleOptions& m_options;
+  int m_height;
+  Column m_low;
+  int m_edge;
+  std::vector<bool> m_covered;
+};
+
+}  // namespace
+
+ObstaclePoints senseCompressedObstacles(const SemanticPlanner& planner,
+                                        const Abstraction& compressed,
+                                        const mrpt::math::TPose2D& pose, double z,
+                                        const ObstacleOptions& options) {
+  options.validate();
+  const Ground& ground = planner.ground();
+  const int key = static_cast<int>(std::floor(z / ground.voxelSize())) + 32768;
+  const Surroundings surroundings(ground, pose, key, options.radius);
+  CompressedFinder finder(planner, surroundings, options);
+  finder.cover(compressed);
+  ObstaclePoints obstacles;
+  finder.forBorder([&](Column c) {
+    const auto p = pose.inverseComposePoint({ground.centerOf(c.x), ground.centerOf(c.y)});
+    obstacles.emplace_back(p.x, p.y);
+  });
+  return obstacles;
+}
+
+}  // namespace semantic_driving

@@ -1,0 +1,117 @@
+#include <semantic_driving/DriveController.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace semantic_driving {
+
+using mrpt::math::TPose2D;
+using semantic_planning::PathPoint;
+
+namespace {
+
+constexpr double kWaypointSpacing = 1.2;  // m
+constexpr double kWaypointReach = 0.5;    // m
+constexpr double kWaypointRoom = 0.3;     // m around the footprint
+constexpr double kPause = 2;              // s
+
+/** Where a vehicle that keeps its speed and its turning is after some seconds, from (0, 0, 0). */
+TPose2D after(const DriveCommand& c, double seconds) {
+  const double turned = c.turn * seconds, way = c.speed * seconds;
+  if (std::abs(turned) < 1e-6) return {way, 0, 0};
+  const double radius = c.speed / c.turn;
+  return {radius * std::sin(turned), radius * (1 - std::cos(turned)), turned};
+}
+
+}  // namespace
+
+DriveController::DriveController(const DriveOptions& options,
+                                 const ReactiveNavigator::Options& reactive)
+    : m_tracker(options, reactive.footprint), m_reactive(reactive) {}
+
+void DriveController::setPath(DrivePath path) {
+  m_tracker.setPath(std::move(path));
+  m_reactiveFrom = -1;
+}
+
+DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints& obstacles,
+                                   double sensorAge, double seconds) {
+  m_track.add(state.pose);
+  m_tracker.locate(state);
+  const double limit = m_tracker.options().speedFor(sensorAge);
+  const bool reactive = seconds >= m_reactiveAgain && wantsReactive(state, obstacles);
+  m_driver = reactive ? Driver::Reactive : Driver::Tracker;
+  if (!reactive) m_reactiveFrom = -1;
+  const DriveCommand wanted = reactive ? driveReactively(state, obstacles, limit, seconds)
+                                       : m_tracker.command(state, obstacles, limit);
+  const DriveCommand safe = guarded(wanted, state, obstacles);
+  if (std::abs(safe.speed) > 0.05 || m_tracker.finished()) m_movedAt = seconds;
+  return safe;
+}
+
+bool DriveController::wantsReactive(const DriveState& state,
+                                    const ObstaclePoints& obstacles) const {
+  if (m_tracker.finished()) return false;
+  const DrivePath& path = m_tracker.path();
+  const double here = m_tracker.progress();
+  const double left = path.stretchEnd(here) - here;
+  if (!path.at(here + 1e-3).forward || left < m_tracker.options().exactEnd) return false;
+  return m_tracker.options().alwaysReactive ||
+         m_tracker.freeAhead(state, obstacles) < std::min(left, m_tracker.options().lookAhead);
+}
+
+bool DriveController::isOpen(const PathPoint& place, const DriveState& state,
+                             const ObstaclePoints& obstacles) const {
+  return m_tracker.isFree(poseOf(place) - state.pose, obstacles, kWaypointRoom);
+}
+
+/** To the end of the stretch, without those where something stands: they cannot be reached. */
+void DriveController::setWaypoints(const DriveState& state, const ObstaclePoints& obstacles) {
+  m_waypoints = m_tracker.path().waypoints(m_tracker.progress(), kWaypointSpacing);
+  m_waypoints.erase(
+      std::remove_if(m_waypoints.begin(), m_waypoints.end() - 1,
+                     [&](const PathPoint& p) { return !isOpen(p, state, obstacles); }),
+      m_waypoints.end() - 1);
+  m_reactive.setWaypoints(m_waypoints, kWaypointReach);
+}
+
+DriveCommand DriveController::driveReactively(const DriveState& state,
+                                              const ObstaclePoints& obstacles, double speedLimit,
+                                              double seconds) {
+  const DrivePath& path = m_tracker.path();
+  const double here = m_tracker.progress(), begin = path.stretchBegin(here + 1e-3);
+  const bool blocked =
+      m_waypoints.size() > 1 &&
+      std::any_of(m_waypoints.begin(), m_waypoints.end() - 1, [&](const PathPoint& p) {
+        return p.arcLength > here && !isOpen(p, state, obstacles);
+      });
+  if (m_reactiveFrom != begin || blocked) setWaypoints(state, obstacles);
+  m_reactiveFrom = begin;
+  DriveCommand c = m_reactive.step(state, obstacles, seconds);
+  if (m_reactive.status() != ReactiveNavigator::Status::Driving) {
+    m_reactiveAgain = seconds + kPause;
+    return m_tracker.command(state, obstacles, speedLimit);
+  }
+  const double curve = std::sqrt(m_tracker.options().maxSideAcceleration *
+                                 std::abs(c.speed / std::max(1e-6, std::abs(c.turn))));
+  const double speed = std::min({c.speed, speedLimit, curve});
+  if (c.speed > 0) c.turn *= speed / c.speed;
+  c.speed = speed;
+  return c;
+}
+
+DriveCommand DriveController::guarded(const DriveCommand& wanted, const DriveState& state,
+                                      const ObstaclePoints& obstacles) const {
+  constexpr double kReaction = 0.3, kStep = 0.1;  // s
+  const double margin = m_tracker.options().margin / 2;
+  if (!m_tracker.isFree({}, obstacles, margin))  // it has to get out, not further in
+    return m_tracker.approaches(wanted, obstacles, margin) ? DriveCommand{} : wanted;
+  const double stop = kReaction + std::abs(state.speed) / m_tracker.options().maxAcceleration;
+  for (double t = kStep; t < stop; t += kStep) {
+    const double slowing = t < kReaction ? t : kReaction + (t - kReaction) / 2;
+    if (!m_tracker.isFree(after(wanted, slowing), obstacles, margin)) return {};
+  }
+  return wanted;
+}
+
+}  // namespace semantic_driving

@@ -1,0 +1,110 @@
+#include <mrpt/math/wrap2pi.h>
+#include <semantic_driving/DrivePath.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace semantic_driving {
+
+using semantic_planning::PathPoint;
+namespace {
+
+constexpr double kSame = 1e-6;  // m
+
+double distance(const PathPoint& a, const PathPoint& b) { return std::hypot(b.x - a.x, b.y - a.y); }
+
+bool isForward(const PathPoint& a, const PathPoint& b) {
+  const double heading = a.heading + mrpt::math::wrapToPi(b.heading - a.heading) / 2;
+  return (b.x - a.x) * std::cos(heading) + (b.y - a.y) * std::sin(heading) >= 0;
+}
+
+PathPoint between(const PathPoint& a, const PathPoint& b, double share) {
+  PathPoint p = share < 0.5 ? a : b;
+  const auto mix = [share](double from, double to) { return from + share * (to - from); };
+  p.x = mix(a.x, b.x);
+  p.y = mix(a.y, b.y);
+  p.z = mix(a.z, b.z);
+  p.heading = a.heading + share * mrpt::math::wrapToPi(b.heading - a.heading);
+  p.arcLength = mix(a.arcLength, b.arcLength);
+  p.forward = a.forward;
+  return p;
+}
+
+}  // namespace
+
+DrivePath::DrivePath(std::vector<PathPoint> points) {
+  for (const PathPoint& p : points) {
+    if (!m_points.empty() && distance(m_points.back(), p) < kSame) continue;
+    m_points.push_back(p);
+    PathPoint& added = m_points.back();
+    added.arcLength = 0;
+    if (m_points.size() == 1) continue;
+    PathPoint& before = m_points[m_points.size() - 2];
+    added.arcLength = before.arcLength + distance(before, added);
+    before.forward = added.forward = isForward(before, added);
+  }
+  for (std::size_t i = 1; i + 1 < m_points.size(); ++i)
+    if (m_points[i].forward != m_points[i - 1].forward) m_ends.push_back(m_points[i].arcLength);
+  m_ends.push_back(length());
+}
+
+std::size_t DrivePath::segmentOf(double s) const {
+  const auto after =
+      std::upper_bound(m_points.begin(), m_points.end(), s,
+                       [](double value, const PathPoint& p) { return value < p.arcLength; });
+  const auto i = static_cast<std::size_t>(after - m_points.begin());
+  return std::clamp<std::size_t>(i, 1, m_points.size() - 1) - 1;
+}
+
+PathPoint DrivePath::at(double s) const {
+  const std::size_t i = segmentOf(s);
+  const PathPoint &a = m_points[i], &b = m_points[i + 1];
+  const double share = (s - a.arcLength) / (b.arcLength - a.arcLength);
+  return between(a, b, std::clamp(share, 0.0, 1.0));
+}
+
+double DrivePath::nearest(const mrpt::math::TPose2D& pose, double from, double to) const {
+  constexpr double kStep = 0.02;          // m
+  constexpr double kHeadingWeight = 0.2;  // m/rad
+  double best = std::numeric_limits<double>::infinity(), found = from;
+  for (double s = from; s <= to + kStep / 2; s += kStep) {
+    const PathPoint p = at(s);
+    const double d = std::hypot(p.x - pose.x, p.y - pose.y) +
+                     kHeadingWeight * std::abs(mrpt::math::wrapToPi(p.heading - pose.phi));
+    if (d < best) best = d, found = s;
+  }
+  return std::min(found, to);
+}
+
+double DrivePath::stretchEnd(double s) const {
+  for (const double end : m_ends)
+    if (end > s + kSame) return end;
+  return length();
+}
+
+double DrivePath::stretchBegin(double s) const {
+  double begin = 0;
+  for (const double end : m_ends)
+    if (end < s - kSame) begin = end;
+  return begin;
+}
+
+DrivePath DrivePath::part(double from, double to, const DrivePath& then) const {
+  std::vector<PathPoint> joined{at(from)};
+  for (const PathPoint& p : m_points)
+    if (p.arcLength > from + kSame && p.arcLength < to - kSame) joined.push_back(p);
+  joined.push_back(at(to));
+  joined.insert(joined.end(), then.m_points.begin(), then.m_points.end());
+  return DrivePath(std::move(joined));
+}
+
+std::vector<PathPoint> DrivePath::waypoints(double s, double spacing) const {
+  const double end = stretchEnd(s);
+  const int pieces = std::max(1, static_cast<int>(std::ceil((end - s) / spacing)));
+  std::vector<PathPoint> result;
+  for (int i = 1; i <= pieces; ++i) result.push_back(at(s + (end - s) * i / pieces));
+  return result;
+}
+
+}  // namespace semantic_driving

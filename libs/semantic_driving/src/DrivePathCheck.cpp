@@ -1,0 +1,47 @@
+#include <semantic_driving/DrivePathCheck.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace semantic_driving {
+
+using semantic_planning::Fit;
+using semantic_planning::PathPoint;
+using semantic_planning::SemanticPlanner;
+
+bool PathJudgment::isClearlyBetterThan(const PathJudgment& other) const {
+  const double same = std::max(0.5, 0.1 * other.length);  // m
+  for (std::size_t rank = lengthPerRank.size(); rank-- > 1;) {
+    const double more = lengthPerRank[rank] - other.lengthPerRank[rank];
+    if (std::abs(more) > same) return more < 0;
+  }
+  return length < other.length - same;
+}
+
+DrivePathCheck::DrivePathCheck(const SemanticPlanner& planner)
+    : m_planner(planner),
+      m_checker(planner.ground(), planner.options().vehicle, planner.order(),
+                planner.options().reading) {}
+
+PathJudgment DrivePathCheck::judge(const DrivePath& path, double from) const {
+  PathJudgment judgment;
+  judgment.lengthPerRank.resize(m_planner.order().ranks());
+  const double step = m_planner.ground().voxelSize();
+  for (double s = from; s < path.length(); s += step) {
+    const PathPoint p = path.at(s);
+    const auto pose = m_checker.place(poseOf(p), p.z);
+    const bool fits = pose && m_checker.fit(*pose) == Fit::Free;
+    const colored_graph::Rank rank =
+        fits ? m_planner.order().rank(m_checker.classAt(*pose)) : colored_graph::kForbidden;
+    if (rank == colored_graph::kForbidden) {
+      judgment.freeFor = std::min(judgment.freeFor, s - from);
+      continue;
+    }
+    const double piece = std::min(step, path.length() - s);
+    judgment.lengthPerRank[rank] += piece;
+    judgment.length += piece;
+  }
+  return judgment;
+}
+
+}  // namespace semantic_driving

@@ -1,0 +1,129 @@
+#include <mrpt/math/wrap2pi.h>
+#include <semantic_driving/DriveTracker.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace semantic_driving {
+
+using mrpt::math::TPose2D;
+using semantic_planning::PathPoint;
+
+namespace {
+
+constexpr double kEnd = 0.04;         // m: stretches end when no more than this is left
+constexpr double kSlowest = 0.1;      // m/s, as long as there is way left
+constexpr double kSideGain = 1.2;     // 1/m^2
+constexpr double kHeadingGain = 2.0;  // 1/m
+
+/** Distance from a convex outline, meters; 0 within. */
+double distance(const std::vector<Eigen::Vector2d>& outline, const Eigen::Vector2d& p) {
+  bool within = true;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d a = outline[i], d = outline[(i + 1) % outline.size()] - a;
+    within = within && d.x() * (p - a).y() - d.y() * (p - a).x() >= 0;
+    const double share = std::clamp(d.dot(p - a) / d.squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (p - a - share * d).norm());
+  }
+  return within ? 0 : least;
+}
+
+}  // namespace
+
+DriveTracker::DriveTracker(const DriveOptions& options, std::vector<Eigen::Vector2d> footprint)
+    : m_options(options), m_footprint(std::move(footprint)) {
+  m_options.validate();
+  double area = 0;
+  for (std::size_t i = 0; i < m_footprint.size(); ++i) {
+    const Eigen::Vector2d &a = m_footprint[i], &b = m_footprint[(i + 1) % m_footprint.size()];
+    area += a.x() * b.y() - a.y() * b.x();
+  }
+  if (area < 0) std::reverse(m_footprint.begin(), m_footprint.end());
+}
+
+void DriveTracker::setPath(DrivePath path) {
+  m_path = std::move(path);
+  m_progress = m_offset = 0;
+}
+
+bool DriveTracker::finished() const {
+  return m_path.empty() || m_progress >= m_path.length() - kEnd;
+}
+
+void DriveTracker::locate(const DriveState& state) {
+  if (m_path.empty()) return;
+  constexpr double kWindow = 1.5;  // m
+  const double end = m_path.stretchEnd(m_progress);
+  const double from = std::max(m_path.stretchBegin(m_progress + kEnd), m_progress - 0.3);
+  m_progress =
+      m_path.nearest(state.pose, std::min(from, m_progress), std::min(end, m_progress + kWindow));
+  if (end - m_progress < kEnd && end < m_path.length()) m_progress = end;
+  const PathPoint p = m_path.at(m_progress);
+  m_offset = std::hypot(p.x - state.pose.x, p.y - state.pose.y);
+}
+
+bool DriveTracker::isFree(const TPose2D& relative, const ObstaclePoints& obstacles,
+                          double margin) const {
+  const double c = std::cos(relative.phi), s = std::sin(relative.phi);
+  return std::none_of(obstacles.begin(), obstacles.end(), [&](const Eigen::Vector2d& o) {
+    const double x = o.x() - relative.x, y = o.y() - relative.y;
+    return distance(m_footprint, {c * x + s * y, c * y - s * x}) < margin;
+  });
+}
+
+bool DriveTracker::approaches(const DriveCommand& command, const ObstaclePoints& obstacles,
+                              double margin) const {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& corner : m_footprint)
+    middle += corner / static_cast<double>(m_footprint.size());
+  return std::any_of(obstacles.begin(), obstacles.end(), [&](const Eigen::Vector2d& o) {
+    const Eigen::Vector2d motion(command.speed - command.turn * o.y(), command.turn * o.x());
+    return distance(m_footprint, o) < margin && motion.dot(o - middle) > 1e-6;
+  });
+}
+
+double DriveTracker::freeAhead(const DriveState& state, const ObstaclePoints& obstacles) const {
+  constexpr double kStep = 0.15;  // m
+  const double most = std::min(m_options.lookAhead, m_path.stretchEnd(m_progress) - m_progress);
+  if (most <= 0) return 0;
+  // What is within the margin already does not keep the vehicle from driving away from it.
+  const double margin = isFree({}, obstacles, m_options.margin) ? m_options.margin : 0;
+  for (double ahead = kStep; ahead < most + kStep; ahead += kStep) {
+    const TPose2D pose = poseOf(m_path.at(m_progress + std::min(ahead, most)));
+    const TPose2D relative = pose - state.pose;
+    if (!isFree(relative, obstacles, margin)) return ahead - kStep;
+  }
+  return most;
+}
+
+double DriveTracker::speedAt(const PathPoint& place, double left, double free, double limit) const {
+  const double braking = 0.8 * m_options.maxAcceleration;
+  const double curve = std::abs(place.curvature) > 1e-6
+                           ? std::sqrt(m_options.maxSideAcceleration / std::abs(place.curvature))
+                           : limit;
+  const double end = std::max(kSlowest, std::sqrt(2 * braking * left));
+  const double stop = std::sqrt(2 * braking * std::max(0.0, free - 0.3));
+  return std::min({limit, curve, end, free >= m_options.lookAhead || free >= left ? limit : stop});
+}
+
+DriveCommand DriveTracker::command(const DriveState& state, const ObstaclePoints& obstacles,
+                                   double speedLimit) const {
+  if (finished()) return {};
+  const PathPoint place = m_path.at(m_progress + 1e-3);
+  const double left = m_path.stretchEnd(m_progress) - m_progress;
+  const double speed = speedAt(place, left, freeAhead(state, obstacles), speedLimit);
+  const double v = place.forward ? speed : -speed;
+  const double dx = state.pose.x - place.x, dy = state.pose.y - place.y;
+  const double side = dy * std::cos(place.heading) - dx * std::sin(place.heading);
+  const double heading = mrpt::math::wrapToPi(state.pose.phi - place.heading);
+  const double sinc = std::abs(heading) < 1e-6 ? 1 : std::sin(heading) / heading;
+  const double bend = std::max(0.3, 1 - place.curvature * side);
+  const double turn = v * place.curvature * std::cos(heading) / bend - kSideGain * v * side * sinc -
+                      kHeadingGain * std::abs(v) * heading;
+  const double most = std::abs(v) / m_options.turningRadius;
+  return {v, std::clamp(turn, -most, most)};
+}
+
+}  // namespace semantic_driving

@@ -1,0 +1,111 @@
+#include <semantic_driving/DriveWayOut.h>
+
+#include <cmath>
+#include <limits>
+
+namespace semantic_driving {
+
+using colored_graph::ClassOrder;
+using mrpt::math::TPose2D;
+using semantic_planning::EdgeChecker;
+using semantic_planning::Ground;
+using semantic_planning::GroundOptions;
+using semantic_planning::GroundPose;
+using semantic_planning::PathPoint;
+using semantic_planning::PlanStatus;
+using semantic_planning::SemanticPlanner;
+using semantic_planning::VehicleOptions;
+
+namespace {
+
+/** What was forbidden is one rank behind the others. */
+ClassOrder allowingAll(const ClassOrder& order) {
+  std::vector<std::vector<colored_graph::ClassId>> ranks(order.ranks() + 1);
+  for (int id = 0; id < order.classes(); ++id) {
+    const auto classId = static_cast<colored_graph::ClassId>(id);
+    const colored_graph::Rank rank = order.rank(classId);
+    ranks[rank == colored_graph::kForbidden ? order.ranks() : rank].push_back(classId);
+  }
+  if (ranks.back().empty()) ranks.pop_back();
+  if (ranks.size() > colored_graph::kMaxRanks) {  // the two worst share one
+    ranks[ranks.size() - 2].insert(ranks[ranks.size() - 2].end(), ranks.back().begin(),
+                                   ranks.back().end());
+    ranks.pop_back();
+  }
+  return ClassOrder(order.classes(), ranks);
+}
+
+VehicleOptions withoutClearance(VehicleOptions vehicle) {
+  vehicle.clearance = 0;
+  return vehicle;
+}
+
+GroundOptions withoutKeepingOff(GroundOptions ground) {
+  ground.keepFootprintOffForbidden = false;
+  return ground;
+}
+
+class WayOutSearch {
+ public:
+  WayOutSearch(const SemanticPlanner& planner, double z)
+      : m_planner(planner),
+        m_z(z),
+        m_vehicle(withoutClearance(planner.options().vehicle)),
+        m_order(allowingAll(planner.order())),
+        m_ground(planner.ground().map(), m_vehicle, withoutKeepingOff(planner.options().ground),
+                 m_order),
+        m_checker(m_ground, m_vehicle, m_order, planner.options().reading) {}
+
+  DrivePath search(const TPose2D& from, double radius, double nearest) {
+    const auto start = m_checker.place(from, m_z);
+    if (!start) return {};
+    constexpr double kStep = 0.4;  // m
+    for (double r = nearest + kStep; r <= radius && r < m_leastForbidden + nearest + 2; r += kStep)
+      for (int direction = 0; direction < 16; ++direction)
+        for (int heading = 0; heading < 8; ++heading) {
+          const double to = from.phi + direction * M_PI / 8;
+          consider(*start, {from.x + r * std::cos(to), from.y + r * std::sin(to),
+                            from.phi + heading * M_PI / 4});
+        }
+    return DrivePath(m_best);
+  }
+
+ private:
+  void consider(const GroundPose& start, const TPose2D& pose) {
+    if (m_planner.check(pose, m_z) != PlanStatus::Found) return;
+    const auto end = m_checker.place(pose, m_z);
+    if (!end || !m_checker.profile(start, *end)) return;
+    const auto points =
+        m_checker.trace(m_checker.reedsShepp().connect(start.pose, end->pose), start.z);
+    double forbidden = 0, length = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const double piece = std::hypot(points[i].x - points[i - 1].x, points[i].y - points[i - 1].y);
+      length += piece;
+      if (m_planner.order().rank(points[i].classId) == colored_graph::kForbidden)
+        forbidden += piece;
+    }
+    constexpr double kSame = 0.1;  // m
+    const bool less = forbidden < m_leastForbidden - kSame;
+    if (!less && (forbidden > m_leastForbidden + kSame || length >= m_leastLength)) return;
+    m_leastForbidden = forbidden, m_leastLength = length;
+    m_best = points;
+  }
+
+  const SemanticPlanner& m_planner;
+  double m_z;
+  VehicleOptions m_vehicle;
+  ClassOrder m_order;
+  Ground m_ground;
+  EdgeChecker m_checker;
+  std::vector<PathPoint> m_best;
+  double m_leastForbidden = std::numeric_limits<double>::infinity(), m_leastLength = 0;
+};
+
+}  // namespace
+
+DrivePath findWayOut(const SemanticPlanner& planner, const TPose2D& from, double z, double radius,
+                     double nearest) {
+  return WayOutSearch(planner, z).search(from, radius, nearest);
+}
+
+}  // namespace semantic_driving

@@ -1,0 +1,62 @@
+#pragma once
+#include <semantic_planning/planner/SemanticPlanner.h>
+
+#include <vector>
+
+#include "ColumnSquare.h"
+
+namespace semantic_driving {
+
+/** Where the last part of any way to a goal lies: the columns that a flood from the goal gets to
+ * without passing where the vehicle can get over known ground, or where it must not be.
+ *
+ * A way to the goal leaves the reached columns for the last time at the region's border, so that
+ * only from there exploring helps; if they do not border on the region, none helps: what is known
+ * to be in the way stays there, whatever else is seen. In doubt a column belongs to the region, and
+ * exploring goes on:
+ * - the unknown is passable, and so is all ground that is not known to be an obstacle;
+ * - an obstacle keeps only those columns wherein no pose leaves the planner's clearance between it
+ *   and the largest disc around the vehicle's origin;
+ * - beyond the square everything is passable;
+ * - the flood begins with what is passable within a meter of a goal that seems not to be. */
+class GoalRegion {
+ public:
+  /** \param reached for each column of the square, whether the vehicle gets there
+   * \param from where the vehicle is, on ground of height z (meters) */
+  GoalRegion(const semantic_planning::SemanticPlanner& planner, const ColumnSquare& square,
+             std::vector<bool> reached, const mrpt::math::TPose2D& from, double z,
+             const mrpt::math::TPose2D& goal);
+
+  /** Whether seeing an unknown column may help. \param c in the square */
+  bool contains(semantic_planning::Column c) const {
+    return m_goalReached || m_region[m_square.indexOf(c)];
+  }
+  /** Something is in the way. \param c in the square */
+  bool isObstacle(semantic_planning::Column c) const { return m_obstacle[m_square.indexOf(c)]; }
+  /** No reached column borders on the region: no way leads to the goal. */
+  bool isEnclosed() const { return m_enclosed; }
+  std::size_t columns() const { return m_columns; }
+  /** It goes on beyond the square. */
+  bool isOpen() const { return m_rim; }
+
+ private:
+  bool isPassable(semantic_planning::Column c) const {
+    const std::size_t i = m_square.indexOf(c);
+    return !m_reached[i] && !m_kept[i];
+  }
+  void markObstacles(const semantic_planning::SemanticPlanner& planner,
+                     const mrpt::math::TPose2D& from, double z);
+  void keepAround(semantic_planning::Column obstacle, double radius);
+  void start(const semantic_planning::Ground& ground, const mrpt::math::TPose2D& goal);
+  void offer(semantic_planning::Column c);
+  void offerRim();
+  void flood();
+
+  ColumnSquare m_square;
+  std::vector<bool> m_reached, m_obstacle, m_kept, m_region;
+  std::vector<semantic_planning::Column> m_open;
+  std::size_t m_columns = 0;
+  bool m_goalReached = false, m_enclosed = false, m_rim = false;
+};
+
+}  // namespace semantic_driving

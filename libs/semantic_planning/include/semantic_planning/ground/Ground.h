@@ -1,0 +1,91 @@
+#pragma once
+#include <colored_graph/ClassOrder.h>
+#include <semantic_octree/SemanticOcTree.h>
+#include <semantic_planning/ground/GroundOptions.h>
+#include <semantic_planning/ground/Surface.h>
+#include <semantic_planning/ground/TileGrid.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace semantic_planning {
+
+class GroundTiles;
+
+/** A surface and the column that it is in. */
+struct GroundPoint {
+  Column column;
+  Surface surface;
+};
+
+/** The drivable ground of a map, column by column.
+ *
+ * A surface is an occupied voxel with the vehicle's height free of occupied voxels above it; holes
+ * between surfaces are bridged (GroundOptions). Neighboring surfaces are connected if they differ
+ * by at most the step height. Everything is a function of the map alone: after update() the ground
+ * is the same as if it were read anew, and so are its classes and distances. */
+class Ground {
+ public:
+  /** Reads the whole map. \param map must outlive the ground.
+   * \param order its classes are the map's ids, with semantic_types::kNoClass for unknown ground.
+   * \throw std::invalid_argument bad options, or an order of other classes. */
+  Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions& vehicle,
+         const GroundOptions& options, const colored_graph::ClassOrder& order);
+  ~Ground();
+  Ground(Ground&&) noexcept;
+
+  /** Reads again what changed. \param touchedTiles as SemanticOcTree::takeTouchedTiles() gives
+   * them. \return the tiles (of kTileEdge x kTileEdge columns) whose surfaces changed in anything.
+   */
+  std::vector<Column> update(const std::vector<octomap::OcTreeKey>& touchedTiles);
+
+  const semantic_octree::SemanticOcTree& map() const { return m_map; }
+  double voxelSize() const { return m_voxelSize; }
+
+  /** The column that holds a point, map frame, meters. */
+  Column columnAt(double x, double y) const { return {keyOf(x), keyOf(y)}; }
+  double centerOf(int key) const { return (key - 32768 + 0.5) * m_voxelSize; }
+
+  SurfaceRange surfaces(Column c) const;
+  /** The column's surface nearest in height to key z, at most `tolerance` voxels off; or null.
+   * Valid until update(). */
+  const Surface* near(Column c, int z, int tolerance) const;
+  /** The surface nearest to a height (meters), without one the lowest drivable one. */
+  std::optional<GroundPoint> find(double x, double y, std::optional<double> nearZ = {}) const;
+
+  /** Voxels that the wheels can climb from one column to the next. */
+  int step() const { return m_step; }
+  /** Largest distance in voxels that surfaces know (Surface::room2). */
+  int farthestRoom() const { return m_farthestRoom; }
+  /** Whether a disc of this radius (meters), its center anywhere in the surface's column, keeps the
+   * vehicle's clearance from walls, steps, steep and perhaps forbidden ground, and from what is not
+   * known to be ground. */
+  bool hasRoom(const Surface& surface, double radius) const {
+    const double needed = (radius + m_clearance) / m_voxelSize;
+    return surface.drivable && surface.room2 >= needed * needed;
+  }
+  /** Whether the wheels can get from one place to the other, step by step. */
+  bool connected(const GroundPoint& a, const GroundPoint& b) const;
+
+  /** The tiles that there are. */
+  std::vector<Column> tiles() const;
+
+  /** Of use within the library only. */
+  const GroundTiles& layers() const { return *m_tiles; }
+
+ private:
+  int keyOf(double meters) const {
+    const double voxels = meters / m_voxelSize;
+    const int towardsZero = static_cast<int>(voxels);
+    return towardsZero - (voxels < towardsZero) + 32768;
+  }
+
+  std::unique_ptr<GroundTiles> m_tiles;
+  const semantic_octree::SemanticOcTree& m_map;
+  double m_voxelSize, m_clearance;
+  int m_step, m_farthestRoom;
+};
+
+}  // namespace semantic_planning

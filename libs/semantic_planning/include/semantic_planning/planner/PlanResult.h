@@ -1,0 +1,64 @@
+#pragma once
+#include <colored_graph/PathResult.h>
+#include <mrpt/math/TPose2D.h>
+#include <semantic_planning/vehicle/PathPoint.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace semantic_planning {
+
+/** How planning ended; everything but Found says why there is no path. */
+enum class PlanStatus {
+  Found,
+  StartOffGround,  ///< no drivable ground there
+  StartBlocked,    ///< no room for the footprint
+  StartForbidden,  ///< the ground's class is
+  GoalOffGround,
+  GoalBlocked,
+  GoalForbidden,
+  NotConnected,   ///< by ground, or by the roadmap
+  OnlyForbidden,  ///< all paths go through forbidden classes
+  Cancelled,
+  TimeLimit
+};
+/** In words for files: "found", "start off ground", ... */
+const char* nameOf(PlanStatus status);
+
+/** Milliseconds of the stages that planning or an update went through, in order. */
+using StageTimes = std::vector<std::pair<std::string, double>>;
+
+struct PlanResult {
+  PlanStatus status = PlanStatus::NotConnected;
+  std::string reason;  ///< a sentence with the numbers; empty if found
+  /** Worst rank first: one number for each rank but rank 0, then the total length, in
+   * colored_graph's units (0.1 mm) or edges. */
+  std::vector<std::int64_t> cost;
+  /** Of the roadmap's best path, before it was shortened (PlannerOptions::shorten). */
+  std::vector<std::int64_t> roadmapCost;
+  std::vector<double> lengthPerClass;         ///< meters by class id; [0]: unknown ground
+  double length = 0;                          ///< meters
+  std::vector<PathPoint> path;                ///< at most half a voxel apart
+  std::vector<mrpt::math::TPose2D> vertices;  ///< where its curves meet
+  std::size_t numVertices = 0, numEdges = 0;  ///< of the roadmap
+  colored_graph::SearchStatistics search;
+  /** Of search.edgesEvaluated, those that were known from plans before, over the same ground. */
+  std::size_t edgesRemembered = 0;
+  StageTimes times;
+
+  bool found() const { return status == PlanStatus::Found; }
+};
+
+/** What an update did. */
+struct UpdateResult {
+  std::size_t tilesTouched = 0;  ///< of 8 x 8 x 8 voxels of the map
+  std::size_t tilesChanged = 0;  ///< of the ground
+  std::size_t verticesInserted = 0, verticesRemoved = 0, verticesRecolored = 0;
+  std::size_t edgesInserted = 0, edgesRemoved = 0, edgesChanged = 0;
+  StageTimes times;
+};
+
+}  // namespace semantic_planning

@@ -1,0 +1,97 @@
+#pragma once
+#include <colored_graph/CostModel.h>
+#include <semantic_octree/SemanticOcTree.h>
+#include <semantic_planning/ground/Ground.h>
+#include <semantic_planning/planner/PlanResult.h>
+#include <semantic_planning/roadmap/ClassReading.h>
+#include <semantic_planning/roadmap/Roadmap.h>
+#include <semantic_planning/roadmap/RoadmapOptions.h>
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+
+namespace semantic_planning {
+
+struct PlannerOptions {
+  VehicleOptions vehicle;
+  GroundOptions ground;
+  RoadmapOptions roadmap;
+  ClassReading reading;
+  colored_graph::EdgeModel edges = colored_graph::EdgeModel::Profile;
+  colored_graph::CostKind cost = colored_graph::CostKind::ArcLength;
+  /** Replaces detours over the roadmap's vertices by single curves where that makes the path
+   * better; with EdgeModel::Profile and CostKind::ArcLength only. */
+  bool shorten = false;
+  /** Of a search, seconds. */
+  double timeLimit = std::numeric_limits<double>::infinity();
+  /** Asked often during a search, which stops when it answers true. */
+  std::function<bool()> cancelled;
+
+  /** \throw std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+class PlannerCore;
+
+/** Plans paths of a vehicle over a semantic map that put classes before length.
+ *
+ *     SemanticPlanner planner(map, loadClassOrder("order.yaml", map.classes()), options);
+ *     PlanResult plan = planner.plan(start, goal);
+ *     while (plan.found() && !arrived()) {
+ *       map.insert(...);             // what was seen meanwhile
+ *       planner.update();            // ground and roadmap follow the map
+ *       plan = planner.replan(pose());
+ *     }
+ *
+ * A plan to another goal makes a roadmap of its own. What does not depend on start and goal is kept
+ * for the next plan until the map changes there: points for vertices, and what was found about
+ * edges; answers are those of a new planner. Not thread safe; the map must not change during a
+ * call, and what a planner's map tells about its changes (takeTouchedTiles(),
+ * Abstraction::takeChange()) is for one planner only. */
+class SemanticPlanner {
+ public:
+  /** \param map must outlive the planner. With GraphKind::Compressed it has to keep G-values
+   * (SemanticOcTree::setAbstraction).
+   * \param order over the map's class ids, 0 = unknown ground (loadClassOrder)
+   * \throw std::invalid_argument bad options, or an order of other classes
+   * \throw std::logic_error the map keeps no G-values and the roadmap needs them. */
+  SemanticPlanner(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
+                  const PlannerOptions& options = {});
+  ~SemanticPlanner();
+  SemanticPlanner(SemanticPlanner&&) noexcept;
+
+  /** Plans from scratch, over the map as it is now. Heights (meters) tell which of several levels
+   * is meant; without, the lowest drivable one. \throw std::invalid_argument a number is not
+   * finite. */
+  PlanResult plan(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal,
+                  std::optional<double> startZ = {}, std::optional<double> goalZ = {});
+
+  /** Brings ground and roadmap up to date with the map: leaves of the compressed tree that came or
+   * went insert or remove vertices, and edges over ground that changed are looked at again. */
+  UpdateResult update();
+
+  /** The best path now, from where the vehicle is, to the same goal: repairs the last one instead
+   * of searching anew. \throw std::logic_error nothing was planned before. */
+  PlanResult replan(const mrpt::math::TPose2D& start, std::optional<double> startZ = {});
+
+  /** Forgets all that plans before have found out, but for the ground: the next plan() takes as
+   * long as the first one. */
+  void forget();
+
+  const PlannerOptions& options() const;
+  const colored_graph::ClassOrder& order() const;
+  const Ground& ground() const;
+  /** False before the first plan, and after one whose start or goal was refused. */
+  bool hasRoadmap() const;
+  /** The roadmap of the last plan. \throw std::logic_error nothing was planned before. */
+  const Roadmap& roadmap() const;
+  /** Whether the vehicle can stand there: PlanStatus::Found, or what is the matter at a start. */
+  PlanStatus check(const mrpt::math::TPose2D& pose, std::optional<double> z = {}) const;
+
+ private:
+  std::unique_ptr<PlannerCore> m_core;
+};
+
+}  // namespace semantic_planning

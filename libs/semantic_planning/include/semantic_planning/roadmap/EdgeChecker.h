@@ -1,0 +1,90 @@
+#pragma once
+#include <colored_graph/ClassOrder.h>
+#include <colored_graph/ColoredGraph.h>
+#include <semantic_planning/ground/Ground.h>
+#include <semantic_planning/roadmap/ClassReading.h>
+#include <semantic_planning/vehicle/PathPoint.h>
+#include <semantic_planning/vehicle/ReedsShepp.h>
+
+#include <optional>
+#include <vector>
+
+namespace semantic_planning {
+
+struct Placement;
+
+/** A pose on the ground. */
+struct GroundPose {
+  mrpt::math::TPose2D pose;  ///< meters, radians; map frame
+  int z = 0;                 ///< key of the surface below the origin
+};
+
+/** How a vehicle fits onto the ground. */
+enum class Fit {
+  Free,
+  OffGround,  ///< no drivable ground below the origin
+  Blocked     ///< no room for the footprint
+};
+
+/** Where a vehicle fits, and over which classes it goes. The footprint is checked as discs, which
+ * keep their distance from whole voxels: this errs to the safe side by about a voxel. */
+class EdgeChecker {
+ public:
+  /** \param ground must outlive the checker. \throw std::invalid_argument bad options. */
+  EdgeChecker(const Ground& ground, const VehicleOptions& vehicle,
+              const colored_graph::ClassOrder& order, const ClassReading& reading);
+
+  const Ground& ground() const { return m_ground; }
+  const ReedsShepp& reedsShepp() const { return m_reedsShepp; }
+  const colored_graph::ClassOrder& order() const { return m_order; }
+
+  /** Puts a pose onto the surface nearest to a height (see Ground::find()). */
+  std::optional<GroundPose> place(const mrpt::math::TPose2D& pose,
+                                  std::optional<double> nearZ = {}) const;
+  Fit fit(const GroundPose& pose) const;
+  /** The worst class under the wheels. */
+  ClassId classAt(const GroundPose& pose) const;
+
+  /** The classes along the shortest curve from a to b, or nothing if it is blocked or does not lead
+   * to b's level. Looked at every half voxel or closer; the lengths add up to the curve's, rounded
+   * up. */
+  std::optional<colored_graph::EdgeProfile> profile(const GroundPose& a, const GroundPose& b) const;
+
+  /** Points along a free curve at most half a voxel apart, from its start to its end, and wherever
+   * steering or gear change. \param z of the ground at the start */
+  std::vector<PathPoint> trace(const ReedsSheppCurve& curve, int z) const;
+
+  /** Columns that a curve's outcome may depend on lie within this distance of it, meters. */
+  double reach() const { return m_reach; }
+
+ private:
+  struct CheckedDisc {
+    Disc disc;
+    int needed2;    ///< Surface::room2
+    int tolerance;  ///< voxels in height against the origin
+  };
+
+  const Surface* near(Column c, int z, int tolerance) const;
+  bool discsFit(const Placement& placed, int z) const;
+  /** f(surface, its column) for the ground under each wheel track; false if there is none. */
+  template <class F>
+  bool forWheels(const Placement& placed, int z, F f) const;
+  bool addClasses(const Placement& placed, int z, double length) const;
+  void addDistribution(Column c, const Surface& s, double length) const;
+  ClassId read(Column c, const Surface& s) const;
+  std::optional<ClassId> worstUnderWheels(const Placement& placed, int z) const;
+  /** \param lengths per class, meters */
+  colored_graph::EdgeProfile rounded(double total) const;
+
+  const Ground& m_ground;
+  const colored_graph::ClassOrder m_order;
+  const ClassReading m_reading;
+  ReedsShepp m_reedsShepp;
+  std::vector<CheckedDisc> m_discs;
+  std::vector<double> m_wheels;  ///< y in the vehicle's frame
+  int m_wheelTolerance;
+  double m_reach;
+  mutable std::vector<double> m_lengths;  ///< per class, of the edge that is being looked at
+};
+
+}  // namespace semantic_planning

@@ -1,0 +1,85 @@
+#pragma once
+#include <colored_graph/ColoredGraph.h>
+#include <semantic_planning/ground/TileGrid.h>
+#include <semantic_planning/roadmap/EdgeChecker.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace semantic_planning {
+
+/** The k nearest poses of each pose, in Reeds-Shepp distance up to a radius, exactly (ties to the
+ * smaller id), while poses come and go. */
+class NearestPoses {
+ public:
+  using VertexId = colored_graph::VertexId;
+  struct Neighbor {
+    VertexId id;
+    double distance;  ///< meters
+    bool operator<(const Neighbor& o) const {
+      return distance != o.distance ? distance < o.distance : id < o.id;
+    }
+  };
+  using Pair = std::pair<VertexId, VertexId>;  ///< smaller id first
+
+  /** \param reedsShepp must outlive this. */
+  NearestPoses(const ReedsShepp& reedsShepp, int neighbors, double radius);
+
+  /** Both return the pairs that may have become, or ceased to be, neighbors; sorted. */
+  std::vector<Pair> insert(const std::vector<VertexId>& ids, const std::vector<GroundPose>& poses);
+  std::vector<Pair> remove(const std::vector<VertexId>& ids);
+
+  bool contains(VertexId v) const { return v < m_entries.size() && m_entries[v].present; }
+  const GroundPose& pose(VertexId v) const { return m_entries[v].pose; }
+  /** Nearest first. */
+  const std::vector<Neighbor>& of(VertexId v) const { return m_entries[v].nearest; }
+  /** Whether one of them is among the other's nearest. */
+  bool linked(VertexId a, VertexId b) const;
+  /** Between two that are linked, meters. */
+  std::optional<double> distance(VertexId a, VertexId b) const;
+  /** The `count` nearest to a pose that need not be among these. */
+  std::vector<Neighbor> nearestTo(const GroundPose& pose, std::size_t count) const;
+
+ private:
+  struct Entry {
+    bool present = false;
+    GroundPose pose;
+    std::vector<Neighbor> nearest;
+  };
+  struct Candidate {
+    double bound;
+    VertexId a, b;
+    bool operator<(const Candidate& o) const { return bound < o.bound; }
+  };
+  Column cellOf(const mrpt::math::TPose2D& pose) const;
+  /** f(id, squared distance on the plane) for all poses within a radius. */
+  template <class F>
+  void forWithin(const mrpt::math::TPose2D& pose, double radius, F f) const;
+  bool isFull(const Entry& entry) const { return entry.nearest.size() == m_count; }
+  /** Only poses nearer than this can become its neighbors. */
+  double farthest(const Entry& entry) const;
+  void offer(VertexId to, const Neighbor& neighbor);
+  /** Solves for the candidates' distances, most promising first, where they may still count. */
+  void relax(std::vector<Candidate>& candidates);
+  void place(VertexId id, const GroundPose& pose);
+  void forget(VertexId id);
+  /** Candidates that are farther than `beyond`, up to `radius`, for the entries still `open`. */
+  std::vector<Candidate> candidatesOf(const std::vector<VertexId>& open, double beyond,
+                                      double radius) const;
+  double firstRadius() const;
+  /** Finds the neighbors that entries lack, looking farther and farther, at first up to `radius`.
+   */
+  void complete(std::vector<VertexId> open, double radius);
+  std::vector<Pair> takeChanged();
+
+  const ReedsShepp& m_reedsShepp;
+  std::size_t m_count;
+  double m_radius, m_cellSize;
+  std::vector<Entry> m_entries;
+  TileGrid<std::vector<VertexId>> m_cells;
+  std::size_t m_present = 0;
+  std::vector<Pair> m_changed;
+};
+
+}  // namespace semantic_planning

@@ -1,0 +1,84 @@
+#pragma once
+#include <colored_graph/ColoredGraph.h>
+#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/NearestPoses.h>
+#include <semantic_planning/roadmap/PosePair.h>
+#include <semantic_planning/roadmap/RoadmapOptions.h>
+
+#include <optional>
+#include <set>
+#include <vector>
+
+namespace semantic_planning {
+
+/** Poses on the ground as vertices of a colored graph, and Reeds-Shepp curves as its edges.
+ *
+ * An edge connects a with b if b is among the k nearest of a, or a among those of b; this holds
+ * after every insertion and removal. Guests (start and goal) have edges to twice as many, but are
+ * nobody's neighbors.
+ *
+ * With RoadmapOptions::edges the best of these edges stay: every vertex's nearest first, then every
+ * vertex's second nearest, and so on; of those the shortest. They, too, are chosen anew after every
+ * insertion and removal. Guests' edges do not count. */
+class Roadmap {
+ public:
+  using VertexId = colored_graph::VertexId;
+  using EdgeId = colored_graph::EdgeId;
+
+  /** \param checker must outlive the roadmap. */
+  Roadmap(const EdgeChecker& checker, const RoadmapOptions& options);
+
+  /** Inserts vertices and connects them. \param classes of the vertices, one for each pose.
+   * \return their ids */
+  std::vector<VertexId> add(const std::vector<GroundPose>& poses,
+                            const std::vector<ClassId>& classes);
+  /** Removes vertices; those that were near them get other neighbors. */
+  void remove(const std::vector<VertexId>& vertices);
+
+  VertexId addGuest(const GroundPose& pose);
+  void removeGuest(VertexId v);
+
+  /** Looks again at the edges that were evaluated over ground in these tiles. */
+  void refresh(const std::vector<Column>& changedTiles);
+
+  const colored_graph::ColoredGraph& graph() const { return m_graph; }
+  /** For searches. */
+  colored_graph::ColoredGraph& graph() { return m_graph; }
+  const GroundPose& pose(VertexId v) const { return m_poses.at(v); }
+  /** What the edge connects. */
+  PosePair ends(EdgeId e) const;
+  /** The edge's curve, from one of its ends to the other. */
+  ReedsSheppCurve curve(EdgeId e, VertexId from) const;
+  /** As colored_graph::SearchOptions::evaluate. */
+  std::optional<colored_graph::EdgeProfile> evaluate(EdgeId e) const;
+  /** As colored_graph::SearchOptions::lengthBound. */
+  colored_graph::Length lengthBound(VertexId a, VertexId b) const;
+
+  struct Counts {
+    std::size_t edgesInserted = 0, edgesRemoved = 0, edgesChanged = 0;
+  };
+  /** Since the last call. */
+  Counts takeCounts();
+
+ private:
+  EdgeId edgeBetween(VertexId a, VertexId b) const;
+  void setLinked(VertexId a, VertexId b, bool linked);
+  void keepBestEdges();
+  void reconcile(const std::vector<NearestPoses::Pair>& pairs);
+  void reconcileGuests();
+  void reconcileGuest(VertexId guest);
+  void reevaluate(EdgeId e);
+  void keepPose(VertexId v, const GroundPose& pose);
+
+  const EdgeChecker& m_checker;
+  colored_graph::ColoredGraph m_graph;
+  NearestPoses m_nearest;
+  std::size_t m_guestNeighbors, m_mostEdges;
+  double m_radius;
+  std::vector<GroundPose> m_poses;  ///< by vertex id
+  std::vector<double> m_lengths;    ///< of the curves by edge id, meters
+  std::set<VertexId> m_guests;
+  Counts m_counts;
+};
+
+}  // namespace semantic_planning

@@ -1,0 +1,114 @@
+#include "Bridging.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "ColumnBox.h"
+
+namespace semantic_planning {
+namespace {
+
+/** A surface that a bridge offers to a column of its hole. */
+struct Offer {
+  int column, z;
+  double width;  ///< of the gap
+  Column from;
+  int direction;
+  ClassId classId;
+};
+
+/** Of a bridge's columns from `low` to `high`, those in a tile; none if low > high. */
+std::pair<int, int> columnsInTile(const Bridge& bridge, Column tile) {
+  const Column first = firstColumnOf(tile);
+  const Direction& d = kDirections[bridge.direction];
+  int low = 1, high = bridge.columns - 1;
+  for (const auto& [offset, step] :
+       {std::pair{first.x - bridge.from.x, d.x}, {first.y - bridge.from.y, d.y}}) {
+    const int last = offset + kTileEdge - 1;
+    if (step == 0 && (offset > 0 || last < 0)) return {1, 0};
+    if (step == 0) continue;
+    low = std::max(low, step > 0 ? offset : -last);
+    high = std::min(high, step > 0 ? last : -offset);
+  }
+  return {low, high};
+}
+
+std::vector<Offer> offersTo(Column tile, const BridgeGrid& grid, const GroundShape& shape) {
+  std::vector<Offer> offers;
+  const int reach = reachOfBridges(shape);
+  const ColumnBox box{firstColumnOf(tile), lastColumnOf(tile)};
+  for (const Column& from : tilesWithin({box}, {reach, reach, reach, 0})) {
+    const std::vector<Bridge>* bridges = grid.find(from);
+    if (!bridges) continue;
+    for (const Bridge& b : *bridges) {
+      const auto [low, high] = columnsInTile(b, tile);
+      const bool known = b.width() <= shape.bridgeGap;
+      for (int i = low; i <= high; ++i)
+        offers.push_back({indexInTile(b.column(i)), b.height(i), b.width(), b.from, b.direction,
+                          known ? b.nearerClass(i) : semantic_types::kNoClass});
+    }
+  }
+  return offers;
+}
+
+auto narrowestFirst(const Offer& o) {
+  return std::tie(o.column, o.width, o.z, o.from.y, o.from.x, o.direction);
+}
+
+/** Of the offers at about one height in a column, the narrowest. Sorted by column, then height. */
+std::vector<Offer> bestOffers(std::vector<Offer> offers, int step) {
+  std::stable_sort(offers.begin(), offers.end(), [](const Offer& l, const Offer& r) {
+    return narrowestFirst(l) < narrowestFirst(r);
+  });
+  std::vector<Offer> best;
+  std::size_t columnBegin = 0;
+  for (const Offer& offer : offers) {
+    if (!best.empty() && best.back().column != offer.column) columnBegin = best.size();
+    const bool taken = std::any_of(best.begin() + columnBegin, best.end(), [&](const Offer& b) {
+      return b.column == offer.column && std::abs(b.z - offer.z) <= step;
+    });
+    if (!taken) best.push_back(offer);
+  }
+  std::sort(best.begin(), best.end(), [](const Offer& l, const Offer& r) {
+    return std::tie(l.column, l.z) < std::tie(r.column, r.z);
+  });
+  return best;
+}
+
+Surface bridgingSurface(const Offer& offer) {
+  Surface s;
+  s.z = static_cast<std::uint16_t>(offer.z);
+  s.classId = offer.classId;
+  s.bridged = true;
+  return s;
+}
+
+bool isLower(const Surface& l, const Surface& r) { return l.z < r.z; }
+
+/** A tile's own surfaces and what is offered. */
+SurfaceTile merged(const SurfaceTile& own, const std::vector<Offer>& offers) {
+  SurfaceTile result;
+  auto offer = offers.begin();
+  for (int column = 0; column < kTileColumns; ++column) {
+    const auto begin = static_cast<std::ptrdiff_t>(result.surfaces.size());
+    for (const Surface& s : own.column(column)) result.surfaces.push_back(s);
+    for (; offer != offers.end() && offer->column == column; ++offer)
+      result.surfaces.push_back(bridgingSurface(*offer));
+    std::sort(result.surfaces.begin() + begin, result.surfaces.end(), isLower);
+    result.first[column + 1] = static_cast<std::uint16_t>(result.surfaces.size());
+  }
+  return result;
+}
+
+}  // namespace
+
+SurfaceTile bridgedSurfaces(const BridgeGrid& bridges, const SurfaceGrid& measured, Column tile,
+                            const GroundShape& shape) {
+  const SurfaceTile* own = measured.find(tile);
+  const std::vector<Offer> offers = bestOffers(offersTo(tile, bridges, shape), shape.step);
+  if (own && offers.empty()) return *own;
+  return merged(own ? *own : SurfaceTile(), offers);
+}
+
+}  // namespace semantic_planning

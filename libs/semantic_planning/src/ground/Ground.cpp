@@ -1,0 +1,148 @@
+#include <semantic_planning/ground/Ground.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "GroundTiles.h"
+
+namespace semantic_planning {
+namespace {
+
+int voxels(double meters, double voxelSize) {
+  return static_cast<int>(std::ceil(meters / voxelSize - 1e-6));
+}
+
+double largestRadius(const VehicleOptions& vehicle) {
+  double largest = 0;
+  for (const Disc& disc : coveringDiscs(vehicle.footprint))
+    largest = std::max(largest, disc.radius);
+  return largest;
+}
+
+void checkOrder(const semantic_octree::SemanticOcTree& map,
+                const colored_graph::ClassOrder& order) {
+  if (order.classes() != map.numClasses() + 1)
+    throw std::invalid_argument("order of " + std::to_string(order.classes()) +
+                                " classes, but the map has " + std::to_string(map.numClasses()) +
+                                " and unknown ground counts as one");
+}
+
+/** Finds the tiles with anything occupied, and those within a margin of columns: holes may be
+ * bridged there. */
+class TileSearch {
+ public:
+  TileSearch(const semantic_octree::SemanticOcTree& map, int margin)
+      : m_map(map), m_margin(margin) {}
+
+  std::vector<Column> find() {
+    if (m_map.root()) visit(*m_map.root(), {0, 0}, 1 << m_map.getTreeDepth());
+    std::vector<Column> tiles;
+    m_marks.forEach([&](Column tile, char marked) {
+      if (marked) tiles.push_back(tile);
+    });
+    return tiles;
+  }
+
+ private:
+  using Node = semantic_octree::SemanticOcTree::Node;
+
+  /** \param low its lowest keys \param size its edge */
+  void visit(const Node& node, Column low, int size) {
+    if (node.getLogOdds() <= 0) return;  // an inner node's is its most occupied leaf's
+    if (node.isLeaf() || size == kTileEdge) return mark(low, size);
+    const int half = size / 2;
+    for (unsigned i = 0; i < 8; ++i)
+      if (m_map.nodeChildExists(&node, i))
+        visit(*m_map.getNodeChild(&node, i),
+              {low.x + (i & 1 ? half : 0), low.y + (i & 2 ? half : 0)}, half);
+  }
+
+  void mark(Column low, int size) {
+    const Column first = tileOf({low.x - m_margin, low.y - m_margin});
+    const Column last = tileOf({low.x + size - 1 + m_margin, low.y + size - 1 + m_margin});
+    if (std::max(last.x - first.x, last.y - first.y) > 1000)
+      throw std::invalid_argument("an occupied cell of the map is too large to be ground");
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x) m_marks.at({x, y}) = true;
+  }
+
+  const semantic_octree::SemanticOcTree& m_map;
+  const int m_margin;
+  TileGrid<char> m_marks;
+};
+
+}  // namespace
+
+GroundShape::GroundShape(const VehicleOptions& vehicle, const GroundOptions& options,
+                         const colored_graph::ClassOrder& order, double voxelSize)
+    : height(voxels(vehicle.height, voxelSize)),
+      step(std::max(1, static_cast<int>(vehicle.stepHeight / voxelSize + 1e-6))),
+      bridgeGap(options.bridgeGap / voxelSize + 1e-6),
+      widestGap(std::max(options.bridgeGap, options.unknownGap) / voxelSize + 1e-6),
+      rise(std::tan(vehicle.maxSlope * M_PI / 180)),
+      baseline(std::max(2, static_cast<int>(std::lround(0.6 / voxelSize)))),
+      farthestRoom(voxels(largestRadius(vehicle) + vehicle.clearance, voxelSize) + 1),
+      keepOff(order.classes()) {
+  for (int id = 0; id < order.classes(); ++id)
+    keepOff[id] = options.keepFootprintOffForbidden &&
+                  order.rank(static_cast<colored_graph::ClassId>(id)) == colored_graph::kForbidden;
+}
+
+Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions& vehicle,
+               const GroundOptions& options, const colored_graph::ClassOrder& order)
+    : m_map(map), m_voxelSize(map.getResolution()), m_clearance(vehicle.clearance) {
+  vehicle.validate();
+  options.validate();
+  checkOrder(map, order);
+  const GroundShape shape(vehicle, options, order, m_voxelSize);
+  m_step = shape.step;
+  m_farthestRoom = shape.farthestRoom;
+  m_tiles = std::make_unique<GroundTiles>(map, shape);
+  m_tiles->update(TileSearch(map, std::max(kTileEdge, reachOfBridges(shape))).find());
+}
+
+Ground::~Ground() = default;
+Ground::Ground(Ground&&) noexcept = default;
+
+std::vector<Column> Ground::update(const std::vector<octomap::OcTreeKey>& touchedTiles) {
+  std::vector<Column> tiles;
+  for (const octomap::OcTreeKey& key : touchedTiles) tiles.push_back(tileOf({key[0], key[1]}));
+  std::sort(tiles.begin(), tiles.end());
+  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  return m_tiles->update(tiles);
+}
+
+SurfaceRange Ground::surfaces(Column c) const { return surfacesAt(m_tiles->surfaces(), c); }
+
+const Surface* Ground::near(Column c, int z, int tolerance) const {
+  return surfaceNear(m_tiles->surfaces(), c, z, tolerance);
+}
+
+std::optional<GroundPoint> Ground::find(double x, double y, std::optional<double> nearZ) const {
+  const Column c = columnAt(x, y);
+  const Surface* best = nullptr;
+  for (const Surface& s : surfaces(c)) {
+    if (!s.drivable) continue;
+    const auto off = [&](const Surface& t) { return std::abs(centerOf(t.z) - *nearZ); };
+    if (!best || (nearZ && off(s) < off(*best))) best = &s;
+  }
+  if (!best) return std::nullopt;
+  return GroundPoint{c, *best};
+}
+
+bool Ground::connected(const GroundPoint& a, const GroundPoint& b) const {
+  const GroundParts& parts = m_tiles->parts();
+  return parts.partOf(a.column, a.surface) == parts.partOf(b.column, b.surface);
+}
+
+std::vector<Column> Ground::tiles() const {
+  std::vector<Column> tiles;
+  m_tiles->surfaces().forEach([&](Column tile, const SurfaceTile& t) {
+    if (!t.surfaces.empty()) tiles.push_back(tile);
+  });
+  return tiles;
+}
+
+}  // namespace semantic_planning

@@ -1,0 +1,25 @@
+#pragma once
+#include <colored_graph/ClassOrder.h>
+#include <semantic_planning/ground/GroundOptions.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
+
+#include <vector>
+
+namespace semantic_planning {
+
+/** Vehicle and options in voxels. */
+struct GroundShape {
+  GroundShape(const VehicleOptions& vehicle, const GroundOptions& options,
+              const colored_graph::ClassOrder& order, double voxelSize);
+
+  int height;        ///< free voxels above a surface
+  int step;          ///< from column to column
+  double bridgeGap;  ///< between the surfaces on both sides
+  double widestGap;
+  double rise;   ///< of a drivable slope, voxels per voxel
+  int baseline;  ///< columns to each side over which slope is measured
+  int farthestRoom;
+  std::vector<bool> keepOff;  ///< by class id
+};
+
+}  // namespace semantic_planning

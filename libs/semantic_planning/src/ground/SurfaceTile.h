@@ -1,0 +1,77 @@
+#pragma once
+#include <semantic_planning/ground/Surface.h>
+#include <semantic_planning/ground/TileGrid.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <vector>
+
+#include "TileWindow.h"
+
+namespace semantic_planning {
+
+/** The surfaces of a tile, column by column, lowest first. */
+struct SurfaceTile {
+  std::vector<Surface> surfaces;
+  std::array<std::uint16_t, kTileColumns + 1> first{};
+
+  SurfaceRange column(int index) const {
+    return {surfaces.data() + first[index], surfaces.data() + first[index + 1]};
+  }
+  /** The same places, whatever else is known of them. */
+  bool sameColumn(int index, const SurfaceTile& o) const {
+    const SurfaceRange l = column(index), r = o.column(index);
+    return std::equal(l.begin(), l.end(), r.begin(), r.end(),
+                      [](const Surface& a, const Surface& b) {
+                        return a.z == b.z && a.classId == b.classId && a.bridged == b.bridged;
+                      });
+  }
+};
+
+using SurfaceGrid = TileGrid<SurfaceTile>;
+using SurfaceWindow = TileWindow<SurfaceTile>;
+
+inline SurfaceRange surfacesAt(const SurfaceGrid& grid, Column c) {
+  const SurfaceTile* tile = grid.find(tileOf(c));
+  return tile ? tile->column(indexInTile(c)) : SurfaceRange();
+}
+
+inline SurfaceRange surfacesAt(const SurfaceWindow& window, Column c) {
+  return window.around(c).column(indexInTile(c));
+}
+
+/** Of a column's surfaces the nearest to z, at most `tolerance` off, the lower one on a tie; or
+ * null. */
+inline const Surface* surfaceNear(SurfaceRange column, int z, int tolerance) {
+  const Surface* best = nullptr;
+  for (const Surface& s : column) {
+    const int difference = std::abs(int(s.z) - z);
+    if (difference <= tolerance && (!best || difference < std::abs(int(best->z) - z))) best = &s;
+  }
+  return best;
+}
+
+template <class Surfaces>
+const Surface* surfaceNear(const Surfaces& surfaces, Column c, int z, int tolerance) {
+  return surfaceNear(surfacesAt(surfaces, c), z, tolerance);
+}
+
+/** f(column) for all columns of a tile. */
+template <class F>
+void forColumnsOf(Column tile, F f) {
+  const Column low = firstColumnOf(tile);
+  for (int y = 0; y < kTileEdge; ++y)
+    for (int x = 0; x < kTileEdge; ++x) f(Column{low.x + x, low.y + y});
+}
+
+/** f(column, index) for all surfaces of a tile, in their order. */
+template <class F>
+void forSurfacesOf(Column tile, const SurfaceTile& surfaces, F f) {
+  forColumnsOf(tile, [&](Column c) {
+    const int index = indexInTile(c);
+    for (std::size_t i = surfaces.first[index]; i < surfaces.first[index + 1]; ++i) f(c, i);
+  });
+}
+
+}  // namespace semantic_planning

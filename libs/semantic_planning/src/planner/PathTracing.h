@@ -1,0 +1,22 @@
+#pragma once
+#include <semantic_planning/planner/PlanResult.h>
+#include <semantic_planning/roadmap/Roadmap.h>
+
+namespace semantic_planning {
+
+/** The poses along a path of the roadmap, with their arc lengths. */
+std::vector<PathPoint> tracePath(const colored_graph::PathResult& path, const Roadmap& roadmap,
+                                 const EdgeChecker& checker);
+
+/** Appends a curve's points to a path; the first is where the last one ended, perhaps in another
+ * gear. */
+void appendCurve(const std::vector<PathPoint>& curve, std::vector<PathPoint>& path);
+
+/** Cost and lengths of a path that was found. */
+void setLengths(const colored_graph::PathResult& path, PlanResult& result);
+
+/** Lengths, cost and poses of a search's result, or why there is none. */
+void describePath(const colored_graph::PathResult& path, const Roadmap& roadmap,
+                  const EdgeChecker& checker, PlanResult& result);
+
+}  // namespace semantic_planning

@@ -1,0 +1,71 @@
+#pragma once
+#include <colored_graph/ColoredReplanner.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
+
+#include <memory>
+#include <optional>
+
+#include "StageClock.h"
+#include "roadmap/CandidateStore.h"
+#include "roadmap/EdgeMemory.h"
+#include "roadmap/MapRoadmap.h"
+
+namespace semantic_planning {
+
+/** What SemanticPlanner is made of. */
+class PlannerCore {
+ public:
+  struct Place {
+    mrpt::math::TPose2D pose;
+    std::optional<double> z;
+  };
+
+  PlannerCore(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
+              const PlannerOptions& options);
+
+  PlanResult plan(const Place& start, const Place& goal);
+  UpdateResult update();
+  PlanResult replan(const Place& start);
+  void forget();
+  PlanStatus check(const Place& place) const;
+
+  const PlannerOptions& options() const { return m_options; }
+  const colored_graph::ClassOrder& order() const { return m_checker.order(); }
+  const Ground& ground() const { return m_ground; }
+  bool hasRoadmap() const { return m_roadmap != nullptr; }
+  const Roadmap& roadmap() const;
+
+ private:
+  using VertexId = colored_graph::VertexId;
+
+  /** What the roadmap has to follow. */
+  struct MapChange {
+    std::size_t tilesTouched = 0;
+    std::vector<Column> tiles;  ///< of the ground
+    CandidateStore::Change spots;
+  };
+  MapChange followMap(StageClock& clock);
+  PlanStatus placed(const Place& place, std::optional<GroundPose>& pose) const;
+  /** Status and reason if nothing can be planned between these places. */
+  bool refuse(const Place& start, const Place& goal, PlanResult& result);
+  colored_graph::SearchOptions searchOptions();
+  std::optional<colored_graph::EdgeProfile> evaluateTimed(colored_graph::EdgeId e);
+  void moveStart(Roadmap& map);
+  void finish(const colored_graph::PathResult& path, StageClock& clock, PlanResult& result);
+
+  semantic_octree::SemanticOcTree& m_map;
+  const PlannerOptions m_options;
+  Ground m_ground;
+  EdgeChecker m_checker;
+  CandidateStore m_candidates;
+  EdgeMemory m_edges;
+  colored_graph::CostModel m_model;
+  std::unique_ptr<MapRoadmap> m_roadmap;
+  std::optional<GroundPose> m_startPose, m_goalPose;
+  Place m_goalPlace;
+  VertexId m_start = colored_graph::kNoVertex, m_goal = colored_graph::kNoVertex;
+  std::optional<colored_graph::ColoredReplanner> m_replanner;
+  double m_evaluating = 0;  ///< milliseconds of the present search
+};
+
+}  // namespace semantic_planning

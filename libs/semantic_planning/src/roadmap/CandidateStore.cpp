@@ -1,0 +1,90 @@
+#include "CandidateStore.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "ground/SurfaceTile.h"
+
+namespace semantic_planning {
+
+using semantic_octree::Abstraction;
+using semantic_octree::LeafCell;
+
+CandidateStore::CandidateStore(semantic_octree::SemanticOcTree& map, const Ground& ground,
+                               const RoadmapOptions& options)
+    : m_map(map), m_ground(ground), m_options(options) {
+  if (options.kind == GraphKind::Compressed) Abstraction(map).takeChange();  // begins with all
+}
+
+CandidateStore::Tile CandidateStore::make(Column tile) const {
+  Tile result;
+  result.made = true;
+  result.lowest = 65535;
+  forColumnsOf(tile, [&](Column c) {
+    for (const Surface& s : m_ground.surfaces(c)) {
+      if (!s.drivable) continue;
+      result.lowest = std::min<int>(result.lowest, s.z);
+      result.highest = std::max<int>(result.highest, s.z);
+    }
+  });
+  if (m_options.kind == GraphKind::Compressed)
+    result.spots = compressedSpots(tile, Abstraction(m_map), m_ground, m_options);
+  else if (m_options.kind == GraphKind::Full)
+    result.spots = gridSpots(tile, m_ground, m_options);
+  std::sort(result.spots.begin(), result.spots.end());
+  return result;
+}
+
+CandidateStore::Tile& CandidateStore::made(Column tile) {
+  Tile& kept = m_tiles.at(tile);
+  if (!kept.made) kept = make(tile);
+  return kept;
+}
+
+void CandidateStore::addTilesOf(const LeafCell& leaf, std::vector<Column>& tiles) {
+  const int size = 1 << (16 - leaf.depth), z = leaf.key[2] & ~(size - 1);
+  const Column low{leaf.key[0] & ~(size - 1), leaf.key[1] & ~(size - 1)};
+  const Column first = tileOf(low), last = tileOf({low.x + size - 1, low.y + size - 1});
+  m_tiles.forEachIn(first, last, [&](Column c, const Tile& tile) {
+    if (tile.made && z <= tile.highest && z + size > tile.lowest) tiles.push_back(c);
+  });
+}
+
+/** Where leaves came or went, and where those that stayed may be of another class, or have become
+ * occupied or free. */
+std::vector<Column> CandidateStore::outdated(const std::vector<octomap::OcTreeKey>& touched) {
+  Abstraction abstraction(m_map);
+  const semantic_octree::TreeChange change = abstraction.takeChange();
+  std::vector<Column> tiles;
+  for (const auto* leaves : {&change.removed, &change.added})
+    for (const LeafCell& leaf : *leaves) addTilesOf(leaf, tiles);
+  constexpr unsigned kTouchedDepth = 13;  // 8 voxels
+  for (const octomap::OcTreeKey& key : touched) {
+    addTilesOf({key, kTouchedDepth, nullptr}, tiles);
+    for (const LeafCell& leaf : abstraction.leavesIn(key, key, false))
+      if (leaf.depth < kTouchedDepth) addTilesOf(leaf, tiles);
+  }
+  return tiles;
+}
+
+CandidateStore::Change CandidateStore::update(const std::vector<octomap::OcTreeKey>& touched,
+                                              const std::vector<Column>& changedTiles) {
+  std::vector<Column> tiles;
+  if (m_options.kind == GraphKind::Compressed) tiles = outdated(touched);
+  if (m_options.kind == GraphKind::Compressed || m_options.kind == GraphKind::Full)
+    tiles.insert(tiles.end(), changedTiles.begin(), changedTiles.end());
+  std::sort(tiles.begin(), tiles.end());
+  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  Change change;
+  for (const Column& tile : tiles) {
+    const std::vector<Spot> before = std::exchange(m_tiles.at(tile), make(tile)).spots;
+    const std::vector<Spot>& now = in(tile);
+    std::set_difference(before.begin(), before.end(), now.begin(), now.end(),
+                        std::back_inserter(change.removed));
+    std::set_difference(now.begin(), now.end(), before.begin(), before.end(),
+                        std::back_inserter(change.added));
+  }
+  return change;
+}
+
+}  // namespace semantic_planning

@@ -1,0 +1,65 @@
+#pragma once
+#include <semantic_octree/Abstraction.h>
+#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/RoadmapOptions.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "PlanningRegion.h"
+
+namespace semantic_planning {
+
+/** A point upon the ground where vertices may be, one for each heading. */
+struct Spot {
+  Column column;
+  int z = 0;                       ///< key of its surface
+  std::optional<ClassId> classId;  ///< of its leaf; none: that of the ground
+  /** Those with smaller numbers go first, [0, 1). However many are taken, they are spread evenly.
+   */
+  double priority = 0;
+
+  auto key() const { return std::tuple(priority, column.x, column.y, z, classId); }
+  bool operator<(const Spot& o) const { return key() < o.key(); }
+  bool operator==(const Spot& o) const { return key() == o.key(); }
+};
+
+/** A pose that may become a vertex. */
+struct Candidate {
+  GroundPose pose;
+  std::optional<ClassId> classId;  ///< as Spot's
+};
+
+/** The spots of a tile that lie in leaves of the compressed tree, in no particular order. */
+std::vector<Spot> compressedSpots(Column tile, const semantic_octree::Abstraction& abstraction,
+                                  const Ground& ground, const RoadmapOptions& options);
+
+/** Spots upon the finest map's ground, on a grid. */
+std::vector<Spot> gridSpots(Column tile, const Ground& ground, const RoadmapOptions& options);
+
+/** A spot's poses, in evenly spaced headings from a direction that looks random. */
+std::vector<Candidate> candidatesAt(const Spot& spot, const Ground& ground,
+                                    const RoadmapOptions& options);
+
+/** Where a Halton sequence is laid. */
+struct HaltonSearch {
+  const Ground& ground;
+  const RoadmapOptions& options;
+  const PlanningRegion& region;
+};
+
+/** Draws from a Halton sequence over region (GraphKind::HaltonMap: the ground's rectangle) and
+ * headings, in order, until `enough` answers true or the sequence has become hopeless (a thousand
+ * draws in the region for each vertex asked for). Draws that are not over any ground are told as
+ * nothing. */
+void drawHalton(const HaltonSearch& search, const colored_graph::ClassOrder& order,
+                const std::function<bool(const std::optional<Candidate>&)>& enough);
+
+/** A number in [0, 1) that spreads the cells of a grid: the fraction of cells below any bound is
+ * the bound, in every neighborhood (ordered dithering, Bayer 1973). */
+double dither(unsigned x, unsigned y, unsigned seed);
+
+}  // namespace semantic_planning

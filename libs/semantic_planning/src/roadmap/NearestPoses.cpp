@@ -1,0 +1,203 @@
+#include <semantic_planning/roadmap/NearestPoses.h>
+#include <semantic_planning/roadmap/PosePair.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace semantic_planning {
+
+using mrpt::math::TPose2D;
+
+namespace {
+
+double squared(double x) { return x * x; }
+
+/** Squared distance on the plane. */
+double onPlane2(const TPose2D& a, const TPose2D& b) {
+  return squared(b.x - a.x) + squared(b.y - a.y);
+}
+
+NearestPoses::Pair ordered(colored_graph::VertexId a, colored_graph::VertexId b) {
+  return std::minmax(a, b);
+}
+
+bool holds(const std::vector<NearestPoses::Neighbor>& nearest, colored_graph::VertexId id) {
+  return std::any_of(nearest.begin(), nearest.end(), [&](const auto& n) { return n.id == id; });
+}
+
+}  // namespace
+
+NearestPoses::NearestPoses(const ReedsShepp& reedsShepp, int neighbors, double radius)
+    : m_reedsShepp(reedsShepp),
+      m_count(static_cast<std::size_t>(neighbors)),
+      m_radius(radius),
+      m_cellSize(radius / 4) {}
+
+Column NearestPoses::cellOf(const TPose2D& pose) const {
+  return {static_cast<int>(std::floor(pose.x / m_cellSize)),
+          static_cast<int>(std::floor(pose.y / m_cellSize))};
+}
+
+template <class F>
+void NearestPoses::forWithin(const TPose2D& pose, double radius, F f) const {
+  const Column low = cellOf({pose.x - radius, pose.y - radius, 0});
+  const Column high = cellOf({pose.x + radius, pose.y + radius, 0});
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x) {
+      const std::vector<VertexId>* cell = m_cells.find({x, y});
+      if (!cell) continue;
+      for (const VertexId id : *cell) {
+        const double distance2 = onPlane2(pose, m_entries[id].pose.pose);
+        if (distance2 <= squared(radius)) f(id, distance2);
+      }
+    }
+}
+
+double NearestPoses::farthest(const Entry& entry) const {
+  return isFull(entry) ? entry.nearest.back().distance : m_radius;
+}
+
+void NearestPoses::place(VertexId id, const GroundPose& pose) {
+  if (id >= m_entries.size()) m_entries.resize(id + 1);
+  m_entries[id] = {true, pose, {}};
+  m_cells.at(cellOf(pose.pose)).push_back(id);
+  ++m_present;
+}
+
+void NearestPoses::forget(VertexId id) {
+  std::vector<VertexId>& cell = m_cells.at(cellOf(m_entries[id].pose.pose));
+  --m_present;
+  cell.erase(std::find(cell.begin(), cell.end(), id));
+  for (const Neighbor& n : m_entries[id].nearest) m_changed.push_back(ordered(id, n.id));
+  m_entries[id] = Entry();
+}
+
+void NearestPoses::offer(VertexId to, const Neighbor& neighbor) {
+  std::vector<Neighbor>& nearest = m_entries[to].nearest;
+  if (neighbor.distance > m_radius || holds(nearest, neighbor.id)) return;
+  if (isFull(m_entries[to])) {
+    if (!(neighbor < nearest.back())) return;
+    m_changed.push_back(ordered(to, nearest.back().id));
+    nearest.pop_back();
+  }
+  nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), neighbor), neighbor);
+  m_changed.push_back(ordered(to, neighbor.id));
+}
+
+void NearestPoses::relax(std::vector<Candidate>& candidates) {
+  std::sort(candidates.begin(), candidates.end());
+  for (const Candidate& c : candidates) {
+    const Entry &a = m_entries[c.a], &b = m_entries[c.b];
+    if (c.bound > farthest(a) && c.bound > farthest(b)) continue;
+    const double distance = PosePair(a.pose, b.pose).distance(m_reedsShepp);
+    offer(c.a, {c.b, distance});
+    offer(c.b, {c.a, distance});
+  }
+}
+
+std::vector<NearestPoses::Candidate> NearestPoses::candidatesOf(const std::vector<VertexId>& open,
+                                                                double beyond,
+                                                                double radius) const {
+  std::vector<bool> isOpen(m_entries.size());
+  for (const VertexId id : open) isOpen[id] = true;
+  const double beyond2 = beyond < 0 ? -1 : squared(beyond);
+  std::vector<Candidate> candidates;
+  for (const VertexId a : open)
+    forWithin(m_entries[a].pose.pose, radius, [&](VertexId b, double distance2) {
+      if (a == b || distance2 <= beyond2 || (isOpen[b] && b < a)) return;
+      const double bound = m_reedsShepp.lowerBound(m_entries[a].pose.pose, m_entries[b].pose.pose);
+      if (bound <= m_radius) candidates.push_back({bound, a, b});
+    });
+  return candidates;
+}
+
+/** Where poses are dense there is no need to look at all within the radius: a disc that holds some
+ * times the neighbors wanted, if they were spread evenly. */
+double NearestPoses::firstRadius() const {
+  std::size_t cells = 0;
+  m_cells.forEach([&](Column, const std::vector<VertexId>& cell) { cells += !cell.empty(); });
+  const double area = static_cast<double>(cells) * m_cellSize * m_cellSize;
+  const double wanted = 3.0 * static_cast<double>(m_count);
+  return std::min(m_radius, std::sqrt(wanted * area / (M_PI * static_cast<double>(m_present + 1))));
+}
+
+void NearestPoses::complete(std::vector<VertexId> open, double radius) {
+  for (double beyond = -1; !open.empty() && beyond < m_radius;) {
+    std::vector<Candidate> candidates = candidatesOf(open, beyond, radius);
+    relax(candidates);
+    beyond = radius;
+    radius = std::min(m_radius, 2 * radius);
+    open.erase(std::remove_if(open.begin(), open.end(),
+                              [&](VertexId id) { return farthest(m_entries[id]) <= beyond; }),
+               open.end());
+  }
+}
+
+std::vector<NearestPoses::Pair> NearestPoses::insert(const std::vector<VertexId>& ids,
+                                                     const std::vector<GroundPose>& poses) {
+  const bool first = m_present == 0;
+  for (std::size_t i = 0; i < ids.size(); ++i) place(ids[i], poses[i]);
+  // New poses may be neighbors of what is farther from them than their own neighbors.
+  complete(ids, first ? firstRadius() : m_radius);
+  return takeChanged();
+}
+
+std::vector<NearestPoses::Pair> NearestPoses::remove(const std::vector<VertexId>& ids) {
+  std::vector<VertexId> lacking;
+  for (const VertexId id : ids) {
+    const TPose2D pose = m_entries[id].pose.pose;
+    forget(id);
+    forWithin(pose, m_radius, [&](VertexId other, double) {
+      std::vector<Neighbor>& nearest = m_entries[other].nearest;
+      const auto lost = std::find_if(nearest.begin(), nearest.end(),
+                                     [&](const Neighbor& n) { return n.id == id; });
+      if (lost == nearest.end()) return;
+      if (isFull(m_entries[other])) lacking.push_back(other);
+      nearest.erase(lost);
+      m_changed.push_back(ordered(id, other));
+    });
+  }
+  lacking.erase(
+      std::remove_if(lacking.begin(), lacking.end(), [this](VertexId id) { return !contains(id); }),
+      lacking.end());
+  complete(lacking, firstRadius());
+  return takeChanged();
+}
+
+std::vector<NearestPoses::Pair> NearestPoses::takeChanged() {
+  std::sort(m_changed.begin(), m_changed.end());
+  m_changed.erase(std::unique(m_changed.begin(), m_changed.end()), m_changed.end());
+  return std::exchange(m_changed, {});
+}
+
+bool NearestPoses::linked(VertexId a, VertexId b) const {
+  return contains(a) && contains(b) && (holds(of(a), b) || holds(of(b), a));
+}
+
+std::optional<double> NearestPoses::distance(VertexId a, VertexId b) const {
+  for (const auto& [of, other] : {std::pair(a, b), std::pair(b, a)})
+    if (contains(of))
+      for (const Neighbor& n : m_entries[of].nearest)
+        if (n.id == other) return n.distance;
+  return std::nullopt;
+}
+
+std::vector<NearestPoses::Neighbor> NearestPoses::nearestTo(const GroundPose& pose,
+                                                            std::size_t count) const {
+  std::vector<std::pair<double, VertexId>> bounds;
+  forWithin(pose.pose, m_radius, [&](VertexId id, double) {
+    bounds.emplace_back(m_reedsShepp.lowerBound(pose.pose, m_entries[id].pose.pose), id);
+  });
+  std::sort(bounds.begin(), bounds.end());
+  std::vector<Neighbor> nearest;
+  for (const auto& [bound, id] : bounds) {
+    if (nearest.size() == count && bound > nearest.back().distance) break;
+    const Neighbor n{id, PosePair(pose, m_entries[id].pose).distance(m_reedsShepp)};
+    if (n.distance > m_radius) continue;
+    nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), n), n);
+    if (nearest.size() > count) nearest.pop_back();
+  }
+  return nearest;
+}
+
+}  // namespace semantic_planning

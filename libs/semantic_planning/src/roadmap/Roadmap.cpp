@@ -1,0 +1,179 @@
+#include <semantic_planning/roadmap/Roadmap.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "TileMarks.h"
+
+namespace semantic_planning {
+
+using colored_graph::Edge;
+using colored_graph::EdgeProfile;
+using colored_graph::EdgeState;
+using colored_graph::Incidence;
+using colored_graph::Length;
+
+namespace {
+
+bool isSame(const EdgeProfile& l, const EdgeProfile& r) {
+  return std::equal(l.begin(), l.end(), r.begin(), r.end(), [](const auto& a, const auto& b) {
+    return a.classId == b.classId && a.length == b.length;
+  });
+}
+
+}  // namespace
+
+Roadmap::Roadmap(const EdgeChecker& checker, const RoadmapOptions& options)
+    : m_checker(checker),
+      m_graph(checker.order().classes()),
+      m_nearest(checker.reedsShepp(), options.neighbors, options.connectionRadius),
+      m_guestNeighbors(2 * static_cast<std::size_t>(options.neighbors)),
+      m_mostEdges(options.edges),
+      m_radius(options.connectionRadius) {}
+
+void Roadmap::keepPose(VertexId v, const GroundPose& pose) {
+  if (v >= m_poses.size()) m_poses.resize(v + 1);
+  m_poses[v] = pose;
+}
+
+std::vector<Roadmap::VertexId> Roadmap::add(const std::vector<GroundPose>& poses,
+                                            const std::vector<ClassId>& classes) {
+  std::vector<VertexId> ids;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    ids.push_back(m_graph.addVertex(classes[i]));
+    keepPose(ids.back(), poses[i]);
+  }
+  reconcile(m_nearest.insert(ids, poses));
+  reconcileGuests();
+  return ids;
+}
+
+void Roadmap::remove(const std::vector<VertexId>& vertices) {
+  const auto pairs = m_nearest.remove(vertices);
+  for (const VertexId v : vertices) {
+    m_counts.edgesRemoved += m_graph.incident(v).size();
+    m_graph.removeVertex(v);
+  }
+  reconcile(pairs);
+  reconcileGuests();
+}
+
+Roadmap::VertexId Roadmap::addGuest(const GroundPose& pose) {
+  const VertexId v = m_graph.addVertex(m_checker.classAt(pose));
+  keepPose(v, pose);
+  m_guests.insert(v);
+  reconcileGuest(v);
+  return v;
+}
+
+void Roadmap::removeGuest(VertexId v) {
+  m_graph.removeVertex(v);
+  m_guests.erase(v);
+}
+
+Roadmap::EdgeId Roadmap::edgeBetween(VertexId a, VertexId b) const {
+  for (const Incidence& i : m_graph.incident(a))
+    if (i.neighbor == b) return i.edge;
+  return colored_graph::kNoEdge;
+}
+
+void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
+  if (!m_graph.containsVertex(a) || !m_graph.containsVertex(b)) return;
+  const EdgeId edge = edgeBetween(a, b);
+  if (linked && edge == colored_graph::kNoEdge) {
+    const double length = m_nearest.distance(a, b).value_or(
+        PosePair(pose(a), pose(b)).distance(m_checker.reedsShepp()));
+    const EdgeId e = m_graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(length));
+    if (e >= m_lengths.size()) m_lengths.resize(e + 1);
+    m_lengths[e] = length;
+    ++m_counts.edgesInserted;
+  } else if (!linked && edge != colored_graph::kNoEdge) {
+    m_graph.removeEdge(edge);
+    ++m_counts.edgesRemoved;
+  }
+}
+
+void Roadmap::reconcile(const std::vector<NearestPoses::Pair>& pairs) {
+  for (const auto& [a, b] : pairs)
+    if (const bool linked = m_nearest.linked(a, b); !linked || m_mostEdges == 0)
+      setLinked(a, b, linked);
+  if (m_mostEdges > 0) keepBestEdges();
+}
+
+void Roadmap::reconcileGuests() {
+  for (const VertexId guest : m_guests) reconcileGuest(guest);
+}
+
+void Roadmap::reconcileGuest(VertexId guest) {
+  std::set<VertexId> wanted;
+  for (const auto& n : m_nearest.nearestTo(pose(guest), m_guestNeighbors)) wanted.insert(n.id);
+  for (const VertexId other : m_guests)
+    if (other != guest &&
+        PosePair(pose(guest), pose(other)).distance(m_checker.reedsShepp()) <= m_radius)
+      wanted.insert(other);
+  const std::vector<Incidence> present = m_graph.incident(guest);
+  for (const Incidence& i : present)
+    if (!wanted.count(i.neighbor)) setLinked(guest, i.neighbor, false);
+  for (const VertexId other : wanted) setLinked(guest, other, true);
+}
+
+void Roadmap::keepBestEdges() {
+  using Worth = std::tuple<std::size_t, double, VertexId, VertexId>;
+  std::vector<Worth> pairs;
+  for (VertexId a = 0; a < m_graph.vertexIdEnd(); ++a) {
+    if (!m_nearest.contains(a)) continue;
+    const auto& nearest = m_nearest.of(a);
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const auto [low, high] = std::minmax(a, nearest[i].id);
+      pairs.emplace_back(i, nearest[i].distance, low, high);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  std::set<std::pair<VertexId, VertexId>> best;
+  for (const auto& [place, distance, a, b] : pairs)
+    if (best.size() < m_mostEdges) best.emplace(a, b);
+  for (const auto& [place, distance, a, b] : pairs) setLinked(a, b, best.count({a, b}) > 0);
+}
+
+void Roadmap::refresh(const std::vector<Column>& changedTiles) {
+  const TileMarks changed(m_checker.ground(), changedTiles);
+  for (EdgeId e = 0; e < m_graph.edgeIdEnd(); ++e) {
+    if (!m_graph.containsEdge(e) || m_graph.edge(e).state == EdgeState::Unevaluated) continue;
+    if (changed.anyIn(squareAround(ends(e), m_lengths[e], m_checker))) reevaluate(e);
+  }
+}
+
+void Roadmap::reevaluate(EdgeId e) {
+  const Edge before = m_graph.edge(e);
+  auto profile = evaluate(e);
+  const bool usable = before.state == EdgeState::Usable;
+  if (profile ? usable && isSame(*profile, before.profile) : !usable) return;
+  ++m_counts.edgesChanged;
+  if (profile)
+    m_graph.setProfile(e, std::move(*profile));
+  else
+    m_graph.setBlocked(e);
+}
+
+PosePair Roadmap::ends(EdgeId e) const {
+  return {pose(m_graph.edge(e).a), pose(m_graph.edge(e).b)};
+}
+
+ReedsSheppCurve Roadmap::curve(EdgeId e, VertexId from) const {
+  return ends(e).curveFrom(pose(from), m_checker.reedsShepp());
+}
+
+std::optional<EdgeProfile> Roadmap::evaluate(EdgeId e) const {
+  const PosePair poses = ends(e);
+  return m_checker.profile(poses.first, poses.second);
+}
+
+Length Roadmap::lengthBound(VertexId a, VertexId b) const {
+  return colored_graph::lengthDown(m_checker.reedsShepp().lowerBound(pose(a).pose, pose(b).pose));
+}
+
+Roadmap::Counts Roadmap::takeCounts() { return std::exchange(m_counts, {}); }
+
+}  // namespace semantic_planning

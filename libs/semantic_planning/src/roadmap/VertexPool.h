@@ -1,0 +1,59 @@
+#pragma once
+#include <semantic_planning/roadmap/Roadmap.h>
+
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "Candidates.h"
+
+namespace semantic_planning {
+
+/** The poses that are vertices of a roadmap whenever the ground lets them. */
+class VertexPool {
+ public:
+  /** Counted since the last take. */
+  struct Counts {
+    std::size_t inserted = 0, removed = 0, recolored = 0;
+  };
+
+  VertexPool(const EdgeChecker& checker, Roadmap& roadmap)
+      : m_checker(checker), m_roadmap(roadmap) {}
+
+  /** Whether a candidate could be a vertex now. */
+  bool isUsable(const Candidate& candidate) const;
+
+  /** Changes take effect in the roadmap with apply(). */
+  void add(const Candidate& candidate, const std::optional<Spot>& spot = {});
+  /** Removes what was added with this spot. */
+  void remove(const Spot& spot);
+  /** Looks again at the poses near these tiles. */
+  void refresh(const std::vector<Column>& changedTiles);
+  void apply();
+
+  Counts takeCounts() { return std::exchange(m_counts, {}); }
+
+ private:
+  struct Member {
+    Candidate candidate;
+    colored_graph::VertexId vertex = colored_graph::kNoVertex;
+    bool present = false;
+  };
+
+  ClassId classOf(const Candidate& candidate) const;
+  void look(std::size_t member);
+  void dropVertex(Member& member);
+  bool standsOnGround(Member& member);
+
+  const EdgeChecker& m_checker;
+  Roadmap& m_roadmap;
+  std::vector<Member> m_members;
+  std::vector<std::size_t> m_free;
+  std::map<Spot, std::vector<std::size_t>> m_ofSpot;
+  std::vector<std::size_t> m_toInsert;
+  std::vector<colored_graph::VertexId> m_toRemove;
+  Counts m_counts;
+};
+
+}  // namespace semantic_planning

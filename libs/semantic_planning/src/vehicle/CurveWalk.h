@@ -1,0 +1,103 @@
+#pragma once
+#include <semantic_planning/vehicle/ReedsShepp.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace semantic_planning {
+
+struct Rotation {
+  explicit Rotation(double angle) : cosine(std::cos(angle)), sine(std::sin(angle)) {}
+  double cosine, sine;
+};
+
+/** A pose that takes points of the vehicle into the map's frame. */
+struct Placement {
+  explicit Placement(const mrpt::math::TPose2D& pose) : x(pose.x), y(pose.y), heading(pose.phi) {}
+
+  /** \param px, py in the vehicle's frame, meters */
+  std::array<double, 2> operator()(double px, double py) const {
+    return {x + heading.cosine * px - heading.sine * py,
+            y + heading.sine * px + heading.cosine * py};
+  }
+
+  double x, y;  ///< meters, map frame
+  Rotation heading;
+};
+
+/** Goes along a segment of a curve. */
+class SegmentWalk {
+ public:
+  SegmentWalk(const Placement& begin, const ReedsSheppCurve::Segment& segment, double turningRadius)
+      : m_begin(begin),
+        m_gear(segment.length < 0 ? -1 : 1),
+        m_radius(segment.turn * turningRadius) {}
+
+  /** \param s meters from where the segment begins */
+  Placement at(double s) const {
+    if (m_radius != 0) return turned(m_begin, Rotation(m_gear * s / m_radius));
+    Placement p = m_begin;
+    p.x += m_gear * s * p.heading.cosine;
+    p.y += m_gear * s * p.heading.sine;
+    return p;
+  }
+
+  /** f(placement) in the middle of pieces `first` to `end` - 1 of a curve,
+   * until f returns false. \param before what the curve has of length before
+   * this segment */
+  template <class F>
+  bool visit(int first, int end, double piece, double before, F f) const {
+    const auto middle = [&](int i) { return at((i + 0.5) * piece - before); };
+    if (m_radius == 0) {
+      for (int i = first; i < end; ++i)
+        if (!f(middle(i))) return false;
+      return true;
+    }
+    const Rotation turn(m_gear * piece / m_radius);
+    Placement p = middle(first);
+    for (int i = first; i < end; ++i, p = turned(p, turn))
+      if (!f(p)) return false;
+    return true;
+  }
+
+ private:
+  /** Further along the arc. */
+  Placement turned(Placement p, const Rotation& r) const {
+    const auto [cosine, sine] = p.heading;
+    p.heading.cosine = cosine * r.cosine - sine * r.sine;
+    p.heading.sine = sine * r.cosine + cosine * r.sine;
+    p.x += m_radius * (p.heading.sine - sine);
+    p.y -= m_radius * (p.heading.cosine - cosine);
+    return p;
+  }
+
+  const Placement m_begin;
+  const double m_gear, m_radius;  ///< radius: positive to the left, 0: straight
+};
+
+/** f(placement) in the middle of each of as many pieces of a curve, all as long
+ * as each other, until f returns false: then false. Computes sines for
+ * segments, not for pieces. */
+template <class F>
+bool walkMiddles(const ReedsSheppCurve& curve, int pieces, F f) {
+  const double piece = curve.length() / pieces;
+  Placement place(curve.from());
+  double before = 0;
+  int first = 0;
+  for (const ReedsSheppCurve::Segment& segment : curve.segments()) {
+    const double length = std::abs(segment.length);
+    if (length == 0) continue;
+    const SegmentWalk walk(place, segment, curve.turningRadius());
+    const int end = std::min(pieces, static_cast<int>(std::ceil((before + length) / piece - 0.5)));
+    if (first < end && !walk.visit(first, end, piece, before, f)) return false;
+    place = walk.at(length);
+    before += length;
+    first = std::max(first, end);
+  }
+  for (; first < pieces; ++first)
+    if (!f(place)) return false;
+  return true;
+}
+
+}  // namespace semantic_planning

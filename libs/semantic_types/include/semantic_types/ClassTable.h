@@ -1,0 +1,78 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace semantic_types {
+
+/** Number of a class: 1 to K. 0 is free space in a map and "no class" on a point. */
+using ClassId = std::uint8_t;
+constexpr ClassId kNoClass = 0;
+constexpr int kMaxClasses = 254;
+
+struct Color {
+  std::uint8_t r = 0, g = 0, b = 0;
+  bool operator==(const Color& o) const { return r == o.r && g == o.g && b == o.b; }
+};
+
+/** The classes of a map, and how the ids of a data set ("raw ids") fold into them.
+ *
+ * Class ids are 1..K without gaps. Names are unique and not empty. In a table that folds no raw id
+ * to a class, raw ids are the classes' own. */
+class ClassTable {
+ public:
+  struct Entry {
+    std::string name;
+    Color color;
+  };
+  enum class UnknownRawId { Error, NoClass };
+
+  /** Appends a class and returns its id.
+   * \throw std::invalid_argument name empty or used already, or more than 254 classes. */
+  ClassId add(const std::string& name, Color color);
+
+  /** Number of classes K, free space not counted. */
+  int size() const { return static_cast<int>(m_entries.size()); }
+  bool empty() const { return m_entries.empty(); }
+  bool contains(ClassId id) const { return id >= 1 && id <= size(); }
+
+  /** \throw std::out_of_range id is not 1..K. */
+  const std::string& name(ClassId id) const { return entry(id).name; }
+  const Color& color(ClassId id) const { return entry(id).color; }
+
+  /** Class with this name, if any. */
+  std::optional<ClassId> find(const std::string& name) const;
+  /** Class with this exact color, if any (the lowest id if several share it). */
+  std::optional<ClassId> find(Color color) const;
+
+  /** Raw id -> class id (or kNoClass).
+   * \throw std::invalid_argument raw id folded already, or class id not in the table. */
+  void fold(std::uint32_t rawId, ClassId id);
+  /** What to make of a raw id that the table does not know. */
+  void setUnknownRawId(UnknownRawId policy) { m_unknownRawId = policy; }
+  UnknownRawId unknownRawId() const { return m_unknownRawId; }
+
+  /** Class of a data set's raw id.
+   * \throw std::invalid_argument naming the raw id, if the table does not know it and
+   * unknownRawId() is Error. */
+  ClassId fromRaw(std::uint32_t rawId) const;
+  /** The explicit folds, for files. */
+  const std::map<std::uint32_t, ClassId>& folds() const { return m_folds; }
+
+  bool operator==(const ClassTable& o) const;
+  bool operator!=(const ClassTable& o) const { return !(*this == o); }
+
+ private:
+  const Entry& entry(ClassId id) const;
+
+  std::vector<Entry> m_entries;
+  std::map<std::string, ClassId> m_ids;
+  std::map<std::uint32_t, ClassId> m_folds;
+  bool m_hasOwnRawIds = true;  ///< no raw id folds to a class
+  UnknownRawId m_unknownRawId = UnknownRawId::Error;
+};
+
+}  // namespace semantic_types

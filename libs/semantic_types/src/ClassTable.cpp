@@ -1,0 +1,67 @@
+#include <semantic_types/ClassTable.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace semantic_types {
+
+ClassId ClassTable::add(const std::string& name, Color color) {
+  if (name.empty()) throw std::invalid_argument("class table: a class without a name");
+  if (m_ids.count(name))
+    throw std::invalid_argument("class table: two classes named '" + name + "'");
+  if (size() == kMaxClasses)
+    throw std::invalid_argument("class table: more than " + std::to_string(kMaxClasses) +
+                                " classes");
+  m_entries.push_back({name, color});
+  return m_ids[name] = static_cast<ClassId>(size());
+}
+
+const ClassTable::Entry& ClassTable::entry(ClassId id) const {
+  if (!contains(id))
+    throw std::out_of_range("class table: class " + std::to_string(id) + " is not one of 1.." +
+                            std::to_string(size()));
+  return m_entries[id - 1];
+}
+
+std::optional<ClassId> ClassTable::find(const std::string& name) const {
+  const auto it = m_ids.find(name);
+  if (it == m_ids.end()) return std::nullopt;
+  return it->second;
+}
+
+std::optional<ClassId> ClassTable::find(Color color) const {
+  for (int i = 0; i < size(); ++i)
+    if (m_entries[i].color == color) return static_cast<ClassId>(i + 1);
+  return std::nullopt;
+}
+
+void ClassTable::fold(std::uint32_t rawId, ClassId id) {
+  if (id != kNoClass && !contains(id))
+    throw std::invalid_argument("class table: raw id " + std::to_string(rawId) +
+                                " folds to class " + std::to_string(id) +
+                                ", which is not one of 1.." + std::to_string(size()));
+  if (!m_folds.emplace(rawId, id).second)
+    throw std::invalid_argument("class table: raw id " + std::to_string(rawId) + " folds twice");
+  if (id != kNoClass) m_hasOwnRawIds = false;
+}
+
+ClassId ClassTable::fromRaw(std::uint32_t rawId) const {
+  const auto it = m_folds.find(rawId);
+  if (it != m_folds.end()) return it->second;
+  if (m_hasOwnRawIds && rawId >= 1 && rawId <= static_cast<std::uint32_t>(size()))
+    return static_cast<ClassId>(rawId);
+  if (m_unknownRawId == UnknownRawId::NoClass) return kNoClass;
+  throw std::invalid_argument("raw class id " + std::to_string(rawId) +
+                              " is not in the class table");
+}
+
+bool ClassTable::operator==(const ClassTable& o) const {
+  const auto sameEntry = [](const Entry& a, const Entry& b) {
+    return a.name == b.name && a.color == b.color;
+  };
+  return m_entries.size() == o.m_entries.size() &&
+         std::equal(m_entries.begin(), m_entries.end(), o.m_entries.begin(), sameEntry) &&
+         m_folds == o.m_folds && m_unknownRawId == o.m_unknownRawId;
+}
+
+}  // namespace semantic_types

@@ -1,0 +1,17 @@
+#pragma once
+#include <exception>
+#include <string>
+
+namespace strict_files {
+
+/** What an exception says, without the call stack that MRPT appends to the text of its own, and
+ * without those of the exceptions that it was passed on as. */
+inline std::string messageOf(const std::exception& e) {
+  const std::string text = e.what(), begin = "Message:  ", end = "\nLocation:";
+  const std::size_t from = text.rfind(begin);
+  if (from == std::string::npos) return text;
+  const std::size_t start = from + begin.size();
+  return text.substr(start, text.find(end, start) - start);
+}
+
+}  // namespace strict_files

@@ -1,0 +1,49 @@
+#pragma once
+#include <strict_files/OptionList.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace strict_files {
+
+/** Reads a section of an .ini file into options, strictly, where MRPT ignores keys it does not
+ * know: call read() or text() for what is known, then finish(). Keys that are absent leave their
+ * option as it is. */
+class IniSection {
+ public:
+  /** \param source An mrpt::config::CConfigFileBase, or what has its getAllKeys() and
+   * read_string(). */
+  template <class Source>
+  IniSection(const Source& source, std::string section) : m_section(std::move(section)) {
+    std::vector<std::string> keys;
+    source.getAllKeys(m_section, keys);
+    for (const std::string& key : keys)
+      m_entries.emplace_back(key, source.read_string(m_section, key, ""));
+  }
+
+  /** The value without a comment behind it, which MRPT leaves there; nothing if the key is absent.
+   */
+  std::optional<std::string> text(const std::string& key);
+
+  /** Reads all options that are there. \throw std::runtime_error naming section, key and value: not
+   * what the option may be. */
+  void read(const OptionList& list);
+  void read(const std::string& key, double& value);
+  void read(const std::string& key, int& value);
+  void read(const std::string& key, std::string& value);
+
+  /** \throw std::runtime_error naming the section. */
+  [[noreturn]] void fail(const std::string& what) const;
+  /** \throw std::runtime_error naming section and key, and the nearest known one: a key that was
+   * not read. */
+  void finish() const;
+
+ private:
+  std::string m_section;
+  std::vector<std::pair<std::string, std::string>> m_entries;  ///< keys, and what is behind "="
+  std::vector<std::string> m_known;
+};
+
+}  // namespace strict_files

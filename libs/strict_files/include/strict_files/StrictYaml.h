@@ -1,0 +1,63 @@
+#pragma once
+#include <yaml-cpp/yaml.h>
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+namespace strict_files {
+
+/** A YAML file whose every key and value is checked. All functions throw std::runtime_error with
+ * file, line, and what was expected. */
+class StrictYaml {
+ public:
+  /** Reads the file: yaml-cpp's parser, because MRPT's stops at a syntax error in silence. */
+  explicit StrictYaml(const std::filesystem::path& file);
+
+  const YAML::Node& root() const { return m_root; }
+  [[noreturn]] void fail(const YAML::Node& where, const std::string& what) const;
+
+  /** The node is a map with these keys only, each at most once. */
+  void checkKeys(const YAML::Node& map, const std::set<std::string>& known) const;
+  /** The node is a map without a key twice. */
+  void checkMap(const YAML::Node& map) const;
+  void checkList(const YAML::Node& list, const std::string& field) const;
+  YAML::Node required(const YAML::Node& map, const std::string& key) const;
+
+  /** \param expected What to say if it is no T: "a class id". */
+  template <typename T>
+  T value(const YAML::Node& node, const std::string& expected) const {
+    try {
+      return node.as<T>();
+    } catch (const YAML::Exception&) {
+      fail(node, "expected " + expected + ", found " + quoted(node));
+    }
+  }
+  /** One of some words. */
+  template <typename T>
+  T choice(const YAML::Node& node, const std::string& field,
+           const std::map<std::string, T>& choices) const {
+    const std::string found = text(node, field);
+    if (const auto it = choices.find(found); it != choices.end()) return it->second;
+    std::string expected;
+    for (const auto& [name, value] : choices) expected += (expected.empty() ? "" : ", ") + name;
+    fail(node, field + ": expected one of " + expected + ", found '" + found + "'");
+  }
+  std::string text(const YAML::Node& node, const std::string& field) const;
+  /** A finite number. */
+  double number(const YAML::Node& node, const std::string& field) const;
+  double notNegative(const YAML::Node& node, const std::string& field) const;
+  /** [x, y, z] */
+  Eigen::Vector3d point(const YAML::Node& node, const std::string& field) const;
+
+ private:
+  static std::string quoted(const YAML::Node& node);
+  [[noreturn]] void fail(const YAML::Mark& where, const std::string& what) const;
+
+  std::string m_file;
+  YAML::Node m_root;
+};
+
+}  // namespace strict_files

@@ -1,0 +1,62 @@
+#include <strict_files/IniSection.h>
+#include <strict_files/Words.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace strict_files {
+
+std::optional<std::string> IniSection::text(const std::string& key) {
+  m_known.push_back(key);
+  for (const auto& [present, value] : m_entries) {
+    if (!sameWord(present, key)) continue;
+    const std::string line = " " + value;
+    std::size_t end = line.size();
+    for (const char* mark : {" //", " #", " ;", "\t//", "\t#", "\t;"})
+      end = std::min(end, line.find(mark));
+    return trimmed(line.substr(0, end));
+  }
+  return std::nullopt;
+}
+
+void IniSection::read(const OptionList& list) {
+  for (const Option& option : list.options()) {
+    const auto found = text(option.name);
+    if (!found) continue;
+    try {
+      option.set(*found);
+    } catch (const std::invalid_argument& e) {
+      fail(option.name + " " + e.what());
+    }
+  }
+}
+
+void IniSection::read(const std::string& key, std::string& value) {
+  if (const auto found = text(key)) value = *found;
+}
+
+void IniSection::read(const std::string& key, double& value) {
+  OptionList list;
+  list.add(key.c_str(), value, "", {-INFINITY, INFINITY, true, true}, "");
+  read(list);
+}
+
+void IniSection::read(const std::string& key, int& value) {
+  OptionList list;
+  list.add(key.c_str(), value, "", "");
+  read(list);
+}
+
+void IniSection::fail(const std::string& what) const {
+  throw std::runtime_error("[" + m_section + "] " + what);
+}
+
+void IniSection::finish() const {
+  for (const auto& [key, value] : m_entries) {
+    const auto same = [&key = key](const std::string& known) { return sameWord(known, key); };
+    if (std::none_of(m_known.begin(), m_known.end(), same)) fail(unknownWord("key", key, m_known));
+  }
+}
+
+}  // namespace strict_files

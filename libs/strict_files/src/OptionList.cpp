@@ -1,0 +1,166 @@
+#include <strict_files/OptionList.h>
+#include <strict_files/Words.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace strict_files {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& found, const std::string& expected) {
+  throw std::invalid_argument("is " + found + ", expected " + expected);
+}
+
+std::string inWords(const Range& range, bool whole) {
+  const bool low = std::isfinite(range.low) && range.low > -0x1p31;
+  const bool high = std::isfinite(range.high) && range.high < 0x1p31 - 1;
+  const std::string number = whole ? "a whole number" : "a number";
+  if (low && high) return number + " from " + textOf(range.low) + " to " + textOf(range.high);
+  if (low && range.withLow) return number + " of " + textOf(range.low) + " or more";
+  if (low) return number + " above " + textOf(range.low);
+  return high ? number + " of at most " + textOf(range.high) : number;
+}
+
+bool contains(const Range& range, double number) {
+  if (std::isinf(number)) return range.withInfinity && number > 0;
+  return (range.withLow ? number >= range.low : number > range.low) && number <= range.high;
+}
+
+bool switchOf(const std::string& text, const std::string& expected) {
+  for (const char* word : {"true", "yes", "on", "1"})
+    if (sameWord(text, word)) return true;
+  for (const char* word : {"false", "no", "off", "0"})
+    if (sameWord(text, word)) return false;
+  refuse("'" + text + "'", expected);
+}
+
+Eigen::Vector3d pointOf(const std::string& text, const std::string& expected) {
+  std::istringstream parts(text);
+  Eigen::Vector3d point;
+  std::string part;
+  for (int i = 0; i < 3; ++i) {
+    if (!std::getline(parts, part, ',')) refuse("'" + text + "'", expected);
+    point[i] = numberOf(trimmed(part), expected);
+  }
+  if (std::getline(parts, part)) refuse("'" + text + "'", expected);
+  return point;
+}
+
+}  // namespace
+
+std::string textOf(double number) {
+  if (std::isinf(number)) return number > 0 ? "inf" : "-inf";
+  char text[40];
+  const auto end = std::to_chars(text, text + sizeof(text), number).ptr;
+  return {text, end};
+}
+
+double numberOf(const std::string& text, const std::string& expected) {
+  if (sameWord(text, "inf")) return std::numeric_limits<double>::infinity();
+  double number = NAN;
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, number);
+  if (error != std::errc() || end != last || std::isnan(number)) refuse("'" + text + "'", expected);
+  return number;
+}
+
+std::vector<std::string> OptionList::names() const {
+  std::vector<std::string> names;
+  for (const Option& option : m_options) names.push_back(option.name);
+  return names;
+}
+
+const Option* OptionList::find(const std::string& name) const {
+  for (const Option& option : m_options)
+    if (sameWord(option.name, name)) return &option;
+  return nullptr;
+}
+
+void OptionList::remove(const std::string& name) {
+  m_options.erase(std::remove_if(m_options.begin(), m_options.end(),
+                                 [&](const Option& option) { return option.name == name; }),
+                  m_options.end());
+}
+
+void OptionList::addNumber(const char* name, const char* unit, const char* help, const Range& range,
+                           bool whole, std::function<double()> get,
+                           std::function<void(double)> set) {
+  const std::string expected = inWords(range, whole);
+  const auto check = [range, whole, expected](double number, const std::string& found) {
+    if (!contains(range, number) || (whole && number != std::floor(number)))
+      refuse(found, expected);
+  };
+  Option option{name, unit, help, expected};
+  option.text = [get] { return textOf(get()); };
+  option.set = [set, check, expected](const std::string& text) {
+    const double number = numberOf(text, expected);
+    check(number, text);
+    set(number);
+  };
+  option.check = [get, check] { check(get(), textOf(get())); };
+  m_options.push_back(option);
+}
+
+void OptionList::addWord(const char* name, const char* help, const std::vector<std::string>& words,
+                         std::function<std::string()> get, std::function<void(std::size_t)> set) {
+  Option option{name, "", help, "one of " + joined(words)};
+  option.text = get;
+  option.set = [set, words, expected = option.expected](const std::string& text) {
+    for (std::size_t i = 0; i < words.size(); ++i)
+      if (sameWord(words[i], text)) return set(i);
+    refuse("'" + text + "'", expected);
+  };
+  option.check = [get] { get(); };
+  m_options.push_back(option);
+}
+
+void OptionList::addOther(const char* name, bool& value, const char* unit, const char* help) {
+  Option option{name, unit, help, "true or false"};
+  option.isSwitch = true;
+  option.text = [&value] { return value ? "true" : "false"; };
+  option.set = [&value, expected = option.expected](const std::string& text) {
+    value = switchOf(text, expected);
+  };
+  option.check = [] {};
+  m_options.push_back(option);
+}
+
+void OptionList::addOther(const char* name, std::string& value, const char* unit,
+                          const char* help) {
+  Option option{name, unit, help, "text"};
+  option.text = [&value] { return value; };
+  option.set = [&value](const std::string& text) { value = text; };
+  option.check = [] {};
+  m_options.push_back(option);
+}
+
+void OptionList::addOther(const char* name, Eigen::Vector3d& value, const char* unit,
+                          const char* help) {
+  Option option{name, unit, help, "three numbers x, y, z"};
+  option.text = [&value] {
+    return textOf(value.x()) + ", " + textOf(value.y()) + ", " + textOf(value.z());
+  };
+  option.set = [&value, expected = option.expected](const std::string& text) {
+    value = pointOf(text, expected);
+  };
+  option.check = [&value, expected = option.expected, text = option.text] {
+    if (!value.allFinite()) refuse(text(), expected);
+  };
+  m_options.push_back(option);
+}
+
+void checkAll(const OptionList& list, const std::string& owner) {
+  for (const Option& option : list.options()) {
+    try {
+      option.check();
+    } catch (const std::invalid_argument& e) {
+      throw std::invalid_argument(owner + "::" + option.name + " " + e.what());
+    }
+  }
+}
+
+}  // namespace strict_files

@@ -1,0 +1,83 @@
+#include <strict_files/StrictYaml.h>
+
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+namespace strict_files {
+
+StrictYaml::StrictYaml(const std::filesystem::path& file) : m_file(file.string()) {
+  std::ifstream stream(file);
+  if (!stream || std::filesystem::is_directory(file))
+    fail(YAML::Mark::null_mark(), "cannot be read");
+  try {
+    m_root = YAML::Load(stream);
+  } catch (const YAML::Exception& e) {
+    fail(e.mark, e.msg);
+  }
+}
+
+void StrictYaml::fail(const YAML::Mark& where, const std::string& what) const {
+  const std::string line = where.is_null() ? "" : ":" + std::to_string(where.line + 1);
+  throw std::runtime_error(m_file + line + ": " + what);
+}
+
+void StrictYaml::fail(const YAML::Node& where, const std::string& what) const {
+  fail(where.Mark(), what);
+}
+
+void StrictYaml::checkMap(const YAML::Node& map) const {
+  if (!map.IsMap()) fail(map, "expected 'key: value' entries");
+  std::set<std::string> seen;
+  for (const auto& entry : map) {
+    const std::string key = text(entry.first, "a key");
+    if (!seen.insert(key).second) fail(entry.first, "key '" + key + "' twice");
+  }
+}
+
+void StrictYaml::checkKeys(const YAML::Node& map, const std::set<std::string>& known) const {
+  checkMap(map);
+  for (const auto& entry : map) {
+    const std::string key = entry.first.Scalar();
+    if (!known.count(key)) fail(entry.first, "unknown key '" + key + "'");
+  }
+}
+
+void StrictYaml::checkList(const YAML::Node& list, const std::string& field) const {
+  if (!list.IsSequence() || list.size() == 0) fail(list, field + ": expected a list");
+}
+
+YAML::Node StrictYaml::required(const YAML::Node& map, const std::string& key) const {
+  const YAML::Node found = map[key];
+  if (!found) fail(map, "key '" + key + "' is missing");
+  return found;
+}
+
+std::string StrictYaml::text(const YAML::Node& node, const std::string& field) const {
+  if (!node.IsScalar()) fail(node, field + ": expected a word");
+  return node.Scalar();
+}
+
+std::string StrictYaml::quoted(const YAML::Node& node) {
+  return node.IsScalar() ? "'" + node.Scalar() + "'" : "something else";
+}
+
+double StrictYaml::number(const YAML::Node& node, const std::string& field) const {
+  double value = NAN;
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value))
+    fail(node, field + ": expected a number, found " + quoted(node));
+  return value;
+}
+
+double StrictYaml::notNegative(const YAML::Node& node, const std::string& field) const {
+  const double value = number(node, field);
+  if (value < 0) fail(node, field + ": expected a number >= 0, found " + node.Scalar());
+  return value;
+}
+
+Eigen::Vector3d StrictYaml::point(const YAML::Node& node, const std::string& field) const {
+  if (!node.IsSequence() || node.size() != 3) fail(node, field + ": expected [x, y, z]");
+  return {number(node[0], field), number(node[1], field), number(node[2], field)};
+}
+
+}  // namespace strict_files

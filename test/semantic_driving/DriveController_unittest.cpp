@@ -1,0 +1,106 @@
+#include <gtest/gtest.h>
+#include <mrpt/core/Clock.h>
+#include <semantic_driving/DriveController.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../../apps/semantic-map-drive/SimulatedRobot.h"
+
+using namespace semantic_driving;
+using namespace semantic_planning;
+
+namespace {
+
+const std::vector<Eigen::Vector2d> kFootprint = {
+    {-0.25, -0.3}, {0.55, -0.3}, {0.55, 0.3}, {-0.25, 0.3}};
+
+/** 12 m along x. */
+DrivePath straight() {
+  std::vector<PathPoint> points;
+  for (int i = 0; i <= 120; ++i) points.push_back({0.1 * i, 0, 0, 0, 0, true, 0, 0});
+  return DrivePath(points);
+}
+
+/** Columns of a map that somebody fills who stands in the way, 6 m ahead; map frame. */
+std::vector<Eigen::Vector2d> person() {
+  std::vector<Eigen::Vector2d> columns;
+  for (const double x : {5.9, 6.1})
+    for (const double y : {-0.2, 0.0, 0.2}) columns.emplace_back(x, y);
+  return columns;
+}
+
+ObstaclePoints seenFrom(const mrpt::math::TPose2D& pose, const ObstaclePoints& obstacles) {
+  ObstaclePoints seen;
+  for (const Eigen::Vector2d& o : obstacles) {
+    const mrpt::math::TPoint2D p = pose.inverseComposePoint({o.x(), o.y()});
+    seen.emplace_back(p.x, p.y);
+  }
+  return seen;
+}
+
+class Drive {
+ public:
+  Drive() : m_robot({0, 0, 0}, onlyAround()) {
+    mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
+  }
+  static DriveOptions onlyAround() {
+    DriveOptions options;
+    options.alwaysReactive = false;
+    return options;
+  }
+
+  const DriveState& state() const { return m_robot.state(); }
+  bool collided() const { return m_collided; }
+
+  /** Until half a minute is over: one command each 0.1 s. */
+  template <class Command>
+  void run(Command command) {
+    const DriveTracker outline({}, kFootprint);
+    for (int i = 0; i < 300; ++i) {
+      mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + 0.1 * i));
+      const ObstaclePoints seen = seenFrom(state().pose, person());
+      m_collided = m_collided || !outline.isFree({}, seen, 1e-6);
+      m_robot.drive(command(seen, 0.1 * i), 0.1);
+    }
+  }
+
+ private:
+  semantic_map_drive::SimulatedRobot m_robot;
+  bool m_collided = false;
+};
+
+}  // namespace
+
+TEST(DriveController, PassesAPersonByTheReactiveNavigatorWithoutANewPath) {
+  ReactiveNavigator::Options reactive;
+  reactive.config = std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini";
+  reactive.footprint = kFootprint;
+  DriveController controller(Drive::onlyAround(), reactive);
+  controller.setPath(straight());
+  Drive drive;
+  int reactiveSteps = 0;
+  drive.run([&](const ObstaclePoints& seen, double seconds) {
+    const DriveCommand command = controller.step(drive.state(), seen, 0, seconds);
+    reactiveSteps += controller.driver() == DriveController::Driver::Reactive ? 1 : 0;
+    return command;
+  });
+  EXPECT_FALSE(drive.collided());
+  EXPECT_GT(reactiveSteps, 20);
+  EXPECT_TRUE(controller.tracker().finished());
+  EXPECT_NEAR(drive.state().pose.x, 12, 0.3);
+  EXPECT_NEAR(drive.state().pose.y, 0, 0.3);
+}
+
+TEST(DriveTracker, AloneStandsBeforeAPerson) {
+  DriveTracker tracker(Drive::onlyAround(), kFootprint);
+  tracker.setPath(straight());
+  Drive drive;
+  drive.run([&](const ObstaclePoints& seen, double) {
+    tracker.locate(drive.state());
+    return tracker.command(drive.state(), seen, 1);
+  });
+  EXPECT_FALSE(drive.collided());
+  EXPECT_LT(drive.state().pose.x, 5.9 - 0.55);
+  EXPECT_GT(drive.state().pose.x, 4);
+}

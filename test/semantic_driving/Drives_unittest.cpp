@@ -1,0 +1,197 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "../../apps/semantic-map-drive/DriveFiles.h"
+#include "../../apps/semantic-map-drive/DriveLoop.h"
+#include "Plain.h"
+
+using namespace semantic_map_drive;
+using mrpt::math::TPose2D;
+using semantic_driving::DriveController;
+using semantic_driving::DriveGuide;
+using synthetic_world::World;
+
+namespace {
+
+DriveRecord drive(World& world, const TPose2D& start, const TPose2D& goal, Events events = {},
+                  const DriveConfig& config = smallConfig()) {
+  DriveLoop loop(config, world, syntheticOrder(), start, goal, std::move(events));
+  return loop.run();
+}
+
+double greatestSpeed(const DriveRecord& record, double from, double to) {
+  double greatest = 0;
+  for (const DriveRow& row : record.rows)
+    if (row.time >= from && row.time < to) greatest = std::max(greatest, std::abs(row.speed));
+  return greatest;
+}
+
+/** Flat grass without an end that could be reached in time. */
+World open() {
+  constexpr double kHalf = 60;
+  return World(synthetic_world::Terrain(kHalf, {}),
+               synthetic_world::GroundCover(kHalf, synthetic_world::kGrass), {});
+}
+
+/** When the robot passes x = `at` ahead. */
+const DriveRow& passing(const DriveRecord& record, double at) {
+  return *std::find_if(record.rows.begin(), record.rows.end(), [at](const DriveRow& r) {
+    return r.pose.x >= at && std::cos(r.pose.phi) > 0.8;
+  });
+}
+
+/** Somebody who steps into the robot's way when it passes x = `at`, `before` meters ahead of it. */
+Events::Person stepsInFront(const DriveRecord& record, double at, double before) {
+  const DriveRow& row = passing(record, at);
+  constexpr double kFront = 0.55, kAside = 0.9, kSpeed = 1.5;  // m, m, m/s
+  const auto placed = [&](double side) {
+    const auto p = row.pose.composePoint({kFront + before, side});
+    return Eigen::Vector2d(p.x, p.y);
+  };
+  return {row.time - kAside / kSpeed, 1e9, placed(kAside), placed(0), kSpeed};
+}
+
+bool hasTarget(const DriveRecord& record, DriveGuide::Target target) {
+  return std::any_of(record.rows.begin(), record.rows.end(),
+                     [target](const DriveRow& row) { return row.target == target; });
+}
+
+/** Where a drive last came from x < 0: y, meters. */
+double crossing(const DriveRecord& record) {
+  double y = std::nan("");
+  for (const DriveRow& row : record.rows)
+    if (row.pose.x < 0) y = row.pose.y;
+  return y;
+}
+
+}  // namespace
+
+TEST(Drives, BeginWithoutAMapAndArriveOnTheRoad) {
+  World world = plain();
+  const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0});
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_LT(badLength(record.drivenPerClass, syntheticOrder()), 0.5);
+}
+
+TEST(Drives, AreTheSameEachTime) {
+  World world = plain();
+  EXPECT_EQ(toCsv(drive(world, {-6, 0, 0}, {0, 2, 0})), toCsv(drive(world, {-6, 0, 0}, {0, 2, 0})));
+}
+
+TEST(Drives, GetPastAPersonWhoWalksOntoTheWay) {
+  World world = plain();
+  Events events;
+  events.persons.push_back({4, 1e9, {0, 6}, {0, 0}, 1.5});
+  const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0}, events);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+}
+
+TEST(Drives, GoBackAndAroundAPersonWhoStepsInFrontAndStays) {
+  World world = plain();
+  const TPose2D start(-8, 0, 0), goal(8, 0, 0);
+  Events events;  // to react and stop it takes 1.3 m
+  events.persons.push_back(stepsInFront(drive(world, start, goal), -1, 1.3));
+  const DriveRecord record = drive(world, start, goal, events);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_LT(record.leastClearance, 0.5);  // the person was in the way indeed
+  EXPECT_TRUE(hasTarget(record, DriveGuide::Target::Back));
+}
+
+TEST(Drives, LeaveAPersonToTheReactiveNavigatorWithoutANewPlan) {
+  World world = plain();
+  DriveConfig config = smallConfig();
+  config.guide.period = config.guide.patience = config.timeLimit;  // no other plan than the first
+  const TPose2D start(-6, 0, 0), goal(3, 0, 0);
+  Events events;
+  events.persons.push_back(stepsInFront(drive(world, start, goal, {}, config), -3, 2.5));
+  const DriveRecord record = drive(world, start, goal, events, config);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_EQ(record.replans, 0);
+  EXPECT_LT(record.leastClearance, 1);
+  EXPECT_TRUE(std::any_of(record.rows.begin(), record.rows.end(), [](const DriveRow& row) {
+    return row.driver == DriveController::Driver::Reactive;
+  }));
+}
+
+TEST(Drives, TakeAnotherWayWhenTheRoadIsBlocked) {
+  synthetic_world::Solids solids;  // two gaps in a wall across
+  addWall(solids, {0, -20}, {0, -6});
+  addWall(solids, {0, -3}, {0, 3});
+  addWall(solids, {0, 6}, {0, 20});
+  World world = plain(solids, 16);
+  const TPose2D start(-8, 4.5, 0), goal(8, 4.5, 0);
+  EXPECT_NEAR(crossing(drive(world, start, goal)), 4.5, 1.5);
+  Events events;
+  events.roadblocks.push_back({5, {0, 4.5}, 0, 3.4});
+  const DriveRecord record = drive(world, start, goal, events);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_NEAR(crossing(record), -4.5, 1.5);
+}
+
+TEST(Drives, StopAndSaySoWhereNoWayLeads) {
+  synthetic_world::Solids solids;
+  addWall(solids, {-12, -4}, {0, -4});  // the robot is within, the goal is not
+  addWall(solids, {0, -4}, {0, 4});
+  addWall(solids, {0, 4}, {-12, 4});
+  addWall(solids, {-12, 4}, {-12, -4});
+  World world = plain(solids);
+  const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0});
+  EXPECT_EQ(record.end, DriveEnd::Unreachable);
+  EXPECT_EQ(record.reason, "the vehicle is enclosed by what it cannot pass");
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_LT(std::abs(record.rows.back().speed), 0.06);
+}
+
+TEST(Drives, StopWhereTheGoalIsSeenToBeEnclosedInAnOpenWorld) {
+  World world = open();
+  DriveConfig config = smallConfig();
+  config.timeLimit = 400;
+  Events events;
+  events.roadblocks = barriersAround({6, 0}, 3);
+  DriveLoop loop(config, world, syntheticOrder(), {-4, 0, 0}, {6, 0, 0}, events);
+  const DriveRecord record = loop.run();
+  EXPECT_EQ(record.end, DriveEnd::Unreachable);
+  EXPECT_EQ(record.reason.find("the goal, with "), 0u) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+  EXPECT_LE(std::as_const(loop).guide().explored(), 15u);  // some at each side
+  EXPECT_LT(record.duration(), 120);
+}
+
+TEST(Drives, FindTheGapOnTheFarSideOfBarriersAroundTheGoal) {
+  World world = open();
+  Events events;
+  events.roadblocks = barriersAround({6, 0}, 3);
+  events.roadblocks.front() = {0, {9, -1.5}, 0, 3};  // leaves half of the side away from the start
+  DriveConfig config = smallConfig();
+  config.timeLimit = 200;
+  const DriveRecord record = drive(world, {-4, 0, 0}, {6, 0, 0}, events, config);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+}
+
+TEST(Drives, SlowDownWhileTheSensorsAreOut) {
+  World world = plain();
+  Events events;
+  events.dropouts.push_back({6, 8});
+  const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0}, events);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_GT(greatestSpeed(record, 4, 6), 0.7);
+  EXPECT_LT(greatestSpeed(record, 7.9, 8), 0.5);
+}
+
+TEST(Drives, LeaveForbiddenGroundTheShortestWay) {
+  synthetic_world::GroundCover cover(20, synthetic_world::kRoad);
+  cover.paintBand(synthetic_world::kFlowerBed, {-12, 0}, {-2, 0}, 6);
+  World world(synthetic_world::Terrain(20, {}), cover, {});
+  const DriveRecord record = drive(world, {-8, 1, 1.57}, {8, 0, 0});
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_LT(record.drivenPerClass[synthetic_world::kFlowerBed], 3.5);
+}

@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+#include <mrpt/core/Clock.h>
+#include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/nav/reactive/CLogFileRecord.h>
+#include <mrpt/serialization/CArchive.h>
+#include <semantic_driving/ReactiveNavigator.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "../../apps/semantic-map-drive/SimulatedRobot.h"
+
+using namespace semantic_driving;
+using namespace semantic_planning;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<Eigen::Vector2d> rectangle(double length, double width) {
+  return {{0, -width / 2}, {length, -width / 2}, {length, width / 2}, {0, width / 2}};
+}
+
+ReactiveNavigator::Options optionsOf(double width) {
+  ReactiveNavigator::Options options;
+  options.config = std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini";
+  options.footprint = rectangle(0.6, width);
+  return options;
+}
+
+/** A wall across the straight way, 3 m ahead, with a gap of 0.9 m in the middle; map frame. */
+ObstaclePoints3 wallWithGap(double height) {
+  ObstaclePoints3 points;
+  for (double y = 0.45; y < 4; y += 0.2)
+    for (const double side : {-1, 1}) points.emplace_back(3.0, side * y, height);
+  return points;
+}
+
+ObstaclePoints3 seenFrom(const mrpt::math::TPose2D& pose, ObstaclePoints3 points) {
+  for (Eigen::Vector3d& o : points) {
+    const mrpt::math::TPoint2D p = pose.inverseComposePoint({o.x(), o.y()});
+    o.head<2>() << p.x, p.y;
+  }
+  return points;
+}
+
+/** Whether it drives 6 m ahead, through the gap, within a quarter of a minute. */
+bool getsThrough(const ReactiveNavigator::Options& options, double height) {
+  ReactiveNavigator navigator(options);
+  mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
+  semantic_map_drive::SimulatedRobot robot({0, 0, 0}, {});
+  PathPoint goal;
+  goal.x = 6;
+  navigator.setWaypoints({goal}, 0.4);
+  for (int i = 0; i < 150; ++i) {
+    mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + 0.1 * i));
+    const auto seen = seenFrom(robot.state().pose, wallWithGap(height));
+    robot.drive(navigator.step(robot.state(), seen, 0.1 * i), 0.1);
+    if (navigator.status() == ReactiveNavigator::Status::Arrived) return true;
+  }
+  return false;
+}
+
+/** A folder that is gone after the test. */
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("navlog-" + std::to_string(::getpid()));
+  ~Folder() { fs::remove_all(path); }
+};
+
+}  // namespace
+
+TEST(ReactiveNavigator, GoesThroughAGapWhereItFits) {
+  EXPECT_TRUE(getsThrough(optionsOf(0.2), 0.5));
+  EXPECT_FALSE(getsThrough(optionsOf(0.9), 0.5));
+}
+
+TEST(ReactiveNavigator, WithSlicesGoesThroughAGapWhereItFitsAtThatHeight) {
+  ReactiveNavigator::Options options = optionsOf(0.9);
+  options.slices = {{0.5, rectangle(0.6, 0.9)}, {1.0, rectangle(0.6, 0.2)}};  // a mast on a base
+  EXPECT_TRUE(getsThrough(options, 1.0));
+  EXPECT_FALSE(getsThrough(options, 0.3));
+}
+
+TEST(ReactiveNavigator, WritesALogThatMrptReads) {
+  const Folder folder;
+  ReactiveNavigator::Options options = optionsOf(0.2);
+  options.logFolder = folder.path;
+  EXPECT_TRUE(getsThrough(options, 0.5));
+  mrpt::io::CFileGZInputStream file((folder.path / "log_000.reactivenavlog").string());
+  auto archive = mrpt::serialization::archiveFrom(file);
+  int records = 0;
+  double farthest = 0;
+  try {
+    for (;; ++records) {
+      mrpt::nav::CLogFileRecord record;
+      archive >> record;
+      EXPECT_EQ(record.WS_Obstacles.size(), wallWithGap(0).size());
+      EXPECT_EQ(record.infoPerPTG.size(), 3u);  // two, and going on as before
+      farthest = std::max(farthest, record.robotPoseLocalization.x);
+    }
+  } catch (const std::exception&) {  // the end
+  }
+  EXPECT_GT(records, 30);
+  EXPECT_GT(farthest, 4);
+}

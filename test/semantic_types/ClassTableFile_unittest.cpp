@@ -1,0 +1,175 @@
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <semantic_types/ClassTableFile.h>
+
+#include <set>
+
+#include "SharedData.h"
+#include "TemporaryFolder.h"
+
+using semantic_types::ClassTable;
+using semantic_types::Color;
+using semantic_types::kNoClass;
+using semantic_types::loadClassTable;
+using semantic_types::saveClassTable;
+
+namespace {
+
+/** For the whole program: RapidCheck draws the same cases in every run, unless told otherwise. */
+const int kSeedIsFixed = setenv("RC_PARAMS", "seed=20240517", 0);
+
+ClassTable shipped(const std::string& name) {
+  return loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) / "config/classes" / name);
+}
+
+std::string errorFor(const std::string& text) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("table.yaml", text);
+  const std::string error = errorOf([&] { loadClassTable(file); });
+  EXPECT_EQ(error.rfind(file.string(), 0), 0u) << "does not begin with the file: " << error;
+  return error.substr(std::min(error.size(), file.string().size()));
+}
+
+int numberOfColors(const ClassTable& table) {
+  std::set<std::array<int, 3>> colors;
+  for (int id = 1; id <= table.size(); ++id) {
+    const Color c = table.color(id);
+    colors.insert({c.r, c.g, c.b});
+  }
+  return static_cast<int>(colors.size());
+}
+
+}  // namespace
+
+TEST(ClassTableFile, readsClassesInAnyOrderFoldsAndPolicy) {
+  const TemporaryFolder folder;
+  const ClassTable table = loadClassTable(folder.write("t.yaml", R"(
+unknown_raw_id: no_class
+no_class: [0, 99]
+classes:
+  - {id: 2, name: "it's: grass", color: [0, 255, 1]}
+  - id: 1
+    name: road
+    color: [128, 64, 128]
+    raw: [40, 60]
+)"));
+  ASSERT_EQ(table.size(), 2);
+  EXPECT_EQ(table.name(1), "road");
+  EXPECT_EQ(table.name(2), "it's: grass");
+  EXPECT_TRUE((table.color(2) == Color{0, 255, 1}));
+  EXPECT_EQ(table.fromRaw(60), 1);
+  EXPECT_EQ(table.fromRaw(99), kNoClass);
+  EXPECT_EQ(table.fromRaw(1234), kNoClass);
+}
+
+TEST(ClassTableFile, whatIsSavedIsReadBackEqual) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(rc::check([&] {
+    const int size = *rc::gen::inRange(1, 255);
+    ClassTable table;
+    for (int id = 1; id <= size; ++id) {
+      const auto tail = *rc::gen::container<std::string>(rc::gen::inRange<char>(32, 127));
+      const auto channel = rc::gen::arbitrary<std::uint8_t>();
+      table.add(std::to_string(id) + ":" + tail, {*channel, *channel, *channel});
+    }
+    const auto raw =
+        *rc::gen::unique<std::vector<std::uint32_t>>(rc::gen::arbitrary<std::uint32_t>());
+    for (const auto id : raw) table.fold(id, *rc::gen::inRange(0, size + 1));
+    if (*rc::gen::arbitrary<bool>()) table.setUnknownRawId(ClassTable::UnknownRawId::NoClass);
+    saveClassTable(table, folder / "t.yaml");
+    RC_ASSERT(loadClassTable(folder / "t.yaml") == table);
+  }));
+}
+
+TEST(ClassTableFile, errorsNameFileLineAndValue) {
+  const std::string one = "classes:\n  - {id: 1, name: a, color: [1, 2, 3]}\n";
+  EXPECT_EQ(errorFor(""), ": expected 'key: value' entries");
+  EXPECT_EQ(errorFor("no_class: [0]\n"), ":1: key 'classes' is missing");
+  EXPECT_EQ(errorFor("classes: []\n"), ":1: classes: expected a list of 1 to 254 classes");
+  EXPECT_EQ(errorFor(one + "colour: 1\n"), ":3: unknown key 'colour'");
+  EXPECT_EQ(errorFor(one + "no_class: [0]\nno_class: [1]\n"), ":4: key 'no_class' twice");
+  EXPECT_EQ(errorFor(one + "no_class: [-1]\n"), ":3: expected a raw id, found '-1'");
+  EXPECT_EQ(errorFor(one + "no_class: 7\n"), ":3: expected a list of raw ids");
+  EXPECT_EQ(errorFor(one + "no_class: [5, 5]\n"), ":3: class table: raw id 5 folds twice");
+  EXPECT_EQ(errorFor(one + "unknown_raw_id: maybe\n"),
+            ":3: unknown_raw_id: expected error or no_class, found 'maybe'");
+  EXPECT_EQ(errorFor(one + "  - {id: 3, name: b, color: [1, 2, 3]}\n"),
+            ":3: class id 3: the ids of 2 classes must be 1..2 without gaps");
+  EXPECT_EQ(errorFor(one + "  - {id: 1, name: b, color: [1, 2, 3]}\n"), ":3: class id 1 twice");
+  EXPECT_EQ(errorFor(one + "  - {id: 2, name: a, color: [1, 2, 3]}\n"),
+            ":3: class table: two classes named 'a'");
+  EXPECT_EQ(errorFor(one + "  - {id: 2, color: [1, 2, 3]}\n"), ":3: key 'name' is missing");
+  EXPECT_EQ(errorFor(one + "  - {id: 2, name: b}\n"), ":3: key 'color' is missing");
+  EXPECT_EQ(errorFor(one + "  - {id: 2, name: b, color: [1, 2, 256]}\n"),
+            ":3: expected color: [r, g, b], each 0..255, found 256");
+  EXPECT_EQ(errorFor(one + "  - {id: two, name: b, color: [1, 2, 3]}\n"),
+            ":3: expected a class id, found 'two'");
+  EXPECT_EQ(errorFor(one + "  - {id: 2, name: b, color: [1, 2, 3], alpha: 1}\n"),
+            ":3: unknown key 'alpha'");
+}
+
+TEST(ClassTableFile, aSyntaxErrorOrATruncatedFileIsAnErrorAndNoShorterTable) {
+  EXPECT_TRUE(
+      contains(errorFor("classes:\n  - {id: 1, name: a, color: [1, 2, 3]}\n  - {id: 2, na"), ":"));
+  EXPECT_NE(errorFor("classes:\n  - id: 1\n   name: a\n"), "");
+}
+
+TEST(ClassTableFile, aMissingFileIsNamed) {
+  EXPECT_EQ(errorOf([] { loadClassTable("/nowhere/t.yaml"); }), "/nowhere/t.yaml: cannot be read");
+}
+
+TEST(ClassTableFile, savingWhereNothingCanBeWrittenNamesTheFileAndLeavesNothing) {
+  ClassTable table;
+  table.add("a", {});
+  EXPECT_TRUE(
+      contains(errorOf([&] { saveClassTable(table, "/nowhere/t.yaml"); }), "/nowhere/t.yaml"));
+  const TemporaryFolder folder;
+  EXPECT_NE(errorOf([&] { saveClassTable(table, folder.path()); }), "");
+}
+
+TEST(ShippedClassTables, rugdHas24ClassesWithItsColors) {
+  const ClassTable rugd = shipped("rugd.yaml");
+  EXPECT_EQ(rugd.size(), 24);
+  EXPECT_EQ(numberOfColors(rugd), 24);
+  EXPECT_EQ(rugd.find(Color{0, 102, 0}), rugd.find("grass"));
+  EXPECT_EQ(rugd.fromRaw(24), rugd.find("picnic-table"));
+  EXPECT_EQ(rugd.fromRaw(0), kNoClass);
+  EXPECT_THROW(rugd.fromRaw(25), std::invalid_argument);
+}
+
+TEST(ShippedClassTables, semanticKittiFoldsTo19ClassesMovingOnesIncluded) {
+  const ClassTable kitti = shipped("semantic_kitti.yaml");
+  EXPECT_EQ(kitti.size(), 19);
+  EXPECT_EQ(numberOfColors(kitti), 19);
+  EXPECT_EQ(kitti.name(9), "road");
+  for (const auto raw : {0, 1, 52, 99}) EXPECT_EQ(kitti.fromRaw(raw), kNoClass);
+  EXPECT_EQ(kitti.fromRaw(252), kitti.find("car"));
+  EXPECT_EQ(kitti.fromRaw(60), kitti.find("road"));
+  EXPECT_THROW(kitti.fromRaw(200), std::invalid_argument);
+}
+
+TEST(ShippedClassTables, semanticKittiAgreesWithTheDataSetsOwnList) {
+  SKIP_WITHOUT_DATA("semantic_kitti");
+  const ClassTable kitti = shipped("semantic_kitti.yaml");
+  std::ifstream list(sharedDataDir() / "semantic_kitti/classes.txt");
+  int raw, r, g, b, fold, seen = 0;
+  std::string name;
+  list.ignore(1000, '\n');
+  for (; list >> raw >> name >> r >> g >> b >> fold; ++seen)
+    EXPECT_EQ(kitti.fromRaw(raw), fold) << raw;
+  EXPECT_EQ(seen, 34);
+}
+
+TEST(ShippedClassTables, replicaHas101ClassesThatAPersonCanTellApart) {
+  const ClassTable replica = shipped("replica_apartment.yaml");
+  EXPECT_EQ(replica.size(), 101);
+  EXPECT_EQ(numberOfColors(replica), 101);
+  EXPECT_EQ(replica.fromRaw(0), kNoClass);
+  SKIP_WITHOUT_DATA("replica_apartment_0");
+  std::ifstream list(sharedDataDir() / "replica_apartment_0/classes.txt");
+  int id, seen = 0;
+  std::string name;
+  list.ignore(1000, '\n');
+  for (; list >> id >> name; ++seen) EXPECT_EQ(replica.name(id), name);
+  EXPECT_EQ(seen, 101);
+}

@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+#include <semantic_types/ClassTable.h>
+
+#include "TemporaryFolder.h"
+
+using namespace semantic_types;
+
+namespace {
+
+ClassTable table() {
+  ClassTable classes;
+  classes.add("road", {90, 90, 90});
+  classes.add("snow", {255, 255, 255});
+  classes.add("coal", {0, 0, 0});
+  return classes;
+}
+
+}  // namespace
+
+TEST(ClassTable, numbersClassesFromOne) {
+  const ClassTable classes = table();
+  EXPECT_EQ(classes.size(), 3);
+  EXPECT_EQ(classes.name(1), "road");
+  EXPECT_EQ(classes.find("coal"), ClassId{3});
+  EXPECT_EQ(classes.find("mud"), std::nullopt);
+  EXPECT_FALSE(classes.contains(0));
+  EXPECT_FALSE(classes.contains(4));
+  EXPECT_THROW(classes.name(0), std::out_of_range);
+  EXPECT_THROW(classes.color(4), std::out_of_range);
+}
+
+TEST(ClassTable, knowsNoSpecialColor) {
+  const ClassTable classes = table();
+  EXPECT_EQ(classes.find(Color{255, 255, 255}), ClassId{2});
+  EXPECT_EQ(classes.find(Color{0, 0, 0}), ClassId{3});
+  EXPECT_EQ(classes.find(Color{1, 2, 3}), std::nullopt);
+}
+
+TEST(ClassTable, foldsRawIds) {
+  ClassTable classes = table();
+  classes.fold(40, 1);
+  classes.fold(252, 1);
+  classes.fold(2, 3);
+  classes.fold(0, kNoClass);
+  EXPECT_EQ(classes.fromRaw(40), 1);
+  EXPECT_EQ(classes.fromRaw(252), 1);
+  EXPECT_EQ(classes.fromRaw(2), 3);
+  EXPECT_EQ(classes.fromRaw(0), kNoClass);
+}
+
+TEST(ClassTable, takesRawIdsForItsOwnOnlyWhereNoneFoldsToAClass) {
+  ClassTable classes = table();
+  classes.fold(0, kNoClass);
+  EXPECT_EQ(classes.fromRaw(3), 3);
+  classes.fold(40, 1);
+  EXPECT_TRUE(contains(errorOf([&] { classes.fromRaw(3); }), "3"));
+}
+
+TEST(ClassTable, treatsUnknownRawIdsAsTold) {
+  ClassTable classes = table();
+  EXPECT_TRUE(contains(errorOf([&] { classes.fromRaw(70000); }), "70000"));
+  EXPECT_TRUE(contains(errorOf([&] { classes.fromRaw(0); }), "0"));
+  classes.setUnknownRawId(ClassTable::UnknownRawId::NoClass);
+  EXPECT_EQ(classes.fromRaw(70000), kNoClass);
+}
+
+TEST(ClassTable, refusesWhatIsAmbiguous) {
+  ClassTable classes = table();
+  EXPECT_THROW(classes.add("road", {}), std::invalid_argument);
+  EXPECT_THROW(classes.add("", {}), std::invalid_argument);
+  EXPECT_THROW(classes.fold(9, 4), std::invalid_argument);
+  classes.fold(9, 2);
+  EXPECT_THROW(classes.fold(9, 2), std::invalid_argument);
+  EXPECT_EQ(classes.size(), 3);
+}
+
+TEST(ClassTable, holdsUpTo254Classes) {
+  ClassTable classes;
+  for (int i = 1; i <= 254; ++i) EXPECT_EQ(classes.add("class " + std::to_string(i), {}), i);
+  EXPECT_THROW(classes.add("one more", {}), std::invalid_argument);
+  EXPECT_EQ(classes.size(), 254);
+}
+
+TEST(ClassTable, differsInEachPart) {
+  const ClassTable classes = table();
+  EXPECT_EQ(classes, table());
+  ClassTable other = table();
+  other.fold(5, 1);
+  EXPECT_NE(classes, other);
+  other = table();
+  other.setUnknownRawId(ClassTable::UnknownRawId::NoClass);
+  EXPECT_NE(classes, other);
+  other = table();
+  other.add("more", {});
+  EXPECT_NE(classes, other);
+}
