@@ -82,7 +82,8 @@ std::optional<std::string> objection(const Include& include, const fs::path& fil
   const bool upwards = include.path.rfind("..", 0) == 0;
   if (include.quoted && !upwards && fs::exists(file.parent_path() / include.path)) return {};
   // Between the rooms of a library, quotes name a file from its src/ on.
-  const fs::path path = include.quoted && !upwards ? library / include.path : include.path;
+  const fs::path path =
+      include.quoted && !upwards ? library / include.path : fs::path(include.path);
   for (const std::string& name : namesOf(path))
     if (name == room || allowed.count(name)) return {};
   const bool standard = include.path.find_first_of("./") == std::string::npos;

@@ -1,4 +1,5 @@
 #include <strict_files/StrictYaml.h>
+#include <strict_files/Words.h>
 
 #include <cmath>
 #include <fstream>
@@ -39,7 +40,24 @@ void StrictYaml::checkKeys(const YAML::Node& map, const std::set<std::string>& k
   checkMap(map);
   for (const auto& entry : map) {
     const std::string key = entry.first.Scalar();
-    if (!known.count(key)) fail(entry.first, "unknown key '" + key + "'");
+    if (!known.count(key)) fail(entry.first, unknownWord("key", key, {known.begin(), known.end()}));
+  }
+}
+
+void StrictYaml::read(const YAML::Node& map, const OptionList& list) const {
+  for (const auto& entry : map) {
+    const Option* option = list.find(entry.first.Scalar());
+    if (!option) continue;
+    std::vector<std::string> words;
+    if (entry.second.IsSequence())
+      for (const auto& word : entry.second) words.push_back(text(word, option->name));
+    else
+      words.push_back(text(entry.second, option->name));
+    try {
+      option->set(joined(words));
+    } catch (const std::invalid_argument& e) {
+      fail(entry.second, option->name + " " + e.what());
+    }
   }
 }
 

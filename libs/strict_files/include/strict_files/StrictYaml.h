@@ -1,4 +1,5 @@
 #pragma once
+#include <strict_files/OptionList.h>
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
@@ -21,6 +22,9 @@ class StrictYaml {
 
   /** The node is a map with these keys only, each at most once. */
   void checkKeys(const YAML::Node& map, const std::set<std::string>& known) const;
+  /** Reads the options that are in a map; the elements of a list are joined by ", ". Other keys are
+   * for checkKeys(), which wants OptionList::names() beside those that it knows otherwise. */
+  void read(const YAML::Node& map, const OptionList& list) const;
   /** The node is a map without a key twice. */
   void checkMap(const YAML::Node& map) const;
   void checkList(const YAML::Node& list, const std::string& field) const;

@@ -1,0 +1,47 @@
+#include "OptionFlags.h"
+
+#include <algorithm>
+
+namespace {
+
+std::string withDashes(std::string name) {
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
+std::string helpOf(const strict_files::Option& option) {
+  const std::string unit = option.unit.empty() ? "" : ", " + option.unit;
+  return option.help + unit + " (" + option.expected + ")";
+}
+
+void addSwitch(CLI::App& app, const strict_files::Option& option, const std::string& group) {
+  const bool on = option.text() == "true";
+  const std::string name = withDashes(option.name);
+  app.add_flag_callback((on ? "--no-" : "--") + name,
+                        [set = option.set, on] { set(on ? "false" : "true"); },
+                        (on ? "not: " : "") + option.help)
+      ->group(group);
+}
+
+}  // namespace
+
+void addOptions(CLI::App& app, const strict_files::OptionList& list, const std::string& group) {
+  for (const strict_files::Option& option : list.options()) {
+    if (option.isSwitch) {
+      addSwitch(app, option, group);
+      continue;
+    }
+    const auto read = [set = option.set](const std::vector<std::string>& words) {
+      try {
+        set(words.back());
+      } catch (const std::invalid_argument& e) {
+        throw CLI::ValidationError(e.what());
+      }
+      return true;
+    };
+    app.add_option("--" + withDashes(option.name), read, helpOf(option))
+        ->type_name(option.expected.rfind("one of", 0) == 0 ? "WORD" : "VALUE")
+        ->default_str(option.text())
+        ->group(group);
+  }
+}
