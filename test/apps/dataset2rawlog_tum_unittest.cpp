@@ -12,6 +12,7 @@
 #include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
+using namespace semantic_types;
 using Eigen::Vector3d;
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
