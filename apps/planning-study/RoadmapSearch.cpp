@@ -1,6 +1,6 @@
 #include "RoadmapSearch.h"
 
-#include <colored_graph/EdgeModelNames.h>
+#include <colored_graph/CostModel.h>
 
 #include <chrono>
 

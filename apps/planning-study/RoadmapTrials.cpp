@@ -1,6 +1,6 @@
 #include "RoadmapTrials.h"
 
-#include <colored_graph/EdgeModelNames.h>
+#include <colored_graph/CostModel.h>
 
 #include <cmath>
 #include <stdexcept>

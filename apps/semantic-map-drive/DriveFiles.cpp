@@ -88,7 +88,7 @@ nlohmann::json toJson(const DriveRecord& record, const colored_graph::ClassOrder
 double badLength(const std::vector<double>& perClass, const colored_graph::ClassOrder& order) {
   double sum = 0;
   for (std::size_t id = 0; id < perClass.size(); ++id)
-    if (order.rank(static_cast<colored_graph::ClassId>(id)) != 0) sum += perClass[id];
+    if (order.rank(static_cast<colored_graph::GraphClass>(id)) != 0) sum += perClass[id];
   return sum;
 }
 

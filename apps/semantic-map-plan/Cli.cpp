@@ -1,6 +1,6 @@
 #include "Cli.h"
 
-#include <colored_graph/EdgeModelNames.h>
+#include <colored_graph/CostModel.h>
 
 #include <cmath>
 #include <map>
@@ -11,6 +11,7 @@ namespace semantic_map_plan {
 
 using namespace semantic_planning;
 using colored_graph::CostKind;
+using colored_graph::EdgeModel;
 using mrpt::math::TPose2D;
 
 namespace {
@@ -61,11 +62,12 @@ void addRoadmap(CLI::App& app, RoadmapOptions& roadmap) {
 
 void addJudgment(CLI::App& app, PlannerOptions& planner) {
   auto* group = app.add_option_group("Cost");
-  addChoice(
-      group->add_option("--cost", planner.cost, "What is least, worst class first"),
-      std::map<std::string, CostKind>{{"count", CostKind::Count}, {"length", CostKind::ArcLength}});
+  const auto& costs = choicesOf(planner.cost);
+  addChoice(group->add_option("--cost", planner.cost, "What is least, worst class first"),
+            std::map<std::string, CostKind>(costs.begin(), costs.end()));
+  const auto& edges = choicesOf(planner.edges);
   addChoice(group->add_option("--edges", planner.edges, "Which classes an edge counts for"),
-            colored_graph::edgeModels());
+            std::map<std::string, EdgeModel>(edges.begin(), edges.end()));
   addChoice(
       group->add_option("--reading", planner.reading.kind, "What of a voxel's classes counts"),
       std::map<std::string, ClassReading::Kind>{{"likeliest", ClassReading::Kind::Likeliest},

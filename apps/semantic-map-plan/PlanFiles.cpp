@@ -29,7 +29,7 @@ json ranksOf(const colored_graph::ClassOrder& order, const ClassTable& classes) 
   for (int rank = 0; rank < order.ranks(); ++rank) {
     json names = json::array();
     for (int id = 0; id < order.classes(); ++id)
-      if (order.rank(static_cast<colored_graph::ClassId>(id)) == rank)
+      if (order.rank(static_cast<colored_graph::GraphClass>(id)) == rank)
         names.push_back(groundName(static_cast<semantic_types::ClassId>(id), classes));
     ranks.push_back(names);
   }

@@ -9,7 +9,7 @@ using namespace colored_graph;
 namespace {
 
 /** The message of the exception that making this order throws. */
-std::string refusal(int classes, const std::vector<std::vector<ClassId>>& bestToWorst) {
+std::string refusal(int classes, const std::vector<std::vector<GraphClass>>& bestToWorst) {
   try {
     ClassOrder(classes, bestToWorst);
   } catch (const std::invalid_argument& error) {
@@ -41,8 +41,8 @@ TEST(ClassOrder, saysWhatIsWrongWithAnOrder) {
 }
 
 TEST(ClassOrder, hasSixteenRanksAtMost) {
-  std::vector<std::vector<ClassId>> ranks;
-  for (ClassId id = 0; id < 16; ++id) ranks.push_back({id});
+  std::vector<std::vector<GraphClass>> ranks;
+  for (GraphClass id = 0; id < 16; ++id) ranks.push_back({id});
   EXPECT_EQ(refusal(17, ranks), "accepted");
   ranks.push_back({16});
   EXPECT_EQ(refusal(17, ranks), "ClassOrder: 17 ranks, at most 16");

@@ -53,7 +53,7 @@ struct GrassAndRoad {
     const int edges[][4] = {{0, 1, 0, 100}, {1, 2, 2, 10},  {2, 3, 2, 10},  {3, 9, 0, 100},
                             {0, 4, 0, 100}, {4, 5, 2, 90},  {5, 9, 0, 100}, {0, 6, 1, 300},
                             {6, 7, 1, 300}, {7, 9, 1, 300}, {0, 8, 1, 500}, {8, 9, 1, 500}};
-    for (const auto& e : edges) graph.addEdge(e[0], e[1], {{static_cast<ClassId>(e[2]), e[3]}});
+    for (const auto& e : edges) graph.addEdge(e[0], e[1], {{static_cast<GraphClass>(e[2]), e[3]}});
   }
   Tuple solve(CostKind kind) {
     const CostModel model{ClassOrder(3, {{0}, {1}, {2}}), EdgeModel::Sweep, kind};
@@ -128,10 +128,10 @@ TEST(ColoredAStar, equalsTheBestOfAllSimplePaths) {
 TEST(ColoredAStar, worksWithEveryNumberOfRanks) {
   for (int ranks = 1; ranks <= kMaxRanks; ++ranks) {
     ColoredGraph graph(kMaxRanks);
-    std::vector<std::vector<ClassId>> order;
-    for (int r = 0; r < ranks; ++r) order.push_back({static_cast<ClassId>(r)});
+    std::vector<std::vector<GraphClass>> order;
+    for (int r = 0; r < ranks; ++r) order.push_back({static_cast<GraphClass>(r)});
     for (int v = 0; v <= ranks; ++v) graph.addVertex(0);
-    for (int r = 0; r < ranks; ++r) graph.addEdge(r, r + 1, {{static_cast<ClassId>(r), 10 + r}});
+    for (int r = 0; r < ranks; ++r) graph.addEdge(r, r + 1, {{static_cast<GraphClass>(r), 10 + r}});
     const CostModel model{ClassOrder(kMaxRanks, order), EdgeModel::Sweep, CostKind::ArcLength};
     const PathResult result = findColoredPath(graph, 0, static_cast<VertexId>(ranks), model);
     ASSERT_TRUE(result.found());
@@ -252,7 +252,7 @@ TEST(ColoredAStar, worstRankBoundLooksAcrossABarrier) {
   for (int i = 0; i < width * height; ++i) graph.addVertex(0);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      const ClassId across = x + 1 == width / 2 ? 1 : 0;
+      const GraphClass across = x + 1 == width / 2 ? 1 : 0;
       if (x + 1 < width) graph.addEdge(id(x, y), id(x + 1, y), {{across, 10}});
       if (y + 1 < height) graph.addEdge(id(x, y), id(x, y + 1), {{0, 10}});
     }

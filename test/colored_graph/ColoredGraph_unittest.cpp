@@ -14,7 +14,7 @@ namespace {
 
 ColoredGraph triangle() {
   ColoredGraph graph(3);
-  for (ClassId id = 0; id < 3; ++id) graph.addVertex(id);
+  for (GraphClass id = 0; id < 3; ++id) graph.addVertex(id);
   graph.addEdge(0, 1, {{0, 10}});
   graph.addEdge(1, 2, {{1, 20}, {2, 5}});
   graph.addUnevaluatedEdge(2, 0, 30);
@@ -153,7 +153,7 @@ TEST(ColoredGraph, logsTheVerticesAtWhoseEdgesSomethingChanged) {
 
 TEST(ColoredGraph, logIsBoundedAndKeepsTheLatest) {
   ColoredGraph graph = triangle();
-  for (int i = 0; i < 10000; ++i) graph.setVertexClass(0, static_cast<ClassId>(i % 2 + 1));
+  for (int i = 0; i < 10000; ++i) graph.setVertexClass(0, static_cast<GraphClass>(i % 2 + 1));
   const ChangeLog& log = graph.changes();
   EXPECT_GT(log.begin(), 20000u);
   EXPECT_LE(log.end() - log.begin(), 2048u);

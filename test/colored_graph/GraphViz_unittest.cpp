@@ -46,7 +46,7 @@ TEST(GraphViz, writesVerticesEdgesAndTheirStates) {
 TEST(GraphViz, drawsColorsPositionsAndThePath) {
   const ColoredGraph graph = roadAndGrass();
   GraphVizOptions options;
-  options.color = [](ClassId id) { return id == 0 ? "gray\"50" : "green"; };
+  options.color = [](GraphClass id) { return id == 0 ? "gray\"50" : "green"; };
   options.position = [](VertexId v) { return std::make_pair(v * 10.0, -0.5); };
   PathResult path;
   path.edges = {0};

@@ -46,11 +46,11 @@ class PlaneGraph {
 
   /** Every class in the order with equal chances, two of three times in a rank of its own. */
   colored_graph::ClassOrder randomOrder() {
-    std::vector<colored_graph::ClassId> ids(kClasses);
-    std::iota(ids.begin(), ids.end(), colored_graph::ClassId{0});
+    std::vector<colored_graph::GraphClass> ids(kClasses);
+    std::iota(ids.begin(), ids.end(), colored_graph::GraphClass{0});
     std::shuffle(ids.begin(), ids.end(), m_random);
     ids.resize(kClasses - below(3));
-    std::vector<std::vector<colored_graph::ClassId>> ranks;
+    std::vector<std::vector<colored_graph::GraphClass>> ranks;
     for (const auto id : ids) {
       if (ranks.empty() || below(3) > 0) ranks.emplace_back();
       ranks.back().push_back(id);
@@ -63,8 +63,8 @@ class PlaneGraph {
     return colored_graph::lengthDown(meters(a, b));
   }
 
-  colored_graph::ClassId randomClass() {
-    return static_cast<colored_graph::ClassId>(below(kClasses));
+  colored_graph::GraphClass randomClass() {
+    return static_cast<colored_graph::GraphClass>(below(kClasses));
   }
   int below(int end) { return static_cast<int>(m_random() % static_cast<unsigned>(end)); }
 

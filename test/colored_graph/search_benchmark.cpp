@@ -26,9 +26,9 @@ struct Point {
 
 double distance(Point a, Point b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-ClassId patchAt(Point p) {
+GraphClass patchAt(Point p) {
   const double field = std::sin(p.x / 7) + std::sin(p.y / 5) + std::sin((p.x + p.y) / 9);
-  return static_cast<ClassId>(std::clamp(static_cast<int>(std::floor(field + 2)), 0, 3));
+  return static_cast<GraphClass>(std::clamp(static_cast<int>(std::floor(field + 2)), 0, 3));
 }
 
 class Town {
@@ -70,8 +70,8 @@ class Town {
   }
 
   CostModel model(int ranks) const {
-    std::vector<std::vector<ClassId>> order;
-    for (int r = 0; r < ranks; ++r) order.push_back({static_cast<ClassId>(r)});
+    std::vector<std::vector<GraphClass>> order;
+    for (int r = 0; r < ranks; ++r) order.push_back({static_cast<GraphClass>(r)});
     return {ClassOrder(kClasses, order), EdgeModel::Sweep, CostKind::ArcLength};
   }
 
@@ -102,7 +102,7 @@ class Town {
 
   void recolorEdge(EdgeId e) {
     const bool back = m_random() % 2;
-    const ClassId id = back ? patchAt(middle(e)) : static_cast<ClassId>(m_random() % 4);
+    const GraphClass id = back ? patchAt(middle(e)) : static_cast<GraphClass>(m_random() % 4);
     graph.setProfile(e, {{id, graph.edge(e).length}});
   }
 

@@ -2,6 +2,7 @@
 // as the beam; so voxels may differ whose corners or borders a ray touches, and no others.
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
+#include <semantic_octree/Keys.h>
 
 #include "RandomScans.h"
 
@@ -23,7 +24,7 @@ octomap::KeySet voxelsOf(const SemanticOcTree& tree, bool occupied) {
 double distanceToBeams(const octomap::OcTreeKey& key, const std::vector<Eigen::Array3d>& ends,
                        const Eigen::Array3d& begin) {
   Eigen::Array3d low;
-  for (int axis = 0; axis < 3; ++axis) low[axis] = key[axis] - 32768.0;
+  for (int axis = 0; axis < 3; ++axis) low[axis] = key[axis] - double{kKeyOfOrigin};
   double least = HUGE_VAL;
   for (const Eigen::Array3d& end : ends) {
     // Smallest margin m for which the beam meets the voxel grown by m: bisection.

@@ -47,7 +47,7 @@ PlainScan plainScan(const PosedCloud& scan, double resolution, const InsertionOp
     const bool isReturn = range <= maxRange;
     const Eigen::Vector3d beam = scan.T_map_sensor.linear() * p * (isReturn ? 1 : maxRange / range);
     Eigen::Array3d end = begin + beam.array() / resolution;
-    if ((end < -32768).any() || (end >= 32768).any()) continue;
+    if ((end < -kKeyOfOrigin).any() || (end >= kKeyOfOrigin).any()) continue;
     const VoxelId endVoxel = voxelOf(end);
     if (isReturn) result.hits[endVoxel].push_back(i);
     if (options.rays == InsertionOptions::Rays::EndVoxels) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <semantic_octree/Keys.h>
+
 #include <array>
 #include <map>
 #include <optional>
@@ -11,8 +13,13 @@
 using VoxelId = std::array<int, 3>;
 
 inline octomap::OcTreeKey keyOf(const VoxelId& v) {
-  const auto key = [](int i) { return static_cast<octomap::key_type>(i + 32768); };
-  return {key(v[0]), key(v[1]), key(v[2])};
+  constexpr int origin = semantic_octree::kKeyOfOrigin;
+  return semantic_octree::octomapKey(v[0] + origin, v[1] + origin, v[2] + origin);
+}
+/** The voxel that has these keys. */
+inline VoxelId voxelAt(int x, int y, int z) {
+  constexpr int origin = semantic_octree::kKeyOfOrigin;
+  return {x - origin, y - origin, z - origin};
 }
 
 /** What a scan says of space, found ray by ray and point by point. */

@@ -181,7 +181,7 @@ TEST(Queries, iteratorsVisitEachVoxelOnce) {
   for (auto leaf = unpruned.begin_leafs(); leaf != unpruned.end_leafs(); ++leaf) {
     const octomap::OcTreeKey key = leaf.getKey();
     EXPECT_EQ(leaf.getDepth(), 16u);
-    EXPECT_TRUE(visited.insert({key[0] - 32768, key[1] - 32768, key[2] - 32768}).second);
+    EXPECT_TRUE(visited.insert(voxelAt(key[0], key[1], key[2])).second);
   }
   EXPECT_EQ(visited.size(), plain.voxels().size());
   for (const auto& voxel : plain.voxels()) EXPECT_TRUE(visited.count(voxel.first));

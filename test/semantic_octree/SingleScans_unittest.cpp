@@ -146,7 +146,7 @@ TEST(SingleScans, skipsReturnsOutsideTheMap) {
 }
 
 TEST(SingleScans, worksInTheOutermostVoxels) {
-  for (const double corner : {-32768.0, 32767.5}) {
+  for (const double corner : {-double{kKeyOfOrigin}, kKeyOfOrigin - 0.5}) {
     SemanticOcTree tree(1.0, numberedClasses(2));
     Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
     T_map_sensor.translation().setConstant(corner);

@@ -28,7 +28,7 @@ Tiles tilesThatDiffer(const SemanticOcTree& before, const SemanticOcTree& after)
 
 Tiles asSet(const std::vector<octomap::OcTreeKey>& keys) {
   Tiles tiles;
-  for (const octomap::OcTreeKey& k : keys) tiles.insert({k[0] - 32768, k[1] - 32768, k[2] - 32768});
+  for (const octomap::OcTreeKey& k : keys) tiles.insert(voxelAt(k[0], k[1], k[2]));
   return tiles;
 }
 

@@ -77,7 +77,7 @@ TEST(Tree, swappingExchangesEverything) {
   a.swap(b);
   EXPECT_TRUE(a == copyOfB);
   EXPECT_TRUE(b == copyOfA);
-  EXPECT_EQ(a.coordToKey(10.0), octomap::key_type(32768 + 20));
+  EXPECT_EQ(a.coordToKey(10.0), octomap::key_type(kKeyOfOrigin + 20));
   insertOne(a, 10);
   SemanticOcTree expected = copyOfB;
   insertOne(expected, 10);

@@ -9,12 +9,12 @@ inline std::map<VoxelId, std::vector<double>> voxelsOf(const semantic_octree::Se
   std::map<VoxelId, std::vector<double>> voxels;
   for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
     const octomap::OcTreeKey first = leaf.getIndexKey();
-    const int edge = 1 << (16 - leaf.getDepth());
+    const int edge = semantic_octree::edgeAtDepth(static_cast<int>(leaf.getDepth()));
     const std::vector<double> p = map.distribution(*leaf);
     for (int x = 0; x < edge; ++x)
       for (int y = 0; y < edge; ++y)
         for (int z = 0; z < edge; ++z)
-          voxels[{first[0] + x - 32768, first[1] + y - 32768, first[2] + z - 32768}] = p;
+          voxels[voxelAt(first[0] + x, first[1] + y, first[2] + z)] = p;
   }
   return voxels;
 }

@@ -96,7 +96,7 @@ BENCHMARK(softLabelHit);
 
 /** A fan of rays of 100 voxels; items are voxels. */
 void markFanOfRays(benchmark::State& state) {
-  TileGrid grid;
+  ScanGrid grid;
   grid.cover({-100, -100, -100}, {100, 100, 100});
   const Eigen::Array3d begin = Eigen::Array3d(0.3, 0.4, 0.5) - grid.origin();
   std::vector<Eigen::Array3d> ends;

@@ -12,7 +12,7 @@ using semantic_octree::SemanticOcTree;
 
 namespace {
 
-constexpr int kOrigin = 32768;
+constexpr int kOrigin = semantic_octree::kKeyOfOrigin;
 
 colored_graph::ClassOrder anyClass() { return {5, {{0, 1, 2, 3, 4}}}; }
 

@@ -10,7 +10,7 @@ using namespace semantic_planning;
 
 namespace {
 
-constexpr int kOrigin = 32768;
+constexpr int kOrigin = semantic_octree::kKeyOfOrigin;
 constexpr int kHalf = 40;  // columns of the world to each side
 
 /** Looks at every surface and every column around it, by the definition alone. */

@@ -12,7 +12,7 @@ namespace {
 
 }  // namespace
 
-ClassOrder::ClassOrder(int classes, const std::vector<std::vector<ClassId>>& bestToWorst)
+ClassOrder::ClassOrder(int classes, const std::vector<std::vector<GraphClass>>& bestToWorst)
     : m_ranks(static_cast<int>(bestToWorst.size())) {
   if (classes < 1) reject("a graph has at least one class, not " + std::to_string(classes));
   if (bestToWorst.empty()) reject("the order is empty: every edge would be forbidden");
@@ -21,11 +21,11 @@ ClassOrder::ClassOrder(int classes, const std::vector<std::vector<ClassId>>& bes
   m_rankOfClass.assign(classes, kForbidden);
   for (Rank rank = 0; rank < m_ranks; ++rank) {
     if (bestToWorst[rank].empty()) reject("rank " + std::to_string(rank) + " has no class");
-    for (const ClassId id : bestToWorst[rank]) assign(id, rank);
+    for (const GraphClass id : bestToWorst[rank]) assign(id, rank);
   }
 }
 
-void ClassOrder::assign(ClassId id, Rank rank) {
+void ClassOrder::assign(GraphClass id, Rank rank) {
   if (id >= classes())
     reject("class " + std::to_string(id) + " is not one of the " + std::to_string(classes()) +
            " classes");

@@ -1,8 +1,7 @@
 #include <colored_graph/ColoredAStar.h>
 
 #include "EdgeCosts.h"
-#include "PathAssembly.h"
-#include "StopCheck.h"
+#include "SearchParts.h"
 #include "WorstRankBound.h"
 
 #include <functional>

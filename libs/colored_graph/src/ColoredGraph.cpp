@@ -34,11 +34,20 @@ Id takeId(std::vector<Id>& freeIds, std::vector<T>& storage) {
 
 }  // namespace
 
+void ChangeLog::push(VertexId vertex, std::size_t keep) {
+  if (m_vertices.size() >= 2 * keep) {
+    const std::size_t drop = m_vertices.size() - keep;
+    m_vertices.erase(m_vertices.begin(), m_vertices.begin() + static_cast<std::ptrdiff_t>(drop));
+    m_dropped += drop;
+  }
+  m_vertices.push_back(vertex);
+}
+
 ColoredGraph::ColoredGraph(int classes) : m_classes(classes) {
   if (classes < 1) reject("at least one class is needed, not " + std::to_string(classes));
 }
 
-VertexId ColoredGraph::addVertex(ClassId id) {
+VertexId ColoredGraph::addVertex(GraphClass id) {
   checkClass(id);
   const VertexId v = takeId(m_freeVertices, m_vertices);
   m_vertices[v].classId = id;
@@ -57,7 +66,7 @@ void ColoredGraph::removeVertex(VertexId v) {
   logVertex(v);
 }
 
-void ColoredGraph::setVertexClass(VertexId v, ClassId id) {
+void ColoredGraph::setVertexClass(VertexId v, GraphClass id) {
   Vertex& vertex = m_vertices[checked(v)];
   checkClass(id);
   if (vertex.classId == id) return;
@@ -147,7 +156,7 @@ void ColoredGraph::refuseEdge(EdgeId e) {
   throw std::out_of_range("ColoredGraph: edge " + std::to_string(e) + " is not in the graph");
 }
 
-void ColoredGraph::checkClass(ClassId id) const {
+void ColoredGraph::checkClass(GraphClass id) const {
   if (id >= m_classes)
     reject("class " + std::to_string(id) + " is not one of the " + std::to_string(m_classes) +
            " classes");

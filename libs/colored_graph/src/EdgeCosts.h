@@ -53,7 +53,7 @@ class EdgeCosts {
   }
 
  private:
-  Rank rank(ClassId id) const { return m_model.order.rank(id); }
+  Rank rank(GraphClass id) const { return m_model.order.rank(id); }
 
   Rank worseEnd(const Edge& edge) const {
     return std::max(rank(m_graph.vertexClass(edge.a)), rank(m_graph.vertexClass(edge.b)));

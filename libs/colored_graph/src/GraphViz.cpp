@@ -22,11 +22,11 @@ std::string fixed(double value, int digits) {
   return out.str();
 }
 
-std::string colorOf(const GraphVizOptions& options, ClassId id) {
+std::string colorOf(const GraphVizOptions& options, GraphClass id) {
   return quoted(options.color ? options.color(id) : "black");
 }
 
-ClassId longestClass(const EdgeProfile& profile) {
+GraphClass longestClass(const EdgeProfile& profile) {
   const auto shorter = [](const Stretch& l, const Stretch& r) { return l.length < r.length; };
   return std::max_element(profile.begin(), profile.end(), shorter)->classId;
 }

@@ -1,7 +1,6 @@
 #pragma once
 #include "EdgeCosts.h"
-#include "PathAssembly.h"
-#include "StopCheck.h"
+#include "SearchParts.h"
 #include "VertexHeap.h"
 
 #include <algorithm>

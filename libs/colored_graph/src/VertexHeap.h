@@ -1,5 +1,5 @@
 #pragma once
-#include <colored_graph/ChangeLog.h>
+#include <colored_graph/ColoredGraph.h>
 
 #include <cstddef>
 #include <utility>

@@ -19,9 +19,7 @@ namespace {
 /** A leaf as keys. */
 struct Cube {
   explicit Cube(const LeafCell& leaf)
-      : edge(1 << (16 - leaf.depth)),
-        low{leaf.key[0] & ~(edge - 1), leaf.key[1] & ~(edge - 1)},
-        bottom(leaf.key[2] & ~(edge - 1)) {}
+      : edge(leaf.edge()), low{leaf.lowest().x(), leaf.lowest().y()}, bottom(leaf.lowest().z()) {}
 
   bool meets(int lowest, int highest) const { return bottom <= highest && bottom + edge > lowest; }
   int edge;
@@ -128,7 +126,7 @@ ObstaclePoints senseCompressedObstacles(const SemanticPlanner& planner,
                                         const ObstacleOptions& options) {
   options.validate();
   const Ground& ground = planner.ground();
-  const int key = static_cast<int>(std::floor(z / ground.voxelSize())) + 32768;
+  const int key = ground.keyOf(z);
   const Surroundings surroundings(ground, pose, key, options.radius);
   CompressedFinder finder(planner, surroundings, options);
   finder.cover(compressed);

@@ -172,7 +172,7 @@ Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, d
                           const TPose2D& goal, const std::vector<TPose2D>& avoid,
                           const FrontierOptions& options) {
   const double voxel = planner.ground().voxelSize();
-  const int key = static_cast<int>(std::floor(z / voxel)) + 32768;
+  const int key = planner.ground().keyOf(z);
   const GroundFlood flood(planner, from, key, options.radius);
   const GoalRegion region(planner, flood.square(), flood.reached(), from, z, goal);
   Exploration found;

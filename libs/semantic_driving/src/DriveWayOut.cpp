@@ -20,9 +20,9 @@ namespace {
 
 /** What was forbidden is one rank behind the others. */
 ClassOrder allowingAll(const ClassOrder& order) {
-  std::vector<std::vector<colored_graph::ClassId>> ranks(order.ranks() + 1);
+  std::vector<std::vector<colored_graph::GraphClass>> ranks(order.ranks() + 1);
   for (int id = 0; id < order.classes(); ++id) {
-    const auto classId = static_cast<colored_graph::ClassId>(id);
+    const auto classId = static_cast<colored_graph::GraphClass>(id);
     const colored_graph::Rank rank = order.rank(classId);
     ranks[rank == colored_graph::kForbidden ? order.ranks() : rank].push_back(classId);
   }

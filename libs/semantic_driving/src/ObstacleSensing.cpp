@@ -69,7 +69,7 @@ void forObstacles(const SemanticPlanner& planner, const mrpt::math::TPose2D& pos
   options.validate();
   const Ground& ground = planner.ground();
   const ObstacleFinder finder(planner, options);
-  const int key = static_cast<int>(std::floor(z / ground.voxelSize())) + 32768;
+  const int key = ground.keyOf(z);
   Surroundings(ground, pose, key, options.radius).forEach([&](Column c, int height, auto* surface) {
     if (!finder.isObstacle(c, height, surface)) return;
     f(finder, c, height, surface,

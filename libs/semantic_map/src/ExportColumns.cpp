@@ -1,5 +1,7 @@
 #include "ExportColumns.h"
 
+#include <semantic_octree/Keys.h>
+
 #include <stdexcept>
 #include <string>
 
@@ -10,12 +12,11 @@ using semantic_octree::SemanticOcTree;
 namespace {
 
 constexpr double kMostColumns = 2e8;
-constexpr int kKeyOfZero = 32768;
 
 /** x and y keys of the voxels in a leaf. */
-cv::Rect keysOf(const SemanticOcTree::leaf_iterator& leaf, unsigned treeDepth) {
+cv::Rect keysOf(const SemanticOcTree::leaf_iterator& leaf) {
   const octomap::OcTreeKey lowest = leaf.getIndexKey();
-  const int edge = 1 << (treeDepth - leaf.getDepth());
+  const int edge = semantic_octree::edgeAtDepth(static_cast<int>(leaf.getDepth()));
   return {lowest[0], lowest[1], edge, edge};
 }
 
@@ -24,7 +25,7 @@ cv::Rect keysOf(const SemanticOcTree::leaf_iterator& leaf, unsigned treeDepth) {
 ExportColumns::ExportColumns(const SemanticOcTree& tree, bool occupiedOnly)
     : m_resolution(tree.getResolution()) {
   for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf)
-    if (!occupiedOnly || leaf->getLogOdds() > 0) m_keys |= keysOf(leaf, tree.getTreeDepth());
+    if (!occupiedOnly || leaf->getLogOdds() > 0) m_keys |= keysOf(leaf);
   if (m_keys.empty())
     throw std::runtime_error(occupiedOnly ? "nothing in the map is occupied" : "the map is empty");
   if (double(m_keys.width) * m_keys.height > kMostColumns)
@@ -34,12 +35,12 @@ ExportColumns::ExportColumns(const SemanticOcTree& tree, bool occupiedOnly)
 }
 
 cv::Point2d ExportColumns::upperLeft() const {
-  return {(m_keys.x - kKeyOfZero) * m_resolution, (m_keys.br().y - kKeyOfZero) * m_resolution};
+  return {semantic_octree::lowerBorderOf(m_keys.x, m_resolution),
+          semantic_octree::lowerBorderOf(m_keys.br().y, m_resolution)};
 }
 
 cv::Rect ExportColumns::under(const SemanticOcTree::leaf_iterator& leaf) const {
-  constexpr unsigned kTreeDepth = 16;
-  const cv::Rect keys = keysOf(leaf, kTreeDepth);
+  const cv::Rect keys = keysOf(leaf);
   const cv::Rect pixels(keys.x - m_keys.x, m_keys.br().y - keys.br().y, keys.width, keys.height);
   return pixels & cv::Rect({0, 0}, size());
 }

@@ -1,16 +1,12 @@
 #pragma once
-#include <Eigen/Core>
-#include <cstdint>
+#include <semantic_octree/Keys.h>
 
-// Uses <cstdint> without including it.
-#include <octomap/OcTreeKey.h>
+#include <Eigen/Core>
 
 namespace semantic_octree {
 
-/** Voxel coordinates: key minus 32768 (floor(coordinate / resolution)), or keys. */
+/** Voxel coordinates: key minus kKeyOfOrigin (floor(coordinate / resolution)), or keys. */
 using VoxelIndex = Eigen::Array3i;
-
-constexpr int kTreeDepth = 16;
 
 /** Cube of space that a node at some depth stands for; index = lowest key >> (16 - depth). */
 struct Cell {
@@ -20,15 +16,13 @@ struct Cell {
   /** i-th of the eight children in OctoMap's order: x is bit 0, y bit 1, z bit 2. */
   Cell child(int i) const { return {index * 2 + VoxelIndex(i & 1, i >> 1 & 1, i >> 2), depth + 1}; }
   /** Edge in voxels. */
-  int edge() const { return 1 << (kTreeDepth - depth); }
+  int edge() const { return edgeAtDepth(depth); }
   /** Lowest voxel, as a key. */
   VoxelIndex lowest() const { return index * edge(); }
   /** Key as OctoMap's iterators give it: of the voxel just above the cell's center. */
   octomap::OcTreeKey key() const {
     const VoxelIndex k = lowest() + edge() / 2;
-    return octomap::OcTreeKey(static_cast<octomap::key_type>(k.x()),
-                              static_cast<octomap::key_type>(k.y()),
-                              static_cast<octomap::key_type>(k.z()));
+    return octomapKey(k.x(), k.y(), k.z());
   }
 };
 

@@ -41,7 +41,7 @@ class CropCursor {
 
 /** Voxels whose centers are in a box. */
 VoxelBox voxelsIn(const Eigen::AlignedBox3d& box, double resolution) {
-  const Eigen::Array3d limit = Eigen::Array3d::Constant(32768);
+  const Eigen::Array3d limit = Eigen::Array3d::Constant(kKeyOfOrigin);
   const auto toKeys = [&](const Eigen::Array3d& voxels) {
     return VoxelIndex((voxels.max(-limit).min(limit) + limit).cast<int>());
   };

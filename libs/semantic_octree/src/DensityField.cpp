@@ -6,8 +6,6 @@
 namespace semantic_octree {
 namespace {
 
-constexpr int kHalfMap = 32768;
-
 /** Distance from a point to the stretch a-b (to a if both are the same). */
 double distanceToStretch(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                          const Eigen::Vector3d& b) {
@@ -26,7 +24,7 @@ DensityField::Overlap DensityField::overlap(const Region& region, const Cell& ce
   // Centers of the cell's voxels fill the box center +- reach.
   const double reach = 0.5 * (cell.edge() - 1) * m_resolution;
   const Eigen::Vector3d center =
-      ((cell.lowest() - kHalfMap).cast<double>() + 0.5 * cell.edge()).matrix() * m_resolution;
+      ((cell.lowest() - kKeyOfOrigin).cast<double>() + 0.5 * cell.edge()).matrix() * m_resolution;
   if (region.shape == Region::Shape::Box) {
     const Eigen::Array3d toLow = (center - region.a).array(), toHigh = (region.b - center).array();
     if ((toLow >= reach).all() && (toHigh >= reach).all()) return Overlap::Full;

@@ -86,7 +86,7 @@ class MoveCursor {
 
 /** A pose in meters as one in keys. */
 Eigen::Isometry3d inVoxels(const Eigen::Isometry3d& T, double resolution) {
-  const Eigen::Vector3d middle = Eigen::Vector3d::Constant(32768);
+  const Eigen::Vector3d middle = Eigen::Vector3d::Constant(kKeyOfOrigin);
   Eigen::Isometry3d scaled = T;
   scaled.translation() = T.translation() / resolution + middle - T.linear() * middle;
   return scaled;
@@ -105,7 +105,7 @@ void checkStaysInside(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_
   map.getMetricMin(low.x(), low.y(), low.z());
   map.getMetricMax(high.x(), high.y(), high.z());
   const Eigen::AlignedBox3d known(low, high);
-  const double limit = 32767 * map.getResolution();
+  const double limit = (kKeyOfOrigin - 1) * map.getResolution();
   for (int i = 0; i < 8; ++i) {
     const auto corner = static_cast<Eigen::AlignedBox3d::CornerType>(i);
     if (((T_new_old * known.corner(corner)).cwiseAbs().array() > limit).any())

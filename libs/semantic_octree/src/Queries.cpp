@@ -1,3 +1,4 @@
+#include <semantic_octree/Keys.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <algorithm>
@@ -37,7 +38,7 @@ double distanceToBorder(const octomap::point3d& origin, const octomap::point3d& 
   double distance = HUGE_VAL;
   for (unsigned axis = 0; axis < 3; ++axis) {
     if (direction(axis) == 0) continue;
-    const double border = std::copysign(32768 * resolution, direction(axis));
+    const double border = std::copysign(kKeyOfOrigin * resolution, direction(axis));
     distance = std::min(distance, (border - origin(axis)) / direction(axis));
   }
   return distance - 2 * resolution;

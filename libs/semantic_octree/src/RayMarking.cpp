@@ -14,7 +14,7 @@ struct AxisLanes {
   Lanes next;         ///< ray parameter (0 begin, 1 end) of the next border
   Lanes delta;        ///< ray parameter from border to border
   LaneBits position;  ///< the axis's part of the bit's position
-  LaneBits step;      ///< see TileGrid::Field
+  LaneBits step;      ///< see ScanGrid::Field
   std::int64_t field;
 
   MSO_INLINE Lanes deltaWhere(const LaneBits& chosen) const {
@@ -35,7 +35,7 @@ MSO_INLINE void mark(std::uint8_t* bytes, const LaneBits& position) {
 
 class RayLanes {
  public:
-  MSO_INLINE RayLanes(TileGrid& grid, const Eigen::Array3d& begin)
+  MSO_INLINE RayLanes(ScanGrid& grid, const Eigen::Array3d& begin)
       : m_grid(grid),
         m_bytes(reinterpret_cast<std::uint8_t*>(grid.words())),
         m_begin(begin),
@@ -135,7 +135,7 @@ class RayLanes {
     a.position[lane] = (a.position[lane] + a.step[lane]) & a.field;
   }
 
-  TileGrid& m_grid;
+  ScanGrid& m_grid;
   std::uint8_t* m_bytes;
   Eigen::Array3d m_begin;
   Eigen::Array3i m_first;
@@ -147,7 +147,7 @@ class RayLanes {
 
 }  // namespace
 
-MSO_VECTORIZED void markRays(TileGrid& grid, const Eigen::Array3d& begin,
+MSO_VECTORIZED void markRays(ScanGrid& grid, const Eigen::Array3d& begin,
                              const Eigen::Array3d* ends, std::size_t numRays) {
   RayLanes lanes(grid, begin);
   lanes.follow(ends, numRays);

@@ -95,7 +95,7 @@ void Scan::markFree(const InsertionOptions& options, double margin) {
 }
 
 void Scan::markFreePart(int part, const InsertionOptions& options, double margin) {
-  TileGrid& grid = m_free[part];
+  ScanGrid& grid = m_free[part];
   const Eigen::Array3d gridOrigin = grid.origin(), begin = m_beams.origin - gridOrigin;
   const std::size_t last = m_carving.size() * (part + 1) / options.threads;
   std::vector<Eigen::Array3d> ends;
@@ -119,7 +119,7 @@ void Scan::summarize() {
     m_firstHit[tile] = hits;
     const CubeContent content = summarizeTile(tile);
     m_pyramid.set(tile, content);
-    if (content.hit()) hits += countBits(m_hits.tile(tile), TileGrid::kWords);
+    if (content.hit()) hits += countBits(m_hits.tile(tile), ScanGrid::kWords);
   });
   m_beams.report.hitVoxels = hits;
   m_pyramid.build();
@@ -128,13 +128,13 @@ void Scan::summarize() {
 CubeContent Scan::summarizeTile(std::size_t tile) {
   std::uint64_t* const free = m_free[0].tile(tile);
   for (std::size_t i = 1; i < m_free.size(); ++i)
-    for (int w = 0; w < TileGrid::kWords; ++w) {
+    for (int w = 0; w < ScanGrid::kWords; ++w) {
       free[w] |= m_free[i].tile(tile)[w];
       m_free[i].tile(tile)[w] = 0;
     }
   const std::uint64_t* const hit = m_hits.tile(tile);
   std::uint64_t anyFree = 0, anyHit = 0, allFree = ~std::uint64_t(0);
-  for (int w = 0; w < TileGrid::kWords; ++w) {
+  for (int w = 0; w < ScanGrid::kWords; ++w) {
     free[w] &= ~hit[w];  // a voxel that is hit is not also missed
     anyFree |= free[w];
     anyHit |= hit[w];
@@ -144,7 +144,7 @@ CubeContent Scan::summarizeTile(std::size_t tile) {
   if (anyFree | anyHit) content.flags |= CubeContent::kAny;
   if (anyHit) content.flags |= CubeContent::kHit;
   if (~allFree) content.flags |= CubeContent::kNotAllFree;
-  if (anyFree) m_beams.report.freeVoxels += countBits(free, TileGrid::kWords);
+  if (anyFree) m_beams.report.freeVoxels += countBits(free, ScanGrid::kWords);
   return content;
 }
 
@@ -161,7 +161,7 @@ std::uint32_t Scan::rankOf(std::uint64_t bit) const {
 }
 
 void Scan::clear() {
-  constexpr std::size_t bytesPerTile = TileGrid::kWords * sizeof(std::uint64_t);
+  constexpr std::size_t bytesPerTile = ScanGrid::kWords * sizeof(std::uint64_t);
   m_hits.forEachTile([this](std::size_t tile) {
     if (!m_pyramid.tile(tile).any()) return;
     std::memset(m_free[0].tile(tile), 0, bytesPerTile);
@@ -171,7 +171,7 @@ void Scan::clear() {
 
 std::size_t Scan::bytes() const {
   std::size_t bytes = m_hits.bytes() + m_clippedEnds.bytes() + m_pyramid.bytes();
-  for (const TileGrid& grid : m_free) bytes += grid.bytes();
+  for (const ScanGrid& grid : m_free) bytes += grid.bytes();
   return bytes + m_endBits.capacity() * sizeof(std::uint64_t) +
          (m_carving.capacity() + m_firstHit.capacity()) * sizeof(std::uint32_t);
 }

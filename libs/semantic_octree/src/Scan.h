@@ -1,8 +1,8 @@
 #pragma once
 #include "HitVotes.h"
 #include "ScanBeams.h"
+#include "ScanGrid.h"
 #include "ScanPyramid.h"
-#include "TileGrid.h"
 
 namespace semantic_octree {
 
@@ -43,9 +43,9 @@ class Scan {
   std::uint32_t rankOf(std::uint64_t bit) const;
 
   ScanBeams m_beams;
-  std::vector<TileGrid> m_free;  ///< one per thread, united in the first
-  TileGrid m_hits;
-  TileGrid m_clippedEnds;  ///< end voxels of beams beyond the range, to carve each once
+  std::vector<ScanGrid> m_free;  ///< one per thread, united in the first
+  ScanGrid m_hits;
+  ScanGrid m_clippedEnds;  ///< end voxels of beams beyond the range, to carve each once
   std::vector<std::uint64_t> m_endBits;  ///< per beam: its end voxel's bit
   std::vector<std::uint32_t> m_carving;  ///< beams that carve
   std::vector<std::uint32_t> m_firstHit;

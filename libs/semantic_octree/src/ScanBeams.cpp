@@ -9,14 +9,8 @@ namespace semantic_octree {
 using semantic_types::LabeledCloud;
 namespace {
 
-constexpr int kHalfMap = 32768;
-
-bool insideMap(const Eigen::Array3d& u) { return (u >= -kHalfMap).all() && (u < kHalfMap).all(); }
-
-/** floor(), which is a function call on processors of the common denominator. */
-int floorOf(double x) {
-  const int towardsZero = static_cast<int>(x);
-  return towardsZero - (x < towardsZero);
+bool insideMap(const Eigen::Array3d& u) {
+  return (u >= -kKeyOfOrigin).all() && (u < kKeyOfOrigin).all();
 }
 
 VoxelIndex voxelOf(const Eigen::Array3d& u) {
@@ -32,7 +26,7 @@ void ScanBeams::compute(const LabeledCloud& cloud, const Eigen::Isometry3d& T_ma
   if (!T_map_sensor.matrix().allFinite() || !insideMap(origin)) {
     std::ostringstream what;
     what << "sensor at (" << sensor.x() << ", " << sensor.y() << ", " << sensor.z()
-         << ") m is outside the map, which reaches " << kHalfMap * resolution
+         << ") m is outside the map, which reaches " << kKeyOfOrigin * resolution
          << " m from its origin";
     throw std::out_of_range(what.str());
   }

@@ -2,7 +2,7 @@
 
 namespace semantic_octree {
 
-void ScanPyramid::cover(const TileGrid& grid) {
+void ScanPyramid::cover(const ScanGrid& grid) {
   const VoxelIndex last = grid.firstTile() + grid.numTiles() - 1;
   for (int level = 0; level <= kTopLevel; ++level) {
     Level& l = m_levels[level];

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "TileGrid.h"
+#include "ScanGrid.h"
 
 namespace semantic_octree {
 
@@ -25,7 +25,7 @@ class ScanPyramid {
   static constexpr int kTopLevel = 13;
 
   /** Starts anew for the tiles of this grid: nothing seen. */
-  void cover(const TileGrid& grid);
+  void cover(const ScanGrid& grid);
   void set(std::size_t tile, CubeContent content) { m_levels[0].cubes[tile] = content; }
   CubeContent tile(std::size_t i) const { return m_levels[0].cubes[i]; }
   /** Fills the levels above the tiles. */

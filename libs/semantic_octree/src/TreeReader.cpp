@@ -1,5 +1,7 @@
 #include "TreeReader.h"
 
+#include <semantic_octree/Keys.h>
+
 #include <cmath>
 
 namespace semantic_octree {
@@ -84,7 +86,7 @@ void TreeReader::getRecord(Node& leaf) {
 void TreeReader::getChildren(Node& inner, int depth) {
   const auto kinds = m_in.get<std::uint16_t>();
   if (kinds == 0) throw std::runtime_error("altered: an inner node without children");
-  if (depth == 16) throw std::runtime_error("altered: more than 16 levels");
+  if (depth == kTreeDepth) throw std::runtime_error("altered: more than 16 levels");
   Octant& octant = m_arena->createOctant(inner);
   const auto kindOf = [kinds](int i) { return static_cast<NodeKind>(kinds >> 2 * i & 3); };
   for (int i = 0; i < 8; ++i) {

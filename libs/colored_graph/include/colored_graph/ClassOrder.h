@@ -4,7 +4,8 @@
 
 namespace colored_graph {
 
-using ClassId = std::uint16_t;
+/** Number of a class of a graph, from 0 on; what it stands for is the user's. */
+using GraphClass = std::uint16_t;
 
 /** Place of a class in the order: 0 is best. */
 using Rank = int;
@@ -19,15 +20,15 @@ class ClassOrder {
   /** \param bestToWorst for every rank the classes that share it, e.g. {{road, parking}, {grass}}.
    * \throw std::invalid_argument order empty, a rank without a class, more than 16 ranks, a class
    * that is not below `classes`, or a class named twice. */
-  ClassOrder(int classes, const std::vector<std::vector<ClassId>>& bestToWorst);
+  ClassOrder(int classes, const std::vector<std::vector<GraphClass>>& bestToWorst);
 
   int classes() const { return static_cast<int>(m_rankOfClass.size()); }
   int ranks() const { return m_ranks; }
   /** Rank of a class, or kForbidden. */
-  Rank rank(ClassId id) const { return m_rankOfClass[id]; }
+  Rank rank(GraphClass id) const { return m_rankOfClass[id]; }
 
  private:
-  void assign(ClassId id, Rank rank);
+  void assign(GraphClass id, Rank rank);
 
   int m_ranks;
   std::vector<Rank> m_rankOfClass;

@@ -1,5 +1,4 @@
 #pragma once
-#include <colored_graph/ChangeLog.h>
 #include <colored_graph/ClassOrder.h>
 #include <colored_graph/Length.h>
 
@@ -9,13 +8,14 @@
 
 namespace colored_graph {
 
+using VertexId = std::uint32_t;
 using EdgeId = std::uint32_t;
 constexpr VertexId kNoVertex = ~VertexId{0};
 constexpr EdgeId kNoEdge = ~EdgeId{0};
 
 /** A part of an edge that lies in one class. Length 0 means: touched. */
 struct Stretch {
-  ClassId classId;
+  GraphClass classId;
   Length length;
 };
 using EdgeProfile = std::vector<Stretch>;
@@ -38,6 +38,23 @@ struct Incidence {
   EdgeId edge;
 };
 
+/** The vertices at whose edges something changed, oldest first, each with a running number. The
+ * oldest entries are dropped when the log has grown long: a reader that has fallen behind begin()
+ * has to look at everything again. */
+class ChangeLog {
+ public:
+  /** \param keep as many of the latest entries stay at least. */
+  void push(VertexId vertex, std::size_t keep);
+
+  std::uint64_t begin() const { return m_dropped; }
+  std::uint64_t end() const { return m_dropped + m_vertices.size(); }
+  VertexId operator[](std::uint64_t number) const { return m_vertices[number - m_dropped]; }
+
+ private:
+  std::uint64_t m_dropped = 0;
+  std::vector<VertexId> m_vertices;
+};
+
 /** An undirected graph whose vertices have a class and whose edges have a profile of classes.
  *
  * Vertices and edges are inserted in O(1), edges removed in O(1), vertices in O(degree), all
@@ -50,11 +67,11 @@ class ColoredGraph {
   explicit ColoredGraph(int classes);
 
   /** \throw std::invalid_argument class not below classes(). */
-  VertexId addVertex(ClassId id);
+  VertexId addVertex(GraphClass id);
   /** Removes the vertex and its edges. */
   void removeVertex(VertexId v);
   /** \throw std::invalid_argument class not below classes(). */
-  void setVertexClass(VertexId v, ClassId id);
+  void setVertexClass(VertexId v, GraphClass id);
 
   /** A usable edge.
    * \throw std::invalid_argument loop, profile empty, negative length, class not below classes(),
@@ -83,7 +100,7 @@ class ColoredGraph {
   bool containsVertex(VertexId v) const { return v < m_vertices.size() && m_vertices[v].present; }
   bool containsEdge(EdgeId e) const { return e < m_edges.size() && m_edges[e].a != kNoVertex; }
 
-  ClassId vertexClass(VertexId v) const { return m_vertices[checked(v)].classId; }
+  GraphClass vertexClass(VertexId v) const { return m_vertices[checked(v)].classId; }
   /** The edges at v, in no particular order; valid until the graph changes. */
   const std::vector<Incidence>& incident(VertexId v) const { return m_vertices[checked(v)].edges; }
   const Edge& edge(EdgeId e) const { return m_edges[checkedEdge(e)]; }
@@ -93,7 +110,7 @@ class ColoredGraph {
 
  private:
   struct Vertex {
-    ClassId classId = 0;
+    GraphClass classId = 0;
     bool present = false;
     std::vector<Incidence> edges;
   };
@@ -111,7 +128,7 @@ class ColoredGraph {
   }
   [[noreturn]] static void refuseVertex(VertexId v);
   [[noreturn]] static void refuseEdge(EdgeId e);
-  void checkClass(ClassId id) const;
+  void checkClass(GraphClass id) const;
   Length checkedLength(const EdgeProfile& profile) const;
   EdgeId insert(Edge edge);
   void detach(VertexId v, std::uint32_t slot);

@@ -11,7 +11,7 @@ namespace colored_graph {
 
 struct GraphVizOptions {
   /** GraphViz color of a class, such as "gray50" or "#a0c000"; none: all black. */
-  std::function<std::string(ClassId)> color;
+  std::function<std::string(GraphClass)> color;
   /** Where a vertex is drawn (`neato -n2` keeps it), in points; none: GraphViz decides. */
   std::function<std::pair<double, double>(VertexId)> position;
 };

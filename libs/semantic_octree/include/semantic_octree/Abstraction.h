@@ -1,4 +1,5 @@
 #pragma once
+#include <semantic_octree/Keys.h>
 #include <semantic_octree/SemanticOcTree.h>
 #include <tree_abstraction/AlphaPath.h>
 #include <tree_abstraction/GTreeSearch.h>
@@ -18,6 +19,15 @@ struct LeafCell {
    * until the map changes. */
   const SemanticOcTreeNode* node = nullptr;
 
+  /** Edge, in voxels. */
+  int edge() const { return edgeAtDepth(static_cast<int>(depth)); }
+  /** Keys of its lowest voxel. */
+  Eigen::Array3i lowest() const {
+    const auto lowestKey = [this](int axis) {
+      return lowestKeyAtDepth(key[static_cast<unsigned>(axis)], static_cast<int>(depth));
+    };
+    return {lowestKey(0), lowestKey(1), lowestKey(2)};
+  }
   /** The same cube (whatever node stands for it). */
   bool operator==(const LeafCell& o) const { return key == o.key && depth == o.depth; }
 };

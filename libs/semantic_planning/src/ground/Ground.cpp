@@ -86,8 +86,9 @@ GroundShape::GroundShape(const VehicleOptions& vehicle, const GroundOptions& opt
       farthestRoom(voxels(largestRadius(vehicle) + vehicle.clearance, voxelSize) + 1),
       keepOff(order.classes()) {
   for (int id = 0; id < order.classes(); ++id)
-    keepOff[id] = options.keepFootprintOffForbidden &&
-                  order.rank(static_cast<colored_graph::ClassId>(id)) == colored_graph::kForbidden;
+    keepOff[id] =
+        options.keepFootprintOffForbidden &&
+        order.rank(static_cast<colored_graph::GraphClass>(id)) == colored_graph::kForbidden;
 }
 
 Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions& vehicle,

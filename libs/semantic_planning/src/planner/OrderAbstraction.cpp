@@ -6,7 +6,7 @@ semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrd
                                                    double alpha) {
   std::vector<std::vector<int>> groups(order.ranks());
   for (int id = 1; id < order.classes(); ++id) {  // 0 would be free space
-    const colored_graph::Rank rank = order.rank(static_cast<colored_graph::ClassId>(id));
+    const colored_graph::Rank rank = order.rank(static_cast<colored_graph::GraphClass>(id));
     if (rank != colored_graph::kForbidden) groups[rank].push_back(id);
   }
   tree_abstraction::InformationTerm ranks{"ranks", 1, {}};

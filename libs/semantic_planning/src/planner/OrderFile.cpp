@@ -8,7 +8,7 @@ namespace semantic_planning {
 using colored_graph::ClassOrder;
 using semantic_types::ClassTable;
 using strict_files::StrictYaml;
-using OrderId = colored_graph::ClassId;
+using OrderId = colored_graph::GraphClass;
 
 namespace {
 

@@ -42,8 +42,8 @@ CandidateStore::Tile& CandidateStore::made(Column tile) {
 }
 
 void CandidateStore::addTilesOf(const LeafCell& leaf, std::vector<Column>& tiles) {
-  const int size = 1 << (16 - leaf.depth), z = leaf.key[2] & ~(size - 1);
-  const Column low{leaf.key[0] & ~(size - 1), leaf.key[1] & ~(size - 1)};
+  const int size = leaf.edge(), z = leaf.lowest().z();
+  const Column low{leaf.lowest().x(), leaf.lowest().y()};
   const Column first = tileOf(low), last = tileOf({low.x + size - 1, low.y + size - 1});
   m_tiles.forEachIn(first, last, [&](Column c, const Tile& tile) {
     if (tile.made && z <= tile.highest && z + size > tile.lowest) tiles.push_back(c);

@@ -96,10 +96,10 @@ std::vector<Spot> compressedSpots(Column tile, const Abstraction& abstraction, c
   };
   std::vector<Spot> spots;
   for (const LeafCell& leaf : abstraction.leavesIn(key(0, 0), key(kTileEdge - 1, 65535), true)) {
-    const int size = 1 << (16 - leaf.depth), z = leaf.key[2] & ~(size - 1);
+    const int size = leaf.edge(), z = leaf.lowest().z();
     std::optional<ClassId> classId;
     if (options.classOfLeaf) classId = likeliestIn(leaf, abstraction);
-    const Column low{leaf.key[0] & ~(size - 1), leaf.key[1] & ~(size - 1)};
+    const Column low{leaf.lowest().x(), leaf.lowest().y()};
     forCellsOf(low, size, largest, tile, [&](const Cell& cell) {
       for (const Surface& s : ground.surfaces(cell.center()))
         if (s.drivable && s.z >= z && s.z < z + size)

@@ -179,7 +179,7 @@ EdgeProfile EdgeChecker::rounded(double total) const {
   for (std::size_t id = 0; id < m_lengths.size(); ++id) {
     if (m_lengths[id] <= 0) continue;
     const auto length = std::min(left, colored_graph::lengthDown(m_lengths[id]));
-    profile.push_back({static_cast<colored_graph::ClassId>(id), length});
+    profile.push_back({static_cast<colored_graph::GraphClass>(id), length});
     left -= length;
   }
   const auto longest =

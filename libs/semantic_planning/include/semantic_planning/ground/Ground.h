@@ -1,5 +1,6 @@
 #pragma once
 #include <colored_graph/ClassOrder.h>
+#include <semantic_octree/Keys.h>
 #include <semantic_octree/SemanticOcTree.h>
 #include <semantic_planning/ground/GroundOptions.h>
 #include <semantic_planning/ground/Surface.h>
@@ -44,9 +45,12 @@ class Ground {
   const semantic_octree::SemanticOcTree& map() const { return m_map; }
   double voxelSize() const { return m_voxelSize; }
 
+  /** Key of the voxel that holds a coordinate, and the center of one: map frame, meters. */
+  int keyOf(double meters) const { return semantic_octree::keyOf(meters, m_voxelSize); }
+  double centerOf(int key) const { return semantic_octree::centerOf(key, m_voxelSize); }
+
   /** The column that holds a point, map frame, meters. */
   Column columnAt(double x, double y) const { return {keyOf(x), keyOf(y)}; }
-  double centerOf(int key) const { return (key - 32768 + 0.5) * m_voxelSize; }
 
   SurfaceRange surfaces(Column c) const;
   /** The column's surface nearest in height to key z, at most `tolerance` voxels off; or null.
@@ -76,12 +80,6 @@ class Ground {
   const GroundTiles& layers() const { return *m_tiles; }
 
  private:
-  int keyOf(double meters) const {
-    const double voxels = meters / m_voxelSize;
-    const int towardsZero = static_cast<int>(voxels);
-    return towardsZero - (voxels < towardsZero) + 32768;
-  }
-
   std::unique_ptr<GroundTiles> m_tiles;
   const semantic_octree::SemanticOcTree& m_map;
   double m_voxelSize, m_clearance;

@@ -1,4 +1,4 @@
-#include "PathAssembly.h"
+#include "SearchParts.h"
 
 #include <stdexcept>
 #include <string>
@@ -26,6 +26,34 @@ bool reaches(const ColoredGraph& graph, VertexId from, VertexId to, const Passab
 }
 
 }  // namespace
+
+void SearchOptions::validate() const {
+  if (!(timeLimit >= 0))
+    throw std::invalid_argument("SearchOptions: timeLimit " + std::to_string(timeLimit) +
+                                " s, expected 0 or more");
+}
+
+const char* describe(SearchStatus status) {
+  switch (status) {
+    case SearchStatus::Found:
+      return "path found";
+    case SearchStatus::StartNotInGraph:
+      return "the start is not in the graph";
+    case SearchStatus::GoalNotInGraph:
+      return "the goal is not in the graph";
+    case SearchStatus::NotConnected:
+      return "start and goal are not connected";
+    case SearchStatus::OnlyForbidden:
+      return "every path goes through a forbidden class";
+    case SearchStatus::CostOverflow:
+      return "the cost of every path is too large to be represented";
+    case SearchStatus::Cancelled:
+      return "the search was cancelled";
+    case SearchStatus::TimeLimit:
+      return "the search ran into its time limit";
+  }
+  throw std::out_of_range("a search status without a sentence");
+}
 
 std::optional<SearchStatus> missingEnd(const ColoredGraph& graph, VertexId start, VertexId goal) {
   if (!graph.containsVertex(start)) return SearchStatus::StartNotInGraph;

@@ -14,7 +14,7 @@ namespace semantic_octree {
  * Morton order (x lowest): a 64-bit word is a 4 x 4 x 4 block, a byte the eight children of a node.
  * Rows and layers of tiles are padded to powers of two, so that each coordinate of a voxel has bits
  * of its own in the position of the voxel's bit. */
-class TileGrid {
+class ScanGrid {
  public:
   static constexpr int kWords = 8;  ///< per tile
 
@@ -22,7 +22,7 @@ class TileGrid {
    * (the user of a bit clears it). \throw std::length_error the box is too large for memory. */
   void cover(const VoxelIndex& lowest, const VoxelIndex& highest);
   /** Covers the same box as another grid. */
-  void coverLike(const TileGrid& o);
+  void coverLike(const ScanGrid& o);
 
   /** Bits of a position that belong to one coordinate. */
   struct Field {

@@ -1,4 +1,4 @@
-#include "TileGrid.h"
+#include "ScanGrid.h"
 
 #include <stdexcept>
 
@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kMostTiles = std::size_t(1) << 28;
 /** More tiles than fit along the slowest axis, in bits that never overflow. */
 constexpr std::size_t kAllTiles = (std::size_t(1) << 14) - 1;
-constexpr int kTileSide = 8, kBitsPerTile = 512, kHalfMap = 32768;
+constexpr int kTileSide = 8, kBitsPerTile = 512;
 
 /** Bits 0, 1, 2 of a coordinate moved to Morton positions 0, 3, 6. */
 std::uint64_t spread(int v) { return (v & 1) | (v & 2) << 2 | (v & 4) << 4; }
@@ -24,11 +24,11 @@ int floorToTile(int voxel) { return voxel & ~(kTileSide - 1); }
 
 }  // namespace
 
-void TileGrid::cover(const VoxelIndex& lowest, const VoxelIndex& highest) {
+void ScanGrid::cover(const VoxelIndex& lowest, const VoxelIndex& highest) {
   std::size_t stride = 1;
   for (int axis = 0; axis < 3; ++axis) {
     m_firstVoxel[axis] = floorToTile(lowest[axis] - 1);
-    m_firstTile[axis] = (m_firstVoxel[axis] + kHalfMap) >> 3;
+    m_firstTile[axis] = (m_firstVoxel[axis] + kKeyOfOrigin) >> 3;
     m_numTiles[axis] = (floorToTile(highest[axis] + 1) - m_firstVoxel[axis]) / kTileSide + 1;
     m_strides[axis] = stride;
     m_offsets[axis].resize(static_cast<std::size_t>(m_numTiles[axis]) * kTileSide);
@@ -43,7 +43,7 @@ void TileGrid::cover(const VoxelIndex& lowest, const VoxelIndex& highest) {
   reserve(size());
 }
 
-void TileGrid::coverLike(const TileGrid& o) {
+void ScanGrid::coverLike(const ScanGrid& o) {
   m_firstVoxel = o.m_firstVoxel;
   m_firstTile = o.m_firstTile;
   m_numTiles = o.m_numTiles;
@@ -53,7 +53,7 @@ void TileGrid::coverLike(const TileGrid& o) {
   reserve(size());
 }
 
-void TileGrid::reserve(std::size_t tiles) {
+void ScanGrid::reserve(std::size_t tiles) {
   if (tiles <= m_capacity) return;
   m_capacity = 0;
   m_bits.reset();
