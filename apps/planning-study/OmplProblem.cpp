@@ -159,7 +159,7 @@ OmplProblem::OmplProblem(const SemanticPlanner& planner, const Instance& instanc
     : oracle(std::make_shared<MotionOracle>(planner)) {
   const PlannerOptions& options = planner.options();
   auto poses = std::make_shared<Poses>(options.vehicle.turningRadius);
-  poses->setBounds(boundsOf(instance, options.roadmap.regionBuffer));
+  poses->setBounds(boundsOf(instance, options.roadmap.buffer));
   space = std::make_shared<ob::SpaceInformation>(poses);
   space->setStateValidityChecker(std::make_shared<PoseValidity>(space, *oracle));
   space->setMotionValidator(std::make_shared<CurveValidity>(space, *oracle));

@@ -34,7 +34,7 @@ PlannerOptions withGraph(const StudyOptions& study, GraphKind kind, std::size_t 
   PlannerOptions options = study.planner;
   options.roadmap.kind = kind;
   options.roadmap.vertices = budget;
-  options.roadmap.edges =
+  options.roadmap.maxEdges =
       static_cast<std::size_t>(study.edgesPerVertex * static_cast<double>(budget));
   return options;
 }
@@ -105,7 +105,7 @@ class MapStudent::Contest {
   void prepareReference() {
     auto dense = withGraph(m_options, GraphKind::HaltonDrivable, m_options.reference);
     dense.roadmap.seed = kReferenceSeed;
-    dense.roadmap.edges = 0;
+    dense.roadmap.maxEdges = 0;
     m_reference.emplace(m_map, m_order, dense, false);
   }
 

@@ -175,10 +175,10 @@ ordered_json optionsJson(const StudyOptions& options) {
           {"edgesPerVertex", options.edgesPerVertex},
           {"reference", options.reference},
           {"neighbors", roadmap.neighbors},
-          {"longestEdge", roadmap.connectionRadius},
+          {"longestEdge", roadmap.longestEdge},
           {"headings", roadmap.headings},
           {"spacing", roadmap.spacing},
-          {"buffer", roadmap.regionBuffer},
+          {"buffer", roadmap.buffer},
           {"peerSeconds", options.peerTimes},
           {"peerInstances", options.peers ? options.peerInstances : 0}};
 }

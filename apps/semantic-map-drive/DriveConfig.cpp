@@ -114,11 +114,11 @@ void readPlanner(const CConfigFileBase& ini, const fs::path& folder,
   section.read("neighbors", planner.roadmap.neighbors);
   section.read("headings", planner.roadmap.headings);
   section.read("spacing", planner.roadmap.spacing);
-  section.read("buffer", planner.roadmap.regionBuffer);
-  section.read("longestEdge", planner.roadmap.connectionRadius);
-  section.read("bridgeGap", planner.ground.bridgeGap);
+  section.read("buffer", planner.roadmap.buffer);
+  section.read("longestEdge", planner.roadmap.longestEdge);
+  section.read("fillGap", planner.ground.fillGap);
   section.read("unknownGap", planner.ground.unknownGap);
-  readYesNo(section, "keepOff", planner.ground.keepFootprintOffForbidden);
+  readYesNo(section, "keepOff", planner.ground.keepOff);
   planner.shorten = true;
   readYesNo(section, "shorten", planner.shorten);
   section.finish();
@@ -165,7 +165,7 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     throw std::runtime_error(file.string() + ": cannot be read");
   try {
     DriveConfig config;
-    config.planner.ground.keepFootprintOffForbidden = true;
+    config.planner.ground.keepOff = true;
     mrpt::config::CConfigFile ini(file.string());
     ini.discardSavingChanges();
     refuseUnknownSections(ini);

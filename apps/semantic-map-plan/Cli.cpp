@@ -42,16 +42,16 @@ void addRoadmap(CLI::App& app, RoadmapOptions& roadmap) {
             graphKinds());
   group->add_option("--vertices", roadmap.vertices, "How many; 0: all that the map offers")
       ->capture_default_str();
-  group->add_option("--max-edges", roadmap.edges, "Most edges; 0: as the neighbors give")
+  group->add_option("--max-edges", roadmap.maxEdges, "Most edges; 0: as the neighbors give")
       ->capture_default_str();
   group->add_option("--neighbors", roadmap.neighbors, "Each vertex is connected with so many")
       ->capture_default_str();
-  group->add_option("--longest-edge", roadmap.connectionRadius, "m")->capture_default_str();
+  group->add_option("--longest-edge", roadmap.longestEdge, "m")->capture_default_str();
   group->add_option("--headings", roadmap.headings, "At each point (compressed, full)")
       ->capture_default_str();
   group->add_option("--spacing", roadmap.spacing, "Between points in large leaves, m")
       ->capture_default_str();
-  group->add_option("--buffer", roadmap.regionBuffer, "Around the line from start to goal, m")
+  group->add_option("--buffer", roadmap.buffer, "Around the line from start to goal, m")
       ->capture_default_str();
   group->add_flag(
       "--class-of-leaf", roadmap.classOfLeaf,
@@ -74,7 +74,7 @@ void addJudgment(CLI::App& app, PlannerOptions& planner) {
                                                 {"expected", ClassReading::Kind::Expected},
                                                 {"cautious", ClassReading::Kind::Cautious}});
   group
-      ->add_option("--bound", planner.reading.bound,
+      ->add_option("--least-probability", planner.reading.leastProbability,
                    "cautious: the worst class above this probability counts; expected: none below")
       ->capture_default_str();
   planner.shorten = true;
@@ -85,12 +85,11 @@ void addJudgment(CLI::App& app, PlannerOptions& planner) {
 
 void addGround(CLI::App& app, GroundOptions& ground) {
   auto* group = app.add_option_group("Ground");
-  group
-      ->add_option("--bridge-gap", ground.bridgeGap, "Holes up to this get their border's class, m")
+  group->add_option("--fill-gap", ground.fillGap, "Holes up to this get their border's class, m")
       ->capture_default_str();
   group->add_option("--unknown-gap", ground.unknownGap, "Holes up to this are unknown ground, m")
       ->capture_default_str();
-  group->add_flag("--keep-off", ground.keepFootprintOffForbidden,
+  group->add_flag("--keep-off", ground.keepOff,
                   "Keep the whole footprint off forbidden classes, not only the wheels");
 }
 

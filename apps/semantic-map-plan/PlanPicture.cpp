@@ -43,7 +43,7 @@ class PlanSheet {
                      c{first.x + i % kTileEdge, first.y + i / kTileEdge};
         const SurfaceRange surfaces = g.surfaces(c);
         const Surface* s = surfaces.first;
-        if (surfaces.empty() || !s->drivable || s->room2 == 0) continue;
+        if (surfaces.empty() || !s->drivable || s->clearance2 == 0) continue;
         const double x = g.centerOf(c.x), y = g.centerOf(c.y);
         cv::rectangle(ground, pixel(x - half, y + half), pixel(x + half, y - half),
                       colorOf(s->classId, m_classes), cv::FILLED);

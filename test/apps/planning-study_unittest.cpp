@@ -123,12 +123,12 @@ TEST_F(PlanningStudy, equalSeedsGiveEqualResultsApartFromTimes) {
 
 TEST_F(PlanningStudy, graphsKeepTheirBudgetsAndPathsAreNoShorterThanTheLine) {
   ASSERT_EQ(study({}).status, 0);
-  constexpr int kGuests = 2, kGuestEdges = 2 * 20 + 1;
+  constexpr int kQueryVertices = 2, kQueryEdges = 2 * 20 + 1;
   for (const Row& row : rows()) {
     const int budget = std::stoi(row.at("budget"));
-    EXPECT_LE(std::stoi(row.at("vertices")), budget + kGuests);
+    EXPECT_LE(std::stoi(row.at("vertices")), budget + kQueryVertices);
     if (row.at("graph") != "reference") {
-      EXPECT_LE(std::stoi(row.at("edges")), 5 * budget + kGuestEdges);
+      EXPECT_LE(std::stoi(row.at("edges")), 5 * budget + kQueryEdges);
     }
     if (row.at("found") == "0") continue;
     const double line = std::hypot(std::stod(row.at("goal x")) - std::stod(row.at("start x")),
@@ -158,7 +158,7 @@ TEST_F(PlanningStudy, noJudgmentFindsABetterWayInAGraphThanTheProfile) {
 }
 
 TEST_F(PlanningStudy, theSummaryIsThatOfTheTable) {
-  ASSERT_EQ(study({"--graphs", "halton-drivable,full"}).status, 0);
+  ASSERT_EQ(study({"--graphs", "halton_drivable,full"}).status, 0);
   std::map<std::string, std::vector<double>> planning;
   for (const Row& row : rows())
     if (row.at("found") == "1")
@@ -187,7 +187,7 @@ TEST_F(PlanningStudy, theSummaryIsThatOfTheTable) {
 
 TEST_F(PlanningStudy, peersPlanTheFirstTasksAndFiguresAreDrawn) {
   const ProgramRun run = study(
-      {"--graphs", "halton-drivable", "--peers", "--peer-time", "0.1,0.3", "--peer-instances", "1"},
+      {"--graphs", "halton_drivable", "--peers", "--peer-time", "0.1,0.3", "--peer-instances", "1"},
       "out", "0");
   ASSERT_EQ(run.status, 0) << run.errors;
   std::multiset<std::string> peers;

@@ -50,7 +50,7 @@ class DenseReference {
   bool discsFit(const TPose2D& pose, int z) const {
     for (const Disc& d : coveringDiscs(m_vehicle.footprint)) {
       const Surface* s = under(pose, d.x, d.y, z, tolerance(d.x, d.y));
-      if (!s || !m_ground.hasRoom(*s, d.radius)) return false;
+      if (!s || !m_ground.hasClearance(*s, d.radius)) return false;
     }
     return true;
   }

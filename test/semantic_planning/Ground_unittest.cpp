@@ -16,7 +16,7 @@ constexpr int kOrigin = semantic_octree::kKeyOfOrigin;
 
 colored_graph::ClassOrder anyClass() { return {5, {{0, 1, 2, 3, 4}}}; }
 
-/** A robot of 1 m in height that needs no room, and no bridges. */
+/** A robot of 1 m in height that needs no clearance, and no gap fills. */
 VehicleOptions smallVehicle() {
   VehicleOptions vehicle;
   vehicle.footprint = VehicleOptions::rectangle(-0.1, 0.1, 0.2);
@@ -25,14 +25,14 @@ VehicleOptions smallVehicle() {
   return vehicle;
 }
 
-GroundOptions withoutBridges() {
+GroundOptions withoutGapFills() {
   GroundOptions options;
-  options.bridgeGap = options.unknownGap = 0;
+  options.fillGap = options.unknownGap = 0;
   return options;
 }
 
 Ground groundOf(const SemanticOcTree& map, const VehicleOptions& vehicle = smallVehicle(),
-                const GroundOptions& options = withoutBridges()) {
+                const GroundOptions& options = withoutGapFills()) {
   return Ground(map, vehicle, options, anyClass());
 }
 
@@ -90,28 +90,28 @@ TEST(Ground, afterUpdatesItIsTheGroundReadAnew) {
   addRubble(world, 2, 600);
   world.floor(-6, 6, -6, 6, PaintedWorld::Road);
   SemanticOcTree& map = world.map();
-  const GroundOptions bridged;
+  const GroundOptions filling;
   map.takeTouchedTiles();
-  Ground ground = groundOf(map, VehicleOptions(), bridged);
+  Ground ground = groundOf(map, VehicleOptions(), filling);
   for (unsigned round = 0; round < 8; ++round) {
     addRubble(world, 100 + round, 25);
     world.map({0.05 + 0.3 * round, 0.05, 20});
     ground.update(map.takeTouchedTiles());
-    expectSame(ground, groundOf(map, VehicleOptions(), bridged));
+    expectSame(ground, groundOf(map, VehicleOptions(), filling));
   }
 }
 
-TEST(Ground, aHoleThatNoBeamEnteredIsBridgedAfterAnUpdateAsInTheGroundReadAnew) {
+TEST(Ground, aHoleThatNoBeamEnteredIsFilledAfterAnUpdateAsInTheGroundReadAnew) {
   PaintedWorld world;
-  const GroundOptions bridged;
+  const GroundOptions filling;
   SemanticOcTree& map = world.map();
   map.takeTouchedTiles();
-  Ground ground = groundOf(map, VehicleOptions(), bridged);
+  Ground ground = groundOf(map, VehicleOptions(), filling);
   world.floor(-3.2, 0, 0, 3.2, PaintedWorld::Road).map({-1.65, 1.65, 20});
   ground.update(map.takeTouchedTiles());
   world.floor(3.2, 6.4, 0, 3.2, PaintedWorld::Road).map({4.85, 1.65, 20});
   ground.update(map.takeTouchedTiles());
-  expectSame(ground, groundOf(map, VehicleOptions(), bridged));
+  expectSame(ground, groundOf(map, VehicleOptions(), filling));
   EXPECT_TRUE(ground.connected(*ground.find(-1, 1.6), *ground.find(5, 1.6)));
 }
 
@@ -148,7 +148,7 @@ TEST(Ground, anUpdateTellsTheTilesThatChanged) {
   EXPECT_LE(changed.size(), 4u);
 }
 
-TEST(Ground, roomIsTheDistanceToTheNearestColumnWithoutFreeGround) {
+TEST(Ground, clearanceIsTheDistanceToTheNearestColumnWithoutFreeGround) {
   PaintedWorld world;
   std::mt19937 random(5);
   std::vector<std::vector<bool>> free(40, std::vector<bool>(40, true));
@@ -162,7 +162,7 @@ TEST(Ground, roomIsTheDistanceToTheNearestColumnWithoutFreeGround) {
   VehicleOptions vehicle = smallVehicle();
   vehicle.clearance = 0.8;
   const Ground ground = groundOf(world.map(), vehicle);
-  const int farthest = ground.farthestRoom();
+  const int farthest = ground.largestClearance();
   for (int x = 0; x < 40; ++x)
     for (int y = 0; y < 40; ++y) {
       if (!free[x][y]) continue;
@@ -175,7 +175,7 @@ TEST(Ground, roomIsTheDistanceToTheNearestColumnWithoutFreeGround) {
         }
       const Surface* s = ground.near({kOrigin + x, kOrigin + y}, kOrigin - 1, 0);
       ASSERT_NE(s, nullptr);
-      EXPECT_EQ(s->room2, nearest) << x << ' ' << y;
+      EXPECT_EQ(s->clearance2, nearest) << x << ' ' << y;
     }
 }
 

@@ -27,7 +27,7 @@ TEST_F(PlannerTest, saysThatAllWaysAreForbidden) {
   start = {-10, 0, 0};
   goal = {10, 0, 0};
   EXPECT_EQ(plan().status, PlanStatus::OnlyForbidden);
-  options.ground.keepFootprintOffForbidden = true;
+  options.ground.keepOff = true;
   EXPECT_EQ(plan().status, PlanStatus::NotConnected);
 }
 
@@ -62,10 +62,10 @@ TEST_F(PlannerTest, refusesBadOptionsNamingThem) {
   };
   EXPECT_TRUE(contains(refusal([](auto& o) { o.vehicle.turningRadius = 0; }), "turningRadius"));
   EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.neighbors = 0; }), "neighbors is 0"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.longestEdge = NAN; }), "longestEdge"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.ground.fillGap = -1; }), "fillGap is -1"));
   EXPECT_TRUE(
-      contains(refusal([](auto& o) { o.roadmap.connectionRadius = NAN; }), "connectionRadius"));
-  EXPECT_TRUE(contains(refusal([](auto& o) { o.ground.bridgeGap = -1; }), "bridgeGap is -1"));
-  EXPECT_TRUE(contains(refusal([](auto& o) { o.reading.bound = 1; }), "bound"));
+      contains(refusal([](auto& o) { o.reading.leastProbability = 1; }), "leastProbability"));
   EXPECT_TRUE(contains(refusal([](auto& o) { o.timeLimit = NAN; }), "timeLimit"));
 }
 

@@ -151,7 +151,7 @@ TEST_F(RepeatedPlansTest, whatIsForgottenIsFoundOutAgain) {
 
 TEST_F(RepeatedPlansTest, theSamePosesComeAgainUnlessTheyBelongToTheTask) {
   paintCorner();
-  options.roadmap.regionBuffer = 6;
+  options.roadmap.buffer = 6;
   for (const auto& [kind, again] : {std::pair(GraphKind::Compressed, true),
                                     {GraphKind::HaltonMap, true},
                                     {GraphKind::HaltonDrivable, false}}) {

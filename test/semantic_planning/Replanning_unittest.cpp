@@ -140,7 +140,7 @@ TEST_F(PlannerTest, theBudgetOfEdgesHoldsAfterUpdatesAndTheBestOnesAreIn) {
   paintCorner();
   options.roadmap.kind = GraphKind::Full;
   options.roadmap.vertices = 0;
-  options.roadmap.edges = 700;
+  options.roadmap.maxEdges = 700;
   SemanticPlanner p = planner();
   p.plan(start, goal);
   const auto edges = [&](const Roadmap& roadmap) {

@@ -111,7 +111,7 @@ TEST_F(PlannerTest, verticesAndEdgesStayWithinTheirBudgets) {
   for (const GraphKind kind : {GraphKind::Compressed, GraphKind::HaltonDrivable, GraphKind::Full}) {
     options.roadmap.kind = kind;
     options.roadmap.vertices = 300;
-    options.roadmap.edges = 900;
+    options.roadmap.maxEdges = 900;
     const PlanResult result = plan();
     EXPECT_EQ(result.numVertices, 302u);  // with start and goal
     EXPECT_GE(result.numEdges, 900u);

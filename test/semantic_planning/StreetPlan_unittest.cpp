@@ -121,7 +121,7 @@ TEST_F(StreetPlan, aCarKeepsToTheRoadAndGoesAroundWhereItsLaneIsClosed) {
 
 TEST_F(StreetPlan, whereTheWholeStreetIsClosedASmallRobotGoesAroundBetweenTheTrees) {
   options.vehicle = loadVehicle(kConfig / "drive/robot.yaml");
-  options.roadmap.regionBuffer = 12;
+  options.roadmap.buffer = 12;
   SemanticPlanner planner(*map, *order, options);
   const PlanResult open = planner.plan(start, goal);
   ASSERT_TRUE(open.found()) << open.reason;

@@ -59,7 +59,7 @@ class CompressedFinder {
          compressed.leavesIn(key(m_low, lowest - step), key(high, highest + m_height + step), true))
       if (const Cube cube(leaf); isInTheWay(cube)) mark(cube);
     m_surroundings.forEach([&](Column c, int, const Surface* s) {  // no leaf is there
-      if (s && s->bridged && !s->drivable) m_covered[indexOf(c)] = true;
+      if (s && s->filled && !s->drivable) m_covered[indexOf(c)] = true;
     });
   }
 
@@ -98,7 +98,7 @@ class CompressedFinder {
     });
   }
   bool isBad(const Surface& s) const {
-    return !s.drivable || (m_options.forbiddenGround && !s.bridged &&
+    return !s.drivable || (m_options.forbiddenGround && !s.filled &&
                            m_planner.order().rank(s.classId) == colored_graph::kForbidden);
   }
   void mark(const Cube& cube) {

@@ -62,7 +62,7 @@ class GroundFlood {
  private:
   using Open = std::pair<double, std::size_t>;
 
-  bool isNear(Column c) const {  // where the vehicle stands there may be less room
+  bool isNear(Column c) const {  // where the vehicle stands there may be less clearance
     const double reach = 1.5 / m_ground.voxelSize();
     return std::hypot(c.x - m_center.x, c.y - m_center.y) < reach;
   }
@@ -91,7 +91,7 @@ class GroundFlood {
       const Column next{c.x + d.x, c.y + d.y};
       if (!m_square.contains(next)) continue;
       const Surface* s = m_ground.near(next, place.z, m_ground.step());
-      if (!s || !s->drivable || !(m_ground.hasRoom(*s, m_radius) || isNear(next))) continue;
+      if (!s || !s->drivable || !(m_ground.hasClearance(*s, m_radius) || isNear(next))) continue;
       const colored_graph::Rank rank = m_planner.order().rank(s->classId);
       if (rank == colored_graph::kForbidden) continue;
       const double way = std::hypot(d.x, d.y) * m_ground.voxelSize();

@@ -41,7 +41,7 @@ VehicleOptions withoutClearance(VehicleOptions vehicle) {
 }
 
 GroundOptions withoutKeepingOff(GroundOptions ground) {
-  ground.keepFootprintOffForbidden = false;
+  ground.keepOff = false;
   return ground;
 }
 

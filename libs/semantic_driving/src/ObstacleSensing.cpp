@@ -30,7 +30,7 @@ class ObstacleFinder {
   bool isObstacle(Column c, int z, const Surface* surface) const {
     if (!surface) return anyOccupied(c, z);
     if (!surface->drivable) return true;
-    return m_options.forbiddenGround && !surface->bridged &&
+    return m_options.forbiddenGround && !surface->filled &&
            m_planner.order().rank(surface->classId) == colored_graph::kForbidden;
   }
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <semantic_octree/SemanticOcTree.h>
+#include <semantic_planning/ground/ColumnGrid.h>
 #include <semantic_planning/ground/Surface.h>
-#include <semantic_planning/ground/TileGrid.h>
 
 #include <algorithm>
 #include <array>

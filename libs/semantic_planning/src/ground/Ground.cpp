@@ -30,7 +30,7 @@ void checkOrder(const semantic_octree::SemanticOcTree& map,
 }
 
 /** Finds the tiles with anything occupied, and those within a margin of columns: holes may be
- * bridged there. */
+ * filled there. */
 class TileSearch {
  public:
   TileSearch(const semantic_octree::SemanticOcTree& map, int margin)
@@ -70,7 +70,7 @@ class TileSearch {
 
   const semantic_octree::SemanticOcTree& m_map;
   const int m_margin;
-  TileGrid<char> m_marks;
+  ColumnGrid<char> m_marks;
 };
 
 }  // namespace
@@ -79,16 +79,15 @@ GroundShape::GroundShape(const VehicleOptions& vehicle, const GroundOptions& opt
                          const colored_graph::ClassOrder& order, double voxelSize)
     : height(voxels(vehicle.height, voxelSize)),
       step(std::max(1, static_cast<int>(vehicle.stepHeight / voxelSize + 1e-6))),
-      bridgeGap(options.bridgeGap / voxelSize + 1e-6),
-      widestGap(std::max(options.bridgeGap, options.unknownGap) / voxelSize + 1e-6),
+      fillGap(options.fillGap / voxelSize + 1e-6),
+      widestGap(std::max(options.fillGap, options.unknownGap) / voxelSize + 1e-6),
       rise(std::tan(vehicle.maxSlope * M_PI / 180)),
       baseline(std::max(2, static_cast<int>(std::lround(0.6 / voxelSize)))),
-      farthestRoom(voxels(largestRadius(vehicle) + vehicle.clearance, voxelSize) + 1),
+      largestClearance(voxels(largestRadius(vehicle) + vehicle.clearance, voxelSize) + 1),
       keepOff(order.classes()) {
   for (int id = 0; id < order.classes(); ++id)
-    keepOff[id] =
-        options.keepFootprintOffForbidden &&
-        order.rank(static_cast<colored_graph::GraphClass>(id)) == colored_graph::kForbidden;
+    keepOff[id] = options.keepOff && order.rank(static_cast<colored_graph::GraphClass>(id)) ==
+                                         colored_graph::kForbidden;
 }
 
 Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions& vehicle,
@@ -99,9 +98,9 @@ Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions&
   checkOrder(map, order);
   const GroundShape shape(vehicle, options, order, m_voxelSize);
   m_step = shape.step;
-  m_farthestRoom = shape.farthestRoom;
+  m_largestClearance = shape.largestClearance;
   m_tiles = std::make_unique<GroundTiles>(map, shape);
-  m_tiles->update(TileSearch(map, std::max(kTileEdge, reachOfBridges(shape))).find());
+  m_tiles->update(TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find());
 }
 
 Ground::~Ground() = default;
@@ -134,8 +133,8 @@ std::optional<GroundPoint> Ground::find(double x, double y, std::optional<double
 }
 
 bool Ground::connected(const GroundPoint& a, const GroundPoint& b) const {
-  const GroundParts& parts = m_tiles->parts();
-  return parts.partOf(a.column, a.surface) == parts.partOf(b.column, b.surface);
+  const GroundComponents& components = m_tiles->components();
+  return components.componentOf(a.column, a.surface) == components.componentOf(b.column, b.surface);
 }
 
 std::vector<Column> Ground::tiles() const {

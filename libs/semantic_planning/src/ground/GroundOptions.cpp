@@ -6,7 +6,7 @@ namespace semantic_planning {
 
 void GroundOptions::validate() const {
   const strict_files::OptionChecks check("GroundOptions");
-  check.within("bridgeGap", bridgeGap, 0, 20);
+  check.within("fillGap", fillGap, 0, 20);
   check.within("unknownGap", unknownGap, 0, 20);
 }
 

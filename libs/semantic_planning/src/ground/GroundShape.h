@@ -12,13 +12,13 @@ struct GroundShape {
   GroundShape(const VehicleOptions& vehicle, const GroundOptions& options,
               const colored_graph::ClassOrder& order, double voxelSize);
 
-  int height;        ///< free voxels above a surface
-  int step;          ///< from column to column
-  double bridgeGap;  ///< between the surfaces on both sides
+  int height;      ///< free voxels above a surface
+  int step;        ///< from column to column
+  double fillGap;  ///< between the surfaces on both sides
   double widestGap;
   double rise;   ///< of a drivable slope, voxels per voxel
   int baseline;  ///< columns to each side over which slope is measured
-  int farthestRoom;
+  int largestClearance;
   std::vector<bool> keepOff;  ///< by class id
 };
 

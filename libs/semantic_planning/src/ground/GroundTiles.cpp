@@ -28,7 +28,7 @@ ColumnBox columnsWhere(Column tile, F f) {
 
 /** The tile of a grid, which is set only if there is anything to be in it. */
 template <class T>
-ColumnBox replace(TileGrid<T>& grid, Column tile, T value) {
+ColumnBox replace(ColumnGrid<T>& grid, Column tile, T value) {
   static const T none{};
   const T* before = grid.find(tile);
   const ColumnBox changed =
@@ -43,10 +43,10 @@ void append(std::vector<ColumnBox>& boxes, const std::vector<ColumnBox>& more) {
 
 std::vector<Column> tilesOf(const std::vector<ColumnBox>& boxes) { return tilesWithin(boxes, 0); }
 
-/** The tiles that a bridge's hole crosses, with repetitions. */
-void addCrossed(const Bridge& bridge, std::vector<Column>& tiles) {
-  for (int i = 1; i < bridge.columns; ++i) {
-    const Column tile = tileOf(bridge.column(i));
+/** The tiles that a fill's hole crosses, with repetitions. */
+void addCrossed(const GapFill& fill, std::vector<Column>& tiles) {
+  for (int i = 1; i < fill.columns; ++i) {
+    const Column tile = tileOf(fill.column(i));
     if (i == 1 || !(tile == tiles.back())) tiles.push_back(tile);
   }
 }
@@ -64,16 +64,16 @@ void keepMarks(const SurfaceTile& before, SurfaceTile& tile) {
 
 std::vector<Column> GroundTiles::update(const std::vector<Column>& tiles) {
   std::vector<ColumnBox> changed = updateSurfaces(tiles);
-  append(changed, updateRoom(changed));
-  if (!changed.empty()) m_parts.reset();
+  append(changed, updateClearance(changed));
+  if (!changed.empty()) m_components.reset();
   return tilesOf(changed);
 }
 
 std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles) {
   std::vector<Column> refilled;
   const auto scanned = changedBy(tiles, [&](Column t) { return scan(t, refilled); });
-  const int reach = reachOfBridges(m_shape);
-  for (const Column& t : tilesWithin(scanned, {reach, reach, reach, 0})) findBridges(t, refilled);
+  const int reach = reachOfGapFills(m_shape);
+  for (const Column& t : tilesWithin(scanned, {reach, reach, reach, 0})) findFills(t, refilled);
   sortOut(refilled);
   auto changed = changedBy(refilled, [&](Column t) { return fill(t); });
   const auto sloped = tilesWithin(changed, m_shape.baseline);
@@ -81,14 +81,14 @@ std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& ti
   return changed;
 }
 
-std::vector<ColumnBox> GroundTiles::updateRoom(const std::vector<ColumnBox>& changed) {
+std::vector<ColumnBox> GroundTiles::updateClearance(const std::vector<ColumnBox>& changed) {
   const auto obstacles =
       changedBy(tilesWithin(changed, 1), [&](Column t) { return findObstacles(t); });
   const std::vector<Column> tiles = tilesOf(changed);
-  std::vector<Column> measured = tilesWithin(obstacles, m_shape.farthestRoom);
+  std::vector<Column> measured = tilesWithin(obstacles, m_shape.largestClearance);
   measured.insert(measured.end(), tiles.begin(), tiles.end());
   sortOut(measured);
-  auto finished = changedBy(measured, [&](Column t) { return measureRoom(t); });
+  auto finished = changedBy(measured, [&](Column t) { return measureClearance(t); });
   append(finished, changedBy(tiles, [&](Column t) { return connect(t); }));
   return finished;
 }
@@ -100,18 +100,18 @@ ColumnBox GroundTiles::scan(Column tile, std::vector<Column>& refilled) {
   return replace(m_columns, tile, std::move(columns));
 }
 
-void GroundTiles::findBridges(Column tile, std::vector<Column>& refilled) {
-  std::vector<Bridge> found = bridgesFrom(m_columns, m_measured, tile, m_shape), different;
-  const std::vector<Bridge>* before = m_bridges.find(tile);
-  const std::vector<Bridge> none;
+void GroundTiles::findFills(Column tile, std::vector<Column>& refilled) {
+  std::vector<GapFill> found = gapFillsFrom(m_columns, m_measured, tile, m_shape), different;
+  const std::vector<GapFill>* before = m_fills.find(tile);
+  const std::vector<GapFill> none;
   std::set_symmetric_difference(found.begin(), found.end(), (before ? *before : none).begin(),
                                 (before ? *before : none).end(), std::back_inserter(different));
-  for (const Bridge& bridge : different) addCrossed(bridge, refilled);
-  if (!different.empty()) m_bridges.at(tile) = std::move(found);
+  for (const GapFill& fill : different) addCrossed(fill, refilled);
+  if (!different.empty()) m_fills.at(tile) = std::move(found);
 }
 
 ColumnBox GroundTiles::fill(Column tile) {
-  SurfaceTile filled = bridgedSurfaces(m_bridges, m_measured, tile, m_shape);
+  SurfaceTile filled = filledSurfaces(m_fills, m_measured, tile, m_shape);
   if (const SurfaceTile* before = m_surfaces.find(tile)) keepMarks(*before, filled);
   return replace(m_surfaces, tile, std::move(filled));
 }
@@ -125,19 +125,19 @@ ColumnBox GroundTiles::findObstacles(Column tile) {
   return replace(m_obstacles, tile, obstaclesIn(m_surfaces, tile, m_shape));
 }
 
-ColumnBox GroundTiles::measureRoom(Column tile) {
+ColumnBox GroundTiles::measureClearance(Column tile) {
   SurfaceTile* measured = m_surfaces.find(tile);
-  return measured ? m_roomMeter.measure(m_obstacles, tile, *measured) : ColumnBox();
+  return measured ? m_clearanceMeter.measure(m_obstacles, tile, *measured) : ColumnBox();
 }
 
 ColumnBox GroundTiles::connect(Column tile) {
   SurfaceTile* connected = m_surfaces.find(tile);
-  return connected ? markParts(tile, *connected, m_shape) : ColumnBox();
+  return connected ? markComponents(tile, *connected, m_shape) : ColumnBox();
 }
 
-const GroundParts& GroundTiles::parts() const {
-  if (!m_parts) m_parts = std::make_unique<GroundParts>(m_surfaces, m_shape);
-  return *m_parts;
+const GroundComponents& GroundTiles::components() const {
+  if (!m_components) m_components = std::make_unique<GroundComponents>(m_surfaces, m_shape);
+  return *m_components;
 }
 
 }  // namespace semantic_planning

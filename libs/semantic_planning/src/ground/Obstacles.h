@@ -21,7 +21,7 @@ struct ObstacleTile {
   }
 };
 
-using ObstacleGrid = TileGrid<ObstacleTile>;
+using ObstacleGrid = ColumnGrid<ObstacleTile>;
 
 /** A surface that is not free (not drivable, or to be kept off) is an obstacle; and so is a column
  * at the height of free ground next to it, if it has no surface within a step of that.

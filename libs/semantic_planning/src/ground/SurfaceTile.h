@@ -1,6 +1,6 @@
 #pragma once
+#include <semantic_planning/ground/ColumnGrid.h>
 #include <semantic_planning/ground/Surface.h>
-#include <semantic_planning/ground/TileGrid.h>
 
 #include <algorithm>
 #include <array>
@@ -24,12 +24,12 @@ struct SurfaceTile {
     const SurfaceRange l = column(index), r = o.column(index);
     return std::equal(l.begin(), l.end(), r.begin(), r.end(),
                       [](const Surface& a, const Surface& b) {
-                        return a.z == b.z && a.classId == b.classId && a.bridged == b.bridged;
+                        return a.z == b.z && a.classId == b.classId && a.filled == b.filled;
                       });
   }
 };
 
-using SurfaceGrid = TileGrid<SurfaceTile>;
+using SurfaceGrid = ColumnGrid<SurfaceTile>;
 using SurfaceWindow = TileWindow<SurfaceTile>;
 
 inline SurfaceRange surfacesAt(const SurfaceGrid& grid, Column c) {

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_planning/ground/TileGrid.h>
+#include <semantic_planning/ground/ColumnGrid.h>
 
 #include <vector>
 
@@ -10,7 +10,7 @@ template <class T>
 class TileWindow {
  public:
   /** \param reach columns outside of the tile that are asked for, at most */
-  TileWindow(const TileGrid<T>& grid, Column tile, int reach) {
+  TileWindow(const ColumnGrid<T>& grid, Column tile, int reach) {
     static const T none{};
     const int ring = (reach + kTileEdge - 1) / kTileEdge;
     m_first = {tile.x - ring, tile.y - ring};

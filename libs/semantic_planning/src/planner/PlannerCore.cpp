@@ -143,8 +143,8 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   if (refuse(start, goal, result)) return result;
   m_roadmap = std::make_unique<MapRoadmap>(m_candidates, m_checker, m_options.roadmap, *m_startPose,
                                            *m_goalPose);
-  m_start = m_roadmap->roadmap().addGuest(*m_startPose);
-  m_goal = m_roadmap->roadmap().addGuest(*m_goalPose);
+  m_start = m_roadmap->roadmap().addQueryVertex(*m_startPose);
+  m_goal = m_roadmap->roadmap().addQueryVertex(*m_goalPose);
   clock.end("roadmap");
   m_evaluating = 0;
   colored_graph::ColoredAStarOptions search;
@@ -163,7 +163,7 @@ void PlannerCore::finish(const PathResult& path, StageClock& clock, PlanResult& 
   clock.end("path");
   if (m_options.shorten && m_model.edges == colored_graph::EdgeModel::Profile &&
       m_model.kind == colored_graph::CostKind::ArcLength) {
-    shortenPath(result, m_checker, m_model, m_options.roadmap.connectionRadius);
+    shortenPath(result, m_checker, m_model, m_options.roadmap.longestEdge);
     clock.end("shorten");
   }
   result.times = clock.take();
@@ -184,7 +184,7 @@ PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
   if (m_options.reading.kind != ClassReading::Kind::Likeliest) addTilesOf(touched, change.tiles);
   clock.end("ground");
   m_edges.groundChanged(change.tiles);
-  change.spots = m_candidates.update(touched, change.tiles);
+  change.points = m_candidates.update(touched, change.tiles);
   return change;
 }
 
@@ -195,7 +195,7 @@ UpdateResult PlannerCore::update() {
   result.tilesTouched = change.tilesTouched;
   result.tilesChanged = change.tiles.size();
   if (m_roadmap) {
-    m_roadmap->update(change.tiles, change.spots);
+    m_roadmap->update(change.tiles, change.points);
     const VertexPool::Counts vertices = m_roadmap->takeVertexCounts();
     const Roadmap::Counts edges = m_roadmap->roadmap().takeCounts();
     result.verticesInserted = vertices.inserted;
@@ -215,8 +215,8 @@ void PlannerCore::moveStart(Roadmap& map) {
   const GroundPose& present = map.pose(m_start);
   if (present.pose == m_startPose->pose && present.z == m_startPose->z) return;
   const VertexId before = m_start;
-  m_start = map.addGuest(*m_startPose);  // first, so that it is another id
-  map.removeGuest(before);
+  m_start = map.addQueryVertex(*m_startPose);  // first, so that it is another id
+  map.removeQueryVertex(before);
 }
 
 PlanResult PlannerCore::replan(const Place& start) {
@@ -227,8 +227,8 @@ PlanResult PlannerCore::replan(const Place& start) {
   Roadmap& map = m_roadmap->roadmap();
   moveStart(map);
   if (map.pose(m_goal).z != m_goalPose->z) {
-    map.removeGuest(m_goal);
-    m_goal = map.addGuest(*m_goalPose);
+    map.removeQueryVertex(m_goal);
+    m_goal = map.addQueryVertex(*m_goalPose);
     m_replanner.reset();
   }
   if (m_replanner)

@@ -42,7 +42,7 @@ class PlannerCore {
   struct MapChange {
     std::size_t tilesTouched = 0;
     std::vector<Column> tiles;  ///< of the ground
-    CandidateStore::Change spots;
+    CandidateStore::Change points;
   };
   MapChange followMap(StageClock& clock);
   PlanStatus placed(const Place& place, std::optional<GroundPose>& pose) const;

@@ -28,10 +28,10 @@ CandidateStore::Tile CandidateStore::make(Column tile) const {
     }
   });
   if (m_options.kind == GraphKind::Compressed)
-    result.spots = compressedSpots(tile, Abstraction(m_map), m_ground, m_options);
+    result.points = compressedPoints(tile, Abstraction(m_map), m_ground, m_options);
   else if (m_options.kind == GraphKind::Full)
-    result.spots = gridSpots(tile, m_ground, m_options);
-  std::sort(result.spots.begin(), result.spots.end());
+    result.points = gridPoints(tile, m_ground, m_options);
+  std::sort(result.points.begin(), result.points.end());
   return result;
 }
 
@@ -77,8 +77,8 @@ CandidateStore::Change CandidateStore::update(const std::vector<octomap::OcTreeK
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
   Change change;
   for (const Column& tile : tiles) {
-    const std::vector<Spot> before = std::exchange(m_tiles.at(tile), make(tile)).spots;
-    const std::vector<Spot>& now = in(tile);
+    const std::vector<CandidatePoint> before = std::exchange(m_tiles.at(tile), make(tile)).points;
+    const std::vector<CandidatePoint>& now = in(tile);
     std::set_difference(before.begin(), before.end(), now.begin(), now.end(),
                         std::back_inserter(change.removed));
     std::set_difference(now.begin(), now.end(), before.begin(), before.end(),

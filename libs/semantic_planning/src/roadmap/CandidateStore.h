@@ -8,8 +8,9 @@
 
 namespace semantic_planning {
 
-/** The spots of GraphKind::Compressed and Full, which depend on the map and not on start and goal:
- * each tile's are looked for once and kept until the map changes there. Other kinds have none. */
+/** The candidate points of GraphKind::Compressed and Full, which depend on the map and not on start
+ * and goal: each tile's are looked for once and kept until the map changes there. Other kinds have
+ * none. */
 class CandidateStore {
  public:
   /** \param map, ground must outlive the store; with GraphKind::Compressed the map keeps G-values.
@@ -20,12 +21,12 @@ class CandidateStore {
   const Ground& ground() const { return m_ground; }
 
   /** Least priority first. */
-  const std::vector<Spot>& in(Column tile) { return made(tile).spots; }
+  const std::vector<CandidatePoint>& in(Column tile) { return made(tile).points; }
 
   void forget() { m_tiles = {}; }
 
   struct Change {
-    std::vector<Spot> removed, added;
+    std::vector<CandidatePoint> removed, added;
   };
   /** Brings the store up to date with map and ground. \param touched as
    * SemanticOcTree::takeTouchedTiles() gives it \param changedTiles of the ground
@@ -36,20 +37,20 @@ class CandidateStore {
  private:
   struct Tile {
     bool made = false;
-    std::vector<Spot> spots;
+    std::vector<CandidatePoint> points;
     int lowest = 0, highest = -1;  ///< keys of drivable surfaces
   };
 
   Tile& made(Column tile);
   Tile make(Column tile) const;
-  /** Tiles whose spots may depend on a leaf. */
+  /** Tiles whose points may depend on a leaf. */
   void addTilesOf(const semantic_octree::LeafCell& leaf, std::vector<Column>& tiles);
   std::vector<Column> outdated(const std::vector<octomap::OcTreeKey>& touched);
 
   semantic_octree::SemanticOcTree& m_map;
   const Ground& m_ground;
   const RoadmapOptions m_options;
-  TileGrid<Tile> m_tiles;
+  ColumnGrid<Tile> m_tiles;
 };
 
 }  // namespace semantic_planning

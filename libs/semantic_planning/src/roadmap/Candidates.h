@@ -14,7 +14,7 @@
 namespace semantic_planning {
 
 /** A point upon the ground where vertices may be, one for each heading. */
-struct Spot {
+struct CandidatePoint {
   Column column;
   int z = 0;                       ///< key of its surface
   std::optional<ClassId> classId;  ///< of its leaf; none: that of the ground
@@ -23,25 +23,27 @@ struct Spot {
   double priority = 0;
 
   auto key() const { return std::tuple(priority, column.x, column.y, z, classId); }
-  bool operator<(const Spot& o) const { return key() < o.key(); }
-  bool operator==(const Spot& o) const { return key() == o.key(); }
+  bool operator<(const CandidatePoint& o) const { return key() < o.key(); }
+  bool operator==(const CandidatePoint& o) const { return key() == o.key(); }
 };
 
 /** A pose that may become a vertex. */
 struct Candidate {
   GroundPose pose;
-  std::optional<ClassId> classId;  ///< as Spot's
+  std::optional<ClassId> classId;  ///< as CandidatePoint's
 };
 
-/** The spots of a tile that lie in leaves of the compressed tree, in no particular order. */
-std::vector<Spot> compressedSpots(Column tile, const semantic_octree::Abstraction& abstraction,
-                                  const Ground& ground, const RoadmapOptions& options);
+/** The points of a tile that lie in leaves of the compressed tree, in no particular order. */
+std::vector<CandidatePoint> compressedPoints(Column tile,
+                                             const semantic_octree::Abstraction& abstraction,
+                                             const Ground& ground, const RoadmapOptions& options);
 
-/** Spots upon the finest map's ground, on a grid. */
-std::vector<Spot> gridSpots(Column tile, const Ground& ground, const RoadmapOptions& options);
+/** Points upon the finest map's ground, on a grid. */
+std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
+                                       const RoadmapOptions& options);
 
-/** A spot's poses, in evenly spaced headings from a direction that looks random. */
-std::vector<Candidate> candidatesAt(const Spot& spot, const Ground& ground,
+/** A point's poses, in evenly spaced headings from a direction that looks random. */
+std::vector<Candidate> candidatesAt(const CandidatePoint& point, const Ground& ground,
                                     const RoadmapOptions& options);
 
 /** Where a Halton sequence is laid. */

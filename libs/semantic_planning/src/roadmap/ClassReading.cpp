@@ -5,8 +5,8 @@
 namespace semantic_planning {
 
 void ClassReading::validate() const {
-  if (!(bound > 0 && bound < 1))
-    strict_files::OptionChecks("ClassReading").fail("bound", "must be between 0 and 1");
+  if (!(leastProbability > 0 && leastProbability < 1))
+    strict_files::OptionChecks("ClassReading").fail("leastProbability", "must be between 0 and 1");
 }
 
 }  // namespace semantic_planning

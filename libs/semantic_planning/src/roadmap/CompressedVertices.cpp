@@ -72,21 +72,21 @@ double dither(unsigned x, unsigned y, unsigned seed) {
   return value - std::floor(value);
 }
 
-std::vector<Candidate> candidatesAt(const Spot& spot, const Ground& ground,
+std::vector<Candidate> candidatesAt(const CandidatePoint& point, const Ground& ground,
                                     const RoadmapOptions& options) {
-  const double first = unit(mixed(static_cast<std::uint32_t>(spot.column.x),
-                                  static_cast<std::uint32_t>(spot.column.y), options.seed));
-  const double x = ground.centerOf(spot.column.x), y = ground.centerOf(spot.column.y);
+  const double first = unit(mixed(static_cast<std::uint32_t>(point.column.x),
+                                  static_cast<std::uint32_t>(point.column.y), options.seed));
+  const double x = ground.centerOf(point.column.x), y = ground.centerOf(point.column.y);
   std::vector<Candidate> candidates;
   for (int i = 0; i < options.headings; ++i) {
     const double heading = std::remainder(2 * M_PI * (first + i) / options.headings, 2 * M_PI);
-    candidates.push_back({{{x, y, heading}, spot.z}, spot.classId});
+    candidates.push_back({{{x, y, heading}, point.z}, point.classId});
   }
   return candidates;
 }
 
-std::vector<Spot> compressedSpots(Column tile, const Abstraction& abstraction, const Ground& ground,
-                                  const RoadmapOptions& options) {
+std::vector<CandidatePoint> compressedPoints(Column tile, const Abstraction& abstraction,
+                                             const Ground& ground, const RoadmapOptions& options) {
   const int largest = powerOfTwoWithin(options.spacing / ground.voxelSize());
   const Column first = firstColumnOf(tile);
   const auto key = [&](int offset, int z) {
@@ -94,7 +94,7 @@ std::vector<Spot> compressedSpots(Column tile, const Abstraction& abstraction, c
                               static_cast<std::uint16_t>(first.y + offset),
                               static_cast<std::uint16_t>(z));
   };
-  std::vector<Spot> spots;
+  std::vector<CandidatePoint> points;
   for (const LeafCell& leaf : abstraction.leavesIn(key(0, 0), key(kTileEdge - 1, 65535), true)) {
     const int size = leaf.edge(), z = leaf.lowest().z();
     std::optional<ClassId> classId;
@@ -103,20 +103,21 @@ std::vector<Spot> compressedSpots(Column tile, const Abstraction& abstraction, c
     forCellsOf(low, size, largest, tile, [&](const Cell& cell) {
       for (const Surface& s : ground.surfaces(cell.center()))
         if (s.drivable && s.z >= z && s.z < z + size)
-          spots.push_back({cell.center(), s.z, classId, priorityOf(cell, options.seed)});
+          points.push_back({cell.center(), s.z, classId, priorityOf(cell, options.seed)});
     });
   }
-  return spots;
+  return points;
 }
 
-std::vector<Spot> gridSpots(Column tile, const Ground& ground, const RoadmapOptions& options) {
+std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
+                                       const RoadmapOptions& options) {
   const int edge = powerOfTwoWithin(options.spacing / ground.voxelSize());
-  std::vector<Spot> spots;
+  std::vector<CandidatePoint> points;
   forCellsOf(firstColumnOf(tile), kTileEdge, edge, tile, [&](const Cell& cell) {
     for (const Surface& s : ground.surfaces(cell.low))
-      if (s.drivable) spots.push_back({cell.low, s.z, {}, priorityOf(cell, options.seed)});
+      if (s.drivable) points.push_back({cell.low, s.z, {}, priorityOf(cell, options.seed)});
   });
-  return spots;
+  return points;
 }
 
 }  // namespace semantic_planning

@@ -77,7 +77,7 @@ bool EdgeChecker::discsFit(const Placement& placed, int z) const {
   for (const CheckedDisc& d : m_discs) {
     const auto [x, y] = placed(d.disc.x, d.disc.y);
     const Surface* s = near(m_ground.columnAt(x, y), z, d.tolerance);
-    if (!s || !s->drivable || s->room2 < d.needed2) return false;
+    if (!s || !s->drivable || s->clearance2 < d.needed2) return false;
   }
   return true;
 }
@@ -101,14 +101,14 @@ bool EdgeChecker::forWheels(const Placement& placed, int z, F f) const {
 }
 
 ClassId EdgeChecker::read(Column c, const Surface& s) const {
-  if (m_reading.kind != ClassReading::Kind::Cautious || s.bridged) return s.classId;
+  if (m_reading.kind != ClassReading::Kind::Cautious || s.filled) return s.classId;
   const auto* node = m_ground.map().search(
       {static_cast<std::uint16_t>(c.x), static_cast<std::uint16_t>(c.y), s.z});
   if (!node) return s.classId;
   const std::vector<double> p = m_ground.map().distribution(*node);
   ClassId worst = s.classId;
   for (std::size_t id = 1; id < p.size(); ++id)
-    if (p[id] > m_reading.bound * (1 - p[0]) && m_order.rank(id) > m_order.rank(worst))
+    if (p[id] > m_reading.leastProbability * (1 - p[0]) && m_order.rank(id) > m_order.rank(worst))
       worst = static_cast<ClassId>(id);
   return worst;
 }
@@ -128,15 +128,15 @@ ClassId EdgeChecker::classAt(const GroundPose& pose) const {
 
 /** Spreads a length over the classes that a voxel may have. */
 void EdgeChecker::addDistribution(Column c, const Surface& s, double length) const {
-  const auto* node = s.bridged ? nullptr
-                               : m_ground.map().search({static_cast<std::uint16_t>(c.x),
-                                                        static_cast<std::uint16_t>(c.y), s.z});
+  const auto* node = s.filled ? nullptr
+                              : m_ground.map().search({static_cast<std::uint16_t>(c.x),
+                                                       static_cast<std::uint16_t>(c.y), s.z});
   if (!node) {
     m_lengths[s.classId] += length;
     return;
   }
   const std::vector<double> p = m_ground.map().distribution(*node);
-  const double least = m_reading.bound * (1 - p[0]);
+  const double least = m_reading.leastProbability * (1 - p[0]);
   double sum = 0;
   for (std::size_t id = 1; id < p.size(); ++id) sum += p[id] > least ? p[id] : 0;
   if (sum == 0) m_lengths[s.classId] += length;

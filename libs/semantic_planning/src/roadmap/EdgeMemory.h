@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_planning/ground/TileGrid.h>
+#include <semantic_planning/ground/ColumnGrid.h>
 #include <semantic_planning/roadmap/PosePair.h>
 
 #include <cstdint>
@@ -39,8 +39,8 @@ class EdgeMemory {
 
   const EdgeChecker& m_checker;
   std::unordered_map<PosePair, Answer, Hash> m_answers;
-  TileGrid<std::uint32_t> m_changed;  ///< when tiles did last
-  std::uint32_t m_now = 0;            ///< counts the changes
+  ColumnGrid<std::uint32_t> m_changed;  ///< when tiles did last
+  std::uint32_t m_now = 0;              ///< counts the changes
   std::size_t m_remembered = 0;
 };
 

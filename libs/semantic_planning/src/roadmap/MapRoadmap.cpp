@@ -26,7 +26,7 @@ MapRoadmap::MapRoadmap(CandidateStore& store, const EdgeChecker& checker,
                        const GroundPose& goal)
     : m_checker(checker),
       m_options(withDefaults(options)),
-      m_region(start.pose, goal.pose, options.regionBuffer),
+      m_region(start.pose, goal.pose, options.buffer),
       m_start(start),
       m_roadmap(checker, m_options),
       m_pool(checker, m_roadmap) {
@@ -61,12 +61,12 @@ std::vector<Column> MapRoadmap::tilesOfRegion() const {
   return tiles;
 }
 
-std::size_t MapRoadmap::take(const Spot& spot, std::size_t most) {
+std::size_t MapRoadmap::take(const CandidatePoint& point, std::size_t most) {
   std::size_t usable = 0;
-  for (const Candidate& candidate : candidatesAt(spot, m_checker.ground(), m_options)) {
+  for (const Candidate& candidate : candidatesAt(point, m_checker.ground(), m_options)) {
     const auto& pose = candidate.pose.pose;
     if (usable == most || !m_region.contains(pose.x, pose.y) || !reachable(candidate)) break;
-    m_pool.add(candidate, spot);
+    m_pool.add(candidate, point);
     usable += m_pool.isUsable(candidate);
   }
   return usable;
@@ -75,13 +75,13 @@ std::size_t MapRoadmap::take(const Spot& spot, std::size_t most) {
 /** Merges the tiles' lists, each of which is sorted. */
 void MapRoadmap::takeByPriority(CandidateStore& store) {
   struct List {
-    const Spot *next, *end;
+    const CandidatePoint *next, *end;
     bool operator<(const List& o) const { return *o.next < *next; }  // the least on top
   };
   std::priority_queue<List> lists;
   for (const Column& tile : tilesOfRegion())
-    if (const std::vector<Spot>& spots = store.in(tile); !spots.empty())
-      lists.push({spots.data(), spots.data() + spots.size()});
+    if (const std::vector<CandidatePoint>& points = store.in(tile); !points.empty())
+      lists.push({points.data(), points.data() + points.size()});
   std::size_t left = m_options.vertices > 0 ? m_options.vertices : kUnlimited;
   while (!lists.empty() && left > 0) {
     List list = lists.top();
@@ -107,10 +107,10 @@ void MapRoadmap::takeHalton() {
 }
 
 void MapRoadmap::update(const std::vector<Column>& changedTiles,
-                        const CandidateStore::Change& spots) {
-  for (const Spot& spot : spots.removed) m_pool.remove(spot);
-  for (const Spot& spot : spots.added)
-    if (spot.priority < m_lastPriority) take(spot, kUnlimited);
+                        const CandidateStore::Change& points) {
+  for (const CandidatePoint& point : points.removed) m_pool.remove(point);
+  for (const CandidatePoint& point : points.added)
+    if (point.priority < m_lastPriority) take(point, kUnlimited);
   m_pool.refresh(changedTiles);
   m_pool.apply();
   m_roadmap.refresh(changedTiles);

@@ -17,14 +17,14 @@ class MapRoadmap {
   const Roadmap& roadmap() const { return m_roadmap; }
   VertexPool::Counts takeVertexCounts() { return m_pool.takeCounts(); }
 
-  /** The ground changed in these tiles, and so did spots. */
-  void update(const std::vector<Column>& changedTiles, const CandidateStore::Change& spots);
+  /** The ground changed in these tiles, and so did points. */
+  void update(const std::vector<Column>& changedTiles, const CandidateStore::Change& points);
 
  private:
   bool reachable(const Candidate& candidate) const;
   std::vector<Column> tilesOfRegion() const;
   /** \return how many vertices it gives now, at most `most` */
-  std::size_t take(const Spot& spot, std::size_t most);
+  std::size_t take(const CandidatePoint& point, std::size_t most);
   void takeByPriority(CandidateStore& store);
   void takeHalton();
 
@@ -34,7 +34,7 @@ class MapRoadmap {
   const GroundPose m_start;
   Roadmap m_roadmap;
   VertexPool m_pool;
-  double m_lastPriority = 1;  ///< spots from it on are not taken
+  double m_lastPriority = 1;  ///< points from it on are not taken
 };
 
 }  // namespace semantic_planning

@@ -84,31 +84,30 @@ void NearestPoses::offer(VertexId to, const Neighbor& neighbor) {
   m_changed.push_back(ordered(to, neighbor.id));
 }
 
-void NearestPoses::relax(std::vector<Candidate>& candidates) {
-  std::sort(candidates.begin(), candidates.end());
-  for (const Candidate& c : candidates) {
-    const Entry &a = m_entries[c.a], &b = m_entries[c.b];
-    if (c.bound > farthest(a) && c.bound > farthest(b)) continue;
+void NearestPoses::relax(std::vector<PairBound>& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  for (const PairBound& p : pairs) {
+    const Entry &a = m_entries[p.a], &b = m_entries[p.b];
+    if (p.bound > farthest(a) && p.bound > farthest(b)) continue;
     const double distance = PosePair(a.pose, b.pose).distance(m_reedsShepp);
-    offer(c.a, {c.b, distance});
-    offer(c.b, {c.a, distance});
+    offer(p.a, {p.b, distance});
+    offer(p.b, {p.a, distance});
   }
 }
 
-std::vector<NearestPoses::Candidate> NearestPoses::candidatesOf(const std::vector<VertexId>& open,
-                                                                double beyond,
-                                                                double radius) const {
+std::vector<NearestPoses::PairBound> NearestPoses::pairsOf(const std::vector<VertexId>& open,
+                                                           double beyond, double radius) const {
   std::vector<bool> isOpen(m_entries.size());
   for (const VertexId id : open) isOpen[id] = true;
   const double beyond2 = beyond < 0 ? -1 : squared(beyond);
-  std::vector<Candidate> candidates;
+  std::vector<PairBound> pairs;
   for (const VertexId a : open)
     forWithin(m_entries[a].pose.pose, radius, [&](VertexId b, double distance2) {
       if (a == b || distance2 <= beyond2 || (isOpen[b] && b < a)) return;
       const double bound = m_reedsShepp.lowerBound(m_entries[a].pose.pose, m_entries[b].pose.pose);
-      if (bound <= m_radius) candidates.push_back({bound, a, b});
+      if (bound <= m_radius) pairs.push_back({bound, a, b});
     });
-  return candidates;
+  return pairs;
 }
 
 /** Where poses are dense there is no need to look at all within the radius: a disc that holds some
@@ -123,8 +122,8 @@ double NearestPoses::firstRadius() const {
 
 void NearestPoses::complete(std::vector<VertexId> open, double radius) {
   for (double beyond = -1; !open.empty() && beyond < m_radius;) {
-    std::vector<Candidate> candidates = candidatesOf(open, beyond, radius);
-    relax(candidates);
+    std::vector<PairBound> pairs = pairsOf(open, beyond, radius);
+    relax(pairs);
     beyond = radius;
     radius = std::min(m_radius, 2 * radius);
     open.erase(std::remove_if(open.begin(), open.end(),

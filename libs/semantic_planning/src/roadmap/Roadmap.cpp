@@ -28,10 +28,10 @@ bool isSame(const EdgeProfile& l, const EdgeProfile& r) {
 Roadmap::Roadmap(const EdgeChecker& checker, const RoadmapOptions& options)
     : m_checker(checker),
       m_graph(checker.order().classes()),
-      m_nearest(checker.reedsShepp(), options.neighbors, options.connectionRadius),
-      m_guestNeighbors(2 * static_cast<std::size_t>(options.neighbors)),
-      m_mostEdges(options.edges),
-      m_radius(options.connectionRadius) {}
+      m_nearest(checker.reedsShepp(), options.neighbors, options.longestEdge),
+      m_queryNeighbors(2 * static_cast<std::size_t>(options.neighbors)),
+      m_mostEdges(options.maxEdges),
+      m_radius(options.longestEdge) {}
 
 void Roadmap::keepPose(VertexId v, const GroundPose& pose) {
   if (v >= m_poses.size()) m_poses.resize(v + 1);
@@ -46,7 +46,7 @@ std::vector<Roadmap::VertexId> Roadmap::add(const std::vector<GroundPose>& poses
     keepPose(ids.back(), poses[i]);
   }
   reconcile(m_nearest.insert(ids, poses));
-  reconcileGuests();
+  reconcileQueryVertices();
   return ids;
 }
 
@@ -57,20 +57,20 @@ void Roadmap::remove(const std::vector<VertexId>& vertices) {
     m_graph.removeVertex(v);
   }
   reconcile(pairs);
-  reconcileGuests();
+  reconcileQueryVertices();
 }
 
-Roadmap::VertexId Roadmap::addGuest(const GroundPose& pose) {
+Roadmap::VertexId Roadmap::addQueryVertex(const GroundPose& pose) {
   const VertexId v = m_graph.addVertex(m_checker.classAt(pose));
   keepPose(v, pose);
-  m_guests.insert(v);
-  reconcileGuest(v);
+  m_queryVertices.insert(v);
+  reconcileQueryVertex(v);
   return v;
 }
 
-void Roadmap::removeGuest(VertexId v) {
+void Roadmap::removeQueryVertex(VertexId v) {
   m_graph.removeVertex(v);
-  m_guests.erase(v);
+  m_queryVertices.erase(v);
 }
 
 Roadmap::EdgeId Roadmap::edgeBetween(VertexId a, VertexId b) const {
@@ -102,21 +102,21 @@ void Roadmap::reconcile(const std::vector<NearestPoses::Pair>& pairs) {
   if (m_mostEdges > 0) keepBestEdges();
 }
 
-void Roadmap::reconcileGuests() {
-  for (const VertexId guest : m_guests) reconcileGuest(guest);
+void Roadmap::reconcileQueryVertices() {
+  for (const VertexId query : m_queryVertices) reconcileQueryVertex(query);
 }
 
-void Roadmap::reconcileGuest(VertexId guest) {
+void Roadmap::reconcileQueryVertex(VertexId query) {
   std::set<VertexId> wanted;
-  for (const auto& n : m_nearest.nearestTo(pose(guest), m_guestNeighbors)) wanted.insert(n.id);
-  for (const VertexId other : m_guests)
-    if (other != guest &&
-        PosePair(pose(guest), pose(other)).distance(m_checker.reedsShepp()) <= m_radius)
+  for (const auto& n : m_nearest.nearestTo(pose(query), m_queryNeighbors)) wanted.insert(n.id);
+  for (const VertexId other : m_queryVertices)
+    if (other != query &&
+        PosePair(pose(query), pose(other)).distance(m_checker.reedsShepp()) <= m_radius)
       wanted.insert(other);
-  const std::vector<Incidence> present = m_graph.incident(guest);
+  const std::vector<Incidence> present = m_graph.incident(query);
   for (const Incidence& i : present)
-    if (!wanted.count(i.neighbor)) setLinked(guest, i.neighbor, false);
-  for (const VertexId other : wanted) setLinked(guest, other, true);
+    if (!wanted.count(i.neighbor)) setLinked(query, i.neighbor, false);
+  for (const VertexId other : wanted) setLinked(query, other, true);
 }
 
 void Roadmap::keepBestEdges() {

@@ -5,8 +5,8 @@
 namespace semantic_planning {
 
 const char* nameOf(GraphKind kind) {
-  static const char* const names[] = {"compressed",      "halton",     "halton-drivable",
-                                      "halton-by-class", "halton-map", "full"};
+  static const char* const names[] = {"compressed",      "halton",     "halton_drivable",
+                                      "halton_by_class", "halton_map", "full"};
   return names[static_cast<int>(kind)];
 }
 
@@ -25,10 +25,10 @@ std::map<std::string, GraphKind> graphKinds() {
 void RoadmapOptions::validate() const {
   const strict_files::OptionChecks check("RoadmapOptions");
   check.within("neighbors", neighbors, 1, 1000);
-  check.positive("connectionRadius", connectionRadius);
+  check.positive("longestEdge", longestEdge);
   check.within("headings", headings, 1, 360);
   check.positive("spacing", spacing);
-  if (!(regionBuffer >= 0)) check.notNegative("regionBuffer", regionBuffer);
+  if (!(buffer >= 0)) check.notNegative("buffer", buffer);
 }
 
 }  // namespace semantic_planning

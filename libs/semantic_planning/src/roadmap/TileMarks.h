@@ -45,7 +45,7 @@ class TileMarks {
 
  private:
   const Ground& m_ground;
-  TileGrid<char> m_marks;
+  ColumnGrid<char> m_marks;
 };
 
 }  // namespace semantic_planning

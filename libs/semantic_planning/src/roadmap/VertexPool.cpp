@@ -17,7 +17,7 @@ bool VertexPool::isUsable(const Candidate& candidate) const {
          m_checker.order().rank(classOf(candidate)) != colored_graph::kForbidden;
 }
 
-void VertexPool::add(const Candidate& candidate, const std::optional<Spot>& spot) {
+void VertexPool::add(const Candidate& candidate, const std::optional<CandidatePoint>& point) {
   std::size_t index = m_members.size();
   if (m_free.empty()) {
     m_members.emplace_back();
@@ -26,7 +26,7 @@ void VertexPool::add(const Candidate& candidate, const std::optional<Spot>& spot
     m_free.pop_back();
   }
   m_members[index] = {candidate, kNoVertex, true};
-  if (spot) m_ofSpot[*spot].push_back(index);
+  if (point) m_ofPoint[*point].push_back(index);
   if (isUsable(candidate)) m_toInsert.push_back(index);
 }
 
@@ -35,15 +35,15 @@ void VertexPool::dropVertex(Member& member) {
   member.vertex = kNoVertex;
 }
 
-void VertexPool::remove(const Spot& spot) {
-  const auto found = m_ofSpot.find(spot);
-  if (found == m_ofSpot.end()) return;
+void VertexPool::remove(const CandidatePoint& point) {
+  const auto found = m_ofPoint.find(point);
+  if (found == m_ofPoint.end()) return;
   for (const std::size_t index : found->second) {
     dropVertex(m_members[index]);
     m_members[index].present = false;
     m_free.push_back(index);
   }
-  m_ofSpot.erase(found);
+  m_ofPoint.erase(found);
 }
 
 /** The ground may have gone up or down by what the wheels climb. */

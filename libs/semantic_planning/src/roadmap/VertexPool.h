@@ -25,9 +25,9 @@ class VertexPool {
   bool isUsable(const Candidate& candidate) const;
 
   /** Changes take effect in the roadmap with apply(). */
-  void add(const Candidate& candidate, const std::optional<Spot>& spot = {});
-  /** Removes what was added with this spot. */
-  void remove(const Spot& spot);
+  void add(const Candidate& candidate, const std::optional<CandidatePoint>& point = {});
+  /** Removes what was added with this point. */
+  void remove(const CandidatePoint& point);
   /** Looks again at the poses near these tiles. */
   void refresh(const std::vector<Column>& changedTiles);
   void apply();
@@ -50,7 +50,7 @@ class VertexPool {
   Roadmap& m_roadmap;
   std::vector<Member> m_members;
   std::vector<std::size_t> m_free;
-  std::map<Spot, std::vector<std::size_t>> m_ofSpot;
+  std::map<CandidatePoint, std::vector<std::size_t>> m_ofPoint;
   std::vector<std::size_t> m_toInsert;
   std::vector<colored_graph::VertexId> m_toRemove;
   Counts m_counts;

@@ -2,9 +2,9 @@
 #include <colored_graph/ClassOrder.h>
 #include <semantic_octree/Keys.h>
 #include <semantic_octree/SemanticOcTree.h>
+#include <semantic_planning/ground/ColumnGrid.h>
 #include <semantic_planning/ground/GroundOptions.h>
 #include <semantic_planning/ground/Surface.h>
-#include <semantic_planning/ground/TileGrid.h>
 #include <semantic_planning/vehicle/VehicleOptions.h>
 
 #include <memory>
@@ -24,7 +24,7 @@ struct GroundPoint {
 /** The drivable ground of a map, column by column.
  *
  * A surface is an occupied voxel with the vehicle's height free of occupied voxels above it; holes
- * between surfaces are bridged (GroundOptions). Neighboring surfaces are connected if they differ
+ * between surfaces are filled (GroundOptions). Neighboring surfaces are connected if they differ
  * by at most the step height. Everything is a function of the map alone: after update() the ground
  * is the same as if it were read anew, and so are its classes and distances. */
 class Ground {
@@ -61,14 +61,14 @@ class Ground {
 
   /** Voxels that the wheels can climb from one column to the next. */
   int step() const { return m_step; }
-  /** Largest distance in voxels that surfaces know (Surface::room2). */
-  int farthestRoom() const { return m_farthestRoom; }
+  /** Largest distance in voxels that surfaces know (Surface::clearance2). */
+  int largestClearance() const { return m_largestClearance; }
   /** Whether a disc of this radius (meters), its center anywhere in the surface's column, keeps the
    * vehicle's clearance from walls, steps, steep and perhaps forbidden ground, and from what is not
    * known to be ground. */
-  bool hasRoom(const Surface& surface, double radius) const {
+  bool hasClearance(const Surface& surface, double radius) const {
     const double needed = (radius + m_clearance) / m_voxelSize;
-    return surface.drivable && surface.room2 >= needed * needed;
+    return surface.drivable && surface.clearance2 >= needed * needed;
   }
   /** Whether the wheels can get from one place to the other, step by step. */
   bool connected(const GroundPoint& a, const GroundPoint& b) const;
@@ -83,7 +83,7 @@ class Ground {
   std::unique_ptr<GroundTiles> m_tiles;
   const semantic_octree::SemanticOcTree& m_map;
   double m_voxelSize, m_clearance;
-  int m_step, m_farthestRoom;
+  int m_step, m_largestClearance;
 };
 
 }  // namespace semantic_planning

@@ -4,16 +4,16 @@ namespace semantic_planning {
 
 /** How the ground is read from the map. */
 struct GroundOptions {
-  /** Holes in the ground up to this wide (meters) are bridged with the class of the nearer border:
-   * between the rings of a LiDAR, and where grazing beams eroded a voxel. A hole is bridged along
+  /** Holes in the ground up to this wide (meters) are filled with the class of the nearer border:
+   * between the rings of a LiDAR, and where grazing beams eroded a voxel. A hole is filled along
    * lines between two of its borders, where the line's slope is drivable, nothing stands in the
    * way, and the map did not see free space below it. */
-  double bridgeGap = 0.8;
-  /** Wider holes up to this (meters) are bridged too, but their ground is of unknown class: the
+  double fillGap = 0.8;
+  /** Wider holes up to this (meters) are filled too, but their ground is of unknown class: the
    * vehicle's own shadow at the start, what parked cars hid. */
   double unknownGap = 4.0;
   /** Whether ground of a forbidden class keeps the whole footprint off, or the wheels only. */
-  bool keepFootprintOffForbidden = false;
+  bool keepOff = false;
 
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;

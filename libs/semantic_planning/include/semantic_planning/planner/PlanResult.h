@@ -15,7 +15,7 @@ namespace semantic_planning {
 enum class PlanStatus {
   Found,
   StartOffGround,  ///< no drivable ground there
-  StartBlocked,    ///< no room for the footprint
+  StartBlocked,    ///< the footprint does not fit
   StartForbidden,  ///< the ground's class is
   GoalOffGround,
   GoalBlocked,

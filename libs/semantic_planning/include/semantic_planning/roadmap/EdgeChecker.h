@@ -23,7 +23,7 @@ struct GroundPose {
 enum class Fit {
   Free,
   OffGround,  ///< no drivable ground below the origin
-  Blocked     ///< no room for the footprint
+  Blocked     ///< the footprint does not fit
 };
 
 /** Where a vehicle fits, and over which classes it goes. The footprint is checked as discs, which
@@ -60,7 +60,7 @@ class EdgeChecker {
  private:
   struct CheckedDisc {
     Disc disc;
-    int needed2;    ///< Surface::room2
+    int needed2;    ///< Surface::clearance2
     int tolerance;  ///< voxels in height against the origin
   };
 

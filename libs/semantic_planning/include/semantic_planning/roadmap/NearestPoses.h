@@ -1,6 +1,6 @@
 #pragma once
 #include <colored_graph/ColoredGraph.h>
-#include <semantic_planning/ground/TileGrid.h>
+#include <semantic_planning/ground/ColumnGrid.h>
 #include <semantic_planning/roadmap/EdgeChecker.h>
 
 #include <optional>
@@ -47,10 +47,10 @@ class NearestPoses {
     GroundPose pose;
     std::vector<Neighbor> nearest;
   };
-  struct Candidate {
+  struct PairBound {
     double bound;
     VertexId a, b;
-    bool operator<(const Candidate& o) const { return bound < o.bound; }
+    bool operator<(const PairBound& o) const { return bound < o.bound; }
   };
   Column cellOf(const mrpt::math::TPose2D& pose) const;
   /** f(id, squared distance on the plane) for all poses within a radius. */
@@ -60,13 +60,13 @@ class NearestPoses {
   /** Only poses nearer than this can become its neighbors. */
   double farthest(const Entry& entry) const;
   void offer(VertexId to, const Neighbor& neighbor);
-  /** Solves for the candidates' distances, most promising first, where they may still count. */
-  void relax(std::vector<Candidate>& candidates);
+  /** Solves for the pairs' distances, most promising first, where they may still count. */
+  void relax(std::vector<PairBound>& pairs);
   void place(VertexId id, const GroundPose& pose);
   void forget(VertexId id);
-  /** Candidates that are farther than `beyond`, up to `radius`, for the entries still `open`. */
-  std::vector<Candidate> candidatesOf(const std::vector<VertexId>& open, double beyond,
-                                      double radius) const;
+  /** Pairs that are farther than `beyond`, up to `radius`, for the entries still `open`. */
+  std::vector<PairBound> pairsOf(const std::vector<VertexId>& open, double beyond,
+                                 double radius) const;
   double firstRadius() const;
   /** Finds the neighbors that entries lack, looking farther and farther, at first up to `radius`.
    */
@@ -77,7 +77,7 @@ class NearestPoses {
   std::size_t m_count;
   double m_radius, m_cellSize;
   std::vector<Entry> m_entries;
-  TileGrid<std::vector<VertexId>> m_cells;
+  ColumnGrid<std::vector<VertexId>> m_cells;
   std::size_t m_present = 0;
   std::vector<Pair> m_changed;
 };

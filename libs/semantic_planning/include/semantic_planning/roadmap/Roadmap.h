@@ -14,12 +14,12 @@ namespace semantic_planning {
 /** Poses on the ground as vertices of a colored graph, and Reeds-Shepp curves as its edges.
  *
  * An edge connects a with b if b is among the k nearest of a, or a among those of b; this holds
- * after every insertion and removal. Guests (start and goal) have edges to twice as many, but are
- * nobody's neighbors.
+ * after every insertion and removal. Query vertices (start and goal) have edges to twice as many,
+ * but are nobody's neighbors.
  *
- * With RoadmapOptions::edges the best of these edges stay: every vertex's nearest first, then every
- * vertex's second nearest, and so on; of those the shortest. They, too, are chosen anew after every
- * insertion and removal. Guests' edges do not count. */
+ * With RoadmapOptions::maxEdges the best of these edges stay: every vertex's nearest first, then
+ * every vertex's second nearest, and so on; of those the shortest. They, too, are chosen anew after
+ * every insertion and removal. Query vertices' edges do not count. */
 class Roadmap {
  public:
   using VertexId = colored_graph::VertexId;
@@ -35,8 +35,8 @@ class Roadmap {
   /** Removes vertices; those that were near them get other neighbors. */
   void remove(const std::vector<VertexId>& vertices);
 
-  VertexId addGuest(const GroundPose& pose);
-  void removeGuest(VertexId v);
+  VertexId addQueryVertex(const GroundPose& pose);
+  void removeQueryVertex(VertexId v);
 
   /** Looks again at the edges that were evaluated over ground in these tiles. */
   void refresh(const std::vector<Column>& changedTiles);
@@ -65,19 +65,19 @@ class Roadmap {
   void setLinked(VertexId a, VertexId b, bool linked);
   void keepBestEdges();
   void reconcile(const std::vector<NearestPoses::Pair>& pairs);
-  void reconcileGuests();
-  void reconcileGuest(VertexId guest);
+  void reconcileQueryVertices();
+  void reconcileQueryVertex(VertexId query);
   void reevaluate(EdgeId e);
   void keepPose(VertexId v, const GroundPose& pose);
 
   const EdgeChecker& m_checker;
   colored_graph::ColoredGraph m_graph;
   NearestPoses m_nearest;
-  std::size_t m_guestNeighbors, m_mostEdges;
+  std::size_t m_queryNeighbors, m_mostEdges;
   double m_radius;
   std::vector<GroundPose> m_poses;  ///< by vertex id
   std::vector<double> m_lengths;    ///< of the curves by edge id, meters
-  std::set<VertexId> m_guests;
+  std::set<VertexId> m_queryVertices;
   Counts m_counts;
 };
 

@@ -18,7 +18,7 @@ enum class GraphKind {
   Full             ///< the ground of the finest map, on a grid
 };
 
-/** In words for files and command lines: "compressed", "halton-drivable", ... */
+/** In words for files and command lines: "compressed", "halton_drivable", ... */
 const char* nameOf(GraphKind kind);
 /** Whether a kind's poses belong to the map: they come again in plans for other tasks. */
 bool belongsToMap(GraphKind kind);
@@ -33,17 +33,17 @@ struct RoadmapOptions {
   std::size_t vertices = 1000;
   /** Most edges, start's and goal's not counted, also after updates; 0: as many as the nearest
    * neighbors give. Every vertex's nearest go first. */
-  std::size_t edges = 0;
+  std::size_t maxEdges = 0;
   /** Each vertex is connected with that many nearest ones in Reeds-Shepp distance. */
   int neighbors = 10;
   /** Longest edge, meters. */
-  double connectionRadius = 15;
+  double longestEdge = 15;
   /** Compressed, Full: headings at each point. */
   int headings = 1;
   /** Compressed: largest distance between points in a large leaf; Full: between points; meters. */
   double spacing = 2;
   /** Vertices lie within this distance from the line between start and goal, meters. */
-  double regionBuffer = 30;
+  double buffer = 30;
   /** Compressed: a vertex has the class of its leaf (as in the paper) instead of the finest map's
    * ground. It matters for colored_graph::EdgeModel::Endpoint only. */
   bool classOfLeaf = false;

@@ -27,7 +27,7 @@ inline int indexInTile(Column c) { return (c.y & 15) * kTileEdge + (c.x & 15); }
 /** One T for every tile within a rectangle, which grows as tiles are set: by more than needed, so
  * that it seldom does. */
 template <class T>
-class TileGrid {
+class ColumnGrid {
  public:
   /** Null outside of the rectangle. */
   const T* find(Column tile) const {
@@ -35,7 +35,7 @@ class TileGrid {
     if (x < 0 || y < 0 || x >= m_width || y >= m_height) return nullptr;
     return &m_tiles[static_cast<std::size_t>(y) * m_width + x];
   }
-  T* find(Column tile) { return const_cast<T*>(static_cast<const TileGrid*>(this)->find(tile)); }
+  T* find(Column tile) { return const_cast<T*>(static_cast<const ColumnGrid*>(this)->find(tile)); }
   T& at(Column tile) {
     if (!find(tile)) growTo(tile);
     return *find(tile);
@@ -55,7 +55,7 @@ class TileGrid {
   }
   template <class F>
   void forEach(F f) const {
-    const_cast<TileGrid*>(this)->forEach([&](Column tile, const T& t) { f(tile, t); });
+    const_cast<ColumnGrid*>(this)->forEach([&](Column tile, const T& t) { f(tile, t); });
   }
 
  private:
@@ -69,7 +69,7 @@ class TileGrid {
   }
 
   void growTo(Column tile) {
-    TileGrid grown;
+    ColumnGrid grown;
     grown.m_first = m_first;
     grown.m_width = m_width;
     grown.m_height = m_height;

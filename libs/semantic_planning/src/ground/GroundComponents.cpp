@@ -1,4 +1,4 @@
-#include "GroundParts.h"
+#include "GroundComponents.h"
 
 #include <algorithm>
 #include <array>
@@ -21,10 +21,11 @@ void join(std::vector<std::size_t>& parent, std::size_t a, std::size_t b) {
   parent[std::max(a, b)] = std::min(a, b);
 }
 
-std::size_t numParts(const SurfaceTile& tile) {
-  std::size_t parts = 0;
-  for (const Surface& s : tile.surfaces) parts = std::max<std::size_t>(parts, s.part + 1);
-  return parts;
+std::size_t numComponents(const SurfaceTile& tile) {
+  std::size_t components = 0;
+  for (const Surface& s : tile.surfaces)
+    components = std::max<std::size_t>(components, s.component + 1);
+  return components;
 }
 
 /** The drivable surface of a tile's column to which the wheels get from height z; or none. */
@@ -35,22 +36,22 @@ int climbableIndex(const SurfaceTile& tile, int column, int z, int step) {
 }
 
 /** From 0 on, in the order of their first surfaces. \return the columns whose numbers changed. */
-ColumnBox numberParts(Column tile, std::vector<std::size_t>& parent, SurfaceTile& marked) {
+ColumnBox numberComponents(Column tile, std::vector<std::size_t>& parent, SurfaceTile& marked) {
   ColumnBox changed;
-  std::uint16_t parts = 0;
+  std::uint16_t components = 0;
   std::vector<std::uint16_t> number(parent.size());
   forSurfacesOf(tile, marked, [&](Column c, std::size_t i) {
     const std::size_t root = rootOf(parent, i);
-    number[i] = root == i ? parts++ : number[root];
-    if (marked.surfaces[i].part != number[i]) changed.add(c);
-    marked.surfaces[i].part = number[i];
+    number[i] = root == i ? components++ : number[root];
+    if (marked.surfaces[i].component != number[i]) changed.add(c);
+    marked.surfaces[i].component = number[i];
   });
   return changed;
 }
 
 }  // namespace
 
-ColumnBox markParts(Column tile, SurfaceTile& marked, const GroundShape& shape) {
+ColumnBox markComponents(Column tile, SurfaceTile& marked, const GroundShape& shape) {
   std::vector<std::size_t> parent(marked.surfaces.size());
   std::iota(parent.begin(), parent.end(), 0);
   forSurfacesOf(tile, marked, [&](Column c, std::size_t i) {
@@ -62,24 +63,24 @@ ColumnBox markParts(Column tile, SurfaceTile& marked, const GroundShape& shape) 
       if (j >= 0) join(parent, i, j);
     }
   });
-  return numberParts(tile, parent, marked);
+  return numberComponents(tile, parent, marked);
 }
 
-GroundParts::GroundParts(const SurfaceGrid& surfaces, const GroundShape& shape) {
-  std::size_t parts = 0;
+GroundComponents::GroundComponents(const SurfaceGrid& surfaces, const GroundShape& shape) {
+  std::size_t components = 0;
   surfaces.forEach([&](Column tile, const SurfaceTile& t) {
-    m_firstOfTile.at(tile) = parts;
-    parts += numParts(t);
+    m_firstOfTile.at(tile) = components;
+    components += numComponents(t);
   });
-  m_parent.resize(parts);
+  m_parent.resize(components);
   std::iota(m_parent.begin(), m_parent.end(), 0);
   surfaces.forEach([&](Column tile, const SurfaceTile& t) {
     if (!t.surfaces.empty()) joinAcrossBorders(surfaces, tile, shape);
   });
 }
 
-void GroundParts::joinAcrossBorders(const SurfaceGrid& surfaces, Column tile,
-                                    const GroundShape& shape) {
+void GroundComponents::joinAcrossBorders(const SurfaceGrid& surfaces, Column tile,
+                                         const GroundShape& shape) {
   forColumnsOf(tile, [&](Column c) {
     const Column inTile{c.x & 15, c.y & 15};
     if (inTile.x > 0 && inTile.x < kTileEdge - 1 && inTile.y < kTileEdge - 1) return;
@@ -88,14 +89,14 @@ void GroundParts::joinAcrossBorders(const SurfaceGrid& surfaces, Column tile,
         const Column next{c.x + d.x, c.y + d.y};
         const Surface* other = s.drivable ? surfaceNear(surfaces, next, s.z, shape.step) : nullptr;
         if (other && other->drivable)
-          join(m_parent, *m_firstOfTile.find(tile) + s.part,
-               *m_firstOfTile.find(tileOf(next)) + other->part);
+          join(m_parent, *m_firstOfTile.find(tile) + s.component,
+               *m_firstOfTile.find(tileOf(next)) + other->component);
       }
   });
 }
 
-std::size_t GroundParts::partOf(Column c, const Surface& s) const {
-  return rootOf(m_parent, *m_firstOfTile.find(tileOf(c)) + s.part);
+std::size_t GroundComponents::componentOf(Column c, const Surface& s) const {
+  return rootOf(m_parent, *m_firstOfTile.find(tileOf(c)) + s.component);
 }
 
 }  // namespace semantic_planning

@@ -1,4 +1,4 @@
-#include "Room.h"
+#include "Clearance.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -64,15 +64,15 @@ class FlatDistances {
 }  // namespace
 
 /** A tile's surroundings. */
-class RoomMeter::Tile {
+class ClearanceMeter::Tile {
  public:
-  Tile(const RoomMeter& meter, const ObstacleGrid& obstacles, Column tile)
+  Tile(const ClearanceMeter& meter, const ObstacleGrid& obstacles, Column tile)
       : m_meter(meter),
         m_obstacles(obstacles, tile, meter.m_farthest),
         m_flat(m_obstacles, tile, meter.m_farthest) {}
 
   /** From the distance on at which the first obstacle of any height is. */
-  int room2(Column c, int z) const {
+  int clearance2(Column c, int z) const {
     const int farthest = m_meter.m_farthest * m_meter.m_farthest;
     if (!m_flat.any() || m_flat[indexInTile(c)] == farthest) return farthest;
     const std::vector<Place>& places = m_meter.m_places;
@@ -80,7 +80,7 @@ class RoomMeter::Tile {
     const auto nearest = std::find_if(places.begin() + first, places.end(), [&](const Place& p) {
       return isObstacle({c.x + p.x, c.y + p.y}, z, p.tolerance);
     });
-    return nearest == places.end() ? farthest : nearest->room2;
+    return nearest == places.end() ? farthest : nearest->clearance2;
   }
 
  private:
@@ -91,12 +91,12 @@ class RoomMeter::Tile {
                        [&](int height) { return std::abs(height - z) <= tolerance; });
   }
 
-  const RoomMeter& m_meter;
+  const ClearanceMeter& m_meter;
   const TileWindow<ObstacleTile> m_obstacles;
   const FlatDistances m_flat;
 };
 
-RoomMeter::RoomMeter(const GroundShape& shape) : m_farthest(shape.farthestRoom) {
+ClearanceMeter::ClearanceMeter(const GroundShape& shape) : m_farthest(shape.largestClearance) {
   const int farthest2 = m_farthest * m_farthest;
   for (int y = -m_farthest; y <= m_farthest; ++y)
     for (int x = -m_farthest; x <= m_farthest; ++x) {
@@ -105,21 +105,21 @@ RoomMeter::RoomMeter(const GroundShape& shape) : m_farthest(shape.farthestRoom) 
         m_places.push_back({x, y, dx * dx + dy * dy, levelTolerance(std::max(dx, dy) + 1, shape)});
     }
   std::stable_sort(m_places.begin(), m_places.end(),
-                   [](const Place& l, const Place& r) { return l.room2 < r.room2; });
+                   [](const Place& l, const Place& r) { return l.clearance2 < r.clearance2; });
   m_firstAt.resize(farthest2);
-  for (std::size_t i = m_places.size(); i-- > 0;) m_firstAt[m_places[i].room2] = i;
+  for (std::size_t i = m_places.size(); i-- > 0;) m_firstAt[m_places[i].clearance2] = i;
 }
 
-ColumnBox RoomMeter::measure(const ObstacleGrid& obstacles, Column tile,
-                             SurfaceTile& measured) const {
+ColumnBox ClearanceMeter::measure(const ObstacleGrid& obstacles, Column tile,
+                                  SurfaceTile& measured) const {
   ColumnBox changed;
   if (measured.surfaces.empty()) return changed;
   const Tile surroundings(*this, obstacles, tile);
   forSurfacesOf(tile, measured, [&](Column c, std::size_t i) {
     Surface& s = measured.surfaces[i];
-    const auto room2 = static_cast<std::uint16_t>(surroundings.room2(c, s.z));
-    if (s.room2 != room2) changed.add(c);
-    s.room2 = room2;
+    const auto clearance2 = static_cast<std::uint16_t>(surroundings.clearance2(c, s.z));
+    if (s.clearance2 != clearance2) changed.add(c);
+    s.clearance2 = clearance2;
   });
   return changed;
 }

@@ -1,4 +1,4 @@
-#include "Bridges.h"
+#include "GapFills.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,15 +6,15 @@
 namespace semantic_planning {
 namespace {
 
-class BridgeSearch {
+class GapFillSearch {
  public:
-  BridgeSearch(const ColumnGrid& columns, const SurfaceGrid& measured, Column tile,
-               const GroundShape& shape)
-      : m_columns(columns, tile, reachOfBridges(shape)),
-        m_measured(measured, tile, reachOfBridges(shape)),
+  GapFillSearch(const ScanGrid& columns, const SurfaceGrid& measured, Column tile,
+                const GroundShape& shape)
+      : m_columns(columns, tile, reachOfGapFills(shape)),
+        m_measured(measured, tile, reachOfGapFills(shape)),
         m_shape(shape) {}
 
-  std::vector<Bridge> from(Column tile) {
+  std::vector<GapFill> from(Column tile) {
     forColumnsOf(tile, [&](Column c) {
       const SurfaceRange column = surfacesAt(m_measured, c);
       if (column.empty()) return;
@@ -28,36 +28,36 @@ class BridgeSearch {
   /** From a surface whose neighbor is missing to the next surface on the line. */
   void lookAcross(Column from, const Surface& s, int direction) {
     const double length = kDirections[direction].length;
-    Bridge bridge;
-    bridge.from = from;
-    bridge.direction = direction;
-    bridge.z = s.z;
-    bridge.classId = s.classId;
-    if (surfaceNear(m_measured, bridge.column(1), s.z, m_shape.step)) return;
-    while (!isInTheWay(bridge) && bridge.columns * length <= m_shape.widestGap) {
-      const int n = ++bridge.columns;
+    GapFill fill;
+    fill.from = from;
+    fill.direction = direction;
+    fill.z = s.z;
+    fill.classId = s.classId;
+    if (surfaceNear(m_measured, fill.column(1), s.z, m_shape.step)) return;
+    while (!isInTheWay(fill) && fill.columns * length <= m_shape.widestGap) {
+      const int n = ++fill.columns;
       const int tolerance = m_shape.step + static_cast<int>(n * length * m_shape.rise);
-      const Surface* other = surfaceNear(m_measured, bridge.column(n), s.z, tolerance);
+      const Surface* other = surfaceNear(m_measured, fill.column(n), s.z, tolerance);
       if (!other) continue;
-      bridge.otherZ = other->z;
-      bridge.otherClass = other->classId;
-      if (isOverHole(bridge)) m_found.push_back(bridge);
+      fill.otherZ = other->z;
+      fill.otherClass = other->classId;
+      if (isOverHole(fill)) m_found.push_back(fill);
       return;
     }
   }
 
-  /** Whether a bridge cannot go on over the column that it has come to, however high its other end
+  /** Whether a fill cannot go on over the column that it has come to, however high its other end
    * may be. */
-  bool isInTheWay(const Bridge& begun) const {
+  bool isInTheWay(const GapFill& begun) const {
     const int n = begun.columns;
     const double rise = kDirections[begun.direction].length * m_shape.rise;
     const int change = static_cast<int>(std::ceil(n * rise + m_shape.step + 0.5));
     return isInTheWay(begun.column(n), begun.z - change, begun.z + change);
   }
 
-  bool isOverHole(const Bridge& bridge) const {
-    for (int i = 1; i < bridge.columns; ++i)
-      if (isInTheWay(bridge.column(i), bridge.height(i), bridge.height(i))) return false;
+  bool isOverHole(const GapFill& fill) const {
+    for (int i = 1; i < fill.columns; ++i)
+      if (isInTheWay(fill.column(i), fill.height(i), fill.height(i))) return false;
     return true;
   }
 
@@ -75,12 +75,12 @@ class BridgeSearch {
   const TileWindow<ColumnTile> m_columns;
   const SurfaceWindow m_measured;
   const GroundShape& m_shape;
-  std::vector<Bridge> m_found;
+  std::vector<GapFill> m_found;
 };
 
 }  // namespace
 
-int Bridge::height(int i) const {
+int GapFill::height(int i) const {
   return z + static_cast<int>(std::lround(double(int(otherZ) - z) * i / columns));
 }
 
@@ -100,9 +100,9 @@ SurfaceTile measuredSurfaces(const ColumnTile& columns, const GroundShape& shape
   return tile;
 }
 
-std::vector<Bridge> bridgesFrom(const ColumnGrid& columns, const SurfaceGrid& measured, Column tile,
-                                const GroundShape& shape) {
-  return BridgeSearch(columns, measured, tile, shape).from(tile);
+std::vector<GapFill> gapFillsFrom(const ScanGrid& columns, const SurfaceGrid& measured, Column tile,
+                                  const GroundShape& shape) {
+  return GapFillSearch(columns, measured, tile, shape).from(tile);
 }
 
 }  // namespace semantic_planning

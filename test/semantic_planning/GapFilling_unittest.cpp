@@ -15,9 +15,9 @@ class SlitFloor : public testing::Test {
     world.floor(-6, 6, width, 6, PaintedWorld::Grass);
   }
 
-  Ground ground(double bridgeGap, double unknownGap) {
+  Ground ground(double fillGap, double unknownGap) {
     GroundOptions options;
-    options.bridgeGap = bridgeGap;
+    options.fillGap = fillGap;
     options.unknownGap = unknownGap;
     return Ground(world.map(), VehicleOptions(), options, {5, {{0, 1, 2, 3, 4}}});
   }
@@ -32,7 +32,7 @@ TEST_F(SlitFloor, aNarrowSlitGetsTheClassOfItsNearerBorder) {
   const Ground g = ground(1, 1);
   const auto nearRoad = g.find(0, 0.1), nearGrass = g.find(0, 0.7);
   ASSERT_TRUE(nearRoad && nearGrass);
-  EXPECT_TRUE(nearRoad->surface.bridged);
+  EXPECT_TRUE(nearRoad->surface.filled);
   EXPECT_EQ(nearRoad->surface.classId, PaintedWorld::Road);
   EXPECT_EQ(nearGrass->surface.classId, PaintedWorld::Grass);
   EXPECT_TRUE(g.connected(*g.find(0, -1), *g.find(0, 2)));
@@ -52,14 +52,14 @@ TEST_F(SlitFloor, aSlitWiderThanAllGapsStaysOpen) {
   EXPECT_FALSE(g.connected(*g.find(0, -1), *g.find(0, 4)));
 }
 
-TEST_F(SlitFloor, whatStandsInTheSlitIsNotBridged) {
+TEST_F(SlitFloor, whatStandsInTheSlitIsNotFilled) {
   paint(0.8);
   world.box(-6, 6, 0.4, 0.6, 0, 1, PaintedWorld::Wall);
   const Ground g = ground(1, 1);
   EXPECT_FALSE(g.connected(*g.find(0, -1), *g.find(0, 2)));
 }
 
-TEST_F(SlitFloor, aDitchIsNotBridged) {
+TEST_F(SlitFloor, aDitchIsNotFilled) {
   paint(0.8);
   world.box(-6, 6, 0, 0.8, -2, -1.8, PaintedWorld::Mud);  // seen from above: free space below
   const Ground g = ground(1, 1);

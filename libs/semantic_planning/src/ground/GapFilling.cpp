@@ -1,4 +1,4 @@
-#include "Bridging.h"
+#include "GapFilling.h"
 
 #include <algorithm>
 #include <tuple>
@@ -9,7 +9,7 @@
 namespace semantic_planning {
 namespace {
 
-/** A surface that a bridge offers to a column of its hole. */
+/** A surface that a fill offers to a column of its hole. */
 struct Offer {
   int column, z;
   double width;  ///< of the gap
@@ -18,13 +18,13 @@ struct Offer {
   ClassId classId;
 };
 
-/** Of a bridge's columns from `low` to `high`, those in a tile; none if low > high. */
-std::pair<int, int> columnsInTile(const Bridge& bridge, Column tile) {
+/** Of a fill's columns from `low` to `high`, those in a tile; none if low > high. */
+std::pair<int, int> columnsInTile(const GapFill& fill, Column tile) {
   const Column first = firstColumnOf(tile);
-  const Direction& d = kDirections[bridge.direction];
-  int low = 1, high = bridge.columns - 1;
+  const Direction& d = kDirections[fill.direction];
+  int low = 1, high = fill.columns - 1;
   for (const auto& [offset, step] :
-       {std::pair{first.x - bridge.from.x, d.x}, {first.y - bridge.from.y, d.y}}) {
+       {std::pair{first.x - fill.from.x, d.x}, {first.y - fill.from.y, d.y}}) {
     const int last = offset + kTileEdge - 1;
     if (step == 0 && (offset > 0 || last < 0)) return {1, 0};
     if (step == 0) continue;
@@ -34,19 +34,19 @@ std::pair<int, int> columnsInTile(const Bridge& bridge, Column tile) {
   return {low, high};
 }
 
-std::vector<Offer> offersTo(Column tile, const BridgeGrid& grid, const GroundShape& shape) {
+std::vector<Offer> offersTo(Column tile, const GapFillGrid& grid, const GroundShape& shape) {
   std::vector<Offer> offers;
-  const int reach = reachOfBridges(shape);
+  const int reach = reachOfGapFills(shape);
   const ColumnBox box{firstColumnOf(tile), lastColumnOf(tile)};
   for (const Column& from : tilesWithin({box}, {reach, reach, reach, 0})) {
-    const std::vector<Bridge>* bridges = grid.find(from);
-    if (!bridges) continue;
-    for (const Bridge& b : *bridges) {
-      const auto [low, high] = columnsInTile(b, tile);
-      const bool known = b.width() <= shape.bridgeGap;
+    const std::vector<GapFill>* fills = grid.find(from);
+    if (!fills) continue;
+    for (const GapFill& f : *fills) {
+      const auto [low, high] = columnsInTile(f, tile);
+      const bool known = f.width() <= shape.fillGap;
       for (int i = low; i <= high; ++i)
-        offers.push_back({indexInTile(b.column(i)), b.height(i), b.width(), b.from, b.direction,
-                          known ? b.nearerClass(i) : semantic_types::kNoClass});
+        offers.push_back({indexInTile(f.column(i)), f.height(i), f.width(), f.from, f.direction,
+                          known ? f.nearerClass(i) : semantic_types::kNoClass});
     }
   }
   return offers;
@@ -76,11 +76,11 @@ std::vector<Offer> bestOffers(std::vector<Offer> offers, int step) {
   return best;
 }
 
-Surface bridgingSurface(const Offer& offer) {
+Surface surfaceOf(const Offer& offer) {
   Surface s;
   s.z = static_cast<std::uint16_t>(offer.z);
   s.classId = offer.classId;
-  s.bridged = true;
+  s.filled = true;
   return s;
 }
 
@@ -94,7 +94,7 @@ SurfaceTile merged(const SurfaceTile& own, const std::vector<Offer>& offers) {
     const auto begin = static_cast<std::ptrdiff_t>(result.surfaces.size());
     for (const Surface& s : own.column(column)) result.surfaces.push_back(s);
     for (; offer != offers.end() && offer->column == column; ++offer)
-      result.surfaces.push_back(bridgingSurface(*offer));
+      result.surfaces.push_back(surfaceOf(*offer));
     std::sort(result.surfaces.begin() + begin, result.surfaces.end(), isLower);
     result.first[column + 1] = static_cast<std::uint16_t>(result.surfaces.size());
   }
@@ -103,10 +103,10 @@ SurfaceTile merged(const SurfaceTile& own, const std::vector<Offer>& offers) {
 
 }  // namespace
 
-SurfaceTile bridgedSurfaces(const BridgeGrid& bridges, const SurfaceGrid& measured, Column tile,
-                            const GroundShape& shape) {
+SurfaceTile filledSurfaces(const GapFillGrid& fills, const SurfaceGrid& measured, Column tile,
+                           const GroundShape& shape) {
   const SurfaceTile* own = measured.find(tile);
-  const std::vector<Offer> offers = bestOffers(offersTo(tile, bridges, shape), shape.step);
+  const std::vector<Offer> offers = bestOffers(offersTo(tile, fills, shape), shape.step);
   if (own && offers.empty()) return *own;
   return merged(own ? *own : SurfaceTile(), offers);
 }

@@ -9,12 +9,12 @@
 
 namespace semantic_planning {
 
-using ColumnGrid = TileGrid<ColumnTile>;
+using ScanGrid = ColumnGrid<ColumnTile>;
 
-/** Top voxels with room above. */
+/** Top voxels with enough free space above. */
 SurfaceTile measuredSurfaces(const ColumnTile& columns, const GroundShape& shape);
 
-/** Directions of bridges; the opposite ones are the same bridges from their other ends. */
+/** Directions of gap fills; the opposite ones are the same fills from their other ends. */
 struct Direction {
   int x, y;
   double length;
@@ -22,8 +22,8 @@ struct Direction {
 constexpr std::array<Direction, 4> kDirections = {
     {{1, 0, 1}, {0, 1, 1}, {1, 1, 1.41421356}, {-1, 1, 1.41421356}}};
 
-/** A line over a hole, from a surface to another one. */
-struct Bridge {
+/** A line over a hole, from a surface to another one, along which the ground is filled in. */
+struct GapFill {
   Column from;
   int direction = 0;                ///< of kDirections
   int columns = 1;                  ///< from one end to the other
@@ -38,8 +38,8 @@ struct Bridge {
   ClassId nearerClass(int i) const { return 2 * i <= columns ? classId : otherClass; }
 
   /** By row, column, direction and height, then by the rest. */
-  bool operator<(const Bridge& o) const {
-    const auto key = [](const Bridge& b) {
+  bool operator<(const GapFill& o) const {
+    const auto key = [](const GapFill& b) {
       return std::tie(b.from.y, b.from.x, b.direction, b.z, b.columns, b.otherZ, b.classId,
                       b.otherClass);
     };
@@ -47,17 +47,17 @@ struct Bridge {
   }
 };
 
-using BridgeGrid = TileGrid<std::vector<Bridge>>;
+using GapFillGrid = ColumnGrid<std::vector<GapFill>>;
 
-/** How many columns a bridge goes from its first end, at most. */
-inline int reachOfBridges(const GroundShape& shape) {
+/** How many columns a fill goes from its first end, at most. */
+inline int reachOfGapFills(const GroundShape& shape) {
   return static_cast<int>(shape.widestGap) + 1;
 }
 
-/** The bridges whose first end is in a tile: from each surface that lacks a neighbor in a direction
+/** The fills whose first end is in a tile: from each surface that lacks a neighbor in a direction
  * to the next surface at about its height, where nothing stands in between and no free space was
  * seen below. Sorted. */
-std::vector<Bridge> bridgesFrom(const ColumnGrid& columns, const SurfaceGrid& measured, Column tile,
-                                const GroundShape& shape);
+std::vector<GapFill> gapFillsFrom(const ScanGrid& columns, const SurfaceGrid& measured, Column tile,
+                                  const GroundShape& shape);
 
 }  // namespace semantic_planning

@@ -14,27 +14,27 @@ constexpr int kOrigin = semantic_octree::kKeyOfOrigin;
 constexpr int kHalf = 40;  // columns of the world to each side
 
 /** Looks at every surface and every column around it, by the definition alone. */
-class RoomOracle {
+class ClearanceOracle {
  public:
-  RoomOracle(const Ground& ground, const VehicleOptions& vehicle,
-             const colored_graph::ClassOrder& order)
+  ClearanceOracle(const Ground& ground, const VehicleOptions& vehicle,
+                  const colored_graph::ClassOrder& order)
       : m_ground(ground),
         m_order(order),
         m_height(int(std::lround(vehicle.height / ground.voxelSize()))),
         m_rise(std::tan(vehicle.maxSlope * M_PI / 180)) {}
 
-  int room2(Column c, const Surface& s) const {
-    const int farthest = m_ground.farthestRoom();
-    int room2 = farthest * farthest;
+  int clearance2(Column c, const Surface& s) const {
+    const int farthest = m_ground.largestClearance();
+    int clearance2 = farthest * farthest;
     for (int y = -farthest; y <= farthest; ++y)
       for (int x = -farthest; x <= farthest; ++x) {
         const int dx = std::max(0, std::abs(x) - 1), dy = std::max(0, std::abs(y) - 1);
         const int tolerance =
             std::min(m_height, 2 * m_ground.step() + 1 + int(m_rise * (std::max(dx, dy) + 1)));
         if (isObstacle({c.x + x, c.y + y}, s.z, tolerance))
-          room2 = std::min(room2, dx * dx + dy * dy);
+          clearance2 = std::min(clearance2, dx * dx + dy * dy);
       }
-    return room2;
+    return clearance2;
   }
 
  private:
@@ -83,26 +83,27 @@ void paintHillside(PaintedWorld& world, unsigned seed) {
 
 }  // namespace
 
-TEST(Room, isThatOfBruteForceOnAHillsideWithLevelsHolesAndForbiddenGround) {
+TEST(Clearance, isThatOfBruteForceOnAHillsideWithLevelsHolesAndForbiddenGround) {
   const colored_graph::ClassOrder order(5, {{1}, {2}, {3}, {0}});  // mud is forbidden
   VehicleOptions vehicle;
   vehicle.clearance = 0.5;
   GroundOptions options;
-  options.keepFootprintOffForbidden = true;
+  options.keepOff = true;
   options.unknownGap = 1;
   for (const unsigned seed : {1u, 2u, 3u}) {
     PaintedWorld world;
     paintHillside(world, seed);
     const Ground ground(world.map({0.05, 0.05, 20}), vehicle, options, order);
-    const RoomOracle oracle(ground, vehicle, order);
-    std::vector<int> found(ground.farthestRoom() * ground.farthestRoom() + 1);
+    const ClearanceOracle oracle(ground, vehicle, order);
+    std::vector<int> found(ground.largestClearance() * ground.largestClearance() + 1);
     for (int x = -kHalf - 1; x <= kHalf; ++x)
       for (int y = -kHalf - 1; y <= kHalf; ++y)
         for (const Surface& s : ground.surfaces({kOrigin + x, kOrigin + y})) {
-          ASSERT_EQ(s.room2, oracle.room2({kOrigin + x, kOrigin + y}, s))
+          ASSERT_EQ(s.clearance2, oracle.clearance2({kOrigin + x, kOrigin + y}, s))
               << x << ' ' << y << ' ' << s.z;
-          ++found[s.room2];
+          ++found[s.clearance2];
         }
-    for (const int room2 : {0, 1, 4, int(found.size()) - 1}) EXPECT_GT(found[room2], 20) << room2;
+    for (const int clearance2 : {0, 1, 4, int(found.size()) - 1})
+      EXPECT_GT(found[clearance2], 20) << clearance2;
   }
 }

@@ -6,13 +6,13 @@
 
 namespace semantic_planning {
 
-/** Measures Surface::room2: from obstacles at about a surface's height, not farther than the
- * farthest room. Exact. */
-class RoomMeter {
+/** Measures Surface::clearance2: from obstacles at about a surface's height, not farther than the
+ * largest clearance. Exact. */
+class ClearanceMeter {
  public:
-  explicit RoomMeter(const GroundShape& shape);
+  explicit ClearanceMeter(const GroundShape& shape);
 
-  /** Sets the room of a tile's surfaces. \return the columns where it changed. */
+  /** Sets the clearance of a tile's surfaces. \return the columns where it changed. */
   ColumnBox measure(const ObstacleGrid& obstacles, Column tile, SurfaceTile& measured) const;
 
  private:
@@ -21,13 +21,13 @@ class RoomMeter {
   /** A column to look at, seen from the surface's. */
   struct Place {
     int x, y;
-    int room2;
+    int clearance2;
     int tolerance;  ///< how far ground may have gone up or down on the way
   };
 
   int m_farthest;
   std::vector<Place> m_places;         ///< nearest first
-  std::vector<std::size_t> m_firstAt;  ///< of m_places, by room2
+  std::vector<std::size_t> m_firstAt;  ///< of m_places, by clearance2
 };
 
 }  // namespace semantic_planning
