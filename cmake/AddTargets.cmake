@@ -21,7 +21,9 @@ function(mso_add_library name)
   set_target_properties(${name} PROPERTIES OUTPUT_NAME mso_${name}
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")
   set_property(GLOBAL APPEND PROPERTY MSO_LIBRARIES ${name})
-  install(TARGETS ${name} EXPORT mrpt_semantic_octree LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  set_property(GLOBAL PROPERTY MSO_LINKS_${name} ${ARG_DEPENDS})
+  set_property(GLOBAL PROPERTY MSO_PRIVATE_LINKS_${name} ${ARG_PRIVATE_DEPENDS})
+  install(TARGETS ${name} EXPORT mrpt_semantic_octree_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
     COMPONENT library NAMELINK_COMPONENT ${link_component})
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mrpt_semantic_octree
     COMPONENT development)

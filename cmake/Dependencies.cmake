@@ -1,18 +1,25 @@
-# Everything that comes from outside; what the libraries need stands in
-# mrpt_semantic_octree-config.cmake.in too, for those who build upon them. What differs between MRPT's
-# releases stands in these two files and in libs/semantic_map/include/semantic_map/MrptVersion.h, nowhere else.
-find_package(Eigen3 REQUIRED NO_MODULE)
-find_package(octomap REQUIRED)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs calib3d dnn)
-find_package(Threads REQUIRED)
-find_package(PNG REQUIRED)
-find_package(yaml-cpp REQUIRED)
-find_package(ZLIB REQUIRED)
-find_package(mrpt-obs REQUIRED)
-find_package(mrpt-maps REQUIRED)
-find_package(mrpt-opengl REQUIRED)
-find_package(mrpt-graphs REQUIRED)
-find_package(mrpt-nav REQUIRED)
+# Everything that comes from outside. What differs between MRPT's releases stands here, in
+# ThirdPartyTargets.cmake and in libs/semantic_map/include/semantic_map/MrptVersion.h, nowhere else.
+
+# mso_external(TARGET DEBIAN_PACKAGE PACKAGE [arguments of find_package]): finds what libraries link. Those that hand
+# TARGET on to their users need it found again by the package's CMake config, and DEBIAN_PACKAGE beside the headers.
+macro(mso_external target debian)
+  find_package(${ARGN} REQUIRED)
+  set_property(GLOBAL PROPERTY MSO_FIND_${target} "${ARGN}")
+  set_property(GLOBAL PROPERTY MSO_DEBIAN_${target} ${debian})
+endmacro()
+mso_external(Eigen3::Eigen libeigen3-dev Eigen3 NO_MODULE)
+mso_external(mso_octomap liboctomap-dev octomap)
+mso_external(mso_opencv libopencv-dev OpenCV COMPONENTS core imgproc imgcodecs calib3d dnn)
+mso_external(Threads::Threads libc6-dev Threads)
+mso_external(PNG::PNG libpng-dev PNG)
+mso_external(yaml-cpp libyaml-cpp-dev yaml-cpp)
+mso_external(ZLIB::ZLIB zlib1g-dev ZLIB)
+mso_external(mrpt::obs libmrpt-obs-dev mrpt-obs)
+mso_external(mrpt::maps libmrpt-maps-dev mrpt-maps)
+mso_external(mrpt::opengl libmrpt-opengl-dev mrpt-opengl)
+mso_external(mrpt::graphs libmrpt-graphs-dev mrpt-graphs)
+mso_external(mrpt::nav libmrpt-nav-dev mrpt-nav)
 find_package(ompl REQUIRED)
 
 include(ThirdPartyTargets)

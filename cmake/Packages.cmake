@@ -21,8 +21,7 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmrpt-semantic-octree-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libeigen3-dev, libmrpt-maps-dev, libmrpt-obs-dev, libmrpt-opengl-dev, liboctomap-dev, libopencv-dev")
+list(JOIN mso_debian_packages ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)  # what the CMake config asks for
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME mrpt-semantic-octree-tools)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS "gnuplot-nox, libegl1, libgl1-mesa-dri")
 

@@ -1,12 +1,12 @@
-# Targets for packages whose CMake files export variables only, or too much. Used by this project's
-# build and by its installed package, which is why it may be read twice.
-if(NOT TARGET mso_octomap)
+# Targets for packages whose CMake files export variables only, or too much. Used by this project's build and by its
+# installed package, where it may be read several times, and before all of these packages were asked for.
+if(octomap_FOUND AND NOT TARGET mso_octomap)
   add_library(mso_octomap INTERFACE IMPORTED)
   target_include_directories(mso_octomap SYSTEM INTERFACE ${OCTOMAP_INCLUDE_DIRS})
   target_link_libraries(mso_octomap INTERFACE ${OCTOMAP_LIBRARIES})
 endif()
 
-if(NOT TARGET mso_opencv)
+if(OpenCV_FOUND AND NOT TARGET mso_opencv)
   add_library(mso_opencv INTERFACE IMPORTED)
   target_include_directories(mso_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
   target_link_libraries(mso_opencv INTERFACE
