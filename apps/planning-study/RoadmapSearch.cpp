@@ -1,6 +1,6 @@
 #include "RoadmapSearch.h"
 
-#include <colored_graph/EdgeModelNames.h>
+#include <colored_graph/ModelNames.h>
 
 #include <chrono>
 

@@ -1,6 +1,6 @@
 #include "RoadmapTrials.h"
 
-#include <colored_graph/EdgeModelNames.h>
+#include <colored_graph/ModelNames.h>
 
 #include <cmath>
 #include <stdexcept>

@@ -48,7 +48,7 @@ class DenseReference {
     return m_ground.step() + int(std::ceil(rise / m_ground.voxelSize()));
   }
   bool discsFit(const TPose2D& pose, int z) const {
-    for (const Disc& d : coveringDiscs(m_vehicle.footprint)) {
+    for (const Disc& d : m_vehicle.footprint.coveringDiscs()) {
       const Surface* s = under(pose, d.x, d.y, z, tolerance(d.x, d.y));
       if (!s || !m_ground.hasClearance(*s, d.radius)) return false;
     }

@@ -37,14 +37,14 @@ std::string refusal(void (*spoil)(VehicleOptions&)) {
 }  // namespace
 
 TEST(VehicleOptions, discsCoverTheFootprint) {
-  expectCovered(VehicleOptions::rectangle(-0.9, 3.4, 1.7));
-  expectCovered(VehicleOptions::rectangle(-0.3, 0.3, 2));
+  expectCovered(Footprint::rectangle(-0.9, 3.4, 1.7));
+  expectCovered(Footprint::rectangle(-0.3, 0.3, 2));
   expectCovered({{-1, 0}, {2, -0.7}, {2.5, 0}, {2, 0.7}});
   expectCovered({{0, 0}, {1, -1}, {1, 1}});
 }
 
 TEST(VehicleOptions, discsOfARectangleStickOutByATenthOfItsWidth) {
-  for (const Disc& d : coveringDiscs(VehicleOptions::rectangle(-0.9, 3.4, 1.7))) {
+  for (const Disc& d : coveringDiscs(Footprint::rectangle(-0.9, 3.4, 1.7))) {
     EXPECT_LE(d.radius, 0.85 + 0.11 * 1.7);
     EXPECT_DOUBLE_EQ(d.y, 0);
   }
