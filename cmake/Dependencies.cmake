@@ -20,9 +20,18 @@ mso_external(mrpt::maps libmrpt-maps-dev mrpt-maps)
 mso_external(mrpt::opengl libmrpt-opengl-dev mrpt-opengl)
 mso_external(mrpt::graphs libmrpt-graphs-dev mrpt-graphs)
 mso_external(mrpt::nav libmrpt-nav-dev mrpt-nav)
-find_package(ompl REQUIRED)
 
 include(ThirdPartyTargets)
+
+if(MSO_BUILD_APPS OR MSO_BUILD_TESTS)
+  # Other planners and oracles. Its CMake files also name libraries that its Debian package does not need:
+  # the first is its own.
+  find_package(ompl REQUIRED)
+  list(GET OMPL_LIBRARIES 0 ompl_library)
+  add_library(mso_ompl INTERFACE IMPORTED)
+  target_include_directories(mso_ompl SYSTEM INTERFACE ${OMPL_INCLUDE_DIR})
+  target_link_libraries(mso_ompl INTERFACE ${ompl_library})
+endif()
 
 if(MSO_BUILD_APPS)
   find_package(mrpt-gui REQUIRED)

@@ -31,15 +31,16 @@ void addOptions(CLI::App& app, const strict_files::OptionList& list, const std::
       addSwitch(app, option, group);
       continue;
     }
-    const auto read = [set = option.set](const std::vector<std::string>& words) {
+    const std::string flag = "--" + withDashes(option.name);
+    const auto read = [set = option.set, flag](const std::vector<std::string>& words) {
       try {
         set(words.back());
       } catch (const std::invalid_argument& e) {
-        throw CLI::ValidationError(e.what());
+        throw CLI::ValidationError(flag + " " + e.what());
       }
       return true;
     };
-    app.add_option("--" + withDashes(option.name), read, helpOf(option))
+    app.add_option(flag, read, helpOf(option))
         ->type_name(option.expected.rfind("one of", 0) == 0 ? "WORD" : "VALUE")
         ->default_str(option.text())
         ->group(group);

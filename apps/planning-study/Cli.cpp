@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "Choice.h"
+#include "OptionFlags.h"
 
 namespace planning_study {
 
@@ -12,6 +13,7 @@ using semantic_planning::GraphKind;
 namespace {
 
 void addGraphs(CLI::App& app, StudyOptions& study) {
+  const auto& kinds = choicesOf(GraphKind());
   auto* group = app.add_option_group("Graphs");
   group->add_option("--budgets", study.budgets, "Vertices of each graph, separated by commas")
       ->delimiter(',')
@@ -19,20 +21,23 @@ void addGraphs(CLI::App& app, StudyOptions& study) {
       ->capture_default_str();
   addChoice(group->add_option("--graphs", study.graphs,
                               "Their kinds; the first is compared with the others"),
-            semantic_planning::graphKinds())
+            std::map<std::string, GraphKind>(kinds.begin(), kinds.end()))
       ->delimiter(',');
   group->add_option("--edges-per-vertex", study.edgesPerVertex, "Most edges of all graphs")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   group->add_option("--reference", study.reference, "Vertices of the dense graph; 0: none")
       ->capture_default_str();
-  auto& roadmap = study.planner.roadmap;
-  group->add_option("--neighbors", roadmap.neighbors, "Each vertex is connected with so many")
-      ->capture_default_str();
-  group->add_option("--headings", roadmap.headings, "At each point (compressed, full)")
-      ->capture_default_str();
-  group->add_option("--spacing", roadmap.spacing, "Between points in large leaves, m")
-      ->capture_default_str();
+}
+
+/** Of all planners; what tells them apart is the study's. */
+void addPlanner(CLI::App& app, semantic_planning::PlannerOptions& planner) {
+  strict_files::OptionList options;
+  planner.describe(options);
+  for (const char* studied : {"graph", "vertices", "max_edges", "seed", "cost", "edges", "reading",
+                              "least_probability", "shorten", "class_of_leaf", "time_limit"})
+    options.remove(studied);
+  addOptions(app, options, "Planner");
 }
 
 void addPeers(CLI::App& app, StudyOptions& study) {
@@ -76,6 +81,7 @@ void Cli::addTo(CLI::App& app) {
   app.add_option("--minutes", study.minutes, "No new instance after these (of the clock)")
       ->check(CLI::PositiveNumber);
   addGraphs(app, study);
+  addPlanner(app, study.planner);
   addPeers(app, study);
 }
 

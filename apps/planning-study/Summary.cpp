@@ -179,6 +179,9 @@ ordered_json optionsJson(const StudyOptions& options) {
           {"headings", roadmap.headings},
           {"spacing", roadmap.spacing},
           {"buffer", roadmap.buffer},
+          {"fillGap", options.planner.ground.fillGap},
+          {"unknownGap", options.planner.ground.unknownGap},
+          {"keepOff", options.planner.ground.keepOff},
           {"peerSeconds", options.peerTimes},
           {"peerInstances", options.peers ? options.peerInstances : 0}};
 }

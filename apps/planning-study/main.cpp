@@ -1,5 +1,6 @@
 // Compares kinds of graphs, and other planners, on random tasks over semantic maps.
 #include <semantic_planning/planner/OrderFile.h>
+#include <semantic_planning/vehicle/VehicleFile.h>
 #include <strict_files/OutputFolder.h>
 
 #include <chrono>

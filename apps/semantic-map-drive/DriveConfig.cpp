@@ -1,7 +1,7 @@
 #include "DriveConfig.h"
 
 #include <mrpt/config/CConfigFile.h>
-#include <semantic_planning/planner/OrderFile.h>
+#include <semantic_planning/vehicle/VehicleFile.h>
 #include <strict_files/ErrorMessage.h>
 #include <strict_files/IniSection.h>
 

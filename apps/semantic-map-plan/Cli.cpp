@@ -1,17 +1,12 @@
 #include "Cli.h"
 
-#include <colored_graph/CostModel.h>
-
 #include <cmath>
-#include <map>
+#include <sstream>
 
-#include "Choice.h"
+#include "OptionFlags.h"
 
 namespace semantic_map_plan {
 
-using namespace semantic_planning;
-using colored_graph::CostKind;
-using colored_graph::EdgeModel;
 using mrpt::math::TPose2D;
 
 namespace {
@@ -36,63 +31,6 @@ CLI::Option* addPose(CLI::App& app, const std::string& name, TPose2D& pose,
       ->type_name("X,Y,DEG");
 }
 
-void addRoadmap(CLI::App& app, RoadmapOptions& roadmap) {
-  auto* group = app.add_option_group("Graph");
-  addChoice(group->add_option("--graph", roadmap.kind, "Where its vertices come from"),
-            graphKinds());
-  group->add_option("--vertices", roadmap.vertices, "How many; 0: all that the map offers")
-      ->capture_default_str();
-  group->add_option("--max-edges", roadmap.maxEdges, "Most edges; 0: as the neighbors give")
-      ->capture_default_str();
-  group->add_option("--neighbors", roadmap.neighbors, "Each vertex is connected with so many")
-      ->capture_default_str();
-  group->add_option("--longest-edge", roadmap.longestEdge, "m")->capture_default_str();
-  group->add_option("--headings", roadmap.headings, "At each point (compressed, full)")
-      ->capture_default_str();
-  group->add_option("--spacing", roadmap.spacing, "Between points in large leaves, m")
-      ->capture_default_str();
-  group->add_option("--buffer", roadmap.buffer, "Around the line from start to goal, m")
-      ->capture_default_str();
-  group->add_flag(
-      "--class-of-leaf", roadmap.classOfLeaf,
-      "Vertices have the class of their leaf, not of the ground (with --edges endpoint)");
-  group->add_option("--seed", roadmap.seed, "Other vertices of the same kind")
-      ->capture_default_str();
-}
-
-void addJudgment(CLI::App& app, PlannerOptions& planner) {
-  auto* group = app.add_option_group("Cost");
-  const auto& costs = choicesOf(planner.cost);
-  addChoice(group->add_option("--cost", planner.cost, "What is least, worst class first"),
-            std::map<std::string, CostKind>(costs.begin(), costs.end()));
-  const auto& edges = choicesOf(planner.edges);
-  addChoice(group->add_option("--edges", planner.edges, "Which classes an edge counts for"),
-            std::map<std::string, EdgeModel>(edges.begin(), edges.end()));
-  addChoice(
-      group->add_option("--reading", planner.reading.kind, "What of a voxel's classes counts"),
-      std::map<std::string, ClassReading::Kind>{{"likeliest", ClassReading::Kind::Likeliest},
-                                                {"expected", ClassReading::Kind::Expected},
-                                                {"cautious", ClassReading::Kind::Cautious}});
-  group
-      ->add_option("--least-probability", planner.reading.leastProbability,
-                   "cautious: the worst class above this probability counts; expected: none below")
-      ->capture_default_str();
-  planner.shorten = true;
-  group->add_flag("!--as-found", planner.shorten,
-                  "Leave the path as the graph has it; else detours over its vertices are cut off");
-  group->add_option("--time-limit", planner.timeLimit, "Of the search, s");
-}
-
-void addGround(CLI::App& app, GroundOptions& ground) {
-  auto* group = app.add_option_group("Ground");
-  group->add_option("--fill-gap", ground.fillGap, "Holes up to this get their border's class, m")
-      ->capture_default_str();
-  group->add_option("--unknown-gap", ground.unknownGap, "Holes up to this are unknown ground, m")
-      ->capture_default_str();
-  group->add_flag("--keep-off", ground.keepOff,
-                  "Keep the whole footprint off forbidden classes, not only the wheels");
-}
-
 }  // namespace
 
 void Cli::addTo(CLI::App& app) {
@@ -109,9 +47,10 @@ void Cli::addTo(CLI::App& app) {
   app.add_option("--solution", solution, "Which of the weights; none: the first")
       ->needs("--weights");
   app.add_option("--output", output, "Folder of the results, created if need be")->required();
-  addRoadmap(app, planner.roadmap);
-  addJudgment(app, planner);
-  addGround(app, planner.ground);
+  planner.shorten = true;
+  strict_files::OptionList options;
+  planner.describe(options);
+  addOptions(app, options, "Planner");
 }
 
 }  // namespace semantic_map_plan

@@ -3,6 +3,7 @@
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
+#include <semantic_planning/vehicle/VehicleFile.h>
 #include <strict_files/OutputFolder.h>
 
 #include <algorithm>

@@ -76,6 +76,17 @@ TEST_F(SemanticMapPlan, everyKindOfGraphEdgeCostAndReadingIsKnown) {
     EXPECT_EQ(run("-8,0,0", "8,0,0", {"--reading", reading}).status, 0) << reading;
 }
 
+TEST_F(SemanticMapPlan, setsOptionsOfGroundRoadmapReadingAndSearch) {
+  EXPECT_EQ(run("-8,0,0", "8,0,0",
+                {"--fill-gap", "0.5", "--unknown-gap", "2", "--keep-off", "--max-edges", "900",
+                 "--longest-edge", "8", "--buffer", "5", "--class-of-leaf", "--seed", "3",
+                 "--least-probability", "0.2", "--no-shorten", "--time-limit", "60"})
+                .status,
+            0);
+  EXPECT_EQ(report()["cost"], report()["graphCost"]) << "--no-shorten";
+  EXPECT_LE(report()["edges"], 900 + 2 * 20 + 1);
+}
+
 TEST_F(SemanticMapPlan, withoutAPathItSaysWhyAndTheStatusIsTwo) {
   folder.write("out/path.csv", "of before");
   const ProgramRun result = run("0,4.2,0", "8,0,0");
@@ -93,11 +104,11 @@ TEST_F(SemanticMapPlan, badInputIsAnErrorThatNamesIt) {
   expectError(run("-8,0,0", "8,0"), "8,0");
   expectError(run("nan,0,0", "8,0,0"), "nan");
   expectError(run("-8,0,0", "8,0,0", {"--graph", "random"}), "random");
-  expectError(run("-8,0,0", "8,0,0", {"--neighbors", "0"}), "neighbors is 0");
+  expectError(run("-8,0,0", "8,0,0", {"--neighbors", "0"}), "--neighbors is 0");
   folder.write("lava.yaml", "best_to_worst: [road, lava]\n");
   expectError(run("-8,0,0", "8,0,0", {}, "lava.yaml"), "no class 'lava'");
   const auto vehicle = folder.write("vehicle.yaml", "turning_radius: 0\n");
-  expectError(run("-8,0,0", "8,0,0", {"--vehicle", vehicle.string()}), "turningRadius is 0");
+  expectError(run("-8,0,0", "8,0,0", {"--vehicle", vehicle.string()}), "turning_radius is 0");
   folder.write("map.semantic", "no map");
   expectError(run("-8,0,0", "8,0,0"), "map.semantic");
 }

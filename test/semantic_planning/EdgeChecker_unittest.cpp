@@ -2,6 +2,7 @@
 #include <semantic_planning/roadmap/EdgeChecker.h>
 
 #include <cmath>
+#include <future>
 #include <random>
 
 #include "PaintedWorld.h"
@@ -48,7 +49,7 @@ class DenseReference {
     return m_ground.step() + int(std::ceil(rise / m_ground.voxelSize()));
   }
   bool discsFit(const TPose2D& pose, int z) const {
-    for (const Disc& d : coveringDiscs(m_vehicle.footprint)) {
+    for (const Disc& d : m_vehicle.footprint.coveringDiscs()) {
       const Surface* s = under(pose, d.x, d.y, z, tolerance(d.x, d.y));
       if (!s || !m_ground.hasClearance(*s, d.radius)) return false;
     }
@@ -149,4 +150,25 @@ TEST_F(EdgeCheckerTest, givesAnEdgeToItselfItsClass) {
   ASSERT_EQ(profile->size(), 1u);
   EXPECT_EQ(profile->front().classId, PaintedWorld::Road);
   EXPECT_EQ(profile->front().length, 0);
+}
+
+TEST_F(EdgeCheckerTest, answersSeveralThreadsAsOne) {
+  std::vector<std::pair<GroundPose, GroundPose>> edges;
+  while (edges.size() < 2000) {
+    const auto a = draw(), b = draw();
+    if (a && b && isNear(*a, *b)) edges.emplace_back(*a, *b);
+  }
+  const auto lengths = [&] {
+    std::vector<std::int64_t> all;
+    for (const auto& [a, b] : edges) {
+      const auto profile = checker.profile(a, b);
+      all.push_back(profile ? -1 : 0);
+      for (const auto& part : profile.value_or(EdgeProfile())) all.push_back(part.length);
+    }
+    return all;
+  };
+  const std::vector<std::int64_t> expected = lengths();
+  std::vector<std::future<std::vector<std::int64_t>>> found;
+  for (int i = 0; i < 4; ++i) found.push_back(std::async(std::launch::async, lengths));
+  for (auto& f : found) EXPECT_TRUE(f.get() == expected);
 }

@@ -19,7 +19,7 @@ colored_graph::ClassOrder anyClass() { return {5, {{0, 1, 2, 3, 4}}}; }
 /** A robot of 1 m in height that needs no clearance, and no gap fills. */
 VehicleOptions smallVehicle() {
   VehicleOptions vehicle;
-  vehicle.footprint = VehicleOptions::rectangle(-0.1, 0.1, 0.2);
+  vehicle.footprint = Footprint::rectangle(-0.1, 0.1, 0.2);
   vehicle.clearance = 0;
   vehicle.maxSlope = 80;
   return vehicle;

@@ -1,10 +1,11 @@
 #include <gtest/gtest.h>
-#include <semantic_planning/roadmap/NearestPoses.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
+
+#include "roadmap/NearestPoses.h"
 
 using namespace semantic_planning;
 using colored_graph::VertexId;

@@ -12,10 +12,6 @@ class OrderFile : public testing::Test {
     const auto file = folder.write("order.yaml", text);
     return errorOf([&] { loadClassOrder(file, PaintedWorld::classTable()); });
   }
-  std::string vehicleError(const std::string& text) const {
-    const auto file = folder.write("vehicle.yaml", text);
-    return errorOf([&] { loadVehicle(file); });
-  }
 
   TemporaryFolder folder;
 };
@@ -44,26 +40,9 @@ TEST_F(OrderFile, isStrictAboutClassesAndKeys) {
   EXPECT_NE(errorOf([] { loadClassOrder("nowhere.yaml", PaintedWorld::classTable()); }), "");
 }
 
-TEST_F(OrderFile, aVehicleHasDefaultsForWhatIsNotSaid) {
-  const auto file =
-      folder.write("vehicle.yaml", "turning_radius: 3\nfootprint: [[0, -1], [2, 0], [0, 1]]\n");
-  const VehicleOptions vehicle = loadVehicle(file);
-  EXPECT_EQ(vehicle.turningRadius, 3);
-  EXPECT_EQ(vehicle.footprint.size(), 3u);
-  EXPECT_EQ(vehicle.height, VehicleOptions().height);
-}
-
-TEST_F(OrderFile, aVehicleIsReadStrictly) {
-  EXPECT_TRUE(contains(vehicleError("turning_radius: 0"), "turningRadius is 0"));
-  EXPECT_TRUE(contains(vehicleError("height: tall"), "height"));
-  EXPECT_TRUE(contains(vehicleError("wheels: 4"), "unknown key 'wheels'"));
-  EXPECT_TRUE(contains(vehicleError("footprint: [[0, 1, 2]]"), "expected [x, y]"));
-}
-
 TEST_F(OrderFile, thoseOfTheRepositoryLoad) {
   const std::filesystem::path plans = std::filesystem::path(MSO_SOURCE_DIR) / "config/plan";
   semantic_types::ClassTable kitti;
   for (const char* name : {"road", "parking", "sidewalk", "terrain"}) kitti.add(name, {});
   EXPECT_EQ(loadClassOrder(plans / "semantic_kitti.yaml", kitti).ranks(), 5);
-  EXPECT_GT(loadVehicle(plans / "car.yaml").turningRadius, 1);
 }

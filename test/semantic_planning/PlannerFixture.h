@@ -18,7 +18,7 @@ class PlannerTest : public testing::Test {
 
   PlannerTest() {
     options.roadmap.vertices = 600;
-    options.vehicle.footprint = semantic_planning::VehicleOptions::rectangle(-0.2, 0.5, 0.5);
+    options.vehicle.footprint = semantic_planning::Footprint::rectangle(-0.2, 0.5, 0.5);
     options.vehicle.wheelTrack = 0.4;
   }
 

@@ -60,13 +60,13 @@ TEST_F(PlannerTest, refusesBadOptionsNamingThem) {
     spoil(spoiled);
     return errorOf([&] { SemanticPlanner(map(), order, spoiled); });
   };
-  EXPECT_TRUE(contains(refusal([](auto& o) { o.vehicle.turningRadius = 0; }), "turningRadius"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.vehicle.turningRadius = 0; }), "turning_radius"));
   EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.neighbors = 0; }), "neighbors is 0"));
-  EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.longestEdge = NAN; }), "longestEdge"));
-  EXPECT_TRUE(contains(refusal([](auto& o) { o.ground.fillGap = -1; }), "fillGap is -1"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.longestEdge = NAN; }), "longest_edge"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.ground.fillGap = -1; }), "fill_gap is -1"));
   EXPECT_TRUE(
-      contains(refusal([](auto& o) { o.reading.leastProbability = 1; }), "leastProbability"));
-  EXPECT_TRUE(contains(refusal([](auto& o) { o.timeLimit = NAN; }), "timeLimit"));
+      contains(refusal([](auto& o) { o.reading.leastProbability = 2; }), "least_probability is 2"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.timeLimit = NAN; }), "time_limit"));
 }
 
 TEST_F(PlannerTest, aCompressedGraphNeedsAMapWithGValues) {

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_planning/ground/ColumnGrid.h>
+#include <semantic_planning/ground/Column.h>
 
 #include <algorithm>
 #include <cstdlib>

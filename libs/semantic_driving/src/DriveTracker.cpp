@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace semantic_driving {
 
@@ -17,30 +16,11 @@ constexpr double kSlowest = 0.1;      // m/s, as long as there is way left
 constexpr double kSideGain = 1.2;     // 1/m^2
 constexpr double kHeadingGain = 2.0;  // 1/m
 
-/** Distance from a convex outline, meters; 0 within. */
-double distance(const std::vector<Eigen::Vector2d>& outline, const Eigen::Vector2d& p) {
-  bool within = true;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Eigen::Vector2d a = outline[i], d = outline[(i + 1) % outline.size()] - a;
-    within = within && d.x() * (p - a).y() - d.y() * (p - a).x() >= 0;
-    const double share = std::clamp(d.dot(p - a) / d.squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (p - a - share * d).norm());
-  }
-  return within ? 0 : least;
-}
-
 }  // namespace
 
-DriveTracker::DriveTracker(const DriveOptions& options, std::vector<Eigen::Vector2d> footprint)
+DriveTracker::DriveTracker(const DriveOptions& options, semantic_planning::Footprint footprint)
     : m_options(options), m_footprint(std::move(footprint)) {
   m_options.validate();
-  double area = 0;
-  for (std::size_t i = 0; i < m_footprint.size(); ++i) {
-    const Eigen::Vector2d &a = m_footprint[i], &b = m_footprint[(i + 1) % m_footprint.size()];
-    area += a.x() * b.y() - a.y() * b.x();
-  }
-  if (area < 0) std::reverse(m_footprint.begin(), m_footprint.end());
 }
 
 void DriveTracker::setPath(DrivePath path) {
@@ -69,7 +49,7 @@ bool DriveTracker::isFree(const TPose2D& relative, const ObstaclePoints& obstacl
   const double c = std::cos(relative.phi), s = std::sin(relative.phi);
   return std::none_of(obstacles.begin(), obstacles.end(), [&](const Eigen::Vector2d& o) {
     const double x = o.x() - relative.x, y = o.y() - relative.y;
-    return distance(m_footprint, {c * x + s * y, c * y - s * x}) < margin;
+    return m_footprint.distance({c * x + s * y, c * y - s * x}) < margin;
   });
 }
 
@@ -80,7 +60,7 @@ bool DriveTracker::approaches(const DriveCommand& command, const ObstaclePoints&
     middle += corner / static_cast<double>(m_footprint.size());
   return std::any_of(obstacles.begin(), obstacles.end(), [&](const Eigen::Vector2d& o) {
     const Eigen::Vector2d motion(command.speed - command.turn * o.y(), command.turn * o.x());
-    return distance(m_footprint, o) < margin && motion.dot(o - middle) > 1e-6;
+    return m_footprint.distance(o) < margin && motion.dot(o - middle) > 1e-6;
   });
 }
 

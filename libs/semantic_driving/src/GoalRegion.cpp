@@ -1,12 +1,9 @@
 #include "GoalRegion.h"
 
-#include <mrpt/math/TPolygon2D.h>
-#include <mrpt/math/TSegment2D.h>
 #include <semantic_driving/ObstacleSensing.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace semantic_driving {
@@ -18,19 +15,6 @@ using semantic_planning::SemanticPlanner;
 using semantic_planning::VehicleOptions;
 
 namespace {
-
-/** Of the largest disc around the origin that the footprint covers, meters. */
-double innerRadius(const std::vector<Eigen::Vector2d>& footprint) {
-  const mrpt::math::TPoint2D origin(0, 0);
-  mrpt::math::TPolygon2D outline;
-  for (const Eigen::Vector2d& p : footprint) outline.emplace_back(p.x(), p.y());
-  if (!outline.contains(origin)) return 0;
-  std::vector<mrpt::math::TSegment2D> sides;
-  outline.getAsSegmentList(sides);
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& side : sides) least = std::min(least, side.distance(origin));
-  return least;
-}
 
 /** f(column) for the columns whose centers are at most `radius` (voxels) away. */
 template <class F>
@@ -60,7 +44,8 @@ GoalRegion::GoalRegion(const SemanticPlanner& planner, const ColumnSquare& squar
 void GoalRegion::markObstacles(const SemanticPlanner& planner, const TPose2D& from, double z) {
   const Ground& ground = planner.ground();
   const VehicleOptions& vehicle = planner.options().vehicle;
-  const double radius = (innerRadius(vehicle.footprint) + vehicle.clearance) / ground.voxelSize();
+  const double radius =
+      (vehicle.footprint.inscribedRadius() + vehicle.clearance) / ground.voxelSize();
   ObstacleOptions options;
   options.radius = m_square.reach() * ground.voxelSize();
   for (const auto& seen : senseObstacles(planner, from, z, options)) {

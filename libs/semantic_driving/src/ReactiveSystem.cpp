@@ -25,18 +25,6 @@ class Quiet : public System {
   ~Quiet() override { this->m_timlog_delays.clear(true); }
 };
 
-/** The outline, each corner moved away from the middle so that the edges move by the margin. */
-std::vector<Eigen::Vector2d> widened(const std::vector<Eigen::Vector2d>& outline, double margin) {
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& p : outline) middle += p / static_cast<double>(outline.size());
-  std::vector<Eigen::Vector2d> corners;
-  for (const Eigen::Vector2d& p : outline) {
-    const Eigen::Vector2d d = p - middle;
-    corners.push_back(p + margin * Eigen::Vector2d(d.x() < 0 ? -1 : 1, d.y() < 0 ? -1 : 1));
-  }
-  return corners;
-}
-
 void writeLimits(CConfigFile& file, const Options& options) {
   const double turn = options.maxSpeed / options.turningRadius * 180 / M_PI;
   file.write("CAbstractPTGBasedReactive", "robotMax_V_mps", options.maxSpeed);
@@ -63,7 +51,7 @@ void writeSlices(CConfigFile& file, const Options& options) {
   for (std::size_t i = 0; i < options.slices.size(); ++i) {
     const std::string level = "LEVEL" + std::to_string(i + 1);
     std::ostringstream x, y;
-    for (const Eigen::Vector2d& p : widened(options.slices[i].outline, options.margin))
+    for (const Eigen::Vector2d& p : options.slices[i].outline.inflated(options.margin))
       x << p.x() << ' ', y << p.y() << ' ';
     file.write(kSection3D, level + "_HEIGHT", options.slices[i].height);
     file.write(kSection3D, level + "_VECTORX", x.str());
@@ -108,7 +96,7 @@ std::unique_ptr<mrpt::nav::CAbstractPTGBasedReactive> makeReactiveSystem(
   if (options.slices.empty()) {
     auto flat = loaded<CReactiveNavigationSystem>(vehicle, options, file, tables);
     mrpt::math::CPolygon shape;
-    for (const Eigen::Vector2d& p : widened(options.footprint, options.margin))
+    for (const Eigen::Vector2d& p : options.footprint.inflated(options.margin))
       shape.AddVertex(p.x(), p.y());
     flat->changeRobotShape(shape);
     system = std::move(flat);

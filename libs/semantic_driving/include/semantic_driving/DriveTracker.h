@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_driving/DriveOptions.h>
 #include <semantic_driving/DrivePath.h>
+#include <semantic_planning/vehicle/Footprint.h>
 
 namespace semantic_driving {
 
@@ -9,9 +10,8 @@ namespace semantic_driving {
  * "Control of chained systems", 1995 (the law for a path given by its curvature). */
 class DriveTracker {
  public:
-  /** \param footprint corners in the vehicle's frame, meters
-   * \throw std::invalid_argument bad options. */
-  DriveTracker(const DriveOptions& options, std::vector<Eigen::Vector2d> footprint);
+  /** \throw std::invalid_argument bad options. */
+  DriveTracker(const DriveOptions& options, semantic_planning::Footprint footprint);
 
   void setPath(DrivePath path);
   const DrivePath& path() const { return m_path; }
@@ -45,7 +45,7 @@ class DriveTracker {
                  double limit) const;
 
   DriveOptions m_options;
-  std::vector<Eigen::Vector2d> m_footprint;
+  semantic_planning::Footprint m_footprint;
   DrivePath m_path;
   double m_progress = 0, m_offset = 0;
 };

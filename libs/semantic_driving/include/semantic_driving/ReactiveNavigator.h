@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_driving/DriveOptions.h>
 #include <semantic_planning/planner/PlanResult.h>
+#include <semantic_planning/vehicle/Footprint.h>
 
 #include <filesystem>
 #include <memory>
@@ -17,12 +18,12 @@ class ReactiveNavigator {
  public:
   /** A part of a vehicle's shape that is the same from bottom to top. */
   struct Slice {
-    double height = 0;                     ///< meters
-    std::vector<Eigen::Vector2d> outline;  ///< corners in the vehicle's frame, meters
+    double height = 0;  ///< meters
+    semantic_planning::Footprint outline;
   };
   struct Options {
-    std::filesystem::path config;            ///< MRPT's .ini, see config/reactive
-    std::vector<Eigen::Vector2d> footprint;  ///< corners in the vehicle's frame, meters
+    std::filesystem::path config;  ///< MRPT's .ini, see config/reactive
+    semantic_planning::Footprint footprint;
     /** From the ground up, if the shape is not the same at all heights: in place of the footprint,
      * by CReactiveNavigationSystem3D. (Jaimez, Gonzalez-Jimenez and Blanco, "Efficient reactive
      * navigation with exact collision determination for 3D robot shapes", 2015.) */

@@ -1,9 +1,9 @@
 #pragma once
-#include <semantic_planning/ground/ColumnGrid.h>
 
 #include <algorithm>
 #include <climits>
 #include <vector>
+#include "ColumnGrid.h"
 
 namespace semantic_planning {
 

@@ -1,11 +1,11 @@
 #pragma once
 #include <semantic_octree/SemanticOcTree.h>
-#include <semantic_planning/ground/ColumnGrid.h>
 #include <semantic_planning/ground/Surface.h>
 
 #include <algorithm>
 #include <array>
 #include <vector>
+#include "ColumnGrid.h"
 
 namespace semantic_planning {
 

@@ -16,7 +16,7 @@ int voxels(double meters, double voxelSize) {
 
 double largestRadius(const VehicleOptions& vehicle) {
   double largest = 0;
-  for (const Disc& disc : coveringDiscs(vehicle.footprint))
+  for (const Disc& disc : vehicle.footprint.coveringDiscs())
     largest = std::max(largest, disc.radius);
   return largest;
 }

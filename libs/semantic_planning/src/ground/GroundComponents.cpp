@@ -77,6 +77,7 @@ GroundComponents::GroundComponents(const SurfaceGrid& surfaces, const GroundShap
   surfaces.forEach([&](Column tile, const SurfaceTile& t) {
     if (!t.surfaces.empty()) joinAcrossBorders(surfaces, tile, shape);
   });
+  for (std::size_t i = 0; i < m_parent.size(); ++i) m_parent[i] = rootOf(m_parent, i);
 }
 
 void GroundComponents::joinAcrossBorders(const SurfaceGrid& surfaces, Column tile,
@@ -96,7 +97,7 @@ void GroundComponents::joinAcrossBorders(const SurfaceGrid& surfaces, Column til
 }
 
 std::size_t GroundComponents::componentOf(Column c, const Surface& s) const {
-  return rootOf(m_parent, *m_firstOfTile.find(tileOf(c)) + s.component);
+  return m_parent[*m_firstOfTile.find(tileOf(c)) + s.component];
 }
 
 }  // namespace semantic_planning

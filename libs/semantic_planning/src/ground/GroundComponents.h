@@ -24,7 +24,7 @@ class GroundComponents {
   void joinAcrossBorders(const SurfaceGrid& surfaces, Column tile, const GroundShape& shape);
 
   ColumnGrid<std::size_t> m_firstOfTile;
-  mutable std::vector<std::size_t> m_parent;
+  std::vector<std::size_t> m_parent;  ///< the root of each component
 };
 
 }  // namespace semantic_planning

@@ -1,5 +1,4 @@
 #pragma once
-#include <semantic_planning/ground/ColumnGrid.h>
 #include <semantic_planning/ground/Surface.h>
 
 #include <algorithm>
@@ -7,6 +6,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "ColumnGrid.h"
 #include "TileWindow.h"
 
 namespace semantic_planning {

@@ -1,7 +1,7 @@
 #pragma once
-#include <semantic_planning/ground/ColumnGrid.h>
 
 #include <vector>
+#include "ColumnGrid.h"
 
 namespace semantic_planning {
 

@@ -29,16 +29,6 @@ std::vector<OrderId> readRank(const StrictYaml& yaml, const YAML::Node& node,
   return rank;
 }
 
-std::vector<Eigen::Vector2d> readFootprint(const StrictYaml& yaml, const YAML::Node& node) {
-  yaml.checkList(node, "footprint");
-  std::vector<Eigen::Vector2d> corners;
-  for (const YAML::Node& corner : node) {
-    if (!corner.IsSequence() || corner.size() != 2) yaml.fail(corner, "footprint: expected [x, y]");
-    corners.emplace_back(yaml.number(corner[0], "footprint"), yaml.number(corner[1], "footprint"));
-  }
-  return corners;
-}
-
 }  // namespace
 
 ClassOrder loadClassOrder(const std::filesystem::path& file, const ClassTable& classes) {
@@ -53,30 +43,6 @@ ClassOrder loadClassOrder(const std::filesystem::path& file, const ClassTable& c
   } catch (const std::invalid_argument& e) {
     yaml.fail(list, e.what());
   }
-}
-
-VehicleOptions loadVehicle(const std::filesystem::path& file) {
-  const StrictYaml yaml(file);
-  yaml.checkKeys(yaml.root(), {"footprint", "height", "turning_radius", "clearance", "step_height",
-                               "max_slope", "wheel_track"});
-  VehicleOptions vehicle;
-  const auto number = [&](const char* key, double& value) {
-    if (const YAML::Node node = yaml.root()[key]) value = yaml.number(node, key);
-  };
-  if (const YAML::Node node = yaml.root()["footprint"])
-    vehicle.footprint = readFootprint(yaml, node);
-  number("height", vehicle.height);
-  number("turning_radius", vehicle.turningRadius);
-  number("clearance", vehicle.clearance);
-  number("step_height", vehicle.stepHeight);
-  number("max_slope", vehicle.maxSlope);
-  number("wheel_track", vehicle.wheelTrack);
-  try {
-    vehicle.validate();
-  } catch (const std::invalid_argument& e) {
-    yaml.fail(yaml.root(), e.what());
-  }
-  return vehicle;
 }
 
 }  // namespace semantic_planning

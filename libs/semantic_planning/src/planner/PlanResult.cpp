@@ -2,32 +2,22 @@
 
 namespace semantic_planning {
 
-const char* nameOf(PlanStatus status) {
-  switch (status) {
-    case PlanStatus::Found:
-      return "found";
-    case PlanStatus::StartOffGround:
-      return "start off ground";
-    case PlanStatus::StartBlocked:
-      return "start blocked";
-    case PlanStatus::StartForbidden:
-      return "start forbidden";
-    case PlanStatus::GoalOffGround:
-      return "goal off ground";
-    case PlanStatus::GoalBlocked:
-      return "goal blocked";
-    case PlanStatus::GoalForbidden:
-      return "goal forbidden";
-    case PlanStatus::NotConnected:
-      return "not connected";
-    case PlanStatus::OnlyForbidden:
-      return "only forbidden";
-    case PlanStatus::Cancelled:
-      return "cancelled";
-    case PlanStatus::TimeLimit:
-      return "time limit";
-  }
-  return "";
+const strict_files::Choices<PlanStatus>& choicesOf(PlanStatus) {
+  static const strict_files::Choices<PlanStatus> choices = {
+      {"found", PlanStatus::Found},
+      {"start off ground", PlanStatus::StartOffGround},
+      {"start blocked", PlanStatus::StartBlocked},
+      {"start forbidden", PlanStatus::StartForbidden},
+      {"goal off ground", PlanStatus::GoalOffGround},
+      {"goal blocked", PlanStatus::GoalBlocked},
+      {"goal forbidden", PlanStatus::GoalForbidden},
+      {"not connected", PlanStatus::NotConnected},
+      {"only forbidden", PlanStatus::OnlyForbidden},
+      {"cancelled", PlanStatus::Cancelled},
+      {"time limit", PlanStatus::TimeLimit}};
+  return choices;
 }
+
+const char* nameOf(PlanStatus status) { return strict_files::nameIn(choicesOf(status), status); }
 
 }  // namespace semantic_planning

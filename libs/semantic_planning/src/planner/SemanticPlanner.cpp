@@ -1,18 +1,25 @@
+#include <colored_graph/CostModel.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
-
-#include <cmath>
-#include <stdexcept>
 
 #include "PlannerCore.h"
 
 namespace semantic_planning {
 
+void PlannerOptions::describe(strict_files::OptionList& list) {
+  strict_files::Range limits = strict_files::atLeast(0);
+  limits.withInfinity = true;
+  roadmap.describe(list);
+  list.add("cost", cost, "", "what is least, worst class first");
+  list.add("edges", edges, "", "which of the classes along an edge it counts for");
+  reading.describe(list);
+  list.add("shorten", shorten, "", "cut off detours over the graph's vertices");
+  list.add("time_limit", timeLimit, "s", limits, "of a search");
+  ground.describe(list);
+}
+
 void PlannerOptions::validate() const {
   vehicle.validate();
-  ground.validate();
-  roadmap.validate();
-  reading.validate();
-  if (!(timeLimit >= 0)) throw std::invalid_argument("PlannerOptions::timeLimit is not 0 or more");
+  strict_files::checkOptions(*this, "PlannerOptions");
 }
 
 SemanticPlanner::SemanticPlanner(semantic_octree::SemanticOcTree& map,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "Candidates.h"
+#include "ground/ColumnGrid.h"
 
 namespace semantic_planning {
 

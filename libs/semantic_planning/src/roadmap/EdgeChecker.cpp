@@ -32,15 +32,28 @@ std::vector<double> stations(const ReedsSheppCurve& curve, double voxelSize) {
   return at;
 }
 
+/** Lengths by class, meters, in the graph's units; they add up to the total. */
+EdgeProfile rounded(const std::vector<double>& lengths, double total) {
+  EdgeProfile profile;
+  colored_graph::Length left = colored_graph::lengthUp(total);
+  for (std::size_t id = 0; id < lengths.size(); ++id) {
+    if (lengths[id] <= 0) continue;
+    const auto length = std::min(left, colored_graph::lengthDown(lengths[id]));
+    profile.push_back({static_cast<colored_graph::GraphClass>(id), length});
+    left -= length;
+  }
+  const auto longest =
+      std::max_element(profile.begin(), profile.end(),
+                       [](const auto& l, const auto& r) { return l.length < r.length; });
+  if (longest != profile.end()) longest->length += left;
+  return profile;
+}
+
 }  // namespace
 
 EdgeChecker::EdgeChecker(const Ground& ground, const VehicleOptions& vehicle,
                          const colored_graph::ClassOrder& order, const ClassReading& reading)
-    : m_ground(ground),
-      m_order(order),
-      m_reading(reading),
-      m_reedsShepp(vehicle.turningRadius),
-      m_lengths(order.classes()) {
+    : m_ground(ground), m_order(order), m_reading(reading), m_reedsShepp(vehicle.turningRadius) {
   vehicle.validate();
   reading.validate();
   const double voxel = ground.voxelSize(), rise = std::tan(vehicle.maxSlope * M_PI / 180);
@@ -48,7 +61,7 @@ EdgeChecker::EdgeChecker(const Ground& ground, const VehicleOptions& vehicle,
     return ground.step() + static_cast<int>(std::ceil(rise * distance / voxel));
   };
   m_reach = vehicle.wheelTrack / 2;
-  for (const Disc& disc : coveringDiscs(vehicle.footprint)) {
+  for (const Disc& disc : vehicle.footprint.coveringDiscs()) {
     const double needed = (disc.radius + vehicle.clearance) / voxel;
     const double offset = std::hypot(disc.x, disc.y);
     m_discs.push_back(
@@ -127,30 +140,32 @@ ClassId EdgeChecker::classAt(const GroundPose& pose) const {
 }
 
 /** Spreads a length over the classes that a voxel may have. */
-void EdgeChecker::addDistribution(Column c, const Surface& s, double length) const {
+void EdgeChecker::addDistribution(Column c, const Surface& s, double length,
+                                  Lengths& lengths) const {
   const auto* node = s.filled ? nullptr
                               : m_ground.map().search({static_cast<std::uint16_t>(c.x),
                                                        static_cast<std::uint16_t>(c.y), s.z});
   if (!node) {
-    m_lengths[s.classId] += length;
+    lengths[s.classId] += length;
     return;
   }
   const std::vector<double> p = m_ground.map().distribution(*node);
   const double least = m_reading.leastProbability * (1 - p[0]);
   double sum = 0;
   for (std::size_t id = 1; id < p.size(); ++id) sum += p[id] > least ? p[id] : 0;
-  if (sum == 0) m_lengths[s.classId] += length;
+  if (sum == 0) lengths[s.classId] += length;
   for (std::size_t id = 1; id < p.size(); ++id)
-    if (p[id] > least) m_lengths[id] += length * p[id] / sum;
+    if (p[id] > least) lengths[id] += length * p[id] / sum;
 }
 
-bool EdgeChecker::addClasses(const Placement& placed, int z, double length) const {
+bool EdgeChecker::addClasses(const Placement& placed, int z, double length,
+                             Lengths& lengths) const {
   if (m_reading.kind == ClassReading::Kind::Expected)
     return forWheels(placed, z, [&](const Surface& s, Column c) {
-      addDistribution(c, s, length / static_cast<double>(m_wheels.size()));
+      addDistribution(c, s, length / static_cast<double>(m_wheels.size()), lengths);
     });
   const auto worst = worstUnderWheels(placed, z);
-  if (worst) m_lengths[*worst] += length;
+  if (worst) lengths[*worst] += length;
   return worst.has_value();
 }
 
@@ -158,34 +173,18 @@ std::optional<EdgeProfile> EdgeChecker::profile(const GroundPose& a, const Groun
   const ReedsSheppCurve curve = m_reedsShepp.connect(a.pose, b.pose);
   const int n = pieces(curve.length(), m_ground.voxelSize());
   const double piece = curve.length() / n;
-  std::fill(m_lengths.begin(), m_lengths.end(), 0.0);
+  Lengths lengths(m_order.classes());
   int z = a.z;
   const bool free = walkMiddles(curve, n, [&](const Placement& placed) {
     const Surface* s = near(m_ground.columnAt(placed.x, placed.y), z, m_ground.step());
     if (!s) return false;
     z = s->z;
-    return discsFit(placed, z) && addClasses(placed, z, piece);
+    return discsFit(placed, z) && addClasses(placed, z, piece, lengths);
   });
   if (!free) return std::nullopt;
   if (std::abs(z - b.z) > m_ground.step()) return std::nullopt;
-  EdgeProfile profile = rounded(curve.length());
+  EdgeProfile profile = rounded(lengths, curve.length());
   if (profile.empty()) profile.push_back({classAt(a), 0});  // from a pose to itself
-  return profile;
-}
-
-EdgeProfile EdgeChecker::rounded(double total) const {
-  EdgeProfile profile;
-  colored_graph::Length left = colored_graph::lengthUp(total);
-  for (std::size_t id = 0; id < m_lengths.size(); ++id) {
-    if (m_lengths[id] <= 0) continue;
-    const auto length = std::min(left, colored_graph::lengthDown(m_lengths[id]));
-    profile.push_back({static_cast<colored_graph::GraphClass>(id), length});
-    left -= length;
-  }
-  const auto longest =
-      std::max_element(profile.begin(), profile.end(),
-                       [](const auto& l, const auto& r) { return l.length < r.length; });
-  if (longest != profile.end()) longest->length += left;
   return profile;
 }
 

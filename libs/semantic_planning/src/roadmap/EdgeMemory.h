@@ -1,5 +1,4 @@
 #pragma once
-#include <semantic_planning/ground/ColumnGrid.h>
 #include <semantic_planning/roadmap/PosePair.h>
 
 #include <cstdint>
@@ -7,6 +6,7 @@
 #include <unordered_map>
 #include <utility>
 #include <vector>
+#include "ground/ColumnGrid.h"
 
 namespace semantic_planning {
 

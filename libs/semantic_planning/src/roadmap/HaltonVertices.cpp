@@ -1,9 +1,8 @@
-#include <ompl/base/samplers/deterministic/HaltonSequence.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "Candidates.h"
+#include "Halton.h"
 
 namespace semantic_planning {
 namespace {
@@ -12,7 +11,7 @@ namespace {
 constexpr std::size_t kMostDraws = 1000, kMostSkips = 10000;
 
 /** Another sequence of the same evenness for every seed (Cranley, Patterson 1976). */
-std::vector<double> rotated(std::vector<double> draw, unsigned seed) {
+std::array<double, 4> rotated(std::array<double, 4> draw, unsigned seed) {
   double shift = 0.618033988749895 * seed;
   for (double& x : draw) {
     x += shift;
@@ -73,10 +72,10 @@ void drawHalton(const HaltonSearch& search, const colored_graph::ClassOrder& ord
   const bool byClass = search.options.kind == GraphKind::HaltonByClass;
   std::optional<GroundRectangle> rectangle;
   if (overMap) rectangle.emplace(search.ground);
-  ompl::base::HaltonSequence sequence(4);
+  unsigned point = 0;
   std::size_t left = kMostDraws * search.options.vertices;
   for (std::size_t skips = kMostSkips * search.options.vertices; left > 0 && skips > 0;) {
-    const std::vector<double> draw = rotated(sequence.sample(), search.options.seed);
+    const auto draw = rotated(haltonPoint(++point), search.options.seed);
     const auto p = (overMap ? rectangle->at(draw[0], draw[1]) : search.region.at(draw[0], draw[1]));
     if (overMap && !search.region.contains(p.x, p.y)) {
       --skips;

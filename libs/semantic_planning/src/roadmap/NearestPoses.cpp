@@ -1,4 +1,4 @@
-#include <semantic_planning/roadmap/NearestPoses.h>
+#include "NearestPoses.h"
 #include <semantic_planning/roadmap/PosePair.h>
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "NearestPoses.h"
 #include "TileMarks.h"
 
 namespace semantic_planning {
@@ -28,10 +29,13 @@ bool isSame(const EdgeProfile& l, const EdgeProfile& r) {
 Roadmap::Roadmap(const EdgeChecker& checker, const RoadmapOptions& options)
     : m_checker(checker),
       m_graph(checker.order().classes()),
-      m_nearest(checker.reedsShepp(), options.neighbors, options.longestEdge),
+      m_nearest(std::make_unique<NearestPoses>(checker.reedsShepp(), options.neighbors,
+                                               options.longestEdge)),
       m_queryNeighbors(2 * static_cast<std::size_t>(options.neighbors)),
       m_mostEdges(options.maxEdges),
       m_radius(options.longestEdge) {}
+
+Roadmap::~Roadmap() = default;
 
 void Roadmap::keepPose(VertexId v, const GroundPose& pose) {
   if (v >= m_poses.size()) m_poses.resize(v + 1);
@@ -45,13 +49,13 @@ std::vector<Roadmap::VertexId> Roadmap::add(const std::vector<GroundPose>& poses
     ids.push_back(m_graph.addVertex(classes[i]));
     keepPose(ids.back(), poses[i]);
   }
-  reconcile(m_nearest.insert(ids, poses));
+  reconcile(m_nearest->insert(ids, poses));
   reconcileQueryVertices();
   return ids;
 }
 
 void Roadmap::remove(const std::vector<VertexId>& vertices) {
-  const auto pairs = m_nearest.remove(vertices);
+  const auto pairs = m_nearest->remove(vertices);
   for (const VertexId v : vertices) {
     m_counts.edgesRemoved += m_graph.incident(v).size();
     m_graph.removeVertex(v);
@@ -83,7 +87,7 @@ void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
   if (!m_graph.containsVertex(a) || !m_graph.containsVertex(b)) return;
   const EdgeId edge = edgeBetween(a, b);
   if (linked && edge == colored_graph::kNoEdge) {
-    const double length = m_nearest.distance(a, b).value_or(
+    const double length = m_nearest->distance(a, b).value_or(
         PosePair(pose(a), pose(b)).distance(m_checker.reedsShepp()));
     const EdgeId e = m_graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(length));
     if (e >= m_lengths.size()) m_lengths.resize(e + 1);
@@ -95,9 +99,9 @@ void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
   }
 }
 
-void Roadmap::reconcile(const std::vector<NearestPoses::Pair>& pairs) {
+void Roadmap::reconcile(const std::vector<std::pair<VertexId, VertexId>>& pairs) {
   for (const auto& [a, b] : pairs)
-    if (const bool linked = m_nearest.linked(a, b); !linked || m_mostEdges == 0)
+    if (const bool linked = m_nearest->linked(a, b); !linked || m_mostEdges == 0)
       setLinked(a, b, linked);
   if (m_mostEdges > 0) keepBestEdges();
 }
@@ -108,7 +112,7 @@ void Roadmap::reconcileQueryVertices() {
 
 void Roadmap::reconcileQueryVertex(VertexId query) {
   std::set<VertexId> wanted;
-  for (const auto& n : m_nearest.nearestTo(pose(query), m_queryNeighbors)) wanted.insert(n.id);
+  for (const auto& n : m_nearest->nearestTo(pose(query), m_queryNeighbors)) wanted.insert(n.id);
   for (const VertexId other : m_queryVertices)
     if (other != query &&
         PosePair(pose(query), pose(other)).distance(m_checker.reedsShepp()) <= m_radius)
@@ -123,8 +127,8 @@ void Roadmap::keepBestEdges() {
   using Worth = std::tuple<std::size_t, double, VertexId, VertexId>;
   std::vector<Worth> pairs;
   for (VertexId a = 0; a < m_graph.vertexIdEnd(); ++a) {
-    if (!m_nearest.contains(a)) continue;
-    const auto& nearest = m_nearest.of(a);
+    if (!m_nearest->contains(a)) continue;
+    const auto& nearest = m_nearest->of(a);
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const auto [low, high] = std::minmax(a, nearest[i].id);
       pairs.emplace_back(i, nearest[i].distance, low, high);

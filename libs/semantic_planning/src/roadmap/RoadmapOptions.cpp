@@ -1,34 +1,58 @@
 #include <semantic_planning/roadmap/RoadmapOptions.h>
 
-#include <strict_files/OptionChecks.h>
-
 namespace semantic_planning {
 
-const char* nameOf(GraphKind kind) {
-  static const char* const names[] = {"compressed",      "halton",     "halton_drivable",
-                                      "halton_by_class", "halton_map", "full"};
-  return names[static_cast<int>(kind)];
+using strict_files::above;
+using strict_files::atLeast;
+using strict_files::between;
+using strict_files::Choices;
+
+const Choices<GraphKind>& choicesOf(GraphKind) {
+  static const Choices<GraphKind> choices = {
+      {"compressed", GraphKind::Compressed},          {"halton", GraphKind::Halton},
+      {"halton_drivable", GraphKind::HaltonDrivable}, {"halton_by_class", GraphKind::HaltonByClass},
+      {"halton_map", GraphKind::HaltonMap},           {"full", GraphKind::Full}};
+  return choices;
 }
+
+const char* nameOf(GraphKind kind) { return strict_files::nameIn(choicesOf(kind), kind); }
 
 bool belongsToMap(GraphKind kind) {
   return kind == GraphKind::Compressed || kind == GraphKind::HaltonMap || kind == GraphKind::Full;
 }
 
-std::map<std::string, GraphKind> graphKinds() {
-  std::map<std::string, GraphKind> kinds;
-  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Halton, GraphKind::HaltonDrivable,
-                               GraphKind::HaltonByClass, GraphKind::HaltonMap, GraphKind::Full})
-    kinds[nameOf(kind)] = kind;
-  return kinds;
+void RoadmapOptions::describe(strict_files::OptionList& list) {
+  strict_files::Range buffers = atLeast(0);
+  buffers.withInfinity = true;
+  list.add("graph", kind, "", "where the graph's vertices come from");
+  list.add("vertices", vertices, "", "how many; of halton, draws; 0: all that the map offers");
+  list.add("max_edges", maxEdges, "", "most edges; 0: as many as the neighbors give");
+  list.add("neighbors", neighbors, "", between(1, 1000), "each vertex is connected with so many");
+  list.add("longest_edge", longestEdge, "m", above(0), "longest edge");
+  list.add("headings", headings, "", between(1, 360), "at each point (compressed, full)");
+  list.add("spacing", spacing, "m", above(0),
+           "between points in large leaves (compressed), or of the grid (full)");
+  list.add("buffer", buffer, "m", buffers, "vertices lie this near to the line from start to goal");
+  list.add("class_of_leaf", classOfLeaf, "",
+           "vertices have the class of their leaf, not of the ground (with edges = endpoint)");
+  list.add("seed", seed, "", "other vertices of the same kind");
 }
 
-void RoadmapOptions::validate() const {
-  const strict_files::OptionChecks check("RoadmapOptions");
-  check.within("neighbors", neighbors, 1, 1000);
-  check.positive("longestEdge", longestEdge);
-  check.within("headings", headings, 1, 360);
-  check.positive("spacing", spacing);
-  if (!(buffer >= 0)) check.notNegative("buffer", buffer);
+void RoadmapOptions::validate() const { strict_files::checkOptions(*this, "RoadmapOptions"); }
+
+const Choices<ClassReading::Kind>& choicesOf(ClassReading::Kind) {
+  using Kind = ClassReading::Kind;
+  static const Choices<Kind> choices = {
+      {"likeliest", Kind::Likeliest}, {"expected", Kind::Expected}, {"cautious", Kind::Cautious}};
+  return choices;
 }
+
+void ClassReading::describe(strict_files::OptionList& list) {
+  list.add("reading", kind, "", "what of a voxel's classes counts");
+  list.add("least_probability", leastProbability, "", between(0, 1),
+           "less probable classes do not count (expected, cautious)");
+}
+
+void ClassReading::validate() const { strict_files::checkOptions(*this, "ClassReading"); }
 
 }  // namespace semantic_planning

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "ground/ColumnGrid.h"
+
 namespace semantic_planning {
 
 /** The columns within a distance of a point, along the axes; meters. */

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <strict_files/OptionChecks.h>
+#include <strict_files/OptionList.h>
+
+#include <stdexcept>
 #include "ReedsSheppWords.h"
 
 namespace semantic_planning {
@@ -55,7 +57,9 @@ ReedsSheppCurve ReedsSheppCurve::reversed() const {
 }
 
 ReedsShepp::ReedsShepp(double turningRadius) : m_radius(turningRadius) {
-  strict_files::OptionChecks("ReedsShepp").positive("turningRadius", turningRadius);
+  if (!(turningRadius > 0) || !std::isfinite(turningRadius))
+    throw std::invalid_argument("ReedsShepp: turning radius is " +
+                                strict_files::textOf(turningRadius) + ", expected above 0");
 }
 
 TPose2D ReedsShepp::scaled(const TPose2D& pose) const {

@@ -2,7 +2,7 @@
 #include <colored_graph/ClassOrder.h>
 #include <semantic_octree/Keys.h>
 #include <semantic_octree/SemanticOcTree.h>
-#include <semantic_planning/ground/ColumnGrid.h>
+#include <semantic_planning/ground/Column.h>
 #include <semantic_planning/ground/GroundOptions.h>
 #include <semantic_planning/ground/Surface.h>
 #include <semantic_planning/vehicle/VehicleOptions.h>
@@ -70,7 +70,8 @@ class Ground {
     const double needed = (radius + m_clearance) / m_voxelSize;
     return surface.drivable && surface.clearance2 >= needed * needed;
   }
-  /** Whether the wheels can get from one place to the other, step by step. */
+  /** Whether the wheels can get from one place to the other, step by step. The first call after
+   * an update finds out for the whole ground: not for several threads at once. */
   bool connected(const GroundPoint& a, const GroundPoint& b) const;
 
   /** The tiles that there are. */

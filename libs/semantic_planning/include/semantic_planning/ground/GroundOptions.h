@@ -1,4 +1,5 @@
 #pragma once
+#include <strict_files/OptionList.h>
 
 namespace semantic_planning {
 
@@ -15,7 +16,8 @@ struct GroundOptions {
   /** Whether ground of a forbidden class keeps the whole footprint off, or the wheels only. */
   bool keepOff = false;
 
-  /** \throw std::invalid_argument naming the field and its value. */
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
 

@@ -1,6 +1,5 @@
 #pragma once
 #include <colored_graph/ClassOrder.h>
-#include <semantic_planning/vehicle/VehicleOptions.h>
 #include <semantic_types/ClassTable.h>
 
 #include <filesystem>
@@ -22,18 +21,5 @@ constexpr const char* kUnknownGround = "unknown";
  * repeated key, a class that the table does not have or that is named twice, more than 16 ranks. */
 colored_graph::ClassOrder loadClassOrder(const std::filesystem::path& file,
                                          const semantic_types::ClassTable& classes);
-
-/** Reads a vehicle; keys that are absent have VehicleOptions' values:
- *
- *     footprint: [[-0.3, -0.3], [0.5, -0.3], [0.5, 0.3], [-0.3, 0.3]]  # m; x ahead, y left
- *     height: 1.0            # m
- *     turning_radius: 1.0    # m
- *     clearance: 0.1         # m
- *     step_height: 0.2       # m
- *     max_slope: 25          # degrees
- *     wheel_track: 0.5       # m
- *
- * \throw std::runtime_error naming file, line and value. */
-VehicleOptions loadVehicle(const std::filesystem::path& file);
 
 }  // namespace semantic_planning

@@ -2,6 +2,7 @@
 #include <colored_graph/PathResult.h>
 #include <mrpt/math/TPose2D.h>
 #include <semantic_planning/vehicle/PathPoint.h>
+#include <strict_files/OptionList.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +26,8 @@ enum class PlanStatus {
   Cancelled,
   TimeLimit
 };
-/** In words for files: "found", "start off ground", ... */
+/** In words for files and people: "found", "start off ground", ... */
+const strict_files::Choices<PlanStatus>& choicesOf(PlanStatus);
 const char* nameOf(PlanStatus status);
 
 /** Milliseconds of the stages that planning or an update went through, in order. */

@@ -3,7 +3,6 @@
 #include <semantic_octree/SemanticOcTree.h>
 #include <semantic_planning/ground/Ground.h>
 #include <semantic_planning/planner/PlanResult.h>
-#include <semantic_planning/roadmap/ClassReading.h>
 #include <semantic_planning/roadmap/Roadmap.h>
 #include <semantic_planning/roadmap/RoadmapOptions.h>
 
@@ -29,7 +28,9 @@ struct PlannerOptions {
   /** Asked often during a search, which stops when it answers true. */
   std::function<bool()> cancelled;
 
-  /** \throw std::invalid_argument naming the field and its value. */
+  /** Of all but the vehicle, which has a file of its own (loadVehicle). */
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
 

@@ -2,7 +2,7 @@
 #include <colored_graph/ClassOrder.h>
 #include <colored_graph/ColoredGraph.h>
 #include <semantic_planning/ground/Ground.h>
-#include <semantic_planning/roadmap/ClassReading.h>
+#include <semantic_planning/roadmap/RoadmapOptions.h>
 #include <semantic_planning/vehicle/PathPoint.h>
 #include <semantic_planning/vehicle/ReedsShepp.h>
 
@@ -27,7 +27,8 @@ enum class Fit {
 };
 
 /** Where a vehicle fits, and over which classes it goes. The footprint is checked as discs, which
- * keep their distance from whole voxels: this errs to the safe side by about a voxel. */
+ * keep their distance from whole voxels: this errs to the safe side by about a voxel. Several
+ * threads may ask at a time. */
 class EdgeChecker {
  public:
   /** \param ground must outlive the checker. \throw std::invalid_argument bad options. */
@@ -64,17 +65,17 @@ class EdgeChecker {
     int tolerance;  ///< voxels in height against the origin
   };
 
+  using Lengths = std::vector<double>;  ///< meters by class
+
   const Surface* near(Column c, int z, int tolerance) const;
   bool discsFit(const Placement& placed, int z) const;
   /** f(surface, its column) for the ground under each wheel track; false if there is none. */
   template <class F>
   bool forWheels(const Placement& placed, int z, F f) const;
-  bool addClasses(const Placement& placed, int z, double length) const;
-  void addDistribution(Column c, const Surface& s, double length) const;
+  bool addClasses(const Placement& placed, int z, double length, Lengths& lengths) const;
+  void addDistribution(Column c, const Surface& s, double length, Lengths& lengths) const;
   ClassId read(Column c, const Surface& s) const;
   std::optional<ClassId> worstUnderWheels(const Placement& placed, int z) const;
-  /** \param lengths per class, meters */
-  colored_graph::EdgeProfile rounded(double total) const;
 
   const Ground& m_ground;
   const colored_graph::ClassOrder m_order;
@@ -84,7 +85,6 @@ class EdgeChecker {
   std::vector<double> m_wheels;  ///< y in the vehicle's frame
   int m_wheelTolerance;
   double m_reach;
-  mutable std::vector<double> m_lengths;  ///< per class, of the edge that is being looked at
 };
 
 }  // namespace semantic_planning

@@ -1,15 +1,18 @@
 #pragma once
 #include <colored_graph/ColoredGraph.h>
 #include <semantic_planning/roadmap/EdgeChecker.h>
-#include <semantic_planning/roadmap/NearestPoses.h>
 #include <semantic_planning/roadmap/PosePair.h>
 #include <semantic_planning/roadmap/RoadmapOptions.h>
 
+#include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace semantic_planning {
+
+class NearestPoses;
 
 /** Poses on the ground as vertices of a colored graph, and Reeds-Shepp curves as its edges.
  *
@@ -27,6 +30,7 @@ class Roadmap {
 
   /** \param checker must outlive the roadmap. */
   Roadmap(const EdgeChecker& checker, const RoadmapOptions& options);
+  ~Roadmap();
 
   /** Inserts vertices and connects them. \param classes of the vertices, one for each pose.
    * \return their ids */
@@ -64,7 +68,7 @@ class Roadmap {
   EdgeId edgeBetween(VertexId a, VertexId b) const;
   void setLinked(VertexId a, VertexId b, bool linked);
   void keepBestEdges();
-  void reconcile(const std::vector<NearestPoses::Pair>& pairs);
+  void reconcile(const std::vector<std::pair<VertexId, VertexId>>& pairs);
   void reconcileQueryVertices();
   void reconcileQueryVertex(VertexId query);
   void reevaluate(EdgeId e);
@@ -72,7 +76,7 @@ class Roadmap {
 
   const EdgeChecker& m_checker;
   colored_graph::ColoredGraph m_graph;
-  NearestPoses m_nearest;
+  std::unique_ptr<NearestPoses> m_nearest;
   std::size_t m_queryNeighbors, m_mostEdges;
   double m_radius;
   std::vector<GroundPose> m_poses;  ///< by vertex id

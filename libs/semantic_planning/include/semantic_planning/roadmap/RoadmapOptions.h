@@ -1,8 +1,7 @@
 #pragma once
+#include <strict_files/OptionList.h>
+
 #include <cstddef>
-#include <limits>
-#include <map>
-#include <string>
 
 namespace semantic_planning {
 
@@ -18,12 +17,11 @@ enum class GraphKind {
   Full             ///< the ground of the finest map, on a grid
 };
 
-/** In words for files and command lines: "compressed", "halton_drivable", ... */
+/** "compressed", "halton", "halton_drivable", "halton_by_class", "halton_map", "full". */
+const strict_files::Choices<GraphKind>& choicesOf(GraphKind);
 const char* nameOf(GraphKind kind);
 /** Whether a kind's poses belong to the map: they come again in plans for other tasks. */
 bool belongsToMap(GraphKind kind);
-/** All kinds by their names. */
-std::map<std::string, GraphKind> graphKinds();
 
 /** How a roadmap is made. */
 struct RoadmapOptions {
@@ -50,8 +48,27 @@ struct RoadmapOptions {
   /** Another value gives other vertices of the same kind. */
   unsigned seed = 0;
 
-  /** \throw std::invalid_argument naming the field and its value. */
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
+
+/** What of a ground voxel's class distribution counts. */
+struct ClassReading {
+  enum class Kind {
+    Likeliest,  ///< the likeliest class (of filled ground: see GroundOptions)
+    Expected,   ///< each class, with its probability: lengths per class are expected lengths
+    Cautious    ///< the worst class whose probability exceeds `leastProbability`
+  };
+  Kind kind = Kind::Likeliest;
+  /** Cautious, Expected: less probable classes do not count. */
+  double leastProbability = 0.1;
+
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
+  void validate() const;
+};
+/** "likeliest", "expected", "cautious". */
+const strict_files::Choices<ClassReading::Kind>& choicesOf(ClassReading::Kind);
 
 }  // namespace semantic_planning

@@ -1,11 +1,12 @@
 #pragma once
 #include <colored_graph/ColoredGraph.h>
-#include <semantic_planning/ground/ColumnGrid.h>
 #include <semantic_planning/roadmap/EdgeChecker.h>
 
 #include <optional>
 #include <utility>
 #include <vector>
+
+#include "ground/ColumnGrid.h"
 
 namespace semantic_planning {
 

@@ -1,0 +1,59 @@
+#include <gtest/gtest.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
+
+#include <set>
+
+using namespace semantic_planning;
+
+namespace {
+
+template <class E>
+void expectNames(std::size_t count) {
+  std::set<std::string> names;
+  for (const auto& [name, value] : choicesOf(E())) {
+    EXPECT_STREQ(strict_files::nameIn(choicesOf(E()), value), name);
+    names.insert(name);
+  }
+  EXPECT_EQ(names.size(), count);
+}
+
+}  // namespace
+
+TEST(PlannerOptions, haveNamesOfTheirOwn) {
+  PlannerOptions options;
+  strict_files::OptionList list;
+  options.describe(list);
+  const std::vector<std::string> names = list.names();
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+}
+
+TEST(PlannerOptions, areSetByTheirNames) {
+  PlannerOptions options;
+  strict_files::OptionList list;
+  options.describe(list);
+  const auto set = [&](const char* name, const char* text) { list.find(name)->set(text); };
+  set("graph", "halton_map");
+  set("max_edges", "700");
+  set("longest-edge", "7.5");
+  set("edges", "sweep");
+  set("cost", "count");
+  set("reading", "cautious");
+  set("fillGap", "0.3");
+  set("keep_off", "true");
+  set("time_limit", "inf");
+  EXPECT_EQ(options.roadmap.kind, GraphKind::HaltonMap);
+  EXPECT_EQ(options.roadmap.maxEdges, 700u);
+  EXPECT_EQ(options.roadmap.longestEdge, 7.5);
+  EXPECT_EQ(options.edges, colored_graph::EdgeModel::Sweep);
+  EXPECT_EQ(options.cost, colored_graph::CostKind::Count);
+  EXPECT_EQ(options.reading.kind, ClassReading::Kind::Cautious);
+  EXPECT_EQ(options.ground.fillGap, 0.3);
+  EXPECT_TRUE(options.ground.keepOff);
+  EXPECT_NO_THROW(options.validate());
+}
+
+TEST(PlannerOptions, choicesHaveNamesOfTheirOwn) {
+  expectNames<GraphKind>(6);
+  expectNames<ClassReading::Kind>(3);
+  expectNames<PlanStatus>(11);
+}
