@@ -21,7 +21,8 @@ int main(int argc, char** argv) try {
   const mrpt::math::TPose2D start = pose(argv + 3), goal = pose(argv + 6);
 
   SemanticOcTree map = loadTree(argv[1]);
-  const CellState below = map.castRay(octomap::point3d(start.x, start.y, 2), {0, 0, -1})->state;
+  const CellState below =
+      map.castRay(octomap::point3d(start.x, start.y, 2), {0, 0, -1}).value().state;
   std::cout << "starts on " << map.classes().name(below.likeliestClass) << "\n";
 
   const auto order = loadClassOrder(argv[2], map.classes());  // road before grass before ...

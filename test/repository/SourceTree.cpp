@@ -32,6 +32,12 @@ std::vector<SourceLine> linesOf(const fs::path& file) {
   return lines;
 }
 
+std::string textOf(const fs::path& file) {
+  std::string text;
+  for (const SourceLine& line : linesOf(file)) text += line.text + "\n";
+  return text;
+}
+
 std::vector<SourceLine> linesOfSources(const fs::path& root) {
   std::vector<SourceLine> all;
   for (const fs::path& file : textFiles(root)) {

@@ -21,6 +21,9 @@ std::vector<std::filesystem::path> textFiles(const std::filesystem::path& root);
 /** The lines of a text file, without their ends. */
 std::vector<SourceLine> linesOf(const std::filesystem::path& file);
 
+/** A text file as one string; each line ends. */
+std::string textOf(const std::filesystem::path& file);
+
 /** The lines of all C++ files below a folder. */
 std::vector<SourceLine> linesOfSources(const std::filesystem::path& root);
 

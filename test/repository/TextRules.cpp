@@ -42,6 +42,62 @@ std::vector<std::string> filesLongerThan(std::size_t maxLines, const fs::path& r
   return findings;
 }
 
+namespace {
+
+/** Without blanks at the ends of lines, so that an excerpt may be indented otherwise. */
+std::string withoutIndents(const std::string& text) {
+  return std::regex_replace(text, std::regex(R"(\s*\n\s*)"), "\n");
+}
+
+/** A block of C++ in a document, below a line that links to a source. */
+struct Excerpt {
+  std::size_t line;
+  std::string source, text;
+};
+
+std::vector<Excerpt> excerptsOf(const fs::path& markdownFile) {
+  static const std::regex link(R"(\]\(([^)]*\.cpp)\))");
+  std::vector<Excerpt> excerpts;
+  std::string source;
+  bool inside = false;
+  for (const SourceLine& line : linesOf(markdownFile)) {
+    std::smatch match;
+    if (line.text.rfind("```", 0) == 0) {
+      inside = line.text == "```cpp" && !source.empty();
+      if (inside) excerpts.push_back({line.number, source, "\n"});
+      source.clear();
+    } else if (inside) {
+      excerpts.back().text += line.text + "\n";
+    } else if (!line.text.empty()) {
+      source = std::regex_search(line.text, match, link) ? match[1].str() : "";
+    }
+  }
+  return excerpts;
+}
+
+}  // namespace
+
+std::vector<std::string> excerptsThatDiffer(const fs::path& markdownFile) {
+  std::vector<std::string> findings;
+  const fs::path folder = markdownFile.parent_path();
+  for (const Excerpt& excerpt : excerptsOf(markdownFile)) {
+    const std::string source = withoutIndents("\n" + textOf(folder / excerpt.source));
+    if (source.find(withoutIndents(excerpt.text)) == std::string::npos)
+      findings.push_back(markdownFile.filename().string() + ":" + std::to_string(excerpt.line) +
+                         ": " + excerpt.source + " does not have these lines");
+  }
+  return findings;
+}
+
+std::string firstComment(const fs::path& cmakeFile) {
+  std::string comment;
+  for (const SourceLine& line : linesOf(cmakeFile)) {
+    if (line.text.rfind("# ", 0) != 0) break;
+    comment += (comment.empty() ? "" : " ") + line.text.substr(2);
+  }
+  return comment;
+}
+
 std::vector<std::string> brokenLinks(const fs::path& markdownFile) {
   static const std::regex link(R"(\]\(([^):#]+)[^):]*\))");
   std::vector<std::string> findings;

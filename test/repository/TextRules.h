@@ -14,3 +14,10 @@ std::vector<std::string> filesLongerThan(std::size_t maxLines, const std::filesy
 
 /** Links of a Markdown file to files that do not exist. */
 std::vector<std::string> brokenLinks(const std::filesystem::path& markdownFile);
+
+/** Blocks of C++ in a Markdown file, below a line that links to a source, which that source does
+ * not have: line by line, however they are indented. */
+std::vector<std::string> excerptsThatDiffer(const std::filesystem::path& markdownFile);
+
+/** The comment that a CMake file begins with, as one line. */
+std::string firstComment(const std::filesystem::path& cmakeFile);

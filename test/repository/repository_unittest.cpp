@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
+#include <regex>
 #include <set>
+#include <sstream>
 
 #include "IncludeRules.h"
 #include "SourceTree.h"
@@ -33,10 +36,28 @@ class Repository : public testing::Test {
   /** What this project consists of, without what a build or a user puts beside it. */
   std::vector<fs::path> projectFolders() const {
     std::vector<fs::path> folders;
-    for (const auto* name :
-         {".ci", "apps", "cmake", "config", "doc", "libs", "rawlog-samples", "scripts", "test",
-          "README.md", "CHANGELOG.md", "CMakeLists.txt", "CMakePresets.json", "Doxyfile",
-          "debian-packages.txt", "package.xml", "run-demo", "run-tests"})
+    for (const auto* name : {".ci",
+                             ".github",
+                             ".pre-commit-config.yaml",
+                             "apps",
+                             "cmake",
+                             "config",
+                             "doc",
+                             "libs",
+                             "rawlog-samples",
+                             "scripts",
+                             "test",
+                             "README.md",
+                             "CHANGELOG.md",
+                             "CITATION.cff",
+                             "CONTRIBUTING.md",
+                             "CMakeLists.txt",
+                             "CMakePresets.json",
+                             "Doxyfile",
+                             "debian-packages.txt",
+                             "package.xml",
+                             "run-demo",
+                             "run-tests"})
       if (fs::exists(root / name)) folders.push_back(root / name);
     return folders;
   }
@@ -84,6 +105,20 @@ TEST_F(Repository, aLibraryWithoutARowIsFound) {
   write("fresh/src/File.cpp", "#include <vector>\n");
   EXPECT_EQ(forbiddenIncludes(scratch, {}),
             Findings{"fresh/src/File.cpp:1: fresh has no row in the table of includes"});
+}
+
+TEST_F(Repository, theTableOfIncludesIsThatOfTheDocument) {
+  static const std::regex row(R"(^\| `([a-z_/]+)` \| ([\w., /-]+) \|$)"), name(R"([\w./-]+)");
+  const std::string document = textOf(root / "doc/development.md");
+  std::istringstream lines(document.substr(document.find("| library or room |")));
+  IncludeTable documented;
+  for (std::string line; std::getline(lines, line) && !line.empty();) {
+    std::smatch match;
+    if (!std::regex_match(line, match, row)) continue;
+    const std::string names = match[2] == "nothing" ? "" : match[2].str();
+    documented[match[1]] = {std::sregex_token_iterator(names.begin(), names.end(), name), {}};
+  }
+  EXPECT_EQ(documented, includeTable());
 }
 
 TEST_F(Repository, sourcesOfLibrariesAndApplicationsStayShort) {
@@ -139,15 +174,47 @@ TEST_F(Repository, aLinkThatLeadsNowhereIsFound) {
   EXPECT_EQ(brokenLinks(scratch / "file.md"), Findings{"file.md:2: no file gone.png"});
 }
 
-TEST_F(Repository, theTutorialShowsTheConsumersSource) {
-  const auto textOf = [](const fs::path& file) {
-    std::string text;
-    for (const SourceLine& line : linesOf(file)) text += line.text + "\n";
-    return text;
-  };
-  const std::string source = textOf(root / "test/repository/consumer/main.cpp");
-  const std::string heart = source.substr(source.find("int main()"));
-  EXPECT_NE(textOf(root / "doc/handbook/embedding.md").find(heart), std::string::npos) << heart;
+TEST_F(Repository, documentsShowTheExamplesAsTheyAre) {
+  for (const fs::path& folder : {root / "README.md", root / "doc"})
+    for (const fs::path& file : textFiles(folder))
+      EXPECT_EQ(excerptsThatDiffer(file), Findings()) << file;
+}
+
+TEST_F(Repository, anExcerptThatItsSourceDoesNotHaveIsFound) {
+  write("main.cpp", "int main() {\n  load();\n  save();\n}\n");
+  write("file.md",
+        "From [it](main.cpp):\n\n```cpp\nload();\nsave();\n```\nOf nothing:\n```cpp\nx();\n```\n"
+        "Again [it](main.cpp):\n```cpp\nload();\n\nclose();\n```\n");
+  EXPECT_EQ(excerptsThatDiffer(scratch / "file.md"),
+            Findings{"file.md:12: main.cpp does not have these lines"});
+}
+
+TEST_F(Repository, theExamplesAreShort) {
+  EXPECT_EQ(filesLongerThan(39, root / "doc/examples"), Findings());
+}
+
+TEST_F(Repository, eachLibraryIsDescribedInOneSentenceAndDocumented) {
+  static const std::regex row(R"(^\| \[`(\w+)`\]\(libs/\w+\) \| (.*) \|$)");
+  std::map<std::string, std::string> sentences;
+  for (const SourceLine& line : linesOf(root / "README.md"))
+    if (std::smatch match; std::regex_match(line.text, match, row)) sentences[match[1]] = match[2];
+  for (const auto& library : fs::directory_iterator(root / "libs")) {
+    if (!library.is_directory()) continue;
+    const std::string sentence = sentences[library.path().filename().string()];
+    EXPECT_GT(sentence.size(), 10u) << library.path() << " is not in the README's table";
+    EXPECT_EQ(firstComment(library.path() / "CMakeLists.txt").rfind(sentence, 0), 0u)
+        << library.path() << ": " << sentence;
+    const std::string includes = "libs/" + library.path().filename().string() + "/include";
+    EXPECT_NE(textOf(root / "Doxyfile").find(includes), std::string::npos) << includes;
+  }
+}
+
+TEST_F(Repository, noTwoPagesHaveOneName) {
+  std::map<fs::path, fs::path> pages;
+  for (const fs::path& file : textFiles(root / "doc")) {
+    if (file.filename() == "README.md" || file.filename() == "CMakeLists.txt") continue;
+    EXPECT_TRUE(pages.emplace(file.filename(), file).second) << file;
+  }
 }
 
 TEST_F(Repository, everyApplicationHasAReadme) {
@@ -157,13 +224,13 @@ TEST_F(Repository, everyApplicationHasAReadme) {
   }
 }
 
-TEST_F(Repository, packageXmlHasTheVersionOfTheProject) {
+TEST_F(Repository, filesThatRepeatTheVersionHaveThatOfTheProject) {
   std::ifstream file(root / "VERSION");
   std::string version;
   std::getline(file, version);
-  std::string xml;
-  for (const SourceLine& line : linesOf(root / "package.xml")) xml += line.text;
-  EXPECT_NE(xml.find("<version>" + version + "</version>"), std::string::npos) << version;
+  EXPECT_NE(textOf(root / "package.xml").find("<version>" + version + "</version>\n"),
+            std::string::npos);
+  EXPECT_NE(textOf(root / "CITATION.cff").find("\nversion: " + version + "\n"), std::string::npos);
 }
 
 TEST_F(Repository, everyPackageIsListedOnce) {

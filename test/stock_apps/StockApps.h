@@ -10,7 +10,7 @@
 #include "TemporaryFolder.h"
 
 /** MRPT's applications as Debian ships them, in a folder of their own, where `config` and
- * `rawlog-samples` are those of the sources: commands are written as in doc/stock-applications.md.
+ * `rawlog-samples` are those of the sources: commands are written as in doc/handbook/stock-applications.md.
  */
 class StockApps : public testing::Test {
  protected:

@@ -5,7 +5,7 @@
 
 namespace {
 
-/** The shell commands of a page, as one script: what stands between "```sh" and "```". Commands
+/** The shell commands of a page, as one script: what stands between "```console" and "```". Commands
  * that other tests of this folder run, for they take long or need a display, are left out. */
 std::string commandsOf(const std::filesystem::path& page) {
   static const std::regex elsewhere("^(RawLogViewer|SceneViewer3D|LD_PRELOAD=.* rbpf-slam) ");
@@ -14,7 +14,7 @@ std::string commandsOf(const std::filesystem::path& page) {
   bool inside = false;
   for (std::string line; std::getline(in, line);) {
     if (line.rfind("```", 0) == 0)
-      inside = line == "```sh";
+      inside = line == "```console";
     else if (inside && !std::regex_search(line, elsewhere))
       script += line + "\n";
   }
@@ -29,7 +29,7 @@ TEST_F(StockApps, theCommandsOfTheirPageWorkOneAfterTheOther) {
   std::filesystem::create_directory(folder / "build");
   std::filesystem::create_directory_symlink(MSO_LIB_DIR, folder / "build/lib");
   std::filesystem::create_directory_symlink(MSO_BIN_DIR, folder / "build/bin");
-  folder.write("page.sh", commandsOf(MSO_SOURCE_DIR "/doc/stock-applications.md"));
+  folder.write("page.sh", commandsOf(MSO_SOURCE_DIR "/doc/handbook/stock-applications.md"));
   const CommandRun read = run("sh page.sh");
   EXPECT_EQ(read.status, 0) << read.output;
   for (const char* made :

@@ -53,7 +53,7 @@ struct NetworkOptions {
   void validate() const;
 };
 
-/** Reads options from a YAML file, see doc/labels.md and config/networks/.
+/** Reads options from a YAML file, see doc/handbook/labels.md and config/networks/.
  * \throw std::runtime_error naming file, line and what was expected; a class that the table lacks
  * is named, too. */
 NetworkOptions loadNetworkOptions(const std::filesystem::path& file,
