@@ -20,6 +20,9 @@ struct SensorConfig {
   synthetic_world::LidarOptions lidar;
   double period = 0.5;     ///< s
   std::uint64_t seed = 1;  ///< of the odometry's noise, too
+
+  /** What is not the camera's or the LiDAR's. */
+  void describe(strict_files::OptionList& list);
 };
 
 /** Everything that the .ini file says. */
@@ -32,9 +35,11 @@ struct DriveConfig {
   semantic_planning::PlannerOptions planner;
   semantic_driving::DriveOptions drive;
   semantic_driving::GuideOptions guide;
+  semantic_driving::ObstacleOptions obstacles;
   bool compressedObstacles = false;  ///< the compressed tree's leaves are obstacles
   double controlPeriod = 0.1;        ///< s
   double timeLimit = 600;            ///< s of simulated time
+  double turnAcceleration = 4;       ///< of the simulated robot's steering, rad/s^2
   std::filesystem::path reactive;
 };
 

@@ -9,7 +9,6 @@
 namespace semantic_map_drive {
 
 using mrpt::math::TPose2D;
-using semantic_driving::DriveController;
 using synthetic_world::classTable;
 
 namespace {
@@ -57,9 +56,8 @@ std::string toCsv(const DriveRecord& record) {
     out << r.time << ',' << r.pose.x << ',' << r.pose.y << ',' << r.z << ','
         << r.pose.phi * 180 / M_PI << ',' << r.speed << ',' << r.turn << ','
         << nameOfClass(r.classId) << ',' << r.clearance << ',' << r.offset << ','
-        << nameOf(r.target) << ','
-        << (r.driver == DriveController::Driver::Reactive ? "reactive" : "path") << ','
-        << r.believed.x << ',' << r.believed.y << ',' << r.believed.phi * 180 / M_PI << '\n';
+        << nameOf(r.target) << ',' << nameOf(r.driver) << ',' << r.believed.x << ',' << r.believed.y
+        << ',' << r.believed.phi * 180 / M_PI << '\n';
   }
   return out.str();
 }

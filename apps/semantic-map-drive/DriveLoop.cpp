@@ -65,18 +65,15 @@ synthetic_world::Footprint trueFootprint(const VehicleOptions& vehicle) {
   return footprint;
 }
 
-const char* nameOf(DriveEnd end) {
-  switch (end) {
-    case DriveEnd::Arrived:
-      return "arrived";
-    case DriveEnd::Astray:
-      return "astray";
-    case DriveEnd::Unreachable:
-      return "unreachable";
-    default:
-      return "time limit";
-  }
+const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd) {
+  static const strict_files::Choices<DriveEnd> choices = {{"arrived", DriveEnd::Arrived},
+                                                          {"astray", DriveEnd::Astray},
+                                                          {"unreachable", DriveEnd::Unreachable},
+                                                          {"time_limit", DriveEnd::TimeLimit}};
+  return choices;
 }
+
+const char* nameOf(DriveEnd end) { return strict_files::nameIn(choicesOf(end), end); }
 
 DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
                      const colored_graph::ClassOrder& order, const TPose2D& start,
@@ -92,7 +89,7 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_mapper(mapperOf(config, order, std::move(map))),
       m_guide(std::make_unique<DriveGuide>(config.guide, m_mapper->planner(), goal)),
       m_controller(config.drive, reactiveOf(config, navlogs)),
-      m_robot(start, config.drive),
+      m_robot(start, config.drive, config.turnAcceleration),
       m_pose(start, config.pose, config.sensors.seed),
       m_state(m_robot.state()),
       m_footprint(trueFootprint(config.planner.vehicle)) {
@@ -172,7 +169,8 @@ void DriveLoop::guide() {
 
 void DriveLoop::drive() {
   Stopwatch watch;
-  const auto obstacles = m_mapper->obstacles(state().pose, groundZ(), m_guide->obstacles());
+  const auto obstacles =
+      m_mapper->obstacles(state().pose, groundZ(), m_guide->obstacles(m_config.obstacles));
   note("obstacles", watch.milliseconds());
   const DriveCommand command = m_controller.step(state(), obstacles, m_time - m_sensedAt, m_time);
   note("react", watch.milliseconds());
@@ -202,7 +200,7 @@ void DriveLoop::addRow() {
   row.clearance = m_world.clearance(m_footprint, row.pose.x, row.pose.y, row.pose.phi);
   row.target = m_guide->target();
   row.driver = m_controller.driver();
-  const DriveTracker& tracker = m_controller.tracker();
+  const PathTracker& tracker = m_controller.tracker();
   if (!tracker.path().empty()) row.offset = tracker.offset();
   const double way = std::abs(row.speed) * m_config.controlPeriod;
   m_record.drivenPerClass[row.classId] += way;
@@ -230,7 +228,7 @@ bool DriveLoop::isOver() {
     endAtGoal();
     return true;
   }
-  if (m_guide->gaveUp() && std::abs(state().speed) < 0.05) {
+  if (m_guide->gaveUp() && std::abs(state().speed) < m_config.guide.atRest) {
     m_record.end = DriveEnd::Unreachable;
     m_record.reason = m_guide->reason();
     return true;

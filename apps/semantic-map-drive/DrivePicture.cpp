@@ -109,7 +109,7 @@ void DrivePicture::addTrack(cv::Mat& picture, const DriveRecord& record,
 }
 
 void DrivePicture::drawRoute(cv::Mat& picture, const DriveLoop& loop) const {
-  const DriveTracker& tracker = loop.controller().tracker();
+  const PathTracker& tracker = loop.controller().tracker();
   std::vector<cv::Point> line;
   for (const PathPoint& p : tracker.path().points())
     if (p.arcLength >= tracker.progress()) line.push_back(pixel(p.x, p.y));

@@ -20,13 +20,15 @@ struct DriveRow {
   semantic_types::ClassId classId = 0;  ///< true ground below the robot
   double clearance = 0;                 ///< m to the nearest true thing, at most 5
   double offset = 0;                    ///< m from the path
-  semantic_driving::DriveGuide::Target target = semantic_driving::DriveGuide::Target::None;
+  semantic_driving::Target target = semantic_driving::Target::None;
   semantic_driving::DriveController::Driver driver =
       semantic_driving::DriveController::Driver::Tracker;
 };
 
 /** Astray: it believes to have arrived, but has not. */
 enum class DriveEnd { Arrived, Astray, Unreachable, TimeLimit };
+const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd);
+/** "arrived", "astray", "unreachable" or "time_limit". */
 const char* nameOf(DriveEnd end);
 
 /** A whole drive. */

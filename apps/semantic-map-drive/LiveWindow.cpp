@@ -71,7 +71,7 @@ CSetOfTriangles::Ptr trackOf(const DriveLoop& loop) {
 
 /** What is left of it. */
 CSetOfTriangles::Ptr pathOf(const DriveLoop& loop) {
-  const semantic_driving::DriveTracker& tracker = loop.controller().tracker();
+  const semantic_driving::PathTracker& tracker = loop.controller().tracker();
   std::vector<TPoint3Df> points;
   for (const semantic_planning::PathPoint& p : tracker.path().points())
     if (p.arcLength >= tracker.progress()) points.push_back(raised(p.x, p.y, p.z));

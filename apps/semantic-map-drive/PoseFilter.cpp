@@ -6,8 +6,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 namespace semantic_map_drive {
 
@@ -19,18 +17,11 @@ using semantic_octree::SemanticOcTree;
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr std::size_t kFewestPoints = 30;  // on known space, to be worth a correction
 
-/** What the map itself is uncertain by: variances of x, y (m^2) and heading. */
-Matrix3d uncertaintyOfMap() {
-  constexpr double kPlace = 0.01, kHeading = 0.1 * kDegree;
-  return Vector3d(kPlace * kPlace, kPlace * kPlace, kHeading * kHeading).asDiagonal();
-}
-
-void require(bool holds, const char* field, double value, const char* expected) {
-  if (!holds)
-    throw std::invalid_argument(std::string("pose: ") + field + " is " + std::to_string(value) +
-                                ", " + expected + " expected");
+/** Variances of x, y (m^2) and heading. */
+Matrix3d uncertaintyOfMap(const PoseOptions& options) {
+  const double place = options.mapPlace, heading = options.mapHeading * kDegree;
+  return Vector3d(place * place, place * place, heading * heading).asDiagonal();
 }
 
 Vector3d placed(const TPose2D& pose, const Vector3d& point) {
@@ -66,13 +57,26 @@ bool tells(const SemanticOcTree& map, const Vector3d& point) {
 
 }  // namespace
 
-void PoseOptions::validate() const {
-  require(odometryNoise >= 0 && odometryNoise < 1, "odometryNoise", odometryNoise, "0 to 1 m");
-  require(turnNoise >= 0 && turnNoise < 90, "turnNoise", turnNoise, "0 to 90 degrees");
-  require(particles >= 10, "particles", particles, "10 or more");
-  require(points >= 30, "points", points, "30 or more");
-  require(pointWeight > 0 && pointWeight <= 1, "pointWeight", pointWeight, "more than 0, up to 1");
+void PoseOptions::describe(strict_files::OptionList& list) {
+  using strict_files::above;
+  using strict_files::atLeast;
+  using strict_files::between;
+  list.add("odometry_noise", odometryNoise, "m", between(0, 1),
+           "standard deviation of the way after a meter; grows with its square root");
+  list.add("turn_noise", turnNoise, "degrees", between(0, 90),
+           "of the heading after a meter; grows alike");
+  list.add("correct", correct, "", "by the map's likelihood of each scan; or odometry alone");
+  list.add("particles", particles, "", atLeast(10), "of the filter");
+  list.add("points", points, "", atLeast(30), "of all scans of a moment");
+  list.add("point_weight", pointWeight, "", {0, 1, false},
+           "of each point's log-likelihood, as neighbors are not independent");
+  list.add("fewest_points", fewestPoints, "", atLeast(1),
+           "that tell where they are, to be worth a correction");
+  list.add("map_place", mapPlace, "m", above(0), "what the map itself is uncertain by");
+  list.add("map_heading", mapHeading, "degrees", above(0), "and in its heading");
 }
+
+void PoseOptions::validate() const { strict_files::checkOptions(*this, "PoseOptions"); }
 
 PoseFilter::PoseFilter(const TPose2D& start, const PoseOptions& options, std::uint64_t seed)
     : m_options(options),
@@ -106,7 +110,7 @@ void PoseFilter::move(const TPose2D& motion) {
 void PoseFilter::correct(const SemanticOcTree& map, const std::vector<Observation>& seen,
                          const Eigen::Isometry3d& T_level_robot) {
   const Points points = select(map, seen, T_level_robot);
-  if (points.size() < kFewestPoints) return;
+  if (points.size() < static_cast<std::size_t>(m_options.fewestPoints)) return;
   const semantic_map::PointLikelihood likelihood(map);
   // Behind what it saw the map is unknown, before it free. If the one were likelier than the other,
   // the robot, which sees most ahead, would believe to be ahead of where it is.
@@ -143,7 +147,7 @@ PoseFilter::Points PoseFilter::select(const SemanticOcTree& map,
 
 /** In pairs on both sides of the mean: where the map tells nothing, nothing changes. */
 PoseFilter::Particles PoseFilter::drawParticles() {
-  m_covariance += uncertaintyOfMap();
+  m_covariance += uncertaintyOfMap(m_options);
   const Matrix3d root = m_covariance.llt().matrixL();
   Particles particles;
   for (int i = 0; i < m_options.particles / 2; ++i) {

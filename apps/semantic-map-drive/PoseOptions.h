@@ -1,4 +1,5 @@
 #pragma once
+#include <strict_files/OptionList.h>
 
 namespace semantic_map_drive {
 
@@ -14,9 +15,14 @@ struct PoseOptions {
   /** Of each point's log-likelihood, (0, 1]: neighboring points are not independent, and the map
    * was made at poses that were estimated, too. */
   double pointWeight = 0.2;
+  int fewestPoints = 30;  ///< that count, to be worth a correction
+  /** What the map itself is uncertain by: standard deviations of x and y (meters), and of the
+   * heading (degrees). */
+  double mapPlace = 0.01, mapHeading = 0.1;
 
+  void describe(strict_files::OptionList& list);
   bool isExact() const { return odometryNoise == 0 && turnNoise == 0; }
-  /** \throw std::invalid_argument naming the field and its value. */
+  /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
 

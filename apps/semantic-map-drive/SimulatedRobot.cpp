@@ -11,8 +11,6 @@ using semantic_driving::DriveCommand;
 
 namespace {
 
-constexpr double kTurnAcceleration = 4;  // rad/s^2: the steering's speed
-
 /** From one value towards another, by at most this much. */
 double towards(double from, double to, double most) {
   return from + std::clamp(to - from, -most, most);
@@ -21,8 +19,9 @@ double towards(double from, double to, double most) {
 }  // namespace
 
 SimulatedRobot::SimulatedRobot(const mrpt::math::TPose2D& start,
-                               const semantic_driving::DriveOptions& limits)
-    : m_limits(limits) {
+                               const semantic_driving::DriveOptions& limits,
+                               double turnAcceleration)
+    : m_limits(limits), m_turnAcceleration(turnAcceleration) {
   m_state.pose = start;
 }
 
@@ -38,7 +37,7 @@ void SimulatedRobot::step(const DriveCommand& command, double seconds) {
   const double curvature = std::abs(command.speed) > 1e-6 ? command.turn / command.speed : 0;
   const double most = std::abs(m_state.speed) / m_limits.turningRadius;
   const double turn = std::clamp(curvature * m_state.speed, -most, most);
-  m_state.turn = std::clamp(towards(m_state.turn, turn, kTurnAcceleration * seconds), -most, most);
+  m_state.turn = std::clamp(towards(m_state.turn, turn, m_turnAcceleration * seconds), -most, most);
   const double heading = m_state.pose.phi + m_state.turn * seconds / 2;
   m_state.pose.x += m_state.speed * seconds * std::cos(heading);
   m_state.pose.y += m_state.speed * seconds * std::sin(heading);

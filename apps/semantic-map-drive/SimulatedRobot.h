@@ -6,7 +6,9 @@ namespace semantic_map_drive {
 /** The true motion of a car-like robot: commands are followed as fast as it can. */
 class SimulatedRobot {
  public:
-  SimulatedRobot(const mrpt::math::TPose2D& start, const semantic_driving::DriveOptions& limits);
+  /** \param turnAcceleration of the steering, rad/s^2 */
+  SimulatedRobot(const mrpt::math::TPose2D& start, const semantic_driving::DriveOptions& limits,
+                 double turnAcceleration = 4);
 
   const semantic_driving::DriveState& state() const { return m_state; }
   /** \param seconds until the next command */
@@ -16,6 +18,7 @@ class SimulatedRobot {
   void step(const semantic_driving::DriveCommand& command, double seconds);
 
   semantic_driving::DriveOptions m_limits;
+  double m_turnAcceleration;
   semantic_driving::DriveState m_state;
 };
 

@@ -56,7 +56,7 @@ class Drive {
   /** Until half a minute is over: one command each 0.1 s. */
   template <class Command>
   void run(Command command) {
-    const DriveTracker outline({}, kFootprint);
+    const PathTracker outline({}, kFootprint);
     for (int i = 0; i < 300; ++i) {
       mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + 0.1 * i));
       const ObstaclePoints seen = seenFrom(state().pose, person());
@@ -92,8 +92,8 @@ TEST(DriveController, PassesAPersonByTheReactiveNavigatorWithoutANewPath) {
   EXPECT_NEAR(drive.state().pose.y, 0, 0.3);
 }
 
-TEST(DriveTracker, AloneStandsBeforeAPerson) {
-  DriveTracker tracker(Drive::onlyAround(), kFootprint);
+TEST(PathTracker, AloneStandsBeforeAPerson) {
+  PathTracker tracker(Drive::onlyAround(), kFootprint);
   tracker.setPath(straight());
   Drive drive;
   drive.run([&](const ObstaclePoints& seen, double) {

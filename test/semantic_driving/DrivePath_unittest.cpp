@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_driving/DriveTracker.h>
+#include <semantic_driving/PathTracker.h>
 
 #include <cmath>
 
@@ -16,8 +16,8 @@ std::vector<PathPoint> thereAndBack() {
   return points;
 }
 
-DriveTracker trackerOn(const std::vector<PathPoint>& points) {
-  DriveTracker tracker({}, {{-0.25, -0.3}, {0.55, -0.3}, {0.55, 0.3}, {-0.25, 0.3}});
+PathTracker trackerOn(const std::vector<PathPoint>& points) {
+  PathTracker tracker({}, {{-0.25, -0.3}, {0.55, -0.3}, {0.55, 0.3}, {-0.25, 0.3}});
   tracker.setPath(DrivePath(points));
   return tracker;
 }
@@ -49,23 +49,23 @@ TEST(DrivePath, IsCutAndJoined) {
   EXPECT_NEAR(joined.stretchEnd(0), 1, 1e-9);
 }
 
-TEST(DriveTracker, SteersBackToThePathAndSlowsDownAtItsEnd) {
-  DriveTracker tracker = trackerOn(thereAndBack());
+TEST(PathTracker, SteersBackToThePathAndSlowsDownAtItsEnd) {
+  PathTracker tracker = trackerOn(thereAndBack());
   tracker.locate({{0.5, 0.2, 0}, 0, 0});
   EXPECT_LT(tracker.command({{0.5, 0.2, 0}, 0, 0}, {}, 1).turn, 0);
   tracker.locate({{1.9, 0, 0}, 0, 0});
   EXPECT_LT(tracker.command({{1.9, 0, 0}, 0, 0}, {}, 1).speed, 0.5);
 }
 
-TEST(DriveTracker, BacksUpWhereThePathDoes) {
-  DriveTracker tracker = trackerOn(thereAndBack());
+TEST(PathTracker, BacksUpWhereThePathDoes) {
+  PathTracker tracker = trackerOn(thereAndBack());
   for (double x = 0; x <= 2; x += 0.1) tracker.locate({{x, 0, 0}, 0, 0});
   tracker.locate({{2, 0, 0}, 0, 0});
   EXPECT_LT(tracker.command({{2, 0, 0}, 0, 0}, {}, 1).speed, 0);
 }
 
-TEST(DriveTracker, StopsBeforeAnObstacle) {
-  DriveTracker tracker = trackerOn(thereAndBack());
+TEST(PathTracker, StopsBeforeAnObstacle) {
+  PathTracker tracker = trackerOn(thereAndBack());
   const DriveState state{{0, 0, 0}, 0, 0};
   tracker.locate(state);
   EXPECT_GT(tracker.command(state, {}, 1).speed, 0.9);
@@ -73,8 +73,8 @@ TEST(DriveTracker, StopsBeforeAnObstacle) {
   EXPECT_EQ(tracker.command(state, {{0.75, 0}}, 1).speed, 0);
 }
 
-TEST(DriveTracker, TooNearToAnObstacleOnlyTheWayOutIsNoApproach) {
-  const DriveTracker tracker = trackerOn(thereAndBack());
+TEST(PathTracker, TooNearToAnObstacleOnlyTheWayOutIsNoApproach) {
+  const PathTracker tracker = trackerOn(thereAndBack());
   const ObstaclePoints ahead = {{0.58, 0.1}}, inside = {{0.5, 0}}, farOff = {{0.7, 0}};
   for (const ObstaclePoints& near : {ahead, inside}) {
     EXPECT_TRUE(tracker.approaches({0.5, 0}, near, 0.05));

@@ -54,7 +54,7 @@ Events::Person stepsInFront(const DriveRecord& record, double at, double before)
   return {row.time - kAside / kSpeed, 1e9, placed(kAside), placed(0), kSpeed};
 }
 
-bool hasTarget(const DriveRecord& record, DriveGuide::Target target) {
+bool hasTarget(const DriveRecord& record, Target target) {
   return std::any_of(record.rows.begin(), record.rows.end(),
                      [target](const DriveRow& row) { return row.target == target; });
 }
@@ -100,7 +100,7 @@ TEST(Drives, GoBackAndAroundAPersonWhoStepsInFrontAndStays) {
   EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
   EXPECT_EQ(record.collisions, 0);
   EXPECT_LT(record.leastClearance, 0.5);  // the person was in the way indeed
-  EXPECT_TRUE(hasTarget(record, DriveGuide::Target::Back));
+  EXPECT_TRUE(hasTarget(record, Target::Back));
 }
 
 TEST(Drives, LeaveAPersonToTheReactiveNavigatorWithoutANewPlan) {

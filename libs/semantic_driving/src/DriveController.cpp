@@ -10,11 +10,6 @@ using semantic_planning::PathPoint;
 
 namespace {
 
-constexpr double kWaypointSpacing = 1.2;  // m
-constexpr double kWaypointReach = 0.5;    // m
-constexpr double kWaypointRoom = 0.3;     // m around the footprint
-constexpr double kPause = 2;              // s
-
 /** Where a vehicle that keeps its speed and its turning is after some seconds, from (0, 0, 0). */
 TPose2D after(const DriveCommand& c, double seconds) {
   const double turned = c.turn * seconds, way = c.speed * seconds;
@@ -25,9 +20,20 @@ TPose2D after(const DriveCommand& c, double seconds) {
 
 }  // namespace
 
+const strict_files::Choices<DriveController::Driver>& choicesOf(DriveController::Driver) {
+  static const strict_files::Choices<DriveController::Driver> choices = {
+      {"path", DriveController::Driver::Tracker}, {"reactive", DriveController::Driver::Reactive}};
+  return choices;
+}
+
+const char* nameOf(DriveController::Driver driver) {
+  return strict_files::nameIn(choicesOf(driver), driver);
+}
+
 DriveController::DriveController(const DriveOptions& options,
                                  const ReactiveNavigator::Options& reactive)
-    : m_tracker(options, reactive.footprint), m_reactive(reactive) {}
+
+    : m_tracker(options, reactive.footprint), m_track(options.trackLength), m_reactive(reactive) {}
 
 void DriveController::setPath(DrivePath path) {
   m_tracker.setPath(std::move(path));
@@ -45,7 +51,8 @@ DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints
   const DriveCommand wanted = reactive ? driveReactively(state, obstacles, limit, seconds)
                                        : m_tracker.command(state, obstacles, limit);
   const DriveCommand safe = guarded(wanted, state, obstacles);
-  if (std::abs(safe.speed) > 0.05 || m_tracker.finished()) m_movedAt = seconds;
+  if (std::abs(safe.speed) > m_tracker.options().movingSpeed || m_tracker.finished())
+    m_movedAt = seconds;
   return safe;
 }
 
@@ -62,17 +69,19 @@ bool DriveController::wantsReactive(const DriveState& state,
 
 bool DriveController::isOpen(const PathPoint& place, const DriveState& state,
                              const ObstaclePoints& obstacles) const {
-  return m_tracker.isFree(poseOf(place) - state.pose, obstacles, kWaypointRoom);
+  return m_tracker.isFree(poseOf(place) - state.pose, obstacles,
+                          m_tracker.options().waypointMargin);
 }
 
 /** To the end of the stretch, without those where something stands: they cannot be reached. */
 void DriveController::setWaypoints(const DriveState& state, const ObstaclePoints& obstacles) {
-  m_waypoints = m_tracker.path().waypoints(m_tracker.progress(), kWaypointSpacing);
+  m_waypoints =
+      m_tracker.path().waypoints(m_tracker.progress(), m_tracker.options().waypointSpacing);
   m_waypoints.erase(
       std::remove_if(m_waypoints.begin(), m_waypoints.end() - 1,
                      [&](const PathPoint& p) { return !isOpen(p, state, obstacles); }),
       m_waypoints.end() - 1);
-  m_reactive.setWaypoints(m_waypoints, kWaypointReach);
+  m_reactive.setWaypoints(m_waypoints, m_tracker.options().waypointReach);
 }
 
 DriveCommand DriveController::driveReactively(const DriveState& state,
@@ -89,7 +98,7 @@ DriveCommand DriveController::driveReactively(const DriveState& state,
   m_reactiveFrom = begin;
   DriveCommand c = m_reactive.step(state, obstacles, seconds);
   if (m_reactive.status() != ReactiveNavigator::Status::Driving) {
-    m_reactiveAgain = seconds + kPause;
+    m_reactiveAgain = seconds + m_tracker.options().reactivePause;
     return m_tracker.command(state, obstacles, speedLimit);
   }
   const double curve = std::sqrt(m_tracker.options().maxSideAcceleration *
@@ -102,13 +111,14 @@ DriveCommand DriveController::driveReactively(const DriveState& state,
 
 DriveCommand DriveController::guarded(const DriveCommand& wanted, const DriveState& state,
                                       const ObstaclePoints& obstacles) const {
-  constexpr double kReaction = 0.3, kStep = 0.1;  // s
+  constexpr double kStep = 0.1;  // s
+  const double reaction = m_tracker.options().reactionTime;
   const double margin = m_tracker.options().margin / 2;
   if (!m_tracker.isFree({}, obstacles, margin))  // it has to get out, not further in
     return m_tracker.approaches(wanted, obstacles, margin) ? DriveCommand{} : wanted;
-  const double stop = kReaction + std::abs(state.speed) / m_tracker.options().maxAcceleration;
+  const double stop = reaction + std::abs(state.speed) / m_tracker.options().maxAcceleration;
   for (double t = kStep; t < stop; t += kStep) {
-    const double slowing = t < kReaction ? t : kReaction + (t - kReaction) / 2;
+    const double slowing = t < reaction ? t : reaction + (t - reaction) / 2;
     if (!m_tracker.isFree(after(wanted, slowing), obstacles, margin)) return {};
   }
   return wanted;

@@ -1,12 +1,8 @@
-#include <semantic_driving/DriveFrontier.h>
 #include <semantic_driving/DriveGuide.h>
-#include <semantic_driving/DriveWayOut.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include <strict_files/OptionChecks.h>
 
 namespace semantic_driving {
 
@@ -18,14 +14,17 @@ using semantic_planning::SemanticPlanner;
 
 namespace {
 
-constexpr double kNearFrontier = 3;  // m: the next one is looked for before the vehicle stops
-constexpr double kBlind = 2;         // m: the sensors do not see the ground nearer than this
-constexpr double kAtRest = 0.05;     // m/s
-constexpr double kSlow = 0.2;        // m/s
-constexpr double kBackBy = 1;        // m, beyond where planning is possible again
-constexpr int kTimesBack = 3;        // then it gives up
-
 double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+template <class A>
+bool is(const Action& action) {
+  return std::holds_alternative<A>(action);
+}
+
+bool isQuestion(const Action& action) {
+  return is<SeekGoal>(action) || is<SeekFrontier>(action) || is<SeekRecovery>(action) ||
+         is<SeekBack>(action);
+}
 
 std::string reasonOf(const Exploration& enclosed) {
   if (!std::isfinite(enclosed.goalArea)) return "the vehicle is enclosed by what it cannot pass";
@@ -37,161 +36,122 @@ std::string reasonOf(const Exploration& enclosed) {
 
 }  // namespace
 
-const char* nameOf(DriveGuide::Target target) {
-  switch (target) {
-    case DriveGuide::Target::Goal:
-      return "goal";
-    case DriveGuide::Target::Frontier:
-      return "frontier";
-    case DriveGuide::Target::WayOut:
-      return "way out";
-    case DriveGuide::Target::Back:
-      return "back";
-    default:
-      return "none";
-  }
-}
-
-void GuideOptions::validate() const {
-  const strict_files::OptionChecks check("GuideOptions");
-  check.notNegative("period", period);
-  check.notNegative("patience", patience);
-  check.notNegative("giveUpAfter", giveUpAfter);
-  check.positive("atGoal", atGoal);
-}
-
 DriveGuide::DriveGuide(const GuideOptions& options, SemanticPlanner& planner, const TPose2D& goal)
     : m_options(options), m_planner(planner), m_check(planner), m_goal(goal) {
   m_options.validate();
 }
 
 void DriveGuide::update(const DriveState& state, double z, DriveController& drive, double seconds) {
-  auto path = next({state, drive.tracker(), drive.track(), z, seconds, drive.stoppedFor(seconds)});
-  if (path) drive.setPath(std::move(*path));
-  if (m_target == Target::None) drive.setPath({});
+  const Situation now{state, drive, z, seconds};
+  const bool gaveUpBefore = gaveUp();
+  Transition next = transition(m_state, look(now), m_options);
+  while (isQuestion(next.action))
+    next = transition(next.state, answer(next.action, now), m_options);
+  m_state = next.state;
+  apply(next.action, now, drive);
+  if (gaveUp() && !gaveUpBefore && explored() > 0)
+    m_reason += "; frontiers explored: " + std::to_string(explored());
 }
 
 bool DriveGuide::isNearGoal(const DriveState& state) const {
-  return m_target == Target::Goal && distance(state.pose, m_goal) < m_options.atGoal;
+  return distance(state.pose, m_goal) < m_options.atGoal;
 }
 
 bool DriveGuide::arrived(const DriveState& state, const DriveController& drive) const {
-  return isNearGoal(state) && !drive.tracker().path().empty() && drive.tracker().finished() &&
-         std::abs(state.speed) < kAtRest;
+  const PathTracker& tracker = drive.tracker();
+  return target() == Target::Goal && isNearGoal(state) && !tracker.path().empty() &&
+         tracker.finished() && std::abs(state.speed) < m_options.atRest;
 }
 
 ObstacleOptions DriveGuide::obstacles(ObstacleOptions usual) const {
-  if (m_target == Target::WayOut) usual.forbiddenGround = false;
+  if (target() == Target::Recovery) usual.forbiddenGround = false;
   return usual;
 }
 
-/** Another path than before, from where the vehicle is; or nothing if it is to go on. */
-std::optional<DrivePath> DriveGuide::next(const Situation& now) {
-  if (mustChange(now)) return choose(now);
-  if (m_target == Target::Back) return {};
-  if (now.seconds - m_plannedAt < m_options.period || m_blockedSince >= 0) return {};
-  return improve(now);
+Look DriveGuide::look(const Situation& now) const {
+  const PathTracker& tracker = now.drive.tracker();
+  const auto mayStand = [this](const TPose2D& pose, std::optional<double> z) {
+    return m_planner.check(pose, z) == PlanStatus::Found;
+  };
+  Look look;
+  look.seconds = now.seconds;
+  look.speed = std::abs(now.state.speed);
+  look.stoppedFor = now.drive.stoppedFor(now.seconds);
+  look.left = tracker.path().length() - tracker.progress();
+  look.hasPath = !tracker.path().empty();
+  look.finished = tracker.finished();
+  look.nearGoal = isNearGoal(now.state);
+  look.blocked = !look.finished && !m_check.judge(tracker.path(), tracker.progress()).isFree();
+  look.mayPlan = mayStand(now.state.pose, now.z);
+  const Departure ahead = departureOf(now, From::Ahead);
+  look.mayPlanAhead = mayStand(ahead.pose, ahead.z);
+  look.mayStandAtGoal = mayStand(m_goal, {});
+  return look;
 }
 
-/** The path is at its end, or was in the way of something for long. */
-bool DriveGuide::mustChange(const Situation& now) {
-  if (now.tracker.finished()) return now.tracker.path().empty() || !isNearGoal(now.state);
-  if (m_target == Target::Back) return isStuck(now);
-  if (m_target == Target::WayOut && !m_blindOut)
-    return isStuck(now) || m_planner.check(now.state.pose, now.z) == PlanStatus::Found;
-  const bool blocked = isBlocked(now);
-  if (!blocked) m_blockedSince = -1;
-  if (blocked && m_blockedSince < 0) m_blockedSince = now.seconds;
-  if (blocked && now.seconds - m_blockedSince >= m_options.patience) return true;
-  return isStuck(now);
-}
-
-bool DriveGuide::isStuck(const Situation& now) const {
-  return now.stoppedFor >= 2 * m_options.patience &&
-         now.seconds - m_plannedAt >= m_options.patience;
-}
-
-bool DriveGuide::isBlocked(const Situation& now) {
-  return !m_check.judge(now.tracker.path(), now.tracker.progress()).isFree();
-}
-
-/** \param anew from where the vehicle is, whatever its path */
-DriveGuide::Departure DriveGuide::departureOf(const Situation& now, bool anew) const {
-  if (anew || now.tracker.finished()) return {now.state.pose, now.z, {}};
-  const DrivePath& path = now.tracker.path();
-  const double here = now.tracker.progress();
-  const double ahead = std::max(0.5, std::abs(now.state.speed));  // a second
+DriveGuide::Departure DriveGuide::departureOf(const Situation& now, From from) const {
+  const PathTracker& tracker = now.drive.tracker();
+  if (from == From::Here || tracker.finished()) return {now.state.pose, now.z, {}};
+  const DrivePath& path = tracker.path();
+  const double here = tracker.progress();
+  const double ahead =
+      std::max(m_options.leadDistance, std::abs(now.state.speed) * m_options.leadTime);
   const double there = std::min(path.stretchEnd(here), here + ahead);
   return {poseOf(path.at(there)), path.at(there).z, path.part(here, there)};
 }
 
 /** The present path as far as the vehicle needs to come to rest: another one begins with a vehicle
  * that stands, and may begin backwards. */
-DrivePath DriveGuide::untilRest(const Situation& now) {
-  constexpr double kBraking = 0.6, kMore = 0.1;  // m/s^2: less than DriveTracker's; m
-  const DrivePath& path = now.tracker.path();
-  const double here = now.tracker.progress(), speed = now.state.speed;
-  const double there = here + speed * speed / (2 * kBraking) + kMore;
+DrivePath DriveGuide::untilRest(const Situation& now) const {
+  const PathTracker& tracker = now.drive.tracker();
+  const DrivePath& path = tracker.path();
+  const double here = tracker.progress(), speed = now.state.speed;
+  const double braking = m_options.restBraking * tracker.options().braking();
+  const double there = here + speed * speed / (2 * braking) + m_options.restMargin;
   return path.part(here, std::min(there, path.stretchEnd(here)));
 }
 
-std::optional<DrivePath> DriveGuide::choose(const Situation& now) {
-  if (!now.tracker.finished() && std::abs(now.state.speed) > kSlow) {
-    m_leaving = true;
-    return untilRest(now);
-  }
-  m_plannedAt = now.seconds;
-  if (m_planner.check(now.state.pose, now.z) != PlanStatus::Found) return wayOut(now, 0);
-  const bool before = std::exchange(m_leaving, false) || !now.tracker.finished();
-  const Departure here = departureOf(now, true);
-  std::optional<DrivePath> path = toGoal(here);
-  if (path)
-    take(Target::Goal, now);
-  else if ((path = toFrontier(here)))
-    take(Target::Frontier, now);
-  else if (m_target == Target::None && m_plannedPaths == 0 && !(m_enclosed && m_blindOut))
-    return wayOut(now, kBlind);
-  else if (!m_enclosed)
-    return goBack(now);
-  else
-    fail(now);
-  if (path && before) ++m_replans;
-  return path;
+void DriveGuide::apply(const Action& action, const Situation& now, DriveController& drive) {
+  if (is<Follow>(action)) drive.setPath(std::move(*m_found));
+  if (is<ComeToRest>(action)) drive.setPath(untilRest(now));
+  if (is<Stop>(action)) drive.setPath({});
+  m_found.reset();
 }
 
-/** \param nearest 0, or, where the vehicle does not see what it stands on, how far it is blind */
-std::optional<DrivePath> DriveGuide::wayOut(const Situation& now, double nearest) {
-  DrivePath path = findWayOut(m_planner, now.state.pose, now.z, 8, nearest);
-  m_blindOut = nearest > 0;
-  if (path.empty()) {
-    if (!m_blindOut) m_reason = "the vehicle is where it must not be, and finds no way out";
-    return goBack(now);
+Answer DriveGuide::answer(const Action& question, const Situation& now) {
+  Answer answer{question, now.seconds};
+  if (const auto* goal = std::get_if<SeekGoal>(&question)) {
+    const Departure from = departureOf(now, goal->from);
+    m_found = toGoal(from);
+    answer.empty = m_found && m_found->empty();
+    join(from);
+    answer.better = goal->from == From::Ahead && goal->replaces && isBetter(now);
+  } else if (const auto* frontier = std::get_if<SeekFrontier>(&question)) {
+    const Departure from = departureOf(now, frontier->from);
+    m_found = toFrontier(from, frontier->last, answer.enclosed);
+    answer.empty = m_found && m_found->empty();
+    join(from);
+  } else if (const auto* way = std::get_if<SeekRecovery>(&question)) {
+    m_found = recovery(now, way->blind);
+  } else {
+    m_found = back(now);
   }
-  take(Target::WayOut, now);
-  return path;
+  answer.found = m_found.has_value();
+  return answer;
 }
 
-/** Along the vehicle's own track to where it can plan, and a little on: what is close to it may be
- * out of its sensors' sight, and left nobody knows where. */
-std::optional<DrivePath> DriveGuide::goBack(const Situation& now) {
-  std::vector<PathPoint> points = now.track.back();
-  double z = now.z;
-  for (PathPoint& p : points) {
-    const auto ground = m_planner.ground().find(p.x, p.y, z);
-    if (ground) z = m_planner.ground().centerOf(ground->surface.z);
-    p.z = z;
-  }
-  const DrivePath track(std::move(points));
-  constexpr double kStep = 0.2;  // m
-  for (double s = kStep; s < track.length() && m_timesBack < kTimesBack; s += kStep) {
-    const PathPoint p = track.at(s);
-    if (m_planner.check(poseOf(p), p.z) != PlanStatus::Found) continue;
-    ++m_timesBack;
-    take(Target::Back, now);
-    return track.part(0, std::min(track.length(), s + kBackBy));
-  }
-  fail(now);
-  return {};
+/** The path that was found begins where it leaves the present one. */
+void DriveGuide::join(const Departure& from) {
+  if (m_found && !m_found->empty() && !from.before.empty())
+    m_found = from.before.part(0, from.before.length(), *m_found);
+}
+
+/** What was found than the present path. */
+bool DriveGuide::isBetter(const Situation& now) const {
+  if (!m_found || m_found->empty()) return false;
+  const PathTracker& tracker = now.drive.tracker();
+  return m_check.judge(*m_found, 0)
+      .isClearlyBetterThan(m_check.judge(tracker.path(), tracker.progress()), m_options.same);
 }
 
 std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
@@ -207,61 +167,54 @@ std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
   return path;
 }
 
-std::optional<DrivePath> DriveGuide::toFrontier(const Departure& from) {
+/** \param last no place that is tried is tried again, even if none can be reached */
+std::optional<DrivePath> DriveGuide::toFrontier(const Departure& from, bool last, bool& enclosed) {
   std::vector<TPose2D> tried;
   std::optional<DrivePath> path;
-  const Exploration places = findFrontiers(m_planner, from.pose, from.z, m_goal, m_seen);
-  m_enclosed = places.enclosed;
-  if (m_enclosed) m_reason = reasonOf(places);
+  const Exploration places =
+      findFrontiers(m_planner, from.pose, from.z, m_goal, m_seen, m_options.frontiers);
+  enclosed = places.enclosed;
+  if (enclosed) m_reason = reasonOf(places);
   for (const Frontier& f : places.frontiers) {
     m_planned = false;
     PlanResult plan = m_planner.plan(from.pose, f.pose, from.z, f.z);
     tried.push_back(f.pose);  // if it is not seen from there, it is not seen
-    if (!plan.found() || plan.length < 0.5) continue;
+    if (!plan.found() || plan.length < m_options.shortestWay) continue;
     path.emplace(plan.path);
     m_plan = std::move(plan);
     break;
   }
   // If there is no way to any, it may be for where the vehicle stands.
-  if (path || m_timesBack >= kTimesBack) m_seen.insert(m_seen.end(), tried.begin(), tried.end());
+  if (path || last) m_seen.insert(m_seen.end(), tried.begin(), tried.end());
   return path;
 }
 
-std::optional<DrivePath> DriveGuide::improve(const Situation& now) {
-  m_plannedAt = now.seconds;
-  const DrivePath& path = now.tracker.path();
-  const double here = now.tracker.progress();
-  const Departure from = departureOf(now, false);
-  if (m_planner.check(from.pose, from.z) != PlanStatus::Found) return {};
-  const bool exploring = m_target == Target::Frontier;
-  if (exploring && m_planner.check(m_goal) != PlanStatus::Found &&
-      path.length() - here > kNearFrontier)
-    return {};
-  std::optional<DrivePath> then = toGoal(from);
-  const bool toGoalNow = then.has_value();
-  if (!then && exploring && path.length() - here <= kNearFrontier) then = toFrontier(from);
-  if (!then || then->empty()) return {};
-  DrivePath better = from.before.empty() ? *then : from.before.part(0, from.before.length(), *then);
-  if (!exploring && !m_check.judge(better, 0).isClearlyBetterThan(m_check.judge(path, here)))
-    return {};
-  take(toGoalNow ? Target::Goal : Target::Frontier, now);
-  if (!exploring) ++m_replans;
-  return better;
+std::optional<DrivePath> DriveGuide::recovery(const Situation& now, bool blind) {
+  DrivePath path = findRecovery(m_planner, now.state.pose, now.z, m_options.recovery,
+                                blind ? m_options.recovery.blind : 0);
+  if (!path.empty()) return path;
+  if (!blind) m_reason = "the vehicle is where it must not be, and finds no way out";
+  return {};
 }
 
-void DriveGuide::take(Target target, const Situation& now) {
-  if (target == Target::Goal || target == Target::Frontier) ++m_plannedPaths, m_timesBack = 0;
-  m_target = target;
-  m_plannedAt = now.seconds;
-  m_blockedSince = m_withoutSince = -1;
-}
-
-void DriveGuide::fail(const Situation& now) {
-  m_target = Target::None;
-  if (m_withoutSince < 0) m_withoutSince = now.seconds;
-  if (m_gaveUp || now.seconds - m_withoutSince < m_options.giveUpAfter) return;
-  m_gaveUp = true;
-  if (explored() > 0) m_reason += "; frontiers explored: " + std::to_string(explored());
+/** Along the vehicle's own track to where it can plan, and a little on: what is close to it may be
+ * out of its sensors' sight, and left nobody knows where. */
+std::optional<DrivePath> DriveGuide::back(const Situation& now) const {
+  std::vector<PathPoint> points = now.drive.track().back();
+  double z = now.z;
+  for (PathPoint& p : points) {
+    const auto ground = m_planner.ground().find(p.x, p.y, z);
+    if (ground) z = m_planner.ground().centerOf(ground->surface.z);
+    p.z = z;
+  }
+  const DrivePath track(std::move(points));
+  constexpr double kStep = 0.2;  // m
+  for (double s = kStep; s < track.length(); s += kStep) {
+    const PathPoint p = track.at(s);
+    if (m_planner.check(poseOf(p), p.z) == PlanStatus::Found)
+      return track.part(0, std::min(track.length(), s + m_options.backBeyond));
+  }
+  return {};
 }
 
 }  // namespace semantic_driving

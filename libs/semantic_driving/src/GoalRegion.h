@@ -18,14 +18,15 @@ namespace semantic_driving {
  * - an obstacle keeps only those columns wherein no pose leaves the planner's clearance between it
  *   and the largest disc around the vehicle's origin;
  * - beyond the square everything is passable;
- * - the flood begins with what is passable within a meter of a goal that seems not to be. */
+ * - the flood begins with what is passable around a goal that seems not to be. */
 class GoalRegion {
  public:
   /** \param reached for each column of the square, whether the vehicle gets there
-   * \param from where the vehicle is, on ground of height z (meters) */
+   * \param from where the vehicle is, on ground of height z (meters)
+   * \param aroundGoal how far around a goal that seems not to be passable, meters */
   GoalRegion(const semantic_planning::SemanticPlanner& planner, const ColumnSquare& square,
              std::vector<bool> reached, const mrpt::math::TPose2D& from, double z,
-             const mrpt::math::TPose2D& goal);
+             const mrpt::math::TPose2D& goal, double aroundGoal);
 
   /** Whether seeing an unknown column may help. \param c in the square */
   bool contains(semantic_planning::Column c) const {
@@ -47,7 +48,8 @@ class GoalRegion {
   void markObstacles(const semantic_planning::SemanticPlanner& planner,
                      const mrpt::math::TPose2D& from, double z);
   void keepAround(semantic_planning::Column obstacle, double radius);
-  void start(const semantic_planning::Ground& ground, const mrpt::math::TPose2D& goal);
+  void start(const semantic_planning::Ground& ground, const mrpt::math::TPose2D& goal,
+             double around);
   void offer(semantic_planning::Column c);
   void offerRim();
   void flood();

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include <strict_files/OptionChecks.h>
 #include "Surroundings.h"
 
 namespace semantic_driving {
@@ -12,9 +11,13 @@ using semantic_planning::Ground;
 using semantic_planning::SemanticPlanner;
 using semantic_planning::Surface;
 
-void ObstacleOptions::validate() const {
-  strict_files::OptionChecks("ObstacleOptions").positive("radius", radius);
+void ObstacleOptions::describe(strict_files::OptionList& list) {
+  list.add("radius", radius, "m", strict_files::above(0), "how far obstacles are looked for");
+  list.add("forbidden_ground", forbiddenGround, "",
+           "ground of forbidden classes is an obstacle, even when flat");
 }
+
+void ObstacleOptions::validate() const { strict_files::checkOptions(*this, "ObstacleOptions"); }
 
 namespace {
 

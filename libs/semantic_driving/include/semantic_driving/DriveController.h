@@ -1,6 +1,6 @@
 #pragma once
-#include <semantic_driving/DriveTrack.h>
-#include <semantic_driving/DriveTracker.h>
+#include <semantic_driving/DrivenTrack.h>
+#include <semantic_driving/PathTracker.h>
 #include <semantic_driving/ReactiveNavigator.h>
 
 namespace semantic_driving {
@@ -15,9 +15,9 @@ class DriveController {
 
   /** Follows this path from its beginning on, from now on. */
   void setPath(DrivePath path);
-  const DriveTracker& tracker() const { return m_tracker; }
+  const PathTracker& tracker() const { return m_tracker; }
   /** Where the vehicle was at each step(). */
-  const DriveTrack& track() const { return m_track; }
+  const DrivenTrack& track() const { return m_track; }
 
   /** \param sensorAge seconds since the last observation \param seconds the time */
   DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double sensorAge,
@@ -38,8 +38,8 @@ class DriveController {
   DriveCommand guarded(const DriveCommand& wanted, const DriveState& state,
                        const ObstaclePoints& obstacles) const;
 
-  DriveTracker m_tracker;
-  DriveTrack m_track;
+  PathTracker m_tracker;
+  DrivenTrack m_track;
   ReactiveNavigator m_reactive;
   Driver m_driver = Driver::Tracker;
   double m_movedAt = 0;
@@ -47,5 +47,9 @@ class DriveController {
   std::vector<semantic_planning::PathPoint> m_waypoints;
   double m_reactiveAgain = 0;  ///< seconds: it is not asked before, as it found no way
 };
+
+const strict_files::Choices<DriveController::Driver>& choicesOf(DriveController::Driver);
+/** "path" (the tracker) or "reactive". */
+const char* nameOf(DriveController::Driver driver);
 
 }  // namespace semantic_driving

@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_driving/DriveController.h>
-#include <semantic_driving/DrivePathCheck.h>
+#include <semantic_driving/GuideTransitions.h>
 #include <semantic_driving/ObstacleSensing.h>
 
 #include <optional>
@@ -8,17 +8,6 @@
 #include <vector>
 
 namespace semantic_driving {
-
-/** When a guide looks for paths. */
-struct GuideOptions {
-  double period = 1.0;       ///< seconds between looks for a better path
-  double patience = 2.0;     ///< seconds for what stands in the way to go away, or to be passed
-  double giveUpAfter = 4.0;  ///< seconds at rest without any path
-  double atGoal = 0.3;       ///< so near (meters) to the goal's place is there
-
-  /** \throw std::invalid_argument naming the field and its value. */
-  void validate() const;
-};
 
 /** Decides which path to drive, as the map grows: to the goal, to a place from where to see more of
  * the way there, or out of where the vehicle must not be; where there is no way out, as behind
@@ -32,11 +21,10 @@ struct GuideOptions {
  *       const DriveCommand command = drive.step(state, obstacles, sensorAge, seconds);
  *     }
  *
- * Poses are in the map's frame. */
+ * What it decides when is in GuideTransitions.h; it asks planner, frontiers and recovery for the
+ * paths. Poses are in the map's frame. */
 class DriveGuide {
  public:
-  enum class Target { None, Goal, Frontier, WayOut, Back };
-
   /** \param planner must outlive the guide. \throw std::invalid_argument bad options. */
   DriveGuide(const GuideOptions& options, semantic_planning::SemanticPlanner& planner,
              const mrpt::math::TPose2D& goal);
@@ -46,12 +34,12 @@ class DriveGuide {
    * \param z height of the ground below the vehicle, meters \param seconds the time */
   void update(const DriveState& state, double z, DriveController& drive, double seconds);
 
-  Target target() const { return m_target; }
+  Target target() const { return m_state.target(); }
   /** The path to the goal is driven, and the vehicle stands. */
   bool arrived(const DriveState& state, const DriveController& drive) const;
-  /** No path, and nothing else to look at, or the goal is enclosed (findFrontiers()). */
-  bool gaveUp() const { return m_gaveUp; }
-  /** Why the last plan to the goal, or the way out, was not found. */
+  /** No path, and nothing else to look at, or the goal is enclosed (findFrontiers()); for good. */
+  bool gaveUp() const { return std::holds_alternative<GaveUp>(m_state.activity); }
+  /** Why the last plan to the goal, or the recovery, was not found. */
   const std::string& reason() const { return m_reason; }
   /** What counts as an obstacle on the way that the vehicle is on: on the way out of forbidden
    * ground that ground does not. \param usual options for all other ways */
@@ -61,16 +49,15 @@ class DriveGuide {
    * looked at twice, nor others within FrontierOptions::apart of it: exploring comes to an end. */
   std::size_t explored() const { return m_seen.size(); }
   /** Paths that were given up for another one, before their end. */
-  int replans() const { return m_replans; }
+  int replans() const { return m_state.replans; }
   /** The last plan that was found. */
   const semantic_planning::PlanResult& plan() const { return m_plan; }
 
  private:
   struct Situation {
     const DriveState& state;
-    const DriveTracker& tracker;
-    const DriveTrack& track;
-    double z, seconds, stoppedFor;
+    const DriveController& drive;
+    double z, seconds;
   };
   /** Where a new path leaves the present one. */
   struct Departure {
@@ -79,41 +66,31 @@ class DriveGuide {
     DrivePath before;  ///< from the vehicle to there; may be empty
   };
 
-  std::optional<DrivePath> next(const Situation& now);
-  bool mustChange(const Situation& now);
-  bool isBlocked(const Situation& now);
-  bool isStuck(const Situation& now) const;
-  Departure departureOf(const Situation& now, bool anew) const;
-  static DrivePath untilRest(const Situation& now);
-  std::optional<DrivePath> choose(const Situation& now);
-  std::optional<DrivePath> improve(const Situation& now);
-  std::optional<DrivePath> wayOut(const Situation& now, double nearest);
-  std::optional<DrivePath> goBack(const Situation& now);
-  std::optional<DrivePath> toGoal(const Departure& from);
-  std::optional<DrivePath> toFrontier(const Departure& from);
   bool isNearGoal(const DriveState& state) const;
-  void take(Target target, const Situation& now);
-  void fail(const Situation& now);
+  Look look(const Situation& now) const;
+  Departure departureOf(const Situation& now, From from) const;
+  DrivePath untilRest(const Situation& now) const;
+  void apply(const Action& action, const Situation& now, DriveController& drive);
+
+  /** Leaves in m_found what it finds. */
+  Answer answer(const Action& question, const Situation& now);
+  void join(const Departure& from);
+  bool isBetter(const Situation& now) const;
+  std::optional<DrivePath> toGoal(const Departure& from);
+  std::optional<DrivePath> toFrontier(const Departure& from, bool last, bool& enclosed);
+  std::optional<DrivePath> recovery(const Situation& now, bool blind);
+  std::optional<DrivePath> back(const Situation& now) const;
 
   GuideOptions m_options;
   semantic_planning::SemanticPlanner& m_planner;
-  DrivePathCheck m_check;
+  PathCheck m_check;
   mrpt::math::TPose2D m_goal;
-  Target m_target = Target::None;
+  GuideState m_state;
+  std::optional<DrivePath> m_found;  ///< by the last question, if anything
   semantic_planning::PlanResult m_plan;
   bool m_planned = false;                   ///< the planner's roadmap is for the goal
   std::vector<mrpt::math::TPose2D> m_seen;  ///< frontiers that were visited, or not to be reached
-  double m_plannedAt = -1e9, m_blockedSince = -1, m_withoutSince = -1;
-  int m_replans = 0, m_plannedPaths = 0;
-  int m_timesBack = 0;      ///< since a path was planned
-  bool m_blindOut = false;  ///< the way out leads to its end, whatever is below the vehicle
-  bool m_leaving = false;   ///< comes to rest before the end of its path
-  bool m_enclosed = false;  ///< no way leads to the goal, whatever else is seen
-  bool m_gaveUp = false;
   std::string m_reason;
 };
-
-/** "goal", "frontier", "way out", "back" or "none". */
-const char* nameOf(DriveGuide::Target target);
 
 }  // namespace semantic_driving

@@ -11,7 +11,8 @@ struct ObstacleOptions {
   /** Ground of forbidden classes, even when flat. */
   bool forbiddenGround = true;
 
-  /** \throw std::invalid_argument naming the field and its value. */
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
 

@@ -8,10 +8,10 @@ namespace semantic_driving {
 /** Drives a path as it is, forward and backward stretches alike, and stops before what stands in
  * its way. The path's curvature steers; errors in place and heading are corrected as in Samson,
  * "Control of chained systems", 1995 (the law for a path given by its curvature). */
-class DriveTracker {
+class PathTracker {
  public:
   /** \throw std::invalid_argument bad options. */
-  DriveTracker(const DriveOptions& options, semantic_planning::Footprint footprint);
+  PathTracker(const DriveOptions& options, semantic_planning::Footprint footprint);
 
   void setPath(DrivePath path);
   const DrivePath& path() const { return m_path; }

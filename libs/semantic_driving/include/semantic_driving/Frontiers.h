@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_planning/planner/SemanticPlanner.h>
+#include <strict_files/OptionList.h>
 
 #include <limits>
 #include <vector>
@@ -12,6 +13,14 @@ struct FrontierOptions {
   double unknownFactor = 2;  ///< what a meter through the unknown counts against one on rank 0
   double apart = 3;          ///< between places, meters
   std::size_t most = 6;      ///< places
+  double sight = 1.4;        ///< how far from a place the unknown is, at most, meters
+  double lenient = 1.5;      ///< so near to the vehicle less than its clearance is enough, meters
+  double headingOver = 2;    ///< last part of the way that a place's heading is taken from, meters
+  double aroundGoal = 1;     ///< a goal that seems not to be passable counts as so wide, meters
+
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
+  void validate() const;
 };
 
 /** A place at the border of what is known. */
@@ -43,7 +52,8 @@ struct Exploration {
  * in the way stays there, so that nothing that is yet to be seen opens a way. Gaps count as
  * passable in doubt, as does all that is farther than the radius.
  * \param from where the vehicle is, on ground of height z (meters)
- * \param avoid places that are not looked for again, nor others within `apart` of them */
+ * \param avoid places that are not looked for again, nor others within `apart` of them
+ * \throw std::invalid_argument bad options. */
 Exploration findFrontiers(const semantic_planning::SemanticPlanner& planner,
                           const mrpt::math::TPose2D& from, double z,
                           const mrpt::math::TPose2D& goal,

@@ -8,10 +8,10 @@
 namespace semantic_driving {
 
 /** Where a vehicle has been, so that it can go back. What it goes back on is no track any more. */
-class DriveTrack {
+class DrivenTrack {
  public:
   /** \param length so much is kept at least, meters */
-  explicit DriveTrack(double length = 10) : m_length(length) {}
+  explicit DrivenTrack(double length = 10) : m_length(length) {}
 
   /** Called often, with each place where the vehicle is; map frame. */
   void add(const mrpt::math::TPose2D& pose);

@@ -1,4 +1,4 @@
-#include <semantic_driving/DriveWayOut.h>
+#include <semantic_driving/Recovery.h>
 
 #include <cmath>
 #include <limits>
@@ -45,10 +45,11 @@ GroundOptions withoutKeepingOff(GroundOptions ground) {
   return ground;
 }
 
-class WayOutSearch {
+class RecoverySearch {
  public:
-  WayOutSearch(const SemanticPlanner& planner, double z)
+  RecoverySearch(const SemanticPlanner& planner, double z, const RecoveryOptions& options)
       : m_planner(planner),
+        m_options(options),
         m_z(z),
         m_vehicle(withoutClearance(planner.options().vehicle)),
         m_order(allowingAll(planner.order())),
@@ -56,21 +57,25 @@ class WayOutSearch {
                  m_order),
         m_checker(m_ground, m_vehicle, m_order, planner.options().reading) {}
 
-  DrivePath search(const TPose2D& from, double radius, double nearest) {
+  DrivePath search(const TPose2D& from, double nearest) {
     const auto start = m_checker.place(from, m_z);
     if (!start) return {};
-    constexpr double kStep = 0.4;  // m
-    for (double r = nearest + kStep; r <= radius && r < m_leastForbidden + nearest + 2; r += kStep)
-      for (int direction = 0; direction < 16; ++direction)
-        for (int heading = 0; heading < 8; ++heading) {
-          const double to = from.phi + direction * M_PI / 8;
+    const double step = m_options.step;
+    for (double r = nearest + step; isWorthwhile(r, nearest); r += step)
+      for (int direction = 0; direction < m_options.directions; ++direction)
+        for (int heading = 0; heading < m_options.headings; ++heading) {
+          const double to = from.phi + direction * 2 * M_PI / m_options.directions;
           consider(*start, {from.x + r * std::cos(to), from.y + r * std::sin(to),
-                            from.phi + heading * M_PI / 4});
+                            from.phi + heading * 2 * M_PI / m_options.headings});
         }
     return DrivePath(m_best);
   }
 
  private:
+  bool isWorthwhile(double r, double nearest) const {
+    return r <= m_options.radius && r < m_leastForbidden + nearest + m_options.further;
+  }
+
   void consider(const GroundPose& start, const TPose2D& pose) {
     if (m_planner.check(pose, m_z) != PlanStatus::Found) return;
     const auto end = m_checker.place(pose, m_z);
@@ -84,14 +89,15 @@ class WayOutSearch {
       if (m_planner.order().rank(points[i].classId) == colored_graph::kForbidden)
         forbidden += piece;
     }
-    constexpr double kSame = 0.1;  // m
-    const bool less = forbidden < m_leastForbidden - kSame;
-    if (!less && (forbidden > m_leastForbidden + kSame || length >= m_leastLength)) return;
+    const double same = m_options.same;
+    const bool less = forbidden < m_leastForbidden - same;
+    if (!less && (forbidden > m_leastForbidden + same || length >= m_leastLength)) return;
     m_leastForbidden = forbidden, m_leastLength = length;
     m_best = points;
   }
 
   const SemanticPlanner& m_planner;
+  const RecoveryOptions& m_options;
   double m_z;
   VehicleOptions m_vehicle;
   ClassOrder m_order;
@@ -103,9 +109,26 @@ class WayOutSearch {
 
 }  // namespace
 
-DrivePath findWayOut(const SemanticPlanner& planner, const TPose2D& from, double z, double radius,
-                     double nearest) {
-  return WayOutSearch(planner, z).search(from, radius, nearest);
+void RecoveryOptions::describe(strict_files::OptionList& list) {
+  using strict_files::above;
+  using strict_files::atLeast;
+  list.add("radius", radius, "m", above(0), "how far ways out are looked for");
+  list.add("blind", blind, "m", atLeast(0),
+           "how near the sensors may not see the ground, at the beginning");
+  list.add("step", step, "m", above(0), "between distances of places that are tried");
+  list.add("directions", directions, "", atLeast(1), "wherein they lie");
+  list.add("headings", headings, "", atLeast(1), "of each place");
+  list.add("same", same, "m", atLeast(0), "of forbidden ground, that makes no difference");
+  list.add("further", further, "m", atLeast(0),
+           "beyond the least way over forbidden ground, where a shorter way is looked for");
+}
+
+void RecoveryOptions::validate() const { strict_files::checkOptions(*this, "RecoveryOptions"); }
+
+DrivePath findRecovery(const SemanticPlanner& planner, const TPose2D& from, double z,
+                       const RecoveryOptions& options, double nearest) {
+  options.validate();
+  return RecoverySearch(planner, z, options).search(from, nearest);
 }
 
 }  // namespace semantic_driving

@@ -7,6 +7,12 @@
 
 namespace semantic_driving {
 
+/** By how much paths may differ and be equally good: the larger of both. */
+struct PathTolerance {
+  double length = 0.5;  ///< meters
+  double share = 0.1;   ///< of a path's length
+};
+
 /** What the map says of a path that was planned some time ago. */
 struct PathJudgment {
   /** Meters from where it was looked at to where the vehicle does not fit, or must not be. */
@@ -15,16 +21,15 @@ struct PathJudgment {
   double length = 0;                  ///< meters
 
   bool isFree() const { return freeFor == std::numeric_limits<double>::infinity(); }
-  /** Classes before length; what differs by less than half a meter, or a tenth of the length, is
-   * the same. */
-  bool isClearlyBetterThan(const PathJudgment& other) const;
+  /** Classes before length. \param tolerance its share is of the other path's length */
+  bool isClearlyBetterThan(const PathJudgment& other, const PathTolerance& tolerance = {}) const;
 };
 
 /** Looks at paths again, on the planner's ground as it is now. */
-class DrivePathCheck {
+class PathCheck {
  public:
   /** \param planner must outlive this. */
-  explicit DrivePathCheck(const semantic_planning::SemanticPlanner& planner);
+  explicit PathCheck(const semantic_planning::SemanticPlanner& planner);
 
   /** \param from arc length, meters */
   PathJudgment judge(const DrivePath& path, double from) const;

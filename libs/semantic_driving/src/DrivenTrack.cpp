@@ -1,5 +1,5 @@
 #include <mrpt/math/wrap2pi.h>
-#include <semantic_driving/DriveTrack.h>
+#include <semantic_driving/DrivenTrack.h>
 
 #include <cmath>
 
@@ -28,14 +28,14 @@ double curvature(const TPose2D& a, const TPose2D& b) {
 
 }  // namespace
 
-void DriveTrack::add(const TPose2D& pose) {
+void DrivenTrack::add(const TPose2D& pose) {
   while (m_poses.size() > 1 && isSame(pose, m_poses[m_poses.size() - 2])) m_poses.pop_back();
   if (m_poses.empty() || distance(pose, m_poses.back()) >= kSpacing) m_poses.push_back(pose);
   const auto most = static_cast<std::size_t>(m_length / kSpacing);
   while (m_poses.size() > most) m_poses.pop_front();
 }
 
-std::vector<PathPoint> DriveTrack::back() const {
+std::vector<PathPoint> DrivenTrack::back() const {
   std::vector<PathPoint> points;
   for (auto pose = m_poses.rbegin(); pose != m_poses.rend(); ++pose) {
     PathPoint p;

@@ -1,4 +1,4 @@
-#include <semantic_driving/DrivePathCheck.h>
+#include <semantic_driving/PathCheck.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,9 @@ using semantic_planning::Fit;
 using semantic_planning::PathPoint;
 using semantic_planning::SemanticPlanner;
 
-bool PathJudgment::isClearlyBetterThan(const PathJudgment& other) const {
-  const double same = std::max(0.5, 0.1 * other.length);  // m
+bool PathJudgment::isClearlyBetterThan(const PathJudgment& other,
+                                       const PathTolerance& tolerance) const {
+  const double same = std::max(tolerance.length, tolerance.share * other.length);  // m
   for (std::size_t rank = lengthPerRank.size(); rank-- > 1;) {
     const double more = lengthPerRank[rank] - other.lengthPerRank[rank];
     if (std::abs(more) > same) return more < 0;
@@ -18,12 +19,12 @@ bool PathJudgment::isClearlyBetterThan(const PathJudgment& other) const {
   return length < other.length - same;
 }
 
-DrivePathCheck::DrivePathCheck(const SemanticPlanner& planner)
+PathCheck::PathCheck(const SemanticPlanner& planner)
     : m_planner(planner),
       m_checker(planner.ground(), planner.options().vehicle, planner.order(),
                 planner.options().reading) {}
 
-PathJudgment DrivePathCheck::judge(const DrivePath& path, double from) const {
+PathJudgment PathCheck::judge(const DrivePath& path, double from) const {
   PathJudgment judgment;
   judgment.lengthPerRank.resize(m_planner.order().ranks());
   const double step = m_planner.ground().voxelSize();

@@ -1,5 +1,5 @@
 #include <mrpt/math/wrap2pi.h>
-#include <semantic_driving/DriveTracker.h>
+#include <semantic_driving/PathTracker.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,41 +11,36 @@ using semantic_planning::PathPoint;
 
 namespace {
 
-constexpr double kEnd = 0.04;         // m: stretches end when no more than this is left
-constexpr double kSlowest = 0.1;      // m/s, as long as there is way left
-constexpr double kSideGain = 1.2;     // 1/m^2
-constexpr double kHeadingGain = 2.0;  // 1/m
-
 }  // namespace
 
-DriveTracker::DriveTracker(const DriveOptions& options, semantic_planning::Footprint footprint)
+PathTracker::PathTracker(const DriveOptions& options, semantic_planning::Footprint footprint)
     : m_options(options), m_footprint(std::move(footprint)) {
   m_options.validate();
 }
 
-void DriveTracker::setPath(DrivePath path) {
+void PathTracker::setPath(DrivePath path) {
   m_path = std::move(path);
   m_progress = m_offset = 0;
 }
 
-bool DriveTracker::finished() const {
-  return m_path.empty() || m_progress >= m_path.length() - kEnd;
+bool PathTracker::finished() const {
+  return m_path.empty() || m_progress >= m_path.length() - m_options.pathEnd;
 }
 
-void DriveTracker::locate(const DriveState& state) {
+void PathTracker::locate(const DriveState& state) {
   if (m_path.empty()) return;
-  constexpr double kWindow = 1.5;  // m
   const double end = m_path.stretchEnd(m_progress);
-  const double from = std::max(m_path.stretchBegin(m_progress + kEnd), m_progress - 0.3);
-  m_progress =
-      m_path.nearest(state.pose, std::min(from, m_progress), std::min(end, m_progress + kWindow));
-  if (end - m_progress < kEnd && end < m_path.length()) m_progress = end;
+  const double from = std::max(m_path.stretchBegin(m_progress + m_options.pathEnd),
+                               m_progress - m_options.searchBack);
+  m_progress = m_path.nearest(state.pose, std::min(from, m_progress),
+                              std::min(end, m_progress + m_options.searchAhead));
+  if (end - m_progress < m_options.pathEnd && end < m_path.length()) m_progress = end;
   const PathPoint p = m_path.at(m_progress);
   m_offset = std::hypot(p.x - state.pose.x, p.y - state.pose.y);
 }
 
-bool DriveTracker::isFree(const TPose2D& relative, const ObstaclePoints& obstacles,
-                          double margin) const {
+bool PathTracker::isFree(const TPose2D& relative, const ObstaclePoints& obstacles,
+                         double margin) const {
   const double c = std::cos(relative.phi), s = std::sin(relative.phi);
   return std::none_of(obstacles.begin(), obstacles.end(), [&](const Eigen::Vector2d& o) {
     const double x = o.x() - relative.x, y = o.y() - relative.y;
@@ -53,8 +48,8 @@ bool DriveTracker::isFree(const TPose2D& relative, const ObstaclePoints& obstacl
   });
 }
 
-bool DriveTracker::approaches(const DriveCommand& command, const ObstaclePoints& obstacles,
-                              double margin) const {
+bool PathTracker::approaches(const DriveCommand& command, const ObstaclePoints& obstacles,
+                             double margin) const {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& corner : m_footprint)
     middle += corner / static_cast<double>(m_footprint.size());
@@ -64,32 +59,32 @@ bool DriveTracker::approaches(const DriveCommand& command, const ObstaclePoints&
   });
 }
 
-double DriveTracker::freeAhead(const DriveState& state, const ObstaclePoints& obstacles) const {
-  constexpr double kStep = 0.15;  // m
+double PathTracker::freeAhead(const DriveState& state, const ObstaclePoints& obstacles) const {
+  const double step = m_options.lookStep;
   const double most = std::min(m_options.lookAhead, m_path.stretchEnd(m_progress) - m_progress);
   if (most <= 0) return 0;
   // What is within the margin already does not keep the vehicle from driving away from it.
   const double margin = isFree({}, obstacles, m_options.margin) ? m_options.margin : 0;
-  for (double ahead = kStep; ahead < most + kStep; ahead += kStep) {
+  for (double ahead = step; ahead < most + step; ahead += step) {
     const TPose2D pose = poseOf(m_path.at(m_progress + std::min(ahead, most)));
     const TPose2D relative = pose - state.pose;
-    if (!isFree(relative, obstacles, margin)) return ahead - kStep;
+    if (!isFree(relative, obstacles, margin)) return ahead - step;
   }
   return most;
 }
 
-double DriveTracker::speedAt(const PathPoint& place, double left, double free, double limit) const {
-  const double braking = 0.8 * m_options.maxAcceleration;
+double PathTracker::speedAt(const PathPoint& place, double left, double free, double limit) const {
+  const double braking = m_options.braking();
   const double curve = std::abs(place.curvature) > 1e-6
                            ? std::sqrt(m_options.maxSideAcceleration / std::abs(place.curvature))
                            : limit;
-  const double end = std::max(kSlowest, std::sqrt(2 * braking * left));
-  const double stop = std::sqrt(2 * braking * std::max(0.0, free - 0.3));
+  const double end = std::max(m_options.slowest, std::sqrt(2 * braking * left));
+  const double stop = std::sqrt(2 * braking * std::max(0.0, free - m_options.standoff));
   return std::min({limit, curve, end, free >= m_options.lookAhead || free >= left ? limit : stop});
 }
 
-DriveCommand DriveTracker::command(const DriveState& state, const ObstaclePoints& obstacles,
-                                   double speedLimit) const {
+DriveCommand PathTracker::command(const DriveState& state, const ObstaclePoints& obstacles,
+                                  double speedLimit) const {
   if (finished()) return {};
   const PathPoint place = m_path.at(m_progress + 1e-3);
   const double left = m_path.stretchEnd(m_progress) - m_progress;
@@ -100,8 +95,9 @@ DriveCommand DriveTracker::command(const DriveState& state, const ObstaclePoints
   const double heading = mrpt::math::wrapToPi(state.pose.phi - place.heading);
   const double sinc = std::abs(heading) < 1e-6 ? 1 : std::sin(heading) / heading;
   const double bend = std::max(0.3, 1 - place.curvature * side);
-  const double turn = v * place.curvature * std::cos(heading) / bend - kSideGain * v * side * sinc -
-                      kHeadingGain * std::abs(v) * heading;
+  const double turn = v * place.curvature * std::cos(heading) / bend -
+                      m_options.sideGain * v * side * sinc -
+                      m_options.headingGain * std::abs(v) * heading;
   const double most = std::abs(v) / m_options.turningRadius;
   return {v, std::clamp(turn, -most, most)};
 }

@@ -1,15 +1,15 @@
 #include <gtest/gtest.h>
 #include <semantic_driving/DrivePath.h>
-#include <semantic_driving/DriveTrack.h>
+#include <semantic_driving/DrivenTrack.h>
 
 #include <cmath>
 
 using namespace semantic_driving;
 using namespace semantic_planning;
 
-TEST(DriveTrack, LeadsBackTheWayTheVehicleCame) {
+TEST(DrivenTrack, LeadsBackTheWayTheVehicleCame) {
   constexpr double kRadius = 2;
-  DriveTrack track;
+  DrivenTrack track;
   for (double a = 0; a < 1; a += 0.01)  // ahead on an arc to the left
     track.add({kRadius * std::sin(a), kRadius * (1 - std::cos(a)), a});
   const DrivePath back(track.back());
@@ -22,8 +22,8 @@ TEST(DriveTrack, LeadsBackTheWayTheVehicleCame) {
   EXPECT_NEAR(std::hypot(back.at(2).x, back.at(2).y), 0, 0.1);
 }
 
-TEST(DriveTrack, ForgetsWhatTheVehicleWentBackOnAndWhatIsLongAgo) {
-  DriveTrack track(3);
+TEST(DrivenTrack, ForgetsWhatTheVehicleWentBackOnAndWhatIsLongAgo) {
+  DrivenTrack track(3);
   for (double x = 0; x <= 5; x += 0.05) track.add({x, 0, 0});
   const double kept = DrivePath(track.back()).length();
   EXPECT_GE(kept, 2.9);

@@ -1,4 +1,4 @@
-#include <semantic_driving/DriveFrontier.h>
+#include <semantic_driving/Frontiers.h>
 
 #include <algorithm>
 #include <array>
@@ -25,11 +25,13 @@ constexpr std::array<Column, 8> kNeighbors = {
 /** Dijkstra's search over the columns around the vehicle. */
 class GroundFlood {
  public:
-  GroundFlood(const SemanticPlanner& planner, const TPose2D& from, int z, double radius)
+  GroundFlood(const SemanticPlanner& planner, const TPose2D& from, int z,
+              const FrontierOptions& options)
       : m_planner(planner),
         m_ground(planner.ground()),
         m_center(m_ground.columnAt(from.x, from.y)),
-        m_square(m_center, static_cast<int>(radius / m_ground.voxelSize())),
+        m_square(m_center, static_cast<int>(options.radius / m_ground.voxelSize())),
+        m_lenient(options.lenient / m_ground.voxelSize()),
         m_places(m_square.size()) {
     for (const Eigen::Vector2d& p : planner.options().vehicle.footprint)
       m_radius = std::min(m_radius, std::abs(p.y()));
@@ -63,8 +65,7 @@ class GroundFlood {
   using Open = std::pair<double, std::size_t>;
 
   bool isNear(Column c) const {  // where the vehicle stands there may be less clearance
-    const double reach = 1.5 / m_ground.voxelSize();
-    return std::hypot(c.x - m_center.x, c.y - m_center.y) < reach;
+    return std::hypot(c.x - m_center.x, c.y - m_center.y) < m_lenient;
   }
 
   void offer(Column c, double cost, int z, Column from) {
@@ -103,6 +104,7 @@ class GroundFlood {
   const Ground& m_ground;
   Column m_center;
   ColumnSquare m_square;
+  double m_lenient;  // voxels
   double m_radius = 1e3;
   std::vector<Place> m_places;
   std::priority_queue<Open, std::vector<Open>, std::greater<>> m_open;
@@ -142,7 +144,7 @@ class FrontierSearch {
 
   /** Of the goal's region, in one of eight directions. */
   bool seesUnknown(Column c, int z) const {
-    const int far = static_cast<int>(std::lround(1.4 / m_ground.voxelSize()));
+    const int far = static_cast<int>(std::lround(m_options.sight / m_ground.voxelSize()));
     return std::any_of(kNeighbors.begin(), kNeighbors.end(), [&](const Column& d) {
       for (int i = 1; i <= far; ++i) {
         const Column there{c.x + i * d.x, c.y + i * d.y};
@@ -155,8 +157,9 @@ class FrontierSearch {
   }
 
   double headingAt(Column c) const {
+    const auto columns = std::lround(m_options.headingOver / m_ground.voxelSize());
     Column before = c;
-    for (int i = 0; i < 10; ++i) before = m_flood.at(before).from;
+    for (long i = 0; i < columns; ++i) before = m_flood.at(before).from;
     return before == c ? 0 : std::atan2(c.y - before.y, c.x - before.x);
   }
 
@@ -168,13 +171,34 @@ class FrontierSearch {
 
 }  // namespace
 
+void FrontierOptions::describe(strict_files::OptionList& list) {
+  using strict_files::above;
+  using strict_files::atLeast;
+  list.add("radius", radius, "m", above(0), "how far places are looked for");
+  list.add("unknown_factor", unknownFactor, "", atLeast(0),
+           "what a meter through the unknown counts against one on the best class");
+  list.add("apart", apart, "m", atLeast(0), "between places");
+  list.add("most", most, "", atLeast(1), "places");
+  list.add("sight", sight, "m", above(0), "how far from a place the unknown is, at most");
+  list.add("lenient", lenient, "m", atLeast(0),
+           "so near to the vehicle less than its clearance is enough");
+  list.add("heading_over", headingOver, "m", above(0),
+           "last part of the way, which a place's heading is taken from");
+  list.add("around_goal", aroundGoal, "m", atLeast(0),
+           "a goal that seems not to be passable counts as so wide");
+}
+
+void FrontierOptions::validate() const { strict_files::checkOptions(*this, "FrontierOptions"); }
+
 Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, double z,
                           const TPose2D& goal, const std::vector<TPose2D>& avoid,
                           const FrontierOptions& options) {
+  options.validate();
   const double voxel = planner.ground().voxelSize();
   const int key = planner.ground().keyOf(z);
-  const GroundFlood flood(planner, from, key, options.radius);
-  const GoalRegion region(planner, flood.square(), flood.reached(), from, z, goal);
+  const GroundFlood flood(planner, from, key, options);
+  const GoalRegion region(planner, flood.square(), flood.reached(), from, z, goal,
+                          options.aroundGoal);
   Exploration found;
   found.enclosed = region.isEnclosed();
   if (!region.isOpen()) found.goalArea = region.columns() * voxel * voxel;

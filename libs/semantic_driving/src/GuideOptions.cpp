@@ -1,0 +1,56 @@
+#include <semantic_driving/GuideOptions.h>
+
+namespace semantic_driving {
+
+using strict_files::above;
+using strict_files::atLeast;
+using strict_files::between;
+using strict_files::OptionList;
+
+namespace {
+
+constexpr double kBelowOne = 1 - 0x1p-20;
+
+void describeChanges(GuideOptions& o, OptionList& list) {
+  list.add("slow", o.slow, "m/s", atLeast(0),
+           "a faster vehicle comes to rest before it leaves its path for another one");
+  list.add("rest_braking", o.restBraking, "", {0, kBelowOne, false},
+           "of what the tracker brakes with, to come to rest so");
+  list.add("rest_margin", o.restMargin, "m", atLeast(0), "more way than that takes");
+  list.add("lead_time", o.leadTime, "s", atLeast(0), "until a better path leaves the present one");
+  list.add("lead_distance", o.leadDistance, "m", above(0), "least way until then");
+  list.add("same_length", o.same.length, "m", atLeast(0),
+           "paths that differ by less are equally good");
+  list.add("same_share", o.same.share, "", between(0, 1),
+           "paths that differ by less of their length are, too");
+}
+
+}  // namespace
+
+void GuideOptions::describe(OptionList& list) {
+  list.add("period", period, "s", atLeast(0), "between looks for a better path");
+  list.add("patience", patience, "s", atLeast(0),
+           "for what stands in the way to go away, or to be passed");
+  list.add("stuck_after", stuckAfter, "s", atLeast(0),
+           "without getting on, until another path is looked for");
+  list.add("give_up_after", giveUpAfter, "s", atLeast(0), "at rest without any path");
+  list.add("at_goal", atGoal, "m", above(0), "so near to the goal's place is there");
+  list.add("at_rest", atRest, "m/s", above(0), "a slower vehicle stands");
+  describeChanges(*this, list);
+  list.add("near_frontier", nearFrontier, "m", atLeast(0),
+           "before a frontier, where the next one is looked for");
+  list.add("shortest_way", shortestWay, "m", atLeast(0),
+           "nearer frontiers are seen from where the vehicle is");
+  list.add("back_beyond", backBeyond, "m", atLeast(0),
+           "back on the track beyond where planning is possible again");
+  list.add("most_times_back", mostTimesBack, "", atLeast(0),
+           "back on the track without a plan between, before there is no path");
+}
+
+void GuideOptions::validate() const {
+  strict_files::checkOptions(*this, "GuideOptions");
+  frontiers.validate();
+  recovery.validate();
+}
+
+}  // namespace semantic_driving

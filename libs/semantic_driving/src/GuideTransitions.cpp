@@ -1,0 +1,182 @@
+#include <semantic_driving/GuideTransitions.h>
+
+#include <array>
+#include <utility>
+
+namespace semantic_driving {
+
+const strict_files::Choices<Target>& choicesOf(Target) {
+  static const strict_files::Choices<Target> choices = {{"none", Target::None},
+                                                        {"goal", Target::Goal},
+                                                        {"frontier", Target::Frontier},
+                                                        {"recovery", Target::Recovery},
+                                                        {"back", Target::Back}};
+  return choices;
+}
+
+const char* nameOf(Target target) { return strict_files::nameIn(choicesOf(target), target); }
+
+namespace {
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+template <class A>
+bool does(const GuideState& state) {
+  return std::holds_alternative<A>(state.activity);
+}
+
+/** Where it is kept since when the way is blocked; null if that does not matter. */
+std::optional<double>* blockedSince(Activity& activity) {
+  using Since = std::optional<double>*;
+  return std::visit(
+      Overloaded{[](ToGoal& a) -> Since { return &a.blockedSince; },
+                 [](ToFrontier& a) -> Since { return &a.blockedSince; },
+                 [](Recovering& a) -> Since { return a.blind ? &a.blockedSince : nullptr; },
+                 [](auto&) -> Since { return nullptr; }},
+      activity);
+}
+
+bool isStuck(const GuideState& state, const Look& look, const GuideOptions& options) {
+  return look.stoppedFor >= options.stuckAfter &&
+         look.seconds - state.plannedAt >= options.patience;
+}
+
+/** The path is at its end, leads where the vehicle need not go any more, or was blocked for long.
+ * Notes since when it is blocked. */
+bool mustChange(GuideState& state, const Look& look, const GuideOptions& options) {
+  if (look.finished) return !look.hasPath || !(does<ToGoal>(state) && look.nearGoal);
+  if (const auto* recovering = std::get_if<Recovering>(&state.activity);
+      recovering && !recovering->blind && look.mayPlan)
+    return true;
+  if (auto* since = blockedSince(state.activity)) {
+    if (!look.blocked) since->reset();
+    if (look.blocked && !*since) *since = look.seconds;
+    if (*since && look.seconds - **since >= options.patience) return true;
+  }
+  return isStuck(state, look, options);
+}
+
+Transition choose(GuideState state, const Look& look, const GuideOptions& options) {
+  if (!look.finished && look.speed > options.slow) {
+    state.comesToRest = true;
+    return {state, ComeToRest{}};
+  }
+  state.plannedAt = look.seconds;
+  if (!look.mayPlan) {
+    state.recoveredBlind = false;
+    return {state, SeekRecovery{false}};
+  }
+  const bool replaces = std::exchange(state.comesToRest, false) || !look.finished;
+  return {state, SeekGoal{From::Here, replaces, true}};
+}
+
+Transition improve(GuideState state, const Look& look, const GuideOptions& options) {
+  state.plannedAt = look.seconds;
+  const bool exploring = does<ToFrontier>(state);
+  const bool next = exploring && look.left <= options.nearFrontier;
+  if (!look.mayPlanAhead || (exploring && !look.mayStandAtGoal && !next)) return {state, GoOn{}};
+  return {state, SeekGoal{From::Ahead, !exploring, next}};
+}
+
+/** Takes a path that was found. */
+Transition follow(GuideState state, Activity activity) {
+  state.activity = activity;
+  return {state, Follow{}};
+}
+
+Transition followPlan(GuideState state, Activity activity, bool replaces) {
+  state.hasPlanned = true;
+  state.timesBack = 0;
+  if (replaces) ++state.replans;
+  return follow(state, activity);
+}
+
+Transition fail(GuideState state, double seconds, const GuideOptions& options) {
+  const auto* idle = std::get_if<Idle>(&state.activity);
+  const double since = idle && idle->since ? *idle->since : seconds;
+  state.activity = Idle{since};
+  if (seconds - since >= options.giveUpAfter) state.activity = GaveUp{};
+  return {state, Stop{}};
+}
+
+Transition goBack(GuideState state, double seconds, const GuideOptions& options) {
+  if (state.timesBack >= options.mostTimesBack) return fail(state, seconds, options);
+  return {state, SeekBack{}};
+}
+
+Transition after(GuideState state, const SeekGoal& sought, const Answer& answer,
+                 const GuideOptions& options) {
+  const bool ahead = sought.from == From::Ahead;
+  if (!answer.found) {
+    if (!sought.orFrontier) return {state, GoOn{}};
+    const bool last = state.timesBack >= options.mostTimesBack;
+    return {state, SeekFrontier{sought.from, sought.replaces, last}};
+  }
+  if (ahead && (answer.empty || (sought.replaces && !answer.better))) return {state, GoOn{}};
+  return followPlan(state, ToGoal{}, sought.replaces);
+}
+
+Transition after(GuideState state, const SeekFrontier& sought, const Answer& answer,
+                 const GuideOptions& options) {
+  const bool ahead = sought.from == From::Ahead;
+  state.enclosed = answer.enclosed;
+  if (answer.found && !(ahead && answer.empty))
+    return followPlan(state, ToFrontier{}, sought.replaces);
+  if (ahead) return {state, GoOn{}};
+  // At the beginning it may stand where its sensors do not see the ground.
+  if (does<Idle>(state) && !state.hasPlanned && !(state.enclosed && state.recoveredBlind)) {
+    state.recoveredBlind = true;
+    return {state, SeekRecovery{true}};
+  }
+  if (state.enclosed) return fail(state, answer.seconds, options);
+  return goBack(state, answer.seconds, options);
+}
+
+Transition after(GuideState state, const SeekRecovery& sought, const Answer& answer,
+                 const GuideOptions& options) {
+  if (answer.found) return follow(state, Recovering{sought.blind, {}});
+  return goBack(state, answer.seconds, options);
+}
+
+Transition after(GuideState state, const SeekBack&, const Answer& answer,
+                 const GuideOptions& options) {
+  if (!answer.found) return fail(state, answer.seconds, options);
+  ++state.timesBack;
+  return follow(state, GoingBack{});
+}
+
+/** No question. */
+template <class Other>
+Transition after(GuideState state, const Other&, const Answer&, const GuideOptions&) {
+  return {state, GoOn{}};
+}
+
+}  // namespace
+
+Target GuideState::target() const {
+  static constexpr std::array<Target, std::variant_size_v<Activity>> kTargets = {
+      Target::None, Target::Goal, Target::Frontier, Target::Recovery, Target::Back, Target::None};
+  return kTargets[activity.index()];
+}
+
+Transition transition(GuideState state, const Look& look, const GuideOptions& options) {
+  if (does<GaveUp>(state)) return {state, Stop{}};
+  if (does<Idle>(state) || mustChange(state, look, options)) return choose(state, look, options);
+  const auto* blocked = blockedSince(state.activity);
+  const bool soon = look.seconds - state.plannedAt < options.period;
+  if (does<GoingBack>(state) || soon || (blocked && *blocked)) return {state, GoOn{}};
+  return improve(state, look, options);
+}
+
+Transition transition(GuideState state, const Answer& answer, const GuideOptions& options) {
+  return std::visit(
+      [&](const auto& question) { return after(std::move(state), question, answer, options); },
+      answer.question);
+}
+
+}  // namespace semantic_driving
