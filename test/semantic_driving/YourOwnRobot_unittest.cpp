@@ -5,9 +5,9 @@
 #include <semantic_driving/DriveGuide.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 
-#include "../../apps/semantic-map-drive/SimulatedRobot.h"
-#include "../../apps/semantic-map-drive/SimulatedSensors.h"
 #include "Plain.h"
+#include "simulated_drive/SimulatedRobot.h"
+#include "simulated_drive/SimulatedSensors.h"
 
 using namespace semantic_driving;
 using namespace semantic_planning;
@@ -31,7 +31,7 @@ class Robot {
   }
 
  private:
-  semantic_map_drive::SimulatedRobot m_robot;
+  simulated_drive::SimulatedRobot m_robot;
   double m_time = 0;
 };
 
@@ -39,7 +39,7 @@ class Robot {
 class Sensor {
  public:
   Sensor(const synthetic_world::World& world, const Robot& robot,
-         const semantic_map_drive::SensorConfig& config)
+         const simulated_drive::SensorConfig& config)
       : m_world(world), m_robot(robot), m_sensors(lidarOf(config), false) {}
 
   bool hasNew() {
@@ -53,7 +53,7 @@ class Sensor {
   Eigen::Isometry3d T_map_sensor() const { return T_map_robot() * m_seen.T_robot_sensor; }
 
  private:
-  static semantic_map_drive::SensorConfig lidarOf(semantic_map_drive::SensorConfig config) {
+  static simulated_drive::SensorConfig lidarOf(simulated_drive::SensorConfig config) {
     config.hasCamera = false;
     return config;
   }
@@ -64,15 +64,15 @@ class Sensor {
 
   const synthetic_world::World& m_world;
   const Robot& m_robot;
-  semantic_map_drive::SimulatedSensors m_sensors;
-  semantic_map_drive::Observation m_seen;
+  simulated_drive::SimulatedSensors m_sensors;
+  simulated_drive::Observation m_seen;
   double m_seenAt = -1;
 };
 
 }  // namespace
 
 TEST(YourOwnRobot, DrivesToItsGoalByTheProgramOfTheDocument) {
-  const semantic_map_drive::DriveConfig config = smallConfig();
+  const simulated_drive::DriveConfig config = smallConfig();
   const synthetic_world::World world = plain();
   const auto& classes = synthetic_world::classTable();
   const auto order = syntheticOrder();
