@@ -33,24 +33,34 @@ endfunction()
 function(mso_add_app name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE mso_settings application ${ARG_DEPENDS} nlohmann_json::nlohmann_json)
+  target_link_libraries(${name} PRIVATE mso_settings application ${ARG_DEPENDS})
   set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   set_property(GLOBAL APPEND PROPERTY MSO_APPS ${name})
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
 endfunction()
 
-# mso_add_test(NAME SOURCES ... [DEPENDS ...] [PRECOMPILE ...]): one GoogleTest program, each of its cases one ctest.
+# What all tests are built with. Their own code is compiled once and runs for moments: it is optimized little.
+add_library(mso_test_settings INTERFACE)
+target_compile_options(mso_test_settings INTERFACE $<$<CONFIG:Release>:-O1>)
+target_link_libraries(mso_test_settings INTERFACE GTest::gtest GTest::gtest_main rapidcheck
+  nlohmann_json::nlohmann_json)
+
+# mso_add_test(NAME [MRPT] SOURCES ... [DEPENDS ...]): one GoogleTest program, each of its cases one ctest.
+# With MRPT it takes the precompiled headers that have MRPT's observations, too (test/support/CMakeLists.txt).
 # Tests find the sources through MSO_SOURCE_DIR, the programs through MSO_BIN_DIR, and data that is not in
 # the repository through the environment variable SEMANTIC_OCTREE_DATA.
 function(mso_add_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "MRPT" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
+  set(precompiled test_precompiled)
+  if(ARG_MRPT)
+    set(precompiled test_precompiled_mrpt)
+  endif()
   add_executable(${name} ${ARG_SOURCES})
-  target_precompile_headers(${name} PRIVATE <gtest/gtest.h> ${ARG_PRECOMPILE})
-  target_link_libraries(${name} PRIVATE mso_settings ${ARG_DEPENDS} GTest::gtest GTest::gtest_main rapidcheck
-    nlohmann_json::nlohmann_json)
+  target_precompile_headers(${name} REUSE_FROM ${precompiled})
+  target_link_libraries(${name} PRIVATE mso_settings mso_test_settings ${ARG_DEPENDS})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test/support)
   target_compile_definitions(${name} PRIVATE
     MSO_SOURCE_DIR="${PROJECT_SOURCE_DIR}" MSO_BIN_DIR="${CMAKE_BINARY_DIR}/bin" MSO_LIB_DIR="${CMAKE_BINARY_DIR}/lib")

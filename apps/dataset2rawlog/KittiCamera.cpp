@@ -3,7 +3,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
-#include "TextFile.h"
+#include <strict_files/TextFile.h>
 
 namespace dataset2rawlog {
 

@@ -5,9 +5,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <strict_files/TextFile.h>
 #include "Conversion.h"
 #include "Output.h"
-#include "TextFile.h"
 
 namespace dataset2rawlog {
 

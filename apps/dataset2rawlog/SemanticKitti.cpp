@@ -5,10 +5,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include <strict_files/TextFile.h>
 #include "Conversion.h"
 #include "KittiCamera.h"
 #include "Output.h"
-#include "TextFile.h"
 
 namespace dataset2rawlog {
 

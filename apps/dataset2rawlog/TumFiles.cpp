@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "TextFile.h"
+#include <strict_files/TextFile.h>
 
 namespace dataset2rawlog {
 

@@ -1,5 +1,7 @@
 #include "StudyFiles.h"
 
+#include <strict_files/Csv.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -7,11 +9,10 @@
 namespace drive_study {
 
 using nlohmann::ordered_json;
-using semantic_map_drive::DriveEnd;
+using simulated_drive::DriveEnd;
+using strict_files::csvField;
 
 namespace {
-
-std::string quoted(const std::string& text) { return '"' + text + '"'; }
 
 void addPose(std::ostream& out, const mrpt::math::TPose2D& pose) {
   out << pose.x << ',' << pose.y << ',' << pose.phi * 180 / M_PI << ',';
@@ -63,7 +64,7 @@ std::string toCsv(const std::vector<Trial>& trials) {
         << nameOf(t.end) << ',' << t.fault() << ',' << t.seconds << ',' << t.length << ','
         << t.badDriven << ',' << t.badFollowed << ',' << t.collisions << ',' << t.leastClearance
         << ',' << t.replans << ',' << t.explored << ',' << t.processorSeconds << ','
-        << quoted(t.task.reason) << ',' << quoted(t.reason) << '\n';
+        << csvField(t.task.reason) << ',' << csvField(t.reason) << '\n';
   }
   return out.str();
 }

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "../semantic-map-drive/DriveLoop.h"
 #include "TrueMap.h"
+#include "simulated_drive/DriveLoop.h"
 
 namespace drive_study {
 
@@ -30,7 +30,7 @@ TaskDraw::TaskDraw(const World& world, const ClassOrder& order, const VehicleOpt
                    const TaskOptions& options)
     : m_world(world),
       m_order(order),
-      m_footprint(semantic_map_drive::trueFootprint(vehicle)),
+      m_footprint(simulated_drive::trueFootprint(vehicle)),
       m_options(options),
       m_random(options.seed) {
   m_options.validate();

@@ -2,12 +2,12 @@
 
 #include <utility>
 
-#include "../semantic-map-drive/DriveFiles.h"
-#include "../semantic-map-drive/Stopwatch.h"
+#include "measuring/Stopwatch.h"
+#include "simulated_drive/DriveFiles.h"
 
 namespace drive_study {
 
-using namespace semantic_map_drive;
+using namespace simulated_drive;
 
 std::string Trial::fault() const {
   constexpr double kMore = 1.05, kVoxel = 0.2;  // m: lengths are no better known
@@ -20,7 +20,7 @@ std::string Trial::fault() const {
 
 Trial runTrial(const DriveConfig& config, synthetic_world::World& world,
                const colored_graph::ClassOrder& order, const Task& task) {
-  Stopwatch watch;
+  const measuring::Stopwatch watch(measuring::TimeOf::Thread);
   Events events;
   if (task.enclosed) events.roadblocks = barriersAround({task.goal.x, task.goal.y}, kBarriersAt);
   DriveLoop loop(config, world, order, task.start, task.goal, events);

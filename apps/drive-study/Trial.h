@@ -1,6 +1,6 @@
 #pragma once
-#include "../semantic-map-drive/DriveLoop.h"
 #include "Tasks.h"
+#include "simulated_drive/DriveLoop.h"
 
 namespace drive_study {
 
@@ -9,7 +9,7 @@ struct Trial {
   std::string scene;
   int number = 0;
   Task task;
-  semantic_map_drive::DriveEnd end = semantic_map_drive::DriveEnd::TimeLimit;
+  simulated_drive::DriveEnd end = simulated_drive::DriveEnd::TimeLimit;
   std::string reason;                     ///< why it did not arrive
   std::size_t explored = 0;               ///< frontiers
   double seconds = 0, length = 0;         ///< of the drive, m
@@ -24,7 +24,7 @@ struct Trial {
 };
 
 /** Drives a task in a world, from an empty map. \param world is without barriers afterwards */
-Trial runTrial(const semantic_map_drive::DriveConfig& config, synthetic_world::World& world,
+Trial runTrial(const simulated_drive::DriveConfig& config, synthetic_world::World& world,
                const colored_graph::ClassOrder& order, const Task& task);
 
 }  // namespace drive_study

@@ -1,12 +1,13 @@
 // Drives through the synthetic worlds between random places, and counts what goes wrong.
 #include <semantic_planning/planner/OrderFile.h>
 #include <strict_files/OutputFolder.h>
+#include <strict_files/TextFile.h>
 #include <synthetic_world/Scene.h>
 
-#include <fstream>
 #include <iostream>
 
 #include "Application.h"
+#include "JsonFile.h"
 #include "StudyFiles.h"
 
 namespace drive_study {
@@ -50,12 +51,6 @@ struct Cli {
   }
 };
 
-void writeText(const std::string& text, const fs::path& file) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
-}
-
 void print(const Trial& trial) {
   const std::string fault = trial.fault();
   std::cout << trial.scene << ' ' << trial.number << ": " << nameOf(trial.end) << " after "
@@ -66,8 +61,8 @@ void print(const Trial& trial) {
     if (!reason.empty()) std::cout << "  " << reason << std::endl;
 }
 
-void studyScene(const std::string& name, const Cli& cli,
-                const semantic_map_drive::DriveConfig& config, std::vector<Trial>& trials) {
+void studyScene(const std::string& name, const Cli& cli, const simulated_drive::DriveConfig& config,
+                std::vector<Trial>& trials) {
   synthetic_world::Scene scene = synthetic_world::makeScene(name, cli.sceneSeed);
   const auto order = semantic_planning::loadClassOrder(cli.classes, synthetic_world::classTable());
   TaskDraw draw(scene.world, order, config.planner.vehicle, cli.tasks);
@@ -87,14 +82,14 @@ void studyScene(const std::string& name, const Cli& cli,
 }
 
 int run(const Cli& cli) {
-  const auto config = semantic_map_drive::loadDriveConfig(cli.config);
+  const auto config = simulated_drive::loadDriveConfig(cli.config);
   strict_files::OutputFolder output(cli.output);
   std::vector<Trial> trials;
   for (const std::string& scene : cli.scenes) studyScene(scene, cli, config, trials);
   const nlohmann::ordered_json study = toJson(trials);
-  writeText(toCsv(trials), output.staged("study.csv"));
-  writeText(study.dump(1) + "\n", output.staged("study.json"));
-  writeText(toMarkdown(study), output.staged("study.md"));
+  strict_files::writeText(output.staged("study.csv"), toCsv(trials));
+  writeJson(output.staged("study.json"), study);
+  strict_files::writeText(output.staged("study.md"), toMarkdown(study));
   output.commit({"study.csv", "study.json", "study.md"});
   const int faults = study["all"]["faults"];
   std::cout << faults << " of " << trials.size() << " drives with a fault\n";

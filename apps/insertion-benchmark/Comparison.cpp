@@ -1,31 +1,17 @@
 #include "Comparison.h"
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <stdexcept>
 
 #include "ChildProcess.h"
+#include "measuring/Quantile.h"
+#include "measuring/Stopwatch.h"
 
 namespace insertion_benchmark {
+
+using namespace measuring;
+
 namespace {
-
-double cpuMilliseconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
-double wallMilliseconds() {
-  return std::chrono::duration<double, std::milli>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-double percentile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
-}
 
 enum Figure { kCpuMedian, kCpu95, kWallMedian, kMapBytes, kPeakBytes, kTouched, kNumFigures };
 
@@ -36,16 +22,16 @@ std::vector<double> runTurn(const Entry& entry, const Scene& scene, const Settin
   resetPeak();
   std::vector<double> cpu, wall;
   for (std::size_t i = 0; i < scene.scans.size(); ++i) {
-    const double cpuBegin = cpuMilliseconds(), wallBegin = wallMilliseconds();
+    const Stopwatch processor(TimeOf::Process), clock;
     contestant->insert(i);
-    wall.push_back(wallMilliseconds() - wallBegin);
-    cpu.push_back(cpuMilliseconds() - cpuBegin);
+    wall.push_back(clock.milliseconds());
+    cpu.push_back(processor.milliseconds());
   }
   std::vector<double> figures(kNumFigures);
   figures[kPeakBytes] = peakBytes() - before;
   figures[kMapBytes] = residentBytes() - before;
   figures[kCpuMedian] = median(cpu);
-  figures[kCpu95] = percentile(cpu, 0.95);
+  figures[kCpu95] = quantile(cpu, 0.95);
   figures[kWallMedian] = median(wall);
   figures[kTouched] = static_cast<double>(contestant->touchedVoxels());
   return figures;
@@ -53,7 +39,7 @@ std::vector<double> runTurn(const Entry& entry, const Scene& scene, const Settin
 
 }  // namespace
 
-double median(std::vector<double> values) { return percentile(std::move(values), 0.5); }
+double median(const std::vector<double>& values) { return quantile(values, 0.5); }
 
 double Result::cpu() const { return median(cpuMedians); }
 double Result::wall() const { return median(wallMedians); }

@@ -19,7 +19,7 @@ struct Result {
   double spread() const;
 };
 
-double median(std::vector<double> values);
+double median(const std::vector<double>& values);
 
 /** Lets each contestant insert all scans, in turns, each turn in a process of its own.
  * \param onTurn told before each turn */

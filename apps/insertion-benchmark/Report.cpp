@@ -2,8 +2,9 @@
 
 #include <cmath>
 #include <iomanip>
-#include <nlohmann/json.hpp>
 #include <ostream>
+
+#include "JsonFile.h"
 
 namespace insertion_benchmark {
 namespace {
@@ -78,7 +79,7 @@ void printJson(std::ostream& out, const Conditions& c, const std::vector<Result>
                                    {"map_bytes", r.mapBytes},
                                    {"bytes_per_touched_voxel", bytesPerVoxel(r, c)},
                                    {"peak_bytes", r.peakBytes}});
-  out << json.dump(2) << "\n";
+  out << textOf(json);
 }
 
 }  // namespace insertion_benchmark

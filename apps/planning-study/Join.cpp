@@ -1,7 +1,7 @@
 #include "Join.h"
 
-#include <fstream>
-#include <sstream>
+#include <strict_files/TextFile.h>
+
 #include <stdexcept>
 
 namespace planning_study {
@@ -10,16 +10,9 @@ using nlohmann::ordered_json;
 
 namespace {
 
-std::string textOf(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) throw std::runtime_error(file.string() + ": cannot be read");
-  return text.str();
-}
-
 ordered_json studyIn(const std::filesystem::path& folder) {
   try {
-    const ordered_json study = ordered_json::parse(textOf(folder / "study.json"));
+    const ordered_json study = ordered_json::parse(strict_files::readText(folder / "study.json"));
     study.at("options"), study.at("maps").at(0);
     return study;
   } catch (const ordered_json::exception& e) {
@@ -33,7 +26,7 @@ JoinedStudy joinStudies(const std::vector<std::filesystem::path>& folders) {
   JoinedStudy joined;
   for (const auto& folder : folders) {
     const ordered_json study = studyIn(folder);
-    const std::string csv = textOf(folder / "study.csv");
+    const std::string csv = strict_files::readText(folder / "study.csv");
     if (joined.json.is_null()) {
       joined = {study, csv};
       continue;

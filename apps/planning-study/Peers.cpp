@@ -11,13 +11,14 @@
 #include <functional>
 #include <stdexcept>
 
-#include "CpuClock.h"
 #include "OmplProblem.h"
 #include "RoadmapSearch.h"
+#include "measuring/Stopwatch.h"
 
 namespace planning_study {
 
 namespace og = ompl::geometric;
+using measuring::Stopwatch;
 using ompl::base::PlannerTerminationCondition;
 
 namespace {
@@ -42,14 +43,14 @@ void countGraph(const ompl::base::Planner& planner, Trial& trial) {
 /** PRM* asks from two threads whether time is over. */
 ompl::base::PlannerStatus solve(ompl::base::Planner& peer, double seconds, Trial& trial) {
   const HasPath hasPath = hasPathOf(peer);
-  const double begin = cpuMilliseconds(), end = begin + 1e3 * seconds;
+  const Stopwatch watch(measuring::TimeOf::Process);
   std::atomic<double> first{0};
   const auto status = peer.solve(PlannerTerminationCondition([&] {
-    const double now = cpuMilliseconds();
-    if (first == 0 && hasPath()) first = now - begin;
-    return now >= end;
+    const double passed = watch.milliseconds();
+    if (first == 0 && hasPath()) first = passed;
+    return passed >= 1e3 * seconds;
   }));
-  trial.searchTime = cpuMilliseconds() - begin;
+  trial.searchTime = watch.milliseconds();
   trial.firstPathTime = first == 0 ? trial.searchTime : first.load();
   return status;
 }

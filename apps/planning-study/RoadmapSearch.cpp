@@ -2,37 +2,32 @@
 
 #include <colored_graph/CostModel.h>
 
-#include <chrono>
-
-#include "CpuClock.h"
+#include "measuring/Stopwatch.h"
 
 namespace planning_study {
 
 using namespace colored_graph;
+using measuring::Stopwatch;
 using semantic_planning::Roadmap;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-using Milliseconds = std::chrono::duration<double, std::milli>;
 
 template <class Evaluate>
 PathResult search(const RoadmapTask& task, ColoredGraph& graph, const CostModel& model,
                   const Evaluate& evaluate, Trial& trial) {
   ColoredAStarOptions options;
   options.lengthBound = [&](VertexId a, VertexId b) { return task.roadmap.lengthBound(a, b); };
-  Milliseconds evaluation{0};
+  double evaluation = 0;  // ms
   options.evaluate = [&](EdgeId e) {
-    const auto begin = Clock::now();
+    const Stopwatch watch;
     auto profile = evaluate(e);
-    evaluation += Clock::now() - begin;
+    evaluation += watch.milliseconds();
     return profile;
   };
-  const auto begin = Clock::now();
-  const double cpuBegin = cpuMilliseconds();
+  const Stopwatch clock, processor(measuring::TimeOf::Process);
   const PathResult path = findColoredPath(graph, task.start, task.goal, model, options);
-  const double cpu = cpuMilliseconds() - cpuBegin;
-  trial.evaluationTime = cpu * (evaluation / (Clock::now() - begin));
+  const double cpu = processor.milliseconds();
+  trial.evaluationTime = cpu * evaluation / clock.milliseconds();
   trial.searchTime = cpu - trial.evaluationTime;
   trial.found = path.found();
   trial.status = describe(path.status);

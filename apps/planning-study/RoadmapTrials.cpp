@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "CpuClock.h"
 #include "RoadmapSearch.h"
+#include "measuring/Stopwatch.h"
 
 namespace planning_study {
 
@@ -20,17 +20,21 @@ class RoadmapTrials::SearchWatch {
  public:
   void expect(bool cancelSearch) {
     m_cancel = cancelSearch;
-    m_begun = 0;
+    m_begun.reset();
+    m_watch.lap();
   }
   bool isCancelled() {
-    if (m_begun == 0) m_begun = cpuMilliseconds();
+    if (!m_begun) m_begun = m_watch.milliseconds();
     return m_cancel;
   }
-  double begun() const { return m_begun; }
+  /** Processor milliseconds from expect() to the search, and from there until now. */
+  double beforeSearch() const { return m_begun.value_or(0); }
+  double sinceSearch() const { return m_watch.milliseconds() - beforeSearch(); }
 
  private:
   bool m_cancel = false;
-  double m_begun = 0;
+  measuring::Stopwatch m_watch{measuring::TimeOf::Process};
+  std::optional<double> m_begun;
 };
 
 namespace {
@@ -80,10 +84,10 @@ RoadmapTrials::RoadmapTrials(semantic_octree::SemanticOcTree& map,
 RoadmapTrials::~RoadmapTrials() = default;
 RoadmapTrials::RoadmapTrials(RoadmapTrials&&) noexcept = default;
 
-Trial RoadmapTrials::trialOf(const Instance& instance, const PlanResult& plan, double begin) const {
+Trial RoadmapTrials::trialOf(const Instance& instance, const PlanResult& plan) const {
   if (!m_planner.hasRoadmap()) throw std::logic_error("the planner refused: " + plan.reason);
   Trial trial;
-  trial.graphTime = m_watch->begun() - begin;
+  trial.graphTime = m_watch->beforeSearch();
   trial.judgment = nameOf(EdgeModel::Profile);
   trial.graph = nameOf(m_planner.options().roadmap.kind);
   trial.budget = m_planner.options().roadmap.vertices;
@@ -97,11 +101,10 @@ Trial RoadmapTrials::trialOf(const Instance& instance, const PlanResult& plan, d
 Trial RoadmapTrials::plan(const Instance& instance) {
   if (!m_kept) m_planner.forget();
   m_watch->expect(false);
-  const double begin = cpuMilliseconds();
   const PlanResult plan = m_planner.plan(instance.start, instance.goal);
-  const double end = cpuMilliseconds();
-  Trial trial = trialOf(instance, plan, begin);
-  splitTime(end - m_watch->begun(), plan, trial);
+  const double sinceSearchBegan = m_watch->sinceSearch();
+  Trial trial = trialOf(instance, plan);
+  splitTime(sinceSearchBegan, plan, trial);
   trial.found = plan.found();
   trial.status = nameOf(plan.status);
   trial.evaluated = plan.search.edgesEvaluated - plan.edgesRemembered;
@@ -114,9 +117,8 @@ Trial RoadmapTrials::plan(const Instance& instance) {
 std::vector<Trial> RoadmapTrials::judge(const Instance& instance) {
   if (!m_kept) m_planner.forget();
   m_watch->expect(true);
-  const double begin = cpuMilliseconds();
   const PlanResult made = m_planner.plan(instance.start, instance.goal);
-  std::vector<Trial> trials(3, trialOf(instance, made, begin));
+  std::vector<Trial> trials(3, trialOf(instance, made));
   const Roadmap& roadmap = m_planner.roadmap();
   const RoadmapTask task{roadmap, vertexAt(roadmap, instance.start),
                          vertexAt(roadmap, instance.goal), m_planner.order()};

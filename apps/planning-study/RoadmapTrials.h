@@ -30,8 +30,7 @@ class RoadmapTrials {
  private:
   class SearchWatch;
 
-  Trial trialOf(const Instance& instance, const semantic_planning::PlanResult& plan,
-                double begin) const;
+  Trial trialOf(const Instance& instance, const semantic_planning::PlanResult& plan) const;
 
   std::unique_ptr<SearchWatch> m_watch;
   semantic_planning::SemanticPlanner m_planner;

@@ -1,11 +1,15 @@
 #include "Statistics.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
 
+#include "measuring/Quantile.h"
+
 namespace planning_study {
+
+using measuring::quantile;
+
 namespace {
 constexpr int kResamples = 2000;
 constexpr double kTail = 0.025;
@@ -24,16 +28,8 @@ double deviation(const std::vector<double>& sample) {
   return std::sqrt(squares / static_cast<double>(sample.size() - 1));
 }
 
-double quantile(const std::vector<double>& sorted, double p) {
-  const double at = p * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
-Distribution describe(std::vector<double> sample) {
+Distribution describe(const std::vector<double>& sample) {
   if (sample.empty()) return {};
-  std::sort(sample.begin(), sample.end());
   Distribution d;
   d.count = sample.size();
   d.mean = mean(sample);
@@ -61,7 +57,6 @@ Interval bootstrap(std::size_t count, const Statistic& statistic, std::uint64_t 
     for (std::size_t& index : drawn) index = random() % count;
     values.push_back(statistic(drawn));
   }
-  std::sort(values.begin(), values.end());
   return {quantile(values, kTail), quantile(values, 1 - kTail)};
 }
 

@@ -14,14 +14,10 @@ struct Distribution {
   double quartile1 = 0, median = 0, quartile3 = 0;
   double percentile5 = 0, percentile95 = 0;
 };
-Distribution describe(std::vector<double> sample);
+Distribution describe(const std::vector<double>& sample);
 
 double mean(const std::vector<double>& sample);
 double deviation(const std::vector<double>& sample);
-
-/** Between the two nearest values in proportion (type 7 of Hyndman, Fan 1996).
- * \param sorted not empty, ascending. \param p in [0, 1] */
-double quantile(const std::vector<double>& sorted, double p);
 
 struct Interval {
   double low = 0, high = 0;

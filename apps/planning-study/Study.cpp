@@ -8,9 +8,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "CpuClock.h"
 #include "Peers.h"
 #include "RoadmapTrials.h"
+#include "measuring/Stopwatch.h"
 
 namespace planning_study {
 
@@ -45,12 +45,11 @@ void append(std::vector<Trial> more, std::vector<Trial>& trials) {
 
 void measurePreparation(SemanticOcTree& map, const colored_graph::ClassOrder& order,
                         const StudyOptions& options, MapStudy& study) {
-  double begin = cpuMilliseconds();
+  measuring::Stopwatch watch(measuring::TimeOf::Process);
   map.setAbstraction(abstractionFor(order));
-  study.abstractionTime = cpuMilliseconds() - begin;
-  begin = cpuMilliseconds();
+  study.abstractionTime = watch.lap();
   const Ground ground(map, options.planner.vehicle, options.planner.ground, order);
-  study.groundTime = cpuMilliseconds() - begin;
+  study.groundTime = watch.lap();
   const auto measures = semantic_octree::Abstraction(map).measures();
   study.leaves = measures.full.numKnownLeaves;
   study.compressedLeaves = measures.compressed.numKnownLeaves;

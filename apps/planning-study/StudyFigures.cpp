@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "../semantic-map-compress/FigureScript.h"
 #include "Study.h"
+#include "figures/FigureScript.h"
 
 namespace planning_study {
 
 using nlohmann::ordered_json;
-using namespace semantic_map_compress;
+using namespace figures;
 
 namespace {
 

@@ -5,7 +5,7 @@
 namespace planning_study {
 
 // Figures of study.json, one column for each map, judgment "profile", drawn with gnuplot into a PNG
-// file. All: \throw std::runtime_error as semantic_map_compress::drawWithGnuplot().
+// file. All: \throw std::runtime_error as figures::drawWithGnuplot().
 
 /** Box plots of the planning time of the tasks that were solved (quartiles, whiskers from the 5th
  * to the 95th percentile, median) over the budget of vertices: above of planners that forget,

@@ -1,8 +1,13 @@
+#include <strict_files/Csv.h>
+
 #include <sstream>
 
 #include "Summary.h"
 
 namespace planning_study {
+
+using strict_files::csvField;
+
 namespace {
 
 /** Numbers of a vector, in a column of their own. */
@@ -18,12 +23,12 @@ void writePose(std::ostream& out, const mrpt::math::TPose2D& pose) {
 }
 
 void writeTrial(std::ostream& out, const Trial& t) {
-  out << t.map << ',' << t.instance;
+  out << csvField(t.map) << ',' << t.instance;
   writePose(out, t.task.start);
   writePose(out, t.task.goal);
   out << ',' << t.judgment << ',' << t.graph << ',' << t.budget << ',' << memoryName(t.kept) << ','
-      << t.found << ",\"" << t.status << "\"," << t.vertices << ',' << t.edges << ',' << t.evaluated
-      << ',' << t.expansions;
+      << t.found << ',' << csvField(t.status) << ',' << t.vertices << ',' << t.edges << ','
+      << t.evaluated << ',' << t.expansions;
   writeVector(out, t.cost);
   writeVector(out, t.way);
   out << ',' << t.graphTime << ',' << t.evaluationTime << ',' << t.searchTime << ','

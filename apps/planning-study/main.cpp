@@ -2,41 +2,34 @@
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
 #include <strict_files/OutputFolder.h>
+#include <strict_files/TextFile.h>
 
-#include <chrono>
-#include <fstream>
 #include <iostream>
 
 #include "Application.h"
 #include "Cli.h"
 #include "Join.h"
+#include "JsonFile.h"
 #include "StudyFigures.h"
 #include "StudyTables.h"
 #include "Summary.h"
+#include "measuring/Stopwatch.h"
 
 namespace planning_study {
 namespace {
 
 namespace fs = std::filesystem;
 
-void writeText(const std::string& text, const fs::path& file) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
-}
-
 /** Maps take turns, so that each has the same number of instances when time is over. */
 std::vector<MapStudy> studyMaps(const Cli& cli) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto minutes = [&] {
-    return std::chrono::duration<double, std::ratio<60>>(std::chrono::steady_clock::now() - begin);
-  };
+  const measuring::Stopwatch watch;
+  const double most = cli.study.minutes * 60e3;  // ms
   const std::vector<std::string> names = namesOf(cli.maps);
   std::vector<MapStudent> students;
   for (std::size_t i = 0; i < names.size(); ++i)
     students.emplace_back(names[i], cli.maps[i].string(), cli.classes.string(), cli.study);
   std::size_t done = 0;
-  while (done < cli.study.instances && (done == 0 || minutes().count() < cli.study.minutes)) {
+  while (done < cli.study.instances && (done == 0 || watch.milliseconds() < most)) {
     for (MapStudent& student : students) student.runNextInstance();
     if (++done % 10 == 0) std::cout << done << " of " << cli.study.instances << std::endl;
   }
@@ -67,9 +60,9 @@ JoinedStudy study(Cli cli) {
 int run(const Cli& cli) {
   strict_files::OutputFolder output(cli.output);
   const auto [json, csv] = cli.join ? joinStudies(cli.maps) : study(cli);
-  writeText(csv, output.staged("study.csv"));
-  writeText(json.dump(1) + "\n", output.staged("study.json"));
-  writeText(toMarkdown(json), output.staged("study.md"));
+  strict_files::writeText(output.staged("study.csv"), csv);
+  writeJson(output.staged("study.json"), json);
+  strict_files::writeText(output.staged("study.md"), toMarkdown(json));
   const std::string problem = drawFigures(json, output);
   output.commit({"study.csv", "study.json", "study.md", "times.png", "paths.png"});
   if (!problem.empty()) throw std::runtime_error(problem);

@@ -3,10 +3,10 @@
 #include <labeled_cloud/ReadAhead.h>
 #include <strict_files/ErrorMessage.h>
 
-#include <chrono>
 #include <stdexcept>
 
 #include "Progress.h"
+#include "measuring/Stopwatch.h"
 
 namespace rawlog2semantic_map {
 
@@ -23,10 +23,9 @@ constexpr std::size_t kScansAhead = 4;
 /** Milliseconds that an action takes. */
 template <typename Action>
 double timeOf(Action action) {
-  const auto begin = std::chrono::steady_clock::now();
+  const measuring::Stopwatch watch;
   action();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-      .count();
+  return watch.milliseconds();
 }
 
 std::uint64_t totalSize(const std::vector<fs::path>& files) {

@@ -8,12 +8,9 @@
 
 namespace rawlog2semantic_map {
 
-using Clock = std::chrono::steady_clock;
-
 namespace {
 
-constexpr auto kBetweenBars = std::chrono::milliseconds(100);
-constexpr auto kBetweenLines = std::chrono::seconds(5);
+constexpr double kBetweenBars = 100, kBetweenLines = 5000;  // ms
 constexpr int kBarWidth = 30;
 const char* const kClearLine = "\r\033[K";
 
@@ -22,13 +19,11 @@ const char* const kClearLine = "\r\033[K";
 Progress::Progress(std::string task, std::uint64_t total)
     : m_task(std::move(task)),
       m_total(std::max<std::uint64_t>(total, 1)),
-      m_onTerminal(isatty(STDOUT_FILENO)),
-      m_lastSaid(Clock::now()) {}
+      m_onTerminal(isatty(STDOUT_FILENO))) {}
 
 void Progress::update(std::uint64_t done, const std::string& note) {
-  const auto now = Clock::now();
-  if (now - m_lastSaid < (m_onTerminal ? Clock::duration(kBetweenBars) : kBetweenLines)) return;
-  m_lastSaid = now;
+  if (m_sinceSaid.milliseconds() < (m_onTerminal ? kBetweenBars : kBetweenLines)) return;
+  m_sinceSaid.lap();
   const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(m_total));
   if (m_onTerminal)
     drawBar(share, note);

@@ -1,7 +1,8 @@
 #pragma once
-#include <chrono>
 #include <cstdint>
 #include <string>
+
+#include "measuring/Stopwatch.h"
 
 namespace rawlog2semantic_map {
 
@@ -23,7 +24,7 @@ class Progress {
   std::string m_task;
   std::uint64_t m_total;
   bool m_onTerminal;
-  std::chrono::steady_clock::time_point m_lastSaid;
+  measuring::Stopwatch m_sinceSaid;
 };
 
 }  // namespace rawlog2semantic_map

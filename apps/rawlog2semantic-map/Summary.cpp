@@ -2,8 +2,7 @@
 
 #include <semantic_octree/MapContents.h>
 
-#include <algorithm>
-#include <cmath>
+#include "measuring/Quantile.h"
 
 namespace rawlog2semantic_map {
 
@@ -49,16 +48,12 @@ std::string Summary::skippedText() const {
 
 namespace {
 
-/** The smallest value that at least this share of the values do not exceed. */
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  const double rank = std::ceil(share * static_cast<double>(values.size()));
-  return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
-}
-
+/** All 0 if there are none. */
 ordered_json timesJson(const std::vector<double>& milliseconds) {
-  return {{"median", quantile(milliseconds, 0.5)}, {"percentile95", quantile(milliseconds, 0.95)}};
+  const auto at = [&](double share) {
+    return milliseconds.empty() ? 0 : measuring::quantile(milliseconds, share);
+  };
+  return {{"median", at(0.5)}, {"percentile95", at(0.95)}};
 }
 
 ordered_json pointsJson(const Summary& s) {

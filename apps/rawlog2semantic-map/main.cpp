@@ -11,6 +11,7 @@
 
 #include "Application.h"
 #include "Config.h"
+#include "JsonFile.h"
 #include "Labels.h"
 #include "MapBuilder.h"
 #include "Preview.h"
@@ -128,12 +129,6 @@ Summary buildMap(const Cli& cli, Config config, CSemanticOctoMap& map) {
   return builder.summary();
 }
 
-void writeJson(const nlohmann::ordered_json& json, const fs::path& file) {
-  std::ofstream out(file);
-  out << json.dump(2) << '\n';
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
-}
-
 /** A map is worth keeping where it cannot be drawn: says why not instead of throwing. */
 std::string drawPictures(const SemanticOcTree& tree, const Config& config,
                          const OutputFolder& output) {
@@ -166,7 +161,7 @@ int run(const Cli& cli) {
 
   const Summary summary = buildMap(cli, config, map);
   saveTree(map.tree(), output.staged("map.semantic"));
-  writeJson(toJson(summary, map.tree()), output.staged("summary.json"));
+  writeJson(output.staged("summary.json"), toJson(summary, map.tree()));
   const std::string problem = drawPictures(map.tree(), config, output);
   if (config.abstraction.isSet()) writeCompressed(map, config, output);
   output.commit({"map.semantic", "summary.json", "top.png", "view.png", "compressed.semantic",

@@ -1,10 +1,10 @@
 #pragma once
-#include <chrono>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "AlphaCurve.h"
+#include "measuring/Stopwatch.h"
 
 namespace semantic_map_compress {
 
@@ -12,16 +12,11 @@ namespace semantic_map_compress {
 class StageTimes {
  public:
   /** Ends a stage that began when the one before it ended. */
-  void add(const std::string& stage) {
-    const auto now = Clock::now();
-    m_stages.emplace_back(stage, std::chrono::duration<double, std::milli>(now - m_last).count());
-    m_last = now;
-  }
+  void add(const std::string& stage) { m_stages.emplace_back(stage, m_watch.lap()); }
   const std::vector<std::pair<std::string, double>>& stages() const { return m_stages; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point m_last = Clock::now();
+  measuring::Stopwatch m_watch;
   std::vector<std::pair<std::string, double>> m_stages;
 };
 

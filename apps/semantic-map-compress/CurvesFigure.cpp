@@ -1,7 +1,10 @@
-#include "FigureScript.h"
 #include "Figures.h"
+#include "figures/FigureScript.h"
 
 namespace semantic_map_compress {
+
+using namespace figures;
+
 namespace {
 
 using Share = std::optional<double> CurvePoint::*;

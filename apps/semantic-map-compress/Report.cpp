@@ -1,5 +1,6 @@
 #include "Report.h"
 
+#include <strict_files/Csv.h>
 #include <tree_abstraction/Information.h>
 
 #include <sstream>
@@ -8,6 +9,7 @@ namespace semantic_map_compress {
 
 using nlohmann::ordered_json;
 using semantic_octree::AbstractionOptions;
+using strict_files::csvField;
 using tree_abstraction::natsToBits;
 using tree_abstraction::TreeMeasures;
 
@@ -76,12 +78,6 @@ ordered_json toJson(const Compression& c, const TermCatalog& catalog) {
           {"milliseconds", toJson(c.times)}};
 }
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
-
 }  // namespace
 
 ordered_json toJson(const FullMap& map, const TermCatalog& catalog, const AbstractionOptions& space,
@@ -110,14 +106,14 @@ std::string toCsv(const TermCatalog& catalog, const std::vector<Compression>& co
   out << "solution,alpha,known leaves,all leaves,full known leaves,full all leaves,leaf ratio,"
          "all leaf ratio,leaf entropy [bit],full leaf entropy [bit],objective [bit],file bytes";
   for (std::size_t t = 0; t < catalog.size(); ++t)
-    out << ',' << quoted(catalog.name(t) + " [bit]") << ','
-        << quoted(catalog.name(t) + " retained");
+    out << ',' << csvField(catalog.name(t) + " [bit]") << ','
+        << csvField(catalog.name(t) + " retained");
   for (const auto& [stage, milliseconds] : compressions.front().times.stages())
-    out << ',' << quoted(stage + " [ms]");
+    out << ',' << csvField(stage + " [ms]");
   for (const Compression& c : compressions) {
     const auto& [full, kept] = std::tie(c.measures.full, c.measures.compressed);
     out << '\n'
-        << quoted(c.solution.name) << ',' << c.alpha << ',' << kept.numKnownLeaves << ','
+        << csvField(c.solution.name) << ',' << c.alpha << ',' << kept.numKnownLeaves << ','
         << kept.numLeaves << ',' << full.numKnownLeaves << ',' << full.numLeaves << ','
         << c.leafRatio() << ',' << c.allLeafRatio() << ',' << natsToBits(kept.leafEntropy) << ','
         << natsToBits(full.leafEntropy) << ',' << natsToBits(c.measures.objective) << ','

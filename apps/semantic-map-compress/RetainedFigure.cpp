@@ -1,9 +1,12 @@
 #include <algorithm>
 
-#include "FigureScript.h"
 #include "Figures.h"
+#include "figures/FigureScript.h"
 
 namespace semantic_map_compress {
+
+using namespace figures;
+
 namespace {
 
 /** Free space and the classes that some voxel has: in the others' little information is only how

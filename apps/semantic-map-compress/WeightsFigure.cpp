@@ -2,10 +2,13 @@
 #include <array>
 #include <cmath>
 
-#include "FigureScript.h"
 #include "Figures.h"
+#include "figures/FigureScript.h"
 
 namespace semantic_map_compress {
+
+using namespace figures;
+
 namespace {
 
 /** Catalog indices of what some solution weighs. */

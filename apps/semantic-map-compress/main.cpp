@@ -3,12 +3,13 @@
 #include <semantic_octree/MapContents.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/OutputFolder.h>
+#include <strict_files/TextFile.h>
 
-#include <fstream>
 #include <iostream>
 
 #include "Application.h"
 #include "Figures.h"
+#include "JsonFile.h"
 #include "MapSheet.h"
 #include "Report.h"
 
@@ -96,12 +97,6 @@ void measureOtherBatches(Compressor& compressor, std::vector<Compression>& compr
   }
 }
 
-void writeText(const std::string& text, const fs::path& file) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
-}
-
 /** Maps are worth keeping without figures: says what is wrong instead of throwing. */
 std::string drawFigures(const FullMap& map, const std::vector<Compression>& compressions,
                         const TermCatalog& catalog, const OutputFolder& output) {
@@ -154,9 +149,9 @@ int run(const Cli& cli) {
   semantic_map::savePicture(sheet.picture(), output.staged("maps.png"));
   const std::string problem = drawFigures(full, compressions, catalog, output);
   times.add("figures");
-  writeText(toCsv(catalog, compressions), output.staged("report.csv"));
-  writeText(toJson(full, catalog, weights.space, compressions, times).dump(2) + "\n",
-            output.staged("report.json"));
+  strict_files::writeText(output.staged("report.csv"), toCsv(catalog, compressions));
+  writeJson(output.staged("report.json"),
+            toJson(full, catalog, weights.space, compressions, times));
   output.commit(fileNames(weights.solutions));
   printSummary(compressions);
   if (!problem.empty()) throw std::runtime_error(problem);

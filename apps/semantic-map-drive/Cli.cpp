@@ -2,18 +2,11 @@
 
 #include <synthetic_world/Scene.h>
 
-#include <cmath>
+#include "poses/Poses.h"
 
 namespace semantic_map_drive {
 
-using mrpt::math::TPose2D;
-
 namespace {
-
-TPose2D parsePose(const std::string& text) {
-  const auto n = parseNumbers(text, 3, 3, "X,Y,DEG (meters and degrees)");
-  return {n[0], n[1], n[2] * M_PI / 180};
-}
 
 /** Hands each text to a function; what it throws is an error of the command line. */
 template <class Take>
@@ -44,12 +37,8 @@ void Cli::addTo(CLI::App& app) {
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
   app.add_option("--map", map, "What the robot knows of it (.semantic); none: nothing");
-  addParsed(
-      app, "--start", "X,Y,DEG", [this](auto& t) { start = parsePose(t), hasStart = true; },
-      "Where the robot is");
-  addParsed(
-      app, "--goal", "X,Y,DEG", [this](auto& t) { goal = parsePose(t), hasGoal = true; },
-      "Where it is to go");
+  poses::addPose(app, "--start", start, "Where the robot is");
+  poses::addPose(app, "--goal", goal, "Where it is to go");
   app.add_option("--classes", classes,
                  "Classes from best to worst (YAML); a second file is driven, too, to compare")
       ->required()

@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "Events.h"
+#include "simulated_drive/Events.h"
 
 namespace semantic_map_drive {
+
+using namespace simulated_drive;
 
 /** What the command line says. */
 struct Cli {
@@ -18,8 +20,7 @@ struct Cli {
   std::uint64_t seed = 1;
   double hills = 1, pictureEvery = 0;
   mrpt::math::TPose2D start, goal;
-  bool hasStart = false, hasGoal = false, rawlog = true, pictures = true, navlog = false,
-       live = false;
+  bool rawlog = true, pictures = true, navlog = false, live = false;
   Events events;
 
   void addTo(CLI::App& app);

@@ -1,9 +1,11 @@
 #pragma once
 #include <opencv2/core.hpp>
 
-#include "DriveLoop.h"
+#include "simulated_drive/DriveLoop.h"
 
 namespace semantic_map_drive {
+
+using namespace simulated_drive;
 
 /** Seconds, meters, speed, and where to. */
 std::string caption(const DriveLoop& loop);

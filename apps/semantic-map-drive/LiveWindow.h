@@ -4,9 +4,11 @@
 
 #include <chrono>
 
-#include "DriveLoop.h"
+#include "simulated_drive/DriveLoop.h"
 
 namespace semantic_map_drive {
+
+using namespace simulated_drive;
 
 /** Shows a drive in MRPT's window while it goes on: the map in its classes' colors, goal, path,
  * driven track and robot. The drive waits for the clock on the wall, until the window is closed. */

@@ -1,8 +1,10 @@
 #pragma once
-#include "../synth-rawlog/DriveLog.h"
-#include "DriveLoop.h"
+#include "simulated_drive/DriveLoop.h"
+#include "synthetic_rawlog/DriveLog.h"
 
 namespace semantic_map_drive {
+
+using namespace simulated_drive;
 
 /** Writes what the robot saw, and its true poses, as a rawlog. */
 class Recorder : public DriveObserver {
@@ -18,7 +20,7 @@ class Recorder : public DriveObserver {
   void onFinished(const DriveLoop&) override { m_log.finish(); }
 
  private:
-  synth_rawlog::DriveLog m_log;
+  synthetic_rawlog::DriveLog m_log;
 };
 
 }  // namespace semantic_map_drive

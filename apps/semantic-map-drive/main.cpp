@@ -2,18 +2,19 @@
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <strict_files/OutputFolder.h>
+#include <strict_files/TextFile.h>
 
-#include <fstream>
 #include <iostream>
 #include <opencv2/imgcodecs.hpp>
 
 #include "Animation.h"
 #include "Application.h"
 #include "Cli.h"
-#include "DriveFiles.h"
-#include "DriveLoop.h"
+#include "JsonFile.h"
 #include "LiveWindow.h"
 #include "Recorder.h"
+#include "simulated_drive/DriveFiles.h"
+#include "simulated_drive/DriveLoop.h"
 
 namespace semantic_map_drive {
 namespace {
@@ -21,12 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kNotArrived = 2;  // exit status
-
-void writeText(const std::string& text, const fs::path& file) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
-}
 
 void writePicture(const cv::Mat& picture, const fs::path& file) {
   if (!cv::imwrite(file.string(), picture))
@@ -94,8 +89,8 @@ class Program {
     std::optional<LiveWindow> window;
     if (m_cli.live) loop.addObserver(window.emplace(m_scene.world, m_cli.start, m_cli.goal));
     const DriveRecord record = loop.run();
-    writeText(toCsv(record), m_output.staged(name + ".csv"));
-    writeText(toJson(record, order).dump(2) + "\n", m_output.staged(name + ".json"));
+    strict_files::writeText(m_output.staged(name + ".csv"), toCsv(record));
+    writeJson(m_output.staged(name + ".json"), toJson(record, order));
     if (name == "drive")
       semantic_octree::saveTree(loop.mapper().map(), m_output.staged("map.semantic").string());
     m_whole.include(record);
@@ -139,7 +134,7 @@ int main(int argc, char** argv) {
   semantic_map_drive::Cli cli;
   cli.addTo(app);
   return runApplication(app, argc, argv, [&] {
-    if (!cli.hasStart || !cli.hasGoal)
+    if (!app.count("--start") || !app.count("--goal"))
       throw std::invalid_argument("--start and --goal are missing");
     return semantic_map_drive::Program(cli).run();
   });

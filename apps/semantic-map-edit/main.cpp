@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "Application.h"
-#include "PoseOfNumbers.h"
+#include "poses/Poses.h"
 
 namespace semantic_map_edit {
 namespace {
@@ -69,7 +69,7 @@ int levelsTo(double resolution, double mapResolution) {
 
 int run(const Cli& cli) {
   SemanticOcTree map = load(cli);
-  if (cli.pose) map = moved(map, poseOfNumbers(*cli.pose));
+  if (cli.pose) map = moved(map, poses::poseOfNumbers(*cli.pose));
   if (cli.box) map = cropped(map, boxOf(*cli.box));
   if (cli.resolution) map = coarsened(map, levelsTo(*cli.resolution, map.getResolution()));
   saveTree(map, cli.out.string());

@@ -2,12 +2,12 @@
 #include <semantic_octree/TreeFile.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <sstream>
 
 #include "Application.h"
 #include "Description.h"
+#include "JsonFile.h"
 #include "PointQuery.h"
 
 namespace semantic_map_info {
@@ -28,14 +28,11 @@ struct Cli {
 int run(const Cli& cli) {
   const auto map = semantic_octree::loadTree(cli.map.string());
   if (!cli.query.empty()) {
-    std::ifstream points(cli.query);
-    if (!points || std::filesystem::is_directory(cli.query))
-      throw std::runtime_error(cli.query.string() + ": cannot be read");
     std::ostringstream answers;  // all of them, or none
-    answerPoints(map, points, cli.query.string(), answers);
+    answerPoints(map, strict_files::readLines(cli.query), answers);
     std::cout << answers.str();
   } else if (cli.json) {
-    std::cout << describe(map).dump(2) << '\n';
+    std::cout << textOf(describe(map));
   } else {
     printText(cli.map.string(), describe(map), std::cout);
   }

@@ -1,11 +1,12 @@
 #include "MapPoses.h"
 
+#include <strict_files/TextFile.h>
+
 #include <array>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
-#include "../semantic-map-edit/PoseOfNumbers.h"
+#include "poses/Poses.h"
 
 namespace semantic_map_merge {
 
@@ -27,7 +28,7 @@ Line parse(const std::string& text) {
   for (double& value : v) in >> value;
   if (!in || in >> rest)
     throw std::runtime_error("'" + text + "', expected MAP x y z yaw pitch roll");
-  line.pose = semantic_map_edit::poseOfNumbers(v);
+  line.pose = poses::poseOfNumbers(v);
   return line;
 }
 
@@ -51,17 +52,12 @@ void addLine(const std::string& text, const std::vector<fs::path>& maps,
 
 std::map<fs::path, Eigen::Isometry3d> readMapPoses(const fs::path& file,
                                                    const std::vector<fs::path>& maps) {
-  std::ifstream in(file);
-  if (!in || fs::is_directory(file)) throw std::runtime_error(file.string() + ": cannot be read");
   std::map<fs::path, Eigen::Isometry3d> poses;
-  std::string text;
-  for (std::size_t number = 1; std::getline(in, text); ++number) {
-    text.erase(std::min(text.find('#'), text.size()));
-    if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
+  for (const strict_files::TextLine& line : strict_files::readLines(file)) {
     try {
-      addLine(text, maps, poses);
+      addLine(line.text, maps, poses);
     } catch (const std::exception& e) {
-      throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": " + e.what());
+      throw std::runtime_error(line.where + ": " + e.what());
     }
   }
   return poses;

@@ -1,6 +1,8 @@
 #include "PlanFiles.h"
 
 #include <semantic_planning/planner/OrderFile.h>
+#include <strict_files/Csv.h>
+
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -53,8 +55,8 @@ std::string toCsv(const PlanResult& plan, const ClassTable& classes) {
   out << "x,y,z,heading,curvature,gear,class,arc_length\n" << std::fixed << std::setprecision(4);
   for (const PathPoint& p : plan.path)
     out << p.x << ',' << p.y << ',' << p.z << ',' << p.heading * 180 / M_PI << ',' << p.curvature
-        << ',' << (p.forward ? "forward" : "backward") << ',' << groundName(p.classId, classes)
-        << ',' << p.arcLength << '\n';
+        << ',' << (p.forward ? "forward" : "backward") << ','
+        << strict_files::csvField(groundName(p.classId, classes)) << ',' << p.arcLength << '\n';
   return out.str();
 }
 

@@ -5,18 +5,19 @@
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
 #include <strict_files/OutputFolder.h>
+#include <strict_files/TextFile.h>
 
 #include <algorithm>
-#include <chrono>
-#include <fstream>
 #include <iostream>
 
 #include "../semantic-map-compress/WeightsFile.h"
 #include "Application.h"
 #include "Cli.h"
+#include "JsonFile.h"
 #include "PlanFiles.h"
 #include "PlanPicture.h"
 #include "PlanScene.h"
+#include "measuring/Stopwatch.h"
 
 namespace semantic_map_plan {
 namespace {
@@ -26,13 +27,7 @@ using namespace semantic_planning;
 using semantic_octree::AbstractionOptions;
 using semantic_octree::SemanticOcTree;
 
-using Clock = std::chrono::steady_clock;
-
 constexpr int kNoPath = 2;  // exit status
-
-double milliseconds(Clock::duration d) {
-  return std::chrono::duration<double, std::milli>(d).count();
-}
 
 AbstractionOptions abstractionOf(const Cli& cli, const SemanticOcTree& map,
                                  const colored_graph::ClassOrder& order) {
@@ -48,18 +43,12 @@ AbstractionOptions abstractionOf(const Cli& cli, const SemanticOcTree& map,
   return options;
 }
 
-void writeText(const std::string& text, const fs::path& file) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
-}
-
 /** All results; of a plan that failed all but the path itself. */
 void write(const Cli& cli, const SemanticOcTree& map, const SemanticPlanner& planner,
            const PlanResult& plan, const nlohmann::json& report) {
   strict_files::OutputFolder output(cli.output);
-  writeText(report.dump(2) + "\n", output.staged("path.json"));
-  if (plan.found()) writeText(toCsv(plan, map.classes()), output.staged("path.csv"));
+  writeJson(output.staged("path.json"), report);
+  if (plan.found()) strict_files::writeText(output.staged("path.csv"), toCsv(plan, map.classes()));
   semantic_map::savePicture(drawPlan(map, planner, plan, cli.start, cli.goal),
                             output.staged("plan.png"));
   saveScene(map, planner, plan, output.staged("plan.3Dscene"));
@@ -80,16 +69,16 @@ int run(Cli cli) {
   SemanticOcTree map = semantic_octree::loadTree(cli.map.string());
   const auto order = loadClassOrder(cli.classes, map.classes());
   if (!cli.vehicle.empty()) cli.planner.vehicle = loadVehicle(cli.vehicle);
-  const auto begin = Clock::now();
+  measuring::Stopwatch watch;
   if (cli.planner.roadmap.kind == GraphKind::Compressed)
     map.setAbstraction(abstractionOf(cli, map, order));
-  const auto abstracted = Clock::now();
+  const double abstraction = watch.lap();
   SemanticPlanner planner(map, order, cli.planner);
-  const auto grounded = Clock::now();
+  const double ground = watch.lap();
   const PlanResult plan = planner.plan(cli.start, cli.goal, cli.startZ, cli.goalZ);
   nlohmann::json report = toJson(plan, order, map.classes());
-  report["milliseconds"]["abstraction"] = milliseconds(abstracted - begin);
-  report["milliseconds"]["ground"] = milliseconds(grounded - abstracted);
+  report["milliseconds"]["abstraction"] = abstraction;
+  report["milliseconds"]["ground"] = ground;
   write(cli, map, planner, plan, report);
   if (plan.found()) {
     printSummary(plan, map.classes());

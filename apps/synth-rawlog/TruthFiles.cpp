@@ -23,22 +23,11 @@ const char* nameOf(PointTruth::State state) {
   }
 }
 
-/** The point of a line, or nothing if the line is blank or a comment. */
-std::optional<Eigen::Vector3d> pointOf(const std::string& line, const std::string& where) {
-  if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') return std::nullopt;
-  std::istringstream in(line);
-  Eigen::Vector3d p;
-  std::string rest;
-  if (!(in >> p.x() >> p.y() >> p.z()) || in >> rest)
-    throw std::runtime_error(where + ": three numbers expected: x y z");
-  return p;
-}
-
 }  // namespace
 
 void writeTruth(const Cli& cli, int frames, const std::filesystem::path& file) {
   strict_files::StagedFile staged(file);
-  std::ofstream out(staged.path());
+  std::ostringstream out;
   out << "# The world that " << cli.output.filename().string() << " shows.\n"
       << "scene: " << cli.scene << "\nseed: " << cli.seed << "\nhills: " << cli.hills
       << "\nframes: " << frames << "\nlabel_noise: " << cli.noise.label << "\nclasses:\n";
@@ -47,8 +36,7 @@ void writeTruth(const Cli& cli, int frames, const std::filesystem::path& file) {
     out << "  - {id: " << +id << ", name: " << classTable().name(id) << ", color: [" << +c.r << ", "
         << +c.g << ", " << +c.b << "]}\n";
   }
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
-  out.close();
+  strict_files::writeText(staged.path(), out.str());
   staged.commit();
 }
 
@@ -73,16 +61,14 @@ void TrajectoryWriter::commit() {
   m_file.commit();
 }
 
-void answerTruth(const synthetic_world::World& world, double tolerance, std::istream& points,
-                 const std::string& name, std::ostream& out) {
-  int number = 0;
-  for (std::string line; std::getline(points, line);) {
-    const auto p = pointOf(line, name + ", line " + std::to_string(++number));
-    if (!p) continue;
-    const PointTruth truth = world.at(*p, tolerance);
-    out << p->x() << ' ' << p->y() << ' ' << p->z() << ' ' << nameOf(truth.state) << ' '
-        << +truth.id << ' '
-        << (truth.id == synthetic_world::kNoClass ? "-" : classTable().name(truth.id)) << '\n';
+void answerTruth(const synthetic_world::World& world, double tolerance,
+                 const std::vector<strict_files::TextLine>& points, std::ostream& out) {
+  for (const strict_files::TextLine& line : points) {
+    const std::vector<double> p = numbersOf(line, 3);
+    const PointTruth truth = world.at({p[0], p[1], p[2]}, tolerance);
+    out << p[0] << ' ' << p[1] << ' ' << p[2] << ' ' << nameOf(truth.state) << ' ' << +truth.id
+        << ' ' << (truth.id == synthetic_world::kNoClass ? "-" : classTable().name(truth.id))
+        << '\n';
   }
 }
 

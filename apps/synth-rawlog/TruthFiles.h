@@ -5,6 +5,7 @@
 #include <iosfwd>
 
 #include <strict_files/StagedFile.h>
+#include <strict_files/TextFile.h>
 #include <synthetic_world/Scene.h>
 #include "Cli.h"
 
@@ -25,9 +26,9 @@ class TrajectoryWriter {
   std::ofstream m_stream;
 };
 
-/** Prints for each line "x y z" of the input: x y z, state, class id, class name.
+/** Prints for each line "x y z": x y z, state, class id, class name.
  * \throw std::runtime_error naming the line that is not three numbers. */
-void answerTruth(const synthetic_world::World& world, double tolerance, std::istream& points,
-                 const std::string& name, std::ostream& out);
+void answerTruth(const synthetic_world::World& world, double tolerance,
+                 const std::vector<strict_files::TextLine>& points, std::ostream& out);
 
 }  // namespace synth_rawlog

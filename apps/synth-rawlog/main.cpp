@@ -7,11 +7,13 @@
 
 #include "Application.h"
 #include "Cli.h"
-#include "DriveLog.h"
-#include "Observations.h"
 #include "TruthFiles.h"
+#include "synthetic_rawlog/DriveLog.h"
+#include "synthetic_rawlog/Observations.h"
 
 namespace synth_rawlog {
+
+using namespace synthetic_rawlog;
 namespace {
 
 constexpr double kStartTime = 1704067200;  // 2024-01-01, UTC
@@ -94,8 +96,7 @@ int run(const Cli& cli) {
   if (!cli.output.empty()) writeRawlog(cli, scene);
   if (!cli.picture.empty()) writePicture(cli, scene.world);
   if (!cli.truthQuery.empty()) {
-    std::ifstream points(cli.truthQuery);
-    answerTruth(scene.world, cli.tolerance, points, cli.truthQuery.string(), std::cout);
+    answerTruth(scene.world, cli.tolerance, strict_files::readLines(cli.truthQuery), std::cout);
   }
   return 0;
 }

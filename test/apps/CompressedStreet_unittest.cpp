@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "../real_data/DataSets.h"
+#include "DataSets.h"
 #include "RunProgram.h"
 #include "SharedData.h"
 #include "TemporaryFolder.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "../real_data/DataSets.h"
 #include "../semantic_octree/SmallScans.h"
+#include "DataSets.h"
 #include "LeafObjective.h"
 #include "SharedData.h"
 

@@ -4,8 +4,8 @@
 #include <ompl/base/goals/GoalState.h>
 #include <ompl/base/samplers/InformedStateSampler.h>
 
-#include "../../apps/planning-study/OmplProblem.h"
 #include "../semantic_planning/PaintedWorld.h"
+#include "OmplProblem.h"
 
 using namespace planning_study;
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "../../apps/planning-study/Groups.h"
+#include "Groups.h"
 
 using namespace planning_study;
 

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 #include <sstream>
 
 #include "../semantic_planning/PaintedWorld.h"
+#include "CsvTable.h"
 #include "RunProgram.h"
 #include "TemporaryFolder.h"
 
@@ -19,17 +21,9 @@ namespace {
 
 using Row = std::map<std::string, std::string>;
 
-std::vector<std::string> split(const std::string& line, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream in(line);
-  for (std::string part; std::getline(in, part, separator);) parts.push_back(part);
-  return parts;
-}
-
 std::vector<long long> numbers(const std::string& text) {
-  std::vector<long long> result;
-  for (const std::string& part : split(text, ' ')) result.push_back(std::stoll(part));
-  return result;
+  std::istringstream in(text);
+  return {std::istream_iterator<long long>(in), {}};
 }
 
 /** The way to plan that a row belongs to. */
@@ -64,15 +58,11 @@ class PlanningStudy : public testing::Test {
   }
 
   std::vector<Row> rows(const std::string& output = "out") const {
-    std::istringstream in(folder.read(output + "/study.csv"));
-    std::string line;
-    std::getline(in, line);
-    const auto names = split(line, ',');
+    const auto table = csvTable(folder.read(output + "/study.csv"));
     std::vector<Row> result;
-    while (std::getline(in, line)) {
-      const auto cells = split(line, ',');
+    for (std::size_t r = 1; r < table.size(); ++r) {
       Row row;
-      for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = cells.at(i);
+      for (std::size_t i = 0; i < table[0].size(); ++i) row[table[0][i]] = table[r].at(i);
       result.push_back(row);
     }
     return result;

@@ -3,6 +3,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "CsvTable.h"
 #include "SemanticMapCompress.h"
 
 namespace fs = std::filesystem;
@@ -86,20 +87,8 @@ TEST_F(SemanticMapCompress, reportHoldsTheMeasuresOfTheTreesThatAreWritten) {
 
 TEST_F(SemanticMapCompress, csvHoldsALineForEachSolutionWithAValueForEachColumn) {
   const json report = reportOf(kTwoSolutions);
-  const std::string csv = folder.read("out/report.csv");
-  std::vector<std::vector<std::string>> table(1, std::vector<std::string>(1));
-  bool inQuotes = false;
-  for (const char c : csv) {
-    if (c == '"')
-      inQuotes = !inQuotes;
-    else if (c == ',' && !inQuotes)
-      table.back().emplace_back();
-    else if (c == '\n')
-      table.emplace_back(1);
-    else
-      table.back().back() += c;
-  }
-  ASSERT_EQ(table.size(), 4u);  // the last is what follows the last line break
+  const auto table = csvTable(folder.read("out/report.csv"));
+  ASSERT_EQ(table.size(), 3u);
   EXPECT_EQ(table[1].size(), table[0].size());
   EXPECT_EQ(table[2].size(), table[0].size());
   const auto column = std::find(table[0].begin(), table[0].end(), "wall, low retained");

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "../apps/RunProgram.h"
 #include "DataSets.h"
 #include "MapQuality.h"
+#include "RunProgram.h"
 #include "SharedData.h"
 #include "TemporaryFolder.h"
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "../apps/RunProgram.h"
+#include "RunProgram.h"
 #include "SharedData.h"
 #include "TemporaryFolder.h"
 

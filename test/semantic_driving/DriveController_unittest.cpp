@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../apps/semantic-map-drive/SimulatedRobot.h"
+#include "simulated_drive/SimulatedRobot.h"
 
 using namespace semantic_driving;
 using namespace semantic_planning;
@@ -66,7 +66,7 @@ class Drive {
   }
 
  private:
-  semantic_map_drive::SimulatedRobot m_robot;
+  simulated_drive::SimulatedRobot m_robot;
   bool m_collided = false;
 };
 

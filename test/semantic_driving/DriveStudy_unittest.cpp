@@ -2,12 +2,12 @@
 
 #include <cmath>
 
-#include "../../apps/drive-study/StudyFiles.h"
-#include "../../apps/drive-study/TrueMap.h"
 #include "Plain.h"
+#include "StudyFiles.h"
+#include "TrueMap.h"
 
 using namespace drive_study;
-using semantic_map_drive::DriveEnd;
+using simulated_drive::DriveEnd;
 using synthetic_world::World;
 
 namespace {
@@ -65,7 +65,7 @@ TEST(DriveStudy, DrawsTasksWithRoomAroundThem) {
     const double distance = std::hypot(task.goal.x - task.start.x, task.goal.y - task.start.y);
     EXPECT_GE(distance, options.nearest);
     EXPECT_LE(distance, options.farthest);
-    const auto footprint = semantic_map_drive::trueFootprint(vehicle);
+    const auto footprint = simulated_drive::trueFootprint(vehicle);
     EXPECT_GT(world.clearance(footprint, task.goal.x, task.goal.y, task.goal.phi), options.room);
   }
 }
@@ -101,7 +101,7 @@ TEST(DriveStudy, EnclosesGoalsWithBarriers) {
   EXPECT_EQ(trial.end, DriveEnd::Unreachable) << trial.reason;
   EXPECT_EQ(toJson({trial})["plain"]["saidSo"], 1);
   const auto config = smallConfig();
-  const auto footprint = semantic_map_drive::trueFootprint(config.planner.vehicle);
+  const auto footprint = simulated_drive::trueFootprint(config.planner.vehicle);
   EXPECT_GT(world.clearance(footprint, 4 + kBarriersAt, 0, 0), 1);  // the barriers are gone
 }
 

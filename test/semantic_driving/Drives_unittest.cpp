@@ -4,11 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include "../../apps/semantic-map-drive/DriveFiles.h"
-#include "../../apps/semantic-map-drive/DriveLoop.h"
 #include "Plain.h"
+#include "simulated_drive/DriveFiles.h"
+#include "simulated_drive/DriveLoop.h"
 
-using namespace semantic_map_drive;
+using namespace simulated_drive;
 using mrpt::math::TPose2D;
 using semantic_driving::DriveController;
 using semantic_driving::DriveGuide;

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../apps/semantic-map-drive/DriveFiles.h"
 #include "Plain.h"
+#include "simulated_drive/DriveFiles.h"
 
-using namespace semantic_map_drive;
+using namespace simulated_drive;
 using mrpt::math::TPose2D;
 
 namespace {

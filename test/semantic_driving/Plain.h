@@ -3,12 +3,12 @@
 #include <synthetic_world/Classes.h>
 #include <synthetic_world/Objects.h>
 
-#include "../../apps/semantic-map-drive/DriveConfig.h"
+#include "simulated_drive/DriveConfig.h"
 
 /** The robot of config/drive with sensors of few points. */
-inline semantic_map_drive::DriveConfig smallConfig() {
-  auto config = semantic_map_drive::loadDriveConfig(std::string(MSO_SOURCE_DIR) +
-                                                    "/config/drive/synthetic.ini");
+inline simulated_drive::DriveConfig smallConfig() {
+  auto config =
+      simulated_drive::loadDriveConfig(std::string(MSO_SOURCE_DIR) + "/config/drive/synthetic.ini");
   config.sensors.camera.width = 80;
   config.sensors.camera.height = 60;
   config.sensors.lidar.columns = 256;

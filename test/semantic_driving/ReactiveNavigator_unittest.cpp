@@ -8,7 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "../../apps/semantic-map-drive/SimulatedRobot.h"
+#include "simulated_drive/SimulatedRobot.h"
 
 using namespace semantic_driving;
 using namespace semantic_planning;
@@ -47,7 +47,7 @@ ObstaclePoints3 seenFrom(const mrpt::math::TPose2D& pose, ObstaclePoints3 points
 bool getsThrough(const ReactiveNavigator::Options& options, double height) {
   ReactiveNavigator navigator(options);
   mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
-  semantic_map_drive::SimulatedRobot robot({0, 0, 0}, {});
+  simulated_drive::SimulatedRobot robot({0, 0, 0}, {});
   PathPoint goal;
   goal.x = 6;
   navigator.setWaypoints({goal}, 0.4);

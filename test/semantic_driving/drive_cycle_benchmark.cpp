@@ -7,9 +7,9 @@
 
 #include <algorithm>
 
-#include "../../apps/semantic-map-drive/DriveLoop.h"
+#include "simulated_drive/DriveLoop.h"
 
-using namespace semantic_map_drive;
+using namespace simulated_drive;
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <optional>
 
-#include "../real_data/DataSets.h"
+#include "DataSets.h"
 #include "PathChecker.h"
 #include "SharedData.h"
 

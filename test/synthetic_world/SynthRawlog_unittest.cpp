@@ -194,9 +194,9 @@ TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
       {"absent/x.rawlog", "absent/x.rawlog"},
       {"--picture absent/p.png", "absent/p.png"},
       {"--truth-query absent.txt", "absent.txt"},
-      {"--truth-query short.txt", "short.txt, line 2"},
-      {"--truth-query long.txt", "long.txt, line 1"},
-      {"--truth-query nan.txt", "nan.txt, line 1"}};
+      {"--truth-query short.txt", "short.txt:2"},
+      {"--truth-query long.txt", "long.txt:1"},
+      {"--truth-query nan.txt", "nan.txt:1"}};
   for (const auto& [arguments, reason] : cases) {
     const Outcome outcome = run(folder, arguments);
     EXPECT_NE(outcome.status, 0) << arguments;

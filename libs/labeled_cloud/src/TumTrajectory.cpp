@@ -1,9 +1,9 @@
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/poses/CPose3DQuat.h>
+#include <strict_files/TextFile.h>
 
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -41,18 +41,12 @@ void insertLine(Trajectory& trajectory, const std::string& line) {
 }  // namespace
 
 Trajectory loadTumTrajectory(const std::filesystem::path& file, const TrajectoryOptions& options) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file))
-    throw std::runtime_error(file.string() + ": the trajectory cannot be opened");
   Trajectory trajectory(options);
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    line.erase(std::min(line.find('#'), line.size()));
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+  for (const strict_files::TextLine& line : strict_files::readLines(file)) {
     try {
-      insertLine(trajectory, line);
+      insertLine(trajectory, line.text);
     } catch (const std::exception& e) {
-      throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": " + e.what());
+      throw std::runtime_error(line.where + ": " + e.what());
     }
   }
   if (trajectory.empty()) throw std::runtime_error(file.string() + ": no pose in this trajectory");

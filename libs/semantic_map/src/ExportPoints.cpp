@@ -1,4 +1,5 @@
 #include <semantic_map/ExportPoints.h>
+#include <strict_files/Csv.h>
 
 #include <iomanip>
 #include <ostream>
@@ -46,13 +47,6 @@ void writePlyHeader(std::ostream& out, const ClassTable& classes, std::size_t po
   out << "end_header\n";
 }
 
-std::string quoted(const std::string& name) {
-  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-  std::string text = "\"";
-  for (const char c : name) text += c == '"' ? "\"\"" : std::string(1, c);
-  return text + '"';
-}
-
 void checked(const std::ostream& out) {
   if (!out) throw std::runtime_error("cannot write the points");
 }
@@ -80,8 +74,8 @@ void writeCsv(std::ostream& out, const SemanticOcTree& tree, const PointOptions&
     const ClassId id = state.likeliestClass;
     out << leaf.getX() << ',' << leaf.getY() << ',' << leaf.getZ() << ',' << leaf.getSize() << ','
         << state.occupancy << ',' << int{id} << ','
-        << (id == semantic_types::kNoClass ? "" : quoted(tree.classes().name(id))) << ','
-        << state.probability << '\n';
+        << (id == semantic_types::kNoClass ? "" : strict_files::csvField(tree.classes().name(id)))
+        << ',' << state.probability << '\n';
   });
   checked(out);
 }

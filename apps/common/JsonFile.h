@@ -1,0 +1,13 @@
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+/** As all programs write it: two spaces a level, and a line's end. Bytes that are no UTF-8 (names
+ * of files may be) become U+FFFD. */
+std::string textOf(const nlohmann::json& json);
+std::string textOf(const nlohmann::ordered_json& json);
+
+/** Writes it into a file. \throw std::runtime_error naming the file: it cannot be written. */
+void writeJson(const std::filesystem::path& file, const nlohmann::json& json);
+void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& json);

@@ -1,0 +1,26 @@
+#pragma once
+#include <filesystem>
+#include <sstream>
+#include <string>
+
+#include "Gnuplot.h"
+
+namespace figures {
+
+/** A solution's color, the same in all figures. */
+const char* colorOf(std::size_t solution);
+
+/** Beginning of a script that draws into a file of that size, pixels. */
+std::ostringstream scriptFor(const std::filesystem::path& file, std::size_t width,
+                             std::size_t height);
+
+/** Names at 0, 1, 2... of an axis. */
+template <typename Names>
+std::string tics(std::size_t count, const Names& name) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < count; ++i)
+    text += (i ? ", " : "") + gnuplotText(name(i)) + " " + std::to_string(i);
+  return text + ")";
+}
+
+}  // namespace figures

@@ -1,0 +1,57 @@
+#include "Poses.h"
+
+#include <mrpt/poses/CPose3D.h>
+#include <strict_files/Words.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+
+namespace poses {
+
+using mrpt::math::TPose2D;
+
+namespace {
+constexpr double kDegree = M_PI / 180;
+}
+
+std::vector<double> parseNumbers(const std::string& text, std::size_t least, std::size_t most,
+                                 const std::string& expected) {
+  std::vector<double> numbers;
+  bool valid = true;
+  std::istringstream in(text + ',');
+  for (std::string part; std::getline(in, part, ',');) {
+    char* end = nullptr;
+    part = strict_files::trimmed(part);
+    numbers.push_back(std::strtod(part.c_str(), &end));
+    valid = valid && !part.empty() && *end == '\0' && std::isfinite(numbers.back());
+  }
+  if (!valid || numbers.size() < least || numbers.size() > most)
+    throw std::invalid_argument("expected " + expected + ", found '" + text + "'");
+  return numbers;
+}
+
+TPose2D parsePose(const std::string& text) {
+  const auto n = parseNumbers(text, 3, 3, "X,Y,DEG (meters and degrees)");
+  return {n[0], n[1], n[2] * kDegree};
+}
+
+CLI::Option* addPose(CLI::App& app, const std::string& name, TPose2D& pose,
+                     const std::string& description) {
+  const auto take = [&pose, name](const std::string& text) {
+    try {
+      pose = parsePose(text);
+    } catch (const std::invalid_argument& e) {
+      throw CLI::ValidationError(name, e.what());
+    }
+  };
+  return app.add_option_function<std::string>(name, take, description)->type_name("X,Y,DEG");
+}
+
+Eigen::Isometry3d poseOfNumbers(const std::array<double, 6>& v) {
+  const mrpt::poses::CPose3D pose(v[0], v[1], v[2], v[3] * kDegree, v[4] * kDegree, v[5] * kDegree);
+  return Eigen::Isometry3d(pose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen());
+}
+
+}  // namespace poses

@@ -1,0 +1,27 @@
+#pragma once
+#include <mrpt/math/TPose2D.h>
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace poses {
+
+/** Numbers between commas. \param expected what to say that they are
+ * \throw std::invalid_argument what is no finite number, or not as many as expected */
+std::vector<double> parseNumbers(const std::string& text, std::size_t least, std::size_t most,
+                                 const std::string& expected);
+
+/** "X,Y,DEG", meters and degrees. \throw std::invalid_argument naming the text */
+mrpt::math::TPose2D parsePose(const std::string& text);
+
+/** A pose of a command line: "X,Y,DEG". */
+CLI::Option* addPose(CLI::App& app, const std::string& name, mrpt::math::TPose2D& pose,
+                     const std::string& description);
+
+/** \param v x, y, z (m), yaw, pitch, roll (degrees), as MRPT's CPose3D. */
+Eigen::Isometry3d poseOfNumbers(const std::array<double, 6>& v);
+
+}  // namespace poses

@@ -1,0 +1,50 @@
+#pragma once
+#include <semantic_driving/DriveGuide.h>
+#include <semantic_octree/FilterParameters.h>
+#include <semantic_octree/InsertionOptions.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
+#include <synthetic_world/Camera.h>
+#include <synthetic_world/Lidar.h>
+
+#include <filesystem>
+
+#include "PoseOptions.h"
+
+namespace simulated_drive {
+
+/** What the robot sees with. */
+struct SensorConfig {
+  bool hasCamera = true, hasLidar = true;
+  synthetic_world::CameraOptions camera;
+  double cameraPitch = 15;  ///< degrees down
+  synthetic_world::LidarOptions lidar;
+  double period = 0.5;     ///< s
+  std::uint64_t seed = 1;  ///< of the odometry's noise, too
+
+  /** What is not the camera's or the LiDAR's. */
+  void describe(strict_files::OptionList& list);
+};
+
+/** Everything that the .ini file says. */
+struct DriveConfig {
+  double voxelSize = 0.2;  ///< m
+  semantic_octree::FilterParameters filter;
+  semantic_octree::InsertionOptions insertion;
+  SensorConfig sensors;
+  PoseOptions pose;
+  semantic_planning::PlannerOptions planner;
+  semantic_driving::DriveOptions drive;
+  semantic_driving::GuideOptions guide;
+  semantic_driving::ObstacleOptions obstacles;
+  bool compressedObstacles = false;  ///< the compressed tree's leaves are obstacles
+  double controlPeriod = 0.1;        ///< s
+  double timeLimit = 600;            ///< s of simulated time
+  double turnAcceleration = 4;       ///< of the simulated robot's steering, rad/s^2
+  std::filesystem::path reactive;
+};
+
+/** Reads a configuration; what is absent has its default. Files that it names are relative to it.
+ * \throw std::runtime_error naming file, section, key and value. */
+DriveConfig loadDriveConfig(const std::filesystem::path& file);
+
+}  // namespace simulated_drive

@@ -1,0 +1,242 @@
+#include "DriveLoop.h"
+
+#include <mrpt/core/Clock.h>
+#include <semantic_driving/ObstacleSensing.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "measuring/Stopwatch.h"
+
+namespace simulated_drive {
+
+using measuring::Stopwatch;
+using namespace semantic_driving;
+using namespace semantic_planning;
+using mrpt::math::TPose2D;
+
+namespace {
+
+constexpr double kEpoch = 1704067200;  // 2024-01-01, UTC
+
+std::unique_ptr<Mapper> mapperOf(const DriveConfig& config, const colored_graph::ClassOrder& order,
+                                 std::optional<semantic_octree::SemanticOcTree> map) {
+  if (map) return std::make_unique<Mapper>(config, order, std::move(*map));
+  return std::make_unique<Mapper>(config, order);
+}
+
+ReactiveNavigator::Options reactiveOf(const DriveConfig& config,
+                                      const std::filesystem::path& navlogs) {
+  ReactiveNavigator::Options options;
+  options.config = config.reactive;
+  options.footprint = config.planner.vehicle.footprint;
+  options.margin = config.drive.margin;
+  options.maxSpeed = config.drive.maxSpeed;
+  options.turningRadius = config.drive.turningRadius;
+  options.logFolder = navlogs;
+  return options;
+}
+
+std::string meters(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f m", value);
+  return text;
+}
+
+/** x, y and heading only. */
+Eigen::Isometry3d planar(const TPose2D& pose) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() << pose.x, pose.y, 0;
+  T.rotate(Eigen::AngleAxisd(pose.phi, Eigen::Vector3d::UnitZ()));
+  return T;
+}
+
+void setClock(double seconds) {
+  mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
+  mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(kEpoch + seconds));
+}
+
+}  // namespace
+
+synthetic_world::Footprint trueFootprint(const VehicleOptions& vehicle) {
+  synthetic_world::Footprint footprint;
+  footprint.outline.assign(vehicle.footprint.begin(), vehicle.footprint.end());
+  footprint.height = vehicle.height;
+  footprint.clearance = vehicle.stepHeight;
+  return footprint;
+}
+
+const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd) {
+  static const strict_files::Choices<DriveEnd> choices = {{"arrived", DriveEnd::Arrived},
+                                                          {"astray", DriveEnd::Astray},
+                                                          {"unreachable", DriveEnd::Unreachable},
+                                                          {"time_limit", DriveEnd::TimeLimit}};
+  return choices;
+}
+
+const char* nameOf(DriveEnd end) { return strict_files::nameIn(choicesOf(end), end); }
+
+DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
+                     const colored_graph::ClassOrder& order, const TPose2D& start,
+                     const TPose2D& goal, Events events,
+                     std::optional<semantic_octree::SemanticOcTree> map,
+                     std::filesystem::path navlogs)
+    : m_config(config),
+      m_world(world),
+      m_events(std::move(events)),
+      m_start(start),
+      m_goal(goal),
+      m_sensors(config.sensors, false),
+      m_mapper(mapperOf(config, order, std::move(map))),
+      m_guide(std::make_unique<DriveGuide>(config.guide, m_mapper->planner(), goal)),
+      m_controller(config.drive, reactiveOf(config, navlogs)),
+      m_robot(start, config.drive, config.turnAcceleration),
+      m_pose(start, config.pose, config.sensors.seed),
+      m_state(m_robot.state()),
+      m_footprint(trueFootprint(config.planner.vehicle)) {
+  const auto classes = synthetic_world::classTable().size() + 1;
+  m_record.drivenPerClass.resize(classes);
+  m_record.plannedPerClass.resize(classes);
+  m_record.exactPose = config.pose.isExact();
+  setClock(0);
+  m_mapper->standOn(T_world_robot());
+}
+
+Eigen::Isometry3d DriveLoop::T_world_robot() const {
+  const TPose2D& p = m_robot.state().pose;
+  return m_world.poseOnGround(p.x, p.y, p.phi);
+}
+
+/** Height, roll and pitch are known. */
+Eigen::Isometry3d DriveLoop::T_level_robot() const {
+  return planar(m_robot.state().pose).inverse() * T_world_robot();
+}
+
+Eigen::Isometry3d DriveLoop::T_map_robot() const {
+  return m_record.exactPose ? T_world_robot() : planar(state().pose) * T_level_robot();
+}
+
+double DriveLoop::groundZ() const {
+  const TPose2D& p = m_robot.state().pose;
+  return m_world.groundHeight(p.x, p.y);
+}
+
+const DriveRecord& DriveLoop::run() {
+  while (!isOver()) {
+    setClock(m_time);
+    m_world.setMovables(m_events.at(m_world, m_time));
+    if (m_time - m_lookedAt >= m_config.sensors.period - 1e-6) {
+      m_lookedAt = m_time;
+      sense();
+      guide();
+    }
+    drive();
+    for (DriveObserver* o : m_observers) o->onDriven(*this);
+    m_time += m_config.controlPeriod;
+  }
+  m_record.replans = m_guide->replans();
+  for (DriveObserver* o : m_observers) o->onFinished(*this);
+  return m_record;
+}
+
+void DriveLoop::sense() {
+  if (!m_events.sensorsWork(m_time)) return;
+  Stopwatch watch(measuring::TimeOf::Thread);
+  const std::vector<Observation> seen = m_sensors.sense(m_world, T_world_robot());
+  note("simulate", watch.lap());
+  localize(seen);
+  for (const auto& [stage, ms] : m_mapper->insert(seen, T_map_robot())) note(stage, ms);
+  m_sensedAt = m_time;
+  for (DriveObserver* o : m_observers) o->onSensed(*this, seen);
+}
+
+void DriveLoop::localize(const std::vector<Observation>& seen) {
+  if (m_record.exactPose || !m_config.pose.correct) return;
+  Stopwatch watch(measuring::TimeOf::Thread);
+  m_pose.correct(m_mapper->map(), seen, T_level_robot());
+  m_state.pose = m_pose.pose();
+  note("localize", watch.lap());
+}
+
+void DriveLoop::guide() {
+  Stopwatch watch(measuring::TimeOf::Thread);
+  m_guide->update(state(), groundZ(), m_controller, m_time);
+  const double replan = watch.lap();
+  note("replan", replan);
+  if (m_sensedAt == m_time)
+    note("insert+update+replan",
+         m_record.times["insert"].back() + m_record.times["update"].back() + replan);
+}
+
+void DriveLoop::drive() {
+  Stopwatch watch(measuring::TimeOf::Thread);
+  const auto obstacles =
+      m_mapper->obstacles(state().pose, groundZ(), m_guide->obstacles(m_config.obstacles));
+  note("obstacles", watch.lap());
+  const DriveCommand command = m_controller.step(state(), obstacles, m_time - m_sensedAt, m_time);
+  note("react", watch.lap());
+  addRow();
+  move(command);
+}
+
+void DriveLoop::move(const DriveCommand& command) {
+  const TPose2D before = m_robot.state().pose;
+  m_robot.drive(command, m_config.controlPeriod);
+  m_state = m_robot.state();
+  if (m_record.exactPose) return;
+  m_pose.move(m_state.pose - before);
+  m_state.pose = m_pose.pose();
+}
+
+void DriveLoop::addRow() {
+  DriveRow row;
+  row.time = m_time;
+  row.pose = m_robot.state().pose;
+  row.believed = state().pose;
+  row.odometry = m_record.exactPose ? row.pose : m_pose.odometry();
+  row.z = groundZ();
+  row.speed = state().speed;
+  row.turn = state().turn;
+  row.classId = m_world.groundClass(row.pose.x, row.pose.y);
+  row.clearance = m_world.clearance(m_footprint, row.pose.x, row.pose.y, row.pose.phi);
+  row.target = m_guide->target();
+  row.driver = m_controller.driver();
+  const PathTracker& tracker = m_controller.tracker();
+  if (!tracker.path().empty()) row.offset = tracker.offset();
+  const double way = std::abs(row.speed) * m_config.controlPeriod;
+  m_record.drivenPerClass[row.classId] += way;
+  if (!tracker.path().empty()) {
+    const PathPoint p = tracker.path().at(tracker.progress());
+    m_record.plannedPerClass[m_world.groundClass(p.x, p.y)] += way;
+  }
+  m_record.length += way;
+  const bool touchedBefore = !m_record.rows.empty() && m_record.rows.back().clearance <= 0;
+  if (row.clearance <= 0 && !touchedBefore) ++m_record.collisions;
+  m_record.leastClearance = std::min(m_record.leastClearance, row.clearance);
+  m_record.rows.push_back(row);
+}
+
+void DriveLoop::endAtGoal() {
+  const TPose2D& p = m_robot.state().pose;
+  const double off = std::hypot(p.x - m_goal.x, p.y - m_goal.y);
+  const bool arrived = m_record.exactPose || off < m_config.guide.atGoal;
+  m_record.end = arrived ? DriveEnd::Arrived : DriveEnd::Astray;
+  if (!arrived) m_record.reason = "it believes to have arrived, but is " + meters(off) + " off";
+}
+
+bool DriveLoop::isOver() {
+  if (m_guide->arrived(state(), m_controller)) {
+    endAtGoal();
+    return true;
+  }
+  if (m_guide->gaveUp() && std::abs(state().speed) < m_config.guide.atRest) {
+    m_record.end = DriveEnd::Unreachable;
+    m_record.reason = m_guide->reason();
+    return true;
+  }
+  if (m_time < m_config.timeLimit) return false;
+  m_record.reason = "the time is over";
+  return true;
+}
+
+}  // namespace simulated_drive

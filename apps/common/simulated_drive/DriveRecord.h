@@ -1,0 +1,52 @@
+#pragma once
+#include <mrpt/math/TPose2D.h>
+#include <semantic_driving/DriveGuide.h>
+#include <semantic_types/ClassTable.h>
+
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace simulated_drive {
+
+/** One step of the control. */
+struct DriveRow {
+  double time = 0;                      ///< s
+  mrpt::math::TPose2D pose;             ///< true, map frame
+  mrpt::math::TPose2D believed;         ///< where the robot believes to be
+  mrpt::math::TPose2D odometry;         ///< where it would without correction
+  double z = 0, speed = 0, turn = 0;    ///< m, m/s, rad/s
+  semantic_types::ClassId classId = 0;  ///< true ground below the robot
+  double clearance = 0;                 ///< m to the nearest true thing, at most 5
+  double offset = 0;                    ///< m from the path
+  semantic_driving::Target target = semantic_driving::Target::None;
+  semantic_driving::DriveController::Driver driver =
+      semantic_driving::DriveController::Driver::Tracker;
+};
+
+/** Astray: it believes to have arrived, but has not. */
+enum class DriveEnd { Arrived, Astray, Unreachable, TimeLimit };
+const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd);
+/** "arrived", "astray", "unreachable" or "time_limit". */
+const char* nameOf(DriveEnd end);
+
+/** A whole drive. */
+struct DriveRecord {
+  DriveEnd end = DriveEnd::TimeLimit;
+  std::string reason;
+  bool exactPose = true;  ///< the robot knows it
+  std::vector<DriveRow> rows;
+  std::vector<double> drivenPerClass;   ///< m, true ground along the driven way
+  std::vector<double> plannedPerClass;  ///< m, true ground along the paths that it followed
+  double length = 0;                    ///< m
+  int replans = 0, collisions = 0;
+  double leastClearance = std::numeric_limits<double>::infinity();  ///< m
+  /** Milliseconds of each stage, cycle by cycle. */
+  std::map<std::string, std::vector<double>> times;
+
+  bool arrived() const { return end == DriveEnd::Arrived; }
+  double duration() const { return rows.empty() ? 0 : rows.back().time; }
+};
+
+}  // namespace simulated_drive

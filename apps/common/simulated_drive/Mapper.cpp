@@ -1,0 +1,67 @@
+#include "Mapper.h"
+
+#include <semantic_driving/CompressedObstacles.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
+#include <synthetic_world/Classes.h>
+
+#include "measuring/Stopwatch.h"
+
+namespace simulated_drive {
+
+using colored_graph::ClassOrder;
+using measuring::Stopwatch;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+SemanticOcTree withAbstraction(SemanticOcTree map, const ClassOrder& order) {
+  map.setAbstraction(semantic_planning::abstractionFor(order));
+  return map;
+}
+
+}  // namespace
+
+Mapper::Mapper(const DriveConfig& config, const ClassOrder& order)
+    : Mapper(config, order,
+             SemanticOcTree(config.voxelSize, synthetic_world::classTable(), config.filter)) {}
+
+Mapper::Mapper(const DriveConfig& config, const ClassOrder& order, SemanticOcTree map)
+    : m_config(config),
+      m_map(withAbstraction(std::move(map), order)),
+      m_planner(m_map, order, config.planner) {}
+
+void Mapper::standOn(const Eigen::Isometry3d& T_map_robot) {
+  const semantic_planning::VehicleOptions& vehicle = m_config.planner.vehicle;
+  const double room = vehicle.clearance + m_config.voxelSize, step = m_config.voxelSize / 2;
+  constexpr double kBelow = 1e-3;  // m: in the voxel that holds the ground
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : vehicle.footprint) box.extend(corner);
+  semantic_types::LabeledCloud cloud;
+  for (double x = box.min().x() - room; x < box.max().x() + room; x += step)
+    for (double y = box.min().y() - room; y < box.max().y() + room; y += step) {
+      cloud.points.push_back(Eigen::Vector3d(x, y, -kBelow).cast<float>());
+      cloud.classes.push_back(semantic_types::kNoClass);
+    }
+  semantic_octree::InsertionOptions noRays;
+  noRays.carvingMargin = 1e3;
+  m_map.insert(cloud, T_map_robot, noRays);
+}
+
+semantic_planning::StageTimes Mapper::insert(const std::vector<Observation>& seen,
+                                             const Eigen::Isometry3d& T_map_robot) {
+  Stopwatch watch(measuring::TimeOf::Thread);
+  for (const Observation& o : seen)
+    m_map.insert(o.cloud, T_map_robot * o.T_robot_sensor, m_config.insertion);
+  semantic_planning::StageTimes times{{"insert", watch.lap()}};
+  m_planner.update();
+  times.emplace_back("update", watch.lap());
+  return times;
+}
+
+semantic_driving::ObstaclePoints Mapper::obstacles(
+    const mrpt::math::TPose2D& pose, double z, const semantic_driving::ObstacleOptions& options) {
+  if (!m_config.compressedObstacles) return senseObstacles(m_planner, pose, z, options);
+  return senseCompressedObstacles(m_planner, semantic_octree::Abstraction(m_map), pose, z, options);
+}
+
+}  // namespace simulated_drive

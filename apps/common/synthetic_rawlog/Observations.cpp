@@ -1,0 +1,91 @@
+#include "Observations.h"
+
+namespace synthetic_rawlog {
+
+using mrpt::obs::CObservation3DRangeScan;
+using synthetic_world::classTable;
+using synthetic_world::kClassCount;
+
+mrpt::poses::CPose3D toMrpt(const Eigen::Isometry3d& pose) {
+  return mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(pose.matrix()));
+}
+
+mrpt::img::CImage toMrpt(const synthetic_world::Image<synthetic_world::Color>& image) {
+  mrpt::img::CImage result(image.width, image.height, mrpt::img::CH_RGB);
+  for (int row = 0; row < image.height; ++row)
+    for (int column = 0; column < image.width; ++column) {
+      const synthetic_world::Color c = image.at(row, column);
+      result.setPixel(column, row, mrpt::img::TColor(c.r, c.g, c.b));
+    }
+  return result;
+}
+
+mrpt::obs::CObservationRobotPose::Ptr robotPose(const Eigen::Isometry3d& T_map_robot) {
+  auto pose = mrpt::obs::CObservationRobotPose::Create();
+  pose->sensorLabel = "ROBOT";
+  pose->pose.mean = toMrpt(T_map_robot);
+  return pose;
+}
+
+namespace {
+
+mrpt::obs::TPixelLabelInfoBase::Ptr labelBits(
+    const synthetic_world::Image<synthetic_world::ClassId>& labels) {
+  using Bits = mrpt::obs::TPixelLabelInfo<4>;
+  static_assert(kClassCount < 32);
+  auto bits = std::make_shared<Bits>();
+  bits->setSize(labels.height, labels.width);
+  for (int row = 0; row < labels.height; ++row)
+    for (int column = 0; column < labels.width; ++column)
+      if (const auto id = labels.at(row, column)) bits->setLabel(row, column, id);
+  for (synthetic_world::ClassId id = 1; id <= kClassCount; ++id)
+    bits->setLabelName(id, classTable().name(id));
+  return bits;
+}
+
+mrpt::img::TCamera calibration(const synthetic_world::CameraOptions& options) {
+  mrpt::img::TCamera camera;
+  camera.ncols = static_cast<uint32_t>(options.width);
+  camera.nrows = static_cast<uint32_t>(options.height);
+  const double f = options.focalLength();
+  camera.setIntrinsicParamsFromValues(f, f, options.cx(), options.cy());
+  return camera;
+}
+
+}  // namespace
+
+CObservation3DRangeScan::Ptr rangeScan(const synthetic_world::CameraFrame& frame,
+                                       const synthetic_world::CameraOptions& options,
+                                       const Eigen::Isometry3d& T_robot_camera) {
+  auto scan = CObservation3DRangeScan::Create();
+  scan->sensorLabel = "CAMERA";
+  scan->sensorPose = toMrpt(T_robot_camera);
+  scan->hasRangeImage = true;
+  scan->range_is_depth = true;
+  scan->rangeUnits = 0.001f;
+  scan->maxRange = static_cast<float>(options.maxRange);
+  scan->stdError = static_cast<float>(options.noise.range);
+  scan->rangeImage_setSize(options.height, options.width);
+  for (int row = 0; row < options.height; ++row)
+    for (int column = 0; column < options.width; ++column)
+      scan->rangeImage(row, column) =
+          static_cast<uint16_t>(std::lround(1000 * frame.depth.at(row, column)));
+  scan->cameraParams = scan->cameraParamsIntensity = calibration(options);
+  scan->pixelLabels = labelBits(frame.labels);
+  scan->hasIntensityImage = true;
+  scan->intensityImage = toMrpt(frame.color);
+  return scan;
+}
+
+labeled_cloud::CObservationLabeledCloud::Ptr labeledCloud(synthetic_world::LabeledCloud cloud,
+                                                          const Eigen::Isometry3d& T_robot_lidar) {
+  auto observation = labeled_cloud::CObservationLabeledCloud::Create();
+  observation->sensorLabel = "LIDAR";
+  observation->sensorPose = toMrpt(T_robot_lidar);
+  observation->cloud = std::move(cloud);
+  for (synthetic_world::ClassId id = 1; id <= kClassCount; ++id)
+    observation->classNames.push_back(classTable().name(id));
+  return observation;
+}
+
+}  // namespace synthetic_rawlog

@@ -1,0 +1,26 @@
+#pragma once
+#include <labeled_cloud/CObservationLabeledCloud.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationRobotPose.h>
+#include <synthetic_world/Camera.h>
+#include <synthetic_world/Lidar.h>
+
+// What the sensors of the synthetic world see, as MRPT's observations.
+namespace synthetic_rawlog {
+
+mrpt::poses::CPose3D toMrpt(const Eigen::Isometry3d& pose);
+
+mrpt::img::CImage toMrpt(const synthetic_world::Image<synthetic_world::Color>& image);
+
+mrpt::obs::CObservationRobotPose::Ptr robotPose(const Eigen::Isometry3d& T_map_robot);
+
+/** Depth in millimeters, color, and one label bit a pixel: the bit of class i is i. Labels and
+ * color belong to the pixels of the depth image. */
+mrpt::obs::CObservation3DRangeScan::Ptr rangeScan(const synthetic_world::CameraFrame& frame,
+                                                  const synthetic_world::CameraOptions& options,
+                                                  const Eigen::Isometry3d& T_robot_camera);
+
+labeled_cloud::CObservationLabeledCloud::Ptr labeledCloud(synthetic_world::LabeledCloud cloud,
+                                                          const Eigen::Isometry3d& T_robot_lidar);
+
+}  // namespace synthetic_rawlog

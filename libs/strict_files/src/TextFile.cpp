@@ -1,0 +1,57 @@
+#include <strict_files/TextFile.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace strict_files {
+
+std::string readText(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(stream), {});
+  if (!stream || std::filesystem::is_directory(file))
+    throw std::runtime_error(file.string() + ": cannot be read");
+  return text;
+}
+
+void writeText(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+std::vector<TextLine> readLines(const std::filesystem::path& file) {
+  std::istringstream stream(readText(file));
+  std::vector<TextLine> lines;
+  std::string text;
+  for (int number = 1; std::getline(stream, text); ++number) {
+    text.erase(std::min(text.find('#'), text.size()));
+    text.erase(text.find_last_not_of(" \t\r") + 1);
+    if (!text.empty()) lines.push_back({text, file.string() + ":" + std::to_string(number)});
+  }
+  return lines;
+}
+
+std::vector<double> numbersOf(const TextLine& line, std::size_t count) {
+  std::istringstream stream(line.text.substr(line.text.find(':') + 1));
+  std::vector<double> numbers;
+  for (std::string word; stream >> word;) {
+    std::size_t used = 0;
+    double number = NAN;
+    try {
+      number = std::stod(word, &used);
+    } catch (const std::exception&) {
+    }
+    if (used != word.size() || !std::isfinite(number))
+      throw std::runtime_error(line.where + ": expected a number, found '" + word + "'");
+    numbers.push_back(number);
+  }
+  if (numbers.size() != count)
+    throw std::runtime_error(line.where + ": expected " + std::to_string(count) +
+                             " numbers, found " + std::to_string(numbers.size()));
+  return numbers;
+}
+
+}  // namespace strict_files

@@ -1,0 +1,47 @@
+#include <gtest/gtest.h>
+#include <strict_files/TextFile.h>
+
+#include "TemporaryFolder.h"
+
+using namespace strict_files;
+
+TEST(TextFile, comesBackByteForByte) {
+  const TemporaryFolder folder;
+  const std::string text("a\r\n\0b\xFF", 6);
+  writeText(folder / "a.txt", text);
+  EXPECT_EQ(readText(folder / "a.txt"), text);
+  EXPECT_EQ(folder.read("a.txt"), text);
+  writeText(folder / "a.txt", "");
+  EXPECT_EQ(readText(folder / "a.txt"), "");
+}
+
+TEST(TextFile, thatCannotBeWrittenIsNamed) {
+  EXPECT_EQ(errorOf([] { writeText("/nowhere/a.txt", "a"); }), "/nowhere/a.txt: cannot be written");
+  // A full disk shows when the file is closed.
+  EXPECT_EQ(errorOf([] { writeText("/dev/full", "a"); }), "/dev/full: cannot be written");
+}
+
+TEST(TextFile, thatCannotBeReadIsNamed) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(errorOf([] { readText("/nowhere/a.txt"); }), "/nowhere/a.txt: cannot be read");
+  const std::string path = folder.path().string();
+  EXPECT_EQ(errorOf([&] { readText(path); }), path + ": cannot be read");
+}
+
+TEST(TextLines, leaveOutCommentsBlanksAndLineEndsAndKnowTheirNumber) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.txt", "# first\n1 2\r\n \t\n3 # three\n4");
+  const auto lines = readLines(file);
+  ASSERT_EQ(lines.size(), 3);
+  EXPECT_EQ(lines[0].text, "1 2");
+  EXPECT_EQ(lines[0].where, file.string() + ":2");
+  EXPECT_EQ(lines[1].text, "3");
+  EXPECT_EQ(lines[2].where, file.string() + ":5");
+}
+
+TEST(TextLines, haveAsManyNumbersAsExpected) {
+  EXPECT_EQ(numbersOf({"P2: 1 2.5 -3e2", "f:1"}, 3), (std::vector<double>{1, 2.5, -300}));
+  EXPECT_EQ(errorOf([] { numbersOf({"1 2", "f:1"}, 3); }), "f:1: expected 3 numbers, found 2");
+  EXPECT_EQ(errorOf([] { numbersOf({"1 2x", "f:7"}, 2); }), "f:7: expected a number, found '2x'");
+  EXPECT_EQ(errorOf([] { numbersOf({"1 inf", "f:7"}, 2); }), "f:7: expected a number, found 'inf'");
+}

@@ -1,0 +1,2 @@
+// Stands for the tests, which use the headers that are precompiled with it.
+int main() {}
