@@ -3,7 +3,7 @@
 
 namespace semantic_map_compress {
 
-/** One of a solution's optimal trees. */
+/** One of a solution's compressed trees. */
 struct CurvePoint {
   double alpha = 0;
   std::size_t leaves = 0;  ///< known ones
@@ -15,7 +15,7 @@ struct CurvePoint {
 /** The compressor's present tree as a point of the curve of its present weights. */
 CurvePoint curvePoint(Compressor& compressor, const semantic_octree::AbstractionMeasures& measures);
 
-/** Optimal trees from the blocks alone (first) to alpha = 0 (last), evenly spread over the
+/** Compressed trees from the blocks alone (first) to alpha = 0 (last), evenly spread over the
  * logarithm of the number of leaves. Leaves the compressor at another alpha. */
 std::vector<CurvePoint> alphaCurve(Compressor& compressor, const Solution& solution);
 

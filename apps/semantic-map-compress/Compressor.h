@@ -19,7 +19,7 @@ struct KeptInformation {
   std::optional<double> share;
 };
 
-/** The optimal trees of one map for different weights. */
+/** The compressed trees of one map for different weights. */
 class Compressor {
  public:
   /** The map keeps G-values from now on. \throw std::invalid_argument the map is empty. */
@@ -30,9 +30,9 @@ class Compressor {
   /** Computes the information of this batch's terms in all nodes. */
   void useBatch(std::size_t b);
 
-  /** The optimal tree is that of these weights from now on. */
+  /** The compressed tree is that of these weights from now on. */
   void weigh(const Solution& solution, double alpha);
-  /** Alpha of the largest optimal tree within the target. For bytes: the next larger optimal tree
+  /** Alpha of the largest compressed tree within the target. For bytes: the next larger one
    * does not fit. \throw std::runtime_error naming the solution: no alpha is given, or no tree is
    * that small, or more leaves are wanted than there are. */
   double alphaFor(const Solution& solution, const Target& target);

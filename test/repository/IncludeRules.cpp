@@ -11,7 +11,7 @@ const IncludeTable& includeTable() {
   static const IncludeTable table = {
       {"strict_files", {"Eigen", "yaml-cpp"}},
       {"semantic_types", {"Eigen", "yaml-cpp", "strict_files"}},
-      {"tree_abstraction", {"Eigen"}},
+      {"tree_abstraction", {}},
       {"semantic_octree",
        {"Eigen", "octomap", "zlib.h", "semantic_types", "strict_files", "tree_abstraction"}},
       {"labeled_cloud",

@@ -87,7 +87,7 @@ TEST(Abstraction, agreesWithThePlainSearchOnTheSameTree) {
       SemanticOcTree map = mapOf(scansOfSmallPlace(3, 2000, K, 11), &options);
       const int blockDepth = 12;  // 3.2 m = 16 voxels
       const bool free = frame == AbstractionOptions::Frame::Free;
-      const auto oracle = tree_abstraction::findOptimalTree(
+      const auto oracle = reference::findOptimalTree(
           OctreeAsTree(map, free ? blockDepth : 0, blockDepth, 0.5), options.weights);
 
       const Abstraction abstraction(map);

@@ -1,10 +1,11 @@
 #pragma once
+#include <reference/GTreeSearch.h>
 #include <semantic_octree/Abstraction.h>
 
 #include <cmath>
 #include <vector>
 
-/** A semantic octree as tree_abstraction's search sees a tree: an independent way to its optimal
+/** A semantic octree as the reference's search sees a tree: an independent way to its optimal
  * tree, with distributions of all classes, logarithms of the standard library, and no bookkeeping.
  *
  * Nodes at `rootDepth` are the roots (0: the whole map is one tree); unknown space weighs

@@ -139,6 +139,7 @@ TEST(Queries, ofPlacesWithoutANodeSayUnknown) {
     EXPECT_EQ(state.status, CellState::Status::Unknown) << x;
     EXPECT_EQ(state.occupancy, 0.5);
     EXPECT_EQ(state.likeliestClass, kNoClass);
+    EXPECT_EQ(tree.classes().name(state.likeliestClass), "no class");
   }
   const SemanticOcTree empty(0.1, numberedClasses(2));
   EXPECT_EQ(empty.query(0, 0, 0).status, CellState::Status::Unknown);

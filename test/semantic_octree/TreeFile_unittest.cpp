@@ -205,7 +205,7 @@ TEST(TreeFile, thatCannotBeWrittenLeavesTheOldOneAlone) {
   const std::string nowhere = folder / "missing/map.semantic";
   const SemanticOcTree small = someTree(true, 1);
   EXPECT_EQ(errorOf([&] { saveTree(small, nowhere); }),
-            "cannot save map '" + nowhere + "': No such file or directory");
+            "cannot save map '" + nowhere + "': cannot be written (does the folder exist?)");
 
   const std::string path = folder / "map.semantic";
   saveTree(small, path);

@@ -86,7 +86,8 @@ TEST(ClassTableFile, errorsNameFileLineAndValue) {
   EXPECT_EQ(errorFor(""), ": expected 'key: value' entries");
   EXPECT_EQ(errorFor("no_class: [0]\n"), ":1: key 'classes' is missing");
   EXPECT_EQ(errorFor("classes: []\n"), ":1: classes: expected a list of 1 to 254 classes");
-  EXPECT_EQ(errorFor(one + "colour: 1\n"), ":3: unknown key 'colour'");
+  EXPECT_EQ(errorFor(one + "colour: 1\n"),
+            ":3: unknown key 'colour'; known are classes, no_class, unknown_raw_id");
   EXPECT_EQ(errorFor(one + "no_class: [0]\nno_class: [1]\n"), ":4: key 'no_class' twice");
   EXPECT_EQ(errorFor(one + "no_class: [-1]\n"), ":3: expected a raw id, found '-1'");
   EXPECT_EQ(errorFor(one + "no_class: 7\n"), ":3: expected a list of raw ids");
@@ -105,7 +106,7 @@ TEST(ClassTableFile, errorsNameFileLineAndValue) {
   EXPECT_EQ(errorFor(one + "  - {id: two, name: b, color: [1, 2, 3]}\n"),
             ":3: expected a class id, found 'two'");
   EXPECT_EQ(errorFor(one + "  - {id: 2, name: b, color: [1, 2, 3], alpha: 1}\n"),
-            ":3: unknown key 'alpha'");
+            ":3: unknown key 'alpha'; known are color, id, name, raw");
 }
 
 TEST(ClassTableFile, aSyntaxErrorOrATruncatedFileIsAnErrorAndNoShorterTable) {

@@ -25,8 +25,17 @@ TEST(ClassTable, numbersClassesFromOne) {
   EXPECT_EQ(classes.find("mud"), std::nullopt);
   EXPECT_FALSE(classes.contains(0));
   EXPECT_FALSE(classes.contains(4));
-  EXPECT_THROW(classes.name(0), std::out_of_range);
+}
+
+TEST(ClassTable, namesWhatHasNoClassAndRefusesIdsAboveItsSize) {
+  const ClassTable classes = table();
+  EXPECT_EQ(classes.name(kNoClass), "no class");
+  EXPECT_NO_THROW(classes.color(kNoClass));
+  EXPECT_EQ(classes.find("no class"), std::nullopt);
+  EXPECT_THROW(classes.name(4), std::out_of_range);
   EXPECT_THROW(classes.color(4), std::out_of_range);
+  EXPECT_EQ(ClassTable().name(kNoClass), "no class");
+  EXPECT_THROW(ClassTable().name(1), std::out_of_range);
 }
 
 TEST(ClassTable, knowsNoSpecialColor) {

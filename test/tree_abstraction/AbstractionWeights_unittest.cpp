@@ -7,6 +7,7 @@
 #include "RandomTrees.h"
 
 using namespace tree_abstraction;
+using namespace reference;
 
 namespace {
 
@@ -30,7 +31,7 @@ void expectRejected(const AbstractionWeights& weights, const std::vector<std::st
 }
 
 std::vector<double> project(const InformationTerm& term, const std::vector<double>& p) {
-  const TermSet terms({{term}, 0.0}, static_cast<int>(p.size()) - 1);
+  const TermRows terms({{term}, 0.0}, static_cast<int>(p.size()) - 1);
   std::vector<double> row(terms.width(), kNan);
   terms.project(p.data(), row.data());
   return row;
@@ -103,8 +104,8 @@ TEST(TermSet, otherTermsKeepEveryOutcomeTheRestLast) {
 }
 
 TEST(TermSet, rowsHoldTheTermsOneAfterTheOther) {
-  const TermSet terms({{relevant("a", 1, {1}), {"b", 1, {{2}, {3}}}, irrelevant("c", 1, {4})}, 0},
-                      4);
+  const TermRows terms({{relevant("a", 1, {1}), {"b", 1, {{2}, {3}}}, irrelevant("c", 1, {4})}, 0},
+                       4);
   ASSERT_EQ(terms.size(), 3u);
   EXPECT_EQ(terms.width(), 5u);
   EXPECT_TRUE(terms.slot(0).isBinary());
@@ -117,7 +118,7 @@ TEST(TermSet, rowsHoldTheTermsOneAfterTheOther) {
 }
 
 TEST(TermSet, measuresAgreeWithThoseOfTheOutcomes) {
-  const TermSet terms({{relevant("a", 1, {1}), wholeClassVariable("all", 1, 4)}, 0}, 4);
+  const TermRows terms({{relevant("a", 1, {1}), wholeClassVariable("all", 1, 4)}, 0}, 4);
   random_trees::Engine random(3);
   const auto p = random_trees::makeDistribution(5, random);
   const auto q = random_trees::makeDistribution(5, random);

@@ -45,7 +45,7 @@ TEST(AlphaPath, totalsCountLeavesAndInformationAlongThePath) {
   const AlphaPath path(tausOf(found));
   const auto leaves = path.totals(addedLeaves(found.tree), 1.0);
   const auto entropies = path.totals(found.values.price, 0.0);
-  const TermSet terms({{relevant("one", 1, {1}), relevant("two", 1, {2})}, 0}, 2);
+  const TermRows terms({{relevant("one", 1, {1}), relevant("two", 1, {2})}, 0}, 2);
   for (std::size_t k = 0; k < path.numTrees(); k += 7) {
     const auto measures = measure(found.tree, terms, found.information, path.expanded(k));
     EXPECT_EQ(leaves[k], static_cast<double>(measures.numLeaves));

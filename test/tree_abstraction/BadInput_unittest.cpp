@@ -1,10 +1,11 @@
 #include <gtest/gtest.h>
-#include <tree_abstraction/GTreeSearch.h>
-#include <tree_abstraction/VectorTree.h>
+#include <reference/GTreeSearch.h>
+#include <reference/VectorTree.h>
 
 #include <limits>
 
 using namespace tree_abstraction;
+using namespace reference;
 
 namespace {
 

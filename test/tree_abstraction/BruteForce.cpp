@@ -7,9 +7,9 @@
 namespace brute_force {
 namespace {
 
+using reference::VectorTree;
 using tree_abstraction::AbstractionWeights;
 using tree_abstraction::InformationTerm;
-using tree_abstraction::VectorTree;
 using Node = VectorTree::Node;
 
 /** p(n, class) for all nodes: summed over the leaves below, over the total weight. */

@@ -1,6 +1,6 @@
 #pragma once
+#include <reference/VectorTree.h>
 #include <tree_abstraction/AbstractionWeights.h>
-#include <tree_abstraction/VectorTree.h>
 
 #include <cstdint>
 #include <vector>
@@ -14,22 +14,22 @@ struct Optimum {
   /** Largest J over that of the roots alone. */
   double objective = 0;
   /** Interior nodes that all, and that any of the optimal trees have; ascending. */
-  std::vector<tree_abstraction::VectorTree::Node> inAll, inAny;
+  std::vector<reference::VectorTree::Node> inAll, inAny;
   /** Some optimal tree has exactly the interior nodes inAll. */
   bool intersectionIsOptimal = false;
 };
 
 /** Number of pruned trees: for each root 1 + the product over its children. */
-double countTrees(const tree_abstraction::VectorTree& tree);
+double countTrees(const reference::VectorTree& tree);
 
 /** J(T) over that of the roots alone for any set of interior nodes that is closed towards the
  * roots. */
-double objective(const tree_abstraction::VectorTree& tree,
+double objective(const reference::VectorTree& tree,
                  const tree_abstraction::AbstractionWeights& weights,
-                 const std::vector<tree_abstraction::VectorTree::Node>& interior);
+                 const std::vector<reference::VectorTree::Node>& interior);
 
 /** At most 64 inner nodes. */
-Optimum optimize(const tree_abstraction::VectorTree& tree,
+Optimum optimize(const reference::VectorTree& tree,
                  const tree_abstraction::AbstractionWeights& weights);
 
 }  // namespace brute_force

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <tree_abstraction/GTreeSearch.h>
+#include <reference/GTreeSearch.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include "RandomTrees.h"
 
 using namespace tree_abstraction;
+using namespace reference;
 using random_trees::Engine;
 using random_trees::Shape;
 

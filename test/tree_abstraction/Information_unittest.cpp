@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
-#include <tree_abstraction/Divergence.h>
+#include <reference/Divergence.h>
 #include <tree_abstraction/TermSet.h>
 
 #include <cmath>
@@ -10,6 +10,7 @@
 #include "RandomTrees.h"
 
 using namespace tree_abstraction;
+using namespace reference;
 
 namespace {
 
@@ -49,7 +50,6 @@ Children drawChildren(std::size_t atLeast = 1) {
   const auto outcomes = *rc::gen::inRange<std::size_t>(2, 7);
   return makeChildren(n, outcomes, *rc::gen::arbitrary<unsigned>());
 }
-
 
 }  // namespace
 

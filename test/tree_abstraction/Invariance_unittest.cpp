@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <tree_abstraction/GTreeSearch.h>
+#include <reference/GTreeSearch.h>
 
 #include <algorithm>
 #include <map>
@@ -7,6 +7,7 @@
 #include "RandomTrees.h"
 
 using namespace tree_abstraction;
+using namespace reference;
 using random_trees::Engine;
 using random_trees::Shape;
 using Node = VectorTree::Node;
@@ -171,7 +172,7 @@ TEST(Invariance, informationOfTheTreeFollowsTheChainRuleAndDataProcessing) {
     AbstractionWeights measures{{wholeClassVariable("all", 1, 2), relevant("one", 1, {1})}, 0.1};
     const auto found = findOptimalTree(tree, measures);
     // Chain rule: the sum over interior nodes is the entropy at the root less that of the leaves.
-    const TermSet terms(measures, 2);
+    const TermRows terms(measures, 2);
     for (std::size_t t = 0; t < 2; ++t) {
       double left = terms.entropy(t, found.tree.row(0));
       for (std::size_t n = 0; n < found.tree.size(); ++n) {

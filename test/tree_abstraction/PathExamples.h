@@ -1,6 +1,6 @@
 #pragma once
-#include <tree_abstraction/CollapseAlphas.h>
-#include <tree_abstraction/GTreeSearch.h>
+#include <reference/GTreeSearch.h>
+#include <tree_abstraction/AlphaPath.h>
 
 #include <algorithm>
 #include <limits>
@@ -12,13 +12,14 @@
 namespace path_examples {
 
 using namespace tree_abstraction;
+using namespace reference;
 using random_trees::Engine;
 using random_trees::Shape;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-inline std::vector<double> tausOf(const Abstraction& found) {
+inline std::vector<double> tausOf(const SearchResult& found) {
   return collapseAlphas(found.tree.parent, found.values.gain, found.values.price);
 }
 
@@ -30,7 +31,7 @@ inline std::vector<double> addedLeaves(const BreadthFirstTree& tree) {
 }
 
 /** A sparse octree searched at alpha = 0. */
-inline Abstraction makeExample(unsigned seed) {
+inline SearchResult makeExample(unsigned seed) {
   Engine random(seed);
   const Shape shape{4, 8, 8, 0.5};
   const auto tree = random_trees::makeTree(shape, random);

@@ -7,7 +7,7 @@
 namespace random_trees {
 namespace {
 
-using tree_abstraction::VectorTree;
+using reference::VectorTree;
 
 /** What the leaves right below an inner node of a tie-rich tree are. */
 enum class Pattern { AllFree, AllOne, ByTurns, OddOneOut, Random };
@@ -76,7 +76,7 @@ tree_abstraction::AbstractionWeights makeTieRichWeights(double arity, Engine& ra
   using tree_abstraction::relevant;
   switch (uniformInt(random, 0, 2)) {
     case 0:
-      return {{relevant("one", std::log(arity) / tree_abstraction::binaryEntropy(1 / arity), {1})},
+      return {{relevant("one", std::log(arity) / reference::binaryEntropy(1 / arity), {1})},
               1};
     case 1:
       return {{relevant("one", 2 * std::log2(arity), {1})}, 1};
@@ -120,6 +120,7 @@ VectorTree makeTree(const Shape& shape, Engine& random) {
 
 tree_abstraction::AbstractionWeights makeWeights(const Shape& shape, Engine& random) {
   using namespace tree_abstraction;
+  using namespace reference;
   if (shape.tieRich) return makeTieRichWeights(shape.maxArity, random);
   AbstractionWeights weights{{relevant("one", 1.0 + uniform(random), {1})}, 0.0};
   if (shape.numClasses > 1) weights.terms.push_back(irrelevant("two", 0.5 * uniform(random), {2}));

@@ -1,6 +1,6 @@
 #pragma once
-#include <tree_abstraction/GTreeSearch.h>
-#include <tree_abstraction/VectorTree.h>
+#include <reference/GTreeSearch.h>
+#include <reference/VectorTree.h>
 
 #include <random>
 #include <vector>
@@ -30,7 +30,7 @@ struct Shape {
 };
 
 /** Some leaf has a weight. */
-tree_abstraction::VectorTree makeTree(const Shape& shape, Engine& random);
+reference::VectorTree makeTree(const Shape& shape, Engine& random);
 
 /** Class 1 relevant, class 2 irrelevant if there is one, with random weights and alpha; for
  * tie-rich shapes weights at which many splits cost just what they tell. */

@@ -1,14 +1,14 @@
 #include <gtest/gtest.h>
+#include <reference/GTreeSearch.h>
+#include <reference/VectorTree.h>
 #include <tree_abstraction/AlphaPath.h>
-#include <tree_abstraction/CollapseAlphas.h>
-#include <tree_abstraction/GTreeSearch.h>
-#include <tree_abstraction/VectorTree.h>
 
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 using namespace tree_abstraction;
+using namespace reference;
 using nlohmann::json;
 
 namespace {
@@ -65,7 +65,7 @@ std::size_t follow(const BreadthFirstTree& tree, const json& path) {
   return n;
 }
 
-void expectNode(const Abstraction& found, const std::vector<double>& tau, const json& expected) {
+void expectNode(const SearchResult& found, const std::vector<double>& tau, const json& expected) {
   SCOPED_TRACE(expected.dump());
   const std::size_t n = follow(found.tree, expected["path"]);
   const std::size_t numTerms = found.full.information.size();
@@ -79,7 +79,7 @@ void expectNode(const Abstraction& found, const std::vector<double>& tau, const 
   expectClose(tau[n], expected["tau"]);
 }
 
-void expectMeasures(const Abstraction& found, const json& expected) {
+void expectMeasures(const SearchResult& found, const json& expected) {
   expectClose(found.objective, expected["objective"]);
   expectClose(found.optimal.leafEntropy, expected["leafEntropy"]);
   expectClose(found.full.leafEntropy, expected["fullLeafEntropy"]);

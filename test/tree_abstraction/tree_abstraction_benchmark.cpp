@@ -1,13 +1,13 @@
 #include <benchmark/benchmark.h>
+#include <reference/GTreeSearch.h>
 #include <tree_abstraction/AlphaPath.h>
-#include <tree_abstraction/CollapseAlphas.h>
-#include <tree_abstraction/GTreeSearch.h>
 
 #include <cmath>
 
 #include "RandomTrees.h"
 
 using namespace tree_abstraction;
+using namespace reference;
 
 namespace {
 
@@ -66,7 +66,7 @@ void stableDivergenceOfFourTerms(benchmark::State& state) {
 BENCHMARK(stableDivergenceOfFourTerms);
 
 struct Example {
-  TermSet terms;
+  TermRows terms;
   BreadthFirstTree tree;
 };
 
@@ -77,7 +77,7 @@ const Example& example() {
     shape.numClasses = 4;
     const auto tree = random_trees::makeTree(shape, random);
     std::vector<VectorTree::Node> nodes;
-    TermSet terms(fourTerms(), 4);
+    TermRows terms(fourTerms(), 4);
     auto flat = layOutBreadthFirst(tree, terms, nodes);
     return Example{std::move(terms), std::move(flat)};
   }();

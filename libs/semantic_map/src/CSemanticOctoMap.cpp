@@ -62,12 +62,6 @@ void CSemanticOctoMap::copyAllButTree(const CSemanticOctoMap& o) {
   m_likelihoodCache->clear();
 }
 
-void CSemanticOctoMap::setTree(SemanticOcTree tree) {
-  m_tree = std::move(tree);
-  insertionOptions.filter = m_tree.filterParameters();
-  if (!m_tree.hasAbstraction()) m_abstractionOptions = {};
-}
-
 void CSemanticOctoMap::setAbstraction(const TAbstractionOptions& options) {
   if (options.isSet())
     m_tree.setAbstraction(options.forClasses(m_tree.classes()));

@@ -1,9 +1,14 @@
 #pragma once
+#include <semantic_octree/ClassBelief.h>
 #include <semantic_octree/Keys.h>
+#include <semantic_octree/SemanticOcTreeNode.h>
 
 #include <Eigen/Core>
 
 namespace semantic_octree {
+
+using Node = SemanticOcTreeNode;
+using Belief = ClassBelief<float>;
 
 /** Voxel coordinates: key minus kKeyOfOrigin (floor(coordinate / resolution)), or keys. */
 using VoxelIndex = Eigen::Array3i;

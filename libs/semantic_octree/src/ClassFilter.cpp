@@ -4,8 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "LogOddsGrid.h"
-
 namespace semantic_octree {
 namespace {
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "LogOddsGrid.h"
-
 namespace semantic_octree {
 
 Belief truncated(std::vector<ClassLogOdds> named, double rest, int numClasses) {

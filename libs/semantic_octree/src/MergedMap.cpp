@@ -33,7 +33,7 @@ class MergeCursor {
   MergeCursor child(int i) const {
     std::vector<const Node*> children = m_nodes;
     for (const Node*& node : children)
-      if (node && !node->isLeaf()) node = NodeStore::child(*node, i);
+      if (node && !node->isLeaf()) node = node->child(i);
     return {m_sum, std::move(children)};
   }
   LeafContent content() const {

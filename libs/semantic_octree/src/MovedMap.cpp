@@ -21,7 +21,7 @@ bool anyKnown(const Node* node, const Cell& cell, const Bounds& bounds) {
   if (!node || !boundsOf(cell).intersects(bounds)) return false;
   if (node->isLeaf()) return true;
   for (int i = 0; i < 8; ++i)
-    if (anyKnown(NodeStore::child(*node, i), cell.child(i), bounds)) return true;
+    if (anyKnown(node->child(i), cell.child(i), bounds)) return true;
   return false;
 }
 
@@ -61,7 +61,7 @@ class MoveCursor {
       for (int axis = 0; axis < 3; ++axis)
         if (low[axis] != high[axis]) return false;
       const int i = low[0] | low[1] << 1 | low[2] << 2;
-      m_node = NodeStore::child(*m_node, i);
+      m_node = m_node->child(i);
       m_nodeCell = m_nodeCell.child(i);
       return true;
     }

@@ -124,7 +124,7 @@ void NodeArena::copy(const NodeStore& source, const Node& from, Node& to) {
   if (m_store.m_stateBytes > 0 && source.m_stateBytes == m_store.m_stateBytes)
     std::memcpy(m_store.state<void>(to), source.state<void>(from), m_store.m_stateBytes);
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = NodeStore::child(from, i)) copy(source, *child, createChild(octant, i));
+    if (const Node* child = from.child(i)) copy(source, *child, createChild(octant, i));
 }
 
 }  // namespace semantic_octree

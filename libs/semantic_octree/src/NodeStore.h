@@ -1,15 +1,10 @@
 #pragma once
-#include <semantic_octree/ClassBelief.h>
-#include <semantic_octree/SemanticOcTreeNode.h>
-
 #include <deque>
 
+#include "Cell.h"
 #include "Pools.h"
 
 namespace semantic_octree {
-
-using Node = SemanticOcTreeNode;
-using Belief = ClassBelief<float>;
 
 /** The eight children of a node in one piece of memory, behind the array of pointers that OctoMap
  * reads. A null pointer is a child that does not exist (unknown space). */
@@ -27,7 +22,10 @@ struct Octant {
 
 class NodeArena;
 
-/** Memory of a tree: octants, class records, bookkeeping of inner nodes. */
+/** Memory of a tree: octants, class records, bookkeeping of inner nodes.
+ *
+ * How nodes are stored is known here, to what writes them (ScanMerger, TreeBuilder, TreeReader) and
+ * to what keeps their bookkeeping (GTree). Everything else reads Node::child(). */
 class NodeStore {
  public:
   /** \param stateBytes size of an inner node's bookkeeping, 0 for none. */
@@ -43,10 +41,6 @@ class NodeStore {
   NodeArena& arena(int i);
 
   static Octant& octant(const Node& inner) { return *reinterpret_cast<Octant*>(inner.children); }
-  static const Node* child(const Node& inner, int i) {
-    const Octant& o = octant(inner);
-    return o.has(i) ? &o.nodes[i] : nullptr;
-  }
   /** Brings an inner node's children and bookkeeping nearer to the processor. */
   void prefetchInner(const Node& node) const {
     if (node.isLeaf()) return;
@@ -55,6 +49,9 @@ class NodeStore {
     __builtin_prefetch(reinterpret_cast<const char*>(node.children) + 128);
     __builtin_prefetch(state<char>(node));
     __builtin_prefetch(state<char>(node) + 64);
+  }
+  void prefetchChildren(const Node& inner) const {
+    for (const Node& child : octant(inner).nodes) prefetchInner(child);
   }
   /** An inner node is as occupied as its most occupied child. */
   static void updateOccupancy(Node& inner);
@@ -66,7 +63,6 @@ class NodeStore {
     return m_states.at<T>(inner.m_index);
   }
   std::size_t stateBytes() const { return m_stateBytes; }
-  std::uint32_t recordIndex(const Node& leaf) const { return leaf.m_index; }
 
   /** Bytes held, without what the heap adds. */
   std::size_t bytes() const { return m_octants.bytes() + m_records.bytes() + m_states.bytes(); }

@@ -1,4 +1,5 @@
 #include <semantic_octree/Keys.h>
+#include <semantic_octree/MapContents.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ double addMixture(const SemanticOcTree& tree, const Node& node, double weight,
   }
   double known = 0;
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = NodeStore::child(node, i))
+    if (const Node* child = node.child(i))
       known += addMixture(tree, *child, weight / 8, sum, scratch);
   return known;
 }
@@ -28,7 +29,7 @@ double addMixture(const SemanticOcTree& tree, const Node& node, double weight,
 bool anyClassSeen(const Node& node) {
   if (node.isLeaf()) return node.hasClassRecord();
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = NodeStore::child(node, i); child && anyClassSeen(*child)) return true;
+    if (const Node* child = node.child(i); child && anyClassSeen(*child)) return true;
   return false;
 }
 
@@ -94,6 +95,28 @@ std::optional<RayHit> SemanticOcTree::castRay(const octomap::point3d& origin,
   if (range <= 0 || !Base::castRay(origin, unit, end, ignoreUnknown, range)) return std::nullopt;
   key = coordToKey(end);
   return RayHit{key, keyToCoord(key), query(key)};
+}
+
+MapContents contentsOf(const SemanticOcTree& tree) {
+  MapContents contents;
+  contents.bytes = tree.memoryUsage();
+  contents.voxelsOfClass.assign(tree.numClasses() + 1, 0);
+  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+    ++contents.leaves;
+    const std::uint64_t voxels = std::uint64_t(1) << 3 * (tree.getTreeDepth() - leaf.getDepth());
+    const Eigen::Vector3d center(leaf.getX(), leaf.getY(), leaf.getZ());
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(leaf.getSize() / 2);
+    contents.box.extend(center - half).extend(center + half);
+    const CellState state = tree.query(*leaf);
+    if (state.status != CellState::Status::Occupied) {
+      contents.freeVoxels += voxels;
+      continue;
+    }
+    contents.occupiedVoxels += voxels;
+    contents.voxelsOfClass[state.likeliestClass] += voxels;
+  }
+  contents.innerNodes = tree.size() - contents.leaves;
+  return contents;
 }
 
 }  // namespace semantic_octree

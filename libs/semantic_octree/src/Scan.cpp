@@ -7,7 +7,6 @@
 #include <string>
 #include <thread>
 
-#include "BitCounts.h"
 #include "RayMarking.h"
 
 namespace semantic_octree {

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "Lanes.h"
+
 namespace semantic_octree {
 namespace {
 
@@ -21,6 +23,13 @@ std::size_t powerOfTwo(int atLeast) {
 }
 
 int floorToTile(int voxel) { return voxel & ~(kTileSide - 1); }
+
+/** One instruction where it is compiled for a processor that has it. */
+MSO_INLINE unsigned count(const std::uint64_t* words, unsigned numWords) {
+  unsigned bits = 0;
+  for (unsigned w = 0; w < numWords; ++w) bits += __builtin_popcountll(words[w]);
+  return bits;
+}
 
 }  // namespace
 
@@ -64,6 +73,15 @@ void ScanGrid::reserve(std::size_t tiles) {
     throw std::length_error("scan too large to insert: " + std::to_string(tiles) +
                             " tiles of 8 x 8 x 8 voxels; set a maximum range");
   m_capacity = tiles;
+}
+
+MSO_VECTORIZED unsigned countBits(const std::uint64_t* words, int numWords) {
+  return count(words, numWords);
+}
+
+MSO_VECTORIZED unsigned countBitsBefore(const std::uint64_t* words, unsigned bit) {
+  const std::uint64_t below = (std::uint64_t(1) << (bit & 63)) - 1;
+  return count(words, bit >> 6) + __builtin_popcountll(words[bit >> 6] & below);
 }
 
 }  // namespace semantic_octree

@@ -85,4 +85,10 @@ class ScanGrid {
   std::vector<std::uint64_t> m_offsets[3];
 };
 
+/** Bits set in some words. */
+unsigned countBits(const std::uint64_t* words, int numWords);
+
+/** Bits set in front of a bit. */
+unsigned countBitsBefore(const std::uint64_t* words, unsigned bit);
+
 }  // namespace semantic_octree

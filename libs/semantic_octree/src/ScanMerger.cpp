@@ -56,7 +56,7 @@ bool ScanMerger::finish(Node& node, const Cell& cell, bool changed) {
   if (m_target.pruning && m_arena.prune(node)) return changed;
   if (!changed) return false;
   m_store.updateOccupancy(node);
-  if (m_upkeep) m_upkeep->recompute(m_store, node, cell);
+  if (m_gTree) m_gTree->recompute(m_store, node, cell);
   return true;
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "AbstractionUpkeep.h"
+#include "GTree.h"
 #include "NodeStore.h"
 #include "Scan.h"
 #include "TouchedTiles.h"
@@ -15,7 +15,7 @@ struct MergeTarget {
   NodeStore& store;
   const ClassFilter<float>& filter;
   /** Keeps inner nodes' bookkeeping up to date; null: there is none. */
-  AbstractionUpkeep* upkeep;
+  GTree* gTree;
   /** Is told where something changed; null: nobody wants to know. */
   TouchedTiles* touched;
   /** Children that agree are merged; off: every known leaf is a voxel. */
@@ -47,7 +47,7 @@ class ScanMerger {
         m_filter(target.filter),
         m_scan(scan),
         m_arena(target.store.arena(thread)),
-        m_upkeep(target.upkeep ? &target.upkeep->worker(thread) : nullptr) {}
+        m_gTree(target.gTree ? &target.gTree->worker(thread) : nullptr) {}
 
   /** \return whether anything changed */
   bool merge(const ScanCube& cube);
@@ -78,7 +78,7 @@ class ScanMerger {
   const ClassFilter<float>& m_filter;
   const Scan& m_scan;
   NodeArena& m_arena;
-  AbstractionUpkeep::Worker* m_upkeep;
+  GTree::Worker* m_gTree;
   std::vector<Cell> m_changed;
   std::uint32_t m_nextHit = 0;  ///< rank of the next hit voxel in the current tile
 };

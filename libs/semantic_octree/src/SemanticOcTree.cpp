@@ -1,12 +1,12 @@
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
-#include "AbstractionUpkeep.h"
+#include "CompressedTree.h"
 #include "NodeStore.h"
-#include "ReportedTree.h"
 #include "Scan.h"
 #include "ScanMerger.h"
 #include "TouchedTiles.h"
@@ -25,8 +25,42 @@ double positive(double meters) {
 void addTiles(const Node& node, const Cell& cell, TouchedTiles& tiles) {
   if (node.isLeaf() || cell.depth == TouchedTiles::kDepth) return tiles.add(cell);
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = NodeStore::child(node, i)) addTiles(*child, cell.child(i), tiles);
+    if (const Node* child = node.child(i)) addTiles(*child, cell.child(i), tiles);
 }
+
+/** Compares two trees node by node. */
+class Comparison {
+ public:
+  Comparison(const NodeStore& a, const NodeStore& b, const GTree* gTree)
+      : m_a(a), m_b(b), m_gTree(gTree) {}
+
+  bool same(const Node& a, const Node& b) const {
+    if (a.isLeaf() != b.isLeaf() || a.getValue() != b.getValue()) return false;
+    if (!a.isLeaf()) return sameState(a, b) && sameChildren(a, b);
+    return a.hasClassRecord() == b.hasClassRecord() &&
+           (!a.hasClassRecord() || m_a.record(a) == m_b.record(b));
+  }
+
+ private:
+  bool sameChildren(const Node& a, const Node& b) const {
+    for (int i = 0; i < 8; ++i) {
+      const Node *childA = a.child(i), *childB = b.child(i);
+      if (!childA != !childB || (childA && !same(*childA, *childB))) return false;
+    }
+    return true;
+  }
+  /** What a node is, not what was told of it. */
+  bool sameState(const Node& a, const Node& b) const {
+    if (!m_gTree) return true;
+    const InnerState &x = *m_a.state<InnerState>(a), &y = *m_b.state<InnerState>(b);
+    return x.density == y.density && x.gValue == y.gValue && x.splitEntropy == y.splitEntropy &&
+           x.isExpanded == y.isExpanded &&
+           std::memcmp(x.row(), y.row(), m_gTree->stateBytes() - sizeof(InnerState)) == 0;
+  }
+
+  const NodeStore &m_a, &m_b;
+  const GTree* m_gTree;
+};
 
 }  // namespace
 
@@ -61,7 +95,7 @@ SemanticOcTree::~SemanticOcTree() { Base::root = nullptr; }
 SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
     : SemanticOcTree(o.resolution, o.m_classes, o.m_parameters) {
   m_pruning = o.m_pruning;
-  if (o.hasAbstraction()) setAbstraction(o.m_upkeep->options());
+  if (o.hasAbstraction()) setAbstraction(o.m_gTree->options());
   if (o.empty()) return;
   m_store->arena(0).copy(*o.m_store, *o.root(), m_store->root());
   attachRoot();
@@ -90,10 +124,19 @@ void SemanticOcTree::swap(SemanticOcTree& o) {
   std::swap(m_filter, o.m_filter);
   std::swap(m_pruning, o.m_pruning);
   std::swap(m_store, o.m_store);
-  std::swap(m_upkeep, o.m_upkeep);
-  std::swap(m_reported, o.m_reported);
+  std::swap(m_gTree, o.m_gTree);
+  std::swap(m_leafChanges, o.m_leafChanges);
   std::swap(m_touched, o.m_touched);
   std::swap(m_scan, o.m_scan);
+}
+
+bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
+  if (resolution != o.resolution || m_classes != o.m_classes || !(m_parameters == o.m_parameters) ||
+      m_pruning != o.m_pruning || empty() != o.empty() || size() != o.size())
+    return false;
+  const bool sameRows = m_gTree && o.m_gTree && m_gTree->stateBytes() == o.m_gTree->stateBytes();
+  return empty() || Comparison(*m_store, *o.m_store, sameRows ? m_gTree.get() : nullptr)
+                        .same(*root(), *o.root());
 }
 
 void SemanticOcTree::clear() {
@@ -119,20 +162,20 @@ void SemanticOcTree::setPruning(bool on) {
 
 void SemanticOcTree::setAbstraction(const AbstractionOptions& options) {
   options.validate(numClasses());
-  m_upkeep = std::make_unique<AbstractionUpkeep>(options, m_filter, resolution);
-  m_reported = std::make_unique<ReportedTree>();
+  m_gTree = std::make_unique<GTree>(options, m_filter, resolution);
+  m_leafChanges = std::make_unique<LeafChanges>();
   rebuildStore();
-  if (!empty()) m_upkeep->worker(0).recomputeAll(*m_store, m_store->root(), Cell());
+  if (!empty()) m_gTree->worker(0).recomputeAll(*m_store, m_store->root(), Cell());
 }
 
 void SemanticOcTree::dropAbstraction() {
-  m_upkeep = nullptr;
-  m_reported = nullptr;
+  m_gTree = nullptr;
+  m_leafChanges = nullptr;
   rebuildStore();
 }
 
 void SemanticOcTree::rebuildStore() {
-  auto store = std::make_unique<NodeStore>(m_upkeep ? m_upkeep->stateBytes() : 0);
+  auto store = std::make_unique<NodeStore>(m_gTree ? m_gTree->stateBytes() : 0);
   if (!empty()) store->arena(0).copy(*m_store, *root(), store->root());
   std::swap(m_store, store);
   if (!empty()) attachRoot();
@@ -155,7 +198,7 @@ InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
     throw;
   }
   if (m_scan->hasVoxels()) {
-    const MergeTarget target{*m_store, m_filter, m_upkeep.get(), m_touched.get(), m_pruning};
+    const MergeTarget target{*m_store, m_filter, m_gTree.get(), m_touched.get(), m_pruning};
     mergeScan(target, *m_scan, m_store->root(), empty(), options.threads);
     attachRoot();
   }

@@ -1,12 +1,12 @@
 #include <semantic_octree/TreeFile.h>
+#include <strict_files/StagedFile.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
-#include "TreeReader.h"
-#include "TreeWriter.h"
+#include "TreeFormat.h"
 
 namespace semantic_octree {
 namespace {
@@ -14,12 +14,16 @@ namespace {
 namespace fs = std::filesystem;
 
 void writeWhole(const SemanticOcTree& tree, const fs::path& path) {
-  errno = 0;
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  if (!out) throw std::runtime_error(std::strerror(errno));
   writeTree(out, tree);
   out.close();
   if (!out) throw std::runtime_error("the file could not be written completely");
+}
+
+/** What an error of a file says, without the path that it begins with. */
+std::string reasonOf(const std::exception& error, const std::string& path) {
+  const std::string message = error.what(), named = path + ": ";
+  return message.rfind(named, 0) == 0 ? message.substr(named.size()) : message;
 }
 
 void checkBeginning(std::istream& in) {
@@ -63,14 +67,12 @@ SemanticOcTree readTree(std::istream& in) {
 }
 
 void saveTree(const SemanticOcTree& tree, const std::string& path) {
-  const fs::path beside = path + ".tmp";
   try {
-    writeWhole(tree, beside);
-    fs::rename(beside, path);
+    strict_files::StagedFile file(path);
+    writeWhole(tree, file.path());
+    file.commit();
   } catch (const std::exception& e) {
-    std::error_code ignored;
-    fs::remove(beside, ignored);
-    throw std::runtime_error("cannot save map '" + path + "': " + e.what());
+    throw std::runtime_error("cannot save map '" + path + "': " + reasonOf(e, path));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "TreeReader.h"
+#include "TreeFormat.h"
 
 #include <semantic_octree/Keys.h>
 

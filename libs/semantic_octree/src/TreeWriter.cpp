@@ -1,6 +1,4 @@
-#include "TreeWriter.h"
-
-#include "NodeStore.h"
+#include "TreeFormat.h"
 
 namespace semantic_octree {
 
@@ -61,14 +59,13 @@ void TreeWriter::putLeaf(const Node& leaf) {
 void TreeWriter::putChildren(const Node& inner) {
   std::uint16_t kinds = 0;
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = NodeStore::child(inner, i))
+    if (const Node* child = inner.child(i))
       kinds |= static_cast<std::uint16_t>(static_cast<unsigned>(kindOf(*child)) << 2 * i);
   m_out.put(kinds);
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = NodeStore::child(inner, i); child && child->isLeaf()) putLeaf(*child);
+    if (const Node* child = inner.child(i); child && child->isLeaf()) putLeaf(*child);
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = NodeStore::child(inner, i); child && !child->isLeaf())
-      putChildren(*child);
+    if (const Node* child = inner.child(i); child && !child->isLeaf()) putChildren(*child);
 }
 
 }  // namespace semantic_octree

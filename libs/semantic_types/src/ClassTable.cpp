@@ -17,6 +17,8 @@ ClassId ClassTable::add(const std::string& name, Color color) {
 }
 
 const ClassTable::Entry& ClassTable::entry(ClassId id) const {
+  static const Entry noClass{"no class", {150, 150, 150}};
+  if (id == kNoClass) return noClass;
   if (!contains(id))
     throw std::out_of_range("class table: class " + std::to_string(id) + " is not one of 1.." +
                             std::to_string(size()));

@@ -1,4 +1,4 @@
-#include "tree_abstraction/AbstractionWeights.h"
+#include <tree_abstraction/AbstractionWeights.h>
 
 #include <cmath>
 #include <map>
@@ -90,6 +90,13 @@ double AbstractionWeights::eps() const {
   double sum = alpha;
   for (const auto& term : terms) sum += std::abs(term.weight);
   return kRelativeEps * sum;
+}
+
+double TreeMeasures::objective(const AbstractionWeights& weights) const {
+  double j = -weights.alpha * leafEntropy;
+  for (std::size_t t = 0; t < information.size(); ++t)
+    j += weights.terms[t].weight * information[t];
+  return j;
 }
 
 }  // namespace tree_abstraction

@@ -1,4 +1,4 @@
-#include "tree_abstraction/CollapseAlphas.h"
+#include <tree_abstraction/AlphaPath.h>
 
 #include <algorithm>
 #include <cmath>

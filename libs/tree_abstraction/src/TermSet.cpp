@@ -1,4 +1,4 @@
-#include "tree_abstraction/TermSet.h"
+#include <tree_abstraction/TermSet.h>
 
 #include <algorithm>
 
@@ -33,11 +33,6 @@ TermSet::TermSet(const AbstractionWeights& weights, int numClasses) : m_numClass
       ++m_width;
     }
   }
-}
-
-void TermSet::project(const double* distribution, double* row) const {
-  std::fill_n(row, m_width, 0.0);
-  for (const auto& [classId, entry] : m_contributions) row[entry] += distribution[classId];
 }
 
 }  // namespace tree_abstraction

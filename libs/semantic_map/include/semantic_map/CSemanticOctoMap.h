@@ -75,8 +75,6 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
 
   const semantic_octree::SemanticOcTree& tree() const { return m_tree; }
   semantic_octree::SemanticOcTree& tree() { return m_tree; }
-  /** Replaces the map's contents, its resolution, classes and filter parameters. */
-  void setTree(semantic_octree::SemanticOcTree tree);
 
   TInsertionOptions insertionOptions;
   TLikelihoodOptions likelihoodOptions;

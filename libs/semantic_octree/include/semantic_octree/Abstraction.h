@@ -1,17 +1,24 @@
 #pragma once
 #include <semantic_octree/Keys.h>
 #include <semantic_octree/SemanticOcTree.h>
+#include <tree_abstraction/AbstractionWeights.h>
 #include <tree_abstraction/AlphaPath.h>
-#include <tree_abstraction/GTreeSearch.h>
 
 #include <optional>
 #include <vector>
 
 namespace semantic_octree {
 
-class AbstractionUpkeep;
+/** \file Words: the abstraction of a map is an optimization, given by weights and alpha
+ * (AbstractionOptions); the compressed tree is what comes out, and compressedMap() a map of it.
+ *
+ * From alpha to the leaves: AbstractionOptions -> GTree (src/GTree.h: from the leaves up, G-values)
+ * -> CompressedTree (src/CompressedTree.h: from the root down, leaves). */
 
-/** A leaf of the optimal tree: a cube of the map. */
+class CompressedTree;
+class GTree;
+
+/** A leaf of the compressed tree: a cube of the map. */
 struct LeafCell {
   octomap::OcTreeKey key;  ///< as OctoMap's iterators give it
   unsigned depth = 0;
@@ -32,11 +39,11 @@ struct LeafCell {
   bool operator==(const LeafCell& o) const { return key == o.key && depth == o.depth; }
 };
 
-/** What the optimal tree keeps of what the whole map tells. Known leaves are nodes, all leaves
+/** What the compressed tree keeps of what the whole map tells. Known leaves are nodes, all leaves
  * count unknown space too: a missing child of an inner node is a leaf. */
 struct AbstractionMeasures {
   tree_abstraction::TreeMeasures full, compressed;
-  /** J of the optimal tree: sum_t weight_t I_t - alpha I_X, counted from the roots of the blocks
+  /** J of the compressed tree: sum_t weight_t I_t - alpha I_X, counted from the roots of the blocks
    * where the frame above them is free (nats). */
   double objective = 0;
 
@@ -51,10 +58,11 @@ struct TreeChange {
   std::vector<LeafCell> added;
 };
 
-/** The optimal pruned tree of a map that keeps G-values (SemanticOcTree::setAbstraction): the
- * maximum of J(T) = sum_t weight_t I_t(T) - alpha I_X(T) over all trees that can be had by turning
- * inner nodes into leaves; the smallest one if several have it. (Larsson et al.,
- * "Information-theoretic Abstraction of Semantic Octree Models", problem (10), algorithm 1.)
+/** The abstraction of a map that keeps G-values (SemanticOcTree::setAbstraction), and the
+ * compressed tree that it leads to: the one with the largest J(T) = sum_t weight_t I_t(T) - alpha
+ * I_X(T) of all trees that can be had by turning inner nodes into leaves; the smallest one if
+ * several have it. (Larsson et al., "Information-theoretic Abstraction of Semantic Octree Models
+ * for Integrated Perception and Planning", problem (1), algorithm 1.)
  *
  * A view: it holds nothing but the map, which must outlive it. */
 class Abstraction {
@@ -64,15 +72,15 @@ class Abstraction {
 
   const AbstractionOptions& options() const;
 
-  /** Leaves of the optimal tree in OctoMap's order (depth first). Visits inner nodes that the tree
-   * expands, and its leaves. */
+  /** Leaves of the compressed tree in OctoMap's order (depth first). Visits inner nodes that the
+   * tree expands, and its leaves. */
   std::vector<LeafCell> leaves() const;
   /** Those of leaves() that have voxels in a box, in the same order; visits nothing outside.
    * \param low, high keys of the box's lowest and highest voxels
    * \param onlyOccupied leaves out, and does not visit, what is likelier free */
   std::vector<LeafCell> leavesIn(const octomap::OcTreeKey& low, const octomap::OcTreeKey& high,
                                  bool onlyOccupied) const;
-  /** J of the optimal tree, see AbstractionMeasures. */
+  /** J of the compressed tree, see AbstractionMeasures. */
   double objective() const;
   /** Visits all inner nodes. */
   AbstractionMeasures measures() const;
@@ -82,8 +90,8 @@ class Abstraction {
   /** Known part of a cube's volume, (0, 1]. */
   double knownShare(const LeafCell& leaf) const;
 
-  /** The optimal tree as a map of its own. A leaf is as occupied as its most occupied voxel (safe
-   * for collision checks); its classes are those of the known voxels' mixture, truncated as
+  /** The compressed tree as a map of its own. A leaf is as occupied as its most occupied voxel
+   * (safe for collision checks); its classes are those of the known voxels' mixture, truncated as
    * everywhere. */
   SemanticOcTree compressedMap() const;
 
@@ -98,21 +106,23 @@ class Abstraction {
   /** New regions: recomputes the cells whose density changes and what is above them. */
   void setRegions(const std::vector<Region>& regions);
 
-  /** All optimal trees over alpha, for the present weights and regions. Its costs count the leaves:
-   * see AlphaPath::largestWithLeaves. */
+  /** The compressed trees of all alphas, for the present weights and regions. Its costs count the
+   * leaves: see AlphaPath::largestWithLeaves. */
   struct Path {
     tree_abstraction::AlphaPath trees;
     std::vector<double> addedLeaves;  ///< by expanding each node: known children - 1
     std::size_t numRoots;             ///< leaves when nothing is expanded
-    /** Alpha of the largest optimal tree with at most this many known leaves.
+    /** Alpha of the largest compressed tree with at most this many known leaves.
      * \throw std::invalid_argument fewer than the roots, or more than the full tree has. */
     double alphaForLeaves(std::size_t wanted) const;
   };
   Path alphaPath() const;
 
  private:
+  CompressedTree compressedTree() const;
+
   SemanticOcTree& m_map;
-  AbstractionUpkeep& m_upkeep;
+  GTree& m_gTree;
 };
 
 }  // namespace semantic_octree

@@ -25,7 +25,7 @@ struct Region {
   void validate() const;
 };
 
-/** What the optimal abstraction of a semantic octree keeps. */
+/** The abstraction of a semantic octree: what its compressed tree is to keep. */
 struct AbstractionOptions {
   /** Terms over classes 0..K (0 = free space) and alpha. */
   tree_abstraction::AbstractionWeights weights;

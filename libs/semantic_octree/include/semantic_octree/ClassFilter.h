@@ -1,9 +1,16 @@
 #pragma once
 #include <semantic_octree/ClassBelief.h>
 #include <semantic_octree/FilterParameters.h>
+#include <cmath>
 #include <vector>
 
 namespace semantic_octree {
+
+/** Nearest of the values on which float additions are exact up to 64: multiples of 2^-18. */
+inline float onGrid(double logOdds) {
+  constexpr double kPerUnit = 1 << 18;
+  return static_cast<float>(std::round(logOdds * kPerUnit) / kPerUnit);
+}
 
 /** Bayes filter over {free, class 1, ..., class K} of one cell, truncated to the `Named` likeliest
  * classes.

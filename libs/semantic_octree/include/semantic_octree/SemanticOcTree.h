@@ -17,9 +17,9 @@ namespace semantic_octree {
 using semantic_types::ClassTable;
 using semantic_types::LabeledCloud;
 
-class AbstractionUpkeep;
+class GTree;
+class LeafChanges;
 class NodeStore;
-class ReportedTree;
 class Scan;
 class TouchedTiles;
 
@@ -29,8 +29,8 @@ struct CellState {
   Status status = Status::Unknown;
   /** p(occupied); 0.5 where unknown. Occupied means above 0.5. */
   double occupancy = 0.5;
-  /** Class with the largest probability, lowest id on a tie; kNoClass where no class was ever seen.
-   */
+  /** Class with the largest probability, lowest id on a tie; kNoClass (which ClassTable::name()
+   * calls "no class") in free and unknown space and where no return had a label. */
   ClassId likeliestClass = kNoClass;
   /** Its probability p(class), among free space and all classes. */
   double probability = 0;
@@ -156,7 +156,7 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   void setAbstraction(const AbstractionOptions& options);
   /** Keeps them no longer. */
   void dropAbstraction();
-  bool hasAbstraction() const { return m_upkeep != nullptr; }
+  bool hasAbstraction() const { return m_gTree != nullptr; }
 
  protected:
   SemanticOcTree* create() const override {
@@ -177,8 +177,8 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   ClassFilter<float> m_filter;
   bool m_pruning = true;
   std::unique_ptr<NodeStore> m_store;
-  std::unique_ptr<AbstractionUpkeep> m_upkeep;  ///< null: no abstraction is kept
-  std::unique_ptr<ReportedTree> m_reported;
+  std::unique_ptr<GTree> m_gTree;  ///< null: no abstraction is kept
+  std::unique_ptr<LeafChanges> m_leafChanges;
   std::unique_ptr<TouchedTiles> m_touched;  ///< null: nobody asks for them
   std::unique_ptr<Scan> m_scan;             ///< buffers of the last insertion
 };

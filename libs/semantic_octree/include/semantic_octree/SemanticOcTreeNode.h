@@ -15,6 +15,11 @@ struct Octant;
 class SemanticOcTreeNode : public octomap::OcTreeNode {
  public:
   bool isLeaf() const { return children == nullptr; }
+  /** The i-th child of an inner node in OctoMap's order (x is bit 0, y bit 1, z bit 2); null: space
+   * that is unknown. */
+  const SemanticOcTreeNode* child(int i) const {
+    return static_cast<const SemanticOcTreeNode*>(children[i]);
+  }
   /** A leaf with a class record (see SemanticOcTree::belief). */
   bool hasClassRecord() const { return isLeaf() && m_index != 0; }
 

@@ -39,7 +39,8 @@ class ClassTable {
   bool empty() const { return m_entries.empty(); }
   bool contains(ClassId id) const { return id >= 1 && id <= size(); }
 
-  /** \throw std::out_of_range id is not 1..K. */
+  /** Of kNoClass (free or unknown space, a point without a label): "no class", and a gray.
+   * \throw std::out_of_range id is above K. */
   const std::string& name(ClassId id) const { return entry(id).name; }
   const Color& color(ClassId id) const { return entry(id).color; }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ InformationTerm irrelevant(std::string name, double gamma, std::vector<int> clas
 /** The whole class variable with its K + 1 outcomes. */
 InformationTerm wholeClassVariable(std::string name, double weight, int numClasses);
 
-/** What the optimal abstraction T* maximizes: J(T) = sum_t weight_t I_t(T) - alpha I_X(T). */
+/** What the compressed tree maximizes: J(T) = sum_t weight_t I_t(T) - alpha I_X(T). */
 struct AbstractionWeights {
   std::vector<InformationTerm> terms;
   /** Price of a nat of I_X, the entropy of the leaf that holds a random point of space; >= 0. */
@@ -41,6 +42,18 @@ struct AbstractionWeights {
 
   /** G-values (per unit of p(n)) up to this count as 0: rounding must not expand a tie. */
   double eps() const;
+};
+
+/** Entropies and informations of a tree's leaves, in nats. */
+struct TreeMeasures {
+  /** I_X: entropy of the leaf that holds a random point. */
+  double leafEntropy = 0;
+  /** I_t per term: what the leaf says about the term's variable. */
+  std::vector<double> information;
+  std::size_t numLeaves = 0, numKnownLeaves = 0;
+
+  /** J: sum of weight times information, less alpha times leaf entropy. */
+  double objective(const AbstractionWeights& weights) const;
 };
 
 }  // namespace tree_abstraction

@@ -5,10 +5,29 @@
 
 namespace tree_abstraction {
 
-/** All optimal trees, from the roots alone (tree 0) to the optimum at alpha = 0 (the last one).
+/** The alpha from which on each inner node is no longer expanded: all compressed trees in one pass.
+ *
+ * Expanding node i gains gains[i] and costs alpha * prices[i]; the compressed tree is the smallest
+ * set of nodes, each with its parent, of the largest sum of gain - alpha * price. It is {i : tau[i]
+ * > alpha} for every alpha >= 0, so compressed trees are nested. (Weakest-link pruning as in CART
+ * and BFOS, from the bottom: each node keeps the bundles of its descendants that collapse
+ * together.)
+ *
+ * \param parents Index of each node's parent, below the node's own index; -1 for a root. Leaves may
+ * be left out, or be in with gain and price 0. \param gains r_i = p(n) sum_t weight_t JS_t(n),
+ * finite. \param prices b_i >= 0, finite: p(n) H(Pi_n) for I_X, or the leaves or bytes that
+ * expanding adds. \return tau: infinite for what pays at any alpha, <= 0 for what never does.
+ * \throw std::invalid_argument naming the node: sizes differ, or a parent, gain or price not as
+ * above. Takes O(N log N) time. */
+std::vector<double> collapseAlphas(const std::vector<std::int32_t>& parents,
+                                   const std::vector<double>& gains,
+                                   const std::vector<double>& prices);
+
+/** The compressed trees of all alphas, from the roots alone (tree 0) to that of alpha = 0 (the
+ * last).
  *
  * Each tree holds all nodes of the one before. Nodes whose taus agree but for rounding (1e-12) come
- * in together, so that every tree is the optimum of some alpha. */
+ * in together, so that every tree is that of some alpha. */
 class AlphaPath {
  public:
   /** \param tau From collapseAlphas(). \throw std::invalid_argument a tau that is not a number. */
@@ -17,7 +36,7 @@ class AlphaPath {
   const std::vector<double>& tau() const { return m_tau; }
   std::size_t numTrees() const { return m_end.size(); }
 
-  /** Tree k is optimal from lowestAlpha(k) on and below highestAlpha(k). */
+  /** Tree k is the compressed tree from lowestAlpha(k) on and below highestAlpha(k). */
   double lowestAlpha(std::size_t k) const;
   double highestAlpha(std::size_t k) const;
   /** An alpha amid those two, where the search finds tree k whatever the rounding; infinite if only
@@ -48,7 +67,7 @@ class AlphaPath {
   std::vector<std::size_t> m_end;
 };
 
-/** Nodes the optimal tree of one alpha expands: tau > alpha.
+/** Nodes the compressed tree of one alpha expands: tau > alpha.
  * \param eps Excess over alpha that counts as a tie: AbstractionWeights::eps(). */
 std::vector<char> expandedAt(const std::vector<double>& tau, double alpha, double eps = 0);
 

@@ -1,19 +1,16 @@
 #pragma once
+#include <tree_abstraction/AbstractionWeights.h>
+
 #include <cstddef>
 #include <vector>
 
-#include "tree_abstraction/AbstractionWeights.h"
-#include "tree_abstraction/Divergence.h"
-
 namespace tree_abstraction {
 
-/** The terms' outcome probabilities as one row of doubles per tree node, and what is computed on
- * rows.
+/** How the terms' outcome probabilities stand in one row of doubles per tree node.
  *
  * A row holds each term's probabilities one after the other. A yes-or-no term (one group and a
  * rest) takes one double, the group's probability; any other term takes one double per outcome, its
- * rest last. Rows mix linearly: the parent's row is the mixture of its children's, see mixRows().
- */
+ * rest last. Rows mix linearly: the parent's row is the mixture of its children's. */
 class TermSet {
  public:
   /** Where a term's probabilities stand in a row. */
@@ -37,24 +34,8 @@ class TermSet {
   std::size_t width() const { return m_width; }
   Slot slot(std::size_t term) const { return m_slots[term]; }
 
-  /** What a row is made of, by ascending entry; for callers whose distributions are not dense. */
+  /** What a row is made of, by ascending entry. */
   const std::vector<Contribution>& contributions() const { return m_contributions; }
-
-  /** Row of a node whose classes 0..K have these K + 1 probabilities. */
-  void project(const double* distribution, double* row) const;
-
-  /** Entropy of a term's variable in a row, in nats. */
-  double entropy(std::size_t term, const double* row) const {
-    const auto [offset, count] = m_slots[term];
-    return count == 1 ? binaryEntropy(row[offset]) : tree_abstraction::entropy(row + offset, count);
-  }
-
-  /** Stable JS of a term among n children with shares pi, whose rows follow one another. */
-  double divergence(std::size_t term, const double* pi, const double* rows, std::size_t n) const {
-    const auto [offset, count] = m_slots[term];
-    return count == 1 ? binaryJensenShannon(pi, rows + offset, n, m_width)
-                      : jensenShannon(pi, rows + offset, n, count, m_width);
-  }
 
  private:
   int m_numClasses;

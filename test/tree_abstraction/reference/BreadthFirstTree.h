@@ -3,9 +3,9 @@
 #include <utility>
 #include <vector>
 
-#include "tree_abstraction/TermSet.h"
+#include "Divergence.h"
 
-namespace tree_abstraction {
+namespace reference {
 
 /** A forest laid out breadth first in flat arrays, one entry per node: roots first, level by level,
  * the children of a node side by side. A child's index is above its parent's. */
@@ -20,7 +20,7 @@ struct BreadthFirstTree {
   std::vector<char> known;
   /** Weight w(n), any unit: an inner node's is the sum of its children's. */
   std::vector<double> weight;
-  /** Outcome probabilities of the terms, rowWidth doubles a node: see TermSet. */
+  /** Outcome probabilities of the terms, rowWidth doubles a node: see TermRows. */
   std::size_t rowWidth = 0;
   std::vector<double> rows;
 
@@ -36,7 +36,7 @@ struct BreadthFirstTree {
    * \throw std::invalid_argument naming the node: weight negative or not finite; `distribution` not
    * K + 1 numbers >= 0 of sum 1 (to 1e-9). */
   void setLeaf(std::size_t n, double leafWeight, const std::vector<double>& distribution,
-               const TermSet& terms);
+               const TermRows& terms);
   /** Fills in weight, row and `known` of the inner nodes from their children, deepest first.
    * Children mix by weight; if none has any, evenly. */
   void aggregate();
@@ -57,7 +57,7 @@ void shares(const double* weights, std::size_t n, std::vector<double>& pi);
  * A node without children is a leaf; arity and depth are free. A missing child is handed out as a
  * leaf, too, or left out if it has no weight. */
 template <class Tree>
-BreadthFirstTree layOutBreadthFirst(const Tree& tree, const TermSet& terms,
+BreadthFirstTree layOutBreadthFirst(const Tree& tree, const TermRows& terms,
                                     std::vector<typename Tree::Node>& nodes) {
   using Node = typename Tree::Node;
   BreadthFirstTree flat;
@@ -85,4 +85,4 @@ BreadthFirstTree layOutBreadthFirst(const Tree& tree, const TermSet& terms,
   return flat;
 }
 
-}  // namespace tree_abstraction
+}  // namespace reference

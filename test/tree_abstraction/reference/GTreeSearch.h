@@ -3,9 +3,12 @@
 #include <utility>
 #include <vector>
 
-#include "tree_abstraction/BreadthFirstTree.h"
+#include "BreadthFirstTree.h"
 
 /** \file
+ * The reference for tests: plain G-tree search in any tree, all of it in one pass, with the
+ * standard library's logarithms. What runs in a map is semantic_octree's GTree and CompressedTree.
+ *
  * The optimal abstraction of a tree: G-tree search, after Larsson, Maity and Tsiotras.
  *
  * Among all trees that arise by pruning, T* maximizes
@@ -18,25 +21,13 @@
  *
  * Several roots: each is optimized by itself and what lies above them is free of charge. */
 
-namespace tree_abstraction {
+namespace reference {
 
 /** How JS is computed, see Divergence.h. */
 enum class DivergenceForm { Stable, Fast };
 
 struct SearchOptions {
   DivergenceForm divergence = DivergenceForm::Stable;
-};
-
-/** Entropies and informations of a tree's leaves, in nats. */
-struct TreeMeasures {
-  /** I_X: entropy of the leaf that holds a random point. */
-  double leafEntropy = 0;
-  /** I_t per term: what the leaf says about the term's variable. */
-  std::vector<double> information;
-  std::size_t numLeaves = 0, numKnownLeaves = 0;
-
-  /** J: sum of weight times information, less alpha times leaf entropy. */
-  double objective(const AbstractionWeights& weights) const;
 };
 
 /** The information quantities of all nodes, whatever the weights. */
@@ -58,7 +49,7 @@ struct GValues {
 };
 
 /** The information quantities, all logarithms computed afresh. */
-NodeInformation computeInformation(const BreadthFirstTree& tree, const TermSet& terms,
+NodeInformation computeInformation(const BreadthFirstTree& tree, const TermRows& terms,
                                    DivergenceForm form = DivergenceForm::Stable);
 /** The inverse breadth-first pass over all nodes. */
 GValues computeG(const BreadthFirstTree& tree, const NodeInformation& information,
@@ -66,13 +57,13 @@ GValues computeG(const BreadthFirstTree& tree, const NodeInformation& informatio
 /** Interior nodes of the smallest optimal tree: reached from a root over nodes of G > eps. */
 std::vector<char> expandedNodes(const BreadthFirstTree& tree, const GValues& values, double eps);
 /** Measures of the tree with these interior nodes (closed towards the roots). */
-TreeMeasures measure(const BreadthFirstTree& tree, const TermSet& terms,
+TreeMeasures measure(const BreadthFirstTree& tree, const TermRows& terms,
                      const NodeInformation& information, const std::vector<char>& expanded);
 /** Share of each term's information that `kept` retains; none where `full` is below 1e-12 nats. */
 std::vector<std::optional<double>> retention(const TreeMeasures& kept, const TreeMeasures& full);
 
 /** An optimal tree with all that led to it. Per-node vectors go by the breadth-first index. */
-struct Abstraction {
+struct SearchResult {
   BreadthFirstTree tree;
   NodeInformation information;
   GValues values;
@@ -90,12 +81,12 @@ struct Abstraction {
 };
 
 /** Finds the optimal tree of a tree already laid out. */
-Abstraction findOptimalTree(BreadthFirstTree tree, const TermSet& terms,
-                            const AbstractionWeights& weights, const SearchOptions& options = {});
+SearchResult findOptimalTree(BreadthFirstTree tree, const TermRows& terms,
+                             const AbstractionWeights& weights, const SearchOptions& options = {});
 
 /** An optimal tree in the handles of the tree it was found in. */
 template <class Node>
-struct OptimalTree : Abstraction {
+struct FoundTree : SearchResult {
   /** Handle of each node. */
   std::vector<Node> nodes;
 
@@ -121,14 +112,13 @@ struct OptimalTree : Abstraction {
  * \throw std::invalid_argument weights that AbstractionWeights::validate() rejects, a leaf with a
  * bad weight or distribution, or a tree without weight. */
 template <class Tree>
-OptimalTree<typename Tree::Node> findOptimalTree(const Tree& tree,
-                                                 const AbstractionWeights& weights,
-                                                 const SearchOptions& options = {}) {
-  const TermSet terms(weights, tree.numClasses());
-  OptimalTree<typename Tree::Node> result;
+FoundTree<typename Tree::Node> findOptimalTree(const Tree& tree, const AbstractionWeights& weights,
+                                               const SearchOptions& options = {}) {
+  const TermRows terms(weights, tree.numClasses());
+  FoundTree<typename Tree::Node> result;
   BreadthFirstTree flat = layOutBreadthFirst(tree, terms, result.nodes);
-  static_cast<Abstraction&>(result) = findOptimalTree(std::move(flat), terms, weights, options);
+  static_cast<SearchResult&>(result) = findOptimalTree(std::move(flat), terms, weights, options);
   return result;
 }
 
-}  // namespace tree_abstraction
+}  // namespace reference

@@ -1,10 +1,10 @@
-#include "tree_abstraction/BreadthFirstTree.h"
+#include "BreadthFirstTree.h"
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-namespace tree_abstraction {
+namespace reference {
 namespace {
 
 [[noreturn]] void reject(std::size_t n, const std::string& what) {
@@ -52,7 +52,7 @@ void BreadthFirstTree::append(std::int32_t parentIndex, bool isKnown) {
 }
 
 void BreadthFirstTree::setLeaf(std::size_t n, double leafWeight,
-                               const std::vector<double>& distribution, const TermSet& terms) {
+                               const std::vector<double>& distribution, const TermRows& terms) {
   if (!(std::isfinite(leafWeight) && leafWeight >= 0)) {
     reject(n, "weight is " + std::to_string(leafWeight) + ", expected a finite number >= 0");
   }
@@ -75,4 +75,4 @@ void BreadthFirstTree::aggregate() {
   }
 }
 
-}  // namespace tree_abstraction
+}  // namespace reference

@@ -1,8 +1,11 @@
 #pragma once
-#include <algorithm>
-#include <cstddef>
+#include <tree_abstraction/Information.h>
+#include <tree_abstraction/TermSet.h>
 
-#include "tree_abstraction/Information.h"
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 
 /** \file
  * Weighted Jensen-Shannon divergence of the children of a node, in nats:
@@ -18,7 +21,35 @@
  * entropies that the caller keeps, hence needs only the mixture's entropy anew, and has an absolute
  * error of about 1e-16. Both are exactly 0 if all children with a share are equal. */
 
-namespace tree_abstraction {
+namespace reference {
+
+using namespace tree_abstraction;
+using tree_abstraction::entropy;  // beside the one below
+
+/** Entropy of a yes-or-no variable that is true with probability p, in nats. */
+inline double binaryEntropy(double p) { return 0.0 - xLogX(p) - xLogX(1.0 - p); }
+
+/** Entropy of a distribution, in nats. */
+inline double entropy(const Eigen::Ref<const Eigen::VectorXd>& p) {
+  return entropy(p.data(), static_cast<std::size_t>(p.size()));
+}
+
+/** term(first) + ... + term(first + n - 1), by halves all the way down. */
+template <class Term>
+double sumByHalves(std::size_t first, std::size_t n, const Term& term) {
+  if (n == 0) return 0.0;
+  if (n == 1) return term(first);
+  return sumByHalves(first, n / 2, term) + sumByHalves(first + n / 2, n - n / 2, term);
+}
+
+/** Sum of term(0) ... term(n - 1) by halves: ((a+b)+(c+d))+((e+f)+(g+h)) for eight. Eight equal
+ * terms thus give exactly eight times the term, as the parent of eight equal octree nodes needs. */
+template <class Term>
+double pairwiseSum(std::size_t n, const Term& term) {
+  if (n != 8) return sumByHalves(0, n, term);
+  // Written out, the octree's case is inlined.
+  return ((term(0) + term(1)) + (term(2) + term(3))) + ((term(4) + term(5)) + (term(6) + term(7)));
+}
 
 /** Mixture of one outcome's probability: sum_i pi_i p[i * stride]. */
 inline double mixture(const double* pi, const double* p, std::size_t n, std::size_t stride = 1) {
@@ -103,4 +134,26 @@ using ChildRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 /** Stable JS of children given as rows. \throw std::invalid_argument pi and p differ in length. */
 double jensenShannon(const Eigen::Ref<const Eigen::VectorXd>& pi, const ChildRows& p);
 
-}  // namespace tree_abstraction
+/** Rows as TermSet lays them out, with what the search computes on them. */
+class TermRows : public TermSet {
+ public:
+  using TermSet::TermSet;
+
+  /** Row of a node whose classes 0..K have these K + 1 probabilities. */
+  void project(const double* distribution, double* row) const;
+
+  /** Entropy of a term's variable in a row, in nats. */
+  double entropy(std::size_t term, const double* row) const {
+    const auto [offset, count] = slot(term);
+    return count == 1 ? binaryEntropy(row[offset]) : tree_abstraction::entropy(row + offset, count);
+  }
+
+  /** Stable JS of a term among n children with shares pi, whose rows follow one another. */
+  double divergence(std::size_t term, const double* pi, const double* rows, std::size_t n) const {
+    const auto [offset, count] = slot(term);
+    return count == 1 ? binaryJensenShannon(pi, rows + offset, n, width())
+                      : reference::jensenShannon(pi, rows + offset, n, count, width());
+  }
+};
+
+}  // namespace reference

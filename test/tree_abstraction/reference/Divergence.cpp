@@ -1,9 +1,9 @@
-#include "tree_abstraction/Divergence.h"
+#include "Divergence.h"
 
 #include <stdexcept>
 #include <string>
 
-namespace tree_abstraction {
+namespace reference {
 
 double jensenShannon(const Eigen::Ref<const Eigen::VectorXd>& pi, const ChildRows& p) {
   if (pi.size() != p.rows()) {
@@ -15,4 +15,9 @@ double jensenShannon(const Eigen::Ref<const Eigen::VectorXd>& pi, const ChildRow
   return jensenShannon(pi.data(), p.data(), children, outcomes, outcomes);
 }
 
-}  // namespace tree_abstraction
+void TermRows::project(const double* distribution, double* row) const {
+  std::fill_n(row, width(), 0.0);
+  for (const auto& [classId, entry] : contributions()) row[entry] += distribution[classId];
+}
+
+}  // namespace reference

@@ -1,10 +1,10 @@
-#include "tree_abstraction/VectorTree.h"
+#include "VectorTree.h"
 
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-namespace tree_abstraction {
+namespace reference {
 
 VectorTree::VectorTree(int numClasses) : m_numClasses(numClasses) {
   if (numClasses < 0) {
@@ -49,4 +49,4 @@ double VectorTree::weight(Node leaf) const {
   return item(leaf).weight;
 }
 
-}  // namespace tree_abstraction
+}  // namespace reference

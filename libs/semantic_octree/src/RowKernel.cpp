@@ -1,4 +1,4 @@
-#include "AbstractionKernel.h"
+#include "RowKernel.h"
 
 #include "Lanes.h"
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace tree_abstraction {
+namespace reference {
 
 /** A forest in memory, of any arity, whose leaves hold a weight and a class distribution. For small
  * trees made by hand; offers what layOutBreadthFirst() asks of a tree. */
@@ -61,4 +61,4 @@ class VectorTree {
   std::vector<Item> m_items;
 };
 
-}  // namespace tree_abstraction
+}  // namespace reference

@@ -1,9 +1,9 @@
-#include "tree_abstraction/GTreeSearch.h"
+#include "GTreeSearch.h"
 
 #include <algorithm>
 #include <stdexcept>
 
-namespace tree_abstraction {
+namespace reference {
 namespace {
 
 /** The children of a node as pointers into the tree, with their shares of its weight. */
@@ -26,7 +26,7 @@ struct Family {
 /** JS in the fast form: entropies of all nodes first, then differences. */
 class KeptEntropies {
  public:
-  KeptEntropies(const BreadthFirstTree& tree, const TermSet& terms)
+  KeptEntropies(const BreadthFirstTree& tree, const TermRows& terms)
       : m_tree(tree), m_terms(terms), m_entropies(tree.size() * terms.size()) {
     for (std::size_t n = 0; n < tree.size(); ++n) {
       for (std::size_t t = 0; t < terms.size(); ++t) {
@@ -45,7 +45,7 @@ class KeptEntropies {
 
  private:
   const BreadthFirstTree& m_tree;
-  const TermSet& m_terms;
+  const TermRows& m_terms;
   std::vector<double> m_entropies;
 };
 
@@ -71,7 +71,7 @@ NodeInformation forEachInnerNode(const BreadthFirstTree& tree, std::size_t numTe
 }
 
 /** Measures of the tree whose leaves are the roots. */
-TreeMeasures measureRoots(const BreadthFirstTree& tree, const TermSet& terms) {
+TreeMeasures measureRoots(const BreadthFirstTree& tree, const TermRows& terms) {
   TreeMeasures measures;
   Family roots;
   roots.load(tree, 0, tree.numRoots);
@@ -89,14 +89,7 @@ bool isReached(const BreadthFirstTree& tree, const std::vector<char>& expanded, 
 
 }  // namespace
 
-double TreeMeasures::objective(const AbstractionWeights& weights) const {
-  double j = -weights.alpha * leafEntropy;
-  for (std::size_t t = 0; t < information.size(); ++t)
-    j += weights.terms[t].weight * information[t];
-  return j;
-}
-
-NodeInformation computeInformation(const BreadthFirstTree& tree, const TermSet& terms,
+NodeInformation computeInformation(const BreadthFirstTree& tree, const TermRows& terms,
                                    DivergenceForm form) {
   if (form == DivergenceForm::Fast) {
     const KeptEntropies kept(tree, terms);
@@ -140,7 +133,7 @@ std::vector<char> expandedNodes(const BreadthFirstTree& tree, const GValues& val
   return expanded;
 }
 
-TreeMeasures measure(const BreadthFirstTree& tree, const TermSet& terms,
+TreeMeasures measure(const BreadthFirstTree& tree, const TermRows& terms,
                      const NodeInformation& information, const std::vector<char>& expanded) {
   TreeMeasures measures = measureRoots(tree, terms);
   for (std::size_t n = 0; n < tree.size(); ++n) {
@@ -168,16 +161,16 @@ std::vector<std::optional<double>> retention(const TreeMeasures& kept, const Tre
   return ratios;
 }
 
-bool Abstraction::isOptimalLeaf(std::size_t n) const {
+bool SearchResult::isOptimalLeaf(std::size_t n) const {
   return !expanded[n] && isReached(tree, expanded, n);
 }
 
-Abstraction findOptimalTree(BreadthFirstTree tree, const TermSet& terms,
-                            const AbstractionWeights& weights, const SearchOptions& options) {
+SearchResult findOptimalTree(BreadthFirstTree tree, const TermRows& terms,
+                             const AbstractionWeights& weights, const SearchOptions& options) {
   if (!(tree.totalWeight() > 0)) {
     throw std::invalid_argument("findOptimalTree: the tree's weight is 0, expected some leaf > 0");
   }
-  Abstraction result;
+  SearchResult result;
   result.tree = std::move(tree);
   result.information = computeInformation(result.tree, terms, options.divergence);
   result.values = computeG(result.tree, result.information, weights);
@@ -195,4 +188,4 @@ Abstraction findOptimalTree(BreadthFirstTree tree, const TermSet& terms,
   return result;
 }
 
-}  // namespace tree_abstraction
+}  // namespace reference

@@ -1,4 +1,4 @@
-#include "AbstractionUpkeep.h"
+#include "GTree.h"
 
 #include <tree_abstraction/Information.h>
 
@@ -47,8 +47,7 @@ double entropyOfShares(const double* shares) {
 
 }  // namespace
 
-AbstractionUpkeep::AbstractionUpkeep(const AbstractionOptions& options,
-                                     const ClassFilter<float>& filter, double resolution)
+GTree::GTree(const AbstractionOptions& options, const ClassFilter<float>& filter, double resolution)
     : m_options(options),
       m_layout(options, filter.numClasses()),
       m_filter(filter),
@@ -59,11 +58,11 @@ AbstractionUpkeep::AbstractionUpkeep(const AbstractionOptions& options,
   setWeights(termWeights, options.weights.alpha);
 }
 
-std::size_t AbstractionUpkeep::stateBytes() const {
+std::size_t GTree::stateBytes() const {
   return sizeof(InnerState) + (m_layout.rowSize() + m_layout.sizes().terms) * sizeof(double);
 }
 
-void AbstractionUpkeep::setWeights(const std::vector<double>& termWeights, double alpha) {
+void GTree::setWeights(const std::vector<double>& termWeights, double alpha) {
   m_weights.assign(m_layout.sizes().terms, 0.0);
   for (std::size_t t = 0; t < termWeights.size(); ++t) {
     m_options.weights.terms[t].weight = termWeights[t];
@@ -73,54 +72,53 @@ void AbstractionUpkeep::setWeights(const std::vector<double>& termWeights, doubl
   m_eps = m_options.weights.eps();
 }
 
-void AbstractionUpkeep::setRegions(std::vector<Region> regions, double resolution) {
+void GTree::setRegions(std::vector<Region> regions, double resolution) {
   m_options.regions = regions;
   m_density = DensityField(std::move(regions), resolution);
 }
 
-AbstractionUpkeep::Worker& AbstractionUpkeep::worker(int i) {
+GTree::Worker& GTree::worker(int i) {
   while (static_cast<int>(m_workers.size()) <= i) m_workers.emplace_back(*this);
   return m_workers[i];
 }
 
-double AbstractionUpkeep::weightedDivergence(const InnerState& s) const {
+double GTree::weightedDivergence(const InnerState& s) const {
   const double* js = divergences(s);
   double sum = 0;
   for (std::size_t t = 0; t < m_weights.size(); ++t) sum += m_weights[t] * js[t];
   return sum;
 }
 
-void AbstractionUpkeep::settleGain(InnerState& s, int depth, double childrensGain) const {
+void GTree::settleG(InnerState& s, int depth, double childrensG) const {
   const std::uint8_t before = s.isExpanded;
   if (isFreeFrame(depth)) {
-    s.gain = childrensGain;
+    s.gValue = childrensG;
     s.isExpanded = 1;
   } else {
-    const double gain =
-        childrensGain - m_options.weights.alpha * s.splitEntropy + weightedDivergence(s);
-    s.gain = std::max(gain, 0.0);
-    s.isExpanded = gain > m_eps;
+    const double v = childrensG - m_options.weights.alpha * s.splitEntropy + weightedDivergence(s);
+    s.gValue = std::max(v, 0.0);
+    s.isExpanded = v > m_eps;
   }
   s.changedBelow |= s.isExpanded != before;
 }
 
-AbstractionUpkeep::Worker::Worker(const AbstractionUpkeep& upkeep)
-    : m_upkeep(upkeep),
-      m_uniformRows(upkeep.layout().rowSize()),
-      m_recordRows(upkeep.layout().rowSize()) {}
+GTree::Worker::Worker(const GTree& gTree)
+    : m_gTree(gTree),
+      m_uniformRows(gTree.layout().rowSize()),
+      m_recordRows(gTree.layout().rowSize()) {}
 
-const double* AbstractionUpkeep::Worker::rowOf(const NodeStore& store, const Node& leaf) {
-  const RowLayout& layout = m_upkeep.layout();
+const double* GTree::Worker::rowOf(const NodeStore& store, const Node& leaf) {
+  const RowLayout& layout = m_gTree.layout();
   if (leaf.hasClassRecord())
     return m_recordRows.row(store.record(leaf),
                             [&](const Belief& b, double* row) { layout.rowOf(b, row); });
   return m_uniformRows.row(leaf.getValue(), [&](float value, double* row) {
-    layout.rowOf(m_upkeep.m_filter.uniform(value), row);
+    layout.rowOf(m_gTree.m_filter.uniform(value), row);
   });
 }
 
-void AbstractionUpkeep::Worker::gatherRows(const NodeStore& store, const Node& inner,
-                                           const double** rows, double* gains) {
+void GTree::Worker::gatherRows(const NodeStore& store, const Node& inner, const double** rows,
+                               double* gValues) {
   const Octant& octant = NodeStore::octant(inner);
   InnerState& state = *store.state<InnerState>(inner);
   m_uniformRows.release();
@@ -128,9 +126,9 @@ void AbstractionUpkeep::Worker::gatherRows(const NodeStore& store, const Node& i
   unsigned kinds = 0;
   for (int i = 0; i < 8; ++i) {
     const Node& child = octant.nodes[i];
-    gains[i] = 0;
+    gValues[i] = 0;
     if (!octant.has(i)) {
-      rows[i] = m_upkeep.layout().unknownRow();
+      rows[i] = m_gTree.layout().unknownRow();
     } else if (child.isLeaf()) {
       kinds |= 1u << 2 * i;
       rows[i] = rowOf(store, child);
@@ -138,7 +136,7 @@ void AbstractionUpkeep::Worker::gatherRows(const NodeStore& store, const Node& i
       kinds |= 2u << 2 * i;
       const InnerState& s = *store.state<InnerState>(child);
       rows[i] = s.row();
-      gains[i] = s.gain;
+      gValues[i] = s.gValue;
       state.changedBelow |= s.changedBelow;
     }
   }
@@ -146,13 +144,13 @@ void AbstractionUpkeep::Worker::gatherRows(const NodeStore& store, const Node& i
   state.childKinds = static_cast<std::uint16_t>(kinds);
 }
 
-void AbstractionUpkeep::Worker::recompute(NodeStore& store, Node& inner, const Cell& cell) {
+void GTree::Worker::recompute(NodeStore& store, Node& inner, const Cell& cell) {
   InnerState& s = *store.state<InnerState>(inner);
-  double* const js = m_upkeep.divergences(s);
+  double* const js = m_gTree.divergences(s);
   const double* rows[8];
-  double gains[8], densities[8], shares[8];
-  gatherRows(store, inner, rows, gains);
-  bool equalShares = m_upkeep.hasEqualShares(cell.depth);
+  double gValues[8], densities[8], shares[8];
+  gatherRows(store, inner, rows, gValues);
+  bool equalShares = m_gTree.hasEqualShares(cell.depth);
   if (equalShares) {
     s.density = 1;
   } else {
@@ -160,17 +158,17 @@ void AbstractionUpkeep::Worker::recompute(NodeStore& store, Node& inner, const C
     equalShares = sharesOf(densities, shares);
     s.density = sumOfEight(densities) * 0.125;
   }
-  m_upkeep.layout().mix(rows, equalShares ? nullptr : shares, s.row(), js);
+  m_gTree.layout().mix(rows, equalShares ? nullptr : shares, s.row(), js);
   s.splitEntropy = equalShares ? kLogEight : entropyOfShares(shares);
   if (s.density == 0) {
     s.splitEntropy = 0;
-    std::fill(js, js + m_upkeep.layout().sizes().terms, 0.0);
+    std::fill(js, js + m_gTree.layout().sizes().terms, 0.0);
   }
-  m_upkeep.settleGain(s, cell.depth,
-                      equalShares ? sumOfEight(gains) * 0.125 : weightedSumOfEight(shares, gains));
+  m_gTree.settleG(s, cell.depth,
+                  equalShares ? sumOfEight(gValues) * 0.125 : weightedSumOfEight(shares, gValues));
 }
 
-void AbstractionUpkeep::Worker::recomputeAll(NodeStore& store, Node& node, const Cell& cell) {
+void GTree::Worker::recomputeAll(NodeStore& store, Node& node, const Cell& cell) {
   if (node.isLeaf()) return;
   Octant& octant = NodeStore::octant(node);
   for (int i = 0; i < 8; ++i)
@@ -178,63 +176,62 @@ void AbstractionUpkeep::Worker::recomputeAll(NodeStore& store, Node& node, const
   recompute(store, node, cell);
 }
 
-bool AbstractionUpkeep::Worker::recomputeWhereChanged(NodeStore& store, Node& node,
-                                                      const Cell& cell,
-                                                      const DensityField& before) {
-  if (DensityField::sameIn(before, m_upkeep.density(), cell)) return false;
+bool GTree::Worker::recomputeWhereChanged(NodeStore& store, Node& node, const Cell& cell,
+                                          const DensityField& before) {
+  if (DensityField::sameIn(before, m_gTree.density(), cell)) return false;
   if (node.isLeaf()) return true;
   Octant& octant = NodeStore::octant(node);
   bool changed = false;
   for (int i = 0; i < 8; ++i) {
     const Cell child = cell.child(i);
     changed |= octant.has(i) ? recomputeWhereChanged(store, octant.nodes[i], child, before)
-                             : !DensityField::sameIn(before, m_upkeep.density(), child);
+                             : !DensityField::sameIn(before, m_gTree.density(), child);
   }
   if (changed) recompute(store, node, cell);
   return changed;
 }
 
-void AbstractionUpkeep::Worker::reweigh(NodeStore& store, Node& inner, const Cell& cell) {
+void GTree::Worker::reweigh(NodeStore& store, Node& inner, const Cell& cell) {
   InnerState& s = *store.state<InnerState>(inner);
-  double gains[8] = {};
+  double gValues[8] = {};
   // The parents of voxels are most of all nodes: their children need not be looked at.
-  if (cell.depth < kTreeDepth - 1) reweighChildren(store, inner, cell, gains);
-  double childrensGain = sumOfEight(gains) * 0.125;
-  if (!m_upkeep.hasEqualShares(cell.depth)) {
+  if (cell.depth < kTreeDepth - 1) reweighChildren(store, inner, cell, gValues);
+  double childrensG = sumOfEight(gValues) * 0.125;
+  if (!m_gTree.hasEqualShares(cell.depth)) {
     double densities[8], shares[8];
     gatherDensities(store, inner, cell, densities);
     sharesOf(densities, shares);
-    childrensGain = weightedSumOfEight(shares, gains);
+    childrensG = weightedSumOfEight(shares, gValues);
   }
-  m_upkeep.settleGain(s, cell.depth, childrensGain);
+  m_gTree.settleG(s, cell.depth, childrensG);
 }
 
-void AbstractionUpkeep::Worker::reweighChildren(NodeStore& store, Node& inner, const Cell& cell,
-                                                double* gains) {
+void GTree::Worker::reweighChildren(NodeStore& store, Node& inner, const Cell& cell,
+                                    double* gValues) {
   Octant& octant = NodeStore::octant(inner);
-  for (const Node& child : octant.nodes) store.prefetchInner(child);
+  store.prefetchChildren(inner);
   std::uint8_t changed = store.state<InnerState>(inner)->changedBelow;
   for (int i = 0; i < 8; ++i) {
     Node& child = octant.nodes[i];
     if (child.isLeaf()) continue;
     reweigh(store, child, cell.child(i));
     const InnerState& below = *store.state<InnerState>(child);
-    gains[i] = below.gain;
+    gValues[i] = below.gValue;
     changed |= below.changedBelow;
   }
   store.state<InnerState>(inner)->changedBelow = changed;
 }
 
-void AbstractionUpkeep::Worker::gatherDensities(const NodeStore& store, const Node& inner,
-                                                const Cell& cell, double* densities) const {
+void GTree::Worker::gatherDensities(const NodeStore& store, const Node& inner, const Cell& cell,
+                                    double* densities) const {
   const Octant& octant = NodeStore::octant(inner);
-  const double missing = m_upkeep.missingDensity(cell.depth + 1);
+  const double missing = m_gTree.missingDensity(cell.depth + 1);
   for (int i = 0; i < 8; ++i) {
     const Node& child = octant.nodes[i];
     if (octant.has(i) && !child.isLeaf())
       densities[i] = store.state<InnerState>(child)->density;
     else
-      densities[i] = (octant.has(i) ? 1.0 : missing) * m_upkeep.density().mean(cell.child(i));
+      densities[i] = (octant.has(i) ? 1.0 : missing) * m_gTree.density().mean(cell.child(i));
   }
 }
 

@@ -6,7 +6,6 @@
 #include "Cell.h"
 #include "DensityField.h"
 #include "NodeStore.h"
-#include "RowCache.h"
 #include "RowLayout.h"
 
 namespace semantic_octree {
@@ -15,24 +14,27 @@ namespace semantic_octree {
  * divergences. All of it is a function of the children alone. */
 struct InnerState {
   double density;       ///< mean density of p(x) in the cell; p(n) = density * volume, unnormalized
-  double gain;          ///< G_Pi; above the blocks, if they are free, the mean of the children's
+  double gValue;        ///< G_Pi; above the blocks, if they are free, the mean of the children's
   double splitEntropy;  ///< H(Pi), nats
   std::uint16_t childKinds;   ///< two bits each: no child, a leaf, an inner node
-  std::uint8_t isExpanded;    ///< in the optimal tree if the parent is
-  std::uint8_t changedBelow;  ///< the optimal tree may have changed here since it was last reported
+  std::uint8_t isExpanded;    ///< in the compressed tree if the parent is
+  std::uint8_t changedBelow;  ///< the compressed tree's leaves may have changed since last told
 
   double* row() { return reinterpret_cast<double*>(this + 1); }
   const double* row() const { return reinterpret_cast<const double*>(this + 1); }
 };
 
-/** Computes inner nodes' bookkeeping: weight, class mixture, divergences, and the G-value
- *   G_Pi(n) = max(0, sum_t weight_t JS_t(n) - alpha H(Pi_n) + sum_c Pi_c G_Pi(c)).
- * A node is recomputed from its eight children, never adjusted, so that the order of updates leaves
- * no trace. */
-class AbstractionUpkeep {
+/** G-tree search in a map that grows, its first half (Larsson et al., algorithm 1): from the leaves
+ * up, it computes inner nodes' bookkeeping: weight, class mixture, divergences, and the G-value
+ *   G_Pi(n) = max(0, sum_t weight_t JS_t(n) - alpha H(Pi_n) + sum_c Pi_c G_Pi(c)),
+ * where alpha and the weights are those of AbstractionOptions. The second half, from the root down
+ * along the nodes whose G-value is above 0, is CompressedTree.
+ *
+ * A scan recomputes the nodes above the voxels that it changed, each once, from their eight
+ * children; none is adjusted, so that the order of updates leaves no trace. */
+class GTree {
  public:
-  AbstractionUpkeep(const AbstractionOptions& options, const ClassFilter<float>& filter,
-                    double resolution);
+  GTree(const AbstractionOptions& options, const ClassFilter<float>& filter, double resolution);
 
   const AbstractionOptions& options() const { return m_options; }
   const RowLayout& layout() const { return m_layout; }
@@ -58,37 +60,38 @@ class AbstractionUpkeep {
   const DensityField& density() const { return m_density; }
 
   /** New weights of the same terms, and alpha. What is kept of nodes is then out of date in its
-   * gains only: see reweigh(). */
+   * G-values only: see reweigh(). */
   void setWeights(const std::vector<double>& termWeights, double alpha);
   void setRegions(std::vector<Region> regions, double resolution);
 
   /** sum_t weight_t JS_t of a node. */
   double weightedDivergence(const InnerState& s) const;
-  /** Sets the gain from divergences, split entropy and the mean of the children's gains. */
-  void settleGain(InnerState& s, int depth, double childrensGain) const;
+  /** Sets the G-value from divergences, split entropy and the mean of the children's G-values. */
+  void settleG(InnerState& s, int depth, double childrensG) const;
 
   /** One thread's part: buffers, and rows of frequent values. */
   class Worker {
    public:
-    explicit Worker(const AbstractionUpkeep& upkeep);
+    explicit Worker(const GTree& gTree);
     void recompute(NodeStore& store, Node& inner, const Cell& cell);
     /** A node and all inner nodes below. */
     void recomputeAll(NodeStore& store, Node& node, const Cell& cell);
     /** Nodes in whose cell the density is not what it was. \return whether there were any */
     bool recomputeWhereChanged(NodeStore& store, Node& node, const Cell& cell,
                                const DensityField& before);
-    /** Gains only, of a node and all inner nodes below, from what is kept. */
+    /** G-values only, of a node and all inner nodes below, from what is kept. */
     void reweigh(NodeStore& store, Node& inner, const Cell& cell);
 
    private:
     /** Also notes in the state whether children came, went or changed. */
-    void gatherRows(const NodeStore& store, const Node& inner, const double** rows, double* gains);
+    void gatherRows(const NodeStore& store, const Node& inner, const double** rows,
+                    double* gValues);
     void gatherDensities(const NodeStore& store, const Node& inner, const Cell& cell,
                          double* densities) const;
-    void reweighChildren(NodeStore& store, Node& inner, const Cell& cell, double* gains);
+    void reweighChildren(NodeStore& store, Node& inner, const Cell& cell, double* gValues);
     const double* rowOf(const NodeStore& store, const Node& leaf);
 
-    const AbstractionUpkeep& m_upkeep;
+    const GTree& m_gTree;
     RowCache<float> m_uniformRows;  ///< of leaves without a class record, by their values
     RowCache<Belief> m_recordRows;
   };

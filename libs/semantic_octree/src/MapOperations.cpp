@@ -1,0 +1,142 @@
+#include <semantic_octree/MapOperations.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "TreeBuilder.h"
+
+namespace semantic_octree {
+namespace {
+
+/** Range of voxels, as keys, both ends included. */
+struct VoxelBox {
+  VoxelIndex first, last;
+};
+
+class CropCursor {
+ public:
+  CropCursor(const SemanticOcTree& map, const VoxelBox& box, const Node* node, const Cell& cell)
+      : m_map(map), m_box(box), m_node(node), m_cell(cell) {}
+
+  bool known() const {
+    return m_node && (m_cell.lowest() <= m_box.last).all() && (highest() >= m_box.first).all();
+  }
+  bool isLeaf() const {
+    return m_node->isLeaf() && (m_cell.lowest() >= m_box.first).all() &&
+           (highest() <= m_box.last).all();
+  }
+  LeafContent content() const { return contentOf(m_map, *m_node); }
+  CropCursor child(int i) const {
+    const Node* node = m_node->isLeaf() ? m_node : m_node->child(i);
+    return {m_map, m_box, node, m_cell.child(i)};
+  }
+
+ private:
+  VoxelIndex highest() const { return m_cell.lowest() + (m_cell.edge() - 1); }
+
+  const SemanticOcTree& m_map;
+  const VoxelBox& m_box;
+  const Node* m_node;
+  Cell m_cell;
+};
+
+/** Voxels whose centers are in a box. */
+VoxelBox voxelsIn(const Eigen::AlignedBox3d& box, double resolution) {
+  const Eigen::Array3d limit = Eigen::Array3d::Constant(kKeyOfOrigin);
+  const auto toKeys = [&](const Eigen::Array3d& voxels) {
+    return VoxelIndex((voxels.max(-limit).min(limit) + limit).cast<int>());
+  };
+  return {toKeys((box.min().array() / resolution - 0.5).ceil()),
+          toKeys((box.max().array() / resolution - 0.5).floor())};
+}
+
+/** A cube of the coarse map and the node of the fine map for it. The fine map fills the middle of
+ * the coarse one: down to depth `levels` the cubes that touch the middle hold one octant of it
+ * each, and `node` is still the fine map's root. */
+class CoarseCursor {
+ public:
+  CoarseCursor(const SemanticOcTree& map, int levels)
+      : CoarseCursor(map, levels, map.root(), 0, -1) {}
+
+  bool known() const { return m_node; }
+  bool isLeaf() const { return m_depth == kTreeDepth || (m_depth > m_levels && m_node->isLeaf()); }
+  LeafContent content() const { return contentOf(m_map, *m_node); }
+
+  CoarseCursor child(int i) const {
+    if (m_depth < m_levels) {
+      const bool towardsMiddle = m_depth == 0 || i == 7 - m_octant;
+      const int octant = m_depth == 0 ? i : m_octant;
+      return {m_map, m_levels, towardsMiddle ? m_node : nullptr, m_depth + 1, octant};
+    }
+    if (m_depth == m_levels && m_depth > 0)
+      return {m_map, m_levels, i == 7 - m_octant ? childNode(m_octant) : nullptr, m_depth + 1, -1};
+    return {m_map, m_levels, childNode(i), m_depth + 1, -1};
+  }
+
+ private:
+  CoarseCursor(const SemanticOcTree& map, int levels, const Node* node, int depth, int octant)
+      : m_map(map), m_levels(levels), m_node(node), m_depth(depth), m_octant(octant) {}
+
+  const Node* childNode(int i) const { return m_node->isLeaf() ? m_node : m_node->child(i); }
+
+  const SemanticOcTree& m_map;
+  int m_levels;
+  const Node* m_node;
+  int m_depth, m_octant;
+};
+
+class OccupancyCursor {
+ public:
+  OccupancyCursor(const octomap::OcTree& map, const ClassFilter<float>& filter,
+                  const octomap::OcTreeNode* node)
+      : m_map(map), m_filter(filter), m_node(node) {}
+
+  bool known() const { return m_node; }
+  bool isLeaf() const { return !m_map.nodeHasChildren(m_node); }
+  LeafContent content() const { return {m_filter.limitedOccupancy(m_node->getLogOdds()), {}}; }
+  OccupancyCursor child(int i) const {
+    const octomap::OcTreeNode* node = m_node;
+    if (!isLeaf())
+      node = m_map.nodeChildExists(m_node, i) ? m_map.getNodeChild(m_node, i) : nullptr;
+    return {m_map, m_filter, node};
+  }
+
+ private:
+  const octomap::OcTree& m_map;
+  const ClassFilter<float>& m_filter;
+  const octomap::OcTreeNode* m_node;
+};
+
+}  // namespace
+
+SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box) {
+  if (!(box.min().array() <= box.max().array()).all())
+    throw std::invalid_argument("cropping: the box is empty, or not a number");
+  SemanticOcTree part = TreeBuilder::emptyLike(map);
+  const VoxelBox voxels = voxelsIn(box, map.getResolution());
+  TreeBuilder::fill(part, CropCursor(map, voxels, map.root(), Cell()));
+  return part;
+}
+
+SemanticOcTree coarsened(const SemanticOcTree& map, int levels) {
+  if (levels < 0 || levels > 8)
+    throw std::invalid_argument("coarsening: levels = " + std::to_string(levels) +
+                                ", expected 0 to 8");
+  SemanticOcTree coarse(map.getResolution() * (1 << levels), map.classes(), map.filterParameters());
+  coarse.setPruning(map.pruning());
+  TreeBuilder::fill(coarse, CoarseCursor(map, levels));
+  return coarse;
+}
+
+SemanticOcTree fromOccupancy(const octomap::OcTree& map, const ClassTable& classes,
+                             const FilterParameters& filter) {
+  if (map.getTreeDepth() != kTreeDepth)
+    throw std::invalid_argument("importing occupancy: a map of " +
+                                std::to_string(map.getTreeDepth()) + " levels, expected 16");
+  SemanticOcTree result(map.getResolution(), classes, filter);
+  const ClassFilter<float> limits(classes.size(), filter);
+  TreeBuilder::fill(result, OccupancyCursor(map, limits, map.getRoot()));
+  return result;
+}
+
+}  // namespace semantic_octree
