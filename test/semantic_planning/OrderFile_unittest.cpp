@@ -61,9 +61,9 @@ TEST_F(OrderFile, aVehicleIsReadStrictly) {
 }
 
 TEST_F(OrderFile, thoseOfTheRepositoryLoad) {
-  const std::filesystem::path plans = std::filesystem::path(MSO_SOURCE_DIR) / "config/plan";
+  const std::filesystem::path config = std::filesystem::path(MSO_SOURCE_DIR) / "config";
   semantic_types::ClassTable kitti;
   for (const char* name : {"road", "parking", "sidewalk", "terrain"}) kitti.add(name, {});
-  EXPECT_EQ(loadClassOrder(plans / "semantic_kitti.yaml", kitti).ranks(), 5);
-  EXPECT_GT(loadVehicle(plans / "car.yaml").turningRadius, 1);
+  EXPECT_EQ(loadClassOrder(config / "orders/semantic_kitti.yaml", kitti).ranks(), 5);
+  EXPECT_GT(loadVehicle(config / "vehicles/car.yaml").turningRadius, 1);
 }

@@ -50,7 +50,6 @@ Children drawChildren(std::size_t atLeast = 1) {
   return makeChildren(n, outcomes, *rc::gen::arbitrary<unsigned>());
 }
 
-
 }  // namespace
 
 TEST(Information, entropyIsZeroForCertaintyAndLargestForEqualOutcomes) {
