@@ -42,7 +42,7 @@ struct Cli {
     app.add_option("--nearest", tasks.nearest, "From start to goal, m")->capture_default_str();
     app.add_option("--farthest", tasks.farthest, "From start to goal, m")->capture_default_str();
     app.add_option("--classes", classes, "Classes from best to worst (YAML)")->required();
-    app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drive)")
+    app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drives)")
         ->required();
     app.add_option("--output", output, "Folder of the results, created if need be")->required();
   }

@@ -5,7 +5,6 @@
 #include <strict_files/IniSection.h>
 
 #include <fstream>
-#include <set>
 #include <stdexcept>
 
 #include "LabelConfig.h"
@@ -15,57 +14,42 @@ namespace rawlog2semantic_map {
 namespace fs = std::filesystem;
 using mrpt::config::CConfigFileBase;
 using strict_files::IniSection;
+using strict_files::OptionList;
+using strict_files::readSection;
 
 namespace {
 
-void refuseUnknownSections(const CConfigFileBase& ini) {
-  static const std::set<std::string> kKnown = {"map",    "insertion", "abstraction", "trajectory",
-                                               "labels", "cameras",   "pictures"};
-  std::vector<std::string> sections, keys;
-  ini.getAllSections(sections);
-  for (const std::string& section : sections) {
-    if (kKnown.count(section) || isCameraSection(section)) continue;
-    ini.getAllKeys(section, keys);
-    if (section.empty() && keys.empty()) continue;
-    throw std::runtime_error("unknown section [" + section +
-                             "]; known are [map], [insertion], [abstraction], [trajectory], "
-                             "[labels], [cameras], [camera NAME], [pictures]");
-  }
-}
-
-void readTrajectory(const CConfigFileBase& ini, Config& config) {
-  IniSection section(ini, "trajectory");
-  section.read("tolerance", config.trajectory.tolerance);
-  section.read("maxGap", config.trajectory.maxGap);
+/** Label model and occlusion are known by [labels] and [cameras]. */
+void readInsertion(const CConfigFileBase& ini, semantic_map::TInsertionOptions& insertion) {
+  OptionList list, labels;
+  insertion.describe(list);
+  insertion.conversion.labels.describe(labels);
+  for (const std::string& name : labels.names()) list.remove(name);
+  list.remove("occlusion_parallax");
+  IniSection section(ini, "insertion");
+  section.read(list);
   section.finish();
-  config.trajectory.validate();
+  insertion.validate();
 }
 
 void readPictures(const CConfigFileBase& ini, Config& config) {
+  OptionList list;
+  config.pictures.describe(list);
+  config.view.describe(list);
   IniSection section(ini, "pictures");
-  section.read("width", config.pictures.width);
-  section.read("height", config.pictures.height);
-  section.read("title", config.pictures.title);
-  double maxHeight = HUGE_VAL;
-  section.read("maxHeight", maxHeight);
-  if (maxHeight < HUGE_VAL) config.pictures.maxHeight = maxHeight;
-  section.read("minOccupancy", config.pictures.minOccupancy);
-  section.read("heading", config.view.heading);
-  section.read("tilt", config.view.tilt);
-  section.read("zoom", config.view.zoom);
+  section.read(list);
   section.finish();
-  config.pictures.validate();
-  config.view.validate();
 }
 
 Config readConfig(const fs::path& file) {
   Config config;
   const mrpt::config::CConfigFile ini(file.string());
-  refuseUnknownSections(ini);
-  config.map.loadFromConfigFile(ini, "map");
-  config.insertion.loadFromConfigFile(ini, "insertion");
-  config.abstraction.loadFromConfigFile(ini, "abstraction");
-  readTrajectory(ini, config);
+  strict_files::checkSections(ini, {"map", "insertion", "abstraction", "trajectory", "labels",
+                                    "cameras", kCameraSections, "pictures"});
+  readSection(ini, "map", config.map);
+  readInsertion(ini, config.insertion);
+  readSection(ini, "abstraction", config.abstraction);
+  readSection(ini, "trajectory", config.trajectory);
   readLabelConfig(ini, config);
   readPictures(ini, config);
   if (!config.map.classes.empty())

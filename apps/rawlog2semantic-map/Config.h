@@ -1,7 +1,6 @@
 #pragma once
 #include <labeled_cloud/CloudLabeler.h>
 #include <labeled_cloud/LabelFolder.h>
-#include <labeled_cloud/LabelModel.h>
 #include <labeled_cloud/ScanStream.h>
 #include <labeled_cloud/Trajectory.h>
 #include <semantic_map/MapOptions.h>
@@ -14,11 +13,10 @@ namespace rawlog2semantic_map {
 /** What the .ini file says: one member a section. */
 struct Config {
   semantic_map::TCreationOptions map;             // [map]
-  semantic_map::TInsertionOptions insertion;      // [insertion]
+  semantic_map::TInsertionOptions insertion;      // [insertion]; its label model is in [labels]
   semantic_map::TAbstractionOptions abstraction;  // [abstraction]
   labeled_cloud::TrajectoryOptions trajectory;    // [trajectory]
   labeled_cloud::LabelFolderOptions labels;       // [labels]
-  labeled_cloud::LabelModel labelModel;           // [labels] too
   labeled_cloud::ScanStreamOptions stream;        // [labels] too
   labeled_cloud::CloudLabelerOptions cameras;     // [cameras] and [camera NAME]
   semantic_map::PictureStyle pictures;            // [pictures]

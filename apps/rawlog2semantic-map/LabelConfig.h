@@ -3,8 +3,8 @@
 
 namespace rawlog2semantic_map {
 
-/** Whether a section describes a camera: [camera NAME]. */
-bool isCameraSection(const std::string& section);
+/** The sections that describe a camera: [camera NAME]. */
+constexpr const char* kCameraSections = "camera *";
 
 /** Reads [labels], [cameras] and all [camera NAME].
  * \throw std::runtime_error naming section, key and value. */

@@ -108,14 +108,13 @@ class SideOutputs {
 Summary buildMap(const Cli& cli, Config config, CSemanticOctoMap& map) {
   const ClassTable& table = map.tree().classes();
   if (!cli.confusion.empty())
-    config.labelModel.confusion = std::make_shared<labeled_cloud::ConfusionMatrix>(
+    config.insertion.conversion.labels.confusion = std::make_shared<labeled_cloud::ConfusionMatrix>(
         labeled_cloud::loadConfusionMatrix(cli.confusion, table));
-  config.insertion.conversion.labels = config.labelModel;
   const auto labeler = makeLabeler(cli.labels, table, config);
   labeled_cloud::ScanConverter converter(table, config.insertion.conversion, labeler);
   const labeled_cloud::Trajectory trajectory = trajectoryOf(cli, config);
-  labeled_cloud::CloudLabeler clouds(labeler, table.size(), config.labelModel, trajectory,
-                                     config.cameras);
+  labeled_cloud::CloudLabeler clouds(labeler, table.size(), config.insertion.conversion.labels,
+                                     trajectory, config.cameras);
   labeled_cloud::ScanStream stream(cli.rawlogs, converter, trajectory, labeler ? &clouds : nullptr,
                                    config.stream);
   SideOutputs outputs(cli, table);

@@ -1,9 +1,11 @@
 #pragma once
 #include <semantic_octree/Abstraction.h>
-
-#include "TermCatalog.h"
+#include <semantic_octree/TermCatalog.h>
 
 namespace semantic_map_compress {
+
+using semantic_octree::Solution;
+using semantic_octree::TermCatalog;
 
 /** How small compressed maps are to be; at most one is set. None: each solution's own alpha. */
 struct Target {

@@ -10,6 +10,7 @@ namespace semantic_map_compress {
 using nlohmann::ordered_json;
 using semantic_octree::AbstractionOptions;
 using strict_files::csvField;
+using strict_files::nameIn;
 using tree_abstraction::natsToBits;
 using tree_abstraction::TreeMeasures;
 
@@ -32,12 +33,10 @@ ordered_json toJson(const TreeMeasures& tree) {
 }
 
 ordered_json toJson(const AbstractionOptions& space) {
-  const char* unknown[] = {"own_class", "uniform", "prior"};
-  const char* frame[] = {"free", "charged"};
   return {{"blockSize", space.blockSize},
-          {"unknown", unknown[static_cast<int>(space.unknown)]},
+          {"unknown", nameIn(choicesOf(space.unknown), space.unknown)},
           {"unknownWeight", space.unknownWeight},
-          {"frame", frame[static_cast<int>(space.frame)]},
+          {"frame", nameIn(choicesOf(space.frame), space.frame)},
           {"regions", space.regions.size()}};
 }
 

@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using semantic_octree::SemanticOcTree;
+using semantic_octree::WeightsFile;
 using strict_files::OutputFolder;
 
 struct Cli {

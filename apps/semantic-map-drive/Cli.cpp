@@ -43,7 +43,7 @@ void Cli::addTo(CLI::App& app) {
                  "Classes from best to worst (YAML); a second file is driven, too, to compare")
       ->required()
       ->expected(1, 2);
-  app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drive)")
+  app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drives)")
       ->required();
   app.add_option("--output", output, "Folder of the results, created if need be")->required();
   addParsed(

@@ -1,6 +1,7 @@
 // Plans a path of a vehicle over a semantic map, classes before length.
 #include <semantic_map/MapPictures.h>
 #include <semantic_octree/TreeFile.h>
+#include <semantic_octree/WeightsFile.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <iostream>
 
-#include "../semantic-map-compress/WeightsFile.h"
 #include "Application.h"
 #include "Cli.h"
 #include "JsonFile.h"
@@ -32,7 +32,7 @@ constexpr int kNoPath = 2;  // exit status
 AbstractionOptions abstractionOf(const Cli& cli, const SemanticOcTree& map,
                                  const colored_graph::ClassOrder& order) {
   if (cli.weights.empty()) return abstractionFor(order);
-  const auto file = semantic_map_compress::loadWeights(cli.weights, map.classes());
+  const auto file = semantic_octree::loadWeights(cli.weights, map.classes());
   const auto named = [&](const auto& s) { return cli.solution.empty() || s.name == cli.solution; };
   const auto found = std::find_if(file.solutions.begin(), file.solutions.end(), named);
   if (found == file.solutions.end())

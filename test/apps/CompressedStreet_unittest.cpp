@@ -15,7 +15,7 @@ using nlohmann::json;
 
 namespace {
 
-/** A real street, compressed with the five solutions of config/compress. */
+/** A real street, compressed with the five solutions of config/weights. */
 class CompressedStreet : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -34,7 +34,7 @@ class CompressedStreet : public testing::Test {
     saveTree(map, (*s_folder / "map.semantic").string());
     s_run = runProgram("semantic-map-compress",
                        {(*s_folder / "map.semantic").string(), "--weights",
-                        (sources / "config/compress/semantic_kitti.yaml").string(), "--output",
+                        (sources / "config/weights/semantic_kitti.yaml").string(), "--output",
                         s_folder->path().string()});
   }
   static void TearDownTestSuite() { s_folder.reset(); }

@@ -18,10 +18,10 @@ const fs::path kSources = MSO_SOURCE_DIR;
 
 TEST(SampleMap, theVillageIsMappedWithItsClasses) {
   const TemporaryFolder folder;
-  const ProgramRun run = runProgram(
-      "rawlog2semantic-map",
-      {"--config", (kSources / "config/rawlog2semantic-map/synthetic.ini").string(), "--output",
-       folder.path().string(), (kSources / "rawlog-samples/village.rawlog").string()});
+  const ProgramRun run =
+      runProgram("rawlog2semantic-map",
+                 {"--config", (kSources / "config/maps/synthetic.ini").string(), "--output",
+                  folder.path().string(), (kSources / "rawlog-samples/village.rawlog").string()});
   ASSERT_EQ(run.status, 0) << run.errors;
 
   const auto summary = nlohmann::json::parse(folder.read("summary.json"));

@@ -14,7 +14,7 @@ class SemanticMapDrive : public testing::Test {
   std::vector<std::string> argumentsWith(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments = {
         "--world",          "village",   "--start=-14,-19,10",
-        "--goal=-6,-17,20", "--classes", kConfig + "plan/synthetic.yaml",
+        "--goal=-6,-17,20", "--classes", kConfig + "orders/synthetic.yaml",
         "--no-pictures"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
@@ -22,7 +22,7 @@ class SemanticMapDrive : public testing::Test {
 
   ProgramRun drive(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments =
-        argumentsWith({"--config", kConfig + "drive/synthetic.ini", "--output", path("drive")});
+        argumentsWith({"--config", kConfig + "drives/synthetic.ini", "--output", path("drive")});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram("semantic-map-drive", arguments);
   }
@@ -30,7 +30,7 @@ class SemanticMapDrive : public testing::Test {
   /** A configuration whose section [drive] says this; other keys have their defaults. */
   std::string configWith(const std::string& lines) const {
     return folder
-        .write("drive.ini", "[planner]\nvehicle = " + kConfig + "drive/robot.yaml\nkeepOff = 1\n" +
+        .write("drive.ini", "[planner]\nvehicle = " + kConfig + "vehicles/robot.yaml\nkeepOff = 1\n" +
                                 "[drive]\nreactive = " + kConfig + "reactive/robot.ini\n" +
                                 "turningRadius = 0.8\n" + lines)
         .string();

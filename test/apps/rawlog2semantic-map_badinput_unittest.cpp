@@ -90,15 +90,15 @@ TEST_F(Rawlog2SemanticMap, anUnknownKeyIsRefusedWithFileSectionAndKey) {
 }
 
 TEST_F(Rawlog2SemanticMap, anUnknownSectionIsRefused) {
-  folder.write("small.ini", std::string(kSmallConfig) + "[inserting]\nmaxRange = 3\n");
-  expectRefusal({"small.ini", "[inserting]"});
+  folder.write("small.ini", std::string(kSmallConfig) + "[inserting]\nmax_range = 3\n");
+  expectRefusal({"small.ini", "[inserting]", "did you mean 'insertion'?"});
 }
 
 TEST_F(Rawlog2SemanticMap, valuesOutOfRangeAreRefused) {
   const std::vector<std::array<std::string, 3>> wrong = {
       {"map", "resolution", "-0.1"},    {"map", "resolution", "fine"},
-      {"insertion", "accuracy", "1.5"}, {"insertion", "maxRange", "-1"},
-      {"trajectory", "tolerance", "x"}, {"labels", "match", "Guess"},
+      {"insertion", "accuracy", "1.5"}, {"insertion", "max_range", "-1"},
+      {"trajectory", "tolerance", "x"}, {"labels", "match", "guess"},
       {"pictures", "width", "12.5"},    {"pictures", "tilt", "nan"}};
   for (const auto& [section, key, value] : wrong) {
     folder.write("small.ini", "[" + section + "]\n" + key + " = " + value + "\n");
@@ -106,7 +106,7 @@ TEST_F(Rawlog2SemanticMap, valuesOutOfRangeAreRefused) {
   }
   folder.write("small.ini", kSmallConfig);
   expectRefusal({"resolution"}, "small.rawlog", {"--resolution", "0"});
-  expectRefusal({"maxRange"}, "small.rawlog", {"--max-range", "-3"});
+  expectRefusal({"max_range"}, "small.rawlog", {"--max-range", "-3"});
 }
 
 TEST_F(Rawlog2SemanticMap, missingFilesAreRefusedByName) {

@@ -33,7 +33,7 @@ TEST_F(CameraMapping, aNetworkLabelsPicturesHardAndSoft) {
 TEST_F(CameraMapping, withoutLabelsOrWithThemSkippedIsAnOption) {
   ASSERT_EQ(run("camera.rawlog").status, 0);
   EXPECT_EQ(summary()["map"]["occupiedWithoutClass"], 2);
-  configure("[labels]\nunlabeled = Skip\n");
+  configure("[labels]\nunlabeled = skip\n");
   EXPECT_TRUE(contains(run("camera.rawlog").errors, "1 without labels"));
 }
 
@@ -104,14 +104,14 @@ TEST_F(CameraMapping, anExternalPictureIsReadFromTheFolderBesideTheRawlog) {
   cv::imwrite((folder / "camera_Images/front_1.png").string(), redAndBlue());
   ASSERT_EQ(run("camera.rawlog", network()).status, 0);
   expectLabeledMap();
-  configure("[labels]\nmatch = Name\n");
+  configure("[labels]\nmatch = name\n");
   fs::rename(folder / "labels/10.01.png", folder / "labels/front_1.png");
   ASSERT_EQ(run("camera.rawlog", labels()).status, 0);
   expectLabeledMap();
 }
 
 TEST_F(CameraMapping, whatCannotBeUsedIsNamedOrLeftOutAndCounted) {
-  const std::string skip = "[labels]\nonProblem = Skip\n";
+  const std::string skip = "[labels]\non_problem = skip\n";
   cv::imwrite((folder / "labels/10.01.png").string(), cv::Mat(20, 20, CV_8UC1, cv::Scalar(1)));
   expectRefusal({"10.01.png", "20 x 20", "40 x 40"}, "camera.rawlog", labels());
   configure(skip);
@@ -147,6 +147,6 @@ TEST_F(CameraMapping, badNetworksAndSourcesAreRefused) {
   expectRefusal({"/none: there is no such folder"}, "camera.rawlog", {"--labels", "/none"});
   configure("[camera front]\nfx = 20\n");
   expectRefusal({"[camera front]", "cols is missing"}, "camera.rawlog", labels());
-  configure("[labels]\nkind = Wavy\n");
-  expectRefusal({"[labels]", "'Wavy'", "Hard or Soft"}, "camera.rawlog", labels());
+  configure("[labels]\nkind = wavy\n");
+  expectRefusal({"[labels]", "'wavy'", "one of soft, hard"}, "camera.rawlog", labels());
 }

@@ -5,7 +5,7 @@ using namespace semantic_octree;
 
 TEST_F(SemanticMapCompress, refusesClassesThatTheMapDoesNotHave) {
   expectRefusalOf("{name: a, relevant: {rode: 1}, alpha: 0.1}",
-                  {"weights.yaml:1", "'rode'", "road, grass"});
+                  {"weights.yaml:1", "'rode'", "did you mean 'road'?"});
   expectRefusalOf("{name: a, irrelevant: {rode: 1}, alpha: 0.1}", {"'rode'"});
   expectRefusalOf("{name: a, relevant: {g: {classes: [road, cra], weight: 1}}, alpha: 0.1}",
                   {"'cra'"});
@@ -68,8 +68,8 @@ TEST_F(SemanticMapCompress, refusesBadSpaceOptions) {
   const auto refuse = [&](const std::string& options, const std::vector<std::string>& parts) {
     expectRefusalOf("name: a\nrelevant: {road: 1}\nalpha: 0.1\n" + options + "\n", parts);
   };
-  refuse("unknown: none", {"weights.yaml:4", "own_class, prior, uniform", "'none'"});
-  refuse("frame: paid", {"charged, free", "'paid'"});
+  refuse("unknown: none", {"weights.yaml:4", "own_class, uniform, prior", "'none'"});
+  refuse("frame: paid", {"free, charged", "'paid'"});
   refuse("unknown_weight: 1.5", {"unknown_weight", "0 to 1"});
   refuse("regions: [{weight: 2}]", {"box, sphere, corridor"});
   refuse("regions: [{sphere: [0, 0, 0], weight: 2}]", {"radius"});

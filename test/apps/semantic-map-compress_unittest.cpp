@@ -203,6 +203,11 @@ TEST_F(SemanticMapCompress, spaceOptionsAndRegionsReachTheSearch) {
   });
   expectSame("unknown: uniform", [](O& o) { o.unknown = O::Unknown::Uniform; });
   expectSame("unknown: prior", [](O& o) { o.unknown = O::Unknown::Prior; });
+  expectSame("unknown: prior, prior: {free_space: 1}", [](O& o) {
+    o.unknown = O::Unknown::Prior;
+    o.prior.assign(std::size_t(namedClasses().size()) + 1, 0);
+    o.prior[0] = 1;
+  });
   expectSame("unknown_weight: 0.3", [](O& o) { o.unknownWeight = 0.3; });
   expectSame(
       "regions: [{box: [[0, -1, -2], [1, 2, 3]], weight: 5}, {sphere: [1, 2, 0], radius: 2, weight:"

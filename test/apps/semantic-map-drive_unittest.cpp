@@ -19,9 +19,8 @@ TEST_F(SemanticMapDrive, WritesARawlogThatBecomesAMap) {
   ASSERT_EQ(drive({}).status, 0);
   const auto cycles = jsonIn("drive/drive.json")["milliseconds"]["insert"]["cycles"].get<int>();
   const ProgramRun made =
-      runProgram("rawlog2semantic-map",
-                 {path("drive/drive.rawlog"), "--config",
-                  kConfig + "rawlog2semantic-map/synthetic.ini", "--output", path("map")});
+      runProgram("rawlog2semantic-map", {path("drive/drive.rawlog"), "--config",
+                                         kConfig + "maps/synthetic.ini", "--output", path("map")});
   ASSERT_EQ(made.status, 0) << made.errors;
   // An image and a LiDAR scan each time.
   EXPECT_NE(made.output.find(std::to_string(2 * cycles) + " scans inserted"), std::string::npos)
@@ -56,8 +55,8 @@ TEST_F(SemanticMapDrive, ArrivesWithObstaclesOfTheCompressedTreeAndLogsWhatTheNa
 
 TEST_F(SemanticMapDrive, SaysWhatIsMissing) {
   const ProgramRun run =
-      runProgram("semantic-map-drive", {"--classes", kConfig + "plan/synthetic.yaml", "--config",
-                                        kConfig + "drive/synthetic.ini", "--output", path("x")});
+      runProgram("semantic-map-drive", {"--classes", kConfig + "orders/synthetic.yaml", "--config",
+                                        kConfig + "drives/synthetic.ini", "--output", path("x")});
   EXPECT_EQ(run.status, 1);
   EXPECT_NE(run.errors.find("--start and --goal are missing"), std::string::npos) << run.errors;
 }

@@ -171,8 +171,8 @@ TEST_F(CloudLabelers, nameAPictureThatCannotBeUsedOrLeaveItOutAndReportIt) {
 TEST_F(CloudLabelers, refuseBadOptionsByName) {
   CloudLabelerOptions options;
   options.tolerance = -1;
-  EXPECT_TRUE(contains(errorOf([&] { make({}, options); }), "tolerance = -1"));
+  EXPECT_TRUE(contains(errorOf([&] { make({}, options); }), "tolerance is -1"));
   options = {};
   options.occlusionParallax = NAN;
-  EXPECT_TRUE(contains(errorOf([&] { make({}, options); }), "occlusionParallax"));
+  EXPECT_TRUE(contains(errorOf([&] { make({}, options); }), "occlusion_parallax"));
 }

@@ -141,7 +141,7 @@ TEST_F(NetworkLabelers, sayWhatIsWrong) {
   EXPECT_TRUE(contains(errorOf([&] { options("input: {width: 8, height: 4}\nclasses: [rot]\n"); }),
                        "net.yaml:2: 'rot' is no class of the table"));
   EXPECT_TRUE(contains(errorOf([&] { options("input: {width: 0, height: 4}\nclasses: [red]\n"); }),
-                       "net.yaml: network: width = 0"));
+                       "net.yaml:1: width is 0"));
   EXPECT_TRUE(contains(errorOf([&] { options("classes: [red]\n"); }), "'input' is missing"));
 }
 

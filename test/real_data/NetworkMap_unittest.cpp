@@ -42,7 +42,7 @@ std::vector<LabeledCloud> labelByNetwork(const TemporaryFolder& folder) {
   EXPECT_EQ(conversion.status, 0) << conversion.errors;
   const ProgramRun mapping = runProgram(
       "rawlog2semantic-map",
-      {"--config", (kConfig / "rawlog2semantic-map/semantic-kitti.ini").string(), "--output",
+      {"--config", (kConfig / "maps/semantic-kitti.ini").string(), "--output",
        (folder / "out").string(), "--network",
        (sharedDataDir() / "networks/fchardnet_kitti.onnx").string(), "--network-config",
        (kConfig / "networks/fchardnet_kitti.yaml").string(), "--save-labeled", labeled, scans});

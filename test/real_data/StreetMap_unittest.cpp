@@ -34,10 +34,9 @@ TEST(StreetMap, theStreetFromAboveShowsRoadSidewalkCarsAndBuildings) {
                  {"semantic-kitti", (sharedDataDir() / "semantic_kitti/00").string(), "--classes",
                   (kSources / "config/classes/semantic_kitti.yaml").string(), rawlog});
   ASSERT_EQ(conversion.status, 0) << conversion.errors;
-  const ProgramRun mapping =
-      runProgram("rawlog2semantic-map",
-                 {"--config", (kSources / "config/rawlog2semantic-map/semantic-kitti.ini").string(),
-                  "--output", (folder / "out").string(), rawlog});
+  const ProgramRun mapping = runProgram(
+      "rawlog2semantic-map", {"--config", (kSources / "config/maps/semantic-kitti.ini").string(),
+                              "--output", (folder / "out").string(), rawlog});
   ASSERT_EQ(mapping.status, 0) << mapping.errors;
 
   const auto summary = nlohmann::json::parse(folder.read("out/summary.json"));

@@ -35,7 +35,7 @@ const IncludeTable& includeTable() {
       {"semantic_driving",
        {"Eigen", "mrpt", "octomap", "colored_graph", "semantic_octree", "semantic_types",
         "strict_files", "semantic_planning"}},
-      {"synthetic_world", {"Eigen", "semantic_types"}},
+      {"synthetic_world", {"Eigen", "semantic_types", "strict_files"}},
   };
   return table;
 }

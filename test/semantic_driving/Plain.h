@@ -5,10 +5,10 @@
 
 #include "simulated_drive/DriveConfig.h"
 
-/** The robot of config/drive with sensors of few points. */
+/** The robot of config/drives with sensors of few points. */
 inline simulated_drive::DriveConfig smallConfig() {
   auto config =
-      simulated_drive::loadDriveConfig(std::string(MSO_SOURCE_DIR) + "/config/drive/synthetic.ini");
+      simulated_drive::loadDriveConfig(std::string(MSO_SOURCE_DIR) + "/config/drives/synthetic.ini");
   config.sensors.camera.width = 80;
   config.sensors.camera.height = 60;
   config.sensors.lidar.columns = 256;
@@ -20,7 +20,7 @@ inline simulated_drive::DriveConfig smallConfig() {
 
 inline colored_graph::ClassOrder syntheticOrder() {
   return semantic_planning::loadClassOrder(
-      std::string(MSO_SOURCE_DIR) + "/config/plan/synthetic.yaml", synthetic_world::classTable());
+      std::string(MSO_SOURCE_DIR) + "/config/orders/synthetic.yaml", synthetic_world::classTable());
 }
 
 /** Flat grass 40 m wide, with a road along x that is `width` wide, and things on it. */

@@ -16,7 +16,7 @@ namespace {
 const std::string kConfig = std::string(MSO_SOURCE_DIR) + "/config/";
 
 DriveConfig config320() {
-  DriveConfig config = loadDriveConfig(kConfig + "drive/synthetic.ini");
+  DriveConfig config = loadDriveConfig(kConfig + "drives/synthetic.ini");
   config.sensors.camera.width = 320;
   config.sensors.camera.height = 240;
   return config;
@@ -46,7 +46,7 @@ void report(benchmark::State& state, const std::string& stage, Times times) {
 
 void DriveCycle(benchmark::State& state) {
   const DriveConfig config = config320();
-  const auto order = semantic_planning::loadClassOrder(kConfig + "plan/synthetic.yaml",
+  const auto order = semantic_planning::loadClassOrder(kConfig + "orders/synthetic.yaml",
                                                        synthetic_world::classTable());
   const mrpt::math::TPose2D start{-14, -19, 10 * M_PI / 180}, goal{25, -12, M_PI / 2};
   for (auto _ : state) {

@@ -44,7 +44,7 @@ TEST(MapAbstraction, comesFromTheIniFile) {
   const mrpt::config::CConfigFileMemory ini(
       "[m]\nsemanticOctoMap_count=1\n"
       "[m_semanticOctoMap_00_abstractionOpts]\n"
-      "relevant = occupied: 2\nalpha = 0.03 // per nat\nunknown = Uniform\nframe = Charged\n"
+      "relevant = occupied: 2\nalpha = 0.03 // per nat\nunknown = uniform\nframe = charged\n"
       "regions = box 0 0 0 1 2 3 4; sphere 1 2 3 0.5 0; corridor 0 0 0 5 0 0 1 2\n");
   mrpt::maps::TSetOfMetricMapInitializers initializers;
   initializers.loadFromConfigFile(ini, "m");

@@ -64,14 +64,14 @@ TEST(MapDefinition, everyOptionIsReadFromItsSection) {
       "[Maps_semanticOctoMap_00_creationOpts]\nresolution = 0.25 // m\nclasses = " +
       classes.string() +
       "\nenableSaveAs3DObject = false\n"
-      "[Maps_semanticOctoMap_00_insertOpts]\nrays = EndVoxels\nmaxRange = 30\nminRange = 0.5\n"
-      "carvingMargin = 0.2\nthreads = 2\ndecimation = 3\nflyingPixelThreshold = 0.05\n"
-      "increments = ssmi\naccuracy = 0.8\nhitProbability = 0.7\nfalseAlarmProbability = 0.2\n"
-      "minOccupancy = 0.2\nmaxProbability = 0.9\nsoftLabelFloor = 0.01\n"
-      "[Maps_semanticOctoMap_00_likelihoodOpts]\ndecimation = 7\nuseLabels = false\n"
-      "pointWeight = 0.5\n"
-      "[Maps_semanticOctoMap_00_renderOpts]\ncoloring = Height\noccupied = no\nfree = yes\n"
-      "minOccupancy = 0.6\nminProbability = 0.4\nminHeight = -1\nmaxHeight = inf\n");
+      "[Maps_semanticOctoMap_00_insertOpts]\nrays = end_voxels\nmax_range = 30\nmin_range = 0.5\n"
+      "carving_margin = 0.2\nthreads = 2\ndecimation = 3\nflying_pixel_threshold = 0.05\n"
+      "increments = ssmi\naccuracy = 0.8\nhit_probability = 0.7\nfalse_alarm_probability = 0.2\n"
+      "min_occupancy = 0.2\nmax_probability = 0.9\nsoft_label_floor = 0.01\n"
+      "[Maps_semanticOctoMap_00_likelihoodOpts]\ndecimation = 7\nuse_labels = false\n"
+      "point_weight = 0.5\n"
+      "[Maps_semanticOctoMap_00_renderOpts]\ncoloring = height\noccupied = no\nfree = yes\n"
+      "min_occupancy = 0.6\nmin_probability = 0.4\nmin_height = -1\nmax_height = inf\n");
   const auto& insertion = map->insertionOptions;
   EXPECT_EQ(map->tree().getResolution(), 0.25);
   EXPECT_EQ(map->tree().classes().name(2), "tree");
@@ -100,16 +100,25 @@ TEST(MapDefinition, everyOptionIsReadFromItsSection) {
   EXPECT_EQ(map->renderingOptions.maxHeight, INFINITY);
 }
 
-TEST(MapDefinition, anUnknownKeyIsNamedWithItsSectionAndTheKnownOnes) {
-  expectRefused("creationOpts", "resolutoin = 0.1",
-                {"Maps_semanticOctoMap_00_creationOpts", "'resolutoin'", "resolution, classes"});
-  expectRefused("insertOpts", "maxrage = 3", {"_insertOpts", "'maxrage'", "maxRange"});
+TEST(MapDefinition, namesAreReadHoweverTheirWordsAreParted) {
+  const auto map = mapOf(
+      "[Maps]\nsemanticOctoMap_count = 1\n"
+      "[Maps_semanticOctoMap_00_insertOpts]\nrays = EndVoxels\nmaxRange = 30\n");
+  EXPECT_EQ(map->insertionOptions.scan.rays, InsertionOptions::Rays::EndVoxels);
+  EXPECT_EQ(map->insertionOptions.scan.maxRange, 30);
+}
+
+TEST(MapDefinition, anUnknownKeyIsNamedWithItsSectionAndTheNearestKnownOne) {
+  expectRefused(
+      "creationOpts", "resolutoin = 0.1",
+      {"Maps_semanticOctoMap_00_creationOpts", "'resolutoin'", "did you mean 'resolution'?"});
+  expectRefused("insertOpts", "maxrage = 3", {"_insertOpts", "'maxrage'", "'max_range'?"});
   expectRefused("likelihoodOpts", "foo = 3", {"_likelihoodOpts", "'foo'"});
   expectRefused("renderOpts", "decimation = 3", {"_renderOpts", "'decimation'"});
 }
 
 TEST(MapDefinition, anUnknownSectionIsNamed) {
-  expectRefused("insertionOpts", "maxRange = 3",
+  expectRefused("insertionOpts", "max_range = 3",
                 {"Maps_semanticOctoMap_00_insertionOpts", "unknown section", "insertOpts"});
 }
 
@@ -120,7 +129,7 @@ TEST(MapDefinition, whatMrptLeavesOutInSilenceIsNamed) {
   const std::string unknown = refusal("pointMap_count = 1\n");
   EXPECT_TRUE(contains(unknown, "pointMap_count: there is no map type")) << unknown;
   EXPECT_EQ(refusal("pointMap_count = 0\npointsMap_count = 1\nother = 3\n"), "");
-  const std::string beyond = refusal("[Maps_semanticOctoMap_01_insertOpts]\nmaxRange = 3\n");
+  const std::string beyond = refusal("[Maps_semanticOctoMap_01_insertOpts]\nmax_range = 3\n");
   EXPECT_TRUE(contains(beyond, "Maps_semanticOctoMap_01_insertOpts") && contains(beyond, "is 1"))
       << beyond;
   EXPECT_TRUE(contains(refusal("[Maps_semanticOctoMap_0_insertOpts]\n"), "begin at 00"));
@@ -137,14 +146,14 @@ TEST(MapDefinition, aBadValueIsNamedWithWhatWasExpected) {
   expectRefused("creationOpts", "resolution = wide", {"creationOpts", "resolution", "'wide'"});
   expectRefused("creationOpts", "resolution = 0", {"creationOpts", "resolution", "0"});
   expectRefused("creationOpts", "resolution = nan", {"resolution"});
-  expectRefused("insertOpts", "rays = Some", {"rays", "'Some'", "All or EndVoxels"});
-  expectRefused("insertOpts", "threads = 1.5", {"threads", "'1.5'", "whole number"});
-  expectRefused("insertOpts", "maxRange = -1", {"insertOpts", "maxRange", "-1"});
+  expectRefused("insertOpts", "rays = some", {"rays", "'some'", "one of all, end_voxels"});
+  expectRefused("insertOpts", "threads = 1.5", {"threads", "1.5", "whole number"});
+  expectRefused("insertOpts", "max_range = -1", {"insertOpts", "max_range", "-1"});
   expectRefused("insertOpts", "decimation = 0", {"decimation", "0"});
   expectRefused("insertOpts", "accuracy = 1.5", {"accuracy", "1.5"});
-  expectRefused("likelihoodOpts", "useLabels = maybe", {"useLabels", "'maybe'", "true or false"});
-  expectRefused("likelihoodOpts", "pointWeight = 0", {"pointWeight", "0"});
-  expectRefused("renderOpts", "minHeight = 5\nmaxHeight = 2", {"minHeight", "5", "maxHeight"});
+  expectRefused("likelihoodOpts", "use_labels = maybe", {"use_labels", "'maybe'", "true or false"});
+  expectRefused("likelihoodOpts", "point_weight = 0", {"point_weight", "0"});
+  expectRefused("renderOpts", "min_height = 5\nmax_height = 2", {"min_height", "5", "max_height"});
 }
 
 TEST(MapDefinition, aClassTableThatIsMissingIsNamed) {
@@ -174,15 +183,33 @@ TEST(MapDefinition, whatIsSavedIsReadBack) {
 TEST(MapDefinition, theDumpShowsEveryOption) {
   std::ostringstream dump;
   CSemanticOctoMap::TMapDefinition().dumpToTextStream(dump);
-  for (const char* option : {"resolution = 0.1", "maxRange = 0", "rays = All", "accuracy = 0.9",
-                             "useLabels = true", "coloring = Class"})
+  for (const char* option : {"resolution = 0.1", "max_range = 0", "rays = all", "accuracy = 0.9",
+                             "use_labels = true", "coloring = class"})
     EXPECT_TRUE(contains(dump.str(), option)) << option;
+}
+
+TEST(MapOptions, whatIsDumpedIsReadBack) {
+  semantic_map::TAbstractionOptions options, read;
+  options.relevant = "road: 1, tree+wall: 0.5";
+  options.unknown = semantic_octree::AbstractionOptions::Unknown::Prior;
+  options.prior = "free_space: 0.7";
+  options.regions = "box 0 0 0 1 2 3 4; sphere 1 2 3 0.5 0";
+  options.blockSize = 1.0 / 3;
+  std::ostringstream dump;
+  options.dumpToTextStream(dump);
+  read.loadFromConfigFile(mrpt::config::CConfigFileMemory("[S]\n" + dump.str()), "S");
+  EXPECT_EQ(read.relevant, options.relevant);
+  EXPECT_EQ(read.irrelevant, "");
+  EXPECT_EQ(read.unknown, options.unknown);
+  EXPECT_EQ(read.prior, options.prior);
+  EXPECT_EQ(read.regions, options.regions);
+  EXPECT_EQ(read.blockSize, options.blockSize);
 }
 
 TEST(MapOptions, aRefusedSectionLeavesTheOptionsAsTheyWere) {
   semantic_map::TInsertionOptions options;
   options.scan.maxRange = 12;
-  const mrpt::config::CConfigFileMemory file("[S]\nmaxRange = 5\ndecimation = 0\n");
+  const mrpt::config::CConfigFileMemory file("[S]\nmax_range = 5\ndecimation = 0\n");
   EXPECT_THROW(options.loadFromConfigFile(file, "S"), std::runtime_error);
   EXPECT_EQ(options.scan.maxRange, 12);
 }

@@ -197,8 +197,8 @@ TEST(Pictures, badStylesAreNamed) {
   };
   EXPECT_TRUE(contains(error([](auto& s) { s.width = 0; }), "width is 0"));
   EXPECT_TRUE(contains(error([](auto& s) { s.height = 100000; }), "height is 100000"));
-  EXPECT_TRUE(contains(error([](auto& s) { s.minOccupancy = 1; }), "minOccupancy"));
-  EXPECT_TRUE(contains(error([](auto& s) { s.maxHeight = NAN; }), "maxHeight"));
+  EXPECT_TRUE(contains(error([](auto& s) { s.minOccupancy = 1; }), "min_occupancy"));
+  EXPECT_TRUE(contains(error([](auto& s) { s.maxHeight = NAN; }), "max_height"));
   const auto viewError = [](auto change) {
     Viewpoint viewpoint;
     change(viewpoint);

@@ -92,9 +92,9 @@ TEST(BadInput, insertionOptionsAreRefusedByName) {
   const auto names = [](const std::string& error, const char* name) {
     return contains(error, name);
   };
-  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.maxRange = -1; }), "maxRange = -1");
-  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.maxRange = NAN; }), "maxRange");
-  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.minRange = -2; }), "minRange = -2");
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.maxRange = -1; }), "max_range is -1");
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.maxRange = NAN; }), "max_range");
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.minRange = -2; }), "min_range is -2");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.carvingMargin = HUGE_VAL; }),
                "carvingMargin");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.threads = 0; }), "threads = 0");

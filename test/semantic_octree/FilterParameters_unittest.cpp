@@ -21,24 +21,24 @@ TEST(FilterParameters, thatMakeNoSenseAreRefusedByName) {
     return what.find(name) != std::string::npos;
   };
   const auto unchanged = [](FilterParameters&) {};
-  EXPECT_PRED2(names, refusal(0, unchanged), "number of classes = 0");
-  EXPECT_PRED2(names, refusal(255, unchanged), "number of classes = 255");
-  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.accuracy = 0.2; }), "accuracy = 0.2");
+  EXPECT_PRED2(names, refusal(0, unchanged), "number of classes is 0");
+  EXPECT_PRED2(names, refusal(255, unchanged), "number of classes is 255");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.accuracy = 0.2; }), "accuracy is 0.2");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.accuracy = 1; }), "accuracy");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.accuracy = NAN; }), "accuracy");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.hitProbability = 1; }),
-               "hitProbability");
+               "hit_probability");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.falseAlarmProbability = 0.6; }),
-               "falseAlarmProbability");
+               "false_alarm_probability");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.falseAlarmProbability = 0; }),
-               "falseAlarmProbability");
+               "false_alarm_probability");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.minOccupancy = 0.5; }),
-               "minOccupancy");
-  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.minOccupancy = 0; }), "minOccupancy");
+               "min_occupancy");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.minOccupancy = 0; }), "min_occupancy");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.maxProbability = 0.5; }),
-               "maxProbability");
+               "max_probability");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.softLabelFloor = 0; }),
-               "softLabelFloor");
+               "soft_label_floor");
   EXPECT_EQ(refusal(1, [](FilterParameters& p) { p.accuracy = 0.5; }), "accepted");
   EXPECT_EQ(refusal(254, unchanged), "accepted");
 }

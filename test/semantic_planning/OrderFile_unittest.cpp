@@ -41,8 +41,8 @@ TEST_F(OrderFile, isStrictAboutClassesAndKeys) {
 }
 
 TEST_F(OrderFile, thoseOfTheRepositoryLoad) {
-  const std::filesystem::path plans = std::filesystem::path(MSO_SOURCE_DIR) / "config/plan";
+  const std::filesystem::path config = std::filesystem::path(MSO_SOURCE_DIR) / "config";
   semantic_types::ClassTable kitti;
   for (const char* name : {"road", "parking", "sidewalk", "terrain"}) kitti.add(name, {});
-  EXPECT_EQ(loadClassOrder(plans / "semantic_kitti.yaml", kitti).ranks(), 5);
+  EXPECT_EQ(loadClassOrder(config / "orders/semantic_kitti.yaml", kitti).ranks(), 5);
 }

@@ -27,7 +27,7 @@ class StreetPlan : public testing::Test {
     SKIP_WITHOUT_DATA("semantic_kitti");
     if (!s_street) readStreet();
     map.emplace(*s_street);
-    order.emplace(loadClassOrder(kConfig / "plan/semantic_kitti.yaml", map->classes()));
+    order.emplace(loadClassOrder(kConfig / "orders/semantic_kitti.yaml", map->classes()));
     map->setAbstraction(abstractionFor(*order));
   }
 
@@ -90,7 +90,7 @@ void recolor(semantic_octree::SemanticOcTree& map, const Ground& ground, const B
 }  // namespace
 
 TEST_F(StreetPlan, theWayThatTheCarDroveIsFreeForIt) {
-  options.vehicle = loadVehicle(kConfig / "plan/car.yaml");
+  options.vehicle = loadVehicle(kConfig / "vehicles/car.yaml");
   const SemanticPlanner planner(*map, *order, options);
   for (const Eigen::Isometry3d& T_map_sensor : s_driven) {
     const Eigen::Vector3d at = T_map_sensor.translation(), ahead = T_map_sensor.linear().col(0);
@@ -100,7 +100,7 @@ TEST_F(StreetPlan, theWayThatTheCarDroveIsFreeForIt) {
 }
 
 TEST_F(StreetPlan, aCarKeepsToTheRoadAndGoesAroundWhereItsLaneIsClosed) {
-  options.vehicle = loadVehicle(kConfig / "plan/car.yaml");
+  options.vehicle = loadVehicle(kConfig / "vehicles/car.yaml");
   SemanticPlanner planner(*map, *order, options);
   const PlanResult open = planner.plan(start, goal);
   ASSERT_TRUE(open.found()) << open.reason;
@@ -121,7 +121,7 @@ TEST_F(StreetPlan, aCarKeepsToTheRoadAndGoesAroundWhereItsLaneIsClosed) {
 }
 
 TEST_F(StreetPlan, whereTheWholeStreetIsClosedASmallRobotGoesAroundBetweenTheTrees) {
-  options.vehicle = loadVehicle(kConfig / "drive/robot.yaml");
+  options.vehicle = loadVehicle(kConfig / "vehicles/robot.yaml");
   options.roadmap.buffer = 12;
   SemanticPlanner planner(*map, *order, options);
   const PlanResult open = planner.plan(start, goal);

@@ -67,6 +67,6 @@ TEST_F(VehicleFile, isReadStrictly) {
 
 TEST_F(VehicleFile, thoseOfTheRepositoryLoad) {
   const std::filesystem::path config = std::filesystem::path(MSO_SOURCE_DIR) / "config";
-  EXPECT_GT(loadVehicle(config / "plan/car.yaml").turningRadius, 1);
-  EXPECT_GT(loadVehicle(config / "drive/robot.yaml").turningRadius, 1);
+  EXPECT_GT(loadVehicle(config / "vehicles/car.yaml").turningRadius, 1);
+  EXPECT_GT(loadVehicle(config / "vehicles/robot.yaml").turningRadius, 1);
 }

@@ -45,13 +45,13 @@ class Viewers : public StockApps {
   /** Leaves drive/drive.rawlog. */
   void driveFor(double seconds) const {
     folder.write("drive.ini",
-                 "[planner]\nvehicle = config/drive/robot.yaml\n[drive]\n"
+                 "[planner]\nvehicle = config/vehicles/robot.yaml\n[drive]\n"
                  "reactive = config/reactive/robot.ini\ntimeLimit = " +
                      std::to_string(seconds) + "\n");
     const CommandRun drive =
         run(MSO_BIN_DIR
             "/semantic-map-drive --start=-14,-19,10 --goal=-6,-17,20 "
-            "--classes config/plan/synthetic.yaml --config drive.ini --output drive "
+            "--classes config/orders/synthetic.yaml --config drive.ini --output drive "
             "--no-pictures");
     ASSERT_EQ(drive.status, 2) << drive.output;  // not arrived in so short a time
   }

@@ -119,10 +119,11 @@ TEST(Camera, badOptionsAreNamed) {
   EXPECT_NE(message([](auto& o) { o.height = 0; }).find("camera: height"), std::string::npos);
   EXPECT_NE(message([](auto& o) { o.horizontalFov = 180; }).find("camera: horizontalFov"),
             std::string::npos);
-  EXPECT_NE(message([](auto& o) { o.minRange = -1; }).find("camera: minRange"), std::string::npos);
-  EXPECT_NE(message([](auto& o) { o.maxRange = 0.2; }).find("camera: maxRange"), std::string::npos);
-  EXPECT_NE(message([](auto& o) { o.noise.label = 2; }).find("sensor noise: label"),
+  EXPECT_NE(message([](auto& o) { o.minRange = -1; }).find("CameraOptions::min_range"),
             std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.maxRange = 0.2; }).find("CameraOptions::max_range"),
+            std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.noise.label = 2; }).find("label_noise"), std::string::npos);
 }
 
 }  // namespace

@@ -73,10 +73,11 @@ TEST(Lidar, badOptionsAreNamed) {
   EXPECT_NE(message([](auto& o) { o.columns = 0; }).find("LiDAR: columns"), std::string::npos);
   EXPECT_NE(message([](auto& o) { o.lowest = 20; }).find("LiDAR: lowest"), std::string::npos);
   EXPECT_NE(message([](auto& o) { o.highest = 90; }).find("LiDAR: highest"), std::string::npos);
-  EXPECT_NE(message([](auto& o) { o.minRange = NAN; }).find("LiDAR: minRange"), std::string::npos);
-  EXPECT_NE(message([](auto& o) { o.maxRange = 0; }).find("LiDAR: maxRange"), std::string::npos);
-  EXPECT_NE(message([](auto& o) { o.noise.range = -1; }).find("sensor noise: range"),
+  EXPECT_NE(message([](auto& o) { o.minRange = NAN; }).find("LidarOptions::min_range"),
             std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.maxRange = 0; }).find("LidarOptions::max_range"),
+            std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.noise.range = -1; }).find("range_noise"), std::string::npos);
 }
 
 }  // namespace

@@ -116,15 +116,15 @@ TEST(SensorNoise, badSharesAreNamed) {
   EXPECT_EQ(messageOf([] {
               SensorNoise{-1, 0, 0}.validate();
             }),
-            "sensor noise: range is -1.000000, 0 m or more expected");
+            "SensorNoise::range_noise is -1, expected a number of 0 or more");
   EXPECT_EQ(messageOf([] {
               SensorNoise{0, 1.5, 0}.validate();
             }),
-            "sensor noise: label is 1.500000, 0 to 1 expected");
+            "SensorNoise::label_noise is 1.5, expected a number from 0 to 1");
   EXPECT_EQ(messageOf([] {
               SensorNoise{0, 0, NAN}.validate();
             }),
-            "sensor noise: dropout is nan, 0 to 1 expected");
+            "SensorNoise::dropout is nan, expected a number from 0 to 1");
 }
 
 }  // namespace

@@ -15,13 +15,18 @@ using mrpt::obs::CObservation;
 using mrpt::poses::CPose3D;
 using Time = Trajectory::Time;
 
+void CloudLabelerOptions::describe(strict_files::OptionList& list) {
+  using strict_files::atLeast;
+  list.add("tolerance", tolerance, "s", atLeast(0).orInfinite(),
+           "largest time between a scan and the picture that labels it");
+  list.add(
+      "occlusion_parallax", occlusionParallax, "pixels", atLeast(0),
+      "how far a point in front must shift against one behind it, between the sensor's and the "
+      "camera's view, to hide it; 0: nothing is hidden");
+}
+
 void CloudLabelerOptions::validate() const {
-  if (!(tolerance >= 0))
-    throw std::invalid_argument("cameras: tolerance = " + std::to_string(tolerance) +
-                                " s, must be 0 or more");
-  if (!(occlusionParallax >= 0))
-    throw std::invalid_argument("cameras: occlusionParallax = " +
-                                std::to_string(occlusionParallax) + " pixels, must be 0 or more");
+  strict_files::checkOptions(*this, "CloudLabelerOptions");
 }
 
 struct CloudLabeler::Picture {

@@ -55,10 +55,24 @@ std::string externalName(const CObservation& observation) {
 
 }  // namespace
 
+const strict_files::Choices<LabelFolderOptions::Match>& choicesOf(LabelFolderOptions::Match) {
+  using Match = LabelFolderOptions::Match;
+  static const strict_files::Choices<Match> choices = {{"time", Match::Time},
+                                                       {"name", Match::Name}};
+  return choices;
+}
+
+void LabelFolderOptions::describe(strict_files::OptionList& list) {
+  list.add("match", match, "",
+           "how label images are found: their names are times, or those of the observations' own "
+           "images");
+  list.add("tolerance", tolerance, "s", strict_files::atLeast(0).orInfinite(),
+           "largest difference to the observation's time");
+  list.add("image", view, "", "which image of a depth and color camera the labels belong to");
+}
+
 void LabelFolderOptions::validate() const {
-  if (!(tolerance >= 0))
-    throw std::invalid_argument("label folder: tolerance = " + std::to_string(tolerance) +
-                                " s, must be 0 or more");
+  strict_files::checkOptions(*this, "LabelFolderOptions");
 }
 
 LabelFolder::LabelFolder(const fs::path& folder, const semantic_types::ClassTable& table,

@@ -4,6 +4,13 @@
 
 namespace labeled_cloud {
 
+const strict_files::Choices<LabelImage::View>& choicesOf(LabelImage::View) {
+  using View = LabelImage::View;
+  static const strict_files::Choices<View> choices = {{"depth", View::Depth},
+                                                      {"color", View::Color}};
+  return choices;
+}
+
 using semantic_types::ClassId;
 using semantic_types::kNoClass;
 

@@ -99,11 +99,21 @@ void soften(int numClasses, LabeledCloud& cloud, Write write) {
 
 }  // namespace
 
-void LabelModel::validate() const {
-  if (!(minConfidence >= 0 && minConfidence <= 1))
-    throw std::invalid_argument("labels: minConfidence = " + std::to_string(minConfidence) +
-                                ", must be in [0, 1]");
+const strict_files::Choices<LabelModel::Kind>& choicesOf(LabelModel::Kind) {
+  using Kind = LabelModel::Kind;
+  static const strict_files::Choices<Kind> choices = {{"soft", Kind::Soft}, {"hard", Kind::Hard}};
+  return choices;
 }
+
+void LabelModel::describe(strict_files::OptionList& list) {
+  list.add("kind", kind, "",
+           "whether labels are probabilities where they can be, or the likeliest class is all that "
+           "counts");
+  list.add("min_confidence", minConfidence, "", strict_files::between(0, 1),
+           "labels that are less sure are none");
+}
+
+void LabelModel::validate() const { strict_files::checkOptions(*this, "LabelModel"); }
 
 void LabelModel::apply(int numClasses, const std::vector<float>& confidences,
                        LabeledCloud& cloud) const {

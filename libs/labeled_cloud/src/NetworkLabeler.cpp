@@ -13,21 +13,6 @@ namespace labeled_cloud {
 
 using mrpt::obs::CObservation;
 
-void NetworkOptions::validate() const {
-  const auto require = [](bool ok, const char* field, double value, const char* expected) {
-    if (!ok)
-      throw std::invalid_argument(std::string("network: ") + field + " = " + std::to_string(value) +
-                                  ", expected " + expected);
-  };
-  require(width > 0, "width", width, "1 or more");
-  require(height > 0, "height", height, "1 or more");
-  require(scale > 0, "scale", scale, "more than 0");
-  for (const double d : deviation) require(d > 0, "std", d, "more than 0");
-  require(minConfidence >= 0 && minConfidence <= 1, "min_confidence", minConfidence, "0 to 1");
-  require(batch >= 1, "batch", batch, "1 or more");
-  require(!classes.empty(), "number of classes", 0, "1 or more");
-}
-
 struct NetworkLabeler::Network {
   std::filesystem::path file;
   int numClasses;

@@ -8,6 +8,12 @@
 namespace labeled_cloud {
 
 using semantic_types::ClassTable;
+using strict_files::above;
+using strict_files::atLeast;
+using strict_files::between;
+using strict_files::Choices;
+using strict_files::OptionList;
+using strict_files::require;
 
 namespace {
 
@@ -17,62 +23,93 @@ std::set<std::string> knownKeys() {
   return keys;
 }
 
-/** Three numbers, one for each channel. */
-void readChannels(const strict_files::StrictYaml& yaml, const YAML::Node& node,
-                  const std::string& field, std::array<double, 3>& values) {
-  if (!node) return;
-  const Eigen::Vector3d found = yaml.point(node, field);
-  values = {found[0], found[1], found[2]};
-}
-
-void readInput(const strict_files::StrictYaml& yaml, const YAML::Node& node,
-               NetworkOptions& options) {
-  yaml.checkKeys(node, {"width", "height", "fit", "channels", "scale", "mean", "std", "name"});
-  options.width = yaml.value<int>(yaml.required(node, "width"), "width: pixels");
-  options.height = yaml.value<int>(yaml.required(node, "height"), "height: pixels");
-  using Fit = NetworkOptions::Fit;
-  using Channels = NetworkOptions::Channels;
-  if (node["fit"])
-    options.fit =
-        yaml.choice<Fit>(node["fit"], "fit", {{"stretch", Fit::Stretch}, {"width", Fit::Width}});
-  if (node["channels"])
-    options.channels = yaml.choice<Channels>(node["channels"], "channels",
-                                             {{"rgb", Channels::Rgb}, {"bgr", Channels::Bgr}});
-  if (node["scale"]) options.scale = yaml.number(node["scale"], "scale");
-  readChannels(yaml, node["mean"], "mean", options.mean);
-  readChannels(yaml, node["std"], "std", options.deviation);
-  if (node["name"]) options.input = yaml.text(node["name"], "name");
-}
-
-void readOutput(const strict_files::StrictYaml& yaml, const YAML::Node& node,
-                NetworkOptions& options) {
-  if (!node) return;
-  yaml.checkKeys(node, {"name", "content", "labels", "min_confidence"});
-  using Content = NetworkOptions::Content;
-  using Labels = NetworkOptions::Labels;
-  if (node["name"]) options.output = yaml.text(node["name"], "name");
-  if (node["content"])
-    options.content = yaml.choice<Content>(node["content"], "content",
-                                           {{"scores", Content::Scores},
-                                            {"probabilities", Content::Probabilities},
-                                            {"ids", Content::Ids}});
-  if (node["labels"])
-    options.labels = yaml.choice<Labels>(
-        node["labels"], "labels", {{"softmax", Labels::Softmax}, {"argmax", Labels::Argmax}});
-  if (node["min_confidence"])
-    options.minConfidence = yaml.number(node["min_confidence"], "min_confidence");
+/** Reads a map whose keys are the options of a list. */
+void readAll(const strict_files::StrictYaml& yaml, const YAML::Node& node,
+             const strict_files::OptionList& list) {
+  const std::vector<std::string> names = list.names();
+  yaml.checkKeys(node, {names.begin(), names.end()});
+  yaml.read(node, list);
 }
 
 }  // namespace
+
+const Choices<NetworkOptions::Fit>& choicesOf(NetworkOptions::Fit) {
+  using Fit = NetworkOptions::Fit;
+  static const Choices<Fit> choices = {{"stretch", Fit::Stretch}, {"width", Fit::Width}};
+  return choices;
+}
+
+const Choices<NetworkOptions::Channels>& choicesOf(NetworkOptions::Channels) {
+  using Channels = NetworkOptions::Channels;
+  static const Choices<Channels> choices = {{"rgb", Channels::Rgb}, {"bgr", Channels::Bgr}};
+  return choices;
+}
+
+const Choices<NetworkOptions::Content>& choicesOf(NetworkOptions::Content) {
+  using Content = NetworkOptions::Content;
+  static const Choices<Content> choices = {{"scores", Content::Scores},
+                                           {"probabilities", Content::Probabilities},
+                                           {"ids", Content::Ids}};
+  return choices;
+}
+
+const Choices<NetworkOptions::Labels>& choicesOf(NetworkOptions::Labels) {
+  using Labels = NetworkOptions::Labels;
+  static const Choices<Labels> choices = {{"softmax", Labels::Softmax}, {"argmax", Labels::Argmax}};
+  return choices;
+}
+
+void NetworkOptions::describeInput(OptionList& list) {
+  list.add("width", width, "pixels", atLeast(1), "of the input; must be given");
+  list.add("height", height, "pixels", atLeast(1), "of the input; must be given");
+  list.add("fit", fit, "",
+           "stretch: to the input's size; width: scaled to its width, top rows are cut off, or the "
+           "last row is repeated below");
+  list.add("channels", channels, "", "their order");
+  list.add("scale", scale, "", above(0), "each channel is (value * scale - mean) / std");
+  list.add("mean", mean, "", "of each channel");
+  list.add("std", deviation, "", "of each channel, above 0");
+  list.add("name", input, "", "of the layer; may be left out if there is only one");
+}
+
+void NetworkOptions::describeOutput(OptionList& list) {
+  list.add("name", output, "", "of the layer; may be left out if there is only one");
+  list.add("content", content, "",
+           "a plane of scores or of probabilities for each class, or one of numbers of `classes` "
+           "from 0");
+  list.add("labels", labels, "", "class probabilities, or the likeliest class");
+  list.add("min_confidence", minConfidence, "", between(0, 1), "pixels less sure have no class");
+}
+
+void NetworkOptions::describe(OptionList& list) {
+  list.add("batch", batch, "", atLeast(1),
+           "images that go through the network at once, where so many are waiting");
+}
+
+void NetworkOptions::validate() const {
+  NetworkOptions copy = *this;
+  OptionList inputs, outputs, others;
+  copy.describeInput(inputs);
+  copy.describeOutput(outputs);
+  copy.describe(others);
+  for (const OptionList* list : {&inputs, &outputs, &others}) checkAll(*list, "NetworkOptions");
+  for (const double d : deviation) require(d > 0, "NetworkOptions::std", d, "a number above 0");
+  require(!classes.empty(), "number of classes", 0, "1 or more");
+}
 
 NetworkOptions loadNetworkOptions(const std::filesystem::path& file, const ClassTable& table) {
   const strict_files::StrictYaml yaml(file);
   yaml.checkKeys(yaml.root(), knownKeys());
   NetworkOptions options;
-  readInput(yaml, yaml.required(yaml.root(), "input"), options);
-  readOutput(yaml, yaml.root()["output"], options);
-  if (const YAML::Node batch = yaml.root()["batch"])
-    options.batch = yaml.value<int>(batch, "batch: a number of images");
+  OptionList inputs, outputs, others;
+  options.describeInput(inputs);
+  options.describeOutput(outputs);
+  options.describe(others);
+  const YAML::Node input = yaml.required(yaml.root(), "input");
+  readAll(yaml, input, inputs);
+  for (const char* key : {"width", "height"}) yaml.required(input, key);
+  if (const YAML::Node output = yaml.root()["output"]) readAll(yaml, output, outputs);
+  yaml.read(yaml.root(), others);
   options.classes = namedClasses(yaml, table);
   try {
     options.validate();

@@ -75,17 +75,24 @@ void addUnlabeled(const CObservation& observation, LabeledScan& scan) {
 
 }  // namespace
 
+void ScanConverterOptions::describe(strict_files::OptionList& list) {
+  using strict_files::atLeast;
+  list.add(
+      "decimation", decimation, "pixels", atLeast(1),
+      "depth images: one point, the nearest, for a block of so many squared; 2 to 4 for VGA and "
+      "more");
+  list.add("flying_pixel_threshold", flyingPixelThreshold, "", atLeast(0).below(1),
+           "depth images: leaves out pixels that hang in the air at depth edges, farther from both "
+           "sides than this share of their depth (0.02); 0: keeps all");
+  list.add(
+      "occlusion_parallax", occlusionParallax, "pixels", atLeast(0),
+      "depth images with labels in another camera's image: how far a point in front must shift "
+      "against one behind it, between the views, to hide it; 0: nothing is hidden");
+  labels.describe(list);
+}
+
 void ScanConverterOptions::validate() const {
-  if (decimation < 1)
-    throw std::invalid_argument("scan converter: decimation = " + std::to_string(decimation) +
-                                ", must be 1 or more");
-  if (!(flyingPixelThreshold >= 0 && flyingPixelThreshold < 1))
-    throw std::invalid_argument("scan converter: flyingPixelThreshold = " +
-                                std::to_string(flyingPixelThreshold) + ", must be in [0, 1)");
-  if (!(occlusionParallax >= 0))
-    throw std::invalid_argument("scan converter: occlusionParallax = " +
-                                std::to_string(occlusionParallax) + " pixels, must be 0 or more");
-  labels.validate();
+  strict_files::checkOptions(*this, "ScanConverterOptions");
 }
 
 ScanConverter::ScanConverter(const ClassTable& table, const ScanConverterOptions& options,

@@ -27,6 +27,28 @@ double millisecondsSince(std::chrono::steady_clock::time_point begin) {
 
 }  // namespace
 
+const strict_files::Choices<ScanStreamOptions::OnProblem>& choicesOf(ScanStreamOptions::OnProblem) {
+  using OnProblem = ScanStreamOptions::OnProblem;
+  static const strict_files::Choices<OnProblem> choices = {{"stop", OnProblem::Stop},
+                                                           {"skip", OnProblem::Skip}};
+  return choices;
+}
+
+const strict_files::Choices<ScanStreamOptions::Unlabeled>& choicesOf(ScanStreamOptions::Unlabeled) {
+  using Unlabeled = ScanStreamOptions::Unlabeled;
+  static const strict_files::Choices<Unlabeled> choices = {{"occupancy", Unlabeled::Occupancy},
+                                                           {"skip", Unlabeled::Skip}};
+  return choices;
+}
+
+void ScanStreamOptions::describe(strict_files::OptionList& list) {
+  list.add("on_problem", onProblem, "", "what to do about an observation that cannot be used");
+  list.add("unlabeled", unlabeled, "",
+           "what becomes of a scan without any label: it counts for occupancy, or is left out");
+  list.add("pictures_every", picturesEvery, "",
+           "every so-manieth scan comes with the pictures that its labels are from; 0: none");
+}
+
 ScanStream::ScanStream(std::vector<fs::path> rawlogs, ScanConverter& converter,
                        const Trajectory& trajectory, CloudLabeler* labeler,
                        const ScanStreamOptions& options)
@@ -145,7 +167,7 @@ void ScanStream::convert(const CObservation& observation, StreamedObservation& r
   result.milliseconds = millisecondsSince(begin);
   if (scan.cloud.empty())
     result.skipped = "without a point of usable range";
-  else if (scan.counts.labeled == 0 && !m_options.withoutLabels)
+  else if (scan.counts.labeled == 0 && m_options.unlabeled == ScanStreamOptions::Unlabeled::Skip)
     result.skipped = "without labels";
   else
     result.scan = std::move(scan), ++m_scans;

@@ -28,14 +28,16 @@ CPose3D interpolate(const CPose3D& a, const CPose3D& b, double fraction) {
 
 }  // namespace
 
-void TrajectoryOptions::validate() const {
-  if (!(tolerance >= 0))
-    throw std::invalid_argument("trajectory: tolerance = " + std::to_string(tolerance) +
-                                " s, must be 0 or more");
-  if (!(maxGap > 0))
-    throw std::invalid_argument("trajectory: maxGap = " + std::to_string(maxGap) +
-                                " s, must be above 0");
+void TrajectoryOptions::describe(strict_files::OptionList& list) {
+  using strict_files::above;
+  using strict_files::atLeast;
+  list.add("tolerance", tolerance, "s", atLeast(0).orInfinite(),
+           "how far outside the trajectory its first or last pose still holds");
+  list.add("max_gap", maxGap, "s", above(0).orInfinite(),
+           "poses farther apart are not interpolated between");
 }
+
+void TrajectoryOptions::validate() const { strict_files::checkOptions(*this, "TrajectoryOptions"); }
 
 Trajectory::Trajectory(const TrajectoryOptions& options) : m_options(options) {
   m_options.validate();

@@ -22,12 +22,6 @@ using semantic_types::ClassId;
 
 namespace {
 
-void require(bool fine, const char* what, double value, const char* expected) {
-  if (!fine)
-    throw std::invalid_argument(std::string("grid: ") + what + " is " + std::to_string(value) +
-                                ", expected " + expected);
-}
-
 /** What is between `low` and `high` above the ground of each column. */
 class Band {
  public:
@@ -88,17 +82,24 @@ class Band {
 
 }  // namespace
 
+void GridOptions::describe(strict_files::OptionList& list) {
+  list.add("low", low, "m", "what lies that far above the ground obstructs");
+  list.add("high", high, "m", "what lies above this height does not, more than low");
+  list.add("window", window, "m", strict_files::between(0, 1000),
+           "what is narrower and stands out of its surroundings is no ground: wider than cars, "
+           "narrower than hills");
+  list.add("floor", floor, "m", strict_files::Range(), "height of a ground that is flat");
+}
+
 void GridOptions::validate() const {
-  require(std::isfinite(low), "low", low, "a number");
-  require(high > low, "high", high, "more than low");
-  require(window >= 0 && window <= 1000, "window", window, "0 to 1000 m");
-  require(!floor || std::isfinite(*floor), "floor", floor.value_or(0), "a number");
+  strict_files::checkOptions(*this, "GridOptions");
+  strict_files::require(high > low, "GridOptions::high", high, "more than low");
 }
 
 COccupancyGridMap2D gridOf(const SemanticOcTree& tree, const GridOptions& options) {
   options.validate();
   for (const ClassId id : options.ground)
-    require(tree.classes().contains(id), "ground", id, "a class of the map");
+    strict_files::require(tree.classes().contains(id), "ground", id, "a class of the map");
   const ExportColumns columns(tree, false);
   const Band band(tree, columns, options);
   const double left = columns.upperLeft().x, top = columns.upperLeft().y;

@@ -3,6 +3,7 @@
 
 #include <istream>
 #include <ostream>
+#include <stdexcept>
 
 #include "ArchiveStream.h"
 
@@ -12,7 +13,7 @@ namespace semantic_map {
 
 using mrpt::serialization::CArchive;
 
-uint8_t CSemanticOctoMap::serializeGetVersion() const { return 1; }
+uint8_t CSemanticOctoMap::serializeGetVersion() const { return 2; }
 
 void CSemanticOctoMap::serializeTo(CArchive& out) const {
   out << genericMapParams;
@@ -27,7 +28,12 @@ void CSemanticOctoMap::serializeTo(CArchive& out) const {
 }
 
 void CSemanticOctoMap::serializeFrom(CArchive& in, uint8_t version) {
-  if (version != 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version == 1)
+    throw std::runtime_error(
+        "a semantic octree map as version 0.1.0 archived it in its early days, without the names "
+        "of "
+        "its options: load its .semantic file instead");
+  if (version != 2) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   mrpt::maps::TMapGenericParams generic;
   TInsertionOptions insertion;
   TLikelihoodOptions likelihood;

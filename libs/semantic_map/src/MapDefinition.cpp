@@ -5,6 +5,7 @@
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MrptVersion.h>
 #include <semantic_types/ClassTableFile.h>
+#include <strict_files/IniSection.h>
 
 #include <algorithm>
 #include <ostream>
@@ -29,19 +30,12 @@ constexpr const char* kRendering = "_renderOpts";
 
 /** A misspelled section would leave all of its options at their defaults, unnoticed. */
 void refuseUnknownSections(const CConfigFileBase& source, const std::string& prefix) {
-  std::vector<std::string> sections;
+  std::vector<std::string> sections, known;
+  for (const char* end : {kCreation, kInsertion, kLikelihood, kAbstraction, kRendering})
+    known.push_back(prefix + end);
   source.getAllSections(sections);
-  for (const std::string& section : sections) {
-    if (!mrpt::system::strStartsI(section, prefix + "_")) continue;
-    const std::string end = section.substr(prefix.size());
-    const auto is = [&end](const char* known) { return mrpt::system::strCmpI(end, known); };
-    if (!is(kCreation) && !is(kInsertion) && !is(kLikelihood) && !is(kAbstraction) &&
-        !is(kRendering))
-      throw std::runtime_error(
-          "[" + section + "] unknown section; known are " + prefix +
-          "_creationOpts, ..._insertOpts, ..._likelihoodOpts, ..._abstractionOpts, "
-          "..._renderOpts");
-  }
+  for (const std::string& section : sections)
+    if (mrpt::system::strStartsI(section, prefix + "_")) strict_files::checkSection(section, known);
 }
 
 /** "Maps_semanticOctoMap_00" in its parts; empty if it is not made so, as MRPT makes it. */

@@ -2,20 +2,22 @@
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_map/MapOptions.h>
 #include <strict_files/IniSection.h>
+#include <strict_files/Words.h>
 
-#include <algorithm>
-#include <cmath>
 #include <ostream>
 #include <stdexcept>
-
-#include "OptionFields.h"
-#include "OptionText.h"
 
 namespace semantic_map {
 
 using mrpt::config::CConfigFileBase;
 using mrpt::serialization::CArchive;
+using strict_files::above;
+using strict_files::atLeast;
+using strict_files::between;
+using strict_files::checkOptions;
 using strict_files::IniSection;
+using strict_files::Option;
+using strict_files::OptionList;
 
 namespace {
 
@@ -28,38 +30,12 @@ std::vector<std::string> foreignKeys(const Other&) {
   return {};
 }
 
-/** Enumerations as one byte, numbers as they are. */
-template <class Value>
-void writeValue(CArchive& out, const Value& value) {
-  if constexpr (std::is_enum_v<Value>)
-    out.WriteAs<std::uint8_t>(static_cast<int>(value));
-  else if constexpr (std::is_same_v<Value, int>)
-    out.WriteAs<std::int32_t>(value);
-  else
-    out << value;
+template <class Derived>
+OptionList listOf(Derived& options) {
+  OptionList list;
+  options.describe(list);
+  return list;
 }
-
-template <class Value>
-void readValue(CArchive& in, Value& value) {
-  if constexpr (std::is_enum_v<Value>) {
-    const std::size_t number = in.ReadAs<std::uint8_t>();
-    if (number >= namesOf(value).size())
-      throw std::runtime_error("there is no value " + std::to_string(number));
-    value = static_cast<Value>(number);
-  } else if constexpr (std::is_same_v<Value, int>) {
-    value = in.ReadAs<std::int32_t>();
-  } else {
-    in >> value;
-  }
-}
-
-void require(bool fine, const char* option, double value, const char* expected) {
-  if (!fine)
-    throw std::invalid_argument(std::string(option) + " is " + formatOption(value) + ", expected " +
-                                expected);
-}
-
-bool isProbability(double p) { return p >= 0 && p <= 1; }
 
 }  // namespace
 
@@ -68,15 +44,7 @@ void TNamedOptions<Derived>::loadFromConfigFile(const CConfigFileBase& source,
                                                 const std::string& section) {
   Derived loaded = static_cast<Derived&>(*this);
   IniSection ini(source, section);
-  OptionFields<Derived>::visit(loaded, [&ini](const char* key, auto& value, const char*) {
-    const auto text = ini.text(key);
-    if (!text) return;
-    try {
-      parseOption(*text, value);
-    } catch (const std::invalid_argument& expected) {
-      ini.fail(std::string(key) + " is '" + *text + "', expected " + expected.what());
-    }
-  });
+  ini.read(listOf(loaded));
   for (const std::string& key : foreignKeys(loaded)) ini.text(key);
   ini.finish();
   try {
@@ -90,58 +58,104 @@ void TNamedOptions<Derived>::loadFromConfigFile(const CConfigFileBase& source,
 template <class Derived>
 void TNamedOptions<Derived>::saveToConfigFile(CConfigFileBase& target,
                                               const std::string& section) const {
-  OptionFields<Derived>::visit(static_cast<const Derived&>(*this),
-                               [&](const char* key, const auto& value, const char* explanation) {
-                                 // No padding, which MRPT would take for a part of the key.
-                                 target.write(section, key, formatOption(value), -1, -1,
-                                              explanation);
-                               });
+  Derived copy = static_cast<const Derived&>(*this);
+  for (const Option& option : listOf(copy).options())
+    // No padding, which MRPT would take for a part of the key.
+    target.write(section, option.name, option.text(), -1, -1, option.help);
 }
 
 template <class Derived>
 void TNamedOptions<Derived>::dumpToTextStream(std::ostream& out) const {
-  OptionFields<Derived>::visit(static_cast<const Derived&>(*this),
-                               [&](const char* key, const auto& value, const char* explanation) {
-                                 out << "  " << key << " = " << formatOption(value) << "  // "
-                                     << explanation << "\n";
-                               });
+  Derived copy = static_cast<const Derived&>(*this);
+  for (const Option& option : listOf(copy).options())
+    out << "  " << option.name << " = " << option.text() << "  // " << option.help << "\n";
 }
 
 template <class Derived>
 void TNamedOptions<Derived>::writeTo(CArchive& out) const {
-  OptionFields<Derived>::visit(
-      static_cast<const Derived&>(*this),
-      [&out](const char*, const auto& value, const char*) { writeValue(out, value); });
+  Derived copy = static_cast<const Derived&>(*this);
+  const OptionList list = listOf(copy);
+  out.WriteAs<std::uint32_t>(list.options().size());
+  for (const Option& option : list.options()) out << option.name << option.text();
 }
 
 template <class Derived>
 void TNamedOptions<Derived>::readFrom(CArchive& in) {
-  Derived read = static_cast<Derived&>(*this);
-  OptionFields<Derived>::visit(
-      read, [&in](const char*, auto& value, const char*) { readValue(in, value); });
+  Derived read;
+  const OptionList list = listOf(read);
+  for (auto left = in.ReadAs<std::uint32_t>(); left > 0; --left) {
+    std::string name, text;
+    in >> name >> text;
+    const Option* option = list.find(name);
+    if (!option) throw std::runtime_error(strict_files::unknownWord("option", name, list.names()));
+    try {
+      option->set(text);
+    } catch (const std::invalid_argument& e) {
+      throw std::runtime_error(name + " " + e.what());
+    }
+  }
   read.validate();
   static_cast<Derived&>(*this) = read;
 }
 
-void TCreationOptions::validate() const {
-  require(std::isfinite(resolution) && resolution > 0, "resolution", resolution, "more than 0 m");
+void TCreationOptions::describe(OptionList& list) {
+  list.add(
+      "resolution", resolution, "m", above(0),
+      "edge of a voxel; half of it is eight times the memory. 0.2 for streets and LiDARs, 0.05 "
+      "for rooms");
+  list.add(
+      "classes", classes, "",
+      "class table (YAML); without: a single class, \"occupied\". Relative to the .ini file for "
+      "our programs, to the working directory for MRPT's");
 }
 
-void TInsertionOptions::validate() const {
-  scan.validate();
-  conversion.validate();
+void TCreationOptions::validate() const { checkOptions(*this, "TCreationOptions"); }
+
+void TInsertionOptions::describe(OptionList& list) {
+  scan.describe(list);
+  conversion.describe(list);
+  filter.describe(list);
 }
 
-void TLikelihoodOptions::validate() const {
-  require(decimation >= 1, "decimation", decimation, "1 or more");
-  require(std::isfinite(beamStep) && beamStep >= 0, "beamStep", beamStep, "0 or more m");
-  require(pointWeight > 0 && pointWeight <= 1, "pointWeight", pointWeight, "above 0, up to 1");
+void TInsertionOptions::validate() const { checkOptions(*this, "TInsertionOptions"); }
+
+void TLikelihoodOptions::describe(OptionList& list) {
+  list.add("decimation", decimation, "", atLeast(1), "one of that many points counts");
+  list.add("use_labels", useLabels, "", "compare classes too, not only occupancy");
+  list.add("beam_step", beamStep, "m", atLeast(0),
+           "between the places where a beam is seen to pass; 0: only its end counts");
+  list.add("point_weight", pointWeight, "", above(0).upTo(1),
+           "factor on each point's log-likelihood, for neighbors are not independent");
+}
+
+void TLikelihoodOptions::validate() const { checkOptions(*this, "TLikelihoodOptions"); }
+
+const strict_files::Choices<TRenderingOptions::Coloring>& choicesOf(TRenderingOptions::Coloring) {
+  using Coloring = TRenderingOptions::Coloring;
+  static const strict_files::Choices<Coloring> choices = {{"class", Coloring::Class},
+                                                          {"probability", Coloring::Probability},
+                                                          {"height", Coloring::Height},
+                                                          {"entropy", Coloring::Entropy}};
+  return choices;
+}
+
+void TRenderingOptions::describe(OptionList& list) {
+  const auto anything = strict_files::Range().orInfinite();
+  list.add("coloring", coloring, "", "what the colors of cells show");
+  list.add("occupied", occupied, "", "show occupied cells");
+  list.add("free", free, "", "show free cells");
+  list.add("compressed", compressed, "", "show the optimal abstraction, where one is kept");
+  list.add("min_occupancy", minOccupancy, "", between(0, 1), "above it, cells are occupied");
+  list.add("min_probability", minProbability, "", between(0, 1),
+           "of the likeliest class of the occupied cells that are shown");
+  list.add("min_height", minHeight, "m", anything, "lower cells are left out");
+  list.add("max_height", maxHeight, "m", anything, "higher cells are left out");
 }
 
 void TRenderingOptions::validate() const {
-  require(isProbability(minOccupancy), "minOccupancy", minOccupancy, "0 to 1");
-  require(isProbability(minProbability), "minProbability", minProbability, "0 to 1");
-  require(minHeight <= maxHeight, "minHeight", minHeight, "at most maxHeight");
+  checkOptions(*this, "TRenderingOptions");
+  strict_files::require(minHeight <= maxHeight, "TRenderingOptions::min_height", minHeight,
+                        "at most max_height");
 }
 
 template class TNamedOptions<TCreationOptions>;

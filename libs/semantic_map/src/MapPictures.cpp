@@ -7,29 +7,34 @@
 #include <stdexcept>
 
 namespace semantic_map {
-namespace {
 
-void require(bool fine, const char* what, double value, const char* expected) {
-  if (!fine)
-    throw std::invalid_argument(std::string("picture: ") + what + " is " + std::to_string(value) +
-                                ", expected " + expected);
-}
+using strict_files::above;
+using strict_files::atLeast;
+using strict_files::between;
+using strict_files::checkOptions;
+using strict_files::OptionList;
 
-}  // namespace
-
-void PictureStyle::validate() const {
+void PictureStyle::describe(OptionList& list) {
   constexpr int kMost = 16384;
-  require(width >= 200 && width <= kMost, "width", width, "200 to 16384 pixels");
-  require(height >= 200 && height <= kMost, "height", height, "200 to 16384 pixels");
-  require(minOccupancy >= 0 && minOccupancy < 1, "minOccupancy", minOccupancy, "0 to less than 1");
-  require(!maxHeight || !std::isnan(*maxHeight), "maxHeight", maxHeight.value_or(0), "a number");
+  list.add("width", width, "pixels", between(200, kMost), "of the picture without its legend");
+  list.add("height", height, "pixels", between(200, kMost), "of the picture");
+  list.add("legend", legend, "", "names and colors of the classes");
+  list.add("title", title, "", "written above the legend");
+  list.add("max_height", maxHeight, "m", strict_files::Range().orInfinite(),
+           "higher cells are not drawn; none: all but the ceiling of an indoor map");
+  list.add("min_occupancy", minOccupancy, "", atLeast(0).below(1), "above it, cells are occupied");
 }
 
-void Viewpoint::validate() const {
-  require(std::isfinite(heading), "heading", heading, "a finite angle");
-  require(tilt > 0 && tilt <= 90, "tilt", tilt, "above 0, up to 90 degrees");
-  require(std::isfinite(zoom) && zoom > 0, "zoom", zoom, "above 0");
+void PictureStyle::validate() const { checkOptions(*this, "PictureStyle"); }
+
+void Viewpoint::describe(OptionList& list) {
+  list.add("heading", heading, "degrees",
+           "direction in which the perspective looks, from +x towards +y");
+  list.add("tilt", tilt, "degrees", above(0).upTo(90), "how far it looks down");
+  list.add("zoom", zoom, "", above(0), "above 1: nearer than what shows the whole map");
 }
+
+void Viewpoint::validate() const { checkOptions(*this, "Viewpoint"); }
 
 void savePicture(const cv::Mat& picture, const std::filesystem::path& file) {
   std::vector<std::uint8_t> png;

@@ -7,12 +7,6 @@
 namespace semantic_octree {
 namespace {
 
-void require(bool ok, const char* field, double value, const char* expected) {
-  if (!ok)
-    throw std::invalid_argument(std::string("filter: ") + field + " = " + std::to_string(value) +
-                                ", expected " + expected);
-}
-
 /** Floats are put on the grid, doubles stay as they are. */
 template <typename Real>
 Real rounded(double x) {
@@ -23,30 +17,6 @@ Real rounded(double x) {
 double logit(double p) { return std::log(p / (1 - p)); }
 
 }  // namespace
-
-void FilterParameters::validate(int numClasses) const {
-  const auto inside = [](double p) { return p > 0 && p < 1; };
-  require(numClasses >= 1 && numClasses <= semantic_types::kMaxClasses, "number of classes",
-          numClasses, "1 to 254");
-  require(inside(minOccupancy) && minOccupancy < 0.5, "minOccupancy", minOccupancy,
-          "a probability below 0.5");
-  require(inside(maxProbability) && maxProbability > 0.5, "maxProbability", maxProbability,
-          "a probability above 0.5");
-  require(inside(softLabelFloor), "softLabelFloor", softLabelFloor, "a probability");
-  if (increments == Increments::Ssmi) return;
-  require(inside(hitProbability), "hitProbability", hitProbability, "a probability");
-  require(inside(falseAlarmProbability) && falseAlarmProbability < hitProbability,
-          "falseAlarmProbability", falseAlarmProbability, "a probability below hitProbability");
-  require(inside(accuracy) && (numClasses == 1 || accuracy * numClasses > 1), "accuracy", accuracy,
-          "a probability above 1 / number of classes");
-}
-
-bool FilterParameters::operator==(const FilterParameters& o) const {
-  return increments == o.increments && accuracy == o.accuracy &&
-         hitProbability == o.hitProbability && falseAlarmProbability == o.falseAlarmProbability &&
-         minOccupancy == o.minOccupancy && maxProbability == o.maxProbability &&
-         softLabelFloor == o.softLabelFloor;
-}
 
 template <typename Real, int Named>
 ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)

@@ -64,20 +64,6 @@ class Comparison {
 
 }  // namespace
 
-void InsertionOptions::validate() const {
-  const auto require = [](bool ok, const char* name, double value, const char* expected) {
-    if (!ok)
-      throw std::invalid_argument(std::string("insertion: ") + name + " = " +
-                                  std::to_string(value) + ", expected " + expected);
-  };
-  require(maxRange >= 0 && std::isfinite(maxRange), "maxRange", maxRange,
-          "meters, or 0 for no limit");
-  require(minRange >= 0 && std::isfinite(minRange), "minRange", minRange, "meters, or 0");
-  require(carvingMargin >= 0 && std::isfinite(carvingMargin), "carvingMargin", carvingMargin,
-          "meters, or 0");
-  require(threads >= 1 && threads <= 256, "threads", threads, "1 to 256");
-}
-
 SemanticOcTree::SemanticOcTree(double voxelSize, ClassTable classes, const FilterParameters& filter)
     : Base(positive(voxelSize)),
       m_classes(std::move(classes)),

@@ -2,10 +2,22 @@
 #include <strict_files/Words.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 
 namespace strict_files {
+
+namespace {
+
+bool sameButCase(const std::string& a, const std::string& b) {
+  const auto same = [](unsigned char x, unsigned char y) {
+    return std::tolower(x) == std::tolower(y);
+  };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
+}
+
+}  // namespace
 
 std::optional<std::string> IniSection::text(const std::string& key) {
   m_known.push_back(key);
@@ -38,7 +50,7 @@ void IniSection::read(const std::string& key, std::string& value) {
 
 void IniSection::read(const std::string& key, double& value) {
   OptionList list;
-  list.add(key.c_str(), value, "", {-INFINITY, INFINITY, true, true}, "");
+  list.add(key.c_str(), value, "", Range().orInfinite(), "");
   read(list);
 }
 
@@ -57,6 +69,15 @@ void IniSection::finish() const {
     const auto same = [&key = key](const std::string& known) { return sameWord(known, key); };
     if (std::none_of(m_known.begin(), m_known.end(), same)) fail(unknownWord("key", key, m_known));
   }
+}
+
+void checkSection(const std::string& section, const std::vector<std::string>& known) {
+  for (const std::string& name : known) {
+    const bool isPrefix = !name.empty() && name.back() == '*';
+    const std::size_t length = isPrefix ? name.size() - 1 : std::max(name.size(), section.size());
+    if (sameButCase(section.substr(0, length), name.substr(0, length))) return;
+  }
+  throw std::runtime_error("[" + section + "] " + unknownWord("section", section, known));
 }
 
 }  // namespace strict_files

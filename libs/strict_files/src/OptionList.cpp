@@ -18,16 +18,22 @@ namespace {
 std::string inWords(const Range& range, bool whole) {
   const bool low = std::isfinite(range.low) && range.low > -0x1p31;
   const bool high = std::isfinite(range.high) && range.high < 0x1p31 - 1;
-  const std::string number = whole ? "a whole number" : "a number";
-  if (low && high) return number + " from " + textOf(range.low) + " to " + textOf(range.high);
-  if (low && range.withLow) return number + " of " + textOf(range.low) + " or more";
-  if (low) return number + " above " + textOf(range.low);
-  return high ? number + " of at most " + textOf(range.high) : number;
+  std::string words = whole ? "a whole number" : "a number";
+  if (low && !range.withLow) words += " above " + textOf(range.low);
+  if (low && range.withLow) words += (high ? " from " : " of ") + textOf(range.low);
+  if (low && !high && range.withLow) words += " or more";
+  if (high && !range.withHigh)
+    words += std::string(low ? " and" : "") + " below " + textOf(range.high);
+  if (high && range.withHigh)
+    words += (!low ? " of at most " : range.withLow ? " to " : " up to ") + textOf(range.high);
+  return words + (range.withInfinity ? ", or infinite" : "");
 }
 
 bool contains(const Range& range, double number) {
-  if (std::isinf(number)) return range.withInfinity && number > 0;
-  return (range.withLow ? number >= range.low : number > range.low) && number <= range.high;
+  if (std::isinf(number))
+    return range.withInfinity && (number > 0 ? range.high : range.low) == number;
+  return (range.withLow ? number >= range.low : number > range.low) &&
+         (range.withHigh ? number <= range.high : number < range.high);
 }
 
 bool switchOf(const std::string& text, const std::string& expected) {
@@ -60,7 +66,6 @@ std::string textOf(double number) {
 }
 
 double numberOf(const std::string& text, const std::string& expected) {
-  if (sameWord(text, "inf")) return std::numeric_limits<double>::infinity();
   double number = NAN;
   const char* const last = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), last, number);
@@ -102,6 +107,28 @@ void OptionList::addNumber(const char* name, const char* unit, const char* help,
     set(number);
   };
   option.check = [get, check] { check(get(), textOf(get())); };
+  m_options.push_back(option);
+}
+
+void OptionList::addOptional(const char* name, std::optional<double>& value, const char* unit,
+                             const Range& range, const char* help) {
+  Option option{name, unit, help, inWords(range, false) + ", or none"};
+  const auto check = [range, expected = option.expected](double number) {
+    if (!contains(range, number)) refuse(textOf(number), expected);
+  };
+  option.text = [&value] { return value ? textOf(*value) : std::string("none"); };
+  option.set = [&value, check, expected = option.expected](const std::string& text) {
+    if (sameWord(text, "none")) {
+      value.reset();
+      return;
+    }
+    const double number = numberOf(text, expected);
+    check(number);
+    value = number;
+  };
+  option.check = [&value, check] {
+    if (value) check(*value);
+  };
   m_options.push_back(option);
 }
 
@@ -151,6 +178,11 @@ void OptionList::addOther(const char* name, Eigen::Vector3d& value, const char* 
     if (!value.allFinite()) refuse(text(), expected);
   };
   m_options.push_back(option);
+}
+
+void require(bool holds, const std::string& option, double value, const std::string& expected) {
+  if (!holds)
+    throw std::invalid_argument(option + " is " + textOf(value) + ", expected " + expected);
 }
 
 void checkAll(const OptionList& list, const std::string& owner) {

@@ -10,27 +10,28 @@ namespace {
 constexpr double kFarthest = 250;  // m that the color image reaches
 constexpr std::uint64_t kStream = 1;
 
-void require(bool ok, const std::string& field, double value, const char* expected) {
-  if (!ok)
-    throw std::invalid_argument("camera: " + field + " is " + std::to_string(value) + ", " +
-                                expected + " expected");
-}
-
 }  // namespace
 
 double CameraOptions::focalLength() const {
   return width / (2 * std::tan(horizontalFov * M_PI / 360));
 }
 
+void CameraOptions::describe(strict_files::OptionList& list) {
+  using strict_files::between;
+  list.add("width", width, "pixels", between(2, 8192), "of the images");
+  list.add("height", height, "pixels", between(2, 8192), "of the images");
+  list.add("fov", horizontalFov, "degrees", between(1, 170), "horizontal field of view");
+  list.add("min_range", minRange, "m", strict_files::atLeast(0), "nearer returns are lost");
+  list.add("max_range", maxRange, "m", strict_files::above(0).upTo(kFarthest),
+           "greatest depth, more than min_range");
+  list.add("color", color, "", "render the color image, too");
+  noise.describe(list);
+}
+
 void CameraOptions::validate() const {
-  require(width >= 2 && width <= 8192, "width", width, "2 to 8192 pixels");
-  require(height >= 2 && height <= 8192, "height", height, "2 to 8192 pixels");
-  require(horizontalFov >= 1 && horizontalFov <= 170, "horizontalFov", horizontalFov,
-          "1 to 170 degrees");
-  require(minRange >= 0 && std::isfinite(minRange), "minRange", minRange, "0 m or more");
-  require(maxRange > minRange && maxRange <= kFarthest, "maxRange", maxRange,
-          "more than minRange and at most 250 m");
-  noise.validate();
+  strict_files::checkOptions(*this, "CameraOptions");
+  strict_files::require(maxRange > minRange, "CameraOptions::max_range", maxRange,
+                        "more than min_range");
 }
 
 CameraFrame renderCamera(const World& world, const Eigen::Isometry3d& T_world_camera,

@@ -9,24 +9,25 @@ namespace {
 
 constexpr std::uint64_t kStream = 2;
 
-void require(bool ok, const std::string& field, double value, const char* expected) {
-  if (!ok)
-    throw std::invalid_argument("LiDAR: " + field + " is " + std::to_string(value) + ", " +
-                                expected + " expected");
-}
-
 }  // namespace
 
+void LidarOptions::describe(strict_files::OptionList& list) {
+  using strict_files::above;
+  using strict_files::between;
+  list.add("rings", rings, "", between(1, 1024), "beams above each other");
+  list.add("columns", columns, "", between(1, 16384), "beams beside each other, all around");
+  list.add("lowest", lowest, "degrees", above(-90).below(90), "elevation of the lowest ring");
+  list.add("highest", highest, "degrees", above(-90).below(90), "elevation of the highest ring");
+  list.add("min_range", minRange, "m", strict_files::atLeast(0), "nearer returns are lost");
+  list.add("max_range", maxRange, "m", above(0), "more than min_range");
+  noise.describe(list);
+}
+
 void LidarOptions::validate() const {
-  require(rings >= 1 && rings <= 1024, "rings", rings, "1 to 1024");
-  require(columns >= 1 && columns <= 16384, "columns", columns, "1 to 16384");
-  require(lowest > -90 && lowest <= highest, "lowest", lowest,
-          "above -90 degrees, not above highest");
-  require(highest < 90, "highest", highest, "below 90 degrees");
-  require(minRange >= 0, "minRange", minRange, "0 m or more");
-  require(maxRange > minRange && std::isfinite(maxRange), "maxRange", maxRange,
-          "more than minRange");
-  noise.validate();
+  strict_files::checkOptions(*this, "LidarOptions");
+  strict_files::require(lowest <= highest, "LidarOptions::lowest", lowest, "at most highest");
+  strict_files::require(maxRange > minRange, "LidarOptions::max_range", maxRange,
+                        "more than min_range");
 }
 
 Eigen::Vector3d LidarOptions::beam(int ring, int column) const {

@@ -1,27 +1,16 @@
 #include <synthetic_world/SensorNoise.h>
 
-#include <cmath>
-#include <stdexcept>
-#include <string>
-
 namespace synthetic_world {
-namespace {
 
-void requireShare(double value, const char* field) {
-  if (!(value >= 0 && value <= 1))
-    throw std::invalid_argument(std::string("sensor noise: ") + field + " is " +
-                                std::to_string(value) + ", 0 to 1 expected");
+void SensorNoise::describe(strict_files::OptionList& list) {
+  using strict_files::between;
+  list.add("range_noise", range, "m", strict_files::atLeast(0),
+           "standard deviation of ranges and depths");
+  list.add("label_noise", label, "", between(0, 1), "share of labels that are of another class");
+  list.add("dropout", dropout, "", between(0, 1), "share of rays without a return");
 }
 
-}  // namespace
-
-void SensorNoise::validate() const {
-  if (!(range >= 0) || !std::isfinite(range))
-    throw std::invalid_argument("sensor noise: range is " + std::to_string(range) +
-                                ", 0 m or more expected");
-  requireShare(label, "label");
-  requireShare(dropout, "dropout");
-}
+void SensorNoise::validate() const { strict_files::checkOptions(*this, "SensorNoise"); }
 
 ClassId SensorNoise::disturbed(ClassId id, Random& random) const {
   if (id == kNoClass || label == 0 || !random.chance(label)) return id;

@@ -1,4 +1,5 @@
 #pragma once
+#include <labeled_cloud/CameraCalibration.h>
 #include <labeled_cloud/ColorImage.h>
 #include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/LabelModel.h>
@@ -14,13 +15,6 @@
 
 namespace labeled_cloud {
 
-/** What is known of a camera beside what its observations say, and counts instead of that. */
-struct CameraCalibration {
-  std::optional<mrpt::img::TCamera> intrinsics;
-  /** The optical frame: x right, y down, z forward. */
-  std::optional<mrpt::poses::CPose3D> T_robot_camera;
-};
-
 struct CloudLabelerOptions {
   /** Largest time between a scan and the picture that labels it, s. */
   double tolerance = 0.06;
@@ -32,6 +26,8 @@ struct CloudLabelerOptions {
   /** A picture that cannot be used is left out and reported, instead of being an error. */
   bool skipProblems = false;
 
+  /** All but calibrations and skipProblems. */
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };

@@ -21,9 +21,11 @@ struct LabelFolderOptions {
   /** Which image of a depth and color camera the labels belong to. */
   LabelImage::View view = LabelImage::View::Depth;
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };
+const strict_files::Choices<LabelFolderOptions::Match>& choicesOf(LabelFolderOptions::Match);
 
 /** Label images in a folder (PNG, TIFF, PGM or BMP), one for each image of a camera, of its size.
  *

@@ -1,6 +1,7 @@
 #pragma once
 #include <mrpt/obs/CObservation.h>
 #include <semantic_types/ClassTable.h>
+#include <strict_files/OptionList.h>
 
 #include <cstddef>
 #include <optional>
@@ -44,6 +45,8 @@ struct LabelImage {
   /** The (likeliest) class of a cell. */
   semantic_types::ClassId classOf(std::size_t cell) const;
 };
+
+const strict_files::Choices<LabelImage::View>& choicesOf(LabelImage::View);
 
 /** Whatever finds the label image of an observation: a field of it, a folder of images, a network.
  */

@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_types/ClassTable.h>
 #include <semantic_types/LabeledCloud.h>
+#include <strict_files/OptionList.h>
 
 #include <filesystem>
 #include <memory>
@@ -57,6 +58,7 @@ struct LabelModel {
   /** Of the classifier that gave the hard labels; where there is one, its rows are the labels. */
   std::shared_ptr<const ConfusionMatrix> confusion;
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 
@@ -66,5 +68,6 @@ struct LabelModel {
   void apply(int numClasses, const std::vector<float>& confidences,
              semantic_types::LabeledCloud& cloud) const;
 };
+const strict_files::Choices<LabelModel::Kind>& choicesOf(LabelModel::Kind);
 
 }  // namespace labeled_cloud

@@ -1,7 +1,7 @@
 #pragma once
 #include <labeled_cloud/LabelImage.h>
 
-#include <array>
+#include <Eigen/Core>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -36,7 +36,7 @@ struct NetworkOptions {
   /** Each channel of the input is (value * scale - mean) / deviation, value 0..255; in the order of
    * `channels`. */
   double scale = 1 / 255.0;
-  std::array<double, 3> mean{0, 0, 0}, deviation{1, 1, 1};
+  Eigen::Vector3d mean{0, 0, 0}, deviation{1, 1, 1};
   /** Names of the layers; may be empty if there is only one. */
   std::string input, output;
   Content content = Content::Scores;
@@ -49,9 +49,17 @@ struct NetworkOptions {
   /** Images that go through the network at once, where so many are waiting. */
   int batch = 1;
 
+  /** The options of the file's sections `input` and `output`, and those outside of both. */
+  void describeInput(strict_files::OptionList& list);
+  void describeOutput(strict_files::OptionList& list);
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };
+const strict_files::Choices<NetworkOptions::Fit>& choicesOf(NetworkOptions::Fit);
+const strict_files::Choices<NetworkOptions::Channels>& choicesOf(NetworkOptions::Channels);
+const strict_files::Choices<NetworkOptions::Content>& choicesOf(NetworkOptions::Content);
+const strict_files::Choices<NetworkOptions::Labels>& choicesOf(NetworkOptions::Labels);
 
 /** Reads options from a YAML file, see doc/handbook/labels.md and config/networks/.
  * \throw std::runtime_error naming file, line and what was expected; a class that the table lacks

@@ -27,6 +27,7 @@ struct ScanConverterOptions {
   /** What the labels say. */
   LabelModel labels;
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };

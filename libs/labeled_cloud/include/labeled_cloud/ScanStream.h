@@ -19,11 +19,17 @@ struct ScanStreamOptions {
   /** What to do about observations that cannot be used: stop with an error, or leave them out. */
   enum class OnProblem { Stop, Skip };
   OnProblem onProblem = OnProblem::Stop;
-  /** Whether scans of which no point has a class are taken, for occupancy only. */
-  bool withoutLabels = true;
+  /** What becomes of scans of which no point has a class: they count for occupancy, or are left
+   * out. */
+  enum class Unlabeled { Occupancy, Skip };
+  Unlabeled unlabeled = Unlabeled::Occupancy;
   /** Every so-manieth scan comes with the pictures its labels are from. 0: none does. */
   std::size_t picturesEvery = 0;
+
+  void describe(strict_files::OptionList& list);
 };
+const strict_files::Choices<ScanStreamOptions::OnProblem>& choicesOf(ScanStreamOptions::OnProblem);
+const strict_files::Choices<ScanStreamOptions::Unlabeled>& choicesOf(ScanStreamOptions::Unlabeled);
 
 /** What became of one observation of a rawlog. */
 struct StreamedObservation {

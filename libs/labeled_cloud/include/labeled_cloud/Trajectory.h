@@ -1,6 +1,7 @@
 #pragma once
 #include <mrpt/core/Clock.h>
 #include <mrpt/poses/CPose3D.h>
+#include <strict_files/OptionList.h>
 
 #include <filesystem>
 #include <limits>
@@ -15,6 +16,7 @@ struct TrajectoryOptions {
   /** Poses farther apart in time are not interpolated between, s. */
   double maxGap = std::numeric_limits<double>::infinity();
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };

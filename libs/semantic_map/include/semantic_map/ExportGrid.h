@@ -1,6 +1,7 @@
 #pragma once
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <semantic_octree/SemanticOcTree.h>
+#include <strict_files/OptionList.h>
 
 #include <iosfwd>
 #include <optional>
@@ -23,6 +24,8 @@ struct GridOptions {
   /** The ground is flat and at this height, m; the two options above are then of no use. */
   std::optional<double> floor;
 
+  /** All but `ground`. */
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };

@@ -2,9 +2,9 @@
 #include <labeled_cloud/ScanConverter.h>
 #include <mrpt/config/CLoadableOptions.h>
 #include <mrpt/serialization/CArchive.h>
-#include <semantic_octree/AbstractionOptions.h>
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/InsertionOptions.h>
+#include <semantic_octree/WeightsFile.h>
 #include <semantic_types/ClassTable.h>
 
 #include <limits>
@@ -12,7 +12,8 @@
 
 namespace semantic_map {
 
-/** Options with names, which go into a section of an .ini file, into an archive, and onto a screen.
+/** Options that go into a section of an .ini file, into an archive, and onto a screen, as their
+ * describe() lists them.
  *
  * Reading is strict where MRPT is silent: a key of the section that is not an option, and a value
  * that cannot be read or is out of range, are errors, and the options are then what they were
@@ -27,8 +28,11 @@ class TNamedOptions : public mrpt::config::CLoadableOptions {
                         const std::string& section) const override;
   void dumpToTextStream(std::ostream& out) const override;
 
+  /** Names and values, as text. */
   void writeTo(mrpt::serialization::CArchive& out) const;
-  /** \throw std::exception the archive ends, or holds values that are out of range. */
+  /** Options that the archive does not have become their defaults.
+   * \throw std::exception the archive ends, holds values that are out of range, or options that
+   * there are not. */
   void readFrom(mrpt::serialization::CArchive& in);
 };
 
@@ -40,21 +44,20 @@ struct TCreationOptions : public TNamedOptions<TCreationOptions> {
    * file is. Empty: a single class, "occupied". */
   std::string classes;
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
 
 /** How observations become part of the map: section `[..._insertOpts]`. */
 struct TInsertionOptions : public TNamedOptions<TInsertionOptions> {
-  /** Keys: rays (All or EndVoxels), maxRange, minRange, carvingMargin, threads. */
   semantic_octree::InsertionOptions scan;
-  /** Keys: decimation, flyingPixelThreshold. */
   labeled_cloud::ScanConverterOptions conversion;
-  /** Keys: increments (LikelihoodConsistent or Ssmi), accuracy, hitProbability,
-   * falseAlarmProbability, minOccupancy, maxProbability, softLabelFloor. They can change only while
-   * the map is empty; otherwise it refuses observations until they are again its own. */
+  /** They can change only while the map is empty; otherwise it refuses observations until they are
+   * again its own. */
   semantic_octree::FilterParameters filter;
 
+  void describe(strict_files::OptionList& list);
   /** Checks all but what depends on the number of classes.
    * \throw std::invalid_argument naming the option and its value. */
   void validate() const;
@@ -64,7 +67,7 @@ struct TInsertionOptions : public TNamedOptions<TInsertionOptions> {
  *
  * The log-likelihood is that of the map's own filter, for which each cell that a beam meets gives
  * an independent measurement. With S the state of a cell (free, or one of K classes), p_hit and
- * p_fa the filter's hitProbability and falseAlarmProbability, a beam that ends in the cell has
+ * p_fa the filter's hit_probability and false_alarm_probability, a beam that ends in the cell has
  *
  *     p(return, label c | cell) = p(S = free) p_fa + p_hit sum_k p(S = k) K P(label c | k),
  *
@@ -87,38 +90,15 @@ struct TLikelihoodOptions : public TNamedOptions<TLikelihoodOptions> {
    * (0, 1]. */
   double pointWeight = 1.0;
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
 
 /** What the map's optimal abstraction keeps: section `[..._abstractionOpts]`. Without any weights
  * the map keeps no G-values. */
-struct TAbstractionOptions : public TNamedOptions<TAbstractionOptions> {
-  /** Classes worth keeping and worth dropping with their weights (beta, gamma), "road: 1, car:
-   * 0.5". Several classes that count as one are joined by "+": "road+parking: 1". */
-  std::string relevant, irrelevant;
-  /** Weight of the whole class variable (which class it is, or free); negative: worth dropping. */
-  double everything = 0;
-  /** Price of a nat of I_X. */
-  double alpha = 0.002;
-  semantic_octree::AbstractionOptions::Unknown unknown =
-      semantic_octree::AbstractionOptions::Unknown::OwnClass;
-  double unknownWeight = 1;  ///< relative to known space, [0, 1]
-  double blockSize = 6;      ///< m; 0: no blocks
-  semantic_octree::AbstractionOptions::Frame frame =
-      semantic_octree::AbstractionOptions::Frame::Free;
-  /** Regions of their own weight, m in the map's frame, separated by semicolons:
-   * "box x0 y0 z0 x1 y1 z1 weight", "sphere x y z radius weight",
-   * "corridor x0 y0 z0 x1 y1 z1 radius weight". */
-  std::string regions;
-
-  bool isSet() const { return !relevant.empty() || !irrelevant.empty() || everything != 0; }
-  /** The same for a map of these classes.
-   * \throw std::invalid_argument naming the option and its value. */
-  semantic_octree::AbstractionOptions forClasses(const semantic_types::ClassTable& classes) const;
-  /** Checks all but what depends on the classes. \throw std::invalid_argument */
-  void validate() const;
-};
+struct TAbstractionOptions : public TNamedOptions<TAbstractionOptions>,
+                             public semantic_octree::AbstractionText {};
 
 /** What the map's 3D object shows: section `[..._renderOpts]`. */
 struct TRenderingOptions : public TNamedOptions<TRenderingOptions> {
@@ -142,9 +122,12 @@ struct TRenderingOptions : public TNamedOptions<TRenderingOptions> {
   double minHeight = -std::numeric_limits<double>::infinity();
   double maxHeight = std::numeric_limits<double>::infinity();
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
+
+const strict_files::Choices<TRenderingOptions::Coloring>& choicesOf(TRenderingOptions::Coloring);
 
 extern template class TNamedOptions<TCreationOptions>;
 extern template class TNamedOptions<TInsertionOptions>;

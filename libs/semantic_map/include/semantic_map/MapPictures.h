@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_octree/SemanticOcTree.h>
+#include <strict_files/OptionList.h>
 
 #include <filesystem>
 #include <opencv2/core.hpp>
@@ -22,6 +23,7 @@ struct PictureStyle {
   /** Cells count as occupied above this occupancy. */
   double minOccupancy = 0.5;
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };
@@ -38,7 +40,8 @@ struct TopView {
   double pixelsPerMeter = 1;
   cv::Point2d origin;  ///< pixels, of the map's point (0, 0)
 
-  /** \param x, y map frame, m eturn pixels */
+  /** \param x, y map frame, m
+eturn pixels */
   cv::Point2d at(double x, double y) const {
     return {origin.x + x * pixelsPerMeter, origin.y - y * pixelsPerMeter};
   }
@@ -56,6 +59,7 @@ struct Viewpoint {
   /** Above 1: nearer than what shows the whole map. */
   double zoom = 1;
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };

@@ -1,4 +1,5 @@
 #pragma once
+#include <strict_files/OptionList.h>
 #include <tree_abstraction/AbstractionWeights.h>
 
 #include <Eigen/Core>
@@ -24,21 +25,17 @@ struct Region {
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };
+const strict_files::Choices<Region::Shape>& choicesOf(Region::Shape);
 
-/** The abstraction of a semantic octree: what its compressed tree is to keep. */
-struct AbstractionOptions {
-  /** Terms over classes 0..K (0 = free space) and alpha. */
-  tree_abstraction::AbstractionWeights weights;
-
+/** How the abstraction counts space, whatever its classes. */
+struct AbstractionSpace {
   /** What is assumed of space without a node. */
   enum class Unknown {
     OwnClass,  ///< a value of its own: no class, not free either
     Uniform,   ///< each of free and the K classes equally likely (the paper's)
-    Prior      ///< `prior`
+    Prior      ///< AbstractionOptions::prior
   };
   Unknown unknown = Unknown::OwnClass;
-  /** K + 1 probabilities for Unknown::Prior; empty: p(free) = 1/2, the classes equally likely. */
-  std::vector<double> prior;
   /** Weight of unknown space relative to known space of the same volume, [0, 1]. */
   double unknownWeight = 1;
 
@@ -52,6 +49,18 @@ struct AbstractionOptions {
   };
   Frame frame = Frame::Free;
 
+  void describe(strict_files::OptionList& list);
+};
+const strict_files::Choices<AbstractionSpace::Unknown>& choicesOf(AbstractionSpace::Unknown);
+const strict_files::Choices<AbstractionSpace::Frame>& choicesOf(AbstractionSpace::Frame);
+
+/** What the optimal abstraction of a semantic octree keeps. Files say the same by the classes'
+ * names, see AbstractionText and WeightsFile. */
+struct AbstractionOptions : AbstractionSpace {
+  /** Terms over classes 0..K (0 = free space) and alpha. */
+  tree_abstraction::AbstractionWeights weights;
+  /** K + 1 probabilities for Unknown::Prior; empty: p(free) = 1/2, the classes equally likely. */
+  std::vector<double> prior;
   /** p(x): volume, times the weight of the region it lies in. */
   std::vector<Region> regions;
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <strict_files/OptionList.h>
 
 namespace semantic_octree {
 
@@ -34,9 +35,11 @@ struct FilterParameters {
   /** Soft labels are raised to this before their logarithm is taken. */
   double softLabelFloor = 0.001;
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the parameter and its value. */
   void validate(int numClasses) const;
   bool operator==(const FilterParameters& o) const;
 };
+const strict_files::Choices<FilterParameters::Increments>& choicesOf(FilterParameters::Increments);
 
 }  // namespace semantic_octree

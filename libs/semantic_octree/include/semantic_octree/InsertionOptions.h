@@ -1,4 +1,6 @@
 #pragma once
+#include <strict_files/OptionList.h>
+
 #include <cstddef>
 
 namespace semantic_octree {
@@ -22,9 +24,11 @@ struct InsertionOptions {
   /** Threads that share the work; the map does not depend on it. */
   int threads = 1;
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
+const strict_files::Choices<InsertionOptions::Rays>& choicesOf(InsertionOptions::Rays);
 
 /** What became of a scan. */
 struct InsertionReport {

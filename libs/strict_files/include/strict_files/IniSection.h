@@ -2,6 +2,7 @@
 #include <strict_files/OptionList.h>
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,5 +46,37 @@ class IniSection {
   std::vector<std::pair<std::string, std::string>> m_entries;  ///< keys, and what is behind "="
   std::vector<std::string> m_known;
 };
+
+/** Reads a section that holds the options of a struct and nothing else, and checks them.
+ * \param source as for IniSection
+ * \throw std::runtime_error naming section, key and value. */
+template <class Source, class Options>
+void readSection(const Source& source, const std::string& section, Options& options) {
+  OptionList list;
+  options.describe(list);
+  IniSection ini(source, section);
+  ini.read(list);
+  ini.finish();
+  try {
+    options.validate();
+  } catch (const std::invalid_argument& e) {
+    ini.fail(e.what());
+  }
+}
+
+/** \throw std::runtime_error naming the section and the nearest known one: it is none of these.
+ * \param known "camera *" stands for all that begin with "camera " */
+void checkSection(const std::string& section, const std::vector<std::string>& known);
+
+/** The same for all sections of a file that have a key. */
+template <class Source>
+void checkSections(const Source& source, const std::vector<std::string>& known) {
+  std::vector<std::string> sections, keys;
+  source.getAllSections(sections);
+  for (const std::string& section : sections) {
+    source.getAllKeys(section, keys);
+    if (!section.empty() || !keys.empty()) checkSection(section, known);
+  }
+}
 
 }  // namespace strict_files

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -24,12 +25,17 @@ const char* nameIn(const Choices<E>& choices, E value) {
   throw std::out_of_range("a value without a name");
 }
 
-/** Which numbers an option may be. */
+/** Which numbers an option may be: `atLeast(0).below(1)`. */
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool withLow = true;        ///< low itself is allowed
-  bool withInfinity = false;  ///< infinity is allowed
+  bool withInfinity = false;  ///< an end that is infinite is allowed
+  bool withHigh = true;       ///< high itself is allowed
+
+  Range upTo(double most) const { return {low, most, withLow, withInfinity, true}; }
+  Range below(double end) const { return {low, end, withLow, withInfinity, false}; }
+  Range orInfinite() const { return {low, high, withLow, true, withHigh}; }
 };
 inline Range above(double low) { return {low, Range().high, false}; }
 inline Range atLeast(double low) { return {low}; }
@@ -42,11 +48,11 @@ struct Option {
   std::string help;      ///< a phrase; no full stop
   std::string expected;  ///< what its value may be, in words: "a number above 0"
   bool isSwitch = false;
-  std::function<std::string()> text;  ///< the value, so that set() takes it
+  std::function<std::string()> text = {};  ///< the value, so that set() takes it
   /** \throw std::invalid_argument "is 'x', expected a number" */
-  std::function<void(const std::string&)> set;
+  std::function<void(const std::string&)> set = {};
   /** \throw std::invalid_argument "is -1, expected a number of 0 or more" */
-  std::function<void()> check;
+  std::function<void()> check = {};
 };
 
 /** The options of a struct, described once: from this list follow how they are read from .ini
@@ -60,8 +66,8 @@ struct Option {
  * each other: that is for the struct's validate(), which begins with checkOptions(). */
 class OptionList {
  public:
-  /** double, float, whole numbers, bool, std::string, Eigen::Vector3d ("x, y, z"), and
-   * enumerations with choicesOf(). */
+  /** double, float, whole numbers, std::optional<double> ("none" without), bool, std::string,
+   * Eigen::Vector3d ("x, y, z"), and enumerations with choicesOf(). */
   template <class T>
   void add(const char* name, T& value, const char* unit, const Range& range, const char* help) {
     if constexpr (std::is_enum_v<T>)
@@ -75,6 +81,8 @@ class OptionList {
       addNumber(
           name, unit, help, range, false, [&value] { return static_cast<double>(value); },
           [&value](double number) { value = static_cast<T>(number); });
+    else if constexpr (std::is_same_v<T, std::optional<double>>)
+      addOptional(name, value, unit, range, help);
     else
       addOther(name, value, unit, help);
   }
@@ -84,7 +92,8 @@ class OptionList {
     add(name, value, unit, Range(), help);
   }
 
-  const std::vector<Option>& options() const { return m_options; }
+  const std::vector<Option>& options() const& { return m_options; }
+  std::vector<Option> options() && { return std::move(m_options); }
   std::vector<std::string> names() const;
   /** The option with this name (sameWord()), or null. */
   const Option* find(const std::string& name) const;
@@ -108,6 +117,8 @@ class OptionList {
   }
   void addNumber(const char* name, const char* unit, const char* help, const Range& range,
                  bool whole, std::function<double()> get, std::function<void(double)> set);
+  void addOptional(const char* name, std::optional<double>& value, const char* unit,
+                   const Range& range, const char* help);
   void addWord(const char* name, const char* help, const std::vector<std::string>& words,
                std::function<std::string()> get, std::function<void(std::size_t)> set);
   void addOther(const char* name, bool& value, const char* unit, const char* help);
@@ -129,6 +140,12 @@ void checkOptions(const T& options, const std::string& owner) {
   copy.describe(list);
   checkAll(list, owner);
 }
+/** For what options say about each other, in validate().
+ * \param option "Struct::option", for errors
+ * \throw std::invalid_argument "Struct::option is 3, expected at most max_height" unless it holds.
+ */
+void require(bool holds, const std::string& option, double value, const std::string& expected);
+
 /** Numbers as files have them: as many digits as are needed to read the same number again. */
 std::string textOf(double number);
 /** \throw std::invalid_argument "is 'x', expected a number": not all of the text is one, or it is

@@ -1,6 +1,8 @@
 #pragma once
+#include <strict_files/OptionList.h>
 #include <synthetic_world/Classes.h>
 #include <synthetic_world/Random.h>
+
 #include <cstdint>
 
 namespace synthetic_world {
@@ -11,6 +13,7 @@ struct SensorNoise {
   double label = 0;    // share of labels replaced by one of the other classes at random, 0..1
   double dropout = 0;  // share of rays without a return, 0..1
 
+  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field. */
   void validate() const;
 

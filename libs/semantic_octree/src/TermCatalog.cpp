@@ -1,8 +1,8 @@
-#include "TermCatalog.h"
+#include <semantic_octree/TermCatalog.h>
 
 #include <algorithm>
 
-namespace semantic_map_compress {
+namespace semantic_octree {
 
 using tree_abstraction::InformationTerm;
 
@@ -74,4 +74,4 @@ std::vector<double> TermCatalog::weights(const Solution& solution, std::size_t b
   return weights;
 }
 
-}  // namespace semantic_map_compress
+}  // namespace semantic_octree

@@ -1,7 +1,7 @@
 #pragma once
-#include "WeightsFile.h"
+#include <semantic_octree/WeightsFile.h>
 
-namespace semantic_map_compress {
+namespace semantic_octree {
 
 /** All informations to be measured, each once: first the classes (0 = free space to K), then the
  * groups and whole class variables of the solutions. They all are terms of one abstraction, so that
@@ -37,4 +37,4 @@ class TermCatalog {
   std::vector<std::vector<std::size_t>> m_batches;
 };
 
-}  // namespace semantic_map_compress
+}  // namespace semantic_octree

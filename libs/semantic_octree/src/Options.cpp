@@ -1,0 +1,150 @@
+// The options of this library: what they may be, and their names in files.
+#include <semantic_octree/AbstractionOptions.h>
+#include <semantic_octree/FilterParameters.h>
+#include <semantic_octree/InsertionOptions.h>
+#include <semantic_types/ClassTable.h>
+
+#include <cmath>
+#include <numeric>
+#include <string>
+
+namespace semantic_octree {
+
+using strict_files::above;
+using strict_files::atLeast;
+using strict_files::between;
+using strict_files::checkOptions;
+using strict_files::Choices;
+using strict_files::OptionList;
+using strict_files::require;
+
+const Choices<InsertionOptions::Rays>& choicesOf(InsertionOptions::Rays) {
+  using Rays = InsertionOptions::Rays;
+  static const Choices<Rays> choices = {{"all", Rays::All}, {"end_voxels", Rays::EndVoxels}};
+  return choices;
+}
+
+void InsertionOptions::describe(OptionList& list) {
+  list.add(
+      "rays", rays, "",
+      "which rays carve free space; end_voxels: one for each voxel that was hit, faster, nearly "
+      "the same map");
+  list.add("max_range", maxRange, "m", atLeast(0),
+           "returns beyond it only carve free space; 0: no limit. Where the sensor or its labels "
+           "become bad: 30 for LiDARs, 5 for depth cameras");
+  list.add("min_range", minRange, "m", atLeast(0), "nearer returns are ignored: the robot itself");
+  list.add("carving_margin", carvingMargin, "m", atLeast(0),
+           "so much before a return is not carved; one voxel helps where ground seen at grazing "
+           "angles erodes");
+  list.add("threads", threads, "", between(1, 256),
+           "that share the work on a scan; the map does not depend on it");
+}
+
+void InsertionOptions::validate() const { checkOptions(*this, "InsertionOptions"); }
+
+const Choices<FilterParameters::Increments>& choicesOf(FilterParameters::Increments) {
+  using Increments = FilterParameters::Increments;
+  static const Choices<Increments> choices = {
+      {"likelihood_consistent", Increments::LikelihoodConsistent}, {"ssmi", Increments::Ssmi}};
+  return choices;
+}
+
+void FilterParameters::describe(OptionList& list) {
+  const auto probability = above(0).below(1);
+  list.add("increments", increments, "",
+           "from the probabilities below, or the constants published with SSMI, to compare");
+  list.add(
+      "accuracy", accuracy, "", probability,
+      "share of labels that name the true class, above 1 / number of classes. Too large, and a "
+      "few wrong labels win; too small, and it takes many scans to be sure");
+  list.add(
+      "hit_probability", hitProbability, "", probability,
+      "of a return from an occupied voxel that a beam reaches: 0.5 for LiDARs outdoors, 0.9 for "
+      "depth cameras");
+  list.add(
+      "false_alarm_probability", falseAlarmProbability, "", probability,
+      "of a return from a free voxel, below hit_probability. Larger: moving objects leave less "
+      "behind; smaller: thin things survive");
+  list.add("min_occupancy", minOccupancy, "", above(0).below(0.5),
+           "of what was seen free for long. Larger: the map forgets faster and merges more space");
+  list.add("max_probability", maxProbability, "", above(0.5).below(1),
+           "of a class that was seen for long. Smaller: the map forgets faster");
+  list.add("soft_label_floor", softLabelFloor, "", probability,
+           "probabilities in soft labels are raised to it");
+}
+
+void FilterParameters::validate(int numClasses) const {
+  checkOptions(*this, "FilterParameters");
+  require(numClasses >= 1 && numClasses <= semantic_types::kMaxClasses, "number of classes",
+          numClasses, "1 to 254");
+  if (increments == Increments::Ssmi) return;
+  require(falseAlarmProbability < hitProbability, "FilterParameters::false_alarm_probability",
+          falseAlarmProbability, "less than hit_probability");
+  require(numClasses == 1 || accuracy * numClasses > 1, "FilterParameters::accuracy", accuracy,
+          "more than 1 / number of classes");
+}
+
+bool FilterParameters::operator==(const FilterParameters& o) const {
+  return increments == o.increments && accuracy == o.accuracy &&
+         hitProbability == o.hitProbability && falseAlarmProbability == o.falseAlarmProbability &&
+         minOccupancy == o.minOccupancy && maxProbability == o.maxProbability &&
+         softLabelFloor == o.softLabelFloor;
+}
+
+const Choices<Region::Shape>& choicesOf(Region::Shape) {
+  using Shape = Region::Shape;
+  static const Choices<Shape> choices = {
+      {"box", Shape::Box}, {"sphere", Shape::Sphere}, {"corridor", Shape::Corridor}};
+  return choices;
+}
+
+void Region::validate() const {
+  require(a.allFinite() && b.allFinite(), "corner of a region", (a + b).sum(),
+          "finite coordinates");
+  require(weight >= 0 && std::isfinite(weight), "weight of a region", weight,
+          "a number of 0 or more");
+  if (shape == Shape::Box)
+    require((a.array() <= b.array()).all(), "edge of a box", (b - a).minCoeff(),
+            "the lowest corner first");
+  else
+    require(radius > 0 && std::isfinite(radius), "radius of a region", radius, "a number above 0");
+}
+
+const Choices<AbstractionSpace::Unknown>& choicesOf(AbstractionSpace::Unknown) {
+  using Unknown = AbstractionSpace::Unknown;
+  static const Choices<Unknown> choices = {
+      {"own_class", Unknown::OwnClass}, {"uniform", Unknown::Uniform}, {"prior", Unknown::Prior}};
+  return choices;
+}
+
+const Choices<AbstractionSpace::Frame>& choicesOf(AbstractionSpace::Frame) {
+  using Frame = AbstractionSpace::Frame;
+  static const Choices<Frame> choices = {{"free", Frame::Free}, {"charged", Frame::Charged}};
+  return choices;
+}
+
+void AbstractionSpace::describe(OptionList& list) {
+  list.add(
+      "block_size", blockSize, "m", atLeast(0),
+      "edge of the blocks inside which unknown space counts, the coarsest cells; 0: no blocks");
+  list.add("unknown", unknown, "",
+           "what unknown space is taken for: a value of its own, all classes alike, or prior");
+  list.add("unknown_weight", unknownWeight, "", between(0, 1),
+           "weight of unknown space beside known space");
+  list.add("frame", frame, "", "whether nodes above the blocks cost anything");
+}
+
+void AbstractionOptions::validate(int numClasses) const {
+  checkOptions<AbstractionSpace>(*this, "AbstractionOptions");
+  weights.validate(numClasses);
+  for (const Region& region : regions) region.validate();
+  if (prior.empty()) return;
+  require(static_cast<int>(prior.size()) == numClasses + 1, "size of AbstractionOptions::prior",
+          static_cast<double>(prior.size()), "number of classes + 1");
+  for (const double p : prior)
+    require(p >= 0 && p <= 1, "AbstractionOptions::prior", p, "a probability");
+  const double sum = std::accumulate(prior.begin(), prior.end(), 0.0);
+  require(std::fabs(sum - 1) < 1e-6, "sum of AbstractionOptions::prior", sum, "1");
+}
+
+}  // namespace semantic_octree

@@ -1,0 +1,125 @@
+#include "OptionTables.h"
+
+#include <labeled_cloud/CloudLabeler.h>
+#include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/NetworkLabeler.h>
+#include <labeled_cloud/ScanStream.h>
+#include <semantic_map/ExportGrid.h>
+#include <semantic_map/MapOptions.h>
+#include <semantic_map/MapPictures.h>
+#include <synthetic_world/Camera.h>
+#include <synthetic_world/Lidar.h>
+
+using strict_files::Option;
+using strict_files::OptionList;
+
+namespace {
+
+/** Adds the options of a struct at their defaults. */
+template <class Options>
+void add(OptionTable& table, void (Options::*describe)(OptionList&)) {
+  const auto options = std::make_shared<Options>();
+  ((*options).*describe)(table.list);
+  table.owners.push_back(options);
+}
+
+template <class... Options>
+OptionTable table(const std::string& title, const std::string& where) {
+  OptionTable t{title, where, {}, {}};
+  (add<Options>(t, &Options::describe), ...);
+  return t;
+}
+
+std::vector<OptionTable> mapTables() {
+  using namespace semantic_map;
+  return {
+      table<TCreationOptions>("The map",
+                              "`[map]` of `rawlog2semantic-map`; `_creationOpts` in MRPT's "
+                              "applications."),
+      table<TInsertionOptions>(
+          "Insertion",
+          "`[insertion]`; `_insertOpts`. Of `rawlog2semantic-map`, `kind` and `min_confidence` are "
+          "in `[labels]`, `occlusion_parallax` is in `[cameras]`. `increments` and all behind it "
+          "are "
+          "the filter's: they are stored in the map, and only maps of the same filter can be "
+          "merged; `semantic-map-info MAP --json` says what a map has."),
+      table<TAbstractionOptions>(
+          "Abstraction",
+          "`[abstraction]`; `_abstractionOpts`. Files of weights for `semantic-map-compress` have "
+          "the same options, with lists of their own for classes, `prior` and `regions`: see [its "
+          "page](../../apps/semantic-map-compress/README.md). [The abstraction](../abstraction.md) "
+          "says how to choose."),
+      table<TLikelihoodOptions>("Likelihood of observations", "`_likelihoodOpts`."),
+      table<TRenderingOptions>("The map's 3D object", "`_renderOpts`."),
+      table<PictureStyle, Viewpoint>("Pictures", "`[pictures]` of `rawlog2semantic-map`."),
+      table<GridOptions>("2D grids",
+                         "What of a map obstructs a robot on the ground: "
+                         "`semantic_map::gridOf()`, `semantic-map-export`."),
+  };
+}
+
+std::vector<OptionTable> labelTables() {
+  using namespace labeled_cloud;
+  OptionTable network{"Networks", "`batch` stands outside of both sections.", {}, {}};
+  add(network, &NetworkOptions::describe);
+  OptionTable input{"Networks: input", "Section `input` of a network's configuration.", {}, {}};
+  add(input, &NetworkOptions::describeInput);
+  OptionTable output{"Networks: output", "Section `output` of a network's configuration.", {}, {}};
+  add(output, &NetworkOptions::describeOutput);
+  return {
+      table<TrajectoryOptions>("Trajectory", "`[trajectory]` of `rawlog2semantic-map`."),
+      table<LabelFolderOptions, LabelModel, ScanStreamOptions>(
+          "Labels",
+          "`[labels]` of `rawlog2semantic-map`; `pictures_every` is its `--preview-every`."),
+      table<CloudLabelerOptions>("Cameras that label the points of other sensors",
+                                 "`[cameras]` of `rawlog2semantic-map`."),
+      table<CameraDescription>(
+          "Calibration of a camera",
+          "`[camera NAME]` of `rawlog2semantic-map`, for the camera with this sensor label. The "
+          "optics or the pose may be left out as a whole."),
+      input,
+      output,
+      network,
+  };
+}
+
+std::vector<OptionTable> worldTables() {
+  using namespace synthetic_world;
+  return {
+      table<CameraOptions>("Synthetic cameras", "`synth-rawlog`, `semantic-map-drive`."),
+      table<LidarOptions>("Synthetic LiDARs", "`synth-rawlog`, `semantic-map-drive`."),
+  };
+}
+
+std::string rowOf(const Option& option) {
+  const std::string value = option.text();
+  return "| `" + option.name + "` | " + (value.empty() ? "" : "`" + value + "`") +
+         (option.unit.empty() ? "" : " " + option.unit) + " | " + option.expected + " | " +
+         option.help + " |\n";
+}
+
+}  // namespace
+
+std::vector<OptionTable> optionTables() {
+  std::vector<OptionTable> tables;
+  for (const auto& group : {mapTables(), labelTables(), worldTables()})
+    tables.insert(tables.end(), group.begin(), group.end());
+  return tables;
+}
+
+std::string optionsPage() {
+  std::string page =
+      "# Options\n\n"
+      "Written by a test from the lists that the programs read: do not change it by hand.\n\n"
+      "Names are written with `_` in .ini files and YAML, with `-` on command lines; neither these "
+      "nor capitals tell names apart, so that `maxRange` is `max_range`, too. A name that is "
+      "unknown "
+      "and a value that is not allowed are errors that name file, section and key, and the nearest "
+      "name that is known. What is left out has its default.\n";
+  for (const OptionTable& table : optionTables()) {
+    page += "\n## " + table.title + "\n" + table.where +
+            "\n\n| option | default | allowed | what |\n|---|---|---|---|\n";
+    for (const Option& option : table.list.options()) page += rowOf(option);
+  }
+  return page;
+}

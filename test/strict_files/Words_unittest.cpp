@@ -1,0 +1,56 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+#include <strict_files/ErrorMessage.h>
+#include <strict_files/Words.h>
+
+#include <stdexcept>
+
+using strict_files::sameWord;
+using strict_files::unknownWord;
+
+TEST(Words, caseUnderscoresAndDashesDoNotTellNamesApart) {
+  EXPECT_TRUE(sameWord("max_range", "maxRange"));
+  EXPECT_TRUE(sameWord("END-VOXELS", "EndVoxels"));
+  EXPECT_FALSE(sameWord("max_range", "max_ranges"));
+  EXPECT_FALSE(sameWord("max_range", "max range"));
+}
+
+TEST(Words, theNearestKnownWordIsOffered) {
+  const std::vector<std::string> known = {"min_range", "max_range", "rays"};
+  EXPECT_EQ(unknownWord("key", "max_rnge", known),
+            "unknown key 'max_rnge'; did you mean 'max_range'?");
+  EXPECT_EQ(unknownWord("key", "MaxRagne", known),
+            "unknown key 'MaxRagne'; did you mean 'max_range'?");
+}
+
+TEST(Words, withoutANearOneAllAreListed) {
+  EXPECT_EQ(unknownWord("key", "threads", {"rays", "frame"}),
+            "unknown key 'threads'; known are rays, frame");
+  EXPECT_EQ(unknownWord("section", "map", {}), "unknown section 'map'; none is known");
+}
+
+TEST(Words, spaceAroundTextIsTrimmed) {
+  EXPECT_EQ(strict_files::trimmed(" \t a b\r\n"), "a b");
+  EXPECT_EQ(strict_files::trimmed(" \n "), "");
+}
+
+TEST(Words, listsAreJoined) {
+  EXPECT_EQ(strict_files::joined({}), "");
+  EXPECT_EQ(strict_files::joined({"a", "b", "c"}), "a, b, c");
+}
+
+TEST(Words, messagesAreFreedOfMrptsCallStacks) {
+  EXPECT_EQ(strict_files::messageOf(std::runtime_error("plain")), "plain");
+  EXPECT_EQ(strict_files::messageOf(std::runtime_error(
+                "==== MRPT exception ====\nMessage:  what happened\nLocation: file.cpp\n")),
+            "what happened");
+}
+
+RC_GTEST_PROP(Words, aWordWithOneLetterTooManyIsAnsweredWithItself, ()) {
+  const auto word = *rc::gen::container<std::string>(8, rc::gen::inRange('a', 'k'));
+  const auto place = *rc::gen::inRange<std::size_t>(0, word.size() + 1);
+  std::string longer = word;
+  longer.insert(place, "z");
+  RC_ASSERT(unknownWord("key", longer, {"0123456789", word}).find("mean '" + word + "'") !=
+            std::string::npos);
+}
