@@ -131,7 +131,7 @@ int run(const Cli& cli) {
   SemanticOcTree map = semantic_octree::loadTree(cli.map.string());
   const FullMap full{cli.map.string(), map.getResolution(), map.size(), fs::file_size(cli.map),
                      contentsOf(map).voxelsOfClass};
-  const WeightsFile weights = loadWeights(cli.weights, map.classes());
+  const WeightsFile weights = semantic_octree::loadWeights(cli.weights, map.classes());
   times.add("load");
   const TermCatalog catalog(map.classes(), weights.solutions);
   Compressor compressor(map, catalog, weights.space);

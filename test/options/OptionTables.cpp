@@ -47,8 +47,8 @@ std::vector<OptionTable> mapTables() {
           "Abstraction",
           "`[abstraction]`; `_abstractionOpts`. Files of weights for `semantic-map-compress` have "
           "the same options, with lists of their own for classes, `prior` and `regions`: see [its "
-          "page](../../apps/semantic-map-compress/README.md). [The abstraction](../abstraction.md) "
-          "says how to choose."),
+          "page](../../apps/semantic-map-compress/README.md). How to choose: "
+          "[compression](compression.md)."),
       table<TLikelihoodOptions>("Likelihood of observations", "`_likelihoodOpts`."),
       table<TRenderingOptions>("The map's 3D object", "`_renderOpts`."),
       table<PictureStyle, Viewpoint>("Pictures", "`[pictures]` of `rawlog2semantic-map`."),
@@ -93,9 +93,9 @@ std::vector<OptionTable> worldTables() {
 
 std::string rowOf(const Option& option) {
   const std::string value = option.text();
-  return "| `" + option.name + "` | " + (value.empty() ? "" : "`" + value + "`") +
-         (option.unit.empty() ? "" : " " + option.unit) + " | " + option.expected + " | " +
-         option.help + " |\n";
+  return "| `" + option.name + "` | " + option.unit + " | " +
+         (value.empty() ? "" : "`" + value + "`") + " | " + option.expected + " | " + option.help +
+         " |\n";
 }
 
 }  // namespace
@@ -111,14 +111,13 @@ std::string optionsPage() {
   std::string page =
       "# Options\n\n"
       "Written by a test from the lists that the programs read: do not change it by hand.\n\n"
-      "Names are written with `_` in .ini files and YAML, with `-` on command lines; neither these "
-      "nor capitals tell names apart, so that `maxRange` is `max_range`, too. A name that is "
-      "unknown "
-      "and a value that is not allowed are errors that name file, section and key, and the nearest "
-      "name that is known. What is left out has its default.\n";
+      "Names are written with `_` in .ini files and YAML, with `-` on command lines; in .ini files "
+      "neither these nor capitals tell names apart, so that `maxRange` is `max_range`, too. A name "
+      "that is unknown and a value that is not allowed are errors that name file, section and key, "
+      "and the nearest name that is known. What is left out has its default.\n";
   for (const OptionTable& table : optionTables()) {
     page += "\n## " + table.title + "\n" + table.where +
-            "\n\n| option | default | allowed | what |\n|---|---|---|---|\n";
+            "\n\n| option | unit | default | allowed | what |\n|---|---|---|---|---|\n";
     for (const Option& option : table.list.options()) page += rowOf(option);
   }
   return page;

@@ -22,6 +22,7 @@ CSemanticOctoMap unusualMap() {
   map.insertionOptions.scan.maxRange = 7;
   map.insertionOptions.scan.threads = 2;
   map.insertionOptions.conversion.decimation = 3;
+  map.insertionOptions.conversion.labels.minConfidence = 0.3;
   map.likelihoodOptions.decimation = 4;
   map.likelihoodOptions.useLabels = false;
   map.renderingOptions.coloring = TRenderingOptions::Coloring::Height;
@@ -68,6 +69,7 @@ TEST(MapArchive, whatIsReadBackEqualsBitForBit) {
   EXPECT_EQ(read.tree().getResolution(), 0.3);
   EXPECT_TRUE(read.tree().classes() == map.tree().classes());
   EXPECT_EQ(read.insertionOptions.scan.maxRange, 7);
+  EXPECT_EQ(read.insertionOptions.conversion.labels.minConfidence, 0.3);
   EXPECT_FALSE(read.genericMapParams.enableSaveAs3DObject);
   EXPECT_EQ(read.renderingOptions.coloring, TRenderingOptions::Coloring::Height);
   EXPECT_EQ(read.likelihoodOptions.decimation, 4);
@@ -104,6 +106,18 @@ TEST(MapArchive, aTruncatedArchiveIsAnErrorAndLeavesTheMap) {
   for (std::size_t length = 1; length + 1 < large.size(); length += 97)
     EXPECT_ANY_THROW(readBytes(map, large.substr(0, length))) << length;
   EXPECT_TRUE(bytesOf(map) == before);
+}
+
+TEST(MapArchive, thoseOfAnotherVersionAreRefused) {
+  std::string bytes = bytesOf(unusualMap());
+  const std::string name = "CSemanticOctoMap";
+  const std::size_t version = bytes.find(name) + name.size();
+  ASSERT_EQ(bytes.at(version), 2);
+  CSemanticOctoMap map(0.2, threeClasses());
+  bytes[version] = 1;
+  EXPECT_TRUE(contains(errorOf([&] { readBytes(map, bytes); }), "load its .semantic file instead"));
+  bytes[version] = 3;
+  EXPECT_ANY_THROW(readBytes(map, bytes));
 }
 
 TEST(MapArchive, anAlteredTreeIsAnErrorAndLeavesTheMap) {

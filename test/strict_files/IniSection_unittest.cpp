@@ -8,7 +8,7 @@
 
 using some::Options;
 using strict_files::checkSections;
-using strict_files::IniSection;
+using strict_files::readSection;
 
 namespace {
 
