@@ -7,6 +7,10 @@
 
 namespace dataset2rawlog {
 
+using strict_files::numbersOf;
+using strict_files::readLines;
+using strict_files::TextLine;
+
 namespace fs = std::filesystem;
 
 namespace {

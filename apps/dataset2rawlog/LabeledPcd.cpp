@@ -11,6 +11,10 @@
 
 namespace dataset2rawlog {
 
+using strict_files::numbersOf;
+using strict_files::readLines;
+using strict_files::TextLine;
+
 namespace fs = std::filesystem;
 using semantic_types::ClassId;
 using semantic_types::ClassTable;

@@ -12,6 +12,9 @@
 
 namespace dataset2rawlog {
 
+using strict_files::readLines;
+using strict_files::TextLine;
+
 namespace fs = std::filesystem;
 using mrpt::obs::CObservation3DRangeScan;
 

@@ -19,7 +19,7 @@ const char* const kClearLine = "\r\033[K";
 Progress::Progress(std::string task, std::uint64_t total)
     : m_task(std::move(task)),
       m_total(std::max<std::uint64_t>(total, 1)),
-      m_onTerminal(isatty(STDOUT_FILENO))) {}
+      m_onTerminal(isatty(STDOUT_FILENO)) {}
 
 void Progress::update(std::uint64_t done, const std::string& note) {
   if (m_sinceSaid.milliseconds() < (m_onTerminal ? kBetweenBars : kBetweenLines)) return;
