@@ -1,5 +1,5 @@
 // Plans a path of a vehicle over a semantic map, classes before length.
-#include <semantic_map/MapPictures.h>
+#include <map_pictures/MapPictures.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
@@ -59,7 +59,7 @@ void write(const Cli& cli, const SemanticOcTree& map, const SemanticPlanner& pla
   strict_files::OutputFolder output(cli.output);
   writeText(report.dump(2) + "\n", output.staged("path.json"));
   if (plan.found()) writeText(toCsv(plan, map.classes()), output.staged("path.csv"));
-  semantic_map::savePicture(drawPlan(map, planner, plan, cli.start, cli.goal),
+  map_pictures::savePicture(drawPlan(map, planner, plan, cli.start, cli.goal),
                             output.staged("plan.png"));
   saveScene(map, planner, plan, output.staged("plan.3Dscene"));
   output.commit({"path.json", "path.csv", "plan.png", "plan.3Dscene"});

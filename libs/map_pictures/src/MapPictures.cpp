@@ -1,4 +1,4 @@
-#include <semantic_map/MapPictures.h>
+#include <map_pictures/MapCanvas.h>
 #include <strict_files/StagedFile.h>
 
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
-namespace semantic_map {
+namespace map_pictures {
 namespace {
 
 void require(bool fine, const char* what, double value, const char* expected) {
@@ -31,6 +31,11 @@ void Viewpoint::validate() const {
   require(std::isfinite(zoom) && zoom > 0, "zoom", zoom, "above 0");
 }
 
+cv::Mat renderTopView(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style) {
+  const MapCanvas canvas = MapCanvas::ofMap(tree, style);
+  return style.legend ? canvas.sheet(style.title) : canvas.withScale();
+}
+
 void savePicture(const cv::Mat& picture, const std::filesystem::path& file) {
   std::vector<std::uint8_t> png;
   if (!cv::imencode(".png", picture, png))
@@ -43,4 +48,4 @@ void savePicture(const cv::Mat& picture, const std::filesystem::path& file) {
   staged.commit();
 }
 
-}  // namespace semantic_map
+}  // namespace map_pictures
