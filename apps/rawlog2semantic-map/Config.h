@@ -3,8 +3,8 @@
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/ScanStream.h>
 #include <labeled_cloud/Trajectory.h>
+#include <map_pictures/MapPictures.h>
 #include <semantic_map/MapOptions.h>
-#include <semantic_map/MapPictures.h>
 
 #include <filesystem>
 
@@ -19,8 +19,8 @@ struct Config {
   labeled_cloud::LabelFolderOptions labels;       // [labels]
   labeled_cloud::ScanStreamOptions stream;        // [labels] too
   labeled_cloud::CloudLabelerOptions cameras;     // [cameras] and [camera NAME]
-  semantic_map::PictureStyle pictures;            // [pictures]
-  semantic_map::Viewpoint view;                   // [pictures] too
+  map_pictures::PictureStyle pictures;            // [pictures]
+  map_pictures::Viewpoint view;                   // [pictures] too
 };
 
 /** Reads the file; `map.classes` is then relative to the working directory, not to the file.

@@ -3,8 +3,9 @@
 #include <labeled_cloud/EigenPose.h>
 #include <labeled_cloud/LabelModel.h>
 #include <labeled_cloud/VisiblePixels.h>
+#include <map_pictures/MapPictures.h>
+#include <semantic_types/ClassColors.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
@@ -18,12 +19,9 @@ using semantic_types::kNoClass;
 
 namespace {
 
-const cv::Vec3b kGray(128, 128, 128);
-
-cv::Vec3b colorOf(ClassId id, const ClassTable& classes) {
-  if (id == kNoClass) return kGray;
-  const auto& c = classes.color(id);
-  return {c.b, c.g, c.r};
+cv::Vec3b pixelOf(ClassId id, const ClassTable& classes) {
+  const auto color = colorOf(id, classes);
+  return {color.b, color.g, color.r};
 }
 
 /** The photograph, or black where there is none. */
@@ -41,7 +39,7 @@ cv::Mat3b withLabels(cv::Mat3b image, const LabeledPicture& picture, const Class
     for (int col = 0; col < image.cols; ++col) {
       const auto cell = picture.labels.cellAt(col, row);
       const ClassId id = cell ? picture.labels.classOf(*cell) : kNoClass;
-      if (id != kNoClass) image(row, col) = image(row, col) / 2 + colorOf(id, classes) / 2;
+      if (id != kNoClass) image(row, col) = image(row, col) / 2 + pixelOf(id, classes) / 2;
     }
   return image;
 }
@@ -56,7 +54,7 @@ cv::Mat3b withPoints(cv::Mat3b image, const LabeledPicture& picture,
     if (!pixels[i].allFinite()) continue;
     const ClassId id = cloud.classes.empty() ? kNoClass : cloud.classes[i];
     cv::circle(image, cv::Point(cvRound(pixels[i].x()), cvRound(pixels[i].y())),
-               id == kNoClass ? 0 : 1, cv::Scalar(colorOf(id, classes)), cv::FILLED);
+               id == kNoClass ? 0 : 1, cv::Scalar(pixelOf(id, classes)), cv::FILLED);
   }
   return image;
 }
@@ -83,8 +81,7 @@ void Preview::write(const LabeledScan& scan) {
                 withPoints(image.clone(), picture, cloud, m_classes), sheet);
     char name[32];
     std::snprintf(name, sizeof name, "%06zu.png", m_written++);
-    if (!cv::imwrite((m_folder / name).string(), sheet))
-      throw std::runtime_error((m_folder / name).string() + ": cannot be written");
+    map_pictures::savePicture(sheet, m_folder / name);
   }
 }
 

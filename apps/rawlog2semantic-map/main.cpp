@@ -131,9 +131,9 @@ Summary buildMap(const Cli& cli, Config config, CSemanticOctoMap& map) {
 /** A map is worth keeping where it cannot be drawn: says why not instead of throwing. */
 std::string drawPictures(const SemanticOcTree& tree, const Config& config,
                          const OutputFolder& output) {
-  semantic_map::savePicture(renderTopView(tree, config.pictures), output.staged("top.png"));
+  map_pictures::savePicture(renderTopView(tree, config.pictures), output.staged("top.png"));
   try {
-    semantic_map::savePicture(renderPerspective(tree, config.pictures, config.view),
+    map_pictures::savePicture(renderPerspective(tree, config.pictures, config.view),
                               output.staged("view.png"));
   } catch (const std::exception& e) {
     return "view.png: " + strict_files::messageOf(e);
@@ -144,7 +144,7 @@ std::string drawPictures(const SemanticOcTree& tree, const Config& config,
 void writeCompressed(CSemanticOctoMap& map, const Config& config, const OutputFolder& output) {
   const SemanticOcTree compressed = map.abstraction().compressedMap();
   saveTree(compressed, output.staged("compressed.semantic"));
-  semantic_map::savePicture(renderTopView(compressed, config.pictures),
+  map_pictures::savePicture(renderTopView(compressed, config.pictures),
                             output.staged("compressed.png"));
 }
 

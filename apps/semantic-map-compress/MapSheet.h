@@ -1,16 +1,11 @@
 #pragma once
-#include <semantic_map/MapPictures.h>
+#include <map_pictures/Sheet.h>
+#include <semantic_octree/SemanticOcTree.h>
 
-#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 namespace semantic_map_compress {
-
-/** renderTopView(), but empty for a map whose leaves are too large to draw: of one that was
- * compressed to its root. */
-cv::Mat topView(const semantic_octree::SemanticOcTree& map,
-                const semantic_map::PictureStyle& style);
 
 /** Maps of the same place from above, side by side, each with its title. */
 class MapSheet {
@@ -25,7 +20,7 @@ class MapSheet {
  private:
   int m_columns;
   cv::Size m_tile;
-  cv::Mat m_legend;
+  std::vector<map_pictures::LegendEntry> m_legend;
   std::vector<cv::Mat> m_tiles;
 };
 

@@ -1,5 +1,5 @@
 // Compresses a semantic octree map to its optimal trees for given weights of the classes.
-#include <semantic_map/MapPictures.h>
+#include <map_pictures/MapPictures.h>
 #include <semantic_octree/MapContents.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/OutputFolder.h>
@@ -73,9 +73,9 @@ class SolutionWriter {
 
  private:
   void draw(const SemanticOcTree& compressed, const Compression& c) const {
-    semantic_map::PictureStyle style;
+    map_pictures::PictureStyle style;
     style.title = c.solution.name;
-    semantic_map::savePicture(topView(compressed, style),
+    map_pictures::savePicture(renderTopView(compressed, style),
                               m_output.staged(c.solution.name + ".top.png"));
     m_sheet.add(compressed, c.solution.name + ": " +
                                 std::to_string(c.measures.compressed.numKnownLeaves) + " leaves");
@@ -147,7 +147,7 @@ int run(const Cli& cli) {
   measureOtherBatches(compressor, compressions);
   times.add("measureOtherClasses");
 
-  semantic_map::savePicture(sheet.picture(), output.staged("maps.png"));
+  map_pictures::savePicture(sheet.picture(), output.staged("maps.png"));
   const std::string problem = drawFigures(full, compressions, catalog, output);
   times.add("figures");
   strict_files::writeText(output.staged("report.csv"), toCsv(catalog, compressions));

@@ -1,36 +1,32 @@
 #pragma once
-#include <filesystem>
-#include <vector>
+#include <functional>
 
 #include "DrivePicture.h"
 
 namespace semantic_map_drive {
 
-/** Takes pictures along the way. */
+/** Takes pictures along the way, and one at the end. */
 class Animation : public DriveObserver {
  public:
-  /** \param folder of the frames, created \param period s of the drive between frames */
-  Animation(DrivePicture picture, std::filesystem::path folder, double period);
+  /** \param period s of the drive between pictures \param show gets each of them, BGR */
+  Animation(DrivePicture picture, double period, std::function<void(const cv::Mat&)> show)
+      : m_picture(std::move(picture)), m_period(period), m_show(std::move(show)) {}
 
-  void onSensed(const DriveLoop& loop, const std::vector<Observation>& seen) override;
-  void onFinished(const DriveLoop& loop) override;
-
-  /** The frames so far, in order. */
-  std::vector<std::filesystem::path> frames() const;
-  const cv::Mat& last() const { return m_last; }
-  /** Makes a GIF of the frames, with ImageMagick. \return false if that is not installed, or fails
-   */
-  bool writeGif(const std::filesystem::path& file) const;
+  void onSensed(const DriveLoop& loop, const std::vector<Observation>&) override {
+    if (loop.time() < m_next - 1e-6) return;
+    m_next += m_period;
+    shoot(loop);
+  }
+  void onFinished(const DriveLoop& loop) override { shoot(loop); }
 
  private:
-  void shoot(const DriveLoop& loop);
-  std::filesystem::path frame(int number) const;
+  void shoot(const DriveLoop& loop) {
+    m_show(map_pictures::withTitle(m_picture.draw(loop).picture(), caption(loop)));
+  }
 
   DrivePicture m_picture;
-  std::filesystem::path m_folder;
   double m_period, m_next = 0;
-  int m_frames = 0;
-  cv::Mat m_last;
+  std::function<void(const cv::Mat&)> m_show;
 };
 
 }  // namespace semantic_map_drive

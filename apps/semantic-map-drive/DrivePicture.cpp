@@ -1,31 +1,59 @@
 #include "DrivePicture.h"
 
 #include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <cstdio>
 
 namespace semantic_map_drive {
 
+using map_pictures::Arrow;
+using map_pictures::MapCanvas;
+using map_pictures::Stroke;
 using mrpt::math::TPose2D;
 using namespace semantic_driving;
 using namespace semantic_planning;
 
 namespace {
 
-constexpr double kAround = 12;     // m around start and goal
-constexpr double kBeside = 3;      // m beside a track
-constexpr double kCutAbove = 2.5;  // m above the robot: crowns of trees would hide the way
-const cv::Scalar kPaper(245, 245, 245), kPath(40, 40, 220), kTrack(20, 20, 20),
-    kHalo(255, 255, 255), kStart(40, 150, 40), kGoal(30, 30, 200), kRobot(230, 120, 20);
+constexpr Stroke kPath{kPathColor, 2, 2}, kTrack{{20, 20, 20}, 2, 2},
+    kOtherTrack{{20, 60, 220}, 2, 2};
+constexpr Arrow kStart{{40, 150, 40}, 18, 2}, kGoal{kGoalColor, 18, 2};
 
-cv::Scalar colorOf(semantic_types::ClassId id, const semantic_types::ClassTable& classes) {
-  if (!classes.contains(id)) return {190, 190, 190};
-  const semantic_types::Color c = classes.color(id);
-  return cv::Scalar(c.b, c.g, c.r);
+Eigen::AlignedBox2d around(const TPose2D& pose, double meters) {
+  const Eigen::Vector2d place(pose.x, pose.y);
+  return {place.array() - meters, place.array() + meters};
 }
 
-void drawLine(cv::Mat& picture, const std::vector<cv::Point>& line, const cv::Scalar& color) {
-  cv::polylines(picture, line, false, kHalo, 5, cv::LINE_AA);
-  cv::polylines(picture, line, false, color, 2, cv::LINE_AA);
+void drawTrack(MapCanvas& canvas, const DriveRecord& record, const std::string& name,
+               const Stroke& stroke) {
+  std::vector<Eigen::Vector2d> line;
+  for (const DriveRow& row : record.rows) line.emplace_back(row.pose.x, row.pose.y);
+  if (line.empty()) return;
+  canvas.drawLine(line, stroke);
+  canvas.explain({name, stroke});
+}
+
+void drawRoute(MapCanvas& canvas, const DriveTracker& tracker) {
+  std::vector<Eigen::Vector2d> line;
+  for (const PathPoint& p : tracker.path().points())
+    if (p.arcLength >= tracker.progress()) line.emplace_back(p.x, p.y);
+  if (line.empty()) return;
+  canvas.drawLine(line, kPath);
+  canvas.explain({"path", kPath});
+}
+
+void drawEnd(MapCanvas& canvas, const std::string& name, const TPose2D& pose, const Arrow& arrow) {
+  canvas.drawPose(pose, arrow);
+  canvas.explain({name, arrow});
+}
+
+void drawRobot(MapCanvas& canvas, const DriveLoop& loop) {
+  std::vector<Eigen::Vector2d> outline;
+  for (const Eigen::Vector2d& p : loop.config().planner.vehicle.footprint) {
+    const mrpt::math::TPoint2D corner = loop.state().pose.composePoint({p.x(), p.y()});
+    outline.emplace_back(corner.x, corner.y);
+  }
+  canvas.fillOutline(outline, kRobotColor);
+  canvas.explain({"robot", kRobotColor});
 }
 
 }  // namespace
@@ -39,100 +67,40 @@ std::string caption(const DriveLoop& loop) {
   return text;
 }
 
-DrivePicture::DrivePicture(const TPose2D& start, const TPose2D& goal, int size)
-    : m_longerEdge(size), m_left(start.x), m_right(start.x), m_bottom(start.y), m_top(start.y) {
-  include(start, kAround);
-  include(goal, kAround);
-  fit();
+DrivePicture::DrivePicture(const TPose2D& start, const TPose2D& goal, int longerEdge)
+    : m_region(around(start, 12)), m_longerEdge(longerEdge) {
+  m_region.extend(around(goal, 12));
 }
 
 void DrivePicture::include(const DriveRecord& record) {
-  for (const DriveRow& row : record.rows) include(row.pose, kBeside);
-  fit();
+  for (const DriveRow& row : record.rows) m_region.extend(around(row.pose, 3));
 }
 
-void DrivePicture::include(const TPose2D& pose, double margin) {
-  m_left = std::min(m_left, pose.x - margin);
-  m_right = std::max(m_right, pose.x + margin);
-  m_bottom = std::min(m_bottom, pose.y - margin);
-  m_top = std::max(m_top, pose.y + margin);
+/** Each voxel is a whole number of pixels: sharp, and nothing flickers from frame to frame. */
+MapCanvas DrivePicture::paperFor(double voxel) const {
+  const Eigen::Array2d low = (m_region.min().array() / voxel).floor(),
+                       high = (m_region.max().array() / voxel).ceil();
+  const Eigen::Array2d voxels = high - low;
+  const double pixels = std::max(1.0, std::round(m_longerEdge / voxels.maxCoeff()));
+  return {{(low * voxel).matrix(), (high * voxel).matrix()},
+          cv::Size(int(voxels.x() * pixels), int(voxels.y() * pixels))};
 }
 
-void DrivePicture::fit() {
-  const double width = m_right - m_left, height = m_top - m_bottom;
-  m_scale = m_longerEdge / std::max(width, height);
-  m_size = {static_cast<int>(width * m_scale), static_cast<int>(height * m_scale)};
+MapCanvas DrivePicture::draw(const DriveLoop& loop) const {
+  MapCanvas canvas = paperFor(loop.mapper().map().getResolution());
+  map_pictures::PictureStyle style;
+  style.maxHeight = loop.T_world_robot().translation().z() + kCutAbove;
+  canvas.drawMap(loop.mapper().map(), style);
+  drawTrack(canvas, loop.record(), "driven", kTrack);
+  drawRoute(canvas, loop.controller().tracker());
+  drawEnd(canvas, "start", loop.start(), kStart);
+  drawEnd(canvas, "goal", loop.goal(), kGoal);
+  drawRobot(canvas, loop);
+  return canvas;
 }
 
-cv::Point DrivePicture::pixel(double x, double y) const {
-  return {static_cast<int>(std::lround((x - m_left) * m_scale)),
-          static_cast<int>(std::lround((m_top - y) * m_scale))};
-}
-
-cv::Mat DrivePicture::draw(const DriveLoop& loop) const {
-  cv::Mat picture(m_size, CV_8UC3, kPaper);
-  drawMap(picture, loop.mapper().map(), loop.T_world_robot().translation().z() + kCutAbove);
-  addTrack(picture, loop.record(), kTrack);
-  drawRoute(picture, loop);
-  drawPose(picture, loop.start(), kStart);
-  drawPose(picture, loop.goal(), kGoal);
-  drawRobot(picture, loop);
-  cv::putText(picture, caption(loop), {8, 18}, cv::FONT_HERSHEY_SIMPLEX, 0.5, kHalo, 4,
-              cv::LINE_AA);
-  cv::putText(picture, caption(loop), {8, 18}, cv::FONT_HERSHEY_SIMPLEX, 0.5, kTrack, 1,
-              cv::LINE_AA);
-  return picture;
-}
-
-void DrivePicture::drawMap(cv::Mat& picture, const semantic_octree::SemanticOcTree& map,
-                           double top) const {
-  cv::Mat heights(m_size, CV_32F, cv::Scalar(-1e9));
-  const octomap::point3d low(float(m_left), float(m_top - m_size.height / m_scale), -50.f);
-  const octomap::point3d high(float(m_left + m_size.width / m_scale), float(m_top), float(top));
-  for (auto it = map.begin_leafs_bbx(low, high), end = map.end_leafs_bbx(); it != end; ++it) {
-    if (it->getLogOdds() <= 0 || it.getZ() > top) continue;
-    const double half = it.getSize() / 2;
-    const cv::Rect area(pixel(it.getX() - half, it.getY() + half),
-                        pixel(it.getX() + half, it.getY() - half));
-    const cv::Rect seen = area & cv::Rect({0, 0}, m_size);
-    if (seen.empty() || heights.at<float>(seen.tl()) > float(it.getZ())) continue;
-    heights(seen) = float(it.getZ());
-    picture(seen) = colorOf(map.query(*it).likeliestClass, map.classes());
-  }
-}
-
-void DrivePicture::addTrack(cv::Mat& picture, const DriveRecord& record,
-                            const cv::Scalar& color) const {
-  std::vector<cv::Point> line;
-  for (const DriveRow& row : record.rows) line.push_back(pixel(row.pose.x, row.pose.y));
-  if (!line.empty()) drawLine(picture, line, color);
-}
-
-void DrivePicture::drawRoute(cv::Mat& picture, const DriveLoop& loop) const {
-  const PathTracker& tracker = loop.controller().tracker();
-  std::vector<cv::Point> line;
-  for (const PathPoint& p : tracker.path().points())
-    if (p.arcLength >= tracker.progress()) line.push_back(pixel(p.x, p.y));
-  if (!line.empty()) drawLine(picture, line, kPath);
-}
-
-void DrivePicture::drawPose(cv::Mat& picture, const TPose2D& pose, const cv::Scalar& color) const {
-  const double length = 16 / m_scale;
-  const cv::Point from = pixel(pose.x, pose.y), to = pixel(pose.x + length * std::cos(pose.phi),
-                                                           pose.y + length * std::sin(pose.phi));
-  cv::circle(picture, from, 6, kHalo, cv::FILLED, cv::LINE_AA);
-  cv::circle(picture, from, 4, color, cv::FILLED, cv::LINE_AA);
-  cv::arrowedLine(picture, from, to, color, 2, cv::LINE_AA, 0, 0.4);
-}
-
-void DrivePicture::drawRobot(cv::Mat& picture, const DriveLoop& loop) const {
-  std::vector<cv::Point> outline;
-  for (const Eigen::Vector2d& p : loop.config().planner.vehicle.footprint) {
-    const mrpt::math::TPoint2D corner = loop.state().pose.composePoint({p.x(), p.y()});
-    outline.push_back(pixel(corner.x, corner.y));
-  }
-  cv::fillConvexPoly(picture, outline, kRobot, cv::LINE_AA);
-  cv::polylines(picture, outline, true, kTrack, 1, cv::LINE_AA);
+void addOtherTrack(MapCanvas& canvas, const DriveRecord& record) {
+  drawTrack(canvas, record, "driven before", kOtherTrack);
 }
 
 }  // namespace semantic_map_drive

@@ -1,11 +1,17 @@
 #pragma once
-#include <opencv2/core.hpp>
+#include <map_pictures/MapCanvas.h>
 
 #include "simulated_drive/DriveLoop.h"
 
 namespace semantic_map_drive {
 
 using namespace simulated_drive;
+
+/** Colors of pictures and of the window. */
+constexpr semantic_types::Color kPathColor{220, 40, 40}, kGoalColor{200, 30, 30},
+    kRobotColor{20, 120, 230};
+/** What is that far above the robot is not shown: crowns of trees would hide the way. m */
+constexpr double kCutAbove = 2.5;
 
 /** Seconds, meters, speed, and where to. */
 std::string caption(const DriveLoop& loop);
@@ -14,30 +20,21 @@ std::string caption(const DriveLoop& loop);
  * the path, the driven track, and the robot. One picture is like the other in place and size. */
 class DrivePicture {
  public:
-  /** \param size longer edge of the map's part, pixels */
-  DrivePicture(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, int size = 560);
-  /** Makes room for a drive's track, too: another place and size from here on. */
+  /** \param longerEdge of the map's part, pixels, about */
+  DrivePicture(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, int longerEdge);
+  /** Makes room for a drive's track, too: another place from here on. */
   void include(const DriveRecord& record);
 
-  /** BGR. */
-  cv::Mat draw(const DriveLoop& loop) const;
-  /** The same with another drive's track. */
-  void addTrack(cv::Mat& picture, const DriveRecord& record, const cv::Scalar& color) const;
+  map_pictures::MapCanvas draw(const DriveLoop& loop) const;
 
  private:
-  cv::Point pixel(double x, double y) const;
-  void drawMap(cv::Mat& picture, const semantic_octree::SemanticOcTree& map, double top) const;
-  void drawRoute(cv::Mat& picture, const DriveLoop& loop) const;
-  void drawPose(cv::Mat& picture, const mrpt::math::TPose2D& pose, const cv::Scalar& color) const;
-  void drawRobot(cv::Mat& picture, const DriveLoop& loop) const;
+  map_pictures::MapCanvas paperFor(double voxel) const;
 
-  void include(const mrpt::math::TPose2D& pose, double margin);
-  void fit();
-
+  Eigen::AlignedBox2d m_region;  ///< m
   int m_longerEdge;
-  double m_left, m_right, m_bottom, m_top;  ///< meters
-  double m_scale = 0;                       ///< pixels per meter
-  cv::Size m_size;
 };
+
+/** Adds the track of another drive. */
+void addOtherTrack(map_pictures::MapCanvas& canvas, const DriveRecord& record);
 
 }  // namespace semantic_map_drive

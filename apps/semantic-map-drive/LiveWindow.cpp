@@ -1,9 +1,9 @@
 #include "LiveWindow.h"
 
+#include <map_pictures/MapMesh.h>
 #include <mrpt/opengl/CCylinder.h>
 #include <mrpt/opengl/CPolyhedron.h>
 #include <mrpt/opengl/CSetOfTriangles.h>
-#include <semantic_map/MapMesh.h>
 
 #include <clocale>
 #include <cstdlib>
@@ -21,12 +21,12 @@ using namespace mrpt::opengl;
 
 namespace {
 
-constexpr double kMapPeriod = 1;   // s: its mesh takes a while
-constexpr double kCutAbove = 2.5;  // m above the robot: crowns of trees would hide the way
-constexpr double kLift = 0.3;      // m: bands lie above the voxels of the ground
-constexpr float kWidth = 0.16f;    // m
-const mrpt::img::TColor kPath(220, 40, 40), kTrack(250, 210, 40), kGoal(200, 30, 30),
-    kRobot(20, 120, 230);
+constexpr double kMapPeriod = 1;  // s: its mesh takes a while
+constexpr double kLift = 0.3;     // m: bands lie above the voxels of the ground
+constexpr float kWidth = 0.16f;   // m
+constexpr semantic_types::Color kTrackColor{250, 210, 40};
+
+mrpt::img::TColor mrptColor(const semantic_types::Color& c) { return {c.r, c.g, c.b}; }
 
 bool hasDisplay() {
   for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"})
@@ -47,7 +47,7 @@ TPoint3Df raised(double x, double y, double z) { return {float(x), float(y), flo
 
 /** Flat bands: many drivers draw lines one pixel wide whatever they are asked for. */
 CSetOfTriangles::Ptr bandAlong(const std::vector<TPoint3Df>& points,
-                               const mrpt::img::TColor& color) {
+                               const semantic_types::Color& color) {
   const auto band = CSetOfTriangles::Create();
   for (std::size_t i = 1; i < points.size(); ++i) {
     const TPoint3Df a = points[i - 1], b = points[i], along = b - a;
@@ -56,7 +56,7 @@ CSetOfTriangles::Ptr bandAlong(const std::vector<TPoint3Df>& points,
     band->insertTriangle(TTriangle(a - aside, b - aside, b + aside));
     band->insertTriangle(TTriangle(a - aside, b + aside, a + aside));
   }
-  band->setColor_u8(color);
+  band->setColor_u8(mrptColor(color));
   band->enableLight(false);
   band->cullFaces(TCullFace::NONE);
   return band;
@@ -66,7 +66,7 @@ CSetOfTriangles::Ptr trackOf(const DriveLoop& loop) {
   std::vector<TPoint3Df> points;
   for (const DriveRow& row : loop.record().rows)
     points.push_back(raised(row.pose.x, row.pose.y, row.z));
-  return bandAlong(points, kTrack);
+  return bandAlong(points, kTrackColor);
 }
 
 /** What is left of it. */
@@ -75,7 +75,7 @@ CSetOfTriangles::Ptr pathOf(const DriveLoop& loop) {
   std::vector<TPoint3Df> points;
   for (const semantic_planning::PathPoint& p : tracker.path().points())
     if (p.arcLength >= tracker.progress()) points.push_back(raised(p.x, p.y, p.z));
-  return bandAlong(points, kPath);
+  return bandAlong(points, kPathColor);
 }
 
 CPolyhedron::Ptr robotOf(const DriveLoop& loop) {
@@ -83,7 +83,7 @@ CPolyhedron::Ptr robotOf(const DriveLoop& loop) {
   std::vector<mrpt::math::TPoint2D> outline;
   for (const Eigen::Vector2d& p : vehicle.footprint) outline.emplace_back(p.x(), p.y());
   const auto robot = CPolyhedron::CreateCustomPrism(outline, vehicle.height);
-  robot->setColor_u8(kRobot);
+  robot->setColor_u8(mrptColor(kRobotColor));
   robot->setPose(mrpt::poses::CPose3D(
       mrpt::math::CMatrixDouble44(Eigen::Matrix4d(loop.T_world_robot().matrix()))));
   return robot;
@@ -99,7 +99,7 @@ TFontParams captionFont() {
 CCylinder::Ptr postAt(const TPoint3D& place) {
   const auto post = CCylinder::Create(0.12f, 0.12f, 3.f);
   post->setLocation(place);
-  post->setColor_u8(kGoal);
+  post->setColor_u8(mrptColor(kGoalColor));
   return post;
 }
 
@@ -126,9 +126,9 @@ LiveWindow::LiveWindow(const synthetic_world::World& world, const TPose2D& start
 void LiveWindow::onSensed(const DriveLoop& loop, const std::vector<Observation>&) {
   if (!m_window->isOpen() || loop.time() < m_nextMap - 1e-6) return;
   m_nextMap = loop.time() + kMapPeriod;
-  semantic_map::PictureStyle style;
+  map_pictures::PictureStyle style;
   style.maxHeight = loop.T_world_robot().translation().z() + kCutAbove;
-  const auto mesh = semantic_map::meshOf(loop.mapper().map(), style);
+  const auto mesh = map_pictures::meshOf(loop.mapper().map(), style);
   const mrpt::gui::CDisplayWindow3DLocker locker(*m_window);
   m_map->clear();
   m_map->insert(mesh);

@@ -1,11 +1,11 @@
 // Drives a robot through a synthetic world: it maps, compresses, plans and drives.
+#include <map_pictures/GifFile.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <strict_files/OutputFolder.h>
 #include <strict_files/TextFile.h>
 
 #include <iostream>
-#include <opencv2/imgcodecs.hpp>
 
 #include "Animation.h"
 #include "Application.h"
@@ -23,11 +23,6 @@ namespace fs = std::filesystem;
 
 constexpr int kNotArrived = 2;  // exit status
 
-void writePicture(const cv::Mat& picture, const fs::path& file) {
-  if (!cv::imwrite(file.string(), picture))
-    throw std::runtime_error(file.string() + ": cannot be written");
-}
-
 void printSummary(const DriveRecord& record) {
   std::cout << nameOf(record.end) << " after " << record.duration() << " s and " << record.length
             << " m; " << record.replans << " replans, " << record.collisions
@@ -43,8 +38,8 @@ class Program {
         m_config(loadDriveConfig(cli.config)),
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
         m_output(cli.output),
-        m_picture(cli.start, cli.goal),
-        m_whole(m_picture) {
+        m_picture(cli.start, cli.goal, 560),
+        m_whole(cli.start, cli.goal, 1200) {
     m_config.sensors.seed = cli.seed;
     if (!cli.map.empty()) m_map = semantic_octree::loadTree(cli.map.string());
   }
@@ -55,8 +50,8 @@ class Program {
       fs::rename(navlogs() / "log_000.reactivenavlog", m_output.staged("drive.reactivenavlog"));
     if (m_cli.classes.size() > 1) {
       const DriveRecord second = drive(m_cli.classes[1], "drive2");
-      m_whole.addTrack(m_last, first, {220, 60, 20});
-      writePicture(m_last, m_output.staged("both.png"));
+      addOtherTrack(*m_last, first);
+      map_pictures::savePicture(m_last->sheet("both drives"), m_output.staged("both.png"));
     }
     std::vector<std::string> names = {"drive.csv",  "drive.json",   "drive.png",
                                       "drive.gif",  "drive.rawlog", "map.semantic",
@@ -80,12 +75,18 @@ class Program {
       loop.keepOriginals();
       loop.addObserver(recorder.emplace(m_output.staged("drive.rawlog")));
     }
-    Animation animation(m_picture, m_output.staged(name + "-frames"), 1);
-    if (m_cli.pictures) loop.addObserver(animation);
-    std::optional<Animation> onTheWay;
+    std::optional<map_pictures::GifFile> gif;
+    std::optional<Animation> animation, onTheWay;
+    if (m_cli.pictures) {
+      gif.emplace(m_output.staged(name + ".gif"), 0.12);
+      const auto add = [&gif](const cv::Mat& picture) { gif->add(picture); };
+      loop.addObserver(animation.emplace(m_picture, 1, add));
+    }
+    std::size_t numOnTheWay = 0;
     if (m_cli.pictureEvery > 0)
-      loop.addObserver(
-          onTheWay.emplace(m_picture, m_output.staged(name + "-way"), m_cli.pictureEvery));
+      loop.addObserver(onTheWay.emplace(m_picture, m_cli.pictureEvery, [&](const cv::Mat& picture) {
+        map_pictures::savePicture(picture, m_output.staged(numbered(name, numOnTheWay++)));
+      }));
     std::optional<LiveWindow> window;
     if (m_cli.live) loop.addObserver(window.emplace(m_scene.world, m_cli.start, m_cli.goal));
     const DriveRecord record = loop.run();
@@ -95,24 +96,25 @@ class Program {
       semantic_octree::saveTree(loop.mapper().map(), m_output.staged("map.semantic").string());
     m_whole.include(record);
     m_last = m_whole.draw(loop);
-    writePicture(m_last, m_output.staged(name + ".png"));
-    if (m_cli.pictures) animation.writeGif(m_output.staged(name + ".gif"));
-    keepOnTheWay(name, onTheWay ? onTheWay->frames() : std::vector<fs::path>());
+    map_pictures::savePicture(map_pictures::withTitle(m_last->sheet(), caption(loop)),
+                              m_output.staged(name + ".png"));
+    if (gif) gif->close();
+    listOnTheWay(name, numOnTheWay);
     printSummary(record);
     return record;
   }
 
-  /** As drive-0000.png, drive-0001.png, ...; those of an earlier, longer drive go. */
-  void keepOnTheWay(const std::string& name, const std::vector<fs::path>& frames) {
-    const auto nameOf = [&name](std::size_t i) {
-      const std::string digits = std::to_string(i);
-      return name + "-" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits +
-             ".png";
-    };
-    for (std::size_t i = 0; i < frames.size() || fs::exists(m_cli.output / nameOf(i)); ++i) {
-      if (i < frames.size()) fs::rename(frames[i], m_output.staged(nameOf(i)));
-      m_onTheWay.push_back(nameOf(i));
-    }
+  /** drive-0000.png, drive-0001.png, ... */
+  static std::string numbered(const std::string& name, std::size_t i) {
+    const std::string digits = std::to_string(i);
+    return name + "-" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits +
+           ".png";
+  }
+
+  /** Pictures of this drive; and those of an earlier, longer one, which go. */
+  void listOnTheWay(const std::string& name, std::size_t count) {
+    for (std::size_t i = 0; i < count || fs::exists(m_cli.output / numbered(name, i)); ++i)
+      m_onTheWay.push_back(numbered(name, i));
   }
 
   const Cli& m_cli;
@@ -122,7 +124,7 @@ class Program {
   DrivePicture m_picture;  ///< on the way
   DrivePicture m_whole;    ///< of all that was driven
   std::optional<semantic_octree::SemanticOcTree> m_map;
-  cv::Mat m_last;
+  std::optional<map_pictures::MapCanvas> m_last;
   std::vector<std::string> m_onTheWay;  ///< names of pictures
 };
 

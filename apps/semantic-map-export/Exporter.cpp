@@ -1,12 +1,11 @@
 #include "Exporter.h"
 
+#include <map_pictures/ClassMap.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_map/ExportClassMap.h>
 #include <semantic_map/ExportOctomap.h>
-#include <semantic_map/MapPictures.h>
 
 #include <algorithm>
 #include <fstream>
@@ -111,7 +110,7 @@ void Exporter::writeOctree(const fs::path& file) {
 }
 
 void Exporter::writeClassMap(const fs::path& file) {
-  const auto classMap = semantic_map::classMapOf(m_map, m_options.maxHeight);
+  const auto classMap = map_pictures::classMapOf(m_map, m_options.maxHeight);
   std::vector<std::uint8_t> png;
   if (!cv::imencode(".png", classMap.picture, png)) throw std::runtime_error("cannot be encoded");
   stage(file, [&png](std::ostream& out) {

@@ -1,5 +1,5 @@
 // Plans a path of a vehicle over a semantic map, classes before length.
-#include <semantic_map/MapPictures.h>
+#include <map_pictures/MapPictures.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_octree/WeightsFile.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
@@ -49,7 +49,7 @@ void write(const Cli& cli, const SemanticOcTree& map, const SemanticPlanner& pla
   strict_files::OutputFolder output(cli.output);
   writeJson(output.staged("path.json"), report);
   if (plan.found()) strict_files::writeText(output.staged("path.csv"), toCsv(plan, map.classes()));
-  semantic_map::savePicture(drawPlan(map, planner, plan, cli.start, cli.goal),
+  map_pictures::savePicture(drawPlan(map, planner, plan, cli.start, cli.goal),
                             output.staged("plan.png"));
   saveScene(map, planner, plan, output.staged("plan.3Dscene"));
   output.commit({"path.json", "path.csv", "plan.png", "plan.3Dscene"});

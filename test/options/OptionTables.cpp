@@ -6,7 +6,7 @@
 #include <labeled_cloud/ScanStream.h>
 #include <semantic_map/ExportGrid.h>
 #include <semantic_map/MapOptions.h>
-#include <semantic_map/MapPictures.h>
+#include <map_pictures/MapPictures.h>
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Lidar.h>
 

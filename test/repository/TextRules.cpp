@@ -25,6 +25,11 @@ std::vector<std::string> linesWithTrailingSpace(const fs::path& root) {
   return linesThatMatch(pattern, "space at the end of the line", root);
 }
 
+std::vector<std::string> linesWithCarriageReturn(const fs::path& root) {
+  static const std::regex pattern(R"(\r)");
+  return linesThatMatch(pattern, "a carriage return", root);
+}
+
 std::vector<std::string> linesTiedToAMachine(const fs::path& root) {
   static const std::regex pattern(
       R"((^|[^\w.}])/(work|home|root|tmp|Users|mnt)/|(deb|ftp|security|archive)\.(debian|ubuntu)\.)");

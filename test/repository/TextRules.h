@@ -6,6 +6,9 @@
 /** Each returns its findings as "file:line: what is wrong", with paths relative to `root`. */
 std::vector<std::string> linesWithTrailingSpace(const std::filesystem::path& root);
 
+/** At the end of a line or, what no editor shows, within it. */
+std::vector<std::string> linesWithCarriageReturn(const std::filesystem::path& root);
+
 /** Paths that exist on somebody's machine only, and names of package servers. */
 std::vector<std::string> linesTiedToAMachine(const std::filesystem::path& root);
 

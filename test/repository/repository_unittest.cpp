@@ -144,6 +144,17 @@ TEST_F(Repository, aLineThatEndsWithSpaceIsFound) {
                       "file.txt:3: space at the end of the line"}));
 }
 
+TEST_F(Repository, noFileHasACarriageReturn) {
+  for (const fs::path& folder : projectFolders())
+    EXPECT_EQ(linesWithCarriageReturn(folder), Findings()) << folder;
+}
+
+TEST_F(Repository, aCarriageReturnIsFound) {
+  write("file.txt", "good\nb\rad\nbad\r\n");
+  EXPECT_EQ(linesWithCarriageReturn(scratch),
+            (Findings{"file.txt:2: a carriage return", "file.txt:3: a carriage return"}));
+}
+
 TEST_F(Repository, nothingIsTiedToOneMachine) {
   for (const fs::path& folder : projectFolders())
     EXPECT_EQ(linesTiedToAMachine(folder), Findings()) << folder;

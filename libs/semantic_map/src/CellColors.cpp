@@ -1,20 +1,13 @@
 #include "CellColors.h"
 
 #include <mrpt/img/color_maps.h>
+#include <semantic_types/ClassColors.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace semantic_map {
-
-using semantic_types::ClassId;
-using semantic_types::ClassTable;
-using semantic_types::Color;
-
-Color classColor(const ClassTable& classes, ClassId id) {
-  return id == semantic_types::kNoClass ? kColorWithoutClass : classes.color(id);
-}
 
 namespace {
 
@@ -59,7 +52,7 @@ mrpt::img::TColor CellColors::operator()(const semantic_octree::SemanticOcTree::
     case TRenderingOptions::Coloring::Class:
       break;
   }
-  const Color c = classColor(m_tree.classes(), m_tree.query(node).likeliestClass);
+  const auto c = colorOf(m_tree.query(node).likeliestClass, m_tree.classes());
   return {c.r, c.g, c.b};
 }
 

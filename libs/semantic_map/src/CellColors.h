@@ -5,13 +5,6 @@
 
 namespace semantic_map {
 
-/** Of cells where no class was ever seen. */
-constexpr semantic_types::Color kColorWithoutClass{150, 150, 150};
-
-/** Color of the likeliest class. */
-semantic_types::Color classColor(const semantic_types::ClassTable& classes,
-                                 semantic_types::ClassId id);
-
 /** Colors of occupied cells in a scene. */
 class CellColors {
  public:

@@ -22,14 +22,12 @@ cv::Rect keysOf(const SemanticOcTree::leaf_iterator& leaf) {
 
 }  // namespace
 
-ExportColumns::ExportColumns(const SemanticOcTree& tree, bool occupiedOnly)
-    : m_resolution(tree.getResolution()) {
+ExportColumns::ExportColumns(const SemanticOcTree& tree) : m_resolution(tree.getResolution()) {
   for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf)
-    if (!occupiedOnly || leaf->getLogOdds() > 0) m_keys |= keysOf(leaf);
-  if (m_keys.empty())
-    throw std::runtime_error(occupiedOnly ? "nothing in the map is occupied" : "the map is empty");
+    m_keys |= keysOf(leaf);
+  if (m_keys.empty()) throw std::runtime_error("the map is empty");
   if (double(m_keys.width) * m_keys.height > kMostColumns)
-    throw std::runtime_error("the map is too wide for a picture, " + std::to_string(m_keys.width) +
+    throw std::runtime_error("the map is too wide for a grid, " + std::to_string(m_keys.width) +
                              " x " + std::to_string(m_keys.height) +
                              " voxels: crop it, or make it coarser");
 }

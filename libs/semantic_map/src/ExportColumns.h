@@ -9,9 +9,9 @@ namespace semantic_map {
  * of it from above. Pixel (0, 0) is at the least x and the largest y. */
 class ExportColumns {
  public:
-  /** Columns of all leaves, or of the occupied ones only.
-   * \throw std::runtime_error there are none, or more than a picture can hold. */
-  ExportColumns(const semantic_octree::SemanticOcTree& tree, bool occupiedOnly);
+  /** Columns of all leaves.
+   * \throw std::runtime_error there are none, or more than a grid can hold. */
+  explicit ExportColumns(const semantic_octree::SemanticOcTree& tree);
 
   cv::Size size() const { return m_keys.size(); }
   /** Edge of a column, m. */

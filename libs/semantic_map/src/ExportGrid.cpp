@@ -100,7 +100,7 @@ COccupancyGridMap2D gridOf(const SemanticOcTree& tree, const GridOptions& option
   options.validate();
   for (const ClassId id : options.ground)
     strict_files::require(tree.classes().contains(id), "ground", id, "a class of the map");
-  const ExportColumns columns(tree, false);
+  const ExportColumns columns(tree);
   const Band band(tree, columns, options);
   const double left = columns.upperLeft().x, top = columns.upperLeft().y;
   const int width = columns.size().width, height = columns.size().height;

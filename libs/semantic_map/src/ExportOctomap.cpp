@@ -1,6 +1,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 #include <semantic_map/ExportOctomap.h>
+#include <semantic_types/ClassColors.h>
 
 #include <cmath>
 #include <iomanip>
@@ -8,8 +9,6 @@
 #include <ostream>
 #include <stdexcept>
 #include <string>
-
-#include "CellColors.h"
 
 namespace semantic_map {
 
@@ -41,7 +40,7 @@ class Copy : public Tree {
 
   void paint(const SemanticOcTree::Node& from, octomap::ColorOcTreeNode& to) {
     if (from.getLogOdds() <= 0) return;
-    const auto color = classColor(m_source.classes(), m_source.query(from).likeliestClass);
+    const auto color = colorOf(m_source.query(from).likeliestClass, m_source.classes());
     to.setColor(color.r, color.g, color.b);
   }
   void paint(const SemanticOcTree::Node&, octomap::OcTreeNode&) {}

@@ -1,12 +1,11 @@
 #include <semantic_map/ExportPoints.h>
+#include <semantic_types/ClassColors.h>
 #include <strict_files/Csv.h>
 
 #include <iomanip>
 #include <ostream>
 #include <stdexcept>
 #include <string>
-
-#include "CellColors.h"
 
 namespace semantic_map {
 
@@ -59,7 +58,7 @@ void writePly(std::ostream& out, const SemanticOcTree& tree, const PointOptions&
   writePlyHeader(out, tree.classes(), points);
   forEachPoint(tree, options, [&](const auto& leaf) {
     const CellState state = tree.query(*leaf);
-    const auto color = classColor(tree.classes(), state.likeliestClass);
+    const auto color = colorOf(state.likeliestClass, tree.classes());
     writeBytes(out, float(leaf.getX()), float(leaf.getY()), float(leaf.getZ()), color.r, color.g,
                color.b, state.likeliestClass, float(state.probability), float(state.occupancy),
                float(leaf.getSize()));

@@ -1,11 +1,12 @@
 #pragma once
-#include <semantic_map/MapPictures.h>
+#include <map_pictures/MapPictures.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <vector>
 
-namespace semantic_map {
+namespace map_pictures {
 
 /** A cell that a picture shows: an occupied leaf, or an occupied inner node of the drawn depth. */
 struct MapCell {
@@ -33,6 +34,14 @@ struct MapCells {
  * can show. Cuts off what the style says. */
 MapCells collectCells(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
 
+/** The value below which that share of the values is, one of them; changes their order. */
+template <class T>
+T quantile(std::vector<T>& values, double share) {
+  const auto nth = values.begin() + std::ptrdiff_t(share * double(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
 /** Where nearly all of the cells are: a few of a thousand far away do not count. */
 struct Extent {
   Eigen::Vector3f low, high;
@@ -43,4 +52,4 @@ Extent extentOf(const std::vector<MapCell>& cells);
  * in a surface at nearly one height with room to stand below. Infinite otherwise. */
 double heightUnderCeiling(const std::vector<MapCell>& cells);
 
-}  // namespace semantic_map
+}  // namespace map_pictures

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace semantic_map {
+namespace map_pictures {
 
 /** A picture of the map from above that geographic software places by itself: north (up) is +y. */
 struct ClassMap {
@@ -25,4 +25,4 @@ struct ClassMap {
 ClassMap classMapOf(const semantic_octree::SemanticOcTree& tree,
                     const std::optional<double>& maxHeight = {});
 
-}  // namespace semantic_map
+}  // namespace map_pictures

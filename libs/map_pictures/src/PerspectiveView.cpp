@@ -1,3 +1,4 @@
+#include <map_pictures/Sheet.h>
 #include <mrpt/opengl/CFBORender.h>
 #include <mrpt/opengl/COpenGLScene.h>
 
@@ -7,10 +8,9 @@
 
 #include "CameraFit.h"
 #include "MapCells.h"
-#include "PictureSheet.h"
 #include "VoxelMesh.h"
 
-namespace semantic_map {
+namespace map_pictures {
 
 using mrpt::opengl::COpenGLScene;
 using semantic_octree::SemanticOcTree;
@@ -28,7 +28,7 @@ COpenGLScene sceneOf(const mrpt::opengl::CSetOfTriangles::Ptr& mesh, const Pictu
   scene.insert(mesh);
   const auto viewport = scene.getViewport();
   viewport->setCustomBackgroundColor(
-      mrpt::img::TColorf(float(kPaper[2] / 255), float(kPaper[1] / 255), float(kPaper[0] / 255)));
+      mrpt::img::TColorf(mrpt::img::TColor(kPaper.r, kPaper.g, kPaper.b)));
   viewport->setViewportClipDistances(float(camera.near), float(camera.far));
   return scene;
 }
@@ -106,7 +106,7 @@ cv::Mat renderPerspective(const SemanticOcTree& tree, const PictureStyle& style,
   style.validate();
   viewpoint.validate();
   const MapCells map = collectCells(tree, style);
-  if (map.cells.empty()) return cv::Mat(style.height, style.width, CV_8UC3, kPaper);
+  if (map.cells.empty()) return cv::Mat(style.height, style.width, CV_8UC3, bgr(kPaper));
 
   const int finer = std::max(style.width, style.height) <= 4096 ? 2 : 1;
   const PictureCamera camera =
@@ -119,7 +119,7 @@ cv::Mat renderPerspective(const SemanticOcTree& tree, const PictureStyle& style,
   drawAxes(picture, axesSeenBy(camera));
   if (!style.legend) return picture;
   return withLegend(picture, style.title,
-                    legendOf(tree.classes(), map.countClasses(tree.numClasses())));
+                    classLegend(tree.classes(), map.countClasses(tree.numClasses())));
 }
 
-}  // namespace semantic_map
+}  // namespace map_pictures

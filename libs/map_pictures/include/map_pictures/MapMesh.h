@@ -1,8 +1,8 @@
 #pragma once
+#include <map_pictures/MapPictures.h>
 #include <mrpt/opengl/CSetOfTriangles.h>
-#include <semantic_map/MapPictures.h>
 
-namespace semantic_map {
+namespace map_pictures {
 
 /** A map for MRPT's scenes and windows: the faces of its occupied cells that are not hidden by a
  * neighbor (map frame, m), in the classes' colors (gray: none), with light from above, corners and
@@ -12,4 +12,4 @@ namespace semantic_map {
 mrpt::opengl::CSetOfTriangles::Ptr meshOf(const semantic_octree::SemanticOcTree& tree,
                                           const PictureStyle& style);
 
-}  // namespace semantic_map
+}  // namespace map_pictures

@@ -1,41 +1,23 @@
 #include <gtest/gtest.h>
-#include <semantic_map/MapPictures.h>
+#include <map_pictures/MapPictures.h>
+#include <semantic_octree/Abstraction.h>
 
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
-#include "SmallMaps.h"
+#include "PaintedField.h"
 #include "TemporaryFolder.h"
 
-using semantic_map::PictureStyle;
-using semantic_map::renderPerspective;
-using semantic_map::renderTopView;
-using semantic_map::Viewpoint;
+using map_pictures::PictureStyle;
+using map_pictures::renderPerspective;
+using map_pictures::renderTopView;
+using map_pictures::Viewpoint;
 using semantic_octree::SemanticOcTree;
 using semantic_types::ClassId;
 
 namespace {
 
-const cv::Vec3b kRoad(30, 30, 200), kTree(60, 180, 30), kWall(210, 60, 40), kPaper(250, 250, 250);
-
-/** A field of 10 m x 6 m at z = 0.1: road for x < 5, trees beyond it; and HEIGHT above, if it is
- * not 0, a wall over all of it. */
-SemanticOcTree field(float height = 0) {
-  semantic_types::LabeledCloud cloud;
-  const auto add = [&cloud](float x, float y, float z, ClassId id) {
-    cloud.points.emplace_back(x, y, z), cloud.classes.push_back(id);
-  };
-  for (float x = 0.1f; x < 10; x += 0.2f)
-    for (float y = 0.1f; y < 6; y += 0.2f) {
-      add(x, y, -0.9f, x < 5 ? 1 : 2);
-      if (height > 0) add(x, y, height - 0.9f, 3);
-    }
-  SemanticOcTree tree(0.2, threeClasses());
-  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-  T_map_sensor.translation().z() = 1;
-  tree.insert(cloud, T_map_sensor);
-  return tree;
-}
+const cv::Vec3b kPaper(250, 250, 250);
 
 PictureStyle plain() {
   PictureStyle style;
@@ -69,7 +51,7 @@ double meanColumn(const cv::Mat& picture, int channel) {
 }  // namespace
 
 TEST(TopView, showsEachPlaceInItsClassesColor) {
-  const cv::Mat picture = renderTopView(field(), plain());
+  const cv::Mat picture = renderTopView(paintedField(), plain());
   ASSERT_EQ(picture.type(), CV_8UC3);
   ASSERT_EQ(picture.cols, 800);
   const double scale = (800 - 2 * 24) / 10.0;  // pixels per meter, within the border
@@ -77,10 +59,10 @@ TEST(TopView, showsEachPlaceInItsClassesColor) {
   const auto at = [&](double x, double y) {
     return picture.at<cv::Vec3b>(int(24 + (6 - y) * scale), int(24 + x * scale));
   };
-  EXPECT_EQ(at(3, 3), kRoad);
-  EXPECT_EQ(at(4.8, 3), kRoad);
-  EXPECT_EQ(at(5.2, 3), kTree);
-  EXPECT_EQ(at(7, 3), kTree);
+  EXPECT_EQ(at(3, 3), pixelOf(kRoad));
+  EXPECT_EQ(at(4.8, 3), pixelOf(kRoad));
+  EXPECT_EQ(at(5.2, 3), pixelOf(kTree));
+  EXPECT_EQ(at(7, 3), pixelOf(kTree));
   EXPECT_EQ(picture.at<cv::Vec3b>(2, 2), kPaper);
 }
 
@@ -89,46 +71,46 @@ TEST(TopView, yPointsUp) {
   for (float t = 0.1f; t < 10; t += 0.2f)
     for (float s = 0.1f; s < 6; s += 0.2f)
       cloud.points.emplace_back(s, t, -0.9f), cloud.classes.push_back(t > 5 ? 3 : 1);
-  SemanticOcTree tree(0.2, threeClasses());
+  SemanticOcTree tree(0.2, paintedClasses());
   tree.insert(cloud, Eigen::Isometry3d::Identity());
   const cv::Mat picture = renderTopView(tree, plain());
-  EXPECT_EQ(picture.at<cv::Vec3b>(picture.rows / 4, picture.cols / 2), kWall);
-  EXPECT_EQ(picture.at<cv::Vec3b>(picture.rows * 3 / 4, picture.cols / 2), kRoad);
+  EXPECT_EQ(picture.at<cv::Vec3b>(picture.rows / 4, picture.cols / 2), pixelOf(kWall));
+  EXPECT_EQ(picture.at<cv::Vec3b>(picture.rows * 3 / 4, picture.cols / 2), pixelOf(kRoad));
 }
 
 TEST(TopView, theHighestCellCoversTheOthersUnlessItIsCutOff) {
-  const SemanticOcTree tree = field(0.8f);
+  const SemanticOcTree tree = paintedField({0, 0}, 0.8f);
   PictureStyle style = plain();
-  EXPECT_GT(count(renderTopView(tree, style), kWall, 3), 100000);
+  EXPECT_GT(count(renderTopView(tree, style), pixelOf(kWall), 3), 100000);
   style.maxHeight = 0.5;
   const cv::Mat below = renderTopView(tree, style);
-  EXPECT_EQ(count(below, kWall, 3), 0);
-  EXPECT_GT(count(below, kRoad), 100000);
+  EXPECT_EQ(count(below, pixelOf(kWall), 3), 0);
+  EXPECT_GT(count(below, pixelOf(kRoad)), 100000);
 }
 
 TEST(TopView, looksUnderTheCeilingOfAnIndoorMap) {
-  const SemanticOcTree tree = field(2.4f);
+  const SemanticOcTree tree = paintedField({0, 0}, 2.4f);
   PictureStyle style = plain();
   const cv::Mat inside = renderTopView(tree, style);
-  EXPECT_EQ(count(inside, kWall, 3), 0);
-  EXPECT_GT(count(inside, kRoad), 100000);
+  EXPECT_EQ(count(inside, pixelOf(kWall), 3), 0);
+  EXPECT_GT(count(inside, pixelOf(kRoad)), 100000);
   style.maxHeight = INFINITY;
-  EXPECT_GT(count(renderTopView(tree, style), kWall, 3), 100000);
+  EXPECT_GT(count(renderTopView(tree, style), pixelOf(kWall), 3), 100000);
 }
 
 TEST(TopView, theLegendShowsTheClassesThatAreThereOnly) {
   PictureStyle style = plain();
-  const int width = renderTopView(field(), style).cols;
+  const int width = renderTopView(paintedField(), style).cols;
   style.legend = true, style.title = "A field";
-  const cv::Mat picture = renderTopView(field(), style);
+  const cv::Mat picture = renderTopView(paintedField(), style);
   const cv::Mat legend = picture(cv::Rect(width, 0, picture.cols - width, picture.rows));
-  EXPECT_GT(count(legend, kRoad), 100);
-  EXPECT_GT(count(legend, kTree), 100);
-  EXPECT_EQ(count(legend, kWall), 0);
+  EXPECT_GT(count(legend, pixelOf(kRoad)), 100);
+  EXPECT_GT(count(legend, pixelOf(kTree)), 100);
+  EXPECT_EQ(count(legend, pixelOf(kWall)), 0);
 }
 
 TEST(TopView, anEmptyMapIsAnEmptySheet) {
-  const SemanticOcTree empty(0.1, threeClasses());
+  const SemanticOcTree empty(0.1, paintedClasses());
   for (const cv::Mat& picture :
        {renderTopView(empty, plain()), renderPerspective(empty, plain())}) {
     EXPECT_EQ(picture.size(), cv::Size(800, 600));
@@ -139,24 +121,23 @@ TEST(TopView, anEmptyMapIsAnEmptySheet) {
 TEST(TopView, aSingleVoxelIsAPicture) {
   semantic_types::LabeledCloud cloud;
   cloud.points = {{1, 2, 3}}, cloud.classes = {3};
-  SemanticOcTree tree(0.1, threeClasses());
+  SemanticOcTree tree(0.1, paintedClasses());
   tree.insert(cloud, Eigen::Isometry3d::Identity());
-  EXPECT_GT(count(renderTopView(tree, plain()), kWall), 10000);
-  EXPECT_GT(count(renderPerspective(tree, plain()), kWall, 30), 10000);
+  EXPECT_GT(count(renderTopView(tree, plain()), pixelOf(kWall)), 10000);
+  EXPECT_GT(count(renderPerspective(tree, plain()), pixelOf(kWall), 30), 10000);
 }
 
 TEST(TopView, aMapOfOneEnormousCellIsDrawnWithoutEnormousMemory) {
-  semantic_map::CSemanticOctoMap map(0.1, threeClasses());
-  semantic_map::TAbstractionOptions abstraction;
-  abstraction.relevant = "road: 1";
-  abstraction.alpha = 1;
-  abstraction.blockSize = 0;
-  abstraction.frame = semantic_octree::AbstractionOptions::Frame::Charged;
-  map.setAbstraction(abstraction);
-  fill(map);
-  const auto collapsed = map.compress();
-  ASSERT_EQ(collapsed->tree().getNumLeafNodes(), 1u);
-  const cv::Mat picture = renderTopView(collapsed->tree(), plain());
+  SemanticOcTree tree = paintedField();
+  semantic_octree::AbstractionOptions options;
+  options.weights.terms = {tree_abstraction::relevant("road", 1, {1})};
+  options.weights.alpha = 1;
+  options.blockSize = 0;
+  options.frame = semantic_octree::AbstractionOptions::Frame::Charged;
+  tree.setAbstraction(options);
+  const SemanticOcTree collapsed = semantic_octree::Abstraction(tree).compressedMap();
+  ASSERT_EQ(collapsed.getNumLeafNodes(), 1u);
+  const cv::Mat picture = renderTopView(collapsed, plain());
   EXPECT_EQ(picture.rows, 600);
   EXPECT_GT(count(picture, kPaper), 0);
   EXPECT_LT(count(picture, kPaper), 100000);
@@ -165,8 +146,8 @@ TEST(TopView, aMapOfOneEnormousCellIsDrawnWithoutEnormousMemory) {
 TEST(PerspectiveView, showsTheMapFromItsViewpoint) {
   Viewpoint north, south;
   north.heading = 90, south.heading = -90;
-  const cv::Mat fromSouth = renderPerspective(field(), plain(), north);
-  const cv::Mat fromNorth = renderPerspective(field(), plain(), south);
+  const cv::Mat fromSouth = renderPerspective(paintedField(), plain(), north);
+  const cv::Mat fromNorth = renderPerspective(paintedField(), plain(), south);
   ASSERT_EQ(fromSouth.type(), CV_8UC3);
   // Road (red) is in the west, the trees (green) in the east.
   EXPECT_LT(meanColumn(fromSouth, 2), meanColumn(fromSouth, 1));
@@ -176,24 +157,24 @@ TEST(PerspectiveView, showsTheMapFromItsViewpoint) {
 TEST(PerspectiveView, straightDownItIsTheTopView) {
   Viewpoint down;
   down.heading = 90, down.tilt = 90;
-  const cv::Mat picture = renderPerspective(field(), plain(), down);
-  EXPECT_EQ(picture.at<cv::Vec3b>(picture.rows / 2, picture.cols / 4), kRoad);
-  EXPECT_EQ(picture.at<cv::Vec3b>(picture.rows / 2, picture.cols * 3 / 4), kTree);
+  const cv::Mat picture = renderPerspective(paintedField(), plain(), down);
+  EXPECT_EQ(picture.at<cv::Vec3b>(picture.rows / 2, picture.cols / 4), pixelOf(kRoad));
+  EXPECT_EQ(picture.at<cv::Vec3b>(picture.rows / 2, picture.cols * 3 / 4), pixelOf(kTree));
 }
 
 TEST(PerspectiveView, zoomEnlarges) {
   Viewpoint far, near;
   far.tilt = near.tilt = 90;
   far.zoom = 0.5;
-  EXPECT_GT(count(renderPerspective(field(), plain(), near), kRoad, 5),
-            2 * count(renderPerspective(field(), plain(), far), kRoad, 5));
+  EXPECT_GT(count(renderPerspective(paintedField(), plain(), near), pixelOf(kRoad), 5),
+            2 * count(renderPerspective(paintedField(), plain(), far), pixelOf(kRoad), 5));
 }
 
 TEST(Pictures, badStylesAreNamed) {
   const auto error = [](auto change) {
     PictureStyle style = plain();
     change(style);
-    return errorOf([&] { renderTopView(field(), style); });
+    return errorOf([&] { renderTopView(paintedField(), style); });
   };
   EXPECT_TRUE(contains(error([](auto& s) { s.width = 0; }), "width is 0"));
   EXPECT_TRUE(contains(error([](auto& s) { s.height = 100000; }), "height is 100000"));
@@ -202,7 +183,7 @@ TEST(Pictures, badStylesAreNamed) {
   const auto viewError = [](auto change) {
     Viewpoint viewpoint;
     change(viewpoint);
-    return errorOf([&] { renderPerspective(field(), plain(), viewpoint); });
+    return errorOf([&] { renderPerspective(paintedField(), plain(), viewpoint); });
   };
   EXPECT_TRUE(contains(viewError([](auto& v) { v.tilt = 0; }), "tilt"));
   EXPECT_TRUE(contains(viewError([](auto& v) { v.zoom = -1; }), "zoom"));
@@ -211,13 +192,13 @@ TEST(Pictures, badStylesAreNamed) {
 
 TEST(Pictures, areSavedWholeOrNotAtAll) {
   const TemporaryFolder folder;
-  const cv::Mat picture = renderTopView(field(), plain());
-  semantic_map::savePicture(picture, folder / "map.png");
+  const cv::Mat picture = renderTopView(paintedField(), plain());
+  map_pictures::savePicture(picture, folder / "map.png");
   const cv::Mat read = cv::imread((folder / "map.png").string());
   ASSERT_EQ(read.size(), picture.size());
   EXPECT_EQ(cv::norm(read, picture, cv::NORM_INF), 0);
   EXPECT_FALSE(std::filesystem::exists(folder / "map.png.tmp"));
   const std::string error =
-      errorOf([&] { semantic_map::savePicture(picture, folder / "no/map.png"); });
+      errorOf([&] { map_pictures::savePicture(picture, folder / "no/map.png"); });
   EXPECT_TRUE(contains(error, "no/map.png")) << error;
 }

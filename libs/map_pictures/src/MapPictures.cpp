@@ -1,4 +1,4 @@
-#include <semantic_map/MapPictures.h>
+#include <map_pictures/MapCanvas.h>
 #include <strict_files/StagedFile.h>
 
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
-namespace semantic_map {
+namespace map_pictures {
 
 using strict_files::above;
 using strict_files::atLeast;
@@ -36,6 +36,11 @@ void Viewpoint::describe(OptionList& list) {
 
 void Viewpoint::validate() const { checkOptions(*this, "Viewpoint"); }
 
+cv::Mat renderTopView(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style) {
+  const MapCanvas canvas = MapCanvas::ofMap(tree, style);
+  return style.legend ? canvas.sheet(style.title) : canvas.withScale();
+}
+
 void savePicture(const cv::Mat& picture, const std::filesystem::path& file) {
   std::vector<std::uint8_t> png;
   if (!cv::imencode(".png", picture, png))
@@ -48,4 +53,4 @@ void savePicture(const cv::Mat& picture, const std::filesystem::path& file) {
   staged.commit();
 }
 
-}  // namespace semantic_map
+}  // namespace map_pictures

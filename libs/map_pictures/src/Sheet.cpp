@@ -1,31 +1,18 @@
-#include "PictureSheet.h"
+#include <map_pictures/Sheet.h>
+#include <semantic_types/ClassColors.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 
-#include "CellColors.h"
-
-namespace semantic_map {
+namespace map_pictures {
 
 using semantic_types::ClassId;
 
 namespace {
 
-constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
-constexpr double kTextSize = 0.55;
 constexpr int kMargin = 20, kRow = 28, kSwatch = 18;
-
-int textWidth(const std::string& text) {
-  int baseline = 0;
-  return cv::getTextSize(text, kFont, kTextSize, 1, &baseline).width;
-}
-
-/** \param left, middle of the text's height, pixels */
-void write(cv::Mat& picture, const std::string& text, cv::Point leftMiddle) {
-  cv::putText(picture, text, leftMiddle + cv::Point(0, 6), kFont, kTextSize, kInk, 1, cv::LINE_AA);
-}
 
 /** Upper left corner of a place of that size in the corner of the picture with least in it. */
 cv::Point emptiestCorner(const cv::Mat& picture, cv::Size size) {
@@ -35,7 +22,7 @@ cv::Point emptiestCorner(const cv::Mat& picture, cv::Size size) {
   for (const cv::Point corner : {cv::Point(0, bottom), {right, bottom}, {right, 0}, {0, 0}}) {
     const cv::Rect place = cv::Rect(corner, size) & cv::Rect({0, 0}, picture.size());
     cv::Mat empty;
-    cv::inRange(picture(place), kPaper, kPaper, empty);
+    cv::inRange(picture(place), bgr(kPaper), bgr(kPaper), empty);
     const int filled = place.area() - cv::countNonZero(empty);
     if (filled < least) best = corner, least = filled;
   }
@@ -46,7 +33,7 @@ cv::Point emptiestCorner(const cv::Mat& picture, cv::Size size) {
 void brighten(cv::Mat& picture, cv::Rect area) {
   area &= cv::Rect({0, 0}, picture.size());
   cv::Mat part = picture(area);
-  cv::addWeighted(part, 0.25, cv::Mat(part.size(), part.type(), kPaper), 0.75, 0, part);
+  cv::addWeighted(part, 0.25, cv::Mat(part.size(), part.type(), bgr(kPaper)), 0.75, 0, part);
 }
 
 std::string lengthName(double meters) {
@@ -62,17 +49,31 @@ double roundLength(double meters) {
   return power;
 }
 
-void shortenLegend(std::vector<LegendEntry>& entries, std::size_t rows) {
-  if (entries.size() <= rows) return;
-  const std::size_t more = entries.size() - rows + 1;
-  entries.resize(rows - 1);
-  entries.push_back({"and " + std::to_string(more) + " more", kPaper});
-}
+/** Draws an entry's sample. \param place of it */
+struct Sample {
+  cv::Mat& sheet;
+  cv::Rect place;
+
+  void operator()(const Color& color) const {
+    cv::rectangle(sheet, place, bgr(color), cv::FILLED);
+    cv::rectangle(sheet, place, bgr(kInk), 1, cv::LINE_AA);
+  }
+  void operator()(const Stroke& stroke) const {
+    const double middle = place.y + place.height / 2.0;
+    drawLine(sheet, {{double(place.x), middle}, {double(place.br().x), middle}}, stroke);
+  }
+  void operator()(const Arrow& arrow) const {
+    Arrow fitting = arrow;
+    fitting.length = std::min(arrow.length, 0.75 * place.width);
+    const double radius = 0.27 * fitting.length;
+    drawArrow(sheet, {place.x + radius, place.y + place.height / 2.0}, 0, fitting);
+  }
+};
 
 }  // namespace
 
-std::vector<LegendEntry> legendOf(const semantic_types::ClassTable& classes,
-                                  const std::vector<std::size_t>& counts) {
+std::vector<LegendEntry> classLegend(const semantic_types::ClassTable& classes,
+                                     const std::vector<std::size_t>& counts) {
   std::vector<std::size_t> order(counts.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin() + 1, order.end(),
@@ -82,34 +83,41 @@ std::vector<LegendEntry> legendOf(const semantic_types::ClassTable& classes,
   for (const std::size_t i : order) {
     if (counts[i] == 0) continue;
     const auto id = static_cast<ClassId>(i);
-    const auto color = classColor(classes, id);
-    entries.push_back({i == 0 ? "no class" : classes.name(id),
-                       {double(color.b), double(color.g), double(color.r)}});
+    entries.push_back({i == 0 ? "no class" : classes.name(id), colorOf(id, classes)});
   }
   return entries;
 }
 
+int legendHeight(std::size_t entries) { return int(entries) * kRow + 2 * kMargin; }
+
 cv::Mat withLegend(const cv::Mat& picture, const std::string& title,
-                   const std::vector<LegendEntry>& all) {
-  const int top = title.empty() ? kMargin : kMargin + kRow;
-  std::vector<LegendEntry> entries = all;
-  shortenLegend(entries, std::max(2, (picture.rows - top - kMargin) / kRow));
-  int width = textWidth(title);
-  for (const auto& entry : entries)
-    width = std::max(width, kSwatch + kMargin / 2 + textWidth(entry.name));
+                   const std::vector<LegendEntry>& entries) {
+  constexpr int kFewestRows = 8, kTextLeft = kSwatch + kMargin / 2;
+  const int top = title.empty() ? kMargin : kMargin + kRow, numEntries = int(entries.size());
+  const int rows = std::max(kFewestRows, (picture.rows - top - kMargin) / kRow);
+  const int columns = std::max(1, (numEntries + rows - 1) / rows);
+  int width = 0;
+  for (const auto& entry : entries) width = std::max(width, kTextLeft + textWidth(entry.name));
 
   const int left = picture.cols + kMargin;
-  const int rows = std::max(picture.rows, top + int(entries.size()) * kRow + kMargin);
-  cv::Mat sheet(rows, left + width + kMargin, CV_8UC3, kPaper);
+  const int inside = std::max(textWidth(title), columns * (width + kMargin) - kMargin);
+  const int height = std::max(picture.rows, top + std::min(rows, numEntries) * kRow + kMargin);
+  cv::Mat sheet(height, left + inside + kMargin, CV_8UC3, bgr(kPaper));
   picture.copyTo(sheet(cv::Rect({0, 0}, picture.size())));
-  if (!title.empty()) write(sheet, title, {left, kMargin + kRow / 4});
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const int y = top + int(i) * kRow;
-    const cv::Rect swatch(left, y, kSwatch, kSwatch);
-    cv::rectangle(sheet, swatch, entries[i].color, cv::FILLED);
-    if (entries[i].color != kPaper) cv::rectangle(sheet, swatch, kInk, 1, cv::LINE_AA);
-    write(sheet, entries[i].name, {left + kSwatch + kMargin / 2, y + kSwatch / 2});
+  if (!title.empty()) writeText(sheet, title, {left, kMargin + kRow / 4});
+  for (int i = 0; i < numEntries; ++i) {
+    const cv::Point at(left + i / rows * (width + kMargin), top + i % rows * kRow);
+    std::visit(Sample{sheet, {at, cv::Size(kSwatch, kSwatch)}}, entries[i].look);
+    writeText(sheet, entries[i].name, at + cv::Point(kTextLeft, kSwatch / 2));
   }
+  return sheet;
+}
+
+cv::Mat withTitle(const cv::Mat& picture, const std::string& title) {
+  constexpr int kHeight = 34;
+  cv::Mat sheet;
+  cv::copyMakeBorder(picture, sheet, kHeight, 0, 0, 0, cv::BORDER_CONSTANT, bgr(kPaper));
+  writeText(sheet, title, {kMargin, kHeight / 2});
   return sheet;
 }
 
@@ -122,10 +130,10 @@ void drawScaleBar(cv::Mat& picture, double pixelsPerMeter) {
   const cv::Point corner = emptiestCorner(picture, size);
   brighten(picture, {corner, size});
   const cv::Point left = corner + cv::Point(kMargin + (width - length) / 2, size.height - kMargin);
-  cv::rectangle(picture, {left.x, left.y - 4, length, 4}, kInk, cv::FILLED);
+  cv::rectangle(picture, {left.x, left.y - 4, length, 4}, bgr(kInk), cv::FILLED);
   for (const int x : {left.x, left.x + length - 2})
-    cv::rectangle(picture, {x, left.y - 9, 2, 9}, kInk, cv::FILLED);
-  write(picture, text, {left.x + (length - textWidth(text)) / 2, left.y - 20});
+    cv::rectangle(picture, {x, left.y - 9, 2, 9}, bgr(kInk), cv::FILLED);
+  writeText(picture, text, {left.x + (length - textWidth(text)) / 2, left.y - 20});
 }
 
 void drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions) {
@@ -141,8 +149,8 @@ void drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions) {
     const cv::Point2d tip = origin + kLength * directions[axis];
     const cv::Point2d letter = origin + (kLength + 11) * directions[axis];
     cv::arrowedLine(picture, origin, tip, colors[axis], 2, cv::LINE_AA, 0, 0.2);
-    write(picture, std::string(1, char('x' + axis)), cv::Point(letter) - cv::Point(5, 0));
+    writeText(picture, std::string(1, char('x' + axis)), cv::Point(letter) - cv::Point(5, 0));
   }
 }
 
-}  // namespace semantic_map
+}  // namespace map_pictures

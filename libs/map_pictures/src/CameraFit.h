@@ -1,7 +1,7 @@
 #pragma once
 #include "MapCells.h"
 
-namespace semantic_map {
+namespace map_pictures {
 
 /** A pinhole camera in the map. */
 struct PictureCamera {
@@ -19,4 +19,4 @@ struct PictureCamera {
 PictureCamera fitCamera(const std::vector<MapCell>& cells, const Viewpoint& viewpoint, int width,
                         int height);
 
-}  // namespace semantic_map
+}  // namespace map_pictures

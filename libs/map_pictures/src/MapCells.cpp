@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace semantic_map {
+namespace map_pictures {
 
 using semantic_octree::CellState;
 using semantic_octree::SemanticOcTree;
@@ -60,20 +60,15 @@ Extent extentOf(const std::vector<MapCell>& cells) {
   constexpr double kFar = 0.002;
   Extent extent;
   std::vector<float> values(cells.size());
-  const auto atRank = [&values](double share) {
-    const auto nth = values.begin() + std::ptrdiff_t(share * double(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
-  };
   for (int axis = 0; axis < 3; ++axis) {
     const auto edges = [&](float sign) {
       for (std::size_t i = 0; i < cells.size(); ++i)
         values[i] = cells[i].center[axis] + sign * cells[i].size / 2;
     };
-    edges(-1), extent.low[axis] = atRank(kFar);
-    edges(+1), extent.high[axis] = atRank(1 - kFar);
+    edges(-1), extent.low[axis] = quantile(values, kFar);
+    edges(+1), extent.high[axis] = quantile(values, 1 - kFar);
   }
   return extent;
 }
 
-}  // namespace semantic_map
+}  // namespace map_pictures

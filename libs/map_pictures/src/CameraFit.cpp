@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace semantic_map {
+namespace map_pictures {
 namespace {
 
 constexpr double kRadians = M_PI / 180;
@@ -21,12 +21,6 @@ Eigen::Matrix3d orientation(const Viewpoint& viewpoint) {
   Eigen::Matrix3d R;
   R << right, forward.cross(right), forward;
   return R;
-}
-
-double quantile(std::vector<double>& values, double share) {
-  const auto nth = values.begin() + std::ptrdiff_t(share * double(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
 }
 
 /** Along one axis of the picture: the least distance D at which all points (s sideways, d deep)
@@ -74,4 +68,4 @@ PictureCamera fitCamera(const std::vector<MapCell>& cells, const Viewpoint& view
   return camera;
 }
 
-}  // namespace semantic_map
+}  // namespace map_pictures

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace semantic_map {
+namespace map_pictures {
 
 /** What all pictures of a map have in common. */
 struct PictureStyle {
@@ -29,26 +29,11 @@ struct PictureStyle {
 };
 
 /** The map from above, +x to the right and +y up: per column the highest occupied cell in the color
- * of its likeliest class (gray: none), shaded by the relief; with a scale bar and the axes.
+ * of its likeliest class (gray: none), shaded by the relief; with a scale bar and the axes. (What
+ * draws more on a map begins with a MapCanvas.)
  * \return BGR, 8 bits. An empty map gives an empty sheet.
  * \throw std::invalid_argument as PictureStyle::validate(). */
 cv::Mat renderTopView(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style = {});
-
-/** A map from above, and where its points are in the picture. */
-struct TopView {
-  cv::Mat picture;  ///< as renderTopView() makes it
-  double pixelsPerMeter = 1;
-  cv::Point2d origin;  ///< pixels, of the map's point (0, 0)
-
-  /** \param x, y map frame, m
-eturn pixels */
-  cv::Point2d at(double x, double y) const {
-    return {origin.x + x * pixelsPerMeter, origin.y - y * pixelsPerMeter};
-  }
-};
-
-/** The same picture, for drawing on it. */
-TopView takeTopView(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style = {});
 
 /** Where a perspective view is taken from. */
 struct Viewpoint {
@@ -74,4 +59,4 @@ cv::Mat renderPerspective(const semantic_octree::SemanticOcTree& tree,
 /** Writes a PNG. The file is complete or untouched. \throw std::runtime_error naming the file. */
 void savePicture(const cv::Mat& picture, const std::filesystem::path& file);
 
-}  // namespace semantic_map
+}  // namespace map_pictures

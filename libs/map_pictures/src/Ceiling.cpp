@@ -3,7 +3,7 @@
 
 #include "MapCells.h"
 
-namespace semantic_map {
+namespace map_pictures {
 namespace {
 
 /** Room below a ceiling, m. */
@@ -52,4 +52,4 @@ double heightUnderCeiling(const std::vector<MapCell>& cells) {
   return lowestFlatSurface(heights, std::max<std::size_t>(1, columns / 20)) - kFlat / 2;
 }
 
-}  // namespace semantic_map
+}  // namespace map_pictures

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace semantic_map {
+namespace map_pictures {
 namespace {
 
 /** Mean of the known heights around each pixel. */
@@ -59,4 +59,4 @@ void shadeByRelief(cv::Mat& color, const cv::Mat& height, double cell) {
     }
 }
 
-}  // namespace semantic_map
+}  // namespace map_pictures

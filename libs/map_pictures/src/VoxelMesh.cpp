@@ -1,11 +1,11 @@
 #include "VoxelMesh.h"
 
+#include <semantic_types/ClassColors.h>
+
 #include <array>
 #include <vector>
 
-#include "CellColors.h"
-
-namespace semantic_map {
+namespace map_pictures {
 
 using mrpt::opengl::CSetOfTriangles;
 using mrpt::opengl::TTriangle;
@@ -107,7 +107,7 @@ class MeshBuilder {
     TTriangle::Vertex v;
     v.xyzrgba.pt = {p.x(), p.y(), p.z()};
     v.normal = {float(face.normal.x()), float(face.normal.y()), float(face.normal.z())};
-    const auto c = classColor(m_classes, id);
+    const auto c = colorOf(id, m_classes);
     const auto shade = [brightness](std::uint8_t x) {
       return static_cast<std::uint8_t>(float(x) * brightness + 0.5f);
     };
@@ -136,4 +136,4 @@ CSetOfTriangles::Ptr meshOf(const SemanticOcTree& tree, const PictureStyle& styl
   return meshOf(tree, collectCells(tree, style));
 }
 
-}  // namespace semantic_map
+}  // namespace map_pictures

@@ -1,0 +1,38 @@
+#pragma once
+#include <map_pictures/Drawing.h>
+
+#include <array>
+#include <cstddef>
+#include <variant>
+
+namespace map_pictures {
+
+/** A name, and how that looks in the picture: an area's color, a line, or a pose. */
+struct LegendEntry {
+  std::string name;
+  std::variant<Color, Stroke, Arrow> look;
+};
+
+/** The classes that are there, the most frequent first, and "no class" at the end.
+ * \param counts how much of each class, [0] of none */
+std::vector<LegendEntry> classLegend(const semantic_types::ClassTable& classes,
+                                     const std::vector<std::size_t>& counts);
+
+/** The picture with all of the legend to its right, in as many columns as that needs. */
+cv::Mat withLegend(const cv::Mat& picture, const std::string& title,
+                   const std::vector<LegendEntry>& entries);
+
+/** Pixels that one column of so many entries without a title needs. */
+int legendHeight(std::size_t entries);
+
+/** The picture with a line of text above. */
+cv::Mat withTitle(const cv::Mat& picture, const std::string& title);
+
+/** A bar of 1, 2 or 5 times a power of ten meters in the emptiest corner. */
+void drawScaleBar(cv::Mat& picture, double pixelsPerMeter);
+
+/** The map's axes in the emptiest corner. \param directions of x, y, z in the picture (x right, y
+ * down), at most of length 1; those that point at the viewer are left out */
+void drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions);
+
+}  // namespace map_pictures

@@ -1,0 +1,89 @@
+#include <map_pictures/ClassMap.h>
+#include <map_pictures/Sheet.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "HighestCells.h"
+#include "MapCells.h"
+
+namespace map_pictures {
+
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+template <class Action>
+void forEachOccupiedLeaf(const SemanticOcTree& tree, Action action) {
+  for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf)
+    if (leaf->getLogOdds() > 0)
+      action(*leaf, Eigen::Vector3d(leaf.getX(), leaf.getY(), leaf.getZ()), leaf.getSize());
+}
+
+/** All columns of voxels with something in them. */
+cv::Rect occupiedColumns(const SemanticOcTree& tree) {
+  constexpr double kMostColumns = 2e8;
+  cv::Rect columns;
+  forEachOccupiedLeaf(tree, [&](const auto&, const Eigen::Vector3d& center, double size) {
+    columns |= columnsUnder(center.head<2>(), size, tree.getResolution());
+  });
+  if (columns.empty()) throw std::runtime_error("nothing in the map is occupied");
+  if (double(columns.width) * columns.height > kMostColumns)
+    throw std::runtime_error("the map is too wide for a picture, " + std::to_string(columns.width) +
+                             " x " + std::to_string(columns.height) +
+                             " voxels: crop it, or make it coarser");
+  return columns;
+}
+
+HighestCells highestLeaves(const SemanticOcTree& tree, const cv::Rect& columns, double maxHeight) {
+  HighestCells highest(columns, tree.getResolution());
+  forEachOccupiedLeaf(tree, [&](const auto& leaf, const Eigen::Vector3d& center, double size) {
+    if (center.z() <= maxHeight) highest.add(center, size, tree.query(leaf).likeliestClass);
+  });
+  return highest;
+}
+
+/** Pixels along a column's edge, so that a small map is no stamp. */
+int enlargement(cv::Size columns) {
+  constexpr int kGoodSize = 1000;
+  return std::max(1, kGoodSize / std::max(columns.width, columns.height));
+}
+
+/** Paper below a low map, so that the legend needs one column only. */
+cv::Mat withRoomFor(std::size_t legendEntries, const cv::Mat& map) {
+  const int missing = std::max(0, legendHeight(legendEntries) - map.rows);
+  cv::Mat sheet;
+  cv::copyMakeBorder(map, sheet, 0, missing, 0, 0, cv::BORDER_CONSTANT, bgr(kPaper));
+  return sheet;
+}
+
+}  // namespace
+
+std::string ClassMap::worldFile() const {
+  const cv::Point2d center = upperLeft + cv::Point2d(metersPerPixel, -metersPerPixel) / 2;
+  std::ostringstream text;
+  text << std::setprecision(12);
+  for (const double value : {metersPerPixel, 0.0, 0.0, -metersPerPixel, center.x, center.y})
+    text << value << '\n';
+  return text.str();
+}
+
+ClassMap classMapOf(const SemanticOcTree& tree, const std::optional<double>& maxHeight) {
+  const cv::Rect columns = occupiedColumns(tree);
+  const double top = maxHeight ? *maxHeight : collectCells(tree, {}).maxHeight;
+  const HighestCells highest = highestLeaves(tree, columns, top);
+  const int scale = enlargement(columns.size());
+  cv::Mat map;
+  cv::resize(highest.inColors(tree.classes()), map, {}, scale, scale, cv::INTER_NEAREST);
+  const auto legend = classLegend(tree.classes(), highest.countClasses(tree.numClasses()));
+  const double edge = tree.getResolution();
+  return {withLegend(withRoomFor(legend.size(), map), "", legend),
+          edge / scale,
+          {columns.x * edge, columns.br().y * edge}};
+}
+
+}  // namespace map_pictures

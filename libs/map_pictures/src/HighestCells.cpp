@@ -1,0 +1,63 @@
+#include "HighestCells.h"
+
+#include <semantic_types/ClassColors.h>
+
+#include <cmath>
+
+#include <map_pictures/Drawing.h>
+#include "Relief.h"
+
+namespace map_pictures {
+
+cv::Rect columnsUnder(const Eigen::Vector2d& center, double size, double edge) {
+  const int width = std::max(1, int(std::lround(size / edge)));
+  return {int(std::lround((center.x() - size / 2) / edge)),
+          int(std::lround((center.y() - size / 2) / edge)), width, width};
+}
+
+HighestCells::HighestCells(const cv::Rect& columns, double edge)
+    : m_columns(columns),
+      m_edge(edge),
+      m_height(columns.size(), CV_32F, cv::Scalar(NAN)),
+      m_classId(columns.size(), CV_8U, cv::Scalar(0)) {}
+
+void HighestCells::add(const Eigen::Vector3d& center, double size, semantic_types::ClassId id) {
+  const cv::Rect seen = columnsUnder(center.head<2>(), size, m_edge) & m_columns;
+  const float top = float(center.z() + size / 2);
+  for (int y = seen.y; y < seen.br().y; ++y)
+    for (int x = seen.x; x < seen.br().x; ++x) {
+      const cv::Point pixel(x - m_columns.x, m_columns.br().y - 1 - y);
+      float& height = m_height.at<float>(pixel);
+      if (height >= top) continue;
+      height = top;
+      m_classId.at<std::uint8_t>(pixel) = id;
+    }
+}
+
+std::vector<std::size_t> HighestCells::countClasses(int numClasses) const {
+  std::vector<std::size_t> counts(numClasses + 1, 0);
+  const cv::Mat known = m_height == m_height;
+  for (int id = 0; id <= numClasses; ++id)
+    counts[id] = std::size_t(cv::countNonZero((m_classId == id) & known));
+  return counts;
+}
+
+cv::Mat HighestCells::inColors(const semantic_types::ClassTable& classes) const {
+  cv::Mat_<cv::Vec3b> picture(m_height.size());
+  for (int row = 0; row < picture.rows; ++row)
+    for (int col = 0; col < picture.cols; ++col) {
+      const auto color = std::isnan(m_height.at<float>(row, col))
+                             ? kPaper
+                             : colorOf(m_classId.at<std::uint8_t>(row, col), classes);
+      picture(row, col) = {color.b, color.g, color.r};
+    }
+  return std::move(picture);
+}
+
+cv::Mat HighestCells::inRelief(const semantic_types::ClassTable& classes) const {
+  cv::Mat picture = inColors(classes);
+  shadeByRelief(picture, m_height, m_edge);
+  return picture;
+}
+
+}  // namespace map_pictures

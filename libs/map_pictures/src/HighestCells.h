@@ -1,0 +1,36 @@
+#pragma once
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include <semantic_types/ClassTable.h>
+
+namespace map_pictures {
+
+/** The columns of that edge that a cell covers, counted from the map's origin; y counts up. */
+cv::Rect columnsUnder(const Eigen::Vector2d& center, double size, double edge);
+
+/** What is seen from above: the highest cell of each column. */
+class HighestCells {
+ public:
+  /** \param columns as columnsUnder() counts them \param edge of a column, m */
+  HighestCells(const cv::Rect& columns, double edge);
+
+  /** A cell may be many columns wide, and partly outside. \param center m */
+  void add(const Eigen::Vector3d& center, double size, semantic_types::ClassId id);
+
+  /** Number of columns that show each class, [0] none. */
+  std::vector<std::size_t> countClasses(int numClasses) const;
+  /** A pixel per column in its class's color, paper where there is nothing; the first row is that
+   * of the largest y. */
+  cv::Mat inColors(const semantic_types::ClassTable& classes) const;
+  /** The same, shaded as maps are. */
+  cv::Mat inRelief(const semantic_types::ClassTable& classes) const;
+
+ private:
+  cv::Rect m_columns;
+  double m_edge;
+  cv::Mat m_height;   ///< upper side, m, 32 bit float; NaN: there is nothing
+  cv::Mat m_classId;  ///< 8 bit
+};
+
+}  // namespace map_pictures

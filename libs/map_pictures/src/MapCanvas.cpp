@@ -1,0 +1,153 @@
+#include <map_pictures/MapCanvas.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "HighestCells.h"
+#include "MapCells.h"
+
+namespace map_pictures {
+
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+/** Edge of a column, m: that of the finest cells, or larger if there would be more columns than
+ * memory is for. (One cell may be kilometers wide: a collapsed root.) */
+double columnEdge(const Eigen::Vector2d& size, double finest) {
+  constexpr double kMostColumns = 16e6;
+  double edge = finest;
+  while (size.x() / edge * (size.y() / edge) > kMostColumns) edge *= 2;
+  return edge;
+}
+
+/** The columns that a region touches by more than a rounding error. */
+cv::Rect columnsIn(const Eigen::AlignedBox2d& region, double edge) {
+  constexpr double kTiny = 1e-3;  // columns
+  const auto first = [&](double low) { return int(std::floor(low / edge + kTiny)); };
+  const auto end = [&](double high) { return int(std::ceil(high / edge - kTiny)); };
+  const cv::Point low(first(region.min().x()), first(region.min().y()));
+  const cv::Point high(end(region.max().x()), end(region.max().y()));
+  return {low, cv::Size(std::max(1, high.x - low.x), std::max(1, high.y - low.y))};
+}
+
+/** Sharp columns if they are larger than pixels, their mean if they are smaller. */
+cv::Mat scaledBy(const cv::Mat& image, double scale) {
+  const cv::Size target(std::max(1, int(std::lround(image.cols * scale))),
+                        std::max(1, int(std::lround(image.rows * scale))));
+  const int enlarge = std::max(1, int(std::ceil(scale - 1e-9)));
+  cv::Mat large, out;
+  cv::resize(image, large, {}, enlarge, enlarge, cv::INTER_NEAREST);
+  cv::resize(large, out, target, 0, 0, cv::INTER_AREA);
+  return out;
+}
+
+cv::Point nearestPixel(const cv::Point2d& p) {
+  return {int(std::lround(p.x)), int(std::lround(p.y))};
+}
+
+/** Copies what fits. \param corner of the image in the picture */
+void paste(const cv::Mat& image, const cv::Point& corner, cv::Mat& picture) {
+  const cv::Rect seen = cv::Rect(corner, image.size()) & cv::Rect({0, 0}, picture.size());
+  if (!seen.empty()) image(seen - corner).copyTo(picture(seen));
+}
+
+}  // namespace
+
+MapCanvas::MapCanvas(const Eigen::AlignedBox2d& region, const cv::Size& most, int border)
+    : m_region(region) {
+  const Eigen::Vector2d size = region.isEmpty() ? Eigen::Vector2d(0, 0) : region.sizes();
+  m_pixelsPerMeter =
+      std::min((most.width - 2 * border) / size.x(), (most.height - 2 * border) / size.y());
+  if (!(size.minCoeff() > 0 && m_pixelsPerMeter > 0 && std::isfinite(m_pixelsPerMeter))) {
+    std::ostringstream what;
+    what << "picture: " << size.x() << " m x " << size.y() << " m do not fit into " << most.width
+         << " x " << most.height << " pixels with a border of " << border;
+    throw std::invalid_argument(what.str());
+  }
+  m_origin = {border - region.min().x() * m_pixelsPerMeter,
+              border + region.max().y() * m_pixelsPerMeter};
+  const auto pixels = [&](double meters) {
+    return std::max(1, int(std::lround(meters * m_pixelsPerMeter))) + 2 * border;
+  };
+  m_picture = cv::Mat(pixels(size.y()), pixels(size.x()), CV_8UC3, bgr(kPaper));
+}
+
+MapCanvas MapCanvas::ofMap(const SemanticOcTree& tree, const PictureStyle& style) {
+  constexpr int kBorder = 24;
+  style.validate();
+  const cv::Size size(style.width, style.height);
+  const MapCells map = collectCells(tree, style);
+  if (map.cells.empty())
+    return {Eigen::AlignedBox2d(Eigen::Vector2d(0, 0), Eigen::Vector2d(size.width, size.height)),
+            size};
+  const Extent extent = extentOf(map.cells);
+  const Eigen::Vector2d low = extent.low.head<2>().cast<double>(),
+                        high = extent.high.head<2>().cast<double>();
+  const double edge = columnEdge(high - low, tree.getNodeSize(map.depth));
+  const cv::Rect columns = columnsIn({low, high}, edge);
+  MapCanvas canvas({Eigen::Vector2d(columns.x, columns.y) * edge,
+                    Eigen::Vector2d(columns.br().x, columns.br().y) * edge},
+                   size, kBorder);
+  canvas.drawCells(map, tree);
+  return canvas;
+}
+
+void MapCanvas::drawMap(const SemanticOcTree& tree, const PictureStyle& style) {
+  style.validate();
+  drawCells(collectCells(tree, style), tree);
+}
+
+void MapCanvas::drawCells(const MapCells& map, const SemanticOcTree& tree) {
+  const double edge = columnEdge(m_region.sizes(), tree.getNodeSize(map.depth));
+  const cv::Rect columns = columnsIn(m_region, edge);
+  HighestCells highest(columns, edge);
+  for (const MapCell& cell : map.cells) highest.add(cell.center.cast<double>(), cell.size, cell.id);
+  paste(scaledBy(highest.inRelief(tree.classes()), m_pixelsPerMeter * edge),
+        nearestPixel(at(columns.x * edge, columns.br().y * edge)), m_picture);
+  const auto legend = classLegend(tree.classes(), map.countClasses(tree.numClasses()));
+  m_legend.insert(m_legend.begin(), legend.begin(), legend.end());
+}
+
+void MapCanvas::fillSquare(const Eigen::Vector2d& center, double edge, const Color& color) {
+  const double half = edge / 2;
+  const cv::Rect square(nearestPixel(at(center.x() - half, center.y() + half)),
+                        nearestPixel(at(center.x() + half, center.y() - half)));
+  m_picture(square & cv::Rect({0, 0}, m_picture.size())).setTo(bgr(color));
+}
+
+void MapCanvas::drawLine(const std::vector<Eigen::Vector2d>& points, const Stroke& stroke) {
+  std::vector<cv::Point2d> line;
+  for (const Eigen::Vector2d& p : points) line.push_back(at(p.x(), p.y()));
+  map_pictures::drawLine(m_picture, line, stroke);
+}
+
+void MapCanvas::drawPose(const mrpt::math::TPose2D& pose, const Arrow& arrow) {
+  drawArrow(m_picture, at(pose.x, pose.y), pose.phi, arrow);
+}
+
+void MapCanvas::fillOutline(const std::vector<Eigen::Vector2d>& corners, const Color& color) {
+  std::vector<cv::Point> outline;
+  for (const Eigen::Vector2d& p : corners) outline.push_back(nearestPixel(at(p.x(), p.y())));
+  cv::fillPoly(m_picture, outline, bgr(color), cv::LINE_AA);
+  cv::polylines(m_picture, outline, true, bgr(kInk), 1, cv::LINE_AA);
+}
+
+void MapCanvas::drawThrough(double share, const std::function<void()>& draw) {
+  const cv::Mat before = m_picture.clone();
+  draw();
+  cv::addWeighted(m_picture, share, before, 1 - share, 0, m_picture);
+}
+
+cv::Mat MapCanvas::withScale() const {
+  cv::Mat picture = m_picture.clone(), empty;
+  cv::inRange(picture, bgr(kPaper), bgr(kPaper), empty);
+  if (cv::countNonZero(empty) == empty.size().area()) return picture;
+  drawAxes(picture, {cv::Point2d(1, 0), cv::Point2d(0, -1), cv::Point2d(0, 0)});
+  drawScaleBar(picture, m_pixelsPerMeter);
+  return picture;
+}
+
+}  // namespace map_pictures

@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+#include <map_pictures/Sheet.h>
+
+#include <filesystem>
+#include <opencv2/imgproc.hpp>
+
+using map_pictures::bgr;
+using map_pictures::Color;
+using map_pictures::LegendEntry;
+
+namespace {
+
+const cv::Mat kPicture(400, 500, CV_8UC3, cv::Scalar(40, 90, 140));
+
+int count(const cv::Mat& picture, const Color& color) {
+  cv::Mat mask;
+  cv::inRange(picture, bgr(color), bgr(color), mask);
+  return cv::countNonZero(mask);
+}
+
+/** Colors that are found again. */
+std::vector<LegendEntry> entries(int number) {
+  std::vector<LegendEntry> all;
+  for (int i = 0; i < number; ++i)
+    all.push_back({"class " + std::to_string(i), Color{std::uint8_t(i), 200, 100}});
+  return all;
+}
+
+cv::Mat written(const std::string& text) {
+  cv::Mat picture(40, 300, CV_8UC3, bgr(map_pictures::kPaper));
+  map_pictures::writeText(picture, text, {10, 20});
+  return picture;
+}
+
+}  // namespace
+
+TEST(Sheet, aLegendLeavesThePictureAsItIs) {
+  const cv::Mat sheet = map_pictures::withLegend(kPicture, "title", entries(3));
+  EXPECT_EQ(cv::norm(sheet(cv::Rect({0, 0}, kPicture.size())), kPicture, cv::NORM_INF), 0);
+  const cv::Mat gap = sheet.colRange(kPicture.cols, kPicture.cols + 15);
+  EXPECT_EQ(count(gap, map_pictures::kPaper), gap.size().area());
+}
+
+TEST(Sheet, aLegendIsCompleteHoweverLongItIs) {
+  for (const int number : {1, 12, 13, 40, 254}) {
+    const cv::Mat sheet = map_pictures::withLegend(kPicture, "", entries(number));
+    EXPECT_EQ(sheet.rows, kPicture.rows) << number;
+    for (const LegendEntry& entry : entries(number))
+      EXPECT_GE(count(sheet, std::get<Color>(entry.look)), 14 * 14) << number << entry.name;
+  }
+}
+
+TEST(Sheet, aLegendOfALowPictureNeedsNoColumnOfItsOwnPerEntry) {
+  const cv::Mat sheet = map_pictures::withLegend(kPicture.rowRange(0, 30), "", entries(6));
+  EXPECT_EQ(sheet.rows, map_pictures::legendHeight(6));
+  EXPECT_LT(sheet.cols, kPicture.cols + 160);
+}
+
+TEST(Sheet, theLegendShowsLinesAndPosesAsTheyAreDrawn) {
+  const Color purple{130, 0, 130}, orange{250, 120, 0};
+  const cv::Mat sheet = map_pictures::withLegend(
+      kPicture, "",
+      {{"path", map_pictures::Stroke{purple, 3, 2}}, {"goal", map_pictures::Arrow{orange, 26, 2}}});
+  EXPECT_GT(count(sheet, purple), 3 * 18);
+  EXPECT_LT(count(sheet, purple), 8 * 18);
+  EXPECT_GT(count(sheet, orange), 30);
+}
+
+TEST(Sheet, aTitleStandsAboveThePicture) {
+  const cv::Mat sheet = map_pictures::withTitle(kPicture, "12 s");
+  const int strip = sheet.rows - kPicture.rows;
+  EXPECT_GT(strip, 20);
+  EXPECT_EQ(cv::norm(sheet.rowRange(strip, sheet.rows), kPicture, cv::NORM_INF), 0);
+  EXPECT_LT(count(sheet.rowRange(0, strip), map_pictures::kPaper), strip * sheet.cols);
+}
+
+TEST(Text, hasTheWidthThatItSays) {
+  for (const char* text : {"road", "Straße", "дорога", "道"}) {
+    const cv::Mat picture = written(text);
+    cv::Mat ink;
+    cv::inRange(picture, bgr(map_pictures::kPaper), bgr(map_pictures::kPaper), ink);
+    const cv::Rect place = cv::boundingRect(ink == 0);
+    EXPECT_NEAR(place.width, map_pictures::textWidth(text), 5) << text;
+    EXPECT_NEAR(place.x, 10, 3) << text;
+    EXPECT_NEAR(place.y + place.height / 2.0, 20, 4) << text;
+  }
+}
+
+TEST(Text, lettersBeyondAsciiAreLettersWhereTheFontIsInstalled) {
+  if (!std::filesystem::exists("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"))
+    GTEST_SKIP() << "needs fonts-dejavu-core";
+  EXPECT_GT(cv::norm(written("Straße"), written("Stra??e"), cv::NORM_L1), 1000);
+  EXPECT_GT(cv::norm(written("лес"), written("лед"), cv::NORM_L1), 1000);
+  EXPECT_LT(map_pictures::textWidth("Straße"), map_pictures::textWidth("Stra??e") + 10);
+}
+
+TEST(Text, brokenUtf8IsWrittenWithoutHarm) {
+  for (const char* text : {"a\xff", "\xe2\x82", "\xc3", "\x80\x80z", "\xf0\x9f\x9a"})
+    EXPECT_GT(map_pictures::textWidth(text), 0);
+}
