@@ -11,7 +11,7 @@
 using namespace simulated_drive;
 using mrpt::math::TPose2D;
 using semantic_driving::DriveController;
-using semantic_driving::DriveGuide;
+using semantic_driving::Target;
 using synthetic_world::World;
 
 namespace {

@@ -105,9 +105,8 @@ DriveGuide::Departure DriveGuide::departureOf(const Situation& now, From from) c
 DrivePath DriveGuide::untilRest(const Situation& now) const {
   const PathTracker& tracker = now.drive.tracker();
   const DrivePath& path = tracker.path();
-  const double here = tracker.progress(), speed = now.state.speed;
-  const double braking = m_options.restBraking * tracker.options().braking();
-  const double there = here + speed * speed / (2 * braking) + m_options.restMargin;
+  const double here = tracker.progress();
+  const double there = here + m_options.restingWay(now.state.speed, tracker.options().braking());
   return path.part(here, std::min(there, path.stretchEnd(here)));
 }
 

@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+#include <semantic_driving/GuideOptions.h>
+#include <semantic_driving/PathTracker.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "../../apps/semantic-map-drive/DriveConfig.h"
+#include "../../apps/semantic-map-drive/SimulatedRobot.h"
+
+using namespace semantic_driving;
+using semantic_planning::PathPoint;
+
+namespace {
+
+const std::vector<Eigen::Vector2d> kFootprint = {
+    {-0.25, -0.3}, {0.55, -0.3}, {0.55, 0.3}, {-0.25, 0.3}};
+
+DrivePath straight(double length) {
+  std::vector<PathPoint> points;
+  for (double x = 0; x <= length; x += 0.1) points.push_back({x, 0, 0, 0, 0, true, 0, 0});
+  return DrivePath(points);
+}
+
+/** Where a vehicle stands that drives at full speed and then is left the way to come to rest: x
+ * less the end of that way, meters. */
+double overshoot(double acceleration) {
+  DriveOptions options;
+  options.maxAcceleration = acceleration;
+  PathTracker tracker(options, kFootprint);
+  semantic_map_drive::SimulatedRobot robot({0, 0, 0}, options);
+  const auto drive = [&](int steps) {
+    for (int i = 0; i < steps; ++i) {
+      tracker.locate(robot.state());
+      robot.drive(tracker.command(robot.state(), {}, options.maxSpeed), 0.1);
+    }
+  };
+  tracker.setPath(straight(60));
+  drive(200);
+  EXPECT_NEAR(robot.state().speed, options.maxSpeed, 1e-6) << acceleration;
+  tracker.locate(robot.state());
+  const double here = tracker.progress();
+  const double way = GuideOptions().restingWay(robot.state().speed, options.braking());
+  const double end = robot.state().pose.x + way;
+  tracker.setPath(tracker.path().part(here, here + way));
+  drive(300);
+  EXPECT_NEAR(robot.state().speed, 0, 1e-6) << acceleration;
+  return robot.state().pose.x - end;
+}
+
+/** What is wrong with a configuration; empty: nothing. */
+std::string faultOf(const std::string& lines) {
+  const std::string config = std::string(MSO_SOURCE_DIR) + "/config/";
+  const auto file = std::filesystem::path(testing::TempDir()) / "DriveOptions_unittest.ini";
+  std::ofstream(file) << "[drive]\nreactive = " << config << "reactive/robot.ini\n" << lines;
+  try {
+    semantic_map_drive::loadDriveConfig(file);
+    return {};
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+}
+
+}  // namespace
+
+TEST(DriveOptions, TheWayToRestIsLongEnoughForSlowVehicles) {
+  for (const double acceleration : {0.15, 0.3, 0.6, 0.8, 2.0})
+    EXPECT_LT(overshoot(acceleration), 0.1) << acceleration;
+}
+
+TEST(DriveOptions, ComesToRestMoreGentlyThanTheTrackerBrakesAtAnyAcceleration) {
+  for (const double acceleration : {0.05, 0.3, 0.74, 0.8, 5.0}) {
+    DriveOptions drive;
+    drive.maxAcceleration = acceleration;
+    const GuideOptions guide;
+    const double way = guide.restingWay(1, drive.braking()) - guide.restMargin;
+    EXPECT_GT(way, 1 / (2 * drive.braking())) << acceleration;
+  }
+  EXPECT_DOUBLE_EQ(GuideOptions().restBraking * DriveOptions().braking(), 0.6);
+}
+
+TEST(DriveOptions, ComingToRestAsFastAsTheTrackerBrakesIsRefused) {
+  GuideOptions options;
+  options.restBraking = 1;
+  EXPECT_THROW(options.validate(), std::invalid_argument);
+}
+
+TEST(DriveOptions, AreAllReadFromTheirSections) {
+  EXPECT_EQ(faultOf("max_speed = 0.5\ncontrol_period = 0.05\n[guide]\nat_goal = 0.2\n"
+                    "[frontiers]\nradius = 20\nmost = 3\n[recovery]\nblind = 1\n"
+                    "[obstacles]\nforbidden_ground = false\n[pose]\nparticles = 50\n"),
+            "");
+  EXPECT_EQ(faultOf("maxSpeed = 0.5\nalwaysReactive = 1\n"), "");  // MRPT's way of writing
+}
+
+TEST(DriveOptions, SaysWhatIsWrongInAConfiguration) {
+  EXPECT_NE(faultOf("max_sped = 1\n").find("did you mean 'max_speed'"), std::string::npos);
+  EXPECT_NE(faultOf("max_speed = 0\n").find("[drive] max_speed is 0"), std::string::npos);
+  EXPECT_NE(faultOf("[frontier]\nradius = 3\n").find("did you mean 'frontiers'"),
+            std::string::npos);
+  EXPECT_NE(faultOf("[guide]\nrest_braking = 1\n").find("rest_braking is 1"), std::string::npos);
+  EXPECT_NE(faultOf("[sensors]\ncamera = no\nlidar = no\n").find("both off"), std::string::npos);
+}

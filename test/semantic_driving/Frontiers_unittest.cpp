@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+#include <semantic_driving/Frontiers.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "PaintedPlanner.h"
+
+using namespace semantic_driving;
+using namespace semantic_planning;
+using mrpt::math::TPose2D;
+
+namespace {
+
+constexpr double kVoxel = 0.2;  // m
+
+/** Flat ground, 16 m by 16 m, and beyond it nothing that is known. Grass is on rank 1. */
+class Frontiers : public testing::Test {
+ protected:
+  Frontiers() { world.floor(-8, 8, -8, 8, PaintedWorld::Road); }
+
+  Exploration explore(const TPose2D& goal, const std::vector<TPose2D>& avoid = {},
+                      const FrontierOptions& options = {}) {
+    return findFrontiers(plannerOver(world), kStart, 0, goal, avoid, options);
+  }
+  void wall(double x0, double x1, double y0, double y1) {
+    world.box(x0, x1, y0, y1, 0, 1, PaintedWorld::Wall);
+  }
+
+  const TPose2D kStart{0.1, 0.1, 0};
+  PaintedWorld world;
+};
+
+double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+/** The shortest way from column to column over eight neighbors on free ground. */
+double octile(const TPose2D& a, const TPose2D& b) {
+  const double x = std::abs(a.x - b.x), y = std::abs(a.y - b.y);
+  return std::max(x, y) + (std::sqrt(2.0) - 1) * std::min(x, y);
+}
+
+}  // namespace
+
+TEST_F(Frontiers, LieAtTheBorderOfWhatIsKnownAndApart) {
+  const Exploration found = explore({30, 0, 0});
+  ASSERT_EQ(found.frontiers.size(), FrontierOptions().most);
+  EXPECT_FALSE(found.enclosed);
+  EXPECT_EQ(found.goalArea, std::numeric_limits<double>::infinity());
+  for (const Frontier& f : found.frontiers) {
+    const double toBorder = 8 - std::max(std::abs(f.pose.x), std::abs(f.pose.y));
+    EXPECT_GT(toBorder, 0.3);  // the vehicle fits
+    EXPECT_LE(toBorder, 1.5);  // the unknown is in sight
+    for (const Frontier& other : found.frontiers) {
+      if (&other != &f) {
+        EXPECT_GE(distance(f.pose, other.pose), 3);
+      }
+    }
+  }
+}
+
+TEST_F(Frontiers, CostTheWayThereAndTwiceThatThroughTheUnknown) {
+  const TPose2D goal(30, 4, 0);
+  const Exploration found = explore(goal);
+  ASSERT_FALSE(found.frontiers.empty());
+  double before = 0;
+  for (const Frontier& f : found.frontiers) {
+    EXPECT_NEAR(f.cost, octile(kStart, f.pose) + 2 * distance(f.pose, goal), 1e-6);
+    EXPECT_GE(f.cost, before);  // most promising first
+    before = f.cost;
+  }
+}
+
+TEST_F(Frontiers, OverWorseClassesCostTheirRankMore) {
+  world.floor(-8, 8, -8, 8, PaintedWorld::Grass);
+  const TPose2D goal(30, 4, 0);
+  const Exploration found = explore(goal);
+  ASSERT_FALSE(found.frontiers.empty());
+  for (const Frontier& f : found.frontiers)
+    EXPECT_NEAR(f.cost, 2 * octile(kStart, f.pose) + 2 * distance(f.pose, goal), 1e-6);
+}
+
+TEST_F(Frontiers, HeadAsOneComesThere) {
+  const Exploration found = explore({30, 0.1, 0});
+  ASSERT_FALSE(found.frontiers.empty());
+  EXPECT_NEAR(found.frontiers[0].pose.phi, 0, 0.4);
+  EXPECT_GT(found.frontiers[0].pose.x, 6);
+}
+
+TEST_F(Frontiers, AreNotLookedForAgain) {
+  const Exploration first = explore({30, 0, 0});
+  ASSERT_FALSE(first.frontiers.empty());
+  const TPose2D seen = first.frontiers[0].pose;
+  for (const Frontier& f : explore({30, 0, 0}, {seen}).frontiers)
+    EXPECT_GE(distance(f.pose, seen), 3);
+}
+
+TEST_F(Frontiers, AreAsManyAndAsFarApartAsTheOptionsSay) {
+  FrontierOptions options;
+  options.most = 2;
+  options.apart = 6;
+  const Exploration found = explore({30, 0, 0}, {}, options);
+  ASSERT_EQ(found.frontiers.size(), 2u);
+  EXPECT_GE(distance(found.frontiers[0].pose, found.frontiers[1].pose), 6);
+}
+
+TEST_F(Frontiers, BehindAWallAreNone) {
+  wall(4, 4.2, -8, 8);
+  for (const Frontier& f : explore({30, 0, 0}).frontiers) EXPECT_LT(f.pose.x, 4);
+}
+
+TEST_F(Frontiers, WithinWallsThereAreNoneAndTheVehicleIsEnclosed) {
+  wall(-4, 4, -4, -3.8), wall(-4, 4, 3.8, 4), wall(-4, -3.8, -4, 4), wall(3.8, 4, -4, 4);
+  const Exploration found = explore({30, 0, 0});
+  EXPECT_TRUE(found.enclosed);
+  EXPECT_TRUE(found.frontiers.empty());
+  EXPECT_EQ(found.goalArea, std::numeric_limits<double>::infinity());
+}
+
+TEST_F(Frontiers, AGoalWithinWallsIsEnclosedOnAnAreaOfTheirs) {
+  wall(3, 7, 3, 3.2), wall(3, 7, 6.8, 7), wall(3, 3.2, 3, 7), wall(6.8, 7, 3, 7);
+  const Exploration found = explore({5.1, 5.1, 0});
+  EXPECT_TRUE(found.enclosed);
+  // Within 3.2 to 6.8 m, but for the columns next to a wall: 0.35 m are kept.
+  EXPECT_NEAR(found.goalArea, 3.2 * 3.2, 1e-6);
+}
+
+TEST_F(Frontiers, BadOptionsAreRefused) {
+  FrontierOptions options;
+  options.apart = -1;
+  EXPECT_THROW(explore({30, 0, 0}, {}, options), std::invalid_argument);
+}

@@ -1,0 +1,178 @@
+#include "GoalRegion.h"
+
+#include <gtest/gtest.h>
+#include <synthetic_world/Random.h>
+
+#include <cmath>
+#include <set>
+
+#include "PaintedPlanner.h"
+
+using namespace semantic_driving;
+using namespace semantic_planning;
+
+namespace {
+
+constexpr double kVoxel = 0.2;  // m
+constexpr double kDisc = 0.35;  // m: the footprint's inner radius, and the clearance
+constexpr int kReach = 20;      // columns
+constexpr int kAroundGoal = 5;  // columns, 1 m
+
+using Place = std::pair<int, int>;  ///< a column, counted from the origin
+
+/** Flat ground with walls, as painted. */
+struct Walls {
+  std::set<Place> columns;
+
+  bool contains(int x, int y) const { return columns.count({x, y}) > 0; }
+  /** A pose in the column is too near to a wall, wherever in it. */
+  bool keep(int x, int y) const {
+    for (const auto& [wx, wy] : columns)
+      if (kVoxel * std::hypot(wx - x, wy - y) < kDisc - 1e-5) return true;
+    return false;
+  }
+  SemanticPlanner planner(PaintedWorld& world) const {
+    world.floor(-6, 6, -6, 6, PaintedWorld::Road);
+    for (const auto& [x, y] : columns)
+      for (int z = 0; z < 5; ++z) world.voxel(x, y, z, PaintedWorld::Wall);
+    return plannerOver(world);
+  }
+};
+
+/** What GoalRegion says it is, by spreading until nothing changes any more. */
+struct Oracle {
+  std::set<Place> region;
+  bool open = false, enclosed = true;
+
+  Oracle(const Walls& walls, const std::set<Place>& reached, const Place& goal) {
+    const auto inside = [](int x, int y) { return std::max(std::abs(x), std::abs(y)) <= kReach; };
+    std::set<Place> candidates;
+    const auto take = [&](int x, int y) {
+      if (!inside(x, y)) {
+        open = true;
+        return;
+      }
+      if (walls.keep(x, y)) return;
+      if (reached.count({x, y}))
+        enclosed = false;
+      else
+        region.insert({x, y});
+    };
+    const auto seed = [&](bool kept) {
+      for (int x = -kAroundGoal; x <= kAroundGoal; ++x)
+        for (int y = -kAroundGoal; y <= kAroundGoal; ++y)
+          if (kept ? std::hypot(x, y) <= kAroundGoal : x == 0 && y == 0)
+            take(goal.first + x, goal.second + y);
+    };
+    seed(walls.keep(goal.first, goal.second));
+    for (std::size_t before = 0; before != region.size() + open;) {
+      before = region.size() + open;
+      for (const auto& [x, y] : std::set<Place>(region))
+        for (int dx = -1; dx <= 1; ++dx)
+          for (int dy = -1; dy <= 1; ++dy) take(x + dx, y + dy);
+      if (!open) continue;
+      for (int i = -kReach; i <= kReach; ++i)
+        for (const int rim : {-kReach, kReach}) take(i, rim), take(rim, i);
+    }
+  }
+};
+
+Walls randomWalls(synthetic_world::Random& random) {
+  Walls walls;
+  const int count = 6 + random.below(8);
+  for (int i = 0; i < count; ++i) {
+    const int x = random.below(31) - 15, y = random.below(31) - 15, length = 5 + random.below(14);
+    const bool along = random.chance(0.5);
+    for (int k = 0; k < length; ++k) {
+      const Place c(along ? x + k : x, along ? y : y + k);
+      if (std::abs(c.first) < 4 && std::abs(c.second) < 4) continue;  // where the vehicle stands
+      if (std::hypot(c.first, c.second) > kReach) continue;           // it is not seen
+      walls.columns.insert(c);
+    }
+  }
+  return walls;
+}
+
+/** A square of walls from -half to half around a column. */
+Walls square(const Place& middle, int half) {
+  Walls walls;
+  for (int i = -half; i <= half; ++i)
+    for (const int side : {-half, half}) {
+      walls.columns.insert({middle.first + i, middle.second + side});
+      walls.columns.insert({middle.first + side, middle.second + i});
+    }
+  return walls;
+}
+
+Column columnOf(const Place& place) { return {32768 + place.first, 32768 + place.second}; }
+mrpt::math::TPose2D poseIn(const Place& place) {
+  return {(place.first + 0.5) * kVoxel, (place.second + 0.5) * kVoxel, 0};
+}
+
+GoalRegion regionOf(const SemanticPlanner& planner, const std::set<Place>& reached,
+                    const Place& goal) {
+  const ColumnSquare columns(columnOf({0, 0}), kReach);
+  std::vector<bool> marked(columns.size());
+  for (const Place& p : reached) marked[columns.indexOf(columnOf(p))] = true;
+  return GoalRegion(planner, columns, marked, poseIn({0, 0}), 0, poseIn(goal), 1);
+}
+
+/** Free places around the vehicle. */
+std::set<Place> discWithout(const Walls& walls, double radius) {
+  std::set<Place> places;
+  for (int x = -kReach; x <= kReach; ++x)
+    for (int y = -kReach; y <= kReach; ++y)
+      if (std::hypot(x, y) <= radius && !walls.keep(x, y)) places.insert({x, y});
+  return places;
+}
+
+}  // namespace
+
+TEST(GoalRegion, IsThatOfAFloodByHandAmongRandomWalls) {
+  synthetic_world::Random random(1);
+  int enclosed = 0, open = 0;
+  for (int i = 0; i < 20; ++i) {
+    SCOPED_TRACE(i);
+    const Walls walls = randomWalls(random);
+    const std::set<Place> reached = discWithout(walls, 3 + random.below(8));
+    const Place goal(random.below(33) - 16, random.below(33) - 16);
+    if (reached.count(goal)) continue;
+    PaintedWorld world;
+    const SemanticPlanner planner = walls.planner(world);
+    const GoalRegion region = regionOf(planner, reached, goal);
+    const Oracle oracle(walls, reached, goal);
+    EXPECT_EQ(region.isEnclosed(), oracle.enclosed);
+    EXPECT_EQ(region.isOpen(), oracle.open);
+    EXPECT_EQ(region.columns(), oracle.region.size());
+    for (int x = -kReach; x <= kReach; ++x)
+      for (int y = -kReach; y <= kReach; ++y) {
+        EXPECT_EQ(region.contains(columnOf({x, y})), oracle.region.count({x, y}) > 0)
+            << x << ", " << y;
+        EXPECT_EQ(region.isObstacle(columnOf({x, y})), walls.contains(x, y)) << x << ", " << y;
+      }
+    enclosed += oracle.enclosed, open += oracle.open;
+  }
+  EXPECT_GT(open, 0);
+  EXPECT_LT(enclosed, 20);
+}
+
+TEST(GoalRegion, WithinWallsIsEnclosedAndAsLargeAsTheyLeave) {
+  const Place goal(11, 0);
+  const Walls walls = square(goal, 6);
+  PaintedWorld world;
+  const SemanticPlanner planner = walls.planner(world);
+  const GoalRegion region = regionOf(planner, discWithout(walls, 5), goal);
+  EXPECT_TRUE(region.isEnclosed());
+  EXPECT_FALSE(region.isOpen());
+  // 11 columns between the walls; those next to one lie within 0.35 m of it.
+  EXPECT_EQ(region.columns(), 9u * 9u);
+}
+
+TEST(GoalRegion, ThatTheVehicleReachesIsNotEnclosed) {
+  const Walls walls = square({11, 0}, 6);
+  PaintedWorld world;
+  const SemanticPlanner planner = walls.planner(world);
+  const GoalRegion region = regionOf(planner, {{11, 0}}, {11, 0});
+  EXPECT_FALSE(region.isEnclosed());
+  EXPECT_TRUE(region.contains(columnOf({-9, -9})));  // wherever: a plan may come from there
+}

@@ -1,0 +1,86 @@
+#include <gtest/gtest.h>
+#include <semantic_driving/PathCheck.h>
+
+#include <cmath>
+
+#include "PaintedPlanner.h"
+
+using namespace semantic_driving;
+using namespace semantic_planning;
+
+namespace {
+
+constexpr double kVoxel = 0.2, kFront = 0.55, kClearance = 0.1;  // m
+
+/** Along x, `length` meters. */
+DrivePath alongX(double length) {
+  std::vector<PathPoint> points;
+  for (double x = 0.1; x <= length + 0.1 + 1e-9; x += 0.1)
+    points.push_back({x, 0.1, 0, 0, 0, true, 0, 0});
+  return DrivePath(points);
+}
+
+/** A road up to x = 5, and grass, on rank 1, from there on. */
+class OfAPath : public testing::Test {
+ protected:
+  OfAPath() {
+    world.floor(-4, 5, -4, 4, PaintedWorld::Road);
+    world.floor(5, 20, -4, 4, PaintedWorld::Grass);
+  }
+  PathJudgment judge(const DrivePath& path, double from = 0) {
+    const SemanticPlanner planner = plannerOver(world);
+    return PathCheck(planner).judge(path, from);
+  }
+  PaintedWorld world;
+};
+
+PathJudgment judged(std::vector<double> perRank) {
+  PathJudgment judgment;
+  for (const double length : perRank) judgment.length += length;
+  judgment.lengthPerRank = std::move(perRank);
+  return judgment;
+}
+
+}  // namespace
+
+TEST_F(OfAPath, TellsTheLengthOnEachRank) {
+  const PathJudgment judgment = judge(alongX(12));
+  EXPECT_TRUE(judgment.isFree());
+  EXPECT_NEAR(judgment.length, 12, 1e-6);
+  EXPECT_NEAR(judgment.lengthPerRank[0], 5 - 0.1, 2 * kVoxel);
+  EXPECT_NEAR(judgment.lengthPerRank[1], 12 - 5 + 0.1, 2 * kVoxel);
+  EXPECT_NEAR(judge(alongX(12), 4).length, 8, 1e-6);
+}
+
+TEST_F(OfAPath, TellsHowFarItIsFree) {
+  const DrivePath path = alongX(12);
+  ASSERT_TRUE(judge(path).isFree());
+  world.box(8, 8.2, -1, 1, 0, 1, PaintedWorld::Wall);
+  EXPECT_NEAR(judge(path).freeFor, 8 - 0.1 - kFront - kClearance, 2 * kVoxel);
+  EXPECT_NEAR(judge(path, 3).freeFor, judge(path).freeFor - 3, kVoxel + 1e-6);
+  EXPECT_TRUE(judge(path, 10).isFree());  // it is behind
+}
+
+TEST_F(OfAPath, ForbiddenGroundIsInTheWay) {
+  world.floor(6, 7, -4, 4, PaintedWorld::Mud);
+  EXPECT_NEAR(judge(alongX(12)).freeFor, 6 - 0.1, kVoxel);  // the wheels come there
+}
+
+TEST(PathJudgment, IsBetterOnBetterClassesAndThenIfShorter) {
+  struct Row {
+    std::vector<double> path, other;
+    bool better;
+  };
+  for (const Row& row : std::vector<Row>{
+           {{20, 0}, {10, 3}, true},  // longer, but all on the best class
+           {{10, 3}, {20, 0}, false},
+           {{9, 0}, {11, 0}, true},    // shorter by more than a tenth
+           {{9, 0}, {9.9, 0}, false},  // by less
+           {{2, 0}, {2.4, 0}, false},  // by less than half a meter
+           {{2, 0}, {2.6, 0}, true},
+           {{9, 1}, {9, 1.4}, false},  // as long on the worse class, in good approximation
+           {{2, 1.4}, {9, 1}, true}})
+    EXPECT_EQ(judged(row.path).isClearlyBetterThan(judged(row.other)), row.better)
+        << row.path[0] << ", " << row.path[1];
+  EXPECT_TRUE(judged({9, 0}).isClearlyBetterThan(judged({9.9, 0}), {0.5, 0.05}));
+}
