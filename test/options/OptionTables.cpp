@@ -4,11 +4,16 @@
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/NetworkLabeler.h>
 #include <labeled_cloud/ScanStream.h>
+#include <map_pictures/MapPictures.h>
+#include <semantic_driving/DriveGuide.h>
+#include <semantic_driving/ObstacleSensing.h>
 #include <semantic_map/ExportGrid.h>
 #include <semantic_map/MapOptions.h>
-#include <map_pictures/MapPictures.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Lidar.h>
+
+#include "simulated_drive/DriveConfig.h"
 
 using strict_files::Option;
 using strict_files::OptionList;
@@ -91,6 +96,31 @@ std::vector<OptionTable> worldTables() {
   };
 }
 
+std::vector<OptionTable> planningTables() {
+  using namespace semantic_planning;
+  return {
+      table<VehicleOptions>("Vehicles",
+                            "Files of `config/vehicles`, which also have a `footprint`: a list of "
+                            "corners [x, y] in m, x ahead, convex."),
+      table<PlannerOptions>("Planner",
+                            "`semantic-map-plan`, `planning-study`; `[planner]` of drives."),
+  };
+}
+
+std::vector<OptionTable> drivingTables() {
+  using namespace semantic_driving;
+  using namespace simulated_drive;
+  return {
+      table<DriveOptions>("Driving", "`[drive]` of `semantic-map-drive` and `drive-study`."),
+      table<GuideOptions>("Which path is driven", "`[guide]`."),
+      table<FrontierOptions>("Exploring", "`[frontiers]`."),
+      table<RecoveryOptions>("Recovery from where the robot must not be", "`[recovery]`."),
+      table<ObstacleOptions>("Obstacles", "`[obstacles]`."),
+      table<SensorConfig>("Simulated sensors", "`[sensors]`; `[camera]` and `[lidar]` are above."),
+      table<PoseOptions>("Simulated odometry, and how it is corrected", "`[pose]`."),
+  };
+}
+
 std::string rowOf(const Option& option) {
   const std::string value = option.text();
   return "| `" + option.name + "` | " + option.unit + " | " +
@@ -102,7 +132,8 @@ std::string rowOf(const Option& option) {
 
 std::vector<OptionTable> optionTables() {
   std::vector<OptionTable> tables;
-  for (const auto& group : {mapTables(), labelTables(), worldTables()})
+  for (const auto& group :
+       {mapTables(), labelTables(), worldTables(), planningTables(), drivingTables()})
     tables.insert(tables.end(), group.begin(), group.end());
   return tables;
 }
