@@ -17,7 +17,7 @@ std::vector<PathPoint> thereAndBack() {
 }
 
 DriveTracker trackerOn(const std::vector<PathPoint>& points) {
-  DriveTracker tracker({}, {{-0.25, -0.3}, {0.55, -0.3}, {0.55, 0.3}, {-0.25, 0.3}});
+  DriveTracker tracker({}, Footprint::rectangle(-0.25, 0.55, 0.6));
   tracker.setPath(DrivePath(points));
   return tracker;
 }
