@@ -12,8 +12,7 @@ using namespace semantic_planning;
 
 namespace {
 
-const std::vector<Eigen::Vector2d> kFootprint = {
-    {-0.25, -0.3}, {0.55, -0.3}, {0.55, 0.3}, {-0.25, 0.3}};
+const auto kFootprint = semantic_planning::Footprint::rectangle(-0.25, 0.55, 0.6);
 
 /** 12 m along x. */
 DrivePath straight() {

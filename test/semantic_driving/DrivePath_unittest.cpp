@@ -17,7 +17,7 @@ std::vector<PathPoint> thereAndBack() {
 }
 
 PathTracker trackerOn(const std::vector<PathPoint>& points) {
-  PathTracker tracker({}, {{-0.25, -0.3}, {0.55, -0.3}, {0.55, 0.3}, {-0.25, 0.3}});
+  PathTracker tracker({}, Footprint::rectangle(-0.25, 0.55, 0.6));
   tracker.setPath(DrivePath(points));
   return tracker;
 }

@@ -16,14 +16,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<Eigen::Vector2d> rectangle(double length, double width) {
-  return {{0, -width / 2}, {length, -width / 2}, {length, width / 2}, {0, width / 2}};
-}
-
 ReactiveNavigator::Options optionsOf(double width) {
   ReactiveNavigator::Options options;
   options.config = std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini";
-  options.footprint = rectangle(0.6, width);
+  options.footprint = Footprint::rectangle(0, 0.6, width);
   return options;
 }
 
@@ -75,7 +71,8 @@ TEST(ReactiveNavigator, GoesThroughAGapWhereItFits) {
 
 TEST(ReactiveNavigator, WithSlicesGoesThroughAGapWhereItFitsAtThatHeight) {
   ReactiveNavigator::Options options = optionsOf(0.9);
-  options.slices = {{0.5, rectangle(0.6, 0.9)}, {1.0, rectangle(0.6, 0.2)}};  // a mast on a base
+  options.slices = {{0.5, Footprint::rectangle(0, 0.6, 0.9)},
+                    {1.0, Footprint::rectangle(0, 0.6, 0.2)}};  // a mast on a base
   EXPECT_TRUE(getsThrough(options, 1.0));
   EXPECT_FALSE(getsThrough(options, 0.3));
 }
