@@ -1,7 +1,9 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
-// Uses <cstdint> without including it.
+// Uses these three without including them.
 #include <octomap/OcTreeKey.h>
 
 /** \file Keys: OctoMap's numbers of the voxels along an axis, 0 to 65535. They are whole numbers of
