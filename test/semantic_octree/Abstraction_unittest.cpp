@@ -117,7 +117,7 @@ TEST(Abstraction, agreesWithThePlainSearchOnTheSameTree) {
   }
 }
 
-TEST(Abstraction, prunedMapHasTheOptimalTreeOfTheUnprunedOne) {
+TEST(Abstraction, prunedMapHasTheCompressedTreeOfTheUnprunedOne) {
   const auto options = someOptions(0.01);
   const auto scans = scansOfSmallPlace(5, 3000, K, 5);
   SemanticOcTree pruned = mapOf(scans, &options), unpruned = mapOf(scans, &options, false);
@@ -248,7 +248,7 @@ TEST(Abstraction, leavesInABoxAreThoseOfAllThatMeetIt) {
   }
 }
 
-TEST(Abstraction, compressedMapHasTheOptimalLeavesAndAnswersQueries) {
+TEST(Abstraction, compressedMapHasTheCompressedTreesLeavesAndAnswersQueries) {
   const AbstractionOptions options = someOptions(0.02);
   SemanticOcTree map = mapOf(scansOfSmallPlace(4, 4000, K, 6), &options);
   const Abstraction abstraction(map);
@@ -260,6 +260,18 @@ TEST(Abstraction, compressedMapHasTheOptimalLeavesAndAnswersQueries) {
     ASSERT_EQ(fine.status, coarse.status);
     ASSERT_EQ(fine.occupancy, coarse.occupancy);
     ASSERT_EQ(fine.likeliestClass, coarse.likeliestClass);
+  }
+}
+
+TEST(Abstraction, leavesKnowTheVoxelsThatTheyStandFor) {
+  const AbstractionOptions options = someOptions(0.02);
+  SemanticOcTree map = mapOf(scansOfSmallPlace(2, 2000, K, 6), &options);
+  for (const LeafCell& l : Abstraction(map).leaves()) {
+    const octomap::point3d center = map.keyToCoord(l.key, l.depth);
+    ASSERT_NEAR(l.edge() * kResolution, map.getNodeSize(l.depth), 1e-9);
+    for (unsigned axis = 0; axis < 3; ++axis)
+      ASSERT_NEAR(lowerBorderOf(l.lowest()[axis], kResolution) + l.edge() * kResolution / 2,
+                  center(axis), 1e-3);
   }
 }
 

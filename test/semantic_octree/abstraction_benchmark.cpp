@@ -1,4 +1,4 @@
-// Upkeep, search and re-weighting of the optimal abstraction, with the plain full pass beside them.
+// Upkeep, search and re-weighting of the abstraction, with the plain full pass beside them.
 #include <benchmark/benchmark.h>
 #include <semantic_octree/Abstraction.h>
 
@@ -104,7 +104,7 @@ void reweigh(benchmark::State& state) {
 }
 BENCHMARK(reweigh)->Unit(benchmark::kMillisecond);
 
-/** Changes of the optimal tree after one more scan. */
+/** Changes of the compressed tree after one more scan. */
 void takeChange(benchmark::State& state) {
   const Place place(4);
   std::size_t changed = 0;

@@ -4,10 +4,12 @@
 #include <array>
 #include <cstdint>
 
+#include "Cell.h"
 #include "CheckedStream.h"
-#include "NodeStore.h"
 
 namespace semantic_octree {
+
+class NodeArena;
 
 /** A map's bytes: kMagic, kVersion, then in checked blocks (see CheckedStream.h)
  *   resolution (double), pruning (1 byte), filter (increments 1 byte, six doubles),

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "NodeStore.h"
+
 namespace semantic_octree {
 
 using semantic_types::Color;

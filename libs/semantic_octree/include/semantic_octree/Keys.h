@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-// Uses <cstddef>, <cstdint> and <vector> without including them.
+// Uses these three without including them.
 #include <octomap/OcTreeKey.h>
 
 /** \file Keys: OctoMap's numbers of the voxels along an axis, 0 to 65535. They are whole numbers of
