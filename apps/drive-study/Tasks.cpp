@@ -20,8 +20,17 @@ constexpr std::array<std::size_t, 2> kVertices = {2000, 8000};  // of the oracle
 
 }  // namespace
 
+void TaskOptions::describe(strict_files::OptionList& list) {
+  list.add("nearest", nearest, "m", strict_files::above(0), "from start to goal, at least");
+  list.add("farthest", farthest, "m", strict_files::above(0), "from start to goal, at most");
+  list.add("clearance", clearance, "m", strict_files::atLeast(0),
+           "around the footprint at start and goal");
+  list.add("seed", seed, "", "another one makes other pairs");
+}
+
 void TaskOptions::validate() const {
-  if (!(nearest > 0) || !(farthest > nearest))
+  strict_files::checkOptions(*this, "TaskOptions");
+  if (!(farthest > nearest))
     throw std::invalid_argument("TaskOptions: distances from " + std::to_string(nearest) + " to " +
                                 std::to_string(farthest) + " m");
 }
@@ -70,11 +79,11 @@ bool TaskDraw::isFree(const TPose2D& pose) const {
     return m_order.rank(m_world.groundClass(p.x, p.y)) != colored_graph::kForbidden;
   };
   for (const Eigen::Vector2d& corner : m_footprint.outline) {
-    const Eigen::Vector2d far = corner + m_options.room * corner.cwiseSign();
+    const Eigen::Vector2d far = corner + m_options.clearance * corner.cwiseSign();
     if (!isAllowed(pose.composePoint({far.x(), far.y()}))) return false;
   }
   return isAllowed({pose.x, pose.y}) &&
-         m_world.clearance(m_footprint, pose.x, pose.y, pose.phi) > m_options.room;
+         m_world.clearance(m_footprint, pose.x, pose.y, pose.phi) > m_options.clearance;
 }
 
 Oracle::Oracle(const World& world, const ClassOrder& order, const PlannerOptions& planner,

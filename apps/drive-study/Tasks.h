@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_planning/planner/SemanticPlanner.h>
+#include <strict_files/OptionList.h>
 #include <synthetic_world/Random.h>
 #include <synthetic_world/World.h>
 
@@ -21,10 +22,11 @@ struct Task {
 
 struct TaskOptions {
   double nearest = 15, farthest = 35;  ///< from start to goal, meters
-  double room = 0.5;                   ///< kept free around the footprint at start and goal, meters
+  double clearance = 0.5;              ///< around the footprint at start and goal, meters
   std::uint64_t seed = 1;
 
-  /** \throw std::invalid_argument naming the field and its value. */
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
 

@@ -8,6 +8,7 @@
 
 #include "Application.h"
 #include "JsonFile.h"
+#include "OptionFlags.h"
 #include "StudyFiles.h"
 
 namespace drive_study {
@@ -37,10 +38,10 @@ struct Cli {
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     app.add_option("--only", only, "Drive these of the pairs only (0, 1, ...)")->delimiter(',');
-    app.add_option("--seed", tasks.seed, "Other pairs")->capture_default_str();
     app.add_option("--scene-seed", sceneSeed, "Other worlds")->capture_default_str();
-    app.add_option("--nearest", tasks.nearest, "From start to goal, m")->capture_default_str();
-    app.add_option("--farthest", tasks.farthest, "From start to goal, m")->capture_default_str();
+    strict_files::OptionList pairsDrawn;
+    tasks.describe(pairsDrawn);
+    addOptions(app, pairsDrawn, "Start and goal");
     app.add_option("--classes", classes, "Classes from best to worst (YAML)")->required();
     app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drives)")
         ->required();

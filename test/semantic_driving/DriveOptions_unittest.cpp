@@ -48,13 +48,18 @@ double overshoot(double acceleration) {
   return robot.state().pose.x - end;
 }
 
-/** What is wrong with a configuration; empty: nothing. */
-std::string faultOf(const std::string& lines) {
+/** \param lines behind "reactive = ..." of [drive] */
+semantic_map_drive::DriveConfig loaded(const std::string& lines) {
   const std::string config = std::string(MSO_SOURCE_DIR) + "/config/";
   const auto file = std::filesystem::path(testing::TempDir()) / "DriveOptions_unittest.ini";
   std::ofstream(file) << "[drive]\nreactive = " << config << "reactive/robot.ini\n" << lines;
+  return semantic_map_drive::loadDriveConfig(file);
+}
+
+/** What is wrong with a configuration; empty: nothing. */
+std::string faultOf(const std::string& lines) {
   try {
-    semantic_map_drive::loadDriveConfig(file);
+    loaded(lines);
     return {};
   } catch (const std::runtime_error& e) {
     return e.what();
@@ -85,12 +90,24 @@ TEST(DriveOptions, ComingToRestAsFastAsTheTrackerBrakesIsRefused) {
   EXPECT_THROW(options.validate(), std::invalid_argument);
 }
 
-TEST(DriveOptions, AreAllReadFromTheirSections) {
-  EXPECT_EQ(faultOf("max_speed = 0.5\ncontrol_period = 0.05\n[guide]\nat_goal = 0.2\n"
-                    "[frontiers]\nradius = 20\nmost = 3\n[recovery]\nblind = 1\n"
-                    "[obstacles]\nforbidden_ground = false\n[pose]\nparticles = 50\n"),
-            "");
-  EXPECT_EQ(faultOf("maxSpeed = 0.5\nalwaysReactive = 1\n"), "");  // MRPT's way of writing
+TEST(DriveOptions, AreReadFromTheirSections) {
+  const auto config = loaded(
+      "max_speed = 0.5\ncontrol_period = 0.05\n[guide]\nat_goal = 0.2\n"
+      "[frontiers]\nradius = 20\n[recovery]\nblind = 1\n"
+      "[obstacles]\nforbidden_ground = false\n[pose]\nparticles = 50\n");
+  EXPECT_EQ(config.drive.maxSpeed, 0.5);
+  EXPECT_EQ(config.controlPeriod, 0.05);
+  EXPECT_EQ(config.guide.atGoal, 0.2);
+  EXPECT_EQ(config.guide.frontiers.radius, 20);
+  EXPECT_EQ(config.guide.recovery.blind, 1);
+  EXPECT_FALSE(config.obstacles.forbiddenGround);
+  EXPECT_EQ(config.pose.particles, 50);
+}
+
+TEST(DriveOptions, AreReadInMrptsWayOfWritingToo) {
+  const auto config = loaded("maxSpeed = 0.5\nalwaysReactive = 0\n");
+  EXPECT_EQ(config.drive.maxSpeed, 0.5);
+  EXPECT_FALSE(config.drive.alwaysReactive);
 }
 
 TEST(DriveOptions, SaysWhatIsWrongInAConfiguration) {

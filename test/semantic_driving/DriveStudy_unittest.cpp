@@ -53,7 +53,7 @@ TEST(DriveStudy, TheOracleKnowsWhereAPathLeads) {
   EXPECT_FALSE(solved(world, {-8, 0, 0}, {10, 0, 0}).hasPath);
 }
 
-TEST(DriveStudy, DrawsTasksWithRoomAroundThem) {
+TEST(DriveStudy, DrawsTasksWithClearanceAroundThem) {
   const World world = withYard();
   const auto order = syntheticOrder();
   const auto vehicle = smallConfig().planner.vehicle;
@@ -66,7 +66,7 @@ TEST(DriveStudy, DrawsTasksWithRoomAroundThem) {
     EXPECT_GE(distance, options.nearest);
     EXPECT_LE(distance, options.farthest);
     const auto footprint = simulated_drive::trueFootprint(vehicle);
-    EXPECT_GT(world.clearance(footprint, task.goal.x, task.goal.y, task.goal.phi), options.room);
+    EXPECT_GT(world.clearance(footprint, task.goal.x, task.goal.y, task.goal.phi), options.clearance);
   }
 }
 
