@@ -115,7 +115,7 @@ TEST(ScanConverter, badOptionsAreNamed) {
   options.decimation = 0;
   EXPECT_TRUE(contains(errorOf([&] { ScanConverter(abc(), options); }), "decimation = 0"));
   options = {};
-  options.flying_pixel_threshold is - 0.5;
+  options.flyingPixelThreshold = -0.5;
   EXPECT_TRUE(
       contains(errorOf([&] { ScanConverter(abc(), options); }), "flying_pixel_threshold is -0.5"));
 }
