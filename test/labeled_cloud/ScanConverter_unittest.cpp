@@ -113,7 +113,7 @@ TEST(ScanConverter, otherObservationsAreNoneOfItsBusiness) {
 TEST(ScanConverter, badOptionsAreNamed) {
   ScanConverterOptions options;
   options.decimation = 0;
-  EXPECT_TRUE(contains(errorOf([&] { ScanConverter(abc(), options); }), "decimation = 0"));
+  EXPECT_TRUE(contains(errorOf([&] { ScanConverter(abc(), options); }), "decimation is 0"));
   options = {};
   options.flyingPixelThreshold = -0.5;
   EXPECT_TRUE(

@@ -122,7 +122,7 @@ TEST(Trajectory, aLongGapIsNotBridged) {
 TEST(Trajectory, badOptionsAndPosesAreNamed) {
   TrajectoryOptions options;
   options.tolerance = -1;
-  EXPECT_TRUE(contains(errorOf([&] { Trajectory path(options); }), "tolerance = -1"));
+  EXPECT_TRUE(contains(errorOf([&] { Trajectory path(options); }), "tolerance is -1"));
   options = {};
   options.maxGap = 0;
   EXPECT_TRUE(contains(errorOf([&] { Trajectory path(options); }), "max_gap is 0"));
