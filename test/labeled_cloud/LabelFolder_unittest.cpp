@@ -211,7 +211,7 @@ TEST(LabelFolder, badFoldersAndNamesAreNamed) {
   std::filesystem::remove(folder / "1.50.png");
   EXPECT_TRUE(contains(error(folder.path()), "frame.png: the label image's name is not a time"));
   LabelFolderOptions options;
-  options.tolerance is - 1;
+  options.tolerance = -1;
   EXPECT_TRUE(
       contains(errorOf([&] { LabelFolder(folder.path(), {}, options); }), "tolerance is -1"));
 }

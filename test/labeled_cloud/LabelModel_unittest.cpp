@@ -66,7 +66,7 @@ TEST(LabelModel, unsureLabelsAreNone) {
   auto hard = cloudOf({1, 2});
   model.apply(2, {0.6f, 0.9f}, hard);
   EXPECT_EQ(hard.classes, (std::vector<ClassId>{0, 2}));
-  model.min_confidence is 2;
+  model.minConfidence = 2;
   EXPECT_TRUE(contains(errorOf([&] { model.validate(); }), "min_confidence is 2"));
 }
 

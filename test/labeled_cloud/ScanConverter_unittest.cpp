@@ -113,9 +113,9 @@ TEST(ScanConverter, otherObservationsAreNoneOfItsBusiness) {
 TEST(ScanConverter, badOptionsAreNamed) {
   ScanConverterOptions options;
   options.decimation = 0;
-  EXPECT_TRUE(contains(errorOf([&] { ScanConverter(abc(), options); }), "decimation = 0"));
+  EXPECT_TRUE(contains(errorOf([&] { ScanConverter(abc(), options); }), "decimation is 0"));
   options = {};
-  options.flying_pixel_threshold is - 0.5;
+  options.flyingPixelThreshold = -0.5;
   EXPECT_TRUE(
       contains(errorOf([&] { ScanConverter(abc(), options); }), "flying_pixel_threshold is -0.5"));
 }

@@ -122,9 +122,9 @@ TEST(Trajectory, aLongGapIsNotBridged) {
 TEST(Trajectory, badOptionsAndPosesAreNamed) {
   TrajectoryOptions options;
   options.tolerance = -1;
-  EXPECT_TRUE(contains(errorOf([&] { Trajectory path(options); }), "tolerance = -1"));
+  EXPECT_TRUE(contains(errorOf([&] { Trajectory path(options); }), "tolerance is -1"));
   options = {};
-  options.max_gap is 0;
+  options.maxGap = 0;
   EXPECT_TRUE(contains(errorOf([&] { Trajectory path(options); }), "max_gap is 0"));
   EXPECT_THROW(Trajectory().insert(at(0), CPose3D(NAN, 0, 0, 0, 0, 0)), std::invalid_argument);
 }

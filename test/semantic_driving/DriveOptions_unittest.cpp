@@ -28,7 +28,7 @@ double overshoot(double acceleration) {
   DriveOptions options;
   options.maxAcceleration = acceleration;
   PathTracker tracker(options, kFootprint);
-  semantic_map_drive::SimulatedRobot robot({0, 0, 0}, options);
+  simulated_drive::SimulatedRobot robot({0, 0, 0}, options);
   const auto drive = [&](int steps) {
     for (int i = 0; i < steps; ++i) {
       tracker.locate(robot.state());
@@ -49,11 +49,11 @@ double overshoot(double acceleration) {
 }
 
 /** \param lines behind "reactive = ..." of [drive] */
-semantic_map_drive::DriveConfig loaded(const std::string& lines) {
+simulated_drive::DriveConfig loaded(const std::string& lines) {
   const std::string config = std::string(MSO_SOURCE_DIR) + "/config/";
   const auto file = std::filesystem::path(testing::TempDir()) / "DriveOptions_unittest.ini";
   std::ofstream(file) << "[drive]\nreactive = " << config << "reactive/robot.ini\n" << lines;
-  return semantic_map_drive::loadDriveConfig(file);
+  return simulated_drive::loadDriveConfig(file);
 }
 
 /** What is wrong with a configuration; empty: nothing. */

@@ -207,6 +207,17 @@ TEST(MapInsertion, theFilterCanChangeWhileTheMapIsEmptyOnly) {
   EXPECT_TRUE(map.insertObservation(labeledPoints({kPoint}, {1})));
 }
 
+TEST(MapInsertion, whatLabelsSayCanChangeBetweenObservations) {
+  CSemanticOctoMap map(0.2, threeClasses());
+  auto unsure = labeledPoints({{4, 1, 0}}, {});
+  unsure.cloud.probabilities = {0.6f, 0.3f, 0.1f};
+  map.insertObservation(unsure);
+  EXPECT_EQ(map.lastInsertion().conversion.labeled, 1u);
+  map.insertionOptions.conversion.labels.minConfidence = 0.9;
+  map.insertObservation(unsure);
+  EXPECT_EQ(map.lastInsertion().conversion.labeled, 0u);
+}
+
 TEST(MapInsertion, scanOptionsHold) {
   CSemanticOctoMap map = quietMap();
   map.insertionOptions.scan.maxRange = 1;

@@ -97,7 +97,7 @@ TEST(BadInput, insertionOptionsAreRefusedByName) {
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.minRange = -2; }), "min_range is -2");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.carvingMargin = HUGE_VAL; }),
                "carvingMargin");
-  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.threads = 0; }), "threads = 0");
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.threads = 0; }), "threads is 0");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.threads = 257; }), "threads");
   InsertionOptions options;
   options.threads = 0;

@@ -6,6 +6,7 @@
 
 using semantic_octree::AbstractionOptions;
 using semantic_octree::AbstractionText;
+using semantic_octree::loadWeights;
 using semantic_types::ClassTable;
 
 namespace {

@@ -156,6 +156,13 @@ RC_GTEST_PROP(OptionList, numbersAreWrittenWithAsManyDigitsAsTheyNeed, (double n
   RC_ASSERT(strict_files::numberOf(strict_files::textOf(number)) == number);
 }
 
+TEST(OptionList, numbersAreWrittenAsPeopleDo) {
+  EXPECT_EQ(strict_files::textOf(100000), "100000");
+  EXPECT_EQ(strict_files::textOf(-3), "-3");
+  EXPECT_EQ(strict_files::textOf(0.1), "0.1");
+  EXPECT_EQ(strict_files::textOf(1e300), "1e+300");
+}
+
 TEST(OptionList, infiniteNumbersKeepTheirSign) {
   EXPECT_EQ(strict_files::numberOf("inf"), INFINITY);
   EXPECT_EQ(strict_files::numberOf("-inf"), -INFINITY);

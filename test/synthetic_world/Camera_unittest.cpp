@@ -115,9 +115,10 @@ TEST(Camera, badOptionsAreNamed) {
     change(options);
     return messageOf([&] { renderCamera(small_world::flat(), lookingAhead(1), options); });
   };
-  EXPECT_NE(message([](auto& o) { o.width = 1; }).find("camera: width"), std::string::npos);
-  EXPECT_NE(message([](auto& o) { o.height = 0; }).find("camera: height"), std::string::npos);
-  EXPECT_NE(message([](auto& o) { o.horizontalFov = 180; }).find("camera: horizontalFov"),
+  EXPECT_NE(message([](auto& o) { o.width = 1; }).find("CameraOptions::width"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.height = 0; }).find("CameraOptions::height"),
+            std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.horizontalFov = 180; }).find("CameraOptions::fov"),
             std::string::npos);
   EXPECT_NE(message([](auto& o) { o.minRange = -1; }).find("CameraOptions::min_range"),
             std::string::npos);

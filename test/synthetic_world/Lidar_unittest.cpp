@@ -69,10 +69,13 @@ TEST(Lidar, badOptionsAreNamed) {
     change(options);
     return messageOf([&] { scanLidar(small_world::flat(), raised(1), options); });
   };
-  EXPECT_NE(message([](auto& o) { o.rings = 0; }).find("LiDAR: rings"), std::string::npos);
-  EXPECT_NE(message([](auto& o) { o.columns = 0; }).find("LiDAR: columns"), std::string::npos);
-  EXPECT_NE(message([](auto& o) { o.lowest = 20; }).find("LiDAR: lowest"), std::string::npos);
-  EXPECT_NE(message([](auto& o) { o.highest = 90; }).find("LiDAR: highest"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.rings = 0; }).find("LidarOptions::rings"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.columns = 0; }).find("LidarOptions::columns"),
+            std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.lowest = 20; }).find("LidarOptions::lowest"),
+            std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.highest = 90; }).find("LidarOptions::highest"),
+            std::string::npos);
   EXPECT_NE(message([](auto& o) { o.minRange = NAN; }).find("LidarOptions::min_range"),
             std::string::npos);
   EXPECT_NE(message([](auto& o) { o.maxRange = 0; }).find("LidarOptions::max_range"),

@@ -12,8 +12,12 @@ struct CachedConverter {
 
   bool isFor(const semantic_types::ClassTable& t,
              const labeled_cloud::ScanConverterOptions& o) const {
+    const auto &labels = o.labels, &known = options.labels;
     return o.decimation == options.decimation &&
-           o.flyingPixelThreshold == options.flyingPixelThreshold && t == table;
+           o.flyingPixelThreshold == options.flyingPixelThreshold &&
+           o.occlusionParallax == options.occlusionParallax && labels.kind == known.kind &&
+           labels.minConfidence == known.minConfidence && labels.confusion == known.confusion &&
+           t == table;
   }
 
   semantic_types::ClassTable table;

@@ -61,7 +61,10 @@ Eigen::Vector3d pointOf(const std::string& text, const std::string& expected) {
 std::string textOf(double number) {
   if (std::isinf(number)) return number > 0 ? "inf" : "-inf";
   char text[40];
-  const auto end = std::to_chars(text, text + sizeof(text), number).ptr;
+  const bool whole = number == std::floor(number) && std::fabs(number) < 0x1p53;  // no "1e+05"
+  const auto end =
+      whole ? std::to_chars(text, text + sizeof(text), number, std::chars_format::fixed).ptr
+            : std::to_chars(text, text + sizeof(text), number).ptr;
   return {text, end};
 }
 
