@@ -41,7 +41,16 @@ TEST(TextLines, leaveOutCommentsBlanksAndLineEndsAndKnowTheirNumber) {
 
 TEST(TextLines, haveAsManyNumbersAsExpected) {
   EXPECT_EQ(numbersOf({"P2: 1 2.5 -3e2", "f:1"}, 3), (std::vector<double>{1, 2.5, -300}));
-  EXPECT_EQ(errorOf([] { numbersOf({"1 2", "f:1"}, 3); }), "f:1: expected 3 numbers, found 2");
-  EXPECT_EQ(errorOf([] { numbersOf({"1 2x", "f:7"}, 2); }), "f:7: expected a number, found '2x'");
-  EXPECT_EQ(errorOf([] { numbersOf({"1 inf", "f:7"}, 2); }), "f:7: expected a number, found 'inf'");
+  EXPECT_EQ(errorOf([] {
+              numbersOf({"1 2", "f:1"}, 3);
+            }),
+            "f:1: expected 3 numbers, found 2 in '1 2'");
+  EXPECT_EQ(errorOf([] {
+              numbersOf({"1 2x", "f:7"}, 2);
+            }),
+            "f:7: expected a number, found '2x' in '1 2x'");
+  EXPECT_EQ(errorOf([] {
+              numbersOf({"1 inf", "f:7"}, 2);
+            }),
+            "f:7: expected a number, found 'inf' in '1 inf'");
 }

@@ -9,10 +9,9 @@ namespace strict_files {
 
 std::string readText(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(stream), {});
-  if (!stream || std::filesystem::is_directory(file))
+  if (!stream || std::filesystem::is_directory(file))  // a folder can be opened, but not read
     throw std::runtime_error(file.string() + ": cannot be read");
-  return text;
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 void writeText(const std::filesystem::path& file, const std::string& text) {
@@ -36,6 +35,7 @@ std::vector<TextLine> readLines(const std::filesystem::path& file) {
 
 std::vector<double> numbersOf(const TextLine& line, std::size_t count) {
   std::istringstream stream(line.text.substr(line.text.find(':') + 1));
+  const std::string inLine = " in '" + line.text + "'";
   std::vector<double> numbers;
   for (std::string word; stream >> word;) {
     std::size_t used = 0;
@@ -45,12 +45,12 @@ std::vector<double> numbersOf(const TextLine& line, std::size_t count) {
     } catch (const std::exception&) {
     }
     if (used != word.size() || !std::isfinite(number))
-      throw std::runtime_error(line.where + ": expected a number, found '" + word + "'");
+      throw std::runtime_error(line.where + ": expected a number, found '" + word + "'" + inLine);
     numbers.push_back(number);
   }
   if (numbers.size() != count)
     throw std::runtime_error(line.where + ": expected " + std::to_string(count) +
-                             " numbers, found " + std::to_string(numbers.size()));
+                             " numbers, found " + std::to_string(numbers.size()) + inLine);
   return numbers;
 }
 
