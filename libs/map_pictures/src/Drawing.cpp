@@ -26,10 +26,6 @@ void drawDot(cv::Mat& picture, const cv::Point2d& place, double radius, const Co
              cv::FILLED, cv::LINE_AA, kShift);
 }
 
-bool isAscii(const std::string& text) {
-  return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; });
-}
-
 /** The characters of UTF-8; U+FFFD for bytes that are none. */
 std::vector<char32_t> charactersOf(const std::string& text) {
   std::vector<char32_t> characters;
@@ -126,18 +122,23 @@ void drawArrow(cv::Mat& picture, const cv::Point2d& place, double heading, const
   draw(arrow.color, 0);
 }
 
-int textWidth(const std::string& text) {
-  if (!isAscii(text))
-    if (const auto font = DejaVu::load()) return font->write(nullptr, text, {});
+Font fontFor(const std::string& text) {
+  const auto isAscii = [](unsigned char c) { return c < 0x80; };
+  return std::all_of(text.begin(), text.end(), isAscii) ? Font::Strokes : Font::DejaVu;
+}
+
+int textWidth(const std::string& text, Font font) {
+  if (font == Font::DejaVu)
+    if (const auto letters = DejaVu::load()) return letters->write(nullptr, text, {});
   int baseline = 0;
   return cv::getTextSize(text, kFont, kTextSize, 1, &baseline).width;
 }
 
-void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftMiddle) {
+void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftMiddle, Font font) {
   const cv::Point baseline = leftMiddle + cv::Point(0, 6);
-  if (!isAscii(text))
-    if (const auto font = DejaVu::load()) {
-      font->write(&picture, text, baseline);
+  if (font == Font::DejaVu)
+    if (const auto letters = DejaVu::load()) {
+      letters->write(&picture, text, baseline);
       return;
     }
   cv::putText(picture, text, baseline, kFont, kTextSize, bgr(kInk), 1, cv::LINE_AA);
