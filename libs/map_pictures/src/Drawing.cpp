@@ -110,12 +110,15 @@ void drawLine(cv::Mat& picture, const std::vector<cv::Point2d>& points, const St
 void drawArrow(cv::Mat& picture, const cv::Point2d& place, double heading, const Arrow& arrow) {
   const cv::Point2d forward(std::cos(heading), -std::sin(heading)), left(forward.y, -forward.x);
   const cv::Point2d tip = place + arrow.length * forward;
+  constexpr double kShortestWithHead = 12;
   const int width = std::max(1, int(std::lround(arrow.length / 7)));
   const double barb = 0.35 * arrow.length, radius = 0.27 * arrow.length;
   const auto draw = [&](const Color& color, int halo) {
     const Stroke stroke{color, width + 2 * halo, 0};
     drawLine(picture, {place, tip}, stroke);
-    drawLine(picture, {tip - barb * (forward - left), tip, tip - barb * (forward + left)}, stroke);
+    if (arrow.length >= kShortestWithHead)
+      drawLine(picture, {tip - barb * (forward - left), tip, tip - barb * (forward + left)},
+               stroke);
     drawDot(picture, place, radius + halo, color);
   };
   if (arrow.halo > 0) draw(kHalo, arrow.halo);
