@@ -35,7 +35,9 @@ void MapSheet::add(const SemanticOcTree& map, const std::string& title) {
   style.width = m_tile.width, style.height = m_tile.height;
   const auto canvas = map_pictures::MapCanvas::ofMap(map, style);
   if (m_tiles.empty()) m_legend = canvas.legend();
-  m_tiles.push_back(map_pictures::withTitle(onPaper(canvas.withScale(), m_tile), title));
+  cv::Mat picture = canvas.picture().clone();
+  map_pictures::drawScaleBar(picture, canvas.pixelsPerMeter());
+  m_tiles.push_back(map_pictures::withTitle(onPaper(picture, m_tile), title));
 }
 
 cv::Mat MapSheet::picture() const {

@@ -36,7 +36,7 @@ void drawRoute(MapCanvas& canvas, const DriveTracker& tracker) {
   std::vector<Eigen::Vector2d> line;
   for (const PathPoint& p : tracker.path().points())
     if (p.arcLength >= tracker.progress()) line.emplace_back(p.x, p.y);
-  if (line.empty()) return;
+  if (line.size() < 2) return;
   canvas.drawLine(line, kPath);
   canvas.explain({"path", kPath});
 }

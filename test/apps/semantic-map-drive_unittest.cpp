@@ -2,6 +2,8 @@
 #include <mrpt/nav/reactive/CLogFileRecord.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <algorithm>
+
 #include "SemanticMapDrive.h"
 
 TEST_F(SemanticMapDrive, KeepsPicturesOnTheWayAndNoneOfALongerDrive) {
@@ -13,6 +15,18 @@ TEST_F(SemanticMapDrive, KeepsPicturesOnTheWayAndNoneOfALongerDrive) {
   ASSERT_EQ(drive({"--no-rawlog", "--picture-every", "100"}).status, 0);
   EXPECT_TRUE(has("drive/drive-0001.png"));
   EXPECT_FALSE(has("drive/drive-0002.png"));
+}
+
+TEST_F(SemanticMapDrive, DrawsAnAnimationUnlessItIsNotWanted) {
+  auto arguments = argumentsWith(
+      {"--config", configWith("timeLimit = 3\n"), "--output", path("drive"), "--no-rawlog"});
+  EXPECT_EQ(runProgram("semantic-map-drive", arguments).status, 2);  // not arrived
+  EXPECT_FALSE(has("drive/drive.gif"));
+  arguments.erase(std::find(arguments.begin(), arguments.end(), "--no-pictures"));
+  const ProgramRun run = runProgram("semantic-map-drive", arguments);
+  EXPECT_EQ(run.status, 2) << run.errors;
+  EXPECT_EQ(folder.read("drive/drive.gif").substr(0, 6), "GIF89a");
+  EXPECT_TRUE(has("drive/drive.png"));
 }
 
 TEST_F(SemanticMapDrive, WritesARawlogThatBecomesAMap) {

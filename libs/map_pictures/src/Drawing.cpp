@@ -26,10 +26,6 @@ void drawDot(cv::Mat& picture, const cv::Point2d& place, double radius, const Co
              cv::FILLED, cv::LINE_AA, kShift);
 }
 
-bool isAscii(const std::string& text) {
-  return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; });
-}
-
 /** The characters of UTF-8; U+FFFD for bytes that are none. */
 std::vector<char32_t> charactersOf(const std::string& text) {
   std::vector<char32_t> characters;
@@ -114,30 +110,38 @@ void drawLine(cv::Mat& picture, const std::vector<cv::Point2d>& points, const St
 void drawArrow(cv::Mat& picture, const cv::Point2d& place, double heading, const Arrow& arrow) {
   const cv::Point2d forward(std::cos(heading), -std::sin(heading)), left(forward.y, -forward.x);
   const cv::Point2d tip = place + arrow.length * forward;
+  constexpr double kShortestWithHead = 12;
   const int width = std::max(1, int(std::lround(arrow.length / 7)));
   const double barb = 0.35 * arrow.length, radius = 0.27 * arrow.length;
   const auto draw = [&](const Color& color, int halo) {
     const Stroke stroke{color, width + 2 * halo, 0};
     drawLine(picture, {place, tip}, stroke);
-    drawLine(picture, {tip - barb * (forward - left), tip, tip - barb * (forward + left)}, stroke);
+    if (arrow.length >= kShortestWithHead)
+      drawLine(picture, {tip - barb * (forward - left), tip, tip - barb * (forward + left)},
+               stroke);
     drawDot(picture, place, radius + halo, color);
   };
   if (arrow.halo > 0) draw(kHalo, arrow.halo);
   draw(arrow.color, 0);
 }
 
-int textWidth(const std::string& text) {
-  if (!isAscii(text))
-    if (const auto font = DejaVu::load()) return font->write(nullptr, text, {});
+Font fontFor(const std::string& text) {
+  const auto isAscii = [](unsigned char c) { return c < 0x80; };
+  return std::all_of(text.begin(), text.end(), isAscii) ? Font::Strokes : Font::DejaVu;
+}
+
+int textWidth(const std::string& text, Font font) {
+  if (font == Font::DejaVu)
+    if (const auto letters = DejaVu::load()) return letters->write(nullptr, text, {});
   int baseline = 0;
   return cv::getTextSize(text, kFont, kTextSize, 1, &baseline).width;
 }
 
-void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftMiddle) {
+void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftMiddle, Font font) {
   const cv::Point baseline = leftMiddle + cv::Point(0, 6);
-  if (!isAscii(text))
-    if (const auto font = DejaVu::load()) {
-      font->write(&picture, text, baseline);
+  if (font == Font::DejaVu)
+    if (const auto letters = DejaVu::load()) {
+      letters->write(&picture, text, baseline);
       return;
     }
   cv::putText(picture, text, baseline, kFont, kTextSize, bgr(kInk), 1, cv::LINE_AA);

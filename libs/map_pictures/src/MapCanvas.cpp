@@ -145,8 +145,9 @@ cv::Mat MapCanvas::withScale() const {
   cv::Mat picture = m_picture.clone(), empty;
   cv::inRange(picture, bgr(kPaper), bgr(kPaper), empty);
   if (cv::countNonZero(empty) == empty.size().area()) return picture;
-  drawAxes(picture, {cv::Point2d(1, 0), cv::Point2d(0, -1), cv::Point2d(0, 0)});
-  drawScaleBar(picture, m_pixelsPerMeter);
+  const cv::Rect axes =
+      drawAxes(picture, {cv::Point2d(1, 0), cv::Point2d(0, -1), cv::Point2d(0, 0)});
+  drawScaleBar(picture, m_pixelsPerMeter, axes);
   return picture;
 }
 

@@ -14,13 +14,15 @@ namespace {
 
 constexpr int kMargin = 20, kRow = 28, kSwatch = 18;
 
-/** Upper left corner of a place of that size in the corner of the picture with least in it. */
-cv::Point emptiestCorner(const cv::Mat& picture, cv::Size size) {
+/** Upper left corner of a place of that size in the corner of the picture with least in it.
+ * \param taken keeps clear of that, if there is another corner */
+cv::Point emptiestCorner(const cv::Mat& picture, cv::Size size, const cv::Rect& taken) {
   const int right = picture.cols - size.width, bottom = picture.rows - size.height;
   cv::Point best(0, bottom);
   int least = size.area() + 1;
   for (const cv::Point corner : {cv::Point(0, bottom), {right, bottom}, {right, 0}, {0, 0}}) {
     const cv::Rect place = cv::Rect(corner, size) & cv::Rect({0, 0}, picture.size());
+    if (!(place & taken).empty()) continue;
     cv::Mat empty;
     cv::inRange(picture(place), bgr(kPaper), bgr(kPaper), empty);
     const int filled = place.area() - cv::countNonZero(empty);
@@ -96,19 +98,23 @@ cv::Mat withLegend(const cv::Mat& picture, const std::string& title,
   const int top = title.empty() ? kMargin : kMargin + kRow, numEntries = int(entries.size());
   const int rows = std::max(kFewestRows, (picture.rows - top - kMargin) / kRow);
   const int columns = std::max(1, (numEntries + rows - 1) / rows);
+  const Font font = fontFor(std::accumulate(
+      entries.begin(), entries.end(), title,
+      [](const std::string& text, const LegendEntry& entry) { return text + entry.name; }));
   int width = 0;
-  for (const auto& entry : entries) width = std::max(width, kTextLeft + textWidth(entry.name));
+  for (const auto& entry : entries)
+    width = std::max(width, kTextLeft + textWidth(entry.name, font));
 
   const int left = picture.cols + kMargin;
-  const int inside = std::max(textWidth(title), columns * (width + kMargin) - kMargin);
+  const int inside = std::max(textWidth(title, font), columns * (width + kMargin) - kMargin);
   const int height = std::max(picture.rows, top + std::min(rows, numEntries) * kRow + kMargin);
   cv::Mat sheet(height, left + inside + kMargin, CV_8UC3, bgr(kPaper));
   picture.copyTo(sheet(cv::Rect({0, 0}, picture.size())));
-  if (!title.empty()) writeText(sheet, title, {left, kMargin + kRow / 4});
+  if (!title.empty()) writeText(sheet, title, {left, kMargin + kRow / 4}, font);
   for (int i = 0; i < numEntries; ++i) {
     const cv::Point at(left + i / rows * (width + kMargin), top + i % rows * kRow);
     std::visit(Sample{sheet, {at, cv::Size(kSwatch, kSwatch)}}, entries[i].look);
-    writeText(sheet, entries[i].name, at + cv::Point(kTextLeft, kSwatch / 2));
+    writeText(sheet, entries[i].name, at + cv::Point(kTextLeft, kSwatch / 2), font);
   }
   return sheet;
 }
@@ -117,30 +123,32 @@ cv::Mat withTitle(const cv::Mat& picture, const std::string& title) {
   constexpr int kHeight = 34;
   cv::Mat sheet;
   cv::copyMakeBorder(picture, sheet, kHeight, 0, 0, 0, cv::BORDER_CONSTANT, bgr(kPaper));
-  writeText(sheet, title, {kMargin, kHeight / 2});
+  writeText(sheet, title, {kMargin, kHeight / 2}, fontFor(title));
   return sheet;
 }
 
-void drawScaleBar(cv::Mat& picture, double pixelsPerMeter) {
+void drawScaleBar(cv::Mat& picture, double pixelsPerMeter, const cv::Rect& taken) {
   const double meters = roundLength(picture.cols / pixelsPerMeter / 5);
   const int length = std::max(1, int(std::lround(meters * pixelsPerMeter)));
   const std::string text = lengthName(meters);
-  const int width = std::max(length, textWidth(text));
+  const int width = std::max(length, textWidth(text, Font::Strokes));
   const cv::Size size(width + 2 * kMargin, 2 * kRow + 4);
-  const cv::Point corner = emptiestCorner(picture, size);
+  const cv::Point corner = emptiestCorner(picture, size, taken);
   brighten(picture, {corner, size});
   const cv::Point left = corner + cv::Point(kMargin + (width - length) / 2, size.height - kMargin);
   cv::rectangle(picture, {left.x, left.y - 4, length, 4}, bgr(kInk), cv::FILLED);
   for (const int x : {left.x, left.x + length - 2})
     cv::rectangle(picture, {x, left.y - 9, 2, 9}, bgr(kInk), cv::FILLED);
-  writeText(picture, text, {left.x + (length - textWidth(text)) / 2, left.y - 20});
+  writeText(picture, text, {left.x + (length - textWidth(text, Font::Strokes)) / 2, left.y - 20},
+            Font::Strokes);
 }
 
-void drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions) {
+cv::Rect drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions) {
   constexpr double kLength = 46;
   constexpr int kSize = 132;
-  const cv::Point corner = emptiestCorner(picture, {kSize, kSize});
-  brighten(picture, {corner, cv::Size(kSize, kSize)});
+  const cv::Point corner = emptiestCorner(picture, {kSize, kSize}, {});
+  const cv::Rect place(corner, cv::Size(kSize, kSize));
+  brighten(picture, place);
   const cv::Point2d origin = cv::Point2d(corner) + cv::Point2d(kSize / 2.0, kSize / 2.0);
   const std::array<cv::Scalar, 3> colors = {cv::Scalar(40, 40, 200), cv::Scalar(40, 140, 40),
                                             cv::Scalar(200, 80, 30)};
@@ -149,8 +157,10 @@ void drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions) {
     const cv::Point2d tip = origin + kLength * directions[axis];
     const cv::Point2d letter = origin + (kLength + 11) * directions[axis];
     cv::arrowedLine(picture, origin, tip, colors[axis], 2, cv::LINE_AA, 0, 0.2);
-    writeText(picture, std::string(1, char('x' + axis)), cv::Point(letter) - cv::Point(5, 0));
+    writeText(picture, std::string(1, char('x' + axis)), cv::Point(letter) - cv::Point(5, 0),
+              Font::Strokes);
   }
+  return place;
 }
 
 }  // namespace map_pictures

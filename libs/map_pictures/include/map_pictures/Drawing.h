@@ -40,11 +40,17 @@ void drawLine(cv::Mat& picture, const std::vector<cv::Point2d>& points, const St
 /** \param heading radians, counterclockwise from the right */
 void drawArrow(cv::Mat& picture, const cv::Point2d& place, double heading, const Arrow& arrow);
 
-/** Pixels. */
-int textWidth(const std::string& text);
+/** OpenCV's own letters, made of strokes, are those of ASCII; others need DejaVu Sans. */
+enum class Font { Strokes, DejaVu };
 
-/** \param text UTF-8. What is not ASCII needs the font DejaVu Sans; without that, it is "?".
- * \param leftMiddle of the text */
-void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftMiddle);
+/** The one that has all letters of a UTF-8 text. Texts that stand together should share it. */
+Font fontFor(const std::string& text);
+
+/** Pixels. */
+int textWidth(const std::string& text, Font font);
+
+/** \param leftMiddle of the text. Where DejaVu Sans is not installed, "?" stands for its letters.
+ */
+void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftMiddle, Font font);
 
 }  // namespace map_pictures

@@ -28,11 +28,13 @@ int legendHeight(std::size_t entries);
 /** The picture with a line of text above. */
 cv::Mat withTitle(const cv::Mat& picture, const std::string& title);
 
-/** A bar of 1, 2 or 5 times a power of ten meters in the emptiest corner. */
-void drawScaleBar(cv::Mat& picture, double pixelsPerMeter);
+/** A bar of 1, 2 or 5 times a power of ten meters in the emptiest corner but that which is taken.
+ */
+void drawScaleBar(cv::Mat& picture, double pixelsPerMeter, const cv::Rect& taken = {});
 
 /** The map's axes in the emptiest corner. \param directions of x, y, z in the picture (x right, y
- * down), at most of length 1; those that point at the viewer are left out */
-void drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions);
+ * down), at most of length 1; those that point at the viewer are left out
+ * \return their place */
+cv::Rect drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions);
 
 }  // namespace map_pictures
