@@ -5,8 +5,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "../../apps/semantic-map-drive/DriveConfig.h"
-#include "../../apps/semantic-map-drive/SimulatedRobot.h"
+#include "simulated_drive/DriveConfig.h"
+#include "simulated_drive/SimulatedRobot.h"
 
 using namespace semantic_driving;
 using semantic_planning::PathPoint;

@@ -1,4 +1,4 @@
-#include "../../apps/semantic-map-drive/PoseFilter.h"
+#include "simulated_drive/PoseFilter.h"
 
 #include <gtest/gtest.h>
 
