@@ -6,7 +6,8 @@
 #include <vector>
 
 /** A semantic octree as the reference's search sees a tree: an independent way to its
- * compressed tree, with distributions of all classes, logarithms of the standard library, and no bookkeeping.
+ * compressed tree, with distributions of all classes, logarithms of the standard library, and no
+ * bookkeeping.
  *
  * Nodes at `rootDepth` are the roots (0: the whole map is one tree); unknown space weighs
  * `unknownWeight` times its volume below `rootDepth`, nothing above it. */

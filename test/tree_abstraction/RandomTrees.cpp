@@ -76,8 +76,7 @@ tree_abstraction::AbstractionWeights makeTieRichWeights(double arity, Engine& ra
   using tree_abstraction::relevant;
   switch (uniformInt(random, 0, 2)) {
     case 0:
-      return {{relevant("one", std::log(arity) / reference::binaryEntropy(1 / arity), {1})},
-              1};
+      return {{relevant("one", std::log(arity) / reference::binaryEntropy(1 / arity), {1})}, 1};
     case 1:
       return {{relevant("one", 2 * std::log2(arity), {1})}, 1};
     default:
