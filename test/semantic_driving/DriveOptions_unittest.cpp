@@ -40,7 +40,8 @@ double overshoot(double acceleration) {
   EXPECT_NEAR(robot.state().speed, options.maxSpeed, 1e-6) << acceleration;
   tracker.locate(robot.state());
   const double here = tracker.progress();
-  const double way = GuideOptions().restingWay(robot.state().speed, options.braking());
+  const GuideOptions guide;
+  const double way = guide.restingWay(robot.state().speed, options.braking()) + guide.restMargin;
   const double end = robot.state().pose.x + way;
   tracker.setPath(tracker.path().part(here, here + way));
   drive(300);
@@ -78,7 +79,7 @@ TEST(DriveOptions, ComesToRestMoreGentlyThanTheTrackerBrakesAtAnyAcceleration) {
     DriveOptions drive;
     drive.maxAcceleration = acceleration;
     const GuideOptions guide;
-    const double way = guide.restingWay(1, drive.braking()) - guide.restMargin;
+    const double way = guide.restingWay(1, drive.braking());
     EXPECT_GT(way, 1 / (2 * drive.braking())) << acceleration;
   }
   EXPECT_DOUBLE_EQ(GuideOptions().restBraking * DriveOptions().braking(), 0.6);

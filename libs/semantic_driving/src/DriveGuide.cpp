@@ -106,7 +106,8 @@ DrivePath DriveGuide::untilRest(const Situation& now) const {
   const PathTracker& tracker = now.drive.tracker();
   const DrivePath& path = tracker.path();
   const double here = tracker.progress();
-  const double there = here + m_options.restingWay(now.state.speed, tracker.options().braking());
+  const double there = here + m_options.restingWay(now.state.speed, tracker.options().braking()) +
+                       m_options.restMargin;
   return path.part(here, std::min(there, path.stretchEnd(here)));
 }
 

@@ -35,10 +35,10 @@ struct GuideOptions {
 
   /** Its own; frontiers and recovery describe theirs. */
   void describe(strict_files::OptionList& list);
-  /** Meters that a vehicle takes to come to rest. \param speed m/s
+  /** Meters that a vehicle takes to come to rest, without restMargin. \param speed m/s
    * \param braking DriveOptions::braking(), m/s^2 */
   double restingWay(double speed, double braking) const {
-    return speed * speed / (2 * (restBraking * braking)) + restMargin;
+    return speed * speed / (2 * (restBraking * braking));
   }
   /** Of all. \throw std::invalid_argument naming the option and its value. */
   void validate() const;
