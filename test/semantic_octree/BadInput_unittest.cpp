@@ -96,7 +96,7 @@ TEST(BadInput, insertionOptionsAreRefusedByName) {
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.maxRange = NAN; }), "max_range");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.minRange = -2; }), "min_range is -2");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.carvingMargin = HUGE_VAL; }),
-               "carvingMargin");
+               "carving_margin");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.threads = 0; }), "threads is 0");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.threads = 257; }), "threads");
   InsertionOptions options;
@@ -110,5 +110,5 @@ TEST(BadInput, treesThatCannotBeAreRefused) {
         contains(errorOf([&] { SemanticOcTree(resolution, numberedClasses(2)); }), "resolution"))
         << resolution;
   EXPECT_TRUE(
-      contains(errorOf([] { SemanticOcTree(0.1, ClassTable()); }), "number of classes = 0"));
+      contains(errorOf([] { SemanticOcTree(0.1, ClassTable()); }), "number of classes is 0"));
 }
