@@ -32,7 +32,7 @@ void drawTrack(MapCanvas& canvas, const DriveRecord& record, const std::string& 
   canvas.explain({name, stroke});
 }
 
-void drawRoute(MapCanvas& canvas, const DriveTracker& tracker) {
+void drawRoute(MapCanvas& canvas, const PathTracker& tracker) {
   std::vector<Eigen::Vector2d> line;
   for (const PathPoint& p : tracker.path().points())
     if (p.arcLength >= tracker.progress()) line.emplace_back(p.x, p.y);
