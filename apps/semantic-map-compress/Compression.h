@@ -9,7 +9,7 @@
 namespace semantic_map_compress {
 
 /** Milliseconds of each stage, in order. */
-class StageTimes {
+class StageTimer {
  public:
   /** Ends a stage that began when the one before it ended. */
   void add(const std::string& stage) { m_stages.emplace_back(stage, m_watch.lap()); }
@@ -39,7 +39,7 @@ struct Compression {
   std::vector<CurvePoint> curve;
   CurvePoint chosen;
   std::size_t bytes = 0;  ///< of the compressed map's file
-  StageTimes times;
+  StageTimer times;
 
   double leafRatio() const { return ratio(&tree_abstraction::TreeMeasures::numKnownLeaves); }
   double allLeafRatio() const { return ratio(&tree_abstraction::TreeMeasures::numLeaves); }

@@ -20,7 +20,7 @@ ordered_json orNull(const std::optional<double>& value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
-ordered_json toJson(const StageTimes& times) {
+ordered_json toJson(const StageTimer& times) {
   ordered_json json = ordered_json::object();
   for (const auto& [stage, milliseconds] : times.stages()) json[stage] = milliseconds;
   return json;
@@ -80,7 +80,7 @@ ordered_json toJson(const Compression& c, const TermCatalog& catalog) {
 }  // namespace
 
 ordered_json toJson(const FullMap& map, const TermCatalog& catalog, const AbstractionOptions& space,
-                    const std::vector<Compression>& compressions, const StageTimes& times) {
+                    const std::vector<Compression>& compressions, const StageTimer& times) {
   ordered_json voxels = ordered_json::object();
   for (std::size_t id = 1; id < map.voxelsOfClass.size(); ++id)
     voxels[catalog.name(id)] = map.voxelsOfClass[id];

@@ -10,7 +10,7 @@ namespace semantic_map_compress {
 nlohmann::ordered_json toJson(const FullMap& map, const TermCatalog& catalog,
                               const semantic_octree::AbstractionOptions& space,
                               const std::vector<Compression>& compressions,
-                              const StageTimes& times);
+                              const StageTimer& times);
 
 /** One line a solution; the first line names the columns. */
 std::string toCsv(const TermCatalog& catalog, const std::vector<Compression>& compressions);

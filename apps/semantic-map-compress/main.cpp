@@ -127,7 +127,7 @@ void printSummary(const std::vector<Compression>& compressions) {
 }
 
 int run(const Cli& cli) {
-  StageTimes times;
+  StageTimer times;
   SemanticOcTree map = semantic_octree::loadTree(cli.map.string());
   const FullMap full{cli.map.string(), map.getResolution(), map.size(), fs::file_size(cli.map),
                      contentsOf(map).voxelsOfClass};

@@ -44,22 +44,6 @@ void IniSection::read(const OptionList& list) {
   }
 }
 
-void IniSection::read(const std::string& key, std::string& value) {
-  if (const auto found = text(key)) value = *found;
-}
-
-void IniSection::read(const std::string& key, double& value) {
-  OptionList list;
-  list.add(key.c_str(), value, "", Range().orInfinite(), "");
-  read(list);
-}
-
-void IniSection::read(const std::string& key, int& value) {
-  OptionList list;
-  list.add(key.c_str(), value, "", "");
-  read(list);
-}
-
 void IniSection::fail(const std::string& what) const {
   throw std::runtime_error("[" + m_section + "] " + what);
 }

@@ -31,9 +31,6 @@ class IniSection {
   /** Reads all options that are there. \throw std::runtime_error naming section, key and value: not
    * what the option may be. */
   void read(const OptionList& list);
-  void read(const std::string& key, double& value);
-  void read(const std::string& key, int& value);
-  void read(const std::string& key, std::string& value);
 
   /** \throw std::runtime_error naming the section. */
   [[noreturn]] void fail(const std::string& what) const;
