@@ -15,15 +15,15 @@ namespace {
 
 enum Figure { kCpuMedian, kCpu95, kWallMedian, kMapBytes, kPeakBytes, kTouched, kNumFigures };
 
-/** One turn: the figures of one contestant that inserts all scans. */
+/** One turn: the figures of one runner that inserts all scans. */
 std::vector<double> runTurn(const Entry& entry, const Scene& scene, const Settings& settings) {
-  const std::unique_ptr<Contestant> contestant = entry.create(scene, settings);
+  const std::unique_ptr<Runner> runner = entry.create(scene, settings);
   const double before = residentBytes();
   resetPeak();
   std::vector<double> cpu, wall;
   for (std::size_t i = 0; i < scene.scans.size(); ++i) {
     const Stopwatch processor(TimeOf::Process), clock;
-    contestant->insert(i);
+    runner->insert(i);
     wall.push_back(clock.milliseconds());
     cpu.push_back(processor.milliseconds());
   }
@@ -33,7 +33,7 @@ std::vector<double> runTurn(const Entry& entry, const Scene& scene, const Settin
   figures[kCpuMedian] = median(cpu);
   figures[kCpu95] = quantile(cpu, 0.95);
   figures[kWallMedian] = median(wall);
-  figures[kTouched] = static_cast<double>(contestant->touchedVoxels());
+  figures[kTouched] = static_cast<double>(runner->touchedVoxels());
   return figures;
 }
 

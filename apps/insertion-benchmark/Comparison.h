@@ -1,9 +1,9 @@
 #pragma once
-#include "Contestant.h"
+#include "Runner.h"
 
 namespace insertion_benchmark {
 
-/** One contestant's figures; times are milliseconds per scan. */
+/** One runner's figures; times are milliseconds per scan. */
 struct Result {
   std::string name;
   std::vector<double> cpuMedians, wallMedians;  ///< over the scans, one for each repeat
@@ -21,7 +21,7 @@ struct Result {
 
 double median(const std::vector<double>& values);
 
-/** Lets each contestant insert all scans, in turns, each turn in a process of its own.
+/** Lets each runner insert all scans, in turns, each turn in a process of its own.
  * \param onTurn told before each turn */
 std::vector<Result> compare(const std::vector<Entry>& entries, const Scene& scene,
                             const Settings& settings, int repeats,

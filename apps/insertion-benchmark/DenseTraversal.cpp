@@ -2,14 +2,14 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "Contestant.h"
+#include "Runner.h"
 
 namespace insertion_benchmark {
 namespace {
 
 /** The bare work of following all beams: an incremental traversal (Amanatides and Woo) that counts
  * in one byte per voxel of a dense array, in single precision and with the beams' ends known. */
-class DenseTraversal : public Contestant {
+class DenseTraversal : public Runner {
  public:
   DenseTraversal(const Scene& scene, const Settings& settings) {
     Eigen::Array3f lowest = Eigen::Array3f::Constant(1e9f), highest = -lowest;
@@ -114,7 +114,7 @@ class DenseTraversal : public Contestant {
 
 }  // namespace
 
-std::unique_ptr<Contestant> denseTraversal(const Scene& scene, const Settings& settings) {
+std::unique_ptr<Runner> denseTraversal(const Scene& scene, const Settings& settings) {
   return std::make_unique<DenseTraversal>(scene, settings);
 }
 

@@ -15,7 +15,7 @@ struct Conditions {
   double touchedVoxels = 0;  ///< 0: not counted
 };
 
-/** \param reference name of the contestant that the others are compared with */
+/** \param reference name of the runner that the others are compared with */
 void printTable(std::ostream& out, const Conditions& conditions, const std::vector<Result>& results,
                 const std::string& reference);
 void printJson(std::ostream& out, const Conditions& conditions, const std::vector<Result>& results,

@@ -57,7 +57,7 @@ struct Cli {
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
     app.add_option("--repeats", repeats)->check(CLI::Range(1, 1000))->capture_default_str();
-    app.add_option("--only", only, "Contestants whose name contains this, and the bare traversal");
+    app.add_option("--only", only, "Runners whose name contains this, and the bare traversal");
     app.add_flag("--json", json, "JSON instead of a table");
   }
 };

@@ -71,7 +71,7 @@ void StudyOptions::validate() const {
 }
 
 /** All planners of a map, which take turns at every instance. */
-class MapStudent::Contest {
+class StudyRunner::Contest {
  public:
   Contest(const std::string& file, const std::string& classesFile, const StudyOptions& options)
       : m_options(options),
@@ -82,7 +82,7 @@ class MapStudent::Contest {
     for (const std::size_t budget : options.budgets)
       for (const GraphKind kind : options.graphs)
         for (const bool kept : {false, true})
-          m_contestants.emplace_back(m_map, m_order, withGraph(options, kind, budget), kept);
+          m_runners.emplace_back(m_map, m_order, withGraph(options, kind, budget), kept);
     if (options.reference > 0) prepareReference();
     const EdgeChecker checker(anyPlanner().ground(), options.planner.vehicle, m_order,
                               options.planner.reading);
@@ -110,9 +110,9 @@ class MapStudent::Contest {
 
   std::vector<Trial> run(std::size_t i) {
     std::vector<Trial> trials;
-    for (RoadmapTrials& contestant : m_contestants) {
-      trials.push_back(contestant.plan(m_instances[i]));
-      if (!contestant.kept()) append(contestant.judge(m_instances[i]), trials);
+    for (RoadmapTrials& runner : m_runners) {
+      trials.push_back(runner.plan(m_instances[i]));
+      if (!runner.kept()) append(runner.judge(m_instances[i]), trials);
     }
     if (m_reference) {
       trials.push_back(m_reference->plan(m_instances[i]));
@@ -130,26 +130,26 @@ class MapStudent::Contest {
     return trials;
   }
 
-  const SemanticPlanner& anyPlanner() const { return m_contestants.front().planner(); }
+  const SemanticPlanner& anyPlanner() const { return m_runners.front().planner(); }
 
   const StudyOptions& m_options;
   SemanticOcTree m_map;
   const colored_graph::ClassOrder m_order;
-  std::vector<RoadmapTrials> m_contestants;
+  std::vector<RoadmapTrials> m_runners;
   std::optional<RoadmapTrials> m_reference;
   std::vector<Instance> m_instances;
 };
 
-MapStudent::MapStudent(const std::string& name, const std::string& file,
-                       const std::string& classesFile, const StudyOptions& options)
+StudyRunner::StudyRunner(const std::string& name, const std::string& file,
+                         const std::string& classesFile, const StudyOptions& options)
     : m_contest(std::make_unique<Contest>(file, classesFile, options)) {
   m_contest->study.name = name;
   m_contest->study.file = file;
 }
-MapStudent::~MapStudent() = default;
-MapStudent::MapStudent(MapStudent&&) noexcept = default;
+StudyRunner::~StudyRunner() = default;
+StudyRunner::StudyRunner(StudyRunner&&) noexcept = default;
 
-void MapStudent::runNextInstance() { m_contest->runNextInstance(); }
-const MapStudy& MapStudent::study() const { return m_contest->study; }
+void StudyRunner::runNextInstance() { m_contest->runNextInstance(); }
+const MapStudy& StudyRunner::study() const { return m_contest->study; }
 
 }  // namespace planning_study

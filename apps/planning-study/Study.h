@@ -47,14 +47,14 @@ struct MapStudy {
 };
 
 /** Studies one map, instance by instance. */
-class MapStudent {
+class StudyRunner {
  public:
   /** Loads the map, draws the instances, and prepares all planners.
    * \param options must outlive this. \throw std::runtime_error naming a file. */
-  MapStudent(const std::string& name, const std::string& file, const std::string& classesFile,
-             const StudyOptions& options);
-  ~MapStudent();
-  MapStudent(MapStudent&&) noexcept;
+  StudyRunner(const std::string& name, const std::string& file, const std::string& classesFile,
+              const StudyOptions& options);
+  ~StudyRunner();
+  StudyRunner(StudyRunner&&) noexcept;
 
   void runNextInstance();
   const MapStudy& study() const;

@@ -25,16 +25,16 @@ std::vector<MapStudy> studyMaps(const Cli& cli) {
   const measuring::Stopwatch watch;
   const double most = cli.study.minutes * 60e3;  // ms
   const std::vector<std::string> names = namesOf(cli.maps);
-  std::vector<MapStudent> students;
+  std::vector<StudyRunner> runners;
   for (std::size_t i = 0; i < names.size(); ++i)
-    students.emplace_back(names[i], cli.maps[i].string(), cli.classes.string(), cli.study);
+    runners.emplace_back(names[i], cli.maps[i].string(), cli.classes.string(), cli.study);
   std::size_t done = 0;
   while (done < cli.study.instances && (done == 0 || watch.milliseconds() < most)) {
-    for (MapStudent& student : students) student.runNextInstance();
+    for (StudyRunner& runner : runners) runner.runNextInstance();
     if (++done % 10 == 0) std::cout << done << " of " << cli.study.instances << std::endl;
   }
   std::vector<MapStudy> studies;
-  for (const MapStudent& student : students) studies.push_back(student.study());
+  for (const StudyRunner& runner : runners) studies.push_back(runner.study());
   return studies;
 }
 

@@ -36,6 +36,11 @@ std::vector<std::string> linesTiedToAMachine(const fs::path& root) {
   return linesThatMatch(pattern, "a path or a server of one machine", root);
 }
 
+std::vector<std::string> borrowedSources(const fs::path& root) {
+  static const std::regex pattern(R"(^\s*(#\s*include\s*")?(\.\./)+(apps|[\w-]+-[\w-]+)/[^ ]*\.(h|cpp)"?$)");
+  return linesThatMatch(pattern, "a source of another program", root);
+}
+
 std::vector<std::string> filesLongerThan(std::size_t maxLines, const fs::path& root) {
   std::vector<std::string> findings;
   for (const fs::path& file : textFiles(root)) {

@@ -132,6 +132,19 @@ TEST_F(Repository, aLongSourceIsFound) {
   EXPECT_EQ(filesLongerThan(2, scratch), Findings{"Long.cpp:3: more than 2 lines"});
 }
 
+TEST_F(Repository, programsAndTestsLinkLibrariesInsteadOfSourcesOfPrograms) {
+  for (const char* folder : {"apps", "test"})
+    EXPECT_EQ(borrowedSources(root / folder), Findings()) << folder;
+}
+
+TEST_F(Repository, aBorrowedSourceIsFound) {
+  write("a/CMakeLists.txt", "add_executable(a\n  ../map-tool/Report.cpp\n  Near.cpp)\n");
+  write("a/main.cpp",
+        "#include \"../../apps/map-tool/Report.h\"\n#include \"../fixtures/Town.h\"\n");
+  EXPECT_EQ(borrowedSources(scratch), (Findings{"a/CMakeLists.txt:2: a source of another program",
+                                                "a/main.cpp:1: a source of another program"}));
+}
+
 TEST_F(Repository, noLineEndsWithSpace) {
   for (const fs::path& folder : projectFolders())
     EXPECT_EQ(linesWithTrailingSpace(folder), Findings()) << folder;

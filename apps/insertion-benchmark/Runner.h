@@ -18,9 +18,9 @@ struct Settings {
 };
 
 /** Something that scans are inserted into. */
-class Contestant {
+class Runner {
  public:
-  virtual ~Contestant() = default;
+  virtual ~Runner() = default;
   /** The i-th scan of the scene: this is timed. The constructor, which may bring the scans into a
    * form of its own, is not. */
   virtual void insert(std::size_t scan) = 0;
@@ -30,17 +30,16 @@ class Contestant {
 
 struct Entry {
   std::string name;
-  std::function<std::unique_ptr<Contestant>(const Scene&, const Settings&)> create;
+  std::function<std::unique_ptr<Runner>(const Scene&, const Settings&)> create;
 };
 
 /** A byte array that beams are traced through: each voxel on the way is touched, nothing more. */
-std::unique_ptr<Contestant> denseTraversal(const Scene& scene, const Settings& settings);
-std::unique_ptr<Contestant> semanticOcTree(const Scene& scene, const Settings& settings);
-std::unique_ptr<Contestant> semanticOcTreeWithAbstraction(const Scene& scene,
-                                                          const Settings& settings);
-std::unique_ptr<Contestant> octomapOcTree(const Scene& scene, const Settings& settings);
-std::unique_ptr<Contestant> octomapDiscretized(const Scene& scene, const Settings& settings);
-std::unique_ptr<Contestant> octomapColorOcTree(const Scene& scene, const Settings& settings);
-std::unique_ptr<Contestant> mrptOctoMap(const Scene& scene, const Settings& settings);
+std::unique_ptr<Runner> denseTraversal(const Scene& scene, const Settings& settings);
+std::unique_ptr<Runner> semanticOcTree(const Scene& scene, const Settings& settings);
+std::unique_ptr<Runner> semanticOcTreeWithAbstraction(const Scene& scene, const Settings& settings);
+std::unique_ptr<Runner> octomapOcTree(const Scene& scene, const Settings& settings);
+std::unique_ptr<Runner> octomapDiscretized(const Scene& scene, const Settings& settings);
+std::unique_ptr<Runner> octomapColorOcTree(const Scene& scene, const Settings& settings);
+std::unique_ptr<Runner> mrptOctoMap(const Scene& scene, const Settings& settings);
 
 }  // namespace insertion_benchmark

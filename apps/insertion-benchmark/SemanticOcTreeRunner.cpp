@@ -1,15 +1,15 @@
 #include <semantic_octree/SemanticOcTree.h>
 
-#include "Contestant.h"
+#include "Runner.h"
 
 namespace insertion_benchmark {
 namespace {
 
 using semantic_octree::SemanticOcTree;
 
-class OurContestant : public Contestant {
+class OurRunner : public Runner {
  public:
-  OurContestant(const Scene& scene, const Settings& settings, bool withAbstraction)
+  OurRunner(const Scene& scene, const Settings& settings, bool withAbstraction)
       : m_scene(scene), m_map(settings.resolution, classes(scene.numClasses)) {
     m_options.maxRange = settings.maxRange;
     m_options.rays = settings.rays;
@@ -46,13 +46,13 @@ class OurContestant : public Contestant {
 
 }  // namespace
 
-std::unique_ptr<Contestant> semanticOcTree(const Scene& scene, const Settings& settings) {
-  return std::make_unique<OurContestant>(scene, settings, false);
+std::unique_ptr<Runner> semanticOcTree(const Scene& scene, const Settings& settings) {
+  return std::make_unique<OurRunner>(scene, settings, false);
 }
 
-std::unique_ptr<Contestant> semanticOcTreeWithAbstraction(const Scene& scene,
-                                                          const Settings& settings) {
-  return std::make_unique<OurContestant>(scene, settings, true);
+std::unique_ptr<Runner> semanticOcTreeWithAbstraction(const Scene& scene,
+                                                      const Settings& settings) {
+  return std::make_unique<OurRunner>(scene, settings, true);
 }
 
 }  // namespace insertion_benchmark

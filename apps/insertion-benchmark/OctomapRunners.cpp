@@ -4,7 +4,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
-#include "Contestant.h"
+#include "Runner.h"
 
 namespace insertion_benchmark {
 namespace {
@@ -26,9 +26,9 @@ octomap::point3d sensorOf(const PosedScan& scan) {
 
 /** OctoMap as its users call it; the points are in the world's frame already. */
 template <typename Tree>
-class OctomapContestant : public Contestant {
+class OctomapRunner : public Runner {
  public:
-  OctomapContestant(const Scene& scene, const Settings& settings, bool discretize)
+  OctomapRunner(const Scene& scene, const Settings& settings, bool discretize)
       : m_scene(scene),
         m_maxRange(settings.maxRange > 0 ? settings.maxRange : -1),
         m_discretize(discretize),
@@ -49,11 +49,11 @@ class OctomapContestant : public Contestant {
 };
 
 /** Also averages a color into each voxel that is hit. */
-class ColorContestant : public OctomapContestant<octomap::ColorOcTree> {
+class ColorRunner : public OctomapRunner<octomap::ColorOcTree> {
  public:
-  using OctomapContestant::OctomapContestant;
+  using OctomapRunner::OctomapRunner;
   void insert(std::size_t scan) override {
-    OctomapContestant::insert(scan);
+    OctomapRunner::insert(scan);
     const octomap::point3d sensor = sensorOf(m_scene.scans[scan]);
     for (std::size_t i = 0; i < m_clouds[scan].size(); ++i) {
       const octomap::point3d& p = m_clouds[scan][i];
@@ -64,9 +64,9 @@ class ColorContestant : public OctomapContestant<octomap::ColorOcTree> {
   }
 };
 
-class MrptContestant : public Contestant {
+class MrptRunner : public Runner {
  public:
-  MrptContestant(const Scene& scene, const Settings& settings) : m_map(settings.resolution) {
+  MrptRunner(const Scene& scene, const Settings& settings) : m_map(settings.resolution) {
     m_map.insertionOptions.maxrange = settings.maxRange > 0 ? settings.maxRange : -1;
     for (const PosedScan& scan : scene.scans) {
       const auto points = mrpt::maps::CSimplePointsMap::Create();
@@ -89,20 +89,20 @@ class MrptContestant : public Contestant {
 
 }  // namespace
 
-std::unique_ptr<Contestant> octomapOcTree(const Scene& scene, const Settings& settings) {
-  return std::make_unique<OctomapContestant<octomap::OcTree>>(scene, settings, false);
+std::unique_ptr<Runner> octomapOcTree(const Scene& scene, const Settings& settings) {
+  return std::make_unique<OctomapRunner<octomap::OcTree>>(scene, settings, false);
 }
 
-std::unique_ptr<Contestant> octomapDiscretized(const Scene& scene, const Settings& settings) {
-  return std::make_unique<OctomapContestant<octomap::OcTree>>(scene, settings, true);
+std::unique_ptr<Runner> octomapDiscretized(const Scene& scene, const Settings& settings) {
+  return std::make_unique<OctomapRunner<octomap::OcTree>>(scene, settings, true);
 }
 
-std::unique_ptr<Contestant> octomapColorOcTree(const Scene& scene, const Settings& settings) {
-  return std::make_unique<ColorContestant>(scene, settings, false);
+std::unique_ptr<Runner> octomapColorOcTree(const Scene& scene, const Settings& settings) {
+  return std::make_unique<ColorRunner>(scene, settings, false);
 }
 
-std::unique_ptr<Contestant> mrptOctoMap(const Scene& scene, const Settings& settings) {
-  return std::make_unique<MrptContestant>(scene, settings);
+std::unique_ptr<Runner> mrptOctoMap(const Scene& scene, const Settings& settings) {
+  return std::make_unique<MrptRunner>(scene, settings);
 }
 
 }  // namespace insertion_benchmark
