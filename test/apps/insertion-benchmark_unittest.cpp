@@ -37,7 +37,7 @@ ProgramRun benchmark(std::vector<std::string> arguments) {
 
 }  // namespace
 
-TEST(InsertionBenchmark, measuresEveryContestantInOneRun) {
+TEST(InsertionBenchmark, measuresEveryRunnerInOneRun) {
   const TemporaryFolder folder;
   const std::string scene = folder.write("ring.bin", sceneFile(4)).string();
   const ProgramRun run = benchmark({scene, "--scans", "3", "--json"});
@@ -48,15 +48,15 @@ TEST(InsertionBenchmark, measuresEveryContestantInOneRun) {
   EXPECT_GT(json["touched_voxels"], 1000);
   EXPECT_LT(json["touched_voxels"], 10000);
   ASSERT_EQ(json["contestants"].size(), 7u);
-  for (const auto& contestant : json["contestants"]) {
-    EXPECT_GT(contestant["cpu_ms"], 0) << contestant;
-    EXPECT_GT(contestant["wall_ms"], 0) << contestant;
-    EXPECT_EQ(contestant["cpu_ms_of_repeats"].size(), 2u);
-    EXPECT_EQ(contestant["name"] == json["ratio_to"], contestant["ratio"] == 1.0) << contestant;
+  for (const auto& runner : json["contestants"]) {
+    EXPECT_GT(runner["cpu_ms"], 0) << runner;
+    EXPECT_GT(runner["wall_ms"], 0) << runner;
+    EXPECT_EQ(runner["cpu_ms_of_repeats"].size(), 2u);
+    EXPECT_EQ(runner["name"] == json["ratio_to"], runner["ratio"] == 1.0) << runner;
   }
 }
 
-TEST(InsertionBenchmark, printsATableOfTheChosenContestants) {
+TEST(InsertionBenchmark, printsATableOfTheChosenRunners) {
   const TemporaryFolder folder;
   const std::string scene = folder.write("ring.bin", sceneFile(2)).string();
   const ProgramRun run =
