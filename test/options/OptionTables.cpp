@@ -56,7 +56,8 @@ std::vector<OptionTable> mapTables() {
           "[compression](compression.md)."),
       table<TLikelihoodOptions>("Likelihood of observations", "`_likelihoodOpts`."),
       table<TRenderingOptions>("The map's 3D object", "`_renderOpts`."),
-      table<PictureStyle, Viewpoint>("Pictures", "`[pictures]` of `rawlog2semantic-map`."),
+      table<map_pictures::PictureStyle, map_pictures::Viewpoint>(
+          "Pictures", "`[pictures]` of `rawlog2semantic-map`."),
       table<GridOptions>("2D grids",
                          "What of a map obstructs a robot on the ground: "
                          "`semantic_map::gridOf()`, `semantic-map-export`."),

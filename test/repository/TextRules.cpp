@@ -37,7 +37,8 @@ std::vector<std::string> linesTiedToAMachine(const fs::path& root) {
 }
 
 std::vector<std::string> borrowedSources(const fs::path& root) {
-  static const std::regex pattern(R"(^\s*(#\s*include\s*")?(\.\./)+(apps|[\w-]+-[\w-]+)/[^ ]*\.(h|cpp)"?$)");
+  static const std::regex pattern(
+      R"re(^\s*(#\s*include\s*")?(\.\./)+(apps|[\w-]+-[\w-]+)/[^ ]*\.(h|cpp)"?$)re");
   return linesThatMatch(pattern, "a source of another program", root);
 }
 

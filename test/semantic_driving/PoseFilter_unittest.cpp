@@ -6,8 +6,8 @@
 
 #include "../semantic_planning/PaintedWorld.h"
 
-using namespace semantic_map_drive;
 using mrpt::math::TPose2D;
+using namespace simulated_drive;
 
 namespace {
 
