@@ -37,7 +37,7 @@ double distanceToEnd(const Estimate& e) { return std::hypot(e.x - 15.904, e.y + 
 TEST_F(PfLocalization, theParticlesFindTheRobotInASemanticOctreeOfARealBuilding) {
   const CommandRun localized = localize(Plugin::Preloaded);
   ASSERT_EQ(localized.status, 0) << localized.output;
-  ASSERT_TRUE(mapIn("pf-localization-output_000_0003000"));
+  ASSERT_TRUE(mapIn("pf-localization-output_000_0005000"));
   const Estimate end = lastEstimate(localized.output);
   EXPECT_LT(distanceToEnd(end), 0.3);
   EXPECT_NEAR(end.degrees, 4.93, 2);
@@ -45,6 +45,6 @@ TEST_F(PfLocalization, theParticlesFindTheRobotInASemanticOctreeOfARealBuilding)
 
 TEST_F(PfLocalization, withoutThePluginTheParticlesKnowNothing) {
   const CommandRun localized = localize(Plugin::Absent);
-  EXPECT_FALSE(mapIn("pf-localization-output_000_0003000"));
+  EXPECT_FALSE(mapIn("pf-localization-output_000_0005000"));
   EXPECT_FALSE(distanceToEnd(lastEstimate(localized.output)) < 0.3) << localized.output;
 }
