@@ -35,7 +35,7 @@ TEST_F(StockApps, theCommandsOfTheirPageWorkOneAfterTheOther) {
   for (const char* made :
        {"icp-slam-output/_finalmaps_.txt_semantic_map__CSemanticOctoMap_01.semantic",
         "from-keyframes_semantic_map__CSemanticOctoMap_00.3Dscene",
-        "pf-localization-output_000_0003000/map_semantic_map__CSemanticOctoMap_00.semantic",
+        "pf-localization-output_000_0005000/map_semantic_map__CSemanticOctoMap_00.semantic",
         "short.rawlog", "lidar.rawlog"})
     EXPECT_TRUE(std::filesystem::exists(folder / made)) << made;
 }
