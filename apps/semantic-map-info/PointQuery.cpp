@@ -16,9 +16,10 @@ const char* nameOf(CellState::Status status) {
       return "free";
     case CellState::Status::Occupied:
       return "occupied";
-    default:
-      return "unknown";
+    case CellState::Status::Unknown:
+      break;
   }
+  return "unknown";
 }
 
 }  // namespace

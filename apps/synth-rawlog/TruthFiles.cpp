@@ -18,9 +18,10 @@ const char* nameOf(PointTruth::State state) {
       return "surface";
     case PointTruth::State::Inside:
       return "inside";
-    default:
-      return "underground";
+    case PointTruth::State::Underground:
+      break;
   }
+  return "underground";
 }
 
 }  // namespace
