@@ -2,6 +2,7 @@
 
 #include <map_pictures/MapMesh.h>
 #include <mrpt/opengl/CCylinder.h>
+#include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/opengl/CPolyhedron.h>
 #include <mrpt/opengl/CSetOfTriangles.h>
 
