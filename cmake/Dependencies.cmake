@@ -1,5 +1,6 @@
 # Everything that comes from outside. What differs between MRPT's releases stands here, in
-# ThirdPartyTargets.cmake and in libs/semantic_map/include/semantic_map/MrptVersion.h, nowhere else.
+# ThirdPartyTargets.cmake, in libs/semantic_map/include/semantic_map/MrptVersion.h and, for its navigator, in
+# libs/semantic_driving/src/ReactiveSystem.h, nowhere else.
 
 # mso_external(TARGET DEBIAN_PACKAGE PACKAGE [arguments of find_package]): finds what libraries link. Those that hand
 # TARGET on to their users need it found again by the package's CMake config, and DEBIAN_PACKAGE beside the headers.
