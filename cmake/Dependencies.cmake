@@ -1,5 +1,6 @@
 # Everything that comes from outside. What differs between MRPT's releases stands here, in
-# ThirdPartyTargets.cmake and in libs/semantic_map/include/semantic_map/MrptVersion.h, nowhere else.
+# ThirdPartyTargets.cmake, in libs/semantic_map/include/semantic_map/MrptVersion.h and, for its navigator, in
+# libs/semantic_driving/src/ReactiveSystem.h, nowhere else.
 
 # mso_external(TARGET DEBIAN_PACKAGE PACKAGE [arguments of find_package]): finds what libraries link. Those that hand
 # TARGET on to their users need it found again by the package's CMake config, and DEBIAN_PACKAGE beside the headers.
@@ -15,7 +16,7 @@ mso_external(Threads::Threads libc6-dev Threads)
 mso_external(PNG::PNG libpng-dev PNG)
 mso_external(Freetype::Freetype libfreetype-dev Freetype)
 mso_external(GIF::GIF libgif-dev GIF)
-mso_external(yaml-cpp libyaml-cpp-dev yaml-cpp)
+mso_external(yaml-cpp::yaml-cpp libyaml-cpp-dev yaml-cpp)
 mso_external(ZLIB::ZLIB zlib1g-dev ZLIB)
 mso_external(mrpt::obs libmrpt-obs-dev mrpt-obs)
 mso_external(mrpt::maps libmrpt-maps-dev mrpt-maps)

@@ -1,5 +1,6 @@
-# Targets for packages whose CMake files export variables only, or too much. Used by this project's build and by its
-# installed package, where it may be read several times, and before all of these packages were asked for.
+# Targets for packages whose CMake files export variables only, too much, or other names from release to release.
+# Used by this project's build and by its installed package, where it may be read several times, and before all of
+# these packages were asked for.
 if(octomap_FOUND AND NOT TARGET mso_octomap)
   add_library(mso_octomap INTERFACE IMPORTED)
   target_include_directories(mso_octomap SYSTEM INTERFACE ${OCTOMAP_INCLUDE_DIRS})
@@ -11,4 +12,9 @@ if(OpenCV_FOUND AND NOT TARGET mso_opencv)
   target_include_directories(mso_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
   target_link_libraries(mso_opencv INTERFACE
     opencv_core opencv_imgproc opencv_imgcodecs opencv_calib3d opencv_dnn)
+endif()
+
+# Its releases before 0.8 have the short name only.
+if(TARGET yaml-cpp AND NOT TARGET yaml-cpp::yaml-cpp)
+  add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
 endif()

@@ -74,14 +74,13 @@ struct Cli {
 
   void addPcd() {
     CLI::App* command = add("pcd", "ASCII PCD files with x, y, z and label", [this] {
-      if (pcds.size() < 2) throw std::invalid_argument("expected FILE... and then OUT.rawlog");
+      if (pcds.size() < 2) throw std::invalid_argument("expected FILES and then OUT.rawlog");
       conversion.output = pcds.back();
       pcds.pop_back();
       return convertLabeledPcds(pcds, conversion);
     });
     addClasses(command);
-    command->add_option("FILE... OUT.rawlog", pcds, "The scans in order, then the rawlog")
-        ->required();
+    command->add_option("FILES", pcds, "The scans in order, then the rawlog to write")->required();
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <map_pictures/MapMesh.h>
 #include <mrpt/opengl/CCylinder.h>
+#include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/opengl/CPolyhedron.h>
 #include <mrpt/opengl/CSetOfTriangles.h>
 
@@ -45,7 +46,9 @@ CDisplayWindow3D::Ptr openWindow() {
 
 TPoint3Df raised(double x, double y, double z) { return {float(x), float(y), float(z + kLift)}; }
 
-/** Flat bands: many drivers draw lines one pixel wide whatever they are asked for. */
+/** Flat bands: many drivers draw lines one pixel wide whatever they are asked for. Each triangle
+ * has its color: CSetOfTriangles::setColor_u8() calls itself without end in MRPT 2.7.0 to 2.15.19.
+ */
 CSetOfTriangles::Ptr bandAlong(const std::vector<TPoint3Df>& points,
                                const semantic_types::Color& color) {
   const auto band = CSetOfTriangles::Create();
@@ -53,10 +56,12 @@ CSetOfTriangles::Ptr bandAlong(const std::vector<TPoint3Df>& points,
     const TPoint3Df a = points[i - 1], b = points[i], along = b - a;
     if (along.norm() < 1e-6) continue;
     const TPoint3Df aside = TPoint3Df(-along.y, along.x, 0) * (kWidth / 2 / along.norm());
-    band->insertTriangle(TTriangle(a - aside, b - aside, b + aside));
-    band->insertTriangle(TTriangle(a - aside, b + aside, a + aside));
+    for (TTriangle half :
+         {TTriangle(a - aside, b - aside, b + aside), TTriangle(a - aside, b + aside, a + aside)}) {
+      half.setColor(mrptColor(color));
+      band->insertTriangle(half);
+    }
   }
-  band->setColor_u8(mrptColor(color));
   band->enableLight(false);
   band->cullFaces(TCullFace::NONE);
   return band;

@@ -64,7 +64,7 @@ TEST(Pcd, badInputIsNamed) {
       contains(failureWith("FIELDS x y z\nPOINTS 1\nDATA ascii\n1 2 3\n"), "no field 'label'"));
   EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS 1\nDATA binary\n"), "DATA ascii"));
   EXPECT_TRUE(contains(failureWith("nothing\n"), "no FIELDS"));
-  EXPECT_TRUE(contains(failureOf("pcd only_one"), "expected FILE... and then OUT.rawlog"));
+  EXPECT_TRUE(contains(failureOf("pcd only_one"), "expected FILES and then OUT.rawlog"));
 }
 
 TEST(Pcd, realOnesKeepTheirWorldCoordinates) {

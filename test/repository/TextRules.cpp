@@ -1,5 +1,6 @@
 #include "TextRules.h"
 
+#include <algorithm>
 #include <regex>
 
 #include "SourceTree.h"
@@ -40,6 +41,20 @@ std::vector<std::string> borrowedSources(const fs::path& root) {
   static const std::regex pattern(
       R"re(^\s*(#\s*include\s*")?(\.\./)+(apps|[\w-]+-[\w-]+)/[^ ]*\.(h|cpp)"?$)re");
   return linesThatMatch(pattern, "a source of another program", root);
+}
+
+std::vector<std::string> optionNamesWithSpaces(const fs::path& root) {
+  static const std::regex pattern(
+      R"(add_(option|flag)(_function|_callback)?(<[^(]*>)?\(\s*"[^"]*\s[^"]*")");
+  std::vector<std::string> findings;
+  for (const fs::path& file : textFiles(root)) {
+    const std::string text = isCppFile(file) ? textOf(file) : "";
+    for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
+      findings.push_back(file.lexically_relative(root).string() + ":" +
+                         std::to_string(1 + std::count(text.begin(), (*it)[0].first, '\n')) +
+                         ": a name with spaces");
+  }
+  return findings;
 }
 
 std::vector<std::string> filesLongerThan(std::size_t maxLines, const fs::path& root) {

@@ -12,8 +12,12 @@ std::vector<std::string> linesWithCarriageReturn(const std::filesystem::path& ro
 /** Paths that exist on somebody's machine only, and names of package servers. */
 std::vector<std::string> linesTiedToAMachine(const std::filesystem::path& root);
 
-/** Where a program, or a test, reaches into the folder of a program instead of linking a library. */
+/** Where a program, or a test, reaches into the folder of a program instead of linking a library.
+ */
 std::vector<std::string> borrowedSources(const std::filesystem::path& root);
+
+/** Names of options and positional arguments with spaces: newer releases of CLI11 abort at them. */
+std::vector<std::string> optionNamesWithSpaces(const std::filesystem::path& root);
 
 /** C++ files with more lines than that. */
 std::vector<std::string> filesLongerThan(std::size_t maxLines, const std::filesystem::path& root);

@@ -145,6 +145,17 @@ TEST_F(Repository, aBorrowedSourceIsFound) {
                                                 "a/main.cpp:1: a source of another program"}));
 }
 
+TEST_F(Repository, namesOfOptionsHaveNoSpaces) {
+  EXPECT_EQ(optionNamesWithSpaces(root / "apps"), Findings());
+}
+
+TEST_F(Repository, aNameOfAnOptionWithSpacesIsFound) {
+  write("main.cpp",
+        "app.add_option(\"FILE\", file, \"A file to read\");\n"
+        "app.add_option_function<std::string>(\n    \"FILE... OUT\", take);\n");
+  EXPECT_EQ(optionNamesWithSpaces(scratch), Findings{"main.cpp:2: a name with spaces"});
+}
+
 TEST_F(Repository, noLineEndsWithSpace) {
   for (const fs::path& folder : projectFolders())
     EXPECT_EQ(linesWithTrailingSpace(folder), Findings()) << folder;

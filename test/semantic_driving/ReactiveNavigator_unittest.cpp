@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/core/Clock.h>
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/nav/reactive/CLogFileRecord.h>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "ReactiveSystem.h"
 #include "simulated_drive/SimulatedRobot.h"
 
 using namespace semantic_driving;
@@ -67,6 +69,24 @@ struct Folder {
 TEST(ReactiveNavigator, GoesThroughAGapWhereItFits) {
   EXPECT_TRUE(getsThrough(optionsOf(0.2), 0.5));
   EXPECT_FALSE(getsThrough(optionsOf(0.9), 0.5));
+}
+
+TEST(ReactiveNavigator, CompletesTheFactorsThatNewerReleasesOfMrptWant) {
+  mrpt::config::CConfigFileMemory file(
+      std::string("[CHolonomicFullEval]\nfactorWeights = [0.25, 0.1, 1, 0.05, 0.5, 1, 1]\n"
+                  "factorNormalizeOrNot = [0, 0, 0, 0, 1, 1, 0]\n"));
+  const auto read = [&](const std::string& key) {
+    std::vector<double> values;
+    file.read_vector("CHolonomicFullEval", key, values, values);
+    return values;
+  };
+  completeHolonomicFactors(file, 7);
+  EXPECT_EQ(read("factorWeights").size(), 7u);
+  completeHolonomicFactors(file, 8);
+  EXPECT_EQ(read("factorWeights"), (std::vector<double>{0.25, 0.1, 1, 0.05, 0.5, 1, 1, 0}));
+  EXPECT_EQ(read("factorNormalizeOrNot"), (std::vector<double>{0, 0, 0, 0, 1, 1, 0, 0}));
+  completeHolonomicFactors(file, 8);
+  EXPECT_EQ(read("factorWeights").size(), 8u);
 }
 
 TEST(ReactiveNavigator, WithSlicesGoesThroughAGapWhereItFitsAtThatHeight) {

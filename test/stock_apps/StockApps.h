@@ -1,5 +1,6 @@
 #pragma once
 #include <gtest/gtest.h>
+#include <semantic_map/MrptVersion.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <filesystem>
@@ -10,8 +11,8 @@
 #include "TemporaryFolder.h"
 
 /** MRPT's applications as Debian ships them, in a folder of their own, where `config` and
- * `rawlog-samples` are those of the sources: commands are written as in doc/handbook/stock-applications.md.
- */
+ * `rawlog-samples` are those of the sources: commands are written as in
+ * doc/handbook/stock-applications.md. */
 class StockApps : public testing::Test {
  protected:
   enum class Plugin { Absent, Preloaded };
@@ -32,6 +33,12 @@ class StockApps : public testing::Test {
   static const std::string kPlugin;
   TemporaryFolder folder;
 };
+
+/** Whether MRPT ends with an error at a map that it does not know, instead of leaving it out. */
+constexpr bool kMrptRefusesUnknownMaps = MSO_MRPT_AT_LEAST(2, 11, 3);
+
+/** Whether rawlog-edit drops what it is told to drop: with an error of MRPT it keeps everything. */
+constexpr bool kRawlogEditDrops = !MSO_MRPT_AT_LEAST(2, 12, 1) || MSO_MRPT_AT_LEAST(3, 0, 3);
 
 /** The laser scanner's round through a corridor that mrpt-common ships. */
 inline const char* const kLaserRawlog = "2006-01ENE-21-SENA_Telecom Faculty_one_loop_only.rawlog";

@@ -51,7 +51,7 @@ cv::Mat HighestCells::inColors(const semantic_types::ClassTable& classes) const 
                              : colorOf(m_classId.at<std::uint8_t>(row, col), classes);
       picture(row, col) = {color.b, color.g, color.r};
     }
-  return std::move(picture);
+  return picture;
 }
 
 cv::Mat HighestCells::inRelief(const semantic_types::ClassTable& classes) const {

@@ -4,6 +4,8 @@
 #include <mrpt/nav/reactive/CReactiveNavigationSystem.h>
 #include <mrpt/nav/reactive/CReactiveNavigationSystem3D.h>
 
+#include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace semantic_driving {
@@ -83,12 +85,27 @@ std::unique_ptr<System> loaded(Vehicle& vehicle, const Options& options, const C
 
 }  // namespace
 
+void completeHolonomicFactors(mrpt::config::CConfigFileBase& file, std::size_t factors) {
+  const std::string section = "CHolonomicFullEval";
+  for (const char* key : {"factorWeights", "factorNormalizeOrNot"}) {
+    std::vector<double> values;
+    file.read_vector(section, key, values, values);
+    if (values.size() != 7 || factors == 7) continue;
+    values.resize(factors, 0);
+    std::ostringstream list;
+    list << std::setprecision(std::numeric_limits<double>::max_digits10);
+    for (const double value : values) list << value << ' ';
+    file.write(section, key, list.str());
+  }
+}
+
 std::unique_ptr<mrpt::nav::CAbstractPTGBasedReactive> makeReactiveSystem(
     Vehicle& vehicle, const Options& options, const std::filesystem::path& tables) {
   if (!std::filesystem::exists(options.config))
     throw std::runtime_error(options.config.string() + ": no such file");
   CConfigFile file(options.config.string());
   writeLimits(file, options);
+  completeHolonomicFactors(file, kHolonomicFactors);
   if (!options.slices.empty()) writeSection3D(file, options);
   file.discardSavingChanges();  // or MRPT writes the file anew
   vehicle.logging_enable_console_output = false;

@@ -1,8 +1,10 @@
 #pragma once
+#include <mrpt/config/CConfigFileBase.h>
 #include <mrpt/core/Clock.h>
 #include <mrpt/kinematics/CVehicleVelCmd_DiffDriven.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/nav/reactive/CAbstractPTGBasedReactive.h>
+#include <mrpt/version.h>
 #include <semantic_driving/ReactiveNavigator.h>
 
 #include <cmath>
@@ -81,6 +83,13 @@ class Vehicle : public mrpt::nav::CRobot2NavInterface {
   void sendWaypointReachedEvent(int, bool) override {}
   void sendNewWaypointTargetEvent(int) override {}
 };
+
+/** How many factors CHolonomicFullEval weighs: it refuses lists that are shorter or longer, so that
+ * no file would serve all releases. 0x258 is 2.5.8, see semantic_map/MrptVersion.h. */
+constexpr std::size_t kHolonomicFactors = MRPT_VERSION >= 0x020e03 ? 8 : 7;
+
+/** Appends zeros, which weigh nothing, to lists of the seven factors that all releases have. */
+void completeHolonomicFactors(mrpt::config::CConfigFileBase& file, std::size_t factors);
 
 /** MRPT's navigator for a shape that is the same at all heights, or made of slices; ready to run.
  * \param tables folder of the tables that MRPT makes
