@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 /** Bayes filter over {free, class 1, ..., class K} that keeps every class's log-odds: the oracle of
@@ -14,6 +15,10 @@ class ExactFilter {
     m_lowest = logit(p.minOccupancy) - std::log(K);
     m_highest = logit(p.maxProbability);
     m_floor = p.softLabelFloor;
+    m_accuracy = p.accuracy;
+    m_votesAreRows =
+        K > 1 &&
+        p.increments == semantic_octree::FilterParameters::Increments::LikelihoodConsistent;
     if (p.increments == semantic_octree::FilterParameters::Increments::Ssmi) {
       m_same = 1, m_other = m_miss = -0.1;
       m_unlabeled = std::log((std::exp(m_same) + (K - 1) * std::exp(m_other)) / K);
@@ -34,6 +39,21 @@ class ExactFilter {
   void hit(const std::vector<float>& q) {
     for (int k = 1; k <= K(); ++k)
       m_h[k - 1] += m_unlabeled + std::log(K() * std::max<double>(q[k - 1], m_floor));
+    limit();
+  }
+
+  /** A scan's labels: class, how many. */
+  void hit(const std::map<int, int>& votes) {
+    if (votes.empty()) return hit();
+    const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+    if (!m_votesAreRows) return hit(std::max_element(votes.begin(), votes.end(), fewer)->first);
+    const double a = (1 - m_accuracy) / (m_accuracy * K() - 1);
+    double N = 0;
+    for (const auto& [id, count] : votes) N += count;
+    for (int k = 1; k <= K(); ++k) {
+      const double n = votes.count(k) ? votes.at(k) : 0;
+      m_h[k - 1] += m_unlabeled + std::log(K() * (n + a) / (N + a * K()));
+    }
     limit();
   }
 
@@ -65,7 +85,8 @@ class ExactFilter {
   }
 
   std::vector<double> m_h;
-  double m_lowest, m_highest, m_floor, m_same, m_other, m_unlabeled, m_miss;
+  double m_lowest, m_highest, m_floor, m_accuracy, m_same, m_other, m_unlabeled, m_miss;
+  bool m_votesAreRows;
 };
 
 /** Total variation distance of two distributions. */

@@ -83,15 +83,16 @@ void PlainMap::hit(Voxel& v, const std::vector<std::size_t>& points,
   std::map<int, int> votes;
   for (const std::size_t i : points)
     if (!cloud.classes.empty() && cloud.classes[i] != kNoClass) ++votes[cloud.classes[i]];
-  int winner = kNoClass, most = 0;
-  for (const auto& [id, count] : votes)
-    if (count > most) winner = id, most = count;
-  if (winner == kNoClass) return hitUnlabeled(v);
+  if (votes.empty()) return hitUnlabeled(v);
   if (!v.record) v.record = m_filter.uniform(v.value);
-  m_filter.hit(*v.record, static_cast<ClassId>(winner));
+  std::vector<ClassVotes> ascending;
+  for (const auto& [id, count] : votes) {
+    ascending.push_back({static_cast<ClassId>(id), static_cast<std::uint32_t>(count)});
+    v.classesSeen.insert(id);
+  }
+  m_filter.hit(*v.record, ascending.data(), ascending.size());
   v.value = v.record->occupancyLogOdds(numClasses());
-  v.exact.hit(winner);
-  v.classesSeen.insert(winner);
+  v.exact.hit(votes);
 }
 
 void PlainMap::hitSoft(Voxel& v, const std::vector<std::size_t>& points,

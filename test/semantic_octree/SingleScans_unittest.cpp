@@ -12,7 +12,7 @@ constexpr double kResolution = 0.2;
 
 }  // namespace
 
-TEST(SingleScans, takesTheMajorityOfLabelsAndTheLowestIdOnATie) {
+TEST(SingleScans, namesTheMajorityOfLabelsAndTheLowestIdOnATie) {
   const auto classAfter = [](std::vector<ClassId> labels) {
     SemanticOcTree tree(1.0, numberedClasses(9));
     LabeledCloud cloud;

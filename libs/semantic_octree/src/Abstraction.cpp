@@ -186,12 +186,8 @@ Abstraction::Path Abstraction::alphaPath() const {
       m_map.empty() || m_map.root()->isLeaf() ? 1 : walk.state(*m_map.root()).density;
   const auto visit = [&](const auto& self, const Node& node, const Cell& cell,
                          std::int32_t parent) -> void {
-    if (parent < 0 && !m_gTree.isFreeFrame(cell.depth)) ++numRoots;
-    if (node.isLeaf()) {
-      if (m_gTree.isFreeFrame(cell.depth))
-        numRoots += std::size_t(1) << 3 * (m_gTree.blockDepth() - cell.depth);
-      return;
-    }
+    if (parent < 0 && (node.isLeaf() || !m_gTree.isFreeFrame(cell.depth))) ++numRoots;
+    if (node.isLeaf()) return;
     std::int32_t index = parent;
     if (!m_gTree.isFreeFrame(cell.depth)) {
       const InnerState& s = walk.state(node);

@@ -16,6 +16,15 @@ Real rounded(double x) {
 
 double logit(double p) { return std::log(p / (1 - p)); }
 
+/** Counts of labels whose logarithms are kept. */
+constexpr std::size_t kKeptCounts = 65;
+
+const ClassVotes& majority(const ClassVotes* votes, std::size_t numVoted) {
+  return *std::max_element(votes, votes + numVoted, [](const ClassVotes& a, const ClassVotes& b) {
+    return a.count < b.count;
+  });
+}
+
 }  // namespace
 
 template <typename Real, int Named>
@@ -40,6 +49,24 @@ ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
   m_hitOther = rounded<Real>(other);
   m_hitUnlabeled = rounded<Real>(unlabeled);
   m_miss = rounded<Real>(miss);
+  m_unlabeled = unlabeled;
+  m_votesAreRows =
+      numClasses > 1 && p.increments == FilterParameters::Increments::LikelihoodConsistent;
+  if (!m_votesAreRows) return;
+  m_pseudoCount = (1 - p.accuracy) / (p.accuracy * K - 1);
+  for (std::size_t n = 0; n < kKeptCounts; ++n) {
+    m_logVotes.push_back(std::log(static_cast<double>(n) + m_pseudoCount));
+    m_logLabels.push_back(std::log(static_cast<double>(n) / K + m_pseudoCount));
+  }
+}
+
+template <typename Real, int Named>
+Real ClassFilter<Real, Named>::voteIncrement(std::size_t n, std::size_t N) const {
+  const auto real = [](std::size_t count) { return static_cast<double>(count); };
+  const double logVotes = n < kKeptCounts ? m_logVotes[n] : std::log(real(n) + m_pseudoCount);
+  const double logLabels =
+      N < kKeptCounts ? m_logLabels[N] : std::log(real(N) / m_numClasses + m_pseudoCount);
+  return rounded<Real>(m_unlabeled + logVotes - logLabels);
 }
 
 template <typename Real, int Named>
@@ -67,11 +94,11 @@ void ClassFilter<Real, Named>::addToAll(Belief& b, Real increment) const {
 }
 
 template <typename Real, int Named>
-void ClassFilter<Real, Named>::hit(Belief& b, ClassId id) const {
-  const Real observed = b.logOddsOf(id) + m_hitSame;
+void ClassFilter<Real, Named>::hitOf(Belief& b, ClassId id, Real same, Real other) const {
+  const Real observed = b.logOddsOf(id) + same;
   const int index = b.indexOf(id);
-  for (int i = 0; i < b.count; ++i) b.logOdds[i] += m_hitOther;
-  b.rest += m_hitOther;
+  for (int i = 0; i < b.count; ++i) b.logOdds[i] += other;
+  b.rest += other;
   if (index >= 0)
     b.logOdds[index] = observed;
   else
@@ -98,6 +125,58 @@ void ClassFilter<Real, Named>::name(Belief& b, ClassId id, Real logOdds) const {
   if (newcomerIsLeast) return;
   b.ids[last] = id;
   b.logOdds[last] = logOdds;
+}
+
+template <typename Real, int Named>
+void ClassFilter<Real, Named>::hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const {
+  std::size_t labels = 0;
+  for (std::size_t i = 0; i < numVoted; ++i) labels += votes[i].count;
+  if (labels == 1 || !m_votesAreRows) return hit(b, majority(votes, numVoted).id);
+  if (numVoted > 1) return hitOfSeveral(b, votes, numVoted, labels);
+  hitOf(b, votes->id, voteIncrement(labels, labels), voteIncrement(0, labels));
+}
+
+template <typename Real, int Named>
+void ClassFilter<Real, Named>::hitOfSeveral(Belief& b, const ClassVotes* votes,
+                                            std::size_t numVoted, std::size_t numLabels) const {
+  const Belief before = b;
+  const Real other = voteIncrement(0, numLabels);
+  int numEvicted = 0;
+  double evictedOdds = 0;
+  const auto evict = [&](Real logOdds) {
+    ++numEvicted;
+    evictedOdds += std::exp(static_cast<double>(logOdds));
+  };
+  const auto offer = [&](ClassId id, Real logOdds) {
+    const int last = Named - 1;
+    if (b.count < Named) {
+      b.ids[b.count] = id;
+      b.logOdds[b.count++] = logOdds;
+    } else if (logOdds < b.logOdds[last] || (logOdds == b.logOdds[last] && id > b.ids[last])) {
+      return evict(logOdds);
+    } else {
+      evict(b.logOdds[last]);
+      b.ids[last] = id;
+      b.logOdds[last] = logOdds;
+    }
+    b.sort();
+  };
+  b = Belief();
+  b.rest = before.rest + other;
+  std::array<bool, Named> voted{};
+  for (std::size_t i = 0; i < numVoted; ++i) {
+    const int index = before.indexOf(votes[i].id);
+    if (index >= 0) voted[index] = true;
+    offer(votes[i].id, before.logOddsOf(votes[i].id) + voteIncrement(votes[i].count, numLabels));
+  }
+  for (int i = 0; i < before.count; ++i)
+    if (!voted[i]) offer(before.ids[i], before.logOdds[i] + other);
+  if (numEvicted > 0) {
+    const int members = b.unnamed(m_numClasses);
+    const double rest = (members - numEvicted) * std::exp(static_cast<double>(b.rest));
+    b.rest = rounded<Real>(std::log((rest + evictedOdds) / members));
+  }
+  limit(b);
 }
 
 template <typename Real, int Named>

@@ -4,16 +4,14 @@
 
 namespace semantic_octree {
 
-using semantic_types::ClassId;
-using semantic_types::kNoClass;
 using semantic_types::LabeledCloud;
 
 void HitVotes::start(std::size_t numVoxels, const LabeledCloud& cloud, int numClasses) {
   m_cloud = &cloud;
   m_numClasses = numClasses;
-  m_classes.assign(numVoxels, kNoClass);
-  m_mixed.assign(numVoxels, 0);
+  m_polls.assign(numVoxels, Poll());
   m_ballots.clear();
+  m_mixedVotes.clear();
   const std::size_t soft = cloud.probabilities.empty() ? 0 : numVoxels;
   m_softSums.assign(soft * numClasses, 0.f);
   m_softCounts.assign(soft, 0);
@@ -24,11 +22,15 @@ void HitVotes::add(std::uint32_t voxel, std::uint32_t point) {
   const ClassId id = m_cloud->classes.empty() ? kNoClass : m_cloud->classes[point];
   if (id == kNoClass) return;
   m_ballots.emplace_back(voxel, id);
-  ClassId& first = m_classes[voxel];
-  if (first == kNoClass)
-    first = id;
-  else if (first != id)
-    m_mixed[voxel] = 1;
+  Poll& poll = m_polls[voxel];
+  if (poll.numVoted == 0) {
+    poll.first.id = id;
+    poll.numVoted = 1;
+  }
+  if (poll.first.id == id)
+    ++poll.first.count;
+  else
+    poll.numVoted = 2;  // at least; to be counted
 }
 
 void HitVotes::addSoft(std::uint32_t voxel, std::uint32_t point) {
@@ -40,26 +42,31 @@ void HitVotes::addSoft(std::uint32_t voxel, std::uint32_t point) {
 }
 
 void HitVotes::finish() {
-  settleMixed();
+  countMixed();
   for (std::size_t voxel = 0; voxel < m_softCounts.size(); ++voxel)
     for (int k = 0; m_softCounts[voxel] > 1 && k < m_numClasses; ++k)
       m_softSums[voxel * m_numClasses + k] /= static_cast<float>(m_softCounts[voxel]);
 }
 
-void HitVotes::settleMixed() {
-  m_ballots.erase(std::remove_if(m_ballots.begin(), m_ballots.end(),
-                                 [this](const Ballot& b) { return !m_mixed[b.voxel()]; }),
-                  m_ballots.end());
+void HitVotes::countMixed() {
+  m_ballots.erase(
+      std::remove_if(m_ballots.begin(), m_ballots.end(),
+                     [this](const Ballot& b) { return m_polls[b.voxel()].numVoted == 1; }),
+      m_ballots.end());
   std::sort(m_ballots.begin(), m_ballots.end(),
             [](const Ballot& a, const Ballot& b) { return a.value < b.value; });
-  std::size_t mostVotes = 0;
-  for (std::size_t i = 0, end; i < m_ballots.size(); i = end) {
+  for (std::size_t i = 0; i < m_ballots.size(); ++i) {
     const Ballot& b = m_ballots[i];
-    for (end = i; end < m_ballots.size() && m_ballots[end].value == b.value;) ++end;
-    if (i == 0 || m_ballots[i - 1].voxel() != b.voxel()) mostVotes = 0;
-    if (end - i <= mostVotes) continue;
-    mostVotes = end - i;
-    m_classes[b.voxel()] = b.id();
+    Poll& poll = m_polls[b.voxel()];
+    if (i == 0 || m_ballots[i - 1].voxel() != b.voxel()) {
+      poll.mixedVotes = static_cast<std::uint32_t>(m_mixedVotes.size());
+      poll.numVoted = 0;
+    }
+    if (poll.numVoted == 0 || m_mixedVotes.back().id != b.id()) {
+      m_mixedVotes.push_back({b.id(), 0});
+      ++poll.numVoted;
+    }
+    ++m_mixedVotes.back().count;
   }
 }
 

@@ -105,12 +105,12 @@ bool ScanMerger::mergeByte(const ScanCube& cube, unsigned free, unsigned hit) {
 
 bool ScanMerger::hit(Node& leaf) {
   const std::uint32_t rank = m_nextHit++;
-  return hit(leaf, m_scan.votes().softLabelOf(rank), m_scan.votes().classOf(rank));
+  return hit(leaf, m_scan.votes().softLabelOf(rank), m_scan.votes().votesOf(rank));
 }
 
-bool ScanMerger::hit(Node& leaf, const float* softLabel, ClassId id) {
+bool ScanMerger::hit(Node& leaf, const float* softLabel, const HitVotes::Result& hard) {
   const float before = leaf.getValue();
-  if (!softLabel && id == kNoClass && !leaf.hasClassRecord()) {
+  if (!softLabel && hard.numVoted == 0 && !leaf.hasClassRecord()) {
     leaf.setValue(m_filter.occupancyAfterUnlabeledHit(before));
     return leaf.getValue() != before;
   }
@@ -118,8 +118,8 @@ bool ScanMerger::hit(Node& leaf, const float* softLabel, ClassId id) {
   const Belief old = belief;
   if (softLabel)
     m_filter.hit(belief, softLabel);
-  else if (id != kNoClass)
-    m_filter.hit(belief, id);
+  else if (hard.numVoted > 0)
+    m_filter.hit(belief, hard.votes, hard.numVoted);
   else
     m_filter.hit(belief);
   if (leaf.hasClassRecord() && belief == old) return false;

@@ -66,7 +66,7 @@ class ScanMerger {
   bool mergeWord(const ScanCube& cube, std::uint64_t free, std::uint64_t hit);
   bool mergeByte(const ScanCube& cube, unsigned free, unsigned hit);
   bool hit(Node& leaf);
-  bool hit(Node& leaf, const float* softLabel, ClassId id);
+  bool hit(Node& leaf, const float* softLabel, const HitVotes::Result& hard);
   bool miss(Node& leaf);
 
   friend void mergeScan(const MergeTarget&, const Scan&, Node& root, bool isNew, int threads);

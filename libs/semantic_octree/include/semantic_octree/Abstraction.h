@@ -73,7 +73,8 @@ class Abstraction {
   const AbstractionOptions& options() const;
 
   /** Leaves of the compressed tree in OctoMap's order (depth first). Visits inner nodes that the
-   * tree expands, and its leaves. */
+   * tree expands, and its leaves. A leaf of the map that reaches above the blocks is told block by
+   * block, so that the map's pruning leaves no trace; everything that counts leaves counts one. */
   std::vector<LeafCell> leaves() const;
   /** Those of leaves() that have voxels in a box, in the same order; visits nothing outside.
    * \param low, high keys of the box's lowest and highest voxels
@@ -111,7 +112,7 @@ class Abstraction {
   struct Path {
     tree_abstraction::AlphaPath trees;
     std::vector<double> addedLeaves;  ///< by expanding each node: known children - 1
-    std::size_t numRoots;             ///< leaves when nothing is expanded
+    std::size_t numRoots;             ///< blocks, and leaves of the map that reach above them
     /** Alpha of the largest compressed tree with at most this many known leaves.
      * \throw std::invalid_argument fewer than the roots, or more than the full tree has. */
     double alphaForLeaves(std::size_t wanted) const;

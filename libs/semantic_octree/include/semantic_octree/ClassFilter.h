@@ -2,6 +2,7 @@
 #include <semantic_octree/ClassBelief.h>
 #include <semantic_octree/FilterParameters.h>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace semantic_octree {
@@ -11,6 +12,12 @@ inline float onGrid(double logOdds) {
   constexpr double kPerUnit = 1 << 18;
   return static_cast<float>(std::round(logOdds * kPerUnit) / kPerUnit);
 }
+
+/** How many of a scan's labels in one cell name a class. */
+struct ClassVotes {
+  ClassId id;
+  std::uint32_t count;
+};
 
 /** Bayes filter over {free, class 1, ..., class K} of one cell, truncated to the `Named` likeliest
  * classes.
@@ -37,7 +44,13 @@ class ClassFilter {
   int numClasses() const { return m_numClasses; }
 
   /** A return with a class label ended in the cell. */
-  void hit(Belief& b, ClassId id) const;
+  void hit(Belief& b, ClassId id) const { hitOf(b, id, m_hitSame, m_hitOther); }
+  /** Returns of one scan with N labels ended in the cell, n_k of them of class k: one observation
+   * with q_k = (n_k + a) / (N + a K), where a is such that q of a single label is (accuracy,
+   * (1 - accuracy) / (K - 1), ...). Labels of one scan that agree add less than scans that do, and
+   * a tie says that either class may be. With the published constants: hit() by the majority, the
+   * lowest id on a tie. \param votes numVoted > 0 classes, ascending ids, counts > 0 */
+  void hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const;
   /** A return without a label ended in the cell: every class gains equally. */
   void hit(Belief& b) const { addToAll(b, m_hitUnlabeled); }
   /** A return with a soft label ended in the cell. \param q K probabilities of classes 1..K. */
@@ -65,12 +78,22 @@ class ClassFilter {
 
  private:
   void addToAll(Belief& b, Real increment) const;
+  void hitOf(Belief& b, ClassId id, Real same, Real other) const;
+  void hitOfSeveral(Belief& b, const ClassVotes* votes, std::size_t numVoted,
+                    std::size_t numLabels) const;
   void name(Belief& b, ClassId id, Real logOdds) const;
+  /** Of a class with n of N labels: ln(p_hit / p_fa) + ln(K q). */
+  Real voteIncrement(std::size_t n, std::size_t N) const;
 
   int m_numClasses;
   Real m_logNumClasses, m_min, m_max;
   Real m_hitSame, m_hitOther, m_hitUnlabeled, m_miss;
   double m_softLabelFloor;
+  /** Votes are rows; else their majority counts. */
+  bool m_votesAreRows;
+  double m_unlabeled, m_pseudoCount;  ///< not rounded; a
+  /** ln(n + a) and ln((N + a K) / K) of small counts. */
+  std::vector<double> m_logVotes, m_logLabels;
 };
 
 extern template class ClassFilter<float>;

@@ -132,7 +132,7 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
 
   // --- Changing ---
   /** Inserts a scan: each voxel is updated at most once. Voxels in which returns end are hit (see
-   * HitVotes for their class), voxels that beams cross are free unless hit.
+   * ClassFilter::hit() for their labels), voxels that beams cross are free unless hit.
    * \param cloud points in the sensor's frame
    * \throw std::out_of_range the sensor is outside the map
    * \throw std::invalid_argument vectors of different lengths, or a class that is not in the table.

@@ -1,0 +1,222 @@
+// What several labels of one scan in one cell say.
+#include <gtest/gtest.h>
+#include <semantic_octree/ClassFilter.h>
+
+#include <numeric>
+#include <random>
+
+#include "ExactFilter.h"
+#include "FilterStreams.h"
+#include "RandomScans.h"
+
+using namespace semantic_octree;
+
+namespace {
+
+using Votes = std::map<int, int>;
+
+template <typename Real>
+void hit(const ClassFilter<Real>& filter, ClassBelief<Real>& belief, const Votes& votes) {
+  std::vector<ClassVotes> ascending;
+  for (const auto& [id, count] : votes)
+    ascending.push_back({static_cast<ClassId>(id), static_cast<std::uint32_t>(count)});
+  filter.hit(belief, ascending.data(), ascending.size());
+}
+
+template <typename Real>
+ClassBelief<Real> after(const ClassFilter<Real>& filter, const Votes& votes) {
+  ClassBelief<Real> belief = filter.uniform(0);
+  hit(filter, belief, votes);
+  return belief;
+}
+
+/** Up to `most` labels, of classes up to K. */
+Votes randomVotes(std::mt19937& random, int K, int most) {
+  Votes votes;
+  const int labels = 1 + static_cast<int>(random() % most);
+  for (int i = 0; i < labels; ++i) ++votes[1 + static_cast<int>(random() % K)];
+  return votes;
+}
+
+bool hasFewer(const Votes::value_type& a, const Votes::value_type& b) {
+  return a.second < b.second;
+}
+
+constexpr int kPatchClasses = 24;
+
+/** Points on a plane of patches of different classes; this share of their labels is wrong. */
+LabeledCloud scanOfPatches(std::mt19937& random, double wrongShare) {
+  LabeledCloud cloud;
+  for (int i = 0; i < 4000; ++i) {
+    const double x = between(random, -4, 4), y = between(random, -4, 4);
+    const int patch = int(std::floor(x / 0.7)) * 7 + int(std::floor(y / 0.9)) * 5 + 240;
+    const bool wrong = between(random, 0, 1) < wrongShare;
+    const unsigned shift = wrong ? 1 + random() % (kPatchClasses - 1) : 0;
+    cloud.points.emplace_back(x, y, -0.9);
+    cloud.classes.push_back(static_cast<ClassId>(1 + (patch + shift) % kPatchClasses));
+  }
+  return cloud;
+}
+
+}  // namespace
+
+TEST(Votes, ofOneLabelAreTheHardLabelToTheLastBit) {
+  for (const double accuracy : {0.3, 0.7, 0.9, 0.999}) {
+    const ClassFilter<float> filter(24, wideLimits(accuracy));
+    ClassBelief<float> voted = filter.uniform(0.3f), labeled = voted;
+    hit(filter, voted, {{7, 1}});
+    filter.hit(labeled, 7);
+    EXPECT_TRUE(voted == labeled);
+  }
+}
+
+TEST(Votes, areTheRowOfTheirCounts) {
+  constexpr int K = 5;
+  FilterParameters p = wideLimits(0.8);
+  const double a = 0.2 / (0.8 * K - 1);  // 1/15
+  EXPECT_NEAR((1 + a) / (1 + a * K), 0.8, 1e-15);
+  const ClassFilter<double> filter(K, p);
+  const ClassBelief<double> uniform = filter.uniform(0), b = after(filter, {{2, 3}, {4, 1}});
+  const double base = uniform.rest + std::log(p.hitProbability / p.falseAlarmProbability);
+  const auto expected = [&](double n) { return base + std::log(K * (n + a) / (4 + a * K)); };
+  EXPECT_NEAR(b.logOddsOf(2), expected(3), 1e-12);
+  EXPECT_NEAR(b.logOddsOf(4), expected(1), 1e-12);
+  EXPECT_NEAR(b.rest, expected(0), 1e-12);
+}
+
+TEST(Votes, ofLabelsThatAgreeSayMoreThanOneAndLessThanAsManyScans) {
+  const ClassFilter<double> filter(24, wideLimits(0.8));
+  const auto margin = [](const ClassBelief<double>& b) { return b.logOdds[0] - b.rest; };
+  const ClassBelief<double> once = after(filter, {{7, 1}});
+  ClassBelief<double> threeScans = once;
+  for (int i = 0; i < 2; ++i) filter.hit(threeScans, 7);
+  EXPECT_GT(margin(after(filter, {{7, 3}})), margin(once));
+  EXPECT_LT(margin(after(filter, {{7, 3}})), margin(threeScans));
+}
+
+TEST(Votes, thatTieLeaveTheChoiceToTheNextScan) {
+  const ClassFilter<float> filter(24, wideLimits(0.9));
+  ClassBelief<float> b = after(filter, {{3, 2}, {9, 2}});
+  EXPECT_EQ(b.logOddsOf(3), b.logOddsOf(9));
+  hit(filter, b, {{9, 1}});
+  EXPECT_EQ(b.ids[0], 9);
+}
+
+TEST(Votes, ofUpToThreeClassesEqualTheExactFilter) {
+  std::mt19937 random(5);
+  for (const int K : {2, 3, 4, 24}) {
+    const ClassFilter<double> filter(K, {});
+    for (int stream = 0; stream < 100; ++stream) {
+      ClassBelief<double> belief = filter.uniform(0);
+      ExactFilter exact(K, {});
+      for (int i = 0; i < 10; ++i) {
+        const Votes votes = randomVotes(random, std::min(K, 3), 200);
+        hit(filter, belief, votes);
+        exact.hit(votes);
+        if (random() % 3 == 0) filter.miss(belief), exact.miss();
+        ASSERT_LT(totalVariation(distributionOf(belief, K), exact.distribution()), 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Votes, ofManyClassesKeepTheLikeliestAndTheOccupancy) {
+  constexpr int K = 24;
+  std::mt19937 random(2);
+  const ClassFilter<double> filter(K, wideLimits());
+  for (int round = 0; round < 100; ++round) {
+    const Votes votes = randomVotes(random, K, 100);
+    const ClassBelief<double> belief = after(filter, votes);
+    ExactFilter exact(K, wideLimits());
+    exact.hit(votes);
+    EXPECT_NEAR(belief.occupancyLogOdds(K), exact.occupancyLogOdds(), 1e-9);
+    for (int i = 0; i < belief.count; ++i)
+      EXPECT_NEAR(belief.logOdds[i], exact.logOdds(belief.ids[i]), 1e-9);
+    std::vector<double> odds;
+    for (int k = 1; k <= K; ++k) odds.push_back(exact.logOdds(k));
+    std::sort(odds.rbegin(), odds.rend());
+    for (int i = 0; i < std::min<int>(3, static_cast<int>(votes.size())); ++i)
+      EXPECT_NEAR(belief.logOdds[i], odds[i], 1e-9);
+  }
+}
+
+TEST(Votes, keepLogOddsOnTheGrid) {
+  std::mt19937 random(3);
+  const ClassFilter<float> filter(24, wideLimits());
+  ClassBelief<float> b = filter.uniform(0);
+  for (int i = 0; i < 200; ++i) {
+    hit(filter, b, randomVotes(random, 24, 1 + i));
+    for (int k = 0; k < b.count; ++k) ASSERT_EQ(b.logOdds[k], onGrid(b.logOdds[k]));
+    ASSERT_EQ(b.rest, onGrid(b.rest));
+  }
+}
+
+TEST(Votes, withPublishedConstantsAreTheirMajority) {
+  FilterParameters ssmi;
+  ssmi.increments = FilterParameters::Increments::Ssmi;
+  const ClassFilter<float> filter(9, ssmi);
+  const auto expectHit = [&](const Votes& votes, ClassId id) {
+    ClassBelief<float> labeled = filter.uniform(0);
+    filter.hit(labeled, id);
+    EXPECT_TRUE(after(filter, votes) == labeled) << int(id);
+  };
+  expectHit({{4, 1}, {7, 2}}, 7);
+  expectHit({{4, 1}, {7, 1}}, 4);
+  expectHit({{2, 1}, {8, 2}, {9, 2}}, 8);
+}
+
+TEST(Votes, ofTheOnlyClassAreItsHit) {
+  const ClassFilter<float> filter(1, {});
+  ClassBelief<float> labeled = filter.uniform(0);
+  filter.hit(labeled, 1);
+  EXPECT_TRUE(after(filter, {{1, 5}}) == labeled);
+}
+
+TEST(Votes, doNotDependOnTheOrderOfPoints) {
+  std::mt19937 random(4);
+  for (int round = 0; round < 5; ++round) {
+    const PosedCloud scan = randomScan(random);
+    std::vector<std::size_t> order(scan.cloud.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::shuffle(order.begin(), order.end(), random);
+    LabeledCloud shuffled;
+    for (const std::size_t i : order) {
+      shuffled.points.push_back(scan.cloud.points[i]);
+      shuffled.classes.push_back(scan.cloud.classes[i]);
+    }
+    SemanticOcTree a(0.5, numberedClasses(5)), b = a;
+    a.insert(scan.cloud, scan.T_map_sensor);
+    b.insert(shuffled, scan.T_map_sensor);
+    EXPECT_TRUE(a == b);
+  }
+}
+
+TEST(Votes, seeThroughThirtyPercentOfWrongLabelsAsCountingDoes) {
+  std::mt19937 random(6);
+  SemanticOcTree map(0.2, numberedClasses(kPatchClasses));
+  std::map<std::pair<int, int>, Votes> counted;
+  const auto columnOf = [&](const Eigen::Vector3f& p) {
+    const auto key = map.coordToKey(p.x(), p.y(), p.z());
+    return std::make_pair(int(key[0]), int(key[1]));
+  };
+  for (int i = 0; i < 6; ++i) {
+    const LabeledCloud cloud = scanOfPatches(random, 0.3);
+    map.insert(cloud, Eigen::Isometry3d::Identity());
+    for (std::size_t k = 0; k < cloud.size(); ++k)
+      ++counted[columnOf(cloud.points[k])][cloud.classes[k]];
+  }
+  std::size_t asked = 0, right = 0, rightCounted = 0;
+  const LabeledCloud others = scanOfPatches(random, 0);
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    const Eigen::Vector3f& p = others.points[k];
+    const auto votes = counted.find(columnOf(p));
+    if (votes == counted.end()) continue;
+    const auto most = std::max_element(votes->second.begin(), votes->second.end(), hasFewer);
+    ++asked;
+    right += map.query(p.x(), p.y(), p.z()).likeliestClass == others.classes[k];
+    rightCounted += most->first == others.classes[k];
+  }
+  ASSERT_GT(asked, 3000u);
+  EXPECT_GE(double(right) / double(asked), double(rightCounted) / double(asked) - 0.005)
+      << right << " and " << rightCounted << " of " << asked;
+}
