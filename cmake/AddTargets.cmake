@@ -29,10 +29,14 @@ function(mso_add_library name)
     COMPONENT development)
 endfunction()
 
+# Command lines run once, and CLI11 is compiled into each of their files: they are optimized little.
+set(mso_once_options $<$<CONFIG:Release>:-O1>)
+
 # mso_add_app(NAME SOURCES ... [DEPENDS ...]): an executable of apps/NAME.
 function(mso_add_app name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
+  set_source_files_properties(main.cpp Cli.cpp PROPERTIES COMPILE_OPTIONS ${mso_once_options})
   target_link_libraries(${name} PRIVATE mso_settings application ${ARG_DEPENDS})
   set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   set_property(GLOBAL APPEND PROPERTY MSO_APPS ${name})

@@ -45,10 +45,8 @@ class Sections {
   /** A struct that describes and checks itself. */
   template <class Options>
   void readAll(const std::string& name, Options& options) {
-    OptionList list;
-    options.describe(list);
-    read(name, list);
-    options.validate();
+    m_known.push_back(name);
+    strict_files::readSection(m_ini, name, options);
   }
   void refuseOthers() const { strict_files::checkSections(m_ini, m_known); }
 

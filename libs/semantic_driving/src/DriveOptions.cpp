@@ -19,7 +19,7 @@ void describeReactive(DriveOptions& o, OptionList& list) {
   list.add("waypoint_reach", o.waypointReach, "m", above(0),
            "how near to a waypoint is near enough");
   list.add("waypoint_margin", o.waypointMargin, "m", atLeast(0),
-           "waypoints with less room around the footprint are left out");
+           "waypoints with less clearance around the footprint are left out");
   list.add("reactive_pause", o.reactivePause, "s", atLeast(0),
            "until MRPT's navigator is asked again after it found no way");
 }
