@@ -88,3 +88,21 @@ TEST(IniSection, anUnknownSectionIsNamedWithTheNearestKnownOne) {
   EXPECT_NE(refusalOf(""), "");
   EXPECT_EQ(errorOf([&] { checkSections(Source{{{"", {}}}}, known); }), "");
 }
+
+TEST(IniText, holdsNothingThatMrptWouldLeaveOut) {
+  EXPECT_EQ(
+      errorOf([] {
+        strict_files::checkIniText(
+            "# c\n; c\n// c\n\n[a b]\nk = 1\nlong = 1 \\\n 2 3\nempty =\n[other]\nk = 2 // c\n");
+      }),
+      "");
+  EXPECT_EQ(errorOf([] { strict_files::checkIniText("[a]\nk 1\n"); }),
+            "line 2: 'k 1', expected key = value");
+  EXPECT_EQ(errorOf([] { strict_files::checkIniText("[a]\nk = 1\n\nK=2\n"); }),
+            "line 4: key 'K' twice");
+  EXPECT_EQ(errorOf([] { strict_files::checkIniText("[a]\nmax_gap = 1\nmaxGap = 2\n"); }),
+            "line 3: key 'maxGap' twice");
+  EXPECT_EQ(errorOf([] { strict_files::checkIniText("[a\n"); }), "line 1: '[a' has no ']'");
+  EXPECT_EQ(errorOf([] { strict_files::checkIniText("= 3\n"); }),
+            "line 1: '= 3', expected key = value");
+}

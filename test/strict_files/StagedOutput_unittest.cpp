@@ -1,9 +1,18 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <strict_files/LeaveWithoutOutputs.h>
 #include <strict_files/OutputFolder.h>
 #include <strict_files/StagedFile.h>
+#include <strict_files/TextFile.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 
+#include "FullDisk.h"
 #include "TemporaryFolder.h"
 
 namespace fs = std::filesystem;
@@ -19,7 +28,37 @@ std::size_t entriesOf(const fs::path& folder) {
       std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
+/** Forks; the child ends with the action's result. */
+template <class Action>
+pid_t inChild(Action action) {
+  const pid_t child = fork();
+  if (child == 0) _exit(action());
+  return child;
+}
+
+int statusOf(pid_t child) {
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+std::vector<std::string> callsToDisk;
+useconds_t pauseAfterRename = 0;  ///< microseconds
+
 }  // namespace
+
+// The libraries call these two of ours.
+extern "C" int fsync(int descriptor) {
+  callsToDisk.push_back("sync " +
+                        fs::read_symlink("/proc/self/fd/" + std::to_string(descriptor)).string());
+  return static_cast<int>(syscall(SYS_fsync, descriptor));
+}
+extern "C" int rename(const char* from, const char* to) noexcept {
+  callsToDisk.push_back(std::string("rename ") + from);
+  const auto result = static_cast<int>(syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
+  usleep(pauseAfterRename);
+  return result;
+}
 
 TEST(StagedFile, takesItsNameWhenItIsComplete) {
   const TemporaryFolder folder;
@@ -48,6 +87,198 @@ TEST(StagedFile, namesWhatCannotBeWritten) {
   EXPECT_TRUE(
       contains(errorOf([&] { StagedFile(folder / "none/a"); }), "none/a: cannot be written"));
   EXPECT_TRUE(contains(errorOf([&] { StagedFile file(folder.path()); }), "it is a folder"));
+}
+
+TEST(StagedFile, twoWritersOfOneFileDoNotMeetAndTheLastOneWins) {
+  const TemporaryFolder folder;
+  {
+    StagedFile first(folder / "a.txt"), second(folder / "a.txt");
+    EXPECT_NE(first.path(), second.path());
+    EXPECT_EQ(first.path().extension(), ".txt");  // some writers take the format from it
+    write(first.path(), "first");
+    write(second.path(), "second");
+    second.commit();
+    EXPECT_EQ(folder.read("a.txt"), "second");
+    first.commit();
+  }
+  EXPECT_EQ(folder.read("a.txt"), "first");
+  EXPECT_EQ(entriesOf(folder.path()), 1u);
+}
+
+TEST(StagedFile, processesThatWriteOneFileAtOnceLeaveItWholeAndNothingElse) {
+  const TemporaryFolder folder;
+  constexpr std::size_t kLength = 200000;
+  std::vector<pid_t> writers;
+  for (const char letter : {'a', 'b', 'c', 'd'})
+    writers.push_back(inChild([&] {
+      for (int i = 0; i < 20; ++i) {
+        StagedFile file(folder / "x");
+        write(file.path(), std::string(kLength, letter));
+        file.commit();
+      }
+      return 0;
+    }));
+  for (const pid_t writer : writers) EXPECT_EQ(statusOf(writer), 0);
+  const std::string text = folder.read("x");
+  EXPECT_EQ(text, std::string(kLength, text.at(0)));
+  EXPECT_EQ(entriesOf(folder.path()), 1u);
+}
+
+TEST(StagedFile, leavesWhatIsTheUsersOwn) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.tmp", ".unfinished-notes", ".unfinished-", ".unfinished-a_c123"})
+    folder.write(name, "mine");
+  fs::create_symlink(folder / "a.tmp", folder / ".unfinished-abc123");
+  StagedFile file(folder / "a");
+  write(file.path(), "text");
+  file.commit();
+  EXPECT_EQ(entriesOf(folder.path()), 6u);
+  EXPECT_EQ(folder.read("a.tmp"), "mine");
+}
+
+TEST(StagedFile, nothingButARegularFileIsReplaced) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  fs::create_symlink("nowhere", folder / "dangling");
+  for (const std::string name : {"/dev/null", "/dev/full"}) {
+    if (!fs::exists(name)) continue;
+    fs::create_symlink(name, folder / "device");
+    EXPECT_TRUE(contains(errorOf([&] { StagedFile file(name); }), name +
+                                                                      ": cannot be written, it is"
+                                                                      " no regular file"));
+    EXPECT_TRUE(contains(errorOf([&] { StagedFile file(folder / "device"); }), "no regular file"));
+    fs::remove(folder / "device");
+  }
+  EXPECT_TRUE(contains(errorOf([&] { StagedFile file(folder / "pipe"); }), "no regular file"));
+  EXPECT_TRUE(contains(errorOf([&] { StagedFile file(folder / "dangling"); }), "leads nowhere"));
+  EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
+}
+
+TEST(StagedFile, aLinkStaysAndWhatItLeadsToIsReplaced) {
+  const TemporaryFolder folder;
+  folder.write("elsewhere/a", "before");
+  fs::create_symlink("elsewhere/a", folder / "link");
+  {
+    StagedFile file(folder / "link");
+    write(file.path(), "after");
+    file.commit();
+  }
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(folder.read("elsewhere/a"), "after");
+}
+
+TEST(StagedFile, keepsThePermissionsOfWhatItReplaces) {
+  const TemporaryFolder folder;
+  fs::permissions(folder.write("a", "secret"), fs::perms::owner_read | fs::perms::owner_write);
+  StagedFile file(folder / "a"), other(folder / "b");
+  EXPECT_EQ(fs::status(file.path()).permissions(), fs::status(folder / "a").permissions());
+  EXPECT_NE(fs::status(other.path()).permissions(), fs::status(folder / "a").permissions());
+}
+
+TEST(StagedFile, isOnTheDiskBeforeItTakesItsName) {
+  const TemporaryFolder folder;
+  StagedFile file(folder / "a");
+  write(file.path(), "text");
+  const std::string staged = file.path();
+  callsToDisk.clear();
+  file.commit();
+  EXPECT_EQ(callsToDisk, (std::vector<std::string>{"sync " + staged, "rename " + staged,
+                                                   "sync " + folder.path().string()}));
+}
+
+TEST(StagedFile, ofAFullDiskIsNotThere) {
+  const TemporaryFolder folder;
+  const std::string error = errorOf([&] {
+    const FullDisk full(10);
+    strict_files::writeText(folder / "a", "more than ten bytes");
+  });
+  EXPECT_EQ(error, (folder / "a").string() + ": cannot be written");
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(Outputs, ofAProcessThatWasKilledAreRemovedByTheNext) {
+  const TemporaryFolder folder;
+  const pid_t killed = inChild([&] {
+    const OutputFolder output(folder.path());
+    const StagedFile file(folder / "a");
+    write(output.staged("b"), "half");
+    raise(SIGKILL);
+    return 0;
+  });
+  EXPECT_EQ(statusOf(killed), 128 + SIGKILL);
+  EXPECT_EQ(entriesOf(folder.path()), 2u);
+  { StagedFile file(folder / "other"); }
+  EXPECT_EQ(entriesOf(folder.path()), 0u);
+}
+
+TEST(Outputs, ofProcessesThatLiveAreNotTouched) {
+  const TemporaryFolder folder;
+  const OutputFolder output(folder.path());
+  const StagedFile file(folder / "a");
+  write(output.staged("b"), "half");
+  EXPECT_EQ(statusOf(inChild([&] {
+              { OutputFolder(folder / "."), StagedFile(folder / "./a"); }  // it looks again
+              return entriesOf(folder.path()) == 2 ? 0 : 1;
+            })),
+            0);
+  EXPECT_EQ(entriesOf(folder.path()), 2u);
+  EXPECT_TRUE(fs::exists(output.staged("b")));
+}
+
+TEST(Outputs, areGoneWhenAProcessLeavesWithoutThem) {
+  const TemporaryFolder folder;
+  folder.write("a", "before");
+  EXPECT_EQ(statusOf(inChild([&]() -> int {
+              const OutputFolder output(folder / "out"), again(folder.path());
+              const StagedFile file(folder / "a");
+              write(output.staged("b"), "half");
+              strict_files::leaveWithoutOutputs(5);
+            })),
+            5);
+  EXPECT_EQ(entriesOf(folder.path()), 1u);
+  EXPECT_EQ(folder.read("a"), "before");
+}
+
+TEST(OutputFolder, filesAreOnTheDiskBeforeAnyTakesItsPlace) {
+  const TemporaryFolder folder;
+  OutputFolder output(folder.path());
+  for (const char* name : {"a", "b"}) write(output.staged(name), "text");
+  callsToDisk.clear();
+  output.commit({"a", "b"});
+  ASSERT_EQ(callsToDisk.size(), 5u);
+  EXPECT_EQ(callsToDisk[1], "sync " + output.staged("b").string());
+  EXPECT_EQ(callsToDisk[2], "rename " + output.staged("a").string());
+  EXPECT_EQ(callsToDisk[4], "sync " + folder.path().string());
+}
+
+TEST(OutputFolder, ofTwoProcessesAtOnceTheFilesAreOfOne) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> names = {"a", "b", "c"};
+  const auto commitIn = [&](const std::string& text, useconds_t wait, useconds_t slowness) {
+    return inChild([&] {
+      OutputFolder output(folder.path());
+      for (const std::string& name : names) write(output.staged(name), text);
+      usleep(wait);
+      pauseAfterRename = slowness;
+      output.commit(names);
+      return 0;
+    });
+  };
+  const pid_t slow = commitIn("slow", 0, 200000), fast = commitIn("fast", 300000, 0);
+  EXPECT_EQ(statusOf(slow), 0);
+  EXPECT_EQ(statusOf(fast), 0);
+  for (const std::string& name : names) EXPECT_EQ(folder.read(name), "fast") << name;
+  EXPECT_EQ(entriesOf(folder.path()), names.size());
+}
+
+TEST(OutputFolder, nothingTakesItsPlaceWhereOneOfThemCannot) {
+  const TemporaryFolder folder;
+  folder.write("a", "before");
+  fs::create_directory(folder / "b");
+  OutputFolder output(folder.path());
+  for (const char* name : {"a", "b"}) write(output.staged(name), "after");
+  EXPECT_TRUE(contains(errorOf([&] { output.commit({"a", "b"}); }), "b: cannot be written: it is"));
+  EXPECT_EQ(folder.read("a"), "before");
 }
 
 TEST(OutputFolder, filesTakeTheirPlaceTogether) {

@@ -65,6 +65,13 @@ TEST_F(YamlOptions, whatIsNoYamlIsNamedWithItsLine) {
   EXPECT_TRUE(contains(errorOf([&] { StrictYaml(folder.path()); }), "cannot be read"));
 }
 
+TEST_F(YamlOptions, aSecondDocumentIsRefused) {
+  EXPECT_TRUE(contains(refusal("length: 4\n---\nlength: 5\n"), ":2: a second document"))
+      << refusal("length: 4\n---\nlength: 5\n");
+  EXPECT_TRUE(contains(refusal("# c\n---\nlength: 4\n--- # c\n"), ":4: a second document"));
+  EXPECT_EQ(read("# c\n\n---\nlength: 4\n").length, 4);
+}
+
 TEST_F(YamlOptions, singleValuesAreChecked) {
   const StrictYaml yaml(folder.write("v.yaml", "a: 1\nb: -1\nc: .inf\nd: [1, 2, 3]\ne: []\n"));
   const YAML::Node& root = yaml.root();

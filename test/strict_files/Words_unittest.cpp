@@ -54,3 +54,24 @@ RC_GTEST_PROP(Words, aWordWithOneLetterTooManyIsAnsweredWithItself, ()) {
   RC_ASSERT(unknownWord("key", longer, {"0123456789", word}).find("mean '" + word + "'") !=
             std::string::npos);
 }
+
+TEST(Words, sizesAreForPeople) {
+  const std::vector<std::pair<std::uint64_t, std::string>> cases = {
+      {0, "0 bytes"},      {999, "999 bytes"},     {1000, "1.0 kB"},   {1234, "1.2 kB"},
+      {9949, "9.9 kB"},    {9960, "10 kB"},        {999499, "999 kB"}, {999500, "1.0 MB"},
+      {35400000, "35 MB"}, {2100000000, "2.1 GB"}, {~0ull, "18 EB"}};
+  for (const auto& [bytes, text] : cases) EXPECT_EQ(strict_files::sizeText(bytes), text) << bytes;
+}
+
+TEST(Words, utf8IsToldFromOtherBytes) {
+  for (const char* text : {"", "road",
+                           "Stra\xC3\x9F"
+                           "e",
+                           "\xE8\xB7\xAF", "\xF0\x9F\x9A\x97"})
+    EXPECT_TRUE(strict_files::isUtf8(text)) << text;
+  for (const char* bytes : {"Stra\xDF"
+                            "e",
+                            "\xC3", "\xE8\xB7", "\x9F", "\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80",
+                            "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80", "a\xFF"})
+    EXPECT_FALSE(strict_files::isUtf8(bytes)) << bytes;
+}

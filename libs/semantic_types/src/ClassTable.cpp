@@ -1,4 +1,5 @@
 #include <semantic_types/ClassTable.h>
+#include <strict_files/Words.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -7,6 +8,9 @@ namespace semantic_types {
 
 ClassId ClassTable::add(const std::string& name, Color color) {
   if (name.empty()) throw std::invalid_argument("class table: a class without a name");
+  if (!strict_files::isUtf8(name))
+    throw std::invalid_argument("class table: the name of class " + std::to_string(size() + 1) +
+                                " is not UTF-8");
   if (m_ids.count(name))
     throw std::invalid_argument("class table: two classes named '" + name + "'");
   if (size() == kMaxClasses)

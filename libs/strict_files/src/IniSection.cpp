@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 namespace strict_files {
@@ -52,6 +53,35 @@ void IniSection::finish() const {
   for (const auto& [key, value] : m_entries) {
     const auto same = [&key = key](const std::string& known) { return sameWord(known, key); };
     if (std::none_of(m_known.begin(), m_known.end(), same)) fail(unknownWord("key", key, m_known));
+  }
+}
+
+void checkIniText(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> keys;
+  bool continues = false;
+  int number = 0;
+  const auto refuse = [&](const std::string& what) {
+    throw std::runtime_error("line " + std::to_string(number) + ": " + what);
+  };
+  for (std::string raw; ++number, std::getline(stream, raw);) {
+    const std::string line = trimmed(raw);
+    const bool isContinuation = continues;
+    continues = !line.empty() && line.back() == '\\';
+    const bool isComment = line.empty() || line[0] == '#' || line[0] == ';' || line[0] == '@' ||
+                           line.compare(0, 2, "//") == 0;
+    if (isContinuation || isComment) continue;
+    if (line[0] == '[') {
+      if (line.find(']') == std::string::npos) refuse("'" + line + "' has no ']'");
+      keys.clear();
+      continue;
+    }
+    const std::string key = trimmed(line.substr(0, line.find('=')));
+    if (line.find('=') == std::string::npos || key.empty())
+      refuse("'" + line + "', expected key = value");
+    const auto same = [&key](const std::string& known) { return sameWord(known, key); };
+    if (std::any_of(keys.begin(), keys.end(), same)) refuse("key '" + key + "' twice");
+    keys.push_back(key);
   }
 }
 

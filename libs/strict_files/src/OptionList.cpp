@@ -70,8 +70,9 @@ std::string textOf(double number) {
 
 double numberOf(const std::string& text, const std::string& expected) {
   double number = NAN;
-  const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, number);
+  const char *first = text.data(), *const last = first + text.size();
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') ++first;
+  const auto [end, error] = std::from_chars(first, last, number);
   if (error != std::errc() || end != last || std::isnan(number)) refuse("'" + text + "'", expected);
   return number;
 }
@@ -142,7 +143,7 @@ void OptionList::addWord(const char* name, const char* help, const std::vector<s
   option.set = [set, words, expected = option.expected](const std::string& text) {
     for (std::size_t i = 0; i < words.size(); ++i)
       if (sameWord(words[i], text)) return set(i);
-    refuse("'" + text + "'", expected);
+    refuse("'" + text + "'", expected + didYouMean(text, words));
   };
   option.check = [get] { get(); };
   m_options.push_back(option);

@@ -1,28 +1,66 @@
 #include <strict_files/StagedFile.h>
+#include <sys/stat.h>
 
-#include <fstream>
 #include <stdexcept>
+
+#include "Unfinished.h"
 
 namespace strict_files {
 
-StagedFile::StagedFile(std::filesystem::path target)
-    : m_target(std::move(target)), m_staged(m_target.string() + ".tmp") {
-  if (std::filesystem::is_directory(m_target))
-    throw std::runtime_error(m_target.string() + ": cannot be written, it is a folder");
-  if (!std::ofstream(m_staged))
-    throw std::runtime_error(m_target.string() + ": cannot be written (does the folder exist?)");
+namespace fs = std::filesystem;
+
+namespace {
+
+/** What links lead to. \throw std::runtime_error nothing can be written there. */
+fs::path placeOf(const fs::path& target) {
+  const auto refuse = [&target](const std::string& why) {
+    throw std::runtime_error(target.string() + ": cannot be written, " + why);
+  };
+  std::error_code error;
+  const bool isLink = fs::is_symlink(target, error);
+  const fs::path place = isLink ? fs::canonical(target, error) : target;
+  if (isLink && error) refuse("it is a link that leads nowhere");
+  const fs::file_status status = fs::status(place, error);
+  if (fs::is_directory(status)) refuse("it is a folder");
+  if (fs::exists(status) && !fs::is_regular_file(status)) refuse("it is no regular file");
+  return place;
 }
 
-StagedFile::~StagedFile() {
-  std::error_code ignored;
-  if (!m_staged.empty()) std::filesystem::remove(m_staged, ignored);
+/** As the file has that is replaced. */
+void takePermissions(const fs::path& target, int descriptor) {
+  struct stat old {};
+  if (stat(target.c_str(), &old) == 0) fchmod(descriptor, old.st_mode & 07777);
 }
+
+}  // namespace
+
+StagedFile::StagedFile(fs::path target) : m_target(placeOf(target)) {
+  try {
+    m_unfinished = std::make_unique<Unfinished>(m_target.parent_path(), Unfinished::Kind::File,
+                                                m_target.filename().string());
+  } catch (const fs::filesystem_error& e) {
+    const bool nowhere = e.code() == std::errc::no_such_file_or_directory;
+    throw std::runtime_error(target.string() + ": cannot be written" +
+                             (nowhere ? " (does the folder exist?)" : ": " + e.code().message()));
+  }
+  takePermissions(m_target, m_unfinished->descriptor());
+}
+
+StagedFile::~StagedFile() = default;
+
+const fs::path& StagedFile::path() const { return m_unfinished->path(); }
 
 void StagedFile::commit() {
-  std::error_code error;
-  std::filesystem::rename(m_staged, m_target, error);
-  if (error) throw std::runtime_error(m_target.string() + ": " + error.message());
-  m_staged.clear();
+  try {
+    synchronize(m_unfinished->descriptor());
+    const auto held = Unfinished::hold();
+    fs::rename(m_unfinished->path(), m_target);
+    synchronize(m_target.parent_path());
+  } catch (const fs::filesystem_error& e) {
+    throw std::runtime_error(m_target.string() + ": cannot be written: " + e.code().message());
+  } catch (const std::exception& e) {
+    throw std::runtime_error(m_target.string() + ": cannot be written: " + e.what());
+  }
 }
 
 }  // namespace strict_files

@@ -3,16 +3,42 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 #include <stdexcept>
 
 namespace strict_files {
+
+namespace {
+
+/** Counted from 1; 0: there is none. (YAML::LoadAll() may never come back from damaged files.) */
+int lineOfSecondDocument(const std::string& text) {
+  std::istringstream stream(text);
+  bool hasContent = false;
+  int number = 0;
+  for (std::string line; ++number, std::getline(stream, line);) {
+    const bool isMark =
+        line.compare(0, 3, "---") == 0 && (line.size() == 3 || line.find_first_of(" \t\r") == 3);
+    if (isMark && hasContent) return number;
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    const bool isBlank = first == std::string::npos || line[first] == '#' || line[0] == '%';
+    hasContent |= isMark || !isBlank;
+  }
+  return 0;
+}
+
+}  // namespace
 
 StrictYaml::StrictYaml(const std::filesystem::path& file) : m_file(file.string()) {
   std::ifstream stream(file);
   if (!stream || std::filesystem::is_directory(file))
     fail(YAML::Mark::null_mark(), "cannot be read");
   try {
-    m_root = YAML::Load(stream);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    m_root = YAML::Load(text);
+    if (const int line = lineOfSecondDocument(text))
+      throw std::runtime_error(m_file + ":" + std::to_string(line) +
+                               ": a second document, expected one");
   } catch (const YAML::Exception& e) {
     fail(e.mark, e.msg);
   }

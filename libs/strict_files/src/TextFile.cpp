@@ -1,3 +1,5 @@
+#include <strict_files/OptionList.h>
+#include <strict_files/StagedFile.h>
 #include <strict_files/TextFile.h>
 
 #include <cmath>
@@ -15,20 +17,26 @@ std::string readText(const std::filesystem::path& file) {
 }
 
 void writeText(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
+  StagedFile staged(file);
+  std::ofstream stream(staged.path(), std::ios::binary);
   stream << text;
   stream.close();
   if (!stream) throw std::runtime_error(file.string() + ": cannot be written");
+  staged.commit();
 }
 
 std::vector<TextLine> readLines(const std::filesystem::path& file) {
-  std::istringstream stream(readText(file));
+  return linesOf(readText(file), file.string());
+}
+
+std::vector<TextLine> linesOf(const std::string& all, const std::string& name) {
+  std::istringstream stream(all);
   std::vector<TextLine> lines;
   std::string text;
   for (int number = 1; std::getline(stream, text); ++number) {
     text.erase(std::min(text.find('#'), text.size()));
     text.erase(text.find_last_not_of(" \t\r") + 1);
-    if (!text.empty()) lines.push_back({text, file.string() + ":" + std::to_string(number)});
+    if (!text.empty()) lines.push_back({text, name + ":" + std::to_string(number)});
   }
   return lines;
 }
@@ -38,13 +46,12 @@ std::vector<double> numbersOf(const TextLine& line, std::size_t count) {
   const std::string inLine = " in '" + line.text + "'";
   std::vector<double> numbers;
   for (std::string word; stream >> word;) {
-    std::size_t used = 0;
     double number = NAN;
     try {
-      number = std::stod(word, &used);
-    } catch (const std::exception&) {
+      number = numberOf(word, "a number");
+    } catch (const std::invalid_argument&) {
     }
-    if (used != word.size() || !std::isfinite(number))
+    if (!std::isfinite(number))
       throw std::runtime_error(line.where + ": expected a number, found '" + word + "'" + inLine);
     numbers.push_back(number);
   }

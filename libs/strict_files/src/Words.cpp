@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <numeric>
 #include <utility>
 
@@ -32,12 +33,8 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-}  // namespace
-
-bool sameWord(const std::string& a, const std::string& b) { return folded(a) == folded(b); }
-
-std::string unknownWord(const std::string& kind, const std::string& word,
-                        const std::vector<std::string>& known) {
+/** The one to mean by a word that is unknown, or null. */
+const std::string* nearestOf(const std::string& word, const std::vector<std::string>& known) {
   const std::string* nearest = nullptr;
   std::size_t least = 1 + word.size() / 2;  // farther is another word
   for (const std::string& candidate : known) {
@@ -46,9 +43,59 @@ std::string unknownWord(const std::string& kind, const std::string& word,
     least = distance;
     nearest = &candidate;
   }
-  const std::string beginning = "unknown " + kind + " '" + word + "'; ";
-  if (nearest) return beginning + "did you mean '" + *nearest + "'?";
-  return beginning + (known.empty() ? "none is known" : "known are " + joined(known));
+  return nearest;
+}
+
+/** Of UTF-8: how many bytes follow the first of a letter; more than 3 if none begins with it. */
+std::size_t continuationOf(unsigned char first) {
+  if (first < 0x80) return 0;
+  if (first < 0xc0 || first >= 0xf8) return 4;
+  return first < 0xe0 ? 1 : first < 0xf0 ? 2 : 3;
+}
+
+}  // namespace
+
+bool sameWord(const std::string& a, const std::string& b) { return folded(a) == folded(b); }
+
+std::string didYouMean(const std::string& word, const std::vector<std::string>& known) {
+  const std::string* nearest = nearestOf(word, known);
+  return nearest ? "; did you mean '" + *nearest + "'?" : "";
+}
+
+std::string unknownWord(const std::string& kind, const std::string& word,
+                        const std::vector<std::string>& known) {
+  const std::string unknown = "unknown " + kind + " '" + word + "'";
+  if (nearestOf(word, known)) return unknown + didYouMean(word, known);
+  return unknown + (known.empty() ? "; none is known" : "; known are " + joined(known));
+}
+
+bool isUtf8(const std::string& bytes) {
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  for (std::size_t i = 0; i < bytes.size();) {
+    const std::size_t more = continuationOf(at(i));
+    if (more > 3 || bytes.size() - i <= more) return false;
+    char32_t letter = more == 0 ? at(i) : at(i) & (0x3f >> more);
+    for (std::size_t k = 1; k <= more; ++k) {
+      if ((at(i + k) & 0xc0) != 0x80) return false;
+      letter = letter << 6 | (at(i + k) & 0x3f);
+    }
+    static const char32_t least[] = {0, 0x80, 0x800, 0x10000};
+    if (letter < least[more] || letter > 0x10ffff || (letter >= 0xd800 && letter < 0xe000))
+      return false;
+    i += 1 + more;
+  }
+  return true;
+}
+
+std::string sizeText(std::uint64_t bytes) {
+  if (bytes < 1000) return std::to_string(bytes) + " bytes";
+  static const char* const units[] = {"kB", "MB", "GB", "TB", "PB", "EB"};
+  double size = static_cast<double>(bytes) / 1000;
+  std::size_t unit = 0;
+  for (; size >= 999.5; size /= 1000) ++unit;
+  char text[32];
+  std::snprintf(text, sizeof text, size < 9.95 ? "%.1f %s" : "%.0f %s", size, units[unit]);
+  return text;
 }
 
 std::string trimmed(const std::string& text) {

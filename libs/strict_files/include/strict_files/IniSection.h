@@ -61,6 +61,11 @@ void readSection(const Source& source, const std::string& section, Options& opti
   }
 }
 
+/** What MRPT's reader leaves out without a word. \param text all of the file
+ * \throw std::runtime_error naming the line: it is no section, no "key = value", no comment, or a
+ * key that its section has already. */
+void checkIniText(const std::string& text);
+
 /** \throw std::runtime_error naming the section and the nearest known one: it is none of these.
  * \param known "camera *" stands for all that begin with "camera " */
 void checkSection(const std::string& section, const std::vector<std::string>& known);

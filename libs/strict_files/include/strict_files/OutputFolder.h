@@ -1,12 +1,16 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace strict_files {
 
+class Unfinished;
+
 /** The folder of the results. Files are written into a folder inside it and take their place at the
- * end, all of them: what was there stays if anything fails. */
+ * end, all of them, when they are on the disk: what was there stays if anything fails. What killed
+ * processes left of theirs is removed by the next one. */
 class OutputFolder {
  public:
   /** Creates the folder, with those above it.
@@ -18,14 +22,18 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   /** Where to write a file. */
-  std::filesystem::path staged(const std::string& name) const { return m_staging / name; }
+  std::filesystem::path staged(const std::string& name) const;
   /** Puts these files in place. One that was not written removes its predecessor, so that files of
-   * different maps are never side by side. \throw std::runtime_error naming the file. */
+   * different maps are never side by side.
+   * \throw std::runtime_error naming the file that cannot be written, or whose place something else
+   * has that is no regular file. */
   void commit(const std::vector<std::string>& names);
 
  private:
-  std::filesystem::path m_folder, m_staging;
-  bool m_createdFolder;
+  void put(const std::string& name);
+
+  std::filesystem::path m_folder;
+  std::unique_ptr<Unfinished> m_staging;
 };
 
 }  // namespace strict_files

@@ -9,7 +9,8 @@ namespace strict_files {
  * \throw std::runtime_error naming the file, if it cannot be read. */
 std::string readText(const std::filesystem::path& file);
 
-/** \throw std::runtime_error naming the file, if not all of it could be written. */
+/** Writes it as a StagedFile: what was there stays unless all of the text could be written.
+ * \throw std::runtime_error naming the file, if not. */
 void writeText(const std::filesystem::path& file, const std::string& text);
 
 /** A line of a text file, for messages that name it. */
@@ -22,6 +23,9 @@ struct TextLine {
 /** The lines of a file, without comments ('#' and behind it), empty ones and line ends.
  * \throw std::runtime_error naming the file, if it cannot be read. */
 std::vector<TextLine> readLines(const std::filesystem::path& file);
+
+/** The same of a text. \param name What to call it in TextLine::where. */
+std::vector<TextLine> linesOf(const std::string& text, const std::string& name);
 
 /** The numbers of a line, COUNT of them; what stands before the first is skipped if it ends with
  * ':'. \throw std::runtime_error naming file and line: fewer or more, not finite, or no numbers. */

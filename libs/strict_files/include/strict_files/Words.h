@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,16 @@ bool sameWord(const std::string& a, const std::string& b);
  * \param kind what it is: "key" */
 std::string unknownWord(const std::string& kind, const std::string& word,
                         const std::vector<std::string>& known);
+
+/** "; did you mean 'max_range'?" of a word that is none of the known ones, or nothing where none of
+ * them is near. */
+std::string didYouMean(const std::string& word, const std::vector<std::string>& known);
+
+/** Whether the bytes are text in UTF-8. */
+bool isUtf8(const std::string& bytes);
+
+/** A size as people read it: "950 bytes", "1.2 kB", "35 MB" (of 1000 kB each), "2.1 GB". */
+std::string sizeText(std::uint64_t bytes);
 
 /** The text without white space around it. */
 std::string trimmed(const std::string& text);

@@ -1,0 +1,47 @@
+#pragma once
+#include <strict_files/LeaveWithoutOutputs.h>
+
+#include <filesystem>
+#include <mutex>
+
+namespace strict_files {
+
+/** A new file or folder that is to take a place of its own later. It is locked while somebody
+ * writes it: so what is left of a process that was killed can be told from it, and is removed by
+ * the next that writes into the same folder. */
+class Unfinished {
+ public:
+  enum class Kind { File, Folder };
+  /** \param folder Where it is made, under a name that nothing has; made, too, for a Folder.
+   * \param ending The end of its name, by which some writers know the format, and users the file.
+   * \throw std::filesystem::filesystem_error it cannot be made. */
+  Unfinished(const std::filesystem::path& folder, Kind kind, const std::string& ending = "");
+  /** Removes it, if it is still there, and the folder if it was made here and is empty. */
+  ~Unfinished();
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+
+  const std::filesystem::path& path() const { return m_path; }
+  /** Of the file or folder, open. */
+  int descriptor() const { return m_descriptor; }
+
+  /** As long as this is held, leaveWithoutOutputs() waits. */
+  static std::unique_lock<std::mutex> hold();
+
+ private:
+  friend void leaveWithoutOutputs(int status);
+  bool make(Kind kind);
+  bool lock();
+  void discard() noexcept;
+
+  std::filesystem::path m_folder, m_path;
+  bool m_madeFolder = false;
+  int m_descriptor = -1;
+};
+
+/** Brings the content of a file or folder to the disk. \throw std::runtime_error saying why not */
+void synchronize(int descriptor);
+/** The same by its path. */
+void synchronize(const std::filesystem::path& path);
+
+}  // namespace strict_files
