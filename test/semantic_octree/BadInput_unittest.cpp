@@ -87,6 +87,20 @@ TEST(BadInput, scansTooLargeForMemoryAreRefused) {
   expectRefused("too large", cloud);
 }
 
+TEST(BadInput, scansThatNeedMoreMemoryThanAllowedAreRefusedAndLeaveTheMapUsable) {
+  LabeledCloud far;
+  far.points = {{60, 60, 20}, {-60, -60, 0}};
+  InsertionOptions options;
+  options.maxScanMemory = 1;
+  expectRefused("max_scan_memory", far, at(0, 0, 0), options);
+  SemanticOcTree tree(0.1, numberedClasses(3)), other = tree;
+  EXPECT_THROW(tree.insert(far, at(0, 0, 0), options), std::length_error);
+  EXPECT_TRUE(tree.empty());
+  tree.insert(threePoints(), at(0, 0, 0));
+  other.insert(threePoints(), at(0, 0, 0));
+  EXPECT_TRUE(tree == other);
+}
+
 TEST(BadInput, insertionOptionsAreRefusedByName) {
   EXPECT_EQ(errorOf([] { InsertionOptions().validate(); }), "");
   const auto names = [](const std::string& error, const char* name) {
@@ -95,6 +109,9 @@ TEST(BadInput, insertionOptionsAreRefusedByName) {
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.maxRange = -1; }), "max_range is -1");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.maxRange = NAN; }), "max_range");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.minRange = -2; }), "min_range is -2");
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.minRange = 1e30; }), "min_range");
+  EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.minRange = 5, o.maxRange = 4; }),
+               "less than max_range");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.carvingMargin = HUGE_VAL; }),
                "carving_margin");
   EXPECT_PRED2(names, refusal([](InsertionOptions& o) { o.threads = 0; }), "threads is 0");

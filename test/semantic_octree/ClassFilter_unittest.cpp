@@ -10,19 +10,19 @@ using namespace semantic_octree;
 
 namespace {
 
-double logit(double p) { return std::log(p / (1 - p)); }
-double sigmoid(double h) { return 1 / (1 + std::exp(-h)); }
+using Grid = ExactFilter::Grid;
 
 /** Largest difference of the truncated filter's and the exact filter's log-odds along random
- * streams. */
+ * streams. In float both are on the grid. */
 template <typename Real>
 double largestDeviation(int K, int distinct, const FilterParameters& parameters, int length = 40) {
   std::mt19937 random(7 * K + distinct);
   const ClassFilter<Real> filter(K, parameters);
+  const Grid grid = std::is_same_v<Real, float> ? Grid::Stored : Grid::None;
   double largest = 0;
   for (int stream = 0; stream < 100; ++stream) {
     ClassBelief<Real> belief = filter.uniform(0);
-    ExactFilter exact(K, parameters);
+    ExactFilter exact(K, parameters, grid);
     for (const Observation& z : randomStream(random, length, K, distinct)) {
       apply(filter, z, belief);
       apply(z, exact);
@@ -78,9 +78,12 @@ TEST(ClassFilter, equalsTheExactFilterUntilAFourthClassIsSeen) {
     }
 }
 
-TEST(ClassFilter, inFloatEqualsTheExactFilterToFiveDigits) {
+TEST(ClassFilter, inFloatEqualsTheExactFilterOnTheGridToTheLastBit) {
+  FilterParameters ssmi;
+  ssmi.increments = FilterParameters::Increments::Ssmi;
   for (const int K : {1, 2, 3, 4, 24, 254})
-    EXPECT_LT(largestDeviation<float>(K, 3, {}, 10), 1e-5) << "K = " << K;
+    for (const FilterParameters& parameters : {FilterParameters(), wideLimits(), ssmi})
+      EXPECT_EQ(largestDeviation<float>(K, 3, parameters), 0) << "K = " << K;
 }
 
 TEST(ClassFilter, withPublishedConstantsEqualsTheExactFilterToo) {
@@ -160,21 +163,22 @@ TEST(ClassFilter, withoutClampingTheOrderDoesNotMatterToTheLastBit) {
 TEST(ClassFilter, keepsNamedClassesSortedAndWithinTheirLimits) {
   const FilterParameters parameters;
   const ClassFilter<float> filter(24, parameters);
-  const double lowest = logit(parameters.minOccupancy) - std::log(24.0);
+  const double highest = stored(logit(parameters.maxProbability)),
+               lowest = stored(logit(parameters.minOccupancy)) - stored(std::log(24.0));
   EXPECT_TRUE(rc::check([&](unsigned seed) {
     std::mt19937 random(seed);
     ClassBelief<float> belief = filter.uniform(0);
     for (const Observation& z : randomStream(random, 60, 24, 8)) {
       apply(filter, z, belief);
       for (int i = 0; i < belief.count; ++i) {
-        RC_ASSERT(belief.logOdds[i] <= logit(parameters.maxProbability) + 1e-5);
-        RC_ASSERT(belief.logOdds[i] >= lowest - 1e-5);
+        RC_ASSERT(belief.logOdds[i] <= highest);
+        RC_ASSERT(belief.logOdds[i] >= lowest);
         if (i == 0) continue;
         RC_ASSERT(
             belief.logOdds[i - 1] > belief.logOdds[i] ||
             (belief.logOdds[i - 1] == belief.logOdds[i] && belief.ids[i - 1] < belief.ids[i]));
       }
-      RC_ASSERT(belief.rest >= lowest - 1e-5);
+      RC_ASSERT(belief.rest >= lowest);
     }
   }));
 }
@@ -183,10 +187,12 @@ TEST(ClassFilter, ofACellWithoutClassesIsOctomapsOccupancyFilter) {
   const FilterParameters p;
   const ClassFilter<float> filter(24, p);
   octomap::OcTree octree(0.1);
-  octree.setProbHit(sigmoid(std::log(p.hitProbability / p.falseAlarmProbability)));
-  octree.setProbMiss(sigmoid(std::log((1 - p.hitProbability) / (1 - p.falseAlarmProbability))));
-  octree.setClampingThresMin(p.minOccupancy);
-  octree.setClampingThresMax(sigmoid(logit(p.maxProbability) + std::log(24.0)));
+  const auto thatIsStored = [](double logOdds) { return sigmoid(stored(logOdds)); };
+  octree.setProbHit(thatIsStored(std::log(p.hitProbability / p.falseAlarmProbability)));
+  octree.setProbMiss(
+      thatIsStored(std::log((1 - p.hitProbability) / (1 - p.falseAlarmProbability))));
+  octree.setClampingThresMin(thatIsStored(logit(p.minOccupancy)));
+  octree.setClampingThresMax(sigmoid(stored(logit(p.maxProbability)) + stored(std::log(24.0))));
   std::mt19937 random(5);
   float value = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -207,7 +213,8 @@ TEST(ClassFilter, withoutRecordTakesTheSameValuesAsOnAUniformRecord) {
     hit ? filter.hit(belief) : filter.miss(belief);
     ASSERT_EQ(filter.uniform(value), belief);
     ASSERT_EQ(filter.occupancyOfUniform(belief.rest), value);
-    ASSERT_NEAR(belief.occupancyLogOdds(24), value, 1e-5);
+    ASSERT_EQ(filter.occupancyOf(belief), value);
+    ASSERT_NEAR(belief.occupancyLogOdds(24), value, 1 / 2048.) << "for ln 24 is rounded";
   }
 }
 

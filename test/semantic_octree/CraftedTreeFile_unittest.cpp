@@ -1,80 +1,40 @@
 // Files whose checksums are right and whose content is not.
-#include <gtest/gtest.h>
-#include <semantic_octree/TreeFile.h>
-#include <zlib.h>
+#include "CraftedTreeFile.h"
 
 #include <cmath>
 
+#include "RandomScans.h"
 #include "TemporaryFolder.h"
 
 using namespace semantic_octree;
 
 namespace {
 
-/** What loading a file with this content says. */
-std::string loadError(const TemporaryFolder& folder, const std::string& content) {
-  const std::string path = folder.write("bad.semantic", content).string();
-  const std::string error = errorOf([&] { loadTree(path); });
-  EXPECT_TRUE(error.empty() || contains(error, path)) << error;
-  return error;
+using u8 = std::uint8_t;
+using u16 = std::uint16_t;
+using i16 = std::int16_t;
+
+/** What reading says. */
+std::string error(const Header& header, const std::string& nodes = {}) {
+  return errorOf([&] { treeOf(fileAround(header.bytes() + nodes)); });
 }
 
-template <typename T>
-void append(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+std::string error(std::uint64_t numNodes, const std::string& nodes) {
+  Header h;
+  h.numNodes = numNodes;
+  return error(h, nodes);
 }
 
-/** A file with a right checksum around any content. */
-std::string fileAround(const std::string& content) {
-  std::string file = "SEMOCTRE";
-  append(file, std::uint32_t(1));
-  std::uint32_t crc = 0;
-  for (const std::string& block : {content, std::string()}) {
-    std::string part;
-    append(part, static_cast<std::uint32_t>(block.size()));
-    part += block;
-    crc = static_cast<std::uint32_t>(crc32(crc, reinterpret_cast<const unsigned char*>(part.data()),
-                                           static_cast<uInt>(part.size())));
-    append(file, static_cast<std::uint32_t>(block.size()));
-    append(file, crc);
-    file += block;
-  }
-  return file;
-}
-
-struct Header {
-  double resolution = 0.5;
-  std::uint8_t pruning = 1, increments = 0, policy = 0;
-  double accuracy = 0.9;
-  std::vector<std::string> names = {"a", "b"};
-  std::uint32_t numFolds = 0;
-  std::uint64_t numNodes = 0;
-};
-
-std::string contentOf(const Header& h, const std::string& nodes = {}) {
-  std::string bytes;
-  append(bytes, h.resolution);
-  append(bytes, h.pruning);
-  append(bytes, h.increments);
-  for (const double x : {h.accuracy, 0.6, 0.1, 0.12, 0.97, 0.001}) append(bytes, x);
-  append(bytes, static_cast<std::uint8_t>(h.names.size()));
-  for (const std::string& name : h.names) {
-    append(bytes, static_cast<std::uint16_t>(name.size()));
-    bytes += name + "rgb";
-  }
-  append(bytes, h.policy);
-  append(bytes, h.numFolds);
-  append(bytes, h.numNodes);
-  return bytes + nodes;
+/** A map that is one block, at the lowest corner. \param numNodes without the 15 above it */
+std::string errorOfBlock(std::uint64_t numNodes, const std::string& block) {
+  std::string nodes = bytesOf(u8(3));
+  for (int depth = 0; depth < 14; ++depth) nodes += bytesOf(u16(3));
+  return error(15 + numNodes, nodes + block);
 }
 
 }  // namespace
 
 TEST(CraftedTreeFile, ofSenselessHeadersIsRefused) {
-  const TemporaryFolder folder;
-  const auto error = [&](const Header& h, const std::string& nodes = {}) {
-    return loadError(folder, fileAround(contentOf(h, nodes)));
-  };
   const auto with = [](auto change) {
     Header h;
     change(h);
@@ -86,6 +46,7 @@ TEST(CraftedTreeFile, ofSenselessHeadersIsRefused) {
   EXPECT_TRUE(contains(error(with([](Header& h) { h.pruning = 2; })), "pruning"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.increments = 7; })), "increments"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.accuracy = 3; })), "accuracy"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.minOccupancy = 1e-12; })), "min_occupancy"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.names = {}; })), "number of classes"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.names = {"a", "a"}; })), "two classes"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.policy = 2; })), "unknown raw id"));
@@ -94,32 +55,85 @@ TEST(CraftedTreeFile, ofSenselessHeadersIsRefused) {
 }
 
 TEST(CraftedTreeFile, ofBrokenNodesIsRefused) {
-  const TemporaryFolder folder;
-  const auto error = [&](std::uint64_t numNodes, const std::string& nodes) {
-    Header h;
-    h.numNodes = numNodes;
-    return loadError(folder, fileAround(contentOf(h, nodes)));
-  };
-  const auto bytes = [](auto... values) {
-    std::string b;
-    (append(b, values), ...);
-    return b;
-  };
-  using u8 = std::uint8_t;
-  using u16 = std::uint16_t;
-  EXPECT_EQ(error(1, bytes(u8(1), 0.5f)), "");
-  EXPECT_EQ(error(2, bytes(u8(3), u16(1), 0.5f)), "");
-  EXPECT_EQ(error(1, bytes(u8(2), 0.5f, u8(1), -1.f, u8(2), 1.f)), "");
+  const i16 half = 512, most = 32767, none = -32768;
+  EXPECT_EQ(error(1, bytesOf(u8(1), most)), "");
+  EXPECT_EQ(error(2, bytesOf(u8(3), u16(1), half)), "");
+  EXPECT_EQ(error(1, bytesOf(u8(2), half, u8(1), half, u8(2), i16(-most))), "");
   EXPECT_TRUE(contains(error(1, ""), "ends too early"));
-  EXPECT_TRUE(contains(error(1, bytes(u8(0))), "no root"));
-  EXPECT_TRUE(contains(error(1, bytes(u8(4))), "node kind"));
-  EXPECT_TRUE(contains(error(1, bytes(u8(1), NAN)), "not finite"));
-  EXPECT_TRUE(contains(error(1, bytes(u8(3), u16(0))), "without children"));
-  EXPECT_TRUE(contains(error(3, bytes(u8(3), u16(1), 0.5f)), "2 nodes, expected 3"));
-  EXPECT_TRUE(contains(error(~0ull, bytes(u8(3), u16(1), 0.5f)), "nodes, expected"));
-  EXPECT_TRUE(contains(error(1, bytes(u8(2), 0.5f, u8(3), -1.f, u8(2), 1.f)), "named classes"));
-  EXPECT_TRUE(contains(error(1, bytes(u8(2), 0.5f, u8(1), -1.f, u8(3), 1.f)), "class = 3"));
-  std::string chain = bytes(u8(3));
-  for (int i = 0; i < 17; ++i) chain += bytes(u16(3));
-  EXPECT_TRUE(contains(error(18, chain), "16 levels"));
+  EXPECT_TRUE(contains(error(1, bytesOf(u8(0))), "no root"));
+  EXPECT_TRUE(contains(error(1, bytesOf(u8(4))), "node kind"));
+  EXPECT_TRUE(contains(error(1, bytesOf(u8(1), none)), "out of range"));
+  EXPECT_TRUE(contains(error(1, bytesOf(u8(2), half, u8(0), none)), "out of range"));
+  EXPECT_TRUE(contains(error(1, bytesOf(u8(2), half, u8(1), half, u8(1), none)), "out of range"));
+  EXPECT_TRUE(contains(error(1, bytesOf(u8(3), u16(0))), "without children"));
+  EXPECT_TRUE(contains(error(3, bytesOf(u8(3), u16(1), half)), "2 nodes, expected 3"));
+  EXPECT_TRUE(contains(error(~0ull, bytesOf(u8(3), u16(1), half)), "nodes, expected"));
+  const auto record = [&](u8 count, u8 id, u8 second) {
+    return bytesOf(u8(2), half, count, half, id, half, second, half);
+  };
+  EXPECT_EQ(error(1, record(2, 1, 2)), "");
+  EXPECT_TRUE(contains(error(1, record(3, 1, 2)), "named classes = 3"));
+  EXPECT_TRUE(contains(error(1, record(2, 1, 3)), "class = 3"));
+  EXPECT_TRUE(contains(error(1, record(2, 0, 1)), "class 0 in a class record"));
+  EXPECT_TRUE(contains(error(1, record(2, 2, 2)), "class 2 twice"));
+}
+
+TEST(CraftedTreeFile, ofBlocksThatCannotBeIsRefused) {
+  const i16 a = 100, b = -200;
+  // Octant 0 is a leaf, of octant 5 voxels 1 and 7 are known, the latter has a record.
+  EXPECT_EQ(errorOfBlock(4, bytesOf(u8(0x21), u8(1), u8(0), u8(0x82), u8(0x80), a, b, a, u8(0), b)),
+            "");
+  EXPECT_EQ(errorOfBlock(1, bytesOf(u8(1), u8(1), u8(1), a, u8(0), b)), "");
+  EXPECT_TRUE(contains(errorOfBlock(2, bytesOf(u8(1), u8(1), u8(0), a)), "16 nodes, expected 17"));
+  EXPECT_TRUE(contains(errorOfBlock(1, bytesOf(u8(1), u8(1), u8(1), a)), "ends too early"));
+  EXPECT_TRUE(contains(errorOfBlock(1, bytesOf(u8(1), u8(1), u8(0), i16(-32768))), "out of range"));
+  const auto cannotBe = [](const std::string& block) {
+    return contains(errorOfBlock(1, block), "a block that cannot be");
+  };
+  EXPECT_TRUE(cannotBe(bytesOf(u8(0), u8(0), u8(0)))) << "nothing is known";
+  EXPECT_TRUE(cannotBe(bytesOf(u8(1), u8(2), u8(0), a))) << "a leaf that is not known";
+  EXPECT_TRUE(cannotBe(bytesOf(u8(3), u8(1), u8(2), a))) << "a leaf's record without the leaf";
+  EXPECT_TRUE(cannotBe(bytesOf(u8(1), u8(0), u8(0), u8(0), u8(0)))) << "an octant without voxels";
+  EXPECT_TRUE(cannotBe(bytesOf(u8(1), u8(0), u8(0), u8(1), u8(2), a, u8(0), b)))
+      << "a record without its voxel";
+}
+
+TEST(CraftedTreeFile, holdsWhatItsBlocksSay) {
+  Header h;
+  h.numNodes = 19;
+  std::string nodes = bytesOf(u8(3));
+  for (int depth = 0; depth < 14; ++depth) nodes += bytesOf(u16(3));
+  nodes += bytesOf(u8(0x21), u8(1), u8(1), u8(0x82), u8(0x80));
+  nodes += bytesOf(i16(1024), i16(-512), i16(512));       // octant 0; octant 5, voxels 1 and 7
+  nodes += bytesOf(u8(1), i16(-1024), u8(2), i16(2048));  // record of octant 0
+  nodes += bytesOf(u8(0), i16(-3));                       // and of the last voxel
+  const SemanticOcTree tree = treeOf(fileAround(h.bytes() + nodes));
+  const auto leaf = tree.search({1, 0, 1}), other = tree.search({3, 0, 2}),
+             last = tree.search({3, 1, 3});
+  EXPECT_EQ(leaf, tree.search({0, 0, 0}, 15));
+  EXPECT_EQ(leaf.getLogOdds(), 1);
+  EXPECT_EQ(tree.belief(leaf).ids[0], 2);
+  EXPECT_EQ(tree.belief(leaf).logOdds[0], 2);
+  EXPECT_EQ(tree.belief(leaf).rest, -1);
+  EXPECT_EQ(other.getLogOdds(), -0.5);
+  EXPECT_FALSE(other.hasClassRecord());
+  EXPECT_EQ(last.getLogOdds(), 0.5);
+  EXPECT_EQ(tree.belief(last).rest, -3 / 1024.f);
+  EXPECT_EQ(tree.root().getLogOdds(), 1);
+  for (const octomap::OcTreeKey& key : {octomap::OcTreeKey(2, 0, 2), {0, 2, 0}, {4, 0, 0}})
+    EXPECT_FALSE(tree.search(key));
+}
+
+TEST(CraftedTreeFile, withBytesAlteredOrMissingIsRefusedOrIsAMap) {
+  std::mt19937 random(1);
+  SemanticOcTree map(0.5, numberedClasses(5));
+  for (int i = 0; i < 3; ++i) {
+    const PosedCloud scan = randomScan(random);
+    for (int repeat = 0; repeat < 3; ++repeat) map.insert(scan.cloud, scan.T_map_sensor);
+  }
+  std::ostringstream out;
+  writeTree(out, map);
+  const std::string content = contentIn(out.str());
+  ASSERT_TRUE(treeOf(fileAround(content)) == map);
+  EXPECT_GT(tryAlteredContent(content, 2), 100);
 }

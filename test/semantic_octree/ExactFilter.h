@@ -6,14 +6,22 @@
 #include <map>
 #include <vector>
 
+inline double logit(double p) { return std::log(p / (1 - p)); }
+inline double sigmoid(double h) { return 1 / (1 + std::exp(-h)); }
+/** The nearest multiple of 1/1024, as a map keeps log-odds. */
+inline double stored(double logOdds) { return std::nearbyint(logOdds * 1024) / 1024; }
+
 /** Bayes filter over {free, class 1, ..., class K} that keeps every class's log-odds: the oracle of
  * the truncated filter, written from the formulas. */
 class ExactFilter {
  public:
-  ExactFilter(int K, const semantic_octree::FilterParameters& p, double occupancyLogOdds = 0)
-      : m_h(K, occupancyLogOdds - std::log(K)) {
-    m_lowest = logit(p.minOccupancy) - std::log(K);
-    m_highest = logit(p.maxProbability);
+  /** What log-odds are made of may be any number, or rounded as in a map. */
+  enum class Grid { None, Stored };
+
+  ExactFilter(int K, const semantic_octree::FilterParameters& p, Grid grid = Grid::None)
+      : m_grid(grid), m_h(K, -rounded(std::log(K))) {
+    m_lowest = rounded(logit(p.minOccupancy)) - rounded(std::log(K));
+    m_highest = rounded(logit(p.maxProbability));
     m_floor = p.softLabelFloor;
     m_accuracy = p.accuracy;
     m_votesAreRows =
@@ -31,14 +39,14 @@ class ExactFilter {
   }
 
   void hit(int id) {
-    for (int k = 1; k <= K(); ++k) m_h[k - 1] += k == id ? m_same : m_other;
+    for (int k = 1; k <= K(); ++k) m_h[k - 1] += rounded(k == id ? m_same : m_other);
     limit();
   }
   void hit() { addToAll(m_unlabeled); }
   void miss() { addToAll(m_miss); }
   void hit(const std::vector<float>& q) {
     for (int k = 1; k <= K(); ++k)
-      m_h[k - 1] += m_unlabeled + std::log(K() * std::max<double>(q[k - 1], m_floor));
+      m_h[k - 1] += rounded(m_unlabeled + std::log(K() * std::max<double>(q[k - 1], m_floor)));
     limit();
   }
 
@@ -52,7 +60,7 @@ class ExactFilter {
     for (const auto& [id, count] : votes) N += count;
     for (int k = 1; k <= K(); ++k) {
       const double n = votes.count(k) ? votes.at(k) : 0;
-      m_h[k - 1] += m_unlabeled + std::log(K() * (n + a) / (N + a * K()));
+      m_h[k - 1] += rounded(m_unlabeled + std::log(K() * (n + a) / (N + a * K())));
     }
     limit();
   }
@@ -74,9 +82,9 @@ class ExactFilter {
   }
 
  private:
-  static double logit(double p) { return std::log(p / (1 - p)); }
+  double rounded(double x) const { return m_grid == Grid::Stored ? stored(x) : x; }
   void addToAll(double increment) {
-    for (double& h : m_h) h += increment;
+    for (double& h : m_h) h += rounded(increment);
     limit();
   }
   void limit() {
@@ -84,6 +92,7 @@ class ExactFilter {
     for (double& h : m_h) h = std::max(m_lowest, h - std::max(0.0, excess));
   }
 
+  Grid m_grid;
   std::vector<double> m_h;
   double m_lowest, m_highest, m_floor, m_accuracy, m_same, m_other, m_unlabeled, m_miss;
   bool m_votesAreRows;

@@ -39,6 +39,15 @@ TEST(FilterParameters, thatMakeNoSenseAreRefusedByName) {
                "max_probability");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.softLabelFloor = 0; }),
                "soft_label_floor");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.hitProbability = 1 - 0.99e-9; }),
+               "hit_probability");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.minOccupancy = 0.99e-9; }),
+               "min_occupancy");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.maxProbability = 1 - 0.99e-9; }),
+               "max_probability");
   EXPECT_EQ(refusal(1, [](FilterParameters& p) { p.accuracy = 0.5; }), "accepted");
   EXPECT_EQ(refusal(254, unchanged), "accepted");
+  EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.minOccupancy = 1e-9; }), "accepted");
+  EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.hitProbability = 1 - 1e-9; }), "accepted");
+  EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.maxProbability = 1 - 1e-9; }), "accepted");
 }

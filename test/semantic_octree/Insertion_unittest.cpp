@@ -112,7 +112,7 @@ TEST(Insertion, keepsTheExactDistributionWhereAtMostThreeClassesWereSeen) {
     ++compared;
     ASSERT_LT(
         totalVariation(tree.distribution(*tree.search(keyOf(id))), voxel.exact.distribution()),
-        1e-5);
+        1e-9);
   }
   EXPECT_GT(compared, 10000u);
 }

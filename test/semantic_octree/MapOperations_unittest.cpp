@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
+#include <octomap/OcTree.h>
 #include <semantic_octree/MapOperations.h>
+#include <semantic_octree/OctomapConversion.h>
 
 #include <set>
 
@@ -14,8 +16,8 @@ constexpr double kResolution = 0.4;
 /** Limits that ten scans do not reach. */
 FilterParameters wideLimits() {
   FilterParameters p;
-  p.minOccupancy = 1e-12;
-  p.maxProbability = 1 - 1e-15;
+  p.minOccupancy = 1e-9;
+  p.maxProbability = 1 - 1e-9;
   return p;
 }
 
@@ -47,6 +49,33 @@ std::vector<const SemanticOcTree*> pointers(const std::vector<SemanticOcTree>& m
   for (const SemanticOcTree& map : maps) result.push_back(&map);
   return result;
 }
+
+/** The known voxels of a group: the distributions of 3 classes and free space. */
+struct Group {
+  double highest = -HUGE_VAL;  ///< log-odds
+  std::vector<std::vector<double>> members;
+  std::vector<double> odds{0, 0, 0, 0};  ///< of classes, where labels were seen
+
+  void add(double logOdds, const std::vector<double>& p, bool isLabeled) {
+    highest = std::max(highest, logOdds);
+    members.push_back(p);
+    for (int k = 1; isLabeled && k <= 3; ++k) odds[k] += p[k];
+  }
+  bool areAlike(std::size_t number) const {
+    return std::count(members.begin(), members.end(), members[0]) == std::ptrdiff_t(number);
+  }
+  /** As occupied as the most occupied, classes of the mixture; as a map stores log-odds. */
+  std::vector<double> mixture() const {
+    std::vector<double> p{1};
+    const double occupied = odds[1] + odds[2] + odds[3];
+    double sum = 1;
+    for (int k = 1; k <= 3; ++k)
+      sum += p.emplace_back(
+          std::exp(stored(highest + std::log(occupied > 0 ? odds[k] / occupied : 1.0 / 3))));
+    for (double& x : p) x /= sum;
+    return p;
+  }
+};
 
 }  // namespace
 
@@ -82,6 +111,32 @@ TEST(MergedMap, doesNotDependOnTheGroupingOfUnlimitedSums) {
     }
     EXPECT_TRUE(merged(pointers(parts)) == atOnce);
   }
+}
+
+TEST(MergedMap, ofFourMapsThatAreAllAsSureAsCanBeMayBeGrouped) {
+  const auto some = scans(3, 3);
+  std::vector<PosedCloud> repeated;
+  for (int i = 0; i < 12; ++i) repeated.insert(repeated.end(), some.begin(), some.end());
+  const SemanticOcTree map = mapOf(repeated, 24), pair = merged({&map, &map}, Limits::Keep);
+  EXPECT_TRUE(merged({&pair, &pair}) == merged({&map, &map, &map, &map}));
+  EXPECT_FALSE(pair == merged({&map, &map}));
+}
+
+TEST(MergedMap, keepsWhichClassIsLikelierInSumsThatAreTooLarge) {
+  LabeledCloud cloud;
+  cloud.points.assign(7, {1, 1, 1});
+  cloud.classes = {2, 2, 2, 2, 1, 1, 1};
+  SemanticOcTree map(kResolution, numberedClasses(3));
+  map.insert(cloud, Eigen::Isometry3d::Identity());
+  const SemanticOcTree sum = merged(std::vector<const SemanticOcTree*>(12, &map), Limits::Keep);
+  const auto difference = [](const SemanticOcTree& of, ClassId id) {
+    const auto belief = of.belief(of.search(of.coordToKey(1, 1, 1)));
+    return belief.logOddsOf(2) - belief.logOddsOf(id);
+  };
+  EXPECT_EQ(sum.query(1, 1, 1).likeliestClass, 2);
+  for (const ClassId other : {1, 3}) EXPECT_EQ(difference(sum, other), 12 * difference(map, other));
+  EXPECT_EQ(sum.search(sum.coordToKey(1, 1, 1)).getLogOdds(), 32767 / 1024.f);
+  EXPECT_GT(sum.search(sum.coordToKey(0, 0, 0)).getLogOdds(), -32);
 }
 
 TEST(MergedMap, ofOneMapIsThatMap) {
@@ -125,24 +180,17 @@ TEST(CoarsenedMap, hasTheMostOccupiedVoxelAndTheMixtureOfEachGroup) {
   for (const int levels : {1, 2}) {
     const SemanticOcTree coarse = coarsened(map, levels);
     EXPECT_EQ(coarse.getResolution(), kResolution * (1 << levels));
-    std::map<VoxelId, std::vector<std::vector<double>>> groups;
+    std::map<VoxelId, Group> groups;
     for (const auto& [id, p] : voxelsOf(map))
-      groups[{id[0] >> levels, id[1] >> levels, id[2] >> levels}].push_back(p);
+      groups[{id[0] >> levels, id[1] >> levels, id[2] >> levels}].add(
+          map.search(keyOf(id)).getLogOdds(), p, map.search(keyOf(id)).hasClassRecord());
     const auto voxels = voxelsOf(coarse);
     ASSERT_EQ(voxels.size(), groups.size());
-    for (const auto& [id, members] : groups) {
+    for (const auto& [id, group] : groups) {
       ASSERT_TRUE(voxels.count(id));
-      const std::vector<double>& p = voxels.at(id);
-      double leastFree = 1, classes = 0;
-      std::vector<double> sum(p.size());
-      for (const auto& member : members) {
-        leastFree = std::min(leastFree, member[0]);
-        for (std::size_t k = 0; k < p.size(); ++k) sum[k] += member[k];
-      }
-      for (std::size_t k = 1; k < p.size(); ++k) classes += sum[k];
-      EXPECT_NEAR(p[0], leastFree, 1e-5);
-      for (std::size_t k = 1; k < p.size(); ++k)
-        EXPECT_NEAR(p[k], (1 - leastFree) * sum[k] / classes, 1e-5);
+      const std::size_t inGroup = std::size_t(1) << 3 * levels;
+      const auto expected = group.areAlike(inGroup) ? group.members[0] : group.mixture();
+      EXPECT_LT(totalVariation(voxels.at(id), expected), 1e-9);
     }
   }
 }
@@ -177,7 +225,7 @@ TEST(MovedMap, takesEachVoxelFromWhereItsCenterWas) {
           const Eigen::Vector3d p = there.inverse() * centerOf(id, kResolution);
           octomap::OcTreeKey key;
           ASSERT_TRUE(map.coordToKeyChecked(octomap::point3d(p.x(), p.y(), p.z()), key));
-          if (const auto* node = map.search(key)) expected[id] = map.distribution(*node);
+          if (const auto node = map.search(key)) expected[id] = map.distribution(*node);
         }
     const auto voxels = voxelsOf(moved(map, there));
     std::size_t different = 0;  // OctoMap's points are floats: on borders they may fall elsewhere
@@ -211,11 +259,12 @@ TEST(ImportedOccupancy, isTheOccupancyWithinTheLimits) {
   }
   FilterParameters filter;
   filter.minOccupancy = 0.3;
-  const SemanticOcTree map = fromOccupancy(occupancy, numberedClasses(5), filter);
+  const SemanticOcTree map = fromOcTree(occupancy, numberedClasses(5), filter);
   std::size_t voxels = 0;
   for (auto leaf = occupancy.begin_leafs(); leaf != occupancy.end_leafs(); ++leaf) {
-    const double p = std::min(0.97 * 5 / (0.97 * 5 + 0.03), std::max(0.3, leaf->getOccupancy()));
-    EXPECT_NEAR(map.query(leaf.getKey()).occupancy, p, 1e-5);
+    const double lowest = stored(logit(0.3)), highest = stored(logit(0.97)) + stored(std::log(5));
+    const double within = std::min(highest, std::max<double>(lowest, leaf->getLogOdds()));
+    EXPECT_NEAR(map.query(leaf.getKey()).occupancy, sigmoid(stored(within)), 1e-9);
     voxels += std::size_t(1) << 3 * (16 - leaf.getDepth());
   }
   EXPECT_EQ(voxelsOf(map).size(), voxels);

@@ -14,7 +14,7 @@
 class OctreeAsTree {
  public:
   struct Node {
-    const semantic_octree::SemanticOcTreeNode* node;  ///< null: unknown space
+    semantic_octree::SemanticOcTreeNode node;  ///< none: unknown space
     int depth;
     std::array<int, 3> index;
   };
@@ -28,7 +28,7 @@ class OctreeAsTree {
 
   /** Unknown space is class K + 1. */
   int numClasses() const { return m_map.numClasses() + 1; }
-  bool isKnown(const Node& leaf) const { return leaf.node != nullptr; }
+  bool isKnown(const Node& leaf) const { return static_cast<bool>(leaf.node); }
   double weight(const Node& leaf) const {
     const double volume = std::ldexp(1.0, -3 * leaf.depth);
     if (leaf.node) return volume;
@@ -55,10 +55,9 @@ class OctreeAsTree {
 
  private:
   Node child(const Node& n, unsigned i) const {
-    const bool exists = m_map.nodeChildExists(n.node, i);
     const int bits[3] = {static_cast<int>(i & 1), static_cast<int>(i >> 1 & 1),
                          static_cast<int>(i >> 2)};
-    return {exists ? m_map.getNodeChild(n.node, i) : nullptr,
+    return {n.node.child(static_cast<int>(i)),
             n.depth + 1,
             {2 * n.index[0] + bits[0], 2 * n.index[1] + bits[1], 2 * n.index[2] + bits[2]}};
   }

@@ -74,7 +74,8 @@ void PlainMap::insert(const PosedCloud& scan, const InsertionOptions& options) {
 }
 
 PlainMap::Voxel& PlainMap::voxel(const VoxelId& id) {
-  const Voxel unknown{0, {}, ExactFilter(numClasses(), m_parameters), {}, false};
+  const ExactFilter exact(numClasses(), m_parameters, ExactFilter::Grid::Stored);
+  const Voxel unknown{0, {}, exact, {}, false};
   return m_voxels.emplace(id, unknown).first->second;
 }
 
@@ -91,7 +92,7 @@ void PlainMap::hit(Voxel& v, const std::vector<std::size_t>& points,
     v.classesSeen.insert(id);
   }
   m_filter.hit(*v.record, ascending.data(), ascending.size());
-  v.value = v.record->occupancyLogOdds(numClasses());
+  v.value = m_filter.occupancyOf(*v.record);
   v.exact.hit(votes);
 }
 
@@ -109,7 +110,7 @@ void PlainMap::hitSoft(Voxel& v, const std::vector<std::size_t>& points,
   for (float& q : mean) q /= static_cast<float>(count);
   if (!v.record) v.record = m_filter.uniform(v.value);
   m_filter.hit(*v.record, mean.data());
-  v.value = v.record->occupancyLogOdds(numClasses());
+  v.value = m_filter.occupancyOf(*v.record);
   v.exact.hit(mean);
   v.hadSoftLabels = true;
 }
@@ -117,7 +118,7 @@ void PlainMap::hitSoft(Voxel& v, const std::vector<std::size_t>& points,
 void PlainMap::hitUnlabeled(Voxel& v) const {
   if (v.record) {
     m_filter.hit(*v.record);
-    v.value = v.record->occupancyLogOdds(numClasses());
+    v.value = m_filter.occupancyOf(*v.record);
   } else {
     v.value = m_filter.occupancyAfterUnlabeledHit(v.value);
   }
@@ -131,7 +132,7 @@ void PlainMap::miss(Voxel& v) const {
     return;
   }
   m_filter.miss(*v.record);
-  v.value = v.record->occupancyLogOdds(numClasses());
+  v.value = m_filter.occupancyOf(*v.record);
   if (!v.record->isUniform() || m_filter.uniform(m_filter.lowestOccupancy()).rest < v.record->rest)
     return;
   v.value = m_filter.lowestOccupancy();
@@ -141,12 +142,12 @@ void PlainMap::miss(Voxel& v) const {
 void expectSame(const SemanticOcTree& tree, const PlainMap& plain) {
   std::size_t missing = 0, otherValue = 0, otherRecord = 0;
   for (const auto& [id, voxel] : plain.voxels()) {
-    const auto* const node = tree.search(keyOf(id));
+    const auto node = tree.search(keyOf(id));
     if (!node) {
       ++missing;
       continue;
     }
-    otherValue += node->getValue() != voxel.value;
+    otherValue += node->getLogOdds() != voxel.value;
     otherRecord += node->hasClassRecord() != voxel.record.has_value() ||
                    (voxel.record && !(tree.belief(*node) == *voxel.record));
   }

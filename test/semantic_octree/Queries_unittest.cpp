@@ -165,9 +165,9 @@ TEST(Queries, ofAnInnerNodeMixItsKnownLeavesByVolumeAndTakeTheHighestOccupancy) 
     }
     for (const auto& [cell, expected] : cells) {
       const VoxelId inside{cell[0] * (1 << shift), cell[1] * (1 << shift), cell[2] * (1 << shift)};
-      const auto* const node = tree.search(keyOf(inside), depth);
+      const auto node = tree.search(keyOf(inside), depth);
       ASSERT_NE(node, nullptr);
-      EXPECT_EQ(node->getValue(), expected.second);
+      EXPECT_EQ(node->getLogOdds(), expected.second);
       const std::vector<double> p = tree.distribution(*node);
       double total = 0;
       for (const double x : expected.first) total += x;
@@ -258,8 +258,8 @@ TEST(Queries, callAVoxelOfEvenOddsFree) {
   miss.points = {{5.5f, 0.5f, 0.5f}};
   tree.insert(hit, Eigen::Isometry3d::Identity());
   tree.insert(miss, Eigen::Isometry3d::Identity());
-  const auto* const node = tree.search(tree.coordToKey(2.5, 0.5, 0.5));
-  EXPECT_EQ(node->getValue(), 0);
+  const auto node = tree.search(tree.coordToKey(2.5, 0.5, 0.5));
+  EXPECT_EQ(node->getLogOdds(), 0);
   EXPECT_FALSE(tree.isNodeOccupied(node));
   EXPECT_EQ(tree.query(*node).status, CellState::Status::Free);
   EXPECT_EQ(tree.castRay({0.5f, 0.5f, 0.5f}, {1, 0, 0})->key, tree.coordToKey(5.5, 0.5, 0.5));

@@ -4,6 +4,30 @@
 
 using namespace semantic_octree;
 
+namespace {
+
+/** Compares the filter with the exact one after each of some random soft labels of K <= 3 classes.
+ */
+template <typename Real>
+void expectExactFilter(int K, ExactFilter::Grid grid, std::mt19937& random) {
+  const ClassFilter<Real> filter(K, {});
+  for (int stream = 0; stream < 100; ++stream) {
+    ClassBelief<Real> belief = filter.uniform(0);
+    ExactFilter exact(K, {}, grid);
+    for (int i = 0; i < 10; ++i) {
+      std::vector<float> q(K);
+      float sum = 0;
+      for (float& x : q) sum += x = static_cast<float>(random() % 1000);
+      for (float& x : q) x /= std::max(1.f, sum);
+      filter.hit(belief, q.data());
+      exact.hit(q);
+      ASSERT_LT(totalVariation(distributionOf(belief, K), exact.distribution()), 1e-9);
+    }
+  }
+}
+
+}  // namespace
+
 TEST(SoftLabel, thatIsTheClassifiersRowEqualsTheHardLabel) {
   constexpr int K = 24;
   const FilterParameters p = wideLimits(0.8);
@@ -50,20 +74,8 @@ TEST(SoftLabel, thatIsUniformEqualsAnUnlabeledHit) {
 TEST(SoftLabel, ofUpToThreeClassesEqualsTheExactFilter) {
   for (const int K : {1, 2, 3}) {
     std::mt19937 random(K);
-    const ClassFilter<double> filter(K, {});
-    for (int stream = 0; stream < 100; ++stream) {
-      ClassBelief<double> belief = filter.uniform(0);
-      ExactFilter exact(K, {});
-      for (int i = 0; i < 10; ++i) {
-        std::vector<float> q(K);
-        float sum = 0;
-        for (float& x : q) sum += x = static_cast<float>(random() % 1000);
-        for (float& x : q) x /= std::max(1.f, sum);
-        filter.hit(belief, q.data());
-        exact.hit(q);
-        ASSERT_LT(totalVariation(distributionOf(belief, K), exact.distribution()), 1e-9);
-      }
-    }
+    expectExactFilter<double>(K, ExactFilter::Grid::None, random);
+    expectExactFilter<float>(K, ExactFilter::Grid::Stored, random);
   }
 }
 

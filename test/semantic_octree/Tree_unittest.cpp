@@ -46,6 +46,25 @@ TEST(Tree, copiesGoOnLikeTheOriginal) {
   EXPECT_EQ(copy.size(), original.size());
 }
 
+TEST(Tree, keepsItsNodesWhereBookkeepingComesAndGoes) {
+  SemanticOcTree plain = someTree(18), tree = plain;
+  AbstractionOptions options;
+  for (unsigned seed = 20; seed < 24; ++seed) {
+    options.weights.terms.push_back(tree_abstraction::relevant(std::to_string(seed), 1, {1}));
+    tree.setAbstraction(options);
+    EXPECT_TRUE(tree == plain);
+    SemanticOcTree copy = tree;
+    for (SemanticOcTree* map : {&plain, &tree, &copy}) insertOne(*map, seed);
+    EXPECT_TRUE(copy == tree);
+    EXPECT_TRUE(tree == plain);
+    if (seed % 2) tree.dropAbstraction();
+    insertOne(copy, seed + 10);
+    EXPECT_FALSE(copy == tree);
+    EXPECT_TRUE(tree == plain);
+    EXPECT_EQ(tree.size(), plain.size());
+  }
+}
+
 TEST(Tree, assignmentReplacesEverything) {
   const SemanticOcTree a = someTree(4, 0.3);
   SemanticOcTree b = someTree(5, 0.5, 9);
@@ -77,7 +96,7 @@ TEST(Tree, swappingExchangesEverything) {
   a.swap(b);
   EXPECT_TRUE(a == copyOfB);
   EXPECT_TRUE(b == copyOfA);
-  EXPECT_EQ(a.coordToKey(10.0), octomap::key_type(kKeyOfOrigin + 20));
+  EXPECT_EQ(a.coordToKey(10, 0, 0)[0], octomap::key_type(kKeyOfOrigin + 20));
   insertOne(a, 10);
   SemanticOcTree expected = copyOfB;
   insertOne(expected, 10);
@@ -116,7 +135,7 @@ TEST(Tree, countsItsNodesAndMemory) {
   std::size_t nodes = 0;
   for (auto node = tree.begin_tree(); node != tree.end_tree(); ++node) ++nodes;
   EXPECT_EQ(tree.size(), nodes);
-  EXPECT_GT(tree.memoryUsage(), nodes * sizeof(SemanticOcTree::Node));
+  EXPECT_GT(tree.memoryUsage(), 2 * tree.getNumLeafNodes()) << "16 bits of log-odds each";
   EXPECT_EQ(tree.getTreeType(), "SemanticOcTree");
 }
 
@@ -137,7 +156,7 @@ TEST(Tree, mergesSpaceThatWasSeenFreeForLong) {
   // A ball of 32 voxels' radius; what lies near its surface stays fine.
   const double voxels = 4.0 / 3 * M_PI * 32 * 32 * 32;
   EXPECT_LT(static_cast<double>(tree.size()), voxels / 3);
-  EXPECT_LT(tree.search(tree.coordToKey(0.1, 0.1, 0.1))->getValue(), -1.9);
+  EXPECT_LT(tree.search(tree.coordToKey(0.1, 0.1, 0.1))->getLogOdds(), -1.9);
 }
 
 TEST(Tree, pruningIsChosenWhileTheTreeIsEmpty) {

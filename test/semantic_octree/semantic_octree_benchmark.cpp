@@ -3,6 +3,7 @@
 #include <Scan.h>
 #include <ScanMerger.h>
 #include <benchmark/benchmark.h>
+#include <semantic_octree/SmoothedView.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <sstream>
@@ -97,7 +98,7 @@ BENCHMARK(softLabelHit);
 /** A fan of rays of 100 voxels; items are voxels. */
 void markFanOfRays(benchmark::State& state) {
   ScanGrid grid;
-  grid.cover({-100, -100, -100}, {100, 100, 100});
+  grid.cover({-100, -100, -100}, {100, 100, 100}, 1 << 24);
   const Eigen::Array3d begin = Eigen::Array3d(0.3, 0.4, 0.5) - grid.origin();
   std::vector<Eigen::Array3d> ends;
   std::int64_t voxels = 0;
@@ -128,8 +129,8 @@ void mergeIntoTree(benchmark::State& state) {
   Scan scan;
   scan.set(street().cloud, street().T_map_sensor, resolution, K, insertion());
   const MergeTarget target{store, filter, nullptr, nullptr, true};
-  mergeScan(target, scan, store.root(), true, 1);
-  for (auto _ : state) mergeScan(target, scan, store.root(), false, 1);
+  mergeScan(target, scan, 1);
+  for (auto _ : state) mergeScan(target, scan, 1);
 }
 BENCHMARK(mergeIntoTree)->ArgName("cm")->Arg(20)->Arg(10)->Unit(benchmark::kMillisecond);
 
@@ -212,6 +213,27 @@ BENCHMARK_CAPTURE(insertDrive, threads2, 0.2, 25, 24, 2)
 BENCHMARK_CAPTURE(insertDrive, threads2At10cm, 0.1, 25, 24, 2)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+
+/** The class of each voxel with a return: of itself, with its neighbors, or, as if none had been
+ * seen in it, of those alone. Items are voxels. */
+enum class Asked { Voxel, WithNeighbors, Gap };
+void queryClass(benchmark::State& state, Asked asked) {
+  const SemanticOcTree map = streetMap(resolutionOf(state), 2);
+  const SmoothedView view(map);
+  std::vector<octomap::OcTreeKey> keys;
+  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+    if (!leaf->hasClassRecord()) continue;
+    keys.push_back(leaf.getKey());
+    if (asked == Asked::Gap) keys.back()[2] += 2;
+  }
+  for (auto _ : state)
+    for (const auto& key : keys)
+      benchmark::DoNotOptimize(asked == Asked::Voxel ? map.query(key) : view.query(key));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * keys.size()));
+}
+BENCHMARK_CAPTURE(queryClass, voxel, Asked::Voxel)->ArgName("cm")->Arg(20)->Arg(10);
+BENCHMARK_CAPTURE(queryClass, withNeighbors, Asked::WithNeighbors)->ArgName("cm")->Arg(20)->Arg(10);
+BENCHMARK_CAPTURE(queryClass, gap, Asked::Gap)->ArgName("cm")->Arg(20)->Arg(10);
 
 void write(benchmark::State& state) {
   const SemanticOcTree map = streetMap(0.1, 2);

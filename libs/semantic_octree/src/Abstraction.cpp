@@ -1,11 +1,12 @@
 #include <semantic_octree/Abstraction.h>
 #include <tree_abstraction/AlphaPath.h>
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include "CompressedTree.h"
-#include "LeafContent.h"
+#include "TreeBuilder.h"
 
 namespace semantic_octree {
 namespace {
@@ -18,26 +19,39 @@ GTree& gTreeOf(GTree* gTree) {
 /** p(n) of a node per unit of density: its share of the whole map's volume. */
 double volumeOf(const Cell& cell) { return std::ldexp(1.0, -3 * cell.depth); }
 
-/** Calls f(node, cell) for all inner nodes, parents first. */
-template <typename F>
-void forEachInner(const Node& node, const Cell& cell, const F& f) {
-  if (node.isLeaf()) return;
-  f(node, cell);
-  for (int i = 0; i < 8; ++i)
-    if (const Node* child = node.child(i)) forEachInner(*child, cell.child(i), f);
-}
+/** Tells which inner nodes are in the compressed tree, as they are visited, parents first. */
+class InCompressedTree {
+ public:
+  bool visit(const InnerNode& n) {
+    const int depth = n.cell.depth;
+    return m_atDepth[depth] = n.isExpanded && (depth == 0 || m_atDepth[depth - 1]);
+  }
 
-int numChildren(const Node& inner) {
-  int n = 0;
-  for (int i = 0; i < 8; ++i) n += inner.child(i) != nullptr;
-  return n;
-}
+ private:
+  std::array<bool, kTreeDepth> m_atDepth{};  ///< of the node that was visited last
+};
+
+/** A map's nodes, down to the compressed tree's leaves (see TreeBuilder). */
+class CompressedCursor {
+ public:
+  CompressedCursor(const SemanticOcTree& map, const CompressedTree& tree, const Node& node)
+      : m_map(map), m_tree(tree), m_node(node) {}
+  bool known() const { return static_cast<bool>(m_node); }
+  bool isLeaf() const { return !m_tree.isExpanded(m_node); }
+  LeafContent content() const { return contentOf(m_map, m_node); }
+  CompressedCursor child(int i) const { return {m_map, m_tree, m_node.child(i)}; }
+
+ private:
+  const SemanticOcTree& m_map;
+  const CompressedTree& m_tree;
+  Node m_node;
+};
 
 double knownVolume(const Node& node) {
   if (node.isLeaf()) return 1;
   double sum = 0;
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = node.child(i)) sum += knownVolume(*child);
+    if (const Node child = node.child(i)) sum += knownVolume(child);
   return sum / 8;
 }
 
@@ -50,15 +64,15 @@ std::optional<double> AbstractionMeasures::retention(std::size_t term) const {
 
 Abstraction::Abstraction(SemanticOcTree& map) : m_map(map), m_gTree(gTreeOf(map.m_gTree.get())) {}
 
-CompressedTree Abstraction::compressedTree() const { return {*m_map.m_store, m_gTree}; }
+CompressedTree Abstraction::compressedTree() const { return {m_map.store(), m_gTree}; }
 
 const AbstractionOptions& Abstraction::options() const { return m_gTree.options(); }
 
 std::vector<LeafCell> Abstraction::leaves() const {
   std::vector<LeafCell> leaves;
   if (m_map.empty()) return leaves;
-  compressedTree().forEachLeaf(*m_map.root(), Cell(), [&](const Node& node, const Cell& cell) {
-    leaves.push_back(leafCell(&node, cell));
+  compressedTree().forEachLeaf(m_map.root(), Cell(), [&](const Node& node, const Cell& cell) {
+    leaves.push_back(leafCell(node, cell));
   });
   return leaves;
 }
@@ -75,14 +89,27 @@ std::vector<LeafCell> Abstraction::leavesIn(const octomap::OcTreeKey& low,
            (lowest + cell.edge() > first).all();
   };
   compressedTree().forEachLeaf(
-      *m_map.root(), Cell(), isWanted,
-      [&](const Node& node, const Cell& cell) { leaves.push_back(leafCell(&node, cell)); });
+      m_map.root(), Cell(), isWanted,
+      [&](const Node& node, const Cell& cell) { leaves.push_back(leafCell(node, cell)); });
   return leaves;
 }
 
 double Abstraction::objective() const {
-  return m_map.empty() || m_map.root()->isLeaf() ? 0.0
-                                                 : compressedTree().state(*m_map.root()).gValue;
+  const Slot& root = m_map.store().root();
+  return root.isInner() ? compressedTree().state(root)->gValue : 0.0;
+}
+
+template <typename F>
+void Abstraction::forEachInner(const F& f) const {
+  NodeStore& store = m_map.store();
+  GTree::Worker& worker = m_gTree.worker(0);
+  const auto visit = [&](const auto& self, const Slot& slot, const Cell& cell) -> void {
+    if (!slot.isInner()) return;
+    worker.inspect(store, slot, cell, f);
+    if (slot.kind == Slot::Kind::Octant)
+      for (int i = 0; i < 8; ++i) self(self, store.octant(slot).slots[i], cell.child(i));
+  };
+  visit(visit, store.root(), Cell());
 }
 
 AbstractionMeasures Abstraction::measures() const {
@@ -93,60 +120,53 @@ AbstractionMeasures Abstraction::measures() const {
   if (m_map.empty()) return m;
   m.objective = objective();
   for (auto* tree : {&m.full, &m.compressed}) tree->numLeaves = tree->numKnownLeaves = 1;
-  if (m_map.root()->isLeaf()) return m;
-  const CompressedTree walk = compressedTree();
-  const double total = walk.state(*m_map.root()).density;
-  const auto count = [&](tree_abstraction::TreeMeasures& tree, const Node& node, const Cell& cell,
-                         double p) {
-    const InnerState& s = walk.state(node);
-    const double* js = m_gTree.divergences(s);
-    tree.leafEntropy += p * s.splitEntropy;
+  const double total = totalDensity();
+  const auto count = [&](tree_abstraction::TreeMeasures& tree, const InnerNode& n) {
+    const double p = total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
+    tree.leafEntropy += p * n.splitEntropy;
     for (std::size_t t = 0; t < numTerms; ++t)
-      tree.information[t] += p * js[m_gTree.layout().positionOf(static_cast<int>(t))];
-    tree.numKnownLeaves += numChildren(node) - 1;
-    tree.numLeaves += (cell.depth < m_gTree.blockDepth() ? numChildren(node) : 8) - 1;
+      tree.information[t] += p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
+    tree.numKnownLeaves += n.numChildren - 1;
+    tree.numLeaves += (n.cell.depth < m_gTree.blockDepth() ? n.numChildren : 8) - 1;
   };
-  const auto visit = [&](const auto& self, const Node& node, const Cell& cell,
-                         bool inCompressed) -> void {
-    if (node.isLeaf()) return;
-    const double p = total > 0 ? walk.state(node).density * volumeOf(cell) / total : 0.0;
-    count(m.full, node, cell, p);
-    inCompressed = inCompressed && walk.state(node).isExpanded;
-    if (inCompressed) count(m.compressed, node, cell, p);
-    for (int i = 0; i < 8; ++i)
-      if (const Node* child = node.child(i)) self(self, *child, cell.child(i), inCompressed);
-  };
-  visit(visit, *m_map.root(), Cell(), true);
+  InCompressedTree inCompressed;
+  forEachInner([&](const InnerNode& n) {
+    count(m.full, n);
+    if (inCompressed.visit(n)) count(m.compressed, n);
+  });
   return m;
 }
 
-std::vector<double> Abstraction::distribution(const LeafCell& leaf) const {
-  return m_map.distribution(*leaf.node);
+double Abstraction::totalDensity() const {
+  const Slot& root = m_map.store().root();
+  return root.isInner() ? compressedTree().state(root)->density : 1.0;
 }
 
-double Abstraction::knownShare(const LeafCell& leaf) const { return knownVolume(*leaf.node); }
+std::vector<double> Abstraction::distribution(const LeafCell& leaf) const {
+  return m_map.distribution(leaf.node);
+}
+
+double Abstraction::knownShare(const LeafCell& leaf) const { return knownVolume(leaf.node); }
 
 SemanticOcTree Abstraction::compressedMap() const {
   SemanticOcTree compressed(m_map.getResolution(), m_map.classes(), m_map.filterParameters());
   if (m_map.empty()) return compressed;
-  NodeStore& store = *compressed.m_store;
-  NodeArena& arena = store.arena(0);
   const CompressedTree tree = compressedTree();
-  const auto copy = [&](const auto& self, const Node& from, Node& to) -> void {
-    if (!tree.isExpanded(from)) return contentOf(m_map, from).write(arena, to);
-    to.setValue(from.getValue());
-    Octant& octant = arena.createOctant(to);
-    for (int i = 0; i < 8; ++i)
-      if (const Node* child = from.child(i)) self(self, *child, arena.createChild(octant, i));
-  };
-  copy(copy, *m_map.root(), store.root());
-  compressed.attachRoot();
+  TreeBuilder::fill(compressed, CompressedCursor(m_map, tree, m_map.root()),
+                    TreeBuilder::Merge::Never);
   return compressed;
 }
 
 TreeChange Abstraction::takeChange() {
-  if (m_map.empty()) return m_map.m_leafChanges->clear(*m_map.m_store, m_gTree);
-  return m_map.m_leafChanges->update(*m_map.m_store, m_gTree, *m_map.root());
+  const Node root = m_map.root();
+  auto changes = std::move(m_map.m_leafChanges);  // lost if this fails
+  if (!changes)
+    throw std::logic_error(
+        "changes of the compressed tree were lost when memory ran out: call setAbstraction() anew");
+  TreeChange change =
+      root ? changes->update(m_map.store(), m_gTree, root) : changes->clear(m_map.store(), m_gTree);
+  m_map.m_leafChanges = std::move(changes);
+  return change;
 }
 
 void Abstraction::setAlpha(double alpha) {
@@ -164,46 +184,60 @@ void Abstraction::setWeights(const std::vector<double>& termWeights, double alph
   for (std::size_t t = 0; t < termWeights.size(); ++t) weights.terms[t].weight = termWeights[t];
   weights.alpha = alpha;
   weights.validate(m_map.numClasses());
+  GTree::Worker& worker = m_gTree.worker(0);
   m_gTree.setWeights(termWeights, alpha);
-  if (!m_map.empty() && !m_map.root()->isLeaf())
-    m_gTree.worker(0).reweigh(*m_map.m_store, m_map.m_store->root(), Cell());
+  worker.recomputeAll(m_map.store(), m_map.store().root(), Cell());
 }
 
 void Abstraction::setRegions(const std::vector<Region>& regions) {
   for (const Region& region : regions) region.validate();
   const DensityField before = m_gTree.density();
+  GTree::Worker& worker = m_gTree.worker(0);
   m_gTree.setRegions(regions, m_map.getResolution());
-  if (!m_map.empty())
-    m_gTree.worker(0).recomputeWhereChanged(*m_map.m_store, m_map.m_store->root(), Cell(), before);
+  worker.recomputeWhereChanged(m_map.store(), m_map.store().root(), Cell(), before);
 }
 
 Abstraction::Path Abstraction::alphaPath() const {
   std::vector<std::int32_t> parents;
   std::vector<double> gains, prices, addedLeaves;
-  std::size_t numRoots = 0;
-  const CompressedTree walk = compressedTree();
-  const double total =
-      m_map.empty() || m_map.root()->isLeaf() ? 1 : walk.state(*m_map.root()).density;
-  const auto visit = [&](const auto& self, const Node& node, const Cell& cell,
-                         std::int32_t parent) -> void {
-    if (parent < 0 && (node.isLeaf() || !m_gTree.isFreeFrame(cell.depth))) ++numRoots;
-    if (node.isLeaf()) return;
-    std::int32_t index = parent;
-    if (!m_gTree.isFreeFrame(cell.depth)) {
-      const InnerState& s = walk.state(node);
-      const double p = total > 0 ? s.density * volumeOf(cell) / total : 0.0;
-      index = static_cast<std::int32_t>(parents.size());
-      parents.push_back(parent);
-      gains.push_back(p * m_gTree.weightedDivergence(s));
-      prices.push_back(p * s.splitEntropy);
-      addedLeaves.push_back(numChildren(node) - 1);
-    }
-    for (int i = 0; i < 8; ++i)
-      if (const Node* child = node.child(i)) self(self, *child, cell.child(i), index);
-  };
-  if (!m_map.empty()) visit(visit, *m_map.root(), Cell(), -1);
+  std::size_t numRoots = m_map.getNumLeafNodes();
+  const double total = totalDensity();
+  std::array<std::int32_t, kTreeDepth> lastAtDepth;  // node visited last; -1: of the free frame
+  forEachInner([&](const InnerNode& n) {
+    std::int32_t& index = lastAtDepth[n.cell.depth] = -1;
+    if (m_gTree.isFreeFrame(n.cell.depth)) return;
+    const double p = total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
+    index = static_cast<std::int32_t>(parents.size());
+    parents.push_back(n.cell.depth == 0 ? -1 : lastAtDepth[n.cell.depth - 1]);
+    gains.push_back(p * n.weightedDivergence);
+    prices.push_back(p * n.splitEntropy);
+    addedLeaves.push_back(n.numChildren - 1);
+    numRoots -= n.numChildren - 1;
+  });
   return {tree_abstraction::AlphaPath(tree_abstraction::collapseAlphas(parents, gains, prices)),
           std::move(addedLeaves), numRoots};
+}
+
+Abstraction::PathInformation Abstraction::pathInformation(
+    const std::vector<double>& termWeights) const {
+  const std::size_t numTerms = options().weights.terms.size();
+  if (termWeights.size() != numTerms)
+    throw std::invalid_argument(
+        "information along the path: " + std::to_string(termWeights.size()) +
+        " weights, expected one for each of the " + std::to_string(numTerms) + " terms");
+  PathInformation information;
+  const double total = totalDensity();
+  forEachInner([&](const InnerNode& n) {
+    double gain = 0;
+    for (std::size_t t = 0; t < numTerms; ++t)
+      gain += termWeights[t] * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
+    gain *= total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
+    if (m_gTree.isFreeFrame(n.cell.depth))
+      information.ofRoots += gain;
+    else
+      information.added.push_back(gain);
+  });
+  return information;
 }
 
 double Abstraction::Path::alphaForLeaves(std::size_t wanted) const {

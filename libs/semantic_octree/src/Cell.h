@@ -1,5 +1,4 @@
 #pragma once
-#include <semantic_octree/ClassBelief.h>
 #include <semantic_octree/Keys.h>
 #include <semantic_octree/SemanticOcTreeNode.h>
 
@@ -8,7 +7,6 @@
 namespace semantic_octree {
 
 using Node = SemanticOcTreeNode;
-using Belief = ClassBelief<float>;
 
 /** Voxel coordinates: key minus kKeyOfOrigin (floor(coordinate / resolution)), or keys. */
 using VoxelIndex = Eigen::Array3i;

@@ -27,6 +27,13 @@ class CheckedWriter {
     std::memcpy(m_block.data() + m_used, &value, sizeof(T));
     m_used += sizeof(T);
   }
+  template <typename T>
+  void put(const T* values, std::size_t n) {
+    static_assert(std::is_arithmetic_v<T>);
+    if (m_used + n * sizeof(T) > kMaxBlockBytes) flush();
+    std::memcpy(m_block.data() + m_used, values, n * sizeof(T));
+    m_used += n * sizeof(T);
+  }
   /** At most 65535 characters. */
   void put(const std::string& text);
   /** Writes what is left, and the end. \throw std::runtime_error the stream failed. */
@@ -56,6 +63,11 @@ class CheckedReader {
       getAcrossBlocks(reinterpret_cast<char*>(&value), sizeof(T));
     }
     return value;
+  }
+  template <typename T>
+  void get(T* values, std::size_t n) {
+    static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
+    getAcrossBlocks(reinterpret_cast<char*>(values), n * sizeof(T));
   }
   std::string getText();
   /** Expects the end. */

@@ -77,6 +77,11 @@ auto ClassFilter<Real, Named>::uniform(Real occupancyLogOdds) const -> Belief {
 }
 
 template <typename Real, int Named>
+Real ClassFilter<Real, Named>::occupancyOf(const Belief& b) const {
+  return rounded<Real>(b.occupancyLogOdds(m_numClasses));
+}
+
+template <typename Real, int Named>
 void ClassFilter<Real, Named>::limit(Belief& b) const {
   Real highest = b.unnamed(m_numClasses) > 0 ? b.rest : b.logOdds[0];
   for (int i = 0; i < b.count; ++i) highest = std::max(highest, b.logOdds[i]);
@@ -184,7 +189,7 @@ void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
   const double K = m_numClasses;
   std::vector<Real> h(m_numClasses + 1);
   for (int k = 1; k <= m_numClasses; ++k)
-    h[k] = rounded<Real>(b.logOddsOf(static_cast<ClassId>(k)) + m_hitUnlabeled +
+    h[k] = rounded<Real>(b.logOddsOf(static_cast<ClassId>(k)) + m_unlabeled +
                          std::log(K * std::max<double>(q[k - 1], m_softLabelFloor)));
   const Real excess = std::max(Real(0), *std::max_element(h.begin() + 1, h.end()) - m_max);
   for (Real& x : h) x = std::max(m_min, x - excess);

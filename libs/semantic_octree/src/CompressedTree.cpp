@@ -19,7 +19,8 @@ void LeafChanges::update(Update& u, Index& told, const Node& node, const Cell& c
   if (!u.tree.isExpanded(node) && !u.tree.isSplitAbove(node, cell))
     return becomeLeaf(u, told, node, cell);
   const bool wasInner = told >= kFirstInner;
-  InnerState* state = node.isLeaf() ? nullptr : &u.tree.state(node);
+  const bool hasState = !node.isLeaf() && NodeStore::octantOf(node) < 0;
+  InnerState* state = hasState ? u.tree.state(NodeStore::slotOf(node)) : nullptr;
   if (wasInner && state && !state->changedBelow) return;
   if (!wasInner) {
     remove(u, told, cell);
@@ -34,8 +35,8 @@ void LeafChanges::updateChildren(Update& u, Index& told, const Node& node, const
     Index below = m_inner[told - kFirstInner][i];
     if (node.isLeaf()) {  // a leaf of the map above the blocks stands for each of its parts
       update(u, below, node, cell.child(i));
-    } else if (const Node* child = node.child(i)) {
-      update(u, below, *child, cell.child(i));
+    } else if (const Node child = node.child(i)) {
+      update(u, below, child, cell.child(i));
     } else {
       remove(u, below, cell.child(i));
       below = kNone;
@@ -48,12 +49,12 @@ void LeafChanges::becomeLeaf(Update& u, Index& told, const Node& node, const Cel
   if (told == kLeaf) return;
   remove(u, told, cell);
   told = kLeaf;
-  u.change.added.push_back(leafCell(&node, cell));
+  u.change.added.push_back(leafCell(node, cell));
 }
 
 void LeafChanges::remove(Update& u, Index told, const Cell& cell) {
   if (told == kNone) return;
-  if (told == kLeaf) return u.change.removed.push_back(leafCell(nullptr, cell));
+  if (told == kLeaf) return u.change.removed.push_back(leafCell(Node(), cell));
   for (int i = 0; i < 8; ++i) remove(u, m_inner[told - kFirstInner][i], cell.child(i));
   m_free.push_back(told);
 }

@@ -15,8 +15,13 @@ class CompressedTree {
  public:
   CompressedTree(const NodeStore& store, const GTree& gTree) : m_store(store), m_gTree(gTree) {}
 
-  InnerState& state(const Node& inner) const { return *m_store.state<InnerState>(inner); }
-  bool isExpanded(const Node& node) const { return !node.isLeaf() && state(node).isExpanded; }
+  bool isExpanded(const Node& node) const {
+    if (node.isLeaf()) return false;
+    const InnerState& s = *state(NodeStore::slotOf(node));
+    const int octant = NodeStore::octantOf(node);
+    return octant < 0 ? s.isExpanded : s.expandedOctants >> octant & 1;
+  }
+  InnerState* state(const Slot& inner) const { return m_store.state<InnerState>(inner); }
   /** A leaf of the map that reaches above the blocks, where everything is expanded: its blocks are
    * the compressed tree's leaves. */
   bool isSplitAbove(const Node& node, const Cell& cell) const {
@@ -31,9 +36,8 @@ class CompressedTree {
     if (isSplitAbove(node, cell)) {
       for (int i = 0; i < 8; ++i) forEachLeaf(node, cell.child(i), isWanted, f);
     } else if (isExpanded(node)) {
-      m_store.prefetchChildren(node);
       for (int i = 0; i < 8; ++i)
-        if (const Node* child = node.child(i)) forEachLeaf(*child, cell.child(i), isWanted, f);
+        if (const Node child = node.child(i)) forEachLeaf(child, cell.child(i), isWanted, f);
     } else {
       f(node, cell);
     }
@@ -49,7 +53,7 @@ class CompressedTree {
   const GTree& m_gTree;
 };
 
-inline LeafCell leafCell(const Node* node, const Cell& cell) {
+inline LeafCell leafCell(const Node& node, const Cell& cell) {
   return {cell.key(), static_cast<unsigned>(cell.depth), node};
 }
 

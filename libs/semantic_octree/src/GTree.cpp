@@ -59,7 +59,7 @@ GTree::GTree(const AbstractionOptions& options, const ClassFilter<float>& filter
 }
 
 std::size_t GTree::stateBytes() const {
-  return sizeof(InnerState) + (m_layout.rowSize() + m_layout.sizes().terms) * sizeof(double);
+  return sizeof(InnerState) + m_layout.rowSize() * sizeof(double);
 }
 
 void GTree::setWeights(const std::vector<double>& termWeights, double alpha) {
@@ -69,12 +69,14 @@ void GTree::setWeights(const std::vector<double>& termWeights, double alpha) {
     m_weights[m_layout.positionOf(static_cast<int>(t))] = termWeights[t];
   }
   m_options.weights.alpha = alpha;
+  for (Worker& worker : m_workers) worker.forgetGValues();
   m_eps = m_options.weights.eps();
 }
 
 void GTree::setRegions(std::vector<Region> regions, double resolution) {
-  m_options.regions = regions;
-  m_density = DensityField(std::move(regions), resolution);
+  DensityField density(regions, resolution);
+  std::swap(m_options.regions, regions);
+  std::swap(m_density, density);
 }
 
 GTree::Worker& GTree::worker(int i) {
@@ -82,157 +84,205 @@ GTree::Worker& GTree::worker(int i) {
   return m_workers[i];
 }
 
-double GTree::weightedDivergence(const InnerState& s) const {
-  const double* js = divergences(s);
-  double sum = 0;
-  for (std::size_t t = 0; t < m_weights.size(); ++t) sum += m_weights[t] * js[t];
-  return sum;
-}
-
-void GTree::settleG(InnerState& s, int depth, double childrensG) const {
-  const std::uint8_t before = s.isExpanded;
-  if (isFreeFrame(depth)) {
-    s.gValue = childrensG;
-    s.isExpanded = 1;
-  } else {
-    const double v = childrensG - m_options.weights.alpha * s.splitEntropy + weightedDivergence(s);
-    s.gValue = std::max(v, 0.0);
-    s.isExpanded = v > m_eps;
-  }
-  s.changedBelow |= s.isExpanded != before;
-}
-
 GTree::Worker::Worker(const GTree& gTree)
     : m_gTree(gTree),
-      m_uniformRows(gTree.layout().rowSize()),
-      m_recordRows(gTree.layout().rowSize()) {}
+      m_valueRows(gTree.layout().rowSize()),
+      m_recordRows(gTree.layout().rowSize()),
+      m_bufferSize(gTree.layout().rowSize() + gTree.layout().sizes().terms + 3),
+      m_buffers((kOwn + 1) * m_bufferSize),
+      m_patterns(m_bufferSize) {}
 
-const double* GTree::Worker::rowOf(const NodeStore& store, const Node& leaf) {
-  const RowLayout& layout = m_gTree.layout();
-  if (leaf.hasClassRecord())
-    return m_recordRows.row(store.record(leaf),
-                            [&](const Belief& b, double* row) { layout.rowOf(b, row); });
-  return m_uniformRows.row(leaf.getValue(), [&](float value, double* row) {
-    layout.rowOf(m_gTree.m_filter.uniform(value), row);
+const double* GTree::Worker::rowOf(const ClassRecord& record) {
+  return m_recordRows.row(
+      record, [&](const ClassRecord& r, double* row) { m_gTree.layout().rowOf(r.belief(), row); });
+}
+
+const double* GTree::Worker::rowOf(Units value) {
+  return m_valueRows.row(value, [&](Units v, double* row) {
+    if (v == kUnknown)
+      std::copy_n(m_gTree.layout().unknownRow(), m_gTree.layout().rowSize(), row);
+    else
+      m_gTree.layout().rowOf(m_gTree.m_filter.uniform(fromUnits(v)), row);
   });
 }
 
-void GTree::Worker::gatherRows(const NodeStore& store, const Node& inner, const double** rows,
-                               double* gValues) {
-  const Octant& octant = NodeStore::octant(inner);
-  InnerState& state = *store.state<InnerState>(inner);
-  m_uniformRows.release();
+InnerNode GTree::Worker::compute(const Children& children, const Cell& cell, double* buffer) {
+  const GTree& g = m_gTree;
+  double* const row = buffer;
+  double* const js = row + g.layout().rowSize();
+  InnerNode n;
+  n.cell = cell;
+  n.numChildren = children.number;
+  n.row = row;
+  n.divergences = js;
+  double shares[8];
+  bool equalShares = g.hasEqualShares(cell.depth);
+  n.density = 1;
+  if (!equalShares) {
+    equalShares = sharesOf(children.densities, shares);
+    n.density = sumOfEight(children.densities) * 0.125;
+  }
+  g.layout().mix(children.rows, equalShares ? nullptr : shares, row, js);
+  if (n.density == 0)
+    std::fill(js, js + g.layout().sizes().terms, 0.0);
+  else
+    n.splitEntropy = equalShares ? kLogEight : entropyOfShares(shares);
+  const double childrensG = equalShares ? sumOfEight(children.gValues) * 0.125
+                                        : weightedSumOfEight(shares, children.gValues);
+  for (std::size_t t = 0; t < g.m_weights.size(); ++t)
+    n.weightedDivergence += g.m_weights[t] * js[t];
+  const double v = childrensG - g.m_options.weights.alpha * n.splitEntropy + n.weightedDivergence;
+  const bool isFree = g.isFreeFrame(cell.depth);
+  n.gValue = isFree ? childrensG : std::max(v, 0.0);
+  n.isExpanded = isFree || v > g.m_eps;
+  return n;
+}
+
+auto GTree::Worker::childrenOf(const NodeStore& store, const Slot& inner, const Cell& cell)
+    -> Children {
+  const Octant& octant = store.octant(inner);
+  const bool needDensities = !m_gTree.hasEqualShares(cell.depth);
+  const double missing = m_gTree.missingDensity(cell.depth + 1);
   m_recordRows.release();
+  Children c;
+  for (int i = 0; i < 8; ++i) {
+    const Slot& child = octant.slots[i];
+    c.number += child.isKnown();
+    if (child.isInner()) {
+      const InnerState& s = *store.state<InnerState>(child);
+      c.rows[i] = s.row();
+      c.gValues[i] = s.gValue;
+      c.densities[i] = s.density;
+      continue;
+    }
+    c.rows[i] = child.kind == Slot::Kind::LeafWithRecord ? rowOf(store.record(child))
+                : child.isKnown()                        ? rowOf(child.value)
+                                                         : m_gTree.layout().unknownRow();
+    if (needDensities)
+      c.densities[i] = (child.isKnown() ? 1.0 : missing) * m_gTree.density().mean(cell.child(i));
+  }
+  return c;
+}
+
+InnerNode GTree::Worker::computeOctant(const NodeStore& store, const Slot& inner,
+                                       const Cell& cell) {
+  return compute(childrenOf(store, inner, cell), cell, buffer(kOwn));
+}
+
+InnerNode GTree::Worker::computeOctantOfBlock(const NodeStore& store, const Block& block,
+                                              int octant, const Cell& cell, double* buffer) {
+  m_recordRows.release();
+  Children c;
+  c.number = countOf(block.knownIn(octant));
+  const ClassRecord* record =
+      block.recorded ? store.recordsOf(block) + block.rankOfRecord(8 * octant) : nullptr;
+  for (int i = 0; i < 8; ++i) {
+    const int voxel = 8 * octant + i;
+    c.rows[i] = block.recorded >> voxel & 1 ? rowOf(*record++) : rowOf(block.values[voxel]);
+  }
+  if (!m_gTree.hasEqualShares(cell.depth))
+    for (int i = 0; i < 8; ++i)
+      c.densities[i] = (block.knownIn(octant) >> i & 1 ? 1.0 : m_gTree.missingDensity(kTreeDepth)) *
+                       m_gTree.density().mean(cell.child(i));
+  const InnerNode n = compute(c, cell, buffer);
+  buffer[m_bufferSize - 3] = n.gValue;
+  buffer[m_bufferSize - 2] = n.density;
+  buffer[m_bufferSize - 1] = n.isExpanded;
+  return n;
+}
+
+const double* GTree::Worker::bufferOf(const NodeStore& store, const Block& block, int octant,
+                                      const Cell& cell) {
+  if (octantOf(block.recorded, octant) == 0 && m_gTree.hasEqualShares(cell.depth))
+    return m_patterns.row(OctantPattern(block.values + 8 * octant),
+                          [&](const OctantPattern&, double* row) {
+                            computeOctantOfBlock(store, block, octant, cell, row);
+                          });
+  computeOctantOfBlock(store, block, octant, cell, buffer(octant));
+  return buffer(octant);
+}
+
+InnerNode GTree::Worker::computeBlock(const NodeStore& store, const Slot& inner, const Cell& cell) {
+  const Block& block = store.block(inner);
+  const bool needDensities = !m_gTree.hasEqualShares(cell.depth);
+  m_patterns.release();
+  m_expandedOctants = 0;
+  Children c;
+  for (int o = 0; o < 8; ++o) {
+    const bool isKnown = block.knownIn(o);
+    c.number += isKnown;
+    if (isKnown && !block.isLeafOctant(o)) {
+      c.rows[o] = bufferOf(store, block, o, cell.child(o));
+      c.gValues[o] = c.rows[o][m_bufferSize - 3];
+      c.densities[o] = c.rows[o][m_bufferSize - 2];
+      m_expandedOctants |= static_cast<unsigned>(c.rows[o][m_bufferSize - 1]) << o;
+      continue;
+    }
+    if (block.hasRecord(8 * o)) {
+      // A row of the cache lasts until the next octant's are asked for.
+      const double* row = rowOf(store.record(block, 8 * o));
+      c.rows[o] =
+          std::copy_n(row, m_gTree.layout().rowSize(), buffer(o)) - m_gTree.layout().rowSize();
+    } else {
+      c.rows[o] = rowOf(block.values[8 * o]);
+    }
+    if (needDensities)
+      c.densities[o] = (isKnown ? 1.0 : m_gTree.missingDensity(cell.depth + 1)) *
+                       m_gTree.density().mean(cell.child(o));
+  }
+  return compute(c, cell, buffer(kOwn));
+}
+
+void GTree::Worker::recompute(NodeStore& store, Slot& inner, const Cell& cell, bool reshaped) {
+  const bool isBlock = inner.kind == Slot::Kind::Block;
+  const InnerNode n =
+      isBlock ? computeBlock(store, inner, cell) : computeOctant(store, inner, cell);
+  InnerState& s = *store.state<InnerState>(inner);
+  s.density = n.density;
+  s.gValue = n.gValue;
+  std::copy_n(n.row, m_gTree.layout().rowSize(), s.row());
+  s.changedBelow |= reshaped || s.isExpanded != n.isExpanded;
+  s.isExpanded = n.isExpanded;
+  isBlock ? noteOctants(s) : noteChildren(store, inner, s);
+}
+
+void GTree::Worker::noteOctants(InnerState& s) const {
+  s.changedBelow |= s.expandedOctants != m_expandedOctants;
+  s.expandedOctants = static_cast<std::uint8_t>(m_expandedOctants);
+}
+
+void GTree::Worker::noteChildren(const NodeStore& store, const Slot& inner, InnerState& s) {
+  const Octant& octant = store.octant(inner);
   unsigned kinds = 0;
   for (int i = 0; i < 8; ++i) {
-    const Node& child = octant.nodes[i];
-    gValues[i] = 0;
-    if (!octant.has(i)) {
-      rows[i] = m_gTree.layout().unknownRow();
-    } else if (child.isLeaf()) {
-      kinds |= 1u << 2 * i;
-      rows[i] = rowOf(store, child);
-    } else {
-      kinds |= 2u << 2 * i;
-      const InnerState& s = *store.state<InnerState>(child);
-      rows[i] = s.row();
-      gValues[i] = s.gValue;
-      state.changedBelow |= s.changedBelow;
-    }
+    const Slot& child = octant.slots[i];
+    kinds |= (child.isInner() ? 2u : child.isKnown() ? 1u : 0u) << 2 * i;
+    if (child.isInner()) s.changedBelow |= store.state<InnerState>(child)->changedBelow;
   }
-  state.changedBelow |= state.childKinds != kinds;
-  state.childKinds = static_cast<std::uint16_t>(kinds);
+  s.changedBelow |= s.childKinds != kinds;
+  s.childKinds = static_cast<std::uint16_t>(kinds);
 }
 
-void GTree::Worker::recompute(NodeStore& store, Node& inner, const Cell& cell) {
-  InnerState& s = *store.state<InnerState>(inner);
-  double* const js = m_gTree.divergences(s);
-  const double* rows[8];
-  double gValues[8], densities[8], shares[8];
-  gatherRows(store, inner, rows, gValues);
-  bool equalShares = m_gTree.hasEqualShares(cell.depth);
-  if (equalShares) {
-    s.density = 1;
-  } else {
-    gatherDensities(store, inner, cell, densities);
-    equalShares = sharesOf(densities, shares);
-    s.density = sumOfEight(densities) * 0.125;
+void GTree::Worker::recomputeAll(NodeStore& store, Slot& slot, const Cell& cell) {
+  if (!slot.isInner()) return;
+  if (slot.kind == Slot::Kind::Octant) {
+    Octant& octant = store.octant(slot);
+    for (const Slot& child : octant.slots) store.prefetchInner(child);
+    for (int i = 0; i < 8; ++i) recomputeAll(store, octant.slots[i], cell.child(i));
   }
-  m_gTree.layout().mix(rows, equalShares ? nullptr : shares, s.row(), js);
-  s.splitEntropy = equalShares ? kLogEight : entropyOfShares(shares);
-  if (s.density == 0) {
-    s.splitEntropy = 0;
-    std::fill(js, js + m_gTree.layout().sizes().terms, 0.0);
-  }
-  m_gTree.settleG(s, cell.depth,
-                  equalShares ? sumOfEight(gValues) * 0.125 : weightedSumOfEight(shares, gValues));
+  recompute(store, slot, cell, false);
 }
 
-void GTree::Worker::recomputeAll(NodeStore& store, Node& node, const Cell& cell) {
-  if (node.isLeaf()) return;
-  Octant& octant = NodeStore::octant(node);
-  for (int i = 0; i < 8; ++i)
-    if (octant.has(i)) recomputeAll(store, octant.nodes[i], cell.child(i));
-  recompute(store, node, cell);
-}
-
-bool GTree::Worker::recomputeWhereChanged(NodeStore& store, Node& node, const Cell& cell,
+bool GTree::Worker::recomputeWhereChanged(NodeStore& store, Slot& slot, const Cell& cell,
                                           const DensityField& before) {
   if (DensityField::sameIn(before, m_gTree.density(), cell)) return false;
-  if (node.isLeaf()) return true;
-  Octant& octant = NodeStore::octant(node);
-  bool changed = false;
-  for (int i = 0; i < 8; ++i) {
-    const Cell child = cell.child(i);
-    changed |= octant.has(i) ? recomputeWhereChanged(store, octant.nodes[i], child, before)
-                             : !DensityField::sameIn(before, m_gTree.density(), child);
-  }
-  if (changed) recompute(store, node, cell);
+  if (slot.isKnown() && !slot.isInner()) return true;
+  bool changed = slot.kind != Slot::Kind::Octant;
+  if (slot.kind == Slot::Kind::Octant)
+    for (int i = 0; i < 8; ++i)
+      changed |= recomputeWhereChanged(store, store.octant(slot).slots[i], cell.child(i), before);
+  if (changed && slot.isInner()) recompute(store, slot, cell, false);
   return changed;
-}
-
-void GTree::Worker::reweigh(NodeStore& store, Node& inner, const Cell& cell) {
-  InnerState& s = *store.state<InnerState>(inner);
-  double gValues[8] = {};
-  // The parents of voxels are most of all nodes: their children need not be looked at.
-  if (cell.depth < kTreeDepth - 1) reweighChildren(store, inner, cell, gValues);
-  double childrensG = sumOfEight(gValues) * 0.125;
-  if (!m_gTree.hasEqualShares(cell.depth)) {
-    double densities[8], shares[8];
-    gatherDensities(store, inner, cell, densities);
-    sharesOf(densities, shares);
-    childrensG = weightedSumOfEight(shares, gValues);
-  }
-  m_gTree.settleG(s, cell.depth, childrensG);
-}
-
-void GTree::Worker::reweighChildren(NodeStore& store, Node& inner, const Cell& cell,
-                                    double* gValues) {
-  Octant& octant = NodeStore::octant(inner);
-  store.prefetchChildren(inner);
-  std::uint8_t changed = store.state<InnerState>(inner)->changedBelow;
-  for (int i = 0; i < 8; ++i) {
-    Node& child = octant.nodes[i];
-    if (child.isLeaf()) continue;
-    reweigh(store, child, cell.child(i));
-    const InnerState& below = *store.state<InnerState>(child);
-    gValues[i] = below.gValue;
-    changed |= below.changedBelow;
-  }
-  store.state<InnerState>(inner)->changedBelow = changed;
-}
-
-void GTree::Worker::gatherDensities(const NodeStore& store, const Node& inner, const Cell& cell,
-                                    double* densities) const {
-  const Octant& octant = NodeStore::octant(inner);
-  const double missing = m_gTree.missingDensity(cell.depth + 1);
-  for (int i = 0; i < 8; ++i) {
-    const Node& child = octant.nodes[i];
-    if (octant.has(i) && !child.isLeaf())
-      densities[i] = store.state<InnerState>(child)->density;
-    else
-      densities[i] = (octant.has(i) ? 1.0 : missing) * m_gTree.density().mean(cell.child(i));
-  }
 }
 
 }  // namespace semantic_octree

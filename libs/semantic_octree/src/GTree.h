@@ -10,18 +10,30 @@
 
 namespace semantic_octree {
 
-/** Bookkeeping of an inner node. Behind it stand the node's row (see RowLayout) and the terms'
- * divergences. All of it is a function of the children alone. */
+/** Bookkeeping of an inner node at depth 14 or above. Behind it stands the node's row (see
+ * RowLayout). All of it is a function of the children alone. */
 struct InnerState {
-  double density;       ///< mean density of p(x) in the cell; p(n) = density * volume, unnormalized
-  double gValue;        ///< G_Pi; above the blocks, if they are free, the mean of the children's
-  double splitEntropy;  ///< H(Pi), nats
-  std::uint16_t childKinds;   ///< two bits each: no child, a leaf, an inner node
-  std::uint8_t isExpanded;    ///< in the compressed tree if the parent is
-  std::uint8_t changedBelow;  ///< the compressed tree's leaves may have changed since last told
+  double density;  ///< mean density of p(x) in the cell; p(n) = density * volume, unnormalized
+  double gValue;   ///< G_Pi; above the blocks, if they are free, the mean of the children's
+  std::uint16_t childKinds;      ///< two bits each: no child, a leaf, an inner node
+  std::uint8_t isExpanded;       ///< in the compressed tree if the parent is
+  std::uint8_t changedBelow;     ///< the compressed tree's leaves may have changed since last told
+  std::uint8_t expandedOctants;  ///< of a block's octants, those whose isExpanded would be set
 
   double* row() { return reinterpret_cast<double*>(this + 1); }
   const double* row() const { return reinterpret_cast<const double*>(this + 1); }
+};
+
+/** What is computed of an inner node, but not kept. */
+struct InnerNode {
+  Cell cell;
+  int numChildren = 0;
+  double density = 0, gValue = 0;
+  double splitEntropy = 0;        ///< H(Pi), nats
+  double weightedDivergence = 0;  ///< sum_t weight_t JS_t
+  bool isExpanded = false;
+  const double* row = nullptr;
+  const double* divergences = nullptr;  ///< JS_t, nats, in the layout's order
 };
 
 /** G-tree search in a map that grows, its first half (Larsson et al., algorithm 1): from the leaves
@@ -39,8 +51,6 @@ class GTree {
   const AbstractionOptions& options() const { return m_options; }
   const RowLayout& layout() const { return m_layout; }
   std::size_t stateBytes() const;
-  double* divergences(InnerState& s) const { return s.row() + m_layout.rowSize(); }
-  const double* divergences(const InnerState& s) const { return s.row() + m_layout.rowSize(); }
 
   /** Depth of the blocks' nodes: at this depth and below, unknown space has weight. */
   int blockDepth() const { return m_blockDepth; }
@@ -59,41 +69,65 @@ class GTree {
   }
   const DensityField& density() const { return m_density; }
 
-  /** New weights of the same terms, and alpha. What is kept of nodes is then out of date in its
-   * G-values only: see reweigh(). */
+  /** New weights of the same terms, and alpha. What is kept of nodes is then out of date. */
   void setWeights(const std::vector<double>& termWeights, double alpha);
   void setRegions(std::vector<Region> regions, double resolution);
-
-  /** sum_t weight_t JS_t of a node. */
-  double weightedDivergence(const InnerState& s) const;
-  /** Sets the G-value from divergences, split entropy and the mean of the children's G-values. */
-  void settleG(InnerState& s, int depth, double childrensG) const;
 
   /** One thread's part: buffers, and rows of frequent values. */
   class Worker {
    public:
     explicit Worker(const GTree& gTree);
-    void recompute(NodeStore& store, Node& inner, const Cell& cell);
+    /** Before the weights change. */
+    void forgetGValues() { m_patterns.clear(); }
+    /** From what is kept of the children. \param reshaped whether a block's voxels or octants are
+     * not those that were known, or leaves, before */
+    void recompute(NodeStore& store, Slot& inner, const Cell& cell, bool reshaped);
     /** A node and all inner nodes below. */
-    void recomputeAll(NodeStore& store, Node& node, const Cell& cell);
+    void recomputeAll(NodeStore& store, Slot& slot, const Cell& cell);
     /** Nodes in whose cell the density is not what it was. \return whether there were any */
-    bool recomputeWhereChanged(NodeStore& store, Node& node, const Cell& cell,
+    bool recomputeWhereChanged(NodeStore& store, Slot& slot, const Cell& cell,
                                const DensityField& before);
-    /** G-values only, of a node and all inner nodes below, from what is kept. */
-    void reweigh(NodeStore& store, Node& inner, const Cell& cell);
+    /** Calls f(node) for an inner node that is a slot, then for its octants that are inner nodes if
+     * it is a block. */
+    template <typename F>
+    void inspect(const NodeStore& store, const Slot& inner, const Cell& cell, const F& f);
 
    private:
-    /** Also notes in the state whether children came, went or changed. */
-    void gatherRows(const NodeStore& store, const Node& inner, const double** rows,
-                    double* gValues);
-    void gatherDensities(const NodeStore& store, const Node& inner, const Cell& cell,
-                         double* densities) const;
-    void reweighChildren(NodeStore& store, Node& inner, const Cell& cell, double* gValues);
-    const double* rowOf(const NodeStore& store, const Node& leaf);
+    /** Of eight children. */
+    struct Children {
+      const double* rows[8];
+      double gValues[8] = {}, densities[8];
+      int number = 0;  ///< of those that exist
+    };
+    /** Note in the state whether the children's part in the compressed tree changed. */
+    void noteOctants(InnerState& s) const;
+    static void noteChildren(const NodeStore& store, const Slot& inner, InnerState& s);
+    Children childrenOf(const NodeStore& store, const Slot& inner, const Cell& cell);
+    InnerNode computeOctant(const NodeStore& store, const Slot& inner, const Cell& cell);
+    /** The block's own node, and m_expandedOctants. */
+    InnerNode computeBlock(const NodeStore& store, const Slot& inner, const Cell& cell);
+    /** \param buffer where row and divergences go, and what computeBlock() wants to know */
+    InnerNode computeOctantOfBlock(const NodeStore& store, const Block& block, int octant,
+                                   const Cell& cell, double* buffer);
+    InnerNode compute(const Children& children, const Cell& cell, double* buffer);
+    /** Row and the like of an octant that is an inner node: kept, if it follows from its pattern.
+     */
+    const double* bufferOf(const NodeStore& store, const Block& block, int octant,
+                           const Cell& cell);
+    double* buffer(int i) { return &m_buffers[i * m_bufferSize]; }
+    const double* rowOf(const ClassRecord& record);
+    const double* rowOf(Units value);
 
     const GTree& m_gTree;
-    RowCache<float> m_uniformRows;  ///< of leaves without a class record, by their values
-    RowCache<Belief> m_recordRows;
+    ValueRows m_valueRows;  ///< of leaves without a class record
+    RowCache<ClassRecord> m_recordRows;
+    /** Of a block's octants, and of the node itself: row, divergences, G-value, density, whether it
+     * is expanded. */
+    std::size_t m_bufferSize;
+    std::vector<double> m_buffers;
+    RowCache<OctantPattern> m_patterns;  ///< such buffers of octants without class records
+    unsigned m_expandedOctants = 0;
+    static constexpr int kOwn = 8;
   };
   /** The i-th thread's; made when first asked for (not thread safe). */
   Worker& worker(int i);
@@ -108,5 +142,16 @@ class GTree {
   DensityField m_density;
   std::deque<Worker> m_workers;
 };
+
+template <typename F>
+void GTree::Worker::inspect(const NodeStore& store, const Slot& inner, const Cell& cell,
+                            const F& f) {
+  if (inner.kind == Slot::Kind::Octant) return f(computeOctant(store, inner, cell));
+  f(computeBlock(store, inner, cell));
+  const Block& block = store.block(inner);
+  for (int o = 0; o < 8; ++o)
+    if (block.knownIn(o) && !block.isLeafOctant(o))
+      f(computeOctantOfBlock(store, block, o, cell.child(o), buffer(kOwn)));
+}
 
 }  // namespace semantic_octree

@@ -26,20 +26,57 @@ Belief truncated(std::vector<ClassLogOdds> named, double rest, int numClasses) {
   return belief;
 }
 
+namespace {
+
+/** Classes of leaves with a record: p(k) = rest + named[k]. */
+struct Mixture {
+  double rest = 0;
+  std::vector<double> named;
+
+  void add(const Belief& belief, double weight) {
+    const int K = static_cast<int>(named.size()) - 1;
+    const auto p = belief.probabilities(K);
+    rest += weight * p.rest;
+    for (int i = 0; i < belief.count; ++i) named[belief.ids[i]] += weight * (p.named[i] - p.rest);
+  }
+  void addBelow(const SemanticOcTree& map, const Node& node, double weight) {
+    if (node.isLeaf()) {
+      if (node.hasClassRecord()) add(map.belief(node), weight);
+      return;
+    }
+    for (int i = 0; i < 8; ++i)
+      if (const Node child = node.child(i)) addBelow(map, child, weight / 8);
+  }
+};
+
+}  // namespace
+
+std::vector<double> classShares(const SemanticOcTree& map, const Node& node) {
+  Mixture mixture;
+  mixture.named.assign(map.numClasses() + 1, 0.0);
+  mixture.addBelow(map, node, 1);
+  std::vector<double> shares;
+  for (int k = 1; k <= map.numClasses(); ++k)
+    shares.push_back(std::max(0.0, mixture.rest + mixture.named[k]));
+  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+  if (sum == 0) return {};
+  for (double& share : shares) share /= sum;
+  return shares;
+}
+
 LeafContent contentOf(const SemanticOcTree& map, const Node& node) {
-  LeafContent content{node.getValue(), std::nullopt};
+  const float occupancy = node.getLogOdds();
+  LeafContent content{toUnits(occupancy), std::nullopt};
   if (node.hasClassRecord()) {
-    content.record = map.belief(node);
-  } else if (map.query(node).likeliestClass != kNoClass) {
-    const std::vector<double> p = map.distribution(node);
-    const double occupied = std::accumulate(p.begin() + 1, p.end(), 0.0);
-    const auto logOdds = [&](double share) {
-      return content.occupancyLogOdds + std::log(std::max(share / occupied, 1e-12));
-    };
+    content.record = ClassRecord::of(map.belief(node));
+  } else if (!node.isLeaf()) {
+    const std::vector<double> shares = classShares(map, node);
+    if (shares.empty()) return content;
     std::vector<ClassLogOdds> named;
     for (int k = 1; k <= map.numClasses(); ++k)
-      named.push_back({logOdds(p[k]), static_cast<ClassId>(k)});
-    content.record = truncated(std::move(named), logOdds(0), map.numClasses());
+      named.push_back(
+          {occupancy + std::log(std::max(shares[k - 1], 1e-12)), static_cast<ClassId>(k)});
+    content.record = ClassRecord::of(truncated(std::move(named), 0, map.numClasses()));
   }
   return content;
 }

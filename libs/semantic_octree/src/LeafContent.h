@@ -2,6 +2,7 @@
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <optional>
+#include <vector>
 
 #include "NodeStore.h"
 
@@ -9,17 +10,23 @@ namespace semantic_octree {
 
 /** What a leaf holds. */
 struct LeafContent {
-  float occupancyLogOdds = 0;
-  std::optional<Belief> record;
+  Units value = 0;
+  std::optional<ClassRecord> record;
 
-  void write(NodeArena& arena, Node& leaf) const {
-    leaf.setValue(occupancyLogOdds);
-    if (record) arena.setRecord(leaf, *record);
+  const ClassRecord* recordOrNull() const { return record ? &*record : nullptr; }
+  void write(NodeArena& arena, Slot& unknown) const {
+    arena.createLeaf(unknown, value);
+    if (record) arena.setRecord(unknown, *record);
   }
 };
 
-/** Of a leaf, or of an inner node that becomes one: occupancy of its most occupied leaf, classes of
- * the mixture of its known leaves by volume. */
+/** p(class k | occupied) of a node, K shares: of the mixture, by volume, of the leaves below in which
+ * labels were seen. (Free space and what was hit without a label know nothing of classes; with them,
+ * a cell that holds both would state too little.) Empty if there are none. */
+std::vector<double> classShares(const SemanticOcTree& map, const Node& node);
+
+/** Of a leaf, or of an inner node that becomes one: occupancy of its most occupied leaf, classes as
+ * by classShares(). */
 LeafContent contentOf(const SemanticOcTree& map, const Node& node);
 
 struct ClassLogOdds {

@@ -15,19 +15,19 @@ struct VoxelBox {
 
 class CropCursor {
  public:
-  CropCursor(const SemanticOcTree& map, const VoxelBox& box, const Node* node, const Cell& cell)
+  CropCursor(const SemanticOcTree& map, const VoxelBox& box, const Node& node, const Cell& cell)
       : m_map(map), m_box(box), m_node(node), m_cell(cell) {}
 
   bool known() const {
     return m_node && (m_cell.lowest() <= m_box.last).all() && (highest() >= m_box.first).all();
   }
   bool isLeaf() const {
-    return m_node->isLeaf() && (m_cell.lowest() >= m_box.first).all() &&
+    return m_node.isLeaf() && (m_cell.lowest() >= m_box.first).all() &&
            (highest() <= m_box.last).all();
   }
-  LeafContent content() const { return contentOf(m_map, *m_node); }
+  LeafContent content() const { return contentOf(m_map, m_node); }
   CropCursor child(int i) const {
-    const Node* node = m_node->isLeaf() ? m_node : m_node->child(i);
+    const Node node = m_node.isLeaf() ? m_node : m_node.child(i);
     return {m_map, m_box, node, m_cell.child(i)};
   }
 
@@ -36,7 +36,7 @@ class CropCursor {
 
   const SemanticOcTree& m_map;
   const VoxelBox& m_box;
-  const Node* m_node;
+  Node m_node;
   Cell m_cell;
 };
 
@@ -58,53 +58,31 @@ class CoarseCursor {
   CoarseCursor(const SemanticOcTree& map, int levels)
       : CoarseCursor(map, levels, map.root(), 0, -1) {}
 
-  bool known() const { return m_node; }
-  bool isLeaf() const { return m_depth == kTreeDepth || (m_depth > m_levels && m_node->isLeaf()); }
-  LeafContent content() const { return contentOf(m_map, *m_node); }
+  bool known() const { return static_cast<bool>(m_node); }
+  bool isLeaf() const { return m_depth == kTreeDepth || (m_depth > m_levels && m_node.isLeaf()); }
+  LeafContent content() const { return contentOf(m_map, m_node); }
 
   CoarseCursor child(int i) const {
     if (m_depth < m_levels) {
       const bool towardsMiddle = m_depth == 0 || i == 7 - m_octant;
       const int octant = m_depth == 0 ? i : m_octant;
-      return {m_map, m_levels, towardsMiddle ? m_node : nullptr, m_depth + 1, octant};
+      return {m_map, m_levels, towardsMiddle ? m_node : Node(), m_depth + 1, octant};
     }
     if (m_depth == m_levels && m_depth > 0)
-      return {m_map, m_levels, i == 7 - m_octant ? childNode(m_octant) : nullptr, m_depth + 1, -1};
+      return {m_map, m_levels, i == 7 - m_octant ? childNode(m_octant) : Node(), m_depth + 1, -1};
     return {m_map, m_levels, childNode(i), m_depth + 1, -1};
   }
 
  private:
-  CoarseCursor(const SemanticOcTree& map, int levels, const Node* node, int depth, int octant)
+  CoarseCursor(const SemanticOcTree& map, int levels, const Node& node, int depth, int octant)
       : m_map(map), m_levels(levels), m_node(node), m_depth(depth), m_octant(octant) {}
 
-  const Node* childNode(int i) const { return m_node->isLeaf() ? m_node : m_node->child(i); }
+  Node childNode(int i) const { return m_node.isLeaf() ? m_node : m_node.child(i); }
 
   const SemanticOcTree& m_map;
   int m_levels;
-  const Node* m_node;
+  Node m_node;
   int m_depth, m_octant;
-};
-
-class OccupancyCursor {
- public:
-  OccupancyCursor(const octomap::OcTree& map, const ClassFilter<float>& filter,
-                  const octomap::OcTreeNode* node)
-      : m_map(map), m_filter(filter), m_node(node) {}
-
-  bool known() const { return m_node; }
-  bool isLeaf() const { return !m_map.nodeHasChildren(m_node); }
-  LeafContent content() const { return {m_filter.limitedOccupancy(m_node->getLogOdds()), {}}; }
-  OccupancyCursor child(int i) const {
-    const octomap::OcTreeNode* node = m_node;
-    if (!isLeaf())
-      node = m_map.nodeChildExists(m_node, i) ? m_map.getNodeChild(m_node, i) : nullptr;
-    return {m_map, m_filter, node};
-  }
-
- private:
-  const octomap::OcTree& m_map;
-  const ClassFilter<float>& m_filter;
-  const octomap::OcTreeNode* m_node;
 };
 
 }  // namespace
@@ -126,17 +104,6 @@ SemanticOcTree coarsened(const SemanticOcTree& map, int levels) {
   coarse.setPruning(map.pruning());
   TreeBuilder::fill(coarse, CoarseCursor(map, levels));
   return coarse;
-}
-
-SemanticOcTree fromOccupancy(const octomap::OcTree& map, const ClassTable& classes,
-                             const FilterParameters& filter) {
-  if (map.getTreeDepth() != kTreeDepth)
-    throw std::invalid_argument("importing occupancy: a map of " +
-                                std::to_string(map.getTreeDepth()) + " levels, expected 16");
-  SemanticOcTree result(map.getResolution(), classes, filter);
-  const ClassFilter<float> limits(classes.size(), filter);
-  TreeBuilder::fill(result, OccupancyCursor(map, limits, map.getRoot()));
-  return result;
 }
 
 }  // namespace semantic_octree

@@ -20,48 +20,61 @@ struct Sum {
 /** The same cube in all maps; a leaf stands for all that is below it, null is unknown. */
 class MergeCursor {
  public:
-  MergeCursor(const Sum& sum, std::vector<const Node*> nodes)
-      : m_sum(sum), m_nodes(std::move(nodes)) {}
+  MergeCursor(const Sum& sum, std::vector<Node> nodes) : m_sum(sum), m_nodes(std::move(nodes)) {}
 
   bool known() const {
-    return std::any_of(m_nodes.begin(), m_nodes.end(), [](const Node* n) { return n; });
+    return std::any_of(m_nodes.begin(), m_nodes.end(),
+                       [](const Node& n) { return static_cast<bool>(n); });
   }
   bool isLeaf() const {
     return std::all_of(m_nodes.begin(), m_nodes.end(),
-                       [](const Node* n) { return !n || n->isLeaf(); });
+                       [](const Node& n) { return !n || n.isLeaf(); });
   }
   MergeCursor child(int i) const {
-    std::vector<const Node*> children = m_nodes;
-    for (const Node*& node : children)
-      if (node && !node->isLeaf()) node = node->child(i);
+    std::vector<Node> children = m_nodes;
+    for (Node& node : children)
+      if (node && !node.isLeaf()) node = node.child(i);
     return {m_sum, std::move(children)};
   }
   LeafContent content() const {
     const bool anyRecord = std::any_of(m_nodes.begin(), m_nodes.end(),
-                                       [](const Node* n) { return n && n->hasClassRecord(); });
+                                       [](const Node& n) { return n && n.hasClassRecord(); });
     return anyRecord ? sumOfRecords() : sumOfOccupancies();
   }
 
  private:
   LeafContent sumOfOccupancies() const {
     double sum = 0;
-    for (const Node* node : m_nodes)
-      if (node) sum += node->getValue();
+    for (const Node& node : m_nodes)
+      if (node) sum += node.getLogOdds();
     const float value = static_cast<float>(sum);
-    return {m_sum.limits == Limits::Apply ? m_sum.filter.limitedOccupancy(value) : value, {}};
+    return {toUnits(m_sum.limits == Limits::Apply ? m_sum.filter.limitedOccupancy(value) : value),
+            {}};
   }
 
   LeafContent sumOfRecords() const {
     std::vector<Belief> beliefs;
     for (std::size_t i = 0; i < m_nodes.size(); ++i)
-      if (m_nodes[i]) beliefs.push_back(m_sum.maps[i]->belief(*m_nodes[i]));
+      if (m_nodes[i]) beliefs.push_back(m_sum.maps[i]->belief(m_nodes[i]));
     std::vector<ClassLogOdds> named;
     for (const ClassId id : namesIn(beliefs))
       named.push_back({total(beliefs, [id](const Belief& b) { return b.logOddsOf(id); }), id});
     const double rest = total(beliefs, [](const Belief& b) { return b.rest; });
     Belief belief = truncated(std::move(named), rest, m_sum.numClasses());
-    if (m_sum.limits == Limits::Apply) m_sum.filter.limit(belief);
-    return {belief.occupancyLogOdds(m_sum.numClasses()), belief};
+    if (m_sum.limits == Limits::Apply)
+      m_sum.filter.limit(belief);
+    else
+      lowerIntoRange(belief);
+    return {toUnits(m_sum.filter.occupancyOf(belief)), ClassRecord::of(belief)};
+  }
+
+  /** All alike, so that what is likelier stays so. */
+  void lowerIntoRange(Belief& b) const {
+    float highest = b.unnamed(m_sum.numClasses()) > 0 ? b.rest : b.logOdds[0];
+    for (int i = 0; i < b.count; ++i) highest = std::max(highest, b.logOdds[i]);
+    const float excess = std::max(0.f, highest - fromUnits(INT16_MAX));
+    for (int i = 0; i < b.count; ++i) b.logOdds[i] -= excess;
+    b.rest -= excess;
   }
 
   static std::vector<ClassId> namesIn(const std::vector<Belief>& beliefs) {
@@ -83,7 +96,7 @@ class MergeCursor {
   }
 
   const Sum& m_sum;
-  std::vector<const Node*> m_nodes;
+  std::vector<Node> m_nodes;
 };
 
 void checkAlike(const std::vector<const SemanticOcTree*>& maps) {
@@ -109,7 +122,7 @@ SemanticOcTree merged(const std::vector<const SemanticOcTree*>& maps, Limits lim
   checkAlike(maps);
   SemanticOcTree sum = TreeBuilder::emptyLike(*maps.front());
   const Sum context{maps, {sum.numClasses(), sum.filterParameters()}, limits};
-  std::vector<const Node*> roots;
+  std::vector<Node> roots;
   for (const SemanticOcTree* map : maps) roots.push_back(map->root());
   TreeBuilder::fill(sum, MergeCursor(context, std::move(roots)));
   return sum;

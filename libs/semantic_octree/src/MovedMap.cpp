@@ -17,11 +17,11 @@ Bounds boundsOf(const Cell& cell) {
 }
 
 /** Whether any known leaf below a node overlaps the bounds. */
-bool anyKnown(const Node* node, const Cell& cell, const Bounds& bounds) {
+bool anyKnown(const Node& node, const Cell& cell, const Bounds& bounds) {
   if (!node || !boundsOf(cell).intersects(bounds)) return false;
-  if (node->isLeaf()) return true;
+  if (node.isLeaf()) return true;
   for (int i = 0; i < 8; ++i)
-    if (anyKnown(node->child(i), cell.child(i), bounds)) return true;
+    if (anyKnown(node.child(i), cell.child(i), bounds)) return true;
   return false;
 }
 
@@ -38,16 +38,17 @@ class MoveCursor {
   explicit MoveCursor(const Move& move) : MoveCursor(move, Cell(), move.map.root(), Cell()) {}
 
   bool known() const {
-    return m_cell.depth == kTreeDepth ? m_node != nullptr : anyKnown(m_node, m_nodeCell, bounds());
+    return m_cell.depth == kTreeDepth ? static_cast<bool>(m_node)
+                                      : anyKnown(m_node, m_nodeCell, bounds());
   }
-  bool isLeaf() const { return m_node->isLeaf(); }
-  LeafContent content() const { return contentOf(m_move.map, *m_node); }
+  bool isLeaf() const { return m_node.isLeaf(); }
+  LeafContent content() const { return contentOf(m_move.map, m_node); }
   MoveCursor child(int i) const { return {m_move, m_cell.child(i), m_node, m_nodeCell}; }
 
  private:
-  MoveCursor(const Move& move, const Cell& cell, const Node* node, const Cell& nodeCell)
+  MoveCursor(const Move& move, const Cell& cell, const Node& node, const Cell& nodeCell)
       : m_move(move), m_cell(cell), m_node(node), m_nodeCell(nodeCell) {
-    while (m_node && !m_node->isLeaf() && descend()) continue;
+    while (m_node && !m_node.isLeaf() && descend()) continue;
   }
 
   /** To the child that holds the whole cube, or the center if the cube is a voxel. */
@@ -61,7 +62,7 @@ class MoveCursor {
       for (int axis = 0; axis < 3; ++axis)
         if (low[axis] != high[axis]) return false;
       const int i = low[0] | low[1] << 1 | low[2] << 2;
-      m_node = m_node->child(i);
+      m_node = m_node.child(i);
       m_nodeCell = m_nodeCell.child(i);
       return true;
     }
@@ -80,7 +81,7 @@ class MoveCursor {
 
   const Move& m_move;
   Cell m_cell;
-  const Node* m_node;
+  Node m_node;
   Cell m_nodeCell;
 };
 

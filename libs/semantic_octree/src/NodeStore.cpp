@@ -1,20 +1,94 @@
 #include "NodeStore.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace semantic_octree {
 
+using Kind = Slot::Kind;
+
+Units Block::highestValue() const { return *std::max_element(values, values + 64); }
+
+Block::Count Block::count() const {
+  constexpr VoxelBits kFirsts = 0x0101010101010101;
+  VoxelBits any = known | known >> 4;
+  any |= any >> 2;
+  any = (any | any >> 1) & kFirsts;  // one bit per known octant
+  // The leaves' bits, one in each octant: the eighth of the copies of all eight.
+  const VoxelBits leaves = (leafOctants * kFirsts & 0x8040201008040201) + 0x7f7f7f7f7f7f7f7f;
+  const VoxelBits leaf = ((leaves | (leafOctants * kFirsts & 0x8040201008040201)) >> 7) & kFirsts;
+  return {countOf(any) + countOf(known & ~(leaf * 0xff)), countOf(any & ~leaf)};
+}
+
+void BlockContent::setVoxel(int voxel, Units value, const ClassRecord* record) {
+  values[voxel] = value;
+  known |= VoxelBits(1) << voxel;
+  if (!record) return;
+  recorded |= VoxelBits(1) << voxel;
+  records[voxel] = *record;
+}
+
+void BlockContent::setLeafOctant(int octant, Units value, const ClassRecord* record) {
+  setVoxel(8 * octant, value, record);
+  std::fill_n(values + 8 * octant, 8, value);
+  known |= VoxelBits(0xff) << 8 * octant;
+  leafOctants |= static_cast<std::uint8_t>(1u << octant);
+}
+
+void BlockContent::mergeOctant(int octant) {
+  const int first = 8 * octant;
+  const auto bitsOf = [first](VoxelBits bits) { return bits >> first & 0xff; };
+  if (bitsOf(known) != 0xff || (bitsOf(recorded) != 0 && bitsOf(recorded) != 0xff)) return;
+  for (int i = first + 1; i < first + 8; ++i)
+    if (values[i] != values[first] || (bitsOf(recorded) && records[i] != records[first])) return;
+  leafOctants |= static_cast<std::uint8_t>(1u << octant);
+  recorded &= ~(VoxelBits(0xfe) << first);
+}
+
 NodeStore::NodeStore(std::size_t stateBytes)
-    : m_stateBytes(stateBytes), m_records(sizeof(Belief)), m_states(stateBytes) {}
+    : m_octants(sizeof(Octant) + stateBytes),
+      m_blocks(sizeof(Block) + stateBytes),
+      m_records(sizeof(ClassRecord)) {}
+
+NodeStore::NodeStore(const NodeStore& o, std::size_t stateBytes) : NodeStore(stateBytes) {
+  m_octants.copy(o.m_octants);
+  m_blocks.copy(o.m_blocks);
+  m_records.copy(o.m_records);
+  m_root = o.m_root;
+  m_arenas = o.m_arenas;
+  for (NodeArena& arena : m_arenas) arena.m_store = this;
+}
 
 NodeArena& NodeStore::arena(int i) {
   while (static_cast<int>(m_arenas.size()) <= i) m_arenas.emplace_back(*this);
   return m_arenas[i];
 }
 
+const ClassRecord& NodeStore::record(const Node& leaf) const {
+  const Slot& slot = slotOf(leaf);
+  if (leaf.m_part == Node::kWhole) return record(slot);
+  const int voxel =
+      leaf.isOctant() ? 8 * (leaf.m_part - Node::kFirstOctant) : leaf.m_part - Node::kFirstVoxel;
+  return record(block(slot), voxel);
+}
+
+Units NodeStore::highestValueBelow(const Slot& inner) const {
+  if (inner.kind == Kind::Block) return block(inner).highestValue();
+  Units highest = kUnknown;
+  for (const Slot& child : octant(inner).slots)
+    if (child.isKnown()) highest = std::max(highest, child.value);
+  return highest;
+}
+
+void NodeStore::prefetchInner(const Slot& slot) const {
+  if (!slot.isInner()) return;
+  const bool isBlock = slot.kind == Kind::Block;
+  const std::byte* begin = isBlock ? m_blocks.at(slot.index) : m_octants.at(slot.index);
+  const std::size_t bytes = isBlock ? m_blocks.stride() : m_octants.stride();
+  for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(begin + i);
+}
+
 std::size_t NodeStore::numNodes() const {
-  long n = 1;
+  long n = 0;
   for (const NodeArena& arena : m_arenas) n += arena.nodes();
   return static_cast<std::size_t>(n);
 }
@@ -25,106 +99,170 @@ std::size_t NodeStore::numInnerNodes() const {
   return static_cast<std::size_t>(n);
 }
 
-void NodeStore::updateOccupancy(Node& inner) {
-  const Octant& o = octant(inner);
-  float highest = -HUGE_VALF;
-  for (int i = 0; i < 8; ++i)
-    if (o.has(i)) highest = std::max(highest, o.nodes[i].getValue());
-  inner.setValue(highest);
+std::uint32_t NodeArena::newOctant() {
+  const std::uint32_t index = m_octants.allocate(m_store->m_octants);
+  std::byte* memory = m_store->m_octants.at(index);
+  std::fill_n(memory, m_store->m_octants.stride(), std::byte(0));
+  return index;
 }
 
-NodeArena::NodeArena(NodeStore& store)
-    : m_store(store),
-      m_octants(store.m_octants),
-      m_records(store.m_records),
-      m_states(store.m_states) {}
+std::uint32_t NodeArena::newBlock() {
+  const std::uint32_t index = m_blocks.allocate(m_store->m_blocks);
+  std::byte* memory = m_store->m_blocks.at(index);
+  std::fill_n(memory, m_store->m_blocks.stride(), std::byte(0));
+  Block& block = *reinterpret_cast<Block*>(memory);
+  std::fill_n(block.values, 64, kUnknown);
+  return index;
+}
 
-Octant& NodeArena::createOctant(Node& node) {
-  Octant* octant = m_octants.allocate();
-  node.children = octant->pointers;
+void NodeArena::becomeInner(Slot& slot, Kind kind, std::uint32_t index) {
+  m_nodes += !slot.isKnown();
   ++m_inner;
-  node.m_index = 0;
-  if (m_store.m_stateBytes > 0) {
-    node.m_index = m_states.allocate();
-    std::memset(m_store.state<void>(node), 0, m_store.m_stateBytes);
-  }
-  return *octant;
+  slot.kind = kind;
+  slot.index = index;
 }
 
-Octant& NodeArena::expand(Node& leaf) {
-  const std::uint32_t record = leaf.m_index;
+void NodeArena::createLeaf(Slot& slot, Units value) {
+  ++m_nodes;
+  slot.kind = Kind::Leaf;
+  slot.value = value;
+}
+
+Octant& NodeArena::createOctant(Slot& slot) {
+  becomeInner(slot, Kind::Octant, newOctant());
+  return m_store->octant(slot);
+}
+
+Block& NodeArena::createBlock(Slot& slot) {
+  becomeInner(slot, Kind::Block, newBlock());
+  return m_store->block(slot);
+}
+
+void NodeArena::createBlock(Slot& slot, const BlockContent& content) {
+  Block& block = createBlock(slot);
+  std::copy_n(content.values, 64, block.values);
+  block.known = content.known;
+  block.leafOctants = content.leafOctants;
+  setRecorded(block, content.recorded);
+  ClassRecord* record = content.recorded ? m_store->recordsOf(block) : nullptr;
+  for (VoxelBits bits = content.recorded; bits; bits &= bits - 1)
+    *record++ = content.records[__builtin_ctzll(bits)];
+  recount({0, 0}, block.count());
+  slot.value = block.highestValue();
+}
+
+Octant& NodeArena::expandToOctant(Slot& leaf) {
+  const Slot whole = leaf;
   Octant& octant = createOctant(leaf);
-  for (int i = 0; i < 8; ++i) {
-    Node& child = octant.child(i);
-    child.setValue(leaf.getValue());
-    child.m_index = record;
-    if (record && i > 0) {
-      child.m_index = m_records.allocate();
-      m_store.record(child) = *m_store.m_records.at<Belief>(record);
-    }
+  for (Slot& child : octant.slots) {
+    createLeaf(child, whole.value);
+    if (whole.kind == Kind::LeafWithRecord) setRecord(child, m_store->record(whole));
   }
-  m_nodes += 8;
+  if (whole.kind == Kind::LeafWithRecord) m_records.release(whole.index, 1);
   return octant;
 }
 
-void NodeArena::removeOctant(Node& node) {
-  if (node.m_index) m_states.release(node.m_index);
-  node.m_index = 0;
-  m_octants.release(&NodeStore::octant(node));
-  node.children = nullptr;
+Block& NodeArena::expandToBlock(Slot& leaf) {
+  const Slot whole = leaf;
+  Block& block = createBlock(leaf);
+  std::fill_n(block.values, 64, whole.value);
+  block.known = ~VoxelBits(0);
+  block.leafOctants = 0xff;
+  if (whole.kind == Kind::LeafWithRecord) {
+    setRecorded(block, 0x0101010101010101);
+    std::fill_n(m_store->recordsOf(block), 8, m_store->record(whole));
+    m_records.release(whole.index, 1);
+  }
+  recount({0, 0}, block.count());
+  return block;
+}
+
+void NodeArena::removeOctant(Slot& inner) {
+  m_octants.release(inner.index);
+  inner = Slot();
   --m_inner;
+  --m_nodes;
+}
+
+bool NodeArena::prune(Slot& inner) {
+  return inner.kind == Kind::Block ? pruneBlock(inner) : pruneOctant(inner);
 }
 
 bool NodeArena::childrenAgree(const Octant& octant) const {
-  const Node& first = octant.nodes[0];
-  for (int i = 0; i < 8; ++i) {
-    const Node& child = octant.nodes[i];
-    if (!octant.has(i) || !child.isLeaf() || child.getValue() != first.getValue() ||
-        child.hasClassRecord() != first.hasClassRecord())
-      return false;
-  }
-  if (first.hasClassRecord())
-    for (int i = 1; i < 8; ++i)
-      if (!(m_store.record(octant.nodes[i]) == m_store.record(first))) return false;
-  return true;
+  const Slot& first = octant.slots[0];
+  if (!first.isLeaf()) return false;
+  return std::all_of(octant.slots + 1, octant.slots + 8, [&](const Slot& child) {
+    return child.kind == first.kind && child.value == first.value &&
+           (child.kind == Kind::Leaf || m_store->record(child) == m_store->record(first));
+  });
 }
 
-bool NodeArena::prune(Node& inner) {
-  Octant& octant = m_store.octant(inner);
+bool NodeArena::pruneOctant(Slot& inner) {
+  const Octant& octant = m_store->octant(inner);
   if (!childrenAgree(octant)) return false;
-  if (inner.m_index) m_states.release(inner.m_index);
-  inner.m_index = octant.nodes[0].m_index;
-  inner.setValue(octant.nodes[0].getValue());
-  inner.children = nullptr;
-  for (int i = 1; i < 8; ++i)
-    if (octant.nodes[i].m_index) m_records.release(octant.nodes[i].m_index);
-  m_octants.release(&octant);
+  const Slot first = octant.slots[0];
+  if (first.kind == Kind::LeafWithRecord)
+    for (int i = 1; i < 8; ++i) m_records.release(octant.slots[i].index, 1);
+  m_octants.release(inner.index);
+  inner = first;
   --m_inner;
   m_nodes -= 8;
   return true;
 }
 
-void NodeArena::setRecord(Node& leaf, const Belief& belief) {
-  if (!leaf.m_index) leaf.m_index = m_records.allocate();
-  m_store.record(leaf) = belief;
+bool NodeArena::pruneBlock(Slot& inner) {
+  Block& block = m_store->block(inner);
+  if (block.leafOctants != 0xff || (block.recorded && block.numRecords() < 8)) return false;
+  if (!std::all_of(block.values, block.values + 64,
+                   [&](Units value) { return value == block.values[0]; }))
+    return false;
+  const ClassRecord* records = block.recorded ? m_store->recordsOf(block) : nullptr;
+  if (records &&
+      !std::all_of(records, records + 8, [&](const ClassRecord& r) { return r == records[0]; }))
+    return false;
+  Slot leaf;
+  leaf.kind = Kind::Leaf;
+  leaf.value = block.values[0];
+  if (records) setRecord(leaf, records[0]);
+  setRecorded(block, 0);
+  m_blocks.release(inner.index);
+  inner = leaf;
+  --m_inner;
+  m_nodes -= 8;
+  return true;
 }
 
-void NodeArena::dropRecord(Node& leaf) {
-  m_records.release(leaf.m_index);
-  leaf.m_index = 0;
-}
-
-void NodeArena::copy(const NodeStore& source, const Node& from, Node& to) {
-  to.setValue(from.getValue());
-  if (from.isLeaf()) {
-    if (from.hasClassRecord()) setRecord(to, source.record(from));
-    return;
+void NodeArena::setRecord(Slot& leaf, const ClassRecord& record) {
+  if (leaf.kind != Kind::LeafWithRecord) {
+    leaf.index = m_records.allocate(m_store->m_records, 1);
+    leaf.kind = Kind::LeafWithRecord;
   }
-  Octant& octant = createOctant(to);
-  if (m_store.m_stateBytes > 0 && source.m_stateBytes == m_store.m_stateBytes)
-    std::memcpy(m_store.state<void>(to), source.state<void>(from), m_store.m_stateBytes);
-  for (int i = 0; i < 8; ++i)
-    if (const Node* child = from.child(i)) copy(source, *child, createChild(octant, i));
+  m_store->record(leaf) = record;
+}
+
+void NodeArena::dropRecord(Slot& leaf) {
+  m_records.release(leaf.index, 1);
+  leaf.kind = Kind::Leaf;
+}
+
+void NodeArena::setRecorded(Block& block, VoxelBits recorded) {
+  if (recorded == block.recorded) return;
+  ClassRecord old[64];
+  const int before = block.numRecords(), after = countOf(recorded);
+  if (before > 0) std::copy_n(m_store->recordsOf(block), before, old);
+  if (before == 0 || after == 0 || !RunAllocator::sameLength(before, after)) {
+    if (before > 0) m_records.release(block.records, before);
+    if (after > 0) block.records = m_records.allocate(m_store->m_records, after);
+  }
+  const ClassRecord* from = old;
+  ClassRecord* to = after > 0 ? m_store->recordsOf(block) : nullptr;
+  for (VoxelBits bits = block.recorded | recorded; bits; bits &= bits - 1) {
+    const VoxelBits bit = bits & -bits;
+    if (block.recorded & recorded & bit) *to = *from;
+    from += (block.recorded & bit) != 0;
+    to += (recorded & bit) != 0;
+  }
+  block.recorded = recorded;
 }
 
 }  // namespace semantic_octree

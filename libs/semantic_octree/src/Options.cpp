@@ -18,6 +18,9 @@ using strict_files::Choices;
 using strict_files::OptionList;
 using strict_files::require;
 
+/** Log-odds of what is likelier than this, and less likely than the rest, fit into 16 bits. */
+static constexpr double kLeastProbability = 1e-9;
+
 const Choices<InsertionOptions::Rays>& choicesOf(InsertionOptions::Rays) {
   using Rays = InsertionOptions::Rays;
   static const Choices<Rays> choices = {{"all", Rays::All}, {"end_voxels", Rays::EndVoxels}};
@@ -32,15 +35,24 @@ void InsertionOptions::describe(OptionList& list) {
   list.add("max_range", maxRange, "m", atLeast(0),
            "returns beyond it only carve free space; 0: no limit. Where the sensor or its labels "
            "become bad: 30 for LiDARs, 5 for depth cameras");
-  list.add("min_range", minRange, "m", atLeast(0), "nearer returns are ignored: the robot itself");
+  list.add("min_range", minRange, "m", between(0, 1000),
+           "nearer returns are ignored: the robot itself");
   list.add("carving_margin", carvingMargin, "m", atLeast(0),
            "so much before a return is not carved; one voxel helps where ground seen at grazing "
            "angles erodes");
   list.add("threads", threads, "", between(1, 256),
            "that share the work on a scan; the map does not depend on it");
+  list.add(
+      "max_scan_memory", maxScanMemory, "MB", between(1, 1000000),
+      "a scan that needs larger buffers is refused: its points are too far from each other for "
+      "voxels of this size");
 }
 
-void InsertionOptions::validate() const { checkOptions(*this, "InsertionOptions"); }
+void InsertionOptions::validate() const {
+  checkOptions(*this, "InsertionOptions");
+  require(maxRange == 0 || minRange < maxRange, "InsertionOptions::min_range", minRange,
+          "less than max_range");
+}
 
 const Choices<FilterParameters::Increments>& choicesOf(FilterParameters::Increments) {
   using Increments = FilterParameters::Increments;
@@ -58,16 +70,16 @@ void FilterParameters::describe(OptionList& list) {
       "share of labels that name the true class, above 1 / number of classes. Too large, and a "
       "few wrong labels win; too small, and it takes many scans to be sure");
   list.add(
-      "hit_probability", hitProbability, "", probability,
+      "hit_probability", hitProbability, "", above(0).upTo(1 - kLeastProbability),
       "of a return from an occupied voxel that a beam reaches: 0.5 for LiDARs outdoors, 0.9 for "
       "depth cameras");
   list.add(
       "false_alarm_probability", falseAlarmProbability, "", probability,
       "of a return from a free voxel, below hit_probability. Larger: moving objects leave less "
       "behind; smaller: thin things survive");
-  list.add("min_occupancy", minOccupancy, "", above(0).below(0.5),
+  list.add("min_occupancy", minOccupancy, "", atLeast(kLeastProbability).below(0.5),
            "of what was seen free for long. Larger: the map forgets faster and merges more space");
-  list.add("max_probability", maxProbability, "", above(0.5).below(1),
+  list.add("max_probability", maxProbability, "", above(0.5).upTo(1 - kLeastProbability),
            "of a class that was seen for long. Smaller: the map forgets faster");
   list.add("soft_label_floor", softLabelFloor, "", probability,
            "probabilities in soft labels are raised to it");

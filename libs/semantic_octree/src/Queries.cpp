@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "LeafContent.h"
 #include "NodeStore.h"
 
 namespace semantic_octree {
@@ -21,34 +22,32 @@ double addMixture(const SemanticOcTree& tree, const Node& node, double weight,
   }
   double known = 0;
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = node.child(i))
-      known += addMixture(tree, *child, weight / 8, sum, scratch);
+    if (const Node child = node.child(i))
+      known += addMixture(tree, child, weight / 8, sum, scratch);
   return known;
 }
 
-bool anyClassSeen(const Node& node) {
-  if (node.isLeaf()) return node.hasClassRecord();
+/** Widens a box (keys, ends included) to all known cells below a node. */
+void addExtent(const Node& node, const Cell& cell, VoxelIndex& low, VoxelIndex& high) {
+  const VoxelIndex first = cell.lowest(), last = first + (cell.edge() - 1);
+  if ((first >= low).all() && (last <= high).all()) return;
+  if (node.isLeaf()) {
+    low = low.min(first);
+    high = high.max(last);
+    return;
+  }
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = node.child(i); child && anyClassSeen(*child)) return true;
-  return false;
+    if (const Node child = node.child(i)) addExtent(child, cell.child(i), low, high);
 }
 
-/** Meters along a unit vector until the border of the map is near. */
-double distanceToBorder(const octomap::point3d& origin, const octomap::point3d& direction,
-                        double resolution) {
-  double distance = HUGE_VAL;
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    if (direction(axis) == 0) continue;
-    const double border = std::copysign(kKeyOfOrigin * resolution, direction(axis));
-    distance = std::min(distance, (border - origin(axis)) / direction(axis));
-  }
-  return distance - 2 * resolution;
-}
+/** As OctoMap computes it, so that what lies on a border has OctoMap's key (0.3 / 0.1 < 3). */
+double inVoxels(double coordinate, double resolution) { return coordinate * (1 / resolution); }
 
 }  // namespace
 
 SemanticOcTree::Belief SemanticOcTree::belief(const Node& leaf) const {
-  return leaf.hasClassRecord() ? m_store->record(leaf) : m_filter.uniform(leaf.getValue());
+  return leaf.hasClassRecord() ? store().record(leaf).belief()
+                               : m_filter.uniform(leaf.getLogOdds());
 }
 
 std::vector<double> SemanticOcTree::distribution(const Node& node) const {
@@ -60,19 +59,20 @@ std::vector<double> SemanticOcTree::distribution(const Node& node) const {
 
 CellState SemanticOcTree::query(const Node& node) const {
   CellState state;
-  state.occupancy = octomap::probability(node.getValue());
-  state.status = node.getValue() > 0 ? CellState::Status::Occupied : CellState::Status::Free;
-  if (!anyClassSeen(node)) return state;
-  const std::vector<double> p = distribution(node);
-  const auto best = std::max_element(p.begin() + 1, p.end());
-  state.likeliestClass = static_cast<ClassId>(best - p.begin());
-  state.probability = *best;
+  state.occupancy = node.getOccupancy();
+  state.status = isNodeOccupied(node) ? CellState::Status::Occupied : CellState::Status::Free;
+  const std::vector<double> shares = classShares(*this, node);
+  if (shares.empty()) return state;
+  const auto best = std::max_element(shares.begin(), shares.end());
+  state.likeliestClass = static_cast<ClassId>(best - shares.begin() + 1);
+  state.probability =
+      node.isLeaf() ? distribution(node)[state.likeliestClass] : state.occupancy * *best;
   return state;
 }
 
 CellState SemanticOcTree::query(const octomap::OcTreeKey& key, unsigned depth) const {
-  const Node* node = empty() ? nullptr : search(key, depth);
-  return node ? query(*node) : CellState();
+  const Node node = search(key, depth);
+  return node ? query(node) : CellState();
 }
 
 CellState SemanticOcTree::query(double x, double y, double z, unsigned depth) const {
@@ -80,21 +80,96 @@ CellState SemanticOcTree::query(double x, double y, double z, unsigned depth) co
   return coordToKeyChecked(x, y, z, key) ? query(key, depth) : CellState();
 }
 
-std::optional<RayHit> SemanticOcTree::castRay(const octomap::point3d& origin,
-                                              const octomap::point3d& direction, double maxRange,
-                                              bool ignoreUnknown) const {
-  const octomap::point3d unit = direction.normalized();
-  if (!(unit.norm() > 0.5) || !std::isfinite(unit.norm()))
-    throw std::invalid_argument("ray cast: a direction that is zero or not finite");
-  octomap::OcTreeKey key;
-  if (empty() || !coordToKeyChecked(origin, key)) return std::nullopt;
-  // OctoMap prints a warning when a ray gets to the map's border, and so none may.
-  const double inside = distanceToBorder(origin, unit, resolution);
-  const double range = maxRange > 0 ? std::min(maxRange, inside) : inside;
-  octomap::point3d end;
-  if (range <= 0 || !Base::castRay(origin, unit, end, ignoreUnknown, range)) return std::nullopt;
-  key = coordToKey(end);
-  return RayHit{key, keyToCoord(key), query(key)};
+Node SemanticOcTree::root() const { return store().rootNode(); }
+
+Node SemanticOcTree::search(const octomap::OcTreeKey& key, unsigned depth) const {
+  Node node = root();
+  const int last = depth == 0 ? kTreeDepth : static_cast<int>(depth);
+  for (int d = 0; node && d < last && !node.isLeaf(); ++d) {
+    const int bit = kTreeDepth - 1 - d;
+    node = node.child((key[0] >> bit & 1) | (key[1] >> bit & 1) << 1 | (key[2] >> bit & 1) << 2);
+  }
+  return node;
+}
+
+TreeIterator SemanticOcTree::begin_leafs(unsigned maxDepth) const {
+  TreeIterator::Selection selection;
+  if (maxDepth > 0) selection.maxDepth = static_cast<int>(maxDepth);
+  return {*this, selection};
+}
+
+TreeIterator SemanticOcTree::begin_tree(unsigned maxDepth) const {
+  TreeIterator::Selection selection;
+  selection.innerNodes = true;
+  if (maxDepth > 0) selection.maxDepth = static_cast<int>(maxDepth);
+  return {*this, selection};
+}
+
+TreeIterator SemanticOcTree::begin_leafs_bbx(const octomap::OcTreeKey& low,
+                                             const octomap::OcTreeKey& high,
+                                             unsigned maxDepth) const {
+  TreeIterator::Selection selection;
+  if (maxDepth > 0) selection.maxDepth = static_cast<int>(maxDepth);
+  selection.low = low;
+  selection.high = high;
+  return {*this, selection};
+}
+
+TreeIterator SemanticOcTree::begin_leafs_bbx(const octomap::point3d& low,
+                                             const octomap::point3d& high,
+                                             unsigned maxDepth) const {
+  octomap::OcTreeKey lowKey, highKey;
+  if (!coordToKeyChecked(low, lowKey) || !coordToKeyChecked(high, highKey)) return {};
+  return begin_leafs_bbx(lowKey, highKey, maxDepth);
+}
+
+octomap::OcTreeKey SemanticOcTree::coordToKey(double x, double y, double z) const {
+  const auto key = [&](double coordinate) {
+    return floorOf(inVoxels(coordinate, m_resolution)) + kKeyOfOrigin;
+  };
+  return octomapKey(key(x), key(y), key(z));
+}
+octomap::OcTreeKey SemanticOcTree::coordToKey(const octomap::point3d& point) const {
+  return coordToKey(point.x(), point.y(), point.z());
+}
+
+bool SemanticOcTree::coordToKeyChecked(double x, double y, double z,
+                                       octomap::OcTreeKey& key) const {
+  for (const double coordinate : {x, y, z}) {
+    const double voxel = inVoxels(coordinate, m_resolution);
+    if (!(voxel >= -kKeyOfOrigin) || !(voxel < kKeyOfOrigin)) return false;
+  }
+  key = coordToKey(x, y, z);
+  return true;
+}
+bool SemanticOcTree::coordToKeyChecked(const octomap::point3d& point,
+                                       octomap::OcTreeKey& key) const {
+  return coordToKeyChecked(point.x(), point.y(), point.z(), key);
+}
+
+octomap::point3d SemanticOcTree::keyToCoord(const octomap::OcTreeKey& key, unsigned depth) const {
+  const auto center = [&](unsigned axis) {
+    return static_cast<float>(centerOf(key[axis], m_resolution, static_cast<int>(depth)));
+  };
+  return {center(0), center(1), center(2)};
+}
+
+void SemanticOcTree::getMetricMin(double& x, double& y, double& z) const {
+  VoxelIndex low = VoxelIndex::Constant(kNumKeys), high = VoxelIndex::Constant(-1);
+  if (empty()) return void(x = y = z = 0);
+  addExtent(root(), Cell(), low, high);
+  x = lowerBorderOf(low.x(), m_resolution);
+  y = lowerBorderOf(low.y(), m_resolution);
+  z = lowerBorderOf(low.z(), m_resolution);
+}
+
+void SemanticOcTree::getMetricMax(double& x, double& y, double& z) const {
+  VoxelIndex low = VoxelIndex::Constant(kNumKeys), high = VoxelIndex::Constant(-1);
+  if (empty()) return void(x = y = z = 0);
+  addExtent(root(), Cell(), low, high);
+  x = lowerBorderOf(high.x() + 1, m_resolution);
+  y = lowerBorderOf(high.y() + 1, m_resolution);
+  z = lowerBorderOf(high.z() + 1, m_resolution);
 }
 
 MapContents contentsOf(const SemanticOcTree& tree) {

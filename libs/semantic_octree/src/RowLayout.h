@@ -3,10 +3,14 @@
 #include <tree_abstraction/TermSet.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
+#include <memory>
+#include <new>
 #include <vector>
 
 #include "Cell.h"
+#include "ClassRecord.h"
 #include "RowKernel.h"
 
 namespace semantic_octree {
@@ -53,33 +57,81 @@ class RowLayout {
   std::vector<double> m_unknownRow;
 };
 
-inline std::size_t hashOf(float value) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits * 0x9e3779b97f4a7c15u;
-}
-
-inline std::size_t hashOf(const Belief& belief) {
-  std::uint32_t bits[5];
-  static_assert(sizeof(Belief) == sizeof bits);
-  std::memcpy(bits, &belief, sizeof bits);
+inline std::size_t hashOf(const ClassRecord& record) {
+  std::uint32_t bits[3];
+  static_assert(sizeof(ClassRecord) == sizeof bits);
+  std::memcpy(bits, &record, sizeof bits);
   std::size_t hash = 0;
   for (const std::uint32_t b : bits) hash = (hash ^ b) * 0x9e3779b97f4a7c15u;
   return hash ^ hash << 32;
 }
+
+/** An octant's eight values. */
+struct OctantPattern {
+  std::uint64_t low = 0, high = 0;
+  OctantPattern() = default;
+  explicit OctantPattern(const Units* values) {
+    std::memcpy(&low, values, sizeof low);
+    std::memcpy(&high, values + 4, sizeof high);
+  }
+  bool operator==(const OctantPattern& o) const { return low == o.low && high == o.high; }
+};
+
+inline std::size_t hashOf(const OctantPattern& p) {
+  const std::size_t hash = (p.low * 0x9e3779b97f4a7c15u ^ p.high) * 0xd6e8feb86659fd93u;
+  return hash ^ hash << 32;
+}
+
+/** Rows of leaves without a class record (see RowLayout), by their log-odds: each is computed when
+ * first asked for, and kept. */
+class ValueRows {
+ public:
+  explicit ValueRows(std::size_t rowSize)
+      : m_rowSize(rowSize),
+        m_known(kValues),
+        m_rows(static_cast<double*>(std::calloc(kValues * rowSize, sizeof(double)))) {
+    if (!m_rows) throw std::bad_alloc();
+  }
+
+  /** \param compute computes a row that is not there: compute(value, row) */
+  template <typename F>
+  const double* row(Units value, const F& compute) {
+    const std::size_t i = static_cast<std::uint16_t>(value);
+    double* const row = m_rows.get() + i * m_rowSize;
+    if (!m_known[i]) {
+      compute(value, row);
+      m_known[i] = 1;
+    }
+    return row;
+  }
+
+ private:
+  static constexpr std::size_t kValues = 1 << 16;
+  struct Free {
+    void operator()(double* p) const { std::free(p); }
+  };
+  std::size_t m_rowSize;
+  std::vector<char> m_known;
+  /** Pages that no value touches cost nothing. */
+  std::unique_ptr<double, Free> m_rows;
+};
 
 /** Rows of leaves (see RowLayout) by what the leaves hold. A few values make up most of a map, and
  * a row takes exponentials and logarithms to compute. A row stays where it is until release(). */
 template <typename Key>
 class RowCache {
  public:
-  explicit RowCache(int rowSize)
+  explicit RowCache(std::size_t rowSize)
       : m_rowSize(rowSize), m_slots(kSlots), m_rows((kSlots + kInUse) * rowSize) {}
 
   /** Rows asked for up to now are not in use any more. At most eight are between two releases. */
   void release() {
     ++m_age;
     m_numSpares = 0;
+  }
+
+  void clear() {
+    for (Slot& slot : m_slots) slot.usedAt = 0;
   }
 
   /** \param compute computes a row that is not there: compute(key, row) */

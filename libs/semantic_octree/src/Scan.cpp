@@ -5,8 +5,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
+#include "Parallel.h"
 #include "RayMarking.h"
 
 namespace semantic_octree {
@@ -33,6 +33,13 @@ void checkSizes(const LabeledCloud& cloud, int numClasses) {
       throw std::invalid_argument("labeled cloud: a class probability of " + std::to_string(q));
 }
 
+/** Tiles whose bits, and what is noted of them, fit into max_scan_memory. */
+std::size_t maxTiles(const InsertionOptions& options) {
+  const int grids = options.threads + (options.rays == InsertionOptions::Rays::EndVoxels ? 2 : 1);
+  const std::size_t bytesPerTile = grids * ScanGrid::kWords * sizeof(std::uint64_t) + 6;
+  return static_cast<std::size_t>(options.maxScanMemory) * 1000000 / bytesPerTile;
+}
+
 /** As many ray ends as stay near the processor. */
 constexpr std::size_t kRaysInCache = 8192;
 
@@ -56,7 +63,7 @@ void Scan::set(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
   checkSizes(cloud, numClasses);
   m_beams.compute(cloud, T_map_sensor, resolution, options);
   m_free.resize(options.threads);
-  m_hits.cover(m_beams.lowest, m_beams.highest);
+  m_hits.cover(m_beams.lowest, m_beams.highest, maxTiles(options));
   markHits(options);
   markFree(options, options.carvingMargin / resolution);
   summarize();
@@ -85,12 +92,8 @@ void Scan::markHits(const InsertionOptions& options) {
 }
 
 void Scan::markFree(const InsertionOptions& options, double margin) {
-  std::vector<std::thread> helpers;
   for (int i = 0; i < options.threads; ++i) m_free[i].coverLike(m_hits);
-  for (int i = 1; i < options.threads; ++i)
-    helpers.emplace_back([=, &options] { markFreePart(i, options, margin); });
-  markFreePart(0, options, margin);
-  for (std::thread& helper : helpers) helper.join();
+  inParallel(options.threads, [&](int i) { markFreePart(i, options, margin); });
 }
 
 void Scan::markFreePart(int part, const InsertionOptions& options, double margin) {

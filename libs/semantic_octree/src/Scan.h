@@ -28,6 +28,8 @@ class Scan {
   bool hasVoxels() const { return report().hitVoxels + report().freeVoxels > 0; }
   /** Forgets the voxels, keeps the buffers. */
   void clear();
+  /** Of buffers that are not worth keeping for the next scan. */
+  static constexpr std::size_t kTooManyBytes = 256000000;
 
   /** Bytes of the buffers. */
   std::size_t bytes() const;

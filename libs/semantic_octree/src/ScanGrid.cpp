@@ -1,14 +1,14 @@
 #include "ScanGrid.h"
 
+#include <new>
 #include <stdexcept>
+#include <string>
 
 #include "Lanes.h"
 
 namespace semantic_octree {
 namespace {
 
-/** A cube of 5000 voxels' side. */
-constexpr std::size_t kMostTiles = std::size_t(1) << 28;
 /** More tiles than fit along the slowest axis, in bits that never overflow. */
 constexpr std::size_t kAllTiles = (std::size_t(1) << 14) - 1;
 constexpr int kTileSide = 8, kBitsPerTile = 512;
@@ -33,7 +33,7 @@ MSO_INLINE unsigned count(const std::uint64_t* words, unsigned numWords) {
 
 }  // namespace
 
-void ScanGrid::cover(const VoxelIndex& lowest, const VoxelIndex& highest) {
+void ScanGrid::cover(const VoxelIndex& lowest, const VoxelIndex& highest, std::size_t maxTiles) {
   std::size_t stride = 1;
   for (int axis = 0; axis < 3; ++axis) {
     m_firstVoxel[axis] = floorToTile(lowest[axis] - 1);
@@ -49,6 +49,10 @@ void ScanGrid::cover(const VoxelIndex& lowest, const VoxelIndex& highest) {
         static_cast<std::int64_t>((tileBits * stride * kBitsPerTile) | (spread(7) << axis));
     stride *= padded;
   }
+  if (size() > maxTiles)
+    throw std::length_error("scan too large to insert: " + std::to_string(size()) +
+                            " tiles of 8 x 8 x 8 voxels, max_scan_memory allows " +
+                            std::to_string(maxTiles) + "; set max_range");
   reserve(size());
 }
 
@@ -67,11 +71,8 @@ void ScanGrid::reserve(std::size_t tiles) {
   m_capacity = 0;
   m_bits.reset();
   // calloc: pages that no ray touches cost nothing.
-  if (tiles <= kMostTiles)
-    m_bits.reset(static_cast<std::uint64_t*>(std::calloc(tiles * kWords, sizeof(std::uint64_t))));
-  if (!m_bits)
-    throw std::length_error("scan too large to insert: " + std::to_string(tiles) +
-                            " tiles of 8 x 8 x 8 voxels; set a maximum range");
+  m_bits.reset(static_cast<std::uint64_t*>(std::calloc(tiles * kWords, sizeof(std::uint64_t))));
+  if (!m_bits) throw std::bad_alloc();
   m_capacity = tiles;
 }
 

@@ -19,8 +19,9 @@ class ScanGrid {
   static constexpr int kWords = 8;  ///< per tile
 
   /** Covers the box of voxels [lowest, highest], and one voxel more on each side. All bits are 0
-   * (the user of a bit clears it). \throw std::length_error the box is too large for memory. */
-  void cover(const VoxelIndex& lowest, const VoxelIndex& highest);
+   * (the user of a bit clears it). \param maxTiles more are refused
+   * \throw std::length_error the box is too large. */
+  void cover(const VoxelIndex& lowest, const VoxelIndex& highest, std::size_t maxTiles);
   /** Covers the same box as another grid. */
   void coverLike(const ScanGrid& o);
 

@@ -1,7 +1,8 @@
 #include "ScanMerger.h"
 
 #include <atomic>
-#include <thread>
+
+#include "Parallel.h"
 
 namespace semantic_octree {
 namespace {
@@ -22,16 +23,15 @@ void forEachTouchedChild(const Scan& scan, const ScanCube& cube, F f) {
 
 bool ScanMerger::merge(const ScanCube& cube) {
   const CubeContent content = cube.content(m_scan);
-  const Whole whole = updateWhole(*cube.node, cube.isNew, content.allFree(), content.hit());
+  const Whole whole = updateWhole(*cube.slot, content.allFree(), content.hit());
   if (whole != Whole::Descend) return note(cube.cell, whole == Whole::Changed);
   if (cube.level() == 0) return note(cube.cell, mergeTile(cube));
-  Octant& octant = childrenOf(*cube.node, cube.isNew);
+  Octant& octant = childrenOf(*cube.slot);
   bool changed = false;
   forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
-    const bool isNew = !octant.has(i);
-    changed |= merge({&m_arena.createChild(octant, i), isNew, cell});
+    changed |= merge({&octant.slots[i], cell});
   });
-  return finish(*cube.node, cube.cell, changed);
+  return finish(*cube.slot, cube.cell, changed);
 }
 
 bool ScanMerger::note(const Cell& cube, bool changed) {
@@ -39,137 +39,79 @@ bool ScanMerger::note(const Cell& cube, bool changed) {
   return changed;
 }
 
-ScanMerger::Whole ScanMerger::updateWhole(Node& node, bool isNew, bool allFree, bool anyHit) {
-  if (anyHit || !m_target.pruning || (!isNew && !node.isLeaf())) return Whole::Descend;
-  if (!isNew && !node.hasClassRecord() && node.getValue() <= m_filter.lowestOccupancy())
+ScanMerger::Whole ScanMerger::updateWhole(Slot& slot, bool allFree, bool anyHit) {
+  if (anyHit || !m_target.pruning || slot.isInner()) return Whole::Descend;
+  if (slot.kind == Slot::Kind::Leaf && slot.value <= m_voxels.lowest())
     return Whole::Unchanged;  // free for certain, and seen free once more
   if (!allFree) return Whole::Descend;
-  return miss(node) || isNew ? Whole::Changed : Whole::Unchanged;
+  const bool isNew = !slot.isKnown();
+  if (isNew) m_arena.createLeaf(slot, 0);
+  return m_voxels.miss(slot) || isNew ? Whole::Changed : Whole::Unchanged;
 }
 
-Octant& ScanMerger::childrenOf(Node& node, bool isNew) {
-  if (!node.isLeaf()) return m_store.octant(node);
-  return isNew ? m_arena.createOctant(node) : m_arena.expand(node);
+Octant& ScanMerger::childrenOf(Slot& slot) {
+  if (slot.isInner()) return m_store.octant(slot);
+  return slot.isKnown() ? m_arena.expandToOctant(slot) : m_arena.createOctant(slot);
 }
 
-bool ScanMerger::finish(Node& node, const Cell& cell, bool changed) {
-  if (m_target.pruning && m_arena.prune(node)) return changed;
+bool ScanMerger::finish(Slot& slot, const Cell& cell, bool changed, bool reshaped) {
+  if (m_target.pruning && m_arena.prune(slot)) return changed;
   if (!changed) return false;
-  m_store.updateOccupancy(node);
-  if (m_gTree) m_gTree->recompute(m_store, node, cell);
+  slot.value = m_store.highestValueBelow(slot);
+  if (m_gTree) m_gTree->recompute(m_store, slot, cell, reshaped);
   return true;
 }
 
 bool ScanMerger::mergeTile(const ScanCube& cube) {
   const std::size_t tile = m_scan.pyramid().tileIndex(cube.cell.index);
-  const std::uint64_t *free = m_scan.freeBits(tile), *hit = m_scan.hitBits(tile);
+  const VoxelBits *free = m_scan.freeBits(tile), *hit = m_scan.hitBits(tile);
   m_nextHit = m_scan.firstHit(tile);
-  Octant& octant = childrenOf(*cube.node, cube.isNew);
+  Octant& octant = childrenOf(*cube.slot);
+  for (int i = 0; i < 8; ++i)
+    if (free[i] | hit[i]) m_store.prefetchInner(octant.slots[i]);
   bool changed = false;
-  for (int i = 0; i < 8; ++i) {
-    if (!(free[i] | hit[i])) continue;
-    const bool isNew = !octant.has(i);
-    changed |=
-        mergeWord({&m_arena.createChild(octant, i), isNew, cube.cell.child(i)}, free[i], hit[i]);
-  }
-  return finish(*cube.node, cube.cell, changed);
+  for (int i = 0; i < 8; ++i)
+    if (free[i] | hit[i])
+      changed |= mergeBlock({&octant.slots[i], cube.cell.child(i)}, free[i], hit[i]);
+  return finish(*cube.slot, cube.cell, changed);
 }
 
-bool ScanMerger::mergeWord(const ScanCube& cube, std::uint64_t free, std::uint64_t hit) {
-  const Whole whole = updateWhole(*cube.node, cube.isNew, !~free, hit);
+bool ScanMerger::mergeBlock(const ScanCube& cube, VoxelBits free, VoxelBits hit) {
+  Slot& slot = *cube.slot;
+  const Whole whole = updateWhole(slot, !~free, hit);
   if (whole != Whole::Descend) return whole == Whole::Changed;
-  Octant& octant = childrenOf(*cube.node, cube.isNew);
-  bool changed = false;
-  for (int i = 0; i < 8; ++i, free >>= 8, hit >>= 8) {
-    if (!((free | hit) & 0xff)) continue;
-    const bool isNew = !octant.has(i);
-    changed |= mergeByte({&m_arena.createChild(octant, i), isNew, cube.cell.child(i)}, free & 0xff,
-                         hit & 0xff);
-  }
-  return finish(*cube.node, cube.cell, changed);
-}
-
-bool ScanMerger::mergeByte(const ScanCube& cube, unsigned free, unsigned hit) {
-  const Whole whole = updateWhole(*cube.node, cube.isNew, free == 0xff, hit);
-  if (whole != Whole::Descend) return whole == Whole::Changed;
-  Octant& octant = childrenOf(*cube.node, cube.isNew);
-  bool changed = false;
-  for (unsigned voxels = free | hit; voxels; voxels &= voxels - 1) {
-    const int i = __builtin_ctz(voxels);
-    changed |= !octant.has(i);
-    Node& voxel = m_arena.createChild(octant, i);
-    changed |= hit >> i & 1 ? this->hit(voxel) : miss(voxel);
-  }
-  return finish(*cube.node, cube.cell, changed);
-}
-
-bool ScanMerger::hit(Node& leaf) {
-  const std::uint32_t rank = m_nextHit++;
-  return hit(leaf, m_scan.votes().softLabelOf(rank), m_scan.votes().votesOf(rank));
-}
-
-bool ScanMerger::hit(Node& leaf, const float* softLabel, const HitVotes::Result& hard) {
-  const float before = leaf.getValue();
-  if (!softLabel && hard.numVoted == 0 && !leaf.hasClassRecord()) {
-    leaf.setValue(m_filter.occupancyAfterUnlabeledHit(before));
-    return leaf.getValue() != before;
-  }
-  Belief belief = leaf.hasClassRecord() ? m_store.record(leaf) : m_filter.uniform(before);
-  const Belief old = belief;
-  if (softLabel)
-    m_filter.hit(belief, softLabel);
-  else if (hard.numVoted > 0)
-    m_filter.hit(belief, hard.votes, hard.numVoted);
-  else
-    m_filter.hit(belief);
-  if (leaf.hasClassRecord() && belief == old) return false;
-  m_arena.setRecord(leaf, belief);
-  leaf.setValue(belief.occupancyLogOdds(m_filter.numClasses()));
-  return true;
-}
-
-bool ScanMerger::miss(Node& leaf) {
-  if (!leaf.hasClassRecord()) {
-    const float before = leaf.getValue();
-    leaf.setValue(m_filter.occupancyAfterMiss(before));
-    return leaf.getValue() != before;
-  }
-  Belief& belief = m_store.record(leaf);
-  m_filter.miss(belief);
-  const float uniform = m_filter.occupancyOfUniform(belief.rest);
-  if (belief.isUniform() && uniform <= m_filter.lowestOccupancy()) {
-    leaf.setValue(uniform);  // free for certain: the record says no more than the occupancy does
-    m_arena.dropRecord(leaf);
-  } else {
-    leaf.setValue(belief.occupancyLogOdds(m_filter.numClasses()));
-  }
-  return true;
+  const bool wasInner = slot.isInner();
+  Block& block = wasInner         ? m_store.block(slot)
+                 : slot.isKnown() ? m_arena.expandToBlock(slot)
+                                  : m_arena.createBlock(slot);
+  const auto result = m_voxels.update(block, {free, hit, m_scan.votes(), m_nextHit});
+  m_nextHit += static_cast<std::uint32_t>(countOf(hit));
+  return finish(slot, cube.cell, result.changed || !wasInner, result.reshaped || !wasInner);
 }
 
 void ScanMerger::collect(const ScanCube& cube, std::vector<ScanCube>& parts) {
   if (cube.cell.depth == kSharedDepth) return parts.push_back(cube);
-  Octant& octant = childrenOf(*cube.node, cube.isNew);
+  Octant& octant = childrenOf(*cube.slot);
   forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
-    const bool isNew = !octant.has(i);
-    collect({&m_arena.createChild(octant, i), isNew, cell}, parts);
+    collect({&octant.slots[i], cell}, parts);
   });
 }
 
 bool ScanMerger::finishAbove(const ScanCube& cube, const std::vector<char>& changed,
                              std::size_t& next) {
   if (cube.cell.depth == kSharedDepth) return changed[next++];
-  Octant& octant = m_store.octant(*cube.node);
+  Octant& octant = m_store.octant(*cube.slot);
   bool anyChanged = false;
   forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
-    anyChanged |= finishAbove({&octant.nodes[i], false, cell}, changed, next);
+    anyChanged |= finishAbove({&octant.slots[i], cell}, changed, next);
   });
-  return finish(*cube.node, cube.cell, anyChanged);
+  return finish(*cube.slot, cube.cell, anyChanged);
 }
 
-void mergeScan(const MergeTarget& target, const Scan& scan, Node& root, bool isNew, int threads) {
+void mergeScan(const MergeTarget& target, const Scan& scan, int threads) {
   std::deque<ScanMerger> mergers;
   for (int i = 0; i < threads; ++i) mergers.emplace_back(target, scan, i);
-  const ScanCube whole{&root, isNew, Cell()};
+  const ScanCube whole{&target.store.root(), Cell()};
   std::vector<ScanCube> parts;
   mergers[0].collect(whole, parts);
 
@@ -178,10 +120,7 @@ void mergeScan(const MergeTarget& target, const Scan& scan, Node& root, bool isN
   const auto work = [&](ScanMerger& merger) {
     for (std::size_t i; (i = nextPart++) < parts.size();) changed[i] = merger.merge(parts[i]);
   };
-  std::vector<std::thread> helpers;
-  for (int i = 1; i < threads; ++i) helpers.emplace_back([&work, &m = mergers[i]] { work(m); });
-  work(mergers[0]);
-  for (std::thread& helper : helpers) helper.join();
+  inParallel(threads, [&](int i) { work(mergers[i]); });
 
   for (const ScanMerger& merger : mergers)
     for (const Cell& cube : merger.m_changed) target.touched->add(cube);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "BlockUpdate.h"
 #include "GTree.h"
 #include "NodeStore.h"
 #include "Scan.h"
@@ -24,8 +25,7 @@ struct MergeTarget {
 
 /** A cube of the scan (see ScanPyramid) and the tree's node for it. */
 struct ScanCube {
-  Node* node;
-  bool isNew;  ///< the node was made for this scan: its value means nothing yet
+  Slot* slot;
   Cell cell;
 
   int level() const { return ScanPyramid::kTopLevel - cell.depth; }
@@ -44,9 +44,9 @@ class ScanMerger {
   ScanMerger(const MergeTarget& target, const Scan& scan, int thread)
       : m_target(target),
         m_store(target.store),
-        m_filter(target.filter),
         m_scan(scan),
         m_arena(target.store.arena(thread)),
+        m_voxels(target.store, m_arena, target.filter, target.pruning),
         m_gTree(target.gTree ? &target.gTree->worker(thread) : nullptr) {}
 
   /** \return whether anything changed */
@@ -54,38 +54,32 @@ class ScanMerger {
 
  private:
   enum class Whole { Unchanged, Changed, Descend };
-  Whole updateWhole(Node& node, bool isNew, bool allFree, bool anyHit);
-  Octant& childrenOf(Node& node, bool isNew);
+  Whole updateWhole(Slot& slot, bool allFree, bool anyHit);
+  Octant& childrenOf(Slot& slot);
   /** Prunes or recomputes an inner node. \return changed */
-  bool finish(Node& node, const Cell& cell, bool changed);
-
+  bool finish(Slot& slot, const Cell& cell, bool changed, bool reshaped = false);
   /** Takes down that a cube changed. \return changed */
   bool note(const Cell& cube, bool changed);
 
   bool mergeTile(const ScanCube& cube);
-  bool mergeWord(const ScanCube& cube, std::uint64_t free, std::uint64_t hit);
-  bool mergeByte(const ScanCube& cube, unsigned free, unsigned hit);
-  bool hit(Node& leaf);
-  bool hit(Node& leaf, const float* softLabel, const HitVotes::Result& hard);
-  bool miss(Node& leaf);
+  bool mergeBlock(const ScanCube& cube, VoxelBits free, VoxelBits hit);
 
-  friend void mergeScan(const MergeTarget&, const Scan&, Node& root, bool isNew, int threads);
+  friend void mergeScan(const MergeTarget&, const Scan&, int threads);
   void collect(const ScanCube& cube, std::vector<ScanCube>& parts);
   bool finishAbove(const ScanCube& cube, const std::vector<char>& changed, std::size_t& next);
 
   const MergeTarget& m_target;
   NodeStore& m_store;
-  const ClassFilter<float>& m_filter;
   const Scan& m_scan;
   NodeArena& m_arena;
+  BlockUpdate m_voxels;
   GTree::Worker* m_gTree;
   std::vector<Cell> m_changed;
   std::uint32_t m_nextHit = 0;  ///< rank of the next hit voxel in the current tile
 };
 
 /** Merges a scan into the whole tree. The cubes of one level are shared among the threads, then the
- * nodes above them are finished; the result does not depend on the number of threads.
- * \param isNew the tree was empty */
-void mergeScan(const MergeTarget& target, const Scan& scan, Node& root, bool isNew, int threads);
+ * nodes above them are finished; the result does not depend on the number of threads. */
+void mergeScan(const MergeTarget& target, const Scan& scan, int threads);
 
 }  // namespace semantic_octree

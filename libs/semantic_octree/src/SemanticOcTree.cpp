@@ -1,8 +1,8 @@
 #include <semantic_octree/SemanticOcTree.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 
 #include "CompressedTree.h"
@@ -25,70 +25,79 @@ double positive(double meters) {
 void addTiles(const Node& node, const Cell& cell, TouchedTiles& tiles) {
   if (node.isLeaf() || cell.depth == TouchedTiles::kDepth) return tiles.add(cell);
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = node.child(i)) addTiles(*child, cell.child(i), tiles);
+    if (const Node child = node.child(i)) addTiles(child, cell.child(i), tiles);
 }
 
-/** Compares two trees node by node. */
+/** Compares two trees slot by slot. */
 class Comparison {
  public:
-  Comparison(const NodeStore& a, const NodeStore& b, const GTree* gTree)
-      : m_a(a), m_b(b), m_gTree(gTree) {}
+  Comparison(const NodeStore& a, const NodeStore& b, bool withState)
+      : m_a(a), m_b(b), m_withState(withState) {}
 
-  bool same(const Node& a, const Node& b) const {
-    if (a.isLeaf() != b.isLeaf() || a.getValue() != b.getValue()) return false;
-    if (!a.isLeaf()) return sameState(a, b) && sameChildren(a, b);
-    return a.hasClassRecord() == b.hasClassRecord() &&
-           (!a.hasClassRecord() || m_a.record(a) == m_b.record(b));
+  bool same(const Slot& a, const Slot& b) const {
+    if (a.kind != b.kind || a.value != b.value) return false;
+    switch (a.kind) {
+      case Slot::Kind::None:
+      case Slot::Kind::Leaf:
+        return true;
+      case Slot::Kind::LeafWithRecord:
+        return m_a.record(a) == m_b.record(b);
+      case Slot::Kind::Octant:
+        return sameState(a, b) && sameChildren(m_a.octant(a), m_b.octant(b));
+      case Slot::Kind::Block:
+        return sameState(a, b) && sameVoxels(m_a.block(a), m_b.block(b));
+    }
+    return false;
   }
 
  private:
-  bool sameChildren(const Node& a, const Node& b) const {
-    for (int i = 0; i < 8; ++i) {
-      const Node *childA = a.child(i), *childB = b.child(i);
-      if (!childA != !childB || (childA && !same(*childA, *childB))) return false;
-    }
+  bool sameChildren(const Octant& a, const Octant& b) const {
+    for (int i = 0; i < 8; ++i)
+      if (!same(a.slots[i], b.slots[i])) return false;
     return true;
   }
+  bool sameVoxels(const Block& a, const Block& b) const {
+    return a.known == b.known && a.leafOctants == b.leafOctants && a.recorded == b.recorded &&
+           std::equal(a.values, a.values + 64, b.values) &&
+           (!a.recorded ||
+            std::equal(m_a.recordsOf(a), m_a.recordsOf(a) + a.numRecords(), m_b.recordsOf(b)));
+  }
   /** What a node is, not what was told of it. */
-  bool sameState(const Node& a, const Node& b) const {
-    if (!m_gTree) return true;
+  bool sameState(const Slot& a, const Slot& b) const {
+    if (!m_withState) return true;
     const InnerState &x = *m_a.state<InnerState>(a), &y = *m_b.state<InnerState>(b);
-    return x.density == y.density && x.gValue == y.gValue && x.splitEntropy == y.splitEntropy &&
-           x.isExpanded == y.isExpanded &&
-           std::memcmp(x.row(), y.row(), m_gTree->stateBytes() - sizeof(InnerState)) == 0;
+    return x.density == y.density && x.gValue == y.gValue && x.isExpanded == y.isExpanded &&
+           x.expandedOctants == y.expandedOctants &&
+           std::memcmp(x.row(), y.row(), m_a.stateBytes() - sizeof(InnerState)) == 0;
   }
 
   const NodeStore &m_a, &m_b;
-  const GTree* m_gTree;
+  bool m_withState;
 };
 
 }  // namespace
 
 SemanticOcTree::SemanticOcTree(double voxelSize, ClassTable classes, const FilterParameters& filter)
-    : Base(positive(voxelSize)),
+    : m_resolution(positive(voxelSize)),
       m_classes(std::move(classes)),
       m_parameters(filter),
       m_filter(m_classes.size(), filter),
-      m_store(std::make_unique<NodeStore>(0)),
-      m_scan(std::make_unique<Scan>()) {
-  // OctoMap counts what equals the threshold as occupied; here even odds are not.
-  occ_prob_thres_log = std::numeric_limits<float>::min();
-  clearKeyRays();  // OctoMap keeps a large buffer for an insertion that is not used here
-}
+      m_store(std::make_unique<NodeStore>(0)) {}
 
-SemanticOcTree::~SemanticOcTree() { Base::root = nullptr; }
+SemanticOcTree::~SemanticOcTree() = default;
 
 SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
-    : SemanticOcTree(o.resolution, o.m_classes, o.m_parameters) {
+    : SemanticOcTree(o.m_resolution, o.m_classes, o.m_parameters) {
   m_pruning = o.m_pruning;
-  if (o.hasAbstraction()) setAbstraction(o.m_gTree->options());
-  if (o.empty()) return;
-  m_store->arena(0).copy(*o.m_store, *o.root(), m_store->root());
-  attachRoot();
+  if (o.hasAbstraction()) {
+    m_gTree = std::make_unique<GTree>(o.m_gTree->options(), m_filter, m_resolution);
+    m_leafChanges = std::make_unique<LeafChanges>();
+  }
+  m_store = std::make_unique<NodeStore>(o.store(), o.store().stateBytes());
 }
 
 SemanticOcTree::SemanticOcTree(SemanticOcTree&& o)
-    : SemanticOcTree(o.resolution, o.m_classes, o.m_parameters) {
+    : SemanticOcTree(o.m_resolution, o.m_classes, o.m_parameters) {
   m_pruning = o.m_pruning;
   swap(o);
 }
@@ -99,12 +108,7 @@ SemanticOcTree& SemanticOcTree::operator=(SemanticOcTree o) {
 }
 
 void SemanticOcTree::swap(SemanticOcTree& o) {
-  const double resolutionBefore = resolution;
-  Base::setResolution(o.resolution);
-  o.Base::setResolution(resolutionBefore);
-  std::swap(Base::root, o.Base::root);
-  std::swap(tree_size, o.tree_size);
-  size_changed = o.size_changed = true;
+  std::swap(m_resolution, o.m_resolution);
   std::swap(m_classes, o.m_classes);
   std::swap(m_parameters, o.m_parameters);
   std::swap(m_filter, o.m_filter);
@@ -117,26 +121,23 @@ void SemanticOcTree::swap(SemanticOcTree& o) {
 }
 
 bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
-  if (resolution != o.resolution || m_classes != o.m_classes || !(m_parameters == o.m_parameters) ||
-      m_pruning != o.m_pruning || empty() != o.empty() || size() != o.size())
+  if (m_resolution != o.m_resolution || m_classes != o.m_classes ||
+      !(m_parameters == o.m_parameters) || m_pruning != o.m_pruning)
     return false;
   const bool sameRows = m_gTree && o.m_gTree && m_gTree->stateBytes() == o.m_gTree->stateBytes();
-  return empty() || Comparison(*m_store, *o.m_store, sameRows ? m_gTree.get() : nullptr)
-                        .same(*root(), *o.root());
+  return Comparison(store(), o.store(), sameRows).same(store().root(), o.store().root());
 }
 
 void SemanticOcTree::clear() {
-  Base::root = nullptr;
-  m_store = std::make_unique<NodeStore>(m_store->stateBytes());
+  m_store = std::make_unique<NodeStore>(m_gTree ? m_gTree->stateBytes() : 0);
   if (m_touched) m_touched->take();
-  tree_size = 0;
-  size_changed = true;
 }
 
 std::vector<octomap::OcTreeKey> SemanticOcTree::takeTouchedTiles() {
   if (!m_touched) {
-    m_touched = std::make_unique<TouchedTiles>();
-    if (!empty()) addTiles(*root(), Cell(), *m_touched);
+    auto touched = std::make_unique<TouchedTiles>();
+    if (!empty()) addTiles(root(), Cell(), *touched);
+    m_touched = std::move(touched);
   }
   return m_touched->take();
 }
@@ -148,54 +149,64 @@ void SemanticOcTree::setPruning(bool on) {
 
 void SemanticOcTree::setAbstraction(const AbstractionOptions& options) {
   options.validate(numClasses());
-  m_gTree = std::make_unique<GTree>(options, m_filter, resolution);
-  m_leafChanges = std::make_unique<LeafChanges>();
-  rebuildStore();
-  if (!empty()) m_gTree->worker(0).recomputeAll(*m_store, m_store->root(), Cell());
+  auto gTree = std::make_unique<GTree>(options, m_filter, m_resolution);
+  auto leafChanges = std::make_unique<LeafChanges>();
+  auto newStore = std::make_unique<NodeStore>(store(), gTree->stateBytes());
+  gTree->worker(0).recomputeAll(*newStore, newStore->root(), Cell());
+  std::swap(m_gTree, gTree);
+  std::swap(m_leafChanges, leafChanges);
+  std::swap(m_store, newStore);
 }
 
 void SemanticOcTree::dropAbstraction() {
+  m_store = std::make_unique<NodeStore>(store(), 0);
   m_gTree = nullptr;
   m_leafChanges = nullptr;
-  rebuildStore();
 }
 
-void SemanticOcTree::rebuildStore() {
-  auto store = std::make_unique<NodeStore>(m_gTree ? m_gTree->stateBytes() : 0);
-  if (!empty()) store->arena(0).copy(*m_store, *root(), store->root());
-  std::swap(m_store, store);
-  if (!empty()) attachRoot();
+NodeStore& SemanticOcTree::store() const {
+  if (!m_store)
+    throw std::logic_error(
+        "the map is broken: memory ran out while a scan was inserted; clear it or load it anew");
+  return *m_store;
 }
+
+std::size_t SemanticOcTree::size() const { return store().numNodes(); }
 
 std::size_t SemanticOcTree::getNumLeafNodes() const {
-  return empty() ? 0 : m_store->numNodes() - m_store->numInnerNodes();
+  return store().numNodes() - store().numInnerNodes();
 }
 
-std::size_t SemanticOcTree::memoryUsage() const { return m_store->bytes(); }
+std::size_t SemanticOcTree::memoryUsage() const { return store().bytes(); }
 
 InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
                                        const Eigen::Isometry3d& T_map_sensor,
                                        const InsertionOptions& options) {
   options.validate();
+  NodeStore& nodes = store();
+  if (!m_scan) m_scan = std::make_unique<Scan>();
   try {
-    m_scan->set(cloud, T_map_sensor, resolution, numClasses(), options);
+    m_scan->set(cloud, T_map_sensor, m_resolution, numClasses(), options);
   } catch (...) {
-    m_scan = std::make_unique<Scan>();  // half-filled buffers must not leak into the next scan
+    m_scan = nullptr;  // half-filled buffers must not leak into the next scan
     throw;
   }
   if (m_scan->hasVoxels()) {
-    const MergeTarget target{*m_store, m_filter, m_gTree.get(), m_touched.get(), m_pruning};
-    mergeScan(target, *m_scan, m_store->root(), empty(), options.threads);
-    attachRoot();
+    const MergeTarget target{nodes, m_filter, m_gTree.get(), m_touched.get(), m_pruning};
+    try {
+      mergeScan(target, *m_scan, options.threads);
+    } catch (...) {
+      m_store = nullptr;  // what is half inserted cannot be told from what was there
+      m_scan = nullptr;
+      throw;
+    }
   }
-  m_scan->clear();
-  return m_scan->report();
-}
-
-void SemanticOcTree::attachRoot() {
-  Base::root = &m_store->root();
-  tree_size = m_store->numNodes();
-  size_changed = true;
+  const InsertionReport report = m_scan->report();
+  if (m_scan->bytes() > Scan::kTooManyBytes)
+    m_scan = nullptr;
+  else
+    m_scan->clear();
+  return report;
 }
 
 }  // namespace semantic_octree

@@ -30,8 +30,8 @@ void TouchedTiles::add(const Cell& cube) {
 std::vector<octomap::OcTreeKey> TouchedTiles::take() {
   std::vector<std::uint64_t> sorted(m_tiles.begin(), m_tiles.end());
   std::sort(sorted.begin(), sorted.end());
-  m_tiles.clear();
   std::vector<octomap::OcTreeKey> keys(sorted.size());
+  m_tiles.clear();
   std::transform(sorted.begin(), sorted.end(), keys.begin(), lowestKey);
   return keys;
 }

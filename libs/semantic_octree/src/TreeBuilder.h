@@ -11,10 +11,12 @@ namespace semantic_octree {
  * `Cursor child(int i)`, which must also work for cubes that are leaves. */
 class TreeBuilder {
  public:
+  /** Children that agree. */
+  enum class Merge { AsTheMapDoes, Never };
+
   template <typename Cursor>
-  static void fill(SemanticOcTree& map, const Cursor& root) {
-    TreeBuilder builder(map);
-    if (builder.build(map.m_store->root(), root, 0)) map.attachRoot();
+  static void fill(SemanticOcTree& map, const Cursor& root, Merge merge = Merge::AsTheMapDoes) {
+    TreeBuilder(map, merge).build(map.store().root(), root, 0);
   }
   /** An empty map of the same kind. */
   static SemanticOcTree emptyLike(const SemanticOcTree& map) {
@@ -24,38 +26,63 @@ class TreeBuilder {
   }
 
  private:
-  explicit TreeBuilder(SemanticOcTree& map)
-      : m_arena(map.m_store->arena(0)), m_pruning(map.pruning()) {}
+  TreeBuilder(SemanticOcTree& map, Merge merge)
+      : m_arena(map.store().arena(0)),
+        m_allowsLargeLeaves(map.pruning()),
+        m_merges(map.pruning() && merge == Merge::AsTheMapDoes) {}
 
-  /** \return whether anything is known in the cube */
   template <typename Cursor>
-  bool build(Node& node, const Cursor& cursor, int depth) {
-    if (!cursor.known()) return false;
-    if (cursor.isLeaf() && (m_pruning || depth == kTreeDepth)) {
-      cursor.content().write(m_arena, node);
-      return true;
-    }
-    return buildChildren(node, cursor, depth);
+  void build(Slot& slot, const Cursor& cursor, int depth) {
+    if (!cursor.known()) return;
+    if (cursor.isLeaf() && m_allowsLargeLeaves)
+      cursor.content().write(m_arena, slot);
+    else if (depth == Block::kDepth)
+      buildBlock(slot, cursor);
+    else
+      buildChildren(slot, cursor, depth);
   }
 
   template <typename Cursor>
-  bool buildChildren(Node& node, const Cursor& cursor, int depth) {
-    Octant& octant = m_arena.createOctant(node);
-    bool known = false;
-    for (int i = 0; i < 8; ++i)
-      if (build(m_arena.createChild(octant, i), cursor.child(i), depth + 1))
-        known = true;
-      else
-        m_arena.removeChild(octant, i);
-    if (!known)
-      m_arena.removeOctant(node);
-    else if (!(m_pruning && m_arena.prune(node)))
-      NodeStore::updateOccupancy(node);
-    return known;
+  void buildChildren(Slot& slot, const Cursor& cursor, int depth) {
+    Octant& octant = m_arena.createOctant(slot);
+    Units highest = kUnknown;
+    for (int i = 0; i < 8; ++i) {
+      build(octant.slots[i], cursor.child(i), depth + 1);
+      if (octant.slots[i].isKnown()) highest = std::max(highest, octant.slots[i].value);
+    }
+    if (highest == kUnknown)
+      m_arena.removeOctant(slot);
+    else if (!(m_merges && m_arena.prune(slot)))
+      slot.value = highest;
+  }
+
+  template <typename Cursor>
+  void buildBlock(Slot& slot, const Cursor& cursor) {
+    BlockContent content;
+    for (int o = 0; o < 8; ++o) buildOctant(content, o, cursor.child(o));
+    if (!content.known) return;
+    m_arena.createBlock(slot, content);
+    if (m_merges) m_arena.prune(slot);
+  }
+
+  template <typename Cursor>
+  void buildOctant(BlockContent& content, int octant, const Cursor& cursor) {
+    if (!cursor.known()) return;
+    if (cursor.isLeaf() && m_allowsLargeLeaves) {
+      const LeafContent leaf = cursor.content();
+      return content.setLeafOctant(octant, leaf.value, leaf.recordOrNull());
+    }
+    for (int i = 0; i < 8; ++i) {
+      const Cursor voxel = cursor.child(i);
+      if (!voxel.known()) continue;
+      const LeafContent leaf = voxel.content();
+      content.setVoxel(8 * octant + i, leaf.value, leaf.recordOrNull());
+    }
+    if (m_merges) content.mergeOctant(octant);
   }
 
   NodeArena& m_arena;
-  bool m_pruning;
+  bool m_allowsLargeLeaves, m_merges;
 };
 
 }  // namespace semantic_octree

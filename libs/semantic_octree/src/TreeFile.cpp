@@ -26,19 +26,23 @@ std::string reasonOf(const std::exception& error, const std::string& path) {
   return message.rfind(named, 0) == 0 ? message.substr(named.size()) : message;
 }
 
-void checkBeginning(std::istream& in) {
+/** \return the version */
+std::uint32_t readBeginning(std::istream& in) {
   std::array<char, kMagic.size()> magic{};
   readBytes(in, magic.data(), magic.size());
   if (magic != kMagic) throw std::runtime_error("not a semantic octree map");
   std::uint32_t version = 0;
   readBytes(in, reinterpret_cast<char*>(&version), sizeof(version));
-  if (version != kVersion)
+  if (version < kOldestVersion || version > kVersion)
     throw std::runtime_error("version " + std::to_string(version) + " of the format, expected " +
-                             std::to_string(kVersion));
+                             std::to_string(kOldestVersion) + " or " + std::to_string(kVersion));
+  return version;
 }
 
 SemanticOcTree readWhole(const fs::path& path) {
   if (fs::is_directory(path)) throw std::runtime_error("it is a folder");
+  if (fs::exists(path) && !fs::is_regular_file(path))
+    throw std::runtime_error("it is no file, but a device or a pipe");
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::runtime_error(std::strerror(errno));
@@ -58,9 +62,9 @@ void writeTree(std::ostream& out, const SemanticOcTree& tree) {
 }
 
 SemanticOcTree readTree(std::istream& in) {
-  checkBeginning(in);
+  const std::uint32_t version = readBeginning(in);
   try {
-    return TreeReader(in).read();
+    return TreeReader(in, version).read();
   } catch (const std::invalid_argument& e) {
     throw std::runtime_error(std::string("altered: ") + e.what());
   }

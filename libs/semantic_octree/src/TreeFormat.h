@@ -4,12 +4,10 @@
 #include <array>
 #include <cstdint>
 
-#include "Cell.h"
 #include "CheckedStream.h"
+#include "LeafContent.h"
 
 namespace semantic_octree {
-
-class NodeArena;
 
 /** A map's bytes: kMagic, kVersion, then in checked blocks (see CheckedStream.h)
  *   resolution (double), pruning (1 byte), filter (increments 1 byte, six doubles),
@@ -17,29 +15,39 @@ class NodeArena;
  *            policy for unknown raw ids (1 byte), folds (4 bytes number; raw id 4 bytes, class 1
  * byte), number of nodes (8 bytes; 0: the map is empty), the root's NodeKind (1 byte) and value,
  * then from each inner node on, depth first: two bits of NodeKind per child (2 bytes), the leaves'
- * values, the inner children. The value of a leaf is its log-odds (float); with a class record,
- * followed by the number of named classes (1 byte), the rest's log-odds, and id (1 byte) and
- * log-odds of each. Inner nodes' values follow from their children. */
+ * values, the inner children. The value of a leaf is its log-odds; with a class record, followed by
+ * the number of named classes (1 byte), the rest's log-odds, and id (1 byte) and log-odds of each.
+ * Log-odds are 2 bytes, in units of 1/1024. Inner nodes' values follow from their children.
+ *
+ * An inner node at depth 14 is a block: which octants are known, leaves, leaves with a record (1
+ * byte each); of each known octant that is no leaf, which voxels are known, which have a record (1
+ * byte each); all log-odds, then all records, in the order of the voxels.
+ *
+ * Version 1 had log-odds of 4 bytes (float), and no blocks. It is read, too. */
 constexpr std::array<char, 8> kMagic{'S', 'E', 'M', 'O', 'C', 'T', 'R', 'E'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2, kOldestVersion = 1;
 
 enum class NodeKind : std::uint8_t { None, Leaf, LeafWithRecord, Inner };
 
 /** Writes a map's content after magic and version. */
 class TreeWriter {
  public:
-  TreeWriter(std::ostream& out, const SemanticOcTree& tree) : m_out(out), m_tree(tree) {}
+  TreeWriter(std::ostream& out, const SemanticOcTree& tree);
   void write();
 
  private:
   void putParameters(const FilterParameters& p);
   void putClasses(const ClassTable& classes);
-  void putLeaf(const Node& leaf);
-  void putChildren(const Node& inner);
-  static NodeKind kindOf(const Node& node);
+  void putSlot(const Slot& slot);
+  void putLeaf(const Slot& leaf);
+  void putRecord(const ClassRecord& record);
+  void putChildren(const Octant& octant);
+  void putBlock(const Block& block);
+  static NodeKind kindOf(const Slot& slot);
 
   CheckedWriter m_out;
   const SemanticOcTree& m_tree;
+  const NodeStore& m_store;
 };
 
 /** Reads a map's content after magic and version. What the checksums let pass is
@@ -47,21 +55,29 @@ class TreeWriter {
  * \throw std::runtime_error, std::invalid_argument (bad parameters or classes). */
 class TreeReader {
  public:
-  explicit TreeReader(std::istream& in) : m_in(in) {}
+  TreeReader(std::istream& in, std::uint32_t version) : m_in(in), m_version(version) {}
   SemanticOcTree read();
 
  private:
   FilterParameters getParameters();
   ClassTable getClasses();
   void getNodes(SemanticOcTree& tree, std::uint64_t expectedNodes);
-  void getNode(Node& node, NodeKind kind, int depth);
-  void getRecord(Node& leaf);
-  void getChildren(Node& inner, int depth);
+  void getNode(Slot& slot, NodeKind kind, int depth);
+  void getChildren(Slot& inner, int depth);
+  /** Two bits of NodeKind per child. */
+  std::uint16_t getKinds();
+  void getBlock(Slot& inner);
+  BlockContent getBlockContent();
+  void getValues(BlockContent& block);
+  BlockContent getNodesAsBlock();
+  LeafContent getLeaf(bool hasRecord);
+  ClassRecord getRecord();
   /** One byte, 0 to `last`. */
   std::uint8_t getUpTo(int last, const char* what);
-  float getLogOdds();
+  Units getLogOdds();
 
   CheckedReader m_in;
+  std::uint32_t m_version;
   NodeStore* m_store = nullptr;
   NodeArena* m_arena = nullptr;
   int m_numClasses = 0;

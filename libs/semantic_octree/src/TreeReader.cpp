@@ -2,6 +2,7 @@
 
 #include <semantic_octree/Keys.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "NodeStore.h"
@@ -57,53 +58,149 @@ ClassTable TreeReader::getClasses() {
 }
 
 void TreeReader::getNodes(SemanticOcTree& tree, std::uint64_t expectedNodes) {
-  m_store = tree.m_store.get();
+  m_store = &tree.store();
   m_arena = &m_store->arena(0);
   m_numClasses = tree.numClasses();
   getNode(m_store->root(), static_cast<NodeKind>(getUpTo(3, "node kind")), 0);
   if (m_store->numNodes() != expectedNodes)
     throw std::runtime_error("altered: " + std::to_string(m_store->numNodes()) +
                              " nodes, expected " + std::to_string(expectedNodes));
-  tree.attachRoot();
 }
 
-void TreeReader::getNode(Node& node, NodeKind kind, int depth) {
+void TreeReader::getNode(Slot& slot, NodeKind kind, int depth) {
   if (kind == NodeKind::None) throw std::runtime_error("altered: a map with nodes but no root");
-  if (kind == NodeKind::Inner) return getChildren(node, depth);
-  node.setValue(getLogOdds());
-  if (kind == NodeKind::LeafWithRecord) getRecord(node);
+  if (kind != NodeKind::Inner)
+    return getLeaf(kind == NodeKind::LeafWithRecord).write(*m_arena, slot);
+  depth == Block::kDepth ? getBlock(slot) : getChildren(slot, depth);
 }
 
-void TreeReader::getRecord(Node& leaf) {
+LeafContent TreeReader::getLeaf(bool hasRecord) {
+  LeafContent leaf;
+  leaf.value = getLogOdds();
+  if (hasRecord) leaf.record = getRecord();
+  return leaf;
+}
+
+ClassRecord TreeReader::getRecord() {
   Belief belief;
   belief.count = getUpTo(std::min(3, m_numClasses), "named classes");
-  belief.rest = getLogOdds();
+  belief.rest = fromUnits(getLogOdds());
   for (int i = 0; i < belief.count; ++i) {
-    belief.ids[i] = getUpTo(m_numClasses, "class");
-    belief.logOdds[i] = getLogOdds();
+    const ClassId id = getUpTo(m_numClasses, "class");
+    const bool isTwice =
+        std::find(belief.ids.begin(), belief.ids.begin() + i, id) != belief.ids.begin() + i;
+    if (id == kNoClass || isTwice)
+      throw std::runtime_error("altered: class " + std::to_string(id) +
+                               (isTwice ? " twice in a class record" : " in a class record"));
+    belief.ids[i] = id;
+    belief.logOdds[i] = fromUnits(getLogOdds());
   }
-  m_arena->setRecord(leaf, belief);
+  belief.sort();
+  return ClassRecord::of(belief);
 }
 
-void TreeReader::getChildren(Node& inner, int depth) {
+std::uint16_t TreeReader::getKinds() {
   const auto kinds = m_in.get<std::uint16_t>();
   if (kinds == 0) throw std::runtime_error("altered: an inner node without children");
-  if (depth == kTreeDepth) throw std::runtime_error("altered: more than 16 levels");
-  Octant& octant = m_arena->createOctant(inner);
-  const auto kindOf = [kinds](int i) { return static_cast<NodeKind>(kinds >> 2 * i & 3); };
-  for (int i = 0; i < 8; ++i) {
-    if (kindOf(i) == NodeKind::None) continue;
-    Node& child = m_arena->createChild(octant, i);
-    if (kindOf(i) != NodeKind::Inner) getNode(child, kindOf(i), depth + 1);
-  }
-  for (int i = 0; i < 8; ++i)
-    if (kindOf(i) == NodeKind::Inner) getNode(octant.nodes[i], NodeKind::Inner, depth + 1);
-  NodeStore::updateOccupancy(inner);
+  return kinds;
 }
 
-float TreeReader::getLogOdds() {
-  const auto value = m_in.get<float>();
-  if (!std::isfinite(value)) throw std::runtime_error("altered: a log-odds that is not finite");
+void TreeReader::getChildren(Slot& inner, int depth) {
+  const std::uint16_t kinds = getKinds();
+  Octant& octant = m_arena->createOctant(inner);
+  const auto kindOf = [kinds](int i) { return static_cast<NodeKind>(kinds >> 2 * i & 3); };
+  for (int i = 0; i < 8; ++i)
+    if (kindOf(i) == NodeKind::Leaf || kindOf(i) == NodeKind::LeafWithRecord)
+      getNode(octant.slots[i], kindOf(i), depth + 1);
+  for (int i = 0; i < 8; ++i)
+    if (kindOf(i) == NodeKind::Inner) getNode(octant.slots[i], NodeKind::Inner, depth + 1);
+  inner.value = m_store->highestValueBelow(inner);
+}
+
+void TreeReader::getBlock(Slot& inner) {
+  m_arena->createBlock(inner, m_version == 1 ? getNodesAsBlock() : getBlockContent());
+}
+
+BlockContent TreeReader::getBlockContent() {
+  const auto altered = [] { throw std::runtime_error("altered: a block that cannot be"); };
+  BlockContent block;
+  const auto known = m_in.get<std::uint8_t>(), leaves = m_in.get<std::uint8_t>(),
+             recorded = m_in.get<std::uint8_t>();
+  if (known == 0 || (leaves & ~known) || (recorded & ~leaves)) altered();
+  std::uint8_t knownIn[8] = {}, recordedIn[8] = {};
+  for (int o = 0; o < 8; ++o) {
+    if (!((known & ~leaves) >> o & 1)) continue;
+    knownIn[o] = m_in.get<std::uint8_t>();
+    recordedIn[o] = m_in.get<std::uint8_t>();
+    if (knownIn[o] == 0 || (recordedIn[o] & ~knownIn[o])) altered();
+  }
+  for (int o = 0; o < 8; ++o) {
+    if (leaves >> o & 1) {
+      block.leafOctants |= static_cast<std::uint8_t>(1u << o);
+      knownIn[o] = 0xff;
+      recordedIn[o] = recorded >> o & 1;
+    }
+    block.known |= VoxelBits(knownIn[o]) << 8 * o;
+    block.recorded |= VoxelBits(recordedIn[o]) << 8 * o;
+  }
+  getValues(block);
+  for (VoxelBits bits = block.recorded; bits; bits &= bits - 1)
+    block.records[__builtin_ctzll(bits)] = getRecord();
+  return block;
+}
+
+void TreeReader::getValues(BlockContent& block) {
+  const auto stored = [&block](int o) -> unsigned {
+    return block.leafOctants >> o & 1 ? 1 : octantOf(block.known, o);
+  };
+  int numValues = 0;
+  for (int o = 0; o < 8; ++o) numValues += countOf(stored(o));
+  Units values[64];
+  m_in.get(values, static_cast<std::size_t>(numValues));
+  if (std::find(values, values + numValues, kUnknown) != values + numValues)
+    throw std::runtime_error("altered: a log-odds that is out of range");
+  const Units* next = values;
+  for (int o = 0; o < 8; ++o) {
+    for (unsigned bits = stored(o); bits; bits &= bits - 1)
+      block.values[8 * o + __builtin_ctz(bits)] = *next++;
+    if (block.leafOctants >> o & 1) std::fill_n(block.values + 8 * o + 1, 7, block.values[8 * o]);
+  }
+}
+
+BlockContent TreeReader::getNodesAsBlock() {
+  BlockContent block;
+  const std::uint16_t kinds = getKinds();
+  const auto kindOf = [](std::uint16_t k, int i) { return static_cast<NodeKind>(k >> 2 * i & 3); };
+  const auto isLeaf = [](NodeKind k) {
+    return k == NodeKind::Leaf || k == NodeKind::LeafWithRecord;
+  };
+  for (int o = 0; o < 8; ++o) {
+    if (!isLeaf(kindOf(kinds, o))) continue;
+    const LeafContent leaf = getLeaf(kindOf(kinds, o) == NodeKind::LeafWithRecord);
+    block.setLeafOctant(o, leaf.value, leaf.recordOrNull());
+  }
+  for (int o = 0; o < 8; ++o) {
+    if (kindOf(kinds, o) != NodeKind::Inner) continue;
+    const std::uint16_t voxels = getKinds();
+    for (int i = 0; i < 8; ++i) {
+      const NodeKind kind = kindOf(voxels, i);
+      if (kind == NodeKind::Inner) throw std::runtime_error("altered: more than 16 levels");
+      if (kind == NodeKind::None) continue;
+      const LeafContent leaf = getLeaf(kind == NodeKind::LeafWithRecord);
+      block.setVoxel(8 * o + i, leaf.value, leaf.recordOrNull());
+    }
+  }
+  return block;
+}
+
+Units TreeReader::getLogOdds() {
+  if (m_version == 1) {
+    const auto value = m_in.get<float>();
+    if (!std::isfinite(value)) throw std::runtime_error("altered: a log-odds that is not finite");
+    return toUnits(onGrid(value));
+  }
+  const auto value = m_in.get<std::int16_t>();
+  if (value == kUnknown) throw std::runtime_error("altered: a log-odds that is out of range");
   return value;
 }
 

@@ -1,8 +1,12 @@
+#include "NodeStore.h"
 #include "TreeFormat.h"
 
 namespace semantic_octree {
 
 using semantic_types::Color;
+
+TreeWriter::TreeWriter(std::ostream& out, const SemanticOcTree& tree)
+    : m_out(out), m_tree(tree), m_store(tree.store()) {}
 
 void TreeWriter::write() {
   m_out.put(m_tree.getResolution());
@@ -10,9 +14,9 @@ void TreeWriter::write() {
   putParameters(m_tree.filterParameters());
   putClasses(m_tree.classes());
   m_out.put<std::uint64_t>(m_tree.size());
-  if (const Node* root = m_tree.root()) {
-    m_out.put(static_cast<std::uint8_t>(kindOf(*root)));
-    root->isLeaf() ? putLeaf(*root) : putChildren(*root);
+  if (!m_tree.empty()) {
+    m_out.put(static_cast<std::uint8_t>(kindOf(m_store.root())));
+    putSlot(m_store.root());
   }
   m_out.finish();
 }
@@ -39,33 +43,72 @@ void TreeWriter::putClasses(const ClassTable& classes) {
   }
 }
 
-NodeKind TreeWriter::kindOf(const Node& node) {
-  if (!node.isLeaf()) return NodeKind::Inner;
-  return node.hasClassRecord() ? NodeKind::LeafWithRecord : NodeKind::Leaf;
-}
-
-void TreeWriter::putLeaf(const Node& leaf) {
-  m_out.put(leaf.getValue());
-  if (!leaf.hasClassRecord()) return;
-  const Belief belief = m_tree.belief(leaf);
-  m_out.put(belief.count);
-  m_out.put(belief.rest);
-  for (int i = 0; i < belief.count; ++i) {
-    m_out.put(belief.ids[i]);
-    m_out.put(belief.logOdds[i]);
+NodeKind TreeWriter::kindOf(const Slot& slot) {
+  switch (slot.kind) {
+    case Slot::Kind::None:
+      return NodeKind::None;
+    case Slot::Kind::Leaf:
+      return NodeKind::Leaf;
+    case Slot::Kind::LeafWithRecord:
+      return NodeKind::LeafWithRecord;
+    default:
+      return NodeKind::Inner;
   }
 }
 
-void TreeWriter::putChildren(const Node& inner) {
+void TreeWriter::putLeaf(const Slot& leaf) {
+  m_out.put(leaf.value);
+  if (leaf.kind == Slot::Kind::LeafWithRecord) putRecord(m_store.record(leaf));
+}
+
+void TreeWriter::putRecord(const ClassRecord& record) {
+  m_out.put(record.count);
+  m_out.put(record.rest);
+  for (int i = 0; i < record.count; ++i) {
+    m_out.put(record.ids[i]);
+    m_out.put(record.logOdds[i]);
+  }
+}
+
+void TreeWriter::putSlot(const Slot& slot) {
+  if (slot.isLeaf()) return putLeaf(slot);
+  slot.kind == Slot::Kind::Block ? putBlock(m_store.block(slot))
+                                 : putChildren(m_store.octant(slot));
+}
+
+void TreeWriter::putChildren(const Octant& octant) {
   std::uint16_t kinds = 0;
   for (int i = 0; i < 8; ++i)
-    if (const Node* child = inner.child(i))
-      kinds |= static_cast<std::uint16_t>(static_cast<unsigned>(kindOf(*child)) << 2 * i);
+    kinds |= static_cast<std::uint16_t>(static_cast<unsigned>(kindOf(octant.slots[i])) << 2 * i);
   m_out.put(kinds);
-  for (int i = 0; i < 8; ++i)
-    if (const Node* child = inner.child(i); child && child->isLeaf()) putLeaf(*child);
-  for (int i = 0; i < 8; ++i)
-    if (const Node* child = inner.child(i); child && !child->isLeaf()) putChildren(*child);
+  for (const Slot& child : octant.slots)
+    if (child.isLeaf()) putLeaf(child);
+  for (const Slot& child : octant.slots)
+    if (child.isInner()) putSlot(child);
+}
+
+void TreeWriter::putBlock(const Block& block) {
+  std::uint8_t known = 0, recorded = 0;
+  for (int o = 0; o < 8; ++o) {
+    known |= static_cast<std::uint8_t>((block.knownIn(o) != 0) << o);
+    recorded |= static_cast<std::uint8_t>((block.isLeafOctant(o) && block.hasRecord(8 * o)) << o);
+  }
+  m_out.put(known);
+  m_out.put(block.leafOctants);
+  m_out.put(recorded);
+  for (int o = 0; o < 8; ++o) {
+    if (!block.knownIn(o) || block.isLeafOctant(o)) continue;
+    m_out.put(block.knownIn(o));
+    m_out.put(static_cast<std::uint8_t>(block.recorded >> 8 * o));
+  }
+  Units values[64];
+  int numValues = 0;
+  for (int o = 0; o < 8; ++o)
+    for (VoxelBits bits = block.isLeafOctant(o) ? 1 : block.knownIn(o); bits; bits &= bits - 1)
+      values[numValues++] = block.values[8 * o + __builtin_ctzll(bits)];
+  m_out.put(values, numValues);
+  const ClassRecord* records = block.recorded ? m_store.recordsOf(block) : nullptr;
+  for (int i = 0; i < block.numRecords(); ++i) putRecord(records[i]);
 }
 
 }  // namespace semantic_octree

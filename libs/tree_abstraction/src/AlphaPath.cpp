@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace tree_abstraction {
 namespace {
@@ -31,19 +32,18 @@ void requireCosts(const std::vector<double>& costs) {
 }  // namespace
 
 AlphaPath::AlphaPath(std::vector<double> tau) : m_tau(std::move(tau)), m_end{0} {
+  std::vector<std::pair<double, std::int32_t>> sorted;  // -tau and index: together in memory
   for (std::size_t i = 0; i < m_tau.size(); ++i) {
     if (std::isnan(m_tau[i])) {
       throw std::invalid_argument("AlphaPath: tau of node " + std::to_string(i) +
                                   " is not a number");
     }
-    if (m_tau[i] > 0) m_order.push_back(static_cast<std::int32_t>(i));
+    if (m_tau[i] > 0) sorted.emplace_back(-m_tau[i], static_cast<std::int32_t>(i));
   }
-  const auto tauOf = [this](std::int32_t i) { return m_tau[static_cast<std::size_t>(i)]; };
-  std::sort(m_order.begin(), m_order.end(), [&](std::int32_t a, std::int32_t b) {
-    return tauOf(a) != tauOf(b) ? tauOf(a) > tauOf(b) : a < b;
-  });
-  for (std::size_t i = 1; i <= m_order.size(); ++i) {
-    if (i == m_order.size() || !isTie(tauOf(m_order[i - 1]), tauOf(m_order[i]))) m_end.push_back(i);
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i <= sorted.size(); ++i) {
+    m_order.push_back(sorted[i - 1].second);
+    if (i == sorted.size() || !isTie(-sorted[i - 1].first, -sorted[i].first)) m_end.push_back(i);
   }
 }
 

@@ -24,7 +24,7 @@ struct LeafCell {
   unsigned depth = 0;
   /** The map's node for the cube, or for a larger cube around it that is a leaf of the map. Valid
    * until the map changes. */
-  const SemanticOcTreeNode* node = nullptr;
+  SemanticOcTreeNode node;
 
   /** Edge, in voxels. */
   int edge() const { return edgeAtDepth(static_cast<int>(depth)); }
@@ -54,7 +54,7 @@ struct AbstractionMeasures {
 
 /** Leaves that came and went between two calls. */
 struct TreeChange {
-  std::vector<LeafCell> removed;  ///< `node` is null
+  std::vector<LeafCell> removed;  ///< `node` is none
   std::vector<LeafCell> added;
 };
 
@@ -83,7 +83,7 @@ class Abstraction {
                                  bool onlyOccupied) const;
   /** J of the compressed tree, see AbstractionMeasures. */
   double objective() const;
-  /** Visits all inner nodes. */
+  /** Computes all inner nodes anew. */
   AbstractionMeasures measures() const;
 
   /** Mixture of the known leaves in a cube by volume: K + 1 probabilities, [0] = free. */
@@ -92,15 +92,20 @@ class Abstraction {
   double knownShare(const LeafCell& leaf) const;
 
   /** The compressed tree as a map of its own. A leaf is as occupied as its most occupied voxel
-   * (safe for collision checks); its classes are those of the known voxels' mixture, truncated as
-   * everywhere. */
+   * (safe for collision checks); its p(class | occupied) is that of the voxels in which labels
+   * were seen,
+   *
+   *     p(class k | occupied) = sum_v p_k(v) / sum_j sum_v p_j(v),
+   *
+   * truncated as everywhere. (distribution() and the G-values have the mixture of all known
+   * voxels.) */
   SemanticOcTree compressedMap() const;
 
   /** What changed in leaves() since the last call (at first: since the map was empty), in time
    * proportional to the nodes that scans touched and the leaves that changed. */
   TreeChange takeChange();
 
-  /** New alpha: visits inner nodes, recomputes no divergence. \throw std::invalid_argument */
+  /** New alpha: computes all inner nodes anew. \throw std::invalid_argument */
   void setAlpha(double alpha);
   /** New weights, in the order of the options' terms: the same. \throw std::invalid_argument */
   void setWeights(const std::vector<double>& termWeights, double alpha);
@@ -119,8 +124,24 @@ class Abstraction {
   };
   Path alphaPath() const;
 
+  /** sum_t weight_t I_t of the trees of alphaPath(), nats, for weights that need not be those of
+   * the path: what its trees tell about some of the terms. Tree k of the path has
+   * trees.totals(added, ofRoots)[k]. */
+  struct PathInformation {
+    double ofRoots = 0;         ///< of the tree of the roots alone
+    std::vector<double> added;  ///< by expanding each node
+  };
+  /** \param termWeights in the order of the options' terms
+   * \throw std::invalid_argument another number of weights than of terms. */
+  PathInformation pathInformation(const std::vector<double>& termWeights) const;
+
  private:
   CompressedTree compressedTree() const;
+  /** p(x) of the whole map, unnormalized. */
+  double totalDensity() const;
+  /** Calls f(InnerNode) for all inner nodes, parents first. */
+  template <typename F>
+  void forEachInner(const F& f) const;
 
   SemanticOcTree& m_map;
   GTree& m_gTree;

@@ -7,10 +7,13 @@
 
 namespace semantic_octree {
 
-/** Nearest of the values on which float additions are exact up to 64: multiples of 2^-18. */
+/** A map's log-odds are multiples of 1/1024, up to 31.99 on either side of 0: they fit into 16
+ * bits, and their sums are exact. */
+constexpr int kUnitsPerLogOdds = 1024;
+
+/** The nearest of these values (beyond 31.99, too). */
 inline float onGrid(double logOdds) {
-  constexpr double kPerUnit = 1 << 18;
-  return static_cast<float>(std::round(logOdds * kPerUnit) / kPerUnit);
+  return static_cast<float>(std::round(logOdds * kUnitsPerLogOdds) / kUnitsPerLogOdds);
 }
 
 /** How many of a scan's labels in one cell name a class. */
@@ -30,9 +33,9 @@ struct ClassVotes {
  * classes are named, the least likely one (largest id on a tie) joins the rest, whose value becomes
  * the logarithm of the mean odds of its members.
  *
- * With Real = float, increments, limits and the prior are multiples of 2^-18, so that adding them
- * is exact: away from the limits the order of observations does not matter, not even to the last
- * bit. */
+ * With Real = float, increments, limits and the prior are on the grid of onGrid(), so that adding
+ * them is exact: away from the limits the order of observations does not matter, not even to the
+ * last bit. */
 template <typename Real, int Named = 3>
 class ClassFilter {
  public:
@@ -60,6 +63,8 @@ class ClassFilter {
 
   /** Cell whose classes are equally likely, given its occupancy's log-odds. */
   Belief uniform(Real occupancyLogOdds) const;
+  /** Occupancy of a cell with a class record, ln(p(occupied) / p(free)); on the grid. */
+  Real occupancyOf(const Belief& b) const;
   /** The log-odds that uniform() of a cell had, given its rest. */
   Real occupancyOfUniform(Real rest) const { return rest + m_logNumClasses; }
 
@@ -69,11 +74,14 @@ class ClassFilter {
   Real occupancyAfterUnlabeledHit(Real v) const { return limitedOccupancy(v + m_hitUnlabeled); }
   /** The value that further misses leave as it is. */
   Real lowestOccupancy() const { return m_min + m_logNumClasses; }
+  Real highestOccupancy() const { return m_max + m_logNumClasses; }
+  /** What a miss adds to log-odds, away from the limits. */
+  Real missIncrement() const { return m_miss; }
   /** Puts all values into their limits and restores the order. */
   void limit(Belief& b) const;
   /** The same for the occupancy of a cell without a class record. */
   Real limitedOccupancy(Real v) const {
-    return std::min(m_max + m_logNumClasses, std::max(m_min + m_logNumClasses, v));
+    return std::min(highestOccupancy(), std::max(lowestOccupancy(), v));
   }
 
  private:

@@ -23,6 +23,9 @@ struct InsertionOptions {
   double carvingMargin = 0;
   /** Threads that share the work; the map does not depend on it. */
   int threads = 1;
+  /** MB (10^6 bytes). A scan that needs more buffers than this, because its points are too far from
+   * each other, is refused. */
+  int maxScanMemory = 2000;
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */

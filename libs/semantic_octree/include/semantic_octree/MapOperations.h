@@ -1,5 +1,4 @@
 #pragma once
-#include <octomap/OcTree.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <Eigen/Geometry>
@@ -20,7 +19,8 @@ enum class Limits {
  *
  * The order of the maps leaves no trace, not even in the last bit. Neither does grouping, as long
  * as partial sums are made with Limits::Keep, no voxel has more than three named classes, and no
- * log-odds exceed 64 (ten maps that are all as sure as they can be).
+ * sum leaves the range of log-odds, 31.99 on either side (four maps of 24 classes that are all as
+ * sure as they can be). What is beyond is lowered into the range, all classes alike.
  * \throw std::invalid_argument no maps, or maps that differ in resolution, classes or filter
  * parameters; says which. */
 SemanticOcTree merged(const std::vector<const SemanticOcTree*>& maps,
@@ -31,8 +31,8 @@ SemanticOcTree merged(const std::vector<const SemanticOcTree*>& maps,
 SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box);
 
 /** The same map with voxels of 2^levels times the edge. A voxel is as occupied as the most occupied
- * one in it, its classes are those of the known ones' mixture, as in Abstraction::compressedMap.
- * \throw std::invalid_argument levels not 0 to 8. */
+ * one in it, its classes are those of the voxels in it with labels, as in
+ * Abstraction::compressedMap. \throw std::invalid_argument levels not 0 to 8. */
 SemanticOcTree coarsened(const SemanticOcTree& map, int levels);
 
 /** The map seen from another frame: a voxel takes the state of the one in which its center lies.
@@ -40,10 +40,5 @@ SemanticOcTree coarsened(const SemanticOcTree& map, int levels);
  * \throw std::invalid_argument the pose is not a rigid transformation
  * \throw std::out_of_range a known part of the map would be outside the new one. */
 SemanticOcTree moved(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_old);
-
-/** Occupancy of a map of OctoMap's, put into the filter's limits; no voxel has a class.
- * \throw std::invalid_argument a map of another number of levels than 16, bad parameters. */
-SemanticOcTree fromOccupancy(const octomap::OcTree& map, const ClassTable& classes,
-                             const FilterParameters& filter = {});
 
 }  // namespace semantic_octree

@@ -1,9 +1,11 @@
 #pragma once
-#include <octomap/OccupancyOcTreeBase.h>
+#include <octomap/octomap_types.h>
 #include <semantic_octree/AbstractionOptions.h>
 #include <semantic_octree/ClassFilter.h>
 #include <semantic_octree/InsertionOptions.h>
+#include <semantic_octree/Keys.h>
 #include <semantic_octree/SemanticOcTreeNode.h>
+#include <semantic_octree/TreeIterator.h>
 #include <semantic_types/LabeledCloud.h>
 
 #include <Eigen/Geometry>
@@ -43,22 +45,28 @@ struct RayHit {
   CellState state;
 };
 
-/** Semantic octree: OctoMap's tree of 16 levels whose leaves hold a Bayesian distribution over free
- * space and K classes (see ClassFilter).
+/** Semantic octree: a tree of 16 levels as OctoMap's, whose leaves hold a Bayesian distribution
+ * over free space and K classes (see ClassFilter).
  *
- * Reading is OctoMap's: keys, iterators, search, ray casts. Space without a node is unknown. The
- * tree changes through the functions below only; OctoMap's own insertion and editing are not
- * available. Not thread safe, except for reading from several threads. */
-class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode> {
+ * Reading is OctoMap's: keys, iterators, search, ray casts have its names and its meaning. Space
+ * without a node is unknown. The tree changes through the functions below only. Not thread safe,
+ * except for reading from several threads.
+ *
+ * Functions that fail leave the map as it was. Only insert() may lose it: if memory runs out
+ * halfway through a scan, all that is left is a broken map, of which every function throws
+ * std::logic_error until clear(). */
+class SemanticOcTree {
  public:
-  using Base = octomap::OccupancyOcTreeBase<SemanticOcTreeNode>;
   using Node = SemanticOcTreeNode;
   using Belief = ClassBelief<float>;
+  using leaf_iterator = TreeIterator;
+  using tree_iterator = TreeIterator;
+  using leaf_bbx_iterator = TreeIterator;
 
   /** \param voxelSize edge of a voxel (the resolution), meters
    * \throw std::invalid_argument voxel size not positive, no classes, or bad filter parameters. */
   SemanticOcTree(double voxelSize, ClassTable classes, const FilterParameters& filter = {});
-  ~SemanticOcTree() override;
+  ~SemanticOcTree();
   SemanticOcTree(const SemanticOcTree& o);
   /** Leaves an empty map of the same kind behind. */
   SemanticOcTree(SemanticOcTree&& o);
@@ -66,41 +74,62 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   void swap(SemanticOcTree& o);
 
   // --- Reading, as in OctoMap ---
-  using Base::begin_leafs;
-  using Base::begin_leafs_bbx;
-  using Base::begin_tree;
-  using Base::castRay;
-  using Base::computeRayKeys;
-  using Base::coordToKey;
-  using Base::coordToKeyChecked;
-  using Base::end_leafs;
-  using Base::end_leafs_bbx;
-  using Base::end_tree;
-  using Base::getMetricMax;
-  using Base::getMetricMin;
-  using Base::getNodeChild;
-  using Base::getNodeSize;
-  using Base::getResolution;
-  using Base::getTreeDepth;
-  using Base::isNodeOccupied;
-  using Base::keyToCoord;
-  using Base::leaf_bbx_iterator;
-  using Base::leaf_iterator;
-  using Base::nodeChildExists;
-  using Base::nodeHasChildren;
-  using Base::tree_iterator;
-  const Node* root() const { return Base::root; }
-  const Node* search(const octomap::OcTreeKey& key, unsigned depth = 0) const {
-    return Base::search(key, depth);
+  double getResolution() const { return m_resolution; }
+  unsigned getTreeDepth() const { return kTreeDepth; }
+  /** Edge of the cube that a node at a depth stands for, meters. */
+  double getNodeSize(unsigned depth) const {
+    return m_resolution * edgeAtDepth(static_cast<int>(depth));
   }
-  std::string getTreeType() const override { return "SemanticOcTree"; }
+  std::string getTreeType() const { return "SemanticOcTree"; }
   /** Number of nodes, inner nodes and leaves. */
-  std::size_t size() const override { return tree_size; }
+  std::size_t size() const;
   /** Number of leaves; takes no time, unlike OctoMap's. */
   std::size_t getNumLeafNodes() const;
-  bool empty() const { return Base::root == nullptr; }
+  bool empty() const { return !root(); }
   /** Bytes held by nodes, class records and bookkeeping. */
-  std::size_t memoryUsage() const override;
+  std::size_t memoryUsage() const;
+  /** Lowest and highest corner of all known cells, meters, map frame; 0 in an empty map. */
+  void getMetricMin(double& x, double& y, double& z) const;
+  void getMetricMax(double& x, double& y, double& z) const;
+
+  Node root() const;
+  /** The leaf that holds a voxel, or its ancestor at a depth (0: the finest); none where that is
+   * unknown. */
+  Node search(const octomap::OcTreeKey& key, unsigned depth = 0) const;
+  bool nodeHasChildren(const Node& node) const { return !node.isLeaf(); }
+  bool nodeChildExists(const Node& node, unsigned i) const {
+    return static_cast<bool>(node.child(static_cast<int>(i)));
+  }
+  Node getNodeChild(const Node& node, unsigned i) const { return node.child(static_cast<int>(i)); }
+  /** Likelier occupied than free. */
+  bool isNodeOccupied(const Node& node) const { return node.getLogOdds() > 0; }
+
+  /** Leaves down to a depth (0: all); at that depth also inner nodes. */
+  leaf_iterator begin_leafs(unsigned maxDepth = 0) const;
+  leaf_iterator end_leafs() const { return {}; }
+  /** All nodes, parents first. */
+  tree_iterator begin_tree(unsigned maxDepth = 0) const;
+  tree_iterator end_tree() const { return {}; }
+  /** Leaves with voxels in a box, both corners included. */
+  leaf_bbx_iterator begin_leafs_bbx(const octomap::OcTreeKey& low, const octomap::OcTreeKey& high,
+                                    unsigned maxDepth = 0) const;
+  /** Corners in meters, map frame; none if one of them is outside of the map. */
+  leaf_bbx_iterator begin_leafs_bbx(const octomap::point3d& low, const octomap::point3d& high,
+                                    unsigned maxDepth = 0) const;
+  leaf_bbx_iterator end_leafs_bbx() const { return {}; }
+
+  /** Key of the voxel that holds a point (meters, map frame), which must be inside of the map. */
+  octomap::OcTreeKey coordToKey(const octomap::point3d& point) const;
+  octomap::OcTreeKey coordToKey(double x, double y, double z) const;
+  /** \return whether the point is inside of the map */
+  bool coordToKeyChecked(const octomap::point3d& point, octomap::OcTreeKey& key) const;
+  bool coordToKeyChecked(double x, double y, double z, octomap::OcTreeKey& key) const;
+  /** Center of a voxel, or of the cube at a depth that it is in; meters, map frame. */
+  octomap::point3d keyToCoord(const octomap::OcTreeKey& key, unsigned depth = kTreeDepth) const;
+  /** Voxels that the line from one point to another (meters, map frame) crosses, without the last
+   * one. \return false: one of the points is outside of the map */
+  bool computeRayKeys(const octomap::point3d& origin, const octomap::point3d& end,
+                      octomap::KeyRay& ray) const;
 
   const ClassTable& classes() const { return m_classes; }
   int numClasses() const { return m_classes.size(); }
@@ -108,8 +137,8 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
 
   // --- Classes ---
   /** State of the cell that contains a point (meters, map frame), or of its ancestor at a depth
-   * (0: the finest). An inner node's occupancy is its most occupied leaf's, its classes those of
-   * the mixture of its known leaves by volume. */
+   * (0: the finest). An inner node's occupancy is its most occupied leaf's, p(class | occupied) that
+   * of the mixture of its leaves in which labels were seen. */
   CellState query(double x, double y, double z, unsigned depth = 0) const;
   CellState query(const octomap::OcTreeKey& key, unsigned depth = 0) const;
   CellState query(const Node& node) const;
@@ -135,12 +164,14 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
    * ClassFilter::hit() for their labels), voxels that beams cross are free unless hit.
    * \param cloud points in the sensor's frame
    * \throw std::out_of_range the sensor is outside the map
-   * \throw std::invalid_argument vectors of different lengths, or a class that is not in the table.
-   */
+   * \throw std::invalid_argument vectors of different lengths, or a class that is not in the table
+   * \throw std::bad_alloc no memory; look at isBroken(). */
   InsertionReport insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
                          const InsertionOptions& options = {});
+  /** Memory ran out during an insertion. */
+  bool isBroken() const { return m_store == nullptr; }
   /** Removes all nodes. Tiles that were touched before are not reported any more. */
-  void clear() override;
+  void clear();
   /** Lowest keys of the tiles of 8 x 8 x 8 voxels in which insert() changed something since the
    * last call, sorted; keys are multiples of 8. The first call reports all tiles of the map that
    * are known in part, and starts the record. */
@@ -158,29 +189,23 @@ class SemanticOcTree : protected octomap::OccupancyOcTreeBase<SemanticOcTreeNode
   void dropAbstraction();
   bool hasAbstraction() const { return m_gTree != nullptr; }
 
- protected:
-  SemanticOcTree* create() const override {
-    return new SemanticOcTree(resolution, m_classes, m_parameters);
-  }
-
  private:
   friend class Abstraction;
   friend class TreeBuilder;
   friend class TreeReader;
-  /** Moves all nodes to a store with room for (or without) bookkeeping. */
-  void rebuildStore();
-  /** After the store's nodes changed. */
-  void attachRoot();
-
+  friend class TreeWriter;
+  /** \throw std::logic_error the map is broken. */
+  NodeStore& store() const;
+  double m_resolution;
   ClassTable m_classes;
   FilterParameters m_parameters;
   ClassFilter<float> m_filter;
   bool m_pruning = true;
-  std::unique_ptr<NodeStore> m_store;
-  std::unique_ptr<GTree> m_gTree;  ///< null: no abstraction is kept
+  std::unique_ptr<NodeStore> m_store;  ///< null: the map is broken
+  std::unique_ptr<GTree> m_gTree;      ///< null: no abstraction is kept
   std::unique_ptr<LeafChanges> m_leafChanges;
   std::unique_ptr<TouchedTiles> m_touched;  ///< null: nobody asks for them
-  std::unique_ptr<Scan> m_scan;             ///< buffers of the last insertion
+  std::unique_ptr<Scan> m_scan;             ///< buffers of the last insertion, if there was one
 };
 
 }  // namespace semantic_octree

@@ -1,0 +1,67 @@
+#pragma once
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <vector>
+
+namespace semantic_octree {
+
+/** How much the voxels around it tell about a voxel's class. */
+struct SmoothingOptions {
+  /** Weight of what a voxel that shares a face tells, beside 1 for the voxel itself. Straight
+   * borders between classes stay where they are whatever the weight; a single voxel that is as sure
+   * as four neighbors of another class keeps its class below 0.25. 0: each voxel for itself. */
+  double neighborWeight = 0.4;
+  /** Voxels in which no label was seen are answered for by their 26 neighbors: those across an edge
+   * with half the weight, those across a corner with a quarter. */
+  bool fillGaps = true;
+
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
+  void validate() const;
+};
+
+/** A map whose voxels' classes are seen together with their neighbors' (a spatial kernel, as in
+ * Gan et al., "Bayesian Spatial Kernel Smoothing for Scalable Dense Semantic Mapping", and ConvBKI,
+ * but at the query: the map stays the exact filter of its scans, and the weight can change).
+ *
+ * With h_k the log-odds of a voxel's classes,
+ *
+ *     ln p(class k | occupied) = h_k(voxel) + weight sum_n h_k(neighbor n) + constant,
+ *
+ * as if a share of each neighbor's labels had been seen in the voxel. Voxels without a label tell
+ * nothing. Where neighbors tell something, no class falls farther behind the likeliest than the
+ * filter's limits let it in one voxel. Occupancy and status are the voxel's own.
+ *
+ * For maps of voxels: in a leaf of a compressed map, which is larger, the same mixture would count
+ * several times. The map must outlive the view. Safe from several threads while the map does not
+ * change. */
+class SmoothedView {
+ public:
+  /** \throw std::invalid_argument bad options. */
+  explicit SmoothedView(const SemanticOcTree& map, const SmoothingOptions& options = {});
+
+  /** As SemanticOcTree::query(), except that a voxel that is free or unknown may have a likeliest
+   * class, too: the one it would have if it were occupied. */
+  CellState query(const octomap::OcTreeKey& key) const;
+  /** Of the voxel that contains a point (meters, map frame). */
+  CellState query(double x, double y, double z) const;
+  /** K + 1 probabilities, [0] = free space; of a voxel of which nothing is known: 1/2, and the
+   * classes equally likely. */
+  std::vector<double> distribution(const octomap::OcTreeKey& key) const;
+  /** Of the voxel that contains a point (meters, map frame).
+   * \throw std::out_of_range the point is outside the map. */
+  std::vector<double> distribution(double x, double y, double z) const;
+
+ private:
+  /** K numbers ln p(class | occupied) + constant; empty: no voxel of those asked has a label. */
+  std::vector<double> logClasses(const octomap::OcTreeKey& key) const;
+  /** K probabilities, given that the voxel is occupied; empty as above. */
+  std::vector<double> classes(const octomap::OcTreeKey& key) const;
+  bool add(const Eigen::Array3i& voxel, double weight, std::vector<double>& logs) const;
+
+  const SemanticOcTree& m_map;
+  SmoothingOptions m_options;
+  double m_mostBehind;  ///< the likeliest class
+};
+
+}  // namespace semantic_octree

@@ -1,0 +1,77 @@
+#include "IndexPool.h"
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+
+namespace semantic_octree {
+
+std::uint32_t IndexPool::addChunk() {
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  const std::size_t n = m_chunks.size();
+  if (n > UINT32_MAX / kPerChunk - 1) throw std::bad_alloc();
+  if (n == m_capacity) {
+    const std::size_t capacity = std::max<std::size_t>(16, 2 * m_capacity);
+    m_directories.reserve(m_directories.size() + 1);
+    Directory directory(new std::byte*[capacity]);
+    std::copy_n(m_directory.load(std::memory_order_relaxed), n, directory.get());
+    m_directory.store(directory.get(), std::memory_order_release);
+    m_directories.push_back(std::move(directory));
+    m_capacity = capacity;
+  }
+  m_chunks.emplace_back(new std::byte[kPerChunk * m_stride]);
+  m_directory.load(std::memory_order_relaxed)[n] = m_chunks.back().get();
+  return static_cast<std::uint32_t>(n * kPerChunk);
+}
+
+void IndexPool::copy(const IndexPool& o) {
+  for (const auto& from : o.m_chunks) {
+    std::byte* to = at(addChunk());
+    if (m_stride == o.m_stride) {
+      std::memcpy(to, from.get(), kPerChunk * m_stride);
+      continue;
+    }
+    const std::size_t bytes = std::min(m_stride, o.m_stride);
+    for (std::uint32_t i = 0; i < kPerChunk; ++i) {
+      std::memcpy(to + i * m_stride, from.get() + i * o.m_stride, bytes);
+      std::memset(to + i * m_stride + bytes, 0, m_stride - bytes);
+    }
+  }
+}
+
+std::uint32_t IndexAllocator::allocate(IndexPool& pool) {
+  if (!m_free.empty()) {
+    const std::uint32_t index = m_free.back();
+    m_free.pop_back();
+    return index;
+  }
+  if (m_left == 0) {
+    m_next = pool.addChunk();
+    m_left = IndexPool::kPerChunk;
+  }
+  --m_left;
+  return m_next++;
+}
+
+int RunAllocator::lengthClass(int n) {
+  return static_cast<int>(std::lower_bound(kLengths, kLengths + kNumLengths, n) - kLengths);
+}
+
+std::uint32_t RunAllocator::allocate(IndexPool& pool, int n) {
+  const int c = lengthClass(n);
+  if (!m_free[c].empty()) {
+    const std::uint32_t index = m_free[c].back();
+    m_free[c].pop_back();
+    return index;
+  }
+  const auto length = static_cast<std::uint32_t>(kLengths[c]);
+  if (m_left < length) {
+    m_next = pool.addChunk();
+    m_left = IndexPool::kPerChunk;
+  }
+  m_left -= length;
+  m_next += length;
+  return m_next - length;
+}
+
+}  // namespace semantic_octree

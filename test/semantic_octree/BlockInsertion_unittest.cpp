@@ -1,0 +1,181 @@
+// What scans do to blocks of 4 x 4 x 4 voxels, against voxels that are on their own.
+#include <gtest/gtest.h>
+#include <semantic_octree/Abstraction.h>
+
+#include "BlockScans.h"
+
+using namespace semantic_octree;
+
+namespace {
+
+/** Leaf of a voxel of the region. */
+struct LeafState {
+  unsigned depth;
+  bool hasRecord;
+};
+
+std::map<VoxelId, LeafState> leavesOfRegion(const SemanticOcTree& tree) {
+  std::map<VoxelId, LeafState> leaves;
+  for (auto leaf = tree.begin_leafs_bbx(keyOf({0, 0, 0}), keyOf({7, 7, 7}));
+       leaf != tree.end_leafs_bbx(); ++leaf) {
+    const octomap::OcTreeKey first = leaf.getIndexKey();
+    const int edge = std::min(8, edgeAtDepth(static_cast<int>(leaf.getDepth())));
+    for (int i = 0; i < edge * edge * edge; ++i)
+      leaves[voxelAt(first[0] + i % edge, first[1] + i / edge % edge, first[2] + i / edge / edge)] =
+          {leaf.getDepth(), leaf->hasClassRecord()};
+  }
+  return leaves;
+}
+
+/** What happened to the region's voxels. */
+struct Events {
+  int octantsWithRecord = 0, blocksWithRecord = 0, blocksWithout = 0;
+  int opened = 0, dropped = 0, recorded = 0;
+
+  void add(const std::map<VoxelId, LeafState>& before, const std::map<VoxelId, LeafState>& after) {
+    for (const auto& [id, leaf] : after) {
+      octantsWithRecord += leaf.depth == 15 && leaf.hasRecord;
+      blocksWithRecord += leaf.depth <= 14 && leaf.hasRecord;
+      blocksWithout += leaf.depth <= 14 && !leaf.hasRecord;
+      const auto old = before.find(id);
+      if (old == before.end()) continue;
+      opened += old->second.hasRecord && old->second.depth < leaf.depth;
+      dropped += old->second.hasRecord && !leaf.hasRecord;
+      recorded += !old->second.hasRecord && leaf.hasRecord;
+    }
+  }
+};
+
+bool isSameLeaf(const SemanticOcTree& tree, const SemanticOcTreeNode& a,
+                const SemanticOcTreeNode& b) {
+  return b && b.isLeaf() && a.getLogOdds() == b.getLogOdds() &&
+         a.hasClassRecord() == b.hasClassRecord() && tree.belief(a) == tree.belief(b);
+}
+
+/** Checks all inner nodes below one. \return number of nodes */
+std::size_t expectSoundBelow(const SemanticOcTree& tree, const SemanticOcTreeNode& node) {
+  if (node.isLeaf()) return 1;
+  std::size_t nodes = 1;
+  int same = 0;
+  float highest = -HUGE_VALF;
+  for (int i = 0; i < 8; ++i) {
+    const auto child = node.child(i);
+    if (!child) continue;
+    nodes += expectSoundBelow(tree, child);
+    highest = std::max(highest, child.getLogOdds());
+    same += node.child(0) && node.child(0).isLeaf() && isSameLeaf(tree, node.child(0), child);
+  }
+  EXPECT_EQ(node.getLogOdds(), highest);
+  EXPECT_FALSE(node.hasClassRecord());
+  if (tree.pruning()) {
+    EXPECT_LT(same, 8) << "children that agree";
+  }
+  return nodes;
+}
+
+void expectSound(const SemanticOcTree& tree) {
+  EXPECT_EQ(expectSoundBelow(tree, tree.root()), tree.size());
+  std::size_t leaves = 0;
+  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) ++leaves;
+  EXPECT_EQ(leaves, tree.getNumLeafNodes());
+}
+
+AbstractionOptions someTerms() {
+  AbstractionOptions options;
+  options.weights.terms.push_back(tree_abstraction::relevant("1", 1, {1}));
+  options.weights.alpha = 0.001;
+  return options;
+}
+
+/** The same scans in maps of each kind. */
+class Maps {
+ public:
+  Maps(int classes, const FilterParameters& p)
+      : pruned(1.0, numberedClasses(classes), p), plain(1.0, classes, p) {
+    unpruned.setPruning(false);
+    abstracted.setAbstraction(someTerms());
+  }
+  void insert(const PosedCloud& scan) {
+    InsertionOptions threads;
+    threads.threads = 3;
+    for (SemanticOcTree* tree : {&pruned, &unpruned, &abstracted})
+      tree->insert(scan.cloud, scan.T_map_sensor);
+    shared.insert(scan.cloud, scan.T_map_sensor, threads);
+    plain.insert(scan, {});
+    applyChange();
+  }
+  void compare() const {
+    expectSame(pruned, plain);
+    expectSame(unpruned, plain);
+    expectSound(pruned);
+    expectSound(unpruned);
+    EXPECT_TRUE(shared == pruned) << "by several threads";
+    EXPECT_EQ(shared.size(), pruned.size());
+    SemanticOcTree anew = pruned;
+    anew.setAbstraction(someTerms());
+    EXPECT_TRUE(abstracted == anew) << "bookkeeping that is kept up to date";
+  }
+
+  SemanticOcTree pruned, unpruned = pruned, shared = pruned, abstracted = pruned;
+  PlainMap plain;
+
+ private:
+  using LeafId = std::tuple<int, int, int, unsigned>;
+  static LeafId idOf(const LeafCell& l) { return {l.key[0], l.key[1], l.key[2], l.depth}; }
+
+  /** Follows the compressed tree by its changes alone. */
+  void applyChange() {
+    Abstraction abstraction(abstracted);
+    const TreeChange change = abstraction.takeChange();
+    for (const LeafCell& leaf : change.removed) EXPECT_EQ(m_leaves.erase(idOf(leaf)), 1u);
+    for (const LeafCell& leaf : change.added) EXPECT_TRUE(m_leaves.insert(idOf(leaf)).second);
+    std::set<LeafId> leaves;
+    for (const LeafCell& leaf : abstraction.leaves()) leaves.insert(idOf(leaf));
+    EXPECT_TRUE(m_leaves == leaves);
+  }
+
+  std::set<LeafId> m_leaves;
+};
+
+void expectPlainResult(unsigned seed, int classes, const FilterParameters& parameters,
+                       Events& events, int numScans = 40) {
+  Maps maps(classes, parameters);
+  BlockScans scans(seed, classes);
+  std::map<VoxelId, LeafState> leaves;
+  for (int i = 0; i < numScans; ++i) {
+    maps.insert(scans.next());
+    maps.compare();
+    const auto after = leavesOfRegion(maps.pruned);
+    events.add(leaves, after);
+    leaves = after;
+    if (testing::Test::HasFailure()) FAIL() << "seed " << seed << ", scan " << i;
+  }
+}
+
+}  // namespace
+
+TEST(BlockInsertion, givesThePlainMapWhateverHappensToABlock) {
+  Events events;
+  for (unsigned seed = 1; seed <= 4; ++seed) expectPlainResult(seed, 3, {}, events);
+  EXPECT_GT(events.octantsWithRecord, 500);
+  EXPECT_GT(events.blocksWithRecord, 500);
+  EXPECT_GT(events.blocksWithout, 500);
+  EXPECT_GT(events.opened, 50);
+  EXPECT_GT(events.dropped, 500);
+  EXPECT_GT(events.recorded, 500);
+}
+
+TEST(BlockInsertion, givesThePlainMapWithParametersAtTheirBounds) {
+  FilterParameters p;
+  p.hitProbability = p.maxProbability = 1 - 1e-9;
+  p.falseAlarmProbability = p.minOccupancy = 1e-9;
+  Events events;
+  for (const int classes : {1, 24, 254}) expectPlainResult(20 + classes, classes, p, events, 15);
+}
+
+TEST(BlockInsertion, givesThePlainMapWithPublishedConstants) {
+  FilterParameters ssmi;
+  ssmi.increments = FilterParameters::Increments::Ssmi;
+  Events events;
+  expectPlainResult(31, 5, ssmi, events, 20);
+}

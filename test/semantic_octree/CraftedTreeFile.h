@@ -1,0 +1,108 @@
+#pragma once
+#include <gtest/gtest.h>
+#include <semantic_octree/TreeFile.h>
+#include <zlib.h>
+
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+/** \file Bytes of map files, put together by hand. */
+
+template <typename T>
+void append(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+/** Values one behind the other, each as its type is stored. */
+template <typename... Values>
+std::string bytesOf(Values... values) {
+  std::string bytes;
+  (append(bytes, values), ...);
+  return bytes;
+}
+
+/** A file with right checksums around any content. */
+inline std::string fileAround(const std::string& content, std::uint32_t version = 2) {
+  constexpr std::size_t kBlock = 60000;
+  std::string file = "SEMOCTRE" + bytesOf(version);
+  std::uint32_t crc = 0;
+  const auto add = [&](const std::string& block) {
+    const std::string size = bytesOf(static_cast<std::uint32_t>(block.size())), part = size + block;
+    crc = static_cast<std::uint32_t>(crc32(crc, reinterpret_cast<const unsigned char*>(part.data()),
+                                           static_cast<uInt>(part.size())));
+    file += size + bytesOf(crc) + block;
+  };
+  for (std::size_t i = 0; i < content.size(); i += kBlock) add(content.substr(i, kBlock));
+  add("");
+  return file;
+}
+
+/** What fileAround() was given. */
+inline std::string contentIn(const std::string& file) {
+  std::string content;
+  for (std::size_t i = 12; i < file.size();) {
+    std::uint32_t size = 0;
+    std::memcpy(&size, &file[i], sizeof(size));
+    content += file.substr(i + 8, size);
+    i += 8 + size;
+  }
+  return content;
+}
+
+/** What precedes a map's nodes. */
+struct Header {
+  double resolution = 0.5;
+  std::uint8_t pruning = 1, increments = 0, policy = 0;
+  double accuracy = 0.9, hitProbability = 0.6, falseAlarmProbability = 0.1, minOccupancy = 0.12,
+         maxProbability = 0.97, softLabelFloor = 0.001;
+  std::vector<std::string> names = {"a", "b"};
+  std::uint32_t numFolds = 0;
+  std::uint64_t numNodes = 0;
+
+  std::string bytes() const {
+    std::string bytes = bytesOf(resolution, pruning, increments, accuracy, hitProbability,
+                                falseAlarmProbability, minOccupancy, maxProbability, softLabelFloor,
+                                static_cast<std::uint8_t>(names.size()));
+    for (const std::string& name : names)
+      bytes += bytesOf(static_cast<std::uint16_t>(name.size())) + name + "rgb";
+    return bytes + bytesOf(policy, numFolds, numNodes);
+  }
+};
+
+inline semantic_octree::SemanticOcTree treeOf(const std::string& file) {
+  std::istringstream in(file);
+  return semantic_octree::readTree(in);
+}
+
+/** Expects that content with bytes altered or missing is refused, or leads to a map that is sound.
+ * \return how many were maps */
+inline int tryAlteredContent(const std::string& content, std::uint32_t version) {
+  std::mt19937 random(1);
+  int maps = 0;
+  for (int round = 0; round < 3000; ++round) {
+    // Mostly near the beginning: what follows is then read in another way.
+    const std::size_t at =
+        random() % (round % 3 ? std::min<std::size_t>(500, content.size()) : content.size());
+    std::string altered = content;
+    if (round % 4 == 0)
+      altered.erase(at, 1 + random() % 8);
+    else
+      altered[at] = static_cast<char>(altered[at] ^ (1 + random() % 255));
+    try {
+      const semantic_octree::SemanticOcTree tree = treeOf(fileAround(altered, version));
+      ++maps;
+      std::size_t nodes = 0;
+      for (auto node = tree.begin_tree(); node != tree.end_tree(); ++node) ++nodes;
+      EXPECT_EQ(nodes, tree.size());
+      std::ostringstream again;
+      writeTree(again, tree);
+      EXPECT_TRUE(treeOf(again.str()) == tree);
+    } catch (const std::runtime_error&) {
+    }
+  }
+  return maps;
+}

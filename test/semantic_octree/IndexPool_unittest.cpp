@@ -1,0 +1,144 @@
+// The memory of nodes and class records.
+#include <IndexPool.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+#include <set>
+#include <thread>
+
+using namespace semantic_octree;
+
+namespace {
+
+void write(const IndexPool& pool, std::uint32_t index, int value) {
+  std::memcpy(pool.at(index), &value, sizeof(value));
+}
+int read(const IndexPool& pool, std::uint32_t index) {
+  int value = 0;
+  std::memcpy(&value, pool.at(index), sizeof(value));
+  return value;
+}
+
+/** Elements and what was written into all of them. */
+struct Elements {
+  std::uint32_t index;
+  int length, content;
+};
+
+}  // namespace
+
+TEST(IndexPool, elementsAreApartAndStayWhereTheyAre) {
+  for (const std::size_t stride : {4u, 12u, 152u}) {
+    IndexPool pool(stride);
+    IndexAllocator allocator;
+    std::vector<std::byte*> addresses;
+    constexpr int kElements = 40 * int(IndexPool::kPerChunk);  // beyond the first directory
+    for (int i = 0; i < kElements; ++i) {
+      const std::uint32_t index = allocator.allocate(pool);
+      ASSERT_EQ(index, std::uint32_t(i));
+      addresses.push_back(pool.at(index));
+      std::memset(pool.at(index), 0xff, stride);
+      write(pool, index, i);
+    }
+    for (int i = 0; i < kElements; ++i) {
+      ASSERT_EQ(read(pool, std::uint32_t(i)), i);
+      ASSERT_EQ(pool.at(std::uint32_t(i)), addresses[i]);
+    }
+    EXPECT_EQ(pool.bytes(), kElements * stride);
+  }
+}
+
+TEST(IndexPool, elementsThatWereGivenBackAreUsedAgain) {
+  IndexPool pool(8);
+  IndexAllocator allocator;
+  std::set<std::uint32_t> used, released;
+  for (int i = 0; i < 100; ++i) used.insert(allocator.allocate(pool));
+  EXPECT_EQ(used.size(), 100u);
+  for (const std::uint32_t index : {7u, 50u, 99u}) {
+    allocator.release(index);
+    released.insert(index);
+  }
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(released.erase(allocator.allocate(pool)), 1u);
+  EXPECT_EQ(allocator.allocate(pool), 100u);
+}
+
+TEST(IndexPool, ofSeveralThreadsGivesEachElementsOfItsOwn) {
+  IndexPool pool(8);
+  std::vector<std::vector<std::uint32_t>> indices(3);
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 3; ++t)
+    threads.emplace_back([&pool, &mine = indices[t], t] {
+      IndexAllocator allocator;
+      for (int i = 0; i < 50000; ++i) {
+        mine.push_back(allocator.allocate(pool));
+        write(pool, mine.back(), t);
+        if (read(pool, mine[i / 2]) != t) mine.clear();
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  std::set<std::uint32_t> all;
+  for (int t = 0; t < 3; ++t)
+    for (const std::uint32_t index : indices[t]) {
+      EXPECT_TRUE(all.insert(index).second);
+      ASSERT_EQ(read(pool, index), t);
+    }
+  EXPECT_EQ(all.size(), 150000u);
+}
+
+TEST(IndexPool, copiesHaveTheSameElementsWithMoreOrLessRoom) {
+  IndexPool pool(8);
+  IndexAllocator allocator;
+  for (int i = 0; i < 3000; ++i) write(pool, allocator.allocate(pool), i);
+  for (const std::size_t stride : {4u, 8u, 20u}) {
+    IndexPool copy(stride);
+    copy.copy(pool);
+    EXPECT_EQ(copy.stride(), stride);
+    for (int i = 0; i < 3000; ++i) ASSERT_EQ(read(copy, std::uint32_t(i)), i);
+    write(copy, 5, -1);
+    EXPECT_EQ(read(pool, 5), 5);
+    IndexAllocator same = allocator;
+    EXPECT_EQ(same.allocate(copy), 3000u) << "an allocator's copy goes on in the copy";
+    write(copy, 3000, 1);
+  }
+}
+
+TEST(RunAllocator, runsOfEveryLengthAreApart) {
+  std::mt19937 random(1);
+  IndexPool pool(4);
+  RunAllocator allocator;
+  std::vector<Elements> runs;
+  for (int i = 0; i < 20000; ++i) {
+    if (!runs.empty() && random() % 3 == 0) {
+      std::swap(runs[random() % runs.size()], runs.back());
+      allocator.release(runs.back().index, runs.back().length);
+      runs.pop_back();
+    }
+    const int length = 1 + static_cast<int>(random() % 64);
+    const std::uint32_t index = allocator.allocate(pool, length);
+    EXPECT_EQ(index / IndexPool::kPerChunk, (index + length - 1) / IndexPool::kPerChunk)
+        << "in one piece";
+    for (int k = 0; k < length; ++k) write(pool, index + k, i);
+    runs.push_back({index, length, i});
+    ASSERT_EQ(pool.at(index + length - 1) - pool.at(index), 4 * (length - 1));
+  }
+  for (const Elements& run : runs)
+    for (int k = 0; k < run.length; ++k) ASSERT_EQ(read(pool, run.index + k), run.content);
+}
+
+TEST(RunAllocator, runsThatWereGivenBackServeAllThatAreOfTheSameLength) {
+  IndexPool pool(4);
+  RunAllocator allocator;
+  for (int n = 1; n <= 64; ++n)
+    for (int m = 1; m <= 64; ++m) {
+      const std::uint32_t index = allocator.allocate(pool, n);
+      allocator.release(index, n);
+      const std::uint32_t next = allocator.allocate(pool, m);
+      EXPECT_EQ(next == index, RunAllocator::sameLength(n, m)) << n << " and " << m;
+      allocator.release(next, m);
+    }
+  for (int n = 1; n < 64; ++n) {
+    EXPECT_TRUE(RunAllocator::sameLength(n, n));
+    EXPECT_FALSE(RunAllocator::sameLength(n, 2 * n)) << "memory would be wasted";
+  }
+}
