@@ -27,10 +27,10 @@ void expectSound(const ColoredGraph& graph, const CostModel& model, VertexId sta
   Tuple cost = oracles::zero(model);
   std::vector<Length> lengths(graph.classes(), 0);
   for (std::size_t i = 0; i < result.edges.size(); ++i) {
-    const Edge& edge = graph.edge(result.edges[i]);
+    const Edge edge = graph.edge(result.edges[i]);
     ASSERT_EQ((std::set<VertexId>{edge.a, edge.b}),
               (std::set<VertexId>{result.vertices[i], result.vertices[i + 1]}));
-    const auto step = oracles::edgeCost(graph, model, result.edges[i]);
+    const auto step = oracles::edgeCost(graph, model, result.edges[i], result.vertices[i + 1]);
     ASSERT_TRUE(step);
     cost = oracles::sum(cost, *step);
     for (const Stretch& s : edge.profile) lengths[s.classId] += s.length;
@@ -77,6 +77,7 @@ TEST(ColoredAStar, equalsTupleDijkstraOnTenThousandRandomGraphs) {
   int found = 0, zeroLength = 0, notFound = 0;
   for (unsigned seed = 0; seed < 10000; ++seed) {
     PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 23, seed % 67, 2 + seed % 5);
+    if (seed % 2) plane.addTolls();
     const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
     for (const CostModel& model : allModels(plane.randomOrder())) {
       const auto expected = oracles::tupleDijkstra(plane.graph, model, start, goal);
@@ -101,6 +102,7 @@ TEST(ColoredAStar, equalsTupleDijkstraOnTenThousandRandomGraphs) {
 TEST(ColoredAStar, equalsExactScalarization) {
   for (unsigned seed = 0; seed < 1000; ++seed) {
     PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 23, seed % 67, 4);
+    if (seed % 2) plane.addTolls();
     const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
     for (const CostModel& model : allModels(plane.randomOrder())) {
       const auto expected = oracles::scalarShortest(plane.graph, model, start, goal);
@@ -116,6 +118,7 @@ TEST(ColoredAStar, equalsExactScalarization) {
 TEST(ColoredAStar, equalsTheBestOfAllSimplePaths) {
   for (unsigned seed = 0; seed < 1000; ++seed) {
     PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 8, seed % 19, 3);
+    if (seed % 2) plane.addTolls();
     const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
     for (const CostModel& model : allModels(plane.randomOrder())) {
       const auto expected = oracles::bestOfAllPaths(plane.graph, model, start, goal);
@@ -269,4 +272,68 @@ TEST(ColoredAStar, worstRankBoundLooksAcrossABarrier) {
   const PathResult with = findColoredPath(graph, start, goal, model, options);
   EXPECT_EQ(with.cost, without.cost);
   EXPECT_LT(with.statistics.expansions * 10, without.statistics.expansions);
+}
+
+TEST(ColoredAStar, whereThereIsNoPathNothingIsExpandedTwice) {
+  // A square of 96 x 96 and, apart from it, the start: every lower bound is infinite.
+  ColoredGraph graph(2);
+  const VertexId width = 96, start = width * width;
+  for (VertexId v = 0; v <= start; ++v) graph.addVertex(0);
+  for (VertexId v = 0; v < start; ++v) {
+    if ((v + 1) % width) graph.addEdge(v, v + 1, {{v % 7 == 0, 10}});
+    if (v + width < start) graph.addEdge(v, v + width, {{v % 5 == 0, 10}});
+  }
+  const CostModel model{ClassOrder(2, {{0}, {1}})};
+  ColoredAStarOptions options;
+  for (const bool bounded : {false, true}) {
+    options.boundWorstRank = bounded;
+    const PathResult result = findColoredPath(graph, start, 0, model, options);
+    EXPECT_EQ(result.status, SearchStatus::NotConnected);
+    EXPECT_LE(result.statistics.expansions, bounded ? 0u : graph.vertexCount());
+  }
+  graph.addEdge(0, start, {{0, 10}}, {0, kClosed});  // leads to the start only
+  EXPECT_EQ(findColoredPath(graph, start, 0, model, options).statistics.expansions, 0u);
+}
+
+TEST(ColoredAStar, staysExactWhereCostsLeaveTheirFewBits) {
+  int found = 0;
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    PlaneGraph plane(seed, 4);
+    ColoredGraph graph(PlaneGraph::kClasses);
+    const int vertices = 4 + plane.below(12);
+    for (int v = 0; v < vertices; ++v) graph.addVertex(plane.randomClass());
+    const int digits = 20 + plane.below(30);
+    for (int i = 0; i < 3 * vertices; ++i) {
+      const auto a = static_cast<VertexId>(plane.below(vertices));
+      const auto b = static_cast<VertexId>(plane.below(vertices));
+      const Length length = (Length{1} << (plane.below(digits))) + plane.below(3);
+      if (a != b) graph.addEdge(a, b, {{plane.randomClass(), length}}, {0, Length{1} << digits});
+    }
+    for (CostModel& model : allModels(ClassOrder(5, {{0}, {1, 4}, {2, 3}}))) {
+      const auto expected = oracles::tupleDijkstra(graph, model, 0, 1);
+      ASSERT_EQ(costOf(findColoredPath(graph, 0, 1, model)), expected) << "seed " << seed;
+      found += expected.has_value();
+    }
+  }
+  EXPECT_GT(found, 20000);
+}
+
+TEST(ColoredAStar, staysExactOnPathsOfVeryManyEdges) {
+  ColoredGraph graph(1);
+  const VertexId count = (1 << 20) + 10;
+  for (VertexId v = 0; v < count; ++v) graph.addVertex(0);
+  for (VertexId v = 1; v < count; ++v) graph.addEdge(v - 1, v, {{0, 1}});
+  const PathResult result = findColoredPath(graph, 0, count - 1, {ClassOrder(1, {{0}})});
+  EXPECT_EQ(result.cost, Tuple{count - 1});
+  EXPECT_EQ(result.edges.size(), count - 1);
+}
+
+TEST(ColoredAStar, reachesAllNeighborsOfAVertexWithVeryManyEdges) {
+  ColoredGraph graph(1);
+  const VertexId count = 20000;
+  for (VertexId v = 0; v <= count; ++v) graph.addVertex(0);
+  for (VertexId v = 1; v <= count; ++v) graph.addEdge(v % 2 ? 0 : v, v % 2 ? v : 0, {{0, v}});
+  const CostModel model{ClassOrder(1, {{0}})};
+  for (const VertexId v : {1u, 4095u, 4096u, 4097u, 19999u, 20000u})
+    EXPECT_EQ(findColoredPath(graph, v, 2, model).cost, Tuple{v + 2});
 }

@@ -109,6 +109,47 @@ TEST(ColoredGraph, equalsSetsAndMapsAfterAnyChanges) {
   }));
 }
 
+TEST(ColoredGraph, keepsEveryKindOfContent) {
+  struct Content {
+    EdgeProfile profile;
+    Tolls tolls;
+  };
+  const auto same = [](const Edge& edge, const Content& expected) {
+    Length length = 0;
+    RC_ASSERT(edge.profile.size() == expected.profile.size());
+    for (std::size_t i = 0; i < edge.profile.size(); ++i) {
+      RC_ASSERT(edge.profile[i].classId == expected.profile[i].classId);
+      RC_ASSERT(edge.profile[i].length == expected.profile[i].length);
+      length += edge.profile[i].length;
+    }
+    RC_ASSERT(edge.length == length);
+    RC_ASSERT(edge.tolls.toA == expected.tolls.toA);
+    RC_ASSERT(edge.tolls.toB == expected.tolls.toB);
+  };
+  EXPECT_TRUE(rc::check([&] {
+    ColoredGraph graph(3);
+    std::vector<Content> contents(4);
+    for (int i = 0; i < 5; ++i) graph.addVertex(0);
+    for (int i = 0; i < 4; ++i) contents[graph.addEdge(i, i + 1, {{0, 1}})].profile = {{0, 1}};
+    for (int changes = *rc::gen::inRange(1, 40); changes > 0; --changes) {
+      const EdgeId e = *rc::gen::inRange<EdgeId>(0, 4);
+      Content& content = contents[e];
+      if (*rc::gen::arbitrary<bool>()) {
+        content.profile.resize(*rc::gen::element(1, 1, 2, 3));
+        for (Stretch& s : content.profile)
+          s = {*rc::gen::inRange<GraphClass>(0, 3),
+               *rc::gen::element<Length>(0, 7, 4294967295, 4294967296, Length{1} << 60)};
+        graph.setProfile(e, content.profile);
+      } else {
+        content.tolls = {*rc::gen::element<Length>(0, 5, kClosed),
+                         *rc::gen::element<Length>(0, 5, kClosed)};
+        graph.setTolls(e, content.tolls);
+      }
+      for (EdgeId each = 0; each < 4; ++each) same(graph.edge(each), contents[each]);
+    }
+  }));
+}
+
 TEST(ColoredGraph, idsSurviveTheRemovalOfOthers) {
   ColoredGraph graph = triangle();
   graph.removeVertex(1);
@@ -144,6 +185,7 @@ TEST(ColoredGraph, logsTheVerticesAtWhoseEdgesSomethingChanged) {
   EXPECT_EQ(changesOf([&] { graph.setProfile(0, {{1, 11}}); }), (Set{0, 1}));
   EXPECT_EQ(changesOf([&] { graph.setBlocked(0); }), (Set{0, 1}));
   EXPECT_EQ(changesOf([&] { graph.setUnevaluated(0, 3); }), (Set{0, 1}));
+  EXPECT_EQ(changesOf([&] { graph.setTolls(0, {3, kClosed}); }), (Set{0, 1}));
   EXPECT_EQ(changesOf([&] { graph.addEdge(lonely, 2, {{0, 1}}); }), (Set{2, lonely}));
   EXPECT_EQ(changesOf([&] { graph.setVertexClass(2, 1); }), (Set{0, 1, 2, lonely}));
   EXPECT_EQ(changesOf([&] { graph.setVertexClass(2, 1); }), Set{});
@@ -178,6 +220,7 @@ TEST(ColoredGraph, refusesUnknownIds) {
     EXPECT_THROW(graph.setProfile(e, {{0, 1}}), std::out_of_range);
     EXPECT_THROW(graph.setBlocked(e), std::out_of_range);
     EXPECT_THROW(graph.setUnevaluated(e, 1), std::out_of_range);
+    EXPECT_THROW(graph.setTolls(e, {}), std::out_of_range);
   }
   EXPECT_EQ(graph.edgeCount(), 3u);
   EXPECT_EQ(graph.changes().end(), log);
@@ -209,6 +252,12 @@ TEST(ColoredGraph, refusesBadProfilesAndStaysAsItWas) {
   EXPECT_THROW(graph.setUnevaluated(0, -5), std::invalid_argument);
   EXPECT_THROW(graph.addEdge(1, 1, {{0, 1}}), std::invalid_argument);
   EXPECT_THROW(graph.addUnevaluatedEdge(1, 1, 1), std::invalid_argument);
+  for (const Tolls& tolls :
+       {Tolls{-1, 0}, Tolls{0, -1}, Tolls{Length{1} << 62, 0}, Tolls{0, huge - 1}}) {
+    EXPECT_THROW(graph.addEdge(0, 1, {{0, 1}}, tolls), std::invalid_argument);
+    EXPECT_THROW(graph.addUnevaluatedEdge(0, 1, 1, tolls), std::invalid_argument);
+    EXPECT_THROW(graph.setTolls(0, tolls), std::invalid_argument);
+  }
   EXPECT_THROW(graph.addVertex(3), std::invalid_argument);
   EXPECT_THROW(graph.setVertexClass(0, 3), std::invalid_argument);
   EXPECT_THROW(ColoredGraph(0), std::invalid_argument);

@@ -57,6 +57,14 @@ TEST(GraphViz, drawsColorsPositionsAndThePath) {
             std::string::npos);
 }
 
+TEST(GraphViz, drawsAnArrowWhereAnEdgeLeadsOneWay) {
+  ColoredGraph graph = roadAndGrass();
+  graph.setTolls(0, {0, kClosed});
+  graph.setTolls(1, {kClosed, 5});
+  EXPECT_NE(written(graph).find("color=\"black\" dir=forward];"), std::string::npos);
+  EXPECT_NE(written(graph).find("style=dashed dir=back];"), std::string::npos);
+}
+
 TEST(GraphViz, refusesAPathOfAnotherGraph) {
   PathResult path;
   path.edges = {17};

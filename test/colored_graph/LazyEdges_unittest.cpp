@@ -62,10 +62,11 @@ bool allEvaluated(const ColoredGraph& graph, const PathResult& result) {
 TEST(LazyEdges, searchFindsTheOptimumOfTheTruth) {
   for (unsigned seed = 0; seed < 3000; ++seed) {
     PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 23, seed % 67, 2 + seed % 5);
+    if (seed % 2) plane.addTolls();
     const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
     for (const CostModel& model : allModels(plane.randomOrder())) {
       LazyWorld world(plane);
-      world.options.boundWorstRank = seed % 2;
+      world.options.boundWorstRank = seed % 4 > 1;
       const PathResult result = findColoredPath(world.graph, start, goal, model, world.options);
       ASSERT_EQ(costOf(result), oracles::tupleDijkstra(plane.graph, model, start, goal))
           << "seed " << seed;
@@ -79,6 +80,7 @@ TEST(LazyEdges, searchFindsTheOptimumOfTheTruth) {
 TEST(LazyEdges, replannerFindsTheOptimumOfTheTruth) {
   for (unsigned seed = 0; seed < 3000; ++seed) {
     PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 23, seed % 67, 2 + seed % 5);
+    if (seed % 2) plane.addTolls();
     const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
     for (const CostModel& model : allModels(plane.randomOrder())) {
       LazyWorld world(plane);

@@ -18,10 +18,13 @@ using colored_graph::EdgeModel;
 using colored_graph::EdgeState;
 using colored_graph::VertexId;
 
-/** (worst rank, ..., rank 1; total length); std::vector compares it as it should be compared. */
+/** (worst rank, ..., rank 1; length with tolls, if these count; total length); std::vector compares
+ * it as it should be compared. */
 using Tuple = std::vector<std::int64_t>;
 
-inline Tuple zero(const CostModel& model) { return Tuple(model.order.ranks(), 0); }
+inline Tuple zero(const CostModel& model) {
+  return Tuple(model.order.ranks() + (model.tolls ? 1 : 0), 0);
+}
 
 inline Tuple sum(Tuple l, const Tuple& r) {
   for (std::size_t i = 0; i < l.size(); ++i) l[i] += r[i];
@@ -31,7 +34,7 @@ inline Tuple sum(Tuple l, const Tuple& r) {
 /** The stretches of the edge as the model sees them: (rank, length). */
 inline std::vector<std::pair<int, std::int64_t>> stretchesSeen(const ColoredGraph& graph,
                                                                const CostModel& model, EdgeId e) {
-  const colored_graph::Edge& edge = graph.edge(e);
+  const colored_graph::Edge edge = graph.edge(e);
   std::vector<std::pair<int, std::int64_t>> own;
   for (const auto& s : edge.profile) own.push_back({model.order.rank(s.classId), s.length});
   if (model.edges == EdgeModel::Profile) return own;
@@ -42,17 +45,29 @@ inline std::vector<std::pair<int, std::int64_t>> stretchesSeen(const ColoredGrap
   return {{*ranks.rbegin(), edge.length}};
 }
 
-/** Cost of an evaluated edge, or nothing if it cannot be used. */
-inline std::optional<Tuple> edgeCost(const ColoredGraph& graph, const CostModel& model, EdgeId e) {
-  if (graph.edge(e).state != EdgeState::Usable) return std::nullopt;
-  Tuple perRank(model.order.ranks(), 0), total(1, 0);
+inline std::int64_t nearestMultiple(std::int64_t length, std::int64_t quantum) {
+  const std::int64_t below = length - length % quantum;
+  return 2 * (length - below) < quantum ? below : below + quantum;
+}
+
+/** Cost of an evaluated edge, driven to its end `to`, or nothing if it cannot be used. */
+inline std::optional<Tuple> edgeCost(const ColoredGraph& graph, const CostModel& model, EdgeId e,
+                                     VertexId to) {
+  const colored_graph::Edge edge = graph.edge(e);
+  const std::int64_t toll = to == edge.a ? edge.tolls.toA : edge.tolls.toB;
+  if (edge.state != EdgeState::Usable || toll == colored_graph::kClosed) return std::nullopt;
+  Tuple perRank(model.order.ranks(), 0);
+  std::int64_t total = 0;
   for (const auto& [rank, length] : stretchesSeen(graph, model, e)) {
     if (rank >= model.order.ranks()) return std::nullopt;
     perRank[rank] = model.kind == CostKind::Count ? 1 : perRank[rank] + length;
-    total[0] += length;
+    total += length;
   }
+  if (model.kind == CostKind::ArcLength && model.quantum > 0)
+    for (std::int64_t& part : perRank) part = nearestMultiple(part, model.quantum);
   Tuple cost(perRank.rbegin(), perRank.rend() - 1);
-  cost.push_back(total[0]);
+  if (model.tolls) cost.push_back(total + toll);
+  cost.push_back(total);
   return cost;
 }
 
@@ -66,7 +81,7 @@ inline std::optional<Tuple> tupleDijkstra(const ColoredGraph& graph, const CostM
     open.erase(open.begin());
     if (v == goal) return cost;
     for (const auto& i : graph.incident(v)) {
-      const auto step = edgeCost(graph, model, i.edge);
+      const auto step = edgeCost(graph, model, i.edge, i.neighbor);
       if (!step) continue;
       const Tuple next = sum(cost, *step);
       std::optional<Tuple>& known = best[i.neighbor];
@@ -80,9 +95,9 @@ inline std::optional<Tuple> tupleDijkstra(const ColoredGraph& graph, const CostM
 }
 
 __extension__ typedef unsigned __int128 BigInt;
-constexpr int kDigitBits = 24;  // every component of every path stays below 2^24 in these tests
+constexpr int kDigitBits = 21;  // every component of every path stays below 2^21 in these tests
 
-/** sum of n_k B^k: for at most 5 ranks. */
+/** sum of n_k B^k: for at most 6 components. */
 inline BigInt scalar(const Tuple& cost) {
   BigInt value = 0;
   for (const std::int64_t part : cost) value = (value << kDigitBits) + static_cast<BigInt>(part);
@@ -98,10 +113,10 @@ inline std::optional<BigInt> scalarShortest(const ColoredGraph& graph, const Cos
     changed = false;
     for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) {
       if (!graph.containsEdge(e)) continue;
-      const auto cost = edgeCost(graph, model, e);
-      if (!cost) continue;
       const auto relax = [&](VertexId from, VertexId to) {
-        if (!best[from] || (best[to] && *best[to] <= *best[from] + scalar(*cost))) return;
+        const auto cost = edgeCost(graph, model, e, to);
+        if (!cost || !best[from]) return;
+        if (best[to] && *best[to] <= *best[from] + scalar(*cost)) return;
         best[to] = *best[from] + scalar(*cost);
         changed = true;
       };
@@ -118,7 +133,7 @@ inline void enumerate(const ColoredGraph& graph, const CostModel& model, VertexI
   if (v == goal) best = best ? std::min(*best, cost) : cost;
   used[v] = true;
   for (const auto& i : graph.incident(v)) {
-    const auto step = edgeCost(graph, model, i.edge);
+    const auto step = edgeCost(graph, model, i.edge, i.neighbor);
     if (step && !used[i.neighbor])
       enumerate(graph, model, i.neighbor, goal, sum(cost, *step), used, best);
   }

@@ -44,6 +44,17 @@ class PlaneGraph {
     return profile;
   }
 
+  /** Every third edge gets tolls, of these every third leads one way. */
+  void addTolls() {
+    for (colored_graph::EdgeId e = 0; e < graph.edgeIdEnd(); ++e)
+      if (graph.containsEdge(e) && below(3) == 0) graph.setTolls(e, randomTolls());
+  }
+  colored_graph::Tolls randomTolls() {
+    const colored_graph::Length toA = below(30), toB = below(30);
+    const int oneWay = below(6);
+    return {oneWay == 0 ? colored_graph::kClosed : toB, oneWay == 1 ? colored_graph::kClosed : toA};
+  }
+
   /** Every class in the order with equal chances, two of three times in a rank of its own. */
   colored_graph::ClassOrder randomOrder() {
     std::vector<colored_graph::GraphClass> ids(kClasses);
@@ -108,12 +119,13 @@ inline PlaneGraph randomPlaneGraph(unsigned seed, int vertices, int edges, int c
   return plane;
 }
 
-/** All edge models and cost kinds with this order. */
+/** All edge models and cost kinds with this order, exact, and with tolls and rounded. */
 inline std::vector<colored_graph::CostModel> allModels(const colored_graph::ClassOrder& order) {
   using namespace colored_graph;
   std::vector<CostModel> models;
   for (const EdgeModel edges : {EdgeModel::Endpoint, EdgeModel::Sweep, EdgeModel::Profile})
     for (const CostKind kind : {CostKind::Count, CostKind::ArcLength})
-      models.push_back({order, edges, kind});
+      for (const bool whole : {false, true})
+        models.push_back({order, edges, kind, whole, whole ? Length{10} : Length{0}});
   return models;
 }

@@ -13,7 +13,7 @@ inline simulated_drive::DriveConfig smallConfig() {
   config.sensors.camera.height = 60;
   config.sensors.lidar.columns = 256;
   config.insertion.maxRange = 10;
-  config.planner.roadmap.vertices = 300;
+  config.planner.roadmap.vertices = 600;
   config.timeLimit = 90;
   return config;
 }

@@ -13,7 +13,7 @@ std::set<std::pair<unsigned, unsigned>> edgesOf(const colored_graph::ColoredGrap
   std::set<std::pair<unsigned, unsigned>> edges;
   for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e)
     if (graph.containsEdge(e) && graph.edge(e).state != colored_graph::EdgeState::Blocked)
-      edges.insert(std::minmax(graph.edge(e).a, graph.edge(e).b));
+      edges.insert(std::minmax({graph.edge(e).a, graph.edge(e).b}));
   return edges;
 }
 

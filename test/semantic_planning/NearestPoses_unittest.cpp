@@ -46,7 +46,8 @@ class NearestPosesTest : public testing::Test {
       std::vector<NearestPoses::Neighbor> expected;
       for (const auto& [other, otherPose] : m_poses) {
         const double distance = shepp.distance(pose, otherPose);
-        if (other != id && distance <= kRadius) expected.push_back({other, distance});
+        if (other != id && distance <= kRadius)
+          expected.push_back({other, distance, {otherPose, 0}});
       }
       std::sort(expected.begin(), expected.end());
       if (expected.size() > kNeighbors) expected.resize(kNeighbors);

@@ -84,7 +84,7 @@ class PathChecker {
   bool isOccupied(double x, double y, double z) const {
     octomap::OcTreeKey key;
     if (!m_map.coordToKeyChecked(x, y, z, key)) return false;
-    const auto* node = m_map.search(key);
+    const auto node = m_map.search(key);
     return node && node->getLogOdds() > 0;
   }
 

@@ -4,6 +4,7 @@ using namespace semantic_planning;
 
 TEST_F(PlannerTest, keepsToTheRoadAroundTheCorner) {
   paintCorner();
+  options.roadmap.vertices = 1000;
   const PlanResult result = plan();
   expectDrivable(result);
   EXPECT_EQ(meters(result, PaintedWorld::Grass), 0);
@@ -96,6 +97,42 @@ TEST_F(PlannerTest, expectedLengthsAndCautionSeeWhatTheLikeliestClassHides) {
   EXPECT_NEAR(meters(plan(), PaintedWorld::Grass), 2, 0.6);
   options.reading = {ClassReading::Kind::Cautious, 0.9};
   EXPECT_EQ(meters(plan(), PaintedWorld::Grass), 0);
+}
+
+TEST_F(PlannerTest, verticesHeadAlongTheRoadBothWays) {
+  paintCorner();
+  options.roadmap.vertices = 2000;
+  SemanticPlanner p = planner();
+  p.plan(start, goal);
+  const Roadmap& roadmap = p.roadmap();
+  int onRoad = 0, along = 0, opposite = 0;
+  for (colored_graph::VertexId v = 2; v < roadmap.graph().vertexIdEnd(); ++v) {
+    if (!roadmap.graph().containsVertex(v)) continue;
+    const TPose2D& a = roadmap.pose(v).pose;
+    if (a.y > 3 || std::abs(a.x + 10) > 1) continue;  // in the road along y
+    ++onRoad;
+    along += std::abs(std::cos(a.phi)) < 0.3;
+    for (colored_graph::VertexId w = 0; w < roadmap.graph().vertexIdEnd(); ++w) {
+      if (!roadmap.graph().containsVertex(w)) continue;
+      const TPose2D& b = roadmap.pose(w).pose;
+      opposite += a.x == b.x && a.y == b.y && std::cos(a.phi - b.phi) < -0.999;
+    }
+  }
+  EXPECT_GT(onRoad, 20);
+  EXPECT_GE(along, 0.9 * onRoad);
+  EXPECT_GE(opposite, 0.95 * onRoad);  // where the footprint fits both ways
+}
+
+TEST_F(PlannerTest, moreVerticesHaveMoreNeighbors) {
+  paintCorner();
+  options.roadmap.kind = GraphKind::HaltonDrivable;
+  options.roadmap.vertices = 2000;
+  options.roadmap.moreNeighbors = 0;
+  const std::size_t few = plan().numEdges;
+  options.roadmap.moreNeighbors = 10;
+  EXPECT_GT(plan().numEdges, 1.8 * double(few));
+  options.roadmap.vertices = 1000;
+  EXPECT_LT(plan().numEdges, 0.6 * double(few));
 }
 
 TEST_F(PlannerTest, planningTwiceGivesTheSamePath) {

@@ -20,9 +20,35 @@ void checkLength(Length length) {
   if (length > kLargestLength) reject("length " + std::to_string(length) + " is above 2^62");
 }
 
+void checkToll(Length toll) {
+  if (toll < 0) reject("toll " + std::to_string(toll) + " is negative");
+  if (toll >= kLargestLength && toll != kClosed)
+    reject("toll " + std::to_string(toll) + " is 2^62 or more");
+}
+
+void checkTolls(const Tolls& tolls) {
+  checkToll(tolls.toA);
+  checkToll(tolls.toB);
+}
+
+/** Whether half edges have room for it. */
+bool isNarrow(const WideEdge& edge) {
+  const auto isFree = [](Length toll) { return toll == 0 || toll == kClosed; };
+  constexpr unsigned kNarrowClasses = HalfEdge::kKinds - HalfEdge::kFirstClass;
+  return edge.length <= HalfEdge::kLongest && isFree(edge.tolls.toA) && isFree(edge.tolls.toB) &&
+         (edge.state != EdgeState::Usable ||
+          (edge.profile.size() == 1 && edge.profile.front().classId < kNarrowClasses));
+}
+
+unsigned kindOf(const WideEdge& narrow) {
+  if (narrow.state == EdgeState::Unevaluated) return HalfEdge::kUnevaluated;
+  if (narrow.state == EdgeState::Blocked) return HalfEdge::kBlocked;
+  return HalfEdge::kFirstClass + narrow.profile.front().classId;
+}
+
 /** An id that was removed before, or a new one at the end of `storage`. */
-template <class Id, class T>
-Id takeId(std::vector<Id>& freeIds, std::vector<T>& storage) {
+template <class Id, class Storage>
+Id takeId(std::vector<Id>& freeIds, Storage& storage) {
   if (freeIds.empty()) {
     storage.emplace_back();
     return static_cast<Id>(storage.size() - 1);
@@ -33,15 +59,6 @@ Id takeId(std::vector<Id>& freeIds, std::vector<T>& storage) {
 }
 
 }  // namespace
-
-void ChangeLog::push(VertexId vertex, std::size_t keep) {
-  if (m_vertices.size() >= 2 * keep) {
-    const std::size_t drop = m_vertices.size() - keep;
-    m_vertices.erase(m_vertices.begin(), m_vertices.begin() + static_cast<std::ptrdiff_t>(drop));
-    m_dropped += drop;
-  }
-  m_vertices.push_back(vertex);
-}
 
 ColoredGraph::ColoredGraph(int classes) : m_classes(classes) {
   if (classes < 1) reject("at least one class is needed, not " + std::to_string(classes));
@@ -58,9 +75,10 @@ VertexId ColoredGraph::addVertex(GraphClass id) {
 }
 
 void ColoredGraph::removeVertex(VertexId v) {
-  std::vector<Incidence>& edges = m_vertices[checked(v)].edges;
-  while (!edges.empty()) removeEdge(edges.back().edge);
-  m_vertices[v].present = false;
+  Vertex& vertex = m_vertices[checked(v)];
+  while (vertex.size > 0) removeEdge(row(v).edges[vertex.size - 1]);
+  m_rows.release(vertex.edges());
+  vertex.present = false;
   --m_vertexCount;
   m_freeVertices.push_back(v);
   logVertex(v);
@@ -72,80 +90,136 @@ void ColoredGraph::setVertexClass(VertexId v, GraphClass id) {
   if (vertex.classId == id) return;
   vertex.classId = id;
   logVertex(v);
-  for (const Incidence& i : vertex.edges) logVertex(i.neighbor);
+  for (const Incidence& i : incident(v)) logVertex(i.neighbor);
 }
 
-EdgeId ColoredGraph::addEdge(VertexId a, VertexId b, EdgeProfile profile) {
+EdgeId ColoredGraph::addEdge(VertexId a, VertexId b, EdgeProfile profile, Tolls tolls) {
   const Length length = checkedLength(profile);
-  return insert({a, b, length, EdgeState::Usable, std::move(profile)});
+  return insert(b, {a, EdgeState::Usable, length, tolls, std::move(profile)});
 }
 
-EdgeId ColoredGraph::addUnevaluatedEdge(VertexId a, VertexId b, Length minLength) {
+EdgeId ColoredGraph::addUnevaluatedEdge(VertexId a, VertexId b, Length minLength, Tolls tolls) {
   checkLength(minLength);
-  return insert({a, b, minLength, EdgeState::Unevaluated, {}});
+  return insert(b, {a, EdgeState::Unevaluated, minLength, tolls, {}});
 }
 
-EdgeId ColoredGraph::insert(Edge edge) {
-  Vertex& a = m_vertices[checked(edge.a)];
-  Vertex& b = m_vertices[checked(edge.b)];
-  if (edge.a == edge.b) reject("an edge from vertex " + std::to_string(edge.a) + " to itself");
-  const EdgeId e = takeId(m_freeEdges, m_edges);
-  m_slots.resize(m_edges.size());
-  m_slots[e] = {static_cast<std::uint32_t>(a.edges.size()),
-                static_cast<std::uint32_t>(b.edges.size())};
-  a.edges.push_back({edge.b, e});
-  b.edges.push_back({edge.a, e});
-  m_edges[e] = std::move(edge);
+EdgeId ColoredGraph::insert(VertexId b, WideEdge content) {
+  const VertexId a = content.a;
+  Vertex& atA = m_vertices[checked(a)];
+  Vertex& atB = m_vertices[checked(b)];
+  if (a == b) reject("an edge from vertex " + std::to_string(a) + " to itself");
+  checkTolls(content.tolls);
+  const EdgeId e = takeId(m_freeEdges, m_firstEnds);
+  m_firstEnds[e] = a;
+  const Halves halves = store(b, std::move(content));
+  m_rows.push(atA.edges(), halves.first, e);
+  m_rows.push(atB.edges(), halves.second, e);
   ++m_edgeCount;
-  logEdge(e);
+  logVertex(a);
+  logVertex(b);
   return e;
 }
 
+ColoredGraph::Halves ColoredGraph::store(VertexId b, WideEdge content) {
+  const VertexId a = content.a;
+  if (isNarrow(content)) {
+    const unsigned kind = kindOf(content);
+    const bool toA = content.tolls.toA != kClosed, toB = content.tolls.toB != kClosed;
+    return {HalfEdge::narrow(b, kind, content.length, toB, toA),
+            HalfEdge::narrow(a, kind, content.length, toA, toB)};
+  }
+  const std::uint32_t place = takeId(m_freeWide, m_wide);
+  m_wide[place] = std::move(content);
+  return {HalfEdge::wide(b, place), HalfEdge::wide(a, place)};
+}
+
+void ColoredGraph::releaseWide(const HalfEdge& half) {
+  if (!half.isWide()) return;
+  m_wide[half.place()] = WideEdge();
+  m_freeWide.push_back(half.place());
+}
+
 void ColoredGraph::removeEdge(EdgeId e) {
-  const Edge& edge = m_edges[checkedEdge(e)];
-  logEdge(e);
-  detach(edge.a, m_slots[e].atA);
-  detach(edge.b, m_slots[e].atB);
-  m_edges[e] = Edge{};
+  const VertexId a = m_firstEnds[checkedEdge(e)], b = half(e, a).neighbor;
+  releaseWide(half(e, a));
+  for (const VertexId v : {a, b}) {
+    EdgeRows::Row& edges = m_vertices[v].edges();
+    m_rows.remove(edges, m_rows.find(edges, e));
+    logVertex(v);
+  }
+  m_firstEnds[e] = kNoVertex;
   m_freeEdges.push_back(e);
   --m_edgeCount;
 }
 
-void ColoredGraph::detach(VertexId v, std::uint32_t slot) {
-  std::vector<Incidence>& edges = m_vertices[v].edges;
-  edges[slot] = edges.back();
-  edges.pop_back();
-  if (slot == edges.size()) return;
-  const EdgeId moved = edges[slot].edge;
-  (m_edges[moved].a == v ? m_slots[moved].atA : m_slots[moved].atB) = slot;
+void ColoredGraph::setContent(EdgeId e, VertexId b, WideEdge content) {
+  const VertexId a = content.a;
+  releaseWide(half(e, a));
+  const Halves halves = store(b, std::move(content));
+  const auto set = [&](VertexId v, const HalfEdge& half) {
+    const EdgeRows::Row& edges = m_vertices[v].edges();
+    m_rows.half(edges, m_rows.find(edges, e)) = half;
+    logVertex(v);
+  };
+  set(a, halves.first);
+  set(b, halves.second);
 }
 
 void ColoredGraph::setProfile(EdgeId e, EdgeProfile profile) {
-  Edge& edge = m_edges[checkedEdge(e)];
+  const Edge before = edge(e);
   const Length length = checkedLength(profile);
-  if (edge.state == EdgeState::Unevaluated && length < edge.length)
+  if (before.state == EdgeState::Unevaluated && length < before.length)
     reject("edge " + std::to_string(e) + " is " + std::to_string(length) +
-           " long, but was said to be at least " + std::to_string(edge.length));
-  edge.length = length;
-  edge.state = EdgeState::Usable;
-  edge.profile = std::move(profile);
-  logEdge(e);
+           " long, but was said to be at least " + std::to_string(before.length));
+  setContent(e, before.b, {before.a, EdgeState::Usable, length, before.tolls, std::move(profile)});
 }
 
 void ColoredGraph::setBlocked(EdgeId e) {
-  Edge& edge = m_edges[checkedEdge(e)];
-  edge.state = EdgeState::Blocked;
-  edge.profile.clear();
-  logEdge(e);
+  const Edge before = edge(e);
+  setContent(e, before.b, {before.a, EdgeState::Blocked, before.length, before.tolls, {}});
 }
 
 void ColoredGraph::setUnevaluated(EdgeId e, Length minLength) {
-  Edge& edge = m_edges[checkedEdge(e)];
+  const Edge before = edge(e);
   checkLength(minLength);
-  edge.length = minLength;
-  edge.state = EdgeState::Unevaluated;
-  edge.profile.clear();
-  logEdge(e);
+  setContent(e, before.b, {before.a, EdgeState::Unevaluated, minLength, before.tolls, {}});
+}
+
+void ColoredGraph::setTolls(EdgeId e, Tolls tolls) {
+  const Edge before = edge(e);
+  checkTolls(tolls);
+  setContent(e, before.b, {before.a, before.state, before.length, tolls, before.profile});
+}
+
+HalfEdge ColoredGraph::half(EdgeId e, VertexId v) const {
+  return row(v).halves[m_rows.find(m_vertices[v].edges(), e)];
+}
+
+EdgeState ColoredGraph::state(const HalfEdge& half) const {
+  if (half.isWide()) return wide(half).state;
+  if (half.kind() == HalfEdge::kUnevaluated) return EdgeState::Unevaluated;
+  return half.kind() == HalfEdge::kBlocked ? EdgeState::Blocked : EdgeState::Usable;
+}
+
+Edge ColoredGraph::edge(EdgeId e) const {
+  const VertexId a = m_firstEnds[checkedEdge(e)];
+  return asEdge(a, half(e, a));
+}
+
+Edge ColoredGraph::asEdge(VertexId a, const HalfEdge& half) const {
+  if (half.isWide()) {
+    const WideEdge& content = wide(half);
+    return {
+        a, half.neighbor, content.length, content.state, content.tolls, Stretches(content.profile)};
+  }
+  Edge edge{a, half.neighbor, half.length(), state(half), {}, {}};
+  if (!half.leads(Way::Out)) edge.tolls.toB = kClosed;
+  if (!half.leads(Way::In)) edge.tolls.toA = kClosed;
+  if (edge.state == EdgeState::Usable) {
+    const unsigned id = half.kind() - HalfEdge::kFirstClass;
+    edge.profile = Stretches(Stretch{static_cast<GraphClass>(id), edge.length});
+  }
+  return edge;
 }
 
 void ColoredGraph::refuseVertex(VertexId v) {
@@ -174,12 +248,7 @@ Length ColoredGraph::checkedLength(const EdgeProfile& profile) const {
 }
 
 void ColoredGraph::logVertex(VertexId v) {
-  m_changes.push(v, std::max(kShortestLog, m_vertices.size()));
-}
-
-void ColoredGraph::logEdge(EdgeId e) {
-  logVertex(m_edges[e].a);
-  logVertex(m_edges[e].b);
+  m_changes.push(v, std::max(kShortestLog, m_vertices.size() / 2));
 }
 
 }  // namespace colored_graph

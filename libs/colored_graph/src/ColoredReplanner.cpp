@@ -28,7 +28,7 @@ ColoredReplanner::ColoredReplanner(ColoredGraph& graph, VertexId start, VertexId
                                    const CostModel& model, const SearchOptions& options) {
   model.validate(graph);
   options.validate();
-  m_impl = withVectorSize(model.order.ranks(), [&](auto size) -> std::unique_ptr<Impl> {
+  m_impl = withVectorSize(model, [&](auto size) -> std::unique_ptr<Impl> {
     return std::make_unique<Search<size()>>(graph, start, goal, model, options);
   });
 }

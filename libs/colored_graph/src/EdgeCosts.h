@@ -1,103 +1,104 @@
 #pragma once
-#include <colored_graph/CostModel.h>
-#include <colored_graph/CostVector.h>
+#include <colored_graph/ColoredGraph.h>
 
 #include <algorithm>
-#include <cstdint>
+#include <array>
 #include <type_traits>
-#include <vector>
+
+#include "CostLayouts.h"
 
 namespace colored_graph {
 
-/** The costs of a graph's edges as vectors (worst rank, ..., rank 1; total length; edges). With the
- * number of edges as its last component every edge costs something, and ties go to fewer edges.
- * Ranks that the order does not have are zeros in front. */
-template <int N>
+/** What the edges of a graph cost. */
+template <class Layout>
 class EdgeCosts {
  public:
-  using Cost = CostVector<N>;
-  static constexpr int kLengthAt = N - 2;
-  static constexpr int kEdgesAt = N - 1;
-  static constexpr int at(Rank rank) { return kLengthAt - rank; }
+  using Cost = typename Layout::Cost;
 
-  EdgeCosts(const ColoredGraph& graph, const CostModel& model) : m_graph(graph), m_model(model) {}
-
-  /** Infinite if the edge cannot be used. Of an unevaluated edge a lower bound, from its end points
-   * and least length. */
-  Cost operator()(EdgeId e) const {
-    const Edge& edge = m_graph.edge(e);
-    if (edge.state == EdgeState::Blocked) return Cost::infinite();
-    switch (m_model.edges) {
-      case EdgeModel::Endpoint:
-        return inOneRank(worseEnd(edge), edge.length);
-      case EdgeModel::Sweep:
-        return inOneRank(worstAlong(edge), edge.length);
-      case EdgeModel::Profile:
-        break;
-    }
-    return edge.state == EdgeState::Usable ? ofProfile(edge) : inOneRank(0, edge.length);
+  EdgeCosts(const ColoredGraph& graph, const CostModel& model)
+      : m_graph(graph), m_model(model), m_layout(model) {
+    m_rankOfKind.fill(0);
+    m_rankOfKind[HalfEdge::kBlocked] = kForbidden;
+    if (model.edges == EdgeModel::Endpoint) return;
+    for (unsigned kind = HalfEdge::kFirstClass; kind < HalfEdge::kKinds; ++kind)
+      if (const unsigned id = kind - HalfEdge::kFirstClass; static_cast<int>(id) < graph.classes())
+        m_rankOfKind[kind] = rank(static_cast<GraphClass>(id));
   }
 
-  /** The lower bound `length` of a path's length, as a lower bound of its cost. */
-  static Cost ofLength(Length length) {
-    Cost cost;
-    cost[kLengthAt] = length;
+  const Layout& layout() const { return m_layout; }
+
+  /** Of an edge at v, driven away from v or to it: infinite if that cannot be. Of an unevaluated
+   * edge a lower bound, from its end points and least length. */
+  [[gnu::always_inline]] Cost operator()(VertexId v, const HalfEdge& half, Way way) const {
+    if (half.isWide()) return ofWide(v, half, way);
+    const Rank own = m_rankOfKind[half.kind()];
+    const Rank r = m_model.edges == EdgeModel::Profile ? own : std::max(own, worseEnd(v, half));
+    if (r == kForbidden || !half.leads(way)) return Cost::infinite();
+    Cost cost = m_layout.edge(half.length(), 0);
+    m_layout.addToRank(cost, r, counted(half.length()));
     return cost;
   }
-
-  /** The components that the order has, without the number of edges. */
-  std::vector<std::int64_t> trimmed(const Cost& cost) const {
-    std::vector<std::int64_t> parts;
-    for (int i = at(m_model.order.ranks() - 1); i <= kLengthAt; ++i) parts.push_back(cost[i]);
-    return parts;
-  }
+  /** Of an edge, driven to its end `to`. */
+  Cost operator()(EdgeId e, VertexId to) const { return (*this)(to, m_graph.half(e, to), Way::In); }
 
  private:
   Rank rank(GraphClass id) const { return m_model.order.rank(id); }
 
-  Rank worseEnd(const Edge& edge) const {
-    return std::max(rank(m_graph.vertexClass(edge.a)), rank(m_graph.vertexClass(edge.b)));
+  Rank worseEnd(VertexId v, const HalfEdge& half) const {
+    return std::max(rank(m_graph.vertexClass(v)), rank(m_graph.vertexClass(half.neighbor)));
   }
 
-  Rank worstAlong(const Edge& edge) const {
-    Rank worst = worseEnd(edge);
-    for (const Stretch& stretch : edge.profile) worst = std::max(worst, rank(stretch.classId));
-    return worst;
+  /** What a length in a rank counts for. Rounding keeps lower bounds: it keeps the order. */
+  Length counted(Length length) const {
+    if (m_model.kind == CostKind::Count) return 1;
+    const Length quantum = m_model.quantum;
+    return quantum > 0 ? (length + quantum / 2) / quantum * quantum : length;
   }
 
-  Cost inOneRank(Rank r, Length length) const {
-    if (r == kForbidden) return Cost::infinite();
-    Cost cost = ofLength(length);
-    cost[kEdgesAt] = 1;
-    if (r > 0) cost[at(r)] = m_model.kind == CostKind::Count ? 1 : length;
+  Cost ofWide(VertexId v, const HalfEdge& half, Way way) const {
+    const WideEdge& edge = m_graph.wide(half);
+    const Length toll = edge.toll(v, way);
+    if (edge.state == EdgeState::Blocked || toll == kClosed) return Cost::infinite();
+    Cost cost = m_layout.edge(edge.length, m_model.tolls ? toll : 0);
+    if (m_model.edges == EdgeModel::Profile) return addProfile(edge, cost);
+    Rank worst = worseEnd(v, half);
+    if (m_model.edges == EdgeModel::Sweep)
+      for (const Stretch& stretch : edge.profile) worst = std::max(worst, rank(stretch.classId));
+    if (worst == kForbidden) return Cost::infinite();
+    m_layout.addToRank(cost, worst, counted(edge.length));
     return cost;
   }
 
-  Cost ofProfile(const Edge& edge) const {
-    Cost cost = ofLength(edge.length);
-    cost[kEdgesAt] = 1;
+  Cost addProfile(const WideEdge& edge, Cost cost) const {
+    std::array<Length, kMaxRanks> lengths{};
+    unsigned touched = 0;
     for (const Stretch& stretch : edge.profile) {
       const Rank r = rank(stretch.classId);
       if (r == kForbidden) return Cost::infinite();
-      if (r == 0) continue;
-      cost[at(r)] = m_model.kind == CostKind::Count ? 1 : cost[at(r)] + stretch.length;
+      lengths[r] += stretch.length;
+      touched |= 1u << r;
     }
+    for (Rank r = 1; r < m_model.order.ranks(); ++r)
+      if (touched >> r & 1) m_layout.addToRank(cost, r, counted(lengths[r]));
     return cost;
   }
 
   const ColoredGraph& m_graph;
   const CostModel& m_model;
+  const Layout m_layout;
+  std::array<Rank, HalfEdge::kKinds> m_rankOfKind;
 };
 
-/** Calls f with the smallest of the vector sizes that holds `ranks` ranks. Short vectors make a
+/** Calls f with the smallest of the vector sizes that holds the model's costs. Short vectors make a
  * search with few classes faster: 16 ranks in all cases would cost about twice the time. */
 template <class F>
-auto withVectorSize(int ranks, F f) {
-  if (ranks <= 2) return f(std::integral_constant<int, 3>{});
-  if (ranks <= 4) return f(std::integral_constant<int, 5>{});
-  if (ranks <= 8) return f(std::integral_constant<int, 9>{});
+auto withVectorSize(const CostModel& model, F f) {
+  const int components = model.components();
+  if (components <= 2) return f(std::integral_constant<int, 3>{});
+  if (components <= 4) return f(std::integral_constant<int, 5>{});
+  if (components <= 8) return f(std::integral_constant<int, 9>{});
   static_assert(kMaxRanks == 16);
-  return f(std::integral_constant<int, 17>{});
+  return f(std::integral_constant<int, 18>{});
 }
 
 }  // namespace colored_graph

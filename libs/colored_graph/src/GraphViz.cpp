@@ -26,7 +26,7 @@ std::string colorOf(const GraphVizOptions& options, GraphClass id) {
   return quoted(options.color ? options.color(id) : "black");
 }
 
-GraphClass longestClass(const EdgeProfile& profile) {
+GraphClass longestClass(const Stretches& profile) {
   const auto shorter = [](const Stretch& l, const Stretch& r) { return l.length < r.length; };
   return std::max_element(profile.begin(), profile.end(), shorter)->classId;
 }
@@ -52,6 +52,8 @@ std::string edgeAttributes(const Edge& edge, bool onPath, const GraphVizOptions&
       text += " style=dotted";
       break;
   }
+  if (!edge.leadsTo(edge.a)) text += " dir=forward";
+  if (!edge.leadsTo(edge.b)) text += " dir=back";
   return onPath ? text + " penwidth=4" : text;
 }
 

@@ -41,7 +41,7 @@ class LifelongSearch {
     const SearchStatus status = missing ? *missing : repairOrForget();
     if (status == SearchStatus::Found) {
       result = assemblePath(m_graph, m_start, bestEdges());
-      result.cost = m_costs.trimmed(m_nodes[m_start].g);
+      result.cost = m_costs.layout().parts(m_nodes[m_start].g);
     }
     result.status = status;
     result.statistics = m_statistics;
@@ -49,8 +49,8 @@ class LifelongSearch {
   }
 
  private:
-  using Cost = CostVector<N>;
-  using Costs = EdgeCosts<N>;
+  using Layout = VectorLayout<N>;
+  using Cost = typename Layout::Cost;
 
   struct Node {
     Cost g = Cost::infinite();
@@ -90,8 +90,9 @@ class LifelongSearch {
     while (again) {
       if (const auto stopped = computeShortestPath(stop)) return *stopped;
       if (m_nodes[m_start].g.isInfinite())
-        return diagnose(m_graph, m_start, m_goal,
-                        [this](EdgeId e) { return !m_costs(e).isInfinite(); });
+        return diagnose(m_graph, m_start, m_goal, [this](VertexId v, const HalfEdge& half) {
+          return !m_costs(v, half, Way::Out).isInfinite();
+        });
       if (const auto stopped = evaluateAlongPath(stop, again)) return *stopped;
     }
     return SearchStatus::Found;
@@ -166,7 +167,8 @@ class LifelongSearch {
     if (node.rhs < node.g) {
       node.g = node.rhs;
       m_queue.remove(v);
-      for (const Incidence& i : m_graph.incident(v)) lowerRhs(i, v);
+      const EdgeRow row = m_graph.row(v);
+      for (std::size_t i = 0; i < row.size; ++i) lowerRhs(row.halves[i], v);
     } else {
       node.g = Cost::infinite();
       enqueue(v);
@@ -176,15 +178,15 @@ class LifelongSearch {
   }
 
   /** A vertex whose g fell offers itself to a neighbor. */
-  void lowerRhs(const Incidence& i, VertexId next) {
-    Node& node = m_nodes[i.neighbor];
+  void lowerRhs(const HalfEdge& half, VertexId next) {
+    Node& node = m_nodes[half.neighbor];
     const Cost& before = m_nodes[next].g;
     if (node.rhs < before) return;  // whatever the edge costs
-    const Cost cost = before + m_costs(i.edge);
+    const Cost cost = before + m_costs(next, half, Way::In);
     if (!(cost < node.rhs)) return;
     node.rhs = cost;
     node.next = next;
-    enqueue(i.neighbor);
+    enqueue(half.neighbor);
   }
 
   void repairRhs(VertexId v) {
@@ -199,10 +201,12 @@ class LifelongSearch {
   /** The edge with the least cost + g, and that cost; ties to the smaller vertex, then edge. */
   std::pair<Cost, Incidence> bestStep(VertexId v) const {
     std::pair<Cost, Incidence> best{Cost::infinite(), {kNoVertex, kNoEdge}};
-    for (const Incidence& i : m_graph.incident(v)) {
+    const EdgeRow row = m_graph.row(v);
+    for (std::size_t at = 0; at < row.size; ++at) {
+      const Incidence i{row.halves[at].neighbor, row.edges[at]};
       const Cost& after = m_nodes[i.neighbor].g;
       if (best.first < after || after.isInfinite()) continue;  // whatever the edge costs
-      const Cost cost = after + m_costs(i.edge);
+      const Cost cost = after + m_costs(v, row.halves[at], Way::Out);
       const bool tie =
           cost == best.first && !cost.isInfinite() &&
           std::tie(i.neighbor, i.edge) < std::tie(best.second.neighbor, best.second.edge);
@@ -225,7 +229,7 @@ class LifelongSearch {
       node.distanceOf = m_startNumber;
       node.distance = m_options.lengthBound ? m_options.lengthBound(m_start, v) : 0;
     }
-    return {node.least() + Costs::ofLength(node.distance), node.distance};
+    return {node.least() + m_costs.layout().ofLength(node.distance), node.distance};
   }
 
   // --- The path
@@ -248,14 +252,16 @@ class LifelongSearch {
    * that is worse than its lower bound. */
   std::optional<SearchStatus> evaluateAlongPath(const StopCheck& stop, bool& again) {
     again = false;
+    VertexId to = m_start;
     for (const EdgeId e : bestEdges()) {
+      to = m_graph.edge(e).other(to);
       if (m_graph.edge(e).state != EdgeState::Unevaluated) continue;
       if (const auto stopped = stop.now()) return stopped;
-      const Cost bound = m_costs(e);
+      const Cost bound = m_costs(e, to);
       ++m_statistics.edgesEvaluated;
       evaluateEdge(m_graph, e, m_options.evaluate);
       m_seen = m_graph.changes().end();
-      if (m_costs(e) == bound) continue;
+      if (m_costs(e, to) == bound) continue;
       repairRhs(m_graph.edge(e).a);
       repairRhs(m_graph.edge(e).b);
       again = true;
@@ -269,7 +275,7 @@ class LifelongSearch {
   const VertexId m_goal;
   const CostModel m_model;
   const SearchOptions m_options;
-  const Costs m_costs;
+  const EdgeCosts<Layout> m_costs;
   std::vector<Node> m_nodes;
   VertexHeap<Key> m_queue;
   std::uint64_t m_seen = 0;

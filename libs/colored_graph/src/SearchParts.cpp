@@ -16,10 +16,11 @@ bool reaches(const ColoredGraph& graph, VertexId from, VertexId to, const Passab
     const VertexId v = open.back();
     open.pop_back();
     if (v == to) return true;
-    for (const Incidence& i : graph.incident(v)) {
-      if (seen[i.neighbor] || !passable(i.edge)) continue;
-      seen[i.neighbor] = true;
-      open.push_back(i.neighbor);
+    const EdgeRow row = graph.row(v);
+    for (const HalfEdge* half = row.halves; half != row.halves + row.size; ++half) {
+      if (seen[half->neighbor] || !passable(v, *half)) continue;
+      seen[half->neighbor] = true;
+      open.push_back(half->neighbor);
     }
   }
   return false;
@@ -67,7 +68,7 @@ PathResult assemblePath(const ColoredGraph& graph, VertexId start, std::vector<E
   result.vertices = {start};
   result.lengthPerClass.assign(graph.classes(), 0);
   for (const EdgeId e : edges) {
-    const Edge& edge = graph.edge(e);
+    const Edge edge = graph.edge(e);
     result.vertices.push_back(edge.other(result.vertices.back()));
     for (const Stretch& s : edge.profile) result.lengthPerClass[s.classId] += s.length;
   }
@@ -76,9 +77,11 @@ PathResult assemblePath(const ColoredGraph& graph, VertexId start, std::vector<E
 }
 
 SearchStatus diagnose(const ColoredGraph& graph, VertexId start, VertexId goal,
-                      const std::function<bool(EdgeId)>& allowed) {
+                      const std::function<bool(VertexId, const HalfEdge&)>& allowed) {
   if (reaches(graph, start, goal, allowed)) return SearchStatus::CostOverflow;
-  const auto notBlocked = [&](EdgeId e) { return graph.edge(e).state != EdgeState::Blocked; };
+  const auto notBlocked = [&](VertexId v, const HalfEdge& half) {
+    return graph.state(half) != EdgeState::Blocked && graph.leads(v, half, Way::Out);
+  };
   return reaches(graph, start, goal, notBlocked) ? SearchStatus::OnlyForbidden
                                                  : SearchStatus::NotConnected;
 }

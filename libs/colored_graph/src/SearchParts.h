@@ -44,9 +44,9 @@ std::optional<SearchStatus> missingEnd(const ColoredGraph& graph, VertexId start
  * `edges`. */
 PathResult assemblePath(const ColoredGraph& graph, VertexId start, std::vector<EdgeId> edges);
 
-/** Why there is no path, given which edges the cost model lets through. */
+/** Why there is no path, given whether the cost model lets a vertex be left along an edge. */
 SearchStatus diagnose(const ColoredGraph& graph, VertexId start, VertexId goal,
-                      const std::function<bool(EdgeId)>& allowed);
+                      const std::function<bool(VertexId, const HalfEdge&)>& allowed);
 
 /** Evaluates an edge and lets the graph keep the answer.
  * \throw std::invalid_argument no function given. */

@@ -1,27 +1,37 @@
 #pragma once
-#include "EdgeCosts.h"
-
 #include <functional>
 #include <limits>
 #include <queue>
 #include <utility>
 #include <vector>
 
+#include "EdgeCosts.h"
+
 namespace colored_graph {
 
 constexpr std::int64_t kUnreachable = std::numeric_limits<std::int64_t>::max();
 
-/** For every vertex the least cost in the worst rank of a path from it to `target`, exactly; or
+/** For every vertex the least cost in the worst rank of a path to it from `start`, exactly; or
  * kUnreachable. Edges that cost nothing in that rank contract their ends: each such component is
  * flooded at once, and only the edges between components are queued. */
-template <int N>
-std::vector<std::int64_t> worstRankBound(const ColoredGraph& graph, const EdgeCosts<N>& costs,
-                                         Rank worst, VertexId target) {
+template <class Layout>
+std::vector<std::int64_t> worstRankBound(const ColoredGraph& graph, const EdgeCosts<Layout>& costs,
+                                         Rank worst, VertexId start) {
   std::vector<std::int64_t> bound(graph.vertexIdEnd(), kUnreachable);
   using Entry = std::pair<std::int64_t, VertexId>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   std::vector<VertexId> component;
-  queue.push({0, target});
+  const auto leave = [&](VertexId v, const HalfEdge& half) {
+    if (bound[half.neighbor] != kUnreachable) return;
+    const auto cost = costs(v, half, Way::Out);
+    if (cost.isInfinite()) return;
+    const std::int64_t step = costs.layout().inRank(cost, worst);
+    if (step == 0)
+      component.push_back(half.neighbor);
+    else if (step < kUnreachable - bound[v])
+      queue.push({bound[v] + step, half.neighbor});
+  };
+  queue.push({0, start});
   while (!queue.empty()) {
     const auto [amount, first] = queue.top();
     queue.pop();
@@ -31,15 +41,8 @@ std::vector<std::int64_t> worstRankBound(const ColoredGraph& graph, const EdgeCo
       component.pop_back();
       if (bound[v] != kUnreachable) continue;
       bound[v] = amount;
-      for (const Incidence& i : graph.incident(v)) {
-        if (bound[i.neighbor] != kUnreachable) continue;
-        const CostVector<N> cost = costs(i.edge);
-        const std::int64_t step = cost[EdgeCosts<N>::at(worst)];
-        if (step == 0)
-          component.push_back(i.neighbor);
-        else if (!cost.isInfinite() && step < kUnreachable - amount)
-          queue.push({amount + step, i.neighbor});
-      }
+      const EdgeRow row = graph.row(v);
+      for (std::size_t i = 0; i < row.size; ++i) leave(v, row.halves[i]);
     }
   }
   return bound;

@@ -53,7 +53,7 @@ class ObstacleFinder {
 
   bool isOccupied(Column c, int z) const {
     const auto& map = m_ground.map();
-    const auto* node = map.search(octomap::OcTreeKey(static_cast<octomap::key_type>(c.x),
+    const auto node = map.search(octomap::OcTreeKey(static_cast<octomap::key_type>(c.x),
                                                      static_cast<octomap::key_type>(c.y),
                                                      static_cast<octomap::key_type>(z)));
     return node && map.isNodeOccupied(node);

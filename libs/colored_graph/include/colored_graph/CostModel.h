@@ -13,7 +13,8 @@ namespace colored_graph {
  * Profile: each of its stretches for its own class; end points do not matter. */
 enum class EdgeModel { Endpoint, Sweep, Profile };
 
-/** What is minimized, worst class first.
+/** What is minimized, worst class first. Total length stands for total length with tolls, then
+ * total length, if the model counts tolls.
  * Count: (edges in the worst rank, ..., edges in rank 1; total length). With Profile, an edge
  * counts once in every rank that it touches.
  * ArcLength: (length in the worst rank, ..., length in rank 1; total length). Total length in the
@@ -38,8 +39,16 @@ struct CostModel {
   ClassOrder order;
   EdgeModel edges = EdgeModel::Sweep;
   CostKind kind = CostKind::ArcLength;
+  /** Whether tolls count: after the classes, and before length. */
+  bool tolls = false;
+  /** With ArcLength: what an edge counts for a rank is rounded to a multiple of this (halves up),
+   * so that a class that is hardly touched does not outweigh any detour; 0: exact. */
+  Length quantum = 0;
 
-  /** \throw std::invalid_argument the order is one of more or fewer classes than the graph has. */
+  /** Numbers in the cost of a path. */
+  int components() const { return order.ranks() + (tolls ? 1 : 0); }
+  /** \throw std::invalid_argument the order is one of more or fewer classes than the graph has, or
+   * a quantum negative or above 2^62. */
   void validate(const ColoredGraph& graph) const;
 };
 

@@ -18,7 +18,7 @@ struct GraphVizOptions {
 
 /** Writes the graph in the DOT language. A vertex has the color of its class, an edge that of the
  * longest class in its profile and its length in meters as label; unevaluated edges are dashed,
- * blocked ones dotted, those of the path bold.
+ * blocked ones dotted, those that lead one way have an arrow, those of the path are bold.
  * \throw std::ios_base::failure the stream did not take it all. */
 void writeGraphViz(std::ostream& out, const ColoredGraph& graph, const PathResult& path = {},
                    const GraphVizOptions& options = {});

@@ -31,7 +31,8 @@ struct PathResult {
   SearchStatus status = SearchStatus::NotConnected;
   std::vector<VertexId> vertices;  ///< start to goal; empty if there is no path
   std::vector<EdgeId> edges;       ///< one fewer than the vertices
-  /** Worst rank first: one number for each rank but rank 0, then the total length (CostKind). */
+  /** Worst rank first: one number for each rank but rank 0, then the total length (CostKind), and
+   * before it the total length with tolls, if the model counts these. */
   std::vector<std::int64_t> cost;
   /** By class id: what the profiles of the edges add up to, whatever the edge model. */
   std::vector<Length> lengthPerClass;

@@ -10,8 +10,9 @@ namespace colored_graph {
 /** What a search may use, and when it gives up. The functions must not change the graph. */
 struct SearchOptions {
   /** Lower bound of the length of every path between two vertices; none: 0. It has to be
-   * consistent: bound(s, v) <= length(v, w) + bound(s, w) for every edge, with the least length
-   * where the edge is unevaluated (a metric, rounded with lengthDown(), is). */
+   * consistent: bound(s, w) <= bound(s, v) + length(v, w) for every edge that can be driven from v
+   * to w, with the least length where it is unevaluated (a metric, rounded with lengthDown(), is).
+   */
   std::function<Length(VertexId, VertexId)> lengthBound;
   /** The profile of an unevaluated edge, or nothing if it is blocked. The graph keeps the answer.
    * Needed only if the search meets unevaluated edges. */

@@ -8,7 +8,7 @@ using Node = SemanticOcTree::Node;
 
 struct OpenRun {
   int column, bottom, top;
-  const Node* topNode;
+  Node topNode;
 };
 
 class TileScan {
@@ -18,7 +18,7 @@ class TileScan {
   }
 
   ColumnTile scan() {
-    if (m_map.root()) visit(*m_map.root(), {0, 0}, 0, 1 << m_map.getTreeDepth());
+    if (m_map.root()) visit(m_map.root(), {0, 0}, 0, 1 << m_map.getTreeDepth());
     sortRuns();
     return std::move(m_tile);
   }
@@ -35,11 +35,10 @@ class TileScan {
     if (!overlaps(low, size)) return;
     if (node.isLeaf()) return addLeaf(node, low, z, size);
     const int half = size / 2;
-    for (unsigned i = 0; i < 8; ++i)
-      if (m_map.nodeChildExists(&node, i))
-        visit(*m_map.getNodeChild(&node, i),
-              {low.x + (i & 1 ? half : 0), low.y + (i & 2 ? half : 0)}, z + (i & 4 ? half : 0),
-              half);
+    for (int i = 0; i < 8; ++i)
+      if (const Node child = node.child(i))
+        visit(child, {low.x + (i & 1 ? half : 0), low.y + (i & 2 ? half : 0)},
+              z + (i & 4 ? half : 0), half);
   }
 
   void addLeaf(const Node& node, Column low, int z, int size) {
@@ -50,7 +49,7 @@ class TileScan {
       for (int x = std::max(low.x, m_low.x); x < xEnd; ++x) {
         const int column = indexInTile({x, y});
         if (occupied)
-          addRun({column, z, z + size - 1, &node});
+          addRun({column, z, z + size - 1, node});
         else
           m_tile.lowestFree[column] =
               static_cast<std::uint16_t>(std::min<int>(m_tile.lowestFree[column], z));
@@ -78,8 +77,7 @@ class TileScan {
     auto next = m_tile.first;
     for (const OpenRun& run : m_runs)
       m_tile.runs[next[run.column]++] = {static_cast<std::uint16_t>(run.bottom),
-                                         static_cast<std::uint16_t>(run.top),
-                                         classOf(*run.topNode)};
+                                         static_cast<std::uint16_t>(run.top), classOf(run.topNode)};
   }
 
   /** SemanticOcTree::query()'s, without probabilities where one class is ahead of all. */

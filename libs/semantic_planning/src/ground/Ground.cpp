@@ -53,10 +53,9 @@ class TileSearch {
     if (node.getLogOdds() <= 0) return;  // an inner node's is its most occupied leaf's
     if (node.isLeaf() || size == kTileEdge) return mark(low, size);
     const int half = size / 2;
-    for (unsigned i = 0; i < 8; ++i)
-      if (m_map.nodeChildExists(&node, i))
-        visit(*m_map.getNodeChild(&node, i),
-              {low.x + (i & 1 ? half : 0), low.y + (i & 2 ? half : 0)}, half);
+    for (int i = 0; i < 8; ++i)
+      if (const Node child = node.child(i))
+        visit(child, {low.x + (i & 1 ? half : 0), low.y + (i & 2 ? half : 0)}, half);
   }
 
   void mark(Column low, int size) {

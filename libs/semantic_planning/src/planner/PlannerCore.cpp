@@ -7,7 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "PathShortening.h"
+#include "GuideSearch.h"
+#include "PathImprovement.h"
 #include "PathTracing.h"
 
 namespace semantic_planning {
@@ -75,7 +76,8 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
       m_checker(m_ground, options.vehicle, order, options.reading),
       m_candidates(map, m_ground, options.roadmap),
       m_edges(m_checker),
-      m_model{order, options.edges, options.cost} {
+      m_model{order, options.edges, options.cost, true,
+              colored_graph::lengthDown(options.shorten ? options.classTolerance : 0)} {
   map.takeTouchedTiles();  // the ground began with the whole map
 }
 
@@ -161,12 +163,24 @@ void PlannerCore::finish(const PathResult& path, StageClock& clock, PlanResult& 
   result.numEdges = roadmap().graph().edgeCount();
   result.edgesRemembered = m_edges.takeRemembered();
   clock.end("path");
-  if (m_options.shorten && m_model.edges == colored_graph::EdgeModel::Profile &&
-      m_model.kind == colored_graph::CostKind::ArcLength) {
-    shortenPath(result, m_checker, m_model, m_options.roadmap.longestEdge);
-    clock.end("shorten");
-  }
+  if (mayImprove(result)) improve(clock, result);
   result.times = clock.take();
+}
+
+bool PlannerCore::mayImprove(const PlanResult& result) const {
+  if (!m_options.shorten || m_model.edges != colored_graph::EdgeModel::Profile ||
+      m_model.kind != colored_graph::CostKind::ArcLength)
+    return false;
+  return result.found() ? result.path.size() > 2
+                        : result.status == PlanStatus::NotConnected ||
+                              result.status == PlanStatus::OnlyForbidden;
+}
+
+void PlannerCore::improve(StageClock& clock, PlanResult& result) const {
+  const auto guide = searchGuide(m_checker, m_roadmap->region(), *m_startPose, *m_goalPose);
+  clock.end("guide");
+  improvePath(result, guide, m_checker, {m_options.roadmap.longestEdge, m_options.classTolerance});
+  clock.end("shorten");
 }
 
 void PlannerCore::forget() {

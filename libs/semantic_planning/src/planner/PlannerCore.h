@@ -51,6 +51,8 @@ class PlannerCore {
   colored_graph::SearchOptions searchOptions();
   std::optional<colored_graph::EdgeProfile> evaluateTimed(colored_graph::EdgeId e);
   void moveStart(Roadmap& map);
+  bool mayImprove(const PlanResult& result) const;
+  void improve(StageClock& clock, PlanResult& result) const;
   void finish(const colored_graph::PathResult& path, StageClock& clock, PlanResult& result);
 
   semantic_octree::SemanticOcTree& m_map;

@@ -12,7 +12,9 @@ void PlannerOptions::describe(strict_files::OptionList& list) {
   list.add("cost", cost, "", "what is least, worst class first");
   list.add("edges", edges, "", "which of the classes along an edge it counts for");
   reading.describe(list);
-  list.add("shorten", shorten, "", "cut off detours over the graph's vertices");
+  list.add("class_tolerance", classTolerance, "m", strict_files::between(0, 10),
+           "with shorten: differences of the length in a class that do not matter");
+  list.add("shorten", shorten, "", "look for a better path beside the graph's");
   list.add("time_limit", timeLimit, "s", limits, "of a search");
   ground.describe(list);
 }

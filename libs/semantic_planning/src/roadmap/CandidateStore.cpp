@@ -60,7 +60,7 @@ std::vector<Column> CandidateStore::outdated(const std::vector<octomap::OcTreeKe
     for (const LeafCell& leaf : *leaves) addTilesOf(leaf, tiles);
   constexpr unsigned kTouchedDepth = 13;  // 8 voxels
   for (const octomap::OcTreeKey& key : touched) {
-    addTilesOf({key, kTouchedDepth, nullptr}, tiles);
+    addTilesOf({key, kTouchedDepth, {}}, tiles);
     for (const LeafCell& leaf : abstraction.leavesIn(key, key, false))
       if (leaf.depth < kTouchedDepth) addTilesOf(leaf, tiles);
   }

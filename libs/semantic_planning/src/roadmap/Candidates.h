@@ -42,9 +42,11 @@ std::vector<CandidatePoint> compressedPoints(Column tile,
 std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
                                        const RoadmapOptions& options);
 
-/** A point's poses, in evenly spaced headings from a direction that looks random. */
-std::vector<Candidate> candidatesAt(const CandidatePoint& point, const Ground& ground,
+/** A point's poses, in evenly spaced headings: from the direction in which the free space around
+ * runs, or one that looks random. They depend on ground within kHeadingReach meters. */
+std::vector<Candidate> candidatesAt(const CandidatePoint& point, const EdgeChecker& checker,
                                     const RoadmapOptions& options);
+constexpr double kHeadingReach = 5;
 
 /** Where a Halton sequence is laid. */
 struct HaltonSearch {

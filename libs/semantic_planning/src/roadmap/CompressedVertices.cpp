@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "Candidates.h"
+#include "UnitHash.h"
 
 namespace semantic_planning {
 
@@ -9,16 +10,6 @@ using semantic_octree::Abstraction;
 using semantic_octree::LeafCell;
 
 namespace {
-
-/** Mixes the bits of three numbers (the finalizer of MurmurHash3). */
-std::uint32_t mixed(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  std::uint32_t h = a * 0x9e3779b1u ^ b * 0x85ebca77u ^ c * 0xc2b2ae3du;
-  h = (h ^ (h >> 16)) * 0x85ebca6bu;
-  h = (h ^ (h >> 13)) * 0xc2b2ae35u;
-  return h ^ (h >> 16);
-}
-
-double unit(std::uint32_t h) { return h / 4294967296.0; }
 
 /** A square of columns in which one point is wanted. */
 struct Cell {
@@ -68,21 +59,8 @@ double dither(unsigned x, unsigned y, unsigned seed) {
     value += weight * (((x ^ y) >> bit) & 1);
     value += weight / 2 * ((y >> bit) & 1);
   }
-  value += unit(mixed(seed, 1, 2));
+  value += unitHash(seed, 1, 2);
   return value - std::floor(value);
-}
-
-std::vector<Candidate> candidatesAt(const CandidatePoint& point, const Ground& ground,
-                                    const RoadmapOptions& options) {
-  const double first = unit(mixed(static_cast<std::uint32_t>(point.column.x),
-                                  static_cast<std::uint32_t>(point.column.y), options.seed));
-  const double x = ground.centerOf(point.column.x), y = ground.centerOf(point.column.y);
-  std::vector<Candidate> candidates;
-  for (int i = 0; i < options.headings; ++i) {
-    const double heading = std::remainder(2 * M_PI * (first + i) / options.headings, 2 * M_PI);
-    candidates.push_back({{{x, y, heading}, point.z}, point.classId});
-  }
-  return candidates;
 }
 
 std::vector<CandidatePoint> compressedPoints(Column tile, const Abstraction& abstraction,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ground/GroundTiles.h"
 #include "vehicle/CurveWalk.h"
@@ -13,23 +14,8 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-/** Number of pieces, at most half a voxel long each. */
-int pieces(double length, double voxelSize) {
-  return std::max(1, static_cast<int>(std::ceil(2 * length / voxelSize)));
-}
-
-/** Arc lengths of points at most half a voxel apart, among them the ends of all segments. */
-std::vector<double> stations(const ReedsSheppCurve& curve, double voxelSize) {
-  std::vector<double> at = {0};
-  double begin = 0;
-  for (const ReedsSheppCurve::Segment& segment : curve.segments()) {
-    const double length = std::abs(segment.length);
-    if (length < 1e-9) continue;
-    const int n = pieces(length, voxelSize);
-    for (int i = 1; i <= n; ++i) at.push_back(begin + length * i / n);
-    begin += length;
-  }
-  return at;
+int piecesOf(double length, double longest) {
+  return std::max(1, static_cast<int>(std::ceil(length / longest)));
 }
 
 /** Lengths by class, meters, in the graph's units; they add up to the total. */
@@ -49,11 +35,127 @@ EdgeProfile rounded(const std::vector<double>& lengths, double total) {
   return profile;
 }
 
+/** Whether the budget reaches. */
+bool pay(ClassBudget& budget, std::optional<ClassId> id, double length) {
+  if (id) budget.left -= budget.prices[*id] * length;
+  return !budget.isSpent();
+}
+
+/** How fast a disc's center moves on the tightest arc, in the origin's speed. */
+double speedOf(const Disc& disc, double turningRadius) {
+  return std::hypot(1 + std::abs(disc.y) / turningRadius, disc.x / turningRadius);
+}
+
+/** The column that a straight line between points of two columns, which only meet at a corner,
+ * goes through between them. */
+Column between(const Ground& ground, Column a, const mrpt::math::TPoint2D& from, Column b,
+               const mrpt::math::TPoint2D& to) {
+  const double half = ground.voxelSize() / 2;
+  const auto share = [half](double side, double begin, double end) {
+    return (side + (end > begin ? half : -half) - begin) / (end - begin);
+  };
+  const bool alongX =
+      share(ground.centerOf(a.x), from.x, to.x) < share(ground.centerOf(a.y), from.y, to.y);
+  return alongX ? Column{b.x, a.y} : Column{a.x, b.y};
+}
+
 }  // namespace
+
+inline const Surface* EdgeChecker::near(Column c, int z, int tolerance) const {
+  return surfaceNear(m_ground.layers().surfaces(), c, z, tolerance);
+}
+
+inline bool EdgeChecker::isFree(const CheckedDisc& d, Column c, int z) const {
+  const Surface* s = near(c, z, d.tolerance);
+  return s && s->drivable && s->clearance2 >= d.needed2;
+}
+
+/** Moves the vehicle from placement to placement and looks at all columns that its discs' centers
+ * come through: what is between placements is seen, too. What lies below the same columns is not
+ * looked up again; where it begins is not looked at. */
+class EdgeChecker::Sweep {
+ public:
+  /** \param z key of the surface below the placement */
+  Sweep(const EdgeChecker& checker, const Placement& begin, int z)
+      : m_checker(checker),
+        m_z(z),
+        m_column(checker.m_ground.columnAt(begin.x, begin.y)),
+        m_wheels(checker.m_wheels.size()) {
+    for (const CheckedDisc& d : checker.m_discs) m_discs.push_back(at(d, begin));
+  }
+
+  int z() const { return m_z; }
+
+  bool moveTo(const Placement& placed) {
+    const Ground& ground = m_checker.m_ground;
+    const Column column = ground.columnAt(placed.x, placed.y);
+    bool climbs = false;
+    if (!(column == m_column)) {
+      const Surface* s = m_checker.near(column, m_z, ground.step());
+      if (!s) return false;
+      climbs = s->z != m_z;
+      m_z = s->z;
+      m_column = column;
+    }
+    for (std::size_t i = 0; i < m_discs.size(); ++i)
+      if (!move(m_checker.m_discs[i], placed, climbs, m_discs[i])) return false;
+    return true;
+  }
+
+  bool addClasses(const Placement& placed, double length, Lengths& lengths) {
+    if (m_checker.m_reading.kind == ClassReading::Kind::Expected)
+      return m_checker.addExpected(placed, m_z, length, lengths);
+    bool isSame = m_worst && m_worstZ == m_z;
+    for (std::size_t i = 0; i < m_wheels.size(); ++i) {
+      const auto [x, y] = placed(0, m_checker.m_wheels[i]);
+      const Column column = m_checker.m_ground.columnAt(x, y);
+      isSame = isSame && column == m_wheels[i];
+      m_wheels[i] = column;
+    }
+    if (!isSame) m_worst = m_checker.worstUnderWheels(placed, m_z);
+    m_worstZ = m_z;
+    if (m_worst) lengths[*m_worst] += length;
+    return m_worst.has_value();
+  }
+  /** Under the wheels where classes were added; of a distribution it is not told. */
+  std::optional<ClassId> worst() const { return m_worst; }
+
+ private:
+  struct At {
+    mrpt::math::TPoint2D point;
+    Column column;
+  };
+
+  At at(const CheckedDisc& d, const Placement& placed) const {
+    const auto [x, y] = placed(d.disc.x, d.disc.y);
+    return {{x, y}, m_checker.m_ground.columnAt(x, y)};
+  }
+
+  bool move(const CheckedDisc& d, const Placement& placed, bool climbs, At& disc) {
+    const At now = at(d, placed), before = std::exchange(disc, now);
+    if (!climbs && now.column == before.column) return true;
+    if (!m_checker.isFree(d, now.column, m_z)) return false;
+    if (now.column.x == before.column.x || now.column.y == before.column.y) return true;
+    return m_checker.isFree(
+        d, between(m_checker.m_ground, before.column, before.point, now.column, now.point), m_z);
+  }
+
+  const EdgeChecker& m_checker;
+  int m_z;
+  Column m_column;
+  std::vector<At> m_discs;
+  std::vector<Column> m_wheels;
+  std::optional<ClassId> m_worst;  ///< under the wheels, when they were there and at this height:
+  int m_worstZ = 0;
+};
 
 EdgeChecker::EdgeChecker(const Ground& ground, const VehicleOptions& vehicle,
                          const colored_graph::ClassOrder& order, const ClassReading& reading)
-    : m_ground(ground), m_order(order), m_reading(reading), m_reedsShepp(vehicle.turningRadius) {
+    : m_ground(ground),
+      m_order(order),
+      m_reading(reading),
+      m_reedsShepp(vehicle.turningRadius),
+      m_price(vehicle) {
   vehicle.validate();
   reading.validate();
   const double voxel = ground.voxelSize(), rise = std::tan(vehicle.maxSlope * M_PI / 180);
@@ -61,8 +163,14 @@ EdgeChecker::EdgeChecker(const Ground& ground, const VehicleOptions& vehicle,
     return ground.step() + static_cast<int>(std::ceil(rise * distance / voxel));
   };
   m_reach = vehicle.wheelTrack / 2;
-  for (const Disc& disc : vehicle.footprint.coveringDiscs()) {
-    const double needed = (disc.radius + vehicle.clearance) / voxel;
+  const std::vector<Disc> discs = vehicle.footprint.coveringDiscs();
+  double fastest = 1;  // of the discs' centers, in the origin's speed
+  for (const Disc& disc : discs) fastest = std::max(fastest, speedOf(disc, vehicle.turningRadius));
+  m_piece = std::min(0.5, 1 / fastest) * voxel;
+  for (const Disc& disc : discs) {
+    const double bulge = speedOf(disc, vehicle.turningRadius) * m_piece * m_piece /
+                         (8 * vehicle.turningRadius);  // of an arc beyond its chord
+    const double needed = (disc.radius + vehicle.clearance + bulge) / voxel;
     const double offset = std::hypot(disc.x, disc.y);
     m_discs.push_back(
         {disc, static_cast<int>(std::ceil(needed * needed - 1e-9)), tolerance(offset)});
@@ -75,10 +183,6 @@ EdgeChecker::EdgeChecker(const Ground& ground, const VehicleOptions& vehicle,
   m_wheelTolerance = tolerance(vehicle.wheelTrack / 2);
 }
 
-inline const Surface* EdgeChecker::near(Column c, int z, int tolerance) const {
-  return surfaceNear(m_ground.layers().surfaces(), c, z, tolerance);
-}
-
 std::optional<GroundPose> EdgeChecker::place(const TPose2D& pose,
                                              std::optional<double> nearZ) const {
   const auto point = m_ground.find(pose.x, pose.y, nearZ);
@@ -86,19 +190,15 @@ std::optional<GroundPose> EdgeChecker::place(const TPose2D& pose,
   return GroundPose{pose, point->surface.z};
 }
 
-bool EdgeChecker::discsFit(const Placement& placed, int z) const {
-  for (const CheckedDisc& d : m_discs) {
-    const auto [x, y] = placed(d.disc.x, d.disc.y);
-    const Surface* s = near(m_ground.columnAt(x, y), z, d.tolerance);
-    if (!s || !s->drivable || s->clearance2 < d.needed2) return false;
-  }
-  return true;
-}
-
 Fit EdgeChecker::fit(const GroundPose& pose) const {
   const Surface* s = near(m_ground.columnAt(pose.pose.x, pose.pose.y), pose.z, 0);
   if (!s || !s->drivable) return Fit::OffGround;
-  return discsFit(Placement(pose.pose), pose.z) ? Fit::Free : Fit::Blocked;
+  const Placement placed(pose.pose);
+  const bool isFree = std::all_of(m_discs.begin(), m_discs.end(), [&](const CheckedDisc& d) {
+    const auto [x, y] = placed(d.disc.x, d.disc.y);
+    return this->isFree(d, m_ground.columnAt(x, y), pose.z);
+  });
+  return isFree ? Fit::Free : Fit::Blocked;
 }
 
 template <class F>
@@ -115,10 +215,10 @@ bool EdgeChecker::forWheels(const Placement& placed, int z, F f) const {
 
 ClassId EdgeChecker::read(Column c, const Surface& s) const {
   if (m_reading.kind != ClassReading::Kind::Cautious || s.filled) return s.classId;
-  const auto* node = m_ground.map().search(
+  const auto node = m_ground.map().search(
       {static_cast<std::uint16_t>(c.x), static_cast<std::uint16_t>(c.y), s.z});
   if (!node) return s.classId;
-  const std::vector<double> p = m_ground.map().distribution(*node);
+  const std::vector<double> p = m_ground.map().distribution(node);
   ClassId worst = s.classId;
   for (std::size_t id = 1; id < p.size(); ++id)
     if (p[id] > m_reading.leastProbability * (1 - p[0]) && m_order.rank(id) > m_order.rank(worst))
@@ -142,14 +242,15 @@ ClassId EdgeChecker::classAt(const GroundPose& pose) const {
 /** Spreads a length over the classes that a voxel may have. */
 void EdgeChecker::addDistribution(Column c, const Surface& s, double length,
                                   Lengths& lengths) const {
-  const auto* node = s.filled ? nullptr
-                              : m_ground.map().search({static_cast<std::uint16_t>(c.x),
-                                                       static_cast<std::uint16_t>(c.y), s.z});
+  semantic_octree::SemanticOcTreeNode node;
+  if (!s.filled)
+    node = m_ground.map().search(
+        {static_cast<std::uint16_t>(c.x), static_cast<std::uint16_t>(c.y), s.z});
   if (!node) {
     lengths[s.classId] += length;
     return;
   }
-  const std::vector<double> p = m_ground.map().distribution(*node);
+  const std::vector<double> p = m_ground.map().distribution(node);
   const double least = m_reading.leastProbability * (1 - p[0]);
   double sum = 0;
   for (std::size_t id = 1; id < p.size(); ++id) sum += p[id] > least ? p[id] : 0;
@@ -158,50 +259,33 @@ void EdgeChecker::addDistribution(Column c, const Surface& s, double length,
     if (p[id] > least) lengths[id] += length * p[id] / sum;
 }
 
-bool EdgeChecker::addClasses(const Placement& placed, int z, double length,
-                             Lengths& lengths) const {
-  if (m_reading.kind == ClassReading::Kind::Expected)
-    return forWheels(placed, z, [&](const Surface& s, Column c) {
-      addDistribution(c, s, length / static_cast<double>(m_wheels.size()), lengths);
-    });
-  const auto worst = worstUnderWheels(placed, z);
-  if (worst) lengths[*worst] += length;
-  return worst.has_value();
+bool EdgeChecker::addExpected(const Placement& placed, int z, double length,
+                              Lengths& lengths) const {
+  return forWheels(placed, z, [&](const Surface& s, Column c) {
+    addDistribution(c, s, length / static_cast<double>(m_wheels.size()), lengths);
+  });
 }
 
 std::optional<EdgeProfile> EdgeChecker::profile(const GroundPose& a, const GroundPose& b) const {
-  const ReedsSheppCurve curve = m_reedsShepp.connect(a.pose, b.pose);
-  const int n = pieces(curve.length(), m_ground.voxelSize());
-  const double piece = curve.length() / n;
-  Lengths lengths(m_order.classes());
-  int z = a.z;
-  const bool free = walkMiddles(curve, n, [&](const Placement& placed) {
-    const Surface* s = near(m_ground.columnAt(placed.x, placed.y), z, m_ground.step());
-    if (!s) return false;
-    z = s->z;
-    return discsFit(placed, z) && addClasses(placed, z, piece, lengths);
-  });
-  if (!free) return std::nullopt;
-  if (std::abs(z - b.z) > m_ground.step()) return std::nullopt;
-  EdgeProfile profile = rounded(lengths, curve.length());
-  if (profile.empty()) profile.push_back({classAt(a), 0});  // from a pose to itself
-  return profile;
+  return profile(m_price.shortest(a.pose, b.pose), a.z, b.z);
 }
 
-std::vector<PathPoint> EdgeChecker::trace(const ReedsSheppCurve& curve, int z) const {
-  std::vector<PathPoint> points;
-  for (const double s : stations(curve, m_ground.voxelSize())) {
-    const CurvePoint c = curve.at(s);
-    const Surface* surface = near(m_ground.columnAt(c.pose.x, c.pose.y), z, m_ground.step());
-    if (surface) z = surface->z;
-    PathPoint p;
-    p.x = c.pose.x, p.y = c.pose.y, p.z = m_ground.centerOf(z), p.heading = c.pose.phi;
-    p.curvature = c.curvature, p.forward = c.forward;
-    p.classId = classAt({c.pose, z});
-    p.arcLength = s;
-    points.push_back(p);
-  }
-  return points;
+std::optional<EdgeProfile> EdgeChecker::profile(const ReedsSheppCurve& curve, int from, int to,
+                                                ClassBudget* budget) const {
+  const int n = piecesOf(curve.length(), m_piece);
+  const double piece = curve.length() / n;
+  Lengths lengths(m_order.classes());
+  Sweep sweep(*this, Placement(curve.from()), from);
+  const auto fits = [&](const Placement& placed) { return sweep.moveTo(placed); };
+  const auto counts = [&](const Placement& placed) {
+    return sweep.moveTo(placed) && sweep.addClasses(placed, piece, lengths) &&
+           (!budget || pay(*budget, sweep.worst(), piece));
+  };
+  if (!walkCurve(curve, n, counts, fits)) return std::nullopt;
+  if (std::abs(sweep.z() - to) > m_ground.step()) return std::nullopt;
+  EdgeProfile profile = rounded(lengths, curve.length());
+  if (profile.empty()) profile.push_back({classAt({curve.from(), from}), 0});  // without length
+  return profile;
 }
 
 }  // namespace semantic_planning

@@ -48,22 +48,9 @@ bool MapRoadmap::reachable(const Candidate& candidate) const {
   return from && to && ground.connected(*from, *to);
 }
 
-std::vector<Column> MapRoadmap::tilesOfRegion() const {
-  const Ground& ground = m_checker.ground();
-  const double edge = kTileEdge * ground.voxelSize();
-  std::vector<Column> tiles = ground.tiles();
-  const auto isOutside = [&](const Column& tile) {
-    const Column first = firstColumnOf(tile);
-    const double x = ground.centerOf(first.x) + edge / 2, y = ground.centerOf(first.y) + edge / 2;
-    return !m_region.contains(x, y, edge);
-  };
-  tiles.erase(std::remove_if(tiles.begin(), tiles.end(), isOutside), tiles.end());
-  return tiles;
-}
-
 std::size_t MapRoadmap::take(const CandidatePoint& point, std::size_t most) {
   std::size_t usable = 0;
-  for (const Candidate& candidate : candidatesAt(point, m_checker.ground(), m_options)) {
+  for (const Candidate& candidate : candidatesAt(point, m_checker, m_options)) {
     const auto& pose = candidate.pose.pose;
     if (usable == most || !m_region.contains(pose.x, pose.y) || !reachable(candidate)) break;
     m_pool.add(candidate, point);
@@ -79,7 +66,7 @@ void MapRoadmap::takeByPriority(CandidateStore& store) {
     bool operator<(const List& o) const { return *o.next < *next; }  // the least on top
   };
   std::priority_queue<List> lists;
-  for (const Column& tile : tilesOfRegion())
+  for (const Column& tile : tilesIn(m_region, m_checker.ground()))
     if (const std::vector<CandidatePoint>& points = store.in(tile); !points.empty())
       lists.push({points.data(), points.data() + points.size()});
   std::size_t left = m_options.vertices > 0 ? m_options.vertices : kUnlimited;
@@ -90,6 +77,14 @@ void MapRoadmap::takeByPriority(CandidateStore& store) {
     if (++list.next != list.end) lists.push(list);
   }
   if (!lists.empty()) m_lastPriority = lists.top().next->priority;
+}
+
+/** Points around which the ground changed so that they have other headings now. */
+std::vector<CandidatePoint> MapRoadmap::turnedPoints(const std::vector<Column>& tiles) const {
+  if (!m_options.alignHeadings) return {};
+  return m_pool.turnedPoints(tiles, kHeadingReach, [this](const CandidatePoint& point) {
+    return candidatesAt(point, m_checker, m_options).front().pose.pose.phi;
+  });
 }
 
 void MapRoadmap::takeHalton() {
@@ -111,6 +106,10 @@ void MapRoadmap::update(const std::vector<Column>& changedTiles,
   for (const CandidatePoint& point : points.removed) m_pool.remove(point);
   for (const CandidatePoint& point : points.added)
     if (point.priority < m_lastPriority) take(point, kUnlimited);
+  for (const CandidatePoint& point : turnedPoints(changedTiles)) {
+    m_pool.remove(point);
+    take(point, kUnlimited);
+  }
   m_pool.refresh(changedTiles);
   m_pool.apply();
   m_roadmap.refresh(changedTiles);

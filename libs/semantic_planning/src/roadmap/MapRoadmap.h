@@ -15,6 +15,7 @@ class MapRoadmap {
 
   Roadmap& roadmap() { return m_roadmap; }
   const Roadmap& roadmap() const { return m_roadmap; }
+  const PlanningRegion& region() const { return m_region; }
   VertexPool::Counts takeVertexCounts() { return m_pool.takeCounts(); }
 
   /** The ground changed in these tiles, and so did points. */
@@ -22,9 +23,9 @@ class MapRoadmap {
 
  private:
   bool reachable(const Candidate& candidate) const;
-  std::vector<Column> tilesOfRegion() const;
   /** \return how many vertices it gives now, at most `most` */
   std::size_t take(const CandidatePoint& point, std::size_t most);
+  std::vector<CandidatePoint> turnedPoints(const std::vector<Column>& tiles) const;
   void takeByPriority(CandidateStore& store);
   void takeHalton();
 

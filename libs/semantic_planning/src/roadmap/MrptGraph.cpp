@@ -19,7 +19,7 @@ CNetworkOfPoses2D toNetwork(const Roadmap& roadmap) {
     if (graph.containsVertex(v)) network.nodes[v] = CPose2D(roadmap.pose(v).pose);
   for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) {
     if (!graph.containsEdge(e) || graph.edge(e).state == EdgeState::Blocked) continue;
-    const auto [a, b] = std::minmax(graph.edge(e).a, graph.edge(e).b);
+    const auto [a, b] = std::minmax({graph.edge(e).a, graph.edge(e).b});
     network.insertEdge(a, b, CPose2D(roadmap.pose(b).pose) - CPose2D(roadmap.pose(a).pose));
   }
   if (!network.nodes.empty()) network.root = network.nodes.begin()->first;

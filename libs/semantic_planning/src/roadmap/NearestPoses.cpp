@@ -1,5 +1,4 @@
 #include "NearestPoses.h"
-#include <semantic_planning/roadmap/PosePair.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,10 @@ namespace semantic_planning {
 using mrpt::math::TPose2D;
 
 namespace {
+
+/** A lower bound, or a distance on the plane, may exceed a distance by what rounding makes of it.
+ */
+constexpr double kRounding = 1e-9;
 
 double squared(double x) { return x * x; }
 
@@ -88,10 +91,11 @@ void NearestPoses::relax(std::vector<PairBound>& pairs) {
   std::sort(pairs.begin(), pairs.end());
   for (const PairBound& p : pairs) {
     const Entry &a = m_entries[p.a], &b = m_entries[p.b];
-    if (p.bound > farthest(a) && p.bound > farthest(b)) continue;
+    const double bound = p.bound - kRounding;
+    if (bound > farthest(a) && bound > farthest(b)) continue;
     const double distance = PosePair(a.pose, b.pose).distance(m_reedsShepp);
-    offer(p.a, {p.b, distance});
-    offer(p.b, {p.a, distance});
+    offer(p.a, {p.b, distance, b.pose});
+    offer(p.b, {p.a, distance, a.pose});
   }
 }
 
@@ -126,9 +130,10 @@ void NearestPoses::complete(std::vector<VertexId> open, double radius) {
     relax(pairs);
     beyond = radius;
     radius = std::min(m_radius, 2 * radius);
-    open.erase(std::remove_if(open.begin(), open.end(),
-                              [&](VertexId id) { return farthest(m_entries[id]) <= beyond; }),
-               open.end());
+    open.erase(
+        std::remove_if(open.begin(), open.end(),
+                       [&](VertexId id) { return farthest(m_entries[id]) <= beyond - kRounding; }),
+        open.end());
   }
 }
 
@@ -190,8 +195,9 @@ std::vector<NearestPoses::Neighbor> NearestPoses::nearestTo(const GroundPose& po
   std::sort(bounds.begin(), bounds.end());
   std::vector<Neighbor> nearest;
   for (const auto& [bound, id] : bounds) {
-    if (nearest.size() == count && bound > nearest.back().distance) break;
-    const Neighbor n{id, PosePair(pose, m_entries[id].pose).distance(m_reedsShepp)};
+    if (nearest.size() == count && bound - kRounding > nearest.back().distance) break;
+    const GroundPose& other = m_entries[id].pose;
+    const Neighbor n{id, PosePair(pose, other).distance(m_reedsShepp), other};
     if (n.distance > m_radius) continue;
     nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), n), n);
     if (nearest.size() > count) nearest.pop_back();

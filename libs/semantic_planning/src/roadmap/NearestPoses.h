@@ -1,6 +1,6 @@
 #pragma once
 #include <colored_graph/ColoredGraph.h>
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/PosePair.h>
 
 #include <optional>
 #include <utility>
@@ -10,16 +10,17 @@
 
 namespace semantic_planning {
 
-/** The k nearest poses of each pose, in Reeds-Shepp distance up to a radius, exactly (ties to the
- * smaller id), while poses come and go. */
+/** The k nearest poses of each pose, in Reeds-Shepp distance up to a radius, exactly (ties go by
+ * the poses' order, whatever their ids are), while poses come and go. */
 class NearestPoses {
  public:
   using VertexId = colored_graph::VertexId;
   struct Neighbor {
     VertexId id;
     double distance;  ///< meters
+    GroundPose pose;
     bool operator<(const Neighbor& o) const {
-      return distance != o.distance ? distance < o.distance : id < o.id;
+      return distance != o.distance ? distance < o.distance : isBefore(pose, o.pose);
     }
   };
   using Pair = std::pair<VertexId, VertexId>;  ///< smaller id first

@@ -1,5 +1,6 @@
 #include "PlanningRegion.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace semantic_planning {
@@ -27,6 +28,18 @@ TPoint2D PlanningRegion::at(double u, double v) const {
   const double along = u * m_length, across = v * m_width;
   return {m_corner.x + m_along.x * along - m_along.y * across,
           m_corner.y + m_along.y * along + m_along.x * across};
+}
+
+std::vector<Column> tilesIn(const PlanningRegion& region, const Ground& ground) {
+  const double edge = kTileEdge * ground.voxelSize();
+  std::vector<Column> tiles = ground.tiles();
+  const auto isOutside = [&](const Column& tile) {
+    const Column first = firstColumnOf(tile);
+    const double x = ground.centerOf(first.x) + edge / 2, y = ground.centerOf(first.y) + edge / 2;
+    return !region.contains(x, y, edge);
+  };
+  tiles.erase(std::remove_if(tiles.begin(), tiles.end(), isOutside), tiles.end());
+  return tiles;
 }
 
 }  // namespace semantic_planning

@@ -1,5 +1,8 @@
 #pragma once
 #include <mrpt/math/TPose2D.h>
+#include <semantic_planning/ground/Ground.h>
+
+#include <vector>
 
 namespace semantic_planning {
 
@@ -17,5 +20,8 @@ class PlanningRegion {
   mrpt::math::TPoint2D m_corner, m_along;  ///< m_along: unit vector of the line
   double m_length, m_width;
 };
+
+/** The ground's tiles that meet the region, and perhaps some near it. */
+std::vector<Column> tilesIn(const PlanningRegion& region, const Ground& ground);
 
 }  // namespace semantic_planning

@@ -18,10 +18,22 @@ using colored_graph::Length;
 
 namespace {
 
-bool isSame(const EdgeProfile& l, const EdgeProfile& r) {
+bool isSame(const EdgeProfile& l, const colored_graph::Stretches& r) {
   return std::equal(l.begin(), l.end(), r.begin(), r.end(), [](const auto& a, const auto& b) {
     return a.classId == b.classId && a.length == b.length;
   });
+}
+
+/** What driving a curve costs beyond its length. */
+Length tollOf(const ReedsSheppCurve& curve, const DrivePrice& price) {
+  return colored_graph::lengthDown(std::max(0.0, price.of(curve) - curve.length()));
+}
+
+/** More vertices want more neighbors, for paths to become better with them. */
+int neighborsFor(const RoadmapOptions& options) {
+  constexpr double kBase = 1000;
+  const double doublings = std::log2(std::max(kBase, double(options.vertices)) / kBase);
+  return options.neighbors + static_cast<int>(std::lround(options.moreNeighbors * doublings));
 }
 
 }  // namespace
@@ -29,9 +41,9 @@ bool isSame(const EdgeProfile& l, const EdgeProfile& r) {
 Roadmap::Roadmap(const EdgeChecker& checker, const RoadmapOptions& options)
     : m_checker(checker),
       m_graph(checker.order().classes()),
-      m_nearest(std::make_unique<NearestPoses>(checker.reedsShepp(), options.neighbors,
+      m_nearest(std::make_unique<NearestPoses>(checker.reedsShepp(), neighborsFor(options),
                                                options.longestEdge)),
-      m_queryNeighbors(2 * static_cast<std::size_t>(options.neighbors)),
+      m_queryNeighbors(2 * static_cast<std::size_t>(neighborsFor(options))),
       m_mostEdges(options.maxEdges),
       m_radius(options.longestEdge) {}
 
@@ -77,26 +89,49 @@ void Roadmap::removeQueryVertex(VertexId v) {
   m_queryVertices.erase(v);
 }
 
-Roadmap::EdgeId Roadmap::edgeBetween(VertexId a, VertexId b) const {
+std::vector<Roadmap::EdgeId> Roadmap::edgesBetween(VertexId a, VertexId b) const {
+  std::vector<EdgeId> edges;
   for (const Incidence& i : m_graph.incident(a))
-    if (i.neighbor == b) return i.edge;
-  return colored_graph::kNoEdge;
+    if (i.neighbor == b) edges.push_back(i.edge);
+  return edges;
 }
 
 void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
   if (!m_graph.containsVertex(a) || !m_graph.containsVertex(b)) return;
-  const EdgeId edge = edgeBetween(a, b);
-  if (linked && edge == colored_graph::kNoEdge) {
-    const double length = m_nearest->distance(a, b).value_or(
-        PosePair(pose(a), pose(b)).distance(m_checker.reedsShepp()));
-    const EdgeId e = m_graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(length));
-    if (e >= m_lengths.size()) m_lengths.resize(e + 1);
-    m_lengths[e] = length;
-    ++m_counts.edgesInserted;
-  } else if (!linked && edge != colored_graph::kNoEdge) {
-    m_graph.removeEdge(edge);
-    ++m_counts.edgesRemoved;
+  const std::vector<EdgeId> edges = edgesBetween(a, b);
+  if (linked && edges.empty()) {
+    link(a, b);
+  } else if (!linked) {
+    for (const EdgeId e : edges) m_graph.removeEdge(e);
+    m_counts.edgesRemoved += edges.size();
   }
+}
+
+void Roadmap::link(VertexId a, VertexId b) {
+  const DrivePrice& price = m_checker.price();
+  if (!price.canReverse()) {
+    linkOneWay(a, b);
+    return linkOneWay(b, a);
+  }
+  const ReedsSheppCurve curve = PosePair(pose(a), pose(b)).curveFrom(pose(a), price);
+  const colored_graph::Tolls tolls{tollOf(curve, price), tollOf(curve.reversed(), price)};
+  keepLength(m_graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(curve.length()), tolls),
+             curve.length());
+}
+
+void Roadmap::linkOneWay(VertexId from, VertexId to) {
+  const DrivePrice& price = m_checker.price();
+  const ReedsSheppCurve curve = price.shortest(pose(from).pose, pose(to).pose);
+  if (curve.length() > m_radius) return;
+  const colored_graph::Tolls tolls{tollOf(curve, price), colored_graph::kClosed};
+  keepLength(m_graph.addUnevaluatedEdge(from, to, colored_graph::lengthDown(curve.length()), tolls),
+             curve.length());
+}
+
+void Roadmap::keepLength(EdgeId e, double length) {
+  if (e >= m_lengths.size()) m_lengths.resize(e + 1);
+  m_lengths[e] = length;
+  ++m_counts.edgesInserted;
 }
 
 void Roadmap::reconcile(const std::vector<std::pair<VertexId, VertexId>>& pairs) {
@@ -117,28 +152,29 @@ void Roadmap::reconcileQueryVertex(VertexId query) {
     if (other != query &&
         PosePair(pose(query), pose(other)).distance(m_checker.reedsShepp()) <= m_radius)
       wanted.insert(other);
-  const std::vector<Incidence> present = m_graph.incident(query);
+  const colored_graph::Incidences at = m_graph.incident(query);
+  const std::vector<Incidence> present(at.begin(), at.end());  // the graph changes below
   for (const Incidence& i : present)
     if (!wanted.count(i.neighbor)) setLinked(query, i.neighbor, false);
   for (const VertexId other : wanted) setLinked(query, other, true);
 }
 
 void Roadmap::keepBestEdges() {
-  using Worth = std::tuple<std::size_t, double, VertexId, VertexId>;
+  using Worth = std::tuple<std::size_t, double, PosePair, VertexId, VertexId>;
   std::vector<Worth> pairs;
   for (VertexId a = 0; a < m_graph.vertexIdEnd(); ++a) {
     if (!m_nearest->contains(a)) continue;
     const auto& nearest = m_nearest->of(a);
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const auto [low, high] = std::minmax(a, nearest[i].id);
-      pairs.emplace_back(i, nearest[i].distance, low, high);
+      pairs.emplace_back(i, nearest[i].distance, PosePair(pose(low), pose(high)), low, high);
     }
   }
   std::sort(pairs.begin(), pairs.end());
   std::set<std::pair<VertexId, VertexId>> best;
-  for (const auto& [place, distance, a, b] : pairs)
+  for (const auto& [place, distance, poses, a, b] : pairs)
     if (best.size() < m_mostEdges) best.emplace(a, b);
-  for (const auto& [place, distance, a, b] : pairs) setLinked(a, b, best.count({a, b}) > 0);
+  for (const auto& [place, distance, poses, a, b] : pairs) setLinked(a, b, best.count({a, b}) > 0);
 }
 
 void Roadmap::refresh(const std::vector<Column>& changedTiles) {
@@ -162,11 +198,13 @@ void Roadmap::reevaluate(EdgeId e) {
 }
 
 PosePair Roadmap::ends(EdgeId e) const {
-  return {pose(m_graph.edge(e).a), pose(m_graph.edge(e).b)};
+  const Edge edge = m_graph.edge(e);
+  return m_checker.price().canReverse() ? PosePair(pose(edge.a), pose(edge.b))
+                                        : PosePair::oneWay(pose(edge.a), pose(edge.b));
 }
 
 ReedsSheppCurve Roadmap::curve(EdgeId e, VertexId from) const {
-  return ends(e).curveFrom(pose(from), m_checker.reedsShepp());
+  return ends(e).curveFrom(pose(from), m_checker.price());
 }
 
 std::optional<EdgeProfile> Roadmap::evaluate(EdgeId e) const {

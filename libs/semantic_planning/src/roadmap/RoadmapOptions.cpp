@@ -28,8 +28,12 @@ void RoadmapOptions::describe(strict_files::OptionList& list) {
   list.add("vertices", vertices, "", "how many; of halton, draws; 0: all that the map offers");
   list.add("max_edges", maxEdges, "", "most edges; 0: as many as the neighbors give");
   list.add("neighbors", neighbors, "", between(1, 1000), "each vertex is connected with so many");
+  list.add("more_neighbors", moreNeighbors, "", between(0, 100),
+           "so many more for each doubling of vertices beyond 1000");
   list.add("longest_edge", longestEdge, "m", above(0), "longest edge");
   list.add("headings", headings, "", between(1, 360), "at each point (compressed, full)");
+  list.add("align_headings", alignHeadings, "",
+           "headings follow roads and free space; false: they look random (compressed, full)");
   list.add("spacing", spacing, "m", above(0),
            "between points in large leaves (compressed), or of the grid (full)");
   list.add("buffer", buffer, "m", buffers, "vertices lie this near to the line from start to goal");

@@ -46,6 +46,19 @@ void VertexPool::remove(const CandidatePoint& point) {
   m_ofPoint.erase(found);
 }
 
+std::vector<CandidatePoint> VertexPool::turnedPoints(
+    const std::vector<Column>& tiles, double distance,
+    const std::function<double(const CandidatePoint&)>& headingOf) const {
+  const TileMarks changed(m_checker.ground(), tiles);
+  std::vector<CandidatePoint> turned;
+  for (const auto& [point, members] : m_ofPoint) {
+    const auto& pose = m_members[members.front()].candidate.pose.pose;
+    if (changed.anyIn({pose.x, pose.y, distance}) && headingOf(point) != pose.phi)
+      turned.push_back(point);
+  }
+  return turned;
+}
+
 /** The ground may have gone up or down by what the wheels climb. */
 bool VertexPool::standsOnGround(Member& member) {
   GroundPose& pose = member.candidate.pose;

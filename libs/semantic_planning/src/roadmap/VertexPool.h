@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_planning/roadmap/Roadmap.h>
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -28,6 +29,11 @@ class VertexPool {
   void add(const Candidate& candidate, const std::optional<CandidatePoint>& point = {});
   /** Removes what was added with this point. */
   void remove(const CandidatePoint& point);
+  /** The points that were added and lie near these tiles, and whose first candidate's heading is
+   * another one now. */
+  std::vector<CandidatePoint> turnedPoints(
+      const std::vector<Column>& tiles, double distance,
+      const std::function<double(const CandidatePoint&)>& headingOf) const;
   /** Looks again at the poses near these tiles. */
   void refresh(const std::vector<Column>& changedTiles);
   void apply();

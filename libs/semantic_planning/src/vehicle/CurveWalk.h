@@ -76,11 +76,11 @@ class SegmentWalk {
   const double m_gear, m_radius;  ///< radius: positive to the left, 0: straight
 };
 
-/** f(placement) in the middle of each of as many pieces of a curve, all as long
- * as each other, until f returns false: then false. Computes sines for
- * segments, not for pieces. */
-template <class F>
-bool walkMiddles(const ReedsSheppCurve& curve, int pieces, F f) {
+/** Goes along a curve: atMiddle(placement) in the middle of each of as many pieces, all as long as
+ * each other, and atEnd(placement) where its segments end; until one of them returns false: then
+ * false. Computes sines for segments, not for pieces. */
+template <class AtMiddle, class AtEnd>
+bool walkCurve(const ReedsSheppCurve& curve, int pieces, AtMiddle atMiddle, AtEnd atEnd) {
   const double piece = curve.length() / pieces;
   Placement place(curve.from());
   double before = 0;
@@ -90,13 +90,14 @@ bool walkMiddles(const ReedsSheppCurve& curve, int pieces, F f) {
     if (length == 0) continue;
     const SegmentWalk walk(place, segment, curve.turningRadius());
     const int end = std::min(pieces, static_cast<int>(std::ceil((before + length) / piece - 0.5)));
-    if (first < end && !walk.visit(first, end, piece, before, f)) return false;
+    if (first < end && !walk.visit(first, end, piece, before, atMiddle)) return false;
     place = walk.at(length);
+    if (!atEnd(place)) return false;
     before += length;
     first = std::max(first, end);
   }
   for (; first < pieces; ++first)
-    if (!f(place)) return false;
+    if (!atMiddle(place)) return false;
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include <strict_files/OptionList.h>
 
 #include <stdexcept>
+#include "DubinsWords.h"
 #include "ReedsSheppWords.h"
 
 namespace semantic_planning {
@@ -75,11 +76,18 @@ double ReedsShepp::lowerBound(const TPose2D& a, const TPose2D& b) const {
 }
 
 ReedsSheppCurve ReedsShepp::connect(const TPose2D& a, const TPose2D& b) const {
-  const Word word = shortestWord(scaled(a), scaled(b));
+  return curveOf(a, shortestWord(scaled(a), scaled(b)));
+}
+
+ReedsSheppCurve ReedsShepp::connectForward(const TPose2D& a, const TPose2D& b) const {
+  return curveOf(a, shortestForwardWord(scaled(a), scaled(b)));
+}
+
+ReedsSheppCurve ReedsShepp::curveOf(const TPose2D& from, const Word& word) const {
   std::array<ReedsSheppCurve::Segment, 5> segments;
   for (std::size_t i = 0; i < word.size(); ++i)
     segments[i] = {m_radius * word[i].length, word[i].turn};
-  return {a, m_radius, segments};
+  return {from, m_radius, segments};
 }
 
 }  // namespace semantic_planning

@@ -6,6 +6,8 @@ using strict_files::above;
 using strict_files::atLeast;
 
 void VehicleOptions::describe(strict_files::OptionList& list) {
+  strict_files::Range weights = atLeast(1);
+  weights.withInfinity = true;
   list.add("height", height, "m", above(0), "from the ground to the top");
   list.add("turning_radius", turningRadius, "m", above(0), "least radius of the origin's path");
   list.add("clearance", clearance, "m", atLeast(0), "kept free around the footprint");
@@ -13,6 +15,11 @@ void VehicleOptions::describe(strict_files::OptionList& list) {
   list.add("max_slope", maxSlope, "degrees", strict_files::between(0, 89), "steepest ground");
   list.add("wheel_track", wheelTrack, "m", atLeast(0),
            "between left and right wheels, whose classes count; 0: one track in the middle");
+  list.add("reverse_weight", reverseWeight, "", weights,
+           "what a meter backwards counts; inf: it only drives forward");
+  list.add("gear_change", gearChange, "m", atLeast(0), "what a change of gear counts");
+  list.add("steering_change", steeringChange, "m", atLeast(0),
+           "what a change of the steering counts");
 }
 
 void VehicleOptions::validate() const { strict_files::checkOptions(*this, "VehicleOptions"); }

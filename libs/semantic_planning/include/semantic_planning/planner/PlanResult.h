@@ -36,10 +36,12 @@ using StageTimes = std::vector<std::pair<std::string, double>>;
 struct PlanResult {
   PlanStatus status = PlanStatus::NotConnected;
   std::string reason;  ///< a sentence with the numbers; empty if found
-  /** Worst rank first: one number for each rank but rank 0, then the total length, in
-   * colored_graph's units (0.1 mm) or edges. */
+  /** Worst rank first: one number for each rank but rank 0, then the price of driving (DrivePrice),
+   * then the total length, in colored_graph's units (0.1 mm) or edges. */
   std::vector<std::int64_t> cost;
-  /** Of the roadmap's best path, before it was shortened (PlannerOptions::shorten). */
+  /** Of the roadmap's best path, before a better one was looked for (PlannerOptions::shorten), with
+   * classes as its search rounds them (classTolerance); empty if the roadmap has none. Its price
+   * leaves out what changes where edges meet. */
   std::vector<std::int64_t> roadmapCost;
   std::vector<double> lengthPerClass;         ///< meters by class id; [0]: unknown ground
   double length = 0;                          ///< meters

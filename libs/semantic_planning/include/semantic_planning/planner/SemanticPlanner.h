@@ -20,9 +20,13 @@ struct PlannerOptions {
   ClassReading reading;
   colored_graph::EdgeModel edges = colored_graph::EdgeModel::Profile;
   colored_graph::CostKind cost = colored_graph::CostKind::ArcLength;
-  /** Replaces detours over the roadmap's vertices by single curves where that makes the path
-   * better; with EdgeModel::Profile and CostKind::ArcLength only. */
+  /** Looks for a better path beside the roadmap's, and along the way that a vehicle would take
+   * which turns on the spot; with EdgeModel::Profile and CostKind::ArcLength only. */
   bool shorten = false;
+  /** With `shorten`, differences of the length in a class up to this (meters) do not matter: of
+   * paths that differ by no more, the one that is driven best is taken (VehicleOptions), and the
+   * roadmap's search rounds what an edge has of a class to a multiple. 0: exact. */
+  double classTolerance = 0.2;
   /** Of a search, seconds. */
   double timeLimit = std::numeric_limits<double>::infinity();
   /** Asked often during a search, which stops when it answers true. */

@@ -3,6 +3,7 @@
 #include <colored_graph/ColoredGraph.h>
 #include <semantic_planning/ground/Ground.h>
 #include <semantic_planning/roadmap/RoadmapOptions.h>
+#include <semantic_planning/vehicle/DrivePrice.h>
 #include <semantic_planning/vehicle/PathPoint.h>
 #include <semantic_planning/vehicle/ReedsShepp.h>
 
@@ -26,18 +27,36 @@ enum class Fit {
   Blocked     ///< the footprint does not fit
 };
 
+/** What a way may cost for its classes: looking at it ends where it costs more. */
+struct ClassBudget {
+  std::vector<double> prices;  ///< of a meter, by class
+  double left = 0;
+  bool isSpent() const { return left < 0; }
+};
+
 /** Where a vehicle fits, and over which classes it goes. The footprint is checked as discs, which
  * keep their distance from whole voxels: this errs to the safe side by about a voxel. Several
  * threads may ask at a time. */
 class EdgeChecker {
  public:
+  /** A disc of the footprint, and what it asks of the surface below its center. */
+  struct CheckedDisc {
+    Disc disc;
+    int needed2;    ///< Surface::clearance2
+    int tolerance;  ///< voxels in height against the origin
+  };
+
   /** \param ground must outlive the checker. \throw std::invalid_argument bad options. */
   EdgeChecker(const Ground& ground, const VehicleOptions& vehicle,
               const colored_graph::ClassOrder& order, const ClassReading& reading);
 
   const Ground& ground() const { return m_ground; }
   const ReedsShepp& reedsShepp() const { return m_reedsShepp; }
+  const DrivePrice& price() const { return m_price; }
   const colored_graph::ClassOrder& order() const { return m_order; }
+  const std::vector<CheckedDisc>& discs() const { return m_discs; }
+  /** Where wheel tracks run: y in the vehicle's frame, meters. */
+  const std::vector<double>& wheels() const { return m_wheels; }
 
   /** Puts a pose onto the surface nearest to a height (see Ground::find()). */
   std::optional<GroundPose> place(const mrpt::math::TPose2D& pose,
@@ -46,9 +65,14 @@ class EdgeChecker {
   /** The worst class under the wheels. */
   ClassId classAt(const GroundPose& pose) const;
 
-  /** The classes along the shortest curve from a to b, or nothing if it is blocked or does not lead
-   * to b's level. Looked at every half voxel or closer; the lengths add up to the curve's, rounded
-   * up. */
+  /** The classes along a curve, or nothing if it is blocked or does not lead to b's level. Looked
+   * at every half voxel or closer; the lengths add up to the curve's, rounded up. The footprint
+   * keeps its clearance at all places of the curve, also between those, if it does where that
+   * begins (fit()). \param from, to keys of the surfaces at its ends \param budget if it is spent
+   * there is no answer, either */
+  std::optional<colored_graph::EdgeProfile> profile(const ReedsSheppCurve& curve, int from, int to,
+                                                    ClassBudget* budget = nullptr) const;
+  /** Of the vehicle's shortest curve from a to b. */
   std::optional<colored_graph::EdgeProfile> profile(const GroundPose& a, const GroundPose& b) const;
 
   /** Points along a free curve at most half a voxel apart, from its start to its end, and wherever
@@ -59,20 +83,15 @@ class EdgeChecker {
   double reach() const { return m_reach; }
 
  private:
-  struct CheckedDisc {
-    Disc disc;
-    int needed2;    ///< Surface::clearance2
-    int tolerance;  ///< voxels in height against the origin
-  };
-
   using Lengths = std::vector<double>;  ///< meters by class
 
   const Surface* near(Column c, int z, int tolerance) const;
-  bool discsFit(const Placement& placed, int z) const;
+  class Sweep;
+  bool isFree(const CheckedDisc& disc, Column c, int z) const;
   /** f(surface, its column) for the ground under each wheel track; false if there is none. */
   template <class F>
   bool forWheels(const Placement& placed, int z, F f) const;
-  bool addClasses(const Placement& placed, int z, double length, Lengths& lengths) const;
+  bool addExpected(const Placement& placed, int z, double length, Lengths& lengths) const;
   void addDistribution(Column c, const Surface& s, double length, Lengths& lengths) const;
   ClassId read(Column c, const Surface& s) const;
   std::optional<ClassId> worstUnderWheels(const Placement& placed, int z) const;
@@ -81,7 +100,9 @@ class EdgeChecker {
   const colored_graph::ClassOrder m_order;
   const ClassReading m_reading;
   ReedsShepp m_reedsShepp;
+  DrivePrice m_price;
   std::vector<CheckedDisc> m_discs;
+  double m_piece;                ///< of curves, between places that are looked at; meters
   std::vector<double> m_wheels;  ///< y in the vehicle's frame
   int m_wheelTolerance;
   double m_reach;

@@ -5,23 +5,40 @@
 
 namespace semantic_planning {
 
+/** An order of poses: by x, y, heading, z. */
+inline bool isBefore(const GroundPose& a, const GroundPose& b) {
+  return std::tie(a.pose.x, a.pose.y, a.pose.phi, a.z) <
+         std::tie(b.pose.x, b.pose.y, b.pose.phi, b.z);
+}
+
 /** Two poses that a curve connects, in the order in which it runs: the curve back may be another
  * one, so that one of them has to be agreed upon. The order is the poses' own (by x, y, heading,
- * z), whatever their vertices are called. */
+ * z), whatever their vertices are called; but curves of a vehicle that only drives forward run as
+ * they are driven. */
 struct PosePair {
   PosePair(const GroundPose& a, const GroundPose& b)
-      : first(keyOf(b) < keyOf(a) ? b : a), second(keyOf(b) < keyOf(a) ? a : b) {}
+      : first(isBefore(b, a) ? b : a), second(isBefore(b, a) ? a : b) {}
+  /** The curve is driven from one to the other only. */
+  static PosePair oneWay(const GroundPose& from, const GroundPose& to) {
+    PosePair pair(from, to);
+    pair.first = from, pair.second = to;
+    return pair;
+  }
 
   bool operator==(const PosePair& o) const {
     return keyOf(first) == keyOf(o.first) && keyOf(second) == keyOf(o.second);
+  }
+  bool operator<(const PosePair& o) const {
+    return std::tuple_cat(keyOf(first), keyOf(second)) <
+           std::tuple_cat(keyOf(o.first), keyOf(o.second));
   }
 
   double distance(const ReedsShepp& reedsShepp) const {
     return reedsShepp.distance(first.pose, second.pose);
   }
-  /** The curve between them that starts at `from`, one of them. */
-  ReedsSheppCurve curveFrom(const GroundPose& from, const ReedsShepp& reedsShepp) const {
-    const ReedsSheppCurve curve = reedsShepp.connect(first.pose, second.pose);
+  /** The vehicle's curve between them that starts at `from`, one of them. */
+  ReedsSheppCurve curveFrom(const GroundPose& from, const DrivePrice& price) const {
+    const ReedsSheppCurve curve = price.shortest(first.pose, second.pose);
     return keyOf(from) == keyOf(first) ? curve : curve.reversed();
   }
 

@@ -14,7 +14,9 @@ namespace semantic_planning {
 
 class NearestPoses;
 
-/** Poses on the ground as vertices of a colored graph, and Reeds-Shepp curves as its edges.
+/** Poses on the ground as vertices of a colored graph, and Reeds-Shepp curves as its edges, whose
+ * tolls are what driving them costs beyond their length (DrivePrice). A vehicle that only drives
+ * forward has an edge for each way.
  *
  * An edge connects a with b if b is among the k nearest of a, or a among those of b; this holds
  * after every insertion and removal. Query vertices (start and goal) have edges to twice as many,
@@ -65,7 +67,10 @@ class Roadmap {
   Counts takeCounts();
 
  private:
-  EdgeId edgeBetween(VertexId a, VertexId b) const;
+  std::vector<EdgeId> edgesBetween(VertexId a, VertexId b) const;
+  void link(VertexId a, VertexId b);
+  void linkOneWay(VertexId from, VertexId to);
+  void keepLength(EdgeId e, double length);
   void setLinked(VertexId a, VertexId b, bool linked);
   void keepBestEdges();
   void reconcile(const std::vector<std::pair<VertexId, VertexId>>& pairs);

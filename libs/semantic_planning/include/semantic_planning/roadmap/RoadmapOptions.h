@@ -34,10 +34,15 @@ struct RoadmapOptions {
   std::size_t maxEdges = 0;
   /** Each vertex is connected with that many nearest ones in Reeds-Shepp distance. */
   int neighbors = 10;
+  /** So many more for each doubling of `vertices` beyond 1000. */
+  double moreNeighbors = 6;
   /** Longest edge, meters. */
   double longestEdge = 15;
-  /** Compressed, Full: headings at each point. */
-  int headings = 1;
+  /** Compressed, Full: headings at each point, evenly spaced. */
+  int headings = 2;
+  /** Compressed, Full: the first heading follows the free space of the point's class and better
+   * ones; otherwise it looks random. */
+  bool alignHeadings = true;
   /** Compressed: largest distance between points in a large leaf; Full: between points; meters. */
   double spacing = 2;
   /** Vertices lie within this distance from the line between start and goal, meters. */

@@ -5,6 +5,8 @@
 
 namespace semantic_planning {
 
+struct WordSegment;
+
 /** A place on a curve. */
 struct CurvePoint {
   mrpt::math::TPose2D pose;  ///< meters, radians
@@ -55,9 +57,14 @@ class ReedsShepp {
    * cusps between many poses close to each other, always the same one; but for goals straight ahead
    * or aside the one from b to a may be another. */
   ReedsSheppCurve connect(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
+  /** A shortest one of the curves that only go forward (Dubins, "On curves of minimal length with
+   * a constraint on average curvature", 1957). */
+  ReedsSheppCurve connectForward(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
 
  private:
   mrpt::math::TPose2D scaled(const mrpt::math::TPose2D& pose) const;
+  ReedsSheppCurve curveOf(const mrpt::math::TPose2D& from,
+                          const std::array<WordSegment, 5>& word) const;
 
   double m_radius;
 };

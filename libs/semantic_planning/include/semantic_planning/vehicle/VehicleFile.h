@@ -14,6 +14,9 @@ namespace semantic_planning {
  *     step_height: 0.2       # m
  *     max_slope: 25          # degrees
  *     wheel_track: 0.5       # m
+ *     reverse_weight: 2.5    # what a meter backwards counts; inf: it only drives forward
+ *     gear_change: 2.5       # m, what a change of gear counts
+ *     steering_change: 0.1   # m, what a change of the steering counts
  *
  * \throw std::runtime_error naming file, line and value. */
 VehicleOptions loadVehicle(const std::filesystem::path& file);

@@ -21,6 +21,12 @@ struct VehicleOptions {
   double maxSlope = 25;
   /** Between left and right wheels, meters: whose classes count. 0: one track in the middle. */
   double wheelTrack = 0.5;
+  /** What a meter backwards counts, in meters forward; infinite: it only drives forward. */
+  double reverseWeight = 2.5;
+  /** What a change of gear counts, in meters forward. */
+  double gearChange = 2.5;
+  /** What a change of the steering counts, in meters forward. */
+  double steeringChange = 0.1;
 
   /** All but the footprint, which is a list of corners (loadVehicle). */
   void describe(strict_files::OptionList& list);

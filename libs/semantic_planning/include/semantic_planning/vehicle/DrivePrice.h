@@ -1,0 +1,52 @@
+#pragma once
+#include <semantic_planning/vehicle/PathPoint.h>
+#include <semantic_planning/vehicle/ReedsShepp.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
+
+#include <cmath>
+#include <vector>
+
+namespace semantic_planning {
+
+/** How a curve is entered or left. */
+struct DriveState {
+  bool forward = true;
+  int turn = 0;  ///< 1: left, 0: straight, -1: right
+};
+
+/** What driving costs a vehicle beside the classes that it drives over, in meters forward: meters,
+ * those backwards weighted, and changes of gear and steering. */
+class DrivePrice {
+ public:
+  explicit DrivePrice(const VehicleOptions& vehicle);
+
+  bool canReverse() const { return std::isfinite(m_reverse); }
+  double gearChange() const { return m_gearChange; }
+  /** Of a way without changes. */
+  double ofWay(double meters, bool forward) const { return forward ? meters : m_reverse * meters; }
+  double ofChange(const DriveState& from, const DriveState& to) const {
+    return (from.forward != to.forward ? m_gearChange : 0) +
+           (from.turn != to.turn ? m_steering : 0);
+  }
+  /** Of a curve by itself; infinite if the vehicle cannot drive it. */
+  double of(const ReedsSheppCurve& curve) const;
+  /** Of a path, from point to point. */
+  double of(const std::vector<PathPoint>& path) const;
+
+  /** The shortest curve from a to b that the vehicle can drive. */
+  ReedsSheppCurve shortest(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
+  /** The curves from a to b one of which is the cheapest in most cases: the shortest of all, and
+   * the shortest ones without a change of gear. */
+  std::vector<ReedsSheppCurve> curves(const mrpt::math::TPose2D& a,
+                                      const mrpt::math::TPose2D& b) const;
+
+ private:
+  ReedsShepp m_reedsShepp;
+  double m_reverse, m_gearChange, m_steering;
+};
+
+/** How a curve begins and ends; of one without length, going ahead. */
+DriveState beginOf(const ReedsSheppCurve& curve);
+DriveState endOf(const ReedsSheppCurve& curve);
+
+}  // namespace semantic_planning

@@ -1,0 +1,86 @@
+#include <semantic_planning/vehicle/DrivePrice.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace semantic_planning {
+
+using mrpt::math::TPose2D;
+
+namespace {
+
+/** Segments that are shorter are what rounding leaves, meters. */
+constexpr double kNothing = 1e-6;
+
+bool isSomething(const ReedsSheppCurve::Segment& segment) {
+  return std::abs(segment.length) > kNothing;
+}
+
+DriveState stateOf(const ReedsSheppCurve::Segment& segment) {
+  return {segment.length > 0, segment.turn};
+}
+
+DriveState stateAt(const PathPoint& p) {
+  return {p.forward, p.curvature > 0 ? 1 : p.curvature < 0 ? -1 : 0};
+}
+
+template <class Iterator>
+DriveState firstOf(Iterator begin, Iterator end) {
+  const Iterator first = std::find_if(begin, end, isSomething);
+  return first == end ? DriveState() : stateOf(*first);
+}
+
+}  // namespace
+
+DriveState beginOf(const ReedsSheppCurve& curve) {
+  return firstOf(curve.segments().begin(), curve.segments().end());
+}
+
+DriveState endOf(const ReedsSheppCurve& curve) {
+  return firstOf(curve.segments().rbegin(), curve.segments().rend());
+}
+
+DrivePrice::DrivePrice(const VehicleOptions& vehicle)
+    : m_reedsShepp(vehicle.turningRadius),
+      m_reverse(vehicle.reverseWeight),
+      m_gearChange(vehicle.gearChange),
+      m_steering(vehicle.steeringChange) {}
+
+double DrivePrice::of(const ReedsSheppCurve& curve) const {
+  double price = 0;
+  std::optional<DriveState> before;
+  for (const ReedsSheppCurve::Segment& segment : curve.segments()) {
+    if (!isSomething(segment)) continue;
+    const DriveState state = stateOf(segment);
+    price += ofWay(std::abs(segment.length), state.forward);
+    if (before) price += ofChange(*before, state);
+    before = state;
+  }
+  return price;
+}
+
+double DrivePrice::of(const std::vector<PathPoint>& path) const {
+  double price = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    price += ofWay(path[i].arcLength - path[i - 1].arcLength, path[i].forward);
+    if (i > 1) price += ofChange(stateAt(path[i - 1]), stateAt(path[i]));
+  }
+  return price;
+}
+
+ReedsSheppCurve DrivePrice::shortest(const TPose2D& a, const TPose2D& b) const {
+  return canReverse() ? m_reedsShepp.connect(a, b) : m_reedsShepp.connectForward(a, b);
+}
+
+std::vector<ReedsSheppCurve> DrivePrice::curves(const TPose2D& a, const TPose2D& b) const {
+  std::vector<ReedsSheppCurve> curves{shortest(a, b)};
+  const auto isBackward = [](const auto& segment) { return segment.length < -kNothing; };
+  const auto& segments = curves.front().segments();
+  if (std::none_of(segments.begin(), segments.end(), isBackward)) return curves;
+  curves.push_back(m_reedsShepp.connectForward(a, b));
+  curves.push_back(m_reedsShepp.connectForward(b, a).reversed());
+  return curves;
+}
+
+}  // namespace semantic_planning

@@ -1,0 +1,113 @@
+// Curves that only go forward, and what curves cost their vehicle.
+#include <gtest/gtest.h>
+#include <semantic_planning/vehicle/DrivePrice.h>
+
+#include <cmath>
+#include <random>
+
+using namespace semantic_planning;
+using mrpt::math::TPose2D;
+
+namespace {
+
+class ForwardCurves : public testing::Test {
+ protected:
+  TPose2D draw() { return {m_at(m_random), m_at(m_random), m_heading(m_random)}; }
+
+ private:
+  std::mt19937 m_random{7};
+  std::uniform_real_distribution<double> m_at{-6, 6}, m_heading{-M_PI, M_PI};
+};
+
+/** The least length of words of three forward arcs and straights to a pose, by trying the first
+ * two segments' lengths on a grid and solving for nothing: those that end near the goal. */
+double triedLength(const ReedsShepp& shepp, const TPose2D& a, const TPose2D& b) {
+  double least = 1e9;
+  const double r = shepp.turningRadius();
+  for (const int turns : {111, 101, 121, 212, 202, 102, 201})
+    for (double first = 0; first < 2 * M_PI; first += 0.02)
+      for (double middle = 0; middle < 12 / r; middle += 0.02) {
+        const auto turn = [&](int place) {
+          return turns / place % 10 == 2 ? -1 : turns / place % 10;
+        };
+        std::array<ReedsSheppCurve::Segment, 5> segments{};
+        segments[0] = {r * first, turn(100)};
+        segments[1] = {r * middle, turn(10)};
+        const ReedsSheppCurve part(a, r, segments);
+        const TPose2D at = part.at(part.length()).pose;
+        const double left = turn(1) * std::remainder(b.phi - at.phi, 2 * M_PI);
+        segments[2] = {r * (left < 0 ? left + 2 * M_PI : left), turn(1)};
+        const ReedsSheppCurve whole(a, r, segments);
+        const TPose2D end = whole.at(whole.length()).pose;
+        if (std::hypot(end.x - b.x, end.y - b.y) < 0.06) least = std::min(least, whole.length());
+      }
+  return least;
+}
+
+}  // namespace
+
+TEST_F(ForwardCurves, leadToTheirGoalsAndOnlyForward) {
+  const ReedsShepp shepp(1.3);
+  for (int i = 0; i < 20000; ++i) {
+    const TPose2D a = draw(), b = draw();
+    const ReedsSheppCurve curve = shepp.connectForward(a, b);
+    const TPose2D end = curve.at(curve.length()).pose;
+    ASSERT_NEAR(end.x, b.x, 1e-7);
+    ASSERT_NEAR(end.y, b.y, 1e-7);
+    ASSERT_NEAR(std::remainder(end.phi - b.phi, 2 * M_PI), 0, 1e-7);
+    for (const auto& segment : curve.segments()) ASSERT_GE(segment.length, 0);
+    ASSERT_GE(curve.length(), shepp.distance(a, b) - 1e-9);
+  }
+}
+
+TEST_F(ForwardCurves, areAsLongAsTheShortestCurvesThatHappenToGoForward) {
+  const ReedsShepp shepp(1);
+  int forward = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const TPose2D a = draw(), b = draw();
+    const ReedsSheppCurve shortest = shepp.connect(a, b);
+    bool isForward = true;
+    for (const auto& segment : shortest.segments()) isForward = isForward && segment.length >= 0;
+    if (!isForward) continue;
+    ++forward;
+    ASSERT_NEAR(shepp.connectForward(a, b).length(), shortest.length(), 1e-7);
+  }
+  EXPECT_GT(forward, 1000);
+}
+
+TEST_F(ForwardCurves, areNoLongerThanWhatTryingFinds) {
+  const ReedsShepp shepp(1.5);
+  for (int i = 0; i < 12; ++i) {
+    const TPose2D a = draw(), b = draw();
+    EXPECT_LT(shepp.connectForward(a, b).length(), triedLength(shepp, a, b) + 0.15);
+  }
+}
+
+TEST_F(ForwardCurves, aPathCostsWhatItsCurveDoes) {
+  VehicleOptions vehicle;
+  vehicle.reverseWeight = 3;
+  vehicle.gearChange = 2;
+  vehicle.steeringChange = 0.5;
+  const DrivePrice price(vehicle);
+  const ReedsSheppCurve there({0, 0, 0}, 1, {{{2, 0}, {1, 1}, {-1.5, 0}, {-1, -1}, {0, 0}}});
+  EXPECT_NEAR(price.of(there), 3 + 3 * 2.5 + 2 + 0.5 + 0.5 + 0.5, 1e-9);
+  EXPECT_NEAR(price.of(there.reversed()), 2.5 + 3 * 3 + 2 + 0.5 + 0.5 + 0.5, 1e-9);
+  std::vector<PathPoint> path;
+  for (double s = 0; s <= there.length() + 1e-9; s += 0.05) {
+    const CurvePoint at = there.at(s);
+    PathPoint p;
+    p.curvature = at.curvature, p.forward = at.forward, p.arcLength = s;
+    path.push_back(p);
+  }
+  EXPECT_NEAR(price.of(path), price.of(there), 0.25);
+}
+
+TEST_F(ForwardCurves, areTheOnlyOnesOfAVehicleThatOnlyDrivesForward) {
+  VehicleOptions vehicle;
+  vehicle.reverseWeight = std::numeric_limits<double>::infinity();
+  const DrivePrice price(vehicle);
+  EXPECT_FALSE(price.canReverse());
+  for (int i = 0; i < 100; ++i)
+    for (const ReedsSheppCurve& curve : price.curves(draw(), draw()))
+      for (const auto& segment : curve.segments()) EXPECT_GE(segment.length, 0);
+}

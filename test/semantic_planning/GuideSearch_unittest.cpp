@@ -1,0 +1,69 @@
+#include "planner/GuideSearch.h"
+
+#include "PlannerFixture.h"
+
+using namespace semantic_planning;
+
+namespace {
+
+class GuideSearch : public PlannerTest {
+ protected:
+  std::vector<PathPoint> guide() {
+    const Ground ground(map(), options.vehicle, options.ground, order);
+    const EdgeChecker checker(ground, options.vehicle, order, options.reading);
+    return searchGuide(checker, {start, goal, options.roadmap.buffer}, *checker.place(start),
+                       *checker.place(goal));
+  }
+  static double meters(const std::vector<PathPoint>& path, PaintedWorld::Class id) {
+    double meters = 0;
+    for (std::size_t i = 1; i < path.size(); ++i)
+      if (path[i].classId == id) meters += path[i].arcLength - path[i - 1].arcLength;
+    return meters;
+  }
+};
+
+}  // namespace
+
+TEST_F(GuideSearch, goesAroundOverTheBetterClassHoweverFar) {
+  paintCorner();
+  const auto path = guide();
+  ASSERT_FALSE(path.empty());
+  EXPECT_EQ(meters(path, PaintedWorld::Grass), 0);
+  EXPECT_GT(path.back().arcLength, 38);
+  order = {5, {{1, 2}, {4}, {0}}};
+  const double straight = std::hypot(goal.x - start.x, goal.y - start.y);
+  EXPECT_LT(guide().back().arcLength, 1.09 * straight);  // in eight directions
+}
+
+TEST_F(GuideSearch, findsTheOnlyWayAroundTheWorstClassAndThePathFollows) {
+  paintCorner();
+  world.floor(-15, 15, 0, 1.4, PaintedWorld::Mud);
+  world.floor(2, 6, 0, 1.4, PaintedWorld::Grass);  // the only way through
+  EXPECT_EQ(meters(guide(), PaintedWorld::Mud), 0);
+  options.shorten = true;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    options.roadmap.seed = seed;
+    EXPECT_LE(PlannerTest::meters(plan(), PaintedWorld::Mud), options.classTolerance);
+  }
+}
+
+TEST_F(GuideSearch, keepsTheFootprintOffWalls) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  world.box(-1, -0.6, -15, 4, 0, 2, PaintedWorld::Wall);
+  world.box(-1, -0.6, 4.6, 9, 0, 2, PaintedWorld::Wall);  // a gap of 0.6 m, and a way around
+  world.box(-1, -0.6, 11.4, 15, 0, 2, PaintedWorld::Wall);
+  start = {-10, 4.3, 0};
+  goal = {10, 4.3, 0};
+  const auto path = guide();
+  ASSERT_FALSE(path.empty());
+  for (const PathPoint& p : path) EXPECT_TRUE(std::abs(p.x + 0.8) > 0.3 || p.y > 9) << p.y;
+}
+
+TEST_F(GuideSearch, isEmptyWhereNoWayIsWideEnough) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  world.box(-1, -0.6, -15, 4, 0, 2, PaintedWorld::Wall);
+  world.box(-1, -0.6, 4.6, 15, 0, 2, PaintedWorld::Wall);
+  start = {-10, 4.3, 0};
+  goal = {10, 4.3, 0};
+  EXPECT_TRUE(guide().empty());
+}

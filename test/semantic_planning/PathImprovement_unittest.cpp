@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <cmath>
+
+#include "PlannerFixture.h"
+
+using namespace semantic_planning;
+
+namespace {
+
+/** A wall's outline on the ground, meters. */
+struct Wall {
+  double west, east, south, north;
+};
+
+int gearChanges(const PlanResult& plan) {
+  int changes = 0;
+  for (std::size_t i = 1; i < plan.path.size(); ++i)
+    changes += plan.path[i].forward != plan.path[i - 1].forward;
+  return changes;
+}
+
+double metersBackwards(const PlanResult& plan) {
+  double meters = 0;
+  for (std::size_t i = 1; i < plan.path.size(); ++i)
+    if (!plan.path[i].forward) meters += plan.path[i].arcLength - plan.path[i - 1].arcLength;
+  return meters;
+}
+
+/** The least distance of a footprint from walls along a path, looked at every 2 cm: knows neither
+ * discs nor columns. */
+double leastClearance(const PlanResult& plan, const Footprint& footprint,
+                      const std::vector<Wall>& walls) {
+  double least = 100;
+  const auto look = [&](double x, double y, double heading) {
+    const double c = std::cos(heading), s = std::sin(heading);
+    for (const Wall& wall : walls)  // on its border, every 2 cm
+      for (int side = 0; side < 4; ++side)
+        for (double t = 0; t <= 1; t += 0.02 / (wall.east - wall.west + wall.north - wall.south)) {
+          const double wx = side == 0   ? wall.west
+                            : side == 1 ? wall.east
+                                        : wall.west + t * (wall.east - wall.west);
+          const double wy = side == 2   ? wall.south
+                            : side == 3 ? wall.north
+                                        : wall.south + t * (wall.north - wall.south);
+          if (std::hypot(wx - x, wy - y) > 2) continue;
+          const Eigen::Vector2d seen(c * (wx - x) + s * (wy - y), c * (wy - y) - s * (wx - x));
+          least = std::min(least, footprint.distance(seen));
+        }
+  };
+  for (std::size_t i = 1; i < plan.path.size(); ++i) {
+    const PathPoint &a = plan.path[i - 1], &b = plan.path[i];
+    const double turn = std::remainder(b.heading - a.heading, 2 * M_PI);
+    for (double t = 0; t < 1; t += 0.02 / std::max(0.02, b.arcLength - a.arcLength))
+      look(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.heading + t * turn);
+  }
+  return least;
+}
+
+}  // namespace
+
+class PathImprovementTest : public PlannerTest {
+ protected:
+  PathImprovementTest() { options.shorten = true; }
+
+  void paintWall(const Wall& wall) {
+    world.box(wall.west, wall.east, wall.south, wall.north, 0, 2, PaintedWorld::Wall);
+    walls.push_back(wall);
+  }
+
+  std::vector<Wall> walls;
+};
+
+TEST_F(PathImprovementTest, anImprovedPathIsDrivableAndNeverWorse) {
+  paintCorner();
+  for (unsigned seed = 0; seed < 2; ++seed) {
+    options.roadmap.kind = seed % 2 ? GraphKind::Compressed : GraphKind::HaltonDrivable;
+    options.roadmap.seed = seed;
+    options.shorten = false;
+    const PlanResult asFound = plan();
+    options.shorten = true;
+    const PlanResult improved = plan();
+    expectDrivable(improved);
+    EXPECT_EQ(asFound.cost, asFound.roadmapCost);
+    EXPECT_LT(meters(improved, PaintedWorld::Grass),
+              meters(asFound, PaintedWorld::Grass) + options.classTolerance);
+    EXPECT_LT(DrivePrice(options.vehicle).of(improved.path),
+              DrivePrice(options.vehicle).of(asFound.path));
+  }
+}
+
+TEST_F(PathImprovementTest, whereNothingIsInTheWayThePathIsAlmostTheShortest) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  const PlanResult result = plan();
+  expectDrivable(result);
+  const double shortest = ReedsShepp(options.vehicle.turningRadius).distance(start, goal);
+  EXPECT_LT(result.length, 1.02 * shortest);
+  EXPECT_EQ(metersBackwards(result), 0);
+}
+
+TEST_F(PathImprovementTest, pathsThatAreCountedInEdgesAreLeftAsTheyAre) {
+  paintCorner();
+  options.cost = colored_graph::CostKind::Count;
+  const PlanResult result = plan();
+  EXPECT_EQ(result.cost, result.roadmapCost);
+}
+
+TEST_F(PathImprovementTest, aWayAroundTheCornerIsDrivenForwardAndKeepsToTheRoad) {
+  paintCorner();
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    options.roadmap.seed = seed;
+    const PlanResult result = plan();
+    expectDrivable(result);
+    EXPECT_EQ(metersBackwards(result), 0) << "seed " << seed;
+    EXPECT_LE(meters(result, PaintedWorld::Grass), options.classTolerance) << "seed " << seed;
+  }
+}
+
+TEST_F(PathImprovementTest, whatADirectionCostsDecidesHowAGoalBehindIsReached) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Road);
+  start = {0, 0, 0};
+  goal = {-4, 0, 0};
+  options.vehicle.reverseWeight = 1;
+  options.vehicle.gearChange = 0;
+  const PlanResult cheap = plan();
+  expectDrivable(cheap);
+  EXPECT_NEAR(metersBackwards(cheap), 4, 0.1);
+  options.vehicle.reverseWeight = 100;
+  const PlanResult dear = plan();
+  expectDrivable(dear);
+  EXPECT_LT(metersBackwards(dear), 1);
+  EXPECT_GT(dear.length, 8);
+}
+
+TEST_F(PathImprovementTest, aVehicleThatOnlyDrivesForwardDoes) {
+  paintCorner();
+  options.vehicle.reverseWeight = std::numeric_limits<double>::infinity();
+  for (const bool shorten : {false, true}) {
+    options.shorten = shorten;
+    SemanticPlanner p = planner();
+    PlanResult result = p.plan(start, goal);
+    for (int i = 0; i < 2; ++i) {
+      expectDrivable(result);
+      EXPECT_EQ(metersBackwards(result), 0);
+      result = p.replan(start);
+    }
+  }
+  goal = {-10, -14, M_PI / 2};  // behind the start, where there is no room to turn
+  options.roadmap.vertices = 50;
+  const PlanResult behind = plan();
+  EXPECT_EQ(metersBackwards(behind), 0);
+}
+
+TEST_F(PathImprovementTest, clearanceIsKeptAllAlongThePath) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  for (const double x : {-6.0, 0.0, 6.0}) {
+    const double gap = x == 0 ? -6 : 4;
+    paintWall({x, x + 0.4, -15, gap});
+    paintWall({x, x + 0.4, gap + 2.4, 15});
+  }
+  start = {-12, -10, 0.7};
+  goal = {12, 10, 0.3};
+  for (const double radius : {0.6, 1.0, 1.7}) {
+    options.vehicle.turningRadius = radius;
+    for (const double clearance : {0.05, 0.1, 0.2}) {
+      options.vehicle.clearance = clearance;
+      const PlanResult result = plan();
+      expectDrivable(result);
+      EXPECT_GE(leastClearance(result, options.vehicle.footprint, walls), clearance)
+          << "radius " << radius;
+    }
+  }
+}
+
+TEST_F(PathImprovementTest, aPathIsFoundBesideTheGuideWhereTheRoadmapHasNone) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  for (int i = 0; i < 7; ++i) {  // a slalom
+    const double x = -12 + 4 * i;
+    paintWall({x, x + 0.4, i % 2 ? -15.0 : -12.0, i % 2 ? 12.0 : 15.0});
+  }
+  start = {-14, 0, M_PI / 2};
+  goal = {14, 0, M_PI / 2};
+  options.roadmap.vertices = 12;
+  options.shorten = false;
+  EXPECT_FALSE(plan().found());
+  options.shorten = true;
+  const PlanResult result = plan();
+  expectDrivable(result);
+  EXPECT_TRUE(result.roadmapCost.empty());
+  EXPECT_LE(gearChanges(result), 2);
+}
+
+TEST_F(PathImprovementTest, ofPathsThatDifferByLessThanTheToleranceTheBetterDrivenIsTaken) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Road);
+  world.floor(-1, 1, -15, 15, PaintedWorld::Grass);  // has to be crossed, and can be at an angle
+  start = {-12, -6, 0};
+  goal = {12, 6, 0};
+  options.classTolerance = 0;
+  const PlanResult exact = plan();
+  options.classTolerance = 1;
+  const PlanResult tolerant = plan();
+  expectDrivable(tolerant);
+  EXPECT_LE(meters(tolerant, PaintedWorld::Grass), meters(exact, PaintedWorld::Grass) + 1);
+  EXPECT_LT(DrivePrice(options.vehicle).of(tolerant.path),
+            DrivePrice(options.vehicle).of(exact.path));
+}
