@@ -152,6 +152,7 @@ TEST(RangeImages, unusableOnesSayWhy) {
   obs->cameraParams.ncols = 61;
   EXPECT_TRUE(contains(errorConverting(*obs), "has 60 x 40 pixels")) << errorConverting(*obs);
   EXPECT_TRUE(contains(errorConverting(*obs), "calibrated for 61 x 40"));
+  obs->cameraParams.ncols = 60;
   obs->cameraParams.setIntrinsicParamsFromValues(0, 0, 0, 0);
   EXPECT_TRUE(contains(errorConverting(*obs), "not calibrated: fx = 0"));
   obs = camera.see([](int, int) { return 2; });
@@ -161,6 +162,42 @@ TEST(RangeImages, unusableOnesSayWhy) {
   EXPECT_TRUE(contains(errorConverting(*obs),
                        "the label image has 60 x 20 pixels, the depth image "
                        "60 x 40"));
+}
+
+TEST(RangeImages, ofMorePixelsThanMemoryMayHoldAreRefused) {
+  auto obs = DepthCamera().see([](int, int) { return 2; });
+  obs->hasRangeImage = false;
+  obs->hasPoints3D = true;
+  obs->cameraParams.ncols = obs->cameraParams.nrows = 18000;
+  obs->points3D_x = obs->points3D_y = obs->points3D_z = {1.f};
+  obs->points3D_idxs_x = obs->points3D_idxs_y = {5};
+  EXPECT_TRUE(contains(errorConverting(*obs),
+                       "a camera of 18000 x 18000 pixels; max_pixels allows 40 million"))
+      << errorConverting(*obs);
+}
+
+TEST(Points3d, withoutAllTheirCoordinatesOrPixelsAreRefused) {
+  const auto whole = [] {
+    auto obs = DepthCamera().see([](int, int) { return 2; });
+    obs->hasRangeImage = false;
+    obs->hasPoints3D = true;
+    obs->points3D_x = obs->points3D_y = obs->points3D_z = {1.f, 2.f, 3.f};
+    obs->points3D_idxs_x = obs->points3D_idxs_y = {5, 6, 7};
+    return obs;
+  };
+  EXPECT_EQ(convert(*whole()).cloud.size(), 3u);
+  auto obs = whole();
+  obs->points3D_y.pop_back();
+  EXPECT_TRUE(contains(errorConverting(*obs), "2 y for 3 3D points"));
+  obs = whole();
+  obs->points3D_z.push_back(1);
+  EXPECT_TRUE(contains(errorConverting(*obs), "4 z for 3 3D points"));
+  obs = whole();
+  obs->points3D_idxs_y.pop_back();
+  EXPECT_TRUE(contains(errorConverting(*obs), "2 rows for 3 3D points"));
+  obs = whole();
+  obs->points3D_idxs_x.pop_back();
+  EXPECT_TRUE(contains(errorConverting(*obs), "2 columns for 3 3D points"));
 }
 
 TEST(RangeImages, externallyStoredOnesAreLoadedAndUnloaded) {

@@ -64,6 +64,15 @@ TEST(UnlabeledClouds, countForOccupancyOnly) {
   EXPECT_EQ(scan.T_robot_sensor.x(), 5);
 }
 
+TEST(UnlabeledClouds, withoutAllTheirCoordinatesAreRefused) {
+  mrpt::obs::CObservationVelodyneScan scan;
+  scan.sensorLabel = "velo";
+  scan.point_cloud.x = {1, 2, 3, 4};
+  scan.point_cloud.y = scan.point_cloud.z = {1, 2};
+  EXPECT_TRUE(contains(errorConverting(scan), "its points have 4 x, 2 y and 2 z"))
+      << errorConverting(scan);
+}
+
 TEST(UnlabeledClouds, rawVelodynePacketsAreUnpacked) {
   const std::filesystem::path file = "/usr/share/mrpt/datasets/test_velodyne_VLP16.rawlog";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "needs Debian's mrpt-common";

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "FullDisk.h"
 #include "TemporaryFolder.h"
 
 using map_pictures::GifFile;
@@ -134,7 +135,7 @@ TEST(GifFile, whatCannotBeWrittenIsAnErrorThatNamesTheFile) {
   const TemporaryFolder folder;
   EXPECT_TRUE(contains(errorOf([&] { GifFile(folder / "no/a.gif", 0.1); }), "no/a.gif"));
   EXPECT_TRUE(contains(errorOf([&] { GifFile(folder / "b.gif", 0.1).close(); }), "b.gif"));
-  std::filesystem::create_symlink("/dev/full", folder / "full.gif.tmp");
+  const FullDisk disk(100);
   const std::string full = errorOf([&] {
     GifFile gif(folder / "full.gif", 0.1);
     gif.add(fields());

@@ -66,6 +66,22 @@ TEST(TopView, showsEachPlaceInItsClassesColor) {
   EXPECT_EQ(picture.at<cv::Vec3b>(2, 2), kPaper);
 }
 
+TEST(TopView, showsVoxelsTogetherWithTheirNeighborsIfAsked) {
+  SemanticOcTree map(0.2, paintedClasses());
+  semantic_types::LabeledCloud cloud;
+  for (int x = 0; x < 20; ++x)
+    for (int y = 0; y < 20; ++y) {
+      cloud.points.emplace_back(0.2f * x + 0.1f, 0.2f * y + 0.1f, -0.9f);
+      cloud.classes.push_back(x == 10 && y == 10 ? 2 : 1);
+    }
+  map.insert(cloud, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1)));
+  PictureStyle style = plain();
+  EXPECT_GT(count(renderTopView(map, style), pixelOf(kTree)), 100);
+  style.neighborWeight = 0.4;
+  EXPECT_EQ(count(renderTopView(map, style), pixelOf(kTree)), 0);
+  EXPECT_GT(count(renderTopView(map, style), pixelOf(kRoad)), 10000);
+}
+
 TEST(TopView, yPointsUp) {
   semantic_types::LabeledCloud cloud;
   for (float t = 0.1f; t < 10; t += 0.2f)
@@ -197,7 +213,7 @@ TEST(Pictures, areSavedWholeOrNotAtAll) {
   const cv::Mat read = cv::imread((folder / "map.png").string());
   ASSERT_EQ(read.size(), picture.size());
   EXPECT_EQ(cv::norm(read, picture, cv::NORM_INF), 0);
-  EXPECT_FALSE(std::filesystem::exists(folder / "map.png.tmp"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
   const std::string error =
       errorOf([&] { map_pictures::savePicture(picture, folder / "no/map.png"); });
   EXPECT_TRUE(contains(error, "no/map.png")) << error;

@@ -35,26 +35,35 @@ double expected(const std::vector<double>& p, ClassId label,
   double sum = p[0] * f.falseAlarmProbability;
   for (int k = 1; k <= K; ++k) {
     const double confusion = k == label ? f.accuracy : (1 - f.accuracy) / (K - 1);
-    sum += p[k] * f.hitProbability * (label == kNoClass ? 1 : K * confusion);
+    sum += p[k] * f.hitProbability * K * confusion;
   }
   return std::log(sum);
+}
+
+/** The same for a return without a label: free and occupied are the states. */
+double expected(double occupancy, const semantic_octree::FilterParameters& f) {
+  return std::log((1 - occupancy) * f.falseAlarmProbability + occupancy * f.hitProbability);
 }
 
 }  // namespace
 
 TEST(MapLikelihood, isTheSensorModelsExpectationOverTheCell) {
   const CSemanticOctoMap map = mapOfOnePoint();
-  const auto* node = map.tree().search(map.tree().coordToKey(3.05, 0.05, 0.05));
-  const auto* free = map.tree().search(map.tree().coordToKey(1.05, 0.01, 0.01));
+  const auto node = map.tree().search(map.tree().coordToKey(3.05, 0.05, 0.05));
+  const auto free = map.tree().search(map.tree().coordToKey(1.05, 0.01, 0.01));
   ASSERT_TRUE(node && free);
   const auto& f = map.tree().filterParameters();
-  for (const ClassId id : {0, 1, 2, 3}) {
+  const Eigen::Vector3f missed(1.05f, 0.01f, 0.01f), unknown(0, 0, 50);
+  EXPECT_NEAR(logLikelihood(map, kSeen, kNoClass), expected(node->getOccupancy(), f), 1e-6);
+  EXPECT_NEAR(logLikelihood(map, missed, kNoClass), expected(free->getOccupancy(), f), 1e-6);
+  EXPECT_NEAR(logLikelihood(map, unknown, kNoClass), expected(0.5, f), 1e-6);
+  for (const ClassId id : {1, 2, 3}) {
     EXPECT_NEAR(logLikelihood(map, kSeen, id), expected(map.tree().distribution(*node), id, f),
                 1e-6);
-    EXPECT_NEAR(logLikelihood(map, {1.05f, 0.01f, 0.01f}, id),
-                expected(map.tree().distribution(*free), id, f), 1e-6);
-    EXPECT_NEAR(logLikelihood(map, {0, 0, 50}, id),
-                expected({0.5, 0.5 / 3, 0.5 / 3, 0.5 / 3}, id, f), 1e-6);
+    EXPECT_NEAR(logLikelihood(map, missed, id), expected(map.tree().distribution(*free), id, f),
+                1e-6);
+    EXPECT_NEAR(logLikelihood(map, unknown, id), expected({0.5, 0.5 / 3, 0.5 / 3, 0.5 / 3}, id, f),
+                1e-6);
   }
 }
 

@@ -1,4 +1,5 @@
-#include "GzipOutputStream.h"
+#include <labeled_cloud/GzipOutputStream.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,10 +1,11 @@
 #include <labeled_cloud/LabelFolder.h>
-#include <png.h>
 
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 #include <unordered_map>
+
+#include "PngFile.h"
 
 namespace labeled_cloud {
 
@@ -60,47 +61,31 @@ LabelImage classify(int rows, int cols, ValueAt valueAt, LookUp lookUp) {
   return image;
 }
 
-/** What a PNG file's header says, as far as OpenCV would lose it. */
-struct PngHeader {
-  bool palette = false;
-  /** Gray with 1, 2 or 4 bits: OpenCV would stretch the values. */
-  bool narrowGray = false;
-};
+bool beginsWith(const std::string& text, const std::string& beginning) {
+  return text.compare(0, beginning.size(), beginning) == 0;
+}
 
-PngHeader readPngHeader(const std::string& file) {
-  unsigned char bytes[26] = {};
+/** The pixels of an image file, read by what its first bytes say. (OpenCV would try its decoders in
+ * turn, and takes some files of one kind for another.) */
+cv::Mat readImage(const std::filesystem::path& file) {
+  std::string begin(132, '\0');
   std::ifstream stream(file, std::ios::binary);
-  stream.read(reinterpret_cast<char*>(bytes), sizeof bytes);
-  if (!stream || png_sig_cmp(bytes, 0, 8) != 0) return {};
-  const int bitDepth = bytes[24], colorType = bytes[25];
-  return {colorType == PNG_COLOR_TYPE_PALETTE, colorType == PNG_COLOR_TYPE_GRAY && bitDepth < 8};
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  if (beginsWith(begin, "\x89PNG")) return readPng(file);
+  const bool isPnm = begin[0] == 'P' && begin[1] >= '1' && begin[1] <= '6';
+  const bool isTiff = beginsWith(begin, "II*") || beginsWith(begin, "MM");
+  if ((!isPnm && !isTiff && !beginsWith(begin, "BM")) || begin.substr(128) == "DICM")
+    throw std::runtime_error("cannot be read: it is no PNG, TIFF, BMP or PNM image");
+  const cv::Mat pixels = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+  if (pixels.empty()) throw std::runtime_error("cannot be read as an image");
+  return pixels;
 }
 
-/** The palette's indices: OpenCV gives its colors only. */
-LabelImage readPaletteIndices(const std::string& file, const ClassTable& table) {
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  const auto check = [&png](int ok) {
-    if (!ok) throw std::runtime_error(png.message);
-  };
-  check(png_image_begin_read_from_file(&png, file.c_str()));
-  png.format = PNG_FORMAT_RGB_COLORMAP;
-  std::vector<std::uint8_t> indices(PNG_IMAGE_SIZE(png)), palette(PNG_IMAGE_COLORMAP_SIZE(png));
-  check(png_image_finish_read(&png, nullptr, indices.data(), 0, palette.data()));
-  const int cols = static_cast<int>(png.width);
-  return classify(
-      static_cast<int>(png.height), cols,
-      [&](int row, int col) { return indices[std::size_t(row) * cols + col]; },
-      [&table](std::uint32_t id) { return table.fromRaw(id); });
-}
-
-LabelImage readPixels(const std::string& file, const ClassTable& table) {
-  const cv::Mat pixels = cv::imread(file, cv::IMREAD_UNCHANGED);
+LabelImage classesOf(const cv::Mat& pixels, const ClassTable& table) {
   const auto raw = [&table](std::uint32_t id) { return table.fromRaw(id); };
   const auto colored = [&table](std::uint32_t bgr) { return classOfColor(table, bgr); };
   const auto bgrOf = [](const auto& p) { return std::uint32_t(p[2] << 16 | p[1] << 8 | p[0]); };
   const int rows = pixels.rows, cols = pixels.cols;
-  if (pixels.empty()) throw std::runtime_error("cannot be read as an image");
   switch (pixels.type()) {
     case CV_8UC1:
       return classify(
@@ -124,11 +109,7 @@ LabelImage readPixels(const std::string& file, const ClassTable& table) {
 LabelImage readLabelImage(const std::filesystem::path& file, const ClassTable& table) {
   try {
     if (!std::filesystem::is_regular_file(file)) throw std::runtime_error("there is no such file");
-    const PngHeader header = readPngHeader(file.string());
-    if (header.narrowGray)
-      throw std::runtime_error("gray with fewer than 8 bits: save it with 8 or with a palette");
-    LabelImage image = header.palette ? readPaletteIndices(file.string(), table)
-                                      : readPixels(file.string(), table);
+    LabelImage image = classesOf(readImage(file), table);
     image.origin = file.string();
     return image;
   } catch (const std::exception& e) {
@@ -137,9 +118,12 @@ LabelImage readLabelImage(const std::filesystem::path& file, const ClassTable& t
 }
 
 void readConfidences(const std::filesystem::path& file, LabelImage& image) {
-  const cv::Mat pixels = std::filesystem::is_regular_file(file)
-                             ? cv::imread(file.string(), cv::IMREAD_UNCHANGED)
-                             : cv::Mat();
+  cv::Mat pixels;
+  try {
+    if (std::filesystem::is_regular_file(file)) pixels = readImage(file);
+  } catch (const std::exception& e) {
+    throw std::runtime_error(file.string() + ": " + e.what());
+  }
   if (pixels.type() != CV_8UC1 && pixels.type() != CV_16UC1)
     throw std::runtime_error(file.string() + ": expected confidences as gray of 8 or 16 bits");
   if (pixels.rows != image.rows || pixels.cols != image.cols)

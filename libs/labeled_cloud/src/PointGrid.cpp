@@ -14,13 +14,18 @@ std::string size(long rows, long cols) {
 
 }  // namespace
 
+void checkSize(const CObservation3DRangeScan& scan) {
+  const auto& image = scan.rangeImage;
+  const mrpt::img::TCamera& camera = scan.cameraParams;
+  if (std::size_t(image.rows()) != camera.nrows || std::size_t(image.cols()) != camera.ncols)
+    throw std::invalid_argument("the range image has " + size(image.rows(), image.cols()) +
+                                " pixels, but its camera is calibrated for " +
+                                size(camera.nrows, camera.ncols));
+}
+
 PointGrid unproject(const CObservation3DRangeScan& scan, const PixelRays& rays) {
   const auto& image = scan.rangeImage;
   PointGrid grid(static_cast<int>(image.rows()), static_cast<int>(image.cols()));
-  if (grid.rows != rays.rows() || grid.cols != rays.cols())
-    throw std::invalid_argument("the range image has " + size(grid.rows, grid.cols) +
-                                " pixels, but its camera is calibrated for " +
-                                size(rays.rows(), rays.cols()));
   const std::uint16_t* range = image.data();
   for (std::size_t i = 0; i < grid.points.size(); ++i) {
     if (range[i] == 0) continue;
@@ -33,9 +38,20 @@ PointGrid unproject(const CObservation3DRangeScan& scan, const PixelRays& rays) 
 
 PointGrid gridOfPoints(const CObservation3DRangeScan& scan) {
   const std::size_t count = scan.points3D_x.size();
+  const auto check = [count](const char* what, std::size_t number) {
+    if (number != count)
+      throw std::invalid_argument(std::to_string(number) + " " + what + " for " +
+                                  std::to_string(count) + " 3D points");
+  };
+  check("y", scan.points3D_y.size());
+  check("z", scan.points3D_z.size());
+  if (!scan.points3D_idxs_x.empty()) {
+    check("columns", scan.points3D_idxs_x.size());
+    check("rows", scan.points3D_idxs_y.size());
+  }
   const int rows = static_cast<int>(scan.cameraParams.nrows);
   const int cols = static_cast<int>(scan.cameraParams.ncols);
-  const bool indexed = count > 0 && scan.points3D_idxs_x.size() == count;
+  const bool indexed = count > 0 && !scan.points3D_idxs_x.empty();
   const bool organized = indexed || count == std::size_t(rows) * cols;
   PointGrid grid(organized ? rows : 1, organized ? cols : static_cast<int>(count));
   for (std::size_t i = 0; i < count; ++i) {

@@ -22,12 +22,16 @@ struct PointGrid {
   static bool isReturn(const Eigen::Vector3f& p) { return p.allFinite() && !p.isZero(0); }
 };
 
-/** Points of the range image. \throw std::invalid_argument the rays are of another size. */
+/** \throw std::invalid_argument the range image has another size than its camera's. */
+void checkSize(const mrpt::obs::CObservation3DRangeScan& scan);
+
+/** Points of the range image. \param rays of its pixels, as many */
 PointGrid unproject(const mrpt::obs::CObservation3DRangeScan& scan, const PixelRays& rays);
 
 /** The observation's 3D points at their pixels: by their pixel indices, or in order if there is one
  * point for each pixel. Points without pixels: a single row.
- * \throw std::invalid_argument a point's pixel is outside the camera's image. */
+ * \throw std::invalid_argument a point's pixel is outside the camera's image; coordinates or pixels
+ * are missing. */
 PointGrid gridOfPoints(const mrpt::obs::CObservation3DRangeScan& scan);
 
 /** Removes points that hang between two surfaces at a depth edge: in a row or a column, strictly

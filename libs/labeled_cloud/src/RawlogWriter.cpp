@@ -1,7 +1,6 @@
+#include <labeled_cloud/GzipOutputStream.h>
 #include <labeled_cloud/RawlogWriter.h>
 #include <mrpt/serialization/CArchive.h>
-
-#include "GzipOutputStream.h"
 
 namespace labeled_cloud {
 

@@ -88,6 +88,8 @@ void ScanConverterOptions::describe(strict_files::OptionList& list) {
       "occlusion_parallax", occlusionParallax, "pixels", atLeast(0),
       "depth images with labels in another camera's image: how far a point in front must shift "
       "against one behind it, between the views, to hide it; 0: nothing is hidden");
+  list.add("max_pixels", maxPixels, "millions", strict_files::above(0).upTo(1000),
+           "depth images of more pixels are refused: a damaged file may say any number");
   labels.describe(list);
 }
 
@@ -132,8 +134,14 @@ std::optional<LabeledScan> ScanConverter::convert(const CObservation& observatio
 void ScanConverter::addRangeScan(const CObservation3DRangeScan& observation, LabeledScan& scan) {
   if (!observation.hasRangeImage && !observation.hasPoints3D)
     throw std::invalid_argument("it has neither a range image nor 3D points");
-  if (observation.hasRangeImage && !(m_rays && m_rays->isFor(observation.cameraParams)))
-    m_rays = std::make_unique<PixelRays>(observation.cameraParams);
+  const mrpt::img::TCamera& camera = observation.cameraParams;
+  if (double(camera.nrows) * camera.ncols > m_options.maxPixels * 1e6)
+    throw std::invalid_argument("a camera of " + std::to_string(camera.ncols) + " x " +
+                                std::to_string(camera.nrows) + " pixels; max_pixels allows " +
+                                strict_files::textOf(m_options.maxPixels) + " million");
+  if (observation.hasRangeImage) checkSize(observation);
+  if (observation.hasRangeImage && !(m_rays && m_rays->isFor(camera)))
+    m_rays = std::make_unique<PixelRays>(camera);
   PointGrid grid =
       observation.hasRangeImage ? unproject(observation, *m_rays) : gridOfPoints(observation);
 

@@ -1,5 +1,7 @@
 #include <labeled_cloud/ScanStream.h>
 #include <mrpt/img/CImage.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CObservationRobotPose.h>
 #include <strict_files/ErrorMessage.h>
 
 #include <chrono>
@@ -18,6 +20,11 @@ constexpr std::size_t kMostWaiting = 256;
 /** Where the images are that a rawlog holds only the names of. */
 fs::path imagesFolder(const fs::path& rawlog) {
   return fs::absolute(rawlog).parent_path() / (rawlog.stem().string() + "_Images");
+}
+
+bool saysWhereTheRobotIs(const CObservation& observation) {
+  return dynamic_cast<const mrpt::obs::CObservationRobotPose*>(&observation) ||
+         dynamic_cast<const mrpt::obs::CObservationOdometry*>(&observation);
 }
 
 double millisecondsSince(std::chrono::steady_clock::time_point begin) {
@@ -140,6 +147,7 @@ void ScanStream::checkOrder(const CObservation& observation) {
 void ScanStream::use(const CObservation& observation, StreamedObservation& result) {
   if (m_labeler && isPicture(observation)) return checkOrder(observation);
   if (!ScanConverter::accepts(observation)) {
+    result.holdsPose = saysWhereTheRobotIs(observation);
     result.skipped =
         std::string("of a kind without points: ") + observation.GetRuntimeClass()->className;
     return;

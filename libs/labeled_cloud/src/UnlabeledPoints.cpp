@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace labeled_cloud {
 
@@ -19,6 +20,10 @@ namespace {
 
 template <typename Xs>
 Points zip(const Xs& xs, const Xs& ys, const Xs& zs) {
+  if (ys.size() != xs.size() || zs.size() != xs.size())
+    throw std::invalid_argument("its points have " + std::to_string(xs.size()) + " x, " +
+                                std::to_string(ys.size()) + " y and " + std::to_string(zs.size()) +
+                                " z");
   Points points;
   points.reserve(xs.size());
   for (std::size_t i = 0; i < xs.size(); ++i) points.emplace_back(xs[i], ys[i], zs[i]);

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <map>
+#include <unordered_map>
 
 #include "MapCells.h"
 
@@ -23,8 +23,9 @@ struct Column {
 
 /** Heights of what hangs over something with room between. */
 std::vector<float> hangingSurfaces(const std::vector<MapCell>& cells, std::size_t& columns) {
-  std::map<std::pair<std::uint16_t, std::uint16_t>, Column> byPlace;
-  for (const MapCell& cell : cells) byPlace[{cell.key[0], cell.key[1]}].add(cell.center.z());
+  std::unordered_map<std::uint32_t, Column> byPlace;
+  for (const MapCell& cell : cells)
+    byPlace[std::uint32_t(cell.key[0]) << 16 | cell.key[1]].add(cell.center.z());
   columns = byPlace.size();
   std::vector<float> heights;
   for (const auto& [place, column] : byPlace)

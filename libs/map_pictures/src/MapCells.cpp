@@ -1,30 +1,36 @@
 #include "MapCells.h"
 
+#include <semantic_octree/SmoothedView.h>
+
 #include <algorithm>
 
 namespace map_pictures {
 
 using semantic_octree::CellState;
 using semantic_octree::SemanticOcTree;
+using semantic_octree::SmoothedView;
 
 namespace {
 
 /** More than that are smaller than a pixel. */
 constexpr std::size_t kMostCells = 600'000;
 
+/** Calls action(iterator) until it returns false. \return whether it never did */
 template <class Action>
-void forEachOccupied(const SemanticOcTree& tree, unsigned depth, double minOccupancy,
+bool forEachOccupied(const SemanticOcTree& tree, unsigned depth, double minOccupancy,
                      Action action) {
   for (auto it = tree.begin_leafs(static_cast<unsigned char>(depth)), end = tree.end_leafs();
        it != end; ++it)
-    if (it->getOccupancy() > minOccupancy) action(it);
+    if (it->getOccupancy() > minOccupancy && !action(it)) return false;
+  return true;
 }
 
 unsigned depthToDraw(const SemanticOcTree& tree, double minOccupancy) {
   for (unsigned depth = tree.getTreeDepth(); depth > 1; --depth) {
     std::size_t count = 0;
-    forEachOccupied(tree, depth, minOccupancy, [&count](const auto&) { ++count; });
-    if (count <= kMostCells) return depth;
+    if (forEachOccupied(tree, depth, minOccupancy,
+                        [&count](const auto&) { return ++count <= kMostCells; }))
+      return depth;
   }
   return 1;
 }
@@ -47,10 +53,14 @@ MapCells collectCells(const SemanticOcTree& tree, const PictureStyle& style) {
   MapCells map;
   map.minOccupancy = style.minOccupancy;
   map.depth = depthToDraw(tree, style.minOccupancy);
+  const bool smooth = style.neighborWeight > 0 && map.depth == tree.getTreeDepth();
+  const SmoothedView view(tree, {style.neighborWeight});
   forEachOccupied(tree, map.depth, style.minOccupancy, [&](const auto& it) {
+    const CellState state = smooth ? view.query(it.getKey()) : tree.query(*it);
     map.cells.push_back({it.getKey(), it.getDepth(),
                          Eigen::Vector3d(it.getX(), it.getY(), it.getZ()).cast<float>(),
-                         float(it.getSize()), tree.query(*it).likeliestClass});
+                         float(it.getSize()), state.likeliestClass});
+    return true;
   });
   cutOff(map, style.maxHeight ? *style.maxHeight : heightUnderCeiling(map.cells));
   return map;

@@ -49,7 +49,7 @@ class Neighborhood {
       if (k < 0 || k > 0xffff) return false;
       key[axis] = static_cast<octomap::key_type>(k);
     }
-    const auto* node = m_tree.search(key, m_cell.depth);
+    const auto node = m_tree.search(key, m_cell.depth);
     return node && node->getOccupancy() > m_map.minOccupancy &&
            (node->isLeaf() || m_cell.depth == m_map.depth);
   }

@@ -1,6 +1,7 @@
 #include <labeled_cloud/ScanConverter.h>
 #include <mrpt/core/initializer.h>
 #include <semantic_map/CSemanticOctoMap.h>
+#include <strict_files/Words.h>
 
 #include <sstream>
 #include <stdexcept>
@@ -91,8 +92,8 @@ void CSemanticOctoMap::internal_clear() { m_tree.clear(); }
 std::string CSemanticOctoMap::asString() const {
   std::ostringstream text;
   text << "CSemanticOctoMap: voxels of " << m_tree.getResolution() << " m, " << m_tree.numClasses()
-       << " classes, " << m_tree.getNumLeafNodes() << " leaves, " << m_tree.memoryUsage()
-       << " bytes";
+       << " classes, " << m_tree.getNumLeafNodes() << " leaves, "
+       << strict_files::sizeText(m_tree.memoryUsage());
   return text.str();
 }
 

@@ -11,6 +11,7 @@ namespace semantic_map {
 
 using semantic_octree::CellState;
 using semantic_octree::SemanticOcTree;
+using semantic_octree::SmoothedView;
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
 
@@ -20,6 +21,15 @@ template <class Action>
 void forEachPoint(const SemanticOcTree& tree, const PointOptions& options, Action action) {
   for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf)
     if (options.free || leaf->getLogOdds() > 0) action(leaf);
+}
+
+/** Calls action(leaf, state). */
+template <class Action>
+void forEachState(const SemanticOcTree& tree, const PointOptions& options, Action action) {
+  const SmoothedView view(tree, options.smoothing);
+  forEachPoint(tree, options, [&](const auto& leaf) {
+    action(leaf, leaf->getLogOdds() > 0 ? view.query(leaf.getKey()) : tree.query(*leaf));
+  });
 }
 
 template <typename... Values>
@@ -56,8 +66,7 @@ void writePly(std::ostream& out, const SemanticOcTree& tree, const PointOptions&
   std::size_t points = 0;
   forEachPoint(tree, options, [&points](const auto&) { ++points; });
   writePlyHeader(out, tree.classes(), points);
-  forEachPoint(tree, options, [&](const auto& leaf) {
-    const CellState state = tree.query(*leaf);
+  forEachState(tree, options, [&](const auto& leaf, const CellState& state) {
     const auto color = colorOf(state.likeliestClass, tree.classes());
     writeBytes(out, float(leaf.getX()), float(leaf.getY()), float(leaf.getZ()), color.r, color.g,
                color.b, state.likeliestClass, float(state.probability), float(state.occupancy),
@@ -68,8 +77,7 @@ void writePly(std::ostream& out, const SemanticOcTree& tree, const PointOptions&
 
 void writeCsv(std::ostream& out, const SemanticOcTree& tree, const PointOptions& options) {
   out << "x,y,z,size,occupancy,class,name,probability\n" << std::setprecision(7);
-  forEachPoint(tree, options, [&](const auto& leaf) {
-    const CellState state = tree.query(*leaf);
+  forEachState(tree, options, [&](const auto& leaf, const CellState& state) {
     const ClassId id = state.likeliestClass;
     out << leaf.getX() << ',' << leaf.getY() << ',' << leaf.getZ() << ',' << leaf.getSize() << ','
         << state.occupancy << ',' << int{id} << ','

@@ -1,6 +1,7 @@
 #include <semantic_map/ImportOctomap.h>
 
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -56,7 +57,10 @@ class Nodes {
   }
   /** One bit for each child. \return number of children that follow */
   int childrenOfFull() {
+    float logOdds = 0;
     skip(m_payload);
+    std::memcpy(&logOdds, m_bytes.data() + m_next - m_payload, sizeof logOdds);
+    if (!std::isfinite(logOdds)) throw std::runtime_error("has a log-odds that is not finite");
     return __builtin_popcount(byte());
   }
   /** Two bits for each child: none, free, occupied, or a node that follows. */

@@ -1,6 +1,7 @@
 #include <mrpt/opengl/COctoMapVoxels.h>
 #include <mrpt/opengl/COpenGLScene.h>
 #include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_map/SceneFile.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/StagedFile.h>
 
@@ -81,8 +82,7 @@ void CSemanticOctoMap::saveMetricMapRepresentationToFile(const std::string& pref
   const auto objects = mrpt::opengl::CSetOfObjects::Create();
   getVisualizationInto(*objects);
   scene.insert(objects);
-  if (!scene.saveToFile(file.path().string()))
-    throw std::runtime_error("cannot write '" + file.path().string() + "'");
+  writeScene(scene, file.path());
   file.commit();
 }
 

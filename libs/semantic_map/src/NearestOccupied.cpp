@@ -36,7 +36,7 @@ void NearestOccupied::descend(const Cube& cube, const Eigen::Vector3d& point, do
                               std::optional<Voxel>& best) const {
   const Voxel voxel = nearestIn(cube, point);
   if (!m_tree.isNodeOccupied(cube.node) || !(voxel.squaredDistance < bound)) return;
-  if (cube.node->isLeaf()) {
+  if (cube.node.isLeaf()) {
     best = voxel;
     bound = voxel.squaredDistance;
     return;
@@ -45,11 +45,11 @@ void NearestOccupied::descend(const Cube& cube, const Eigen::Vector3d& point, do
   std::array<Child, 8> children;
   const auto nearer = [](const Child& a, const Child& b) { return a.first < b.first; };
   auto end = children.begin();
-  for (unsigned i = 0; i < 8; ++i) {
-    if (!m_tree.nodeChildExists(cube.node, i)) continue;
+  for (int i = 0; i < 8; ++i) {
+    const auto node = cube.node.child(i);
+    if (!node) continue;
     const double half = cube.size / 2;
-    const Cube child{m_tree.getNodeChild(cube.node, i),
-                     cube.low + half * Eigen::Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), half};
+    const Cube child{node, cube.low + half * Eigen::Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), half};
     *end = {nearestIn(child, point).squaredDistance, child};
     std::rotate(std::upper_bound(children.begin(), end, *end, nearer), end, end + 1);
     ++end;

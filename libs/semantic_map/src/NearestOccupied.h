@@ -25,7 +25,7 @@ class NearestOccupied {
  private:
   /** A node of the tree and its cube. */
   struct Cube {
-    const semantic_octree::SemanticOcTree::Node* node;
+    semantic_octree::SemanticOcTreeNode node;
     Eigen::Vector3d low;  ///< corner, m
     double size;          ///< edge, m
   };

@@ -14,21 +14,21 @@ PointLikelihood::PointLikelihood(const SemanticOcTree& tree)
       m_falseAlarm(tree.filterParameters().falseAlarmProbability),
       m_accuracy(tree.numClasses() == 1 ? 1 : tree.filterParameters().accuracy) {}
 
-const SemanticOcTree::Node* PointLikelihood::find(const Eigen::Vector3d& point) const {
+semantic_octree::SemanticOcTreeNode PointLikelihood::find(const Eigen::Vector3d& point) const {
   octomap::OcTreeKey key;
-  if (!m_tree.coordToKeyChecked(point.x(), point.y(), point.z(), key)) return nullptr;
+  if (!m_tree.coordToKeyChecked(point.x(), point.y(), point.z(), key)) return {};
   return m_tree.search(key);
 }
 
 double PointLikelihood::occupancy(const Eigen::Vector3d& point) const {
-  const auto* node = find(point);
+  const auto node = find(point);
   return node ? node->getOccupancy() : 0.5;
 }
 
-PointLikelihood::Cell PointLikelihood::cell(const SemanticOcTree::Node* node, ClassId id) const {
+PointLikelihood::Cell PointLikelihood::cell(const SemanticOcTree::Node& node, ClassId id) const {
   const int K = m_tree.numClasses();
   if (!node) return {0.5, 0.5 / K};
-  const auto belief = m_tree.belief(*node);
+  const auto belief = m_tree.belief(node);
   const auto p = belief.probabilities(K);
   const int named = belief.indexOf(id);
   return {p.free, named < 0 ? p.rest : p.named[named]};
@@ -55,7 +55,7 @@ double PointLikelihood::operator()(const Eigen::Vector3d& point, ClassId label) 
 }
 
 double PointLikelihood::operator()(const Eigen::Vector3d& point, const float* label) const {
-  const auto* node = find(point);
+  const auto node = find(point);
   double sum = 0, total = 0;
   for (int k = 1; k <= m_tree.numClasses(); ++k) {
     if (label[k - 1] <= 0) continue;

@@ -40,6 +40,8 @@ struct StreamedObservation {
   mrpt::poses::CPose3D T_map_robot;
   /** Why it was skipped; empty for scans and pictures. */
   std::string skipped;
+  /** Whether it says where the robot is: of use for a trajectory, if no scan. */
+  bool holdsPose = false;
   /** What was wrong, with this observation or with a picture of its time; it is in the text. */
   std::vector<std::string> problems;
   /** How long making and labeling the scan took, ms. */

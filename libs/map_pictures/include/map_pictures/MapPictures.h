@@ -22,6 +22,10 @@ struct PictureStyle {
   std::optional<double> maxHeight;
   /** Cells count as occupied above this occupancy. */
   double minOccupancy = 0.5;
+  /** Above 0: voxels have the class that they have together with their neighbors, see
+   * semantic_octree::SmoothingOptions. Where a picture is too small for voxels, they have their
+   * own. */
+  double neighborWeight = 0;
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */

@@ -4,15 +4,12 @@
 #include <iosfwd>
 
 /** \file
- * The map's occupancy in OctoMap's file formats, node by node: the same resolution, leaves
- * and log-odds. A log-odds of exactly 0, which OctoMap takes for occupied, becomes the next smaller
- * number. */
+ * The map in OctoMap's file formats, see semantic_octree/OctomapConversion.h. */
 
 namespace semantic_map {
 
-/** Writes an .ot file that holds a ColorOcTree: occupied leaves in the color of their likeliest
- * class (gray: none), inner nodes in the mean of their children; free leaves have no color.
- * \throw std::runtime_error the stream does not take it. */
+/** Writes an .ot file that holds a ColorOcTree. \throw std::runtime_error the stream does not take
+ * it. */
 void writeColorOcTree(std::ostream& out, const semantic_octree::SemanticOcTree& tree);
 
 /** Writes an .ot file that holds an OcTree. \throw std::runtime_error as above. */

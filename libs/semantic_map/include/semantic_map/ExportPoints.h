@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/SemanticOcTree.h>
+#include <semantic_octree/SmoothedView.h>
 
 #include <iosfwd>
 
@@ -11,6 +11,8 @@ namespace semantic_map {
 struct PointOptions {
   /** Free leaves too, of which there are many; otherwise occupied ones only. */
   bool free = false;
+  /** The class of an occupied leaf is seen together with its neighbors'; by default it is not. */
+  semantic_octree::SmoothingOptions smoothing{0};
 };
 
 /** Writes a binary PLY file, with vertices of

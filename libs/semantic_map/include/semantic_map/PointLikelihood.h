@@ -22,8 +22,8 @@ class PointLikelihood {
   struct Cell {
     double free, ofClass;
   };
-  Cell cell(const semantic_octree::SemanticOcTree::Node* node, semantic_types::ClassId id) const;
-  const semantic_octree::SemanticOcTree::Node* find(const Eigen::Vector3d& point) const;
+  Cell cell(const semantic_octree::SemanticOcTreeNode& node, semantic_types::ClassId id) const;
+  semantic_octree::SemanticOcTreeNode find(const Eigen::Vector3d& point) const;
   double labeled(const Cell& cell) const;
   double occupancy(const Eigen::Vector3d& point) const;
   double unlabeled(double occupancy) const {

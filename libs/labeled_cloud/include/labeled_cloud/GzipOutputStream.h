@@ -1,8 +1,9 @@
 #pragma once
 #include <mrpt/io/CStream.h>
-#include <zlib.h>
 
 #include <filesystem>
+
+struct gzFile_s;  // zlib's
 
 namespace labeled_cloud {
 
@@ -32,7 +33,7 @@ class GzipOutputStream : public mrpt::io::CStream {
   [[noreturn]] void fail() const;
 
   std::filesystem::path m_path;
-  gzFile m_file = nullptr;
+  gzFile_s* m_file = nullptr;
   std::uint64_t m_taken = 0;
 };
 
