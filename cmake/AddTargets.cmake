@@ -32,15 +32,36 @@ endfunction()
 # Command lines run once, and CLI11 is compiled into each of their files: they are optimized little.
 set(mso_once_options $<$<CONFIG:Release>:-O1>)
 
-# mso_add_app(NAME SOURCES ... [DEPENDS ...]): an executable of apps/NAME.
+# mso_add_app(NAME [STUDY] SOURCES ... [DEPENDS ...]): an executable of apps/NAME. A STUDY, which measures this project
+# rather than using it, is not installed; others are, with their manual page if help2man is there to make it.
 function(mso_add_app name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "STUDY" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   set_source_files_properties(main.cpp Cli.cpp PROPERTIES COMPILE_OPTIONS ${mso_once_options})
   target_link_libraries(${name} PRIVATE mso_settings application ${ARG_DEPENDS})
   set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   set_property(GLOBAL APPEND PROPERTY MSO_APPS ${name})
+  if(ARG_STUDY)
+    return()
+  endif()
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/completion.bash
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${name} COMPONENT tools)
+  mso_add_manual(${name})
+endfunction()
+
+# mso_add_manual(NAME): the program's page of the manual, from what it says of itself.
+find_program(HELP2MAN help2man)
+function(mso_add_manual name)
+  if(NOT HELP2MAN)
+    return()
+  endif()
+  set(page ${CMAKE_BINARY_DIR}/man/${name}.1)
+  add_custom_command(OUTPUT ${page} DEPENDS ${name} VERBATIM
+    COMMAND ${HELP2MAN} --no-info --no-discard-stderr --version-string=${PROJECT_VERSION}
+      --name "${PROJECT_DESCRIPTION}" --output ${page} $<TARGET_FILE:${name}>)
+  add_custom_target(${name}-manual ALL DEPENDS ${page})
+  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools)
 endfunction()
 
 # What all tests are built with. Their own code is compiled once and runs for moments: it is optimized little.

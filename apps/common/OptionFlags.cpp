@@ -9,9 +9,23 @@ std::string withDashes(std::string name) {
   return name;
 }
 
+const std::string kOneOf = "one of ";
+
+bool isChoice(const strict_files::Option& option) { return option.expected.rfind(kOneOf, 0) == 0; }
+
 std::string helpOf(const strict_files::Option& option) {
+  if (isChoice(option)) return option.help;
   const std::string unit = option.unit.empty() ? "" : ", " + option.unit;
   return option.help + unit + " (" + option.expected + ")";
+}
+
+/** "{compressed,halton}", as addWords() has it. */
+std::string typeOf(const strict_files::Option& option) {
+  if (!isChoice(option)) return "VALUE";
+  std::string words;
+  for (const char c : option.expected.substr(kOneOf.size()))
+    if (c != ' ') words += c;
+  return "{" + words + "}";
 }
 
 void addSwitch(CLI::App& app, const strict_files::Option& option, const std::string& group) {
@@ -41,7 +55,7 @@ void addOptions(CLI::App& app, const strict_files::OptionList& list, const std::
       return true;
     };
     app.add_option(flag, read, helpOf(option))
-        ->type_name(option.expected.rfind("one of", 0) == 0 ? "WORD" : "VALUE")
+        ->type_name(typeOf(option))
         ->default_str(option.text())
         ->group(group);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "FrameRange.h"
+#include "Signals.h"
 
 namespace dataset2rawlog {
 
@@ -22,6 +23,12 @@ struct Conversion {
   bool labels = true;
   /** Whether the cameras' images come along (SemanticKITTI only). */
   bool images = false;
+  /** Asks to stop early. */
+  const StopRequest* stop = nullptr;
+
+  bool wants(std::size_t frame) const {
+    return frames.contains(frame) && !(stop && stop->pending());
+  }
 };
 
 /** What went into the rawlog. */

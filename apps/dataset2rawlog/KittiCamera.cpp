@@ -30,10 +30,13 @@ Matrix34 readProjection(const fs::path& calib) {
 
 }  // namespace
 
+fs::path imagesOf(const fs::path& rawlog) {
+  return fs::absolute(rawlog).parent_path() / (rawlog.stem().string() + "_Images");
+}
+
 KittiCamera::KittiCamera(const fs::path& sequence, const Eigen::Isometry3d& T_camera0_lidar,
                          const fs::path& rawlog)
-    : m_source(sequence / "image_2"),
-      m_target(fs::absolute(rawlog).parent_path() / (rawlog.stem().string() + "_Images")) {
+    : m_source(sequence / "image_2"), m_target(imagesOf(rawlog)) {
   const Matrix34 P = readProjection(sequence / "calib.txt");
   const Eigen::Matrix3d K = P.leftCols<3>();
   // P2 = K [I | t] takes points of the first camera: the color camera sees them shifted by t.
@@ -42,7 +45,6 @@ KittiCamera::KittiCamera(const fs::path& sequence, const Eigen::Isometry3d& T_ca
   m_T_lidar_camera =
       mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_camera2_lidar.inverse().matrix()));
   m_camera.setIntrinsicParamsFromValues(K(0, 0), K(1, 1), K(0, 2), K(1, 2));
-  fs::create_directories(m_target);
 }
 
 mrpt::obs::CObservationImage KittiCamera::observe(const std::string& name,
@@ -52,7 +54,8 @@ mrpt::obs::CObservationImage KittiCamera::observe(const std::string& name,
   if (image.empty()) throw std::runtime_error(file.string() + ": cannot be read as an image");
   m_camera.ncols = static_cast<unsigned>(image.cols);
   m_camera.nrows = static_cast<unsigned>(image.rows);
-  fs::copy_file(file, m_target / file.filename(), fs::copy_options::overwrite_existing);
+  m_names.push_back(file.filename().string());
+  fs::copy_file(file, m_target.staged(m_names.back()), fs::copy_options::overwrite_existing);
   mrpt::obs::CObservationImage observation;
   observation.timestamp = time;
   observation.sensorLabel = "image_2";

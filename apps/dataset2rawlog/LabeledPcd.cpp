@@ -1,16 +1,20 @@
 #include <semantic_types/ClassTableFile.h>
+#include <strict_files/OptionList.h>
+#include <strict_files/TextFile.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <iterator>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 
-#include <strict_files/TextFile.h>
 #include "Conversion.h"
 #include "Output.h"
 
 namespace dataset2rawlog {
 
+using strict_files::numberOf;
 using strict_files::numbersOf;
 using strict_files::readLines;
 using strict_files::TextLine;
@@ -49,12 +53,46 @@ std::map<std::string, TextLine> splitHeader(const fs::path& file,
   return entries;
 }
 
-std::size_t columnOf(const TextLine& fields, const std::string& name) {
-  std::istringstream stream(fields.text);
-  std::string field;
-  for (std::size_t column = 0; stream >> field; ++column)
-    if (field == name) return column;
-  throw std::runtime_error(fields.where + ": no field '" + name + "'");
+std::vector<std::string> wordsOf(const TextLine& line) {
+  std::istringstream stream(line.text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+/** Where each field's column is: a field may have several (COUNT). */
+class Columns {
+ public:
+  Columns(const TextLine& fields, const TextLine* count) : m_where(fields.where) {
+    const std::vector<std::string> names = wordsOf(fields);
+    std::vector<std::string> counts(names.size(), "1");
+    if (count) counts = wordsOf(*count);
+    if (counts.size() != names.size())
+      throw std::runtime_error(count->where + ": " + std::to_string(counts.size()) +
+                               " counts for " + std::to_string(names.size()) + " fields");
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const double number = numberOf(counts[i], "a count");
+      if (!(number >= 1 && number < 1e6))
+        throw std::runtime_error(count->where + ": a count of " + counts[i]);
+      m_columns[names[i]] = {next, static_cast<std::size_t>(number)};
+      next += static_cast<std::size_t>(number);
+    }
+  }
+  std::size_t operator[](const std::string& name) const {
+    const auto found = m_columns.find(name);
+    if (found == m_columns.end()) throw std::runtime_error(m_where + ": no field '" + name + "'");
+    if (found->second.second != 1)
+      throw std::runtime_error(m_where + ": field '" + name + "' has several values");
+    return found->second.first;
+  }
+
+ private:
+  std::string m_where;
+  std::map<std::string, std::pair<std::size_t, std::size_t>> m_columns;  ///< first, how many
+};
+
+/** Missing coordinates are "nan" in PCD files. */
+double valueOf(const std::string& word) {
+  return word == "nan" || word == "-nan" ? NAN : numberOf(word, "a number");
 }
 
 Eigen::Isometry3d viewpoint(const TextLine& line) {
@@ -70,11 +108,12 @@ PcdHeader readHeader(const fs::path& file, const std::vector<TextLine>& lines) {
   const auto entries = splitHeader(file, lines, header.dataBegin);
   if (entries.at("DATA").text != " ascii")
     throw std::runtime_error(entries.at("DATA").where + ": expected 'DATA ascii'");
-  const TextLine& fields = entries.at("FIELDS");
-  header.x = columnOf(fields, "x");
-  header.y = columnOf(fields, "y");
-  header.z = columnOf(fields, "z");
-  header.label = columnOf(fields, "label");
+  const auto count = entries.find("COUNT");
+  const Columns columns(entries.at("FIELDS"), count == entries.end() ? nullptr : &count->second);
+  header.x = columns["x"];
+  header.y = columns["y"];
+  header.z = columns["z"];
+  header.label = columns["label"];
   header.points = static_cast<std::size_t>(numbersOf(entries.at("POINTS"), 1)[0]);
   const auto view = entries.find("VIEWPOINT");
   if (view != entries.end()) header.T_world_sensor = viewpoint(view->second);
@@ -95,9 +134,8 @@ ClassId classOf(double label, const ClassTable& table) {
 void addPoint(const TextLine& line, const PcdHeader& header,
               const Eigen::Isometry3d& T_sensor_world, const ClassTable& table,
               LabeledCloud& cloud) try {
-  std::istringstream stream(line.text);
   std::vector<double> v;
-  for (std::string word; stream >> word;) v.push_back(std::stod(word));
+  for (const std::string& word : wordsOf(line)) v.push_back(valueOf(word));
   if (v.size() <= std::max({header.x, header.y, header.z, header.label}))
     throw std::invalid_argument("too few values");
   const Eigen::Vector3d p_world(v[header.x], v[header.y], v[header.z]);
@@ -115,7 +153,7 @@ Summary convertLabeledPcds(const std::vector<fs::path>& files, const Conversion&
                                : semantic_types::loadClassTable(conversion.classes);
   Output output(conversion, table);
   for (std::size_t i = 0; i < files.size(); ++i) {
-    if (!conversion.frames.contains(i)) continue;
+    if (!conversion.wants(i)) continue;
     const auto lines = readLines(files[i]);
     const PcdHeader header = readHeader(files[i], lines);
     if (lines.size() - header.dataBegin != header.points)

@@ -100,7 +100,7 @@ Summary convertSemanticKitti(const fs::path& sequence, const Conversion& convers
   std::optional<KittiCamera> camera;
   if (conversion.images) camera.emplace(sequence, Tr, conversion.output);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!conversion.frames.contains(i)) continue;
+    if (!conversion.wants(i)) continue;
     const auto time = mrpt::Clock::fromDouble(numbersOf(times[i], 1)[0]);
     const Eigen::Isometry3d T_map_lidar = Tr.inverse() * poseOf(poses[i]) * Tr;
     const std::string name = sixDigits(i);
@@ -110,6 +110,7 @@ Summary convertSemanticKitti(const fs::path& sequence, const Conversion& convers
     if (conversion.labels) readLabels(sequence / "labels" / (name + ".label"), table, cloud);
     output.writeCloud(time, "velodyne", std::move(cloud));
   }
+  if (camera) camera->finish();
   return output.finish();
 }
 

@@ -73,7 +73,7 @@ class TumConverter {
     Output output(m_conversion, m_table);
     std::size_t frame = 0;
     for (const auto& [time, file] : m_depth)
-      if (m_conversion.frames.contains(frame++)) writeFrame(time, file, output);
+      if (m_conversion.wants(frame++)) writeFrame(time, file, output);
     return output.finish();
   }
 

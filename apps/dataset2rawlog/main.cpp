@@ -1,9 +1,12 @@
 #include <functional>
 #include <iomanip>
-#include <iostream>
+#include <ostream>
 
 #include "Application.h"
 #include "Conversion.h"
+#include "KittiCamera.h"
+#include "Outputs.h"
+#include "StandardOutput.h"
 
 namespace {
 
@@ -11,6 +14,7 @@ using namespace dataset2rawlog;
 
 struct Cli {
   CLI::App app{"Turns data sets of labeled scans into MRPT rawlogs."};
+  Outputs outputs{app};
   Conversion conversion;
   std::string frames;
   std::filesystem::path folder;
@@ -19,6 +23,7 @@ struct Cli {
 
   Cli() {
     app.require_subcommand(1);
+    app.set_help_all_flag("--help-all", "The same with the options of all commands");
     addSemanticKitti();
     addTum();
     addPcd();
@@ -27,6 +32,7 @@ struct Cli {
  private:
   CLI::App* add(const std::string& name, const std::string& what, std::function<Summary()> action) {
     CLI::App* command = app.add_subcommand(name, what);
+    outputs.add(*command, conversion.output, "FILE", "Rawlog to write")->required();
     command->add_option("--frames", frames, "Frames to take, counted from 0 (\"0:2:\": all even)")
         ->type_name("FIRST:STEP:LAST");
     command->add_option("--label-noise", conversion.labelNoise,
@@ -46,7 +52,7 @@ struct Cli {
 
   void requireClasses() const {
     if (conversion.labels && conversion.classes.empty())
-      throw std::invalid_argument("--classes is required, except with --no-labels");
+      throw CLI::RequiredError("--classes (except with --no-labels)");
   }
 
   void addSemanticKitti() {
@@ -58,7 +64,6 @@ struct Cli {
     addNoLabels(command, "The scans without their labels");
     command->add_flag("--images", conversion.images, "The camera's images (image_2/) come along");
     command->add_option("SEQUENCE_DIR", folder, "velodyne/, labels/, calib.txt ...")->required();
-    command->add_option("OUT.rawlog", conversion.output)->required();
   }
 
   void addTum() {
@@ -69,30 +74,28 @@ struct Cli {
     addClasses(command);
     addNoLabels(command, "Depth and color only");
     command->add_option("DIR", folder, "depth.txt, label.txt, groundtruth.txt ...")->required();
-    command->add_option("OUT.rawlog", conversion.output)->required();
   }
 
   void addPcd() {
-    CLI::App* command = add("pcd", "ASCII PCD files with x, y, z and label", [this] {
-      if (pcds.size() < 2) throw std::invalid_argument("expected FILES and then OUT.rawlog");
-      conversion.output = pcds.back();
-      pcds.pop_back();
-      return convertLabeledPcds(pcds, conversion);
-    });
+    CLI::App* command = add("pcd", "ASCII PCD files with x, y, z and label",
+                            [this] { return convertLabeledPcds(pcds, conversion); });
     addClasses(command);
-    command->add_option("FILES", pcds, "The scans in order, then the rawlog to write")->required();
+    command->add_option("FILES", pcds, "The scans in order")->required();
   }
 };
 
 int run(Cli& cli) {
+  const StopRequest stop("after this frame");
+  cli.conversion.stop = &stop;
   if (!cli.frames.empty()) cli.conversion.frames = parseFrameRange(cli.frames);
+  cli.outputs.check({cli.conversion.output});
+  if (cli.conversion.images) cli.outputs.check({imagesOf(cli.conversion.output)});
   const Summary summary = cli.convert();
   const double share = summary.points ? 100.0 * summary.labeled / summary.points : 0;
-  std::cout << cli.conversion.output.string() << ": " << summary.scans << " scans, "
-            << summary.points << " points, " << std::fixed << std::setprecision(1) << share
-            << " % with a class\n";
+  notes() << cli.conversion.output.string() << ": " << summary.scans << " scans, " << summary.points
+          << " points, " << std::fixed << std::setprecision(1) << share << " % with a class\n";
   if (summary.skipped > 0)
-    std::cout << summary.skipped << " frames skipped: no pose or no label image at their time\n";
+    notes() << summary.skipped << " frames skipped: no pose or no label image at their time\n";
   return 0;
 }
 

@@ -4,11 +4,16 @@
 #include <strict_files/TextFile.h>
 #include <synthetic_world/Scene.h>
 
-#include <iostream>
+#include <ostream>
 
 #include "Application.h"
+#include "Choice.h"
 #include "JsonFile.h"
+#include "NumberChecks.h"
 #include "OptionFlags.h"
+#include "Outputs.h"
+#include "Signals.h"
+#include "StandardOutput.h"
 #include "StudyFiles.h"
 
 namespace drive_study {
@@ -17,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFaults = 2;  // exit status
+const std::vector<std::string> kFiles = {"study.csv", "study.json", "study.md"};
 
 struct Cli {
   fs::path classes, config, output;
@@ -25,17 +31,18 @@ struct Cli {
   std::vector<int> only;
   std::uint64_t sceneSeed = 1;
   TaskOptions tasks;
+  Outputs outputs;
 
-  void addTo(CLI::App& app) {
-    app.add_option("--scenes", scenes, "Which synthetic worlds, separated by commas")
+  explicit Cli(CLI::App& app) : outputs(app) {
+    addWords(app.add_option("--scenes", scenes, "Which synthetic worlds, separated by commas"),
+             synthetic_world::sceneNames())
         ->delimiter(',')
-        ->check(CLI::IsMember(synthetic_world::sceneNames()))
         ->capture_default_str();
     app.add_option("--pairs", pairs, "Of start and goal in each")
-        ->check(CLI::NonNegativeNumber)
+        ->check(isNumber(strict_files::atLeast(0)))
         ->capture_default_str();
     app.add_option("--enclosed", enclosed, "And so many with barriers all around the goal")
-        ->check(CLI::NonNegativeNumber)
+        ->check(isNumber(strict_files::atLeast(0)))
         ->capture_default_str();
     app.add_option("--only", only, "Drive these of the pairs only (0, 1, ...)")->delimiter(',');
     app.add_option("--scene-seed", sceneSeed, "Other worlds")->capture_default_str();
@@ -45,7 +52,7 @@ struct Cli {
     app.add_option("--classes", classes, "Classes from best to worst (YAML)")->required();
     app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drives)")
         ->required();
-    app.add_option("--output", output, "Folder of the results, created if need be")->required();
+    outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
   }
   bool wants(int number) const {
     return only.empty() || std::find(only.begin(), only.end(), number) != only.end();
@@ -54,21 +61,21 @@ struct Cli {
 
 void print(const Trial& trial) {
   const std::string fault = trial.fault();
-  std::cout << trial.scene << ' ' << trial.number << ": " << nameOf(trial.end) << " after "
-            << trial.seconds << " s and " << trial.length << " m; "
-            << (trial.task.hasPath ? "there is a path" : "there is no path")
-            << (fault.empty() ? "" : "; FAULT: " + fault) << std::endl;
+  notes() << trial.scene << ' ' << trial.number << ": " << nameOf(trial.end) << " after "
+          << trial.seconds << " s and " << trial.length << " m; "
+          << (trial.task.hasPath ? "there is a path" : "there is no path")
+          << (fault.empty() ? "" : "; FAULT: " + fault) << std::endl;
   for (const std::string& reason : {trial.task.reason, trial.reason})
-    if (!reason.empty()) std::cout << "  " << reason << std::endl;
+    if (!reason.empty()) notes() << "  " << reason << std::endl;
 }
 
 void studyScene(const std::string& name, const Cli& cli, const simulated_drive::DriveConfig& config,
-                std::vector<Trial>& trials) {
+                const StopRequest& stop, std::vector<Trial>& trials) {
   synthetic_world::Scene scene = synthetic_world::makeScene(name, cli.sceneSeed);
   const auto order = semantic_planning::loadClassOrder(cli.classes, synthetic_world::classTable());
   TaskDraw draw(scene.world, order, config.planner.vehicle, cli.tasks);
   Oracle oracle(scene.world, order, config.planner, config.voxelSize);
-  for (int i = 0; i < cli.pairs + cli.enclosed; ++i) {
+  for (int i = 0; i < cli.pairs + cli.enclosed && !stop.pending(); ++i) {
     const auto drawn = [&] { return i < cli.pairs ? draw.next() : draw.nextEnclosed(); };
     Task task = drawn();
     while (!oracle.accepts(task)) task = drawn();
@@ -83,17 +90,19 @@ void studyScene(const std::string& name, const Cli& cli, const simulated_drive::
 }
 
 int run(const Cli& cli) {
+  const StopRequest stop("after this drive");
+  cli.outputs.checkFolder(cli.output, kFiles);
   const auto config = simulated_drive::loadDriveConfig(cli.config);
   strict_files::OutputFolder output(cli.output);
   std::vector<Trial> trials;
-  for (const std::string& scene : cli.scenes) studyScene(scene, cli, config, trials);
+  for (const std::string& scene : cli.scenes) studyScene(scene, cli, config, stop, trials);
   const nlohmann::ordered_json study = toJson(trials);
   strict_files::writeText(output.staged("study.csv"), toCsv(trials));
   writeJson(output.staged("study.json"), study);
   strict_files::writeText(output.staged("study.md"), toMarkdown(study));
-  output.commit({"study.csv", "study.json", "study.md"});
+  output.commit(kFiles);
   const int faults = study["all"]["faults"];
-  std::cout << faults << " of " << trials.size() << " drives with a fault\n";
+  notes() << faults << " of " << trials.size() << " drives with a fault\n";
   return faults == 0 ? 0 : kFaults;
 }
 
@@ -102,7 +111,6 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app("Drives through synthetic worlds between random places, and counts what goes wrong");
-  drive_study::Cli cli;
-  cli.addTo(app);
+  const drive_study::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return drive_study::run(cli); });
 }

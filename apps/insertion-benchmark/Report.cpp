@@ -61,24 +61,24 @@ void printJson(std::ostream& out, const Conditions& c, const std::vector<Result>
                          {"scans", c.scans},
                          {"points", c.points},
                          {"resolution", c.settings.resolution},
-                         {"max_range", c.settings.maxRange},
+                         {"maxRange", c.settings.maxRange},
                          {"rays", nameOf(c.settings.rays)},
                          {"terms", c.settings.terms},
                          {"threads", c.settings.threads},
                          {"repeats", c.repeats},
-                         {"load_average", c.loadAverage},
-                         {"touched_voxels", c.touchedVoxels},
-                         {"ratio_to", reference}};
+                         {"loadAverage", c.loadAverage},
+                         {"touchedVoxels", c.touchedVoxels},
+                         {"ratioTo", reference}};
   for (const Result& r : results)  // what is not known becomes null
     json["contestants"].push_back({{"name", r.name},
-                                   {"cpu_ms", r.cpu()},
-                                   {"cpu_ms_of_repeats", r.cpuMedians},
-                                   {"cpu_ms_95th_percentile", r.cpu95thPercentile()},
-                                   {"wall_ms", r.wall()},
+                                   {"cpuMilliseconds", r.cpu()},
+                                   {"cpuMillisecondsOfRepeats", r.cpuMedians},
+                                   {"cpuMilliseconds95thPercentile", r.cpu95thPercentile()},
+                                   {"wallMilliseconds", r.wall()},
                                    {"ratio", r.cpu() / referenceCpu(results, reference)},
-                                   {"map_bytes", r.mapBytes},
-                                   {"bytes_per_touched_voxel", bytesPerVoxel(r, c)},
-                                   {"peak_bytes", r.peakBytes}});
+                                   {"mapBytes", r.mapBytes},
+                                   {"bytesPerTouchedVoxel", bytesPerVoxel(r, c)},
+                                   {"peakBytes", r.peakBytes}});
   out << textOf(json);
 }
 

@@ -4,6 +4,8 @@
 #include <iostream>
 
 #include "Application.h"
+#include "Choice.h"
+#include "NumberChecks.h"
 #include "Report.h"
 
 namespace {
@@ -39,24 +41,26 @@ struct Cli {
     file->excludes(log);
     log->needs(app.add_option("--classes", classes, "Class table of the rawlog (YAML)"));
     app.add_option("--resolution", settings.resolution, "Edge of a voxel, m")
-        ->check(CLI::PositiveNumber)
+        ->check(isNumber(strict_files::above(0)))
         ->capture_default_str();
     app.add_option("--range", settings.maxRange, "Maximum range, m; 0: none")
-        ->check(CLI::NonNegativeNumber)
+        ->check(isNumber(strict_files::atLeast(0)))
         ->capture_default_str();
     app.add_option("--scans", scans, "Number of scans; 0: all")->capture_default_str();
-    app.add_option("--rays", settings.rays,
-                   "Our rays: 'all', or one for each end voxel ('endpoints')")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, InsertionOptions::Rays>{
-            {"all", InsertionOptions::Rays::All},
-            {"endpoints", InsertionOptions::Rays::EndVoxels}}));
+    addChoice(app.add_option("--rays", settings.rays,
+                             "Our rays: all, or one for each end voxel (endpoints)"),
+              std::map<std::string, InsertionOptions::Rays>{
+                  {"all", InsertionOptions::Rays::All},
+                  {"endpoints", InsertionOptions::Rays::EndVoxels}});
     app.add_option("--terms", settings.terms, "Information terms to keep up to date")
-        ->check(CLI::Range(1, 8))
+        ->check(isNumber(strict_files::between(1, 8)))
         ->capture_default_str();
     app.add_option("--threads", settings.threads, "Our threads")
-        ->check(CLI::Range(1, 256))
+        ->check(isNumber(strict_files::between(1, 256)))
         ->capture_default_str();
-    app.add_option("--repeats", repeats)->check(CLI::Range(1, 1000))->capture_default_str();
+    app.add_option("--repeats", repeats, "How often all is measured")
+        ->check(isNumber(strict_files::between(1, 1000)))
+        ->capture_default_str();
     app.add_option("--only", only, "Runners whose name contains this, and the bare traversal");
     app.add_flag("--json", json, "JSON instead of a table");
   }
@@ -74,10 +78,9 @@ std::vector<Entry> chosenEntries(const std::string& only) {
 }
 
 int run(const Cli& cli) {
-  if (cli.sceneFile.empty() && cli.rawlog.empty())
-    throw std::runtime_error("neither a scene file nor --rawlog");
+  if (cli.sceneFile.empty() && cli.rawlog.empty()) throw CLI::RequiredError("SCENE or --rawlog");
   if (!cli.rawlog.empty() && cli.classes.empty())
-    throw std::runtime_error("--rawlog needs --classes");
+    throw CLI::RequiredError("--classes (with --rawlog)");
   const std::filesystem::path& file = cli.rawlog.empty() ? cli.sceneFile : cli.rawlog;
   const Scene scene = cli.rawlog.empty() ? readSceneFile(file, cli.scans)
                                          : readRawlog(file, cli.classes, cli.scans);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "Choice.h"
+#include "NumberChecks.h"
 #include "OptionFlags.h"
 
 namespace planning_study {
@@ -17,14 +18,14 @@ void addGraphs(CLI::App& app, StudyOptions& study) {
   auto* group = app.add_option_group("Graphs");
   group->add_option("--budgets", study.budgets, "Vertices of each graph, separated by commas")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber)
+      ->check(isNumber(strict_files::above(0)))
       ->capture_default_str();
   addChoice(group->add_option("--graphs", study.graphs,
                               "Their kinds; the first is compared with the others"),
             std::map<std::string, GraphKind>(kinds.begin(), kinds.end()))
       ->delimiter(',');
   group->add_option("--edges-per-vertex", study.edgesPerVertex, "Most edges of all graphs")
-      ->check(CLI::PositiveNumber)
+      ->check(isNumber(strict_files::above(0)))
       ->capture_default_str();
   group->add_option("--reference", study.reference, "Vertices of the dense graph; 0: none")
       ->capture_default_str();
@@ -45,7 +46,7 @@ void addPeers(CLI::App& app, StudyOptions& study) {
   group->add_flag("--peers", study.peers, "OMPL's PRM*, LazyPRM* and BIT*, too");
   group->add_option("--peer-time", study.peerTimes, "Of each, processor seconds; several by commas")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber)
+      ->check(isNumber(strict_files::above(0)))
       ->capture_default_str();
   group->add_option("--peer-instances", study.peerInstances, "They get the first ones only")
       ->capture_default_str();
@@ -58,10 +59,12 @@ std::string nameOf(const std::filesystem::path& map) {
 
 }  // namespace
 
-Cli::Cli() {
-  study.planner.roadmap.headings = 1;  // as in the paper
+Cli::Cli(CLI::App& app) : outputs(app) {
+  study.planner.roadmap.headings = 1;  // as in the paper, and random ones
+  study.planner.roadmap.alignHeadings = false;
   study.graphs = {GraphKind::Compressed,    GraphKind::Halton,    GraphKind::HaltonDrivable,
                   GraphKind::HaltonByClass, GraphKind::HaltonMap, GraphKind::Full};
+  addTo(app);
 }
 
 void Cli::addTo(CLI::App& app) {
@@ -70,16 +73,16 @@ void Cli::addTo(CLI::App& app) {
   what->add_option("--classes", classes, "Classes from best to worst (YAML)");
   what->add_flag("--join", join, "MAPs are folders of results, of the same options: join them");
   app.add_option("--vehicle", vehicle, "Its measures (YAML); none: a small robot");
-  app.add_option("--output", output, "Folder of the results, created if need be")->required();
+  outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
   app.add_option("--instances", study.instances, "Pairs of start and goal on each map")
-      ->check(CLI::PositiveNumber)
+      ->check(isNumber(strict_files::above(0)))
       ->capture_default_str();
   app.add_option("--seed", study.seed, "Other instances")->capture_default_str();
   app.add_option("--min-distance", study.minDistance, "From start to goal, m")
-      ->check(CLI::PositiveNumber)
+      ->check(isNumber(strict_files::above(0)))
       ->capture_default_str();
   app.add_option("--minutes", study.minutes, "No new instance after these (of the clock)")
-      ->check(CLI::PositiveNumber);
+      ->check(isNumber(strict_files::above(0)));
   addGraphs(app, study);
   addPlanner(app, study.planner);
   addPeers(app, study);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "Outputs.h"
 #include "Study.h"
 
 namespace planning_study {
@@ -15,7 +16,11 @@ struct Cli {
   StudyOptions study;
   bool join = false;  ///< maps are folders of results
 
-  Cli();
+  Outputs outputs;
+
+  explicit Cli(CLI::App& app);
+
+ private:
   void addTo(CLI::App& app);
 };
 

@@ -3,6 +3,7 @@
 #include <mrpt/config/CConfigFile.h>
 #include <strict_files/ErrorMessage.h>
 #include <strict_files/IniSection.h>
+#include <strict_files/TextFile.h>
 
 #include <fstream>
 #include <stdexcept>
@@ -43,6 +44,7 @@ void readPictures(const CConfigFileBase& ini, Config& config) {
 
 Config readConfig(const fs::path& file) {
   Config config;
+  strict_files::checkIniText(strict_files::readText(file));
   const mrpt::config::CConfigFile ini(file.string());
   strict_files::checkSections(ini, {"map", "insertion", "abstraction", "trajectory", "labels",
                                     "cameras", kCameraSections, "pictures"});

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "Progress.h"
+#include "StandardOutput.h"
 #include "measuring/Stopwatch.h"
 
 namespace rawlog2semantic_map {
@@ -44,28 +45,28 @@ void MapBuilder::timeWithoutAbstraction() {
   m_plainMap->setAbstraction({});
 }
 
-void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::ScanStream& stream) {
+void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::ScanStream& stream,
+                        const StopRequest& stop) {
   for (const fs::path& file : rawlogs) m_summary.rawlogs.push_back(file.string());
   Progress progress("Mapping", totalSize(rawlogs));
   labeled_cloud::ReadAhead<StreamedObservation> ahead([&stream] { return stream.next(); },
                                                       kScansAhead);
   while (const auto observation = ahead.next()) {
     add(*observation);
+    if ((m_summary.stopped = stop.pending())) break;
     progress.update(observation->bytesRead, std::to_string(m_summary.inserted) + " scans");
   }
-  progress.finish(std::to_string(m_summary.inserted) + " scans inserted, " +
+  progress.finish((m_summary.stopped ? "stopped early, " : "") +
+                  std::to_string(m_summary.inserted) + " scans inserted, " +
                   m_summary.skippedText());
 }
 
 void MapBuilder::add(const StreamedObservation& observation) {
   ++m_summary.read;
   m_summary.addProblems(observation.problems);
-  if (observation.scan)
-    insertScan(observation);
-  else if (observation.skipped.empty())
-    ++m_summary.pictures;
-  else
-    ++m_summary.skipped[observation.skipped];
+  if (observation.scan) insertScan(observation);
+  const std::string use = m_summary.note(observation);
+  details() << observation.name << ": " << use << std::endl;
 }
 
 void MapBuilder::insertScan(const StreamedObservation& observation) try {
@@ -75,7 +76,6 @@ void MapBuilder::insertScan(const StreamedObservation& observation) try {
   m_summary.add(scan.counts);
   m_summary.withoutLabels += scan.labelsMissing;
   m_summary.conversionTimes.push_back(observation.milliseconds);
-  ++m_summary.inserted;
   if (m_map.tree().hasAbstraction()) noteAbstraction(scan, observation.T_map_robot);
   if (m_onScan) m_onScan(scan, observation.T_map_robot);
 } catch (const std::exception& e) {

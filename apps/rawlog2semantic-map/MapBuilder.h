@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "Signals.h"
 #include "Summary.h"
 
 namespace rawlog2semantic_map {
@@ -24,9 +25,13 @@ class MapBuilder {
   /** Also inserts each scan into a map that keeps no abstraction, for comparison. */
   void timeWithoutAbstraction();
 
-  /** Inserts all scans of the rawlogs, saying on the standard output how far it is.
+  /** Counts the observations that hold poses as used: those of the robot are from the rawlogs. */
+  void countPoses() { m_summary.posesAreUsed = true; }
+
+  /** Inserts all scans of the rawlogs, or those up to when it is to stop, saying how far it is.
    * \throw std::runtime_error naming the file: it is damaged, or a scan of it cannot be used. */
-  void insert(const std::vector<std::filesystem::path>& rawlogs, labeled_cloud::ScanStream& stream);
+  void insert(const std::vector<std::filesystem::path>& rawlogs, labeled_cloud::ScanStream& stream,
+              const StopRequest& stop);
 
   const Summary& summary() const { return m_summary; }
 

@@ -68,6 +68,12 @@ Preview::Preview(const std::filesystem::path& folder, const ClassTable& classes)
   if (error) throw std::runtime_error(folder.string() + ": cannot be created: " + error.message());
 }
 
+std::string Preview::nameOf(std::size_t i) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06zu.png", i);
+  return name;
+}
+
 void Preview::write(const LabeledScan& scan) {
   if (scan.pictures.empty()) return;
   auto cloud = scan.cloud;
@@ -79,9 +85,7 @@ void Preview::write(const LabeledScan& scan) {
     cv::Mat sheet;
     cv::vconcat(withLabels(image.clone(), picture, m_classes),
                 withPoints(image.clone(), picture, cloud, m_classes), sheet);
-    char name[32];
-    std::snprintf(name, sizeof name, "%06zu.png", m_written++);
-    map_pictures::savePicture(sheet, m_folder / name);
+    map_pictures::savePicture(sheet, m_folder / nameOf(m_written++));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <semantic_types/ClassTable.h>
 
 #include <filesystem>
+#include <string>
 
 namespace rawlog2semantic_map {
 
@@ -12,6 +13,9 @@ class Preview {
  public:
   /** Creates the folder if need be. \throw std::runtime_error naming it, if it cannot be. */
   Preview(const std::filesystem::path& folder, const semantic_types::ClassTable& classes);
+
+  /** Of the i-th picture's file. */
+  static std::string nameOf(std::size_t i);
 
   /** Writes a picture for each one that the scan's labels are from.
    * \throw std::runtime_error naming the file, if it cannot be written. */

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iostream>
+#include <ostream>
+
+#include "StandardOutput.h"
 
 namespace rawlog2semantic_map {
 
@@ -28,18 +30,18 @@ void Progress::update(std::uint64_t done, const std::string& note) {
   if (m_onTerminal)
     drawBar(share, note);
   else
-    std::cout << m_task << ": " << static_cast<int>(100 * share) << " %, " << note << std::endl;
+    notes() << m_task << ": " << static_cast<int>(100 * share) << " %, " << note << std::endl;
 }
 
 void Progress::drawBar(double share, const std::string& note) {
   const int full = static_cast<int>(share * kBarWidth);
-  std::cout << kClearLine << m_task << " [" << std::string(full, '#')
-            << std::string(kBarWidth - full, '.') << "] " << static_cast<int>(100 * share) << " % "
-            << note << std::flush;
+  notes() << kClearLine << m_task << " [" << std::string(full, '#')
+          << std::string(kBarWidth - full, '.') << "] " << static_cast<int>(100 * share) << " % "
+          << note << std::flush;
 }
 
 void Progress::finish(const std::string& note) {
-  std::cout << (m_onTerminal ? kClearLine : "") << m_task << ": " << note << std::endl;
+  notes() << (m_onTerminal ? kClearLine : "") << m_task << ": " << note << std::endl;
 }
 
 }  // namespace rawlog2semantic_map

@@ -34,7 +34,15 @@ void Summary::addProblems(const std::vector<std::string>& more) {
     if (problems.size() < kMostListed) problems.push_back(problem);
 }
 
-std::size_t Summary::numSkipped() const { return read - inserted - pictures; }
+std::string Summary::note(const labeled_cloud::StreamedObservation& observation) {
+  if (observation.scan) return ++inserted, "inserted";
+  if (observation.skipped.empty()) return ++pictures, "a picture";
+  if (observation.holdsPose && posesAreUsed) return ++poses, "a pose";
+  ++skipped[observation.skipped];
+  return "skipped, " + observation.skipped;
+}
+
+std::size_t Summary::numSkipped() const { return read - inserted - pictures - poses; }
 
 std::string Summary::skippedText() const {
   std::string text = std::to_string(numSkipped()) + " skipped";
@@ -105,11 +113,13 @@ ordered_json abstractionJson(const Summary& s) {
 ordered_json toJson(const Summary& s, const SemanticOcTree& tree) {
   ordered_json json = {
       {"rawlogs", s.rawlogs},
+      {"stopped", s.stopped},
       {"observations",
        {{"read", s.read},
         {"inserted", s.inserted},
         {"insertedWithoutLabels", s.withoutLabels},
         {"pictures", s.pictures},
+        {"poses", s.poses},
         {"skipped", s.skipped}}},
       {"problems", {{"count", s.numProblems}, {"first", s.problems}}},
       {"points", pointsJson(s)},

@@ -1,5 +1,5 @@
 #pragma once
-#include <labeled_cloud/LabeledScan.h>
+#include <labeled_cloud/ScanStream.h>
 #include <semantic_octree/InsertionOptions.h>
 #include <semantic_octree/SemanticOcTree.h>
 
@@ -21,8 +21,12 @@ struct AbstractionSummary {
 struct Summary {
   std::vector<std::string> rawlogs;
   std::size_t read = 0, inserted = 0;
-  /** Pictures that were there to label scans. */
-  std::size_t pictures = 0;
+  /** Pictures that were there to label scans, and observations that the trajectory is made of. */
+  std::size_t pictures = 0, poses = 0;
+  /** Whether the trajectory is from the rawlogs. */
+  bool posesAreUsed = false;
+  /** Whether the end of the rawlogs was not reached: somebody asked to stop. */
+  bool stopped = false;
   /** What was wrong with observations that were left out: how often, and the first of them. */
   std::size_t numProblems = 0;
   std::vector<std::string> problems;
@@ -41,6 +45,8 @@ struct Summary {
   void add(const labeled_cloud::ScanCounts& counts);
   void addProblems(const std::vector<std::string>& more);
   void add(const semantic_octree::InsertionReport& report);
+  /** Counts it. \return what became of it, in words */
+  std::string note(const labeled_cloud::StreamedObservation& observation);
   std::size_t numSkipped() const;
   /** "3 skipped (2 outside the trajectory, 1 CObservationImage)" */
   std::string skippedText() const;

@@ -1,21 +1,26 @@
 // Makes a semantic octree map, pictures of it and a summary from labeled rawlogs.
+#include <labeled_cloud/RawlogClasses.h>
 #include <labeled_cloud/RawlogTrajectory.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_types/ClassTableFile.h>
 #include <strict_files/ErrorMessage.h>
 #include <strict_files/OutputFolder.h>
 
-#include <fstream>
-#include <iostream>
+#include <cmath>
 #include <optional>
+#include <ostream>
 
 #include "Application.h"
 #include "Config.h"
 #include "JsonFile.h"
 #include "Labels.h"
 #include "MapBuilder.h"
+#include "NumberChecks.h"
+#include "Outputs.h"
 #include "Preview.h"
 #include "ScanLog.h"
+#include "Signals.h"
+#include "StandardOutput.h"
 
 namespace rawlog2semantic_map {
 namespace {
@@ -26,24 +31,43 @@ using semantic_octree::SemanticOcTree;
 using semantic_types::ClassTable;
 using strict_files::OutputFolder;
 
+const std::vector<std::string> kFiles = {"map.semantic", "summary.json",        "top.png",
+                                         "view.png",     "compressed.semantic", "compressed.png"};
+
 struct Cli {
   fs::path config, output, trajectory, classes, confusion, saveLabeled, preview;
   LabelSources labels;
   std::optional<double> resolution, maxRange;
   std::size_t previewEvery = 10;
-  bool compareUpkeep = false;
+  bool compareUpkeep = false, staticPose = false;
   std::vector<fs::path> rawlogs;
+  Outputs outputs;
 
+  explicit Cli(CLI::App& app) : outputs(app) { addTo(app); }
+  /** \throw std::runtime_error naming a file that is there, or is an input. */
+  void checkOutputs(const Config& settings) const {
+    outputs.checkFolder(output, kFiles);
+    outputs.checkFolder(preview, {Preview::nameOf(0)});
+    outputs.check({saveLabeled}, {settings.map.classes});
+  }
+
+ private:
   void addTo(CLI::App& app) {
-    app.add_option("--config", config, "Options (.ini)")->required();
-    app.add_option("--output", output, "Folder of the results, created if need be")->required();
+    app.add_option("--config", config,
+                   "Options (.ini); without, all as it is, and classes as the rawlog names them");
+    outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     addLabelsTo(app);
-    app.add_option("--trajectory", trajectory,
-                   "Poses of the robot (TUM format), instead of those in the rawlog");
+    auto* poses = app.add_option("--trajectory", trajectory,
+                                 "Poses of the robot (TUM format), instead of those in the rawlog");
+    app.add_flag("--static-pose", staticPose, "The robot never moved: for rawlogs without poses")
+        ->excludes(poses);
     app.add_option("--classes", classes, "Class table (YAML), instead of the configuration's");
-    app.add_option("--resolution", resolution, "Edge of a voxel, m");
+    app.add_option("--resolution", resolution, "Edge of a voxel, m")
+        ->check(isNumber(strict_files::above(0)));
     app.add_option("--max-range", maxRange,
-                   "Returns beyond it only carve free space, m; 0: no limit");
+                   "Returns beyond it only carve free space, m; 0: no limit")
+        ->check(isNumber(strict_files::atLeast(0)));
+    app.add_flag_callback("-v,--verbose", beVerbose, "Say of each observation what became of it");
     app.add_flag("--compare-upkeep", compareUpkeep,
                  "Time each insertion without upkeep of the abstraction, too");
     app.add_option("INPUT.rawlog", rawlogs, "Rawlogs that continue each other")->required();
@@ -59,16 +83,18 @@ struct Cli {
     app.add_option("--network-config", labels.networkConfig, "What it expects and answers (YAML)");
     app.add_option("--confusion", confusion,
                    "Confusion matrix (YAML) of the classifier that gave the hard labels");
-    app.add_option("--save-labeled", saveLabeled, "Rawlog of the scans with their labels");
-    app.add_option("--preview", preview,
-                   "Folder of pictures: labels and points over the images they are from");
+    outputs.addOther(
+        app.add_option("--save-labeled", saveLabeled, "Rawlog of the scans with their labels"));
+    outputs.addOther(
+        app.add_option("--preview", preview,
+                       "Folder of pictures: labels and points over the images they are from"));
     app.add_option("--preview-every", previewEvery, "Every so-manieth scan has pictures")
-        ->check(CLI::PositiveNumber);
+        ->check(isNumber(strict_files::above(0)));
   }
 };
 
 Config configOf(const Cli& cli) {
-  Config config = loadConfig(cli.config);
+  Config config = cli.config.empty() ? Config() : loadConfig(cli.config);
   if (!cli.classes.empty()) config.map.classes = cli.classes.string();
   if (cli.resolution) config.map.resolution = *cli.resolution;
   if (cli.maxRange) config.insertion.scan.maxRange = *cli.maxRange;
@@ -78,10 +104,37 @@ Config configOf(const Cli& cli) {
   return config;
 }
 
+ClassTable classesOf(const Cli& cli, const Config& config) {
+  if (!config.map.classes.empty()) return semantic_types::loadClassTable(config.map.classes);
+  ClassTable table;
+  if (cli.config.empty()) {
+    notes() << "Reading the labels' names" << std::endl;
+    table = labeled_cloud::classesIn(cli.rawlogs);
+  }
+  return table.empty() ? CSemanticOctoMap::occupancyOnly() : table;
+}
+
+/** Holds at all times. */
+labeled_cloud::Trajectory restAtOrigin() {
+  labeled_cloud::TrajectoryOptions always;
+  always.tolerance = HUGE_VAL;
+  labeled_cloud::Trajectory trajectory(always);
+  trajectory.insert({}, {});
+  return trajectory;
+}
+
+/** \throw std::runtime_error naming the file of options and what is wrong. */
+void setAbstraction(CSemanticOctoMap& map, const Cli& cli, const Config& config) try {
+  map.setAbstraction(config.abstraction);
+} catch (const std::exception& e) {
+  throw std::runtime_error(cli.config.string() + ": [abstraction] " + strict_files::messageOf(e));
+}
+
 labeled_cloud::Trajectory trajectoryOf(const Cli& cli, const Config& config) {
+  if (cli.staticPose) return restAtOrigin();
   if (!cli.trajectory.empty())
     return labeled_cloud::loadTumTrajectory(cli.trajectory, config.trajectory);
-  std::cout << "Reading the robot's poses" << std::endl;
+  notes() << "Reading the robot's poses" << std::endl;
   return labeled_cloud::readTrajectory(cli.rawlogs, config.trajectory);
 }
 
@@ -105,7 +158,7 @@ class SideOutputs {
   std::optional<Preview> m_preview;
 };
 
-Summary buildMap(const Cli& cli, Config config, CSemanticOctoMap& map) {
+Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, CSemanticOctoMap& map) {
   const ClassTable& table = map.tree().classes();
   if (!cli.confusion.empty())
     config.insertion.conversion.labels.confusion = std::make_shared<labeled_cloud::ConfusionMatrix>(
@@ -119,8 +172,9 @@ Summary buildMap(const Cli& cli, Config config, CSemanticOctoMap& map) {
                                    config.stream);
   SideOutputs outputs(cli, table);
   MapBuilder builder(map, [&outputs](const auto& scan, const auto& T) { outputs.write(scan, T); });
+  if (cli.trajectory.empty()) builder.countPoses();
   if (cli.compareUpkeep) builder.timeWithoutAbstraction();
-  builder.insert(cli.rawlogs, stream);
+  builder.insert(cli.rawlogs, stream, stop);
   if (builder.summary().inserted == 0)
     throw std::runtime_error("nothing to map: no observation was inserted, " +
                              builder.summary().skippedText());
@@ -149,24 +203,23 @@ void writeCompressed(CSemanticOctoMap& map, const Config& config, const OutputFo
 }
 
 int run(const Cli& cli) {
+  const StopRequest stop("after this observation");
   const Config config = configOf(cli);
-  const ClassTable table = config.map.classes.empty()
-                               ? CSemanticOctoMap::occupancyOnly()
-                               : semantic_types::loadClassTable(config.map.classes);
+  cli.checkOutputs(config);
+  const ClassTable table = classesOf(cli, config);
   CSemanticOctoMap map(config.map.resolution, table, config.insertion.filter);
   map.insertionOptions = config.insertion;
-  map.setAbstraction(config.abstraction);
+  setAbstraction(map, cli, config);
   OutputFolder output(cli.output);
 
-  const Summary summary = buildMap(cli, config, map);
+  const Summary summary = buildMap(cli, config, stop, map);
   saveTree(map.tree(), output.staged("map.semantic"));
   writeJson(output.staged("summary.json"), toJson(summary, map.tree()));
   const std::string problem = drawPictures(map.tree(), config, output);
   if (config.abstraction.isSet()) writeCompressed(map, config, output);
-  output.commit({"map.semantic", "summary.json", "top.png", "view.png", "compressed.semantic",
-                 "compressed.png"});
+  output.commit(kFiles);
   if (!problem.empty()) throw std::runtime_error(problem);
-  std::cout << cli.output.string() << ": " << map.asString() << std::endl;
+  notes() << cli.output.string() << ": " << map.asString() << std::endl;
   return 0;
 }
 
@@ -175,7 +228,6 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app("Makes a semantic octree map, pictures and a summary from labeled rawlogs");
-  rawlog2semantic_map::Cli cli;
-  cli.addTo(app);
+  const rawlog2semantic_map::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return rawlog2semantic_map::run(cli); });
 }

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace semantic_map_compress {
 
 using semantic_octree::Abstraction;
 using semantic_octree::AbstractionMeasures;
+using tree_abstraction::AbstractionWeights;
+using tree_abstraction::AlphaPath;
 
 namespace {
 
@@ -26,36 +29,57 @@ std::vector<std::size_t> spread(const std::vector<double>& leaves) {
   return trees;
 }
 
-/** Share of what terms of one sign tell. */
-std::optional<double> share(const AbstractionMeasures& m,
-                            const tree_abstraction::AbstractionWeights& weights, double sign) {
-  double full = 0, kept = 0;
-  for (std::size_t t = 0; t < weights.terms.size(); ++t) {
-    const double weight = std::max(0.0, sign * weights.terms[t].weight);
-    full += weight * m.full.information[t];
-    kept += weight * m.compressed.information[t];
-  }
+/** Weights of the terms of one sign, made positive; the others' are 0. */
+std::vector<double> weightsOfSign(const AbstractionWeights& weights, double sign) {
+  std::vector<double> ofSign;
+  for (const auto& term : weights.terms) ofSign.push_back(std::max(0.0, sign * term.weight));
+  return ofSign;
+}
+
+std::optional<double> share(double kept, double full) {
   if (full < 1e-12) return std::nullopt;
   return kept / full;
+}
+
+/** Share of what terms of one sign tell. */
+std::optional<double> share(const AbstractionMeasures& m, const std::vector<double>& weights) {
+  const auto sum = [&](const std::vector<double>& information) {
+    return std::inner_product(weights.begin(), weights.end(), information.begin(), 0.0);
+  };
+  return share(sum(m.compressed.information), sum(m.full.information));
+}
+
+/** The same of each tree of the path. */
+std::vector<std::optional<double>> shares(const Abstraction& abstraction, const AlphaPath& path,
+                                          const std::vector<double>& weights) {
+  const auto information = abstraction.pathInformation(weights);
+  const auto& added = information.added;
+  const double full = std::accumulate(added.begin(), added.end(), information.ofRoots);
+  std::vector<std::optional<double>> shares;
+  for (const double kept : path.totals(added, information.ofRoots))
+    shares.push_back(share(kept, full));
+  return shares;
 }
 
 }  // namespace
 
 CurvePoint curvePoint(Compressor& compressor, const AbstractionMeasures& m) {
-  const auto& weights = compressor.abstraction().options().weights;
-  return {weights.alpha, m.compressed.numKnownLeaves, share(m, weights, 1), share(m, weights, -1)};
+  const AbstractionWeights& weights = compressor.abstraction().options().weights;
+  return {weights.alpha, m.compressed.numKnownLeaves, share(m, weightsOfSign(weights, 1)),
+          share(m, weightsOfSign(weights, -1))};
 }
 
-std::vector<CurvePoint> alphaCurve(Compressor& compressor, const Solution& solution) {
-  compressor.weigh(solution, 0);
-  Abstraction abstraction = compressor.abstraction();
+std::vector<CurvePoint> alphaCurve(Compressor& compressor) {
+  const Abstraction abstraction = compressor.abstraction();
+  const AbstractionWeights& weights = abstraction.options().weights;
   const Abstraction::Path path = abstraction.alphaPath();
-  const auto base = static_cast<double>(path.numRoots);
+  const auto leaves = path.trees.totals(path.addedLeaves, static_cast<double>(path.numRoots));
+  const auto relevant = shares(abstraction, path.trees, weightsOfSign(weights, 1));
+  const auto irrelevant = shares(abstraction, path.trees, weightsOfSign(weights, -1));
   std::vector<CurvePoint> curve;
-  for (const std::size_t k : spread(path.trees.totals(path.addedLeaves, base))) {
-    abstraction.setAlpha(path.trees.alpha(k));
-    curve.push_back(curvePoint(compressor, abstraction.measures()));
-  }
+  for (const std::size_t k : spread(leaves))
+    curve.push_back(
+        {path.trees.alpha(k), static_cast<std::size_t>(leaves[k]), relevant[k], irrelevant[k]});
   return curve;
 }
 

@@ -15,8 +15,8 @@ struct CurvePoint {
 /** The compressor's present tree as a point of the curve of its present weights. */
 CurvePoint curvePoint(Compressor& compressor, const semantic_octree::AbstractionMeasures& measures);
 
-/** Compressed trees from the blocks alone (first) to alpha = 0 (last), evenly spread over the
- * logarithm of the number of leaves. Leaves the compressor at another alpha. */
-std::vector<CurvePoint> alphaCurve(Compressor& compressor, const Solution& solution);
+/** Compressed trees of the compressor's present weights, from the blocks alone (first) to alpha = 0
+ * (last), evenly spread over the logarithm of the number of leaves. */
+std::vector<CurvePoint> alphaCurve(Compressor& compressor);
 
 }  // namespace semantic_map_compress

@@ -4,14 +4,18 @@
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/OutputFolder.h>
 #include <strict_files/TextFile.h>
+#include <strict_files/Words.h>
 
-#include <iostream>
+#include <ostream>
 
 #include "Application.h"
 #include "Figures.h"
 #include "JsonFile.h"
 #include "MapSheet.h"
+#include "NumberChecks.h"
+#include "Outputs.h"
 #include "Report.h"
+#include "StandardOutput.h"
 
 namespace semantic_map_compress {
 namespace {
@@ -24,18 +28,19 @@ using strict_files::OutputFolder;
 struct Cli {
   fs::path map, weights, output;
   Target target;
+  Outputs outputs;
 
-  void addTo(CLI::App& app) {
+  explicit Cli(CLI::App& app) : outputs(app) {
     app.add_option("MAP", map, "A map's own file (.semantic)")->required();
     app.add_option("--weights", weights, "Solutions: weights of classes (YAML)")->required();
-    app.add_option("--output", output, "Folder of the results, created if need be")->required();
+    outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     auto* group = app.add_option_group("size", "Instead of each solution's own alpha");
     group->add_option("--alpha", target.alpha, "Price of a leaf's entropy")
-        ->check(CLI::NonNegativeNumber);
+        ->check(isNumber(strict_files::atLeast(0)));
     group->add_option("--leaves", target.leaves, "The largest tree with at most this many leaves")
-        ->check(CLI::PositiveNumber);
+        ->check(isNumber(strict_files::above(0)));
     group->add_option("--bytes", target.bytes, "The largest tree whose file has at most these")
-        ->check(CLI::PositiveNumber);
+        ->check(isNumber(strict_files::above(0)));
     group->require_option(0, 1);
   }
 };
@@ -66,7 +71,7 @@ class SolutionWriter {
     c.times.add("save");
     draw(compressed, c);
     c.times.add("draw");
-    c.curve = alphaCurve(m_compressor, solution);
+    c.curve = alphaCurve(m_compressor);
     c.times.add("curve");
     return c;
   }
@@ -121,9 +126,10 @@ std::vector<std::string> fileNames(const std::vector<Solution>& solutions) {
 
 void printSummary(const std::vector<Compression>& compressions) {
   for (const Compression& c : compressions)
-    std::cout << c.solution.name << ": alpha " << c.alpha << ", "
-              << c.measures.compressed.numKnownLeaves << " of " << c.measures.full.numKnownLeaves
-              << " leaves (" << 100 * c.leafRatio() << " %), " << c.bytes << " bytes\n";
+    notes() << c.solution.name << ": alpha " << c.alpha << ", "
+            << c.measures.compressed.numKnownLeaves << " of " << c.measures.full.numKnownLeaves
+            << " leaves (" << 100 * c.leafRatio() << " %), " << strict_files::sizeText(c.bytes)
+            << '\n';
 }
 
 int run(const Cli& cli) {
@@ -132,6 +138,7 @@ int run(const Cli& cli) {
   const FullMap full{cli.map.string(), map.getResolution(), map.size(), fs::file_size(cli.map),
                      contentsOf(map).voxelsOfClass};
   const WeightsFile weights = semantic_octree::loadWeights(cli.weights, map.classes());
+  cli.outputs.checkFolder(cli.output, fileNames(weights.solutions));
   times.add("load");
   const TermCatalog catalog(map.classes(), weights.solutions);
   Compressor compressor(map, catalog, weights.space);
@@ -165,7 +172,6 @@ int run(const Cli& cli) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Compresses a semantic octree map to what matters, for given weights of its classes");
-  semantic_map_compress::Cli cli;
-  cli.addTo(app);
+  const semantic_map_compress::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_compress::run(cli); });
 }

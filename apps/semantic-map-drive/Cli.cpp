@@ -2,6 +2,8 @@
 
 #include <synthetic_world/Scene.h>
 
+#include "Choice.h"
+#include "NumberChecks.h"
 #include "poses/Poses.h"
 
 namespace semantic_map_drive {
@@ -28,24 +30,34 @@ CLI::Option* addParsed(CLI::App& app, const std::string& name, const std::string
 
 }  // namespace
 
-void Cli::addTo(CLI::App& app) {
-  app.add_option("--scene,--world", scene, "Which synthetic world")
-      ->check(CLI::IsMember(synthetic_world::sceneNames()))
+Cli::Cli(CLI::App& app) : outputs(app) {
+  addWords(app.add_option("--scene,--world", scene, "Which synthetic world"),
+           synthetic_world::sceneNames())
       ->capture_default_str();
   app.add_option("--seed", seed, "Of the world and of all noise")->capture_default_str();
   app.add_option("--hills", hills, "Factor of the ground's heights; 0 is flat")
-      ->check(CLI::Range(0.0, 2.0))
+      ->check(isNumber(strict_files::between(0.0, 2.0)))
       ->capture_default_str();
   app.add_option("--map", map, "What the robot knows of it (.semantic); none: nothing");
-  poses::addPose(app, "--start", start, "Where the robot is");
-  poses::addPose(app, "--goal", goal, "Where it is to go");
+  poses::addPose(app, "--start", start, "Where the robot is")->required();
+  poses::addPose(app, "--goal", goal, "Where it is to go")->required();
   app.add_option("--classes", classes,
                  "Classes from best to worst (YAML); a second file is driven, too, to compare")
       ->required()
       ->expected(1, 2);
   app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drives)")
       ->required();
-  app.add_option("--output", output, "Folder of the results, created if need be")->required();
+  outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
+  addEvents(app);
+  app.add_option("--picture-every", pictureEvery, "Keep a picture each so many seconds on the way")
+      ->check(isNumber(strict_files::above(0)));
+  app.add_flag("!--no-rawlog", rawlog, "Write no rawlog");
+  app.add_flag("--navlog", navlog, "Write drive.reactivenavlog, for MRPT's navlog-viewer");
+  app.add_flag("--live", live, "Show the drive in a window, in real time at most");
+  app.add_flag("!--no-pictures", pictures, "Write no animation");
+}
+
+void Cli::addEvents(CLI::App& app) {
   addParsed(
       app, "--person", "T,X,Y,X2,Y2[,T2]",
       [this](auto& t) { events.persons.push_back(parsePerson(t)); },
@@ -57,12 +69,6 @@ void Cli::addTo(CLI::App& app) {
   addParsed(
       app, "--sensor-dropout", "T,T2", [this](auto& t) { events.dropouts.push_back(parseSpan(t)); },
       "The sensors see nothing from second T to T2");
-  app.add_option("--picture-every", pictureEvery, "Keep a picture each so many seconds on the way")
-      ->check(CLI::PositiveNumber);
-  app.add_flag("!--no-rawlog", rawlog, "Write no rawlog");
-  app.add_flag("--navlog", navlog, "Write drive.reactivenavlog, for MRPT's navlog-viewer");
-  app.add_flag("--live", live, "Show the drive in a window, in real time at most");
-  app.add_flag("!--no-pictures", pictures, "Write no animation");
 }
 
 }  // namespace semantic_map_drive

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "Outputs.h"
 #include "simulated_drive/Events.h"
 
 namespace semantic_map_drive {
@@ -22,8 +23,12 @@ struct Cli {
   mrpt::math::TPose2D start, goal;
   bool rawlog = true, pictures = true, navlog = false, live = false;
   Events events;
+  Outputs outputs;
 
-  void addTo(CLI::App& app);
+  explicit Cli(CLI::App& app);
+
+ private:
+  void addEvents(CLI::App& app);
 };
 
 }  // namespace semantic_map_drive

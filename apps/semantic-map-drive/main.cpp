@@ -5,7 +5,7 @@
 #include <strict_files/OutputFolder.h>
 #include <strict_files/TextFile.h>
 
-#include <iostream>
+#include <ostream>
 
 #include "Animation.h"
 #include "Application.h"
@@ -13,6 +13,8 @@
 #include "JsonFile.h"
 #include "LiveWindow.h"
 #include "Recorder.h"
+#include "Signals.h"
+#include "StandardOutput.h"
 #include "simulated_drive/DriveFiles.h"
 #include "simulated_drive/DriveLoop.h"
 
@@ -22,19 +24,23 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kNotArrived = 2;  // exit status
+const std::vector<std::string> kFiles = {"drive.csv",  "drive.json",   "drive.png",
+                                         "drive.gif",  "drive.rawlog", "map.semantic",
+                                         "drive2.csv", "drive2.json",  "drive2.png",
+                                         "drive2.gif", "both.png",     "drive.reactivenavlog"};
 
 void printSummary(const DriveRecord& record) {
-  std::cout << nameOf(record.end) << " after " << record.duration() << " s and " << record.length
-            << " m; " << record.replans << " replans, " << record.collisions
-            << " collisions, least clearance " << record.leastClearance << " m\n";
-  if (!record.reason.empty()) std::cout << record.reason << '\n';
+  notes() << nameOf(record.end) << " after " << record.duration() << " s and " << record.length
+          << " m; " << record.replans << " replans, " << record.collisions
+          << " collisions, least clearance " << record.leastClearance << " m\n";
+  if (!record.reason.empty()) notes() << record.reason << '\n';
 }
 
 /** The world and what is known of it, and one drive after the other in it. */
 class Program {
  public:
   explicit Program(const Cli& cli)
-      : m_cli(cli),
+      : m_cli(checked(cli)),
         m_config(loadDriveConfig(cli.config)),
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
         m_output(cli.output),
@@ -48,15 +54,12 @@ class Program {
     const DriveRecord first = drive(m_cli.classes[0], "drive");
     if (m_cli.navlog)
       fs::rename(navlogs() / "log_000.reactivenavlog", m_output.staged("drive.reactivenavlog"));
-    if (m_cli.classes.size() > 1) {
+    if (m_cli.classes.size() > 1 && !m_stop.pending()) {
       const DriveRecord second = drive(m_cli.classes[1], "drive2");
       addOtherTrack(*m_last, first);
       map_pictures::savePicture(m_last->sheet("both drives"), m_output.staged("both.png"));
     }
-    std::vector<std::string> names = {"drive.csv",  "drive.json",   "drive.png",
-                                      "drive.gif",  "drive.rawlog", "map.semantic",
-                                      "drive2.csv", "drive2.json",  "drive2.png",
-                                      "drive2.gif", "both.png",     "drive.reactivenavlog"};
+    std::vector<std::string> names = kFiles;
     names.insert(names.end(), m_onTheWay.begin(), m_onTheWay.end());
     m_output.commit(names);
     return first.arrived() ? 0 : kNotArrived;
@@ -70,6 +73,7 @@ class Program {
     const auto order = semantic_planning::loadClassOrder(classes, synthetic_world::classTable());
     DriveLoop loop(m_config, m_scene.world, order, m_cli.start, m_cli.goal, m_cli.events, m_map,
                    m_cli.navlog && name == "drive" ? navlogs() : fs::path());
+    loop.stopWhen([this] { return m_stop.pending(); });
     std::optional<Recorder> recorder;
     if (m_cli.rawlog && name == "drive") {
       loop.keepOriginals();
@@ -117,6 +121,14 @@ class Program {
       m_onTheWay.push_back(numbered(name, i));
   }
 
+  static const Cli& checked(const Cli& cli) {
+    std::vector<std::string> names = kFiles;
+    for (const char* name : {"drive", "drive2"}) names.push_back(numbered(name, 0));
+    cli.outputs.checkFolder(cli.output, names);
+    return cli;
+  }
+
+  const StopRequest m_stop{"after this step of the control"};
   const Cli& m_cli;
   DriveConfig m_config;
   synthetic_world::Scene m_scene;
@@ -133,11 +145,6 @@ class Program {
 
 int main(int argc, char** argv) {
   CLI::App app("Drives a robot over a semantic map that grows while it drives");
-  semantic_map_drive::Cli cli;
-  cli.addTo(app);
-  return runApplication(app, argc, argv, [&] {
-    if (!app.count("--start") || !app.count("--goal"))
-      throw std::invalid_argument("--start and --goal are missing");
-    return semantic_map_drive::Program(cli).run();
-  });
+  const semantic_map_drive::Cli cli(app);
+  return runApplication(app, argc, argv, [&] { return semantic_map_drive::Program(cli).run(); });
 }

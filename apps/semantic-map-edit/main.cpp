@@ -2,14 +2,18 @@
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
 #include <semantic_octree/MapOperations.h>
+#include <semantic_octree/OctomapConversion.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <array>
 #include <cmath>
-#include <iostream>
 #include <optional>
+#include <ostream>
 
 #include "Application.h"
+#include "NumberChecks.h"
+#include "Outputs.h"
+#include "StandardOutput.h"
 #include "poses/Poses.h"
 
 namespace semantic_map_edit {
@@ -23,15 +27,18 @@ struct Cli {
   fs::path in, out, like;
   std::optional<std::array<double, 6>> pose, box;
   std::optional<double> resolution;
+  Outputs outputs;
 
-  void addTo(CLI::App& app) {
+  explicit Cli(CLI::App& app) : outputs(app) {
     app.add_option("MAP", in, "A map's own file (.semantic), or OctoMap's (.ot, .bt)")->required();
-    app.add_option("OUT", out, "The map to write (.semantic)")->required();
+    outputs.add(app, out, "FILE", "The map to write (.semantic)")->required();
     app.add_option("--pose", pose,
-                   "Where the map's origin is in the new map: x y z (m) yaw pitch roll (degrees)");
-    app.add_option("--box", box, "Keep what is in it: x0 y0 z0 x1 y1 z1 (m)");
+                   "Where the map's origin is in the new map: x y z (m) yaw pitch roll (degrees)")
+        ->type_name("X Y Z YAW PITCH ROLL");
+    app.add_option("--box", box, "Keep what is in it, m")->type_name("X0 Y0 Z0 X1 Y1 Z1");
     app.add_option("--resolution", resolution,
-                   "Coarser voxels, m: 2, 4, 8 ... times those of the map");
+                   "Coarser voxels, m: 2, 4, 8 ... times those of the map")
+        ->check(isNumber(strict_files::above(0)));
     app.add_option("--like", like,
                    "For OctoMap's files: a map whose classes and filter the new one has");
   }
@@ -40,9 +47,9 @@ struct Cli {
 SemanticOcTree import(const fs::path& file, const fs::path& like) {
   const auto occupancy = semantic_map::readOctomapFile(file);
   if (like.empty())
-    return semantic_octree::fromOccupancy(*occupancy, CSemanticOctoMap::occupancyOnly());
+    return semantic_octree::fromOcTree(*occupancy, CSemanticOctoMap::occupancyOnly());
   const SemanticOcTree model = semantic_octree::loadTree(like.string());
-  return semantic_octree::fromOccupancy(*occupancy, model.classes(), model.filterParameters());
+  return semantic_octree::fromOcTree(*occupancy, model.classes(), model.filterParameters());
 }
 
 SemanticOcTree load(const Cli& cli) {
@@ -68,12 +75,13 @@ int levelsTo(double resolution, double mapResolution) {
 }
 
 int run(const Cli& cli) {
+  cli.outputs.check({cli.out});
   SemanticOcTree map = load(cli);
   if (cli.pose) map = moved(map, poses::poseOfNumbers(*cli.pose));
   if (cli.box) map = cropped(map, boxOf(*cli.box));
   if (cli.resolution) map = coarsened(map, levelsTo(*cli.resolution, map.getResolution()));
   saveTree(map, cli.out.string());
-  std::cout << cli.out.string() << ": " << CSemanticOctoMap(std::move(map)).asString() << '\n';
+  notes() << cli.out.string() << ": " << CSemanticOctoMap(std::move(map)).asString() << '\n';
   return 0;
 }
 
@@ -82,7 +90,6 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app("Moves, crops and coarsens a semantic octree map, in this order; imports OctoMap's");
-  semantic_map_edit::Cli cli;
-  cli.addTo(app);
+  const semantic_map_edit::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_edit::run(cli); });
 }

@@ -1,13 +1,11 @@
 #include "Exporter.h"
 
 #include <map_pictures/ClassMap.h>
-#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/opengl/COpenGLScene.h>
-#include <mrpt/serialization/CArchive.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ExportOctomap.h>
+#include <semantic_map/SceneFile.h>
 
-#include <algorithm>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
@@ -20,6 +18,7 @@ struct Exporter::Format {
   const char* ending;
   const char* description;
   std::function<void(Exporter&, const fs::path&)> write;
+  const char* beside = nullptr;  ///< ending of a second file
 };
 
 const std::vector<Exporter::Format>& Exporter::allFormats() {
@@ -47,8 +46,10 @@ const std::vector<Exporter::Format>& Exporter::allFormats() {
            semantic_map::writeGridMap(out, semantic_map::gridOf(e.m_map, e.m_options.grid));
          });
        }},
-      {".yaml", "the same for ROS's map_server, with its .png beside", &Exporter::writeMapServer},
-      {".png", "classes from above, with a world file (.pgw) beside", &Exporter::writeClassMap},
+      {".yaml", "the same for ROS's map_server, with its .png beside", &Exporter::writeMapServer,
+       ".png"},
+      {".png", "classes from above, with a world file (.pgw) beside", &Exporter::writeClassMap,
+       ".pgw"},
       {".3Dscene", "MRPT's scene", &Exporter::writeScene}};
   return formats;
 }
@@ -70,7 +71,12 @@ const Exporter::Format& Exporter::formatOf(const fs::path& file) {
                            endings);
 }
 
-void Exporter::check(const fs::path& file) { formatOf(file); }
+std::vector<fs::path> Exporter::filesOf(const fs::path& file) {
+  std::vector<fs::path> files = {file};
+  if (const char* beside = formatOf(file).beside)
+    files.push_back(fs::path(file).replace_extension(beside));
+  return files;
+}
 
 void Exporter::write(const fs::path& file) {
   try {
@@ -92,14 +98,17 @@ std::vector<fs::path> Exporter::commit() {
   return files;
 }
 
+void Exporter::stageFile(const fs::path& file, const Filler& fill) {
+  fill(m_staged.emplace_back(file.lexically_normal()).file.path());
+}
+
 void Exporter::stage(const fs::path& file, const Writer& writer) {
-  const auto isSame = [&file](const Staged& s) { return s.target == file.lexically_normal(); };
-  if (std::any_of(m_staged.begin(), m_staged.end(), isSame))
-    throw std::runtime_error(file.string() + ": would be written twice");
-  const Staged& staged = m_staged.emplace_back(file.lexically_normal());
-  std::ofstream out(staged.file.path(), std::ios::binary);
-  writer(out);
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+  stageFile(file, [&](const fs::path& staged) {
+    std::ofstream out(staged, std::ios::binary);
+    writer(out);
+    out.close();
+    if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+  });
 }
 
 void Exporter::writeOctree(const fs::path& file) {
@@ -135,12 +144,7 @@ void Exporter::writeScene(const fs::path& file) {
   map.getVisualizationInto(*objects);
   mrpt::opengl::COpenGLScene scene;
   scene.insert(objects);
-  mrpt::io::CMemoryStream bytes;
-  mrpt::serialization::archiveFrom(bytes) << scene;
-  stage(file, [&bytes](std::ostream& out) {
-    out.write(reinterpret_cast<const char*>(bytes.getRawBufferData()),
-              std::streamsize(bytes.getTotalBytesCount()));
-  });
+  stageFile(file, [&scene](const fs::path& staged) { semantic_map::writeScene(scene, staged); });
 }
 
 }  // namespace semantic_map_export

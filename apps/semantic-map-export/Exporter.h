@@ -29,8 +29,9 @@ class Exporter {
 
   /** What can be written: endings with a few words. */
   static std::string formats();
-  /** \throw std::runtime_error naming the file: no format has its ending. */
-  static void check(const std::filesystem::path& file);
+  /** The file and what is written beside it.
+   * \throw std::runtime_error naming the file: no format has its ending. */
+  static std::vector<std::filesystem::path> filesOf(const std::filesystem::path& file);
 
   /** Writes a file, and what belongs beside it, in the format that its ending says.
    * \throw std::exception naming the file. */
@@ -40,11 +41,13 @@ class Exporter {
 
  private:
   using Writer = std::function<void(std::ostream&)>;
+  using Filler = std::function<void(const std::filesystem::path&)>;
   struct Format;
   static const std::vector<Format>& allFormats();
   static const Format& formatOf(const std::filesystem::path& file);
 
   void stage(const std::filesystem::path& file, const Writer& writer);
+  void stageFile(const std::filesystem::path& file, const Filler& fill);
   void writeOctree(const std::filesystem::path& file);
   void writeClassMap(const std::filesystem::path& file);
   void writeMapServer(const std::filesystem::path& file);

@@ -1,10 +1,13 @@
 // Writes a semantic octree map into files that other programs read.
 #include <semantic_octree/TreeFile.h>
 
-#include <iostream>
+#include <ostream>
 
 #include "Application.h"
 #include "Exporter.h"
+#include "OptionFlags.h"
+#include "Outputs.h"
+#include "StandardOutput.h"
 
 namespace semantic_map_export {
 namespace {
@@ -17,16 +20,22 @@ struct Cli {
   std::vector<fs::path> files;
   std::vector<std::string> ground;
   ExportOptions options;
+  Outputs outputs;
 
-  void addTo(CLI::App& app) {
+  explicit Cli(CLI::App& app) : outputs(app) {
     app.add_option("MAP", map, "A map's own file (.semantic), compressed or not")->required();
-    app.add_option("FILE", files,
-                   "Files to write; their endings say what (" + Exporter::formats() + ")")
+    outputs
+        .add(app, files, "FILE",
+             "A file to write, may be given several times; its ending says what (" +
+                 Exporter::formats() + ")")
         ->required();
     app.add_flag("!--no-colors", options.colors, "An OcTree in .ot files, not a ColorOcTree");
     app.add_flag("--free", options.points.free, "Free leaves too, in .ply and .csv files");
     app.add_option("--max-height", options.maxHeight,
                    "Nothing above is shown in .png and .3Dscene files, m");
+    strict_files::OptionList list;
+    options.points.smoothing.describe(list);
+    addOptions(app, list, "Neighbors, in .ply and .csv files");
     auto* grid =
         app.add_option_group("2D grids", "What is an obstacle in .gridmap and .yaml files");
     grid->add_option("--low", options.grid.low, "... if it is that far above the ground, m")
@@ -53,14 +62,21 @@ std::vector<semantic_types::ClassId> classesNamed(const std::vector<std::string>
   return ids;
 }
 
+std::vector<fs::path> allFiles(const std::vector<fs::path>& files) {
+  std::vector<fs::path> all;
+  for (const fs::path& file : files)
+    for (const fs::path& each : Exporter::filesOf(file)) all.push_back(each);
+  return all;
+}
+
 int run(const Cli& cli) {
-  for (const fs::path& file : cli.files) Exporter::check(file);
+  cli.outputs.check(allFiles(cli.files));
   const auto map = semantic_octree::loadTree(cli.map.string());
   ExportOptions options = cli.options;
   options.grid.ground = classesNamed(cli.ground, map.classes());
   Exporter exporter(map, options);
   for (const fs::path& file : cli.files) exporter.write(file);
-  for (const fs::path& file : exporter.commit()) std::cout << file.string() << '\n';
+  for (const fs::path& file : exporter.commit()) notes() << file.string() << '\n';
   return 0;
 }
 
@@ -69,7 +85,6 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app("Writes a semantic octree map into files that other programs read");
-  semantic_map_export::Cli cli;
-  cli.addTo(app);
+  const semantic_map_export::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_export::run(cli); });
 }

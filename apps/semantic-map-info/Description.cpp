@@ -1,6 +1,7 @@
 #include "Description.h"
 
 #include <semantic_octree/MapContents.h>
+#include <strict_files/Words.h>
 
 #include <iomanip>
 
@@ -80,7 +81,7 @@ void printText(const std::string& name, const ordered_json& d, std::ostream& out
   printBox(d["boundingBox"], out);
   out << "  nodes         " << d["nodes"] << " (" << d["leaves"] << " leaves, " << d["innerNodes"]
       << " inner nodes)\n"
-      << "  memory        " << d["bytes"] << " bytes\n"
+      << "  memory        " << strict_files::sizeText(d["bytes"]) << "\n"
       << "  voxels        " << d["occupiedVoxels"] << " occupied, " << d["freeVoxels"] << " free\n"
       << "  filter       ";
   for (const auto& [key, value] : d["filter"].items())

@@ -1,11 +1,15 @@
 #include "PointQuery.h"
 
+#include <cmath>
 #include <iomanip>
-#include <ostream>
+#include <sstream>
 
 namespace semantic_map_info {
 
+using nlohmann::ordered_json;
 using semantic_octree::CellState;
+using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
 using semantic_types::kNoClass;
 
 namespace {
@@ -22,19 +26,56 @@ const char* nameOf(CellState::Status status) {
   return "unknown";
 }
 
+ordered_json distributionAt(const SemanticOcTree& map, const std::vector<double>& p) {
+  ordered_json json = ordered_json::array();
+  octomap::OcTreeKey key;
+  SemanticOcTree::Node node;
+  if (map.coordToKeyChecked(p[0], p[1], p[2], key)) node = map.search(key);
+  if (!node) return json;
+  const std::vector<double> all = map.distribution(node);
+  for (std::size_t id = 0; id < all.size(); ++id)
+    if (std::round(all[id] * 1e6) > 0)
+      json.push_back({{"class", id == 0 ? "(free)" : map.classes().name(static_cast<ClassId>(id))},
+                      {"probability", all[id]}});
+  return json;
+}
+
 }  // namespace
 
-void answerPoints(const semantic_octree::SemanticOcTree& map,
-                  const std::vector<strict_files::TextLine>& points, std::ostream& out) {
+ordered_json answersAt(const SemanticOcTree& map, const std::vector<strict_files::TextLine>& points,
+                       bool distribution) {
+  ordered_json answers = ordered_json::array();
   for (const strict_files::TextLine& line : points) {
     const std::vector<double> p = numbersOf(line, 3);
     const CellState state = map.query(p[0], p[1], p[2]);
     const bool seen = state.likeliestClass != kNoClass;
-    out << std::setprecision(10) << p[0] << '\t' << p[1] << '\t' << p[2] << '\t'
-        << nameOf(state.status) << '\t' << int{state.likeliestClass} << '\t'
-        << (seen ? map.classes().name(state.likeliestClass) : "-") << '\t' << std::setprecision(6)
-        << state.probability << '\t' << state.occupancy << '\n';
+    answers.push_back({{"x", p[0]},
+                       {"y", p[1]},
+                       {"z", p[2]},
+                       {"state", nameOf(state.status)},
+                       {"id", int{state.likeliestClass}},
+                       {"class", seen ? map.classes().name(state.likeliestClass) : "-"},
+                       {"probability", state.probability},
+                       {"occupancy", state.occupancy}});
+    if (distribution) answers.back()["distribution"] = distributionAt(map, p);
   }
+  return answers;
+}
+
+std::string textOfAnswers(const ordered_json& answers) {
+  std::ostringstream out;
+  const auto text = [](const ordered_json& value) { return value.get_ref<const std::string&>(); };
+  const auto number = [](const ordered_json& value) { return value.get<double>(); };
+  for (const ordered_json& a : answers) {
+    out << std::setprecision(10) << number(a["x"]) << '\t' << number(a["y"]) << '\t'
+        << number(a["z"]) << '\t' << text(a["state"]) << '\t' << a["id"] << '\t' << text(a["class"])
+        << '\t' << std::setprecision(6) << number(a["probability"]) << '\t'
+        << number(a["occupancy"]) << '\n';
+    if (!a.contains("distribution")) continue;
+    for (const ordered_json& part : a["distribution"])
+      out << '\t' << number(part["probability"]) << '\t' << text(part["class"]) << '\n';
+  }
+  return out.str();
 }
 
 }  // namespace semantic_map_info

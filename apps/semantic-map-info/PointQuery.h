@@ -1,20 +1,22 @@
 #pragma once
 #include <semantic_octree/SemanticOcTree.h>
-
 #include <strict_files/TextFile.h>
 
-#include <iosfwd>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 namespace semantic_map_info {
 
-/** Answers each line `x y z` (meters) with, separated by tabs,
- *
- *     x y z STATE ID CLASS PROBABILITY OCCUPANCY
- *
- * STATE is unknown, free or occupied; ID and CLASS are 0 and - where no class was ever seen.
+/** What the map knows at each line `x y z` (meters): x, y, z, state (unknown, free or occupied),
+ * class id and name (0 and "-" where no class was ever seen), probability, occupancy; and, if
+ * asked for, the distribution: the probabilities of free space and of the classes, as far as they
+ * are not 0 when rounded to six digits. Nothing is distributed where nothing is known.
  * \throw std::runtime_error naming file and line: not three finite numbers. */
-void answerPoints(const semantic_octree::SemanticOcTree& map,
-                  const std::vector<strict_files::TextLine>& points, std::ostream& out);
+nlohmann::ordered_json answersAt(const semantic_octree::SemanticOcTree& map,
+                                 const std::vector<strict_files::TextLine>& points,
+                                 bool distribution);
+
+/** The same, an answer a line, separated by tabs; distributions in lines that begin with one. */
+std::string textOfAnswers(const nlohmann::ordered_json& answers);
 
 }  // namespace semantic_map_info

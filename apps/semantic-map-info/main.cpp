@@ -1,9 +1,10 @@
 // Says what is in a semantic octree map, as a whole or at points.
 #include <semantic_octree/TreeFile.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <sstream>
+#include <iterator>
 
 #include "Application.h"
 #include "Description.h"
@@ -13,24 +14,58 @@
 namespace semantic_map_info {
 namespace {
 
-struct Cli {
-  std::filesystem::path map, query;
-  bool json = false;
-
-  void addTo(CLI::App& app) {
-    app.add_option("MAP", map, "A map's own file (.semantic)")->required();
-    CLI::Option* asJson = app.add_flag("--json", json, "As JSON");
-    app.add_option("--query", query, "File of lines `x y z`, m: what the map knows there")
-        ->excludes(asJson);
+/** \throw CLI::ValidationError it is no point. */
+strict_files::TextLine pointOf(const std::string& text) {
+  strict_files::TextLine line{text, "--at"};
+  std::replace(line.text.begin(), line.text.end(), ',', ' ');
+  try {
+    numbersOf(line, 3);
+  } catch (const std::runtime_error&) {
+    throw CLI::ValidationError("--at", "expected X,Y,Z (meters), found '" + text + "'");
   }
+  return line;
+}
+
+struct Cli {
+  std::filesystem::path map;
+  std::string query;
+  std::vector<std::string> at;
+  std::vector<strict_files::TextLine> points;
+  bool json = false, distribution = false;
+
+  explicit Cli(CLI::App& app) {
+    app.add_option("MAP", map, "A map's own file (.semantic)")->required();
+    app.add_flag("--json", json, "As JSON");
+    app.add_option("--at", at, "What the map knows at this point, m; may be given several times")
+        ->type_name("X,Y,Z")
+        ->allow_extra_args(false)
+        ->each([this](const std::string& text) { points.push_back(pointOf(text)); });
+    app.add_option("--query", query,
+                   "The same of each line `x y z` of a file, or of - (standard input)")
+        ->type_name("FILE");
+    app.add_flag("--distribution", distribution,
+                 "At such points, the probabilities of all classes");
+  }
+  bool asksForPoints() const { return !at.empty() || !query.empty(); }
 };
 
+std::vector<strict_files::TextLine> pointsOf(const Cli& cli) {
+  std::vector<strict_files::TextLine> points = cli.points;
+  if (cli.query.empty()) return points;
+  const auto lines =
+      cli.query == "-" ? strict_files::linesOf({std::istreambuf_iterator<char>(std::cin), {}}, "-")
+                       : strict_files::readLines(cli.query);
+  points.insert(points.end(), lines.begin(), lines.end());
+  return points;
+}
+
 int run(const Cli& cli) {
+  if (cli.distribution && !cli.asksForPoints())
+    throw CLI::RequiredError("--at or --query (with --distribution)");
   const auto map = semantic_octree::loadTree(cli.map.string());
-  if (!cli.query.empty()) {
-    std::ostringstream answers;  // all of them, or none
-    answerPoints(map, strict_files::readLines(cli.query), answers);
-    std::cout << answers.str();
+  if (cli.asksForPoints()) {
+    const auto answers = answersAt(map, pointsOf(cli), cli.distribution);
+    std::cout << (cli.json ? textOf(answers) : textOfAnswers(answers));
   } else if (cli.json) {
     std::cout << textOf(describe(map));
   } else {
@@ -44,7 +79,6 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app("Says what is in a semantic octree map");
-  semantic_map_info::Cli cli;
-  cli.addTo(app);
+  const semantic_map_info::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_info::run(cli); });
 }

@@ -3,10 +3,12 @@
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/TreeFile.h>
 
-#include <iostream>
+#include <ostream>
 
 #include "Application.h"
 #include "MapPoses.h"
+#include "Outputs.h"
+#include "StandardOutput.h"
 
 namespace semantic_map_merge {
 namespace {
@@ -20,18 +22,14 @@ struct Cli {
   std::vector<fs::path> maps;
   fs::path out, poses;
   bool partial = false;
+  Outputs outputs;
 
-  void addTo(CLI::App& app) {
-    app.add_option("MAP", maps, "Maps' own files (.semantic) and, as the last, the sum to write")
-        ->required()
-        ->expected(2, CLI::detail::expected_max_vector_size);
+  explicit Cli(CLI::App& app) : outputs(app) {
+    app.add_option("MAP", maps, "Maps' own files (.semantic)")->required();
+    outputs.add(app, out, "FILE", "The sum to write (.semantic)")->required();
     app.add_option("--poses", poses, "File of lines `MAP x y z yaw pitch roll` (m, degrees)");
     app.add_flag("--partial", partial,
                  "The sum will be added to others: do not limit yet how sure it is");
-  }
-  void takeOut() {
-    out = maps.back();
-    maps.pop_back();
   }
 };
 
@@ -39,7 +37,7 @@ SemanticOcTree load(const fs::path& file, const std::map<fs::path, Eigen::Isomet
   SemanticOcTree map = semantic_octree::loadTree(file.string());
   const auto pose = poses.find(file);
   if (pose != poses.end()) map = moved(map, pose->second);
-  std::cout << file.string() << ": " << map.getNumLeafNodes() << " leaves\n";
+  notes() << file.string() << ": " << map.getNumLeafNodes() << " leaves\n";
   return map;
 }
 
@@ -55,6 +53,7 @@ void checkAlike(const fs::path& first, const SemanticOcTree& a, const fs::path& 
 }
 
 int run(const Cli& cli) {
+  cli.outputs.check({cli.out});
   std::map<fs::path, Eigen::Isometry3d> poses;
   if (!cli.poses.empty()) poses = readMapPoses(cli.poses, cli.maps);
   std::vector<SemanticOcTree> maps;
@@ -67,7 +66,7 @@ int run(const Cli& cli) {
   }
   SemanticOcTree sum = merged(pointers, cli.partial ? Limits::Keep : Limits::Apply);
   saveTree(sum, cli.out.string());
-  std::cout << cli.out.string() << ": " << CSemanticOctoMap(std::move(sum)).asString() << '\n';
+  notes() << cli.out.string() << ": " << CSemanticOctoMap(std::move(sum)).asString() << '\n';
   return 0;
 }
 
@@ -76,10 +75,6 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app("Adds semantic octree maps up");
-  semantic_map_merge::Cli cli;
-  cli.addTo(app);
-  return runApplication(app, argc, argv, [&] {
-    cli.takeOut();
-    return semantic_map_merge::run(cli);
-  });
+  const semantic_map_merge::Cli cli(app);
+  return runApplication(app, argc, argv, [&] { return semantic_map_merge::run(cli); });
 }

@@ -5,7 +5,7 @@
 
 namespace semantic_map_plan {
 
-void Cli::addTo(CLI::App& app) {
+Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_option("MAP", map, "A map's own file (.semantic)")->required();
   poses::addPose(app, "--start", start, "Where the vehicle is")->required();
   poses::addPose(app, "--goal", goal, "Where it is to go")->required();
@@ -18,7 +18,7 @@ void Cli::addTo(CLI::App& app) {
                  "none: what tells the ranks of --classes apart");
   app.add_option("--solution", solution, "Which of the weights; none: the first")
       ->needs("--weights");
-  app.add_option("--output", output, "Folder of the results, created if need be")->required();
+  outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
   planner.shorten = true;
   strict_files::OptionList options;
   planner.describe(options);

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "Outputs.h"
+
 namespace semantic_map_plan {
 
 /** What the command line says. */
@@ -16,8 +18,9 @@ struct Cli {
   std::optional<double> startZ, goalZ;
   /** All but the vehicle. */
   semantic_planning::PlannerOptions planner;
+  Outputs outputs;
 
-  void addTo(CLI::App& app);
+  explicit Cli(CLI::App& app);
 };
 
 }  // namespace semantic_map_plan

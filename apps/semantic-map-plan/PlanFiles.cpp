@@ -68,10 +68,10 @@ json toJson(const PlanResult& plan, const colored_graph::ClassOrder& order,
           {"graphCost", plan.roadmapCost},
           {"ranks", ranksOf(order, classes)},
           {"length", plan.length},
-          {"length_per_class", lengthsByName(plan, classes)},
+          {"lengthPerClass", lengthsByName(plan, classes)},
           {"vertices", plan.numVertices},
           {"edges", plan.numEdges},
-          {"edges_evaluated", plan.search.edgesEvaluated},
+          {"edgesEvaluated", plan.search.edgesEvaluated},
           {"expansions", plan.search.expansions},
           {"milliseconds", timesOf(plan.times)}};
 }

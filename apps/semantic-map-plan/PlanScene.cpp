@@ -4,8 +4,7 @@
 #include <mrpt/opengl/CPointCloud.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <semantic_map/CSemanticOctoMap.h>
-
-#include <stdexcept>
+#include <semantic_map/SceneFile.h>
 
 namespace semantic_map_plan {
 
@@ -52,8 +51,7 @@ void saveScene(semantic_octree::SemanticOcTree map, const SemanticPlanner& plann
   scene.insert(cells);
   if (planner.hasRoadmap()) scene.insert(verticesOf(planner));
   scene.insert(lineOf(plan));
-  if (!scene.saveToFile(file.string()))
-    throw std::runtime_error(file.string() + ": cannot be written");
+  semantic_map::writeScene(scene, file);
 }
 
 }  // namespace semantic_map_plan

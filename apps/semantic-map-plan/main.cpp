@@ -17,6 +17,7 @@
 #include "PlanFiles.h"
 #include "PlanPicture.h"
 #include "PlanScene.h"
+#include "StandardOutput.h"
 #include "measuring/Stopwatch.h"
 
 namespace semantic_map_plan {
@@ -28,6 +29,7 @@ using semantic_octree::AbstractionOptions;
 using semantic_octree::SemanticOcTree;
 
 constexpr int kNoPath = 2;  // exit status
+const std::vector<std::string> kFiles = {"path.json", "path.csv", "plan.png", "plan.3Dscene"};
 
 AbstractionOptions abstractionOf(const Cli& cli, const SemanticOcTree& map,
                                  const colored_graph::ClassOrder& order) {
@@ -52,20 +54,21 @@ void write(const Cli& cli, const SemanticOcTree& map, const SemanticPlanner& pla
   map_pictures::savePicture(drawPlan(map, planner, plan, cli.start, cli.goal),
                             output.staged("plan.png"));
   saveScene(map, planner, plan, output.staged("plan.3Dscene"));
-  output.commit({"path.json", "path.csv", "plan.png", "plan.3Dscene"});
+  output.commit(kFiles);
 }
 
 void printSummary(const PlanResult& plan, const semantic_types::ClassTable& classes) {
-  std::cout << "Path of " << plan.length << " m:";
+  notes() << "Path of " << plan.length << " m:";
   for (std::size_t id = 0; id < plan.lengthPerClass.size(); ++id)
     if (plan.lengthPerClass[id] > 0)
-      std::cout << ' ' << plan.lengthPerClass[id] << " m "
-                << groundName(static_cast<semantic_types::ClassId>(id), classes);
-  std::cout << "\nGraph of " << plan.numVertices << " vertices and " << plan.numEdges << " edges, "
-            << plan.search.edgesEvaluated << " of them evaluated\n";
+      notes() << ' ' << plan.lengthPerClass[id] << " m "
+              << groundName(static_cast<semantic_types::ClassId>(id), classes);
+  notes() << "\nGraph of " << plan.numVertices << " vertices and " << plan.numEdges << " edges, "
+          << plan.search.edgesEvaluated << " of them evaluated\n";
 }
 
-int run(Cli cli) {
+int run(Cli& cli) {
+  cli.outputs.checkFolder(cli.output, kFiles);
   SemanticOcTree map = semantic_octree::loadTree(cli.map.string());
   const auto order = loadClassOrder(cli.classes, map.classes());
   if (!cli.vehicle.empty()) cli.planner.vehicle = loadVehicle(cli.vehicle);
@@ -93,7 +96,6 @@ int run(Cli cli) {
 
 int main(int argc, char** argv) {
   CLI::App app("Plans a path of a vehicle over a semantic map that puts classes before length");
-  semantic_map_plan::Cli cli;
-  cli.addTo(app);
+  semantic_map_plan::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_plan::run(cli); });
 }

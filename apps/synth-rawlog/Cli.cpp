@@ -2,49 +2,51 @@
 
 #include <synthetic_world/Scene.h>
 
+#include "Choice.h"
+#include "NumberChecks.h"
+
 namespace synth_rawlog {
 namespace {
 
 constexpr double kGreatestDepth = 65;  // m: depth images hold millimeters in 16 bits
 
 void addScene(CLI::App& app, Cli& cli) {
-  app.add_option("output", cli.output, "Rawlog to write");
-  app.add_option("--scene", cli.scene, "Which world")
-      ->check(CLI::IsMember(synthetic_world::sceneNames()))
+  cli.outputs.add(app, cli.output, "FILE", "Rawlog to write");
+  addWords(app.add_option("--scene", cli.scene, "Which world"), synthetic_world::sceneNames())
       ->capture_default_str();
   app.add_option("--seed", cli.seed, "Of the world and of all noise")->capture_default_str();
   app.add_option("--hills", cli.hills, "Factor of the ground's heights; 0 is flat")
-      ->check(CLI::Range(0.0, 2.0))
+      ->check(isNumber(strict_files::between(0.0, 2.0)))
       ->capture_default_str();
 }
 
 void addDrive(CLI::App& app, Cli& cli) {
   app.add_option("--frames", cli.frames, "Number of frames; by default one round of the route")
-      ->check(CLI::Range(1, 1000000));
+      ->check(isNumber(strict_files::between(1, 1000000)));
   app.add_option("--rate", cli.rate, "Frames a second")
-      ->check(CLI::PositiveNumber)
+      ->check(isNumber(strict_files::above(0)))
       ->capture_default_str();
   app.add_option("--speed", cli.speed, "Of the robot, m/s")
-      ->check(CLI::PositiveNumber)
+      ->check(isNumber(strict_files::above(0)))
       ->capture_default_str();
   app.add_option("--start", cli.start, "Where on the route to begin, m")->capture_default_str();
   app.add_flag("--odometry", cli.odometry,
                "Write movements and sensory frames instead of observations with true poses");
   app.add_option("--odometry-noise", cli.odometryNoise, "Standard deviation, share of a movement")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(isNumber(strict_files::between(0.0, 1.0)))
       ->capture_default_str();
 }
 
 void addSensors(CLI::App& app, Cli& cli) {
-  app.add_option("--sensor", cli.sensor)
-      ->check(CLI::IsMember({"camera", "lidar", "both"}))
+  addWords(app.add_option("--sensor", cli.sensor, "What the robot has"),
+           {"camera", "lidar", "both"})
       ->capture_default_str();
   app.add_option("--width", cli.camera.width, "Of the camera's images")->capture_default_str();
   app.add_option("--height", cli.camera.height, "Of the camera's images")->capture_default_str();
   app.add_option("--fov", cli.camera.horizontalFov, "Of the camera, horizontal, degrees")
       ->capture_default_str();
   app.add_option("--camera-pitch", cli.cameraPitch, "How far the camera looks down, degrees")
-      ->check(CLI::Range(-80.0, 80.0))
+      ->check(isNumber(strict_files::between(-80.0, 80.0)))
       ->capture_default_str();
   app.add_option("--camera-range", cli.camera.maxRange, "Greatest depth, m")->capture_default_str();
   app.add_option("--rings", cli.lidar.rings, "Of the LiDAR")->capture_default_str();
@@ -62,9 +64,10 @@ void addTruth(CLI::App& app, Cli& cli) {
                  "Print what is at each point of this file (lines: x y z)")
       ->check(CLI::ExistingFile);
   app.add_option("--tolerance", cli.tolerance, "What is this near to a surface is on it, m")
-      ->check(CLI::NonNegativeNumber)
+      ->check(isNumber(strict_files::atLeast(0)))
       ->capture_default_str();
-  app.add_option("--picture", cli.picture, "Write the world from above, colors and classes (PNG)");
+  cli.outputs.addOther(app.add_option("--picture", cli.picture,
+                                      "Write the world from above, colors and classes (PNG)"));
 }
 
 }  // namespace
@@ -78,7 +81,7 @@ void addOptions(CLI::App& app, Cli& cli) {
 
 void complete(Cli& cli) {
   if (cli.output.empty() && cli.truthQuery.empty() && cli.picture.empty())
-    throw std::invalid_argument("nothing to do: give OUT.rawlog, --truth-query or --picture");
+    throw CLI::RequiredError("--output, --picture or --truth-query");
   cli.camera.noise = cli.lidar.noise = cli.noise;
   cli.camera.validate();
   cli.lidar.validate();

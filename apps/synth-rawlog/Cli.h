@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "Outputs.h"
+
 namespace synth_rawlog {
 
 /** The command line. */
@@ -30,6 +32,9 @@ struct Cli {
   std::filesystem::path truthQuery, picture;
   double tolerance = 0.05;  // m
 
+  Outputs outputs;
+
+  explicit Cli(CLI::App& app) : outputs(app) {}
   bool wantsCamera() const { return sensor != "lidar"; }
   bool wantsLidar() const { return sensor != "camera"; }
 };

@@ -27,7 +27,6 @@ const char* nameOf(PointTruth::State state) {
 }  // namespace
 
 void writeTruth(const Cli& cli, int frames, const std::filesystem::path& file) {
-  strict_files::StagedFile staged(file);
   std::ostringstream out;
   out << "# The world that " << cli.output.filename().string() << " shows.\n"
       << "scene: " << cli.scene << "\nseed: " << cli.seed << "\nhills: " << cli.hills
@@ -37,8 +36,7 @@ void writeTruth(const Cli& cli, int frames, const std::filesystem::path& file) {
     out << "  - {id: " << +id << ", name: " << classTable().name(id) << ", color: [" << +c.r << ", "
         << +c.g << ", " << +c.b << "]}\n";
   }
-  strict_files::writeText(staged.path(), out.str());
-  staged.commit();
+  strict_files::writeText(file, out.str());
 }
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& target)

@@ -1,4 +1,5 @@
 // Drives a robot through a synthetic world and writes what its labeled sensors see.
+#include <map_pictures/MapPictures.h>
 #include <synthetic_world/Drive.h>
 #include <synthetic_world/Shading.h>
 
@@ -7,6 +8,8 @@
 
 #include "Application.h"
 #include "Cli.h"
+#include "Signals.h"
+#include "StandardOutput.h"
 #include "TruthFiles.h"
 #include "synthetic_rawlog/DriveLog.h"
 #include "synthetic_rawlog/Observations.h"
@@ -58,7 +61,9 @@ void writeRawlog(const Cli& cli, const synthetic_world::Scene& scene) {
       cli.frames > 0 ? cli.frames : static_cast<int>(std::ceil(drive.duration() * cli.rate));
   DriveLog rawlog(cli.output, cli.odometry, cli.odometryNoise, cli.seed);
   TrajectoryWriter trajectory(beside(cli.output, ".tum"));
-  for (int k = 0; k < frames; ++k) {
+  const StopRequest stop("after this frame");
+  int k = 0;
+  for (; k < frames && !stop.pending(); ++k) {
     const double time = k / cli.rate;
     const Eigen::Isometry3d T_world_robot = drive.T_world_robot(time);
     rawlog.write(mrpt::Clock::fromDouble(kStartTime + time), T_world_robot,
@@ -67,9 +72,9 @@ void writeRawlog(const Cli& cli, const synthetic_world::Scene& scene) {
   }
   rawlog.finish();
   trajectory.commit();
-  writeTruth(cli, frames, beside(cli.output, ".truth.yaml"));
-  std::cout << cli.output.string() << ": " << frames << " frames of " << cli.scene << ", "
-            << cli.speed * frames / cli.rate << " m of way\n";
+  writeTruth(cli, k, beside(cli.output, ".truth.yaml"));
+  notes() << cli.output.string() << ": " << k << " frames of " << cli.scene << ", "
+          << cli.speed * k / cli.rate << " m of way\n";
 }
 
 /** Colors on the left, classes on the right. */
@@ -84,14 +89,19 @@ void writePicture(const Cli& cli, const synthetic_world::World& world) {
       if (id != synthetic_world::kNoClass)
         both.at(row, size + column) = synthetic_world::classTable().color(id);
     }
-  // MRPT takes the format from the extension, which is why this is no StagedFile.
-  const std::filesystem::path staged = cli.picture.string() + ".tmp.png";
-  if (!toMrpt(both).saveToFile(staged.string()))
-    throw std::runtime_error(staged.string() + ": cannot be written");
-  std::filesystem::rename(staged, cli.picture);
+  map_pictures::savePicture(toMrpt(both).asCvMatRef(), cli.picture);
+}
+
+void checkOutputs(const Cli& cli) {
+  std::vector<std::filesystem::path> files = {cli.picture};
+  if (!cli.output.empty())
+    files.insert(files.end(),
+                 {cli.output, beside(cli.output, ".tum"), beside(cli.output, ".truth.yaml")});
+  cli.outputs.check(files);
 }
 
 int run(const Cli& cli) {
+  checkOutputs(cli);
   const synthetic_world::Scene scene = synthetic_world::makeScene(cli.scene, cli.seed, cli.hills);
   if (!cli.output.empty()) writeRawlog(cli, scene);
   if (!cli.picture.empty()) writePicture(cli, scene.world);
@@ -106,7 +116,7 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app("A labeled camera and LiDAR in a synthetic world, written to a rawlog");
-  synth_rawlog::Cli cli;
+  synth_rawlog::Cli cli(app);
   synth_rawlog::addOptions(app, cli);
   return runApplication(app, argc, argv, [&] {
     synth_rawlog::complete(cli);

@@ -75,7 +75,7 @@ TEST(JsonFile, replacesWhatIsNoUtf8InsteadOfFailing) {
 
 TEST(JsonFile, namesAFileThatCannotBeWritten) {
   EXPECT_EQ(errorOf([] { writeJson("/nowhere/a.json", nlohmann::json()); }),
-            "/nowhere/a.json: cannot be written");
+            "/nowhere/a.json: cannot be written (does the folder exist?)");
 }
 
 TEST(Poses, areReadInMetersAndDegrees) {

@@ -64,7 +64,7 @@ class CompressedStreet : public testing::Test {
     return double(fine) / all;
   }
   static bool isVoxel(const SemanticOcTree& tree, const octomap::OcTreeKey& key) {
-    const auto* parent = tree.search(key, tree.getTreeDepth() - 1);
+    const auto parent = tree.search(key, tree.getTreeDepth() - 1);
     return parent && !parent->isLeaf();
   }
 

@@ -57,7 +57,7 @@ std::vector<PosedScan> readScans(const fs::path& rawlog, const ClassTable& table
 
 std::vector<PosedScan> convertAndRead(const std::string& arguments, const fs::path& rawlog,
                                       const ClassTable& table) {
-  const CommandRun result = dataset2rawlog(arguments + " " + quoted(rawlog));
+  const CommandRun result = dataset2rawlog(arguments + " -f -o " + quoted(rawlog));
   EXPECT_EQ(result.status, 0) << result.output;
   if (result.status != 0) return {};
   return readScans(rawlog, table);

@@ -26,7 +26,7 @@ struct PosedScan {
 std::vector<PosedScan> readScans(const std::filesystem::path& rawlog,
                                  const semantic_types::ClassTable& table,
                                  std::shared_ptr<labeled_cloud::ImageLabeler> labeler = nullptr);
-/** Runs dataset2rawlog with these arguments and the rawlog as its last one, and reads that. */
+/** Runs dataset2rawlog with these arguments and the rawlog as its output, and reads that. */
 std::vector<PosedScan> convertAndRead(const std::string& arguments,
                                       const std::filesystem::path& rawlog,
                                       const semantic_types::ClassTable& table);

@@ -48,7 +48,7 @@ class MapTool : public testing::Test {
                       const std::vector<std::string>& options = {},
                       const std::string& from = "map.semantic") const {
     std::vector<std::string> arguments = {path(from)};
-    for (const std::string& name : names) arguments.push_back(path(name));
+    for (const std::string& name : names) arguments.insert(arguments.end(), {"-o", path(name)});
     arguments.insert(arguments.end(), options.begin(), options.end());
     return runProgram("semantic-map-export", arguments);
   }

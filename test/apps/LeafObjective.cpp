@@ -17,39 +17,36 @@ LeafObjective::LeafObjective(semantic_octree::SemanticOcTree& map)
       m_options(Abstraction(map).options()) {
   m_blockDepth = 0;
   while (m_map.getNodeSize(m_blockDepth) > m_options.blockSize * 1.000001) ++m_blockDepth;
-  visitFrame(*m_map.root(), *m_compressed.root(), 0);
+  visitFrame(m_map.root(), m_compressed.root(), 0);
   normalize();
 }
 
 void LeafObjective::visitFrame(const Node& node, const Node& compressed, unsigned depth) {
   if (depth == m_blockDepth) {
-    m_blocks.push_back(add(&node, &compressed, depth));
+    m_blocks.push_back(add(node, compressed, depth));
     return;
   }
   if (node.isLeaf() || compressed.isLeaf())
     throw std::logic_error("a leaf above the blocks: not made for that");
-  for (unsigned i = 0; i < 8; ++i)
-    if (m_map.nodeChildExists(&node, i))
-      visitFrame(*m_map.getNodeChild(&node, i), *m_compressed.getNodeChild(&compressed, i),
-                 depth + 1);
+  for (int i = 0; i < 8; ++i)
+    if (node.child(i)) visitFrame(node.child(i), compressed.child(i), depth + 1);
 }
 
-std::size_t LeafObjective::add(const Node* node, const Node* compressed, unsigned depth) {
+std::size_t LeafObjective::add(const Node& node, const Node& compressed, unsigned depth) {
   Item item;
   item.weight = std::pow(8.0, -static_cast<double>(depth - m_blockDepth));
   const auto& terms = m_options.weights.terms;
   item.probabilities.assign(terms.size(), 0.0);
-  if (node && node->isLeaf()) {
-    const std::vector<double> p = m_map.distribution(*node);
+  if (node && node.isLeaf()) {
+    const std::vector<double> p = m_map.distribution(node);
     for (std::size_t t = 0; t < terms.size(); ++t)
       for (const int id : terms[t].groups.front())
         item.probabilities[t] += p[static_cast<std::size_t>(id)];
   } else if (node) {
-    item.isExpanded = compressed && !compressed->isLeaf();
-    for (unsigned i = 0; i < 8; ++i) {
-      const Node* child = m_map.nodeChildExists(node, i) ? m_map.getNodeChild(node, i) : nullptr;
-      const Node* same =
-          child && item.isExpanded ? m_compressed.getNodeChild(compressed, i) : nullptr;
+    item.isExpanded = compressed && !compressed.isLeaf();
+    for (int i = 0; i < 8; ++i) {
+      const Node child = node.child(i);
+      const Node same = child && item.isExpanded ? compressed.child(i) : Node();
       item.children.push_back(add(child, same, depth + 1));
       for (std::size_t t = 0; t < terms.size(); ++t)
         item.probabilities[t] += m_items[item.children.back()].probabilities[t] / 8;

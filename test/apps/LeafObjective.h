@@ -33,7 +33,7 @@ class LeafObjective {
 
  private:
   using Node = semantic_octree::SemanticOcTree::Node;
-  std::size_t add(const Node* node, const Node* compressed, unsigned depth);
+  std::size_t add(const Node& node, const Node& compressed, unsigned depth);
   void visitFrame(const Node& node, const Node& compressed, unsigned depth);
   void normalize();
 

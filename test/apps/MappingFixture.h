@@ -34,7 +34,7 @@ class Rawlog2SemanticMap : public testing::Test {
   ProgramRun run(const std::string& rawlog = "small.rawlog",
                  const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {"--config", (folder / "small.ini").string(), "--output",
-                                          (folder / "out").string()};
+                                          (folder / "out").string(), "-f"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     arguments.push_back((folder / rawlog).string());
     return runProgram("rawlog2semantic-map", arguments);

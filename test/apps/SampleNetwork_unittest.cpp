@@ -69,7 +69,7 @@ TEST(SampleNetwork, labelsTheVillageAsItsColorsSayHardAndSoft) {
         "rawlog2semantic-map",
         {"--config", (folder / "plain.ini").string(), "--classes", classes.string(), "--output",
          (folder / "out").string(), "--network", (folder / "net.onnx").string(), "--network-config",
-         (folder / "net.yaml").string(), "--save-labeled", (folder / "saved.rawlog").string(),
+         (folder / "net.yaml").string(), "--save-labeled", (folder / "saved.rawlog").string(), "-f",
          rawlog.string()});
     ASSERT_EQ(run.status, 0) << run.errors;
     const auto saved = readAll<CObservationLabeledCloud>(folder / "saved.rawlog", "CAMERA");

@@ -49,8 +49,8 @@ class SemanticMapCompress : public testing::Test {
 
   ProgramRun compress(const std::string& weights, std::vector<std::string> more = {}) const {
     const std::filesystem::path file = folder.write("weights.yaml", weights);
-    std::vector<std::string> arguments = {mapFile(), "--weights", file.string(), "--output",
-                                          output().string()};
+    std::vector<std::string> arguments = {mapFile(),  "--weights",       file.string(),
+                                          "--output", output().string(), "-f"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram("semantic-map-compress", arguments);
   }

@@ -15,7 +15,7 @@ class SemanticMapDrive : public testing::Test {
     std::vector<std::string> arguments = {
         "--world",          "village",   "--start=-14,-19,10",
         "--goal=-6,-17,20", "--classes", kConfig + "orders/synthetic.yaml",
-        "--no-pictures"};
+        "--no-pictures",    "-f"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -30,9 +30,9 @@ class SemanticMapDrive : public testing::Test {
   /** A configuration whose section [drive] says this; other keys have their defaults. */
   std::string configWith(const std::string& lines) const {
     return folder
-        .write("drive.ini", "[planner]\nvehicle = " + kConfig + "vehicles/robot.yaml\nkeepOff = 1\n" +
-                                "[drive]\nreactive = " + kConfig + "reactive/robot.ini\n" +
-                                "turningRadius = 0.8\n" + lines)
+        .write("drive.ini", "[planner]\nvehicle = " + kConfig +
+                                "vehicles/robot.yaml\nkeepOff = 1\n" + "[drive]\nreactive = " +
+                                kConfig + "reactive/robot.ini\n" + "turningRadius = 0.8\n" + lines)
         .string();
   }
 

@@ -45,12 +45,25 @@ TEST(Pcd, aClassTableFoldsTheLabels) {
   EXPECT_EQ(scans.at(0).scan.cloud.classes, (std::vector<ClassId>{3, 2}));
 }
 
+TEST(Pcd, fieldsOfSeveralValuesMoveTheOthers) {
+  const TemporaryFolder folder;
+  const auto file = folder.write(
+      "a.pcd",
+      "FIELDS normal x y z label\nCOUNT 3 1 1 1 1\nPOINTS 2\nDATA ascii\n1 2 3 5 6 7 4\n"
+      "1 2 3 nan nan nan 2\n");
+  ClassTable table;
+  for (const char* name : {"a", "b", "c", "d"}) table.add(name, {});
+  const auto scans = convertAndRead("pcd " + quoted(file), folder / "out.rawlog", table);
+  EXPECT_LT((scans.at(0).scan.cloud.points[0] - Eigen::Vector3f(5, 6, 7)).norm(), 1e-5);
+  EXPECT_EQ(scans[0].scan.cloud.classes[0], 4);
+}
+
 TEST(Pcd, badInputIsNamed) {
   const auto failureWith = [](const std::string& text) {
     const TemporaryFolder folder;
     const auto file = folder.write("a.pcd", text);
     const std::string failure =
-        failureOf("pcd " + quoted(file) + " " + quoted(folder / "out.rawlog"));
+        failureOf("pcd " + quoted(file) + " -o " + quoted(folder / "out.rawlog"));
     EXPECT_TRUE(contains(failure, "a.pcd")) << failure;
     return failure;
   };
@@ -63,8 +76,15 @@ TEST(Pcd, badInputIsNamed) {
   EXPECT_TRUE(
       contains(failureWith("FIELDS x y z\nPOINTS 1\nDATA ascii\n1 2 3\n"), "no field 'label'"));
   EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS 1\nDATA binary\n"), "DATA ascii"));
+  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 2abc\n9 5 6 7 3\n"), "2abc"));
+  EXPECT_TRUE(
+      contains(failureWith("FIELDS x y z label\nCOUNT 1 1 2 1\nPOINTS 1\nDATA ascii\n1 2 3 4 5\n"),
+               "field 'z' has several values"));
+  EXPECT_TRUE(
+      contains(failureWith("FIELDS x y z label\nCOUNT 1 1 1\nPOINTS 1\nDATA ascii\n1 2 3 4\n"),
+               "3 counts for 4 fields"));
   EXPECT_TRUE(contains(failureWith("nothing\n"), "no FIELDS"));
-  EXPECT_TRUE(contains(failureOf("pcd only_one"), "expected FILES and then OUT.rawlog"));
+  EXPECT_TRUE(contains(failureOf("pcd only_one"), "--output is required"));
 }
 
 TEST(Pcd, realOnesKeepTheirWorldCoordinates) {

@@ -128,8 +128,8 @@ TEST(Tum, labelsCanBeLeftOutThenNoTableIsNeeded) {
   ASSERT_EQ(scans.size(), 2u);
   EXPECT_EQ(scans[0].scan.counts.points, 40u);
   EXPECT_TRUE(scans[0].scan.labelsMissing);
-  EXPECT_TRUE(contains(failureOf("tum " + quoted(folder.path()) + " " + quoted(folder / "x")),
-                       "--classes is required"));
+  EXPECT_TRUE(contains(failureOf("tum " + quoted(folder.path()) + " -o " + quoted(folder / "x")),
+                       "--classes (except with --no-labels) is required"));
 }
 
 TEST(Tum, framesWithoutAPoseOrALabelImageAreSkippedAndReported) {
@@ -137,7 +137,7 @@ TEST(Tum, framesWithoutAPoseOrALabelImageAreSkippedAndReported) {
   writeSmallTum(folder);
   folder.write("depth.txt", "1.0 depth/a.png\n1.5 depth/a.png\n2.0 depth/b.png\n9 depth/b.png\n");
   const CommandRun result =
-      dataset2rawlog(tumArguments(folder) + " " + quoted(folder / "out.rawlog"));
+      dataset2rawlog(tumArguments(folder) + " -o " + quoted(folder / "out.rawlog"));
   EXPECT_EQ(result.status, 0);
   EXPECT_TRUE(contains(result.output, ": 2 scans, 80 points, 75.0 % with a class"))
       << result.output;
@@ -150,7 +150,7 @@ TEST(Tum, badInputIsNamed) {
     writeSmallTum(folder);
     folder.write(file, text);
     const std::string failure =
-        failureOf(tumArguments(folder) + " " + quoted(folder / "out.rawlog"));
+        failureOf(tumArguments(folder) + " -o " + quoted(folder / "out.rawlog"));
     EXPECT_TRUE(contains(failure, file)) << failure;
     EXPECT_FALSE(fs::exists(folder / "out.rawlog"));
     return failure;
@@ -178,8 +178,8 @@ TEST(Tum, framesOfARealFlatAgreeWithEachOther) {
 
   // The same through depth images and a folder of label images.
   const fs::path flat = sharedDataDir() / "replica_apartment_0";
-  const CommandRun plain = dataset2rawlog("tum --no-labels --frames 0:5:20 " + quoted(flat) + " " +
-                                          quoted(folder / "plain.rawlog"));
+  const CommandRun plain = dataset2rawlog("tum --no-labels --frames 0:5:20 " + quoted(flat) +
+                                          " -o " + quoted(folder / "plain.rawlog"));
   ASSERT_EQ(plain.status, 0) << plain.output;
   const auto labels = std::make_shared<LabelFolder>(flat / "label", table);
   const auto same = readScans(folder / "plain.rawlog", table, labels);

@@ -45,14 +45,14 @@ TEST(InsertionBenchmark, measuresEveryRunnerInOneRun) {
   const auto json = nlohmann::json::parse(run.output);
   EXPECT_EQ(json["scans"], 3);
   EXPECT_EQ(json["points"], 3 * 360);
-  EXPECT_GT(json["touched_voxels"], 1000);
-  EXPECT_LT(json["touched_voxels"], 10000);
+  EXPECT_GT(json["touchedVoxels"], 1000);
+  EXPECT_LT(json["touchedVoxels"], 10000);
   ASSERT_EQ(json["contestants"].size(), 7u);
   for (const auto& runner : json["contestants"]) {
-    EXPECT_GT(runner["cpu_ms"], 0) << runner;
-    EXPECT_GT(runner["wall_ms"], 0) << runner;
-    EXPECT_EQ(runner["cpu_ms_of_repeats"].size(), 2u);
-    EXPECT_EQ(runner["name"] == json["ratio_to"], runner["ratio"] == 1.0) << runner;
+    EXPECT_GT(runner["cpuMilliseconds"], 0) << runner;
+    EXPECT_GT(runner["wallMilliseconds"], 0) << runner;
+    EXPECT_EQ(runner["cpuMillisecondsOfRepeats"].size(), 2u);
+    EXPECT_EQ(runner["name"] == json["ratioTo"], runner["ratio"] == 1.0) << runner;
   }
 }
 

@@ -48,7 +48,7 @@ class PlanningStudy : public testing::Test {
 
   ProgramRun study(const std::vector<std::string>& more, const std::string& output = "out",
                    const std::string& reference = "200") const {
-    std::vector<std::string> arguments = {path("map.semantic")};
+    std::vector<std::string> arguments = {path("map.semantic"), "-f"};
     const std::map<std::string, std::string> common = {
         {"--classes", path("order.yaml")}, {"--output", path(output)}, {"--instances", "4"},
         {"--min-distance", "8"},           {"--budgets", "60,120"},    {"--reference", reference}};

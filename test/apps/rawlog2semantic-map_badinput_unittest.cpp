@@ -104,9 +104,16 @@ TEST_F(Rawlog2SemanticMap, valuesOutOfRangeAreRefused) {
     folder.write("small.ini", "[" + section + "]\n" + key + " = " + value + "\n");
     expectRefusal({key});
   }
-  folder.write("small.ini", kSmallConfig);
-  expectRefusal({"resolution"}, "small.rawlog", {"--resolution", "0"});
-  expectRefusal({"max_range"}, "small.rawlog", {"--max-range", "-3"});
+}
+
+TEST_F(Rawlog2SemanticMap, valuesOutOfRangeOnTheCommandLineAreRefused) {
+  for (const auto& [option, value, expected] : std::vector<std::array<std::string, 3>>{
+           {"--resolution", "0", "--resolution is 0, expected a number above 0"},
+           {"--max-range", "-3", "--max-range is -3, expected a number of 0 or more"}}) {
+    const ProgramRun result = run("small.rawlog", {option, value});
+    EXPECT_EQ(result.status, 64);
+    EXPECT_TRUE(contains(result.errors, expected)) << result.errors;
+  }
 }
 
 TEST_F(Rawlog2SemanticMap, missingFilesAreRefusedByName) {

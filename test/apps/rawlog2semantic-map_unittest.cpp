@@ -29,7 +29,9 @@ TEST_F(Rawlog2SemanticMap, summaryCountsObservationsPointsAndVoxels) {
   const auto s = summary();
   EXPECT_EQ(s["observations"]["read"], 2);
   EXPECT_EQ(s["observations"]["inserted"], 1);
-  EXPECT_EQ(s["observations"]["skipped"].size(), 1u);
+  EXPECT_EQ(s["observations"]["poses"], 1);  // used, not lost
+  EXPECT_TRUE(s["observations"]["skipped"].empty());
+  EXPECT_EQ(s["stopped"], false);
   EXPECT_EQ(s["points"]["read"], 2);
   EXPECT_EQ(s["points"]["labeled"], 2);
   const semantic_octree::MapContents contents = contentsOf(map());
@@ -54,6 +56,44 @@ TEST_F(Rawlog2SemanticMap, optionsOnTheCommandLineGoBeforeTheConfiguration) {
   EXPECT_EQ(map().query(2.2, 0.2, 0.2).likeliestClass, 2);
   EXPECT_EQ(map().query(0.1, 3, 0.2).status, CellState::Status::Unknown);
   EXPECT_EQ(summary()["points"]["beyondMaxRange"], 1);
+}
+
+TEST_F(Rawlog2SemanticMap, withoutAConfigurationTakesTheClassesThatTheRawlogNames) {
+  auto scan = smallScan(10);
+  scan.classNames = {"tarmac", "lawn", "van"};
+  writeSmallRawlog(folder / "named.rawlog", robotPose(10, 1.1), scan);
+  const auto build = [&](const std::string& rawlog, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {(folder / rawlog).string(), "-f", "-o",
+                                          (folder / "out").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram("rawlog2semantic-map", arguments);
+  };
+  ProgramRun result = build("named.rawlog", {});
+  ASSERT_EQ(result.status, 0) << result.errors;
+  SemanticOcTree tree = map();
+  EXPECT_EQ(tree.numClasses(), 3);
+  EXPECT_EQ(tree.classes().name(tree.query(2.2, 0.2, 0.2).likeliestClass), "tarmac");
+  EXPECT_EQ(tree.classes().name(tree.query(0.1, 3, 0.2).likeliestClass), "van");
+
+  scan.classNames.clear();
+  writeSmallRawlog(folder / "nameless.rawlog", robotPose(10, 1.1), scan);
+  result = build("nameless.rawlog", {"--static-pose"});
+  ASSERT_EQ(result.status, 0) << result.errors;
+  tree = map();
+  EXPECT_EQ(tree.classes().name(tree.query(1.1, 0.2, 0.2).likeliestClass), "class 1");
+}
+
+TEST_F(Rawlog2SemanticMap, ofMrptsOwnSamplesWithoutPosesOrLabelsIsAMapOfOccupancy) {
+  for (const char* name : {"tests_rgbd.rawlog", "test_velodyne_VLP16.rawlog"}) {
+    const fs::path rawlog = fs::path("/usr/share/mrpt/datasets") / name;
+    if (!fs::exists(rawlog)) GTEST_SKIP() << "no " << rawlog << " here";
+    const ProgramRun result =
+        runProgram("rawlog2semantic-map", {rawlog.string(), "--static-pose", "--resolution", "0.2",
+                                           "-f", "-o", (folder / "out").string()});
+    ASSERT_EQ(result.status, 0) << result.errors;
+    EXPECT_GT(contentsOf(map()).occupiedVoxels, 200u) << name;
+    EXPECT_EQ(map().numClasses(), 1);
+  }
 }
 
 TEST_F(Rawlog2SemanticMap, severalRawlogsMakeOneMap) {
@@ -120,4 +160,12 @@ TEST_F(Rawlog2SemanticMap, memoryDoesNotGrowWithTheRawlog) {
   ASSERT_EQ(longRun.status, 0) << longRun.errors;
   EXPECT_EQ(summary()["observations"]["inserted"], 40);
   EXPECT_LT(longRun.peakKilobytes, shortRun.peakKilobytes + 10000);
+}
+
+TEST_F(Rawlog2SemanticMap, saysAsMuchAsIsWanted) {
+  EXPECT_EQ(run("small.rawlog", {"-q"}).output, "");
+  EXPECT_TRUE(contains(run().output, "1 scans inserted, 0 skipped"));
+  const std::string text = run("small.rawlog", {"-v"}).output;
+  EXPECT_TRUE(contains(text, "CObservationRobotPose ''): a pose\n")) << text;
+  EXPECT_TRUE(contains(text, "CObservationLabeledCloud 'lidar'): inserted\n")) << text;
 }

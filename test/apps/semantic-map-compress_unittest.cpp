@@ -1,3 +1,4 @@
+#include <strict_files/OptionList.h>
 #include <tree_abstraction/Information.h>
 
 #include <opencv2/imgcodecs.hpp>
@@ -181,6 +182,20 @@ TEST_F(SemanticMapCompress, curveLeadsFromTheBlocksToAlphaZeroThroughTheChosenTr
       EXPECT_TRUE(point["alpha"] > solution["alpha"] ? leaves <= chosen : leaves >= chosen);
     }
     EXPECT_EQ(curve[0]["irrelevantShare"].is_null(), solution["name"] != "posts");
+  }
+}
+
+TEST_F(SemanticMapCompress, curveTellsWhatTheTreesOfItsAlphasKeep) {
+  const std::string weights =
+      "{name: a, relevant: {post: 1}, irrelevant: {grass: 0.2}, alpha: 0.01, block_size: 3.2}";
+  const json curve = reportOf(weights)["solutions"][0]["curve"];
+  for (const std::size_t i : {std::size_t(0), curve.size() / 2, curve.size() - 1}) {
+    const json& point = curve[i];
+    const json tree =
+        reportOf(weights, {"--alpha", strict_files::textOf(point["alpha"])})["solutions"][0];
+    EXPECT_EQ(tree["tree"]["knownLeaves"], point["knownLeaves"]);
+    EXPECT_NEAR(tree["classes"]["post"]["share"], point["relevantShare"], 1e-9);
+    EXPECT_NEAR(tree["classes"]["grass"]["share"], point["irrelevantShare"], 1e-9);
   }
 }
 

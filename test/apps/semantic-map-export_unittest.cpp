@@ -4,10 +4,12 @@
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_octree/Abstraction.h>
+#include <semantic_octree/SmoothedView.h>
 
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 
+#include "CsvTable.h"
 #include "ExportFixture.h"
 
 namespace fs = std::filesystem;
@@ -88,13 +90,30 @@ TEST_F(SemanticMapExport, pointsAreTheOccupiedLeavesWithWhatTheMapSaysThere) {
   }
 }
 
+TEST_F(SemanticMapExport, pointsMayHaveTheClassThatTheirVoxelHasTogetherWithItsNeighbors) {
+  ASSERT_EQ(exportTo({"map.csv"}).status, 0);
+  ASSERT_EQ(exportTo({"smooth.csv"}, {"--neighbor-weight", "0.4"}).status, 0);
+  const auto own = csvTable(folder.read("map.csv")), smooth = csvTable(folder.read("smooth.csv"));
+  ASSERT_EQ(own.size(), smooth.size());
+  const semantic_octree::SmoothedView view(map, {0.4});
+  int changed = 0;
+  for (std::size_t i = 1; i < own.size(); ++i) {
+    const auto state = view.query(std::stod(own[i][0]), std::stod(own[i][1]), std::stod(own[i][2]));
+    EXPECT_EQ(own[i][4], smooth[i][4]) << "occupancy";
+    EXPECT_EQ(std::stoi(smooth[i][5]), state.likeliestClass);
+    EXPECT_NEAR(std::stod(smooth[i][7]), state.probability, 1e-6);
+    changed += own[i][5] != smooth[i][5];
+  }
+  EXPECT_GT(changed, 20);
+}
+
 TEST_F(SemanticMapExport, tablesHaveALinePerPointAndQuoteNames) {
   ASSERT_EQ(exportTo({"map.csv", "all.csv"}).status, 0);
   const std::string csv = folder.read("map.csv");
   EXPECT_EQ(csv.rfind("x,y,z,size,occupancy,class,name,probability\n", 0), 0u);
   EXPECT_TRUE(contains(csv, ",3,\"grass, \"\"wet\"\"\","));
   EXPECT_EQ(std::size_t(std::count(csv.begin(), csv.end(), '\n')), countOccupied(map) + 1);
-  ASSERT_EQ(exportTo({"all.csv"}, {"--free"}).status, 0);
+  ASSERT_EQ(exportTo({"all.csv"}, {"--free", "-f"}).status, 0);
   const std::string all = folder.read("all.csv");
   EXPECT_EQ(std::size_t(std::count(all.begin(), all.end(), '\n')), map.getNumLeafNodes() + 1);
 }
@@ -227,7 +246,7 @@ TEST_F(SemanticMapExport, badInputIsRefusedByName) {
 
 TEST_F(SemanticMapExport, whatWasThereStaysIfAnythingFails) {
   folder.write("a.ply", "of before");
-  expectRefusal(exportTo({"a.ply", "no/folder.csv"}), {"folder.csv"});
+  expectRefusal(exportTo({"a.ply", "no/folder.csv"}, {"-f"}), {"folder.csv"});
   EXPECT_EQ(folder.read("a.ply"), "of before");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "RunProgram.h"
+#include "ShellCommand.h"
 #include "TemporaryFolder.h"
 
 using semantic_octree::SemanticOcTree;
@@ -111,6 +112,37 @@ TEST_F(SemanticMapInfo, pointsAreAnsweredWithStateClassAndOccupancy) {
     EXPECT_EQ(state + grass, "unknown-");
     EXPECT_EQ(occupancy, 0.5);
   }
+}
+
+TEST_F(SemanticMapInfo, pointsOfTheCommandLineAndOfTheStandardInputAreAnsweredAlike) {
+  const std::string expected = query("3.6 0.1 0.2\n-1 0 0\n").output;
+  EXPECT_EQ(
+      runProgram("semantic-map-info", {map(), "--at", "3.6,0.1,0.2", "--at", "-1,0,0"}).output,
+      expected);
+  const std::string program = MSO_BIN_DIR "/semantic-map-info " + map();
+  const std::string piped = "printf '3.6 0.1 0.2\\n-1 0 0\\n' | " + program + " --query -";
+  EXPECT_EQ(runCommand("sh -c \"" + piped + "\"").output, expected);
+}
+
+TEST_F(SemanticMapInfo, theDistributionAtAPointHasAllClassesAndFreeSpace) {
+  const std::vector<std::string> arguments = {map(),    "--at",           "3.6,0.1,0.2", "--at",
+                                              "9,-9,9", "--distribution", "--json"};
+  const auto answers = nlohmann::json::parse(runProgram("semantic-map-info", arguments).output);
+  ASSERT_EQ(answers.size(), 2u);
+  EXPECT_EQ(answers[0]["class"], "tall grass");
+  std::map<std::string, double> at;
+  double sum = 0;
+  for (const auto& part : answers[0]["distribution"]) {
+    at[part["class"]] = part["probability"];
+    sum += at[part["class"]];
+  }
+  EXPECT_NEAR(sum, 1, 1e-9);
+  EXPECT_NEAR(at["tall grass"], m_probability, 1e-9);
+  EXPECT_NEAR(at["(free)"], 1 - m_occupancy, 1e-4);
+  EXPECT_TRUE(answers[1]["distribution"].empty());
+  const std::string text =
+      runProgram("semantic-map-info", {map(), "--at", "3.6,0.1,0.2", "--distribution"}).output;
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + std::ptrdiff_t(at.size())) << text;
 }
 
 TEST_F(SemanticMapInfo, linesThatAreNoPointsAreRefusedByNumber) {

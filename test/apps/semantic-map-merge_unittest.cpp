@@ -27,7 +27,7 @@ class SemanticMapMerge : public testing::Test {
                    const std::vector<std::string>& options = {}) const {
     std::vector<std::string> arguments;
     for (const std::string& map : names) arguments.push_back(path(map));
-    arguments.push_back(path(out));
+    arguments.insert(arguments.end(), {"-o", path(out), "-f"});
     arguments.insert(arguments.end(), options.begin(), options.end());
     return runProgram("semantic-map-merge", arguments);
   }

@@ -33,7 +33,8 @@ class SemanticMapPlan : public testing::Test {
                                           "--output",
                                           (folder / "out").string(),
                                           "--vertices",
-                                          "200"};
+                                          "200",
+                                          "-f"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram("semantic-map-plan", arguments);
   }
@@ -55,8 +56,8 @@ TEST_F(SemanticMapPlan, writesPathReportPictureAndScene) {
   const ProgramRun result = run("-8,0,0", "8,0,0");
   ASSERT_EQ(result.status, 0) << result.errors;
   EXPECT_EQ(report()["status"], "found");
-  EXPECT_EQ(report()["length_per_class"].size(), 1u);
-  EXPECT_GE(report()["length_per_class"]["road"], 16);
+  EXPECT_EQ(report()["lengthPerClass"].size(), 1u);
+  EXPECT_GE(report()["lengthPerClass"]["road"], 16);
   EXPECT_GT(report()["milliseconds"]["ground"], 0);
   EXPECT_EQ(report()["vertices"], 202);
   const std::string csv = folder.read("out/path.csv");

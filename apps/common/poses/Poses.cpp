@@ -1,10 +1,11 @@
 #include "Poses.h"
 
 #include <mrpt/poses/CPose3D.h>
+#include <strict_files/OptionList.h>
 #include <strict_files/Words.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <sstream>
 #include <stdexcept>
 
@@ -19,15 +20,16 @@ constexpr double kDegree = M_PI / 180;
 std::vector<double> parseNumbers(const std::string& text, std::size_t least, std::size_t most,
                                  const std::string& expected) {
   std::vector<double> numbers;
-  bool valid = true;
   std::istringstream in(text + ',');
-  for (std::string part; std::getline(in, part, ',');) {
-    char* end = nullptr;
-    part = strict_files::trimmed(part);
-    numbers.push_back(std::strtod(part.c_str(), &end));
-    valid = valid && !part.empty() && *end == '\0' && std::isfinite(numbers.back());
+  try {
+    for (std::string part; std::getline(in, part, ',');)
+      numbers.push_back(strict_files::numberOf(strict_files::trimmed(part), expected));
+  } catch (const std::invalid_argument&) {
+    numbers = {NAN};
   }
-  if (!valid || numbers.size() < least || numbers.size() > most)
+  const auto isFinite = [](double x) { return std::isfinite(x); };
+  if (!std::all_of(numbers.begin(), numbers.end(), isFinite) || numbers.size() < least ||
+      numbers.size() > most)
     throw std::invalid_argument("expected " + expected + ", found '" + text + "'");
   return numbers;
 }

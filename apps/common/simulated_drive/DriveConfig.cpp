@@ -4,6 +4,7 @@
 #include <semantic_planning/vehicle/VehicleFile.h>
 #include <strict_files/ErrorMessage.h>
 #include <strict_files/IniSection.h>
+#include <strict_files/TextFile.h>
 
 #include <fstream>
 #include <stdexcept>
@@ -116,6 +117,7 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     DriveConfig config;
     config.planner.ground.keepOff = true;
     config.planner.shorten = true;
+    strict_files::checkIniText(strict_files::readText(file));
     mrpt::config::CConfigFile ini(file.string());
     ini.discardSavingChanges();
     Sections sections(ini);

@@ -70,7 +70,8 @@ const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd) {
   static const strict_files::Choices<DriveEnd> choices = {{"arrived", DriveEnd::Arrived},
                                                           {"astray", DriveEnd::Astray},
                                                           {"unreachable", DriveEnd::Unreachable},
-                                                          {"time_limit", DriveEnd::TimeLimit}};
+                                                          {"time_limit", DriveEnd::TimeLimit},
+                                                          {"stopped", DriveEnd::Stopped}};
   return choices;
 }
 
@@ -232,6 +233,11 @@ bool DriveLoop::isOver() {
   if (m_guide->gaveUp() && std::abs(state().speed) < m_config.guide.atRest) {
     m_record.end = DriveEnd::Unreachable;
     m_record.reason = m_guide->reason();
+    return true;
+  }
+  if (m_stop && m_stop()) {
+    m_record.end = DriveEnd::Stopped;
+    m_record.reason = "it was stopped on the way";
     return true;
   }
   if (m_time < m_config.timeLimit) return false;

@@ -1,6 +1,8 @@
 #pragma once
 #include <synthetic_world/Scene.h>
 
+#include <functional>
+
 #include "DriveRecord.h"
 #include "Events.h"
 #include "Mapper.h"
@@ -39,6 +41,8 @@ class DriveLoop {
             std::filesystem::path navlogs = {});
 
   void addObserver(DriveObserver& observer) { m_observers.push_back(&observer); }
+  /** The drive ends when this says so. */
+  void stopWhen(std::function<bool()> stop) { m_stop = std::move(stop); }
   void keepOriginals() { m_sensors = SimulatedSensors(m_config.sensors, true); }
   const DriveRecord& run();
 
@@ -85,6 +89,7 @@ class DriveLoop {
   synthetic_world::Footprint m_footprint;
   DriveRecord m_record;
   std::vector<DriveObserver*> m_observers;
+  std::function<bool()> m_stop;
   double m_time = 0, m_sensedAt = -1e9, m_lookedAt = -1e9;
 };
 

@@ -25,8 +25,8 @@ struct DriveRow {
       semantic_driving::DriveController::Driver::Tracker;
 };
 
-/** Astray: it believes to have arrived, but has not. */
-enum class DriveEnd { Arrived, Astray, Unreachable, TimeLimit };
+/** Astray: it believes to have arrived, but has not. Stopped: the user wanted no more of it. */
+enum class DriveEnd { Arrived, Astray, Unreachable, TimeLimit, Stopped };
 const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd);
 /** "arrived", "astray", "unreachable" or "time_limit". */
 const char* nameOf(DriveEnd end);

@@ -1,0 +1,59 @@
+#pragma once
+#include <semantic_octree/SmoothedView.h>
+
+#include <array>
+#include <vector>
+
+namespace semantic_map_evaluate {
+
+/** How often a map is right about labeled points, and how often it says so. */
+class Evaluation {
+ public:
+  /** Points that were answered for with a probability of some range. */
+  struct Bin {
+    std::size_t points = 0, right = 0;
+    double stated = 0;  ///< sum of the probabilities
+
+    double meanStated() const { return stated / static_cast<double>(points); }
+    double shareRight() const { return static_cast<double>(right) / static_cast<double>(points); }
+  };
+  static constexpr std::size_t kBins = 20;
+
+  explicit Evaluation(int numClasses) : m_ofClass(numClasses + 1) {}
+
+  /** Asks for the class of a point (meters, map frame) that is known to be of class `truth`. */
+  void ask(const semantic_octree::SmoothedView& view, const Eigen::Vector3d& point,
+           semantic_octree::ClassId truth);
+
+  std::size_t points() const { return m_points; }
+  /** Of all points, those in occupied voxels. */
+  double coverage() const { return share(m_occupied, m_points); }
+  /** Of all points, those whose voxel names their class, whether it is occupied or not. */
+  double rightOfAll() const { return share(m_right, m_points); }
+
+  /** Points in occupied voxels that name a class. What follows is about them. */
+  std::size_t answered() const { return m_answered.points; }
+  double accuracy() const { return share(m_answered.right, m_answered.points); }
+  /** Mean of -ln p(true class | occupied), nats. */
+  double logLoss() const { return m_logLoss / static_cast<double>(m_answered.points); }
+  /** Mean difference of what is stated, p(likeliest class | occupied), and the share that is right,
+   * over the bins by their points. */
+  double calibrationError() const;
+  /** By what is stated, from 0 to 1. */
+  const std::array<Bin, kBins>& reliability() const { return m_bins; }
+  /** By the true class, [0] is empty. */
+  const std::vector<Bin>& ofClass() const { return m_ofClass; }
+
+ private:
+  static double share(std::size_t part, std::size_t of) {
+    return static_cast<double>(part) / static_cast<double>(of);
+  }
+
+  std::size_t m_points = 0, m_occupied = 0, m_right = 0;
+  Bin m_answered;
+  double m_logLoss = 0;
+  std::array<Bin, kBins> m_bins{};
+  std::vector<Bin> m_ofClass;
+};
+
+}  // namespace semantic_map_evaluate

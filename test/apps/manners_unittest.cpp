@@ -1,0 +1,90 @@
+// What all programs have in common.
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "ShellCommand.h"
+#include "TemporaryFolder.h"
+
+namespace {
+
+const std::vector<std::string> kPrograms = {
+    "rawlog2semantic-map", "semantic-map-compress", "semantic-map-plan", "semantic-map-drive",
+    "semantic-map-export", "semantic-map-merge",    "semantic-map-edit", "synth-rawlog",
+    "planning-study",      "drive-study",           "semantic-map-info", "insertion-benchmark",
+    "dataset2rawlog"};
+
+class Program : public testing::TestWithParam<std::string> {
+ protected:
+  CommandRun run(const std::string& arguments) const {
+    return runCommand(std::string(MSO_BIN_DIR) + "/" + GetParam() + " " + arguments);
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Each, Program, testing::ValuesIn(kPrograms), [](const auto& each) {
+  return std::regex_replace(each.param, std::regex("-"), "_");
+});
+
+/** The message of a command line that is wrong. */
+std::string usageErrorOf(const std::string& command) {
+  const CommandRun run = runCommand(std::string(MSO_BIN_DIR) + "/" + command);
+  EXPECT_EQ(run.status, 64) << run.output;
+  return run.output;
+}
+
+}  // namespace
+
+TEST_P(Program, failsWhereTheStandardOutputTakesNothing) {
+  EXPECT_EQ(run("--version").status, 0);
+  for (const char* argument : {"--help", "--version"}) {
+    const CommandRun full = run(argument + std::string(" 3>&2 >/dev/full 2>&3"));
+    EXPECT_EQ(run(std::string(argument) + " >/dev/full; test $? = 1").status, 0) << argument;
+    EXPECT_EQ(run(std::string(argument) + " >&-; test $? = 1").status, 0) << argument;
+    EXPECT_NE(full.status, 0);
+  }
+}
+
+TEST_P(Program, endsWith64AndItsNameAfterAWrongCommandLine) {
+  const CommandRun wrong = run("--no-such-option");
+  EXPECT_EQ(wrong.status, 64) << wrong.output;
+  EXPECT_EQ(wrong.output.rfind(GetParam() + ": unknown option '--no-such-option'", 0), 0u)
+      << wrong.output;
+  EXPECT_TRUE(contains(wrong.output, GetParam() + " --help")) << wrong.output;
+}
+
+TEST_P(Program, offersTheOptionThatWasMeant) {
+  for (const char* meant : {"--version", "--help"}) {
+    const std::string typed = std::string(meant).substr(0, 5) + std::string(meant).substr(6);
+    EXPECT_TRUE(contains(run(typed).output, "did you mean '" + std::string(meant) + "'?")) << typed;
+  }
+}
+
+TEST_P(Program, speaksToPeopleInItsHelp) {
+  std::string help = run("--help").output;
+  if (GetParam() == "dataset2rawlog")
+    for (const char* command : {"semantic-kitti", "tum", "pcd"})
+      help += run(command + std::string(" --help")).output;
+  for (const char* leak : {"ENUM", "->", "UINT", "FLOAT", "INT:", "POSITIVE", "NONNEGATIVE",
+                           "{false}", "{true}", " in [", "TEXT:"})
+    EXPECT_FALSE(contains(help, leak)) << leak << " in\n" << help;
+}
+
+TEST(UsageErrors, offerTheValueThatWasMeant) {
+  EXPECT_TRUE(contains(usageErrorOf("synth-rawlog -o a.rawlog --scene vilage"), "'village'?"));
+  EXPECT_TRUE(contains(usageErrorOf("synth-rawlog -o a.rawlog --sensor lidr"), "'lidar'?"));
+  EXPECT_TRUE(contains(usageErrorOf("insertion-benchmark --rays al x"), "'all'?"));
+  EXPECT_TRUE(contains(usageErrorOf("semantic-map-plan --graph compresed"), "'compressed'?"));
+  EXPECT_TRUE(contains(usageErrorOf("dataset2rawlog semantic-kiti x"), "'semantic-kitti'?"));
+}
+
+TEST(UsageErrors, sayWhatIsMissingOrTooMuch) {
+  EXPECT_TRUE(contains(usageErrorOf("synth-rawlog"), "--output"));
+  EXPECT_TRUE(contains(usageErrorOf("semantic-map-info"), "MAP is required"));
+  EXPECT_TRUE(contains(usageErrorOf("semantic-map-info a b"), "one argument too many: 'b'"));
+  EXPECT_TRUE(contains(usageErrorOf("semantic-map-info a --distribution"), "--at"));
+  EXPECT_TRUE(contains(usageErrorOf("semantic-map-info a --at 1,2"), "expected X,Y,Z"));
+  EXPECT_TRUE(contains(usageErrorOf("dataset2rawlog tum x -o a.rawlog"), "--classes"));
+  EXPECT_TRUE(contains(usageErrorOf("semantic-map-edit a -o b --resolution -1"),
+                       "--resolution is -1, expected a number above 0"));
+  EXPECT_TRUE(contains(usageErrorOf("semantic-map-edit a --output"), "--output lacks its value"));
+}

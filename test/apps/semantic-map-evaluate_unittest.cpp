@@ -1,0 +1,146 @@
+#include <gtest/gtest.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "Evaluation.h"
+#include "RunProgram.h"
+#include "SmallRawlogs.h"
+#include "TemporaryFolder.h"
+
+using namespace semantic_octree;
+using nlohmann::json;
+using semantic_map_evaluate::Evaluation;
+
+namespace {
+
+ClassTable roadGrassCar() {
+  ClassTable table;
+  for (const char* name : {"road", "grass", "car"}) table.add(name, {});
+  return table;
+}
+
+/** Voxels of 1 m: road at x = 4.5 (seen twice), grass at 6.5, something without a label at 8.5;
+ * free before 4, and 0.5 m to the side nothing is known. */
+SemanticOcTree smallMap(const ClassTable& table = roadGrassCar()) {
+  SemanticOcTree map(1.0, table);
+  LabeledCloud cloud;
+  cloud.points = {{4, 0, 0}, {6, 0.1f, 0}, {8, 0.2f, 0}};
+  cloud.classes = {1, 2, kNoClass};
+  const Eigen::Isometry3d T(Eigen::Translation3d(0.5, 0.5, 0.5));
+  map.insert(cloud, T);
+  cloud.points.resize(1), cloud.classes.resize(1);
+  map.insert(cloud, T);
+  return map;
+}
+
+/** The small map, and scans that ask for it. */
+class SemanticMapEvaluate : public testing::Test {
+ protected:
+  void SetUp() override {
+    saveTree(smallMap(), file("map.semantic"));
+    writeSmallRawlog(file("scans.rawlog"), robotPose(10, 0.5),
+                     labeledCloud(10, {{4.2f, 0.4f, 0.3f}, {6.2f, 0.4f, 0.3f}, {4.1f, 0.3f, 0.2f}},
+                                  {1, 3, kNoClass}));
+  }
+  std::string file(const std::string& name) const { return (folder / name).string(); }
+  ProgramRun evaluate(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--output", file("out")});
+    return runProgram("semantic-map-evaluate", arguments);
+  }
+  json reportOf(const std::vector<std::string>& arguments) const {
+    const ProgramRun run = evaluate(arguments);
+    EXPECT_EQ(run.status, 0) << run.errors;
+    return json::parse(folder.read("out/quality.json"));
+  }
+  void expectRefusal(const ProgramRun& run, const std::string& part) const {
+    EXPECT_EQ(run.status, 1);
+    EXPECT_TRUE(contains(run.errors, part)) << part << " is not in: " << run.errors;
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  }
+
+  TemporaryFolder folder;
+};
+
+}  // namespace
+
+TEST(Evaluation, tellsWhereAMapAnswersHowOftenItIsRightAndHowSureItIs) {
+  const SemanticOcTree map = smallMap();
+  const SmoothedView view(map, {0.0});
+  Evaluation e(3);
+  e.ask(view, {4.5, 0.5, 0.5}, 1);  // right
+  e.ask(view, {4.1, 0.1, 0.1}, 2);  // wrong
+  e.ask(view, {6.5, 0.5, 0.5}, 2);  // right
+  e.ask(view, {8.5, 0.5, 0.5}, 3);  // occupied, no class
+  e.ask(view, {2.5, 0.5, 0.5}, 1);  // free
+  e.ask(view, {4.5, 9.5, 0.5}, 1);  // unknown
+  e.ask(view, {1e9, 0.5, 0.5}, 1);  // outside
+  EXPECT_EQ(e.points(), 7u);
+  EXPECT_EQ(e.coverage(), 4 / 7.0);
+  EXPECT_EQ(e.rightOfAll(), 2 / 7.0);
+  EXPECT_EQ(e.answered(), 3u);
+  EXPECT_EQ(e.accuracy(), 2 / 3.0);
+  const auto given = [&](double x, int k) {
+    const auto p = map.distribution(*map.search(map.coordToKey(x, 0.5, 0.5)));
+    return p[k] / (1 - p[0]);
+  };
+  const double road = given(4.5, 1), grass = given(6.5, 2);
+  EXPECT_NEAR(e.logLoss(), -(std::log(road) + std::log(given(4.5, 2)) + std::log(grass)) / 3, 1e-6);
+  EXPECT_GT(road, 0.95);
+  EXPECT_LT(grass, 0.95);
+  EXPECT_NEAR(e.calibrationError(), (std::fabs(2 * road - 1) + (1 - grass)) / 3, 1e-6);
+  EXPECT_EQ(e.reliability().back().points, 2u);
+  EXPECT_EQ(e.reliability().back().shareRight(), 0.5);
+  EXPECT_NEAR(e.reliability().back().meanStated(), road, 1e-6);
+  EXPECT_EQ(e.ofClass()[2].points, 2u);
+  EXPECT_EQ(e.ofClass()[2].right, 1u);
+}
+
+TEST(Evaluation, countsRightAnswersOfVoxelsThatWereNotHit) {
+  const SemanticOcTree map = smallMap();
+  Evaluation e(3);
+  e.ask(SmoothedView(map), {4.5, 1.5, 0.5}, 1);
+  EXPECT_EQ(e.rightOfAll(), 1);
+  EXPECT_EQ(e.answered(), 0u);
+}
+
+TEST_F(SemanticMapEvaluate, asksTheMapForTheLabeledPointsOfTheScans) {
+  const json map = reportOf({file("map.semantic"), "--scans", file("scans.rawlog")})["map"];
+  EXPECT_EQ(map["points"], 2);
+  EXPECT_EQ(map["coverage"], 1);
+  EXPECT_EQ(map["accuracy"], 0.5);
+  EXPECT_EQ(map["classes"]["road"]["right"], 1);
+  EXPECT_EQ(map["classes"]["car"]["right"], 0);
+  EXPECT_FALSE(map["classes"].contains("grass"));
+  std::size_t inBins = 0;
+  for (const json& bin : map["reliability"]) inBins += bin["points"].get<std::size_t>();
+  EXPECT_EQ(inBins, 2u);
+  EXPECT_GT(cv::imread(file("out/reliability.png")).total(), 100000u);
+}
+
+TEST_F(SemanticMapEvaluate, comparesMapsAndTakesRangeAndNeighbors) {
+  saveTree(SemanticOcTree(1.0, roadGrassCar()), file("empty.semantic"));
+  const json both = reportOf({file("map.semantic"), file("empty.semantic"), "--max-range", "5",
+                              "--neighbor-weight", "0.4", "--scans", file("scans.rawlog")});
+  EXPECT_EQ(both["map"]["points"], 1);
+  EXPECT_EQ(both["empty"]["points"], 1);
+  EXPECT_EQ(both["empty"]["coverage"], 0);
+  EXPECT_TRUE(both["empty"]["accuracy"].is_null());
+}
+
+TEST_F(SemanticMapEvaluate, refusesMapsOfOtherClassesOrOneNameAndScansWithoutLabels) {
+  ClassTable other;
+  for (const char* name : {"wall", "tree"}) other.add(name, {});
+  saveTree(smallMap(other), file("other.semantic"));
+  expectRefusal(
+      evaluate({file("map.semantic"), file("other.semantic"), "--scans", file("scans.rawlog")}),
+      "different classes: map, other");
+  expectRefusal(
+      evaluate({file("map.semantic"), file("map.semantic"), "--scans", file("scans.rawlog")}),
+      "two maps by the name of map");
+  writeSmallRawlog(file("bare.rawlog"), robotPose(10, 0), labeledCloud(10, {{4, 0, 0}}, {0}));
+  expectRefusal(evaluate({file("map.semantic"), "--scans", file("bare.rawlog")}),
+                "no point of the scans has a class");
+}

@@ -1,0 +1,125 @@
+// What becomes of outputs when a program is told to end.
+#include <gtest/gtest.h>
+#include <labeled_cloud/CObservationLabeledCloud.h>
+#include <labeled_cloud/RawlogReader.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <nlohmann/json.hpp>
+
+#include "ShellCommand.h"
+#include "TemporaryFolder.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/** rawlog2semantic-map on many times the sample's drive, which takes far longer than the tests. */
+class Interrupted : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder.write("out/map.semantic", "of before");
+    for (int i = 0; i < 30; ++i) {
+      rawlogs += ' ' + std::to_string(i) + ".rawlog";
+      fs::create_symlink(sources / "rawlog-samples/village.rawlog",
+                         folder / (std::to_string(i) + ".rawlog"));
+    }
+  }
+
+  /** Starts the program, and when it has inserted something, the shell's commands, which know it as
+   * $pid. \return its exit status */
+  int runAnd(const std::string& commands) const {
+    const std::string map = (sources / "config/maps/synthetic.ini").string();
+    folder.write("script", "cd '" + folder.path().string() + "'\nrm -f log\n" + MSO_BIN_DIR +
+                               "/rawlog2semantic-map -v -f --config " + map + " -o out" + rawlogs +
+                               " >log 2>&1 &\npid=$!\n" +
+                               "until grep -q inserted log; do sleep 0.05; done\n" + commands +
+                               "\nwait $pid\n");
+    return runCommand("sh " + (folder / "script").string()).status;
+  }
+  std::string log() const { return folder.read("log"); }
+  bool leftAnything() const {
+    for (const auto& entry : fs::directory_iterator(folder / "out"))
+      if (entry.path().filename().string().rfind(".unfinished-", 0) == 0) return true;
+    return false;
+  }
+
+  const fs::path sources = MSO_SOURCE_DIR;
+  std::string rawlogs;
+  TemporaryFolder folder;
+};
+
+}  // namespace
+
+TEST_F(Interrupted, onceItWritesWhatIsThereAndSaysSo) {
+  EXPECT_EQ(runAnd("kill -INT $pid"), 130) << log();
+  EXPECT_TRUE(contains(log(), "will stop after this observation")) << log();
+  EXPECT_TRUE(contains(log(), "stopped early")) << log();
+  const auto summary = nlohmann::json::parse(folder.read("out/summary.json"));
+  EXPECT_EQ(summary["stopped"], true);
+  const int inserted = summary["observations"]["inserted"];
+  EXPECT_GE(inserted, 1);
+  EXPECT_LT(inserted, 30 * 24);
+  EXPECT_GT(semantic_octree::loadTree((folder / "out/map.semantic").string()).size(), 100u);
+  EXPECT_FALSE(leftAnything());
+}
+
+TEST_F(Interrupted, twiceItLeavesWithWhatItBegan) {
+  EXPECT_EQ(runAnd("kill -INT $pid; until grep -q 'will stop' log; do sleep 0.01; done;"
+                   "kill -INT $pid"),
+            130)
+      << log();
+  EXPECT_EQ(folder.read("out/map.semantic"), "of before");
+  EXPECT_FALSE(leftAnything());
+}
+
+TEST_F(Interrupted, byItsTerminalsEndItLeavesAtOnce) {
+  EXPECT_EQ(runAnd("kill -HUP $pid"), 129) << log();
+  EXPECT_EQ(folder.read("out/map.semantic"), "of before");
+  EXPECT_FALSE(leftAnything());
+}
+
+TEST_F(Interrupted, killedItLeavesWhatTheNextRunRemoves) {
+  EXPECT_EQ(runAnd("kill -KILL $pid"), 137) << log();
+  EXPECT_EQ(folder.read("out/map.semantic"), "of before");
+  EXPECT_TRUE(leftAnything());
+  EXPECT_EQ(runAnd("kill -INT $pid"), 130) << log();
+  EXPECT_FALSE(leftAnything());
+}
+
+namespace {
+
+/** Runs a program in the folder, asks it once to stop when it has begun its output, and waits. */
+CommandRun stopEarly(const TemporaryFolder& folder, const std::string& command) {
+  folder.write("script", "cd '" + folder.path().string() + "'\n" + MSO_BIN_DIR "/" + command +
+                             " &\npid=$!\n" +
+                             "until ls -d .unfinished-* */.unfinished-* 2>/dev/null | grep -q .\n" +
+                             "do sleep 0.05; done\nsleep 0.5\nkill -INT $pid\nwait $pid\n");
+  return runCommand("sh " + (folder / "script").string());
+}
+
+}  // namespace
+
+TEST(StoppedEarly, aSyntheticDriveIsAShorterOne) {
+  const TemporaryFolder folder;
+  const CommandRun run =
+      stopEarly(folder, "synth-rawlog -o a.rawlog --frames 1000000 --sensor lidar --columns 60");
+  EXPECT_EQ(run.status, 130) << run.output;
+  EXPECT_TRUE(contains(run.output, "will stop after this frame")) << run.output;
+  labeled_cloud::RawlogReader reader(folder / "a.rawlog");
+  int entries = 0;
+  while (reader.next()) ++entries;
+  EXPECT_GE(entries, 2);
+  EXPECT_TRUE(contains(folder.read("a.truth.yaml"), "\nframes: " + std::to_string(entries / 2)));
+}
+
+TEST(StoppedEarly, aRobotHasDrivenAsFarAsItGot) {
+  const TemporaryFolder folder;
+  const std::string config = std::string(MSO_SOURCE_DIR) + "/config/";
+  const CommandRun run = stopEarly(
+      folder,
+      "semantic-map-drive --start=-14,-19,10 --goal=25,-12,90 --no-pictures -o out --config " +
+          config + "drives/synthetic.ini --classes " + config + "orders/synthetic.yaml");
+  EXPECT_EQ(run.status, 130) << run.output;
+  EXPECT_EQ(nlohmann::json::parse(folder.read("out/drive.json"))["end"], "stopped");
+  EXPECT_TRUE(fs::exists(folder / "out/map.semantic"));
+}
