@@ -9,6 +9,7 @@
 #include <semantic_driving/ObstacleSensing.h>
 #include <semantic_map/ExportGrid.h>
 #include <semantic_map/MapOptions.h>
+#include <semantic_octree/SmoothedView.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Lidar.h>
@@ -56,6 +57,11 @@ std::vector<OptionTable> mapTables() {
           "[compression](compression.md)."),
       table<TLikelihoodOptions>("Likelihood of observations", "`_likelihoodOpts`."),
       table<TRenderingOptions>("The map's 3D object", "`_renderOpts`."),
+      table<semantic_octree::SmoothingOptions>(
+          "Neighbors",
+          "`semantic_octree::SmoothedView`, `semantic-map-export`, `semantic-map-evaluate`; these "
+          "programs begin with a weight of 0. What it brings: "
+          "[accuracy](../how-it-works/accuracy.md)."),
       table<map_pictures::PictureStyle, map_pictures::Viewpoint>(
           "Pictures", "`[pictures]` of `rawlog2semantic-map`."),
       table<GridOptions>("2D grids",

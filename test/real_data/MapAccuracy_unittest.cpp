@@ -1,29 +1,16 @@
 // How well maps with the default parameters answer real data that they were not made from.
 #include <gtest/gtest.h>
-#include <semantic_types/ClassTableFile.h>
 
-#include <algorithm>
-#include <map>
-#include <random>
-
+#include "CountedLabels.h"
 #include "DataSets.h"
 #include "MapQuality.h"
 #include "SharedData.h"
 
 using semantic_octree::CellState;
-using semantic_octree::SemanticOcTree;
-using semantic_types::ClassId;
-using semantic_types::ClassTable;
-using semantic_types::kNoClass;
 
 namespace {
 
 constexpr double kKittiResolution = 0.2, kKittiRange = 25, kReplicaResolution = 0.05;
-
-ClassTable shippedTable(const std::string& name) {
-  return semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) / "config/classes" /
-                                        name);
-}
 
 /** Makes a map of the even frames and asks it for the points of the odd ones. */
 MapQuality splitQuality(const std::vector<LabeledFrame>& frames, const ClassTable& table,
@@ -41,43 +28,6 @@ MapQuality kittiQuality(const std::string& sequence) {
   const auto frames = readSemanticKitti(sharedDataDir() / "semantic_kitti" / sequence, table);
   return splitQuality(frames, table, kKittiResolution, kKittiRange);
 }
-
-/** Replaces this share of the classes by another one at random. */
-void disturb(std::vector<ClassId>& classes, double share, int numClasses, std::mt19937& random) {
-  std::uniform_real_distribution<> uniform(0, 1);
-  std::uniform_int_distribution<> other(1, numClasses - 1);
-  for (ClassId& id : classes) {
-    if (id == kNoClass || uniform(random) >= share) continue;
-    const int replacement = other(random);
-    id = static_cast<ClassId>(replacement < id ? replacement : replacement + 1);
-  }
-}
-
-using Voxel = std::array<octomap::key_type, 3>;
-
-Voxel voxelOf(const SemanticOcTree& map, const LabeledFrame& frame, std::size_t point) {
-  const Eigen::Vector3d p = frame.T_map_sensor * frame.cloud.points[point].cast<double>();
-  const auto key = map.coordToKey(p.x(), p.y(), p.z());
-  return {key[0], key[1], key[2]};
-}
-
-/** Labels by voxel, added up: the plainest map of classes. */
-class CountedLabels {
- public:
-  void add(const Voxel& voxel, ClassId id) {
-    if (id != kNoClass) ++m_counts[voxel][id];
-  }
-  /** The most frequent one, the lowest id on a tie; kNoClass where there is none. */
-  ClassId at(const Voxel& voxel) const {
-    const auto found = m_counts.find(voxel);
-    if (found == m_counts.end()) return kNoClass;
-    const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
-    return std::max_element(found->second.begin(), found->second.end(), fewer)->first;
-  }
-
- private:
-  std::map<Voxel, std::map<ClassId, int>> m_counts;
-};
 
 /** Right answers of a map and of counting, from the same labels to the same points. */
 struct NoisyQuality {

@@ -38,7 +38,7 @@ std::vector<LabeledCloud> labelByNetwork(const TemporaryFolder& folder) {
   const std::string labeled = (folder / "labeled.rawlog").string();
   const ProgramRun conversion = runProgram(
       "dataset2rawlog", {"semantic-kitti", (sharedDataDir() / "semantic_kitti/00").string(),
-                         "--no-labels", "--images", scans});
+                         "--no-labels", "--images", "-o", scans});
   EXPECT_EQ(conversion.status, 0) << conversion.errors;
   const ProgramRun mapping = runProgram(
       "rawlog2semantic-map",

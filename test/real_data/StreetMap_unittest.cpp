@@ -32,7 +32,7 @@ TEST(StreetMap, theStreetFromAboveShowsRoadSidewalkCarsAndBuildings) {
   const ProgramRun conversion =
       runProgram("dataset2rawlog",
                  {"semantic-kitti", (sharedDataDir() / "semantic_kitti/00").string(), "--classes",
-                  (kSources / "config/classes/semantic_kitti.yaml").string(), rawlog});
+                  (kSources / "config/classes/semantic_kitti.yaml").string(), "-o", rawlog});
   ASSERT_EQ(conversion.status, 0) << conversion.errors;
   const ProgramRun mapping = runProgram(
       "rawlog2semantic-map", {"--config", (kSources / "config/maps/semantic-kitti.ini").string(),

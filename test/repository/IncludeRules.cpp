@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 
 const IncludeTable& includeTable() {
   static const IncludeTable table = {
-      {"strict_files", {"Eigen", "yaml-cpp"}},
+      {"strict_files", {"Eigen", "fcntl.h", "sys", "unistd.h", "yaml-cpp"}},
       {"semantic_types", {"Eigen", "yaml-cpp", "strict_files"}},
       {"tree_abstraction", {}},
       {"semantic_octree",

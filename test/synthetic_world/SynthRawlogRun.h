@@ -43,13 +43,20 @@ struct Outcome {
   std::string out, error;
 };
 
-/** Runs the program in the folder with these arguments. */
-inline Outcome run(const Folder& folder, const std::string& arguments) {
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && '" MSO_BIN_DIR "/synth-rawlog' " + arguments +
+/** Runs the program in the folder with these arguments. \param before other commands of the shell
+ */
+inline Outcome run(const Folder& folder, const std::string& arguments,
+                   const std::string& before = "") {
+  const std::string command = "cd '" + folder.path().string() + "' && " + before +
+                              "'" MSO_BIN_DIR "/synth-rawlog' " + arguments +
                               " >out.txt 2>error.txt";
   const int status = std::system(command.c_str());
-  return {status, contents(folder / "out.txt"), contents(folder / "error.txt")};
+  return {WEXITSTATUS(status), contents(folder / "out.txt"), contents(folder / "error.txt")};
+}
+
+/** Where no file becomes longer than 8 blocks of 512 bytes. */
+inline Outcome runOnFullDisk(const Folder& folder, const std::string& arguments) {
+  return run(folder, arguments, "ulimit -f 8 && ");
 }
 
 /** All observations of a rawlog, those of sensory frames too, in their order. */

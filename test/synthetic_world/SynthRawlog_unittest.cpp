@@ -20,7 +20,7 @@ const std::string kSmall =
 
 TEST(SynthRawlog, writesPoseCameraAndLidarOfEachFrame) {
   const Folder folder;
-  ASSERT_EQ(run(folder, "x.rawlog --scene campus" + kSmall).status, 0);
+  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene campus" + kSmall).status, 0);
   const auto all = observationsOf(folder / "x.rawlog");
   ASSERT_EQ(all.size(), 9u);
   EXPECT_EQ(only<CObservationRobotPose>(all).size(), 3u);
@@ -35,15 +35,16 @@ TEST(SynthRawlog, writesPoseCameraAndLidarOfEachFrame) {
 
 TEST(SynthRawlog, sensorOptionChoosesWhatIsWritten) {
   const Folder folder;
-  ASSERT_EQ(run(folder, "x.rawlog --sensor camera" + kSmall).status, 0);
+  ASSERT_EQ(run(folder, "-f -o x.rawlog --sensor camera" + kSmall).status, 0);
   EXPECT_TRUE(only<CObservationLabeledCloud>(observationsOf(folder / "x.rawlog")).empty());
-  ASSERT_EQ(run(folder, "x.rawlog --sensor lidar" + kSmall).status, 0);
+  ASSERT_EQ(run(folder, "-f -o x.rawlog --sensor lidar" + kSmall).status, 0);
   EXPECT_TRUE(only<CObservation3DRangeScan>(observationsOf(folder / "x.rawlog")).empty());
 }
 
 TEST(SynthRawlog, unprojectedDepthsLandOnSurfacesOfTheirLabels) {
   const Folder folder;
-  ASSERT_EQ(run(folder, "x.rawlog --scene village --seed 3 --range-noise 0" + kSmall).status, 0);
+  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene village --seed 3 --range-noise 0" + kSmall).status,
+            0);
   const auto scene = makeScene("village", 3);
   const auto all = observationsOf(folder / "x.rawlog");
   const auto poses = only<CObservationRobotPose>(all);
@@ -69,7 +70,8 @@ TEST(SynthRawlog, unprojectedDepthsLandOnSurfacesOfTheirLabels) {
 
 TEST(SynthRawlog, lidarPointsLandOnSurfacesOfTheirClasses) {
   const Folder folder;
-  ASSERT_EQ(run(folder, "x.rawlog --scene park --hills 2 --range-noise 0" + kSmall).status, 0);
+  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene park --hills 2 --range-noise 0" + kSmall).status,
+            0);
   const auto scene = makeScene("park", 1, 2);
   const auto all = observationsOf(folder / "x.rawlog");
   const auto poses = only<CObservationRobotPose>(all);
@@ -93,18 +95,18 @@ TEST(SynthRawlog, sameCommandWritesTheSameBytes) {
   const Folder folder;
   const std::string noise = kSmall + " --label-noise 0.1 --dropout 0.1 ";
   for (const std::string kind : {"", "--odometry"}) {
-    ASSERT_EQ(run(folder, "a.rawlog" + noise + kind).status, 0);
-    ASSERT_EQ(run(folder, "b.rawlog" + noise + kind).status, 0);
+    ASSERT_EQ(run(folder, "-f -o a.rawlog" + noise + kind).status, 0);
+    ASSERT_EQ(run(folder, "-f -o b.rawlog" + noise + kind).status, 0);
     EXPECT_EQ(contents(folder / "a.rawlog"), contents(folder / "b.rawlog"));
     EXPECT_EQ(contents(folder / "a.tum"), contents(folder / "b.tum"));
   }
-  ASSERT_EQ(run(folder, "b.rawlog" + noise + "--odometry --seed 10").status, 0);
+  ASSERT_EQ(run(folder, "-f -o b.rawlog" + noise + "--odometry --seed 10").status, 0);
   EXPECT_NE(contents(folder / "a.rawlog"), contents(folder / "b.rawlog"));
 }
 
 TEST(SynthRawlog, trueTrajectoryStandsBesideTheRawlog) {
   const Folder folder;
-  ASSERT_EQ(run(folder, "x.rawlog --scene park" + kSmall).status, 0);
+  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene park" + kSmall).status, 0);
   const auto poses = only<CObservationRobotPose>(observationsOf(folder / "x.rawlog"));
   const auto trajectory = labeled_cloud::loadTumTrajectory(folder / "x.tum");
   EXPECT_EQ(trajectory.size(), poses.size());
@@ -118,13 +120,13 @@ TEST(SynthRawlog, trueTrajectoryStandsBesideTheRawlog) {
 TEST(SynthRawlog, movementsSumUpToTheTrueWayWithoutNoiseOnly) {
   const Folder folder;
   const auto endOf = [&](const std::string& noise) {
-    const std::string arguments = "x.rawlog --odometry --odometry-noise " + noise + kSmall;
+    const std::string arguments = "-f -o x.rawlog --odometry --odometry-noise " + noise + kSmall;
     EXPECT_EQ(run(folder, arguments).status, 0);
     const auto trajectory = labeled_cloud::readTrajectory({folder / "x.rawlog"});
     return *trajectory.at(mrpt::Clock::fromDouble(1704067202));
   };
   const CPose3D exact = endOf("0"), noisy = endOf("0.05");
-  ASSERT_EQ(run(folder, "y.rawlog" + kSmall).status, 0);
+  ASSERT_EQ(run(folder, "-f -o y.rawlog" + kSmall).status, 0);
   const auto poses = only<CObservationRobotPose>(observationsOf(folder / "y.rawlog"));
   const CPose3D way = poses[2]->pose.mean - poses[0]->pose.mean;
   EXPECT_LT((exact.asVectorVal() - way.asVectorVal()).array().abs().maxCoeff(), 1e-9);
@@ -134,7 +136,7 @@ TEST(SynthRawlog, movementsSumUpToTheTrueWayWithoutNoiseOnly) {
 
 TEST(SynthRawlog, truthFileNamesTheWorldAndItsClasses) {
   const Folder folder;
-  ASSERT_EQ(run(folder, "x.rawlog --scene park --seed 12 --hills 0.5" + kSmall).status, 0);
+  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene park --seed 12 --hills 0.5" + kSmall).status, 0);
   const auto truth = mrpt::containers::yaml::FromFile((folder / "x.truth.yaml").string());
   EXPECT_EQ(truth["scene"].as<std::string>(), "park");
   EXPECT_EQ(truth["seed"].as<int>(), 12);
@@ -176,22 +178,22 @@ TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
   std::ofstream(folder / "nan.txt") << "1 2 nan\n";
   std::ofstream(folder / "long.txt") << "1 2 3 4\n";
   const std::pair<std::string, std::string> cases[] = {
-      {"", "nothing to do"},
-      {"x.rawlog --scene moon", "moon"},
-      {"x.rawlog --sensor nose", "nose"},
-      {"x.rawlog --frames 0", "--frames"},
-      {"x.rawlog --rate 0", "--rate"},
-      {"x.rawlog --speed -1", "--speed"},
-      {"x.rawlog --hills 3", "--hills"},
-      {"x.rawlog --width 1", "CameraOptions::width"},
-      {"x.rawlog --fov 200", "CameraOptions::fov"},
-      {"x.rawlog --camera-range 100", "--camera-range is 100"},
-      {"x.rawlog --rings 0", "LidarOptions::rings"},
-      {"x.rawlog --range-noise -1", "range_noise"},
-      {"x.rawlog --label-noise 2", "label_noise"},
-      {"x.rawlog --dropout nan", "dropout"},
-      {"x.rawlog --unknown 1", "--unknown"},
-      {"absent/x.rawlog", "absent/x.rawlog"},
+      {"", "--output, --picture or --truth-query is required"},
+      {"-o x.rawlog --scene moon", "moon"},
+      {"-o x.rawlog --sensor nose", "nose"},
+      {"-o x.rawlog --frames 0", "--frames"},
+      {"-o x.rawlog --rate 0", "--rate"},
+      {"-o x.rawlog --speed -1", "--speed"},
+      {"-o x.rawlog --hills 3", "--hills"},
+      {"-o x.rawlog --width 1", "CameraOptions::width"},
+      {"-o x.rawlog --fov 200", "CameraOptions::fov"},
+      {"-o x.rawlog --camera-range 100", "--camera-range is 100"},
+      {"-o x.rawlog --rings 0", "LidarOptions::rings"},
+      {"-o x.rawlog --range-noise -1", "range_noise"},
+      {"-o x.rawlog --label-noise 2", "label_noise"},
+      {"-o x.rawlog --dropout nan", "dropout"},
+      {"-o x.rawlog --unknown 1", "--unknown"},
+      {"-o absent/x.rawlog", "absent/x.rawlog"},
       {"--picture absent/p.png", "absent/p.png"},
       {"--truth-query absent.txt", "absent.txt"},
       {"--truth-query short.txt", "short.txt:2"},
@@ -208,10 +210,11 @@ TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
 TEST(SynthRawlog, failureLeavesWhatWasThere) {
   const Folder folder;
   std::ofstream(folder / "x.rawlog") << "precious";
-  fs::create_directory(folder / "x.tum.tmp");  // so that the trajectory cannot be written
-  EXPECT_NE(run(folder, "x.rawlog" + kSmall).status, 0);
+  const Outcome outcome = runOnFullDisk(folder, "-f -o x.rawlog" + kSmall);
+  EXPECT_EQ(outcome.status, 1) << outcome.error;
+  EXPECT_NE(outcome.error.find("x.rawlog: cannot be written"), std::string::npos) << outcome.error;
   EXPECT_EQ(contents(folder / "x.rawlog"), "precious");
-  EXPECT_FALSE(fs::exists(folder / "x.rawlog.tmp"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // it, out.txt, error.txt
 }
 
 }  // namespace

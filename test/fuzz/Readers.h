@@ -1,0 +1,14 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+/** What reads files of others: whatever the bytes are, it either takes them or throws. */
+struct Reader {
+  std::string name;  ///< of its folder in corpus/, too
+  std::function<void(const std::string& bytes)> read;
+  /** Good files, from the root of the sources, to begin with. */
+  std::vector<std::string> examples;
+};
+
+const std::vector<Reader>& readers();

@@ -1,0 +1,62 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "Readers.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string contentOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  EXPECT_TRUE(in) << file;
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<std::string> filesOf(const Reader& reader) {
+  std::vector<std::string> contents;
+  for (const std::string& example : reader.examples)
+    contents.push_back(contentOf(fs::path(MSO_SOURCES) / example));
+  const fs::path corpus = fs::path(MSO_SOURCES) / "test/fuzz/corpus" / reader.name;
+  if (fs::exists(corpus))
+    for (const auto& entry : fs::directory_iterator(corpus))
+      contents.push_back(contentOf(entry.path()));
+  return contents;
+}
+
+/** Takes them or refuses them, with a message. */
+void expectAnswer(const Reader& reader, const std::string& bytes) {
+  try {
+    reader.read(bytes);
+  } catch (const std::exception& e) {
+    EXPECT_STRNE(e.what(), "") << reader.name;
+  }
+}
+
+}  // namespace
+
+TEST(Readers, answerToEachFileThatEverBrokeOne) {
+  for (const Reader& reader : readers()) {
+    SCOPED_TRACE(reader.name);
+    expectAnswer(reader, "");
+    for (const std::string& bytes : filesOf(reader)) expectAnswer(reader, bytes);
+  }
+}
+
+TEST(Readers, answerToFilesThatAreCutOrAltered) {
+  std::mt19937 random(1);
+  for (const Reader& reader : readers())
+    for (const std::string& bytes : filesOf(reader)) {
+      SCOPED_TRACE(reader.name);
+      for (int i = 0; i < 40; ++i) {
+        std::string altered = bytes.substr(0, i % 4 == 0 ? random() % bytes.size() : bytes.size());
+        for (int flips = i % 5; flips > 0 && !altered.empty(); --flips)
+          altered[random() % altered.size()] = static_cast<char>(random());
+        expectAnswer(reader, altered);
+      }
+    }
+}

@@ -1,0 +1,67 @@
+// Whether probabilities mean what they say on streets: even scans make a map, odd ones ask it.
+#include <gtest/gtest.h>
+#include <semantic_octree/Abstraction.h>
+
+#include "CountedLabels.h"
+#include "DataSets.h"
+#include "Evaluation.h"
+#include "SharedData.h"
+
+using semantic_map_evaluate::Evaluation;
+using semantic_octree::SmoothedView;
+
+namespace {
+
+/** Even frames' map and the odd frames' questions. */
+struct Street {
+  explicit Street(const std::string& sequence)
+      : table(shippedTable("semantic_kitti.yaml")),
+        frames(readSemanticKitti(sharedDataDir() / "semantic_kitti" / sequence, table)),
+        map(0.2, table) {
+    for (std::size_t i = 0; i < frames.size(); i += 2)
+      map.insert(frames[i].cloud, frames[i].T_map_sensor);
+  }
+
+  Evaluation evaluate(const SemanticOcTree& asked) const {
+    const SmoothedView view(asked, {0.0});
+    Evaluation evaluation(table.size());
+    for (std::size_t i = 1; i < frames.size(); i += 2)
+      for (std::size_t k = 0; k < frames[i].cloud.size(); ++k)
+        if (frames[i].cloud.classes[k] != kNoClass && !frames[i].isMoving(k))
+          evaluation.ask(view, frames[i].T_map_sensor * frames[i].cloud.points[k].cast<double>(),
+                         frames[i].cloud.classes[k]);
+    return evaluation;
+  }
+
+  ClassTable table;
+  std::vector<LabeledFrame> frames;
+  SemanticOcTree map;
+};
+
+}  // namespace
+
+TEST(StreetCalibration, ofAMapIsRight) {
+  SKIP_WITHOUT_DATA("semantic_kitti");
+  for (const char* sequence : {"00", "07"}) {
+    const Street street(sequence);
+    const Evaluation full = street.evaluate(street.map);
+    EXPECT_LE(full.logLoss(), 0.13) << sequence;
+    EXPECT_LE(full.calibrationError(), 0.015) << sequence;
+  }
+}
+
+TEST(StreetCalibration, ofACompressedMapIsNearlyThatOfTheMap) {
+  SKIP_WITHOUT_DATA("semantic_kitti");
+  for (const char* sequence : {"00", "07"}) {
+    Street street(sequence);
+    semantic_octree::AbstractionOptions options;
+    options.weights.terms = {tree_abstraction::relevant("road", 1, {*street.table.find("road")})};
+    options.weights.alpha = 0.005;
+    options.blockSize = 3.2;
+    street.map.setAbstraction(options);
+    const SemanticOcTree compressed = semantic_octree::Abstraction(street.map).compressedMap();
+    const Evaluation e = street.evaluate(compressed);
+    EXPECT_LE(e.calibrationError(), 0.08) << sequence;
+    EXPECT_LE(e.logLoss(), 0.5) << sequence;
+  }
+}

@@ -1,0 +1,44 @@
+#include "CountedLabels.h"
+
+#include <semantic_types/ClassTableFile.h>
+
+#include <algorithm>
+
+ClassTable shippedTable(const std::string& name) {
+  return semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) / "config/classes" /
+                                        name);
+}
+
+void disturb(std::vector<ClassId>& classes, double share, int numClasses, std::mt19937& random) {
+  std::uniform_real_distribution<> uniform(0, 1);
+  std::uniform_int_distribution<> other(1, numClasses - 1);
+  for (ClassId& id : classes) {
+    if (id == kNoClass || uniform(random) >= share) continue;
+    const int replacement = other(random);
+    id = static_cast<ClassId>(replacement < id ? replacement : replacement + 1);
+  }
+}
+
+Voxel voxelOf(const SemanticOcTree& map, const LabeledFrame& frame, std::size_t point) {
+  const Eigen::Vector3d p = frame.T_map_sensor * frame.cloud.points[point].cast<double>();
+  const auto key = map.coordToKey(p.x(), p.y(), p.z());
+  return {key[0], key[1], key[2]};
+}
+
+ClassId CountedLabels::at(const Voxel& voxel, double neighborWeight) const {
+  std::map<ClassId, double> sum;
+  const auto add = [&](const Voxel& v, double weight) {
+    const auto found = m_counts.find(v);
+    if (found == m_counts.end()) return;
+    for (const auto& [id, count] : found->second) sum[id] += weight * count;
+  };
+  add(voxel, 1);
+  for (int axis = 0; axis < 3 && neighborWeight > 0; ++axis)
+    for (const int step : {-1, 1}) {
+      Voxel neighbor = voxel;
+      neighbor[axis] += step;
+      add(neighbor, neighborWeight);
+    }
+  const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+  return sum.empty() ? kNoClass : std::max_element(sum.begin(), sum.end(), fewer)->first;
+}
