@@ -40,17 +40,18 @@ void IndexPool::copy(const IndexPool& o) {
 }
 
 std::uint32_t IndexAllocator::allocate(IndexPool& pool) {
-  if (!m_free.empty()) {
-    const std::uint32_t index = m_free.back();
-    m_free.pop_back();
-    return index;
-  }
-  if (m_left == 0) {
+  if (m_free.empty() && m_left == 0) {
     m_next = pool.addChunk();
     m_left = IndexPool::kPerChunk;
   }
-  --m_left;
-  return m_next++;
+  ++m_inUse;
+  if (m_free.empty()) {
+    --m_left;
+    return m_next++;
+  }
+  const std::uint32_t index = m_free.back();
+  m_free.pop_back();
+  return index;
 }
 
 int RunAllocator::lengthClass(int n) {
@@ -59,19 +60,26 @@ int RunAllocator::lengthClass(int n) {
 
 std::uint32_t RunAllocator::allocate(IndexPool& pool, int n) {
   const int c = lengthClass(n);
-  if (!m_free[c].empty()) {
-    const std::uint32_t index = m_free[c].back();
-    m_free[c].pop_back();
-    return index;
-  }
   const auto length = static_cast<std::uint32_t>(kLengths[c]);
-  if (m_left < length) {
+  if (m_free[c].empty() && m_left < length) {
     m_next = pool.addChunk();
     m_left = IndexPool::kPerChunk;
   }
-  m_left -= length;
-  m_next += length;
-  return m_next - length;
+  m_inUse += kLengths[c];
+  if (m_free[c].empty()) {
+    m_left -= length;
+    m_next += length;
+    return m_next - length;
+  }
+  const std::uint32_t index = m_free[c].back();
+  m_free[c].pop_back();
+  return index;
+}
+
+void RunAllocator::release(std::uint32_t index, int n) {
+  const int c = lengthClass(n);
+  m_free[c].push_back(index);
+  m_inUse -= kLengths[c];
 }
 
 }  // namespace semantic_octree

@@ -20,7 +20,6 @@ class IndexPool {
            (index & (kPerChunk - 1)) * m_stride;
   }
   std::size_t stride() const { return m_stride; }
-  std::size_t bytes() const { return m_chunks.size() * kPerChunk * m_stride; }
 
   /** Adds kPerChunk elements. \return the first one's number \throw std::bad_alloc */
   std::uint32_t addChunk();
@@ -49,11 +48,17 @@ class IndexPool {
 class IndexAllocator {
  public:
   std::uint32_t allocate(IndexPool& pool);
-  void release(std::uint32_t index) { m_free.push_back(index); }
+  void release(std::uint32_t index) {
+    m_free.push_back(index);
+    --m_inUse;
+  }
+  /** Elements taken less given back; an allocator may be given what another has taken. */
+  long inUse() const { return m_inUse; }
 
  private:
   std::vector<std::uint32_t> m_free;
   std::uint32_t m_next = 0, m_left = 0;
+  long m_inUse = 0;
 };
 
 /** The same for runs of up to 64 elements. Runs of a few lengths are given out; a run of n elements
@@ -61,7 +66,9 @@ class IndexAllocator {
 class RunAllocator {
  public:
   std::uint32_t allocate(IndexPool& pool, int n);
-  void release(std::uint32_t index, int n) { m_free[lengthClass(n)].push_back(index); }
+  void release(std::uint32_t index, int n);
+  /** See IndexAllocator. A run counts with all elements of its length. */
+  long inUse() const { return m_inUse; }
   /** Whether a run of n elements would do for m as well, and no shorter one. */
   static bool sameLength(int n, int m) { return lengthClass(n) == lengthClass(m); }
 
@@ -72,6 +79,7 @@ class RunAllocator {
 
   std::vector<std::uint32_t> m_free[kNumLengths];
   std::uint32_t m_next = 0, m_left = 0;
+  long m_inUse = 0;
 };
 
 }  // namespace semantic_octree

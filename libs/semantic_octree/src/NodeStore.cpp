@@ -87,6 +87,16 @@ void NodeStore::prefetchInner(const Slot& slot) const {
   for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(begin + i);
 }
 
+std::size_t NodeStore::bytes() const {
+  long octants = 0, blocks = 0, records = 0;
+  for (const NodeArena& arena : m_arenas) {
+    octants += arena.m_octants.inUse();
+    blocks += arena.m_blocks.inUse();
+    records += arena.m_records.inUse();
+  }
+  return octants * m_octants.stride() + blocks * m_blocks.stride() + records * m_records.stride();
+}
+
 std::size_t NodeStore::numNodes() const {
   long n = 0;
   for (const NodeArena& arena : m_arenas) n += arena.nodes();

@@ -106,8 +106,6 @@ class NodeStore {
   const Slot& root() const { return m_root; }
   bool empty() const { return !m_root.isKnown(); }
   Node rootNode() const { return empty() ? Node() : Node(*this, m_root); }
-  /** The node of a slot that is known. */
-  Node nodeOf(const Slot& slot) const { return Node(*this, slot); }
 
   /** The i-th of the arenas, one per thread; made when first asked for (not thread safe). */
   NodeArena& arena(int i);
@@ -144,8 +142,8 @@ class NodeStore {
   /** Brings an inner node's children and bookkeeping nearer to the processor. */
   void prefetchInner(const Slot& slot) const;
 
-  /** Bytes held, without what the heap adds. */
-  std::size_t bytes() const { return m_octants.bytes() + m_blocks.bytes() + m_records.bytes(); }
+  /** Bytes of nodes, records and bookkeeping in use; what is set aside for more is not counted. */
+  std::size_t bytes() const;
   /** Nodes including the root. */
   std::size_t numNodes() const;
   std::size_t numInnerNodes() const;

@@ -24,7 +24,6 @@ class RowLayout {
   const RowSizes& sizes() const { return m_sizes; }
   /** Doubles of a row: probabilities and entropies. */
   int rowSize() const { return m_sizes.row(); }
-  int numTerms() const { return static_cast<int>(m_order.size()); }
   /** Where term t of the options stands among the entropies and divergences. */
   int positionOf(int term) const { return m_order[term]; }
 

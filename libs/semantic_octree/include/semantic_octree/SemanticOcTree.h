@@ -86,7 +86,8 @@ class SemanticOcTree {
   /** Number of leaves; takes no time, unlike OctoMap's. */
   std::size_t getNumLeafNodes() const;
   bool empty() const { return !root(); }
-  /** Bytes held by nodes, class records and bookkeeping. */
+  /** Bytes of nodes, class records and bookkeeping; the same for equal maps, however they came to be.
+   * Memory set aside for more is not counted. */
   std::size_t memoryUsage() const;
   /** Lowest and highest corner of all known cells, meters, map frame; 0 in an empty map. */
   void getMetricMin(double& x, double& y, double& z) const;
