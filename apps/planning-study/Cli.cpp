@@ -35,8 +35,8 @@ void addGraphs(CLI::App& app, StudyOptions& study) {
 void addPlanner(CLI::App& app, semantic_planning::PlannerOptions& planner) {
   strict_files::OptionList options;
   planner.describe(options);
-  for (const char* studied : {"graph", "vertices", "max_edges", "seed", "cost", "edges", "reading",
-                              "least_probability", "shorten", "class_of_leaf", "time_limit"})
+  for (const char* studied : {"graph", "vertices", "max_edges", "seed", "edges", "reading",
+                              "least_probability", "shorten", "time_limit"})
     options.remove(studied);
   addOptions(app, options, "Planner");
 }
@@ -62,7 +62,7 @@ std::string nameOf(const std::filesystem::path& map) {
 Cli::Cli(CLI::App& app) : outputs(app) {
   study.planner.roadmap.headings = 1;  // as in the paper, and random ones
   study.planner.roadmap.alignHeadings = false;
-  study.graphs = {GraphKind::Compressed,    GraphKind::Halton,    GraphKind::HaltonDrivable,
+  study.graphs = {GraphKind::Compressed,    GraphKind::Leaves,    GraphKind::Halton,    GraphKind::HaltonDrivable,
                   GraphKind::HaltonByClass, GraphKind::HaltonMap, GraphKind::Full};
   addTo(app);
 }
@@ -83,6 +83,10 @@ void Cli::addTo(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--minutes", study.minutes, "No new instance after these (of the clock)")
       ->check(isNumber(strict_files::above(0)));
+  app.add_option("--weights", study.weights,
+                 "What the compressed tree keeps (YAML); none: what tells the ranks apart");
+  app.add_option("--solution", study.solution, "Which of the weights; none: the first")
+      ->needs("--weights");
   addGraphs(app, study);
   addPlanner(app, study.planner);
   addPeers(app, study);

@@ -97,7 +97,7 @@ void searchColored(const RoadmapTask& task, EdgeModel model, Trial& trial) {
   ColoredGraph graph = task.roadmap.graph();
   const auto evaluate = [&](EdgeId e) { return task.roadmap.evaluate(e); };
   const PathResult path =
-      search(task, graph, {task.order, model, CostKind::ArcLength}, evaluate, trial);
+      search(task, graph, {task.order, model, task.cost}, evaluate, trial);
   if (path.found()) trial.way = wayOf(path.lengthPerClass, task.order);
 }
 

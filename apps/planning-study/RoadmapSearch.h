@@ -1,5 +1,6 @@
 #pragma once
 #include <colored_graph/ColoredAStar.h>
+#include <colored_graph/CostModel.h>
 #include <semantic_planning/roadmap/Roadmap.h>
 
 #include "Trial.h"
@@ -11,6 +12,7 @@ struct RoadmapTask {
   const semantic_planning::Roadmap& roadmap;
   colored_graph::VertexId start, goal;
   const colored_graph::ClassOrder& order;
+  colored_graph::CostKind cost;
 };
 
 /** Trial::judgment of one number for all classes: rank k weighs 10^k. */

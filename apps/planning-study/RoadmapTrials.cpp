@@ -121,7 +121,8 @@ std::vector<Trial> RoadmapTrials::judge(const Instance& instance) {
   std::vector<Trial> trials(3, trialOf(instance, made));
   const Roadmap& roadmap = m_planner.roadmap();
   const RoadmapTask task{roadmap, vertexAt(roadmap, instance.start),
-                         vertexAt(roadmap, instance.goal), m_planner.order()};
+                         vertexAt(roadmap, instance.goal), m_planner.order(),
+                         m_planner.options().cost};
   searchColored(task, EdgeModel::Endpoint, trials[0]);
   searchColored(task, EdgeModel::Sweep, trials[1]);
   searchWeighted(task, trials[2]);

@@ -46,7 +46,9 @@ void append(std::vector<Trial> more, std::vector<Trial>& trials) {
 void measurePreparation(SemanticOcTree& map, const colored_graph::ClassOrder& order,
                         const StudyOptions& options, MapStudy& study) {
   measuring::Stopwatch watch(measuring::TimeOf::Process);
-  map.setAbstraction(abstractionFor(order));
+  map.setAbstraction(options.weights.empty()
+                         ? abstractionFor(order)
+                         : abstractionOf(options.weights, options.solution, map.classes()));
   study.abstractionTime = watch.lap();
   const Ground ground(map, options.planner.vehicle, options.planner.ground, order);
   study.groundTime = watch.lap();

@@ -3,6 +3,7 @@
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -18,6 +19,10 @@ struct StudyOptions {
   double minDistance = 30;  ///< from start to goal, meters
   std::vector<std::size_t> budgets = {250, 500, 1000, 2000};
   std::vector<semantic_planning::GraphKind> graphs;
+  /** What the compressed tree keeps (semantic_planning::abstractionOf); none: what tells ranks apart.
+   */
+  std::filesystem::path weights;
+  std::string solution;
   /** Every graph may have this many edges for each vertex of its budget. */
   double edgesPerVertex = 5;
   /** Vertices of the dense graph that costs are compared with; 0: none. */

@@ -1,14 +1,12 @@
 // Plans a path of a vehicle over a semantic map, classes before length.
 #include <map_pictures/MapPictures.h>
 #include <semantic_octree/TreeFile.h>
-#include <semantic_octree/WeightsFile.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
 #include <strict_files/OutputFolder.h>
 #include <strict_files/TextFile.h>
 
-#include <algorithm>
 #include <iostream>
 
 #include "Application.h"
@@ -30,20 +28,6 @@ using semantic_octree::SemanticOcTree;
 
 constexpr int kNoPath = 2;  // exit status
 const std::vector<std::string> kFiles = {"path.json", "path.csv", "plan.png", "plan.3Dscene"};
-
-AbstractionOptions abstractionOf(const Cli& cli, const SemanticOcTree& map,
-                                 const colored_graph::ClassOrder& order) {
-  if (cli.weights.empty()) return abstractionFor(order);
-  const auto file = semantic_octree::loadWeights(cli.weights, map.classes());
-  const auto named = [&](const auto& s) { return cli.solution.empty() || s.name == cli.solution; };
-  const auto found = std::find_if(file.solutions.begin(), file.solutions.end(), named);
-  if (found == file.solutions.end())
-    throw std::runtime_error(cli.weights.string() + ": has no solution '" + cli.solution + "'");
-  AbstractionOptions options = file.space;
-  options.weights.terms = found->terms;
-  options.weights.alpha = found->alpha.value_or(abstractionFor(order).weights.alpha);
-  return options;
-}
 
 /** All results; of a plan that failed all but the path itself. */
 void write(const Cli& cli, const SemanticOcTree& map, const SemanticPlanner& planner,
@@ -73,8 +57,9 @@ int run(Cli& cli) {
   const auto order = loadClassOrder(cli.classes, map.classes());
   if (!cli.vehicle.empty()) cli.planner.vehicle = loadVehicle(cli.vehicle);
   measuring::Stopwatch watch;
-  if (cli.planner.roadmap.kind == GraphKind::Compressed)
-    map.setAbstraction(abstractionOf(cli, map, order));
+  if (isOfTree(cli.planner.roadmap.kind))
+    map.setAbstraction(cli.weights.empty() ? abstractionFor(order)
+                                           : abstractionOf(cli.weights, cli.solution, map.classes()));
   const double abstraction = watch.lap();
   SemanticPlanner planner(map, order, cli.planner);
   const double ground = watch.lap();

@@ -76,31 +76,33 @@ class CompressedStreet : public testing::Test {
 }  // namespace
 
 TEST_F(CompressedStreet, cellsAreFineAlongTheRoadAndCoarseElsewhere) {
-  const SemanticOcTree full = load("map"), compressed = load("weak-penalties");
+  const SemanticOcTree full = load("map"), compressed = load("strong-penalties");
   EXPECT_GT(fineShare(full, compressed, "road"), 0.6);
   EXPECT_LT(fineShare(full, compressed, "vegetation"), 0.05);
   EXPECT_LT(fineShare(full, compressed, "terrain"), 0.1);
   EXPECT_LT(fineShare(full, compressed, "building"), 0.05);
-  EXPECT_LT(m_solutions["weak-penalties"]["leafRatio"]["known"], 0.1);
-  EXPECT_GT(m_solutions["weak-penalties"]["classes"]["road"]["share"], 0.85);
+  EXPECT_LT(m_solutions["strong-penalties"]["leafRatio"]["known"], 0.1);
+  EXPECT_GT(m_solutions["strong-penalties"]["classes"]["road"]["share"], 0.85);
 }
 
-TEST_F(CompressedStreet, strongPenaltiesKeepLessOfTreesAndGrassThanWeakOnes) {
+/** Figure 4 of the paper: its fourth solution has considerably less of trees and grass than its
+ * second. */
+TEST_F(CompressedStreet, strongPenaltiesKeepAThirdLessOfTreesAndGrassThanWeakOnes) {
   for (const char* name : {"vegetation", "terrain"}) {
     const auto kept = [&](const char* solution) {
       return m_solutions[solution]["classes"][name]["share"].get<double>();
     };
     EXPECT_GT(kept("road-only"), kept("weak-penalties")) << name;
-    EXPECT_GT(kept("weak-penalties"), kept("strong-penalties")) << name;
+    EXPECT_GT(2.0 / 3 * kept("weak-penalties"), kept("strong-penalties")) << name;
   }
 }
 
-TEST_F(CompressedStreet, allClassesRelevantAtASmallAlphaKeepsNearlyAllOfEach) {
+TEST_F(CompressedStreet, allClassesRelevantKeepNineTenthsOfEachInLessThanTwoThirdsOfTheLeaves) {
   const json& solution = m_solutions["all-classes"];
   for (const auto& [name, kept] : solution["classes"].items())
     if (!kept["share"].is_null()) {
-      EXPECT_GE(kept["share"].get<double>(), 0.99) << name;
+      EXPECT_GE(kept["share"].get<double>(), 0.9) << name;
     }
-  EXPECT_LT(solution["leafRatio"]["known"], 0.85);
+  EXPECT_LT(solution["leafRatio"]["known"], 0.65);
   RecordProperty("leafRatio", std::to_string(solution["leafRatio"]["known"].get<double>()));
 }

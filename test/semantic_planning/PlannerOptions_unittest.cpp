@@ -53,7 +53,7 @@ TEST(PlannerOptions, areSetByTheirNames) {
 }
 
 TEST(PlannerOptions, choicesHaveNamesOfTheirOwn) {
-  expectNames<GraphKind>(6);
+  expectNames<GraphKind>(7);
   expectNames<ClassReading::Kind>(3);
   expectNames<PlanStatus>(11);
 }

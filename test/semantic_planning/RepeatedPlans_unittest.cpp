@@ -163,6 +163,7 @@ TEST_F(RepeatedPlansTest, theSamePosesComeAgainUnlessTheyBelongToTheTask) {
   paintCorner();
   options.roadmap.buffer = 6;
   for (const auto& [kind, again] : {std::pair(GraphKind::Compressed, true),
+                                    {GraphKind::Leaves, true},
                                     {GraphKind::HaltonMap, true},
                                     {GraphKind::HaltonDrivable, false}}) {
     options.roadmap.kind = kind;

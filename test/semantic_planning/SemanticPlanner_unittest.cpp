@@ -1,3 +1,8 @@
+#include <semantic_octree/Abstraction.h>
+
+#include <array>
+#include <set>
+
 #include "PlannerFixture.h"
 
 using namespace semantic_planning;
@@ -22,11 +27,37 @@ TEST_F(PlannerTest, takesTheStraightLineWhereClassesAreEqual) {
 
 TEST_F(PlannerTest, everyKindOfGraphFindsADrivablePath) {
   paintCorner();
-  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Halton, GraphKind::HaltonDrivable,
-                               GraphKind::HaltonByClass, GraphKind::HaltonMap, GraphKind::Full}) {
+  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Leaves, GraphKind::Halton,
+                               GraphKind::HaltonDrivable, GraphKind::HaltonByClass,
+                               GraphKind::HaltonMap, GraphKind::Full}) {
     options.roadmap.kind = kind;
     expectDrivable(plan());
   }
+}
+
+TEST_F(PlannerTest, leavesAsPublishedHaveOnePointInTheirMiddleAtMost) {
+  paintCorner();
+  options.roadmap.kind = GraphKind::Leaves;
+  options.roadmap.vertices = 0;  // all
+  options.roadmap.headings = 1;
+  SemanticPlanner p = planner();
+  p.plan(start, goal);
+  const Ground& ground = p.ground();
+  std::set<std::array<int, 2>> middles;
+  for (const auto& leaf : semantic_octree::Abstraction(map()).leaves())
+    middles.insert({leaf.lowest().x() + leaf.edge() / 2, leaf.lowest().y() + leaf.edge() / 2});
+  std::set<std::array<int, 2>> seen;
+  std::size_t inMiddles = 0;
+  for (colored_graph::VertexId v = 0; v < p.roadmap().graph().vertexIdEnd(); ++v) {
+    if (!p.roadmap().graph().containsVertex(v)) continue;
+    const TPose2D pose = p.roadmap().pose(v).pose;
+    if (pose == start || pose == goal) continue;
+    const Column c = ground.columnAt(pose.x, pose.y);
+    EXPECT_TRUE(seen.insert({c.x, c.y}).second) << "two vertices at " << c.x << " " << c.y;
+    inMiddles += middles.count({c.x, c.y});
+  }
+  EXPECT_GT(inMiddles, 50u);
+  EXPECT_EQ(inMiddles, seen.size());
 }
 
 TEST_F(PlannerTest, goesThroughTheGapInAWall) {

@@ -22,7 +22,7 @@ namespace {
 PlannerOptions validated(const PlannerOptions& options,
                          const semantic_octree::SemanticOcTree& map) {
   options.validate();
-  if (options.roadmap.kind == GraphKind::Compressed && !map.hasAbstraction())
+  if (isOfTree(options.roadmap.kind) && !map.hasAbstraction())
     throw std::logic_error("SemanticPlanner: the map keeps no G-values (setAbstraction)");
   return options;
 }

@@ -13,7 +13,7 @@ using semantic_octree::LeafCell;
 CandidateStore::CandidateStore(semantic_octree::SemanticOcTree& map, const Ground& ground,
                                const RoadmapOptions& options)
     : m_map(map), m_ground(ground), m_options(options) {
-  if (options.kind == GraphKind::Compressed) Abstraction(map).takeChange();  // begins with all
+  if (isOfTree(options.kind)) Abstraction(map).takeChange();  // begins with all
 }
 
 CandidateStore::Tile CandidateStore::make(Column tile) const {
@@ -27,7 +27,7 @@ CandidateStore::Tile CandidateStore::make(Column tile) const {
       result.highest = std::max<int>(result.highest, s.z);
     }
   });
-  if (m_options.kind == GraphKind::Compressed)
+  if (isOfTree(m_options.kind))
     result.points = compressedPoints(tile, Abstraction(m_map), m_ground, m_options);
   else if (m_options.kind == GraphKind::Full)
     result.points = gridPoints(tile, m_ground, m_options);
@@ -70,8 +70,8 @@ std::vector<Column> CandidateStore::outdated(const std::vector<octomap::OcTreeKe
 CandidateStore::Change CandidateStore::update(const std::vector<octomap::OcTreeKey>& touched,
                                               const std::vector<Column>& changedTiles) {
   std::vector<Column> tiles;
-  if (m_options.kind == GraphKind::Compressed) tiles = outdated(touched);
-  if (m_options.kind == GraphKind::Compressed || m_options.kind == GraphKind::Full)
+  if (isOfTree(m_options.kind)) tiles = outdated(touched);
+  if (isOfTree(m_options.kind) || m_options.kind == GraphKind::Full)
     tiles.insert(tiles.end(), changedTiles.begin(), changedTiles.end());
   std::sort(tiles.begin(), tiles.end());
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());

@@ -42,13 +42,20 @@ ClassId likeliestIn(const LeafCell& leaf, const Abstraction& abstraction) {
   return static_cast<ClassId>(std::max_element(p.begin() + 1, p.end()) - p.begin());
 }
 
+/** The largest cells into which leaves are split, in voxels. */
+int largestCell(const Ground& ground, const RoadmapOptions& options) {
+  constexpr int kTree = 65536;
+  return options.kind == GraphKind::Leaves ? kTree
+                                           : powerOfTwoWithin(options.spacing / ground.voxelSize());
+}
+
 /** Large cells go before small ones: the middle of what is all alike comes before its border, where
- * most leaves are. */
-double priorityOf(const Cell& cell, unsigned seed) {
+ * most leaves are. Of leaves as published, each is as likely to be taken as any other. */
+double priorityOf(const Cell& cell, const RoadmapOptions& options) {
   const auto edge = static_cast<unsigned>(cell.edge);
-  return 1.0 / edge *
-         dither(static_cast<unsigned>(cell.low.x) / edge, static_cast<unsigned>(cell.low.y) / edge,
-                seed + edge);
+  const auto x = static_cast<unsigned>(cell.low.x), y = static_cast<unsigned>(cell.low.y);
+  if (options.kind == GraphKind::Leaves) return unitHash(x, y, options.seed + 1);
+  return 1.0 / edge * dither(x / edge, y / edge, options.seed + edge);
 }
 
 }  // namespace
@@ -65,7 +72,7 @@ double dither(unsigned x, unsigned y, unsigned seed) {
 
 std::vector<CandidatePoint> compressedPoints(Column tile, const Abstraction& abstraction,
                                              const Ground& ground, const RoadmapOptions& options) {
-  const int largest = powerOfTwoWithin(options.spacing / ground.voxelSize());
+  const int largest = largestCell(ground, options);
   const Column first = firstColumnOf(tile);
   const auto key = [&](int offset, int z) {
     return octomap::OcTreeKey(static_cast<std::uint16_t>(first.x + offset),
@@ -81,7 +88,7 @@ std::vector<CandidatePoint> compressedPoints(Column tile, const Abstraction& abs
     forCellsOf(low, size, largest, tile, [&](const Cell& cell) {
       for (const Surface& s : ground.surfaces(cell.center()))
         if (s.drivable && s.z >= z && s.z < z + size)
-          points.push_back({cell.center(), s.z, classId, priorityOf(cell, options.seed)});
+          points.push_back({cell.center(), s.z, classId, priorityOf(cell, options)});
     });
   }
   return points;
@@ -93,7 +100,7 @@ std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
   std::vector<CandidatePoint> points;
   forCellsOf(firstColumnOf(tile), kTileEdge, edge, tile, [&](const Cell& cell) {
     for (const Surface& s : ground.surfaces(cell.low))
-      if (s.drivable) points.push_back({cell.low, s.z, {}, priorityOf(cell, options.seed)});
+      if (s.drivable) points.push_back({cell.low, s.z, {}, priorityOf(cell, options)});
   });
   return points;
 }

@@ -12,7 +12,7 @@ constexpr std::size_t kDefaultVertices = 1000;
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 
 /** Whether a kind takes its vertices from a store. */
-bool isFinite(GraphKind kind) { return kind == GraphKind::Compressed || kind == GraphKind::Full; }
+bool isFinite(GraphKind kind) { return isOfTree(kind) || kind == GraphKind::Full; }
 
 RoadmapOptions withDefaults(RoadmapOptions options) {
   if (!isFinite(options.kind) && options.vertices == 0) options.vertices = kDefaultVertices;

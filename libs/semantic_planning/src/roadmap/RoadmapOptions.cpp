@@ -9,16 +9,24 @@ using strict_files::Choices;
 
 const Choices<GraphKind>& choicesOf(GraphKind) {
   static const Choices<GraphKind> choices = {
-      {"compressed", GraphKind::Compressed},          {"halton", GraphKind::Halton},
-      {"halton_drivable", GraphKind::HaltonDrivable}, {"halton_by_class", GraphKind::HaltonByClass},
-      {"halton_map", GraphKind::HaltonMap},           {"full", GraphKind::Full}};
+      {"compressed", GraphKind::Compressed},
+      {"leaves", GraphKind::Leaves},
+      {"halton", GraphKind::Halton},
+      {"halton_drivable", GraphKind::HaltonDrivable},
+      {"halton_by_class", GraphKind::HaltonByClass},
+      {"halton_map", GraphKind::HaltonMap},
+      {"full", GraphKind::Full}};
   return choices;
 }
 
 const char* nameOf(GraphKind kind) { return strict_files::nameIn(choicesOf(kind), kind); }
 
 bool belongsToMap(GraphKind kind) {
-  return kind == GraphKind::Compressed || kind == GraphKind::HaltonMap || kind == GraphKind::Full;
+  return isOfTree(kind) || kind == GraphKind::HaltonMap || kind == GraphKind::Full;
+}
+
+bool isOfTree(GraphKind kind) {
+  return kind == GraphKind::Compressed || kind == GraphKind::Leaves;
 }
 
 void RoadmapOptions::describe(strict_files::OptionList& list) {
@@ -31,9 +39,9 @@ void RoadmapOptions::describe(strict_files::OptionList& list) {
   list.add("more_neighbors", moreNeighbors, "", between(0, 100),
            "so many more for each doubling of vertices beyond 1000");
   list.add("longest_edge", longestEdge, "m", above(0), "longest edge");
-  list.add("headings", headings, "", between(1, 360), "at each point (compressed, full)");
+  list.add("headings", headings, "", between(1, 360), "at each point (compressed, leaves, full)");
   list.add("align_headings", alignHeadings, "",
-           "headings follow roads and free space; false: they look random (compressed, full)");
+           "headings follow roads and free space; false: they look random (compressed, leaves, full)");
   list.add("spacing", spacing, "m", above(0),
            "between points in large leaves (compressed), or of the grid (full)");
   list.add("buffer", buffer, "m", buffers, "vertices lie this near to the line from start to goal");

@@ -1,6 +1,10 @@
 #pragma once
 #include <colored_graph/ClassOrder.h>
 #include <semantic_octree/AbstractionOptions.h>
+#include <semantic_types/ClassTable.h>
+
+#include <filesystem>
+#include <string>
 
 namespace semantic_planning {
 
@@ -9,5 +13,13 @@ namespace semantic_planning {
  * \param alpha price of detail, see AbstractionWeights::alpha */
 semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order,
                                                    double alpha = 0.005);
+
+/** One that keeps what a solution of a file of weights says (see semantic_octree::loadWeights); its
+ * alpha is 0.005 if the file says none. \param solution its name; empty: the first
+ * \throw std::runtime_error naming the file and what is wrong with it, or that it has no such
+ * solution */
+semantic_octree::AbstractionOptions abstractionOf(const std::filesystem::path& weights,
+                                                  const std::string& solution,
+                                                  const semantic_types::ClassTable& classes);
 
 }  // namespace semantic_planning

@@ -57,7 +57,7 @@ class PlannerCore;
  * Abstraction::takeChange()) is for one planner only. */
 class SemanticPlanner {
  public:
-  /** \param map must outlive the planner. With GraphKind::Compressed it has to keep G-values
+  /** \param map must outlive the planner. With a graph of the tree (isOfTree) it has to keep G-values
    * (SemanticOcTree::setAbstraction).
    * \param order over the map's class ids, 0 = unknown ground (loadClassOrder)
    * \throw std::invalid_argument bad options, or an order of other classes

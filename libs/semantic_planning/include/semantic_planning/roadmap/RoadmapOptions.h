@@ -8,7 +8,8 @@ namespace semantic_planning {
 /** Where a roadmap's vertices come from. */
 enum class GraphKind {
   Compressed,      ///< ground in the leaves of the map's compressed tree
-                   ///< (SemanticOcTree::setAbstraction)
+                   ///< (SemanticOcTree::setAbstraction); large ones have several points
+  Leaves,          ///< the same, one point a leaf, as published
   Halton,          ///< a Halton sequence; samples off the ground or in the way are dropped
   HaltonDrivable,  ///< the same, and goes on until there are as many drivable vertices as asked for
   HaltonByClass,   ///< the same, with half as many vertices in each worse rank as in the one before
@@ -17,17 +18,19 @@ enum class GraphKind {
   Full             ///< the ground of the finest map, on a grid
 };
 
-/** "compressed", "halton", "halton_drivable", "halton_by_class", "halton_map", "full". */
+/** "compressed", "leaves", "halton", "halton_drivable", "halton_by_class", "halton_map", "full". */
 const strict_files::Choices<GraphKind>& choicesOf(GraphKind);
 const char* nameOf(GraphKind kind);
 /** Whether a kind's poses belong to the map: they come again in plans for other tasks. */
 bool belongsToMap(GraphKind kind);
+/** Whether a kind's points lie in leaves of the compressed tree, which the map then has to keep. */
+bool isOfTree(GraphKind kind);
 
 /** How a roadmap is made. */
 struct RoadmapOptions {
   GraphKind kind = GraphKind::Compressed;
-  /** Vertices, start and goal not counted; of Halton, samples. 0: all that Compressed and Full
-   * have, 1000 for the others. */
+  /** Vertices, start and goal not counted; of Halton, samples. 0: all that Compressed, Leaves
+   * and Full have, 1000 for the others. */
   std::size_t vertices = 1000;
   /** Most edges, start's and goal's not counted, also after updates; 0: as many as the nearest
    * neighbors give. Every vertex's nearest go first. */
@@ -38,16 +41,16 @@ struct RoadmapOptions {
   double moreNeighbors = 6;
   /** Longest edge, meters. */
   double longestEdge = 15;
-  /** Compressed, Full: headings at each point, evenly spaced. */
+  /** Compressed, Leaves, Full: headings at each point, evenly spaced. */
   int headings = 2;
-  /** Compressed, Full: the first heading follows the free space of the point's class and better
+  /** Compressed, Leaves, Full: the first heading follows the free space of the point's class and better
    * ones; otherwise it looks random. */
   bool alignHeadings = true;
   /** Compressed: largest distance between points in a large leaf; Full: between points; meters. */
   double spacing = 2;
   /** Vertices lie within this distance from the line between start and goal, meters. */
   double buffer = 30;
-  /** Compressed: a vertex has the class of its leaf (as in the paper) instead of the finest map's
+  /** Compressed, Leaves: a vertex has the class of its leaf (as in the paper) instead of the finest map's
    * ground. It matters for colored_graph::EdgeModel::Endpoint only. */
   bool classOfLeaf = false;
   /** Another value gives other vertices of the same kind. */
