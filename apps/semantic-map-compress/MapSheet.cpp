@@ -1,13 +1,12 @@
 #include "MapSheet.h"
 
-#include <map_pictures/MapCanvas.h>
-
 #include <algorithm>
 #include <cmath>
 
 namespace semantic_map_compress {
 
 using map_pictures::bgr;
+using map_pictures::MapCanvas;
 using map_pictures::kPaper;
 using semantic_octree::SemanticOcTree;
 
@@ -33,10 +32,11 @@ MapSheet::MapSheet(std::size_t numMaps)
 void MapSheet::add(const SemanticOcTree& map, const std::string& title) {
   map_pictures::PictureStyle style;
   style.width = m_tile.width, style.height = m_tile.height;
-  const auto canvas = map_pictures::MapCanvas::ofMap(map, style);
-  if (m_tiles.empty()) m_legend = canvas.legend();
+  auto canvas = m_first ? m_first->blank() : MapCanvas::ofMap(map, style);
+  if (m_first) canvas.drawMap(map, style);
   cv::Mat picture = canvas.picture().clone();
   map_pictures::drawScaleBar(picture, canvas.pixelsPerMeter());
+  if (!m_first) m_first = std::move(canvas);
   m_tiles.push_back(map_pictures::withTitle(onPaper(picture, m_tile), title));
 }
 
@@ -52,7 +52,7 @@ cv::Mat MapSheet::picture() const {
   }
   cv::Mat maps;
   cv::vconcat(rows, maps);
-  return withLegend(maps, "", m_legend);
+  return withLegend(maps, "", m_first->legend());
 }
 
 }  // namespace semantic_map_compress

@@ -1,13 +1,15 @@
 #pragma once
-#include <map_pictures/Sheet.h>
+#include <map_pictures/MapCanvas.h>
 #include <semantic_octree/SemanticOcTree.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace semantic_map_compress {
 
-/** Maps of the same place from above, side by side, each with its title. */
+/** Maps of the same place from above, side by side, each with its title: the first one's extent, at
+ * one scale. */
 class MapSheet {
  public:
   /** \param numMaps that will be added: the more, the smaller. */
@@ -20,7 +22,7 @@ class MapSheet {
  private:
   int m_columns;
   cv::Size m_tile;
-  std::vector<map_pictures::LegendEntry> m_legend;
+  std::optional<map_pictures::MapCanvas> m_first;
   std::vector<cv::Mat> m_tiles;
 };
 

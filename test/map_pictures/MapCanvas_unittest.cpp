@@ -150,6 +150,17 @@ TEST(MapCanvas, theCanvasOfAMapIsItsTopView) {
   EXPECT_EQ(cv::norm(c.sheet("A field"), renderTopView(tree, style), cv::NORM_INF), 0);
 }
 
+TEST(MapCanvas, blankPaperOfTheSamePlaceShowsTheSameMapTheSame) {
+  const auto tree = paintedField();
+  const MapCanvas first = MapCanvas::ofMap(tree, {});
+  MapCanvas second = first.blank();
+  EXPECT_EQ(count(second.picture(), map_pictures::kPaper), int(second.picture().total()));
+  EXPECT_TRUE(second.legend().empty());
+  second.drawMap(tree, {});
+  EXPECT_EQ(cv::norm(first.picture(), second.picture(), cv::NORM_INF), 0);
+  EXPECT_EQ(first.at(1, 2), second.at(1, 2));
+}
+
 TEST(MapCanvas, theLegendStandsBesideThePictureAndNamesTheMapsClassesFirst) {
   MapCanvas c = canvas();
   c.explain({"path", Stroke{kPurple, 3, 2}});

@@ -95,6 +95,15 @@ MapCanvas MapCanvas::ofMap(const SemanticOcTree& tree, const PictureStyle& style
   return canvas;
 }
 
+MapCanvas MapCanvas::blank() const {
+  MapCanvas canvas;
+  canvas.m_region = m_region;
+  canvas.m_pixelsPerMeter = m_pixelsPerMeter;
+  canvas.m_origin = m_origin;
+  canvas.m_picture = cv::Mat(m_picture.size(), CV_8UC3, bgr(kPaper));
+  return canvas;
+}
+
 void MapCanvas::drawMap(const SemanticOcTree& tree, const PictureStyle& style) {
   style.validate();
   drawCells(collectCells(tree, style), tree);

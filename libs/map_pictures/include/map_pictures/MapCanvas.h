@@ -22,6 +22,9 @@ class MapCanvas {
    * \throw std::invalid_argument as PictureStyle::validate(). */
   static MapCanvas ofMap(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
 
+  /** Empty paper of the same place, size and scale. */
+  MapCanvas blank() const;
+
   MapCanvas(const MapCanvas&) = delete;
   MapCanvas& operator=(const MapCanvas&) = delete;
   MapCanvas(MapCanvas&&) = default;
@@ -61,10 +64,11 @@ class MapCanvas {
   }
 
  private:
+  MapCanvas() = default;
   void drawCells(const MapCells& map, const semantic_octree::SemanticOcTree& tree);
 
   Eigen::AlignedBox2d m_region;
-  double m_pixelsPerMeter;
+  double m_pixelsPerMeter = 0;
   cv::Point2d m_origin;  ///< of the map's point (0, 0), pixels
   cv::Mat m_picture;
   std::vector<LegendEntry> m_legend;
