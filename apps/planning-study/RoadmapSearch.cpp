@@ -96,8 +96,7 @@ void searchColored(const RoadmapTask& task, EdgeModel model, Trial& trial) {
   trial.judgment = nameOf(model);
   ColoredGraph graph = task.roadmap.graph();
   const auto evaluate = [&](EdgeId e) { return task.roadmap.evaluate(e); };
-  const PathResult path =
-      search(task, graph, {task.order, model, task.cost}, evaluate, trial);
+  const PathResult path = search(task, graph, {task.order, model, task.cost}, evaluate, trial);
   if (path.found()) trial.way = wayOf(path.lengthPerClass, task.order);
 }
 

@@ -19,7 +19,8 @@ struct StudyOptions {
   double minDistance = 30;  ///< from start to goal, meters
   std::vector<std::size_t> budgets = {250, 500, 1000, 2000};
   std::vector<semantic_planning::GraphKind> graphs;
-  /** What the compressed tree keeps (semantic_planning::abstractionOf); none: what tells ranks apart.
+  /** What the compressed tree keeps (semantic_planning::abstractionOf); none: what tells ranks
+   * apart.
    */
   std::filesystem::path weights;
   std::string solution;

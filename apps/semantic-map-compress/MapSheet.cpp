@@ -6,8 +6,8 @@
 namespace semantic_map_compress {
 
 using map_pictures::bgr;
-using map_pictures::MapCanvas;
 using map_pictures::kPaper;
+using map_pictures::MapCanvas;
 using semantic_octree::SemanticOcTree;
 
 namespace {

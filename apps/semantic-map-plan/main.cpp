@@ -58,8 +58,9 @@ int run(Cli& cli) {
   if (!cli.vehicle.empty()) cli.planner.vehicle = loadVehicle(cli.vehicle);
   measuring::Stopwatch watch;
   if (isOfTree(cli.planner.roadmap.kind))
-    map.setAbstraction(cli.weights.empty() ? abstractionFor(order)
-                                           : abstractionOf(cli.weights, cli.solution, map.classes()));
+    map.setAbstraction(cli.weights.empty()
+                           ? abstractionFor(order)
+                           : abstractionOf(cli.weights, cli.solution, map.classes()));
   const double abstraction = watch.lap();
   SemanticPlanner planner(map, order, cli.planner);
   const double ground = watch.lap();

@@ -98,9 +98,30 @@ TEST_F(PlanningStudy, allWaysToPlanGetTheSameTasks) {
       task += row.at(part) + " ";
     EXPECT_TRUE(tasksOfWay[wayOf(row)].insert(task).second) << "twice: " << wayOf(row);
   }
-  constexpr std::size_t kGraphs = 6, kJudgments = 4, kKept = 1, kBudgets = 2, kReference = 1;
+  constexpr std::size_t kGraphs = 7, kJudgments = 4, kKept = 1, kBudgets = 2, kReference = 1;
   ASSERT_EQ(tasksOfWay.size(), kGraphs * (kJudgments + kKept) * kBudgets + kReference);
   for (const auto& [way, tasks] : tasksOfWay) EXPECT_EQ(tasks, tasksOfWay.begin()->second) << way;
+}
+
+/** As in the paper: one vertex a leaf, with its class; costs count edges. */
+TEST_F(PlanningStudy, costsMayCountEdgesInGraphsOfAFileOfWeights) {
+  folder.write("weights.yaml", "relevant: {road: 1}\nalpha: 0.001\nname: roads\n");
+  const std::string weights = (folder / "weights.yaml").string();
+  expectRefused(study({"--graphs", "leaves", "--weights", weights, "--solution", "none"}),
+                weights + ": has no solution 'none'");
+  ASSERT_EQ(study({"--graphs", "leaves", "--weights", weights, "--solution", "roads", "--cost",
+                   "count", "--class-of-leaf"})
+                .status,
+            0);
+  int found = 0;
+  for (const Row& row : rows()) {
+    if (row.at("found") != "1" || row.at("judgment") != "endpoint") continue;
+    std::vector<long long> cost = numbers(row.at("cost [0.1 mm]"));
+    cost.pop_back();  // the length
+    for (const long long edges : cost) EXPECT_LT(edges, 1000) << "numbers of edges";
+    ++found;
+  }
+  EXPECT_GT(found, 0);
 }
 
 TEST_F(PlanningStudy, equalSeedsGiveEqualResultsApartFromTimes) {
@@ -197,7 +218,7 @@ TEST_F(PlanningStudy, rememberedEdgesChangeNoPath) {
     if (row.at("judgment") == "profile" && row.at("graph") != "reference")
       ways[row.at("graph") + " " + row.at("budget") + " " + row.at("instance")][row.at("memory")] =
           row.at("way [0.1 mm]");
-  EXPECT_EQ(ways.size(), 6u * 2 * 4);
+  EXPECT_EQ(ways.size(), 7u * 2 * 4);
   for (const auto& [task, way] : ways) EXPECT_EQ(way.at("kept"), way.at("cold")) << task;
 }
 

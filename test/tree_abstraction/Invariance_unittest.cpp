@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "BruteForce.h"
 #include "RandomTrees.h"
 
 using namespace tree_abstraction;
@@ -186,4 +187,48 @@ TEST(Invariance, informationOfTheTreeFollowsTheChainRuleAndDataProcessing) {
     EXPECT_LE(found.full.information[1], found.full.information[0] + 1e-15);
     EXPECT_LE(found.full.information[0], found.full.leafEntropy);
   }
+}
+
+namespace {
+
+/** G(n) of the paper, not divided by p(n): the most that subtrees of n add to J. From the values of
+ * whole trees alone. \param above the interior nodes on the way to n */
+double unnormalizedG(const VectorTree& tree, const AbstractionWeights& weights, Node node,
+                     std::vector<Node> above, std::map<Node, double>& all) {
+  if (tree.children(node).empty()) return all[node] = 0;
+  const double without = brute_force::objective(tree, weights, above);
+  above.push_back(node);
+  double value = brute_force::objective(tree, weights, above) - without;
+  for (const auto child : tree.children(node))
+    value += unnormalizedG(tree, weights, child, above, all);
+  return all[node] = std::max(value, 0.0);
+}
+
+}  // namespace
+
+/** Proposition 1: what is expanded may be decided without p(n), by the children's shares alone. */
+TEST(Invariance, gIsPositiveWhereGPerUnitOfProbabilityIs) {
+  int positive = 0, zero = 0;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    Engine random(seed);
+    Shape shape{3, 8, 8, 0.5};
+    shape.missingProbability = 0.3;
+    const auto tree = random_trees::makeTree(shape, random);
+    const auto weights = random_trees::makeWeights(shape, random);
+    const auto found = findOptimalTree(tree, weights);
+    std::map<Node, double> g;
+    unnormalizedG(tree, weights, tree.roots().front(), {}, g);
+    for (std::size_t n = 0; n < found.nodes.size(); ++n) {
+      const double p = found.information.probability[n];
+      EXPECT_NEAR(g.at(found.nodes[n]), p * found.values.g[n], 1e-13);
+      const double perUnit = found.values.g[n];
+      if (p <= 1e-4 || tree.children(found.nodes[n]).empty()) continue;
+      if (perUnit > 0 && perUnit < 1e-6) continue;  // brute force rounds
+      EXPECT_EQ(g.at(found.nodes[n]) > 1e-12, perUnit > 0);
+      ++(perUnit > 0 ? positive : zero);
+    }
+  }
+  EXPECT_GT(positive, 100);
+  EXPECT_GT(zero, 100);
 }

@@ -8,14 +8,13 @@ using strict_files::between;
 using strict_files::Choices;
 
 const Choices<GraphKind>& choicesOf(GraphKind) {
-  static const Choices<GraphKind> choices = {
-      {"compressed", GraphKind::Compressed},
-      {"leaves", GraphKind::Leaves},
-      {"halton", GraphKind::Halton},
-      {"halton_drivable", GraphKind::HaltonDrivable},
-      {"halton_by_class", GraphKind::HaltonByClass},
-      {"halton_map", GraphKind::HaltonMap},
-      {"full", GraphKind::Full}};
+  static const Choices<GraphKind> choices = {{"compressed", GraphKind::Compressed},
+                                             {"leaves", GraphKind::Leaves},
+                                             {"halton", GraphKind::Halton},
+                                             {"halton_drivable", GraphKind::HaltonDrivable},
+                                             {"halton_by_class", GraphKind::HaltonByClass},
+                                             {"halton_map", GraphKind::HaltonMap},
+                                             {"full", GraphKind::Full}};
   return choices;
 }
 
@@ -25,9 +24,7 @@ bool belongsToMap(GraphKind kind) {
   return isOfTree(kind) || kind == GraphKind::HaltonMap || kind == GraphKind::Full;
 }
 
-bool isOfTree(GraphKind kind) {
-  return kind == GraphKind::Compressed || kind == GraphKind::Leaves;
-}
+bool isOfTree(GraphKind kind) { return kind == GraphKind::Compressed || kind == GraphKind::Leaves; }
 
 void RoadmapOptions::describe(strict_files::OptionList& list) {
   strict_files::Range buffers = atLeast(0);
@@ -40,8 +37,9 @@ void RoadmapOptions::describe(strict_files::OptionList& list) {
            "so many more for each doubling of vertices beyond 1000");
   list.add("longest_edge", longestEdge, "m", above(0), "longest edge");
   list.add("headings", headings, "", between(1, 360), "at each point (compressed, leaves, full)");
-  list.add("align_headings", alignHeadings, "",
-           "headings follow roads and free space; false: they look random (compressed, leaves, full)");
+  list.add(
+      "align_headings", alignHeadings, "",
+      "headings follow roads and free space; false: they look random (compressed, leaves, full)");
   list.add("spacing", spacing, "m", above(0),
            "between points in large leaves (compressed), or of the grid (full)");
   list.add("buffer", buffer, "m", buffers, "vertices lie this near to the line from start to goal");

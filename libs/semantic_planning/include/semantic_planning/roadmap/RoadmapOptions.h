@@ -43,15 +43,15 @@ struct RoadmapOptions {
   double longestEdge = 15;
   /** Compressed, Leaves, Full: headings at each point, evenly spaced. */
   int headings = 2;
-  /** Compressed, Leaves, Full: the first heading follows the free space of the point's class and better
-   * ones; otherwise it looks random. */
+  /** Compressed, Leaves, Full: the first heading follows the free space of the point's class and
+   * better ones; otherwise it looks random. */
   bool alignHeadings = true;
   /** Compressed: largest distance between points in a large leaf; Full: between points; meters. */
   double spacing = 2;
   /** Vertices lie within this distance from the line between start and goal, meters. */
   double buffer = 30;
-  /** Compressed, Leaves: a vertex has the class of its leaf (as in the paper) instead of the finest map's
-   * ground. It matters for colored_graph::EdgeModel::Endpoint only. */
+  /** Compressed, Leaves: a vertex has the class of its leaf (as in the paper) instead of the finest
+   * map's ground. It matters for colored_graph::EdgeModel::Endpoint only. */
   bool classOfLeaf = false;
   /** Another value gives other vertices of the same kind. */
   unsigned seed = 0;
