@@ -46,7 +46,7 @@ class Scan {
   void summarize();
   CubeContent summarizeTile(const VoxelIndex& tile, std::size_t number);
   ScanGrid::Place placeOf(const Beam& beam) const {
-    return m_free[0].placeOf((beam.end - m_free[0].origin()).cast<int>());
+    return m_free[0].placeOf(ScanBeams::voxelOf(beam.end) - m_free[0].firstVoxel());
   }
 
   InsertionReport m_report;

@@ -8,18 +8,13 @@
 namespace semantic_octree {
 
 using semantic_types::LabeledCloud;
-namespace {
-
-VoxelIndex voxelOf(const Eigen::Array3d& u) {
-  return {floorOf(u.x()), floorOf(u.y()), floorOf(u.z())};
-}
-
-}  // namespace
 
 ScanBeams::ScanBeams(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
                      double resolution, const InsertionOptions& options)
     : m_cloud(cloud),
-      m_origin(T_map_sensor.translation().array() / resolution),
+      m_origin(inVoxels(T_map_sensor.translation().x(), resolution),
+               inVoxels(T_map_sensor.translation().y(), resolution),
+               inVoxels(T_map_sensor.translation().z(), resolution)),
       m_rotation(T_map_sensor.linear() / resolution),
       m_maxRange(options.maxRange > 0 ? options.maxRange : std::numeric_limits<double>::max()),
       m_minRange2(options.minRange * options.minRange),

@@ -47,6 +47,9 @@ class ScanBeams {
   /** How many points became what. */
   const InsertionReport& report() const { return m_report; }
 
+  static VoxelIndex voxelOf(const Eigen::Array3d& u) {
+    return {floorOf(u.x()), floorOf(u.y()), floorOf(u.z())};
+  }
   static bool insideMap(const Eigen::Array3d& u) {
     return (u >= -kKeyOfOrigin).all() && (u < kKeyOfOrigin).all();
   }

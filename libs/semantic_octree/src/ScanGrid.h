@@ -36,6 +36,7 @@ class ScanGrid {
   };
   const Field& field(int axis) const { return m_fields[axis]; }
 
+  const VoxelIndex& firstVoxel() const { return m_firstVoxel; }
   /** First tile, in tiles (voxel / 8) of the map whose lowest voxel is 0 (OctoMap's keys). */
   const VoxelIndex& firstTile() const { return m_firstTile; }
   const VoxelIndex& numTiles() const { return m_numTiles; }
