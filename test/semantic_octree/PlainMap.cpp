@@ -38,7 +38,7 @@ void carve(const Eigen::Array3d& begin, const Eigen::Array3d& end, std::set<Voxe
 PlainScan plainScan(const PosedCloud& scan, double resolution, const InsertionOptions& options) {
   PlainScan result;
   std::set<VoxelId> carvedEnds[2];
-  const Eigen::Array3d begin = scan.T_map_sensor.translation().array() / resolution;
+  const Eigen::Array3d begin = scan.T_map_sensor.translation().array() * (1 / resolution);
   const double maxRange = options.maxRange > 0 ? options.maxRange : HUGE_VAL;
   for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
     const Eigen::Vector3d p = scan.cloud.points[i].cast<double>();

@@ -229,6 +229,24 @@ TEST(Votes, doNotDependOnTheOrderOfPoints) {
   }
 }
 
+TEST(Votes, ofAScanAreAllLabelsThatEndInAVoxel) {
+  const auto beliefAfter = [](const Votes& votes) {
+    LabeledCloud cloud;
+    for (const auto& [id, count] : votes)
+      for (int i = 0; i < count; ++i) {
+        cloud.points.emplace_back(5.1f + 0.01f * static_cast<float>(i), 0.5f, 0.5f);
+        cloud.classes.push_back(static_cast<ClassId>(id));
+      }
+    SemanticOcTree map(1.0, numberedClasses(24));
+    map.insert(cloud, Eigen::Isometry3d::Identity());
+    return map.belief(map.search(map.coordToKey(5.5, 0.5, 0.5)));
+  };
+  const ClassFilter<float> filter(24, {});
+  for (const Votes& votes : {Votes{{3, 1}}, Votes{{3, 2}}, Votes{{3, 80}}, Votes{{3, 1}, {9, 1}},
+                             Votes{{3, 5}, {9, 1}}, Votes{{1, 1}, {3, 5}, {9, 7}, {24, 2}}})
+    EXPECT_TRUE(beliefAfter(votes) == after(filter, votes)) << votes.size();
+}
+
 TEST(Votes, seeThroughThirtyPercentOfWrongLabelsAsCountingDoes) {
   std::mt19937 random(6);
   Answers sum;

@@ -49,7 +49,7 @@ auto BlockUpdate::update(Block& block, const BlockScan& scan) -> Result {
   const Block before = block;
   m_recordsChanged = false;
   m_superfluous = m_fresh = 0;
-  const VoxelBits touched = scan.free | scan.hit;
+  const VoxelBits touched = scan.touched();
   makeRoomForRecords(block, scan);
   missWhere(block.values, scan.free, {m_miss, m_lowest, m_highest});
   block.known |= touched;
@@ -66,7 +66,7 @@ auto BlockUpdate::update(Block& block, const BlockScan& scan) -> Result {
 
 void BlockUpdate::makeRoomForRecords(Block& block, const BlockScan& scan) {
   VoxelBits room = block.recorded, opened = 0;
-  const VoxelBits touched = scan.free | scan.hit;
+  const VoxelBits touched = scan.touched();
   for (int o = 0; o < 8; ++o) {
     if (!block.isLeafOctant(o) || !octantOf(touched, o) || octantOf(scan.free, o) == 0xff) continue;
     if (block.hasRecord(8 * o)) opened |= VoxelBits(0xff) << 8 * o;
@@ -75,7 +75,7 @@ void BlockUpdate::makeRoomForRecords(Block& block, const BlockScan& scan) {
   room |= opened;
   std::uint32_t rank = scan.firstHit;
   for (VoxelBits bits = scan.hit; bits; bits &= bits - 1, ++rank)
-    if (scan.votes.softLabelOf(rank) || scan.votes.votesOf(rank).numVoted > 0) room |= bits & -bits;
+    if (scan.votes.softLabelOf(rank) || scan.votes.hasVotes(rank)) room |= bits & -bits;
   if (room == block.recorded) return;
   m_fresh = room & ~block.recorded & ~opened;
   m_arena.setRecorded(block, room);
@@ -101,13 +101,14 @@ void BlockUpdate::hitVoxel(Block& block, int voxel, bool isNew, std::uint32_t ra
   }
   ClassRecord& record = m_store.record(block, voxel);
   Belief belief = isNew ? m_filter.uniform(before) : record.belief();
-  const HitVotes::Result hard = votes.votesOf(rank);
-  if (const float* soft = votes.softLabelOf(rank))
+  if (const float* soft = votes.softLabelOf(rank)) {
     m_filter.hit(belief, soft);
-  else if (hard.numVoted > 0)
-    m_filter.hit(belief, hard.votes, hard.numVoted);
-  else
+  } else if (votes.hasVotes(rank)) {
+    const HitVotes::Result hard = votes.votesOf(rank);
+    m_filter.hit(belief, hard.votes.data(), hard.numVoted);
+  } else {
     m_filter.hit(belief);
+  }
   const ClassRecord after = ClassRecord::of(belief);
   if (!isNew && after == record) return;
   m_recordsChanged = true;

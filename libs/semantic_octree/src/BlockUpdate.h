@@ -11,6 +11,8 @@ struct BlockScan {
   VoxelBits free, hit;  ///< no voxel is both
   const HitVotes& votes;
   std::uint32_t firstHit;  ///< rank of the first hit voxel; the others follow in Morton order
+
+  VoxelBits touched() const { return free | hit; }
 };
 
 /** The class filter, applied to a block of voxels at once. */

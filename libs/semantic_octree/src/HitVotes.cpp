@@ -1,73 +1,72 @@
 #include "HitVotes.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace semantic_octree {
 
 using semantic_types::LabeledCloud;
 
-void HitVotes::start(std::size_t numVoxels, const LabeledCloud& cloud, int numClasses) {
-  m_cloud = &cloud;
+void HitVotes::count(const LabeledCloud& cloud, const std::vector<std::uint32_t>& voxels,
+                     std::size_t numVoxels, int numClasses) {
   m_numClasses = numClasses;
-  m_polls.assign(numVoxels, Poll());
-  m_ballots.clear();
-  m_mixedVotes.clear();
-  const std::size_t soft = cloud.probabilities.empty() ? 0 : numVoxels;
-  m_softSums.assign(soft * numClasses, 0.f);
-  m_softCounts.assign(soft, 0);
+  const bool soft = !cloud.probabilities.empty();
+  m_softSums.assign(soft ? numVoxels * numClasses : 0, 0.f);
+  m_softCounts.assign(soft ? numVoxels : 0, 0);
+  m_labels.clear();
+  m_endsOfLabels.assign(numVoxels, 0);
+  if (soft)
+    addSoftLabels(cloud, voxels);
+  else if (!cloud.classes.empty())
+    collectLabels(cloud, voxels);
 }
 
-void HitVotes::add(std::uint32_t voxel, std::uint32_t point) {
-  if (!m_softSums.empty()) return addSoft(voxel, point);
-  const ClassId id = m_cloud->classes.empty() ? kNoClass : m_cloud->classes[point];
-  if (id == kNoClass) return;
-  m_ballots.emplace_back(voxel, id);
-  Poll& poll = m_polls[voxel];
-  if (poll.numVoted == 0) {
-    poll.first.id = id;
-    poll.numVoted = 1;
+void HitVotes::collectLabels(const LabeledCloud& cloud, const std::vector<std::uint32_t>& voxels) {
+  const auto forEachLabel = [&](const auto& f) {
+    for (std::size_t i = 0; i < voxels.size(); ++i)
+      if (voxels[i] != kNowhere && cloud.classes[i] != kNoClass) f(voxels[i], cloud.classes[i]);
+  };
+  // A counting sort: how many each has, where each begins, and, once all are in place, ends.
+  forEachLabel([&](std::uint32_t voxel, ClassId) { ++m_endsOfLabels[voxel]; });
+  std::uint32_t begin = 0;
+  for (std::uint32_t& n : m_endsOfLabels) begin += std::exchange(n, begin);
+  m_labels.resize(begin);
+  forEachLabel([&](std::uint32_t voxel, ClassId id) { m_labels[m_endsOfLabels[voxel]++] = id; });
+  begin = 0;
+  for (const std::uint32_t end : m_endsOfLabels) {
+    std::sort(m_labels.begin() + begin, m_labels.begin() + end);
+    begin = end;
   }
-  if (poll.first.id == id)
-    ++poll.first.count;
-  else
-    poll.numVoted = 2;  // at least; to be counted
 }
 
-void HitVotes::addSoft(std::uint32_t voxel, std::uint32_t point) {
-  const float* q = m_cloud->probabilities.data() + static_cast<std::size_t>(point) * m_numClasses;
-  if (std::all_of(q, q + m_numClasses, [](float p) { return p == 0; })) return;
-  float* sum = m_softSums.data() + static_cast<std::size_t>(voxel) * m_numClasses;
-  for (int k = 0; k < m_numClasses; ++k) sum[k] += q[k];
-  ++m_softCounts[voxel];
+HitVotes::Result HitVotes::votesOf(std::uint32_t voxel) const {
+  Result result;
+  const std::uint32_t end = m_endsOfLabels[voxel];
+  for (std::uint32_t i = firstLabel(voxel); i < end; ++i) {
+    if (result.numVoted == 0 || result.votes[result.numVoted - 1].id != m_labels[i])
+      result.votes[result.numVoted++] = {m_labels[i], 0};
+    ++result.votes[result.numVoted - 1].count;
+  }
+  return result;
 }
 
-void HitVotes::finish() {
-  countMixed();
+void HitVotes::addSoftLabels(const LabeledCloud& cloud, const std::vector<std::uint32_t>& voxels) {
+  const auto K = static_cast<std::size_t>(m_numClasses);
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    const float* const q = cloud.probabilities.data() + i * K;
+    if (voxels[i] == kNowhere || std::all_of(q, q + K, [](float p) { return p == 0; })) continue;
+    float* const sum = m_softSums.data() + voxels[i] * K;
+    for (std::size_t k = 0; k < K; ++k) sum[k] += q[k];
+    ++m_softCounts[voxels[i]];
+  }
   for (std::size_t voxel = 0; voxel < m_softCounts.size(); ++voxel)
-    for (int k = 0; m_softCounts[voxel] > 1 && k < m_numClasses; ++k)
-      m_softSums[voxel * m_numClasses + k] /= static_cast<float>(m_softCounts[voxel]);
+    for (std::size_t k = 0; m_softCounts[voxel] > 1 && k < K; ++k)
+      m_softSums[voxel * K + k] /= static_cast<float>(m_softCounts[voxel]);
 }
 
-void HitVotes::countMixed() {
-  m_ballots.erase(
-      std::remove_if(m_ballots.begin(), m_ballots.end(),
-                     [this](const Ballot& b) { return m_polls[b.voxel()].numVoted == 1; }),
-      m_ballots.end());
-  std::sort(m_ballots.begin(), m_ballots.end(),
-            [](const Ballot& a, const Ballot& b) { return a.value < b.value; });
-  for (std::size_t i = 0; i < m_ballots.size(); ++i) {
-    const Ballot& b = m_ballots[i];
-    Poll& poll = m_polls[b.voxel()];
-    if (i == 0 || m_ballots[i - 1].voxel() != b.voxel()) {
-      poll.mixedVotes = static_cast<std::uint32_t>(m_mixedVotes.size());
-      poll.numVoted = 0;
-    }
-    if (poll.numVoted == 0 || m_mixedVotes.back().id != b.id()) {
-      m_mixedVotes.push_back({b.id(), 0});
-      ++poll.numVoted;
-    }
-    ++m_mixedVotes.back().count;
-  }
+std::size_t HitVotes::bytes() const {
+  return m_labels.capacity() * sizeof(ClassId) + m_softSums.capacity() * sizeof(float) +
+         (m_endsOfLabels.capacity() + m_softCounts.capacity()) * sizeof(std::uint32_t);
 }
 
 }  // namespace semantic_octree

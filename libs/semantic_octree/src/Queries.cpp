@@ -40,9 +40,6 @@ void addExtent(const Node& node, const Cell& cell, VoxelIndex& low, VoxelIndex& 
     if (const Node child = node.child(i)) addExtent(child, cell.child(i), low, high);
 }
 
-/** As OctoMap computes it, so that what lies on a border has OctoMap's key (0.3 / 0.1 < 3). */
-double inVoxels(double coordinate, double resolution) { return coordinate * (1 / resolution); }
-
 }  // namespace
 
 SemanticOcTree::Belief SemanticOcTree::belief(const Node& leaf) const {
@@ -124,10 +121,7 @@ TreeIterator SemanticOcTree::begin_leafs_bbx(const octomap::point3d& low,
 }
 
 octomap::OcTreeKey SemanticOcTree::coordToKey(double x, double y, double z) const {
-  const auto key = [&](double coordinate) {
-    return floorOf(inVoxels(coordinate, m_resolution)) + kKeyOfOrigin;
-  };
-  return octomapKey(key(x), key(y), key(z));
+  return octomapKey(keyOf(x, m_resolution), keyOf(y, m_resolution), keyOf(z, m_resolution));
 }
 octomap::OcTreeKey SemanticOcTree::coordToKey(const octomap::point3d& point) const {
   return coordToKey(point.x(), point.y(), point.z());

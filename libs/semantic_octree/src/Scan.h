@@ -1,4 +1,5 @@
 #pragma once
+#include "HitTiles.h"
 #include "HitVotes.h"
 #include "ScanBeams.h"
 #include "ScanGrid.h"
@@ -17,14 +18,16 @@ class Scan {
   void set(const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
            double resolution, int numClasses, const InsertionOptions& options);
 
-  const InsertionReport& report() const { return m_beams.report; }
+  const InsertionReport& report() const { return m_report; }
   const ScanPyramid& pyramid() const { return m_pyramid; }
   const HitVotes& votes() const { return m_votes; }
 
-  const std::uint64_t* freeBits(std::size_t tile) const { return m_free[0].tile(tile); }
-  const std::uint64_t* hitBits(std::size_t tile) const { return m_hits.tile(tile); }
-  /** Rank (see HitVotes) of the first hit voxel of a tile; the others follow in Morton order. */
-  std::uint32_t firstHit(std::size_t tile) const { return m_firstHit[tile]; }
+  struct Tile {
+    const VoxelBits* free;      ///< a word for each block, in Morton order as their bits
+    const HitTiles::Tile& hit;  ///< ranks are those of HitVotes
+  };
+  /** \param tile key of a voxel in it / 8 */
+  Tile tile(const VoxelIndex& tile) const;
   bool hasVoxels() const { return report().hitVoxels + report().freeVoxels > 0; }
   /** Forgets the voxels, keeps the buffers. */
   void clear();
@@ -35,22 +38,23 @@ class Scan {
   std::size_t bytes() const;
 
  private:
-  void markHits(const InsertionOptions& options);
-  /** \param margin voxels before a return that are not carved */
-  void markFree(const InsertionOptions& options, double margin);
-  void markFreePart(int part, const InsertionOptions& options, double margin);
+  void markHits(const ScanBeams& beams, const InsertionOptions& options);
+  void markFree(const ScanBeams& beams, const InsertionOptions& options, double margin);
+  /** Follows a part's beams, and notes in which voxels they end. */
+  void markFreePart(const ScanBeams& beams, int part, const InsertionOptions& options,
+                    double margin);
   void summarize();
-  CubeContent summarizeTile(std::size_t tile);
-  void vote(const semantic_types::LabeledCloud& cloud, int numClasses);
-  std::uint32_t rankOf(std::uint64_t bit) const;
+  CubeContent summarizeTile(const VoxelIndex& tile, std::size_t number);
+  ScanGrid::Place placeOf(const Beam& beam) const {
+    return m_free[0].placeOf(ScanBeams::voxelOf(beam.end) - m_free[0].firstVoxel());
+  }
 
-  ScanBeams m_beams;
+  InsertionReport m_report;
   std::vector<ScanGrid> m_free;  ///< one per thread, united in the first
-  ScanGrid m_hits;
-  ScanGrid m_clippedEnds;  ///< end voxels of beams beyond the range, to carve each once
-  std::vector<std::uint64_t> m_endBits;  ///< per beam: its end voxel's bit
-  std::vector<std::uint32_t> m_carving;  ///< beams that carve
-  std::vector<std::uint32_t> m_firstHit;
+  HitTiles m_hits;
+  HitTiles m_clippedEnds;      ///< of beams beyond the range, to carve each end voxel once
+  std::vector<bool> m_carves;  ///< per point: whether its beam carves; empty: all do
+  std::vector<std::uint32_t> m_endRanks;  ///< per point: rank of the voxel that it hit
   ScanPyramid m_pyramid;
   HitVotes m_votes;
 };

@@ -12,7 +12,8 @@ namespace semantic_octree {
 
 /** One bit per voxel of a box of space, in tiles of 8 x 8 x 8 voxels. Inside a tile the bits are in
  * Morton order (x lowest): a 64-bit word is a 4 x 4 x 4 block, a byte the eight children of a node.
- * Rows and layers of tiles are padded to powers of two, so that each coordinate of a voxel has bits
+ * 4 x 4 x 4 tiles fill a page of memory, so that few pages are touched and a ray's neighbors share
+ * them. Rows and layers of pages are padded to powers of two: each coordinate of a voxel has bits
  * of its own in the position of the voxel's bit. */
 class ScanGrid {
  public:
@@ -35,22 +36,28 @@ class ScanGrid {
   };
   const Field& field(int axis) const { return m_fields[axis]; }
 
+  const VoxelIndex& firstVoxel() const { return m_firstVoxel; }
   /** First tile, in tiles (voxel / 8) of the map whose lowest voxel is 0 (OctoMap's keys). */
   const VoxelIndex& firstTile() const { return m_firstTile; }
   const VoxelIndex& numTiles() const { return m_numTiles; }
-  /** Tiles with padding: one above the largest index. */
-  std::size_t size() const { return m_strides[2] * m_numTiles.z(); }
-  /** Distance of neighbors' indices. */
-  std::size_t stride(int axis) const { return m_strides[axis]; }
-  /** Calls f(index) for every tile that is not padding. */
+  std::size_t numTilesInAll() const { return numberOf(m_numTiles - 1) + 1; }
+  /** Number of a tile: x first, then y and z, none left out. \param tile relative to the first */
+  std::size_t numberOf(const VoxelIndex& tile) const {
+    return (std::size_t(tile.z()) * m_numTiles.y() + tile.y()) * m_numTiles.x() + tile.x();
+  }
+  /** Calls f(tile, number) for every tile. */
   template <typename F>
   void forEachTile(const F& f) const {
-    for (int z = 0; z < m_numTiles.z(); ++z)
-      for (int y = 0; y < m_numTiles.y(); ++y)
-        for (int x = 0; x < m_numTiles.x(); ++x) f(z * m_strides[2] + y * m_strides[1] + x);
+    std::size_t number = 0;
+    VoxelIndex tile;
+    for (tile.z() = 0; tile.z() < m_numTiles.z(); ++tile.z())
+      for (tile.y() = 0; tile.y() < m_numTiles.y(); ++tile.y())
+        for (tile.x() = 0; tile.x() < m_numTiles.x(); ++tile.x()) f(tile, number++);
   }
-  std::uint64_t* tile(std::size_t i) { return m_bits.get() + i * kWords; }
-  const std::uint64_t* tile(std::size_t i) const { return m_bits.get() + i * kWords; }
+  std::uint64_t* words(const VoxelIndex& tile) { return m_words + bitOf(tile * 8) / 64; }
+  const std::uint64_t* words(const VoxelIndex& tile) const {
+    return m_words + bitOf(tile * 8) / 64;
+  }
 
   /** Position of a bit = sum of three table entries at the voxel's coordinates relative to the
    * grid. */
@@ -61,35 +68,35 @@ class ScanGrid {
   std::uint64_t bitOf(const VoxelIndex& relative) const {
     return m_offsets[0][relative.x()] + m_offsets[1][relative.y()] + m_offsets[2][relative.z()];
   }
-  /** Sets a bit. \return whether it was set before */
-  bool testAndSet(std::uint64_t bit) {
-    std::uint64_t& word = m_bits[bit >> 6];
-    const std::uint64_t mask = std::uint64_t(1) << (bit & 63);
-    const bool before = word & mask;
-    word |= mask;
-    return before;
+  /** Where a voxel is: the number of its tile, and its bit in there. */
+  struct Place {
+    std::size_t tile;
+    unsigned bit;
+  };
+  Place placeOf(const VoxelIndex& relative) const {
+    const VoxelIndex tile(relative.x() >> 3, relative.y() >> 3, relative.z() >> 3);
+    return {numberOf(tile), static_cast<unsigned>(bitOf(relative) & 511)};
   }
-  std::uint64_t* words() { return m_bits.get(); }
-  std::size_t bytes() const { return m_capacity * kWords * sizeof(std::uint64_t); }
+  std::uint64_t* words() { return m_words; }
+  /** Reserved; pages that no ray touched cost nothing. */
+  std::size_t bytes() const { return m_capacity * kBytesPerPage; }
+  static constexpr std::size_t kBytesPerPage = 4096;
 
  private:
   struct Free {
-    void operator()(std::uint64_t* p) const { std::free(p); }
+    void operator()(std::byte* p) const { std::free(p); }
   };
-  void reserve(std::size_t tiles);
+  void reserve();
 
   VoxelIndex m_firstVoxel, m_firstTile, m_numTiles;
-  std::array<std::size_t, 3> m_strides{};
   std::array<Field, 3> m_fields{};
-  std::size_t m_capacity = 0;
-  std::unique_ptr<std::uint64_t[], Free> m_bits;
+  std::size_t m_numPages = 0, m_capacity = 0;  ///< with padding
+  std::unique_ptr<std::byte[], Free> m_memory;
+  std::uint64_t* m_words = nullptr;  ///< where the first page begins
   std::vector<std::uint64_t> m_offsets[3];
 };
 
 /** Bits set in some words. */
 unsigned countBits(const std::uint64_t* words, int numWords);
-
-/** Bits set in front of a bit. */
-unsigned countBitsBefore(const std::uint64_t* words, unsigned bit);
 
 }  // namespace semantic_octree

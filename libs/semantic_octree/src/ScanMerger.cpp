@@ -63,29 +63,29 @@ bool ScanMerger::finish(Slot& slot, const Cell& cell, bool changed, bool reshape
 }
 
 bool ScanMerger::mergeTile(const ScanCube& cube) {
-  const std::size_t tile = m_scan.pyramid().tileIndex(cube.cell.index);
-  const VoxelBits *free = m_scan.freeBits(tile), *hit = m_scan.hitBits(tile);
-  m_nextHit = m_scan.firstHit(tile);
+  const Scan::Tile tile = m_scan.tile(cube.cell.index);
+  const auto blockScan = [&](int i) {
+    return BlockScan{tile.free[i], tile.hit.words[i], m_scan.votes(), tile.hit.ranks[i]};
+  };
   Octant& octant = childrenOf(*cube.slot);
   for (int i = 0; i < 8; ++i)
-    if (free[i] | hit[i]) m_store.prefetchInner(octant.slots[i]);
+    if (blockScan(i).touched()) m_store.prefetchInner(octant.slots[i]);
   bool changed = false;
   for (int i = 0; i < 8; ++i)
-    if (free[i] | hit[i])
-      changed |= mergeBlock({&octant.slots[i], cube.cell.child(i)}, free[i], hit[i]);
+    if (blockScan(i).touched())
+      changed |= mergeBlock({&octant.slots[i], cube.cell.child(i)}, blockScan(i));
   return finish(*cube.slot, cube.cell, changed);
 }
 
-bool ScanMerger::mergeBlock(const ScanCube& cube, VoxelBits free, VoxelBits hit) {
+bool ScanMerger::mergeBlock(const ScanCube& cube, const BlockScan& scan) {
   Slot& slot = *cube.slot;
-  const Whole whole = updateWhole(slot, !~free, hit);
+  const Whole whole = updateWhole(slot, !~scan.free, scan.hit);
   if (whole != Whole::Descend) return whole == Whole::Changed;
   const bool wasInner = slot.isInner();
   Block& block = wasInner         ? m_store.block(slot)
                  : slot.isKnown() ? m_arena.expandToBlock(slot)
                                   : m_arena.createBlock(slot);
-  const auto result = m_voxels.update(block, {free, hit, m_scan.votes(), m_nextHit});
-  m_nextHit += static_cast<std::uint32_t>(countOf(hit));
+  const auto result = m_voxels.update(block, scan);
   return finish(slot, cube.cell, result.changed || !wasInner, result.reshaped || !wasInner);
 }
 

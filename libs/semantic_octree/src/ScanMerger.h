@@ -62,7 +62,7 @@ class ScanMerger {
   bool note(const Cell& cube, bool changed);
 
   bool mergeTile(const ScanCube& cube);
-  bool mergeBlock(const ScanCube& cube, VoxelBits free, VoxelBits hit);
+  bool mergeBlock(const ScanCube& cube, const BlockScan& scan);
 
   friend void mergeScan(const MergeTarget&, const Scan&, int threads);
   void collect(const ScanCube& cube, std::vector<ScanCube>& parts);
@@ -75,7 +75,6 @@ class ScanMerger {
   BlockUpdate m_voxels;
   GTree::Worker* m_gTree;
   std::vector<Cell> m_changed;
-  std::uint32_t m_nextHit = 0;  ///< rank of the next hit voxel in the current tile
 };
 
 /** Merges a scan into the whole tree. The cubes of one level are shared among the threads, then the

@@ -10,9 +10,7 @@ void ScanPyramid::cover(const ScanGrid& grid) {
       l.first[axis] = grid.firstTile()[axis] >> level;
       l.size[axis] = (last[axis] >> level) - l.first[axis] + 1;
     }
-    l.strideY = level == 0 ? grid.stride(1) : l.size.x();
-    l.strideZ = level == 0 ? grid.stride(2) : l.strideY * l.size.y();
-    l.cubes.assign(l.strideZ * l.size.z(), CubeContent());
+    l.cubes.assign(l.indexOf(l.size - 1) + 1, CubeContent());
   }
 }
 

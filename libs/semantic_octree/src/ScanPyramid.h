@@ -26,8 +26,9 @@ class ScanPyramid {
 
   /** Starts anew for the tiles of this grid: nothing seen. */
   void cover(const ScanGrid& grid);
+  /** \param tile its number in the grid */
   void set(std::size_t tile, CubeContent content) { m_levels[0].cubes[tile] = content; }
-  CubeContent tile(std::size_t i) const { return m_levels[0].cubes[i]; }
+  CubeContent tile(std::size_t tile) const { return m_levels[0].cubes[tile]; }
   /** Fills the levels above the tiles. */
   void build();
 
@@ -38,18 +39,14 @@ class ScanPyramid {
     if ((i < 0).any() || (i >= l.size).any()) return {};
     return l.cubes[l.indexOf(i)];
   }
-  std::size_t tileIndex(const VoxelIndex& tile) const {
-    return m_levels[0].indexOf(tile - m_levels[0].first);
-  }
   std::size_t bytes() const;
 
  private:
   struct Level {
     VoxelIndex first, size;
-    std::size_t strideY, strideZ;
     std::vector<CubeContent> cubes;
     std::size_t indexOf(const VoxelIndex& i) const {
-      return i.z() * strideZ + i.y() * strideY + i.x();
+      return (std::size_t(i.z()) * size.y() + i.y()) * size.x() + i.x();
     }
   };
   void buildLevel(int level);

@@ -29,10 +29,13 @@ inline int floorOf(double x) {
   return towardsZero - (x < towardsZero);
 }
 
+/** A coordinate (meters, map frame) in voxels. It is multiplied by the reciprocal, as in OctoMap,
+ * so that what lies on a border has OctoMap's key (0.3 / 0.1 < 3). */
+inline double inVoxels(double coordinate, double voxelSize) { return coordinate * (1 / voxelSize); }
 /** Key of the voxel that holds a coordinate (meters, map frame); beyond 0..65535 for one outside of
  * the map. */
 inline int keyOf(double coordinate, double voxelSize) {
-  return floorOf(coordinate / voxelSize) + kKeyOfOrigin;
+  return floorOf(inVoxels(coordinate, voxelSize)) + kKeyOfOrigin;
 }
 /** Coordinate (meters, map frame) of a voxel's lower border. */
 inline double lowerBorderOf(int key, double voxelSize) { return (key - kKeyOfOrigin) * voxelSize; }
