@@ -56,7 +56,11 @@ class Smoothing {
   }
 
   std::vector<Leg> run() {
-    while (m_looks > 0 && improve()) {
+    for (const bool spends : {false, true}) {  // what costs nothing in classes goes first
+      m_spends = spends;
+      m_seen.clear();
+      while (m_looks > 0 && improve()) {
+      }
     }
     std::vector<Leg> legs;
     for (std::size_t i = 0; i < m_parts.size(); ++i)
@@ -207,7 +211,7 @@ class Smoothing {
       add(part.profile, 1);
       part.number = m_numbers++;
     }
-    if (!m_accepts(m_lengths)) {
+    if ((!m_spends && isLonger(m_lengths, lengths)) || !m_accepts(m_lengths)) {
       m_lengths = lengths;
       return false;
     }
@@ -217,6 +221,16 @@ class Smoothing {
 
   int zAfter(const Replacement& r) const {
     return r.after + 1 < m_parts.size() ? m_parts[r.after + 1].z : m_end;
+  }
+
+  /** In any class that is not of the best rank. */
+  bool isLonger(const ClassLengths& lengths, const ClassLengths& than) const {
+    constexpr Length kRounding = 20;
+    for (std::size_t id = 0; id < lengths.size(); ++id)
+      if (m_checker.order().rank(static_cast<ClassId>(id)) > 0 &&
+          lengths[id] > than[id] + kRounding)
+        return true;
+    return false;
   }
 
   /** Few places tell most arcs that do not fit. */
@@ -254,6 +268,7 @@ class Smoothing {
   std::set<std::tuple<int, int, int>> m_seen;
   int m_end = 0;  ///< key of the surface where the path ends
   int m_numbers = 0, m_looks = 2000;
+  bool m_spends = false;
 };
 
 }  // namespace

@@ -61,6 +61,7 @@ PlanResult PlannerCore::refined(const Guide& guide, int round, const PlanResult&
   const VertexId goal = fine.roadmap().addQueryVertex(*m_goalPose);
   PlanResult result = before;
   describePath(search(fine.roadmap(), start, goal), fine.roadmap(), m_checker, result);
+  m_edges.takeRemembered();  // what is told is that of the first graph
   result.search = before.search;
   result.roadmapCost = before.roadmapCost;
   return result;
