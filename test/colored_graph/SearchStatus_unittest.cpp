@@ -160,6 +160,26 @@ TEST_P(SearchStatusOf, badOptionsAreRefused) {
 INSTANTIATE_TEST_SUITE_P(BothSearches, SearchStatusOf, ::testing::Values(&searchOnce, &replanOnce),
                          [](const auto& p) { return p.index == 0 ? "scratch" : "replanner"; });
 
+TEST(SearchStatus, aBoundOfTheWorstRankTellsSoonThatThereIsNoPath) {
+  constexpr VertexId kVertices = 2000;
+  const CostModel model{ClassOrder(3, {{0}, {1}}), EdgeModel::Profile, CostKind::ArcLength};
+  ColoredGraph graph{3};
+  for (VertexId v = 0; v < kVertices; ++v) graph.addVertex(0);
+  for (VertexId v = 0; v + 11 < kVertices; ++v)  // the last one stays alone
+    for (const VertexId step : {1u, 7u, 10u})
+      graph.addEdge(v, v + step, {{static_cast<GraphClass>(v % 3 ? 0 : 1), 5}});
+  ColoredAStarOptions options;
+  for (const bool bounded : {false, true}) {
+    options.boundWorstRank = bounded;
+    const PathResult result = findColoredPath(graph, 0, kVertices - 1, model, options);
+    EXPECT_EQ(result.status, SearchStatus::NotConnected);
+    EXPECT_LE(result.statistics.expansions, kVertices);
+    const PathResult back = findColoredPath(graph, kVertices - 1, 0, model, options);
+    EXPECT_EQ(back.status, SearchStatus::NotConnected);
+    EXPECT_LE(back.statistics.expansions, kVertices);
+  }
+}
+
 TEST(SearchStatus, replannerGoesOnAfterACancel) {
   PlaneGraph plane = randomPlaneGraph(11, 300, 9000, 30, 4);
   const CostModel model{ClassOrder(PlaneGraph::kClasses, {{0, 1}, {2}, {3, 4}})};

@@ -8,12 +8,13 @@ namespace {
 
 class GuideSearch : public PlannerTest {
  protected:
-  std::vector<PathPoint> guide() {
+  Guide search() {
     const Ground ground(map(), options.vehicle, options.ground, order);
     const EdgeChecker checker(ground, options.vehicle, order, options.reading);
     return searchGuide(checker, {start, goal, options.roadmap.buffer}, *checker.place(start),
                        *checker.place(goal));
   }
+  std::vector<PathPoint> guide() { return search().path; }
   static double meters(const std::vector<PathPoint>& path, PaintedWorld::Class id) {
     double meters = 0;
     for (std::size_t i = 1; i < path.size(); ++i)
@@ -45,6 +46,20 @@ TEST_F(GuideSearch, findsTheOnlyWayAroundTheWorstClassAndThePathFollows) {
     options.roadmap.seed = seed;
     EXPECT_LE(PlannerTest::meters(plan(), PaintedWorld::Mud), options.classTolerance);
   }
+}
+
+TEST_F(GuideSearch, tellsItsLengthInEachRank) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Road);
+  world.floor(-3, -1, -15, 15, PaintedWorld::Grass);
+  world.floor(4, 5, -15, 15, PaintedWorld::Mud);
+  start = {-10, 0.1, 0};
+  goal = {10, 0.1, 0};
+  const Guide found = search();
+  ASSERT_EQ(found.lengthPerRank.size(), 4u);
+  EXPECT_NEAR(found.lengthPerRank[1], 2, 0.21);
+  EXPECT_NEAR(found.lengthPerRank[2], 1, 0.21);
+  EXPECT_EQ(found.lengthPerRank[3], 0);
+  EXPECT_NEAR(found.lengthPerRank[0] + 3, found.path.back().arcLength, 0.5);
 }
 
 TEST_F(GuideSearch, keepsTheFootprintOffWalls) {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "PlannerFixture.h"
+#include "planner/PathImprovement.h"
 
 using namespace semantic_planning;
 
@@ -202,4 +203,41 @@ TEST_F(PathImprovementTest, ofPathsThatDifferByLessThanTheToleranceTheBetterDriv
   EXPECT_LE(meters(tolerant, PaintedWorld::Grass), meters(exact, PaintedWorld::Grass) + 1);
   EXPECT_LT(DrivePrice(options.vehicle).of(tolerant.path),
             DrivePrice(options.vehicle).of(exact.path));
+}
+
+TEST_F(PathImprovementTest, moreVerticesOrRefinementsAreNeverWorse) {
+  paintCorner();
+  world.floor(-9.5, -8.5, 2, 4, PaintedWorld::Mud);
+  world.floor(0, 3, 8.5, 10.4, PaintedWorld::Grass);
+  paintWall({4, 5, 9.6, 11.5});
+  const Ground ground(map(), options.vehicle, options.ground, order);
+  const EdgeChecker checker(ground, options.vehicle, order, options.reading);
+  const PathOrder better(checker, options.classTolerance);
+  for (const int refinements : {0, 1}) {
+    PlanResult fewest;
+    options.refinements = refinements;
+    for (const std::size_t vertices : {30, 100, 300, 1000}) {
+      options.roadmap.vertices = vertices;
+      const PlanResult result = plan();
+      expectDrivable(result);
+      EXPECT_FALSE(better.isBetter(fewest, result)) << vertices;
+      if (better.isBetter(result, fewest)) fewest = result;
+    }
+  }
+  options.roadmap.vertices = 30;
+  PlanResult last;
+  for (options.refinements = 0; options.refinements < 4; ++options.refinements) {
+    const PlanResult result = plan();
+    EXPECT_FALSE(better.isBetter(last, result)) << options.refinements;
+    last = result;
+  }
+}
+
+TEST_F(PathImprovementTest, theSteeringSeldomChanges) {
+  paintCorner();
+  const PlanResult result = plan();
+  int changes = 0;
+  for (std::size_t i = 2; i < result.path.size(); ++i)
+    changes += std::abs(result.path[i].curvature - result.path[i - 1].curvature) > 1e-6;
+  EXPECT_LE(changes, 0.15 * result.length);
 }

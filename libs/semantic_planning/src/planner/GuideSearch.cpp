@@ -59,19 +59,19 @@ class GuideSearch {
       m_weights.push_back(rank == 0 ? 1 : m_weights.back() * factor);
   }
 
-  /** A path from one to the other. */
-  std::vector<PathPoint> run(const GroundPose& start, const GroundPose& goal) {
+  /** From one to the other. */
+  Guide run(const GroundPose& start, const GroundPose& goal) {
     const int from = cellOf(start);
     m_goal = cellOf(goal);
     if (from == GuideRaster::kNone || m_goal == GuideRaster::kNone) return {};
-    reach(from, 0, GuideRaster::kNone);
+    reach(from, {0, GuideRaster::kNone, 0, false});
     while (!m_queue.empty()) {
       const Entry entry = m_queue.top();
       m_queue.pop();
-      if (entry.cell == m_goal) return pathTo(m_goal);
+      if (entry.cell == m_goal) return guideTo(m_goal);
       if (label(entry.cell).done) continue;
       label(entry.cell).done = true;
-      for (const Step& step : m_steps) take(step, entry.cell);
+      for (std::size_t i = 0; i < m_steps.size(); ++i) take(i, entry.cell);
     }
     return {};
   }
@@ -80,6 +80,7 @@ class GuideSearch {
   struct Label {
     Cost cost = kUnreached;
     int before = GuideRaster::kNone;
+    std::int8_t step = 0;  ///< with which it was reached
     bool done = false;
   };
   struct Entry {
@@ -96,7 +97,8 @@ class GuideSearch {
     return m_raster.near(m_checker.ground().columnAt(p.pose.x, p.pose.y), p.z, 0);
   }
 
-  void take(const Step& step, int from) {
+  void take(std::size_t number, int from) {
+    const Step& step = m_steps[number];
     const auto& cell = m_raster[from];
     const int to = m_raster.near(cell.column + step.by, cell.z, m_checker.ground().step());
     if (to == GuideRaster::kNone) return;
@@ -105,7 +107,8 @@ class GuideSearch {
     const colored_graph::Rank rank = rankAt(step, to);
     if (rank == colored_graph::kForbidden) return;
     const Cost cost = before + step.length * m_weights[static_cast<std::size_t>(rank)];
-    if (cost < known && (to == m_goal || fits(step, to))) reach(to, cost, from);
+    if (cost < known && (to == m_goal || fits(step, to)))
+      reach(to, {cost, from, static_cast<std::int8_t>(number), false});
   }
 
   /** The worst under the wheels. */
@@ -130,9 +133,9 @@ class GuideSearch {
     return true;
   }
 
-  void reach(int cell, Cost cost, int before) {
-    label(cell) = {cost, before, false};
-    m_queue.push({cost + bound(m_raster[cell].column), cell});
+  void reach(int cell, const Label& reached) {
+    label(cell) = reached;
+    m_queue.push({reached.cost + bound(m_raster[cell].column), cell});
   }
 
   Cost bound(Column c) const {
@@ -141,19 +144,31 @@ class GuideSearch {
     return kStraight * std::max(dx, dy) + (kDiagonal - kStraight) * std::min(dx, dy);
   }
 
-  std::vector<PathPoint> pathTo(int cell) const {
+  PathPoint pointAt(int cell) const {
     const Ground& ground = m_checker.ground();
-    std::vector<PathPoint> path;
-    for (; cell != GuideRaster::kNone; cell = m_labels[static_cast<std::size_t>(cell)].before) {
-      PathPoint p;
-      p.x = ground.centerOf(m_raster[cell].column.x);
-      p.y = ground.centerOf(m_raster[cell].column.y);
-      p.z = ground.centerOf(m_raster[cell].z);
-      p.classId = m_raster[cell].classId;
-      path.push_back(p);
+    PathPoint p;
+    p.x = ground.centerOf(m_raster[cell].column.x);
+    p.y = ground.centerOf(m_raster[cell].column.y);
+    p.z = ground.centerOf(m_raster[cell].z);
+    p.classId = m_raster[cell].classId;
+    return p;
+  }
+
+  Guide guideTo(int cell) {
+    Guide guide;
+    guide.lengthPerRank.resize(m_weights.size());
+    for (; cell != GuideRaster::kNone; cell = label(cell).before) {
+      guide.path.push_back(pointAt(cell));
+      const Label& at = label(cell);
+      if (at.before == GuideRaster::kNone) continue;
+      const Cost length = m_steps[static_cast<std::size_t>(at.step)].length;
+      const Cost weight = (at.cost - label(at.before).cost) / length;
+      const auto rank = std::lower_bound(m_weights.begin(), m_weights.end(), weight);
+      guide.lengthPerRank[static_cast<std::size_t>(rank - m_weights.begin())] +=
+          static_cast<double>(length) / kStraight * m_checker.ground().voxelSize();
     }
-    std::reverse(path.begin(), path.end());
-    return path;
+    std::reverse(guide.path.begin(), guide.path.end());
+    return guide;
   }
 
   const EdgeChecker& m_checker;
@@ -167,9 +182,10 @@ class GuideSearch {
 
 }  // namespace
 
-std::vector<PathPoint> searchGuide(const EdgeChecker& checker, const PlanningRegion& region,
-                                   const GroundPose& start, const GroundPose& goal) {
-  std::vector<PathPoint> path = GuideSearch(checker, region).run(start, goal);
+Guide searchGuide(const EdgeChecker& checker, const PlanningRegion& region, const GroundPose& start,
+                  const GroundPose& goal) {
+  Guide guide = GuideSearch(checker, region).run(start, goal);
+  std::vector<PathPoint>& path = guide.path;
   if (path.size() < 2) return {};
   for (std::size_t i = 1; i < path.size(); ++i) {
     PathPoint &a = path[i - 1], &b = path[i];
@@ -181,7 +197,7 @@ std::vector<PathPoint> searchGuide(const EdgeChecker& checker, const PlanningReg
   };
   putAt(path.front(), start.pose);
   putAt(path.back(), goal.pose);
-  return path;
+  return guide;
 }
 
 }  // namespace semantic_planning

@@ -8,12 +8,17 @@
 
 namespace semantic_planning {
 
-/** The way of a vehicle that could turn on the spot, from column to column in eight directions: the
- * least way through the worst class, then through the next better one, and so on (a meter of a
- * class outweighs what is likely of all better ones). It knows no turning radius, so that hardly
- * any path has less way through the worst class than it. Headings are those of travel. Empty if
- * there is none in the region. */
-std::vector<PathPoint> searchGuide(const EdgeChecker& checker, const PlanningRegion& region,
-                                   const GroundPose& start, const GroundPose& goal);
+/** The way of a vehicle that could turn on the spot. */
+struct Guide {
+  std::vector<PathPoint> path;  ///< headings are those of travel; empty if there is no way
+  /** Of the path, by rank, best first; meters. */
+  std::vector<double> lengthPerRank;
+};
+
+/** From column to column in eight directions: the least way through the worst class, then through
+ * the next better one, and so on (a meter of a class outweighs what is likely of all better ones).
+ * It knows no turning radius, so that hardly any path has less way through the worst class. */
+Guide searchGuide(const EdgeChecker& checker, const PlanningRegion& region, const GroundPose& start,
+                  const GroundPose& goal);
 
 }  // namespace semantic_planning

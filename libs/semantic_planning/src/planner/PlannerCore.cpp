@@ -7,8 +7,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "GuideSearch.h"
-#include "PathImprovement.h"
 #include "PathTracing.h"
 
 namespace semantic_planning {
@@ -115,21 +113,18 @@ bool PlannerCore::refuse(const Place& start, const Place& goal, PlanResult& resu
   return true;
 }
 
-std::optional<EdgeProfile> PlannerCore::evaluateTimed(colored_graph::EdgeId e) {
+std::optional<EdgeProfile> PlannerCore::evaluateTimed(const Roadmap& map, colored_graph::EdgeId e) {
   const auto begin = std::chrono::steady_clock::now();
-  const Roadmap& map = m_roadmap->roadmap();
   auto profile =
       belongsToMap(m_options.roadmap.kind) ? m_edges.profile(map.ends(e)) : map.evaluate(e);
   m_evaluating += StageClock::millisecondsSince(begin);
   return profile;
 }
 
-colored_graph::SearchOptions PlannerCore::searchOptions() {
+colored_graph::SearchOptions PlannerCore::searchOptions(const Roadmap& map) {
   colored_graph::SearchOptions search;
-  search.lengthBound = [this](VertexId a, VertexId b) {
-    return m_roadmap->roadmap().lengthBound(a, b);
-  };
-  search.evaluate = [this](colored_graph::EdgeId e) { return evaluateTimed(e); };
+  search.lengthBound = [&map](VertexId a, VertexId b) { return map.lengthBound(a, b); };
+  search.evaluate = [this, &map](colored_graph::EdgeId e) { return evaluateTimed(map, e); };
   search.cancelled = m_options.cancelled;
   search.timeLimit = m_options.timeLimit;
   return search;
@@ -143,17 +138,21 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   m_goalPlace = goal;
   followMap(clock);
   if (refuse(start, goal, result)) return result;
-  m_roadmap = std::make_unique<MapRoadmap>(m_candidates, m_checker, m_options.roadmap, *m_startPose,
-                                           *m_goalPose);
+  m_roadmap = std::make_unique<MapRoadmap>(
+      m_candidates, m_checker, m_options.roadmap, *m_startPose,
+      PlanningRegion(m_startPose->pose, m_goalPose->pose, m_options.roadmap.buffer));
   m_start = m_roadmap->roadmap().addQueryVertex(*m_startPose);
   m_goal = m_roadmap->roadmap().addQueryVertex(*m_goalPose);
   clock.end("roadmap");
   m_evaluating = 0;
-  colored_graph::ColoredAStarOptions search;
-  static_cast<colored_graph::SearchOptions&>(search) = searchOptions();
-  finish(findColoredPath(m_roadmap->roadmap().graph(), m_start, m_goal, m_model, search), clock,
-         result);
+  finish(search(m_roadmap->roadmap(), m_start, m_goal), clock, result);
   return result;
+}
+
+PathResult PlannerCore::search(Roadmap& map, VertexId start, VertexId goal) {
+  colored_graph::ColoredAStarOptions options;
+  static_cast<colored_graph::SearchOptions&>(options) = searchOptions(map);
+  return findColoredPath(map.graph(), start, goal, m_model, options);
 }
 
 void PlannerCore::finish(const PathResult& path, StageClock& clock, PlanResult& result) {
@@ -165,22 +164,6 @@ void PlannerCore::finish(const PathResult& path, StageClock& clock, PlanResult& 
   clock.end("path");
   if (mayImprove(result)) improve(clock, result);
   result.times = clock.take();
-}
-
-bool PlannerCore::mayImprove(const PlanResult& result) const {
-  if (!m_options.shorten || m_model.edges != colored_graph::EdgeModel::Profile ||
-      m_model.kind != colored_graph::CostKind::ArcLength)
-    return false;
-  return result.found() ? result.path.size() > 2
-                        : result.status == PlanStatus::NotConnected ||
-                              result.status == PlanStatus::OnlyForbidden;
-}
-
-void PlannerCore::improve(StageClock& clock, PlanResult& result) const {
-  const auto guide = searchGuide(m_checker, m_roadmap->region(), *m_startPose, *m_goalPose);
-  clock.end("guide");
-  improvePath(result, guide, m_checker, {m_options.roadmap.longestEdge, m_options.classTolerance});
-  clock.end("shorten");
 }
 
 void PlannerCore::forget() {
@@ -248,7 +231,7 @@ PlanResult PlannerCore::replan(const Place& start) {
   if (m_replanner)
     m_replanner->moveStart(m_start);
   else
-    m_replanner.emplace(map.graph(), m_start, m_goal, m_model, searchOptions());
+    m_replanner.emplace(map.graph(), m_start, m_goal, m_model, searchOptions(map));
   clock.end("start");
   m_evaluating = 0;
   finish(m_replanner->solve(), clock, result);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "GuideSearch.h"
 #include "StageClock.h"
 #include "roadmap/CandidateStore.h"
 #include "roadmap/EdgeMemory.h"
@@ -48,11 +49,16 @@ class PlannerCore {
   PlanStatus placed(const Place& place, std::optional<GroundPose>& pose) const;
   /** Status and reason if nothing can be planned between these places. */
   bool refuse(const Place& start, const Place& goal, PlanResult& result);
-  colored_graph::SearchOptions searchOptions();
-  std::optional<colored_graph::EdgeProfile> evaluateTimed(colored_graph::EdgeId e);
+  colored_graph::SearchOptions searchOptions(const Roadmap& map);
+  std::optional<colored_graph::EdgeProfile> evaluateTimed(const Roadmap& map,
+                                                          colored_graph::EdgeId e);
+  colored_graph::PathResult search(Roadmap& map, VertexId start, VertexId goal);
   void moveStart(Roadmap& map);
   bool mayImprove(const PlanResult& result) const;
-  void improve(StageClock& clock, PlanResult& result) const;
+  void improve(StageClock& clock, PlanResult& result);
+  bool mayBeBetter(const PlanResult& result, const Guide& guide) const;
+  /** What the best path is of a graph that is finer near a guide. */
+  PlanResult refined(const Guide& guide, int round, const PlanResult& before);
   void finish(const colored_graph::PathResult& path, StageClock& clock, PlanResult& result);
 
   semantic_octree::SemanticOcTree& m_map;

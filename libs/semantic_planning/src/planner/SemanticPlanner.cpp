@@ -15,6 +15,8 @@ void PlannerOptions::describe(strict_files::OptionList& list) {
   list.add("class_tolerance", classTolerance, "m", strict_files::between(0, 10),
            "with shorten: differences of the length in a class that do not matter");
   list.add("shorten", shorten, "", "look for a better path beside the graph's");
+  list.add("refinements", refinements, "", strict_files::between(0, 10),
+           "with shorten: finer graphs near where the path should be, while it may be better");
   list.add("time_limit", timeLimit, "s", limits, "of a search");
   ground.describe(list);
 }

@@ -122,22 +122,28 @@ class EdgeChecker::Sweep {
 
  private:
   struct At {
-    mrpt::math::TPoint2D point;
+    double x, y;  ///< meters
     Column column;
   };
 
   At at(const CheckedDisc& d, const Placement& placed) const {
     const auto [x, y] = placed(d.disc.x, d.disc.y);
-    return {{x, y}, m_checker.m_ground.columnAt(x, y)};
+    return {x, y, m_checker.m_ground.columnAt(x, y)};
   }
 
   bool move(const CheckedDisc& d, const Placement& placed, bool climbs, At& disc) {
-    const At now = at(d, placed), before = std::exchange(disc, now);
-    if (!climbs && now.column == before.column) return true;
-    if (!m_checker.isFree(d, now.column, m_z)) return false;
-    if (now.column.x == before.column.x || now.column.y == before.column.y) return true;
-    return m_checker.isFree(
-        d, between(m_checker.m_ground, before.column, before.point, now.column, now.point), m_z);
+    const auto [x, y] = placed(d.disc.x, d.disc.y);
+    const Column column = m_checker.m_ground.columnAt(x, y);
+    if (climbs || !(column == disc.column)) {
+      if (!m_checker.isFree(d, column, m_z)) return false;
+      if (column.x != disc.column.x && column.y != disc.column.y &&
+          !m_checker.isFree(
+              d, between(m_checker.m_ground, disc.column, {disc.x, disc.y}, column, {x, y}), m_z))
+        return false;
+      disc.column = column;
+    }
+    disc.x = x, disc.y = y;
+    return true;
   }
 
   const EdgeChecker& m_checker;

@@ -23,10 +23,10 @@ RoadmapOptions withDefaults(RoadmapOptions options) {
 
 MapRoadmap::MapRoadmap(CandidateStore& store, const EdgeChecker& checker,
                        const RoadmapOptions& options, const GroundPose& start,
-                       const GroundPose& goal)
+                       const PlanningRegion& region)
     : m_checker(checker),
       m_options(withDefaults(options)),
-      m_region(start.pose, goal.pose, options.buffer),
+      m_region(region),
       m_start(start),
       m_roadmap(checker, m_options),
       m_pool(checker, m_roadmap) {

@@ -9,9 +9,9 @@ namespace semantic_planning {
 /** A roadmap between a start and a goal, and what keeps it up to date with the map. */
 class MapRoadmap {
  public:
-  /** \param store, checker must outlive the roadmap \param start, goal on the ground */
+  /** \param store, checker must outlive the roadmap \param start on the ground */
   MapRoadmap(CandidateStore& store, const EdgeChecker& checker, const RoadmapOptions& options,
-             const GroundPose& start, const GroundPose& goal);
+             const GroundPose& start, const PlanningRegion& region);
 
   Roadmap& roadmap() { return m_roadmap; }
   const Roadmap& roadmap() const { return m_roadmap; }

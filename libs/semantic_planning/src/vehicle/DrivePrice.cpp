@@ -17,28 +17,26 @@ bool isSomething(const ReedsSheppCurve::Segment& segment) {
   return std::abs(segment.length) > kNothing;
 }
 
-DriveState stateOf(const ReedsSheppCurve::Segment& segment) {
-  return {segment.length > 0, segment.turn};
+DriveState stateOf(const ReedsSheppCurve::Segment& segment, double turningRadius) {
+  return {segment.length > 0, segment.turn / turningRadius};
 }
 
-DriveState stateAt(const PathPoint& p) {
-  return {p.forward, p.curvature > 0 ? 1 : p.curvature < 0 ? -1 : 0};
-}
+DriveState stateAt(const PathPoint& p) { return {p.forward, p.curvature}; }
 
 template <class Iterator>
-DriveState firstOf(Iterator begin, Iterator end) {
+DriveState firstOf(Iterator begin, Iterator end, double turningRadius) {
   const Iterator first = std::find_if(begin, end, isSomething);
-  return first == end ? DriveState() : stateOf(*first);
+  return first == end ? DriveState() : stateOf(*first, turningRadius);
 }
 
 }  // namespace
 
 DriveState beginOf(const ReedsSheppCurve& curve) {
-  return firstOf(curve.segments().begin(), curve.segments().end());
+  return firstOf(curve.segments().begin(), curve.segments().end(), curve.turningRadius());
 }
 
 DriveState endOf(const ReedsSheppCurve& curve) {
-  return firstOf(curve.segments().rbegin(), curve.segments().rend());
+  return firstOf(curve.segments().rbegin(), curve.segments().rend(), curve.turningRadius());
 }
 
 DrivePrice::DrivePrice(const VehicleOptions& vehicle)
@@ -52,7 +50,7 @@ double DrivePrice::of(const ReedsSheppCurve& curve) const {
   std::optional<DriveState> before;
   for (const ReedsSheppCurve::Segment& segment : curve.segments()) {
     if (!isSomething(segment)) continue;
-    const DriveState state = stateOf(segment);
+    const DriveState state = stateOf(segment, curve.turningRadius());
     price += ofWay(std::abs(segment.length), state.forward);
     if (before) price += ofChange(*before, state);
     before = state;

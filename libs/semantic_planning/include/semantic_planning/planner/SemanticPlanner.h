@@ -23,10 +23,14 @@ struct PlannerOptions {
   /** Looks for a better path beside the roadmap's, and along the way that a vehicle would take
    * which turns on the spot; with EdgeModel::Profile and CostKind::ArcLength only. */
   bool shorten = false;
+  /** With `shorten`: so many times the roadmap is made anew, finer and near the way of a vehicle
+   * that turns on the spot, while there is no path or one that is longer than that way by a tenth,
+   * or by 0.3 m in a class. The best of all paths counts. Compressed and Full only. */
+  int refinements = 1;
   /** With `shorten`, differences of the length in a class up to this (meters) do not matter: of
    * paths that differ by no more, the one that is driven best is taken (VehicleOptions), and the
    * roadmap's search rounds what an edge has of a class to a multiple. 0: exact. */
-  double classTolerance = 0.2;
+  double classTolerance = 0.25;
   /** Of a search, seconds. */
   double timeLimit = std::numeric_limits<double>::infinity();
   /** Asked often during a search, which stops when it answers true. */

@@ -11,7 +11,7 @@ namespace semantic_planning {
 /** How a curve is entered or left. */
 struct DriveState {
   bool forward = true;
-  int turn = 0;  ///< 1: left, 0: straight, -1: right
+  double curvature = 0;  ///< 1/m, of the steering: positive to the left, whatever the gear
 };
 
 /** What driving costs a vehicle beside the classes that it drives over, in meters forward: meters,
@@ -26,8 +26,10 @@ class DrivePrice {
   double ofWay(double meters, bool forward) const { return forward ? meters : m_reverse * meters; }
   double ofChange(const DriveState& from, const DriveState& to) const {
     return (from.forward != to.forward ? m_gearChange : 0) +
-           (from.turn != to.turn ? m_steering : 0);
+           (steers(from.curvature, to.curvature) ? m_steering : 0);
   }
+  /** Whether these curvatures are more than rounding apart. */
+  static bool steers(double from, double to) { return std::abs(to - from) > 1e-6; }
   /** Of a curve by itself; infinite if the vehicle cannot drive it. */
   double of(const ReedsSheppCurve& curve) const;
   /** Of a path, from point to point. */

@@ -1,0 +1,281 @@
+#include "PathSmoothing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "vehicle/TangentArc.h"
+
+namespace semantic_planning {
+
+using colored_graph::EdgeProfile;
+using colored_graph::Length;
+using mrpt::math::TPose2D;
+
+namespace {
+
+/** Where a new arc leaves a part: meters after the part's end. */
+constexpr std::array<double, 11> kLeaves = {0, -0.3, -0.6, -1.2, -2.4, -4.8, -9.6, 0.5, 1, 2, 4};
+constexpr std::size_t kMostReplaced = 12;  // parts by one
+
+/** A part of the path whose curvature and gear are constant. */
+struct Part {
+  Arc arc;  ///< backwards: its length is negative
+  int z;    ///< key of the surface where it begins
+  int number;
+  EdgeProfile profile;
+
+  DriveState state() const { return {arc.length > 0, arc.curvature}; }
+};
+
+/** A new arc instead of what is between two parts, which become shorter or longer. */
+struct Replacement {
+  double gain;  ///< of the price
+  std::size_t before, after;
+  int leave;  ///< which one
+  double leaves;
+  TangentArc tangent;
+};
+
+class Smoothing {
+ public:
+  using Accepts = std::function<bool(const ClassLengths&)>;
+
+  Smoothing(const std::vector<PathPoint>& path, const EdgeChecker& checker, const Accepts& accepts)
+      : m_checker(checker), m_accepts(accepts), m_lengths(checker.order().classes()) {
+    for (int id = 0; id < checker.order().classes(); ++id)
+      m_prices.push_back(checker.order().rank(static_cast<ClassId>(id)) == colored_graph::kForbidden
+                             ? std::numeric_limits<double>::infinity()
+                             : 0);
+    for (std::size_t i = 0; i + 1 < path.size();) i = addPart(path, i);
+    m_end = checker.ground().keyOf(path.back().z);
+  }
+
+  std::vector<Leg> run() {
+    for (const bool spends : {false, true}) {  // what costs nothing in classes goes first
+      m_spends = spends;
+      m_seen.clear();
+      while (m_looks > 0 && improve()) {
+      }
+    }
+    std::vector<Leg> legs;
+    for (std::size_t i = 0; i < m_parts.size(); ++i)
+      legs.push_back({curveOf(m_parts[i].arc), m_parts[i].z,
+                      i + 1 < m_parts.size() ? m_parts[i + 1].z : m_end, m_parts[i].profile});
+    return legs;
+  }
+
+ private:
+  static constexpr double kLeastGain = 0.02;  // m
+
+  /** From a point of the path to where curvature or gear change. \return that point */
+  std::size_t addPart(const std::vector<PathPoint>& path, std::size_t from) {
+    const PathPoint &begin = path[from], &first = path[from + 1];
+    std::size_t to = from + 1;
+    while (to + 1 < path.size() && path[to + 1].forward == first.forward &&
+           std::abs(path[to + 1].curvature - first.curvature) < 1e-9)
+      ++to;
+    const double length = path[to].arcLength - begin.arcLength;
+    const TPose2D pose(begin.x, begin.y, begin.heading);
+    Part part{{pose, first.curvature, first.forward ? length : -length},
+              m_checker.ground().keyOf(begin.z),
+              m_numbers++,
+              {}};
+    if (!evaluate(part, m_checker.ground().keyOf(path[to].z))) part.profile = known(path, from, to);
+    add(part.profile, 1);
+    m_parts.push_back(part);
+    return to;
+  }
+
+  /** Classes of a part of the given path. It was looked at as a part of longer curves, at other
+   * places: between these it may touch what is forbidden, which is left out. */
+  EdgeProfile known(const std::vector<PathPoint>& path, std::size_t from, std::size_t to) const {
+    std::vector<double> lengths(m_prices.size());
+    ClassId id = path[from].classId;
+    for (std::size_t i = from + 1; i <= to; ++i) {
+      if (m_prices[path[i].classId] == 0) id = path[i].classId;
+      lengths[id] += path[i].arcLength - path[i - 1].arcLength;
+    }
+    EdgeProfile profile;
+    for (std::size_t i = 0; i < lengths.size(); ++i)
+      if (lengths[i] > 0)
+        profile.push_back({static_cast<ClassId>(i), colored_graph::lengthDown(lengths[i])});
+    return profile;
+  }
+
+  ReedsSheppCurve curveOf(const Arc& arc) const {
+    const int turn = arc.curvature > 0 ? 1 : arc.curvature < 0 ? -1 : 0;
+    const double radius =
+        turn == 0 ? m_checker.reedsShepp().turningRadius() : 1 / std::abs(arc.curvature);
+    return {arc.begin, radius, {{{arc.length, turn}}}};
+  }
+
+  /** \param end key of the surface at its end */
+  bool evaluate(Part& part, int end) const {
+    ClassBudget budget{m_prices};
+    auto profile = m_checker.profile(curveOf(part.arc), part.z, end, &budget);
+    if (profile) part.profile = std::move(*profile);
+    return profile.has_value();
+  }
+
+  void add(const EdgeProfile& profile, int sign) {
+    for (const auto& stretch : profile) m_lengths[stretch.classId] += sign * stretch.length;
+  }
+
+  bool improve() {
+    std::vector<Replacement> replacements;
+    for (std::size_t a = 0; a < m_parts.size(); ++a)
+      for (std::size_t b = a + 1; b < m_parts.size() && b <= a + 1 + kMostReplaced; ++b) {
+        if (m_parts[b - 1].arc.length < 0 || m_parts[b].arc.length < 0) break;
+        if (b > a + 1) propose(a, b, replacements);
+      }
+    std::stable_sort(replacements.begin(), replacements.end(),
+                     [](const auto& l, const auto& r) { return l.gain > r.gain; });
+    return std::any_of(replacements.begin(), replacements.end(),
+                       [this](const Replacement& r) { return apply(r); });
+  }
+
+  void propose(std::size_t a, std::size_t b, std::vector<Replacement>& replacements) const {
+    const Arc &before = m_parts[a].arc, &after = m_parts[b].arc;
+    const double most = 1 / m_checker.reedsShepp().turningRadius();
+    for (int i = -1; i < static_cast<int>(kLeaves.size()); ++i) {
+      const double leaves = i < 0 ? 0 : before.length + kLeaves[static_cast<std::size_t>(i)];
+      if (leaves < 0) continue;
+      const auto tangent = tangentArc(before.at(leaves), after);
+      if (!tangent || std::abs(tangent->arc.curvature) > most || tangent->meets > after.length)
+        continue;
+      Replacement r{0, a, b, i, leaves, *tangent};
+      r.gain = gainOf(r);
+      if (r.gain > kLeastGain) replacements.push_back(r);
+    }
+  }
+
+  /** What is there instead of the parts from `before` to `after`, not evaluated yet. */
+  std::vector<Part> partsOf(const Replacement& r) const {
+    std::vector<Part> parts;
+    const auto add = [&](const Arc& arc) {
+      constexpr double kNothing = 1e-6;
+      if (arc.length > kNothing) parts.push_back({arc, 0, 0, {}});
+    };
+    Arc before = m_parts[r.before].arc;
+    const Arc after = m_parts[r.after].arc;
+    before.length = r.leaves;
+    add(before);
+    add(r.tangent.arc);
+    add({after.at(r.tangent.meets), after.curvature, after.length - r.tangent.meets});
+    return parts;
+  }
+
+  template <class Iterator>
+  double priceOf(const Replacement& r, Iterator begin, Iterator end) const {
+    const DrivePrice& price = m_checker.price();
+    double sum = 0;
+    std::optional<DriveState> last;
+    const auto go = [&](const DriveState& state) {
+      if (last) sum += price.ofChange(*last, state);
+      last = state;
+    };
+    if (r.before > 0) go(m_parts[r.before - 1].state());
+    for (; begin != end; ++begin) {
+      go(begin->state());
+      sum += price.ofWay(begin->arc.length, true);
+    }
+    if (r.after + 1 < m_parts.size()) go(m_parts[r.after + 1].state());
+    return sum;
+  }
+
+  double gainOf(const Replacement& r) const {
+    const std::vector<Part> parts = partsOf(r);
+    return priceOf(r, m_parts.begin() + static_cast<std::ptrdiff_t>(r.before),
+                   m_parts.begin() + static_cast<std::ptrdiff_t>(r.after) + 1) -
+           priceOf(r, parts.begin(), parts.end());
+  }
+
+  /** If the vehicle can drive it and classes allow it. */
+  bool apply(const Replacement& r) {
+    if (m_looks == 0 ||
+        !m_seen.insert({m_parts[r.before].number, m_parts[r.after].number, r.leave}).second)
+      return false;
+    --m_looks;
+    std::vector<Part> parts = partsOf(r);
+    if (!evaluate(r, parts)) return false;
+    const ClassLengths lengths = m_lengths;
+    const auto begin = m_parts.begin() + static_cast<std::ptrdiff_t>(r.before),
+               end = m_parts.begin() + static_cast<std::ptrdiff_t>(r.after) + 1;
+    for (auto part = begin; part != end; ++part) add(part->profile, -1);
+    for (Part& part : parts) {
+      add(part.profile, 1);
+      part.number = m_numbers++;
+    }
+    if ((!m_spends && isLonger(m_lengths, lengths)) || !m_accepts(m_lengths)) {
+      m_lengths = lengths;
+      return false;
+    }
+    m_parts.insert(m_parts.erase(begin, end), parts.begin(), parts.end());
+    return true;
+  }
+
+  int zAfter(const Replacement& r) const {
+    return r.after + 1 < m_parts.size() ? m_parts[r.after + 1].z : m_end;
+  }
+
+  /** In any class that is not of the best rank. */
+  bool isLonger(const ClassLengths& lengths, const ClassLengths& than) const {
+    constexpr Length kRounding = 20;
+    for (std::size_t id = 0; id < lengths.size(); ++id)
+      if (m_checker.order().rank(static_cast<ClassId>(id)) > 0 &&
+          lengths[id] > than[id] + kRounding)
+        return true;
+    return false;
+  }
+
+  /** Few places tell most arcs that do not fit. */
+  bool mayFit(const Arc& arc, double z) const {
+    constexpr std::array<double, 3> kShares = {0.5, 0.25, 0.75};
+    return std::all_of(kShares.begin(), kShares.end(), [&](double share) {
+      const auto placed = m_checker.place(arc.at(share * arc.length), z);
+      return placed && m_checker.fit(*placed) == Fit::Free;
+    });
+  }
+
+  bool evaluate(const Replacement& r, std::vector<Part>& parts) const {
+    double z = m_checker.ground().centerOf(m_parts[r.before].z);
+    if (!mayFit(r.tangent.arc, z)) return false;
+    for (Part& part : parts) {
+      const auto begin = m_checker.place(part.arc.begin, z);
+      if (!begin) return false;
+      part.z = begin->z;
+      z = m_checker.ground().centerOf(part.z);
+    }
+    // The new arc first: it is what may not fit.
+    for (const std::size_t i : {1, 0, 2}) {
+      if (i >= parts.size()) continue;
+      const int end = i + 1 < parts.size() ? parts[i + 1].z : zAfter(r);
+      if (!evaluate(parts[i], end)) return false;
+    }
+    return true;
+  }
+
+  const EdgeChecker& m_checker;
+  const Accepts& m_accepts;
+  std::vector<double> m_prices;  ///< by class: that of the forbidden ones is infinite
+  ClassLengths m_lengths;
+  std::vector<Part> m_parts;
+  std::set<std::tuple<int, int, int>> m_seen;
+  int m_end = 0;  ///< key of the surface where the path ends
+  int m_numbers = 0, m_looks = 2000;
+  bool m_spends = false;
+};
+
+}  // namespace
+
+std::vector<Leg> smoothed(const std::vector<PathPoint>& path, const EdgeChecker& checker,
+                          const std::function<bool(const ClassLengths&)>& accepts) {
+  return Smoothing(path, checker, accepts).run();
+}
+
+}  // namespace semantic_planning
