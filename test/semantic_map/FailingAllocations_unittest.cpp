@@ -73,7 +73,10 @@ TEST(FailingAllocations, whileAnObservationIsInsertedLeaveTheMapOrABrokenOne) {
   bool inserted = false;
   int refused = 0;
   const int thrown = failEachAllocation(  // it says false, or throws where it cannot even say why
-      [&] { map.emplace(before); },
+      [&] {
+        map.emplace(before);
+        map->logger().logging_enable_console_output = false;
+      },
       [&] {
         inserted = map->insertObservation(observation);
         failAllocation(-1);
@@ -90,21 +93,21 @@ TEST(FailingAllocations, whileAnObservationIsInsertedLeaveTheMapOrABrokenOne) {
 
 TEST(FailingAllocations, whileTheFilterOrTheAbstractionChangesLeaveBoth) {
   semantic_map::TAbstractionOptions abstraction;
-  abstraction.relevant = {{"road", 1}};
+  abstraction.relevant = "road: 1";
   CSemanticOctoMap empty(0.5, threeClasses());
   empty.setAbstraction(abstraction);
   std::optional<CSemanticOctoMap> map;
-  EXPECT_GT(failEachAllocation([&] { map.emplace(empty); },
-                               [&] {
-                                 map->insertionOptions.filter.accuracy = 0.7;
-                                 if (!map->insertObservation(labeledPoints({{1, 0, 0}}, {1})))
-                                   throw std::bad_alloc();
-                               },
-                               [&] {
-                                 if (!map->tree().isBroken())
-                                   EXPECT_TRUE(map->tree().hasAbstraction());
-                               }),
-            3);
+  const int failures = failEachAllocation(
+      [&] {
+        map.emplace(empty);
+        map->logger().logging_enable_console_output = false;
+      },
+      [&] {
+        map->insertionOptions.filter.accuracy = 0.7;
+        if (!map->insertObservation(labeledPoints({{1, 0, 0}}, {1}))) throw std::bad_alloc();
+      },
+      [&] { EXPECT_TRUE(map->tree().isBroken() || map->tree().hasAbstraction()); });
+  EXPECT_GT(failures, 3);
   EXPECT_TRUE(map->tree().hasAbstraction());
 }
 

@@ -16,14 +16,14 @@ class FailingPlans : public PlannerTest {
     options.vehicle.turningRadius = 0.3;
   }
 
-  void expectBroken(SemanticPlanner& planner) {
-    EXPECT_THROW(planner.plan(start, goal), std::logic_error);
-    EXPECT_THROW(planner.update(), std::logic_error);
-    EXPECT_THROW(planner.replan(start), std::logic_error);
-    EXPECT_THROW(planner.forget(), std::logic_error);
-    EXPECT_THROW(planner.ground(), std::logic_error);
-    EXPECT_THROW(planner.roadmap(), std::logic_error);
-    EXPECT_THROW(planner.check(start), std::logic_error);
+  void expectBroken(SemanticPlanner& p) {
+    EXPECT_THROW(p.plan(start, goal), std::logic_error);
+    EXPECT_THROW(p.update(), std::logic_error);
+    EXPECT_THROW(p.replan(start), std::logic_error);
+    EXPECT_THROW(p.forget(), std::logic_error);
+    EXPECT_THROW(p.ground(), std::logic_error);
+    EXPECT_THROW(p.roadmap(), std::logic_error);
+    EXPECT_THROW(p.check(start), std::logic_error);
   }
 
   std::optional<SemanticPlanner> planner;

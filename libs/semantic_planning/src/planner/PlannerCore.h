@@ -43,10 +43,7 @@ class PlannerCore {
    * roadmap and search do not belong together: the planner is broken from then on. */
   class Change {
    public:
-    explicit Change(PlannerCore& core) : m_broken(core.m_broken) {
-      core.checkWhole();
-      m_broken = true;
-    }
+    explicit Change(PlannerCore& core) : m_broken(core.m_broken) { core.checkWhole(); }
     ~Change() { m_broken = std::uncaught_exceptions() > m_exceptions; }
     Change(const Change&) = delete;
     Change& operator=(const Change&) = delete;
