@@ -9,7 +9,6 @@
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/io/CMemoryStream.h>
-#include <mrpt/maps/TMetricMapInitializer.h>
 #include <mrpt/serialization/CArchive.h>
 #include <octomap/OcTree.h>
 #include <semantic_map/CSemanticOctoMap.h>
@@ -63,10 +62,10 @@ void readArchive(const std::string& bytes) {
   mrpt::serialization::archiveFrom(out) << object;
 }
 
+/** Not through MRPT's TSetOfMetricMapInitializers, which leaks what throws. */
 void readDefinition(const std::string& bytes) {
-  mrpt::maps::TSetOfMetricMapInitializers definitions;
-  semantic_map::registerMaps();
-  definitions.loadFromConfigFile(mrpt::config::CConfigFileMemory(bytes), "Maps");
+  semantic_map::CSemanticOctoMap::TMapDefinition definition;
+  definition.loadFromConfigFile(mrpt::config::CConfigFileMemory(bytes), "Maps_semanticOctoMap_00");
 }
 
 void readLabels(const fs::path& file) {
