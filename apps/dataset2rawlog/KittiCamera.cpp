@@ -1,6 +1,8 @@
 #include "KittiCamera.h"
 
-#include <opencv2/imgcodecs.hpp>
+#include <labeled_cloud/ImageFile.h>
+
+#include <opencv2/core.hpp>
 #include <stdexcept>
 
 #include <strict_files/TextFile.h>
@@ -50,8 +52,7 @@ KittiCamera::KittiCamera(const fs::path& sequence, const Eigen::Isometry3d& T_ca
 mrpt::obs::CObservationImage KittiCamera::observe(const std::string& name,
                                                   mrpt::Clock::time_point time) {
   const fs::path file = m_source / (name + ".png");
-  const cv::Mat image = fs::exists(file) ? cv::imread(file.string()) : cv::Mat();
-  if (image.empty()) throw std::runtime_error(file.string() + ": cannot be read as an image");
+  const cv::Mat image = labeled_cloud::readImageFile(file, labeled_cloud::ImageKinds::All);
   m_camera.ncols = static_cast<unsigned>(image.cols);
   m_camera.nrows = static_cast<unsigned>(image.rows);
   m_names.push_back(file.filename().string());

@@ -103,6 +103,14 @@ Eigen::Isometry3d viewpoint(const TextLine& line) {
   return Eigen::Translation3d(v[0], v[1], v[2]) * q.normalized();
 }
 
+std::size_t numberOfPoints(const TextLine& line) {
+  const double number = numbersOf(line, 1)[0];
+  if (!(number >= 0 && number < 1e12 && number == std::floor(number)))
+    throw std::runtime_error(line.where + ": expected a number of points, found '" + line.text +
+                             "'");
+  return static_cast<std::size_t>(number);
+}
+
 PcdHeader readHeader(const fs::path& file, const std::vector<TextLine>& lines) {
   PcdHeader header;
   const auto entries = splitHeader(file, lines, header.dataBegin);
@@ -114,7 +122,7 @@ PcdHeader readHeader(const fs::path& file, const std::vector<TextLine>& lines) {
   header.y = columns["y"];
   header.z = columns["z"];
   header.label = columns["label"];
-  header.points = static_cast<std::size_t>(numbersOf(entries.at("POINTS"), 1)[0]);
+  header.points = numberOfPoints(entries.at("POINTS"));
   const auto view = entries.find("VIEWPOINT");
   if (view != entries.end()) header.T_world_sensor = viewpoint(view->second);
   return header;

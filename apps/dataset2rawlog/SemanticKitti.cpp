@@ -1,3 +1,4 @@
+#include <labeled_cloud/Seconds.h>
 #include <semantic_types/ClassTableFile.h>
 
 #include <Eigen/Geometry>
@@ -35,6 +36,15 @@ Eigen::Isometry3d poseOf(const TextLine& line) {
   // The files round to six digits: the nearest rotation keeps inverse and product rigid.
   T.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
   return T;
+}
+
+mrpt::Clock::time_point timeOf(const TextLine& line) {
+  const double seconds = numbersOf(line, 1)[0];
+  try {
+    return labeled_cloud::timeOfSeconds(seconds);
+  } catch (const std::invalid_argument& e) {
+    throw std::runtime_error(line.where + ": " + e.what());
+  }
 }
 
 /** `Tr` of calib.txt: T_camera_lidar. */
@@ -101,7 +111,7 @@ Summary convertSemanticKitti(const fs::path& sequence, const Conversion& convers
   if (conversion.images) camera.emplace(sequence, Tr, conversion.output);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!conversion.wants(i)) continue;
-    const auto time = mrpt::Clock::fromDouble(numbersOf(times[i], 1)[0]);
+    const auto time = timeOf(times[i]);
     const Eigen::Isometry3d T_map_lidar = Tr.inverse() * poseOf(poses[i]) * Tr;
     const std::string name = sixDigits(i);
     output.writePose(time, mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_map_lidar.matrix())));

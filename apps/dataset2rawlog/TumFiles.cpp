@@ -1,10 +1,12 @@
 #include "TumFiles.h"
 
+#include <labeled_cloud/ImageFile.h>
+#include <labeled_cloud/Seconds.h>
 #include <mrpt/config/CConfigFile.h>
 #include <strict_files/ErrorMessage.h>
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <sstream>
 #include <stdexcept>
 
@@ -12,11 +14,23 @@
 
 namespace dataset2rawlog {
 
+using labeled_cloud::ImageKinds;
+using labeled_cloud::readImageFile;
 using strict_files::readLines;
 using strict_files::TextLine;
 
 namespace fs = std::filesystem;
 using mrpt::obs::CObservation3DRangeScan;
+
+namespace {
+
+void checkTime(double seconds, const TextLine& line) try {
+  labeled_cloud::timeOfSeconds(seconds);
+} catch (const std::invalid_argument& e) {
+  throw std::runtime_error(line.where + ": " + e.what());
+}
+
+}  // namespace
 
 ImageList readImageList(const fs::path& list) {
   ImageList images;
@@ -26,6 +40,7 @@ ImageList readImageList(const fs::path& list) {
     std::string file;
     if (!(stream >> time >> file))
       throw std::runtime_error(line.where + ": expected 'time file', found '" + line.text + "'");
+    checkTime(time, line);
     images[time] = list.parent_path() / file;
   }
   if (images.empty()) throw std::runtime_error(list.string() + ": no image in this list");
@@ -58,8 +73,7 @@ DepthCamera readCamera(const fs::path& file) try {
 }
 
 CObservation3DRangeScan readDepth(const fs::path& file, const DepthCamera& camera) {
-  const cv::Mat depth =
-      fs::exists(file) ? cv::imread(file.string(), cv::IMREAD_UNCHANGED) : cv::Mat();
+  const cv::Mat depth = readImageFile(file, ImageKinds::All);
   if (depth.type() != CV_16UC1 || depth.empty())
     throw std::runtime_error(file.string() + ": expected a depth image of 16 bits");
   CObservation3DRangeScan scan;
@@ -75,8 +89,8 @@ CObservation3DRangeScan readDepth(const fs::path& file, const DepthCamera& camer
 }
 
 void addColor(const fs::path& file, CObservation3DRangeScan& scan) {
-  if (!fs::exists(file) || !scan.intensityImage.loadFromFile(file.string()))
-    throw std::runtime_error(file.string() + ": cannot be read as an image");
+  scan.intensityImage =
+      mrpt::img::CImage(readImageFile(file, ImageKinds::All), mrpt::img::SHALLOW_COPY);
   scan.hasIntensityImage = true;
 }
 

@@ -78,7 +78,7 @@ TEST(SemanticKitti, imagesComeAlongAsFilesAndLabelsCanBeLeftOut) {
       "semantic-kitti " + quoted(folder.path()) + " --no-labels --images -o " + quoted(out);
   // P2 = K [I | t] with f = 10, center (3, 2), t = (0.5, 0, 0)
   folder.write("calib.txt", std::string("P2: 10 0 3 5 0 10 2 0 0 0 1 0\n") + kTr);
-  EXPECT_TRUE(contains(failureOf(arguments), "image_2/000000.png: cannot be read as an image"));
+  EXPECT_TRUE(contains(failureOf(arguments), "image_2/000000.png: there is no such file"));
   fs::create_directory(folder / "image_2");
   for (const char* name : {"image_2/000000.png", "image_2/000001.png"})
     cv::imwrite((folder / name).string(), cv::Mat(4, 6, CV_8UC3, cv::Scalar(10, 20, 30)));

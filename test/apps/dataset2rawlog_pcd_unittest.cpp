@@ -76,6 +76,10 @@ TEST(Pcd, badInputIsNamed) {
   EXPECT_TRUE(
       contains(failureWith("FIELDS x y z\nPOINTS 1\nDATA ascii\n1 2 3\n"), "no field 'label'"));
   EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS 1\nDATA binary\n"), "DATA ascii"));
+  for (const std::string number : {"-1", "0.5", "1e300"})
+    EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS " + number + "\nDATA ascii\n"),
+                         "expected a number of points"))
+        << number;
   EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 2abc\n9 5 6 7 3\n"), "2abc"));
   EXPECT_TRUE(
       contains(failureWith("FIELDS x y z label\nCOUNT 1 1 2 1\nPOINTS 1\nDATA ascii\n1 2 3 4 5\n"),

@@ -1,23 +1,28 @@
 #include "Readers.h"
 
+#include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/LabelModel.h>
 #include <labeled_cloud/NetworkLabeler.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
+#include <mrpt/config/CConfigFileMemory.h>
+#include <mrpt/io/CMemoryStream.h>
+#include <mrpt/serialization/CArchive.h>
 #include <octomap/OcTree.h>
+#include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
+#include <semantic_octree/OctomapConversion.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_octree/WeightsFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
 #include <semantic_types/ClassTableFile.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <sstream>
+
+#include "FuzzedFile.h"
 
 namespace {
 
@@ -33,23 +38,6 @@ const ClassTable& classes() {
   return table;
 }
 
-/** For functions that want a file: the bytes are one, with an ending of their choice. */
-template <typename F>
-auto fromFile(const std::string& ending, const F& read) {
-  return [ending, read](const std::string& bytes) {
-    const fs::path file =
-        fs::temp_directory_path() / ("mso_fuzz_" + std::to_string(getpid()) + ending);
-    std::ofstream(file, std::ios::binary) << bytes;
-    try {
-      read(file);
-    } catch (...) {
-      fs::remove(file);
-      throw;
-    }
-    fs::remove(file);
-  };
-}
-
 void readMap(const std::string& bytes) {
   std::istringstream in(bytes);
   const semantic_octree::SemanticOcTree map = semantic_octree::readTree(in);
@@ -57,6 +45,32 @@ void readMap(const std::string& bytes) {
   semantic_octree::writeTree(out, map);
   std::istringstream again(out.str());
   if (!(semantic_octree::readTree(again) == map)) std::abort();
+}
+
+void readOctomap(const fs::path& file) {
+  const auto tree = semantic_map::readOctomapFile(file);
+  if (tree->size() > 0) semantic_octree::fromOcTree(*tree, classes());
+}
+
+/** From an MRPT archive, and what was taken back into one. */
+template <class Object>
+void readArchive(const std::string& bytes) {
+  Object object;
+  mrpt::io::CMemoryStream in, out;
+  in.assignMemoryNotOwn(bytes.data(), bytes.size());
+  mrpt::serialization::archiveFrom(in).ReadObject(&object);
+  mrpt::serialization::archiveFrom(out) << object;
+}
+
+/** Not through MRPT's TSetOfMetricMapInitializers, which leaks what throws. */
+void readDefinition(const std::string& bytes) {
+  semantic_map::CSemanticOctoMap::TMapDefinition definition;
+  definition.loadFromConfigFile(mrpt::config::CConfigFileMemory(bytes), "Maps_semanticOctoMap_00");
+}
+
+void readLabels(const fs::path& file) {
+  labeled_cloud::LabelImage image = labeled_cloud::readLabelImage(file, classes());
+  labeled_cloud::readConfidences(file, image);
 }
 
 void readRawlog(const fs::path& file) {
@@ -77,15 +91,16 @@ void readRawlog(const fs::path& file) {
 
 }  // namespace
 
-const std::vector<Reader>& readers() {
-  static const std::vector<Reader> all = {
+std::vector<Reader> libraryReaders() {
+  return {
       {"map", readMap, {}},
       {"rawlog", fromFile(".rawlog", readRawlog), {}},
-      {"octomap", fromFile(".ot", semantic_map::readOctomapFile), {}},
-      {"octomap-binary", fromFile(".bt", semantic_map::readOctomapFile), {}},
-      {"label-image",
-       fromFile("", [](const fs::path& f) { labeled_cloud::readLabelImage(f, classes()); }),
-       {}},
+      {"octomap", fromFile(".ot", readOctomap), {}},
+      {"octomap-binary", fromFile(".bt", readOctomap), {}},
+      {"archived-map", readArchive<semantic_map::CSemanticOctoMap>, {}},
+      {"archived-cloud", readArchive<labeled_cloud::CObservationLabeledCloud>, {}},
+      {"map-definition", readDefinition, {}},
+      {"label-image", fromFile("", readLabels), {}},
       {"trajectory",
        fromFile("", [](const fs::path& f) { labeled_cloud::loadTumTrajectory(f); }),
        {}},
@@ -107,5 +122,13 @@ const std::vector<Reader>& readers() {
       {"confusion",
        fromFile("", [](const fs::path& f) { labeled_cloud::loadConfusionMatrix(f, classes()); }),
        {}}};
+}
+
+const std::vector<Reader>& readers() {
+  static const std::vector<Reader> all = [] {
+    std::vector<Reader> both = libraryReaders();
+    for (Reader& reader : programReaders()) both.push_back(std::move(reader));
+    return both;
+  }();
   return all;
 }

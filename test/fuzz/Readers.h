@@ -11,4 +11,9 @@ struct Reader {
   std::vector<std::string> examples;
 };
 
+/** Of the libraries' functions. */
+std::vector<Reader> libraryReaders();
+/** Of what only programs read. */
+std::vector<Reader> programReaders();
+/** All of them. */
 const std::vector<Reader>& readers();

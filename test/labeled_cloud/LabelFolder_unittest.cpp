@@ -109,6 +109,13 @@ TEST(LabelImages, thatAnnounceMoreThanTheirBytesCanHoldAreRefused) {
   for (int i = 0; i < 4; ++i) bytes[29 + i] = static_cast<char>(crc >> (24 - 8 * i));
   EXPECT_TRUE(contains(errorReading(folder.write("large.png", bytes)),
                        "65535 x 65535 pixels, more than its"));
+  for (const std::string& text :
+       {std::string("P5 # of a camera\n30000 30000\n255\n0000"),
+        folder.read(save(folder, "a.bmp", cv::Mat(1, 1, CV_8UC1)).filename())
+            .replace(18, 8, "0u\0\0\xd0\x8a\xff\xff", 8)})
+    EXPECT_TRUE(contains(errorReading(folder.write("large.img", text)),
+                         "30000 x 30000 pixels, more than its"))
+        << text.substr(0, 2);
 }
 
 TEST(LabelImages, inColorHoldColorsOfTheTableAndBlackForNone) {

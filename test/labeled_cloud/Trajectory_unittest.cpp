@@ -150,6 +150,7 @@ TEST(TumTrajectory, errorsNameFileAndLine) {
   EXPECT_TRUE(contains(error("0 0 x 0 0 0 0 1\n"), ":1: expected"));
   EXPECT_TRUE(contains(error("0 0 nan 0 0 0 0 1\n"), ":1: expected"));
   EXPECT_TRUE(contains(error("0 0 0 0 0 0 0 1 2\n"), ":1: more than eight values"));
+  EXPECT_TRUE(contains(error("1e300 0 0 0 0 0 0 1\n"), "s is no time"));
   EXPECT_TRUE(contains(error("0 0 0 0 0 0 0 0\n"), ":1: the quaternion's length is 0"));
   EXPECT_TRUE(contains(error("0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"), ":2: this time was there"));
   EXPECT_EQ(error("# nothing\n"), ": no pose in this trajectory");

@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "IncludeRules.h"
-#include "MessageRules.h"
 #include "SourceTree.h"
 #include "TextRules.h"
 
@@ -223,23 +222,6 @@ TEST_F(Repository, anExcerptThatItsSourceDoesNotHaveIsFound) {
         "Again [it](main.cpp):\n```cpp\nload();\n\nclose();\n```\n");
   EXPECT_EQ(excerptsThatDiffer(scratch / "file.md"),
             Findings{"file.md:12: main.cpp does not have these lines"});
-}
-
-TEST_F(Repository, theMessagesThatAreExplainedAreThoseOfTheSources) {
-  EXPECT_EQ(
-      messagesNobodySays(root / "doc/handbook/troubleshooting.md", {root / "libs", root / "apps"}),
-      Findings());
-}
-
-TEST_F(Repository, aMessageThatNobodySaysIsFound) {
-  write("main.cpp",
-        "fail(file + \": has \" + count + \" bytes too \"\n     \"many\"); fail(\"unknown \" + "
-        "kind);\nkind = \"section\";\n");
-  write("file.md",
-        "| message | what |\n|---|---|\n| `FILE: has 3 bytes too many` | `other` |\n"
-        "| `unknown section` | |\n| `FILE: has no bytes`, `unknown key X` | |\n");
-  EXPECT_EQ(messagesNobodySays(scratch / "file.md", {scratch}),
-            (Findings{"file.md:5: has no bytes", "file.md:5: unknown key"}));
 }
 
 TEST_F(Repository, theExamplesAreShort) {

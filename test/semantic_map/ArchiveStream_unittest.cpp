@@ -40,3 +40,22 @@ TEST(ArchiveStream, theEndOfTheArchiveIsABadStream) {
   char byte;
   EXPECT_FALSE(in.read(&byte, 1));
 }
+
+TEST(ArchiveStream, textsAreReadAsMrptWritesThem) {
+  const std::string full(10000, 'x');
+  mrpt::io::CMemoryStream memory;
+  auto archive = mrpt::serialization::archiveFrom(memory);
+  archive << std::string("name") << std::string() << full;
+  memory.Seek(0);
+  EXPECT_EQ(semantic_map::readText(archive), "name");
+  EXPECT_EQ(semantic_map::readText(archive), "");
+  EXPECT_EQ(semantic_map::readText(archive), full);
+}
+
+TEST(ArchiveStream, aTextIsNoLongerThanTheArchive) {
+  mrpt::io::CMemoryStream memory;
+  auto archive = mrpt::serialization::archiveFrom(memory);
+  archive << std::uint32_t{4000000000} << std::uint32_t{0};
+  memory.Seek(0);
+  EXPECT_THROW(semantic_map::readText(archive), std::exception);
+}

@@ -1,37 +1,18 @@
 #include <gtest/gtest.h>
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
 #include <semantic_octree/Abstraction.h>
 #include <semantic_octree/MapOperations.h>
+#include <semantic_octree/OctomapConversion.h>
 #include <semantic_octree/TreeFile.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
+#include <optional>
 #include <sstream>
 
+#include "FailingAllocations.h"
 #include "RandomScans.h"
 
 using namespace semantic_octree;
-
-namespace {
-
-/** Allocations until one fails; below 0: none does. */
-std::atomic<long> allocationsLeft{-1};
-
-bool fails() {
-  if (allocationsLeft.load(std::memory_order_relaxed) < 0) return false;
-  return allocationsLeft.fetch_sub(1) == 0;
-}
-
-}  // namespace
-
-#define NOT_INLINE __attribute__((noinline))
-NOT_INLINE void* operator new(std::size_t size) {
-  void* memory = fails() ? nullptr : std::malloc(size);
-  if (!memory) throw std::bad_alloc();
-  return memory;
-}
-NOT_INLINE void operator delete(void* memory) noexcept { std::free(memory); }
-NOT_INLINE void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace {
 
@@ -52,35 +33,30 @@ SemanticOcTree mapOf(unsigned seed, int numScans, bool withAbstraction) {
   return map;
 }
 
+/** It answers nothing, but can begin anew. \param broken counts it; null: it should not be */
+void expectLost(SemanticOcTree& map, int* broken) {
+  EXPECT_NE(broken, nullptr);
+  if (broken) ++*broken;
+  EXPECT_THROW(map.size(), std::logic_error);
+  EXPECT_THROW(map.root(), std::logic_error);
+  EXPECT_THROW(SemanticOcTree copy(map), std::logic_error);
+  map.clear();
+  EXPECT_TRUE(map.empty());
+}
+
 /** Fails the first, the second, ... allocation of an operation on a map, until none is left to
  * fail. After a failure the map must be what it was, or say that it is broken.
  * \return how often it failed; `broken`: how often the map was lost */
 template <typename F>
 int sweep(const SemanticOcTree& before, const F& operation, int* broken = nullptr) {
-  for (int n = 0;; ++n) {
-    SemanticOcTree map = before;
-    bool failed = false;
-    allocationsLeft = n;
-    try {
-      operation(map);
-    } catch (const std::exception&) {
-      failed = true;
-    }
-    allocationsLeft = -1;
-    if (!failed) return n;
-    if (map.isBroken()) {
-      EXPECT_NE(broken, nullptr) << "allocation " << n;
-      if (broken) ++*broken;
-      EXPECT_THROW(map.size(), std::logic_error);
-      EXPECT_THROW(map.root(), std::logic_error);
-      EXPECT_THROW(SemanticOcTree copy(map), std::logic_error);
-      map.clear();
-      EXPECT_TRUE(map.empty());
-    } else if (!(map == before)) {
-      ADD_FAILURE() << "allocation " << n << " left another map behind";
-      return n;
-    }
-  }
+  std::optional<SemanticOcTree> map;
+  return failEachAllocation([&] { map.emplace(before); }, [&] { operation(*map); },
+                            [&] {
+                              if (map->isBroken())
+                                expectLost(*map, broken);
+                              else
+                                EXPECT_TRUE(*map == before);
+                            });
 }
 
 }  // namespace
@@ -107,6 +83,9 @@ TEST(FailingAllocations, elsewhereLeaveTheMapAsItWas) {
   std::stringstream file;
   writeTree(file, map);
   const std::string bytes = file.str();
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(-2, -2, -2), Eigen::Vector3d(2, 2, 2));
+  const Eigen::Isometry3d T(Eigen::Translation3d(0.3, 1, 0) *
+                            Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()));
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { SemanticOcTree copy = m; }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { m.setAbstraction(Abstraction(m).options()); }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { Abstraction(m).leaves(); }), 3);
@@ -115,6 +94,10 @@ TEST(FailingAllocations, elsewhereLeaveTheMapAsItWas) {
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { m.takeTouchedTiles(); }), 3);
   EXPECT_GT(sweep(map, [&](SemanticOcTree& m) { merged({&m, &other}); }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { coarsened(m, 1); }), 3);
+  EXPECT_GT(sweep(map, [&](SemanticOcTree& m) { cropped(m, box); }), 3);
+  EXPECT_GT(sweep(map, [&](SemanticOcTree& m) { moved(m, T); }), 3);
+  EXPECT_GT(sweep(map, [](SemanticOcTree& m) { toOcTree(m); }), 3);
+  EXPECT_GT(sweep(map, [](SemanticOcTree& m) { toColorOcTree(m); }), 3);
   EXPECT_GT(sweep(map,
                   [&](SemanticOcTree& m) {
                     std::istringstream in(bytes);
@@ -125,22 +108,13 @@ TEST(FailingAllocations, elsewhereLeaveTheMapAsItWas) {
 
 TEST(FailingAllocations, ofTheCompressedTreesChangeAreRemembered) {
   const SemanticOcTree before = mapOf(7, 2, true);
-  int lost = 0;
-  for (int n = 0;; ++n) {
-    SemanticOcTree map = before;
-    allocationsLeft = n;
-    bool failed = false;
-    try {
-      Abstraction(map).takeChange();
-    } catch (const std::bad_alloc&) {
-      failed = true;
-    }
-    allocationsLeft = -1;
-    if (!failed) break;
-    ++lost;
-    EXPECT_THROW(Abstraction(map).takeChange(), std::logic_error);
-    EXPECT_TRUE(map == before);
-  }
+  std::optional<SemanticOcTree> map;
+  const int lost =
+      failEachAllocation([&] { map.emplace(before); }, [&] { Abstraction(*map).takeChange(); },
+                         [&] {
+                           EXPECT_THROW(Abstraction(*map).takeChange(), std::logic_error);
+                           EXPECT_TRUE(*map == before);
+                         });
   EXPECT_GT(lost, 3);
 }
 
@@ -148,14 +122,9 @@ TEST(FailingAllocations, whileAMapIsSavedLeaveTheOldFile) {
   const SemanticOcTree old = mapOf(8, 1, false);
   const std::string path = testing::TempDir() + "failing_allocations.semantic";
   saveTree(old, path);
-  EXPECT_GT(sweep(mapOf(9, 2, false),
-                  [&](SemanticOcTree& map) {
-                    struct Check {
-                      ~Check() { allocationsLeft = -1; }
-                    } check;
-                    saveTree(map, path);
-                  }),
+  const SemanticOcTree map = mapOf(9, 2, false);
+  EXPECT_GT(failEachAllocation([] {}, [&] { saveTree(map, path); },
+                               [&] { EXPECT_TRUE(loadTree(path) == old); }),
             3);
-  saveTree(old, path);
-  EXPECT_TRUE(loadTree(path) == old);
+  EXPECT_TRUE(loadTree(path) == map);
 }

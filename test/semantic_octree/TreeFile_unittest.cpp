@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <semantic_octree/TreeFile.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <cstring>
 #include <sstream>
@@ -129,6 +130,14 @@ TEST(TreeFile, thatIsMissingOrNoFileIsRefusedByName) {
   EXPECT_EQ(errorOf([&] { loadTree(missing); }),
             "cannot load map '" + missing + "': No such file or directory");
   EXPECT_TRUE(contains(errorOf([&] { loadTree(folder.path()); }), "folder"));
+}
+
+TEST(TreeFile, thatIsAPipeIsRefusedWithoutWaitingForIt) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "map.semantic";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(errorOf([&] { loadTree(pipe); }),
+            "cannot load map '" + pipe + "': it is no file, but a device or a pipe");
 }
 
 TEST(TreeFile, thatIsEmptyOrNoMapIsRefused) {

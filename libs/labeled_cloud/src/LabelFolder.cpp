@@ -1,4 +1,5 @@
 #include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/Seconds.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationImage.h>
 
@@ -35,9 +36,11 @@ Clock::time_point timeInName(const fs::path& file) {
   const std::string stem = file.stem().string();
   double seconds = 0;
   const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), seconds);
-  if (error != std::errc() || end != stem.data() + stem.size() || !std::isfinite(seconds))
-    throw std::runtime_error(file.string() + ": the label image's name is not a time in seconds");
-  return Clock::fromDouble(seconds);
+  try {
+    if (error == std::errc() && end == stem.data() + stem.size()) return timeOfSeconds(seconds);
+  } catch (const std::invalid_argument&) {
+  }
+  throw std::runtime_error(file.string() + ": the label image's name is not a time in seconds");
 }
 
 /** Name of the first image of the observation that is stored in a file of its own. */

@@ -1,11 +1,9 @@
+#include <labeled_cloud/ImageFile.h>
 #include <labeled_cloud/LabelFolder.h>
 
-#include <fstream>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <stdexcept>
 #include <unordered_map>
-
-#include "PngFile.h"
 
 namespace labeled_cloud {
 
@@ -61,26 +59,6 @@ LabelImage classify(int rows, int cols, ValueAt valueAt, LookUp lookUp) {
   return image;
 }
 
-bool beginsWith(const std::string& text, const std::string& beginning) {
-  return text.compare(0, beginning.size(), beginning) == 0;
-}
-
-/** The pixels of an image file, read by what its first bytes say. (OpenCV would try its decoders in
- * turn, and takes some files of one kind for another.) */
-cv::Mat readImage(const std::filesystem::path& file) {
-  std::string begin(132, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  if (beginsWith(begin, "\x89PNG")) return readPng(file);
-  const bool isPnm = begin[0] == 'P' && begin[1] >= '1' && begin[1] <= '6';
-  const bool isTiff = beginsWith(begin, "II*") || beginsWith(begin, "MM");
-  if ((!isPnm && !isTiff && !beginsWith(begin, "BM")) || begin.substr(128) == "DICM")
-    throw std::runtime_error("cannot be read: it is no PNG, TIFF, BMP or PNM image");
-  const cv::Mat pixels = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
-  if (pixels.empty()) throw std::runtime_error("cannot be read as an image");
-  return pixels;
-}
-
 LabelImage classesOf(const cv::Mat& pixels, const ClassTable& table) {
   const auto raw = [&table](std::uint32_t id) { return table.fromRaw(id); };
   const auto colored = [&table](std::uint32_t bgr) { return classOfColor(table, bgr); };
@@ -107,9 +85,9 @@ LabelImage classesOf(const cv::Mat& pixels, const ClassTable& table) {
 }  // namespace
 
 LabelImage readLabelImage(const std::filesystem::path& file, const ClassTable& table) {
+  const cv::Mat pixels = readImageFile(file, ImageKinds::Lossless);
   try {
-    if (!std::filesystem::is_regular_file(file)) throw std::runtime_error("there is no such file");
-    LabelImage image = classesOf(readImage(file), table);
+    LabelImage image = classesOf(pixels, table);
     image.origin = file.string();
     return image;
   } catch (const std::exception& e) {
@@ -118,12 +96,7 @@ LabelImage readLabelImage(const std::filesystem::path& file, const ClassTable& t
 }
 
 void readConfidences(const std::filesystem::path& file, LabelImage& image) {
-  cv::Mat pixels;
-  try {
-    if (std::filesystem::is_regular_file(file)) pixels = readImage(file);
-  } catch (const std::exception& e) {
-    throw std::runtime_error(file.string() + ": " + e.what());
-  }
+  const cv::Mat pixels = readImageFile(file, ImageKinds::Lossless);
   if (pixels.type() != CV_8UC1 && pixels.type() != CV_16UC1)
     throw std::runtime_error(file.string() + ": expected confidences as gray of 8 or 16 bits");
   if (pixels.rows != image.rows || pixels.cols != image.cols)

@@ -1,4 +1,5 @@
 #include <labeled_cloud/ColorImage.h>
+#include <labeled_cloud/ImageFile.h>
 #include <labeled_cloud/NetworkLabeler.h>
 
 #include <algorithm>
@@ -55,6 +56,8 @@ namespace {
 /** The observation's image as blue, green, red. */
 cv::Mat readBgr(const CObservation& observation) {
   const ColorImage color = colorImageOf(observation);
+  if (color.image.isExternallyStored())
+    checkImageFile(color.image.getExternalStorageFileAbsolutePath(), ImageKinds::All);
   cv::Mat pixels = color.image.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);
   color.image.unload();
   if (pixels.channels() == 1) cv::cvtColor(pixels, pixels, cv::COLOR_GRAY2BGR);

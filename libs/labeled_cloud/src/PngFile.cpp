@@ -12,8 +12,6 @@
 namespace labeled_cloud {
 namespace {
 
-namespace fs = std::filesystem;
-
 /** libpng's state. It reports errors by jumping back to the last setjmp(). */
 struct Reading {
   png_structp png = nullptr;
@@ -65,27 +63,14 @@ int typeOf(const Reading& reading) {
   return CV_MAKETYPE(bits == 16 ? CV_16U : CV_8U, channels);
 }
 
-/** A byte of compressed data stands for no more than 1032. */
-void checkSize(const Reading& reading, std::uintmax_t fileSize) {
-  const std::uintmax_t rows = png_get_image_height(reading.png, reading.info),
-                       cols = png_get_image_width(reading.png, reading.info),
-                       // Packed pixels: eight to a byte at least.
-      bytes = rows * cols / 8;
-  if (bytes > 1032 * fileSize)
-    throw std::runtime_error("says that it has " + std::to_string(cols) + " x " +
-                             std::to_string(rows) + " pixels, more than its " +
-                             std::to_string(fileSize) + " bytes can hold");
-}
-
 }  // namespace
 
-cv::Mat readPng(const fs::path& path) {
+cv::Mat readPng(const std::filesystem::path& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              std::fclose);
   if (!file) throw std::runtime_error("cannot be opened");
   Reading reading;
   if (!readHeader(reading, file.get())) throw std::runtime_error(reading.problem);
-  checkSize(reading, fs::file_size(path));
   cv::Mat pixels(static_cast<int>(png_get_image_height(reading.png, reading.info)),
                  static_cast<int>(png_get_image_width(reading.png, reading.info)), typeOf(reading));
   std::vector<png_bytep> rows;

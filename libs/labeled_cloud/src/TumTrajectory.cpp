@@ -1,3 +1,4 @@
+#include <labeled_cloud/Seconds.h>
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/poses/CPose3DQuat.h>
 #include <strict_files/TextFile.h>
@@ -33,7 +34,7 @@ mrpt::poses::CPose3D poseOf(const std::array<double, 8>& v) {
 
 void insertLine(Trajectory& trajectory, const std::string& line) {
   const auto values = parseLine(line);
-  const auto time = mrpt::Clock::fromDouble(values[0]);
+  const auto time = timeOfSeconds(values[0]);
   if (trajectory.poses().count(time)) throw std::runtime_error("this time was there before");
   trajectory.insert(time, poseOf(values));
 }

@@ -1,7 +1,10 @@
 #pragma once
 #include <mrpt/serialization/CArchive.h>
 
+#include <algorithm>
+#include <stdexcept>
 #include <streambuf>
+#include <string>
 
 namespace semantic_map {
 
@@ -36,5 +39,20 @@ class ArchiveStreambuf : public std::streambuf {
   mrpt::serialization::CArchive& m_archive;
   char m_byte = 0;
 };
+
+/** A text as MRPT writes it. MRPT's own reader believes whatever length it meets: this one holds no
+ * more memory than there are bytes. \throw std::runtime_error the archive ends within it. */
+inline std::string readText(mrpt::serialization::CArchive& archive) {
+  constexpr std::size_t kPiece = 4096;
+  std::string text;
+  for (std::size_t left = archive.ReadAs<std::uint32_t>(); left > 0;) {
+    const std::size_t piece = std::min(left, kPiece), begin = text.size();
+    text.resize(begin + piece);
+    if (archive.ReadBuffer(&text[begin], piece) != piece)
+      throw std::runtime_error("the archive ends within a text");
+    left -= piece;
+  }
+  return text;
+}
 
 }  // namespace semantic_map

@@ -64,11 +64,12 @@ void CSemanticOctoMap::copyAllButTree(const CSemanticOctoMap& o) {
 }
 
 void CSemanticOctoMap::setAbstraction(const TAbstractionOptions& options) {
+  TAbstractionOptions kept = options;
   if (options.isSet())
     m_tree.setAbstraction(options.forClasses(m_tree.classes()));
   else
     m_tree.dropAbstraction();
-  m_abstractionOptions = options;
+  m_abstractionOptions = std::move(kept);
 }
 
 CSemanticOctoMap::Ptr CSemanticOctoMap::compress() {
@@ -149,8 +150,9 @@ void CSemanticOctoMap::useFilterOfOptions() {
         "can change only while the map is empty");
   SemanticOcTree tree(m_tree.getResolution(), m_tree.classes(), insertionOptions.filter);
   tree.setPruning(m_tree.pruning());
+  if (m_abstractionOptions.isSet())
+    tree.setAbstraction(m_abstractionOptions.forClasses(tree.classes()));
   m_tree = std::move(tree);
-  setAbstraction(m_abstractionOptions);
 }
 
 }  // namespace semantic_map

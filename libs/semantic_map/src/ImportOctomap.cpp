@@ -111,6 +111,8 @@ std::unique_ptr<octomap::OcTree> readFrom(std::istream& in) {
 }  // namespace
 
 std::unique_ptr<octomap::OcTree> readOctomapFile(const std::filesystem::path& file) {
+  if (std::filesystem::is_fifo(file) || std::filesystem::is_character_file(file))
+    throw std::runtime_error(file.string() + ": it is no file, but a device or a pipe");
   std::ifstream in(file, std::ios::binary);
   if (!in || std::filesystem::is_directory(file))
     throw std::runtime_error(file.string() + ": cannot be read");

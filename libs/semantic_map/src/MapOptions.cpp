@@ -7,6 +7,8 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "ArchiveStream.h"
+
 namespace semantic_map {
 
 using mrpt::config::CConfigFileBase;
@@ -84,8 +86,7 @@ void TNamedOptions<Derived>::readFrom(CArchive& in) {
   Derived read;
   const OptionList list = listOf(read);
   for (auto left = in.ReadAs<std::uint32_t>(); left > 0; --left) {
-    std::string name, text;
-    in >> name >> text;
+    const std::string name = readText(in), text = readText(in);
     const Option* option = list.find(name);
     if (!option) throw std::runtime_error(strict_files::unknownWord("option", name, list.names()));
     try {

@@ -1,11 +1,9 @@
-#include <fcntl.h>
 #include <strict_files/OutputFolder.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <stdexcept>
 
-#include "Unfinished.h"
+#include "Placing.h"
 
 namespace strict_files {
 
@@ -20,21 +18,6 @@ void checkPlace(const fs::path& place) {
   if (fs::exists(status) && !fs::is_regular_file(status))
     throw std::runtime_error(fs::is_directory(status) ? "it is a folder" : "it is no regular file");
 }
-
-/** As long as it lives, other processes wait to have one for the same folder. */
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& folder)
-      : m_descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    flock(m_descriptor, LOCK_EX);
-  }
-  ~FolderLock() { close(m_descriptor); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int m_descriptor;
-};
 
 }  // namespace
 
@@ -51,32 +34,36 @@ OutputFolder::~OutputFolder() = default;
 
 fs::path OutputFolder::staged(const std::string& name) const { return m_staging->path() / name; }
 
-void OutputFolder::commit(const std::vector<std::string>& names) {
-  const auto each = [&](auto action) {
-    for (const std::string& name : names) try {
-        action(name);
-      } catch (const fs::filesystem_error& e) {
-        throw std::runtime_error((m_folder / name).string() +
-                                 ": cannot be written: " + e.code().message());
-      } catch (const std::exception& e) {
-        throw std::runtime_error((m_folder / name).string() + ": cannot be written: " + e.what());
-      }
-  };
-  each([&](const std::string& name) {  // what can fail comes first
-    checkPlace(m_folder / name);
-    if (fs::exists(staged(name))) synchronize(staged(name));
-  });
-  const FolderLock lock(m_folder);  // of two at the same time, the files are of one
-  const auto held = Unfinished::hold();
-  each([&](const std::string& name) { put(name); });
-  synchronize(m_folder);
+/** Where each file goes, when all are on the disk. \throw filesystem_error or runtime_error */
+Placement OutputFolder::prepare(const std::string& name) const {
+  checkPlace(m_folder / name);
+  if (!fs::exists(staged(name))) return {{}, m_folder / name};
+  synchronize(staged(name));
+  return {staged(name), m_folder / name};
 }
 
-void OutputFolder::put(const std::string& name) {
-  if (fs::exists(staged(name)))
-    fs::rename(staged(name), m_folder / name);
-  else
-    fs::remove(m_folder / name);
+void OutputFolder::commit(const std::vector<std::string>& names) {
+  const auto each = [&](auto action) {
+    for (std::size_t i = 0; i < names.size(); ++i) try {
+        action(i);
+      } catch (const PlaceTaken& e) {
+        keepAndReport(m_folder / names[i], *m_staging, e);
+      } catch (const fs::filesystem_error& e) {
+        throw std::runtime_error((m_folder / names[i]).string() +
+                                 ": cannot be written: " + e.code().message());
+      } catch (const std::exception& e) {
+        throw std::runtime_error((m_folder / names[i]).string() +
+                                 ": cannot be written: " + e.what());
+      }
+  };
+  std::vector<Placement> placements;  // what can fail comes first
+  each([&](std::size_t i) { placements.push_back(prepare(names[i])); });
+  const OpenFolder folder(m_folder);
+  flock(folder.descriptor(), LOCK_EX);  // of two at the same time, the files are of one
+  const auto held = Unfinished::hold();
+  each([&](std::size_t i) { placements[i].checkFree(); });
+  each([&](std::size_t i) { placements[i].take(); });
+  folder.synchronize();
 }
 
 }  // namespace strict_files

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "Unfinished.h"
+#include "Placing.h"
 
 namespace strict_files {
 
@@ -52,10 +52,15 @@ const fs::path& StagedFile::path() const { return m_unfinished->path(); }
 
 void StagedFile::commit() {
   try {
+    const Placement placement(m_unfinished->path(), m_target);
+    const OpenFolder folder(m_target.parent_path());
     synchronize(m_unfinished->descriptor());
     const auto held = Unfinished::hold();
-    fs::rename(m_unfinished->path(), m_target);
-    synchronize(m_target.parent_path());
+    placement.take();
+    folder.synchronize();
+  } catch (const PlaceTaken& e) {
+    const auto held = Unfinished::hold();
+    keepAndReport(m_target, *m_unfinished, e);
   } catch (const fs::filesystem_error& e) {
     throw std::runtime_error(m_target.string() + ": cannot be written: " + e.code().message());
   } catch (const std::exception& e) {

@@ -25,6 +25,9 @@ class Unfinished {
   /** Of the file or folder, open. */
   int descriptor() const { return m_descriptor; }
 
+  /** Gives it a name that stays, for the user: "kept-..." \return its path */
+  std::filesystem::path keep();
+
   /** As long as this is held, leaveWithoutOutputs() waits. */
   static std::unique_lock<std::mutex> hold();
 

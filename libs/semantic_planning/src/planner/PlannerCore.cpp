@@ -79,7 +79,18 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
   map.takeTouchedTiles();  // the ground began with the whole map
 }
 
+void PlannerCore::checkWhole() const {
+  if (m_broken)
+    throw std::logic_error("SemanticPlanner: it is broken, for a call failed while it changed it");
+}
+
+const Ground& PlannerCore::ground() const {
+  checkWhole();
+  return m_ground;
+}
+
 const Roadmap& PlannerCore::roadmap() const {
+  checkWhole();
   if (!m_roadmap) throw std::logic_error("SemanticPlanner: nothing was planned yet");
   return m_roadmap->roadmap();
 }
@@ -93,14 +104,13 @@ PlanStatus PlannerCore::placed(const Place& place, std::optional<GroundPose>& po
 }
 
 PlanStatus PlannerCore::check(const Place& place) const {
+  checkWhole();
   checkFinite("pose", place);
   std::optional<GroundPose> pose;
   return placed(place, pose);
 }
 
 bool PlannerCore::refuse(const Place& start, const Place& goal, PlanResult& result) {
-  checkFinite("start", start);
-  checkFinite("goal", goal);
   result.status = placed(start, m_startPose);
   if (result.status != PlanStatus::Found) {
     result.reason = reasonOf("start", result.status, start.pose);
@@ -133,6 +143,9 @@ colored_graph::SearchOptions PlannerCore::searchOptions(const Roadmap& map) {
 PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   StageClock clock;
   PlanResult result;
+  checkFinite("start", start);
+  checkFinite("goal", goal);
+  const Change change(*this);
   m_replanner.reset();
   m_roadmap.reset();
   m_goalPlace = goal;
@@ -167,6 +180,7 @@ void PlannerCore::finish(const PathResult& path, StageClock& clock, PlanResult& 
 }
 
 void PlannerCore::forget() {
+  const Change change(*this);
   m_replanner.reset();
   m_roadmap.reset();
   m_candidates.forget();
@@ -188,6 +202,7 @@ PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
 UpdateResult PlannerCore::update() {
   StageClock clock;
   UpdateResult result;
+  const Change whole(*this);
   const MapChange change = followMap(clock);
   result.tilesTouched = change.tilesTouched;
   result.tilesChanged = change.tiles.size();
@@ -220,6 +235,8 @@ PlanResult PlannerCore::replan(const Place& start) {
   StageClock clock;
   PlanResult result;
   roadmap();  // or nothing was planned
+  checkFinite("start", start);
+  const Change change(*this);
   if (refuse(start, m_goalPlace, result)) return result;
   Roadmap& map = m_roadmap->roadmap();
   moveStart(map);

@@ -2,6 +2,7 @@
 #include <colored_graph/ColoredReplanner.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
+#include <exception>
 #include <memory>
 #include <optional>
 
@@ -32,12 +33,27 @@ class PlannerCore {
 
   const PlannerOptions& options() const { return m_options; }
   const colored_graph::ClassOrder& order() const { return m_checker.order(); }
-  const Ground& ground() const { return m_ground; }
+  const Ground& ground() const;
   bool hasRoadmap() const { return m_roadmap != nullptr; }
   const Roadmap& roadmap() const;
 
  private:
   using VertexId = colored_graph::VertexId;
+
+  /** From the first thing that a call changes to its end. If it is left by an exception, ground,
+   * roadmap and search do not belong together: the planner is broken from then on. */
+  class Change {
+   public:
+    explicit Change(PlannerCore& core) : m_broken(core.m_broken) { core.checkWhole(); }
+    ~Change() { m_broken = std::uncaught_exceptions() > m_exceptions; }
+    Change(const Change&) = delete;
+    Change& operator=(const Change&) = delete;
+
+   private:
+    bool& m_broken;
+    const int m_exceptions = std::uncaught_exceptions();
+  };
+  void checkWhole() const;
 
   /** What the roadmap has to follow. */
   struct MapChange {
@@ -73,6 +89,7 @@ class PlannerCore {
   Place m_goalPlace;
   VertexId m_start = colored_graph::kNoVertex, m_goal = colored_graph::kNoVertex;
   std::optional<colored_graph::ColoredReplanner> m_replanner;
+  bool m_broken = false;
   double m_evaluating = 0;  ///< milliseconds of the present search
 };
 

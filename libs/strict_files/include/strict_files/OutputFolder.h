@@ -6,6 +6,7 @@
 
 namespace strict_files {
 
+class Placement;
 class Unfinished;
 
 /** The folder of the results. Files are written into a folder inside it and take their place at the
@@ -26,11 +27,12 @@ class OutputFolder {
   /** Puts these files in place. One that was not written removes its predecessor, so that files of
    * different maps are never side by side.
    * \throw std::runtime_error naming the file that cannot be written, or whose place something else
-   * has that is no regular file. */
+   * has that is no regular file, or that is there although it was to be new (declareNew()): then
+   * the files that have no place are kept in a folder beside them, which is said. */
   void commit(const std::vector<std::string>& names);
 
  private:
-  void put(const std::string& name);
+  Placement prepare(const std::string& name) const;
 
   std::filesystem::path m_folder;
   std::unique_ptr<Unfinished> m_staging;

@@ -23,7 +23,8 @@ class StagedFile {
   /** Where to write: an empty file in the target's folder, with a name that nothing else has and
    * that ends like the target's. Writers fill this file, they do not replace it. */
   const std::filesystem::path& path() const;
-  /** Gives the closed file its name. \throw std::runtime_error naming the target. */
+  /** Gives the closed file its name. \throw std::runtime_error naming the target; if it was to be
+   * new (declareNew()) and is there, what was written is kept under another name, which is said. */
   void commit();
 
  private:

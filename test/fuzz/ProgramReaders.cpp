@@ -1,0 +1,148 @@
+#include <CLI/CLI.hpp>
+#include <sstream>
+
+#include "CommandLine.h"
+#include "FuzzedFile.h"
+#include "OptionFlags.h"
+#include "Outputs.h"
+#include "Readers.h"
+#include "dataset2rawlog/Conversion.h"
+#include "dataset2rawlog/TumFiles.h"
+#include "insertion-benchmark/Scene.h"
+#include "planning-study/Join.h"
+#include "poses/Poses.h"
+#include "rawlog2semantic-map/Config.h"
+#include "semantic-map-info/PointQuery.h"
+#include "semantic-map-merge/MapPoses.h"
+#include "simulated_drive/DriveConfig.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/** A file of a data set's folder for each part of the bytes between form feeds. */
+void writeParts(const std::string& bytes, const fs::path& folder,
+                const std::vector<std::string>& names) {
+  std::size_t begin = 0;
+  for (const std::string& name : names) {
+    const std::size_t end = std::min(bytes.find('\f', begin), bytes.size());
+    fs::create_directories((folder / name).parent_path());
+    std::ofstream(folder / name, std::ios::binary) << bytes.substr(begin, end - begin);
+    begin = std::min(end + 1, bytes.size());
+  }
+}
+
+dataset2rawlog::Conversion conversionTo(const fs::path& folder) {
+  dataset2rawlog::Conversion conversion;
+  conversion.output = folder / "out.rawlog";
+  return conversion;
+}
+
+void readKitti(const fs::path& folder) {
+  dataset2rawlog::Conversion conversion = conversionTo(folder);
+  conversion.classes = folder / "classes.yaml";
+  dataset2rawlog::convertSemanticKitti(folder, conversion);
+}
+
+void readTum(const fs::path& folder) {
+  dataset2rawlog::Conversion conversion = conversionTo(folder);
+  conversion.labels = false;
+  dataset2rawlog::convertTumSequence(folder, conversion);
+}
+
+void readPcd(const fs::path& folder) {
+  dataset2rawlog::convertLabeledPcds({folder / "a.pcd"}, conversionTo(folder));
+}
+
+void join(const fs::path& folder) { planning_study::joinStudies({folder}); }
+
+/** For functions that want several files. */
+template <typename F>
+auto fromFolder(const std::vector<std::string>& names, const F& read) {
+  return [names, read](const std::string& bytes) {
+    const fs::path folder = fs::temp_directory_path() / ("mso_fuzz_" + std::to_string(getpid()));
+    fs::remove_all(folder);
+    writeParts(bytes, folder, names);
+    try {
+      read(folder);
+    } catch (...) {
+      fs::remove_all(folder);
+      throw;
+    }
+    fs::remove_all(folder);
+  };
+}
+
+void askMap(const std::string& bytes) {
+  static const semantic_octree::SemanticOcTree map = [] {
+    semantic_types::ClassTable table;
+    table.add("road", {});
+    semantic_octree::SemanticOcTree tree(0.5, table);
+    semantic_types::LabeledCloud cloud;
+    cloud.points = {{1, 2, 3}};
+    cloud.classes = {1};
+    tree.insert(cloud, Eigen::Isometry3d::Identity());
+    return tree;
+  }();
+  const auto answers = semantic_map_info::answersAt(map, strict_files::linesOf(bytes, "-"), true);
+  semantic_map_info::textOfAnswers(answers);
+  answers.dump();
+}
+
+/** A program with options of all kinds; each line of the bytes is a word. */
+void parseCommandLine(const std::string& bytes) {
+  semantic_planning::PlannerOptions planner;
+  semantic_octree::InsertionOptions insertion;
+  mrpt::math::TPose2D start;
+  fs::path input, output;
+  strict_files::OptionList planning, inserting;
+  planner.describe(planning);
+  insertion.describe(inserting);
+  CLI::App app("Reads words", "program");
+  Outputs outputs(app);
+  outputs.add(app, output, "FILE", "File to write");
+  app.add_option("INPUT", input);
+  poses::addPose(app, "--start", start, "Where it begins");
+  addOptions(app, planning, "Planning");
+  addOptions(app, inserting, "Insertion");
+  makeHelpReadable(app);
+
+  std::vector<std::string> words;
+  std::istringstream in(bytes);
+  for (std::string word; std::getline(in, word);) words.insert(words.begin(), word);
+  try {
+    app.parse(words);
+    planner.validate();
+    insertion.validate();
+  } catch (const CLI::ParseError& e) {
+    std::ostringstream out;
+    if (e.get_exit_code() == 0) app.exit(e, out, out);
+    throw std::runtime_error("program: " + problemOf(app, e));
+  }
+}
+
+}  // namespace
+
+std::vector<Reader> programReaders() {
+  const auto scene = [](const fs::path& f) { insertion_benchmark::readSceneFile(f, 0); };
+  const auto poses = [](const fs::path& f) { semantic_map_merge::readMapPoses(f, {"a", "b"}); };
+  return {
+      {"pcd", fromFolder({"a.pcd"}, readPcd), {}},
+      {"kitti",
+       fromFolder({"calib.txt", "poses.txt", "times.txt", "classes.yaml", "velodyne/000000.bin",
+                   "labels/000000.label"},
+                  readKitti),
+       {}},
+      {"tum", fromFolder({"camera.ini", "groundtruth.txt", "depth.txt", "depth.pgm"}, readTum), {}},
+      {"scene", fromFile("", scene), {}},
+      {"map-poses", fromFile("", poses), {}},
+      {"study", fromFolder({"study.json", "study.csv"}, join), {}},
+      {"points", askMap, {}},
+      {"mapping-config",
+       fromFile("", rawlog2semantic_map::loadConfig),
+       {"config/maps/synthetic.ini"}},
+      {"drive-config",
+       fromFile("", simulated_drive::loadDriveConfig),
+       {"config/drives/synthetic.ini"}},
+      {"command-line", parseCommandLine, {}}};
+}

@@ -1,0 +1,46 @@
+#include <gtest/gtest.h>
+#include <semantic_map/ImportOctomap.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "TemporaryFolder.h"
+
+namespace {
+
+/** An .ot file with one node, the root. */
+std::string oneNode(float logOdds) {
+  std::string bytes(sizeof logOdds + 1, '\0');  // the last byte: no children
+  std::memcpy(bytes.data(), &logOdds, sizeof logOdds);
+  return "# Octomap OcTree file\nid OcTree\nsize 1\nres 0.1\ndata\n" + bytes;
+}
+
+std::string errorReading(const std::filesystem::path& file) {
+  const std::string error = errorOf([&] { semantic_map::readOctomapFile(file); });
+  EXPECT_TRUE(error.empty() || contains(error, file.string() + ": ")) << error;
+  return error;
+}
+
+}  // namespace
+
+TEST(ImportOctomap, takesALogOddsThatIsFinite) {
+  const TemporaryFolder folder;
+  const auto tree = semantic_map::readOctomapFile(folder.write("a.ot", oneNode(0.5f)));
+  ASSERT_TRUE(tree->getRoot());
+  EXPECT_EQ(tree->getRoot()->getLogOdds(), 0.5f);
+}
+
+TEST(ImportOctomap, refusesALogOddsThatIsNotFinite) {
+  const TemporaryFolder folder;
+  for (const float bad : {std::nanf(""), INFINITY, -INFINITY})
+    EXPECT_TRUE(contains(errorReading(folder.write("a.ot", oneNode(bad))),
+                         "has a log-odds that is not finite"))
+        << bad;
+}
+
+TEST(ImportOctomap, refusesAPipeWithoutWaitingForIt) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "a.bt").c_str(), 0600), 0);
+  EXPECT_TRUE(contains(errorReading(folder / "a.bt"), "it is no file, but a device or a pipe"));
+}

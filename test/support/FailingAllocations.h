@@ -1,0 +1,33 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <exception>
+
+/** The N-th `new` from now fails, counted from 0, whichever thread it is on; below 0: none does.
+ * For tests that link failing_allocations. */
+void failAllocation(long n);
+
+/** Fails the first, the second, ... allocation of an operation, until none is left to fail.
+ * \param prepare called before each \param afterFailure called after each that failed
+ * \return how often it failed */
+template <typename Prepare, typename Operation, typename Check>
+int failEachAllocation(const Prepare& prepare, const Operation& operation,
+                       const Check& afterFailure) {
+  for (int n = 0;; ++n) {
+    bool failed = false;
+    prepare();
+    failAllocation(n);
+    try {
+      operation();
+    } catch (const std::exception&) {
+      failed = true;
+    }
+    failAllocation(-1);
+    if (!failed) return n;
+    afterFailure();
+    if (testing::Test::HasFailure()) {
+      ADD_FAILURE() << "when allocation " << n << " had failed";
+      return n;
+    }
+  }
+}
