@@ -89,7 +89,7 @@ MapCanvas DrivePicture::paperFor(double voxel) const {
 MapCanvas DrivePicture::draw(const DriveLoop& loop) const {
   MapCanvas canvas = paperFor(loop.mapper().map().getResolution());
   map_pictures::PictureStyle style;
-  style.maxHeight = loop.T_world_robot().translation().z() + kCutAbove;
+  style.maxAboveGround = kCutAbove;
   canvas.drawMap(loop.mapper().map(), style);
   drawTrack(canvas, loop.record(), "driven", kTrack);
   drawRoute(canvas, loop.controller().tracker());

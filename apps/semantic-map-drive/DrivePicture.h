@@ -10,7 +10,7 @@ using namespace simulated_drive;
 /** Colors of pictures and of the window. */
 constexpr semantic_types::Color kPathColor{220, 40, 40}, kGoalColor{200, 30, 30},
     kRobotColor{20, 120, 230};
-/** What is that far above the robot is not shown: crowns of trees would hide the way. m */
+/** What is that far above the ground is not shown: crowns of trees would hide the way. m */
 constexpr double kCutAbove = 2.5;
 
 /** Seconds, meters, speed, and where to. */

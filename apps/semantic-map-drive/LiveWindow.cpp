@@ -132,7 +132,7 @@ void LiveWindow::onSensed(const DriveLoop& loop, const std::vector<Observation>&
   if (!m_window->isOpen() || loop.time() < m_nextMap - 1e-6) return;
   m_nextMap = loop.time() + kMapPeriod;
   map_pictures::PictureStyle style;
-  style.maxHeight = loop.T_world_robot().translation().z() + kCutAbove;
+  style.maxAboveGround = kCutAbove;
   const auto mesh = map_pictures::meshOf(loop.mapper().map(), style);
   const mrpt::gui::CDisplayWindow3DLocker locker(*m_window);
   m_map->clear();

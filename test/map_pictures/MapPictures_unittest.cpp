@@ -104,6 +104,33 @@ TEST(TopView, theHighestCellCoversTheOthersUnlessItIsCutOff) {
   EXPECT_GT(count(below, pixelOf(kRoad)), 100000);
 }
 
+TEST(TopView, cutsOffWhatIsHighAboveTheGroundOnAHillToo) {
+  semantic_types::LabeledCloud
+      cloud;  // a slope of 20 degrees, 20 m long, with a crown above each part of it
+  const double rise = std::tan(20 * M_PI / 180);
+  const auto add = [&cloud](double x, double y, double z, ClassId id) {
+    cloud.points.push_back(Eigen::Vector3d(x, y, z).cast<float>());
+    cloud.classes.push_back(id);
+  };
+  for (double y = -0.9; y < 1; y += 0.2)
+    for (double x = -9.9; x < 10; x += 0.2) {
+      add(x, y, rise * x, 1);
+      add(x, y, rise * x + 4, 2);
+    }
+  SemanticOcTree tree(0.2, paintedClasses());
+  semantic_octree::InsertionOptions options;
+  options.carvingMargin = 1e6;
+  tree.insert(cloud, Eigen::Isometry3d::Identity(), options);
+  PictureStyle style = plain();
+  style.maxAboveGround = 2.5;
+  const cv::Mat picture = renderTopView(tree, style);
+  EXPECT_GT(count(picture, pixelOf(kRoad), 3), 10 * count(picture, pixelOf(kTree), 3));
+  for (const int part : {1, 3, 5}) {  // low, in the middle, high
+    const cv::Vec3b pixel = picture.at<cv::Vec3b>(picture.rows / 2, picture.cols * part / 6);
+    EXPECT_LT(cv::norm(pixel, pixelOf(kRoad)), 60) << part;
+  }
+}
+
 TEST(TopView, looksUnderTheCeilingOfAnIndoorMap) {
   const SemanticOcTree tree = paintedField({0, 0}, 2.4f);
   PictureStyle style = plain();

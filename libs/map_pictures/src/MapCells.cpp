@@ -35,9 +35,13 @@ unsigned depthToDraw(const SemanticOcTree& tree, double minOccupancy) {
   return 1;
 }
 
-void cutOff(MapCells& map, double maxHeight) {
-  map.maxHeight = maxHeight;
-  const auto above = [maxHeight](const MapCell& cell) { return cell.center.z() > maxHeight; };
+void cutOff(MapCells& map, const PictureStyle& style) {
+  map.maxHeight = style.maxHeight ? *style.maxHeight : heightUnderCeiling(map.cells);
+  if (style.maxAboveGround) {
+    map.maxAboveGround = *style.maxAboveGround;
+    for (const MapCell& cell : map.cells) map.ground.add(cell.center, cell.size);
+  }
+  const auto above = [&map](const MapCell& cell) { return map.isCutOff(cell.center); };
   map.cells.erase(std::remove_if(map.cells.begin(), map.cells.end(), above), map.cells.end());
 }
 
@@ -62,7 +66,7 @@ MapCells collectCells(const SemanticOcTree& tree, const PictureStyle& style) {
                          float(it.getSize()), state.likeliestClass});
     return true;
   });
-  cutOff(map, style.maxHeight ? *style.maxHeight : heightUnderCeiling(map.cells));
+  cutOff(map, style);
   return map;
 }
 

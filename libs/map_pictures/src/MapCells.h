@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <vector>
+
+#include "LowestCells.h"
 
 namespace map_pictures {
 
@@ -25,7 +28,15 @@ struct MapCells {
   /** Nothing with its center above is drawn, m. */
   double maxHeight = std::numeric_limits<double>::infinity();
   double minOccupancy;
+  /** Nothing with its center that much above the lowest cells around is drawn, m. */
+  double maxAboveGround = std::numeric_limits<double>::infinity();
+  LowestCells ground;  ///< for that; empty if nothing is cut off so
 
+  bool isCutOff(const Eigen::Vector3f& center) const {
+    return center.z() > maxHeight ||
+           (std::isfinite(maxAboveGround) &&
+            center.z() - ground.around(center.x(), center.y()) > maxAboveGround);
+  }
   /** Number of cells per class, [0] those without. */
   std::vector<std::size_t> countClasses(int numClasses) const;
 };

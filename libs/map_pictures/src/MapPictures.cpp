@@ -22,6 +22,8 @@ void PictureStyle::describe(OptionList& list) {
   list.add("title", title, "", "written above the legend");
   list.add("max_height", maxHeight, "m", strict_files::Range().orInfinite(),
            "higher cells are not drawn; none: all but the ceiling of an indoor map");
+  list.add("max_above_ground", maxAboveGround, "m", above(0),
+           "cells that are higher above the ground are not drawn; none: all");
   list.add("min_occupancy", minOccupancy, "", atLeast(0).below(1), "above it, cells are occupied");
   list.add("neighbor_weight", neighborWeight, "", between(0, 1),
            "what a voxel across a face tells about a voxel's class, beside 1 for itself; 0: "

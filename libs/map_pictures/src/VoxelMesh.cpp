@@ -41,7 +41,7 @@ class Neighborhood {
   enum class State : std::uint8_t { NotAsked, Empty, Filled };
 
   bool lookUp(const Eigen::Vector3i& step) const {
-    if (m_cell.center.z() + float(step.z()) * m_cell.size > m_map.maxHeight) return false;
+    if (m_map.isCutOff(m_cell.center + step.cast<float>() * m_cell.size)) return false;
     octomap::OcTreeKey key;
     const int keys = 1 << (m_tree.getTreeDepth() - m_cell.depth);
     for (int axis = 0; axis < 3; ++axis) {

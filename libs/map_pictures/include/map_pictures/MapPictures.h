@@ -20,6 +20,10 @@ struct PictureStyle {
   /** Cells with their center above are not drawn, m. Without: nothing is cut off, except the
    * ceiling of a map that lies under one (an indoor map). */
   std::optional<double> maxHeight;
+  /** Cells with their center more than that above the ground are not drawn, m: above the lowest
+   * occupied cell within about 1.5 m to 3 m. On hills one height would be too high here and too low
+   * there. Without: nothing is cut off so. */
+  std::optional<double> maxAboveGround;
   /** Cells count as occupied above this occupancy. */
   double minOccupancy = 0.5;
   /** Above 0: voxels have the class that they have together with their neighbors, see
