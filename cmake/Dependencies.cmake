@@ -23,6 +23,7 @@ mso_external(mrpt::maps libmrpt-maps-dev mrpt-maps)
 mso_external(mrpt::opengl libmrpt-opengl-dev mrpt-opengl)
 mso_external(mrpt::graphs libmrpt-graphs-dev mrpt-graphs)
 mso_external(mrpt::nav libmrpt-nav-dev mrpt-nav)
+find_package(liblzf QUIET)  # compressed PCD files are refused without
 
 include(ThirdPartyTargets)
 

@@ -3,6 +3,7 @@
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/LabelModel.h>
 #include <labeled_cloud/NetworkLabeler.h>
+#include <labeled_cloud/PointFile.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
@@ -86,6 +87,7 @@ const std::vector<Reader>& readers() {
       {"label-image",
        fromFile("", [](const fs::path& f) { labeled_cloud::readLabelImage(f, classes()); }),
        {}},
+      {"points", fromFile("", [](const fs::path& f) { labeled_cloud::readPointFile(f); }), {}},
       {"trajectory",
        fromFile("", [](const fs::path& f) { labeled_cloud::loadTumTrajectory(f); }),
        {}},
