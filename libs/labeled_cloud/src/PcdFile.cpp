@@ -134,6 +134,9 @@ PointFile parsePcd(const std::string& bytes, const std::string& name, const std:
   const auto lines = strict_files::linesOf(bytes.substr(0, dataBegin), name);
   const Header header = headerOf(lines, name);
   const std::string format = wordsForFields(header.at("DATA"), "words", 1)[0];
+  if (format != "ascii" && format != "binary" && format != "binary_compressed")
+    throw std::runtime_error(header.at("DATA").where + ": data '" + format +
+                             "', expected ascii, binary or binary_compressed");
   PointFields fields;
   fields.fields = fieldsOf(header, format != "ascii");
   const TextLine& points = header.at("POINTS");
@@ -148,11 +151,8 @@ PointFile parsePcd(const std::string& bytes, const std::string& name, const std:
   } else if (format == "binary") {
     requireBytes(fields, data.size());
     file = readBinaryPoints(fields, data, false);
-  } else if (format == "binary_compressed") {
-    file = readCompressed(fields, data);
   } else {
-    throw std::runtime_error(header.at("DATA").where + ": data '" + format +
-                             "', expected ascii, binary or binary_compressed");
+    file = readCompressed(fields, data);
   }
   const auto view = header.find("VIEWPOINT");
   if (view != header.end()) file.T_file_sensor = viewpoint(view->second);
