@@ -53,4 +53,8 @@ install(FILES
   DESTINATION ${package_dir} COMPONENT development)
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/mrpt_semantic_octree/config
   COMPONENT tools)
-install(FILES README.md CHANGELOG.md CITATION.cff LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT library)
+
+# Documents and samples, laid out as in the sources, so that links between them and commands of the handbook hold.
+install(FILES README.md CHANGELOG.md CITATION.cff LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
+install(DIRECTORY doc rawlog-samples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
+install(DIRECTORY apps DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation FILES_MATCHING PATTERN README.md)

@@ -13,7 +13,7 @@ namespace dataset2rawlog {
 /** What all data sets have in common. */
 struct Conversion {
   std::filesystem::path output;
-  /** Class table file; empty: the data set's ids are the classes (PCD only). */
+  /** Class table file; empty: the data set's ids are the classes (PCD and PLY only). */
   std::filesystem::path classes;
   FrameRange frames;
   /** Share of the labels that is replaced by random other classes, and with which seed. */
@@ -53,10 +53,11 @@ Summary convertSemanticKitti(const std::filesystem::path& sequence, const Conver
  * \throw std::runtime_error as above. */
 Summary convertTumSequence(const std::filesystem::path& folder, const Conversion& conversion);
 
-/** Labeled point clouds as ASCII PCD with the fields x, y, z, label, in the world's frame;
- * VIEWPOINT is the sensor's pose. A file a scan, one second apart. \throw std::runtime_error as
+/** Point clouds as PCD or PLY, see labeled_cloud::readPointFile(), in the world's frame; VIEWPOINT
+ * of a PCD is the sensor's pose, that of a PLY the origin. A file a scan, one second apart. \param
+ * labelField the field with the labels, unless they are not wanted \throw std::runtime_error as
  * above. */
-Summary convertLabeledPcds(const std::vector<std::filesystem::path>& files,
-                           const Conversion& conversion);
+Summary convertPointFiles(const std::vector<std::filesystem::path>& files,
+                          const std::string& labelField, const Conversion& conversion);
 
 }  // namespace dataset2rawlog

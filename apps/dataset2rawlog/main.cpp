@@ -18,7 +18,8 @@ struct Cli {
   Conversion conversion;
   std::string frames;
   std::filesystem::path folder;
-  std::vector<std::filesystem::path> pcds;
+  std::vector<std::filesystem::path> pointFiles;
+  std::string labelField = "label";
   std::function<Summary()> convert;
 
   Cli() {
@@ -77,10 +78,15 @@ struct Cli {
   }
 
   void addPcd() {
-    CLI::App* command = add("pcd", "ASCII PCD files with x, y, z and label",
-                            [this] { return convertLabeledPcds(pcds, conversion); });
+    CLI::App* command = add("pcd", "PCD or PLY files with x, y, z and a label", [this] {
+      return convertPointFiles(pointFiles, labelField, conversion);
+    });
     addClasses(command);
-    command->add_option("FILES", pcds, "The scans in order")->required();
+    addNoLabels(command, "x, y and z only");
+    command->add_option("--label-field", labelField, "Field (PLY: property) with the labels")
+        ->type_name("NAME")
+        ->capture_default_str();
+    command->add_option("FILES", pointFiles, "The scans in order")->required();
   }
 };
 

@@ -106,11 +106,8 @@ Config configOf(const Cli& cli) {
 
 ClassTable classesOf(const Cli& cli, const Config& config) {
   if (!config.map.classes.empty()) return semantic_types::loadClassTable(config.map.classes);
-  ClassTable table;
-  if (cli.config.empty()) {
-    notes() << "Reading the labels' names" << std::endl;
-    table = labeled_cloud::classesIn(cli.rawlogs);
-  }
+  notes() << "Reading the labels' names" << std::endl;
+  const ClassTable table = labeled_cloud::classesIn(cli.rawlogs);
   return table.empty() ? CSemanticOctoMap::occupancyOnly() : table;
 }
 
@@ -127,7 +124,9 @@ labeled_cloud::Trajectory restAtOrigin() {
 void setAbstraction(CSemanticOctoMap& map, const Cli& cli, const Config& config) try {
   map.setAbstraction(config.abstraction);
 } catch (const std::exception& e) {
-  throw std::runtime_error(cli.config.string() + ": [abstraction] " + strict_files::messageOf(e));
+  const std::string table = config.map.classes.empty() ? "the rawlogs' labels" : config.map.classes;
+  throw std::runtime_error(cli.config.string() + ": [abstraction] with the classes of " + table +
+                           ": " + strict_files::messageOf(e));
 }
 
 labeled_cloud::Trajectory trajectoryOf(const Cli& cli, const Config& config) {

@@ -45,6 +45,25 @@ TEST(Pcd, aClassTableFoldsTheLabels) {
   EXPECT_EQ(scans.at(0).scan.cloud.classes, (std::vector<ClassId>{3, 2}));
 }
 
+TEST(Pcd, filesMayBePlyAndTheLabelsFieldHasAnyName) {
+  const TemporaryFolder folder;
+  ClassTable table;
+  for (const char* name : {"a", "b"}) table.add(name, {});
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
+      "property float y\nproperty float z\nproperty int scalar_Class\nend_header\n";
+  const auto file = folder.write("a.ply", head + "1 2 3 2\n4 5 6 1\n");
+  const auto scans = convertAndRead("pcd --label-field scalar_Class " + quoted(file),
+                                    folder / "out.rawlog", table);
+  EXPECT_EQ(scans.at(0).scan.cloud.classes, (std::vector<ClassId>{2, 1}));
+  EXPECT_EQ(scans[0].scan.cloud.points[1], Eigen::Vector3f(4, 5, 6));
+  EXPECT_TRUE(contains(failureOf("pcd " + quoted(file) + " -o " + quoted(folder / "b.rawlog")),
+                       "no field 'label' among 'x' 'y' 'z' 'scalar_Class'"));
+  const auto bare =
+      convertAndRead("pcd --no-labels " + quoted(file), folder / "out2.rawlog", table);
+  EXPECT_EQ(bare.at(0).scan.counts.labeled, 0u);
+}
+
 TEST(Pcd, fieldsOfSeveralValuesMoveTheOthers) {
   const TemporaryFolder folder;
   const auto file = folder.write(
@@ -75,7 +94,7 @@ TEST(Pcd, badInputIsNamed) {
   EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 3\n9 5 6 7 -1\n"), "no class id"));
   EXPECT_TRUE(
       contains(failureWith("FIELDS x y z\nPOINTS 1\nDATA ascii\n1 2 3\n"), "no field 'label'"));
-  EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS 1\nDATA binary\n"), "DATA ascii"));
+  EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS 1\nDATA raw\n"), "expected ascii"));
   for (const std::string number : {"-1", "0.5", "1e300"})
     EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS " + number + "\nDATA ascii\n"),
                          "expected a number of points"))

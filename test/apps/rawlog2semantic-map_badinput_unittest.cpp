@@ -53,6 +53,12 @@ TEST_F(Rawlog2SemanticMap, aRawlogOfWhichNothingCanBeInsertedIsRefused) {
   expectRefusal({"nothing to map", "1 outside the trajectory"}, "late.rawlog");
 }
 
+TEST_F(Rawlog2SemanticMap, aRelevantClassThatTheTableLacksIsRefused) {
+  folder.write("small.ini", kSmallConfig + std::string("[abstraction]\nrelevant = rode: 1\n"));
+  expectRefusal({"small.ini: [abstraction] with the classes of ", "classes.yaml: relevant: ",
+                 "unknown class 'rode'", "known are free_space, road", "did you mean 'road'?"});
+}
+
 TEST_F(Rawlog2SemanticMap, aClassThatTheTableLacksIsRefused) {
   folder.write("classes.yaml", "classes:\n  - {id: 1, name: road, color: [1, 2, 3]}\n");
   expectRefusal({"small.rawlog: observation 2", "lidar", "car"});

@@ -75,6 +75,10 @@ TEST_F(Rawlog2SemanticMap, withoutAConfigurationTakesTheClassesThatTheRawlogName
   EXPECT_EQ(tree.classes().name(tree.query(2.2, 0.2, 0.2).likeliestClass), "tarmac");
   EXPECT_EQ(tree.classes().name(tree.query(0.1, 3, 0.2).likeliestClass), "van");
 
+  result = build("named.rawlog", {"--config", MSO_SOURCE_DIR "/config/maps/generic.ini"});
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_EQ(map().classes().name(1), "tarmac");
+
   scan.classNames.clear();
   writeSmallRawlog(folder / "nameless.rawlog", robotPose(10, 1.1), scan);
   result = build("nameless.rawlog", {"--static-pose"});

@@ -4,6 +4,7 @@
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/LabelModel.h>
 #include <labeled_cloud/NetworkLabeler.h>
+#include <labeled_cloud/PointFile.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
@@ -101,6 +102,7 @@ std::vector<Reader> libraryReaders() {
       {"archived-cloud", readArchive<labeled_cloud::CObservationLabeledCloud>, {}},
       {"map-definition", readDefinition, {}},
       {"label-image", fromFile("", readLabels), {}},
+      {"points", fromFile("", [](const fs::path& f) { labeled_cloud::readPointFile(f); }), {}},
       {"trajectory",
        fromFile("", [](const fs::path& f) { labeled_cloud::loadTumTrajectory(f); }),
        {}},

@@ -15,7 +15,7 @@ const IncludeTable& includeTable() {
       {"semantic_octree",
        {"Eigen", "octomap", "zlib.h", "semantic_types", "strict_files", "tree_abstraction"}},
       {"labeled_cloud",
-       {"Eigen", "mrpt", "opencv2", "png.h", "yaml-cpp", "zlib.h", "semantic_types",
+       {"Eigen", "lzf.h", "mrpt", "opencv2", "png.h", "yaml-cpp", "zlib.h", "semantic_types",
         "strict_files"}},
       {"semantic_map",
        {"Eigen", "mrpt", "octomap", "opencv2", "zlib.h", "labeled_cloud", "semantic_octree",

@@ -106,8 +106,10 @@ void TCreationOptions::describe(OptionList& list) {
       "for rooms");
   list.add(
       "classes", classes, "",
-      "class table (YAML); without: a single class, \"occupied\". Relative to the .ini file for "
-      "our programs, to the working directory for MRPT's");
+      "class table (YAML), relative to the .ini file for our programs, to the working directory "
+      "for "
+      "MRPT's. Without: a single class, \"occupied\", or for rawlog2semantic-map those that the "
+      "rawlog's labels name");
 }
 
 void TCreationOptions::validate() const { checkOptions(*this, "TCreationOptions"); }

@@ -19,7 +19,8 @@ int TermsByName::idOf(const std::string& name) const {
   if (name == kFreeSpace) return 0;
   std::vector<std::string> known = {kFreeSpace};
   for (int id = 1; id <= m_classes.size(); ++id) known.push_back(nameOf(id));
-  throw std::invalid_argument(strict_files::unknownWord("class", name, known));
+  throw std::invalid_argument("unknown class '" + name + "'; known are " +
+                              strict_files::joined(known) + strict_files::didYouMean(name, known));
 }
 
 std::string TermsByName::nameOf(int id) const {

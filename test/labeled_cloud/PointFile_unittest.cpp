@@ -1,0 +1,200 @@
+#include <gtest/gtest.h>
+#include <labeled_cloud/PointFile.h>
+
+#include <cstring>
+#include <random>
+#include <sstream>
+
+#include "TemporaryFolder.h"
+
+using labeled_cloud::PointFile;
+using labeled_cloud::readPointFile;
+
+namespace {
+
+struct Point {
+  double x;
+  float y, z;
+  std::uint16_t label;
+};
+
+std::vector<Point> randomPoints(std::size_t count) {
+  std::mt19937 random(5);
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < count; ++i)
+    points.push_back({std::ldexp(random(), -20) - 2000, std::ldexp(float(random() % 999), -4),
+                      -std::ldexp(float(random() % 999), -6),
+                      static_cast<std::uint16_t>(random() % 300)});
+  return points;
+}
+
+template <typename T>
+std::string bytesOf(T value) {
+  std::string bytes(sizeof value, '\0');
+  std::memcpy(bytes.data(), &value, sizeof value);
+  return bytes;
+}
+
+/** The same points in each format; between the fields lie some that nobody asks for. */
+std::string text(const std::vector<Point>& points) {
+  std::ostringstream out;
+  out.precision(17);
+  for (const Point& p : points)
+    out << p.y << " 1 2 3 " << p.label << ' ' << p.x << ' ' << p.z << '\n';
+  return out.str();
+}
+
+std::string rows(const std::vector<Point>& points) {
+  std::string out;
+  for (const Point& p : points)
+    out += bytesOf(p.y) + "abc" + bytesOf(p.label) + bytesOf(p.x) + bytesOf(p.z);
+  return out;
+}
+
+std::string columns(const std::vector<Point>& points) {
+  std::string y, gap, label, x, z;
+  for (const Point& p : points) {
+    y += bytesOf(p.y);
+    gap += "abc";
+    label += bytesOf(p.label);
+    x += bytesOf(p.x);
+    z += bytesOf(p.z);
+  }
+  return y + gap + label + x + z;
+}
+
+/** LZF that repeats nothing: up to 32 bytes behind their number less one. */
+std::string lzfLiterals(const std::string& bytes) {
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 32) {
+    const std::string run = bytes.substr(i, 32);
+    out += static_cast<char>(run.size() - 1) + run;
+  }
+  return out;
+}
+
+std::string compressed(const std::string& data, std::size_t size) {
+  return bytesOf(static_cast<std::uint32_t>(data.size())) +
+         bytesOf(static_cast<std::uint32_t>(size)) + data;
+}
+
+std::string pcdHead(std::size_t points, const std::string& format) {
+  return "# .PCD v0.7\nVERSION 0.7\nFIELDS y _ class x z\nSIZE 4 1 2 8 4\nTYPE F U U F F\n"
+         "COUNT 1 3 1 1 1\nPOINTS " +
+         std::to_string(points) + "\nDATA " + format + "\n";
+}
+
+std::string plyHead(std::size_t points, const std::string& format) {
+  return "ply\nformat " + format + " 1.0\ncomment by hand\nelement vertex " +
+         std::to_string(points) +
+         "\nproperty float32 y\nproperty uchar a\nproperty uchar b\nproperty uchar c\n"
+         "property ushort class\nproperty double x\nproperty float z\nelement face 1\n"
+         "property list uchar int vertex_indices\nend_header\n";
+}
+
+PointFile read(const std::string& bytes, const std::string& label = "class") {
+  const TemporaryFolder folder;
+  return readPointFile(folder.write("points", bytes), label);
+}
+
+void expectPoints(const PointFile& file, const std::vector<Point>& points) {
+  ASSERT_EQ(file.points.size(), points.size());
+  ASSERT_EQ(file.labels.size(), points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(file.points[i], Eigen::Vector3d(points[i].x, points[i].y, points[i].z)) << i;
+    EXPECT_EQ(file.labels[i], points[i].label) << i;
+  }
+}
+
+std::string failureOf(const std::string& bytes, const std::string& label = "class") {
+  try {
+    read(bytes, label);
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "";
+}
+
+#define EXPECT_FAILURE(bytes, said) \
+  EXPECT_NE(failureOf(bytes).find(said), std::string::npos) << failureOf(bytes)
+
+bool withoutLzf() {
+  return failureOf(pcdHead(0, "binary_compressed") + compressed("", 0)).find("without liblzf") !=
+         std::string::npos;
+}
+
+}  // namespace
+
+TEST(PointFile, anyFormatGivesTheSamePoints) {
+  const auto points = randomPoints(500);
+  for (const std::string& bytes :
+       {pcdHead(500, "ascii") + text(points), pcdHead(500, "binary") + rows(points),
+        plyHead(500, "ascii") + text(points) + "3 0 1 2\n",
+        plyHead(500, "binary_little_endian") + rows(points) + "\x03" + "abcdabcdabcd"})
+    expectPoints(read(bytes), points);
+  if (withoutLzf()) GTEST_SKIP() << "built without liblzf";
+  const std::string all = columns(points);
+  expectPoints(read(pcdHead(500, "binary_compressed") + compressed(lzfLiterals(all), all.size())),
+               points);
+}
+
+TEST(PointFile, repetitionsOfCompressedDataAreRepeated) {
+  if (withoutLzf()) GTEST_SKIP() << "built without liblzf";
+  const std::string head =
+      "FIELDS x y z class\nSIZE 4 4 4 4\nTYPE F F F U\nPOINTS 66\nDATA binary_compressed\n";
+  // four bytes as they are, then 260 that repeat what stands four before: all of a field
+  const std::string run = "\x03" + bytesOf(1.5f) + std::string("\xe0\xfb\x03", 3);
+  const std::string labels = "\x03" + bytesOf(std::uint32_t(7)) + std::string("\xe0\xfb\x03", 3);
+  const PointFile file = read(head + compressed(run + run + run + labels, 66 * 16));
+  ASSERT_EQ(file.points.size(), 66u);
+  for (const auto& point : file.points) EXPECT_EQ(point, Eigen::Vector3d(1.5, 1.5, 1.5));
+  EXPECT_EQ(file.labels, std::vector<std::uint32_t>(66, 7));
+}
+
+TEST(PointFile, pointsComeWithoutLabelsIfNoneAreAskedFor) {
+  const auto points = randomPoints(3);
+  const PointFile file = read(plyHead(3, "binary_little_endian") + rows(points), "");
+  EXPECT_EQ(file.points.size(), 3u);
+  EXPECT_TRUE(file.labels.empty());
+}
+
+TEST(PointFile, announcedSizesAreHeldAgainstTheBytes) {
+  const std::string three = rows(randomPoints(3));
+  EXPECT_FAILURE(pcdHead(4, "binary") + three, "63 bytes of data for 4 points of 21 bytes");
+  EXPECT_FAILURE(pcdHead(1000000000000, "binary") + three, "for 1000000000000 points");
+  EXPECT_FAILURE(pcdHead(1000000000000, "ascii") + "1 2\n", "1 lines of data for 1000000000000");
+  EXPECT_FAILURE(plyHead(4, "binary_little_endian") + three, "3 times 21 bytes of data for 4");
+  EXPECT_FAILURE(plyHead(4, "ascii") + "1 2 3\n", "1 lines of data for 4 points");
+  EXPECT_FAILURE(pcdHead(3, "binary_compressed") + "abc", "3 bytes of compressed data");
+  EXPECT_FAILURE(pcdHead(3, "binary_compressed") + bytesOf(std::uint32_t(99)) + three,
+                 "67 bytes of compressed data, announced were 107");
+  EXPECT_FAILURE(pcdHead(3, "binary_compressed") + compressed(three, 64), "64 bytes of data for 3");
+  if (withoutLzf()) GTEST_SKIP() << "built without liblzf";
+  EXPECT_FAILURE(pcdHead(3, "binary_compressed") + compressed(three, 63), "do not become the 63");
+  EXPECT_FAILURE(pcdHead(100000000, "binary_compressed") + compressed(three, 2100000000),
+                 "do not become the 2100000000");
+}
+
+TEST(PointFile, whatIsMalformedIsNamed) {
+  const std::string three = rows(randomPoints(3));
+  const std::string good = pcdHead(3, "binary") + three;
+  EXPECT_NE(failureOf(good, "label").find("no field 'label' among 'y' '_' 'class' 'x' 'z'"),
+            std::string::npos);
+  EXPECT_NE(failureOf(good, "_").find("points:3: field '_' has several values"), std::string::npos);
+  EXPECT_FAILURE(pcdHead(3, "zipped") + three,
+                 "points:8: data 'zipped', expected ascii, binary or");
+  const std::string plain = "FIELDS x y z class\nPOINTS 1\nDATA binary\n";
+  EXPECT_FAILURE(plain, "binary data, and no SIZE");
+  EXPECT_FAILURE("SIZE 4 4 4\nTYPE F F F F\n" + plain, "3 sizes for 4 fields");
+  EXPECT_FAILURE("SIZE 4 4 4 3\nTYPE F F F U\n" + plain + std::string(15, 'a'),
+                 "field 'class' has type U and size 3");
+  const std::string rest = "TYPE F F F F\nSIZE 4 4 4 4\n" + plain;
+  EXPECT_FAILURE(rest + std::string(12, 'a') + bytesOf(1.5f), "point 0: label 1.5 is no class id");
+  EXPECT_FAILURE("FIELDS x y z\nPOINTS -1\nDATA ascii\n", "points:2: -1, expected a whole number");
+  EXPECT_FAILURE("ply\nformat ascii 1.0\n", "no end_header");
+  EXPECT_FAILURE("ply\nformat ascii 1.0\nend_header\n", "no element vertex");
+  EXPECT_FAILURE("ply\nelement face 3\nend_header\n",
+                 "points:2: 'element face 3', expected the first");
+  EXPECT_FAILURE("ply\nelement vertex 1\nproperty list uchar int x\nend_header\n", "points:3: ");
+  EXPECT_FAILURE(plyHead(3, "binary_big_endian") + three, "format 'binary_big_endian', expected");
+}
