@@ -45,7 +45,8 @@ CBox::Ptr frameAround(const CellAnswer& answer, double share, bool wire) {
 }  // namespace
 
 AskPanel::AskPanel(Viewer& viewer) : m_viewer(viewer) {
-  auto* window = addWindow(&viewer.window(), "Cell", {viewer.window().width() - kWindow - 8, 8}, kWindow);
+  auto* window =
+      addWindow(&viewer.window(), "Cell", {viewer.window().width() - kWindow - 8, 8}, kWindow);
   for (auto& line : m_lines) line = addText(window, "", kWidth);
   m_lines[0]->setCaption("click a cell");
   m_shares = window->add<BarChart>();
@@ -74,17 +75,18 @@ void AskPanel::show(const map_view::ViewCell& cell) {
   const CellAnswer answer = answerOf(cell, m_viewer.layer().map());
   const auto& c = answer.center;
   m_lines[0]->setCaption(text("%s, p(occupied) %.3f", answer.state.c_str(), answer.occupancy));
-  m_lines[1]->setCaption(text("key %d %d %d, edge %g m", answer.key[0], answer.key[1],
-                              answer.key[2], answer.size));
+  m_lines[1]->setCaption(
+      text("key %d %d %d, edge %g m", answer.key[0], answer.key[1], answer.key[2], answer.size));
   m_lines[2]->setCaption(text("center %.2f %.2f %.2f m", c.x(), c.y(), c.z()));
-  notes() << m_lines[0]->caption() << "; " << m_lines[1]->caption() << "; "
-          << m_lines[2]->caption() << std::endl;
+  notes() << m_lines[0]->caption() << "; " << m_lines[1]->caption() << "; " << m_lines[2]->caption()
+          << std::endl;
   std::vector<Bar> bars;
   for (const auto& share : answer.shares) {
     const auto color = share.id == 0
                            ? kFreeColor
                            : semantic_types::colorOf(share.id, m_viewer.layer().map().classes());
-    bars.push_back({share.name, text("%.1f %%", 100 * share.probability), share.probability, color});
+    bars.push_back(
+        {share.name, text("%.1f %%", 100 * share.probability), share.probability, color});
   }
   m_shares->setBars(std::move(bars));
   m_mark->insert(frameAround(answer, 1.04, false));

@@ -22,6 +22,8 @@ namespace {
 
 constexpr int kWidth = 280, kWindow = kWidth + 16;
 constexpr double kRest = 0.25;  // s
+/** Of the leaves, that share is a begin from which sliders lead to both sides. */
+constexpr std::size_t kShare = 50;
 
 std::string rounded(double number, int digits) {
   char text[40];
@@ -33,9 +35,8 @@ std::string rounded(double number, int digits) {
 
 CompressPanel::CompressPanel(Viewer& viewer, fs::path weights)
     : m_viewer(viewer), m_weights(std::move(weights)) {
-  auto* window =
-      addWindow(&viewer.window(), "Compress", {viewer.window().width() - kWindow - 8, 206},
-                kWindow);
+  auto* window = addWindow(&viewer.window(), "Compress",
+                           {viewer.window().width() - kWindow - 8, 206}, kWindow);
   m_on = window->add<nanogui::CheckBox>("show the compressed tree");
   m_on->setCallback([this](bool on) { attempt([&] { switchOn(on); }); });
   m_controls = window->add<nanogui::Widget>();
@@ -58,11 +59,13 @@ void CompressPanel::begin() {
   auto& map = m_viewer.layer().map();
   if (m_weights.empty()) {
     m_live.emplace(map, LiveCompression::allClasses(map), semantic_octree::AbstractionOptions());
+    m_live->setLeaves(map.getNumLeafNodes() / kShare);
   } else {
     const auto file = semantic_octree::loadWeights(m_weights, map.classes());
     m_live.emplace(map, file.solutions.front(), file.space);
   }
   m_live->takeChange();
+  tell();
 }
 
 void CompressPanel::forget() {
@@ -121,8 +124,12 @@ void CompressPanel::addTerms() {
   save->setFixedHeight(22);
   save->setFontSize(15);
   save->setTooltip("As YAML into the working folder, for semantic-map-compress");
-  save->setCallback(
-      [this] { attempt([&] { m_viewer.say("wrote " + this->save(".").string()); }); });
+  save->setCallback([this] {
+    attempt([&] {
+      m_viewer.say("wrote " + this->save(".").string() + ": " +
+                   std::to_string(m_live->numLeaves()) + " leaves");
+    });
+  });
   m_viewer.window().performLayout();
 }
 
@@ -178,13 +185,20 @@ void CompressPanel::update() {
     const auto share = measures.retention(term);
     m_lines[term].kept->setCaption(share ? rounded(100 * *share, 3) + " %" : "-");
   }
-  notes() << m_live->numLeaves() << " leaves, alpha " << m_live->alpha() << std::endl;
+  tell();
+}
+
+void CompressPanel::tell() {
+  const std::string text = std::to_string(m_live->numLeaves()) + " leaves, alpha " +
+                           strict_files::textOf(m_live->alpha());
+  if (text != m_told) notes() << text << std::endl;
+  m_told = text;
 }
 
 fs::path CompressPanel::save(const fs::path& folder) const {
   const fs::path file = m_viewer.newFile(folder, "weights", ".yaml");
   strict_files::writeText(file, map_view::weightsText(m_live->solution(), m_live->space(),
-                                            m_viewer.layer().map().classes()));
+                                                      m_viewer.layer().map().classes()));
   return file;
 }
 

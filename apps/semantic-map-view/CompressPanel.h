@@ -36,6 +36,8 @@ class CompressPanel {
   void forget();
   /** Before each frame: what takes longer, when the hand rests. */
   void update();
+  /** Says what is new. */
+  void tell();
   void addTerms();
   void follow();
   /** Reports an exception. */
@@ -54,6 +56,7 @@ class CompressPanel {
   nanogui::IntBox<int>* m_wanted = nullptr;
   nanogui::Widget* m_terms = nullptr;
   std::vector<TermLine> m_lines;
+  std::string m_told;
   double m_measureAt = 0;  ///< s of GLFW's clock; 0: measured
 };
 

@@ -9,7 +9,8 @@ namespace semantic_map_view {
 /** A map that is open. */
 class Layer {
  public:
-  /** A map's own file, or OctoMap's. \throw std::runtime_error naming the file and what is wrong. */
+  /** A map's own file, or OctoMap's. \throw std::runtime_error naming the file and what is wrong.
+   */
   explicit Layer(const std::filesystem::path& file);
 
   const std::string& name() const { return m_name; }

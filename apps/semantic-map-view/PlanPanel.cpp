@@ -58,7 +58,8 @@ mrpt::opengl::CCylinder::Ptr postAt(const Eigen::Vector3d& place, const mrpt::im
 
 PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path classes)
     : m_viewer(viewer), m_classes(std::move(classes)) {
-  auto* window = addWindow(&viewer.window(), "Path", {8, viewer.window().height() - 120}, kWidth + 16);
+  auto* window =
+      addWindow(&viewer.window(), "Path", {8, viewer.window().height() - 120}, kWidth + 16);
   if (!m_classes.empty()) {
     auto* row = addRow(window);
     m_startButton = row->add<nanogui::Button>("start");
@@ -68,7 +69,7 @@ PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path classes)
     m_goalButton->setCallback([this] { await(Awaited::Goal); });
   }
   for (auto& line : m_lines) line = addText(window, "", kWidth);
-  say(m_classes.empty() ? "needs --classes, an order of classes" : "");
+  if (m_classes.empty()) m_lines[0]->setCaption("needs --classes, an order of classes");
   viewer.window().marks()->insert(m_marks);
   viewer.onActivated([this] { forget(); });
 }
@@ -76,6 +77,7 @@ PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path classes)
 void PlanPanel::say(const std::string& first, const std::string& second) {
   m_lines[0]->setCaption(first);
   m_lines[1]->setCaption(second);
+  if (!first.empty()) notes() << first << ' ' << second << std::endl;
   m_viewer.window().redraw();
 }
 
@@ -111,8 +113,11 @@ bool PlanPanel::take(const map_view::Ray& ray) {
   Eigen::Vector3d place = (ray.origin + steps * ray.direction).cwiseMax(low).cwiseMin(high);
   place.z() = high.z();
   (m_awaited == Awaited::Start ? m_start : m_goal) = place;
+  char text[60];
+  std::snprintf(text, sizeof text, "%s at %.1f %.1f %.1f m",
+                m_awaited == Awaited::Start ? "start" : "goal", place.x(), place.y(), place.z());
   m_awaited = Awaited::Nothing;
-  say("");
+  say(text);
   draw(nullptr);
   if (m_start && m_goal) plan();
   return true;
@@ -137,9 +142,10 @@ void PlanPanel::plan() {
                         TPose2D(m_goal->x(), m_goal->y(), heading), m_start->z(), m_goal->z());
     draw(&plan);
     if (!plan.found()) return say("no path:", plan.reason);
-    say(std::to_string(int(std::lround(plan.length))) + " m, found in " +
-        std::to_string(int(watch.milliseconds())) + " ms");
-    notes() << "path of " << plan.length << " m" << std::endl;
+    char text[60];
+    std::snprintf(text, sizeof text, "path of %.1f m, in %.0f ms", plan.length,
+                  watch.milliseconds());
+    say(text);
   } catch (const std::exception& e) {
     say("no path:", e.what());
   }

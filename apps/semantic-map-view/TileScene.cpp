@@ -64,8 +64,7 @@ std::size_t TileScene::Meshes::faces() const {
 void TileScene::build(const Layer& layer, const Tile& tile) {
   const map_view::TileMesh mesh = meshOf(tile, layer.cells(), layer.look());
   const auto part = [](const std::vector<Face>& faces, std::uint8_t alpha) {
-    return faces.empty() ? Meshes::Part()
-                         : Meshes::Part{trianglesOf(faces, alpha), faces.size()};
+    return faces.empty() ? Meshes::Part() : Meshes::Part{trianglesOf(faces, alpha), faces.size()};
   };
   Meshes& meshes = m_meshes[tile];
   m_kept -= meshes.faces();
@@ -78,8 +77,7 @@ void TileScene::build(const Layer& layer, const Tile& tile) {
 
 bool TileScene::update(const Layer& layer, const map_view::View& view, double milliseconds) {
   const measuring::Stopwatch watch;
-  const std::vector<Tile> tiles =
-      tilesSeen(layer.map(), view, layer.look().style().freeSpace);
+  const std::vector<Tile> tiles = tilesSeen(layer.map(), view, layer.look().style().freeSpace);
   bool ready = true;
   for (const Tile& tile : tiles) {
     if (m_fresh.contains(tile)) continue;
@@ -95,8 +93,7 @@ bool TileScene::update(const Layer& layer, const map_view::View& view, double mi
 }
 
 /** Where a tile has no mesh yet, the one of a coarser tile around it is shown, if there is one. */
-void TileScene::show(const std::vector<Tile>& tiles, const Eigen::Vector3d& eye,
-                     double voxelSize) {
+void TileScene::show(const std::vector<Tile>& tiles, const Eigen::Vector3d& eye, double voxelSize) {
   std::set<Tile> shown;
   for (Tile tile : tiles) {
     while (m_meshes.count(tile) == 0 && tile.depth > 0) {

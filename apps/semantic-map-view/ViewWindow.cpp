@@ -22,10 +22,11 @@ const std::string kInstead =
     "; `semantic-map-export MAP -o map.png` draws a map without a window, xvfb-run gives programs "
     "a display";
 
-bool hasDisplay() {
+/** Its name; empty: there is none. */
+std::string displayName() {
   for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"})
-    if (const char* value = std::getenv(name); value && *value) return true;
-  return false;
+    if (const char* value = std::getenv(name); value && *value) return value;
+  return {};
 }
 
 std::string glText(unsigned name) {
@@ -36,13 +37,13 @@ std::string glText(unsigned name) {
 }  // namespace
 
 WindowSystem::WindowSystem() {
-  if (!hasDisplay())
+  const std::string display = displayName();
+  if (display.empty())
     throw std::runtime_error("there is no display (DISPLAY is not set)" + kInstead);
   try {
     nanogui::init();
   } catch (const std::exception&) {
-    throw std::runtime_error("the display '" + std::string(std::getenv("DISPLAY")) +
-                             "' cannot be opened" + kInstead);
+    throw std::runtime_error("the display '" + display + "' cannot be opened" + kInstead);
   }
   std::setlocale(LC_NUMERIC, "C");
 }
@@ -158,8 +159,7 @@ bool ViewWindow::mouseButtonEvent(const Vector2i& p, int button, bool down, int 
   if (button != GLFW_MOUSE_BUTTON_LEFT) return used;
   const bool click = !down && beside && (p - m_pressed).cwiseAbs().maxCoeff() <= kClick;
   m_pressed = down && beside ? p : Vector2i(-1000, -1000);
-  if (click && m_onClick)
-    m_onClick(orbitCamera().rayThrough(p.x(), p.y(), mSize.x(), mSize.y()));
+  if (click && m_onClick) m_onClick(orbitCamera().rayThrough(p.x(), p.y(), mSize.x(), mSize.y()));
   return used;
 }
 

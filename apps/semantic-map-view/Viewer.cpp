@@ -2,6 +2,10 @@
 
 #include <map_pictures/MapPictures.h>
 
+#include <ostream>
+
+#include "StandardOutput.h"
+
 namespace semantic_map_view {
 
 namespace fs = std::filesystem;
@@ -88,6 +92,7 @@ void Viewer::showCompressed() {
 
 void Viewer::say(const std::string& text) {
   m_said = text;
+  notes() << text << std::endl;
   m_window.redraw();
 }
 

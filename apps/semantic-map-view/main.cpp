@@ -66,8 +66,39 @@ void measureTurning(ViewWindow& window) {
     }
     std::cout << name << clock.text(kFrames) << '\n';
   }
-  std::cout << "tiles: " << window.tiles().numTiles() << "\nsides of cells: "
-            << window.tiles().numFaces() << '\n';
+  std::cout << "tiles: " << window.tiles().numTiles()
+            << "\nsides of cells: " << window.tiles().numFaces() << '\n';
+}
+
+/** From the hand on the slider to the complete frame that shows it. */
+void measureCompressing(ViewWindow& window, CompressPanel& panel) {
+  const auto show = [&](const char* name, const auto& change) {
+    constexpr int kTimes = 5;
+    const Clock clock;
+    for (int i = 0; i < kTimes; ++i) {
+      change(i);
+      finishFrame(window);
+    }
+    std::cout << name << clock.text(kTimes) << '\n';
+  };
+  const Clock begin;
+  panel.switchOn(true);
+  finishFrame(window);
+  std::cout << "to the compressed tree: " << begin.text() << '\n';
+  const double alpha = panel.compression().alpha();
+  show("from alpha to the frame: ", [&](int i) { panel.setAlpha(alpha * (i % 2 ? 1 : 1.5)); });
+  show("from a weight to the frame: ", [&](int i) { panel.setWeight(1, i % 2 ? 1 : 0.5); });
+}
+
+void measureAsking(ViewWindow& window, AskPanel& panel) {
+  constexpr int kTimes = 100;
+  beQuiet();
+  const Clock clock;
+  for (int i = 0; i < kTimes; ++i)
+    panel.ask(window.orbitCamera().rayThrough(window.pixelWidth() * i / kTimes,
+                                              window.pixelHeight() / 2, window.pixelWidth(),
+                                              window.pixelHeight()));
+  std::cout << "from a click to the answer: " << clock.text(kTimes) << '\n';
 }
 
 int run(const Cli& cli) {
@@ -85,9 +116,11 @@ int run(const Cli& cli) {
     finishFrame(*window);
     if (cli.measure) {
       std::cout << "renderer: " << window->renderer() << "\nwindow: " << window->pixelWidth()
-                << " x " << window->pixelHeight() << "\nto the first complete frame: "
-                << clock.text() << '\n';
+                << " x " << window->pixelHeight()
+                << "\nto the first complete frame: " << clock.text() << '\n';
       measureTurning(*window);
+      if (panels) measureAsking(*window, panels->ask);
+      if (panels) measureCompressing(*window, panels->compress);
     }
     if (!cli.picture.empty()) map_pictures::savePicture(window->drawPicture(), cli.picture);
     return 0;

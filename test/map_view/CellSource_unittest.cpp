@@ -156,7 +156,7 @@ TEST(CellLook, HidesClassesAndWhatIsAbove) {
 TEST(CellLook, ColorsSayWhatTheyShould) {
   const SemanticOcTree map = randomMap(7);
   CellLook look(map);
-  const ViewCell road = FullCells(map).at({32768 + 1, 32768 - 20, 32768});
+  const ViewCell road = FullCells(map).at(voxelOfClass(map, 1));
   ASSERT_EQ(look.classOf(road), 1);
   EXPECT_EQ(look.colorOf(road), map.classes().color(1));
   ViewStyle style;
@@ -176,13 +176,15 @@ TEST(CellLook, ColorsSayWhatTheyShould) {
 
 TEST(CellAnswer, SaysWhatTheMapSays) {
   SemanticOcTree map = randomMap(8);
-  const ViewCell road = FullCells(map).at({32769, 32748, 32768});
+  const Eigen::Array3i key = voxelOfClass(map, 1);
+  const ViewCell road = FullCells(map).at(key);
   const CellAnswer answer = answerOf(road, map);
   EXPECT_EQ(answer.state, "occupied, road");
   EXPECT_DOUBLE_EQ(answer.size, 0.2);
-  EXPECT_EQ(answer.key, semantic_octree::octomapKey(32769, 32748, 32768));
-  EXPECT_NEAR(answer.center.x(), 0.3, 1e-9);
+  EXPECT_EQ(answer.key, semantic_octree::octomapKey(key.x(), key.y(), key.z()));
+  EXPECT_NEAR(answer.center.x(), (key.x() - 32768 + 0.5) * 0.2, 1e-9);
   EXPECT_EQ(answer.occupancy, map.query(road.node).occupancy);
+  ASSERT_FALSE(answer.shares.empty());
   EXPECT_EQ(answer.shares.front().name, "road");
   double sum = 0;
   for (const auto& share : answer.shares) sum += share.probability;

@@ -86,8 +86,8 @@ TEST(OrbitCamera, NeverLosesABallThatIsSeen) {
       const Eigen::Vector3d p = center + radius * in;
       if ((p - camera.position()).dot(camera.forward()) <= 0) continue;
       const Eigen::Vector2d pixel = pixelOf(camera, p);
-      const bool seen = pixel.x() >= 0 && pixel.x() < kWidth && pixel.y() >= 0 &&
-                        pixel.y() < kHeight;
+      const bool seen =
+          pixel.x() >= 0 && pixel.x() < kWidth && pixel.y() >= 0 && pixel.y() < kHeight;
       EXPECT_TRUE(may || !seen) << i;
     }
   }

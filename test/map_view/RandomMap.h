@@ -12,8 +12,8 @@ inline semantic_types::ClassTable threeClasses() {
   return table;
 }
 
-/** Voxels of 0.2 m: a ground of road and trees with a wall upon it, whose points are seen from above
- * the map's origin, with holes and wrong labels. */
+/** Voxels of 0.2 m: a ground of road and trees with a wall upon it, whose points are seen from
+ * above the map's origin, with holes and wrong labels. */
 inline semantic_octree::SemanticOcTree randomMap(unsigned seed, int numScans = 3) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> unit(0, 1);
@@ -33,4 +33,13 @@ inline semantic_octree::SemanticOcTree randomMap(unsigned seed, int numScans = 3
     tree.insert(cloud, T_map_sensor);
   }
   return tree;
+}
+
+/** Keys of an occupied voxel of a class, not pruned. */
+inline Eigen::Array3i voxelOfClass(const semantic_octree::SemanticOcTree& map,
+                                   semantic_types::ClassId id) {
+  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf)
+    if (leaf.getDepth() == 16 && map.isNodeOccupied(*leaf) && map.query(*leaf).likeliestClass == id)
+      return {leaf.getKey()[0], leaf.getKey()[1], leaf.getKey()[2]};
+  throw std::logic_error("no such voxel");
 }

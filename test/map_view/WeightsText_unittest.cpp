@@ -14,8 +14,8 @@ using semantic_octree::WeightsFile;
 WeightsFile readAgain(const Solution& solution, const AbstractionOptions& space) {
   const TemporaryFolder folder;
   const auto classes = threeClasses();
-  return loadWeights(folder.write("weights.yaml", map_view::weightsText(solution, space, classes)),
-                     classes);
+  return semantic_octree::loadWeights(
+      folder.write("weights.yaml", map_view::weightsText(solution, space, classes)), classes);
 }
 
 Solution someSolution() {

@@ -86,9 +86,8 @@ class Together {
   explicit Together(int depth) : m_depth(depth) {}
 
   void add(const ViewCell& cell) {
-    const Eigen::Array3i lowest = cell.lowest.unaryExpr([this](int key) {
-      return lowestKeyAtDepth(key, m_depth);
-    });
+    const Eigen::Array3i lowest =
+        cell.lowest.unaryExpr([this](int key) { return lowestKeyAtDepth(key, m_depth); });
     const auto [at, isNew] = m_index.emplace(packed(lowest, m_depth), m_cells.size());
     if (isNew) m_cells.push_back({{lowest, m_depth, cell.node, cell.innerNode}, cell.lowest.z()});
     Entry& entry = m_cells[at->second];
@@ -122,8 +121,7 @@ ViewCell FullCells::at(const Eigen::Array3i& key) const {
   ViewCell cell = rootOf(m_map);
   while (cell.node && !cell.node.isLeaf()) {
     const int bit = kTreeDepth - 1 - cell.depth;
-    cell = childOf(
-        cell, (key[0] >> bit & 1) | (key[1] >> bit & 1) << 1 | (key[2] >> bit & 1) << 2);
+    cell = childOf(cell, (key[0] >> bit & 1) | (key[1] >> bit & 1) << 1 | (key[2] >> bit & 1) << 2);
   }
   return cell;
 }

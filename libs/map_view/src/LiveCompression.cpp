@@ -40,7 +40,8 @@ std::vector<InformationTerm> LiveCompression::termsOf(SemanticOcTree& map, const
   Solution all = solution;
   for (const InformationTerm& term : allClasses(map).terms) {
     const auto same = [&](const InformationTerm& t) { return sameGroups(t, term); };
-    if (std::none_of(all.terms.begin(), all.terms.end(), same)) all.terms.push_back({term.name, 0, term.groups});
+    if (std::none_of(all.terms.begin(), all.terms.end(), same))
+      all.terms.push_back({term.name, 0, term.groups});
   }
   const TermCatalog catalog(map.classes(), {all});
   AbstractionOptions options = space;

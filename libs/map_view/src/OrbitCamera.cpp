@@ -30,8 +30,8 @@ double OrbitCamera::focalLength(int height) const {
 
 Ray OrbitCamera::rayThrough(int x, int y, int width, int height) const {
   const double f = focalLength(height);
-  const Eigen::Vector3d direction = forward() + right() * ((x + 0.5 - width / 2.0) / f) -
-                                    up() * ((y + 0.5 - height / 2.0) / f);
+  const Eigen::Vector3d direction =
+      forward() + right() * ((x + 0.5 - width / 2.0) / f) - up() * ((y + 0.5 - height / 2.0) / f);
   return {position(), direction.normalized()};
 }
 
@@ -57,8 +57,8 @@ OrbitCamera OrbitCamera::seeing(const Eigen::AlignedBox3d& box, int width, int h
     const Eigen::Vector3d to =
         box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)) - camera.target;
     const double deep = to.dot(forward());
-    for (const auto& [aside, half] : {std::pair(to.dot(right()), width / 2.0),
-                                      std::pair(to.dot(up()), height / 2.0)})
+    for (const auto& [aside, half] :
+         {std::pair(to.dot(right()), width / 2.0), std::pair(to.dot(up()), height / 2.0)})
       camera.distance = std::max(camera.distance, std::fabs(aside) * f / half - deep);
   }
   return camera;
@@ -82,8 +82,7 @@ OrbitCamera OrbitCamera::ofText(const std::string& text) {
   for (; std::getline(words, word, ','); ++count)
     if (count < n.size()) n[count] = strict_files::numberOf(word);
   if (count != n.size())
-    throw std::invalid_argument("is '" + text +
-                                "', expected X,Y,Z,DISTANCE,AZIMUTH,ELEVATION");
+    throw std::invalid_argument("is '" + text + "', expected X,Y,Z,DISTANCE,AZIMUTH,ELEVATION");
   OrbitCamera camera;
   camera.target = {n[0], n[1], n[2]};
   camera.distance = n[3], camera.azimuth = n[4], camera.elevation = n[5];

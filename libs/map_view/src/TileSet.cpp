@@ -23,8 +23,7 @@ class Selection {
   void visit(const SemanticOcTreeNode& node, const Tile& tile) {
     if (!node || (!m_withFree && node.getLogOdds() <= 0)) return;
     const double edge = tile.edge() * m_voxelSize;
-    const Eigen::Vector3d low =
-        (tile.lowest - kKeyOfOrigin).cast<double>().matrix() * m_voxelSize;
+    const Eigen::Vector3d low = (tile.lowest - kKeyOfOrigin).cast<double>().matrix() * m_voxelSize;
     const Eigen::Vector3d center = low.array() + edge / 2;
     if (!m_view.camera.maySee(center, edge * std::sqrt(0.75), m_view.width, m_view.height)) return;
     const double distance = distanceTo(center, edge / 2);
@@ -44,8 +43,7 @@ class Selection {
  private:
   static Tile childOf(const Tile& tile, int i) {
     const int half = tile.edge() / 2;
-    return {tile.depth + 1,
-            tile.lowest + half * Eigen::Array3i(i & 1, i >> 1 & 1, i >> 2 & 1)};
+    return {tile.depth + 1, tile.lowest + half * Eigen::Array3i(i & 1, i >> 1 & 1, i >> 2 & 1)};
   }
   double distanceTo(const Eigen::Vector3d& center, double half) const {
     return ((m_position - center).array().abs() - half).max(0).matrix().norm();
