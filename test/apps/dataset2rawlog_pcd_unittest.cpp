@@ -97,7 +97,7 @@ TEST(Pcd, badInputIsNamed) {
   EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS 1\nDATA raw\n"), "expected ascii"));
   for (const std::string number : {"-1", "0.5", "1e300"})
     EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS " + number + "\nDATA ascii\n"),
-                         "expected a number of points"))
+                         "expected a whole number"))
         << number;
   EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 2abc\n9 5 6 7 3\n"), "2abc"));
   EXPECT_TRUE(

@@ -12,10 +12,15 @@ const std::vector<std::string> kPrograms = {
     "rawlog2semantic-map", "semantic-map-compress", "semantic-map-plan", "semantic-map-drive",
     "semantic-map-export", "semantic-map-merge",    "semantic-map-edit", "synth-rawlog",
     "planning-study",      "drive-study",           "semantic-map-info", "insertion-benchmark",
-    "dataset2rawlog"};
+    "dataset2rawlog",      "semantic-map-view"};
 
 class Program : public testing::TestWithParam<std::string> {
  protected:
+  void SetUp() override {
+    if (GetParam() == "semantic-map-view" &&
+        !std::filesystem::exists(MSO_BIN_DIR "/semantic-map-view"))
+      GTEST_SKIP() << "not built: MRPT has no nanogui";
+  }
   CommandRun run(const std::string& arguments) const {
     return runCommand(std::string(MSO_BIN_DIR) + "/" + GetParam() + " " + arguments);
   }

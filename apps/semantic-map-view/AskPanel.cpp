@@ -1,0 +1,96 @@
+#include "AskPanel.h"
+
+#include <map_view/CellAnswer.h>
+#include <map_view/RayCast.h>
+#include <mrpt/opengl/CBox.h>
+#include <semantic_types/ClassColors.h>
+
+#include <cstdarg>
+#include <ostream>
+
+#include "StandardOutput.h"
+#include "Widgets.h"
+
+namespace semantic_map_view {
+
+using map_view::CellAnswer;
+using mrpt::math::TPoint3D;
+using mrpt::opengl::CBox;
+
+namespace {
+
+constexpr int kWidth = 280, kWindow = kWidth + 16;
+constexpr semantic_types::Color kFreeColor{120, 180, 235};
+
+std::string text(const char* format, ...) __attribute__((format(printf, 1, 2)));
+std::string text(const char* format, ...) {
+  char line[200];
+  va_list values;
+  va_start(values, format);
+  std::vsnprintf(line, sizeof line, format, values);
+  va_end(values);
+  return line;
+}
+
+/** A little larger than the cell. */
+CBox::Ptr frameAround(const CellAnswer& answer, double share, bool wire) {
+  const double half = answer.size / 2 * share;
+  const auto& c = answer.center;
+  const auto box = CBox::Create(TPoint3D(c.x() - half, c.y() - half, c.z() - half),
+                                TPoint3D(c.x() + half, c.y() + half, c.z() + half), wire, 3.0f);
+  box->setColor_u8(255, 215, 0, wire ? 255 : 90);
+  return box;
+}
+
+}  // namespace
+
+AskPanel::AskPanel(Viewer& viewer) : m_viewer(viewer) {
+  auto* window =
+      addWindow(&viewer.window(), "Cell", {viewer.window().width() - kWindow - 8, 8}, kWindow);
+  for (auto& line : m_lines) line = addText(window, "", kWidth);
+  m_lines[0]->setCaption("click a cell");
+  m_shares = window->add<BarChart>();
+  m_shares->setFixedSize({kWidth, 17 * 6});
+  viewer.window().marks()->insert(m_mark);
+  viewer.onActivated([this] { clear(); });
+}
+
+void AskPanel::clear() {
+  m_mark->clear();
+  m_shares->setBars({});
+  for (auto* line : m_lines) line->setCaption("");
+}
+
+void AskPanel::ask(const map_view::Ray& ray) {
+  const Layer& layer = m_viewer.layer();
+  clear();
+  if (const auto cell = firstShown(layer.cells(), layer.look(), ray))
+    show(*cell);
+  else
+    m_lines[0]->setCaption("nothing there");
+  m_viewer.window().redraw();
+}
+
+void AskPanel::show(const map_view::ViewCell& cell) {
+  const CellAnswer answer = answerOf(cell, m_viewer.layer().map());
+  const auto& c = answer.center;
+  m_lines[0]->setCaption(text("%s, p(occupied) %.3f", answer.state.c_str(), answer.occupancy));
+  m_lines[1]->setCaption(
+      text("key %d %d %d, edge %g m", answer.key[0], answer.key[1], answer.key[2], answer.size));
+  m_lines[2]->setCaption(text("center %.2f %.2f %.2f m", c.x(), c.y(), c.z()));
+  notes() << m_lines[0]->caption() << "; " << m_lines[1]->caption() << "; " << m_lines[2]->caption()
+          << std::endl;
+  std::vector<Bar> bars;
+  for (const auto& share : answer.shares) {
+    const auto color = share.id == 0
+                           ? kFreeColor
+                           : semantic_types::colorOf(share.id, m_viewer.layer().map().classes());
+    bars.push_back(
+        {share.name, text("%.1f %%", 100 * share.probability), share.probability, color});
+  }
+  m_shares->setBars(std::move(bars));
+  m_mark->insert(frameAround(answer, 1.04, false));
+  m_mark->insert(frameAround(answer, 1.06, true));
+}
+
+}  // namespace semantic_map_view

@@ -1,0 +1,27 @@
+#pragma once
+#include "Viewer.h"
+
+namespace semantic_map_view {
+
+class BarChart;
+
+/** What the map knows about a cell that was clicked. */
+class AskPanel {
+ public:
+  explicit AskPanel(Viewer& viewer);
+  AskPanel(const AskPanel&) = delete;
+  AskPanel& operator=(const AskPanel&) = delete;
+
+  void ask(const map_view::Ray& ray);
+
+ private:
+  void show(const map_view::ViewCell& cell);
+  void clear();
+
+  Viewer& m_viewer;
+  std::array<nanogui::Label*, 3> m_lines{};
+  BarChart* m_shares;
+  mrpt::opengl::CSetOfObjects::Ptr m_mark = mrpt::opengl::CSetOfObjects::Create();
+};
+
+}  // namespace semantic_map_view

@@ -1,0 +1,63 @@
+#include "Cli.h"
+
+#include "Choice.h"
+#include "NumberChecks.h"
+
+namespace semantic_map_view {
+
+namespace {
+
+/** Smaller windows have no room for their panels; larger ones no graphics card can draw. */
+constexpr int kLeast = 320, kMost = 8192;
+
+void readSize(const std::string& text, Cli& cli) {
+  std::istringstream in(text);
+  char by = 0;
+  int width = 0, height = 0;
+  in >> width >> by >> height;
+  const auto fits = [](int pixels) { return pixels >= kLeast && pixels <= kMost; };
+  if (!in || by != 'x' || !in.eof() || !fits(width) || !fits(height))
+    throw CLI::ValidationError("--size is '" + text + "', expected WIDTHxHEIGHT of 320 to 8192");
+  cli.width = width, cli.height = height;
+}
+
+void readCamera(const std::string& text, Cli& cli) {
+  try {
+    cli.camera = map_view::OrbitCamera::ofText(text);
+  } catch (const std::invalid_argument& e) {
+    throw CLI::ValidationError(std::string("--camera ") + e.what());
+  }
+}
+
+}  // namespace
+
+Cli::Cli(CLI::App& app) : outputs(app) {
+  app.add_option("MAP", maps, "Maps' own files (.semantic), or OctoMap's (.ot, .bt)")->required();
+  outputs.add(app, picture, "FILE", "Draw once, write the window's picture (PNG), and end");
+  app.add_option_function<std::string>(
+         "--size", [this](const std::string& text) { readSize(text, *this); },
+         "Of the window, pixels")
+      ->type_name("WIDTHxHEIGHT");
+  auto* from = app.add_option_function<std::string>(
+      "--camera", [this](const std::string& text) { readCamera(text, *this); },
+      "Where it looks at and from: m and degrees, as the window says it");
+  from->type_name("X,Y,Z,DISTANCE,AZIMUTH,ELEVATION");
+  app.add_flag("--top", top, "From above, north up")->excludes(from);
+  std::map<std::string, map_view::Coloring> colorings;
+  for (const auto& [name, value] : choicesOf(map_view::Coloring())) colorings[name] = value;
+  addChoice(app.add_option("--color", style.coloring, "What the cells' colors say"), colorings);
+  app.add_option("--max-height", style.maxHeight, "Cells with their center above are not shown, m")
+      ->check(isNumber({}));
+  app.add_flag("--free", style.freeSpace, "Show free space");
+  app.add_option("--weights", weights,
+                 "Where the sliders of the compression begin: the first solution of such a file "
+                 "(YAML, as for semantic-map-compress)");
+  app.add_option("--classes", classes,
+                 "Classes from best to worst, for paths (YAML, as for semantic-map-plan)");
+  app.add_flag("--compress", compress, "Begin with the compressed tree");
+  app.add_flag("!--no-panels", panels, "The map alone");
+  app.add_flag("--measure", measure,
+               "Turn once around the map, print times and frames per second, and end");
+}
+
+}  // namespace semantic_map_view

@@ -1,0 +1,205 @@
+#include "CompressPanel.h"
+
+#include <GLFW/glfw3.h>
+#include <map_view/WeightsText.h>
+#include <strict_files/TextFile.h>
+
+#include <cmath>
+#include <ostream>
+
+#include "StandardOutput.h"
+#include "Widgets.h"
+
+namespace semantic_map_view {
+
+namespace fs = std::filesystem;
+using map_view::CompressedCells;
+using map_view::KeyBox;
+using map_view::LiveCompression;
+using semantic_octree::LeafCell;
+
+namespace {
+
+constexpr int kWidth = 280, kWindow = kWidth + 16;
+constexpr double kRest = 0.25;  // s
+/** Of the leaves, that share is a begin from which sliders lead to both sides. */
+constexpr std::size_t kShare = 50;
+
+std::string rounded(double number, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, number);
+  return text;
+}
+
+}  // namespace
+
+CompressPanel::CompressPanel(Viewer& viewer, fs::path weights)
+    : m_viewer(viewer), m_weights(std::move(weights)) {
+  auto* window = addWindow(&viewer.window(), "Compress",
+                           {viewer.window().width() - kWindow - 8, 206}, kWindow);
+  m_on = window->add<nanogui::CheckBox>("show the compressed tree");
+  m_on->setCallback([this](bool on) { attempt([&] { switchOn(on); }); });
+  m_controls = window->add<nanogui::Widget>();
+  m_controls->setLayout(
+      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 0, 4));
+  viewer.onActivated([this] { forget(); });
+  viewer.onFrame([this] { update(); });
+}
+
+template <class F>
+void CompressPanel::attempt(const F& f) {
+  try {
+    f();
+  } catch (const std::exception& e) {
+    m_viewer.say(e.what());
+  }
+}
+
+void CompressPanel::begin() {
+  auto& map = m_viewer.layer().map();
+  if (m_weights.empty()) {
+    m_live.emplace(map, LiveCompression::allClasses(map), semantic_octree::AbstractionOptions());
+    m_live->setLeaves(map.getNumLeafNodes() / kShare);
+  } else {
+    const auto file = semantic_octree::loadWeights(m_weights, map.classes());
+    m_live.emplace(map, file.solutions.front(), file.space);
+  }
+  m_live->takeChange();
+  tell();
+}
+
+void CompressPanel::forget() {
+  m_live.reset();
+  m_lines.clear();
+  m_on->setChecked(false);
+  while (m_controls->childCount() > 0) m_controls->removeChild(0);
+  m_viewer.window().performLayout();
+}
+
+void CompressPanel::switchOn(bool on) {
+  m_on->setChecked(on);
+  if (!on) return m_viewer.showFull();
+  if (!m_live) {
+    begin();
+    addTerms();
+  }
+  m_viewer.showCompressed();
+  follow();
+}
+
+void CompressPanel::addTerms() {
+  auto* row = addRow(m_controls);
+  addText(row, "alpha", 45);
+  m_alpha = addSlider(row, 150, 0, 1, sliderOf(m_live->alpha()),
+                      [this](float at) { attempt([&] { setAlpha(alphaOf(at)); }); });
+  m_alphaText = addText(row, "", 75);
+  row = addRow(m_controls);
+  m_leaves = addText(row, "", 130);
+  m_wanted = row->add<nanogui::IntBox<int>>(0);
+  m_wanted->setEditable(true);
+  m_wanted->setFixedSize({90, 20});
+  m_wanted->setMinValue(1);
+  m_wanted->setTooltip("Wanted number of leaves");
+  m_wanted->setCallback([this](int n) { attempt([&] { setLeaves(std::size_t(n)); }); });
+  auto* scroll = m_controls->add<nanogui::VScrollPanel>();
+  scroll->setFixedSize({kWidth, 230});
+  m_terms = scroll->add<nanogui::Widget>();
+  m_terms->setLayout(
+      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 2, 0));
+  for (std::size_t term = 0; term < m_live->numTerms(); ++term) {
+    row = addRow(m_terms, 4);
+    addText(row, m_live->name(term), 92);
+    TermLine line;
+    line.slider = addSlider(row, 80, m_live->mayBeIrrelevant(term) ? -2.f : 0.f, 2,
+                            float(m_live->weight(term)), [this, term](float w) {
+                              const double weight = std::round(w * 20) / 20;
+                              if (weight == m_live->weight(term)) return;
+                              attempt([&] { setWeight(term, weight); });
+                            });
+    line.weight = addText(row, "", 36);
+    line.kept = addText(row, "", 46);
+    m_lines.push_back(line);
+  }
+  auto* save = m_controls->add<nanogui::Button>("save the weights");
+  save->setFixedHeight(22);
+  save->setFontSize(15);
+  save->setTooltip("As YAML into the working folder, for semantic-map-compress");
+  save->setCallback([this] {
+    attempt([&] {
+      m_viewer.say("wrote " + this->save(".").string() + ": " +
+                   std::to_string(m_live->numLeaves()) + " leaves");
+    });
+  });
+  m_viewer.window().performLayout();
+}
+
+/** Logarithmic: 0 and 1 are where the tree begins and ends to change. */
+float CompressPanel::sliderOf(double alpha) const {
+  const double low = std::log(m_live->lowestAlpha()), high = std::log(m_live->highestAlpha());
+  return high > low ? float((std::log(std::max(alpha, 1e-300)) - low) / (high - low)) : 0.f;
+}
+
+double CompressPanel::alphaOf(float slider) const {
+  const double low = std::log(m_live->lowestAlpha()), high = std::log(m_live->highestAlpha());
+  return std::exp(low + double(slider) * (high - low));
+}
+
+void CompressPanel::setAlpha(double alpha) {
+  m_live->setAlpha(alpha);
+  follow();
+}
+
+void CompressPanel::setLeaves(std::size_t leaves) {
+  m_live->setLeaves(leaves);
+  m_alpha->setValue(sliderOf(m_live->alpha()));
+  follow();
+}
+
+void CompressPanel::setWeight(std::size_t term, double weight) {
+  m_live->setWeight(term, weight);
+  follow();
+}
+
+/** Map and numbers follow the compressed tree. */
+void CompressPanel::follow() {
+  const semantic_octree::TreeChange change = m_live->takeChange();
+  std::vector<KeyBox> boxes;
+  for (const auto* leaves : {&change.removed, &change.added})
+    for (const LeafCell& leaf : *leaves)
+      boxes.push_back({leaf.lowest(), leaf.lowest() + (leaf.edge() - 1)});
+  m_viewer.window().tiles().touch(boxes);
+  m_alphaText->setCaption(rounded(m_live->alpha(), 3));
+  m_leaves->setCaption(std::to_string(m_live->numLeaves()) + " leaves");
+  m_wanted->setValue(int(m_live->numLeaves()));
+  for (std::size_t term = 0; term < m_lines.size(); ++term)
+    m_lines[term].weight->setCaption(rounded(m_live->weight(term), 3));
+  m_measureAt = glfwGetTime() + kRest;
+  m_viewer.window().redraw();
+}
+
+void CompressPanel::update() {
+  if (!m_live || m_measureAt == 0 || glfwGetTime() < m_measureAt) return;
+  m_measureAt = 0;
+  const auto& measures = m_live->measures();
+  for (std::size_t term = 0; term < m_lines.size(); ++term) {
+    const auto share = measures.retention(term);
+    m_lines[term].kept->setCaption(share ? rounded(100 * *share, 3) + " %" : "-");
+  }
+  tell();
+}
+
+void CompressPanel::tell() {
+  const std::string text = std::to_string(m_live->numLeaves()) + " leaves, alpha " +
+                           strict_files::textOf(m_live->alpha());
+  if (text != m_told) notes() << text << std::endl;
+  m_told = text;
+}
+
+fs::path CompressPanel::save(const fs::path& folder) const {
+  const fs::path file = m_viewer.newFile(folder, "weights", ".yaml");
+  strict_files::writeText(file, map_view::weightsText(m_live->solution(), m_live->space(),
+                                                      m_viewer.layer().map().classes()));
+  return file;
+}
+
+}  // namespace semantic_map_view

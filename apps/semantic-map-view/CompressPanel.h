@@ -1,0 +1,63 @@
+#pragma once
+#include <map_view/LiveCompression.h>
+
+#include <optional>
+
+#include "Viewer.h"
+
+namespace semantic_map_view {
+
+/** The compressed tree of the map that is shown, which follows the sliders of alpha and of the
+ * weights. */
+class CompressPanel {
+ public:
+  /** \param weights the first solution of such a file, from which the sliders begin; empty: all
+   * classes with weight 1 */
+  CompressPanel(Viewer& viewer, std::filesystem::path weights);
+  CompressPanel(const CompressPanel&) = delete;
+  CompressPanel& operator=(const CompressPanel&) = delete;
+
+  /** Shows the compressed tree, or the full map again. */
+  void switchOn(bool on);
+  void setAlpha(double alpha);
+  void setLeaves(std::size_t leaves);
+  void setWeight(std::size_t term, double weight);
+  const map_view::LiveCompression& compression() const { return *m_live; }
+  /** Writes the weights into FOLDER/weights-1.yaml, -2, ..., the first that is not there.
+   * \return its path */
+  std::filesystem::path save(const std::filesystem::path& folder) const;
+
+ private:
+  struct TermLine {
+    nanogui::Slider* slider;
+    nanogui::Label *weight, *kept;
+  };
+  void begin();
+  void forget();
+  /** Before each frame: what takes longer, when the hand rests. */
+  void update();
+  /** Says what is new. */
+  void tell();
+  void addTerms();
+  void follow();
+  /** Reports an exception. */
+  template <class F>
+  void attempt(const F& f);
+  float sliderOf(double alpha) const;
+  double alphaOf(float slider) const;
+
+  Viewer& m_viewer;
+  std::filesystem::path m_weights;
+  std::optional<map_view::LiveCompression> m_live;
+  nanogui::CheckBox* m_on;
+  nanogui::Widget* m_controls;
+  nanogui::Slider* m_alpha = nullptr;
+  nanogui::Label *m_alphaText = nullptr, *m_leaves = nullptr;
+  nanogui::IntBox<int>* m_wanted = nullptr;
+  nanogui::Widget* m_terms = nullptr;
+  std::vector<TermLine> m_lines;
+  std::string m_told;
+  double m_measureAt = 0;  ///< s of GLFW's clock; 0: measured
+};
+
+}  // namespace semantic_map_view

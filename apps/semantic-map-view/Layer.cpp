@@ -1,0 +1,59 @@
+#include "Layer.h"
+
+#include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_map/ImportOctomap.h>
+#include <semantic_octree/OctomapConversion.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <algorithm>
+#include <array>
+
+namespace semantic_map_view {
+
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+SemanticOcTree load(const std::filesystem::path& file) {
+  if (file.extension() != ".ot" && file.extension() != ".bt")
+    return semantic_octree::loadTree(file.string());
+  return semantic_octree::fromOcTree(*semantic_map::readOctomapFile(file),
+                                     semantic_map::CSemanticOctoMap::occupancyOnly());
+}
+
+/** Without the first and last of 500. */
+std::pair<float, float> mostOf(std::vector<float>& values) {
+  const std::size_t few = values.size() / 500;
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(few), values.end());
+  const float low = values[few];
+  std::nth_element(values.begin(), values.end() - 1 - std::ptrdiff_t(few), values.end());
+  return {low, values[values.size() - 1 - few]};
+}
+
+}  // namespace
+
+Layer::Layer(const std::filesystem::path& file)
+    : m_name(file.filename().string()),
+      m_map(std::make_unique<SemanticOcTree>(load(file))),
+      m_look(*m_map),
+      m_cells(std::make_unique<map_view::FullCells>(*m_map)) {
+  count();
+}
+
+void Layer::count() {
+  m_leavesOfClass.assign(std::size_t(m_map->numClasses()) + 1, 0);
+  std::array<std::vector<float>, 3> places;
+  for (auto leaf = m_map->begin_leafs(); leaf != m_map->end_leafs(); ++leaf) {
+    if (!m_map->isNodeOccupied(*leaf)) continue;
+    ++m_leavesOfClass[m_map->query(*leaf).likeliestClass];
+    const octomap::point3d center = leaf.getCoordinate();
+    for (unsigned axis = 0; axis < 3; ++axis) places[axis].push_back(center(axis));
+  }
+  if (places[0].empty()) return;
+  Eigen::Vector3d low, high;
+  for (int axis = 0; axis < 3; ++axis)
+    std::tie(low[axis], high[axis]) = mostOf(places[std::size_t(axis)]);
+  m_extent = Eigen::AlignedBox3d(low, high);
+}
+
+}  // namespace semantic_map_view

@@ -1,0 +1,161 @@
+#include "PlanPanel.h"
+
+#include <map_view/RayCast.h>
+#include <mrpt/opengl/CCylinder.h>
+#include <mrpt/opengl/CSetOfTriangles.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_planning/planner/OrderFile.h>
+
+#include <cmath>
+#include <ostream>
+
+#include "StandardOutput.h"
+#include "Widgets.h"
+#include "measuring/Stopwatch.h"
+
+namespace semantic_map_view {
+
+using mrpt::math::TPoint3Df;
+using mrpt::math::TPose2D;
+using mrpt::opengl::CSetOfTriangles;
+using mrpt::opengl::TTriangle;
+using semantic_planning::PlanResult;
+
+namespace {
+
+constexpr int kWidth = 230;
+constexpr float kLift = 0.3f, kBand = 0.3f;  // m
+constexpr mrpt::img::TColor kPathColor{220, 40, 40}, kStartColor{40, 90, 220},
+    kGoalColor{220, 40, 40};
+
+/** Flat bands: many drivers draw lines one pixel wide whatever they are asked for. */
+CSetOfTriangles::Ptr bandAlong(const PlanResult& plan) {
+  const auto band = CSetOfTriangles::Create();
+  for (std::size_t i = 1; i < plan.path.size(); ++i) {
+    const auto &p = plan.path[i - 1], &q = plan.path[i];
+    const TPoint3Df a(float(p.x), float(p.y), float(p.z) + kLift),
+        b(float(q.x), float(q.y), float(q.z) + kLift), along = b - a;
+    if (along.norm() < 1e-6f) continue;
+    const TPoint3Df aside = TPoint3Df(-along.y, along.x, 0) * (kBand / 2 / along.norm());
+    for (TTriangle half :
+         {TTriangle(a - aside, b - aside, b + aside), TTriangle(a - aside, b + aside, a + aside)}) {
+      half.setColor(kPathColor);
+      band->insertTriangle(half);
+    }
+  }
+  band->enableLight(false);
+  return band;
+}
+
+mrpt::opengl::CCylinder::Ptr postAt(const Eigen::Vector3d& place, const mrpt::img::TColor& color) {
+  const auto post = mrpt::opengl::CCylinder::Create(0.15f, 0.15f, 4.f);
+  post->setLocation(place.x(), place.y(), place.z());
+  post->setColor_u8(color);
+  return post;
+}
+
+}  // namespace
+
+PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path classes)
+    : m_viewer(viewer), m_classes(std::move(classes)) {
+  auto* window =
+      addWindow(&viewer.window(), "Path", {8, viewer.window().height() - 120}, kWidth + 16);
+  if (!m_classes.empty()) {
+    auto* row = addRow(window);
+    m_startButton = row->add<nanogui::Button>("start");
+    m_goalButton = row->add<nanogui::Button>("goal");
+    for (auto* button : {m_startButton, m_goalButton}) button->setFixedSize({90, 22});
+    m_startButton->setCallback([this] { await(Awaited::Start); });
+    m_goalButton->setCallback([this] { await(Awaited::Goal); });
+  }
+  for (auto& line : m_lines) line = addText(window, "", kWidth);
+  if (m_classes.empty()) m_lines[0]->setCaption("needs --classes, an order of classes");
+  viewer.window().marks()->insert(m_marks);
+  viewer.onActivated([this] { forget(); });
+}
+
+void PlanPanel::say(const std::string& first, const std::string& second) {
+  m_lines[0]->setCaption(first);
+  m_lines[1]->setCaption(second);
+  if (!first.empty()) notes() << first << ' ' << second << std::endl;
+  m_viewer.window().redraw();
+}
+
+void PlanPanel::forget() {
+  m_planner.reset();
+  m_map.reset();
+  m_start.reset(), m_goal.reset();
+  m_marks->clear();
+  say("");
+}
+
+void PlanPanel::await(Awaited what) {
+  m_awaited = what;
+  say(what == Awaited::Start ? "click where the vehicle is" : "click where it is to go");
+}
+
+bool PlanPanel::take(const map_view::Ray& ray) {
+  if (m_awaited == Awaited::Nothing) return false;
+  const Layer& layer = m_viewer.layer();
+  const auto cell = firstShown(layer.cells(), layer.look(), ray);
+  if (!cell) {
+    say("nothing there");
+    return true;
+  }
+  // Where the ray meets the height of the cell's upper side, within the cell.
+  const double voxel = layer.map().getResolution();
+  Eigen::Vector3d low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = semantic_octree::lowerBorderOf(cell->lowest[axis], voxel);
+    high[axis] = low[axis] + cell->edge() * voxel;
+  }
+  const double steps = ray.direction.z() < 0 ? (high.z() - ray.origin.z()) / ray.direction.z() : 0;
+  Eigen::Vector3d place = (ray.origin + steps * ray.direction).cwiseMax(low).cwiseMin(high);
+  place.z() = high.z();
+  (m_awaited == Awaited::Start ? m_start : m_goal) = place;
+  char text[60];
+  std::snprintf(text, sizeof text, "%s at %.1f %.1f %.1f m",
+                m_awaited == Awaited::Start ? "start" : "goal", place.x(), place.y(), place.z());
+  m_awaited = Awaited::Nothing;
+  say(text);
+  draw(nullptr);
+  if (m_start && m_goal) plan();
+  return true;
+}
+
+void PlanPanel::begin() {
+  m_map = std::make_unique<semantic_octree::SemanticOcTree>(m_viewer.layer().map());
+  const auto order = semantic_planning::loadClassOrder(m_classes, m_map->classes());
+  m_map->setAbstraction(semantic_planning::abstractionFor(order));
+  semantic_planning::PlannerOptions options;
+  options.shorten = true;
+  m_planner.emplace(*m_map, order, options);
+}
+
+void PlanPanel::plan() {
+  try {
+    const measuring::Stopwatch watch;
+    if (!m_planner) begin();
+    const double heading = std::atan2(m_goal->y() - m_start->y(), m_goal->x() - m_start->x());
+    const PlanResult plan =
+        m_planner->plan(TPose2D(m_start->x(), m_start->y(), heading),
+                        TPose2D(m_goal->x(), m_goal->y(), heading), m_start->z(), m_goal->z());
+    draw(&plan);
+    if (!plan.found()) return say("no path:", plan.reason);
+    char text[60];
+    std::snprintf(text, sizeof text, "path of %.1f m, in %.0f ms", plan.length,
+                  watch.milliseconds());
+    say(text);
+  } catch (const std::exception& e) {
+    say("no path:", e.what());
+  }
+}
+
+void PlanPanel::draw(const PlanResult* plan) {
+  m_marks->clear();
+  if (m_start) m_marks->insert(postAt(*m_start, kStartColor));
+  if (m_goal) m_marks->insert(postAt(*m_goal, kGoalColor));
+  if (plan && plan->found()) m_marks->insert(bandAlong(*plan));
+}
+
+}  // namespace semantic_map_view

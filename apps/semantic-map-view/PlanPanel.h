@@ -1,0 +1,42 @@
+#pragma once
+#include <semantic_planning/planner/SemanticPlanner.h>
+
+#include <optional>
+
+#include "Viewer.h"
+
+namespace semantic_map_view {
+
+/** Start, goal and the path between them. */
+class PlanPanel {
+ public:
+  /** \param classes order of classes (YAML); empty: no paths */
+  PlanPanel(Viewer& viewer, std::filesystem::path classes);
+  PlanPanel(const PlanPanel&) = delete;
+  PlanPanel& operator=(const PlanPanel&) = delete;
+
+  /** Takes a click as start or goal. \return false: it means something else now. */
+  bool take(const map_view::Ray& ray);
+
+ private:
+  enum class Awaited { Nothing, Start, Goal };
+  void await(Awaited what);
+  void plan();
+  void begin();
+  void forget();
+  void draw(const semantic_planning::PlanResult* plan);
+  void say(const std::string& first, const std::string& second = {});
+
+  Viewer& m_viewer;
+  std::filesystem::path m_classes;
+  Awaited m_awaited = Awaited::Nothing;
+  std::optional<Eigen::Vector3d> m_start, m_goal;
+  /** Planning keeps an abstraction of its own, and so a map of its own. */
+  std::unique_ptr<semantic_octree::SemanticOcTree> m_map;
+  std::optional<semantic_planning::SemanticPlanner> m_planner;
+  nanogui::Button *m_startButton = nullptr, *m_goalButton = nullptr;
+  std::array<nanogui::Label*, 2> m_lines{};
+  mrpt::opengl::CSetOfObjects::Ptr m_marks = mrpt::opengl::CSetOfObjects::Create();
+};
+
+}  // namespace semantic_map_view

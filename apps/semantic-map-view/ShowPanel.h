@@ -1,0 +1,30 @@
+#pragma once
+#include "Viewer.h"
+
+namespace semantic_map_view {
+
+/** What is shown, in which colors, from where. */
+class ShowPanel {
+ public:
+  explicit ShowPanel(Viewer& viewer);
+  ShowPanel(const ShowPanel&) = delete;
+  ShowPanel& operator=(const ShowPanel&) = delete;
+
+ private:
+  /** What the viewer says, and where the camera is. */
+  void update();
+  void addLayers(nanogui::Widget* parent);
+  void addColoring(nanogui::Widget* parent);
+  void addClasses(nanogui::Widget* parent);
+  void addHeight(nanogui::Widget* parent);
+  void addCameras(nanogui::Widget* parent);
+  void listClasses();
+  void hide(std::size_t id, bool hidden);
+
+  Viewer& m_viewer;
+  nanogui::Window* m_window;
+  nanogui::Widget* m_classes = nullptr;
+  nanogui::Label *m_height = nullptr, *m_camera = nullptr, *m_said = nullptr;
+};
+
+}  // namespace semantic_map_view

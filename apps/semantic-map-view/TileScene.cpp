@@ -1,0 +1,135 @@
+#include "TileScene.h"
+
+#include <set>
+
+#include "measuring/Stopwatch.h"
+
+namespace semantic_map_view {
+
+using map_view::Face;
+using map_view::Tile;
+using mrpt::opengl::CSetOfObjects;
+using mrpt::opengl::CSetOfTriangles;
+using mrpt::opengl::TTriangle;
+
+namespace {
+
+/** Sides of cells whose meshes are kept: about 216 bytes each. */
+constexpr std::size_t kMostFaces = 2'000'000;
+constexpr std::uint8_t kFreeAlpha = 40;
+
+CSetOfTriangles::Ptr trianglesOf(const std::vector<Face>& faces, std::uint8_t alpha) {
+  std::vector<TTriangle> triangles;
+  triangles.reserve(2 * faces.size());
+  for (const Face& face : faces) {
+    const auto vertex = [&](std::size_t i) {
+      TTriangle::Vertex v;
+      v.xyzrgba.pt = {face.corners[i].x(), face.corners[i].y(), face.corners[i].z()};
+      v.setColor({face.colors[i].r, face.colors[i].g, face.colors[i].b, alpha});
+      return v;
+    };
+    // The diagonal that keeps the shade of a corner from crossing the face.
+    const auto bright = [&](std::size_t i) {
+      return int(face.colors[i].r) + face.colors[i].g + face.colors[i].b;
+    };
+    const std::size_t first = bright(0) + bright(2) >= bright(1) + bright(3) ? 0 : 1;
+    for (const std::size_t second : {first + 1, first + 2}) {
+      TTriangle triangle;
+      triangle.vertices = {vertex(first), vertex(second), vertex((second + 1) % 4)};
+      triangles.push_back(triangle);
+    }
+  }
+  const auto mesh = CSetOfTriangles::Create();
+  mesh->insertTriangles(triangles);
+  mesh->enableLight(false);  // the colors are lit already
+  mesh->cullFaces(mrpt::opengl::TCullFace::BACK);
+  return mesh;
+}
+
+}  // namespace
+
+void TileScene::clear() {
+  m_meshes.clear();
+  m_fresh.clear();
+  m_objects->clear();
+  m_kept = 0;
+}
+
+std::size_t TileScene::Meshes::faces() const {
+  std::size_t sum = free.faces;
+  for (const Part& part : occupied) sum += part.faces;
+  return sum;
+}
+
+void TileScene::build(const Layer& layer, const Tile& tile) {
+  const map_view::TileMesh mesh = meshOf(tile, layer.cells(), layer.look());
+  const auto part = [](const std::vector<Face>& faces, std::uint8_t alpha) {
+    return faces.empty() ? Meshes::Part() : Meshes::Part{trianglesOf(faces, alpha), faces.size()};
+  };
+  Meshes& meshes = m_meshes[tile];
+  m_kept -= meshes.faces();
+  for (std::size_t i = 0; i < mesh.occupied.size(); ++i)
+    meshes.occupied[i] = part(mesh.occupied[i], 255);
+  meshes.free = part(mesh.free, kFreeAlpha);
+  m_kept += meshes.faces();
+  m_fresh.add(tile);
+}
+
+bool TileScene::update(const Layer& layer, const map_view::View& view, double milliseconds) {
+  const measuring::Stopwatch watch;
+  const std::vector<Tile> tiles = tilesSeen(layer.map(), view, layer.look().style().freeSpace);
+  bool ready = true;
+  for (const Tile& tile : tiles) {
+    if (m_fresh.contains(tile)) continue;
+    if (watch.milliseconds() > milliseconds) {
+      ready = false;
+      break;
+    }
+    build(layer, tile);
+  }
+  show(tiles, view.camera.position(), layer.map().getResolution());
+  if (m_kept > kMostFaces) forgetUnseen(tiles);
+  return ready;
+}
+
+/** Where a tile has no mesh yet, the one of a coarser tile around it is shown, if there is one. */
+void TileScene::show(const std::vector<Tile>& tiles, const Eigen::Vector3d& eye, double voxelSize) {
+  std::set<Tile> shown;
+  for (Tile tile : tiles) {
+    while (m_meshes.count(tile) == 0 && tile.depth > 0) {
+      --tile.depth;
+      for (int axis = 0; axis < 3; ++axis)
+        tile.lowest[axis] = semantic_octree::lowestKeyAtDepth(tile.lowest[axis], tile.depth);
+    }
+    if (m_meshes.count(tile) > 0) shown.insert(tile);
+  }
+  m_objects->clear();
+  m_faces = 0, m_shown = shown.size();
+  const auto free = CSetOfObjects::Create();
+  const auto add = [this](const auto& objects, const Meshes::Part& part) {
+    if (part.triangles) objects->insert(part.triangles);
+    m_faces += part.faces;
+  };
+  for (const Tile& tile : shown) {
+    const Meshes& meshes = m_meshes.at(tile);
+    for (std::size_t i = 0; i < meshes.occupied.size(); ++i)
+      if (mayFace(tile, i, eye, voxelSize)) add(m_objects, meshes.occupied[i]);
+    add(free, meshes.free);
+  }
+  m_objects->insert(free);
+}
+
+void TileScene::forgetUnseen(const std::vector<Tile>& seen) {
+  const std::set<Tile> keep(seen.begin(), seen.end());
+  for (auto it = m_meshes.begin(); it != m_meshes.end();) {
+    if (keep.count(it->first) > 0) {
+      ++it;
+      continue;
+    }
+    m_kept -= it->second.faces();
+    m_fresh.remove(it->first);
+    it = m_meshes.erase(it);
+  }
+}
+
+}  // namespace semantic_map_view

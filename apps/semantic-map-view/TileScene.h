@@ -1,0 +1,52 @@
+#pragma once
+#include <map_view/TileSet.h>
+#include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt/opengl/CSetOfTriangles.h>
+
+#include <map>
+
+#include "Layer.h"
+
+namespace semantic_map_view {
+
+/** The tiles of a map in an MRPT scene. Meshes are made when they are first seen, and again only
+ * where something changed. */
+class TileScene {
+ public:
+  /** To be put into a scene: solid cells and, to be drawn after them, translucent ones. */
+  const mrpt::opengl::CSetOfObjects::Ptr& objects() const { return m_objects; }
+
+  /** Brings the scene up to date with what is seen, for about so many milliseconds; what is not
+   * ready shows as it was. \return whether all is ready */
+  bool update(const Layer& layer, const map_view::View& view, double milliseconds);
+  /** All cells look otherwise, or those in some boxes. */
+  void touch() { m_fresh.clear(); }
+  void touch(const std::vector<map_view::KeyBox>& boxes) { m_fresh.remove(boxes); }
+  /** Another map. */
+  void clear();
+
+  std::size_t numTiles() const { return m_shown; }
+  /** Sides of cells that are drawn. */
+  std::size_t numFaces() const { return m_faces; }
+
+ private:
+  struct Meshes {
+    struct Part {
+      mrpt::opengl::CSetOfTriangles::Ptr triangles;
+      std::size_t faces = 0;
+    };
+    std::array<Part, map_view::kNumDirections> occupied;
+    Part free;
+    std::size_t faces() const;
+  };
+  void build(const Layer& layer, const map_view::Tile& tile);
+  void show(const std::vector<map_view::Tile>& tiles, const Eigen::Vector3d& eye, double voxelSize);
+  void forgetUnseen(const std::vector<map_view::Tile>& seen);
+
+  mrpt::opengl::CSetOfObjects::Ptr m_objects = mrpt::opengl::CSetOfObjects::Create();
+  std::map<map_view::Tile, Meshes> m_meshes;
+  map_view::FreshTiles m_fresh;
+  std::size_t m_shown = 0, m_faces = 0, m_kept = 0;
+};
+
+}  // namespace semantic_map_view

@@ -1,0 +1,186 @@
+#include "ViewWindow.h"
+
+#include <map_pictures/Drawing.h>
+#include <mrpt/opengl/COpenGLScene.h>
+#include <nanogui/opengl.h>
+
+#include <clocale>
+#include <cstdlib>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+namespace semantic_map_view {
+
+using nanogui::Vector2i;
+
+namespace {
+
+constexpr double kIdle = 0.5;  // s between frames without a reason
+constexpr int kClick = 3;      // pixels that the mouse may move between press and release
+
+const std::string kInstead =
+    "; `semantic-map-export MAP -o map.png` draws a map without a window, xvfb-run gives programs "
+    "a display";
+
+/** Its name; empty: there is none. */
+std::string displayName() {
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"})
+    if (const char* value = std::getenv(name); value && *value) return value;
+  return {};
+}
+
+std::string glText(unsigned name) {
+  const auto* text = reinterpret_cast<const char*>(glGetString(name));
+  return text ? text : "unknown";
+}
+
+}  // namespace
+
+WindowSystem::WindowSystem() {
+  const std::string display = displayName();
+  if (display.empty())
+    throw std::runtime_error("there is no display (DISPLAY is not set)" + kInstead);
+  try {
+    nanogui::init();
+  } catch (const std::exception&) {
+    throw std::runtime_error("the display '" + display + "' cannot be opened" + kInstead);
+  }
+  std::setlocale(LC_NUMERIC, "C");
+}
+
+WindowSystem::~WindowSystem() { nanogui::shutdown(); }
+
+std::unique_ptr<ViewWindow> ViewWindow::open(int width, int height) {
+  try {
+    return std::make_unique<ViewWindow>(width, height);
+  } catch (const std::exception&) {
+    throw std::runtime_error("the display has no OpenGL 3.3" + kInstead);
+  }
+}
+
+ViewWindow::ViewWindow(int width, int height)
+    : CDisplayWindowGUI("semantic-map-view", unsigned(width), unsigned(height)) {
+  const auto scene = mrpt::opengl::COpenGLScene::Create();
+  const auto paper = map_pictures::kPaper;
+  scene->getViewport()->setCustomBackgroundColor(
+      mrpt::img::TColorf(mrpt::img::TColor(paper.r, paper.g, paper.b)));
+  scene->insert(m_marks);
+  scene->insert(m_tiles.objects());
+  background_scene = scene;
+  glfwMakeContextCurrent(mGLFWWindow);
+  m_renderer = glText(GL_RENDERER);
+}
+
+map_view::OrbitCamera ViewWindow::orbitCamera() const {
+  const auto& of = camera();
+  map_view::OrbitCamera c;
+  c.target = {of.getCameraPointingX(), of.getCameraPointingY(), of.getCameraPointingZ()};
+  c.distance = of.getZoomDistance();
+  c.azimuth = of.getAzimuthDegrees();
+  c.elevation = of.getElevationDegrees();
+  c.fieldOfView = of.cameraFOV();
+  return c;
+}
+
+void ViewWindow::setOrbitCamera(const map_view::OrbitCamera& c) {
+  auto& of = camera();
+  of.setMinimumZoom(0.1f);
+  of.setMaximumZoom(1e5f);
+  of.setCameraPointing(float(c.target.x()), float(c.target.y()), float(c.target.z()));
+  of.setZoomDistance(float(c.distance));
+  of.setAzimuthDegrees(float(c.azimuth));
+  of.setElevationDegrees(float(c.elevation));
+  of.setCameraFOV(float(c.fieldOfView));
+  redraw();
+}
+
+bool ViewWindow::drawFrame() {
+  glfwMakeContextCurrent(mGLFWWindow);
+  m_dirty = false;
+  const bool more = m_onFrame && m_onFrame();
+  drawAll();
+  return more;
+}
+
+void ViewWindow::run(const std::function<bool()>& done) {
+  bool more = true;
+  double last = 0;
+  while (!glfwWindowShouldClose(mGLFWWindow)) {
+    if (more || m_dirty)
+      glfwPollEvents();
+    else
+      glfwWaitEventsTimeout(kIdle / 5);
+    if (!more && !m_dirty && glfwGetTime() - last < kIdle && !done()) continue;
+    if (!more && !m_dirty && done()) return;
+    more = drawFrame();
+    last = glfwGetTime();
+  }
+}
+
+/** As nanogui does it; but what was drawn is kept before it goes to the screen, where other windows
+ * may cover it. */
+void ViewWindow::drawAll() {
+  const float far = float(orbitCamera().distance);
+  background_scene->getViewport()->setViewportClipDistances(std::max(0.02f, far / 200), far * 50);
+  glClearColor(0, 0, 0, 1);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  glViewport(0, 0, mFBSize.x(), mFBSize.y());
+  drawContents();
+  glDisable(GL_CULL_FACE);
+  drawWidgets();
+  if (m_takesPicture) takePicture();
+  glfwSwapBuffers(mGLFWWindow);
+}
+
+cv::Mat ViewWindow::drawPicture() {
+  m_takesPicture = true;
+  drawFrame();
+  m_takesPicture = false;
+  return m_picture.clone();
+}
+
+void ViewWindow::takePicture() {
+  m_picture.create(mFBSize.y(), mFBSize.x(), CV_8UC3);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, mFBSize.x(), mFBSize.y(), GL_BGR, GL_UNSIGNED_BYTE, m_picture.data);
+  cv::flip(m_picture, m_picture, 0);
+}
+
+bool ViewWindow::mouseMotionEvent(const Vector2i& p, const Vector2i& rel, int button,
+                                  int modifiers) {
+  redraw();
+  return CDisplayWindowGUI::mouseMotionEvent(p, rel, button, modifiers);
+}
+
+bool ViewWindow::mouseButtonEvent(const Vector2i& p, int button, bool down, int modifiers) {
+  redraw();
+  const bool beside = findWidget(p) == this;
+  const bool used = CDisplayWindowGUI::mouseButtonEvent(p, button, down, modifiers);
+  if (button != GLFW_MOUSE_BUTTON_LEFT) return used;
+  const bool click = !down && beside && (p - m_pressed).cwiseAbs().maxCoeff() <= kClick;
+  m_pressed = down && beside ? p : Vector2i(-1000, -1000);
+  if (click && m_onClick) m_onClick(orbitCamera().rayThrough(p.x(), p.y(), mSize.x(), mSize.y()));
+  return used;
+}
+
+bool ViewWindow::scrollEvent(const Vector2i& p, const nanogui::Vector2f& rel) {
+  redraw();
+  return CDisplayWindowGUI::scrollEvent(p, rel);
+}
+
+bool ViewWindow::keyboardEvent(int key, int scancode, int action, int modifiers) {
+  redraw();
+  return CDisplayWindowGUI::keyboardEvent(key, scancode, action, modifiers);
+}
+
+bool ViewWindow::keyboardCharacterEvent(unsigned int codepoint) {
+  redraw();
+  return CDisplayWindowGUI::keyboardCharacterEvent(codepoint);
+}
+
+bool ViewWindow::resizeEvent(const Vector2i& size) {
+  redraw();
+  return CDisplayWindowGUI::resizeEvent(size);
+}
+
+}  // namespace semantic_map_view

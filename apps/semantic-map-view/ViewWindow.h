@@ -1,0 +1,78 @@
+#pragma once
+#include <map_view/OrbitCamera.h>
+#include <mrpt/gui/CDisplayWindowGUI.h>
+#include <mrpt/opengl/CSetOfObjects.h>
+
+#include <functional>
+#include <opencv2/core.hpp>
+
+#include "TileScene.h"
+
+namespace semantic_map_view {
+
+/** Of MRPT's windows; one at a time. */
+class WindowSystem {
+ public:
+  /** \throw std::runtime_error there is no display. */
+  WindowSystem();
+  ~WindowSystem();
+  WindowSystem(const WindowSystem&) = delete;
+  WindowSystem& operator=(const WindowSystem&) = delete;
+};
+
+/** A window with a scene that is looked at by an orbit camera, drawn when there is a reason. */
+class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
+ public:
+  /** \throw std::runtime_error the display has no OpenGL 3.3. */
+  static std::unique_ptr<ViewWindow> open(int width, int height);
+  ViewWindow(int width, int height);
+
+  /** Tiles of the map. */
+  TileScene& tiles() { return m_tiles; }
+  /** What lies upon it. */
+  const mrpt::opengl::CSetOfObjects::Ptr& marks() const { return m_marks; }
+
+  map_view::OrbitCamera orbitCamera() const;
+  void setOrbitCamera(const map_view::OrbitCamera& camera);
+  /** Called for clicks beside all panels: the ray through the pixel. */
+  void onClick(const std::function<void(const map_view::Ray&)>& f) { m_onClick = f; }
+  /** Called before each frame; \return whether there is more to do for this frame. */
+  void onFrame(const std::function<bool()>& f) { m_onFrame = f; }
+  /** Draws again soon. */
+  void redraw() { m_dirty = true; }
+
+  /** Until the window is closed, or until done() after a frame without more to do. */
+  void run(const std::function<bool()>& done);
+  /** Draws one frame. \return whether there is more to do. */
+  bool drawFrame();
+  /** Draws one, and returns what it shows, BGR. */
+  cv::Mat drawPicture();
+  std::string renderer() const { return m_renderer; }
+  int pixelWidth() const { return mFBSize.x(); }
+  int pixelHeight() const { return mFBSize.y(); }
+
+ protected:
+  bool mouseMotionEvent(const nanogui::Vector2i& p, const nanogui::Vector2i& rel, int button,
+                        int modifiers) override;
+  bool mouseButtonEvent(const nanogui::Vector2i& p, int button, bool down, int modifiers) override;
+  bool scrollEvent(const nanogui::Vector2i& p, const nanogui::Vector2f& rel) override;
+  bool keyboardEvent(int key, int scancode, int action, int modifiers) override;
+  bool keyboardCharacterEvent(unsigned int codepoint) override;
+  bool resizeEvent(const nanogui::Vector2i& size) override;
+
+ private:
+  void drawAll() override;
+  void takePicture();
+
+  TileScene m_tiles;
+  mrpt::opengl::CSetOfObjects::Ptr m_marks = mrpt::opengl::CSetOfObjects::Create();
+  std::function<void(const map_view::Ray&)> m_onClick;
+  std::function<bool()> m_onFrame;
+  bool m_dirty = true;
+  nanogui::Vector2i m_pressed{-1, -1};  ///< where a button went down beside all panels
+  bool m_takesPicture = false;
+  cv::Mat m_picture;
+  std::string m_renderer;
+};
+
+}  // namespace semantic_map_view

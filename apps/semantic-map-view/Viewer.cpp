@@ -1,0 +1,99 @@
+#include "Viewer.h"
+
+#include <map_pictures/MapPictures.h>
+
+#include <ostream>
+
+#include "StandardOutput.h"
+
+namespace semantic_map_view {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kPixelsPerCell = 4;
+/** For meshes in each frame, so that the window answers meanwhile. */
+constexpr double kMilliseconds = 30;
+
+}  // namespace
+
+Viewer::Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers, const Cli& cli)
+    : m_window(window), m_layers(std::move(layers)) {
+  for (const auto& layer : m_layers) layer->look().setStyle(cli.style);
+  if (cli.camera)
+    m_window.setOrbitCamera(*cli.camera);
+  else if (cli.top)
+    lookFrom(-90, 90);
+  else
+    lookFrom(-120, 35);
+  m_window.onFrame([this] { return frame(); });
+}
+
+bool Viewer::frame() {
+  for (const auto& f : m_onFrame) f();
+  const map_view::View view = {m_window.orbitCamera(), m_window.pixelWidth(),
+                               m_window.pixelHeight(), kPixelsPerCell};
+  return !m_window.tiles().update(layer(), view, kMilliseconds);
+}
+
+void Viewer::activate(std::size_t layer) {
+  const map_view::ViewStyle before = style();
+  showFull();
+  m_active = layer;
+  map_view::ViewStyle now = style();
+  now.coloring = before.coloring, now.freeSpace = before.freeSpace,
+  now.maxHeight = before.maxHeight;
+  this->layer().look().setStyle(now);
+  m_window.tiles().clear();
+  m_window.redraw();
+  for (const auto& f : m_onActivated) f();
+}
+
+void Viewer::setStyle(const map_view::ViewStyle& style) {
+  layer().look().setStyle(style);
+  m_window.tiles().touch();
+  m_window.redraw();
+}
+
+void Viewer::lookFrom(double azimuth, double elevation) {
+  map_view::OrbitCamera camera;
+  camera.azimuth = azimuth, camera.elevation = elevation;
+  m_window.setOrbitCamera(
+      camera.seeing(layer().extent(), m_window.pixelWidth(), m_window.pixelHeight()));
+}
+
+fs::path Viewer::newFile(const fs::path& folder, const std::string& stem,
+                         const std::string& ending) {
+  fs::path file;
+  int number = 1;
+  do file = folder / (stem + "-" + std::to_string(number++) + ending);
+  while (fs::exists(file));
+  return file;
+}
+
+fs::path Viewer::savePicture(const fs::path& folder) {
+  const fs::path file = newFile(folder, "map-view", ".png");
+  map_pictures::savePicture(m_window.drawPicture(), file);
+  return file;
+}
+
+void Viewer::showFull() {
+  layer().setCells(std::make_unique<map_view::FullCells>(layer().map()));
+  m_window.tiles().touch();
+  m_window.redraw();
+}
+
+void Viewer::showCompressed() {
+  layer().setCells(std::make_unique<map_view::CompressedCells>(layer().map()));
+  m_window.tiles().touch();
+  m_window.redraw();
+}
+
+void Viewer::say(const std::string& text) {
+  m_said = text;
+  notes() << text << std::endl;
+  m_window.redraw();
+}
+
+}  // namespace semantic_map_view

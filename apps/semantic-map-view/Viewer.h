@@ -1,0 +1,53 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "Cli.h"
+#include "Layer.h"
+#include "ViewWindow.h"
+
+namespace semantic_map_view {
+
+/** Open maps, which of them is shown, and how. */
+class Viewer {
+ public:
+  Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers, const Cli& cli);
+
+  ViewWindow& window() { return m_window; }
+  const std::vector<std::unique_ptr<Layer>>& layers() const { return m_layers; }
+  Layer& layer() { return *m_layers[m_active]; }
+  /** Another map, seen from the same place. */
+  void activate(std::size_t layer);
+  /** Called after another map was activated. */
+  void onActivated(const std::function<void()>& f) { m_onActivated.push_back(f); }
+
+  const map_view::ViewStyle& style() const { return m_layers[m_active]->look().style(); }
+  void setStyle(const map_view::ViewStyle& style);
+  /** The leaves of the map, or of its compressed tree. */
+  void showFull();
+  void showCompressed();
+  /** All of the map, from a direction; degrees. */
+  void lookFrom(double azimuth, double elevation);
+  /** FOLDER/STEM-1ENDING, -2, ..., the first that is not there. */
+  static std::filesystem::path newFile(const std::filesystem::path& folder, const std::string& stem,
+                                       const std::string& ending);
+  /** Writes what the window shows into a new file. \return its path */
+  std::filesystem::path savePicture(const std::filesystem::path& folder);
+  /** Called before each frame. */
+  void onFrame(const std::function<void()>& f) { m_onFrame.push_back(f); }
+
+  /** A line below the map. */
+  void say(const std::string& text);
+  const std::string& said() const { return m_said; }
+
+ private:
+  bool frame();
+
+  ViewWindow& m_window;
+  std::vector<std::unique_ptr<Layer>> m_layers;
+  std::size_t m_active = 0;
+  std::vector<std::function<void()>> m_onActivated, m_onFrame;
+  std::string m_said;
+};
+
+}  // namespace semantic_map_view

@@ -1,0 +1,98 @@
+#include "Widgets.h"
+
+#include <nanogui/opengl.h>
+
+#include <algorithm>
+
+namespace semantic_map_view {
+
+using nanogui::Vector2i;
+using nanogui::Widget;
+
+namespace {
+
+constexpr int kFont = 15, kLine = 17, kNameWidth = 105, kBarWidth = 105, kValueWidth = 60;
+
+void drawText(NVGcontext* context, float x, float y, int align, const std::string& text) {
+  nvgTextAlign(context, align | NVG_ALIGN_MIDDLE);
+  nvgText(context, x, y, text.c_str(), nullptr);
+}
+
+void fillBox(NVGcontext* context, float x, float y, float width, float height,
+             const nanogui::Color& color) {
+  nvgBeginPath(context);
+  nvgRect(context, x, y, width, height);
+  nvgFillColor(context, color);
+  nvgFill(context);
+}
+
+}  // namespace
+
+nanogui::Color colorOf(const semantic_types::Color& c) {
+  return nanogui::Color(Eigen::Vector3i(c.r, c.g, c.b), 255);
+}
+
+Vector2i BarChart::preferredSize(NVGcontext*) const {
+  return {kNameWidth + kBarWidth + kValueWidth, kLine * std::max<int>(1, int(m_bars.size()))};
+}
+
+void BarChart::draw(NVGcontext* context) {
+  Widget::draw(context);
+  nvgFontSize(context, kFont);
+  nvgFontFace(context, "sans");
+  float y = float(mPos.y());
+  for (const Bar& bar : m_bars) {
+    const float x = float(mPos.x()), middle = y + kLine / 2.f;
+    nvgFillColor(context, nanogui::Color(230, 255));
+    drawText(context, x, middle, NVG_ALIGN_LEFT, bar.name.substr(0, 16));
+    drawText(context, x + kNameWidth + kBarWidth + kValueWidth, middle, NVG_ALIGN_RIGHT, bar.value);
+    const float width = float(std::clamp(bar.share, 0.0, 1.0)) * kBarWidth;
+    fillBox(context, x + kNameWidth, y + 3, width, kLine - 6, colorOf(bar.color));
+    y += kLine;
+  }
+}
+
+Swatch::Swatch(Widget* parent, const semantic_types::Color& color)
+    : Widget(parent), m_color(colorOf(color)) {
+  setFixedSize({12, 12});
+}
+
+void Swatch::draw(NVGcontext* context) {
+  fillBox(context, float(mPos.x()), float(mPos.y()), float(mSize.x()), float(mSize.y()), m_color);
+}
+
+Widget* addRow(Widget* parent, int spacing) {
+  auto* row = parent->add<Widget>();
+  row->setLayout(new nanogui::BoxLayout(nanogui::Orientation::Horizontal,
+                                        nanogui::Alignment::Middle, 0, spacing));
+  return row;
+}
+
+nanogui::Label* addText(Widget* parent, const std::string& text, int width) {
+  auto* label = parent->add<nanogui::Label>(text);
+  label->setFixedSize({width, kLine});
+  label->setFontSize(kFont);
+  return label;
+}
+
+nanogui::Window* addWindow(Widget* parent, const std::string& title, const Vector2i& place,
+                           int width) {
+  auto* window = new nanogui::Window(parent, title);
+  window->setPosition(place);
+  window->setFixedWidth(width);
+  window->setLayout(
+      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 8, 5));
+  return window;
+}
+
+nanogui::Slider* addSlider(Widget* parent, int width, float low, float high, float value,
+                           const std::function<void(float)>& moved) {
+  auto* slider = parent->add<nanogui::Slider>();
+  slider->setFixedSize({width, 18});
+  slider->setRange({low, high});
+  slider->setValue(value);
+  slider->setCallback(moved);
+  return slider;
+}
+
+}  // namespace semantic_map_view

@@ -1,0 +1,55 @@
+#pragma once
+#include <nanogui/nanogui.h>
+#include <semantic_types/ClassTable.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace semantic_map_view {
+
+nanogui::Color colorOf(const semantic_types::Color& color);
+
+/** A line of a bar chart. */
+struct Bar {
+  std::string name, value;
+  double share = 0;  ///< of the width, 0 to 1
+  semantic_types::Color color;
+};
+
+/** Names, bars and values, one below the other. */
+class BarChart : public nanogui::Widget {
+ public:
+  explicit BarChart(nanogui::Widget* parent) : nanogui::Widget(parent) {}
+  void setBars(std::vector<Bar> bars) { m_bars = std::move(bars); }
+  nanogui::Vector2i preferredSize(NVGcontext*) const override;
+  void draw(NVGcontext* context) override;
+
+ private:
+  std::vector<Bar> m_bars;
+};
+
+/** A square of one color. */
+class Swatch : public nanogui::Widget {
+ public:
+  Swatch(nanogui::Widget* parent, const semantic_types::Color& color);
+  void draw(NVGcontext* context) override;
+
+ private:
+  nanogui::Color m_color;
+};
+
+/** A widget whose children stand beside each other. */
+nanogui::Widget* addRow(nanogui::Widget* parent, int spacing = 6);
+
+/** A line of text of a fixed width. */
+nanogui::Label* addText(nanogui::Widget* parent, const std::string& text, int width);
+
+/** A window whose children stand below each other. */
+nanogui::Window* addWindow(nanogui::Widget* parent, const std::string& title,
+                           const nanogui::Vector2i& place, int width);
+
+nanogui::Slider* addSlider(nanogui::Widget* parent, int width, float low, float high, float value,
+                           const std::function<void(float)>& moved);
+
+}  // namespace semantic_map_view

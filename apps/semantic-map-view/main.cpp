@@ -1,0 +1,139 @@
+// Shows semantic octree maps in a window.
+#include <map_pictures/MapPictures.h>
+
+#include <iostream>
+
+#include "Application.h"
+#include "AskPanel.h"
+#include "Cli.h"
+#include "CompressPanel.h"
+#include "PlanPanel.h"
+#include "ShowPanel.h"
+#include "StandardOutput.h"
+#include "Viewer.h"
+#include "measuring/Stopwatch.h"
+
+namespace semantic_map_view {
+namespace {
+
+std::vector<std::unique_ptr<Layer>> openLayers(const Cli& cli) {
+  std::vector<std::unique_ptr<Layer>> layers;
+  for (const auto& map : cli.maps) layers.push_back(std::make_unique<Layer>(map));
+  return layers;
+}
+
+struct Panels {
+  ShowPanel show;
+  AskPanel ask;
+  CompressPanel compress;
+  PlanPanel plan;
+
+  Panels(Viewer& viewer, const Cli& cli)
+      : show(viewer), ask(viewer), compress(viewer, cli.weights), plan(viewer, cli.classes) {
+    viewer.window().onClick([this](const map_view::Ray& ray) {
+      if (!plan.take(ray)) ask.ask(ray);
+    });
+    if (cli.compress) compress.switchOn(true);
+  }
+};
+
+void finishFrame(ViewWindow& window) {
+  while (window.drawFrame()) {
+  }
+}
+
+/** Times on the wall and, as others may use the machine, of the processor's cores. */
+struct Clock {
+  measuring::Stopwatch wall{measuring::TimeOf::Wall}, cores{measuring::TimeOf::Process};
+  std::string text(int times = 1) const {
+    const auto ms = [times](const measuring::Stopwatch& watch) {
+      return std::to_string(std::lround(10 * watch.milliseconds() / times) / 10.0).substr(0, 6);
+    };
+    return ms(wall) + " ms (of the cores " + ms(cores) + " ms)";
+  }
+};
+
+/** Twice around the map: with meshes to be made, and with all there. */
+void measureTurning(ViewWindow& window) {
+  constexpr int kFrames = 72;
+  map_view::OrbitCamera camera = window.orbitCamera();
+  for (const char* name : {"a frame of the first turn: ", "a frame of the second turn: "}) {
+    const Clock clock;
+    for (int i = 0; i < kFrames; ++i) {
+      camera.azimuth += 360.0 / kFrames;
+      window.setOrbitCamera(camera);
+      window.drawFrame();
+    }
+    std::cout << name << clock.text(kFrames) << '\n';
+  }
+  std::cout << "tiles: " << window.tiles().numTiles()
+            << "\nsides of cells: " << window.tiles().numFaces() << '\n';
+}
+
+/** From the hand on the slider to the complete frame that shows it. */
+void measureCompressing(ViewWindow& window, CompressPanel& panel) {
+  const auto show = [&](const char* name, const auto& change) {
+    constexpr int kTimes = 5;
+    const Clock clock;
+    for (int i = 0; i < kTimes; ++i) {
+      change(i);
+      finishFrame(window);
+    }
+    std::cout << name << clock.text(kTimes) << '\n';
+  };
+  const Clock begin;
+  panel.switchOn(true);
+  finishFrame(window);
+  std::cout << "to the compressed tree: " << begin.text() << '\n';
+  const double alpha = panel.compression().alpha();
+  show("from alpha to the frame: ", [&](int i) { panel.setAlpha(alpha * (i % 2 ? 1 : 1.5)); });
+  show("from a weight to the frame: ", [&](int i) { panel.setWeight(1, i % 2 ? 1 : 0.5); });
+}
+
+void measureAsking(ViewWindow& window, AskPanel& panel) {
+  constexpr int kTimes = 100;
+  beQuiet();
+  const Clock clock;
+  for (int i = 0; i < kTimes; ++i)
+    panel.ask(window.orbitCamera().rayThrough(window.pixelWidth() * i / kTimes,
+                                              window.pixelHeight() / 2, window.pixelWidth(),
+                                              window.pixelHeight()));
+  std::cout << "from a click to the answer: " << clock.text(kTimes) << '\n';
+}
+
+int run(const Cli& cli) {
+  if (!cli.picture.empty()) cli.outputs.check({cli.picture});
+  const Clock clock;
+  auto layers = openLayers(cli);
+  const WindowSystem system;
+  const auto window = ViewWindow::open(cli.width, cli.height);
+  Viewer viewer(*window, std::move(layers), cli);
+  std::optional<Panels> panels;
+  if (cli.panels) panels.emplace(viewer, cli);
+  window->performLayout();
+  window->setVisible(true);
+  if (cli.measure || !cli.picture.empty()) {
+    finishFrame(*window);
+    if (cli.measure) {
+      std::cout << "renderer: " << window->renderer() << "\nwindow: " << window->pixelWidth()
+                << " x " << window->pixelHeight()
+                << "\nto the first complete frame: " << clock.text() << '\n';
+      measureTurning(*window);
+      if (panels) measureAsking(*window, panels->ask);
+      if (panels) measureCompressing(*window, panels->compress);
+    }
+    if (!cli.picture.empty()) map_pictures::savePicture(window->drawPicture(), cli.picture);
+    return 0;
+  }
+  window->run([] { return false; });
+  return 0;
+}
+
+}  // namespace
+}  // namespace semantic_map_view
+
+int main(int argc, char** argv) {
+  CLI::App app("Shows semantic octree maps in a window: turn them, ask them, compress them, plan");
+  const semantic_map_view::Cli cli(app);
+  return runApplication(app, argc, argv, [&] { return semantic_map_view::run(cli); });
+}

@@ -1,0 +1,66 @@
+#pragma once
+#include <map_view/ViewCell.h>
+#include <semantic_octree/SemanticOcTree.h>
+#include <strict_files/OptionList.h>
+
+#include <cstdint>
+#include <limits>
+#include <unordered_map>
+#include <vector>
+
+namespace map_view {
+
+using semantic_octree::SemanticOcTree;
+using semantic_types::ClassId;
+using semantic_types::Color;
+
+/** What the color of an occupied cell says. */
+enum class Coloring { Class, Probability, Entropy, Occupancy, Height };
+const strict_files::Choices<Coloring>& choicesOf(Coloring);
+
+/** What a view shows of a map, and how. */
+struct ViewStyle {
+  Coloring coloring = Coloring::Class;
+  /** K + 1 switches, [0] for cells without a class; empty: all classes are shown. */
+  std::vector<bool> hiddenClasses;
+  /** Free cells, in pale blue, translucent. */
+  bool freeSpace = false;
+  /** Cells with their center above are not shown, m. */
+  double maxHeight = std::numeric_limits<double>::infinity();
+
+  bool hidesClasses() const;
+};
+
+/** Which cells of a map a view shows, and in which colors. Remembers what was found out about inner
+ * nodes, so that the map must not change. */
+class CellLook {
+ public:
+  explicit CellLook(const SemanticOcTree& map);
+
+  const ViewStyle& style() const { return m_style; }
+  void setStyle(const ViewStyle& style) { m_style = style; }
+
+  bool isShown(const ViewCell& cell) const;
+  /** Class: the classes' colors (gray: none). Probability of the likeliest class, entropy of the
+   * distribution and occupancy: from red (unsure) over yellow to green (sure). Height: from dark
+   * violet (lowest) over green to yellow (highest). */
+  Color colorOf(const ViewCell& cell) const;
+  /** Likeliest class of an occupied cell. */
+  ClassId classOf(const ViewCell& cell) const { return stateOf(cell).likeliestClass; }
+
+ private:
+  struct State {
+    ClassId likeliestClass;
+    float probability;
+  };
+  State stateOf(const ViewCell& cell) const;
+  State newState(const ViewCell& cell) const;
+  Color heightColor(const ViewCell& cell) const;
+
+  const SemanticOcTree& m_map;
+  ViewStyle m_style;
+  double m_lowest = 0, m_highest = 0;  ///< m, of the known cells
+  mutable std::unordered_map<std::uint64_t, State> m_inner;
+};
+
+}  // namespace map_view

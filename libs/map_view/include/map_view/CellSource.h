@@ -1,0 +1,54 @@
+#pragma once
+#include <map_view/CellLook.h>
+#include <semantic_octree/Abstraction.h>
+
+#include <functional>
+
+namespace map_view {
+
+/** The cells of a map, or of its compressed tree, as a view wants them. */
+class CellSource {
+ public:
+  using Visit = std::function<void(const ViewCell&)>;
+
+  explicit CellSource(const SemanticOcTree& map) : m_map(map) {}
+  virtual ~CellSource() = default;
+  CellSource(const CellSource&) = delete;
+  CellSource& operator=(const CellSource&) = delete;
+
+  const SemanticOcTree& map() const { return m_map; }
+
+  /** Calls visit(cell) for all cells in a box that are shown. Finer ones than a depth are drawn
+   * together: a cube of this depth stands for them, occupied if one of them is. */
+  virtual void forEachShown(const KeyBox& box, int maxDepth, const CellLook& look,
+                            const Visit& visit) const = 0;
+  /** The cell that holds a voxel; where that is unknown, the largest unknown cube. */
+  virtual ViewCell at(const Eigen::Array3i& key) const = 0;
+
+ protected:
+  const SemanticOcTree& m_map;
+};
+
+/** The leaves of the map. */
+class FullCells : public CellSource {
+ public:
+  using CellSource::CellSource;
+  void forEachShown(const KeyBox& box, int maxDepth, const CellLook& look,
+                    const Visit& visit) const override;
+  ViewCell at(const Eigen::Array3i& key) const override;
+};
+
+/** The leaves of the compressed tree; the map must keep G-values. */
+class CompressedCells : public CellSource {
+ public:
+  /** \throw std::logic_error the map keeps no G-values. */
+  explicit CompressedCells(SemanticOcTree& map) : CellSource(map), m_abstraction(map) {}
+  void forEachShown(const KeyBox& box, int maxDepth, const CellLook& look,
+                    const Visit& visit) const override;
+  ViewCell at(const Eigen::Array3i& key) const override;
+
+ private:
+  semantic_octree::Abstraction m_abstraction;
+};
+
+}  // namespace map_view

@@ -1,0 +1,40 @@
+#pragma once
+#include <semantic_octree/Keys.h>
+#include <semantic_octree/SemanticOcTreeNode.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace map_view {
+
+/** A cube of a map as a view shows it. */
+struct ViewCell {
+  Eigen::Array3i lowest;  ///< keys of its lowest voxel
+  int depth = 0;
+  /** What it shows: the node for the cube or for a larger one around it; of a cube that stands for
+   * finer cells, one of these, from its upper half if there is one; none: unknown space. */
+  semantic_octree::SemanticOcTreeNode node;
+  /** Tells inner nodes of the map apart; 0 for leaves. */
+  std::uint64_t innerNode = 0;
+
+  /** Edge, in voxels. */
+  int edge() const { return semantic_octree::edgeAtDepth(depth); }
+  bool isOccupied() const { return node && node.getLogOdds() > 0; }
+  /** Height of its center, m in the map's frame. */
+  double centerHeight(double voxelSize) const {
+    return semantic_octree::centerOf(lowest.z(), voxelSize, depth);
+  }
+  octomap::OcTreeKey key() const {
+    return semantic_octree::octomapKey(lowest.x(), lowest.y(), lowest.z());
+  }
+};
+
+/** A box of voxels: keys, both ends included. */
+struct KeyBox {
+  Eigen::Array3i low, high;
+  bool meets(const Eigen::Array3i& lowest, int edge) const {
+    return (lowest <= high).all() && (lowest + edge > low).all();
+  }
+};
+
+}  // namespace map_view

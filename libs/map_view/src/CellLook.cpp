@@ -1,0 +1,104 @@
+#include <map_view/CellLook.h>
+#include <semantic_types/ClassColors.h>
+#include <tree_abstraction/Information.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace map_view {
+
+namespace {
+
+constexpr Color kFree{120, 180, 235};
+
+std::uint8_t byteOf(double x) { return static_cast<std::uint8_t>(x + 0.5); }
+
+/** Red (0) over yellow to green (1). */
+Color trafficLight(double value) {
+  const double v = std::clamp(value, 0.0, 1.0);
+  return {byteOf(235 * std::min(1.0, 2 - 2 * v)), byteOf(215 * std::min(1.0, 2 * v)), 30};
+}
+
+/** From dark violet (0) over blue and green to yellow (1), brighter and brighter. */
+Color ramp(double value) {
+  constexpr std::array<std::array<double, 3>, 5> kStops = {
+      {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
+  const double at = std::clamp(value, 0.0, 1.0) * (kStops.size() - 1);
+  const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(at), kStops.size() - 2);
+  const auto mixed = [&](std::size_t c) {
+    return byteOf(kStops[i][c] + (at - double(i)) * (kStops[i + 1][c] - kStops[i][c]));
+  };
+  return {mixed(0), mixed(1), mixed(2)};
+}
+
+/** Of a distribution relative to that of the uniform one, 0 to 1. */
+double relativeEntropy(const std::vector<double>& p) {
+  return tree_abstraction::entropy(p.data(), p.size()) / std::log(double(p.size()));
+}
+
+}  // namespace
+
+const strict_files::Choices<Coloring>& choicesOf(Coloring) {
+  static const strict_files::Choices<Coloring> choices = {{"class", Coloring::Class},
+                                                          {"probability", Coloring::Probability},
+                                                          {"entropy", Coloring::Entropy},
+                                                          {"occupancy", Coloring::Occupancy},
+                                                          {"height", Coloring::Height}};
+  return choices;
+}
+
+bool ViewStyle::hidesClasses() const {
+  return std::find(hiddenClasses.begin(), hiddenClasses.end(), true) != hiddenClasses.end();
+}
+
+CellLook::CellLook(const SemanticOcTree& map) : m_map(map) {
+  double x, y;
+  map.getMetricMin(x, y, m_lowest);
+  map.getMetricMax(x, y, m_highest);
+}
+
+bool CellLook::isShown(const ViewCell& cell) const {
+  if (!cell.node || cell.centerHeight(m_map.getResolution()) > m_style.maxHeight) return false;
+  if (!cell.isOccupied()) return m_style.freeSpace;
+  const ClassId id = m_style.hidesClasses() ? classOf(cell) : ClassId(0);
+  return !m_style.hidesClasses() || id >= m_style.hiddenClasses.size() ||
+         !m_style.hiddenClasses[id];
+}
+
+Color CellLook::heightColor(const ViewCell& cell) const {
+  const double range = std::max(std::min(m_highest, m_style.maxHeight) - m_lowest, 1e-6);
+  return ramp((cell.centerHeight(m_map.getResolution()) - m_lowest) / range);
+}
+
+Color CellLook::colorOf(const ViewCell& cell) const {
+  if (!cell.isOccupied()) return kFree;
+  switch (m_style.coloring) {
+    case Coloring::Probability:
+      return trafficLight(stateOf(cell).probability);
+    case Coloring::Entropy:
+      return trafficLight(1 - relativeEntropy(m_map.distribution(cell.node)));
+    case Coloring::Occupancy:
+      return trafficLight(2 * cell.node.getOccupancy() - 1);
+    case Coloring::Height:
+      return heightColor(cell);
+    case Coloring::Class:
+      break;
+  }
+  return semantic_types::colorOf(classOf(cell), m_map.classes());
+}
+
+CellLook::State CellLook::newState(const ViewCell& cell) const {
+  const semantic_octree::CellState state = m_map.query(cell.node);
+  return {state.likeliestClass, static_cast<float>(state.probability)};
+}
+
+/** Inner nodes take a look at all leaves below them. */
+CellLook::State CellLook::stateOf(const ViewCell& cell) const {
+  if (cell.innerNode == 0) return newState(cell);
+  const auto known = m_inner.find(cell.innerNode);
+  if (known != m_inner.end()) return known->second;
+  return m_inner.emplace(cell.innerNode, newState(cell)).first->second;
+}
+
+}  // namespace map_view

@@ -1,0 +1,98 @@
+#include <map_view/OrbitCamera.h>
+#include <strict_files/OptionList.h>
+
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace map_view {
+
+namespace {
+
+constexpr double kRadians = M_PI / 180;
+
+}  // namespace
+
+Eigen::Vector3d OrbitCamera::forward() const {
+  const double a = azimuth * kRadians, e = elevation * kRadians;
+  return {-std::cos(a) * std::cos(e), -std::sin(a) * std::cos(e), -std::sin(e)};
+}
+
+Eigen::Vector3d OrbitCamera::right() const {
+  const double a = azimuth * kRadians;
+  return {-std::sin(a), std::cos(a), 0};
+}
+
+double OrbitCamera::focalLength(int height) const {
+  return height / 2.0 / std::tan(fieldOfView * kRadians / 2);
+}
+
+Ray OrbitCamera::rayThrough(int x, int y, int width, int height) const {
+  const double f = focalLength(height);
+  const Eigen::Vector3d direction =
+      forward() + right() * ((x + 0.5 - width / 2.0) / f) - up() * ((y + 0.5 - height / 2.0) / f);
+  return {position(), direction.normalized()};
+}
+
+bool OrbitCamera::maySee(const Eigen::Vector3d& center, double radius, int width,
+                         int height) const {
+  const Eigen::Vector3d to = center - position();
+  const double f = focalLength(height), deep = to.dot(forward());
+  // Signed distance to each side of the pyramid of what is seen, through the camera.
+  const auto isBeside = [&](double aside, double half) {
+    return std::fabs(aside) * f - deep * half > radius * std::hypot(f, half);
+  };
+  return deep > -radius && !isBeside(to.dot(right()), width / 2.0) &&
+         !isBeside(to.dot(up()), height / 2.0);
+}
+
+OrbitCamera OrbitCamera::seeing(const Eigen::AlignedBox3d& box, int width, int height) const {
+  OrbitCamera camera = *this;
+  if (box.isEmpty()) return camera;
+  camera.target = box.center();
+  camera.distance = 1e-3;
+  const double f = focalLength(height);
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d to =
+        box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)) - camera.target;
+    const double deep = to.dot(forward());
+    for (const auto& [aside, half] :
+         {std::pair(to.dot(right()), width / 2.0), std::pair(to.dot(up()), height / 2.0)})
+      camera.distance = std::max(camera.distance, std::fabs(aside) * f / half - deep);
+  }
+  return camera;
+}
+
+std::string OrbitCamera::text() const {
+  std::string text;
+  for (const double number : {target.x(), target.y(), target.z(), distance, azimuth, elevation}) {
+    std::ostringstream rounded;
+    rounded << std::round(number * 1000) / 1000;
+    text += (text.empty() ? "" : ",") + rounded.str();
+  }
+  return text;
+}
+
+OrbitCamera OrbitCamera::ofText(const std::string& text) {
+  std::array<double, 6> n{};
+  std::istringstream words(text);
+  std::string word;
+  std::size_t count = 0;
+  for (; std::getline(words, word, ','); ++count)
+    if (count < n.size()) n[count] = strict_files::numberOf(word);
+  if (count != n.size())
+    throw std::invalid_argument("is '" + text + "', expected X,Y,Z,DISTANCE,AZIMUTH,ELEVATION");
+  OrbitCamera camera;
+  camera.target = {n[0], n[1], n[2]};
+  camera.distance = n[3], camera.azimuth = n[4], camera.elevation = n[5];
+  const bool fine = camera.target.allFinite() && std::isfinite(camera.azimuth) &&
+                    camera.distance > 0 && std::isfinite(camera.distance) &&
+                    std::fabs(camera.elevation) <= 90;
+  if (!fine)
+    throw std::invalid_argument("is '" + text +
+                                "', expected a distance above 0 and an elevation of -90 to 90");
+  return camera;
+}
+
+}  // namespace map_view

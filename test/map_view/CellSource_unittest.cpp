@@ -1,0 +1,193 @@
+#include <gtest/gtest.h>
+#include <map_view/CellAnswer.h>
+#include <map_view/CellSource.h>
+
+#include <map>
+#include <tuple>
+
+#include "RandomMap.h"
+
+namespace {
+
+using namespace map_view;
+using semantic_octree::kNumKeys;
+using semantic_octree::kTreeDepth;
+using semantic_octree::lowestKeyAtDepth;
+
+using Cube = std::tuple<int, int, int, int>;  // keys of the lowest voxel, depth
+
+const KeyBox kAll = {Eigen::Array3i::Zero(), Eigen::Array3i::Constant(kNumKeys - 1)};
+
+Cube cubeOf(const Eigen::Array3i& lowest, int depth) {
+  return {lowest.x(), lowest.y(), lowest.z(), depth};
+}
+
+Eigen::Array3i atDepth(const Eigen::Array3i& key, int depth) {
+  return key.unaryExpr([depth](int k) { return lowestKeyAtDepth(k, depth); });
+}
+
+/** Whether they are occupied. */
+std::map<Cube, bool> shown(const CellSource& cells, const CellLook& look, int maxDepth,
+                           const KeyBox& box = kAll) {
+  std::map<Cube, bool> found;
+  cells.forEachShown(box, maxDepth, look, [&](const ViewCell& cell) {
+    EXPECT_TRUE(found.emplace(cubeOf(cell.lowest, cell.depth), cell.isOccupied()).second);
+  });
+  return found;
+}
+
+/** What finer leaves become at a depth. */
+std::map<Cube, bool> together(const std::map<Cube, bool>& leaves, int maxDepth) {
+  std::map<Cube, bool> cubes;
+  for (const auto& [cube, occupied] : leaves) {
+    const auto [x, y, z, depth] = cube;
+    const int d = std::min(depth, maxDepth);
+    bool& is = cubes[cubeOf(atDepth({x, y, z}, d), d)];
+    is = is || occupied;
+  }
+  return cubes;
+}
+
+std::map<Cube, bool> leavesOf(const SemanticOcTree& map, bool withFree) {
+  std::map<Cube, bool> leaves;
+  for (auto it = map.begin_leafs(); it != map.end_leafs(); ++it) {
+    const octomap::OcTreeKey key = it.getIndexKey();
+    if (withFree || map.isNodeOccupied(*it))
+      leaves[cubeOf({key[0], key[1], key[2]}, int(it.getDepth()))] = map.isNodeOccupied(*it);
+  }
+  return leaves;
+}
+
+semantic_octree::AbstractionOptions keepRoads() {
+  semantic_octree::AbstractionOptions options;
+  options.weights.terms = {{"road", 1, {{1}}}, {"tree", 0.5, {{2}}}};
+  options.weights.alpha = 0.01;
+  return options;
+}
+
+}  // namespace
+
+TEST(FullCells, AreTheLeavesAndAtADepthTheCubesAroundThem) {
+  const SemanticOcTree map = randomMap(1);
+  const FullCells cells(map);
+  CellLook look(map);
+  for (const bool withFree : {false, true}) {
+    ViewStyle style;
+    style.freeSpace = withFree;
+    look.setStyle(style);
+    const auto leaves = leavesOf(map, withFree);
+    ASSERT_GT(leaves.size(), 3000u);
+    for (const int depth : {kTreeDepth, 14, 11, 9})
+      EXPECT_EQ(shown(cells, look, depth), together(leaves, depth)) << depth;
+  }
+}
+
+TEST(FullCells, AreThoseOfABoxOnly) {
+  const SemanticOcTree map = randomMap(2);
+  const FullCells cells(map);
+  const CellLook look(map);
+  const KeyBox box = {Eigen::Array3i(32760, 32750, 32740), Eigen::Array3i(32790, 32800, 32771)};
+  std::map<Cube, bool> expected;
+  for (const auto& [cube, occupied] : shown(cells, look, kTreeDepth)) {
+    const auto [x, y, z, depth] = cube;
+    if (box.meets({x, y, z}, semantic_octree::edgeAtDepth(depth))) expected[cube] = occupied;
+  }
+  EXPECT_GT(expected.size(), 100u);
+  EXPECT_EQ(shown(cells, look, kTreeDepth, box), expected);
+}
+
+TEST(FullCells, AnswerForEachVoxelAndForUnknownSpace) {
+  const SemanticOcTree map = randomMap(3);
+  const FullCells cells(map);
+  std::mt19937 random(4);
+  int unknown = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const auto near = [&] { return 32768 + int(random() % 160) - 80; };
+    const Eigen::Array3i key(near(), near(), near());
+    const ViewCell cell = cells.at(key);
+    EXPECT_TRUE((cell.lowest <= key).all() && (cell.lowest + cell.edge() > key).all());
+    const auto node = map.search(semantic_octree::octomapKey(key.x(), key.y(), key.z()));
+    EXPECT_EQ(cell.node, node);
+    unknown += !node;
+  }
+  EXPECT_GT(unknown, 100);
+}
+
+TEST(CompressedCells, AreTheLeavesOfTheCompressedTree) {
+  SemanticOcTree map = randomMap(5);
+  map.setAbstraction(keepRoads());
+  const CompressedCells cells(map);
+  CellLook look(map);
+  for (const bool withFree : {false, true}) {
+    ViewStyle style;
+    style.freeSpace = withFree;
+    look.setStyle(style);
+    std::map<Cube, bool> leaves;
+    for (const auto& leaf : semantic_octree::Abstraction(map).leaves())
+      if (withFree || map.isNodeOccupied(leaf.node))
+        leaves[cubeOf(leaf.lowest(), int(leaf.depth))] = map.isNodeOccupied(leaf.node);
+    ASSERT_GT(leaves.size(), 100u);
+    ASSERT_LT(leaves.size(), map.getNumLeafNodes());
+    for (const int depth : {kTreeDepth, 13, 10})
+      EXPECT_EQ(shown(cells, look, depth), together(leaves, depth)) << depth;
+    for (const auto& [cube, occupied] : leaves) {
+      const auto [x, y, z, depth] = cube;
+      EXPECT_EQ(cells.at({x, y, z}).depth, depth);
+      EXPECT_EQ(cells.at({x, y, z}).isOccupied(), occupied);
+    }
+  }
+}
+
+TEST(CellLook, HidesClassesAndWhatIsAbove) {
+  const SemanticOcTree map = randomMap(6);
+  const FullCells cells(map);
+  CellLook look(map);
+  ViewStyle style;
+  style.hiddenClasses = {false, true, false, false};
+  style.maxHeight = 1;
+  look.setStyle(style);
+  std::size_t expected = 0;
+  for (auto it = map.begin_leafs(); it != map.end_leafs(); ++it)
+    expected += map.isNodeOccupied(*it) && map.query(*it).likeliestClass != 1 && it.getZ() <= 1;
+  ASSERT_GT(expected, 500u);
+  EXPECT_EQ(shown(cells, look, kTreeDepth).size(), expected);
+}
+
+TEST(CellLook, ColorsSayWhatTheyShould) {
+  const SemanticOcTree map = randomMap(7);
+  CellLook look(map);
+  const ViewCell road = FullCells(map).at(voxelOfClass(map, 1));
+  ASSERT_EQ(look.classOf(road), 1);
+  EXPECT_EQ(look.colorOf(road), map.classes().color(1));
+  ViewStyle style;
+  for (const Coloring coloring : {Coloring::Probability, Coloring::Entropy, Coloring::Occupancy}) {
+    style.coloring = coloring;
+    look.setStyle(style);
+    const Color c = look.colorOf(road);
+    EXPECT_GT(c.g, c.b) << int(coloring);  // red, yellow or green
+  }
+  style.coloring = Coloring::Height;
+  look.setStyle(style);
+  const auto colorAt = [&](int z) {
+    return look.colorOf({Eigen::Array3i(32768, 32768, z), kTreeDepth, road.node});
+  };
+  EXPECT_LT(colorAt(32768 - 10).g, colorAt(32768 + 10).g) << "higher is brighter";
+}
+
+TEST(CellAnswer, SaysWhatTheMapSays) {
+  SemanticOcTree map = randomMap(8);
+  const Eigen::Array3i key = voxelOfClass(map, 1);
+  const ViewCell road = FullCells(map).at(key);
+  const CellAnswer answer = answerOf(road, map);
+  EXPECT_EQ(answer.state, "occupied, road");
+  EXPECT_DOUBLE_EQ(answer.size, 0.2);
+  EXPECT_EQ(answer.key, semantic_octree::octomapKey(key.x(), key.y(), key.z()));
+  EXPECT_NEAR(answer.center.x(), (key.x() - 32768 + 0.5) * 0.2, 1e-9);
+  EXPECT_EQ(answer.occupancy, map.query(road.node).occupancy);
+  ASSERT_FALSE(answer.shares.empty());
+  EXPECT_EQ(answer.shares.front().name, "road");
+  double sum = 0;
+  for (const auto& share : answer.shares) sum += share.probability;
+  EXPECT_NEAR(sum, 1, 0.003);
+  EXPECT_EQ(answerOf(FullCells(map).at({100, 100, 100}), map).state, "unknown");
+}

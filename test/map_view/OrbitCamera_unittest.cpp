@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+#include <map_view/OrbitCamera.h>
+
+#include <random>
+
+#include "TemporaryFolder.h"
+
+namespace {
+
+using map_view::OrbitCamera;
+using map_view::Ray;
+
+constexpr int kWidth = 1280, kHeight = 720;
+
+OrbitCamera someCamera(double azimuth, double elevation) {
+  OrbitCamera camera;
+  camera.target = {3, -4, 2};
+  camera.distance = 25;
+  camera.azimuth = azimuth, camera.elevation = elevation;
+  return camera;
+}
+
+/** Pixels from the left and from the top. */
+Eigen::Vector2d pixelOf(const OrbitCamera& camera, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d to = p - camera.position();
+  const double scale = camera.focalLength(kHeight) / to.dot(camera.forward());
+  return {kWidth / 2.0 + scale * to.dot(camera.right()),
+          kHeight / 2.0 - scale * to.dot(camera.up())};
+}
+
+}  // namespace
+
+TEST(OrbitCamera, LooksNorthUpFromAboveAndEastFromTheWest) {
+  const OrbitCamera top = someCamera(-90, 90);
+  EXPECT_TRUE(top.position().isApprox(Eigen::Vector3d(3, -4, 27), 1e-9));
+  EXPECT_TRUE(top.right().isApprox(Eigen::Vector3d(1, 0, 0), 1e-9)) << "east is right";
+  EXPECT_TRUE(top.up().isApprox(Eigen::Vector3d(0, 1, 0), 1e-9));
+  const OrbitCamera west = someCamera(180, 0);
+  EXPECT_TRUE(west.position().isApprox(Eigen::Vector3d(-22, -4, 2), 1e-9));
+  EXPECT_TRUE(west.forward().isApprox(Eigen::Vector3d(1, 0, 0), 1e-9));
+  EXPECT_TRUE(west.up().isApprox(Eigen::Vector3d(0, 0, 1), 1e-9));
+}
+
+TEST(OrbitCamera, RaysGoThroughTheirPixels) {
+  for (const double elevation : {-30.0, 10.0, 60.0, 90.0}) {
+    const OrbitCamera camera = someCamera(37, elevation);
+    for (const int x : {0, 300, 640, 1279})
+      for (const int y : {0, 100, 719}) {
+        const Ray ray = camera.rayThrough(x, y, kWidth, kHeight);
+        EXPECT_NEAR(ray.direction.norm(), 1, 1e-12);
+        const Eigen::Vector2d pixel = pixelOf(camera, ray.origin + 17 * ray.direction);
+        EXPECT_NEAR(pixel.x(), x + 0.5, 1e-6);
+        EXPECT_NEAR(pixel.y(), y + 0.5, 1e-6);
+      }
+  }
+}
+
+TEST(OrbitCamera, SeesAllOfABoxAndNoMore) {
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(-10, -60, 0), Eigen::Vector3d(40, 20, 6));
+  for (const double elevation : {5.0, 40.0, 90.0}) {
+    const OrbitCamera camera = someCamera(-70, elevation).seeing(box, kWidth, kHeight);
+    double most = 0;
+    for (int i = 0; i < 8; ++i) {
+      const Eigen::Vector2d pixel =
+          pixelOf(camera, box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+      most = std::max({most, std::fabs(pixel.x() - kWidth / 2.0) / (kWidth / 2.0),
+                       std::fabs(pixel.y() - kHeight / 2.0) / (kHeight / 2.0)});
+    }
+    EXPECT_NEAR(most, 1, 1e-6) << elevation;
+  }
+}
+
+TEST(OrbitCamera, NeverLosesABallThatIsSeen) {
+  std::mt19937 random(21);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const OrbitCamera camera = someCamera(20, 30);
+  int unseen = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Eigen::Vector3d center = 60 * Eigen::Vector3d(unit(random), unit(random), unit(random));
+    const double radius = 1 + unit(random);
+    const bool may = camera.maySee(center, radius, kWidth, kHeight);
+    unseen += !may;
+    for (int k = 0; k < 20; ++k) {
+      const Eigen::Vector3d in(unit(random), unit(random), unit(random));
+      if (in.norm() > 1) continue;
+      const Eigen::Vector3d p = center + radius * in;
+      if ((p - camera.position()).dot(camera.forward()) <= 0) continue;
+      const Eigen::Vector2d pixel = pixelOf(camera, p);
+      const bool seen =
+          pixel.x() >= 0 && pixel.x() < kWidth && pixel.y() >= 0 && pixel.y() < kHeight;
+      EXPECT_TRUE(may || !seen) << i;
+    }
+  }
+  EXPECT_GT(unseen, 1000);
+}
+
+TEST(OrbitCamera, IsWrittenAndRead) {
+  OrbitCamera camera = someCamera(-120, 35.5);
+  camera.target.x() = 0.125;
+  const OrbitCamera read = OrbitCamera::ofText(camera.text());
+  EXPECT_EQ(read.text(), "0.125,-4,2,25,-120,35.5");
+  EXPECT_EQ(read.target, camera.target);
+}
+
+TEST(OrbitCamera, RefusesWhatIsNoCamera) {
+  for (const char* text : {"", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,2,3,0,5,6", "1,2,3,4,5,91",
+                           "1,2,x,4,5,6", "nan,2,3,4,5,6", "1,2,3,inf,5,6"})
+    EXPECT_NE(errorOf([&] { OrbitCamera::ofText(text); }), "") << text;
+}

@@ -1,0 +1,216 @@
+#include <gtest/gtest.h>
+#include <map_view/TileMesh.h>
+#include <map_view/TileSet.h>
+
+#include <map>
+
+#include "RandomMap.h"
+
+namespace {
+
+using namespace map_view;
+using semantic_octree::kKeyOfOrigin;
+using semantic_octree::kTreeDepth;
+
+/** A voxel's side: its key and which of the six. */
+using Side = std::array<int, 4>;
+
+const std::array<Eigen::Array3i, 6> kNormals = {
+    {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+
+/** The sides of occupied voxels next to voxels that are not. */
+std::set<Side> sidesOfMap(const SemanticOcTree& map) {
+  std::set<Side> sides;
+  const auto isOccupied = [&](const Eigen::Array3i& k) {
+    const auto node = map.search(semantic_octree::octomapKey(k.x(), k.y(), k.z()));
+    return node && map.isNodeOccupied(node);
+  };
+  for (auto it = map.begin_leafs(); it != map.end_leafs(); ++it) {
+    if (!map.isNodeOccupied(*it)) continue;
+    const octomap::OcTreeKey low = it.getIndexKey();
+    const int edge = semantic_octree::edgeAtDepth(int(it.getDepth()));
+    for (int i = 0; i < edge * edge * edge; ++i) {
+      const Eigen::Array3i key(low[0] + i % edge, low[1] + i / edge % edge,
+                               low[2] + i / edge / edge);
+      for (int n = 0; n < 6; ++n)
+        if (!isOccupied(key + kNormals[std::size_t(n)]))
+          sides.insert({key.x(), key.y(), key.z(), n});
+    }
+  }
+  return sides;
+}
+
+/** In all directions. */
+std::vector<Face> occupiedOf(const TileMesh& mesh) {
+  std::vector<Face> all;
+  for (const auto& faces : mesh.occupied) all.insert(all.end(), faces.begin(), faces.end());
+  return all;
+}
+
+Eigen::Vector3f normalOf(const Face& face) {
+  return (face.corners[1] - face.corners[0]).cross(face.corners[2] - face.corners[1]).normalized();
+}
+
+/** The sides of voxels that a face of a mesh covers. */
+std::vector<Side> sidesOf(const Face& face) {
+  const Eigen::Vector3f normal = normalOf(face);
+  Eigen::Vector3f low = face.corners[0], high = face.corners[0];
+  for (const Eigen::Vector3f& corner : face.corners)
+    low = low.cwiseMin(corner), high = high.cwiseMax(corner);
+  const auto keyOf = [](float x) { return int(std::lround(x / 0.2f)) + kKeyOfOrigin; };
+  int n = 0;
+  while (!normal.isApprox(kNormals[std::size_t(n)].cast<float>().matrix(), 1e-3f)) ++n;
+  Eigen::Array3i first, end;
+  for (int axis = 0; axis < 3; ++axis) {
+    first[axis] = keyOf(low[axis]), end[axis] = keyOf(high[axis]);
+    if (first[axis] == end[axis]) first[axis] -= normal[axis] > 0.5f, end[axis] = first[axis] + 1;
+  }
+  std::vector<Side> sides;
+  for (int x = first.x(); x < end.x(); ++x)
+    for (int y = first.y(); y < end.y(); ++y)
+      for (int z = first.z(); z < end.z(); ++z) sides.push_back({x, y, z, n});
+  return sides;
+}
+
+/** All tiles of a depth with something in them. */
+std::set<Tile> tilesOf(const SemanticOcTree& map, int depth) {
+  std::set<Tile> tiles;
+  for (auto it = map.begin_tree(unsigned(depth)); it != map.end_tree(); ++it)
+    if (int(it.getDepth()) == depth) {
+      const octomap::OcTreeKey key = it.getIndexKey();
+      tiles.insert({depth, {key[0], key[1], key[2]}});
+    }
+  return tiles;
+}
+
+}  // namespace
+
+TEST(TileMesh, HasEachSideThatIsOpenOnceAndNoneThatIsHidden) {
+  for (const unsigned seed : {31u, 32u}) {
+    const SemanticOcTree map = randomMap(seed);
+    const FullCells cells(map);
+    const CellLook look(map);
+    std::map<Side, int> drawn;
+    for (const Tile& tile : tilesOf(map, kFinestTiles))
+      for (const Face& face : occupiedOf(meshOf(tile, cells, look))) {
+        int open = 0;
+        for (const Side& side : sidesOf(face)) ++drawn[side], ++open;
+        EXPECT_GT(open, 0);
+      }
+    const std::set<Side> expected = sidesOfMap(map);
+    ASSERT_GT(expected.size(), 5000u);
+    for (const Side& side : expected) ASSERT_EQ(drawn[side], 1);
+    // A large cell's side is drawn as a whole if a part of it is open.
+    EXPECT_LT(drawn.size(), expected.size() * 101 / 100);
+  }
+}
+
+TEST(TileMesh, OfLargeCellsFitsTogetherFromTileToTile) {
+  SemanticOcTree map = randomMap(33);
+  semantic_octree::AbstractionOptions options;
+  options.weights.terms = {{"road", 1, {{1}}}};
+  options.weights.alpha = 0.3;
+  options.blockSize = 25.6;  // two tiles
+  map.setAbstraction(options);
+  const CompressedCells cells(map);
+  const CellLook look(map);
+  double area = 0, expected = 0;
+  std::set<Side> sides;
+  for (const Tile& tile : tilesOf(map, kFinestTiles))
+    for (const Face& face : occupiedOf(meshOf(tile, cells, look)))
+      for (const Side& side : sidesOf(face)) EXPECT_TRUE(sides.insert(side).second);
+  bool large = false;
+  for (const auto& leaf : semantic_octree::Abstraction(map).leaves())
+    large = large || (map.isNodeOccupied(leaf.node) && leaf.edge() > kCellsPerTile);
+  EXPECT_TRUE(large) << "the test needs cells that are larger than tiles";
+  for (const Side& side : sides) {
+    const Eigen::Array3i key(side[0], side[1], side[2]);
+    EXPECT_TRUE(cells.at(key).isOccupied());
+    area += !cells.at(key + kNormals[std::size_t(side[3])]).isOccupied();
+    expected += 1;
+  }
+  EXPECT_GT(area, 0.5 * expected);
+}
+
+TEST(TileMesh, OfCoarseTilesHasTheSidesOfTheirCells) {
+  const SemanticOcTree map = randomMap(34);
+  const FullCells cells(map);
+  const CellLook look(map);
+  const int depth = kFinestTiles - 2;  // cells of 4 voxels
+  std::set<std::array<int, 3>> occupied;
+  cells.forEachShown({Eigen::Array3i::Zero(), Eigen::Array3i::Constant(65535)}, depth + kTileLevels,
+                     look, [&](const ViewCell& cell) {
+                       occupied.insert({cell.lowest.x(), cell.lowest.y(), cell.lowest.z()});
+                     });
+  std::size_t expected = 0, found = 0;
+  for (const auto& k : occupied)
+    for (const Eigen::Array3i& n : kNormals)
+      expected += occupied.count({k[0] + 4 * n.x(), k[1] + 4 * n.y(), k[2] + 4 * n.z()}) == 0;
+  for (const Tile& tile : tilesOf(map, depth))
+    found += occupiedOf(meshOf(tile, cells, look)).size();
+  ASSERT_GT(expected, 500u);
+  EXPECT_EQ(found, expected);
+}
+
+TEST(TileMesh, ShadesCornersAndTellsCellsApart) {
+  const SemanticOcTree map = randomMap(35);
+  const FullCells cells(map);
+  const CellLook look(map);
+  std::set<int> reds;
+  bool shaded = false;
+  for (const Tile& tile : tilesOf(map, kFinestTiles))
+    for (const Face& face : occupiedOf(meshOf(tile, cells, look))) {
+      if (normalOf(face).z() < 0.9f) continue;
+      for (const Color& c : face.colors) {
+        EXPECT_LE(c.r, 200);
+        reds.insert(c.r);
+        shaded = shaded || !(c == face.colors[0]);
+      }
+    }
+  EXPECT_TRUE(shaded);
+  EXPECT_GT(reds.size(), 10u);
+}
+
+TEST(TileMesh, ShowsFreeSpaceWhereItEnds) {
+  const SemanticOcTree map = randomMap(36);
+  const FullCells cells(map);
+  CellLook look(map);
+  ViewStyle style;
+  style.freeSpace = true;
+  look.setStyle(style);
+  std::size_t free = 0, occupied = 0, before = 0;
+  const CellLook plain(map);
+  for (const Tile& tile : tilesOf(map, kFinestTiles)) {
+    const TileMesh mesh = meshOf(tile, cells, look);
+    free += mesh.free.size(), occupied += occupiedOf(mesh).size();
+    before += occupiedOf(meshOf(tile, cells, plain)).size();
+  }
+  EXPECT_GT(free, 1000u);
+  EXPECT_EQ(occupied, before);
+}
+
+TEST(TileMesh, SidesThatLookAwayFromAPlaceAreNotSeenFromThere) {
+  const SemanticOcTree map = randomMap(37);
+  const FullCells cells(map);
+  const CellLook look(map);
+  std::mt19937 random(38);
+  std::uniform_real_distribution<double> unit(-15, 15);
+  int hidden = 0;
+  for (const Tile& tile : tilesOf(map, kFinestTiles)) {
+    const TileMesh mesh = meshOf(tile, cells, look);
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector3d place(unit(random), unit(random), unit(random));
+      for (std::size_t d = 0; d < kNumDirections; ++d) {
+        const bool may = mayFace(tile, d, place, 0.2);
+        hidden += !may;
+        for (const Face& face : mesh.occupied[d]) {
+          EXPECT_TRUE(normalOf(face).isApprox(map_view::normalOf(d).cast<float>(), 1e-3f));
+          const bool faces =
+              normalOf(face).cast<double>().dot(place - face.corners[0].cast<double>()) > 0;
+          EXPECT_TRUE(may || !faces);
+        }
+      }
+    }
+  }
+  EXPECT_GT(hidden, 50);
+}
