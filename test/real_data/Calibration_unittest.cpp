@@ -14,10 +14,11 @@ namespace {
 
 /** Even frames' map and the odd frames' questions. */
 struct Street {
-  explicit Street(const std::string& sequence)
+  explicit Street(const std::string& sequence, double resolution = 0.2,
+                  const semantic_octree::FilterParameters& filter = {})
       : table(shippedTable("semantic_kitti.yaml")),
         frames(readSemanticKitti(sharedDataDir() / "semantic_kitti" / sequence, table)),
-        map(0.2, table) {
+        map(resolution, table, filter) {
     for (std::size_t i = 0; i < frames.size(); i += 2)
       map.insert(frames[i].cloud, frames[i].T_map_sensor);
   }
@@ -47,6 +48,22 @@ TEST(StreetCalibration, ofAMapIsRight) {
     const Evaluation full = street.evaluate(street.map);
     EXPECT_LE(full.logLoss(), 0.13) << sequence;
     EXPECT_LE(full.calibrationError(), 0.015) << sequence;
+  }
+}
+
+TEST(StreetCalibration, followsTheAccuracyThatLabelsAreSaidToHave) {
+  SKIP_WITHOUT_DATA("semantic_kitti");
+  for (const char* sequence : {"00", "07"}) {
+    const auto error = [&](double accuracy) {
+      semantic_octree::FilterParameters filter;
+      filter.accuracy = accuracy;
+      const Street street(sequence, 0.1, filter);
+      return street.evaluate(street.map).calibrationError();
+    };
+    const double modest = error(0.9), confident = error(0.95);  // right is 0.99
+    EXPECT_LE(confident, 0.015) << sequence;
+    EXPECT_LE(modest, 0.02) << sequence;
+    EXPECT_LT(confident, modest) << sequence;
   }
 }
 
