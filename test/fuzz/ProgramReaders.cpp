@@ -51,7 +51,7 @@ void readTum(const fs::path& folder) {
 }
 
 void readPcd(const fs::path& folder) {
-  dataset2rawlog::convertLabeledPcds({folder / "a.pcd"}, conversionTo(folder));
+  dataset2rawlog::convertPointFiles({folder / "a.pcd"}, "label", conversionTo(folder));
 }
 
 void join(const fs::path& folder) { planning_study::joinStudies({folder}); }
