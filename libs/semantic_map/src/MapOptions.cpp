@@ -107,9 +107,8 @@ void TCreationOptions::describe(OptionList& list) {
   list.add(
       "classes", classes, "",
       "class table (YAML), relative to the .ini file for our programs, to the working directory "
-      "for "
-      "MRPT's. Without: a single class, \"occupied\", or for rawlog2semantic-map those that the "
-      "rawlog's labels name");
+      "for MRPT's. Without: a single class, \"occupied\", or for rawlog2semantic-map those that "
+      "the rawlog's labels name");
 }
 
 void TCreationOptions::validate() const { checkOptions(*this, "TCreationOptions"); }
