@@ -11,12 +11,25 @@ printf '[tips]\nshow=0\n' > "$HOME/.RawLogViewer/config.cfg"
 "$@" &
 viewer=$!
 trap 'kill $viewer' EXIT
-window=$(timeout 20 xdotool search --sync --onlyvisible --name 'MRPT project' | head -n 1)
-sleep 2
+
+# Waits until the viewer has rested for a second, at most a minute: how long it works depends on what else runs.
+rest() {
+  resting=0 before=
+  for _ in $(seq 120); do
+    sleep 0.5
+    now=$(awk '{ print $14 + $15 }' "/proc/$viewer/stat")  # processor time, 1/100 s
+    if [ -n "$before" ] && [ $((now - before)) -le 1 ]; then resting=$((resting + 1)); else resting=0; fi
+    [ "$resting" -lt 2 ] || return 0
+    before=$now
+  done
+}
+
+window=$(timeout 60 xdotool search --sync --onlyvisible --name 'MRPT project' | head -n 1)
+rest
 xdotool windowmove "$window" 0 0 windowsize "$window" 1200 780
-sleep 1
+rest
 xdotool mousemove "$x" "$y" click 1
-sleep 1
+rest
 [ "$scroll" = 0 ] || xdotool click --repeat "$scroll" --delay 20 5
-sleep 1
+rest
 import -window root "$picture"
