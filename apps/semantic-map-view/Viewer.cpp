@@ -82,6 +82,8 @@ fs::path Viewer::newFile(const fs::path& folder, const std::string& stem,
 
 fs::path Viewer::savePicture(const fs::path& folder) {
   const fs::path file = newFile(folder, "map-view", ".png");
+  while (m_window.drawFrame()) {
+  }
   map_pictures::savePicture(m_window.drawPicture(), file);
   return file;
 }
