@@ -21,6 +21,7 @@ namespace {
 
 constexpr int kWidth = 280, kWindow = kWidth + 16;
 constexpr semantic_types::Color kFreeColor{120, 180, 235};
+constexpr std::size_t kMostBars = 5;
 
 std::string text(const char* format, ...) __attribute__((format(printf, 1, 2)));
 std::string text(const char* format, ...) {
@@ -32,13 +33,16 @@ std::string text(const char* format, ...) {
   return line;
 }
 
-/** A little larger than the cell. */
-CBox::Ptr frameAround(const CellAnswer& answer, double share, bool wire) {
-  const double half = answer.size / 2 * share;
+/** A little larger than the cell, and opaque: MRPT draws lit objects before the map, which would
+ * not show through. */
+CBox::Ptr boxAround(const CellAnswer& answer) {
+  const double half = answer.size / 2 * 1.04;
   const auto& c = answer.center;
   const auto box = CBox::Create(TPoint3D(c.x() - half, c.y() - half, c.z() - half),
-                                TPoint3D(c.x() + half, c.y() + half, c.z() + half), wire, 3.0f);
-  box->setColor_u8(255, 215, 0, wire ? 255 : 90);
+                                TPoint3D(c.x() + half, c.y() + half, c.z() + half));
+  box->setColor_u8(255, 215, 0);
+  box->enableBoxBorder(true);
+  box->setBoxBorderColor({0, 0, 0});
   return box;
 }
 
@@ -50,7 +54,7 @@ AskPanel::AskPanel(Viewer& viewer) : m_viewer(viewer) {
   for (auto& line : m_lines) line = addText(window, "", kWidth);
   m_lines[0]->setCaption("click a cell");
   m_shares = window->add<BarChart>();
-  m_shares->setFixedSize({kWidth, 17 * 6});
+  m_shares->setFixedSize({kWidth, 17 * int(kMostBars)});
   viewer.window().marks()->insert(m_mark);
   viewer.onActivated([this] { clear(); });
 }
@@ -88,9 +92,9 @@ void AskPanel::show(const map_view::ViewCell& cell) {
     bars.push_back(
         {share.name, text("%.1f %%", 100 * share.probability), share.probability, color});
   }
+  if (bars.size() > kMostBars) bars.resize(kMostBars);
   m_shares->setBars(std::move(bars));
-  m_mark->insert(frameAround(answer, 1.04, false));
-  m_mark->insert(frameAround(answer, 1.06, true));
+  m_mark->insert(boxAround(answer));
 }
 
 }  // namespace semantic_map_view

@@ -57,7 +57,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_flag("--compress", compress, "Begin with the compressed tree");
   app.add_flag("!--no-panels", panels, "The map alone");
   app.add_flag("--measure", measure,
-               "Turn once around the map, print times and frames per second, and end");
+               "Turn twice around the map, ask, compress, print the times, and end");
 }
 
 }  // namespace semantic_map_view

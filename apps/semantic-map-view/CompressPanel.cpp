@@ -23,7 +23,7 @@ namespace {
 constexpr int kWidth = 280, kWindow = kWidth + 16;
 constexpr double kRest = 0.25;  // s
 /** Of the leaves, that share is a begin from which sliders lead to both sides. */
-constexpr std::size_t kShare = 50;
+constexpr std::size_t kShare = 10;
 
 std::string rounded(double number, int digits) {
   char text[40];

@@ -24,19 +24,19 @@ using semantic_planning::PlanResult;
 namespace {
 
 constexpr int kWidth = 230;
-constexpr float kLift = 0.3f, kBand = 0.3f;  // m
+constexpr float kLift = 0.3f;  // m
 constexpr mrpt::img::TColor kPathColor{220, 40, 40}, kStartColor{40, 90, 220},
     kGoalColor{220, 40, 40};
 
 /** Flat bands: many drivers draw lines one pixel wide whatever they are asked for. */
-CSetOfTriangles::Ptr bandAlong(const PlanResult& plan) {
+CSetOfTriangles::Ptr bandAlong(const PlanResult& plan, float width) {
   const auto band = CSetOfTriangles::Create();
   for (std::size_t i = 1; i < plan.path.size(); ++i) {
     const auto &p = plan.path[i - 1], &q = plan.path[i];
     const TPoint3Df a(float(p.x), float(p.y), float(p.z) + kLift),
         b(float(q.x), float(q.y), float(q.z) + kLift), along = b - a;
     if (along.norm() < 1e-6f) continue;
-    const TPoint3Df aside = TPoint3Df(-along.y, along.x, 0) * (kBand / 2 / along.norm());
+    const TPoint3Df aside = TPoint3Df(-along.y, along.x, 0) * (width / 2 / along.norm());
     for (TTriangle half :
          {TTriangle(a - aside, b - aside, b + aside), TTriangle(a - aside, b + aside, a + aside)}) {
       half.setColor(kPathColor);
@@ -47,8 +47,9 @@ CSetOfTriangles::Ptr bandAlong(const PlanResult& plan) {
   return band;
 }
 
-mrpt::opengl::CCylinder::Ptr postAt(const Eigen::Vector3d& place, const mrpt::img::TColor& color) {
-  const auto post = mrpt::opengl::CCylinder::Create(0.15f, 0.15f, 4.f);
+mrpt::opengl::CCylinder::Ptr postAt(const Eigen::Vector3d& place, const mrpt::img::TColor& color,
+                                    float width) {
+  const auto post = mrpt::opengl::CCylinder::Create(width, width, 4.f);
   post->setLocation(place.x(), place.y(), place.z());
   post->setColor_u8(color);
   return post;
@@ -152,10 +153,12 @@ void PlanPanel::plan() {
 }
 
 void PlanPanel::draw(const PlanResult* plan) {
+  // Some pixels wide from where one looks at it now.
+  const float width = std::max(0.3f, float(m_viewer.window().orbitCamera().distance) / 200);
   m_marks->clear();
-  if (m_start) m_marks->insert(postAt(*m_start, kStartColor));
-  if (m_goal) m_marks->insert(postAt(*m_goal, kGoalColor));
-  if (plan && plan->found()) m_marks->insert(bandAlong(*plan));
+  if (m_start) m_marks->insert(postAt(*m_start, kStartColor, width));
+  if (m_goal) m_marks->insert(postAt(*m_goal, kGoalColor, width));
+  if (plan && plan->found()) m_marks->insert(bandAlong(*plan, width));
 }
 
 }  // namespace semantic_map_view

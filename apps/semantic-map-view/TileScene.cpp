@@ -87,13 +87,14 @@ bool TileScene::update(const Layer& layer, const map_view::View& view, double mi
     }
     build(layer, tile);
   }
-  show(tiles, view.camera.position(), layer.map().getResolution());
+  show(tiles, view.camera, layer.map().getResolution());
   if (m_kept > kMostFaces) forgetUnseen(tiles);
   return ready;
 }
 
 /** Where a tile has no mesh yet, the one of a coarser tile around it is shown, if there is one. */
-void TileScene::show(const std::vector<Tile>& tiles, const Eigen::Vector3d& eye, double voxelSize) {
+void TileScene::show(const std::vector<Tile>& tiles, const map_view::OrbitCamera& camera,
+                     double voxelSize) {
   std::set<Tile> shown;
   for (Tile tile : tiles) {
     while (m_meshes.count(tile) == 0 && tile.depth > 0) {
@@ -110,10 +111,16 @@ void TileScene::show(const std::vector<Tile>& tiles, const Eigen::Vector3d& eye,
     if (part.triangles) objects->insert(part.triangles);
     m_faces += part.faces;
   };
+  const Eigen::Vector3d eye = camera.position(),
+                        near = eye + camera.distance / 50 * camera.forward();
   for (const Tile& tile : shown) {
     const Meshes& meshes = m_meshes.at(tile);
     for (std::size_t i = 0; i < meshes.occupied.size(); ++i)
       if (mayFace(tile, i, eye, voxelSize)) add(m_objects, meshes.occupied[i]);
+    // MRPT draws what it takes to be nearest last: the solid cells are to be seen through these.
+    if (meshes.free.triangles)
+      meshes.free.triangles->setLocalRepresentativePoint(
+          {float(near.x()), float(near.y()), float(near.z())});
     add(free, meshes.free);
   }
   m_objects->insert(free);

@@ -40,7 +40,8 @@ class TileScene {
     std::size_t faces() const;
   };
   void build(const Layer& layer, const map_view::Tile& tile);
-  void show(const std::vector<map_view::Tile>& tiles, const Eigen::Vector3d& eye, double voxelSize);
+  void show(const std::vector<map_view::Tile>& tiles, const map_view::OrbitCamera& camera,
+            double voxelSize);
   void forgetUnseen(const std::vector<map_view::Tile>& seen);
 
   mrpt::opengl::CSetOfObjects::Ptr m_objects = mrpt::opengl::CSetOfObjects::Create();

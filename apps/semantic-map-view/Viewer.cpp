@@ -1,5 +1,6 @@
 #include "Viewer.h"
 
+#include <GLFW/glfw3.h>
 #include <map_pictures/MapPictures.h>
 
 #include <ostream>
@@ -12,7 +13,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kPixelsPerCell = 4;
+/** Cells are at least so large, pixels: while the camera moves, and when it rests for a while (s).
+ */
+constexpr double kMoving = 6, kResting = 4, kRest = 0.2;
 /** For meshes in each frame, so that the window answers meanwhile. */
 constexpr double kMilliseconds = 30;
 
@@ -32,9 +35,14 @@ Viewer::Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers, c
 
 bool Viewer::frame() {
   for (const auto& f : m_onFrame) f();
-  const map_view::View view = {m_window.orbitCamera(), m_window.pixelWidth(),
-                               m_window.pixelHeight(), kPixelsPerCell};
-  return !m_window.tiles().update(layer(), view, kMilliseconds);
+  map_view::View view = {m_window.orbitCamera(), m_window.pixelWidth(), m_window.pixelHeight(),
+                         kResting};
+  const std::string camera = view.camera.text();
+  if (camera != m_camera && !m_camera.empty()) m_restAt = glfwGetTime() + kRest;
+  m_camera = camera;
+  const bool moves = glfwGetTime() < m_restAt;
+  if (moves) view.pixelsPerCell = kMoving;
+  return !m_window.tiles().update(layer(), view, kMilliseconds) || moves;
 }
 
 void Viewer::activate(std::size_t layer) {
@@ -74,6 +82,8 @@ fs::path Viewer::newFile(const fs::path& folder, const std::string& stem,
 
 fs::path Viewer::savePicture(const fs::path& folder) {
   const fs::path file = newFile(folder, "map-view", ".png");
+  while (m_window.drawFrame()) {
+  }
   map_pictures::savePicture(m_window.drawPicture(), file);
   return file;
 }

@@ -47,7 +47,8 @@ class Viewer {
   std::vector<std::unique_ptr<Layer>> m_layers;
   std::size_t m_active = 0;
   std::vector<std::function<void()>> m_onActivated, m_onFrame;
-  std::string m_said;
+  std::string m_said, m_camera;
+  double m_restAt = 0;  ///< s of GLFW's clock: the camera has come to rest
 };
 
 }  // namespace semantic_map_view

@@ -1,5 +1,7 @@
 // Shows semantic octree maps in a window.
 #include <map_pictures/MapPictures.h>
+#include <semantic_octree/WeightsFile.h>
+#include <semantic_planning/planner/OrderFile.h>
 
 #include <iostream>
 
@@ -22,6 +24,12 @@ std::vector<std::unique_ptr<Layer>> openLayers(const Cli& cli) {
   return layers;
 }
 
+/** What is wrong with them should be said before a window opens. */
+void checkSettings(const Cli& cli, const semantic_types::ClassTable& classes) {
+  if (!cli.weights.empty()) semantic_octree::loadWeights(cli.weights, classes);
+  if (!cli.classes.empty()) semantic_planning::loadClassOrder(cli.classes, classes);
+}
+
 struct Panels {
   ShowPanel show;
   AskPanel ask;
@@ -42,12 +50,19 @@ void finishFrame(ViewWindow& window) {
   }
 }
 
+/** With three digits. */
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, value < 100 ? "%.3g" : "%.0f", value);
+  return text;
+}
+
 /** Times on the wall and, as others may use the machine, of the processor's cores. */
 struct Clock {
   measuring::Stopwatch wall{measuring::TimeOf::Wall}, cores{measuring::TimeOf::Process};
   std::string text(int times = 1) const {
     const auto ms = [times](const measuring::Stopwatch& watch) {
-      return std::to_string(std::lround(10 * watch.milliseconds() / times) / 10.0).substr(0, 6);
+      return number(watch.milliseconds() / times);
     };
     return ms(wall) + " ms (of the cores " + ms(cores) + " ms)";
   }
@@ -105,6 +120,7 @@ int run(const Cli& cli) {
   if (!cli.picture.empty()) cli.outputs.check({cli.picture});
   const Clock clock;
   auto layers = openLayers(cli);
+  checkSettings(cli, layers.front()->map().classes());
   const WindowSystem system;
   const auto window = ViewWindow::open(cli.width, cli.height);
   Viewer viewer(*window, std::move(layers), cli);

@@ -203,6 +203,11 @@ TEST_F(SemanticMapView, SaysWhatIsMissingInsteadOfFailing) {
   EXPECT_TRUE(contains(without({path("none.semantic")}).errors, "none.semantic"));
   folder.write("bad.semantic", "nothing of the kind");
   EXPECT_TRUE(contains(without({path("bad.semantic")}).errors, "bad.semantic"));
+  for (const char* option : {"--weights", "--classes"}) {
+    const ProgramRun run = without({path("map.semantic"), option, path("none.yaml")});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_TRUE(contains(run.errors, "none.yaml")) << run.errors;
+  }
   folder.write("bad.bt", "nothing of the kind");
   EXPECT_TRUE(contains(without({path("bad.bt")}).errors, "bad.bt"));
 }
