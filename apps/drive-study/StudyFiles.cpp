@@ -18,6 +18,20 @@ void addPose(std::ostream& out, const mrpt::math::TPose2D& pose) {
   out << pose.x << ',' << pose.y << ',' << pose.phi * 180 / M_PI << ',';
 }
 
+/** Seconds from when the goal was seen, of the unfit ones. */
+double latestRefusal(const std::vector<Trial>& trials) {
+  double latest = 0;
+  for (const Trial& t : trials)
+    if (t.task.unfit && t.seenAt >= 0) latest = std::max(latest, t.refusedAt - t.seenAt);
+  return latest;
+}
+
+double largestJerk(const std::vector<Trial>& trials) {
+  double largest = 0;
+  for (const Trial& t : trials) largest = std::max(largest, t.smooth.jerk);
+  return largest;
+}
+
 ordered_json summaryOf(const std::vector<Trial>& trials) {
   const auto count = [&trials](auto isOne) {
     return std::count_if(trials.begin(), trials.end(), isOne);
@@ -35,12 +49,19 @@ ordered_json summaryOf(const std::vector<Trial>& trials) {
       {"withPath", count([](const Trial& t) { return t.task.hasPath; })},
       {"arrivedOfThese", count([&](const Trial& t) { return t.task.hasPath && arrived(t); })},
       {"withoutPath", count([](const Trial& t) { return !t.task.hasPath; })},
-      {"saidSo",
-       count([](const Trial& t) { return !t.task.hasPath && t.end == DriveEnd::Unreachable; })},
+      {"saidSo", count([](const Trial& t) { return !t.task.hasPath && t.saidSo(); })},
+      {"unfit", count([](const Trial& t) { return t.task.unfit; })},
+      {"refusedOfThese", count([](const Trial& t) { return t.task.unfit && t.refusedAt >= 0; })},
+      {"latestRefusal", latestRefusal(trials)},
       {"arrivedNevertheless", count([&](const Trial& t) { return !t.task.hasPath && arrived(t); })},
       {"collisions", sum([](const Trial& t) { return t.collisions; })},
       {"leastClearance", least},
       {"meters", sum([](const Trial& t) { return t.length; })},
+      {"metersBackwards", sum([](const Trial& t) { return t.smooth.backwards; })},
+      {"gearChanges", sum([](const Trial& t) { return t.smooth.gearChanges; })},
+      {"turnSignChanges", sum([](const Trial& t) { return t.smooth.turnChanges; })},
+      {"turnSignChangesOfPaths", sum([](const Trial& t) { return t.smooth.pathTurnChanges; })},
+      {"largestJerk", largestJerk(trials)},
       {"metersInWorseClasses", sum([](const Trial& t) { return t.badDriven; })},
       {"metersInWorseClassesPlanned", sum([](const Trial& t) { return t.badFollowed; })},
       {"faults", count([](const Trial& t) { return !t.fault().empty(); })},
@@ -53,7 +74,8 @@ std::string toCsv(const std::vector<Trial>& trials) {
   std::ostringstream out;
   out << "scene,number,start_x,start_y,start_deg,goal_x,goal_y,goal_deg,path,path_length,path_"
          "worse,"
-         "end,fault,seconds,length,worse,worse_planned,collisions,clearance,replans,explored,"
+         "end,fault,seconds,length,worse,worse_planned,collisions,clearance,replans,explored,seen,"
+         "refused,"
          "processor,"
          "why_no_path,reason\n";
   for (const Trial& t : trials) {
@@ -63,8 +85,10 @@ std::string toCsv(const std::vector<Trial>& trials) {
     out << (t.task.hasPath ? "yes" : "no") << ',' << t.task.length << ',' << t.badBest << ','
         << nameOf(t.end) << ',' << t.fault() << ',' << t.seconds << ',' << t.length << ','
         << t.badDriven << ',' << t.badFollowed << ',' << t.collisions << ',' << t.leastClearance
-        << ',' << t.replans << ',' << t.explored << ',' << t.processorSeconds << ','
-        << csvField(t.task.reason) << ',' << csvField(t.reason) << '\n';
+        << ',' << t.replans << ',' << t.explored << ',' << t.seenAt << ',' << t.refusedAt << ','
+        << t.smooth.jerk << ',' << t.smooth.backwards << ',' << t.smooth.gearChanges << ','
+        << t.smooth.turnChanges << ',' << t.smooth.pathTurnChanges << ',' << t.processorSeconds
+        << ',' << csvField(t.task.reason) << ',' << csvField(t.reason) << '\n';
   }
   return out.str();
 }

@@ -45,7 +45,9 @@ TaskDraw::TaskDraw(const World& world, const ClassOrder& order, const VehicleOpt
   m_options.validate();
 }
 
-Task TaskDraw::next() {
+/** \param accepts whether a pose serves as the goal \param goal what it is, in words */
+template <class Accepts>
+Task TaskDraw::draw(Accepts accepts, const char* goal) {
   constexpr int kMostTries = 100000;
   for (int i = 0; i < kMostTries; ++i) {
     Task task;
@@ -53,11 +55,24 @@ Task TaskDraw::next() {
     task.goal = anyPose();
     const double distance = std::hypot(task.goal.x - task.start.x, task.goal.y - task.start.y);
     if (distance < m_options.nearest || distance > m_options.farthest) continue;
-    if (isFree(task.start) && isFree(task.goal)) return task;
+    if (isFree(task.start) && accepts(task.goal)) return task;
   }
-  throw std::runtime_error(
-      "no start and goal on free ground, " + std::to_string(m_options.nearest) + " to " +
-      std::to_string(m_options.farthest) + " m apart, in " + std::to_string(kMostTries) + " draws");
+  throw std::runtime_error("no start on free ground and goal " + std::string(goal) + ", " +
+                           std::to_string(m_options.nearest) + " to " +
+                           std::to_string(m_options.farthest) + " m apart, in " +
+                           std::to_string(kMostTries) + " draws");
+}
+
+Task TaskDraw::next() {
+  return draw([this](const TPose2D& pose) { return isFree(pose); }, "on free ground");
+}
+
+Task TaskDraw::nextUnfit() {
+  Task task = draw([this](const TPose2D& pose) { return isUnfit(pose); },
+                   "where the robot does not fit, beside free ground");
+  task.unfit = true;
+  task.reason = "the robot does not fit at the goal";
+  return task;
 }
 
 Task TaskDraw::nextEnclosed() {
@@ -74,16 +89,31 @@ TPose2D TaskDraw::anyPose() {
   return {x, y, m_random.uniform(-M_PI, M_PI)};
 }
 
-bool TaskDraw::isFree(const TPose2D& pose) const {
-  const auto isAllowed = [this](const mrpt::math::TPoint2D& p) {
+bool TaskDraw::isAllowed(const TPose2D& pose, double clearance) const {
+  const auto isAllowedAt = [this](const mrpt::math::TPoint2D& p) {
     return m_order.rank(m_world.groundClass(p.x, p.y)) != colored_graph::kForbidden;
   };
   for (const Eigen::Vector2d& corner : m_footprint.outline) {
-    const Eigen::Vector2d far = corner + m_options.clearance * corner.cwiseSign();
-    if (!isAllowed(pose.composePoint({far.x(), far.y()}))) return false;
+    const Eigen::Vector2d far = corner + clearance * corner.cwiseSign();
+    if (!isAllowedAt(pose.composePoint({far.x(), far.y()}))) return false;
   }
-  return isAllowed({pose.x, pose.y}) &&
+  return isAllowedAt({pose.x, pose.y});
+}
+
+bool TaskDraw::isFree(const TPose2D& pose) const {
+  return isAllowed(pose, m_options.clearance) &&
          m_world.clearance(m_footprint, pose.x, pose.y, pose.phi) > m_options.clearance;
+}
+
+bool TaskDraw::isUnfit(const TPose2D& pose) {
+  constexpr int kTries = 20;
+  constexpr double kBeside = 2;  // m
+  if (isAllowed(pose, 0) && m_world.isFree(m_footprint, pose.x, pose.y, pose.phi)) return false;
+  for (int i = 0; i < kTries; ++i)
+    if (isFree({pose.x + m_random.uniform(-kBeside, kBeside),
+                pose.y + m_random.uniform(-kBeside, kBeside), pose.phi}))
+      return true;
+  return false;
 }
 
 Oracle::Oracle(const World& world, const ClassOrder& order, const PlannerOptions& planner,
@@ -105,7 +135,7 @@ SemanticPlanner& Oracle::plannerWith(std::size_t vertices) {
 bool Oracle::accepts(const Task& task) {
   const SemanticPlanner& planner = plannerWith(kVertices.front());
   return planner.check(task.start) == PlanStatus::Found &&
-         planner.check(task.goal) == PlanStatus::Found;
+         (task.unfit || planner.check(task.goal) == PlanStatus::Found);
 }
 
 void Oracle::solve(Task& task) {

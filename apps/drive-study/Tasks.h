@@ -15,6 +15,7 @@ struct Task {
   mrpt::math::TPose2D start, goal;
   bool hasPath = false;
   bool enclosed = false;               ///< by barriers around the goal
+  bool unfit = false;                  ///< the robot does not fit at the goal
   std::string reason;                  ///< why not
   double length = 0;                   ///< of the path, meters
   std::vector<double> lengthPerClass;  ///< of the path, meters over the true ground
@@ -45,10 +46,17 @@ class TaskDraw {
   /** With barriers all around the goal, and so without a path. \throw std::runtime_error as above
    */
   Task nextEnclosed();
+  /** To a goal beside free ground where the robot would touch something, or stand on forbidden
+   * ground, and so without a path. \throw std::runtime_error as above */
+  Task nextUnfit();
 
  private:
   mrpt::math::TPose2D anyPose();
+  template <class Accepts>
+  Task draw(Accepts accepts, const char* goal);
+  bool isAllowed(const mrpt::math::TPose2D& pose, double clearance) const;
   bool isFree(const mrpt::math::TPose2D& pose) const;
+  bool isUnfit(const mrpt::math::TPose2D& pose);
 
   const synthetic_world::World& m_world;
   const colored_graph::ClassOrder& m_order;
@@ -64,7 +72,8 @@ class Oracle {
   Oracle(const synthetic_world::World& world, const colored_graph::ClassOrder& order,
          const semantic_planning::PlannerOptions& planner, double voxelSize);
 
-  /** Whether the robot could stand at start and goal if it knew everything. */
+  /** Whether the robot could stand at start and goal if it knew everything; if the task is unfit,
+   * whether at the start only. */
   bool accepts(const Task& task);
   /** Sets the task's path, or why there is none. */
   void solve(Task& task);

@@ -1,5 +1,6 @@
 #pragma once
 #include "Tasks.h"
+#include "simulated_drive/DriveFiles.h"
 #include "simulated_drive/DriveLoop.h"
 
 namespace drive_study {
@@ -10,15 +11,23 @@ struct Trial {
   int number = 0;
   Task task;
   simulated_drive::DriveEnd end = simulated_drive::DriveEnd::TimeLimit;
-  std::string reason;                     ///< why it did not arrive
-  std::size_t explored = 0;               ///< frontiers
-  double seconds = 0, length = 0;         ///< of the drive, m
+  std::string reason;              ///< why it did not arrive
+  double seenAt = -1;              ///< s: a sensor saw the goal's place first; never: negative
+  double refusedAt = -1;           ///< s: it said that the goal does not fit
+  std::size_t explored = 0;        ///< frontiers
+  double seconds = 0, length = 0;  ///< of the drive, m
   double badDriven = 0, badFollowed = 0;  ///< m off the best class: driven, and along its paths
   double badBest = 0;                     ///< m off the best class along the task's path
   double leastClearance = 0;              ///< m
   int collisions = 0, replans = 0;
+  simulated_drive::Smoothness smooth;
   double processorSeconds = 0;
 
+  /** That there is no path to the goal. */
+  bool saidSo() const {
+    return end == simulated_drive::DriveEnd::Unreachable ||
+           end == simulated_drive::DriveEnd::Nearest;
+  }
   /** What is not as it has to be; empty: nothing. */
   std::string fault() const;
 };

@@ -27,7 +27,7 @@ const std::vector<std::string> kFiles = {"study.csv", "study.json", "study.md"};
 struct Cli {
   fs::path classes, config, output;
   std::vector<std::string> scenes = synthetic_world::sceneNames();
-  int pairs = 20, enclosed = 0;
+  int pairs = 20, enclosed = 0, unfit = 0;
   std::vector<int> only;
   std::uint64_t sceneSeed = 1;
   TaskOptions tasks;
@@ -42,6 +42,9 @@ struct Cli {
         ->check(isNumber(strict_files::atLeast(0)))
         ->capture_default_str();
     app.add_option("--enclosed", enclosed, "And so many with barriers all around the goal")
+        ->check(isNumber(strict_files::atLeast(0)))
+        ->capture_default_str();
+    app.add_option("--unfit", unfit, "And so many to goals where the robot does not fit")
         ->check(isNumber(strict_files::atLeast(0)))
         ->capture_default_str();
     app.add_option("--only", only, "Drive these of the pairs only (0, 1, ...)")->delimiter(',');
@@ -75,12 +78,15 @@ void studyScene(const std::string& name, const Cli& cli, const simulated_drive::
   const auto order = semantic_planning::loadClassOrder(cli.classes, synthetic_world::classTable());
   TaskDraw draw(scene.world, order, config.planner.vehicle, cli.tasks);
   Oracle oracle(scene.world, order, config.planner, config.voxelSize);
-  for (int i = 0; i < cli.pairs + cli.enclosed && !stop.pending(); ++i) {
-    const auto drawn = [&] { return i < cli.pairs ? draw.next() : draw.nextEnclosed(); };
+  const int fitting = cli.pairs + cli.enclosed;
+  for (int i = 0; i < fitting + cli.unfit && !stop.pending(); ++i) {
+    const auto drawn = [&] {
+      return i < cli.pairs ? draw.next() : i < fitting ? draw.nextEnclosed() : draw.nextUnfit();
+    };
     Task task = drawn();
     while (!oracle.accepts(task)) task = drawn();
     if (!cli.wants(i)) continue;
-    if (!task.enclosed) oracle.solve(task);
+    if (!task.enclosed && !task.unfit) oracle.solve(task);
     Trial trial = runTrial(config, scene.world, order, task);
     trial.scene = name;
     trial.number = i;

@@ -5,6 +5,7 @@
 #include <strict_files/OutputFolder.h>
 #include <strict_files/TextFile.h>
 
+#include <cmath>
 #include <ostream>
 
 #include "Animation.h"
@@ -32,7 +33,8 @@ const std::vector<std::string> kFiles = {"drive.csv",  "drive.json",   "drive.pn
 void printSummary(const DriveRecord& record) {
   notes() << nameOf(record.end) << " after " << record.duration() << " s and " << record.length
           << " m; " << record.replans << " replans, " << record.collisions
-          << " collisions, least clearance " << record.leastClearance << " m\n";
+          << " collisions, least clearance " << record.leastClearance << " m; "
+          << std::lround(100 * shareOfSlowCycles(record)) << " % of cycles took more than 100 ms\n";
   if (!record.reason.empty()) notes() << record.reason << '\n';
 }
 

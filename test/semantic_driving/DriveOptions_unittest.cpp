@@ -41,7 +41,7 @@ double overshoot(double acceleration) {
   tracker.locate(robot.state());
   const double here = tracker.progress();
   const GuideOptions guide;
-  const double way = guide.restingWay(robot.state().speed, options.braking()) + guide.restMargin;
+  const double way = guide.restingWay(robot.state().speed, options) + guide.restMargin;
   const double end = robot.state().pose.x + way;
   tracker.setPath(tracker.path().part(here, here + way));
   drive(300);
@@ -79,10 +79,34 @@ TEST(DriveOptions, ComesToRestMoreGentlyThanTheTrackerBrakesAtAnyAcceleration) {
     DriveOptions drive;
     drive.maxAcceleration = acceleration;
     const GuideOptions guide;
-    const double way = guide.restingWay(1, drive.braking());
+    const double way = guide.restingWay(1, drive);
     EXPECT_GT(way, 1 / (2 * drive.braking())) << acceleration;
   }
   EXPECT_DOUBLE_EQ(GuideOptions().restBraking * DriveOptions().braking(), 0.6);
+}
+
+TEST(DriveOptions, HoweverFastAVehicleIsItStandsBeforeItIsBlind) {
+  for (const double maxSpeed : {0.5, 1.2, 5.0}) {
+    DriveOptions options;
+    options.maxSpeed = maxSpeed;
+    EXPECT_NEAR(options.speedFor(0), std::min(maxSpeed, options.braking() * 2.4), 1e-9);
+    double before = options.speedFor(0);
+    for (double age = 0.1; age < 2.5; age += 0.1) {
+      const double speed = options.speedFor(age);
+      EXPECT_LE(speed, before);
+      EXPECT_LE(speed * speed / (2 * options.braking()), speed * (2.4 - age) / 2 + 1e-9);
+      before = speed;
+    }
+    EXPECT_NEAR(options.speedFor(2.4), 0, 1e-9);
+  }
+}
+
+TEST(DriveOptions, SpeedsOfClassesFollowTheOrder) {
+  DriveOptions options;
+  options.slowRank = 1;
+  options.slowRankSpeed = 0.4;
+  const colored_graph::ClassOrder order(5, {{1}, {2}});
+  EXPECT_EQ(options.classSpeeds(order), (std::vector<double>{0.4, 1, 0.4, 0.4, 0.4}));
 }
 
 TEST(DriveOptions, ComingToRestAsFastAsTheTrackerBrakesIsRefused) {

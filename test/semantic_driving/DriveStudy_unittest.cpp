@@ -66,8 +66,43 @@ TEST(DriveStudy, DrawsTasksWithClearanceAroundThem) {
     EXPECT_GE(distance, options.nearest);
     EXPECT_LE(distance, options.farthest);
     const auto footprint = simulated_drive::trueFootprint(vehicle);
-    EXPECT_GT(world.clearance(footprint, task.goal.x, task.goal.y, task.goal.phi), options.clearance);
+    EXPECT_GT(world.clearance(footprint, task.goal.x, task.goal.y, task.goal.phi),
+              options.clearance);
   }
+}
+
+TEST(DriveStudy, DrawsGoalsWhereTheRobotDoesNotFit) {
+  const World world = withYard();
+  const auto vehicle = smallConfig().planner.vehicle;
+  const auto footprint = simulated_drive::trueFootprint(vehicle);
+  TaskOptions options;
+  options.nearest = 5;
+  const auto order = syntheticOrder();
+  TaskDraw draw(world, order, vehicle, options);
+  for (int i = 0; i < 20; ++i) {
+    const Task task = draw.nextUnfit();
+    EXPECT_TRUE(task.unfit);
+    EXPECT_EQ(world.clearance(footprint, task.goal.x, task.goal.y, task.goal.phi), 0);
+    EXPECT_GT(world.clearance(footprint, task.start.x, task.start.y, task.start.phi),
+              options.clearance);
+  }
+}
+
+TEST(DriveStudy, CountsGoalsThatDoNotFitAndWhenThatWasSaid) {
+  World world = withYard();
+  Task task;
+  task.start = {-4, 0, 0};
+  task.goal = {5.6, 0, 0};  // its front is in a wall
+  task.unfit = true;
+  Trial trial = runTrial(smallConfig(), world, syntheticOrder(), task);
+  EXPECT_EQ(trial.fault(), "") << trial.reason;
+  EXPECT_GE(trial.seenAt, 0);
+  EXPECT_GT(trial.refusedAt, trial.seenAt);
+  EXPECT_EQ(toJson({trial})["all"]["refusedOfThese"], 1);
+  trial.refusedAt = trial.seenAt + 16;
+  EXPECT_EQ(trial.fault(), "said late that the goal does not fit");
+  trial.end = DriveEnd::Arrived;
+  EXPECT_EQ(trial.fault(), "arrived where it does not fit");
 }
 
 TEST(DriveStudy, TellsFaults) {

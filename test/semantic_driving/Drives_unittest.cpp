@@ -150,6 +150,44 @@ TEST(Drives, StopAndSaySoWhereNoWayLeads) {
   EXPECT_LT(std::abs(record.rows.back().speed), 0.06);
 }
 
+TEST(Drives, SayAtOnceThatAGoalDoesNotFitAndWhichPoseDoes) {
+  synthetic_world::Solids solids;
+  addWall(solids, {4, -6}, {4, 6});
+  World world = plain(solids);
+  const TPose2D goal(3.6, 0, 0);  // its front is in the wall
+  const DriveRecord told = drive(world, {-4, 0, 0}, goal);
+  EXPECT_EQ(told.end, DriveEnd::Unreachable);
+  ASSERT_TRUE(told.refusal);
+  EXPECT_LT(told.refusal->seconds, 15);  // it saw the wall at the beginning
+  EXPECT_EQ(told.refusal->reason.find("the goal (3.60, 0.00) does not fit: wall is at ("), 0u)
+      << told.refusal->reason;
+  EXPECT_NE(told.reason.find("; the nearest pose known to fit: "), std::string::npos);
+  EXPECT_LT(std::abs(told.rows.back().speed), 0.1);
+
+  DriveConfig config = smallConfig();
+  config.guide.driveToNearest = true;
+  const DriveRecord driven = drive(world, {-4, 0, 0}, goal, {}, config);
+  EXPECT_EQ(driven.end, DriveEnd::Nearest) << driven.reason;
+  EXPECT_EQ(driven.collisions, 0);
+  ASSERT_TRUE(driven.refusal && driven.refusal->nearest);
+  const TPose2D end = driven.rows.back().pose, nearest = *driven.refusal->nearest;
+  EXPECT_LT(std::hypot(end.x - nearest.x, end.y - nearest.y), 0.3);
+  EXPECT_LT(std::hypot(end.x - goal.x, end.y - goal.y), 1.2);
+}
+
+TEST(Drives, WaitForSomebodyWhoStandsAtTheGoalForSomeSeconds) {
+  synthetic_world::Solids solids;
+  addWall(solids, {5, -6}, {5, 6});  // beams that end there see that somebody is gone
+  World world = plain(solids);
+  Events events;
+  events.persons.push_back({0, 3, {2, 0}, {2, 0}, 1});
+  const DriveRecord record = drive(world, {-6, 0, 0}, {2, 0, 0}, events);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_FALSE(record.refusal);
+  events.persons.front().end = 1e9;
+  EXPECT_TRUE(drive(world, {-6, 0, 0}, {2, 0, 0}, events).refusal);
+}
+
 TEST(Drives, StopWhereTheGoalIsSeenToBeEnclosedInAnOpenWorld) {
   World world = open();
   DriveConfig config = smallConfig();
@@ -175,6 +213,28 @@ TEST(Drives, FindTheGapOnTheFarSideOfBarriersAroundTheGoal) {
   const DriveRecord record = drive(world, {-4, 0, 0}, {6, 0, 0}, events, config);
   EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
   EXPECT_EQ(record.collisions, 0);
+}
+
+TEST(Drives, KeepJerkAndSteeringWithinTheirLimitsAndGoSlowlyOnGrass) {
+  World world = plain({}, 4);
+  const DriveConfig config = smallConfig();
+  const DriveRecord record = drive(world, {-8, 0, 0}, {4, 8, 1.57});
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_LT(smoothnessOf(record).jerk, config.drive.maxJerk * 1.05);
+  double onGrass = 0;
+  for (std::size_t i = 1; i < record.rows.size(); ++i) {
+    const DriveRow &a = record.rows[i - 1], &b = record.rows[i];
+    if (std::abs(a.speed) > 0.3 && a.speed * b.speed > 0) {
+      EXPECT_LT(std::abs(b.turn / b.speed - a.turn / a.speed),
+                config.drive.maxSteeringRate * 0.1 * 1.5)
+          << b.time;
+    }
+    if (b.classId == synthetic_world::kGrass && std::abs(b.pose.y) > 3.5)
+      onGrass = std::max(onGrass, std::abs(b.speed));
+  }
+  EXPECT_GT(greatestSpeed(record, 0, 1e9), 1);
+  EXPECT_GT(onGrass, 0.5);
+  EXPECT_LT(onGrass, config.drive.slowRankSpeed + 0.05);
 }
 
 TEST(Drives, SlowDownWhileTheSensorsAreOut) {

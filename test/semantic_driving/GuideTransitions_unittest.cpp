@@ -41,6 +41,7 @@ struct InWords {
     return a.blind ? "seek recovery, blind" : "seek recovery";
   }
   std::string operator()(const SeekBack&) const { return "seek back"; }
+  std::string operator()(const SeekNearest&) const { return "seek nearest"; }
 };
 
 template <class Variant>
@@ -211,6 +212,42 @@ TEST(GuideTransitions, AfterAnAnswer) {
   }
 }
 
+TEST(GuideTransitions, WaitForWhatStandsAtTheGoalAndThenSaySo) {
+  const GuideOptions options;
+  const auto misfit = [](double seconds) {
+    return with(driving(seconds), [](Look& l) { l.goalMisfits = true, l.mayStandAtGoal = false; });
+  };
+  Transition next = transition(doing(ToFrontier{}), misfit(10.5), options);
+  EXPECT_EQ(words(next.action), "go on");
+  next = transition(next.state, misfit(20.4), options);
+  EXPECT_NE(words(next.action), "seek nearest");
+  const Transition gone = transition(next.state, driving(20.45), options);  // somebody who went on
+  EXPECT_NE(words(transition(gone.state, misfit(21), options).action), "seek nearest");
+  next = transition(next.state, misfit(20.5), options);
+  ASSERT_EQ(words(next.action), "seek nearest");
+
+  const Transition offered = transition(next.state, answer(next.action, true), options);
+  EXPECT_EQ(words(offered.state.activity), "gave up");
+  EXPECT_EQ(words(offered.action), "come to rest");
+  EXPECT_EQ(words(transition(offered.state, driving(21), options).action), "go on");
+  EXPECT_EQ(words(transition(offered.state, ended(22), options).action), "stop");
+}
+
+TEST(GuideTransitions, DriveToTheNearestPoseIfAsked) {
+  GuideOptions options;
+  options.driveToNearest = true;
+  Transition next = transition(doing(ToGoal{}), answer(SeekNearest{}, true), options);
+  EXPECT_EQ(words(next.action), "come to rest");
+  next = transition(next.state, ended(21), options);
+  EXPECT_EQ(words(next.action), "seek goal, replacing, or frontier");
+  next = transition(doing(Idle{}), answer(SeekNearest{}, true), options);
+  EXPECT_EQ(words(next.action), "stop");
+  EXPECT_EQ(words(transition(next.state, withoutPath(21), options).action),
+            "seek goal, or frontier");
+  next = transition(doing(ToGoal{}), answer(SeekNearest{}, false), options);  // there is none
+  EXPECT_EQ(words(next.state.activity), "gave up");
+}
+
 TEST(GuideTransitions, CountPathsThatWereLeftBeforeTheirEnd) {
   const GuideOptions options;
   GuideState state = transition(doing(ToGoal{11}), blocked(13), options).state;
@@ -237,12 +274,14 @@ TEST(GuideTransitions, AnEnclosedVehicleLooksForABlindRecoveryOnce) {
 
 TEST(GuideTransitions, WhateverHappensQuestionsEndAndTheVehicleGoesBackThreeTimesAtMost) {
   EXPECT_TRUE(rc::check([] {
-    const GuideOptions options;
+    GuideOptions options;
+    options.driveToNearest = *rc::gen::arbitrary<bool>();
     GuideState state;
     int back = 0;
     for (int i = 0; i < 60; ++i) {
       Look look = driving(i, *rc::gen::inRange(0, 2));
       look.finished = *rc::gen::arbitrary<bool>(), look.nearGoal = *rc::gen::arbitrary<bool>();
+      look.goalMisfits = *rc::gen::inRange(0, 10) > 0;
       look.blocked = *rc::gen::arbitrary<bool>(), look.mayPlan = *rc::gen::arbitrary<bool>();
       if (state.target() == Target::None) look.finished = true;  // it was told to stop
       look.stoppedFor = *rc::gen::inRange(0, 6), look.left = *rc::gen::inRange(0, 6);
@@ -257,11 +296,13 @@ TEST(GuideTransitions, WhateverHappensQuestionsEndAndTheVehicleGoesBackThreeTime
       }
       state = next.state;
       const std::string now = words(state.activity);
-      RC_ASSERT(!gaveUp || (now == "gave up" && words(next.action) == "stop"));
+      RC_ASSERT(!gaveUp ||
+                (now == "gave up" && words(next.action) == (look.finished ? "stop" : "go on")));
       const bool follows = words(next.action) == "follow";
       if (follows && (now == "goal" || now == "frontier")) back = 0;
       if (follows && now == "back") RC_ASSERT(++back <= options.mostTimesBack);
-      RC_ASSERT((state.target() == Target::None) == (words(next.action) == "stop"));
+      if (now != "gave up")  // it may have to come to rest yet
+        RC_ASSERT((state.target() == Target::None) == (words(next.action) == "stop"));
     }
   }));
 }

@@ -26,11 +26,43 @@ nlohmann::json lengthsToJson(const std::vector<double>& perClass) {
   return lengths;
 }
 
+nlohmann::json poseToJson(const TPose2D& pose) { return {pose.x, pose.y, pose.phi * 180 / M_PI}; }
+
+/** When it was said that the goal does not fit, why, and the pose [x, y, degrees] instead. */
+nlohmann::json refusalToJson(const semantic_driving::RefusedGoal& refusal) {
+  nlohmann::json json = {{"seconds", refusal.seconds}, {"reason", refusal.reason}};
+  if (refusal.nearest) json["nearest"] = poseToJson(*refusal.nearest);
+  return json;
+}
+
+/** How often a value has another sign than before; small ones have none. */
+class SignChanges {
+ public:
+  void add(double value, double least) {
+    const int sign = value > least ? 1 : value < -least ? -1 : 0;
+    if (sign == 0) return;
+    if (sign == -m_last) ++m_count;
+    m_last = sign;
+  }
+  int count() const { return m_count; }
+
+ private:
+  int m_last = 0, m_count = 0;
+};
+
+/** Of values that are larger. */
+double shareOver(const std::vector<double>& values, double most) {
+  const auto above = [most](double value) { return value > most; };
+  return static_cast<double>(std::count_if(values.begin(), values.end(), above)) /
+         std::max<double>(1, static_cast<double>(values.size()));
+}
+
 nlohmann::json timesToJson(const std::vector<double>& times) {
   return {{"cycles", times.size()},
           {"median", measuring::quantile(times, 0.5)},
           {"p95", measuring::quantile(times, 0.95)},
-          {"max", measuring::quantile(times, 1)}};
+          {"max", measuring::quantile(times, 1)},
+          {"shareOver100", shareOver(times, 100)}};
 }
 
 /** How far poses of the rows are from the true ones. */
@@ -48,6 +80,33 @@ nlohmann::json errorsToJson(const std::vector<DriveRow>& rows, TPose2D DriveRow:
 }
 
 }  // namespace
+
+double shareOfSlowCycles(const DriveRecord& record) {
+  const auto cycles = record.times.find("insert+update+replan");
+  return cycles == record.times.end() ? 0 : shareOver(cycles->second, 100);
+}
+
+Smoothness smoothnessOf(const DriveRecord& record) {
+  constexpr double kStraight = 0.02;  // rad/s
+  Smoothness s;
+  const std::vector<DriveRow>& rows = record.rows;
+  const auto acceleration = [&rows](std::size_t i) {
+    return (rows[i].speed - rows[i - 1].speed) / (rows[i].time - rows[i - 1].time);
+  };
+  SignChanges turns, bends, gears;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const DriveRow& row = rows[i];
+    if (i > 1)
+      s.jerk = std::max(
+          s.jerk, std::abs(acceleration(i) - acceleration(i - 1)) / (row.time - rows[i - 1].time));
+    if (i > 0) s.backwards += std::max(0.0, -row.speed * (row.time - rows[i - 1].time));
+    turns.add(row.turn, kStraight);
+    bends.add(row.bend * row.speed, kStraight);
+    gears.add(row.speed, kStraight);
+  }
+  s.turnChanges = turns.count(), s.pathTurnChanges = bends.count(), s.gearChanges = gears.count();
+  return s;
+}
 
 std::string toCsv(const DriveRecord& record) {
   std::ostringstream out;
@@ -68,6 +127,7 @@ nlohmann::json toJson(const DriveRecord& record, const colored_graph::ClassOrder
   json["end"] = nameOf(record.end);
   json["reached"] = record.arrived();
   if (!record.reason.empty()) json["reason"] = record.reason;
+  if (record.refusal) json["refusedGoal"] = refusalToJson(*record.refusal);
   json["seconds"] = record.duration();
   json["meters"] = record.length;
   json["metersPerClass"] = lengthsToJson(record.drivenPerClass);
@@ -76,6 +136,12 @@ nlohmann::json toJson(const DriveRecord& record, const colored_graph::ClassOrder
   json["metersInWorseClassesPlanned"] = badLength(record.plannedPerClass, order);
   json["replans"] = record.replans;
   json["collisions"] = record.collisions;
+  const Smoothness smooth = smoothnessOf(record);
+  json["smoothness"] = {{"jerk", smooth.jerk},
+                        {"metersBackwards", smooth.backwards},
+                        {"gearChanges", smooth.gearChanges},
+                        {"turnSignChanges", smooth.turnChanges},
+                        {"turnSignChangesOfPath", smooth.pathTurnChanges}};
   json["leastClearance"] = record.leastClearance;
   if (!record.exactPose)
     json["poseError"] = {{"believed", errorsToJson(record.rows, &DriveRow::believed)},

@@ -9,6 +9,19 @@ namespace simulated_drive {
 /** A line for each step of the control. */
 std::string toCsv(const DriveRecord& record);
 
+/** What somebody feels who sits in it; rates from step to step of the control. */
+struct Smoothness {
+  double jerk = 0;       ///< largest, along the way, m/s^3
+  double backwards = 0;  ///< m
+  /** How often turning (faster than 0.02 rad/s) changes its side; of the paths that it followed, as
+   * they were planned; and gears. */
+  int turnChanges = 0, pathTurnChanges = 0, gearChanges = 0;
+};
+Smoothness smoothnessOf(const DriveRecord& record);
+
+/** Of the cycles (insert, update, replan), those that took more than 100 ms: 0 to 1. */
+double shareOfSlowCycles(const DriveRecord& record);
+
 /** What the whole drive comes to. */
 nlohmann::json toJson(const DriveRecord& record, const colored_graph::ClassOrder& order);
 

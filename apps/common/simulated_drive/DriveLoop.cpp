@@ -67,11 +67,10 @@ synthetic_world::Footprint trueFootprint(const VehicleOptions& vehicle) {
 }
 
 const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd) {
-  static const strict_files::Choices<DriveEnd> choices = {{"arrived", DriveEnd::Arrived},
-                                                          {"astray", DriveEnd::Astray},
-                                                          {"unreachable", DriveEnd::Unreachable},
-                                                          {"time_limit", DriveEnd::TimeLimit},
-                                                          {"stopped", DriveEnd::Stopped}};
+  static const strict_files::Choices<DriveEnd> choices = {
+      {"arrived", DriveEnd::Arrived},      {"nearest", DriveEnd::Nearest},
+      {"astray", DriveEnd::Astray},        {"unreachable", DriveEnd::Unreachable},
+      {"time_limit", DriveEnd::TimeLimit}, {"stopped", DriveEnd::Stopped}};
   return choices;
 }
 
@@ -95,6 +94,7 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_pose(start, config.pose, config.sensors.seed),
       m_state(m_robot.state()),
       m_footprint(trueFootprint(config.planner.vehicle)) {
+  m_controller.setClassSpeeds(config.drive.classSpeeds(order));
   const auto classes = synthetic_world::classTable().size() + 1;
   m_record.drivenPerClass.resize(classes);
   m_record.plannedPerClass.resize(classes);
@@ -136,6 +136,7 @@ const DriveRecord& DriveLoop::run() {
     m_time += m_config.controlPeriod;
   }
   m_record.replans = m_guide->replans();
+  m_record.refusal = m_guide->refusal();
   for (DriveObserver* o : m_observers) o->onFinished(*this);
   return m_record;
 }
@@ -208,6 +209,7 @@ void DriveLoop::addRow() {
   m_record.drivenPerClass[row.classId] += way;
   if (!tracker.path().empty()) {
     const PathPoint p = tracker.path().at(tracker.progress());
+    row.bend = p.curvature;
     m_record.plannedPerClass[m_world.groundClass(p.x, p.y)] += way;
   }
   m_record.length += way;
@@ -219,9 +221,12 @@ void DriveLoop::addRow() {
 
 void DriveLoop::endAtGoal() {
   const TPose2D& p = m_robot.state().pose;
-  const double off = std::hypot(p.x - m_goal.x, p.y - m_goal.y);
+  const TPose2D& goal = m_guide->goal();
+  const double off = std::hypot(p.x - goal.x, p.y - goal.y);
   const bool arrived = m_record.exactPose || off < m_config.guide.atGoal;
-  m_record.end = arrived ? DriveEnd::Arrived : DriveEnd::Astray;
+  const bool refused = m_guide->refusal().has_value();
+  m_record.end = !arrived ? DriveEnd::Astray : refused ? DriveEnd::Nearest : DriveEnd::Arrived;
+  if (refused) m_record.reason = m_guide->refusal()->reason;
   if (!arrived) m_record.reason = "it believes to have arrived, but is " + meters(off) + " off";
 }
 

@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,22 +21,25 @@ struct DriveRow {
   semantic_types::ClassId classId = 0;  ///< true ground below the robot
   double clearance = 0;                 ///< m to the nearest true thing, at most 5
   double offset = 0;                    ///< m from the path
+  double bend = 0;                      ///< of the path there, 1/m
   semantic_driving::Target target = semantic_driving::Target::None;
   semantic_driving::DriveController::Driver driver =
       semantic_driving::DriveController::Driver::Tracker;
 };
 
-/** Astray: it believes to have arrived, but has not. Stopped: the user wanted no more of it. */
-enum class DriveEnd { Arrived, Astray, Unreachable, TimeLimit, Stopped };
+/** Nearest: it is at the pose nearest to the goal that fits. Astray: it believes to have arrived,
+ * but has not. Stopped: the user wanted no more of it. */
+enum class DriveEnd { Arrived, Nearest, Astray, Unreachable, TimeLimit, Stopped };
 const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd);
-/** "arrived", "astray", "unreachable" or "time_limit". */
+/** "arrived", "nearest", "astray", "unreachable" or "time_limit". */
 const char* nameOf(DriveEnd end);
 
 /** A whole drive. */
 struct DriveRecord {
   DriveEnd end = DriveEnd::TimeLimit;
   std::string reason;
-  bool exactPose = true;  ///< the robot knows it
+  std::optional<semantic_driving::RefusedGoal> refusal;  ///< it does not fit
+  bool exactPose = true;                                 ///< the robot knows it
   std::vector<DriveRow> rows;
   std::vector<double> drivenPerClass;   ///< m, true ground along the driven way
   std::vector<double> plannedPerClass;  ///< m, true ground along the paths that it followed

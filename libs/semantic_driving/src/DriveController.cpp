@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace semantic_driving {
 
@@ -10,12 +11,11 @@ using semantic_planning::PathPoint;
 
 namespace {
 
-/** Where a vehicle that keeps its speed and its turning is after some seconds, from (0, 0, 0). */
-TPose2D after(const DriveCommand& c, double seconds) {
-  const double turned = c.turn * seconds, way = c.speed * seconds;
-  if (std::abs(turned) < 1e-6) return {way, 0, 0};
-  const double radius = c.speed / c.turn;
-  return {radius * std::sin(turned), radius * (1 - std::cos(turned)), turned};
+/** Where a vehicle is after some seconds, from a pose on. */
+TPose2D after(const TPose2D& pose, const DriveCommand& c, double seconds) {
+  const double way = c.speed * seconds, heading = pose.phi + c.turn * seconds / 2;
+  return {pose.x + way * std::cos(heading), pose.y + way * std::sin(heading),
+          pose.phi + c.turn * seconds};
 }
 
 }  // namespace
@@ -50,10 +50,18 @@ DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints
   if (!reactive) m_reactiveFrom = -1;
   const DriveCommand wanted = reactive ? driveReactively(state, obstacles, limit, seconds)
                                        : m_tracker.command(state, obstacles, limit);
-  const DriveCommand safe = guarded(wanted, state, obstacles);
-  if (std::abs(safe.speed) > m_tracker.options().movingSpeed || m_tracker.finished())
+  const double since = seconds - std::exchange(m_steppedAt, seconds).value_or(seconds);
+  const auto moved = [&](const DriveCommand& command) {
+    return next(m_motion, command, state.speed, since, m_tracker.options());
+  };
+  const Motion motion = moved(wanted);
+  Motion later = motion;
+  later.speed = wanted.speed;
+  const bool safe = isSafe(motion, wanted, obstacles) && isSafe(later, wanted, obstacles);
+  m_motion = safe ? motion : moved({});
+  if (std::abs(m_motion.speed) > m_tracker.options().movingSpeed || m_tracker.finished())
     m_movedAt = seconds;
-  return safe;
+  return m_motion.command();
 }
 
 bool DriveController::wantsReactive(const DriveState& state,
@@ -109,19 +117,28 @@ DriveCommand DriveController::driveReactively(const DriveState& state,
   return c;
 }
 
-DriveCommand DriveController::guarded(const DriveCommand& wanted, const DriveState& state,
-                                      const ObstaclePoints& obstacles) const {
+/** Whether it could still stop, if it does so after its time of reaction: the steering turns as it
+ * is wanted, and then stays. */
+bool DriveController::isSafe(Motion motion, const DriveCommand& wanted,
+                             const ObstaclePoints& obstacles) const {
   constexpr double kStep = 0.1;  // s
-  const double reaction = m_tracker.options().reactionTime;
-  const double margin = m_tracker.options().margin / 2;
+  const DriveOptions& options = m_tracker.options();
+  const double margin = options.margin / 2;
   if (!m_tracker.isFree({}, obstacles, margin))  // it has to get out, not further in
-    return m_tracker.approaches(wanted, obstacles, margin) ? DriveCommand{} : wanted;
-  const double stop = reaction + std::abs(state.speed) / m_tracker.options().maxAcceleration;
-  for (double t = kStep; t < stop; t += kStep) {
-    const double slowing = t < reaction ? t : reaction + (t - reaction) / 2;
-    if (!m_tracker.isFree(after(wanted, slowing), obstacles, margin)) return {};
+    return !m_tracker.approaches(motion.command(), obstacles, margin);
+  const double faster = motion.speed < 0 ? -motion.acceleration : motion.acceleration;
+  const double reaction = options.reactionTime + delayOfStop(faster, options);
+  TPose2D pose;
+  for (double t = kStep; motion.speed != 0; t += kStep) {
+    if (t < reaction)
+      motion = steered(motion, wanted, kStep, options);
+    else
+      motion.speed -= std::clamp(motion.speed, -options.maxAcceleration * kStep,
+                                 options.maxAcceleration * kStep);
+    pose = after(pose, motion.command(), kStep);
+    if (!m_tracker.isFree(pose, obstacles, margin)) return false;
   }
-  return wanted;
+  return true;
 }
 
 }  // namespace semantic_driving

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 namespace semantic_driving {
@@ -23,7 +24,14 @@ bool is(const Action& action) {
 
 bool isQuestion(const Action& action) {
   return is<SeekGoal>(action) || is<SeekFrontier>(action) || is<SeekRecovery>(action) ||
-         is<SeekBack>(action);
+         is<SeekBack>(action) || is<SeekNearest>(action);
+}
+
+/** As poses are given on command lines. */
+std::string textOf(const TPose2D& pose) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.2f,%.2f,%.0f", pose.x, pose.y, pose.phi * 180 / M_PI);
+  return text;
 }
 
 std::string reasonOf(const Exploration& enclosed) {
@@ -37,13 +45,14 @@ std::string reasonOf(const Exploration& enclosed) {
 }  // namespace
 
 DriveGuide::DriveGuide(const GuideOptions& options, SemanticPlanner& planner, const TPose2D& goal)
-    : m_options(options), m_planner(planner), m_check(planner), m_goal(goal) {
+    : m_options(options), m_planner(planner), m_check(planner), m_goal(goal), m_aim(goal) {
   m_options.validate();
 }
 
 void DriveGuide::update(const DriveState& state, double z, DriveController& drive, double seconds) {
   const Situation now{state, drive, z, seconds};
   const bool gaveUpBefore = gaveUp();
+  m_misfit = misfit(now);
   Transition next = transition(m_state, look(now), m_options);
   while (isQuestion(next.action))
     next = transition(next.state, answer(next.action, now), m_options);
@@ -53,8 +62,16 @@ void DriveGuide::update(const DriveState& state, double z, DriveController& driv
     m_reason += "; frontiers explored: " + std::to_string(explored());
 }
 
+/** Where it fits nothing is looked for, nor where it stands or is about to. */
+std::optional<GoalMisfit> DriveGuide::misfit(const Situation& now) const {
+  const double far = distance(now.state.pose, m_aim);
+  if (far < m_options.atGoal || far > m_options.frontiers.radius) return {};
+  if (m_planner.check(m_aim) == PlanStatus::Found) return {};
+  return findMisfit(m_planner, now.state.pose, now.z, m_aim);
+}
+
 bool DriveGuide::isNearGoal(const DriveState& state) const {
-  return distance(state.pose, m_goal) < m_options.atGoal;
+  return distance(state.pose, m_aim) < m_options.atGoal;
 }
 
 bool DriveGuide::arrived(const DriveState& state, const DriveController& drive) const {
@@ -85,7 +102,8 @@ Look DriveGuide::look(const Situation& now) const {
   look.mayPlan = mayStand(now.state.pose, now.z);
   const Departure ahead = departureOf(now, From::Ahead);
   look.mayPlanAhead = mayStand(ahead.pose, ahead.z);
-  look.mayStandAtGoal = mayStand(m_goal, {});
+  look.mayStandAtGoal = mayStand(m_aim, {});
+  look.goalMisfits = m_misfit.has_value();
   return look;
 }
 
@@ -106,7 +124,7 @@ DrivePath DriveGuide::untilRest(const Situation& now) const {
   const PathTracker& tracker = now.drive.tracker();
   const DrivePath& path = tracker.path();
   const double here = tracker.progress();
-  const double there = here + m_options.restingWay(now.state.speed, tracker.options().braking()) +
+  const double there = here + m_options.restingWay(std::abs(now.state.speed), tracker.options()) +
                        m_options.restMargin;
   return path.part(here, std::min(there, path.stretchEnd(here)));
 }
@@ -133,6 +151,10 @@ Answer DriveGuide::answer(const Action& question, const Situation& now) {
     join(from);
   } else if (const auto* way = std::get_if<SeekRecovery>(&question)) {
     m_found = recovery(now, way->blind);
+  } else if (is<SeekNearest>(question)) {
+    refuse(now);
+    answer.found = m_refusal->nearest.has_value();
+    return answer;
   } else {
     m_found = back(now);
   }
@@ -156,7 +178,7 @@ bool DriveGuide::isBetter(const Situation& now) const {
 
 std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
   PlanResult plan =
-      m_planned ? m_planner.replan(from.pose, from.z) : m_planner.plan(from.pose, m_goal, from.z);
+      m_planned ? m_planner.replan(from.pose, from.z) : m_planner.plan(from.pose, m_aim, from.z);
   m_planned = m_planner.hasRoadmap();
   if (!plan.found()) {
     m_reason = plan.reason;
@@ -172,7 +194,7 @@ std::optional<DrivePath> DriveGuide::toFrontier(const Departure& from, bool last
   std::vector<TPose2D> tried;
   std::optional<DrivePath> path;
   const Exploration places =
-      findFrontiers(m_planner, from.pose, from.z, m_goal, m_seen, m_options.frontiers);
+      findFrontiers(m_planner, from.pose, from.z, m_aim, m_seen, m_options.frontiers);
   enclosed = places.enclosed;
   if (enclosed) m_reason = reasonOf(places);
   for (const Frontier& f : places.frontiers) {
@@ -195,6 +217,19 @@ std::optional<DrivePath> DriveGuide::recovery(const Situation& now, bool blind) 
   if (!path.empty()) return path;
   if (!blind) m_reason = "the vehicle is where it must not be, and finds no way out";
   return {};
+}
+
+/** Says so, and offers the nearest pose that fits. */
+void DriveGuide::refuse(const Situation& now) {
+  m_refusal = RefusedGoal{describe(*m_misfit, m_aim, m_planner.ground().map().classes()),
+                          nearestFit(m_planner, now.state.pose, now.z, m_goal,
+                                     m_options.nearestWithin, m_options.frontiers),
+                          now.seconds};
+  m_reason = m_refusal->reason + "; the nearest pose known to fit: ";
+  m_reason += m_refusal->nearest ? textOf(*m_refusal->nearest) : "none";
+  if (!m_options.driveToNearest || !m_refusal->nearest) return;
+  m_aim = *m_refusal->nearest;
+  m_planned = false;
 }
 
 /** Along the vehicle's own track to where it can plan, and a little on: what is close to it may be

@@ -1,4 +1,5 @@
 #include <semantic_driving/DriveOptions.h>
+#include <semantic_types/ClassTable.h>
 
 #include <algorithm>
 
@@ -32,6 +33,8 @@ void describeTracker(DriveOptions& o, OptionList& list) {
   list.add("slowest", o.slowest, "m/s", above(0), "as long as there is way left");
   list.add("path_end", o.pathEnd, "m", above(0),
            "stretches of a path end when no more than this is left");
+  list.add("curvature_over", o.curvatureOver, "m", above(0),
+           "of the path, that its curvature is a mean over");
   list.add("side_gain", o.sideGain, "1/m^2", above(0), "of the steering, for a place off the path");
   list.add("heading_gain", o.headingGain, "1/m", above(0),
            "of the steering, for a heading off the path's");
@@ -49,6 +52,13 @@ void DriveOptions::describe(OptionList& list) {
   list.add("max_acceleration", maxAcceleration, "m/s^2", above(0),
            "along the way; for braking, too");
   list.add("max_side_acceleration", maxSideAcceleration, "m/s^2", above(0), "in curves");
+  list.add("max_jerk", maxJerk, "m/s^3", above(0).orInfinite(), "along the way; inf: no limit");
+  list.add("max_steering_rate", maxSteeringRate, "1/(m s)", above(0).orInfinite(),
+           "change of the steering's curvature");
+  list.add("slow_rank", slowRank, "", atLeast(0),
+           "classes of this rank (0: the best), and worse ones, are driven slowly");
+  list.add("slow_rank_speed", slowRankSpeed, "m/s", above(0).orInfinite(),
+           "so fast at most; inf: no limit");
   list.add("turning_radius", turningRadius, "m", above(0),
            "least radius that the vehicle can drive, less than the planner's");
   list.add("margin", margin, "m", atLeast(0),
@@ -66,7 +76,19 @@ void DriveOptions::describe(OptionList& list) {
 void DriveOptions::validate() const { strict_files::checkOptions(*this, "DriveOptions"); }
 
 double DriveOptions::speedFor(double sensorAge) const {
-  return maxSpeed * std::clamp(1.5 - sensorAge / (2 * maxSensorAge), 0.0, 1.0);
+  const double blindAt = 3 * maxSensorAge;
+  const double fading = maxSpeed * std::clamp(1.5 - sensorAge / (2 * maxSensorAge), 0.0, 1.0);
+  return std::min(fading, braking() * std::max(0.0, blindAt - sensorAge));
+}
+
+std::vector<double> DriveOptions::classSpeeds(const colored_graph::ClassOrder& order) const {
+  std::vector<double> speeds;
+  for (int id = 0; id < order.classes(); ++id) {
+    const colored_graph::Rank rank = order.rank(static_cast<colored_graph::GraphClass>(id));
+    const bool isSlow = id == semantic_types::kNoClass || rank >= slowRank;
+    speeds.push_back(isSlow ? std::min(slowRankSpeed, maxSpeed) : maxSpeed);
+  }
+  return speeds;
 }
 
 }  // namespace semantic_driving

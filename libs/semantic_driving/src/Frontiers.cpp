@@ -1,12 +1,10 @@
 #include <semantic_driving/Frontiers.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <queue>
 
 #include "GoalRegion.h"
+#include "GroundFlood.h"
 
 namespace semantic_driving {
 
@@ -18,97 +16,6 @@ using semantic_planning::SemanticPlanner;
 using semantic_planning::Surface;
 
 namespace {
-
-constexpr std::array<Column, 8> kNeighbors = {
-    {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
-
-/** Dijkstra's search over the columns around the vehicle. */
-class GroundFlood {
- public:
-  GroundFlood(const SemanticPlanner& planner, const TPose2D& from, int z,
-              const FrontierOptions& options)
-      : m_planner(planner),
-        m_ground(planner.ground()),
-        m_center(m_ground.columnAt(from.x, from.y)),
-        m_square(m_center, static_cast<int>(options.radius / m_ground.voxelSize())),
-        m_lenient(options.lenient / m_ground.voxelSize()),
-        m_places(m_square.size()) {
-    for (const Eigen::Vector2d& p : planner.options().vehicle.footprint)
-      m_radius = std::min(m_radius, std::abs(p.y()));
-    flood(z);
-  }
-
-  struct Place {
-    double cost = std::numeric_limits<double>::infinity();
-    int z = 0;
-    Column from;
-    bool done = false;
-  };
-
-  /** f(column, place) for all columns where the vehicle can get. */
-  template <class F>
-  void forEach(F f) const {
-    for (std::size_t i = 0; i < m_places.size(); ++i)
-      if (m_places[i].done) f(m_square.columnOf(i), m_places[i]);
-  }
-  const Place& at(Column c) const { return m_places[m_square.indexOf(c)]; }
-
-  const ColumnSquare& square() const { return m_square; }
-  /** For each column of the square. */
-  std::vector<bool> reached() const {
-    std::vector<bool> reached(m_places.size());
-    for (std::size_t i = 0; i < m_places.size(); ++i) reached[i] = m_places[i].done;
-    return reached;
-  }
-
- private:
-  using Open = std::pair<double, std::size_t>;
-
-  bool isNear(Column c) const {  // where the vehicle stands there may be less clearance
-    return std::hypot(c.x - m_center.x, c.y - m_center.y) < m_lenient;
-  }
-
-  void offer(Column c, double cost, int z, Column from) {
-    Place& place = m_places[m_square.indexOf(c)];
-    if (place.done || cost >= place.cost) return;
-    place.cost = cost, place.z = z, place.from = from;
-    m_open.emplace(cost, m_square.indexOf(c));
-  }
-
-  void flood(int z) {
-    const Surface* s = m_ground.near(m_center, z, 2 * m_ground.step());
-    if (s) offer(m_center, 0, s->z, m_center);
-    while (!m_open.empty()) {
-      const std::size_t i = m_open.top().second;
-      m_open.pop();
-      if (m_places[i].done) continue;
-      m_places[i].done = true;
-      expand(m_square.columnOf(i), m_places[i]);
-    }
-  }
-
-  void expand(Column c, const Place& place) {
-    for (const Column& d : kNeighbors) {
-      const Column next{c.x + d.x, c.y + d.y};
-      if (!m_square.contains(next)) continue;
-      const Surface* s = m_ground.near(next, place.z, m_ground.step());
-      if (!s || !s->drivable || !(m_ground.hasClearance(*s, m_radius) || isNear(next))) continue;
-      const colored_graph::Rank rank = m_planner.order().rank(s->classId);
-      if (rank == colored_graph::kForbidden) continue;
-      const double way = std::hypot(d.x, d.y) * m_ground.voxelSize();
-      offer(next, place.cost + way * (rank + 1), s->z, c);
-    }
-  }
-
-  const SemanticPlanner& m_planner;
-  const Ground& m_ground;
-  Column m_center;
-  ColumnSquare m_square;
-  double m_lenient;  // voxels
-  double m_radius = 1e3;
-  std::vector<Place> m_places;
-  std::priority_queue<Open, std::vector<Open>, std::greater<>> m_open;
-};
 
 class FrontierSearch {
  public:

@@ -34,6 +34,12 @@ void GuideOptions::describe(OptionList& list) {
   list.add("stuck_after", stuckAfter, "s", atLeast(0),
            "without getting on, until another path is looked for");
   list.add("give_up_after", giveUpAfter, "s", atLeast(0), "at rest without any path");
+  list.add("goal_patience", goalPatience, "s", atLeast(0),
+           "for what stands in the goal's place to go away, until it is said that it does not fit");
+  list.add("nearest_within", nearestWithin, "m", atLeast(0),
+           "of a goal that does not fit, where the nearest pose that fits is looked for");
+  list.add("drive_to_nearest", driveToNearest, "",
+           "drives to that pose; or stops, and only says which it is");
   list.add("at_goal", atGoal, "m", above(0), "so near to the goal's place is there");
   list.add("at_rest", atRest, "m/s", above(0), "a slower vehicle stands");
   describeChanges(*this, list);

@@ -46,6 +46,13 @@ bool isStuck(const GuideState& state, const Look& look, const GuideOptions& opti
          look.seconds - state.plannedAt >= options.patience;
 }
 
+/** For long. Notes since when. */
+bool goalMisfits(GuideState& state, const Look& look, const GuideOptions& options) {
+  if (!look.goalMisfits) state.misfitSince.reset();
+  if (look.goalMisfits && !state.misfitSince) state.misfitSince = look.seconds;
+  return state.misfitSince && look.seconds - *state.misfitSince >= options.goalPatience;
+}
+
 /** The path is at its end, leads where the vehicle need not go any more, or was blocked for long.
  * Notes since when it is blocked. */
 bool mustChange(GuideState& state, const Look& look, const GuideOptions& options) {
@@ -150,6 +157,21 @@ Transition after(GuideState state, const SeekBack&, const Answer& answer,
   return follow(state, GoingBack{});
 }
 
+/** Another goal, or none. */
+Transition after(GuideState state, const SeekNearest&, const Answer& answer,
+                 const GuideOptions& options) {
+  state.misfitSince.reset();
+  if (!answer.found || !options.driveToNearest) {
+    const bool stands = does<Idle>(state);
+    state.activity = GaveUp{};
+    return {state, stands ? Action(Stop{}) : ComeToRest{}};
+  }
+  if (does<Idle>(state)) return {state, Stop{}};
+  state.activity = ToFrontier{};  // as far as it takes to come to rest
+  state.comesToRest = true;
+  return {state, ComeToRest{}};
+}
+
 /** No question. */
 template <class Other>
 Transition after(GuideState state, const Other&, const Answer&, const GuideOptions&) {
@@ -165,7 +187,8 @@ Target GuideState::target() const {
 }
 
 Transition transition(GuideState state, const Look& look, const GuideOptions& options) {
-  if (does<GaveUp>(state)) return {state, Stop{}};
+  if (does<GaveUp>(state)) return {state, look.finished ? Action(Stop{}) : GoOn{}};
+  if (goalMisfits(state, look, options)) return {state, SeekNearest{}};
   if (does<Idle>(state) || mustChange(state, look, options)) return choose(state, look, options);
   const auto* blocked = blockedSince(state.activity);
   const bool soon = look.seconds - state.plannedAt < options.period;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "ObstacleFinder.h"
 #include "Surroundings.h"
 
 namespace semantic_driving {
@@ -20,50 +21,6 @@ void ObstacleOptions::describe(strict_files::OptionList& list) {
 void ObstacleOptions::validate() const { strict_files::checkOptions(*this, "ObstacleOptions"); }
 
 namespace {
-
-class ObstacleFinder {
- public:
-  ObstacleFinder(const SemanticPlanner& planner, const ObstacleOptions& options)
-      : m_planner(planner),
-        m_ground(planner.ground()),
-        m_options(options),
-        m_height(
-            static_cast<int>(std::ceil(planner.options().vehicle.height / m_ground.voxelSize()))) {}
-
-  bool isObstacle(Column c, int z, const Surface* surface) const {
-    if (!surface) return anyOccupied(c, z);
-    if (!surface->drivable) return true;
-    return m_options.forbiddenGround && !surface->filled &&
-           m_planner.order().rank(surface->classId) == colored_graph::kForbidden;
-  }
-
-  /** f(k) for the heights in voxels (1: on the ground) where an obstacle of the column is. */
-  template <class F>
-  void forHeights(Column c, int z, const Surface* surface, F f) const {
-    for (int k = surface ? 1 : m_ground.step() + 1; k <= m_height; ++k)
-      if (surface || isOccupied(c, z + k)) f(k);
-  }
-
- private:
-  bool anyOccupied(Column c, int z) const {
-    for (int k = m_ground.step() + 1; k <= m_height; ++k)
-      if (isOccupied(c, z + k)) return true;
-    return false;
-  }
-
-  bool isOccupied(Column c, int z) const {
-    const auto& map = m_ground.map();
-    const auto node = map.search(octomap::OcTreeKey(static_cast<octomap::key_type>(c.x),
-                                                     static_cast<octomap::key_type>(c.y),
-                                                     static_cast<octomap::key_type>(z)));
-    return node && map.isNodeOccupied(node);
-  }
-
-  const SemanticPlanner& m_planner;
-  const Ground& m_ground;
-  const ObstacleOptions& m_options;
-  int m_height;
-};
 
 /** f(finder, column, height, surface, place in the vehicle's frame) for all obstacles. */
 template <class F>

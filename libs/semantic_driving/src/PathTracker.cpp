@@ -9,10 +9,6 @@ namespace semantic_driving {
 using mrpt::math::TPose2D;
 using semantic_planning::PathPoint;
 
-namespace {
-
-}  // namespace
-
 PathTracker::PathTracker(const DriveOptions& options, semantic_planning::Footprint footprint)
     : m_options(options), m_footprint(std::move(footprint)) {
   m_options.validate();
@@ -73,22 +69,52 @@ double PathTracker::freeAhead(const DriveState& state, const ObstaclePoints& obs
   return most;
 }
 
-double PathTracker::speedAt(const PathPoint& place, double left, double free, double limit) const {
+/** Of the steering, as a mean over some of the stretch: at once it turns by nothing. */
+double PathTracker::curvatureAt(double s) const {
+  const double half = m_options.curvatureOver / 2;
+  const double from = std::max(s - half, m_path.stretchBegin(s));
+  const double to = std::min(s + half, m_path.stretchEnd(s));
+  if (to - from < m_options.pathEnd) return m_path.at(s).curvature;
+  const PathPoint a = m_path.at(from), b = m_path.at(to);
+  const double turned = mrpt::math::wrapToPi(b.heading - a.heading) / (to - from);
+  return a.forward ? turned : -turned;
+}
+
+/** What curve, steering and class allow at a place of the path. */
+double PathTracker::speedAt(double s) const {
+  constexpr double kStep = 0.1;  // m
+  const PathPoint place = m_path.at(s);
+  const double bend = curvatureAt(s);
+  const double curve = std::max(std::abs(bend), 1e-6);
+  const double change = std::max(std::abs(curvatureAt(s + kStep) - bend) / kStep, 1e-6);
+  const double onClass =
+      place.classId < m_classSpeeds.size() ? m_classSpeeds[place.classId] : m_options.maxSpeed;
+  return std::max(m_options.slowest,
+                  std::min({onClass, std::sqrt(m_options.maxSideAcceleration / curve),
+                            m_options.maxSteeringRate / change}));
+}
+
+/** So that it brakes in time for all that is ahead. \param free meters without an obstacle */
+double PathTracker::speedBefore(double free, double limit) const {
+  constexpr double kStep = 0.1;  // m
   const double braking = m_options.braking();
-  const double curve = std::abs(place.curvature) > 1e-6
-                           ? std::sqrt(m_options.maxSideAcceleration / std::abs(place.curvature))
-                           : limit;
-  const double end = std::max(m_options.slowest, std::sqrt(2 * braking * left));
-  const double stop = std::sqrt(2 * braking * std::max(0.0, free - m_options.standoff));
-  return std::min({limit, curve, end, free >= m_options.lookAhead || free >= left ? limit : stop});
+  const double left = m_path.stretchEnd(m_progress) - m_progress;
+  double speed = std::min(limit, std::max(m_options.slowest, std::sqrt(2 * braking * left)));
+  if (free < m_options.lookAhead && free < left)
+    speed = std::min(speed, std::sqrt(2 * braking * std::max(0.0, free - m_options.standoff)));
+  for (double ahead = 0; ahead < left && 2 * braking * ahead < speed * speed; ahead += kStep) {
+    const double there = speedAt(m_progress + ahead + 1e-3);
+    speed = std::min(speed, std::sqrt(there * there + 2 * braking * ahead));
+  }
+  return speed;
 }
 
 DriveCommand PathTracker::command(const DriveState& state, const ObstaclePoints& obstacles,
                                   double speedLimit) const {
   if (finished()) return {};
-  const PathPoint place = m_path.at(m_progress + 1e-3);
-  const double left = m_path.stretchEnd(m_progress) - m_progress;
-  const double speed = speedAt(place, left, freeAhead(state, obstacles), speedLimit);
+  PathPoint place = m_path.at(m_progress + 1e-3);
+  place.curvature = curvatureAt(m_progress + 1e-3);
+  const double speed = speedBefore(freeAhead(state, obstacles), speedLimit);
   const double v = place.forward ? speed : -speed;
   const double dx = state.pose.x - place.x, dy = state.pose.y - place.y;
   const double side = dy * std::cos(place.heading) - dx * std::sin(place.heading);

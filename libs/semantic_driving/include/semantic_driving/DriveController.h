@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_driving/DrivenTrack.h>
+#include <semantic_driving/Motion.h>
 #include <semantic_driving/PathTracker.h>
 #include <semantic_driving/ReactiveNavigator.h>
 
@@ -7,7 +8,8 @@ namespace semantic_driving {
 
 /** Drives a path: MRPT's reactive navigator where that can (forward, and not to an exact pose), the
  * tracker where the path goes backwards, shunts or ends. Whatever either of them wants, the vehicle
- * does not go where it could not stop before an obstacle. */
+ * does not go where it could not stop before an obstacle, and changes neither its acceleration nor
+ * its steering faster than DriveOptions say. */
 class DriveController {
  public:
   /** \throw std::exception bad options, or what the reactive navigator does not like. */
@@ -15,6 +17,8 @@ class DriveController {
 
   /** Follows this path from its beginning on, from now on. */
   void setPath(DrivePath path);
+  /** See PathTracker. */
+  void setClassSpeeds(std::vector<double> speeds) { m_tracker.setClassSpeeds(std::move(speeds)); }
   const PathTracker& tracker() const { return m_tracker; }
   /** Where the vehicle was at each step(). */
   const DrivenTrack& track() const { return m_track; }
@@ -35,13 +39,14 @@ class DriveController {
               const ObstaclePoints& obstacles) const;
   DriveCommand driveReactively(const DriveState& state, const ObstaclePoints& obstacles,
                                double speedLimit, double seconds);
-  DriveCommand guarded(const DriveCommand& wanted, const DriveState& state,
-                       const ObstaclePoints& obstacles) const;
+  bool isSafe(Motion motion, const DriveCommand& wanted, const ObstaclePoints& obstacles) const;
 
   PathTracker m_tracker;
   DrivenTrack m_track;
   ReactiveNavigator m_reactive;
   Driver m_driver = Driver::Tracker;
+  Motion m_motion;
+  std::optional<double> m_steppedAt;  ///< seconds
   double m_movedAt = 0;
   double m_reactiveFrom = -1;  ///< beginning of the stretch that the reactive navigator drives
   std::vector<semantic_planning::PathPoint> m_waypoints;

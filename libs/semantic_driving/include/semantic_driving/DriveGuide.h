@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_driving/DriveController.h>
+#include <semantic_driving/GoalFit.h>
 #include <semantic_driving/GuideTransitions.h>
 #include <semantic_driving/ObstacleSensing.h>
 
@@ -8,6 +9,13 @@
 #include <vector>
 
 namespace semantic_driving {
+
+/** A goal where the vehicle does not fit, by what the map shows. */
+struct RefusedGoal {
+  std::string reason;                          ///< what is in the way
+  std::optional<mrpt::math::TPose2D> nearest;  ///< the nearest pose that fits
+  double seconds = 0;                          ///< when it was said
+};
 
 /** Decides which path to drive, as the map grows: to the goal, to a place from where to see more of
  * the way there, or out of where the vehicle must not be; where there is no way out, as behind
@@ -35,9 +43,14 @@ class DriveGuide {
   void update(const DriveState& state, double z, DriveController& drive, double seconds);
 
   Target target() const { return m_state.target(); }
+  /** Where it drives in the end: the goal, or in its place the nearest pose that fits. */
+  const mrpt::math::TPose2D& goal() const { return m_aim; }
+  /** Since it was said that the goal does not fit. */
+  const std::optional<RefusedGoal>& refusal() const { return m_refusal; }
   /** The path to the goal is driven, and the vehicle stands. */
   bool arrived(const DriveState& state, const DriveController& drive) const;
-  /** No path, and nothing else to look at, or the goal is enclosed (findFrontiers()); for good. */
+  /** No path, and nothing else to look at, or the goal is enclosed (findFrontiers()) or does not
+   * fit (findMisfit()); for good. */
   bool gaveUp() const { return std::holds_alternative<GaveUp>(m_state.activity); }
   /** Why the last plan to the goal, or the recovery, was not found. */
   const std::string& reason() const { return m_reason; }
@@ -66,6 +79,7 @@ class DriveGuide {
     DrivePath before;  ///< from the vehicle to there; may be empty
   };
 
+  std::optional<GoalMisfit> misfit(const Situation& now) const;
   bool isNearGoal(const DriveState& state) const;
   Look look(const Situation& now) const;
   Departure departureOf(const Situation& now, From from) const;
@@ -80,11 +94,15 @@ class DriveGuide {
   std::optional<DrivePath> toFrontier(const Departure& from, bool last, bool& enclosed);
   std::optional<DrivePath> recovery(const Situation& now, bool blind);
   std::optional<DrivePath> back(const Situation& now) const;
+  void refuse(const Situation& now);
 
   GuideOptions m_options;
   semantic_planning::SemanticPlanner& m_planner;
   PathCheck m_check;
-  mrpt::math::TPose2D m_goal;
+  const mrpt::math::TPose2D m_goal;
+  mrpt::math::TPose2D m_aim;
+  std::optional<GoalMisfit> m_misfit;  ///< as seen last
+  std::optional<RefusedGoal> m_refusal;
   GuideState m_state;
   std::optional<DrivePath> m_found;  ///< by the last question, if anything
   semantic_planning::PlanResult m_plan;

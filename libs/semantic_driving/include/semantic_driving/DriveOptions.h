@@ -1,8 +1,10 @@
 #pragma once
+#include <colored_graph/ClassOrder.h>
 #include <mrpt/math/TPose2D.h>
 #include <strict_files/OptionList.h>
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 namespace semantic_driving {
@@ -12,6 +14,13 @@ struct DriveOptions {
   double maxSpeed = 1.0;             ///< m/s
   double maxAcceleration = 0.8;      ///< m/s^2, along the way; brakes, too
   double maxSideAcceleration = 0.8;  ///< m/s^2, in curves
+  double maxJerk = 3;                ///< m/s^3, along the way; infinite: no limit
+  /** How fast the steering turns: change of the path's curvature, 1/m per second. */
+  double maxSteeringRate = 2;
+  /** On ground of this rank and worse ones (0: the best), and unknown or forbidden ground, no
+   * faster than this, m/s: walking pace. Infinite: no limit. */
+  int slowRank = 3;
+  double slowRankSpeed = std::numeric_limits<double>::infinity();
   /** Least radius that the vehicle can drive, meters. Less than the planner's
    * (VehicleOptions::turningRadius), or there is nothing left to correct with. */
   double turningRadius = 0.8;
@@ -25,16 +34,17 @@ struct DriveOptions {
   bool alwaysReactive = true;
   /** Stretches and ends of stretches shorter than this follow the path exactly, meters. */
   double exactEnd = 2;
-  /** Observations older than this (seconds) make the vehicle slow down; it stops when they are
-   * three times as old. */
+  /** Observations older than this (seconds) make the vehicle slow down; it stands when they are
+   * three times as old. A vehicle that takes longer to brake begins earlier. */
   double maxSensorAge = 0.8;
 
-  double brakingShare = 0.8;  ///< of maxAcceleration, that stops are planned with
-  double standoff = 0.3;      ///< meters from where it stops to what stands in the way
-  double slowest = 0.1;       ///< m/s, as long as there is way left
-  double pathEnd = 0.04;      ///< stretches end when no more than this is left, meters
-  double sideGain = 1.2;      ///< of the steering, for a place off the path, 1/m^2
-  double headingGain = 2;     ///< of the steering, for a heading off the path's, 1/m
+  double brakingShare = 0.8;   ///< of maxAcceleration, that stops are planned with
+  double standoff = 0.3;       ///< meters from where it stops to what stands in the way
+  double slowest = 0.1;        ///< m/s, as long as there is way left
+  double pathEnd = 0.04;       ///< stretches end when no more than this is left, meters
+  double sideGain = 1.2;       ///< of the steering, for a place off the path, 1/m^2
+  double curvatureOver = 0.6;  ///< meters that the path's curvature is a mean over
+  double headingGain = 2;      ///< of the steering, for a heading off the path's, 1/m
   /** How far ahead of its last place on the path, and back, the vehicle is looked for, meters. */
   double searchAhead = 1.5, searchBack = 0.3;
   double trackLength = 10;  ///< of the driven track that is kept to go back on, meters
@@ -54,6 +64,8 @@ struct DriveOptions {
   double braking() const { return brakingShare * maxAcceleration; }
   /** Highest speed with observations of an age, m/s. */
   double speedFor(double sensorAge) const;
+  /** Highest speed on each class, m/s. */
+  std::vector<double> classSpeeds(const colored_graph::ClassOrder& order) const;
 };
 
 /** Where a vehicle is and how it moves. */

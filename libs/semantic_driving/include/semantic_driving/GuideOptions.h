@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_driving/Frontiers.h>
+#include <semantic_driving/Motion.h>
 #include <semantic_driving/PathCheck.h>
 #include <semantic_driving/Recovery.h>
 
@@ -11,8 +12,13 @@ struct GuideOptions {
   double patience = 2.0;     ///< seconds for what stands in the way to go away, or to be passed
   double stuckAfter = 4.0;   ///< seconds without getting on, until another path is looked for
   double giveUpAfter = 4.0;  ///< seconds at rest without any path
-  double atGoal = 0.3;       ///< so near (meters) to the goal's place is there
-  double atRest = 0.05;      ///< m/s; a slower vehicle stands
+  /** Seconds for what stands in the goal's place to go away, until it is said that the goal does
+   * not fit: people move, walls do not. */
+  double goalPatience = 10.0;
+  double nearestWithin = 5.0;   ///< meters around such a goal, where a pose that fits is looked for
+  bool driveToNearest = false;  ///< that pose becomes the goal, or else the drive ends
+  double atGoal = 0.3;          ///< so near (meters) to the goal's place is there
+  double atRest = 0.05;         ///< m/s; a slower vehicle stands
 
   /** A vehicle that is faster (m/s) comes to rest before it leaves its path for another one, which
    * may begin backwards. */
@@ -35,10 +41,11 @@ struct GuideOptions {
 
   /** Its own; frontiers and recovery describe theirs. */
   void describe(strict_files::OptionList& list);
-  /** Meters that a vehicle takes to come to rest, without restMargin. \param speed m/s
-   * \param braking DriveOptions::braking(), m/s^2 */
-  double restingWay(double speed, double braking) const {
-    return speed * speed / (2 * (restBraking * braking));
+  /** Meters that a vehicle takes to come to rest, without restMargin, also if it gets faster yet.
+   * \param speed m/s */
+  double restingWay(double speed, const DriveOptions& drive) const {
+    return speed * speed / (2 * (restBraking * drive.braking())) +
+           speed * delayOfStop(drive.maxAcceleration / 2, drive);
   }
   /** Of all. \throw std::invalid_argument naming the option and its value. */
   void validate() const;

@@ -41,10 +41,11 @@ using Activity = std::variant<Idle, ToGoal, ToFrontier, Recovering, GoingBack, G
 struct GuideState {
   Activity activity;
   double plannedAt = -std::numeric_limits<double>::infinity();  ///< a path was last looked for
-  bool hasPlanned = false;      ///< a path to the goal or a frontier was driven
-  int timesBack = 0;            ///< since then
-  bool comesToRest = false;     ///< before the end of its path, to take another one
-  bool enclosed = false;        ///< no way leads to the goal, whatever else is seen
+  bool hasPlanned = false;            ///< a path to the goal or a frontier was driven
+  int timesBack = 0;                  ///< since then
+  bool comesToRest = false;           ///< before the end of its path, to take another one
+  bool enclosed = false;              ///< no way leads to the goal, whatever else is seen
+  std::optional<double> misfitSince;  ///< what is known keeps the vehicle from the goal
   bool recoveredBlind = false;  ///< the last recovery that was looked for is for a blind vehicle
   int replans = 0;              ///< paths that were left for another one before their end
 
@@ -63,6 +64,7 @@ struct Look {
   bool mayPlan = true;         ///< from where the vehicle is
   bool mayPlanAhead = true;    ///< from where a better path leaves the present one
   bool mayStandAtGoal = true;  ///< by what is known
+  bool goalMisfits = false;    ///< whatever is yet to be seen (findMisfit())
 };
 
 // What a guide does next. It takes paths as they are found, or asks for one more.
@@ -92,14 +94,16 @@ struct SeekRecovery {
   bool blind = false;
 };
 struct SeekBack {};
-using Action =
-    std::variant<GoOn, Stop, ComeToRest, Follow, SeekGoal, SeekFrontier, SeekRecovery, SeekBack>;
+/** The pose nearest to a goal that does not fit. */
+struct SeekNearest {};
+using Action = std::variant<GoOn, Stop, ComeToRest, Follow, SeekGoal, SeekFrontier, SeekRecovery,
+                            SeekBack, SeekNearest>;
 
-/** What came of a SeekGoal, SeekFrontier, SeekRecovery or SeekBack. */
+/** What came of a question (Seek...). */
 struct Answer {
   Action question;
   double seconds = 0;     ///< as in Look
-  bool found = false;     ///< a path
+  bool found = false;     ///< a path, or a pose
   bool empty = false;     ///< it is there already
   bool better = false;    ///< clearly, than the present path
   bool enclosed = false;  ///< of SeekFrontier: Exploration::enclosed

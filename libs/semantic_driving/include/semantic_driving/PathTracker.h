@@ -14,6 +14,9 @@ class PathTracker {
   PathTracker(const DriveOptions& options, semantic_planning::Footprint footprint);
 
   void setPath(DrivePath path);
+  /** \param speeds highest ones by class id, m/s (DriveOptions::classSpeeds()); without, the same
+   * on all. */
+  void setClassSpeeds(std::vector<double> speeds) { m_classSpeeds = std::move(speeds); }
   const DrivePath& path() const { return m_path; }
   /** Arc length of the place on the path where the vehicle was last. */
   double progress() const { return m_progress; }
@@ -41,12 +44,14 @@ class PathTracker {
   const DriveOptions& options() const { return m_options; }
 
  private:
-  double speedAt(const semantic_planning::PathPoint& place, double left, double free,
-                 double limit) const;
+  double curvatureAt(double s) const;
+  double speedAt(double s) const;
+  double speedBefore(double free, double limit) const;
 
   DriveOptions m_options;
   semantic_planning::Footprint m_footprint;
   DrivePath m_path;
+  std::vector<double> m_classSpeeds;
   double m_progress = 0, m_offset = 0;
 };
 

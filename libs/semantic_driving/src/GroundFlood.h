@@ -1,0 +1,74 @@
+#pragma once
+#include <semantic_driving/Frontiers.h>
+#include <semantic_planning/vehicle/Footprint.h>
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+#include <vector>
+
+#include "ColumnSquare.h"
+
+namespace semantic_driving {
+
+/** All around a column. */
+constexpr std::array<semantic_planning::Column, 8> kNeighbors = {
+    {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
+
+/** Where a vehicle gets over known ground, and the least way there: Dijkstra's search over the
+ * columns around it. The footprint fits from column to column, headed there or away from there; how
+ * it turns in between is not asked. */
+class GroundFlood {
+ public:
+  /** \param z key of the ground's height below the vehicle */
+  GroundFlood(const semantic_planning::SemanticPlanner& planner, const mrpt::math::TPose2D& from,
+              int z, const FrontierOptions& options);
+
+  struct Place {
+    double cost = std::numeric_limits<double>::infinity();
+    int z = 0;
+    semantic_planning::Column from;
+    bool done = false;
+  };
+
+  /** f(column, place) for all columns where the vehicle can get. */
+  template <class F>
+  void forEach(F f) const {
+    for (std::size_t i = 0; i < m_places.size(); ++i)
+      if (m_places[i].done) f(m_square.columnOf(i), m_places[i]);
+  }
+  /** \param c in the square */
+  const Place& at(semantic_planning::Column c) const { return m_places[m_square.indexOf(c)]; }
+
+  const ColumnSquare& square() const { return m_square; }
+  /** For each column of the square. */
+  std::vector<bool> reached() const;
+
+ private:
+  using Open = std::pair<double, std::size_t>;
+
+  bool isNear(semantic_planning::Column c) const;
+  bool isFree(const semantic_planning::Surface& surface, double radius) const {
+    return m_ground.hasClearance(surface, radius);
+  }
+  bool fits(semantic_planning::Column c, const semantic_planning::Surface& surface,
+            const semantic_planning::Column& direction) const;
+  bool fitsHeaded(semantic_planning::Column c, int z, double x, double y) const;
+  void offer(semantic_planning::Column c, double cost, int z, semantic_planning::Column from);
+  void flood(int z);
+  void expand(semantic_planning::Column c, const Place& place);
+
+  const semantic_planning::SemanticPlanner& m_planner;
+  const semantic_planning::Ground& m_ground;
+  semantic_planning::Column m_center;
+  ColumnSquare m_square;
+  double m_lenient;  ///< voxels
+  std::vector<semantic_planning::Disc> m_discs;
+  double m_inner, m_outer = 0;  ///< radii about the origin: in the footprint, around it; meters
+  std::vector<Place> m_places;
+  std::priority_queue<Open, std::vector<Open>, std::greater<>> m_open;
+};
+
+}  // namespace semantic_driving
