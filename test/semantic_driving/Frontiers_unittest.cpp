@@ -110,6 +110,25 @@ TEST_F(Frontiers, OfAWideVehicleAreNotBeyondAGapThatItDoesNotFitThrough) {
   EXPECT_LT(farthest(Footprint({{-0.25, -0.2}, {0.55, -0.2}, {0.55, 1.4}, {-0.25, 1.4}})), 3);
 }
 
+TEST_F(Frontiers, OfAWideVehicleAreNotBeyondAGapThatItDoesNotFitThrough) {
+  wall(3, 3.2, -8, -0.6), wall(3, 3.2, 0.8, 8);  // a gap of 1.4 m
+  PlannerOptions options;
+  options.roadmap.kind = GraphKind::HaltonDrivable;
+  const auto farthest = [&](const Footprint& footprint) {
+    options.vehicle.footprint = footprint;
+    const SemanticPlanner planner(world.map(), colored_graph::ClassOrder(5, {{1}, {2}, {0}}),
+                                  options);
+    double x = -8;
+    for (const Frontier& f : findFrontiers(planner, kStart, 0, {30, 0, 0}, {}).frontiers)
+      x = std::max(x, f.pose.x);
+    return x;
+  };
+  EXPECT_GT(farthest(Footprint::rectangle(-0.25, 0.55, 0.6)), 4);
+  EXPECT_LT(farthest(Footprint::rectangle(-0.25, 0.55, 1.6)), 3);
+  // As wide, but mostly to the left of its origin.
+  EXPECT_LT(farthest(Footprint({{-0.25, -0.2}, {0.55, -0.2}, {0.55, 1.4}, {-0.25, 1.4}})), 3);
+}
+
 TEST_F(Frontiers, HeadAsOneComesThere) {
   const Exploration found = explore({30, 0.1, 0});
   ASSERT_FALSE(found.frontiers.empty());

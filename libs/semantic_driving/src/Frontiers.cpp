@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "GoalRegion.h"
 #include "GroundFlood.h"
@@ -27,13 +26,12 @@ class FrontierSearch {
   std::vector<Frontier> all(const TPose2D& goal) const {
     std::vector<Frontier> found;
     m_flood.forEach([&](Column c, const GroundFlood::Place& place) {
-      if ((c.x + c.y) % 2 != 0) return;
-      const auto left = wayLeft(c, place.z, m_ground.columnAt(goal.x, goal.y));
-      if (!left) return;
+      if ((c.x + c.y) % 2 != 0 || !seesUnknown(c, place.z)) return;
       const double x = m_ground.centerOf(c.x), y = m_ground.centerOf(c.y);
+      const double left = std::hypot(goal.x - x, goal.y - y);
       found.push_back({{x, y, headingAt(c)},
                        m_ground.centerOf(place.z),
-                       place.cost + m_options.unknownFactor * *left});
+                       place.cost + m_options.unknownFactor * left});
     });
     std::sort(found.begin(), found.end(),
               [](const Frontier& a, const Frontier& b) { return a.cost < b.cost; });
@@ -51,25 +49,18 @@ class FrontierSearch {
     return true;
   }
 
-  /** From a place through the unknown that it sees in one of eight directions, if that is of the
-   * goal's region: the least way on to the goal, meters. */
-  std::optional<double> wayLeft(Column c, int z, Column goal) const {
-    const double voxel = m_ground.voxelSize();
-    const int far = static_cast<int>(std::lround(m_options.sight / voxel));
-    std::optional<double> least;
-    for (const Column& d : kNeighbors)
+  /** Of the goal's region, in one of eight directions. */
+  bool seesUnknown(Column c, int z) const {
+    const int far = static_cast<int>(std::lround(m_options.sight / m_ground.voxelSize()));
+    return std::any_of(kNeighbors.begin(), kNeighbors.end(), [&](const Column& d) {
       for (int i = 1; i <= far; ++i) {
         const Column there{c.x + i * d.x, c.y + i * d.y};
-        const bool inside = m_flood.square().contains(there);
-        if (inside && m_region.isObstacle(there)) break;
-        if (inside && !(i > 1 && m_region.contains(there) && isUnknown(there, z))) continue;
-        const double on = inside ? m_region.wayLeft(there)
-                                 : voxel * std::hypot(goal.x - there.x, goal.y - there.y);
-        const double left = i * voxel * std::hypot(d.x, d.y) + on;
-        least = std::min(left, least.value_or(left));
-        break;
+        if (!m_flood.square().contains(there)) return true;
+        if (m_region.isObstacle(there)) return false;
+        if (i > 1 && m_region.contains(there) && isUnknown(there, z)) return true;
       }
-    return least;
+      return false;
+    });
   }
 
   double headingAt(Column c) const {
