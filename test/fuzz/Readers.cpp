@@ -55,6 +55,7 @@ void readOctomap(const fs::path& file) {
 /** From an MRPT archive, and what was taken back into one. */
 template <class Object>
 void readArchive(const std::string& bytes) {
+  semantic_map::registerMaps();  // clang's sanitizers load the libraries in another order
   Object object;
   mrpt::io::CMemoryStream in, out;
   in.assignMemoryNotOwn(bytes.data(), bytes.size());
