@@ -56,6 +56,8 @@ void readOctomap(const fs::path& file) {
 /** From an MRPT archive, and what was taken back into one. */
 template <class Object>
 void readArchive(const std::string& bytes) {
+  semantic_map::registerMaps();  // built by clang, they were met without a name when their library
+                                 // was loaded
   Object object;
   mrpt::io::CMemoryStream in, out;
   in.assignMemoryNotOwn(bytes.data(), bytes.size());
