@@ -64,10 +64,8 @@ TEST_F(Frontiers, CostTheWayThereAndTwiceThatThroughTheUnknown) {
   ASSERT_FALSE(found.frontiers.empty());
   double before = 0;
   for (const Frontier& f : found.frontiers) {
-    const double straight = octile(kStart, f.pose) + 2 * octile(f.pose, goal);
-    EXPECT_GT(f.cost, 0.97 * straight);
-    EXPECT_LT(f.cost, 1.15 * straight);  // on the side it has to go around the known ground
-    EXPECT_GE(f.cost, before);           // most promising first
+    EXPECT_NEAR(f.cost, octile(kStart, f.pose) + 2 * distance(f.pose, goal), 1e-6);
+    EXPECT_GE(f.cost, before);  // most promising first
     before = f.cost;
   }
 }
@@ -78,36 +76,7 @@ TEST_F(Frontiers, OverWorseClassesCostTheirRankMore) {
   const Exploration found = explore(goal);
   ASSERT_FALSE(found.frontiers.empty());
   for (const Frontier& f : found.frontiers)
-    EXPECT_GT(f.cost, 0.97 * (2 * octile(kStart, f.pose) + 2 * octile(f.pose, goal)));
-}
-
-TEST_F(Frontiers, OfAGoalBehindAWallAreWhereTheWallMayEnd) {
-  wall(7, 7.2, -8, 6), wall(-8, 7.2, -8, -7.8);  // it ends above, for all that is known
-  const TPose2D goal(9, -3, 0);
-  const Exploration found = explore(goal);
-  ASSERT_FALSE(found.frontiers.empty());
-  EXPECT_GT(found.frontiers[0].pose.y, 5) << found.frontiers[0].pose.asString();
-  for (const Frontier& f : found.frontiers)  // through the wall it would be shorter
-    EXPECT_GT(f.cost, octile(kStart, f.pose) + 2 * distance(f.pose, goal));
-}
-
-TEST_F(Frontiers, OfAWideVehicleAreNotBeyondAGapThatItDoesNotFitThrough) {
-  wall(3, 3.2, -8, -0.6), wall(3, 3.2, 0.8, 8);  // a gap of 1.4 m
-  PlannerOptions options;
-  options.roadmap.kind = GraphKind::HaltonDrivable;
-  const auto farthest = [&](const Footprint& footprint) {
-    options.vehicle.footprint = footprint;
-    const SemanticPlanner planner(world.map(), colored_graph::ClassOrder(5, {{1}, {2}, {0}}),
-                                  options);
-    double x = -8;
-    for (const Frontier& f : findFrontiers(planner, kStart, 0, {30, 0, 0}, {}).frontiers)
-      x = std::max(x, f.pose.x);
-    return x;
-  };
-  EXPECT_GT(farthest(Footprint::rectangle(-0.25, 0.55, 0.6)), 4);
-  EXPECT_LT(farthest(Footprint::rectangle(-0.25, 0.55, 1.6)), 3);
-  // As wide, but mostly to the left of its origin.
-  EXPECT_LT(farthest(Footprint({{-0.25, -0.2}, {0.55, -0.2}, {0.55, 1.4}, {-0.25, 1.4}})), 3);
+    EXPECT_NEAR(f.cost, 2 * octile(kStart, f.pose) + 2 * distance(f.pose, goal), 1e-6);
 }
 
 TEST_F(Frontiers, OfAWideVehicleAreNotBeyondAGapThatItDoesNotFitThrough) {

@@ -1,7 +1,6 @@
 #pragma once
 #include <semantic_planning/planner/SemanticPlanner.h>
 
-#include <map>
 #include <vector>
 
 #include "ColumnSquare.h"
@@ -33,9 +32,6 @@ class GoalRegion {
   bool contains(semantic_planning::Column c) const {
     return m_goalReached || m_region[m_square.indexOf(c)];
   }
-  /** Least way from a column to the goal through the region, meters: around all that is known to be
-   * in the way. The straight one for columns that are not of the region. \param c in the square */
-  double wayLeft(semantic_planning::Column c) const;
   /** Something is in the way. \param c in the square */
   bool isObstacle(semantic_planning::Column c) const { return m_obstacle[m_square.indexOf(c)]; }
   /** No reached column borders on the region: no way leads to the goal. */
@@ -54,16 +50,13 @@ class GoalRegion {
   void keepAround(semantic_planning::Column obstacle, double radius);
   void start(const semantic_planning::Ground& ground, const mrpt::math::TPose2D& goal,
              double around);
-  void offer(semantic_planning::Column c, int left);
-  void offerRim(semantic_planning::Column from, int left);
+  void offer(semantic_planning::Column c);
+  void offerRim();
   void flood();
 
   ColumnSquare m_square;
   std::vector<bool> m_reached, m_obstacle, m_kept, m_region;
-  double m_unit;  ///< of ways: a fifth of a voxel, meters
-  semantic_planning::Column m_goal;
-  std::vector<int> m_left;  ///< of each column of the region, units
-  std::map<int, std::vector<semantic_planning::Column>> m_open;  ///< by way left
+  std::vector<semantic_planning::Column> m_open;
   std::size_t m_columns = 0;
   bool m_goalReached = false, m_enclosed = false, m_rim = false;
 };
