@@ -52,7 +52,6 @@ class Improvement {
         m_checker(checker),
         m_options(options),
         m_order(checker, options.classTolerance),
-        m_strict(checker, options.classTolerance / 2),
         m_weights(static_cast<std::size_t>(checker.order().ranks()), kFirstWeight) {
     if (result.found()) lower(m_order.ranks(result));
     m_weights.front() = 0;
@@ -84,11 +83,11 @@ class Improvement {
     if (!inOrder || inOrder->empty()) return false;
     PlanResult best = withLegs(m_result, *inOrder, m_checker);
     lower(m_order.ranks(best));
-    const bool isBetter = offer(best, m_strict);
+    const bool isBetter = offer(best);
     for (int round = 0; round < kMostRounds; ++round) {
       PlanResult cheap = withLegs(m_result, *search.run({m_checker.order(), m_weights}), m_checker);
-      const auto over = m_strict.worseRank(m_order.ranks(cheap), m_least);
-      if (!over) return offer(cheap, m_strict) || isBetter;
+      const auto over = m_order.worseRank(m_order.ranks(cheap), m_least);
+      if (!over) return offer(cheap) || isBetter;
       m_weights[m_weights.size() - 1 - *over] *= kMoreWeight;
     }
     return isBetter;
@@ -101,15 +100,15 @@ class Improvement {
       return !m_order.worseRank(ranks, m_least) && !m_order.worseRank(ranks, before);
     });
     PlanResult offered = withLegs(m_result, legs, m_checker);
-    offer(offered, m_order);
+    offer(offered);
   }
 
   void lower(const Lengths& lengths) {
     m_least = m_least.empty() ? lengths : std::min(m_least, lengths);
   }
 
-  bool offer(PlanResult& offered, const PathOrder& order) {
-    const bool isBetter = order.isBetter(offered, m_result, m_least);
+  bool offer(PlanResult& offered) {
+    const bool isBetter = m_order.isBetter(offered, m_result, m_least);
     if (isBetter) m_result = std::move(offered);
     return isBetter;
   }
@@ -118,8 +117,7 @@ class Improvement {
   const EdgeChecker& m_checker;
   const ImprovementOptions& m_options;
   const PathOrder m_order;
-  const PathOrder m_strict;  ///< leaves to smoothing a part of the tolerance
-  Lengths m_least;           ///< by rank, that are known; empty: none
+  Lengths m_least;  ///< by rank, that are known; empty: none
   std::vector<Length> m_weights;
 };
 

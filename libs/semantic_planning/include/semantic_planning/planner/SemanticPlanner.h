@@ -25,8 +25,9 @@ struct PlannerOptions {
   bool shorten = false;
   /** With `shorten`: so many times the roadmap is made anew, finer and near the way of a vehicle
    * that turns on the spot, while there is no path or one that is longer than that way by a tenth,
-   * or by 0.3 m in a class. The best of all paths counts. Compressed and Full only. */
-  int refinements = 1;
+   * or by 0.3 m in a class. The best of all paths counts. Once in any case where there is no path.
+   * Compressed and Full only. */
+  int refinements = 0;
   /** With `shorten`, differences of the length in a class up to this (meters) do not matter: of
    * paths that differ by no more, the one that is driven best is taken (VehicleOptions), and the
    * roadmap's search rounds what an edge has of a class to a multiple. 0: exact. */
