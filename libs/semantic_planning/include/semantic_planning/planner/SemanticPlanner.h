@@ -31,7 +31,7 @@ struct PlannerOptions {
   /** With `shorten`, differences of the length in a class up to this (meters) do not matter: of
    * paths that differ by no more, the one that is driven best is taken (VehicleOptions), and the
    * roadmap's search rounds what an edge has of a class to a multiple. 0: exact. */
-  double classTolerance = 0.25;
+  double classTolerance = 0.2;
   /** Of a search, seconds. */
   double timeLimit = std::numeric_limits<double>::infinity();
   /** Asked often during a search, which stops when it answers true. */
