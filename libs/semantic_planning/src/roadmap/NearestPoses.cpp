@@ -87,12 +87,16 @@ void NearestPoses::offer(VertexId to, const Neighbor& neighbor) {
   m_changed.push_back(ordered(to, neighbor.id));
 }
 
+bool NearestPoses::mayCount(const PairBound& p) const {
+  const double bound = p.bound - kRounding;
+  return bound <= farthest(m_entries[p.a]) || bound <= farthest(m_entries[p.b]);
+}
+
 void NearestPoses::relax(std::vector<PairBound>& pairs) {
   std::sort(pairs.begin(), pairs.end());
   for (const PairBound& p : pairs) {
+    if (!mayCount(p)) continue;
     const Entry &a = m_entries[p.a], &b = m_entries[p.b];
-    const double bound = p.bound - kRounding;
-    if (bound > farthest(a) && bound > farthest(b)) continue;
     const double distance = PosePair(a.pose, b.pose).distance(m_reedsShepp);
     offer(p.a, {p.b, distance, b.pose});
     offer(p.b, {p.a, distance, a.pose});
@@ -108,8 +112,10 @@ std::vector<NearestPoses::PairBound> NearestPoses::pairsOf(const std::vector<Ver
   for (const VertexId a : open)
     forWithin(m_entries[a].pose.pose, radius, [&](VertexId b, double distance2) {
       if (a == b || distance2 <= beyond2 || (isOpen[b] && b < a)) return;
-      const double bound = m_reedsShepp.lowerBound(m_entries[a].pose.pose, m_entries[b].pose.pose);
-      if (bound <= m_radius) pairs.push_back({bound, a, b});
+      PairBound pair{std::sqrt(distance2), a, b};
+      if (!mayCount(pair)) return;
+      pair.bound = m_reedsShepp.lowerBound(m_entries[a].pose.pose, m_entries[b].pose.pose);
+      if (pair.bound <= m_radius && mayCount(pair)) pairs.push_back(pair);
     });
   return pairs;
 }
@@ -141,8 +147,11 @@ std::vector<NearestPoses::Pair> NearestPoses::insert(const std::vector<VertexId>
                                                      const std::vector<GroundPose>& poses) {
   const bool first = m_present == 0;
   for (std::size_t i = 0; i < ids.size(); ++i) place(ids[i], poses[i]);
+  complete(ids, firstRadius());
+  if (first) return takeChanged();
   // New poses may be neighbors of what is farther from them than their own neighbors.
-  complete(ids, first ? firstRadius() : m_radius);
+  std::vector<PairBound> pairs = pairsOf(ids, -1, m_radius);
+  relax(pairs);
   return takeChanged();
 }
 

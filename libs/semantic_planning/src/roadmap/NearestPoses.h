@@ -62,11 +62,13 @@ class NearestPoses {
   /** Only poses nearer than this can become its neighbors. */
   double farthest(const Entry& entry) const;
   void offer(VertexId to, const Neighbor& neighbor);
+  /** Whether one of a pair may still become the other's neighbor: less and less so. */
+  bool mayCount(const PairBound& pair) const;
   /** Solves for the pairs' distances, most promising first, where they may still count. */
   void relax(std::vector<PairBound>& pairs);
   void place(VertexId id, const GroundPose& pose);
   void forget(VertexId id);
-  /** Pairs that are farther than `beyond`, up to `radius`, for the entries still `open`. */
+  /** Pairs that may count, farther than `beyond`, up to `radius`, for the entries still `open`. */
   std::vector<PairBound> pairsOf(const std::vector<VertexId>& open, double beyond,
                                  double radius) const;
   double firstRadius() const;
