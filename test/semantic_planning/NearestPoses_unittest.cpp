@@ -20,25 +20,21 @@ class NearestPosesTest : public testing::Test {
  protected:
   TPose2D randomPose() { return {m_at(m_random), m_at(m_random), m_heading(m_random)}; }
 
-  void insert(int count) {
-    std::vector<VertexId> ids;
+  /** New poses take the ids of those that go, as they do in a graph. */
+  void replace(int removed, int inserted) {
+    std::vector<VertexId> gone, ids;
     std::vector<GroundPose> poses;
-    for (int i = 0; i < count; ++i) {
-      ids.push_back(m_next++);
+    for (int i = 0; i < removed && !m_poses.empty(); ++i) {
+      auto victim = std::next(m_poses.begin(), static_cast<int>(m_random() % m_poses.size()));
+      gone.push_back(victim->first);
+      m_poses.erase(victim);
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(inserted); ++i) {
+      ids.push_back(i < gone.size() ? gone[i] : m_next++);
       poses.push_back({randomPose(), 0});
       m_poses[ids.back()] = poses.back().pose;
     }
-    nearest.insert(ids, poses);
-  }
-
-  void remove(int count) {
-    std::vector<VertexId> ids;
-    for (int i = 0; i < count && !m_poses.empty(); ++i) {
-      auto victim = std::next(m_poses.begin(), static_cast<int>(m_random() % m_poses.size()));
-      ids.push_back(victim->first);
-      m_poses.erase(victim);
-    }
-    nearest.remove(ids);
+    nearest.replace(gone, ids, poses);
   }
 
   void expectLikeBruteForce() {
@@ -70,22 +66,21 @@ class NearestPosesTest : public testing::Test {
 }  // namespace
 
 TEST_F(NearestPosesTest, areThoseOfBruteForceWhenInsertedAtOnce) {
-  insert(300);
+  replace(0, 300);
   expectLikeBruteForce();
 }
 
 TEST_F(NearestPosesTest, areThoseOfBruteForceWhilePosesComeAndGo) {
-  insert(60);
-  for (int round = 0; round < 12; ++round) {
-    remove(9);
-    expectLikeBruteForce();
-    insert(11);
-    expectLikeBruteForce();
-  }
+  replace(0, 60);
+  for (int round = 0; round < 6; ++round)
+    for (const auto& [removed, inserted] : {std::pair(9, 0), {0, 11}, {9, 11}, {11, 9}}) {
+      replace(removed, inserted);
+      expectLikeBruteForce();
+    }
 }
 
 TEST_F(NearestPosesTest, thoseOfAForeignPoseAreTheNearest) {
-  insert(200);
+  replace(0, 200);
   for (int i = 0; i < 20; ++i) {
     const GroundPose pose{randomPose(), 0};
     const auto found = nearest.nearestTo(pose, 7);

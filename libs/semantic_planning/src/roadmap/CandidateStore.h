@@ -9,12 +9,13 @@
 
 namespace semantic_planning {
 
-/** The candidate points of GraphKind::Compressed, Leaves and Full, which depend on the map and not on start
- * and goal: each tile's are looked for once and kept until the map changes there. Other kinds have
- * none. */
+/** The candidate points of GraphKind::Compressed, Leaves and Full, which depend on the map and not
+ * on start and goal: each tile's are looked for once and kept until the map changes there. Other
+ * kinds have none. */
 class CandidateStore {
  public:
-  /** \param map, ground must outlive the store; with kinds of the tree (isOfTree) the map keeps G-values.
+  /** \param map, ground must outlive the store; with kinds of the tree (isOfTree) the map keeps
+   * G-values.
    */
   CandidateStore(semantic_octree::SemanticOcTree& map, const Ground& ground,
                  const RoadmapOptions& options);

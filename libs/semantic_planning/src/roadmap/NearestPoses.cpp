@@ -143,37 +143,33 @@ void NearestPoses::complete(std::vector<VertexId> open, double radius) {
   }
 }
 
-std::vector<NearestPoses::Pair> NearestPoses::insert(const std::vector<VertexId>& ids,
-                                                     const std::vector<GroundPose>& poses) {
+std::vector<NearestPoses::VertexId> NearestPoses::dropForgotten() {
+  std::vector<VertexId> lacking;
+  for (VertexId id = 0; id < m_entries.size(); ++id) {
+    std::vector<Neighbor>& nearest = m_entries[id].nearest;
+    const auto lost = std::stable_partition(nearest.begin(), nearest.end(),
+                                            [&](const Neighbor& n) { return contains(n.id); });
+    if (lost == nearest.end()) continue;
+    if (isFull(m_entries[id])) lacking.push_back(id);
+    for (auto n = lost; n != nearest.end(); ++n) m_changed.push_back(ordered(id, n->id));
+    nearest.erase(lost, nearest.end());
+  }
+  return lacking;
+}
+
+std::vector<NearestPoses::Pair> NearestPoses::replace(const std::vector<VertexId>& removed,
+                                                      const std::vector<VertexId>& ids,
+                                                      const std::vector<GroundPose>& poses) {
+  for (const VertexId id : removed) forget(id);
+  std::vector<VertexId> open = dropForgotten();
   const bool first = m_present == 0;
   for (std::size_t i = 0; i < ids.size(); ++i) place(ids[i], poses[i]);
-  complete(ids, firstRadius());
+  open.insert(open.end(), ids.begin(), ids.end());
+  complete(std::move(open), firstRadius());
   if (first) return takeChanged();
   // New poses may be neighbors of what is farther from them than their own neighbors.
   std::vector<PairBound> pairs = pairsOf(ids, -1, m_radius);
   relax(pairs);
-  return takeChanged();
-}
-
-std::vector<NearestPoses::Pair> NearestPoses::remove(const std::vector<VertexId>& ids) {
-  std::vector<VertexId> lacking;
-  for (const VertexId id : ids) {
-    const TPose2D pose = m_entries[id].pose.pose;
-    forget(id);
-    forWithin(pose, m_radius, [&](VertexId other, double) {
-      std::vector<Neighbor>& nearest = m_entries[other].nearest;
-      const auto lost = std::find_if(nearest.begin(), nearest.end(),
-                                     [&](const Neighbor& n) { return n.id == id; });
-      if (lost == nearest.end()) return;
-      if (isFull(m_entries[other])) lacking.push_back(other);
-      nearest.erase(lost);
-      m_changed.push_back(ordered(id, other));
-    });
-  }
-  lacking.erase(
-      std::remove_if(lacking.begin(), lacking.end(), [this](VertexId id) { return !contains(id); }),
-      lacking.end());
-  complete(lacking, firstRadius());
   return takeChanged();
 }
 

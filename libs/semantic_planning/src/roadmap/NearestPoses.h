@@ -28,9 +28,10 @@ class NearestPoses {
   /** \param reedsShepp must outlive this. */
   NearestPoses(const ReedsShepp& reedsShepp, int neighbors, double radius);
 
-  /** Both return the pairs that may have become, or ceased to be, neighbors; sorted. */
-  std::vector<Pair> insert(const std::vector<VertexId>& ids, const std::vector<GroundPose>& poses);
-  std::vector<Pair> remove(const std::vector<VertexId>& ids);
+  /** Removes some, then inserts others, which may have their ids.
+   * \return the pairs that may have become, or ceased to be, neighbors; sorted */
+  std::vector<Pair> replace(const std::vector<VertexId>& removed, const std::vector<VertexId>& ids,
+                            const std::vector<GroundPose>& poses);
 
   bool contains(VertexId v) const { return v < m_entries.size() && m_entries[v].present; }
   const GroundPose& pose(VertexId v) const { return m_entries[v].pose; }
@@ -68,6 +69,8 @@ class NearestPoses {
   void relax(std::vector<PairBound>& pairs);
   void place(VertexId id, const GroundPose& pose);
   void forget(VertexId id);
+  /** Takes what is not present any more out of all lists. \return whose were full */
+  std::vector<VertexId> dropForgotten();
   /** Pairs that may count, farther than `beyond`, up to `radius`, for the entries still `open`. */
   std::vector<PairBound> pairsOf(const std::vector<VertexId>& open, double beyond,
                                  double radius) const;

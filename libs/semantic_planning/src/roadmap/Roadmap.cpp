@@ -54,26 +54,21 @@ void Roadmap::keepPose(VertexId v, const GroundPose& pose) {
   m_poses[v] = pose;
 }
 
-std::vector<Roadmap::VertexId> Roadmap::add(const std::vector<GroundPose>& poses,
-                                            const std::vector<ClassId>& classes) {
+std::vector<Roadmap::VertexId> Roadmap::replace(const std::vector<VertexId>& removed,
+                                                const std::vector<GroundPose>& poses,
+                                                const std::vector<ClassId>& classes) {
+  for (const VertexId v : removed) {
+    m_counts.edgesRemoved += m_graph.incident(v).size();
+    m_graph.removeVertex(v);
+  }
   std::vector<VertexId> ids;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     ids.push_back(m_graph.addVertex(classes[i]));
     keepPose(ids.back(), poses[i]);
   }
-  reconcile(m_nearest->insert(ids, poses));
+  reconcile(m_nearest->replace(removed, ids, poses));
   reconcileQueryVertices();
   return ids;
-}
-
-void Roadmap::remove(const std::vector<VertexId>& vertices) {
-  const auto pairs = m_nearest->remove(vertices);
-  for (const VertexId v : vertices) {
-    m_counts.edgesRemoved += m_graph.incident(v).size();
-    m_graph.removeVertex(v);
-  }
-  reconcile(pairs);
-  reconcileQueryVertices();
 }
 
 Roadmap::VertexId Roadmap::addQueryVertex(const GroundPose& pose) {

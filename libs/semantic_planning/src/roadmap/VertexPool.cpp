@@ -104,9 +104,8 @@ void VertexPool::apply() {
     poses.push_back(member.candidate.pose);
     classes.push_back(classOf(member.candidate));
   }
-  if (!m_toRemove.empty()) m_roadmap.remove(m_toRemove);
-  if (!poses.empty()) {
-    const auto ids = m_roadmap.add(poses, classes);
+  if (!poses.empty() || !m_toRemove.empty()) {
+    const auto ids = m_roadmap.replace(m_toRemove, poses, classes);
     for (std::size_t i = 0; i < ids.size(); ++i) m_members[inserted[i]].vertex = ids[i];
   }
   m_counts.inserted += poses.size();

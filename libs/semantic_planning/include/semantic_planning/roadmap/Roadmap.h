@@ -34,12 +34,11 @@ class Roadmap {
   Roadmap(const EdgeChecker& checker, const RoadmapOptions& options);
   ~Roadmap();
 
-  /** Inserts vertices and connects them. \param classes of the vertices, one for each pose.
-   * \return their ids */
-  std::vector<VertexId> add(const std::vector<GroundPose>& poses,
-                            const std::vector<ClassId>& classes);
-  /** Removes vertices; those that were near them get other neighbors. */
-  void remove(const std::vector<VertexId>& vertices);
+  /** Removes vertices, then inserts others; those that are near them get other neighbors.
+   * \param classes of the new vertices, one for each pose. \return their ids */
+  std::vector<VertexId> replace(const std::vector<VertexId>& removed,
+                                const std::vector<GroundPose>& poses,
+                                const std::vector<ClassId>& classes);
 
   VertexId addQueryVertex(const GroundPose& pose);
   void removeQueryVertex(VertexId v);
