@@ -1,7 +1,9 @@
 #include "PlanFiles.h"
 
 #include <semantic_planning/planner/OrderFile.h>
+#include <semantic_planning/roadmap/MrptGraph.h>
 #include <strict_files/Csv.h>
+#include <strict_files/TextFile.h>
 
 #include <cmath>
 #include <iomanip>
@@ -74,6 +76,17 @@ json toJson(const PlanResult& plan, const colored_graph::ClassOrder& order,
           {"edgesEvaluated", plan.search.edgesEvaluated},
           {"expansions", plan.search.expansions},
           {"milliseconds", timesOf(plan.times)}};
+}
+
+void saveNetwork(const semantic_planning::Roadmap& roadmap, const ClassTable& classes,
+                 const std::filesystem::path& file) {
+  std::vector<std::string> names;
+  for (int id = 0; id <= classes.size(); ++id)
+    names.push_back(groundName(static_cast<semantic_types::ClassId>(id), classes));
+  std::ostringstream out;
+  out << std::setprecision(10);
+  toNetwork(roadmap, names).writeAsText(out);
+  strict_files::writeText(file, out.str());
 }
 
 }  // namespace semantic_map_plan

@@ -1,8 +1,10 @@
 #pragma once
 #include <semantic_planning/planner/PlanResult.h>
+#include <semantic_planning/roadmap/Roadmap.h>
 #include <semantic_types/ClassTable.h>
 
 #include <colored_graph/ClassOrder.h>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -18,5 +20,9 @@ std::string toCsv(const semantic_planning::PlanResult& plan,
 nlohmann::json toJson(const semantic_planning::PlanResult& plan,
                       const colored_graph::ClassOrder& order,
                       const semantic_types::ClassTable& classes);
+
+/** As MRPT's .graph file. */
+void saveNetwork(const semantic_planning::Roadmap& roadmap,
+                 const semantic_types::ClassTable& classes, const std::filesystem::path& file);
 
 }  // namespace semantic_map_plan

@@ -27,7 +27,8 @@ using semantic_octree::AbstractionOptions;
 using semantic_octree::SemanticOcTree;
 
 constexpr int kNoPath = 2;  // exit status
-const std::vector<std::string> kFiles = {"path.json", "path.csv", "plan.png", "plan.3Dscene"};
+const std::vector<std::string> kFiles = {"path.json", "path.csv", "plan.png", "plan.3Dscene",
+                                         "roadmap.graph"};
 
 /** All results; of a plan that failed all but the path itself. */
 void write(const Cli& cli, const SemanticOcTree& map, const SemanticPlanner& planner,
@@ -38,6 +39,8 @@ void write(const Cli& cli, const SemanticOcTree& map, const SemanticPlanner& pla
   map_pictures::savePicture(drawPlan(map, planner, plan, cli.start, cli.goal),
                             output.staged("plan.png"));
   saveScene(map, planner, plan, output.staged("plan.3Dscene"));
+  if (planner.hasRoadmap())
+    saveNetwork(planner.roadmap(), map.classes(), output.staged("roadmap.graph"));
   output.commit(kFiles);
 }
 

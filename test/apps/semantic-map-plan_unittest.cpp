@@ -6,6 +6,7 @@
 
 #include "../semantic_planning/PaintedWorld.h"
 #include "RunProgram.h"
+#include "ShellCommand.h"
 #include "TemporaryFolder.h"
 
 namespace {
@@ -64,8 +65,21 @@ TEST_F(SemanticMapPlan, writesPathReportPictureAndScene) {
   EXPECT_EQ(csv.substr(0, csv.find('\n')), "x,y,z,heading,curvature,gear,class,arc_length");
   EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 160);
   EXPECT_TRUE(contains(csv, ",forward,road,"));
-  for (const char* name : {"plan.png", "plan.3Dscene"})
+  for (const char* name : {"plan.png", "plan.3Dscene", "roadmap.graph"})
     EXPECT_GT(folder.read(std::string("out/") + name).size(), 1000u) << name;
+}
+
+TEST_F(SemanticMapPlan, writesTheRoadmapForApplicationsOfMrpt) {
+  ASSERT_EQ(run("-8,0,0", "8,0,0").status, 0);
+  const std::string graph = folder.read("out/roadmap.graph");
+  EXPECT_TRUE(contains(graph, " | class road\n"));
+  EXPECT_TRUE(contains(graph, " | class grass\n"));
+  if (!std::filesystem::exists("/usr/bin/graph-slam"))
+    GTEST_SKIP() << "needs graph-slam (mrpt-apps)";
+  const CommandRun info = runCommand("/usr/bin/graph-slam --2d --info -i '" +
+                                     (folder / "out/roadmap.graph").string() + "'");
+  EXPECT_EQ(info.status, 0) << info.output;
+  EXPECT_TRUE(contains(info.output, "202")) << info.output;
 }
 
 TEST_F(SemanticMapPlan, everyKindOfGraphEdgeCostAndReadingIsKnown) {

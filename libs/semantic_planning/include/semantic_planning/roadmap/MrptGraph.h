@@ -2,12 +2,26 @@
 #include <mrpt/graphs/CNetworkOfPoses.h>
 #include <semantic_planning/roadmap/Roadmap.h>
 
+#include <string>
+#include <vector>
+
 namespace semantic_planning {
 
-/** A roadmap as MRPT knows graphs: nodes with their global poses, and for each usable or
- * unevaluated edge the pose of its end as seen from its start. Classes do not fit in.
- * Its saveToTextFile() writes a .graph file. */
-mrpt::graphs::CNetworkOfPoses2D toNetwork(const Roadmap& roadmap);
+/** What a network's node says of its class: "class road" behind the pose in a .graph file. */
+struct VertexClass : mrpt::graphs::detail::TNodeAnnotations {
+  std::string name;
+  void getAnnotsAsString(std::string* text) const override { *text = "class " + name; }
+};
+
+using ClassNetwork =
+    mrpt::graphs::CNetworkOfPoses<mrpt::poses::CPose2D, mrpt::containers::map_traits_stdmap,
+                                  VertexClass>;
+
+/** A roadmap as MRPT knows graphs: nodes with their global poses and classes, and for each usable
+ * or unevaluated edge the pose of its end as seen from its start. saveToTextFile() writes a .graph
+ * file, which CNetworkOfPoses2D and MRPT's applications read.
+ * \param classNames by class id. */
+ClassNetwork toNetwork(const Roadmap& roadmap, const std::vector<std::string>& classNames);
 
 /** The graph of a network, such as loadFromTextFile() reads, with vertices on the ground.
  * Edges are unevaluated, their lower bound is the vehicle's shortest curve. */
