@@ -48,6 +48,47 @@ TEST_F(GuideSearch, findsTheOnlyWayAroundTheWorstClassAndThePathFollows) {
   }
 }
 
+TEST_F(GuideSearch, aWayAroundThatLeavesTheBufferIsTakenForItsClasses) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Mud);
+  world.floor(-15, -12, -15, 15, PaintedWorld::Road);
+  world.floor(-15, 15, 12, 15, PaintedWorld::Road);
+  world.floor(-15, 15, -15, -12, PaintedWorld::Road);
+  world.floor(12, 15, -15, 15, PaintedWorld::Road);
+  world.floor(-2, 2, -15, -11, PaintedWorld::Mud);  // straight on
+  options.shorten = true;
+  options.roadmap.buffer = 15;
+  start = {-10, -13.5, 0};
+  goal = {10, -13.5, 0};
+  const PlanResult found = plan();
+  expectDrivable(found);
+  EXPECT_LE(meters(found.path, PaintedWorld::Mud), options.classTolerance);
+}
+
+TEST_F(GuideSearch, theOnlyWayAroundIsFoundHoweverFarOff) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  world.box(-1, -0.6, -15, 12, 0, 2, PaintedWorld::Wall);
+  options.shorten = true;
+  start = {-5, -13, 0};
+  goal = {5, -13, 0};
+  for (const double buffer : {0.0, 3.0, std::numeric_limits<double>::infinity()}) {
+    options.roadmap.buffer = buffer;
+    const PlanResult found = plan();
+    expectDrivable(found);
+    EXPECT_GT(found.length, 45) << buffer;
+  }
+}
+
+TEST_F(GuideSearch, anInfiniteBufferTakesAllOfTheMapWhateverTheGraph) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  start = {-5, -13, 0};
+  goal = {5, -13, 0};
+  options.roadmap.buffer = std::numeric_limits<double>::infinity();
+  for (const auto& [name, kind] : choicesOf(GraphKind())) {
+    options.roadmap.kind = kind;
+    EXPECT_TRUE(plan().found()) << name;
+  }
+}
+
 TEST_F(GuideSearch, tellsItsLengthInEachRank) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Road);
   world.floor(-3, -1, -15, 15, PaintedWorld::Grass);

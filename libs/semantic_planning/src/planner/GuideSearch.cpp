@@ -59,21 +59,20 @@ class GuideSearch {
       m_weights.push_back(rank == 0 ? 1 : m_weights.back() * factor);
   }
 
-  /** From one to the other. */
-  Guide run(const GroundPose& start, const GroundPose& goal) {
+  /** From one to the other, if there is a way. */
+  void run(const GroundPose& start, const GroundPose& goal, Guide& guide) {
     const int from = cellOf(start);
     m_goal = cellOf(goal);
-    if (from == GuideRaster::kNone || m_goal == GuideRaster::kNone) return {};
+    if (from == GuideRaster::kNone || m_goal == GuideRaster::kNone) return;
     reach(from, {0, GuideRaster::kNone, 0, false});
     while (!m_queue.empty()) {
       const Entry entry = m_queue.top();
       m_queue.pop();
-      if (entry.cell == m_goal) return guideTo(m_goal);
+      if (entry.cell == m_goal) return traceTo(m_goal, guide);
       if (label(entry.cell).done) continue;
       label(entry.cell).done = true;
       for (std::size_t i = 0; i < m_steps.size(); ++i) take(i, entry.cell);
     }
-    return {};
   }
 
  private:
@@ -154,8 +153,7 @@ class GuideSearch {
     return p;
   }
 
-  Guide guideTo(int cell) {
-    Guide guide;
+  void traceTo(int cell, Guide& guide) {
     guide.lengthPerRank.resize(m_weights.size());
     for (; cell != GuideRaster::kNone; cell = label(cell).before) {
       guide.path.push_back(pointAt(cell));
@@ -168,7 +166,6 @@ class GuideSearch {
           static_cast<double>(length) / kStraight * m_checker.ground().voxelSize();
     }
     std::reverse(guide.path.begin(), guide.path.end());
-    return guide;
   }
 
   const EdgeChecker& m_checker;
@@ -184,9 +181,11 @@ class GuideSearch {
 
 Guide searchGuide(const EdgeChecker& checker, const PlanningRegion& region, const GroundPose& start,
                   const GroundPose& goal) {
-  Guide guide = GuideSearch(checker, region).run(start, goal);
+  Guide guide{region, {}, {}};
   std::vector<PathPoint>& path = guide.path;
-  if (path.size() < 2) return {};
+  GuideSearch(checker, region).run(start, goal, guide);
+  if (path.size() < 2) path.clear();
+  if (path.empty()) return guide;
   for (std::size_t i = 1; i < path.size(); ++i) {
     PathPoint &a = path[i - 1], &b = path[i];
     b.arcLength = a.arcLength + std::hypot(b.x - a.x, b.y - a.y);

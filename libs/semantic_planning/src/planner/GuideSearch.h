@@ -10,6 +10,7 @@ namespace semantic_planning {
 
 /** The way of a vehicle that could turn on the spot. */
 struct Guide {
+  PlanningRegion region;        ///< in which it was looked for
   std::vector<PathPoint> path;  ///< headings are those of travel; empty if there is no way
   /** Of the path, by rank, best first; meters. */
   std::vector<double> lengthPerRank;

@@ -16,8 +16,21 @@ bool PlannerCore::mayImprove(const PlanResult& result) const {
                               result.status == PlanStatus::OnlyForbidden;
 }
 
+/** Farther off than vertices lie, for it costs less than they do; if there is no way, wherever
+ * there is ground. */
+Guide PlannerCore::searchWideGuide() const {
+  const std::size_t all = m_roadmap->reachable(*m_goalPose) ? m_ground.tiles().size() : 0;
+  constexpr double kLeast = 1;  // m
+  for (double buffer = m_options.roadmap.buffer;;) {
+    buffer = std::max(kLeast, 2 * buffer);
+    const PlanningRegion region(m_startPose->pose, m_goalPose->pose, buffer);
+    Guide guide = searchGuide(m_checker, region, *m_startPose, *m_goalPose);
+    if (!guide.path.empty() || tilesIn(region, m_ground).size() >= all) return guide;
+  }
+}
+
 void PlannerCore::improve(StageClock& clock, PlanResult& result) {
-  const Guide guide = searchGuide(m_checker, m_roadmap->region(), *m_startPose, *m_goalPose);
+  const Guide guide = searchWideGuide();
   clock.end("guide");
   const ImprovementOptions options{m_options.roadmap.longestEdge, m_options.classTolerance};
   PathOrder::Lengths least;
@@ -58,7 +71,7 @@ PlanResult PlannerCore::refined(const Guide& guide, int round, const PlanResult&
   options.headings *= 2;
   options.vertices = kVertices << round;
   MapRoadmap fine(m_candidates, m_checker, options, *m_startPose,
-                  m_roadmap->region().near(path, kDistance));
+                  guide.region.near(path, kDistance));
   const VertexId start = fine.roadmap().addQueryVertex(*m_startPose);
   const VertexId goal = fine.roadmap().addQueryVertex(*m_goalPose);
   PlanResult result = before;

@@ -72,6 +72,7 @@ class PlannerCore {
   void moveStart(Roadmap& map);
   bool mayImprove(const PlanResult& result) const;
   void improve(StageClock& clock, PlanResult& result);
+  Guide searchWideGuide() const;
   bool mayBeBetter(const PlanResult& result, const Guide& guide) const;
   /** What the best path is of a graph that is finer near a guide. */
   PlanResult refined(const Guide& guide, int round, const PlanResult& before);

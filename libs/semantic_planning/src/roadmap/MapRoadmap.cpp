@@ -37,14 +37,14 @@ MapRoadmap::MapRoadmap(CandidateStore& store, const EdgeChecker& checker,
   m_pool.apply();
 }
 
-bool MapRoadmap::reachable(const Candidate& candidate) const {
+bool MapRoadmap::reachable(const GroundPose& pose) const {
   const Ground& ground = m_checker.ground();
   const auto pointAt = [&](const GroundPose& p) {
     const Column column = ground.columnAt(p.pose.x, p.pose.y);
     const Surface* s = ground.near(column, p.z, ground.step());
     return s ? std::optional<GroundPoint>({column, *s}) : std::nullopt;
   };
-  const auto from = pointAt(m_start), to = pointAt(candidate.pose);
+  const auto from = pointAt(m_start), to = pointAt(pose);
   return from && to && ground.connected(*from, *to);
 }
 
@@ -52,7 +52,7 @@ std::size_t MapRoadmap::take(const CandidatePoint& point, std::size_t most) {
   std::size_t usable = 0;
   for (const Candidate& candidate : candidatesAt(point, m_checker, m_options)) {
     const auto& pose = candidate.pose.pose;
-    if (usable == most || !m_region.contains(pose.x, pose.y) || !reachable(candidate)) break;
+    if (usable == most || !m_region.contains(pose.x, pose.y) || !reachable(candidate.pose)) break;
     m_pool.add(candidate, point);
     usable += m_pool.isUsable(candidate);
   }
@@ -92,7 +92,7 @@ void MapRoadmap::takeHalton() {
   drawHalton({m_checker.ground(), m_options, m_region}, m_checker.order(),
              [&](const std::optional<Candidate>& candidate) {
                ++draws;
-               if (candidate && reachable(*candidate)) {
+               if (candidate && reachable(candidate->pose)) {
                  m_pool.add(*candidate);
                  usable += m_pool.isUsable(*candidate);
                }

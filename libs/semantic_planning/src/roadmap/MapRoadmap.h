@@ -15,14 +15,14 @@ class MapRoadmap {
 
   Roadmap& roadmap() { return m_roadmap; }
   const Roadmap& roadmap() const { return m_roadmap; }
-  const PlanningRegion& region() const { return m_region; }
+  /** Whether the ground connects it with the start. */
+  bool reachable(const GroundPose& pose) const;
   VertexPool::Counts takeVertexCounts() { return m_pool.takeCounts(); }
 
   /** The ground changed in these tiles, and so did points. */
   void update(const std::vector<Column>& changedTiles, const CandidateStore::Change& points);
 
  private:
-  bool reachable(const Candidate& candidate) const;
   /** \return how many vertices it gives now, at most `most` */
   std::size_t take(const CandidatePoint& point, std::size_t most);
   std::vector<CandidatePoint> turnedPoints(const std::vector<Column>& tiles) const;

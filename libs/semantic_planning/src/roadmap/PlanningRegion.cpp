@@ -20,8 +20,8 @@ PlanningRegion::PlanningRegion(const TPose2D& start, const TPose2D& goal, double
 bool PlanningRegion::contains(double x, double y, double margin) const {
   const double dx = x - m_corner.x, dy = y - m_corner.y;
   const double along = m_along.x * dx + m_along.y * dy, across = m_along.x * dy - m_along.y * dx;
-  const bool isWithin = along >= -margin && along <= m_length + margin && across >= -margin &&
-                        across <= m_width + margin;
+  const bool isWithin = std::isinf(m_length) || (along >= -margin && along <= m_length + margin &&
+                                                 across >= -margin && across <= m_width + margin);
   return isWithin &&
          (m_path.empty() || std::any_of(m_path.begin(), m_path.end(), [&](const TPoint2D& p) {
             return std::hypot(p.x - x, p.y - y) <= m_distance + margin;

@@ -2,12 +2,13 @@
 #include <mrpt/math/TPose2D.h>
 #include <semantic_planning/ground/Ground.h>
 
+#include <cmath>
 #include <vector>
 
 namespace semantic_planning {
 
-/** A rectangle along the line from start to goal, with a buffer on all sides; or what of it is near
- * to a path. */
+/** A rectangle along the line from start to goal, with a buffer on all sides, which may be
+ * infinite; or what of it is near to a path. */
 class PlanningRegion {
  public:
   PlanningRegion(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, double buffer);
@@ -17,7 +18,8 @@ class PlanningRegion {
 
   /** \param margin that a point may lie outside, meters */
   bool contains(double x, double y, double margin = 0) const;
-  /** \param u, v in [0, 1], along the line and across. */
+  bool isEverywhere() const { return std::isinf(m_length) && m_path.empty(); }
+  /** \param u, v in [0, 1], along the line and across; of a finite rectangle. */
   mrpt::math::TPoint2D at(double u, double v) const;
 
  private:
