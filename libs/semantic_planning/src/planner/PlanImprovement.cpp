@@ -37,8 +37,11 @@ void PlannerCore::improve(StageClock& clock, PlanResult& result) {
   improvePath(result, least, guide.path, m_checker, options);
   clock.end("shorten");
   const PathOrder order(m_checker, m_options.classTolerance);
-  const int rounds = result.found() ? m_options.refinements : std::max(1, m_options.refinements);
-  for (int i = 0; i < rounds && mayBeBetter(result, guide); ++i) {
+  constexpr int kWithoutPath = 3;
+  const auto most = [&] {
+    return result.found() ? m_options.refinements : std::max(kWithoutPath, m_options.refinements);
+  };
+  for (int i = 0; i < most() && mayBeBetter(result, guide); ++i) {
     PlanResult offered = refined(guide, i, result);
     improvePath(offered, least, {}, m_checker, options);
     if (order.isBetter(offered, result, least)) result = std::move(offered);

@@ -25,8 +25,8 @@ struct PlannerOptions {
   bool shorten = false;
   /** With `shorten`: so many times the roadmap is made anew, finer and near the way of a vehicle
    * that turns on the spot, while there is no path or one that is longer than that way by a tenth,
-   * or by 0.3 m in a class. The best of all paths counts. Once in any case where there is no path.
-   * Compressed and Full only. */
+   * or by 0.3 m in a class. The best of all paths counts. Up to three times in any case while there
+   * is no path. Compressed and Full only. */
   int refinements = 0;
   /** With `shorten`, differences of the length in a class up to this (meters) do not matter: of
    * paths that differ by no more, the one that is driven best is taken (VehicleOptions), and the
@@ -57,16 +57,15 @@ class PlannerCore;
  *
  * A plan to another goal makes a roadmap of its own. What does not depend on start and goal is kept
  * for the next plan until the map changes there: points for vertices, and what was found about
- * edges; answers are those of a new planner. One that runs out of memory, or whose `cancelled` throws, is
- * broken: all further calls throw std::logic_error. Not thread safe; the map must not change during a
- * call, and what a planner's map tells about its changes (takeTouchedTiles(),
+ * edges; answers are those of a new planner. One that runs out of memory, or whose `cancelled`
+ * throws, is broken: all further calls throw std::logic_error. Not thread safe; the map must not
+ * change during a call, and what a planner's map tells about its changes (takeTouchedTiles(),
  * Abstraction::takeChange()) is for one planner only. */
 class SemanticPlanner {
  public:
-  /** \param map must outlive the planner. With a graph of the tree (isOfTree) it has to keep G-values
-   * (SemanticOcTree::setAbstraction).
-   * \param order over the map's class ids, 0 = unknown ground (loadClassOrder)
-   * \throw std::invalid_argument bad options, or an order of other classes
+  /** \param map must outlive the planner. With a graph of the tree (isOfTree) it has to keep
+   * G-values (SemanticOcTree::setAbstraction). \param order over the map's class ids, 0 = unknown
+   * ground (loadClassOrder) \throw std::invalid_argument bad options, or an order of other classes
    * \throw std::logic_error the map keeps no G-values and the roadmap needs them. */
   SemanticPlanner(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
                   const PlannerOptions& options = {});
