@@ -43,12 +43,12 @@ Layer::Layer(const std::filesystem::path& file)
 void Layer::count() {
   m_leavesOfClass.assign(std::size_t(m_map->numClasses()) + 1, 0);
   std::array<std::vector<float>, 3> places;
-  for (auto leaf = m_map->begin_leafs(); leaf != m_map->end_leafs(); ++leaf) {
-    if (!m_map->isNodeOccupied(*leaf)) continue;
-    ++m_leavesOfClass[m_map->query(*leaf).likeliestClass];
-    const octomap::point3d center = leaf.getCoordinate();
-    for (unsigned axis = 0; axis < 3; ++axis) places[axis].push_back(center(axis));
-  }
+  map_view::forEachOccupiedLeaf(*m_map, [&](const map_view::ViewCell& leaf) {
+    ++m_leavesOfClass[m_look.classOf(leaf)];
+    for (int axis = 0; axis < 3; ++axis)
+      places[std::size_t(axis)].push_back(
+          float(semantic_octree::centerOf(leaf.lowest[axis], m_map->getResolution(), leaf.depth)));
+  });
   if (places[0].empty()) return;
   Eigen::Vector3d low, high;
   for (int axis = 0; axis < 3; ++axis)

@@ -13,11 +13,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/** Cells are at least so large, pixels: while the camera moves, and when it rests for a while (s).
+/** Cells are at least so large, pixels: at once after a change, while the camera moves, and when it
+ * rests for a while (s). */
+constexpr double kHurrying = 12, kMoving = 6, kResting = 4, kRest = 0.2;
+/** For meshes in each frame, so that the window answers meanwhile: at once after a change, and
+ * else.
  */
-constexpr double kMoving = 6, kResting = 4, kRest = 0.2;
-/** For meshes in each frame, so that the window answers meanwhile. */
-constexpr double kMilliseconds = 30;
+constexpr double kHurry = 12, kMilliseconds = 30;
 
 }  // namespace
 
@@ -42,7 +44,17 @@ bool Viewer::frame() {
   m_camera = camera;
   const bool moves = glfwGetTime() < m_restAt;
   if (moves) view.pixelsPerCell = kMoving;
-  return !m_window.tiles().update(layer(), view, kMilliseconds) || moves;
+  if (m_hurries) view.pixelsPerCell = kHurrying;
+  const double time = m_hurries ? kHurry : kMilliseconds;
+  const bool ready = m_window.tiles().update(layer(), view, time) && !moves && !m_hurries;
+  m_hurries = false;
+  return !ready;
+}
+
+void Viewer::changed(const std::vector<map_view::KeyBox>& boxes) {
+  m_window.tiles().touch(boxes);
+  m_window.redraw();
+  m_hurries = !boxes.empty();
 }
 
 void Viewer::activate(std::size_t layer) {
@@ -94,8 +106,8 @@ void Viewer::showFull() {
   m_window.redraw();
 }
 
-void Viewer::showCompressed() {
-  layer().setCells(std::make_unique<map_view::CompressedCells>(layer().map()));
+void Viewer::showCompressed(const map_view::LiveCompression& compression) {
+  layer().setCells(std::make_unique<map_view::CompressedCells>(layer().map(), compression));
   m_window.tiles().touch();
   m_window.redraw();
 }

@@ -25,7 +25,10 @@ class Viewer {
   void setStyle(const map_view::ViewStyle& style);
   /** The leaves of the map, or of its compressed tree. */
   void showFull();
-  void showCompressed();
+  void showCompressed(const map_view::LiveCompression& compression);
+  /** Cells in some boxes look otherwise from now on: the next frame shows that, if coarsely, those
+   * after it all of it. */
+  void changed(const std::vector<map_view::KeyBox>& boxes);
   /** All of the map, from a direction; degrees. */
   void lookFrom(double azimuth, double elevation);
   /** FOLDER/STEM-1ENDING, -2, ..., the first that is not there. */
@@ -48,6 +51,7 @@ class Viewer {
   std::size_t m_active = 0;
   std::vector<std::function<void()>> m_onActivated, m_onFrame;
   std::string m_said, m_camera;
+  bool m_hurries = false;
   double m_restAt = 0;  ///< s of GLFW's clock: the camera has come to rest
 };
 

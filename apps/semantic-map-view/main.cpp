@@ -3,6 +3,7 @@
 #include <semantic_octree/WeightsFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "Application.h"
@@ -68,6 +69,12 @@ struct Clock {
   }
 };
 
+std::string medianOf(std::vector<double> milliseconds) {
+  const auto middle = milliseconds.begin() + std::ptrdiff_t(milliseconds.size() / 2);
+  std::nth_element(milliseconds.begin(), middle, milliseconds.end());
+  return number(*middle) + " ms";
+}
+
 /** Twice around the map: with meshes to be made, and with all there. */
 void measureTurning(ViewWindow& window) {
   constexpr int kFrames = 72;
@@ -85,24 +92,29 @@ void measureTurning(ViewWindow& window) {
             << "\nsides of cells: " << window.tiles().numFaces() << '\n';
 }
 
-/** From the hand on the slider to the complete frame that shows it. */
+/** From the hand on the slider to the first frame that shows it, and to the complete one. */
 void measureCompressing(ViewWindow& window, CompressPanel& panel) {
-  const auto show = [&](const char* name, const auto& change) {
-    constexpr int kTimes = 5;
-    const Clock clock;
+  const auto show = [&](const std::string& name, const auto& change) {
+    constexpr int kTimes = 9;
+    std::vector<double> first, complete;
     for (int i = 0; i < kTimes; ++i) {
+      const measuring::Stopwatch watch{measuring::TimeOf::Wall};
       change(i);
+      window.drawFrame();
+      first.push_back(watch.milliseconds());
       finishFrame(window);
+      complete.push_back(watch.milliseconds());
     }
-    std::cout << name << clock.text(kTimes) << '\n';
+    std::cout << "from " << name << " to the first frame: " << medianOf(first)
+              << ", to the complete one: " << medianOf(complete) << '\n';
   };
   const Clock begin;
   panel.switchOn(true);
   finishFrame(window);
   std::cout << "to the compressed tree: " << begin.text() << '\n';
   const double alpha = panel.compression().alpha();
-  show("from alpha to the frame: ", [&](int i) { panel.setAlpha(alpha * (i % 2 ? 1 : 1.5)); });
-  show("from a weight to the frame: ", [&](int i) { panel.setWeight(1, i % 2 ? 1 : 0.5); });
+  show("alpha", [&](int i) { panel.setAlpha(alpha * (i % 2 ? 1 : 1.5)); });
+  show("a weight", [&](int i) { panel.setWeight(1, i % 2 ? 1 : 0.5); });
 }
 
 void measureAsking(ViewWindow& window, AskPanel& panel) {
