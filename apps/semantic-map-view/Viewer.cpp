@@ -19,7 +19,7 @@ constexpr double kHurrying = 12, kMoving = 6, kResting = 4, kRest = 0.2;
 /** For meshes in each frame, so that the window answers meanwhile: at once after a change, and
  * else.
  */
-constexpr double kHurry = 12, kMilliseconds = 30;
+constexpr double kHurry = 12, kMilliseconds = 50;
 
 }  // namespace
 
