@@ -8,7 +8,7 @@
 #include <ostream>
 
 #include "StandardOutput.h"
-#include "Widgets.h"
+#include "map_window/Widgets.h"
 
 namespace semantic_map_view {
 
@@ -53,7 +53,7 @@ void CompressPanel::attempt(const F& f) {
 }
 
 void CompressPanel::begin() {
-  auto& map = m_viewer.layer().map();
+  auto& map = m_viewer.layer().ownMap();
   if (m_weights.empty()) {
     m_live.emplace(map, LiveCompression::allClasses(map), semantic_octree::AbstractionOptions());
     m_live->setLeaves(map.getNumLeafNodes() / kShare);

@@ -10,7 +10,7 @@
 #include <ostream>
 
 #include "StandardOutput.h"
-#include "Widgets.h"
+#include "map_window/Widgets.h"
 #include "measuring/Stopwatch.h"
 
 namespace semantic_map_view {

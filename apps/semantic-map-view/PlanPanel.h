@@ -3,9 +3,11 @@
 
 #include <optional>
 
-#include "Viewer.h"
+#include "map_window/Viewer.h"
 
 namespace semantic_map_view {
+
+using namespace map_window;
 
 /** Start, goal and the path between them. */
 class PlanPanel {

@@ -7,13 +7,12 @@
 #include <iostream>
 
 #include "Application.h"
-#include "AskPanel.h"
 #include "Cli.h"
 #include "CompressPanel.h"
 #include "PlanPanel.h"
-#include "ShowPanel.h"
 #include "StandardOutput.h"
-#include "Viewer.h"
+#include "map_window/AskPanel.h"
+#include "map_window/ShowPanel.h"
 #include "measuring/Stopwatch.h"
 
 namespace semantic_map_view {
@@ -134,8 +133,8 @@ int run(const Cli& cli) {
   auto layers = openLayers(cli);
   checkSettings(cli, layers.front()->map().classes());
   const WindowSystem system;
-  const auto window = ViewWindow::open(cli.width, cli.height);
-  Viewer viewer(*window, std::move(layers), cli);
+  const auto window = ViewWindow::open("semantic-map-view", cli.width, cli.height);
+  Viewer viewer(*window, std::move(layers), cli.view);
   std::optional<Panels> panels;
   if (cli.panels) panels.emplace(viewer, cli);
   window->performLayout();

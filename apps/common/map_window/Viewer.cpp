@@ -7,7 +7,7 @@
 
 #include "StandardOutput.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 namespace fs = std::filesystem;
 
@@ -23,12 +23,13 @@ constexpr double kHurry = 12, kMilliseconds = 50;
 
 }  // namespace
 
-Viewer::Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers, const Cli& cli)
+Viewer::Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers,
+               const Beginning& beginning)
     : m_window(window), m_layers(std::move(layers)) {
-  for (const auto& layer : m_layers) layer->look().setStyle(cli.style);
-  if (cli.camera)
-    m_window.setOrbitCamera(*cli.camera);
-  else if (cli.top)
+  for (const auto& layer : m_layers) layer->look().setStyle(beginning.style);
+  if (beginning.camera)
+    m_window.setOrbitCamera(*beginning.camera);
+  else if (beginning.top)
     lookFrom(-90, 90);
   else
     lookFrom(-120, 35);
@@ -118,4 +119,4 @@ void Viewer::say(const std::string& text) {
   m_window.redraw();
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window

@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-namespace semantic_map_view {
+namespace map_window {
 
 using nanogui::Vector2i;
 
@@ -50,16 +50,16 @@ WindowSystem::WindowSystem() {
 
 WindowSystem::~WindowSystem() { nanogui::shutdown(); }
 
-std::unique_ptr<ViewWindow> ViewWindow::open(int width, int height) {
+std::unique_ptr<ViewWindow> ViewWindow::open(const std::string& title, int width, int height) {
   try {
-    return std::make_unique<ViewWindow>(width, height);
+    return std::make_unique<ViewWindow>(title, width, height);
   } catch (const std::exception&) {
     throw std::runtime_error("the display has no OpenGL 3.3" + kInstead);
   }
 }
 
-ViewWindow::ViewWindow(int width, int height)
-    : CDisplayWindowGUI("semantic-map-view", unsigned(width), unsigned(height)) {
+ViewWindow::ViewWindow(const std::string& title, int width, int height)
+    : CDisplayWindowGUI(title, unsigned(width), unsigned(height)) {
   const auto scene = mrpt::opengl::COpenGLScene::Create();
   const auto paper = map_pictures::kPaper;
   scene->getViewport()->setCustomBackgroundColor(
@@ -100,6 +100,13 @@ bool ViewWindow::drawFrame() {
   const bool more = m_onFrame && m_onFrame();
   drawAll();
   return more;
+}
+
+bool ViewWindow::attend() {
+  glfwPollEvents();
+  if (glfwWindowShouldClose(mGLFWWindow)) return false;
+  if (m_more || m_dirty) m_more = drawFrame();
+  return true;
 }
 
 void ViewWindow::run(const std::function<bool()>& done) {
@@ -183,4 +190,4 @@ bool ViewWindow::resizeEvent(const Vector2i& size) {
   return CDisplayWindowGUI::resizeEvent(size);
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window

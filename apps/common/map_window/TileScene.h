@@ -7,7 +7,7 @@
 
 #include "Layer.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 /** The tiles of a map in an MRPT scene. Meshes are made when they are first seen, and again only
  * where something changed. */
@@ -53,4 +53,4 @@ class TileScene {
   std::size_t m_shown = 0, m_faces = 0, m_kept = 0;
 };
 
-}  // namespace semantic_map_view
+}  // namespace map_window

@@ -4,7 +4,7 @@
 
 #include "measuring/Stopwatch.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 using map_view::Face;
 using map_view::Tile;
@@ -153,4 +153,4 @@ void TileScene::forgetUnseen(const std::vector<Tile>& seen) {
   }
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window

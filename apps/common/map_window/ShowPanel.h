@@ -1,7 +1,7 @@
 #pragma once
 #include "Viewer.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 /** What is shown, in which colors, from where. */
 class ShowPanel {
@@ -9,6 +9,9 @@ class ShowPanel {
   explicit ShowPanel(Viewer& viewer);
   ShowPanel(const ShowPanel&) = delete;
   ShowPanel& operator=(const ShowPanel&) = delete;
+
+  /** Leaves of classes and of the map, as they are now. */
+  void listClasses();
 
  private:
   /** What the viewer says, and where the camera is. */
@@ -18,7 +21,6 @@ class ShowPanel {
   void addClasses(nanogui::Widget* parent);
   void addHeight(nanogui::Widget* parent);
   void addCameras(nanogui::Widget* parent);
-  void listClasses();
   void hide(std::size_t id, bool hidden);
 
   Viewer& m_viewer;
@@ -27,4 +29,4 @@ class ShowPanel {
   nanogui::Label *m_height = nullptr, *m_camera = nullptr, *m_said = nullptr;
 };
 
-}  // namespace semantic_map_view
+}  // namespace map_window

@@ -8,7 +8,7 @@
 
 #include "TileScene.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 /** Of MRPT's windows; one at a time. */
 class WindowSystem {
@@ -24,8 +24,8 @@ class WindowSystem {
 class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
  public:
   /** \throw std::runtime_error the display has no OpenGL 3.3. */
-  static std::unique_ptr<ViewWindow> open(int width, int height);
-  ViewWindow(int width, int height);
+  static std::unique_ptr<ViewWindow> open(const std::string& title, int width, int height);
+  ViewWindow(const std::string& title, int width, int height);
 
   /** Tiles of the map. */
   TileScene& tiles() { return m_tiles; }
@@ -43,6 +43,10 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
 
   /** Until the window is closed, or until done() after a frame without more to do. */
   void run(const std::function<bool()>& done);
+  /** Sees to what hands did, and draws what there is to be drawn. \return false: it was closed */
+  bool attend();
+  /** Whether the last frame of attend() left nothing to do. */
+  bool isComplete() const { return !m_more; }
   /** Draws one frame. \return whether there is more to do. */
   bool drawFrame();
   /** Draws one, and returns what it shows, BGR. */
@@ -68,11 +72,11 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   mrpt::opengl::CSetOfObjects::Ptr m_marks = mrpt::opengl::CSetOfObjects::Create();
   std::function<void(const map_view::Ray&)> m_onClick;
   std::function<bool()> m_onFrame;
-  bool m_dirty = true;
+  bool m_dirty = true, m_more = true;
   nanogui::Vector2i m_pressed{-1, -1};  ///< where a button went down beside all panels
   bool m_takesPicture = false;
   cv::Mat m_picture;
   std::string m_renderer;
 };
 
-}  // namespace semantic_map_view
+}  // namespace map_window

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 
-namespace semantic_map_view {
+namespace map_window {
 
 using semantic_octree::SemanticOcTree;
 
@@ -34,9 +34,20 @@ std::pair<float, float> mostOf(std::vector<float>& values) {
 
 Layer::Layer(const std::filesystem::path& file)
     : m_name(file.filename().string()),
-      m_map(std::make_unique<SemanticOcTree>(load(file))),
+      m_own(std::make_unique<SemanticOcTree>(load(file))),
+      m_map(m_own.get()),
       m_look(*m_map),
       m_cells(std::make_unique<map_view::FullCells>(*m_map)) {
+  count();
+}
+
+Layer::Layer(const std::string& name, const SemanticOcTree& map)
+    : m_name(name), m_map(&map), m_look(map), m_cells(std::make_unique<map_view::FullCells>(map)) {
+  count();
+}
+
+void Layer::grown() {
+  m_look.forget();
   count();
 }
 
@@ -49,6 +60,7 @@ void Layer::count() {
       places[std::size_t(axis)].push_back(
           float(semantic_octree::centerOf(leaf.lowest[axis], m_map->getResolution(), leaf.depth)));
   });
+  m_extent = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-10), Eigen::Vector3d::Constant(10));
   if (places[0].empty()) return;
   Eigen::Vector3d low, high;
   for (int axis = 0; axis < 3; ++axis)
@@ -56,4 +68,4 @@ void Layer::count() {
   m_extent = Eigen::AlignedBox3d(low, high);
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window

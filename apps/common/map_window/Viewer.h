@@ -1,17 +1,25 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "Cli.h"
 #include "Layer.h"
 #include "ViewWindow.h"
 
-namespace semantic_map_view {
+namespace map_window {
+
+/** How a window begins. */
+struct Beginning {
+  std::optional<map_view::OrbitCamera> camera;
+  bool top = false;  ///< from above, north up
+  map_view::ViewStyle style;
+};
 
 /** Open maps, which of them is shown, and how. */
 class Viewer {
  public:
-  Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers, const Cli& cli);
+  Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers,
+         const Beginning& beginning);
 
   ViewWindow& window() { return m_window; }
   const std::vector<std::unique_ptr<Layer>>& layers() const { return m_layers; }
@@ -55,4 +63,4 @@ class Viewer {
   double m_restAt = 0;  ///< s of GLFW's clock: the camera has come to rest
 };
 
-}  // namespace semantic_map_view
+}  // namespace map_window

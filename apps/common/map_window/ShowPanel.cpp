@@ -7,7 +7,7 @@
 
 #include "Widgets.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 using nanogui::Widget;
 
@@ -171,4 +171,4 @@ void ShowPanel::addCameras(Widget* parent) {
   });
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window
