@@ -49,15 +49,7 @@ void LiveScans::show(const LabeledScan& scan, const mrpt::poses::CPose3D& T_map_
   }
   m_window.marks().clear();
   m_window.marks().insert(points);
-  const auto keys = [this](const Eigen::Vector3d& place) {
-    return (place.array() / m_map.getResolution() + semantic_octree::kKeyOfOrigin)
-        .floor()
-        .max(0)
-        .min(semantic_octree::kNumKeys - 1)
-        .cast<int>()
-        .eval();
-  };
-  m_window.changed({keys(seen.min()), keys(seen.max())});
+  m_window.changed(seen);
   m_window.say(lines(scan, summary, m_map));
   m_window.show(0);
 }

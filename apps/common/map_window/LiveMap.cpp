@@ -3,8 +3,8 @@
 #include <nanogui/opengl.h>
 #include <strict_files/ErrorMessage.h>
 
-#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "AskPanel.h"
 #include "ShowPanel.h"
@@ -72,9 +72,10 @@ class PacePanel {
 
 class LiveMap::Window {
  public:
-  Window(const std::string& title, const semantic_octree::SemanticOcTree& map)
+  Window(const std::string& title, const semantic_octree::SemanticOcTree& map,
+         const Beginning& beginning)
       : m_window(ViewWindow::open(title, kWidth, kHeight)),
-        m_viewer(*m_window, layersOf(map), {}),
+        m_viewer(*m_window, layersOf(map), beginning),
         m_show(m_viewer),
         m_ask(m_viewer),
         m_pace(*m_window) {
@@ -83,25 +84,22 @@ class LiveMap::Window {
     m_window->performLayout();
     m_window->setVisible(true);
     m_isOpen = m_window->attend();
-    m_camera = m_window->orbitCamera().text();
+    if (!beginning.camera) m_camera = m_window->orbitCamera().text();
   }
 
+  bool isOpen() const { return m_isOpen; }
   void say(const std::vector<std::string>& lines) {
     if (m_isOpen) m_pace.say(lines);
   }
 
-  void changed(const KeyBox& box) {
-    if (m_changed)
-      m_changed = KeyBox{m_changed->low.min(box.low), m_changed->high.max(box.high)};
-    else
-      m_changed = box;
-  }
+  void changed(const Eigen::AlignedBox3d& box) { m_changed.extend(box); }
 
   void show(double seconds) {
     if (!m_isOpen) return;
     // Else those that are far away would never have their turn.
-    if (m_changed && m_isComplete) {
-      m_viewer.changed({*std::exchange(m_changed, std::nullopt)});
+    if (!m_changed.isEmpty() && m_isComplete) {
+      m_window->tiles().touch({keysOf(m_changed)});
+      m_changed.setEmpty();
       count();
     }
     const double begin = glfwGetTime();
@@ -119,12 +117,24 @@ class LiveMap::Window {
   const mrpt::opengl::CSetOfObjects::Ptr marks = mrpt::opengl::CSetOfObjects::Create();
 
  private:
+  KeyBox keysOf(const Eigen::AlignedBox3d& box) {
+    const auto keys = [this](const Eigen::Vector3d& place) {
+      return (place.array() / m_viewer.layer().map().getResolution() +
+              semantic_octree::kKeyOfOrigin)
+          .floor()
+          .max(0)
+          .min(semantic_octree::kNumKeys - 1)
+          .cast<int>()
+          .eval();
+    };
+    return {keys(box.min()), keys(box.max())};
+  }
   /** Leaves by class, and where the map is. The camera follows as long as nobody has moved it. */
   void count() {
     if (glfwGetTime() < m_countAt) return;
     const double begin = glfwGetTime();
     m_viewer.layer().grown();
-    m_show.listClasses();
+    m_show.refresh();
     if (m_window->orbitCamera().text() == m_camera) {
       m_viewer.lookFrom(m_window->orbitCamera().azimuth, m_window->orbitCamera().elevation);
       m_camera = m_window->orbitCamera().text();
@@ -140,13 +150,14 @@ class LiveMap::Window {
   AskPanel m_ask;
   PacePanel m_pace;
   bool m_isOpen = true, m_isComplete = true;
-  std::optional<KeyBox> m_changed;
-  std::string m_camera;
+  Eigen::AlignedBox3d m_changed;
+  std::string m_camera;  ///< as it followed last
   double m_countAt = 0;  ///< s of GLFW's clock
 };
 
-LiveMap::LiveMap(const std::string& title, const semantic_octree::SemanticOcTree& map) try
-    : m_window(std::make_unique<Window>(title, map)) {
+LiveMap::LiveMap(const std::string& title, const semantic_octree::SemanticOcTree& map,
+                 const Beginning& beginning) try
+    : m_window(std::make_unique<Window>(title, map, beginning)) {
 } catch (const std::exception& e) {
   throw std::runtime_error("--live: " + strict_files::messageOf(e));
 }
@@ -155,7 +166,8 @@ LiveMap::~LiveMap() = default;
 
 mrpt::opengl::CSetOfObjects& LiveMap::marks() { return *m_window->marks; }
 void LiveMap::say(const std::vector<std::string>& lines) { m_window->say(lines); }
-void LiveMap::changed(const KeyBox& box) { m_window->changed(box); }
+void LiveMap::changed(const Eigen::AlignedBox3d& box) { m_window->changed(box); }
+bool LiveMap::isOpen() const { return m_window->isOpen(); }
 void LiveMap::show(double seconds) { m_window->show(seconds); }
 
 }  // namespace map_window

@@ -1,11 +1,12 @@
 #pragma once
-#include <map_view/ViewCell.h>
 #include <mrpt/opengl/CSetOfObjects.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "Beginning.h"
 
 namespace map_window {
 
@@ -16,7 +17,8 @@ class LiveMap {
   /** Opens the window. The map must outlive it.
    * \throw std::runtime_error "--live: ...": there is no display, or nothing to open windows with.
    */
-  LiveMap(const std::string& title, const semantic_octree::SemanticOcTree& map);
+  LiveMap(const std::string& title, const semantic_octree::SemanticOcTree& map,
+          const Beginning& beginning = {});
   ~LiveMap();
   LiveMap(const LiveMap&) = delete;
   LiveMap& operator=(const LiveMap&) = delete;
@@ -25,8 +27,9 @@ class LiveMap {
   mrpt::opengl::CSetOfObjects& marks();
   /** Lines that say how far it is. */
   void say(const std::vector<std::string>& lines);
-  /** What is in a box may have changed. */
-  void changed(const map_view::KeyBox& box);
+  /** What is in a box may have changed: m, map frame. */
+  void changed(const Eigen::AlignedBox3d& box);
+  bool isOpen() const;
   /** Draws, and returns after some time (s), or when the hand on the window lets it go on; at once
    * if the window was closed. */
   void show(double seconds);

@@ -10,8 +10,8 @@ class ShowPanel {
   ShowPanel(const ShowPanel&) = delete;
   ShowPanel& operator=(const ShowPanel&) = delete;
 
-  /** Leaves of classes and of the map, as they are now. */
-  void listClasses();
+  /** The map has grown. */
+  void refresh();
 
  private:
   /** What the viewer says, and where the camera is. */
@@ -21,12 +21,16 @@ class ShowPanel {
   void addClasses(nanogui::Widget* parent);
   void addHeight(nanogui::Widget* parent);
   void addCameras(nanogui::Widget* parent);
+  void listClasses();
+  /** From the lowest to the highest of what is known. */
+  void fitHeight();
   void hide(std::size_t id, bool hidden);
 
   Viewer& m_viewer;
   nanogui::Window* m_window;
   nanogui::Widget* m_classes = nullptr;
-  nanogui::Label *m_height = nullptr, *m_camera = nullptr, *m_said = nullptr;
+  nanogui::Slider* m_heightSlider = nullptr;
+  nanogui::Label *m_name = nullptr, *m_height = nullptr, *m_camera = nullptr, *m_said = nullptr;
 };
 
 }  // namespace map_window

@@ -1,19 +1,12 @@
 #pragma once
 #include <memory>
-#include <optional>
 #include <vector>
 
+#include "Beginning.h"
 #include "Layer.h"
 #include "ViewWindow.h"
 
 namespace map_window {
-
-/** How a window begins. */
-struct Beginning {
-  std::optional<map_view::OrbitCamera> camera;
-  bool top = false;  ///< from above, north up
-  map_view::ViewStyle style;
-};
 
 /** Open maps, which of them is shown, and how. */
 class Viewer {
