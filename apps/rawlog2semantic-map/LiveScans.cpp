@@ -32,8 +32,12 @@ std::vector<std::string> lines(const LabeledScan& scan, const Summary& summary,
 
 }  // namespace
 
-LiveScans::LiveScans(const semantic_octree::SemanticOcTree& map)
-    : m_map(map), m_window("rawlog2semantic-map", map) {}
+LiveScans::LiveScans(const semantic_octree::SemanticOcTree& map, const StopRequest& stop,
+                     bool paused)
+    : m_map(map), m_window("rawlog2semantic-map", map) {
+  m_window.stopWhen([&stop] { return stop.pending(); });
+  if (paused) m_window.pause();
+}
 
 void LiveScans::show(const LabeledScan& scan, const mrpt::poses::CPose3D& T_map_robot,
                      const Summary& summary) {

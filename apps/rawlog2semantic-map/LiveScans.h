@@ -2,6 +2,7 @@
 #include <labeled_cloud/LabeledScan.h>
 #include <semantic_octree/SemanticOcTree.h>
 
+#include "Signals.h"
 #include "Summary.h"
 #include "map_window/LiveMap.h"
 
@@ -11,7 +12,7 @@ namespace rawlog2semantic_map {
 class LiveScans {
  public:
   /** Opens the window. \throw std::runtime_error there is no display. */
-  explicit LiveScans(const semantic_octree::SemanticOcTree& map);
+  LiveScans(const semantic_octree::SemanticOcTree& map, const StopRequest& stop, bool paused);
 
   /** A scan was inserted. \param summary of the scans up to it */
   void show(const labeled_cloud::LabeledScan& scan, const mrpt::poses::CPose3D& T_map_robot,

@@ -40,7 +40,7 @@ struct Cli {
   LabelSources labels;
   std::optional<double> resolution, maxRange;
   std::size_t previewEvery = 10;
-  bool compareUpkeep = false, staticPose = false, live = false;
+  bool compareUpkeep = false, staticPose = false, live = false, pause = false;
   std::vector<fs::path> rawlogs;
   Outputs outputs;
 
@@ -71,7 +71,8 @@ struct Cli {
     app.add_flag_callback("-v,--verbose", beVerbose, "Say of each observation what became of it");
     app.add_flag("--compare-upkeep", compareUpkeep,
                  "Time each insertion without upkeep of the abstraction, too");
-    app.add_flag("--live", live, "Show the map in a window while it grows");
+    auto* window = app.add_flag("--live", live, "Show the map in a window while it grows");
+    app.add_flag("--pause", pause, "Wait there from the first scan on")->needs(window);
     app.add_option("INPUT.rawlog", rawlogs, "Rawlogs that continue each other")->required();
   }
 
@@ -216,7 +217,7 @@ int run(const Cli& cli) {
   map.insertionOptions = config.insertion;
   setAbstraction(map, cli, config);
   std::optional<LiveScans> live;
-  if (cli.live) live.emplace(map.tree());
+  if (cli.live) live.emplace(map.tree(), stop, cli.pause);
   OutputFolder output(cli.output);
 
   const Summary summary = buildMap(cli, config, stop, live ? &*live : nullptr, map);

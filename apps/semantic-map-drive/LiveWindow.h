@@ -17,6 +17,7 @@ class LiveWindow : public DriveObserver {
   LiveWindow(const DriveLoop& loop, const synthetic_world::World& world,
              const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal);
 
+  void stopWhen(const std::function<bool()>& isToEnd) { m_window.stopWhen(isToEnd); }
   void onSensed(const DriveLoop& loop, const std::vector<Observation>& seen) override;
   void onDriven(const DriveLoop& loop) override;
 

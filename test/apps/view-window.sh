@@ -1,7 +1,8 @@
 #!/bin/bash
 # view-window.sh OUTPUT PROGRAM ARGUMENTS... -- STEPS...
 # Runs a program that opens a window, does one step after the other, and ends the program. A step "X Y WORDS" clicks there
-# and waits until the program has said the words once more. What it says goes to OUTPUT. Fails if a window or words do not come.
+# and waits until the program has said the words once more; "picture FILE" takes one of the screen. What the program says goes to
+# OUTPUT. Fails if a window or words do not come.
 output=$1 program=()
 shift
 while [[ $# -gt 0 && $1 != -- ]]; do program+=("$1"); shift; done
@@ -12,9 +13,10 @@ child=$!
 trap 'kill $child 2> /dev/null; wait $child' EXIT
 fail() { echo "view-window.sh: $*" >&2; cat "$output" >&2; exit 1; }
 
-window=$(timeout 120 xdotool search --sync --onlyvisible --name "^semantic-map-view$" | head -1)
+window=$(timeout 120 xdotool search --sync --onlyvisible --name "^$(basename "${program[0]}")\$" | head -1)
 [[ -n $window ]] || fail "no window"
 for step in "$@"; do
+  if [[ $step == "picture "* ]]; then import -window root "${step#picture }"; continue; fi
   read -r x y words <<< "$step"
   before=$(grep -c -- "$words" "$output")
   for ((i = 0; ; i++)); do

@@ -40,7 +40,7 @@ class PacePanel {
     auto* step = row->add<nanogui::Button>("step");
     step->setFixedSize({60, 20});
     step->setCallback([this] {
-      m_pause->setChecked(true);
+      pause();
       m_steps = true;
     });
     row = addRow(panel);
@@ -54,6 +54,7 @@ class PacePanel {
       m_lines[i]->setCaption(i < lines.size() ? lines[i] : "");
     m_window.redraw();
   }
+  void pause() { m_pause->setChecked(true); }
   /** Whether the next step is due so many seconds after the last one. */
   bool isDue(double seconds) {
     if (m_pause->checked()) return std::exchange(m_steps, false);
@@ -88,6 +89,7 @@ class LiveMap::Window {
   }
 
   bool isOpen() const { return m_isOpen; }
+  void pause() { m_pace.pause(); }
   void say(const std::vector<std::string>& lines) {
     if (m_isOpen) m_pace.say(lines);
   }
@@ -109,11 +111,12 @@ class LiveMap::Window {
       if (!m_isOpen) return m_window->setVisible(false);
       m_isComplete = m_window->isComplete();
       const double passed = glfwGetTime() - begin;
-      if (passed >= seconds && m_pace.isDue(passed)) return;
+      if ((passed >= seconds && m_pace.isDue(passed)) || isToEnd()) return;
       if (m_isComplete) glfwWaitEventsTimeout(kAttend);
     } while (true);
   }
 
+  std::function<bool()> isToEnd = [] { return false; };
   const mrpt::opengl::CSetOfObjects::Ptr marks = mrpt::opengl::CSetOfObjects::Create();
 
  private:
@@ -168,6 +171,8 @@ mrpt::opengl::CSetOfObjects& LiveMap::marks() { return *m_window->marks; }
 void LiveMap::say(const std::vector<std::string>& lines) { m_window->say(lines); }
 void LiveMap::changed(const Eigen::AlignedBox3d& box) { m_window->changed(box); }
 bool LiveMap::isOpen() const { return m_window->isOpen(); }
+void LiveMap::stopWhen(const std::function<bool()>& isToEnd) { m_window->isToEnd = isToEnd; }
+void LiveMap::pause() { m_window->pause(); }
 void LiveMap::show(double seconds) { m_window->show(seconds); }
 
 }  // namespace map_window

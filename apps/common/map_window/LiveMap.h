@@ -2,6 +2,7 @@
 #include <mrpt/opengl/CSetOfObjects.h>
 #include <semantic_octree/SemanticOcTree.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,6 +31,10 @@ class LiveMap {
   /** What is in a box may have changed: m, map frame. */
   void changed(const Eigen::AlignedBox3d& box);
   bool isOpen() const;
+  /** Nobody waits any more once this says so: somebody wants the program to end. */
+  void stopWhen(const std::function<bool()>& isToEnd);
+  /** As if somebody had clicked "pause". */
+  void pause();
   /** Draws, and returns after some time (s), or when the hand on the window lets it go on; at once
    * if the window was closed. */
   void show(double seconds);

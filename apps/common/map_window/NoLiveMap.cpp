@@ -17,6 +17,8 @@ mrpt::opengl::CSetOfObjects& LiveMap::marks() { std::abort(); }
 void LiveMap::say(const std::vector<std::string>&) {}
 void LiveMap::changed(const Eigen::AlignedBox3d&) {}
 bool LiveMap::isOpen() const { return false; }
+void LiveMap::stopWhen(const std::function<bool()>&) {}
+void LiveMap::pause() {}
 void LiveMap::show(double) {}
 
 }  // namespace map_window
