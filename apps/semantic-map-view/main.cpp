@@ -38,9 +38,10 @@ struct Panels {
 
   Panels(Viewer& viewer, const Cli& cli)
       : show(viewer), ask(viewer), compress(viewer, cli.weights), plan(viewer, cli.classes) {
-    viewer.window().onClick([this](const map_view::Ray& ray) {
-      if (!plan.take(ray)) ask.ask(ray);
-    });
+    viewer.window().onClick([this](const map_view::Ray& ray) { ask.ask(ray); });
+    viewer.window().onGrab([this](const map_view::Ray& ray) { return plan.place(ray); });
+    viewer.window().onMoved(
+        [this](const map_view::Ray& ray, bool letsGo) { plan.turn(ray, letsGo); });
     if (cli.compress) compress.switchOn(true);
   }
 };

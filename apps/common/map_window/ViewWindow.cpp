@@ -153,20 +153,33 @@ void ViewWindow::takePicture() {
   cv::flip(m_picture, m_picture, 0);
 }
 
+map_view::Ray ViewWindow::rayThrough(const Vector2i& p) const {
+  return orbitCamera().rayThrough(p.x(), p.y(), mSize.x(), mSize.y());
+}
+
 bool ViewWindow::mouseMotionEvent(const Vector2i& p, const Vector2i& rel, int button,
                                   int modifiers) {
   redraw();
-  return CDisplayWindowGUI::mouseMotionEvent(p, rel, button, modifiers);
+  if (!m_holds) return CDisplayWindowGUI::mouseMotionEvent(p, rel, button, modifiers);
+  m_onMoved(rayThrough(p), false);
+  return true;
 }
 
 bool ViewWindow::mouseButtonEvent(const Vector2i& p, int button, bool down, int modifiers) {
   redraw();
-  const bool beside = findWidget(p) == this;
+  const bool beside = findWidget(p) == this, left = button == GLFW_MOUSE_BUTTON_LEFT;
+  if (left && m_holds && !down) {
+    m_holds = false;
+    m_onMoved(rayThrough(p), true);
+    return true;
+  }
+  if (left && down && beside && m_onGrab) m_holds = m_onGrab(rayThrough(p));
+  if (m_holds) return true;
   const bool used = CDisplayWindowGUI::mouseButtonEvent(p, button, down, modifiers);
-  if (button != GLFW_MOUSE_BUTTON_LEFT) return used;
+  if (!left) return used;
   const bool click = !down && beside && (p - m_pressed).cwiseAbs().maxCoeff() <= kClick;
   m_pressed = down && beside ? p : Vector2i(-1000, -1000);
-  if (click && m_onClick) m_onClick(orbitCamera().rayThrough(p.x(), p.y(), mSize.x(), mSize.y()));
+  if (click && m_onClick) m_onClick(rayThrough(p));
   return used;
 }
 

@@ -36,6 +36,12 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   void setOrbitCamera(const map_view::OrbitCamera& camera);
   /** Called for clicks beside all panels: the ray through the pixel. */
   void onClick(const std::function<void(const map_view::Ray&)>& f) { m_onClick = f; }
+  /** Called when the left button goes down beside all panels; \return whether the hand takes
+   * something there, which then follows it instead of the camera. */
+  void onGrab(const std::function<bool(const map_view::Ray&)>& f) { m_onGrab = f; }
+  /** Called while the hand moves what it took, and when it lets go. */
+  using OnMoved = std::function<void(const map_view::Ray&, bool letsGo)>;
+  void onMoved(const OnMoved& f) { m_onMoved = f; }
   /** Called before each frame; \return whether there is more to do for this frame. */
   void onFrame(const std::function<bool()>& f) { m_onFrame = f; }
   /** Draws again soon. */
@@ -66,14 +72,18 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
 
  private:
   void drawAll() override;
+  map_view::Ray rayThrough(const nanogui::Vector2i& p) const;
   void takePicture();
 
   TileScene m_tiles;
   mrpt::opengl::CSetOfObjects::Ptr m_marks = mrpt::opengl::CSetOfObjects::Create();
   std::function<void(const map_view::Ray&)> m_onClick;
+  std::function<bool(const map_view::Ray&)> m_onGrab;
+  OnMoved m_onMoved;
   std::function<bool()> m_onFrame;
   bool m_dirty = true, m_more = true;
   nanogui::Vector2i m_pressed{-1, -1};  ///< where a button went down beside all panels
+  bool m_holds = false;                 ///< the hand has taken something
   bool m_takesPicture = false;
   cv::Mat m_picture;
   std::string m_renderer;
