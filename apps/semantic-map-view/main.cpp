@@ -3,7 +3,6 @@
 #include <semantic_octree/WeightsFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 
-#include <algorithm>
 #include <iostream>
 
 #include "Application.h"
@@ -13,6 +12,7 @@
 #include "StandardOutput.h"
 #include "map_window/AskPanel.h"
 #include "map_window/ShowPanel.h"
+#include "measuring/Quantile.h"
 #include "measuring/Stopwatch.h"
 
 namespace semantic_map_view {
@@ -69,11 +69,18 @@ struct Clock {
   }
 };
 
-std::string medianOf(std::vector<double> milliseconds) {
-  const auto middle = milliseconds.begin() + std::ptrdiff_t(milliseconds.size() / 2);
-  std::nth_element(milliseconds.begin(), middle, milliseconds.end());
-  return number(*middle) + " ms";
-}
+/** Medians of such times. */
+struct Clocks {
+  std::vector<double> wall, cores;
+  void add(const Clock& clock) {
+    wall.push_back(clock.wall.milliseconds());
+    cores.push_back(clock.cores.milliseconds());
+  }
+  std::string text() const {
+    return number(measuring::quantile(wall, 0.5)) + " ms (of the cores " +
+           number(measuring::quantile(cores, 0.5)) + " ms)";
+  }
+};
 
 /** Twice around the map: with meshes to be made, and with all there. */
 void measureTurning(ViewWindow& window) {
@@ -96,17 +103,17 @@ void measureTurning(ViewWindow& window) {
 void measureCompressing(ViewWindow& window, CompressPanel& panel) {
   const auto show = [&](const std::string& name, const auto& change) {
     constexpr int kTimes = 9;
-    std::vector<double> first, complete;
+    Clocks first, complete;
     for (int i = 0; i < kTimes; ++i) {
-      const measuring::Stopwatch watch{measuring::TimeOf::Wall};
+      const Clock clock;
       change(i);
       window.drawFrame();
-      first.push_back(watch.milliseconds());
+      first.add(clock);
       finishFrame(window);
-      complete.push_back(watch.milliseconds());
+      complete.add(clock);
     }
-    std::cout << "from " << name << " to the first frame: " << medianOf(first)
-              << ", to the complete one: " << medianOf(complete) << '\n';
+    std::cout << "from " << name << " to the first frame: " << first.text()
+              << ", to the complete one: " << complete.text() << '\n';
   };
   const Clock begin;
   panel.switchOn(true);
