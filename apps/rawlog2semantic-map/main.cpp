@@ -14,6 +14,7 @@
 #include "Config.h"
 #include "JsonFile.h"
 #include "Labels.h"
+#include "LiveScans.h"
 #include "MapBuilder.h"
 #include "NumberChecks.h"
 #include "Outputs.h"
@@ -39,7 +40,7 @@ struct Cli {
   LabelSources labels;
   std::optional<double> resolution, maxRange;
   std::size_t previewEvery = 10;
-  bool compareUpkeep = false, staticPose = false;
+  bool compareUpkeep = false, staticPose = false, live = false, pause = false;
   std::vector<fs::path> rawlogs;
   Outputs outputs;
 
@@ -70,6 +71,8 @@ struct Cli {
     app.add_flag_callback("-v,--verbose", beVerbose, "Say of each observation what became of it");
     app.add_flag("--compare-upkeep", compareUpkeep,
                  "Time each insertion without upkeep of the abstraction, too");
+    auto* window = app.add_flag("--live", live, "Show the map in a window while it grows");
+    app.add_flag("--pause", pause, "Wait there from the first scan on")->needs(window);
     app.add_option("INPUT.rawlog", rawlogs, "Rawlogs that continue each other")->required();
   }
 
@@ -157,7 +160,8 @@ class SideOutputs {
   std::optional<Preview> m_preview;
 };
 
-Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, CSemanticOctoMap& map) {
+Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveScans* live,
+                 CSemanticOctoMap& map) {
   const ClassTable& table = map.tree().classes();
   if (!cli.confusion.empty())
     config.insertion.conversion.labels.confusion = std::make_shared<labeled_cloud::ConfusionMatrix>(
@@ -170,7 +174,10 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, CSemant
   labeled_cloud::ScanStream stream(cli.rawlogs, converter, trajectory, labeler ? &clouds : nullptr,
                                    config.stream);
   SideOutputs outputs(cli, table);
-  MapBuilder builder(map, [&outputs](const auto& scan, const auto& T) { outputs.write(scan, T); });
+  MapBuilder builder(map, [&](const auto& scan, const auto& T) {
+    outputs.write(scan, T);
+    if (live) live->show(scan, T, builder.summary());
+  });
   if (cli.trajectory.empty()) builder.countPoses();
   if (cli.compareUpkeep) builder.timeWithoutAbstraction();
   builder.insert(cli.rawlogs, stream, stop);
@@ -209,9 +216,11 @@ int run(const Cli& cli) {
   CSemanticOctoMap map(config.map.resolution, table, config.insertion.filter);
   map.insertionOptions = config.insertion;
   setAbstraction(map, cli, config);
+  std::optional<LiveScans> live;
+  if (cli.live) live.emplace(map.tree(), stop, cli.pause);
   OutputFolder output(cli.output);
 
-  const Summary summary = buildMap(cli, config, stop, map);
+  const Summary summary = buildMap(cli, config, stop, live ? &*live : nullptr, map);
   saveTree(map.tree(), output.staged("map.semantic"));
   writeJson(output.staged("summary.json"), toJson(summary, map.tree()));
   const std::string problem = drawPictures(map.tree(), config, output);

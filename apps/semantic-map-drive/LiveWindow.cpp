@@ -1,20 +1,15 @@
 #include "LiveWindow.h"
 
-#include <map_pictures/MapMesh.h>
 #include <mrpt/opengl/CCylinder.h>
-#include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/opengl/CPolyhedron.h>
 #include <mrpt/opengl/CSetOfTriangles.h>
 
-#include <clocale>
-#include <cstdlib>
-#include <thread>
+#include <cmath>
 
 #include "DrivePicture.h"
 
 namespace semantic_map_drive {
 
-using mrpt::gui::CDisplayWindow3D;
 using mrpt::math::TPoint3D;
 using mrpt::math::TPoint3Df;
 using mrpt::math::TPose2D;
@@ -22,26 +17,23 @@ using namespace mrpt::opengl;
 
 namespace {
 
-constexpr double kMapPeriod = 1;  // s: its mesh takes a while
-constexpr double kLift = 0.3;     // m: bands lie above the voxels of the ground
-constexpr float kWidth = 0.16f;   // m
+constexpr double kLift = 0.3;    // m: bands lie above the voxels of the ground
+constexpr float kWidth = 0.16f;  // m
 constexpr semantic_types::Color kTrackColor{250, 210, 40};
 
 mrpt::img::TColor mrptColor(const semantic_types::Color& c) { return {c.r, c.g, c.b}; }
 
-bool hasDisplay() {
-  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"})
-    if (const char* value = std::getenv(name); value && *value) return true;
-  return false;
-}
-
-CDisplayWindow3D::Ptr openWindow() {
-  const std::string what = "--live: there is no display to open a window on";
-  if (!hasDisplay()) throw std::runtime_error(what + " (DISPLAY is not set)");
-  auto window = CDisplayWindow3D::Create("semantic-map-drive", 1100, 800);
-  std::setlocale(LC_NUMERIC, "C");  // GTK has set the user's: commas in numbers
-  if (!window->isOpen()) throw std::runtime_error(what);
-  return window;
+/** From the south, as wide as the way is long. */
+map_window::Beginning beginningFor(const synthetic_world::World& world, const TPose2D& start,
+                                   const TPose2D& goal) {
+  map_window::Beginning beginning;
+  const double z = world.groundHeight(goal.x, goal.y);
+  map_view::OrbitCamera& camera = beginning.camera.emplace();
+  camera.target = {(start.x + goal.x) / 2, (start.y + goal.y) / 2, z};
+  camera.azimuth = -90, camera.elevation = 50;
+  camera.distance = 1.5 * std::hypot(start.x - goal.x, start.y - goal.y) + 20;
+  beginning.style.maxHeight = std::max(z, world.groundHeight(start.x, start.y)) + kCutAbove;
+  return beginning;
 }
 
 TPoint3Df raised(double x, double y, double z) { return {float(x), float(y), float(z + kLift)}; }
@@ -94,13 +86,6 @@ CPolyhedron::Ptr robotOf(const DriveLoop& loop) {
   return robot;
 }
 
-TFontParams captionFont() {
-  TFontParams font;
-  font.vfont_scale = 16;
-  font.color = {0.1f, 0.1f, 0.1f};
-  return font;
-}
-
 CCylinder::Ptr postAt(const TPoint3D& place) {
   const auto post = CCylinder::Create(0.12f, 0.12f, 3.f);
   post->setLocation(place);
@@ -110,55 +95,34 @@ CCylinder::Ptr postAt(const TPoint3D& place) {
 
 }  // namespace
 
-LiveWindow::LiveWindow(const synthetic_world::World& world, const TPose2D& start,
-                       const TPose2D& goal)
-    : m_window(openWindow()) {
-  const double z = world.groundHeight(goal.x, goal.y);
-  CDisplayWindow3D& window = *m_window;
-  COpenGLScene::Ptr scene;
-  const mrpt::gui::CDisplayWindow3DLocker locker(window, scene);
-  scene->getViewport()->setCustomBackgroundColor({0.96f, 0.96f, 0.96f});
-  scene->insert(m_map);
-  scene->insert(m_drive);
-  scene->insert(postAt({goal.x, goal.y, z}));
-  window.setCameraPointingToPoint(float(start.x + goal.x) / 2, float(start.y + goal.y) / 2,
-                                  float(z));
-  window.setCameraAzimuthDeg(-90);  // north is up
-  window.setCameraElevationDeg(50);
-  window.setCameraZoom(float(1.5 * std::hypot(start.x - goal.x, start.y - goal.y) + 20));
-}
+LiveWindow::LiveWindow(const DriveLoop& loop, const synthetic_world::World& world,
+                       const TPose2D& start, const TPose2D& goal)
+    : m_goal(goal.x, goal.y, world.groundHeight(goal.x, goal.y)),
+      m_window("semantic-map-drive", loop.mapper().map(), beginningFor(world, start, goal)) {}
 
-void LiveWindow::onSensed(const DriveLoop& loop, const std::vector<Observation>&) {
-  if (!m_window->isOpen() || loop.time() < m_nextMap - 1e-6) return;
-  m_nextMap = loop.time() + kMapPeriod;
-  map_pictures::PictureStyle style;
-  style.maxAboveGround = kCutAbove;
-  const auto mesh = map_pictures::meshOf(loop.mapper().map(), style);
-  const mrpt::gui::CDisplayWindow3DLocker locker(*m_window);
-  m_map->clear();
-  m_map->insert(mesh);
+void LiveWindow::onSensed(const DriveLoop& loop, const std::vector<Observation>& seen) {
+  const Eigen::Isometry3d T_map_robot = loop.T_world_robot();
+  Eigen::AlignedBox3d box(T_map_robot.translation());
+  for (const Observation& o : seen)
+    for (const auto& p : o.cloud.points)
+      box.extend(T_map_robot * o.T_robot_sensor * p.cast<double>());
+  m_window.changed(box);
 }
 
 void LiveWindow::onDriven(const DriveLoop& loop) {
-  if (!m_window->isOpen()) return;
-  {
-    const mrpt::gui::CDisplayWindow3DLocker locker(*m_window);
-    m_drive->clear();
-    m_drive->insert(trackOf(loop));
-    m_drive->insert(pathOf(loop));
-    m_drive->insert(robotOf(loop));
-    m_window->addTextMessage(8, -24, caption(loop), 0, captionFont());
-  }
-  m_window->forceRepaint();
-  pace(loop.config().controlPeriod);
-}
-
-void LiveWindow::pace(double period) {
-  using std::chrono::steady_clock;
-  m_due +=
-      std::chrono::duration_cast<steady_clock::duration>(std::chrono::duration<double>(period));
+  if (!m_window.isOpen()) return;
+  auto& marks = m_window.marks();
+  marks.clear();
+  marks.insert(postAt(m_goal));
+  marks.insert(trackOf(loop));
+  marks.insert(pathOf(loop));
+  marks.insert(robotOf(loop));
+  m_window.say({caption(loop)});
+  using std::chrono::duration, std::chrono::steady_clock;
+  m_due += std::chrono::duration_cast<steady_clock::duration>(
+      duration<double>(loop.config().controlPeriod));
   m_due = std::max(m_due, steady_clock::now());
-  std::this_thread::sleep_until(m_due);
+  m_window.show(duration<double>(m_due - steady_clock::now()).count());
 }
 
 }  // namespace semantic_map_drive

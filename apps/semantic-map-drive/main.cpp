@@ -94,7 +94,10 @@ class Program {
         map_pictures::savePicture(picture, m_output.staged(numbered(name, numOnTheWay++)));
       }));
     std::optional<LiveWindow> window;
-    if (m_cli.live) loop.addObserver(window.emplace(m_scene.world, m_cli.start, m_cli.goal));
+    if (m_cli.live) {
+      loop.addObserver(window.emplace(loop, m_scene.world, m_cli.start, m_cli.goal));
+      window->stopWhen([this] { return m_stop.pending(); });
+    }
     const DriveRecord record = loop.run();
     strict_files::writeText(m_output.staged(name + ".csv"), toCsv(record));
     writeJson(m_output.staged(name + ".json"), toJson(record, order));

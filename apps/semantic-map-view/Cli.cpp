@@ -23,7 +23,7 @@ void readSize(const std::string& text, Cli& cli) {
 
 void readCamera(const std::string& text, Cli& cli) {
   try {
-    cli.camera = map_view::OrbitCamera::ofText(text);
+    cli.view.camera = map_view::OrbitCamera::ofText(text);
   } catch (const std::invalid_argument& e) {
     throw CLI::ValidationError(std::string("--camera ") + e.what());
   }
@@ -42,13 +42,15 @@ Cli::Cli(CLI::App& app) : outputs(app) {
       "--camera", [this](const std::string& text) { readCamera(text, *this); },
       "Where it looks at and from: m and degrees, as the window says it");
   from->type_name("X,Y,Z,DISTANCE,AZIMUTH,ELEVATION");
-  app.add_flag("--top", top, "From above, north up")->excludes(from);
+  app.add_flag("--top", view.top, "From above, north up")->excludes(from);
   std::map<std::string, map_view::Coloring> colorings;
   for (const auto& [name, value] : choicesOf(map_view::Coloring())) colorings[name] = value;
-  addChoice(app.add_option("--color", style.coloring, "What the cells' colors say"), colorings);
-  app.add_option("--max-height", style.maxHeight, "Cells with their center above are not shown, m")
+  addChoice(app.add_option("--color", view.style.coloring, "What the cells' colors say"),
+            colorings);
+  app.add_option("--max-height", view.style.maxHeight,
+                 "Cells with their center above are not shown, m")
       ->check(isNumber({}));
-  app.add_flag("--free", style.freeSpace, "Show free space");
+  app.add_flag("--free", view.style.freeSpace, "Show free space");
   app.add_option("--weights", weights,
                  "Where the sliders of the compression begin: the first solution of such a file "
                  "(YAML, as for semantic-map-compress)");

@@ -8,15 +8,12 @@
 #include <ostream>
 
 #include "StandardOutput.h"
-#include "Widgets.h"
+#include "map_window/Widgets.h"
 
 namespace semantic_map_view {
 
 namespace fs = std::filesystem;
-using map_view::CompressedCells;
-using map_view::KeyBox;
 using map_view::LiveCompression;
-using semantic_octree::LeafCell;
 
 namespace {
 
@@ -56,7 +53,7 @@ void CompressPanel::attempt(const F& f) {
 }
 
 void CompressPanel::begin() {
-  auto& map = m_viewer.layer().map();
+  auto& map = m_viewer.layer().ownMap();
   if (m_weights.empty()) {
     m_live.emplace(map, LiveCompression::allClasses(map), semantic_octree::AbstractionOptions());
     m_live->setLeaves(map.getNumLeafNodes() / kShare);
@@ -64,7 +61,6 @@ void CompressPanel::begin() {
     const auto file = semantic_octree::loadWeights(m_weights, map.classes());
     m_live.emplace(map, file.solutions.front(), file.space);
   }
-  m_live->takeChange();
   tell();
 }
 
@@ -83,7 +79,7 @@ void CompressPanel::switchOn(bool on) {
     begin();
     addTerms();
   }
-  m_viewer.showCompressed();
+  m_viewer.showCompressed(*m_live);
   follow();
 }
 
@@ -162,27 +158,21 @@ void CompressPanel::setWeight(std::size_t term, double weight) {
 
 /** Map and numbers follow the compressed tree. */
 void CompressPanel::follow() {
-  const semantic_octree::TreeChange change = m_live->takeChange();
-  std::vector<KeyBox> boxes;
-  for (const auto* leaves : {&change.removed, &change.added})
-    for (const LeafCell& leaf : *leaves)
-      boxes.push_back({leaf.lowest(), leaf.lowest() + (leaf.edge() - 1)});
-  m_viewer.window().tiles().touch(boxes);
+  m_viewer.changed(m_live->takeChange());
   m_alphaText->setCaption(rounded(m_live->alpha(), 3));
   m_leaves->setCaption(std::to_string(m_live->numLeaves()) + " leaves");
   m_wanted->setValue(int(m_live->numLeaves()));
   for (std::size_t term = 0; term < m_lines.size(); ++term)
     m_lines[term].weight->setCaption(rounded(m_live->weight(term), 3));
   m_measureAt = glfwGetTime() + kRest;
-  m_viewer.window().redraw();
 }
 
 void CompressPanel::update() {
   if (!m_live || m_measureAt == 0 || glfwGetTime() < m_measureAt) return;
   m_measureAt = 0;
-  const auto& measures = m_live->measures();
+  const auto retained = m_live->retained();
   for (std::size_t term = 0; term < m_lines.size(); ++term) {
-    const auto share = measures.retention(term);
+    const auto& share = retained[term];
     m_lines[term].kept->setCaption(share ? rounded(100 * *share, 3) + " %" : "-");
   }
   tell();

@@ -3,9 +3,11 @@
 
 #include <optional>
 
-#include "Viewer.h"
+#include "map_window/Viewer.h"
 
 namespace semantic_map_view {
+
+using namespace map_window;
 
 /** The compressed tree of the map that is shown, which follows the sliders of alpha and of the
  * weights. */

@@ -10,7 +10,7 @@
 #include <ostream>
 
 #include "StandardOutput.h"
-#include "Widgets.h"
+#include "map_window/Widgets.h"
 #include "measuring/Stopwatch.h"
 
 namespace semantic_map_view {
@@ -25,6 +25,7 @@ namespace {
 
 constexpr int kWidth = 230;
 constexpr float kLift = 0.3f;  // m
+constexpr double kTurn = 0.5;  // m from the place, at least, where the hand gives a heading
 constexpr mrpt::img::TColor kPathColor{220, 40, 40}, kStartColor{40, 90, 220},
     kGoalColor{220, 40, 40};
 
@@ -45,6 +46,25 @@ CSetOfTriangles::Ptr bandAlong(const PlanResult& plan, float width) {
   }
   band->enableLight(false);
   return band;
+}
+
+/** A flat triangle, six times as long as wide. */
+CSetOfTriangles::Ptr arrowAt(const Eigen::Vector3d& place, double heading,
+                             const mrpt::img::TColor& color, float width) {
+  const TPoint3Df base(float(place.x()), float(place.y()), float(place.z()) + kLift),
+      along(float(std::cos(heading)), float(std::sin(heading)), 0), aside(-along.y, along.x, 0);
+  TTriangle triangle(base - aside * width, base + along * (12 * width), base + aside * width);
+  triangle.setColor(color);
+  const auto arrow = CSetOfTriangles::Create();
+  arrow->insertTriangle(triangle);
+  arrow->enableLight(false);
+  return arrow;
+}
+
+/** Where a ray that looks down meets a height; else its origin. */
+Eigen::Vector3d atHeight(const map_view::Ray& ray, double z) {
+  const double steps = ray.direction.z() < 0 ? (z - ray.origin.z()) / ray.direction.z() : 0;
+  return ray.origin + steps * ray.direction;
 }
 
 mrpt::opengl::CCylinder::Ptr postAt(const Eigen::Vector3d& place, const mrpt::img::TColor& color,
@@ -92,16 +112,17 @@ void PlanPanel::forget() {
 
 void PlanPanel::await(Awaited what) {
   m_awaited = what;
-  say(what == Awaited::Start ? "click where the vehicle is" : "click where it is to go");
+  say(what == Awaited::Start ? "click where the vehicle is" : "click where it is to go",
+      "and drag for its heading");
 }
 
-bool PlanPanel::take(const map_view::Ray& ray) {
+bool PlanPanel::place(const map_view::Ray& ray) {
   if (m_awaited == Awaited::Nothing) return false;
   const Layer& layer = m_viewer.layer();
   const auto cell = firstShown(layer.cells(), layer.look(), ray);
   if (!cell) {
     say("nothing there");
-    return true;
+    return false;
   }
   // Where the ray meets the height of the cell's upper side, within the cell.
   const double voxel = layer.map().getResolution();
@@ -110,18 +131,29 @@ bool PlanPanel::take(const map_view::Ray& ray) {
     low[axis] = semantic_octree::lowerBorderOf(cell->lowest[axis], voxel);
     high[axis] = low[axis] + cell->edge() * voxel;
   }
-  const double steps = ray.direction.z() < 0 ? (high.z() - ray.origin.z()) / ray.direction.z() : 0;
-  Eigen::Vector3d place = (ray.origin + steps * ray.direction).cwiseMax(low).cwiseMin(high);
+  Eigen::Vector3d place = atHeight(ray, high.z()).cwiseMax(low).cwiseMin(high);
   place.z() = high.z();
-  (m_awaited == Awaited::Start ? m_start : m_goal) = place;
-  char text[60];
-  std::snprintf(text, sizeof text, "%s at %.1f %.1f %.1f m",
-                m_awaited == Awaited::Start ? "start" : "goal", place.x(), place.y(), place.z());
-  m_awaited = Awaited::Nothing;
-  say(text);
+  awaited() = Pose{place, {}};
   draw(nullptr);
-  if (m_start && m_goal) plan();
   return true;
+}
+
+void PlanPanel::turn(const map_view::Ray& ray, bool letsGo) {
+  Pose& pose = *awaited();
+  const Eigen::Vector3d way = atHeight(ray, pose.place.z()) - pose.place;
+  pose.heading.reset();
+  if (way.norm() > kTurn) pose.heading = std::atan2(way.y(), way.x());
+  draw(nullptr);
+  if (!letsGo) return;
+  char text[60], heading[30] = "";
+  std::snprintf(text, sizeof text, "%s at %.1f %.1f %.1f m",
+                m_awaited == Awaited::Start ? "start" : "goal", pose.place.x(), pose.place.y(),
+                pose.place.z());
+  if (pose.heading)
+    std::snprintf(heading, sizeof heading, "heading %.0f deg", *pose.heading * 180 / M_PI);
+  m_awaited = Awaited::Nothing;
+  say(text, heading);
+  if (m_start && m_goal) plan();
 }
 
 void PlanPanel::begin() {
@@ -137,10 +169,12 @@ void PlanPanel::plan() {
   try {
     const measuring::Stopwatch watch;
     if (!m_planner) begin();
-    const double heading = std::atan2(m_goal->y() - m_start->y(), m_goal->x() - m_start->x());
+    const Eigen::Vector3d way = m_goal->place - m_start->place;
+    const auto poseOf = [&](const Pose& p) {
+      return TPose2D(p.place.x(), p.place.y(), p.heading.value_or(std::atan2(way.y(), way.x())));
+    };
     const PlanResult plan =
-        m_planner->plan(TPose2D(m_start->x(), m_start->y(), heading),
-                        TPose2D(m_goal->x(), m_goal->y(), heading), m_start->z(), m_goal->z());
+        m_planner->plan(poseOf(*m_start), poseOf(*m_goal), m_start->place.z(), m_goal->place.z());
     draw(&plan);
     if (!plan.found()) return say("no path:", plan.reason);
     char text[60];
@@ -156,8 +190,13 @@ void PlanPanel::draw(const PlanResult* plan) {
   // Some pixels wide from where one looks at it now.
   const float width = std::max(0.3f, float(m_viewer.window().orbitCamera().distance) / 200);
   m_marks->clear();
-  if (m_start) m_marks->insert(postAt(*m_start, kStartColor, width));
-  if (m_goal) m_marks->insert(postAt(*m_goal, kGoalColor, width));
+  const auto mark = [&](const std::optional<Pose>& pose, const mrpt::img::TColor& color) {
+    if (!pose) return;
+    m_marks->insert(postAt(pose->place, color, width));
+    if (pose->heading) m_marks->insert(arrowAt(pose->place, *pose->heading, color, width));
+  };
+  mark(m_start, kStartColor);
+  mark(m_goal, kGoalColor);
   if (plan && plan->found()) m_marks->insert(bandAlong(*plan, width));
 }
 

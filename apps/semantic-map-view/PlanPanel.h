@@ -3,9 +3,11 @@
 
 #include <optional>
 
-#include "Viewer.h"
+#include "map_window/Viewer.h"
 
 namespace semantic_map_view {
+
+using namespace map_window;
 
 /** Start, goal and the path between them. */
 class PlanPanel {
@@ -15,12 +17,19 @@ class PlanPanel {
   PlanPanel(const PlanPanel&) = delete;
   PlanPanel& operator=(const PlanPanel&) = delete;
 
-  /** Takes a click as start or goal. \return false: it means something else now. */
-  bool take(const map_view::Ray& ray);
+  /** Puts start or goal where the hand points. \return false: it means something else now. */
+  bool place(const map_view::Ray& ray);
+  /** Turns it to where the hand points now, if that is some way off. */
+  void turn(const map_view::Ray& ray, bool letsGo);
 
  private:
   enum class Awaited { Nothing, Start, Goal };
+  struct Pose {
+    Eigen::Vector3d place;          ///< m, map frame
+    std::optional<double> heading;  ///< rad; none: from start to goal
+  };
   void await(Awaited what);
+  std::optional<Pose>& awaited() { return m_awaited == Awaited::Start ? m_start : m_goal; }
   void plan();
   void begin();
   void forget();
@@ -30,7 +39,7 @@ class PlanPanel {
   Viewer& m_viewer;
   std::filesystem::path m_classes;
   Awaited m_awaited = Awaited::Nothing;
-  std::optional<Eigen::Vector3d> m_start, m_goal;
+  std::optional<Pose> m_start, m_goal;
   /** Planning keeps an abstraction of its own, and so a map of its own. */
   std::unique_ptr<semantic_octree::SemanticOcTree> m_map;
   std::optional<semantic_planning::SemanticPlanner> m_planner;

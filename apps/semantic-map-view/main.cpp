@@ -6,13 +6,13 @@
 #include <iostream>
 
 #include "Application.h"
-#include "AskPanel.h"
 #include "Cli.h"
 #include "CompressPanel.h"
 #include "PlanPanel.h"
-#include "ShowPanel.h"
 #include "StandardOutput.h"
-#include "Viewer.h"
+#include "map_window/AskPanel.h"
+#include "map_window/ShowPanel.h"
+#include "measuring/Quantile.h"
 #include "measuring/Stopwatch.h"
 
 namespace semantic_map_view {
@@ -38,9 +38,10 @@ struct Panels {
 
   Panels(Viewer& viewer, const Cli& cli)
       : show(viewer), ask(viewer), compress(viewer, cli.weights), plan(viewer, cli.classes) {
-    viewer.window().onClick([this](const map_view::Ray& ray) {
-      if (!plan.take(ray)) ask.ask(ray);
-    });
+    viewer.window().onClick([this](const map_view::Ray& ray) { ask.ask(ray); });
+    viewer.window().onGrab([this](const map_view::Ray& ray) { return plan.place(ray); });
+    viewer.window().onMoved(
+        [this](const map_view::Ray& ray, bool letsGo) { plan.turn(ray, letsGo); });
     if (cli.compress) compress.switchOn(true);
   }
 };
@@ -68,6 +69,19 @@ struct Clock {
   }
 };
 
+/** Medians of such times. */
+struct Clocks {
+  std::vector<double> wall, cores;
+  void add(const Clock& clock) {
+    wall.push_back(clock.wall.milliseconds());
+    cores.push_back(clock.cores.milliseconds());
+  }
+  std::string text() const {
+    return number(measuring::quantile(wall, 0.5)) + " ms (of the cores " +
+           number(measuring::quantile(cores, 0.5)) + " ms)";
+  }
+};
+
 /** Twice around the map: with meshes to be made, and with all there. */
 void measureTurning(ViewWindow& window) {
   constexpr int kFrames = 72;
@@ -85,24 +99,29 @@ void measureTurning(ViewWindow& window) {
             << "\nsides of cells: " << window.tiles().numFaces() << '\n';
 }
 
-/** From the hand on the slider to the complete frame that shows it. */
+/** From the hand on the slider to the first frame that shows it, and to the complete one. */
 void measureCompressing(ViewWindow& window, CompressPanel& panel) {
-  const auto show = [&](const char* name, const auto& change) {
-    constexpr int kTimes = 5;
-    const Clock clock;
+  const auto show = [&](const std::string& name, const auto& change) {
+    constexpr int kTimes = 9;
+    Clocks first, complete;
     for (int i = 0; i < kTimes; ++i) {
+      const Clock clock;
       change(i);
+      window.drawFrame();
+      first.add(clock);
       finishFrame(window);
+      complete.add(clock);
     }
-    std::cout << name << clock.text(kTimes) << '\n';
+    std::cout << "from " << name << " to the first frame: " << first.text()
+              << ", to the complete one: " << complete.text() << '\n';
   };
   const Clock begin;
   panel.switchOn(true);
   finishFrame(window);
   std::cout << "to the compressed tree: " << begin.text() << '\n';
   const double alpha = panel.compression().alpha();
-  show("from alpha to the frame: ", [&](int i) { panel.setAlpha(alpha * (i % 2 ? 1 : 1.5)); });
-  show("from a weight to the frame: ", [&](int i) { panel.setWeight(1, i % 2 ? 1 : 0.5); });
+  show("alpha", [&](int i) { panel.setAlpha(alpha * (i % 2 ? 1 : 1.5)); });
+  show("a weight", [&](int i) { panel.setWeight(1, i % 2 ? 1 : 0.5); });
 }
 
 void measureAsking(ViewWindow& window, AskPanel& panel) {
@@ -122,8 +141,8 @@ int run(const Cli& cli) {
   auto layers = openLayers(cli);
   checkSettings(cli, layers.front()->map().classes());
   const WindowSystem system;
-  const auto window = ViewWindow::open(cli.width, cli.height);
-  Viewer viewer(*window, std::move(layers), cli);
+  const auto window = ViewWindow::open("semantic-map-view", cli.width, cli.height);
+  Viewer viewer(*window, std::move(layers), cli.view);
   std::optional<Panels> panels;
   if (cli.panels) panels.emplace(viewer, cli);
   window->performLayout();

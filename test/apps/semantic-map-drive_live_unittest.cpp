@@ -18,11 +18,14 @@ class LiveDrive : public SemanticMapDrive {
   std::string csvIn(const std::string& output) const { return folder.read(output + "/drive.csv"); }
 };
 
-/** Pixels of a color, as it is or in the shade. */
+/** Pixels of a color, as it is or a little darker. */
 int countPixels(const cv::Mat& screen, const cv::Vec3b& color) {
   int count = 0;
-  for (auto it = screen.begin<cv::Vec3b>(); it != screen.end<cv::Vec3b>(); ++it)
-    count += cv::norm(*it, color, cv::NORM_INF) <= 3;
+  for (auto it = screen.begin<cv::Vec3b>(); it != screen.end<cv::Vec3b>(); ++it) {
+    const double shade = cv::norm(*it) / cv::norm(color);
+    count += shade > 0.85 && shade < 1.03 &&
+             cv::norm(cv::Vec3d(*it) - shade * cv::Vec3d(color), cv::NORM_INF) <= 3;
+  }
   return count;
 }
 

@@ -186,6 +186,36 @@ TEST_F(SemanticMapView, FindsAPathBetweenTwoClicks) {
   EXPECT_LT(std::stod(length[1]), 15);
 }
 
+TEST_F(SemanticMapView, PlansFromAndToHeadingsThatAreDragged) {
+  if (!hasTools()) GTEST_SKIP() << "needs xvfb, xauth and xdotool";
+  folder.write("order.yaml", "best_to_worst: [road, grass]\n");
+  const std::string y = std::to_string(kHeight - 76);
+  const auto drag = [](const cv::Point& from, const cv::Point& to, const std::string& words) {
+    std::string step = "drag";
+    for (const int x : {from.x, from.y, to.x, to.y}) step += ' ' + std::to_string(x);
+    return step + ' ' + words;
+  };
+  const ProgramRun run =
+      runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kProgram,
+              path("map.semantic"), "--size", size(), "--camera", kTop, "--classes",
+              path("order.yaml"), "--", "60 " + y + " click where the vehicle is",
+              drag(pixelOf(-4, -2, 0.2), pixelOf(-6, -2, 0.2), "start at -4"),
+              "156 " + y + " click where it is to go",
+              drag(pixelOf(3, 2, 0.2), pixelOf(3, 4, 0.2), "path of")});
+  EXPECT_EQ(run.status, 0) << run.output << run.errors;
+  const std::string said = folder.read("said.txt");
+  const auto heading = [&](const std::string& of) {
+    std::smatch found;
+    const bool is = std::regex_search(said, found, std::regex(of + " at.*heading (-?[0-9]+) deg"));
+    return is ? std::stod(found[1]) : 1000;
+  };
+  EXPECT_NEAR(std::abs(heading("start")), 180, 3) << said;
+  EXPECT_NEAR(heading("goal"), 90, 3) << said;
+  std::smatch length;
+  ASSERT_TRUE(std::regex_search(said, length, std::regex("path of ([0-9.]+) m"))) << said;
+  EXPECT_GE(std::stod(length[1]), std::hypot(7, 4) + 0.5) << "it has to turn";
+}
+
 TEST_F(SemanticMapView, SaysWhatIsMissingInsteadOfFailing) {
   const auto without = [&](const std::vector<std::string>& arguments) {
     std::vector<std::string> command = {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", kProgram};

@@ -58,11 +58,11 @@ std::map<Cube, bool> leavesOf(const SemanticOcTree& map, bool withFree) {
   return leaves;
 }
 
-semantic_octree::AbstractionOptions keepRoads() {
-  semantic_octree::AbstractionOptions options;
-  options.weights.terms = {{"road", 1, {{1}}}, {"tree", 0.5, {{2}}}};
-  options.weights.alpha = 0.01;
-  return options;
+semantic_octree::Solution keepRoads() {
+  semantic_octree::Solution solution;
+  solution.terms = {{"road", 1, {{1}}}, {"tree", 0.5, {{2}}}};
+  solution.alpha = 0.01;
+  return solution;
 }
 
 }  // namespace
@@ -114,18 +114,22 @@ TEST(FullCells, AnswerForEachVoxelAndForUnknownSpace) {
 }
 
 TEST(CompressedCells, AreTheLeavesOfTheCompressedTree) {
-  SemanticOcTree map = randomMap(5);
-  map.setAbstraction(keepRoads());
-  const CompressedCells cells(map);
+  SemanticOcTree map = randomMap(5), other = map;
+  const LiveCompression compression(map, keepRoads(), {});
+  const CompressedCells cells(map, compression);
+  semantic_octree::AbstractionOptions options;
+  options.weights.terms = keepRoads().terms;
+  options.weights.alpha = *keepRoads().alpha;
+  other.setAbstraction(options);
   CellLook look(map);
   for (const bool withFree : {false, true}) {
     ViewStyle style;
     style.freeSpace = withFree;
     look.setStyle(style);
     std::map<Cube, bool> leaves;
-    for (const auto& leaf : semantic_octree::Abstraction(map).leaves())
-      if (withFree || map.isNodeOccupied(leaf.node))
-        leaves[cubeOf(leaf.lowest(), int(leaf.depth))] = map.isNodeOccupied(leaf.node);
+    for (const auto& leaf : semantic_octree::Abstraction(other).leaves())
+      if (withFree || other.isNodeOccupied(leaf.node))
+        leaves[cubeOf(leaf.lowest(), int(leaf.depth))] = other.isNodeOccupied(leaf.node);
     ASSERT_GT(leaves.size(), 100u);
     ASSERT_LT(leaves.size(), map.getNumLeafNodes());
     for (const int depth : {kTreeDepth, 13, 10})

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
+#include <map_view/CellSource.h>
 #include <map_view/LiveCompression.h>
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 #include <tuple>
 
@@ -9,6 +12,7 @@
 
 namespace {
 
+using map_view::KeyBox;
 using map_view::LiveCompression;
 using semantic_octree::Abstraction;
 using semantic_octree::AbstractionOptions;
@@ -24,22 +28,47 @@ std::size_t termNamed(const LiveCompression& live, const std::string& name) {
 
 using Cube = std::tuple<int, int, int, int>;
 
-std::set<Cube> leavesOf(SemanticOcTree& map) {
+Cube cubeOf(const Eigen::Array3i& lowest, int depth) {
+  return {lowest.x(), lowest.y(), lowest.z(), depth};
+}
+
+/** Of the compressed tree. */
+std::set<Cube> leavesOf(const SemanticOcTree& map, const LiveCompression& live) {
+  map_view::CellLook look(map);
+  map_view::ViewStyle style;
+  style.freeSpace = true;
+  look.setStyle(style);
   std::set<Cube> leaves;
-  for (const LeafCell& leaf : Abstraction(map).leaves())
-    leaves.insert({leaf.lowest().x(), leaf.lowest().y(), leaf.lowest().z(), int(leaf.depth)});
+  const KeyBox all = {Eigen::Array3i::Zero(),
+                      Eigen::Array3i::Constant(semantic_octree::kNumKeys - 1)};
+  map_view::CompressedCells(map, live).forEachShown(
+      all, semantic_octree::kTreeDepth, look, [&](const map_view::ViewCell& cell) {
+        EXPECT_TRUE(leaves.insert(cubeOf(cell.lowest, cell.depth)).second);
+      });
   return leaves;
 }
 
-/** What semantic-map-compress finds for a solution: with its terms alone. */
+/** With G-values: of a solution with its terms alone, as semantic-map-compress finds it. */
 std::set<Cube> leavesOfSolution(SemanticOcTree map, const Solution& solution,
                                 const AbstractionOptions& space) {
   const semantic_octree::TermCatalog catalog(map.classes(), {solution});
   AbstractionOptions options = space;
   options.weights.terms = catalog.terms(0);
   map.setAbstraction(options);
-  Abstraction(map).setWeights(catalog.weights(solution, 0), *solution.alpha);
-  return leavesOf(map);
+  Abstraction abstraction(map);
+  abstraction.setWeights(catalog.weights(solution, 0), *solution.alpha);
+  std::set<Cube> leaves;
+  for (const LeafCell& leaf : abstraction.leaves())
+    leaves.insert(cubeOf(leaf.lowest(), int(leaf.depth)));
+  return leaves;
+}
+
+bool isIn(const Cube& cube, const std::vector<KeyBox>& boxes) {
+  const auto [x, y, z, depth] = cube;
+  const int edge = semantic_octree::edgeAtDepth(depth);
+  for (const KeyBox& box : boxes)
+    if (box.meets({x, y, z}, edge)) return true;
+  return false;
 }
 
 }  // namespace
@@ -50,7 +79,7 @@ TEST(LiveCompression, CountsTheLeavesOfItsTree) {
   std::size_t before = map.getNumLeafNodes() + 1;
   for (const double alpha : {0.0, 1e-4, 0.003, 0.02, 0.3, 10.0}) {
     live.setAlpha(alpha);
-    EXPECT_EQ(live.numLeaves(), live.measures().compressed.numKnownLeaves) << alpha;
+    EXPECT_EQ(live.numLeaves(), leavesOf(map, live).size()) << alpha;
     EXPECT_LE(live.numLeaves(), before);
     before = live.numLeaves();
   }
@@ -71,7 +100,7 @@ TEST(LiveCompression, FindsTheTreeOfAWantedNumberOfLeaves) {
     live.setLeaves(wanted);
     EXPECT_LE(live.numLeaves(), wanted);
     EXPECT_GT(live.numLeaves(), wanted / 2);
-    EXPECT_EQ(live.numLeaves(), live.measures().compressed.numKnownLeaves);
+    EXPECT_EQ(live.numLeaves(), leavesOf(map, live).size());
   }
   live.setLeaves(1);
   EXPECT_GE(live.numLeaves(), 1u);
@@ -88,25 +117,69 @@ TEST(LiveCompression, HasTheLeavesOfItsSolutionAlone) {
     const std::size_t term = random() % live.numTerms();
     live.setWeight(term, 0.25 * double(random() % 13) - 1);
     live.setAlpha(1e-3 * double(1 + random() % 40));
-    EXPECT_EQ(leavesOf(map), leavesOfSolution(original, live.solution(), live.space())) << i;
-    EXPECT_EQ(live.numLeaves(), live.measures().compressed.numKnownLeaves) << i;
+    const auto leaves = leavesOf(map, live);
+    EXPECT_EQ(leaves, leavesOfSolution(original, live.solution(), live.space())) << i;
+    EXPECT_EQ(live.numLeaves(), leaves.size()) << i;
   }
 }
 
-TEST(LiveCompression, TellsWhichLeavesCameAndWent) {
+TEST(LiveCompression, HasThemWithinBlocksThatAreFree) {
+  const SemanticOcTree original = randomMap(57);
+  AbstractionOptions space;
+  space.blockSize = 1.6;
+  SemanticOcTree map = original;
+  LiveCompression live(map, LiveCompression::allClasses(map), space);
+  for (const double alpha : {0.0005, 0.01, 5.0}) {
+    live.setAlpha(alpha);
+    const auto leaves = leavesOf(map, live);
+    EXPECT_EQ(leaves, leavesOfSolution(original, live.solution(), space)) << alpha;
+    EXPECT_EQ(live.numLeaves(), leaves.size()) << alpha;
+  }
+}
+
+TEST(LiveCompression, RetainsWhatGValuesSay) {
+  SemanticOcTree map = randomMap(58), other = map;
+  LiveCompression live(map, LiveCompression::allClasses(map), {});
+  live.setLeaves(500);
+  const semantic_octree::TermCatalog catalog(map.classes(), {LiveCompression::allClasses(map)});
+  AbstractionOptions options;
+  options.weights.terms = catalog.terms(0);
+  other.setAbstraction(options);
+  Abstraction abstraction(other);
+  abstraction.setWeights(catalog.weights(live.solution(), 0), live.alpha());
+  const auto measures = abstraction.measures();
+  const auto retained = live.retained();
+  ASSERT_EQ(retained.size(), live.numTerms());
+  for (std::size_t term = 0; term < retained.size(); ++term) {
+    ASSERT_TRUE(retained[term] && measures.retention(term)) << live.name(term);
+    EXPECT_NEAR(*retained[term], *measures.retention(term), 1e-9) << live.name(term);
+    EXPECT_LT(*retained[term], 1);
+  }
+}
+
+TEST(LiveCompression, TellsWhereLeavesCameAndWent) {
   SemanticOcTree map = randomMap(55);
   LiveCompression live(map, LiveCompression::allClasses(map), {});
-  std::set<Cube> told;
-  for (const double alpha : {0.002, 0.1, 0.0005, 0.0005}) {
-    live.setAlpha(alpha);
-    const auto change = live.takeChange();
-    const auto cube = [](const LeafCell& leaf) {
-      return Cube{leaf.lowest().x(), leaf.lowest().y(), leaf.lowest().z(), int(leaf.depth)};
-    };
-    for (const LeafCell& leaf : change.removed) EXPECT_EQ(told.erase(cube(leaf)), 1u);
-    for (const LeafCell& leaf : change.added) told.insert(cube(leaf));
-    EXPECT_EQ(told, leavesOf(map));
-  }
+  EXPECT_EQ(live.takeChange().size(), 1u) << "all of it";
+  EXPECT_TRUE(live.takeChange().empty());
+  const auto check = [&](const auto& change) {
+    const auto before = leavesOf(map, live);
+    change();
+    const auto after = leavesOf(map, live);
+    const std::vector<KeyBox> boxes = live.takeChange();
+    std::set<Cube> differ;
+    std::set_symmetric_difference(before.begin(), before.end(), after.begin(), after.end(),
+                                  std::inserter(differ, differ.end()));
+    EXPECT_FALSE(differ.empty());
+    for (const Cube& cube : differ) ASSERT_TRUE(isIn(cube, boxes));
+    for (const KeyBox& box : boxes) {
+      const auto isHere = [&](const Cube& cube) { return isIn(cube, {box}); };
+      ASSERT_TRUE(std::any_of(differ.begin(), differ.end(), isHere));
+    }
+  };
+  for (const double alpha : {0.1, 0.0005, 0.02}) check([&] { live.setAlpha(alpha); });
+  check([&] { live.setWeight(termNamed(live, "wall"), 0.1); });
+  EXPECT_TRUE(live.takeChange().empty());
 }
 
 TEST(LiveCompression, RefusesContradictionsAndStaysAsItWas) {
@@ -118,10 +191,10 @@ TEST(LiveCompression, RefusesContradictionsAndStaysAsItWas) {
   LiveCompression live(map, solution, {});
   const std::size_t road = termNamed(live, "road");
   EXPECT_EQ(live.weight(road), 0);
-  const auto before = leavesOf(map);
+  const auto before = leavesOf(map, live);
   EXPECT_NE(errorOf([&] { live.setWeight(road, -1); }), "");
   EXPECT_EQ(live.weight(road), 0);
-  EXPECT_EQ(leavesOf(map), before);
+  EXPECT_EQ(leavesOf(map, live), before);
   live.setWeight(termNamed(live, "wall"), -1);
   EXPECT_NE(errorOf([&] { live.setAlpha(-1); }), "");
   EXPECT_EQ(live.alpha(), 0.002);

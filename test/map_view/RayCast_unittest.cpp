@@ -88,11 +88,11 @@ TEST(RayCast, GoesThroughWhatIsHidden) {
 
 TEST(RayCast, HitsCompressedCellsWhereTheyAreDrawn) {
   SemanticOcTree map = randomMap(15);
-  semantic_octree::AbstractionOptions options;
-  options.weights.terms = {{"road", 1, {{1}}}};
-  options.weights.alpha = 0.05;
-  map.setAbstraction(options);
-  const CompressedCells cells(map);
+  semantic_octree::Solution solution;
+  solution.terms = {{"road", 1, {{1}}}};
+  solution.alpha = 0.05;
+  const LiveCompression compression(map, solution, {});
+  const CompressedCells cells(map, compression);
   const CellLook look(map);
   const Eigen::Vector2d place = placeAbove(map, 1);
   const auto hit = firstShown(cells, look, {{place.x(), place.y(), 9}, {0, 0, -1}});

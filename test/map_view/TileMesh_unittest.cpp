@@ -107,12 +107,13 @@ TEST(TileMesh, HasEachSideThatIsOpenOnceAndNoneThatIsHidden) {
 
 TEST(TileMesh, OfLargeCellsFitsTogetherFromTileToTile) {
   SemanticOcTree map = randomMap(33);
-  semantic_octree::AbstractionOptions options;
-  options.weights.terms = {{"road", 1, {{1}}}};
-  options.weights.alpha = 0.3;
-  options.blockSize = 25.6;  // two tiles
-  map.setAbstraction(options);
-  const CompressedCells cells(map);
+  semantic_octree::Solution solution;
+  solution.terms = {{"road", 1, {{1}}}};
+  solution.alpha = 0.3;
+  semantic_octree::AbstractionOptions space;
+  space.blockSize = 25.6;  // two tiles
+  const LiveCompression compression(map, solution, space);
+  const CompressedCells cells(map, compression);
   const CellLook look(map);
   double area = 0, expected = 0;
   std::set<Side> sides;
@@ -120,8 +121,8 @@ TEST(TileMesh, OfLargeCellsFitsTogetherFromTileToTile) {
     for (const Face& face : occupiedOf(meshOf(tile, cells, look)))
       for (const Side& side : sidesOf(face)) EXPECT_TRUE(sides.insert(side).second);
   bool large = false;
-  for (const auto& leaf : semantic_octree::Abstraction(map).leaves())
-    large = large || (map.isNodeOccupied(leaf.node) && leaf.edge() > kCellsPerTile);
+  cells.forEachShown({Eigen::Array3i::Zero(), Eigen::Array3i::Constant(65535)}, kTreeDepth, look,
+                     [&](const ViewCell& cell) { large = large || cell.edge() > kCellsPerTile; });
   EXPECT_TRUE(large) << "the test needs cells that are larger than tiles";
   for (const Side& side : sides) {
     const Eigen::Array3i key(side[0], side[1], side[2]);

@@ -63,6 +63,35 @@ TEST(PathInformation, isThatOfTheCompressedTreeOfEachAlphaForAnyWeights) {
     }
 }
 
+TEST(PathInformation, isToldNodeByNodeToo) {
+  using Frame = AbstractionOptions::Frame;
+  for (const Frame frame : {Frame::Free, Frame::Charged}) {
+    SemanticOcTree map = smallMap(optionsWith(0.8, frame));
+    const Abstraction abstraction(map);
+    const std::vector<double> weights = {0.5, 2, 0.1};
+    const auto expected = abstraction.pathInformation(weights);
+    const Abstraction::Path path = abstraction.alphaPath();
+    double ofRoots = 0;
+    std::size_t i = 0;
+    int depthBefore = -1;
+    abstraction.forEachPathNode([&](const Abstraction::PathNode& n, const auto& information) {
+      EXPECT_LE(n.depth, depthBefore + 1) << "below one that was told, or beside it";
+      depthBefore = n.depth;
+      if (n.isFree) {
+        ofRoots += weighted(weights, information);
+        return;
+      }
+      ASSERT_LT(i, expected.added.size());
+      EXPECT_NEAR(weighted(weights, information), expected.added[i], 1e-15);
+      EXPECT_EQ(n.addedLeaves, path.addedLeaves[i]);
+      EXPECT_GE(n.price, 0);
+      ++i;
+    });
+    EXPECT_EQ(i, expected.added.size());
+    EXPECT_NEAR(ofRoots, expected.ofRoots, 1e-12);
+  }
+}
+
 TEST(PathInformation, isNoneWhereNothingIsKnownOrCounts) {
   const AbstractionOptions options = optionsWith(0.8, AbstractionOptions::Frame::Free);
   SemanticOcTree empty(0.2, numberedClasses(K));

@@ -52,10 +52,13 @@ bool ViewStyle::hidesClasses() const {
   return std::find(hiddenClasses.begin(), hiddenClasses.end(), true) != hiddenClasses.end();
 }
 
-CellLook::CellLook(const SemanticOcTree& map) : m_map(map) {
+CellLook::CellLook(const SemanticOcTree& map) : m_map(map) { forget(); }
+
+void CellLook::forget() {
+  m_inner.clear();
   double x, y;
-  map.getMetricMin(x, y, m_lowest);
-  map.getMetricMax(x, y, m_highest);
+  m_map.getMetricMin(x, y, m_lowest);
+  m_map.getMetricMax(x, y, m_highest);
 }
 
 bool CellLook::isShown(const ViewCell& cell) const {

@@ -1,54 +1,105 @@
 #include <map_view/CellSource.h>
 
-#include <unordered_map>
+#include <array>
+#include <optional>
 
 namespace map_view {
 
-using semantic_octree::edgeAtDepth;
-using semantic_octree::kTreeDepth;
-using semantic_octree::LeafCell;
-using semantic_octree::lowestKeyAtDepth;
+using semantic_octree::SemanticOcTreeNode;
 
 namespace {
 
-ViewCell childOf(const ViewCell& cell, int i) {
-  const int half = cell.edge() / 2;
-  return {cell.lowest + half * Eigen::Array3i(i & 1, i >> 1 & 1, i >> 2 & 1), cell.depth + 1,
-          cell.node.child(i), 0};
-}
+/** A leaf of a map is a leaf. */
+struct MapNode {
+  ViewCell cell;
 
-/** Walks over the map's leaves. */
-class FullWalk {
+  explicit MapNode(const SemanticOcTree& map)
+      : cell{Eigen::Array3i::Zero(), 0, map.empty() ? SemanticOcTreeNode() : map.root(), 0} {}
+  MapNode(const MapNode& parent, int i)
+      : cell{parent.cell.lowest +
+                 parent.cell.edge() / 2 * Eigen::Array3i(i & 1, i >> 1 & 1, i >> 2 & 1),
+             parent.cell.depth + 1, parent.cell.node.child(i), 0} {}
+
+  bool isLeaf() const { return cell.node.isLeaf(); }
+  /** Calls f(child) for the known children. */
+  template <class F>
+  void forEachChild(const F& f) const {
+    for (int i = 0; i < 8; ++i) {
+      const MapNode child(*this, i);
+      if (child.cell.node) f(child);
+    }
+  }
+};
+
+/** So are inner nodes that the compressed tree does not expand. */
+struct CompressedNode : MapNode {
+  const LiveCompression* compression;
+  InformationTree::Index index = 0;  ///< of an inner node of the map
+
+  CompressedNode(const SemanticOcTree& map, const LiveCompression& live)
+      : MapNode(map), compression(&live) {
+    mark();
+  }
+
+  bool isLeaf() const { return cell.node.isLeaf() || !compression->isExpanded(index); }
+  template <class F>
+  void forEachChild(const F& f) const {
+    InformationTree::Index next = index + 1;
+    for (int i = 0; i < 8; ++i) {
+      const CompressedNode child(*this, i, next);
+      if (!child.cell.node) continue;
+      if (!child.cell.node.isLeaf()) next = compression->tree().end(next);
+      f(child);
+    }
+  }
+
+ private:
+  CompressedNode(const CompressedNode& parent, int i, InformationTree::Index at)
+      : MapNode(parent, i), compression(parent.compression), index(at) {
+    mark();
+  }
+  void mark() {
+    if (cell.node && !cell.node.isLeaf()) cell.innerNode = std::uint64_t(index) + 1;
+  }
+};
+
+template <class Node>
+class Walk {
  public:
-  FullWalk(const KeyBox& box, int maxDepth, const CellLook& look, const CellSource::Visit& visit)
+  Walk(const KeyBox& box, int maxDepth, const CellLook& look, const CellSource::Visit& visit)
       : m_box(box), m_maxDepth(maxDepth), m_look(look), m_visit(visit) {}
 
-  void walk(const ViewCell& cell) const {
-    if (!cell.node || !m_box.meets(cell.lowest, cell.edge())) return;
+  void walk(const Node& node) const {
+    const ViewCell& cell = node.cell;
+    if (!m_box.meets(cell.lowest, cell.edge())) return;
     if (!cell.isOccupied() && !m_look.style().freeSpace) return;  // nor is what is below it
-    if (cell.node.isLeaf()) {
+    if (node.isLeaf()) {
       if (m_look.isShown(cell)) m_visit(cell);
     } else if (cell.depth == m_maxDepth) {
       ViewCell shown = cell;
-      shown.node = shownBelow(cell, true);
-      if (!shown.node && m_look.style().freeSpace) shown.node = shownBelow(cell, false);
-      if (shown.node) m_visit(shown);
+      if (findShown(node, true, shown) ||
+          (m_look.style().freeSpace && findShown(node, false, shown)))
+        m_visit(shown);
     } else {
-      for (int i = 0; i < 8; ++i) walk(childOf(cell, i));
+      node.forEachChild([this](const Node& child) { walk(child); });
     }
   }
 
  private:
   /** A leaf below a node that is shown: from its upper half, if there is one. */
-  semantic_octree::SemanticOcTreeNode shownBelow(const ViewCell& cell, bool occupied) const {
-    if (!cell.node || (occupied && !cell.isOccupied())) return {};
-    if (cell.node.isLeaf())
-      return cell.isOccupied() == occupied && m_look.isShown(cell)
-                 ? cell.node
-                 : semantic_octree::SemanticOcTreeNode();
-    for (int i = 7; i >= 0; --i)
-      if (const auto node = shownBelow(childOf(cell, i), occupied)) return node;
-    return {};
+  bool findShown(const Node& node, bool occupied, ViewCell& shown) const {
+    if (occupied && !node.cell.isOccupied()) return false;
+    if (node.isLeaf()) {
+      if (node.cell.isOccupied() != occupied || !m_look.isShown(node.cell)) return false;
+      shown.node = node.cell.node, shown.innerNode = node.cell.innerNode;
+      return true;
+    }
+    std::array<std::optional<Node>, 8> children;
+    std::size_t number = 0;
+    node.forEachChild([&](const Node& child) { children[number++] = child; });
+    while (number > 0)
+      if (findShown(*children[--number], occupied, shown)) return true;
+    return false;
   }
 
   const KeyBox& m_box;
@@ -57,93 +108,54 @@ class FullWalk {
   const CellSource::Visit& m_visit;
 };
 
-ViewCell rootOf(const SemanticOcTree& map) {
-  return {Eigen::Array3i::Zero(), 0,
-          map.empty() ? semantic_octree::SemanticOcTreeNode() : map.root(), 0};
+/** The child that holds a voxel, without a node. */
+ViewCell unknownChild(const ViewCell& parent, const Eigen::Array3i& key) {
+  const int depth = parent.depth + 1;
+  const auto lowest = [depth](int k) { return semantic_octree::lowestKeyAtDepth(k, depth); };
+  return {key.unaryExpr(lowest), depth, {}, 0};
 }
 
-/** Three keys and a depth in one number. */
-std::uint64_t packed(const Eigen::Array3i& lowest, int depth) {
-  return std::uint64_t(lowest.x()) | std::uint64_t(lowest.y()) << 16 |
-         std::uint64_t(lowest.z()) << 32 | std::uint64_t(depth) << 48;
-}
-
-ViewCell viewCell(const LeafCell& leaf) {
-  const int depth = static_cast<int>(leaf.depth);
-  return {leaf.lowest(), depth, leaf.node,
-          leaf.node.isLeaf() ? 0 : packed(leaf.lowest(), depth + 1)};
-}
-
-octomap::OcTreeKey clamped(const Eigen::Array3i& key) {
-  const Eigen::Array3i k = key.max(0).min(semantic_octree::kNumKeys - 1);
-  return semantic_octree::octomapKey(k.x(), k.y(), k.z());
-}
-
-/** Finer cells than a depth, drawn together: occupied ones before free ones, higher before lower.
- */
-class Together {
- public:
-  explicit Together(int depth) : m_depth(depth) {}
-
-  void add(const ViewCell& cell) {
-    const Eigen::Array3i lowest =
-        cell.lowest.unaryExpr([this](int key) { return lowestKeyAtDepth(key, m_depth); });
-    const auto [at, isNew] = m_index.emplace(packed(lowest, m_depth), m_cells.size());
-    if (isNew) m_cells.push_back({{lowest, m_depth, cell.node, cell.innerNode}, cell.lowest.z()});
-    Entry& entry = m_cells[at->second];
-    const auto rank = [](bool occupied, int height) { return std::make_pair(occupied, height); };
-    if (rank(cell.isOccupied(), cell.lowest.z()) <= rank(entry.cell.isOccupied(), entry.height))
-      return;
-    entry = {{lowest, m_depth, cell.node, cell.innerNode}, cell.lowest.z()};
+template <class Node>
+ViewCell leafAt(const Eigen::Array3i& key, const Node& root) {
+  if (!root.cell.node) return root.cell;
+  Node node = root;
+  while (!node.isLeaf()) {
+    std::optional<Node> next;
+    node.forEachChild([&](const Node& child) {
+      const KeyBox box = {key, key};
+      if (box.meets(child.cell.lowest, child.cell.edge())) next = child;
+    });
+    if (!next) return unknownChild(node.cell, key);
+    node = *next;
   }
-  void forEach(const CellSource::Visit& visit) const {
-    for (const Entry& entry : m_cells) visit(entry.cell);
-  }
-
- private:
-  struct Entry {
-    ViewCell cell;
-    int height;  ///< key of the cell that is shown
-  };
-  int m_depth;
-  std::vector<Entry> m_cells;
-  std::unordered_map<std::uint64_t, std::size_t> m_index;
-};
+  return node.cell;
+}
 
 }  // namespace
 
-void FullCells::forEachShown(const KeyBox& box, int maxDepth, const CellLook& look,
-                             const Visit& visit) const {
-  FullWalk(box, maxDepth, look, visit).walk(rootOf(m_map));
+void forEachOccupiedLeaf(const SemanticOcTree& map, const CellSource::Visit& f) {
+  const auto walk = [&](const auto& self, const MapNode& node) -> void {
+    if (!node.cell.isOccupied()) return;
+    if (node.isLeaf()) return f(node.cell);
+    node.forEachChild([&](const MapNode& child) { self(self, child); });
+  };
+  walk(walk, MapNode(map));
 }
 
-ViewCell FullCells::at(const Eigen::Array3i& key) const {
-  ViewCell cell = rootOf(m_map);
-  while (cell.node && !cell.node.isLeaf()) {
-    const int bit = kTreeDepth - 1 - cell.depth;
-    cell = childOf(cell, (key[0] >> bit & 1) | (key[1] >> bit & 1) << 1 | (key[2] >> bit & 1) << 2);
-  }
-  return cell;
+void FullCells::forEachShown(const KeyBox& box, int maxDepth, const CellLook& look,
+                             const Visit& visit) const {
+  if (!m_map.empty()) Walk<MapNode>(box, maxDepth, look, visit).walk(MapNode(m_map));
 }
+
+ViewCell FullCells::at(const Eigen::Array3i& key) const { return leafAt(key, MapNode(m_map)); }
 
 void CompressedCells::forEachShown(const KeyBox& box, int maxDepth, const CellLook& look,
                                    const Visit& visit) const {
-  Together together(maxDepth);
-  for (const LeafCell& leaf :
-       m_abstraction.leavesIn(clamped(box.low), clamped(box.high), !look.style().freeSpace)) {
-    const ViewCell cell = viewCell(leaf);
-    if (!look.isShown(cell)) continue;
-    if (cell.depth > maxDepth)
-      together.add(cell);
-    else
-      visit(cell);
-  }
-  together.forEach(visit);
+  Walk<CompressedNode>(box, maxDepth, look, visit).walk(CompressedNode(m_map, m_compression));
 }
 
 ViewCell CompressedCells::at(const Eigen::Array3i& key) const {
-  const auto leaves = m_abstraction.leavesIn(clamped(key), clamped(key), false);
-  return leaves.empty() ? FullCells(m_map).at(key) : viewCell(leaves.front());
+  return leafAt(key, CompressedNode(m_map, m_compression));
 }
 
 }  // namespace map_view

@@ -240,6 +240,19 @@ Abstraction::PathInformation Abstraction::pathInformation(
   return information;
 }
 
+void Abstraction::forEachPathNode(const VisitPathNode& visit) const {
+  std::vector<double> information(options().weights.terms.size());
+  const double total = totalDensity();
+  forEachInner([&](const InnerNode& n) {
+    const double p = total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
+    for (std::size_t t = 0; t < information.size(); ++t)
+      information[t] = p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
+    visit({n.cell.lowest(), n.cell.depth, m_gTree.isFreeFrame(n.cell.depth), p * n.splitEntropy,
+           n.numChildren - 1},
+          information);
+  });
+}
+
 double Abstraction::Path::alphaForLeaves(std::size_t wanted) const {
   return trees.alpha(trees.largestWithLeaves(wanted, addedLeaves, numRoots));
 }

@@ -32,10 +32,12 @@ struct ViewStyle {
 };
 
 /** Which cells of a map a view shows, and in which colors. Remembers what was found out about inner
- * nodes, so that the map must not change. */
+ * nodes, until the map changes. */
 class CellLook {
  public:
   explicit CellLook(const SemanticOcTree& map);
+  /** The map has changed. */
+  void forget();
 
   const ViewStyle& style() const { return m_style; }
   void setStyle(const ViewStyle& style) { m_style = style; }

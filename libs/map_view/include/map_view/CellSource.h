@@ -1,6 +1,6 @@
 #pragma once
 #include <map_view/CellLook.h>
-#include <semantic_octree/Abstraction.h>
+#include <map_view/LiveCompression.h>
 
 #include <functional>
 
@@ -38,17 +38,21 @@ class FullCells : public CellSource {
   ViewCell at(const Eigen::Array3i& key) const override;
 };
 
-/** The leaves of the compressed tree; the map must keep G-values. */
+/** The leaves of the compressed tree. */
 class CompressedCells : public CellSource {
  public:
-  /** \throw std::logic_error the map keeps no G-values. */
-  explicit CompressedCells(SemanticOcTree& map) : CellSource(map), m_abstraction(map) {}
+  /** Both must outlive it. */
+  CompressedCells(const SemanticOcTree& map, const LiveCompression& compression)
+      : CellSource(map), m_compression(compression) {}
   void forEachShown(const KeyBox& box, int maxDepth, const CellLook& look,
                     const Visit& visit) const override;
   ViewCell at(const Eigen::Array3i& key) const override;
 
  private:
-  semantic_octree::Abstraction m_abstraction;
+  const LiveCompression& m_compression;
 };
+
+/** Calls f(cell) for the occupied leaves of a map. */
+void forEachOccupiedLeaf(const SemanticOcTree& map, const CellSource::Visit& f);
 
 }  // namespace map_view

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/Abstraction.h>
+#include <map_view/InformationTree.h>
 #include <semantic_octree/TermCatalog.h>
 
 #include <optional>
@@ -13,22 +13,24 @@ using semantic_octree::SemanticOcTree;
 using semantic_octree::Solution;
 
 /** The compressed tree of a map whose weights and alpha change all the time. Its leaves are those
- * of semantic-map-compress with solution(). */
+ * of semantic-map-compress with solution(); a leaf of the map that reaches above the blocks stays
+ * one. */
 class LiveCompression {
  public:
-  /** Each class that the map has, free space and what the solution weighs become terms; the map
-   * keeps G-values from now on. \throw std::invalid_argument bad options, or an empty map. */
+  /** Each class that the map has, free space and what the solution weighs become terms. The map
+   * must not change any more, and keeps no G-values. \throw std::invalid_argument bad options, or
+   * an empty map. */
   LiveCompression(SemanticOcTree& map, const Solution& solution, const AbstractionOptions& space);
 
   /** All classes that occur in a map, each with weight 1. */
   static Solution allClasses(const SemanticOcTree& map);
 
-  std::size_t numTerms() const { return m_terms.size(); }
-  const std::string& name(std::size_t term) const { return m_terms[term].name; }
+  std::size_t numTerms() const { return terms().size(); }
+  const std::string& name(std::size_t term) const { return terms()[term].name; }
   /** A whole class variable has no negative weight in files. */
-  bool mayBeIrrelevant(std::size_t term) const { return m_terms[term].groups.size() == 1; }
-  double weight(std::size_t term) const { return m_terms[term].weight; }
-  double alpha() const { return m_alpha; }
+  bool mayBeIrrelevant(std::size_t term) const { return terms()[term].groups.size() == 1; }
+  double weight(std::size_t term) const { return terms()[term].weight; }
+  double alpha() const { return m_weights.alpha; }
 
   /** \throw std::invalid_argument a class would be relevant and irrelevant; all stays as it was. */
   void setWeight(std::size_t term, double weight);
@@ -41,33 +43,34 @@ class LiveCompression {
   /** Between these the tree changes with alpha. */
   double lowestAlpha() const;
   double highestAlpha() const;
-  /** Known leaves of the compressed tree; takes no time. */
-  std::size_t numLeaves() const;
-  /** Share of a term's information that the compressed tree keeps, and the rest. */
-  const semantic_octree::AbstractionMeasures& measures() const;
-  /** Leaves that came and went since the last call. */
-  semantic_octree::TreeChange takeChange() { return m_abstraction.takeChange(); }
+  /** Known leaves of the compressed tree. */
+  std::size_t numLeaves() const { return m_tree.numLeaves(m_threshold); }
+  /** Share of each term's information that the compressed tree keeps. */
+  std::vector<std::optional<double>> retained() const { return m_tree.retained(m_threshold); }
+
+  /** The map's inner nodes. */
+  const InformationTree& tree() const { return m_tree; }
+  bool isExpanded(InformationTree::Index node) const { return m_tree.alpha(node) > m_threshold; }
+  /** Cubes in which leaves came and went since the last call; at first: all. */
+  std::vector<KeyBox> takeChange();
 
   /** Terms with a weight, and alpha. */
   Solution solution() const;
   const AbstractionOptions& space() const { return m_space; }
 
  private:
-  static std::vector<tree_abstraction::InformationTerm> termsOf(SemanticOcTree& map,
-                                                                const Solution& solution,
-                                                                const AbstractionOptions& space);
-  std::vector<double> weights() const;
-  void findPath();
+  const std::vector<tree_abstraction::InformationTerm>& terms() const { return m_weights.terms; }
+  /** \throw std::invalid_argument they contradict each other; all stays as it was. */
+  void change(const tree_abstraction::AbstractionWeights& weights);
+  void findAlphas();
 
-  SemanticOcTree& m_map;
+  int m_numClasses;
   AbstractionOptions m_space;
-  double m_alpha;
   std::string m_name;
-  std::vector<tree_abstraction::InformationTerm> m_terms;  ///< with their weights
-  semantic_octree::Abstraction m_abstraction;
-  std::optional<semantic_octree::Abstraction::Path> m_path;
-  std::vector<double> m_leavesOfTree;
-  mutable std::optional<semantic_octree::AbstractionMeasures> m_measures;
+  tree_abstraction::AbstractionWeights m_weights;
+  InformationTree m_tree;
+  double m_threshold = 0;            ///< alpha, and what counts as a tie
+  std::vector<char> m_toldExpanded;  ///< by node; empty: nothing was told
 };
 
 }  // namespace map_view

@@ -20,6 +20,14 @@ struct Tile {
   int edge() const { return semantic_octree::edgeAtDepth(depth); }
   int cellDepth() const { return depth + kTileLevels; }
   int cellEdge() const { return edge() / kCellsPerTile; }
+  /** The next coarser one; depth > 0. */
+  Tile around() const {
+    const int above = depth - 1;
+    const auto lowestAbove = [above](int key) {
+      return semantic_octree::lowestKeyAtDepth(key, above);
+    };
+    return {above, lowest.unaryExpr(lowestAbove)};
+  }
   bool operator<(const Tile& o) const {
     const auto tuple = [](const Tile& t) {
       return std::make_tuple(t.depth, t.lowest.x(), t.lowest.y(), t.lowest.z());

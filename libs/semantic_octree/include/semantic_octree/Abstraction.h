@@ -4,6 +4,7 @@
 #include <tree_abstraction/AbstractionWeights.h>
 #include <tree_abstraction/AlphaPath.h>
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -134,6 +135,20 @@ class Abstraction {
   /** \param termWeights in the order of the options' terms
    * \throw std::invalid_argument another number of weights than of terms. */
   PathInformation pathInformation(const std::vector<double>& termWeights) const;
+
+  /** An inner node as the compressed trees of all weights and alphas see it. */
+  struct PathNode {
+    Eigen::Array3i lowest;  ///< keys of its lowest voxel
+    int depth;
+    bool isFree;      ///< in the free frame: expanded by every tree, and not part of alphaPath()
+    double price;     ///< what expanding it costs, nats for each unit of alpha
+    int addedLeaves;  ///< known children - 1
+  };
+  using VisitPathNode = std::function<void(const PathNode&, const std::vector<double>&)>;
+  /** Calls visit(node, information) for all inner nodes, a node's subtree right behind it in the
+   * order of its children: nodes that are not free are those of alphaPath(). `information` is what
+   * expanding the node adds to each term, nats, in the order of the options' terms. */
+  void forEachPathNode(const VisitPathNode& visit) const;
 
  private:
   CompressedTree compressedTree() const;

@@ -7,26 +7,29 @@
 
 #include "StandardOutput.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 namespace fs = std::filesystem;
 
 namespace {
 
-/** Cells are at least so large, pixels: while the camera moves, and when it rests for a while (s).
+/** Cells are at least so large, pixels: at once after a change, while the camera moves, and when it
+ * rests for a while (s). */
+constexpr double kHurrying = 12, kMoving = 6, kResting = 4, kRest = 0.2;
+/** For meshes in each frame, so that the window answers meanwhile: at once after a change, and
+ * else.
  */
-constexpr double kMoving = 6, kResting = 4, kRest = 0.2;
-/** For meshes in each frame, so that the window answers meanwhile. */
-constexpr double kMilliseconds = 30;
+constexpr double kHurry = 12, kMilliseconds = 50;
 
 }  // namespace
 
-Viewer::Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers, const Cli& cli)
+Viewer::Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers,
+               const Beginning& beginning)
     : m_window(window), m_layers(std::move(layers)) {
-  for (const auto& layer : m_layers) layer->look().setStyle(cli.style);
-  if (cli.camera)
-    m_window.setOrbitCamera(*cli.camera);
-  else if (cli.top)
+  for (const auto& layer : m_layers) layer->look().setStyle(beginning.style);
+  if (beginning.camera)
+    m_window.setOrbitCamera(*beginning.camera);
+  else if (beginning.top)
     lookFrom(-90, 90);
   else
     lookFrom(-120, 35);
@@ -42,7 +45,17 @@ bool Viewer::frame() {
   m_camera = camera;
   const bool moves = glfwGetTime() < m_restAt;
   if (moves) view.pixelsPerCell = kMoving;
-  return !m_window.tiles().update(layer(), view, kMilliseconds) || moves;
+  if (m_hurries) view.pixelsPerCell = kHurrying;
+  const double time = m_hurries ? kHurry : kMilliseconds;
+  const bool ready = m_window.tiles().update(layer(), view, time) && !moves && !m_hurries;
+  m_hurries = false;
+  return !ready;
+}
+
+void Viewer::changed(const std::vector<map_view::KeyBox>& boxes) {
+  m_window.tiles().touch(boxes);
+  m_window.redraw();
+  m_hurries = !boxes.empty();
 }
 
 void Viewer::activate(std::size_t layer) {
@@ -94,8 +107,8 @@ void Viewer::showFull() {
   m_window.redraw();
 }
 
-void Viewer::showCompressed() {
-  layer().setCells(std::make_unique<map_view::CompressedCells>(layer().map()));
+void Viewer::showCompressed(const map_view::LiveCompression& compression) {
+  layer().setCells(std::make_unique<map_view::CompressedCells>(layer().map(), compression));
   m_window.tiles().touch();
   m_window.redraw();
 }
@@ -106,4 +119,4 @@ void Viewer::say(const std::string& text) {
   m_window.redraw();
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window

@@ -2,16 +2,17 @@
 #include <memory>
 #include <vector>
 
-#include "Cli.h"
+#include "Beginning.h"
 #include "Layer.h"
 #include "ViewWindow.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 /** Open maps, which of them is shown, and how. */
 class Viewer {
  public:
-  Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers, const Cli& cli);
+  Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers,
+         const Beginning& beginning);
 
   ViewWindow& window() { return m_window; }
   const std::vector<std::unique_ptr<Layer>>& layers() const { return m_layers; }
@@ -25,7 +26,10 @@ class Viewer {
   void setStyle(const map_view::ViewStyle& style);
   /** The leaves of the map, or of its compressed tree. */
   void showFull();
-  void showCompressed();
+  void showCompressed(const map_view::LiveCompression& compression);
+  /** Cells in some boxes look otherwise from now on: the next frame shows that, if coarsely, those
+   * after it all of it. */
+  void changed(const std::vector<map_view::KeyBox>& boxes);
   /** All of the map, from a direction; degrees. */
   void lookFrom(double azimuth, double elevation);
   /** FOLDER/STEM-1ENDING, -2, ..., the first that is not there. */
@@ -48,7 +52,8 @@ class Viewer {
   std::size_t m_active = 0;
   std::vector<std::function<void()>> m_onActivated, m_onFrame;
   std::string m_said, m_camera;
+  bool m_hurries = false;
   double m_restAt = 0;  ///< s of GLFW's clock: the camera has come to rest
 };
 
-}  // namespace semantic_map_view
+}  // namespace map_window

@@ -8,7 +8,7 @@
 
 #include "TileScene.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 /** Of MRPT's windows; one at a time. */
 class WindowSystem {
@@ -24,8 +24,8 @@ class WindowSystem {
 class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
  public:
   /** \throw std::runtime_error the display has no OpenGL 3.3. */
-  static std::unique_ptr<ViewWindow> open(int width, int height);
-  ViewWindow(int width, int height);
+  static std::unique_ptr<ViewWindow> open(const std::string& title, int width, int height);
+  ViewWindow(const std::string& title, int width, int height);
 
   /** Tiles of the map. */
   TileScene& tiles() { return m_tiles; }
@@ -36,6 +36,12 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   void setOrbitCamera(const map_view::OrbitCamera& camera);
   /** Called for clicks beside all panels: the ray through the pixel. */
   void onClick(const std::function<void(const map_view::Ray&)>& f) { m_onClick = f; }
+  /** Called when the left button goes down beside all panels; \return whether the hand takes
+   * something there, which then follows it instead of the camera. */
+  void onGrab(const std::function<bool(const map_view::Ray&)>& f) { m_onGrab = f; }
+  /** Called while the hand moves what it took, and when it lets go. */
+  using OnMoved = std::function<void(const map_view::Ray&, bool letsGo)>;
+  void onMoved(const OnMoved& f) { m_onMoved = f; }
   /** Called before each frame; \return whether there is more to do for this frame. */
   void onFrame(const std::function<bool()>& f) { m_onFrame = f; }
   /** Draws again soon. */
@@ -43,6 +49,10 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
 
   /** Until the window is closed, or until done() after a frame without more to do. */
   void run(const std::function<bool()>& done);
+  /** Sees to what hands did, and draws what there is to be drawn. \return false: it was closed */
+  bool attend();
+  /** Whether the last frame of attend() left nothing to do. */
+  bool isComplete() const { return !m_more; }
   /** Draws one frame. \return whether there is more to do. */
   bool drawFrame();
   /** Draws one, and returns what it shows, BGR. */
@@ -62,17 +72,21 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
 
  private:
   void drawAll() override;
+  map_view::Ray rayThrough(const nanogui::Vector2i& p) const;
   void takePicture();
 
   TileScene m_tiles;
   mrpt::opengl::CSetOfObjects::Ptr m_marks = mrpt::opengl::CSetOfObjects::Create();
   std::function<void(const map_view::Ray&)> m_onClick;
+  std::function<bool(const map_view::Ray&)> m_onGrab;
+  OnMoved m_onMoved;
   std::function<bool()> m_onFrame;
-  bool m_dirty = true;
+  bool m_dirty = true, m_more = true;
   nanogui::Vector2i m_pressed{-1, -1};  ///< where a button went down beside all panels
+  bool m_holds = false;                 ///< the hand has taken something
   bool m_takesPicture = false;
   cv::Mat m_picture;
   std::string m_renderer;
 };
 
-}  // namespace semantic_map_view
+}  // namespace map_window

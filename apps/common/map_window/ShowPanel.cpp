@@ -7,7 +7,7 @@
 
 #include "Widgets.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 using nanogui::Widget;
 
@@ -27,6 +27,10 @@ std::string shortNumber(double number) {
   return text;
 }
 
+std::string nameOf(const Layer& layer) {
+  return layer.name() + ": " + shortNumber(double(layer.map().getNumLeafNodes())) + " leaves";
+}
+
 }  // namespace
 
 ShowPanel::ShowPanel(Viewer& viewer)
@@ -42,6 +46,12 @@ ShowPanel::ShowPanel(Viewer& viewer)
   viewer.onFrame([this] { update(); });
 }
 
+void ShowPanel::refresh() {
+  if (m_name) m_name->setCaption(nameOf(m_viewer.layer()));
+  listClasses();
+  fitHeight();
+}
+
 void ShowPanel::update() {
   m_camera->setCaption("--camera " + m_viewer.window().orbitCamera().text());
   m_said->setCaption(m_viewer.said());
@@ -49,11 +59,9 @@ void ShowPanel::update() {
 
 void ShowPanel::addLayers(Widget* parent) {
   std::vector<std::string> names;
-  for (const auto& layer : m_viewer.layers())
-    names.push_back(layer->name() + ": " + shortNumber(double(layer->map().getNumLeafNodes())) +
-                    " leaves");
+  for (const auto& layer : m_viewer.layers()) names.push_back(nameOf(*layer));
   if (names.size() == 1) {
-    addText(parent, names[0], kWidth);
+    m_name = addText(parent, names[0], kWidth);
     return;
   }
   auto* box = parent->add<nanogui::ComboBox>(names);
@@ -130,19 +138,27 @@ void ShowPanel::hide(std::size_t id, bool hidden) {
 }
 
 void ShowPanel::addHeight(Widget* parent) {
+  auto* row = addRow(parent);
+  addText(row, "height", 50);
+  m_heightSlider = addSlider(row, 110, 0, 1, 0, [this](float z) {
+    map_view::ViewStyle style = m_viewer.style();
+    style.maxHeight =
+        z < m_heightSlider->range().second ? double(z) : std::numeric_limits<double>::infinity();
+    m_viewer.setStyle(style);
+    fitHeight();
+  });
+  m_height = addText(row, "", 55);
+  fitHeight();
+}
+
+void ShowPanel::fitHeight() {
   double x, y, low, high;
   m_viewer.layer().map().getMetricMin(x, y, low);
   m_viewer.layer().map().getMetricMax(x, y, high);
-  auto* row = addRow(parent);
-  addText(row, "height", 50);
   const double cut = std::min(m_viewer.style().maxHeight, high);
-  addSlider(row, 110, float(low), float(high), float(cut), [this, high](float z) {
-    map_view::ViewStyle style = m_viewer.style();
-    style.maxHeight = z < high ? double(z) : std::numeric_limits<double>::infinity();
-    m_viewer.setStyle(style);
-    m_height->setCaption(strict_files::textOf(std::round(z * 10) / 10) + " m");
-  });
-  m_height = addText(row, strict_files::textOf(std::round(cut * 10) / 10) + " m", 55);
+  m_heightSlider->setRange({float(low), float(high)});
+  m_heightSlider->setValue(float(cut));
+  m_height->setCaption(strict_files::textOf(std::round(cut * 10) / 10) + " m");
 }
 
 void ShowPanel::addCameras(Widget* parent) {
@@ -171,4 +187,4 @@ void ShowPanel::addCameras(Widget* parent) {
   });
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window

@@ -1,7 +1,7 @@
 #pragma once
 #include "Viewer.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 class BarChart;
 
@@ -24,4 +24,4 @@ class AskPanel {
   mrpt::opengl::CSetOfObjects::Ptr m_mark = mrpt::opengl::CSetOfObjects::Create();
 };
 
-}  // namespace semantic_map_view
+}  // namespace map_window

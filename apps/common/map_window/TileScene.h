@@ -7,7 +7,7 @@
 
 #include "Layer.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 /** The tiles of a map in an MRPT scene. Meshes are made when they are first seen, and again only
  * where something changed. */
@@ -40,6 +40,9 @@ class TileScene {
     std::size_t faces() const;
   };
   void build(const Layer& layer, const map_view::Tile& tile);
+  /** What stands for a tile: itself, or, as long as that is not ready, a coarser one around it that
+   * is, or what there was. */
+  map_view::Tile standIn(const map_view::Tile& tile) const;
   void show(const std::vector<map_view::Tile>& tiles, const map_view::OrbitCamera& camera,
             double voxelSize);
   void forgetUnseen(const std::vector<map_view::Tile>& seen);
@@ -50,4 +53,4 @@ class TileScene {
   std::size_t m_shown = 0, m_faces = 0, m_kept = 0;
 };
 
-}  // namespace semantic_map_view
+}  // namespace map_window

@@ -4,7 +4,7 @@
 
 #include "measuring/Stopwatch.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 using map_view::Face;
 using map_view::Tile;
@@ -92,18 +92,32 @@ bool TileScene::update(const Layer& layer, const map_view::View& view, double mi
   return ready;
 }
 
-/** Where a tile has no mesh yet, the one of a coarser tile around it is shown, if there is one. */
+Tile TileScene::standIn(const Tile& tile) const {
+  const auto isFresh = [this](const Tile& t) { return m_fresh.contains(t); };
+  const auto isThere = [this](const Tile& t) { return m_meshes.count(t) > 0; };
+  const auto around = [&](const auto& is) {
+    Tile t = tile;
+    while (t.depth > 0 && !is(t)) t = t.around();
+    return t;
+  };
+  const Tile fresh = around(isFresh);
+  return isFresh(fresh) ? fresh : around(isThere);
+}
+
 void TileScene::show(const std::vector<Tile>& tiles, const map_view::OrbitCamera& camera,
                      double voxelSize) {
-  std::set<Tile> shown;
-  for (Tile tile : tiles) {
-    while (m_meshes.count(tile) == 0 && tile.depth > 0) {
-      --tile.depth;
-      for (int axis = 0; axis < 3; ++axis)
-        tile.lowest[axis] = semantic_octree::lowestKeyAtDepth(tile.lowest[axis], tile.depth);
-    }
-    if (m_meshes.count(tile) > 0) shown.insert(tile);
+  std::set<Tile> shown;  // coarse ones first
+  for (const Tile& tile : tiles) {
+    const Tile found = standIn(tile);
+    if (m_meshes.count(found) > 0) shown.insert(found);
   }
+  const auto isInAnother = [&shown](Tile tile) {
+    while (tile.depth > 0)
+      if (tile = tile.around(); shown.count(tile) > 0) return true;
+    return false;
+  };
+  for (auto tile = shown.begin(); tile != shown.end();)
+    tile = isInAnother(*tile) ? shown.erase(tile) : std::next(tile);
   m_objects->clear();
   m_faces = 0, m_shown = shown.size();
   const auto free = CSetOfObjects::Create();
@@ -139,4 +153,4 @@ void TileScene::forgetUnseen(const std::vector<Tile>& seen) {
   }
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window

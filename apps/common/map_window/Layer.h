@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-namespace semantic_map_view {
+namespace map_window {
 
 /** A map that is open. */
 class Layer {
@@ -12,10 +12,14 @@ class Layer {
   /** A map's own file, or OctoMap's. \throw std::runtime_error naming the file and what is wrong.
    */
   explicit Layer(const std::filesystem::path& file);
+  /** One that a program makes. It must outlive the layer; grown() says that it has changed. */
+  Layer(const std::string& name, const semantic_octree::SemanticOcTree& map);
+  void grown();
 
   const std::string& name() const { return m_name; }
-  semantic_octree::SemanticOcTree& map() { return *m_map; }
   const semantic_octree::SemanticOcTree& map() const { return *m_map; }
+  /** The map that was opened. */
+  semantic_octree::SemanticOcTree& ownMap() { return *m_own; }
   const map_view::CellSource& cells() const { return *m_cells; }
   map_view::CellLook& look() { return m_look; }
   const map_view::CellLook& look() const { return m_look; }
@@ -30,11 +34,12 @@ class Layer {
   void count();
 
   std::string m_name;
-  std::unique_ptr<semantic_octree::SemanticOcTree> m_map;
+  std::unique_ptr<semantic_octree::SemanticOcTree> m_own;
+  const semantic_octree::SemanticOcTree* m_map;
   map_view::CellLook m_look;
   std::unique_ptr<map_view::CellSource> m_cells;
   std::vector<std::size_t> m_leavesOfClass;
   Eigen::AlignedBox3d m_extent;
 };
 
-}  // namespace semantic_map_view
+}  // namespace map_window

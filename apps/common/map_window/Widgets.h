@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace semantic_map_view {
+namespace map_window {
 
 nanogui::Color colorOf(const semantic_types::Color& color);
 
@@ -52,4 +52,4 @@ nanogui::Window* addWindow(nanogui::Widget* parent, const std::string& title,
 nanogui::Slider* addSlider(nanogui::Widget* parent, int width, float low, float high, float value,
                            const std::function<void(float)>& moved);
 
-}  // namespace semantic_map_view
+}  // namespace map_window

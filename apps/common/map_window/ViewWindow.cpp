@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-namespace semantic_map_view {
+namespace map_window {
 
 using nanogui::Vector2i;
 
@@ -50,16 +50,16 @@ WindowSystem::WindowSystem() {
 
 WindowSystem::~WindowSystem() { nanogui::shutdown(); }
 
-std::unique_ptr<ViewWindow> ViewWindow::open(int width, int height) {
+std::unique_ptr<ViewWindow> ViewWindow::open(const std::string& title, int width, int height) {
   try {
-    return std::make_unique<ViewWindow>(width, height);
+    return std::make_unique<ViewWindow>(title, width, height);
   } catch (const std::exception&) {
     throw std::runtime_error("the display has no OpenGL 3.3" + kInstead);
   }
 }
 
-ViewWindow::ViewWindow(int width, int height)
-    : CDisplayWindowGUI("semantic-map-view", unsigned(width), unsigned(height)) {
+ViewWindow::ViewWindow(const std::string& title, int width, int height)
+    : CDisplayWindowGUI(title, unsigned(width), unsigned(height)) {
   const auto scene = mrpt::opengl::COpenGLScene::Create();
   const auto paper = map_pictures::kPaper;
   scene->getViewport()->setCustomBackgroundColor(
@@ -100,6 +100,13 @@ bool ViewWindow::drawFrame() {
   const bool more = m_onFrame && m_onFrame();
   drawAll();
   return more;
+}
+
+bool ViewWindow::attend() {
+  glfwPollEvents();
+  if (glfwWindowShouldClose(mGLFWWindow)) return false;
+  if (m_more || m_dirty) m_more = drawFrame();
+  return true;
 }
 
 void ViewWindow::run(const std::function<bool()>& done) {
@@ -146,20 +153,33 @@ void ViewWindow::takePicture() {
   cv::flip(m_picture, m_picture, 0);
 }
 
+map_view::Ray ViewWindow::rayThrough(const Vector2i& p) const {
+  return orbitCamera().rayThrough(p.x(), p.y(), mSize.x(), mSize.y());
+}
+
 bool ViewWindow::mouseMotionEvent(const Vector2i& p, const Vector2i& rel, int button,
                                   int modifiers) {
   redraw();
-  return CDisplayWindowGUI::mouseMotionEvent(p, rel, button, modifiers);
+  if (!m_holds) return CDisplayWindowGUI::mouseMotionEvent(p, rel, button, modifiers);
+  m_onMoved(rayThrough(p), false);
+  return true;
 }
 
 bool ViewWindow::mouseButtonEvent(const Vector2i& p, int button, bool down, int modifiers) {
   redraw();
-  const bool beside = findWidget(p) == this;
+  const bool beside = findWidget(p) == this, left = button == GLFW_MOUSE_BUTTON_LEFT;
+  if (left && m_holds && !down) {
+    m_holds = false;
+    m_onMoved(rayThrough(p), true);
+    return true;
+  }
+  if (left && down && beside && m_onGrab) m_holds = m_onGrab(rayThrough(p));
+  if (m_holds) return true;
   const bool used = CDisplayWindowGUI::mouseButtonEvent(p, button, down, modifiers);
-  if (button != GLFW_MOUSE_BUTTON_LEFT) return used;
+  if (!left) return used;
   const bool click = !down && beside && (p - m_pressed).cwiseAbs().maxCoeff() <= kClick;
   m_pressed = down && beside ? p : Vector2i(-1000, -1000);
-  if (click && m_onClick) m_onClick(orbitCamera().rayThrough(p.x(), p.y(), mSize.x(), mSize.y()));
+  if (click && m_onClick) m_onClick(rayThrough(p));
   return used;
 }
 
@@ -183,4 +203,4 @@ bool ViewWindow::resizeEvent(const Vector2i& size) {
   return CDisplayWindowGUI::resizeEvent(size);
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window

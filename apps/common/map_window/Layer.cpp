@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 
-namespace semantic_map_view {
+namespace map_window {
 
 using semantic_octree::SemanticOcTree;
 
@@ -34,21 +34,33 @@ std::pair<float, float> mostOf(std::vector<float>& values) {
 
 Layer::Layer(const std::filesystem::path& file)
     : m_name(file.filename().string()),
-      m_map(std::make_unique<SemanticOcTree>(load(file))),
+      m_own(std::make_unique<SemanticOcTree>(load(file))),
+      m_map(m_own.get()),
       m_look(*m_map),
       m_cells(std::make_unique<map_view::FullCells>(*m_map)) {
+  count();
+}
+
+Layer::Layer(const std::string& name, const SemanticOcTree& map)
+    : m_name(name), m_map(&map), m_look(map), m_cells(std::make_unique<map_view::FullCells>(map)) {
+  count();
+}
+
+void Layer::grown() {
+  m_look.forget();
   count();
 }
 
 void Layer::count() {
   m_leavesOfClass.assign(std::size_t(m_map->numClasses()) + 1, 0);
   std::array<std::vector<float>, 3> places;
-  for (auto leaf = m_map->begin_leafs(); leaf != m_map->end_leafs(); ++leaf) {
-    if (!m_map->isNodeOccupied(*leaf)) continue;
-    ++m_leavesOfClass[m_map->query(*leaf).likeliestClass];
-    const octomap::point3d center = leaf.getCoordinate();
-    for (unsigned axis = 0; axis < 3; ++axis) places[axis].push_back(center(axis));
-  }
+  map_view::forEachOccupiedLeaf(*m_map, [&](const map_view::ViewCell& leaf) {
+    ++m_leavesOfClass[m_look.classOf(leaf)];
+    for (int axis = 0; axis < 3; ++axis)
+      places[std::size_t(axis)].push_back(
+          float(semantic_octree::centerOf(leaf.lowest[axis], m_map->getResolution(), leaf.depth)));
+  });
+  m_extent = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-10), Eigen::Vector3d::Constant(10));
   if (places[0].empty()) return;
   Eigen::Vector3d low, high;
   for (int axis = 0; axis < 3; ++axis)
@@ -56,4 +68,4 @@ void Layer::count() {
   m_extent = Eigen::AlignedBox3d(low, high);
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window

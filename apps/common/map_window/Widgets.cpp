@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace semantic_map_view {
+namespace map_window {
 
 using nanogui::Vector2i;
 using nanogui::Widget;
@@ -95,4 +95,4 @@ nanogui::Slider* addSlider(Widget* parent, int width, float low, float high, flo
   return slider;
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window

@@ -11,7 +11,7 @@
 #include "StandardOutput.h"
 #include "Widgets.h"
 
-namespace semantic_map_view {
+namespace map_window {
 
 using map_view::CellAnswer;
 using mrpt::math::TPoint3D;
@@ -97,4 +97,4 @@ void AskPanel::show(const map_view::ViewCell& cell) {
   m_mark->insert(boxAround(answer));
 }
 
-}  // namespace semantic_map_view
+}  // namespace map_window

@@ -1,0 +1,178 @@
+#include "LiveMap.h"
+
+#include <nanogui/opengl.h>
+#include <strict_files/ErrorMessage.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "AskPanel.h"
+#include "ShowPanel.h"
+#include "Widgets.h"
+
+namespace map_window {
+
+using map_view::KeyBox;
+
+namespace {
+
+constexpr int kWidth = 1280, kHeight = 720, kPanel = 230, kMostLines = 4;
+constexpr double kAttend = 0.005;  // s between looks at what hands do
+/** Between counts of a map's leaves, at first; as the map grows they take longer, s. */
+constexpr double kCountEvery = 1;
+/** Of the slider: steps a second; at its right end as many as there can be. */
+constexpr float kFastest = 30;
+
+std::vector<std::unique_ptr<Layer>> layersOf(const semantic_octree::SemanticOcTree& map) {
+  std::vector<std::unique_ptr<Layer>> layers;
+  layers.push_back(std::make_unique<Layer>("map", map));
+  return layers;
+}
+
+/** Pause, step and speed, and how far it is. */
+class PacePanel {
+ public:
+  explicit PacePanel(ViewWindow& window) : m_window(window) {
+    auto* panel = addWindow(&window, "Live", {8, window.height() - 190}, kPanel + 16);
+    auto* row = addRow(panel);
+    m_pause = row->add<nanogui::CheckBox>("pause");
+    m_pause->setFixedSize({90, 20});
+    auto* step = row->add<nanogui::Button>("step");
+    step->setFixedSize({60, 20});
+    step->setCallback([this] {
+      pause();
+      m_steps = true;
+    });
+    row = addRow(panel);
+    addText(row, "speed", 50);
+    addSlider(row, 160, 0.5f, kFastest, kFastest, [this](float speed) { m_speed = speed; });
+    for (auto& line : m_lines) line = addText(panel, "", kPanel);
+  }
+
+  void say(const std::vector<std::string>& lines) {
+    for (std::size_t i = 0; i < m_lines.size(); ++i)
+      m_lines[i]->setCaption(i < lines.size() ? lines[i] : "");
+    m_window.redraw();
+  }
+  void pause() { m_pause->setChecked(true); }
+  /** Whether the next step is due so many seconds after the last one. */
+  bool isDue(double seconds) {
+    if (m_pause->checked()) return std::exchange(m_steps, false);
+    return m_speed >= kFastest || seconds >= 1 / double(m_speed);
+  }
+
+ private:
+  ViewWindow& m_window;
+  nanogui::CheckBox* m_pause;
+  std::array<nanogui::Label*, kMostLines> m_lines{};
+  bool m_steps = false;
+  float m_speed = kFastest;
+};
+
+}  // namespace
+
+class LiveMap::Window {
+ public:
+  Window(const std::string& title, const semantic_octree::SemanticOcTree& map,
+         const Beginning& beginning)
+      : m_window(ViewWindow::open(title, kWidth, kHeight)),
+        m_viewer(*m_window, layersOf(map), beginning),
+        m_show(m_viewer),
+        m_ask(m_viewer),
+        m_pace(*m_window) {
+    m_window->onClick([this](const map_view::Ray& ray) { m_ask.ask(ray); });
+    m_window->marks()->insert(marks);
+    m_window->performLayout();
+    m_window->setVisible(true);
+    m_isOpen = m_window->attend();
+    if (!beginning.camera) m_camera = m_window->orbitCamera().text();
+  }
+
+  bool isOpen() const { return m_isOpen; }
+  void pause() { m_pace.pause(); }
+  void say(const std::vector<std::string>& lines) {
+    if (m_isOpen) m_pace.say(lines);
+  }
+
+  void changed(const Eigen::AlignedBox3d& box) { m_changed.extend(box); }
+
+  void show(double seconds) {
+    if (!m_isOpen) return;
+    // Else those that are far away would never have their turn.
+    if (!m_changed.isEmpty() && m_isComplete) {
+      m_window->tiles().touch({keysOf(m_changed)});
+      m_changed.setEmpty();
+      count();
+    }
+    const double begin = glfwGetTime();
+    m_window->redraw();
+    do {
+      m_isOpen = m_window->attend();
+      if (!m_isOpen) return m_window->setVisible(false);
+      m_isComplete = m_window->isComplete();
+      const double passed = glfwGetTime() - begin;
+      if ((passed >= seconds && m_pace.isDue(passed)) || isToEnd()) return;
+      if (m_isComplete) glfwWaitEventsTimeout(kAttend);
+    } while (true);
+  }
+
+  std::function<bool()> isToEnd = [] { return false; };
+  const mrpt::opengl::CSetOfObjects::Ptr marks = mrpt::opengl::CSetOfObjects::Create();
+
+ private:
+  KeyBox keysOf(const Eigen::AlignedBox3d& box) {
+    const auto keys = [this](const Eigen::Vector3d& place) {
+      return (place.array() / m_viewer.layer().map().getResolution() +
+              semantic_octree::kKeyOfOrigin)
+          .floor()
+          .max(0)
+          .min(semantic_octree::kNumKeys - 1)
+          .cast<int>()
+          .eval();
+    };
+    return {keys(box.min()), keys(box.max())};
+  }
+  /** Leaves by class, and where the map is. The camera follows as long as nobody has moved it. */
+  void count() {
+    if (glfwGetTime() < m_countAt) return;
+    const double begin = glfwGetTime();
+    m_viewer.layer().grown();
+    m_show.refresh();
+    if (m_window->orbitCamera().text() == m_camera) {
+      m_viewer.lookFrom(m_window->orbitCamera().azimuth, m_window->orbitCamera().elevation);
+      m_camera = m_window->orbitCamera().text();
+    }
+    const double now = glfwGetTime();
+    m_countAt = now + std::max(kCountEvery, 10 * (now - begin));
+  }
+
+  const WindowSystem m_system;
+  std::unique_ptr<ViewWindow> m_window;
+  Viewer m_viewer;
+  ShowPanel m_show;
+  AskPanel m_ask;
+  PacePanel m_pace;
+  bool m_isOpen = true, m_isComplete = true;
+  Eigen::AlignedBox3d m_changed;
+  std::string m_camera;  ///< as it followed last
+  double m_countAt = 0;  ///< s of GLFW's clock
+};
+
+LiveMap::LiveMap(const std::string& title, const semantic_octree::SemanticOcTree& map,
+                 const Beginning& beginning) try
+    : m_window(std::make_unique<Window>(title, map, beginning)) {
+} catch (const std::exception& e) {
+  throw std::runtime_error("--live: " + strict_files::messageOf(e));
+}
+
+LiveMap::~LiveMap() = default;
+
+mrpt::opengl::CSetOfObjects& LiveMap::marks() { return *m_window->marks; }
+void LiveMap::say(const std::vector<std::string>& lines) { m_window->say(lines); }
+void LiveMap::changed(const Eigen::AlignedBox3d& box) { m_window->changed(box); }
+bool LiveMap::isOpen() const { return m_window->isOpen(); }
+void LiveMap::stopWhen(const std::function<bool()>& isToEnd) { m_window->isToEnd = isToEnd; }
+void LiveMap::pause() { m_window->pause(); }
+void LiveMap::show(double seconds) { m_window->show(seconds); }
+
+}  // namespace map_window

@@ -1,0 +1,61 @@
+#include "LiveScans.h"
+
+#include <labeled_cloud/EigenPose.h>
+#include <mrpt/opengl/CPointCloud.h>
+
+#include <cstdio>
+
+namespace rawlog2semantic_map {
+
+using labeled_cloud::LabeledScan;
+
+namespace {
+
+constexpr float kPointSize = 2;  // pixels
+constexpr mrpt::img::TColor kPointColor{255, 120, 0};
+
+std::string text(const char* format, double number) {
+  char line[80];
+  std::snprintf(line, sizeof line, format, number);
+  return line;
+}
+
+std::vector<std::string> lines(const LabeledScan& scan, const Summary& summary,
+                               const semantic_octree::SemanticOcTree& map) {
+  return {std::to_string(summary.insertionTimes.size()) + " scans, " + scan.sensorLabel,
+          std::to_string(scan.counts.points) + " points, " + std::to_string(scan.counts.labeled) +
+              " with a class",
+          text("scan made in %.1f ms,", summary.conversionTimes.back()) +
+              text(" inserted in %.1f ms", summary.insertionTimes.back()),
+          std::to_string(map.getNumLeafNodes()) + " leaves"};
+}
+
+}  // namespace
+
+LiveScans::LiveScans(const semantic_octree::SemanticOcTree& map, const StopRequest& stop,
+                     bool paused)
+    : m_map(map), m_window("rawlog2semantic-map", map) {
+  m_window.stopWhen([&stop] { return stop.pending(); });
+  if (paused) m_window.pause();
+}
+
+void LiveScans::show(const LabeledScan& scan, const mrpt::poses::CPose3D& T_map_robot,
+                     const Summary& summary) {
+  const Eigen::Isometry3d T_map_sensor = labeled_cloud::toEigen(T_map_robot + scan.T_robot_sensor);
+  Eigen::AlignedBox3d seen(T_map_sensor.translation());
+  const auto points = mrpt::opengl::CPointCloud::Create();
+  points->setPointSize(kPointSize);
+  points->setColor_u8(kPointColor);
+  for (const auto& p : scan.cloud.points) {
+    const Eigen::Vector3d place = T_map_sensor * p.cast<double>();
+    seen.extend(place);
+    points->insertPoint(float(place.x()), float(place.y()), float(place.z()));
+  }
+  m_window.marks().clear();
+  m_window.marks().insert(points);
+  m_window.changed(seen);
+  m_window.say(lines(scan, summary, m_map));
+  m_window.show(0);
+}
+
+}  // namespace rawlog2semantic_map

@@ -1,0 +1,61 @@
+#pragma once
+#include <map_view/ViewCell.h>
+#include <semantic_octree/Abstraction.h>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace map_view {
+
+/** What each inner node of a map tells of each term, from which the compressed trees of all weights
+ * and alphas follow without the map's G-values: a node is expanded while alpha is below its own.
+ * Nodes are numbered parents first, in the order of children; a node's subtree follows it. */
+class InformationTree {
+ public:
+  using Index = std::int32_t;
+
+  /** Reads a map that keeps G-values; takes 8 bytes for each term of each inner node. The map must
+   * not change afterwards, but may drop its G-values. */
+  explicit InformationTree(semantic_octree::SemanticOcTree& map);
+
+  Index size() const { return static_cast<Index>(m_end.size()); }
+  /** The one behind the last node of a subtree. */
+  Index end(Index node) const { return m_end[std::size_t(node)]; }
+  KeyBox box(Index node) const;
+
+  /** Computes the nodes' alphas, see tree_abstraction::collapseAlphas(). \param weights one for
+   * each term of the map's options */
+  void setWeights(const std::vector<double>& weights);
+  /** Expanded in the trees of all alphas below. */
+  double alpha(Index node) const { return m_alphas[std::size_t(node)]; }
+  /** Known leaves of the compressed tree. */
+  std::size_t numLeaves(double alpha) const;
+  /** Alpha of the largest compressed tree with at most that many leaves, or of the smallest one. */
+  double alphaForLeaves(std::size_t wanted) const;
+  /** Of the nodes' finite alphas above a value; it if there are none. */
+  double lowestAlpha(double above) const;
+  double highestAlpha() const;
+  /** What the compressed tree of an alpha retains of each term, if there is something to retain:
+   * see semantic_octree::AbstractionMeasures::retention(). */
+  std::vector<std::optional<double>> retained(double alpha) const;
+
+ private:
+  std::vector<Index> m_end;
+  std::vector<std::uint64_t> m_places;  ///< lowest keys and depth, packed
+  std::size_t m_numTerms, m_numRoots;
+  std::vector<double> m_information;  ///< node by node, its terms
+  std::vector<double> m_addedLeaves, m_alphas;
+  /** Of the nodes that are not free, in the same order; parents among themselves. */
+  std::vector<Index> m_charged;
+  std::vector<std::int32_t> m_parents;
+  std::vector<double> m_prices;
+};
+
+/** Three keys and a depth in one number. */
+inline std::uint64_t packed(const Eigen::Array3i& lowest, int depth) {
+  return std::uint64_t(lowest.x()) | std::uint64_t(lowest.y()) << 16 |
+         std::uint64_t(lowest.z()) << 32 | std::uint64_t(depth) << 48;
+}
+
+}  // namespace map_view

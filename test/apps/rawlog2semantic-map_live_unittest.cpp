@@ -1,0 +1,94 @@
+#include <opencv2/imgcodecs.hpp>
+
+#include "MappingFixture.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kProgram = std::string(MSO_BIN_DIR) + "/rawlog2semantic-map";
+
+class LiveMapping : public Rawlog2SemanticMap {
+ protected:
+  LiveMapping() {
+    folder.write("weights.ini",
+                 std::string(kSmallConfig) + "[abstraction]\nrelevant = road: 1\nalpha = 0.001\n");
+  }
+  /** Four scans of a field of road; cars behind it come with the second one. */
+  void SetUp() override {
+    Rawlog2SemanticMap::SetUp();
+    std::vector<Eigen::Vector3f> points;
+    std::vector<semantic_types::ClassId> classes;
+    for (float x = 2; x < 14; x += 0.25f)
+      for (float y = -6; y < 6; y += 0.25f) {
+        points.emplace_back(x, y, -1.3f);
+        classes.push_back(x < 12 ? 1 : 3);
+      }
+    const auto scan = [&](double seconds) { return labeledCloud(seconds, points, classes); };
+    const std::size_t cars = std::size_t(std::count(classes.begin(), classes.end(), 3));
+    const auto onlyRoad = labeledCloud(10, {points.begin(), points.end() - std::ptrdiff_t(cars)},
+                                       {classes.begin(), classes.end() - std::ptrdiff_t(cars)});
+    writeSmallRawlog(folder / "field.rawlog", robotPose(10, 0), onlyRoad, robotPose(11, 0.3),
+                     scan(11), robotPose(12, 0.6), scan(12), robotPose(13, 0.9), scan(13));
+  }
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+  std::vector<std::string> arguments(const std::string& output) const {
+    return {"--config", path("weights.ini"), "--output", path(output), path("field.rawlog")};
+  }
+};
+
+}  // namespace
+
+TEST_F(LiveMapping, ShowsTheMapScanByScanAndMakesTheSame) {
+  for (const char* tool :
+       {"/usr/bin/xvfb-run", "/usr/bin/xauth", "/usr/bin/xdotool", "/usr/bin/import"})
+    if (!fs::exists(tool)) GTEST_SKIP() << "needs " << tool;
+  std::vector<std::string> command = {"-a",
+                                      "-s",
+                                      "-screen 0 1280x900x24",
+                                      MSO_SOURCE_DIR "/test/apps/view-window.sh",
+                                      path("said.txt"),
+                                      kProgram,
+                                      "--live",
+                                      "--pause",
+                                      "-v"};
+  for (const std::string& argument : arguments("live")) command.push_back(argument);
+  // In the panel at the lower left: "step", twice, and "pause", which lets it go on.
+  for (const std::string& step :
+       {std::string("--"), std::string("140 573 inserted"), std::string("140 573 inserted"),
+        "picture " + path("screen.png"), std::string("25 573 CSemanticOctoMap")})
+    command.push_back(step);
+  const ProgramRun live = runProgram("/usr/bin/xvfb-run", command);
+  ASSERT_EQ(live.status, 0) << live.output << live.errors;
+  const cv::Mat screen = cv::imread(path("screen.png"));
+  ASSERT_FALSE(screen.empty());
+  int road = 0, car = 0;
+  for (auto it = screen.begin<cv::Vec3b>(); it != screen.end<cv::Vec3b>(); ++it) {
+    road += (*it)[2] > 200 && (*it)[0] < 10 && (*it)[1] < 10;
+    car += (*it)[0] > 200 && (*it)[1] < 10 && (*it)[2] < 10;
+  }
+  EXPECT_GT(road, 3000);
+  EXPECT_GT(car, 200) << "more than beside its name";
+
+  const ProgramRun without = runProgram("rawlog2semantic-map", arguments("without"));
+  EXPECT_EQ(without.status, 0) << without.errors;
+  for (const std::string name : {"/map.semantic", "/compressed.semantic", "/top.png"})
+    EXPECT_EQ(folder.read("live" + name), folder.read("without" + name)) << name;
+}
+
+TEST_F(LiveMapping, IsAnErrorWithoutADisplay) {
+  std::vector<std::string> command = {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", kProgram, "--live"};
+  for (const std::string& argument : arguments("live")) command.push_back(argument);
+  const ProgramRun run = runProgram("/usr/bin/env", command);
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(run.errors, "--live: there is no display")) << run.errors;
+  EXPECT_FALSE(fs::exists(folder / "live"));
+}
+
+TEST_F(LiveMapping, IsNeededForAPause) {
+  std::vector<std::string> command = arguments("live");
+  command.push_back("--pause");
+  const ProgramRun run = runProgram("rawlog2semantic-map", command);
+  EXPECT_EQ(run.status, 64);
+  EXPECT_TRUE(contains(run.errors, "--live")) << run.errors;
+}
