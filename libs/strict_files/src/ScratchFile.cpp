@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-[[noreturn]] void fail(const fs::path& folder, const std::string& what, const std::string& why) {
-  throw std::runtime_error(folder.string() + ": scratch file cannot be " + what + ": " + why);
+[[noreturn]] void fail(const fs::path& folder, const std::string& why) {
+  throw std::runtime_error(folder.string() + ": scratch file cannot be made or used: " + why);
 }
 
 std::string reason() { return std::generic_category().message(errno); }
@@ -41,7 +41,7 @@ ScratchFile::ScratchFile(const fs::path& folder) try
     : m_folder(folder),
       m_file(std::make_unique<Unfinished>(folder, Unfinished::Kind::File, "scratch")) {
 } catch (const fs::filesystem_error& e) {
-  fail(folder, "made", e.code().message());
+  fail(folder, e.code().message());
 }
 
 ScratchFile::~ScratchFile() = default;
@@ -51,7 +51,7 @@ std::uint64_t ScratchFile::append(const void* bytes, std::size_t size) {
   const int file = m_file->descriptor();
   if (!inPieces(static_cast<const char*>(bytes), size, place,
                 [file](const char* b, std::size_t n, off_t at) { return pwrite(file, b, n, at); }))
-    fail(m_folder, "written", reason());
+    fail(m_folder, reason());
   m_end += size;
   return place;
 }
@@ -60,7 +60,7 @@ void ScratchFile::read(std::uint64_t place, void* bytes, std::size_t size) const
   const int file = m_file->descriptor();
   if (!inPieces(static_cast<char*>(bytes), size, place,
                 [file](char* b, std::size_t n, off_t at) { return pread(file, b, n, at); }))
-    fail(m_folder, "read", reason());
+    fail(m_folder, reason());
 }
 
 void ScratchFile::discard(std::uint64_t place, std::size_t size) noexcept {

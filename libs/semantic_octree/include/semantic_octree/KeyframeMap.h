@@ -34,7 +34,7 @@ struct CorrectionReport {
  * were seen. What a map tells of its changes (takeTouchedTiles(), Abstraction::takeChange()) covers
  * corrections as it does insertions.
  *
- * How: of each scan its points are kept, and which voxels it saw how, packed tile by tile. A
+ * How (doc/how-it-works/corrected-maps.md): of each scan its points are kept, and which voxels it saw how, packed tile by tile. A
  * correction follows the beams of the scans that move, and finds the tiles in which one of them now
  * sees something else. Only these tiles are made anew, from what all scans saw in them. */
 class KeyframeMap {
