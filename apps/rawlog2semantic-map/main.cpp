@@ -5,6 +5,7 @@
 #include <semantic_types/ClassTableFile.h>
 #include <strict_files/ErrorMessage.h>
 #include <strict_files/OutputFolder.h>
+#include <strict_files/TextFile.h>
 
 #include <cmath>
 #include <optional>
@@ -31,15 +32,16 @@ using semantic_octree::SemanticOcTree;
 using semantic_types::ClassTable;
 using strict_files::OutputFolder;
 
-const std::vector<std::string> kFiles = {"map.semantic", "summary.json",        "top.png",
-                                         "view.png",     "compressed.semantic", "compressed.png"};
+const std::vector<std::string> kFiles = {"map.semantic",  "summary.json",        "top.png",
+                                         "view.png",      "compressed.semantic", "compressed.png",
+                                         "trajectory.tum"};
 
 struct Cli {
   fs::path config, output, trajectory, classes, confusion, saveLabeled, preview;
   LabelSources labels;
   std::optional<double> resolution, maxRange;
   std::size_t previewEvery = 10;
-  bool compareUpkeep = false, staticPose = false;
+  bool compareUpkeep = false, staticPose = false, slam = false;
   std::vector<fs::path> rawlogs;
   Outputs outputs;
 
@@ -68,8 +70,11 @@ struct Cli {
                    "Returns beyond it only carve free space, m; 0: no limit")
         ->check(isNumber(strict_files::atLeast(0)));
     app.add_flag_callback("-v,--verbose", beVerbose, "Say of each observation what became of it");
-    app.add_flag("--compare-upkeep", compareUpkeep,
-                 "Time each insertion without upkeep of the abstraction, too");
+    auto* upkeep = app.add_flag("--compare-upkeep", compareUpkeep,
+                                "Time each insertion without upkeep of the abstraction, too");
+    app.add_flag("--slam", slam,
+                 "Correct the poses: register scans to each other, close loops; for LiDARs")
+        ->excludes(upkeep);
     app.add_option("INPUT.rawlog", rawlogs, "Rawlogs that continue each other")->required();
   }
 
@@ -157,7 +162,8 @@ class SideOutputs {
   std::optional<Preview> m_preview;
 };
 
-Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, CSemanticOctoMap& map) {
+Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, CSemanticOctoMap& map,
+                 const OutputFolder& output) {
   const ClassTable& table = map.tree().classes();
   if (!cli.confusion.empty())
     config.insertion.conversion.labels.confusion = std::make_shared<labeled_cloud::ConfusionMatrix>(
@@ -173,11 +179,14 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, CSemant
   MapBuilder builder(map, [&outputs](const auto& scan, const auto& T) { outputs.write(scan, T); });
   if (cli.trajectory.empty()) builder.countPoses();
   if (cli.compareUpkeep) builder.timeWithoutAbstraction();
+  const fs::path trajectoryFile = output.staged("trajectory.tum");
+  if (cli.slam) builder.correctPoses(config.slam, trajectoryFile.parent_path());
   builder.insert(cli.rawlogs, stream, stop);
   if (builder.summary().inserted == 0)
     throw std::runtime_error("nothing to map: no observation was inserted, " +
                              builder.summary().skippedText());
   outputs.finish();
+  if (cli.slam) strict_files::writeText(trajectoryFile, builder.poseCorrection()->trajectory());
   return builder.summary();
 }
 
@@ -211,7 +220,7 @@ int run(const Cli& cli) {
   setAbstraction(map, cli, config);
   OutputFolder output(cli.output);
 
-  const Summary summary = buildMap(cli, config, stop, map);
+  const Summary summary = buildMap(cli, config, stop, map, output);
   saveTree(map.tree(), output.staged("map.semantic"));
   writeJson(output.staged("summary.json"), toJson(summary, map.tree()));
   const std::string problem = drawPictures(map.tree(), config, output);
