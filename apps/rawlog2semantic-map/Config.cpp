@@ -47,12 +47,13 @@ Config readConfig(const fs::path& file) {
   strict_files::checkIniText(strict_files::readText(file));
   const mrpt::config::CConfigFile ini(file.string());
   strict_files::checkSections(ini, {"map", "insertion", "abstraction", "trajectory", "labels",
-                                    "cameras", kCameraSections, "pictures"});
+                                    "cameras", kCameraSections, "slam", "pictures"});
   readSection(ini, "map", config.map);
   readInsertion(ini, config.insertion);
   readSection(ini, "abstraction", config.abstraction);
   readSection(ini, "trajectory", config.trajectory);
   readLabelConfig(ini, config);
+  readSection(ini, "slam", config.slam);
   readPictures(ini, config);
   if (!config.map.classes.empty())
     config.map.classes = (file.parent_path() / config.map.classes).lexically_normal();

@@ -5,6 +5,7 @@
 #include <labeled_cloud/Trajectory.h>
 #include <map_pictures/MapPictures.h>
 #include <semantic_map/MapOptions.h>
+#include <semantic_slam/SlamOptions.h>
 
 #include <filesystem>
 
@@ -19,6 +20,7 @@ struct Config {
   labeled_cloud::LabelFolderOptions labels;       // [labels]
   labeled_cloud::ScanStreamOptions stream;        // [labels] too
   labeled_cloud::CloudLabelerOptions cameras;     // [cameras] and [camera NAME]
+  semantic_slam::SlamOptions slam;                // [slam]
   map_pictures::PictureStyle pictures;            // [pictures]
   map_pictures::Viewpoint view;                   // [pictures] too
 };

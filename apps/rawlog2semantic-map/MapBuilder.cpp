@@ -45,6 +45,10 @@ void MapBuilder::timeWithoutAbstraction() {
   m_plainMap->setAbstraction({});
 }
 
+void MapBuilder::correctPoses(const semantic_slam::SlamOptions& options, const fs::path& folder) {
+  m_correction = std::make_unique<PoseCorrection>(m_map.tree(), options, folder);
+}
+
 void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::ScanStream& stream,
                         const StopRequest& stop) {
   for (const fs::path& file : rawlogs) m_summary.rawlogs.push_back(file.string());
@@ -56,6 +60,7 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
     if ((m_summary.stopped = stop.pending())) break;
     progress.update(observation->bytesRead, std::to_string(m_summary.inserted) + " scans");
   }
+  if (m_correction) m_correction->finish();
   progress.finish((m_summary.stopped ? "stopped early, " : "") +
                   std::to_string(m_summary.inserted) + " scans inserted, " +
                   m_summary.skippedText());
@@ -72,7 +77,7 @@ void MapBuilder::add(const StreamedObservation& observation) {
 void MapBuilder::insertScan(const StreamedObservation& observation) try {
   const LabeledScan& scan = *observation.scan;
   m_summary.insertionTimes.push_back(
-      timeOf([&] { m_summary.add(m_map.insertScan(scan, observation.T_map_robot)); }));
+      timeOf([&] { m_summary.add(insertIntoMap(scan, observation.T_map_robot)); }));
   m_summary.add(scan.counts);
   m_summary.withoutLabels += scan.labelsMissing;
   m_summary.conversionTimes.push_back(observation.milliseconds);
@@ -80,6 +85,14 @@ void MapBuilder::insertScan(const StreamedObservation& observation) try {
   if (m_onScan) m_onScan(scan, observation.T_map_robot);
 } catch (const std::exception& e) {
   throw std::runtime_error(observation.name + ": " + strict_files::messageOf(e));
+}
+
+semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& scan,
+                                                           const CPose3D& T_map_robot) {
+  if (!m_correction) return m_map.insertScan(scan, T_map_robot);
+  const auto report = m_correction->insert(scan, T_map_robot, m_map.insertionOptions.scan);
+  m_summary.slam = m_correction->summary();
+  return report;
 }
 
 void MapBuilder::noteAbstraction(const LabeledScan& scan, const CPose3D& T_map_robot) {

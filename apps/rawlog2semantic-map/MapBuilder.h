@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "PoseCorrection.h"
 #include "Signals.h"
 #include "Summary.h"
 
@@ -25,6 +26,11 @@ class MapBuilder {
   /** Also inserts each scan into a map that keeps no abstraction, for comparison. */
   void timeWithoutAbstraction();
 
+  /** Scans go where SLAM finds them. \param folder where they are kept meanwhile */
+  void correctPoses(const semantic_slam::SlamOptions& options, const std::filesystem::path& folder);
+  /** Keyframes' poses, if they are corrected. */
+  const PoseCorrection* poseCorrection() const { return m_correction.get(); }
+
   /** Counts the observations that hold poses as used: those of the robot are from the rawlogs. */
   void countPoses() { m_summary.posesAreUsed = true; }
 
@@ -41,7 +47,11 @@ class MapBuilder {
   void noteAbstraction(const labeled_cloud::LabeledScan& scan,
                        const mrpt::poses::CPose3D& T_map_robot);
 
+  semantic_octree::InsertionReport insertIntoMap(const labeled_cloud::LabeledScan& scan,
+                                                 const mrpt::poses::CPose3D& T_map_robot);
+
   semantic_map::CSemanticOctoMap& m_map;
+  std::unique_ptr<PoseCorrection> m_correction;
   OnScan m_onScan;
   std::unique_ptr<semantic_map::CSemanticOctoMap> m_plainMap;
   Summary m_summary;

@@ -126,6 +126,9 @@ ordered_json toJson(const Summary& s, const SemanticOcTree& tree) {
       {"millisecondsPerScan",
        {{"conversion", timesJson(s.conversionTimes)}, {"insertion", timesJson(s.insertionTimes)}}},
       {"map", mapJson(tree)}};
+  if (s.slam)
+    json["slam"] = {
+        {"keyframes", s.slam->keyframes}, {"loops", s.slam->loops}, {"lost", s.slam->lost}};
   if (tree.hasAbstraction()) json["abstraction"] = abstractionJson(s);
   return json;
 }

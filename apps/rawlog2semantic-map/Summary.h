@@ -5,6 +5,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,11 @@ struct AbstractionSummary {
   std::vector<std::size_t> leaves, compressedLeaves;
   /** Telling what changed in the optimal tree; inserting without upkeep, if that was tried: ms. */
   std::vector<double> changeTimes, insertionTimesWithout;
+};
+
+/** What became of the poses, if they were corrected. */
+struct SlamSummary {
+  std::size_t keyframes = 0, loops = 0, lost = 0;
 };
 
 /** What became of the observations on their way into the map. */
@@ -41,6 +47,7 @@ struct Summary {
   std::vector<double> conversionTimes, insertionTimes;
   /** Where an abstraction is kept, after each inserted scan. */
   AbstractionSummary abstraction;
+  std::optional<SlamSummary> slam;
 
   void add(const labeled_cloud::ScanCounts& counts);
   void addProblems(const std::vector<std::string>& more);

@@ -5,6 +5,7 @@
 #include <semantic_types/ClassTableFile.h>
 #include <strict_files/ErrorMessage.h>
 #include <strict_files/OutputFolder.h>
+#include <strict_files/TextFile.h>
 
 #include <cmath>
 #include <optional>
@@ -32,15 +33,16 @@ using semantic_octree::SemanticOcTree;
 using semantic_types::ClassTable;
 using strict_files::OutputFolder;
 
-const std::vector<std::string> kFiles = {"map.semantic", "summary.json",        "top.png",
-                                         "view.png",     "compressed.semantic", "compressed.png"};
+const std::vector<std::string> kFiles = {"map.semantic",  "summary.json",        "top.png",
+                                         "view.png",      "compressed.semantic", "compressed.png",
+                                         "trajectory.tum"};
 
 struct Cli {
   fs::path config, output, trajectory, classes, confusion, saveLabeled, preview;
   LabelSources labels;
   std::optional<double> resolution, maxRange;
   std::size_t previewEvery = 10;
-  bool compareUpkeep = false, staticPose = false, live = false, pause = false;
+  bool compareUpkeep = false, staticPose = false, slam = false, live = false, pause = false;
   std::vector<fs::path> rawlogs;
   Outputs outputs;
 
@@ -69,8 +71,11 @@ struct Cli {
                    "Returns beyond it only carve free space, m; 0: no limit")
         ->check(isNumber(strict_files::atLeast(0)));
     app.add_flag_callback("-v,--verbose", beVerbose, "Say of each observation what became of it");
-    app.add_flag("--compare-upkeep", compareUpkeep,
-                 "Time each insertion without upkeep of the abstraction, too");
+    auto* upkeep = app.add_flag("--compare-upkeep", compareUpkeep,
+                                "Time each insertion without upkeep of the abstraction, too");
+    app.add_flag("--slam", slam,
+                 "Correct the poses: register scans to each other, close loops; for LiDARs")
+        ->excludes(upkeep);
     auto* window = app.add_flag("--live", live, "Show the map in a window while it grows");
     app.add_flag("--pause", pause, "Wait there from the first scan on")->needs(window);
     app.add_option("INPUT.rawlog", rawlogs, "Rawlogs that continue each other")->required();
@@ -161,7 +166,7 @@ class SideOutputs {
 };
 
 Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveScans* live,
-                 CSemanticOctoMap& map) {
+                 CSemanticOctoMap& map, const OutputFolder& output) {
   const ClassTable& table = map.tree().classes();
   if (!cli.confusion.empty())
     config.insertion.conversion.labels.confusion = std::make_shared<labeled_cloud::ConfusionMatrix>(
@@ -180,11 +185,14 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
   });
   if (cli.trajectory.empty()) builder.countPoses();
   if (cli.compareUpkeep) builder.timeWithoutAbstraction();
+  const fs::path trajectoryFile = output.staged("trajectory.tum");
+  if (cli.slam) builder.correctPoses(config.slam, trajectoryFile.parent_path());
   builder.insert(cli.rawlogs, stream, stop);
   if (builder.summary().inserted == 0)
     throw std::runtime_error("nothing to map: no observation was inserted, " +
                              builder.summary().skippedText());
   outputs.finish();
+  if (cli.slam) strict_files::writeText(trajectoryFile, builder.poseCorrection()->trajectory());
   return builder.summary();
 }
 
@@ -220,7 +228,7 @@ int run(const Cli& cli) {
   if (cli.live) live.emplace(map.tree(), stop, cli.pause);
   OutputFolder output(cli.output);
 
-  const Summary summary = buildMap(cli, config, stop, live ? &*live : nullptr, map);
+  const Summary summary = buildMap(cli, config, stop, live ? &*live : nullptr, map, output);
   saveTree(map.tree(), output.staged("map.semantic"));
   writeJson(output.staged("summary.json"), toJson(summary, map.tree()));
   const std::string problem = drawPictures(map.tree(), config, output);

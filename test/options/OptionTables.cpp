@@ -11,6 +11,7 @@
 #include <semantic_map/MapOptions.h>
 #include <semantic_octree/SmoothedView.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
+#include <semantic_slam/SlamOptions.h>
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Lidar.h>
 
@@ -55,6 +56,8 @@ std::vector<OptionTable> mapTables() {
           "the same options, with lists of their own for classes, `prior` and `regions`: see [its "
           "page](../../apps/semantic-map-compress/README.md). How to choose: "
           "[compression](compression.md)."),
+      table<semantic_slam::SlamOptions>("Poses put right",
+                                        "`[slam]` of `rawlog2semantic-map`, with `--slam`."),
       table<TLikelihoodOptions>("Likelihood of observations", "`_likelihoodOpts`."),
       table<TRenderingOptions>("The map's 3D object", "`_renderOpts`."),
       table<semantic_octree::SmoothingOptions>(

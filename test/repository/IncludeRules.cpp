@@ -41,6 +41,7 @@ const IncludeTable& includeTable() {
        {"Eigen", "mrpt", "octomap", "colored_graph", "semantic_octree", "semantic_types",
         "strict_files", "semantic_planning"}},
       {"synthetic_world", {"Eigen", "semantic_types", "strict_files"}},
+      {"semantic_slam", {"Eigen", "semantic_octree", "semantic_types", "strict_files"}},
   };
   return table;
 }

@@ -2,6 +2,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 #include <semantic_octree/Abstraction.h>
+#include <semantic_octree/KeyframeMap.h>
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/OctomapConversion.h>
 #include <semantic_octree/TreeFile.h>
@@ -104,6 +105,44 @@ TEST(FailingAllocations, elsewhereLeaveTheMapAsItWas) {
                     m = readTree(in);
                   }),
             3);
+}
+
+TEST(FailingAllocations, whileKeyframesAreCorrectedLeaveTheMapOrABrokenOne) {
+  std::mt19937 random(8);
+  const PosedCloud a = randomScan(random), b = randomScan(random);
+  const Eigen::Isometry3d T(Eigen::Translation3d(0.3, 1, 0));
+  std::optional<SemanticOcTree> map;
+  std::optional<KeyframeMap> keyframes;
+  std::optional<SemanticOcTree> before;
+  int broken = 0, failures = 0;
+  const auto sweepKeyframes = [&](const auto& operation) {
+    failures += failEachAllocation(
+        [&] {
+          keyframes.reset();
+          map.emplace(mapOf(9, 0, true));
+          keyframes.emplace(*map);
+          keyframes->begin(T);
+          keyframes->insert(a.cloud, a.T_map_sensor);
+          keyframes->begin(Eigen::Isometry3d::Identity());
+          keyframes->insert(b.cloud, b.T_map_sensor);
+          before.emplace(*map);
+        },
+        [&] { operation(*keyframes); },
+        [&] {
+          EXPECT_EQ(keyframes->numScans(), 2u);
+          EXPECT_TRUE(keyframes->pose(0).isApprox(T));
+          if (map->isBroken()) return expectLost(*map, &broken);
+          EXPECT_TRUE(*map == *before);
+          keyframes->remove(1);  // what is left can still be corrected
+          keyframes->remove(0);
+          EXPECT_TRUE(map->empty());
+        });
+  };
+  sweepKeyframes([&](KeyframeMap& k) { k.move({{0, Eigen::Isometry3d::Identity()}}); });
+  sweepKeyframes([&](KeyframeMap& k) { k.remove(0); });
+  sweepKeyframes([&](KeyframeMap& k) { k.insert(a.cloud, a.T_map_sensor); });
+  EXPECT_GT(broken, 0);
+  EXPECT_LT(broken, failures);
 }
 
 TEST(FailingAllocations, ofTheCompressedTreesChangeAreRemembered) {

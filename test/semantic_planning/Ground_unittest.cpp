@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <semantic_octree/KeyframeMap.h>
 #include <semantic_planning/ground/Ground.h>
 
 #include <cmath>
@@ -99,6 +100,40 @@ TEST(Ground, afterUpdatesItIsTheGroundReadAnew) {
     ground.update(map.takeTouchedTiles());
     expectSame(ground, groundOf(map, VehicleOptions(), filling));
   }
+}
+
+TEST(Ground, followsKeyframesThatAreMovedAndRemoved) {
+  PaintedWorld world;
+  SemanticOcTree map(world.map().getResolution(), world.map().classes());
+  const GroundOptions filling;
+  semantic_octree::KeyframeMap keyframes(map);
+  map.takeTouchedTiles();
+  Ground ground = groundOf(map, VehicleOptions(), filling);
+  std::mt19937 random(4);
+  const auto slab = [&random](double height) {
+    semantic_types::LabeledCloud cloud;
+    for (double x = -4; x < 4; x += 0.1)
+      for (double y = -4; y < 4; y += 0.1) {
+        cloud.points.emplace_back(x, y, height + (random() % 9 == 0 ? 0.4 : 0));
+        cloud.classes.push_back(PaintedWorld::Road);
+      }
+    return cloud;
+  };
+  const auto expectFollowed = [&] {
+    ground.update(map.takeTouchedTiles());
+    expectSame(ground, groundOf(map, VehicleOptions(), filling));
+  };
+  const Eigen::Isometry3d above(Eigen::Translation3d(0.05, 0.05, 2));
+  for (int i = 0; i < 3; ++i) {
+    keyframes.begin(Eigen::Isometry3d(Eigen::Translation3d(3 * i, 0, 0.3 * i)));
+    keyframes.insert(slab(-2), above);
+    expectFollowed();
+  }
+  keyframes.move({{1, Eigen::Isometry3d(Eigen::Translation3d(3, 0, 0))},
+                  {2, Eigen::Isometry3d(Eigen::Translation3d(6, 0, 0))}});
+  expectFollowed();
+  keyframes.remove(0);
+  expectFollowed();
 }
 
 TEST(Ground, aHoleThatNoBeamEnteredIsFilledAfterAnUpdateAsInTheGroundReadAnew) {

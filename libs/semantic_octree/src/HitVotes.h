@@ -35,6 +35,13 @@ class HitVotes {
     return m_softSums.data() + static_cast<std::size_t>(voxel) * m_numClasses;
   }
 
+  bool isSoft() const { return !m_softCounts.empty(); }
+  /** A voxel's votes, for unpack(). */
+  void pack(std::uint32_t voxel, std::vector<char>& bytes) const;
+  /** Forgets all voxels; unpack() then adds one after the other. */
+  void beginUnpacking(int numClasses);
+  void unpack(const char*& bytes, bool soft);
+
   std::size_t bytes() const;
 
  private:

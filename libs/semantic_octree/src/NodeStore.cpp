@@ -63,6 +63,18 @@ NodeArena& NodeStore::arena(int i) {
   return m_arenas[i];
 }
 
+BlockContent NodeStore::contentOf(const Block& block) const {
+  BlockContent content;
+  std::copy_n(block.values, 64, content.values);
+  content.known = block.known;
+  content.recorded = block.recorded;
+  content.leafOctants = block.leafOctants;
+  const ClassRecord* record = block.recorded ? recordsOf(block) : nullptr;
+  for (VoxelBits bits = block.recorded; bits; bits &= bits - 1)
+    content.records[__builtin_ctzll(bits)] = *record++;
+  return content;
+}
+
 const ClassRecord& NodeStore::record(const Node& leaf) const {
   const Slot& slot = slotOf(leaf);
   if (leaf.m_part == Node::kWhole) return record(slot);
@@ -187,11 +199,21 @@ Block& NodeArena::expandToBlock(Slot& leaf) {
   return block;
 }
 
-void NodeArena::removeOctant(Slot& inner) {
-  m_octants.release(inner.index);
-  inner = Slot();
-  --m_inner;
+void NodeArena::remove(Slot& known) {
+  if (known.kind == Kind::LeafWithRecord) dropRecord(known);
+  if (known.kind == Kind::Octant) {
+    for (Slot& child : m_store->octant(known).slots)
+      if (child.isKnown()) remove(child);
+    m_octants.release(known.index);
+  } else if (known.kind == Kind::Block) {
+    Block& block = m_store->block(known);
+    setRecorded(block, 0);
+    recount(block.count(), {0, 0});
+    m_blocks.release(known.index);
+  }
+  m_inner -= known.isInner();
   --m_nodes;
+  known = Slot();
 }
 
 bool NodeArena::prune(Slot& inner) {

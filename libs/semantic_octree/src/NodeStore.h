@@ -121,6 +121,7 @@ class NodeStore {
     return recordsOf(block)[block.rankOfRecord(voxel)];
   }
   ClassRecord* recordsOf(const Block& block) const { return recordAt(block.records); }
+  BlockContent contentOf(const Block& block) const;
   /** Of a leaf that has one. */
   const ClassRecord& record(const Node& leaf) const;
 
@@ -177,8 +178,8 @@ class NodeArena {
   Block& expandToBlock(Slot& leaf);
   /** Turns an inner node into a leaf if its eight children are leaves that agree bit for bit. */
   bool prune(Slot& inner);
-  /** Turns an inner node without children into unknown space. */
-  void removeOctant(Slot& inner);
+  /** Turns a node and all that is below into unknown space. */
+  void remove(Slot& known);
 
   void setRecord(Slot& leaf, const ClassRecord& record);
   void dropRecord(Slot& leaf);

@@ -34,15 +34,6 @@ void checkSizes(const LabeledCloud& cloud, int numClasses) {
       throw std::invalid_argument("labeled cloud: a class probability of " + std::to_string(q));
 }
 
-/** Tiles whose bits, and what is noted of them, fit into max_scan_memory. */
-std::size_t maxTiles(const InsertionOptions& options) {
-  const int hitTiles = options.rays == InsertionOptions::Rays::EndVoxels ? 2 : 1;
-  const std::size_t bytesPerTile = sizeof(CubeContent) +
-                                   options.threads * ScanGrid::kWords * sizeof(VoxelBits) +
-                                   hitTiles * (sizeof(HitTiles::Tile) + sizeof(std::uint32_t));
-  return static_cast<std::size_t>(options.maxScanMemory) * 1000000 / bytesPerTile;
-}
-
 /** As many ray ends as stay near the processor. */
 constexpr std::size_t kRaysInCache = 8192;
 
@@ -66,6 +57,14 @@ void moveBits(std::uint64_t* from, std::uint64_t* to) {
 }
 
 }  // namespace
+
+std::size_t Scan::maxTiles(const InsertionOptions& options) {
+  const int hitTiles = options.rays == InsertionOptions::Rays::EndVoxels ? 2 : 1;
+  const std::size_t bytesPerTile = sizeof(CubeContent) +
+                                   options.threads * ScanGrid::kWords * sizeof(VoxelBits) +
+                                   hitTiles * (sizeof(HitTiles::Tile) + sizeof(std::uint32_t));
+  return static_cast<std::size_t>(options.maxScanMemory) * 1000000 / bytesPerTile;
+}
 
 void Scan::set(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor, double resolution,
                int numClasses, const InsertionOptions& options) {

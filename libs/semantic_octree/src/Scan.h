@@ -1,6 +1,7 @@
 #pragma once
 #include "HitTiles.h"
 #include "HitVotes.h"
+#include "PackedScan.h"
 #include "ScanBeams.h"
 #include "ScanGrid.h"
 #include "ScanPyramid.h"
@@ -17,6 +18,13 @@ class Scan {
    * \throw std::invalid_argument sizes of the cloud's vectors do not match, or a class above K. */
   void set(const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
            double resolution, int numClasses, const InsertionOptions& options);
+
+  /** What is to be kept of it to merge it again. */
+  PackedScan pack() const;
+  /** Replaces the content by some tiles of a scan that was packed. \param options its memory's
+   * limit \throw std::length_error it is too small. */
+  void unpack(const PackedScan& scan, const TileCodes& wanted, int numClasses,
+              const InsertionOptions& options);
 
   const InsertionReport& report() const { return m_report; }
   const ScanPyramid& pyramid() const { return m_pyramid; }
@@ -38,11 +46,15 @@ class Scan {
   std::size_t bytes() const;
 
  private:
+  /** Tiles whose bits, and what is noted of them, fit into max_scan_memory. */
+  static std::size_t maxTiles(const InsertionOptions& options);
   void markHits(const ScanBeams& beams, const InsertionOptions& options);
   void markFree(const ScanBeams& beams, const InsertionOptions& options, double margin);
   /** Follows a part's beams, and notes in which voxels they end. */
   void markFreePart(const ScanBeams& beams, int part, const InsertionOptions& options,
                     double margin);
+  void packTile(const Tile& tile, Bytes& bytes) const;
+  void unpackTile(const PackedTile& tile, bool soft);
   void summarize();
   CubeContent summarizeTile(const VoxelIndex& tile, std::size_t number);
   ScanGrid::Place placeOf(const Beam& beam) const {

@@ -1,15 +1,15 @@
 #include <semantic_octree/SemanticOcTree.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 #include "CompressedTree.h"
 #include "NodeStore.h"
 #include "Scan.h"
 #include "ScanMerger.h"
+#include "TileReplacement.h"
 #include "TouchedTiles.h"
+#include "TreeComparison.h"
 
 namespace semantic_octree {
 namespace {
@@ -27,53 +27,6 @@ void addTiles(const Node& node, const Cell& cell, TouchedTiles& tiles) {
   for (int i = 0; i < 8; ++i)
     if (const Node child = node.child(i)) addTiles(child, cell.child(i), tiles);
 }
-
-/** Compares two trees slot by slot. */
-class Comparison {
- public:
-  Comparison(const NodeStore& a, const NodeStore& b, bool withState)
-      : m_a(a), m_b(b), m_withState(withState) {}
-
-  bool same(const Slot& a, const Slot& b) const {
-    if (a.kind != b.kind || a.value != b.value) return false;
-    switch (a.kind) {
-      case Slot::Kind::None:
-      case Slot::Kind::Leaf:
-        return true;
-      case Slot::Kind::LeafWithRecord:
-        return m_a.record(a) == m_b.record(b);
-      case Slot::Kind::Octant:
-        return sameState(a, b) && sameChildren(m_a.octant(a), m_b.octant(b));
-      case Slot::Kind::Block:
-        return sameState(a, b) && sameVoxels(m_a.block(a), m_b.block(b));
-    }
-    return false;
-  }
-
- private:
-  bool sameChildren(const Octant& a, const Octant& b) const {
-    for (int i = 0; i < 8; ++i)
-      if (!same(a.slots[i], b.slots[i])) return false;
-    return true;
-  }
-  bool sameVoxels(const Block& a, const Block& b) const {
-    return a.known == b.known && a.leafOctants == b.leafOctants && a.recorded == b.recorded &&
-           std::equal(a.values, a.values + 64, b.values) &&
-           (!a.recorded ||
-            std::equal(m_a.recordsOf(a), m_a.recordsOf(a) + a.numRecords(), m_b.recordsOf(b)));
-  }
-  /** What a node is, not what was told of it. */
-  bool sameState(const Slot& a, const Slot& b) const {
-    if (!m_withState) return true;
-    const InnerState &x = *m_a.state<InnerState>(a), &y = *m_b.state<InnerState>(b);
-    return x.density == y.density && x.gValue == y.gValue && x.isExpanded == y.isExpanded &&
-           x.expandedOctants == y.expandedOctants &&
-           std::memcmp(x.row(), y.row(), m_a.stateBytes() - sizeof(InnerState)) == 0;
-  }
-
-  const NodeStore &m_a, &m_b;
-  bool m_withState;
-};
 
 }  // namespace
 
@@ -125,7 +78,7 @@ bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
       !(m_parameters == o.m_parameters) || m_pruning != o.m_pruning)
     return false;
   const bool sameRows = m_gTree && o.m_gTree && m_gTree->stateBytes() == o.m_gTree->stateBytes();
-  return Comparison(store(), o.store(), sameRows).same(store().root(), o.store().root());
+  return TreeComparison(store(), o.store(), sameRows).same(store().root(), o.store().root());
 }
 
 void SemanticOcTree::clear() {
@@ -179,11 +132,33 @@ std::size_t SemanticOcTree::getNumLeafNodes() const {
 
 std::size_t SemanticOcTree::memoryUsage() const { return store().bytes(); }
 
+template <typename F>
+void SemanticOcTree::change(const F& f) {
+  const MergeTarget target{store(), m_filter, m_gTree.get(), m_touched.get(), m_pruning};
+  try {
+    f(target);
+  } catch (...) {
+    m_store = nullptr;  // what is half changed cannot be told from what was there
+    m_scan = nullptr;
+    throw;
+  }
+}
+
+void SemanticOcTree::merge(const Scan& scan, int threads) {
+  if (scan.hasVoxels())
+    change([&](const MergeTarget& target) { mergeScan(target, scan, threads); });
+}
+
+void SemanticOcTree::replace(const std::vector<std::uint64_t>& tiles,
+                             const SemanticOcTree& source) {
+  change([&](const MergeTarget& target) { replaceTiles(target, tiles, source.store()); });
+}
+
 InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
                                        const Eigen::Isometry3d& T_map_sensor,
                                        const InsertionOptions& options) {
   options.validate();
-  NodeStore& nodes = store();
+  store();
   if (!m_scan) m_scan = std::make_unique<Scan>();
   try {
     m_scan->set(cloud, T_map_sensor, m_resolution, numClasses(), options);
@@ -191,16 +166,7 @@ InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
     m_scan = nullptr;  // half-filled buffers must not leak into the next scan
     throw;
   }
-  if (m_scan->hasVoxels()) {
-    const MergeTarget target{nodes, m_filter, m_gTree.get(), m_touched.get(), m_pruning};
-    try {
-      mergeScan(target, *m_scan, options.threads);
-    } catch (...) {
-      m_store = nullptr;  // what is half inserted cannot be told from what was there
-      m_scan = nullptr;
-      throw;
-    }
-  }
+  merge(*m_scan, options.threads);
   const InsertionReport report = m_scan->report();
   if (m_scan->bytes() > Scan::kTooManyBytes)
     m_scan = nullptr;

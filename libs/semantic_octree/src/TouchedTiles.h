@@ -3,14 +3,14 @@
 #include <unordered_set>
 #include <vector>
 
-#include "Cell.h"
+#include "TileCodes.h"
 
 namespace semantic_octree {
 
 /** Tiles of 8 x 8 x 8 voxels in which something changed since somebody last asked. */
 class TouchedTiles {
  public:
-  static constexpr int kDepth = 13;
+  static constexpr int kDepth = kTileDepth;
 
   /** A cube of a tile's size or larger. */
   void add(const Cell& cube);

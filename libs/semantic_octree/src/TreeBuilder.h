@@ -51,7 +51,7 @@ class TreeBuilder {
       if (octant.slots[i].isKnown()) highest = std::max(highest, octant.slots[i].value);
     }
     if (highest == kUnknown)
-      m_arena.removeOctant(slot);
+      m_arena.remove(slot);
     else if (!(m_merges && m_arena.prune(slot)))
       slot.value = highest;
   }

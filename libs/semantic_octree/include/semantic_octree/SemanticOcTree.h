@@ -9,6 +9,7 @@
 #include <semantic_types/LabeledCloud.h>
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -86,8 +87,8 @@ class SemanticOcTree {
   /** Number of leaves; takes no time, unlike OctoMap's. */
   std::size_t getNumLeafNodes() const;
   bool empty() const { return !root(); }
-  /** Bytes of nodes, class records and bookkeeping; the same for equal maps, however they came to be.
-   * Memory set aside for more is not counted. */
+  /** Bytes of nodes, class records and bookkeeping; the same for equal maps, however they came to
+   * be. Memory set aside for more is not counted. */
   std::size_t memoryUsage() const;
   /** Lowest and highest corner of all known cells, meters, map frame; 0 in an empty map. */
   void getMetricMin(double& x, double& y, double& z) const;
@@ -138,8 +139,8 @@ class SemanticOcTree {
 
   // --- Classes ---
   /** State of the cell that contains a point (meters, map frame), or of its ancestor at a depth
-   * (0: the finest). An inner node's occupancy is its most occupied leaf's, p(class | occupied) that
-   * of the mixture of its leaves in which labels were seen. */
+   * (0: the finest). An inner node's occupancy is its most occupied leaf's, p(class | occupied)
+   * that of the mixture of its leaves in which labels were seen. */
   CellState query(double x, double y, double z, unsigned depth = 0) const;
   CellState query(const octomap::OcTreeKey& key, unsigned depth = 0) const;
   CellState query(const Node& node) const;
@@ -192,11 +193,18 @@ class SemanticOcTree {
 
  private:
   friend class Abstraction;
+  friend class KeyframeMap;
   friend class TreeBuilder;
   friend class TreeReader;
   friend class TreeWriter;
   /** \throw std::logic_error the map is broken. */
   NodeStore& store() const;
+  /** Whoever changes nodes does it in here: if it fails, the map is broken. */
+  template <typename F>
+  void change(const F& f);
+  void merge(const Scan& scan, int threads);
+  /** Makes tiles (see TileCodes) what they are in another map. */
+  void replace(const std::vector<std::uint64_t>& tiles, const SemanticOcTree& source);
   double m_resolution;
   ClassTable m_classes;
   FilterParameters m_parameters;

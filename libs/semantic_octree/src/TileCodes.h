@@ -1,0 +1,56 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "Cell.h"
+
+namespace semantic_octree {
+
+/** Tiles of 8 x 8 x 8 voxels, the nodes at depth 13, known by their Morton codes (x lowest): all
+ * tiles below a node follow each other. */
+constexpr int kTileDepth = 13;
+
+/** Ascending, each once. */
+using TileCodes = std::vector<std::uint64_t>;
+
+/** \param tile key of a voxel in it / 8 */
+inline std::uint64_t tileCode(const VoxelIndex& tile) {
+  const auto spread = [](int coordinate) {
+    auto bits = static_cast<std::uint64_t>(coordinate);
+    bits = (bits | bits << 16) & 0x0000ff0000ff;
+    bits = (bits | bits << 8) & 0x00f00f00f00f;
+    bits = (bits | bits << 4) & 0x0c30c30c30c3;
+    return (bits | bits << 2) & 0x249249249249;
+  };
+  return spread(tile.x()) | spread(tile.y()) << 1 | spread(tile.z()) << 2;
+}
+
+inline VoxelIndex tileOf(std::uint64_t code) {
+  const auto collect = [](std::uint64_t bits) {
+    bits &= 0x249249249249;
+    bits = (bits | bits >> 2) & 0x0c30c30c30c3;
+    bits = (bits | bits >> 4) & 0x00f00f00f00f;
+    bits = (bits | bits >> 8) & 0x0000ff0000ff;
+    return static_cast<int>((bits | bits >> 16) & 0xffff);
+  };
+  return {collect(code), collect(code >> 1), collect(code >> 2)};
+}
+
+/** Those of some tiles that are below a node. */
+struct TileRange {
+  TileCodes::const_iterator first, last;
+
+  bool empty() const { return first == last; }
+  /** Below the i-th child of a node at a depth. */
+  TileRange below(int depth, int i) const {
+    const int shift = 3 * (kTileDepth - depth - 1);
+    const auto childOf = [shift](std::uint64_t code) {
+      return static_cast<int>(code >> shift & 7);
+    };
+    return {std::partition_point(first, last, [&](std::uint64_t c) { return childOf(c) < i; }),
+            std::partition_point(first, last, [&](std::uint64_t c) { return childOf(c) <= i; })};
+  }
+};
+
+}  // namespace semantic_octree

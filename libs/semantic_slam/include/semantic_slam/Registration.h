@@ -1,0 +1,66 @@
+#pragma once
+#include <semantic_slam/PoseGraph.h>
+#include <semantic_types/LabeledCloud.h>
+
+#include <cstdint>
+#include <unordered_map>
+
+namespace semantic_slam {
+
+using semantic_types::LabeledCloud;
+
+/** Points in cubes: of each cube, and of each class in it, mean and covariance. */
+class Submap {
+ public:
+  /** \param cellSize edge of a cube, meters \param useClasses false: all points are of one class */
+  Submap(double cellSize, bool useClasses) : m_cellSize(cellSize), m_useClasses(useClasses) {}
+
+  void add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud);
+  /** Computes the distributions; nothing can be added afterwards. */
+  void finish();
+
+  struct Distribution {
+    Eigen::Vector3d mean;
+    Eigen::Matrix3d information;  ///< inverse covariance, 1/m^2
+  };
+  /** The likeliest for a point of its class, in its cube and the six beside; null: there is none.
+   */
+  const Distribution* find(const Eigen::Vector3d& point, semantic_types::ClassId id,
+                           double& squaredDistance) const;
+  double cellSize() const { return m_cellSize; }
+
+ private:
+  struct Sum {
+    double n = 0;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  };
+  using Key = std::uint64_t;
+  Key keyOf(const Eigen::Array3i& cell, semantic_types::ClassId id) const;
+  Eigen::Array3i cellOf(const Eigen::Vector3d& point) const;
+
+  double m_cellSize;
+  bool m_useClasses;
+  std::unordered_map<Key, Sum> m_sums;
+  std::unordered_map<Key, Distribution> m_distributions;
+};
+
+/** One point per cube, the first; none beyond a range. \param cubeSize, maxRange meters */
+LabeledCloud thinned(const LabeledCloud& cloud, double cubeSize, double maxRange);
+
+struct Registration {
+  Eigen::Isometry3d T_submap_scan;
+  Matrix6 information;      ///< as PoseEdge's, of a unit weight for each point that fits
+  double coveredShare = 0;  ///< of the points, those where the submap has points of their class
+  double matchedShare = 0;  ///< of these, those within three standard deviations
+};
+
+/** Where a scan was taken, by what others saw: the distances of its points to the distributions of
+ * their classes become least (P2D-NDT: Magnusson, "The Three-Dimensional Normal-Distributions
+ * Transform"; with classes as in Zaganidis et al., "Integrating Deep Semantic Segmentation into 3-D
+ * Point Cloud Registration"), Gauss-Newton with Geman and McClure's weights.
+ * \param submaps of the same points, coarse ones first; each begins where the one before ended */
+Registration registerScan(const std::vector<const Submap*>& submaps, const LabeledCloud& scan,
+                          const Eigen::Isometry3d& T_submap_guess);
+
+}  // namespace semantic_slam

@@ -1,0 +1,154 @@
+#include <semantic_slam/PoseGraph.h>
+
+#include <Eigen/SparseCholesky>
+#include <cmath>
+#include <stdexcept>
+
+namespace semantic_slam {
+namespace {
+
+constexpr int kMostIterations = 50;
+/** Cauchy's c^2: beyond some standard deviations of six values together an edge counts less. */
+constexpr double kDoubt = 16;
+
+Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+/** Takes a small motion in one frame into another. */
+Matrix6 adjoint(const Eigen::Isometry3d& T) {
+  Matrix6 m = Matrix6::Zero();
+  m.topLeftCorner<3, 3>() = m.bottomRightCorner<3, 3>() = T.linear();
+  m.topRightCorner<3, 3>() = crossMatrix(T.translation()) * T.linear();
+  return m;
+}
+
+/** How vectorOf(T poseOf(x)) changes with x, at x = 0 and v = vectorOf(T). */
+Matrix6 derivativeAt(const Vector6& v) {
+  const Eigen::Vector3d turn = v.tail<3>();
+  const Eigen::Matrix3d cross = crossMatrix(turn);
+  const double angle = turn.norm();
+  const double factor =
+      angle < 1e-4 ? 1.0 / 12
+                   : 1 / (angle * angle) - (1 + std::cos(angle)) / (2 * angle * std::sin(angle));
+  Matrix6 m = Matrix6::Zero();
+  m.topLeftCorner<3, 3>() = poseOf(v).linear();
+  m.bottomRightCorner<3, 3>() = Eigen::Matrix3d::Identity() + 0.5 * cross + factor * cross * cross;
+  return m;
+}
+
+using Poses = std::vector<Eigen::Isometry3d>;
+
+Vector6 errorOf(const PoseEdge& edge, const Poses& poses) {
+  return vectorOf(edge.T_a_b.inverse() * poses[edge.a].inverse() * poses[edge.b]);
+}
+
+double costOf(const std::vector<PoseEdge>& edges, const Poses& poses) {
+  double cost = 0;
+  for (const PoseEdge& edge : edges) {
+    const Vector6 e = errorOf(edge, poses);
+    const double squared = e.dot(edge.information * e);
+    cost += edge.isDoubtful ? kDoubt * std::log1p(squared / kDoubt) : squared;
+  }
+  return cost;
+}
+
+/** The normal equations of all poses but the first. */
+struct Equations {
+  Eigen::SparseMatrix<double> H;
+  Eigen::VectorXd b;
+
+  Equations(const std::vector<PoseEdge>& edges, const Poses& poses)
+      : b(Eigen::VectorXd::Zero(6 * (static_cast<int>(poses.size()) - 1))) {
+    for (const PoseEdge& edge : edges) add(edge, poses);
+    H.resize(b.size(), b.size());
+    H.setFromTriplets(m_entries.begin(), m_entries.end());
+  }
+
+ private:
+  void add(const PoseEdge& edge, const Poses& poses) {
+    const Vector6 e = errorOf(edge, poses);
+    const double squared = e.dot(edge.information * e);
+    const Matrix6 weight = edge.information * (edge.isDoubtful ? 1 / (1 + squared / kDoubt) : 1.0);
+    const Matrix6 ofB = derivativeAt(e);
+    const Matrix6 ofA = -ofB * adjoint(poses[edge.b].inverse() * poses[edge.a]);
+    addBlock(edge.a, edge.a, ofA.transpose() * weight * ofA);
+    addBlock(edge.a, edge.b, ofA.transpose() * weight * ofB);
+    addBlock(edge.b, edge.a, ofB.transpose() * weight * ofA);
+    addBlock(edge.b, edge.b, ofB.transpose() * weight * ofB);
+    if (edge.a > 0) b.segment<6>(6 * rowOf(edge.a)) -= ofA.transpose() * weight * e;
+    if (edge.b > 0) b.segment<6>(6 * rowOf(edge.b)) -= ofB.transpose() * weight * e;
+  }
+  static int rowOf(std::size_t pose) { return static_cast<int>(pose) - 1; }
+  void addBlock(std::size_t i, std::size_t j, const Matrix6& block) {
+    if (i == 0 || j == 0) return;
+    for (int r = 0; r < 6; ++r)
+      for (int c = 0; c < 6; ++c)
+        m_entries.emplace_back(6 * rowOf(i) + r, 6 * rowOf(j) + c, block(r, c));
+  }
+  std::vector<Eigen::Triplet<double>> m_entries;
+};
+
+}  // namespace
+
+Matrix6 informationOf(double meters, double radians) {
+  Vector6 d;
+  d << Eigen::Vector3d::Constant(1 / (meters * meters)),
+      Eigen::Vector3d::Constant(1 / (radians * radians));
+  return d.asDiagonal();
+}
+
+Eigen::Isometry3d poseOf(const Vector6& v) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  const Eigen::Vector3d axis = v.tail<3>();
+  const double angle = axis.norm();
+  if (angle > 0) T.linear() = Eigen::AngleAxisd(angle, axis / angle).toRotationMatrix();
+  T.translation() = v.head<3>();
+  return T;
+}
+
+Vector6 vectorOf(const Eigen::Isometry3d& T) {
+  const Eigen::AngleAxisd turn(T.linear());
+  Vector6 v;
+  v << T.translation(), turn.angle() * turn.axis();
+  return v;
+}
+
+Eigen::Isometry3d rigid(const Eigen::Isometry3d& T) {
+  Eigen::Isometry3d result = T;
+  result.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
+  return result;
+}
+
+void optimize(Poses& poses, const std::vector<PoseEdge>& edges) {
+  for (const PoseEdge& edge : edges)
+    if (edge.a >= poses.size() || edge.b >= poses.size() || edge.a == edge.b)
+      throw std::invalid_argument("pose graph: an edge of pose " + std::to_string(edge.a) +
+                                  " and pose " + std::to_string(edge.b) + ", of " +
+                                  std::to_string(poses.size()));
+  if (poses.size() < 2) return;
+  double cost = costOf(edges, poses), damping = 1e-6;
+  for (int i = 0; i < kMostIterations && damping < 1e12; ++i) {
+    Equations equations(edges, poses);
+    for (int k = 0; k < equations.H.rows(); ++k) equations.H.coeffRef(k, k) *= 1 + damping;
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(equations.H);
+    const Eigen::VectorXd step = solver.solve(equations.b);
+    Poses next = poses;
+    for (std::size_t p = 1; p < poses.size(); ++p)
+      next[p] = rigid(poses[p] * poseOf(step.segment<6>(6 * (static_cast<int>(p) - 1))));
+    const double nextCost = costOf(edges, next);
+    if (solver.info() != Eigen::Success || !(nextCost <= cost)) {
+      damping = std::max(1e-6, damping * 10);
+      continue;
+    }
+    const bool isLast = cost - nextCost < 1e-9 * (cost + 1e-9);
+    poses.swap(next);
+    cost = nextCost;
+    damping *= 0.1;
+    if (isLast) return;
+  }
+}
+
+}  // namespace semantic_slam

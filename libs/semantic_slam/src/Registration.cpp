@@ -1,0 +1,157 @@
+#include <semantic_slam/Registration.h>
+
+#include <Eigen/Eigenvalues>
+#include <unordered_set>
+
+namespace semantic_slam {
+
+using semantic_types::ClassId;
+using semantic_types::kNoClass;
+
+namespace {
+
+constexpr int kMostIterations = 40, kFewestPoints = 6;
+/** Standard deviation of surfaces that are as thin as they seem, m. */
+constexpr double kThinnest = 0.05;
+/** Of surfaces' two widths, squared. A narrow one is but a ring that a LiDAR left on it. */
+constexpr double kNarrowest = 0.3;
+/** Squared distances, in standard deviations, at which a point's weight is a quarter, and up to
+ * which it matches. */
+constexpr double kScale = 9, kMatch = 9;
+
+Eigen::Array3i cubeOf(const Eigen::Vector3d& p, double edge) {
+  return (p.array() / edge).floor().cast<int>();
+}
+
+/** 18 bits a coordinate: enough for cubes of centimeters. */
+std::uint64_t pack(const Eigen::Array3i& cube) {
+  std::uint64_t key = 0;
+  for (int i = 0; i < 3; ++i) key = key << 18 | (static_cast<unsigned>(cube[i]) & 0x3ffff);
+  return key;
+}
+
+ClassId classOf(const LabeledCloud& cloud, std::size_t i) {
+  return cloud.classes.empty() ? kNoClass : cloud.classes[i];
+}
+
+/** One iteration's sums. */
+struct Normals {
+  Matrix6 H = Matrix6::Zero();
+  Vector6 b = Vector6::Zero();
+  std::size_t covered = 0, matched = 0;
+
+  Normals(const Submap& submap, const LabeledCloud& scan, const Eigen::Isometry3d& T) {
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      const Eigen::Vector3d p = scan.points[i].cast<double>(), q = T * p;
+      double squared = 0;
+      const Submap::Distribution* d = submap.find(q, classOf(scan, i), squared);
+      if (!d) continue;
+      ++covered;
+      matched += squared < kMatch;
+      const double root = 1 + squared / kScale, weight = 1 / (root * root);
+      Eigen::Matrix<double, 3, 6> J;  // of T poseOf(x) p
+      Eigen::Matrix3d cross;
+      cross << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
+      J << T.linear(), -T.linear() * cross;
+      const Eigen::Matrix<double, 6, 3> JtW = J.transpose() * d->information * weight;
+      H += JtW * J;
+      b -= JtW * (q - d->mean);
+    }
+  }
+};
+
+}  // namespace
+
+auto Submap::cellOf(const Eigen::Vector3d& point) const -> Eigen::Array3i {
+  return cubeOf(point, m_cellSize);
+}
+
+auto Submap::keyOf(const Eigen::Array3i& cell, ClassId id) const -> Key {
+  return pack(cell) << 8 | (m_useClasses ? id : kNoClass);
+}
+
+void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d p = T_submap_cloud * cloud.points[i].cast<double>();
+    Sum& s = m_sums[keyOf(cellOf(p), classOf(cloud, i))];
+    // Relative to the cube, so that squares stay exact far from the origin.
+    const Eigen::Vector3d r = p - cellOf(p).cast<double>().matrix() * m_cellSize;
+    s.n += 1;
+    s.sum += r;
+    s.squares += r * r.transpose();
+  }
+}
+
+void Submap::finish() {
+  for (const auto& [key, s] : m_sums) {
+    if (s.n < kFewestPoints) continue;
+    const Eigen::Vector3d mean = s.sum / s.n;
+    const Eigen::Matrix3d covariance = s.squares / s.n - mean * mean.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+    Eigen::Vector3d variances = axes.eigenvalues().cwiseMax(kThinnest * kThinnest);
+    variances[1] = std::max(variances[1], kNarrowest * variances[2]);
+    Eigen::Vector3d corner;
+    for (int i = 0; i < 3; ++i) {
+      const auto bits = static_cast<std::int64_t>(key >> (8 + 18 * (2 - i)) & 0x3ffff);
+      corner[i] = static_cast<double>(bits >= 0x20000 ? bits - 0x40000 : bits) * m_cellSize;
+    }
+    m_distributions[key] = {corner + mean, axes.eigenvectors() *
+                                               variances.cwiseInverse().asDiagonal() *
+                                               axes.eigenvectors().transpose()};
+  }
+  m_sums.clear();
+}
+
+auto Submap::find(const Eigen::Vector3d& point, ClassId id, double& squaredDistance) const
+    -> const Distribution* {
+  const Eigen::Array3i cell = cellOf(point);
+  const Distribution* best = nullptr;
+  const auto look = [&](const Eigen::Array3i& c) {
+    const auto found = m_distributions.find(keyOf(c, id));
+    if (found == m_distributions.end()) return;
+    const Eigen::Vector3d e = point - found->second.mean;
+    const double squared = e.dot(found->second.information * e);
+    if (best && squared >= squaredDistance) return;
+    best = &found->second;
+    squaredDistance = squared;
+  };
+  look(cell);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {-1, 1}) {
+      Eigen::Array3i beside = cell;
+      beside[axis] += side;
+      look(beside);
+    }
+  return best;
+}
+
+LabeledCloud thinned(const LabeledCloud& cloud, double cubeSize, double maxRange) {
+  LabeledCloud thin;
+  std::unordered_set<std::uint64_t> seen;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d p = cloud.points[i].cast<double>();
+    if (!(p.norm() <= maxRange) || !seen.insert(pack(cubeOf(p, cubeSize))).second) continue;
+    thin.points.push_back(cloud.points[i]);
+    thin.classes.push_back(classOf(cloud, i));
+  }
+  return thin;
+}
+
+Registration registerScan(const std::vector<const Submap*>& submaps, const LabeledCloud& scan,
+                          const Eigen::Isometry3d& T_submap_guess) {
+  Registration result{T_submap_guess, Matrix6::Zero(), 0, 0};
+  for (const Submap* submap : submaps)
+    for (int i = 0; i < kMostIterations; ++i) {
+      const Normals n(*submap, scan, result.T_submap_scan);
+      result.information = n.H;
+      result.coveredShare = static_cast<double>(n.covered) / std::max<std::size_t>(1, scan.size());
+      result.matchedShare = static_cast<double>(n.matched) / std::max<std::size_t>(1, n.covered);
+      const Vector6 step = (n.H + 1e-6 * Matrix6::Identity()).ldlt().solve(n.b);
+      if (!step.allFinite()) return result;
+      result.T_submap_scan = rigid(result.T_submap_scan * poseOf(step));
+      if (step.head<3>().norm() < 1e-4 && step.tail<3>().norm() < 1e-5) break;
+    }
+  return result;
+}
+
+}  // namespace semantic_slam

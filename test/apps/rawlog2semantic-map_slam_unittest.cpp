@@ -1,0 +1,94 @@
+// A drive whose trajectory drifts, and what --slam makes of it.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "RunProgram.h"
+#include "TemporaryFolder.h"
+
+namespace {
+
+using Poses = std::map<double, Eigen::Isometry3d>;
+
+/** As the data sets of TUM have it: time x y z qx qy qz qw. */
+Poses readPoses(const std::string& text) {
+  Poses poses;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream words(line);
+    double time;
+    Eigen::Vector3d t;
+    Eigen::Quaterniond q;
+    words >> time >> t.x() >> t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w();
+    poses[time] = Eigen::Translation3d(t) * q.normalized();
+  }
+  return poses;
+}
+
+std::string textOf(const Poses& poses) {
+  std::ostringstream out;
+  out.precision(17);
+  for (const auto& [time, T] : poses) {
+    const Eigen::Quaterniond q(T.linear());
+    out << time << ' ' << T.translation().transpose() << ' ' << q.x() << ' ' << q.y() << ' '
+        << q.z() << ' ' << q.w() << '\n';
+  }
+  return out.str();
+}
+
+/** 1 % too long, and 0.1 degrees a meter too far to the left. */
+Poses drifting(const Poses& truth) {
+  Poses poses;
+  Eigen::Isometry3d before, T = truth.begin()->second;
+  for (const auto& [time, T_true] : truth) {
+    if (!poses.empty()) {
+      Eigen::Isometry3d motion = before.inverse() * T_true;
+      const double way = motion.translation().norm();
+      motion.translation() *= 1.01;
+      T = T * motion * Eigen::AngleAxisd(0.1 * M_PI / 180 * way, Eigen::Vector3d::UnitZ());
+    }
+    poses[time] = T;
+    before = T_true;
+  }
+  return poses;
+}
+
+double distance(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return (a.translation() - b.translation()).norm();
+}
+
+}  // namespace
+
+TEST(Rawlog2SemanticMapWithSlam, correctsATrajectoryThatDrifts) {
+  const TemporaryFolder folder;
+  const std::string rawlog = (folder / "park.rawlog").string();
+  const ProgramRun drive =
+      runProgram("synth-rawlog", {"-o", rawlog, "--scene", "park", "--sensor", "lidar", "--frames",
+                                  "235", "--rate", "1", "--speed", "1", "--rings", "32",
+                                  "--columns", "360", "--label-noise", "0.1"});
+  ASSERT_EQ(drive.status, 0) << drive.errors;
+  const Poses truth = readPoses(folder.read("park.tum")), noisy = drifting(truth);
+  const auto noisyFile = folder.write("noisy.tum", textOf(noisy));
+  const ProgramRun mapping =
+      runProgram("rawlog2semantic-map",
+                 {"--output", (folder / "out").string(), "--resolution", "0.4", "--max-range", "20",
+                  "--trajectory", noisyFile.string(), "--slam", rawlog});
+  ASSERT_EQ(mapping.status, 0) << mapping.errors;
+
+  const Poses corrected = readPoses(folder.read("out/trajectory.tum"));
+  const auto slam = nlohmann::json::parse(folder.read("out/summary.json"))["slam"];
+  EXPECT_EQ(slam["keyframes"], corrected.size());
+  EXPECT_GT(slam["loops"], 0);
+  ASSERT_GT(corrected.size(), 100u);
+  const double last = corrected.rbegin()->first;
+  const auto at = [last](const Poses& poses) {  // times are those of the rawlog, to a microsecond
+    return std::prev(poses.upper_bound(last + 1e-4))->second;
+  };
+  EXPECT_GT(distance(at(noisy), at(truth)), 3);
+  EXPECT_LT(distance(corrected.rbegin()->second, at(truth)), 0.3);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "out"), {}), 5);
+}

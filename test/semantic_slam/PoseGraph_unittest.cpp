@@ -1,0 +1,107 @@
+#include <gtest/gtest.h>
+#include <semantic_slam/PoseGraph.h>
+
+#include <cmath>
+#include <random>
+
+using namespace semantic_slam;
+
+namespace {
+
+Vector6 randomVector(std::mt19937& random, double meters, double radians) {
+  const auto uniform = [&random] { return static_cast<double>(random()) / 2147483648.0 - 1; };
+  Vector6 v;
+  for (int i = 0; i < 6; ++i) v[i] = (i < 3 ? meters : radians) * uniform();
+  return v;
+}
+
+/** Around a circle of 30 m, a little up and down. */
+std::vector<Eigen::Isometry3d> ring(int n) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (int i = 0; i < n; ++i) {
+    const double angle = 2 * M_PI * i / n;
+    Vector6 v;
+    v << 30 * std::cos(angle), 30 * std::sin(angle), std::sin(3 * angle), 0, 0, 0;
+    poses.push_back(poseOf(v) * Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+  }
+  return poses;
+}
+
+PoseEdge edgeOf(const std::vector<Eigen::Isometry3d>& poses, std::size_t a, std::size_t b) {
+  return {a, b, poses[a].inverse() * poses[b], informationOf(0.02, 0.01)};
+}
+
+double largestError(const std::vector<Eigen::Isometry3d>& a,
+                    const std::vector<Eigen::Isometry3d>& b) {
+  double error = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    error = std::max(error, vectorOf(a[i].inverse() * b[i]).norm());
+  return error;
+}
+
+}  // namespace
+
+TEST(PoseGraph, vectorsAndPosesAreEachOthersInverse) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 100; ++i) {
+    const Vector6 v = randomVector(random, 10, 1);
+    EXPECT_LT((vectorOf(poseOf(v)) - v).norm(), 1e-12);
+  }
+}
+
+TEST(PoseGraph, measurementsThatAgreeGiveThePosesFromWhereverTheyBegin) {
+  std::mt19937 random(2);
+  const auto truth = ring(40);
+  std::vector<PoseEdge> edges;
+  for (std::size_t i = 1; i < truth.size(); ++i) edges.push_back(edgeOf(truth, i - 1, i));
+  edges.push_back(edgeOf(truth, truth.size() - 1, 0));
+  edges.push_back(edgeOf(truth, 25, 3));
+  auto poses = truth;
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    poses[i] = poses[i] * poseOf(randomVector(random, 1, 0.2));
+  optimize(poses, edges);
+  EXPECT_LT(largestError(poses, truth), 1e-4);
+}
+
+TEST(PoseGraph, aClosedLoopSpreadsItsErrorOverTheWay) {
+  const auto truth = ring(40);
+  std::vector<PoseEdge> edges;
+  std::vector<Eigen::Isometry3d> poses = {truth[0]};
+  Vector6 bias;
+  bias << 0.03, 0, 0, 0, 0, 0.01;
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    edges.push_back(edgeOf(truth, i - 1, i));
+    edges.back().T_a_b = edges.back().T_a_b * poseOf(bias);
+    poses.push_back(poses.back() * edges.back().T_a_b);
+  }
+  const double before = largestError(poses, truth);
+  edges.push_back(edgeOf(truth, truth.size() - 1, 0));
+  optimize(poses, edges);
+  EXPECT_GT(before, 5);
+  EXPECT_LT(largestError(poses, truth), 0.25 * before);
+}
+
+TEST(PoseGraph, aLoopThatIsNoneIsOutvoted) {
+  const auto truth = ring(40);
+  std::vector<PoseEdge> edges;
+  for (std::size_t i = 1; i < truth.size(); ++i) edges.push_back(edgeOf(truth, i - 1, i));
+  for (const std::size_t i : {35, 37, 39}) {
+    edges.push_back(edgeOf(truth, i, i - 35));
+    edges.back().isDoubtful = true;
+  }
+  PoseEdge wrong = edgeOf(truth, 5, 20);
+  wrong.T_a_b.translation() += Eigen::Vector3d(20, 10, 5);
+  for (const bool doubtful : {true, false}) {
+    wrong.isDoubtful = doubtful;
+    auto all = edges;
+    all.push_back(wrong);
+    auto result = truth;
+    optimize(result, all);
+    EXPECT_EQ(largestError(result, truth) < 0.1, doubtful) << largestError(result, truth);
+  }
+}
+
+TEST(PoseGraph, refusesEdgesOfPosesThatAreNotThere) {
+  std::vector<Eigen::Isometry3d> poses = ring(3);
+  EXPECT_THROW(optimize(poses, {edgeOf(ring(4), 0, 3)}), std::invalid_argument);
+}

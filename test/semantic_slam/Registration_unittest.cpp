@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+#include <semantic_slam/Registration.h>
+#include <semantic_types/ClassTableFile.h>
+
+#include <random>
+
+#include "DataSets.h"
+#include "SharedData.h"
+
+using namespace semantic_slam;
+
+namespace {
+
+/** Meters and degrees of what is left. */
+struct Errors {
+  double meters = 0, degrees = 0;
+  double worstMeters = 0;
+};
+
+/** Each scan but the first few is put up to 1 m and 3 degrees beside its pose, and registered to
+ * the five before it. */
+Errors registeredBack(const std::vector<LabeledFrame>& frames, bool useClasses) {
+  std::mt19937 random(4);
+  const auto uniform = [&random] { return static_cast<double>(random()) / 2147483648.0 - 1; };
+  Errors errors;
+  const int first = 3;
+  for (int i = first; i < static_cast<int>(frames.size()); ++i) {
+    std::vector<Submap> submaps;
+    for (const double cellSize : {2.0, 1.0, 0.5}) {
+      submaps.emplace_back(cellSize, useClasses);
+      for (int j = std::max(0, i - 5); j < i; ++j)
+        submaps.back().add(frames[j].cloud,
+                           frames[i].T_map_sensor.inverse() * frames[j].T_map_sensor);
+      submaps.back().finish();
+    }
+    Vector6 offset;
+    offset << uniform(), uniform(), 0.2 * uniform(), 0.01 * uniform(), 0.01 * uniform(),
+        0.05 * uniform();
+    const Registration r = registerScan({&submaps[0], &submaps[1], &submaps[2]},
+                                        thinned(frames[i].cloud, 0.5, 40), poseOf(offset));
+    const Vector6 left = vectorOf(r.T_submap_scan);
+    errors.meters += left.head<3>().norm();
+    errors.worstMeters = std::max(errors.worstMeters, left.head<3>().norm());
+    errors.degrees += left.tail<3>().norm() * 180 / M_PI;
+  }
+  const double n = static_cast<double>(frames.size()) - first;
+  return {errors.meters / n, errors.degrees / n, errors.worstMeters};
+}
+
+class RegisteredStreet : public testing::TestWithParam<const char*> {};
+
+}  // namespace
+
+TEST_P(RegisteredStreet, scansComeBackToTheirPoses) {
+  const std::string sequence = std::string("semantic_kitti/") + GetParam();
+  SKIP_WITHOUT_DATA(sequence);
+  const auto table = semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
+                                                    "config/classes/semantic_kitti.yaml");
+  const auto frames = readSemanticKitti(sharedDataDir() / sequence, table);
+  for (const bool useClasses : {false, true}) {
+    const Errors e = registeredBack(frames, useClasses);
+    EXPECT_LT(e.meters, 0.1) << useClasses;
+    EXPECT_LT(e.worstMeters, 0.2) << useClasses;
+    EXPECT_LT(e.degrees, 0.2) << useClasses;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sequences, RegisteredStreet, testing::Values("00", "07"));
+
+TEST(Registration, ofASurfaceThatOnlyClassesMakeUnique) {
+  // A plane with stripes: along them nothing tells where the scan was, across them classes do.
+  std::mt19937 random(1);
+  const auto plane = [&random] {
+    LabeledCloud cloud;
+    for (int i = 0; i < 20000; ++i) {
+      const float x = static_cast<float>(random() % 20000) / 1000 - 10,
+                  y = static_cast<float>(random() % 20000) / 1000 - 10;
+      cloud.points.emplace_back(x, y, 0.f);
+      cloud.classes.push_back(static_cast<semantic_types::ClassId>(
+          1 + static_cast<int>(std::floor((x + 100) / 2.3f)) % 2));
+    }
+    return cloud;
+  };
+  const LabeledCloud map = plane(), scan = plane();
+  for (const bool useClasses : {false, true}) {
+    Submap submap(0.5, useClasses);
+    submap.add(map, Eigen::Isometry3d::Identity());
+    submap.finish();
+    Vector6 offset = Vector6::Zero();
+    offset[0] = 0.4;
+    offset[2] = 0.2;
+    const Vector6 left =
+        vectorOf(registerScan({&submap}, thinned(scan, 0.2, 100), poseOf(offset)).T_submap_scan);
+    EXPECT_LT(std::abs(left[2]), 0.01);
+    EXPECT_EQ(std::abs(left[0]) < 0.1, useClasses) << left.transpose();
+  }
+}

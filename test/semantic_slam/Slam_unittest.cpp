@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+#include <semantic_octree/KeyframeMap.h>
+#include <semantic_slam/Slam.h>
+#include <synthetic_world/Drive.h>
+#include <synthetic_world/Lidar.h>
+
+#include <cmath>
+#include <random>
+
+using namespace semantic_slam;
+
+namespace {
+
+struct Recording {
+  std::vector<LabeledCloud> clouds;
+  std::vector<Eigen::Isometry3d> truth, odometry;
+};
+
+/** A LiDAR around a scene and some meters more; odometry that is 1 % too long, and turns 0.1
+ * degrees a meter too far, with as much noise beside. */
+Recording recordingOf(const std::string& scene, std::uint64_t seed, double labelNoise,
+                      double meters = 1e9) {
+  const synthetic_world::Scene place = synthetic_world::makeScene(scene, seed);
+  const synthetic_world::Drive drive(place, 1);
+  synthetic_world::LidarOptions lidar;
+  lidar.rings = 32;
+  lidar.columns = 360;
+  lidar.maxRange = 50;
+  lidar.noise.range = 0.02;
+  lidar.noise.label = labelNoise;
+  std::mt19937 random(static_cast<unsigned>(seed));
+  const auto uniform = [&random] { return static_cast<double>(random()) / 2147483648.0 - 1; };
+  const Eigen::Isometry3d T_robot_lidar(Eigen::Translation3d(0, 0, 1.8));
+  Recording r;
+  for (double s = 0; s < std::min(meters, place.route.length() + 15); s += 1) {
+    const Eigen::Isometry3d T = drive.T_world_robot(s);
+    r.clouds.push_back(scanLidar(place.world, T * T_robot_lidar, lidar, {seed, r.truth.size()}));
+    if (r.truth.empty()) {
+      r.odometry.push_back(T);
+    } else {
+      Vector6 motion = vectorOf(r.truth.back().inverse() * T);
+      const double way = motion.head<3>().norm(), angle = 0.1 * M_PI / 180 * way;
+      motion.head<3>() *= 1.01 + 0.01 * uniform();
+      motion[5] += angle * (1 + uniform());
+      for (int axis : {3, 4}) motion[axis] += 0.2 * angle * uniform();
+      r.odometry.push_back(r.odometry.back() * poseOf(motion));
+    }
+    r.truth.push_back(T);
+  }
+  return r;
+}
+
+const Eigen::Isometry3d kRobotLidar(Eigen::Translation3d(0, 0, 1.8));
+
+/** What SLAM makes of a recording, and a map that follows it. */
+struct Mapped {
+  Slam slam;
+  semantic_octree::SemanticOcTree map{0.4, synthetic_world::classTable()};
+  semantic_octree::KeyframeMap keyframes{map};
+  std::vector<std::size_t> scanOf;  ///< each keyframe's first
+
+  Mapped(const Recording& r, const SlamOptions& options) : slam(options) {
+    for (std::size_t i = 0; i < r.clouds.size(); ++i) add(r, i);
+  }
+  double errorOf(const Recording& r, std::size_t keyframe) const {
+    const Eigen::Vector3d truth = r.truth[scanOf[keyframe]].translation();
+    return (slam.poses()[keyframe].translation() - truth).norm();
+  }
+  double rootMeanSquareError(const Recording& r) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < scanOf.size(); ++k) sum += errorOf(r, k) * errorOf(r, k);
+    return std::sqrt(sum / static_cast<double>(scanOf.size()));
+  }
+
+ private:
+  void add(const Recording& r, std::size_t i) {
+    const Slam::Added added = slam.add(r.clouds[i], kRobotLidar, r.odometry[i]);
+    if (added.isNew) {
+      keyframes.begin(slam.poses().back());
+      scanOf.push_back(i);
+    }
+    keyframes.insert(r.clouds[i], added.T_keyframe_robot * kRobotLidar, insertion());
+    if (added.loopClosed) keyframes.move(semantic_slam::posesOf(slam));
+  }
+  static semantic_octree::InsertionOptions insertion() {
+    semantic_octree::InsertionOptions options;
+    options.maxRange = 20;
+    return options;
+  }
+};
+
+}  // namespace
+
+TEST(Slam, closesTheLoopOfAParkAndTheMapFollows) {
+  const Recording r = recordingOf("park", 1, 0.1);
+  const Mapped run(r, {});
+  const double odometryError =
+      (r.odometry.back().translation() - r.truth.back().translation()).norm();
+  EXPECT_GT(odometryError, 5);
+  EXPECT_GT(run.slam.numLoops(), 0u);
+  EXPECT_LT(run.errorOf(r, run.scanOf.size() - 1), 0.3);
+  EXPECT_LT(run.rootMeanSquareError(r), 0.3);
+  semantic_octree::SemanticOcTree map(0.4, synthetic_world::classTable());
+  semantic_octree::KeyframeMap keyframes(map);
+  for (std::size_t k = 0; k < run.scanOf.size(); ++k) {
+    keyframes.begin(run.slam.poses()[k]);
+    ASSERT_EQ(run.scanOf[k], k) << "each scan is a keyframe";
+    semantic_octree::InsertionOptions options;
+    options.maxRange = 20;
+    keyframes.insert(r.clouds[k], kRobotLidar, options);
+  }
+  EXPECT_TRUE(run.map == map);
+}
+
+TEST(Slam, closesTheLoopOfAVillageWithoutLabels) {
+  Recording r = recordingOf("village", 2, 0);
+  SlamOptions options;
+  options.useClasses = false;
+  Slam slam(options);
+  for (LabeledCloud& cloud : r.clouds) cloud.classes.clear();
+  for (std::size_t i = 0; i < r.clouds.size(); ++i)
+    slam.add(r.clouds[i], kRobotLidar, r.odometry[i]);
+  ASSERT_EQ(slam.poses().size(), r.truth.size());
+  EXPECT_GT(slam.numLoops(), 0u);
+  EXPECT_LT((slam.poses().back().translation() - r.truth.back().translation()).norm(), 0.3);
+}
+
+TEST(Slam, scansBetweenKeyframesAreWhereOdometryHasThem) {
+  const Recording r = recordingOf("park", 1, 0, 12);
+  SlamOptions options;
+  options.keyframeDistance = 2.5;
+  options.keyframeAngle = 90;
+  Slam slam(options);
+  for (std::size_t i = 0; i < 12; ++i) {
+    const Slam::Added added = slam.add(r.clouds[i], kRobotLidar, r.odometry[i]);
+    EXPECT_EQ(added.isNew, i % 3 == 0);
+    EXPECT_EQ(added.keyframe, i / 3);
+    const Eigen::Isometry3d T = r.odometry[i - i % 3].inverse() * r.odometry[i];
+    EXPECT_LT(vectorOf(added.T_keyframe_robot.inverse() * T).norm(), 1e-9);
+  }
+}
+
+TEST(Slam, refusesBadOptions) {
+  SlamOptions options;
+  options.cubeSize = 0;
+  EXPECT_THROW(Slam slam(options), std::invalid_argument);
+}
+
+TEST(Slam, scansThatFitNothingAreWhereOdometryHasThem) {
+  std::mt19937 random(1);
+  Slam slam({});
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  for (int i = 0; i < 5; ++i, T.translation().x() += 2) {
+    LabeledCloud noise;  // everywhere, each time elsewhere
+    for (int n = 0; n < 30; ++n)
+      noise.points.emplace_back(random() % 40 - 20.f, random() % 40 - 20.f, random() % 9 - 4.f);
+    const Slam::Added added = slam.add(noise, Eigen::Isometry3d::Identity(), T);
+    EXPECT_TRUE(added.isNew);
+    EXPECT_LT((slam.poses().back().translation() - T.translation()).norm(), 1e-9);
+  }
+  EXPECT_EQ(slam.numLost(), 4u);
+  slam.add({}, Eigen::Isometry3d::Identity(), T);  // nor does one without a point do harm
+  EXPECT_EQ(slam.numLost(), 5u);
+}

@@ -1,0 +1,55 @@
+#include <gtest/gtest.h>
+#include <strict_files/ScratchFile.h>
+
+#include <string>
+
+#include "TemporaryFolder.h"
+
+namespace fs = std::filesystem;
+using strict_files::ScratchFile;
+
+namespace {
+
+std::string readAt(const ScratchFile& file, std::uint64_t place, std::size_t size) {
+  std::string bytes(size, '\0');
+  file.read(place, bytes.data(), size);
+  return bytes;
+}
+
+}  // namespace
+
+TEST(ScratchFile, givesBackWhatWasWrittenAndLeavesNothingBehind) {
+  const TemporaryFolder folder;
+  {
+    ScratchFile file(folder.path());
+    const std::string first(100000, 'a'), second(300, 'b');
+    const auto a = file.append(first.data(), first.size());
+    const auto b = file.append(second.data(), second.size());
+    EXPECT_EQ(readAt(file, a, first.size()), first);
+    file.discard(a, first.size());
+    EXPECT_EQ(readAt(file, b, second.size()), second);
+    const auto c = file.append(first.data(), 10);
+    EXPECT_EQ(readAt(file, b, 310), second + first.substr(0, 10));
+    EXPECT_EQ(c, first.size() + second.size());
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(ScratchFile, saysWhereItCannotBe) {
+  const TemporaryFolder folder;
+  const fs::path absent = folder.path() / "absent";
+  try {
+    ScratchFile file(absent);
+    FAIL() << "no error";
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find(absent.string()), std::string::npos) << e.what();
+  }
+}
+
+TEST(ScratchFile, doesNotReadBeyondItsEnd) {
+  const TemporaryFolder folder;
+  ScratchFile file(folder.path());
+  file.append("abc", 3);
+  char bytes[10];
+  EXPECT_THROW(file.read(0, bytes, 10), std::runtime_error);
+}
