@@ -36,6 +36,14 @@ World open() {
                synthetic_world::GroundCover(kHalf, synthetic_world::kGrass), {});
 }
 
+/** The greatest speed with which it touched something, m/s; 0: it did not. */
+double contactSpeed(const DriveRecord& record) {
+  double greatest = 0;
+  for (const DriveRow& row : record.rows)
+    if (row.clearance <= 0) greatest = std::max(greatest, std::abs(row.speed));
+  return greatest;
+}
+
 /** When the robot passes x = `at` ahead. */
 const DriveRow& passing(const DriveRecord& record, double at) {
   return *std::find_if(record.rows.begin(), record.rows.end(), [at](const DriveRow& r) {
@@ -84,6 +92,28 @@ TEST(Drives, GetPastAPersonWhoWalksOntoTheWay) {
   const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0}, events);
   EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
   EXPECT_EQ(record.collisions, 0);
+}
+
+TEST(Drives, AreAtRestWhereSomebodyWalksIntoTheirSide) {
+  World world = plain();
+  const TPose2D start(-8, 0, 0), goal(8, 0, 0);
+  DriveConfig careless = smallConfig(), careful = smallConfig();
+  careless.movers.classes = "";
+  const DriveRow row = passing(drive(world, start, goal, {}, careful), -1);
+  for (const double speed : {0.7, 1.8}) {
+    SCOPED_TRACE(speed);
+    const double side = row.pose.y < 1 ? 1 : -1, far = speed * 3.5;  // m
+    const auto at = [&](double y) {
+      const auto p = row.pose.composePoint({0.3, side * y});
+      return Eigen::Vector2d(p.x, p.y);
+    };
+    Events events;  // through its side, and away
+    events.persons.push_back({row.time - 3.5, row.time + 4, at(far), at(-far), speed});
+    EXPECT_GT(contactSpeed(drive(world, start, goal, events, careless)), 0.3);
+    const DriveRecord record = drive(world, start, goal, events, careful);
+    EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+    EXPECT_LE(contactSpeed(record), 0.1);
+  }
 }
 
 TEST(Drives, GetAroundAPersonWhoStepsInFrontAndStays) {

@@ -130,6 +130,7 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     sections.readAll("frontiers", config.guide.frontiers);
     sections.readAll("recovery", config.guide.recovery);
     sections.readAll("obstacles", config.obstacles);
+    sections.readAll("movers", config.movers);
     sections.refuseOthers();
     return config;
   } catch (const std::exception& e) {

@@ -42,6 +42,7 @@ class PathTracker {
   bool isFree(const mrpt::math::TPose2D& relative, const ObstaclePoints& obstacles,
               double margin) const;
   const DriveOptions& options() const { return m_options; }
+  const semantic_planning::Footprint& footprint() const { return m_footprint; }
 
  private:
   double curvatureAt(double s) const;
