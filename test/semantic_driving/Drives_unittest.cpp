@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <synthetic_world/Scene.h>
 
 #include <algorithm>
 #include <cmath>
@@ -146,6 +147,28 @@ TEST(Drives, LeaveAPersonToTheReactiveNavigatorWithoutANewPlan) {
   EXPECT_TRUE(std::any_of(record.rows.begin(), record.rows.end(), [](const DriveRow& row) {
     return row.driver == DriveController::Driver::Reactive;
   }));
+}
+
+TEST(Drives, AreSteeredByMrptsNavigatorOnTheSameClassesIfItIsAskedAlways) {
+  auto scene = synthetic_world::makeScene("village", 1);
+  const TPose2D start(-14, -19, 0.17), goal(25, -12, M_PI / 2);
+  DriveConfig config = smallConfig();
+  const DriveRecord tracked = drive(scene.world, start, goal, {}, config);
+  config.drive.alwaysReactive = true;
+  config.drive.exactEnd = 1;
+  const DriveRecord record = drive(scene.world, start, goal, {}, config);
+  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+  EXPECT_EQ(record.collisions, 0);
+  double forward = 0, reactive = 0;
+  for (const DriveRow& row : record.rows) {
+    forward += std::max(0.0, row.speed);
+    if (row.driver == DriveController::Driver::Reactive) reactive += std::max(0.0, row.speed);
+  }
+  EXPECT_GE(reactive, 0.9 * forward);
+  const auto order = syntheticOrder();
+  constexpr double kVoxel = 0.2;  // m: lengths are no better known
+  EXPECT_LE(badLength(record.drivenPerClass, order),
+            1.05 * badLength(tracked.drivenPerClass, order) + kVoxel);
 }
 
 TEST(Drives, TakeAnotherWayWhenTheRoadIsBlocked) {

@@ -108,7 +108,8 @@ DriveCommand DriveController::driveReactively(const DriveState& state,
   }
   const double curve = std::sqrt(m_tracker.options().maxSideAcceleration *
                                  std::abs(c.speed / std::max(1e-6, std::abs(c.turn))));
-  const double speed = std::min({c.speed, speedLimit, curve});
+  const double onPath = m_tracker.speedBefore(m_tracker.options().lookAhead, speedLimit);
+  const double speed = std::min({c.speed, onPath, curve});
   if (c.speed > 0) c.turn *= speed / c.speed;
   c.speed = speed;
   return c;
