@@ -6,6 +6,7 @@
 #include <labeled_cloud/ScanStream.h>
 #include <map_pictures/MapPictures.h>
 #include <semantic_driving/DriveGuide.h>
+#include <semantic_driving/Movers.h>
 #include <semantic_driving/ObstacleSensing.h>
 #include <semantic_map/ExportGrid.h>
 #include <semantic_map/MapOptions.h>
@@ -126,6 +127,7 @@ std::vector<OptionTable> drivingTables() {
       table<FrontierOptions>("Exploring", "`[frontiers]`."),
       table<RecoveryOptions>("Recovery from where the robot must not be", "`[recovery]`."),
       table<ObstacleOptions>("Obstacles", "`[obstacles]`."),
+      table<MoverOptions>("Those who move", "`[movers]`."),
       table<SensorConfig>("Simulated sensors", "`[sensors]`; `[camera]` and `[lidar]` are above."),
       table<PoseOptions>("Simulated odometry, and how it is corrected", "`[pose]`."),
   };

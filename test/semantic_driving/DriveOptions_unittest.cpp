@@ -141,5 +141,7 @@ TEST(DriveOptions, SaysWhatIsWrongInAConfiguration) {
   EXPECT_NE(faultOf("[frontier]\nradius = 3\n").find("did you mean 'frontiers'"),
             std::string::npos);
   EXPECT_NE(faultOf("[guide]\nrest_braking = 1\n").find("rest_braking is 1"), std::string::npos);
+  EXPECT_NE(faultOf("[movers]\nclasses = ghost\n").find("ini: MoverOptions: 'ghost' is no class"),
+            std::string::npos);
   EXPECT_NE(faultOf("[sensors]\ncamera = no\nlidar = no\n").find("both off"), std::string::npos);
 }

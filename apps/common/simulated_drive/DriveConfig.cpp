@@ -5,6 +5,7 @@
 #include <strict_files/ErrorMessage.h>
 #include <strict_files/IniSection.h>
 #include <strict_files/TextFile.h>
+#include <synthetic_world/Classes.h>
 
 #include <fstream>
 #include <stdexcept>
@@ -130,6 +131,8 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     sections.readAll("frontiers", config.guide.frontiers);
     sections.readAll("recovery", config.guide.recovery);
     sections.readAll("obstacles", config.obstacles);
+    sections.readAll("movers", config.movers);
+    const semantic_driving::MoverTracker known(config.movers, synthetic_world::classTable());
     sections.refuseOthers();
     return config;
   } catch (const std::exception& e) {

@@ -36,6 +36,7 @@ struct DriveConfig {
   semantic_driving::DriveOptions drive;
   semantic_driving::GuideOptions guide;
   semantic_driving::ObstacleOptions obstacles;
+  semantic_driving::MoverOptions movers;
   bool compressedObstacles = false;  ///< the compressed tree's leaves are obstacles
   double controlPeriod = 0.1;        ///< s
   double timeLimit = 600;            ///< s of simulated time

@@ -90,6 +90,7 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_mapper(mapperOf(config, order, std::move(map))),
       m_guide(std::make_unique<DriveGuide>(config.guide, m_mapper->planner(), goal)),
       m_controller(config.drive, reactiveOf(config, navlogs)),
+      m_movers(config.movers, synthetic_world::classTable()),
       m_robot(start, config.drive, config.turnAcceleration),
       m_pose(start, config.pose, config.sensors.seed),
       m_state(m_robot.state()),
@@ -148,6 +149,10 @@ void DriveLoop::sense() {
   note("simulate", watch.lap());
   localize(seen);
   for (const auto& [stage, ms] : m_mapper->insert(seen, T_map_robot())) note(stage, ms);
+  Stopwatch following(measuring::TimeOf::Thread);
+  for (const Observation& o : seen) m_movers.see(o.cloud, T_map_robot() * o.T_robot_sensor);
+  m_movers.update(m_time);
+  note("movers", following.lap());
   m_sensedAt = m_time;
   for (DriveObserver* o : m_observers) o->onSensed(*this, seen);
 }
@@ -175,7 +180,8 @@ void DriveLoop::drive() {
   const auto obstacles =
       m_mapper->obstacles(state().pose, groundZ(), m_guide->obstacles(m_config.obstacles));
   note("obstacles", watch.lap());
-  const DriveCommand command = m_controller.step(state(), obstacles, m_time - m_sensedAt, m_time);
+  const DriveCommand command =
+      m_controller.step(state(), obstacles, m_time - m_sensedAt, m_time, m_movers.at(m_time));
   note("react", watch.lap());
   addRow();
   move(command);

@@ -83,6 +83,7 @@ class DriveLoop {
   std::unique_ptr<Mapper> m_mapper;
   std::unique_ptr<semantic_driving::DriveGuide> m_guide;
   semantic_driving::DriveController m_controller;
+  semantic_driving::MoverTracker m_movers;
   SimulatedRobot m_robot;
   PoseFilter m_pose;
   semantic_driving::DriveState m_state;

@@ -1,4 +1,5 @@
 #include <semantic_driving/DriveController.h>
+#include <semantic_driving/Separation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -41,24 +42,20 @@ void DriveController::setPath(DrivePath path) {
 }
 
 DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints& obstacles,
-                                   double sensorAge, double seconds) {
+                                   double sensorAge, double seconds, const Movers& movers) {
   m_track.add(state.pose);
   m_tracker.locate(state);
   const double limit = m_tracker.options().speedFor(sensorAge);
   const bool reactive = seconds >= m_reactiveAgain && wantsReactive(state, obstacles);
   m_driver = reactive ? Driver::Reactive : Driver::Tracker;
   if (!reactive) m_reactiveFrom = -1;
-  const DriveCommand wanted = reactive ? driveReactively(state, obstacles, limit, seconds)
-                                       : m_tracker.command(state, obstacles, limit);
+  const DriveCommand wanted =
+      besideMovers(state,
+                   reactive ? driveReactively(state, obstacles, limit, seconds)
+                            : m_tracker.command(state, obstacles, limit),
+                   movers);
   const double since = seconds - std::exchange(m_steppedAt, seconds).value_or(seconds);
-  const auto moved = [&](const DriveCommand& command) {
-    return next(m_motion, command, state.speed, since, m_tracker.options());
-  };
-  const Motion motion = moved(wanted);
-  Motion later = motion;
-  later.speed = wanted.speed;
-  const bool safe = isSafe(motion, wanted, obstacles) && isSafe(later, wanted, obstacles);
-  m_motion = safe ? motion : moved({});
+  m_motion = safeMotion(state, wanted, obstacles, since);
   if (std::abs(m_motion.speed) > m_tracker.options().movingSpeed || m_tracker.finished())
     m_movedAt = seconds;
   return m_motion.command();
@@ -111,10 +108,54 @@ DriveCommand DriveController::driveReactively(const DriveState& state,
   }
   const double curve = std::sqrt(m_tracker.options().maxSideAcceleration *
                                  std::abs(c.speed / std::max(1e-6, std::abs(c.turn))));
-  const double speed = std::min({c.speed, speedLimit, curve});
+  const double onPath = m_tracker.speedBefore(m_tracker.options().lookAhead, speedLimit);
+  const double speed = std::min({c.speed, onPath, curve});
   if (c.speed > 0) c.turn *= speed / c.speed;
   c.speed = speed;
   return c;
+}
+
+/** Where it is after some meters: beside its path as now, or on the arc that MRPT chose. */
+std::function<TPose2D(double)> DriveController::wayAhead(const DriveState& state,
+                                                         const DriveCommand& wanted) const {
+  if (m_driver == Driver::Reactive)
+    return [=](double way) { return after(state.pose, wanted, way / std::abs(wanted.speed)); };
+  const DrivePath& path = m_tracker.path();
+  const double here = m_tracker.progress(), end = path.stretchEnd(here);
+  const PathPoint p = path.at(here);
+  const double dx = state.pose.x - p.x, dy = state.pose.y - p.y;
+  return [&path, here, end, dx, dy](double way) {
+    const TPose2D pose = poseOf(path.at(std::min(here + way, end)));
+    return TPose2D(pose.x + dx, pose.y + dy, pose.phi);
+  };
+}
+
+DriveCommand DriveController::besideMovers(const DriveState& state, DriveCommand wanted,
+                                           const Movers& movers) const {
+  if (wanted.speed == 0 || movers.empty()) return wanted;
+  const double forward = std::copysign(1.0, wanted.speed), speed = std::abs(wanted.speed);
+  const double most = separationSpeed(wayAhead(state, wanted), std::max(0.0, forward * state.speed),
+                                      forward * m_motion.acceleration, speed, movers,
+                                      m_tracker.footprint(), m_tracker.options());
+  wanted.speed *= most / speed;
+  wanted.turn *= most / speed;
+  return wanted;
+}
+
+/** As it is wanted; or slowly, so that the steering gets there before it is where it must not be;
+ * or a stop. \param since seconds since the last motion */
+Motion DriveController::safeMotion(const DriveState& state, const DriveCommand& wanted,
+                                   const ObstaclePoints& obstacles, double since) const {
+  const DriveOptions& options = m_tracker.options();
+  const double slow = std::min(1.0, options.slowest / std::max(1e-9, std::abs(wanted.speed)));
+  for (const double share : {1.0, slow}) {
+    const DriveCommand command{share * wanted.speed, share * wanted.turn};
+    const Motion motion = next(m_motion, command, state.speed, since, options);
+    Motion later = motion;
+    later.speed = command.speed;
+    if (isSafe(motion, command, obstacles) && isSafe(later, command, obstacles)) return motion;
+  }
+  return next(m_motion, {}, state.speed, since, options);
 }
 
 /** Whether it could still stop, if it does so after its time of reaction: the steering turns as it

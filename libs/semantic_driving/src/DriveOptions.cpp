@@ -25,6 +25,14 @@ void describeReactive(DriveOptions& o, OptionList& list) {
            "until MRPT's navigator is asked again after it found no way");
 }
 
+void describeSeparation(DriveOptions& o, OptionList& list) {
+  list.add("mover_margin", o.moverMargin, "m", atLeast(0), "kept from those who walk");
+  list.add("mover_spread", o.moverSpread, "m", atLeast(0),
+           "and at most so much more for what is not known of how they do");
+  list.add("mover_linger", o.moverLinger, "s", atLeast(0),
+           "so long it would not stand where they walk");
+}
+
 void describeTracker(DriveOptions& o, OptionList& list) {
   list.add("braking_share", o.brakingShare, "", {0, 1, false},
            "of the acceleration, that stops are planned with");
@@ -69,6 +77,7 @@ void DriveOptions::describe(OptionList& list) {
            "older observations make the vehicle slow down, and stop when three times as old");
   list.add("reaction_time", reactionTime, "s", atLeast(0), "until a command has an effect");
   list.add("moving_speed", movingSpeed, "m/s", atLeast(0), "a slower vehicle does not get on");
+  describeSeparation(*this, list);
   describeReactive(*this, list);
   describeTracker(*this, list);
 }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "GoalRegion.h"
 #include "GroundFlood.h"
+#include "WayLeft.h"
 
 namespace semantic_driving {
 
@@ -20,18 +22,22 @@ namespace {
 class FrontierSearch {
  public:
   FrontierSearch(const SemanticPlanner& planner, const GroundFlood& flood, const GoalRegion& region,
-                 const FrontierOptions& options)
-      : m_ground(planner.ground()), m_flood(flood), m_region(region), m_options(options) {}
+                 const WayLeft& wayLeft, const FrontierOptions& options)
+      : m_ground(planner.ground()),
+        m_flood(flood),
+        m_region(region),
+        m_wayLeft(wayLeft),
+        m_options(options) {}
 
-  std::vector<Frontier> all(const TPose2D& goal) const {
+  std::vector<Frontier> all() const {
     std::vector<Frontier> found;
     m_flood.forEach([&](Column c, const GroundFlood::Place& place) {
-      if ((c.x + c.y) % 2 != 0 || !seesUnknown(c, place.z)) return;
-      const double x = m_ground.centerOf(c.x), y = m_ground.centerOf(c.y);
-      const double left = std::hypot(goal.x - x, goal.y - y);
-      found.push_back({{x, y, headingAt(c)},
+      if ((c.x + c.y) % 2 != 0) return;
+      const double left = leftFrom(c, place.z);
+      if (!std::isfinite(left)) return;
+      found.push_back({{m_ground.centerOf(c.x), m_ground.centerOf(c.y), headingAt(c)},
                        m_ground.centerOf(place.z),
-                       place.cost + m_options.unknownFactor * left});
+                       place.cost + left});
     });
     std::sort(found.begin(), found.end(),
               [](const Frontier& a, const Frontier& b) { return a.cost < b.cost; });
@@ -41,7 +47,7 @@ class FrontierSearch {
  private:
   bool isUnknown(Column c, int z) const {
     if (!m_ground.surfaces(c).empty()) return false;
-    for (int k = z - 1; k <= z + 2; ++k)
+    for (int k = z - 1; k <= z; ++k)
       if (m_ground.map().search(octomap::OcTreeKey(static_cast<octomap::key_type>(c.x),
                                                    static_cast<octomap::key_type>(c.y),
                                                    static_cast<octomap::key_type>(k))))
@@ -49,18 +55,25 @@ class FrontierSearch {
     return true;
   }
 
-  /** Of the goal's region, in one of eight directions. */
-  bool seesUnknown(Column c, int z) const {
+  /** The least way on to the goal by the unknown of its region that is seen from there, in one of
+   * eight directions; infinite: there is none. */
+  double leftFrom(Column c, int z) const {
+    double least = std::numeric_limits<double>::infinity();
     const int far = static_cast<int>(std::lround(m_options.sight / m_ground.voxelSize()));
-    return std::any_of(kNeighbors.begin(), kNeighbors.end(), [&](const Column& d) {
+    for (const Column& d : kNeighbors)
       for (int i = 1; i <= far; ++i) {
         const Column there{c.x + i * d.x, c.y + i * d.y};
-        if (!m_flood.square().contains(there)) return true;
-        if (m_region.isObstacle(there)) return false;
-        if (i > 1 && m_region.contains(there) && isUnknown(there, z)) return true;
+        const double step = m_options.unknownFactor * m_ground.voxelSize() * std::hypot(d.x, d.y);
+        if (!m_flood.square().contains(there)) {
+          least = std::min(least, (i - 1) * step + m_wayLeft.from({there.x - d.x, there.y - d.y}));
+          break;
+        }
+        if (m_region.isObstacle(there)) break;
+        if (i == 1 || !m_region.contains(there) || !isUnknown(there, z)) continue;
+        least = std::min(least, i * step + m_wayLeft.from(there));
+        break;
       }
-      return false;
-    });
+    return least;
   }
 
   double headingAt(Column c) const {
@@ -73,6 +86,7 @@ class FrontierSearch {
   const Ground& m_ground;
   const GroundFlood& m_flood;
   const GoalRegion& m_region;
+  const WayLeft& m_wayLeft;
   const FrontierOptions& m_options;
 };
 
@@ -111,7 +125,8 @@ Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, d
   if (!region.isOpen()) found.goalArea = region.columns() * voxel * voxel;
   if (found.enclosed) return found;
   std::vector<Frontier>& chosen = found.frontiers;
-  for (const Frontier& f : FrontierSearch(planner, flood, region, options).all(goal)) {
+  const WayLeft wayLeft(planner, flood, region, goal, options);
+  for (const Frontier& f : FrontierSearch(planner, flood, region, wayLeft, options).all()) {
     const auto isNear = [&](const TPose2D& p) {
       return std::hypot(p.x - f.pose.x, p.y - f.pose.y) < options.apart;
     };

@@ -34,6 +34,8 @@ class GoalRegion {
   }
   /** Something is in the way. \param c in the square */
   bool isObstacle(semantic_planning::Column c) const { return m_obstacle[m_square.indexOf(c)]; }
+  /** So near to an obstacle that the vehicle cannot be there. \param c in the square */
+  bool isKept(semantic_planning::Column c) const { return m_kept[m_square.indexOf(c)]; }
   /** No reached column borders on the region: no way leads to the goal. */
   bool isEnclosed() const { return m_enclosed; }
   std::size_t columns() const { return m_columns; }

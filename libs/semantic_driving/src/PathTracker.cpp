@@ -94,7 +94,6 @@ double PathTracker::speedAt(double s) const {
                             m_options.maxSteeringRate / change}));
 }
 
-/** So that it brakes in time for all that is ahead. \param free meters without an obstacle */
 double PathTracker::speedBefore(double free, double limit) const {
   constexpr double kStep = 0.1;  // m
   const double braking = m_options.braking();

@@ -1,15 +1,19 @@
 #pragma once
 #include <semantic_driving/DrivenTrack.h>
 #include <semantic_driving/Motion.h>
+#include <semantic_driving/Movers.h>
 #include <semantic_driving/PathTracker.h>
 #include <semantic_driving/ReactiveNavigator.h>
+
+#include <functional>
 
 namespace semantic_driving {
 
 /** Drives a path: MRPT's reactive navigator where that can (forward, and not to an exact pose), the
  * tracker where the path goes backwards, shunts or ends. Whatever either of them wants, the vehicle
- * does not go where it could not stop before an obstacle, and changes neither its acceleration nor
- * its steering faster than DriveOptions say. */
+ * does not go where it could not stop before an obstacle, lets those who move pass
+ * (separationSpeed()), and changes neither its acceleration nor its steering faster than
+ * DriveOptions say. */
 class DriveController {
  public:
   /** \throw std::exception bad options, or what the reactive navigator does not like. */
@@ -23,9 +27,10 @@ class DriveController {
   /** Where the vehicle was at each step(). */
   const DrivenTrack& track() const { return m_track; }
 
-  /** \param sensorAge seconds since the last observation \param seconds the time */
+  /** \param sensorAge seconds since the last observation \param seconds the time
+   * \param movers where they are now, map frame */
   DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double sensorAge,
-                    double seconds);
+                    double seconds, const Movers& movers = {});
 
   enum class Driver { Tracker, Reactive };
   Driver driver() const { return m_driver; }
@@ -39,6 +44,12 @@ class DriveController {
               const ObstaclePoints& obstacles) const;
   DriveCommand driveReactively(const DriveState& state, const ObstaclePoints& obstacles,
                                double speedLimit, double seconds);
+  std::function<mrpt::math::TPose2D(double)> wayAhead(const DriveState& state,
+                                                      const DriveCommand& wanted) const;
+  DriveCommand besideMovers(const DriveState& state, DriveCommand wanted,
+                            const Movers& movers) const;
+  Motion safeMotion(const DriveState& state, const DriveCommand& wanted,
+                    const ObstaclePoints& obstacles, double since) const;
   bool isSafe(Motion motion, const DriveCommand& wanted, const ObstaclePoints& obstacles) const;
 
   PathTracker m_tracker;

@@ -57,6 +57,11 @@ struct DriveOptions {
   double reactionTime = 0.3;  ///< seconds until a command has an effect
   double movingSpeed = 0.05;  ///< m/s; a slower vehicle does not get on
 
+  /** Meters between the vehicle and those who walk, and at most so many more for what is not known
+   * of how they do; seconds for which they find it at rest where they do not walk. See
+   * separationSpeed(). */
+  double moverMargin = 0.25, moverSpread = 0.5, moverLinger = 1;
+
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;

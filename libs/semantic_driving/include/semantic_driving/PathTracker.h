@@ -34,6 +34,10 @@ class PathTracker {
   DriveCommand command(const DriveState& state, const ObstaclePoints& obstacles,
                        double speedLimit) const;
 
+  /** The highest speed up to a limit that brakes in time for curves, classes and the end of the
+   * stretch, m/s. \param free meters without an obstacle, if less than the look-ahead */
+  double speedBefore(double free, double limit) const;
+
   /** Whether a command brings the footprint's middle nearer to an obstacle that is within a margin
    * of the footprint. */
   bool approaches(const DriveCommand& command, const ObstaclePoints& obstacles,
@@ -42,11 +46,11 @@ class PathTracker {
   bool isFree(const mrpt::math::TPose2D& relative, const ObstaclePoints& obstacles,
               double margin) const;
   const DriveOptions& options() const { return m_options; }
+  const semantic_planning::Footprint& footprint() const { return m_footprint; }
 
  private:
   double curvatureAt(double s) const;
   double speedAt(double s) const;
-  double speedBefore(double free, double limit) const;
 
   DriveOptions m_options;
   semantic_planning::Footprint m_footprint;

@@ -1,0 +1,151 @@
+#include <semantic_driving/Movers.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+
+namespace semantic_driving {
+
+using Eigen::Vector2d;
+using semantic_types::ClassId;
+
+namespace {
+
+/** By class id. */
+std::vector<bool> classesIn(const std::string& names, const semantic_types::ClassTable& table) {
+  std::vector<bool> chosen(static_cast<std::size_t>(table.size()) + 1);
+  std::istringstream list(names);
+  for (std::string name; std::getline(list, name, ',');) {
+    name.erase(0, name.find_first_not_of(' '));
+    name.erase(name.find_last_not_of(' ') + 1);
+    const auto id = table.find(name);
+    if (!id) throw std::invalid_argument("MoverOptions: '" + name + "' is no class of the table");
+    chosen[*id] = true;
+  }
+  return chosen;
+}
+
+}  // namespace
+
+void MoverOptions::describe(strict_files::OptionList& list) {
+  using strict_files::above;
+  using strict_files::atLeast;
+  list.add("classes", classes, "", "of those who move, with commas between; empty: none");
+  list.add("radius", radius, "m", above(0), "how far from the sensor they are followed");
+  list.add("apart", apart, "m", above(0), "points of one are no farther apart");
+  list.add("least_points", leastPoints, "", atLeast(1), "of one");
+  list.add("size", size, "m", atLeast(0), "radius of one about the middle");
+  list.add("place_noise", placeNoise, "m", above(0), "of a middle that is seen");
+  list.add("first_speed", firstSpeed, "m/s", above(0),
+           "noise of one who is seen for the first time");
+  list.add("acceleration", acceleration, "m/s^2", above(0), "noise of one who walks");
+  list.add("fastest", fastest, "m/s", above(0), "a middle that is farther off is somebody else's");
+  list.add("still", still, "m/s", atLeast(0), "who is slower stands");
+  list.add("forget", forget, "s", atLeast(0), "until one who is not seen any more is forgotten");
+}
+
+void MoverOptions::validate() const { strict_files::checkOptions(*this, "MoverOptions"); }
+
+MoverTracker::MoverTracker(const MoverOptions& options, const semantic_types::ClassTable& classes)
+    : m_options(options), m_isMover(classesIn(options.classes, classes)) {
+  m_options.validate();
+}
+
+void MoverTracker::see(const semantic_types::LabeledCloud& cloud,
+                       const Eigen::Isometry3d& T_map_sensor) {
+  if (cloud.classes.empty()) return;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const ClassId id = cloud.classes[i];
+    if (id >= m_isMover.size() || !m_isMover[id]) continue;
+    const Eigen::Vector3d point = cloud.points[i].cast<double>();
+    if (!(point.norm() <= m_options.radius)) continue;
+    m_seen.push_back((T_map_sensor * point).head<2>());
+  }
+}
+
+/** Of clusters: points that are near one another, from above. */
+std::vector<Vector2d> MoverTracker::middles() const {
+  std::vector<Vector2d> middles;
+  std::vector<bool> done(m_seen.size());
+  for (std::size_t first = 0; first < m_seen.size(); ++first) {
+    if (done[first]) continue;
+    done[first] = true;
+    std::vector<std::size_t> cluster{first};
+    for (std::size_t next = 0; next < cluster.size(); ++next)
+      for (std::size_t i = first; i < m_seen.size(); ++i)
+        if (!done[i] && (m_seen[i] - m_seen[cluster[next]]).norm() <= m_options.apart) {
+          done[i] = true;
+          cluster.push_back(i);
+        }
+    if (cluster.size() < static_cast<std::size_t>(m_options.leastPoints)) continue;
+    Vector2d sum = Vector2d::Zero();
+    for (const std::size_t i : cluster) sum += m_seen[i];
+    middles.push_back(sum / static_cast<double>(cluster.size()));
+  }
+  return middles;
+}
+
+void MoverTracker::predict(Track& track, double seconds) const {
+  const double a = m_options.acceleration * seconds;
+  track.place += seconds * track.velocity;
+  track.pp += seconds * (2 * track.pv + seconds * track.vv) + a * a * seconds * seconds / 4;
+  track.pv += seconds * track.vv + a * a * seconds / 2;
+  track.vv += a * a;
+}
+
+void MoverTracker::correct(Track& track, const Vector2d& middle) const {
+  const double sum = track.pp + m_options.placeNoise * m_options.placeNoise;
+  const double gain = track.pp / sum, speedGain = track.pv / sum;
+  const Vector2d off = middle - track.place;
+  track.place += gain * off;
+  track.velocity += speedGain * off;
+  track.vv -= speedGain * track.pv;
+  track.pp *= 1 - gain;
+  track.pv *= 1 - gain;
+}
+
+void MoverTracker::update(double seconds) {
+  const std::vector<Vector2d> seen = middles();
+  m_seen.clear();
+  const double since = seconds - m_updatedAt;
+  m_updatedAt = seconds;
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;  // distance, track, seen
+  for (std::size_t t = 0; t < m_tracks.size(); ++t) {
+    const double most = m_options.apart + m_options.fastest * (seconds - m_tracks[t].seenAt);
+    predict(m_tracks[t], since);
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      if (const double far = (seen[i] - m_tracks[t].place).norm(); far <= most)
+        pairs.emplace_back(far, t, i);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<bool> taken(seen.size());
+  for (const auto& [far, t, i] : pairs) {
+    if (taken[i] || m_tracks[t].seenAt == seconds) continue;
+    taken[i] = true;
+    m_tracks[t].seenAt = seconds;
+    correct(m_tracks[t], seen[i]);
+  }
+  m_tracks.erase(
+      std::remove_if(m_tracks.begin(), m_tracks.end(),
+                     [&](const Track& t) { return seconds - t.seenAt > m_options.forget; }),
+      m_tracks.end());
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (!taken[i])
+      m_tracks.push_back({seen[i], Vector2d::Zero(), m_options.placeNoise * m_options.placeNoise, 0,
+                          m_options.firstSpeed * m_options.firstSpeed, seconds});
+}
+
+Movers MoverTracker::at(double seconds) const {
+  Movers movers;
+  for (Track track : m_tracks) {
+    predict(track, std::max(0.0, seconds - m_updatedAt));
+    const bool stands = track.velocity.norm() < m_options.still;
+    const Vector2d velocity = stands ? Vector2d::Zero() : track.velocity;
+    movers.push_back({track.place, velocity, m_options.size, std::sqrt(track.vv)});
+  }
+  return movers;
+}
+
+}  // namespace semantic_driving

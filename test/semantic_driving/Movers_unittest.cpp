@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+#include <semantic_driving/Movers.h>
+
+#include <algorithm>
+#include <random>
+
+using namespace semantic_driving;
+using Eigen::Vector2d;
+
+namespace {
+
+constexpr semantic_types::ClassId kWall = 1, kPerson = 2;
+
+semantic_types::ClassTable table() {
+  semantic_types::ClassTable classes;
+  classes.add("wall", {});
+  classes.add("person", {});
+  return classes;
+}
+
+class Follower {
+ public:
+  explicit Follower(const MoverOptions& options = {}) : m_tracker(options, table()) {}
+
+  /** Some points around each place. */
+  void scan(const std::vector<Vector2d>& places, double seconds,
+            semantic_types::ClassId id = kPerson) {
+    std::normal_distribution<double> noise(0, 0.08);
+    semantic_types::LabeledCloud cloud;
+    for (const Vector2d& p : places)
+      for (int i = 0; i < 12; ++i)
+        cloud.points.emplace_back(
+            Eigen::Vector3d(p.x() + noise(m_random), p.y() + noise(m_random), -1 + 0.1 * i)
+                .cast<float>());
+    cloud.classes.assign(cloud.points.size(), id);
+    m_tracker.see(cloud, Eigen::Isometry3d::Identity());
+    m_tracker.update(seconds);
+  }
+  Movers at(double seconds) const { return m_tracker.at(seconds); }
+  /** Seen nearest to a place. */
+  Mover near(const Vector2d& place, double seconds) const {
+    const Movers movers = at(seconds);
+    return *std::min_element(movers.begin(), movers.end(), [&](const Mover& a, const Mover& b) {
+      return (a.place - place).norm() < (b.place - place).norm();
+    });
+  }
+
+ private:
+  MoverTracker m_tracker;
+  std::mt19937 m_random{3};
+};
+
+}  // namespace
+
+TEST(MoverTracker, KnowsAfterAFewScansWhereSomebodyWalks) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(-6, 6), speed(-1.4, 1.4);
+  for (int i = 0; i < 50; ++i) {
+    const Vector2d from(place(random), place(random)), velocity(speed(random), speed(random));
+    Follower follower;
+    for (double t = 0; t < 2.1; t += 0.5) follower.scan({from + t * velocity}, t);
+    const Movers movers = follower.at(3);
+    ASSERT_EQ(movers.size(), 1u) << i;
+    if (velocity.norm() > 0.5) {
+      EXPECT_LT((movers[0].velocity - velocity).norm(), 0.3) << i;
+      EXPECT_LT((movers[0].place - from - 3 * velocity).norm(), 0.4) << i;
+    }
+    EXPECT_LT(movers[0].speedNoise, 0.7) << i;
+  }
+}
+
+TEST(MoverTracker, TellsThoseApartWhoCross) {
+  Follower follower;
+  for (double t = 0; t < 5; t += 0.5)
+    follower.scan({{-3 + 1.2 * t, 0.4}, {3 - 1.2 * t, -0.4}}, t);  // side by side at 2.5 s
+  EXPECT_EQ(follower.at(5).size(), 2u);
+  EXPECT_NEAR(follower.near({3, 0.4}, 5).velocity.x(), 1.2, 0.2);
+  EXPECT_NEAR(follower.near({-3, -0.4}, 5).velocity.x(), -1.2, 0.2);
+}
+
+TEST(MoverTracker, WhoStandsStandsAndIsKnownBetterThanWhoIsNew) {
+  Follower follower;
+  follower.scan({{2, 1}}, 0);
+  ASSERT_EQ(follower.at(0).size(), 1u);
+  EXPECT_TRUE(follower.at(0)[0].stands());
+  const double first = follower.at(0)[0].speedNoise;
+  for (double t = 0.5; t < 4; t += 0.5) {
+    follower.scan({{2, 1}}, t);
+    EXPECT_TRUE(follower.at(t)[0].stands()) << t;
+    EXPECT_LT(follower.at(t)[0].speedNoise, first / 2);
+  }
+}
+
+TEST(MoverTracker, ForgetsWhoIsNotSeenAnyMore) {
+  Follower follower;
+  for (double t = 0; t < 2; t += 0.5) follower.scan({{t, 0}}, t);
+  follower.scan({}, 3);
+  ASSERT_EQ(follower.at(3).size(), 1u);
+  EXPECT_NEAR(follower.at(3)[0].place.x(), 3, 0.5);
+  follower.scan({}, 3.5);
+  EXPECT_TRUE(follower.at(3.5).empty());
+}
+
+TEST(MoverTracker, FollowsOnlyClassesThatMove) {
+  Follower follower;
+  follower.scan({{1, 0}}, 0, kWall);
+  EXPECT_TRUE(follower.at(0).empty());
+  MoverOptions both;
+  both.classes = "wall, person";
+  Follower other(both);
+  other.scan({{1, 0}}, 0, kWall);
+  EXPECT_EQ(other.at(0).size(), 1u);
+  both.classes = "wall,ghost";
+  EXPECT_THROW(MoverTracker(both, table()), std::invalid_argument);
+  both.classes = "";
+  Follower nobody(both);
+  nobody.scan({{1, 0}}, 0);
+  EXPECT_TRUE(nobody.at(0).empty());
+}

@@ -1,0 +1,207 @@
+#include <gtest/gtest.h>
+#include <semantic_driving/DriveController.h>
+#include <semantic_driving/Separation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "simulated_drive/SimulatedRobot.h"
+
+using namespace semantic_driving;
+using Eigen::Vector2d;
+using mrpt::math::TPose2D;
+using semantic_planning::PathPoint;
+
+namespace {
+
+constexpr double kPeriod = 0.1;  // s
+constexpr int kPerScan = 5;
+constexpr double kBody = 0.3;                                // m, radius of a person
+constexpr double kBack = -0.25, kFront = 0.55, kHalf = 0.3;  // m, of the robot
+
+/** Walks straight on. */
+struct Person {
+  Vector2d from, velocity;
+  Vector2d at(double seconds) const { return from + seconds * velocity; }
+};
+
+/** A quarter of a circle to the left between two straights. */
+DrivePath bent() {
+  std::vector<PathPoint> points;
+  TPose2D pose(0, 0, 0);
+  for (double s = 0; s <= 20; s += 0.1) {
+    const double curvature = s > 6 && s < 6 + 3 * M_PI / 2 ? 1 / 3.0 : 0;
+    points.push_back({pose.x, pose.y, 0, pose.phi, curvature, true, 0, 0});
+    pose = pose + TPose2D(0.1, 0, 0.1 * curvature);
+  }
+  return DrivePath(points);
+}
+
+/** Meters between the robot and a person's body; the rectangle's corners are all it knows. */
+double gap(const TPose2D& robot, const Vector2d& person) {
+  const auto p = robot.inverseComposePoint({person.x(), person.y()});
+  const double x = std::max({kBack - p.x, 0.0, p.x - kFront});
+  const double y = std::max(0.0, std::abs(p.y) - kHalf);
+  return std::hypot(x, y) - kBody;
+}
+
+/** Points of the side of the body that the sensor sees, with noise, in the map's frame. */
+semantic_types::LabeledCloud seen(const Person& person, const TPose2D& robot, double seconds,
+                                  std::mt19937& random) {
+  std::normal_distribution<double> noise(0, 0.03);
+  semantic_types::LabeledCloud cloud;
+  const Vector2d place = person.at(seconds);
+  const double towards = std::atan2(robot.y - place.y(), robot.x - place.x());
+  for (double a = towards - 1.2; a <= towards + 1.2; a += 0.3)
+    cloud.points.emplace_back(Eigen::Vector3d(place.x() + kBody * std::cos(a) + noise(random),
+                                              place.y() + kBody * std::sin(a) + noise(random), 1)
+                                  .cast<float>());
+  cloud.classes.assign(cloud.points.size(), 1);
+  return cloud;
+}
+
+struct Outcome {
+  double fastestContact = -1;  ///< m/s; negative: none
+  double seconds = 1e9;        ///< until the path's end
+  double standing = 0;         ///< s
+
+  void add(const DriveState& state, const std::vector<Person>& persons, double time) {
+    for (const Person& p : persons)
+      if (gap(state.pose, p.at(time)) <= 0)
+        fastestContact = std::max(fastestContact, std::abs(state.speed));
+    if (std::abs(state.speed) < 0.01) standing += kPeriod;
+  }
+};
+
+DriveOptions options() {
+  DriveOptions options;
+  options.maxSpeed = 1.2;
+  options.alwaysReactive = false;
+  return options;
+}
+
+ReactiveNavigator::Options reactive() {
+  ReactiveNavigator::Options reactive;
+  reactive.config = std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini";
+  return reactive;
+}
+
+class Robot {
+ public:
+  Robot() { m_classes.add("person", {}); }
+
+  /** From the path's beginning. \param predicts the controller is told of those who move */
+  Outcome drive(const std::vector<Person>& persons, bool predicts, std::uint32_t seed = 1) {
+    m_begin += 1000;
+    MoverOptions all;
+    all.radius = 30;
+    MoverTracker tracker(all, m_classes);
+    m_controller.setPath(bent());
+    simulated_drive::SimulatedRobot robot({0, 0, 0}, options());
+    std::mt19937 random(seed);
+    Outcome outcome;
+    for (int step = 0; step < 900; ++step) {
+      const double t = step * kPeriod, age = step % kPerScan * kPeriod;
+      if (age == 0) {
+        for (const Person& p : persons)
+          tracker.see(seen(p, robot.state().pose, t, random), Eigen::Isometry3d::Identity());
+        tracker.update(t);
+      }
+      robot.drive(m_controller.step(robot.state(), {}, age, m_begin + t,
+                                    predicts ? tracker.at(t) : Movers()),
+                  kPeriod);
+      outcome.add(robot.state(), persons, t + kPeriod);
+      if (!m_controller.tracker().finished()) continue;
+      outcome.seconds = t;
+      break;
+    }
+    return outcome;
+  }
+
+ private:
+  semantic_types::ClassTable m_classes;
+  DriveController m_controller{options(), reactive()};
+  double m_begin = 0;  ///< s, of the next drive
+};
+
+/** Who crosses a place of the path when the robot gets there, more or less, from any side, and does
+ * not meet it at its start. */
+Person crossing(std::mt19937& random) {
+  const auto between = [&random](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const PathPoint place = bent().at(between(3, 16));
+  const double speed = between(0.5, 2), side = between(-M_PI, M_PI);
+  const double when = std::max(2.5, place.arcLength / 1.2 + between(-2, 2));
+  const Vector2d velocity(speed * std::cos(side), speed * std::sin(side));
+  const Person person{Vector2d(place.x, place.y) - when * velocity, velocity};
+  for (double t = 0; t < 2.5; t += kPeriod)
+    if (gap({}, person.at(t)) < 1.5) return crossing(random);
+  return person;
+}
+
+}  // namespace
+
+TEST(Separation, WhoeverCrossesFromWhicheverSideFindsTheRobotAtRest) {
+  Robot robot;
+  std::mt19937 random(7);
+  int met = 0, atSpeed = 0;
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    const Person person = crossing(random);
+    const Outcome careless = robot.drive({person}, false, i);
+    atSpeed += careless.fastestContact > 0.1 ? 1 : 0;
+    const Outcome careful = robot.drive({person}, true, i);
+    met += careful.fastestContact >= 0 ? 1 : 0;
+    EXPECT_LE(careful.fastestContact, 0.1)
+        << i << ": from " << person.from.transpose() << " at " << person.velocity.transpose();
+    EXPECT_LT(careful.seconds, careless.seconds + 15) << i;
+  }
+  EXPECT_GT(atSpeed, 60);       // without prediction
+  EXPECT_LT(met, atSpeed / 2);  // and at rest
+}
+
+TEST(Separation, SeveralWhoCrossFindItAtRest) {
+  Robot robot;
+  std::mt19937 random(8);
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    const std::vector<Person> persons{crossing(random), crossing(random), crossing(random)};
+    const Outcome careful = robot.drive(persons, true, i);
+    EXPECT_LE(careful.fastestContact, 0.1) << i;
+    EXPECT_LT(careful.seconds, 60) << i;
+  }
+}
+
+TEST(Separation, WhoWalksAwayOrAlongOrStandsAsideDoesNotStopIt) {
+  Robot robot;
+  const double alone = robot.drive({}, true).seconds;
+  const std::vector<Person> others = {
+      {{2, 0}, {1.4, 0}},       // ahead and faster
+      {{-3, 0}, {-1, 0}},       // behind, away
+      {{0, 1.3}, {1.2, 0}},     // beside, at the robot's speed
+      {{-4, -1.3}, {1.5, 0}},   // passes
+      {{4, -1.3}, {-1.3, 0}},   // towards it, beside
+      {{3, -1.2}, {0, 0}},      // stands
+      {{-2.5, -0.2}, {1.1, 0}}  // follows
+  };
+  for (const Person& person : others) {
+    SCOPED_TRACE(person.from.transpose());
+    const Outcome outcome = robot.drive({person}, true);
+    EXPECT_LT(outcome.standing, 3);
+    EXPECT_LT(outcome.seconds, alone + 6);
+  }
+}
+
+TEST(Separation, TheSlowerTheNearerOneStands) {
+  const semantic_planning::Footprint footprint;
+  const auto along = [](double way) { return TPose2D(way, 0, 0); };
+  double before = 0;
+  for (const double side : {0.7, 0.8, 0.9, 1.1, 1.5}) {
+    Mover mover{{1, side}, {0, 0}, 0.35, 0.5};
+    const double speed = separationSpeed(along, 0.2, 0, 1.2, {mover}, footprint, options());
+    EXPECT_GE(speed, before) << side;
+    EXPECT_GE(speed, options().slowest) << side;
+    before = speed;
+  }
+  EXPECT_EQ(before, 1.2);
+}
