@@ -77,13 +77,17 @@ TEST(RayCast, GoesThroughWhatIsHidden) {
   style.maxHeight = top->centerHeight(0.2) - 0.05;
   look.setStyle(style);
   const auto second = firstShown(cells, look, down);
-  if (second) EXPECT_LT(second->lowest.z(), top->lowest.z());
+  if (second) {
+    EXPECT_LT(second->lowest.z(), top->lowest.z());
+  }
   style.maxHeight = 100;
   style.hiddenClasses.assign(4, false);
   style.hiddenClasses[look.classOf(*top)] = true;
   look.setStyle(style);
   const auto other = firstShown(cells, look, down);
-  if (other) EXPECT_NE(look.classOf(*other), look.classOf(*top));
+  if (other) {
+    EXPECT_NE(look.classOf(*other), look.classOf(*top));
+  }
 }
 
 TEST(RayCast, HitsCompressedCellsWhereTheyAreDrawn) {

@@ -39,7 +39,9 @@ TEST(TilesSeen, HoldAllThatIsSeenOnce) {
       for (const Tile& tile : tiles) holders += contains(tile, it.getIndexKey());
       const Eigen::Vector3d center(it.getX(), it.getY(), it.getZ());
       EXPECT_LE(holders, 1);
-      if (view.camera.maySee(center, 0, view.width, view.height)) EXPECT_EQ(holders, 1);
+      if (view.camera.maySee(center, 0, view.width, view.height)) {
+        EXPECT_EQ(holders, 1);
+      }
     }
   }
 }

@@ -175,10 +175,18 @@ void DriveLoop::guide() {
          m_record.times["insert"].back() + m_record.times["update"].back() + replan);
 }
 
+/** Cells of the compressed tree are in the way as a whole. Where the robot stands before them the
+ * voxels of the full tree count, for as long as it takes to get by. */
+bool DriveLoop::wantsFineObstacles() {
+  constexpr double kFor = 5;  // s
+  if (m_controller.stoppedFor(m_time) >= m_config.guide.patience) m_fineUntil = m_time + kFor;
+  return !m_config.compressedObstacles || m_time < m_fineUntil;
+}
+
 void DriveLoop::drive() {
   Stopwatch watch(measuring::TimeOf::Thread);
-  const auto obstacles =
-      m_mapper->obstacles(state().pose, groundZ(), m_guide->obstacles(m_config.obstacles));
+  const auto obstacles = m_mapper->obstacles(
+      state().pose, groundZ(), m_guide->obstacles(m_config.obstacles), wantsFineObstacles());
   note("obstacles", watch.lap());
   const DriveCommand command =
       m_controller.step(state(), obstacles, m_time - m_sensedAt, m_time, m_movers.at(m_time));

@@ -63,6 +63,7 @@ class DriveLoop {
   void sense();
   void localize(const std::vector<Observation>& seen);
   void guide();
+  bool wantsFineObstacles();
   void drive();
   void move(const semantic_driving::DriveCommand& command);
   void addRow();
@@ -91,7 +92,7 @@ class DriveLoop {
   DriveRecord m_record;
   std::vector<DriveObserver*> m_observers;
   std::function<bool()> m_stop;
-  double m_time = 0, m_sensedAt = -1e9, m_lookedAt = -1e9;
+  double m_time = 0, m_sensedAt = -1e9, m_lookedAt = -1e9, m_fineUntil = -1e9;
 };
 
 }  // namespace simulated_drive

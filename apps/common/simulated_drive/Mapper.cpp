@@ -58,9 +58,10 @@ semantic_planning::StageTimes Mapper::insert(const std::vector<Observation>& see
   return times;
 }
 
-semantic_driving::ObstaclePoints Mapper::obstacles(
-    const mrpt::math::TPose2D& pose, double z, const semantic_driving::ObstacleOptions& options) {
-  if (!m_config.compressedObstacles) return senseObstacles(m_planner, pose, z, options);
+semantic_driving::ObstaclePoints Mapper::obstacles(const mrpt::math::TPose2D& pose, double z,
+                                                   const semantic_driving::ObstacleOptions& options,
+                                                   bool ofFullTree) {
+  if (ofFullTree) return senseObstacles(m_planner, pose, z, options);
   return senseCompressedObstacles(m_planner, semantic_octree::Abstraction(m_map), pose, z, options);
 }
 

@@ -23,9 +23,10 @@ class Mapper {
   semantic_planning::StageTimes insert(const std::vector<Observation>& seen,
                                        const Eigen::Isometry3d& T_map_robot);
 
-  /** As senseObstacles(), of the full or the compressed tree as DriveConfig says. */
+  /** As senseObstacles(), of the full or the compressed tree. */
   semantic_driving::ObstaclePoints obstacles(const mrpt::math::TPose2D& pose, double z,
-                                             const semantic_driving::ObstacleOptions& options);
+                                             const semantic_driving::ObstacleOptions& options,
+                                             bool ofFullTree);
 
   const semantic_octree::SemanticOcTree& map() const { return m_map; }
   semantic_planning::SemanticPlanner& planner() { return m_planner; }
