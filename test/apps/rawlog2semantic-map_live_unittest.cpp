@@ -1,6 +1,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "MappingFixture.h"
+#include "XServer.h"
 
 namespace {
 
@@ -40,13 +41,8 @@ class LiveMapping : public Rawlog2SemanticMap {
 }  // namespace
 
 TEST_F(LiveMapping, ShowsTheMapScanByScanAndMakesTheSame) {
-  for (const char* tool :
-       {"/usr/bin/xvfb-run", "/usr/bin/xauth", "/usr/bin/xdotool", "/usr/bin/import"})
-    if (!fs::exists(tool)) GTEST_SKIP() << "needs " << tool;
-  std::vector<std::string> command = {"-a",
-                                      "-s",
-                                      "-screen 0 1280x900x24",
-                                      MSO_SOURCE_DIR "/test/apps/view-window.sh",
+  SKIP_WITHOUT_WINDOWS();
+  std::vector<std::string> command = {MSO_SOURCE_DIR "/test/apps/view-window.sh",
                                       path("said.txt"),
                                       kProgram,
                                       "--live",
@@ -58,7 +54,7 @@ TEST_F(LiveMapping, ShowsTheMapScanByScanAndMakesTheSame) {
        {std::string("--"), std::string("140 573 inserted"), std::string("140 573 inserted"),
         "picture " + path("screen.png"), std::string("25 573 CSemanticOctoMap")})
     command.push_back(step);
-  const ProgramRun live = runProgram("/usr/bin/xvfb-run", command);
+  const ProgramRun live = runInX(command);
   ASSERT_EQ(live.status, 0) << live.output << live.errors;
   const cv::Mat screen = cv::imread(path("screen.png"));
   ASSERT_FALSE(screen.empty());

@@ -10,6 +10,7 @@
 
 #include "RunProgram.h"
 #include "TemporaryFolder.h"
+#include "XServer.h"
 
 namespace {
 
@@ -55,11 +56,6 @@ class SemanticMapView : public testing::Test {
   std::string path(const std::string& name) const { return (folder / name).string(); }
   std::string size() const { return std::to_string(kWidth) + "x" + std::to_string(kHeight); }
 
-  static ProgramRun runInX(const std::vector<std::string>& command) {
-    std::vector<std::string> all = {"-a", "-s", "-screen 0 1280x900x24"};
-    all.insert(all.end(), command.begin(), command.end());
-    return runProgram("/usr/bin/xvfb-run", all);
-  }
   /** The window's picture. */
   cv::Mat draw(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), kProgram);
@@ -76,12 +72,6 @@ class SemanticMapView : public testing::Test {
 
   TemporaryFolder folder;
 };
-
-bool hasTools() {
-  for (const char* tool : {"/usr/bin/xvfb-run", "/usr/bin/xauth", "/usr/bin/xdotool"})
-    if (!fs::exists(tool)) return false;
-  return true;
-}
 
 /** Where kTop shows a place, pixels. */
 cv::Point pixelOf(double x, double y, double z = 0) {
@@ -102,7 +92,7 @@ char classAt(const cv::Mat& picture, const cv::Point& at) {
 }  // namespace
 
 TEST_F(SemanticMapView, ShowsClassesInTheirColorsWhereTheyAre) {
-  if (!hasTools()) GTEST_SKIP() << "needs xvfb, xauth and xdotool";
+  SKIP_WITHOUT_WINDOWS();
   const cv::Mat picture = draw({path("map.semantic"), "--no-panels", "--camera", kTop});
   EXPECT_EQ(classAt(picture, pixelOf(-5, 2, 0.2)), 'r');
   EXPECT_EQ(classAt(picture, pixelOf(-1, -4, 0.2)), 'r');
@@ -119,7 +109,7 @@ TEST_F(SemanticMapView, ShowsClassesInTheirColorsWhereTheyAre) {
 }
 
 TEST_F(SemanticMapView, OpensMapsOfOctoMap) {
-  if (!hasTools()) GTEST_SKIP() << "needs xvfb, xauth and xdotool";
+  SKIP_WITHOUT_WINDOWS();
   semantic_octree::toOcTree(smallMap())->writeBinary(path("map.bt"));
   const cv::Mat picture =
       draw({path("map.bt"), "--no-panels", "--camera", kTop, "--color", "height"});
@@ -128,7 +118,7 @@ TEST_F(SemanticMapView, OpensMapsOfOctoMap) {
 }
 
 TEST_F(SemanticMapView, AnswersAClickOnACell) {
-  if (!hasTools()) GTEST_SKIP() << "needs xvfb, xauth and xdotool";
+  SKIP_WITHOUT_WINDOWS();
   const auto click = [](const cv::Point& at, const std::string& words) {
     return std::to_string(at.x) + " " + std::to_string(at.y) + " " + words;
   };
@@ -142,7 +132,7 @@ TEST_F(SemanticMapView, AnswersAClickOnACell) {
 }
 
 TEST_F(SemanticMapView, SavesWeightsFromWhichTheSameLeavesFollow) {
-  if (!hasTools()) GTEST_SKIP() << "needs xvfb, xauth and xdotool";
+  SKIP_WITHOUT_WINDOWS();
   // In the panel at the right: a place on the slider of alpha, and the button below.
   const std::string slider = std::to_string(kWidth - 170) + " 272 leaves, alpha",
                     save = std::to_string(kWidth - 230) + " 555 wrote ./weights-1.yaml";
@@ -166,7 +156,7 @@ TEST_F(SemanticMapView, SavesWeightsFromWhichTheSameLeavesFollow) {
 }
 
 TEST_F(SemanticMapView, FindsAPathBetweenTwoClicks) {
-  if (!hasTools()) GTEST_SKIP() << "needs xvfb, xauth and xdotool";
+  SKIP_WITHOUT_WINDOWS();
   folder.write("order.yaml", "best_to_worst: [road, grass]\n");
   // In the panel at the lower left: the buttons "start" and "goal".
   const std::string y = std::to_string(kHeight - 76);
@@ -187,7 +177,7 @@ TEST_F(SemanticMapView, FindsAPathBetweenTwoClicks) {
 }
 
 TEST_F(SemanticMapView, PlansFromAndToHeadingsThatAreDragged) {
-  if (!hasTools()) GTEST_SKIP() << "needs xvfb, xauth and xdotool";
+  SKIP_WITHOUT_WINDOWS();
   folder.write("order.yaml", "best_to_worst: [road, grass]\n");
   const std::string y = std::to_string(kHeight - 76);
   const auto drag = [](const cv::Point& from, const cv::Point& to, const std::string& words) {
