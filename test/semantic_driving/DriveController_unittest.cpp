@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
+#include <mrpt/config/CConfigFile.h>
 #include <mrpt/core/Clock.h>
 #include <semantic_driving/DriveController.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "TemporaryFolder.h"
 #include "simulated_drive/SimulatedRobot.h"
 
 using namespace semantic_driving;
@@ -54,11 +56,11 @@ class Drive {
 
   /** Until half a minute is over: one command each 0.1 s. */
   template <class Command>
-  void run(Command command) {
+  void run(Command command, const std::vector<Eigen::Vector2d>& columns = person()) {
     const PathTracker outline({}, kFootprint);
     for (int i = 0; i < 300; ++i) {
       mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + 0.1 * i));
-      const ObstaclePoints seen = seenFrom(state().pose, person());
+      const ObstaclePoints seen = seenFrom(state().pose, columns);
       m_collided = m_collided || !outline.isFree({}, seen, 1e-6);
       m_robot.drive(command(seen, 0.1 * i), 0.1);
     }
@@ -89,6 +91,30 @@ TEST(DriveController, PassesAPersonByTheReactiveNavigatorWithoutANewPath) {
   EXPECT_TRUE(controller.tracker().finished());
   EXPECT_NEAR(drive.state().pose.x, 12, 0.3);
   EXPECT_NEAR(drive.state().pose.y, 0, 0.3);
+}
+
+TEST(DriveController, DrivesAFreeWayOnWhichTheReactiveNavigatorStands) {
+  const TemporaryFolder folder;
+  ReactiveNavigator::Options reactive;
+  reactive.config = folder / "stands.ini";
+  std::filesystem::copy_file(std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini",
+                             reactive.config);
+  mrpt::config::CConfigFile(reactive.config.string())
+      .write("CHolonomicFullEval", "TOO_CLOSE_OBSTACLE", 2);  // everything is too close
+  reactive.footprint = kFootprint;
+  DriveController controller({}, reactive);
+  controller.setPath(straight());
+  Drive drive;
+  int reactiveSteps = 0;
+  drive.run(
+      [&](const ObstaclePoints& seen, double seconds) {
+        const DriveCommand command = controller.step(drive.state(), seen, 0, seconds);
+        reactiveSteps += controller.driver() == DriveController::Driver::Reactive ? 1 : 0;
+        return command;
+      },
+      {});
+  EXPECT_TRUE(controller.tracker().finished());
+  EXPECT_NEAR(reactiveSteps, 10, 2);  // for a second
 }
 
 TEST(PathTracker, AloneStandsBeforeAPerson) {

@@ -38,7 +38,7 @@ DriveController::DriveController(const DriveOptions& options,
 
 void DriveController::setPath(DrivePath path) {
   m_tracker.setPath(std::move(path));
-  m_reactiveFrom = -1;
+  m_reactiveFrom = m_stalledFrom = -1;
 }
 
 DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints& obstacles,
@@ -46,7 +46,7 @@ DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints
   m_track.add(state.pose);
   m_tracker.locate(state);
   const double limit = m_tracker.options().speedFor(sensorAge);
-  const bool reactive = seconds >= m_reactiveAgain && wantsReactive(state, obstacles);
+  const bool reactive = seconds >= m_reactiveAgain && wantsReactive(state, obstacles, seconds);
   m_driver = reactive ? Driver::Reactive : Driver::Tracker;
   if (!reactive) m_reactiveFrom = -1;
   const DriveCommand wanted =
@@ -61,15 +61,20 @@ DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints
   return m_motion.command();
 }
 
-bool DriveController::wantsReactive(const DriveState& state,
-                                    const ObstaclePoints& obstacles) const {
+/** Where the planned way is free MRPT's navigator need not be asked: where it does not get on, the
+ * rest of the stretch is driven without it. */
+bool DriveController::wantsReactive(const DriveState& state, const ObstaclePoints& obstacles,
+                                    double seconds) {
   if (m_tracker.finished()) return false;
+  const DriveOptions& options = m_tracker.options();
   const DrivePath& path = m_tracker.path();
   const double here = m_tracker.progress();
-  const double left = path.stretchEnd(here) - here;
-  if (!path.at(here + 1e-3).forward || left < m_tracker.options().exactEnd) return false;
-  return m_tracker.options().alwaysReactive ||
-         m_tracker.freeAhead(state, obstacles) < std::min(left, m_tracker.options().lookAhead);
+  const double left = path.stretchEnd(here) - here, begin = path.stretchBegin(here + 1e-3);
+  if (!path.at(here + 1e-3).forward || left < options.exactEnd) return false;
+  if (m_tracker.freeAhead(state, obstacles) < std::min(left, options.lookAhead)) return true;
+  if (m_driver == Driver::Reactive && stoppedFor(seconds) >= options.reactiveStall)
+    m_stalledFrom = begin;
+  return options.alwaysReactive && m_stalledFrom != begin;
 }
 
 bool DriveController::isOpen(const PathPoint& place, const DriveState& state,

@@ -23,6 +23,9 @@ void describeReactive(DriveOptions& o, OptionList& list) {
            "waypoints with less clearance around the footprint are left out");
   list.add("reactive_pause", o.reactivePause, "s", atLeast(0),
            "until MRPT's navigator is asked again after it found no way");
+  list.add(
+      "reactive_stall", o.reactiveStall, "s", atLeast(0),
+      "MRPT's navigator may stand so long before a free way, which is then followed without it");
 }
 
 void describeSeparation(DriveOptions& o, OptionList& list) {

@@ -38,7 +38,7 @@ class DriveController {
   double stoppedFor(double seconds) const { return seconds - m_movedAt; }
 
  private:
-  bool wantsReactive(const DriveState& state, const ObstaclePoints& obstacles) const;
+  bool wantsReactive(const DriveState& state, const ObstaclePoints& obstacles, double seconds);
   void setWaypoints(const DriveState& state, const ObstaclePoints& obstacles);
   bool isOpen(const semantic_planning::PathPoint& place, const DriveState& state,
               const ObstaclePoints& obstacles) const;
@@ -60,6 +60,7 @@ class DriveController {
   std::optional<double> m_steppedAt;  ///< seconds
   double m_movedAt = 0;
   double m_reactiveFrom = -1;  ///< beginning of the stretch that the reactive navigator drives
+  double m_stalledFrom = -1;   ///< beginning of a stretch on which it stood before a free way
   std::vector<semantic_planning::PathPoint> m_waypoints;
   double m_reactiveAgain = 0;  ///< seconds: it is not asked before, as it found no way
 };

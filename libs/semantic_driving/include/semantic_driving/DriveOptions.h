@@ -54,6 +54,7 @@ struct DriveOptions {
   double waypointMargin =
       0.3;                    ///< waypoints without so much room around the footprint are left out
   double reactivePause = 2;   ///< seconds until it is asked again after it found no way
+  double reactiveStall = 1;   ///< seconds that it may stand before a free way
   double reactionTime = 0.3;  ///< seconds until a command has an effect
   double movingSpeed = 0.05;  ///< m/s; a slower vehicle does not get on
 
