@@ -15,11 +15,12 @@ class SlitFloor : public testing::Test {
     world.floor(-6, 6, width, 6, PaintedWorld::Grass);
   }
 
-  Ground ground(double fillGap, double unknownGap) {
+  Ground ground(double fillGap, double unknownGap,
+                const colored_graph::ClassOrder& order = {5, {{1}, {2}, {3, 4}, {0}}}) {
     GroundOptions options;
     options.fillGap = fillGap;
     options.unknownGap = unknownGap;
-    return Ground(world.map(), VehicleOptions(), options, {5, {{0, 1, 2, 3, 4}}});
+    return Ground(world.map(), VehicleOptions(), options, order);
   }
 
   PaintedWorld world;
@@ -38,9 +39,26 @@ TEST_F(SlitFloor, aNarrowSlitGetsTheClassOfItsNearerBorder) {
   EXPECT_TRUE(g.connected(*g.find(0, -1), *g.find(0, 2)));
 }
 
-TEST_F(SlitFloor, aWiderSlitIsUnknownGround) {
+TEST_F(SlitFloor, aWiderSlitBetweenDifferentRanksIsUnknownGround) {
   paint(1.4);
   const auto middle = ground(1, 2).find(0, 0.7);
+  ASSERT_TRUE(middle);
+  EXPECT_TRUE(middle->surface.filled);
+  EXPECT_EQ(middle->surface.classId, semantic_types::kNoClass);
+}
+
+TEST_F(SlitFloor, aWiderSlitBetweenEqualRanksHasTheClassOfItsNearerBorder) {
+  paint(1.4);
+  const Ground g = ground(1, 2, {5, {{0}, {1, 2, 3, 4}}});
+  const auto nearRoad = g.find(0, 0.3), nearGrass = g.find(0, 1.1);
+  ASSERT_TRUE(nearRoad && nearGrass);
+  EXPECT_EQ(nearRoad->surface.classId, PaintedWorld::Road);
+  EXPECT_EQ(nearGrass->surface.classId, PaintedWorld::Grass);
+}
+
+TEST_F(SlitFloor, aWiderSlitBetweenForbiddenClassesIsUnknownGround) {
+  paint(1.4);
+  const auto middle = ground(1, 2, {5, {{3, 4}, {0}}}).find(0, 0.7);
   ASSERT_TRUE(middle);
   EXPECT_EQ(middle->surface.classId, semantic_types::kNoClass);
 }

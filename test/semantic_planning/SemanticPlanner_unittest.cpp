@@ -91,7 +91,7 @@ TEST_F(PlannerTest, drivesBelowABridgeAndOverIt) {
 
 TEST_F(PlannerTest, countsUnknownGroundAsAClassOfItsOwn) {
   world.floor(-10, 10, -10, -1, PaintedWorld::Road);
-  world.floor(-10, 10, 1, 10, PaintedWorld::Road);
+  world.floor(-10, 10, 1, 10, PaintedWorld::Grass);
   start = {-5, -5, 0};
   goal = {5, 5, 0};
   const PlanResult across = plan();

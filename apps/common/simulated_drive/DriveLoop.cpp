@@ -101,7 +101,6 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
   m_record.plannedPerClass.resize(classes);
   m_record.exactPose = config.pose.isExact();
   setClock(0);
-  m_mapper->standOn(T_world_robot());
 }
 
 Eigen::Isometry3d DriveLoop::T_world_robot() const {

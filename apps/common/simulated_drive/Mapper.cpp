@@ -4,6 +4,8 @@
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <synthetic_world/Classes.h>
 
+#include <utility>
+
 #include "measuring/Stopwatch.h"
 
 namespace simulated_drive {
@@ -30,21 +32,29 @@ Mapper::Mapper(const DriveConfig& config, const ClassOrder& order, SemanticOcTre
       m_map(withAbstraction(std::move(map), order)),
       m_planner(m_map, order, config.planner) {}
 
+/** The robot begins where it has room: there is ground below its footprint and around it, as far as
+ * the planner wants to know. Its sensors do not see that near: it has the class of what
+ * they see on both sides (GroundOptions::unknownGap), if that is one, otherwise whatever class. */
 void Mapper::standOn(const Eigen::Isometry3d& T_map_robot) {
   const semantic_planning::VehicleOptions& vehicle = m_config.planner.vehicle;
   const double room = vehicle.clearance + m_config.voxelSize, step = m_config.voxelSize / 2;
   constexpr double kBelow = 1e-3;  // m: in the voxel that holds the ground
+  const semantic_planning::Ground& ground = m_planner.ground();
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& corner : vehicle.footprint) box.extend(corner);
   semantic_types::LabeledCloud cloud;
   for (double x = box.min().x() - room; x < box.max().x() + room; x += step)
     for (double y = box.min().y() - room; y < box.max().y() + room; y += step) {
-      cloud.points.push_back(Eigen::Vector3d(x, y, -kBelow).cast<float>());
-      cloud.classes.push_back(semantic_types::kNoClass);
+      const Eigen::Vector3d below(x, y, -kBelow), p = T_map_robot * below;
+      const auto* known =
+          ground.near(ground.columnAt(p.x(), p.y()), ground.keyOf(p.z()), ground.step());
+      cloud.points.push_back(below.cast<float>());
+      cloud.classes.push_back(known ? known->classId : semantic_types::kNoClass);
     }
   semantic_octree::InsertionOptions noRays;
   noRays.carvingMargin = 1e3;
   m_map.insert(cloud, T_map_robot, noRays);
+  m_planner.update();
 }
 
 semantic_planning::StageTimes Mapper::insert(const std::vector<Observation>& seen,
@@ -54,6 +64,7 @@ semantic_planning::StageTimes Mapper::insert(const std::vector<Observation>& see
     m_map.insert(o.cloud, T_map_robot * o.T_robot_sensor, m_config.insertion);
   semantic_planning::StageTimes times{{"insert", watch.lap()}};
   m_planner.update();
+  if (!std::exchange(m_stands, true)) standOn(T_map_robot);
   times.emplace_back("update", watch.lap());
   return times;
 }

@@ -14,10 +14,6 @@ class Mapper {
   Mapper(const DriveConfig& config, const colored_graph::ClassOrder& order,
          semantic_octree::SemanticOcTree map);
 
-  /** The robot begins where it has room: there is ground, of whatever class, below its footprint
-   * and around it, as far as the planner wants to know. Its sensors do not see that near. */
-  void standOn(const Eigen::Isometry3d& T_map_robot);
-
   /** \return milliseconds of insert (with the compressed tree's upkeep) and of update (ground and
    * roadmap) */
   semantic_planning::StageTimes insert(const std::vector<Observation>& seen,
@@ -33,9 +29,12 @@ class Mapper {
   const semantic_planning::SemanticPlanner& planner() const { return m_planner; }
 
  private:
+  void standOn(const Eigen::Isometry3d& T_map_robot);
+
   DriveConfig m_config;
   semantic_octree::SemanticOcTree m_map;
   semantic_planning::SemanticPlanner m_planner;
+  bool m_stands = false;  ///< standOn() was called
 };
 
 }  // namespace simulated_drive

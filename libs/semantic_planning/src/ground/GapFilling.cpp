@@ -43,7 +43,9 @@ std::vector<Offer> offersTo(Column tile, const GapFillGrid& grid, const GroundSh
     if (!fills) continue;
     for (const GapFill& f : *fills) {
       const auto [low, high] = columnsInTile(f, tile);
-      const bool known = f.width() <= shape.fillGap;
+      const colored_graph::Rank rank = shape.ranks[f.classId];
+      const bool known = f.width() <= shape.fillGap ||
+                         (rank != colored_graph::kForbidden && rank == shape.ranks[f.otherClass]);
       for (int i = low; i <= high; ++i)
         offers.push_back({indexInTile(f.column(i)), f.height(i), f.width(), f.from, f.direction,
                           known ? f.nearerClass(i) : semantic_types::kNoClass});

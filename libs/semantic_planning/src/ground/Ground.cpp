@@ -83,10 +83,12 @@ GroundShape::GroundShape(const VehicleOptions& vehicle, const GroundOptions& opt
       rise(std::tan(vehicle.maxSlope * M_PI / 180)),
       baseline(std::max(2, static_cast<int>(std::lround(0.6 / voxelSize)))),
       largestClearance(voxels(largestRadius(vehicle) + vehicle.clearance, voxelSize) + 1),
+      ranks(order.classes()),
       keepOff(order.classes()) {
-  for (int id = 0; id < order.classes(); ++id)
-    keepOff[id] = options.keepOff && order.rank(static_cast<colored_graph::GraphClass>(id)) ==
-                                         colored_graph::kForbidden;
+  for (int id = 0; id < order.classes(); ++id) {
+    ranks[id] = order.rank(static_cast<colored_graph::GraphClass>(id));
+    keepOff[id] = options.keepOff && ranks[id] == colored_graph::kForbidden;
+  }
 }
 
 Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions& vehicle,

@@ -19,7 +19,8 @@ struct GroundShape {
   double rise;   ///< of a drivable slope, voxels per voxel
   int baseline;  ///< columns to each side over which slope is measured
   int largestClearance;
-  std::vector<bool> keepOff;  ///< by class id
+  std::vector<colored_graph::Rank> ranks;  ///< by class id
+  std::vector<bool> keepOff;
 };
 
 }  // namespace semantic_planning

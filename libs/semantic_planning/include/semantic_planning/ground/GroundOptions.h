@@ -10,8 +10,9 @@ struct GroundOptions {
    * lines between two of its borders, where the line's slope is drivable, nothing stands in the
    * way, and the map did not see free space below it. */
   double fillGap = 0.8;
-  /** Wider holes up to this (meters) are filled too, but their ground is of unknown class: the
-   * vehicle's own shadow at the start, what parked cars hid. */
+  /** Wider holes up to this (meters) are filled too: the vehicle's own shadow at the start, what
+   * parked cars hid. Between borders of one
+   * rank they have the class of the nearer one, too, otherwise their ground is of unknown class. */
   double unknownGap = 4.0;
   /** Whether ground of a forbidden class keeps the whole footprint off, or the wheels only. */
   bool keepOff = false;
