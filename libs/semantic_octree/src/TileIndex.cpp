@@ -15,11 +15,14 @@ using strict_files::StrictYaml;
 
 namespace {
 
-std::string leavesOf(const TileIndex::Tile& tile) {
-  std::ostringstream text;
-  text << "nodes: " << tile.nodes << ", inner: " << tile.innerNodes
-       << ", highest: " << tile.highest;
-  return text.str();
+/** As short as reads back to the last bit. */
+std::string shortest(double number) {
+  for (int digits = 6;; ++digits) {
+    std::ostringstream text;
+    text.precision(digits);
+    text << number;
+    if (digits == 17 || std::stod(text.str()) == number) return text.str();
+  }
 }
 
 class IndexReader {
@@ -124,19 +127,20 @@ void writeIndex(const std::filesystem::path& folder, const TileIndex& index) {
   YAML::Emitter frame;
   frame << index.frame;
   std::ostringstream text;
-  text.precision(17);
   text << "# A map in tiles: tile_X_Y_Z.GENERATION.semantic is what lies in the cube from\n"
        << "# (X, Y, Z) to (X + 1, Y + 1, Z + 1) times tile_size. Lower borders belong to it.\n"
        << "version: " << TileIndex::kVersion << "\nframe: " << frame.c_str()
-       << "\nresolution: " << index.resolution << "\ntile_size: " << index.tileSize()
-       << "\ngeneration: " << index.generation << "\nclasses: " << classes.c_str() << "\ntiles:";
+       << "\nresolution: " << shortest(index.resolution)
+       << "\ntile_size: " << shortest(index.tileSize()) << "\ngeneration: " << index.generation
+       << "\nclasses: " << classes.c_str() << "\ntiles:";
   if (index.tiles.empty()) text << " []";
   text << '\n';
   const int half = 1 << (index.depth - 1);
   for (const TileIndex::Tile& tile : index.tiles) {
     const VoxelIndex at = tile.place - half;
     text << "  - {at: [" << at.x() << ", " << at.y() << ", " << at.z()
-         << "], generation: " << tile.generation << ", " << leavesOf(tile) << "}\n";
+         << "], generation: " << tile.generation << ", nodes: " << tile.nodes
+         << ", inner: " << tile.innerNodes << ", highest: " << tile.highest << "}\n";
   }
   strict_files::writeText(folder / TileIndex::kFile, text.str());
 }

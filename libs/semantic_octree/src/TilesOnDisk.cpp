@@ -33,11 +33,6 @@ void countBelow(const NodeStore& store, const Slot& inner, Count& count) {
   }
 }
 
-void removeChildren(const NodeStore& store, NodeArena& arena, const Slot& octant) {
-  for (Slot& child : store.octant(octant).slots)
-    if (child.isKnown()) arena.remove(child);
-}
-
 /** Adds the cubes at a depth that a scan touched. */
 void addTouched(const Scan& scan, const Cell& cell, int depth, std::vector<VoxelIndex>& cubes) {
   if (!scan.pyramid().at(ScanPyramid::kTopLevel - cell.depth, cell.index).any()) return;
@@ -124,9 +119,20 @@ void TilesOnDisk::read(Slot& slot, const Tile& tile) {
                                "': altered: it is not the file that the index is of");
     if (m_map.hasAbstraction()) m_map.m_gTree->worker(0).recomputeAll(nodes, slot, cellOf(tile));
   } catch (...) {
-    removeChildren(nodes, arena, slot);
+    removeChildren(arena, slot);
     slot.kind = Kind::Away;
     nodes.countAway(tile.nodes, tile.innerNodes);
+    throw;
+  }
+}
+
+/** If memory runs out, the map is broken; the folder is what it was. */
+void TilesOnDisk::removeChildren(NodeArena& arena, const Slot& octant) {
+  try {
+    for (Slot& child : store().octant(octant).slots)
+      if (child.isKnown()) arena.remove(child);
+  } catch (...) {
+    m_map.m_store = nullptr;
     throw;
   }
 }
@@ -177,7 +183,7 @@ void TilesOnDisk::send(Slot& slot, Tile& tile) {
   Count count;
   countBelow(nodes, slot, count);
   m_away[slot.index] = tileCode(tile.place);
-  removeChildren(nodes, arenaWith(false), slot);
+  removeChildren(arenaWith(false), slot);
   slot.kind = Kind::Away;
   tile.isAway = true;
   tile.nodes = count.nodes;

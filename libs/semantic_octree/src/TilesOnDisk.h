@@ -57,6 +57,7 @@ class TilesOnDisk : public TileSource {
   void fetch(Slot& slot, Tile& tile);
   void read(Slot& slot, const Tile& tile);
   void send(Slot& slot, Tile& tile);
+  void removeChildren(NodeArena& arena, const Slot& octant);
   void write(const Slot& slot, Tile& tile);
   /** Sends tiles away that were used before a time, until the rest is within the budget. */
   void makeRoom(std::uint64_t usedBefore, std::size_t budget);
