@@ -1,8 +1,7 @@
 // A city: synthetic scenes with different seeds side by side, a LiDAR that drives through them one
 // after the other, mapped into a folder under a budget.
-//     city_benchmark FOLDER SCENES_IN_A_ROW MEGABYTES [TO_COMPRESS: 1]
+//     city_benchmark FOLDER SCENES_IN_A_ROW MEGABYTES [compress]
 #include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapContents.h>
 #include <semantic_octree/MapFolder.h>
 #include <semantic_octree/MapOperations.h>
 #include <synthetic_world/Classes.h>
@@ -12,6 +11,7 @@
 
 #include <chrono>
 #include <iostream>
+#include <random>
 
 using namespace semantic_octree;
 
@@ -121,9 +121,16 @@ void run(const std::string& folder, int size, double memory, bool compress) {
   std::cout << "saved in " << seconds() - begin << " s, " << tiles.contents().bytesOnDisk / 1000000
             << " MB" << std::endl;
   begin = seconds();
-  const MapContents contents = contentsOf(map);
-  std::cout << "all leaves visited in " << seconds() - begin << " s: " << contents.leaves
-            << std::endl;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> anywhere(0, kSpacing * (size - 1));
+  constexpr int kQueries = 1000;
+  std::size_t hits = 0;
+  for (int i = 0; i < kQueries; ++i) {
+    const double x = anywhere(random), y = anywhere(random);
+    hits += map.castRay(octomap::point3d(float(x), float(y), 30), {0, 0, -1}).has_value();
+  }
+  std::cout << kQueries << " rays down at random places in " << seconds() - begin << " s, " << hits
+            << " hits" << std::endl;
   say(tiles, map);
   if (compress) {
     begin = seconds();

@@ -65,7 +65,7 @@ class MapFolder::Tiles {
       : m_map(map), m_folder(std::move(folder)), m_access(access) {
     options.validate();
     if (!map.empty()) throw std::invalid_argument("a map for a folder of tiles has to be empty");
-    map.refuseTiles("in another one, too");
+    map.checkNotInTiles();
     TileIndex index = open(options);
     constexpr double kAll = 1e18;  // bytes
     const auto budget = static_cast<std::size_t>(std::min(options.memory * 1e6, kAll));

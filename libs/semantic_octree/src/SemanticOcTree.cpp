@@ -41,7 +41,7 @@ SemanticOcTree::~SemanticOcTree() = default;
 
 SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
     : SemanticOcTree(o.m_resolution, o.m_classes, o.m_parameters) {
-  o.refuseTiles("copied");
+  o.checkNotInTiles();
   m_pruning = o.m_pruning;
   if (o.hasAbstraction()) {
     m_gTree = std::make_unique<GTree>(o.m_gTree->options(), m_filter, m_resolution);
@@ -82,13 +82,13 @@ bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
   return TreeComparison(store(), o.store(), sameRows).same(store().root(), o.store().root());
 }
 
-void SemanticOcTree::refuseTiles(const char* what) const {
+void SemanticOcTree::checkNotInTiles() const {
   if (m_store && m_store->tiles())
-    throw std::logic_error(std::string("a map in a folder of tiles cannot be ") + what);
+    throw std::logic_error("a map in a folder of tiles cannot be copied, cleared or corrected");
 }
 
 void SemanticOcTree::clear() {
-  refuseTiles("cleared");
+  checkNotInTiles();
   m_store = std::make_unique<NodeStore>(m_gTree ? m_gTree->stateBytes() : 0);
   if (m_touched) m_touched->take();
 }
@@ -158,7 +158,6 @@ void SemanticOcTree::change(const F& f) {
     f(target);
   } catch (...) {
     m_store = nullptr;  // what is half changed cannot be told from what was there
-    m_scan = nullptr;
     throw;
   }
 }
@@ -171,7 +170,7 @@ void SemanticOcTree::merge(const Scan& scan, int threads) {
 
 void SemanticOcTree::replace(const std::vector<std::uint64_t>& tiles,
                              const SemanticOcTree& source) {
-  refuseTiles("corrected");
+  checkNotInTiles();
   change([&](const MergeTarget& target) { replaceTiles(target, tiles, source.store()); });
 }
 
@@ -183,11 +182,11 @@ InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
   if (!m_scan) m_scan = std::make_unique<Scan>();
   try {
     m_scan->set(cloud, T_map_sensor, m_resolution, numClasses(), options);
+    merge(*m_scan, options.threads);
   } catch (...) {
     m_scan = nullptr;  // half-filled buffers must not leak into the next scan
     throw;
   }
-  merge(*m_scan, options.threads);
   const InsertionReport report = m_scan->report();
   if (m_scan->bytes() > Scan::kTooManyBytes)
     m_scan = nullptr;

@@ -202,7 +202,7 @@ class SemanticOcTree {
   /** \throw std::logic_error the map is broken. */
   NodeStore& store() const;
   /** \throw std::logic_error the map is in a folder of tiles. */
-  void refuseTiles(const char* what) const;
+  void checkNotInTiles() const;
   void computeTileByTile();
   /** Whoever changes nodes does it in here: if it fails, the map is broken. */
   template <typename F>
