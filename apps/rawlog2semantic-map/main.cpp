@@ -93,8 +93,8 @@ struct Cli {
     addOptions(app, list, "Maps larger than memory");
     return app
         .add_option("--tiles", tiles,
-                    "Folder that takes the map tile by tile, instead of map.semantic; what is "
-                    "there is added to")
+                    "Folder that the map goes into, tile by tile, added to what is there; "
+                    "pictures are for semantic-map-export")
         ->group("Maps larger than memory");
   }
 
@@ -233,6 +233,13 @@ void writeCompressed(CSemanticOctoMap& map, const Config& config, const OutputFo
                             output.staged("compressed.png"));
 }
 
+/** Also its pictures, and the compressed map. \return what is wrong with the pictures */
+std::string writeMap(CSemanticOctoMap& map, const Config& config, const OutputFolder& output) {
+  saveTree(map.tree(), output.staged("map.semantic"));
+  if (config.abstraction.isSet()) writeCompressed(map, config, output);
+  return drawPictures(map.tree(), config, output);
+}
+
 int run(const Cli& cli) {
   const StopRequest stop("after this observation");
   const Config config = configOf(cli);
@@ -250,15 +257,12 @@ int run(const Cli& cli) {
   OutputFolder output(cli.output);
 
   const Summary summary = buildMap(cli, config, stop, live ? &*live : nullptr, map, output);
-  if (tiles) {
+  writeJson(output.staged("summary.json"), toJson(summary, map.tree(), !tiles));
+  std::string problem;
+  if (tiles)
     tiles->save();
-    setAbstraction(map, cli, config);
-  } else {
-    saveTree(map.tree(), output.staged("map.semantic"));
-  }
-  writeJson(output.staged("summary.json"), toJson(summary, map.tree()));
-  const std::string problem = drawPictures(map.tree(), config, output);
-  if (config.abstraction.isSet()) writeCompressed(map, config, output);
+  else
+    problem = writeMap(map, config, output);
   output.commit(kFiles);
   if (!problem.empty()) throw std::runtime_error(problem);
   notes() << cli.output.string() << ": " << map.asString() << std::endl;

@@ -17,7 +17,7 @@ using namespace semantic_octree;
 
 namespace {
 
-constexpr double kSpacing = 160, kStep = 2;  // meters
+constexpr double kSpacing = 160, kStep = 4;  // meters
 
 double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

@@ -34,7 +34,8 @@ struct MapFolderOptions {
  *   Abstraction::leaves() tells cubes, but its nodes may be gone.
  * - Reading is changing: not from two threads, and it may throw std::runtime_error naming a file.
  * - It cannot be copied, cleared, or corrected (KeyframeMap), and has to stay where it is.
- * - If setAbstraction() or setWeights() cannot read a tile, the map keeps no abstraction.
+ * - If setAbstraction() cannot read a tile, the map keeps no abstraction. If that happens to what
+ *   Abstraction changes (setWeights() and the like), setAbstraction() has to be called anew.
  *
  * Nothing that was saved is touched before the next save(), which is done when the index takes its
  * place: whenever the process ends, the folder is what it was when it was last saved. One process
