@@ -74,7 +74,11 @@ ordered_json pointsJson(const Summary& s) {
           {"labeled", s.conversion.labeled}};
 }
 
-ordered_json mapJson(const SemanticOcTree& tree) {
+ordered_json mapJson(const SemanticOcTree& tree, bool countVoxels) {
+  if (!countVoxels)
+    return {{"resolution", tree.getResolution()},
+            {"leaves", tree.getNumLeafNodes()},
+            {"innerNodes", tree.size() - tree.getNumLeafNodes()}};
   const MapContents contents = contentsOf(tree);
   ordered_json classes = ordered_json::object();
   for (int id = 1; id <= tree.numClasses(); ++id)
@@ -110,7 +114,7 @@ ordered_json abstractionJson(const Summary& s) {
 
 }  // namespace
 
-ordered_json toJson(const Summary& s, const SemanticOcTree& tree) {
+ordered_json toJson(const Summary& s, const SemanticOcTree& tree, bool countVoxels) {
   ordered_json json = {
       {"rawlogs", s.rawlogs},
       {"stopped", s.stopped},
@@ -125,7 +129,7 @@ ordered_json toJson(const Summary& s, const SemanticOcTree& tree) {
       {"points", pointsJson(s)},
       {"millisecondsPerScan",
        {{"conversion", timesJson(s.conversionTimes)}, {"insertion", timesJson(s.insertionTimes)}}},
-      {"map", mapJson(tree)}};
+      {"map", mapJson(tree, countVoxels)}};
   if (s.slam)
     json["slam"] = {
         {"keyframes", s.slam->keyframes}, {"loops", s.slam->loops}, {"lost", s.slam->lost}};

@@ -1,6 +1,7 @@
 // Makes a semantic octree map, pictures of it and a summary from labeled rawlogs.
 #include <labeled_cloud/RawlogClasses.h>
 #include <labeled_cloud/RawlogTrajectory.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_types/ClassTableFile.h>
 #include <strict_files/ErrorMessage.h>
@@ -18,6 +19,7 @@
 #include "LiveScans.h"
 #include "MapBuilder.h"
 #include "NumberChecks.h"
+#include "OptionFlags.h"
 #include "Outputs.h"
 #include "Preview.h"
 #include "ScanLog.h"
@@ -29,6 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using semantic_map::CSemanticOctoMap;
+using semantic_octree::MapFolder;
 using semantic_octree::SemanticOcTree;
 using semantic_types::ClassTable;
 using strict_files::OutputFolder;
@@ -38,7 +41,8 @@ const std::vector<std::string> kFiles = {"map.semantic",  "summary.json",       
                                          "trajectory.tum"};
 
 struct Cli {
-  fs::path config, output, trajectory, classes, confusion, saveLabeled, preview;
+  fs::path config, output, trajectory, classes, confusion, saveLabeled, preview, tiles;
+  semantic_octree::MapFolderOptions folder;
   LabelSources labels;
   std::optional<double> resolution, maxRange;
   std::size_t previewEvery = 10;
@@ -73,12 +77,25 @@ struct Cli {
     app.add_flag_callback("-v,--verbose", beVerbose, "Say of each observation what became of it");
     auto* upkeep = app.add_flag("--compare-upkeep", compareUpkeep,
                                 "Time each insertion without upkeep of the abstraction, too");
-    app.add_flag("--slam", slam,
-                 "Correct the poses: register scans to each other, close loops; for LiDARs")
-        ->excludes(upkeep);
+    auto* corrected =
+        app.add_flag("--slam", slam,
+                     "Correct the poses: register scans to each other, close loops; for LiDARs")
+            ->excludes(upkeep);
     auto* window = app.add_flag("--live", live, "Show the map in a window while it grows");
+    addTilesTo(app)->excludes(corrected)->excludes(upkeep)->excludes(window);
     app.add_flag("--pause", pause, "Wait there from the first scan on")->needs(window);
     app.add_option("INPUT.rawlog", rawlogs, "Rawlogs that continue each other")->required();
+  }
+
+  CLI::Option* addTilesTo(CLI::App& app) {
+    strict_files::OptionList list;
+    folder.describe(list);
+    addOptions(app, list, "Maps larger than memory");
+    return app
+        .add_option("--tiles", tiles,
+                    "Folder that the map goes into, tile by tile, added to what is there; "
+                    "pictures are for semantic-map-export")
+        ->group("Maps larger than memory");
   }
 
   void addLabelsTo(CLI::App& app) {
@@ -216,6 +233,13 @@ void writeCompressed(CSemanticOctoMap& map, const Config& config, const OutputFo
                             output.staged("compressed.png"));
 }
 
+/** Also its pictures, and the compressed map. \return what is wrong with the pictures */
+std::string writeMap(CSemanticOctoMap& map, const Config& config, const OutputFolder& output) {
+  saveTree(map.tree(), output.staged("map.semantic"));
+  if (config.abstraction.isSet()) writeCompressed(map, config, output);
+  return drawPictures(map.tree(), config, output);
+}
+
 int run(const Cli& cli) {
   const StopRequest stop("after this observation");
   const Config config = configOf(cli);
@@ -223,16 +247,22 @@ int run(const Cli& cli) {
   const ClassTable table = classesOf(cli, config);
   CSemanticOctoMap map(config.map.resolution, table, config.insertion.filter);
   map.insertionOptions = config.insertion;
-  setAbstraction(map, cli, config);
+  std::optional<MapFolder> tiles;
+  if (!cli.tiles.empty())
+    tiles.emplace(map.tree(), cli.tiles, MapFolder::Access::Write, cli.folder);
+  else
+    setAbstraction(map, cli, config);
   std::optional<LiveScans> live;
   if (cli.live) live.emplace(map.tree(), stop, cli.pause);
   OutputFolder output(cli.output);
 
   const Summary summary = buildMap(cli, config, stop, live ? &*live : nullptr, map, output);
-  saveTree(map.tree(), output.staged("map.semantic"));
-  writeJson(output.staged("summary.json"), toJson(summary, map.tree()));
-  const std::string problem = drawPictures(map.tree(), config, output);
-  if (config.abstraction.isSet()) writeCompressed(map, config, output);
+  writeJson(output.staged("summary.json"), toJson(summary, map.tree(), !tiles));
+  std::string problem;
+  if (tiles)
+    tiles->save();
+  else
+    problem = writeMap(map, config, output);
   output.commit(kFiles);
   if (!problem.empty()) throw std::runtime_error(problem);
   notes() << cli.output.string() << ": " << map.asString() << std::endl;

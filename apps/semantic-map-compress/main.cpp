@@ -1,6 +1,7 @@
 // Compresses a semantic octree map to its optimal trees for given weights of the classes.
 #include <map_pictures/MapPictures.h>
 #include <semantic_octree/MapContents.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/OutputFolder.h>
 #include <strict_files/TextFile.h>
@@ -12,6 +13,7 @@
 #include "Figures.h"
 #include "JsonFile.h"
 #include "MapSheet.h"
+#include "MemoryOption.h"
 #include "NumberChecks.h"
 #include "Outputs.h"
 #include "Report.h"
@@ -28,10 +30,11 @@ using strict_files::OutputFolder;
 struct Cli {
   fs::path map, weights, output;
   Target target;
+  double memory = semantic_octree::MapFolderOptions().memory;
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAP", map, "A map's own file (.semantic)")->required();
+    app.add_option("MAP", map, "A map's own file (.semantic), or a folder of tiles")->required();
     app.add_option("--weights", weights, "Solutions: weights of classes (YAML)")->required();
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     auto* group = app.add_option_group("size", "Instead of each solution's own alpha");
@@ -42,6 +45,7 @@ struct Cli {
     group->add_option("--bytes", target.bytes, "The largest tree whose file has at most these")
         ->check(isNumber(strict_files::above(0)));
     group->require_option(0, 1);
+    addMemoryOption(app, memory);
   }
 };
 
@@ -134,8 +138,9 @@ void printSummary(const std::vector<Compression>& compressions) {
 
 int run(const Cli& cli) {
   StageTimer times;
-  SemanticOcTree map = semantic_octree::loadTree(cli.map.string());
-  const FullMap full{cli.map.string(), map.getResolution(), map.size(), fs::file_size(cli.map),
+  semantic_octree::StoredMap stored(cli.map, cli.memory);
+  SemanticOcTree& map = stored.tree();
+  const FullMap full{cli.map.string(), map.getResolution(), map.size(), stored.bytesOnDisk(),
                      contentsOf(map).voxelsOfClass};
   const WeightsFile weights = semantic_octree::loadWeights(cli.weights, map.classes());
   cli.outputs.checkFolder(cli.output, fileNames(weights.solutions));

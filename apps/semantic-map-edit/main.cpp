@@ -1,6 +1,7 @@
 // Crops, coarsens and moves a semantic octree map, and imports maps of OctoMap's.
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/OctomapConversion.h>
 #include <semantic_octree/TreeFile.h>
@@ -11,6 +12,7 @@
 #include <ostream>
 
 #include "Application.h"
+#include "MemoryOption.h"
 #include "NumberChecks.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
@@ -22,15 +24,19 @@ namespace {
 namespace fs = std::filesystem;
 using semantic_map::CSemanticOctoMap;
 using semantic_octree::SemanticOcTree;
+using semantic_octree::StoredMap;
 
 struct Cli {
   fs::path in, out, like;
   std::optional<std::array<double, 6>> pose, box;
   std::optional<double> resolution;
+  double memory = semantic_octree::MapFolderOptions().memory;
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAP", in, "A map's own file (.semantic), or OctoMap's (.ot, .bt)")->required();
+    app.add_option("MAP", in,
+                   "A map's own file (.semantic), a folder of tiles, or OctoMap's (.ot, .bt)")
+        ->required();
     outputs.add(app, out, "FILE", "The map to write (.semantic)")->required();
     app.add_option("--pose", pose,
                    "Where the map's origin is in the new map: x y z (m) yaw pitch roll (degrees)")
@@ -41,6 +47,7 @@ struct Cli {
         ->check(isNumber(strict_files::above(0)));
     app.add_option("--like", like,
                    "For OctoMap's files: a map whose classes and filter the new one has");
+    addMemoryOption(app, memory);
   }
 };
 
@@ -52,12 +59,13 @@ SemanticOcTree import(const fs::path& file, const fs::path& like) {
   return semantic_octree::fromOcTree(*occupancy, model.classes(), model.filterParameters());
 }
 
-SemanticOcTree load(const Cli& cli) {
-  if (cli.in.extension() == ".ot" || cli.in.extension() == ".bt") return import(cli.in, cli.like);
+StoredMap load(const Cli& cli) {
+  if (cli.in.extension() == ".ot" || cli.in.extension() == ".bt")
+    return StoredMap(import(cli.in, cli.like));
   if (!cli.like.empty())
     throw std::runtime_error("--like is for OctoMap's files (.ot, .bt), not for " +
                              cli.in.string());
-  return semantic_octree::loadTree(cli.in.string());
+  return StoredMap(cli.in, cli.memory);
 }
 
 Eigen::AlignedBox3d boxOf(const std::array<double, 6>& v) {
@@ -76,12 +84,14 @@ int levelsTo(double resolution, double mapResolution) {
 
 int run(const Cli& cli) {
   cli.outputs.check({cli.out});
-  SemanticOcTree map = load(cli);
-  if (cli.pose) map = moved(map, poses::poseOfNumbers(*cli.pose));
-  if (cli.box) map = cropped(map, boxOf(*cli.box));
-  if (cli.resolution) map = coarsened(map, levelsTo(*cli.resolution, map.getResolution()));
-  saveTree(map, cli.out.string());
-  notes() << cli.out.string() << ": " << CSemanticOctoMap(std::move(map)).asString() << '\n';
+  StoredMap stored = load(cli);
+  std::optional<SemanticOcTree> edited;
+  const auto map = [&]() -> const SemanticOcTree& { return edited ? *edited : stored.tree(); };
+  if (cli.pose) edited = moved(map(), poses::poseOfNumbers(*cli.pose));
+  if (cli.box) edited = cropped(map(), boxOf(*cli.box));
+  if (cli.resolution) edited = coarsened(map(), levelsTo(*cli.resolution, map().getResolution()));
+  saveTree(map(), cli.out.string());
+  notes() << cli.out.string() << ": " << map().getNumLeafNodes() << " leaves\n";
   return 0;
 }
 

@@ -1,10 +1,12 @@
 // Writes a semantic octree map into files that other programs read.
-#include <semantic_octree/TreeFile.h>
+#include <semantic_octree/MapFolder.h>
 
+#include <algorithm>
 #include <ostream>
 
 #include "Application.h"
 #include "Exporter.h"
+#include "MemoryOption.h"
 #include "OptionFlags.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
@@ -13,6 +15,7 @@ namespace semantic_map_export {
 namespace {
 
 namespace fs = std::filesystem;
+using semantic_octree::StoredMap;
 using semantic_types::ClassTable;
 
 struct Cli {
@@ -20,10 +23,14 @@ struct Cli {
   std::vector<fs::path> files;
   std::vector<std::string> ground;
   ExportOptions options;
+  double memory = semantic_octree::MapFolderOptions().memory;
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAP", map, "A map's own file (.semantic), compressed or not")->required();
+    app.add_option("MAP", map,
+                   "A map's own file (.semantic), compressed or not, or a folder of tiles")
+        ->required();
+    addMemoryOption(app, memory);
     outputs
         .add(app, files, "FILE",
              "A file to write, may be given several times; its ending says what (" +
@@ -69,12 +76,19 @@ std::vector<fs::path> allFiles(const std::vector<fs::path>& files) {
   return all;
 }
 
+/** A scene is made of a copy of the map. */
+bool isAnyScene(const std::vector<fs::path>& files) {
+  return std::any_of(files.begin(), files.end(),
+                     [](const fs::path& file) { return file.extension() == ".3Dscene"; });
+}
+
 int run(const Cli& cli) {
   cli.outputs.check(allFiles(cli.files));
-  const auto map = semantic_octree::loadTree(cli.map.string());
+  StoredMap map(cli.map, cli.memory);
+  if (map.folder() && isAnyScene(cli.files)) map.folder()->bringAll();
   ExportOptions options = cli.options;
-  options.grid.ground = classesNamed(cli.ground, map.classes());
-  Exporter exporter(map, options);
+  options.grid.ground = classesNamed(cli.ground, map.tree().classes());
+  Exporter exporter(map.tree(), options);
   for (const fs::path& file : cli.files) exporter.write(file);
   for (const fs::path& file : exporter.commit()) notes() << file.string() << '\n';
   return 0;

@@ -46,6 +46,13 @@ ordered_json classesJson(const SemanticOcTree& map, const MapContents& contents)
   return classes;
 }
 
+ordered_json folderJson(const semantic_octree::MapFolder::Contents& folder) {
+  return {{"tiles", folder.tiles},
+          {"tileSize", folder.tileSize},
+          {"generation", folder.generation},
+          {"bytes", folder.bytesOnDisk}};
+}
+
 void printBox(const ordered_json& box, std::ostream& out) {
   if (box.is_null()) {
     out << "nothing is known yet\n";
@@ -59,19 +66,22 @@ void printBox(const ordered_json& box, std::ostream& out) {
 
 }  // namespace
 
-ordered_json describe(const SemanticOcTree& map) {
+ordered_json describe(semantic_octree::StoredMap& stored) {
+  const SemanticOcTree& map = stored.tree();
   const MapContents contents = contentsOf(map);
-  return {{"resolution", map.getResolution()},
-          {"nodes", map.size()},
-          {"leaves", contents.leaves},
-          {"innerNodes", contents.innerNodes},
-          {"bytes", contents.bytes},
-          {"boundingBox", boxJson(contents)},
-          {"freeVoxels", contents.freeVoxels},
-          {"occupiedVoxels", contents.occupiedVoxels},
-          {"occupiedWithoutClass", contents.voxelsOfClass[0]},
-          {"filter", parametersJson(map.filterParameters())},
-          {"classes", classesJson(map, contents)}};
+  ordered_json description = {{"resolution", map.getResolution()},
+                              {"nodes", map.size()},
+                              {"leaves", contents.leaves},
+                              {"innerNodes", contents.innerNodes},
+                              {"bytes", contents.bytes},
+                              {"boundingBox", boxJson(contents)},
+                              {"freeVoxels", contents.freeVoxels},
+                              {"occupiedVoxels", contents.occupiedVoxels},
+                              {"occupiedWithoutClass", contents.voxelsOfClass[0]},
+                              {"filter", parametersJson(map.filterParameters())},
+                              {"classes", classesJson(map, contents)}};
+  if (stored.folder()) description["folder"] = folderJson(stored.folder()->contents());
+  return description;
 }
 
 void printText(const std::string& name, const ordered_json& d, std::ostream& out) {
@@ -86,6 +96,10 @@ void printText(const std::string& name, const ordered_json& d, std::ostream& out
       << "  filter       ";
   for (const auto& [key, value] : d["filter"].items())
     out << " " << key << " " << (value.is_string() ? value.get<std::string>() : value.dump());
+  if (d.contains("folder"))
+    out << "\n  folder        " << d["folder"]["tiles"] << " tiles of " << d["folder"]["tileSize"]
+        << " m, " << strict_files::sizeText(d["folder"]["bytes"]) << ", saved "
+        << d["folder"]["generation"] << " times";
   out << "\n  occupied voxels by likeliest class (of " << d["classes"].size() << " classes)\n";
   const auto line = [&out](const std::string& id, const ordered_json& voxels,
                            const std::string& label) {

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/SemanticOcTree.h>
+#include <semantic_octree/MapFolder.h>
 
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -8,7 +8,7 @@
 namespace semantic_map_info {
 
 /** All there is to say about a map but its voxels. */
-nlohmann::ordered_json describe(const semantic_octree::SemanticOcTree& map);
+nlohmann::ordered_json describe(semantic_octree::StoredMap& map);
 
 /** The same for people. \param description what describe() returned */
 void printText(const std::string& name, const nlohmann::ordered_json& description,

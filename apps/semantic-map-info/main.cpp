@@ -1,5 +1,5 @@
 // Says what is in a semantic octree map, as a whole or at points.
-#include <semantic_octree/TreeFile.h>
+#include <semantic_octree/MapFolder.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include "Application.h"
 #include "Description.h"
 #include "JsonFile.h"
+#include "MemoryOption.h"
 #include "PointQuery.h"
 
 namespace semantic_map_info {
@@ -32,9 +33,10 @@ struct Cli {
   std::vector<std::string> at;
   std::vector<strict_files::TextLine> points;
   bool json = false, distribution = false;
+  double memory = semantic_octree::MapFolderOptions().memory;
 
   explicit Cli(CLI::App& app) {
-    app.add_option("MAP", map, "A map's own file (.semantic)")->required();
+    app.add_option("MAP", map, "A map's own file (.semantic), or a folder of tiles")->required();
     app.add_flag("--json", json, "As JSON");
     app.add_option("--at", at, "What the map knows at this point, m; may be given several times")
         ->type_name("X,Y,Z")
@@ -45,6 +47,7 @@ struct Cli {
         ->type_name("FILE");
     app.add_flag("--distribution", distribution,
                  "At such points, the probabilities of all classes");
+    addMemoryOption(app, memory);
   }
   bool asksForPoints() const { return !at.empty() || !query.empty(); }
 };
@@ -59,18 +62,31 @@ std::vector<strict_files::TextLine> pointsOf(const Cli& cli) {
   return points;
 }
 
+/** \throw std::runtime_error naming all tiles that cannot be read. */
+void checkTiles(semantic_octree::MapFolder& folder) {
+  const std::vector<std::string> problems = folder.problems();
+  if (problems.empty()) return;
+  std::string text =
+      "tiles that cannot be read (the others can, as by --at): " + std::to_string(problems.size());
+  for (const std::string& problem : problems) text += "\n  " + problem;
+  throw std::runtime_error(text);
+}
+
 int run(const Cli& cli) {
   if (cli.distribution && !cli.asksForPoints())
     throw CLI::RequiredError("--at or --query (with --distribution)");
-  const auto map = semantic_octree::loadTree(cli.map.string());
+  semantic_octree::StoredMap map(cli.map, cli.memory);
   if (cli.asksForPoints()) {
-    const auto answers = answersAt(map, pointsOf(cli), cli.distribution);
+    const auto answers = answersAt(map.tree(), pointsOf(cli), cli.distribution);
     std::cout << (cli.json ? textOf(answers) : textOfAnswers(answers));
-  } else if (cli.json) {
-    std::cout << textOf(describe(map));
-  } else {
-    printText(cli.map.string(), describe(map), std::cout);
+    return 0;
   }
+  if (map.folder()) checkTiles(*map.folder());
+  const auto description = describe(map);
+  if (cli.json)
+    std::cout << textOf(description);
+  else
+    printText(cli.map.string(), description, std::cout);
   return 0;
 }
 

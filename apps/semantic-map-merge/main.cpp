@@ -1,12 +1,15 @@
 // Adds semantic octree maps up.
 #include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/TreeFile.h>
 
+#include <deque>
 #include <ostream>
 
 #include "Application.h"
 #include "MapPoses.h"
+#include "MemoryOption.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
 
@@ -17,28 +20,35 @@ namespace fs = std::filesystem;
 using semantic_map::CSemanticOctoMap;
 using semantic_octree::Limits;
 using semantic_octree::SemanticOcTree;
+using semantic_octree::StoredMap;
 
 struct Cli {
   std::vector<fs::path> maps;
   fs::path out, poses;
   bool partial = false;
+  double memory = semantic_octree::MapFolderOptions().memory;
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAP", maps, "Maps' own files (.semantic)")->required();
+    app.add_option("MAP", maps, "Maps' own files (.semantic), or folders of tiles")->required();
     outputs.add(app, out, "FILE", "The sum to write (.semantic)")->required();
     app.add_option("--poses", poses, "File of lines `MAP x y z yaw pitch roll` (m, degrees)");
     app.add_flag("--partial", partial,
                  "The sum will be added to others: do not limit yet how sure it is");
+    addMemoryOption(app, memory);
   }
 };
 
-SemanticOcTree load(const fs::path& file, const std::map<fs::path, Eigen::Isometry3d>& poses) {
-  SemanticOcTree map = semantic_octree::loadTree(file.string());
+/** Adds the map of a file, moved if it has a pose. */
+void load(const Cli& cli, const fs::path& file, const std::map<fs::path, Eigen::Isometry3d>& poses,
+          std::deque<StoredMap>& maps) {
   const auto pose = poses.find(file);
-  if (pose != poses.end()) map = moved(map, pose->second);
-  notes() << file.string() << ": " << map.getNumLeafNodes() << " leaves\n";
-  return map;
+  const double memory = cli.memory / static_cast<double>(cli.maps.size());
+  if (pose != poses.end())
+    maps.emplace_back(moved(StoredMap(file, memory).tree(), pose->second));
+  else
+    maps.emplace_back(file, memory);
+  notes() << file.string() << ": " << maps.back().tree().getNumLeafNodes() << " leaves\n";
 }
 
 void checkAlike(const fs::path& first, const SemanticOcTree& a, const fs::path& second,
@@ -56,13 +66,12 @@ int run(const Cli& cli) {
   cli.outputs.check({cli.out});
   std::map<fs::path, Eigen::Isometry3d> poses;
   if (!cli.poses.empty()) poses = readMapPoses(cli.poses, cli.maps);
-  std::vector<SemanticOcTree> maps;
-  maps.reserve(cli.maps.size());
+  std::deque<StoredMap> maps;
   std::vector<const SemanticOcTree*> pointers;
   for (const fs::path& file : cli.maps) {
-    maps.push_back(load(file, poses));
-    checkAlike(cli.maps.front(), maps.front(), file, maps.back());
-    pointers.push_back(&maps.back());
+    load(cli, file, poses, maps);
+    checkAlike(cli.maps.front(), maps.front().tree(), file, maps.back().tree());
+    pointers.push_back(&maps.back().tree());
   }
   SemanticOcTree sum = merged(pointers, cli.partial ? Limits::Keep : Limits::Apply);
   saveTree(sum, cli.out.string());

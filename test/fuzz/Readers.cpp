@@ -14,6 +14,7 @@
 #include <octomap/OcTree.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/OctomapConversion.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_octree/WeightsFile.h>
@@ -46,6 +47,20 @@ void readMap(const std::string& bytes) {
   semantic_octree::writeTree(out, map);
   std::istringstream again(out.str());
   if (!(semantic_octree::readTree(again) == map)) std::abort();
+}
+
+/** The leaves' file, which it names, is not there. */
+void readTileIndex(const std::string& bytes) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("mso_fuzz_tiles_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "index.yaml", std::ios::binary) << bytes;
+  try {
+    semantic_octree::MapFolder::emptyMap(folder);
+  } catch (...) {
+    fs::remove_all(folder);
+    throw;
+  }
 }
 
 void readOctomap(const fs::path& file) {
@@ -97,6 +112,7 @@ void readRawlog(const fs::path& file) {
 std::vector<Reader> libraryReaders() {
   return {
       {"map", readMap, {}},
+      {"tile-index", readTileIndex, {}},
       {"rawlog", fromFile(".rawlog", readRawlog), {}},
       {"octomap", fromFile(".ot", readOctomap), {}},
       {"octomap-binary", fromFile(".bt", readOctomap), {}},

@@ -3,6 +3,7 @@
 #include <octomap/OcTree.h>
 #include <semantic_octree/Abstraction.h>
 #include <semantic_octree/KeyframeMap.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/OctomapConversion.h>
 #include <semantic_octree/TreeFile.h>
@@ -12,6 +13,7 @@
 
 #include "FailingAllocations.h"
 #include "RandomScans.h"
+#include "TemporaryFolder.h"
 
 using namespace semantic_octree;
 
@@ -32,6 +34,12 @@ SemanticOcTree mapOf(unsigned seed, int numScans, bool withAbstraction) {
     map.insert(scan.cloud, scan.T_map_sensor);
   }
   return map;
+}
+
+std::string bytesOf(const SemanticOcTree& map) {
+  std::ostringstream out;
+  writeTree(out, map);
+  return out.str();
 }
 
 /** It answers nothing, but can begin anew. \param broken counts it; null: it should not be */
@@ -155,6 +163,41 @@ TEST(FailingAllocations, ofTheCompressedTreesChangeAreRemembered) {
                            EXPECT_TRUE(*map == before);
                          });
   EXPECT_GT(lost, 3);
+}
+
+TEST(FailingAllocations, whileTilesComeAndGoLeaveTheMapOrABrokenOne) {
+  const TemporaryFolder folder;
+  std::string expected;
+  MapFolderOptions tight;
+  tight.memory = 0;
+  tight.tileSize = 8;
+  {
+    SemanticOcTree map = mapOf(1, 0, true);
+    MapFolder tiles(map, folder.path(), MapFolder::Access::Write, tight);
+    std::mt19937 random(10);
+    for (int i = 0; i < 2; ++i) {
+      const PosedCloud scan = randomScan(random);
+      map.insert(scan.cloud, scan.T_map_sensor);
+    }
+    tiles.save();
+    expected = bytesOf(map);
+  }
+  std::optional<SemanticOcTree> map;
+  std::optional<MapFolder> tiles;
+  int broken = 0;
+  const int failures = failEachAllocation(
+      [&] {
+        tiles.reset();
+        map.emplace(mapOf(1, 0, true));
+        tiles.emplace(*map, folder.path(), MapFolder::Access::Read, tight);
+      },
+      [&] { bytesOf(*map); },
+      [&] {
+        if (map->isBroken()) return expectLost(*map, &broken);
+        EXPECT_EQ(bytesOf(*map), expected);
+      });
+  EXPECT_LT(broken, failures);
+  EXPECT_EQ(bytesOf(loadTree(folder.path().string())), expected);
 }
 
 TEST(FailingAllocations, whileAMapIsSavedLeaveTheOldFile) {

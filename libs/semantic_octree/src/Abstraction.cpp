@@ -105,6 +105,7 @@ void Abstraction::forEachInner(const F& f) const {
   GTree::Worker& worker = m_gTree.worker(0);
   const auto visit = [&](const auto& self, const Slot& slot, const Cell& cell) -> void {
     if (!slot.isInner()) return;
+    store.bring(slot);
     worker.inspect(store, slot, cell, f);
     if (slot.kind == Slot::Kind::Octant)
       for (int i = 0; i < 8; ++i) self(self, store.octant(slot).slots[i], cell.child(i));

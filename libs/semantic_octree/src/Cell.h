@@ -18,6 +18,11 @@ struct Cell {
 
   /** i-th of the eight children in OctoMap's order: x is bit 0, y bit 1, z bit 2. */
   Cell child(int i) const { return {index * 2 + VoxelIndex(i & 1, i >> 1 & 1, i >> 2), depth + 1}; }
+  /** Which child, of its ancestor above, the ancestor at a depth is. */
+  int childOnTheWay(int ancestor) const {
+    const int shift = depth - ancestor;
+    return (index.x() >> shift & 1) | (index.y() >> shift & 1) << 1 | (index.z() >> shift & 1) << 2;
+  }
   /** Edge in voxels. */
   int edge() const { return edgeAtDepth(depth); }
   /** Lowest voxel, as a key. */

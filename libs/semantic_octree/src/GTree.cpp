@@ -265,6 +265,7 @@ void GTree::Worker::noteChildren(const NodeStore& store, const Slot& inner, Inne
 
 void GTree::Worker::recomputeAll(NodeStore& store, Slot& slot, const Cell& cell) {
   if (!slot.isInner()) return;
+  if (slot.kind == Slot::Kind::Away) return store.bring(slot);  // whoever brings it computes it
   if (slot.kind == Slot::Kind::Octant) {
     Octant& octant = store.octant(slot);
     for (const Slot& child : octant.slots) store.prefetchInner(child);
@@ -277,6 +278,7 @@ bool GTree::Worker::recomputeWhereChanged(NodeStore& store, Slot& slot, const Ce
                                           const DensityField& before) {
   if (DensityField::sameIn(before, m_gTree.density(), cell)) return false;
   if (slot.isKnown() && !slot.isInner()) return true;
+  store.bring(slot);
   bool changed = slot.kind != Slot::Kind::Octant;
   if (slot.kind == Slot::Kind::Octant)
     for (int i = 0; i < 8; ++i)

@@ -54,6 +54,8 @@ class IndexAllocator {
   }
   /** Elements taken less given back; an allocator may be given what another has taken. */
   long inUse() const { return m_inUse; }
+  /** Elements given back and not taken again. */
+  std::size_t spare() const { return m_free.size(); }
 
  private:
   std::vector<std::uint32_t> m_free;

@@ -1,48 +1,11 @@
 #include "NodeStore.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace semantic_octree {
 
 using Kind = Slot::Kind;
-
-Units Block::highestValue() const { return *std::max_element(values, values + 64); }
-
-Block::Count Block::count() const {
-  constexpr VoxelBits kFirsts = 0x0101010101010101;
-  VoxelBits any = known | known >> 4;
-  any |= any >> 2;
-  any = (any | any >> 1) & kFirsts;  // one bit per known octant
-  // The leaves' bits, one in each octant: the eighth of the copies of all eight.
-  const VoxelBits leaves = (leafOctants * kFirsts & 0x8040201008040201) + 0x7f7f7f7f7f7f7f7f;
-  const VoxelBits leaf = ((leaves | (leafOctants * kFirsts & 0x8040201008040201)) >> 7) & kFirsts;
-  return {countOf(any) + countOf(known & ~(leaf * 0xff)), countOf(any & ~leaf)};
-}
-
-void BlockContent::setVoxel(int voxel, Units value, const ClassRecord* record) {
-  values[voxel] = value;
-  known |= VoxelBits(1) << voxel;
-  if (!record) return;
-  recorded |= VoxelBits(1) << voxel;
-  records[voxel] = *record;
-}
-
-void BlockContent::setLeafOctant(int octant, Units value, const ClassRecord* record) {
-  setVoxel(8 * octant, value, record);
-  std::fill_n(values + 8 * octant, 8, value);
-  known |= VoxelBits(0xff) << 8 * octant;
-  leafOctants |= static_cast<std::uint8_t>(1u << octant);
-}
-
-void BlockContent::mergeOctant(int octant) {
-  const int first = 8 * octant;
-  const auto bitsOf = [first](VoxelBits bits) { return bits >> first & 0xff; };
-  if (bitsOf(known) != 0xff || (bitsOf(recorded) != 0 && bitsOf(recorded) != 0xff)) return;
-  for (int i = first + 1; i < first + 8; ++i)
-    if (values[i] != values[first] || (bitsOf(recorded) && records[i] != records[first])) return;
-  leafOctants |= static_cast<std::uint8_t>(1u << octant);
-  recorded &= ~(VoxelBits(0xfe) << first);
-}
 
 NodeStore::NodeStore(std::size_t stateBytes)
     : m_octants(sizeof(Octant) + stateBytes),
@@ -55,6 +18,9 @@ NodeStore::NodeStore(const NodeStore& o, std::size_t stateBytes) : NodeStore(sta
   m_records.copy(o.m_records);
   m_root = o.m_root;
   m_arenas = o.m_arenas;
+  m_tiles = o.m_tiles;
+  m_awayNodes = o.m_awayNodes;
+  m_awayInner = o.m_awayInner;
   for (NodeArena& arena : m_arenas) arena.m_store = this;
 }
 
@@ -81,6 +47,11 @@ const ClassRecord& NodeStore::record(const Node& leaf) const {
   const int voxel =
       leaf.isOctant() ? 8 * (leaf.m_part - Node::kFirstOctant) : leaf.m_part - Node::kFirstVoxel;
   return record(block(slot), voxel);
+}
+
+void NodeStore::bringAway(const Slot& slot) const {
+  if (!m_tiles) throw std::logic_error("the map's folder of tiles was closed before the map");
+  m_tiles->bring(const_cast<Slot&>(slot));  // the map stays what it is
 }
 
 Units NodeStore::highestValueBelow(const Slot& inner) const {
@@ -110,13 +81,13 @@ std::size_t NodeStore::bytes() const {
 }
 
 std::size_t NodeStore::numNodes() const {
-  long n = 0;
+  long n = m_awayNodes;
   for (const NodeArena& arena : m_arenas) n += arena.nodes();
   return static_cast<std::size_t>(n);
 }
 
 std::size_t NodeStore::numInnerNodes() const {
-  long n = 0;
+  long n = m_awayInner;
   for (const NodeArena& arena : m_arenas) n += arena.innerNodes();
   return static_cast<std::size_t>(n);
 }
@@ -162,10 +133,10 @@ Block& NodeArena::createBlock(Slot& slot) {
 
 void NodeArena::createBlock(Slot& slot, const BlockContent& content) {
   Block& block = createBlock(slot);
+  setRecorded(block, content.recorded);  // if this fails, the block is empty
   std::copy_n(content.values, 64, block.values);
   block.known = content.known;
   block.leafOctants = content.leafOctants;
-  setRecorded(block, content.recorded);
   ClassRecord* record = content.recorded ? m_store->recordsOf(block) : nullptr;
   for (VoxelBits bits = content.recorded; bits; bits &= bits - 1)
     *record++ = content.records[__builtin_ctzll(bits)];

@@ -27,7 +27,8 @@ struct Slot {
     Leaf,            ///< without a class record
     LeafWithRecord,  ///< `index` is the record's
     Octant,          ///< inner node; `index` is that of its children
-    Block            ///< inner node at depth 14; `index` is the block's
+    Block,           ///< inner node at depth 14; `index` is the block's
+    Away             ///< inner node whose children are in a file; `index` is where they come back
   };
   std::uint32_t index = 0;
   Units value = 0;
@@ -89,6 +90,19 @@ struct BlockContent {
 };
 
 class NodeArena;
+class Scan;
+
+/** Where the children of nodes are that are away (see MapFolder). */
+class TileSource {
+ public:
+  virtual ~TileSource() = default;
+  /** Makes an inner node that is away an octant. Others may go away for it. */
+  virtual void bring(Slot& away) = 0;
+  /** Makes that of all nodes that a scan is going to change. */
+  virtual void prepare(const Scan& scan) = 0;
+  /** Makes all nodes go away that may. */
+  virtual void sendAway() = 0;
+};
 
 /** Memory of a tree: nodes, class records, bookkeeping of inner nodes.
  *
@@ -125,6 +139,20 @@ class NodeStore {
   /** Of a leaf that has one. */
   const ClassRecord& record(const Node& leaf) const;
 
+  /** Null: all nodes are in memory. */
+  TileSource* tiles() const { return m_tiles; }
+  void setTiles(TileSource* tiles) { m_tiles = tiles; }
+  /** Has the children of a node in memory, if it has any. */
+  void bring(const Slot& slot) const {
+    if (slot.kind == Slot::Kind::Away) bringAway(slot);
+  }
+  /** Counts nodes that went away, or came back (negative). */
+  void countAway(long nodes, long inner) {
+    m_awayNodes += nodes;
+    m_awayInner += inner;
+  }
+  int numArenas() const { return static_cast<int>(m_arenas.size()); }
+
   /** Bookkeeping of an inner node that is a slot. */
   template <typename T>
   T* state(const Slot& inner) const {
@@ -145,7 +173,7 @@ class NodeStore {
 
   /** Bytes of nodes, records and bookkeeping in use; what is set aside for more is not counted. */
   std::size_t bytes() const;
-  /** Nodes including the root. */
+  /** Nodes including the root, and those that are away. */
   std::size_t numNodes() const;
   std::size_t numInnerNodes() const;
 
@@ -156,9 +184,13 @@ class NodeStore {
     return reinterpret_cast<ClassRecord*>(m_records.at(index));
   }
 
+  void bringAway(const Slot& slot) const;
+
   Slot m_root;
   IndexPool m_octants, m_blocks, m_records;
   std::deque<NodeArena> m_arenas;
+  TileSource* m_tiles = nullptr;
+  long m_awayNodes = 0, m_awayInner = 0;
 };
 
 /** One thread's way to create and remove nodes. */
@@ -194,6 +226,8 @@ class NodeArena {
   /** Made less removed; an arena may remove what another has made. */
   long nodes() const { return m_nodes; }
   long innerNodes() const { return m_inner; }
+  /** Blocks that were given back and not taken again. */
+  std::size_t spareBlocks() const { return m_blocks.spare(); }
 
  private:
   friend class NodeStore;

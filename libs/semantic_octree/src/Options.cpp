@@ -2,6 +2,7 @@
 #include <semantic_octree/AbstractionOptions.h>
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/InsertionOptions.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_types/ClassTable.h>
 
 #include <cmath>
@@ -53,6 +54,15 @@ void InsertionOptions::validate() const {
   require(maxRange == 0 || minRange < maxRange, "InsertionOptions::min_range", minRange,
           "less than max_range");
 }
+
+void MapFolderOptions::describe(OptionList& list) {
+  list.add("memory", memory, "MB", atLeast(0),
+           "of tiles that are kept in memory; what one scan needs is always taken");
+  list.add("tile_size", tileSize, "m", above(0),
+           "edge of a new folder's tiles; the next smaller power of two voxels, 8 at least");
+}
+
+void MapFolderOptions::validate() const { checkOptions(*this, "MapFolderOptions"); }
 
 const Choices<FilterParameters::Increments>& choicesOf(FilterParameters::Increments) {
   using Increments = FilterParameters::Increments;

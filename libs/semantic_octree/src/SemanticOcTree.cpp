@@ -41,6 +41,7 @@ SemanticOcTree::~SemanticOcTree() = default;
 
 SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
     : SemanticOcTree(o.m_resolution, o.m_classes, o.m_parameters) {
+  o.checkNotInTiles();
   m_pruning = o.m_pruning;
   if (o.hasAbstraction()) {
     m_gTree = std::make_unique<GTree>(o.m_gTree->options(), m_filter, m_resolution);
@@ -81,7 +82,13 @@ bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
   return TreeComparison(store(), o.store(), sameRows).same(store().root(), o.store().root());
 }
 
+void SemanticOcTree::checkNotInTiles() const {
+  if (m_store && m_store->tiles())
+    throw std::logic_error("a map in a folder of tiles cannot be copied, cleared or corrected");
+}
+
 void SemanticOcTree::clear() {
+  checkNotInTiles();
   m_store = std::make_unique<NodeStore>(m_gTree ? m_gTree->stateBytes() : 0);
   if (m_touched) m_touched->take();
 }
@@ -104,11 +111,23 @@ void SemanticOcTree::setAbstraction(const AbstractionOptions& options) {
   options.validate(numClasses());
   auto gTree = std::make_unique<GTree>(options, m_filter, m_resolution);
   auto leafChanges = std::make_unique<LeafChanges>();
+  if (store().tiles()) store().tiles()->sendAway();  // it is copied
   auto newStore = std::make_unique<NodeStore>(store(), gTree->stateBytes());
-  gTree->worker(0).recomputeAll(*newStore, newStore->root(), Cell());
+  if (!store().tiles()) gTree->worker(0).recomputeAll(*newStore, newStore->root(), Cell());
   std::swap(m_gTree, gTree);
   std::swap(m_leafChanges, leafChanges);
   std::swap(m_store, newStore);
+  if (store().tiles()) computeTileByTile();
+}
+
+void SemanticOcTree::computeTileByTile() {
+  try {
+    m_gTree->worker(0).recomputeAll(store(), store().root(), Cell());
+  } catch (...) {  // tiles came and went meanwhile: what was cannot be had back
+    m_gTree = nullptr;
+    m_leafChanges = nullptr;
+    throw;
+  }
 }
 
 void SemanticOcTree::dropAbstraction() {
@@ -139,18 +158,19 @@ void SemanticOcTree::change(const F& f) {
     f(target);
   } catch (...) {
     m_store = nullptr;  // what is half changed cannot be told from what was there
-    m_scan = nullptr;
     throw;
   }
 }
 
 void SemanticOcTree::merge(const Scan& scan, int threads) {
-  if (scan.hasVoxels())
-    change([&](const MergeTarget& target) { mergeScan(target, scan, threads); });
+  if (!scan.hasVoxels()) return;
+  if (store().tiles()) store().tiles()->prepare(scan);
+  change([&](const MergeTarget& target) { mergeScan(target, scan, threads); });
 }
 
 void SemanticOcTree::replace(const std::vector<std::uint64_t>& tiles,
                              const SemanticOcTree& source) {
+  checkNotInTiles();
   change([&](const MergeTarget& target) { replaceTiles(target, tiles, source.store()); });
 }
 
@@ -162,11 +182,11 @@ InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
   if (!m_scan) m_scan = std::make_unique<Scan>();
   try {
     m_scan->set(cloud, T_map_sensor, m_resolution, numClasses(), options);
+    merge(*m_scan, options.threads);
   } catch (...) {
     m_scan = nullptr;  // half-filled buffers must not leak into the next scan
     throw;
   }
-  merge(*m_scan, options.threads);
   const InsertionReport report = m_scan->report();
   if (m_scan->bytes() > Scan::kTooManyBytes)
     m_scan = nullptr;

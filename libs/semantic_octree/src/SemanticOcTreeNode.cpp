@@ -13,6 +13,7 @@ bool SemanticOcTreeNode::isLeaf() const {
 }
 
 SemanticOcTreeNode SemanticOcTreeNode::child(int i) const {
+  m_store->bring(*m_slot);
   if (m_slot->kind == Slot::Kind::Octant) {
     const Slot& slot = m_store->octant(*m_slot).slots[i];
     return slot.isKnown() ? SemanticOcTreeNode(*m_store, slot) : SemanticOcTreeNode();

@@ -14,6 +14,8 @@ class TreeComparison {
       : m_a(a), m_b(b), m_withState(withState) {}
 
   bool same(const Slot& a, const Slot& b) const {
+    m_a.bring(a);
+    m_b.bring(b);
     if (a.kind != b.kind || a.value != b.value) return false;
     switch (a.kind) {
       case Slot::Kind::None:
@@ -25,6 +27,8 @@ class TreeComparison {
         return sameState(a, b) && sameChildren(m_a.octant(a), m_b.octant(b));
       case Slot::Kind::Block:
         return sameState(a, b) && sameVoxels(m_a.block(a), m_b.block(b));
+      case Slot::Kind::Away:  // it was brought
+        break;
     }
     return false;
   }

@@ -1,3 +1,4 @@
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/StagedFile.h>
 
@@ -12,12 +13,11 @@ namespace semantic_octree {
 namespace {
 
 namespace fs = std::filesystem;
+using strict_files::StagedFile;
 
-void writeWhole(const SemanticOcTree& tree, const fs::path& path) {
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  writeTree(out, tree);
-  out.close();
-  if (!out) throw std::runtime_error("the file could not be written completely");
+void writeBeginning(std::ostream& out) {
+  out.write(kMagic.data(), kMagic.size());
+  out.write(reinterpret_cast<const char*>(&kVersion), sizeof(kVersion));
 }
 
 /** What an error of a file says, without the path that it begins with. */
@@ -39,7 +39,9 @@ std::uint32_t readBeginning(std::istream& in) {
   return version;
 }
 
-SemanticOcTree readWhole(const fs::path& path) {
+/** Calls read(stream), which has to read all of the file. */
+template <typename F>
+auto readWhole(const fs::path& path, const F& read) {
   if (fs::is_directory(path)) throw std::runtime_error("it is a folder");
   if (fs::exists(path) && !fs::is_regular_file(path))
     throw std::runtime_error("it is no file, but a device or a pipe");
@@ -47,45 +49,83 @@ SemanticOcTree readWhole(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::runtime_error(std::strerror(errno));
   if (in.peek() == std::ifstream::traits_type::eof()) throw std::runtime_error("the file is empty");
-  SemanticOcTree tree = readTree(in);
+  auto content = read(in);
   if (in.peek() != std::ifstream::traits_type::eof())
     throw std::runtime_error("altered: bytes after the end of the map");
-  return tree;
+  return content;
 }
 
-}  // namespace
-
-void writeTree(std::ostream& out, const SemanticOcTree& tree) {
-  out.write(kMagic.data(), kMagic.size());
-  out.write(reinterpret_cast<const char*>(&kVersion), sizeof(kVersion));
-  TreeWriter(out, tree).write();
-}
-
-SemanticOcTree readTree(std::istream& in) {
-  const std::uint32_t version = readBeginning(in);
+/** Calls read(reader). */
+template <typename F>
+auto readContent(std::istream& in, const F& read) {
+  TreeReader reader(in, readBeginning(in));
   try {
-    return TreeReader(in, version).read();
+    return read(reader);
   } catch (const std::invalid_argument& e) {
     throw std::runtime_error(std::string("altered: ") + e.what());
   }
 }
 
-void saveTree(const SemanticOcTree& tree, const std::string& path) {
+/** Calls write(stream). */
+template <typename F>
+void save(const std::string& path, StagedFile::Disk when, const F& write) {
   try {
-    strict_files::StagedFile file(path);
-    writeWhole(tree, file.path());
-    file.commit();
+    StagedFile file(path);
+    std::ofstream out(file.path(), std::ios::binary | std::ios::trunc);
+    write(out);
+    out.close();
+    if (!out) throw std::runtime_error("the file could not be written completely");
+    file.commit(when);
   } catch (const std::exception& e) {
     throw std::runtime_error("cannot save map '" + path + "': " + reasonOf(e, path));
   }
 }
 
-SemanticOcTree loadTree(const std::string& path) {
+template <typename F>
+auto load(const std::string& path, const F& read) {
   try {
-    return readWhole(path);
+    return readWhole(path, read);
   } catch (const std::runtime_error& e) {
     throw std::runtime_error("cannot load map '" + path + "': " + e.what());
   }
+}
+
+}  // namespace
+
+void writeTree(std::ostream& out, const SemanticOcTree& tree) {
+  writeBeginning(out);
+  TreeWriter(out, tree).write();
+}
+
+SemanticOcTree readTree(std::istream& in) {
+  return readContent(in, [](TreeReader& reader) { return reader.read(); });
+}
+
+void saveTree(const SemanticOcTree& tree, const std::string& path) {
+  save(path, StagedFile::Disk::Now, [&](std::ostream& out) { writeTree(out, tree); });
+}
+
+SemanticOcTree loadTree(const std::string& path) {
+  if (MapFolder::isAt(path)) return loadFolder(path);
+  return load(path, [](std::istream& in) { return readTree(in); });
+}
+
+void saveTile(const SemanticOcTree& tree, const Slot& octant, const Cell& cell, std::uint64_t nodes,
+              const std::string& path) {
+  save(path, StagedFile::Disk::Later, [&](std::ostream& out) {
+    writeBeginning(out);
+    TreeWriter(out, tree).writeTile(octant, cell, nodes);
+  });
+}
+
+void loadTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant, const Cell& cell,
+              const std::string& path) {
+  load(path, [&](std::istream& in) {
+    return readContent(in, [&](TreeReader& reader) {
+      reader.readTile(tree, arena, octant, cell);
+      return true;
+    });
+  });
 }
 
 }  // namespace semantic_octree

@@ -34,8 +34,12 @@ class TreeWriter {
  public:
   TreeWriter(std::ostream& out, const SemanticOcTree& tree);
   void write();
+  /** A map of nothing but one inner node above the blocks, and its ancestors.
+   * \param nodes below it */
+  void writeTile(const Slot& octant, const Cell& cell, std::uint64_t nodes);
 
  private:
+  void putHeader();
   void putParameters(const FilterParameters& p);
   void putClasses(const ClassTable& classes);
   void putSlot(const Slot& slot);
@@ -57,8 +61,15 @@ class TreeReader {
  public:
   TreeReader(std::istream& in, std::uint32_t version) : m_in(in), m_version(version) {}
   SemanticOcTree read();
+  /** What writeTile() wrote of a map that is like this one: adds the children of an octant that has
+   * none. If it fails, some of them may be there. */
+  void readTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant, const Cell& cell);
 
  private:
+  SemanticOcTree getHeader();
+  void begin(const SemanticOcTree& tree, NodeArena& arena);
+  static void checkNodes(std::uint64_t found, std::uint64_t expected);
+  void fill(Octant& octant, int depth);
   FilterParameters getParameters();
   ClassTable getClasses();
   void getNodes(SemanticOcTree& tree, std::uint64_t expectedNodes);
@@ -82,5 +93,13 @@ class TreeReader {
   NodeArena* m_arena = nullptr;
   int m_numClasses = 0;
 };
+
+/** A tile's file, see TreeWriter::writeTile(); not yet on the disk. \throw std::runtime_error
+ * naming the file */
+void saveTile(const SemanticOcTree& tree, const Slot& octant, const Cell& cell, std::uint64_t nodes,
+              const std::string& path);
+/** See TreeReader::readTile(). \throw std::runtime_error naming the file */
+void loadTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant, const Cell& cell,
+              const std::string& path);
 
 }  // namespace semantic_octree

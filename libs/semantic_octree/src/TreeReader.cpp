@@ -6,18 +6,52 @@
 #include <cmath>
 
 #include "NodeStore.h"
+#include "TreeBuilder.h"
 
 namespace semantic_octree {
 
 using semantic_types::Color;
 using semantic_types::kMaxClasses;
 
-SemanticOcTree TreeReader::read() {
+SemanticOcTree TreeReader::getHeader() {
   const auto resolution = m_in.get<double>();
   const bool pruning = getUpTo(1, "pruning");
   const FilterParameters parameters = getParameters();
   SemanticOcTree tree(resolution, getClasses(), parameters);
   tree.setPruning(pruning);
+  return tree;
+}
+
+void TreeReader::readTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant,
+                          const Cell& cell) {
+  if (getHeader() != TreeBuilder::emptyLike(tree))
+    throw std::runtime_error("it is of a map with another resolution, other classes or parameters");
+  begin(tree, arena);
+  const std::uint64_t others = m_store->numNodes() - static_cast<std::uint64_t>(cell.depth) - 1;
+  const auto expected = m_in.get<std::uint64_t>();
+  bool isTile = getUpTo(3, "node kind") == static_cast<std::uint8_t>(NodeKind::Inner);
+  for (int depth = 1; isTile && depth <= cell.depth; ++depth)
+    isTile = getKinds() == static_cast<unsigned>(NodeKind::Inner) << 2 * cell.childOnTheWay(depth);
+  if (!isTile) throw std::runtime_error("it is no tile, or another one");
+  fill(octant, cell.depth);
+  checkNodes(m_store->numNodes() - others, expected);
+  m_in.finish();
+}
+
+void TreeReader::begin(const SemanticOcTree& tree, NodeArena& arena) {
+  m_store = &tree.store();
+  m_arena = &arena;
+  m_numClasses = tree.numClasses();
+}
+
+void TreeReader::checkNodes(std::uint64_t found, std::uint64_t expected) {
+  if (found != expected)
+    throw std::runtime_error("altered: " + std::to_string(found) + " nodes, expected " +
+                             std::to_string(expected));
+}
+
+SemanticOcTree TreeReader::read() {
+  SemanticOcTree tree = getHeader();
   if (const auto numNodes = m_in.get<std::uint64_t>(); numNodes > 0) getNodes(tree, numNodes);
   m_in.finish();
   return tree;
@@ -58,13 +92,9 @@ ClassTable TreeReader::getClasses() {
 }
 
 void TreeReader::getNodes(SemanticOcTree& tree, std::uint64_t expectedNodes) {
-  m_store = &tree.store();
-  m_arena = &m_store->arena(0);
-  m_numClasses = tree.numClasses();
+  begin(tree, tree.store().arena(0));
   getNode(m_store->root(), static_cast<NodeKind>(getUpTo(3, "node kind")), 0);
-  if (m_store->numNodes() != expectedNodes)
-    throw std::runtime_error("altered: " + std::to_string(m_store->numNodes()) +
-                             " nodes, expected " + std::to_string(expectedNodes));
+  checkNodes(m_store->numNodes(), expectedNodes);
 }
 
 void TreeReader::getNode(Slot& slot, NodeKind kind, int depth) {
@@ -106,15 +136,18 @@ std::uint16_t TreeReader::getKinds() {
 }
 
 void TreeReader::getChildren(Slot& inner, int depth) {
+  fill(m_arena->createOctant(inner), depth);
+  inner.value = m_store->highestValueBelow(inner);
+}
+
+void TreeReader::fill(Octant& octant, int depth) {
   const std::uint16_t kinds = getKinds();
-  Octant& octant = m_arena->createOctant(inner);
   const auto kindOf = [kinds](int i) { return static_cast<NodeKind>(kinds >> 2 * i & 3); };
   for (int i = 0; i < 8; ++i)
     if (kindOf(i) == NodeKind::Leaf || kindOf(i) == NodeKind::LeafWithRecord)
       getNode(octant.slots[i], kindOf(i), depth + 1);
   for (int i = 0; i < 8; ++i)
     if (kindOf(i) == NodeKind::Inner) getNode(octant.slots[i], NodeKind::Inner, depth + 1);
-  inner.value = m_store->highestValueBelow(inner);
 }
 
 void TreeReader::getBlock(Slot& inner) {

@@ -8,11 +8,26 @@ using semantic_types::Color;
 TreeWriter::TreeWriter(std::ostream& out, const SemanticOcTree& tree)
     : m_out(out), m_tree(tree), m_store(tree.store()) {}
 
-void TreeWriter::write() {
+void TreeWriter::putHeader() {
   m_out.put(m_tree.getResolution());
   m_out.put(m_tree.pruning());
   putParameters(m_tree.filterParameters());
   putClasses(m_tree.classes());
+}
+
+void TreeWriter::writeTile(const Slot& octant, const Cell& cell, std::uint64_t nodes) {
+  putHeader();
+  m_out.put<std::uint64_t>(nodes + static_cast<std::uint64_t>(cell.depth) + 1);
+  m_out.put(static_cast<std::uint8_t>(NodeKind::Inner));
+  for (int depth = 1; depth <= cell.depth; ++depth)
+    m_out.put(static_cast<std::uint16_t>(static_cast<unsigned>(NodeKind::Inner)
+                                         << 2 * cell.childOnTheWay(depth)));
+  putSlot(octant);
+  m_out.finish();
+}
+
+void TreeWriter::write() {
+  putHeader();
   m_out.put<std::uint64_t>(m_tree.size());
   if (!m_tree.empty()) {
     m_out.put(static_cast<std::uint8_t>(kindOf(m_store.root())));
@@ -72,6 +87,7 @@ void TreeWriter::putRecord(const ClassRecord& record) {
 
 void TreeWriter::putSlot(const Slot& slot) {
   if (slot.isLeaf()) return putLeaf(slot);
+  m_store.bring(slot);
   slot.kind == Slot::Kind::Block ? putBlock(m_store.block(slot))
                                  : putChildren(m_store.octant(slot));
 }

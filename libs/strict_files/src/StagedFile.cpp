@@ -50,14 +50,14 @@ StagedFile::~StagedFile() = default;
 
 const fs::path& StagedFile::path() const { return m_unfinished->path(); }
 
-void StagedFile::commit() {
+void StagedFile::commit(Disk when) {
   try {
     const Placement placement(m_unfinished->path(), m_target);
     const OpenFolder folder(m_target.parent_path());
-    synchronize(m_unfinished->descriptor());
+    if (when == Disk::Now) synchronize(m_unfinished->descriptor());
     const auto held = Unfinished::hold();
     placement.take();
-    folder.synchronize();
+    if (when == Disk::Now) folder.synchronize();
   } catch (const PlaceTaken& e) {
     const auto held = Unfinished::hold();
     keepAndReport(m_target, *m_unfinished, e);
@@ -65,6 +65,14 @@ void StagedFile::commit() {
     throw std::runtime_error(m_target.string() + ": cannot be written: " + e.code().message());
   } catch (const std::exception& e) {
     throw std::runtime_error(m_target.string() + ": cannot be written: " + e.what());
+  }
+}
+
+void toDisk(const fs::path& file) {
+  try {
+    synchronize(file);
+  } catch (const std::exception& e) {
+    throw std::runtime_error(file.string() + ": cannot be written: " + e.what());
   }
 }
 

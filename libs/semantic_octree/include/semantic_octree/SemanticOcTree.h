@@ -55,7 +55,7 @@ struct RayHit {
  *
  * Functions that fail leave the map as it was. Only insert() may lose it: if memory runs out
  * halfway through a scan, all that is left is a broken map, of which every function throws
- * std::logic_error until clear(). */
+ * std::logic_error until clear(). MapFolder keeps parts of a map on disk. */
 class SemanticOcTree {
  public:
   using Node = SemanticOcTreeNode;
@@ -194,11 +194,16 @@ class SemanticOcTree {
  private:
   friend class Abstraction;
   friend class KeyframeMap;
+  friend class MapFolder;
+  friend class TilesOnDisk;
   friend class TreeBuilder;
   friend class TreeReader;
   friend class TreeWriter;
   /** \throw std::logic_error the map is broken. */
   NodeStore& store() const;
+  /** \throw std::logic_error the map is in a folder of tiles. */
+  void checkNotInTiles() const;
+  void computeTileByTile();
   /** Whoever changes nodes does it in here: if it fails, the map is broken. */
   template <typename F>
   void change(const F& f);

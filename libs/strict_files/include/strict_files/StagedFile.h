@@ -25,11 +25,17 @@ class StagedFile {
   const std::filesystem::path& path() const;
   /** Gives the closed file its name. \throw std::runtime_error naming the target; if it was to be
    * new (declareNew()) and is there, what was written is kept under another name, which is said. */
-  void commit();
+  void commit() { commit(Disk::Now); }
+  /** Later: it takes its name at once, for what is not relied on before toDisk(). */
+  enum class Disk { Now, Later };
+  void commit(Disk when);
 
  private:
   std::filesystem::path m_target;
   std::unique_ptr<Unfinished> m_unfinished;
 };
+
+/** Has a file's content on the disk. \throw std::runtime_error naming the file */
+void toDisk(const std::filesystem::path& file);
 
 }  // namespace strict_files

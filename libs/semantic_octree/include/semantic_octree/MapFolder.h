@@ -1,0 +1,113 @@
+#pragma once
+#include <semantic_octree/SemanticOcTree.h>
+#include <strict_files/OptionList.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace semantic_octree {
+
+/** How a map is kept in a folder. */
+struct MapFolderOptions {
+  /** MB (10^6 bytes) of nodes, records and bookkeeping that may be in memory. What one scan, or one
+   * tile, needs is always taken. */
+  double memory = 500;
+  /** Meters: edge of a tile of a new folder; the next smaller power of two voxels is used. */
+  double tileSize = 51.2;
+
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
+  void validate() const;
+};
+
+/** A map that may be larger than memory: its parts are in a folder, one file a tile, and come in
+ * when a scan, a query or anything else that reads nodes needs them. Those used least lately go out
+ * (scans and incoming tiles are uses) where there are more than the budget allows.
+ *
+ * The map stays an ordinary map, the same to the last bit as without a folder: what is above the
+ * tiles, and the tiles' own mixtures and G-values, stays in memory. Beside what SemanticOcTree
+ * says:
+ * - A Node within a tile is valid until another tile comes in. Whatever goes through a tree depth
+ *   first (iterators, files, sums, the abstraction's measures and compressedMap()) can do so;
+ *   Abstraction::leaves() tells cubes, but its nodes may be gone.
+ * - Reading is changing: not from two threads, and it may throw std::runtime_error naming a file.
+ * - It cannot be copied, cleared, or corrected (KeyframeMap), and has to stay where it is.
+ * - If setAbstraction() cannot read a tile, the map keeps no abstraction. If that happens to what
+ *   Abstraction changes (setWeights() and the like), setAbstraction() has to be called anew.
+ *
+ * Nothing that was saved is touched before the next save(), which is done when the index takes its
+ * place: whenever the process ends, the folder is what it was when it was last saved. One process
+ * writes, others read what was saved when they opened it (doc/handbook/large-maps.md). */
+class MapFolder {
+ public:
+  enum class Access { Read, Write };
+
+  /** Whether a map was saved there. */
+  static bool isAt(const std::filesystem::path& folder);
+  /** An empty map like that of a folder. \throw std::runtime_error as loadTree() */
+  static SemanticOcTree emptyMap(const std::filesystem::path& folder);
+
+  /** Makes a map what the folder says. For writing, the folder may be new.
+   * \param map empty, like that of the folder; must outlive this
+   * \throw std::invalid_argument the map is not empty, or bad options
+   * \throw std::runtime_error naming the folder or file: it cannot be read or written, is of a map
+   * with another resolution, other classes or parameters, or another process writes into it. */
+  MapFolder(SemanticOcTree& map, const std::filesystem::path& folder, Access access,
+            const MapFolderOptions& options = {});
+  /** What was not saved is lost. */
+  ~MapFolder();
+  MapFolder(const MapFolder&) = delete;
+  MapFolder& operator=(const MapFolder&) = delete;
+
+  /** Brings what changed to the disk. If this fails, the map and the folder are what they were.
+   * \throw std::runtime_error naming the file; std::logic_error opened to be read. */
+  void save();
+  /** Has all tiles in memory, whatever the budget: the map may then outlive this. */
+  void bringAll();
+
+  /** What is wrong with tiles, each naming its file: missing, cut, altered. Reads all of them. */
+  std::vector<std::string> problems();
+
+  struct Contents {
+    std::size_t tiles = 0, tilesInMemory = 0;
+    double tileSize = 0;           ///< meters
+    std::uint64_t generation = 0;  ///< 0: nothing was saved
+    std::uint64_t bytesOnDisk = 0;
+    std::size_t broughtIn = 0, sentOut = 0;  ///< tiles, so far
+  };
+  Contents contents() const;
+
+ private:
+  class Tiles;
+  std::unique_ptr<Tiles> m;
+};
+
+/** A map that was saved, in one file or in a folder of tiles, for whatever reads it depth first and
+ * from one thread. Others have loadTree(). */
+class StoredMap {
+ public:
+  /** \param memory of a folder's map, MB: see MapFolderOptions \throw std::runtime_error as
+   * loadTree() */
+  explicit StoredMap(const std::filesystem::path& path, double memory = MapFolderOptions().memory);
+  /** One that is in memory. */
+  explicit StoredMap(SemanticOcTree tree) : m_tree(std::move(tree)) {}
+  StoredMap(const StoredMap&) = delete;
+  StoredMap& operator=(const StoredMap&) = delete;
+
+  SemanticOcTree& tree() { return m_tree; }
+  /** Null: it is in one file. */
+  MapFolder* folder() { return m_folder.get(); }
+  std::uint64_t bytesOnDisk() const { return m_bytesOnDisk; }
+
+ private:
+  SemanticOcTree m_tree;
+  std::unique_ptr<MapFolder> m_folder;
+  std::uint64_t m_bytesOnDisk = 0;
+};
+
+/** All of a folder's map. \throw std::runtime_error as loadTree() */
+SemanticOcTree loadFolder(const std::filesystem::path& folder);
+
+}  // namespace semantic_octree

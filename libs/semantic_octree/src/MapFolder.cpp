@@ -1,0 +1,220 @@
+#include <semantic_octree/MapFolder.h>
+#include <semantic_octree/TreeFile.h>
+#include <strict_files/FileLock.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <set>
+#include <stdexcept>
+
+#include "TilesOnDisk.h"
+#include "TreeBuilder.h"
+
+namespace semantic_octree {
+
+namespace fs = std::filesystem;
+using strict_files::FileLock;
+
+namespace {
+
+constexpr const char* kWriterLock = ".writer.lock";
+constexpr const char* kReadersLock = ".readers.lock";
+
+/** A map without its tiles. */
+class LeavesCursor {
+ public:
+  LeavesCursor(const SemanticOcTree& map, int tileDepth, const Node& node, int depth)
+      : m_map(map), m_tileDepth(tileDepth), m_node(node), m_depth(depth) {}
+  bool known() const { return m_node && (m_node.isLeaf() || m_depth < m_tileDepth); }
+  bool isLeaf() const { return m_node.isLeaf(); }
+  LeafContent content() const { return contentOf(m_map, m_node); }
+  LeavesCursor child(int i) const {
+    return {m_map, m_tileDepth, m_node.isLeaf() ? m_node : m_node.child(i), m_depth + 1};
+  }
+
+ private:
+  const SemanticOcTree& m_map;
+  int m_tileDepth;
+  Node m_node;
+  int m_depth;
+};
+
+std::vector<std::string> namesOf(const ClassTable& classes) {
+  std::vector<std::string> names;
+  for (int id = 1; id <= classes.size(); ++id)
+    names.push_back(classes.name(static_cast<semantic_types::ClassId>(id)));
+  return names;
+}
+
+SemanticOcTree loadLeaves(const fs::path& folder, const TileIndex& index) {
+  const fs::path file = folder / TileIndex::leavesName(index.generation);
+  SemanticOcTree leaves = loadTree(file.string());
+  if (leaves.getResolution() != index.resolution || namesOf(leaves.classes()) != index.classes)
+    throw std::runtime_error("cannot load map '" + file.string() +
+                             "': it has another resolution or other classes than " +
+                             TileIndex::kFile + " says");
+  return leaves;
+}
+
+}  // namespace
+
+class MapFolder::Tiles {
+ public:
+  Tiles(SemanticOcTree& map, fs::path folder, Access access, const MapFolderOptions& options)
+      : m_map(map), m_folder(std::move(folder)), m_access(access) {
+    options.validate();
+    if (!map.empty()) throw std::invalid_argument("a map for a folder of tiles has to be empty");
+    map.checkNotInTiles();
+    TileIndex index = open(options);
+    constexpr double kAll = 1e18;  // bytes
+    const auto budget = static_cast<std::size_t>(std::min(options.memory * 1e6, kAll));
+    const TilesOnDisk::Place place{m_folder, index.depth, budget, access == Access::Write};
+    tiles = std::make_unique<TilesOnDisk>(map, place, std::move(index));
+    auto empty = std::make_unique<NodeStore>(map.store().stateBytes());
+    try {
+      if (tiles->index().generation > 0) takeContents();
+      map.store().setTiles(tiles.get());
+      if (map.hasAbstraction()) map.computeTileByTile();
+    } catch (...) {
+      std::swap(map.m_store, empty);
+      throw;
+    }
+  }
+  ~Tiles() {
+    if (isOfMap()) m_map.store().setTiles(nullptr);
+  }
+
+  void save() {
+    if (!isOfMap()) throw std::logic_error("saving a map that is no longer the folder's");
+    if (m_access == Access::Read)
+      throw std::logic_error("saving a map whose folder was opened to be read");
+    TileIndex index = tiles->writeChanged();
+    SemanticOcTree leaves = TreeBuilder::emptyLike(m_map);
+    TreeBuilder::fill(leaves, LeavesCursor(m_map, index.depth, m_map.root(), 0));
+    saveTree(leaves, (m_folder / TileIndex::leavesName(index.generation)).string());
+    writeIndex(m_folder, index);
+    tiles->setIndex(std::move(index));
+    removeOthers();
+  }
+
+  std::uint64_t bytesOnDisk() const {
+    std::uint64_t bytes = 0;
+    for (const std::string& name : namesInIndex()) {
+      std::error_code missing;
+      const auto size = fs::file_size(m_folder / name, missing);
+      if (!missing) bytes += size;
+    }
+    return bytes;
+  }
+
+  std::unique_ptr<TilesOnDisk> tiles;
+
+ private:
+  bool isOfMap() const { return !m_map.isBroken() && m_map.store().tiles() == tiles.get(); }
+
+  TileIndex open(const MapFolderOptions& options) {
+    if (m_access == Access::Write) {
+      fs::create_directories(m_folder);
+      m_writer = FileLock::tryTo(m_folder / kWriterLock, FileLock::Kind::Exclusive);
+      if (!m_writer)
+        throw std::runtime_error(m_folder.string() + ": another process writes into this folder");
+    } else {
+      m_reader.emplace(m_folder / kReadersLock, FileLock::Kind::Shared);
+    }
+    if (m_access == Access::Read || isAt(m_folder)) return readIndex(m_folder);
+    TileIndex index;
+    index.resolution = m_map.getResolution();
+    index.depth = depthOfTiles(options.tileSize, index.resolution);
+    index.classes = namesOf(m_map.classes());
+    return index;
+  }
+
+  void takeContents() {
+    SemanticOcTree leaves = loadLeaves(m_folder, tiles->index());
+    if (TreeBuilder::emptyLike(leaves) != TreeBuilder::emptyLike(m_map))
+      throw std::runtime_error(m_folder.string() +
+                               ": its map has another resolution, other classes or parameters");
+    m_map.m_store = std::make_unique<NodeStore>(leaves.store(), m_map.store().stateBytes());
+    tiles->addFromIndex();
+    if (m_access == Access::Write) removeOthers();
+  }
+
+  std::set<std::string> namesInIndex() const {
+    const TileIndex& index = tiles->index();
+    std::set<std::string> names = {TileIndex::leavesName(index.generation)};
+    for (const TileIndex::Tile& tile : index.tiles)
+      names.insert(index.nameOf(tile.place, tile.generation));
+    return names;
+  }
+
+  /** Files of before, unless somebody may still want them; and those that were never saved. */
+  void removeOthers() const {
+    const auto alone = FileLock::tryTo(m_folder / kReadersLock, FileLock::Kind::Exclusive);
+    if (!alone) return;
+    const std::set<std::string> names = namesInIndex();
+    std::error_code ignored;
+    for (const auto& file : fs::directory_iterator(m_folder, ignored)) {
+      const std::string name = file.path().filename().string();
+      if (TileIndex::isName(name) && names.count(name) == 0) fs::remove(file.path(), ignored);
+    }
+  }
+
+  SemanticOcTree& m_map;
+  fs::path m_folder;
+  Access m_access;
+  std::optional<FileLock> m_writer, m_reader;
+};
+
+bool MapFolder::isAt(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_regular_file(folder / TileIndex::kFile, ignored);
+}
+
+SemanticOcTree MapFolder::emptyMap(const fs::path& folder) {
+  const FileLock lock(folder / kReadersLock, FileLock::Kind::Shared);
+  return TreeBuilder::emptyLike(loadLeaves(folder, readIndex(folder)));
+}
+
+MapFolder::MapFolder(SemanticOcTree& map, const fs::path& folder, Access access,
+                     const MapFolderOptions& options)
+    : m(std::make_unique<Tiles>(map, folder, access, options)) {}
+
+MapFolder::~MapFolder() = default;
+
+void MapFolder::save() { m->save(); }
+
+void MapFolder::bringAll() { m->tiles->bringAll(); }
+
+std::vector<std::string> MapFolder::problems() { return m->tiles->problems(); }
+
+MapFolder::Contents MapFolder::contents() const {
+  Contents contents;
+  m->tiles->addTo(contents);
+  contents.tileSize = m->tiles->index().tileSize();
+  contents.generation = m->tiles->index().generation;
+  contents.bytesOnDisk = m->bytesOnDisk();
+  return contents;
+}
+
+StoredMap::StoredMap(const fs::path& path, double memory)
+    : m_tree(MapFolder::isAt(path) ? MapFolder::emptyMap(path) : loadTree(path.string())) {
+  if (!MapFolder::isAt(path)) {
+    m_bytesOnDisk = fs::file_size(path);
+    return;
+  }
+  MapFolderOptions options;
+  options.memory = memory;
+  m_folder = std::make_unique<MapFolder>(m_tree, path, MapFolder::Access::Read, options);
+  m_bytesOnDisk = m_folder->contents().bytesOnDisk;
+}
+
+SemanticOcTree loadFolder(const fs::path& folder) {
+  SemanticOcTree map = MapFolder::emptyMap(folder);
+  MapFolderOptions options;
+  options.memory = std::numeric_limits<double>::max();
+  MapFolder(map, folder, MapFolder::Access::Read, options).bringAll();
+  return map;
+}
+
+}  // namespace semantic_octree

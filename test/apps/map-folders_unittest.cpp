@@ -1,0 +1,142 @@
+// Programs and folders of tiles: what comes out is what comes of the map in one piece.
+#include <gtest/gtest.h>
+#include <semantic_octree/MapFolder.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <nlohmann/json.hpp>
+
+#include "RunProgram.h"
+#include "TemporaryFolder.h"
+
+using namespace semantic_octree;
+
+namespace {
+
+const std::string kSources = MSO_SOURCE_DIR;
+
+/** Two maps of the sample's drive, in a file and in tiles of 12.8 m, made under a budget of 0.1 MB.
+ */
+class MapFolders : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = new TemporaryFolder;
+    run("rawlog2semantic-map", mapping("plain"));
+    run("rawlog2semantic-map", mapping("tiled", true));
+  }
+  static void TearDownTestSuite() {
+    delete folder;
+    folder = nullptr;
+  }
+
+  static std::string path(const std::string& name) { return (*folder / name).string(); }
+  static std::vector<std::string> mapping(const std::string& output, bool inTiles = false) {
+    std::vector<std::string> arguments = {
+        "--config",  kSources + "/config/maps/synthetic.ini", "--resolution", "0.8", "-f", "-o",
+        path(output)};
+    if (inTiles)
+      for (const std::string& more :
+           {std::string("--tiles"), path("tiles"), std::string("--tile-size"), std::string("12.8"),
+            std::string("--memory"), std::string("0.1")})
+        arguments.push_back(more);
+    arguments.push_back(kSources + "/rawlog-samples/village.rawlog");
+    return arguments;
+  }
+  static ProgramRun run(const std::string& program, const std::vector<std::string>& arguments) {
+    const ProgramRun run = runProgram(program, arguments);
+    EXPECT_EQ(run.status, 0) << run.errors;
+    return run;
+  }
+  /** Runs it with both maps, and compares the files of this name that it writes. */
+  static void expectSame(const std::string& program, const std::string& name,
+                         const std::vector<std::string>& options = {}) {
+    for (const std::string map : {"plain/map.semantic", "tiles"}) {
+      std::vector<std::string> arguments = {path(map), "-f", "-o", path(map + "." + name)};
+      arguments.insert(arguments.end(), options.begin(), options.end());
+      if (map == "tiles") arguments.insert(arguments.end(), {"--memory", "0.1"});
+      run(program, arguments);
+    }
+    EXPECT_FALSE(folder->read("tiles." + name).empty());
+    EXPECT_EQ(folder->read("tiles." + name), folder->read("plain/map.semantic." + name));
+  }
+
+  static TemporaryFolder* folder;
+};
+
+TemporaryFolder* MapFolders::folder = nullptr;
+
+}  // namespace
+
+TEST_F(MapFolders, haveTheMapThatAFileHas) {
+  EXPECT_TRUE(MapFolder::isAt(path("tiles")));
+  EXPECT_TRUE(loadTree(path("tiles")) == loadTree(path("plain/map.semantic")));
+  EXPECT_FALSE(std::filesystem::exists(path("tiled/map.semantic")));
+  const auto summaryOf = [](const std::string& output) {
+    return nlohmann::json::parse(folder->read(output + "/summary.json"));
+  };
+  EXPECT_EQ(summaryOf("tiled")["map"]["leaves"], summaryOf("plain")["map"]["leaves"]);
+  EXPECT_EQ(summaryOf("tiled")["points"], summaryOf("plain")["points"]);
+}
+
+TEST_F(MapFolders, areReadTileByTileToTheSameResults) {
+  expectSame("semantic-map-edit", "whole.semantic");
+  expectSame("semantic-map-edit", "corner.semantic",
+             {"--box", "-20", "-20", "-1", "20", "20", "4"});
+  expectSame("semantic-map-edit", "coarse.semantic", {"--resolution", "1.6"});
+  expectSame("semantic-map-merge", "sum.semantic", {path("plain/map.semantic")});
+  expectSame("semantic-map-export", "points.csv");
+  expectSame("semantic-map-export", "tree.ot");
+  expectSame("semantic-map-export", "classes.png");
+}
+
+TEST_F(MapFolders, areCompressedToTheSameTrees) {
+  for (const std::string map : {"plain/map.semantic", "tiles"})
+    run("semantic-map-compress",
+        {path(map), "--weights", kSources + "/config/weights/synthetic.yaml", "-o",
+         path("compressed-" + map.substr(0, 5)), "--memory", "0.1"});
+  std::size_t solutions = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(path("compressed-tiles"))) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".semantic") continue;
+    EXPECT_EQ(folder->read("compressed-tiles/" + name), folder->read("compressed-plain/" + name));
+    ++solutions;
+  }
+  EXPECT_EQ(solutions, 5u);
+}
+
+TEST_F(MapFolders, takeAnotherDriveIn) {
+  std::filesystem::copy(path("tiles"), path("both"));
+  std::vector<std::string> arguments = mapping("again", true);
+  *std::find(arguments.begin(), arguments.end(), path("tiles")) = path("both");
+  run("rawlog2semantic-map", arguments);
+  const ProgramRun info = run("semantic-map-info", {path("both")});
+  EXPECT_TRUE(contains(info.output, "tiles of 12.8 m")) << info.output;
+  EXPECT_TRUE(contains(info.output, "saved 2 times")) << info.output;
+  EXPECT_FALSE(loadTree(path("both")) == loadTree(path("tiles")));
+}
+
+TEST_F(MapFolders, withABadTileAreUsableWhereItIsNot) {
+  std::filesystem::copy(path("tiles"), path("bad"));
+  std::filesystem::path tile;
+  for (const auto& entry : std::filesystem::directory_iterator(path("bad")))
+    if (entry.path().filename().string().rfind("tile_-1_-1_0.", 0) == 0) tile = entry.path();
+  ASSERT_FALSE(tile.empty());
+  std::filesystem::resize_file(tile, std::filesystem::file_size(tile) / 2);
+  const ProgramRun info = runProgram("semantic-map-info", {path("bad")});
+  EXPECT_EQ(info.status, 1);
+  EXPECT_TRUE(contains(info.errors, tile.string())) << info.errors;
+  EXPECT_TRUE(contains(info.errors, "truncated")) << info.errors;
+  const std::string elsewhere = "30,3,0.5", inIt = "-3,-3,0.5";
+  EXPECT_EQ(run("semantic-map-info", {path("bad"), "--at", elsewhere}).output,
+            run("semantic-map-info", {path("tiles"), "--at", elsewhere}).output);
+  EXPECT_EQ(runProgram("semantic-map-info", {path("bad"), "--at", inIt}).status, 1);
+  EXPECT_EQ(runProgram("rawlog2semantic-map", {"--tiles", path("bad"), "--slam"}).status, 64);
+}
+
+TEST_F(MapFolders, haveOneWriter) {
+  SemanticOcTree map = MapFolder::emptyMap(path("tiles"));
+  const MapFolder writer(map, path("tiles"), MapFolder::Access::Write);
+  const ProgramRun second = runProgram("rawlog2semantic-map", mapping("refused", true));
+  EXPECT_EQ(second.status, 1);
+  EXPECT_TRUE(contains(second.errors, "another process writes into this folder")) << second.errors;
+  run("semantic-map-info", {path("tiles")});
+}
