@@ -51,7 +51,7 @@ install(FILES
   ${PROJECT_BINARY_DIR}/mrpt_semantic_octree-config-version.cmake
   cmake/ThirdPartyTargets.cmake
   DESTINATION ${package_dir} COMPONENT development)
-install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/mrpt_semantic_octree/config
+install(DIRECTORY config/ USE_SOURCE_PERMISSIONS DESTINATION ${CMAKE_INSTALL_DATADIR}/mrpt_semantic_octree/config
   COMPONENT tools)
 
 # Documents and samples, laid out as in the sources, so that links between them and commands of the handbook hold.

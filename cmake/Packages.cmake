@@ -30,7 +30,7 @@ set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME mrpt-semantic-octree-doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SHLIBDEPS OFF)
-set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS mrpt-semantic-octree-doc)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "mrpt-semantic-octree-doc, snakemake")
 
 # What Debian wants beside: license and changes, for each package, in its own folder.
 string(TIMESTAMP mso_date "%a, %d %b %Y %H:%M:%S +0000" UTC)

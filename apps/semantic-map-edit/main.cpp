@@ -1,4 +1,5 @@
-// Crops, coarsens and moves a semantic octree map, and imports maps of OctoMap's.
+// Crops, coarsens and moves a semantic octree map, cuts it into tiles, and imports maps of
+// OctoMap's.
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
 #include <semantic_octree/MapFolder.h>
@@ -16,6 +17,7 @@
 #include "NumberChecks.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
+#include "Tiles.h"
 #include "poses/Poses.h"
 
 namespace semantic_map_edit {
@@ -29,7 +31,7 @@ using semantic_octree::StoredMap;
 struct Cli {
   fs::path in, out, like;
   std::optional<std::array<double, 6>> pose, box;
-  std::optional<double> resolution;
+  std::optional<double> resolution, tiles;
   double memory = semantic_octree::MapFolderOptions().memory;
   Outputs outputs;
 
@@ -37,13 +39,18 @@ struct Cli {
     app.add_option("MAP", in,
                    "A map's own file (.semantic), a folder of tiles, or OctoMap's (.ot, .bt)")
         ->required();
-    outputs.add(app, out, "FILE", "The map to write (.semantic)")->required();
+    outputs
+        .add(app, out, "FILE|FOLDER", "The map to write (.semantic); with --tiles, their folder")
+        ->required();
     app.add_option("--pose", pose,
                    "Where the map's origin is in the new map: x y z (m) yaw pitch roll (degrees)")
         ->type_name("X Y Z YAW PITCH ROLL");
     app.add_option("--box", box, "Keep what is in it, m")->type_name("X0 Y0 Z0 X1 Y1 Z1");
     app.add_option("--resolution", resolution,
                    "Coarser voxels, m: 2, 4, 8 ... times those of the map")
+        ->check(isNumber(strict_files::above(0)));
+    app.add_option("--tiles", tiles,
+                   "Cut it into columns with a square base of this edge, m: 1, 2, 4, 8 ... voxels")
         ->check(isNumber(strict_files::above(0)));
     app.add_option("--like", like,
                    "For OctoMap's files: a map whose classes and filter the new one has");
@@ -72,24 +79,37 @@ Eigen::AlignedBox3d boxOf(const std::array<double, 6>& v) {
   return {Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5])};
 }
 
-int levelsTo(double resolution, double mapResolution) {
-  const double levels = std::log2(resolution / mapResolution);
-  if (!(std::fabs(levels - std::round(levels)) < 1e-6) || levels < 0)
-    throw std::runtime_error("--resolution " + std::to_string(resolution) +
-                             ": expected 1, 2, 4, 8 "
-                             "... times the map's, " +
-                             std::to_string(mapResolution) + " m");
+/** How often a voxel's edge is doubled to become the edge that an option names. */
+int levelsTo(double edge, double voxelSize, int highest, const std::string& option) {
+  const double levels = std::log2(edge / voxelSize);
+  if (!(std::fabs(levels - std::round(levels)) < 1e-6) || levels < 0 || levels > highest)
+    throw std::runtime_error(option + " " + std::to_string(edge) + ": expected 1, 2, 4, 8 ... " +
+                             std::to_string(1 << highest) + " times the map's voxels, " +
+                             std::to_string(voxelSize) + " m");
   return static_cast<int>(std::lround(levels));
 }
 
+int writeTiles(const Cli& cli, const SemanticOcTree& map) {
+  const int levels = levelsTo(*cli.tiles, map.getResolution(), 15, "--tiles");
+  const std::vector<Tile> tiles = tilesOf(map, levels);
+  std::vector<std::string> names;
+  for (const Tile& tile : tiles) names.push_back(tile.fileName());
+  cli.outputs.checkFolder(cli.out, names);
+  saveTiles(map, levels, tiles, cli.out);
+  notes() << cli.out.string() << ": " << tiles.size() << " tiles\n";
+  return 0;
+}
+
 int run(const Cli& cli) {
-  cli.outputs.check({cli.out});
+  if (!cli.tiles) cli.outputs.check({cli.out});
   StoredMap stored = load(cli);
   std::optional<SemanticOcTree> edited;
   const auto map = [&]() -> const SemanticOcTree& { return edited ? *edited : stored.tree(); };
   if (cli.pose) edited = moved(map(), poses::poseOfNumbers(*cli.pose));
   if (cli.box) edited = cropped(map(), boxOf(*cli.box));
-  if (cli.resolution) edited = coarsened(map(), levelsTo(*cli.resolution, map().getResolution()));
+  if (cli.resolution)
+    edited = coarsened(map(), levelsTo(*cli.resolution, map().getResolution(), 8, "--resolution"));
+  if (cli.tiles) return writeTiles(cli, map());
   saveTree(map(), cli.out.string());
   notes() << cli.out.string() << ": " << map().getNumLeafNodes() << " leaves\n";
   return 0;
@@ -99,7 +119,9 @@ int run(const Cli& cli) {
 }  // namespace semantic_map_edit
 
 int main(int argc, char** argv) {
-  CLI::App app("Moves, crops and coarsens a semantic octree map, in this order; imports OctoMap's");
+  CLI::App app(
+      "Moves, crops, coarsens a semantic octree map and cuts it into tiles, in this order; imports "
+      "OctoMap's");
   const semantic_map_edit::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_edit::run(cli); });
 }

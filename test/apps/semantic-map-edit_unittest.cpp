@@ -1,5 +1,11 @@
 #include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
 #include <semantic_octree/MapOperations.h>
+#include <semantic_octree/OctomapConversion.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
 
 #include "ExportFixture.h"
 
@@ -61,6 +67,60 @@ TEST_F(SemanticMapEdit, aMapIsMovedByAPose) {
     }
 }
 
+TEST_F(SemanticMapEdit, eachVoxelIsInTheTileAroundItAndInNoOther) {
+  // Free space in leaves of 1.6 m, with a post in it.
+  octomap::OcTree free(0.2);
+  for (float x = -1.5f; x < 3.2f; x += 0.2f)
+    for (float y = -1.5f; y < 1.6f; y += 0.2f)
+      for (float z = 0.1f; z < 1.6f; z += 0.2f) free.setNodeValue(x, y, z, x == y ? 1.f : -1.f);
+  free.updateInnerOccupancy();
+  free.prune();
+  const SemanticOcTree sure = semantic_octree::fromOcTree(free, coloredClasses());
+  saveTree(sure, path("sure.semantic"));
+  ASSERT_EQ(edit("sure.semantic", "tiles", {"--tiles", "0.8"}).status, 0);
+  const auto voxelsOf = [](const auto& leaf) { return std::pow(leaf.getSize() / 0.2, 3); };
+  double voxels = 0, voxelsOfTiles = 0, largeLeaves = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder / "tiles")) {
+    int x = 0, y = 0;
+    ASSERT_EQ(std::sscanf(file.path().filename().c_str(), "%d_%d.semantic", &x, &y), 2);
+    const SemanticOcTree tile = semantic_octree::loadTree(file.path());
+    for (auto leaf = tile.begin_leafs(); leaf != tile.end_leafs(); ++leaf) {
+      ASSERT_EQ(std::floor(leaf.getX() / 0.8), x);
+      ASSERT_EQ(std::floor(leaf.getY() / 0.8), y);
+      const CellState was = sure.query(leaf.getKey()), is = tile.query(*leaf);
+      ASSERT_EQ(is.status, was.status);
+      ASSERT_EQ(is.likeliestClass, was.likeliestClass);
+      voxelsOfTiles += voxelsOf(leaf);
+    }
+  }
+  for (auto leaf = sure.begin_leafs(); leaf != sure.end_leafs(); ++leaf) {
+    voxels += voxelsOf(leaf);
+    largeLeaves += leaf.getSize() > 1.5;
+  }
+  EXPECT_GT(largeLeaves, 0);
+  EXPECT_NEAR(voxelsOfTiles, voxels, 0.1);
+}
+
+TEST_F(SemanticMapEdit, tilesAddUpToTheMap) {
+  ASSERT_EQ(edit("map.semantic", "tiles", {"--tiles", "1.6"}).status, 0);
+  std::vector<std::string> files;
+  for (const auto& file : std::filesystem::directory_iterator(folder / "tiles"))
+    files.push_back(file.path());
+  EXPECT_GT(files.size(), 10u);
+  files.insert(files.end(), {"-o", path("sum.semantic")});
+  ASSERT_EQ(runProgram("semantic-map-merge", files).status, 0);
+  ASSERT_EQ(
+      runProgram("semantic-map-merge", {path("map.semantic"), "-o", path("one.semantic")}).status,
+      0);
+  EXPECT_EQ(folder.read("sum.semantic"), folder.read("one.semantic"));
+}
+
+TEST_F(SemanticMapEdit, tilesAreNotWrittenOver) {
+  const std::vector<std::string> all = {"--tiles", "102.4"};
+  ASSERT_EQ(edit("map.semantic", "tiles", all).status, 0);
+  expectRefusal(edit("map.semantic", "tiles", all), {"tiles/-1_-1.semantic", "--overwrite"});
+}
+
 TEST_F(SemanticMapEdit, octomapsFilesBecomeOccupancy) {
   ASSERT_EQ(exportTo({"plain.ot"}, {"--no-colors"}).status, 0);
   ASSERT_EQ(exportTo({"color.ot", "binary.bt"}).status, 0);
@@ -100,6 +160,8 @@ TEST_F(SemanticMapEdit, filesThatAreNoMapsOfOctomapsAreRefused) {
 TEST_F(SemanticMapEdit, badInputIsRefused) {
   expectRefusal(edit("map.semantic", "out.semantic", {"--resolution", "0.5"}), {"0.5", "0.2"});
   expectRefusal(edit("map.semantic", "out.semantic", {"--resolution", "0.1"}), {"0.1", "0.2"});
+  expectRefusal(edit("map.semantic", "out", {"--tiles", "50"}), {"--tiles", "50", "0.2"});
+  expectRefusal(edit("map.semantic", "out", {"--tiles", "0.1"}), {"--tiles", "0.1", "0.2"});
   expectRefusal(edit("map.semantic", "out.semantic", {"--box", "1", "0", "0", "0", "1", "1"}),
                 {"box"});
   expectRefusal(edit("map.semantic", "out.semantic", {"--like", path("map.semantic")}), {"--like"});
