@@ -29,8 +29,10 @@ struct MapReceiver::State {
   std::map<CellPath, std::vector<TreePart>> waiting;
 
   bool begin(const PacketHeader& h);
+  /** If it fails, the packet has not come: what was placed is placed again, to no effect. */
   void store(const PacketHeader& h, const std::string& content);
-  void describe();
+  /** A part of it. */
+  void describe(std::size_t number, const std::string& content);
   void apply(const std::string& content);
   void place(TreePart part);
   void finish();
@@ -61,10 +63,12 @@ bool MapReceiver::State::begin(const PacketHeader& h) {
   if (h.revision > header.revision) {
     if (h.revision > header.revision + 1 || numCome < came.size())
       throw std::runtime_error("altered: a change of a map that is not complete yet");
-    header = h;
-    came.assign(h.count, false);
-    packets.assign(h.count, {});
+    std::vector<bool> none(h.count);
+    std::vector<StreamPrefix> noPackets(h.count);
     described.assign(h.numDescription, {});
+    came.swap(none);  // nothing fails from here on
+    packets.swap(noPackets);
+    header = h;
     numCome = prefix = 0;
     isDescribed = false;
   }
@@ -75,7 +79,7 @@ bool MapReceiver::State::begin(const PacketHeader& h) {
 
 void MapReceiver::State::store(const PacketHeader& h, const std::string& content) {
   if (h.number < header.numDescription)
-    described[h.number] = content;
+    describe(h.number, content);
   else if (isDescribed)
     apply(content);
   else
@@ -85,11 +89,12 @@ void MapReceiver::State::store(const PacketHeader& h, const std::string& content
   packets[h.number].bytes = kHeaderBytes + content.size();
   if (h.isOptimal) packets[h.number].alpha = h.alpha;
   while (prefix < came.size() && came[prefix]) ++prefix;
-  const auto end = came.begin() + header.numDescription;
-  if (!isDescribed && std::find(came.begin(), end, false) == end) describe();
 }
 
-void MapReceiver::State::describe() {
+void MapReceiver::State::describe(std::size_t number, const std::string& content) {
+  described[number] = content;
+  for (std::size_t i = 0; i < described.size(); ++i)
+    if (!came[i] && i != number) return;
   std::string text;
   for (const std::string& part : described) text += part;
   const StreamDescription d = StreamDescription::of(text);
@@ -102,8 +107,9 @@ void MapReceiver::State::describe() {
     coder->fromText(d.coding, next);
   }
   checksum = d.checksum;
+  for (const std::string& packet : unreadable) apply(packet);
+  unreadable.clear();
   isDescribed = true;
-  for (const std::string& content : std::exchange(unreadable, {})) apply(content);
 }
 
 void MapReceiver::State::apply(const std::string& content) {
@@ -118,9 +124,8 @@ void MapReceiver::State::place(TreePart part) {
   const auto release = [&](const CellPath& cell) {
     const auto found = waiting.find(cell);
     if (found == waiting.end()) return;
-    const std::vector<TreePart> parts = std::move(found->second);
-    waiting.erase(found);
-    for (const TreePart& below : parts) place(below);
+    for (const TreePart& below : std::vector<TreePart>(found->second)) place(below);
+    waiting.erase(cell);
   };
   if (!part.isOctet) return release(part.cell);
   for (int i = 0; i < 8; ++i)

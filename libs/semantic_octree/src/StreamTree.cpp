@@ -56,15 +56,17 @@ StreamTree::Node* StreamTree::find(const CellPath& cell) {
   return node->isKnown() ? node : nullptr;
 }
 
+void StreamTree::reserve() {
+  constexpr std::size_t kMost = kTreeDepth + 1;  // octets that a part makes
+  if (m_octets.capacity() - m_octets.size() >= kMost) return;
+  m_octets.reserve(2 * m_octets.size() + kMost);
+  m_free.reserve(m_octets.capacity());
+}
+
 StreamTree::Node& StreamTree::makePlace(const CellPath& cell, std::uint16_t revision) {
   Node* node = &m_root;
   for (int depth = 1; depth <= cell.depth; ++depth) {
-    if (!node->isInner()) {
-      const StreamLeaf whole = node->leaf;
-      makeInner(*node, whole, revision);
-      // The octets may have moved, and the node with them: look again.
-      return makePlace(cell, revision);
-    }
+    if (!node->isInner()) makeInner(*node, StreamLeaf(node->leaf), revision);
     node = &m_octets[node->octet].nodes[cell.childAt(depth)];
   }
   return *node;
@@ -73,17 +75,17 @@ StreamTree::Node& StreamTree::makePlace(const CellPath& cell, std::uint16_t revi
 std::uint32_t StreamTree::makeInner(Node& leaf, const StreamLeaf& children,
                                     std::uint16_t revision) {
   std::uint32_t octet = static_cast<std::uint32_t>(m_octets.size());
-  if (!m_free.empty()) {
+  if (m_free.empty()) {
+    m_octets.emplace_back();
+  } else {
     octet = m_free.back();
     m_free.pop_back();
   }
   count(leaf.leaf, -1);
-  leaf.octet = octet;  // before the octets may move
-  if (octet == m_octets.size()) m_octets.emplace_back();
-  Octet& made = m_octets[octet];
-  made.revision = revision;
-  made.nodes.fill(Node{children, 0});
   count(children, 8);
+  m_octets[octet].revision = revision;
+  m_octets[octet].nodes.fill(Node{children, 0});
+  leaf.octet = octet;
   return octet;
 }
 
@@ -102,6 +104,7 @@ void StreamTree::setLeaf(Node& node, const StreamLeaf& leaf, std::uint16_t revis
 }
 
 bool StreamTree::apply(const TreePart& part, std::uint16_t revision) {
+  reserve();
   if (!part.isOctet) {
     setLeaf(makePlace(part.cell, revision), part.leaves[0], revision);
     return true;

@@ -83,6 +83,8 @@ class StreamTree {
   };
   /** None: the cube is not a node. */
   Node* find(const CellPath& cell);
+  /** From here on nothing moves, and nothing fails, until the part is in its place. */
+  void reserve();
   Node& makePlace(const CellPath& cell, std::uint16_t revision);
   void setLeaf(Node& node, const StreamLeaf& leaf, std::uint16_t revision);
   std::uint32_t makeInner(Node& leaf, const StreamLeaf& children, std::uint16_t revision);
