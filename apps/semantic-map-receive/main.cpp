@@ -42,7 +42,7 @@ struct Cli {
         ->check(isNumber(strict_files::above(0)));
     app.add_option("--lose", reception.loss,
                    "Try a bad radio: lose this share of what goes to the sender (0)")
-        ->check(CLI::Range(0.0, 0.99));
+        ->check(isNumber(strict_files::between(0, 0.99)));
     app.add_option("--seed", reception.seed, "Which datagrams (2)");
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of datagrams that were not understood");
   }

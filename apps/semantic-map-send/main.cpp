@@ -31,7 +31,7 @@ struct Cli {
                    "Bits a second, with the headers of IP and UDP (none: as fast as can be)")
         ->check(isNumber(strict_files::above(0)));
     app.add_option("--port", station.port, "UDP port to listen at (4217); 0: any, which is said")
-        ->check(CLI::Range(0, 65535));
+        ->check(isNumber(strict_files::between(0, 65535)));
     app.add_option("--weights", weights, "For receivers without weights of their own (YAML)");
     app.add_option("--solution", own.solution, "Which of these weights (the first)");
     app.add_option("--receivers", station.receivers, "End after so many were served (1)")
@@ -41,7 +41,7 @@ struct Cli {
     app.add_option(
            "--lose", station.loss,
            "Try a bad radio: lose this share of the datagrams, send some twice, some late (0)")
-        ->check(CLI::Range(0.0, 0.99));
+        ->check(isNumber(strict_files::between(0, 0.99)));
     app.add_option("--seed", station.seed, "Which ones (1)");
     app.add_flag_callback("-q,--quiet", beQuiet, "Say nothing but errors");
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of datagrams that were not understood");

@@ -46,11 +46,17 @@ struct Outcome {
 
 constexpr double kForbiddenCost = 64;
 
-/** The columns of a square around the origin, and where their ground is. */
+/** The columns of a square around the middle of the map, and where their ground is. */
 class Field {
  public:
   Field(const SemanticOcTree& map, const colored_graph::ClassOrder& order)
       : m_ground(std::size_t(kEdge) * kEdge) {
+    double low[3], high[3];
+    map.getMetricMin(low[0], low[1], low[2]);
+    map.getMetricMax(high[0], high[1], high[2]);
+    for (int axis = 0; axis < 2; ++axis)
+      m_first[axis] =
+          semantic_octree::keyOf((low[axis] + high[axis]) / 2, map.getResolution()) - kEdge / 2;
     for (Column c = 0; c < m_ground.size(); ++c) m_ground[c] = groundIn(map, c);
     m_truth = costs(map, order);
   }
@@ -76,10 +82,11 @@ class Field {
   /** Pairs of columns on the best classes, far apart. */
   std::vector<std::pair<Column, Column>> tasks(std::size_t number) const {
     std::mt19937 random(1);
-    const auto place = [&] {
-      for (;;)
-        if (const Column c = random() % m_truth.size(); m_truth[c] < 1.2) return c;
-    };
+    std::vector<Column> places;
+    for (Column c = 0; c < m_truth.size(); ++c)
+      if (m_truth[c] < 1.2) places.push_back(c);
+    if (places.size() < 1000) throw std::runtime_error("too few columns of the best classes");
+    const auto place = [&] { return places[random() % places.size()]; };
     std::vector<std::pair<Column, Column>> tasks;
     while (tasks.size() < number) {
       const Column a = place(), b = place();
@@ -117,15 +124,14 @@ class Field {
  private:
   static constexpr int kEdge = 360, kBelow = 20, kAbove = 20;  // columns, voxels
 
-  static octomap::OcTreeKey keyOf(Column c, int z) {
-    const int first = semantic_octree::kKeyOfOrigin - kEdge / 2;
-    return semantic_octree::octomapKey(first + int(c % kEdge), first + int(c / kEdge), z);
+  octomap::OcTreeKey keyOf(Column c, int z) const {
+    return semantic_octree::octomapKey(m_first[0] + int(c % kEdge), m_first[1] + int(c / kEdge), z);
   }
   static double costOf(colored_graph::Rank rank) {
     return rank == colored_graph::kForbidden ? kForbiddenCost : std::ldexp(1.0, rank);
   }
   /** Key of the lowest occupied voxel; 0: none. */
-  static int groundIn(const SemanticOcTree& map, Column c) {
+  int groundIn(const SemanticOcTree& map, Column c) const {
     using semantic_octree::kKeyOfOrigin;
     for (int z = kKeyOfOrigin - kBelow; z < kKeyOfOrigin + kAbove; ++z)
       if (const auto node = map.search(keyOf(c, z)); node && map.isNodeOccupied(node)) return z;
@@ -141,6 +147,7 @@ class Field {
     return sum / (1 - p[0]);
   }
 
+  int m_first[2];  ///< lowest keys
   std::vector<int> m_ground;
   std::vector<double> m_truth;
 };
