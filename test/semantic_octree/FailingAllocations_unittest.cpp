@@ -5,6 +5,7 @@
 #include <semantic_octree/KeyframeMap.h>
 #include <semantic_octree/MapFolder.h>
 #include <semantic_octree/MapOperations.h>
+#include <semantic_octree/MapStream.h>
 #include <semantic_octree/OctomapConversion.h>
 #include <semantic_octree/TreeFile.h>
 
@@ -209,4 +210,30 @@ TEST(FailingAllocations, whileAMapIsSavedLeaveTheOldFile) {
                                [&] { EXPECT_TRUE(loadTree(path) == old); }),
             3);
   EXPECT_TRUE(loadTree(path) == map);
+}
+
+TEST(FailingAllocations, aReceiverTakesAPacketThatFailedAgain) {
+  SemanticOcTree map = mapOf(3, 2, true);
+  Abstraction(map).setAlpha(0);
+  MapSender sender(1);
+  sender.setMap(map);
+  std::vector<Datagram> packets;
+  while (const auto packet = sender.next()) packets.push_back(*packet);
+  ASSERT_GT(packets.size(), 4u);
+  const std::size_t half = packets.size() / 2;
+  const SemanticOcTree expected = Abstraction(map).compressedMap();
+  std::optional<MapReceiver> receiver;
+  const auto prepare = [&] {
+    receiver.emplace(1);
+    for (std::size_t i = packets.size() - 1; i > half; --i) receiver->accept(packets[i]);
+  };
+  const auto takeTheRest = [&] {
+    for (std::size_t i = 0; i <= half; ++i) receiver->accept(packets[i]);
+  };
+  const int failures = failEachAllocation(prepare, takeTheRest, [&] {
+    takeTheRest();
+    EXPECT_TRUE(receiver->isFinished());
+    EXPECT_TRUE(receiver->map() == expected);
+  });
+  EXPECT_GT(failures, 30);
 }

@@ -40,6 +40,15 @@ TEST(AlphaPath, treesAreNestedAndEachIsTheOptimumAtItsAlpha) {
   }
 }
 
+TEST(AlphaPath, knowsTheFirstTreeThatExpandsANode) {
+  const AlphaPath path(tausOf(makeExample(6)));
+  const auto first = path.firstTrees();
+  for (std::size_t k = 0; k < path.numTrees(); ++k) {
+    const auto expanded = path.expanded(k);
+    for (std::size_t n = 0; n < first.size(); ++n) EXPECT_EQ(expanded[n], first[n] <= k);
+  }
+}
+
 TEST(AlphaPath, totalsCountLeavesAndInformationAlongThePath) {
   const auto found = makeExample(6);
   const AlphaPath path(tausOf(found));

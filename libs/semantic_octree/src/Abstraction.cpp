@@ -68,6 +68,12 @@ CompressedTree Abstraction::compressedTree() const { return {m_map.store(), m_gT
 
 const AbstractionOptions& Abstraction::options() const { return m_gTree.options(); }
 
+int Abstraction::rootDepth() const {
+  return options().frame == AbstractionOptions::Frame::Free ? m_gTree.blockDepth() : 0;
+}
+
+bool Abstraction::isExpanded(const Node& node) const { return compressedTree().isExpanded(node); }
+
 std::vector<LeafCell> Abstraction::leaves() const {
   std::vector<LeafCell> leaves;
   if (m_map.empty()) return leaves;

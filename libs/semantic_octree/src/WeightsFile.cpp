@@ -26,8 +26,8 @@ std::set<std::string> with(std::set<std::string> keys, const std::set<std::strin
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& file, const ClassTable& classes)
-      : m_yaml(file), m_classes(classes), m_terms(classes) {}
+  Reader(StrictYaml yaml, const ClassTable& classes)
+      : m_yaml(std::move(yaml)), m_classes(classes), m_terms(classes) {}
 
   WeightsFile read() const {
     const YAML::Node& root = m_yaml.root();
@@ -186,7 +186,12 @@ class Reader {
 }  // namespace
 
 WeightsFile loadWeights(const std::filesystem::path& file, const ClassTable& classes) {
-  return Reader(file, classes).read();
+  return Reader(StrictYaml(file), classes).read();
+}
+
+WeightsFile weightsOfText(const std::string& text, const std::string& name,
+                          const ClassTable& classes) {
+  return Reader(StrictYaml(text, name), classes).read();
 }
 
 }  // namespace semantic_octree

@@ -33,8 +33,15 @@ StrictYaml::StrictYaml(const std::filesystem::path& file) : m_file(file.string()
   std::ifstream stream(file);
   if (!stream || std::filesystem::is_directory(file))
     fail(YAML::Mark::null_mark(), "cannot be read");
+  parse({std::istreambuf_iterator<char>(stream), {}});
+}
+
+StrictYaml::StrictYaml(const std::string& text, const std::string& name) : m_file(name) {
+  parse(text);
+}
+
+void StrictYaml::parse(const std::string& text) {
   try {
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
     m_root = YAML::Load(text);
     if (const int line = lineOfSecondDocument(text))
       throw std::runtime_error(m_file + ":" + std::to_string(line) +

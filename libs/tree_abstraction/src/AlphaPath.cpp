@@ -70,6 +70,14 @@ std::vector<char> AlphaPath::expanded(std::size_t k) const {
   return mask;
 }
 
+std::vector<std::size_t> AlphaPath::firstTrees() const {
+  std::vector<std::size_t> first(m_tau.size(), numTrees());
+  for (std::size_t k = 1; k < numTrees(); ++k)
+    for (std::size_t i = m_end[k - 1]; i < m_end[k]; ++i)
+      first[static_cast<std::size_t>(m_order[i])] = k;
+  return first;
+}
+
 std::vector<double> AlphaPath::totals(const std::vector<double>& amounts, double base) const {
   requireSize("amounts", amounts.size(), m_tau.size());
   std::vector<double> sums{base};

@@ -72,6 +72,11 @@ class Abstraction {
   explicit Abstraction(SemanticOcTree& map);
 
   const AbstractionOptions& options() const;
+  /** Depth of the cubes from which on nodes have their price: of the blocks where the frame above
+   * them is free, otherwise 0. */
+  int rootDepth() const;
+  /** Whether the compressed tree expands a node, if it does those above. */
+  bool isExpanded(const SemanticOcTreeNode& node) const;
 
   /** Leaves of the compressed tree in OctoMap's order (depth first). Visits inner nodes that the
    * tree expands, and its leaves. A leaf of the map that reaches above the blocks is told block by

@@ -60,5 +60,8 @@ struct WeightsFile {
  * relevant and irrelevant, a solution without weights, two solutions of one name. */
 WeightsFile loadWeights(const std::filesystem::path& file,
                         const semantic_types::ClassTable& classes);
+/** The same of a text. \param name What messages call it. */
+WeightsFile weightsOfText(const std::string& text, const std::string& name,
+                          const semantic_types::ClassTable& classes);
 
 }  // namespace semantic_octree

@@ -16,6 +16,8 @@ class StrictYaml {
  public:
   /** Reads the file: yaml-cpp's parser, because MRPT's stops at a syntax error in silence. */
   explicit StrictYaml(const std::filesystem::path& file);
+  /** Reads a text. \param name What messages call it, in place of a file. */
+  StrictYaml(const std::string& text, const std::string& name);
 
   const YAML::Node& root() const { return m_root; }
   [[noreturn]] void fail(const YAML::Node& where, const std::string& what) const;
@@ -59,6 +61,7 @@ class StrictYaml {
  private:
   static std::string quoted(const YAML::Node& node);
   [[noreturn]] void fail(const YAML::Mark& where, const std::string& what) const;
+  void parse(const std::string& text);
 
   std::string m_file;
   YAML::Node m_root;

@@ -45,6 +45,8 @@ class AlphaPath {
 
   /** Per node of tau(): whether tree k expands it. */
   std::vector<char> expanded(std::size_t k) const;
+  /** Per node of tau(): the first tree that expands it, or numTrees() if none does. */
+  std::vector<std::size_t> firstTrees() const;
   /** Per tree: `base` plus the sum of `amounts` over the nodes it expands. Counts leaves (number of
    * children - 1 a node), bytes, information (p(n) JS) along the path.
    * \throw std::invalid_argument as many amounts as nodes expected. */

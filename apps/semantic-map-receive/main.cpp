@@ -1,0 +1,109 @@
+// Receives a map from semantic-map-send, over a radio that may lose, exchange and repeat datagrams.
+#include <semantic_octree/TreeFile.h>
+#include <strict_files/TextFile.h>
+
+#include <filesystem>
+#include <ostream>
+
+#include "Application.h"
+#include "NumberChecks.h"
+#include "Outputs.h"
+#include "Reception.h"
+#include "StandardOutput.h"
+
+namespace semantic_map_receive {
+namespace {
+
+namespace fs = std::filesystem;
+using semantic_octree::SemanticOcTree;
+
+struct Cli {
+  std::string sender;
+  fs::path output, weights, like;
+  radio::Wish wish;
+  ReceptionOptions reception;
+  Outputs outputs;
+
+  explicit Cli(CLI::App& app) : outputs(app) {
+    app.add_option("HOST:PORT", sender,
+                   "Where semantic-map-send is; the port may be left out (4217)")
+        ->required();
+    outputs.add(app, output, "FILE", "The map to write (.semantic)")->required();
+    app.add_option("--weights", weights, "What matters here (YAML); without: what the sender says");
+    app.add_option("--solution", wish.solution, "Which of these weights (the first)");
+    app.add_option("--alpha", wish.alpha, "The price of detail, instead of the weights' own")
+        ->check(isNumber(strict_files::atLeast(0)));
+    app.add_option("--bytes", reception.bytes, "Enough: end when so many came without a gap")
+        ->check(isNumber(strict_files::above(0)));
+    app.add_option("--like", like,
+                   "Refuse a map whose classes or voxels are not those of this map");
+    app.add_option("--timeout", reception.timeout,
+                   "End if the sender was not heard for so long, s (60)")
+        ->check(isNumber(strict_files::above(0)));
+    app.add_option("--lose", reception.loss,
+                   "Try a bad radio: lose this share of what goes to the sender (0)")
+        ->check(isNumber(strict_files::between(0, 0.99)));
+    app.add_option("--seed", reception.seed, "Which datagrams (2)");
+    app.add_flag_callback("-v,--verbose", beVerbose, "Tell of datagrams that were not understood");
+  }
+};
+
+radio::Peer peerOf(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return radio::Peer::of(text, 4217);
+  const std::string port = text.substr(colon + 1);
+  const bool isNumber =
+      !port.empty() && port.size() < 6 && port.find_first_not_of("0123456789") == std::string::npos;
+  if (!isNumber || std::stoi(port) < 1 || std::stoi(port) > 65535)
+    throw std::runtime_error("expected HOST:PORT with a port from 1 to 65535, found '" + text +
+                             "'");
+  return radio::Peer::of(text.substr(0, colon), std::stoi(port));
+}
+
+/** \throw std::runtime_error maps of this kind cannot be shared with that file's. */
+void checkKind(const SemanticOcTree& received, const SemanticOcTree& own, const fs::path& file) {
+  if (received.classes() != own.classes())
+    throw std::runtime_error("the sender's class table is not that of " + file.string());
+  if (received.getResolution() != own.getResolution())
+    throw std::runtime_error("the sender's voxels of " + std::to_string(received.getResolution()) +
+                             " m are not those of " + file.string());
+}
+
+void save(const Reception& reception, const fs::path& file) {
+  const semantic_octree::MapReceiver& receiver = reception.receiver();
+  if (!receiver.hasMap()) return;
+  semantic_octree::saveTree(receiver.map(), file.string());
+  notes() << file.string() << ": " << receiver.numLeaves() << " leaves, " << receiver.numPackets()
+          << " of " << receiver.numExpected() << " packets" << std::endl;
+}
+
+int run(Cli& cli) {
+  cli.outputs.check({cli.output});
+  if (!cli.weights.empty()) cli.wish.weights = strict_files::readText(cli.weights);
+  std::optional<SemanticOcTree> own;
+  if (!cli.like.empty()) own = semantic_octree::loadTree(cli.like.string());
+  const StopRequest stop("after this packet");
+  Reception reception(peerOf(cli.sender), cli.wish, cli.reception);
+  bool isOurs = false;
+  try {
+    reception.receive(stop, [&](const SemanticOcTree& map) {
+      if (own) checkKind(map, *own, cli.like);
+      isOurs = true;
+    });
+  } catch (const std::runtime_error&) {
+    if (isOurs) save(reception, cli.output);
+    throw;
+  }
+  save(reception, cli.output);
+  reception.end();
+  return 0;
+}
+
+}  // namespace
+}  // namespace semantic_map_receive
+
+int main(int argc, char** argv) {
+  CLI::App app("Receives a semantic octree map from semantic-map-send over a thin radio");
+  semantic_map_receive::Cli cli(app);
+  return runApplication(app, argc, argv, [&] { return semantic_map_receive::run(cli); });
+}

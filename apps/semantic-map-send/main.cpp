@@ -1,0 +1,70 @@
+// Sends a map's compressed tree over a thin radio, what matters most first.
+#include <semantic_octree/TreeFile.h>
+#include <strict_files/TextFile.h>
+
+#include <filesystem>
+#include <ostream>
+
+#include "Application.h"
+#include "NumberChecks.h"
+#include "StandardOutput.h"
+#include "Station.h"
+
+namespace semantic_map_send {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Cli {
+  std::vector<fs::path> maps;
+  fs::path weights;
+  radio::Wish own;
+  StationOptions station;
+
+  explicit Cli(CLI::App& app) {
+    app.add_option(
+           "MAP", maps,
+           "A map's own file (.semantic); of further ones, which it became later, only what "
+           "changed is sent")
+        ->required();
+    app.add_option("--rate", station.rate,
+                   "Bits a second, with the headers of IP and UDP (none: as fast as can be)")
+        ->check(isNumber(strict_files::above(0)));
+    app.add_option("--port", station.port, "UDP port to listen at (4217); 0: any, which is said")
+        ->check(isNumber(strict_files::between(0, 65535)));
+    app.add_option("--weights", weights, "For receivers without weights of their own (YAML)");
+    app.add_option("--solution", own.solution, "Which of these weights (the first)");
+    app.add_option("--receivers", station.receivers, "End after so many were served (1)")
+        ->check(isNumber(strict_files::above(0)));
+    app.add_option("--timeout", station.timeout, "End if nobody was heard for so long, s (60)")
+        ->check(isNumber(strict_files::above(0)));
+    app.add_option(
+           "--lose", station.loss,
+           "Try a bad radio: lose this share of the datagrams, send some twice, some late (0)")
+        ->check(isNumber(strict_files::between(0, 0.99)));
+    app.add_option("--seed", station.seed, "Which ones (1)");
+    app.add_flag_callback("-q,--quiet", beQuiet, "Say nothing but errors");
+    app.add_flag_callback("-v,--verbose", beVerbose, "Tell of datagrams that were not understood");
+  }
+};
+
+int run(Cli& cli) {
+  if (!cli.weights.empty()) cli.own.weights = strict_files::readText(cli.weights);
+  Maps maps;
+  for (const fs::path& file : cli.maps) maps.push_back(semantic_octree::loadTree(file.string()));
+  if (!cli.weights.empty()) cli.own.forClasses(maps.front().classes(), cli.weights.string());
+  const StopRequest stop("after this datagram");
+  Station station(maps, cli.own, cli.station);
+  notes() << "Waiting at port " << station.port() << std::endl;
+  station.serve(stop);
+  return 0;
+}
+
+}  // namespace
+}  // namespace semantic_map_send
+
+int main(int argc, char** argv) {
+  CLI::App app("Sends a semantic octree map over a thin radio, what matters most first");
+  semantic_map_send::Cli cli(app);
+  return runApplication(app, argc, argv, [&] { return semantic_map_send::run(cli); });
+}

@@ -1,0 +1,192 @@
+// semantic-map-send and semantic-map-receive, as processes on this machine.
+#include <gtest/gtest.h>
+#include <semantic_octree/TreeFile.h>
+
+#include "../semantic_planning/PaintedWorld.h"
+#include "SemanticMapCompress.h"
+#include "ShellCommand.h"
+#include "radio/Wish.h"
+
+namespace {
+
+using semantic_octree::loadTree;
+
+/** A folder with a map of a road in grass beside a wall, and one that it became later. */
+class MapRadio : public testing::Test {
+ protected:
+  void SetUp() override {
+    PaintedWorld world;
+    world.floor(-10, 10, -6, 6, PaintedWorld::Grass);
+    world.floor(-10, 10, -2, 2, PaintedWorld::Road);
+    world.box(-2, 2, 4, 4.4, 0, 2, PaintedWorld::Wall);
+    saveTree(world.map(), path("map.semantic"));
+    world.box(5, 6, -5, -4.4, 0, 1, PaintedWorld::Wall);
+    saveTree(world.map(), path("later.semantic"));
+    folder.write("weights.yaml", R"(block_size: 3.2
+solutions:
+  - {name: road, relevant: {road: 1}, alpha: 0.0002}
+  - {name: obstacles, relevant: {wall: 1}, everything: 0.1, alpha: 0.0001}
+)");
+    folder.write("order.yaml", "best_to_worst: [road, grass, mud]\n");
+  }
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+
+  /** Runs the sender, and when it waits, the shell's commands, which know its port as $port.
+   * All must end well. */
+  void withSender(const std::string& arguments, const std::string& commands) const {
+    folder.write("script", "cd '" + folder.path().string() +
+                               "'\nPATH='" MSO_BIN_DIR
+                               ":/usr/bin:/bin'\nsemantic-map-send --port 0 --timeout 60 " +
+                               arguments + " >log 2>&1 &\nsender=$!\n" +
+                               "until grep -q 'at port' log; do kill -0 $sender 2>&- || break; "
+                               "sleep 0.05; done\n"
+                               "port=$(sed -n 's/Waiting at port //p' log)\n" +
+                               commands + "\nstatus=$?\nwait $sender || status=\"sender $?\"\n" +
+                               "cat log\necho status $status\n");
+    const CommandRun run = runCommand("sh '" + path("script") + "'");
+    EXPECT_TRUE(contains(run.output, "status 0\n")) << run.output;
+  }
+  /** The tree that semantic-map-compress makes of a map. */
+  std::string compressed(const std::string& map, const std::string& solution,
+                         const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {path(map), "--weights", path("weights.yaml"),
+                                          "-o",      path("out"), "-f"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramRun run = runProgram("semantic-map-compress", arguments);
+    EXPECT_EQ(run.status, 0) << run.errors;
+    return folder.read("out/" + solution + ".semantic");
+  }
+
+  TemporaryFolder folder;
+};
+
+/** Not what differs, which nobody could read. */
+void expectSame(const std::string& a, const std::string& b) { EXPECT_TRUE(a == b); }
+
+const std::string kReceive = "semantic-map-receive localhost:$port ";
+
+}  // namespace
+
+TEST_F(MapRadio, whatArrivesIsTheCompressedTreeToTheLastBit) {
+  withSender("map.semantic", kReceive + "--weights weights.yaml --solution road -o r.semantic");
+  expectSame(folder.read("r.semantic"), compressed("map.semantic", "road"));
+}
+
+TEST_F(MapRadio, aTreeOfSoManyBytesArrivesToo) {
+  const std::string wanted = compressed("map.semantic", "road", {"--bytes", "3000"});
+  const auto report = nlohmann::json::parse(folder.read("out/report.json"));
+  std::ostringstream alpha;
+  alpha.precision(17);
+  alpha << report["solutions"][0]["alpha"].get<double>();
+  withSender("map.semantic",
+             kReceive + "--weights weights.yaml --alpha " + alpha.str() + " -o r.semantic");
+  EXPECT_LE(wanted.size(), 3000u);
+  expectSame(folder.read("r.semantic"), wanted);
+}
+
+TEST_F(MapRadio, prefixesAreTheTreesOfSoManyBytes) {
+  semantic_octree::SemanticOcTree map = smallMap(namedClasses());
+  saveTree(map, path("map.semantic"));
+  folder.write("weights.yaml", kTwoSolutions);
+  const std::string solution = "ground_and-cars";
+  const radio::Wish wish{kTwoSolutions, solution, 0.0};
+  map.setAbstraction(wish.forClasses(map.classes(), "weights"));
+  semantic_octree::MapSender sender(1);
+  sender.setMap(map);
+  semantic_octree::MapReceiver receiver(1);
+  std::size_t compared = 0, next = 0;
+  for (const semantic_octree::StreamPrefix& prefix : sender.prefixes()) {
+    receiver.accept(*sender.next());
+    if (!prefix.isWhole || prefix.packets < next) continue;
+    next = prefix.packets + sender.prefixes().size() / 4;
+    saveTree(receiver.map(), path("prefix.semantic"));
+    const std::string file = folder.read("prefix.semantic");
+    expectSame(file,
+               compressed("map.semantic", solution, {"--bytes", std::to_string(file.size())}));
+    ++compared;
+  }
+  EXPECT_GE(compared, 3u);
+}
+
+TEST_F(MapRadio, eachReceiverHasItsWeightsOverARadioThatLosesAndExchanges) {
+  withSender("--receivers 2 --lose 0.2 --rate 2000000 --weights weights.yaml map.semantic",
+             "(" + kReceive + "--lose 0.2 -o road.semantic; echo $? >first) &\n" + kReceive +
+                 "--lose 0.2 --solution obstacles -o obstacles.semantic\nfirst=$?; wait %2; "
+                 "test $first = 0 && grep -q '^0$' first");
+  expectSame(folder.read("road.semantic"), compressed("map.semantic", "road"));
+  expectSame(folder.read("obstacles.semantic"), compressed("map.semantic", "obstacles"));
+}
+
+TEST_F(MapRadio, whatChangedFollowsTheFirstMap) {
+  withSender("--lose 0.2 --weights weights.yaml --solution obstacles map.semantic later.semantic",
+             kReceive + "-o r.semantic");
+  expectSame(folder.read("r.semantic"), compressed("later.semantic", "obstacles"));
+}
+
+TEST_F(MapRadio, twoRobotsPlanOnWhatTheyShare) {
+  withSender("--receivers 2 --lose 0.2 --weights weights.yaml map.semantic",
+             kReceive + "--like map.semantic -o one.semantic && " + kReceive +
+                 "--solution obstacles -o two.semantic");
+  for (const std::string name : {"one", "two"}) {
+    const ProgramRun plan =
+        runProgram("semantic-map-plan",
+                   {path(name + ".semantic"), "--start=-8,0,0", "--goal=8,0,0", "--classes",
+                    path("order.yaml"), "-o", path("plan-" + name), "--vertices", "200"});
+    ASSERT_EQ(plan.status, 0) << plan.errors;
+    const auto report = nlohmann::json::parse(folder.read("plan-" + name + "/path.json"));
+    EXPECT_GE(report["lengthPerClass"]["road"], 15) << report["lengthPerClass"];
+  }
+}
+
+TEST_F(MapRadio, enoughIsEnough) {
+  withSender("--rate 4000000 --weights weights.yaml map.semantic",
+             kReceive + "--alpha 0 --bytes 4000 -o r.semantic");
+  EXPECT_LT(loadTree(path("r.semantic")).getNumLeafNodes(),
+            loadTree(path("map.semantic")).getNumLeafNodes());
+}
+
+TEST_F(MapRadio, theSenderSaysWhatItCannotServe) {
+  folder.write("other.yaml", "{name: x, relevant: {lawn: 1}, alpha: 0.1}");
+  const std::string expectRefusal = " 2>errors; test $? = 1 && ";
+  withSender("--receivers 1 map.semantic",
+             kReceive + "--weights other.yaml -o r.semantic" + expectRefusal +
+                 "grep -q 'refuses: weights:1: .*lawn' errors && " + kReceive + "-o r.semantic" +
+                 expectRefusal + "grep -q 'neither the sender' errors && " + kReceive +
+                 "--weights weights.yaml --solution rad -o r.semantic" + expectRefusal +
+                 "grep -q \"'road'\" errors && " + kReceive +
+                 "--weights weights.yaml -o r.semantic");
+}
+
+TEST_F(MapRadio, mapsOfOtherClassesAreRefusedAndNothingIsLost) {
+  semantic_octree::ClassTable classes;
+  classes.add("lawn", {});
+  saveTree(semantic_octree::SemanticOcTree(0.2, classes), path("own.semantic"));
+  folder.write("kept.semantic", "of before");
+  withSender("--weights weights.yaml map.semantic",
+             kReceive +
+                 "--like own.semantic -f -o kept.semantic 2>errors; test $? = 1 && grep -q "
+                 "'class table is not that of own.semantic' errors && " +
+                 kReceive +
+                 "-o kept.semantic 2>errors; test $? = 1 && grep -q 'is there already' "
+                 "errors && " +
+                 kReceive + "-o r.semantic");
+  EXPECT_EQ(folder.read("kept.semantic"), "of before");
+}
+
+TEST_F(MapRadio, nobodyThereAndPortsInUseAreSaid) {
+  const ProgramRun alone = runProgram(
+      "semantic-map-receive", {"localhost:9", "--timeout", "0.3", "-o", path("r.semantic")});
+  EXPECT_EQ(alone.status, 1);
+  EXPECT_TRUE(contains(alone.errors, "nobody answers at 127.0.0.1:9")) << alone.errors;
+  const ProgramRun waiting =
+      runProgram("semantic-map-send", {path("map.semantic"), "--port", "0", "--timeout", "0.3"});
+  EXPECT_EQ(waiting.status, 1);
+  EXPECT_TRUE(contains(waiting.errors, "nobody asked for the map at port")) << waiting.errors;
+  EXPECT_TRUE(
+      contains(runProgram("semantic-map-receive", {"localhost:x", "-o", path("r.semantic")}).errors,
+               "expected HOST:PORT"));
+  withSender("--weights weights.yaml map.semantic",
+             "semantic-map-send --port $port map.semantic 2>errors; test $? = 1 && grep -q "
+             "\"port $port cannot be used\" errors && " +
+                 kReceive + "-o r.semantic");
+}
