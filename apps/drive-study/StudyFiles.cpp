@@ -72,12 +72,10 @@ ordered_json summaryOf(const std::vector<Trial>& trials) {
 
 std::string toCsv(const std::vector<Trial>& trials) {
   std::ostringstream out;
-  out << "scene,number,start_x,start_y,start_deg,goal_x,goal_y,goal_deg,path,path_length,path_"
-         "worse,"
-         "end,fault,seconds,length,worse,worse_planned,collisions,clearance,replans,explored,seen,"
-         "refused,"
-         "processor,"
-         "why_no_path,reason\n";
+  out << "scene,number,start_x,start_y,start_deg,goal_x,goal_y,goal_deg,path,path_length,"
+         "path_worse,end,fault,seconds,length,worse,worse_planned,collisions,clearance,replans,"
+         "explored,seen,refused,largest_jerk,backwards,gear_changes,turn_sign_changes,"
+         "path_turn_sign_changes,processor,why_no_path,reason\n";
   for (const Trial& t : trials) {
     out << t.scene << ',' << t.number << ',';
     addPose(out, t.task.start);

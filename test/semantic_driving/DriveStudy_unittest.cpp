@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "CsvTable.h"
 #include "Plain.h"
 #include "StudyFiles.h"
 #include "TrueMap.h"
@@ -151,5 +152,8 @@ TEST(DriveStudy, DrivesATaskAndCountsIt) {
   const auto study = toJson({trial});
   EXPECT_EQ(study["yard"]["arrivedOfThese"], 1);
   EXPECT_EQ(study["all"]["faults"], 0);
+  const auto table = csvTable(toCsv({trial}));
+  ASSERT_EQ(table.size(), 2u);
+  EXPECT_EQ(table[0].size(), table[1].size());
   EXPECT_NE(toCsv({trial}).find("\nyard,0,-8,0,0,3,0,0,yes,"), std::string::npos);
 }
