@@ -35,6 +35,7 @@ void Session::accept(const Datagram& datagram) {
       return;
     case Datagram::Type::End:
       m_isDone = true;
+      m_answer = answer(Datagram::Type::End, "");
       return;
     default:
       return;

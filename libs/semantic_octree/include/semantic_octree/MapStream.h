@@ -25,7 +25,7 @@ struct Datagram {
     Request = 1,  ///< receiver: these weights
     Data,         ///< sender
     Receipt,      ///< receiver: what of the data came
-    End,          ///< sender: nothing comes any more
+    End,          ///< sender: nothing comes any more; receiver: this is enough
     Refusal       ///< sender: why there will be nothing, a text
   };
   Type type = Type::Data;
