@@ -57,8 +57,9 @@ std::vector<OptionTable> mapTables() {
           "the same options, with lists of their own for classes, `prior` and `regions`: see [its "
           "page](../../apps/semantic-map-compress/README.md). How to choose: "
           "[compression](compression.md)."),
-      table<semantic_slam::SlamOptions>("Poses put right",
-                                        "`[slam]` of `rawlog2semantic-map`, with `--slam`."),
+      table<semantic_slam::SlamOptions>(
+          "Poses put right",
+          "`[slam]` of `rawlog2semantic-map`, with `--slam`; of drives with noise in the pose."),
       table<TLikelihoodOptions>("Likelihood of observations", "`_likelihoodOpts`."),
       table<TRenderingOptions>("The map's 3D object", "`_renderOpts`."),
       table<semantic_octree::SmoothingOptions>(
@@ -129,7 +130,7 @@ std::vector<OptionTable> drivingTables() {
       table<ObstacleOptions>("Obstacles", "`[obstacles]`."),
       table<MoverOptions>("Those who move", "`[movers]`."),
       table<SensorConfig>("Simulated sensors", "`[sensors]`; `[camera]` and `[lidar]` are above."),
-      table<PoseOptions>("Simulated odometry, and how it is corrected", "`[pose]`."),
+      table<PoseOptions>("Simulated odometry", "`[pose]`; it is corrected as `[slam]` says."),
   };
 }
 
