@@ -74,8 +74,9 @@ std::string toCsv(const std::vector<Trial>& trials) {
   std::ostringstream out;
   out << "scene,number,start_x,start_y,start_deg,goal_x,goal_y,goal_deg,path,path_length,"
          "path_worse,end,fault,seconds,length,worse,worse_planned,collisions,clearance,replans,"
-         "explored,seen,refused,largest_jerk,backwards,gear_changes,turn_sign_changes,"
-         "path_turn_sign_changes,processor,why_no_path,reason\n";
+         "explored,seen,refused,jerk,backwards,gear_changes,turn_changes,path_turn_changes,"
+         "pose_error,largest_pose_error,odometry_error,cycle,slow_cycle,processor,why_no_path,"
+         "reason\n";
   for (const Trial& t : trials) {
     out << t.scene << ',' << t.number << ',';
     addPose(out, t.task.start);
@@ -85,8 +86,10 @@ std::string toCsv(const std::vector<Trial>& trials) {
         << t.badDriven << ',' << t.badFollowed << ',' << t.collisions << ',' << t.leastClearance
         << ',' << t.replans << ',' << t.explored << ',' << t.seenAt << ',' << t.refusedAt << ','
         << t.smooth.jerk << ',' << t.smooth.backwards << ',' << t.smooth.gearChanges << ','
-        << t.smooth.turnChanges << ',' << t.smooth.pathTurnChanges << ',' << t.processorSeconds
-        << ',' << csvField(t.task.reason) << ',' << csvField(t.reason) << '\n';
+        << t.smooth.turnChanges << ',' << t.smooth.pathTurnChanges << ',' << t.poseErrors.mean
+        << ',' << t.poseErrors.largest << ',' << t.odometryErrors.mean << ',' << t.cycle << ','
+        << t.slowCycle << ',' << t.processorSeconds << ',' << csvField(t.task.reason) << ','
+        << csvField(t.reason) << '\n';
   }
   return out.str();
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "measuring/Quantile.h"
 #include "measuring/Stopwatch.h"
 
 namespace drive_study {
@@ -35,6 +36,16 @@ class GoalWatch : public DriveObserver {
 
   double m_seenAt = -1;
 };
+
+/** Milliseconds from a scan to the path that follows from it. */
+std::vector<double> cyclesOf(const DriveRecord& record) {
+  std::vector<double> cycles;
+  if (record.times.count("insert+update+replan")) cycles = record.times.at("insert+update+replan");
+  if (const auto localize = record.times.find("localize"); localize != record.times.end())
+    for (std::size_t i = 0; i < std::min(cycles.size(), localize->second.size()); ++i)
+      cycles[i] += localize->second[i];
+  return cycles;
+}
 
 }  // namespace
 
@@ -77,6 +88,12 @@ Trial runTrial(const DriveConfig& config, synthetic_world::World& world,
   trial.collisions = record.collisions;
   trial.replans = record.replans;
   trial.smooth = smoothnessOf(record);
+  trial.poseErrors = poseErrorsOf(record, &DriveRow::believed);
+  trial.odometryErrors = poseErrorsOf(record, &DriveRow::odometry);
+  if (const std::vector<double> cycles = cyclesOf(record); !cycles.empty()) {
+    trial.cycle = measuring::quantile(cycles, 0.5);
+    trial.slowCycle = measuring::quantile(cycles, 0.95);
+  }
   trial.processorSeconds = watch.milliseconds() / 1e3;
   return trial;
 }

@@ -21,6 +21,9 @@ struct Trial {
   double leastClearance = 0;              ///< m
   int collisions = 0, replans = 0;
   simulated_drive::Smoothness smooth;
+  simulated_drive::PoseErrors poseErrors, odometryErrors;
+  /** Milliseconds of the processor to localize, insert, update and replan: median, 95 %. */
+  double cycle = 0, slowCycle = 0;
   double processorSeconds = 0;
 
   /** That there is no path to the goal. */

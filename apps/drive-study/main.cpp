@@ -87,7 +87,9 @@ void studyScene(const std::string& name, const Cli& cli, const simulated_drive::
     while (!oracle.accepts(task)) task = drawn();
     if (!cli.wants(i)) continue;
     if (!task.enclosed && !task.unfit) oracle.solve(task);
-    Trial trial = runTrial(config, scene.world, order, task);
+    simulated_drive::DriveConfig itsOwn = config;
+    itsOwn.sensors.seed = cli.tasks.seed + static_cast<std::uint64_t>(i);
+    Trial trial = runTrial(itsOwn, scene.world, order, task);
     trial.scene = name;
     trial.number = i;
     print(trial);

@@ -6,8 +6,8 @@
 namespace rawlog2semantic_map {
 namespace {
 
-/** Keyframes are moved on the way if what is so many meters away is off by more voxels. */
-constexpr double kSeenFrom = 10, kOff = 0.25;
+/** Keyframes are moved on the way if they are off by more voxels. */
+constexpr double kOff = 0.25;
 
 Eigen::Isometry3d isometry(const mrpt::poses::CPose3D& pose) {
   return Eigen::Isometry3d(pose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen());
@@ -31,19 +31,9 @@ semantic_octree::InsertionReport PoseCorrection::insert(
   }
   const auto report =
       m_keyframes.insert(scan.cloud, added.T_keyframe_robot * T_robot_sensor, options);
-  if (added.loopClosed) moveWhatIsOff();
+  if (added.loopClosed)
+    m_keyframes.move(posesOff(m_slam, m_keyframes, kOff * m_keyframes.map().getResolution()));
   return report;
-}
-
-void PoseCorrection::moveWhatIsOff() {
-  std::vector<semantic_octree::KeyframePose> off;
-  for (const auto& pose : posesOf(m_slam)) {
-    const auto by =
-        semantic_slam::vectorOf(m_keyframes.pose(pose.keyframe).inverse() * pose.T_map_keyframe);
-    const double meters = by.head<3>().norm() + kSeenFrom * by.tail<3>().norm();
-    if (meters > kOff * m_keyframes.map().getResolution()) off.push_back(pose);
-  }
-  m_keyframes.move(off);
 }
 
 SlamSummary PoseCorrection::summary() const {

@@ -29,8 +29,6 @@ class PoseCorrection {
   std::string trajectory() const;
 
  private:
-  void moveWhatIsOff();
-
   semantic_slam::Slam m_slam;
   semantic_octree::KeyframeMap m_keyframes;
   std::vector<double> m_times;  ///< of keyframes, seconds

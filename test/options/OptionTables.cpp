@@ -62,8 +62,9 @@ std::vector<OptionTable> mapTables() {
           "Maps in folders",
           "`semantic_octree::MapFolder`, `rawlog2semantic-map --tiles`; `--memory` of the programs "
           "that read maps. See [large maps](large-maps.md)."),
-      table<semantic_slam::SlamOptions>("Poses put right",
-                                        "`[slam]` of `rawlog2semantic-map`, with `--slam`."),
+      table<semantic_slam::SlamOptions>(
+          "Poses put right",
+          "`[slam]` of `rawlog2semantic-map`, with `--slam`; of drives with noise in the pose."),
       table<TLikelihoodOptions>("Likelihood of observations", "`_likelihoodOpts`."),
       table<TRenderingOptions>("The map's 3D object", "`_renderOpts`."),
       table<semantic_octree::SmoothingOptions>(
@@ -134,7 +135,7 @@ std::vector<OptionTable> drivingTables() {
       table<ObstacleOptions>("Obstacles", "`[obstacles]`."),
       table<MoverOptions>("Those who move", "`[movers]`."),
       table<SensorConfig>("Simulated sensors", "`[sensors]`; `[camera]` and `[lidar]` are above."),
-      table<PoseOptions>("Simulated odometry, and how it is corrected", "`[pose]`."),
+      table<PoseOptions>("Simulated odometry", "`[pose]`; it is corrected as `[slam]` says."),
   };
 }
 

@@ -119,14 +119,15 @@ TEST(DriveOptions, AreReadFromTheirSections) {
   const auto config = loaded(
       "max_speed = 0.5\ncontrol_period = 0.05\n[guide]\nat_goal = 0.2\n"
       "[frontiers]\nradius = 20\n[recovery]\nblind = 1\n"
-      "[obstacles]\nforbidden_ground = false\n[pose]\nparticles = 50\n");
+      "[obstacles]\nforbidden_ground = false\n[pose]\nturn_noise = 2\n[slam]\nmax_range = 20\n");
   EXPECT_EQ(config.drive.maxSpeed, 0.5);
   EXPECT_EQ(config.controlPeriod, 0.05);
   EXPECT_EQ(config.guide.atGoal, 0.2);
   EXPECT_EQ(config.guide.frontiers.radius, 20);
   EXPECT_EQ(config.guide.recovery.blind, 1);
   EXPECT_FALSE(config.obstacles.forbiddenGround);
-  EXPECT_EQ(config.pose.particles, 50);
+  EXPECT_EQ(config.pose.turnNoise, 2);
+  EXPECT_EQ(config.slam.maxRange, 20);
 }
 
 TEST(DriveOptions, AreReadInMrptsWayOfWritingToo) {

@@ -37,11 +37,11 @@ double largestError(const DriveRecord& record, TPose2D DriveRow::*pose) {
 
 }  // namespace
 
-TEST(NoisyPose, CorrectedByTheMapLeadsToTheGoal) {
+TEST(NoisyPose, CorrectedBySlamLeadsToTheGoal) {
   const DriveRecord record = drive(noisyConfig());
   EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
   EXPECT_EQ(record.collisions, 0);
-  EXPECT_LT(largestError(record, &DriveRow::believed), 0.6);
+  EXPECT_LT(largestError(record, &DriveRow::believed), 0.3);
   EXPECT_LT(largestError(record, &DriveRow::believed),
             largestError(record, &DriveRow::odometry) / 2);
   const auto error = toJson(record, syntheticOrder()).at("poseError");
@@ -81,6 +81,6 @@ TEST(NoisyPose, RefusesBadOptions) {
   options.odometryNoise = -0.1;
   EXPECT_THROW(options.validate(), std::invalid_argument);
   options = {};
-  options.pointWeight = 0;
+  options.turnNoise = 91;
   EXPECT_THROW(options.validate(), std::invalid_argument);
 }

@@ -140,6 +140,56 @@ TEST(Slam, scansBetweenKeyframesAreWhereOdometryHasThem) {
   }
 }
 
+namespace {
+
+/** The heading that odometry has is off by 2 or 3 degrees each meter, and the way by 5 %;
+ * height and tilt are right. */
+std::vector<Eigen::Isometry3d> levelOdometryOf(const Recording& r) {
+  const auto planar = [](const Eigen::Isometry3d& T) {
+    Eigen::Isometry3d flat(Eigen::Translation3d(T.translation().x(), T.translation().y(), 0));
+    flat.rotate(Eigen::AngleAxisd(std::atan2(T(1, 0), T(0, 0)), Eigen::Vector3d::UnitZ()));
+    return flat;
+  };
+  std::vector<Eigen::Isometry3d> odometry = {r.truth[0]};
+  Eigen::Isometry3d T = planar(r.truth[0]);
+  for (std::size_t i = 1; i < r.truth.size(); ++i) {
+    Eigen::Isometry3d motion = planar(r.truth[i - 1]).inverse() * planar(r.truth[i]);
+    motion.translation() *= 1.05;
+    const double turn = (i % 2 ? 3 : -2) * M_PI / 180;
+    T = T * motion * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ());
+    odometry.push_back(T * planar(r.truth[i]).inverse() * r.truth[i]);
+  }
+  return odometry;
+}
+
+}  // namespace
+
+TEST(Slam, registersOnSlopesWhereHeightAndTiltAreKnown) {
+  const Recording r = recordingOf("park", 1, 0, 20);
+  const auto odometry = levelOdometryOf(r);
+  SlamOptions options;
+  options.level = options.registerAll = true;
+  options.keyframeDistance = 1.5;
+  options.keyframeAngle = 90;
+  options.odometryShare = 0.1;
+  options.odometryAngle = 3;
+  Slam slam(options);
+  double steepest = 0;
+  for (std::size_t i = 0; i < odometry.size(); ++i) {
+    const Slam::Added added = slam.add(r.clouds[i], kRobotLidar, odometry[i]);
+    const Eigen::Isometry3d T = slam.poses()[added.keyframe] * added.T_keyframe_robot;
+    const Vector6 off = vectorOf(r.truth[i].inverse() * T);
+    EXPECT_LT(off.head<3>().norm(), 0.5) << i;
+    EXPECT_LT(off.tail<3>().norm(), 3 * M_PI / 180) << i;
+    EXPECT_NEAR(T.translation().z(), r.truth[i].translation().z(), 1e-6) << i;
+    EXPECT_NEAR(T(2, 0), r.truth[i](2, 0), 1e-6) << i;
+    EXPECT_NEAR(T(2, 1), r.truth[i](2, 1), 1e-6) << i;
+    steepest = std::max(steepest, std::acos(T(2, 2)));
+  }
+  EXPECT_LT(slam.poses().size(), odometry.size());
+  EXPECT_GT(steepest, 5 * M_PI / 180);
+}
+
 TEST(Slam, refusesBadOptions) {
   SlamOptions options;
   options.cubeSize = 0;

@@ -125,6 +125,7 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     readMap(sections, config);
     readSensors(sections, config.sensors);
     sections.readAll("pose", config.pose);
+    sections.readAll("slam", config.slam);
     readPlanner(sections, file.parent_path(), config.planner);
     readDrive(sections, file.parent_path(), config);
     sections.readAll("guide", config.guide);

@@ -3,6 +3,7 @@
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/InsertionOptions.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
+#include <semantic_slam/SlamOptions.h>
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Lidar.h>
 
@@ -32,6 +33,7 @@ struct DriveConfig {
   semantic_octree::InsertionOptions insertion;
   SensorConfig sensors;
   PoseOptions pose;
+  semantic_slam::SlamOptions slam;  ///< with noise
   semantic_planning::PlannerOptions planner;
   semantic_driving::DriveOptions drive;
   semantic_driving::GuideOptions guide;

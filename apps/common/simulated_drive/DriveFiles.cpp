@@ -65,21 +65,24 @@ nlohmann::json timesToJson(const std::vector<double>& times) {
           {"shareOver100", shareOver(times, 100)}};
 }
 
-/** How far poses of the rows are from the true ones. */
-nlohmann::json errorsToJson(const std::vector<DriveRow>& rows, TPose2D DriveRow::*pose) {
-  double sum = 0, largest = 0, turns = 0;
-  for (const DriveRow& r : rows) {
-    const TPose2D& p = r.*pose;
-    const double error = std::hypot(p.x - r.pose.x, p.y - r.pose.y);
-    sum += error;
-    largest = std::max(largest, error);
-    turns += std::abs(mrpt::math::wrapToPi(p.phi - r.pose.phi));
-  }
-  const double count = std::max<double>(1, static_cast<double>(rows.size()));
-  return {{"mean", sum / count}, {"largest", largest}, {"meanHeading", turns / count * 180 / M_PI}};
+nlohmann::json toJson(const PoseErrors& e) {
+  return {{"mean", e.mean}, {"largest", e.largest}, {"meanHeading", e.meanHeading}};
 }
 
 }  // namespace
+
+PoseErrors poseErrorsOf(const DriveRecord& record, TPose2D DriveRow::*pose) {
+  PoseErrors errors;
+  const double count = std::max<double>(1, static_cast<double>(record.rows.size()));
+  for (const DriveRow& r : record.rows) {
+    const TPose2D& p = r.*pose;
+    const double error = std::hypot(p.x - r.pose.x, p.y - r.pose.y);
+    errors.mean += error / count;
+    errors.largest = std::max(errors.largest, error);
+    errors.meanHeading += std::abs(mrpt::math::wrapToPi(p.phi - r.pose.phi)) * 180 / M_PI / count;
+  }
+  return errors;
+}
 
 double shareOfSlowCycles(const DriveRecord& record) {
   const auto cycles = record.times.find("insert+update+replan");
@@ -144,8 +147,8 @@ nlohmann::json toJson(const DriveRecord& record, const colored_graph::ClassOrder
                         {"turnSignChangesOfPath", smooth.pathTurnChanges}};
   json["leastClearance"] = record.leastClearance;
   if (!record.exactPose)
-    json["poseError"] = {{"believed", errorsToJson(record.rows, &DriveRow::believed)},
-                         {"odometry", errorsToJson(record.rows, &DriveRow::odometry)}};
+    json["poseError"] = {{"believed", toJson(poseErrorsOf(record, &DriveRow::believed))},
+                         {"odometry", toJson(poseErrorsOf(record, &DriveRow::odometry))}};
   for (const auto& [stage, times] : record.times) json["milliseconds"][stage] = timesToJson(times);
   return json;
 }

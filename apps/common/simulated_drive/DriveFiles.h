@@ -19,6 +19,13 @@ struct Smoothness {
 };
 Smoothness smoothnessOf(const DriveRecord& record);
 
+/** How far off the robot believes to be, step by step: m; of the heading, degrees. */
+struct PoseErrors {
+  double mean = 0, largest = 0, meanHeading = 0;
+};
+/** \param pose DriveRow::believed or DriveRow::odometry */
+PoseErrors poseErrorsOf(const DriveRecord& record, mrpt::math::TPose2D DriveRow::*pose);
+
 /** Of the cycles (insert, update, replan), those that took more than 100 ms: 0 to 1. */
 double shareOfSlowCycles(const DriveRecord& record);
 

@@ -92,7 +92,7 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_controller(config.drive, reactiveOf(config, navlogs)),
       m_movers(config.movers, synthetic_world::classTable()),
       m_robot(start, config.drive, config.turnAcceleration),
-      m_pose(start, config.pose, config.sensors.seed),
+      m_pose(start, config.pose, config.slam, m_movers.isMover(), config.sensors.seed),
       m_state(m_robot.state()),
       m_footprint(trueFootprint(config.planner.vehicle)) {
   m_controller.setClassSpeeds(config.drive.classSpeeds(order));
@@ -146,8 +146,7 @@ void DriveLoop::sense() {
   Stopwatch watch(measuring::TimeOf::Thread);
   const std::vector<Observation> seen = m_sensors.sense(m_world, T_world_robot());
   note("simulate", watch.lap());
-  localize(seen);
-  for (const auto& [stage, ms] : m_mapper->insert(seen, T_map_robot())) note(stage, ms);
+  insert(seen);
   Stopwatch following(measuring::TimeOf::Thread);
   for (const Observation& o : seen) m_movers.see(o.cloud, T_map_robot() * o.T_robot_sensor);
   m_movers.update(m_time);
@@ -156,12 +155,18 @@ void DriveLoop::sense() {
   for (DriveObserver* o : m_observers) o->onSensed(*this, seen);
 }
 
-void DriveLoop::localize(const std::vector<Observation>& seen) {
-  if (m_record.exactPose || !m_config.pose.correct) return;
-  Stopwatch watch(measuring::TimeOf::Thread);
-  m_pose.correct(m_mapper->map(), seen, T_level_robot());
-  m_state.pose = m_pose.pose();
-  note("localize", watch.lap());
+void DriveLoop::insert(const std::vector<Observation>& seen) {
+  semantic_planning::StageTimes times;
+  if (m_record.exactPose || !m_config.pose.correct) {
+    times = m_mapper->insert(seen, T_map_robot());
+  } else {
+    Stopwatch watch(measuring::TimeOf::Thread);
+    const auto added = m_pose.correct(seen, T_level_robot());
+    m_state.pose = m_pose.pose();
+    note("localize", watch.lap());
+    times = m_mapper->insert(seen, added, m_pose.slam());
+  }
+  for (const auto& [stage, ms] : times) note(stage, ms);
 }
 
 void DriveLoop::guide() {

@@ -5,8 +5,8 @@
 
 #include "DriveRecord.h"
 #include "Events.h"
+#include "Localization.h"
 #include "Mapper.h"
-#include "PoseFilter.h"
 #include "SimulatedRobot.h"
 
 namespace simulated_drive {
@@ -61,7 +61,7 @@ class DriveLoop {
 
  private:
   void sense();
-  void localize(const std::vector<Observation>& seen);
+  void insert(const std::vector<Observation>& seen);
   void guide();
   bool wantsFineObstacles();
   void drive();
@@ -86,7 +86,7 @@ class DriveLoop {
   semantic_driving::DriveController m_controller;
   semantic_driving::MoverTracker m_movers;
   SimulatedRobot m_robot;
-  PoseFilter m_pose;
+  Localization m_pose;
   semantic_driving::DriveState m_state;
   synthetic_world::Footprint m_footprint;
   DriveRecord m_record;

@@ -12,6 +12,7 @@ namespace simulated_drive {
 
 using colored_graph::ClassOrder;
 using measuring::Stopwatch;
+using semantic_octree::KeyframeMap;
 using semantic_octree::SemanticOcTree;
 
 namespace {
@@ -25,7 +26,10 @@ SemanticOcTree withAbstraction(SemanticOcTree map, const ClassOrder& order) {
 
 Mapper::Mapper(const DriveConfig& config, const ClassOrder& order)
     : Mapper(config, order,
-             SemanticOcTree(config.voxelSize, synthetic_world::classTable(), config.filter)) {}
+             SemanticOcTree(config.voxelSize, synthetic_world::classTable(), config.filter)) {
+  if (!config.pose.isExact() && config.pose.correct)
+    m_keyframes = std::make_unique<KeyframeMap>(m_map, std::filesystem::temp_directory_path());
+}
 
 Mapper::Mapper(const DriveConfig& config, const ClassOrder& order, SemanticOcTree map)
     : m_config(config),
@@ -53,7 +57,10 @@ void Mapper::standOn(const Eigen::Isometry3d& T_map_robot) {
     }
   semantic_octree::InsertionOptions noRays;
   noRays.carvingMargin = 1e3;
-  m_map.insert(cloud, T_map_robot, noRays);
+  if (m_keyframes)
+    m_keyframes->insert(cloud, Eigen::Isometry3d::Identity(), noRays);  // the first is at the robot
+  else
+    m_map.insert(cloud, T_map_robot, noRays);
   m_planner.update();
 }
 
@@ -65,6 +72,33 @@ semantic_planning::StageTimes Mapper::insert(const std::vector<Observation>& see
   semantic_planning::StageTimes times{{"insert", watch.lap()}};
   m_planner.update();
   if (!std::exchange(m_stands, true)) standOn(T_map_robot);
+  times.emplace_back("update", watch.lap());
+  return times;
+}
+
+semantic_planning::StageTimes Mapper::insert(const std::vector<Observation>& seen,
+                                             const semantic_slam::Slam::Added& added,
+                                             const semantic_slam::Slam& slam) {
+  constexpr double kOff = 0.25;  // voxels
+  constexpr int kLeftOut = 2;    // scans, at most, that begin no keyframe
+  Stopwatch watch(measuring::TimeOf::Thread);
+  if (m_keyframes && added.keyframe == m_keyframes->numKeyframes())
+    m_keyframes->begin(slam.poses().back());
+  if (added.isNew || ++m_leftOut > kLeftOut) {
+    m_leftOut = 0;
+    for (const Observation& o : seen) {
+      const Eigen::Isometry3d T = added.T_keyframe_robot * o.T_robot_sensor;
+      if (m_keyframes)
+        m_keyframes->insert(o.cloud, T, m_config.insertion);
+      else
+        m_map.insert(o.cloud, slam.poses().back() * T, m_config.insertion);
+    }
+  }
+  if (m_keyframes && added.loopClosed)
+    m_keyframes->move(posesOff(slam, *m_keyframes, kOff * m_config.voxelSize));
+  semantic_planning::StageTimes times{{"insert", watch.lap()}};
+  m_planner.update();
+  if (!std::exchange(m_stands, true)) standOn(slam.poses().back() * added.T_keyframe_robot);
   times.emplace_back("update", watch.lap());
   return times;
 }

@@ -1,6 +1,9 @@
 #pragma once
 #include <semantic_planning/planner/SemanticPlanner.h>
 
+#include <semantic_octree/KeyframeMap.h>
+#include <semantic_slam/Slam.h>
+
 #include "SimulatedSensors.h"
 
 namespace simulated_drive {
@@ -18,6 +21,13 @@ class Mapper {
    * roadmap) */
   semantic_planning::StageTimes insert(const std::vector<Observation>& seen,
                                        const Eigen::Isometry3d& T_map_robot);
+  /** Inserts what begins a keyframe, and each third scan where none begins: what stands in the way
+   * may come and go while the robot waits. Moves keyframes when a loop was closed, but not those of
+   * a map with which it began.
+   * \param added what became of it in slam */
+  semantic_planning::StageTimes insert(const std::vector<Observation>& seen,
+                                       const semantic_slam::Slam::Added& added,
+                                       const semantic_slam::Slam& slam);
 
   /** As senseObstacles(), of the full or the compressed tree. */
   semantic_driving::ObstaclePoints obstacles(const mrpt::math::TPose2D& pose, double z,
@@ -33,6 +43,8 @@ class Mapper {
 
   DriveConfig m_config;
   semantic_octree::SemanticOcTree m_map;
+  std::unique_ptr<semantic_octree::KeyframeMap> m_keyframes;  ///< if the map may be corrected
+  int m_leftOut = 0;  ///< scans since the last that was inserted
   semantic_planning::SemanticPlanner m_planner;
   bool m_stands = false;  ///< standOn() was called
 };

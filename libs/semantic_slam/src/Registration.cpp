@@ -138,7 +138,7 @@ LabeledCloud thinned(const LabeledCloud& cloud, double cubeSize, double maxRange
 }
 
 Registration registerScan(const std::vector<const Submap*>& submaps, const LabeledCloud& scan,
-                          const Eigen::Isometry3d& T_submap_guess) {
+                          const Eigen::Isometry3d& T_submap_guess, const Matrix6& prior) {
   Registration result{T_submap_guess, Matrix6::Zero(), 0, 0};
   for (const Submap* submap : submaps)
     for (int i = 0; i < kMostIterations; ++i) {
@@ -146,7 +146,9 @@ Registration registerScan(const std::vector<const Submap*>& submaps, const Label
       result.information = n.H;
       result.coveredShare = static_cast<double>(n.covered) / std::max<std::size_t>(1, scan.size());
       result.matchedShare = static_cast<double>(n.matched) / std::max<std::size_t>(1, n.covered);
-      const Vector6 step = (n.H + 1e-6 * Matrix6::Identity()).ldlt().solve(n.b);
+      const Vector6 off = vectorOf(T_submap_guess.inverse() * result.T_submap_scan);
+      const Vector6 step =
+          (n.H + prior + 1e-6 * Matrix6::Identity()).ldlt().solve(n.b - prior * off);
       if (!step.allFinite()) return result;
       result.T_submap_scan = rigid(result.T_submap_scan * poseOf(step));
       if (step.head<3>().norm() < 1e-4 && step.tail<3>().norm() < 1e-5) break;

@@ -15,6 +15,10 @@ constexpr double kLoopMeters = 0.03, kLoopAngle = 0.1 * kDegree;
 const std::vector<double> kCellsNearby = {2, 1}, kCellsOfLoops = {8, 4, 2, 1};
 /** Registrations that say otherwise than odometry by more are wrong. */
 constexpr double kFarOff = 0.3, kFarTurned = 2 * kDegree;
+/** The same in standard deviations of odometry, if that is more. */
+constexpr double kFar = 4;
+/** Information (1/m^2, 1/rad^2) of a height and a tilt that are known. */
+constexpr double kLevel = 1e12;
 /** Of a keyframe's points where there are some of before. */
 constexpr double kLeastCovered = 0.3;
 /** Of the points that are registered, m. */
@@ -23,6 +27,13 @@ constexpr double kRegisteredCube = 0.5;
 LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T) {
   for (Eigen::Vector3f& p : cloud.points) p = (T * p.cast<double>()).cast<float>();
   return cloud;
+}
+
+/** x, y and heading of a pose. */
+Eigen::Isometry3d planar(const Eigen::Isometry3d& T) {
+  Eigen::Isometry3d result(Eigen::Translation3d(T.translation().x(), T.translation().y(), 0));
+  result.rotate(Eigen::AngleAxisd(std::atan2(T(1, 0), T(0, 0)), Eigen::Vector3d::UnitZ()));
+  return result;
 }
 
 /** Shares of classes in rings around the robot: the same from wherever it looks. */
@@ -49,69 +60,118 @@ Slam::Slam(const SlamOptions& options) : m_options(options) { m_options.validate
 
 auto Slam::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
                const Eigen::Isometry3d& T_odometry_robot) -> Added {
-  if (!m_keyframes.empty()) {
-    const Eigen::Isometry3d T = m_keyframes.back().T_odometry_keyframe.inverse() * T_odometry_robot;
-    const Vector6 motion = vectorOf(T);
-    if (motion.head<3>().norm() < m_options.keyframeDistance &&
-        motion.tail<3>().norm() < m_options.keyframeAngle * kDegree)
-      return {m_keyframes.size() - 1, T};
+  const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
+  if (m_keyframes.empty()) {
+    begin(seen(cloud, T_robot_sensor, T_odometry_robot), T_odometry_robot);
+    return {0, identity, true, false};
   }
-  begin(cloud, T_robot_sensor, T_odometry_robot);
-  connect();
-  return {m_keyframes.size() - 1, Eigen::Isometry3d::Identity(), true, closeLoop()};
+  const std::size_t last = m_keyframes.size() - 1;
+  const Eigen::Isometry3d T_guess =
+      m_T_keyframe_last * (m_T_odometry_last.inverse() * T_odometry_robot);
+  const Vector6 motion = vectorOf(T_guess);
+  const bool isNew = motion.head<3>().norm() >= m_options.keyframeDistance ||
+                     motion.tail<3>().norm() >= m_options.keyframeAngle * kDegree;
+  if (!isNew && !m_options.registerAll) return {last, T_guess};
+  Seen now = seen(cloud, T_robot_sensor, T_odometry_robot);
+  const auto T_registered = track(now, T_guess);
+  if (!isNew) {
+    if (T_registered) moveOn(*T_registered, T_odometry_robot);
+    return {last, T_registered.value_or(T_guess)};
+  }
+  const double way = T_guess.translation().norm();
+  m_edges.push_back({last, last + 1, T_guess, odometryInformation(way)});
+  if (T_registered)
+    m_edges.push_back(
+        {last, last + 1, *T_registered, informationOf(kRegistrationMeters, kRegistrationAngle)});
+  else
+    ++m_numLost;
+  begin(std::move(now), rigid(m_poses.back() * T_registered.value_or(T_guess)));
+  m_keyframes.back().way = m_keyframes[last].way + way;
+  return {last + 1, identity, true, closeLoop()};
 }
 
-void Slam::begin(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
-                 const Eigen::Isometry3d& T_odometry_robot) {
-  Keyframe k{T_odometry_robot, 0, {}, {}};
-  k.cloud = moved(thinned(cloud, m_options.cubeSize, m_options.maxRange), T_robot_sensor);
+auto Slam::seen(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
+                const Eigen::Isometry3d& T_odometry_robot) const -> Seen {
+  Seen seen{moved(thinned(cloud, m_options.cubeSize, m_options.maxRange), T_robot_sensor),
+            T_odometry_robot};
   if (!m_options.useClasses)
-    std::fill(k.cloud.classes.begin(), k.cloud.classes.end(), semantic_types::kNoClass);
-  k.histogram = histogramOf(k.cloud, m_options.maxRange);
-  Eigen::Isometry3d T_map = T_odometry_robot;
-  if (!m_keyframes.empty()) {
-    const Keyframe& last = m_keyframes.back();
-    const Eigen::Isometry3d T = last.T_odometry_keyframe.inverse() * T_odometry_robot;
-    k.way = last.way + T.translation().norm();
-    T_map = rigid(m_poses.back() * T);
-  }
-  m_keyframes.push_back(std::move(k));
-  m_poses.push_back(T_map);
+    std::fill(seen.cloud.classes.begin(), seen.cloud.classes.end(), semantic_types::kNoClass);
+  return seen;
 }
 
-void Slam::connect() {
-  const std::size_t newest = m_keyframes.size() - 1;
-  if (newest == 0) return;
-  const std::size_t last = newest - 1;
-  const Eigen::Isometry3d T_odometry = m_poses[last].inverse() * m_poses[newest];
-  const double way = m_keyframes[newest].way - m_keyframes[last].way;
-  m_edges.push_back({last, newest, T_odometry,
-                     informationOf(0.01 + m_options.odometryShare * way,
-                                   (0.1 + m_options.odometryAngle * way) * kDegree)});
-  const auto before = static_cast<std::size_t>(m_options.submapKeyframes);
-  const Registration r = match(newest - std::min(newest, before), last, last, kCellsNearby);
-  const Vector6 off = vectorOf(T_odometry.inverse() * r.T_submap_scan);
+void Slam::begin(Seen seen, const Eigen::Isometry3d& T_map_robot) {
+  moveOn(Eigen::Isometry3d::Identity(), seen.T_odometry_robot);
+  m_poses.push_back(levelled(T_map_robot, seen.T_odometry_robot));
+  std::vector<float> histogram = histogramOf(seen.cloud, m_options.maxRange);
+  m_keyframes.push_back({std::move(seen), 0, std::move(histogram)});
+  m_nearby.clear();
+}
+
+void Slam::moveOn(const Eigen::Isometry3d& T_keyframe_robot,
+                  const Eigen::Isometry3d& T_odometry_robot) {
+  m_T_keyframe_last = T_keyframe_robot;
+  m_T_odometry_last = T_odometry_robot;
+}
+
+std::optional<Eigen::Isometry3d> Slam::track(const Seen& seen,
+                                             const Eigen::Isometry3d& T_last_guess) {
+  const std::size_t last = m_keyframes.size() - 1;
+  const auto before = static_cast<std::size_t>(m_options.submapKeyframes) - 1;
+  if (m_nearby.empty())
+    m_nearby = submapsOf(last - std::min(last, before), last, last, kCellsNearby);
+  const double way = (m_T_odometry_last.inverse() * seen.T_odometry_robot).translation().norm();
+  const Matrix6 information = odometryInformation(way);
+  const Registration r = match(m_nearby, seen, T_last_guess);
+  const Vector6 off = vectorOf(T_last_guess.inverse() * r.T_submap_scan);
+  const double farOff = std::max(kFarOff, kFar / std::sqrt(information(0, 0)));
+  const double farTurned = std::max(kFarTurned, kFar / std::sqrt(information(5, 5)));
   if (r.coveredShare < kLeastCovered || r.matchedShare < m_options.registrationShare ||
-      off.head<3>().norm() > kFarOff || off.tail<3>().norm() > kFarTurned)
-    return void(++m_numLost);
-  m_edges.push_back(
-      {last, newest, r.T_submap_scan, informationOf(kRegistrationMeters, kRegistrationAngle)});
-  m_poses[newest] = rigid(m_poses[last] * r.T_submap_scan);
+      off.head<3>().norm() > farOff || off.tail<3>().norm() > farTurned)
+    return std::nullopt;
+  const Eigen::Isometry3d T_map = m_poses[last] * r.T_submap_scan;
+  return m_poses[last].inverse() * levelled(T_map, seen.T_odometry_robot);
 }
 
-Registration Slam::match(std::size_t first, std::size_t last, std::size_t frame,
-                         const std::vector<double>& cellSizes) const {
+Matrix6 Slam::odometryInformation(double way) const {
+  const double root = std::sqrt(way);
+  return informationOf(0.01 + m_options.odometryShare * root,
+                       (0.1 + m_options.odometryAngle * root) * kDegree);
+}
+
+Eigen::Isometry3d Slam::levelled(const Eigen::Isometry3d& T_map_robot,
+                                 const Eigen::Isometry3d& T_odometry_robot) const {
+  if (!m_options.level) return T_map_robot;
+  return rigid(planar(T_map_robot) * planar(T_odometry_robot).inverse() * T_odometry_robot);
+}
+
+std::vector<Submap> Slam::submapsOf(std::size_t first, std::size_t last, std::size_t frame,
+                                    const std::vector<double>& cellSizes) const {
   std::vector<Submap> submaps;
   for (const double size : cellSizes) {
     submaps.emplace_back(size, m_options.useClasses);
     for (std::size_t k = first; k <= last; ++k)
-      submaps.back().add(m_keyframes[k].cloud, m_poses[frame].inverse() * m_poses[k]);
+      submaps.back().add(m_keyframes[k].seen.cloud, m_poses[frame].inverse() * m_poses[k]);
     submaps.back().finish();
   }
+  return submaps;
+}
+
+Matrix6 Slam::levelOf(const Eigen::Isometry3d& T_odometry_robot) const {
+  if (!m_options.level) return Matrix6::Zero();
+  Matrix6 toLevel = Matrix6::Zero();
+  toLevel.topLeftCorner<3, 3>() = toLevel.bottomRightCorner<3, 3>() =
+      (planar(T_odometry_robot).inverse() * T_odometry_robot).linear();
+  Vector6 known = Vector6::Zero();
+  known.segment<3>(2).setConstant(kLevel);
+  return toLevel.transpose() * known.asDiagonal() * toLevel;
+}
+
+Registration Slam::match(const std::vector<Submap>& submaps, const Seen& seen,
+                         const Eigen::Isometry3d& T_submap_guess) const {
   std::vector<const Submap*> pointers;
   for (const Submap& submap : submaps) pointers.push_back(&submap);
-  const LabeledCloud scan = thinned(m_keyframes.back().cloud, kRegisteredCube, m_options.maxRange);
-  return registerScan(pointers, scan, m_poses[frame].inverse() * m_poses.back());
+  return registerScan(pointers, thinned(seen.cloud, kRegisteredCube, m_options.maxRange),
+                      T_submap_guess, levelOf(seen.T_odometry_robot));
 }
 
 std::size_t Slam::placeOfLoop() const {
@@ -136,11 +196,15 @@ bool Slam::closeLoop() {
   if (place == newest || m_keyframes[newest].way < m_lastLook + m_options.loopEvery) return false;
   m_lastLook = m_keyframes[newest].way;
   const auto beside = static_cast<std::size_t>(m_options.submapKeyframes / 2);
-  const Registration r = match(place - std::min(place, beside),
-                               std::min(place + beside, newest - 1), place, kCellsOfLoops);
+  const std::vector<Submap> submaps = submapsOf(
+      place - std::min(place, beside), std::min(place + beside, newest - 1), place, kCellsOfLoops);
+  const Registration r =
+      match(submaps, m_keyframes[newest].seen, m_poses[place].inverse() * m_poses[newest]);
   if (r.coveredShare < kLeastCovered || r.matchedShare < m_options.loopShare) return false;
   m_edges.push_back({place, newest, r.T_submap_scan, informationOf(kLoopMeters, kLoopAngle), true});
   optimize(m_poses, m_edges);
+  for (std::size_t k = 0; k < m_poses.size(); ++k)
+    m_poses[k] = levelled(m_poses[k], m_keyframes[k].seen.T_odometry_robot);
   ++m_numLoops;
   return true;
 }
@@ -149,6 +213,18 @@ std::vector<semantic_octree::KeyframePose> posesOf(const Slam& slam) {
   std::vector<semantic_octree::KeyframePose> poses;
   for (const Eigen::Isometry3d& T : slam.poses()) poses.push_back({poses.size(), T});
   return poses;
+}
+
+std::vector<semantic_octree::KeyframePose> posesOff(const Slam& slam,
+                                                    const semantic_octree::KeyframeMap& map,
+                                                    double meters) {
+  constexpr double kSeenFrom = 10;  // m
+  std::vector<semantic_octree::KeyframePose> off;
+  for (const auto& pose : posesOf(slam)) {
+    const Vector6 by = vectorOf(map.pose(pose.keyframe).inverse() * pose.T_map_keyframe);
+    if (by.head<3>().norm() + kSeenFrom * by.tail<3>().norm() > meters) off.push_back(pose);
+  }
+  return off;
 }
 
 }  // namespace semantic_slam

@@ -49,6 +49,9 @@ class MoverTracker {
   /** \throw std::invalid_argument bad options, or a name that no class has. */
   MoverTracker(const MoverOptions& options, const semantic_types::ClassTable& classes);
 
+  /** By class: whether it moves. */
+  const std::vector<bool>& isMover() const { return m_isMover; }
+
   /** Adds a sensor's points to the scan that the next update() takes. */
   void see(const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor);
   /** The scan is complete. \param seconds when it was taken */

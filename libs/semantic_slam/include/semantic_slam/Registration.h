@@ -59,8 +59,10 @@ struct Registration {
  * their classes become least (P2D-NDT: Magnusson, "The Three-Dimensional Normal-Distributions
  * Transform"; with classes as in Zaganidis et al., "Integrating Deep Semantic Segmentation into 3-D
  * Point Cloud Registration"), Gauss-Newton with Geman and McClure's weights.
- * \param submaps of the same points, coarse ones first; each begins where the one before ended */
+ * \param submaps of the same points, coarse ones first; each begins where the one before ended
+ * \param prior information of the guess, frame of the scan */
 Registration registerScan(const std::vector<const Submap*>& submaps, const LabeledCloud& scan,
-                          const Eigen::Isometry3d& T_submap_guess);
+                          const Eigen::Isometry3d& T_submap_guess,
+                          const Matrix6& prior = Matrix6::Zero());
 
 }  // namespace semantic_slam

@@ -4,6 +4,7 @@
 #include <semantic_slam/Registration.h>
 #include <semantic_slam/SlamOptions.h>
 
+#include <optional>
 #include <vector>
 
 namespace semantic_slam {
@@ -36,21 +37,39 @@ class Slam {
   std::size_t numLost() const { return m_numLost; }
 
  private:
+  /** What one scan brings. */
+  struct Seen {
+    LabeledCloud cloud;  ///< thinned, frame of the robot
+    Eigen::Isometry3d T_odometry_robot;
+  };
   struct Keyframe {
-    Eigen::Isometry3d T_odometry_keyframe;
+    Seen seen;
     double way;                    ///< from the first one, m
-    LabeledCloud cloud;            ///< thinned, frame of the keyframe
     std::vector<float> histogram;  ///< of classes by distance; sums to 1
   };
-  void begin(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
-             const Eigen::Isometry3d& T_odometry_robot);
-  void connect();
+  Seen seen(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
+            const Eigen::Isometry3d& T_odometry_robot) const;
+  void begin(Seen seen, const Eigen::Isometry3d& T_map_robot);
+  /** That height and tilt are known, frame of the robot. */
+  Matrix6 levelOf(const Eigen::Isometry3d& T_odometry_robot) const;
+  /** A scan was registered there. */
+  void moveOn(const Eigen::Isometry3d& T_keyframe_robot, const Eigen::Isometry3d& T_odometry_robot);
+  /** Registers to the last keyframes. \param T_last_guess frame of the last keyframe of these
+   * \return nothing: it fits badly, or says otherwise than odometry. */
+  std::optional<Eigen::Isometry3d> track(const Seen& seen, const Eigen::Isometry3d& T_last_guess);
+  /** Of a step, frame of its end. \param way meters */
+  Matrix6 odometryInformation(double way) const;
+  /** Height, roll and pitch as odometry has them. */
+  Eigen::Isometry3d levelled(const Eigen::Isometry3d& T_map_robot,
+                             const Eigen::Isometry3d& T_odometry_robot) const;
   bool closeLoop();
   /** The likeliest place of a loop's other end; the newest keyframe if there is none. */
   std::size_t placeOfLoop() const;
   /** Of some keyframes' points, in the frame of one of them. */
-  Registration match(std::size_t first, std::size_t last, std::size_t frame,
-                     const std::vector<double>& cellSizes) const;
+  std::vector<Submap> submapsOf(std::size_t first, std::size_t last, std::size_t frame,
+                                const std::vector<double>& cellSizes) const;
+  Registration match(const std::vector<Submap>& submaps, const Seen& seen,
+                     const Eigen::Isometry3d& T_submap_guess) const;
 
   SlamOptions m_options;
   std::vector<Keyframe> m_keyframes;
@@ -58,9 +77,19 @@ class Slam {
   std::vector<PoseEdge> m_edges;
   std::size_t m_numLoops = 0, m_numLost = 0;
   double m_lastLook = 0;
+  std::vector<Submap> m_nearby;  ///< of the last keyframes, in the frame of the last; or none yet
+  /** Where the last scan that was registered was, in the last keyframe's frame, and where odometry
+   * had it. */
+  Eigen::Isometry3d m_T_keyframe_last, m_T_odometry_last;
 };
 
 /** All keyframes' poses, for KeyframeMap::move(). */
 std::vector<semantic_octree::KeyframePose> posesOf(const Slam& slam);
+
+/** Of the keyframes that a map has elsewhere by so much that what is 10 m away is off by more.
+ * \param meters 0: of all that are elsewhere */
+std::vector<semantic_octree::KeyframePose> posesOff(const Slam& slam,
+                                                    const semantic_octree::KeyframeMap& map,
+                                                    double meters);
 
 }  // namespace semantic_slam

@@ -9,11 +9,13 @@ struct SlamOptions {
   double keyframeAngle = 15;    // degrees
   int submapKeyframes = 10;     // that a scan is registered to
   bool useClasses = true;       // a point fits what is of its class only
+  bool registerAll = false;     // scans between keyframes, too; else odometry has them
+  bool level = false;           // odometry knows height, roll and pitch
   double maxRange = 30;         // m; points beyond it are not used
   double cubeSize = 0.25;       // m; one point per cube is used
 
-  double odometryShare = 0.01;     // standard deviation of odometry, m per m
-  double odometryAngle = 0.1;      // standard deviation of odometry, degrees per m
+  double odometryShare = 0.01;     // standard deviation of odometry after a meter, m
+  double odometryAngle = 0.1;      // the same of its headings, degrees
   double registrationShare = 0.5;  // of the points that fit, at least; else odometry holds alone
 
   double loopLength = 30;   // m of the way, at least, between the ends of a loop
