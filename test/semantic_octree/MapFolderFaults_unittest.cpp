@@ -79,6 +79,9 @@ TEST(MapFolderFaults, whatCannotBeReadLeavesTheMapAsItWas) {
     EXPECT_EQ(tiles.problems().size(), 1u);
     EXPECT_EQ(map.size(), nodes);
   }
+  write(files[5], content + "x");  // noticed when all nodes have been read
+  EXPECT_EQ(tiles.problems().size(), 1u);
+  EXPECT_EQ(map.size(), nodes);
   EXPECT_THROW(insertAll(map, scans), std::runtime_error);  // one of them meets it
   EXPECT_FALSE(map.isBroken());
   write(files[5], content);
