@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <mrpt/version.h>
 #include <synthetic_world/Scene.h>
 
 #include <algorithm>
@@ -180,9 +179,7 @@ TEST(Drives, AreSteeredByMrptsNavigatorOnTheSameClassesIfItIsAskedAlways) {
     forward += std::max(0.0, row.speed);
     if (row.driver == DriveController::Driver::Reactive) reactive += std::max(0.0, row.speed);
   }
-  // MRPT 2.14's stands at times before a free way, of which the tracker drives the rest.
-  constexpr double kShare = MRPT_VERSION >= 0x020e00 ? 0.4 : 0.9;
-  EXPECT_GE(reactive, kShare * forward);
+  EXPECT_GE(reactive, 0.9 * forward);
   const auto order = syntheticOrder();
   constexpr double kVoxel = 0.2;  // m: lengths are no better known
   EXPECT_LE(badLength(record.drivenPerClass, order),
