@@ -37,7 +37,9 @@ struct Cli {
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAPS", maps, "Maps' own files (.semantic), compressed or not")->required();
+    app.add_option("MAPS", maps,
+                   "Maps' own files (.semantic), compressed or not, or folders of tiles")
+        ->required();
     app.add_option("--scans", rawlogs, "Rawlogs of labeled scans that the maps were not made from")
         ->required();
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
