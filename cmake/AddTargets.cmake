@@ -29,7 +29,7 @@ function(mso_add_library name)
     COMPONENT development)
 endfunction()
 
-# Command lines run once, and CLI11 is compiled into each of their files: they are optimized little.
+# Programs read their command line and let the libraries work: their own code is optimized little.
 set(mso_once_options $<$<CONFIG:Release>:-O1>)
 
 # mso_add_app(NAME [STUDY] SOURCES ... [DEPENDS ...]): an executable of apps/NAME. A STUDY, which measures this project
@@ -37,7 +37,9 @@ set(mso_once_options $<$<CONFIG:Release>:-O1>)
 function(mso_add_app name)
   cmake_parse_arguments(ARG "STUDY" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  set_source_files_properties(main.cpp Cli.cpp PROPERTIES COMPILE_OPTIONS ${mso_once_options})
+  if(NOT ARG_STUDY)
+    target_compile_options(${name} PRIVATE ${mso_once_options})
+  endif()
   target_link_libraries(${name} PRIVATE mso_settings application ${ARG_DEPENDS})
   set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   set_property(GLOBAL APPEND PROPERTY MSO_APPS ${name})

@@ -39,9 +39,9 @@ void printSummary(const DriveRecord& record) {
 }
 
 /** The world and what is known of it, and one drive after the other in it. */
-class Program {
+class DriveProgram {
  public:
-  explicit Program(const Cli& cli)
+  explicit DriveProgram(const Cli& cli)
       : m_cli(checked(cli)),
         m_config(loadDriveConfig(cli.config)),
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
@@ -151,5 +151,5 @@ class Program {
 int main(int argc, char** argv) {
   CLI::App app("Drives a robot over a semantic map that grows while it drives");
   const semantic_map_drive::Cli cli(app);
-  return runApplication(app, argc, argv, [&] { return semantic_map_drive::Program(cli).run(); });
+  return runApplication(app, argc, argv, [&] { return semantic_map_drive::DriveProgram(cli).run(); });
 }

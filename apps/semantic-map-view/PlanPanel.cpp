@@ -23,7 +23,7 @@ using semantic_planning::PlanResult;
 
 namespace {
 
-constexpr int kWidth = 230;
+constexpr int kPlanWidth = 230;
 constexpr float kLift = 0.3f;  // m
 constexpr double kTurn = 0.5;  // m from the place, at least, where the hand gives a heading
 constexpr mrpt::img::TColor kPathColor{220, 40, 40}, kStartColor{40, 90, 220},
@@ -80,7 +80,7 @@ mrpt::opengl::CCylinder::Ptr postAt(const Eigen::Vector3d& place, const mrpt::im
 PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path classes)
     : m_viewer(viewer), m_classes(std::move(classes)) {
   auto* window =
-      addWindow(&viewer.window(), "Path", {8, viewer.window().height() - 120}, kWidth + 16);
+      addWindow(&viewer.window(), "Path", {8, viewer.window().height() - 120}, kPlanWidth + 16);
   if (!m_classes.empty()) {
     auto* row = addRow(window);
     m_startButton = row->add<nanogui::Button>("start");
@@ -89,7 +89,7 @@ PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path classes)
     m_startButton->setCallback([this] { await(Awaited::Start); });
     m_goalButton->setCallback([this] { await(Awaited::Goal); });
   }
-  for (auto& line : m_lines) line = addText(window, "", kWidth);
+  for (auto& line : m_lines) line = addText(window, "", kPlanWidth);
   if (m_classes.empty()) m_lines[0]->setCaption("needs --classes, an order of classes");
   viewer.window().marks()->insert(m_marks);
   viewer.onActivated([this] { forget(); });

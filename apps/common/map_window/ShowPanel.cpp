@@ -13,7 +13,7 @@ using nanogui::Widget;
 
 namespace {
 
-constexpr int kWidth = 230;
+constexpr int kShowWidth = 230;
 
 /** 1234567 -> "1.23 M" */
 std::string shortNumber(double number) {
@@ -34,14 +34,14 @@ std::string nameOf(const Layer& layer) {
 }  // namespace
 
 ShowPanel::ShowPanel(Viewer& viewer)
-    : m_viewer(viewer), m_window(addWindow(&viewer.window(), "Map", {8, 8}, kWidth + 16)) {
+    : m_viewer(viewer), m_window(addWindow(&viewer.window(), "Map", {8, 8}, kShowWidth + 16)) {
   addLayers(m_window);
   addColoring(m_window);
   addClasses(m_window);
   addHeight(m_window);
   addCameras(m_window);
-  m_camera = addText(m_window, "", kWidth);
-  m_said = addText(m_window, "", kWidth);
+  m_camera = addText(m_window, "", kShowWidth);
+  m_said = addText(m_window, "", kShowWidth);
   viewer.onActivated([this] { listClasses(); });
   viewer.onFrame([this] { update(); });
 }
@@ -61,11 +61,11 @@ void ShowPanel::addLayers(Widget* parent) {
   std::vector<std::string> names;
   for (const auto& layer : m_viewer.layers()) names.push_back(nameOf(*layer));
   if (names.size() == 1) {
-    m_name = addText(parent, names[0], kWidth);
+    m_name = addText(parent, names[0], kShowWidth);
     return;
   }
   auto* box = parent->add<nanogui::ComboBox>(names);
-  box->setFixedWidth(kWidth);
+  box->setFixedWidth(kShowWidth);
   box->setCallback([this](int layer) { m_viewer.activate(std::size_t(layer)); });
 }
 
@@ -80,7 +80,7 @@ void ShowPanel::addColoring(Widget* parent) {
     if (choices[i].second == m_viewer.style().coloring) chosen = int(i);
   }
   auto* box = row->add<nanogui::ComboBox>(names);
-  box->setFixedWidth(kWidth - 56);
+  box->setFixedWidth(kShowWidth - 56);
   box->setSelectedIndex(chosen);
   box->setCallback([this, &choices](int i) {
     map_view::ViewStyle style = m_viewer.style();
@@ -91,7 +91,7 @@ void ShowPanel::addColoring(Widget* parent) {
 
 void ShowPanel::addClasses(Widget* parent) {
   auto* scroll = parent->add<nanogui::VScrollPanel>();
-  scroll->setFixedSize({kWidth, 300});
+  scroll->setFixedSize({kShowWidth, 300});
   m_classes = scroll->add<Widget>();
   m_classes->setLayout(
       new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 2, 1));
