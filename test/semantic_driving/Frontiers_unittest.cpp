@@ -27,6 +27,12 @@ class Frontiers : public testing::Test {
     world.box(x0, x1, y0, y1, 0, 1, PaintedWorld::Wall);
   }
 
+  static FrontierOptions turningFor(double meters) {
+    FrontierOptions options;
+    options.turning = meters;
+    return options;
+  }
+
   const TPose2D kStart{0.1, 0.1, 0};
   PaintedWorld world;
 };
@@ -60,7 +66,7 @@ TEST_F(Frontiers, LieAtTheBorderOfWhatIsKnownAndApart) {
 
 TEST_F(Frontiers, CostTheWayThereAndTwiceThatThroughTheUnknown) {
   const TPose2D goal(30.1, 4.1, 0);
-  const Exploration found = explore(goal);
+  const Exploration found = explore(goal, {}, turningFor(0));
   ASSERT_FALSE(found.frontiers.empty());
   double before = 0;
   int ahead = 0;
@@ -77,12 +83,36 @@ TEST_F(Frontiers, CostTheWayThereAndTwiceThatThroughTheUnknown) {
 TEST_F(Frontiers, OverWorseClassesCostTheirRankMore) {
   world.floor(-8, 8, -8, 8, PaintedWorld::Grass);
   const TPose2D goal(30.1, 4.1, 0);
-  const Exploration found = explore(goal);
+  const Exploration found = explore(goal, {}, turningFor(0));
   ASSERT_FALSE(found.frontiers.empty());
   for (const Frontier& f : found.frontiers)
     if (f.pose.x > 6.4) {
       EXPECT_NEAR(f.cost, 2 * octile(kStart, f.pose) + 2 * octile(f.pose, goal), 1e-6);
     }
+}
+
+TEST_F(Frontiers, WhereTheVehicleDoesNotHeadCostWhatTurningAroundDoes) {
+  constexpr double kTurning = 5;  // m
+  const TPose2D behind(-30, 0.1, 0);
+  const auto free = explore(behind, {}, turningFor(0)),
+             priced = explore(behind, {}, turningFor(kTurning));
+  ASSERT_FALSE(free.frontiers.empty());
+  ASSERT_FALSE(priced.frontiers.empty());
+  const double turned = priced.frontiers[0].cost - free.frontiers[0].cost;
+  EXPECT_GT(turned, kTurning / 2);
+  EXPECT_LE(turned, kTurning + 1e-9);
+  const TPose2D ahead(30, 0.1, 0);
+  EXPECT_NEAR(explore(ahead, {}, turningFor(kTurning)).frontiers.at(0).cost,
+              explore(ahead, {}, turningFor(0)).frontiers.at(0).cost, 1e-9);
+}
+
+TEST_F(Frontiers, OfTwoAsGoodOnesTheOneAheadComesFirst) {
+  wall(-8, 8, 1.4, 1.8), wall(-8, 8, -1.6, -1.2);  // a street; its ends are as far from the goal
+  for (const double heading : {0.0, M_PI}) {
+    const auto found = findFrontiers(plannerOver(world), {0.1, 0.1, heading}, 0, {0.1, 30, 0}, {});
+    ASSERT_FALSE(found.frontiers.empty());
+    EXPECT_GT(found.frontiers[0].pose.x * std::cos(heading), 6);
+  }
 }
 
 TEST_F(Frontiers, AreWhereNobodySawTheGroundAlthoughRaysWentAbove) {

@@ -98,6 +98,8 @@ void FrontierOptions::describe(strict_files::OptionList& list) {
   list.add("radius", radius, "m", above(0), "how far places are looked for");
   list.add("unknown_factor", unknownFactor, "", atLeast(0),
            "what a meter through the unknown counts against one on the best class");
+  list.add("turning", turning, "m", atLeast(0),
+           "what turning around at the start counts, on the best class");
   list.add("apart", apart, "m", atLeast(0), "between places");
   list.add("most", most, "", atLeast(1), "places");
   list.add("sight", sight, "m", above(0), "how far from a place the unknown is, at most");

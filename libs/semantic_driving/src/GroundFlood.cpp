@@ -17,6 +17,8 @@ GroundFlood::GroundFlood(const SemanticPlanner& planner, const mrpt::math::TPose
       m_center(m_ground.columnAt(from.x, from.y)),
       m_square(m_center, static_cast<int>(options.radius / m_ground.voxelSize())),
       m_lenient(options.lenient / m_ground.voxelSize()),
+      m_ahead{std::cos(from.phi), std::sin(from.phi)},
+      m_turning(options.turning),
       m_discs(planner.options().vehicle.footprint.coveringDiscs()),
       m_inner(planner.options().vehicle.footprint.inscribedRadius()),
       m_places(m_square.size()) {
@@ -73,6 +75,15 @@ void GroundFlood::flood(int z) {
   }
 }
 
+/** Of a step in the direction d to c: who leaves the place where it does not head has to turn. */
+double GroundFlood::turningOf(Column c, const Column& d) const {
+  constexpr double kWithin = 1;  // m
+  const double voxel = m_ground.voxelSize();
+  if (std::hypot(c.x - m_center.x, c.y - m_center.y) * voxel > kWithin) return 0;
+  const double ahead = (d.x * m_ahead.x + d.y * m_ahead.y) / std::hypot(d.x, d.y);
+  return m_turning * (1 - ahead) / 2 * std::hypot(d.x, d.y) * voxel / kWithin;
+}
+
 void GroundFlood::expand(Column c, const Place& place) {
   for (const Column& d : kNeighbors) {
     const Column next{c.x + d.x, c.y + d.y};
@@ -82,7 +93,7 @@ void GroundFlood::expand(Column c, const Place& place) {
     const colored_graph::Rank rank = m_planner.order().rank(s->classId);
     if (rank == colored_graph::kForbidden || !(fits(next, *s, d) || isNear(next))) continue;
     const double way = std::hypot(d.x, d.y) * m_ground.voxelSize();
-    offer(next, place.cost + way * (rank + 1), s->z, c);
+    offer(next, place.cost + way * (rank + 1) + turningOf(next, d), s->z, c);
   }
 }
 

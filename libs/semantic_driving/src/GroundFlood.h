@@ -58,13 +58,16 @@ class GroundFlood {
   bool fitsHeaded(semantic_planning::Column c, int z, double x, double y) const;
   void offer(semantic_planning::Column c, double cost, int z, semantic_planning::Column from);
   void flood(int z);
+  double turningOf(semantic_planning::Column c, const semantic_planning::Column& d) const;
   void expand(semantic_planning::Column c, const Place& place);
 
   const semantic_planning::SemanticPlanner& m_planner;
   const semantic_planning::Ground& m_ground;
   semantic_planning::Column m_center;
   ColumnSquare m_square;
-  double m_lenient;  ///< voxels
+  double m_lenient;              ///< voxels
+  mrpt::math::TPoint2D m_ahead;  ///< where the vehicle heads
+  double m_turning;              ///< price of turning around, weighted meters
   std::vector<semantic_planning::Disc> m_discs;
   double m_inner, m_outer = 0;  ///< radii about the origin: in the footprint, around it; meters
   std::vector<Place> m_places;

@@ -11,6 +11,7 @@ namespace semantic_driving {
 struct FrontierOptions {
   double radius = 40;        ///< how far over known ground, meters
   double unknownFactor = 2;  ///< what a meter through the unknown counts against one on rank 0
+  double turning = 4;        ///< what turning around at the start counts, meters on rank 0
   double apart = 3;          ///< between places, meters
   std::size_t most = 6;      ///< places
   double sight = 1.4;        ///< how far from a place the unknown is, at most, meters
@@ -44,14 +45,16 @@ struct Exploration {
 
 /** Places on drivable ground next to unknown space from which to see more of the way to a goal,
  * most promising first: least way there, where rank r counts r + 1 times, and on through the
- * unknown, around all that is known to be in the way (the freespace assumption). (Yamauchi, "A frontier-based approach for autonomous exploration", 1997, with a goal.)
+ * unknown, around all that is known to be in the way (the freespace assumption), and what turning
+ * around costs where the vehicle does not head there. (Yamauchi, "A frontier-based approach for
+ * autonomous exploration", 1997, with a goal.)
  *
  * Only what borders on the goal's region counts: a flood from the goal over all that is not known
  * to be in the way, up to where the vehicle can get. A way to the goal leaves the known ground for
  * the last time at that border. If nothing reached borders on the region, it is enclosed: what is
  * in the way stays there, so that nothing that is yet to be seen opens a way. Gaps count as
  * passable in doubt, as does all that is farther than the radius.
- * \param from where the vehicle is, on ground of height z (meters)
+ * \param from where the vehicle is and heads, on ground of height z (meters)
  * \param avoid places that are not looked for again, nor others within `apart` of them
  * \throw std::invalid_argument bad options. */
 Exploration findFrontiers(const semantic_planning::SemanticPlanner& planner,
