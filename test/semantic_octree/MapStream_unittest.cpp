@@ -447,7 +447,7 @@ TEST(MapStream, frequentRecordsThatCannotBeAreRefused) {
     std::size_t next = 0;
     PartCoder coder(K, 10);
     const std::string error = errorOf([&] { coder.fromText(codingWith(record, K, 10), next); });
-    EXPECT_EQ(error, count > 3 ? "altered: a class record that cannot be" : "");
+    EXPECT_EQ(error.empty(), count <= 3) << error;
   }
 }
 
