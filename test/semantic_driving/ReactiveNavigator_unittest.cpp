@@ -71,6 +71,31 @@ TEST(ReactiveNavigator, GoesThroughAGapWhereItFits) {
   EXPECT_FALSE(getsThrough(optionsOf(0.9), 0.5));
 }
 
+TEST(ReactiveNavigator, DoesNotStandAtPlacesBesideItsWay) {
+  ReactiveNavigator navigator(optionsOf(0.2));
+  mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
+  simulated_drive::SimulatedRobot robot({0, 0, 0}, {});
+  std::vector<PathPoint> places;
+  for (int i = 1; i <= 10; ++i) {
+    PathPoint place;
+    place.x = 1.2 * i;
+    place.y = i % 2 ? 0.4 : -0.4;
+    places.push_back(place);
+  }
+  navigator.setWaypoints(places, 0.5);
+  double slowest = 1, seconds = 0;
+  for (; navigator.status() == ReactiveNavigator::Status::Driving && seconds < 30; seconds += 0.1) {
+    mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + seconds));
+    robot.drive(navigator.step(robot.state(), ObstaclePoints3(), seconds), 0.1);
+    const double x = robot.state().pose.x;
+    if (x > 1.2 && x < 10) slowest = std::min(slowest, robot.state().speed);
+  }
+  EXPECT_EQ(navigator.status(), ReactiveNavigator::Status::Arrived)
+      << robot.state().pose.asString();
+  EXPECT_LT(seconds, 20);  // 12 m
+  EXPECT_GT(slowest, 0.3);
+}
+
 TEST(ReactiveNavigator, CompletesTheFactorsThatNewerReleasesOfMrptWant) {
   mrpt::config::CConfigFileMemory file(
       std::string("[CHolonomicFullEval]\nfactorWeights = [0.25, 0.1, 1, 0.05, 0.5, 1, 1]\n"
