@@ -109,7 +109,7 @@ void receivePackets(const std::string& bytes) {
 /** Datagrams for a sender and a receiver, as they are and with right headers: the first byte of
  * each is its type. */
 void acceptDatagrams(const std::string& bytes) {
-  SemanticOcTree map = someMap();
+  static SemanticOcTree map = someMap();
   semantic_octree::MapSender sender(kStream);
   sender.setMap(map);
   semantic_octree::MapReceiver receiver(kStream);
