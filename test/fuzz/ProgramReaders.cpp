@@ -20,18 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/** A file of a data set's folder for each part of the bytes between form feeds. */
-void writeParts(const std::string& bytes, const fs::path& folder,
-                const std::vector<std::string>& names) {
-  std::size_t begin = 0;
-  for (const std::string& name : names) {
-    const std::size_t end = std::min(bytes.find('\f', begin), bytes.size());
-    fs::create_directories((folder / name).parent_path());
-    std::ofstream(folder / name, std::ios::binary) << bytes.substr(begin, end - begin);
-    begin = std::min(end + 1, bytes.size());
-  }
-}
-
 dataset2rawlog::Conversion conversionTo(const fs::path& folder) {
   dataset2rawlog::Conversion conversion;
   conversion.output = folder / "out.rawlog";
@@ -55,23 +43,6 @@ void readPcd(const fs::path& folder) {
 }
 
 void join(const fs::path& folder) { planning_study::joinStudies({folder}); }
-
-/** For functions that want several files. */
-template <typename F>
-auto fromFolder(const std::vector<std::string>& names, const F& read) {
-  return [names, read](const std::string& bytes) {
-    const fs::path folder = fs::temp_directory_path() / ("mso_fuzz_" + std::to_string(getpid()));
-    fs::remove_all(folder);
-    writeParts(bytes, folder, names);
-    try {
-      read(folder);
-    } catch (...) {
-      fs::remove_all(folder);
-      throw;
-    }
-    fs::remove_all(folder);
-  };
-}
 
 void askMap(const std::string& bytes) {
   static const semantic_octree::SemanticOcTree map = [] {
@@ -137,7 +108,7 @@ std::vector<Reader> programReaders() {
       {"scene", fromFile("", scene), {}},
       {"map-poses", fromFile("", poses), {}},
       {"study", fromFolder({"study.json", "study.csv"}, join), {}},
-      {"points", askMap, {}},
+      {"queries", askMap, {}},
       {"mapping-config",
        fromFile("", rawlog2semantic_map::loadConfig),
        {"config/maps/synthetic.ini"}},

@@ -14,9 +14,7 @@
 #include <octomap/OcTree.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
-#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/OctomapConversion.h>
-#include <semantic_octree/TreeFile.h>
 #include <semantic_octree/WeightsFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
@@ -31,48 +29,14 @@ namespace {
 namespace fs = std::filesystem;
 using semantic_types::ClassTable;
 
-const ClassTable& classes() {
-  static const ClassTable table = [] {
-    ClassTable t;
-    for (const char* name : {"road", "grass", "building", "tree"}) t.add(name, {});
-    return t;
-  }();
-  return table;
-}
-
-void readMap(const std::string& bytes) {
-  std::istringstream in(bytes);
-  const semantic_octree::SemanticOcTree map = semantic_octree::readTree(in);
-  std::ostringstream out;
-  semantic_octree::writeTree(out, map);
-  std::istringstream again(out.str());
-  if (!(semantic_octree::readTree(again) == map)) std::abort();
-}
-
-/** The leaves' file, which it names, is not there. */
-void readTileIndex(const std::string& bytes) {
-  const fs::path folder =
-      fs::temp_directory_path() / ("mso_fuzz_tiles_" + std::to_string(getpid()));
-  fs::create_directories(folder);
-  std::ofstream(folder / "index.yaml", std::ios::binary) << bytes;
-  try {
-    semantic_octree::MapFolder::emptyMap(folder);
-  } catch (...) {
-    fs::remove_all(folder);
-    throw;
-  }
-}
-
 void readOctomap(const fs::path& file) {
   const auto tree = semantic_map::readOctomapFile(file);
-  if (tree->size() > 0) semantic_octree::fromOcTree(*tree, classes());
+  if (tree->size() > 0) semantic_octree::fromOcTree(*tree, fuzzedClasses());
 }
 
 /** From an MRPT archive, and what was taken back into one. */
 template <class Object>
 void readArchive(const std::string& bytes) {
-  semantic_map::registerMaps();  // built by clang, they were met without a name when their library
-                                 // was loaded
   Object object;
   mrpt::io::CMemoryStream in, out;
   in.assignMemoryNotOwn(bytes.data(), bytes.size());
@@ -87,20 +51,20 @@ void readDefinition(const std::string& bytes) {
 }
 
 void readLabels(const fs::path& file) {
-  labeled_cloud::LabelImage image = labeled_cloud::readLabelImage(file, classes());
+  labeled_cloud::LabelImage image = labeled_cloud::readLabelImage(file, fuzzedClasses());
   labeled_cloud::readConfidences(file, image);
 }
 
 void readRawlog(const fs::path& file) {
   labeled_cloud::RawlogReader reader(file);
-  labeled_cloud::ScanConverter converter(classes());
+  labeled_cloud::ScanConverter converter(fuzzedClasses());
   semantic_octree::InsertionOptions options;
   options.maxScanMemory = 100;
   while (const auto entry = reader.next())
     for (const auto& observation : entry->observations) try {
         const auto scan = converter.convert(*observation);
         if (!scan) continue;
-        semantic_octree::SemanticOcTree map(1, classes());
+        semantic_octree::SemanticOcTree map(1, fuzzedClasses());
         map.insert(scan->cloud, Eigen::Isometry3d::Identity(), options);
       } catch (const std::exception&) {
         continue;
@@ -109,10 +73,17 @@ void readRawlog(const fs::path& file) {
 
 }  // namespace
 
+const ClassTable& fuzzedClasses() {
+  static const ClassTable table = [] {
+    ClassTable t;
+    for (const char* name : {"road", "grass", "building", "tree"}) t.add(name, {});
+    return t;
+  }();
+  return table;
+}
+
 std::vector<Reader> libraryReaders() {
   return {
-      {"map", readMap, {}},
-      {"tile-index", readTileIndex, {}},
       {"rawlog", fromFile(".rawlog", readRawlog), {}},
       {"octomap", fromFile(".ot", readOctomap), {}},
       {"octomap-binary", fromFile(".bt", readOctomap), {}},
@@ -128,27 +99,31 @@ std::vector<Reader> libraryReaders() {
        fromFile("", semantic_types::loadClassTable),
        {"config/classes/synthetic.yaml", "config/classes/semantic_kitti.yaml"}},
       {"weights",
-       fromFile("", [](const fs::path& f) { semantic_octree::loadWeights(f, classes()); }),
+       fromFile("", [](const fs::path& f) { semantic_octree::loadWeights(f, fuzzedClasses()); }),
        {"config/weights/synthetic.yaml"}},
       {"order",
-       fromFile("", [](const fs::path& f) { semantic_planning::loadClassOrder(f, classes()); }),
+       fromFile("",
+                [](const fs::path& f) { semantic_planning::loadClassOrder(f, fuzzedClasses()); }),
        {"config/orders/synthetic.yaml"}},
       {"vehicle",
        fromFile("", semantic_planning::loadVehicle),
        {"config/vehicles/robot.yaml", "config/vehicles/car.yaml"}},
       {"network",
-       fromFile("", [](const fs::path& f) { labeled_cloud::loadNetworkOptions(f, classes()); }),
+       fromFile("",
+                [](const fs::path& f) { labeled_cloud::loadNetworkOptions(f, fuzzedClasses()); }),
        {"config/networks/fchardnet_kitti.yaml"}},
       {"confusion",
-       fromFile("", [](const fs::path& f) { labeled_cloud::loadConfusionMatrix(f, classes()); }),
+       fromFile("",
+                [](const fs::path& f) { labeled_cloud::loadConfusionMatrix(f, fuzzedClasses()); }),
        {}}};
 }
 
 const std::vector<Reader>& readers() {
   static const std::vector<Reader> all = [] {
-    std::vector<Reader> both = libraryReaders();
-    for (Reader& reader : programReaders()) both.push_back(std::move(reader));
-    return both;
+    std::vector<Reader> readers = libraryReaders();
+    for (const auto& more : {mapReaders(), programReaders()})
+      readers.insert(readers.end(), more.begin(), more.end());
+    return readers;
   }();
   return all;
 }

@@ -1,4 +1,6 @@
 #pragma once
+#include <semantic_types/ClassTable.h>
+
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,9 +13,14 @@ struct Reader {
   std::vector<std::string> examples;
 };
 
-/** Of the libraries' functions. */
+/** Of maps' files and folders, and of what comes by radio. */
+std::vector<Reader> mapReaders();
+/** Of the libraries' other functions. */
 std::vector<Reader> libraryReaders();
 /** Of what only programs read. */
 std::vector<Reader> programReaders();
 /** All of them. */
 const std::vector<Reader>& readers();
+
+/** Of the maps and files that readers expect. */
+const semantic_types::ClassTable& fuzzedClasses();

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <set>
 
 #include "Readers.h"
 
@@ -38,6 +39,12 @@ void expectAnswer(const Reader& reader, const std::string& bytes) {
 }
 
 }  // namespace
+
+TEST(Readers, haveEachANameOfItsOwn) {  // or fuzzing would meet the first alone
+  std::set<std::string> names;
+  for (const Reader& reader : readers())
+    EXPECT_TRUE(names.insert(reader.name).second) << reader.name;
+}
 
 TEST(Readers, answerToEachFileThatEverBrokeOne) {
   for (const Reader& reader : readers()) {

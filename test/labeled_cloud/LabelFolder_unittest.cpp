@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <labeled_cloud/ImageFile.h>
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <mrpt/obs/CObservationImage.h>
@@ -167,6 +168,32 @@ TEST(LabelImages, thatCannotBeUsedAreNamed) {
   cv::randu(ids, 1, 4);
   save(folder, "gray.png", ids);
   errorReading(folder.write("half.png", folder.read("gray.png").substr(0, 3000)));
+}
+
+TEST(ImageFiles, mayNotAnnounceMoreThanTheirBytesCanHold) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.tif", "a.jpg", "a.png", "a.bmp", "a.ppm"}) {
+    SCOPED_TRACE(name);
+    const cv::Mat read = readImageFile(
+        save(folder, name, cv::Mat(200, 300, CV_8UC3, cv::Scalar(7, 7, 7))), ImageKinds::All);
+    EXPECT_EQ(read.size(), cv::Size(300, 200));
+  }
+  // 60000 columns as a number of 4 bytes, 50000 rows as one of 2: two fields of a TIFF file.
+  const std::string little{
+      "II*\0\x08\0\0\0\2\0\0\1\4\0\1\0\0\0\x60\xea\0\0"
+      "\1\1\3\0\1\0\0\0\x50\xc3\0\0\0\0\0\0",
+      38};
+  const std::string big{
+      "MM\0*\0\0\0\x08\0\2\1\0\0\4\0\0\0\1\0\0\xea\x60"
+      "\1\1\0\3\0\0\0\1\xc3\x50\0\0\0\0\0\0",
+      38};
+  // A segment, a byte that belongs to none, and the header of a frame.
+  const std::string jpeg{"\xff\xd8\xff\xe0\0\4ab\1\xff\xff\xc2\0\x0b\x08\xc3\x50\xea\x60\1\1\x11\0",
+                         22};
+  for (const std::string& bytes : {little, big, jpeg})
+    EXPECT_TRUE(
+        contains(errorOf([&] { readImageFile(folder.write("image", bytes), ImageKinds::All); }),
+                 "image: says that it has 60000 x 50000 pixels, more than its"));
 }
 
 TEST(LabelFolder, findsTheNearestInTime) {

@@ -71,6 +71,33 @@ TEST(ReactiveNavigator, GoesThroughAGapWhereItFits) {
   EXPECT_FALSE(getsThrough(optionsOf(0.9), 0.5));
 }
 
+TEST(ReactiveNavigator, GoesAroundABendWithoutAStop) {
+  ReactiveNavigator navigator(optionsOf(0.2));
+  mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
+  simulated_drive::SimulatedRobot robot({0, 0, 0}, {});
+  constexpr double kRadius = 2, kSpacing = 1.2, kTurn = M_PI / 2;  // m, m, rad
+  std::vector<PathPoint> places;
+  for (double way = kSpacing; places.size() < 10; way += kSpacing) {
+    const double angle = std::min(way / kRadius, kTurn);
+    PathPoint place;
+    place.x = kRadius * std::sin(angle);
+    place.y = kRadius * (1 - std::cos(angle)) + way - kRadius * angle;
+    places.push_back(place);
+  }
+  navigator.setWaypoints(places, 0.5);
+  double slowest = 1, seconds = 0;
+  do {
+    mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + seconds));
+    robot.drive(navigator.step(robot.state(), ObstaclePoints3(), seconds), 0.1);
+    seconds += 0.1;
+    if (seconds > 2 && robot.state().pose.y < places.back().y - 2)
+      slowest = std::min(slowest, robot.state().speed);
+  } while (navigator.status() == ReactiveNavigator::Status::Driving && seconds < 30);
+  EXPECT_EQ(navigator.status(), ReactiveNavigator::Status::Arrived);
+  EXPECT_NEAR(robot.state().pose.y, places.back().y, 0.6);
+  EXPECT_GT(slowest, 0.5);
+}
+
 TEST(ReactiveNavigator, CompletesTheFactorsThatNewerReleasesOfMrptWant) {
   mrpt::config::CConfigFileMemory file(
       std::string("[CHolonomicFullEval]\nfactorWeights = [0.25, 0.1, 1, 0.05, 0.5, 1, 1]\n"

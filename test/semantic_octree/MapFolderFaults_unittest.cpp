@@ -104,6 +104,7 @@ TEST(MapFolderFaults, aBadIndexIsNamedWithItsLine) {
   EXPECT_TRUE(contains(errorWith("version: 1", "version: 2"), "version of the format"));
   EXPECT_TRUE(contains(errorWith("tile_size: 6.4", "tile_size: -3"), "tile_size"));
   EXPECT_TRUE(contains(errorWith("nodes: ", "nodes: -"), "out of range"));
+  EXPECT_TRUE(contains(errorWith("nodes: ", "nodes: 9999999"), "out of range"));
   EXPECT_TRUE(contains(errorWith("frame", "fame"), "unknown key 'fame'"));
   EXPECT_TRUE(contains(errorWith("at: [", "at: [0.5, "), "at"));
   EXPECT_FALSE(errorWith("highest: ", "highest: 9").empty());

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "RandomScans.h"
-#include "StreamTree.h"
+#include "StreamPackets.h"
 #include "TemporaryFolder.h"
 
 namespace {
@@ -46,12 +46,6 @@ SemanticOcTree randomMap(const AbstractionOptions& options, unsigned seed) {
   RandomScanOptions scans;
   scans.classes = K;
   return mapOf({randomScan(random, scans), randomScan(random, scans)}, options);
-}
-
-std::string fileOf(const SemanticOcTree& map) {
-  std::ostringstream out;
-  writeTree(out, map);
-  return out.str();
 }
 
 /** All packets, each once. */
@@ -434,6 +428,69 @@ TEST(MapStream, alteredPacketsAreRefusedAndLeaveAValidMap) {
     std::istringstream in(file);
     ASSERT_TRUE(fileOf(readTree(in)) == file);
   }
+}
+
+/** A coder's tables with one frequent class record. */
+std::string codingWith(const ClassRecord& record, int numClasses, int rootDepth) {
+  const std::string none = PartCoder(numClasses, rootDepth).toText();
+  std::string text = none.substr(0, 3) + '\1';
+  text.append(reinterpret_cast<const char*>(&record), sizeof(record));
+  return text + std::string(sizeof(Units), '\0') + none.substr(4);
+}
+
+TEST(MapStream, frequentRecordsThatCannotBeAreRefused) {
+  for (int count = 0; count < 256; ++count) {
+    SCOPED_TRACE(count);
+    ClassRecord record{};
+    record.count = static_cast<std::uint8_t>(count);
+    for (int i = 0; i < std::min(count, 3); ++i) record.ids[i] = static_cast<ClassId>(i + 1);
+    std::size_t next = 0;
+    PartCoder coder(K, 10);
+    const std::string error = errorOf([&] { coder.fromText(codingWith(record, K, 10), next); });
+    EXPECT_EQ(error.empty(), count <= 3) << error;
+  }
+}
+
+TEST(MapStream, nothingStaysOfADescriptionThatFailed) {
+  MapReceiver receiver(kStream);
+  const auto accept = [&](std::uint32_t number, const std::string& content) {
+    PacketHeader header;
+    header.revision = 1;
+    header.numDescription = 1;
+    header.count = 3;
+    header.number = number;
+    receiver.accept({Datagram::Type::Data, kStream, header.bytes() + content});
+  };
+  const auto descriptionOf = [](ClassId id, int numClasses, int rootDepth) {
+    ClassRecord record{};
+    record.count = 1;
+    record.ids[0] = id;
+    StreamDescription d;
+    d.rootDepth = rootDepth;
+    d.coding = codingWith(record, numClasses, rootDepth);
+    d.kind = fileOf(SemanticOcTree(0.2, numberedClasses(numClasses)));
+    return d.compressed();
+  };
+  // A leaf with the frequent record, in another cube by each of the descriptions.
+  PartCoder coder(K, 10);
+  std::size_t next = 0;
+  ClassRecord record{};
+  record.count = 1;
+  record.ids[0] = K;
+  coder.fromText(codingWith(record, K, 10), next);
+  TreePart part;
+  part.cell = {0777, 10};
+  part.leaves[0].kind = StreamLeaf::Kind::WithRecord;
+  part.leaves[0].record = record;
+  accept(1, coder.encode({&part}));
+  accept(2, "x");
+  EXPECT_EQ(errorOf([&] { accept(0, descriptionOf(K, K, 10)); }),
+            "altered: a description too short");
+  EXPECT_EQ(receiver.map().getNumLeafNodes(), 1u);
+  EXPECT_EQ(errorOf([&] { accept(0, descriptionOf(1, 1, 12)); }),
+            "altered: a description too short");
+  EXPECT_EQ(receiver.map().numClasses(), 1);
+  EXPECT_EQ(receiver.map().getNumLeafNodes(), 1u);
 }
 
 TEST(MapStream, cutAndAlteredDatagramsDoNotPass) {

@@ -1,5 +1,4 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <mrpt/core/initializer.h>
 #include <mrpt/serialization/CArchive.h>
 
 #include <algorithm>
@@ -7,8 +6,6 @@
 #include <stdexcept>
 
 IMPLEMENTS_SERIALIZABLE(CObservationLabeledCloud, CObservation, labeled_cloud)
-
-MRPT_INITIALIZER(registerLabeledCloudObservations) { labeled_cloud::registerObservations(); }
 
 namespace labeled_cloud {
 
@@ -19,6 +16,10 @@ using semantic_types::kMaxClasses;
 void registerObservations() { mrpt::rtti::registerClass(CLASS_ID(CObservationLabeledCloud)); }
 
 namespace {
+
+/** Below IMPLEMENTS_SERIALIZABLE, which gives the class its name while statics are initialized;
+ * MRPT_INITIALIZER may come before that. */
+[[maybe_unused]] const bool kIsRegistered = (registerObservations(), true);
 
 static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float), "points are streamed as plain floats");
 

@@ -1,5 +1,4 @@
 #include <labeled_cloud/ScanConverter.h>
-#include <mrpt/core/initializer.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <strict_files/Words.h>
 
@@ -10,8 +9,6 @@
 #include "LikelihoodCache.h"
 #include "SensorPose.h"
 
-MRPT_INITIALIZER(registerSemanticMaps) { semantic_map::registerMaps(); }
-
 namespace semantic_map {
 
 using labeled_cloud::LabeledScan;
@@ -19,11 +16,6 @@ using labeled_cloud::ScanConverter;
 using mrpt::poses::CPose3D;
 using semantic_octree::SemanticOcTree;
 using semantic_types::ClassTable;
-
-void registerMaps() {
-  labeled_cloud::registerObservations();
-  mrpt::rtti::registerClass(CLASS_ID(CSemanticOctoMap));
-}
 
 CSemanticOctoMap::CSemanticOctoMap()
     : CSemanticOctoMap(TCreationOptions().resolution, occupancyOnly()) {}

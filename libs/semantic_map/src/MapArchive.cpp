@@ -13,6 +13,21 @@ namespace semantic_map {
 
 using mrpt::serialization::CArchive;
 
+namespace {
+
+void registerMap() { mrpt::rtti::registerClass(CLASS_ID(CSemanticOctoMap)); }
+
+/** Below IMPLEMENTS_SERIALIZABLE, which gives the class its name while statics are initialized;
+ * MRPT_INITIALIZER may come before that. */
+[[maybe_unused]] const bool kIsRegistered = (registerMap(), true);
+
+}  // namespace
+
+void registerMaps() {
+  labeled_cloud::registerObservations();
+  registerMap();
+}
+
 uint8_t CSemanticOctoMap::serializeGetVersion() const { return 2; }
 
 void CSemanticOctoMap::serializeTo(CArchive& out) const {

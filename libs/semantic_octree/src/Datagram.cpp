@@ -32,7 +32,8 @@ std::string Datagram::bytes() const {
 }
 
 Datagram Datagram::of(const std::string& bytes) {
-  if (bytes.size() < kDatagramHeaderBytes || std::memcmp(&bytes[4], kMark, sizeof(kMark)) != 0)
+  if (bytes.size() < kDatagramHeaderBytes || bytes.size() > kMaxDatagramBytes ||
+      std::memcmp(&bytes[4], kMark, sizeof(kMark)) != 0)
     throw std::runtime_error("a datagram of another program");
   std::uint32_t crc = 0;
   std::memcpy(&crc, &bytes[0], sizeof(crc));

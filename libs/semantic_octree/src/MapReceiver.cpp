@@ -100,11 +100,15 @@ void MapReceiver::State::describe(std::size_t number, const std::string& content
   const StreamDescription d = StreamDescription::of(text);
   if (header.revision == 1) {
     std::istringstream in(d.kind);
-    kind = std::make_unique<SemanticOcTree>(readTree(in));
-    if (!kind->empty()) throw std::runtime_error("altered: a description that holds a map");
-    coder = std::make_unique<PartCoder>(kind->numClasses(), d.rootDepth);
+    auto newKind = std::make_unique<SemanticOcTree>(readTree(in));
+    if (!newKind->empty()) throw std::runtime_error("altered: a description that holds a map");
+    auto newCoder = std::make_unique<PartCoder>(newKind->numClasses(), d.rootDepth);
     std::size_t next = 0;
-    coder->fromText(d.coding, next);
+    newCoder->fromText(d.coding, next);
+    tree = StreamTree();  // what was placed after another description, which failed
+    waiting.clear();
+    kind = std::move(newKind);
+    coder = std::move(newCoder);
   }
   checksum = d.checksum;
   for (const std::string& packet : unreadable) apply(packet);

@@ -143,6 +143,7 @@ void PartCoder::checkRecords() const {
     TreePart part;
     part.leaves[0] = leaf;
     format.code(part);
+    if (part.leaves[0] != leaf) throw std::runtime_error("altered: a class record that cannot be");
   }
 }
 

@@ -69,8 +69,8 @@ class PartFormat {
 
   void codeRoot(TreePart& part) {
     const int rootDepth = m_tables.m_rootDepth;
-    std::uint64_t root = part.cell.first() >> 3 * (kTreeDepth - rootDepth);
-    std::uint64_t gap = root - m_root;
+    const std::uint64_t root = part.cell.first() >> 3 * (kTreeDepth - rootDepth);
+    const std::uint64_t gap = root > m_root ? root - m_root : 0;  // a decoder is told
     unsigned bits = 0;
     while (gap >> bits) ++bits;
     tree(kGap, bits, 6);

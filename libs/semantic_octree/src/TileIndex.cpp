@@ -71,12 +71,19 @@ class IndexReader {
       TileIndex::Tile tile;
       tile.place = placeOf(m_yaml.required(node, "at"), index.depth);
       tile.generation = get<std::uint64_t>(node, "generation", 1, index.generation);
-      tile.nodes = get<long>(node, "nodes", 1, 1L << 53);
+      tile.nodes = get<long>(node, "nodes", 1, mostNodes(index.depth));
       tile.innerNodes = get<long>(node, "inner", 0, tile.nodes);
       tile.highest = static_cast<Units>(get<int>(node, "highest", kUnknown + 1, INT16_MAX));
       if (!codes.insert(tileCode(tile.place)).second) m_yaml.fail(node, "a tile twice");
       index.tiles.push_back(tile);
     }
+  }
+
+  /** Below a tile's own. */
+  static long mostNodes(int depth) {
+    long most = 0;
+    for (; depth < kTreeDepth; ++depth) most = 8 * (most + 1);
+    return most;
   }
 
   VoxelIndex placeOf(const YAML::Node& node, int depth) const {

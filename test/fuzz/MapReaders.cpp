@@ -1,0 +1,142 @@
+#include <semantic_octree/MapFolder.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+
+#include "CraftedTreeFile.h"
+#include "FuzzedFile.h"
+#include "Readers.h"
+#include "StreamPackets.h"
+#include "radio/Wish.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using semantic_octree::Datagram;
+using semantic_octree::SemanticOcTree;
+
+constexpr std::uint32_t kStream = 1;
+
+SemanticOcTree emptyMap() { return SemanticOcTree(0.4, fuzzedClasses()); }
+
+/** A small map with two tiles, G-values and its weights. */
+SemanticOcTree someMap() {
+  semantic_types::LabeledCloud cloud;
+  cloud.points = {{1, 2, 3}, {1, 2, 2}, {-3, 1, 0.5}};
+  cloud.classes = {1, 2, 4};
+  SemanticOcTree map = emptyMap();
+  map.insert(cloud, Eigen::Isometry3d::Identity());
+  semantic_octree::AbstractionOptions options;
+  options.weights.terms = {tree_abstraction::relevant("road", 1.0, {1})};
+  options.blockSize = 3.2;
+  map.setAbstraction(options);
+  return map;
+}
+
+/** What was read can be written, and read again. */
+void expectSound(const SemanticOcTree& map) {
+  std::istringstream in(semantic_octree::fileOf(map));
+  if (!(semantic_octree::readTree(in) == map)) std::abort();
+}
+
+void readMap(const std::string& bytes) {
+  std::istringstream in(bytes);
+  expectSound(semantic_octree::readTree(in));
+}
+
+/** With right checksums; the first byte tells the version. */
+void readMapContent(const std::string& bytes) {
+  if (bytes.empty()) return;
+  readMap(fileAround(bytes.substr(1), 1 + static_cast<unsigned char>(bytes[0]) % 2));
+}
+
+/** The file of leaves that an index of generation 1 names is there, and one tile with right
+ * checksums around what the folder has. */
+void readTiles(const fs::path& folder) {
+  semantic_octree::saveTree(emptyMap(), (folder / "leaves.1.semantic").string());
+  const fs::path tile = folder / "tile_0_0_0.1.semantic";
+  std::ostringstream content;
+  content << std::ifstream(tile, std::ios::binary).rdbuf();
+  std::ofstream(tile, std::ios::binary) << fileAround(content.str());
+  expectSound(semantic_octree::loadTree(folder.string()));
+}
+
+/** Each behind its length (2 bytes). */
+std::vector<std::string> recordsOf(const std::string& bytes) {
+  std::vector<std::string> records;
+  for (std::size_t next = 0; bytes.size() - next >= 2;) {
+    std::uint16_t size = 0;
+    std::memcpy(&size, &bytes[next], sizeof(size));
+    records.push_back(bytes.substr(next + 2, size));
+    next += 2 + records.back().size();
+  }
+  return records;
+}
+
+/** Packets of a map, and of its changes behind each empty record. The first record is the depth of
+ * the trees' roots (1 byte), and what is frequent. All checksums but the map's own are right. */
+void receivePackets(const std::string& bytes) {
+  std::vector<std::string> records = recordsOf(bytes);
+  if (records.empty() || records[0].empty()) return;
+  semantic_octree::StreamDescription description;
+  description.rootDepth = static_cast<unsigned char>(records[0][0]) % 17;
+  description.coding = records[0].substr(1);
+  description.kind = semantic_octree::fileOf(emptyMap());
+  semantic_octree::MapReceiver receiver(kStream);
+  semantic_octree::PacketHeader header;
+  for (auto at = records.begin(); at != records.end();) {
+    auto end = std::find(at + 1, records.end(), "");
+    std::vector<std::string> contents(at + 1, end);
+    const std::string text = description.compressed();
+    constexpr std::size_t kPart = semantic_octree::kMaxContent;
+    header.numDescription = static_cast<std::uint8_t>((text.size() + kPart - 1) / kPart);
+    for (std::size_t i = header.numDescription; i > 0; --i)
+      contents.insert(contents.begin(), text.substr((i - 1) * kPart, kPart));
+    ++header.revision;
+    header.count = static_cast<std::uint32_t>(contents.size());
+    for (header.number = 0; header.number < header.count; ++header.number) try {
+        receiver.accept({Datagram::Type::Data, kStream, header.bytes() + contents[header.number]});
+      } catch (const std::exception&) {
+      }
+    if (receiver.hasMap()) expectSound(receiver.map());
+    receiver.receipt();
+    at = end;
+  }
+}
+
+/** Datagrams for a sender and a receiver, as they are and with right headers: the first byte of
+ * each is its type. */
+void acceptDatagrams(const std::string& bytes) {
+  static SemanticOcTree map = someMap();
+  semantic_octree::MapSender sender(kStream);
+  sender.setMap(map);
+  semantic_octree::MapReceiver receiver(kStream);
+  radio::WishReader wishes;
+  const auto take = [&](const Datagram& datagram) {
+    if (datagram.type == Datagram::Type::Data) receiver.accept(datagram);
+    if (datagram.type == Datagram::Type::Receipt) sender.accept(datagram);
+    if (datagram.type != Datagram::Type::Request) return;
+    if (const auto wish = wishes.add(datagram)) wish->forClasses(map.classes(), "weights");
+  };
+  for (const std::string& record : recordsOf(bytes)) try {
+      sender.next();
+      if (record.empty()) continue;
+      const auto type = static_cast<Datagram::Type>(record[0]);
+      take(Datagram::of(Datagram{type, kStream, record.substr(1)}.bytes()));
+      take(Datagram::of(record));
+    } catch (const std::exception&) {
+    }
+  if (receiver.hasMap()) expectSound(receiver.map());
+}
+
+}  // namespace
+
+std::vector<Reader> mapReaders() {
+  return {{"map", readMap, {}},
+          {"map-content", readMapContent, {}},
+          {"tiles", fromFolder({"index.yaml", "tile_0_0_0.1.semantic"}, readTiles), {}},
+          {"packets", receivePackets, {}},
+          {"datagrams", acceptDatagrams, {}}};
+}
