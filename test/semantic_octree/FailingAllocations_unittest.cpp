@@ -88,6 +88,20 @@ TEST(FailingAllocations, whileAScanIsInsertedLeaveTheMapOrABrokenOne) {
   EXPECT_LT(broken, failures);
 }
 
+TEST(FailingAllocations, whileAMapAgesLeaveTheMapOrABrokenOne) {
+  semantic_types::ClassTable halfLives = numberedClasses(5);
+  for (const semantic_types::ClassId id : {0, 1, 2}) halfLives.setHalfLife(id, 1);
+  int broken = 0, failures = 0;
+  for (const bool withAbstraction : {false, true}) {
+    SemanticOcTree map = mapOf(4, 2, withAbstraction);
+    map.setHalfLives(halfLives);
+    failures += sweep(
+        map, [](SemanticOcTree& m) { m.age(0.7); }, &broken);
+  }
+  EXPECT_GT(broken, 0);
+  EXPECT_LT(broken, failures);
+}
+
 TEST(FailingAllocations, elsewhereLeaveTheMapAsItWas) {
   const SemanticOcTree map = mapOf(5, 2, true), other = mapOf(6, 1, false);
   std::stringstream file;
