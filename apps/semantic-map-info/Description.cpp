@@ -71,12 +71,15 @@ void printBox(const ordered_json& box, std::ostream& out) {
 }
 
 void printTime(const ordered_json& d, std::ostream& out) {
-  out << "\n  clock         " << d["clock"] << " s\n  half-lives   ";
-  for (const auto& c : d["classes"])
-    if (c.contains("halfLife"))
-      out << " " << c["name"].get<std::string>() << " " << c["halfLife"] << " s";
-  if (d["freeSpace"].contains("halfLife"))
-    out << " free space " << d["freeSpace"]["halfLife"] << " s";
+  const char* before = "";
+  const auto say = [&](const std::string& name, const ordered_json& of) {
+    if (!of.contains("halfLife")) return;
+    out << before << name << " " << of["halfLife"] << " s";
+    before = ", ";
+  };
+  out << "\n  clock         " << d["clock"] << " s\n  half-lives    ";
+  for (const auto& c : d["classes"]) say(c["name"], c);
+  say("free space", d["freeSpace"]);
 }
 
 }  // namespace

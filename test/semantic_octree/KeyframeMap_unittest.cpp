@@ -21,13 +21,14 @@ struct Variant {
   AbstractionOptions::Frame frame = AbstractionOptions::Frame::Free;
   InsertionOptions::Rays rays = InsertionOptions::Rays::All;
   bool ages = false;
+  double alpha = 0.01;
 };
 
 AbstractionOptions abstractionOf(const Variant& variant) {
   AbstractionOptions options;
   options.weights.terms = {tree_abstraction::relevant("1", 1, {1}),
                            tree_abstraction::irrelevant("2", 0.5, {2})};
-  options.weights.alpha = 0.01;
+  options.weights.alpha = variant.alpha;
   options.frame = variant.frame;
   return options;
 }
@@ -233,7 +234,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Variant{"endVoxels", false, true, false, 1, AbstractionOptions::Frame::Free,
                             InsertionOptions::Rays::EndVoxels},
                     Variant{"ages", true, true, true, 2, AbstractionOptions::Frame::Free,
-                            InsertionOptions::Rays::All, true}),
+                            InsertionOptions::Rays::All, true},
+                    Variant{"coarse", false, true, false, 1, AbstractionOptions::Frame::Free,
+                            InsertionOptions::Rays::All, true, 0.15}),
     [](const auto& variant) { return variant.param.name; });
 
 /** Limits that are never met, labels that never disagree: then sums are all there is. */

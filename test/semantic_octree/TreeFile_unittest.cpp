@@ -154,7 +154,7 @@ TEST(TreeFile, ofAnUnknownVersionIsRefused) {
   for (const char version : {0, 3}) {
     bytes[8] = version;
     const std::string found = "version " + std::to_string(version);
-    EXPECT_TRUE(contains(loadError(folder, bytes), found + " of the format, expected 1 or 2"));
+    EXPECT_TRUE(contains(loadError(folder, bytes), found + " of the format, expected 1 to 3"));
   }
 }
 
