@@ -235,7 +235,8 @@ TEST(Decay, mixturesGValuesAndTheCompressedTreesChangeFollow) {
     std::mt19937 random(seed);
     SemanticOcTree map(0.4, classes(seed % 2 == 0));
     map.setPruning(seed % 3 != 0);
-    const AbstractionOptions options = abstraction(0.01 + 0.05 * (seed - 30));
+    AbstractionOptions options = abstraction(0.01 + 0.05 * (seed - 30));
+    if (seed % 2 == 0) options.blockSize = 1.6;  // of 4 x 4 x 4 voxels
     map.setAbstraction(options);
     std::set<CellId> told;
     for (int i = 0; i < 30; ++i) {
@@ -251,6 +252,23 @@ TEST(Decay, mixturesGValuesAndTheCompressedTreesChangeFollow) {
       ASSERT_TRUE(map == anew) << seed << ", " << i;
     }
   }
+}
+
+/** Nothing else changes that would lead the eye there. */
+TEST(Decay, aBlockThatIsNotWorthItsPriceAnyMoreIsTold) {
+  SemanticOcTree map(0.5, classes(false));
+  AbstractionOptions options = abstraction(0.01);
+  options.blockSize = 2;
+  map.setAbstraction(options);
+  LabeledCloud cloud;
+  cloud.points = {{0.25f, 0.25f, 0.25f}, {1.25f, 1.25f, 1.25f}};
+  cloud.classes = {1, 2};
+  map.insert(cloud, Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.1, 0.1)));
+  Abstraction(map).takeChange();
+  const std::size_t before = Abstraction(map).leaves().size();
+  map.age(20);
+  EXPECT_LT(Abstraction(map).leaves().size(), before);
+  EXPECT_FALSE(Abstraction(map).takeChange().removed.empty());
 }
 
 TEST(Decay, tellsWhichTilesChanged) {

@@ -22,6 +22,7 @@ struct Variant {
   InsertionOptions::Rays rays = InsertionOptions::Rays::All;
   bool ages = false;
   double alpha = 0.01;
+  double blockSize = AbstractionOptions().blockSize;
 };
 
 AbstractionOptions abstractionOf(const Variant& variant) {
@@ -29,6 +30,7 @@ AbstractionOptions abstractionOf(const Variant& variant) {
   options.weights.terms = {tree_abstraction::relevant("1", 1, {1}),
                            tree_abstraction::irrelevant("2", 0.5, {2})};
   options.weights.alpha = variant.alpha;
+  options.blockSize = variant.blockSize;
   options.frame = variant.frame;
   return options;
 }
@@ -236,7 +238,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Variant{"ages", true, true, true, 2, AbstractionOptions::Frame::Free,
                             InsertionOptions::Rays::All, true},
                     Variant{"coarse", false, true, false, 1, AbstractionOptions::Frame::Free,
-                            InsertionOptions::Rays::All, true, 0.15}),
+                            InsertionOptions::Rays::All, true, 0.15, 1.6}),
     [](const auto& variant) { return variant.param.name; });
 
 /** Limits that are never met, labels that never disagree: then sums are all there is. */
@@ -281,6 +283,28 @@ TEST(KeyframeMap, makesAnewOnlyTilesInWhichAScanSeesSomethingElse) {
   const SemanticOcTree before = map;
   keyframes.remove(0);
   EXPECT_LT(map.size(), before.size());
+}
+
+/** Nothing else changes that would lead the eye there. */
+TEST(KeyframeMap, tellsOfABlockThatIsNotWorthItsPriceAnyMore) {
+  Variant variant{"alone"};
+  variant.blockSize = 1.6;
+  SemanticOcTree map = emptyMap(variant);
+  KeyframeMap keyframes(map);
+  const auto insert = [&](float place, semantic_types::ClassId id) {
+    LabeledCloud cloud;
+    cloud.points = {{place, place, place}};
+    cloud.classes = {id};
+    keyframes.begin(Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.1, 0.1)));
+    keyframes.insert(cloud, Eigen::Isometry3d::Identity());
+  };
+  insert(0.9f, 2);
+  insert(0.5f, 1);
+  Abstraction(map).takeChange();
+  const std::size_t before = Abstraction(map).leaves().size();
+  keyframes.remove(1);
+  EXPECT_LT(Abstraction(map).leaves().size(), before);
+  EXPECT_FALSE(Abstraction(map).takeChange().removed.empty());
 }
 
 TEST(KeyframeMap, refusesWhatIsNotThereAndStaysAsItWas) {

@@ -142,6 +142,7 @@ class Sweep {
     if (highest == kUnknown) return m_arena.remove(slot);
     if (m_target.pruning && m_arena.prune(slot)) return;
     slot.value = highest;
+    // What was told of a block that was replaced is not known: it counts as reshaped.
     if (m_gTree) m_gTree->recompute(m_store, slot, cell, true);
   }
 
