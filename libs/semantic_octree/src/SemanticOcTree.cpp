@@ -190,6 +190,7 @@ void SemanticOcTree::age(double seconds) {
 }
 
 void SemanticOcTree::ageUntil(std::int64_t time) {
+  if (time == m_clock) return;
   std::vector<int> steps;
   for (int id = 0; id <= numClasses(); ++id)
     steps.push_back(decaySteps(m_classes.halfLife(static_cast<ClassId>(id)), m_clock, time));
