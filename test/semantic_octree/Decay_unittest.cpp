@@ -230,6 +230,20 @@ TEST(Decay, aMapThatIsLoadedGoesOnWhereItStopped) {
   }
 }
 
+TEST(Decay, aFileWithAClockIsRefusedCutOrAltered) {
+  SemanticOcTree map(0.4, classes());
+  map.age(1.5);
+  const std::string bytes = bytesOf(map);
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    std::istringstream cut(bytes.substr(0, size));
+    EXPECT_THROW(readTree(cut), std::runtime_error) << size;
+    std::string other = bytes;
+    other[size] = static_cast<char>(other[size] ^ 0x40);
+    std::istringstream altered(other);
+    EXPECT_THROW(readTree(altered), std::runtime_error) << size;
+  }
+}
+
 TEST(Decay, mixturesGValuesAndTheCompressedTreesChangeFollow) {
   for (unsigned seed = 30; seed < 36; ++seed) {
     std::mt19937 random(seed);

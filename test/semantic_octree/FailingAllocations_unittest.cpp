@@ -138,25 +138,30 @@ TEST(FailingAllocations, whileKeyframesAreCorrectedLeaveTheMapOrABrokenOne) {
   std::optional<KeyframeMap> keyframes;
   std::optional<SemanticOcTree> before;
   int broken = 0, failures = 0;
+  const auto begin = [&] {
+    keyframes.reset();
+    map.emplace(mapOf(9, 0, true));
+    keyframes.emplace(*map);
+    keyframes->begin(T);
+    keyframes->insert(a.cloud, a.T_map_sensor);
+    keyframes->begin(Eigen::Isometry3d::Identity());
+    keyframes->insert(b.cloud, b.T_map_sensor);
+    before.emplace(*map);
+  };
+  begin();
+  keyframes->insert(a.cloud, b.T_map_sensor);
+  const SemanticOcTree grown = *map;
   const auto sweepKeyframes = [&](const auto& operation) {
     failures += failEachAllocation(
-        [&] {
-          keyframes.reset();
-          map.emplace(mapOf(9, 0, true));
-          keyframes.emplace(*map);
-          keyframes->begin(T);
-          keyframes->insert(a.cloud, a.T_map_sensor);
-          keyframes->begin(Eigen::Isometry3d::Identity());
-          keyframes->insert(b.cloud, b.T_map_sensor);
-          before.emplace(*map);
-        },
-        [&] { operation(*keyframes); },
+        begin, [&] { operation(*keyframes); },
         [&] {
           EXPECT_EQ(keyframes->numScans(), 2u);
           EXPECT_TRUE(keyframes->pose(0).isApprox(T));
           if (map->isBroken()) return expectLost(*map, &broken);
           EXPECT_TRUE(*map == *before);
-          keyframes->remove(1);  // what is left can still be corrected
+          keyframes->insert(a.cloud, b.T_map_sensor);  // it can still grow, and be corrected
+          EXPECT_TRUE(*map == grown);
+          keyframes->remove(1);
           keyframes->remove(0);
           EXPECT_TRUE(map->empty());
         });
