@@ -90,7 +90,10 @@ void MapBuilder::insertScan(const StreamedObservation& observation) try {
 semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& scan,
                                                            const CPose3D& T_map_robot) {
   if (!m_correction) return m_map.insertScan(scan, T_map_robot);
-  const auto report = m_correction->insert(scan, T_map_robot, m_map.insertionOptions.scan);
+  m_clock.setMaxGap(m_map.insertionOptions.maxGap);
+  const auto report = m_correction->insert(scan, T_map_robot, m_map.insertionOptions.scan,
+                                           m_clock.secondsUntil(scan.timestamp));
+  m_clock.note(scan.timestamp);
   m_summary.slam = m_correction->summary();
   return report;
 }

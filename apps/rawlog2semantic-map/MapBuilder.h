@@ -52,6 +52,7 @@ class MapBuilder {
 
   semantic_map::CSemanticOctoMap& m_map;
   std::unique_ptr<PoseCorrection> m_correction;
+  semantic_map::ObservationClock m_clock;  ///< of scans whose poses are corrected
   OnScan m_onScan;
   std::unique_ptr<semantic_map::CSemanticOctoMap> m_plainMap;
   Summary m_summary;

@@ -22,15 +22,15 @@ PoseCorrection::PoseCorrection(semantic_octree::SemanticOcTree& map,
 
 semantic_octree::InsertionReport PoseCorrection::insert(
     const labeled_cloud::LabeledScan& scan, const mrpt::poses::CPose3D& T_map_robot,
-    const semantic_octree::InsertionOptions& options) {
+    const semantic_octree::InsertionOptions& options, double secondsSince) {
   const Eigen::Isometry3d T_robot_sensor = isometry(scan.T_robot_sensor);
   const auto added = m_slam.add(scan.cloud, T_robot_sensor, isometry(T_map_robot));
   if (added.isNew) {
     m_keyframes.begin(m_slam.poses().back());
     m_times.push_back(mrpt::Clock::toDouble(scan.timestamp));
   }
-  const auto report =
-      m_keyframes.insert(scan.cloud, added.T_keyframe_robot * T_robot_sensor, options);
+  const auto report = m_keyframes.insert(scan.cloud, added.T_keyframe_robot * T_robot_sensor,
+                                         options, secondsSince);
   if (added.loopClosed)
     m_keyframes.move(posesOff(m_slam, m_keyframes, kOff * m_keyframes.map().getResolution()));
   return report;

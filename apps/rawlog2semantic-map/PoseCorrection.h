@@ -16,10 +16,11 @@ class PoseCorrection {
   PoseCorrection(semantic_octree::SemanticOcTree& map, const semantic_slam::SlamOptions& options,
                  const std::filesystem::path& folder);
 
-  /** \param T_map_robot as odometry has it */
+  /** \param T_map_robot as odometry has it \param secondsSince by which the map ages first */
   semantic_octree::InsertionReport insert(const labeled_cloud::LabeledScan& scan,
                                           const mrpt::poses::CPose3D& T_map_robot,
-                                          const semantic_octree::InsertionOptions& options);
+                                          const semantic_octree::InsertionOptions& options,
+                                          double secondsSince);
 
   /** The map is then that of the poses of trajectory(), exactly. */
   void finish() { m_keyframes.move(posesOf(m_slam)); }

@@ -1,4 +1,4 @@
-// Crops, coarsens and moves a semantic octree map, cuts it into tiles, and imports maps of
+// Crops, coarsens, moves and ages a semantic octree map, cuts it into tiles, and imports maps of
 // OctoMap's.
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
@@ -6,6 +6,7 @@
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/OctomapConversion.h>
 #include <semantic_octree/TreeFile.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <array>
 #include <cmath>
@@ -29,9 +30,9 @@ using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
 
 struct Cli {
-  fs::path in, out, like;
+  fs::path in, out, like, halfLives;
   std::optional<std::array<double, 6>> pose, box;
-  std::optional<double> resolution, tiles;
+  std::optional<double> resolution, tiles, decay;
   double memory = semantic_octree::MapFolderOptions().memory;
   Outputs outputs;
 
@@ -52,6 +53,11 @@ struct Cli {
     app.add_option("--tiles", tiles,
                    "Cut it into columns with a square base of this edge, m: 1, 2, 4, 8 ... voxels")
         ->check(isNumber(strict_files::above(0)));
+    app.add_option("--half-lives", halfLives,
+                   "Class table (YAML) whose half-lives the map's classes get")
+        ->type_name("FILE.yaml");
+    app.add_option("--decay", decay, "Let so much time pass, s: what has a half-life is forgotten")
+        ->check(isNumber(strict_files::between(0, 1e9)));
     app.add_option("--like", like,
                    "For OctoMap's files: a map whose classes and filter the new one has");
     addMemoryOption(app, memory);
@@ -100,6 +106,15 @@ int writeTiles(const Cli& cli, const SemanticOcTree& map) {
   return 0;
 }
 
+SemanticOcTree aged(SemanticOcTree map, const Cli& cli) {
+  if (!cli.halfLives.empty()) map.setHalfLives(semantic_types::loadClassTable(cli.halfLives));
+  if (cli.decay && !map.classes().hasHalfLives())
+    throw std::runtime_error("--decay: nothing in " + cli.in.string() +
+                             " has a half-life; --half-lives gives them");
+  if (cli.decay) map.age(*cli.decay);
+  return map;
+}
+
 int run(const Cli& cli) {
   if (!cli.tiles) cli.outputs.check({cli.out});
   StoredMap stored = load(cli);
@@ -109,6 +124,7 @@ int run(const Cli& cli) {
   if (cli.box) edited = cropped(map(), boxOf(*cli.box));
   if (cli.resolution)
     edited = coarsened(map(), levelsTo(*cli.resolution, map().getResolution(), 8, "--resolution"));
+  if (!cli.halfLives.empty() || cli.decay) edited = aged(edited ? *std::move(edited) : map(), cli);
   if (cli.tiles) return writeTiles(cli, map());
   saveTree(map(), cli.out.string());
   notes() << cli.out.string() << ": " << map().getNumLeafNodes() << " leaves\n";
@@ -120,8 +136,8 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Moves, crops, coarsens a semantic octree map and cuts it into tiles, in this order; imports "
-      "OctoMap's");
+      "Moves, crops, coarsens, ages a semantic octree map and cuts it into tiles, in this order; "
+      "imports OctoMap's");
   const semantic_map_edit::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_edit::run(cli); });
 }

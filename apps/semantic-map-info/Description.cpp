@@ -27,6 +27,11 @@ ordered_json parametersJson(const FilterParameters& p) {
       {"softLabelFloor", p.softLabelFloor}};
 }
 
+void addHalfLife(const SemanticOcTree& map, ClassId id, ordered_json& description) {
+  const double seconds = map.classes().halfLife(id);
+  if (seconds != semantic_types::kForever) description["halfLife"] = seconds;
+}
+
 ordered_json boxJson(const MapContents& contents) {
   if (contents.box.isEmpty()) return nullptr;
   const Eigen::Vector3d low = contents.box.min(), high = contents.box.max();
@@ -42,6 +47,7 @@ ordered_json classesJson(const SemanticOcTree& map, const MapContents& contents)
                        {"name", table.name(static_cast<ClassId>(id))},
                        {"color", {color.r, color.g, color.b}},
                        {"voxels", contents.voxelsOfClass[id]}});
+    addHalfLife(map, static_cast<ClassId>(id), classes.back());
   }
   return classes;
 }
@@ -64,6 +70,18 @@ void printBox(const ordered_json& box, std::ostream& out) {
   out << " m\n";
 }
 
+void printTime(const ordered_json& d, std::ostream& out) {
+  const char* before = "";
+  const auto say = [&](const std::string& name, const ordered_json& of) {
+    if (!of.contains("halfLife")) return;
+    out << before << name << " " << of["halfLife"] << " s";
+    before = ", ";
+  };
+  out << "\n  clock         " << d["clock"] << " s\n  half-lives    ";
+  for (const auto& c : d["classes"]) say(c["name"], c);
+  say("free space", d["freeSpace"]);
+}
+
 }  // namespace
 
 ordered_json describe(semantic_octree::StoredMap& stored) {
@@ -80,6 +98,11 @@ ordered_json describe(semantic_octree::StoredMap& stored) {
                               {"occupiedWithoutClass", contents.voxelsOfClass[0]},
                               {"filter", parametersJson(map.filterParameters())},
                               {"classes", classesJson(map, contents)}};
+  if (map.classes().hasHalfLives()) {
+    description["clock"] = map.clock();
+    description["freeSpace"] = ordered_json::object();
+    addHalfLife(map, semantic_types::kNoClass, description["freeSpace"]);
+  }
   if (stored.folder()) description["folder"] = folderJson(stored.folder()->contents());
   return description;
 }
@@ -100,6 +123,7 @@ void printText(const std::string& name, const ordered_json& d, std::ostream& out
     out << "\n  folder        " << d["folder"]["tiles"] << " tiles of " << d["folder"]["tileSize"]
         << " m, " << strict_files::sizeText(d["folder"]["bytes"]) << ", saved "
         << d["folder"]["generation"] << " times";
+  if (d.contains("clock")) printTime(d, out);
   out << "\n  occupied voxels by likeliest class (of " << d["classes"].size() << " classes)\n";
   const auto line = [&out](const std::string& id, const ordered_json& voxels,
                            const std::string& label) {

@@ -30,6 +30,9 @@ void addDrive(CLI::App& app, Cli& cli) {
       ->check(isNumber(strict_files::above(0)))
       ->capture_default_str();
   app.add_option("--start", cli.start, "Where on the route to begin, m")->capture_default_str();
+  app.add_option("--people", cli.people, "How many walk to and fro across the route")
+      ->check(isNumber(strict_files::between(0, 1000)))
+      ->capture_default_str();
   app.add_flag("--odometry", cli.odometry,
                "Write movements and sensory frames instead of observations with true poses");
   app.add_option("--odometry-noise", cli.odometryNoise, "Standard deviation, share of a movement")

@@ -21,6 +21,7 @@ struct Cli {
   double rate = 2;              // frames a second
   double speed = 2.5;           // m/s
   double start = 0;             // m along the route
+  int people = 0;               // who walk to and fro across it
   bool odometry = false;
   double odometryNoise = 0.01;  // share of each movement
 

@@ -38,6 +38,24 @@ std::filesystem::path beside(std::filesystem::path rawlog, const char* extension
   return rawlog.replace_extension(extension);
 }
 
+std::vector<synthetic_world::Walker> walkersOn(const synthetic_world::Curve& route, int people) {
+  constexpr double kRight = 4, kLeft = 6;  // m
+  std::vector<synthetic_world::Walker> walkers;
+  for (int i = 0; i < people; ++i) {
+    const double s = (i + 0.5) * route.length() / people;
+    walkers.push_back({route.beside(s, -kRight), route.beside(s, kLeft)});
+  }
+  return walkers;
+}
+
+void walk(const std::vector<synthetic_world::Walker>& walkers, double time,
+          synthetic_world::World& world) {
+  synthetic_world::Solids people;
+  for (const auto& walker : walkers)
+    for (auto& solid : walker.at(world, time)) people.push_back(std::move(solid));
+  world.setMovables(std::move(people));
+}
+
 std::vector<mrpt::obs::CObservation::Ptr> sense(const Cli& cli, const synthetic_world::World& world,
                                                 const Eigen::Isometry3d& T_world_robot,
                                                 std::uint64_t frame) {
@@ -55,10 +73,11 @@ std::vector<mrpt::obs::CObservation::Ptr> sense(const Cli& cli, const synthetic_
   return seen;
 }
 
-void writeRawlog(const Cli& cli, const synthetic_world::Scene& scene) {
+void writeRawlog(const Cli& cli, synthetic_world::Scene& scene) {
   const synthetic_world::Drive drive(scene, cli.speed, cli.start);
   const int frames =
       cli.frames > 0 ? cli.frames : static_cast<int>(std::ceil(drive.duration() * cli.rate));
+  const auto walkers = walkersOn(scene.route, cli.people);
   DriveLog rawlog(cli.output, cli.odometry, cli.odometryNoise, cli.seed);
   TrajectoryWriter trajectory(beside(cli.output, ".tum"));
   const StopRequest stop("after this frame");
@@ -66,10 +85,12 @@ void writeRawlog(const Cli& cli, const synthetic_world::Scene& scene) {
   for (; k < frames && !stop.pending(); ++k) {
     const double time = k / cli.rate;
     const Eigen::Isometry3d T_world_robot = drive.T_world_robot(time);
+    walk(walkers, time, scene.world);
     rawlog.write(mrpt::Clock::fromDouble(kStartTime + time), T_world_robot,
                  sense(cli, scene.world, T_world_robot, static_cast<std::uint64_t>(k)));
     trajectory.write(kStartTime + time, toMrpt(T_world_robot));
   }
+  scene.world.setMovables({});
   rawlog.finish();
   trajectory.commit();
   writeTruth(cli, k, beside(cli.output, ".truth.yaml"));
@@ -102,7 +123,7 @@ void checkOutputs(const Cli& cli) {
 
 int run(const Cli& cli) {
   checkOutputs(cli);
-  const synthetic_world::Scene scene = synthetic_world::makeScene(cli.scene, cli.seed, cli.hills);
+  synthetic_world::Scene scene = synthetic_world::makeScene(cli.scene, cli.seed, cli.hills);
   if (!cli.output.empty()) writeRawlog(cli, scene);
   if (!cli.picture.empty()) writePicture(cli, scene.world);
   if (!cli.truthQuery.empty()) {

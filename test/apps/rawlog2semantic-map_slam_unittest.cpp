@@ -1,5 +1,6 @@
 // A drive whose trajectory drifts, and what --slam makes of it.
 #include <gtest/gtest.h>
+#include <semantic_octree/TreeFile.h>
 
 #include <Eigen/Geometry>
 #include <map>
@@ -11,6 +12,8 @@
 
 namespace {
 
+namespace fs = std::filesystem;
+using semantic_octree::SemanticOcTree;
 using Poses = std::map<double, Eigen::Isometry3d>;
 
 /** As the data sets of TUM have it: time x y z qx qy qz qw. */
@@ -61,6 +64,18 @@ double distance(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return (a.translation() - b.translation()).norm();
 }
 
+/** Share of a map's occupied leaves whose middle is occupied in another one. */
+double shareOccupiedIn(const SemanticOcTree& other, const SemanticOcTree& map) {
+  int occupied = 0, there = 0;
+  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+    if (!map.isNodeOccupied(*leaf)) continue;
+    ++occupied;
+    there += other.query(leaf.getX(), leaf.getY(), leaf.getZ()).status ==
+             semantic_octree::CellState::Status::Occupied;
+  }
+  return double(there) / occupied;
+}
+
 }  // namespace
 
 TEST(Rawlog2SemanticMapWithSlam, correctsATrajectoryThatDrifts) {
@@ -73,11 +88,20 @@ TEST(Rawlog2SemanticMapWithSlam, correctsATrajectoryThatDrifts) {
   ASSERT_EQ(drive.status, 0) << drive.errors;
   const Poses truth = readPoses(folder.read("park.tum")), noisy = drifting(truth);
   const auto noisyFile = folder.write("noisy.tum", textOf(noisy));
-  const ProgramRun mapping =
-      runProgram("rawlog2semantic-map",
-                 {"--output", (folder / "out").string(), "--resolution", "0.4", "--max-range", "20",
-                  "--trajectory", noisyFile.string(), "--slam", rawlog});
-  ASSERT_EQ(mapping.status, 0) << mapping.errors;
+  const auto mapWith = [&](const fs::path& trajectory, const std::vector<std::string>& more) {
+    const std::string out = (folder / "out").string();
+    std::vector<std::string> arguments = {
+        "-f",           "--output",          out,   "--resolution", "0.4", "--max-range", "20",
+        "--trajectory", trajectory.string(), rawlog};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramRun mapping = runProgram("rawlog2semantic-map", arguments);
+    EXPECT_EQ(mapping.status, 0) << mapping.errors;
+    return semantic_octree::loadTree(out + "/map.semantic");
+  };
+  const SemanticOcTree trueMap = mapWith(folder / "park.tum", {}), wrong = mapWith(noisyFile, {}),
+                       map = mapWith(noisyFile, {"--slam"});
+  EXPECT_LT(shareOccupiedIn(trueMap, wrong), 0.7);
+  EXPECT_GT(shareOccupiedIn(trueMap, map), 0.8);
 
   const Poses corrected = readPoses(folder.read("out/trajectory.tum"));
   const auto slam = nlohmann::json::parse(folder.read("out/summary.json"))["slam"];
@@ -90,5 +114,5 @@ TEST(Rawlog2SemanticMapWithSlam, correctsATrajectoryThatDrifts) {
   };
   EXPECT_GT(distance(at(noisy), at(truth)), 3);
   EXPECT_LT(distance(corrected.rbegin()->second, at(truth)), 0.3);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "out"), {}), 5);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "out"), {}), 5);
 }

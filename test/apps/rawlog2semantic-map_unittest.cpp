@@ -1,4 +1,5 @@
 #include <semantic_octree/MapContents.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
@@ -42,6 +43,32 @@ TEST_F(Rawlog2SemanticMap, summaryCountsObservationsPointsAndVoxels) {
   const auto insertion = s["millisecondsPerScan"]["insertion"];
   EXPECT_GT(insertion["median"], 0);
   EXPECT_GE(insertion["percentile95"], insertion["median"]);
+}
+
+TEST_F(Rawlog2SemanticMap, classesWithAHalfLifeAreForgottenByTheStamps) {
+  const auto road = labeledCloud(18, {{1.1f, 0.2f, 0.2f}}, {1});
+  writeSmallRawlog(folder / "later.rawlog", robotPose(18, 1.1), road);
+  const auto carAfter = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> options = {(folder / "small.rawlog").string()};
+    options.insert(options.end(), more.begin(), more.end());
+    const ProgramRun result = run("later.rawlog", options);
+    EXPECT_EQ(result.status, 0) << result.errors;
+    return map().query(0.1, 3, 0.2).status;
+  };
+  EXPECT_EQ(carAfter({}), CellState::Status::Occupied);
+  semantic_types::ClassTable table = semantic_types::loadClassTable(folder / "classes.yaml");
+  table.setHalfLife(3, 1);
+  saveClassTable(table, folder / "classes.yaml");
+  EXPECT_EQ(carAfter({}), CellState::Status::Unknown);
+  EXPECT_EQ(map().query(2.2, 0.2, 0.2).status, CellState::Status::Occupied);
+  EXPECT_DOUBLE_EQ(map().clock(), 8);
+  EXPECT_EQ(carAfter({"--slam"}), CellState::Status::Unknown);
+  EXPECT_DOUBLE_EQ(map().clock(), 8);
+  folder.write("small.ini", std::string(kSmallConfig) + "[insertion]\nmax_gap = 5\n");
+  EXPECT_EQ(carAfter({}), CellState::Status::Occupied) << "another recording";
+  const ProgramRun tiles = run("later.rawlog", {"--tiles", (folder / "tiles").string()});
+  EXPECT_EQ(tiles.status, 1);
+  EXPECT_TRUE(contains(tiles.errors, "half-lives cannot be in a folder of tiles")) << tiles.errors;
 }
 
 TEST_F(Rawlog2SemanticMap, optionsOnTheCommandLineGoBeforeTheConfiguration) {

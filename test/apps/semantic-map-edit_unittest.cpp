@@ -2,6 +2,7 @@
 #include <octomap/OcTree.h>
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/OctomapConversion.h>
+#include <semantic_types/ClassTableFile.h>
 
 #include <cmath>
 #include <cstdio>
@@ -11,6 +12,7 @@
 
 using semantic_octree::CellState;
 using semantic_octree::SemanticOcTree;
+using semantic_types::ClassTable;
 
 namespace {
 
@@ -56,6 +58,28 @@ TEST_F(SemanticMapEdit, aCoarserMapIsOccupiedWhereAnythingWas) {
       ASSERT_EQ(coarse.query(leaf.getX(), leaf.getY(), leaf.getZ()).status,
                 CellState::Status::Occupied);
     }
+}
+
+TEST_F(SemanticMapEdit, timePassesForWhatHasAHalfLife) {
+  const ProgramRun refused = edit("map.semantic", "aged.semantic", {"--decay", "10"});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_TRUE(contains(refused.errors, "has a half-life; --half-lives gives them"));
+  EXPECT_FALSE(std::filesystem::exists(path("aged.semantic")));
+
+  ClassTable halfLives;
+  const auto first = halfLives.add(map.classes().name(1), {});
+  halfLives.setHalfLife(first, 4);
+  saveClassTable(halfLives, path("half-lives.yaml"));
+  const SemanticOcTree aged = edited({"--half-lives", path("half-lives.yaml"), "--decay", "6.5"});
+  SemanticOcTree expected = map;
+  expected.setHalfLives(halfLives);
+  expected.age(6.5);
+  EXPECT_TRUE(aged == expected);
+  EXPECT_FALSE(aged == map);
+  EXPECT_DOUBLE_EQ(aged.clock(), 6.5);
+  saveTree(aged, path("aged.semantic"));
+  expected.age(100);
+  EXPECT_TRUE(edited({"--decay", "100"}, "aged.semantic") == expected);
 }
 
 TEST_F(SemanticMapEdit, aMapIsMovedByAPose) {

@@ -52,6 +52,27 @@ class SemanticMapInfo : public testing::Test {
 
 }  // namespace
 
+TEST_F(SemanticMapInfo, saysTheClockAndTheHalfLives) {
+  EXPECT_FALSE(contains(runProgram("semantic-map-info", {map()}).output, "clock"));
+  SemanticOcTree tree = semantic_octree::loadTree(map());
+  ClassTable halfLives = tree.classes();
+  halfLives.setHalfLife(2, 2.5);
+  halfLives.setHalfLife(semantic_types::kNoClass, 3600);
+  tree.setHalfLives(halfLives);
+  tree.age(0.25);
+  saveTree(tree, map());
+  const ProgramRun text = runProgram("semantic-map-info", {map()});
+  EXPECT_TRUE(contains(text.output, "  clock         0.25 s\n")) << text.output;
+  EXPECT_TRUE(contains(text.output, "  half-lives    tall grass 2.5 s, free space 3600.0 s\n"))
+      << text.output;
+  const auto json =
+      nlohmann::json::parse(runProgram("semantic-map-info", {map(), "--json"}).output);
+  EXPECT_EQ(json["clock"], 0.25);
+  EXPECT_EQ(json["classes"][1]["halfLife"], 2.5);
+  EXPECT_FALSE(json["classes"][0].contains("halfLife"));
+  EXPECT_EQ(json["freeSpace"]["halfLife"], 3600);
+}
+
 TEST_F(SemanticMapInfo, jsonHoldsWhatIsInTheMap) {
   const ProgramRun run = runProgram("semantic-map-info", {map(), "--json"});
   ASSERT_EQ(run.status, 0) << run.errors;

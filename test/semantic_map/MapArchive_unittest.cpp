@@ -21,6 +21,7 @@ CSemanticOctoMap unusualMap() {
   map.insertionOptions.scan.rays = semantic_octree::InsertionOptions::Rays::EndVoxels;
   map.insertionOptions.scan.maxRange = 7;
   map.insertionOptions.scan.threads = 2;
+  map.insertionOptions.maxGap = 33;
   map.insertionOptions.conversion.decimation = 3;
   map.insertionOptions.conversion.labels.minConfidence = 0.3;
   map.likelihoodOptions.decimation = 4;

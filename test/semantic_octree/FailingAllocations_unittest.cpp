@@ -88,6 +88,20 @@ TEST(FailingAllocations, whileAScanIsInsertedLeaveTheMapOrABrokenOne) {
   EXPECT_LT(broken, failures);
 }
 
+TEST(FailingAllocations, whileAMapAgesLeaveTheMapOrABrokenOne) {
+  semantic_types::ClassTable halfLives = numberedClasses(5);
+  for (const semantic_types::ClassId id : {0, 1, 2}) halfLives.setHalfLife(id, 1);
+  int broken = 0, failures = 0;
+  for (const bool withAbstraction : {false, true}) {
+    SemanticOcTree map = mapOf(4, 2, withAbstraction);
+    map.setHalfLives(halfLives);
+    failures += sweep(
+        map, [](SemanticOcTree& m) { m.age(0.7); }, &broken);
+  }
+  EXPECT_GT(broken, 0);
+  EXPECT_LT(broken, failures);
+}
+
 TEST(FailingAllocations, elsewhereLeaveTheMapAsItWas) {
   const SemanticOcTree map = mapOf(5, 2, true), other = mapOf(6, 1, false);
   std::stringstream file;
@@ -124,25 +138,30 @@ TEST(FailingAllocations, whileKeyframesAreCorrectedLeaveTheMapOrABrokenOne) {
   std::optional<KeyframeMap> keyframes;
   std::optional<SemanticOcTree> before;
   int broken = 0, failures = 0;
+  const auto begin = [&] {
+    keyframes.reset();
+    map.emplace(mapOf(9, 0, true));
+    keyframes.emplace(*map);
+    keyframes->begin(T);
+    keyframes->insert(a.cloud, a.T_map_sensor);
+    keyframes->begin(Eigen::Isometry3d::Identity());
+    keyframes->insert(b.cloud, b.T_map_sensor);
+    before.emplace(*map);
+  };
+  begin();
+  keyframes->insert(a.cloud, b.T_map_sensor);
+  const SemanticOcTree grown = *map;
   const auto sweepKeyframes = [&](const auto& operation) {
     failures += failEachAllocation(
-        [&] {
-          keyframes.reset();
-          map.emplace(mapOf(9, 0, true));
-          keyframes.emplace(*map);
-          keyframes->begin(T);
-          keyframes->insert(a.cloud, a.T_map_sensor);
-          keyframes->begin(Eigen::Isometry3d::Identity());
-          keyframes->insert(b.cloud, b.T_map_sensor);
-          before.emplace(*map);
-        },
-        [&] { operation(*keyframes); },
+        begin, [&] { operation(*keyframes); },
         [&] {
           EXPECT_EQ(keyframes->numScans(), 2u);
           EXPECT_TRUE(keyframes->pose(0).isApprox(T));
           if (map->isBroken()) return expectLost(*map, &broken);
           EXPECT_TRUE(*map == *before);
-          keyframes->remove(1);  // what is left can still be corrected
+          keyframes->insert(a.cloud, b.T_map_sensor);  // it can still grow, and be corrected
+          EXPECT_TRUE(*map == grown);
+          keyframes->remove(1);
           keyframes->remove(0);
           EXPECT_TRUE(map->empty());
         });

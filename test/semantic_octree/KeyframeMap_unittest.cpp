@@ -20,19 +20,26 @@ struct Variant {
   int threads = 1;
   AbstractionOptions::Frame frame = AbstractionOptions::Frame::Free;
   InsertionOptions::Rays rays = InsertionOptions::Rays::All;
+  bool ages = false;
+  double alpha = 0.01;
+  double blockSize = AbstractionOptions().blockSize;
 };
 
 AbstractionOptions abstractionOf(const Variant& variant) {
   AbstractionOptions options;
   options.weights.terms = {tree_abstraction::relevant("1", 1, {1}),
                            tree_abstraction::irrelevant("2", 0.5, {2})};
-  options.weights.alpha = 0.01;
+  options.weights.alpha = variant.alpha;
+  options.blockSize = variant.blockSize;
   options.frame = variant.frame;
   return options;
 }
 
 SemanticOcTree emptyMap(const Variant& variant, const FilterParameters& filter = {}) {
-  SemanticOcTree map(0.4, numberedClasses(5), filter);
+  semantic_types::ClassTable classes = numberedClasses(5);
+  for (const semantic_types::ClassId id : {0, 1, 2, 3})
+    if (variant.ages) classes.setHalfLife(id, 0.7 + 0.4 * id);
+  SemanticOcTree map(0.4, classes, filter);
   map.setPruning(variant.pruning);
   map.setAbstraction(abstractionOf(variant));
   return map;
@@ -51,16 +58,23 @@ class Scans {
  public:
   struct Entry {
     KeyframeId keyframe;
-    PosedCloud scan;  ///< its pose is that in the keyframe
+    PosedCloud scan;        ///< its pose is that in the keyframe
+    std::int64_t time = 0;  ///< ms
   };
   std::vector<Eigen::Isometry3d> poses;
   std::vector<Entry> all;
+  std::int64_t now = 0;  ///< ms
 
   SemanticOcTree mappedFromScratch(const Variant& variant,
                                    const FilterParameters& filter = {}) const {
     SemanticOcTree map = emptyMap(variant, filter);
-    for (const Entry& e : all)
-      map.insert(e.scan.cloud, poses[e.keyframe] * e.scan.T_map_sensor, optionsOf(variant));
+    std::int64_t time = 0;
+    for (const Entry& e : all) {
+      map.insert(e.scan.cloud, poses[e.keyframe] * e.scan.T_map_sensor, optionsOf(variant),
+                 1e-3 * static_cast<double>(e.time - time));
+      time = e.time;
+    }
+    map.age(1e-3 * static_cast<double>(now - time));
     return map;
   }
   void removeOf(KeyframeId keyframe) {
@@ -128,8 +142,11 @@ class RandomWork {
     options.softLabels = m_variant.softLabels;
     options.sensorSpread = 1;
     PosedCloud scan = randomScan(m_random, options);
-    m_map.insert(scan.cloud, scan.T_map_sensor, optionsOf(m_variant));
-    scans.all.push_back({m_present.back(), std::move(scan)});
+    const auto since = m_variant.ages ? static_cast<std::int64_t>(m_random() % 400) : 0;  // ms
+    scans.now += since;
+    m_map.insert(scan.cloud, scan.T_map_sensor, optionsOf(m_variant),
+                 1e-3 * static_cast<double>(since));
+    scans.all.push_back({m_present.back(), std::move(scan), scans.now});
   }
   /** One keyframe far, another a little. */
   void move() {
@@ -177,6 +194,8 @@ TEST_P(CorrectedMap, isWhatMappingFromScratchMakesAfterAnyInsertionsMovesAndRemo
     RandomWork work(seed, variant, *keyframes);
     for (int i = 0; i < 14; ++i) {
       work.step();
+      map.age(0.1);
+      work.scans.now += 100;
       const SemanticOcTree expected = work.scans.mappedFromScratch(variant);
       ASSERT_TRUE(map == expected) << variant.name << ", seed " << seed << ", step " << i;
       EXPECT_EQ(map.size(), expected.size());
@@ -215,7 +234,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Variant{"chargedFrame", false, true, false, 1,
                             AbstractionOptions::Frame::Charged},
                     Variant{"endVoxels", false, true, false, 1, AbstractionOptions::Frame::Free,
-                            InsertionOptions::Rays::EndVoxels}),
+                            InsertionOptions::Rays::EndVoxels},
+                    Variant{"ages", true, true, true, 2, AbstractionOptions::Frame::Free,
+                            InsertionOptions::Rays::All, true},
+                    Variant{"coarse", false, true, false, 1, AbstractionOptions::Frame::Free,
+                            InsertionOptions::Rays::All, true, 0.15, 1.6}),
     [](const auto& variant) { return variant.param.name; });
 
 /** Limits that are never met, labels that never disagree: then sums are all there is. */
@@ -231,7 +254,7 @@ TEST(KeyframeMap, awayFromTheLimitsTheOrderOfScansLeavesNoTrace) {
   Scans forward;
   for (KeyframeId id = 0; id < 6; ++id) {
     forward.poses.push_back(Eigen::Isometry3d::Identity());
-    forward.all.push_back({id, randomScan(random, options)});
+    forward.all.push_back({id, randomScan(random, options), 0});
   }
   Scans backward = forward;
   std::reverse(backward.all.begin(), backward.all.end());
@@ -260,6 +283,28 @@ TEST(KeyframeMap, makesAnewOnlyTilesInWhichAScanSeesSomethingElse) {
   const SemanticOcTree before = map;
   keyframes.remove(0);
   EXPECT_LT(map.size(), before.size());
+}
+
+/** Nothing else changes that would lead the eye there. */
+TEST(KeyframeMap, tellsOfABlockThatIsNotWorthItsPriceAnyMore) {
+  Variant variant{"alone"};
+  variant.blockSize = 1.6;
+  SemanticOcTree map = emptyMap(variant);
+  KeyframeMap keyframes(map);
+  const auto insert = [&](float place, semantic_types::ClassId id) {
+    LabeledCloud cloud;
+    cloud.points = {{place, place, place}};
+    cloud.classes = {id};
+    keyframes.begin(Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.1, 0.1)));
+    keyframes.insert(cloud, Eigen::Isometry3d::Identity());
+  };
+  insert(0.9f, 2);
+  insert(0.5f, 1);
+  Abstraction(map).takeChange();
+  const std::size_t before = Abstraction(map).leaves().size();
+  keyframes.remove(1);
+  EXPECT_LT(Abstraction(map).leaves().size(), before);
+  EXPECT_FALSE(Abstraction(map).takeChange().removed.empty());
 }
 
 TEST(KeyframeMap, refusesWhatIsNotThereAndStaysAsItWas) {

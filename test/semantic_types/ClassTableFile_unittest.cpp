@@ -62,6 +62,32 @@ classes:
   EXPECT_EQ(table.fromRaw(1234), kNoClass);
 }
 
+TEST(ClassTableFile, readsHalfLivesAndWithoutThemNothingIsForgotten) {
+  const TemporaryFolder folder;
+  const ClassTable table = loadClassTable(folder.write("t.yaml", R"(
+free_half_life: 3600
+classes:
+  - {id: 1, name: road, color: [128, 64, 128]}
+  - {id: 2, name: person, color: [220, 20, 60], half_life: 2.5}
+)"));
+  EXPECT_EQ(table.halfLife(kNoClass), 3600);
+  EXPECT_EQ(table.halfLife(1), semantic_types::kForever);
+  EXPECT_EQ(table.halfLife(2), 2.5);
+  EXPECT_TRUE(table.hasHalfLives());
+  EXPECT_FALSE(shipped("synthetic.yaml").hasHalfLives());
+  EXPECT_THROW(table.halfLife(3), std::out_of_range);
+}
+
+TEST(ClassTableFile, theExampleOfHalfLivesHasTheClassesOfTheSyntheticWorlds) {
+  const ClassTable worlds = shipped("synthetic.yaml");
+  ClassTable example = shipped("synthetic_decay.yaml");
+  EXPECT_EQ(example.halfLife(*example.find("person")), 2);
+  EXPECT_FALSE(example == worlds);
+  for (int id = 1; id <= example.size(); ++id)
+    example.setHalfLife(static_cast<semantic_types::ClassId>(id), semantic_types::kForever);
+  EXPECT_TRUE(example == worlds);
+}
+
 TEST(ClassTableFile, whatIsSavedIsReadBackEqual) {
   const TemporaryFolder folder;
   EXPECT_TRUE(rc::check([&] {
@@ -76,6 +102,9 @@ TEST(ClassTableFile, whatIsSavedIsReadBackEqual) {
         *rc::gen::unique<std::vector<std::uint32_t>>(rc::gen::arbitrary<std::uint32_t>());
     for (const auto id : raw) table.fold(id, *rc::gen::inRange(0, size + 1));
     if (*rc::gen::arbitrary<bool>()) table.setUnknownRawId(ClassTable::UnknownRawId::NoClass);
+    for (int id = 0; id <= size; id += *rc::gen::inRange(1, 100))
+      table.setHalfLife(static_cast<semantic_types::ClassId>(id),
+                        *rc::gen::inRange(1, 2000000000) * 1e-3);
     saveClassTable(table, folder / "t.yaml");
     RC_ASSERT(loadClassTable(folder / "t.yaml") == table);
   }));
@@ -86,8 +115,9 @@ TEST(ClassTableFile, errorsNameFileLineAndValue) {
   EXPECT_EQ(errorFor(""), ": expected 'key: value' entries");
   EXPECT_EQ(errorFor("no_class: [0]\n"), ":1: key 'classes' is missing");
   EXPECT_EQ(errorFor("classes: []\n"), ":1: classes: expected a list of 1 to 254 classes");
-  EXPECT_EQ(errorFor(one + "colour: 1\n"),
-            ":3: unknown key 'colour'; known are classes, no_class, unknown_raw_id");
+  EXPECT_EQ(
+      errorFor(one + "colour: 1\n"),
+      ":3: unknown key 'colour'; known are classes, free_half_life, no_class, unknown_raw_id");
   EXPECT_EQ(errorFor(one + "no_class: [0]\nno_class: [1]\n"), ":4: key 'no_class' twice");
   EXPECT_EQ(errorFor(one + "no_class: [-1]\n"), ":3: expected a raw id, found '-1'");
   EXPECT_EQ(errorFor(one + "no_class: 7\n"), ":3: expected a list of raw ids");
@@ -106,7 +136,12 @@ TEST(ClassTableFile, errorsNameFileLineAndValue) {
   EXPECT_EQ(errorFor(one + "  - {id: two, name: b, color: [1, 2, 3]}\n"),
             ":3: expected a class id, found 'two'");
   EXPECT_EQ(errorFor(one + "  - {id: 2, name: b, color: [1, 2, 3], alpha: 1}\n"),
-            ":3: unknown key 'alpha'; known are color, id, name, raw");
+            ":3: unknown key 'alpha'; known are color, half_life, id, name, raw");
+  EXPECT_EQ(errorFor(one + "  - {id: 2, name: b, color: [1, 2, 3], half_life: 0}\n"),
+            ":3: class table: half-life of 'b' = 0.000000 s, expected 0.001 to 1000000000");
+  EXPECT_EQ(errorFor(one + "free_half_life: 1e10\n"),
+            ":3: class table: half-life of free space = 10000000000.000000 s, expected 0.001 to "
+            "1000000000");
 }
 
 TEST(ClassTableFile, aSyntaxErrorOrATruncatedFileIsAnErrorAndNoShorterTable) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <strict_files/ScratchFile.h>
+#include <sys/stat.h>
 
 #include <string>
 
@@ -33,6 +34,22 @@ TEST(ScratchFile, givesBackWhatWasWrittenAndLeavesNothingBehind) {
     EXPECT_EQ(c, first.size() + second.size());
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(ScratchFile, givesBackToTheDiskWhatIsDiscarded) {
+  const TemporaryFolder folder;
+  ScratchFile file(folder.path());
+  const std::string much(1 << 20, 'a');
+  const auto a = file.append(much.data(), much.size());
+  const auto bytesOnDisk = [&] {
+    struct stat status;
+    EXPECT_EQ(stat(fs::directory_iterator(folder.path())->path().c_str(), &status), 0);
+    return 512 * static_cast<std::size_t>(status.st_blocks);
+  };
+  if (bytesOnDisk() < much.size())
+    GTEST_SKIP() << "a file system that stores less than it is given";
+  file.discard(a, much.size());
+  EXPECT_LT(bytesOnDisk(), much.size() / 2);
 }
 
 TEST(ScratchFile, saysWhereItCannotBe) {

@@ -57,10 +57,14 @@ class Sections {
   std::vector<std::string> m_known;
 };
 
-void readMap(Sections& sections, DriveConfig& config) {
+void readMap(Sections& sections, const fs::path& folder, DriveConfig& config) {
   OptionList map, insertion;
   map.add("resolution", config.voxelSize, "m", above(0), "edge of a voxel");
+  std::string halfLives;
+  map.add("half_lives", halfLives, "",
+          "class table (YAML) with half-lives, by which the map forgets");
   sections.read("map", map);
+  if (!halfLives.empty()) config.halfLives = (folder / halfLives).lexically_normal();
   config.insertion.describe(insertion);
   config.filter.describe(insertion);
   sections.read("insertion", insertion);
@@ -122,7 +126,7 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     mrpt::config::CConfigFile ini(file.string());
     ini.discardSavingChanges();
     Sections sections(ini);
-    readMap(sections, config);
+    readMap(sections, file.parent_path(), config);
     readSensors(sections, config.sensors);
     sections.readAll("pose", config.pose);
     sections.readAll("slam", config.slam);

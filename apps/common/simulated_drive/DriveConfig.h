@@ -29,6 +29,8 @@ struct SensorConfig {
 /** Everything that the .ini file says. */
 struct DriveConfig {
   double voxelSize = 0.2;  ///< m
+  std::filesystem::path
+      halfLives;  ///< class table whose half-lives the map has; empty: it keeps its own
   semantic_octree::FilterParameters filter;
   semantic_octree::InsertionOptions insertion;
   SensorConfig sensors;

@@ -156,6 +156,7 @@ void DriveLoop::sense() {
 }
 
 void DriveLoop::insert(const std::vector<Observation>& seen) {
+  m_mapper->age(m_sensedAt < 0 ? 0 : m_time - m_sensedAt);
   semantic_planning::StageTimes times;
   if (m_record.exactPose || !m_config.pose.correct) {
     times = m_mapper->insert(seen, T_map_robot());

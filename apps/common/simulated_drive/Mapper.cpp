@@ -2,6 +2,7 @@
 
 #include <semantic_driving/CompressedObstacles.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_types/ClassTableFile.h>
 #include <synthetic_world/Classes.h>
 
 #include <utility>
@@ -17,7 +18,8 @@ using semantic_octree::SemanticOcTree;
 
 namespace {
 
-SemanticOcTree withAbstraction(SemanticOcTree map, const ClassOrder& order) {
+SemanticOcTree prepared(SemanticOcTree map, const DriveConfig& config, const ClassOrder& order) {
+  if (!config.halfLives.empty()) map.setHalfLives(semantic_types::loadClassTable(config.halfLives));
   map.setAbstraction(semantic_planning::abstractionFor(order));
   return map;
 }
@@ -33,7 +35,7 @@ Mapper::Mapper(const DriveConfig& config, const ClassOrder& order)
 
 Mapper::Mapper(const DriveConfig& config, const ClassOrder& order, SemanticOcTree map)
     : m_config(config),
-      m_map(withAbstraction(std::move(map), order)),
+      m_map(prepared(std::move(map), config, order)),
       m_planner(m_map, order, config.planner) {}
 
 /** The robot begins where it has room: there is ground below its footprint and around it, as far as

@@ -21,6 +21,8 @@ class Mapper {
    * roadmap) */
   semantic_planning::StageTimes insert(const std::vector<Observation>& seen,
                                        const Eigen::Isometry3d& T_map_robot);
+  /** Time passes: what has a half-life is forgotten. */
+  void age(double seconds) { m_map.age(seconds); }
   /** Inserts what begins a keyframe, and each third scan where none begins: what stands in the way
    * may come and go while the robot waits. Moves keyframes when a loop was closed, but not those of
    * a map with which it began.

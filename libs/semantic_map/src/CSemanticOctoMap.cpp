@@ -51,6 +51,7 @@ void CSemanticOctoMap::copyAllButTree(const CSemanticOctoMap& o) {
   m_abstractionOptions = o.m_abstractionOptions;
   m_labeler = o.m_labeler;
   m_lastInsertion = o.m_lastInsertion;
+  m_observationClock = o.m_observationClock;
   m_converter.reset();
   m_likelihoodCache->clear();
 }
@@ -80,7 +81,10 @@ void CSemanticOctoMap::setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> l
 
 void CSemanticOctoMap::auxParticleFilterCleanUp() { m_likelihoodCache->clear(); }
 
-void CSemanticOctoMap::internal_clear() { m_tree.clear(); }
+void CSemanticOctoMap::internal_clear() {
+  m_tree.clear();
+  m_observationClock = ObservationClock();
+}
 
 std::string CSemanticOctoMap::asString() const {
   std::ostringstream text;
@@ -131,7 +135,11 @@ semantic_octree::InsertionReport CSemanticOctoMap::insertScan(const LabeledScan&
                                 std::to_string(scan.counts.invalid) + " without)");
   const auto T_map_sensor = sensorPose(T_map_robot, scan.T_robot_sensor);
   useFilterOfOptions();
-  return m_tree.insert(scan.cloud, T_map_sensor, insertionOptions.scan);
+  m_observationClock.setMaxGap(insertionOptions.maxGap);
+  const auto report = m_tree.insert(scan.cloud, T_map_sensor, insertionOptions.scan,
+                                    m_observationClock.secondsUntil(scan.timestamp));
+  m_observationClock.note(scan.timestamp);
+  return report;
 }
 
 void CSemanticOctoMap::useFilterOfOptions() {

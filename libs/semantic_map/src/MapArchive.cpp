@@ -71,6 +71,7 @@ void CSemanticOctoMap::serializeFrom(CArchive& in, uint8_t version) {
   likelihoodOptions = likelihood;
   renderingOptions = rendering;
   m_lastInsertion = {};
+  m_observationClock = ObservationClock();
 }
 
 }  // namespace semantic_map

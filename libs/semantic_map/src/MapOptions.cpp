@@ -115,6 +115,9 @@ void TCreationOptions::validate() const { checkOptions(*this, "TCreationOptions"
 
 void TInsertionOptions::describe(OptionList& list) {
   scan.describe(list);
+  list.add("max_gap", maxGap, "s", atLeast(0),
+           "time between observations by which classes with a half-life are forgotten; a longer "
+           "silence is another recording and not counted; 0: all of it is");
   conversion.describe(list);
   filter.describe(list);
 }

@@ -14,6 +14,7 @@ struct KeyframeMap::Content {
     KeyframeId keyframe;
     Eigen::Isometry3d T_keyframe_sensor;
     InsertionOptions options;
+    std::int64_t time;  ///< of the map's clock
     ScanStorage::Piece cloud, voxels;
   };
   struct Keyframe {
@@ -91,7 +92,9 @@ class KeyframeMap::Correction {
     m_report.tiles = m_tiles.size();
     if (m_tiles.empty()) return accept();
     SemanticOcTree anew = TreeBuilder::emptyLike(m.map);
+    anew.m_clock = 0;
     for (std::size_t i = 0; i < m.scans.size(); ++i) merge(i, anew);
+    anew.ageUntil(m.map.m_clock);
     m.map.replace(m_tiles, anew);
     return accept();
   }
@@ -110,6 +113,7 @@ class KeyframeMap::Correction {
     const PackedScan packed(m.storage.load(m_voxels[i] ? *m_voxels[i] : s.voxels));
     m.inBuffers([&](Scan& scan) {
       scan.unpack(packed, m_tiles, m.map.numClasses(), s.options);
+      anew.ageUntil(s.time);
       anew.merge(scan, s.options.threads);
       m_report.scansMerged += scan.hasVoxels();
     });
@@ -141,18 +145,20 @@ KeyframeId KeyframeMap::begin(const Eigen::Isometry3d& T_map_keyframe) {
 
 InsertionReport KeyframeMap::insert(const LabeledCloud& cloud,
                                     const Eigen::Isometry3d& T_keyframe_sensor,
-                                    const InsertionOptions& options) {
+                                    const InsertionOptions& options, double secondsSince) {
   options.validate();
+  const std::int64_t time = m->map.timeIn(secondsSince);
   if (m->keyframes.empty() || m->keyframes.back().isRemoved)
     throw std::logic_error("keyframes: a scan is inserted before a keyframe has begun");
   const KeyframeId id = m->keyframes.size() - 1;
   m->scans.reserve(m->scans.size() + 1);
-  Content::StoredScan stored{id, T_keyframe_sensor, options, {}, {}};
+  Content::StoredScan stored{id, T_keyframe_sensor, options, time, {}, {}};
   InsertionReport report;
   m->inBuffers([&](Scan& scan) {
     m->trace(stored, cloud, m->keyframes[id].T_map_keyframe, scan);
     stored.cloud = m->storage.keep(packCloud(cloud));
     stored.voxels = m->storage.keep(scan.pack().bytes());
+    m->map.ageUntil(time);
     m->map.merge(scan, options.threads);
     report = scan.report();
   });

@@ -65,6 +65,9 @@ class MapFolder::Tiles {
       : m_map(map), m_folder(std::move(folder)), m_access(access) {
     options.validate();
     if (!map.empty()) throw std::invalid_argument("a map for a folder of tiles has to be empty");
+    if (map.classes().hasHalfLives())
+      throw std::invalid_argument(
+          "a map of classes with half-lives cannot be in a folder of tiles");
     map.checkNotInTiles();
     TileIndex index = open(options);
     constexpr double kAll = 1e18;  // bytes

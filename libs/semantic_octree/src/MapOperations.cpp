@@ -100,8 +100,7 @@ SemanticOcTree coarsened(const SemanticOcTree& map, int levels) {
   if (levels < 0 || levels > 8)
     throw std::invalid_argument("coarsening: levels = " + std::to_string(levels) +
                                 ", expected 0 to 8");
-  SemanticOcTree coarse(map.getResolution() * (1 << levels), map.classes(), map.filterParameters());
-  coarse.setPruning(map.pruning());
+  SemanticOcTree coarse = TreeBuilder::emptyLike(map, map.getResolution() * (1 << levels));
   TreeBuilder::fill(coarse, CoarseCursor(map, levels));
   return coarse;
 }

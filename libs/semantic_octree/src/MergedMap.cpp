@@ -120,7 +120,10 @@ void checkAlike(const std::vector<const SemanticOcTree*>& maps) {
 
 SemanticOcTree merged(const std::vector<const SemanticOcTree*>& maps, Limits limits) {
   checkAlike(maps);
-  SemanticOcTree sum = TreeBuilder::emptyLike(*maps.front());
+  const auto isEarlier = [](const auto* a, const auto* b) { return a->clock() < b->clock(); };
+  SemanticOcTree sum =
+      TreeBuilder::emptyLike(**std::max_element(maps.begin(), maps.end(), isEarlier));
+  sum.setPruning(maps.front()->pruning());
   const Sum context{maps, {sum.numClasses(), sum.filterParameters()}, limits};
   std::vector<Node> roots;
   for (const SemanticOcTree* map : maps) roots.push_back(map->root());

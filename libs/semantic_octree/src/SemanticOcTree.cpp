@@ -1,9 +1,11 @@
 #include <semantic_octree/SemanticOcTree.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "CompressedTree.h"
+#include "Decay.h"
 #include "NodeStore.h"
 #include "Scan.h"
 #include "ScanMerger.h"
@@ -43,6 +45,7 @@ SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
     : SemanticOcTree(o.m_resolution, o.m_classes, o.m_parameters) {
   o.checkNotInTiles();
   m_pruning = o.m_pruning;
+  m_clock = o.m_clock;
   if (o.hasAbstraction()) {
     m_gTree = std::make_unique<GTree>(o.m_gTree->options(), m_filter, m_resolution);
     m_leafChanges = std::make_unique<LeafChanges>();
@@ -67,6 +70,7 @@ void SemanticOcTree::swap(SemanticOcTree& o) {
   std::swap(m_parameters, o.m_parameters);
   std::swap(m_filter, o.m_filter);
   std::swap(m_pruning, o.m_pruning);
+  std::swap(m_clock, o.m_clock);
   std::swap(m_store, o.m_store);
   std::swap(m_gTree, o.m_gTree);
   std::swap(m_leafChanges, o.m_leafChanges);
@@ -76,7 +80,7 @@ void SemanticOcTree::swap(SemanticOcTree& o) {
 
 bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
   if (m_resolution != o.m_resolution || m_classes != o.m_classes ||
-      !(m_parameters == o.m_parameters) || m_pruning != o.m_pruning)
+      !(m_parameters == o.m_parameters) || m_pruning != o.m_pruning || m_clock != o.m_clock)
     return false;
   const bool sameRows = m_gTree && o.m_gTree && m_gTree->stateBytes() == o.m_gTree->stateBytes();
   return TreeComparison(store(), o.store(), sameRows).same(store().root(), o.store().root());
@@ -84,12 +88,14 @@ bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
 
 void SemanticOcTree::checkNotInTiles() const {
   if (m_store && m_store->tiles())
-    throw std::logic_error("a map in a folder of tiles cannot be copied, cleared or corrected");
+    throw std::logic_error(
+        "a map in a folder of tiles cannot be copied, cleared, corrected or have half-lives");
 }
 
 void SemanticOcTree::clear() {
   checkNotInTiles();
   m_store = std::make_unique<NodeStore>(m_gTree ? m_gTree->stateBytes() : 0);
+  m_clock = 0;
   if (m_touched) m_touched->take();
 }
 
@@ -168,6 +174,41 @@ void SemanticOcTree::merge(const Scan& scan, int threads) {
   change([&](const MergeTarget& target) { mergeScan(target, scan, threads); });
 }
 
+std::int64_t SemanticOcTree::timeIn(double seconds) const {
+  if (!(seconds >= 0 && seconds <= 1e9))
+    throw std::invalid_argument("a map ages by 0 to 1000000000 s, not by " +
+                                std::to_string(seconds) + " s");
+  if (!m_classes.hasHalfLives()) return m_clock;
+  const std::int64_t time = m_clock + std::llround(seconds * 1e9);
+  if (time > kOldestMap) throw std::out_of_range("a map ages by no more than 200 years in all");
+  return time;
+}
+
+void SemanticOcTree::age(double seconds) {
+  store();
+  ageUntil(timeIn(seconds));
+}
+
+void SemanticOcTree::ageUntil(std::int64_t time) {
+  if (time == m_clock) return;
+  std::vector<int> steps;
+  for (int id = 0; id <= numClasses(); ++id)
+    steps.push_back(decaySteps(m_classes.halfLife(static_cast<ClassId>(id)), m_clock, time));
+  if (!empty() && std::any_of(steps.begin(), steps.end(), [](int n) { return n > 0; }))
+    change([&](const MergeTarget& target) { decay(target, steps); });
+  m_clock = time;
+}
+
+void SemanticOcTree::setHalfLives(const ClassTable& table) {
+  checkNotInTiles();
+  for (int i = 1; i <= numClasses(); ++i) {
+    const auto id = static_cast<ClassId>(i);
+    if (const auto same = table.find(m_classes.name(id)))
+      m_classes.setHalfLife(id, table.halfLife(*same));
+  }
+  m_classes.setHalfLife(kNoClass, table.halfLife(kNoClass));
+}
+
 void SemanticOcTree::replace(const std::vector<std::uint64_t>& tiles,
                              const SemanticOcTree& source) {
   checkNotInTiles();
@@ -176,12 +217,14 @@ void SemanticOcTree::replace(const std::vector<std::uint64_t>& tiles,
 
 InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
                                        const Eigen::Isometry3d& T_map_sensor,
-                                       const InsertionOptions& options) {
+                                       const InsertionOptions& options, double secondsSince) {
   options.validate();
   store();
+  const std::int64_t time = timeIn(secondsSince);
   if (!m_scan) m_scan = std::make_unique<Scan>();
   try {
     m_scan->set(cloud, T_map_sensor, m_resolution, numClasses(), options);
+    ageUntil(time);
     merge(*m_scan, options.threads);
   } catch (...) {
     m_scan = nullptr;  // half-filled buffers must not leak into the next scan

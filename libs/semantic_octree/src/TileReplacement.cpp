@@ -50,9 +50,10 @@ class TileReplacement {
     return true;
   }
 
-  /** New nodes' bookkeeping is empty before, so that any shape of theirs is a change. */
+  /** A node that was replaced knows nothing of what was told of the one before: it counts as
+   * reshaped. */
   void recompute(Slot& inner, const Cell& cell) {
-    if (m_gTree) m_gTree->recompute(m_store, inner, cell, false);
+    if (m_gTree) m_gTree->recompute(m_store, inner, cell, true);
   }
 
   /** A tile, or a node below. What is alike stays where it is. */

@@ -18,10 +18,15 @@ class TreeBuilder {
   static void fill(SemanticOcTree& map, const Cursor& root, Merge merge = Merge::AsTheMapDoes) {
     TreeBuilder(map, merge).build(map.store().root(), root, 0);
   }
-  /** An empty map of the same kind. */
+  /** An empty map of the same kind, and of the same time. */
   static SemanticOcTree emptyLike(const SemanticOcTree& map) {
-    SemanticOcTree empty(map.getResolution(), map.classes(), map.filterParameters());
+    return emptyLike(map, map.getResolution());
+  }
+  /** \param resolution its voxels' edge, m */
+  static SemanticOcTree emptyLike(const SemanticOcTree& map, double resolution) {
+    SemanticOcTree empty(resolution, map.classes(), map.filterParameters());
     empty.setPruning(map.pruning());
+    empty.m_clock = map.m_clock;
     return empty;
   }
 

@@ -15,9 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 using strict_files::StagedFile;
 
-void writeBeginning(std::ostream& out) {
+void writeBeginning(std::ostream& out, const SemanticOcTree& tree) {
+  const std::uint32_t version = versionFor(tree);
   out.write(kMagic.data(), kMagic.size());
-  out.write(reinterpret_cast<const char*>(&kVersion), sizeof(kVersion));
+  out.write(reinterpret_cast<const char*>(&version), sizeof(version));
 }
 
 /** What an error of a file says, without the path that it begins with. */
@@ -35,7 +36,7 @@ std::uint32_t readBeginning(std::istream& in) {
   readBytes(in, reinterpret_cast<char*>(&version), sizeof(version));
   if (version < kOldestVersion || version > kVersion)
     throw std::runtime_error("version " + std::to_string(version) + " of the format, expected " +
-                             std::to_string(kOldestVersion) + " or " + std::to_string(kVersion));
+                             std::to_string(kOldestVersion) + " to " + std::to_string(kVersion));
   return version;
 }
 
@@ -93,7 +94,7 @@ auto load(const std::string& path, const F& read) {
 }  // namespace
 
 void writeTree(std::ostream& out, const SemanticOcTree& tree) {
-  writeBeginning(out);
+  writeBeginning(out, tree);
   TreeWriter(out, tree).write();
 }
 
@@ -113,7 +114,7 @@ SemanticOcTree loadTree(const std::string& path) {
 void saveTile(const SemanticOcTree& tree, const Slot& octant, const Cell& cell, std::uint64_t nodes,
               const std::string& path) {
   save(path, StagedFile::Disk::Later, [&](std::ostream& out) {
-    writeBeginning(out);
+    writeBeginning(out, tree);
     TreeWriter(out, tree).writeTile(octant, cell, nodes);
   });
 }

@@ -13,7 +13,10 @@ namespace semantic_octree {
  *   resolution (double), pruning (1 byte), filter (increments 1 byte, six doubles),
  *   classes: number (1 byte), each name (2 bytes length, characters), r, g, b,
  *            policy for unknown raw ids (1 byte), folds (4 bytes number; raw id 4 bytes, class 1
- * byte), number of nodes (8 bytes; 0: the map is empty), the root's NodeKind (1 byte) and value,
+ * byte),
+ *   half-lives of free space and of each class (doubles, seconds; 0: none), the map's clock (8
+ *   bytes, nanoseconds),
+ * number of nodes (8 bytes; 0: the map is empty), the root's NodeKind (1 byte) and value,
  * then from each inner node on, depth first: two bits of NodeKind per child (2 bytes), the leaves'
  * values, the inner children. The value of a leaf is its log-odds; with a class record, followed by
  * the number of named classes (1 byte), the rest's log-odds, and id (1 byte) and log-odds of each.
@@ -23,9 +26,14 @@ namespace semantic_octree {
  * byte each); of each known octant that is no leaf, which voxels are known, which have a record (1
  * byte each); all log-odds, then all records, in the order of the voxels.
  *
- * Version 1 had log-odds of 4 bytes (float), and no blocks. It is read, too. */
+ * Version 1 had log-odds of 4 bytes (float), and no blocks; version 2 has neither half-lives nor a
+ * clock. Both are read, too, and maps without half-lives are written as version 2. */
 constexpr std::array<char, 8> kMagic{'S', 'E', 'M', 'O', 'C', 'T', 'R', 'E'};
-constexpr std::uint32_t kVersion = 2, kOldestVersion = 1;
+constexpr std::uint32_t kVersion = 3, kVersionWithoutTime = 2, kOldestVersion = 1;
+
+inline std::uint32_t versionFor(const SemanticOcTree& tree) {
+  return tree.classes().hasHalfLives() ? kVersion : kVersionWithoutTime;
+}
 
 enum class NodeKind : std::uint8_t { None, Leaf, LeafWithRecord, Inner };
 
@@ -42,6 +50,7 @@ class TreeWriter {
   void putHeader();
   void putParameters(const FilterParameters& p);
   void putClasses(const ClassTable& classes);
+  void putTime();
   void putSlot(const Slot& slot);
   void putLeaf(const Slot& leaf);
   void putRecord(const ClassRecord& record);
@@ -72,6 +81,7 @@ class TreeReader {
   void fill(Octant& octant, int depth);
   FilterParameters getParameters();
   ClassTable getClasses();
+  void getTime(SemanticOcTree& tree);
   void getNodes(SemanticOcTree& tree, std::uint64_t expectedNodes);
   void getNode(Slot& slot, NodeKind kind, int depth);
   void getChildren(Slot& inner, int depth);

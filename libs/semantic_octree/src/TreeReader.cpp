@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "Decay.h"
 #include "NodeStore.h"
 #include "TreeBuilder.h"
 
@@ -19,6 +20,7 @@ SemanticOcTree TreeReader::getHeader() {
   const FilterParameters parameters = getParameters();
   SemanticOcTree tree(resolution, getClasses(), parameters);
   tree.setPruning(pruning);
+  if (m_version > kVersionWithoutTime) getTime(tree);
   return tree;
 }
 
@@ -89,6 +91,15 @@ ClassTable TreeReader::getClasses() {
     classes.fold(rawId, m_in.get<ClassId>());
   }
   return classes;
+}
+
+void TreeReader::getTime(SemanticOcTree& tree) {
+  for (int id = 0; id <= tree.numClasses(); ++id)
+    if (const auto halfLife = m_in.get<double>(); halfLife != 0)
+      tree.m_classes.setHalfLife(static_cast<ClassId>(id), halfLife);
+  tree.m_clock = m_in.get<std::int64_t>();
+  if (!tree.m_classes.hasHalfLives() || tree.m_clock < 0 || tree.m_clock > kOldestMap)
+    throw std::runtime_error("altered: a clock that cannot be");
 }
 
 void TreeReader::getNodes(SemanticOcTree& tree, std::uint64_t expectedNodes) {

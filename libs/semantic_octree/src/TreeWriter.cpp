@@ -13,6 +13,7 @@ void TreeWriter::putHeader() {
   m_out.put(m_tree.pruning());
   putParameters(m_tree.filterParameters());
   putClasses(m_tree.classes());
+  if (m_tree.classes().hasHalfLives()) putTime();
 }
 
 void TreeWriter::writeTile(const Slot& octant, const Cell& cell, std::uint64_t nodes) {
@@ -56,6 +57,14 @@ void TreeWriter::putClasses(const ClassTable& classes) {
     m_out.put(rawId);
     m_out.put(id);
   }
+}
+
+void TreeWriter::putTime() {
+  for (int id = 0; id <= m_tree.numClasses(); ++id) {
+    const double halfLife = m_tree.classes().halfLife(static_cast<ClassId>(id));
+    m_out.put(halfLife == semantic_types::kForever ? 0.0 : halfLife);
+  }
+  m_out.put(m_tree.m_clock);
 }
 
 NodeKind TreeWriter::kindOf(const Slot& slot) {

@@ -41,6 +41,21 @@ std::optional<ClassId> ClassTable::find(Color color) const {
   return std::nullopt;
 }
 
+void ClassTable::setHalfLife(ClassId id, double seconds) {
+  const Entry& known = entry(id);
+  if (seconds != kForever && !(seconds >= 0.001 && seconds <= 1e9))
+    throw std::invalid_argument("class table: half-life of " +
+                                (id == kNoClass ? "free space" : "'" + known.name + "'") + " = " +
+                                std::to_string(seconds) + " s, expected 0.001 to 1000000000");
+  (id == kNoClass ? m_freeHalfLife : m_entries[id - 1].halfLife) = seconds;
+}
+
+bool ClassTable::hasHalfLives() const {
+  return m_freeHalfLife != kForever ||
+         std::any_of(m_entries.begin(), m_entries.end(),
+                     [](const Entry& e) { return e.halfLife != kForever; });
+}
+
 void ClassTable::fold(std::uint32_t rawId, ClassId id) {
   if (id != kNoClass && !contains(id))
     throw std::invalid_argument("class table: raw id " + std::to_string(rawId) +
@@ -63,11 +78,12 @@ ClassId ClassTable::fromRaw(std::uint32_t rawId) const {
 
 bool ClassTable::operator==(const ClassTable& o) const {
   const auto sameEntry = [](const Entry& a, const Entry& b) {
-    return a.name == b.name && a.color == b.color;
+    return a.name == b.name && a.color == b.color && a.halfLife == b.halfLife;
   };
   return m_entries.size() == o.m_entries.size() &&
          std::equal(m_entries.begin(), m_entries.end(), o.m_entries.begin(), sameEntry) &&
-         m_folds == o.m_folds && m_unknownRawId == o.m_unknownRawId;
+         m_freeHalfLife == o.m_freeHalfLife && m_folds == o.m_folds &&
+         m_unknownRawId == o.m_unknownRawId;
 }
 
 }  // namespace semantic_types

@@ -16,9 +16,10 @@ class Reader {
 
   ClassTable read() {
     const YAML::Node& root = m_yaml.root();
-    m_yaml.checkKeys(root, {"unknown_raw_id", "no_class", "classes"});
+    m_yaml.checkKeys(root, {"unknown_raw_id", "no_class", "free_half_life", "classes"});
     for (const auto& entry : inOrderOfId(m_yaml.required(root, "classes"))) addClass(entry);
     foldAll(root["no_class"], kNoClass);
+    setHalfLife(root["free_half_life"], kNoClass);
     m_table.setUnknownRawId(unknownRawId(root["unknown_raw_id"]));
     return m_table;
   }
@@ -33,7 +34,7 @@ class Reader {
     std::vector<YAML::Node> ordered(count);
     std::vector<bool> seen(count, false);
     for (const auto& entry : classes) {
-      m_yaml.checkKeys(entry, {"id", "name", "color", "raw"});
+      m_yaml.checkKeys(entry, {"id", "name", "color", "half_life", "raw"});
       const int id = m_yaml.value<int>(m_yaml.required(entry, "id"), "a class id");
       if (id < 1 || id > count)
         m_yaml.fail(entry, "class id " + std::to_string(id) + ": the ids of " +
@@ -50,7 +51,17 @@ class Reader {
     const auto name = m_yaml.value<std::string>(m_yaml.required(entry, "name"), "the class's name");
     const Color rgb = color(m_yaml.required(entry, "color"));
     const ClassId id = located(entry, [&] { return m_table.add(name, rgb); });
+    setHalfLife(entry["half_life"], id);
     foldAll(entry["raw"], id);
+  }
+
+  void setHalfLife(const YAML::Node& node, ClassId id) {
+    if (!node) return;
+    const double seconds = m_yaml.number(node, "half-life in seconds");
+    located(node, [&] {
+      m_table.setHalfLife(id, seconds);
+      return id;
+    });
   }
 
   Color color(const YAML::Node& node) const {
@@ -113,14 +124,20 @@ void emitRawIds(YAML::Emitter& out, const char* key, const std::vector<std::uint
   if (!rawIds.empty()) out << YAML::Key << key << YAML::Value << YAML::Flow << rawIds;
 }
 
+void emitHalfLife(YAML::Emitter& out, const char* key, double seconds) {
+  if (seconds != kForever) out << YAML::Key << key << YAML::Value << seconds;
+}
+
 void emit(YAML::Emitter& out, const ClassTable& table) {
   const bool error = table.unknownRawId() == ClassTable::UnknownRawId::Error;
   out << YAML::BeginMap << YAML::Key << "unknown_raw_id" << (error ? "error" : "no_class");
   emitRawIds(out, "no_class", rawIdsOf(table, kNoClass));
+  emitHalfLife(out, "free_half_life", table.halfLife(kNoClass));
   out << YAML::Key << "classes" << YAML::BeginSeq;
   for (int id = 1; id <= table.size(); ++id) {
     out << YAML::Flow << YAML::BeginMap << YAML::Key << "id" << id << YAML::Key << "name"
         << YAML::DoubleQuoted << table.name(id) << YAML::Key << "color" << table.color(id);
+    emitHalfLife(out, "half_life", table.halfLife(static_cast<ClassId>(id)));
     emitRawIds(out, "raw", rawIdsOf(table, id));
     out << YAML::EndMap;
   }

@@ -6,6 +6,7 @@
 #include <mrpt/system/COutputLogger.h>
 #include <semantic_map/MapOptions.h>
 #include <semantic_map/MrptVersion.h>
+#include <semantic_map/ObservationClock.h>
 #include <semantic_octree/Abstraction.h>
 #include <semantic_octree/SemanticOcTree.h>
 
@@ -102,8 +103,9 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   const InsertionResult& lastInsertion() const { return m_lastInsertion; }
   mrpt::system::COutputLogger& logger() { return m_logger; }
 
-  /** Inserts a scan that was converted already; fires no event.
-   * \throw std::exception the reason why it is refused; the map is then as it was. */
+  /** Inserts a scan that was converted already; fires no event. The map ages first, by the time
+   * since the scan before (see TInsertionOptions::maxGap); a map that was loaded goes on where it
+   * stopped. \throw std::exception the reason why it is refused; the map is then as it was. */
   semantic_octree::InsertionReport insertScan(const labeled_cloud::LabeledScan& scan,
                                               const mrpt::poses::CPose3D& T_map_robot);
 
@@ -179,6 +181,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   TAbstractionOptions m_abstractionOptions;
   std::shared_ptr<labeled_cloud::ImageLabeler> m_labeler;
   InsertionResult m_lastInsertion;
+  ObservationClock m_observationClock;
   mutable mrpt::system::COutputLogger m_logger{"CSemanticOctoMap"};
   std::unique_ptr<CachedConverter> m_converter;
   std::unique_ptr<LikelihoodCache> m_likelihoodCache;

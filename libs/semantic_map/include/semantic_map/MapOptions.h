@@ -52,6 +52,8 @@ struct TCreationOptions : public TNamedOptions<TCreationOptions> {
 /** How observations become part of the map: section `[..._insertOpts]`. */
 struct TInsertionOptions : public TNamedOptions<TInsertionOptions> {
   semantic_octree::InsertionOptions scan;
+  /** See ObservationClock, seconds. */
+  double maxGap = 60;
   labeled_cloud::ScanConverterOptions conversion;
   /** They can change only while the map is empty; otherwise it refuses observations until they are
    * again its own. */

@@ -29,14 +29,16 @@ struct CorrectionReport {
  * that keyframes can be moved, as a closed loop asks for, and removed.
  *
  * After any sequence of insertions, moves and removals the map is, bit for bit, what insertions of
- * the scans that are left make of an empty map, in their order and at their present poses: nodes,
+ * the scans that are left make of an empty map, in their order, at their present poses and at their
+ * times of its clock (see SemanticOcTree::age(), which may be called at any time): nodes,
  * class records and G-values, also where log-odds are at their limits or more than three classes
  * were seen. What a map tells of its changes (takeTouchedTiles(), Abstraction::takeChange()) covers
  * corrections as it does insertions.
  *
- * How (doc/how-it-works/corrected-maps.md): of each scan its points are kept, and which voxels it saw how, packed tile by tile. A
- * correction follows the beams of the scans that move, and finds the tiles in which one of them now
- * sees something else. Only these tiles are made anew, from what all scans saw in them. */
+ * How (doc/how-it-works/corrected-maps.md): of each scan its points are kept, and which voxels it
+ * saw how, packed tile by tile. A correction follows the beams of the scans that move, and finds
+ * the tiles in which one of them now sees something else. Only these tiles are made anew, from what
+ * all scans saw in them. */
 class KeyframeMap {
  public:
   /** Scans are kept in memory.
@@ -56,7 +58,7 @@ class KeyframeMap {
    * \throw std::logic_error there is no keyframe, or the last one was removed
    * \throw std::runtime_error the folder's disk is full; the map is as it was. */
   InsertionReport insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_keyframe_sensor,
-                         const InsertionOptions& options = {});
+                         const InsertionOptions& options = {}, double secondsSince = 0);
 
   /** Gives keyframes other poses, all at once: tiles that several of them see are made anew once.
    * Of several poses of a keyframe the last one counts. If it fails, the map is as it was, unless

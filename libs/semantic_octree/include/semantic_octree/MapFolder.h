@@ -33,7 +33,8 @@ struct MapFolderOptions {
  *   first (iterators, files, sums, the abstraction's measures and compressedMap()) can do so;
  *   Abstraction::leaves() tells cubes, but its nodes may be gone.
  * - Reading is changing: not from two threads, and it may throw std::runtime_error naming a file.
- * - It cannot be copied, cleared, or corrected (KeyframeMap), and has to stay where it is.
+ * - It cannot be copied, cleared, corrected (KeyframeMap), or have half-lives (ClassTable), and has
+ *   to stay where it is.
  * - If setAbstraction() cannot read a tile, the map keeps no abstraction. If that happens to what
  *   Abstraction changes (setWeights() and the like), setAbstraction() has to be called anew.
  *
@@ -51,7 +52,7 @@ class MapFolder {
 
   /** Makes a map what the folder says. For writing, the folder may be new.
    * \param map empty, like that of the folder; must outlive this
-   * \throw std::invalid_argument the map is not empty, or bad options
+   * \throw std::invalid_argument the map is not empty, has half-lives, or bad options
    * \throw std::runtime_error naming the folder or file: it cannot be read or written, is of a map
    * with another resolution, other classes or parameters, or another process writes into it. */
   MapFolder(SemanticOcTree& map, const std::filesystem::path& folder, Access access,

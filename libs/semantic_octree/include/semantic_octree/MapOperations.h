@@ -17,6 +17,9 @@ enum class Limits {
 /** Adds what maps of one frame know, as if each had been made of scans that the others have not
  * seen: log-odds h_k - prior are summed voxel by voxel.
  *
+ * Maps that age (SemanticOcTree::age()) are added as they are now; the sum's clock is the latest of
+ * theirs.
+ *
  * The order of the maps leaves no trace, not even in the last bit. Neither does grouping, as long
  * as partial sums are made with Limits::Keep, no voxel has more than three named classes, and no
  * sum leaves the range of log-odds, 31.99 on either side (four maps of 24 classes that are all as

@@ -165,14 +165,29 @@ class SemanticOcTree {
   /** Inserts a scan: each voxel is updated at most once. Voxels in which returns end are hit (see
    * ClassFilter::hit() for their labels), voxels that beams cross are free unless hit.
    * \param cloud points in the sensor's frame
+   * \param secondsSince by which the map ages first, see age()
    * \throw std::out_of_range the sensor is outside the map
    * \throw std::invalid_argument vectors of different lengths, or a class that is not in the table
    * \throw std::bad_alloc no memory; look at isBroken(). */
   InsertionReport insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
-                         const InsertionOptions& options = {});
+                         const InsertionOptions& options = {}, double secondsSince = 0);
+  /** Time passes, and what has a half-life (see ClassTable) is forgotten: the log-odds of a voxel's
+   * occupancy and the differences between its classes' log-odds halve within the half-life of its
+   * likeliest class, in eight steps; with less than 0.1 left of its occupancy, it is unknown
+   * (doc/how-it-works/decay.md). Many short times do what a long one does, to the last bit. Without
+   * half-lives it does nothing. What takeTouchedTiles() and Abstraction tell follows.
+   * \throw std::invalid_argument not 0 to 1e9 seconds \throw std::out_of_range more than 200 years
+   * in all \throw std::bad_alloc no memory; look at isBroken(). */
+  void age(double seconds);
+  /** Seconds by which it has aged; files keep it. */
+  double clock() const { return static_cast<double>(m_clock) * 1e-9; }
+  /** Classes take the half-lives that a table has for their names; free space, too. Classes that it
+   * does not have keep theirs. */
+  void setHalfLives(const ClassTable& table);
   /** Memory ran out during an insertion. */
   bool isBroken() const { return m_store == nullptr; }
-  /** Removes all nodes. Tiles that were touched before are not reported any more. */
+  /** Removes all nodes; the clock begins anew. Tiles that were touched before are not reported any
+   * more. */
   void clear();
   /** Lowest keys of the tiles of 8 x 8 x 8 voxels in which insert() changed something since the
    * last call, sorted; keys are multiples of 8. The first call reports all tiles of the map that
@@ -208,6 +223,10 @@ class SemanticOcTree {
   template <typename F>
   void change(const F& f);
   void merge(const Scan& scan, int threads);
+  /** \param time of the map's clock, ns; not before now */
+  void ageUntil(std::int64_t time);
+  /** What the clock will say after some seconds, ns. \throw see age(). */
+  std::int64_t timeIn(double seconds) const;
   /** Makes tiles (see TileCodes) what they are in another map. */
   void replace(const std::vector<std::uint64_t>& tiles, const SemanticOcTree& source);
   double m_resolution;
@@ -215,6 +234,7 @@ class SemanticOcTree {
   FilterParameters m_parameters;
   ClassFilter<float> m_filter;
   bool m_pruning = true;
+  std::int64_t m_clock = 0;            ///< ns; stands still while nothing has a half-life
   std::unique_ptr<NodeStore> m_store;  ///< null: the map is broken
   std::unique_ptr<GTree> m_gTree;      ///< null: no abstraction is kept
   std::unique_ptr<LeafChanges> m_leafChanges;

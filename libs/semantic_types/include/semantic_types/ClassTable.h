@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +13,8 @@ namespace semantic_types {
 using ClassId = std::uint8_t;
 constexpr ClassId kNoClass = 0;
 constexpr int kMaxClasses = 254;
+/** Half-life of what a map does not forget, seconds. */
+constexpr double kForever = std::numeric_limits<double>::infinity();
 
 struct Color {
   std::uint8_t r = 0, g = 0, b = 0;
@@ -27,6 +30,7 @@ class ClassTable {
   struct Entry {
     std::string name;
     Color color;
+    double halfLife = kForever;
   };
   enum class UnknownRawId { Error, NoClass };
 
@@ -43,6 +47,15 @@ class ClassTable {
    * \throw std::out_of_range id is above K. */
   const std::string& name(ClassId id) const { return entry(id).name; }
   const Color& color(ClassId id) const { return entry(id).color; }
+
+  /** Seconds after which a map that sees nothing more of a class is half as sure of it; kForever
+   * unless it was set. Of kNoClass: of free space. \throw std::out_of_range id is above K. */
+  double halfLife(ClassId id) const { return id == kNoClass ? m_freeHalfLife : entry(id).halfLife; }
+  /** \throw std::out_of_range id is above K \throw std::invalid_argument neither kForever nor
+   * 0.001 to 1e9 seconds. */
+  void setHalfLife(ClassId id, double seconds);
+  /** Whether anything has a half-life. */
+  bool hasHalfLives() const;
 
   /** Class with this name, if any. */
   std::optional<ClassId> find(const std::string& name) const;
@@ -70,6 +83,7 @@ class ClassTable {
   const Entry& entry(ClassId id) const;
 
   std::vector<Entry> m_entries;
+  double m_freeHalfLife = kForever;
   std::map<std::string, ClassId> m_ids;
   std::map<std::uint32_t, ClassId> m_folds;
   bool m_hasOwnRawIds = true;  ///< no raw id folds to a class
