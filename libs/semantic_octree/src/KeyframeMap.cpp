@@ -90,7 +90,7 @@ class KeyframeMap::Correction {
   CorrectionReport apply() {
     m_report.tiles = m_tiles.size();
     if (m_tiles.empty()) return accept();
-    SemanticOcTree anew = TreeBuilder::emptyLike(m.map);
+    SemanticOcTree anew = emptyLike(m.map);
     for (std::size_t i = 0; i < m.scans.size(); ++i) merge(i, anew);
     m.map.replace(m_tiles, anew);
     return accept();

@@ -120,12 +120,18 @@ void checkAlike(const std::vector<const SemanticOcTree*>& maps) {
 
 SemanticOcTree merged(const std::vector<const SemanticOcTree*>& maps, Limits limits) {
   checkAlike(maps);
-  SemanticOcTree sum = TreeBuilder::emptyLike(*maps.front());
+  SemanticOcTree sum = emptyLike(*maps.front());
+  mergeTo(sum, maps, limits);
+  return sum;
+}
+
+void mergeTo(SemanticOcTree& sum, const std::vector<const SemanticOcTree*>& maps, Limits limits) {
+  checkAlike(maps);
+  TreeBuilder::checkTarget(sum, *maps.front());
   const Sum context{maps, {sum.numClasses(), sum.filterParameters()}, limits};
   std::vector<Node> roots;
   for (const SemanticOcTree* map : maps) roots.push_back(map->root());
   TreeBuilder::fill(sum, MergeCursor(context, std::move(roots)));
-  return sum;
 }
 
 }  // namespace semantic_octree
