@@ -10,6 +10,7 @@
 
 #include "HighestCells.h"
 #include "MapCells.h"
+#include "NodeWalk.h"
 
 namespace map_pictures {
 
@@ -17,19 +18,19 @@ using semantic_octree::SemanticOcTree;
 
 namespace {
 
-template <class Action>
-void forEachOccupiedLeaf(const SemanticOcTree& tree, Action action) {
-  for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf)
-    if (leaf->getLogOdds() > 0)
-      action(*leaf, Eigen::Vector3d(leaf.getX(), leaf.getY(), leaf.getZ()), leaf.getSize());
-}
-
-/** All columns of voxels with something in them. */
+/** All columns of voxels with something in them. What lies within those that are known already is
+ * not looked at. */
 cv::Rect occupiedColumns(const SemanticOcTree& tree) {
   constexpr double kMostColumns = 2e8;
   cv::Rect columns;
-  forEachOccupiedLeaf(tree, [&](const auto&, const Eigen::Vector3d& center, double size) {
-    columns |= columnsUnder(center.head<2>(), size, tree.getResolution());
+  forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
+    if (!(node.getLogOdds() > 0)) return false;
+    const double voxel = tree.getResolution();
+    const cv::Rect own =
+        columnsUnder(cube.center(voxel).head<2>(), voxel * cube.edge(), voxel);
+    if ((columns & own) == own) return false;
+    if (node.isLeaf()) columns |= own;
+    return true;
   });
   if (columns.empty()) throw std::runtime_error("nothing in the map is occupied");
   if (double(columns.width) * columns.height > kMostColumns)
@@ -41,8 +42,14 @@ cv::Rect occupiedColumns(const SemanticOcTree& tree) {
 
 HighestCells highestLeaves(const SemanticOcTree& tree, const cv::Rect& columns, double maxHeight) {
   HighestCells highest(columns, tree.getResolution());
-  forEachOccupiedLeaf(tree, [&](const auto& leaf, const Eigen::Vector3d& center, double size) {
-    if (center.z() <= maxHeight) highest.add(center, size, tree.query(leaf).likeliestClass);
+  forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
+    if (!(node.getLogOdds() > 0)) return false;
+    if (!node.isLeaf()) return true;
+    const double voxel = tree.getResolution();
+    const Eigen::Vector3d center = cube.center(voxel);
+    if (center.z() <= maxHeight)
+      highest.add(center, voxel * cube.edge(), tree.query(node).likeliestClass);
+    return false;
   });
   return highest;
 }
