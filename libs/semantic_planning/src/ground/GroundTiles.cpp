@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "MortonOrder.h"
 #include "Slope.h"
 
 namespace semantic_planning {
@@ -71,7 +72,8 @@ std::vector<Column> GroundTiles::update(const std::vector<Column>& tiles) {
 
 std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles) {
   std::vector<Column> refilled;
-  const auto scanned = changedBy(tiles, [&](Column t) { return scan(t, refilled); });
+  const auto scanned =
+      changedBy(inMortonOrder(tiles), [&](Column t) { return scan(t, refilled); });
   const int reach = reachOfGapFills(m_shape);
   for (const Column& t : tilesWithin(scanned, {reach, reach, reach, 0})) findFills(t, refilled);
   sortOut(refilled);
