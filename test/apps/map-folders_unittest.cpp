@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
+#include <strict_files/TextFile.h>
 
 #include <nlohmann/json.hpp>
 
@@ -123,27 +124,29 @@ TEST_F(MapFolders, areAskedAndPlannedOnAsMapsInOnePiece) {
 }
 
 TEST_F(MapFolders, areCompressedToTheSameTrees) {
-  const std::vector<std::vector<std::string>> targets = {
-      {}, {"--leaves", "5000"}, {"--bytes", "40000"}};
-  for (const auto& target : targets) {
+  const std::string one = path("one.yaml"), five = kSources + "/config/weights/synthetic.yaml";
+  strict_files::writeText(one, "block_size: 3.2\nname: road\nrelevant: {road: 1}\n");
+  const std::vector<std::vector<std::string>> wanted = {
+      {five}, {one, "--leaves", "5000"}, {one, "--bytes", "40000"}};
+  for (const std::vector<std::string>& target : wanted) {
     for (const std::string map : {"plain/map.semantic", "tiles"}) {
       std::vector<std::string> arguments = {
-          path(map), "--weights", kSources + "/config/weights/synthetic.yaml", "-o",
-          path("compressed-" + map.substr(0, 5)), "--memory", "0.1", "-f"};
+          path(map), "-o", path("compressed-" + map.substr(0, 5)), "--memory", "0.1", "-f",
+          "--weights"};
       arguments.insert(arguments.end(), target.begin(), target.end());
       run("semantic-map-compress", arguments);
     }
-    std::size_t solutions = 0, files = 0;
+    std::size_t solutions = 0, folders = 0;
     for (const auto& entry : std::filesystem::directory_iterator(path("compressed-tiles"))) {
       const std::string name = entry.path().filename().string();
-      ++files;
-      if (entry.path().extension() == ".json" || entry.path().extension() == ".csv") continue;
+      folders += entry.is_directory();
+      if (entry.path().extension() != ".semantic" && entry.path().extension() != ".png") continue;
       EXPECT_EQ(folder->read("compressed-tiles/" + name), folder->read("compressed-plain/" + name))
           << name;
       solutions += entry.path().extension() == ".semantic";
     }
-    EXPECT_EQ(solutions, 5u);
-    EXPECT_EQ(files, 16u);  // nothing is left of what was needed on the way
+    EXPECT_GE(solutions, 5u);
+    EXPECT_EQ(folders, 0u);  // nothing is left of what was needed on the way
   }
 }
 

@@ -60,12 +60,13 @@ int enlargement(cv::Size columns) {
   return std::max(1, kGoodSize / std::max(columns.width, columns.height));
 }
 
-/** Paper below a low map, so that the legend needs one column only. */
-cv::Mat withRoomFor(std::size_t legendEntries, const cv::Mat& map) {
-  const int missing = std::max(0, legendHeight(legendEntries) - map.rows);
-  cv::Mat sheet;
-  cv::copyMakeBorder(map, sheet, 0, missing, 0, 0, cv::BORDER_CONSTANT, bgr(kPaper));
-  return sheet;
+/** With paper below a low map, so that the legend needs one column only. */
+cv::Mat enlarged(cv::Mat map, int scale, std::size_t legendEntries) {
+  if (scale > 1) cv::resize(map, map, {}, scale, scale, cv::INTER_NEAREST);
+  const int missing = legendHeight(legendEntries) - map.rows;
+  if (missing > 0)
+    cv::copyMakeBorder(map, map, 0, missing, 0, 0, cv::BORDER_CONSTANT, bgr(kPaper));
+  return map;
 }
 
 }  // namespace
@@ -82,13 +83,17 @@ std::string ClassMap::worldFile() const {
 ClassMap classMapOf(const SemanticOcTree& tree, const std::optional<double>& maxHeight) {
   const cv::Rect columns = occupiedColumns(tree);
   const double top = maxHeight ? *maxHeight : collectCells(tree, {}).maxHeight;
-  const HighestCells highest = highestLeaves(tree, columns, top);
-  const int scale = enlargement(columns.size());
+  std::vector<LegendEntry> legend;
   cv::Mat map;
-  cv::resize(highest.inColors(tree.classes()), map, {}, scale, scale, cv::INTER_NEAREST);
-  const auto legend = classLegend(tree.classes(), highest.countClasses(tree.numClasses()));
+  {  // two such pictures are not in memory beside the heights: there may be 10^8 columns
+    const HighestCells highest = highestLeaves(tree, columns, top);
+    legend = classLegend(tree.classes(), highest.countClasses(tree.numClasses()));
+    map = highest.inColors(tree.classes());
+  }
+  const int scale = enlargement(columns.size());
+  map = enlarged(std::move(map), scale, legend.size());
   const double edge = tree.getResolution();
-  return {withLegend(withRoomFor(legend.size(), map), "", legend),
+  return {withLegend(map, "", legend),
           edge / scale,
           {columns.x * edge, columns.br().y * edge}};
 }
