@@ -16,8 +16,8 @@ using tree_abstraction::AlphaPath;
 
 namespace {
 
-/** The nodes of some of the trees' roots, with all that is below them: others leave no trace in their
- * taus. */
+/** The nodes of some of the trees' roots, with all that is below them: others leave no trace in
+ * their taus. */
 class Batch {
  public:
   using Visit = std::function<void(double tau, const Added& added)>;

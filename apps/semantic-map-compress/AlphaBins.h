@@ -15,8 +15,8 @@ struct Added {
 };
 
 /** The compressed trees of all alphas, for the present weights, of a map that may be larger than
- * memory: its nodes, counted by tau, the alpha from which on they are no longer expanded, in bins 0.2
- * % wide.
+ * memory: its nodes, counted by tau, the alpha from which on they are no longer expanded, in bins
+ * 0.2 % wide.
  *
  * Tree k expands the nodes of the first k bins. Between it and the next are those of within(k). */
 class AlphaBins {

@@ -126,8 +126,8 @@ double Compressor::alphaForBytes(const Solution& solution, std::size_t wanted) {
   if (least > wanted)
     refuse(solution, std::to_string(wanted) + " bytes wanted, but the smallest map takes " +
                          std::to_string(least) + " (see block_size)");
-  const std::size_t k = lastThat([&](std::size_t i) { return bytesOf(bins.alpha(i)) <= wanted; }, 0,
-                                 bins.numTrees());
+  const std::size_t k =
+      lastThat([&](std::size_t i) { return bytesOf(bins.alpha(i)) <= wanted; }, 0, bins.numTrees());
   if (k + 1 == bins.numTrees()) return bins.alpha(k);
   const AlphaBins::Path path = bins.within(k);
   return path.trees.alpha(
@@ -137,10 +137,9 @@ double Compressor::alphaForBytes(const Solution& solution, std::size_t wanted) {
 
 Compressed::Compressed(Compressor& compressor)
     : m_folder(compressor.m_place.scratch),
-      m_map(compressor.m_place.tiles
-                ? StoredMap(compressor.abstraction().emptyCompressedMap(), m_folder,
-                            *compressor.m_place.tiles)
-                : StoredMap(compressor.abstraction().emptyCompressedMap())) {
+      m_map(compressor.m_place.tiles ? StoredMap(compressor.abstraction().emptyCompressedMap(),
+                                                 m_folder, *compressor.m_place.tiles)
+                                     : StoredMap(compressor.abstraction().emptyCompressedMap())) {
   compressor.abstraction().compressTo(m_map.tree());
 }
 

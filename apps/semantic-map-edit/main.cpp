@@ -39,8 +39,7 @@ struct Cli {
     app.add_option("MAP", in,
                    "A map's own file (.semantic), a folder of tiles, or OctoMap's (.ot, .bt)")
         ->required();
-    outputs
-        .add(app, out, "FILE|FOLDER", "The map to write (.semantic); with --tiles, its folder")
+    outputs.add(app, out, "FILE|FOLDER", "The map to write (.semantic); with --tiles, its folder")
         ->required();
     app.add_option("--pose", pose,
                    "Where the map's origin is in the new map: x y z (m) yaw pitch roll (degrees)")

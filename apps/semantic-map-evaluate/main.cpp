@@ -145,8 +145,8 @@ int run(const Cli& cli) {
   for (const Asked& asked : maps) {
     const Evaluation& e = asked.result.evaluation;
     notes() << asked.result.name << ": right " << 100 * e.accuracy() << " % of "
-              << 100 * e.coverage() << " % of " << e.points() << " points, log loss " << e.logLoss()
-              << ", calibration error " << e.calibrationError() << '\n';
+            << 100 * e.coverage() << " % of " << e.points() << " points, log loss " << e.logLoss()
+            << ", calibration error " << e.calibrationError() << '\n';
   }
   return 0;
 }

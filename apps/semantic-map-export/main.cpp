@@ -76,7 +76,8 @@ std::vector<fs::path> allFiles(const std::vector<fs::path>& files) {
   return all;
 }
 
-/** A scene is made of a copy of the map; neighbors may lie in other tiles than what is gone through.
+/** A scene is made of a copy of the map; neighbors may lie in other tiles than what is gone
+ * through.
  */
 bool needsAll(const Cli& cli) {
   return cli.options.points.smoothing.neighborWeight > 0 ||

@@ -35,8 +35,7 @@ struct Cli {
 
   explicit Cli(CLI::App& app) : outputs(app) {
     app.add_option("MAP", maps, "Maps' own files (.semantic), or folders of tiles")->required();
-    outputs
-        .add(app, out, "FILE|FOLDER", "The sum to write (.semantic); with --tiles, its folder")
+    outputs.add(app, out, "FILE|FOLDER", "The sum to write (.semantic); with --tiles, its folder")
         ->required();
     app.add_option("--poses", poses, "File of lines `MAP x y z yaw pitch roll` (m, degrees)");
     app.add_flag("--partial", partial,

@@ -131,8 +131,8 @@ TEST_F(MapFolders, areCompressedToTheSameTrees) {
   for (const std::vector<std::string>& target : wanted) {
     for (const std::string map : {"plain/map.semantic", "tiles"}) {
       std::vector<std::string> arguments = {
-          path(map), "-o", path("compressed-" + map.substr(0, 5)), "--memory", "0.1", "-f",
-          "--weights"};
+          path(map), "-o",       path("compressed-" + map.substr(0, 5)), "--memory", "0.1",
+          "-f",      "--weights"};
       arguments.insert(arguments.end(), target.begin(), target.end());
       run("semantic-map-compress", arguments);
     }

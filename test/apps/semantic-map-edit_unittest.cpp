@@ -3,9 +3,9 @@
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/OctomapConversion.h>
 
+#include <yaml-cpp/yaml.h>
 #include <cmath>
 #include <cstdio>
-#include <yaml-cpp/yaml.h>
 
 #include <array>
 #include <filesystem>

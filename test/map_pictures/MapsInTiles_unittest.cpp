@@ -32,8 +32,8 @@ class InTiles {
   std::optional<StoredMap> m_stored;
 };
 
-/** More cells than a picture shows: hills of 904 x 904 columns, classes in squares, each patch of 8 x
- * 8 columns seen from 1 m above. */
+/** More cells than a picture shows: hills of 904 x 904 columns, classes in squares, each patch of 8
+ * x 8 columns seen from 1 m above. */
 SemanticOcTree wideField() {
   constexpr int kPatches = 113, kEdge = 8;
   constexpr double kVoxel = 0.2;
@@ -45,8 +45,8 @@ SemanticOcTree wideField() {
         3 * std::sin(column / 9.0) * std::cos(row / 7.0);
     semantic_types::LabeledCloud cloud;
     for (int i = 0; i < kEdge * kEdge; ++i) {
-      cloud.points.emplace_back(float(kVoxel * (i / kEdge - 3.5)), float(kVoxel * (i % kEdge - 3.5)),
-                                -1.f);
+      cloud.points.emplace_back(float(kVoxel * (i / kEdge - 3.5)),
+                                float(kVoxel * (i % kEdge - 3.5)), -1.f);
       cloud.classes.push_back(semantic_types::ClassId((column / 5 + row / 5 + i / 40) % 3 + 1));
     }
     tree.insert(cloud, T);

@@ -16,7 +16,8 @@ constexpr std::uint32_t kStream = 0x5eed;
 
 inline AbstractionOptions someOptions(double alpha) { return threeTerms(alpha, K, 0.2); }
 
-inline SemanticOcTree mapOf(const std::vector<PosedCloud>& scans, const AbstractionOptions& options) {
+inline SemanticOcTree mapOf(const std::vector<PosedCloud>& scans,
+                            const AbstractionOptions& options) {
   SemanticOcTree map(0.2, numberedClasses(K));
   map.setAbstraction(options);
   for (const PosedCloud& s : scans) map.insert(s.cloud, s.T_map_sensor);

@@ -26,8 +26,7 @@ cv::Rect occupiedColumns(const SemanticOcTree& tree) {
   forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
     if (!(node.getLogOdds() > 0)) return false;
     const double voxel = tree.getResolution();
-    const cv::Rect own =
-        columnsUnder(cube.center(voxel).head<2>(), voxel * cube.edge(), voxel);
+    const cv::Rect own = columnsUnder(cube.center(voxel).head<2>(), voxel * cube.edge(), voxel);
     if ((columns & own) == own) return false;
     if (node.isLeaf()) columns |= own;
     return true;
@@ -64,8 +63,7 @@ int enlargement(cv::Size columns) {
 cv::Mat enlarged(cv::Mat map, int scale, std::size_t legendEntries) {
   if (scale > 1) cv::resize(map, map, {}, scale, scale, cv::INTER_NEAREST);
   const int missing = legendHeight(legendEntries) - map.rows;
-  if (missing > 0)
-    cv::copyMakeBorder(map, map, 0, missing, 0, 0, cv::BORDER_CONSTANT, bgr(kPaper));
+  if (missing > 0) cv::copyMakeBorder(map, map, 0, missing, 0, 0, cv::BORDER_CONSTANT, bgr(kPaper));
   return map;
 }
 
@@ -93,9 +91,7 @@ ClassMap classMapOf(const SemanticOcTree& tree, const std::optional<double>& max
   const int scale = enlargement(columns.size());
   map = enlarged(std::move(map), scale, legend.size());
   const double edge = tree.getResolution();
-  return {withLegend(map, "", legend),
-          edge / scale,
-          {columns.x * edge, columns.br().y * edge}};
+  return {withLegend(map, "", legend), edge / scale, {columns.x * edge, columns.br().y * edge}};
 }
 
 }  // namespace map_pictures

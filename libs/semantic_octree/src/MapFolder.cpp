@@ -65,9 +65,9 @@ SemanticOcTree loadLeaves(const fs::path& folder, const TileIndex& index) {
   return leaves;
 }
 
-/** Of nodes and records, as maps of streets have them: 5 to 9 bytes a leaf. */
+/** Of nodes and records, as maps of streets have them: 5 to 7 bytes a leaf. */
 std::uint64_t bytesInMemory(const TileIndex& index) {
-  constexpr std::uint64_t kBytesOfLeaf = 8;
+  constexpr std::uint64_t kBytesOfLeaf = 6;
   std::uint64_t leaves = 0;
   for (const TileIndex::Tile& tile : index.tiles)
     leaves += static_cast<std::uint64_t>(tile.nodes - tile.innerNodes);

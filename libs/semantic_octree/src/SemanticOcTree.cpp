@@ -87,9 +87,7 @@ void SemanticOcTree::checkNotInTiles() const {
     throw std::logic_error("a map in a folder of tiles cannot be copied, cleared or corrected");
 }
 
-bool SemanticOcTree::isReadOnly() const {
-  return store().tiles() && !store().tiles()->mayChange();
-}
+bool SemanticOcTree::isReadOnly() const { return store().tiles() && !store().tiles()->mayChange(); }
 
 void SemanticOcTree::clear() {
   checkNotInTiles();

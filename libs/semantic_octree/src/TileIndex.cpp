@@ -32,9 +32,8 @@ class IndexReader {
 
   TileIndex read() const {
     const YAML::Node& root = m_yaml.root();
-    m_yaml.checkKeys(
-        root, {"version", "frame", "resolution", "tile_size", "generation", "classes", "tiles",
-                        "leaves"});
+    m_yaml.checkKeys(root, {"version", "frame", "resolution", "tile_size", "generation", "classes",
+                            "tiles", "leaves"});
     if (get<int>(root, "version", 1, 1 << 30) != TileIndex::kVersion)
       m_yaml.fail(root["version"], "version of the format, expected 1");
     TileIndex index;

@@ -169,8 +169,7 @@ void TilesOnDisk::prepare(const Scan& scan) {
 }
 
 void TilesOnDisk::wasBuilt(const Cell& cell) {
-  if (!m_place.mayWrite)
-    throw std::logic_error("filling a map whose folder was opened to be read");
+  if (!m_place.mayWrite) throw std::logic_error("filling a map whose folder was opened to be read");
   Tile& tile = m_tiles[tileCode(cell.index)];
   tile.place = cell.index;
   tile.used = ++m_clock;

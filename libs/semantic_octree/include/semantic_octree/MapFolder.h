@@ -73,7 +73,8 @@ class MapFolder {
   void save();
   /** Has all tiles in memory, whatever the budget: the map may then outlive this.
    * \param available bytes of memory; without, those that the system has left
-   * \throw std::runtime_error naming the bytes that it needs, before it begins, if these are more */
+   * \throw std::runtime_error naming the bytes that it needs, before it begins, if these are more
+   */
   void bringAll(std::optional<std::size_t> available = {});
 
   /** What is wrong with tiles, each naming its file: missing, cut, altered. Reads all of them. */

@@ -93,8 +93,7 @@ void GroundTiles::forgetWhatChangesNeed() {
 
 std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles) {
   std::vector<Column> refilled;
-  const auto scanned =
-      changedBy(inMortonOrder(tiles), [&](Column t) { return scan(t, refilled); });
+  const auto scanned = changedBy(inMortonOrder(tiles), [&](Column t) { return scan(t, refilled); });
   const int reach = reachOfGapFills(m_shape);
   for (const Column& t : tilesWithin(scanned, {reach, reach, reach, 0})) findFills(t, refilled);
   sortOut(refilled);
