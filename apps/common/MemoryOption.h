@@ -1,5 +1,6 @@
 #pragma once
 #include <CLI/CLI.hpp>
+#include <optional>
 
 #include "NumberChecks.h"
 
@@ -9,4 +10,11 @@ inline void addMemoryOption(CLI::App& app, double& megabytes) {
                  "Of a map in a folder of tiles, so many MB are in memory at a time")
       ->check(isNumber(strict_files::atLeast(0)))
       ->capture_default_str();
+}
+
+/** --tiles, of programs that write maps. */
+inline void addTilesOption(CLI::App& app, std::optional<double>& edge) {
+  app.add_option("--tiles", edge,
+                 "Write a folder of tiles, cubes of this edge, m: 8, 16, 32 ... voxels")
+      ->check(isNumber(strict_files::above(0)));
 }

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "AlphaBins.h"
+
 namespace semantic_map_compress {
 
-using semantic_octree::Abstraction;
 using semantic_octree::AbstractionMeasures;
 using tree_abstraction::AbstractionWeights;
-using tree_abstraction::AlphaPath;
 
 namespace {
 
@@ -49,18 +49,6 @@ std::optional<double> share(const AbstractionMeasures& m, const std::vector<doub
   return share(sum(m.compressed.information), sum(m.full.information));
 }
 
-/** The same of each tree of the path. */
-std::vector<std::optional<double>> shares(const Abstraction& abstraction, const AlphaPath& path,
-                                          const std::vector<double>& weights) {
-  const auto information = abstraction.pathInformation(weights);
-  const auto& added = information.added;
-  const double full = std::accumulate(added.begin(), added.end(), information.ofRoots);
-  std::vector<std::optional<double>> shares;
-  for (const double kept : path.totals(added, information.ofRoots))
-    shares.push_back(share(kept, full));
-  return shares;
-}
-
 }  // namespace
 
 CurvePoint curvePoint(Compressor& compressor, const AbstractionMeasures& m) {
@@ -70,16 +58,16 @@ CurvePoint curvePoint(Compressor& compressor, const AbstractionMeasures& m) {
 }
 
 std::vector<CurvePoint> alphaCurve(Compressor& compressor) {
-  const Abstraction abstraction = compressor.abstraction();
-  const AbstractionWeights& weights = abstraction.options().weights;
-  const Abstraction::Path path = abstraction.alphaPath();
-  const auto leaves = path.trees.totals(path.addedLeaves, static_cast<double>(path.numRoots));
-  const auto relevant = shares(abstraction, path.trees, weightsOfSign(weights, 1));
-  const auto irrelevant = shares(abstraction, path.trees, weightsOfSign(weights, -1));
+  const AlphaBins bins(compressor.abstraction());
+  std::vector<double> leaves;
+  for (std::size_t k = 0; k < bins.numTrees(); ++k) leaves.push_back(bins.tree(k).leaves);
   std::vector<CurvePoint> curve;
-  for (const std::size_t k : spread(leaves))
-    curve.push_back(
-        {path.trees.alpha(k), static_cast<std::size_t>(leaves[k]), relevant[k], irrelevant[k]});
+  for (const std::size_t k : spread(leaves)) {
+    const Added& tree = bins.tree(k);
+    curve.push_back({bins.alpha(k), static_cast<std::size_t>(tree.leaves),
+                     share(tree.relevant, bins.full().relevant),
+                     share(tree.irrelevant, bins.full().irrelevant)});
+  }
   return curve;
 }
 

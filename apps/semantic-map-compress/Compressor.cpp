@@ -6,11 +6,14 @@
 #include <stdexcept>
 #include <streambuf>
 
+#include "AlphaBins.h"
+
 namespace semantic_map_compress {
 
 using semantic_octree::Abstraction;
 using semantic_octree::AbstractionMeasures;
 using semantic_octree::SemanticOcTree;
+using semantic_octree::StoredMap;
 
 namespace {
 
@@ -38,6 +41,16 @@ std::size_t fileSize(const SemanticOcTree& map) {
   return buffer.bytes();
 }
 
+/** The last number for which it is true, as it is for `first`, and not for `end`, by bisection. */
+template <typename F>
+std::size_t lastThat(const F& f, std::size_t first, std::size_t end) {
+  while (end - first > 1) {
+    const std::size_t middle = first + (end - first) / 2;
+    (f(middle) ? first : end) = middle;
+  }
+  return first;
+}
+
 [[noreturn]] void refuse(const Solution& solution, const std::string& what) {
   throw std::runtime_error("solution '" + solution.name + "': " + what);
 }
@@ -45,8 +58,8 @@ std::size_t fileSize(const SemanticOcTree& map) {
 }  // namespace
 
 Compressor::Compressor(SemanticOcTree& map, const TermCatalog& catalog,
-                       semantic_octree::AbstractionOptions space)
-    : m_map(map), m_catalog(catalog), m_options(std::move(space)) {
+                       semantic_octree::AbstractionOptions space, CompressedPlace place)
+    : m_map(map), m_catalog(catalog), m_options(std::move(space)), m_place(std::move(place)) {
   if (map.empty()) throw std::invalid_argument("the map is empty");
   useBatch(0);
 }
@@ -81,36 +94,58 @@ double Compressor::alphaFor(const Solution& solution, const Target& target) {
 
 double Compressor::alphaForLeaves(const Solution& solution, std::size_t wanted) {
   weigh(solution, 0);
-  const Abstraction::Path path = abstraction().alphaPath();
-  if (wanted < path.numRoots)
+  const Abstraction present = abstraction();
+  const AlphaBins bins(present);
+  if (static_cast<double>(wanted) < bins.tree(0).leaves)
     refuse(solution, std::to_string(wanted) + " leaves wanted, but the map has " +
-                         std::to_string(path.numRoots) +
+                         std::to_string(static_cast<std::size_t>(bins.tree(0).leaves)) +
                          " blocks, each of which is a leaf at least (see block_size)");
   const std::size_t most = m_map.getNumLeafNodes();
   if (wanted > most)
     refuse(solution,
            std::to_string(wanted) + " leaves wanted, but the map has only " + std::to_string(most));
-  return path.alphaForLeaves(wanted);
+  const auto fits = [&](std::size_t k) {
+    return bins.tree(k).leaves <= static_cast<double>(wanted);
+  };
+  const std::size_t k = lastThat(fits, 0, bins.numTrees());
+  if (k + 1 == bins.numTrees()) return bins.alpha(k);
+  const AlphaBins::Path path = bins.within(k);
+  const double more = static_cast<double>(wanted) - bins.tree(k).leaves;
+  return path.trees.alpha(path.trees.largestWithin(more, path.addedLeaves, 0));
 }
 
 double Compressor::alphaForBytes(const Solution& solution, std::size_t wanted) {
   weigh(solution, 0);
-  const auto trees = abstraction().alphaPath().trees;
-  const auto bytesOf = [&](std::size_t k) {
-    weigh(solution, trees.alpha(k));
-    return fileSize(abstraction().compressedMap());
+  const Abstraction present = abstraction();
+  const AlphaBins bins(present);
+  const auto bytesOf = [&](double alpha) {
+    weigh(solution, alpha);
+    return fileSize(Compressed(*this).map());
   };
-  const std::size_t least = bytesOf(0);
+  const std::size_t least = bytesOf(bins.alpha(0));
   if (least > wanted)
     refuse(solution, std::to_string(wanted) + " bytes wanted, but the smallest map takes " +
                          std::to_string(least) + " (see block_size)");
-  // Tree `fits` does, tree `exceeds` does not (or is none): bisection.
-  std::size_t fits = 0, exceeds = trees.numTrees();
-  while (exceeds - fits > 1) {
-    const std::size_t middle = fits + (exceeds - fits) / 2;
-    (bytesOf(middle) <= wanted ? fits : exceeds) = middle;
-  }
-  return trees.alpha(fits);
+  const std::size_t k =
+      lastThat([&](std::size_t i) { return bytesOf(bins.alpha(i)) <= wanted; }, 0, bins.numTrees());
+  if (k + 1 == bins.numTrees()) return bins.alpha(k);
+  const AlphaBins::Path path = bins.within(k);
+  return path.trees.alpha(
+      lastThat([&](std::size_t i) { return bytesOf(path.trees.alpha(i)) <= wanted; }, path.first,
+               path.last));
+}
+
+Compressed::Compressed(Compressor& compressor)
+    : m_folder(compressor.m_place.scratch),
+      m_map(compressor.m_place.tiles ? StoredMap(compressor.abstraction().emptyCompressedMap(),
+                                                 m_folder, *compressor.m_place.tiles)
+                                     : StoredMap(compressor.abstraction().emptyCompressedMap())) {
+  compressor.abstraction().compressTo(m_map.tree());
+}
+
+Compressed::~Compressed() {
+  std::error_code ignored;
+  std::filesystem::remove_all(m_folder, ignored);
 }
 
 }  // namespace semantic_map_compress

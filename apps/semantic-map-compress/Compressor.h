@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_octree/Abstraction.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TermCatalog.h>
 
 namespace semantic_map_compress {
@@ -21,12 +22,19 @@ struct KeptInformation {
   std::optional<double> share;
 };
 
+/** Where compressed maps are while they are made. */
+struct CompressedPlace {
+  /** Of a map that may be larger than memory; none: they are in memory. */
+  std::optional<semantic_octree::MapFolderOptions> tiles;
+  std::filesystem::path scratch;  ///< a folder for that, which comes and goes
+};
+
 /** The compressed trees of one map for different weights. */
 class Compressor {
  public:
   /** The map keeps G-values from now on. \throw std::invalid_argument the map is empty. */
   Compressor(semantic_octree::SemanticOcTree& map, const TermCatalog& catalog,
-             semantic_octree::AbstractionOptions space);
+             semantic_octree::AbstractionOptions space, CompressedPlace place);
 
   std::size_t numBatches() const { return m_catalog.numBatches(); }
   /** Computes the information of this batch's terms in all nodes. */
@@ -52,7 +60,24 @@ class Compressor {
   semantic_octree::SemanticOcTree& m_map;
   const TermCatalog& m_catalog;
   semantic_octree::AbstractionOptions m_options;
+  CompressedPlace m_place;
   std::size_t m_batch = 0;
+  friend class Compressed;
+};
+
+/** The compressor's present tree as a map; one at a time. */
+class Compressed {
+ public:
+  explicit Compressed(Compressor& compressor);
+  ~Compressed();
+  Compressed(const Compressed&) = delete;
+  Compressed& operator=(const Compressed&) = delete;
+
+  const semantic_octree::SemanticOcTree& map() { return m_map.tree(); }
+
+ private:
+  std::filesystem::path m_folder;
+  semantic_octree::StoredMap m_map;
 };
 
 }  // namespace semantic_map_compress

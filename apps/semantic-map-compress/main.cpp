@@ -67,13 +67,13 @@ class SolutionWriter {
     m_compressor.addKept(c.measures, c.kept);
     c.chosen = curvePoint(m_compressor, c.measures);
     c.times.add("measure");
-    const SemanticOcTree compressed = m_compressor.abstraction().compressedMap();
+    Compressed compressed(m_compressor);
     c.times.add("extract");
     const fs::path file = m_output.staged(solution.name + ".semantic");
-    saveTree(compressed, file.string());
+    saveTree(compressed.map(), file.string());
     c.bytes = fs::file_size(file);
     c.times.add("save");
-    draw(compressed, c);
+    draw(compressed.map(), c);
     c.times.add("draw");
     c.curve = alphaCurve(m_compressor);
     c.times.add("curve");
@@ -138,7 +138,8 @@ void printSummary(const std::vector<Compression>& compressions) {
 
 int run(const Cli& cli) {
   StageTimer times;
-  semantic_octree::StoredMap stored(cli.map, cli.memory);
+  const double memory = cli.memory / 2;  // the other half is for compressed maps
+  semantic_octree::StoredMap stored(cli.map, memory);
   SemanticOcTree& map = stored.tree();
   const FullMap full{cli.map.string(), map.getResolution(), map.size(), stored.bytesOnDisk(),
                      contentsOf(map).voxelsOfClass};
@@ -146,10 +147,13 @@ int run(const Cli& cli) {
   cli.outputs.checkFolder(cli.output, fileNames(weights.solutions));
   times.add("load");
   const TermCatalog catalog(map.classes(), weights.solutions);
-  Compressor compressor(map, catalog, weights.space);
+  OutputFolder output(cli.output);
+  CompressedPlace place;
+  if (stored.folder()) place.tiles = {memory, stored.folder()->contents().tileSize};
+  place.scratch = output.staged("tiles");
+  Compressor compressor(map, catalog, weights.space, place);
   times.add("computeInformation");
 
-  OutputFolder output(cli.output);
   MapSheet sheet(1 + weights.solutions.size());
   sheet.add(map, "full map: " + std::to_string(map.getNumLeafNodes()) + " leaves");
   std::vector<Compression> compressions;

@@ -1,4 +1,4 @@
-// Crops, coarsens, moves and ages a semantic octree map, cuts it into tiles, and imports maps of
+// Crops, coarsens, moves and ages a semantic octree map, puts it into tiles, and imports maps of
 // OctoMap's.
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
@@ -18,7 +18,6 @@
 #include "NumberChecks.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
-#include "Tiles.h"
 #include "poses/Poses.h"
 
 namespace semantic_map_edit {
@@ -26,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using semantic_map::CSemanticOctoMap;
+using semantic_octree::MapFolder;
 using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
 
@@ -40,8 +40,7 @@ struct Cli {
     app.add_option("MAP", in,
                    "A map's own file (.semantic), a folder of tiles, or OctoMap's (.ot, .bt)")
         ->required();
-    outputs
-        .add(app, out, "FILE|FOLDER", "The map to write (.semantic); with --tiles, their folder")
+    outputs.add(app, out, "FILE|FOLDER", "The map to write (.semantic); with --tiles, its folder")
         ->required();
     app.add_option("--pose", pose,
                    "Where the map's origin is in the new map: x y z (m) yaw pitch roll (degrees)")
@@ -50,14 +49,12 @@ struct Cli {
     app.add_option("--resolution", resolution,
                    "Coarser voxels, m: 2, 4, 8 ... times those of the map")
         ->check(isNumber(strict_files::above(0)));
-    app.add_option("--tiles", tiles,
-                   "Cut it into columns with a square base of this edge, m: 1, 2, 4, 8 ... voxels")
-        ->check(isNumber(strict_files::above(0)));
     app.add_option("--half-lives", halfLives,
                    "Class table (YAML) whose half-lives the map's classes get")
         ->type_name("FILE.yaml");
     app.add_option("--decay", decay, "Let so much time pass, s: what has a half-life is forgotten")
         ->check(isNumber(strict_files::between(0, 1e9)));
+    addTilesOption(app, tiles);
     app.add_option("--like", like,
                    "For OctoMap's files: a map whose classes and filter the new one has");
     addMemoryOption(app, memory);
@@ -78,7 +75,7 @@ StoredMap load(const Cli& cli) {
   if (!cli.like.empty())
     throw std::runtime_error("--like is for OctoMap's files (.ot, .bt), not for " +
                              cli.in.string());
-  return StoredMap(cli.in, cli.memory);
+  return StoredMap(cli.in, cli.tiles ? cli.memory / 2 : cli.memory);
 }
 
 Eigen::AlignedBox3d boxOf(const std::array<double, 6>& v) {
@@ -96,13 +93,12 @@ int levelsTo(double edge, double voxelSize, int highest, const std::string& opti
 }
 
 int writeTiles(const Cli& cli, const SemanticOcTree& map) {
-  const int levels = levelsTo(*cli.tiles, map.getResolution(), 15, "--tiles");
-  const std::vector<Tile> tiles = tilesOf(map, levels);
-  std::vector<std::string> names;
-  for (const Tile& tile : tiles) names.push_back(tile.fileName());
-  cli.outputs.checkFolder(cli.out, names);
-  saveTiles(map, levels, tiles, cli.out);
-  notes() << cli.out.string() << ": " << tiles.size() << " tiles\n";
+  constexpr int kHighest = 15;
+  levelsTo(*cli.tiles, map.getResolution(), kHighest, "--tiles");
+  StoredMap tiles(emptyLike(map), cli.out, {cli.memory / 2, *cli.tiles});
+  copyTo(tiles.tree(), map);
+  tiles.folder()->save();
+  notes() << cli.out.string() << ": " << tiles.folder()->contents().tiles << " tiles\n";
   return 0;
 }
 
@@ -116,7 +112,8 @@ SemanticOcTree aged(SemanticOcTree map, const Cli& cli) {
 }
 
 int run(const Cli& cli) {
-  if (!cli.tiles) cli.outputs.check({cli.out});
+  cli.tiles ? cli.outputs.checkFolder(cli.out, {MapFolder::kIndexFile})
+            : cli.outputs.check({cli.out});
   StoredMap stored = load(cli);
   std::optional<SemanticOcTree> edited;
   const auto map = [&]() -> const SemanticOcTree& { return edited ? *edited : stored.tree(); };
@@ -136,7 +133,7 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Moves, crops, coarsens, ages a semantic octree map and cuts it into tiles, in this order; "
+      "Moves, crops, coarsens, ages a semantic octree map and puts it into tiles, in this order; "
       "imports OctoMap's");
   const semantic_map_edit::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_edit::run(cli); });

@@ -2,7 +2,7 @@
 #include <labeled_cloud/EigenPose.h>
 #include <labeled_cloud/RawlogTrajectory.h>
 #include <labeled_cloud/ScanStream.h>
-#include <semantic_octree/TreeFile.h>
+#include <semantic_octree/MapFolder.h>
 #include <strict_files/OutputFolder.h>
 
 #include <cmath>
@@ -13,6 +13,7 @@
 #include "Application.h"
 #include "Figures.h"
 #include "JsonFile.h"
+#include "MemoryOption.h"
 #include "NumberChecks.h"
 #include "OptionFlags.h"
 #include "Outputs.h"
@@ -24,7 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 using semantic_octree::ClassTable;
-using semantic_octree::SemanticOcTree;
 using semantic_octree::SmoothedView;
 
 const std::vector<std::string> kFiles = {"quality.json", "reliability.png"};
@@ -33,6 +33,7 @@ struct Cli {
   std::vector<fs::path> maps, rawlogs;
   fs::path output;
   double maxRange = HUGE_VAL;
+  double memory = semantic_octree::MapFolderOptions().memory;
   semantic_octree::SmoothingOptions smoothing{0};
   Outputs outputs;
 
@@ -48,17 +49,20 @@ struct Cli {
     strict_files::OptionList list;
     smoothing.describe(list);
     addOptions(app, list, "Neighbors");
+    addMemoryOption(app, memory);
   }
 };
 
 /** A map and what came of its questions. */
 struct Asked {
-  Asked(const fs::path& file, const semantic_octree::SmoothingOptions& smoothing)
-      : map(semantic_octree::loadTree(file.string())),
-        view(map, smoothing),
-        result{file.stem().string(), Evaluation(map.numClasses())} {}
+  Asked(const fs::path& file, double memory, const semantic_octree::SmoothingOptions& smoothing)
+      : stored(file, memory),
+        view(stored.tree(), smoothing),
+        result{file.stem().string(), Evaluation(stored.tree().numClasses())} {}
 
-  SemanticOcTree map;
+  const ClassTable& classes() { return stored.tree().classes(); }
+
+  semantic_octree::StoredMap stored;
   SmoothedView view;
   NamedEvaluation result;
 };
@@ -76,11 +80,11 @@ void ask(const labeled_cloud::LabeledScan& scan, const mrpt::poses::CPose3D& T_m
 }
 
 /** \throw std::runtime_error maps of other classes, or of one name. */
-void requireComparable(const std::list<Asked>& maps) {
+void requireComparable(std::list<Asked>& maps) {
   std::set<std::string> names;
-  for (const Asked& asked : maps) {
+  for (Asked& asked : maps) {
     const std::string& name = asked.result.name;
-    if (asked.map.classes() != maps.front().map.classes())
+    if (asked.classes() != maps.front().classes())
       throw std::runtime_error("maps of different classes: " + maps.front().result.name + ", " +
                                name);
     if (!names.insert(name).second) throw std::runtime_error("two maps by the name of " + name);
@@ -109,13 +113,13 @@ ordered_json toJson(const Evaluation& e, const ClassTable& classes) {
           {"classes", ofClass}};
 }
 
-void writeResults(const Cli& cli, const std::list<Asked>& maps) {
+void writeResults(const Cli& cli, std::list<Asked>& maps) {
   strict_files::OutputFolder output(cli.output);
   std::vector<NamedEvaluation> results;
   ordered_json report = ordered_json::object();
-  for (const Asked& asked : maps) {
+  for (Asked& asked : maps) {
     results.push_back(asked.result);
-    report[asked.result.name] = toJson(asked.result.evaluation, asked.map.classes());
+    report[asked.result.name] = toJson(asked.result.evaluation, asked.classes());
   }
   writeJson(output.staged("quality.json"), report);
   drawReliability(results, output.staged("reliability.png"));
@@ -125,10 +129,13 @@ void writeResults(const Cli& cli, const std::list<Asked>& maps) {
 int run(const Cli& cli) {
   cli.outputs.checkFolder(cli.output, kFiles);
   std::list<Asked> maps;
-  for (const fs::path& file : cli.maps) maps.emplace_back(file, cli.smoothing);
+  for (const fs::path& file : cli.maps) {
+    const double memory = cli.memory / static_cast<double>(cli.maps.size());
+    maps.emplace_back(file, memory, cli.smoothing);
+  }
   requireComparable(maps);
   const auto trajectory = labeled_cloud::readTrajectory(cli.rawlogs);
-  labeled_cloud::ScanConverter converter(maps.front().map.classes());
+  labeled_cloud::ScanConverter converter(maps.front().classes());
   labeled_cloud::ScanStream stream(cli.rawlogs, converter, trajectory, nullptr);
   while (const auto observation = stream.next())
     if (observation->scan) ask(*observation->scan, observation->T_map_robot, cli.maxRange, maps);
@@ -138,8 +145,8 @@ int run(const Cli& cli) {
   for (const Asked& asked : maps) {
     const Evaluation& e = asked.result.evaluation;
     notes() << asked.result.name << ": right " << 100 * e.accuracy() << " % of "
-              << 100 * e.coverage() << " % of " << e.points() << " points, log loss " << e.logLoss()
-              << ", calibration error " << e.calibrationError() << '\n';
+            << 100 * e.coverage() << " % of " << e.points() << " points, log loss " << e.logLoss()
+            << ", calibration error " << e.calibrationError() << '\n';
   }
   return 0;
 }

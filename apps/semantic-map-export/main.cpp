@@ -76,16 +76,19 @@ std::vector<fs::path> allFiles(const std::vector<fs::path>& files) {
   return all;
 }
 
-/** A scene is made of a copy of the map. */
-bool isAnyScene(const std::vector<fs::path>& files) {
-  return std::any_of(files.begin(), files.end(),
+/** A scene is made of a copy of the map; neighbors may lie in other tiles than what is gone
+ * through.
+ */
+bool needsAll(const Cli& cli) {
+  return cli.options.points.smoothing.neighborWeight > 0 ||
+         std::any_of(cli.files.begin(), cli.files.end(),
                      [](const fs::path& file) { return file.extension() == ".3Dscene"; });
 }
 
 int run(const Cli& cli) {
   cli.outputs.check(allFiles(cli.files));
   StoredMap map(cli.map, cli.memory);
-  if (map.folder() && isAnyScene(cli.files)) map.folder()->bringAll();
+  if (map.folder() && needsAll(cli)) map.folder()->bringAll();
   ExportOptions options = cli.options;
   options.grid.ground = classesNamed(cli.ground, map.tree().classes());
   Exporter exporter(map.tree(), options);

@@ -4,7 +4,9 @@
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/TreeFile.h>
 
+#include <array>
 #include <deque>
+#include <optional>
 #include <ostream>
 
 #include "Application.h"
@@ -26,28 +28,46 @@ struct Cli {
   std::vector<fs::path> maps;
   fs::path out, poses;
   bool partial = false;
+  std::optional<std::array<double, 6>> box;
+  std::optional<double> tiles;
   double memory = semantic_octree::MapFolderOptions().memory;
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
     app.add_option("MAP", maps, "Maps' own files (.semantic), or folders of tiles")->required();
-    outputs.add(app, out, "FILE", "The sum to write (.semantic)")->required();
+    outputs.add(app, out, "FILE|FOLDER", "The sum to write (.semantic); with --tiles, its folder")
+        ->required();
     app.add_option("--poses", poses, "File of lines `MAP x y z yaw pitch roll` (m, degrees)");
     app.add_flag("--partial", partial,
                  "The sum will be added to others: do not limit yet how sure it is");
+    app.add_option("--box", box, "Add up what is in it only, m; `inf` and `-inf` are no limit")
+        ->type_name("X0 Y0 Z0 X1 Y1 Z1");
+    addTilesOption(app, tiles);
     addMemoryOption(app, memory);
+  }
+  /** Of each of the maps, MB. */
+  double memoryOfMap() const {
+    return memory / static_cast<double>(maps.size() + tiles.has_value());
   }
 };
 
-/** Adds the map of a file, moved if it has a pose. */
+SemanticOcTree inBox(const SemanticOcTree& map, const std::array<double, 6>& v) {
+  return cropped(map, {Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5])});
+}
+
+/** Adds the map of a file, moved if it has a pose; with a box, what is in it. */
 void load(const Cli& cli, const fs::path& file, const std::map<fs::path, Eigen::Isometry3d>& poses,
           std::deque<StoredMap>& maps) {
   const auto pose = poses.find(file);
-  const double memory = cli.memory / static_cast<double>(cli.maps.size());
-  if (pose != poses.end())
-    maps.emplace_back(moved(StoredMap(file, memory).tree(), pose->second));
-  else
+  const double memory = cli.memoryOfMap();
+  if (pose != poses.end()) {
+    SemanticOcTree map = moved(StoredMap(file, memory).tree(), pose->second);
+    maps.emplace_back(cli.box ? inBox(map, *cli.box) : std::move(map));
+  } else if (cli.box) {
+    maps.emplace_back(inBox(StoredMap(file, memory).tree(), *cli.box));
+  } else {
     maps.emplace_back(file, memory);
+  }
   notes() << file.string() << ": " << maps.back().tree().getNumLeafNodes() << " leaves\n";
 }
 
@@ -62,8 +82,25 @@ void checkAlike(const fs::path& first, const SemanticOcTree& a, const fs::path& 
   if (!(a.filterParameters() == b.filterParameters())) differ("filter parameters");
 }
 
+/** Into memory and a file, or into a folder. */
+void writeSum(const Cli& cli, const std::vector<const SemanticOcTree*>& maps) {
+  const Limits limits = cli.partial ? Limits::Keep : Limits::Apply;
+  if (cli.tiles) {
+    StoredMap sum(emptyLike(*maps.front()), cli.out, {cli.memoryOfMap(), *cli.tiles});
+    mergeTo(sum.tree(), maps, limits);
+    sum.folder()->save();
+    notes() << cli.out.string() << ": " << sum.tree().getNumLeafNodes() << " leaves in "
+            << sum.folder()->contents().tiles << " tiles\n";
+    return;
+  }
+  SemanticOcTree sum = merged(maps, limits);
+  saveTree(sum, cli.out.string());
+  notes() << cli.out.string() << ": " << CSemanticOctoMap(std::move(sum)).asString() << '\n';
+}
+
 int run(const Cli& cli) {
-  cli.outputs.check({cli.out});
+  cli.tiles ? cli.outputs.checkFolder(cli.out, {semantic_octree::MapFolder::kIndexFile})
+            : cli.outputs.check({cli.out});
   std::map<fs::path, Eigen::Isometry3d> poses;
   if (!cli.poses.empty()) poses = readMapPoses(cli.poses, cli.maps);
   std::deque<StoredMap> maps;
@@ -73,9 +110,7 @@ int run(const Cli& cli) {
     checkAlike(cli.maps.front(), maps.front().tree(), file, maps.back().tree());
     pointers.push_back(&maps.back().tree());
   }
-  SemanticOcTree sum = merged(pointers, cli.partial ? Limits::Keep : Limits::Apply);
-  saveTree(sum, cli.out.string());
-  notes() << cli.out.string() << ": " << CSemanticOctoMap(std::move(sum)).asString() << '\n';
+  writeSum(cli, pointers);
   return 0;
 }
 

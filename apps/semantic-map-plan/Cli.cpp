@@ -1,12 +1,14 @@
 #include "Cli.h"
 
+#include "MemoryOption.h"
 #include "OptionFlags.h"
 #include "poses/Poses.h"
 
 namespace semantic_map_plan {
 
 Cli::Cli(CLI::App& app) : outputs(app) {
-  app.add_option("MAP", map, "A map's own file (.semantic)")->required();
+  app.add_option("MAP", map, "A map's own file (.semantic), or a folder of tiles")->required();
+  addMemoryOption(app, memory);
   poses::addPose(app, "--start", start, "Where the vehicle is")->required();
   poses::addPose(app, "--goal", goal, "Where it is to go")->required();
   app.add_option("--start-z", startZ, "Height, where the ground has several levels, m");

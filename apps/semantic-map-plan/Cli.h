@@ -1,4 +1,5 @@
 #pragma once
+#include <semantic_octree/MapFolder.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +14,7 @@ namespace semantic_map_plan {
 /** What the command line says. */
 struct Cli {
   std::filesystem::path map, classes, vehicle, weights, output;
+  double memory = semantic_octree::MapFolderOptions().memory;
   std::string solution;
   mrpt::math::TPose2D start, goal;
   std::optional<double> startZ, goalZ;

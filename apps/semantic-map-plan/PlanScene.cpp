@@ -42,13 +42,14 @@ mrpt::opengl::CSetOfLines::Ptr lineOf(const PlanResult& plan) {
 
 }  // namespace
 
-void saveScene(semantic_octree::SemanticOcTree map, const SemanticPlanner& planner,
+void saveScene(const semantic_octree::SemanticOcTree* map, const SemanticPlanner& planner,
                const PlanResult& plan, const std::filesystem::path& file) {
-  const semantic_map::CSemanticOctoMap semanticMap(std::move(map));
-  auto cells = mrpt::opengl::CSetOfObjects::Create();
-  semanticMap.getVisualizationInto(*cells);
   mrpt::opengl::COpenGLScene scene;
-  scene.insert(cells);
+  if (map) {
+    auto cells = mrpt::opengl::CSetOfObjects::Create();
+    semantic_map::CSemanticOctoMap(*map).getVisualizationInto(*cells);
+    scene.insert(cells);
+  }
   if (planner.hasRoadmap()) scene.insert(verticesOf(planner));
   scene.insert(lineOf(plan));
   semantic_map::writeScene(scene, file);

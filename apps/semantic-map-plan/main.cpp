@@ -1,6 +1,6 @@
 // Plans a path of a vehicle over a semantic map, classes before length.
 #include <map_pictures/MapPictures.h>
-#include <semantic_octree/TreeFile.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
@@ -38,7 +38,7 @@ void write(const Cli& cli, const SemanticOcTree& map, const SemanticPlanner& pla
   if (plan.found()) strict_files::writeText(output.staged("path.csv"), toCsv(plan, map.classes()));
   map_pictures::savePicture(drawPlan(map, planner, plan, cli.start, cli.goal),
                             output.staged("plan.png"));
-  saveScene(map, planner, plan, output.staged("plan.3Dscene"));
+  saveScene(map.isReadOnly() ? nullptr : &map, planner, plan, output.staged("plan.3Dscene"));
   if (planner.hasRoadmap())
     saveNetwork(planner.roadmap(), map.classes(), output.staged("roadmap.graph"));
   output.commit(kFiles);
@@ -56,7 +56,8 @@ void printSummary(const PlanResult& plan, const semantic_types::ClassTable& clas
 
 int run(Cli& cli) {
   cli.outputs.checkFolder(cli.output, kFiles);
-  SemanticOcTree map = semantic_octree::loadTree(cli.map.string());
+  semantic_octree::StoredMap stored(cli.map, cli.memory);
+  SemanticOcTree& map = stored.tree();
   const auto order = loadClassOrder(cli.classes, map.classes());
   if (!cli.vehicle.empty()) cli.planner.vehicle = loadVehicle(cli.vehicle);
   measuring::Stopwatch watch;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
+#include <strict_files/TextFile.h>
 
 #include <nlohmann/json.hpp>
 
@@ -86,21 +87,67 @@ TEST_F(MapFolders, areReadTileByTileToTheSameResults) {
   expectSame("semantic-map-export", "points.csv");
   expectSame("semantic-map-export", "tree.ot");
   expectSame("semantic-map-export", "classes.png");
+  expectSame("semantic-map-merge", "part.semantic",
+             {path("plain/map.semantic"), "--box", "-25.6", "-inf", "-1", "12.8", "0", "inf"});
+}
+
+TEST_F(MapFolders, takeSumsIn) {
+  run("semantic-map-merge", {path("tiles"), path("plain/map.semantic"), "-o", path("twice"),
+                             "--tiles", "25.6", "--memory", "0.1"});
+  run("semantic-map-merge",
+      {path("plain/map.semantic"), path("tiles"), "-o", path("twice.semantic")});
+  EXPECT_TRUE(loadTree(path("twice")) == loadTree(path("twice.semantic")));
+  run("semantic-map-edit", {path("twice"), "-o", path("smaller"), "--tiles", "12.8"});
+  EXPECT_TRUE(loadTree(path("smaller")) == loadTree(path("twice.semantic")));
+}
+
+TEST_F(MapFolders, areAskedAndPlannedOnAsMapsInOnePiece) {
+  run("synth-rawlog", {"-o", path("scans.rawlog"), "--sensor", "lidar", "--columns", "180",
+                       "--frames", "2", "--start", "3", "-f"});
+  for (const std::string map : {"plain/map.semantic", "tiles"}) {
+    const std::string name = map.substr(0, 5);
+    run("semantic-map-evaluate", {path(map), "--scans", path("scans.rawlog"), "-o",
+                                  path("quality-" + name), "--memory", "0.1"});
+    run("semantic-map-plan", {path(map), "--start=-14,-19,10", "--goal=25,-12,90", "--classes",
+                              kSources + "/config/orders/synthetic.yaml", "-o",
+                              path("plan-" + name), "--memory", "0.1"});
+  }
+  const auto quality = [](const std::string& name) {
+    return nlohmann::json::parse(folder->read("quality-" + name + "/quality.json")).front();
+  };
+  EXPECT_GT(quality("plain")["points"], 1000);
+  EXPECT_EQ(quality("tiles"), quality("plain"));
+  EXPECT_GT(folder->read("plan-tiles/path.csv").size(), 100u);
+  for (const char* file : {"path.csv", "roadmap.graph", "plan.png"})
+    EXPECT_EQ(folder->read(std::string("plan-tiles/") + file),
+              folder->read(std::string("plan-plain/") + file));
 }
 
 TEST_F(MapFolders, areCompressedToTheSameTrees) {
-  for (const std::string map : {"plain/map.semantic", "tiles"})
-    run("semantic-map-compress",
-        {path(map), "--weights", kSources + "/config/weights/synthetic.yaml", "-o",
-         path("compressed-" + map.substr(0, 5)), "--memory", "0.1"});
-  std::size_t solutions = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(path("compressed-tiles"))) {
-    const std::string name = entry.path().filename().string();
-    if (entry.path().extension() != ".semantic") continue;
-    EXPECT_EQ(folder->read("compressed-tiles/" + name), folder->read("compressed-plain/" + name));
-    ++solutions;
+  const std::string one = path("one.yaml"), five = kSources + "/config/weights/synthetic.yaml";
+  strict_files::writeText(one, "block_size: 3.2\nname: road\nrelevant: {road: 1}\n");
+  const std::vector<std::vector<std::string>> wanted = {
+      {five}, {one, "--leaves", "5000"}, {one, "--bytes", "40000"}};
+  for (const std::vector<std::string>& target : wanted) {
+    for (const std::string map : {"plain/map.semantic", "tiles"}) {
+      std::vector<std::string> arguments = {
+          path(map), "-o",       path("compressed-" + map.substr(0, 5)), "--memory", "0.1",
+          "-f",      "--weights"};
+      arguments.insert(arguments.end(), target.begin(), target.end());
+      run("semantic-map-compress", arguments);
+    }
+    std::size_t solutions = 0, folders = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(path("compressed-tiles"))) {
+      const std::string name = entry.path().filename().string();
+      folders += entry.is_directory();
+      if (entry.path().extension() != ".semantic" && entry.path().extension() != ".png") continue;
+      EXPECT_EQ(folder->read("compressed-tiles/" + name), folder->read("compressed-plain/" + name))
+          << name;
+      solutions += entry.path().extension() == ".semantic";
+    }
+    EXPECT_GE(solutions, 5u);
+    EXPECT_EQ(folders, 0u);  // nothing is left of what was needed on the way
   }
-  EXPECT_EQ(solutions, 5u);
 }
 
 TEST_F(MapFolders, takeAnotherDriveIn) {

@@ -4,9 +4,13 @@
 #include <semantic_octree/OctomapConversion.h>
 #include <semantic_types/ClassTableFile.h>
 
+#include <yaml-cpp/yaml.h>
 #include <cmath>
 #include <cstdio>
+
+#include <array>
 #include <filesystem>
+#include <set>
 
 #include "ExportFixture.h"
 
@@ -91,45 +95,41 @@ TEST_F(SemanticMapEdit, aMapIsMovedByAPose) {
     }
 }
 
-TEST_F(SemanticMapEdit, eachVoxelIsInTheTileAroundItAndInNoOther) {
-  // Free space in leaves of 1.6 m, with a post in it.
+TEST_F(SemanticMapEdit, tilesAreAFolderWithTheMapInIt) {
+  // Free space in leaves of 1.6 m, as large as tiles, with a post in it.
   octomap::OcTree free(0.2);
   for (float x = -1.5f; x < 3.2f; x += 0.2f)
     for (float y = -1.5f; y < 1.6f; y += 0.2f)
       for (float z = 0.1f; z < 1.6f; z += 0.2f) free.setNodeValue(x, y, z, x == y ? 1.f : -1.f);
   free.updateInnerOccupancy();
   free.prune();
-  const SemanticOcTree sure = semantic_octree::fromOcTree(free, coloredClasses());
-  saveTree(sure, path("sure.semantic"));
-  ASSERT_EQ(edit("sure.semantic", "tiles", {"--tiles", "0.8"}).status, 0);
-  const auto voxelsOf = [](const auto& leaf) { return std::pow(leaf.getSize() / 0.2, 3); };
-  double voxels = 0, voxelsOfTiles = 0, largeLeaves = 0;
-  for (const auto& file : std::filesystem::directory_iterator(folder / "tiles")) {
-    int x = 0, y = 0;
-    ASSERT_EQ(std::sscanf(file.path().filename().c_str(), "%d_%d.semantic", &x, &y), 2);
-    const SemanticOcTree tile = semantic_octree::loadTree(file.path());
-    for (auto leaf = tile.begin_leafs(); leaf != tile.end_leafs(); ++leaf) {
-      ASSERT_EQ(std::floor(leaf.getX() / 0.8), x);
-      ASSERT_EQ(std::floor(leaf.getY() / 0.8), y);
-      const CellState was = sure.query(leaf.getKey()), is = tile.query(*leaf);
-      ASSERT_EQ(is.status, was.status);
-      ASSERT_EQ(is.likeliestClass, was.likeliestClass);
-      voxelsOfTiles += voxelsOf(leaf);
-    }
+  saveTree(semantic_octree::fromOcTree(free, coloredClasses()), path("sure.semantic"));
+  for (const char* name : {"sure", "map"}) {
+    ASSERT_EQ(edit(std::string(name) + ".semantic", name, {"--tiles", "1.6"}).status, 0);
+    EXPECT_TRUE(semantic_octree::loadTree(path(name)) ==
+                semantic_octree::loadTree(path(std::string(name) + ".semantic")));
   }
-  for (auto leaf = sure.begin_leafs(); leaf != sure.end_leafs(); ++leaf) {
-    voxels += voxelsOf(leaf);
-    largeLeaves += leaf.getSize() > 1.5;
+  // Others, that have no library, know from the index where something is.
+  const YAML::Node index = YAML::LoadFile(path("sure/index.yaml"));
+  std::set<std::array<int, 3>> cubes;
+  for (const YAML::Node& tile : index["tiles"]) cubes.insert(tile["at"].as<std::array<int, 3>>());
+  EXPECT_GT(index["leaves"].size(), 0u);
+  for (const YAML::Node& leaf : index["leaves"]) {
+    EXPECT_EQ(leaf["tiles"].as<int>(), 1);
+    EXPECT_TRUE(cubes.insert(leaf["at"].as<std::array<int, 3>>()).second);
   }
-  EXPECT_GT(largeLeaves, 0);
-  EXPECT_NEAR(voxelsOfTiles, voxels, 0.1);
+  std::set<std::array<int, 3>> expected;
+  for (auto leaf = free.begin_leafs(); leaf != free.end_leafs(); ++leaf)
+    expected.insert({int(std::floor(leaf.getX() / 1.6)), int(std::floor(leaf.getY() / 1.6)),
+                     int(std::floor(leaf.getZ() / 1.6))});
+  EXPECT_EQ(cubes, expected);
 }
 
 TEST_F(SemanticMapEdit, tilesAddUpToTheMap) {
   ASSERT_EQ(edit("map.semantic", "tiles", {"--tiles", "1.6"}).status, 0);
   std::vector<std::string> files;
   for (const auto& file : std::filesystem::directory_iterator(folder / "tiles"))
-    files.push_back(file.path());
+    if (file.path().extension() == ".semantic") files.push_back(file.path());
   EXPECT_GT(files.size(), 10u);
   files.insert(files.end(), {"-o", path("sum.semantic")});
   ASSERT_EQ(runProgram("semantic-map-merge", files).status, 0);
@@ -139,10 +139,16 @@ TEST_F(SemanticMapEdit, tilesAddUpToTheMap) {
   EXPECT_EQ(folder.read("sum.semantic"), folder.read("one.semantic"));
 }
 
-TEST_F(SemanticMapEdit, tilesAreNotWrittenOver) {
-  const std::vector<std::string> all = {"--tiles", "102.4"};
+TEST_F(SemanticMapEdit, tilesAreNotWrittenOverUnlessThatIsWanted) {
+  std::vector<std::string> all = {"--tiles", "102.4"};
   ASSERT_EQ(edit("map.semantic", "tiles", all).status, 0);
-  expectRefusal(edit("map.semantic", "tiles", all), {"tiles/-1_-1.semantic", "--overwrite"});
+  expectRefusal(edit("map.semantic", "tiles", all), {"tiles/index.yaml", "--overwrite"});
+  all.insert(all.end(), {"--box", "0", "0", "0", "1", "1", "1"});
+  ASSERT_EQ(edit("map.semantic", "corner.semantic", {all.begin() + 2, all.end()}).status, 0);
+  all.push_back("-f");
+  ASSERT_EQ(edit("map.semantic", "tiles", all).status, 0);
+  EXPECT_TRUE(semantic_octree::loadTree(path("tiles")) ==
+              semantic_octree::loadTree(path("corner.semantic")));
 }
 
 TEST_F(SemanticMapEdit, octomapsFilesBecomeOccupancy) {

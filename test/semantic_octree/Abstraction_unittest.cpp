@@ -10,20 +10,11 @@
 namespace {
 
 using namespace semantic_octree;
-using tree_abstraction::irrelevant;
-using tree_abstraction::relevant;
 
 constexpr int K = 6;
 constexpr double kResolution = 0.2;
 
-AbstractionOptions someOptions(double alpha) {
-  AbstractionOptions o;
-  o.weights.terms = {relevant("posts", 1.0, {1}), irrelevant("ground", 0.3, {2, 3}),
-                     tree_abstraction::wholeClassVariable("everything", 0.05, K)};
-  o.weights.alpha = alpha;
-  o.blockSize = 3.2;
-  return o;
-}
+AbstractionOptions someOptions(double alpha) { return threeTerms(alpha, K, 0.05); }
 
 InsertionOptions someInsertion(int threads = 1) {
   InsertionOptions o;

@@ -135,9 +135,11 @@ void run(const std::string& folder, int size, double memory, bool compress) {
   if (compress) {
     begin = seconds();
     map.setAbstraction(abstraction());
-    const SemanticOcTree compressed = Abstraction(map).compressedMap();
-    std::cout << "compressed in " << seconds() - begin << " s: " << compressed.getNumLeafNodes()
-              << " leaves" << std::endl;
+    StoredMap compressed(Abstraction(map).emptyCompressedMap(), folder + "/compressed",
+                         {memory / 10, options.tileSize});
+    Abstraction(map).compressTo(compressed.tree());
+    std::cout << "compressed in " << seconds() - begin
+              << " s: " << compressed.tree().getNumLeafNodes() << " leaves" << std::endl;
     say(tiles, map);
   }
   if (size >= 5) std::cout << (samePiece(map) ? "same" : "NOT THE SAME") << std::endl;

@@ -1,4 +1,4 @@
-// A drive through a street, 64 x 1024 beams every meter, in keyframes of five scans; then a tenth
+// A drive through a street, in keyframes of five scans; then a tenth
 // of the keyframes gets other poses.
 #include <benchmark/benchmark.h>
 #include <semantic_octree/Abstraction.h>
@@ -6,64 +6,32 @@
 
 #include <filesystem>
 
-#include "RandomScans.h"
+#include "StreetDrive.h"
 
-using namespace semantic_octree;
+using namespace street_drive;
 
 namespace {
 
-constexpr int kScans = 200, kScansOfKeyframe = 5, kKeyframes = kScans / kScansOfKeyframe;
-
-const std::vector<PosedCloud>& drive() {
-  static const std::vector<PosedCloud> scans = [] {
-    std::mt19937 random(1);
-    std::vector<PosedCloud> made;
-    for (int i = 0; i < kScans; ++i)
-      made.push_back(streetScan(random, {double(i), 0, 0}, 64, 1024));
-    return made;
-  }();
-  return scans;
-}
-
-InsertionOptions insertion() {
-  InsertionOptions options;
-  options.maxRange = 25;
-  return options;
-}
-
-SemanticOcTree emptyMap(bool withAbstraction) {
-  SemanticOcTree map(0.2, numberedClasses(24));
-  if (!withAbstraction) return map;
-  AbstractionOptions options;
-  for (int i = 1; i <= 4; ++i)
-    options.weights.terms.push_back(tree_abstraction::relevant(std::to_string(i), 1, {i}));
-  options.weights.alpha = 0.02;
-  map.setAbstraction(options);
-  return map;
-}
-
-void mapFromScratch(SemanticOcTree& map) {
-  for (const PosedCloud& scan : drive()) map.insert(scan.cloud, scan.T_map_sensor, insertion());
-}
+constexpr int kScansOfKeyframe = 5, kKeyframes = kScans / kScansOfKeyframe;
 
 void fill(KeyframeMap& keyframes) {
   for (int i = 0; i < kScans; ++i) {
     if (i % kScansOfKeyframe == 0) keyframes.begin(Eigen::Isometry3d::Identity());
-    keyframes.insert(drive()[i].cloud, drive()[i].T_map_sensor, insertion());
+    keyframes.insert(scans()[i].cloud, scans()[i].T_map_sensor, insertion());
   }
 }
 
 void mapping(benchmark::State& state) {
-  drive();
+  scans();
   for (auto _ : state) {
     SemanticOcTree map = emptyMap(state.range(0));
-    mapFromScratch(map);
+    insertAll(map);
     state.counters["MB"] = static_cast<double>(map.memoryUsage()) / 1e6;
   }
 }
 
 void mappingKeyframes(benchmark::State& state) {
-  drive();
+  scans();
   for (auto _ : state) {
     SemanticOcTree map = emptyMap(state.range(0));
     KeyframeMap keyframes(map, std::filesystem::temp_directory_path());

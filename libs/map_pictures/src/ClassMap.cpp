@@ -10,6 +10,7 @@
 
 #include "HighestCells.h"
 #include "MapCells.h"
+#include "NodeWalk.h"
 
 namespace map_pictures {
 
@@ -17,19 +18,18 @@ using semantic_octree::SemanticOcTree;
 
 namespace {
 
-template <class Action>
-void forEachOccupiedLeaf(const SemanticOcTree& tree, Action action) {
-  for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf)
-    if (leaf->getLogOdds() > 0)
-      action(*leaf, Eigen::Vector3d(leaf.getX(), leaf.getY(), leaf.getZ()), leaf.getSize());
-}
-
-/** All columns of voxels with something in them. */
+/** All columns of voxels with something in them. What lies within those that are known already is
+ * not looked at. */
 cv::Rect occupiedColumns(const SemanticOcTree& tree) {
   constexpr double kMostColumns = 2e8;
   cv::Rect columns;
-  forEachOccupiedLeaf(tree, [&](const auto&, const Eigen::Vector3d& center, double size) {
-    columns |= columnsUnder(center.head<2>(), size, tree.getResolution());
+  forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
+    if (!(node.getLogOdds() > 0)) return false;
+    const double voxel = tree.getResolution();
+    const cv::Rect own = columnsUnder(cube.center(voxel).head<2>(), voxel * cube.edge(), voxel);
+    if ((columns & own) == own) return false;
+    if (node.isLeaf()) columns |= own;
+    return true;
   });
   if (columns.empty()) throw std::runtime_error("nothing in the map is occupied");
   if (double(columns.width) * columns.height > kMostColumns)
@@ -41,8 +41,14 @@ cv::Rect occupiedColumns(const SemanticOcTree& tree) {
 
 HighestCells highestLeaves(const SemanticOcTree& tree, const cv::Rect& columns, double maxHeight) {
   HighestCells highest(columns, tree.getResolution());
-  forEachOccupiedLeaf(tree, [&](const auto& leaf, const Eigen::Vector3d& center, double size) {
-    if (center.z() <= maxHeight) highest.add(center, size, tree.query(leaf).likeliestClass);
+  forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
+    if (!(node.getLogOdds() > 0)) return false;
+    if (!node.isLeaf()) return true;
+    const double voxel = tree.getResolution();
+    const Eigen::Vector3d center = cube.center(voxel);
+    if (center.z() <= maxHeight)
+      highest.add(center, voxel * cube.edge(), tree.query(node).likeliestClass);
+    return false;
   });
   return highest;
 }
@@ -53,12 +59,12 @@ int enlargement(cv::Size columns) {
   return std::max(1, kGoodSize / std::max(columns.width, columns.height));
 }
 
-/** Paper below a low map, so that the legend needs one column only. */
-cv::Mat withRoomFor(std::size_t legendEntries, const cv::Mat& map) {
-  const int missing = std::max(0, legendHeight(legendEntries) - map.rows);
-  cv::Mat sheet;
-  cv::copyMakeBorder(map, sheet, 0, missing, 0, 0, cv::BORDER_CONSTANT, bgr(kPaper));
-  return sheet;
+/** With paper below a low map, so that the legend needs one column only. */
+cv::Mat enlarged(cv::Mat map, int scale, std::size_t legendEntries) {
+  if (scale > 1) cv::resize(map, map, {}, scale, scale, cv::INTER_NEAREST);
+  const int missing = legendHeight(legendEntries) - map.rows;
+  if (missing > 0) cv::copyMakeBorder(map, map, 0, missing, 0, 0, cv::BORDER_CONSTANT, bgr(kPaper));
+  return map;
 }
 
 }  // namespace
@@ -75,15 +81,17 @@ std::string ClassMap::worldFile() const {
 ClassMap classMapOf(const SemanticOcTree& tree, const std::optional<double>& maxHeight) {
   const cv::Rect columns = occupiedColumns(tree);
   const double top = maxHeight ? *maxHeight : collectCells(tree, {}).maxHeight;
-  const HighestCells highest = highestLeaves(tree, columns, top);
-  const int scale = enlargement(columns.size());
+  std::vector<LegendEntry> legend;
   cv::Mat map;
-  cv::resize(highest.inColors(tree.classes()), map, {}, scale, scale, cv::INTER_NEAREST);
-  const auto legend = classLegend(tree.classes(), highest.countClasses(tree.numClasses()));
+  {  // two such pictures are not in memory beside the heights: there may be 10^8 columns
+    const HighestCells highest = highestLeaves(tree, columns, top);
+    legend = classLegend(tree.classes(), highest.countClasses(tree.numClasses()));
+    map = highest.inColors(tree.classes());
+  }
+  const int scale = enlargement(columns.size());
+  map = enlarged(std::move(map), scale, legend.size());
   const double edge = tree.getResolution();
-  return {withLegend(withRoomFor(legend.size(), map), "", legend),
-          edge / scale,
-          {columns.x * edge, columns.br().y * edge}};
+  return {withLegend(map, "", legend), edge / scale, {columns.x * edge, columns.br().y * edge}};
 }
 
 }  // namespace map_pictures

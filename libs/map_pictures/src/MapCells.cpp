@@ -3,10 +3,12 @@
 #include <semantic_octree/SmoothedView.h>
 
 #include <algorithm>
+#include <array>
+
+#include "NodeWalk.h"
 
 namespace map_pictures {
 
-using semantic_octree::CellState;
 using semantic_octree::SemanticOcTree;
 using semantic_octree::SmoothedView;
 
@@ -15,24 +17,26 @@ namespace {
 /** More than that are smaller than a pixel. */
 constexpr std::size_t kMostCells = 600'000;
 
-/** Calls action(iterator) until it returns false. \return whether it never did */
-template <class Action>
-bool forEachOccupied(const SemanticOcTree& tree, unsigned depth, double minOccupancy,
-                     Action action) {
-  for (auto it = tree.begin_leafs(static_cast<unsigned char>(depth)), end = tree.end_leafs();
-       it != end; ++it)
-    if (it->getOccupancy() > minOccupancy && !action(it)) return false;
-  return true;
+/** The largest depth at which there are not too many cells. Of a map in tiles, each tile comes in
+ * once at most. */
+unsigned depthToDraw(const SemanticOcTree& tree, double minOccupancy) {
+  std::array<std::size_t, semantic_octree::kTreeDepth + 1> cells{};  // at each depth
+  int deepest = semantic_octree::kTreeDepth;
+  forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
+    if (!(node.getOccupancy() > minOccupancy)) return false;
+    const int last = node.isLeaf() ? deepest : cube.depth;
+    for (int depth = cube.depth; depth <= last; ++depth) ++cells[depth];
+    while (deepest > 1 && cells[deepest] > kMostCells) --deepest;
+    return cube.depth < deepest;
+  });
+  return static_cast<unsigned>(deepest);
 }
 
-unsigned depthToDraw(const SemanticOcTree& tree, double minOccupancy) {
-  for (unsigned depth = tree.getTreeDepth(); depth > 1; --depth) {
-    std::size_t count = 0;
-    if (forEachOccupied(tree, depth, minOccupancy,
-                        [&count](const auto&) { return ++count <= kMostCells; }))
-      return depth;
-  }
-  return 1;
+MapCell cellOf(const Cube& cube, double voxelSize) {
+  const Eigen::Array3i middle = cube.lowest + cube.edge() / 2;
+  return {semantic_octree::octomapKey(middle.x(), middle.y(), middle.z()),
+          static_cast<unsigned>(cube.depth), cube.center(voxelSize).cast<float>(),
+          float(voxelSize * cube.edge()), semantic_types::kNoClass};
 }
 
 void cutOff(MapCells& map, const PictureStyle& style) {
@@ -59,13 +63,16 @@ MapCells collectCells(const SemanticOcTree& tree, const PictureStyle& style) {
   map.depth = depthToDraw(tree, style.minOccupancy);
   const bool smooth = style.neighborWeight > 0 && map.depth == tree.getTreeDepth();
   const SmoothedView view(tree, {style.neighborWeight});
-  forEachOccupied(tree, map.depth, style.minOccupancy, [&](const auto& it) {
-    const CellState state = smooth ? view.query(it.getKey()) : tree.query(*it);
-    map.cells.push_back({it.getKey(), it.getDepth(),
-                         Eigen::Vector3d(it.getX(), it.getY(), it.getZ()).cast<float>(),
-                         float(it.getSize()), state.likeliestClass});
-    return true;
+  forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
+    if (!(node.getOccupancy() > style.minOccupancy)) return false;
+    if (!node.isLeaf() && cube.depth < static_cast<int>(map.depth)) return true;
+    MapCell cell = cellOf(cube, tree.getResolution());
+    if (!smooth) cell.id = tree.query(node).likeliestClass;
+    map.cells.push_back(cell);
+    return false;
   });
+  if (smooth)  // later, for nodes may be gone when neighbors in other tiles come in
+    for (MapCell& cell : map.cells) cell.id = view.query(cell.key).likeliestClass;
   cutOff(map, style);
   return map;
 }

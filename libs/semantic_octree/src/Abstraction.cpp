@@ -150,18 +150,29 @@ double Abstraction::totalDensity() const {
 }
 
 std::vector<double> Abstraction::distribution(const LeafCell& leaf) const {
-  return m_map.distribution(leaf.node);
+  return m_map.distribution(m_map.search(leaf.key, leaf.depth));
 }
 
-double Abstraction::knownShare(const LeafCell& leaf) const { return knownVolume(leaf.node); }
+double Abstraction::knownShare(const LeafCell& leaf) const {
+  return knownVolume(m_map.search(leaf.key, leaf.depth));
+}
 
 SemanticOcTree Abstraction::compressedMap() const {
-  SemanticOcTree compressed(m_map.getResolution(), m_map.classes(), m_map.filterParameters());
-  if (m_map.empty()) return compressed;
+  SemanticOcTree compressed = emptyCompressedMap();
+  compressTo(compressed);
+  return compressed;
+}
+
+SemanticOcTree Abstraction::emptyCompressedMap() const {
+  return {m_map.getResolution(), m_map.classes(), m_map.filterParameters()};
+}
+
+void Abstraction::compressTo(SemanticOcTree& compressed) const {
+  TreeBuilder::checkTarget(compressed, emptyCompressedMap());
+  if (m_map.empty()) return;
   const CompressedTree tree = compressedTree();
   TreeBuilder::fill(compressed, CompressedCursor(m_map, tree, m_map.root()),
                     TreeBuilder::Merge::Never);
-  return compressed;
 }
 
 TreeChange Abstraction::takeChange() {

@@ -91,7 +91,7 @@ class KeyframeMap::Correction {
   CorrectionReport apply() {
     m_report.tiles = m_tiles.size();
     if (m_tiles.empty()) return accept();
-    SemanticOcTree anew = TreeBuilder::emptyLike(m.map);
+    SemanticOcTree anew = emptyLike(m.map);
     anew.m_clock = 0;
     for (std::size_t i = 0; i < m.scans.size(); ++i) merge(i, anew);
     anew.ageUntil(m.map.m_clock);

@@ -1,6 +1,8 @@
 #include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
+#include <strict_files/AvailableMemory.h>
 #include <strict_files/FileLock.h>
+#include <strict_files/Words.h>
 
 #include <algorithm>
 #include <limits>
@@ -40,6 +42,12 @@ class LeavesCursor {
   int m_depth;
 };
 
+Cell cellOf(const TreeIterator& node) {
+  const auto key = node.getIndexKey();
+  const auto depth = static_cast<int>(node.getDepth());
+  return {VoxelIndex(key[0], key[1], key[2]) / edgeAtDepth(depth), depth};
+}
+
 std::vector<std::string> namesOf(const ClassTable& classes) {
   std::vector<std::string> names;
   for (int id = 1; id <= classes.size(); ++id)
@@ -53,8 +61,17 @@ SemanticOcTree loadLeaves(const fs::path& folder, const TileIndex& index) {
   if (leaves.getResolution() != index.resolution || namesOf(leaves.classes()) != index.classes)
     throw std::runtime_error("cannot load map '" + file.string() +
                              "': it has another resolution or other classes than " +
-                             TileIndex::kFile + " says");
+                             MapFolder::kIndexFile + " says");
   return leaves;
+}
+
+/** Of nodes and records, as maps of streets have them: 5 to 7 bytes a leaf. */
+std::uint64_t bytesInMemory(const TileIndex& index) {
+  constexpr std::uint64_t kBytesOfLeaf = 6;
+  std::uint64_t leaves = 0;
+  for (const TileIndex::Tile& tile : index.tiles)
+    leaves += static_cast<std::uint64_t>(tile.nodes - tile.innerNodes);
+  return kBytesOfLeaf * leaves;
 }
 
 }  // namespace
@@ -72,11 +89,11 @@ class MapFolder::Tiles {
     TileIndex index = open(options);
     constexpr double kAll = 1e18;  // bytes
     const auto budget = static_cast<std::size_t>(std::min(options.memory * 1e6, kAll));
-    const TilesOnDisk::Place place{m_folder, index.depth, budget, access == Access::Write};
+    const TilesOnDisk::Place place{m_folder, index.depth, budget, access != Access::Read};
     tiles = std::make_unique<TilesOnDisk>(map, place, std::move(index));
     auto empty = std::make_unique<NodeStore>(map.store().stateBytes());
     try {
-      if (tiles->index().generation > 0) takeContents();
+      if (tiles->index().generation > 0 && access != Access::Replace) takeContents();
       map.store().setTiles(tiles.get());
       if (map.hasAbstraction()) map.computeTileByTile();
     } catch (...) {
@@ -93,12 +110,25 @@ class MapFolder::Tiles {
     if (m_access == Access::Read)
       throw std::logic_error("saving a map whose folder was opened to be read");
     TileIndex index = tiles->writeChanged();
-    SemanticOcTree leaves = TreeBuilder::emptyLike(m_map);
-    TreeBuilder::fill(leaves, LeavesCursor(m_map, index.depth, m_map.root(), 0));
+    SemanticOcTree leaves = emptyLike(m_map);
+    TreeBuilder::fill(leaves, LeavesCursor(m_map, index.depth, m_map.root(), 0),
+                      TreeBuilder::Merge::Never);
+    for (auto leaf = leaves.begin_leafs(); leaf != leaves.end_leafs(); ++leaf)
+      index.leaves.push_back(cellOf(leaf));
     saveTree(leaves, (m_folder / TileIndex::leavesName(index.generation)).string());
     writeIndex(m_folder, index);
     tiles->setIndex(std::move(index));
     removeOthers();
+  }
+
+  void bringAll(std::optional<std::size_t> most) {
+    const std::uint64_t available = most.value_or(strict_files::availableMemory());
+    const std::uint64_t needed = bytesInMemory(tiles->index());
+    if (needed > available)
+      throw std::runtime_error(m_folder.string() + ": as a whole it needs about " +
+                               strict_files::sizeText(needed) + " of memory, and " +
+                               strict_files::sizeText(available) + " are left");
+    tiles->bringAll();
   }
 
   std::uint64_t bytesOnDisk() const {
@@ -117,7 +147,7 @@ class MapFolder::Tiles {
   bool isOfMap() const { return !m_map.isBroken() && m_map.store().tiles() == tiles.get(); }
 
   TileIndex open(const MapFolderOptions& options) {
-    if (m_access == Access::Write) {
+    if (m_access != Access::Read) {
       fs::create_directories(m_folder);
       m_writer = FileLock::tryTo(m_folder / kWriterLock, FileLock::Kind::Exclusive);
       if (!m_writer)
@@ -125,8 +155,10 @@ class MapFolder::Tiles {
     } else {
       m_reader.emplace(m_folder / kReadersLock, FileLock::Kind::Shared);
     }
-    if (m_access == Access::Read || isAt(m_folder)) return readIndex(m_folder);
+    const bool wasSaved = m_access == Access::Read || isAt(m_folder);
+    if (wasSaved && m_access != Access::Replace) return readIndex(m_folder);
     TileIndex index;
+    if (wasSaved) index.generation = readIndex(m_folder).generation;
     index.resolution = m_map.getResolution();
     index.depth = depthOfTiles(options.tileSize, index.resolution);
     index.classes = namesOf(m_map.classes());
@@ -135,7 +167,7 @@ class MapFolder::Tiles {
 
   void takeContents() {
     SemanticOcTree leaves = loadLeaves(m_folder, tiles->index());
-    if (TreeBuilder::emptyLike(leaves) != TreeBuilder::emptyLike(m_map))
+    if (emptyLike(leaves) != emptyLike(m_map))
       throw std::runtime_error(m_folder.string() +
                                ": its map has another resolution, other classes or parameters");
     m_map.m_store = std::make_unique<NodeStore>(leaves.store(), m_map.store().stateBytes());
@@ -171,12 +203,12 @@ class MapFolder::Tiles {
 
 bool MapFolder::isAt(const fs::path& folder) {
   std::error_code ignored;
-  return fs::is_regular_file(folder / TileIndex::kFile, ignored);
+  return fs::is_regular_file(folder / MapFolder::kIndexFile, ignored);
 }
 
 SemanticOcTree MapFolder::emptyMap(const fs::path& folder) {
   const FileLock lock(folder / kReadersLock, FileLock::Kind::Shared);
-  return TreeBuilder::emptyLike(loadLeaves(folder, readIndex(folder)));
+  return emptyLike(loadLeaves(folder, readIndex(folder)));
 }
 
 MapFolder::MapFolder(SemanticOcTree& map, const fs::path& folder, Access access,
@@ -187,7 +219,7 @@ MapFolder::~MapFolder() = default;
 
 void MapFolder::save() { m->save(); }
 
-void MapFolder::bringAll() { m->tiles->bringAll(); }
+void MapFolder::bringAll(std::optional<std::size_t> available) { m->bringAll(available); }
 
 std::vector<std::string> MapFolder::problems() { return m->tiles->problems(); }
 
@@ -211,6 +243,10 @@ StoredMap::StoredMap(const fs::path& path, double memory)
   m_folder = std::make_unique<MapFolder>(m_tree, path, MapFolder::Access::Read, options);
   m_bytesOnDisk = m_folder->contents().bytesOnDisk;
 }
+
+StoredMap::StoredMap(SemanticOcTree empty, const fs::path& folder, const MapFolderOptions& options)
+    : m_tree(std::move(empty)),
+      m_folder(std::make_unique<MapFolder>(m_tree, folder, MapFolder::Access::Replace, options)) {}
 
 SemanticOcTree loadFolder(const fs::path& folder) {
   SemanticOcTree map = MapFolder::emptyMap(folder);

@@ -8,6 +8,20 @@
 namespace semantic_octree {
 namespace {
 
+/** A map's nodes as they are. */
+class CopyCursor {
+ public:
+  CopyCursor(const SemanticOcTree& map, const Node& node) : m_map(map), m_node(node) {}
+  bool known() const { return static_cast<bool>(m_node); }
+  bool isLeaf() const { return m_node.isLeaf(); }
+  LeafContent content() const { return contentOf(m_map, m_node); }
+  CopyCursor child(int i) const { return {m_map, m_node.isLeaf() ? m_node : m_node.child(i)}; }
+
+ private:
+  const SemanticOcTree& m_map;
+  Node m_node;
+};
+
 /** Range of voxels, as keys, both ends included. */
 struct VoxelBox {
   VoxelIndex first, last;
@@ -87,10 +101,19 @@ class CoarseCursor {
 
 }  // namespace
 
+SemanticOcTree emptyLike(const SemanticOcTree& map) {
+  return TreeBuilder::emptyWith(map, map.getResolution());
+}
+
+void copyTo(SemanticOcTree& copy, const SemanticOcTree& map) {
+  TreeBuilder::checkTarget(copy, map);
+  TreeBuilder::fill(copy, CopyCursor(map, map.root()), TreeBuilder::Merge::Never);
+}
+
 SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box) {
   if (!(box.min().array() <= box.max().array()).all())
     throw std::invalid_argument("cropping: the box is empty, or not a number");
-  SemanticOcTree part = TreeBuilder::emptyLike(map);
+  SemanticOcTree part = emptyLike(map);
   const VoxelBox voxels = voxelsIn(box, map.getResolution());
   TreeBuilder::fill(part, CropCursor(map, voxels, map.root(), Cell()));
   return part;
@@ -100,7 +123,7 @@ SemanticOcTree coarsened(const SemanticOcTree& map, int levels) {
   if (levels < 0 || levels > 8)
     throw std::invalid_argument("coarsening: levels = " + std::to_string(levels) +
                                 ", expected 0 to 8");
-  SemanticOcTree coarse = TreeBuilder::emptyLike(map, map.getResolution() * (1 << levels));
+  SemanticOcTree coarse = TreeBuilder::emptyWith(map, map.getResolution() * (1 << levels));
   TreeBuilder::fill(coarse, CoarseCursor(map, levels));
   return coarse;
 }

@@ -116,19 +116,30 @@ void checkAlike(const std::vector<const SemanticOcTree*>& maps) {
   }
 }
 
+/** Of the time of the newest. */
+SemanticOcTree emptySumOf(const std::vector<const SemanticOcTree*>& maps) {
+  const auto isEarlier = [](const auto* a, const auto* b) { return a->clock() < b->clock(); };
+  SemanticOcTree sum = emptyLike(**std::max_element(maps.begin(), maps.end(), isEarlier));
+  sum.setPruning(maps.front()->pruning());
+  return sum;
+}
+
 }  // namespace
 
 SemanticOcTree merged(const std::vector<const SemanticOcTree*>& maps, Limits limits) {
   checkAlike(maps);
-  const auto isEarlier = [](const auto* a, const auto* b) { return a->clock() < b->clock(); };
-  SemanticOcTree sum =
-      TreeBuilder::emptyLike(**std::max_element(maps.begin(), maps.end(), isEarlier));
-  sum.setPruning(maps.front()->pruning());
+  SemanticOcTree sum = emptySumOf(maps);
+  mergeTo(sum, maps, limits);
+  return sum;
+}
+
+void mergeTo(SemanticOcTree& sum, const std::vector<const SemanticOcTree*>& maps, Limits limits) {
+  checkAlike(maps);
+  TreeBuilder::checkTarget(sum, emptySumOf(maps));
   const Sum context{maps, {sum.numClasses(), sum.filterParameters()}, limits};
   std::vector<Node> roots;
   for (const SemanticOcTree* map : maps) roots.push_back(map->root());
   TreeBuilder::fill(sum, MergeCursor(context, std::move(roots)));
-  return sum;
 }
 
 }  // namespace semantic_octree

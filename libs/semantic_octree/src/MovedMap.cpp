@@ -119,7 +119,7 @@ void checkStaysInside(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_
 
 SemanticOcTree moved(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_old) {
   checkRigid(T_new_old);
-  SemanticOcTree result = TreeBuilder::emptyLike(map);
+  SemanticOcTree result = emptyLike(map);
   if (map.empty()) return result;
   checkStaysInside(map, T_new_old);
   const Eigen::Isometry3d T = inVoxels(T_new_old.inverse(), map.getResolution());

@@ -24,6 +24,15 @@ NodeStore::NodeStore(const NodeStore& o, std::size_t stateBytes) : NodeStore(sta
   for (NodeArena& arena : m_arenas) arena.m_store = this;
 }
 
+std::unique_ptr<NodeStore> NodeStore::frame(std::size_t stateBytes) const {
+  auto frame = std::make_unique<NodeStore>(stateBytes);
+  frame->arena(0).copyFrame(*this, m_root, frame->m_root);
+  frame->m_tiles = m_tiles;
+  frame->m_awayNodes = m_awayNodes;
+  frame->m_awayInner = m_awayInner;
+  return frame;
+}
+
 NodeArena& NodeStore::arena(int i) {
   while (static_cast<int>(m_arenas.size()) <= i) m_arenas.emplace_back(*this);
   return m_arenas[i];
@@ -185,6 +194,21 @@ void NodeArena::remove(Slot& known) {
   m_inner -= known.isInner();
   --m_nodes;
   known = Slot();
+}
+
+void NodeArena::copyFrame(const NodeStore& from, const Slot& source, Slot& copy) {
+  if (source.isLeaf()) {
+    createLeaf(copy, source.value);
+    if (source.kind == Kind::LeafWithRecord) setRecord(copy, from.record(source));
+  } else if (source.isInner()) {
+    Octant& octant = createOctant(copy);
+    copy.value = source.value;
+    copy.kind = source.kind;
+    const Octant& children = from.octant(source);
+    if (source.kind == Kind::Away) octant = children;
+    for (int i = 0; i < 8 && source.kind == Kind::Octant; ++i)
+      copyFrame(from, children.slots[i], octant.slots[i]);
+  }
 }
 
 bool NodeArena::prune(Slot& inner) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <deque>
+#include <memory>
 
 #include "Cell.h"
 #include "ClassRecord.h"
@@ -29,6 +30,7 @@ struct Slot {
     Octant,          ///< inner node; `index` is that of its children
     Block,           ///< inner node at depth 14; `index` is the block's
     Away             ///< inner node whose children are in a file; `index` is where they come back
+                     ///< and until then what TilesOnDisk knows it by
   };
   std::uint32_t index = 0;
   Units value = 0;
@@ -102,6 +104,12 @@ class TileSource {
   virtual void prepare(const Scan& scan) = 0;
   /** Makes all nodes go away that may. */
   virtual void sendAway() = 0;
+  virtual bool mayChange() const = 0;
+  /** Depth of the nodes that go away. */
+  virtual int depth() const = 0;
+  /** A node at that depth, which was not there, is an inner node now, with all that is below.
+   * Others may go away for it. */
+  virtual void wasBuilt(const Cell& cell) = 0;
 };
 
 /** Memory of a tree: nodes, class records, bookkeeping of inner nodes.
@@ -115,6 +123,9 @@ class NodeStore {
   /** A copy with room for this bookkeeping (copied if both have the same size). */
   NodeStore(const NodeStore& o, std::size_t stateBytes);
   NodeStore(const NodeStore&) = delete;
+  /** A copy, without bookkeeping, of a store whose tiles are all away: of the nodes alone, and not
+   * of the memory that is set aside. \param stateBytes that there is room for */
+  std::unique_ptr<NodeStore> frame(std::size_t stateBytes) const;
 
   Slot& root() { return m_root; }
   const Slot& root() const { return m_root; }
@@ -231,6 +242,7 @@ class NodeArena {
 
  private:
   friend class NodeStore;
+  void copyFrame(const NodeStore& from, const Slot& source, Slot& copy);
   bool pruneOctant(Slot& inner);
   bool pruneBlock(Slot& inner);
   bool childrenAgree(const Octant& octant) const;

@@ -92,6 +92,8 @@ void SemanticOcTree::checkNotInTiles() const {
         "a map in a folder of tiles cannot be copied, cleared, corrected or have half-lives");
 }
 
+bool SemanticOcTree::isReadOnly() const { return store().tiles() && !store().tiles()->mayChange(); }
+
 void SemanticOcTree::clear() {
   checkNotInTiles();
   m_store = std::make_unique<NodeStore>(m_gTree ? m_gTree->stateBytes() : 0);
@@ -108,6 +110,8 @@ std::vector<octomap::OcTreeKey> SemanticOcTree::takeTouchedTiles() {
   return m_touched->take();
 }
 
+void SemanticOcTree::forgetTouchedTiles() { m_touched = std::make_unique<TouchedTiles>(); }
+
 void SemanticOcTree::setPruning(bool on) {
   if (!empty()) throw std::logic_error("pruning can be switched in an empty tree only");
   m_pruning = on;
@@ -117,13 +121,18 @@ void SemanticOcTree::setAbstraction(const AbstractionOptions& options) {
   options.validate(numClasses());
   auto gTree = std::make_unique<GTree>(options, m_filter, m_resolution);
   auto leafChanges = std::make_unique<LeafChanges>();
-  if (store().tiles()) store().tiles()->sendAway();  // it is copied
-  auto newStore = std::make_unique<NodeStore>(store(), gTree->stateBytes());
+  auto newStore = storeFor(gTree->stateBytes());
   if (!store().tiles()) gTree->worker(0).recomputeAll(*newStore, newStore->root(), Cell());
   std::swap(m_gTree, gTree);
   std::swap(m_leafChanges, leafChanges);
-  std::swap(m_store, newStore);
+  m_store = std::move(newStore);  // first, so that tiles come in where the old nodes were
   if (store().tiles()) computeTileByTile();
+}
+
+std::unique_ptr<NodeStore> SemanticOcTree::storeFor(std::size_t stateBytes) const {
+  if (!store().tiles()) return std::make_unique<NodeStore>(store(), stateBytes);
+  store().tiles()->sendAway();
+  return store().frame(stateBytes);
 }
 
 void SemanticOcTree::computeTileByTile() {
@@ -137,7 +146,7 @@ void SemanticOcTree::computeTileByTile() {
 }
 
 void SemanticOcTree::dropAbstraction() {
-  m_store = std::make_unique<NodeStore>(store(), 0);
+  m_store = storeFor(0);
   m_gTree = nullptr;
   m_leafChanges = nullptr;
 }

@@ -1,5 +1,6 @@
 #include "TileIndex.h"
 
+#include <semantic_octree/MapFolder.h>
 #include <strict_files/StrictYaml.h>
 #include <strict_files/TextFile.h>
 
@@ -31,8 +32,8 @@ class IndexReader {
 
   TileIndex read() const {
     const YAML::Node& root = m_yaml.root();
-    m_yaml.checkKeys(
-        root, {"version", "frame", "resolution", "tile_size", "generation", "classes", "tiles"});
+    m_yaml.checkKeys(root, {"version", "frame", "resolution", "tile_size", "generation", "classes",
+                            "tiles", "leaves"});
     if (get<int>(root, "version", 1, 1 << 30) != TileIndex::kVersion)
       m_yaml.fail(root["version"], "version of the format, expected 1");
     TileIndex index;
@@ -125,7 +126,7 @@ int depthOfTiles(double tileSize, double resolution) {
 }
 
 TileIndex readIndex(const std::filesystem::path& folder) {
-  return IndexReader(folder / TileIndex::kFile).read();
+  return IndexReader(folder / MapFolder::kIndexFile).read();
 }
 
 void writeIndex(const std::filesystem::path& folder, const TileIndex& index) {
@@ -149,7 +150,16 @@ void writeIndex(const std::filesystem::path& folder, const TileIndex& index) {
          << "], generation: " << tile.generation << ", nodes: " << tile.nodes
          << ", inner: " << tile.innerNodes << ", highest: " << tile.highest << "}\n";
   }
-  strict_files::writeText(folder / TileIndex::kFile, text.str());
+  text << "leaves:";
+  if (index.leaves.empty()) text << " []";
+  text << '\n';
+  for (const Cell& leaf : index.leaves) {
+    const int tiles = 1 << (index.depth - leaf.depth);
+    const VoxelIndex at = leaf.index * tiles - half;
+    text << "  - {at: [" << at.x() << ", " << at.y() << ", " << at.z() << "], tiles: " << tiles
+         << "}\n";
+  }
+  strict_files::writeText(folder / MapFolder::kIndexFile, text.str());
 }
 
 }  // namespace semantic_octree

@@ -23,6 +23,8 @@ struct TileIndex {
   /** Counts what was saved. Files of others are left from what was not. */
   std::uint64_t generation = 0;
   std::vector<Tile> tiles;
+  /** As large as tiles, or larger: written, for others, and not read. */
+  std::vector<Cell> leaves;
 
   /** Edge of a tile, meters. */
   double tileSize() const { return resolution * edgeAtDepth(depth); }
@@ -33,7 +35,6 @@ struct TileIndex {
   /** Whether one of these may be a file's name. */
   static bool isName(const std::string& name);
 
-  static constexpr const char* kFile = "index.yaml";
   static constexpr int kVersion = 1;
 };
 

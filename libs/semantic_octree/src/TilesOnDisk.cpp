@@ -18,6 +18,15 @@ struct Count {
   long nodes = 0, inner = 0;
 };
 
+/** A tile that is away is known by its Morton code, which stands where its children come back. */
+void markAway(Octant& octant, std::uint64_t code) {
+  octant.slots[0].index = static_cast<std::uint32_t>(code);
+  octant.slots[1].index = static_cast<std::uint32_t>(code >> 32);
+}
+std::uint64_t codeOfAway(const Octant& octant) {
+  return std::uint64_t(octant.slots[1].index) << 32 | octant.slots[0].index;
+}
+
 /** Nodes below one. */
 void countBelow(const NodeStore& store, const Slot& inner, Count& count) {
   if (inner.kind == Kind::Block) {
@@ -48,7 +57,7 @@ void TilesOnDisk::addFromIndex() {
   const auto add = [&](const auto& self, Slot& slot, const Cell& cell,
                        const TileIndex::Tile& tile) -> void {
     if (slot.isLeaf())
-      throw std::runtime_error((m_place.folder / TileIndex::kFile).string() +
+      throw std::runtime_error((m_place.folder / MapFolder::kIndexFile).string() +
                                ": altered: a tile where all is one leaf");
     if (!slot.isKnown()) {
       arena.createOctant(slot);
@@ -66,7 +75,7 @@ void TilesOnDisk::addFromIndex() {
     tile = {t.place, t.generation, 0, true, false, t.nodes, t.innerNodes};
     Slot& slot = *slotOf(tile);
     slot.kind = Kind::Away;
-    m_away[slot.index] = code;
+    markAway(nodes.octant(slot), code);
     nodes.countAway(t.nodes, t.innerNodes);
   }
 }
@@ -94,7 +103,7 @@ NodeArena& TilesOnDisk::arenaWith(bool most) {
 }
 
 void TilesOnDisk::bring(Slot& away) {
-  Tile& tile = m_tiles.at(m_away.at(away.index));
+  Tile& tile = m_tiles.at(codeOfAway(store().octant(away)));
   fetch(away, tile);
   tile.used = ++m_clock;
   makeRoom(m_clock, m_place.budget);
@@ -103,7 +112,6 @@ void TilesOnDisk::bring(Slot& away) {
 void TilesOnDisk::fetch(Slot& slot, Tile& tile) {
   read(slot, tile);
   tile.isAway = false;
-  m_away.erase(slot.index);
   ++m_broughtIn;
 }
 
@@ -112,6 +120,7 @@ void TilesOnDisk::read(Slot& slot, const Tile& tile) {
   NodeArena& arena = arenaWith(true);
   nodes.countAway(-tile.nodes, -tile.innerNodes);
   slot.kind = Kind::Octant;
+  nodes.octant(slot) = Octant();
   try {
     loadTile(m_map, arena, nodes.octant(slot), cellOf(tile), fileOf(tile));
     if (nodes.highestValueBelow(slot) != slot.value)
@@ -121,6 +130,7 @@ void TilesOnDisk::read(Slot& slot, const Tile& tile) {
   } catch (...) {
     removeChildren(arena, slot);
     slot.kind = Kind::Away;
+    markAway(nodes.octant(slot), tileCode(tile.place));
     nodes.countAway(tile.nodes, tile.innerNodes);
     throw;
   }
@@ -158,6 +168,15 @@ void TilesOnDisk::prepare(const Scan& scan) {
   for (const VoxelIndex& cube : cubes) m_tiles.at(tileCode(cube)).isDirty = true;
 }
 
+void TilesOnDisk::wasBuilt(const Cell& cell) {
+  if (!m_place.mayWrite) throw std::logic_error("filling a map whose folder was opened to be read");
+  Tile& tile = m_tiles[tileCode(cell.index)];
+  tile.place = cell.index;
+  tile.used = ++m_clock;
+  tile.isDirty = true;
+  makeRoom(m_clock, m_place.budget);
+}
+
 void TilesOnDisk::sendAway() { makeRoom(m_clock + 1, 0); }
 
 void TilesOnDisk::makeRoom(std::uint64_t usedBefore, std::size_t budget) {
@@ -182,9 +201,9 @@ void TilesOnDisk::send(Slot& slot, Tile& tile) {
   if (tile.isDirty) write(slot, tile);
   Count count;
   countBelow(nodes, slot, count);
-  m_away[slot.index] = tileCode(tile.place);
   removeChildren(arenaWith(false), slot);
   slot.kind = Kind::Away;
+  markAway(nodes.octant(slot), tileCode(tile.place));
   tile.isAway = true;
   tile.nodes = count.nodes;
   tile.innerNodes = count.inner;

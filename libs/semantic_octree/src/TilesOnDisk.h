@@ -25,6 +25,9 @@ class TilesOnDisk : public TileSource {
   void bring(Slot& away) override;
   void prepare(const Scan& scan) override;
   void sendAway() override;
+  bool mayChange() const override { return m_place.mayWrite; }
+  int depth() const override { return m_place.depth; }
+  void wasBuilt(const Cell& cell) override;
 
   /** Adds the tiles that the index has to a map that has none. */
   void addFromIndex();
@@ -64,9 +67,8 @@ class TilesOnDisk : public TileSource {
 
   SemanticOcTree& m_map;
   Place m_place;
-  TileIndex m_index;                                        ///< as it was saved
-  std::unordered_map<std::uint64_t, Tile> m_tiles;          ///< by Morton code
-  std::unordered_map<std::uint32_t, std::uint64_t> m_away;  ///< their codes, by slot's index
+  TileIndex m_index;                                ///< as it was saved
+  std::unordered_map<std::uint64_t, Tile> m_tiles;  ///< by Morton code
   std::uint64_t m_clock = 0;
   std::size_t m_broughtIn = 0, m_sentOut = 0;
 };

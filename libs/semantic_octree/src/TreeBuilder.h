@@ -1,4 +1,8 @@
 #pragma once
+#include <semantic_octree/MapOperations.h>
+
+#include <stdexcept>
+
 #include "Cell.h"
 #include "LeafContent.h"
 
@@ -14,45 +18,51 @@ class TreeBuilder {
   /** Children that agree. */
   enum class Merge { AsTheMapDoes, Never };
 
+  /** A map in a folder of tiles that is open for writing sends tiles away meanwhile. */
   template <typename Cursor>
   static void fill(SemanticOcTree& map, const Cursor& root, Merge merge = Merge::AsTheMapDoes) {
-    TreeBuilder(map, merge).build(map.store().root(), root, 0);
+    TreeBuilder(map, merge).build(map.store().root(), root, Cell());
   }
-  /** An empty map of the same kind, and of the same time. */
-  static SemanticOcTree emptyLike(const SemanticOcTree& map) {
-    return emptyLike(map, map.getResolution());
-  }
-  /** \param resolution its voxels' edge, m */
-  static SemanticOcTree emptyLike(const SemanticOcTree& map, double resolution) {
+  /** An empty map of the same kind and time. \param resolution its voxels' edge, m */
+  static SemanticOcTree emptyWith(const SemanticOcTree& map, double resolution) {
     SemanticOcTree empty(resolution, map.classes(), map.filterParameters());
     empty.setPruning(map.pruning());
     empty.m_clock = map.m_clock;
     return empty;
   }
+  /** \throw std::invalid_argument a map that is to be filled is not empty, keeps an abstraction, or
+   * is of another kind than `like`. */
+  static void checkTarget(const SemanticOcTree& map, const SemanticOcTree& like) {
+    if (!map.empty() || map.hasAbstraction() || emptyLike(map) != emptyLike(like))
+      throw std::invalid_argument(
+          "a map that is to be filled has to be empty, of the same kind, without abstraction");
+  }
 
  private:
   TreeBuilder(SemanticOcTree& map, Merge merge)
       : m_arena(map.store().arena(0)),
+        m_tiles(map.store().tiles()),
         m_allowsLargeLeaves(map.pruning()),
         m_merges(map.pruning() && merge == Merge::AsTheMapDoes) {}
 
   template <typename Cursor>
-  void build(Slot& slot, const Cursor& cursor, int depth) {
+  void build(Slot& slot, const Cursor& cursor, const Cell& cell) {
     if (!cursor.known()) return;
     if (cursor.isLeaf() && m_allowsLargeLeaves)
       cursor.content().write(m_arena, slot);
-    else if (depth == Block::kDepth)
+    else if (cell.depth == Block::kDepth)
       buildBlock(slot, cursor);
     else
-      buildChildren(slot, cursor, depth);
+      buildChildren(slot, cursor, cell);
+    if (m_tiles && cell.depth == m_tiles->depth() && slot.isInner()) m_tiles->wasBuilt(cell);
   }
 
   template <typename Cursor>
-  void buildChildren(Slot& slot, const Cursor& cursor, int depth) {
+  void buildChildren(Slot& slot, const Cursor& cursor, const Cell& cell) {
     Octant& octant = m_arena.createOctant(slot);
     Units highest = kUnknown;
     for (int i = 0; i < 8; ++i) {
-      build(octant.slots[i], cursor.child(i), depth + 1);
+      build(octant.slots[i], cursor.child(i), cell.child(i));
       if (octant.slots[i].isKnown()) highest = std::max(highest, octant.slots[i].value);
     }
     if (highest == kUnknown)
@@ -87,6 +97,7 @@ class TreeBuilder {
   }
 
   NodeArena& m_arena;
+  TileSource* m_tiles;
   bool m_allowsLargeLeaves, m_merges;
 };
 

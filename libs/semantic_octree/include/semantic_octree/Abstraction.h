@@ -106,6 +106,11 @@ class Abstraction {
    * truncated as everywhere. (distribution() and the G-values have the mixture of all known
    * voxels.) */
   SemanticOcTree compressedMap() const;
+  /** \param compressed to be filled, see MapOperations.h; like an emptyCompressedMap()
+   * \throw std::invalid_argument it is not empty, or of another kind. */
+  void compressTo(SemanticOcTree& compressed) const;
+  /** Of the same resolution, classes and filter parameters as the map. */
+  SemanticOcTree emptyCompressedMap() const;
 
   /** What changed in leaves() since the last call (at first: since the map was empty), in time
    * proportional to the nodes that scans touched and the leaves that changed. */

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,14 @@ struct MapFolderOptions {
  * writes, others read what was saved when they opened it (doc/handbook/large-maps.md). */
 class MapFolder {
  public:
-  enum class Access { Read, Write };
+  enum class Access {
+    Read,
+    Write,
+    Replace  ///< to write, but the map begins empty: with the first save() all that was there goes
+  };
 
+  /** The file that makes a folder one. */
+  static constexpr const char* kIndexFile = "index.yaml";
   /** Whether a map was saved there. */
   static bool isAt(const std::filesystem::path& folder);
   /** An empty map like that of a folder. \throw std::runtime_error as loadTree() */
@@ -65,8 +72,11 @@ class MapFolder {
   /** Brings what changed to the disk. If this fails, the map and the folder are what they were.
    * \throw std::runtime_error naming the file; std::logic_error opened to be read. */
   void save();
-  /** Has all tiles in memory, whatever the budget: the map may then outlive this. */
-  void bringAll();
+  /** Has all tiles in memory, whatever the budget: the map may then outlive this.
+   * \param available bytes of memory; without, those that the system has left
+   * \throw std::runtime_error naming the bytes that it needs, before it begins, if these are more
+   */
+  void bringAll(std::optional<std::size_t> available = {});
 
   /** What is wrong with tiles, each naming its file: missing, cut, altered. Reads all of them. */
   std::vector<std::string> problems();
@@ -94,6 +104,10 @@ class StoredMap {
   explicit StoredMap(const std::filesystem::path& path, double memory = MapFolderOptions().memory);
   /** One that is in memory. */
   explicit StoredMap(SemanticOcTree tree) : m_tree(std::move(tree)) {}
+  /** An empty one, to be filled (MapOperations.h) and saved in place of what the folder has.
+   * \throw std::runtime_error as MapFolder */
+  StoredMap(SemanticOcTree empty, const std::filesystem::path& folder,
+            const MapFolderOptions& options);
   StoredMap(const StoredMap&) = delete;
   StoredMap& operator=(const StoredMap&) = delete;
 
@@ -108,7 +122,7 @@ class StoredMap {
   std::uint64_t m_bytesOnDisk = 0;
 };
 
-/** All of a folder's map. \throw std::runtime_error as loadTree() */
+/** All of a folder's map. \throw std::runtime_error as loadTree() and MapFolder::bringAll() */
 SemanticOcTree loadFolder(const std::filesystem::path& folder);
 
 }  // namespace semantic_octree

@@ -6,6 +6,17 @@
 
 namespace semantic_octree {
 
+/** \file What comes of maps: new ones, or others that are to be filled. The latter have to be empty
+ * and like emptyLike(), and may be in a folder of tiles that is open for writing (MapFolder), so
+ * that they need not fit into memory. If filling fails they are not to be used. */
+
+/** An empty map of the same kind and time: resolution, classes, filter parameters, pruning, clock. */
+SemanticOcTree emptyLike(const SemanticOcTree& map);
+
+/** The same nodes, to the last bit.
+ * \param copy to be filled \throw std::invalid_argument it is not empty, or not like the map. */
+void copyTo(SemanticOcTree& copy, const SemanticOcTree& map);
+
 /** Whether a sum of evidence is put into the class filter's limits. */
 enum class Limits {
   /** As after an insertion. */
@@ -28,6 +39,9 @@ enum class Limits {
  * parameters; says which. */
 SemanticOcTree merged(const std::vector<const SemanticOcTree*>& maps,
                       Limits limits = Limits::Apply);
+/** \param sum to be filled \throw std::invalid_argument also if it is not empty. */
+void mergeTo(SemanticOcTree& sum, const std::vector<const SemanticOcTree*>& maps,
+             Limits limits = Limits::Apply);
 
 /** The voxels whose centers are in a box (meters, map frame).
  * \throw std::invalid_argument an empty box, or NaN. */

@@ -161,6 +161,9 @@ class SemanticOcTree {
   bool operator==(const SemanticOcTree& o) const;
   bool operator!=(const SemanticOcTree& o) const { return !(*this == o); }
 
+  /** It is in a folder of tiles that was opened to be read (MapFolder): it will not change. */
+  bool isReadOnly() const;
+
   // --- Changing ---
   /** Inserts a scan: each voxel is updated at most once. Voxels in which returns end are hit (see
    * ClassFilter::hit() for their labels), voxels that beams cross are free unless hit.
@@ -193,6 +196,8 @@ class SemanticOcTree {
    * last call, sorted; keys are multiples of 8. The first call reports all tiles of the map that
    * are known in part, and starts the record. */
   std::vector<octomap::OcTreeKey> takeTouchedTiles();
+  /** Starts the record, or starts it anew: what was touched so far is not reported any more. */
+  void forgetTouchedTiles();
   /** Whether children that agree are merged (default). Only an empty tree can be changed.
    * \throw std::logic_error the tree is not empty. */
   void setPruning(bool on);
@@ -219,6 +224,8 @@ class SemanticOcTree {
   /** \throw std::logic_error the map is in a folder of tiles. */
   void checkNotInTiles() const;
   void computeTileByTile();
+  /** The same nodes with room for this bookkeeping; those of tiles are away then. */
+  std::unique_ptr<NodeStore> storeFor(std::size_t stateBytes) const;
   /** Whoever changes nodes does it in here: if it fails, the map is broken. */
   template <typename F>
   void change(const F& f);

@@ -20,6 +20,14 @@ class ColumnGrid {
     return &m_tiles[static_cast<std::size_t>(y) * m_width + x];
   }
   T* find(Column tile) { return const_cast<T*>(static_cast<const ColumnGrid*>(this)->find(tile)); }
+  /** Makes the rectangle, which has nothing in it yet, reach from one tile to another: no more
+   * memory is taken than that needs. */
+  void cover(Column low, Column high) {
+    m_first = low;
+    m_width = high.x - low.x + 1;
+    m_height = high.y - low.y + 1;
+    m_tiles = std::vector<T>(static_cast<std::size_t>(m_width) * m_height);
+  }
   T& at(Column tile) {
     if (!find(tile)) growTo(tile);
     return *find(tile);

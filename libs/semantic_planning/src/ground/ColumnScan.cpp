@@ -8,7 +8,7 @@ using Node = SemanticOcTree::Node;
 
 struct OpenRun {
   int column, bottom, top;
-  Node topNode;
+  ClassId topClass;
 };
 
 class TileScan {
@@ -43,13 +43,14 @@ class TileScan {
 
   void addLeaf(const Node& node, Column low, int z, int size) {
     const bool occupied = node.getLogOdds() > 0;
+    const ClassId classId = occupied ? classOf(node) : semantic_types::kNoClass;
     const int xEnd = std::min(low.x + size, m_low.x + kTileEdge);
     const int yEnd = std::min(low.y + size, m_low.y + kTileEdge);
     for (int y = std::max(low.y, m_low.y); y < yEnd; ++y)
       for (int x = std::max(low.x, m_low.x); x < xEnd; ++x) {
         const int column = indexInTile({x, y});
         if (occupied)
-          addRun({column, z, z + size - 1, node});
+          addRun({column, z, z + size - 1, classId});
         else
           m_tile.lowestFree[column] =
               static_cast<std::uint16_t>(std::min<int>(m_tile.lowestFree[column], z));
@@ -60,7 +61,7 @@ class TileScan {
     int& last = m_last[run.column];
     if (last >= 0 && m_runs[last].top + 1 == run.bottom) {
       m_runs[last].top = run.top;
-      m_runs[last].topNode = run.topNode;
+      m_runs[last].topClass = run.topClass;
     } else {
       last = static_cast<int>(m_runs.size());
       m_runs.push_back(run);
@@ -77,7 +78,7 @@ class TileScan {
     auto next = m_tile.first;
     for (const OpenRun& run : m_runs)
       m_tile.runs[next[run.column]++] = {static_cast<std::uint16_t>(run.bottom),
-                                         static_cast<std::uint16_t>(run.top), classOf(run.topNode)};
+                                         static_cast<std::uint16_t>(run.top), run.topClass};
   }
 
   /** SemanticOcTree::query()'s, without probabilities where one class is ahead of all. */

@@ -100,6 +100,7 @@ SurfaceTile merged(const SurfaceTile& own, const std::vector<Offer>& offers) {
     std::sort(result.surfaces.begin() + begin, result.surfaces.end(), isLower);
     result.first[column + 1] = static_cast<std::uint16_t>(result.surfaces.size());
   }
+  result.surfaces.shrink_to_fit();
   return result;
 }
 

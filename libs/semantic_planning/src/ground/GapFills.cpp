@@ -97,6 +97,7 @@ SurfaceTile measuredSurfaces(const ColumnTile& columns, const GroundShape& shape
     }
     tile.first[column + 1] = static_cast<std::uint16_t>(tile.surfaces.size());
   }
+  tile.surfaces.shrink_to_fit();
   return tile;
 }
 

@@ -101,7 +101,9 @@ Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions&
   m_step = shape.step;
   m_largestClearance = shape.largestClearance;
   m_tiles = std::make_unique<GroundTiles>(map, shape);
-  m_tiles->update(TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find());
+  const auto tiles = TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find();
+  m_tiles->cover(tiles);
+  m_tiles->update(tiles);
 }
 
 Ground::~Ground() = default;

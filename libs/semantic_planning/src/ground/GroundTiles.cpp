@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "MortonOrder.h"
 #include "Slope.h"
 
 namespace semantic_planning {
@@ -62,16 +63,37 @@ void keepMarks(const SurfaceTile& before, SurfaceTile& tile) {
 
 }  // namespace
 
+void GroundTiles::cover(const std::vector<Column>& tiles) {
+  if (tiles.empty()) return;
+  Column low = tiles.front(), high = low;
+  for (const Column& tile : tiles) {
+    low = {std::min(low.x, tile.x), std::min(low.y, tile.y)};
+    high = {std::max(high.x, tile.x), std::max(high.y, tile.y)};
+  }
+  m_columns.cover(low, high);
+  m_measured.cover(low, high);
+  m_fills.cover(low, high);
+  m_surfaces.cover(low, high);
+  m_obstacles.cover(low, high);
+}
+
 std::vector<Column> GroundTiles::update(const std::vector<Column>& tiles) {
   std::vector<ColumnBox> changed = updateSurfaces(tiles);
+  if (m_map.isReadOnly()) forgetWhatChangesNeed();
   append(changed, updateClearance(changed));
   if (!changed.empty()) m_components.reset();
   return tilesOf(changed);
 }
 
+void GroundTiles::forgetWhatChangesNeed() {
+  m_columns = {};
+  m_measured = {};
+  m_fills = {};
+}
+
 std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles) {
   std::vector<Column> refilled;
-  const auto scanned = changedBy(tiles, [&](Column t) { return scan(t, refilled); });
+  const auto scanned = changedBy(inMortonOrder(tiles), [&](Column t) { return scan(t, refilled); });
   const int reach = reachOfGapFills(m_shape);
   for (const Column& t : tilesWithin(scanned, {reach, reach, reach, 0})) findFills(t, refilled);
   sortOut(refilled);
@@ -107,6 +129,7 @@ void GroundTiles::findFills(Column tile, std::vector<Column>& refilled) {
   std::set_symmetric_difference(found.begin(), found.end(), (before ? *before : none).begin(),
                                 (before ? *before : none).end(), std::back_inserter(different));
   for (const GapFill& fill : different) addCrossed(fill, refilled);
+  found.shrink_to_fit();
   if (!different.empty()) m_fills.at(tile) = std::move(found);
 }
 

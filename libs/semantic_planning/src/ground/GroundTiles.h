@@ -17,6 +17,8 @@ class GroundTiles {
   GroundTiles(const semantic_octree::SemanticOcTree& map, const GroundShape& shape)
       : m_map(map), m_shape(shape), m_clearanceMeter(shape) {}
 
+  /** Makes room for tiles, before there are any. */
+  void cover(const std::vector<Column>& tiles);
   /** \param tiles whose voxels may have changed \return tiles whose surfaces changed, sorted. */
   std::vector<Column> update(const std::vector<Column>& tiles);
 
@@ -25,6 +27,8 @@ class GroundTiles {
   const GroundComponents& components() const;
 
  private:
+  /** The stages before the surfaces, of a map that does not change: they take more than these. */
+  void forgetWhatChangesNeed();
   /** Where surfaces are, and which of them are drivable. */
   std::vector<ColumnBox> updateSurfaces(const std::vector<Column>& tiles);
   /** How much clearance they have, and which are connected. */

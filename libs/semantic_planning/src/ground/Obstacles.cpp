@@ -20,6 +20,7 @@ class ObstacleSearch {
                           found.heights.end());
       found.first[indexInTile(c) + 1] = static_cast<std::uint16_t>(found.heights.size());
     });
+    found.heights.shrink_to_fit();
     return found;
   }
 

@@ -76,7 +76,7 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
       m_edges(m_checker),
       m_model{order, options.edges, options.cost, true,
               colored_graph::lengthDown(options.shorten ? options.classTolerance : 0)} {
-  map.takeTouchedTiles();  // the ground began with the whole map
+  map.forgetTouchedTiles();  // the ground began with the whole map
 }
 
 void PlannerCore::checkWhole() const {

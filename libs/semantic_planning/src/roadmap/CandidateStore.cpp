@@ -13,7 +13,7 @@ using semantic_octree::LeafCell;
 CandidateStore::CandidateStore(semantic_octree::SemanticOcTree& map, const Ground& ground,
                                const RoadmapOptions& options)
     : m_map(map), m_ground(ground), m_options(options) {
-  if (isOfTree(options.kind)) Abstraction(map).takeChange();  // begins with all
+  if (follows()) Abstraction(map).takeChange();  // begins with all
 }
 
 CandidateStore::Tile CandidateStore::make(Column tile) const {
@@ -70,7 +70,7 @@ std::vector<Column> CandidateStore::outdated(const std::vector<octomap::OcTreeKe
 CandidateStore::Change CandidateStore::update(const std::vector<octomap::OcTreeKey>& touched,
                                               const std::vector<Column>& changedTiles) {
   std::vector<Column> tiles;
-  if (isOfTree(m_options.kind)) tiles = outdated(touched);
+  if (follows()) tiles = outdated(touched);
   if (isOfTree(m_options.kind) || m_options.kind == GraphKind::Full)
     tiles.insert(tiles.end(), changedTiles.begin(), changedTiles.end());
   std::sort(tiles.begin(), tiles.end());

@@ -43,6 +43,8 @@ class CandidateStore {
     int lowest = 0, highest = -1;  ///< keys of drivable surfaces
   };
 
+  /** Whether the compressed tree's changes matter. */
+  bool follows() const { return isOfTree(m_options.kind) && !m_map.isReadOnly(); }
   Tile& made(Column tile);
   Tile make(Column tile) const;
   /** Tiles whose points may depend on a leaf. */

@@ -4,6 +4,8 @@
 #include <limits>
 #include <queue>
 
+#include "ground/MortonOrder.h"
+
 namespace semantic_planning {
 
 namespace {
@@ -66,7 +68,7 @@ void MapRoadmap::takeByPriority(CandidateStore& store) {
     bool operator<(const List& o) const { return *o.next < *next; }  // the least on top
   };
   std::priority_queue<List> lists;
-  for (const Column& tile : tilesIn(m_region, m_checker.ground()))
+  for (const Column& tile : inMortonOrder(tilesIn(m_region, m_checker.ground())))
     if (const std::vector<CandidatePoint>& points = store.in(tile); !points.empty())
       lists.push({points.data(), points.data() + points.size()});
   std::size_t left = m_options.vertices > 0 ? m_options.vertices : kUnlimited;
