@@ -2,9 +2,7 @@
 
 #include <semantic_octree/TreeFile.h>
 
-#include <ostream>
 #include <stdexcept>
-#include <streambuf>
 
 namespace semantic_map_compress {
 
@@ -13,30 +11,6 @@ using semantic_octree::AbstractionMeasures;
 using semantic_octree::SemanticOcTree;
 
 namespace {
-
-/** Counts what is written to it. */
-class CountingBuffer : public std::streambuf {
- public:
-  std::size_t bytes() const { return m_bytes; }
-
- private:
-  int_type overflow(int_type c) override {
-    ++m_bytes;
-    return traits_type::not_eof(c);
-  }
-  std::streamsize xsputn(const char*, std::streamsize n) override {
-    m_bytes += static_cast<std::size_t>(n);
-    return n;
-  }
-  std::size_t m_bytes = 0;
-};
-
-std::size_t fileSize(const SemanticOcTree& map) {
-  CountingBuffer buffer;
-  std::ostream out(&buffer);
-  writeTree(out, map);
-  return buffer.bytes();
-}
 
 [[noreturn]] void refuse(const Solution& solution, const std::string& what) {
   throw std::runtime_error("solution '" + solution.name + "': " + what);
@@ -98,19 +72,13 @@ double Compressor::alphaForBytes(const Solution& solution, std::size_t wanted) {
   const auto trees = abstraction().alphaPath().trees;
   const auto bytesOf = [&](std::size_t k) {
     weigh(solution, trees.alpha(k));
-    return fileSize(abstraction().compressedMap());
+    return semantic_octree::fileSize(abstraction().compressedMap());
   };
   const std::size_t least = bytesOf(0);
   if (least > wanted)
     refuse(solution, std::to_string(wanted) + " bytes wanted, but the smallest map takes " +
                          std::to_string(least) + " (see block_size)");
-  // Tree `fits` does, tree `exceeds` does not (or is none): bisection.
-  std::size_t fits = 0, exceeds = trees.numTrees();
-  while (exceeds - fits > 1) {
-    const std::size_t middle = fits + (exceeds - fits) / 2;
-    (bytesOf(middle) <= wanted ? fits : exceeds) = middle;
-  }
-  return trees.alpha(fits);
+  return trees.alpha(trees.largestThat([&](std::size_t k) { return bytesOf(k) <= wanted; }));
 }
 
 }  // namespace semantic_map_compress

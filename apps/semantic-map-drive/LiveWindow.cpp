@@ -32,7 +32,7 @@ map_window::Beginning beginningFor(const synthetic_world::World& world, const TP
   camera.target = {(start.x + goal.x) / 2, (start.y + goal.y) / 2, z};
   camera.azimuth = -90, camera.elevation = 50;
   camera.distance = 1.5 * std::hypot(start.x - goal.x, start.y - goal.y) + 20;
-  beginning.style.maxHeight = std::max(z, world.groundHeight(start.x, start.y)) + kCutAbove;
+  beginning.style.clip.max().z() = std::max(z, world.groundHeight(start.x, start.y)) + kCutAbove;
   return beginning;
 }
 

@@ -70,6 +70,7 @@ void CompressPanel::forget() {
   m_on->setChecked(false);
   while (m_controls->childCount() > 0) m_controls->removeChild(0);
   m_viewer.window().performLayout();
+  m_onFollowed();
 }
 
 void CompressPanel::switchOn(bool on) {
@@ -165,6 +166,7 @@ void CompressPanel::follow() {
   for (std::size_t term = 0; term < m_lines.size(); ++term)
     m_lines[term].weight->setCaption(rounded(m_live->weight(term), 3));
   m_measureAt = glfwGetTime() + kRest;
+  m_onFollowed();
 }
 
 void CompressPanel::update() {

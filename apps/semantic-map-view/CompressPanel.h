@@ -24,7 +24,10 @@ class CompressPanel {
   void setAlpha(double alpha);
   void setLeaves(std::size_t leaves);
   void setWeight(std::size_t term, double weight);
-  const map_view::LiveCompression& compression() const { return *m_live; }
+  /** None before the compressed tree was first shown. */
+  const map_view::LiveCompression* compression() const { return m_live ? &*m_live : nullptr; }
+  /** Called after the compressed tree has changed, has come or has gone. */
+  void onFollowed(const std::function<void()>& f) { m_onFollowed = f; }
   /** Writes the weights into FOLDER/weights-1.yaml, -2, ..., the first that is not there.
    * \return its path */
   std::filesystem::path save(const std::filesystem::path& folder) const;
@@ -58,6 +61,7 @@ class CompressPanel {
   nanogui::IntBox<int>* m_wanted = nullptr;
   nanogui::Widget* m_terms = nullptr;
   std::vector<TermLine> m_lines;
+  std::function<void()> m_onFollowed = [] {};
   std::string m_told;
   double m_measureAt = 0;  ///< s of GLFW's clock; 0: measured
 };

@@ -10,6 +10,7 @@
 #include "CompressPanel.h"
 #include "PlanPanel.h"
 #include "StandardOutput.h"
+#include "WhyPanel.h"
 #include "map_window/AskPanel.h"
 #include "map_window/ShowPanel.h"
 #include "measuring/Quantile.h"
@@ -34,11 +35,16 @@ struct Panels {
   ShowPanel show;
   AskPanel ask;
   CompressPanel compress;
+  WhyPanel why;
   PlanPanel plan;
 
   Panels(Viewer& viewer, const Cli& cli)
-      : show(viewer), ask(viewer), compress(viewer, cli.weights), plan(viewer, cli.classes) {
-    viewer.window().onClick([this](const map_view::Ray& ray) { ask.ask(ray); });
+      : show(viewer),
+        ask(viewer),
+        compress(viewer, cli.weights),
+        why(viewer, compress),
+        plan(viewer, cli.classes) {
+    viewer.window().onClick([this](const map_view::Ray& ray) { why.show(ask.ask(ray)); });
     viewer.window().onGrab([this](const map_view::Ray& ray) { return plan.place(ray); });
     viewer.window().onMoved(
         [this](const map_view::Ray& ray, bool letsGo) { plan.turn(ray, letsGo); });
@@ -83,7 +89,7 @@ struct Clocks {
 };
 
 /** Twice around the map: with meshes to be made, and with all there. */
-void measureTurning(ViewWindow& window) {
+void measureTurning(ViewWindow& window, Viewer& viewer) {
   constexpr int kFrames = 72;
   map_view::OrbitCamera camera = window.orbitCamera();
   for (const char* name : {"a frame of the first turn: ", "a frame of the second turn: "}) {
@@ -95,8 +101,8 @@ void measureTurning(ViewWindow& window) {
     }
     std::cout << name << clock.text(kFrames) << '\n';
   }
-  std::cout << "tiles: " << window.tiles().numTiles()
-            << "\nsides of cells: " << window.tiles().numFaces() << '\n';
+  std::cout << "tiles: " << viewer.tiles().numTiles()
+            << "\nsides of cells: " << viewer.tiles().numFaces() << '\n';
 }
 
 /** From the hand on the slider to the first frame that shows it, and to the complete one. */
@@ -119,7 +125,7 @@ void measureCompressing(ViewWindow& window, CompressPanel& panel) {
   panel.switchOn(true);
   finishFrame(window);
   std::cout << "to the compressed tree: " << begin.text() << '\n';
-  const double alpha = panel.compression().alpha();
+  const double alpha = panel.compression()->alpha();
   show("alpha", [&](int i) { panel.setAlpha(alpha * (i % 2 ? 1 : 1.5)); });
   show("a weight", [&](int i) { panel.setWeight(1, i % 2 ? 1 : 0.5); });
 }
@@ -153,7 +159,7 @@ int run(const Cli& cli) {
       std::cout << "renderer: " << window->renderer() << "\nwindow: " << window->pixelWidth()
                 << " x " << window->pixelHeight()
                 << "\nto the first complete frame: " << clock.text() << '\n';
-      measureTurning(*window);
+      measureTurning(*window, viewer);
       if (panels) measureAsking(*window, panels->ask);
       if (panels) measureCompressing(*window, panels->compress);
     }

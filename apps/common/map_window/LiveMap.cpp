@@ -100,7 +100,7 @@ class LiveMap::Window {
     if (!m_isOpen) return;
     // Else those that are far away would never have their turn.
     if (!m_changed.isEmpty() && m_isComplete) {
-      m_window->tiles().touch({keysOf(m_changed)});
+      m_viewer.tiles().touch({keysOf(m_changed)});
       m_changed.setEmpty();
       count();
     }

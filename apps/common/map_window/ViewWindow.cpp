@@ -65,7 +65,7 @@ ViewWindow::ViewWindow(const std::string& title, int width, int height)
   scene->getViewport()->setCustomBackgroundColor(
       mrpt::img::TColorf(mrpt::img::TColor(paper.r, paper.g, paper.b)));
   scene->insert(m_marks);
-  scene->insert(m_tiles.objects());
+  scene->insert(m_maps);
   background_scene = scene;
   glfwMakeContextCurrent(mGLFWWindow);
   m_renderer = glText(GL_RENDERER);

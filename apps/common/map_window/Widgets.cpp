@@ -52,6 +52,24 @@ void BarChart::draw(NVGcontext* context) {
   }
 }
 
+void Table::draw(NVGcontext* context) {
+  Widget::draw(context);
+  nvgFontSize(context, kFont);
+  nvgFontFace(context, "sans");
+  nvgFillColor(context, nanogui::Color(230, 255));
+  float y = float(mPos.y()) + kLine / 2.f;
+  for (const auto& row : m_rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const float right = float(mPos.x() + m_nameWidth + int(i) * m_columnWidth);
+      if (i == 0)
+        drawText(context, float(mPos.x()), y, NVG_ALIGN_LEFT, row[i].substr(0, 17));
+      else
+        drawText(context, right, y, NVG_ALIGN_RIGHT, row[i]);
+    }
+    y += kLine;
+  }
+}
+
 Swatch::Swatch(Widget* parent, const semantic_types::Color& color)
     : Widget(parent), m_color(colorOf(color)) {
   setFixedSize({12, 12});

@@ -29,6 +29,20 @@ class BarChart : public nanogui::Widget {
   std::vector<Bar> m_bars;
 };
 
+/** Rows of a name and of numbers below each other. */
+class Table : public nanogui::Widget {
+ public:
+  /** \param nameWidth, columnWidth pixels */
+  Table(nanogui::Widget* parent, int nameWidth, int columnWidth)
+      : nanogui::Widget(parent), m_nameWidth(nameWidth), m_columnWidth(columnWidth) {}
+  void setRows(std::vector<std::vector<std::string>> rows) { m_rows = std::move(rows); }
+  void draw(NVGcontext* context) override;
+
+ private:
+  int m_nameWidth, m_columnWidth;
+  std::vector<std::vector<std::string>> m_rows;
+};
+
 /** A square of one color. */
 class Swatch : public nanogui::Widget {
  public:
