@@ -80,6 +80,27 @@ TEST_F(SemanticMapView, SavesWeightsFromWhichTheSameLeavesFollow) {
   EXPECT_EQ(view[1], compress[1]);
 }
 
+TEST_F(SemanticMapView, FindsTheTreeOfAWantedNumberOfKilobytes) {
+  SKIP_WITHOUT_WINDOWS();
+  // In the panel at the right: the number of kB is clicked, typed and entered.
+  const std::string x = std::to_string(kWidth - 130);
+  const ProgramRun run = runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"),
+                                 kViewer, path("map.semantic"), "--size", size(), "--compress",
+                                 "--", "type " + x + " 320 4 at most 4000 bytes: "});
+  ASSERT_EQ(run.status, 0) << run.output << run.errors;
+  const std::string said = folder.read("said.txt");
+  std::smatch view, compress;
+  ASSERT_TRUE(std::regex_search(said, view, std::regex("4000 bytes: ([0-9]+) leaves"))) << said;
+  folder.write("weights.yaml", "name: a\nrelevant: {road: 1, grass: 1, wall: 1}\n");
+  const ProgramRun other =
+      runProgram("semantic-map-compress", {path("map.semantic"), "--weights", path("weights.yaml"),
+                                           "--bytes", "4000", "-o", path("compressed")});
+  EXPECT_EQ(other.status, 0) << other.errors;
+  ASSERT_TRUE(std::regex_search(other.output, compress, std::regex("([0-9]+) of [0-9]+ leaves")))
+      << other.output;
+  EXPECT_EQ(view[1], compress[1]) << said;
+}
+
 TEST_F(SemanticMapView, FindsAPathBetweenTwoClicks) {
   SKIP_WITHOUT_WINDOWS();
   folder.write("order.yaml", "best_to_worst: [road, grass]\n");
@@ -129,4 +150,28 @@ TEST_F(SemanticMapView, PlansFromAndToHeadingsThatAreDragged) {
   std::smatch length;
   ASSERT_TRUE(std::regex_search(said, length, std::regex("path of ([0-9.]+) m"))) << said;
   EXPECT_GE(std::stod(length[1]), std::hypot(7, 4) + 0.5) << "it has to turn";
+}
+
+TEST_F(SemanticMapView, PlansAnewAfterTheOrderOfClassesWasDragged) {
+  SKIP_WITHOUT_WINDOWS();
+  folder.write("order.yaml", "best_to_worst: [road, grass]\n");
+  const std::string y = std::to_string(kHeight - 76);
+  const auto at = [](const cv::Point& p) {
+    return std::to_string(p.x) + " " + std::to_string(p.y);
+  };
+  // Along the road's border: straight on, or by the grass, if that is better.
+  const ProgramRun run = runInX(
+      {MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer, path("map.semantic"),
+       "--size", size(), "--camera", kTop, "--classes", path("order.yaml"), "--",
+       "60 " + y + " click where the vehicle is", at(pixelOf(-1, -2.5, 0.2)) + " start at -1",
+       "156 " + y + " click where it is to go", at(pixelOf(-1, 2.5, 0.2)) + " path of",
+       "drag 300 54 300 80 order: grass > road", at(pixelOf(3.1, 3.1, 0.2)) + " occupied, grass"});
+  EXPECT_EQ(run.status, 0) << run.output << run.errors;
+  const std::string said = folder.read("said.txt");
+  const std::regex path("path of ([0-9.]+) m");
+  std::vector<double> lengths;
+  for (std::sregex_iterator found(said.begin(), said.end(), path), end; found != end; ++found)
+    lengths.push_back(std::stod((*found)[1]));
+  ASSERT_EQ(lengths.size(), 2u) << said;
+  EXPECT_GT(lengths[1], lengths[0] + 0.2) << said;
 }
