@@ -52,6 +52,9 @@ Cli::Cli(CLI::App& app) : outputs(app) {
                  "Maps' own files (.semantic), or OctoMap's (.ot, .bt), shown together")
       ->required();
   outputs.add(app, picture, "FILE", "Draw once, write the window's picture (PNG), and end");
+  auto* animated = app.add_option("--animation", animation,
+                                  "Turn once around the map while it is compressed more and less, "
+                                  "write that (GIF), and end");
   app.add_option_function<std::string>(
          "--size", [this](const std::string& text) { readSize(text, *this); },
          "Of the window, pixels")
@@ -80,7 +83,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_option("--classes", classes,
                  "Classes from best to worst, for paths (YAML, as for semantic-map-plan)");
   app.add_flag("--compress", compress, "Begin with the compressed tree");
-  app.add_flag("!--no-panels", panels, "The map alone");
+  app.add_flag("!--no-panels", panels, "The map alone")->excludes(animated);
   app.add_flag("--measure", measure,
                "Turn twice around the map, ask, compress, print the times, and end");
 }

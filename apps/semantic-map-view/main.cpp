@@ -5,6 +5,7 @@
 
 #include <iostream>
 
+#include "Animation.h"
 #include "Application.h"
 #include "Cli.h"
 #include "CompressPanel.h"
@@ -142,7 +143,8 @@ void measureAsking(ViewWindow& window, AskPanel& panel) {
 }
 
 int run(const Cli& cli) {
-  if (!cli.picture.empty()) cli.outputs.check({cli.picture});
+  for (const auto& file : {cli.picture, cli.animation})
+    if (!file.empty()) cli.outputs.check({file});
   const Clock clock;
   auto layers = openLayers(cli);
   checkSettings(cli, layers.front()->map().classes());
@@ -153,7 +155,7 @@ int run(const Cli& cli) {
   if (cli.panels) panels.emplace(viewer, cli);
   window->performLayout();
   window->setVisible(true);
-  if (cli.measure || !cli.picture.empty()) {
+  if (cli.measure || !cli.picture.empty() || !cli.animation.empty()) {
     finishFrame(*window);
     if (cli.measure) {
       std::cout << "renderer: " << window->renderer() << "\nwindow: " << window->pixelWidth()
@@ -164,6 +166,7 @@ int run(const Cli& cli) {
       if (panels) measureCompressing(*window, panels->compress);
     }
     if (!cli.picture.empty()) map_pictures::savePicture(window->drawPicture(), cli.picture);
+    if (panels && !cli.animation.empty()) animate(*window, panels->compress, cli.animation);
     return 0;
   }
   window->run([] { return false; });

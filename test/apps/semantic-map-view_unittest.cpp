@@ -68,6 +68,20 @@ TEST_F(SemanticMapView, ShowsSeveralMapsTogether) {
   EXPECT_FALSE(isGray(screen));
 }
 
+TEST_F(SemanticMapView, WritesAnAnimation) {
+  SKIP_WITHOUT_WINDOWS();
+  const ProgramRun run = runInX({kViewer, path("map.semantic"), "--size", size(), "--camera", kTop,
+                                 "--animation", path("turn.gif")});
+  EXPECT_EQ(run.status, 0) << run.output << run.errors;
+  const std::string gif = folder.read("turn.gif");
+  EXPECT_EQ(gif.substr(0, 6), "GIF89a");
+  const auto word = [&](std::size_t at) {
+    return int(std::uint8_t(gif.at(at))) + 256 * int(std::uint8_t(gif.at(at + 1)));
+  };
+  EXPECT_EQ(word(6), kWidth);
+  EXPECT_EQ(word(8), kHeight);
+}
+
 TEST_F(SemanticMapView, OpensMapsOfOctoMap) {
   SKIP_WITHOUT_WINDOWS();
   semantic_octree::toOcTree(smallMap())->writeBinary(path("map.bt"));

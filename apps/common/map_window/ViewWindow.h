@@ -29,6 +29,8 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   const mrpt::opengl::CSetOfObjects::Ptr& maps() const { return m_maps; }
   /** What lies upon them. */
   const mrpt::opengl::CSetOfObjects::Ptr& marks() const { return m_marks; }
+  /** In the lower right corner, so many pixels wide. */
+  void showPicture(const mrpt::img::CImage& picture, int width);
 
   map_view::OrbitCamera orbitCamera() const;
   void setOrbitCamera(const map_view::OrbitCamera& camera);
