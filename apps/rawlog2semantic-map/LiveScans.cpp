@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "LabelOverlay.h"
+
 namespace rawlog2semantic_map {
 
 using labeled_cloud::LabeledScan;
@@ -20,13 +22,19 @@ std::string text(const char* format, double number) {
   return line;
 }
 
+/** Of the compressed tree, if it is kept. */
+std::string changeTime(const Summary& summary) {
+  const auto& times = summary.abstraction.changeTimes;
+  return times.empty() ? std::string() : text(", tree %.1f", times.back());
+}
+
 std::vector<std::string> lines(const LabeledScan& scan, const Summary& summary,
                                const semantic_octree::SemanticOcTree& map) {
   return {std::to_string(summary.insertionTimes.size()) + " scans, " + scan.sensorLabel,
           std::to_string(scan.counts.points) + " points, " + std::to_string(scan.counts.labeled) +
               " with a class",
-          text("scan made in %.1f ms,", summary.conversionTimes.back()) +
-              text(" inserted in %.1f ms", summary.insertionTimes.back()),
+          text("ms: made %.1f,", summary.conversionTimes.back()) +
+              text(" inserted %.1f", summary.insertionTimes.back()) + changeTime(summary),
           std::to_string(map.getNumLeafNodes()) + " leaves"};
 }
 
@@ -53,6 +61,11 @@ void LiveScans::show(const LabeledScan& scan, const mrpt::poses::CPose3D& T_map_
   }
   m_window.marks().clear();
   m_window.marks().insert(points);
+  if (!scan.pictures.empty()) {
+    const labeled_cloud::LabeledPicture& picture = scan.pictures.front();
+    m_window.showPicture(mrpt::img::CImage(
+        withLabels(photograph(picture), picture, m_map.classes()), mrpt::img::DEEP_COPY));
+  }
   m_window.changed(seen);
   m_window.say(lines(scan, summary, m_map));
   m_window.show(0);

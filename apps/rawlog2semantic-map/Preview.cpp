@@ -4,10 +4,11 @@
 #include <labeled_cloud/LabelModel.h>
 #include <labeled_cloud/VisiblePixels.h>
 #include <map_pictures/MapPictures.h>
-#include <semantic_types/ClassColors.h>
 
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+
+#include "LabelOverlay.h"
 
 namespace rawlog2semantic_map {
 
@@ -18,31 +19,6 @@ using semantic_types::ClassTable;
 using semantic_types::kNoClass;
 
 namespace {
-
-cv::Vec3b pixelOf(ClassId id, const ClassTable& classes) {
-  const auto color = colorOf(id, classes);
-  return {color.b, color.g, color.r};
-}
-
-/** The photograph, or black where there is none. */
-cv::Mat3b photograph(const LabeledPicture& picture) {
-  cv::Mat image;
-  if (!picture.image.isEmpty()) image = picture.image.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);
-  if (image.empty())
-    image = cv::Mat3b(picture.labels.pictureRows(), picture.labels.pictureCols(), cv::Vec3b());
-  if (image.channels() == 1) cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
-  return image;
-}
-
-cv::Mat3b withLabels(cv::Mat3b image, const LabeledPicture& picture, const ClassTable& classes) {
-  for (int row = 0; row < image.rows; ++row)
-    for (int col = 0; col < image.cols; ++col) {
-      const auto cell = picture.labels.cellAt(col, row);
-      const ClassId id = cell ? picture.labels.classOf(*cell) : kNoClass;
-      if (id != kNoClass) image(row, col) = image(row, col) / 2 + pixelOf(id, classes) / 2;
-    }
-  return image;
-}
 
 cv::Mat3b withPoints(cv::Mat3b image, const LabeledPicture& picture,
                      const semantic_types::LabeledCloud& cloud, const ClassTable& classes) {

@@ -59,8 +59,8 @@ struct Summary {
   std::string skippedText() const;
 };
 
-/** The summary with what the map holds, for summary.json. \param countVoxels goes through all of the
- * map */
+/** The summary with what the map holds, for summary.json. \param countVoxels goes through all of
+ * the map */
 nlohmann::ordered_json toJson(const Summary& summary, const semantic_octree::SemanticOcTree& tree,
                               bool countVoxels);
 

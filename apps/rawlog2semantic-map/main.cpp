@@ -123,6 +123,7 @@ Config configOf(const Cli& cli) {
   if (!cli.classes.empty()) config.map.classes = cli.classes.string();
   if (cli.resolution) config.map.resolution = *cli.resolution;
   if (cli.maxRange) config.insertion.scan.maxRange = *cli.maxRange;
+  if (cli.live) config.stream.picturesEvery = 1;
   if (!cli.preview.empty()) config.stream.picturesEvery = cli.previewEvery;
   config.map.validate();
   config.insertion.validate();

@@ -2,9 +2,7 @@
 
 #include <semantic_octree/TreeFile.h>
 
-#include <ostream>
 #include <stdexcept>
-#include <streambuf>
 
 #include "AlphaBins.h"
 
@@ -16,30 +14,6 @@ using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
 
 namespace {
-
-/** Counts what is written to it. */
-class CountingBuffer : public std::streambuf {
- public:
-  std::size_t bytes() const { return m_bytes; }
-
- private:
-  int_type overflow(int_type c) override {
-    ++m_bytes;
-    return traits_type::not_eof(c);
-  }
-  std::streamsize xsputn(const char*, std::streamsize n) override {
-    m_bytes += static_cast<std::size_t>(n);
-    return n;
-  }
-  std::size_t m_bytes = 0;
-};
-
-std::size_t fileSize(const SemanticOcTree& map) {
-  CountingBuffer buffer;
-  std::ostream out(&buffer);
-  writeTree(out, map);
-  return buffer.bytes();
-}
 
 /** The last number for which it is true, as it is for `first`, and not for `end`, by bisection. */
 template <typename F>
@@ -120,7 +94,7 @@ double Compressor::alphaForBytes(const Solution& solution, std::size_t wanted) {
   const AlphaBins bins(present);
   const auto bytesOf = [&](double alpha) {
     weigh(solution, alpha);
-    return fileSize(Compressed(*this).map());
+    return semantic_octree::fileSize(Compressed(*this).map());
   };
   const std::size_t least = bytesOf(bins.alpha(0));
   if (least > wanted)

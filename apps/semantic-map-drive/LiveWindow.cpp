@@ -32,7 +32,7 @@ map_window::Beginning beginningFor(const synthetic_world::World& world, const TP
   camera.target = {(start.x + goal.x) / 2, (start.y + goal.y) / 2, z};
   camera.azimuth = -90, camera.elevation = 50;
   camera.distance = 1.5 * std::hypot(start.x - goal.x, start.y - goal.y) + 20;
-  beginning.style.maxHeight = std::max(z, world.groundHeight(start.x, start.y)) + kCutAbove;
+  beginning.style.clip.max().z() = std::max(z, world.groundHeight(start.x, start.y)) + kCutAbove;
   return beginning;
 }
 
@@ -86,6 +86,23 @@ CPolyhedron::Ptr robotOf(const DriveLoop& loop) {
   return robot;
 }
 
+/** What the last step of each stage took. */
+std::vector<std::string> stageTimes(const DriveRecord& record) {
+  const auto text = [&](std::initializer_list<const char*> stages) {
+    std::string line;
+    for (const char* stage : stages) {
+      const auto times = record.times.find(stage);
+      if (times == record.times.end() || times->second.empty()) continue;
+      char time[60];
+      std::snprintf(time, sizeof time, "%s%s %.1f", line.empty() ? "" : ", ", stage,
+                    times->second.back());
+      line += time;
+    }
+    return line.empty() ? line : line + " ms";
+  };
+  return {text({"localize", "insert", "update"}), text({"replan", "obstacles", "react"})};
+}
+
 CCylinder::Ptr postAt(const TPoint3D& place) {
   const auto post = CCylinder::Create(0.12f, 0.12f, 3.f);
   post->setLocation(place);
@@ -117,7 +134,9 @@ void LiveWindow::onDriven(const DriveLoop& loop) {
   marks.insert(trackOf(loop));
   marks.insert(pathOf(loop));
   marks.insert(robotOf(loop));
-  m_window.say({caption(loop)});
+  std::vector<std::string> lines = stageTimes(loop.record());
+  lines.insert(lines.begin(), caption(loop));
+  m_window.say(lines);
   using std::chrono::duration, std::chrono::steady_clock;
   m_due += std::chrono::duration_cast<steady_clock::duration>(
       duration<double>(loop.config().controlPeriod));

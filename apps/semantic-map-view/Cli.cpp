@@ -29,11 +29,32 @@ void readCamera(const std::string& text, Cli& cli) {
   }
 }
 
+void readClip(const std::string& text, Cli& cli) {
+  std::istringstream in(text);
+  std::array<double, 6> numbers{};
+  char comma = ',';
+  for (std::size_t i = 0; i < numbers.size() && comma == ','; ++i) {
+    if (i > 0) in >> comma;
+    in >> numbers[i];
+  }
+  const Eigen::Vector3d low(numbers[0], numbers[1], numbers[2]),
+      high(numbers[3], numbers[4], numbers[5]);
+  if (!in || comma != ',' || !(in >> std::ws).eof() || !(low.array() < high.array()).all())
+    throw CLI::ValidationError("--clip is '" + text +
+                               "', expected X,Y,Z,X2,Y2,Z2, the lowest corner first");
+  cli.view.style.clip = {low, high};
+}
+
 }  // namespace
 
 Cli::Cli(CLI::App& app) : outputs(app) {
-  app.add_option("MAP", maps, "Maps' own files (.semantic), or OctoMap's (.ot, .bt)")->required();
+  app.add_option("MAP", maps,
+                 "Maps' own files (.semantic), or OctoMap's (.ot, .bt), shown together")
+      ->required();
   outputs.add(app, picture, "FILE", "Draw once, write the window's picture (PNG), and end");
+  auto* animated = app.add_option("--animation", animation,
+                                  "Turn once around the map while it is compressed more and less, "
+                                  "write that (GIF), and end");
   app.add_option_function<std::string>(
          "--size", [this](const std::string& text) { readSize(text, *this); },
          "Of the window, pixels")
@@ -47,9 +68,14 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   for (const auto& [name, value] : choicesOf(map_view::Coloring())) colorings[name] = value;
   addChoice(app.add_option("--color", view.style.coloring, "What the cells' colors say"),
             colorings);
-  app.add_option("--max-height", view.style.maxHeight,
+  auto* clip = app.add_option_function<std::string>(
+      "--clip", [this](const std::string& text) { readClip(text, *this); },
+      "Cells with their center outside of this box are not shown, m");
+  clip->type_name("X,Y,Z,X2,Y2,Z2");
+  app.add_option("--max-height", view.style.clip.max().z(),
                  "Cells with their center above are not shown, m")
-      ->check(isNumber({}));
+      ->check(isNumber({}))
+      ->excludes(clip);
   app.add_flag("--free", view.style.freeSpace, "Show free space");
   app.add_option("--weights", weights,
                  "Where the sliders of the compression begin: the first solution of such a file "
@@ -57,7 +83,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_option("--classes", classes,
                  "Classes from best to worst, for paths (YAML, as for semantic-map-plan)");
   app.add_flag("--compress", compress, "Begin with the compressed tree");
-  app.add_flag("!--no-panels", panels, "The map alone");
+  app.add_flag("!--no-panels", panels, "The map alone")->excludes(animated);
   app.add_flag("--measure", measure,
                "Turn twice around the map, ask, compress, print the times, and end");
 }

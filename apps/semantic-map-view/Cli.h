@@ -9,7 +9,7 @@ namespace semantic_map_view {
 
 struct Cli {
   std::vector<std::filesystem::path> maps;
-  std::filesystem::path picture, weights, classes;
+  std::filesystem::path picture, animation, weights, classes;
   int width = 1280, height = 720;
   map_window::Beginning view;
   bool panels = true, measure = false, compress = false;

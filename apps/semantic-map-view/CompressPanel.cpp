@@ -2,7 +2,9 @@
 
 #include <GLFW/glfw3.h>
 #include <map_view/WeightsText.h>
+#include <semantic_octree/TreeFile.h>
 #include <strict_files/TextFile.h>
+#include <strict_files/Words.h>
 
 #include <cmath>
 #include <ostream>
@@ -61,7 +63,7 @@ void CompressPanel::begin() {
     const auto file = semantic_octree::loadWeights(m_weights, map.classes());
     m_live.emplace(map, file.solutions.front(), file.space);
   }
-  tell();
+  tell(0);
 }
 
 void CompressPanel::forget() {
@@ -70,6 +72,7 @@ void CompressPanel::forget() {
   m_on->setChecked(false);
   while (m_controls->childCount() > 0) m_controls->removeChild(0);
   m_viewer.window().performLayout();
+  m_onFollowed();
 }
 
 void CompressPanel::switchOn(bool on) {
@@ -77,33 +80,53 @@ void CompressPanel::switchOn(bool on) {
   if (!on) return m_viewer.showFull();
   if (!m_live) {
     begin();
-    addTerms();
+    addControls();
   }
   m_viewer.showCompressed(*m_live);
   follow();
 }
 
-void CompressPanel::addTerms() {
+void CompressPanel::addControls() {
+  addAlpha();
+  addWanted();
+  addTerms();
+  addSave();
+  m_viewer.window().performLayout();
+}
+
+void CompressPanel::addAlpha() {
   auto* row = addRow(m_controls);
   addText(row, "alpha", 45);
   m_alpha = addSlider(row, 150, 0, 1, sliderOf(m_live->alpha()),
                       [this](float at) { attempt([&] { setAlpha(alphaOf(at)); }); });
   m_alphaText = addText(row, "", 75);
-  row = addRow(m_controls);
-  m_leaves = addText(row, "", 130);
-  m_wanted = row->add<nanogui::IntBox<int>>(0);
-  m_wanted->setEditable(true);
-  m_wanted->setFixedSize({90, 20});
-  m_wanted->setMinValue(1);
-  m_wanted->setTooltip("Wanted number of leaves");
-  m_wanted->setCallback([this](int n) { attempt([&] { setLeaves(std::size_t(n)); }); });
+}
+
+void CompressPanel::addWanted() {
+  const auto add = [this](nanogui::Label*& text, const std::string& what, const auto& set) {
+    auto* row = addRow(m_controls);
+    text = addText(row, "", 130);
+    auto* box = row->add<nanogui::IntBox<int>>(0);
+    box->setEditable(true);
+    box->setFixedSize({90, 20});
+    box->setMinValue(1);
+    box->setTooltip("Wanted number of " + what);
+    box->setCallback([this, set](int n) { attempt([&] { set(std::size_t(n)); }); });
+    return box;
+  };
+  m_wantedLeaves = add(m_leaves, "leaves", [this](std::size_t n) { setLeaves(n); });
+  m_wantedKilobytes = add(m_bytes, "kB", [this](std::size_t n) { setBytes(1000 * n); });
+  m_wantedKilobytes->setUnits("kB");
+}
+
+void CompressPanel::addTerms() {
   auto* scroll = m_controls->add<nanogui::VScrollPanel>();
-  scroll->setFixedSize({kWidth, 230});
+  scroll->setFixedSize({kWidth, 206});
   m_terms = scroll->add<nanogui::Widget>();
   m_terms->setLayout(
       new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 2, 0));
   for (std::size_t term = 0; term < m_live->numTerms(); ++term) {
-    row = addRow(m_terms, 4);
+    auto* row = addRow(m_terms, 4);
     addText(row, m_live->name(term), 92);
     TermLine line;
     line.slider = addSlider(row, 80, m_live->mayBeIrrelevant(term) ? -2.f : 0.f, 2,
@@ -116,6 +139,9 @@ void CompressPanel::addTerms() {
     line.kept = addText(row, "", 46);
     m_lines.push_back(line);
   }
+}
+
+void CompressPanel::addSave() {
   auto* save = m_controls->add<nanogui::Button>("save the weights");
   save->setFixedHeight(22);
   save->setFontSize(15);
@@ -126,7 +152,6 @@ void CompressPanel::addTerms() {
                    std::to_string(m_live->numLeaves()) + " leaves");
     });
   });
-  m_viewer.window().performLayout();
 }
 
 /** Logarithmic: 0 and 1 are where the tree begins and ends to change. */
@@ -151,6 +176,14 @@ void CompressPanel::setLeaves(std::size_t leaves) {
   follow();
 }
 
+void CompressPanel::setBytes(std::size_t bytes) {
+  m_live->setBytes(m_viewer.layer().map(), bytes);
+  m_alpha->setValue(sliderOf(m_live->alpha()));
+  follow();
+  m_viewer.say("at most " + std::to_string(bytes) +
+               " bytes: " + std::to_string(m_live->numLeaves()) + " leaves");
+}
+
 void CompressPanel::setWeight(std::size_t term, double weight) {
   m_live->setWeight(term, weight);
   follow();
@@ -161,10 +194,11 @@ void CompressPanel::follow() {
   m_viewer.changed(m_live->takeChange());
   m_alphaText->setCaption(rounded(m_live->alpha(), 3));
   m_leaves->setCaption(std::to_string(m_live->numLeaves()) + " leaves");
-  m_wanted->setValue(int(m_live->numLeaves()));
+  m_wantedLeaves->setValue(int(m_live->numLeaves()));
   for (std::size_t term = 0; term < m_lines.size(); ++term)
     m_lines[term].weight->setCaption(rounded(m_live->weight(term), 3));
   m_measureAt = glfwGetTime() + kRest;
+  m_onFollowed();
 }
 
 void CompressPanel::update() {
@@ -175,12 +209,17 @@ void CompressPanel::update() {
     const auto& share = retained[term];
     m_lines[term].kept->setCaption(share ? rounded(100 * *share, 3) + " %" : "-");
   }
-  tell();
+  const std::size_t bytes =
+      semantic_octree::fileSize(m_live->compressedMap(m_viewer.layer().map()));
+  m_bytes->setCaption(strict_files::sizeText(bytes));
+  m_wantedKilobytes->setValue(int((bytes + 999) / 1000));
+  tell(bytes);
 }
 
-void CompressPanel::tell() {
-  const std::string text = std::to_string(m_live->numLeaves()) + " leaves, alpha " +
-                           strict_files::textOf(m_live->alpha());
+void CompressPanel::tell(std::size_t bytes) {
+  std::string text = std::to_string(m_live->numLeaves()) + " leaves, alpha " +
+                     strict_files::textOf(m_live->alpha());
+  if (bytes > 0) text += ", " + std::to_string(bytes) + " bytes";
   if (text != m_told) notes() << text << std::endl;
   m_told = text;
 }

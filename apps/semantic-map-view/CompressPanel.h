@@ -23,8 +23,12 @@ class CompressPanel {
   void switchOn(bool on);
   void setAlpha(double alpha);
   void setLeaves(std::size_t leaves);
+  void setBytes(std::size_t bytes);
   void setWeight(std::size_t term, double weight);
-  const map_view::LiveCompression& compression() const { return *m_live; }
+  /** None before the compressed tree was first shown. */
+  const map_view::LiveCompression* compression() const { return m_live ? &*m_live : nullptr; }
+  /** Called after the compressed tree has changed, has come or has gone. */
+  void onFollowed(const std::function<void()>& f) { m_onFollowed = f; }
   /** Writes the weights into FOLDER/weights-1.yaml, -2, ..., the first that is not there.
    * \return its path */
   std::filesystem::path save(const std::filesystem::path& folder) const;
@@ -38,9 +42,13 @@ class CompressPanel {
   void forget();
   /** Before each frame: what takes longer, when the hand rests. */
   void update();
-  /** Says what is new. */
-  void tell();
+  /** Says what is new. \param bytes of the file; 0: not known yet */
+  void tell(std::size_t bytes);
+  void addControls();
+  void addAlpha();
+  void addWanted();
   void addTerms();
+  void addSave();
   void follow();
   /** Reports an exception. */
   template <class F>
@@ -54,10 +62,11 @@ class CompressPanel {
   nanogui::CheckBox* m_on;
   nanogui::Widget* m_controls;
   nanogui::Slider* m_alpha = nullptr;
-  nanogui::Label *m_alphaText = nullptr, *m_leaves = nullptr;
-  nanogui::IntBox<int>* m_wanted = nullptr;
+  nanogui::Label *m_alphaText = nullptr, *m_leaves = nullptr, *m_bytes = nullptr;
+  nanogui::IntBox<int>*m_wantedLeaves = nullptr, *m_wantedKilobytes = nullptr;
   nanogui::Widget* m_terms = nullptr;
   std::vector<TermLine> m_lines;
+  std::function<void()> m_onFollowed = [] {};
   std::string m_told;
   double m_measureAt = 0;  ///< s of GLFW's clock; 0: measured
 };

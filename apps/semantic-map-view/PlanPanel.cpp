@@ -23,7 +23,7 @@ using semantic_planning::PlanResult;
 
 namespace {
 
-constexpr int kPlanWidth = 230;
+constexpr int kPlanWidth = 230, kOrderWidth = 160;
 constexpr float kLift = 0.3f;  // m
 constexpr double kTurn = 0.5;  // m from the place, at least, where the hand gives a heading
 constexpr mrpt::img::TColor kPathColor{220, 40, 40}, kStartColor{40, 90, 220},
@@ -88,6 +88,10 @@ PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path classes)
     for (auto* button : {m_startButton, m_goalButton}) button->setFixedSize({90, 22});
     m_startButton->setCallback([this] { await(Awaited::Start); });
     m_goalButton->setCallback([this] { await(Awaited::Goal); });
+    auto* order = addWindow(&viewer.window(), "Best class first: drag", {262, 8}, kOrderWidth + 16);
+    m_order = order->add<OrderList>([this](const auto& ranks) { reorder(ranks); });
+    readOrder();
+    m_order->setFixedSize({kOrderWidth, m_order->preferredSize(nullptr).y()});
   }
   for (auto& line : m_lines) line = addText(window, "", kPlanWidth);
   if (m_classes.empty()) m_lines[0]->setCaption("needs --classes, an order of classes");
@@ -108,6 +112,53 @@ void PlanPanel::forget() {
   m_start.reset(), m_goal.reset();
   m_marks->clear();
   say("");
+  if (m_order) readOrder();
+}
+
+void PlanPanel::readOrder() {
+  const auto& classes = m_viewer.layer().map().classes();
+  m_ranks.clear();
+  try {
+    const auto order = semantic_planning::loadClassOrder(m_classes, classes);
+    m_numClasses = order.classes();
+    m_ranks.resize(std::size_t(order.ranks()));
+    for (int id = 0; id < m_numClasses; ++id) {
+      const auto graphClass = static_cast<colored_graph::GraphClass>(id);
+      if (const auto rank = order.rank(graphClass); rank != colored_graph::kForbidden)
+        m_ranks[std::size_t(rank)].push_back(graphClass);
+    }
+  } catch (const std::exception& e) {
+    say("no paths here:", e.what());  // another map has other classes
+  }
+  m_order->setNames(rankNames());
+}
+
+std::vector<std::string> PlanPanel::rankNames() const {
+  std::vector<std::string> names;
+  for (const auto& rank : m_ranks) {
+    names.emplace_back();
+    for (const auto id : rank) {
+      if (!names.back().empty()) names.back() += ", ";
+      names.back() += id == semantic_types::kNoClass
+                          ? semantic_planning::kUnknownGround
+                          : m_viewer.layer().map().classes().name(semantic_types::ClassId(id));
+    }
+  }
+  return names;
+}
+
+void PlanPanel::reorder(const std::vector<std::size_t>& ranks) {
+  const auto before = m_ranks;
+  for (std::size_t i = 0; i < ranks.size(); ++i) m_ranks[i] = before[ranks[i]];
+  const std::vector<std::string> names = rankNames();
+  m_order->setNames(names);
+  std::string text = "order: " + names.front();
+  for (std::size_t i = 1; i < names.size(); ++i) text += " > " + names[i];
+  notes() << text << std::endl;
+  m_planner.reset();
+  m_map.reset();
+  if (m_start && m_goal) plan();
+  m_viewer.window().redraw();
 }
 
 void PlanPanel::await(Awaited what) {
@@ -158,7 +209,7 @@ void PlanPanel::turn(const map_view::Ray& ray, bool letsGo) {
 
 void PlanPanel::begin() {
   m_map = std::make_unique<semantic_octree::SemanticOcTree>(m_viewer.layer().map());
-  const auto order = semantic_planning::loadClassOrder(m_classes, m_map->classes());
+  const colored_graph::ClassOrder order(m_numClasses, m_ranks);
   m_map->setAbstraction(semantic_planning::abstractionFor(order));
   semantic_planning::PlannerOptions options;
   options.shorten = true;

@@ -5,6 +5,10 @@
 
 #include "map_window/Viewer.h"
 
+namespace map_window {
+class OrderList;
+}
+
 namespace semantic_map_view {
 
 using namespace map_window;
@@ -33,6 +37,10 @@ class PlanPanel {
   void plan();
   void begin();
   void forget();
+  void readOrder();
+  std::vector<std::string> rankNames() const;
+  /** \param ranks of the order as it is, the best one first */
+  void reorder(const std::vector<std::size_t>& ranks);
   void draw(const semantic_planning::PlanResult* plan);
   void say(const std::string& first, const std::string& second = {});
 
@@ -43,6 +51,10 @@ class PlanPanel {
   /** Planning keeps an abstraction of its own, and so a map of its own. */
   std::unique_ptr<semantic_octree::SemanticOcTree> m_map;
   std::optional<semantic_planning::SemanticPlanner> m_planner;
+  /** Classes from best to worst, and how many the map has. */
+  std::vector<std::vector<colored_graph::GraphClass>> m_ranks;
+  int m_numClasses = 0;
+  OrderList* m_order = nullptr;
   nanogui::Button *m_startButton = nullptr, *m_goalButton = nullptr;
   std::array<nanogui::Label*, 2> m_lines{};
   mrpt::opengl::CSetOfObjects::Ptr m_marks = mrpt::opengl::CSetOfObjects::Create();

@@ -5,11 +5,13 @@
 
 #include <iostream>
 
+#include "Animation.h"
 #include "Application.h"
 #include "Cli.h"
 #include "CompressPanel.h"
 #include "PlanPanel.h"
 #include "StandardOutput.h"
+#include "WhyPanel.h"
 #include "map_window/AskPanel.h"
 #include "map_window/ShowPanel.h"
 #include "measuring/Quantile.h"
@@ -34,11 +36,16 @@ struct Panels {
   ShowPanel show;
   AskPanel ask;
   CompressPanel compress;
+  WhyPanel why;
   PlanPanel plan;
 
   Panels(Viewer& viewer, const Cli& cli)
-      : show(viewer), ask(viewer), compress(viewer, cli.weights), plan(viewer, cli.classes) {
-    viewer.window().onClick([this](const map_view::Ray& ray) { ask.ask(ray); });
+      : show(viewer),
+        ask(viewer),
+        compress(viewer, cli.weights),
+        why(viewer, compress),
+        plan(viewer, cli.classes) {
+    viewer.window().onClick([this](const map_view::Ray& ray) { why.show(ask.ask(ray)); });
     viewer.window().onGrab([this](const map_view::Ray& ray) { return plan.place(ray); });
     viewer.window().onMoved(
         [this](const map_view::Ray& ray, bool letsGo) { plan.turn(ray, letsGo); });
@@ -83,7 +90,7 @@ struct Clocks {
 };
 
 /** Twice around the map: with meshes to be made, and with all there. */
-void measureTurning(ViewWindow& window) {
+void measureTurning(ViewWindow& window, Viewer& viewer) {
   constexpr int kFrames = 72;
   map_view::OrbitCamera camera = window.orbitCamera();
   for (const char* name : {"a frame of the first turn: ", "a frame of the second turn: "}) {
@@ -95,8 +102,8 @@ void measureTurning(ViewWindow& window) {
     }
     std::cout << name << clock.text(kFrames) << '\n';
   }
-  std::cout << "tiles: " << window.tiles().numTiles()
-            << "\nsides of cells: " << window.tiles().numFaces() << '\n';
+  std::cout << "tiles: " << viewer.tiles().numTiles()
+            << "\nsides of cells: " << viewer.tiles().numFaces() << '\n';
 }
 
 /** From the hand on the slider to the first frame that shows it, and to the complete one. */
@@ -119,7 +126,7 @@ void measureCompressing(ViewWindow& window, CompressPanel& panel) {
   panel.switchOn(true);
   finishFrame(window);
   std::cout << "to the compressed tree: " << begin.text() << '\n';
-  const double alpha = panel.compression().alpha();
+  const double alpha = panel.compression()->alpha();
   show("alpha", [&](int i) { panel.setAlpha(alpha * (i % 2 ? 1 : 1.5)); });
   show("a weight", [&](int i) { panel.setWeight(1, i % 2 ? 1 : 0.5); });
 }
@@ -136,7 +143,8 @@ void measureAsking(ViewWindow& window, AskPanel& panel) {
 }
 
 int run(const Cli& cli) {
-  if (!cli.picture.empty()) cli.outputs.check({cli.picture});
+  for (const auto& file : {cli.picture, cli.animation})
+    if (!file.empty()) cli.outputs.check({file});
   const Clock clock;
   auto layers = openLayers(cli);
   checkSettings(cli, layers.front()->map().classes());
@@ -147,17 +155,18 @@ int run(const Cli& cli) {
   if (cli.panels) panels.emplace(viewer, cli);
   window->performLayout();
   window->setVisible(true);
-  if (cli.measure || !cli.picture.empty()) {
+  if (cli.measure || !cli.picture.empty() || !cli.animation.empty()) {
     finishFrame(*window);
     if (cli.measure) {
       std::cout << "renderer: " << window->renderer() << "\nwindow: " << window->pixelWidth()
                 << " x " << window->pixelHeight()
                 << "\nto the first complete frame: " << clock.text() << '\n';
-      measureTurning(*window);
+      measureTurning(*window, viewer);
       if (panels) measureAsking(*window, panels->ask);
       if (panels) measureCompressing(*window, panels->compress);
     }
     if (!cli.picture.empty()) map_pictures::savePicture(window->drawPicture(), cli.picture);
+    if (panels && !cli.animation.empty()) animate(*window, panels->compress, cli.animation);
     return 0;
   }
   window->run([] { return false; });

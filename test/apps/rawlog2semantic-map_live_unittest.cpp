@@ -72,6 +72,24 @@ TEST_F(LiveMapping, ShowsTheMapScanByScanAndMakesTheSame) {
     EXPECT_EQ(folder.read("live" + name), folder.read("without" + name)) << name;
 }
 
+TEST_F(LiveMapping, ShowsTheCamerasPictureWithItsLabels) {
+  SKIP_WITHOUT_WINDOWS();
+  // The first scan of the sample is a camera's: half of its colors are those of the classes.
+  const ProgramRun live = runInX(
+      {MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kProgram, "--live", "--pause",
+       "-v", "--config", MSO_SOURCE_DIR "/config/maps/synthetic.ini", "-o", path("live"),
+       MSO_SOURCE_DIR "/rawlog-samples/village.rawlog", "--", "140 573 'CAMERA'): inserted",
+       "140 573 'LIDAR'): inserted", "picture " + path("screen.png")});
+  ASSERT_EQ(live.status, 0) << live.output << live.errors;
+  const cv::Mat screen = cv::imread(path("screen.png"));
+  ASSERT_FALSE(screen.empty());
+  int paper = 0, all = 0;
+  for (int row = 460; row < 700; ++row)
+    for (int col = 920; col < 1260; ++col)
+      paper += screen.at<cv::Vec3b>(row, col) == cv::Vec3b(250, 250, 250), ++all;
+  EXPECT_LT(paper, all / 100) << "the picture is opaque";
+}
+
 TEST_F(LiveMapping, IsAnErrorWithoutADisplay) {
   std::vector<std::string> command = {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", kProgram, "--live"};
   for (const std::string& argument : arguments("live")) command.push_back(argument);

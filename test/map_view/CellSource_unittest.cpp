@@ -148,7 +148,7 @@ TEST(CellLook, HidesClassesAndWhatIsAbove) {
   CellLook look(map);
   ViewStyle style;
   style.hiddenClasses = {false, true, false, false};
-  style.maxHeight = 1;
+  style.clip.max().z() = 1;
   look.setStyle(style);
   std::size_t expected = 0;
   for (auto it = map.begin_leafs(); it != map.end_leafs(); ++it)

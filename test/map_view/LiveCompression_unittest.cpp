@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <map_view/CellSource.h>
 #include <map_view/LiveCompression.h>
+#include <semantic_octree/TreeFile.h>
 
 #include <algorithm>
 #include <iterator>
@@ -106,6 +107,42 @@ TEST(LiveCompression, FindsTheTreeOfAWantedNumberOfLeaves) {
   EXPECT_GE(live.numLeaves(), 1u);
   live.setLeaves(100'000'000);
   EXPECT_LE(live.numLeaves(), map.getNumLeafNodes());
+}
+
+TEST(LiveCompression, IsTheMapThatGValuesLeadTo) {
+  SemanticOcTree map = randomMap(59), other = map;
+  LiveCompression live(map, LiveCompression::allClasses(map), {});
+  AbstractionOptions options;
+  options.weights.terms = live.solution().terms;
+  options.weights.alpha = 0.004;
+  live.setAlpha(0.004);
+  other.setAbstraction(options);
+  const SemanticOcTree expected = Abstraction(other).compressedMap();
+  EXPECT_TRUE(live.compressedMap(map) == expected);
+  EXPECT_LT(expected.getNumLeafNodes(), map.getNumLeafNodes());
+}
+
+TEST(LiveCompression, FindsTheTreeOfAWantedNumberOfBytes) {
+  SemanticOcTree map = randomMap(60);
+  LiveCompression live(map, LiveCompression::allClasses(map), {});
+  const auto bytes = [&] { return semantic_octree::fileSize(live.compressedMap(map)); };
+  live.setBytes(map, 10'000'000);
+  const std::size_t most = bytes();
+  for (const double share : {0.8, 0.3}) {
+    const auto wanted = std::size_t(share * double(most));
+    live.setBytes(map, wanted);
+    EXPECT_LE(bytes(), wanted);
+    const std::size_t leaves = live.numLeaves();
+    // The next larger tree takes more.
+    const auto path = live.tree().path();
+    std::size_t k = 0;
+    while (path.alpha(k) > live.alpha()) ++k;
+    live.setAlpha(path.alpha(k + 1));
+    EXPECT_GT(live.numLeaves(), leaves);
+    EXPECT_GT(bytes(), wanted);
+  }
+  live.setBytes(map, 1);
+  EXPECT_EQ(live.alpha(), live.tree().path().alpha(0)) << "the smallest one";
 }
 
 TEST(LiveCompression, HasTheLeavesOfItsSolutionAlone) {

@@ -74,13 +74,13 @@ TEST(RayCast, GoesThroughWhatIsHidden) {
   const auto top = firstShown(cells, look, down);
   ASSERT_TRUE(top);
   ViewStyle style;
-  style.maxHeight = top->centerHeight(0.2) - 0.05;
+  style.clip.max().z() = top->center(0.2).z() - 0.05;
   look.setStyle(style);
   const auto second = firstShown(cells, look, down);
   if (second) {
     EXPECT_LT(second->lowest.z(), top->lowest.z());
   }
-  style.maxHeight = 100;
+  style.clip.max().z() = 100;
   style.hiddenClasses.assign(4, false);
   style.hiddenClasses[look.classOf(*top)] = true;
   look.setStyle(style);

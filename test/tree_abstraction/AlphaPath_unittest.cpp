@@ -108,6 +108,16 @@ TEST(AlphaPath, aBudgetOfBytesMayExceedTheWholeTreeButNotFallBelowTheRoots) {
   EXPECT_THROW(path.largestWithin(kNan, bytes, 4), std::invalid_argument);
 }
 
+TEST(AlphaPath, findsTheLargestTreeThatFitsByBisection) {
+  const AlphaPath path({5, 4, 3, 2, 1});
+  ASSERT_EQ(path.numTrees(), 6u);
+  for (std::size_t last = 0; last < path.numTrees(); ++last) {
+    int calls = 0;
+    EXPECT_EQ(path.largestThat([&](std::size_t k) { return ++calls, k <= last; }), last);
+    EXPECT_LE(calls, 3);
+  }
+}
+
 TEST(AlphaPath, rejectsCostsThatDoNotFit) {
   const AlphaPath path({3, 2});
   EXPECT_THROW(path.totals({1}, 0), std::invalid_argument);

@@ -65,14 +65,16 @@ void AskPanel::clear() {
   for (auto* line : m_lines) line->setCaption("");
 }
 
-void AskPanel::ask(const map_view::Ray& ray) {
+std::optional<map_view::ViewCell> AskPanel::ask(const map_view::Ray& ray) {
   const Layer& layer = m_viewer.layer();
   clear();
-  if (const auto cell = firstShown(layer.cells(), layer.look(), ray))
+  const auto cell = firstShown(layer.cells(), layer.look(), ray);
+  if (cell)
     show(*cell);
   else
     m_lines[0]->setCaption("nothing there");
   m_viewer.window().redraw();
+  return cell;
 }
 
 void AskPanel::show(const map_view::ViewCell& cell) {

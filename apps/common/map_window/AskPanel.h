@@ -12,7 +12,8 @@ class AskPanel {
   AskPanel(const AskPanel&) = delete;
   AskPanel& operator=(const AskPanel&) = delete;
 
-  void ask(const map_view::Ray& ray);
+  /** \return the cell that the ray meets, if there is one */
+  std::optional<map_view::ViewCell> ask(const map_view::Ray& ray);
 
  private:
   void show(const map_view::ViewCell& cell);

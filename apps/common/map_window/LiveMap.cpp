@@ -16,7 +16,7 @@ using map_view::KeyBox;
 
 namespace {
 
-constexpr int kWidth = 1280, kHeight = 720, kPanel = 230, kMostLines = 4;
+constexpr int kWidth = 1280, kHeight = 720, kPanel = 230, kMostLines = 4, kPictureWidth = 360;
 constexpr double kAttend = 0.005;  // s between looks at what hands do
 /** Between counts of a map's leaves, at first; as the map grows they take longer, s. */
 constexpr double kCountEvery = 1;
@@ -94,13 +94,16 @@ class LiveMap::Window {
     if (m_isOpen) m_pace.say(lines);
   }
 
+  void showPicture(const mrpt::img::CImage& picture) {
+    if (m_isOpen) m_window->showPicture(picture, kPictureWidth);
+  }
   void changed(const Eigen::AlignedBox3d& box) { m_changed.extend(box); }
 
   void show(double seconds) {
     if (!m_isOpen) return;
     // Else those that are far away would never have their turn.
     if (!m_changed.isEmpty() && m_isComplete) {
-      m_window->tiles().touch({keysOf(m_changed)});
+      m_viewer.tiles().touch({keysOf(m_changed)});
       m_changed.setEmpty();
       count();
     }
@@ -169,6 +172,7 @@ LiveMap::~LiveMap() = default;
 
 mrpt::opengl::CSetOfObjects& LiveMap::marks() { return *m_window->marks; }
 void LiveMap::say(const std::vector<std::string>& lines) { m_window->say(lines); }
+void LiveMap::showPicture(const mrpt::img::CImage& picture) { m_window->showPicture(picture); }
 void LiveMap::changed(const Eigen::AlignedBox3d& box) { m_window->changed(box); }
 bool LiveMap::isOpen() const { return m_window->isOpen(); }
 void LiveMap::stopWhen(const std::function<bool()>& isToEnd) { m_window->isToEnd = isToEnd; }

@@ -1,4 +1,5 @@
 #pragma once
+#include <mrpt/img/CImage.h>
 #include <mrpt/opengl/CSetOfObjects.h>
 #include <semantic_octree/SemanticOcTree.h>
 
@@ -28,6 +29,8 @@ class LiveMap {
   mrpt::opengl::CSetOfObjects& marks();
   /** Lines that say how far it is. */
   void say(const std::vector<std::string>& lines);
+  /** A camera's picture, in the lower right corner. */
+  void showPicture(const mrpt::img::CImage& picture);
   /** What is in a box may have changed: m, map frame. */
   void changed(const Eigen::AlignedBox3d& box);
   bool isOpen() const;

@@ -15,6 +15,7 @@ LiveMap::~LiveMap() = default;
 // Nobody has an object.
 mrpt::opengl::CSetOfObjects& LiveMap::marks() { std::abort(); }
 void LiveMap::say(const std::vector<std::string>&) {}
+void LiveMap::showPicture(const mrpt::img::CImage&) {}
 void LiveMap::changed(const Eigen::AlignedBox3d&) {}
 bool LiveMap::isOpen() const { return false; }
 void LiveMap::stopWhen(const std::function<bool()>&) {}

@@ -38,7 +38,7 @@ ShowPanel::ShowPanel(Viewer& viewer)
   addLayers(m_window);
   addColoring(m_window);
   addClasses(m_window);
-  addHeight(m_window);
+  addClip(m_window);
   addCameras(m_window);
   m_camera = addText(m_window, "", kShowWidth);
   m_said = addText(m_window, "", kShowWidth);
@@ -49,7 +49,7 @@ ShowPanel::ShowPanel(Viewer& viewer)
 void ShowPanel::refresh() {
   if (m_name) m_name->setCaption(nameOf(m_viewer.layer()));
   listClasses();
-  fitHeight();
+  fitClip();
 }
 
 void ShowPanel::update() {
@@ -58,15 +58,32 @@ void ShowPanel::update() {
 }
 
 void ShowPanel::addLayers(Widget* parent) {
-  std::vector<std::string> names;
-  for (const auto& layer : m_viewer.layers()) names.push_back(nameOf(*layer));
-  if (names.size() == 1) {
-    m_name = addText(parent, names[0], kShowWidth);
+  if (m_viewer.numLayers() == 1) {
+    m_name = addText(parent, nameOf(m_viewer.layer()), kShowWidth);
     return;
   }
-  auto* box = parent->add<nanogui::ComboBox>(names);
-  box->setFixedWidth(kShowWidth);
-  box->setCallback([this](int layer) { m_viewer.activate(std::size_t(layer)); });
+  std::vector<std::string> names;
+  std::vector<nanogui::CheckBox*> boxes;
+  for (std::size_t i = 0; i < m_viewer.numLayers(); ++i) {
+    names.push_back(m_viewer.layer(i).name());
+    boxes.push_back(parent->add<nanogui::CheckBox>(nameOf(m_viewer.layer(i))));
+    boxes.back()->setFixedSize({kShowWidth, 17});
+    boxes.back()->setFontSize(15);
+    boxes.back()->setChecked(m_viewer.isShown(i));
+    boxes.back()->setCallback([this, i](bool on) {
+      m_viewer.setShown(i, on);
+      m_viewer.say((on ? "shows " : "hides ") + m_viewer.layer(i).name());
+    });
+  }
+  auto* row = addRow(parent);
+  addText(row, "active", 50);
+  auto* active = row->add<nanogui::ComboBox>(names);
+  active->setFixedWidth(kShowWidth - 56);
+  active->setTooltip("The one that clicks ask, that is compressed and planned upon");
+  active->setCallback([this, boxes](int layer) {
+    m_viewer.activate(std::size_t(layer));
+    boxes[std::size_t(layer)]->setChecked(true);
+  });
 }
 
 void ShowPanel::addColoring(Widget* parent) {
@@ -91,7 +108,7 @@ void ShowPanel::addColoring(Widget* parent) {
 
 void ShowPanel::addClasses(Widget* parent) {
   auto* scroll = parent->add<nanogui::VScrollPanel>();
-  scroll->setFixedSize({kShowWidth, 300});
+  scroll->setFixedSize({kShowWidth, 250});
   m_classes = scroll->add<Widget>();
   m_classes->setLayout(
       new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 2, 1));
@@ -137,28 +154,50 @@ void ShowPanel::hide(std::size_t id, bool hidden) {
   m_viewer.setStyle(style);
 }
 
-void ShowPanel::addHeight(Widget* parent) {
-  auto* row = addRow(parent);
-  addText(row, "height", 50);
-  m_heightSlider = addSlider(row, 110, 0, 1, 0, [this](float z) {
-    map_view::ViewStyle style = m_viewer.style();
-    style.maxHeight =
-        z < m_heightSlider->range().second ? double(z) : std::numeric_limits<double>::infinity();
-    m_viewer.setStyle(style);
-    fitHeight();
-  });
-  m_height = addText(row, "", 55);
-  fitHeight();
+void ShowPanel::addClip(Widget* parent) {
+  for (int axis = 0; axis < 3; ++axis) {
+    ClipLine& line = m_clip[std::size_t(axis)];
+    auto* row = addRow(parent, 4);
+    addText(row, std::string(1, char('x' + axis)), 10);
+    for (nanogui::Slider** slider : {&line.from, &line.to})
+      *slider = addSlider(row, 58, 0, 1, 0, [this, axis](float) { clip(axis); });
+    line.text = addText(row, "", 88);
+  }
+  fitClip();
 }
 
-void ShowPanel::fitHeight() {
-  double x, y, low, high;
-  m_viewer.layer().map().getMetricMin(x, y, low);
-  m_viewer.layer().map().getMetricMax(x, y, high);
-  const double cut = std::min(m_viewer.style().maxHeight, high);
-  m_heightSlider->setRange({float(low), float(high)});
-  m_heightSlider->setValue(float(cut));
-  m_height->setCaption(strict_files::textOf(std::round(cut * 10) / 10) + " m");
+/** The sliders' ends do not cut. */
+void ShowPanel::clip(int axis) {
+  map_view::ViewStyle style = m_viewer.style();
+  const Eigen::AlignedBox3d all = map_view::ViewStyle::everywhere();
+  const ClipLine& line = m_clip[std::size_t(axis)];
+  const auto [low, high] = line.from->range();
+  const float from = line.from->value(), to = line.to->value();
+  style.clip.min()[axis] = from > low ? double(from) : all.min()[axis];
+  style.clip.max()[axis] = to < high ? double(to) : all.max()[axis];
+  m_viewer.setStyle(style);
+  fitClip();
+}
+
+void ShowPanel::fitClip() {
+  Eigen::AlignedBox3d known;
+  for (std::size_t i = 0; i < m_viewer.numLayers(); ++i) {
+    Eigen::Vector3d low, high;
+    m_viewer.layer(i).map().getMetricMin(low.x(), low.y(), low.z());
+    m_viewer.layer(i).map().getMetricMax(high.x(), high.y(), high.z());
+    known.extend(Eigen::AlignedBox3d(low, high));
+  }
+  const auto rounded = [](double m) { return strict_files::textOf(std::round(m * 10) / 10); };
+  for (int axis = 0; axis < 3; ++axis) {
+    const ClipLine& line = m_clip[std::size_t(axis)];
+    const double low = known.min()[axis], high = known.max()[axis],
+                 from = std::clamp(m_viewer.style().clip.min()[axis], low, high),
+                 to = std::clamp(m_viewer.style().clip.max()[axis], low, high);
+    for (auto* slider : {line.from, line.to}) slider->setRange({float(low), float(high)});
+    line.from->setValue(float(from));
+    line.to->setValue(float(to));
+    line.text->setCaption(rounded(from) + " to " + rounded(to) + " m");
+  }
 }
 
 void ShowPanel::addCameras(Widget* parent) {

@@ -19,18 +19,24 @@ class ShowPanel {
   void addLayers(nanogui::Widget* parent);
   void addColoring(nanogui::Widget* parent);
   void addClasses(nanogui::Widget* parent);
-  void addHeight(nanogui::Widget* parent);
+  void addClip(nanogui::Widget* parent);
   void addCameras(nanogui::Widget* parent);
   void listClasses();
-  /** From the lowest to the highest of what is known. */
-  void fitHeight();
+  /** Sliders lead from the lowest to the highest of what is known. */
+  void fitClip();
+  void clip(int axis);
   void hide(std::size_t id, bool hidden);
 
   Viewer& m_viewer;
   nanogui::Window* m_window;
   nanogui::Widget* m_classes = nullptr;
-  nanogui::Slider* m_heightSlider = nullptr;
-  nanogui::Label *m_name = nullptr, *m_height = nullptr, *m_camera = nullptr, *m_said = nullptr;
+  /** Of the box outside of which nothing is shown: along x, y, z. */
+  struct ClipLine {
+    nanogui::Slider *from, *to;
+    nanogui::Label* text;
+  };
+  std::array<ClipLine, 3> m_clip{};
+  nanogui::Label *m_name = nullptr, *m_camera = nullptr, *m_said = nullptr;
 };
 
 }  // namespace map_window

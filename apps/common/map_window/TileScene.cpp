@@ -48,13 +48,6 @@ CSetOfTriangles::Ptr trianglesOf(const std::vector<Face>& faces, std::uint8_t al
 
 }  // namespace
 
-void TileScene::clear() {
-  m_meshes.clear();
-  m_fresh.clear();
-  m_objects->clear();
-  m_kept = 0;
-}
-
 std::size_t TileScene::Meshes::faces() const {
   std::size_t sum = free.faces;
   for (const Part& part : occupied) sum += part.faces;

@@ -22,8 +22,6 @@ class TileScene {
   /** All cells look otherwise, or those in some boxes. */
   void touch() { m_fresh.clear(); }
   void touch(const std::vector<map_view::KeyBox>& boxes) { m_fresh.remove(boxes); }
-  /** Another map. */
-  void clear();
 
   std::size_t numTiles() const { return m_shown; }
   /** Sides of cells that are drawn. */

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kIdle = 0.5;  // s between frames without a reason
 constexpr int kClick = 3;      // pixels that the mouse may move between press and release
+constexpr int kPictureBorder = 8;
 
 const std::string kInstead =
     "; `semantic-map-export MAP -o map.png` draws a map without a window, xvfb-run gives programs "
@@ -65,10 +66,21 @@ ViewWindow::ViewWindow(const std::string& title, int width, int height)
   scene->getViewport()->setCustomBackgroundColor(
       mrpt::img::TColorf(mrpt::img::TColor(paper.r, paper.g, paper.b)));
   scene->insert(m_marks);
-  scene->insert(m_tiles.objects());
+  scene->insert(m_maps);
   background_scene = scene;
   glfwMakeContextCurrent(mGLFWWindow);
   m_renderer = glText(GL_RENDERER);
+}
+
+void ViewWindow::showPicture(const mrpt::img::CImage& picture, int width) {
+  const double height = double(width) * double(picture.getHeight()) / double(picture.getWidth());
+  auto viewport = background_scene->createViewport("picture");
+  viewport->setImageView(picture);
+  // Shares of the window, from its lower left corner.
+  viewport->setViewportPosition(1 - double(width + kPictureBorder) / mFBSize.x(),
+                                double(kPictureBorder) / mFBSize.y(), double(width) / mFBSize.x(),
+                                height / mFBSize.y());
+  redraw();
 }
 
 map_view::OrbitCamera ViewWindow::orbitCamera() const {

@@ -6,8 +6,6 @@
 #include <functional>
 #include <opencv2/core.hpp>
 
-#include "TileScene.h"
-
 namespace map_window {
 
 /** Of MRPT's windows; one at a time. */
@@ -27,10 +25,12 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   static std::unique_ptr<ViewWindow> open(const std::string& title, int width, int height);
   ViewWindow(const std::string& title, int width, int height);
 
-  /** Tiles of the map. */
-  TileScene& tiles() { return m_tiles; }
-  /** What lies upon it. */
+  /** Maps. */
+  const mrpt::opengl::CSetOfObjects::Ptr& maps() const { return m_maps; }
+  /** What lies upon them. */
   const mrpt::opengl::CSetOfObjects::Ptr& marks() const { return m_marks; }
+  /** In the lower right corner, so many pixels wide. */
+  void showPicture(const mrpt::img::CImage& picture, int width);
 
   map_view::OrbitCamera orbitCamera() const;
   void setOrbitCamera(const map_view::OrbitCamera& camera);
@@ -75,7 +75,7 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   map_view::Ray rayThrough(const nanogui::Vector2i& p) const;
   void takePicture();
 
-  TileScene m_tiles;
+  mrpt::opengl::CSetOfObjects::Ptr m_maps = mrpt::opengl::CSetOfObjects::Create();
   mrpt::opengl::CSetOfObjects::Ptr m_marks = mrpt::opengl::CSetOfObjects::Create();
   std::function<void(const map_view::Ray&)> m_onClick;
   std::function<bool(const map_view::Ray&)> m_onGrab;

@@ -25,8 +25,12 @@ constexpr double kHurry = 12, kMilliseconds = 50;
 
 Viewer::Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers,
                const Beginning& beginning)
-    : m_window(window), m_layers(std::move(layers)) {
-  for (const auto& layer : m_layers) layer->look().setStyle(beginning.style);
+    : m_window(window) {
+  for (auto& layer : layers) {
+    layer->look().setStyle(beginning.style);
+    m_maps.push_back({std::move(layer), {}, true});
+  }
+  insertMaps();
   if (beginning.camera)
     m_window.setOrbitCamera(*beginning.camera);
   else if (beginning.top)
@@ -46,42 +50,60 @@ bool Viewer::frame() {
   const bool moves = glfwGetTime() < m_restAt;
   if (moves) view.pixelsPerCell = kMoving;
   if (m_hurries) view.pixelsPerCell = kHurrying;
-  const double time = m_hurries ? kHurry : kMilliseconds;
-  const bool ready = m_window.tiles().update(layer(), view, time) && !moves && !m_hurries;
+  const double time = (m_hurries ? kHurry : kMilliseconds) / double(m_maps.size());
+  bool ready = !moves && !m_hurries;
+  for (OpenMap& map : m_maps)
+    if (map.isShown && !map.tiles.update(*map.layer, view, time)) ready = false;
   m_hurries = false;
   return !ready;
 }
 
 void Viewer::changed(const std::vector<map_view::KeyBox>& boxes) {
-  m_window.tiles().touch(boxes);
+  tiles().touch(boxes);
   m_window.redraw();
   m_hurries = !boxes.empty();
 }
 
+void Viewer::insertMaps() {
+  m_window.maps()->clear();
+  for (const OpenMap& map : m_maps)
+    if (map.isShown) m_window.maps()->insert(map.tiles.objects());
+  m_window.redraw();
+}
+
+void Viewer::setShown(std::size_t layer, bool isShown) {
+  m_maps[layer].isShown = isShown;
+  insertMaps();
+}
+
 void Viewer::activate(std::size_t layer) {
-  const map_view::ViewStyle before = style();
   showFull();
   m_active = layer;
-  map_view::ViewStyle now = style();
-  now.coloring = before.coloring, now.freeSpace = before.freeSpace,
-  now.maxHeight = before.maxHeight;
-  this->layer().look().setStyle(now);
-  m_window.tiles().clear();
-  m_window.redraw();
+  setShown(layer, true);
   for (const auto& f : m_onActivated) f();
 }
 
 void Viewer::setStyle(const map_view::ViewStyle& style) {
-  layer().look().setStyle(style);
-  m_window.tiles().touch();
+  for (OpenMap& map : m_maps) {
+    map_view::ViewStyle own = style;
+    if (map.layer.get() != &layer()) own.hiddenClasses = map.layer->look().style().hiddenClasses;
+    map.layer->look().setStyle(own);
+    map.tiles.touch();
+  }
   m_window.redraw();
+}
+
+Eigen::AlignedBox3d Viewer::extent() const {
+  Eigen::AlignedBox3d all;
+  for (const OpenMap& map : m_maps)
+    if (map.isShown) all.extend(map.layer->extent());
+  return all.isEmpty() ? m_maps[m_active].layer->extent() : all;
 }
 
 void Viewer::lookFrom(double azimuth, double elevation) {
   map_view::OrbitCamera camera;
   camera.azimuth = azimuth, camera.elevation = elevation;
-  m_window.setOrbitCamera(
-      camera.seeing(layer().extent(), m_window.pixelWidth(), m_window.pixelHeight()));
+  m_window.setOrbitCamera(camera.seeing(extent(), m_window.pixelWidth(), m_window.pixelHeight()));
 }
 
 fs::path Viewer::newFile(const fs::path& folder, const std::string& stem,
@@ -103,13 +125,13 @@ fs::path Viewer::savePicture(const fs::path& folder) {
 
 void Viewer::showFull() {
   layer().setCells(std::make_unique<map_view::FullCells>(layer().map()));
-  m_window.tiles().touch();
+  tiles().touch();
   m_window.redraw();
 }
 
 void Viewer::showCompressed(const map_view::LiveCompression& compression) {
   layer().setCells(std::make_unique<map_view::CompressedCells>(layer().map(), compression));
-  m_window.tiles().touch();
+  tiles().touch();
   m_window.redraw();
 }
 

@@ -3,26 +3,33 @@
 #include <vector>
 
 #include "Beginning.h"
-#include "Layer.h"
+#include "TileScene.h"
 #include "ViewWindow.h"
 
 namespace map_window {
 
-/** Open maps, which of them is shown, and how. */
+/** Open maps, which of them are shown, and how. One of them is the active one, which is asked,
+ * compressed and planned upon. */
 class Viewer {
  public:
   Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers,
          const Beginning& beginning);
 
   ViewWindow& window() { return m_window; }
-  const std::vector<std::unique_ptr<Layer>>& layers() const { return m_layers; }
-  Layer& layer() { return *m_layers[m_active]; }
-  /** Another map, seen from the same place. */
+  std::size_t numLayers() const { return m_maps.size(); }
+  const Layer& layer(std::size_t i) const { return *m_maps[i].layer; }
+  /** The active one, and its tiles. */
+  Layer& layer() { return *m_maps[m_active].layer; }
+  TileScene& tiles() { return m_maps[m_active].tiles; }
+  bool isShown(std::size_t layer) const { return m_maps[layer].isShown; }
+  void setShown(std::size_t layer, bool isShown);
+  /** Another map becomes the active one, and is shown. */
   void activate(std::size_t layer);
   /** Called after another map was activated. */
   void onActivated(const std::function<void()>& f) { m_onActivated.push_back(f); }
 
-  const map_view::ViewStyle& style() const { return m_layers[m_active]->look().style(); }
+  const map_view::ViewStyle& style() const { return m_maps[m_active].layer->look().style(); }
+  /** Of all maps; the hidden classes are those of the active one. */
   void setStyle(const map_view::ViewStyle& style);
   /** The leaves of the map, or of its compressed tree. */
   void showFull();
@@ -30,7 +37,7 @@ class Viewer {
   /** Cells in some boxes look otherwise from now on: the next frame shows that, if coarsely, those
    * after it all of it. */
   void changed(const std::vector<map_view::KeyBox>& boxes);
-  /** All of the map, from a direction; degrees. */
+  /** All of the maps that are shown, from a direction; degrees. */
   void lookFrom(double azimuth, double elevation);
   /** FOLDER/STEM-1ENDING, -2, ..., the first that is not there. */
   static std::filesystem::path newFile(const std::filesystem::path& folder, const std::string& stem,
@@ -45,10 +52,17 @@ class Viewer {
   const std::string& said() const { return m_said; }
 
  private:
+  struct OpenMap {
+    std::unique_ptr<Layer> layer;
+    TileScene tiles;
+    bool isShown = true;
+  };
   bool frame();
+  void insertMaps();
+  Eigen::AlignedBox3d extent() const;
 
   ViewWindow& m_window;
-  std::vector<std::unique_ptr<Layer>> m_layers;
+  std::vector<OpenMap> m_maps;
   std::size_t m_active = 0;
   std::vector<std::function<void()>> m_onActivated, m_onFrame;
   std::string m_said, m_camera;

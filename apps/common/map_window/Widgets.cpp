@@ -3,6 +3,7 @@
 #include <nanogui/opengl.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace map_window {
 
@@ -50,6 +51,76 @@ void BarChart::draw(NVGcontext* context) {
     fillBox(context, x + kNameWidth, y + 3, width, kLine - 6, colorOf(bar.color));
     y += kLine;
   }
+}
+
+void Table::draw(NVGcontext* context) {
+  Widget::draw(context);
+  nvgFontSize(context, kFont);
+  nvgFontFace(context, "sans");
+  nvgFillColor(context, nanogui::Color(230, 255));
+  float y = float(mPos.y()) + kLine / 2.f;
+  for (const auto& row : m_rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const float right = float(mPos.x() + m_nameWidth + int(i) * m_columnWidth);
+      if (i == 0)
+        drawText(context, float(mPos.x()), y, NVG_ALIGN_LEFT, row[i].substr(0, 17));
+      else
+        drawText(context, right, y, NVG_ALIGN_RIGHT, row[i]);
+    }
+    y += kLine;
+  }
+}
+
+void OrderList::setNames(std::vector<std::string> names) {
+  m_names = std::move(names);
+  m_order.resize(m_names.size());
+  std::iota(m_order.begin(), m_order.end(), 0);
+  m_held.reset();
+}
+
+Vector2i OrderList::preferredSize(NVGcontext*) const {
+  return {kNameWidth + kBarWidth, kLine * int(m_names.size())};
+}
+
+void OrderList::draw(NVGcontext* context) {
+  Widget::draw(context);
+  nvgFontSize(context, kFont);
+  nvgFontFace(context, "sans");
+  float y = float(mPos.y());
+  for (std::size_t line = 0; line < m_order.size(); ++line) {
+    if (line == m_held)
+      fillBox(context, float(mPos.x()), y, float(mSize.x()), kLine, nanogui::Color(90, 255));
+    nvgFillColor(context, nanogui::Color(230, 255));
+    drawText(context, float(mPos.x()) + 4, y + kLine / 2.f, NVG_ALIGN_LEFT,
+             std::to_string(line + 1) + "  " + m_names[m_order[line]]);
+    y += kLine;
+  }
+}
+
+std::size_t OrderList::lineAt(const Vector2i& p) const {
+  return std::size_t(std::clamp((p.y() - mPos.y()) / kLine, 0, int(m_order.size()) - 1));
+}
+
+bool OrderList::mouseButtonEvent(const Vector2i& p, int button, bool down, int) {
+  if (button != GLFW_MOUSE_BUTTON_LEFT || m_order.empty()) return false;
+  if (down) {
+    m_held = lineAt(p);
+    m_before = m_order;
+  } else if (m_held) {
+    m_held.reset();
+    if (m_order != m_before) m_moved(m_order);
+  }
+  return true;
+}
+
+bool OrderList::mouseDragEvent(const Vector2i& p, const Vector2i&, int, int) {
+  if (!m_held) return false;
+  const std::size_t line = lineAt(p);
+  const auto name = m_order.begin() + std::ptrdiff_t(*m_held);
+  if (line < *m_held) std::rotate(m_order.begin() + std::ptrdiff_t(line), name, name + 1);
+  if (line > *m_held) std::rotate(name, name + 1, m_order.begin() + std::ptrdiff_t(line) + 1);
+  m_held = line;
+  return true;
 }
 
 Swatch::Swatch(Widget* parent, const semantic_types::Color& color)

@@ -3,6 +3,7 @@
 #include <semantic_types/ClassTable.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,42 @@ class BarChart : public nanogui::Widget {
 
  private:
   std::vector<Bar> m_bars;
+};
+
+/** Rows of a name and of numbers below each other. */
+class Table : public nanogui::Widget {
+ public:
+  /** \param nameWidth, columnWidth pixels */
+  Table(nanogui::Widget* parent, int nameWidth, int columnWidth)
+      : nanogui::Widget(parent), m_nameWidth(nameWidth), m_columnWidth(columnWidth) {}
+  void setRows(std::vector<std::vector<std::string>> rows) { m_rows = std::move(rows); }
+  void draw(NVGcontext* context) override;
+
+ private:
+  int m_nameWidth, m_columnWidth;
+  std::vector<std::vector<std::string>> m_rows;
+};
+
+/** Names below each other, which the hand puts into another order. */
+class OrderList : public nanogui::Widget {
+ public:
+  /** \param moved called with the indices of the names of setNames(), in their new order */
+  using Moved = std::function<void(const std::vector<std::size_t>&)>;
+  OrderList(nanogui::Widget* parent, const Moved& moved)
+      : nanogui::Widget(parent), m_moved(moved) {}
+  void setNames(std::vector<std::string> names);
+  nanogui::Vector2i preferredSize(NVGcontext*) const override;
+  void draw(NVGcontext* context) override;
+  bool mouseButtonEvent(const nanogui::Vector2i& p, int button, bool down, int) override;
+  bool mouseDragEvent(const nanogui::Vector2i& p, const nanogui::Vector2i&, int, int) override;
+
+ private:
+  std::size_t lineAt(const nanogui::Vector2i& p) const;
+
+  Moved m_moved;
+  std::vector<std::string> m_names;
+  std::vector<std::size_t> m_order, m_before;
+  std::optional<std::size_t> m_held;  ///< line
 };
 
 /** A square of one color. */

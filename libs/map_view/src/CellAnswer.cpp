@@ -12,8 +12,7 @@ CellAnswer answerOf(const ViewCell& cell, const SemanticOcTree& map) {
   CellAnswer answer;
   const double voxel = map.getResolution();
   answer.key = cell.key();
-  for (int axis = 0; axis < 3; ++axis)
-    answer.center[axis] = semantic_octree::centerOf(cell.lowest[axis], voxel, cell.depth);
+  answer.center = cell.center(voxel);
   answer.size = map.getNodeSize(static_cast<unsigned>(cell.depth));
   answer.state = "unknown", answer.occupancy = 0.5;
   if (!cell.node) return answer;

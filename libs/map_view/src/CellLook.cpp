@@ -62,7 +62,7 @@ void CellLook::forget() {
 }
 
 bool CellLook::isShown(const ViewCell& cell) const {
-  if (!cell.node || cell.centerHeight(m_map.getResolution()) > m_style.maxHeight) return false;
+  if (!cell.node || !m_style.clip.contains(cell.center(m_map.getResolution()))) return false;
   if (!cell.isOccupied()) return m_style.freeSpace;
   const ClassId id = m_style.hidesClasses() ? classOf(cell) : ClassId(0);
   return !m_style.hidesClasses() || id >= m_style.hiddenClasses.size() ||
@@ -70,8 +70,9 @@ bool CellLook::isShown(const ViewCell& cell) const {
 }
 
 Color CellLook::heightColor(const ViewCell& cell) const {
-  const double range = std::max(std::min(m_highest, m_style.maxHeight) - m_lowest, 1e-6);
-  return ramp((cell.centerHeight(m_map.getResolution()) - m_lowest) / range);
+  const double low = std::max(m_lowest, m_style.clip.min().z()),
+               high = std::min(m_highest, m_style.clip.max().z());
+  return ramp((cell.center(m_map.getResolution()).z() - low) / std::max(high - low, 1e-6));
 }
 
 Color CellLook::colorOf(const ViewCell& cell) const {

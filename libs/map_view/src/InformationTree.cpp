@@ -1,5 +1,4 @@
 #include <map_view/InformationTree.h>
-#include <tree_abstraction/AlphaPath.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +8,7 @@
 namespace map_view {
 
 using semantic_octree::Abstraction;
+using tree_abstraction::AlphaPath;
 
 namespace {
 
@@ -43,6 +43,7 @@ InformationTree::InformationTree(semantic_octree::SemanticOcTree& map)
       chargedAtDepth[depth] = static_cast<std::int32_t>(m_charged.size());
       m_charged.push_back(size());
       m_parents.push_back(depth == 0 ? kNone : chargedAtDepth[depth - 1]);
+      m_shares.push_back(n.share);
       m_prices.push_back(n.price);
       m_numRoots -= std::size_t(n.addedLeaves);
     }
@@ -63,15 +64,13 @@ KeyBox InformationTree::box(Index node) const {
 }
 
 void InformationTree::setWeights(const std::vector<double>& weights) {
-  std::vector<double> gains;
-  gains.reserve(m_charged.size());
+  m_gains.clear();
   for (const Index node : m_charged) {
-    const double* const information = &m_information[std::size_t(node) * m_numTerms];
     double gain = 0;
-    for (std::size_t t = 0; t < m_numTerms; ++t) gain += weights[t] * information[t];
-    gains.push_back(gain);
+    for (std::size_t t = 0; t < m_numTerms; ++t) gain += weights[t] * information(node, t);
+    m_gains.push_back(gain);
   }
-  const auto alphas = tree_abstraction::collapseAlphas(m_parents, gains, m_prices);
+  const auto alphas = tree_abstraction::collapseAlphas(m_parents, m_gains, m_prices);
   for (std::size_t i = 0; i < alphas.size(); ++i) m_alphas[std::size_t(m_charged[i])] = alphas[i];
 }
 
@@ -82,13 +81,16 @@ std::size_t InformationTree::numLeaves(double alpha) const {
   return static_cast<std::size_t>(leaves);
 }
 
+AlphaPath InformationTree::path() const {
+  std::vector<double> alphas;
+  for (const Index node : m_charged) alphas.push_back(alpha(node));
+  return AlphaPath(std::move(alphas));
+}
+
 double InformationTree::alphaForLeaves(std::size_t wanted) const {
-  std::vector<double> alphas, added;
-  for (const Index node : m_charged) {
-    alphas.push_back(m_alphas[std::size_t(node)]);
-    added.push_back(m_addedLeaves[std::size_t(node)]);
-  }
-  const tree_abstraction::AlphaPath path(std::move(alphas));
+  std::vector<double> added;
+  for (const Index node : m_charged) added.push_back(m_addedLeaves[std::size_t(node)]);
+  const AlphaPath path = this->path();
   const double budget = double(std::max(wanted, m_numRoots));
   return path.alpha(path.largestWithin(budget, added, double(m_numRoots)));
 }
@@ -109,18 +111,67 @@ double InformationTree::highestAlpha() const {
 
 std::vector<std::optional<double>> InformationTree::retained(double alpha) const {
   std::vector<double> all(m_numTerms, 0.0), kept(m_numTerms, 0.0);
-  for (std::size_t i = 0; i < m_alphas.size(); ++i) {
-    const double* const information = &m_information[i * m_numTerms];
-    const bool isExpanded = m_alphas[i] > alpha;
+  for (Index node = 0; node < size(); ++node) {
+    const bool isExpanded = this->alpha(node) > alpha;
     for (std::size_t t = 0; t < m_numTerms; ++t) {
-      all[t] += information[t];
-      if (isExpanded) kept[t] += information[t];
+      all[t] += information(node, t);
+      if (isExpanded) kept[t] += information(node, t);
     }
   }
   std::vector<std::optional<double>> shares(m_numTerms);
   for (std::size_t t = 0; t < m_numTerms; ++t)
     if (all[t] >= kNothing) shares[t] = kept[t] / all[t];
   return shares;
+}
+
+std::vector<std::size_t> InformationTree::chargedAround(const Eigen::Array3i& key) const {
+  const KeyBox voxel = {key, key};
+  const auto holds = [&](Index node) {
+    const KeyBox cube = box(node);
+    return voxel.meets(cube.low, cube.high.x() - cube.low.x() + 1);
+  };
+  std::vector<std::size_t> found;
+  for (Index node = 0, end = size(); node < end;) {
+    if (!holds(node)) {
+      node = m_end[std::size_t(node)];  // over its subtree
+      continue;
+    }
+    const auto place = std::lower_bound(m_charged.begin(), m_charged.end(), node);
+    if (place != m_charged.end() && *place == node)
+      found.push_back(std::size_t(place - m_charged.begin()));
+    end = m_end[std::size_t(node)];
+    ++node;
+  }
+  return found;
+}
+
+std::vector<InformationTree::Balance> InformationTree::balancesAround(const Eigen::Array3i& key,
+                                                                      double alpha) const {
+  const std::vector<std::size_t> around = chargedAround(key);
+  if (around.empty()) return {};
+  // Of the largest node and all below, children before parents, p(n) times what their children's
+  // G-values sum up to.
+  const std::size_t first = around.front();
+  const auto end =
+      std::lower_bound(m_charged.begin(), m_charged.end(), m_end[std::size_t(m_charged[first])]);
+  std::vector<double> ofChildren(std::size_t(end - m_charged.begin()) - first, 0.0);
+  const auto valueOf = [&](std::size_t i) {
+    return std::max(0.0, m_gains[i] - alpha * m_prices[i] + ofChildren[i - first]);
+  };
+  for (std::size_t i = first + ofChildren.size() - 1; i > first; --i)
+    ofChildren[std::size_t(m_parents[i]) - first] += valueOf(i);
+
+  std::vector<Balance> balances;
+  for (const std::size_t i : around) {
+    const double unit = m_shares[i] > 0 ? 1 / m_shares[i] : 0;
+    Balance balance = {
+        m_charged[i],     {}, unit * m_gains[i], unit * m_prices[i], unit * ofChildren[i - first],
+        unit * valueOf(i)};
+    for (std::size_t t = 0; t < m_numTerms; ++t)
+      balance.divergences.push_back(unit * information(m_charged[i], t));
+    balances.push_back(std::move(balance));
+  }
+  return balances;
 }
 
 }  // namespace map_view

@@ -1,5 +1,6 @@
 #include <map_view/CellSource.h>
 #include <map_view/LiveCompression.h>
+#include <semantic_octree/TreeFile.h>
 
 #include <algorithm>
 #include <cmath>
@@ -93,6 +94,24 @@ void LiveCompression::setAlpha(double alpha) {
 }
 
 void LiveCompression::setLeaves(std::size_t wanted) { setAlpha(m_tree.alphaForLeaves(wanted)); }
+
+void LiveCompression::setBytes(const SemanticOcTree& map, std::size_t wanted) {
+  const tree_abstraction::AlphaPath path = m_tree.path();
+  const std::size_t largest = path.largestThat([&](std::size_t k) {
+    setAlpha(path.alpha(k));
+    return semantic_octree::fileSize(compressedMap(map)) <= wanted;
+  });
+  setAlpha(path.alpha(largest));
+}
+
+SemanticOcTree LiveCompression::compressedMap(const SemanticOcTree& map) const {
+  InformationTree::Index next = 0;
+  return semantic_octree::compressedMap(map, [&](const semantic_octree::SemanticOcTreeNode&) {
+    const InformationTree::Index node = next;
+    next = isExpanded(node) ? node + 1 : m_tree.end(node);
+    return isExpanded(node);
+  });
+}
 
 double LiveCompression::lowestAlpha() const {
   const double lowest = m_tree.lowestAlpha(m_weights.eps());

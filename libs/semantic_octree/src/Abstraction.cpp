@@ -31,20 +31,26 @@ class InCompressedTree {
   std::array<bool, kTreeDepth> m_atDepth{};  ///< of the node that was visited last
 };
 
+using IsExpanded = std::function<bool(const Node&)>;
+
 /** A map's nodes, down to the compressed tree's leaves (see TreeBuilder). */
 class CompressedCursor {
  public:
-  CompressedCursor(const SemanticOcTree& map, const CompressedTree& tree, const Node& node)
-      : m_map(map), m_tree(tree), m_node(node) {}
+  CompressedCursor(const SemanticOcTree& map, const IsExpanded& isExpanded, const Node& node)
+      : m_map(map),
+        m_isExpanded(isExpanded),
+        m_node(node),
+        m_isLeaf(!node || node.isLeaf() || !isExpanded(node)) {}
   bool known() const { return static_cast<bool>(m_node); }
-  bool isLeaf() const { return !m_tree.isExpanded(m_node); }
+  bool isLeaf() const { return m_isLeaf; }
   LeafContent content() const { return contentOf(m_map, m_node); }
-  CompressedCursor child(int i) const { return {m_map, m_tree, m_node.child(i)}; }
+  CompressedCursor child(int i) const { return {m_map, m_isExpanded, m_node.child(i)}; }
 
  private:
   const SemanticOcTree& m_map;
-  const CompressedTree& m_tree;
+  const IsExpanded& m_isExpanded;
   Node m_node;
+  bool m_isLeaf;
 };
 
 double knownVolume(const Node& node) {
@@ -171,7 +177,8 @@ void Abstraction::compressTo(SemanticOcTree& compressed) const {
   TreeBuilder::checkTarget(compressed, emptyCompressedMap());
   if (m_map.empty()) return;
   const CompressedTree tree = compressedTree();
-  TreeBuilder::fill(compressed, CompressedCursor(m_map, tree, m_map.root()),
+  const IsExpanded isExpanded = [&tree](const Node& node) { return tree.isExpanded(node); };
+  TreeBuilder::fill(compressed, CompressedCursor(m_map, isExpanded, m_map.root()),
                     TreeBuilder::Merge::Never);
 }
 
@@ -265,7 +272,7 @@ void Abstraction::forEachPathNode(const VisitPathNode& visit) const {
     const double p = total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
     for (std::size_t t = 0; t < information.size(); ++t)
       information[t] = p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
-    visit({n.cell.lowest(), n.cell.depth, m_gTree.isFreeFrame(n.cell.depth), p * n.splitEntropy,
+    visit({n.cell.lowest(), n.cell.depth, m_gTree.isFreeFrame(n.cell.depth), p, p * n.splitEntropy,
            n.numChildren - 1},
           information);
   });
@@ -273,6 +280,14 @@ void Abstraction::forEachPathNode(const VisitPathNode& visit) const {
 
 double Abstraction::Path::alphaForLeaves(std::size_t wanted) const {
   return trees.alpha(trees.largestWithLeaves(wanted, addedLeaves, numRoots));
+}
+
+SemanticOcTree compressedMap(const SemanticOcTree& map, const IsExpanded& isExpanded) {
+  SemanticOcTree compressed(map.getResolution(), map.classes(), map.filterParameters());
+  if (map.empty()) return compressed;
+  TreeBuilder::fill(compressed, CompressedCursor(map, isExpanded, map.root()),
+                    TreeBuilder::Merge::Never);
+  return compressed;
 }
 
 }  // namespace semantic_octree

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <streambuf>
 
 #include "TreeFormat.h"
 
@@ -20,6 +21,23 @@ void writeBeginning(std::ostream& out, const SemanticOcTree& tree) {
   out.write(kMagic.data(), kMagic.size());
   out.write(reinterpret_cast<const char*>(&version), sizeof(version));
 }
+
+/** Counts what is written to it. */
+class CountingBuffer : public std::streambuf {
+ public:
+  std::size_t bytes() const { return m_bytes; }
+
+ private:
+  int_type overflow(int_type c) override {
+    ++m_bytes;
+    return traits_type::not_eof(c);
+  }
+  std::streamsize xsputn(const char*, std::streamsize n) override {
+    m_bytes += static_cast<std::size_t>(n);
+    return n;
+  }
+  std::size_t m_bytes = 0;
+};
 
 /** What an error of a file says, without the path that it begins with. */
 std::string reasonOf(const std::exception& error, const std::string& path) {
@@ -96,6 +114,13 @@ auto load(const std::string& path, const F& read) {
 void writeTree(std::ostream& out, const SemanticOcTree& tree) {
   writeBeginning(out, tree);
   TreeWriter(out, tree).write();
+}
+
+std::size_t fileSize(const SemanticOcTree& tree) {
+  CountingBuffer buffer;
+  std::ostream out(&buffer);
+  writeTree(out, tree);
+  return buffer.bytes();
 }
 
 SemanticOcTree readTree(std::istream& in) {

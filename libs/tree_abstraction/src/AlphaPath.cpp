@@ -117,6 +117,15 @@ std::size_t AlphaPath::largestWithLeaves(std::size_t wanted, const std::vector<d
   return largestWithin(static_cast<double>(wanted), addedLeaves, static_cast<double>(numRoots));
 }
 
+std::size_t AlphaPath::largestThat(const std::function<bool(std::size_t)>& fits) const {
+  std::size_t fitting = 0, exceeding = numTrees();  // the latter does not fit, or is none
+  while (exceeding - fitting > 1) {
+    const std::size_t middle = fitting + (exceeding - fitting) / 2;
+    (fits(middle) ? fitting : exceeding) = middle;
+  }
+  return fitting;
+}
+
 std::vector<char> expandedAt(const std::vector<double>& tau, double alpha, double eps) {
   std::vector<char> mask(tau.size());
   for (std::size_t i = 0; i < tau.size(); ++i) mask[i] = tau[i] > alpha + eps;

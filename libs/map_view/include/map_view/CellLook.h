@@ -3,6 +3,7 @@
 #include <semantic_octree/SemanticOcTree.h>
 #include <strict_files/OptionList.h>
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <limits>
 #include <unordered_map>
@@ -25,8 +26,13 @@ struct ViewStyle {
   std::vector<bool> hiddenClasses;
   /** Free cells, in pale blue, translucent. */
   bool freeSpace = false;
-  /** Cells with their center above are not shown, m. */
-  double maxHeight = std::numeric_limits<double>::infinity();
+  /** Cells with their center outside are not shown; m, map frame. */
+  Eigen::AlignedBox3d clip = everywhere();
+
+  static Eigen::AlignedBox3d everywhere() {
+    const auto far = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+    return {-far, far};
+  }
 
   bool hidesClasses() const;
 };

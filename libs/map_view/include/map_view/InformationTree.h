@@ -33,6 +33,8 @@ class InformationTree {
   std::size_t numLeaves(double alpha) const;
   /** Alpha of the largest compressed tree with at most that many leaves, or of the smallest one. */
   double alphaForLeaves(std::size_t wanted) const;
+  /** The compressed trees of all alphas. */
+  tree_abstraction::AlphaPath path() const;
   /** Of the nodes' finite alphas above a value; it if there are none. */
   double lowestAlpha(double above) const;
   double highestAlpha() const;
@@ -40,7 +42,25 @@ class InformationTree {
    * see semantic_octree::AbstractionMeasures::retention(). */
   std::vector<std::optional<double>> retained(double alpha) const;
 
+  /** Why a node that is not free pays, or does not, at an alpha: nats for each unit of p(n). */
+  struct Balance {
+    Index node;
+    std::vector<double> divergences;  ///< JS_t(n), one for each term
+    double gain;                      ///< sum_t weight_t JS_t(n)
+    double splitEntropy;              ///< H(Pi_n): alpha times that is the price
+    double ofChildren;                ///< sum_c Pi_c G_Pi(c)
+    double gValue;                    ///< G_Pi(n) = max(0, gain - alpha H(Pi_n) + ofChildren)
+  };
+  /** Of the nodes that hold a voxel, the largest first. Visits what is below the largest one. */
+  std::vector<Balance> balancesAround(const Eigen::Array3i& key, double alpha) const;
+
  private:
+  /** Nodes that hold a voxel and are not free, the largest first: places in m_charged. */
+  std::vector<std::size_t> chargedAround(const Eigen::Array3i& key) const;
+  double information(Index node, std::size_t term) const {
+    return m_information[std::size_t(node) * m_numTerms + term];
+  }
+
   std::vector<Index> m_end;
   std::vector<std::uint64_t> m_places;  ///< lowest keys and depth, packed
   std::size_t m_numTerms, m_numRoots;
@@ -49,7 +69,7 @@ class InformationTree {
   /** Of the nodes that are not free, in the same order; parents among themselves. */
   std::vector<Index> m_charged;
   std::vector<std::int32_t> m_parents;
-  std::vector<double> m_prices;
+  std::vector<double> m_shares, m_prices, m_gains;
 };
 
 /** Three keys and a depth in one number. */

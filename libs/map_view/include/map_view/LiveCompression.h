@@ -39,6 +39,12 @@ class LiveCompression {
   /** Alpha becomes that of the largest compressed tree with at most that many leaves, or of the
    * smallest one. */
   void setLeaves(std::size_t wanted);
+  /** Alpha becomes that of the largest compressed tree whose file has at most that many bytes, or
+   * of the smallest one. Takes some twenty times what compressedMap() takes. \param map the one it
+   * was made of */
+  void setBytes(const SemanticOcTree& map, std::size_t wanted);
+  /** The compressed tree as a map of its own: see semantic_octree::compressedMap(). */
+  SemanticOcTree compressedMap(const SemanticOcTree& map) const;
 
   /** Between these the tree changes with alpha. */
   double lowestAlpha() const;
@@ -50,6 +56,11 @@ class LiveCompression {
 
   /** The map's inner nodes. */
   const InformationTree& tree() const { return m_tree; }
+  /** Why the tree expands those that hold a voxel, or does not: see
+   * InformationTree::balancesAround(). */
+  std::vector<InformationTree::Balance> balancesAround(const Eigen::Array3i& key) const {
+    return m_tree.balancesAround(key, alpha());
+  }
   bool isExpanded(InformationTree::Index node) const { return m_tree.alpha(node) > m_threshold; }
   /** Cubes in which leaves came and went since the last call; at first: all. */
   std::vector<KeyBox> takeChange();

@@ -20,9 +20,10 @@ struct ViewCell {
   /** Edge, in voxels. */
   int edge() const { return semantic_octree::edgeAtDepth(depth); }
   bool isOccupied() const { return node && node.getLogOdds() > 0; }
-  /** Height of its center, m in the map's frame. */
-  double centerHeight(double voxelSize) const {
-    return semantic_octree::centerOf(lowest.z(), voxelSize, depth);
+  /** m, map frame. */
+  Eigen::Vector3d center(double voxelSize) const {
+    const auto along = [&](int key) { return semantic_octree::centerOf(key, voxelSize, depth); };
+    return {along(lowest.x()), along(lowest.y()), along(lowest.z())};
   }
   octomap::OcTreeKey key() const {
     return semantic_octree::octomapKey(lowest.x(), lowest.y(), lowest.z());

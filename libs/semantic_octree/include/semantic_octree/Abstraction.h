@@ -151,7 +151,8 @@ class Abstraction {
     Eigen::Array3i lowest;  ///< keys of its lowest voxel
     int depth;
     bool isFree;      ///< in the free frame: expanded by every tree, and not part of alphaPath()
-    double price;     ///< what expanding it costs, nats for each unit of alpha
+    double share;     ///< p(n)
+    double price;     ///< what expanding it costs, p(n) H(Pi): nats for each unit of alpha
     int addedLeaves;  ///< known children - 1
   };
   using VisitPathNode = std::function<void(const PathNode&, const std::vector<double>&)>;
@@ -171,5 +172,11 @@ class Abstraction {
   SemanticOcTree& m_map;
   GTree& m_gTree;
 };
+
+/** A map of the nodes down to those that are not expanded: see Abstraction::compressedMap().
+ * \param isExpanded called for inner nodes of the map below none that is not: a node's subtree
+ * right behind it, in the order of its children */
+SemanticOcTree compressedMap(const SemanticOcTree& map,
+                             const std::function<bool(const SemanticOcTreeNode&)>& isExpanded);
 
 }  // namespace semantic_octree

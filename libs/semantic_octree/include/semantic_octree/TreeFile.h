@@ -19,6 +19,9 @@ SemanticOcTree loadTree(const std::string& path);
  * \throw std::runtime_error the stream does not take them. */
 void writeTree(std::ostream& out, const SemanticOcTree& tree);
 
+/** Bytes that writeTree() writes. */
+std::size_t fileSize(const SemanticOcTree& tree);
+
 /** Reads what writeTree() wrote and not a byte more.
  * \throw std::runtime_error saying what is wrong; memory taken is bounded by what could be read. */
 SemanticOcTree readTree(std::istream& in);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace tree_abstraction {
@@ -61,6 +62,10 @@ class AlphaPath {
    * \throw std::invalid_argument also if more leaves are wanted than the whole tree has. */
   std::size_t largestWithLeaves(std::size_t wanted, const std::vector<double>& addedLeaves,
                                 std::size_t numRoots) const;
+  /** The largest tree that fits, where larger trees than one that does not fit do not fit either:
+   * by bisection. \param fits called with indices of trees; the roots alone (tree 0) are taken to
+   * fit */
+  std::size_t largestThat(const std::function<bool(std::size_t)>& fits) const;
 
  private:
   std::vector<double> m_tau;

@@ -1,0 +1,19 @@
+#pragma once
+#include <labeled_cloud/LabeledScan.h>
+#include <semantic_types/ClassTable.h>
+
+#include <opencv2/core.hpp>
+
+namespace rawlog2semantic_map {
+
+/** Of a class, BGR. */
+cv::Vec3b pixelOf(semantic_types::ClassId id, const semantic_types::ClassTable& classes);
+
+/** The photograph, or black where there is none. */
+cv::Mat3b photograph(const labeled_cloud::LabeledPicture& picture);
+
+/** A photograph with the colors of its labels' classes half upon it. */
+cv::Mat3b withLabels(cv::Mat3b image, const labeled_cloud::LabeledPicture& picture,
+                     const semantic_types::ClassTable& classes);
+
+}  // namespace rawlog2semantic_map

@@ -1,0 +1,49 @@
+#include "Animation.h"
+
+#include <map_pictures/GifFile.h>
+#include <map_pictures/Sheet.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+namespace semantic_map_view {
+
+namespace {
+
+constexpr int kFrames = 36;
+constexpr double kPeriod = 0.25;  // s a frame
+/** Of the leaves that the tree has at first. */
+constexpr double kFewest = 0.004;
+/** After that the panel says what the tree retains. */
+constexpr std::chrono::milliseconds kRest(300);
+
+cv::Mat restingPicture(ViewWindow& window) {
+  while (window.drawFrame()) {
+  }
+  std::this_thread::sleep_for(kRest);
+  window.drawFrame();
+  return window.drawPicture();
+}
+
+}  // namespace
+
+void animate(ViewWindow& window, CompressPanel& panel, const std::filesystem::path& file) {
+  map_pictures::GifFile gif(file, kPeriod);
+  panel.switchOn(true);
+  panel.setAlpha(0);
+  const double most = double(panel.compression()->numLeaves());
+  map_view::OrbitCamera camera = window.orbitCamera();
+  for (int i = 0; i < kFrames; ++i) {
+    const double turned = 2 * M_PI * i / kFrames;
+    panel.setLeaves(std::size_t(most * std::pow(kFewest, (1 - std::cos(turned)) / 2)));
+    window.setOrbitCamera(camera);
+    cv::Mat picture = restingPicture(window);
+    map_pictures::drawScaleBar(picture, camera.focalLength(window.pixelHeight()) / camera.distance);
+    gif.add(picture);
+    camera.azimuth += 360.0 / kFrames;
+  }
+  gif.close();
+}
+
+}  // namespace semantic_map_view
