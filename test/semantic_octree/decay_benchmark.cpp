@@ -3,8 +3,6 @@
 #include <benchmark/benchmark.h>
 #include <semantic_octree/Abstraction.h>
 
-#include <chrono>
-
 #include "RandomScans.h"
 
 using namespace semantic_octree;
@@ -50,17 +48,9 @@ void mapping(benchmark::State& state) {
   options.maxRange = 25;
   for (auto _ : state) {
     SemanticOcTree map = emptyMap(static_cast<int>(state.range(0)), state.range(1));
-    double forgetting = 0;  // ms
-    for (const PosedCloud& scan : drive()) {
-      const auto begin = std::chrono::steady_clock::now();
-      map.age(kPeriod);
-      const std::chrono::duration<double, std::milli> took =
-          std::chrono::steady_clock::now() - begin;
-      forgetting += took.count();
-      map.insert(scan.cloud, scan.T_map_sensor, options);
-    }
+    for (const PosedCloud& scan : drive())
+      map.insert(scan.cloud, scan.T_map_sensor, options, kPeriod);
     state.counters["leaves"] = static_cast<double>(map.getNumLeafNodes());
-    state.counters["ms_forgetting_a_scan"] = forgetting / kScans;
   }
 }
 
