@@ -108,6 +108,17 @@ TEST_F(MapRadio, prefixesAreTheTreesOfSoManyBytes) {
   EXPECT_GE(compared, 3u);
 }
 
+TEST(Wish, mayHoldBytesThatAreNoText) {
+  radio::WishReader reader;
+  std::optional<radio::Wish> wish;
+  for (const auto& request : radio::Wish{"a: \xff", "\xff", 0.5}.requests(1))
+    wish = reader.add(request);
+  ASSERT_TRUE(wish);
+  EXPECT_EQ(wish->weights, "a: \uFFFD");
+  EXPECT_EQ(wish->solution, "\uFFFD");
+  EXPECT_EQ(wish->alpha, 0.5);
+}
+
 TEST_F(MapRadio, eachReceiverHasItsWeightsOverARadioThatLosesAndExchanges) {
   withSender("--receivers 2 --lose 0.2 --rate 2000000 --weights weights.yaml map.semantic",
              "(" + kReceive + "--lose 0.2 -o road.semantic; echo $? >first) &\n" + kReceive +

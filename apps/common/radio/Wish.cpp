@@ -50,7 +50,7 @@ semantic_octree::AbstractionOptions Wish::forClasses(const semantic_types::Class
 std::vector<Datagram> Wish::requests(std::uint32_t stream) const {
   nlohmann::json json = {{"weights", weights}, {"solution", solution}};
   if (alpha) json["alpha"] = *alpha;
-  const std::string text = json.dump();
+  const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   const std::size_t number = (text.size() + kMaxPart - 1) / kMaxPart;
   if (number > kMaxParts)
     throw std::runtime_error("weights of " + std::to_string(weights.size()) +
