@@ -19,8 +19,8 @@ std::string plotCurve(std::ostream& out, const Compression& c, Share share, std:
   out << "EOD\n" << name << "chosen << EOD\n";
   out << c.chosen.leaves << ' ' << 100 * *(c.chosen.*share) << "\nEOD\n";
   const std::string color = std::string(" lc rgb '") + colorOf(solution) + "'";
-  return name + " with lines lw 2 dt " + (relevant ? "1" : "(6,4)") + color + " title " +
-         gnuplotText(c.solution.name + (relevant ? "" : ", irrelevant")) + ", " + name +
+  return name + " with lines lw " + (relevant ? "2.5" : "1") + " dt " + dashOf(solution) + color +
+         " title " + gnuplotText(c.solution.name + (relevant ? "" : ", irrelevant")) + ", " + name +
          "chosen with points pt 7 ps 1.4" + color + " notitle, ";
 }
 

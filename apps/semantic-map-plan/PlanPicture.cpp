@@ -15,8 +15,8 @@ using mrpt::math::TPose2D;
 namespace {
 
 constexpr double kGroundShare = 0.75, kGraphShare = 0.45;
-constexpr Stroke kPath{{20, 20, 20}, 3, 2}, kUsable{{20, 60, 90}, 1, 0},
-    kNotEvaluated{{140, 170, 200}, 1, 0};
+constexpr Stroke kForward{{20, 20, 20}, 3, 2}, kBackward{{230, 159, 0}, 3, 2},
+    kUsable{{20, 60, 90}, 1, 0}, kNotEvaluated{{140, 170, 200}, 1, 0};
 constexpr Arrow kStart{{0, 160, 60}, 26, 2}, kGoal{{220, 30, 30}, 26, 2},
     kVertex{{0, 40, 90}, 7, 0};
 
@@ -67,11 +67,22 @@ void drawGraph(MapCanvas& canvas, const Roadmap& roadmap) {
   canvas.explain({"edge, not evaluated", kNotEvaluated});
 }
 
+/** Stretch by stretch; a point's gear is that of the way to it. */
 void drawPath(MapCanvas& canvas, const PlanResult& plan) {
-  std::vector<Eigen::Vector2d> line;
-  for (const PathPoint& p : plan.path) line.emplace_back(p.x, p.y);
-  canvas.drawLine(line, kPath);
-  canvas.explain({"path", kPath});
+  bool drawn[2] = {false, false};
+  const auto& path = plan.path;
+  for (std::size_t begin = 0; begin + 1 < path.size();) {
+    const bool forward = path[begin + 1].forward;
+    std::vector<Eigen::Vector2d> line = {{path[begin].x, path[begin].y}};
+    while (begin + 1 < path.size() && path[begin + 1].forward == forward) {
+      ++begin;
+      line.emplace_back(path[begin].x, path[begin].y);
+    }
+    canvas.drawLine(line, forward ? kForward : kBackward);
+    drawn[forward] = true;
+  }
+  if (drawn[true]) canvas.explain({"path, forward", kForward});
+  if (drawn[false]) canvas.explain({"path, backward", kBackward});
 }
 
 void drawEnd(MapCanvas& canvas, const std::string& name, const TPose2D& pose, const Arrow& arrow) {

@@ -4,11 +4,17 @@
 
 namespace figures {
 
-// Told apart in print and by the color-blind; used again from the first one on.
+// Those of M. Okabe and K. Ito ("Color Universal Design", 2008), which the color-blind tell apart,
+// in an order in which the first five differ most for them; used again from the first one on.
 const char* colorOf(std::size_t solution) {
-  static const std::array<const char*, 8> colors = {"#3b6fb6", "#e08a2e", "#4a9c6d", "#b5483a",
-                                                    "#8667ad", "#7a6a58", "#d17fb0", "#5fb0c4"};
+  static const std::array<const char*, 8> colors = {"#0072b2", "#e69f00", "#009e73", "#000000",
+                                                    "#56b4e9", "#d55e00", "#cc79a7", "#f0e442"};
   return colors[solution % colors.size()];
+}
+
+const char* dashOf(std::size_t solution) {
+  static const std::array<const char*, 5> dashes = {"1", "(14,5)", "(3,3)", "(14,4,3,4)", "(7,3)"};
+  return dashes[solution % dashes.size()];
 }
 
 std::ostringstream scriptFor(const std::filesystem::path& file, std::size_t width,

@@ -10,6 +10,9 @@ namespace figures {
 /** A solution's color, the same in all figures. */
 const char* colorOf(std::size_t solution);
 
+/** Its line's dashes, as gnuplot's `dashtype` has them: a curve shows through one upon it. */
+const char* dashOf(std::size_t solution);
+
 /** Beginning of a script that draws into a file of that size, pixels. */
 std::ostringstream scriptFor(const std::filesystem::path& file, std::size_t width,
                              std::size_t height);
