@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "../semantic_planning/PaintedWorld.h"
 #include "RunProgram.h"
@@ -67,6 +69,19 @@ TEST_F(SemanticMapPlan, writesPathReportPictureAndScene) {
   EXPECT_TRUE(contains(csv, ",forward,road,"));
   for (const char* name : {"plan.png", "plan.3Dscene", "roadmap.graph"})
     EXPECT_GT(folder.read(std::string("out/") + name).size(), 1000u) << name;
+}
+
+TEST_F(SemanticMapPlan, drawsWhatIsDrivenBackwardInAColorOfItsOwn) {
+  const auto orange = [&](const std::string& goal, const std::string& gear) {
+    EXPECT_EQ(run("0,0,0", goal).status, 0);
+    EXPECT_TRUE(contains(folder.read("out/path.csv"), gear)) << goal;
+    const cv::Mat picture = cv::imread((folder / "out/plan.png").string());
+    cv::Mat is;
+    cv::inRange(picture, cv::Scalar(0, 159, 230), cv::Scalar(0, 159, 230), is);
+    return cv::countNonZero(is);
+  };
+  EXPECT_EQ(orange("4,0,0", ",forward,road,"), 0);
+  EXPECT_GT(orange("-3,0,0", ",backward,road,"), 50);
 }
 
 TEST_F(SemanticMapPlan, writesTheRoadmapForApplicationsOfMrpt) {
