@@ -42,6 +42,7 @@ TEST_F(SemanticMapView, SaysWhyACellIsExpandedOrNot) {
       const bool isExpanded = !(*found)[2].matched;
       ASSERT_EQ(expected.count((*found)[1]), 1u) << said;
       EXPECT_EQ(isExpanded, aboveIs && expected.at((*found)[1])) << found->str();
+      EXPECT_EQ(isExpanded, aboveIs && number(3) > 0) << found->str();
       aboveIs = isExpanded;
       const double gain = number(8) + number(9) + number(10);
       EXPECT_NEAR(number(4), gain, 0.02 * gain + 1e-4) << "three digits";
