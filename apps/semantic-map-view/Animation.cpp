@@ -16,12 +16,12 @@ constexpr double kPeriod = 0.25;  // s a frame
 /** Of the leaves that the tree has at first. */
 constexpr double kFewest = 0.004;
 /** After that the panel says what the tree retains. */
-constexpr std::chrono::milliseconds kRest(300);
+constexpr std::chrono::milliseconds kPause(300);
 
 cv::Mat restingPicture(ViewWindow& window) {
   while (window.drawFrame()) {
   }
-  std::this_thread::sleep_for(kRest);
+  std::this_thread::sleep_for(kPause);
   window.drawFrame();
   return window.drawPicture();
 }

@@ -3,8 +3,8 @@
 #include <semantic_octree/Abstraction.h>
 
 #include <random>
+#include <sstream>
 
-#include "StreamPackets.h"
 #include "StreamedMaps.h"
 #include "TemporaryFolder.h"
 

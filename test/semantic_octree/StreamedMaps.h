@@ -2,9 +2,8 @@
 #include <semantic_octree/MapStream.h>
 #include <semantic_octree/TreeFile.h>
 
-#include <sstream>
-
 #include "RandomScans.h"
+#include "StreamPackets.h"
 
 /** Maps to be sent, and their packets. */
 namespace streamed_maps {
@@ -33,12 +32,6 @@ inline SemanticOcTree randomMap(const AbstractionOptions& options, unsigned seed
   RandomScanOptions scans;
   scans.classes = K;
   return mapOf({randomScan(random, scans), randomScan(random, scans)}, options);
-}
-
-inline std::string fileOf(const SemanticOcTree& map) {
-  std::ostringstream out;
-  writeTree(out, map);
-  return out.str();
 }
 
 /** All packets, each once. */
