@@ -3,8 +3,8 @@
 #include <semantic_driving/PathTracker.h>
 
 #include <cmath>
-#include <fstream>
 
+#include "TemporaryFolder.h"
 #include "simulated_drive/DriveConfig.h"
 #include "simulated_drive/SimulatedRobot.h"
 
@@ -51,10 +51,9 @@ double overshoot(double acceleration) {
 
 /** \param lines behind "reactive = ..." of [drive] */
 simulated_drive::DriveConfig loaded(const std::string& lines) {
-  const std::string config = std::string(MSO_SOURCE_DIR) + "/config/";
-  const auto file = std::filesystem::path(testing::TempDir()) / "DriveOptions_unittest.ini";
-  std::ofstream(file) << "[drive]\nreactive = " << config << "reactive/robot.ini\n" << lines;
-  return simulated_drive::loadDriveConfig(file);
+  const TemporaryFolder folder;  // tests run side by side
+  return simulated_drive::loadDriveConfig(folder.write(
+      "drive.ini", "[drive]\nreactive = " MSO_SOURCE_DIR "/config/reactive/robot.ini\n" + lines));
 }
 
 /** What is wrong with a configuration; empty: nothing. */
