@@ -5,13 +5,13 @@
 #include <strict_files/Words.h>
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <set>
 #include <stdexcept>
 
 #include "TilesOnDisk.h"
 #include "TreeBuilder.h"
+#include "TreeFormat.h"
 
 namespace semantic_octree {
 
@@ -57,7 +57,7 @@ std::vector<std::string> namesOf(const ClassTable& classes) {
 
 SemanticOcTree loadLeaves(const fs::path& folder, const TileIndex& index) {
   const fs::path file = folder / TileIndex::leavesName(index.generation);
-  SemanticOcTree leaves = loadTree(file.string());
+  SemanticOcTree leaves = loadTreeFile(file.string());
   if (leaves.getResolution() != index.resolution || namesOf(leaves.classes()) != index.classes)
     throw std::runtime_error("cannot load map '" + file.string() +
                              "': it has another resolution or other classes than " +
@@ -230,30 +230,6 @@ MapFolder::Contents MapFolder::contents() const {
   contents.generation = m->tiles->index().generation;
   contents.bytesOnDisk = m->bytesOnDisk();
   return contents;
-}
-
-StoredMap::StoredMap(const fs::path& path, double memory)
-    : m_tree(MapFolder::isAt(path) ? MapFolder::emptyMap(path) : loadTree(path.string())) {
-  if (!MapFolder::isAt(path)) {
-    m_bytesOnDisk = fs::file_size(path);
-    return;
-  }
-  MapFolderOptions options;
-  options.memory = memory;
-  m_folder = std::make_unique<MapFolder>(m_tree, path, MapFolder::Access::Read, options);
-  m_bytesOnDisk = m_folder->contents().bytesOnDisk;
-}
-
-StoredMap::StoredMap(SemanticOcTree empty, const fs::path& folder, const MapFolderOptions& options)
-    : m_tree(std::move(empty)),
-      m_folder(std::make_unique<MapFolder>(m_tree, folder, MapFolder::Access::Replace, options)) {}
-
-SemanticOcTree loadFolder(const fs::path& folder) {
-  SemanticOcTree map = MapFolder::emptyMap(folder);
-  MapFolderOptions options;
-  options.memory = std::numeric_limits<double>::max();
-  MapFolder(map, folder, MapFolder::Access::Read, options).bringAll();
-  return map;
 }
 
 }  // namespace semantic_octree

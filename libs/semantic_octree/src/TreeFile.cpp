@@ -1,4 +1,3 @@
-#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/StagedFile.h>
 
@@ -131,8 +130,7 @@ void saveTree(const SemanticOcTree& tree, const std::string& path) {
   save(path, StagedFile::Disk::Now, [&](std::ostream& out) { writeTree(out, tree); });
 }
 
-SemanticOcTree loadTree(const std::string& path) {
-  if (MapFolder::isAt(path)) return loadFolder(path);
+SemanticOcTree loadTreeFile(const std::string& path) {
   return load(path, [](std::istream& in) { return readTree(in); });
 }
 

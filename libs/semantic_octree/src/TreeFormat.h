@@ -104,6 +104,9 @@ class TreeReader {
   int m_numClasses = 0;
 };
 
+/** As loadTree(), of files alone. */
+SemanticOcTree loadTreeFile(const std::string& path);
+
 /** A tile's file, see TreeWriter::writeTile(); not yet on the disk. \throw std::runtime_error
  * naming the file */
 void saveTile(const SemanticOcTree& tree, const Slot& octant, const Cell& cell, std::uint64_t nodes,

@@ -1,0 +1,40 @@
+#include <semantic_octree/MapFolder.h>
+#include <semantic_octree/TreeFile.h>
+
+#include <limits>
+
+#include "TreeFormat.h"
+
+namespace semantic_octree {
+
+namespace fs = std::filesystem;
+
+StoredMap::StoredMap(const fs::path& path, double memory)
+    : m_tree(MapFolder::isAt(path) ? MapFolder::emptyMap(path) : loadTree(path.string())) {
+  if (!MapFolder::isAt(path)) {
+    m_bytesOnDisk = fs::file_size(path);
+    return;
+  }
+  MapFolderOptions options;
+  options.memory = memory;
+  m_folder = std::make_unique<MapFolder>(m_tree, path, MapFolder::Access::Read, options);
+  m_bytesOnDisk = m_folder->contents().bytesOnDisk;
+}
+
+StoredMap::StoredMap(SemanticOcTree empty, const fs::path& folder, const MapFolderOptions& options)
+    : m_tree(std::move(empty)),
+      m_folder(std::make_unique<MapFolder>(m_tree, folder, MapFolder::Access::Replace, options)) {}
+
+SemanticOcTree loadFolder(const fs::path& folder) {
+  SemanticOcTree map = MapFolder::emptyMap(folder);
+  MapFolderOptions options;
+  options.memory = std::numeric_limits<double>::max();
+  MapFolder(map, folder, MapFolder::Access::Read, options).bringAll();
+  return map;
+}
+
+SemanticOcTree loadTree(const std::string& path) {
+  return MapFolder::isAt(path) ? loadFolder(path) : loadTreeFile(path);
+}
+
+}  // namespace semantic_octree
