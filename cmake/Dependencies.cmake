@@ -1,5 +1,5 @@
 # Everything that comes from outside. What differs between MRPT's releases stands here, in
-# ThirdPartyTargets.cmake, in libs/semantic_map/include/semantic_map/MrptVersion.h and, for its navigator, in
+# ThirdPartyTargets.cmake, in libs/mrpt_compat and, for its navigator, in
 # libs/semantic_driving/src/ReactiveSystem.h, nowhere else.
 
 # mso_external(TARGET DEBIAN_PACKAGE PACKAGE [arguments of find_package]): finds what libraries link. Those that hand
@@ -10,16 +10,12 @@ macro(mso_external target debian)
   set_property(GLOBAL PROPERTY MSO_DEBIAN_${target} ${debian})
 endmacro()
 
-# mso_external_mrpt(NAME [SINCE_3]): MRPT's library mrpt::NAME. Since MRPT 3 its package is mrpt_NAME (mrpt_SINCE_3, if its
-# content moved), before mrpt-NAME; ThirdPartyTargets.cmake gives its target one name.
+# mso_external_mrpt(NAME): MRPT's library mrpt::NAME. Since MRPT 3 its package is mrpt_NAME, before mrpt-NAME;
+# ThirdPartyTargets.cmake gives its target one name.
 macro(mso_external_mrpt name)
-  set(mso_mrpt3 mrpt_${name})
-  if(${ARGC} GREATER 1)
-    set(mso_mrpt3 mrpt_${ARGV1})
-  endif()
-  find_package(${mso_mrpt3} QUIET)
-  if(${mso_mrpt3}_FOUND)
-    mso_external(mrpt::${name} libmrpt-${name}-dev ${mso_mrpt3})
+  find_package(mrpt_${name} QUIET)
+  if(mrpt_${name}_FOUND)
+    mso_external(mrpt::${name} libmrpt-${name}-dev mrpt_${name})
   else()
     mso_external(mrpt::${name} libmrpt-${name}-dev mrpt-${name})
   endif()
@@ -35,7 +31,7 @@ mso_external(yaml-cpp::yaml-cpp libyaml-cpp-dev yaml-cpp)
 mso_external(ZLIB::ZLIB zlib1g-dev ZLIB)
 mso_external_mrpt(obs)
 mso_external_mrpt(maps)
-mso_external_mrpt(opengl viz)
+mso_external_mrpt(opengl)
 mso_external_mrpt(graphs)
 mso_external_mrpt(nav)
 if(MSO_BUILD_APPS)

@@ -14,17 +14,13 @@ if(OpenCV_FOUND AND NOT TARGET mso_opencv)
     opencv_core opencv_imgproc opencv_imgcodecs opencv_calib3d opencv_dnn)
 endif()
 
-# MRPT 3 calls them mrpt::mrpt_X, and what mrpt::opengl had of scenes is in mrpt_viz.
-foreach(library poses obs maps graphs nav gui)
+# MRPT 3 calls them mrpt::mrpt_X.
+foreach(library poses obs maps opengl graphs nav gui)
   if(TARGET mrpt::mrpt_${library} AND NOT TARGET mrpt::${library})
     add_library(mrpt::${library} INTERFACE IMPORTED)
     target_link_libraries(mrpt::${library} INTERFACE mrpt::mrpt_${library})
   endif()
 endforeach()
-if(TARGET mrpt::mrpt_viz AND NOT TARGET mrpt::opengl)
-  add_library(mrpt::opengl INTERFACE IMPORTED)
-  target_link_libraries(mrpt::opengl INTERFACE mrpt::mrpt_viz)
-endif()
 
 # Its releases before 0.8 have the short name only.
 if(TARGET yaml-cpp AND NOT TARGET yaml-cpp::yaml-cpp)

@@ -3,6 +3,7 @@
 #include <labeled_cloud/ImageFile.h>
 #include <labeled_cloud/Seconds.h>
 #include <mrpt/config/CConfigFile.h>
+#include <mrpt_compat/Images.h>
 #include <strict_files/ErrorMessage.h>
 
 #include <algorithm>
@@ -89,8 +90,7 @@ CObservation3DRangeScan readDepth(const fs::path& file, const DepthCamera& camer
 }
 
 void addColor(const fs::path& file, CObservation3DRangeScan& scan) {
-  scan.intensityImage =
-      mrpt::img::CImage(readImageFile(file, ImageKinds::All), mrpt::img::SHALLOW_COPY);
+  scan.intensityImage = mrpt_compat::toMrpt(readImageFile(file, ImageKinds::All));
   scan.hasIntensityImage = true;
 }
 

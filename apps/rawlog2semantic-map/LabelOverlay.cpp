@@ -1,5 +1,6 @@
 #include "LabelOverlay.h"
 
+#include <mrpt_compat/Images.h>
 #include <semantic_types/ClassColors.h>
 
 #include <opencv2/imgproc.hpp>
@@ -18,7 +19,7 @@ cv::Vec3b pixelOf(ClassId id, const ClassTable& classes) {
 
 cv::Mat3b photograph(const LabeledPicture& picture) {
   cv::Mat image;
-  if (!picture.image.isEmpty()) image = picture.image.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);
+  if (!picture.image.isEmpty()) image = mrpt_compat::toOpenCv(picture.image);
   if (image.empty())
     image = cv::Mat3b(picture.labels.pictureRows(), picture.labels.pictureCols(), cv::Vec3b());
   if (image.channels() == 1) cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);

@@ -1,7 +1,8 @@
 #include "LiveScans.h"
 
 #include <labeled_cloud/EigenPose.h>
-#include <mrpt/opengl/CPointCloud.h>
+#include <mrpt_compat/Drawing.h>
+#include <mrpt_compat/Images.h>
 
 #include <cstdio>
 
@@ -51,7 +52,7 @@ void LiveScans::show(const LabeledScan& scan, const mrpt::poses::CPose3D& T_map_
                      const Summary& summary) {
   const Eigen::Isometry3d T_map_sensor = labeled_cloud::toEigen(T_map_robot + scan.T_robot_sensor);
   Eigen::AlignedBox3d seen(T_map_sensor.translation());
-  const auto points = mrpt::opengl::CPointCloud::Create();
+  const auto points = mrpt_compat::drawing::CPointCloud::Create();
   points->setPointSize(kPointSize);
   points->setColor_u8(kPointColor);
   for (const auto& p : scan.cloud.points) {
@@ -63,8 +64,8 @@ void LiveScans::show(const LabeledScan& scan, const mrpt::poses::CPose3D& T_map_
   m_window.marks().insert(points);
   if (!scan.pictures.empty()) {
     const labeled_cloud::LabeledPicture& picture = scan.pictures.front();
-    m_window.showPicture(mrpt::img::CImage(
-        withLabels(photograph(picture), picture, m_map.classes()), mrpt::img::DEEP_COPY));
+    m_window.showPicture(
+        mrpt_compat::toMrpt(withLabels(photograph(picture), picture, m_map.classes())));
   }
   m_window.changed(seen);
   m_window.say(lines(scan, summary, m_map));

@@ -1,8 +1,6 @@
 #include "LiveWindow.h"
 
-#include <mrpt/opengl/CCylinder.h>
-#include <mrpt/opengl/CPolyhedron.h>
-#include <mrpt/opengl/CSetOfTriangles.h>
+#include <mrpt_compat/Drawing.h>
 
 #include <cmath>
 
@@ -13,7 +11,7 @@ namespace semantic_map_drive {
 using mrpt::math::TPoint3D;
 using mrpt::math::TPoint3Df;
 using mrpt::math::TPose2D;
-using namespace mrpt::opengl;
+using namespace mrpt_compat::drawing;
 
 namespace {
 

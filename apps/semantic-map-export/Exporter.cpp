@@ -1,7 +1,7 @@
 #include "Exporter.h"
 
 #include <map_pictures/ClassMap.h>
-#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ExportOctomap.h>
 #include <semantic_map/SceneFile.h>
@@ -140,9 +140,9 @@ void Exporter::writeMapServer(const fs::path& file) {
 void Exporter::writeScene(const fs::path& file) {
   semantic_map::CSemanticOctoMap map(m_map);
   if (m_options.maxHeight) map.renderingOptions.maxHeight = *m_options.maxHeight;
-  const auto objects = mrpt::opengl::CSetOfObjects::Create();
+  const auto objects = mrpt_compat::drawing::CSetOfObjects::Create();
   map.getVisualizationInto(*objects);
-  mrpt::opengl::COpenGLScene scene;
+  mrpt_compat::Scene scene;
   scene.insert(objects);
   stageFile(file, [&scene](const fs::path& staged) { semantic_map::writeScene(scene, staged); });
 }

@@ -1,8 +1,6 @@
 #include "PlanScene.h"
 
-#include <mrpt/opengl/COpenGLScene.h>
-#include <mrpt/opengl/CPointCloud.h>
-#include <mrpt/opengl/CSetOfLines.h>
+#include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/SceneFile.h>
 
@@ -14,8 +12,8 @@ namespace {
 
 constexpr double kAboveGround = 0.3;  // m, so that the ground does not hide lines
 
-mrpt::opengl::CPointCloud::Ptr verticesOf(const SemanticPlanner& planner) {
-  auto points = mrpt::opengl::CPointCloud::Create();
+mrpt_compat::drawing::CPointCloud::Ptr verticesOf(const SemanticPlanner& planner) {
+  auto points = mrpt_compat::drawing::CPointCloud::Create();
   points->setName("vertices");
   points->setPointSize(4);
   points->setColor_u8(0, 40, 90);
@@ -28,8 +26,8 @@ mrpt::opengl::CPointCloud::Ptr verticesOf(const SemanticPlanner& planner) {
   return points;
 }
 
-mrpt::opengl::CSetOfLines::Ptr lineOf(const PlanResult& plan) {
-  auto line = mrpt::opengl::CSetOfLines::Create();
+mrpt_compat::drawing::CSetOfLines::Ptr lineOf(const PlanResult& plan) {
+  auto line = mrpt_compat::drawing::CSetOfLines::Create();
   line->setName("path");
   line->setLineWidth(4);
   line->setColor_u8(20, 20, 20);
@@ -44,9 +42,9 @@ mrpt::opengl::CSetOfLines::Ptr lineOf(const PlanResult& plan) {
 
 void saveScene(const semantic_octree::SemanticOcTree* map, const SemanticPlanner& planner,
                const PlanResult& plan, const std::filesystem::path& file) {
-  mrpt::opengl::COpenGLScene scene;
+  mrpt_compat::Scene scene;
   if (map) {
-    auto cells = mrpt::opengl::CSetOfObjects::Create();
+    auto cells = mrpt_compat::drawing::CSetOfObjects::Create();
     semantic_map::CSemanticOctoMap(*map).getVisualizationInto(*cells);
     scene.insert(cells);
   }

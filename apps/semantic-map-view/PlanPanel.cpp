@@ -1,8 +1,7 @@
 #include "PlanPanel.h"
 
 #include <map_view/RayCast.h>
-#include <mrpt/opengl/CCylinder.h>
-#include <mrpt/opengl/CSetOfTriangles.h>
+#include <mrpt_compat/Drawing.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 
@@ -17,8 +16,8 @@ namespace semantic_map_view {
 
 using mrpt::math::TPoint3Df;
 using mrpt::math::TPose2D;
-using mrpt::opengl::CSetOfTriangles;
-using mrpt::opengl::TTriangle;
+using mrpt_compat::drawing::CSetOfTriangles;
+using mrpt_compat::drawing::TTriangle;
 using semantic_planning::PlanResult;
 
 namespace {
@@ -67,9 +66,9 @@ Eigen::Vector3d atHeight(const map_view::Ray& ray, double z) {
   return ray.origin + steps * ray.direction;
 }
 
-mrpt::opengl::CCylinder::Ptr postAt(const Eigen::Vector3d& place, const mrpt::img::TColor& color,
-                                    float width) {
-  const auto post = mrpt::opengl::CCylinder::Create(width, width, 4.f);
+mrpt_compat::drawing::CCylinder::Ptr postAt(const Eigen::Vector3d& place,
+                                            const mrpt::img::TColor& color, float width) {
+  const auto post = mrpt_compat::drawing::CCylinder::Create(width, width, 4.f);
   post->setLocation(place.x(), place.y(), place.z());
   post->setColor_u8(color);
   return post;

@@ -57,7 +57,7 @@ class PlanPanel {
   OrderList* m_order = nullptr;
   nanogui::Button *m_startButton = nullptr, *m_goalButton = nullptr;
   std::array<nanogui::Label*, 2> m_lines{};
-  mrpt::opengl::CSetOfObjects::Ptr m_marks = mrpt::opengl::CSetOfObjects::Create();
+  mrpt_compat::drawing::CSetOfObjects::Ptr m_marks = mrpt_compat::drawing::CSetOfObjects::Create();
 };
 
 }  // namespace semantic_map_view

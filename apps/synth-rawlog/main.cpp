@@ -110,7 +110,7 @@ void writePicture(const Cli& cli, const synthetic_world::World& world) {
       if (id != synthetic_world::kNoClass)
         both.at(row, size + column) = synthetic_world::classTable().color(id);
     }
-  map_pictures::savePicture(toMrpt(both).asCvMatRef(), cli.picture);
+  map_pictures::savePicture(pictureOf(both), cli.picture);
 }
 
 void checkOutputs(const Cli& cli) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <mrpt/obs/CObservationImage.h>
+#include <mrpt_compat/Images.h>
 #include <semantic_types/ClassTableFile.h>
 
 #include <opencv2/imgcodecs.hpp>
@@ -21,7 +22,7 @@ class CameraMapping : public Rawlog2SemanticMap {
     o.cameraParams.setIntrinsicParamsFromValues(20, 20, 19.5, 19.5);
     const double right = -M_PI / 2;
     o.cameraPose = mrpt::poses::CPose3D(0, 0, 0, right, 0, right);
-    o.image = mrpt::img::CImage(redAndBlue(), mrpt::img::DEEP_COPY);
+    o.image = mrpt_compat::toMrpt(redAndBlue());
     return o;
   }
 

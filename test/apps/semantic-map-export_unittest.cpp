@@ -1,8 +1,7 @@
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
-#include <mrpt/opengl/COctoMapVoxels.h>
-#include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/serialization/CArchive.h>
+#include <mrpt_compat/Drawing.h>
 #include <semantic_octree/Abstraction.h>
 #include <semantic_octree/SmoothedView.h>
 
@@ -205,11 +204,11 @@ TEST_F(SemanticMapExport, classMapsLieWhereTheirWorldFilesSay) {
 
 TEST_F(SemanticMapExport, scenesHoldABoxPerOccupiedLeaf) {
   ASSERT_EQ(exportTo({"map.3Dscene"}).status, 0);
-  mrpt::opengl::COpenGLScene scene;
+  mrpt_compat::Scene scene;
   ASSERT_TRUE(scene.loadFromFile(path("map.3Dscene")));
-  const auto voxels = scene.getByClass<mrpt::opengl::COctoMapVoxels>();
+  const auto voxels = scene.getByClass<mrpt_compat::drawing::COctoMapVoxels>();
   ASSERT_TRUE(voxels);
-  EXPECT_EQ(voxels->getVoxelCount(mrpt::opengl::VOXEL_SET_OCCUPIED), countOccupied(map));
+  EXPECT_EQ(voxels->getVoxelCount(mrpt_compat::drawing::VOXEL_SET_OCCUPIED), countOccupied(map));
 }
 
 TEST_F(SemanticMapExport, compressedMapsAreMapsToo) {

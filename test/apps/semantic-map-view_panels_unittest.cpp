@@ -102,45 +102,68 @@ TEST_F(SemanticMapView, FindsTheTreeOfAWantedNumberOfKilobytes) {
   EXPECT_EQ(view[1], compress[1]) << said;
 }
 
-TEST_F(SemanticMapView, FindsAPathBetweenTwoClicks) {
-  SKIP_WITHOUT_WINDOWS();
-  folder.write("order.yaml", "best_to_worst: [road, grass]\n");
-  // In the panel at the lower left: the buttons "start" and "goal".
-  const std::string y = std::to_string(kHeight - 76);
-  const auto at = [](const cv::Point& p) {
+/** The window with an order of classes; the panel at the lower left has the buttons "start" and
+ * "goal". */
+class SemanticMapViewPlans : public SemanticMapView {
+ protected:
+  SemanticMapViewPlans() { folder.write("order.yaml", "best_to_worst: [road, grass]\n"); }
+
+  /** Runs the window: how the start is set, how the goal, what comes then. */
+  void plan(const std::string& start, const std::string& goal,
+            const std::vector<std::string>& then = {}) {
+    const std::string y = std::to_string(kHeight - 76);
+    std::vector<std::string> command{MSO_SOURCE_DIR "/test/apps/view-window.sh",
+                                     path("said.txt"),
+                                     kViewer,
+                                     path("map.semantic"),
+                                     "--size",
+                                     size(),
+                                     "--camera",
+                                     kTop,
+                                     "--classes",
+                                     path("order.yaml"),
+                                     "--",
+                                     "60 " + y + " click where the vehicle is",
+                                     start,
+                                     "156 " + y + " click where it is to go",
+                                     goal};
+    command.insert(command.end(), then.begin(), then.end());
+    const ProgramRun run = runInX(command);
+    EXPECT_EQ(run.status, 0) << run.output << run.errors;
+    said = folder.read("said.txt");
+  }
+
+  static std::string at(const cv::Point& p) {
     return std::to_string(p.x) + " " + std::to_string(p.y);
-  };
-  const ProgramRun run = runInX(
-      {MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer, path("map.semantic"),
-       "--size", size(), "--camera", kTop, "--classes", path("order.yaml"), "--",
-       "60 " + y + " click where the vehicle is", at(pixelOf(-3, -2, 0.2)) + " start at -3",
-       "156 " + y + " click where it is to go", at(pixelOf(3, 3, 0.2)) + " path of"});
-  EXPECT_EQ(run.status, 0) << run.output << run.errors;
-  std::smatch length;
-  const std::string said = folder.read("said.txt");
-  ASSERT_TRUE(std::regex_search(said, length, std::regex("path of ([0-9.]+) m"))) << said;
-  EXPECT_GE(std::stod(length[1]), std::hypot(6, 5) - 0.5);
-  EXPECT_LT(std::stod(length[1]), 15);
+  }
+
+  /** Of all paths that the window told, m. */
+  std::vector<double> lengths() const {
+    const std::regex path("path of ([0-9.]+) m");
+    std::vector<double> found;
+    for (std::sregex_iterator i(said.begin(), said.end(), path), end; i != end; ++i)
+      found.push_back(std::stod((*i)[1]));
+    return found;
+  }
+
+  std::string said;
+};
+
+TEST_F(SemanticMapViewPlans, BetweenTwoClicks) {
+  SKIP_WITHOUT_WINDOWS();
+  plan(at(pixelOf(-3, -2, 0.2)) + " start at -3", at(pixelOf(3, 3, 0.2)) + " path of");
+  ASSERT_FALSE(lengths().empty()) << said;
+  EXPECT_GE(lengths()[0], std::hypot(6, 5) - 0.5);
+  EXPECT_LT(lengths()[0], 15);
 }
 
-TEST_F(SemanticMapView, PlansFromAndToHeadingsThatAreDragged) {
+TEST_F(SemanticMapViewPlans, FromAndToHeadingsThatAreDragged) {
   SKIP_WITHOUT_WINDOWS();
-  folder.write("order.yaml", "best_to_worst: [road, grass]\n");
-  const std::string y = std::to_string(kHeight - 76);
   const auto drag = [](const cv::Point& from, const cv::Point& to, const std::string& words) {
-    std::string step = "drag";
-    for (const int x : {from.x, from.y, to.x, to.y}) step += ' ' + std::to_string(x);
-    return step + ' ' + words;
+    return "drag " + at(from) + ' ' + at(to) + ' ' + words;
   };
-  const ProgramRun run =
-      runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer,
-              path("map.semantic"), "--size", size(), "--camera", kTop, "--classes",
-              path("order.yaml"), "--", "60 " + y + " click where the vehicle is",
-              drag(pixelOf(-4, -2, 0.2), pixelOf(-6, -2, 0.2), "start at -4"),
-              "156 " + y + " click where it is to go",
-              drag(pixelOf(3, 2, 0.2), pixelOf(3, 4, 0.2), "path of")});
-  EXPECT_EQ(run.status, 0) << run.output << run.errors;
-  const std::string said = folder.read("said.txt");
+  plan(drag(pixelOf(-4, -2, 0.2), pixelOf(-6, -2, 0.2), "start at -4"),
+       drag(pixelOf(3, 2, 0.2), pixelOf(3, 4, 0.2), "path of"));
   const auto heading = [&](const std::string& of) {
     std::smatch found;
     const bool is = std::regex_search(said, found, std::regex(of + " at.*heading (-?[0-9]+) deg"));
@@ -148,31 +171,15 @@ TEST_F(SemanticMapView, PlansFromAndToHeadingsThatAreDragged) {
   };
   EXPECT_NEAR(std::abs(heading("start")), 180, 3) << said;
   EXPECT_NEAR(heading("goal"), 90, 3) << said;
-  std::smatch length;
-  ASSERT_TRUE(std::regex_search(said, length, std::regex("path of ([0-9.]+) m"))) << said;
-  EXPECT_GE(std::stod(length[1]), std::hypot(7, 4) + 0.5) << "it has to turn";
+  ASSERT_FALSE(lengths().empty()) << said;
+  EXPECT_GE(lengths()[0], std::hypot(7, 4) + 0.5) << "it has to turn";
 }
 
-TEST_F(SemanticMapView, PlansAnewAfterTheOrderOfClassesWasDragged) {
+TEST_F(SemanticMapViewPlans, AnewAfterTheOrderOfClassesWasDragged) {
   SKIP_WITHOUT_WINDOWS();
-  folder.write("order.yaml", "best_to_worst: [road, grass]\n");
-  const std::string y = std::to_string(kHeight - 76);
-  const auto at = [](const cv::Point& p) {
-    return std::to_string(p.x) + " " + std::to_string(p.y);
-  };
   // Along the road's border: straight on, or by the grass, if that is better.
-  const ProgramRun run = runInX(
-      {MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer, path("map.semantic"),
-       "--size", size(), "--camera", kTop, "--classes", path("order.yaml"), "--",
-       "60 " + y + " click where the vehicle is", at(pixelOf(-1, -2.5, 0.2)) + " start at -1",
-       "156 " + y + " click where it is to go", at(pixelOf(-1, 2.5, 0.2)) + " path of",
-       "drag 300 54 300 80 order: grass > road", at(pixelOf(3.1, 3.1, 0.2)) + " occupied, grass"});
-  EXPECT_EQ(run.status, 0) << run.output << run.errors;
-  const std::string said = folder.read("said.txt");
-  const std::regex path("path of ([0-9.]+) m");
-  std::vector<double> lengths;
-  for (std::sregex_iterator found(said.begin(), said.end(), path), end; found != end; ++found)
-    lengths.push_back(std::stod((*found)[1]));
-  ASSERT_EQ(lengths.size(), 2u) << said;
-  EXPECT_GT(lengths[1], lengths[0] + 0.2) << said;
+  plan(at(pixelOf(-1, -2.5, 0.2)) + " start at -1", at(pixelOf(-1, 2.5, 0.2)) + " path of",
+       {"drag 300 54 300 80 order: grass > road", at(pixelOf(3.1, 3.1, 0.2)) + " occupied, grass"});
+  ASSERT_EQ(lengths().size(), 2u) << said;
+  EXPECT_GT(lengths()[1], lengths()[0] + 0.2) << said;
 }

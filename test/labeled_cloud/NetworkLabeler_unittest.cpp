@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/NetworkLabeler.h>
 #include <mrpt/obs/CObservationImage.h>
+#include <mrpt_compat/Images.h>
 
 #include <cmath>
 #include <opencv2/core.hpp>
@@ -26,7 +27,7 @@ ClassTable twoColors() {
 CObservationImage picture(const cv::Mat3b& bgr) {
   CObservationImage observation;
   observation.sensorLabel = "camera";
-  observation.image = mrpt::img::CImage(bgr, mrpt::img::DEEP_COPY);
+  observation.image = mrpt_compat::toMrpt(bgr);
   return observation;
 }
 

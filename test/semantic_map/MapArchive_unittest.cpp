@@ -2,7 +2,7 @@
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/maps/CMultiMetricMap.h>
-#include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt_compat/Drawing.h>
 
 #include "SmallMaps.h"
 #include "TemporaryFolder.h"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/maps/CMultiMetricMap.h>
-#include <semantic_map/MrptVersion.h>
+#include <mrpt_compat/Release.h>
 
 #include <sstream>
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
-#include <mrpt/opengl/COctoMapVoxels.h>
-#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt_compat/Drawing.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <cmath>
@@ -8,7 +7,7 @@
 #include "SmallMaps.h"
 #include "TemporaryFolder.h"
 
-using mrpt::opengl::COctoMapVoxels;
+using mrpt_compat::drawing::COctoMapVoxels;
 using semantic_map::CSemanticOctoMap;
 using semantic_map::TRenderingOptions;
 
@@ -22,13 +21,13 @@ CSemanticOctoMap twoVoxels() {
 }
 
 COctoMapVoxels::Ptr voxelsOf(const CSemanticOctoMap& map) {
-  mrpt::opengl::CSetOfObjects objects;
+  mrpt_compat::drawing::CSetOfObjects objects;
   map.getVisualizationInto(objects);
   return objects.getByClass<COctoMapVoxels>();
 }
 
-constexpr auto kOccupied = mrpt::opengl::VOXEL_SET_OCCUPIED;
-constexpr auto kFree = mrpt::opengl::VOXEL_SET_FREESPACE;
+constexpr auto kOccupied = mrpt_compat::drawing::VOXEL_SET_OCCUPIED;
+constexpr auto kFree = mrpt_compat::drawing::VOXEL_SET_FREESPACE;
 
 }  // namespace
 
@@ -136,9 +135,10 @@ TEST(MapVisualization, savesItsOwnFileAndAScene) {
   map.saveMetricMapRepresentationToFile((folder / "map").string());
   const CSemanticOctoMap read(semantic_octree::loadTree((folder / "map.semantic").string()));
   EXPECT_TRUE(bytesOf(read) == bytesOf(map));
-  mrpt::opengl::COpenGLScene scene;
+  mrpt_compat::Scene scene;
   ASSERT_TRUE(scene.loadFromFile((folder / "map.3Dscene").string()));
-  EXPECT_TRUE(scene.getByClass<mrpt::opengl::CSetOfObjects>()->getByClass<COctoMapVoxels>());
+  EXPECT_TRUE(
+      scene.getByClass<mrpt_compat::drawing::CSetOfObjects>()->getByClass<COctoMapVoxels>());
 }
 
 TEST(MapVisualization, anUnwritablePlaceIsAnError) {

@@ -31,8 +31,9 @@ inline void insertAll(SemanticOcTree& map) {
   for (const PosedCloud& scan : scans()) map.insert(scan.cloud, scan.T_map_sensor, insertion());
 }
 
-inline SemanticOcTree emptyMap(bool withAbstraction = false) {
-  SemanticOcTree map(0.2, numberedClasses(24));
+inline SemanticOcTree emptyMap(bool withAbstraction = false,
+                               const semantic_types::ClassTable& classes = numberedClasses(24)) {
+  SemanticOcTree map(0.2, classes);
   if (!withAbstraction) return map;
   AbstractionOptions options;
   for (int i = 1; i <= 4; ++i)

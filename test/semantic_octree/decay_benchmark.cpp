@@ -3,24 +3,22 @@
 #include <benchmark/benchmark.h>
 #include <semantic_octree/Abstraction.h>
 
-#include "RandomScans.h"
+#include "StreetDrive.h"
 
-using namespace semantic_octree;
+using namespace street_drive;
 
 namespace {
 
-constexpr int kScans = 200;
 constexpr double kPeriod = 0.1;  // s
 
+/** The street's drive, with a person here and there. */
 const std::vector<PosedCloud>& drive() {
   static const std::vector<PosedCloud> scans = [] {
-    std::mt19937 random(1);
-    std::vector<PosedCloud> made;
-    for (int i = 0; i < kScans; ++i) {
-      made.push_back(streetScan(random, {double(i), 0, 0}, 64, 1024));
-      for (auto& id : made.back().cloud.classes)
-        if (random() % 100 == 0) id = 3;  // a person here and there
-    }
+    std::mt19937 random(2);
+    std::vector<PosedCloud> made = street_drive::scans();
+    for (PosedCloud& scan : made)
+      for (auto& id : scan.cloud.classes)
+        if (random() % 100 == 0) id = 3;
     return made;
   }();
   return scans;
@@ -32,34 +30,23 @@ SemanticOcTree emptyMap(int forgets, bool withAbstraction) {
   semantic_types::ClassTable classes = numberedClasses(24);
   if (forgets != kNothing) classes.setHalfLife(3, 2);
   if (forgets == kPeopleAndFreeSpace) classes.setHalfLife(semantic_types::kNoClass, 60);
-  SemanticOcTree map(0.2, classes);
-  if (!withAbstraction) return map;
-  AbstractionOptions options;
-  for (int i = 1; i <= 4; ++i)
-    options.weights.terms.push_back(tree_abstraction::relevant(std::to_string(i), 1, {i}));
-  options.weights.alpha = 0.02;
-  map.setAbstraction(options);
-  return map;
+  return street_drive::emptyMap(withAbstraction, classes);
 }
 
 void mapping(benchmark::State& state) {
   drive();
-  InsertionOptions options;
-  options.maxRange = 25;
   for (auto _ : state) {
     SemanticOcTree map = emptyMap(static_cast<int>(state.range(0)), state.range(1));
     for (const PosedCloud& scan : drive())
-      map.insert(scan.cloud, scan.T_map_sensor, options, kPeriod);
+      map.insert(scan.cloud, scan.T_map_sensor, insertion(), kPeriod);
     state.counters["leaves"] = static_cast<double>(map.getNumLeafNodes());
   }
 }
 
 /** One of a class's eight steps, in the map of the whole drive. */
 void step(benchmark::State& state) {
-  InsertionOptions options;
-  options.maxRange = 25;
   SemanticOcTree map = emptyMap(static_cast<int>(state.range(0)), state.range(1));
-  for (const PosedCloud& scan : drive()) map.insert(scan.cloud, scan.T_map_sensor, options);
+  for (const PosedCloud& scan : drive()) map.insert(scan.cloud, scan.T_map_sensor, insertion());
   state.counters["leaves"] = static_cast<double>(map.getNumLeafNodes());
   for (auto _ : state) {
     state.PauseTiming();

@@ -1,6 +1,6 @@
 #pragma once
 #include <gtest/gtest.h>
-#include <semantic_map/MrptVersion.h>
+#include <mrpt_compat/Release.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <filesystem>

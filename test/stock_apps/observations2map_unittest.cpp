@@ -1,6 +1,5 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <mrpt/opengl/COctoMapVoxels.h>
-#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_types/ClassTableFile.h>
 
@@ -63,13 +62,13 @@ TEST_F(Observations2Map, theMapIsThatOfTheLibraryBitForBit) {
 
 TEST_F(Observations2Map, theSceneShowsTheClasses) {
   ASSERT_EQ(make(Plugin::Preloaded).status, 0);
-  mrpt::opengl::COpenGLScene scene;
+  mrpt_compat::Scene scene;
   ASSERT_TRUE(
       scene.loadFromFile((folder / "out/map_semantic_map__CSemanticOctoMap_00.3Dscene").string()));
-  const auto voxels =
-      scene.getByClass<mrpt::opengl::CSetOfObjects>()->getByClass<mrpt::opengl::COctoMapVoxels>();
+  const auto voxels = scene.getByClass<mrpt_compat::drawing::CSetOfObjects>()
+                          ->getByClass<mrpt_compat::drawing::COctoMapVoxels>();
   ASSERT_TRUE(voxels);
-  EXPECT_GT(voxels->getVoxelCount(mrpt::opengl::VOXEL_SET_OCCUPIED), 1000u);
+  EXPECT_GT(voxels->getVoxelCount(mrpt_compat::drawing::VOXEL_SET_OCCUPIED), 1000u);
 }
 
 TEST_F(Observations2Map, withoutThePluginThereIsNoMap) {

@@ -2,7 +2,7 @@
 
 #include <map_view/CellAnswer.h>
 #include <map_view/RayCast.h>
-#include <mrpt/opengl/CBox.h>
+#include <mrpt_compat/Drawing.h>
 #include <semantic_types/ClassColors.h>
 
 #include <cstdarg>
@@ -15,7 +15,7 @@ namespace map_window {
 
 using map_view::CellAnswer;
 using mrpt::math::TPoint3D;
-using mrpt::opengl::CBox;
+using mrpt_compat::drawing::CBox;
 
 namespace {
 

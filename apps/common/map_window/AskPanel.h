@@ -22,7 +22,7 @@ class AskPanel {
   Viewer& m_viewer;
   std::array<nanogui::Label*, 3> m_lines{};
   BarChart* m_shares;
-  mrpt::opengl::CSetOfObjects::Ptr m_mark = mrpt::opengl::CSetOfObjects::Create();
+  mrpt_compat::drawing::CSetOfObjects::Ptr m_mark = mrpt_compat::drawing::CSetOfObjects::Create();
 };
 
 }  // namespace map_window

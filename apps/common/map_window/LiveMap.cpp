@@ -120,7 +120,8 @@ class LiveMap::Window {
   }
 
   std::function<bool()> isToEnd = [] { return false; };
-  const mrpt::opengl::CSetOfObjects::Ptr marks = mrpt::opengl::CSetOfObjects::Create();
+  const mrpt_compat::drawing::CSetOfObjects::Ptr marks =
+      mrpt_compat::drawing::CSetOfObjects::Create();
 
  private:
   KeyBox keysOf(const Eigen::AlignedBox3d& box) {
@@ -170,7 +171,7 @@ LiveMap::LiveMap(const std::string& title, const semantic_octree::SemanticOcTree
 
 LiveMap::~LiveMap() = default;
 
-mrpt::opengl::CSetOfObjects& LiveMap::marks() { return *m_window->marks; }
+mrpt_compat::drawing::CSetOfObjects& LiveMap::marks() { return *m_window->marks; }
 void LiveMap::say(const std::vector<std::string>& lines) { m_window->say(lines); }
 void LiveMap::showPicture(const mrpt::img::CImage& picture) { m_window->showPicture(picture); }
 void LiveMap::changed(const Eigen::AlignedBox3d& box) { m_window->changed(box); }

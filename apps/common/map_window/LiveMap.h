@@ -1,6 +1,6 @@
 #pragma once
 #include <mrpt/img/CImage.h>
-#include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt_compat/Drawing.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <functional>
@@ -26,7 +26,7 @@ class LiveMap {
   LiveMap& operator=(const LiveMap&) = delete;
 
   /** What lies upon the map. */
-  mrpt::opengl::CSetOfObjects& marks();
+  mrpt_compat::drawing::CSetOfObjects& marks();
   /** Lines that say how far it is. */
   void say(const std::vector<std::string>& lines);
   /** A camera's picture, in the lower right corner. */

@@ -13,7 +13,7 @@ LiveMap::LiveMap(const std::string&, const semantic_octree::SemanticOcTree&, con
 LiveMap::~LiveMap() = default;
 
 // Nobody has an object.
-mrpt::opengl::CSetOfObjects& LiveMap::marks() { std::abort(); }
+mrpt_compat::drawing::CSetOfObjects& LiveMap::marks() { std::abort(); }
 void LiveMap::say(const std::vector<std::string>&) {}
 void LiveMap::showPicture(const mrpt::img::CImage&) {}
 void LiveMap::changed(const Eigen::AlignedBox3d&) {}

@@ -8,9 +8,9 @@ namespace map_window {
 
 using map_view::Face;
 using map_view::Tile;
-using mrpt::opengl::CSetOfObjects;
-using mrpt::opengl::CSetOfTriangles;
-using mrpt::opengl::TTriangle;
+using mrpt_compat::drawing::CSetOfObjects;
+using mrpt_compat::drawing::CSetOfTriangles;
+using mrpt_compat::drawing::TTriangle;
 
 namespace {
 
@@ -42,7 +42,7 @@ CSetOfTriangles::Ptr trianglesOf(const std::vector<Face>& faces, std::uint8_t al
   const auto mesh = CSetOfTriangles::Create();
   mesh->insertTriangles(triangles);
   mesh->enableLight(false);  // the colors are lit already
-  mesh->cullFaces(mrpt::opengl::TCullFace::BACK);
+  mesh->cullFaces(mrpt_compat::drawing::TCullFace::BACK);
   return mesh;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 #include <map_view/TileSet.h>
-#include <mrpt/opengl/CSetOfObjects.h>
-#include <mrpt/opengl/CSetOfTriangles.h>
+#include <mrpt_compat/Drawing.h>
 
 #include <map>
 
@@ -14,7 +13,7 @@ namespace map_window {
 class TileScene {
  public:
   /** To be put into a scene: solid cells and, to be drawn after them, translucent ones. */
-  const mrpt::opengl::CSetOfObjects::Ptr& objects() const { return m_objects; }
+  const mrpt_compat::drawing::CSetOfObjects::Ptr& objects() const { return m_objects; }
 
   /** Brings the scene up to date with what is seen, for about so many milliseconds; what is not
    * ready shows as it was. \return whether all is ready */
@@ -30,7 +29,7 @@ class TileScene {
  private:
   struct Meshes {
     struct Part {
-      mrpt::opengl::CSetOfTriangles::Ptr triangles;
+      mrpt_compat::drawing::CSetOfTriangles::Ptr triangles;
       std::size_t faces = 0;
     };
     std::array<Part, map_view::kNumDirections> occupied;
@@ -45,7 +44,8 @@ class TileScene {
             double voxelSize);
   void forgetUnseen(const std::vector<map_view::Tile>& seen);
 
-  mrpt::opengl::CSetOfObjects::Ptr m_objects = mrpt::opengl::CSetOfObjects::Create();
+  mrpt_compat::drawing::CSetOfObjects::Ptr m_objects =
+      mrpt_compat::drawing::CSetOfObjects::Create();
   std::map<map_view::Tile, Meshes> m_meshes;
   map_view::FreshTiles m_fresh;
   std::size_t m_shown = 0, m_faces = 0, m_kept = 0;

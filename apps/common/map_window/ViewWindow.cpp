@@ -1,7 +1,7 @@
 #include "ViewWindow.h"
 
 #include <map_pictures/Drawing.h>
-#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt_compat/Drawing.h>
 #include <nanogui/opengl.h>
 
 #include <clocale>
@@ -61,7 +61,7 @@ std::unique_ptr<ViewWindow> ViewWindow::open(const std::string& title, int width
 
 ViewWindow::ViewWindow(const std::string& title, int width, int height)
     : CDisplayWindowGUI(title, unsigned(width), unsigned(height)) {
-  const auto scene = mrpt::opengl::COpenGLScene::Create();
+  const auto scene = mrpt_compat::Scene::Create();
   const auto paper = map_pictures::kPaper;
   scene->getViewport()->setCustomBackgroundColor(
       mrpt::img::TColorf(mrpt::img::TColor(paper.r, paper.g, paper.b)));

@@ -1,7 +1,7 @@
 #pragma once
 #include <map_view/OrbitCamera.h>
 #include <mrpt/gui/CDisplayWindowGUI.h>
-#include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt_compat/Drawing.h>
 
 #include <functional>
 #include <opencv2/core.hpp>
@@ -26,9 +26,9 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   ViewWindow(const std::string& title, int width, int height);
 
   /** Maps. */
-  const mrpt::opengl::CSetOfObjects::Ptr& maps() const { return m_maps; }
+  const mrpt_compat::drawing::CSetOfObjects::Ptr& maps() const { return m_maps; }
   /** What lies upon them. */
-  const mrpt::opengl::CSetOfObjects::Ptr& marks() const { return m_marks; }
+  const mrpt_compat::drawing::CSetOfObjects::Ptr& marks() const { return m_marks; }
   /** In the lower right corner, so many pixels wide. */
   void showPicture(const mrpt::img::CImage& picture, int width);
 
@@ -75,8 +75,8 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   map_view::Ray rayThrough(const nanogui::Vector2i& p) const;
   void takePicture();
 
-  mrpt::opengl::CSetOfObjects::Ptr m_maps = mrpt::opengl::CSetOfObjects::Create();
-  mrpt::opengl::CSetOfObjects::Ptr m_marks = mrpt::opengl::CSetOfObjects::Create();
+  mrpt_compat::drawing::CSetOfObjects::Ptr m_maps = mrpt_compat::drawing::CSetOfObjects::Create();
+  mrpt_compat::drawing::CSetOfObjects::Ptr m_marks = mrpt_compat::drawing::CSetOfObjects::Create();
   std::function<void(const map_view::Ray&)> m_onClick;
   std::function<bool(const map_view::Ray&)> m_onGrab;
   OnMoved m_onMoved;

@@ -1,5 +1,7 @@
 #include "Observations.h"
 
+#include <mrpt_compat/Images.h>
+
 namespace synthetic_rawlog {
 
 using mrpt::obs::CObservation3DRangeScan;
@@ -10,12 +12,12 @@ mrpt::poses::CPose3D toMrpt(const Eigen::Isometry3d& pose) {
   return mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(pose.matrix()));
 }
 
-mrpt::img::CImage toMrpt(const synthetic_world::Image<synthetic_world::Color>& image) {
-  mrpt::img::CImage result(image.width, image.height, mrpt::img::CH_RGB);
+cv::Mat3b pictureOf(const synthetic_world::Image<synthetic_world::Color>& image) {
+  cv::Mat3b result(image.height, image.width);
   for (int row = 0; row < image.height; ++row)
     for (int column = 0; column < image.width; ++column) {
       const synthetic_world::Color c = image.at(row, column);
-      result.setPixel(column, row, mrpt::img::TColor(c.r, c.g, c.b));
+      result(row, column) = {c.b, c.g, c.r};
     }
   return result;
 }
@@ -73,7 +75,7 @@ CObservation3DRangeScan::Ptr rangeScan(const synthetic_world::CameraFrame& frame
   scan->cameraParams = scan->cameraParamsIntensity = calibration(options);
   scan->pixelLabels = labelBits(frame.labels);
   scan->hasIntensityImage = true;
-  scan->intensityImage = toMrpt(frame.color);
+  scan->intensityImage = mrpt_compat::toMrpt(pictureOf(frame.color));
   return scan;
 }
 

@@ -5,12 +5,15 @@
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Lidar.h>
 
+#include <opencv2/core/mat.hpp>
+
 // What the sensors of the synthetic world see, as MRPT's observations.
 namespace synthetic_rawlog {
 
 mrpt::poses::CPose3D toMrpt(const Eigen::Isometry3d& pose);
 
-mrpt::img::CImage toMrpt(const synthetic_world::Image<synthetic_world::Color>& image);
+/** Blue, green, red. */
+cv::Mat3b pictureOf(const synthetic_world::Image<synthetic_world::Color>& image);
 
 mrpt::obs::CObservationRobotPose::Ptr robotPose(const Eigen::Isometry3d& T_map_robot);
 

@@ -1,6 +1,7 @@
 #include <labeled_cloud/ColorImage.h>
 #include <labeled_cloud/ImageFile.h>
 #include <labeled_cloud/NetworkLabeler.h>
+#include <mrpt_compat/Images.h>
 
 #include <algorithm>
 #include <numeric>
@@ -58,7 +59,7 @@ cv::Mat readBgr(const CObservation& observation) {
   const ColorImage color = colorImageOf(observation);
   if (color.image.isExternallyStored())
     checkImageFile(color.image.getExternalStorageFileAbsolutePath(), ImageKinds::All);
-  cv::Mat pixels = color.image.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);
+  cv::Mat pixels = mrpt_compat::toOpenCv(color.image);
   color.image.unload();
   if (pixels.channels() == 1) cv::cvtColor(pixels, pixels, cv::COLOR_GRAY2BGR);
   if (pixels.channels() == 4) cv::cvtColor(pixels, pixels, cv::COLOR_BGRA2BGR);

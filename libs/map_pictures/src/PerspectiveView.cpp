@@ -1,6 +1,7 @@
 #include <map_pictures/Sheet.h>
 #include <mrpt/opengl/CFBORender.h>
-#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt_compat/Drawing.h>
+#include <mrpt_compat/Images.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -12,7 +13,7 @@
 
 namespace map_pictures {
 
-using mrpt::opengl::COpenGLScene;
+using mrpt_compat::Scene;
 using semantic_octree::SemanticOcTree;
 
 namespace {
@@ -23,8 +24,8 @@ struct Rendered {
   cv::Mat depth;  ///< 32 bit float, m; 0 where nothing is seen
 };
 
-COpenGLScene sceneOf(const mrpt::opengl::CSetOfTriangles::Ptr& mesh, const PictureCamera& camera) {
-  COpenGLScene scene;
+Scene sceneOf(const mrpt_compat::drawing::CSetOfTriangles::Ptr& mesh, const PictureCamera& camera) {
+  Scene scene;
   scene.insert(mesh);
   const auto viewport = scene.getViewport();
   viewport->setCustomBackgroundColor(
@@ -33,7 +34,7 @@ COpenGLScene sceneOf(const mrpt::opengl::CSetOfTriangles::Ptr& mesh, const Pictu
   return scene;
 }
 
-mrpt::opengl::CCamera mrptCamera(const PictureCamera& camera) {
+mrpt_compat::drawing::CCamera mrptCamera(const PictureCamera& camera) {
   mrpt::img::TCamera pinhole;
   pinhole.ncols = camera.width, pinhole.nrows = camera.height;
   pinhole.setIntrinsicParamsFromValues(camera.focalLength, camera.focalLength, camera.width / 2.0,
@@ -43,21 +44,21 @@ mrpt::opengl::CCamera mrptCamera(const PictureCamera& camera) {
     for (int j = 0; j < 3; ++j) R(i, j) = camera.R_map_camera(i, j);
   const auto& p = camera.position;
 
-  mrpt::opengl::CCamera c;
+  mrpt_compat::drawing::CCamera c;
   c.setProjectiveFromPinhole(pinhole);
   c.set6DOFMode(true);
   c.setPose(mrpt::poses::CPose3D(R, mrpt::math::CVectorFixedDouble<3>({p.x(), p.y(), p.z()})));
   return c;
 }
 
-Rendered render(const COpenGLScene& scene, const PictureCamera& camera) {
+Rendered render(const Scene& scene, const PictureCamera& camera) {
   mrpt::opengl::CFBORender renderer(camera.width, camera.height);
   renderer.setCamera(scene, mrptCamera(camera));
   mrpt::img::CImage image;
   mrpt::math::CMatrixFloat depth;
   renderer.render_RGBD(scene, image, depth);
   Rendered out;
-  out.color = image.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);
+  out.color = mrpt_compat::toOpenCv(image);
   out.depth = cv::Mat(depth.rows(), depth.cols(), CV_32F, depth.data()).clone();
   return out;
 }

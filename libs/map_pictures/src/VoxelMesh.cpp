@@ -7,8 +7,8 @@
 
 namespace map_pictures {
 
-using mrpt::opengl::CSetOfTriangles;
-using mrpt::opengl::TTriangle;
+using mrpt_compat::drawing::CSetOfTriangles;
+using mrpt_compat::drawing::TTriangle;
 using semantic_octree::SemanticOcTree;
 
 namespace {
@@ -97,7 +97,7 @@ class MeshBuilder {
     const auto mesh = CSetOfTriangles::Create();
     mesh->insertTriangles(m_triangles);
     mesh->enableLight(false);  // the colors are lit already
-    mesh->cullFaces(mrpt::opengl::TCullFace::NONE);
+    mesh->cullFaces(mrpt_compat::drawing::TCullFace::NONE);
     return mesh;
   }
 

@@ -6,7 +6,7 @@
 namespace map_pictures {
 
 /** The mesh of some cells of a map, as meshOf() of a style. */
-mrpt::opengl::CSetOfTriangles::Ptr meshOf(const semantic_octree::SemanticOcTree& tree,
-                                          const MapCells& map);
+mrpt_compat::drawing::CSetOfTriangles::Ptr meshOf(const semantic_octree::SemanticOcTree& tree,
+                                                  const MapCells& map);
 
 }  // namespace map_pictures

@@ -8,11 +8,11 @@ using semantic_planning::PathPoint;
 
 struct ReactiveNavigator::Navigation {
   explicit Navigation(const Options& options)
-      : slices(options.slices), system(makeReactiveSystem(vehicle, options, scratch.path())) {}
+      : slices(options.slices), system(makeReactiveSystem(robot, options, scratch.path())) {}
 
   std::vector<Slice> slices;
   ScratchFolder scratch;
-  Vehicle vehicle;
+  RobotInterface robot;
   std::unique_ptr<mrpt::nav::CAbstractPTGBasedReactive> system;
   bool started = false;
 };
@@ -30,7 +30,7 @@ void ReactiveNavigator::setWaypoints(const std::vector<PathPoint>& waypoints, do
     waypoint.speed_ratio = last ? 0.3 : 1.0;
     sequence.waypoints.push_back(waypoint);
   }
-  m_navigation->vehicle.blocked = false;
+  m_navigation->robot.blocked = false;
   m_navigation->started = true;
   m_navigation->system->resetNavError();
   m_navigation->system->navigateWaypoints(sequence);
@@ -58,27 +58,27 @@ DriveCommand ReactiveNavigator::step(const DriveState& state, const ObstaclePoin
 
 DriveCommand ReactiveNavigator::step(const DriveState& state, const ObstaclePoints3& obstacles,
                                      double seconds) {
-  Vehicle& vehicle = m_navigation->vehicle;
-  vehicle.state = state;
-  vehicle.obstacles = obstacles;
-  vehicle.seconds = seconds;
+  RobotInterface& robot = m_navigation->robot;
+  robot.state = state;
+  robot.obstacles = obstacles;
+  robot.seconds = seconds;
   try {
     m_navigation->system->navigationStep();
   } catch (const std::exception&) {
     // MRPT throws, too, if the first places that it is asked for are beyond all its trajectories.
-    vehicle.blocked = true;
-    vehicle.command = {};
+    robot.blocked = true;
+    robot.command = {};
   }
-  return vehicle.command;
+  return robot.command;
 }
 
 ReactiveNavigator::Status ReactiveNavigator::status() const {
   if (!m_navigation->started) return Status::Idle;
-  if (m_navigation->vehicle.blocked) return Status::Blocked;
+  if (m_navigation->robot.blocked) return Status::Blocked;
   switch (m_navigation->system->getCurrentState()) {
-    case mrpt::nav::CAbstractNavigator::NAVIGATING:
+    case mrpt::nav::CAbstractNavigator::TState::NAVIGATING:
       return Status::Driving;
-    case mrpt::nav::CAbstractNavigator::NAV_ERROR:
+    case mrpt::nav::CAbstractNavigator::TState::NAV_ERROR:
       return Status::Blocked;
     default:
       return Status::Arrived;

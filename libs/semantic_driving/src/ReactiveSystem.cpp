@@ -70,9 +70,9 @@ void writeSection3D(CConfigFile& file, const Options& options) {
 }
 
 template <class System>
-std::unique_ptr<System> loaded(Vehicle& vehicle, const Options& options, const CConfigFile& file,
-                               const std::filesystem::path& tables) {
-  auto system = std::make_unique<Quiet<System>>(vehicle, false);
+std::unique_ptr<System> loaded(RobotInterface& robot, const Options& options,
+                               const CConfigFile& file, const std::filesystem::path& tables) {
+  auto system = std::make_unique<Quiet<System>>(robot, false);
   system->logging_enable_console_output = false;
   system->setLogFileDirectory(options.logFolder.string());
   system->enableLogFile(!options.logFolder.empty());
@@ -100,7 +100,7 @@ void completeHolonomicFactors(mrpt::config::CConfigFileBase& file, std::size_t f
 }
 
 std::unique_ptr<mrpt::nav::CAbstractPTGBasedReactive> makeReactiveSystem(
-    Vehicle& vehicle, const Options& options, const std::filesystem::path& tables) {
+    RobotInterface& robot, const Options& options, const std::filesystem::path& tables) {
   if (!std::filesystem::exists(options.config))
     throw std::runtime_error(options.config.string() + ": no such file");
   CConfigFile file(options.config.string());
@@ -108,17 +108,17 @@ std::unique_ptr<mrpt::nav::CAbstractPTGBasedReactive> makeReactiveSystem(
   completeHolonomicFactors(file, kHolonomicFactors);
   if (!options.slices.empty()) writeSection3D(file, options);
   file.discardSavingChanges();  // or MRPT writes the file anew
-  vehicle.logging_enable_console_output = false;
+  robot.logging_enable_console_output = false;
   std::unique_ptr<mrpt::nav::CAbstractPTGBasedReactive> system;
   if (options.slices.empty()) {
-    auto flat = loaded<CReactiveNavigationSystem>(vehicle, options, file, tables);
+    auto flat = loaded<CReactiveNavigationSystem>(robot, options, file, tables);
     mrpt::math::CPolygon shape;
     for (const Eigen::Vector2d& p : options.footprint.inflated(options.margin))
-      shape.AddVertex(p.x(), p.y());
+      shape.emplace_back(p.x(), p.y());
     flat->changeRobotShape(shape);
     system = std::move(flat);
   } else {
-    system = loaded<CReactiveNavigationSystem3D>(vehicle, options, file, tables);
+    system = loaded<CReactiveNavigationSystem3D>(robot, options, file, tables);
   }
   system->initialize();
   return system;

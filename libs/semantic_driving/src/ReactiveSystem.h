@@ -1,13 +1,10 @@
 #pragma once
 #include <mrpt/config/CConfigFileBase.h>
-#include <mrpt/core/Clock.h>
-#include <mrpt/kinematics/CVehicleVelCmd_DiffDriven.h>
-#include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/nav/reactive/CAbstractPTGBasedReactive.h>
-#include <mrpt/version.h>
+#include <mrpt_compat/Release.h>
 #include <semantic_driving/ReactiveNavigator.h>
+#include <semantic_driving/RobotInterface.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -33,60 +30,9 @@ class ScratchFolder {
   std::filesystem::path m_path;
 };
 
-/** The vehicle as MRPT's navigator sees it. */
-class Vehicle : public mrpt::nav::CRobot2NavInterface {
- public:
-  DriveState state;
-  ObstaclePoints3 obstacles;
-  DriveCommand command;
-  double seconds = 0;
-
-  bool getCurrentPoseAndSpeeds(mrpt::math::TPose2D& pose, mrpt::math::TTwist2D& velocity,
-                               mrpt::system::TTimeStamp& time, mrpt::math::TPose2D& odometry,
-                               std::string& frame) override {
-    pose = odometry = state.pose;
-    velocity = {state.speed * std::cos(pose.phi), state.speed * std::sin(pose.phi), state.turn};
-    time = mrpt::Clock::now();
-    frame = "map";
-    return true;
-  }
-  bool changeSpeeds(const mrpt::kinematics::CVehicleVelCmd& wanted) override {
-    const auto& drive = dynamic_cast<const mrpt::kinematics::CVehicleVelCmd_DiffDriven&>(wanted);
-    command = {drive.lin_vel, drive.ang_vel};
-    return true;
-  }
-  bool stop(bool) override {
-    command = {};
-    return true;
-  }
-  mrpt::kinematics::CVehicleVelCmd::Ptr getEmergencyStopCmd() override { return getStopCmd(); }
-  mrpt::kinematics::CVehicleVelCmd::Ptr getStopCmd() override {
-    return std::make_shared<mrpt::kinematics::CVehicleVelCmd_DiffDriven>();
-  }
-  bool senseObstacles(mrpt::maps::CSimplePointsMap& points,
-                      mrpt::system::TTimeStamp& time) override {
-    points.clear();
-    for (const Eigen::Vector3d& o : obstacles) points.insertPoint(o.x(), o.y(), o.z());
-    time = mrpt::Clock::now();
-    return true;
-  }
-  double getNavigationTime() override { return seconds; }
-  void resetNavigationTimer() override {}
-
-  bool blocked = false;
-  void sendWaySeemsBlockedEvent() override { blocked = true; }
-  void sendCannotGetCloserToBlockedTargetEvent() override { blocked = true; }
-  void sendApparentCollisionEvent() override {}
-  void sendNavigationStartEvent() override {}
-  void sendNavigationEndEvent() override {}
-  void sendNavigationEndDueToErrorEvent() override { blocked = true; }
-  void sendWaypointReachedEvent(int, bool) override {}
-  void sendNewWaypointTargetEvent(int) override {}
-};
-
 /** How many factors CHolonomicFullEval weighs: it refuses lists that are shorter or longer, so that
- * no file would serve all releases. 0x258 is 2.5.8, see semantic_map/MrptVersion.h. */
-constexpr std::size_t kHolonomicFactors = MRPT_VERSION >= 0x020e03 ? 8 : 7;
+ * no file would serve all releases. */
+constexpr std::size_t kHolonomicFactors = MSO_MRPT_AT_LEAST(2, 14, 3) ? 8 : 7;
 
 /** Appends zeros, which weigh nothing, to lists of the seven factors that all releases have. */
 void completeHolonomicFactors(mrpt::config::CConfigFileBase& file, std::size_t factors);
@@ -95,7 +41,7 @@ void completeHolonomicFactors(mrpt::config::CConfigFileBase& file, std::size_t f
  * \param tables folder of the tables that MRPT makes
  * \throw std::exception the file is missing, or what MRPT does not like about it. */
 std::unique_ptr<mrpt::nav::CAbstractPTGBasedReactive> makeReactiveSystem(
-    Vehicle& vehicle, const ReactiveNavigator::Options& options,
+    RobotInterface& robot, const ReactiveNavigator::Options& options,
     const std::filesystem::path& tables);
 
 }  // namespace semantic_driving

@@ -2,8 +2,8 @@
 #include <mrpt/core/format.h>
 #include <mrpt/maps/TMetricMapTypesRegistry.h>
 #include <mrpt/system/string_utils.h>
+#include <mrpt_compat/Maps.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_map/MrptVersion.h>
 #include <semantic_types/ClassTableFile.h>
 #include <strict_files/IniSection.h>
 
@@ -133,7 +133,7 @@ void CSemanticOctoMap::TMapDefinition::dumpToTextStream_map_specific(std::ostrea
   dump(kRendering, renderOpts);
 }
 
-CreatedMap CSemanticOctoMap::internal_CreateFromMapDefinition(
+mrpt_compat::CreatedMap CSemanticOctoMap::internal_CreateFromMapDefinition(
     const mrpt::maps::TMetricMapInitializer& definition) {
   const auto& d = dynamic_cast<const TMapDefinition&>(definition);
   const ClassTable classes = d.creationOpts.classes.empty()
@@ -145,7 +145,7 @@ CreatedMap CSemanticOctoMap::internal_CreateFromMapDefinition(
   map->likelihoodOptions = d.likelihoodOpts;
   map->renderingOptions = d.renderOpts;
   map->setAbstraction(d.abstractionOpts);
-  return CreatedMap(map.release());
+  return mrpt_compat::CreatedMap(map.release());
 }
 
 }  // namespace semantic_map

@@ -1,5 +1,4 @@
-#include <mrpt/opengl/COctoMapVoxels.h>
-#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/SceneFile.h>
 #include <semantic_octree/TreeFile.h>
@@ -11,7 +10,7 @@
 
 namespace semantic_map {
 
-using mrpt::opengl::COctoMapVoxels;
+using mrpt_compat::drawing::COctoMapVoxels;
 using semantic_octree::CellState;
 using semantic_octree::SemanticOcTree;
 
@@ -35,7 +34,8 @@ class VoxelSets {
     if (!(occupied ? m_options.occupied : m_options.free)) return;
     if (occupied && state.probability < m_options.minProbability) return;
     m_voxels->push_back_Voxel(
-        occupied ? mrpt::opengl::VOXEL_SET_OCCUPIED : mrpt::opengl::VOXEL_SET_FREESPACE,
+        occupied ? mrpt_compat::drawing::VOXEL_SET_OCCUPIED
+                 : mrpt_compat::drawing::VOXEL_SET_FREESPACE,
         {center, size, occupied ? m_color(node, center.z) : mrpt::img::TColor(160, 200, 230, 25)});
   }
 
@@ -58,14 +58,15 @@ mrpt::math::TBoundingBoxf CSemanticOctoMap::boundingBox() const {
           {float(high[0]), float(high[1]), float(high[2])}};
 }
 
-void CSemanticOctoMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const {
+void CSemanticOctoMap::getVisualizationInto(mrpt_compat::drawing::CSetOfObjects& o) const {
   if (!genericMapParams.enableSaveAs3DObject || m_tree.empty()) return;
   if (!renderingOptions.compressed || !m_tree.hasAbstraction()) return draw(m_tree, o);
   SemanticOcTree copy(m_tree);
   draw(semantic_octree::Abstraction(copy).compressedMap(), o);
 }
 
-void CSemanticOctoMap::draw(const SemanticOcTree& tree, mrpt::opengl::CSetOfObjects& o) const {
+void CSemanticOctoMap::draw(const SemanticOcTree& tree,
+                            mrpt_compat::drawing::CSetOfObjects& o) const {
   VoxelSets sets(tree, renderingOptions);
   for (auto it = tree.begin_leafs(), end = tree.end_leafs(); it != end; ++it)
     sets.add(*it, {float(it.getX()), float(it.getY()), float(it.getZ())}, it.getSize());
@@ -78,8 +79,8 @@ void CSemanticOctoMap::draw(const SemanticOcTree& tree, mrpt::opengl::CSetOfObje
 void CSemanticOctoMap::saveMetricMapRepresentationToFile(const std::string& prefix) const {
   semantic_octree::saveTree(m_tree, prefix + ".semantic");
   strict_files::StagedFile file(prefix + ".3Dscene");
-  mrpt::opengl::COpenGLScene scene;
-  const auto objects = mrpt::opengl::CSetOfObjects::Create();
+  mrpt_compat::Scene scene;
+  const auto objects = mrpt_compat::drawing::CSetOfObjects::Create();
   getVisualizationInto(*objects);
   scene.insert(objects);
   writeScene(scene, file.path());

@@ -4,7 +4,7 @@
 
 namespace semantic_map {
 
-void writeScene(const mrpt::opengl::COpenGLScene& scene, const std::filesystem::path& file) {
+void writeScene(const mrpt_compat::Scene& scene, const std::filesystem::path& file) {
   constexpr int kCompression = 2;  // of 1 to 9
   labeled_cloud::GzipOutputStream stream(file, kCompression);
   mrpt::serialization::archiveFrom(stream) << scene;

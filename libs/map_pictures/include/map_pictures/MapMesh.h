@@ -1,6 +1,6 @@
 #pragma once
 #include <map_pictures/MapPictures.h>
-#include <mrpt/opengl/CSetOfTriangles.h>
+#include <mrpt_compat/Drawing.h>
 
 namespace map_pictures {
 
@@ -9,7 +9,7 @@ namespace map_pictures {
  * creases darker. Fewer triangles than CSemanticOctoMap::getVisualizationInto() draws.
  * \param style its heights and occupancy
  * \throw std::invalid_argument as PictureStyle::validate(). */
-mrpt::opengl::CSetOfTriangles::Ptr meshOf(const semantic_octree::SemanticOcTree& tree,
-                                          const PictureStyle& style);
+mrpt_compat::drawing::CSetOfTriangles::Ptr meshOf(const semantic_octree::SemanticOcTree& tree,
+                                                  const PictureStyle& style);
 
 }  // namespace map_pictures

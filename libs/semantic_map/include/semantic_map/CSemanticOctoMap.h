@@ -4,8 +4,8 @@
 #include <mrpt/maps/CMetricMap.h>
 #include <mrpt/math/TBoundingBox.h>
 #include <mrpt/system/COutputLogger.h>
+#include <mrpt_compat/Maps.h>
 #include <semantic_map/MapOptions.h>
-#include <semantic_map/MrptVersion.h>
 #include <semantic_map/ObservationClock.h>
 #include <semantic_octree/Abstraction.h>
 #include <semantic_octree/SemanticOcTree.h>
@@ -116,7 +116,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   mrpt::math::TBoundingBoxf boundingBox() const MSO_OVERRIDE_SINCE_2_11_3;
   /** Boxes in the classes' colors, see renderingOptions; nothing if
    * genericMapParams.enableSaveAs3DObject is false. */
-  void getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const override;
+  void getVisualizationInto(mrpt_compat::drawing::CSetOfObjects& o) const override;
   /** Pairs the points of a points map with the occupied voxels of this one, as CPointsMap does with
    * its points: each with the voxel whose center is nearest (2D: seen from above), so that ICP can
    * register scans against the map. globalIdx numbers the voxels of one result.
@@ -167,7 +167,8 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   bool internal_canComputeObservationLikelihood(
       const mrpt::obs::CObservation& observation) const override;
 
-  void draw(const semantic_octree::SemanticOcTree& tree, mrpt::opengl::CSetOfObjects& o) const;
+  void draw(const semantic_octree::SemanticOcTree& tree,
+            mrpt_compat::drawing::CSetOfObjects& o) const;
   void copyAllButTree(const CSemanticOctoMap& o);
   labeled_cloud::ScanConverter& converter();
   std::shared_ptr<const labeled_cloud::LabeledScan> scanForLikelihood(

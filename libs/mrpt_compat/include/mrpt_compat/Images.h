@@ -1,0 +1,15 @@
+#pragma once
+#include <mrpt/img/CImage.h>
+
+#include <opencv2/core/mat.hpp>
+
+namespace mrpt_compat {
+
+/** A copy of the pixels, 8 bits in one or three channels (BGR), rows x columns. Until MRPT 3 an
+ * image holds an OpenCV one. \throw std::exception if it is empty, or has other pixels. */
+cv::Mat toOpenCv(const mrpt::img::CImage& image);
+
+/** The same the other way round, a copy. */
+mrpt::img::CImage toMrpt(const cv::Mat& image);
+
+}  // namespace mrpt_compat
