@@ -29,6 +29,7 @@ ClassTable classesWithFolds() {
 SemanticOcTree someTree(bool pruning = true, int numScans = 3, double resolution = 0.37) {
   FilterParameters parameters;
   parameters.accuracy = 0.71;
+  parameters.labelCorrelation = 0.31;
   parameters.hitProbability = 0.62;
   parameters.falseAlarmProbability = 0.21;
   parameters.minOccupancy = 0.13;
