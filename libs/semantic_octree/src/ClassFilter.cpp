@@ -29,7 +29,9 @@ const ClassVotes& majority(const ClassVotes* votes, std::size_t numVoted) {
 
 template <typename Real, int Named>
 ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
-    : m_numClasses(numClasses), m_softLabelFloor(p.softLabelFloor) {
+    : m_numClasses(numClasses),
+      m_softLabelFloor(p.softLabelFloor),
+      m_evidence(p.accuracy, std::max(2, numClasses), p.labelCorrelation) {
   p.validate(numClasses);
   const double K = numClasses;
   double same = 1, other = -0.1, unlabeled = 0, miss = -0.1;
@@ -51,7 +53,6 @@ ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
   m_miss = rounded<Real>(miss);
   m_unlabeled = unlabeled;
   if (numClasses == 1 || p.increments != FilterParameters::Increments::LikelihoodConsistent) return;
-  m_evidence.emplace(p.accuracy, numClasses, p.labelCorrelation);
   for (std::uint32_t n = 0; n < kKeptRows; ++n) m_rowsOfFew.push_back(rowOf(n));
   m_rowsOfFew[1] = {m_hitSame, m_hitOther};
 }
@@ -64,7 +65,7 @@ double ClassFilter<Real, Named>::incrementWithoutEvidence(double most, double od
 template <typename Real, int Named>
 auto ClassFilter<Real, Named>::rowOf(std::uint32_t numLabels) const -> Row {
   if (numLabels < m_rowsOfFew.size()) return m_rowsOfFew[numLabels];
-  const double evidence = (*m_evidence)(numLabels);
+  const double evidence = m_evidence(numLabels);
   const double odds = 1 + (m_numClasses - 1) * std::exp(-evidence);
   const double other = incrementWithoutEvidence(evidence, odds);
   return {rounded<Real>(other + evidence), rounded<Real>(other)};
@@ -135,7 +136,7 @@ void ClassFilter<Real, Named>::name(Belief& b, ClassId id, Real logOdds) const {
 
 template <typename Real, int Named>
 void ClassFilter<Real, Named>::hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const {
-  if (!m_evidence) return hit(b, majority(votes, numVoted).id);
+  if (m_rowsOfFew.empty()) return hit(b, majority(votes, numVoted).id);
   if (numVoted > 1) return hitOfSeveral(b, votes, numVoted);
   const Row row = rowOf(votes->count);
   hitOf(b, votes->id, row.named, row.other);
@@ -148,7 +149,7 @@ void ClassFilter<Real, Named>::hitOfSeveral(Belief& b, const ClassVotes* votes,
   std::array<double, semantic_types::kMaxClasses> evidence;
   double most = 0;
   for (std::size_t i = 0; i < numVoted; ++i)
-    most = std::max(most, evidence[i] = (*m_evidence)(votes[i].count));
+    most = std::max(most, evidence[i] = m_evidence(votes[i].count));
   double odds = static_cast<double>(m_numClasses - numVoted) * std::exp(-most);
   for (std::size_t i = 0; i < numVoted; ++i) odds += std::exp(evidence[i] - most);
   const double unnamed = incrementWithoutEvidence(most, odds);

@@ -4,7 +4,6 @@
 #include <semantic_octree/LabelEvidence.h>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace semantic_octree {
@@ -106,9 +105,9 @@ class ClassFilter {
   Real m_hitSame, m_hitOther, m_hitUnlabeled, m_miss;
   double m_softLabelFloor;
   double m_unlabeled;  ///< not rounded
-  /** Of votes that are rows; without it their majority counts. */
-  std::optional<LabelEvidence> m_evidence;
-  std::vector<Row> m_rowsOfFew;  ///< by number of labels
+  LabelEvidence m_evidence;
+  /** By number of labels; empty if not the row of votes counts, but their majority. */
+  std::vector<Row> m_rowsOfFew;
 };
 
 extern template class ClassFilter<float>;
