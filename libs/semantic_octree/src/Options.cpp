@@ -81,7 +81,7 @@ void FilterParameters::describe(OptionList& list) {
       "few wrong labels win; too small, and it takes many scans to be sure");
   list.add("label_correlation", labelCorrelation, "", between(0, 1),
            "of a scan's labels in one voxel. 0: each counts by itself; 1: many that agree say no "
-           "more than one. Too small, and what a network takes a thing for in one scan wins");
+           "more than one. Larger for hard labels of a network, which is wrong about whole things");
   list.add(
       "hit_probability", hitProbability, "", above(0).upTo(1 - kLeastProbability),
       "of a return from an occupied voxel that a beam reaches: 0.5 for LiDARs outdoors, 0.9 for "
