@@ -78,7 +78,6 @@ Comparison compare(double resolution) {
   }
   semantic_octree::FilterParameters filter;
   filter.accuracy = right / points;  // so that hard labels are trusted as they deserve
-  filter.labelCorrelation = 0.5;     // soft ones are averaged, as if they were correlated
   SemanticOcTree softMap(resolution, table, filter), hardMap(resolution, table, filter);
   for (std::size_t i = 0; i < soft.size(); ++i) {
     softMap.insert(soft[i], frames[2 * i].T_map_sensor);
