@@ -20,11 +20,14 @@ ordered_json parametersJson(const FilterParameters& p) {
     return {{"increments", "Ssmi"},
             {"minOccupancy", p.minOccupancy},
             {"maxProbability", p.maxProbability}};
-  return {
-      {"increments", "LikelihoodConsistent"}, {"accuracy", p.accuracy},
-      {"hitProbability", p.hitProbability},   {"falseAlarmProbability", p.falseAlarmProbability},
-      {"minOccupancy", p.minOccupancy},       {"maxProbability", p.maxProbability},
-      {"softLabelFloor", p.softLabelFloor}};
+  return {{"increments", "LikelihoodConsistent"},
+          {"accuracy", p.accuracy},
+          {"labelCorrelation", p.labelCorrelation},
+          {"hitProbability", p.hitProbability},
+          {"falseAlarmProbability", p.falseAlarmProbability},
+          {"minOccupancy", p.minOccupancy},
+          {"maxProbability", p.maxProbability},
+          {"softLabelFloor", p.softLabelFloor}};
 }
 
 void addHalfLife(const SemanticOcTree& map, ClassId id, ordered_json& description) {

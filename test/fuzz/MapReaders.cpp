@@ -49,17 +49,20 @@ void readMap(const std::string& bytes) {
 /** With right checksums; the first byte tells the version. */
 void readMapContent(const std::string& bytes) {
   if (bytes.empty()) return;
-  readMap(fileAround(bytes.substr(1), 1 + static_cast<unsigned char>(bytes[0]) % 2));
+  readMap(fileAround(bytes.substr(1), 1 + static_cast<unsigned char>(bytes[0]) % 4));
 }
 
 /** The file of leaves that an index of generation 1 names is there, and one tile with right
  * checksums around what the folder has. */
 void readTiles(const fs::path& folder) {
-  semantic_octree::saveTree(emptyMap(), (folder / "leaves.1.semantic").string());
+  semantic_octree::FilterParameters ofVersion2;
+  ofVersion2.labelCorrelation = 0.5;
+  semantic_octree::saveTree(SemanticOcTree(0.4, fuzzedClasses(), ofVersion2),
+                            (folder / "leaves.1.semantic").string());
   const fs::path tile = folder / "tile_0_0_0.1.semantic";
   std::ostringstream content;
   content << std::ifstream(tile, std::ios::binary).rdbuf();
-  std::ofstream(tile, std::ios::binary) << fileAround(content.str());
+  std::ofstream(tile, std::ios::binary) << fileAround(content.str(), 2);
   expectSound(semantic_octree::loadTree(folder.string()));
 }
 

@@ -47,6 +47,10 @@ TEST(CraftedTreeFile, ofSenselessHeadersIsRefused) {
   EXPECT_TRUE(contains(error(with([](Header& h) { h.increments = 7; })), "increments"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.accuracy = 3; })), "accuracy"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.minOccupancy = 1e-12; })), "min_occupancy"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.labelCorrelation = 1.01; })), "correlation"));
+  EXPECT_EQ(error(with([](Header& h) { h.halfLife = 2, h.clock = 5; })), "");
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.clock = 5; })), "a clock that cannot be"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.clock = -5; })), "a clock that cannot be"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.names = {}; })), "number of classes"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.names = {"a", "a"}; })), "two classes"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.policy = 2; })), "unknown raw id"));
@@ -135,5 +139,5 @@ TEST(CraftedTreeFile, withBytesAlteredOrMissingIsRefusedOrIsAMap) {
   writeTree(out, map);
   const std::string content = contentIn(out.str());
   ASSERT_TRUE(treeOf(fileAround(content)) == map);
-  EXPECT_GT(tryAlteredContent(content, 2), 100);
+  EXPECT_GT(tryAlteredContent(content, 4), 100);
 }

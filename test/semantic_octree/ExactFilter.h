@@ -24,6 +24,7 @@ class ExactFilter {
     m_highest = rounded(logit(p.maxProbability));
     m_floor = p.softLabelFloor;
     m_accuracy = p.accuracy;
+    m_correlation = p.labelCorrelation;
     m_votesAreRows =
         K > 1 &&
         p.increments == semantic_octree::FilterParameters::Increments::LikelihoodConsistent;
@@ -55,14 +56,36 @@ class ExactFilter {
     if (votes.empty()) return hit();
     const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
     if (!m_votesAreRows) return hit(std::max_element(votes.begin(), votes.end(), fewer)->first);
-    const double a = (1 - m_accuracy) / (m_accuracy * K() - 1);
-    double N = 0;
-    for (const auto& [id, count] : votes) N += count;
-    for (int k = 1; k <= K(); ++k) {
-      const double n = votes.count(k) ? votes.at(k) : 0;
-      m_h[k - 1] += rounded(m_unlabeled + std::log(K() * (n + a) / (N + a * K())));
-    }
+    std::vector<double> logLikelihoods;
+    for (int k = 1; k <= K(); ++k) logLikelihoods.push_back(logLikelihoodOf(labelsOf(votes), k));
+    const double most = *std::max_element(logLikelihoods.begin(), logLikelihoods.end());
+    double sum = 0;
+    for (const double l : logLikelihoods) sum += std::exp(l - most);
+    for (int k = 1; k <= K(); ++k)
+      m_h[k - 1] += rounded(m_unlabeled + logLikelihoods[k - 1] - most + std::log(K() / sum));
     limit();
+  }
+
+  static std::vector<int> labelsOf(const std::map<int, int>& votes) {
+    std::vector<int> labels;
+    for (const auto& [id, count] : votes) labels.insert(labels.end(), count, id);
+    return labels;
+  }
+  /** ln p(labels | class k) by the chain rule: Polya's urn holds a share 1 - r of balls as the
+   * class has them, and takes r more of the color of each that is drawn (r / (1 - r) = 1 / s). */
+  double logLikelihoodOf(const std::vector<int>& labels, int k) const {
+    const double r = m_correlation, wrong = (1 - m_accuracy) / (K() - 1);
+    std::map<int, int> drawn;
+    double sum = 0;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      const double share = (1 - r) * (labels[i] == k ? m_accuracy : wrong);
+      const double balls = 1 - r + r * static_cast<double>(i);
+      // The first is drawn by its share alone, also if r = 1.
+      sum += i == 0 ? std::log(labels[i] == k ? m_accuracy : wrong)
+                    : std::log((share + r * drawn[labels[i]]) / balls);
+      ++drawn[labels[i]];
+    }
+    return sum;
   }
 
   int K() const { return static_cast<int>(m_h.size()); }
@@ -94,7 +117,8 @@ class ExactFilter {
 
   Grid m_grid;
   std::vector<double> m_h;
-  double m_lowest, m_highest, m_floor, m_accuracy, m_same, m_other, m_unlabeled, m_miss;
+  double m_lowest, m_highest, m_floor, m_accuracy, m_correlation, m_same, m_other, m_unlabeled,
+      m_miss;
   bool m_votesAreRows;
 };
 

@@ -26,6 +26,12 @@ TEST(FilterParameters, thatMakeNoSenseAreRefusedByName) {
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.accuracy = 0.2; }), "accuracy is 0.2");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.accuracy = 1; }), "accuracy");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.accuracy = NAN; }), "accuracy");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.labelCorrelation = -0.01; }),
+               "label_correlation");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.labelCorrelation = 1.01; }),
+               "label_correlation");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.labelCorrelation = NAN; }),
+               "label_correlation");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.hitProbability = 1; }),
                "hit_probability");
   EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.falseAlarmProbability = 0.6; }),
@@ -47,6 +53,8 @@ TEST(FilterParameters, thatMakeNoSenseAreRefusedByName) {
                "max_probability");
   EXPECT_EQ(refusal(1, [](FilterParameters& p) { p.accuracy = 0.5; }), "accepted");
   EXPECT_EQ(refusal(254, unchanged), "accepted");
+  EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.labelCorrelation = 0; }), "accepted");
+  EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.labelCorrelation = 1; }), "accepted");
   EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.minOccupancy = 1e-9; }), "accepted");
   EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.hitProbability = 1 - 1e-9; }), "accepted");
   EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.maxProbability = 1 - 1e-9; }), "accepted");

@@ -1,4 +1,6 @@
-// Maps of version 1 of the format: log-odds are floats, and there are no blocks.
+// Maps of older versions of the format. Of version 1: log-odds are floats, and there are no blocks.
+#include <semantic_octree/LabelEvidence.h>
+
 #include <cmath>
 
 #include "CraftedTreeFile.h"
@@ -13,7 +15,7 @@ using u8 = std::uint8_t;
 using u16 = std::uint16_t;
 
 SemanticOcTree oldTreeOf(const Header& header, const std::string& nodes) {
-  return treeOf(fileAround(header.bytes() + nodes, 1));
+  return treeOf(fileAround(header.bytes(1) + nodes, 1));
 }
 
 /** What reading says. */
@@ -94,6 +96,27 @@ struct OldMap {
 
 }  // namespace
 
+TEST(OldTreeFile, hasTheCorrelationOfLabelsThatItWasNearlyMadeWith) {
+  Header header;
+  header.halfLife = 2;
+  for (const std::uint32_t version : {1, 2, 3}) {
+    const SemanticOcTree map = treeOf(fileAround(header.bytes(version), version));
+    FilterParameters expected = map.filterParameters();
+    expected.labelCorrelation = 0.5;
+    EXPECT_EQ(map.filterParameters(), expected) << version;
+    EXPECT_EQ(map.filterParameters().accuracy, header.accuracy);
+    EXPECT_EQ(map.classes().hasHalfLives(), version == 3);
+    std::stringstream again;
+    writeTree(again, map);
+    EXPECT_TRUE(readTree(again) == map) << version;
+  }
+  // Those maps counted the n labels of a class in one scan as ln(n + a).
+  const double a = 0.1 / (0.9 * 24 - 1);
+  const LabelEvidence evidence(0.9, 24, 0.5);
+  for (int n = 1; n < 100; ++n)
+    EXPECT_NEAR(evidence(n), std::log((n + a) / a), 0.1 * std::log(n) + 0.01) << n;
+}
+
 TEST(OldTreeFile, isReadWithLogOddsRounded) {
   for (const bool pruning : {true, false}) {
     const OldMap old(pruning);
@@ -103,7 +126,7 @@ TEST(OldTreeFile, isReadWithLogOddsRounded) {
 
 TEST(OldTreeFile, withBytesAlteredOrMissingIsRefusedOrIsAMap) {
   const OldMap old(true);
-  EXPECT_GT(tryAlteredContent(old.header.bytes() + old.nodes, 1), 100);
+  EXPECT_GT(tryAlteredContent(old.header.bytes(1) + old.nodes, 1), 100);
 }
 
 TEST(OldTreeFile, withLogOddsThatAreNotKeptAnyMoreIsReadWithTheNearest) {

@@ -29,6 +29,7 @@ ClassTable classesWithFolds() {
 SemanticOcTree someTree(bool pruning = true, int numScans = 3, double resolution = 0.37) {
   FilterParameters parameters;
   parameters.accuracy = 0.71;
+  parameters.labelCorrelation = 0.31;
   parameters.hitProbability = 0.62;
   parameters.falseAlarmProbability = 0.21;
   parameters.minOccupancy = 0.13;
@@ -151,10 +152,10 @@ TEST(TreeFile, thatIsEmptyOrNoMapIsRefused) {
 TEST(TreeFile, ofAnUnknownVersionIsRefused) {
   const TemporaryFolder folder;
   std::string bytes = bytesOf(someTree());
-  for (const char version : {0, 4}) {
+  for (const char version : {0, 5}) {
     bytes[8] = version;
     const std::string found = "version " + std::to_string(version);
-    EXPECT_TRUE(contains(loadError(folder, bytes), found + " of the format, expected 1 to 3"));
+    EXPECT_TRUE(contains(loadError(folder, bytes), found + " of the format, expected 1 to 4"));
   }
 }
 

@@ -41,10 +41,12 @@ Votes randomVotes(std::mt19937& random, int K, int most) {
 /** Compares the filter with the exact one along streams of votes for up to three classes. */
 template <typename Real>
 void expectExactFilter(int K, ExactFilter::Grid grid, std::mt19937& random) {
-  const ClassFilter<Real> filter(K, {});
+  FilterParameters p;
+  p.labelCorrelation = between(random, 0.001, 1);
+  const ClassFilter<Real> filter(K, p);
   for (int stream = 0; stream < 100; ++stream) {
     ClassBelief<Real> belief = filter.uniform(0);
-    ExactFilter exact(K, {}, grid);
+    ExactFilter exact(K, p, grid);
     for (int i = 0; i < 10; ++i) {
       const Votes votes = randomVotes(random, std::min(K, 3), 200);
       hit(filter, belief, votes);
@@ -121,15 +123,15 @@ TEST(Votes, ofOneLabelAreTheHardLabelToTheLastBit) {
 TEST(Votes, areTheRowOfTheirCounts) {
   constexpr int K = 5;
   FilterParameters p = wideLimits(0.8);
-  const double a = 0.2 / (0.8 * K - 1);  // 1/15
-  EXPECT_NEAR((1 + a) / (1 + a * K), 0.8, 1e-15);
+  p.labelCorrelation = 0.2;  // 3.2 and 0.2 are the Dirichlet's parameters
   const ClassFilter<double> filter(K, p);
   const ClassBelief<double> uniform = filter.uniform(0), b = after(filter, {{2, 3}, {4, 1}});
+  const double one = 3.2 / 0.2, three = one * (4.2 / 1.2) * (5.2 / 2.2);
   const double base = uniform.rest + std::log(p.hitProbability / p.falseAlarmProbability);
-  const auto expected = [&](double n) { return base + std::log(K * (n + a) / (4 + a * K)); };
-  EXPECT_NEAR(b.logOddsOf(2), expected(3), 1e-12);
-  EXPECT_NEAR(b.logOddsOf(4), expected(1), 1e-12);
-  EXPECT_NEAR(b.rest, expected(0), 1e-12);
+  const auto expected = [&](double odds) { return base + std::log(K * odds / (three + one + 3)); };
+  EXPECT_NEAR(b.logOddsOf(2), expected(three), 1e-12);
+  EXPECT_NEAR(b.logOddsOf(4), expected(one), 1e-12);
+  EXPECT_NEAR(b.rest, expected(1), 1e-12);
 }
 
 TEST(Votes, ofLabelsThatAgreeSayMoreThanOneAndLessThanAsManyScans) {
@@ -140,6 +142,19 @@ TEST(Votes, ofLabelsThatAgreeSayMoreThanOneAndLessThanAsManyScans) {
   for (int i = 0; i < 2; ++i) filter.hit(threeScans, 7);
   EXPECT_GT(margin(after(filter, {{7, 3}})), margin(once));
   EXPECT_LT(margin(after(filter, {{7, 3}})), margin(threeScans));
+}
+
+TEST(Votes, withoutCorrelationAreAsManyScansWithoutTheirOccupancy) {
+  FilterParameters p = wideLimits(0.8);
+  p.labelCorrelation = 0, p.minOccupancy = 1e-9, p.maxProbability = 1 - 1e-9;
+  const ClassFilter<double> filter(24, p);
+  const ClassBelief<double> voted = after(filter, {{3, 2}, {7, 1}});
+  ClassBelief<double> scans = filter.uniform(0);
+  for (const ClassId id : {3, 7, 3}) filter.hit(scans, id);
+  for (const ClassId id : {3, 7})
+    EXPECT_NEAR(voted.logOddsOf(id) - voted.rest, scans.logOddsOf(id) - scans.rest, 1e-6);
+  const double once = std::log(p.hitProbability / p.falseAlarmProbability);
+  EXPECT_NEAR(voted.occupancyLogOdds(24), once, 1e-9);
 }
 
 TEST(Votes, thatTieLeaveTheChoiceToTheNextScan) {

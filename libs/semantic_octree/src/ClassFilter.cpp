@@ -16,8 +16,8 @@ Real rounded(double x) {
 
 double logit(double p) { return std::log(p / (1 - p)); }
 
-/** Counts of labels whose logarithms are kept. */
-constexpr std::size_t kKeptCounts = 65;
+/** Counts of labels whose rows are kept. */
+constexpr std::uint32_t kKeptRows = 65;
 
 const ClassVotes& majority(const ClassVotes* votes, std::size_t numVoted) {
   return *std::max_element(votes, votes + numVoted, [](const ClassVotes& a, const ClassVotes& b) {
@@ -29,7 +29,9 @@ const ClassVotes& majority(const ClassVotes* votes, std::size_t numVoted) {
 
 template <typename Real, int Named>
 ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
-    : m_numClasses(numClasses), m_softLabelFloor(p.softLabelFloor) {
+    : m_numClasses(numClasses),
+      m_softLabelFloor(p.softLabelFloor),
+      m_evidence(p.accuracy, std::max(2, numClasses), p.labelCorrelation) {
   p.validate(numClasses);
   const double K = numClasses;
   double same = 1, other = -0.1, unlabeled = 0, miss = -0.1;
@@ -50,23 +52,23 @@ ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
   m_hitUnlabeled = rounded<Real>(unlabeled);
   m_miss = rounded<Real>(miss);
   m_unlabeled = unlabeled;
-  m_votesAreRows =
-      numClasses > 1 && p.increments == FilterParameters::Increments::LikelihoodConsistent;
-  if (!m_votesAreRows) return;
-  m_pseudoCount = (1 - p.accuracy) / (p.accuracy * K - 1);
-  for (std::size_t n = 0; n < kKeptCounts; ++n) {
-    m_logVotes.push_back(std::log(static_cast<double>(n) + m_pseudoCount));
-    m_logLabels.push_back(std::log(static_cast<double>(n) / K + m_pseudoCount));
-  }
+  if (numClasses == 1 || p.increments != FilterParameters::Increments::LikelihoodConsistent) return;
+  for (std::uint32_t n = 0; n < kKeptRows; ++n) m_rowsOfFew.push_back(rowOf(n));
+  m_rowsOfFew[1] = {m_hitSame, m_hitOther};
 }
 
 template <typename Real, int Named>
-Real ClassFilter<Real, Named>::voteIncrement(std::size_t n, std::size_t N) const {
-  const auto real = [](std::size_t count) { return static_cast<double>(count); };
-  const double logVotes = n < kKeptCounts ? m_logVotes[n] : std::log(real(n) + m_pseudoCount);
-  const double logLabels =
-      N < kKeptCounts ? m_logLabels[N] : std::log(real(N) / m_numClasses + m_pseudoCount);
-  return rounded<Real>(m_unlabeled + logVotes - logLabels);
+double ClassFilter<Real, Named>::incrementWithoutEvidence(double most, double odds) const {
+  return m_unlabeled + std::log(m_numClasses / odds) - most;
+}
+
+template <typename Real, int Named>
+auto ClassFilter<Real, Named>::rowOf(std::uint32_t numLabels) const -> Row {
+  if (numLabels < m_rowsOfFew.size()) return m_rowsOfFew[numLabels];
+  const double evidence = m_evidence(numLabels);
+  const double odds = 1 + (m_numClasses - 1) * std::exp(-evidence);
+  const double other = incrementWithoutEvidence(evidence, odds);
+  return {rounded<Real>(other + evidence), rounded<Real>(other)};
 }
 
 template <typename Real, int Named>
@@ -134,18 +136,24 @@ void ClassFilter<Real, Named>::name(Belief& b, ClassId id, Real logOdds) const {
 
 template <typename Real, int Named>
 void ClassFilter<Real, Named>::hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const {
-  std::size_t labels = 0;
-  for (std::size_t i = 0; i < numVoted; ++i) labels += votes[i].count;
-  if (labels == 1 || !m_votesAreRows) return hit(b, majority(votes, numVoted).id);
-  if (numVoted > 1) return hitOfSeveral(b, votes, numVoted, labels);
-  hitOf(b, votes->id, voteIncrement(labels, labels), voteIncrement(0, labels));
+  if (m_rowsOfFew.empty()) return hit(b, majority(votes, numVoted).id);
+  if (numVoted > 1) return hitOfSeveral(b, votes, numVoted);
+  const Row row = rowOf(votes->count);
+  hitOf(b, votes->id, row.named, row.other);
 }
 
 template <typename Real, int Named>
 void ClassFilter<Real, Named>::hitOfSeveral(Belief& b, const ClassVotes* votes,
-                                            std::size_t numVoted, std::size_t numLabels) const {
+                                            std::size_t numVoted) const {
   const Belief before = b;
-  const Real other = voteIncrement(0, numLabels);
+  std::array<double, semantic_types::kMaxClasses> evidence;
+  double most = 0;
+  for (std::size_t i = 0; i < numVoted; ++i)
+    most = std::max(most, evidence[i] = m_evidence(votes[i].count));
+  double odds = static_cast<double>(m_numClasses - numVoted) * std::exp(-most);
+  for (std::size_t i = 0; i < numVoted; ++i) odds += std::exp(evidence[i] - most);
+  const double unnamed = incrementWithoutEvidence(most, odds);
+  const Real other = rounded<Real>(unnamed);
   int numEvicted = 0;
   double evictedOdds = 0;
   const auto evict = [&](Real logOdds) {
@@ -172,7 +180,7 @@ void ClassFilter<Real, Named>::hitOfSeveral(Belief& b, const ClassVotes* votes,
   for (std::size_t i = 0; i < numVoted; ++i) {
     const int index = before.indexOf(votes[i].id);
     if (index >= 0) voted[index] = true;
-    offer(votes[i].id, before.logOddsOf(votes[i].id) + voteIncrement(votes[i].count, numLabels));
+    offer(votes[i].id, before.logOddsOf(votes[i].id) + rounded<Real>(unnamed + evidence[i]));
   }
   for (int i = 0; i < before.count; ++i)
     if (!voted[i]) offer(before.ids[i], before.logOdds[i] + other);

@@ -79,6 +79,9 @@ void FilterParameters::describe(OptionList& list) {
       "accuracy", accuracy, "", probability,
       "share of labels that name the true class, above 1 / number of classes. Too large, and a "
       "few wrong labels win; too small, and it takes many scans to be sure");
+  list.add("label_correlation", labelCorrelation, "", between(0, 1),
+           "of a scan's labels in one voxel. 0: each counts by itself; 1: many that agree say no "
+           "more than one. Larger for hard labels of a network, which is wrong about whole things");
   list.add(
       "hit_probability", hitProbability, "", above(0).upTo(1 - kLeastProbability),
       "of a return from an occupied voxel that a beam reaches: 0.5 for LiDARs outdoors, 0.9 for "
@@ -108,9 +111,9 @@ void FilterParameters::validate(int numClasses) const {
 
 bool FilterParameters::operator==(const FilterParameters& o) const {
   return increments == o.increments && accuracy == o.accuracy &&
-         hitProbability == o.hitProbability && falseAlarmProbability == o.falseAlarmProbability &&
-         minOccupancy == o.minOccupancy && maxProbability == o.maxProbability &&
-         softLabelFloor == o.softLabelFloor;
+         labelCorrelation == o.labelCorrelation && hitProbability == o.hitProbability &&
+         falseAlarmProbability == o.falseAlarmProbability && minOccupancy == o.minOccupancy &&
+         maxProbability == o.maxProbability && softLabelFloor == o.softLabelFloor;
 }
 
 const Choices<Region::Shape>& choicesOf(Region::Shape) {

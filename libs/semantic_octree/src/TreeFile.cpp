@@ -15,10 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 using strict_files::StagedFile;
 
-void writeBeginning(std::ostream& out, const SemanticOcTree& tree) {
-  const std::uint32_t version = versionFor(tree);
+void writeBeginning(std::ostream& out) {
   out.write(kMagic.data(), kMagic.size());
-  out.write(reinterpret_cast<const char*>(&version), sizeof(version));
+  out.write(reinterpret_cast<const char*>(&kVersion), sizeof(kVersion));
 }
 
 /** Counts what is written to it. */
@@ -111,7 +110,7 @@ auto load(const std::string& path, const F& read) {
 }  // namespace
 
 void writeTree(std::ostream& out, const SemanticOcTree& tree) {
-  writeBeginning(out, tree);
+  writeBeginning(out);
   TreeWriter(out, tree).write();
 }
 
@@ -137,7 +136,7 @@ SemanticOcTree loadTreeFile(const std::string& path) {
 void saveTile(const SemanticOcTree& tree, const Slot& octant, const Cell& cell, std::uint64_t nodes,
               const std::string& path) {
   save(path, StagedFile::Disk::Later, [&](std::ostream& out) {
-    writeBeginning(out, tree);
+    writeBeginning(out);
     TreeWriter(out, tree).writeTile(octant, cell, nodes);
   });
 }

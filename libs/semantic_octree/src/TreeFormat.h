@@ -10,7 +10,7 @@
 namespace semantic_octree {
 
 /** A map's bytes: kMagic, kVersion, then in checked blocks (see CheckedStream.h)
- *   resolution (double), pruning (1 byte), filter (increments 1 byte, six doubles),
+ *   resolution (double), pruning (1 byte), filter (increments 1 byte, seven doubles),
  *   classes: number (1 byte), each name (2 bytes length, characters), r, g, b,
  *            policy for unknown raw ids (1 byte), folds (4 bytes number; raw id 4 bytes, class 1
  * byte),
@@ -26,14 +26,14 @@ namespace semantic_octree {
  * byte each); of each known octant that is no leaf, which voxels are known, which have a record (1
  * byte each); all log-odds, then all records, in the order of the voxels.
  *
- * Version 1 had log-odds of 4 bytes (float), and no blocks; version 2 has neither half-lives nor a
- * clock. Both are read, too, and maps without half-lives are written as version 2. */
+ * Version 1 had log-odds of 4 bytes (float), and no blocks; version 2 neither half-lives nor a
+ * clock, which version 3 had only of maps with half-lives. None of them had a correlation of
+ * labels: that of the row with which they counted a scan's labels, ln(n + a), is nearly
+ * kCorrelationOfOldMaps. */
 constexpr std::array<char, 8> kMagic{'S', 'E', 'M', 'O', 'C', 'T', 'R', 'E'};
-constexpr std::uint32_t kVersion = 3, kVersionWithoutTime = 2, kOldestVersion = 1;
-
-inline std::uint32_t versionFor(const SemanticOcTree& tree) {
-  return tree.classes().hasHalfLives() ? kVersion : kVersionWithoutTime;
-}
+constexpr std::uint32_t kVersion = 4, kVersionWithoutCorrelation = 3, kVersionWithoutTime = 2,
+                        kOldestVersion = 1;
+constexpr double kCorrelationOfOldMaps = 0.5;
 
 enum class NodeKind : std::uint8_t { None, Leaf, LeafWithRecord, Inner };
 

@@ -73,6 +73,8 @@ FilterParameters TreeReader::getParameters() {
   for (double* x : {&p.accuracy, &p.hitProbability, &p.falseAlarmProbability, &p.minOccupancy,
                     &p.maxProbability, &p.softLabelFloor})
     *x = m_in.get<double>();
+  p.labelCorrelation =
+      m_version > kVersionWithoutCorrelation ? m_in.get<double>() : kCorrelationOfOldMaps;
   return p;
 }
 
@@ -98,7 +100,8 @@ void TreeReader::getTime(SemanticOcTree& tree) {
     if (const auto halfLife = m_in.get<double>(); halfLife != 0)
       tree.m_classes.setHalfLife(static_cast<ClassId>(id), halfLife);
   tree.m_clock = m_in.get<std::int64_t>();
-  if (!tree.m_classes.hasHalfLives() || tree.m_clock < 0 || tree.m_clock > kOldestMap)
+  const std::int64_t latest = tree.m_classes.hasHalfLives() ? kOldestMap : 0;
+  if (tree.m_clock < 0 || tree.m_clock > latest)
     throw std::runtime_error("altered: a clock that cannot be");
 }
 

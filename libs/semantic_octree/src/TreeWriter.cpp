@@ -13,7 +13,7 @@ void TreeWriter::putHeader() {
   m_out.put(m_tree.pruning());
   putParameters(m_tree.filterParameters());
   putClasses(m_tree.classes());
-  if (m_tree.classes().hasHalfLives()) putTime();
+  putTime();
 }
 
 void TreeWriter::writeTile(const Slot& octant, const Cell& cell, std::uint64_t nodes) {
@@ -40,7 +40,7 @@ void TreeWriter::write() {
 void TreeWriter::putParameters(const FilterParameters& p) {
   m_out.put(static_cast<std::uint8_t>(p.increments));
   for (const double x : {p.accuracy, p.hitProbability, p.falseAlarmProbability, p.minOccupancy,
-                         p.maxProbability, p.softLabelFloor})
+                         p.maxProbability, p.softLabelFloor, p.labelCorrelation})
     m_out.put(x);
 }
 
@@ -64,7 +64,7 @@ void TreeWriter::putTime() {
     const double halfLife = m_tree.classes().halfLife(static_cast<ClassId>(id));
     m_out.put(halfLife == semantic_types::kForever ? 0.0 : halfLife);
   }
-  m_out.put(m_tree.m_clock);
+  m_out.put(m_tree.classes().hasHalfLives() ? m_tree.m_clock : 0);
 }
 
 NodeKind TreeWriter::kindOf(const Slot& slot) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_octree/ClassBelief.h>
 #include <semantic_octree/FilterParameters.h>
+#include <semantic_octree/LabelEvidence.h>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -48,11 +49,12 @@ class ClassFilter {
 
   /** A return with a class label ended in the cell. */
   void hit(Belief& b, ClassId id) const { hitOf(b, id, m_hitSame, m_hitOther); }
-  /** Returns of one scan with N labels ended in the cell, n_k of them of class k: one observation
-   * with q_k = (n_k + a) / (N + a K), where a is such that q of a single label is (accuracy,
-   * (1 - accuracy) / (K - 1), ...). Labels of one scan that agree add less than scans that do, and
-   * a tie says that either class may be. With the published constants: hit() by the majority, the
-   * lowest id on a tie. \param votes numVoted > 0 classes, ascending ids, counts > 0 */
+  /** Returns of one scan with labels ended in the cell, n_k of them of class k: one observation
+   * with q_k proportional to exp(f(n_k)), f = LabelEvidence, so that q of a single label is
+   * (accuracy, (1 - accuracy) / (K - 1), ...). Labels of one scan that agree add less than scans
+   * that do, and a tie says that either class may be. With the published constants: hit() by the
+   * majority, the lowest id on a tie. \param votes numVoted > 0 classes, ascending ids, counts > 0
+   */
   void hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const;
   /** A return without a label ended in the cell: every class gains equally. */
   void hit(Belief& b) const { addToAll(b, m_hitUnlabeled); }
@@ -87,21 +89,25 @@ class ClassFilter {
  private:
   void addToAll(Belief& b, Real increment) const;
   void hitOf(Belief& b, ClassId id, Real same, Real other) const;
-  void hitOfSeveral(Belief& b, const ClassVotes* votes, std::size_t numVoted,
-                    std::size_t numLabels) const;
+  void hitOfSeveral(Belief& b, const ClassVotes* votes, std::size_t numVoted) const;
   void name(Belief& b, ClassId id, Real logOdds) const;
-  /** Of a class with n of N labels: ln(p_hit / p_fa) + ln(K q). */
-  Real voteIncrement(std::size_t n, std::size_t N) const;
+  /** What labels of one scan that agree add to their class and to each other one. */
+  struct Row {
+    Real named, other;
+  };
+  Row rowOf(std::uint32_t numLabels) const;
+  /** What labels add to a class without evidence, not rounded; each class adds its evidence to it.
+   * \param most the largest evidence \param odds sum of exp(evidence - most) over all classes */
+  double incrementWithoutEvidence(double most, double odds) const;
 
   int m_numClasses;
   Real m_logNumClasses, m_min, m_max;
   Real m_hitSame, m_hitOther, m_hitUnlabeled, m_miss;
   double m_softLabelFloor;
-  /** Votes are rows; else their majority counts. */
-  bool m_votesAreRows;
-  double m_unlabeled, m_pseudoCount;  ///< not rounded; a
-  /** ln(n + a) and ln((N + a K) / K) of small counts. */
-  std::vector<double> m_logVotes, m_logLabels;
+  double m_unlabeled;  ///< not rounded
+  LabelEvidence m_evidence;
+  /** By number of labels; empty if not the row of votes counts, but their majority. */
+  std::vector<Row> m_rowsOfFew;
 };
 
 extern template class ClassFilter<float>;
