@@ -176,7 +176,7 @@ TEST(ShippedClassTables, rugdHas24ClassesWithItsColors) {
 TEST(ShippedClassTables, ofTheSyntheticWorldsInRugdIsRugdsWithOtherRawIds) {
   const ClassTable rugd = shipped("rugd.yaml"), folded = shipped("synthetic_as_rugd.yaml");
   ASSERT_EQ(folded.size(), rugd.size());
-  for (ClassId id = 1; id <= rugd.size(); ++id) {
+  for (semantic_types::ClassId id = 1; id <= rugd.size(); ++id) {
     EXPECT_EQ(folded.name(id), rugd.name(id));
     EXPECT_EQ(folded.color(id), rugd.color(id));
   }
