@@ -95,6 +95,7 @@ class DriveProgram {
       }));
     std::optional<LiveWindow> window;
     if (m_cli.live) {
+      loop.keepOriginals();
       loop.addObserver(window.emplace(loop, m_scene.world, m_cli.start, m_cli.goal));
       window->stopWhen([this] { return m_stop.pending(); });
     }

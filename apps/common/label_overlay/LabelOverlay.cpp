@@ -4,7 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace rawlog2semantic_map {
+namespace label_overlay {
 
 using labeled_cloud::LabeledPicture;
 using semantic_types::ClassId;
@@ -35,4 +35,8 @@ cv::Mat3b withLabels(cv::Mat3b image, const LabeledPicture& picture, const Class
   return image;
 }
 
-}  // namespace rawlog2semantic_map
+mrpt::img::CImage labeledImage(const LabeledPicture& picture, const ClassTable& classes) {
+  return mrpt::img::CImage(withLabels(photograph(picture), picture, classes), mrpt::img::DEEP_COPY);
+}
+
+}  // namespace label_overlay
