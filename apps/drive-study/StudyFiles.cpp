@@ -75,7 +75,8 @@ std::string toCsv(const std::vector<Trial>& trials) {
   out << "scene,number,start_x,start_y,start_deg,goal_x,goal_y,goal_deg,path,path_length,"
          "path_worse,end,fault,seconds,length,worse,worse_planned,collisions,clearance,replans,"
          "explored,seen,refused,jerk,backwards,gear_changes,turn_changes,path_turn_changes,"
-         "pose_error,largest_pose_error,odometry_error,cycle,slow_cycle,processor,why_no_path,"
+         "pose_error,largest_pose_error,odometry_error,cycle,slow_cycle,leaves,processor,why_no_"
+         "path,"
          "reason\n";
   for (const Trial& t : trials) {
     out << t.scene << ',' << t.number << ',';
@@ -88,8 +89,8 @@ std::string toCsv(const std::vector<Trial>& trials) {
         << t.smooth.jerk << ',' << t.smooth.backwards << ',' << t.smooth.gearChanges << ','
         << t.smooth.turnChanges << ',' << t.smooth.pathTurnChanges << ',' << t.poseErrors.mean
         << ',' << t.poseErrors.largest << ',' << t.odometryErrors.mean << ',' << t.cycle << ','
-        << t.slowCycle << ',' << t.processorSeconds << ',' << csvField(t.task.reason) << ','
-        << csvField(t.reason) << '\n';
+        << t.slowCycle << ',' << t.leaves << ',' << t.processorSeconds << ','
+        << csvField(t.task.reason) << ',' << csvField(t.reason) << '\n';
   }
   return out.str();
 }

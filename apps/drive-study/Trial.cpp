@@ -94,6 +94,7 @@ Trial runTrial(const DriveConfig& config, synthetic_world::World& world,
     trial.cycle = measuring::quantile(cycles, 0.5);
     trial.slowCycle = measuring::quantile(cycles, 0.95);
   }
+  if (!record.leaves.empty()) trial.leaves = measuring::quantile(record.leaves, 0.5);
   trial.processorSeconds = watch.milliseconds() / 1e3;
   return trial;
 }

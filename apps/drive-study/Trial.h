@@ -24,6 +24,7 @@ struct Trial {
   simulated_drive::PoseErrors poseErrors, odometryErrors;
   /** Milliseconds of the processor to localize, insert, update and replan: median, 95 %. */
   double cycle = 0, slowCycle = 0;
+  double leaves = 0;  ///< of the compressed tree, median
   double processorSeconds = 0;
 
   /** That there is no path to the goal. */

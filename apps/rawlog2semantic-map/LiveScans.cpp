@@ -2,11 +2,10 @@
 
 #include <labeled_cloud/EigenPose.h>
 #include <mrpt_compat/Drawing.h>
-#include <mrpt_compat/Images.h>
 
 #include <cstdio>
 
-#include "LabelOverlay.h"
+#include "label_overlay/LabelOverlay.h"
 
 namespace rawlog2semantic_map {
 
@@ -64,8 +63,7 @@ void LiveScans::show(const LabeledScan& scan, const mrpt::poses::CPose3D& T_map_
   m_window.marks().insert(points);
   if (!scan.pictures.empty()) {
     const labeled_cloud::LabeledPicture& picture = scan.pictures.front();
-    m_window.showPicture(
-        mrpt_compat::toMrpt(withLabels(photograph(picture), picture, m_map.classes())));
+    m_window.showPicture(label_overlay::labeledImage(picture, m_map.classes()));
   }
   m_window.changed(seen);
   m_window.say(lines(scan, summary, m_map));

@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "LabelOverlay.h"
+#include "label_overlay/LabelOverlay.h"
 
 namespace rawlog2semantic_map {
 
@@ -30,7 +30,7 @@ cv::Mat3b withPoints(cv::Mat3b image, const LabeledPicture& picture,
     if (!pixels[i].allFinite()) continue;
     const ClassId id = cloud.classes.empty() ? kNoClass : cloud.classes[i];
     cv::circle(image, cv::Point(cvRound(pixels[i].x()), cvRound(pixels[i].y())),
-               id == kNoClass ? 0 : 1, cv::Scalar(pixelOf(id, classes)), cv::FILLED);
+               id == kNoClass ? 0 : 1, cv::Scalar(label_overlay::pixelOf(id, classes)), cv::FILLED);
   }
   return image;
 }
@@ -57,9 +57,9 @@ void Preview::write(const LabeledScan& scan) {
   hard.kind = labeled_cloud::LabelModel::Kind::Hard;
   hard.apply(m_classes.size(), {}, cloud);
   for (const LabeledPicture& picture : scan.pictures) {
-    const cv::Mat3b image = photograph(picture);
+    const cv::Mat3b image = label_overlay::photograph(picture);
     cv::Mat sheet;
-    cv::vconcat(withLabels(image.clone(), picture, m_classes),
+    cv::vconcat(label_overlay::withLabels(image.clone(), picture, m_classes),
                 withPoints(image.clone(), picture, cloud, m_classes), sheet);
     map_pictures::savePicture(sheet, m_folder / nameOf(m_written++));
   }

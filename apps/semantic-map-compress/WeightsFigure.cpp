@@ -25,10 +25,11 @@ std::vector<std::size_t> weighedTerms(const std::vector<Compression>& compressio
   return terms;
 }
 
-/** A color between red (-1), paper (0) and green (1). */
+/** A color between vermilion (-1), paper (0) and blue (1), which the color-blind tell apart. */
 std::string weightColor(double share) {
-  const std::array<double, 3> paper = {248, 248, 246}, green = {58, 140, 92}, red = {196, 72, 58};
-  const auto& full = share > 0 ? green : red;
+  const std::array<double, 3> paper = {248, 248, 246}, blue = {0, 114, 178},
+                              vermilion = {213, 94, 0};
+  const auto& full = share > 0 ? blue : vermilion;
   int rgb[3];
   // The root sets small weights off from none.
   const double mix = share == 0 ? 0 : 0.15 + 0.85 * std::sqrt(std::abs(share));

@@ -54,6 +54,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_flag("!--no-rawlog", rawlog, "Write no rawlog");
   app.add_flag("--navlog", navlog, "Write drive.reactivenavlog, for MRPT's navlog-viewer");
   app.add_flag("--live", live, "Show the drive in a window, in real time at most");
+  app.add_flag("--compressed-pictures", compressed, "Pictures show the compressed tree");
   app.add_flag("!--no-pictures", pictures, "Write no animation");
 }
 

@@ -21,7 +21,7 @@ struct Cli {
   std::uint64_t seed = 1;
   double hills = 1, pictureEvery = 0;
   mrpt::math::TPose2D start, goal;
-  bool rawlog = true, pictures = true, navlog = false, live = false;
+  bool rawlog = true, pictures = true, navlog = false, live = false, compressed = false;
   Events events;
   Outputs outputs;
 

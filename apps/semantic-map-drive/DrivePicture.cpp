@@ -67,8 +67,9 @@ std::string caption(const DriveLoop& loop) {
   return text;
 }
 
-DrivePicture::DrivePicture(const TPose2D& start, const TPose2D& goal, int longerEdge)
-    : m_region(around(start, 12)), m_longerEdge(longerEdge) {
+DrivePicture::DrivePicture(const TPose2D& start, const TPose2D& goal, int longerEdge,
+                           bool compressed)
+    : m_region(around(start, 12)), m_longerEdge(longerEdge), m_compressed(compressed) {
   m_region.extend(around(goal, 12));
 }
 
@@ -90,7 +91,10 @@ MapCanvas DrivePicture::draw(const DriveLoop& loop) const {
   MapCanvas canvas = paperFor(loop.mapper().map().getResolution());
   map_pictures::PictureStyle style;
   style.maxAboveGround = kCutAbove;
-  canvas.drawMap(loop.mapper().map(), style);
+  if (m_compressed)
+    canvas.drawMap(loop.compressedMap(), style);
+  else
+    canvas.drawMap(loop.mapper().map(), style);
   drawTrack(canvas, loop.record(), "driven", kTrack);
   drawRoute(canvas, loop.controller().tracker());
   drawEnd(canvas, "start", loop.start(), kStart);

@@ -20,8 +20,10 @@ std::string caption(const DriveLoop& loop);
  * the path, the driven track, and the robot. One picture is like the other in place and size. */
 class DrivePicture {
  public:
-  /** \param longerEdge of the map's part, pixels, about */
-  DrivePicture(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, int longerEdge);
+  /** \param longerEdge of the map's part, pixels, about \param compressed shows the compressed tree
+   */
+  DrivePicture(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, int longerEdge,
+               bool compressed);
   /** Makes room for a drive's track, too: another place from here on. */
   void include(const DriveRecord& record);
 
@@ -32,6 +34,7 @@ class DrivePicture {
 
   Eigen::AlignedBox2d m_region;  ///< m
   int m_longerEdge;
+  bool m_compressed;
 };
 
 /** Adds the track of another drive. */

@@ -1,10 +1,13 @@
 #include "LiveWindow.h"
 
+#include <labeled_cloud/EmbeddedLabels.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt_compat/Drawing.h>
 
 #include <cmath>
 
 #include "DrivePicture.h"
+#include "label_overlay/LabelOverlay.h"
 
 namespace semantic_map_drive {
 
@@ -101,6 +104,15 @@ std::vector<std::string> stageTimes(const DriveRecord& record) {
   return {text({"localize", "insert", "update"}), text({"replan", "obstacles", "react"})};
 }
 
+/** What a camera saw, with its labels; none of a LiDAR. */
+std::optional<mrpt::img::CImage> pictureOf(const Observation& seen,
+                                           const semantic_types::ClassTable& classes) {
+  const auto* scan = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(seen.original.get());
+  if (!scan) return {};
+  const auto labels = labeled_cloud::EmbeddedLabels(classes).label(*scan);
+  return label_overlay::labeledImage({scan->intensityImage, *labels, {}, {}}, classes);
+}
+
 CCylinder::Ptr postAt(const TPoint3D& place) {
   const auto post = CCylinder::Create(0.12f, 0.12f, 3.f);
   post->setLocation(place);
@@ -122,6 +134,9 @@ void LiveWindow::onSensed(const DriveLoop& loop, const std::vector<Observation>&
     for (const auto& p : o.cloud.points)
       box.extend(T_map_robot * o.T_robot_sensor * p.cast<double>());
   m_window.changed(box);
+  for (const Observation& o : seen)
+    if (const auto picture = pictureOf(o, loop.mapper().map().classes()))
+      m_window.showPicture(*picture);
 }
 
 void LiveWindow::onDriven(const DriveLoop& loop) {

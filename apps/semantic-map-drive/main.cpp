@@ -46,8 +46,8 @@ class DriveProgram {
         m_config(loadDriveConfig(cli.config)),
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
         m_output(cli.output),
-        m_picture(cli.start, cli.goal, 560),
-        m_whole(cli.start, cli.goal, 1200) {
+        m_picture(cli.start, cli.goal, 560, cli.compressed),
+        m_whole(cli.start, cli.goal, 1200, cli.compressed) {
     m_config.sensors.seed = cli.seed;
     if (!cli.map.empty()) m_map = semantic_octree::loadTree(cli.map.string());
   }
@@ -95,6 +95,7 @@ class DriveProgram {
       }));
     std::optional<LiveWindow> window;
     if (m_cli.live) {
+      loop.keepOriginals();
       loop.addObserver(window.emplace(loop, m_scene.world, m_cli.start, m_cli.goal));
       window->stopWhen([this] { return m_stop.pending(); });
     }
@@ -151,5 +152,6 @@ class DriveProgram {
 int main(int argc, char** argv) {
   CLI::App app("Drives a robot over a semantic map that grows while it drives");
   const semantic_map_drive::Cli cli(app);
-  return runApplication(app, argc, argv, [&] { return semantic_map_drive::DriveProgram(cli).run(); });
+  return runApplication(app, argc, argv,
+                        [&] { return semantic_map_drive::DriveProgram(cli).run(); });
 }

@@ -60,6 +60,8 @@ void addSensors(CLI::App& app, Cli& cli) {
       ->capture_default_str();
   app.add_option("--dropout", cli.noise.dropout, "Share of rays without a return")
       ->capture_default_str();
+  app.add_option("--classes", cli.classes,
+                 "Class table (YAML) whose raw ids are the world's classes; by default these");
 }
 
 void addTruth(CLI::App& app, Cli& cli) {

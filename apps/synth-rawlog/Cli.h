@@ -30,6 +30,7 @@ struct Cli {
   synthetic_world::LidarOptions lidar;
   synthetic_world::SensorNoise noise{0.01, 0, 0};
 
+  std::filesystem::path classes;  // table whose raw ids are the world's classes; empty: the world's
   std::filesystem::path truthQuery, picture;
   double tolerance = 0.05;  // m
 

@@ -7,7 +7,6 @@
 namespace synth_rawlog {
 namespace {
 
-using synthetic_world::classTable;
 using synthetic_world::PointTruth;
 
 const char* nameOf(PointTruth::State state) {
@@ -26,14 +25,16 @@ const char* nameOf(PointTruth::State state) {
 
 }  // namespace
 
-void writeTruth(const Cli& cli, int frames, const std::filesystem::path& file) {
+void writeTruth(const Cli& cli, const WorldClasses& classes, int frames,
+                const std::filesystem::path& file) {
   std::ostringstream out;
   out << "# The world that " << cli.output.filename().string() << " shows.\n"
       << "scene: " << cli.scene << "\nseed: " << cli.seed << "\nhills: " << cli.hills
       << "\nframes: " << frames << "\nlabel_noise: " << cli.noise.label << "\nclasses:\n";
-  for (synthetic_world::ClassId id = 1; id <= classTable().size(); ++id) {
-    const auto c = classTable().color(id);
-    out << "  - {id: " << +id << ", name: " << classTable().name(id) << ", color: [" << +c.r << ", "
+  const synthetic_world::ClassTable& table = classes.table();
+  for (synthetic_world::ClassId id = 1; id <= table.size(); ++id) {
+    const auto c = table.color(id);
+    out << "  - {id: " << +id << ", name: " << table.name(id) << ", color: [" << +c.r << ", "
         << +c.g << ", " << +c.b << "]}\n";
   }
   strict_files::writeText(file, out.str());
@@ -60,14 +61,14 @@ void TrajectoryWriter::commit() {
   m_file.commit();
 }
 
-void answerTruth(const synthetic_world::World& world, double tolerance,
+void answerTruth(const synthetic_world::World& world, const WorldClasses& classes, double tolerance,
                  const std::vector<strict_files::TextLine>& points, std::ostream& out) {
   for (const strict_files::TextLine& line : points) {
     const std::vector<double> p = numbersOf(line, 3);
     const PointTruth truth = world.at({p[0], p[1], p[2]}, tolerance);
-    out << p[0] << ' ' << p[1] << ' ' << p[2] << ' ' << nameOf(truth.state) << ' ' << +truth.id
-        << ' ' << (truth.id == synthetic_world::kNoClass ? "-" : classTable().name(truth.id))
-        << '\n';
+    const synthetic_world::ClassId id = classes.of(truth.id);
+    out << p[0] << ' ' << p[1] << ' ' << p[2] << ' ' << nameOf(truth.state) << ' ' << +id << ' '
+        << (id == synthetic_world::kNoClass ? "-" : classes.table().name(id)) << '\n';
   }
 }
 

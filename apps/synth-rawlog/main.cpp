@@ -56,24 +56,25 @@ void walk(const std::vector<synthetic_world::Walker>& walkers, double time,
   world.setMovables(std::move(people));
 }
 
-std::vector<mrpt::obs::CObservation::Ptr> sense(const Cli& cli, const synthetic_world::World& world,
+std::vector<mrpt::obs::CObservation::Ptr> sense(const Cli& cli, const WorldClasses& classes,
+                                                const synthetic_world::World& world,
                                                 const Eigen::Isometry3d& T_world_robot,
                                                 std::uint64_t frame) {
   std::vector<mrpt::obs::CObservation::Ptr> seen;
   if (cli.wantsCamera()) {
     const Eigen::Isometry3d mount = T_robot_camera(cli.cameraPitch);
     const auto image = renderCamera(world, T_world_robot * mount, cli.camera, {cli.seed, frame});
-    seen.push_back(rangeScan(image, cli.camera, mount));
+    seen.push_back(rangeScan(classes.of(image), cli.camera, mount, classes.table()));
   }
   if (cli.wantsLidar()) {
     const Eigen::Isometry3d mount = T_robot_lidar();
-    seen.push_back(
-        labeledCloud(scanLidar(world, T_world_robot * mount, cli.lidar, {cli.seed, frame}), mount));
+    const auto cloud = scanLidar(world, T_world_robot * mount, cli.lidar, {cli.seed, frame});
+    seen.push_back(labeledCloud(classes.of(cloud), mount, classes.table()));
   }
   return seen;
 }
 
-void writeRawlog(const Cli& cli, synthetic_world::Scene& scene) {
+void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::Scene& scene) {
   const synthetic_world::Drive drive(scene, cli.speed, cli.start);
   const int frames =
       cli.frames > 0 ? cli.frames : static_cast<int>(std::ceil(drive.duration() * cli.rate));
@@ -87,28 +88,28 @@ void writeRawlog(const Cli& cli, synthetic_world::Scene& scene) {
     const Eigen::Isometry3d T_world_robot = drive.T_world_robot(time);
     walk(walkers, time, scene.world);
     rawlog.write(mrpt::Clock::fromDouble(kStartTime + time), T_world_robot,
-                 sense(cli, scene.world, T_world_robot, static_cast<std::uint64_t>(k)));
+                 sense(cli, classes, scene.world, T_world_robot, static_cast<std::uint64_t>(k)));
     trajectory.write(kStartTime + time, toMrpt(T_world_robot));
   }
   scene.world.setMovables({});
   rawlog.finish();
   trajectory.commit();
-  writeTruth(cli, k, beside(cli.output, ".truth.yaml"));
+  writeTruth(cli, classes, k, beside(cli.output, ".truth.yaml"));
   notes() << cli.output.string() << ": " << k << " frames of " << cli.scene << ", "
           << cli.speed * k / cli.rate << " m of way\n";
 }
 
 /** Colors on the left, classes on the right. */
-void writePicture(const Cli& cli, const synthetic_world::World& world) {
+void writePicture(const Cli& cli, const WorldClasses& classes,
+                  const synthetic_world::World& world) {
   const synthetic_world::TopView view = renderTopView(world, 0.15);
   const int size = view.color.width;
   synthetic_world::Image<synthetic_world::Color> both(2 * size, size);
   for (int row = 0; row < size; ++row)
     for (int column = 0; column < size; ++column) {
-      const synthetic_world::ClassId id = view.labels.at(row, column);
+      const synthetic_world::ClassId id = classes.of(view.labels.at(row, column));
       both.at(row, column) = view.color.at(row, column);
-      if (id != synthetic_world::kNoClass)
-        both.at(row, size + column) = synthetic_world::classTable().color(id);
+      if (id != synthetic_world::kNoClass) both.at(row, size + column) = classes.table().color(id);
     }
   map_pictures::savePicture(pictureOf(both), cli.picture);
 }
@@ -123,11 +124,13 @@ void checkOutputs(const Cli& cli) {
 
 int run(const Cli& cli) {
   checkOutputs(cli);
+  const WorldClasses classes(cli.classes);
   synthetic_world::Scene scene = synthetic_world::makeScene(cli.scene, cli.seed, cli.hills);
-  if (!cli.output.empty()) writeRawlog(cli, scene);
-  if (!cli.picture.empty()) writePicture(cli, scene.world);
+  if (!cli.output.empty()) writeRawlog(cli, classes, scene);
+  if (!cli.picture.empty()) writePicture(cli, classes, scene.world);
   if (!cli.truthQuery.empty()) {
-    answerTruth(scene.world, cli.tolerance, strict_files::readLines(cli.truthQuery), std::cout);
+    answerTruth(scene.world, classes, cli.tolerance, strict_files::readLines(cli.truthQuery),
+                std::cout);
   }
   return 0;
 }

@@ -48,6 +48,8 @@ TEST_F(LiveDrive, IsShownInAWindowAndEndsAsWithout) {
   ASSERT_FALSE(screen.empty()) << live.errors;
   EXPECT_GT(countPixels(screen, {40, 40, 220}), 100) << "the path";
   EXPECT_GT(countPixels(screen, {104, 92, 92}), 5000) << "the road";
+  const cv::Mat corner = screen(cv::Rect(920, 460, 340, 240));  // in the window's lower right
+  EXPECT_LT(countPixels(corner, {250, 250, 250}), 800) << "the camera's picture";
 
   const ProgramRun without = runProgram("semantic-map-drive", shortDrive("without"));
   EXPECT_EQ(without.status, 2);

@@ -12,9 +12,12 @@ TEST_F(SemanticMapDrive, KeepsPicturesOnTheWayAndNoneOfALongerDrive) {
   const int last = static_cast<int>(seconds / 5) + 1;  // and one at the end
   EXPECT_TRUE(has("drive/drive-000" + std::to_string(last) + ".png"));
   EXPECT_FALSE(has("drive/drive-000" + std::to_string(last + 1) + ".png"));
-  ASSERT_EQ(drive({"--no-rawlog", "--picture-every", "100"}).status, 0);
+  const std::string ofMap = folder.read("drive/drive.png"), map = folder.read("drive/map.semantic");
+  ASSERT_EQ(drive({"--no-rawlog", "--picture-every", "100", "--compressed-pictures"}).status, 0);
   EXPECT_TRUE(has("drive/drive-0001.png"));
   EXPECT_FALSE(has("drive/drive-0002.png"));
+  EXPECT_NE(folder.read("drive/drive.png"), ofMap);
+  EXPECT_EQ(folder.read("drive/map.semantic"), map);
 }
 
 TEST_F(SemanticMapDrive, DrawsAnAnimationUnlessItIsNotWanted) {

@@ -134,6 +134,9 @@ std::vector<OptionTable> drivingTables() {
       table<RecoveryOptions>("Recovery from where the robot must not be", "`[recovery]`."),
       table<ObstacleOptions>("Obstacles", "`[obstacles]`."),
       table<MoverOptions>("Those who move", "`[movers]`."),
+      table<FocusOptions>("Detail along the path",
+                          "`[focus]`. What it brings: "
+                          "[drives](../how-it-works/drives.md#detail-where-it-drives)."),
       table<SensorConfig>("Simulated sensors", "`[sensors]`; `[camera]` and `[lidar]` are above."),
       table<PoseOptions>("Simulated odometry", "`[pose]`; it is corrected as `[slam]` says."),
   };

@@ -3,6 +3,7 @@
 #include <semantic_octree/Abstraction.h>
 
 #include <cmath>
+#include <functional>
 #include <vector>
 
 /** A semantic octree as the reference's search sees a tree: an independent way to its
@@ -10,7 +11,8 @@
  * bookkeeping.
  *
  * Nodes at `rootDepth` are the roots (0: the whole map is one tree); unknown space weighs
- * `unknownWeight` times its volume below `rootDepth`, nothing above it. */
+ * `unknownWeight` times its volume below `rootDepth`, nothing above it. Voxels weigh what a density
+ * says of their centers, if there is one. */
 class OctreeAsTree {
  public:
   struct Node {
@@ -19,18 +21,21 @@ class OctreeAsTree {
     std::array<int, 3> index;
   };
 
+  using Density = std::function<double(const Eigen::Vector3d&)>;  ///< of a place in the map, m
+
   OctreeAsTree(const semantic_octree::SemanticOcTree& map, int rootDepth, int blockDepth,
-               double unknownWeight = 1)
+               double unknownWeight = 1, Density density = {})
       : m_map(map),
         m_rootDepth(rootDepth),
         m_blockDepth(blockDepth),
-        m_unknownWeight(unknownWeight) {}
+        m_unknownWeight(unknownWeight),
+        m_density(std::move(density)) {}
 
   /** Unknown space is class K + 1. */
   int numClasses() const { return m_map.numClasses() + 1; }
   bool isKnown(const Node& leaf) const { return static_cast<bool>(leaf.node); }
   double weight(const Node& leaf) const {
-    const double volume = std::ldexp(1.0, -3 * leaf.depth);
+    const double volume = std::ldexp(1.0, -3 * leaf.depth) * (m_density ? meanDensity(leaf) : 1.0);
     if (leaf.node) return volume;
     return leaf.depth > m_blockDepth ? m_unknownWeight * volume : 0.0;
   }
@@ -54,6 +59,18 @@ class OctreeAsTree {
   }
 
  private:
+  double meanDensity(const Node& leaf) const {
+    const int edge = semantic_octree::edgeAtDepth(leaf.depth), half = 1 << 15;
+    double sum = 0;
+    for (int x = 0; x < edge; ++x)
+      for (int y = 0; y < edge; ++y)
+        for (int z = 0; z < edge; ++z) {
+          const Eigen::Array3d voxel(leaf.index[0] * edge + x, leaf.index[1] * edge + y,
+                                     leaf.index[2] * edge + z);
+          sum += m_density((voxel + 0.5 - half).matrix() * m_map.getResolution());
+        }
+    return sum / edge / edge / edge;
+  }
   Node child(const Node& n, unsigned i) const {
     const int bits[3] = {static_cast<int>(i & 1), static_cast<int>(i >> 1 & 1),
                          static_cast<int>(i >> 2)};
@@ -72,4 +89,5 @@ class OctreeAsTree {
   const semantic_octree::SemanticOcTree& m_map;
   int m_rootDepth, m_blockDepth;
   double m_unknownWeight;
+  Density m_density;
 };

@@ -173,6 +173,16 @@ TEST(ShippedClassTables, rugdHas24ClassesWithItsColors) {
   EXPECT_THROW(rugd.fromRaw(25), std::invalid_argument);
 }
 
+TEST(ShippedClassTables, ofTheSyntheticWorldsInRugdIsRugdsWithOtherRawIds) {
+  const ClassTable rugd = shipped("rugd.yaml"), folded = shipped("synthetic_as_rugd.yaml");
+  ASSERT_EQ(folded.size(), rugd.size());
+  for (semantic_types::ClassId id = 1; id <= rugd.size(); ++id) {
+    EXPECT_EQ(folded.name(id), rugd.name(id));
+    EXPECT_EQ(folded.color(id), rugd.color(id));
+  }
+  EXPECT_EQ(folded.folds().size(), static_cast<std::size_t>(shipped("synthetic.yaml").size()));
+}
+
 TEST(ShippedClassTables, semanticKittiFoldsTo19ClassesMovingOnesIncluded) {
   const ClassTable kitti = shipped("semantic_kitti.yaml");
   EXPECT_EQ(kitti.size(), 19);

@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/RawlogTrajectory.h>
 #include <mrpt/containers/yaml.h>
+#include <semantic_types/ClassTableFile.h>
 #include <synthetic_world/Scene.h>
+
+#include <map>
+#include <set>
 
 #include "SynthRawlogRun.h"
 
@@ -143,6 +147,82 @@ TEST(SynthRawlog, truthFileNamesTheWorldAndItsClasses) {
   EXPECT_EQ(truth["hills"].as<double>(), 0.5);
   EXPECT_EQ(truth["frames"].as<int>(), 3);
   EXPECT_EQ(truth["classes"].asSequence().size(), 22u);
+}
+
+/** In RUGD's classes. */
+const std::map<std::string, std::string> kInRugd = {
+    {"road", "asphalt"},      {"lane-marking", "asphalt"},
+    {"sidewalk", "concrete"}, {"gravel", "gravel"},
+    {"dirt", "dirt"},         {"grass", "grass"},
+    {"flower-bed", "mulch"},  {"water", "water"},
+    {"trunk", "tree"},        {"canopy", "tree"},
+    {"bush", "bush"},         {"rock", "rock"},
+    {"building", "building"}, {"window", "building"},
+    {"roof", "building"},     {"wall", "building"},
+    {"fence", "fence"},       {"pole", "pole"},
+    {"sign", "sign"},         {"bench", "picnic-table"},
+    {"car", "vehicle"},       {"person", "person"}};
+
+TEST(SynthRawlog, writesTheSameWorldInRugdsClasses) {
+  const Folder folder;
+  const std::string config = std::string(MSO_SOURCE_DIR) + "/config/classes/";
+  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene campus" + kSmall).status, 0);
+  ASSERT_EQ(run(folder, "-f -o y.rawlog --scene campus" + kSmall + "--classes '" + config +
+                            "synthetic_as_rugd.yaml'")
+                .status,
+            0);
+  const auto rugd = semantic_types::loadClassTable(config + "rugd.yaml");
+  const auto world = observationsOf(folder / "x.rawlog"),
+             same = observationsOf(folder / "y.rawlog");
+  const auto clouds = only<CObservationLabeledCloud>(world),
+             inRugd = only<CObservationLabeledCloud>(same);
+  ASSERT_EQ(clouds.size(), inRugd.size());
+  std::set<std::string> seen;
+  for (std::size_t k = 0; k < clouds.size(); ++k) {
+    ASSERT_EQ(inRugd[k]->classNames.size(), 24u);
+    ASSERT_EQ(clouds[k]->cloud.points, inRugd[k]->cloud.points);
+    for (std::size_t i = 0; i < clouds[k]->cloud.size(); ++i) {
+      const std::string name = clouds[k]->classNames[clouds[k]->cloud.classes[i] - 1];
+      const auto id = inRugd[k]->cloud.classes[i];
+      ASSERT_EQ(rugd.name(id), kInRugd.at(name));
+      ASSERT_EQ(inRugd[k]->classNames[id - 1], kInRugd.at(name));
+      seen.insert(rugd.name(id));
+    }
+  }
+  EXPECT_GT(seen.size(), 5u);
+  const auto scan = only<CObservation3DRangeScan>(world)[1],
+             scanInRugd = only<CObservation3DRangeScan>(same)[1];
+  EXPECT_EQ(scanInRugd->pixelLabels->pixelLabelNames.at(10), "asphalt");
+  for (int row = 0; row < 48; ++row)
+    for (int column = 0; column < 64; ++column) {
+      const std::uint32_t bits = labelBits(*scan, row, column);
+      ASSERT_EQ(bits == 0, labelBits(*scanInRugd, row, column) == 0);
+      for (const auto& [id, name] : scan->pixelLabels->pixelLabelNames) {
+        if (bits == 1u << id) {
+          ASSERT_EQ(labelBits(*scanInRugd, row, column), 1u << *rugd.find(kInRugd.at(name)));
+        }
+      }
+    }
+  EXPECT_NE(contents(folder / "y.truth.yaml").find("name: rock-bed"), std::string::npos);
+}
+
+TEST(SynthRawlog, refusesAClassTableThatDoesNotFoldTheWorldOrIsTooLarge) {
+  const Folder folder;
+  std::ofstream(folder / "few.yaml") << "classes:\n  - {id: 1, name: a, color: [0, 0, 0]}\n";
+  const Outcome few = run(folder, "-o x.rawlog" + kSmall + "--classes few.yaml");
+  EXPECT_EQ(few.status, 1);
+  EXPECT_NE(few.error.find("few.yaml: raw class id 2 is not in the class table"), std::string::npos)
+      << few.error;
+  std::ofstream many(folder / "many.yaml");
+  many << "classes:\n";
+  for (int i = 1; i <= 32; ++i)
+    many << "  - {id: " << i << ", name: c" << i << ", color: [0, 0, 0]}\n";
+  many.close();
+  const Outcome tooMany = run(folder, "-o x.rawlog" + kSmall + "--classes many.yaml");
+  EXPECT_EQ(tooMany.status, 1);
+  EXPECT_NE(tooMany.error.find("32 classes, and a pixel's labels hold 31"), std::string::npos)
+      << tooMany.error;
+  EXPECT_FALSE(fs::exists(folder / "x.rawlog"));
 }
 
 TEST(SynthRawlog, answersWhatIsAtPoints) {

@@ -137,6 +137,7 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     sections.readAll("recovery", config.guide.recovery);
     sections.readAll("obstacles", config.obstacles);
     sections.readAll("movers", config.movers);
+    sections.readAll("focus", config.focus);
     const semantic_driving::MoverTracker known(config.movers, synthetic_world::classTable());
     sections.refuseOthers();
     return config;

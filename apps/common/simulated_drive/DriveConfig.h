@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_driving/DriveGuide.h>
+#include <semantic_driving/Focus.h>
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/InsertionOptions.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
@@ -41,6 +42,7 @@ struct DriveConfig {
   semantic_driving::GuideOptions guide;
   semantic_driving::ObstacleOptions obstacles;
   semantic_driving::MoverOptions movers;
+  semantic_driving::FocusOptions focus;
   bool compressedObstacles = false;  ///< the compressed tree's leaves are obstacles
   double controlPeriod = 0.1;        ///< s
   double timeLimit = 600;            ///< s of simulated time

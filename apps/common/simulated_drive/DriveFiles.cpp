@@ -149,6 +149,9 @@ nlohmann::json toJson(const DriveRecord& record, const colored_graph::ClassOrder
   if (!record.exactPose)
     json["poseError"] = {{"believed", toJson(poseErrorsOf(record, &DriveRow::believed))},
                          {"odometry", toJson(poseErrorsOf(record, &DriveRow::odometry))}};
+  if (!record.leaves.empty())
+    json["compressedLeaves"] = {{"median", measuring::quantile(record.leaves, 0.5)},
+                                {"max", measuring::quantile(record.leaves, 1)}};
   for (const auto& [stage, times] : record.times) json["milliseconds"][stage] = timesToJson(times);
   return json;
 }

@@ -157,6 +157,7 @@ void DriveLoop::sense() {
 
 void DriveLoop::insert(const std::vector<Observation>& seen) {
   m_mapper->age(m_sensedAt < 0 ? 0 : m_time - m_sensedAt);
+  focus();
   semantic_planning::StageTimes times;
   if (m_record.exactPose || !m_config.pose.correct) {
     times = m_mapper->insert(seen, T_map_robot());
@@ -168,6 +169,16 @@ void DriveLoop::insert(const std::vector<Observation>& seen) {
     times = m_mapper->insert(seen, added, m_pose.slam());
   }
   for (const auto& [stage, ms] : times) note(stage, ms);
+  m_record.leaves.push_back(static_cast<double>(m_mapper->numCompressedLeaves()));
+}
+
+void DriveLoop::focus() {
+  if (!m_config.focus.isOn()) return;
+  Stopwatch watch(measuring::TimeOf::Thread);
+  const PathTracker& tracker = m_controller.tracker();
+  const Eigen::Vector3d place(state().pose.x, state().pose.y, groundZ());
+  m_mapper->focus(regionsAhead(tracker.path(), tracker.progress(), place, m_config.focus));
+  note("focus", watch.lap());
 }
 
 void DriveLoop::guide() {
@@ -176,8 +187,9 @@ void DriveLoop::guide() {
   const double replan = watch.lap();
   note("replan", replan);
   if (m_sensedAt == m_time)
-    note("insert+update+replan",
-         m_record.times["insert"].back() + m_record.times["update"].back() + replan);
+    note("insert+update+replan", (m_config.focus.isOn() ? m_record.times["focus"].back() : 0) +
+                                     m_record.times["insert"].back() +
+                                     m_record.times["update"].back() + replan);
 }
 
 /** Cells of the compressed tree are in the way as a whole. Where the robot stands before them the

@@ -49,6 +49,7 @@ class DriveLoop {
   double time() const { return m_time; }
   const DriveRecord& record() const { return m_record; }
   const Mapper& mapper() const { return *m_mapper; }
+  semantic_octree::SemanticOcTree compressedMap() const { return m_mapper->compressed(); }
   const semantic_driving::DriveGuide& guide() const { return *m_guide; }
   const semantic_driving::DriveController& controller() const { return m_controller; }
   const mrpt::math::TPose2D& start() const { return m_start; }
@@ -61,6 +62,7 @@ class DriveLoop {
 
  private:
   void sense();
+  void focus();
   void insert(const std::vector<Observation>& seen);
   void guide();
   bool wantsFineObstacles();

@@ -46,6 +46,7 @@ struct DriveRecord {
   double length = 0;                    ///< m
   int replans = 0, collisions = 0;
   double leastClearance = std::numeric_limits<double>::infinity();  ///< m
+  std::vector<double> leaves;  ///< of the compressed tree, after each insertion
   /** Milliseconds of each stage, cycle by cycle. */
   std::map<std::string, std::vector<double>> times;
 

@@ -1,7 +1,6 @@
 #include "Mapper.h"
 
 #include <semantic_driving/CompressedObstacles.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_types/ClassTableFile.h>
 #include <synthetic_world/Classes.h>
 
@@ -13,6 +12,7 @@ namespace simulated_drive {
 
 using colored_graph::ClassOrder;
 using measuring::Stopwatch;
+using semantic_octree::Abstraction;
 using semantic_octree::KeyframeMap;
 using semantic_octree::SemanticOcTree;
 
@@ -20,7 +20,7 @@ namespace {
 
 SemanticOcTree prepared(SemanticOcTree map, const DriveConfig& config, const ClassOrder& order) {
   if (!config.halfLives.empty()) map.setHalfLives(semantic_types::loadClassTable(config.halfLives));
-  map.setAbstraction(semantic_planning::abstractionFor(order));
+  map.setAbstraction(abstractionFor(order, config.focus));
   return map;
 }
 
@@ -105,11 +105,19 @@ semantic_planning::StageTimes Mapper::insert(const std::vector<Observation>& see
   return times;
 }
 
+void Mapper::focus(const std::vector<semantic_octree::Region>& regions) {
+  Abstraction(m_map).setRegions(regions);
+}
+
+SemanticOcTree Mapper::compressed() { return Abstraction(m_map).compressedMap(); }
+
+std::size_t Mapper::numCompressedLeaves() { return Abstraction(m_map).leaves().size(); }
+
 semantic_driving::ObstaclePoints Mapper::obstacles(const mrpt::math::TPose2D& pose, double z,
                                                    const semantic_driving::ObstacleOptions& options,
                                                    bool ofFullTree) {
   if (ofFullTree) return senseObstacles(m_planner, pose, z, options);
-  return senseCompressedObstacles(m_planner, semantic_octree::Abstraction(m_map), pose, z, options);
+  return senseCompressedObstacles(m_planner, Abstraction(m_map), pose, z, options);
 }
 
 }  // namespace simulated_drive

@@ -31,6 +31,11 @@ class Mapper {
                                        const semantic_slam::Slam::Added& added,
                                        const semantic_slam::Slam& slam);
 
+  /** p(x) of the compressed tree from now on, see semantic_driving::regionsAhead(). */
+  void focus(const std::vector<semantic_octree::Region>& regions);
+  /** The compressed tree as a map. */
+  semantic_octree::SemanticOcTree compressed();
+  std::size_t numCompressedLeaves();
   /** As senseObstacles(), of the full or the compressed tree. */
   semantic_driving::ObstaclePoints obstacles(const mrpt::math::TPose2D& pose, double z,
                                              const semantic_driving::ObstacleOptions& options,

@@ -5,8 +5,7 @@
 namespace synthetic_rawlog {
 
 using mrpt::obs::CObservation3DRangeScan;
-using synthetic_world::classTable;
-using synthetic_world::kClassCount;
+using synthetic_world::ClassTable;
 
 mrpt::poses::CPose3D toMrpt(const Eigen::Isometry3d& pose) {
   return mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(pose.matrix()));
@@ -32,16 +31,16 @@ mrpt::obs::CObservationRobotPose::Ptr robotPose(const Eigen::Isometry3d& T_map_r
 namespace {
 
 mrpt::obs::TPixelLabelInfoBase::Ptr labelBits(
-    const synthetic_world::Image<synthetic_world::ClassId>& labels) {
+    const synthetic_world::Image<synthetic_world::ClassId>& labels, const ClassTable& classes) {
   using Bits = mrpt::obs::TPixelLabelInfo<4>;
-  static_assert(kClassCount < 32);
+  static_assert(kMostPixelClasses < 32);
   auto bits = std::make_shared<Bits>();
   bits->setSize(labels.height, labels.width);
   for (int row = 0; row < labels.height; ++row)
     for (int column = 0; column < labels.width; ++column)
       if (const auto id = labels.at(row, column)) bits->setLabel(row, column, id);
-  for (synthetic_world::ClassId id = 1; id <= kClassCount; ++id)
-    bits->setLabelName(id, classTable().name(id));
+  for (synthetic_world::ClassId id = 1; id <= classes.size(); ++id)
+    bits->setLabelName(id, classes.name(id));
   return bits;
 }
 
@@ -58,7 +57,8 @@ mrpt::img::TCamera calibration(const synthetic_world::CameraOptions& options) {
 
 CObservation3DRangeScan::Ptr rangeScan(const synthetic_world::CameraFrame& frame,
                                        const synthetic_world::CameraOptions& options,
-                                       const Eigen::Isometry3d& T_robot_camera) {
+                                       const Eigen::Isometry3d& T_robot_camera,
+                                       const ClassTable& classes) {
   auto scan = CObservation3DRangeScan::Create();
   scan->sensorLabel = "CAMERA";
   scan->sensorPose = toMrpt(T_robot_camera);
@@ -73,20 +73,21 @@ CObservation3DRangeScan::Ptr rangeScan(const synthetic_world::CameraFrame& frame
       scan->rangeImage(row, column) =
           static_cast<uint16_t>(std::lround(1000 * frame.depth.at(row, column)));
   scan->cameraParams = scan->cameraParamsIntensity = calibration(options);
-  scan->pixelLabels = labelBits(frame.labels);
+  scan->pixelLabels = labelBits(frame.labels, classes);
   scan->hasIntensityImage = true;
   scan->intensityImage = mrpt_compat::toMrpt(pictureOf(frame.color));
   return scan;
 }
 
 labeled_cloud::CObservationLabeledCloud::Ptr labeledCloud(synthetic_world::LabeledCloud cloud,
-                                                          const Eigen::Isometry3d& T_robot_lidar) {
+                                                          const Eigen::Isometry3d& T_robot_lidar,
+                                                          const ClassTable& classes) {
   auto observation = labeled_cloud::CObservationLabeledCloud::Create();
   observation->sensorLabel = "LIDAR";
   observation->sensorPose = toMrpt(T_robot_lidar);
   observation->cloud = std::move(cloud);
-  for (synthetic_world::ClassId id = 1; id <= kClassCount; ++id)
-    observation->classNames.push_back(classTable().name(id));
+  for (synthetic_world::ClassId id = 1; id <= classes.size(); ++id)
+    observation->classNames.push_back(classes.name(id));
   return observation;
 }
 

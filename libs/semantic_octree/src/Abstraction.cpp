@@ -219,7 +219,8 @@ void Abstraction::setRegions(const std::vector<Region>& regions) {
   const DensityField before = m_gTree.density();
   GTree::Worker& worker = m_gTree.worker(0);
   m_gTree.setRegions(regions, m_map.getResolution());
-  worker.recomputeWhereChanged(m_map.store(), m_map.store().root(), Cell(), before);
+  worker.recomputeWhereChanged(m_map.store(), m_map.store().root(), Cell(),
+                               {before, m_gTree.density()});
 }
 
 Abstraction::Path Abstraction::alphaPath() const {

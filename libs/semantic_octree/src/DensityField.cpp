@@ -15,6 +15,11 @@ double distanceToStretch(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
   return (p - a - t * ab).norm();
 }
 
+bool areSame(const Region& r, const Region& s) {
+  return r.shape == s.shape && r.a == s.a && r.b == s.b && r.radius == s.radius &&
+         r.weight == s.weight;
+}
+
 }  // namespace
 
 DensityField::DensityField(std::vector<Region> regions, double resolution)
@@ -39,33 +44,44 @@ DensityField::Overlap DensityField::overlap(const Region& region, const Cell& ce
   return distance - halfDiagonal > region.radius ? Overlap::None : Overlap::Part;
 }
 
-bool DensityField::constantIn(const Cell& cell, double& density) const {
-  double largest = -1;
-  bool part = false;
-  for (const Region& region : m_regions) switch (overlap(region, cell)) {
-      case Overlap::None:
-        break;
-      case Overlap::Part:
-        part = true;
-        break;
-      case Overlap::Full:
-        largest = std::max(largest, region.weight);
-    }
-  density = largest < 0 ? 1.0 : largest;
-  return !part;
+std::optional<double> DensityField::constantIn(const Cell& cell) const {
+  double inAll = -1, inPart = -1;  // largest weights
+  for (const Region& region : m_regions) {
+    const Overlap overlap = this->overlap(region, cell);
+    if (overlap == Overlap::None) continue;
+    double& largest = overlap == Overlap::Full ? inAll : inPart;
+    largest = std::max(largest, region.weight);
+  }
+  if (inPart > inAll) return {};
+  return inAll < 0 ? 1.0 : inAll;
 }
 
 double DensityField::meanInRegions(const Cell& cell) const {
-  double density;
-  if (constantIn(cell, density) || cell.depth == kTreeDepth) return density;
+  if (const auto density = constantIn(cell)) return *density;  // as in all voxels
   double d[8];
   for (int i = 0; i < 8; ++i) d[i] = meanInRegions(cell.child(i));
   return (((d[0] + d[1]) + (d[2] + d[3])) + ((d[4] + d[5]) + (d[6] + d[7]))) * 0.125;
 }
 
-bool DensityField::sameIn(const DensityField& a, const DensityField& b, const Cell& cell) {
-  double densityA, densityB;
-  return a.constantIn(cell, densityA) && b.constantIn(cell, densityB) && densityA == densityB;
+DensityChange::DensityChange(const DensityField& before, const DensityField& now)
+    : m_before(before), m_now(now), m_moved({}, now.m_resolution) {
+  const auto addMissing = [this](const DensityField& from, const DensityField& in) {
+    for (const Region& region : from.m_regions)
+      if (std::none_of(in.m_regions.begin(), in.m_regions.end(),
+                       [&](const Region& r) { return areSame(r, region); }))
+        m_moved.m_regions.push_back(region);
+  };
+  addMissing(before, now);
+  addMissing(now, before);
+}
+
+bool DensityChange::noneIn(const Cell& cell) const {
+  const auto isOff = [&](const Region& region) {
+    return m_moved.overlap(region, cell) == DensityField::Overlap::None;
+  };
+  if (std::all_of(m_moved.m_regions.begin(), m_moved.m_regions.end(), isOff)) return true;
+  const auto before = m_before.constantIn(cell);
+  return before && before == m_now.constantIn(cell);
 }
 
 }  // namespace semantic_octree

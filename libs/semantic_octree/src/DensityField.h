@@ -1,6 +1,8 @@
 #pragma once
 #include <semantic_octree/AbstractionOptions.h>
 
+#include <optional>
+
 #include "Cell.h"
 
 namespace semantic_octree {
@@ -12,21 +14,34 @@ class DensityField {
   DensityField() = default;
   DensityField(std::vector<Region> regions, double resolution);
 
-  bool isUniform() const { return m_regions.empty(); }
   double mean(const Cell& cell) const { return m_regions.empty() ? 1.0 : meanInRegions(cell); }
-  /** Whether the two fields have the same density everywhere in a cell, as far as can be told
-   * without going to its voxels: true is certain. */
-  static bool sameIn(const DensityField& a, const DensityField& b, const Cell& cell);
+  /** That of all of the cell, unless a border between densities may cross it. */
+  std::optional<double> constantIn(const Cell& cell) const;
 
  private:
+  friend class DensityChange;
   enum class Overlap { None, Part, Full };
   Overlap overlap(const Region& region, const Cell& cell) const;
   double meanInRegions(const Cell& cell) const;
-  /** Whether no region's border crosses the cell; then `density` is that of all of it. */
-  bool constantIn(const Cell& cell, double& density) const;
 
   std::vector<Region> m_regions;
   double m_resolution = 1;
+};
+
+/** What becomes of the density when regions move. */
+class DensityChange {
+ public:
+  /** Of maps of one resolution; both fields must outlive this. */
+  DensityChange(const DensityField& before, const DensityField& now);
+
+  /** Whether there is none anywhere in a cell, as far as can be told without going to its voxels:
+   * true is certain. */
+  bool noneIn(const Cell& cell) const;
+
+ private:
+  const DensityField& m_before;
+  const DensityField& m_now;
+  DensityField m_moved;  ///< the regions that only one of them has
 };
 
 }  // namespace semantic_octree

@@ -116,9 +116,11 @@ InnerNode GTree::Worker::compute(const Children& children, const Cell& cell, dou
   n.row = row;
   n.divergences = js;
   double shares[8];
-  bool equalShares = g.hasEqualShares(cell.depth);
-  n.density = 1;
-  if (!equalShares) {
+  const std::optional<double> equalDensity = g.equalDensity(cell);
+  bool equalShares = equalDensity.has_value();
+  if (equalShares) {
+    n.density = *equalDensity;
+  } else {
     equalShares = sharesOf(children.densities, shares);
     n.density = sumOfEight(children.densities) * 0.125;
   }
@@ -141,8 +143,7 @@ InnerNode GTree::Worker::compute(const Children& children, const Cell& cell, dou
 auto GTree::Worker::childrenOf(const NodeStore& store, const Slot& inner, const Cell& cell)
     -> Children {
   const Octant& octant = store.octant(inner);
-  const bool needDensities = !m_gTree.hasEqualShares(cell.depth);
-  const double missing = m_gTree.missingDensity(cell.depth + 1);
+  const bool needDensities = !m_gTree.equalDensity(cell);
   m_recordRows.release();
   Children c;
   for (int i = 0; i < 8; ++i) {
@@ -158,8 +159,7 @@ auto GTree::Worker::childrenOf(const NodeStore& store, const Slot& inner, const 
     c.rows[i] = child.kind == Slot::Kind::LeafWithRecord ? rowOf(store.record(child))
                 : child.isKnown()                        ? rowOf(child.value)
                                                          : m_gTree.layout().unknownRow();
-    if (needDensities)
-      c.densities[i] = (child.isKnown() ? 1.0 : missing) * m_gTree.density().mean(cell.child(i));
+    if (needDensities) c.densities[i] = m_gTree.densityOf(child.isKnown(), cell.child(i));
   }
   return c;
 }
@@ -180,10 +180,9 @@ InnerNode GTree::Worker::computeOctantOfBlock(const NodeStore& store, const Bloc
     const int voxel = 8 * octant + i;
     c.rows[i] = block.recorded >> voxel & 1 ? rowOf(*record++) : rowOf(block.values[voxel]);
   }
-  if (!m_gTree.hasEqualShares(cell.depth))
+  if (!m_gTree.equalDensity(cell))
     for (int i = 0; i < 8; ++i)
-      c.densities[i] = (block.knownIn(octant) >> i & 1 ? 1.0 : m_gTree.missingDensity(kTreeDepth)) *
-                       m_gTree.density().mean(cell.child(i));
+      c.densities[i] = m_gTree.densityOf(block.knownIn(octant) >> i & 1, cell.child(i));
   const InnerNode n = compute(c, cell, buffer);
   buffer[m_bufferSize - 3] = n.gValue;
   buffer[m_bufferSize - 2] = n.density;
@@ -193,7 +192,7 @@ InnerNode GTree::Worker::computeOctantOfBlock(const NodeStore& store, const Bloc
 
 const double* GTree::Worker::bufferOf(const NodeStore& store, const Block& block, int octant,
                                       const Cell& cell) {
-  if (octantOf(block.recorded, octant) == 0 && m_gTree.hasEqualShares(cell.depth))
+  if (octantOf(block.recorded, octant) == 0 && m_gTree.equalDensity(cell) == 1.0)
     return m_patterns.row(OctantPattern(block.values + 8 * octant),
                           [&](const OctantPattern&, double* row) {
                             computeOctantOfBlock(store, block, octant, cell, row);
@@ -204,7 +203,7 @@ const double* GTree::Worker::bufferOf(const NodeStore& store, const Block& block
 
 InnerNode GTree::Worker::computeBlock(const NodeStore& store, const Slot& inner, const Cell& cell) {
   const Block& block = store.block(inner);
-  const bool needDensities = !m_gTree.hasEqualShares(cell.depth);
+  const bool needDensities = !m_gTree.equalDensity(cell);
   m_patterns.release();
   m_expandedOctants = 0;
   Children c;
@@ -226,9 +225,7 @@ InnerNode GTree::Worker::computeBlock(const NodeStore& store, const Slot& inner,
     } else {
       c.rows[o] = rowOf(block.values[8 * o]);
     }
-    if (needDensities)
-      c.densities[o] = (isKnown ? 1.0 : m_gTree.missingDensity(cell.depth + 1)) *
-                       m_gTree.density().mean(cell.child(o));
+    if (needDensities) c.densities[o] = m_gTree.densityOf(isKnown, cell.child(o));
   }
   return compute(c, cell, buffer(kOwn));
 }
@@ -275,14 +272,14 @@ void GTree::Worker::recomputeAll(NodeStore& store, Slot& slot, const Cell& cell)
 }
 
 bool GTree::Worker::recomputeWhereChanged(NodeStore& store, Slot& slot, const Cell& cell,
-                                          const DensityField& before) {
-  if (DensityField::sameIn(before, m_gTree.density(), cell)) return false;
+                                          const DensityChange& change) {
+  if (change.noneIn(cell)) return false;
   if (slot.isKnown() && !slot.isInner()) return true;
   store.bring(slot);
   bool changed = slot.kind != Slot::Kind::Octant;
   if (slot.kind == Slot::Kind::Octant)
     for (int i = 0; i < 8; ++i)
-      changed |= recomputeWhereChanged(store, store.octant(slot).slots[i], cell.child(i), before);
+      changed |= recomputeWhereChanged(store, store.octant(slot).slots[i], cell.child(i), change);
   if (changed && slot.isInner()) recompute(store, slot, cell, false);
   return changed;
 }

@@ -63,11 +63,19 @@ class GTree {
   double missingDensity(int depth) const {
     return depth > m_blockDepth ? m_options.unknownWeight : 0.0;
   }
-  /** All eight children of a node at this depth weigh the same, known or not. */
-  bool hasEqualShares(int depth) const {
-    return m_density.isUniform() && missingDensity(depth + 1) == 1.0;
+  /** That of a node whose eight children weigh the same, known or not; none if a border
+   * between densities may cross it. */
+  std::optional<double> equalDensity(const Cell& cell) const {
+    if (missingDensity(cell.depth + 1) != 1.0) return {};
+    return m_density.constantIn(cell);
   }
   const DensityField& density() const { return m_density; }
+  /** Of a cell without inner nodes. Above the blocks most unknown ones are huge, and count nothing.
+   */
+  double densityOf(bool isKnown, const Cell& cell) const {
+    const double share = isKnown ? 1.0 : missingDensity(cell.depth);
+    return share == 0 ? 0.0 : share * m_density.mean(cell);
+  }
 
   /** New weights of the same terms, and alpha. What is kept of nodes is then out of date. */
   void setWeights(const std::vector<double>& termWeights, double alpha);
@@ -86,7 +94,7 @@ class GTree {
     void recomputeAll(NodeStore& store, Slot& slot, const Cell& cell);
     /** Nodes in whose cell the density is not what it was. \return whether there were any */
     bool recomputeWhereChanged(NodeStore& store, Slot& slot, const Cell& cell,
-                               const DensityField& before);
+                               const DensityChange& change);
     /** Calls f(node) for an inner node that is a slot, then for its octants that are inner nodes if
      * it is a block. */
     template <typename F>

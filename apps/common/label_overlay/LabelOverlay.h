@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace rawlog2semantic_map {
+namespace label_overlay {
 
 /** Of a class, BGR. */
 cv::Vec3b pixelOf(semantic_types::ClassId id, const semantic_types::ClassTable& classes);
@@ -16,4 +16,8 @@ cv::Mat3b photograph(const labeled_cloud::LabeledPicture& picture);
 cv::Mat3b withLabels(cv::Mat3b image, const labeled_cloud::LabeledPicture& picture,
                      const semantic_types::ClassTable& classes);
 
-}  // namespace rawlog2semantic_map
+/** The photograph so, or black where there is none. */
+mrpt::img::CImage labeledImage(const labeled_cloud::LabeledPicture& picture,
+                               const semantic_types::ClassTable& classes);
+
+}  // namespace label_overlay

@@ -5,7 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace rawlog2semantic_map {
+namespace label_overlay {
 
 using labeled_cloud::LabeledPicture;
 using semantic_types::ClassId;
@@ -36,4 +36,8 @@ cv::Mat3b withLabels(cv::Mat3b image, const LabeledPicture& picture, const Class
   return image;
 }
 
-}  // namespace rawlog2semantic_map
+mrpt::img::CImage labeledImage(const LabeledPicture& picture, const ClassTable& classes) {
+  return mrpt_compat::toMrpt(withLabels(photograph(picture), picture, classes));
+}
+
+}  // namespace label_overlay
