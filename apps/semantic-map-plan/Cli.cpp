@@ -20,6 +20,10 @@ Cli::Cli(CLI::App& app) : outputs(app) {
                  "none: what tells the ranks of --classes apart");
   app.add_option("--solution", solution, "Which of the weights; none: the first")
       ->needs("--weights");
+  app.add_option("--corridor", corridor,
+                 "Ground is looked at so near to a way that is found coarsely at first, m; inf: "
+                 "all ground of the map. None: 30 of folders of tiles, inf of other maps")
+      ->check(CLI::PositiveNumber);
   outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
   planner.shorten = true;
   strict_files::OptionList options;

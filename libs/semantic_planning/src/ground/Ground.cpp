@@ -29,6 +29,13 @@ void checkOrder(const semantic_octree::SemanticOcTree& map,
                                 " and unknown ground counts as one");
 }
 
+/** \param margin columns */
+std::vector<Column> tilesAround(const std::vector<Column>& tiles, int margin) {
+  std::vector<ColumnBox> boxes;
+  for (const Column& tile : tiles) boxes.push_back({firstColumnOf(tile), lastColumnOf(tile)});
+  return tilesWithin(boxes, margin);
+}
+
 /** Finds the tiles with anything occupied, and those within a margin of columns: holes may be
  * filled there. */
 class TileSearch {
@@ -92,8 +99,12 @@ GroundShape::GroundShape(const VehicleOptions& vehicle, const GroundOptions& opt
 }
 
 Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions& vehicle,
-               const GroundOptions& options, const colored_graph::ClassOrder& order)
-    : m_map(map), m_voxelSize(map.getResolution()), m_clearance(vehicle.clearance) {
+               const GroundOptions& options, const colored_graph::ClassOrder& order,
+               const std::optional<std::vector<Column>>& within)
+    : m_map(map),
+      m_voxelSize(map.getResolution()),
+      m_clearance(vehicle.clearance),
+      m_isLimited(within) {
   vehicle.validate();
   options.validate();
   checkOrder(map, order);
@@ -101,15 +112,19 @@ Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions&
   m_step = shape.step;
   m_largestClearance = shape.largestClearance;
   m_tiles = std::make_unique<GroundTiles>(map, shape);
-  const auto tiles = TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find();
+  const auto tiles = within ? tilesAround(*within, reachOfGround(shape))
+                            : TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find();
   m_tiles->cover(tiles);
   m_tiles->update(tiles);
+  if (within) m_tiles->limitTo(*within);
 }
 
 Ground::~Ground() = default;
 Ground::Ground(Ground&&) noexcept = default;
 
 std::vector<Column> Ground::update(const std::vector<octomap::OcTreeKey>& touchedTiles) {
+  if (m_isLimited && !touchedTiles.empty())
+    throw std::logic_error("Ground: a part of a map's ground does not follow changes");
   std::vector<Column> tiles;
   for (const octomap::OcTreeKey& key : touchedTiles) tiles.push_back(tileOf({key[0], key[1]}));
   std::sort(tiles.begin(), tiles.end());

@@ -91,6 +91,16 @@ void GroundTiles::forgetWhatChangesNeed() {
   m_fills = {};
 }
 
+void GroundTiles::limitTo(const std::vector<Column>& tiles) {
+  SurfaceGrid kept;
+  for (const Column& tile : tiles)
+    if (SurfaceTile* surfaces = m_surfaces.find(tile)) kept.at(tile) = std::move(*surfaces);
+  m_surfaces = std::move(kept);
+  forgetWhatChangesNeed();
+  m_obstacles = {};
+  m_components.reset();
+}
+
 std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles) {
   std::vector<Column> refilled;
   const auto scanned = changedBy(inMortonOrder(tiles), [&](Column t) { return scan(t, refilled); });

@@ -10,6 +10,11 @@
 
 namespace semantic_planning {
 
+/** Columns within which what the map holds may matter to a column's surfaces. */
+inline int reachOfGround(const GroundShape& shape) {
+  return reachOfGapFills(shape) + shape.baseline + 1 + shape.largestClearance;
+}
+
 /** The stages from the map to the ground, each tile by tile; what a column becomes depends only on
  * the stage before within a fixed distance, and tiles are computed again only if that changed. */
 class GroundTiles {
@@ -21,6 +26,9 @@ class GroundTiles {
   void cover(const std::vector<Column>& tiles);
   /** \param tiles whose voxels may have changed \return tiles whose surfaces changed, sorted. */
   std::vector<Column> update(const std::vector<Column>& tiles);
+
+  /** Forgets all but these tiles. After that there is no update(). */
+  void limitTo(const std::vector<Column>& tiles);
 
   const GroundShape& shape() const { return m_shape; }
   const SurfaceGrid& surfaces() const { return m_surfaces; }
