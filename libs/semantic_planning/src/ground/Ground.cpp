@@ -29,13 +29,6 @@ void checkOrder(const semantic_octree::SemanticOcTree& map,
                                 " and unknown ground counts as one");
 }
 
-/** \param margin columns */
-std::vector<Column> tilesAround(const std::vector<Column>& tiles, int margin) {
-  std::vector<ColumnBox> boxes;
-  for (const Column& tile : tiles) boxes.push_back({firstColumnOf(tile), lastColumnOf(tile)});
-  return tilesWithin(boxes, margin);
-}
-
 /** Finds the tiles with anything occupied, and those within a margin of columns: holes may be
  * filled there. */
 class TileSearch {
@@ -112,11 +105,13 @@ Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions&
   m_step = shape.step;
   m_largestClearance = shape.largestClearance;
   m_tiles = std::make_unique<GroundTiles>(map, shape);
-  const auto tiles = within ? tilesAround(*within, reachOfGround(shape))
-                            : TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find();
-  m_tiles->cover(tiles);
-  m_tiles->update(tiles);
-  if (within) m_tiles->limitTo(*within);
+  if (within) {
+    m_tiles->readWithin(*within);
+  } else {
+    const auto tiles = TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find();
+    m_tiles->cover(tiles);
+    m_tiles->update(tiles);
+  }
 }
 
 Ground::~Ground() = default;

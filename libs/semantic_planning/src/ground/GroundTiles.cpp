@@ -1,6 +1,7 @@
 #include "GroundTiles.h"
 
 #include <algorithm>
+#include <map>
 
 #include "MortonOrder.h"
 #include "Slope.h"
@@ -91,14 +92,18 @@ void GroundTiles::forgetWhatChangesNeed() {
   m_fills = {};
 }
 
-void GroundTiles::limitTo(const std::vector<Column>& tiles) {
-  SurfaceGrid kept;
-  for (const Column& tile : tiles)
-    if (SurfaceTile* surfaces = m_surfaces.find(tile)) kept.at(tile) = std::move(*surfaces);
-  m_surfaces = std::move(kept);
-  forgetWhatChangesNeed();
-  m_obstacles = {};
-  m_components.reset();
+void GroundTiles::readWithin(const std::vector<Column>& tiles) {
+  std::map<Column, std::vector<Column>> squares;
+  for (const Column& tile : tiles) squares[{tile.x >> 5, tile.y >> 5}].push_back(tile);
+  for (const auto& [square, within] : squares) {
+    GroundTiles part(m_map, m_shape);
+    std::vector<ColumnBox> boxes;
+    for (const Column& tile : within) boxes.push_back({firstColumnOf(tile), lastColumnOf(tile)});
+    part.update(tilesWithin(boxes, reachOfGround(m_shape)));
+    for (const Column& tile : within)
+      if (SurfaceTile* surfaces = part.m_surfaces.find(tile))
+        m_surfaces.at(tile) = std::move(*surfaces);
+  }
 }
 
 std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles) {

@@ -27,8 +27,9 @@ class GroundTiles {
   /** \param tiles whose voxels may have changed \return tiles whose surfaces changed, sorted. */
   std::vector<Column> update(const std::vector<Column>& tiles);
 
-  /** Forgets all but these tiles. After that there is no update(). */
-  void limitTo(const std::vector<Column>& tiles);
+  /** Instead of update(): has surfaces in these tiles only, those of the whole map. The stages
+   * before are made square by square and forgotten. */
+  void readWithin(const std::vector<Column>& tiles);
 
   const GroundShape& shape() const { return m_shape; }
   const SurfaceGrid& surfaces() const { return m_surfaces; }
