@@ -6,6 +6,17 @@
 
 namespace semantic_map_plan {
 
+namespace {
+
+/** CLI::PositiveNumber knows no infinity. */
+std::string moreThanZero(const std::string& text) {
+  double value = 0;
+  const bool isMore = CLI::detail::lexical_cast(text, value) && value > 0;
+  return isMore ? "" : "expected more than 0, not '" + text + "'";
+}
+
+}  // namespace
+
 Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_option("MAP", map, "A map's own file (.semantic), or a folder of tiles")->required();
   addMemoryOption(app, memory);
@@ -20,6 +31,10 @@ Cli::Cli(CLI::App& app) : outputs(app) {
                  "none: what tells the ranks of --classes apart");
   app.add_option("--solution", solution, "Which of the weights; none: the first")
       ->needs("--weights");
+  app.add_option("--corridor", corridor,
+                 "Ground is looked at so near to a way that is found coarsely at first, m; inf: "
+                 "all ground of the map. None: 30 of folders of tiles, inf of other maps")
+      ->check(moreThanZero);
   outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
   planner.shorten = true;
   strict_files::OptionList options;

@@ -18,6 +18,7 @@ struct Cli {
   std::string solution;
   mrpt::math::TPose2D start, goal;
   std::optional<double> startZ, goalZ;
+  std::optional<double> corridor;  ///< meters to each side; none: said nothing
   /** All but the vehicle. */
   semantic_planning::PlannerOptions planner;
   Outputs outputs;

@@ -7,7 +7,10 @@
 #include <strict_files/OutputFolder.h>
 #include <strict_files/TextFile.h>
 
+#include <cmath>
 #include <iostream>
+#include <limits>
+#include <memory>
 
 #include "Application.h"
 #include "Cli.h"
@@ -25,6 +28,7 @@ namespace fs = std::filesystem;
 using namespace semantic_planning;
 using semantic_octree::AbstractionOptions;
 using semantic_octree::SemanticOcTree;
+using semantic_octree::StoredMap;
 
 constexpr int kNoPath = 2;  // exit status
 const std::vector<std::string> kFiles = {"path.json", "path.csv", "plan.png", "plan.3Dscene",
@@ -54,22 +58,46 @@ void printSummary(const PlanResult& plan, const semantic_types::ClassTable& clas
           << plan.search.edgesEvaluated << " of them evaluated\n";
 }
 
+/** None: all ground is looked at. */
+std::optional<Corridor> corridorOf(const Cli& cli, StoredMap& stored,
+                                   const colored_graph::ClassOrder& order) {
+  constexpr double kAll = std::numeric_limits<double>::infinity();
+  CorridorTask task{cli.start, cli.goal, cli.startZ, cli.goalZ};
+  task.width = cli.corridor.value_or(stored.folder() ? task.width : kAll);
+  if (std::isinf(task.width)) return std::nullopt;
+  return findCorridor(stored.tree(), order, cli.planner, task);
+}
+
+/** What of a folder's map a plan in the corridor needs. */
+std::unique_ptr<StoredMap> mapOf(const Cli& cli, const Corridor& corridor) {
+  return std::make_unique<StoredMap>(cli.map, cli.memory, [&](const Eigen::AlignedBox3d& cube) {
+    return corridor.mayNeed({cube.min().x(), cube.min().y()}, {cube.max().x(), cube.max().y()});
+  });
+}
+
 int run(Cli& cli) {
   cli.outputs.checkFolder(cli.output, kFiles);
-  semantic_octree::StoredMap stored(cli.map, cli.memory);
-  SemanticOcTree& map = stored.tree();
-  const auto order = loadClassOrder(cli.classes, map.classes());
+  auto stored = std::make_unique<StoredMap>(cli.map, cli.memory);
+  const auto order = loadClassOrder(cli.classes, stored->tree().classes());
   if (!cli.vehicle.empty()) cli.planner.vehicle = loadVehicle(cli.vehicle);
   measuring::Stopwatch watch;
+  const auto corridor = corridorOf(cli, *stored, order);
+  if (corridor && stored->folder()) {
+    stored.reset();  // first, so that what it has in memory can be taken again
+    stored = mapOf(cli, *corridor);
+  }
+  SemanticOcTree& map = stored->tree();
+  const double searchingCorridor = watch.lap();
   if (isOfTree(cli.planner.roadmap.kind))
     map.setAbstraction(cli.weights.empty()
                            ? abstractionFor(order)
                            : abstractionOf(cli.weights, cli.solution, map.classes()));
   const double abstraction = watch.lap();
-  SemanticPlanner planner(map, order, cli.planner);
+  SemanticPlanner planner(map, order, cli.planner, corridor);
   const double ground = watch.lap();
   const PlanResult plan = planner.plan(cli.start, cli.goal, cli.startZ, cli.goalZ);
   nlohmann::json report = toJson(plan, order, map.classes());
+  report["milliseconds"]["corridor"] = searchingCorridor;
   report["milliseconds"]["abstraction"] = abstraction;
   report["milliseconds"]["ground"] = ground;
   write(cli, map, planner, plan, report);

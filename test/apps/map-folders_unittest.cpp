@@ -110,7 +110,7 @@ TEST_F(MapFolders, areAskedAndPlannedOnAsMapsInOnePiece) {
                                   path("quality-" + name), "--memory", "0.1"});
     run("semantic-map-plan", {path(map), "--start=-14,-19,10", "--goal=25,-12,90", "--classes",
                               kSources + "/config/orders/synthetic.yaml", "-o",
-                              path("plan-" + name), "--memory", "0.1"});
+                              path("plan-" + name), "--memory", "0.1", "--corridor", "inf"});
   }
   const auto quality = [](const std::string& name) {
     return nlohmann::json::parse(folder->read("quality-" + name + "/quality.json")).front();
@@ -121,6 +121,26 @@ TEST_F(MapFolders, areAskedAndPlannedOnAsMapsInOnePiece) {
   for (const char* file : {"path.csv", "roadmap.graph", "plan.png"})
     EXPECT_EQ(folder->read(std::string("plan-tiles/") + file),
               folder->read(std::string("plan-plain/") + file));
+}
+
+TEST_F(MapFolders, arePlannedOnInACorridorAsMapsInOnePiece) {
+  for (const std::string map : {"plain/map.semantic", "tiles"}) {
+    std::vector<std::string> arguments = {path(map),
+                                          "--start=-14,-19,10",
+                                          "--goal=25,-12,90",
+                                          "--classes",
+                                          kSources + "/config/orders/synthetic.yaml",
+                                          "-o",
+                                          path("way-" + map.substr(0, 5)),
+                                          "--memory",
+                                          "0.1"};
+    if (map != "tiles") arguments.insert(arguments.end(), {"--corridor", "30"});
+    run("semantic-map-plan", arguments);
+  }
+  EXPECT_GT(folder->read("way-tiles/path.csv").size(), 100u);
+  for (const char* file : {"path.csv", "roadmap.graph"})
+    EXPECT_EQ(folder->read(std::string("way-tiles/") + file),
+              folder->read(std::string("way-plain/") + file));
 }
 
 TEST_F(MapFolders, areCompressedToTheSameTrees) {

@@ -1,6 +1,8 @@
 // A city: synthetic scenes with different seeds side by side, a LiDAR that drives through them one
 // after the other, mapped into a folder under a budget.
 //     city_benchmark FOLDER SCENES_IN_A_ROW MEGABYTES [compress]
+// Or one row of villages on a plain, whose roads make one:
+//     city_benchmark FOLDER VILLAGES MEGABYTES road
 #include <semantic_octree/Abstraction.h>
 #include <semantic_octree/MapFolder.h>
 #include <semantic_octree/MapOperations.h>
@@ -36,12 +38,9 @@ struct Place {
   Eigen::Translation3d offset() const { return {kSpacing * column, kSpacing * row, 0}; }
 };
 
-/** Calls f(cloud, T_city_sensor) for each scan of the drive through a place's scene. */
+/** Calls f(cloud, T_scene_sensor) for each scan along a scene's route. */
 template <typename F>
-double drive(const Place& place, const F& f) {
-  const auto names = synthetic_world::sceneNames();
-  const auto seed = static_cast<std::uint64_t>(100 * place.row + place.column + 1);
-  const synthetic_world::Scene scene = synthetic_world::makeScene(names[seed % names.size()], seed);
+void scanAlong(const synthetic_world::Scene& scene, const F& f) {
   const synthetic_world::Drive robot(scene, 1);
   synthetic_world::LidarOptions lidar;
   lidar.columns = 512;
@@ -51,9 +50,58 @@ double drive(const Place& place, const F& f) {
   std::uint64_t frame = 0;
   for (double s = 0; s < scene.route.length(); s += kStep) {
     const Eigen::Isometry3d T = robot.T_world_robot(s) * T_robot_lidar;
-    f(scanLidar(scene.world, T, lidar, {seed, ++frame}), place.offset() * T);
+    f(scanLidar(scene.world, T, lidar, {scene.seed, ++frame}), T);
   }
+}
+
+/** Calls f(cloud, T_city_sensor) for each scan of the drive through a place's scene. */
+template <typename F>
+double drive(const Place& place, const F& f) {
+  const auto names = synthetic_world::sceneNames();
+  const auto seed = static_cast<std::uint64_t>(100 * place.row + place.column + 1);
+  const synthetic_world::Scene scene = synthetic_world::makeScene(names[seed % names.size()], seed);
+  scanAlong(scene, [&](const LabeledCloud& cloud, const Eigen::Isometry3d& T) {
+    f(cloud, place.offset() * T);
+  });
   return scene.route.length();
+}
+
+/** Where a village's road from the west meets that of the one before from the east. */
+constexpr double kHalfVillage = 75, kShift = 40;
+
+/** Without what is beyond the village, where the next one is. */
+LabeledCloud within(const LabeledCloud& cloud, const Eigen::Isometry3d& T_village_sensor) {
+  LabeledCloud inside;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const Eigen::Vector3d p = T_village_sensor * cloud.points[i].cast<double>();
+    if (std::abs(p.x()) > kHalfVillage) continue;
+    inside.points.push_back(cloud.points[i]);
+    inside.classes.push_back(cloud.classes[i]);
+  }
+  return inside;
+}
+
+/** Its ring of streets, and the road through it from west to east. */
+template <typename F>
+void driveThroughVillage(int number, const F& f) {
+  constexpr double kPlain = 0, kRadius = 5;
+  synthetic_world::Scene village =
+      synthetic_world::makeScene("village", static_cast<std::uint64_t>(number) + 1, kPlain);
+  const Eigen::Translation3d offset(2 * kHalfVillage * number, kShift * number, 0);
+  const auto scan = [&](const LabeledCloud& cloud, const Eigen::Isometry3d& T) {
+    f(within(cloud, T), offset * T);
+  };
+  scanAlong(village, scan);
+  village.route = synthetic_world::Curve({{-kHalfVillage, -30},
+                                          {-50, -26},
+                                          {-30, -20.4},
+                                          {4, -14},
+                                          {42, -22},
+                                          {41, 2},
+                                          {58, 4},
+                                          {kHalfVillage, 10}},
+                                         kRadius);
+  scanAlong(village, scan);
 }
 
 InsertionOptions insertion() {
@@ -145,10 +193,26 @@ void run(const std::string& folder, int size, double memory, bool compress) {
   if (size >= 5) std::cout << (samePiece(map) ? "same" : "NOT THE SAME") << std::endl;
 }
 
+void runRoad(const std::string& folder, int villages, double memory) {
+  SemanticOcTree map = emptyMap();
+  MapFolderOptions options;
+  options.memory = memory;
+  MapFolder tiles(map, folder, MapFolder::Access::Write, options);
+  for (int number = 0; number < villages; ++number)
+    driveThroughVillage(number, [&](const LabeledCloud& cloud, const Eigen::Isometry3d& T) {
+      map.insert(cloud, T, insertion());
+    });
+  tiles.save();
+  say(tiles, map);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 4) return 64;
-  run(argv[1], std::stoi(argv[2]), std::stod(argv[3]), argc > 4);
+  if (argc > 4 && argv[4] == std::string("road"))
+    runRoad(argv[1], std::stoi(argv[2]), std::stod(argv[3]));
+  else
+    run(argv[1], std::stoi(argv[2]), std::stod(argv[3]), argc > 4);
   return 0;
 }

@@ -2,6 +2,7 @@
 #include <semantic_octree/KeyframeMap.h>
 #include <semantic_planning/ground/Ground.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -100,6 +101,51 @@ TEST(Ground, afterUpdatesItIsTheGroundReadAnew) {
     ground.update(map.takeTouchedTiles());
     expectSame(ground, groundOf(map, VehicleOptions(), filling));
   }
+}
+
+TEST(Ground, withinSomeTilesIsThatOfTheWholeMap) {
+  PaintedWorld world;
+  world.floor(-12, 12, -12, 12, PaintedWorld::Road);
+  addRubble(world, 3, 400);
+  std::mt19937 random(3);
+  for (int i = 0; i < 30; ++i) {  // holes to be filled, of all widths up to 4 m
+    const double x = int(random() % 20) - 10, y = int(random() % 20) - 10, edge = 0.2 * (i % 20);
+    world.box(x, x + edge, y, y + edge, 0.4, 0.6, PaintedWorld::Mud);
+  }
+  const SemanticOcTree& map = world.map({0.05, 0.05, 3});
+  const Ground whole = groundOf(map, VehicleOptions(), {});
+  for (int round = 0; round < 10; ++round) {
+    std::vector<Column> tiles;
+    for (const Column& tile : whole.tiles())
+      if (random() % 3 == 0) tiles.push_back(tile);
+    std::sort(tiles.begin(), tiles.end());
+    const Ground part(map, VehicleOptions(), {}, anyClass(), tiles);
+    std::size_t surfaces = 0;
+    for (int x = -100; x < 100; ++x)
+      for (int y = -100; y < 100; ++y) {
+        const Column c{kOrigin + x, kOrigin + y};
+        const SurfaceRange s = whole.surfaces(c), t = part.surfaces(c);
+        surfaces += static_cast<std::size_t>(t.last - t.first);
+        if (std::binary_search(tiles.begin(), tiles.end(), tileOf(c)))
+          ASSERT_TRUE(std::equal(s.begin(), s.end(), t.begin(), t.end())) << x << ' ' << y;
+        else
+          ASSERT_TRUE(t.empty()) << x << ' ' << y;
+      }
+    EXPECT_GT(surfaces, 1000u);
+  }
+}
+
+TEST(Ground, withinSomeTilesDoesNotFollowChanges) {
+  PaintedWorld world;
+  world.floor(-2, 2, -2, 2, PaintedWorld::Road);
+  SemanticOcTree& map = world.map();
+  map.takeTouchedTiles();
+  Ground ground(map, VehicleOptions(), {}, anyClass(),
+                std::vector<Column>{tileOf({kOrigin, kOrigin})});
+  EXPECT_TRUE(ground.update(map.takeTouchedTiles()).empty());
+  world.voxel(0, 0, 0, PaintedWorld::Wall);
+  world.map();
+  EXPECT_THROW(ground.update(map.takeTouchedTiles()), std::logic_error);
 }
 
 TEST(Ground, followsKeyframesThatAreMovedAndRemoved) {

@@ -65,6 +65,19 @@ SemanticOcTree loadLeaves(const fs::path& folder, const TileIndex& index) {
   return leaves;
 }
 
+/** Its tiles that are not wanted go. */
+TileIndex onlyWanted(TileIndex index, const decltype(MapFolderOptions::wanted)& wanted) {
+  if (!wanted) return index;
+  const auto isUnwanted = [&](const TileIndex::Tile& tile) {
+    const VoxelIndex origin = VoxelIndex::Constant(kKeyOfOrigin / edgeAtDepth(index.depth));
+    const Eigen::Vector3d low = (tile.place - origin).matrix().cast<double>() * index.tileSize();
+    return !wanted({low, low + Eigen::Vector3d::Constant(index.tileSize())});
+  };
+  index.tiles.erase(std::remove_if(index.tiles.begin(), index.tiles.end(), isUnwanted),
+                    index.tiles.end());
+  return index;
+}
+
 /** Of nodes and records, as maps of streets have them: 5 to 7 bytes a leaf. */
 std::uint64_t bytesInMemory(const TileIndex& index) {
   constexpr std::uint64_t kBytesOfLeaf = 6;
@@ -155,8 +168,9 @@ class MapFolder::Tiles {
     } else {
       m_reader.emplace(m_folder / kReadersLock, FileLock::Kind::Shared);
     }
-    const bool wasSaved = m_access == Access::Read || isAt(m_folder);
-    if (wasSaved && m_access != Access::Replace) return readIndex(m_folder);
+    if (m_access == Access::Read) return onlyWanted(readIndex(m_folder), options.wanted);
+    const bool wasSaved = isAt(m_folder);
+    if (wasSaved && m_access == Access::Write) return readIndex(m_folder);
     TileIndex index;
     if (wasSaved) index.generation = readIndex(m_folder).generation;
     index.resolution = m_map.getResolution();

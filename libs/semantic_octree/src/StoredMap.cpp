@@ -9,7 +9,7 @@ namespace semantic_octree {
 
 namespace fs = std::filesystem;
 
-StoredMap::StoredMap(const fs::path& path, double memory)
+StoredMap::StoredMap(const fs::path& path, double memory, decltype(MapFolderOptions::wanted) wanted)
     : m_tree(MapFolder::isAt(path) ? MapFolder::emptyMap(path) : loadTree(path.string())) {
   if (!MapFolder::isAt(path)) {
     m_bytesOnDisk = fs::file_size(path);
@@ -17,6 +17,7 @@ StoredMap::StoredMap(const fs::path& path, double memory)
   }
   MapFolderOptions options;
   options.memory = memory;
+  options.wanted = std::move(wanted);
   m_folder = std::make_unique<MapFolder>(m_tree, path, MapFolder::Access::Read, options);
   m_bytesOnDisk = m_folder->contents().bytesOnDisk;
 }

@@ -2,7 +2,9 @@
 #include <semantic_octree/SemanticOcTree.h>
 #include <strict_files/OptionList.h>
 
+#include <Eigen/Geometry>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +19,9 @@ struct MapFolderOptions {
   double memory = 500;
   /** Meters: edge of a tile of a new folder; the next smaller power of two voxels is used. */
   double tileSize = 51.2;
+  /** Of a folder that is opened to be read: only tiles for whose cube (meters, map frame) this
+   * answers true; the others' are unknown space. None: all tiles. */
+  std::function<bool(const Eigen::AlignedBox3d& cube)> wanted = {};
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
@@ -99,9 +104,10 @@ class MapFolder {
  * from one thread. Others have loadTree(). */
 class StoredMap {
  public:
-  /** \param memory of a folder's map, MB: see MapFolderOptions \throw std::runtime_error as
+  /** \param memory, wanted of a folder's map: see MapFolderOptions \throw std::runtime_error as
    * loadTree() */
-  explicit StoredMap(const std::filesystem::path& path, double memory = MapFolderOptions().memory);
+  explicit StoredMap(const std::filesystem::path& path, double memory = MapFolderOptions().memory,
+                     decltype(MapFolderOptions::wanted) wanted = {});
   /** One that is in memory. */
   explicit StoredMap(SemanticOcTree tree) : m_tree(std::move(tree)) {}
   /** An empty one, to be filled (MapOperations.h) and saved in place of what the folder has.

@@ -3,21 +3,23 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace semantic_planning {
 
-/** One T for every tile within a rectangle, which grows as tiles are set: by more than needed, so
- * that it seldom does. */
+/** Tiles that are set, each with a T of its own, within a rectangle that grows as they are: by more
+ * than needed, so that it seldom does. Of what is not set a pointer is all that is taken: ground
+ * along a way is a small part of its rectangle. */
 template <class T>
 class ColumnGrid {
  public:
-  /** Null outside of the rectangle. */
+  /** Null: it is not set. */
   const T* find(Column tile) const {
     const int x = tile.x - m_first.x, y = tile.y - m_first.y;
     if (x < 0 || y < 0 || x >= m_width || y >= m_height) return nullptr;
-    return &m_tiles[static_cast<std::size_t>(y) * m_width + x];
+    return m_tiles[static_cast<std::size_t>(y) * m_width + x].get();
   }
   T* find(Column tile) { return const_cast<T*>(static_cast<const ColumnGrid*>(this)->find(tile)); }
   /** Makes the rectangle, which has nothing in it yet, reach from one tile to another: no more
@@ -26,21 +28,23 @@ class ColumnGrid {
     m_first = low;
     m_width = high.x - low.x + 1;
     m_height = high.y - low.y + 1;
-    m_tiles = std::vector<T>(static_cast<std::size_t>(m_width) * m_height);
+    m_tiles = std::vector<std::unique_ptr<T>>(static_cast<std::size_t>(m_width) * m_height);
   }
+  /** Sets it, if it is not. */
   T& at(Column tile) {
-    if (!find(tile)) growTo(tile);
-    return *find(tile);
+    std::unique_ptr<T>& at = placeOf(tile);
+    if (!at) at = std::make_unique<T>();
+    return *at;
   }
 
-  /** f(tile, T&) for the tiles from low to high that are in the rectangle. */
+  /** f(tile, T&) for the tiles from low to high that are set. */
   template <class F>
   void forEachIn(Column low, Column high, F f) {
     for (int y = std::max(low.y, m_first.y); y <= std::min(high.y, m_first.y + m_height - 1); ++y)
       for (int x = std::max(low.x, m_first.x); x <= std::min(high.x, m_first.x + m_width - 1); ++x)
-        f(Column{x, y}, *find({x, y}));
+        if (T* const tile = find({x, y})) f(Column{x, y}, *tile);
   }
-  /** f(tile, T&) for all tiles of the rectangle. */
+  /** f(tile, T&) for all that are set, row by row. */
   template <class F>
   void forEach(F f) {
     forEachIn(m_first, {m_first.x + m_width - 1, m_first.y + m_height - 1}, f);
@@ -60,6 +64,15 @@ class ColumnGrid {
     first = low;
   }
 
+  std::unique_ptr<T>& placeOf(Column tile) {
+    const auto isWithin = [](int at, int first, int size) {
+      return at >= first && at < first + size;
+    };
+    if (!isWithin(tile.x, m_first.x, m_width) || !isWithin(tile.y, m_first.y, m_height))
+      growTo(tile);
+    return m_tiles[static_cast<std::size_t>(tile.y - m_first.y) * m_width + tile.x - m_first.x];
+  }
+
   void growTo(Column tile) {
     ColumnGrid grown;
     grown.m_first = m_first;
@@ -68,13 +81,16 @@ class ColumnGrid {
     stretch(tile.x, grown.m_first.x, grown.m_width);
     stretch(tile.y, grown.m_first.y, grown.m_height);
     grown.m_tiles.resize(static_cast<std::size_t>(grown.m_width) * grown.m_height);
-    forEach([&](Column t, T& value) { grown.at(t) = std::move(value); });
+    for (int y = 0; y < m_height; ++y)
+      for (int x = 0; x < m_width; ++x)
+        grown.placeOf({m_first.x + x, m_first.y + y}) =
+            std::move(m_tiles[static_cast<std::size_t>(y) * m_width + x]);
     *this = std::move(grown);
   }
 
   Column m_first;
   int m_width = 0, m_height = 0;
-  std::vector<T> m_tiles;
+  std::vector<std::unique_ptr<T>> m_tiles;
 };
 
 }  // namespace semantic_planning

@@ -92,8 +92,12 @@ GroundShape::GroundShape(const VehicleOptions& vehicle, const GroundOptions& opt
 }
 
 Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions& vehicle,
-               const GroundOptions& options, const colored_graph::ClassOrder& order)
-    : m_map(map), m_voxelSize(map.getResolution()), m_clearance(vehicle.clearance) {
+               const GroundOptions& options, const colored_graph::ClassOrder& order,
+               const std::optional<std::vector<Column>>& within)
+    : m_map(map),
+      m_voxelSize(map.getResolution()),
+      m_clearance(vehicle.clearance),
+      m_isLimited(within) {
   vehicle.validate();
   options.validate();
   checkOrder(map, order);
@@ -101,15 +105,21 @@ Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions&
   m_step = shape.step;
   m_largestClearance = shape.largestClearance;
   m_tiles = std::make_unique<GroundTiles>(map, shape);
-  const auto tiles = TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find();
-  m_tiles->cover(tiles);
-  m_tiles->update(tiles);
+  if (within) {
+    m_tiles->readWithin(*within);
+  } else {
+    const auto tiles = TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find();
+    m_tiles->cover(tiles);
+    m_tiles->update(tiles);
+  }
 }
 
 Ground::~Ground() = default;
 Ground::Ground(Ground&&) noexcept = default;
 
 std::vector<Column> Ground::update(const std::vector<octomap::OcTreeKey>& touchedTiles) {
+  if (m_isLimited && !touchedTiles.empty())
+    throw std::logic_error("Ground: a part of a map's ground does not follow changes");
   std::vector<Column> tiles;
   for (const octomap::OcTreeKey& key : touchedTiles) tiles.push_back(tileOf({key[0], key[1]}));
   std::sort(tiles.begin(), tiles.end());

@@ -1,6 +1,7 @@
 #include "GroundTiles.h"
 
 #include <algorithm>
+#include <map>
 
 #include "MortonOrder.h"
 #include "Slope.h"
@@ -89,6 +90,20 @@ void GroundTiles::forgetWhatChangesNeed() {
   m_columns = {};
   m_measured = {};
   m_fills = {};
+}
+
+void GroundTiles::readWithin(const std::vector<Column>& tiles) {
+  std::map<Column, std::vector<Column>> squares;
+  for (const Column& tile : tiles) squares[{tile.x >> 5, tile.y >> 5}].push_back(tile);
+  for (const auto& [square, within] : squares) {
+    GroundTiles part(m_map, m_shape);
+    std::vector<ColumnBox> boxes;
+    for (const Column& tile : within) boxes.push_back({firstColumnOf(tile), lastColumnOf(tile)});
+    part.update(tilesWithin(boxes, reachOfGround(m_shape)));
+    for (const Column& tile : within)
+      if (SurfaceTile* surfaces = part.m_surfaces.find(tile))
+        m_surfaces.at(tile) = std::move(*surfaces);
+  }
 }
 
 std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles) {

@@ -10,6 +10,11 @@
 
 namespace semantic_planning {
 
+/** Columns within which what the map holds may matter to a column's surfaces. */
+inline int reachOfGround(const GroundShape& shape) {
+  return reachOfGapFills(shape) + shape.baseline + 1 + shape.largestClearance;
+}
+
 /** The stages from the map to the ground, each tile by tile; what a column becomes depends only on
  * the stage before within a fixed distance, and tiles are computed again only if that changed. */
 class GroundTiles {
@@ -21,6 +26,10 @@ class GroundTiles {
   void cover(const std::vector<Column>& tiles);
   /** \param tiles whose voxels may have changed \return tiles whose surfaces changed, sorted. */
   std::vector<Column> update(const std::vector<Column>& tiles);
+
+  /** Instead of update(): has surfaces in these tiles only, those of the whole map. The stages
+   * before are made square by square and forgotten. */
+  void readWithin(const std::vector<Column>& tiles);
 
   const GroundShape& shape() const { return m_shape; }
   const SurfaceGrid& surfaces() const { return m_surfaces; }

@@ -1,9 +1,11 @@
 #pragma once
 #include <semantic_planning/ground/Ground.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "ground/ColumnGrid.h"
 #include "roadmap/PlanningRegion.h"
 
 namespace semantic_planning {
@@ -30,9 +32,8 @@ class GuideRaster {
  private:
   void add(Column tile, const Ground& ground);
 
-  Column m_low;  ///< the first column
-  int m_width = 0, m_height = 0;
-  std::vector<std::int32_t> m_first;  ///< by column; its cells follow each other
+  /** By column; its cells follow each other. */
+  ColumnGrid<std::array<std::int32_t, kTileColumns>> m_first;
   std::vector<Cell> m_cells;
 };
 

@@ -51,13 +51,8 @@ class GuideSearch {
       : m_checker(checker),
         m_raster(checker.ground(), region),
         m_steps(stepsOf(checker)),
-        m_labels(static_cast<std::size_t>(m_raster.size())) {
-    // Whatever the number of ranks, the sums stay below 2^62.
-    const int ranks = checker.order().ranks();
-    const Cost factor = std::min<Cost>(256, Cost{1} << (40 / std::max(1, ranks - 1)));
-    for (int rank = 0; rank < ranks; ++rank)
-      m_weights.push_back(rank == 0 ? 1 : m_weights.back() * factor);
-  }
+        m_weights(weightsOfRanks(checker.order())),
+        m_labels(static_cast<std::size_t>(m_raster.size())) {}
 
   /** From one to the other, if there is a way. */
   void run(const GroundPose& start, const GroundPose& goal, Guide& guide) {
@@ -171,13 +166,21 @@ class GuideSearch {
   const EdgeChecker& m_checker;
   const GuideRaster m_raster;
   const std::array<Step, 8> m_steps;
-  std::vector<Cost> m_weights;  ///< of a length, by rank
+  const std::vector<Cost> m_weights;  ///< of a length, by rank
   std::vector<Label> m_labels;
   std::priority_queue<Entry> m_queue;
   int m_goal = GuideRaster::kNone;
 };
 
 }  // namespace
+
+std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order) {
+  const Cost factor = std::min<Cost>(256, Cost{1} << (40 / std::max(1, order.ranks() - 1)));
+  std::vector<Cost> weights;
+  for (int rank = 0; rank < order.ranks(); ++rank)
+    weights.push_back(rank == 0 ? 1 : weights.back() * factor);
+  return weights;
+}
 
 Guide searchGuide(const EdgeChecker& checker, const PlanningRegion& region, const GroundPose& start,
                   const GroundPose& goal) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_planning/roadmap/EdgeChecker.h>
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,10 @@ struct Guide {
   /** Of the path, by rank, best first; meters. */
   std::vector<double> lengthPerRank;
 };
+
+/** What a length of each rank counts where ways are compared by one number: worse ones more than is
+ * likely of all better ones. Sums stay below 2^62, whatever the number of ranks. */
+std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order);
 
 /** From column to column in eight directions: the least way through the worst class, then through
  * the next better one, and so on (a meter of a class outweighs what is likely of all better ones).

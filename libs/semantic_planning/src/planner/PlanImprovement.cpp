@@ -23,9 +23,9 @@ Guide PlannerCore::searchWideGuide() const {
   constexpr double kLeast = 1;  // m
   for (double buffer = m_options.roadmap.buffer;;) {
     buffer = std::max(kLeast, 2 * buffer);
-    const PlanningRegion region(m_startPose->pose, m_goalPose->pose, buffer);
-    Guide guide = searchGuide(m_checker, region, *m_startPose, *m_goalPose);
-    if (!guide.path.empty() || tilesIn(region, m_ground).size() >= all) return guide;
+    const PlanningRegion wide = region(buffer);
+    Guide guide = searchGuide(m_checker, wide, *m_startPose, *m_goalPose);
+    if (!guide.path.empty() || tilesIn(wide, m_ground).size() >= all) return guide;
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -25,10 +26,11 @@ PlannerOptions validated(const PlannerOptions& options,
   return options;
 }
 
-void checkFinite(const char* what, const PlannerCore::Place& place) {
-  if (!std::isfinite(place.pose.x) || !std::isfinite(place.pose.y) ||
-      !std::isfinite(place.pose.phi) || !std::isfinite(place.z.value_or(0)))
-    throw std::invalid_argument(std::string(what) + ": x, y, heading or z is not a finite number");
+/** Those that a corridor's ground is limited to. */
+std::optional<std::vector<Column>> tilesOf(const std::optional<Corridor>& corridor,
+                                           double voxelSize) {
+  if (!corridor) return std::nullopt;
+  return corridor->tiles(voxelSize);
 }
 
 /** The same trouble at the goal. */
@@ -45,11 +47,14 @@ PlanStatus atGoal(PlanStatus start) {
   }
 }
 
-std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPose2D& pose) {
+std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPose2D& pose,
+                     const Ground& ground) {
   std::ostringstream reason;
   reason << "the " << what << " (" << pose.x << ", " << pose.y << ") ";
   if (status == PlanStatus::StartOffGround)
-    reason << "is not on drivable ground";
+    reason << "is not on drivable ground: "
+           << (ground.surfaces(ground.columnAt(pose.x, pose.y)).empty() ? "the map has none there"
+                                                                        : "it is too steep");
   else if (status == PlanStatus::StartBlocked)
     reason << "is blocked: the footprint, with its clearance, does not fit between obstacles";
   else
@@ -67,16 +72,24 @@ void addTilesOf(const std::vector<octomap::OcTreeKey>& touched, std::vector<Colu
 }  // namespace
 
 PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
-                         const colored_graph::ClassOrder& order, const PlannerOptions& options)
+                         const colored_graph::ClassOrder& order, const PlannerOptions& options,
+                         const std::optional<Corridor>& corridor)
     : m_map(map),
       m_options(validated(options, map)),
-      m_ground(map, options.vehicle, options.ground, order),
+      m_corridor(corridor),
+      m_ground(map, options.vehicle, options.ground, order, tilesOf(corridor, map.getResolution())),
       m_checker(m_ground, options.vehicle, order, options.reading),
       m_candidates(map, m_ground, options.roadmap),
       m_edges(m_checker),
       m_model{order, options.edges, options.cost, true,
               colored_graph::lengthDown(options.shorten ? options.classTolerance : 0)} {
   map.forgetTouchedTiles();  // the ground began with the whole map
+}
+
+void PlannerCore::checkFinite(const char* what, const Place& place) {
+  if (!std::isfinite(place.pose.x) || !std::isfinite(place.pose.y) ||
+      !std::isfinite(place.pose.phi) || !std::isfinite(place.z.value_or(0)))
+    throw std::invalid_argument(std::string(what) + ": x, y, heading or z is not a finite number");
 }
 
 void PlannerCore::checkWhole() const {
@@ -113,12 +126,12 @@ PlanStatus PlannerCore::check(const Place& place) const {
 bool PlannerCore::refuse(const Place& start, const Place& goal, PlanResult& result) {
   result.status = placed(start, m_startPose);
   if (result.status != PlanStatus::Found) {
-    result.reason = reasonOf("start", result.status, start.pose);
+    result.reason = reasonOf("start", result.status, start.pose, m_ground);
     return true;
   }
   result.status = placed(goal, m_goalPose);
   if (result.status == PlanStatus::Found) return false;
-  result.reason = reasonOf("goal", result.status, goal.pose);
+  result.reason = reasonOf("goal", result.status, goal.pose, m_ground);
   result.status = atGoal(result.status);
   return true;
 }
@@ -140,6 +153,13 @@ colored_graph::SearchOptions PlannerCore::searchOptions(const Roadmap& map) {
   return search;
 }
 
+PlanningRegion PlannerCore::region(double buffer) const {
+  constexpr double kEverywhere = std::numeric_limits<double>::infinity();
+  const PlanningRegion rectangle(m_startPose->pose, m_goalPose->pose,
+                                 m_corridor ? kEverywhere : buffer);
+  return m_corridor ? rectangle.near(m_corridor->way, buffer) : rectangle;
+}
+
 PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   StageClock clock;
   PlanResult result;
@@ -151,9 +171,8 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   m_goalPlace = goal;
   followMap(clock);
   if (refuse(start, goal, result)) return result;
-  m_roadmap = std::make_unique<MapRoadmap>(
-      m_candidates, m_checker, m_options.roadmap, *m_startPose,
-      PlanningRegion(m_startPose->pose, m_goalPose->pose, m_options.roadmap.buffer));
+  m_roadmap = std::make_unique<MapRoadmap>(m_candidates, m_checker, m_options.roadmap, *m_startPose,
+                                           region(m_options.roadmap.buffer));
   m_start = m_roadmap->roadmap().addQueryVertex(*m_startPose);
   m_goal = m_roadmap->roadmap().addQueryVertex(*m_goalPose);
   clock.end("roadmap");

@@ -23,8 +23,10 @@ class PlannerCore {
   };
 
   PlannerCore(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
-              const PlannerOptions& options);
+              const PlannerOptions& options, const std::optional<Corridor>& corridor);
 
+  /** \throw std::invalid_argument saying what has a number that is not finite */
+  static void checkFinite(const char* what, const Place& place);
   PlanResult plan(const Place& start, const Place& goal);
   UpdateResult update();
   PlanResult replan(const Place& start);
@@ -72,6 +74,8 @@ class PlannerCore {
   void moveStart(Roadmap& map);
   bool mayImprove(const PlanResult& result) const;
   void improve(StageClock& clock, PlanResult& result);
+  /** Between start and goal. \param buffer to each side, meters */
+  PlanningRegion region(double buffer) const;
   Guide searchWideGuide() const;
   bool mayBeBetter(const PlanResult& result, const Guide& guide) const;
   /** What the best path is of a graph that is finer near a guide. */
@@ -80,6 +84,7 @@ class PlannerCore {
 
   semantic_octree::SemanticOcTree& m_map;
   const PlannerOptions m_options;
+  const std::optional<Corridor> m_corridor;
   Ground m_ground;
   EdgeChecker m_checker;
   CandidateStore m_candidates;

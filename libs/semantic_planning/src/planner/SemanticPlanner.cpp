@@ -28,8 +28,9 @@ void PlannerOptions::validate() const {
 
 SemanticPlanner::SemanticPlanner(semantic_octree::SemanticOcTree& map,
                                  const colored_graph::ClassOrder& order,
-                                 const PlannerOptions& options)
-    : m_core(std::make_unique<PlannerCore>(map, order, options)) {}
+                                 const PlannerOptions& options,
+                                 const std::optional<Corridor>& corridor)
+    : m_core(std::make_unique<PlannerCore>(map, order, options, corridor)) {}
 
 SemanticPlanner::~SemanticPlanner() = default;
 SemanticPlanner::SemanticPlanner(SemanticPlanner&&) noexcept = default;

@@ -32,6 +32,7 @@ CandidateStore::Tile CandidateStore::make(Column tile) const {
   else if (m_options.kind == GraphKind::Full)
     result.points = gridPoints(tile, m_ground, m_options);
   std::sort(result.points.begin(), result.points.end());
+  result.points.shrink_to_fit();
   return result;
 }
 

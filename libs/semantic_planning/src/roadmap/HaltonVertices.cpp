@@ -68,7 +68,7 @@ std::optional<Candidate> candidateAt(const Ground& ground, const mrpt::math::TPo
 
 void drawHalton(const HaltonSearch& search, const colored_graph::ClassOrder& order,
                 const std::function<bool(const std::optional<Candidate>&)>& enough) {
-  const bool overMap = search.options.kind == GraphKind::HaltonMap || search.region.isEverywhere();
+  const bool overMap = search.options.kind == GraphKind::HaltonMap || !search.region.hasRectangle();
   const bool byClass = search.options.kind == GraphKind::HaltonByClass;
   std::optional<GroundRectangle> rectangle;
   if (overMap) rectangle.emplace(search.ground);

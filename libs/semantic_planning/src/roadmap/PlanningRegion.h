@@ -18,8 +18,8 @@ class PlanningRegion {
 
   /** \param margin that a point may lie outside, meters */
   bool contains(double x, double y, double margin = 0) const;
-  bool isEverywhere() const { return std::isinf(m_length) && m_path.empty(); }
-  /** \param u, v in [0, 1], along the line and across; of a finite rectangle. */
+  bool hasRectangle() const { return !std::isinf(m_length); }
+  /** \param u, v in [0, 1], along the line and across; of the rectangle, if there is one. */
   mrpt::math::TPoint2D at(double u, double v) const;
 
  private:

@@ -29,17 +29,20 @@ struct GroundPoint {
  * is the same as if it were read anew, and so are its classes and distances. */
 class Ground {
  public:
-  /** Reads the whole map. \param map must outlive the ground.
+  /** \param map must outlive the ground.
    * \param order its classes are the map's ids, with semantic_types::kNoClass for unknown ground.
+   * \param within tiles (of kTileEdge x kTileEdge columns) in which there is ground; it is there
+   * what it is without this limit, and no more of the map is read than that takes. Without: all.
    * \throw std::invalid_argument bad options, or an order of other classes. */
   Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions& vehicle,
-         const GroundOptions& options, const colored_graph::ClassOrder& order);
+         const GroundOptions& options, const colored_graph::ClassOrder& order,
+         const std::optional<std::vector<Column>>& within = {});
   ~Ground();
   Ground(Ground&&) noexcept;
 
   /** Reads again what changed. \param touchedTiles as SemanticOcTree::takeTouchedTiles() gives
    * them. \return the tiles (of kTileEdge x kTileEdge columns) whose surfaces changed in anything.
-   */
+   * \throw std::logic_error something changed, and the ground was made within some tiles only */
   std::vector<Column> update(const std::vector<octomap::OcTreeKey>& touchedTiles);
 
   const semantic_octree::SemanticOcTree& map() const { return m_map; }
@@ -85,6 +88,7 @@ class Ground {
   const semantic_octree::SemanticOcTree& m_map;
   double m_voxelSize, m_clearance;
   int m_step, m_largestClearance;
+  bool m_isLimited;
 };
 
 }  // namespace semantic_planning

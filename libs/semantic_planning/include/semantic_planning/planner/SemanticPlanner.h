@@ -2,6 +2,7 @@
 #include <colored_graph/CostModel.h>
 #include <semantic_octree/SemanticOcTree.h>
 #include <semantic_planning/ground/Ground.h>
+#include <semantic_planning/planner/Corridor.h>
 #include <semantic_planning/planner/PlanResult.h>
 #include <semantic_planning/roadmap/Roadmap.h>
 #include <semantic_planning/roadmap/RoadmapOptions.h>
@@ -65,10 +66,12 @@ class SemanticPlanner {
  public:
   /** \param map must outlive the planner. With a graph of the tree (isOfTree) it has to keep
    * G-values (SemanticOcTree::setAbstraction). \param order over the map's class ids, 0 = unknown
-   * ground (loadClassOrder) \throw std::invalid_argument bad options, or an order of other classes
+   * ground (loadClassOrder) \param corridor where ground is looked at, of a map that does not
+   * change (findCorridor()); vertices lie within RoadmapOptions::buffer from its way. Without: all
+   * ground. \throw std::invalid_argument bad options, or an order of other classes
    * \throw std::logic_error the map keeps no G-values and the roadmap needs them. */
   SemanticPlanner(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
-                  const PlannerOptions& options = {});
+                  const PlannerOptions& options = {}, const std::optional<Corridor>& corridor = {});
   ~SemanticPlanner();
   SemanticPlanner(SemanticPlanner&&) noexcept;
 
