@@ -254,3 +254,21 @@ TEST(MapFolder, anEmptyMapIsOne) {
   EXPECT_TRUE(MapFolder::isAt(folder / "map"));
   EXPECT_TRUE(loadTree(folder / "map") == emptyMap());
 }
+
+TEST(MapFolder, withoutTilesThatAreNotWantedTheirCubesAreUnknown) {
+  const TemporaryFolder folder;
+  saveScans(folder / "map", someScans(3, 8));
+  const auto isRight = [](const Eigen::AlignedBox3d& cube) { return cube.min().x() >= 0; };
+  StoredMap all(folder / "map"), right(folder / "map", 500, isRight);
+  constexpr double kFar = 60;
+  const Eigen::AlignedBox3d half(Eigen::Vector3d(0, -kFar, -kFar), Eigen::Vector3d::Constant(kFar));
+  EXPECT_TRUE(cropped(right.tree(), half) == cropped(all.tree(), half));
+  std::size_t leaves = 0;
+  for (auto leaf = right.tree().begin_leafs(); leaf != right.tree().end_leafs(); ++leaf)
+    if (const auto cube = leaf.getCoordinate(); cube.x() < 0)
+      EXPECT_GE(leaf.getSize(), 6.4);  // those are in no tile
+    else
+      ++leaves;
+  EXPECT_GT(leaves, 1000u);
+  EXPECT_LT(right.folder()->contents().tiles, all.folder()->contents().tiles);
+}
