@@ -11,7 +11,7 @@ namespace semantic_map_view {
 
 namespace {
 
-constexpr int kFrames = 36;
+constexpr int kPictures = 36;
 constexpr double kPeriod = 0.25;  // s a frame
 /** Of the leaves that the tree has at first. */
 constexpr double kFewest = 0.004;
@@ -34,14 +34,14 @@ void animate(ViewWindow& window, CompressPanel& panel, const std::filesystem::pa
   panel.setAlpha(0);
   const double most = double(panel.compression()->numLeaves());
   map_view::OrbitCamera camera = window.orbitCamera();
-  for (int i = 0; i < kFrames; ++i) {
-    const double turned = 2 * M_PI * i / kFrames;
+  for (int i = 0; i < kPictures; ++i) {
+    const double turned = 2 * M_PI * i / kPictures;
     panel.setLeaves(std::size_t(most * std::pow(kFewest, (1 - std::cos(turned)) / 2)));
     window.setOrbitCamera(camera);
     cv::Mat picture = restingPicture(window);
     map_pictures::drawScaleBar(picture, camera.focalLength(window.pixelHeight()) / camera.distance);
     gif.add(picture);
-    camera.azimuth += 360.0 / kFrames;
+    camera.azimuth += 360.0 / kPictures;
   }
   gif.close();
 }

@@ -29,6 +29,8 @@ std::vector<std::unique_ptr<Layer>> layersOf(const semantic_octree::SemanticOcTr
   return layers;
 }
 
+}  // namespace
+
 /** Pause, step and speed, and how far it is. */
 class PacePanel {
  public:
@@ -68,8 +70,6 @@ class PacePanel {
   bool m_steps = false;
   float m_speed = kFastest;
 };
-
-}  // namespace
 
 class LiveMap::Window {
  public:
