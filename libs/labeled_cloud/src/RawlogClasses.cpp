@@ -1,8 +1,8 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/RawlogClasses.h>
 #include <labeled_cloud/RawlogReader.h>
-#include <mrpt/img/color_maps.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt_compat/Colors.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +17,10 @@ using semantic_types::Color;
 /** Hues that stay apart however many there are: each turns by the golden ratio. */
 Color colorOfNumber(int number) {
   const double hue = std::fmod(number * 0.6180339887498949, 1.0);
-  float r, g, b;
-  mrpt::img::hsv2rgb(static_cast<float>(hue), 0.7f, number % 2 ? 0.9f : 0.65f, r, g, b);
+  const auto color =
+      mrpt_compat::colorOfHue(static_cast<float>(hue), 0.7f, number % 2 ? 0.9f : 0.65f);
   const auto byte = [](float x) { return static_cast<std::uint8_t>(std::lround(255 * x)); };
-  return {byte(r), byte(g), byte(b)};
+  return {byte(color.R), byte(color.G), byte(color.B)};
 }
 
 class Collector {

@@ -1,7 +1,6 @@
 #include <map_pictures/Sheet.h>
-#include <mrpt/opengl/CFBORender.h>
-#include <mrpt_compat/Drawing.h>
 #include <mrpt_compat/Images.h>
+#include <mrpt_compat/Renderer.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -53,7 +52,7 @@ mrpt_compat::drawing::CCamera mrptCamera(const PictureCamera& camera) {
 
 Rendered render(const Scene& scene, const PictureCamera& camera) {
   mrpt::opengl::CFBORender renderer(camera.width, camera.height);
-  renderer.setCamera(scene, mrptCamera(camera));
+  mrpt_compat::setCamera(renderer, scene, mrptCamera(camera));
   mrpt::img::CImage image;
   mrpt::math::CMatrixFloat depth;
   renderer.render_RGBD(scene, image, depth);

@@ -1,6 +1,6 @@
 #include "CellColors.h"
 
-#include <mrpt/img/color_maps.h>
+#include <mrpt_compat/Colors.h>
 #include <semantic_types/ClassColors.h>
 
 #include <algorithm>
@@ -44,8 +44,8 @@ mrpt::img::TColor CellColors::operator()(const semantic_octree::SemanticOcTree::
       return trafficLight(m_tree.query(node).probability);
     case TRenderingOptions::Coloring::Height: {
       const double range = std::max(m_highest - m_lowest, 1e-6);
-      return mrpt::img::colormap(mrpt::img::cmJET,
-                                 std::clamp((height - m_lowest) / range, 0.0, 1.0));
+      return mrpt_compat::colorAt(mrpt::img::cmJET,
+                                  std::clamp((height - m_lowest) / range, 0.0, 1.0));
     }
     case TRenderingOptions::Coloring::Entropy:
       return trafficLight(1 - relativeEntropy(m_tree.distribution(node)));

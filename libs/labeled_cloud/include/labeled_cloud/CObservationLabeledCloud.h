@@ -2,6 +2,7 @@
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/poses/CPose3D.h>
 #include <mrpt/serialization/CSerializable.h>
+#include <mrpt_compat/Release.h>
 #include <semantic_types/LabeledCloud.h>
 
 #include <string>
@@ -28,7 +29,11 @@ class CObservationLabeledCloud : public mrpt::obs::CObservation {
    * probabilities, class ids above 254 or without a name although there are names. */
   void validate() const;
 
+#if MSO_MRPT_AT_LEAST(3, 0, 0)
+  mrpt::poses::CPose3D getSensorPose() const override { return sensorPose; }
+#else
   void getSensorPose(mrpt::poses::CPose3D& out) const override { out = sensorPose; }
+#endif
   void setSensorPose(const mrpt::poses::CPose3D& pose) override { sensorPose = pose; }
   using mrpt::obs::CObservation::getSensorPose;
   using mrpt::obs::CObservation::setSensorPose;
