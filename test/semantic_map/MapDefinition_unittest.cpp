@@ -20,7 +20,7 @@ namespace {
 CSemanticOctoMap::Ptr mapOf(const std::string& ini) {
   TSetOfMetricMapInitializers definitions;
   definitions.loadFromConfigFile(mrpt::config::CConfigFileMemory(ini), "Maps");
-  const CMultiMetricMap maps(definitions);
+  CMultiMetricMap maps(definitions);
   return maps.mapByClass<CSemanticOctoMap>();
 }
 
