@@ -73,7 +73,8 @@ struct Result {
 Result judgeModel(const std::vector<LabeledFrame>& truth, const std::vector<LabeledCloud>& clouds,
                   const LabelModel& model) {
   semantic_octree::FilterParameters filter;
-  filter.labelCorrelation = 1;  // the network is wrong about things, not about points
+  if (model.kind == LabelModel::Kind::Hard && !model.confusion)
+    filter.labelCorrelation = 1;  // the network is wrong about things, not about points
   SemanticOcTree map(kResolution, kittiTable(), filter);
   LabelModel hard;
   hard.kind = LabelModel::Kind::Hard;

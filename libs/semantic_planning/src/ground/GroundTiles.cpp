@@ -94,7 +94,7 @@ void GroundTiles::forgetWhatChangesNeed() {
 
 void GroundTiles::readWithin(const std::vector<Column>& tiles) {
   std::map<Column, std::vector<Column>> squares;
-  for (const Column& tile : tiles) squares[{tile.x >> 5, tile.y >> 5}].push_back(tile);
+  for (const Column& tile : tiles) squares[squareOf(tile)].push_back(tile);
   for (const auto& [square, within] : squares) {
     GroundTiles part(m_map, m_shape);
     std::vector<ColumnBox> boxes;

@@ -10,6 +10,10 @@
 
 namespace semantic_planning {
 
+/** Of a map of which all would be too much, ground is made in squares of so many tiles a side. */
+constexpr int kSquareEdge = 32;
+inline Column squareOf(Column tile) { return {tile.x >> 5, tile.y >> 5}; }
+
 /** Columns within which what the map holds may matter to a column's surfaces. */
 inline int reachOfGround(const GroundShape& shape) {
   return reachOfGapFills(shape) + shape.baseline + 1 + shape.largestClearance;

@@ -12,10 +12,6 @@ using colored_graph::Rank;
 
 namespace {
 
-constexpr int kSquareEdge = 32;  // tiles
-
-Column squareOf(Column tile) { return {tile.x >> 5, tile.y >> 5}; }
-
 /** The tiles of a square, and a margin of tiles around it. */
 std::vector<Column> tilesOf(Column low, int edge, int margin) {
   std::vector<Column> tiles;

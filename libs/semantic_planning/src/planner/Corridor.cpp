@@ -99,18 +99,20 @@ std::vector<Column> tilesOnTheWay(const semantic_octree::SemanticOcTree& map,
 
 std::vector<Column> Corridor::tiles(double voxelSize) const {
   const double edge = kTileEdge * voxelSize;
-  const auto tileAt = [&](double coordinate) {
-    return semantic_octree::keyOf(coordinate, voxelSize) >> 4;
+  const auto tileAt = [&](double x, double y) {
+    return tileOf({semantic_octree::keyOf(x, voxelSize), semantic_octree::keyOf(y, voxelSize)});
   };
   std::vector<Column> tiles;
-  for (const TPoint2D& p : way)
-    for (int x = tileAt(p.x - width); x <= tileAt(p.x + width); ++x)
-      for (int y = tileAt(p.y - width); y <= tileAt(p.y + width); ++y) {
+  for (const TPoint2D& p : way) {
+    const Column low = tileAt(p.x - width, p.y - width), high = tileAt(p.x + width, p.y + width);
+    for (int x = low.x; x <= high.x; ++x)
+      for (int y = low.y; y <= high.y; ++y) {
         const Column first = firstColumnOf({x, y});
         const double dx = semantic_octree::lowerBorderOf(first.x, voxelSize) + edge / 2 - p.x;
         const double dy = semantic_octree::lowerBorderOf(first.y, voxelSize) + edge / 2 - p.y;
         if (std::hypot(dx, dy) <= width + edge) tiles.push_back({x, y});
       }
+  }
   sortOut(tiles);
   return tiles;
 }
