@@ -72,10 +72,7 @@ struct Result {
  * right in single frames, and in the map that the labels make under this model. */
 Result judgeModel(const std::vector<LabeledFrame>& truth, const std::vector<LabeledCloud>& clouds,
                   const LabelModel& model) {
-  semantic_octree::FilterParameters filter;
-  if (model.kind == LabelModel::Kind::Hard && !model.confusion)
-    filter.labelCorrelation = 1;  // the network is wrong about things, not about points
-  SemanticOcTree map(kResolution, kittiTable(), filter);
+  SemanticOcTree map(kResolution, kittiTable());
   LabelModel hard;
   hard.kind = LabelModel::Kind::Hard;
   std::vector<std::vector<ClassId>> answers;

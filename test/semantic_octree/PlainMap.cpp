@@ -65,11 +65,31 @@ PlainScan plainScan(const PosedCloud& scan, double resolution, const InsertionOp
   return result;
 }
 
+LabelReliability PlainMap::reliabilityOf(const PlainScan& plain, const LabeledCloud& cloud) const {
+  LabelAgreement agreement;
+  for (const auto& [id, points] : plain.hits) {
+    std::vector<ClassId> labels;
+    for (const std::size_t i : points)
+      if (!cloud.classes.empty() && cloud.classes[i] != kNoClass)
+        labels.push_back(cloud.classes[i]);
+    std::sort(labels.begin(), labels.end());
+    if (cloud.probabilities.empty()) agreement.add(labels.data(), labels.data() + labels.size());
+  }
+  return agreement.explain(m_parameters, numClasses());
+}
+
 void PlainMap::insert(const PosedCloud& scan, const InsertionOptions& options) {
   const PlainScan plain = plainScan(scan, m_resolution, options);
-  for (const auto& [id, points] : plain.hits)
-    scan.cloud.probabilities.empty() ? hit(voxel(id), points, scan.cloud)
-                                     : hitSoft(voxel(id), points, scan.cloud);
+  const LabelReliability labels = reliabilityOf(plain, scan.cloud);
+  FilterParameters ofScan = m_parameters;
+  ofScan.accuracy = labels.accuracy, ofScan.labelCorrelation = labels.correlation;
+  const ClassFilter<float> filter(numClasses(), ofScan);
+  for (const auto& [id, points] : plain.hits) {
+    Voxel& v = voxel(id);
+    v.exact.trust(labels);
+    scan.cloud.probabilities.empty() ? hit(v, points, scan.cloud, filter)
+                                     : hitSoft(v, points, scan.cloud);
+  }
   for (const VoxelId& id : plain.free) miss(voxel(id));
 }
 
@@ -79,8 +99,8 @@ PlainMap::Voxel& PlainMap::voxel(const VoxelId& id) {
   return m_voxels.emplace(id, unknown).first->second;
 }
 
-void PlainMap::hit(Voxel& v, const std::vector<std::size_t>& points,
-                   const LabeledCloud& cloud) const {
+void PlainMap::hit(Voxel& v, const std::vector<std::size_t>& points, const LabeledCloud& cloud,
+                   const ClassFilter<float>& filter) const {
   std::map<int, int> votes;
   for (const std::size_t i : points)
     if (!cloud.classes.empty() && cloud.classes[i] != kNoClass) ++votes[cloud.classes[i]];
@@ -91,7 +111,7 @@ void PlainMap::hit(Voxel& v, const std::vector<std::size_t>& points,
     ascending.push_back({static_cast<ClassId>(id), static_cast<std::uint32_t>(count)});
     v.classesSeen.insert(id);
   }
-  m_filter.hit(*v.record, ascending.data(), ascending.size());
+  filter.hit(*v.record, ascending.data(), ascending.size());
   v.value = m_filter.occupancyOf(*v.record);
   v.exact.hit(votes);
 }

@@ -50,9 +50,13 @@ class PlainMap {
   int numClasses() const { return m_filter.numClasses(); }
 
  private:
+  /** Labels voxel by voxel, held against what the parameters expect. */
+  semantic_octree::LabelReliability reliabilityOf(const PlainScan& plain,
+                                                  const semantic_types::LabeledCloud& cloud) const;
   Voxel& voxel(const VoxelId& id);
   void hit(Voxel& v, const std::vector<std::size_t>& points,
-           const semantic_types::LabeledCloud& cloud) const;
+           const semantic_types::LabeledCloud& cloud,
+           const semantic_octree::ClassFilter<float>& filter) const;
   void hitSoft(Voxel& v, const std::vector<std::size_t>& points,
                const semantic_types::LabeledCloud& cloud) const;
   void hitUnlabeled(Voxel& v) const;

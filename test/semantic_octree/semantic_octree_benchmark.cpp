@@ -113,9 +113,10 @@ BENCHMARK(markFanOfRays);
 
 /** Transforming, marking, summarizing and voting: all of an insertion but the tree. */
 void scanIntoVoxels(benchmark::State& state) {
+  const ClassFilter<float> filter(K, {});
   Scan scan;
   for (auto _ : state) {
-    scan.set(street().cloud, street().T_map_sensor, resolutionOf(state), K, insertion());
+    scan.set(street().cloud, street().T_map_sensor, resolutionOf(state), filter, insertion());
     scan.clear();
   }
 }
@@ -127,7 +128,7 @@ void mergeIntoTree(benchmark::State& state) {
   const ClassFilter<float> filter(K, {});
   NodeStore store(0);
   Scan scan;
-  scan.set(street().cloud, street().T_map_sensor, resolution, K, insertion());
+  scan.set(street().cloud, street().T_map_sensor, resolution, filter, insertion());
   const MergeTarget target{store, filter, nullptr, nullptr, true};
   mergeScan(target, scan, 1);
   for (auto _ : state) mergeScan(target, scan, 1);

@@ -30,7 +30,7 @@ const ClassVotes& majority(const ClassVotes* votes, std::size_t numVoted) {
 template <typename Real, int Named>
 ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
     : m_numClasses(numClasses),
-      m_softLabelFloor(p.softLabelFloor),
+      m_parameters(p),
       m_evidence(p.accuracy, std::max(2, numClasses), p.labelCorrelation) {
   p.validate(numClasses);
   const double K = numClasses;
@@ -55,6 +55,14 @@ ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
   if (numClasses == 1 || p.increments != FilterParameters::Increments::LikelihoodConsistent) return;
   for (std::uint32_t n = 0; n < kKeptRows; ++n) m_rowsOfFew.push_back(rowOf(n));
   m_rowsOfFew[1] = {m_hitSame, m_hitOther};
+}
+
+template <typename Real, int Named>
+auto ClassFilter<Real, Named>::trusting(const LabelReliability& labels) const -> ClassFilter {
+  FilterParameters p = m_parameters;
+  p.accuracy = labels.accuracy;
+  p.labelCorrelation = labels.correlation;
+  return ClassFilter(m_numClasses, p);
 }
 
 template <typename Real, int Named>
@@ -198,7 +206,7 @@ void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
   std::vector<Real> h(m_numClasses + 1);
   for (int k = 1; k <= m_numClasses; ++k)
     h[k] = rounded<Real>(b.logOddsOf(static_cast<ClassId>(k)) + m_unlabeled +
-                         std::log(K * std::max<double>(q[k - 1], m_softLabelFloor)));
+                         std::log(K * std::max<double>(q[k - 1], m_parameters.softLabelFloor)));
   const Real excess = std::max(Real(0), *std::max_element(h.begin() + 1, h.end()) - m_max);
   for (Real& x : h) x = std::max(m_min, x - excess);
   std::vector<ClassId> order(m_numClasses);

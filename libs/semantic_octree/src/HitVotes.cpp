@@ -15,6 +15,7 @@ void HitVotes::count(const LabeledCloud& cloud, const std::vector<std::uint32_t>
   m_softCounts.assign(soft ? numVoxels : 0, 0);
   m_labels.clear();
   m_endsOfLabels.assign(numVoxels, 0);
+  m_agreement = {};
   if (soft)
     addSoftLabels(cloud, voxels);
   else if (!cloud.classes.empty())
@@ -35,6 +36,7 @@ void HitVotes::collectLabels(const LabeledCloud& cloud, const std::vector<std::u
   begin = 0;
   for (const std::uint32_t end : m_endsOfLabels) {
     std::sort(m_labels.begin() + begin, m_labels.begin() + end);
+    m_agreement.add(m_labels.data() + begin, m_labels.data() + end);
     begin = end;
   }
 }

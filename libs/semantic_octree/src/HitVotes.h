@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_octree/ClassFilter.h>
+#include <semantic_octree/LabelReliability.h>
 #include <semantic_types/LabeledCloud.h>
 
 #include <array>
@@ -36,6 +37,8 @@ class HitVotes {
   }
 
   bool isSoft() const { return !m_softCounts.empty(); }
+  /** Of the labels that were counted; none with soft labels. */
+  const LabelAgreement& agreement() const { return m_agreement; }
   /** A voxel's votes, for unpack(). */
   void pack(std::uint32_t voxel, std::vector<char>& bytes) const;
   /** Forgets all voxels; unpack() then adds one after the other. */
@@ -59,6 +62,7 @@ class HitVotes {
   std::vector<std::uint32_t> m_endsOfLabels;
   std::vector<float> m_softSums;
   std::vector<std::uint32_t> m_softCounts;
+  LabelAgreement m_agreement;
 };
 
 }  // namespace semantic_octree

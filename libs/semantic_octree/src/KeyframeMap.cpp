@@ -33,7 +33,7 @@ struct KeyframeMap::Content {
   }
   void trace(const StoredScan& s, const LabeledCloud& cloud, const Eigen::Isometry3d& T,
              Scan& scan) const {
-    scan.set(cloud, T * s.T_keyframe_sensor, map.getResolution(), map.numClasses(), s.options);
+    scan.set(cloud, T * s.T_keyframe_sensor, map.getResolution(), map.m_filter, s.options);
   }
   /** Calls f with a scan for it to fill; what fails half-filled must not leak into the next. */
   template <typename F>
@@ -84,7 +84,7 @@ class KeyframeMap::Correction {
   /** The scan is to be as if it had seen nothing. */
   void remove(std::size_t scan) {
     addTiles(tilesOf(PackedScan(m.storage.load(m.scans[scan].voxels))));
-    m_voxels[scan] = m.storage.keep(PackedScan(false).bytes());
+    m_voxels[scan] = m.storage.keep(PackedScan(false, {}).bytes());
   }
 
   /** Puts it into the map. */

@@ -77,11 +77,12 @@ void FilterParameters::describe(OptionList& list) {
            "from the probabilities below, or the constants published with SSMI, to compare");
   list.add(
       "accuracy", accuracy, "", probability,
-      "share of labels that name the true class, above 1 / number of classes. Too large, and a "
-      "few wrong labels win; too small, and it takes many scans to be sure");
+      "share of labels that name the true class, above 1 / number of classes; less for scans whose "
+      "labels disagree within voxels more than that allows. Too large, and a few wrong labels win; "
+      "too small, and it takes many scans to be sure");
   list.add("label_correlation", labelCorrelation, "", between(0, 1),
-           "of a scan's labels in one voxel. 0: each counts by itself; 1: many that agree say no "
-           "more than one. Larger for hard labels of a network, which is wrong about whole things");
+           "of a scan's labels in one voxel, at most; less for scans whose labels disagree there. "
+           "0: each counts by itself; 1: many that agree say no more than one");
   list.add(
       "hit_probability", hitProbability, "", above(0).upTo(1 - kLeastProbability),
       "of a return from an occupied voxel that a beam reaches: 0.5 for LiDARs outdoors, 0.9 for "

@@ -47,11 +47,13 @@ TileCodes tilesOf(const PackedScan& scan) {
 
 TileCodes differingTiles(const PackedScan& a, const PackedScan& b) {
   TileCodes codes;
+  const bool alike = a.labels() == b.labels();
   PackedScan::Reader x(a), y(b);
   while (!x.atEnd() || !y.atEnd()) {
     const std::uint64_t atX = x.atEnd() ? UINT64_MAX : x.tile().code,
                         atY = y.atEnd() ? UINT64_MAX : y.tile().code;
-    if (atX != atY || !x.tile().sameContent(y.tile())) codes.push_back(std::min(atX, atY));
+    if (atX != atY || !alike || !x.tile().sameContent(y.tile()))
+      codes.push_back(std::min(atX, atY));
     if (atX <= atY) x.next();
     if (atY <= atX) y.next();
   }
@@ -107,7 +109,7 @@ PackedScan Scan::pack() const {
     });
   std::sort(tiles.begin(), tiles.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
-  PackedScan packed(m_votes.isSoft());
+  PackedScan packed(m_votes.isSoft(), m_labels);
   for (const auto& [code, at] : tiles) {
     packTile(tile(at), packed.beginTile(code));
     packed.endTile();
@@ -130,6 +132,7 @@ void Scan::packTile(const Tile& tile, Bytes& bytes) const {
 void Scan::unpack(const PackedScan& scan, const TileCodes& wanted, int numClasses,
                   const InsertionOptions& options) {
   m_report = InsertionReport();
+  m_labels = scan.labels();
   VoxelIndex lowest = VoxelIndex::Constant(kNumKeys), highest = -lowest;
   forEachTileIn(scan, wanted, [&](const PackedTile& tile) {
     lowest = lowest.min(tileOf(tile.code));

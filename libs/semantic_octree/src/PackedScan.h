@@ -1,4 +1,6 @@
 #pragma once
+#include <semantic_octree/LabelReliability.h>
+
 #include <cstring>
 
 #include "TileCodes.h"
@@ -36,11 +38,18 @@ struct PackedTile {
  * pose. Made by Scan::pack(), for this process only. */
 class PackedScan {
  public:
-  explicit PackedScan(bool soft) { m_bytes.push_back(soft); }
+  PackedScan(bool soft, const LabelReliability& labels) {
+    m_bytes.push_back(soft);
+    appendTo(m_bytes, labels);
+  }
   explicit PackedScan(Bytes bytes) : m_bytes(std::move(bytes)) {}
 
   /** Whether votes are soft labels. */
   bool isSoft() const { return m_bytes[0]; }
+  LabelReliability labels() const {
+    const char* at = &m_bytes[1];
+    return takeFrom<LabelReliability>(at);
+  }
   const Bytes& bytes() const { return m_bytes; }
 
   /** To be filled at the end of bytes, then endTile(). */
@@ -60,7 +69,8 @@ class PackedScan {
   class Reader {
    public:
     explicit Reader(const PackedScan& scan)
-        : m_next(scan.m_bytes.data() + 1), m_end(scan.m_bytes.data() + scan.m_bytes.size()) {
+        : m_next(scan.m_bytes.data() + kHeaderBytes),
+          m_end(scan.m_bytes.data() + scan.m_bytes.size()) {
       next();
     }
     bool atEnd() const { return m_tile.content == nullptr; }
@@ -79,6 +89,7 @@ class PackedScan {
   };
 
  private:
+  static constexpr std::size_t kHeaderBytes = 1 + sizeof(LabelReliability);
   static constexpr int kSizeBits = 24;  // 512 soft labels of 255 classes fit
 
   Bytes m_bytes;
@@ -87,7 +98,7 @@ class PackedScan {
 
 /** All tiles of a scan. */
 TileCodes tilesOf(const PackedScan& scan);
-/** The tiles in which not the same was seen. */
+/** The tiles in which not the same was seen; all, if labels are not trusted alike. */
 TileCodes differingTiles(const PackedScan& a, const PackedScan& b);
 /** The tiles of a scan that are among others. \param f is called with each PackedTile */
 template <typename F>

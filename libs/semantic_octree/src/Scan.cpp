@@ -67,7 +67,8 @@ std::size_t Scan::maxTiles(const InsertionOptions& options) {
 }
 
 void Scan::set(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor, double resolution,
-               int numClasses, const InsertionOptions& options) {
+               const ClassFilter<float>& filter, const InsertionOptions& options) {
+  const int numClasses = filter.numClasses();
   checkSizes(cloud, numClasses);
   const ScanBeams beams(cloud, T_map_sensor, resolution, options);
   m_report = beams.report();
@@ -77,6 +78,7 @@ void Scan::set(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
   markFree(beams, options, options.carvingMargin / resolution);
   summarize();
   m_votes.count(cloud, m_endRanks, m_report.hitVoxels, numClasses);
+  m_labels = m_votes.agreement().explain(filter.parameters(), numClasses);
 }
 
 void Scan::markHits(const ScanBeams& beams, const InsertionOptions& options) {

@@ -14,10 +14,11 @@ namespace semantic_octree {
 class Scan {
  public:
   /** Replaces the content by this cloud's.
+   * \param filter the map's
    * \throw std::out_of_range the sensor is outside the map
    * \throw std::invalid_argument sizes of the cloud's vectors do not match, or a class above K. */
   void set(const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
-           double resolution, int numClasses, const InsertionOptions& options);
+           double resolution, const ClassFilter<float>& filter, const InsertionOptions& options);
 
   /** What is to be kept of it to merge it again. */
   PackedScan pack() const;
@@ -29,6 +30,8 @@ class Scan {
   const InsertionReport& report() const { return m_report; }
   const ScanPyramid& pyramid() const { return m_pyramid; }
   const HitVotes& votes() const { return m_votes; }
+  /** Of the whole scan, in parts of it too. */
+  const LabelReliability& labels() const { return m_labels; }
 
   struct Tile {
     const VoxelBits* free;      ///< a word for each block, in Morton order as their bits
@@ -69,6 +72,7 @@ class Scan {
   std::vector<std::uint32_t> m_endRanks;  ///< per point: rank of the voxel that it hit
   ScanPyramid m_pyramid;
   HitVotes m_votes;
+  LabelReliability m_labels{};
 };
 
 }  // namespace semantic_octree

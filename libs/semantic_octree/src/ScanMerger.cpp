@@ -109,8 +109,9 @@ bool ScanMerger::finishAbove(const ScanCube& cube, const std::vector<char>& chan
 }
 
 void mergeScan(const MergeTarget& target, const Scan& scan, int threads) {
+  const ClassFilter<float> filter = target.filter.trusting(scan.labels());
   std::deque<ScanMerger> mergers;
-  for (int i = 0; i < threads; ++i) mergers.emplace_back(target, scan, i);
+  for (int i = 0; i < threads; ++i) mergers.emplace_back(target, filter, scan, i);
   const ScanCube whole{&target.store.root(), Cell()};
   std::vector<ScanCube> parts;
   mergers[0].collect(whole, parts);

@@ -40,13 +40,15 @@ struct ScanCube {
  * one and pruning. */
 class ScanMerger {
  public:
-  /** \param thread number of the thread that it works in */
-  ScanMerger(const MergeTarget& target, const Scan& scan, int thread)
+  /** \param filter the target's, for this scan's labels \param thread number of the thread that it
+   * works in */
+  ScanMerger(const MergeTarget& target, const ClassFilter<float>& filter, const Scan& scan,
+             int thread)
       : m_target(target),
         m_store(target.store),
         m_scan(scan),
         m_arena(target.store.arena(thread)),
-        m_voxels(target.store, m_arena, target.filter, target.pruning),
+        m_voxels(target.store, m_arena, filter, target.pruning),
         m_gTree(target.gTree ? &target.gTree->worker(thread) : nullptr) {}
 
   /** \return whether anything changed */

@@ -232,7 +232,7 @@ InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
   const std::int64_t time = timeIn(secondsSince);
   if (!m_scan) m_scan = std::make_unique<Scan>();
   try {
-    m_scan->set(cloud, T_map_sensor, m_resolution, numClasses(), options);
+    m_scan->set(cloud, T_map_sensor, m_resolution, m_filter, options);
     ageUntil(time);
     merge(*m_scan, options.threads);
   } catch (...) {

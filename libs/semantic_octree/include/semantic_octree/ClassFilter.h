@@ -2,6 +2,7 @@
 #include <semantic_octree/ClassBelief.h>
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/LabelEvidence.h>
+#include <semantic_octree/LabelReliability.h>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -46,6 +47,9 @@ class ClassFilter {
   ClassFilter(int numClasses, const FilterParameters& parameters);
 
   int numClasses() const { return m_numClasses; }
+  const FilterParameters& parameters() const { return m_parameters; }
+  /** The same for a scan whose labels are trusted otherwise. */
+  ClassFilter trusting(const LabelReliability& labels) const;
 
   /** A return with a class label ended in the cell. */
   void hit(Belief& b, ClassId id) const { hitOf(b, id, m_hitSame, m_hitOther); }
@@ -101,9 +105,9 @@ class ClassFilter {
   double incrementWithoutEvidence(double most, double odds) const;
 
   int m_numClasses;
+  FilterParameters m_parameters;
   Real m_logNumClasses, m_min, m_max;
   Real m_hitSame, m_hitOther, m_hitUnlabeled, m_miss;
-  double m_softLabelFloor;
   double m_unlabeled;  ///< not rounded
   LabelEvidence m_evidence;
   /** By number of labels; empty if not the row of votes counts, but their majority. */

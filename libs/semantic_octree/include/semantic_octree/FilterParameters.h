@@ -16,12 +16,13 @@ struct FilterParameters {
   };
   Increments increments = Increments::LikelihoodConsistent;
 
-  /** Share of labels that name the true class, (1/K, 1). */
+  /** Share of labels that name the true class, (1/K, 1). Of scans whose labels disagree in cells
+   * more than that allows, it is less (LabelAgreement). */
   double accuracy = 0.9;
-  /** Correlation of any two labels of one scan in one cell, given the cell's class, [0, 1]. 0: each
-   * counts by itself, 1: many that agree say no more than one. What errs about a surface errs about
-   * most of its points. */
-  double labelCorrelation = 0.2;
+  /** Largest correlation of any two labels of one scan in one cell, given the cell's class, [0, 1].
+   * 0: each counts by itself, 1: many that agree say no more than one. What errs about a surface
+   * errs about most of its points. Of scans whose labels disagree more, it is less, too. */
+  double labelCorrelation = 0.5;
   /** P(a return ends in the cell | the cell is occupied and a beam of the scan reaches it).
    * Surfaces fill cells in part, and beams that graze one pass through cells that it crosses: 0.42
    * to 0.69 in SemanticKITTI for cells of 0.1 to 0.4 m, 0.87 to 0.9 in a flat seen by a depth

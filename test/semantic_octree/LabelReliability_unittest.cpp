@@ -1,0 +1,157 @@
+// What a scan's labels say of their own reliability, next to urns whose reliability is known.
+#include <gtest/gtest.h>
+#include <semantic_octree/KeyframeMap.h>
+#include <semantic_octree/LabelReliability.h>
+
+#include <random>
+
+#include "PlainMap.h"
+
+using namespace semantic_octree;
+
+namespace {
+
+FilterParameters trusting(double accuracy, double correlation) {
+  FilterParameters p;
+  p.accuracy = accuracy, p.labelCorrelation = correlation;
+  return p;
+}
+
+/** Labels of cells of random classes: each is the one before it with probability `correlation`
+ * (any two are correlated so if there are two), else drawn anew. */
+LabelAgreement agreementOfPairs(double accuracy, double correlation, int K, int cells,
+                                std::mt19937& random) {
+  std::uniform_real_distribution<double> chance;
+  LabelAgreement agreement;
+  for (int i = 0; i < cells; ++i) {
+    const int truth = 1 + static_cast<int>(random() % static_cast<unsigned>(K));
+    const auto draw = [&] {
+      if (chance(random) < accuracy) return static_cast<ClassId>(truth);
+      const int other = 1 + static_cast<int>(random() % static_cast<unsigned>(K - 1));
+      return static_cast<ClassId>(other + (other >= truth));
+    };
+    ClassId labels[2] = {draw(), draw()};
+    if (chance(random) < correlation) labels[1] = labels[0];
+    std::sort(labels, labels + 2);
+    agreement.add(labels, labels + 2);
+  }
+  return agreement;
+}
+
+/** A wall with many points a voxel, of which this share has a random label. */
+PosedCloud noisyWall(double wrong, int K, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform;
+  PosedCloud scan;
+  for (int i = 0; i < 6000; ++i) {
+    const float y = 6 * uniform(random) - 3, z = 3 * uniform(random);
+    scan.cloud.points.emplace_back(4.1f, y, z);
+    const int truth = y < 0 ? 1 : 2;
+    const bool isWrong = uniform(random) < wrong;
+    scan.cloud.classes.push_back(static_cast<ClassId>(
+        isWrong ? 1 + static_cast<int>(random() % static_cast<unsigned>(K)) : truth));
+  }
+  return scan;
+}
+
+}  // namespace
+
+TEST(LabelReliability, isThatOfUrnsWithinWhatTheParametersAllow) {
+  std::mt19937 random(1);
+  const FilterParameters most = trusting(0.9, 1);
+  for (const int K : {3, 10, 24}) {
+    for (const double r : {0.0, 0.3, 0.6}) {
+      const auto labels = agreementOfPairs(0.9, r, K, 60000, random).explain(most, K);
+      EXPECT_NEAR(labels.accuracy, 0.9, 0.01);
+      EXPECT_NEAR(labels.correlation, r, 0.07) << K;
+    }
+    for (const double accuracy : {0.5, 0.7, 0.8}) {
+      const auto labels = agreementOfPairs(accuracy, 0, K, 60000, random).explain(most, K);
+      EXPECT_NEAR(labels.accuracy, accuracy, 0.03) << K;
+      EXPECT_EQ(labels.correlation, 0);
+    }
+  }
+}
+
+TEST(LabelReliability, isNeverMoreThanTheParametersSay) {
+  std::mt19937 random(2);
+  const FilterParameters most = trusting(0.8, 0.4);
+  for (const double accuracy : {0.6, 0.8, 0.99})
+    for (const double r : {0.0, 0.4, 0.9}) {
+      const auto labels = agreementOfPairs(accuracy, r, 10, 20000, random).explain(most, 10);
+      EXPECT_LE(labels.accuracy, 0.8);
+      EXPECT_LE(labels.correlation, 0.4);
+      EXPECT_EQ(labels == (LabelReliability{0.8, 0.4}),
+                accuracy == 0.99 || r > 0.5 || (accuracy > 0.7 && r > 0.3));
+    }
+}
+
+TEST(LabelReliability, takesManyLabelsToDiffer) {
+  const FilterParameters p = trusting(0.9, 0.5);
+  const LabelReliability most{0.9, 0.5};
+  LabelAgreement agreement;
+  EXPECT_TRUE(agreement.explain(p, 24) == most);
+  const ClassId alone[] = {4}, different[] = {3, 8};
+  for (int i = 0; i < 100000; ++i) agreement.add(alone, alone + 1);
+  for (int i = 0; i < 4; ++i) agreement.add(different, different + 2);
+  EXPECT_TRUE(agreement.explain(p, 24) == most);
+  for (int i = 0; i < 50; ++i) agreement.add(different, different + 2);
+  EXPECT_LT(agreement.explain(p, 24).correlation, 0.5);
+}
+
+TEST(LabelReliability, ofLabelsByChanceIsStillThatOfAFilter) {
+  const ClassId labels[] = {1, 2};
+  LabelAgreement never;
+  for (int i = 0; i < 1000000; ++i) never.add(labels, labels + 2);
+  for (const int K : {2, 3, 24, 254}) {
+    const LabelReliability reliability = never.explain(trusting(0.999, 0.5), K);
+    EXPECT_GT(reliability.accuracy * K, 1);
+    EXPECT_LT(reliability.accuracy, 1.0 / K + 0.13);
+    EXPECT_NO_THROW((ClassFilter<float>(K, {}).trusting(reliability)));
+  }
+}
+
+TEST(LabelReliability, ofOneClassAndOfPublishedConstantsIsTheParameters) {
+  const ClassId labels[] = {1, 2};
+  LabelAgreement never;
+  for (int i = 0; i < 10000; ++i) never.add(labels, labels + 2);
+  FilterParameters ssmi;
+  ssmi.increments = FilterParameters::Increments::Ssmi;
+  const LabelReliability most{ssmi.accuracy, ssmi.labelCorrelation};
+  EXPECT_TRUE(never.explain(ssmi, 24) == most);
+  EXPECT_TRUE(never.explain({}, 1) == most);
+  EXPECT_FALSE(never.explain({}, 24) == most);
+}
+
+TEST(LabelReliability, ofNoisyScansIsThatOfTheTreeToTheLastBit) {
+  constexpr int K = 6;
+  InsertionOptions options;
+  PlainMap plain(0.5, K);
+  SemanticOcTree map(0.5, numberedClasses(K)), threaded = map;
+  for (const double wrong : {0.0, 0.2, 0.6}) {
+    const PosedCloud scan = noisyWall(wrong, K, 7);
+    options.threads = 1;
+    plain.insert(scan, options);
+    map.insert(scan.cloud, scan.T_map_sensor, options);
+    options.threads = 3;
+    threaded.insert(scan.cloud, scan.T_map_sensor, options);
+  }
+  expectSame(map, plain);
+  EXPECT_TRUE(map == threaded);
+}
+
+TEST(LabelReliability, isKeptWithScansThatMayMove) {
+  constexpr int K = 6;
+  SemanticOcTree map(0.5, numberedClasses(K)), moved = map;
+  const PosedCloud clean = noisyWall(0, K, 8), noisy = noisyWall(0.6, K, 9);
+  const Eigen::Isometry3d there(Eigen::Translation3d(0.2, 0.3, 0)), sensor = clean.T_map_sensor;
+  map.insert(clean.cloud, sensor);
+  map.insert(noisy.cloud, there);
+  KeyframeMap keyframes(moved);
+  keyframes.begin(sensor);
+  keyframes.insert(clean.cloud, sensor);
+  const KeyframeId last = keyframes.begin(sensor);
+  keyframes.insert(noisy.cloud, sensor);
+  keyframes.move({{last, there}});
+  EXPECT_TRUE(moved == map);
+}
