@@ -109,3 +109,16 @@ TEST(MovingRegions, leaveTheTreeOfThePlainSearchWithTheDensityOfEachVoxel) {
 }
 
 }  // namespace
+
+TEST(Regions, haveFiniteCornersWhereTheyHaveThem) {
+  const Eigen::Vector3d none = Eigen::Vector3d::Constant(NAN), some(1, 2, 3);
+  for (const auto shape : {Region::Shape::Box, Region::Shape::Sphere, Region::Shape::Corridor}) {
+    const bool hasTwo = shape != Region::Shape::Sphere;
+    EXPECT_THROW((Region{shape, none, some, 1, 1}.validate()), std::invalid_argument);
+    const Region region{shape, some, none, 1, 1};
+    if (hasTwo)
+      EXPECT_THROW(region.validate(), std::invalid_argument);
+    else
+      EXPECT_NO_THROW(region.validate());
+  }
+}

@@ -125,8 +125,9 @@ const Choices<Region::Shape>& choicesOf(Region::Shape) {
 }
 
 void Region::validate() const {
-  require(a.allFinite() && b.allFinite(), "corner of a region", (a + b).sum(),
-          "finite coordinates");
+  require(a.allFinite(), "corner of a region", a.sum(), "finite coordinates");
+  if (shape != Shape::Sphere)  // which has no other corner
+    require(b.allFinite(), "corner of a region", b.sum(), "finite coordinates");
   require(weight >= 0 && std::isfinite(weight), "weight of a region", weight,
           "a number of 0 or more");
   if (shape == Shape::Box)

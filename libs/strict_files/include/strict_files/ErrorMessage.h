@@ -1,5 +1,6 @@
 #pragma once
 #include <exception>
+#include <new>
 #include <string>
 
 namespace strict_files {
@@ -7,6 +8,7 @@ namespace strict_files {
 /** What an exception says, without the call stack that MRPT appends to the text of its own, and
  * without those of the exceptions that it was passed on as. */
 inline std::string messageOf(const std::exception& e) {
+  if (dynamic_cast<const std::bad_alloc*>(&e)) return "more memory is needed than there is";
   const std::string text = e.what(), begin = "Message:  ", end = "\nLocation:";
   const std::size_t from = text.rfind(begin);
   if (from == std::string::npos) return text;
