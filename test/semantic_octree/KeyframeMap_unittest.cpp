@@ -245,8 +245,9 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(KeyframeMap, awayFromTheLimitsTheOrderOfScansLeavesNoTrace) {
   const Variant variant{"wide"};
   FilterParameters wide;
-  wide.minOccupancy = 1e-6;
-  wide.maxProbability = 1 - 1e-6;
+  wide.minOccupancy = 1e-9;
+  wide.maxProbability = 1 - 1e-9;
+  wide.accuracy = 0.4;  // the more a label says, the fewer reach the limits
   std::mt19937 random(5);
   RandomScanOptions options;
   options.classes = 3;
