@@ -1,8 +1,13 @@
 #include "PointQuery.h"
 
+#include <semantic_octree/Keys.h>
+
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 namespace semantic_map_info {
 
@@ -13,6 +18,8 @@ using semantic_types::ClassId;
 using semantic_types::kNoClass;
 
 namespace {
+
+using Point = std::vector<double>;  // x, y, z, m
 
 const char* nameOf(CellState::Status status) {
   switch (status) {
@@ -26,7 +33,7 @@ const char* nameOf(CellState::Status status) {
   return "unknown";
 }
 
-ordered_json distributionAt(const SemanticOcTree& map, const std::vector<double>& p) {
+ordered_json distributionAt(const SemanticOcTree& map, const Point& p) {
   ordered_json json = ordered_json::array();
   octomap::OcTreeKey key;
   SemanticOcTree::Node node;
@@ -40,25 +47,51 @@ ordered_json distributionAt(const SemanticOcTree& map, const std::vector<double>
   return json;
 }
 
+/** Of what the octree walks through, which number it has: x, y, z by turns, bit by bit. */
+std::uint64_t placeInTree(const SemanticOcTree& map, const Point& p) {
+  octomap::OcTreeKey key;
+  if (!map.coordToKeyChecked(p[0], p[1], p[2], key)) return 0;
+  std::uint64_t place = 0;
+  for (int bit = semantic_octree::kTreeDepth - 1; bit >= 0; --bit)
+    for (int axis = 0; axis < 3; ++axis) place = place << 1 | (key[axis] >> bit & 1);
+  return place;
+}
+
+/** Numbers of points, so that of a folder of tiles each tile comes in once. */
+std::vector<std::size_t> inOrderOfTheTree(const SemanticOcTree& map,
+                                          const std::vector<Point>& points) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> places;
+  for (const Point& p : points) places.emplace_back(placeInTree(map, p), places.size());
+  std::sort(places.begin(), places.end());
+  std::vector<std::size_t> order;
+  for (const auto& place : places) order.push_back(place.second);
+  return order;
+}
+
+ordered_json answerAt(const SemanticOcTree& map, const Point& p, bool distribution) {
+  const CellState state = map.query(p[0], p[1], p[2]);
+  const bool seen = state.likeliestClass != kNoClass;
+  ordered_json answer = {{"x", p[0]},
+                         {"y", p[1]},
+                         {"z", p[2]},
+                         {"state", nameOf(state.status)},
+                         {"id", int{state.likeliestClass}},
+                         {"class", seen ? map.classes().name(state.likeliestClass) : "-"},
+                         {"probability", state.probability},
+                         {"occupancy", state.occupancy}};
+  if (distribution) answer["distribution"] = distributionAt(map, p);
+  return answer;
+}
+
 }  // namespace
 
-ordered_json answersAt(const SemanticOcTree& map, const std::vector<strict_files::TextLine>& points,
+ordered_json answersAt(const SemanticOcTree& map, const std::vector<strict_files::TextLine>& lines,
                        bool distribution) {
-  ordered_json answers = ordered_json::array();
-  for (const strict_files::TextLine& line : points) {
-    const std::vector<double> p = numbersOf(line, 3);
-    const CellState state = map.query(p[0], p[1], p[2]);
-    const bool seen = state.likeliestClass != kNoClass;
-    answers.push_back({{"x", p[0]},
-                       {"y", p[1]},
-                       {"z", p[2]},
-                       {"state", nameOf(state.status)},
-                       {"id", int{state.likeliestClass}},
-                       {"class", seen ? map.classes().name(state.likeliestClass) : "-"},
-                       {"probability", state.probability},
-                       {"occupancy", state.occupancy}});
-    if (distribution) answers.back()["distribution"] = distributionAt(map, p);
-  }
+  std::vector<Point> points;
+  for (const strict_files::TextLine& line : lines) points.push_back(numbersOf(line, 3));
+  ordered_json answers(points.size(), nullptr);
+  for (const std::size_t i : inOrderOfTheTree(map, points))
+    answers[i] = answerAt(map, points[i], distribution);
   return answers;
 }
 

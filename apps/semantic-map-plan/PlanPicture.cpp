@@ -1,6 +1,5 @@
 #include "PlanPicture.h"
 
-#include <map_pictures/MapCanvas.h>
 #include <semantic_types/ClassColors.h>
 
 namespace semantic_map_plan {
@@ -92,13 +91,13 @@ void drawEnd(MapCanvas& canvas, const std::string& name, const TPose2D& pose, co
 
 }  // namespace
 
-cv::Mat drawPlan(const semantic_octree::SemanticOcTree& map, const SemanticPlanner& planner,
-                 const PlanResult& plan, const TPose2D& start, const TPose2D& goal) {
-  MapCanvas canvas = MapCanvas::ofMap(map, {});
+cv::Mat drawPlan(MapCanvas canvas, const SemanticPlanner& planner, const PlanResult& plan,
+                 const TPose2D& start, const TPose2D& goal) {
+  const Ground& ground = planner.ground();
   bool unlabeled = false;
   // What hangs over the ground stays visible, too.
   canvas.drawThrough(kGroundShare,
-                     [&] { unlabeled = drawGround(canvas, planner.ground(), map.classes()); });
+                     [&] { unlabeled = drawGround(canvas, ground, ground.map().classes()); });
   if (unlabeled) canvas.explain({"ground without a class", semantic_types::kColorWithoutClass});
   if (planner.hasRoadmap()) drawGraph(canvas, planner.roadmap());
   if (plan.found()) drawPath(canvas, plan);

@@ -1,5 +1,5 @@
 // Plans a path of a vehicle over a semantic map, classes before length.
-#include <map_pictures/MapPictures.h>
+#include <map_pictures/MapCanvas.h>
 #include <semantic_octree/MapFolder.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
@@ -26,6 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace semantic_planning;
+using map_pictures::MapCanvas;
 using semantic_octree::AbstractionOptions;
 using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
@@ -34,13 +35,15 @@ constexpr int kNoPath = 2;  // exit status
 const std::vector<std::string> kFiles = {"path.json", "path.csv", "plan.png", "plan.3Dscene",
                                          "roadmap.graph"};
 
-/** All results; of a plan that failed all but the path itself. */
-void write(const Cli& cli, const SemanticOcTree& map, const SemanticPlanner& planner,
-           const PlanResult& plan, const nlohmann::json& report) {
+/** All results; of a plan that failed all but the path itself.
+ * \param canvas with the map, and nothing on it yet */
+void write(const Cli& cli, MapCanvas canvas, const SemanticPlanner& planner, const PlanResult& plan,
+           const nlohmann::json& report) {
+  const SemanticOcTree& map = planner.ground().map();
   strict_files::OutputFolder output(cli.output);
   writeJson(output.staged("path.json"), report);
   if (plan.found()) strict_files::writeText(output.staged("path.csv"), toCsv(plan, map.classes()));
-  map_pictures::savePicture(drawPlan(map, planner, plan, cli.start, cli.goal),
+  map_pictures::savePicture(drawPlan(std::move(canvas), planner, plan, cli.start, cli.goal),
                             output.staged("plan.png"));
   saveScene(map.isReadOnly() ? nullptr : &map, planner, plan, output.staged("plan.3Dscene"));
   if (planner.hasRoadmap())
@@ -88,6 +91,9 @@ int run(Cli& cli) {
   }
   SemanticOcTree& map = stored->tree();
   const double searchingCorridor = watch.lap();
+  // Now, for what that takes is free again before the ground needs it.
+  MapCanvas canvas = MapCanvas::ofMap(map, {});
+  watch.lap();
   if (isOfTree(cli.planner.roadmap.kind))
     map.setAbstraction(cli.weights.empty()
                            ? abstractionFor(order)
@@ -100,7 +106,7 @@ int run(Cli& cli) {
   report["milliseconds"]["corridor"] = searchingCorridor;
   report["milliseconds"]["abstraction"] = abstraction;
   report["milliseconds"]["ground"] = ground;
-  write(cli, map, planner, plan, report);
+  write(cli, std::move(canvas), planner, plan, report);
   if (plan.found()) {
     printSummary(plan, map.classes());
     return 0;

@@ -46,7 +46,7 @@ void Session::begin(radio::Wish wish) {
   try {
     if (wish.weights.empty()) wish.weights = m_own.weights;
     if (wish.solution.empty()) wish.solution = m_own.solution;
-    m_options = wish.forClasses(m_maps.front().classes(), "weights");
+    m_options = wish.forClasses(m_maps.front().tree().classes(), "weights");
     sendNextMap();
   } catch (const std::exception& e) {
     m_options.reset();
@@ -57,7 +57,7 @@ void Session::begin(radio::Wish wish) {
 }
 
 void Session::sendNextMap() {
-  semantic_octree::SemanticOcTree& map = m_maps[m_nextMap++];
+  semantic_octree::SemanticOcTree& map = m_maps[m_nextMap++].tree();
   map.setAbstraction(*m_options);
   m_sender.setMap(map, m_nextMap == m_maps.size());
   map.dropAbstraction();

@@ -1,6 +1,8 @@
 #pragma once
+#include <semantic_octree/MapFolder.h>
+
 #include <chrono>
-#include <vector>
+#include <deque>
 
 #include "radio/UdpSocket.h"
 #include "radio/Wish.h"
@@ -11,7 +13,7 @@ using Clock = std::chrono::steady_clock;
 using semantic_octree::Datagram;
 
 /** The maps to send, one after the other; all receivers get them. */
-using Maps = std::vector<semantic_octree::SemanticOcTree>;
+using Maps = std::deque<semantic_octree::StoredMap>;
 
 /** One receiver: from its request to its last receipt. */
 class Session {

@@ -1,11 +1,11 @@
 // Sends a map's compressed tree over a thin radio, what matters most first.
-#include <semantic_octree/TreeFile.h>
 #include <strict_files/TextFile.h>
 
 #include <filesystem>
 #include <ostream>
 
 #include "Application.h"
+#include "MemoryOption.h"
 #include "NumberChecks.h"
 #include "StandardOutput.h"
 #include "Station.h"
@@ -18,15 +18,17 @@ namespace fs = std::filesystem;
 struct Cli {
   std::vector<fs::path> maps;
   fs::path weights;
+  double memory = semantic_octree::MapFolderOptions().memory;
   radio::Wish own;
   StationOptions station;
 
   explicit Cli(CLI::App& app) {
     app.add_option(
            "MAP", maps,
-           "A map's own file (.semantic); of further ones, which it became later, only what "
-           "changed is sent")
+           "A map's own file (.semantic), or a folder of tiles; of further ones, which it became "
+           "later, only what changed is sent")
         ->required();
+    addMemoryOption(app, memory);
     app.add_option("--rate", station.rate,
                    "Bits a second, with the headers of IP and UDP (none: as fast as can be)")
         ->check(isNumber(strict_files::above(0)));
@@ -48,11 +50,21 @@ struct Cli {
   }
 };
 
+/** \throw std::runtime_error naming a file that cannot be read, before anybody waits for it. */
+void open(const Cli& cli, Maps& maps) {
+  for (const fs::path& path : cli.maps) {
+    maps.emplace_back(path, cli.memory / static_cast<double>(cli.maps.size()));
+    if (!maps.back().folder()) continue;
+    for (const std::string& problem : maps.back().folder()->problems())
+      throw std::runtime_error(problem);
+  }
+}
+
 int run(Cli& cli) {
   if (!cli.weights.empty()) cli.own.weights = strict_files::readText(cli.weights);
   Maps maps;
-  for (const fs::path& file : cli.maps) maps.push_back(semantic_octree::loadTree(file.string()));
-  if (!cli.weights.empty()) cli.own.forClasses(maps.front().classes(), cli.weights.string());
+  open(cli, maps);
+  if (!cli.weights.empty()) cli.own.forClasses(maps.front().tree().classes(), cli.weights.string());
   const StopRequest stop("after this datagram");
   Station station(maps, cli.own, cli.station);
   notes() << "Waiting at port " << station.port() << std::endl;

@@ -66,7 +66,7 @@ TEST_F(PlanOfALongRoad, keepsWithinABudgetOfATenthOfTheMap) {
   const std::string way = folder.read("out/path.csv");
   const double whole = plan("map.semantic", "-295,0,0", "295,0,0", narrow);
   EXPECT_EQ(folder.read("out/path.csv"), way);
-  // What the program takes anyhow, the budget, and 80 bytes for each column of the corridor.
-  EXPECT_LT(peak, least + m_megabytes / 10 + 80e-6 * (2 * kHalf / 0.2) * (20 / 0.2));
+  // What the program takes anyhow, the budget, and 40 bytes for each column of the corridor.
+  EXPECT_LT(peak, least + m_megabytes / 10 + 40e-6 * (2 * kHalf / 0.2) * (20 / 0.2));
   EXPECT_GT(whole, peak + 0.7 * m_megabytes);
 }

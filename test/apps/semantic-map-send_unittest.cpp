@@ -134,6 +134,31 @@ TEST_F(MapRadio, whatChangedFollowsTheFirstMap) {
   expectSame(folder.read("r.semantic"), compressed("later.semantic", "obstacles"));
 }
 
+TEST_F(MapRadio, foldersOfTilesAreSentAsWhatTheyHoldWithoutABudgetToSpeakOf) {
+  for (const std::string name : {"map", "later"})
+    ASSERT_EQ(runProgram("semantic-map-merge",
+                         {path(name + ".semantic"), "-o", path(name), "--tiles", "3.2"})
+                  .status,
+              0);
+  withSender("--memory 0 --weights weights.yaml --solution obstacles map later",
+             kReceive + "-o r.semantic");
+  expectSame(folder.read("r.semantic"), compressed("later.semantic", "obstacles"));
+}
+
+TEST_F(MapRadio, aTileThatCannotBeReadIsToldBeforeAnybodyWaits) {
+  ASSERT_EQ(runProgram("semantic-map-merge",
+                       {path("map.semantic"), "-o", path("tiles"), "--tiles", "3.2"})
+                .status,
+            0);
+  std::filesystem::path tile;
+  for (const auto& entry : std::filesystem::directory_iterator(path("tiles")))
+    if (entry.path().filename().string().rfind("tile_", 0) == 0) tile = entry.path();
+  std::filesystem::resize_file(tile, 10);
+  const ProgramRun run = runProgram("semantic-map-send", {path("tiles"), "--timeout", "1"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(run.errors, tile.filename().string())) << run.errors;
+}
+
 TEST_F(MapRadio, twoRobotsPlanOnWhatTheyShare) {
   withSender("--receivers 2 --lose 0.2 --weights weights.yaml map.semantic",
              kReceive + "--like map.semantic -o one.semantic && " + kReceive +

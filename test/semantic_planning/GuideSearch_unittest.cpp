@@ -1,6 +1,8 @@
 #include "planner/GuideSearch.h"
 
 #include "PlannerFixture.h"
+#include "ground/SurfaceTile.h"
+#include "planner/GuideField.h"
 
 using namespace semantic_planning;
 
@@ -101,6 +103,32 @@ TEST_F(GuideSearch, tellsItsLengthInEachRank) {
   EXPECT_NEAR(found.lengthPerRank[2], 1, 0.21);
   EXPECT_EQ(found.lengthPerRank[3], 0);
   EXPECT_NEAR(found.lengthPerRank[0] + 3, found.path.back().arcLength, 0.5);
+}
+
+TEST_F(GuideSearch, eachDrivableSurfaceHasANameInTheOrderOfTilesColumnsAndHeights) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  world.box(-4, 4, -2, 2, 2, 2.2, PaintedWorld::Road);  // a bridge
+  const Ground ground(map(), options.vehicle, options.ground, order);
+  GuideField field(ground, {start, goal, std::numeric_limits<double>::infinity()});
+  GuideField::Cell before;
+  int upon = 0;
+  for (const Column& tile : ground.tiles())
+    forColumnsOf(tile, [&](Column c) {
+      for (const Surface& s : ground.surfaces(c)) {
+        if (!s.drivable) continue;
+        const GuideField::Place place = field.placeNear(c, s.z, 0);
+        ASSERT_EQ(place.surface, &s);
+        EXPECT_TRUE(place.column == c);
+        EXPECT_EQ(field.placeOf(place.cell).surface, &s);
+        EXPECT_TRUE(field.placeOf(place.cell).column == c);
+        EXPECT_TRUE(before < place.cell);
+        EXPECT_EQ(field.label(place.cell).cost, GuideField::kUnreached);
+        field.label(place.cell).cost = 0;
+        before = place.cell;
+        upon += ground.surfaces(c).first != &s;
+      }
+    });
+  EXPECT_GT(upon, 200);
 }
 
 TEST_F(GuideSearch, keepsTheFootprintOffWalls) {

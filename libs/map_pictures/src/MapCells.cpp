@@ -17,9 +17,14 @@ namespace {
 /** More than that are smaller than a pixel. */
 constexpr std::size_t kMostCells = 600'000;
 
+struct Drawn {
+  unsigned depth;
+  std::size_t cells;  ///< at most
+};
+
 /** The largest depth at which there are not too many cells. Of a map in tiles, each tile comes in
  * once at most. */
-unsigned depthToDraw(const SemanticOcTree& tree, double minOccupancy) {
+Drawn depthToDraw(const SemanticOcTree& tree, double minOccupancy) {
   std::array<std::size_t, semantic_octree::kTreeDepth + 1> cells{};  // at each depth
   int deepest = semantic_octree::kTreeDepth;
   forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
@@ -29,7 +34,7 @@ unsigned depthToDraw(const SemanticOcTree& tree, double minOccupancy) {
     while (deepest > 1 && cells[deepest] > kMostCells) --deepest;
     return cube.depth < deepest;
   });
-  return static_cast<unsigned>(deepest);
+  return {static_cast<unsigned>(deepest), cells[deepest]};
 }
 
 MapCell cellOf(const Cube& cube, double voxelSize) {
@@ -60,7 +65,9 @@ std::vector<std::size_t> MapCells::countClasses(int numClasses) const {
 MapCells collectCells(const SemanticOcTree& tree, const PictureStyle& style) {
   MapCells map;
   map.minOccupancy = style.minOccupancy;
-  map.depth = depthToDraw(tree, style.minOccupancy);
+  const Drawn drawn = depthToDraw(tree, style.minOccupancy);
+  map.depth = drawn.depth;
+  map.cells.reserve(drawn.cells);
   const bool smooth = style.neighborWeight > 0 && map.depth == tree.getTreeDepth();
   const SmoothedView view(tree, {style.neighborWeight});
   forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {

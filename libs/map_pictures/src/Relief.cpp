@@ -7,15 +7,35 @@
 namespace map_pictures {
 namespace {
 
-/** Mean of the known heights around each pixel. */
-cv::Mat meanAround(const cv::Mat& height, int radius) {
-  cv::Mat known = height == height, values = height.clone(), sum, weight;
+/** Means around each pixel. */
+cv::Mat averaged(const cv::Mat& values, int radius) {
+  cv::Mat mean;
+  cv::boxFilter(values, mean, CV_32F, cv::Size(2 * radius + 1, 2 * radius + 1));
+  return mean;
+}
+
+/** The heights, and 0 where nothing is known. */
+cv::Mat knownHeights(const cv::Mat& height, const cv::Mat& known) {
+  cv::Mat values = height.clone();
   values.setTo(0, ~known);
-  known.convertTo(known, CV_32F, 1.0 / 255);
-  const cv::Size window(2 * radius + 1, 2 * radius + 1);
-  cv::boxFilter(values, sum, CV_32F, window);
-  cv::boxFilter(known, weight, CV_32F, window);
-  cv::Mat mean = sum / cv::max(weight, 1e-6);
+  return values;
+}
+
+/** 1 where something is known, else 0. */
+cv::Mat weightOf(const cv::Mat& known) {
+  cv::Mat weight;
+  known.convertTo(weight, CV_32F, 1.0 / 255);
+  return weight;
+}
+
+/** Mean of the known heights around each pixel. Maps may be large: as little as can be is in memory
+ * at a time. */
+cv::Mat meanAround(const cv::Mat& height, int radius) {
+  const cv::Mat known = height == height;
+  cv::Mat mean = averaged(knownHeights(height, known), radius);
+  cv::Mat weight = averaged(weightOf(known), radius);
+  cv::max(weight, 1e-6, weight);
+  cv::divide(mean, weight, mean);
   return mean;
 }
 

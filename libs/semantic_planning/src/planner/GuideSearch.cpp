@@ -4,17 +4,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <queue>
+#include <utility>
 
-#include "GuideRaster.h"
+#include "GuideField.h"
 
 namespace semantic_planning {
 
 namespace {
 
-using Cost = std::int64_t;
-constexpr Cost kUnreached = std::numeric_limits<Cost>::max();
+using Cost = GuideField::Cost;
 constexpr Cost kStraight = 5, kDiagonal = 7;  // lengths of steps, in fifths of a voxel
 
 /** A step to a neighboring column, and where discs and wheels are when it has been taken. */
@@ -49,113 +48,107 @@ class GuideSearch {
  public:
   GuideSearch(const EdgeChecker& checker, const PlanningRegion& region)
       : m_checker(checker),
-        m_raster(checker.ground(), region),
+        m_field(checker.ground(), region),
         m_steps(stepsOf(checker)),
-        m_weights(weightsOfRanks(checker.order())),
-        m_labels(static_cast<std::size_t>(m_raster.size())) {}
+        m_weights(weightsOfRanks(checker.order())) {}
 
   /** From one to the other, if there is a way. */
   void run(const GroundPose& start, const GroundPose& goal, Guide& guide) {
-    const int from = cellOf(start);
-    m_goal = cellOf(goal);
-    if (from == GuideRaster::kNone || m_goal == GuideRaster::kNone) return;
-    reach(from, {0, GuideRaster::kNone, 0, false});
+    const Place from = placeAt(start);
+    m_goal = placeAt(goal);
+    if (!from.surface || !m_goal.surface) return;
+    reach(from, {0, GuideField::kNone, 0, 0, false});
     while (!m_queue.empty()) {
-      const Entry entry = m_queue.top();
+      const Cell cell = m_queue.top().cell;
       m_queue.pop();
-      if (entry.cell == m_goal) return traceTo(m_goal, guide);
-      if (label(entry.cell).done) continue;
-      label(entry.cell).done = true;
-      for (std::size_t i = 0; i < m_steps.size(); ++i) take(i, entry.cell);
+      if (cell == m_goal.cell) return traceTo(cell, guide);
+      if (std::exchange(m_field.label(cell).done, true)) continue;
+      const Place place = m_field.placeOf(cell);
+      for (std::size_t i = 0; i < m_steps.size(); ++i) take(i, place);
     }
   }
 
  private:
-  struct Label {
-    Cost cost = kUnreached;
-    int before = GuideRaster::kNone;
-    std::int8_t step = 0;  ///< with which it was reached
-    bool done = false;
-  };
+  using Cell = GuideField::Cell;
+  using Label = GuideField::Label;
+  using Place = GuideField::Place;
   struct Entry {
     Cost estimate;
-    int cell;
+    Cell cell;
     bool operator<(const Entry& o) const {  // the least on top
-      return estimate != o.estimate ? estimate > o.estimate : cell > o.cell;
+      return estimate != o.estimate ? estimate > o.estimate : o.cell < cell;
     }
   };
 
-  Label& label(int cell) { return m_labels[static_cast<std::size_t>(cell)]; }
-
-  int cellOf(const GroundPose& p) const {
-    return m_raster.near(m_checker.ground().columnAt(p.pose.x, p.pose.y), p.z, 0);
+  Place placeAt(const GroundPose& p) const {
+    return m_field.placeNear(m_checker.ground().columnAt(p.pose.x, p.pose.y), p.z, 0);
   }
 
-  void take(std::size_t number, int from) {
+  void take(std::size_t number, const Place& from) {
     const Step& step = m_steps[number];
-    const auto& cell = m_raster[from];
-    const int to = m_raster.near(cell.column + step.by, cell.z, m_checker.ground().step());
-    if (to == GuideRaster::kNone) return;
-    const Cost before = label(from).cost, known = label(to).cost;
-    if (label(to).done || before + step.length >= known) return;
+    const Place to =
+        m_field.placeNear(from.column + step.by, from.surface->z, m_checker.ground().step());
+    if (!to.surface) return;
+    const Cost before = m_field.label(from.cell).cost;
+    const Label& known = m_field.label(to.cell);
+    if (known.done || before + step.length >= known.cost) return;
     const colored_graph::Rank rank = rankAt(step, to);
     if (rank == colored_graph::kForbidden) return;
     const Cost cost = before + step.length * m_weights[static_cast<std::size_t>(rank)];
-    if (cost < known && (to == m_goal || fits(step, to)))
-      reach(to, {cost, from, static_cast<std::int8_t>(number), false});
+    if (cost < known.cost && (to.cell == m_goal.cell || fits(step, to)))
+      reach(to, {cost, from.cell.tile, from.cell.index, static_cast<std::int8_t>(number), false});
   }
 
   /** The worst under the wheels. */
-  colored_graph::Rank rankAt(const Step& step, int at) const {
-    const auto& cell = m_raster[at];
+  colored_graph::Rank rankAt(const Step& step, const Place& at) const {
     colored_graph::Rank worst = 0;
     for (const Column& wheel : step.wheels) {
-      const int below = m_raster.near(cell.column + wheel, cell.z, 2 * m_checker.ground().step());
-      if (below == GuideRaster::kNone) return colored_graph::kForbidden;
-      worst = std::max(worst, m_checker.order().rank(m_raster[below].classId));
+      const Surface* below =
+          m_field.near(at.column + wheel, at.surface->z, 2 * m_checker.ground().step());
+      if (!below) return colored_graph::kForbidden;
+      worst = std::max(worst, m_checker.order().rank(below->classId));
     }
     return worst;
   }
 
-  bool fits(const Step& step, int at) const {
-    const auto& cell = m_raster[at];
+  bool fits(const Step& step, const Place& at) const {
     for (std::size_t i = 0; i < step.discs.size(); ++i) {
       const auto& disc = m_checker.discs()[i];
-      const int below = m_raster.near(cell.column + step.discs[i], cell.z, disc.tolerance);
-      if (below == GuideRaster::kNone || m_raster[below].clearance2 < disc.needed2) return false;
+      const Surface* below = m_field.near(at.column + step.discs[i], at.surface->z, disc.tolerance);
+      if (!below || below->clearance2 < disc.needed2) return false;
     }
     return true;
   }
 
-  void reach(int cell, const Label& reached) {
-    label(cell) = reached;
-    m_queue.push({reached.cost + bound(m_raster[cell].column), cell});
+  void reach(const Place& place, const Label& reached) {
+    m_field.label(place.cell) = reached;
+    m_queue.push({reached.cost + bound(place.column), place.cell});
   }
 
   Cost bound(Column c) const {
-    const Column goal = m_raster[m_goal].column;
-    const Cost dx = std::abs(c.x - goal.x), dy = std::abs(c.y - goal.y);
+    const Cost dx = std::abs(c.x - m_goal.column.x), dy = std::abs(c.y - m_goal.column.y);
     return kStraight * std::max(dx, dy) + (kDiagonal - kStraight) * std::min(dx, dy);
   }
 
-  PathPoint pointAt(int cell) const {
+  PathPoint pointAt(const Cell& cell) const {
     const Ground& ground = m_checker.ground();
+    const Place place = m_field.placeOf(cell);
     PathPoint p;
-    p.x = ground.centerOf(m_raster[cell].column.x);
-    p.y = ground.centerOf(m_raster[cell].column.y);
-    p.z = ground.centerOf(m_raster[cell].z);
-    p.classId = m_raster[cell].classId;
+    p.x = ground.centerOf(place.column.x);
+    p.y = ground.centerOf(place.column.y);
+    p.z = ground.centerOf(place.surface->z);
+    p.classId = place.surface->classId;
     return p;
   }
 
-  void traceTo(int cell, Guide& guide) {
+  void traceTo(Cell cell, Guide& guide) {
     guide.lengthPerRank.resize(m_weights.size());
-    for (; cell != GuideRaster::kNone; cell = label(cell).before) {
+    for (; cell; cell = m_field.label(cell).before()) {
       guide.path.push_back(pointAt(cell));
-      const Label& at = label(cell);
-      if (at.before == GuideRaster::kNone) continue;
+      const Label& at = m_field.label(cell);
+      if (!at.before()) continue;
       const Cost length = m_steps[static_cast<std::size_t>(at.step)].length;
-      const Cost weight = (at.cost - label(at.before).cost) / length;
+      const Cost weight = (at.cost - m_field.label(at.before()).cost) / length;
       const auto rank = std::lower_bound(m_weights.begin(), m_weights.end(), weight);
       guide.lengthPerRank[static_cast<std::size_t>(rank - m_weights.begin())] +=
           static_cast<double>(length) / kStraight * m_checker.ground().voxelSize();
@@ -164,12 +157,11 @@ class GuideSearch {
   }
 
   const EdgeChecker& m_checker;
-  const GuideRaster m_raster;
+  GuideField m_field;
   const std::array<Step, 8> m_steps;
   const std::vector<Cost> m_weights;  ///< of a length, by rank
-  std::vector<Label> m_labels;
   std::priority_queue<Entry> m_queue;
-  int m_goal = GuideRaster::kNone;
+  Place m_goal;
 };
 
 }  // namespace

@@ -173,6 +173,7 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   if (refuse(start, goal, result)) return result;
   m_roadmap = std::make_unique<MapRoadmap>(m_candidates, m_checker, m_options.roadmap, *m_startPose,
                                            region(m_options.roadmap.buffer));
+  if (m_corridor) m_candidates.forget();  // of a map that is too large: they take as much as ground
   m_start = m_roadmap->roadmap().addQueryVertex(*m_startPose);
   m_goal = m_roadmap->roadmap().addQueryVertex(*m_goalPose);
   clock.end("roadmap");

@@ -94,31 +94,31 @@ Length StationSearch::limit(const Place& to, bool forward) const {
 }
 
 void StationSearch::connect(const Place& from, Place& to, const WayPricing& pricing) {
-  for (Connection* connection : connections(from, to)) {
-    auto [before, cost] = leastBefore(from, *connection);
-    const bool forward = connection->end.forward;
+  const Span span = connections(from, to);
+  for (std::uint32_t i = 0; i < span.count; ++i) {
+    Connection& connection = m_connections[span.first + i];
+    auto [before, cost] = leastBefore(from, connection);
+    const bool forward = endOf(connection.curve).forward;
     const Length limit = this->limit(to, forward);
     if (!before || cost >= limit) continue;
-    evaluate(*connection, limit - cost);
-    if (!connection->profile) continue;
-    cost += pricing.of(*connection->profile);
-    if (cost < limit) to.labels[forward ? 0 : 1] = {cost, connection, before, true};
+    evaluate(connection, limit - cost);
+    if (!connection.profile) continue;
+    cost += pricing.of(*connection.profile);
+    if (cost < limit) to.labels[forward ? 0 : 1] = {cost, &connection, before, true};
   }
 }
 
-const std::vector<StationSearch::Connection*>& StationSearch::connections(const Place& from,
-                                                                          Place& to) {
+StationSearch::Span StationSearch::connections(const Place& from, Place& to) {
   if (to.connections.empty()) to.connections.resize(to.number - to.firstOrigin);
-  auto& known = to.connections[from.number - to.firstOrigin];
-  if (known) return *known;
-  known.emplace();
-  for (const ReedsSheppCurve& curve : m_price.curves(from.pose.pose, to.pose.pose)) {
-    if (curve.length() > m_reach) continue;
-    m_connections.push_back({curve, from.pose.z, to.pose.z, lengthDown(m_price.of(curve)),
-                             beginOf(curve), endOf(curve), Connection::New, std::nullopt});
-    known->push_back(&m_connections.back());
-  }
-  return *known;
+  Span& span = to.connections[from.number - to.firstOrigin];
+  if (span.isKnown) return span;
+  const auto first = static_cast<std::uint32_t>(m_connections.size());
+  for (const ReedsSheppCurve& curve : m_price.curves(from.pose.pose, to.pose.pose))
+    if (curve.length() <= m_reach)
+      m_connections.push_back({curve, from.pose.z, to.pose.z, lengthDown(m_price.of(curve)),
+                               Connection::New, std::nullopt});
+  span = {first, static_cast<std::uint32_t>(m_connections.size()) - first, true};
+  return span;
 }
 
 void StationSearch::evaluate(Connection& connection, Length most) {
@@ -133,9 +133,10 @@ void StationSearch::evaluate(Connection& connection, Length most) {
 std::pair<const StationSearch::Label*, Length> StationSearch::leastBefore(
     const Place& from, const Connection& connection) const {
   std::pair<const Label*, Length> least{nullptr, 0};
+  const DriveState begin = beginOf(connection.curve);
   for (const Label& label : from.labels) {
     if (!label.reached) continue;
-    const double change = label.last ? m_price.ofChange(label.last->end, connection.begin) : 0;
+    const double change = label.last ? m_price.ofChange(endOf(label.last->curve), begin) : 0;
     const Length cost = label.cost + connection.price + lengthDown(change);
     if (!least.first || cost < least.second) least = {&label, cost};
   }

@@ -3,6 +3,7 @@
 #include <semantic_planning/vehicle/DrivePrice.h>
 
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -39,8 +40,12 @@ class StationSearch {
 
  private:
   using Length = colored_graph::Length;
-  struct Place;
   struct Connection;
+  /** Of m_connections. */
+  struct Span {
+    std::uint32_t first = 0, count = 0;
+    bool isKnown = false;
+  };
   /** The best way that is known to a pose, arriving in one gear. */
   struct Label {
     Length cost = 0;
@@ -54,9 +59,8 @@ class StationSearch {
     bool isFree;                   ///< to connect with poses that head elsewhere
     ClassId classId;
     std::size_t number, firstOrigin;  ///< among the places of all stations
-    /** From each place from `firstOrigin` on, those to here. */
-    std::vector<std::optional<std::vector<Connection*>>> connections;
-    std::array<Label, 2> labels;  ///< arriving forward, backward
+    std::vector<Span> connections;    ///< from each place from `firstOrigin` on, those to here
+    std::array<Label, 2> labels;      ///< arriving forward, backward
 
     const Label* best() const;
   };
@@ -65,7 +69,6 @@ class StationSearch {
     ReedsSheppCurve curve;
     int from, to;  ///< keys of the surfaces
     Length price;
-    DriveState begin, end;
     enum { New, Costly, Known } state = New;  ///< costly: too much so, in the present run at least
     std::optional<colored_graph::EdgeProfile> profile;  ///< if known; none: it cannot be driven
   };
@@ -81,7 +84,7 @@ class StationSearch {
   /** Ways that arrive in this gear are of use if they cost less. */
   Length limit(const Place& to, bool forward) const;
   void connect(const Place& from, Place& to, const WayPricing& pricing);
-  const std::vector<Connection*>& connections(const Place& from, Place& to);
+  Span connections(const Place& from, Place& to);
   /** Looks at a curve unless its classes cost more than `most`. */
   void evaluate(Connection& connection, Length most);
   /** The least cost up to where a connection's curve has been driven, its classes left out. */

@@ -10,10 +10,12 @@ using semantic_types::ClassId;
 /** A place where the ground can be stood upon: the top voxel of something, or a filled hole, with
  * the vehicle's height free above. A column of the map may have several, as under a bridge. */
 struct Surface {
+  Surface() : filled(false), drivable(false) {}
+
   std::uint16_t z = 0;                         ///< key of its voxel
   ClassId classId = semantic_types::kNoClass;  ///< likeliest class; kNoClass: unknown
-  bool filled = false;                         ///< no voxel is known here
-  bool drivable = false;                       ///< not too steep
+  bool filled : 1;                             ///< no voxel is known here
+  bool drivable : 1;                           ///< not too steep
   /** Squared distance from this column to the nearest one where the vehicle must not be, between
    * their nearest sides, in voxels; at most Ground::largestClearance() squared. */
   std::uint16_t clearance2 = 0;
@@ -25,6 +27,7 @@ struct Surface {
   }
   bool operator!=(const Surface& o) const { return !(*this == o); }
 };
+static_assert(sizeof(Surface) == 8, "a map has one for nearly each of its columns");
 
 /** The surfaces of a column, lowest first. */
 struct SurfaceRange {
