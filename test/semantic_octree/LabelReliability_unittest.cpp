@@ -68,7 +68,7 @@ TEST(LabelReliability, isThatOfUrnsWithinWhatTheParametersAllow) {
     for (const double accuracy : {0.5, 0.7, 0.8}) {
       const auto labels = agreementOfPairs(accuracy, 0, K, 60000, random).explain(most, K);
       EXPECT_NEAR(labels.accuracy, accuracy, 0.03) << K;
-      EXPECT_EQ(labels.correlation, 0);
+      EXPECT_LE(labels.correlation, 0.02);
     }
   }
 }

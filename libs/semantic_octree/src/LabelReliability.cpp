@@ -9,6 +9,9 @@ using semantic_types::ClassId;
 namespace {
 
 constexpr double kStep = 1.0 / 64;
+/** Where a border crosses a cell, labels that are right disagree, and many more of them say no
+ * more: without any correlation, cells would be too sure. */
+constexpr double kLeastCorrelation = 0.02;
 /** Labels that agree as the parameters say, before any are seen. */
 constexpr double kPriorLabels = 1000;
 
@@ -37,11 +40,13 @@ LabelReliability LabelAgreement::explain(const FilterParameters& p, int numClass
   const double seen = (m_agreeing + kPriorLabels * expected) / (m_labels + kPriorLabels);
   if (seen > expected - kStep) return most;
   const double agreement = std::round(seen / kStep) * kStep;
+  const double least = std::min(kLeastCorrelation, p.labelCorrelation);
   const double correlation = (agreement - independent) / (1 - independent);
-  if (correlation >= 0) return {p.accuracy, std::min(p.labelCorrelation, correlation)};
+  if (correlation >= least) return {p.accuracy, std::min(p.labelCorrelation, correlation)};
   // Solved for the accuracy; labels that agree by chance alone still say a little.
-  const double more = K * std::max(agreement, 1 / K + kStep) - 1;
-  return {std::min(p.accuracy, (1 + std::sqrt((K - 1) * more)) / K), 0};
+  const double ofIndependent = std::max((agreement - least) / (1 - least), 1 / K + kStep);
+  const double accuracy = (1 + std::sqrt((K - 1) * (K * ofIndependent - 1))) / K;
+  return {std::min(p.accuracy, accuracy), least};
 }
 
 }  // namespace semantic_octree
