@@ -25,8 +25,8 @@ struct Cli {
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("HOST:PORT", sender,
-                   "Where semantic-map-send is; the port may be left out (4217)")
+    app.add_option("SENDER", sender,
+                   "Where semantic-map-send is, HOST:PORT; the port may be left out (4217)")
         ->required();
     outputs.add(app, output, "FILE", "The map to write (.semantic)")->required();
     app.add_option("--weights", weights, "What matters here (YAML); without: what the sender says");
