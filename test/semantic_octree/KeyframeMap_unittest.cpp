@@ -286,6 +286,28 @@ TEST(KeyframeMap, makesAnewOnlyTilesInWhichAScanSeesSomethingElse) {
   EXPECT_LT(map.size(), before.size());
 }
 
+TEST(KeyframeMap, correctsTilesThatScansShareAtTheirFarthest) {
+  const Variant variant{"row"};
+  std::mt19937 random(8);
+  SemanticOcTree map = emptyMap(variant);
+  KeyframeMap keyframes(map);
+  Scans scans;
+  RandomScanOptions options;
+  options.sensorSpread = 0;
+  double x = 0;  // beams reach 6 m, tiles are of 3.2 m
+  for (KeyframeId id = 0; id < 30; ++id, x += between(random, 11, 15)) {
+    scans.poses.push_back(Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)));
+    scans.all.push_back({id, randomScan(random, options), 0});
+    keyframes.begin(scans.poses[id]);
+    keyframes.insert(scans.all[id].scan.cloud, scans.all[id].scan.T_map_sensor, optionsOf(variant));
+  }
+  for (KeyframeId id = 0; id < 30; ++id) {
+    scans.poses[id].translation() += randomPose(random, 0.5).translation();
+    keyframes.move({{id, scans.poses[id]}});
+    ASSERT_TRUE(map == scans.mappedFromScratch(variant)) << id;
+  }
+}
+
 /** Nothing else changes that would lead the eye there. */
 TEST(KeyframeMap, tellsOfABlockThatIsNotWorthItsPriceAnyMore) {
   Variant variant{"alone"};

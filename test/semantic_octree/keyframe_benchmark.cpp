@@ -74,12 +74,15 @@ void correctATenthInTheMiddle(benchmark::State& state) {
   correct(state, kKeyframes / 2, kKeyframes / 10, 0.3);
 }
 
+void correctOneInTheMiddle(benchmark::State& state) { correct(state, kKeyframes / 2, 1, 0.3); }
+
 void correctAll(benchmark::State& state) { correct(state, 0, kKeyframes, 0.3); }
 
 BENCHMARK(mapping)->ArgName("g")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(mappingKeyframes)->ArgName("g")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(correctTheLastTenth)->ArgName("g")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(correctATenthInTheMiddle)->ArgName("g")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(correctOneInTheMiddle)->ArgName("g")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(correctAll)->ArgName("g")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -22,6 +23,11 @@ class HitTiles {
 
   /** Adds a voxel. \return whether it was there before */
   bool testAndSet(const ScanGrid::Place& voxel);
+  /** Adds a tile's voxels; it has none yet. */
+  void add(std::size_t tile, const VoxelBits* words) {
+    m_indices[tile] = static_cast<std::uint32_t>(m_tiles.size());
+    std::copy_n(words, ScanGrid::kWords, m_tiles.emplace_back().words);
+  }
   /** Ranks voxels. \return their number */
   std::uint32_t rank();
 

@@ -10,12 +10,18 @@
 namespace semantic_octree {
 
 struct KeyframeMap::Content {
+  /** What a scan saw. The box tells, without reading it, where that can be. */
+  struct StoredVoxels {
+    ScanStorage::Piece packed;
+    TileBox box;
+  };
   struct StoredScan {
     KeyframeId keyframe;
     Eigen::Isometry3d T_keyframe_sensor;
     InsertionOptions options;
     std::int64_t time;  ///< of the map's clock
-    ScanStorage::Piece cloud, voxels;
+    ScanStorage::Piece cloud;
+    StoredVoxels voxels;
   };
   struct Keyframe {
     Eigen::Isometry3d T_map_keyframe;
@@ -34,6 +40,13 @@ struct KeyframeMap::Content {
   void trace(const StoredScan& s, const LabeledCloud& cloud, const Eigen::Isometry3d& T,
              Scan& scan) const {
     scan.set(cloud, T * s.T_keyframe_sensor, map.getResolution(), map.m_filter, s.options);
+  }
+  StoredVoxels keep(PackedScan voxels) {
+    const TileBox box(tilesOf(voxels));
+    return {storage.keep(voxels.release()), box};
+  }
+  PackedScan load(const StoredVoxels& voxels) const {
+    return PackedScan(storage.load(voxels.packed));
   }
   /** Calls f with a scan for it to fill; what fails half-filled must not leak into the next. */
   template <typename F>
@@ -65,26 +78,26 @@ class KeyframeMap::Correction {
   /** Drops what was prepared, if it does not come to pass. */
   ~Correction() {
     for (auto& voxels : m_voxels)
-      if (voxels) m.storage.drop(*voxels);
+      if (voxels) m.storage.drop(voxels->packed);
   }
 
   /** The scan is to be as if its keyframe were there. */
   void move(std::size_t scan, const Eigen::Isometry3d& T_map_keyframe) {
     const auto& s = m.scans[scan];
-    const PackedScan before(m.storage.load(s.voxels));
+    const PackedScan before = m.load(s.voxels);
     const LabeledCloud cloud = unpackCloud(m.storage.load(s.cloud));
     m.inBuffers([&](Scan& traced) {
       m.trace(s, cloud, T_map_keyframe, traced);
-      const PackedScan after = traced.pack();
+      PackedScan after = traced.pack();
       addTiles(differingTiles(before, after));
-      m_voxels[scan] = m.storage.keep(after.bytes());
+      m_voxels[scan] = m.keep(std::move(after));
     });
     ++m_report.scansTraced;
   }
   /** The scan is to be as if it had seen nothing. */
   void remove(std::size_t scan) {
-    addTiles(tilesOf(PackedScan(m.storage.load(m.scans[scan].voxels))));
-    m_voxels[scan] = m.storage.keep(PackedScan(false, {}).bytes());
+    addTiles(tilesOf(m.load(m.scans[scan].voxels)));
+    m_voxels[scan] = m.keep(PackedScan(false, {}));
   }
 
   /** Puts it into the map. */
@@ -93,7 +106,11 @@ class KeyframeMap::Correction {
     if (m_tiles.empty()) return accept();
     SemanticOcTree anew = emptyLike(m.map);
     anew.m_clock = 0;
-    for (std::size_t i = 0; i < m.scans.size(); ++i) merge(i, anew);
+    const TileBox box(m_tiles);
+    for (std::size_t i = 0; i < m.scans.size(); ++i) {
+      anew.ageUntil(m.scans[i].time);
+      if (voxelsOf(i).box.meets(box)) merge(i, anew);
+    }
     anew.ageUntil(m.map.m_clock);
     m.map.replace(m_tiles, anew);
     return accept();
@@ -108,13 +125,16 @@ class KeyframeMap::Correction {
     m_tiles.swap(all);
   }
 
+  /** As they will be. */
+  const Content::StoredVoxels& voxelsOf(std::size_t scan) const {
+    return m_voxels[scan] ? *m_voxels[scan] : m.scans[scan].voxels;
+  }
   void merge(std::size_t i, SemanticOcTree& anew) {
-    const auto& s = m.scans[i];
-    const PackedScan packed(m.storage.load(m_voxels[i] ? *m_voxels[i] : s.voxels));
+    const InsertionOptions& options = m.scans[i].options;
+    const PackedScan packed = m.load(voxelsOf(i));
     m.inBuffers([&](Scan& scan) {
-      scan.unpack(packed, m_tiles, m.map.numClasses(), s.options);
-      anew.ageUntil(s.time);
-      anew.merge(scan, s.options.threads);
+      scan.unpack(packed, m_tiles, m.map.numClasses(), options);
+      anew.merge(scan, options.threads);
       m_report.scansMerged += scan.hasVoxels();
     });
   }
@@ -126,8 +146,8 @@ class KeyframeMap::Correction {
   }
 
   Content& m;
-  std::vector<std::optional<ScanStorage::Piece>> m_voxels;  ///< of scans that change
-  TileCodes m_tiles;                                        ///< to be made anew
+  std::vector<std::optional<Content::StoredVoxels>> m_voxels;  ///< of scans that change
+  TileCodes m_tiles;                                           ///< to be made anew
   CorrectionReport m_report;
 };
 
@@ -157,7 +177,7 @@ InsertionReport KeyframeMap::insert(const LabeledCloud& cloud,
   m->inBuffers([&](Scan& scan) {
     m->trace(stored, cloud, m->keyframes[id].T_map_keyframe, scan);
     stored.cloud = m->storage.keep(packCloud(cloud));
-    stored.voxels = m->storage.keep(scan.pack().bytes());
+    stored.voxels = m->keep(scan.pack());
     m->map.ageUntil(time);
     m->map.merge(scan, options.threads);
     report = scan.report();
@@ -196,7 +216,7 @@ CorrectionReport KeyframeMap::remove(KeyframeId keyframe) {
   for (auto& s : m->scans)
     if (isOfKeyframe(s)) {
       m->storage.drop(s.cloud);
-      m->storage.drop(s.voxels);
+      m->storage.drop(s.voxels.packed);
     }
   m->scans.erase(std::remove_if(m->scans.begin(), m->scans.end(), isOfKeyframe), m->scans.end());
   return report;
@@ -213,7 +233,8 @@ const Eigen::Isometry3d& KeyframeMap::pose(KeyframeId keyframe) const {
 auto KeyframeMap::bytes() const -> Bytes {
   Bytes bytes;
   for (const auto& s : m->scans)
-    (m->storage.isInMemory() ? bytes.inMemory : bytes.onDisk) += s.cloud.size + s.voxels.size;
+    (m->storage.isInMemory() ? bytes.inMemory : bytes.onDisk) +=
+        s.cloud.size + s.voxels.packed.size;
   bytes.inMemory += m->scans.size() * sizeof(Content::StoredScan) +
                     m->keyframes.size() * sizeof(Content::Keyframe);
   return bytes;

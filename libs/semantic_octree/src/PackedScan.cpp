@@ -133,15 +133,13 @@ void Scan::unpack(const PackedScan& scan, const TileCodes& wanted, int numClasse
                   const InsertionOptions& options) {
   m_report = InsertionReport();
   m_labels = scan.labels();
-  VoxelIndex lowest = VoxelIndex::Constant(kNumKeys), highest = -lowest;
-  forEachTileIn(scan, wanted, [&](const PackedTile& tile) {
-    lowest = lowest.min(tileOf(tile.code));
-    highest = highest.max(tileOf(tile.code));
-  });
-  if ((highest < lowest).any()) return;
+  TileBox box;
+  forEachTileIn(scan, wanted, [&](const PackedTile& tile) { box.add(tileOf(tile.code)); });
+  if (box.empty()) return;
   m_free.resize(1);
   // The box that ends one voxel inside of the outer tiles is the one that has no others.
-  m_free[0].cover(lowest * 8 - kKeyOfOrigin + 1, highest * 8 - kKeyOfOrigin + 6, maxTiles(options));
+  m_free[0].cover(box.lowest() * 8 - kKeyOfOrigin + 1, box.highest() * 8 - kKeyOfOrigin + 6,
+                  maxTiles(options));
   m_hits.cover(m_free[0].numTilesInAll());
   m_votes.beginUnpacking(numClasses);
   forEachTileIn(scan, wanted, [&](const PackedTile& tile) { unpackTile(tile, scan.isSoft()); });
@@ -158,12 +156,9 @@ void Scan::unpackTile(const PackedTile& tile, bool soft) {
   VoxelBits hit[ScanGrid::kWords] = {};
   takeWords(bytes, free, freeMask);
   takeWords(bytes, hit, hitMask);
-  const std::size_t number = m_free[0].numberOf(relative);
-  for (unsigned w = 0; w < ScanGrid::kWords; ++w)
-    for (VoxelBits bits = hit[w]; bits; bits &= bits - 1) {
-      m_hits.testAndSet({number, 64 * w + static_cast<unsigned>(__builtin_ctzll(bits))});
-      m_votes.unpack(bytes, soft);
-    }
+  if (hitMask) m_hits.add(m_free[0].numberOf(relative), hit);
+  for (int w = 0; w < ScanGrid::kWords; ++w)
+    for (int i = countOf(hit[w]); i > 0; --i) m_votes.unpack(bytes, soft);
 }
 
 }  // namespace semantic_octree

@@ -50,7 +50,8 @@ class PackedScan {
     const char* at = &m_bytes[1];
     return takeFrom<LabelReliability>(at);
   }
-  const Bytes& bytes() const { return m_bytes; }
+  /** Nothing is left. */
+  Bytes release() { return std::move(m_bytes); }
 
   /** To be filled at the end of bytes, then endTile(). */
   Bytes& beginTile(std::uint64_t code) {

@@ -37,6 +37,30 @@ inline VoxelIndex tileOf(std::uint64_t code) {
   return {collect(code), collect(code >> 1), collect(code >> 2)};
 }
 
+/** The box around some tiles. */
+class TileBox {
+ public:
+  TileBox() = default;
+  explicit TileBox(const TileCodes& tiles) {
+    for (const std::uint64_t code : tiles) add(tileOf(code));
+  }
+
+  void add(const VoxelIndex& tile) {
+    m_lowest = m_lowest.min(tile);
+    m_highest = m_highest.max(tile);
+  }
+  bool empty() const { return (m_highest < m_lowest).any(); }
+  /** An empty one meets none. */
+  bool meets(const TileBox& o) const {
+    return (m_lowest <= o.m_highest).all() && (o.m_lowest <= m_highest).all();
+  }
+  const VoxelIndex& lowest() const { return m_lowest; }
+  const VoxelIndex& highest() const { return m_highest; }
+
+ private:
+  VoxelIndex m_lowest = VoxelIndex::Constant(kNumKeys), m_highest = -m_lowest;
+};
+
 /** Those of some tiles that are below a node. */
 struct TileRange {
   TileCodes::const_iterator first, last;

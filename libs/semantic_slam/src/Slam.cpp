@@ -8,8 +8,9 @@ namespace semantic_slam {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-/** Standard deviations of what registrations say. */
-constexpr double kRegistrationMeters = 0.01, kRegistrationAngle = 0.03 * kDegree;
+/** Of the information that a registration's points would have together, were each off by itself. */
+constexpr double kOwnInformation = 0.5;
+/** Standard deviations of what loops say: less certain than their points, for they may be wrong. */
 constexpr double kLoopMeters = 0.03, kLoopAngle = 0.1 * kDegree;
 /** Of submaps: those of before are where they seem to be, a loop's other end may be meters off. */
 const std::vector<double> kCellsNearby = {2, 1}, kCellsOfLoops = {8, 4, 2, 1};
@@ -73,19 +74,19 @@ auto Slam::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_senso
                      motion.tail<3>().norm() >= m_options.keyframeAngle * kDegree;
   if (!isNew && !m_options.registerAll) return {last, T_guess};
   Seen now = seen(cloud, T_robot_sensor, T_odometry_robot);
-  const auto T_registered = track(now, T_guess);
+  const auto registered = track(now, T_guess);
+  const Eigen::Isometry3d T_last_robot = registered ? registered->T_submap_scan : T_guess;
   if (!isNew) {
-    if (T_registered) moveOn(*T_registered, T_odometry_robot);
-    return {last, T_registered.value_or(T_guess)};
+    if (registered) moveOn(T_last_robot, T_odometry_robot);
+    return {last, T_last_robot};
   }
   const double way = T_guess.translation().norm();
   m_edges.push_back({last, last + 1, T_guess, odometryInformation(way)});
-  if (T_registered)
-    m_edges.push_back(
-        {last, last + 1, *T_registered, informationOf(kRegistrationMeters, kRegistrationAngle)});
+  if (registered)
+    m_edges.push_back({last, last + 1, T_last_robot, kOwnInformation * registered->information});
   else
     ++m_numLost;
-  begin(std::move(now), rigid(m_poses.back() * T_registered.value_or(T_guess)));
+  begin(std::move(now), rigid(m_poses.back() * T_last_robot));
   m_keyframes.back().way = m_keyframes[last].way + way;
   return {last + 1, identity, true, closeLoop()};
 }
@@ -113,15 +114,14 @@ void Slam::moveOn(const Eigen::Isometry3d& T_keyframe_robot,
   m_T_odometry_last = T_odometry_robot;
 }
 
-std::optional<Eigen::Isometry3d> Slam::track(const Seen& seen,
-                                             const Eigen::Isometry3d& T_last_guess) {
+std::optional<Registration> Slam::track(const Seen& seen, const Eigen::Isometry3d& T_last_guess) {
   const std::size_t last = m_keyframes.size() - 1;
   const auto before = static_cast<std::size_t>(m_options.submapKeyframes) - 1;
   if (m_nearby.empty())
     m_nearby = submapsOf(last - std::min(last, before), last, last, kCellsNearby);
   const double way = (m_T_odometry_last.inverse() * seen.T_odometry_robot).translation().norm();
   const Matrix6 information = odometryInformation(way);
-  const Registration r = match(m_nearby, seen, T_last_guess);
+  Registration r = match(m_nearby, seen, T_last_guess);
   const Vector6 off = vectorOf(T_last_guess.inverse() * r.T_submap_scan);
   const double farOff = std::max(kFarOff, kFar / std::sqrt(information(0, 0)));
   const double farTurned = std::max(kFarTurned, kFar / std::sqrt(information(5, 5)));
@@ -129,7 +129,8 @@ std::optional<Eigen::Isometry3d> Slam::track(const Seen& seen,
       off.head<3>().norm() > farOff || off.tail<3>().norm() > farTurned)
     return std::nullopt;
   const Eigen::Isometry3d T_map = m_poses[last] * r.T_submap_scan;
-  return m_poses[last].inverse() * levelled(T_map, seen.T_odometry_robot);
+  r.T_submap_scan = m_poses[last].inverse() * levelled(T_map, seen.T_odometry_robot);
+  return r;
 }
 
 Matrix6 Slam::odometryInformation(double way) const {

@@ -56,7 +56,7 @@ class Slam {
   void moveOn(const Eigen::Isometry3d& T_keyframe_robot, const Eigen::Isometry3d& T_odometry_robot);
   /** Registers to the last keyframes. \param T_last_guess frame of the last keyframe of these
    * \return nothing: it fits badly, or says otherwise than odometry. */
-  std::optional<Eigen::Isometry3d> track(const Seen& seen, const Eigen::Isometry3d& T_last_guess);
+  std::optional<Registration> track(const Seen& seen, const Eigen::Isometry3d& T_last_guess);
   /** Of a step, frame of its end. \param way meters */
   Matrix6 odometryInformation(double way) const;
   /** Height, roll and pitch as odometry has them. */
