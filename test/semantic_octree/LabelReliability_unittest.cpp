@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "PackedScan.h"
 #include "PlainMap.h"
 
 using namespace semantic_octree;
@@ -38,7 +39,7 @@ LabelAgreement agreementOfPairs(double accuracy, double correlation, int K, int 
   return agreement;
 }
 
-/** A wall with many points a voxel, of which this share has a random label. */
+/** A wall with three points a voxel of 0.1 m, of which this share has a random label. */
 PosedCloud noisyWall(double wrong, int K, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform;
@@ -86,6 +87,14 @@ TEST(LabelReliability, isNeverMoreThanTheParametersSay) {
     }
 }
 
+TEST(LabelReliability, ofAFilterThatExpectsLittleIsThatOfUrnsToo) {
+  std::mt19937 random(3);
+  const auto labels = agreementOfPairs(0.5, 0.3, 3, 60000, random).explain(trusting(0.5, 1), 3);
+  EXPECT_NEAR(labels.correlation, 0.3, 0.03);
+  const auto guesses = agreementOfPairs(0.35, 0, 3, 60000, random).explain(trusting(0.34, 1), 3);
+  EXPECT_LE(guesses.accuracy, 0.34);
+}
+
 TEST(LabelReliability, takesManyLabelsToDiffer) {
   const FilterParameters p = trusting(0.9, 0.5);
   const LabelReliability most{0.9, 0.5};
@@ -126,8 +135,8 @@ TEST(LabelReliability, ofOneClassAndOfPublishedConstantsIsTheParameters) {
 TEST(LabelReliability, ofNoisyScansIsThatOfTheTreeToTheLastBit) {
   constexpr int K = 6;
   InsertionOptions options;
-  PlainMap plain(0.5, K);
-  SemanticOcTree map(0.5, numberedClasses(K)), threaded = map;
+  PlainMap plain(0.1, K);
+  SemanticOcTree map(0.1, numberedClasses(K)), threaded = map;
   for (const double wrong : {0.0, 0.2, 0.6}) {
     const PosedCloud scan = noisyWall(wrong, K, 7);
     options.threads = 1;
@@ -142,7 +151,7 @@ TEST(LabelReliability, ofNoisyScansIsThatOfTheTreeToTheLastBit) {
 
 TEST(LabelReliability, isKeptWithScansThatMayMove) {
   constexpr int K = 6;
-  SemanticOcTree map(0.5, numberedClasses(K)), moved = map;
+  SemanticOcTree map(0.1, numberedClasses(K)), moved = map;
   const PosedCloud clean = noisyWall(0, K, 8), noisy = noisyWall(0.6, K, 9);
   const Eigen::Isometry3d there(Eigen::Translation3d(0.2, 0.3, 0)), sensor = clean.T_map_sensor;
   map.insert(clean.cloud, sensor);
@@ -154,4 +163,18 @@ TEST(LabelReliability, isKeptWithScansThatMayMove) {
   keyframes.insert(noisy.cloud, sensor);
   keyframes.move({{last, there}});
   EXPECT_TRUE(moved == map);
+}
+
+TEST(LabelReliability, isPartOfWhatAScanSawInEachTile) {
+  const auto scanOfTwoTiles = [](const LabelReliability& labels) {
+    PackedScan scan(false, labels);
+    for (const std::uint64_t code : {3, 8}) {
+      scan.beginTile(code).push_back(1);
+      scan.endTile();
+    }
+    return scan;
+  };
+  const PackedScan scan = scanOfTwoTiles({0.9, 0.5});
+  EXPECT_EQ(differingTiles(scan, scanOfTwoTiles({0.9, 0.5})), TileCodes());
+  EXPECT_EQ(differingTiles(scan, scanOfTwoTiles({0.9, 0.4})), (TileCodes{3, 8}));
 }

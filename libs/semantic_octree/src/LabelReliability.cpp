@@ -42,7 +42,7 @@ LabelReliability LabelAgreement::explain(const FilterParameters& p, int numClass
   const double agreement = std::round(seen / kStep) * kStep;
   const double least = std::min(kLeastCorrelation, p.labelCorrelation);
   const double correlation = (agreement - independent) / (1 - independent);
-  if (correlation >= least) return {p.accuracy, std::min(p.labelCorrelation, correlation)};
+  if (correlation >= least) return {p.accuracy, correlation};
   // Solved for the accuracy; labels that agree by chance alone still say a little.
   const double ofIndependent = std::max((agreement - least) / (1 - least), 1 / K + kStep);
   const double accuracy = (1 + std::sqrt((K - 1) * (K * ofIndependent - 1))) / K;
