@@ -20,7 +20,8 @@ nlohmann::json vectors() {
 TEST(Vectors, publishedConstantsGiveTheTabulatedDistributions) {
   FilterParameters ssmi;
   ssmi.increments = FilterParameters::Increments::Ssmi;
-  for (const auto& v : vectors()["semantics"]) {
+  const nlohmann::json all = vectors();
+  for (const auto& v : all["semantics"]) {
     const int K = v["K"];
     const ClassFilter<double> filter(K, ssmi);
     ClassBelief<double> belief = filter.uniform(0);  // prior occupancy 0.5

@@ -99,7 +99,8 @@ void expectMeasures(const SearchResult& found, const json& expected) {
 }  // namespace
 
 TEST(Vectors, searchAndAlphaPathGiveTheNumbersOfEachCase) {
-  for (const auto& test : loadVectors()["cases"]) {
+  const nlohmann::json vectors = loadVectors();
+  for (const auto& test : vectors["cases"]) {
     for (const auto form : {DivergenceForm::Stable, DivergenceForm::Fast}) {
       SCOPED_TRACE(test["name"]);
       const json& expected = test["expected"];
@@ -126,7 +127,8 @@ TEST(Vectors, nearlyEqualChildrenKeepTheirDivergence) {
 
 TEST(Vectors, isolatedLeavesPayFromTheirBreakEvenRatioOn) {
   const std::vector<double> pi(8, 0.125);
-  for (const auto& expected : loadVectors()["breakEven"]) {
+  const nlohmann::json vectors = loadVectors();
+  for (const auto& expected : vectors["breakEven"]) {
     SCOPED_TRACE(expected.dump());
     VectorTree tree(1);
     const auto root = tree.addInner(VectorTree::kNoParent);
