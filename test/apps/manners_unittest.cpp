@@ -3,6 +3,7 @@
 
 #include <regex>
 
+#include "BuiltPrograms.h"
 #include "ShellCommand.h"
 #include "TemporaryFolder.h"
 
@@ -17,9 +18,8 @@ const std::vector<std::string> kPrograms = {
 class Program : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (GetParam() == "semantic-map-view" &&
-        !std::filesystem::exists(MSO_BIN_DIR "/semantic-map-view"))
-      GTEST_SKIP() << "not built: MRPT has no nanogui";
+    if (const std::string missing = missingLibraryOf(GetParam()); !missing.empty())
+      GTEST_SKIP() << "not built: " << missing;
   }
   CommandRun run(const std::string& arguments) const {
     return runCommand(std::string(MSO_BIN_DIR) + "/" + GetParam() + " " + arguments);

@@ -4,6 +4,7 @@
 #include <set>
 #include <tuple>
 
+#include "FollowedTree.h"
 #include "OctreeAsTree.h"
 #include "SmallScans.h"
 
@@ -31,16 +32,6 @@ SemanticOcTree mapOf(const std::vector<PosedCloud>& scans,
   if (options) map.setAbstraction(*options);
   for (const PosedCloud& s : scans) map.insert(s.cloud, s.T_map_sensor, someInsertion(threads));
   return map;
-}
-
-using CellSet = std::set<std::tuple<int, int, int, unsigned>>;
-std::tuple<int, int, int, unsigned> idOf(const LeafCell& l) {
-  return {l.key[0], l.key[1], l.key[2], l.depth};
-}
-CellSet idsOf(const std::vector<LeafCell>& leaves) {
-  CellSet ids;
-  for (const LeafCell& l : leaves) ids.insert(idOf(l));
-  return ids;
 }
 
 TEST(Abstraction, incrementalUpkeepEqualsBatchToTheLastBitAfterEveryScan) {
@@ -85,7 +76,7 @@ TEST(Abstraction, agreesWithThePlainSearchOnTheSameTree) {
       const AbstractionMeasures measures = abstraction.measures();
       EXPECT_NEAR(abstraction.objective(), oracle.objective,
                   1e-9 * std::max(1.0, oracle.objective));
-      CellSet expected;
+      std::set<LeafId> expected;
       std::size_t unknownInBlocks = 0;
       for (const auto& leaf : oracle.leaves()) {
         unknownInBlocks += !leaf.node && leaf.depth > blockDepth;
@@ -124,26 +115,20 @@ TEST(Abstraction, changesAddUpToTheLeaves) {
   SemanticOcTree map(kResolution, numberedClasses(K));
   map.setAbstraction(someOptions(0.01));
   Abstraction abstraction(map);
-  CellSet kept;
-  const auto apply = [&] {
-    const TreeChange change = abstraction.takeChange();
-    for (const LeafCell& l : change.removed) ASSERT_EQ(kept.erase(idOf(l)), 1u);
-    for (const LeafCell& l : change.added) ASSERT_TRUE(kept.insert(idOf(l)).second);
-    ASSERT_EQ(kept, idsOf(abstraction.leaves()));
-  };
+  FollowedTree kept;
   for (const PosedCloud& s : scansOfSmallPlace(6, 3000, K, 9)) {
     map.insert(s.cloud, s.T_map_sensor, someInsertion());
-    apply();
+    kept.follow(abstraction);
   }
   ASSERT_GT(kept.size(), 10u);
   abstraction.setAlpha(0.03);
-  apply();
+  kept.follow(abstraction);
   abstraction.setWeights({0.1, -1.0, 0.2}, 0.001);
-  apply();
+  kept.follow(abstraction);
   EXPECT_TRUE(abstraction.takeChange().added.empty());
   map.clear();
-  apply();
-  EXPECT_TRUE(kept.empty());
+  kept.follow(abstraction);
+  EXPECT_EQ(kept.size(), 0u);
 }
 
 TEST(Abstraction, newWeightsEqualStartingWithThem) {
@@ -168,7 +153,7 @@ TEST(Abstraction, movedRegionsEqualStartingWithThem) {
   options.regions = {region(Region::Shape::Box, 1, 5), region(Region::Shape::Corridor, -2, 3)};
   Abstraction(map).setRegions(options.regions);
   EXPECT_TRUE(map == mapOf(scans, &options));
-  EXPECT_FALSE(idsOf(Abstraction(map).leaves()) == CellSet());
+  EXPECT_FALSE(Abstraction(map).leaves().empty());
 }
 
 TEST(Abstraction, regionsWithWeightZeroVanish) {

@@ -3,6 +3,7 @@
 #include <semantic_octree/Abstraction.h>
 
 #include "BlockScans.h"
+#include "FollowedTree.h"
 
 using namespace semantic_octree;
 
@@ -102,7 +103,7 @@ class Maps {
       tree->insert(scan.cloud, scan.T_map_sensor);
     shared.insert(scan.cloud, scan.T_map_sensor, threads);
     plain.insert(scan, {});
-    applyChange();
+    m_compressed.follow(Abstraction(abstracted));
   }
   void compare() const {
     expectSame(pruned, plain);
@@ -120,21 +121,7 @@ class Maps {
   PlainMap plain;
 
  private:
-  using LeafId = std::tuple<int, int, int, unsigned>;
-  static LeafId idOf(const LeafCell& l) { return {l.key[0], l.key[1], l.key[2], l.depth}; }
-
-  /** Follows the compressed tree by its changes alone. */
-  void applyChange() {
-    Abstraction abstraction(abstracted);
-    const TreeChange change = abstraction.takeChange();
-    for (const LeafCell& leaf : change.removed) EXPECT_EQ(m_leaves.erase(idOf(leaf)), 1u);
-    for (const LeafCell& leaf : change.added) EXPECT_TRUE(m_leaves.insert(idOf(leaf)).second);
-    std::set<LeafId> leaves;
-    for (const LeafCell& leaf : abstraction.leaves()) leaves.insert(idOf(leaf));
-    EXPECT_TRUE(m_leaves == leaves);
-  }
-
-  std::set<LeafId> m_leaves;
+  FollowedTree m_compressed;
 };
 
 void expectPlainResult(unsigned seed, int classes, const FilterParameters& parameters,

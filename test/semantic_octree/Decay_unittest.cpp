@@ -10,8 +10,8 @@
 #include <cmath>
 #include <set>
 #include <sstream>
-#include <tuple>
 
+#include "FollowedTree.h"
 #include "RandomScans.h"
 #include "TemporaryFolder.h"
 #include "Voxels.h"
@@ -100,15 +100,6 @@ void expectShrunk(const std::vector<double>& before, const std::vector<double>& 
     const double difference = safeLog(before[k]) - safeLog(before[1]);
     ASSERT_NEAR(safeLog(after[k]) - safeLog(after[1]), s * difference, s == 1 ? 1e-9 : 27 * kTick);
   }
-}
-
-using CellId = std::tuple<int, int, int, unsigned>;
-
-std::set<CellId> leavesOf(const Abstraction& a) {
-  std::set<CellId> ids;
-  for (const LeafCell& leaf : a.leaves())
-    ids.insert({leaf.key[0], leaf.key[1], leaf.key[2], leaf.depth});
-  return ids;
 }
 
 }  // namespace
@@ -248,15 +239,11 @@ TEST(Decay, mixturesGValuesAndTheCompressedTreesChangeFollow) {
     AbstractionOptions options = abstraction(0.01 + 0.05 * (seed - 30));
     if (seed % 2 == 0) options.blockSize = 1.6;  // of 4 x 4 x 4 voxels
     map.setAbstraction(options);
-    std::set<CellId> told;
+    FollowedTree told;
     for (int i = 0; i < 30; ++i) {
       i % 10 == 0 ? insertRandom(map, random, 0.2) : map.age(between(random, 0, 0.7));
-      const TreeChange change = Abstraction(map).takeChange();
-      for (const LeafCell& leaf : change.removed)
-        ASSERT_EQ(told.erase({leaf.key[0], leaf.key[1], leaf.key[2], leaf.depth}), 1u);
-      for (const LeafCell& leaf : change.added)
-        ASSERT_TRUE(told.insert({leaf.key[0], leaf.key[1], leaf.key[2], leaf.depth}).second);
-      ASSERT_EQ(told, leavesOf(Abstraction(map))) << seed << ", " << i;
+      told.follow(Abstraction(map));
+      ASSERT_FALSE(HasFailure()) << seed << ", " << i;
       SemanticOcTree anew = reloaded(map);
       anew.setAbstraction(options);
       ASSERT_TRUE(map == anew) << seed << ", " << i;

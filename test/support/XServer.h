@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "BuiltPrograms.h"
 #include "RunProgram.h"
 
 /** The first of these programs of Debian that is not installed; empty if all are. */
@@ -21,7 +22,7 @@ inline ProgramRun runInX(const std::vector<std::string>& command) {
 }
 
 /** Whether programs were built with windows: MRPT has nanogui. */
-inline bool hasWindows() { return std::filesystem::exists(MSO_BIN_DIR "/semantic-map-view"); }
+inline bool hasWindows() { return missingLibraryOf("semantic-map-view").empty(); }
 
 /** Skips the running test, saying so, where it cannot open windows and work with them. */
 #define SKIP_WITHOUT_WINDOWS()                                                           \
