@@ -1,5 +1,4 @@
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <new>
 
@@ -9,9 +8,11 @@ void* aligned_malloc(std::size_t bytes, std::size_t alignment);
 
 /** Replaces MRPT's own in programs (symbols of a program are found before those of libraries):
  * matrices and depth images take it for an allocator and write to what it returns, which there is
- * null if a damaged file asks for more than there is. \throw std::bad_alloc there is no memory. */
+ * null if a damaged file asks for more than there is, and zeros for gigabytes if for less.
+ * \throw std::bad_alloc there is no memory, or it is more than any image takes */
 void* aligned_malloc(std::size_t bytes, std::size_t alignment) {
-  void* const memory = bytes <= PTRDIFF_MAX ? std::aligned_alloc(alignment, bytes) : nullptr;
+  constexpr std::size_t kMost = std::size_t{1} << 30;  // 16384 x 16384 distances
+  void* const memory = bytes <= kMost ? std::aligned_alloc(alignment, bytes) : nullptr;
   if (!memory) throw std::bad_alloc();
   return memory;
 }

@@ -3,6 +3,7 @@
 #include <labeled_cloud/ReadAhead.h>
 #include <strict_files/ErrorMessage.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "Progress.h"
@@ -64,6 +65,15 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
   progress.finish((m_summary.stopped ? "stopped early, " : "") +
                   std::to_string(m_summary.inserted) + " scans inserted, " +
                   m_summary.skippedText());
+  noteLabels();
+}
+
+void MapBuilder::noteLabels() const {
+  const auto labels = m_summary.labelReliability();
+  if (!labels || labels->accuracy >= m_map.tree().filterParameters().accuracy) return;
+  notes() << "Labels that share a voxel agree as if " << std::lround(100 * labels->accuracy)
+          << " % of them were right, and are trusted so far: wrong labels, or voxels larger than things"
+          << std::endl;
 }
 
 void MapBuilder::add(const StreamedObservation& observation) {
@@ -76,8 +86,11 @@ void MapBuilder::add(const StreamedObservation& observation) {
 
 void MapBuilder::insertScan(const StreamedObservation& observation) try {
   const LabeledScan& scan = *observation.scan;
+  semantic_octree::InsertionReport report;
   m_summary.insertionTimes.push_back(
-      timeOf([&] { m_summary.add(insertIntoMap(scan, observation.T_map_robot)); }));
+      timeOf([&] { report = insertIntoMap(scan, observation.T_map_robot); }));
+  m_summary.add(report);
+  if (scan.counts.labeled > 0) m_summary.labels.push_back(report.labels);
   m_summary.add(scan.counts);
   m_summary.withoutLabels += scan.labelsMissing;
   m_summary.conversionTimes.push_back(observation.milliseconds);

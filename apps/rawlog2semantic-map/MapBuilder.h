@@ -43,6 +43,8 @@ class MapBuilder {
 
  private:
   void add(const labeled_cloud::StreamedObservation& observation);
+  /** Tells if labels contradict each other more than their parameters say. */
+  void noteLabels() const;
   void insertScan(const labeled_cloud::StreamedObservation& observation);
   void noteAbstraction(const labeled_cloud::LabeledScan& scan,
                        const mrpt::poses::CPose3D& T_map_robot);

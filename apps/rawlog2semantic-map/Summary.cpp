@@ -42,6 +42,17 @@ std::string Summary::note(const labeled_cloud::StreamedObservation& observation)
   return "skipped, " + observation.skipped;
 }
 
+std::optional<semantic_octree::LabelReliability> Summary::labelReliability() const {
+  if (labels.empty()) return std::nullopt;
+  std::vector<double> accuracies, correlations;
+  for (const semantic_octree::LabelReliability& scan : labels) {
+    accuracies.push_back(scan.accuracy);
+    correlations.push_back(scan.correlation);
+  }
+  return semantic_octree::LabelReliability{measuring::quantile(accuracies, 0.5),
+                                           measuring::quantile(correlations, 0.5)};
+}
+
 std::size_t Summary::numSkipped() const { return read - inserted - pictures - poses; }
 
 std::string Summary::skippedText() const {
@@ -130,6 +141,8 @@ ordered_json toJson(const Summary& s, const SemanticOcTree& tree, bool countVoxe
       {"millisecondsPerScan",
        {{"conversion", timesJson(s.conversionTimes)}, {"insertion", timesJson(s.insertionTimes)}}},
       {"map", mapJson(tree, countVoxels)}};
+  if (const auto labels = s.labelReliability())
+    json["labels"] = {{"accuracy", labels->accuracy}, {"correlation", labels->correlation}};
   if (s.slam)
     json["slam"] = {
         {"keyframes", s.slam->keyframes}, {"loops", s.slam->loops}, {"lost", s.slam->lost}};

@@ -43,6 +43,8 @@ struct Summary {
   /** Sums over the scans that were inserted. */
   labeled_cloud::ScanCounts conversion;
   semantic_octree::InsertionReport insertion;
+  /** How far the labels of each scan that has any were trusted. */
+  std::vector<semantic_octree::LabelReliability> labels;
   /** Of each inserted scan: making the cloud, inserting it, milliseconds. */
   std::vector<double> conversionTimes, insertionTimes;
   /** Where an abstraction is kept, after each inserted scan. */
@@ -55,6 +57,8 @@ struct Summary {
   /** Counts it. \return what became of it, in words */
   std::string note(const labeled_cloud::StreamedObservation& observation);
   std::size_t numSkipped() const;
+  /** The medians of all scans with labels; nothing if there are none. */
+  std::optional<semantic_octree::LabelReliability> labelReliability() const;
   /** "3 skipped (2 outside the trajectory, 1 CObservationImage)" */
   std::string skippedText() const;
 };

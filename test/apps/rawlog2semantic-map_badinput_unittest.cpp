@@ -1,10 +1,23 @@
 // What rawlog2semantic-map says of bad input, and that it leaves what was there.
+#include <mrpt/io/CFileGZInputStream.h>
+
 #include <array>
 #include <opencv2/imgcodecs.hpp>
 
 #include "MappingFixture.h"
 
 namespace fs = std::filesystem;
+
+namespace {
+
+std::string uncompressed(const fs::path& file) {
+  mrpt::io::CFileGZInputStream in(file.string());
+  std::string bytes;
+  for (char c; in.Read(&c, 1) == 1;) bytes += c;
+  return bytes;
+}
+
+}  // namespace
 
 TEST_F(Rawlog2SemanticMap, aMissingRawlogIsRefused) {
   expectRefusal({"none.rawlog"}, "none.rawlog");
@@ -30,6 +43,21 @@ TEST_F(Rawlog2SemanticMap, aCorruptRawlogIsRefused) {
   expectRefusal({"corrupt.rawlog"}, "corrupt.rawlog");
   folder.write("text.rawlog", "This is no rawlog.");
   expectRefusal({"text.rawlog: ", "object 1"}, "text.rawlog");
+}
+
+TEST_F(Rawlog2SemanticMap, aDepthImageThatClaimsToBeHugeIsRefusedBeforeItTakesMemory) {
+  constexpr std::uint32_t kRows = 29, kCols = 31, kClaimed = 40000;  // 3.2 GB
+  std::string bytes =
+      uncompressed(writeSmallRawlog(folder / "depth.rawlog", depthImage(10, kRows, kCols)));
+  const auto inBytes = [](std::uint32_t rows, std::uint32_t cols) {
+    return std::string(reinterpret_cast<char*>(&rows), 4) +
+           std::string(reinterpret_cast<char*>(&cols), 4);
+  };
+  const std::size_t size = bytes.find(inBytes(kRows, kCols));
+  ASSERT_NE(size, std::string::npos);
+  folder.write("huge.rawlog", bytes.replace(size, 8, inBytes(kClaimed, kClaimed)));
+  expectRefusal({"huge.rawlog", "more memory is needed than there is"}, "huge.rawlog");
+  EXPECT_LT(run("huge.rawlog").peakKilobytes, 500'000);
 }
 
 TEST_F(Rawlog2SemanticMap, aRawlogThatBreaksOffWhileItIsMappedLeavesNothing) {

@@ -2,6 +2,7 @@
 #include <labeled_cloud/RawlogReader.h>
 
 #include <fstream>
+#include <random>
 
 #include "CameraFixture.h"
 
@@ -149,4 +150,24 @@ TEST_F(CameraMapping, badNetworksAndSourcesAreRefused) {
   expectRefusal({"[camera front]", "cols is missing"}, "camera.rawlog", labels());
   configure("[labels]\nkind = wavy\n");
   expectRefusal({"[labels]", "'wavy'", "one of soft, hard"}, "camera.rawlog", labels());
+}
+
+TEST_F(Rawlog2SemanticMap, howFarLabelsAreTrustedIsTold) {
+  std::mt19937 random(1);
+  for (const double wrong : {0.0, 0.3}) {
+    auto scan = labeledCloud(10, {}, {});
+    for (int voxel = 0; voxel < 1000; ++voxel)
+      for (int i = 0; i < 10; ++i) {
+        const int shift = std::bernoulli_distribution(wrong)(random) ? 1 + int(random() % 2) : 0;
+        scan.cloud.points.emplace_back(0.5f * (voxel % 40) - 10, 0.5f * (voxel / 40) + 2, 1.2f);
+        scan.cloud.classes.push_back(semantic_types::ClassId(1 + (voxel + shift) % 3));
+      }
+    writeSmallRawlog(folder / "noisy.rawlog", robotPose(10, 1.1), scan);
+    const ProgramRun result = run("noisy.rawlog");
+    ASSERT_EQ(result.status, 0) << result.errors;
+    const std::string told = "agree as if 7";  // 70 %, within the prior's pull and rounding
+    EXPECT_EQ(contains(result.output, told), wrong > 0) << result.output;
+    EXPECT_NEAR(summary()["labels"]["accuracy"], wrong > 0 ? 0.72 : 0.9, 0.025);
+    EXPECT_NEAR(summary()["labels"]["correlation"], wrong > 0 ? 0.02 : 0.5, 1e-9);
+  }
 }

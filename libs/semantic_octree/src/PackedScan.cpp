@@ -109,7 +109,7 @@ PackedScan Scan::pack() const {
     });
   std::sort(tiles.begin(), tiles.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
-  PackedScan packed(m_votes.isSoft(), m_labels);
+  PackedScan packed(m_votes.isSoft(), labels());
   for (const auto& [code, at] : tiles) {
     packTile(tile(at), packed.beginTile(code));
     packed.endTile();
@@ -132,7 +132,7 @@ void Scan::packTile(const Tile& tile, Bytes& bytes) const {
 void Scan::unpack(const PackedScan& scan, const TileCodes& wanted, int numClasses,
                   const InsertionOptions& options) {
   m_report = InsertionReport();
-  m_labels = scan.labels();
+  m_report.labels = scan.labels();
   TileBox box;
   forEachTileIn(scan, wanted, [&](const PackedTile& tile) { box.add(tileOf(tile.code)); });
   if (box.empty()) return;

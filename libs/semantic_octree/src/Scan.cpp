@@ -78,7 +78,7 @@ void Scan::set(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
   markFree(beams, options, options.carvingMargin / resolution);
   summarize();
   m_votes.count(cloud, m_endRanks, m_report.hitVoxels, numClasses);
-  m_labels = m_votes.agreement().explain(filter.parameters(), numClasses);
+  m_report.labels = m_votes.agreement().explain(filter.parameters(), numClasses);
 }
 
 void Scan::markHits(const ScanBeams& beams, const InsertionOptions& options) {

@@ -31,7 +31,7 @@ class Scan {
   const ScanPyramid& pyramid() const { return m_pyramid; }
   const HitVotes& votes() const { return m_votes; }
   /** Of the whole scan, in parts of it too. */
-  const LabelReliability& labels() const { return m_labels; }
+  const LabelReliability& labels() const { return m_report.labels; }
 
   struct Tile {
     const VoxelBits* free;      ///< a word for each block, in Morton order as their bits
@@ -72,7 +72,6 @@ class Scan {
   std::vector<std::uint32_t> m_endRanks;  ///< per point: rank of the voxel that it hit
   ScanPyramid m_pyramid;
   HitVotes m_votes;
-  LabelReliability m_labels{};
 };
 
 }  // namespace semantic_octree

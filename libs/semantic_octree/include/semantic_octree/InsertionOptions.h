@@ -1,4 +1,5 @@
 #pragma once
+#include <semantic_octree/LabelReliability.h>
 #include <strict_files/OptionList.h>
 
 #include <cstddef>
@@ -41,6 +42,7 @@ struct InsertionReport {
   std::size_t skippedOutside = 0;    ///< end outside the map's 16 levels
   std::size_t beyondRange = 0;       ///< carved only
   std::size_t hitVoxels = 0, freeVoxels = 0;
+  LabelReliability labels{};  ///< how far its labels were trusted
 };
 
 }  // namespace semantic_octree
