@@ -36,8 +36,8 @@ class TreeIterator {
   pointer operator->() const { return &m_stack.back().node; }
   TreeIterator& operator++();
   bool operator==(const TreeIterator& o) const {
-    return m_stack.size() == o.m_stack.size() &&
-           (m_stack.empty() || m_stack.back().node == o.m_stack.back().node);
+    if (m_stack.empty() || o.m_stack.empty()) return m_stack.empty() == o.m_stack.empty();
+    return m_stack.size() == o.m_stack.size() && m_stack.back().node == o.m_stack.back().node;
   }
   bool operator!=(const TreeIterator& o) const { return !(*this == o); }
 
