@@ -129,3 +129,13 @@ inline std::vector<colored_graph::CostModel> allModels(const colored_graph::Clas
         models.push_back({order, edges, kind, whole, whole ? Length{10} : Length{0}});
   return models;
 }
+
+/** With the plane's bound of lengths. */
+inline colored_graph::ColoredAStarOptions boundedBy(const PlaneGraph& plane, bool worstRank) {
+  colored_graph::ColoredAStarOptions options;
+  options.lengthBound = [&plane](colored_graph::VertexId a, colored_graph::VertexId b) {
+    return plane.bound(a, b);
+  };
+  options.boundWorstRank = worstRank;
+  return options;
+}

@@ -1,63 +1,19 @@
 #include <gtest/gtest.h>
-#include <semantic_octree/KeyframeMap.h>
-#include <semantic_planning/ground/Ground.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-#include "PaintedWorld.h"
+#include "PaintedGround.h"
 
-using namespace semantic_planning;
 using semantic_octree::CellState;
-using semantic_octree::SemanticOcTree;
 
 namespace {
-
-constexpr int kOrigin = semantic_octree::kKeyOfOrigin;
-
-colored_graph::ClassOrder anyClass() { return {5, {{0, 1, 2, 3, 4}}}; }
-
-/** A robot of 1 m in height that needs no clearance, and no gap fills. */
-VehicleOptions smallVehicle() {
-  VehicleOptions vehicle;
-  vehicle.footprint = Footprint::rectangle(-0.1, 0.1, 0.2);
-  vehicle.clearance = 0;
-  vehicle.maxSlope = 80;
-  return vehicle;
-}
-
-GroundOptions withoutGapFills() {
-  GroundOptions options;
-  options.fillGap = options.unknownGap = 0;
-  return options;
-}
-
-Ground groundOf(const SemanticOcTree& map, const VehicleOptions& vehicle = smallVehicle(),
-                const GroundOptions& options = withoutGapFills()) {
-  return Ground(map, vehicle, options, anyClass());
-}
-
-void addRubble(PaintedWorld& world, unsigned seed, int voxels) {
-  std::mt19937 random(seed);
-  for (int i = 0; i < voxels; ++i)
-    world.voxel(int(random() % 40) - 20, int(random() % 40) - 20, int(random() % 14) - 7,
-                PaintedWorld::Class(1 + random() % 4));
-}
 
 bool occupied(const SemanticOcTree& map, int x, int y, int z) {
   const octomap::OcTreeKey key(std::uint16_t(kOrigin + x), std::uint16_t(kOrigin + y),
                                std::uint16_t(kOrigin + z));
   return map.query(key).status == CellState::Status::Occupied;
-}
-
-void expectSame(const Ground& a, const Ground& b) {
-  for (int x = -60; x < 60; ++x)
-    for (int y = -60; y < 60; ++y) {
-      const Column c{kOrigin + x, kOrigin + y};
-      const SurfaceRange s = a.surfaces(c), t = b.surfaces(c);
-      ASSERT_TRUE(std::equal(s.begin(), s.end(), t.begin(), t.end())) << x << ' ' << y;
-    }
 }
 
 }  // namespace
@@ -87,115 +43,6 @@ TEST(Ground, surfacesAreTheOccupiedVoxelsWithHeadRoomOfAColumnScan) {
   EXPECT_GT(found, 1000u);
 }
 
-TEST(Ground, afterUpdatesItIsTheGroundReadAnew) {
-  PaintedWorld world;
-  addRubble(world, 2, 600);
-  world.floor(-6, 6, -6, 6, PaintedWorld::Road);
-  SemanticOcTree& map = world.map();
-  const GroundOptions filling;
-  map.takeTouchedTiles();
-  Ground ground = groundOf(map, VehicleOptions(), filling);
-  for (unsigned round = 0; round < 8; ++round) {
-    addRubble(world, 100 + round, 25);
-    world.map({0.05 + 0.3 * round, 0.05, 20});
-    ground.update(map.takeTouchedTiles());
-    expectSame(ground, groundOf(map, VehicleOptions(), filling));
-  }
-}
-
-TEST(Ground, withinSomeTilesIsThatOfTheWholeMap) {
-  PaintedWorld world;
-  world.floor(-12, 12, -12, 12, PaintedWorld::Road);
-  addRubble(world, 3, 400);
-  std::mt19937 random(3);
-  for (int i = 0; i < 30; ++i) {  // holes to be filled, of all widths up to 4 m
-    const double x = int(random() % 20) - 10, y = int(random() % 20) - 10, edge = 0.2 * (i % 20);
-    world.box(x, x + edge, y, y + edge, 0.4, 0.6, PaintedWorld::Mud);
-  }
-  const SemanticOcTree& map = world.map({0.05, 0.05, 3});
-  const Ground whole = groundOf(map, VehicleOptions(), {});
-  for (int round = 0; round < 10; ++round) {
-    std::vector<Column> tiles;
-    for (const Column& tile : whole.tiles())
-      if (random() % 3 == 0) tiles.push_back(tile);
-    std::sort(tiles.begin(), tiles.end());
-    const Ground part(map, VehicleOptions(), {}, anyClass(), tiles);
-    std::size_t surfaces = 0;
-    for (int x = -100; x < 100; ++x)
-      for (int y = -100; y < 100; ++y) {
-        const Column c{kOrigin + x, kOrigin + y};
-        const SurfaceRange s = whole.surfaces(c), t = part.surfaces(c);
-        surfaces += static_cast<std::size_t>(t.last - t.first);
-        if (std::binary_search(tiles.begin(), tiles.end(), tileOf(c)))
-          ASSERT_TRUE(std::equal(s.begin(), s.end(), t.begin(), t.end())) << x << ' ' << y;
-        else
-          ASSERT_TRUE(t.empty()) << x << ' ' << y;
-      }
-    EXPECT_GT(surfaces, 1000u);
-  }
-}
-
-TEST(Ground, withinSomeTilesDoesNotFollowChanges) {
-  PaintedWorld world;
-  world.floor(-2, 2, -2, 2, PaintedWorld::Road);
-  SemanticOcTree& map = world.map();
-  map.takeTouchedTiles();
-  Ground ground(map, VehicleOptions(), {}, anyClass(),
-                std::vector<Column>{tileOf({kOrigin, kOrigin})});
-  EXPECT_TRUE(ground.update(map.takeTouchedTiles()).empty());
-  world.voxel(0, 0, 0, PaintedWorld::Wall);
-  world.map();
-  EXPECT_THROW(ground.update(map.takeTouchedTiles()), std::logic_error);
-}
-
-TEST(Ground, followsKeyframesThatAreMovedAndRemoved) {
-  PaintedWorld world;
-  SemanticOcTree map(world.map().getResolution(), world.map().classes());
-  const GroundOptions filling;
-  semantic_octree::KeyframeMap keyframes(map);
-  map.takeTouchedTiles();
-  Ground ground = groundOf(map, VehicleOptions(), filling);
-  std::mt19937 random(4);
-  const auto slab = [&random](double height) {
-    semantic_types::LabeledCloud cloud;
-    for (double x = -4; x < 4; x += 0.1)
-      for (double y = -4; y < 4; y += 0.1) {
-        cloud.points.emplace_back(x, y, height + (random() % 9 == 0 ? 0.4 : 0));
-        cloud.classes.push_back(PaintedWorld::Road);
-      }
-    return cloud;
-  };
-  const auto expectFollowed = [&] {
-    ground.update(map.takeTouchedTiles());
-    expectSame(ground, groundOf(map, VehicleOptions(), filling));
-  };
-  const Eigen::Isometry3d above(Eigen::Translation3d(0.05, 0.05, 2));
-  for (int i = 0; i < 3; ++i) {
-    keyframes.begin(Eigen::Isometry3d(Eigen::Translation3d(3 * i, 0, 0.3 * i)));
-    keyframes.insert(slab(-2), above);
-    expectFollowed();
-  }
-  keyframes.move({{1, Eigen::Isometry3d(Eigen::Translation3d(3, 0, 0))},
-                  {2, Eigen::Isometry3d(Eigen::Translation3d(6, 0, 0))}});
-  expectFollowed();
-  keyframes.remove(0);
-  expectFollowed();
-}
-
-TEST(Ground, aHoleThatNoBeamEnteredIsFilledAfterAnUpdateAsInTheGroundReadAnew) {
-  PaintedWorld world;
-  const GroundOptions filling;
-  SemanticOcTree& map = world.map();
-  map.takeTouchedTiles();
-  Ground ground = groundOf(map, VehicleOptions(), filling);
-  world.floor(-3.2, 0, 0, 3.2, PaintedWorld::Road).map({-1.65, 1.65, 20});
-  ground.update(map.takeTouchedTiles());
-  world.floor(3.2, 6.4, 0, 3.2, PaintedWorld::Road).map({4.85, 1.65, 20});
-  ground.update(map.takeTouchedTiles());
-  expectSame(ground, groundOf(map, VehicleOptions(), filling));
-  EXPECT_TRUE(ground.connected(*ground.find(-1, 1.6), *ground.find(5, 1.6)));
-}
-
 TEST(Ground, aSurfaceHasTheLikeliestClassOfItsVoxel) {
   PaintedWorld world;
   std::mt19937 random(6);
@@ -213,20 +60,6 @@ TEST(Ground, aSurfaceHasTheLikeliestClassOfItsVoxel) {
       ASSERT_NE(s, nullptr);
       EXPECT_EQ(s->classId, world.map().query(key).likeliestClass) << x << ' ' << y;
     }
-}
-
-TEST(Ground, anUpdateTellsTheTilesThatChanged) {
-  PaintedWorld world;
-  world.floor(-20, 20, -20, 20, PaintedWorld::Road);
-  SemanticOcTree& map = world.map();
-  map.takeTouchedTiles();
-  Ground ground = groundOf(map);
-  EXPECT_TRUE(ground.update({}).empty());
-  world.box(8.1, 8.3, 8.1, 8.3, 0, 1, PaintedWorld::Wall).map({8.05, 8.05, 10});
-  const std::vector<Column> changed = ground.update(map.takeTouchedTiles());
-  const Column tile = tileOf(ground.columnAt(8.1, 8.1));
-  EXPECT_NE(std::find(changed.begin(), changed.end(), tile), changed.end());
-  EXPECT_LE(changed.size(), 4u);
 }
 
 TEST(Ground, clearanceIsTheDistanceToTheNearestColumnWithoutFreeGround) {

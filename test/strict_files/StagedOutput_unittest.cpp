@@ -13,6 +13,7 @@
 #include <fstream>
 
 #include "FullDisk.h"
+#include "StagedText.h"
 #include "TemporaryFolder.h"
 
 namespace fs = std::filesystem;
@@ -20,13 +21,6 @@ using strict_files::OutputFolder;
 using strict_files::StagedFile;
 
 namespace {
-
-void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
-
-std::size_t entriesOf(const fs::path& folder) {
-  return static_cast<std::size_t>(
-      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
 
 /** Forks; the child ends with the action's result. */
 template <class Action>
@@ -269,50 +263,4 @@ TEST(OutputFolder, ofTwoProcessesAtOnceTheFilesAreOfOne) {
   EXPECT_EQ(statusOf(fast), 0);
   for (const std::string& name : names) EXPECT_EQ(folder.read(name), "fast") << name;
   EXPECT_EQ(entriesOf(folder.path()), names.size());
-}
-
-TEST(OutputFolder, nothingTakesItsPlaceWhereOneOfThemCannot) {
-  const TemporaryFolder folder;
-  folder.write("a", "before");
-  fs::create_directory(folder / "b");
-  OutputFolder output(folder.path());
-  for (const char* name : {"a", "b"}) write(output.staged(name), "after");
-  EXPECT_TRUE(contains(errorOf([&] { output.commit({"a", "b"}); }), "b: cannot be written: it is"));
-  EXPECT_EQ(folder.read("a"), "before");
-}
-
-TEST(OutputFolder, filesTakeTheirPlaceTogether) {
-  const TemporaryFolder folder;
-  folder.write("out/a", "before");
-  folder.write("out/b", "before");
-  folder.write("out/other", "before");
-  {
-    OutputFolder output(folder / "out");
-    write(output.staged("a"), "after");
-    EXPECT_EQ(folder.read("out/a"), "before");
-    output.commit({"a", "b"});
-  }
-  EXPECT_EQ(folder.read("out/a"), "after");
-  EXPECT_FALSE(fs::exists(folder / "out/b"));  // it was not written: of another map
-  EXPECT_EQ(folder.read("out/other"), "before");
-  EXPECT_EQ(entriesOf(folder / "out"), 2u);
-}
-
-TEST(OutputFolder, withoutCommitIsAsBefore) {
-  const TemporaryFolder folder;
-  folder.write("out/a", "before");
-  {
-    OutputFolder output(folder / "out"), created(folder / "new/below");
-    write(output.staged("a"), "half");
-  }
-  EXPECT_EQ(folder.read("out/a"), "before");
-  EXPECT_EQ(entriesOf(folder / "out"), 1u);
-  EXPECT_FALSE(fs::exists(folder / "new/below"));
-}
-
-TEST(OutputFolder, namesAFolderThatCannotBeWritten) {
-  const TemporaryFolder folder;
-  const fs::path file = folder.write("file", "");
-  EXPECT_TRUE(
-      contains(errorOf([&] { OutputFolder output(file); }), file.string() + ": cannot write"));
 }

@@ -1,0 +1,24 @@
+#pragma once
+#include <synthetic_world/Scene.h>
+
+#include <utility>
+
+#include "Plain.h"
+#include "simulated_drive/DriveLoop.h"
+
+using namespace simulated_drive;
+using mrpt::math::TPose2D;
+using synthetic_world::World;
+
+inline DriveRecord drive(World& world, const TPose2D& start, const TPose2D& goal,
+                         Events events = {}, const DriveConfig& config = smallConfig()) {
+  DriveLoop loop(config, world, syntheticOrder(), start, goal, std::move(events));
+  return loop.run();
+}
+
+/** Flat grass without an end that could be reached in time. */
+inline World open() {
+  constexpr double kHalf = 60;
+  return World(synthetic_world::Terrain(kHalf, {}),
+               synthetic_world::GroundCover(kHalf, synthetic_world::kGrass), {});
+}

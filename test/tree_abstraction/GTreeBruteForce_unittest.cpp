@@ -1,0 +1,117 @@
+// The search for the optimal tree against all trees.
+#include <gtest/gtest.h>
+#include <reference/GTreeSearch.h>
+
+#include <algorithm>
+
+#include "BruteForce.h"
+#include "RandomTrees.h"
+
+using namespace tree_abstraction;
+using namespace reference;
+using random_trees::Engine;
+using random_trees::Shape;
+
+namespace {
+
+std::vector<VectorTree::Node> sorted(std::vector<VectorTree::Node> nodes) {
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+
+/** Checks value and minimality of both forms; tells how many optimal trees there are. */
+std::size_t expectAgreesWithBruteForce(const VectorTree& tree, const AbstractionWeights& weights) {
+  const auto best = brute_force::optimize(tree, weights);
+  EXPECT_EQ(static_cast<double>(best.numTrees), brute_force::countTrees(tree));
+  EXPECT_TRUE(best.intersectionIsOptimal);
+  for (const auto form : {DivergenceForm::Stable, DivergenceForm::Fast}) {
+    const auto found = findOptimalTree(tree, weights, {form});
+    EXPECT_NEAR(found.objective, best.objective, 1e-13);
+    EXPECT_EQ(sorted(found.interior()), best.inAll);
+    EXPECT_NEAR(brute_force::objective(tree, weights, found.interior()), best.objective, 1e-13);
+    const double j = found.optimal.objective(weights) - found.roots.objective(weights);
+    EXPECT_NEAR(j, best.objective, 1e-13);
+  }
+  return best.numOptimal;
+}
+
+struct Tally {
+  int trees = 0, withTies = 0, expandedPartly = 0;
+};
+
+/** Trees of this shape that brute force can manage, one a seed. */
+Tally checkShape(const Shape& shape, int numSeeds) {
+  Tally tally;
+  for (int seed = 1; seed <= numSeeds; ++seed) {
+    SCOPED_TRACE(seed);
+    Engine random(static_cast<unsigned>(seed));
+    const auto tree = random_trees::makeTree(shape, random);
+    const auto weights = random_trees::makeWeights(shape, random);
+    if (brute_force::countTrees(tree) > 2e5) continue;
+    ++tally.trees;
+    if (expectAgreesWithBruteForce(tree, weights) > 1) ++tally.withTies;
+    const auto found = findOptimalTree(tree, weights);
+    const auto count = found.optimal.numLeaves;
+    if (count > tree.roots().size() && count < found.full.numLeaves) ++tally.expandedPartly;
+  }
+  return tally;
+}
+
+}  // namespace
+
+TEST(GTreeSearch, agreesWithBruteForceOnFullQuadtreesOfDepthThree) {
+  const Tally tally = checkShape({}, 25);
+  EXPECT_EQ(tally.trees, 25);
+  EXPECT_GE(tally.expandedPartly, 8);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnQuadtreesFullOfTies) {
+  Shape shape;
+  shape.splitProbability = 0.8;
+  shape.numClasses = 1;
+  shape.tieRich = true;
+  const Tally tally = checkShape(shape, 300);
+  EXPECT_EQ(tally.trees, 300);
+  EXPECT_GE(tally.withTies, 40);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnSparseOctreesOfDepthTwo) {
+  Shape shape{2, 8, 8, 0.6};
+  shape.missingProbability = 0.4;
+  shape.numClasses = 3;
+  const Tally tally = checkShape(shape, 200);
+  EXPECT_EQ(tally.trees, 200);
+  EXPECT_GE(tally.expandedPartly, 20);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnSparseOctreesOfDepthThree) {
+  Shape shape{3, 8, 8, 0.3};
+  shape.missingProbability = 0.3;
+  const Tally tally = checkShape(shape, 150);
+  EXPECT_GE(tally.trees, 80);
+  EXPECT_GE(tally.expandedPartly, 20);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnOctreesFullOfTiesWithMissingChildren) {
+  Shape shape{3, 8, 8, 0.25};
+  shape.missingProbability = 0.2;
+  shape.numClasses = 1;
+  shape.tieRich = true;
+  EXPECT_GE(checkShape(shape, 150).withTies, 5);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnTernaryTrees) {
+  EXPECT_GE(checkShape({3, 3, 3, 0.9}, 60).expandedPartly, 20);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnTreesOfMixedArity) {
+  Shape shape{4, 1, 4, 0.6};
+  shape.missingProbability = 0.2;
+  EXPECT_GE(checkShape(shape, 120).expandedPartly, 30);
+}
+
+TEST(GTreeSearch, agreesWithBruteForceOnForestsWhoseFrameIsFree) {
+  Shape shape{2, 4, 4, 0.7};
+  shape.numRoots = 3;
+  EXPECT_GE(checkShape(shape, 80).expandedPartly, 20);
+}
