@@ -19,17 +19,20 @@ std::size_t GzipInputStream::Read(void* buffer, std::size_t count) {
   while (done < count) {
     const std::size_t piece = std::min<std::size_t>(count - done, 1u << 30);
     const int got = gzread(m_file.get(), static_cast<char*>(buffer) + done, piece);
+    noteDamage();
     if (got <= 0) break;
     done += got;
   }
   m_delivered += done;
-  if (done < count) {
-    int code = Z_OK;
-    const char* message = gzerror(m_file.get(), &code);
-    if (code == Z_BUF_ERROR) m_damage = "the compressed data is cut off";
-    if (code != Z_BUF_ERROR && code != Z_OK) m_damage = message;
-  }
   return done;
+}
+
+/** After each read: since zlib 1.3.2 the next one forgets it. */
+void GzipInputStream::noteDamage() {
+  int code = Z_OK;
+  const char* message = gzerror(m_file.get(), &code);
+  if (code == Z_BUF_ERROR) m_damage = "the compressed data is cut off";
+  if (code != Z_BUF_ERROR && code != Z_OK) m_damage = message;
 }
 
 std::size_t GzipInputStream::Write(const void*, std::size_t) {

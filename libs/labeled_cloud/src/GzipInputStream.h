@@ -36,6 +36,8 @@ class GzipInputStream : public mrpt::io::CStream {
   struct Close {
     void operator()(gzFile file) const { gzclose_r(file); }
   };
+  void noteDamage();
+
   std::unique_ptr<gzFile_s, Close> m_file;
   std::uint64_t m_fileSize = 0, m_delivered = 0;
   std::string m_damage;
