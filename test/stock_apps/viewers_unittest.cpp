@@ -13,7 +13,7 @@ namespace {
 class Viewers : public StockApps {
  protected:
   void SetUp() override {
-    SKIP_WITHOUT("/usr/bin/RawLogViewer", "mrpt-apps");
+    SKIP_WITHOUT_APP("RawLogViewer");
     SKIP_WITHOUT("/usr/bin/xvfb-run", "xvfb");
     SKIP_WITHOUT("/usr/bin/xauth", "xauth");
     SKIP_WITHOUT("/usr/bin/xdotool", "xdotool");
