@@ -32,11 +32,8 @@ std::optional<semantic_octree::SemanticOcTree> StockApps::mapIn(
 std::string StockApps::shortRawlog(const std::string& dataset, std::size_t pairs) const {
   mrpt::obs::CRawlog rawlog, first;
   rawlog.loadFromRawLogFile("/usr/share/mrpt/datasets/" + dataset);
-  std::size_t entry = 0;
-  mrpt::obs::CActionCollection::Ptr actions;
-  mrpt::obs::CSensoryFrame::Ptr frame;
-  while (pairs-- > 0 && rawlog.getActionObservationPair(actions, frame, entry))
-    first.insert(actions), first.insert(frame);
+  for (std::size_t entry = 0; entry < 2 * pairs; entry += 2)
+    first.insert(rawlog.getAsAction(entry)), first.insert(rawlog.getAsObservations(entry + 1));
   const std::string file = (folder / "short.rawlog").string();
   first.saveToRawLogFile(file);
   return file;

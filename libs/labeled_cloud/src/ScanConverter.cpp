@@ -3,6 +3,7 @@
 #include <strict_files/ErrorMessage.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
 
 #include "ObservationName.h"
@@ -19,10 +20,19 @@ using semantic_types::kNoClass;
 
 namespace {
 
+/** MRPT 3's own error does not name the file. */
+void checkDepthFile(const CObservation& observation) {
+  const auto* scan = dynamic_cast<const CObservation3DRangeScan*>(&observation);
+  if (!scan || !scan->hasRangeImage || !scan->rangeImage_isExternallyStored()) return;
+  const std::string file = scan->rangeImage_getExternalStorageFileAbsolutePath("");
+  if (!std::filesystem::exists(file)) throw std::runtime_error(file + ": no such file");
+}
+
 /** Holds what an observation stores in files of its own in memory for a while. */
 class LoadedObservation {
  public:
   explicit LoadedObservation(const CObservation& observation) : m_observation(observation) {
+    checkDepthFile(observation);
     m_observation.load();
   }
   ~LoadedObservation() { m_observation.unload(); }
