@@ -59,7 +59,7 @@ class Viewers : public StockApps {
 
   void cutVillage() const {
     mrpt::obs::CRawlog rawlog;
-    rawlog.loadFromRawLogFile((folder / "rawlog-samples/village.rawlog").string());
+    ASSERT_TRUE(rawlog.loadFromRawLogFile((folder / "rawlog-samples/village.rawlog").string()));
     rawlog.remove(12, rawlog.size() - 1);
     ASSERT_TRUE(rawlog.saveToRawLogFile((folder / "short.rawlog").string()));
   }
