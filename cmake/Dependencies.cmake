@@ -11,14 +11,14 @@ macro(mso_external target debian)
 endmacro()
 
 # mso_external_mrpt(NAME): MRPT's library mrpt::NAME. Since MRPT 3 its package is mrpt_NAME, before mrpt-NAME;
-# ThirdPartyTargets.cmake gives its target one name.
+# ThirdPartyTargets.cmake gives its target one name. Both releases may be installed: all libraries come from one.
+find_package(mrpt_obs QUIET)
+set(mso_mrpt mrpt-)
+if(mrpt_obs_FOUND)
+  set(mso_mrpt mrpt_)
+endif()
 macro(mso_external_mrpt name)
-  find_package(mrpt_${name} QUIET)
-  if(mrpt_${name}_FOUND)
-    mso_external(mrpt::${name} libmrpt-${name}-dev mrpt_${name})
-  else()
-    mso_external(mrpt::${name} libmrpt-${name}-dev mrpt-${name})
-  endif()
+  mso_external(mrpt::${name} libmrpt-${name}-dev ${mso_mrpt}${name})
 endmacro()
 mso_external(Eigen3::Eigen libeigen3-dev Eigen3 NO_MODULE)
 mso_external(mso_octomap liboctomap-dev octomap)
@@ -35,7 +35,7 @@ mso_external_mrpt(opengl)
 mso_external_mrpt(graphs)
 mso_external_mrpt(nav)
 if(MSO_BUILD_APPS)
-  mso_external_mrpt(gui)
+  find_package(${mso_mrpt}gui QUIET)  # windows
 endif()
 find_package(liblzf QUIET)  # compressed PCD files are refused without
 

@@ -1,6 +1,7 @@
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
+#include <mrpt_compat/Images.h>
 #include <semantic_types/ClassTableFile.h>
 
 #include <algorithm>
@@ -69,7 +70,7 @@ class TumConverter {
 
   Summary run() {
     // Colors must stay what they were: a network, or a palette, may depend on them.
-    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(true);
+    mrpt_compat::writeImagesWithoutLoss();
     Output output(m_conversion, m_table);
     std::size_t frame = 0;
     for (const auto& [time, file] : m_depth)

@@ -41,7 +41,7 @@ class CameraMapping : public Rawlog2SemanticMap {
 
   void SetUp() override {
     Rawlog2SemanticMap::SetUp();
-    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(true);
+    mrpt_compat::writeImagesWithoutLoss();
     writeSmallRawlog(folder / "camera.rawlog", robotPose(10, 0), unlabeledScan(10), picture(10.01));
     std::filesystem::create_directory(folder / "labels");
     cv::imwrite((folder / "labels/10.01.png").string(), redAndBlue());

@@ -4,6 +4,7 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt_compat/Images.h>
 #include <semantic_types/ClassTableFile.h>
 
 #include <cmath>
@@ -35,15 +36,13 @@ std::vector<std::shared_ptr<Observation>> readAll(const fs::path& rawlog,
 }
 
 /** Softmax of -sharpness * squared distance to the classes' colors, at one pixel. */
-std::vector<double> answerFor(const mrpt::img::CImage& image, int col, int row,
-                              const ClassTable& table) {
-  const auto pixel = image.at<mrpt::img::TColor>(col, row);  // stored as blue, green, red
+std::vector<double> answerFor(const cv::Vec3b& pixel, const ClassTable& table) {
   std::vector<double> p;
   double sum = 0;
   for (int id = 1; id <= table.size(); ++id) {
     const auto& c = table.color(static_cast<ClassId>(id));
-    const double r = (pixel.B - c.r) / 255.0, g = (pixel.G - c.g) / 255.0,
-                 b = (pixel.R - c.b) / 255.0;
+    const double r = (pixel[2] - c.r) / 255.0, g = (pixel[1] - c.g) / 255.0,
+                 b = (pixel[0] - c.b) / 255.0;
     p.push_back(std::exp(-kSharpness * (r * r + g * g + b * b)));
     sum += p.back();
   }
@@ -77,11 +76,12 @@ TEST(SampleNetwork, labelsTheVillageAsItsColorsSayHardAndSoft) {
     std::size_t compared = 0, wrong = 0;
     for (std::size_t f = 0; f < frames.size(); f += 8) {
       const auto& cloud = saved[f]->cloud;
+      const cv::Mat image = mrpt_compat::toOpenCv(frames[f]->intensityImage);
       std::size_t point = 0;
       for (int row = 0; row < rows; ++row)
         for (int col = 0; col < cols; ++col) {
           if (frames[f]->rangeImage(row, col) == 0) continue;
-          const auto p = answerFor(frames[f]->intensityImage, col, row, table);
+          const auto p = answerFor(image.at<cv::Vec3b>(row, col), table);
           const double best = *std::max_element(p.begin(), p.end());
           ++compared;
           if (cloud.probabilities.empty())

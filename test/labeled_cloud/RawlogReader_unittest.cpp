@@ -97,6 +97,12 @@ TEST(RawlogReader, missingFilesFoldersAndEmptyRawlogsAreNamed) {
   EXPECT_TRUE(contains(errorReading(writeRawlog(folder / "none.rawlog", {})), "empty"));
 }
 
+TEST(RawlogReader, rawlogsOfMrpt3InZstandardAreNamed) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("zstd.rawlog", "\x28\xb5\x2f\xfd and so on").string();
+  EXPECT_EQ(errorReading(file), file + ": is compressed with Zstandard, expected gzip");
+}
+
 TEST(RawlogReader, everyTruncationOfACompressedRawlogIsNoticed) {
   const TemporaryFolder folder;
   writeRawlog(folder / "whole.rawlog", threeClouds());

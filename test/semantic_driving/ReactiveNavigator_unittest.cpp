@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/core/Clock.h>
-#include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/nav/reactive/CLogFileRecord.h>
 #include <mrpt/serialization/CArchive.h>
+#include <mrpt_compat/Files.h>
 #include <semantic_driving/ReactiveNavigator.h>
 
 #include <cmath>
@@ -129,7 +129,7 @@ TEST(ReactiveNavigator, WritesALogThatMrptReads) {
   ReactiveNavigator::Options options = optionsOf(0.2);
   options.logFolder = folder.path;
   EXPECT_TRUE(getsThrough(options, 0.5));
-  mrpt::io::CFileGZInputStream file((folder.path / "log_000.reactivenavlog").string());
+  mrpt_compat::CompressedInput file((folder.path / "log_000.reactivenavlog").string());
   auto archive = mrpt::serialization::archiveFrom(file);
   int records = 0;
   double farthest = 0;

@@ -30,15 +30,18 @@ std::optional<semantic_octree::SemanticOcTree> StockApps::mapIn(
 }
 
 std::string StockApps::shortRawlog(const std::string& dataset, std::size_t pairs) const {
+  using Entry = mrpt::obs::CRawlog::TEntryType;
   mrpt::obs::CRawlog rawlog, first;
-  rawlog.loadFromRawLogFile("/usr/share/mrpt/datasets/" + dataset);
-  std::size_t entry = 0;
-  mrpt::obs::CActionCollection::Ptr actions;
-  mrpt::obs::CSensoryFrame::Ptr frame;
-  while (pairs-- > 0 && rawlog.getActionObservationPair(actions, frame, entry))
-    first.insert(actions), first.insert(frame);
+  EXPECT_TRUE(rawlog.loadFromRawLogFile("/usr/share/mrpt/datasets/" + dataset));
+  for (std::size_t entry = 0; pairs > 0; ++entry) {
+    const auto type = rawlog.getType(entry);
+    if (type == Entry::etActionCollection) first.insert(rawlog.getAsAction(entry));
+    if (type != Entry::etSensoryFrame) continue;
+    first.insert(rawlog.getAsObservations(entry));
+    --pairs;
+  }
   const std::string file = (folder / "short.rawlog").string();
-  first.saveToRawLogFile(file);
+  EXPECT_TRUE(first.saveToRawLogFile(file));
   return file;
 }
 

@@ -43,6 +43,12 @@ constexpr bool kRawlogEditDrops = !MSO_MRPT_AT_LEAST(2, 12, 1) || MSO_MRPT_AT_LE
 /** The laser scanner's round through a corridor that mrpt-common ships. */
 inline const char* const kLaserRawlog = "2006-01ENE-21-SENA_Telecom Faculty_one_loop_only.rawlog";
 
+/** Skips the running test, saying so, where one of MRPT's programs is absent, or cannot load what
+ * is built upon this MRPT. */
+#define SKIP_WITHOUT_APP(NAME)                                                               \
+  if (MSO_MRPT_AT_LEAST(3, 0, 0)) GTEST_SKIP() << "Debian's programs are built with MRPT 2"; \
+  SKIP_WITHOUT("/usr/bin/" NAME, "mrpt-apps")
+
 /** Skips the running test, saying so, where a program or file of a Debian package is absent. */
 #define SKIP_WITHOUT(PATH, PACKAGE) \
   if (!std::filesystem::exists(PATH)) GTEST_SKIP() << "needs " << (PATH) << " (package " PACKAGE ")"

@@ -24,7 +24,7 @@ std::string commandsOf(const std::filesystem::path& page) {
 }  // namespace
 
 TEST_F(StockApps, theCommandsOfTheirPageWorkOneAfterTheOther) {
-  SKIP_WITHOUT("/usr/bin/icp-slam", "mrpt-apps");
+  SKIP_WITHOUT_APP("icp-slam");
   SKIP_WITHOUT(std::string("/usr/share/mrpt/datasets/") + kLaserRawlog, "mrpt-common");
   std::filesystem::create_directory(folder / "build");
   std::filesystem::create_directory_symlink(MSO_LIB_DIR, folder / "build/lib");

@@ -6,7 +6,7 @@ namespace {
 class IcpSlam : public StockApps {
  protected:
   void SetUp() override {
-    SKIP_WITHOUT("/usr/bin/icp-slam", "mrpt-apps");
+    SKIP_WITHOUT_APP("icp-slam");
     SKIP_WITHOUT(std::string("/usr/share/mrpt/datasets/") + kLaserRawlog, "mrpt-common");
     rawlog = shortRawlog(kLaserRawlog, 60);
   }

@@ -11,7 +11,7 @@ namespace {
 class Observations2Map : public StockApps {
  protected:
   void SetUp() override {
-    SKIP_WITHOUT("/usr/bin/observations2map", "mrpt-apps");
+    SKIP_WITHOUT_APP("observations2map");
     ASSERT_TRUE(villageFrames(2).saveToFile((folder / "village.simplemap").string()));
     std::filesystem::create_directory(folder / "out");
   }

@@ -8,7 +8,7 @@ namespace {
 class PfLocalization : public StockApps {
  protected:
   void SetUp() override {
-    SKIP_WITHOUT("/usr/bin/pf-localization", "mrpt-apps");
+    SKIP_WITHOUT_APP("pf-localization");
     SKIP_WITHOUT("/usr/share/mrpt/datasets/localization_demo.simplemap.gz", "mrpt-common");
   }
   CommandRun localize(Plugin plugin) const {

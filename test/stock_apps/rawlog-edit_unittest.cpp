@@ -9,7 +9,7 @@ namespace {
 
 class RawlogEdit : public StockApps {
  protected:
-  void SetUp() override { SKIP_WITHOUT("/usr/bin/rawlog-edit", "mrpt-apps"); }
+  void SetUp() override { SKIP_WITHOUT_APP("rawlog-edit"); }
   CommandRun edit(const std::string& arguments) const { return run("rawlog-edit " + arguments); }
 };
 

@@ -6,7 +6,7 @@ namespace {
 class RbpfSlam : public StockApps {
  protected:
   void SetUp() override {
-    SKIP_WITHOUT("/usr/bin/rbpf-slam", "mrpt-apps");
+    SKIP_WITHOUT_APP("rbpf-slam");
     SKIP_WITHOUT(std::string("/usr/share/mrpt/datasets/") + kLaserRawlog, "mrpt-common");
   }
   CommandRun slam(Plugin plugin) const {

@@ -13,7 +13,7 @@ namespace {
 class Viewers : public StockApps {
  protected:
   void SetUp() override {
-    SKIP_WITHOUT("/usr/bin/RawLogViewer", "mrpt-apps");
+    SKIP_WITHOUT_APP("RawLogViewer");
     SKIP_WITHOUT("/usr/bin/xvfb-run", "xvfb");
     SKIP_WITHOUT("/usr/bin/xauth", "xauth");
     SKIP_WITHOUT("/usr/bin/xdotool", "xdotool");
@@ -59,7 +59,7 @@ class Viewers : public StockApps {
 
   void cutVillage() const {
     mrpt::obs::CRawlog rawlog;
-    rawlog.loadFromRawLogFile((folder / "rawlog-samples/village.rawlog").string());
+    ASSERT_TRUE(rawlog.loadFromRawLogFile((folder / "rawlog-samples/village.rawlog").string()));
     rawlog.remove(12, rawlog.size() - 1);
     ASSERT_TRUE(rawlog.saveToRawLogFile((folder / "short.rawlog").string()));
   }

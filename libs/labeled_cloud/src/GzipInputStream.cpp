@@ -1,15 +1,29 @@
 #include "GzipInputStream.h"
 
 #include <algorithm>
+#include <fstream>
 #include <stdexcept>
+#include <string_view>
 
 namespace labeled_cloud {
+
+namespace {
+
+bool isZstandard(const std::filesystem::path& file) {
+  char begin[4] = {};
+  std::ifstream(file, std::ios::binary).read(begin, 4);
+  return std::string_view(begin, 4) == "\x28\xb5\x2f\xfd";
+}
+
+}  // namespace
 
 GzipInputStream::GzipInputStream(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
     throw std::runtime_error(file.string() + ": there is no such file");
   m_file.reset(gzopen(file.c_str(), "rb"));
   if (!m_file) throw std::runtime_error(file.string() + ": cannot be opened");
+  if (isZstandard(file))
+    throw std::runtime_error(file.string() + ": is compressed with Zstandard, expected gzip");
   gzbuffer(m_file.get(), 1u << 18);
   m_fileSize = std::filesystem::file_size(file);
 }

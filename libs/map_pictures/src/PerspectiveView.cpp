@@ -26,6 +26,7 @@ struct Rendered {
 Scene sceneOf(const mrpt_compat::drawing::CSetOfTriangles::Ptr& mesh, const PictureCamera& camera) {
   Scene scene;
   scene.insert(mesh);
+  mrpt_compat::keepColors(scene);
   const auto viewport = scene.getViewport();
   viewport->setCustomBackgroundColor(
       mrpt::img::TColorf(mrpt::img::TColor(kPaper.r, kPaper.g, kPaper.b)));

@@ -40,6 +40,8 @@ mrpt::img::CImage toMrpt(const cv::Mat& image) {
   return result;
 }
 
+void writeImagesWithoutLoss() {}
+
 #else
 
 cv::Mat toOpenCv(const mrpt::img::CImage& image) {
@@ -47,6 +49,8 @@ cv::Mat toOpenCv(const mrpt::img::CImage& image) {
 }
 
 mrpt::img::CImage toMrpt(const cv::Mat& image) { return {image, mrpt::img::DEEP_COPY}; }
+
+void writeImagesWithoutLoss() { mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(true); }
 
 #endif
 

@@ -12,4 +12,8 @@ cv::Mat toOpenCv(const mrpt::img::CImage& image);
 /** The same the other way round, a copy. */
 mrpt::img::CImage toMrpt(const cv::Mat& image);
 
+/** From now on this process writes images into rawlogs as they are, not as JPEG. Since MRPT 3 they
+ * always are. */
+void writeImagesWithoutLoss();
+
 }  // namespace mrpt_compat

@@ -14,4 +14,11 @@ inline void setCamera(mrpt::opengl::CFBORender& renderer, [[maybe_unused]] const
 #endif
 }
 
+/** Colors in the picture are those of the scene's objects; MRPT 3 makes them lighter otherwise. */
+inline void keepColors([[maybe_unused]] Scene& scene) {
+#if MSO_MRPT_AT_LEAST(3, 0, 0)
+  scene.getViewport()->lightParameters().gamma_correction = false;
+#endif
+}
+
 }  // namespace mrpt_compat
