@@ -61,9 +61,9 @@ TEST_P(RegisteredStreet, scansComeBackToTheirPoses) {
   const auto frames = readSemanticKitti(sharedDataDir() / sequence, table);
   for (const bool useClasses : {false, true}) {
     const Errors e = registeredBack(frames, useClasses);
-    EXPECT_LT(e.meters, 0.1) << useClasses;
-    EXPECT_LT(e.worstMeters, 0.2) << useClasses;
-    EXPECT_LT(e.degrees, 0.2) << useClasses;
+    EXPECT_LT(e.meters, 0.03) << useClasses;
+    EXPECT_LT(e.worstMeters, 0.05) << useClasses;
+    EXPECT_LT(e.degrees, 0.1) << useClasses;
   }
 }
 

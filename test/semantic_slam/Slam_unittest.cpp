@@ -138,8 +138,8 @@ TEST(Slam, closesTheLoopOfAParkAndTheMapFollows) {
       (r.odometry.back().translation() - r.truth.back().translation()).norm();
   EXPECT_GT(odometryError, 5);
   EXPECT_GT(run.slam.numLoops(), 0u);
-  EXPECT_LT(run.errorOf(r, run.scanOf.size() - 1), 0.3);
-  EXPECT_LT(run.rootMeanSquareError(r), 0.08);
+  EXPECT_LT(run.errorOf(r, run.scanOf.size() - 1), 0.1);
+  EXPECT_LT(run.rootMeanSquareError(r), 0.07);
   semantic_octree::SemanticOcTree map(0.4, synthetic_world::classTable());
   semantic_octree::KeyframeMap keyframes(map);
   for (std::size_t k = 0; k < run.scanOf.size(); ++k) {
@@ -162,7 +162,7 @@ TEST(Slam, closesTheLoopOfAVillageWithoutLabels) {
     slam.add(r.clouds[i], kRobotLidar, r.odometry[i]);
   ASSERT_EQ(slam.poses().size(), r.truth.size());
   EXPECT_GT(slam.numLoops(), 0u);
-  EXPECT_LT((slam.poses().back().translation() - r.truth.back().translation()).norm(), 0.3);
+  EXPECT_LT((slam.poses().back().translation() - r.truth.back().translation()).norm(), 0.1);
 }
 
 TEST(Slam, closesTheLoopOfASingleCamera) {
@@ -181,7 +181,7 @@ TEST(Slam, closesTheLoopOfASingleCamera) {
     for (std::size_t k = 0; k < r.truth.size(); ++k) squares += errorAt(k) * errorAt(k);
     EXPECT_EQ(slam.numLost(), 0u) << useClasses;
     EXPECT_LT(errorAt(r.truth.size() - 1), 0.1) << useClasses;
-    EXPECT_LT(std::sqrt(squares / static_cast<double>(r.truth.size())), 0.2) << useClasses;
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(r.truth.size())), 0.12) << useClasses;
   }
 }
 
