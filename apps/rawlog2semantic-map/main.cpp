@@ -77,10 +77,10 @@ struct Cli {
     app.add_flag_callback("-v,--verbose", beVerbose, "Say of each observation what became of it");
     auto* upkeep = app.add_flag("--compare-upkeep", compareUpkeep,
                                 "Time each insertion without upkeep of the abstraction, too");
-    auto* corrected =
-        app.add_flag("--slam", slam,
-                     "Correct the poses: register scans to each other, close loops; for LiDARs")
-            ->excludes(upkeep);
+    auto* corrected = app.add_flag("--slam", slam,
+                                   "Correct the poses: register scans to each other, close loops; "
+                                   "for LiDARs and RGB-D cameras")
+                          ->excludes(upkeep);
     auto* window = app.add_flag("--live", live, "Show the map in a window while it grows");
     addTilesTo(app)->excludes(corrected)->excludes(upkeep)->excludes(window);
     app.add_flag("--pause", pause, "Wait there from the first scan on")->needs(window);

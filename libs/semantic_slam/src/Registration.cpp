@@ -1,7 +1,8 @@
 #include <semantic_slam/Registration.h>
 
 #include <Eigen/Eigenvalues>
-#include <unordered_set>
+#include <random>
+#include <unordered_map>
 
 namespace semantic_slam {
 
@@ -53,7 +54,7 @@ struct Normals {
       Eigen::Matrix3d cross;
       cross << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
       J << T.linear(), -T.linear() * cross;
-      const Eigen::Matrix<double, 6, 3> JtW = J.transpose() * d->information * weight;
+      const Eigen::Matrix<double, 6, 3> JtW = J.transpose() * d->evidence * weight;
       H += JtW * J;
       b -= JtW * (q - d->mean);
     }
@@ -83,6 +84,7 @@ void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cl
 }
 
 void Submap::finish() {
+  const double ofFilledCube = 12 / (m_cellSize * m_cellSize);
   for (const auto& [key, s] : m_sums) {
     if (s.n < kFewestPoints) continue;
     const Eigen::Vector3d mean = s.sum / s.n;
@@ -95,9 +97,12 @@ void Submap::finish() {
       const auto bits = static_cast<std::int64_t>(key >> (8 + 18 * (2 - i)) & 0x3ffff);
       corner[i] = static_cast<double>(bits >= 0x20000 ? bits - 0x40000 : bits) * m_cellSize;
     }
-    m_distributions[key] = {corner + mean, axes.eigenvectors() *
-                                               variances.cwiseInverse().asDiagonal() *
-                                               axes.eigenvectors().transpose()};
+    const auto along = [&axes](const Eigen::Vector3d& values) -> Eigen::Matrix3d {
+      return axes.eigenvectors() * values.asDiagonal() * axes.eigenvectors().transpose();
+    };
+    const Eigen::Vector3d information = variances.cwiseInverse();
+    m_distributions[key] = {corner + mean, along(information),
+                            along((information.array() - ofFilledCube).max(0).matrix())};
   }
   m_sums.clear();
 }
@@ -126,13 +131,24 @@ auto Submap::find(const Eigen::Vector3d& point, ClassId id, double& squaredDista
 }
 
 LabeledCloud thinned(const LabeledCloud& cloud, double cubeSize, double maxRange) {
+  struct Drawn {
+    std::size_t at;        // among the thinned
+    unsigned numSeen = 0;  // in the cube
+  };
   LabeledCloud thin;
-  std::unordered_set<std::uint64_t> seen;
+  std::unordered_map<std::uint64_t, Drawn> cubes;
+  std::minstd_rand random;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d p = cloud.points[i].cast<double>();
-    if (!(p.norm() <= maxRange) || !seen.insert(pack(cubeOf(p, cubeSize))).second) continue;
-    thin.points.push_back(cloud.points[i]);
-    thin.classes.push_back(classOf(cloud, i));
+    if (!(p.norm() <= maxRange)) continue;
+    Drawn& drawn = cubes.try_emplace(pack(cubeOf(p, cubeSize)), Drawn{thin.size()}).first->second;
+    if (random() % ++drawn.numSeen != 0) continue;
+    if (drawn.at == thin.size()) {
+      thin.points.emplace_back();
+      thin.classes.emplace_back();
+    }
+    thin.points[drawn.at] = cloud.points[i];
+    thin.classes[drawn.at] = classOf(cloud, i);
   }
   return thin;
 }

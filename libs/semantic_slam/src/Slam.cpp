@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace semantic_slam {
 namespace {
@@ -20,10 +21,17 @@ constexpr double kFarOff = 0.3, kFarTurned = 2 * kDegree;
 constexpr double kFar = 4;
 /** Information (1/m^2, 1/rad^2) of a height and a tilt that are known. */
 constexpr double kLevel = 1e12;
-/** Of a keyframe's points where there are some of before. */
+/** Of a keyframe's points, those where a loop's other end has some. */
 constexpr double kLeastCovered = 0.3;
 /** Of the points that are registered, m. */
 constexpr double kRegisteredCube = 0.5;
+
+/** Of two poses where odometry has one, with this information. */
+bool isFar(const Eigen::Isometry3d& T_off, const Matrix6& information) {
+  const Vector6 off = vectorOf(T_off);
+  return off.head<3>().norm() > std::max(kFarOff, kFar / std::sqrt(information(0, 0))) ||
+         off.tail<3>().norm() > std::max(kFarTurned, kFar / std::sqrt(information(5, 5)));
+}
 
 LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T) {
   for (Eigen::Vector3f& p : cloud.points) p = (T * p.cast<double>()).cast<float>();
@@ -81,11 +89,9 @@ auto Slam::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_senso
     return {last, T_last_robot};
   }
   const double way = T_guess.translation().norm();
-  m_edges.push_back({last, last + 1, T_guess, odometryInformation(way)});
-  if (registered)
-    m_edges.push_back({last, last + 1, T_last_robot, kOwnInformation * registered->information});
-  else
-    ++m_numLost;
+  m_edges.push_back({last, last + 1, T_last_robot,
+                     registered ? registered->information : odometryInformation(way)});
+  if (!registered) ++m_numLost;
   begin(std::move(now), rigid(m_poses.back() * T_last_robot));
   m_keyframes.back().way = m_keyframes[last].way + way;
   return {last + 1, identity, true, closeLoop()};
@@ -121,13 +127,11 @@ std::optional<Registration> Slam::track(const Seen& seen, const Eigen::Isometry3
     m_nearby = submapsOf(last - std::min(last, before), last, last, kCellsNearby);
   const double way = (m_T_odometry_last.inverse() * seen.T_odometry_robot).translation().norm();
   const Matrix6 information = odometryInformation(way);
-  Registration r = match(m_nearby, seen, T_last_guess);
-  const Vector6 off = vectorOf(T_last_guess.inverse() * r.T_submap_scan);
-  const double farOff = std::max(kFarOff, kFar / std::sqrt(information(0, 0)));
-  const double farTurned = std::max(kFarTurned, kFar / std::sqrt(information(5, 5)));
-  if (r.coveredShare < kLeastCovered || r.matchedShare < m_options.registrationShare ||
-      off.head<3>().norm() > farOff || off.tail<3>().norm() > farTurned)
+  Registration r = match(m_nearby, seen, T_last_guess, information / kOwnInformation);
+  if (r.matchedShare < m_options.registrationShare ||
+      isFar(T_last_guess.inverse() * r.T_submap_scan, information))
     return std::nullopt;
+  r.information = kOwnInformation * r.information + information;
   const Eigen::Isometry3d T_map = m_poses[last] * r.T_submap_scan;
   r.T_submap_scan = m_poses[last].inverse() * levelled(T_map, seen.T_odometry_robot);
   return r;
@@ -168,11 +172,11 @@ Matrix6 Slam::levelOf(const Eigen::Isometry3d& T_odometry_robot) const {
 }
 
 Registration Slam::match(const std::vector<Submap>& submaps, const Seen& seen,
-                         const Eigen::Isometry3d& T_submap_guess) const {
+                         const Eigen::Isometry3d& T_submap_guess, const Matrix6& prior) const {
   std::vector<const Submap*> pointers;
   for (const Submap& submap : submaps) pointers.push_back(&submap);
   return registerScan(pointers, thinned(seen.cloud, kRegisteredCube, m_options.maxRange),
-                      T_submap_guess, levelOf(seen.T_odometry_robot));
+                      T_submap_guess, prior + levelOf(seen.T_odometry_robot));
 }
 
 std::size_t Slam::placeOfLoop() const {
@@ -192,6 +196,13 @@ std::size_t Slam::placeOfLoop() const {
   return best;
 }
 
+bool Slam::agree(const PoseEdge& before, const PoseEdge& loop) const {
+  const Eigen::Isometry3d T_map_by_before =
+      m_poses[before.a] * before.T_a_b * (m_poses[before.b].inverse() * m_poses[loop.b]);
+  const double way = m_keyframes[loop.b].way - m_keyframes[before.b].way;
+  return !isFar(T_map_by_before.inverse() * m_poses[loop.a] * loop.T_a_b, odometryInformation(way));
+}
+
 bool Slam::closeLoop() {
   const std::size_t newest = m_keyframes.size() - 1, place = placeOfLoop();
   if (place == newest || m_keyframes[newest].way < m_lastLook + m_options.loopEvery) return false;
@@ -199,10 +210,13 @@ bool Slam::closeLoop() {
   const auto beside = static_cast<std::size_t>(m_options.submapKeyframes / 2);
   const std::vector<Submap> submaps = submapsOf(
       place - std::min(place, beside), std::min(place + beside, newest - 1), place, kCellsOfLoops);
-  const Registration r =
-      match(submaps, m_keyframes[newest].seen, m_poses[place].inverse() * m_poses[newest]);
+  const Registration r = match(submaps, m_keyframes[newest].seen,
+                               m_poses[place].inverse() * m_poses[newest], Matrix6::Zero());
   if (r.coveredShare < kLeastCovered || r.matchedShare < m_options.loopShare) return false;
-  m_edges.push_back({place, newest, r.T_submap_scan, informationOf(kLoopMeters, kLoopAngle), true});
+  const PoseEdge loop{place, newest, r.T_submap_scan, informationOf(kLoopMeters, kLoopAngle), true};
+  const auto before = std::exchange(m_lastLoop, loop);
+  if (!before || !agree(*before, loop)) return false;
+  m_edges.push_back(loop);
   optimize(m_poses, m_edges);
   for (std::size_t k = 0; k < m_poses.size(); ++k)
     m_poses[k] = levelled(m_poses[k], m_keyframes[k].seen.T_odometry_robot);

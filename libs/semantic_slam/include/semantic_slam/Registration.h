@@ -22,6 +22,9 @@ class Submap {
   struct Distribution {
     Eigen::Vector3d mean;
     Eigen::Matrix3d information;  ///< inverse covariance, 1/m^2
+    /** What of it is not due to the cube: along its axes, less 12 / edge^2, that of points all over
+     * the cube, and at least 0. A surface that goes on beyond says nothing along itself. */
+    Eigen::Matrix3d evidence;
   };
   /** The likeliest for a point of its class, in its cube and the six beside; null: there is none.
    */
@@ -45,12 +48,15 @@ class Submap {
   std::unordered_map<Key, Distribution> m_distributions;
 };
 
-/** One point per cube, the first; none beyond a range. \param cubeSize, maxRange meters */
+/** One point per cube, drawn from those in it, each as likely (Vitter, "Random Sampling with a
+ * Reservoir"), the same each time; none beyond a range. The first ones would be biased: where an
+ * image's rows enter a cube of ground, those are left that noise brings nearer, that is up.
+ * \param cubeSize, maxRange meters */
 LabeledCloud thinned(const LabeledCloud& cloud, double cubeSize, double maxRange);
 
 struct Registration {
   Eigen::Isometry3d T_submap_scan;
-  Matrix6 information;      ///< as PoseEdge's, of a unit weight for each point that fits
+  Matrix6 information;      ///< as PoseEdge's, by the points that fit, each off by itself
   double coveredShare = 0;  ///< of the points, those where the submap has points of their class
   double matchedShare = 0;  ///< of these, those within three standard deviations
 };

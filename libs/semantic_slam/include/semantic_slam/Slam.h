@@ -54,7 +54,8 @@ class Slam {
   Matrix6 levelOf(const Eigen::Isometry3d& T_odometry_robot) const;
   /** A scan was registered there. */
   void moveOn(const Eigen::Isometry3d& T_keyframe_robot, const Eigen::Isometry3d& T_odometry_robot);
-  /** Registers to the last keyframes. \param T_last_guess frame of the last keyframe of these
+  /** Where odometry and the last keyframes' points together have a scan. \param T_last_guess where
+   * odometry has it, frame of the last keyframe
    * \return nothing: it fits badly, or says otherwise than odometry. */
   std::optional<Registration> track(const Seen& seen, const Eigen::Isometry3d& T_last_guess);
   /** Of a step, frame of its end. \param way meters */
@@ -63,13 +64,15 @@ class Slam {
   Eigen::Isometry3d levelled(const Eigen::Isometry3d& T_map_robot,
                              const Eigen::Isometry3d& T_odometry_robot) const;
   bool closeLoop();
+  /** That two loops say the same of where the robot is. */
+  bool agree(const PoseEdge& before, const PoseEdge& loop) const;
   /** The likeliest place of a loop's other end; the newest keyframe if there is none. */
   std::size_t placeOfLoop() const;
   /** Of some keyframes' points, in the frame of one of them. */
   std::vector<Submap> submapsOf(std::size_t first, std::size_t last, std::size_t frame,
                                 const std::vector<double>& cellSizes) const;
   Registration match(const std::vector<Submap>& submaps, const Seen& seen,
-                     const Eigen::Isometry3d& T_submap_guess) const;
+                     const Eigen::Isometry3d& T_submap_guess, const Matrix6& prior) const;
 
   SlamOptions m_options;
   std::vector<Keyframe> m_keyframes;
@@ -77,6 +80,7 @@ class Slam {
   std::vector<PoseEdge> m_edges;
   std::size_t m_numLoops = 0, m_numLost = 0;
   double m_lastLook = 0;
+  std::optional<PoseEdge> m_lastLoop;  ///< that was found; it may be wrong
   std::vector<Submap> m_nearby;  ///< of the last keyframes, in the frame of the last; or none yet
   /** Where the last scan that was registered was, in the last keyframe's frame, and where odometry
    * had it. */
