@@ -58,7 +58,7 @@ std::vector<LabeledFrame> readSemanticKitti(const fs::path& sequence,
   std::vector<LabeledFrame> frames;
   std::ifstream poses(sequence / "poses.txt");
   for (std::string line; std::getline(poses, line);) {
-    char name[16];
+    char name[24];
     std::snprintf(name, sizeof(name), "%06zu", frames.size());
     frames.push_back(readFrame(sequence, name, table));
     std::istringstream numbers(line);

@@ -102,7 +102,7 @@ TEST(Invariance, theUnitOfWeightDoesNotMatter) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto [tree, weights] = makeExample(seed);
     Copier copier(tree);
-    const auto scaleLeaves = [&](auto& self, Copier& c, Node n, Node inner) -> void {
+    const auto scaleLeaves = [&, &tree = tree](auto& self, Copier& c, Node n, Node inner) -> void {
       for (const Node child : tree.children(n)) {
         if (tree.children(child).empty()) {
           c.copyLeaf(child, inner, 1000.0);
@@ -123,7 +123,7 @@ TEST(Invariance, theOrderOfChildrenDoesNotMatter) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto [tree, weights] = makeExample(seed);
     Copier copier(tree);
-    const auto reverse = [&](auto& self, Copier& c, Node n, Node inner) -> void {
+    const auto reverse = [&, &tree = tree](auto& self, Copier& c, Node n, Node inner) -> void {
       auto children = tree.children(n);
       std::reverse(children.begin(), children.end());
       std::swap(children.front(), children[children.size() / 2]);
@@ -143,7 +143,7 @@ TEST(Invariance, mergingEqualLeavesBeforehandChangesNothingBitForBit) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto [tree, weights] = makeExample(seed);
     Copier copier(tree);
-    const auto unprune = [&](auto& self, Copier& c, Node n, Node inner) -> void {
+    const auto unprune = [&, &tree = tree](auto& self, Copier& c, Node n, Node inner) -> void {
       for (const Node child : tree.children(n)) {
         if (tree.children(child).empty()) {
           c.copyLeafUnpruned(child, inner, child % 3);
