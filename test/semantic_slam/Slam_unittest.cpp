@@ -1,96 +1,15 @@
 #include <gtest/gtest.h>
 #include <semantic_octree/KeyframeMap.h>
 #include <semantic_slam/Slam.h>
-#include <synthetic_world/Camera.h>
-#include <synthetic_world/Drive.h>
-#include <synthetic_world/Lidar.h>
 
 #include <cmath>
-#include <functional>
 #include <random>
 
-using namespace semantic_slam;
-using synthetic_world::FrameSeed;
+#include "Recordings.h"
+
+using namespace recordings;
 
 namespace {
-
-struct Recording {
-  std::vector<LabeledCloud> clouds;
-  std::vector<Eigen::Isometry3d> truth, odometry;
-};
-
-const Eigen::Isometry3d kRobotLidar(Eigen::Translation3d(0, 0, 1.8));
-/** Looks a little down. */
-const Eigen::Isometry3d kRobotCamera = Eigen::Translation3d(0.25, 0, 1.4) *
-                                       Eigen::AngleAxisd(0.14, Eigen::Vector3d::UnitY()) *
-                                       Eigen::Isometry3d::Identity();
-
-/** What is seen of a world by a robot that is there. */
-using Sensor = std::function<LabeledCloud(const synthetic_world::World&,
-                                          const Eigen::Isometry3d& T_world_robot, FrameSeed)>;
-
-Sensor lidarOf(double labelNoise) {
-  synthetic_world::LidarOptions lidar;
-  lidar.rings = 32;
-  lidar.columns = 360;
-  lidar.maxRange = 50;
-  lidar.noise.range = 0.02;
-  lidar.noise.label = labelNoise;
-  return [lidar](const auto& world, const auto& T_world_robot, FrameSeed seed) {
-    return scanLidar(world, T_world_robot * kRobotLidar, lidar, seed);
-  };
-}
-
-/** A single RGB-D camera, 160 x 120 pixels. \param maxRange meters */
-Sensor cameraOf(double maxRange) {
-  synthetic_world::CameraOptions camera;
-  camera.width = 160;
-  camera.height = 120;
-  camera.horizontalFov = 90;
-  camera.maxRange = maxRange;
-  camera.color = false;
-  camera.noise.range = 0.02;
-  camera.noise.label = 0.1;
-  return [camera](const auto& world, const auto& T_world_robot, FrameSeed seed) {
-    const auto frame = renderCamera(world, T_world_robot * kRobotCamera, camera, seed);
-    LabeledCloud cloud;
-    for (int row = 0; row < camera.height; ++row)
-      for (int column = 0; column < camera.width; ++column) {
-        const double depth = frame.depth.at(row, column);
-        if (depth == 0) continue;
-        cloud.points.push_back((camera.ray(row, column) * depth).cast<float>());
-        cloud.classes.push_back(frame.labels.at(row, column));
-      }
-    return cloud;
-  };
-}
-
-/** Once around a scene and some meters more; odometry that is 1 % too long, and turns 0.1
- * degrees a meter too far, with as much noise beside. */
-Recording recordingOf(const std::string& scene, std::uint64_t seed, const Sensor& sensor,
-                      double meters = 1e9) {
-  const synthetic_world::Scene place = synthetic_world::makeScene(scene, seed);
-  const synthetic_world::Drive drive(place, 1);
-  std::mt19937 random(static_cast<unsigned>(seed));
-  const auto uniform = [&random] { return static_cast<double>(random()) / 2147483648.0 - 1; };
-  Recording r;
-  for (double s = 0; s < std::min(meters, place.route.length() + 15); s += 1) {
-    const Eigen::Isometry3d T = drive.T_world_robot(s);
-    r.clouds.push_back(sensor(place.world, T, {seed, r.truth.size()}));
-    if (r.truth.empty()) {
-      r.odometry.push_back(T);
-    } else {
-      Vector6 motion = vectorOf(r.truth.back().inverse() * T);
-      const double way = motion.head<3>().norm(), angle = 0.1 * M_PI / 180 * way;
-      motion.head<3>() *= 1.01 + 0.01 * uniform();
-      motion[5] += angle * (1 + uniform());
-      for (int axis : {3, 4}) motion[axis] += 0.2 * angle * uniform();
-      r.odometry.push_back(r.odometry.back() * poseOf(motion));
-    }
-    r.truth.push_back(T);
-  }
-  return r;
-}
 
 /** What SLAM makes of a recording, and a map that follows it. */
 struct Mapped {
