@@ -70,7 +70,9 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
 
 void MapBuilder::noteLabels() const {
   const auto labels = m_summary.labelReliability();
-  if (!labels || labels->accuracy >= m_map.tree().filterParameters().accuracy) return;
+  constexpr double kWorthTelling = 0.05;
+  if (!labels || labels->accuracy > m_map.tree().filterParameters().accuracy - kWorthTelling)
+    return;
   notes() << "Labels that share a voxel agree as if " << std::lround(100 * labels->accuracy)
           << " % of them were right, and are trusted so far: wrong labels, or voxels larger than things"
           << std::endl;
