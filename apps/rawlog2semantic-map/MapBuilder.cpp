@@ -73,9 +73,10 @@ void MapBuilder::noteLabels() const {
   constexpr double kWorthTelling = 0.05;
   if (!labels || labels->accuracy > m_map.tree().filterParameters().accuracy - kWorthTelling)
     return;
-  notes() << "Labels that share a voxel agree as if " << std::lround(100 * labels->accuracy)
-          << " % of them were right, and are trusted so far: wrong labels, or voxels larger than things"
-          << std::endl;
+  notes()
+      << "Labels that share a voxel agree as if " << std::lround(100 * labels->accuracy)
+      << " % of them were right, and are trusted so far: wrong labels, or voxels larger than things"
+      << std::endl;
 }
 
 void MapBuilder::add(const StreamedObservation& observation) {

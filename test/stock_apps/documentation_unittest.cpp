@@ -5,8 +5,9 @@
 
 namespace {
 
-/** The shell commands of a page, as one script: what stands between "```console" and "```". Commands
- * that other tests of this folder run, for they take long or need a display, are left out. */
+/** The shell commands of a page, as one script: what stands between "```console" and "```".
+ * Commands that other tests of this folder run, for they take long or need a display, are left out.
+ */
 std::string commandsOf(const std::filesystem::path& page) {
   static const std::regex elsewhere("^(RawLogViewer|SceneViewer3D|LD_PRELOAD=.* rbpf-slam) ");
   std::ifstream in(page);

@@ -2,7 +2,8 @@
 #include <filesystem>
 #include <string>
 
-/** The library without which a program is not built, if it was not; empty if it was, or has to be. */
+/** The library without which a program is not built, if it was not; empty if it was, or has to be.
+ */
 inline std::string missingLibraryOf(const std::string& program) {
   if (std::filesystem::exists(MSO_BIN_DIR "/" + program)) return {};
   if (program == "semantic-map-view") return "MRPT has no nanogui";
