@@ -1,7 +1,5 @@
 #pragma once
-#include <mrpt_compat/Release.h>
-
-#if MSO_MRPT_AT_LEAST(3, 0, 0)
+#if __has_include(<mrpt/io/CCompressedInputStream.h>)
 #include <mrpt/io/CCompressedInputStream.h>
 #else
 #include <mrpt/io/CFileGZInputStream.h>
@@ -9,8 +7,8 @@
 
 namespace mrpt_compat {
 
-/** Reads files as this MRPT compresses them: with gzip, since MRPT 3 with Zstandard, too. */
-#if MSO_MRPT_AT_LEAST(3, 0, 0)
+/** Reads files as this MRPT compresses them: with gzip, in later releases with Zstandard, too. */
+#if __has_include(<mrpt/io/CCompressedInputStream.h>)
 using CompressedInput = mrpt::io::CCompressedInputStream;
 #else
 using CompressedInput = mrpt::io::CFileGZInputStream;
