@@ -8,6 +8,7 @@
 #include "TrueMap.h"
 #include "simulated_drive/DriveFiles.h"
 
+using namespace plain_drives;
 using semantic_driving::DriveController;
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include "GuideWords.h"
 
-using namespace semantic_driving;
+using namespace guide_words;
 
 namespace {
 

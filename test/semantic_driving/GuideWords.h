@@ -5,6 +5,9 @@
 #include <sstream>
 #include <string>
 
+/** What a guide does, in words. */
+namespace guide_words {
+
 using namespace semantic_driving;
 
 inline std::string since(const char* what, const std::optional<double>& since) {
@@ -48,3 +51,5 @@ template <class Variant>
 std::string words(const Variant& variant) {
   return std::visit(InWords(), variant);
 }
+
+}  // namespace guide_words

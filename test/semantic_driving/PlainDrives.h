@@ -6,6 +6,9 @@
 #include "Plain.h"
 #include "simulated_drive/DriveLoop.h"
 
+/** Drives through worlds that are made for one question. */
+namespace plain_drives {
+
 using namespace simulated_drive;
 using mrpt::math::TPose2D;
 using synthetic_world::World;
@@ -22,3 +25,5 @@ inline World open() {
   return World(synthetic_world::Terrain(kHalf, {}),
                synthetic_world::GroundCover(kHalf, synthetic_world::kGrass), {});
 }
+
+}  // namespace plain_drives

@@ -5,6 +5,8 @@
 
 #include "PlainDrives.h"
 
+using namespace plain_drives;
+
 TEST(Drives, StopAndSaySoWhereNoWayLeads) {
   synthetic_world::Solids solids;
   addWall(solids, {-12, -4}, {0, -4});  // the robot is within, the goal is not

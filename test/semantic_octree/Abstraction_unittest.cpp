@@ -2,7 +2,6 @@
 #include <semantic_octree/Abstraction.h>
 
 #include <set>
-#include <tuple>
 
 #include "FollowedTree.h"
 #include "OctreeAsTree.h"

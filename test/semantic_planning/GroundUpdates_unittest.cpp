@@ -6,6 +6,8 @@
 
 #include "PaintedGround.h"
 
+using namespace painted_ground;
+
 namespace {
 
 void expectSame(const Ground& a, const Ground& b) {

@@ -6,6 +6,7 @@
 
 #include "PaintedGround.h"
 
+using namespace painted_ground;
 using semantic_octree::CellState;
 
 namespace {

@@ -5,6 +5,9 @@
 
 #include "PaintedWorld.h"
 
+/** The ground of a world that was painted. */
+namespace painted_ground {
+
 using namespace semantic_planning;
 using semantic_octree::SemanticOcTree;
 
@@ -38,3 +41,5 @@ inline void addRubble(PaintedWorld& world, unsigned seed, int voxels) {
     world.voxel(int(random() % 40) - 20, int(random() % 40) - 20, int(random() % 14) - 7,
                 PaintedWorld::Class(1 + random() % 4));
 }
+
+}  // namespace painted_ground
