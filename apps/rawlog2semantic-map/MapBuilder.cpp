@@ -1,6 +1,7 @@
 #include "MapBuilder.h"
 
 #include <labeled_cloud/ReadAhead.h>
+#include <semantic_octree/TreeFile.h>
 #include <strict_files/ErrorMessage.h>
 
 #include <cmath>
@@ -46,8 +47,15 @@ void MapBuilder::timeWithoutAbstraction() {
   m_plainMap->setAbstraction({});
 }
 
-void MapBuilder::correctPoses(const semantic_slam::SlamOptions& options, const fs::path& folder) {
+void MapBuilder::correctPoses(const semantic_slam::SlamOptions& options, const fs::path& folder,
+                              const fs::path& reference) {
   m_correction = std::make_unique<PoseCorrection>(m_map.tree(), options, folder);
+  if (reference.empty()) return;
+  const semantic_octree::SemanticOcTree map = semantic_octree::loadTree(reference.string());
+  if (options.useClasses && map.classes() != m_map.tree().classes())
+    throw std::runtime_error(reference.string() +
+                             ": its class table is another one than that of the scans");
+  m_correction->setReference(map);
 }
 
 void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::ScanStream& stream,

@@ -26,8 +26,11 @@ class MapBuilder {
   /** Also inserts each scan into a map that keeps no abstraction, for comparison. */
   void timeWithoutAbstraction();
 
-  /** Scans go where SLAM finds them. \param folder where they are kept meanwhile */
-  void correctPoses(const semantic_slam::SlamOptions& options, const std::filesystem::path& folder);
+  /** Scans go where SLAM finds them. \param folder where they are kept meanwhile
+   * \param reference map (.semantic, or a folder of tiles) into whose frame they go; may be empty
+   * \throw std::runtime_error naming the reference: it cannot be read, or has other classes */
+  void correctPoses(const semantic_slam::SlamOptions& options, const std::filesystem::path& folder,
+                    const std::filesystem::path& reference);
   /** Keyframes' poses, if they are corrected. */
   const PoseCorrection* poseCorrection() const { return m_correction.get(); }
 

@@ -31,13 +31,13 @@ semantic_octree::InsertionReport PoseCorrection::insert(
   }
   const auto report = m_keyframes.insert(scan.cloud, added.T_keyframe_robot * T_robot_sensor,
                                          options, secondsSince);
-  if (added.loopClosed)
+  if (added.posesMoved)
     m_keyframes.move(posesOff(m_slam, m_keyframes, kOff * m_keyframes.map().getResolution()));
   return report;
 }
 
 SlamSummary PoseCorrection::summary() const {
-  return {m_slam.poses().size(), m_slam.numLoops(), m_slam.numLost()};
+  return {m_slam.poses().size(), m_slam.numLoops(), m_slam.numReferenced(), m_slam.numLost()};
 }
 
 std::string PoseCorrection::trajectory() const {

@@ -15,6 +15,8 @@ class PoseCorrection {
   /** \param map empty; must outlive this \param folder where scans are kept meanwhile */
   PoseCorrection(semantic_octree::SemanticOcTree& map, const semantic_slam::SlamOptions& options,
                  const std::filesystem::path& folder);
+  /** Before the first scan, see semantic_slam::Slam. */
+  void setReference(const semantic_octree::SemanticOcTree& map) { m_slam.setReference(map); }
 
   /** \param T_map_robot as odometry has it \param secondsSince by which the map ages first */
   semantic_octree::InsertionReport insert(const labeled_cloud::LabeledScan& scan,

@@ -144,8 +144,10 @@ ordered_json toJson(const Summary& s, const SemanticOcTree& tree, bool countVoxe
   if (const auto labels = s.labelReliability())
     json["labels"] = {{"accuracy", labels->accuracy}, {"correlation", labels->correlation}};
   if (s.slam)
-    json["slam"] = {
-        {"keyframes", s.slam->keyframes}, {"loops", s.slam->loops}, {"lost", s.slam->lost}};
+    json["slam"] = {{"keyframes", s.slam->keyframes},
+                    {"loops", s.slam->loops},
+                    {"referenced", s.slam->referenced},
+                    {"lost", s.slam->lost}};
   if (tree.hasAbstraction()) json["abstraction"] = abstractionJson(s);
   return json;
 }

@@ -20,7 +20,7 @@ struct AbstractionSummary {
 
 /** What became of the poses, if they were corrected. */
 struct SlamSummary {
-  std::size_t keyframes = 0, loops = 0, lost = 0;
+  std::size_t keyframes = 0, loops = 0, referenced = 0, lost = 0;
 };
 
 /** What became of the observations on their way into the map. */

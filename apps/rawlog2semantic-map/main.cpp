@@ -41,7 +41,7 @@ const std::vector<std::string> kFiles = {"map.semantic",  "summary.json",       
                                          "trajectory.tum"};
 
 struct Cli {
-  fs::path config, output, trajectory, classes, confusion, saveLabeled, preview, tiles;
+  fs::path config, output, trajectory, classes, confusion, saveLabeled, preview, tiles, reference;
   semantic_octree::MapFolderOptions folder;
   LabelSources labels;
   std::optional<double> resolution, maxRange;
@@ -81,6 +81,10 @@ struct Cli {
                                    "Correct the poses: register scans to each other, close loops; "
                                    "for LiDARs and RGB-D cameras")
                           ->excludes(upkeep);
+    app.add_option("--reference", reference,
+                   "Map that is there already (.semantic, or a folder of tiles): poses are "
+                   "corrected to be in its frame")
+        ->needs(corrected);
     auto* window = app.add_flag("--live", live, "Show the map in a window while it grows");
     addTilesTo(app)->excludes(corrected)->excludes(upkeep)->excludes(window);
     app.add_flag("--pause", pause, "Wait there from the first scan on")->needs(window);
@@ -204,7 +208,7 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
   if (cli.trajectory.empty()) builder.countPoses();
   if (cli.compareUpkeep) builder.timeWithoutAbstraction();
   const fs::path trajectoryFile = output.staged("trajectory.tum");
-  if (cli.slam) builder.correctPoses(config.slam, trajectoryFile.parent_path());
+  if (cli.slam) builder.correctPoses(config.slam, trajectoryFile.parent_path(), cli.reference);
   builder.insert(cli.rawlogs, stream, stop);
   if (builder.summary().inserted == 0)
     throw std::runtime_error("nothing to map: no observation was inserted, " +

@@ -116,3 +116,71 @@ TEST(Rawlog2SemanticMapWithSlam, correctsATrajectoryThatDrifts) {
   EXPECT_LT(distance(corrected.rbegin()->second, at(truth)), 0.3);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "out"), {}), 5);
 }
+
+namespace {
+
+/** A drive along the village's street, and what is not known of it. */
+struct Street {
+  TemporaryFolder folder;
+  std::string rawlog = (folder / "street.rawlog").string();
+
+  Street() {
+    const ProgramRun drive = runProgram(
+        "synth-rawlog", {"-o", rawlog, "--scene", "village", "--sensor", "lidar", "--frames", "50",
+                         "--rate", "1", "--speed", "1", "--rings", "32", "--columns", "360"});
+    EXPECT_EQ(drive.status, 0) << drive.errors;
+  }
+  ProgramRun map(const std::string& output, const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {"-f",           "--output", (folder / output).string(),
+                                          "--resolution", "0.2",      "--max-range",
+                                          "20",           rawlog};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram("rawlog2semantic-map", arguments);
+  }
+};
+
+}  // namespace
+
+TEST(Rawlog2SemanticMapWithSlam, bringsADriveIntoTheFrameOfAMap) {
+  const Street street;
+  const Poses truth = readPoses(street.folder.read("street.tum"));
+  ASSERT_EQ(street.map("before", {}).status, 0);
+  // Odometry drifts, and begins 1.2 m and 3 degrees beside where it is in that map.
+  Poses odometry = drifting(truth);
+  const Eigen::Isometry3d T_first = truth.begin()->second;
+  const Eigen::Isometry3d T_off = T_first * Eigen::Translation3d(1, -0.6, 0.1) *
+                                  Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitZ()) *
+                                  T_first.inverse();
+  for (auto& [time, T] : odometry) T = T_off * T;
+  const auto noisy = street.folder.write("noisy.tum", textOf(odometry)).string();
+  const ProgramRun run = street.map("after", {"--trajectory", noisy, "--slam", "--reference",
+                                              (street.folder / "before/map.semantic").string()});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const Poses corrected = readPoses(street.folder.read("after/trajectory.tum"));
+  ASSERT_GT(corrected.size(), 40u);
+  for (const auto& [time, T] : corrected) {
+    const auto& T_true = std::prev(truth.upper_bound(time + 1e-4))->second;
+    EXPECT_LT(distance(T, T_true), 0.1) << time;
+  }
+  const auto slam = nlohmann::json::parse(street.folder.read("after/summary.json"))["slam"];
+  EXPECT_GT(slam["referenced"], 10);
+  EXPECT_EQ(slam["loops"], 0);
+}
+
+TEST(Rawlog2SemanticMapWithSlam, saysWhyAReferenceCannotBeUsed) {
+  const Street street;
+  const auto fails = [&](const std::string& reference, const std::string& why) {
+    const ProgramRun run = street.map("out", {"--slam", "--reference", reference});
+    EXPECT_EQ(run.status, 1) << run.errors;
+    EXPECT_NE(run.errors.find(reference), std::string::npos) << run.errors;
+    EXPECT_NE(run.errors.find(why), std::string::npos) << run.errors;
+    EXPECT_FALSE(fs::exists(street.folder / "out"));
+  };
+  fails((street.folder / "none.semantic").string(), "No such file");
+  const std::string other = (street.folder / "other.semantic").string();
+  semantic_types::ClassTable things;
+  things.add("thing", {1, 2, 3});
+  semantic_octree::saveTree(SemanticOcTree(0.2, things), other);
+  fails(other, "another class table");
+  EXPECT_EQ(street.map("out", {"--reference", other}).status, 64) << "needs --slam";
+}

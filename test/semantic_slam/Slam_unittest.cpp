@@ -39,7 +39,7 @@ struct Mapped {
       scanOf.push_back(i);
     }
     keyframes.insert(r.clouds[i], added.T_keyframe_robot * kRobotLidar, insertion());
-    if (added.loopClosed) keyframes.move(semantic_slam::posesOf(slam));
+    if (added.posesMoved) keyframes.move(semantic_slam::posesOf(slam));
   }
   static semantic_octree::InsertionOptions insertion() {
     semantic_octree::InsertionOptions options;

@@ -19,6 +19,9 @@ class Localization {
   Localization(const mrpt::math::TPose2D& start, const PoseOptions& options,
                semantic_slam::SlamOptions slam, std::vector<bool> isMover, std::uint64_t seed);
 
+  /** A map with which the robot begins, see semantic_slam::Slam. */
+  void setReference(const semantic_octree::SemanticOcTree& map) { m_slam.setReference(map); }
+
   /** \param motion true motion since the last call, in the robot's frame before it */
   void move(const mrpt::math::TPose2D& motion);
   /** Registers what was seen now, and finds loops.

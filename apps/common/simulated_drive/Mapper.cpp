@@ -29,6 +29,7 @@ SemanticOcTree prepared(SemanticOcTree map, const DriveConfig& config, const Cla
 Mapper::Mapper(const DriveConfig& config, const ClassOrder& order)
     : Mapper(config, order,
              SemanticOcTree(config.voxelSize, synthetic_world::classTable(), config.filter)) {
+  m_beganWithMap = false;
   if (!config.pose.isExact() && config.pose.correct)
     m_keyframes = std::make_unique<KeyframeMap>(m_map, std::filesystem::temp_directory_path());
 }
@@ -96,7 +97,7 @@ semantic_planning::StageTimes Mapper::insert(const std::vector<Observation>& see
         m_map.insert(o.cloud, slam.poses().back() * T, m_config.insertion);
     }
   }
-  if (m_keyframes && added.loopClosed)
+  if (m_keyframes && added.posesMoved)
     m_keyframes->move(posesOff(slam, *m_keyframes, kOff * m_config.voxelSize));
   semantic_planning::StageTimes times{{"insert", watch.lap()}};
   m_planner.update();

@@ -1,8 +1,10 @@
+#include <semantic_slam/Reference.h>
 #include <semantic_slam/Slam.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 namespace semantic_slam {
@@ -67,11 +69,21 @@ double likeness(const std::vector<float>& a, const std::vector<float>& b) {
 
 Slam::Slam(const SlamOptions& options) : m_options(options) { m_options.validate(); }
 
+void Slam::setReference(const semantic_octree::SemanticOcTree& map) {
+  if (!m_keyframes.empty()) throw std::logic_error("Slam: a reference, but scans were added");
+  m_reference = referenceOf(map, kCellsOfLoops, m_options.useClasses);
+  m_mostOfReference =
+      informationOf(std::max(kLoopMeters, deviationOfVoxels(map.getResolution())), kLoopAngle);
+}
+
 auto Slam::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
                const Eigen::Isometry3d& T_odometry_robot) -> Added {
   const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
   if (m_keyframes.empty()) {
-    begin(seen(cloud, T_robot_sensor, T_odometry_robot), T_odometry_robot);
+    Seen first = seen(cloud, T_robot_sensor, T_odometry_robot);
+    const auto found = findInReference(first, T_odometry_robot);
+    m_numReferenced += found.has_value();
+    begin(std::move(first), found ? found->T_submap_scan : T_odometry_robot);
     return {0, identity, true, false};
   }
   const std::size_t last = m_keyframes.size() - 1;
@@ -94,7 +106,8 @@ auto Slam::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_senso
   if (!registered) ++m_numLost;
   begin(std::move(now), rigid(m_poses.back() * T_last_robot));
   m_keyframes.back().way = m_keyframes[last].way + way;
-  return {last + 1, identity, true, closeLoop()};
+  const bool followed = followReference();
+  return {last + 1, identity, true, closeLoop() || followed};
 }
 
 auto Slam::seen(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
@@ -196,11 +209,47 @@ std::size_t Slam::placeOfLoop() const {
   return best;
 }
 
-bool Slam::agree(const PoseEdge& before, const PoseEdge& loop) const {
+bool Slam::agree(const PoseEdge& before, const PoseEdge& edge) const {
   const Eigen::Isometry3d T_map_by_before =
-      m_poses[before.a] * before.T_a_b * (m_poses[before.b].inverse() * m_poses[loop.b]);
-  const double way = m_keyframes[loop.b].way - m_keyframes[before.b].way;
-  return !isFar(T_map_by_before.inverse() * m_poses[loop.a] * loop.T_a_b, odometryInformation(way));
+      m_poses[before.a] * before.T_a_b * (m_poses[before.b].inverse() * m_poses[edge.b]);
+  const double way = m_keyframes[edge.b].way - m_keyframes[before.b].way;
+  return !isFar(T_map_by_before.inverse() * m_poses[edge.a] * edge.T_a_b, odometryInformation(way));
+}
+
+bool Slam::confirm(std::optional<PoseEdge>& last, const PoseEdge& edge) {
+  const auto before = std::exchange(last, edge);
+  if (!before || !agree(*before, edge)) return false;
+  m_edges.push_back(edge);
+  optimize(m_poses, m_edges);
+  for (std::size_t k = 0; k < m_poses.size(); ++k)
+    m_poses[k] = levelled(m_poses[k], m_keyframes[k].seen.T_odometry_robot);
+  return true;
+}
+
+bool Slam::fits(const Registration& r) const {
+  return r.coveredShare >= kLeastCovered && r.matchedShare >= m_options.loopShare;
+}
+
+std::optional<Registration> Slam::findInReference(const Seen& seen,
+                                                  const Eigen::Isometry3d& T_map_guess) const {
+  if (m_reference.empty()) return std::nullopt;
+  const Registration r = match(m_reference, seen, T_map_guess, Matrix6::Zero());
+  return fits(r) ? std::make_optional(r) : std::nullopt;
+}
+
+bool Slam::followReference() {
+  const std::size_t newest = m_keyframes.size() - 1;
+  if (m_keyframes[newest].way < m_lastReferenced + m_options.loopEvery) return false;
+  m_lastReferenced = m_keyframes[newest].way;
+  const auto found = findInReference(m_keyframes[newest].seen, m_poses[newest]);
+  if (!found) return false;
+  const Matrix6 own = kOwnInformation * found->information;
+  // Both errors together. The first pose stays, so an edge from it says where the other is.
+  const Matrix6 information = m_mostOfReference * (m_mostOfReference + own).inverse() * own;
+  const Eigen::Isometry3d T_first_robot = m_poses.front().inverse() * found->T_submap_scan;
+  if (!confirm(m_lastFound, {0, newest, T_first_robot, information, true})) return false;
+  ++m_numReferenced;
+  return true;
 }
 
 bool Slam::closeLoop() {
@@ -212,14 +261,9 @@ bool Slam::closeLoop() {
       place - std::min(place, beside), std::min(place + beside, newest - 1), place, kCellsOfLoops);
   const Registration r = match(submaps, m_keyframes[newest].seen,
                                m_poses[place].inverse() * m_poses[newest], Matrix6::Zero());
-  if (r.coveredShare < kLeastCovered || r.matchedShare < m_options.loopShare) return false;
-  const PoseEdge loop{place, newest, r.T_submap_scan, informationOf(kLoopMeters, kLoopAngle), true};
-  const auto before = std::exchange(m_lastLoop, loop);
-  if (!before || !agree(*before, loop)) return false;
-  m_edges.push_back(loop);
-  optimize(m_poses, m_edges);
-  for (std::size_t k = 0; k < m_poses.size(); ++k)
-    m_poses[k] = levelled(m_poses[k], m_keyframes[k].seen.T_odometry_robot);
+  if (!fits(r)) return false;
+  const Matrix6 information = informationOf(kLoopMeters, kLoopAngle);
+  if (!confirm(m_lastLoop, {place, newest, r.T_submap_scan, information, true})) return false;
   ++m_numLoops;
   return true;
 }

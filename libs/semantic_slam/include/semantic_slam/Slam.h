@@ -18,21 +18,29 @@ class Slam {
   /** \throw std::invalid_argument bad options. */
   explicit Slam(const SlamOptions& options);
 
+  /** Brings the trajectory into the frame of a map that is there already: the first keyframe and,
+   * as with loops, each few meters another one are registered to it, too. Odometry begins within
+   * some meters of where the robot is in it. The map is not needed afterwards.
+   * \throw std::logic_error scans were added. */
+  void setReference(const semantic_octree::SemanticOcTree& map);
+
   /** What became of a scan. */
   struct Added {
     std::size_t keyframe;  ///< that it belongs to
     Eigen::Isometry3d T_keyframe_robot;
     bool isNew = false;       ///< the keyframe begins with it
-    bool loopClosed = false;  ///< poses of earlier keyframes are not what they were
+    bool posesMoved = false;  ///< those of earlier keyframes: by a loop, or the reference
   };
   /** \param cloud sensor frame \param T_odometry_robot where odometry says that it was taken */
   Added add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
             const Eigen::Isometry3d& T_odometry_robot);
 
-  /** Of all keyframes, T_map_keyframe; the first is where odometry had it. */
+  /** Of all keyframes, T_map_keyframe; the first is where odometry, or the reference, had it. */
   const std::vector<Eigen::Isometry3d>& poses() const { return m_poses; }
   const std::vector<PoseEdge>& edges() const { return m_edges; }
   std::size_t numLoops() const { return m_numLoops; }
+  /** Keyframes that were found in the reference. */
+  std::size_t numReferenced() const { return m_numReferenced; }
   /** Keyframes for which odometry had to do. */
   std::size_t numLost() const { return m_numLost; }
 
@@ -63,9 +71,17 @@ class Slam {
   /** Height, roll and pitch as odometry has them. */
   Eigen::Isometry3d levelled(const Eigen::Isometry3d& T_map_robot,
                              const Eigen::Isometry3d& T_odometry_robot) const;
+  /** What the reference says of a scan, if it does. \return T_submap_scan is T_map_robot */
+  std::optional<Registration> findInReference(const Seen& seen,
+                                              const Eigen::Isometry3d& T_map_guess) const;
+  /** \return whether poses moved */
+  bool followReference();
   bool closeLoop();
-  /** That two loops say the same of where the robot is. */
-  bool agree(const PoseEdge& before, const PoseEdge& loop) const;
+  /** Takes an edge of the newest keyframe if the one of its kind before it says the same of where
+   * the robot is. \return whether poses moved */
+  bool confirm(std::optional<PoseEdge>& before, const PoseEdge& edge);
+  bool agree(const PoseEdge& before, const PoseEdge& edge) const;
+  bool fits(const Registration& r) const;
   /** The likeliest place of a loop's other end; the newest keyframe if there is none. */
   std::size_t placeOfLoop() const;
   /** Of some keyframes' points, in the frame of one of them. */
@@ -78,9 +94,11 @@ class Slam {
   std::vector<Keyframe> m_keyframes;
   std::vector<Eigen::Isometry3d> m_poses;
   std::vector<PoseEdge> m_edges;
-  std::size_t m_numLoops = 0, m_numLost = 0;
-  double m_lastLook = 0;
-  std::optional<PoseEdge> m_lastLoop;  ///< that was found; it may be wrong
+  std::size_t m_numLoops = 0, m_numReferenced = 0, m_numLost = 0;
+  double m_lastLook = 0, m_lastReferenced = 0;      // m of the way
+  std::optional<PoseEdge> m_lastLoop, m_lastFound;  ///< they may be wrong
+  std::vector<Submap> m_reference;                  ///< map frame; none: there is no map
+  Matrix6 m_mostOfReference = Matrix6::Zero();      ///< information, at most
   std::vector<Submap> m_nearby;  ///< of the last keyframes, in the frame of the last; or none yet
   /** Where the last scan that was registered was, in the last keyframe's frame, and where odometry
    * had it. */
