@@ -181,6 +181,6 @@ TEST(Rawlog2SemanticMapWithSlam, saysWhyAReferenceCannotBeUsed) {
   semantic_types::ClassTable things;
   things.add("thing", {1, 2, 3});
   semantic_octree::saveTree(SemanticOcTree(0.2, things), other);
-  fails(other, "another class table");
+  fails(other, "class table is another one");
   EXPECT_EQ(street.map("out", {"--reference", other}).status, 64) << "needs --slam";
 }
