@@ -60,12 +60,13 @@ TEST(Reference, aDriveIsInTheFrameOfAMapThatIsThere) {
   Vector6 off;
   off << 1, -0.8, 0.2, 0, 0, 0.08;
   moveOdometry(r, r.truth[0] * poseOf(off) * r.truth[0].inverse());
+  const SemanticOcTree map = mapOf("village", 1, 100);
   for (const bool useClasses : {false, true}) {
     SlamOptions options;
     options.useClasses = useClasses;
     Slam alone(options), slam(options);
     addAll(alone, r, kRobotLidar);
-    slam.setReference(mapOf("village", 1, 100));
+    slam.setReference(map);
     addAll(slam, r, kRobotLidar);
     const Errors without = errorsOf(alone, r), with = errorsOf(slam, r);
     EXPECT_GT(without.last, 1) << useClasses;
