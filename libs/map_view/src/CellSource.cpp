@@ -85,9 +85,7 @@ class Walk {
       if (m_look.isShown(cell)) m_visit(cell);
     } else if (cell.depth == m_maxDepth) {
       ViewCell shown = cell;
-      if (findShown(node, true, shown) || (free && findShown(node, false, shown)) ||
-          (unknown && findUnknown(node, shown)))
-        m_visit(shown);
+      if (findShown(node, true, shown) || (free && findShown(node, false, shown))) m_visit(shown);
     } else {
       node.forEachChild([this](const Node& child) { walk(child); });
       if (unknown) forEachUnknownChild(cell, [this](const ViewCell& child) { walkUnknown(child); });
@@ -109,17 +107,6 @@ class Walk {
     } else {
       for (int i = 0; i < 8; ++i) walkUnknown(unknownChild(cell, i));
     }
-  }
-
-  /** Unknown space below a node that is shown. */
-  bool findUnknown(const Node& node, ViewCell& shown) const {
-    if (node.isLeaf()) return false;
-    bool found = false;
-    forEachUnknownChild(node.cell, [&](const ViewCell& child) { found |= m_look.isShown(child); });
-    if (!found)
-      node.forEachChild([&](const Node& child) { found = found || findUnknown(child, shown); });
-    if (found) shown.node = {}, shown.innerNode = 0;
-    return found;
   }
 
   /** A leaf below a node that is shown: from its upper half, if there is one. */
