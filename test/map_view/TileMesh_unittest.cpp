@@ -225,6 +225,8 @@ TEST(TileMesh, ShowsUnknownSpaceWhereItEnds) {
       for (const Side& side : sidesOf(face)) ++drawn[side];
   for (const Side& side : expected) ASSERT_EQ(drawn[side], 1);
   for (const auto& [side, times] : drawn) EXPECT_EQ(times, 1);
+  // A large cell's side is drawn as a whole if a part of it is open.
+  EXPECT_LT(drawn.size(), expected.size() * 5 / 4);
 }
 
 TEST(TileMesh, SidesThatLookAwayFromAPlaceAreNotSeenFromThere) {
