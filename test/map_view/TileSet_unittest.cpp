@@ -47,19 +47,24 @@ TEST(TilesSeen, HoldAllThatIsSeenOnce) {
 }
 
 TEST(TilesSeen, HoldUnknownSpaceOnce) {
-  const SemanticOcTree map = randomMap(44);
+  // Between the two there are tiles of which nothing is known.
+  SemanticOcTree map = randomMap(44);
+  semantic_types::LabeledCloud far;
+  far.points.emplace_back(1, 0, 0);
+  far.classes.push_back(1);
+  map.insert(far, Eigen::Isometry3d(Eigen::Translation3d(60, 50, 0)));
   CellLook look(map);
   ViewStyle style;
   style.unknownSpace = true;
-  style.clip.max().x() = 3;
+  style.clip.max().x() = 50;
   look.setStyle(style);
   std::mt19937 random(45);
   for (const double distance : {20.0, 60.0, 3000.0}) {
     const View view = viewFrom(distance);
     const std::vector<Tile> tiles = tilesSeen(map, view, look);
     int unknown = 0;
-    for (int i = 0; i < 3000; ++i) {
-      const auto near = [&] { return octomap::key_type(32768 + int(random() % 160) - 80); };
+    for (int i = 0; i < 30000; ++i) {
+      const auto near = [&] { return octomap::key_type(32768 + int(random() % 400) - 80); };
       const octomap::OcTreeKey key(near(), near(), near());
       const ViewCell cell = {{key[0], key[1], key[2]}, kFinestTiles + kTileLevels, {}, 0};
       if (map.search(key) || !look.isShown(cell)) continue;
