@@ -1,6 +1,7 @@
 #include "Cli.h"
 
 #include "Choice.h"
+#include "MemoryOption.h"
 #include "NumberChecks.h"
 
 namespace semantic_map_view {
@@ -48,9 +49,11 @@ void readClip(const std::string& text, Cli& cli) {
 }  // namespace
 
 Cli::Cli(CLI::App& app) : outputs(app) {
-  app.add_option("MAP", maps,
-                 "Maps' own files (.semantic), or OctoMap's (.ot, .bt), shown together")
+  app.add_option("FILE", files,
+                 "Maps (.semantic, folders of tiles, OctoMap's .ot and .bt), shown together, and "
+                 "what lies upon them: trajectories (.tum, .txt), paths (path.csv, drive.csv)")
       ->required();
+  addMemoryOption(app, memory);
   outputs.add(app, picture, "FILE", "Draw once, write the window's picture (PNG), and end");
   auto* animated = app.add_option("--animation", animation,
                                   "Turn once around the map while it is compressed more and less, "
@@ -77,6 +80,8 @@ Cli::Cli(CLI::App& app) : outputs(app) {
       ->check(isNumber({}))
       ->excludes(clip);
   app.add_flag("--free", view.style.freeSpace, "Show free space");
+  app.add_flag("--unknown", view.style.unknownSpace,
+               "Show unknown space within the map's bounding box, or the box of --clip");
   app.add_option("--weights", weights,
                  "Where the sliders of the compression begin: the first solution of such a file "
                  "(YAML, as for semantic-map-compress)");

@@ -50,7 +50,7 @@ void CompressPanel::attempt(const F& f) {
   try {
     f();
   } catch (const std::exception& e) {
-    m_viewer.say(e.what());
+    m_viewer.complain(e);
   }
 }
 
@@ -70,7 +70,7 @@ void CompressPanel::forget() {
   m_live.reset();
   m_lines.clear();
   m_on->setChecked(false);
-  while (m_controls->childCount() > 0) m_controls->removeChild(0);
+  removeChildren(m_controls);
   m_viewer.window().performLayout();
   m_onFollowed();
 }

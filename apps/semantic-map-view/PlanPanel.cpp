@@ -8,6 +8,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "Band.h"
 #include "StandardOutput.h"
 #include "map_window/Widgets.h"
 #include "measuring/Stopwatch.h"
@@ -23,28 +24,15 @@ using semantic_planning::PlanResult;
 namespace {
 
 constexpr int kPlanWidth = 230, kOrderWidth = 160;
-constexpr float kLift = 0.3f;  // m
 constexpr double kTurn = 0.5;  // m from the place, at least, where the hand gives a heading
-constexpr mrpt::img::TColor kPathColor{220, 40, 40}, kStartColor{40, 90, 220},
-    kGoalColor{220, 40, 40};
+constexpr mrpt::img::TColor kStartColor{40, 90, 220}, kGoalColor{220, 40, 40};
 
-/** Flat bands: many drivers draw lines one pixel wide whatever they are asked for. */
-CSetOfTriangles::Ptr bandAlong(const PlanResult& plan, float width) {
-  const auto band = CSetOfTriangles::Create();
-  for (std::size_t i = 1; i < plan.path.size(); ++i) {
-    const auto &p = plan.path[i - 1], &q = plan.path[i];
-    const TPoint3Df a(float(p.x), float(p.y), float(p.z) + kLift),
-        b(float(q.x), float(q.y), float(q.z) + kLift), along = b - a;
-    if (along.norm() < 1e-6f) continue;
-    const TPoint3Df aside = TPoint3Df(-along.y, along.x, 0) * (width / 2 / along.norm());
-    for (TTriangle half :
-         {TTriangle(a - aside, b - aside, b + aside), TTriangle(a - aside, b + aside, a + aside)}) {
-      half.setColor(kPathColor);
-      band->insertTriangle(half);
-    }
-  }
-  band->enableLight(false);
-  return band;
+/** As the files of plans say it. */
+std::vector<Track::Point> pointsOf(const PlanResult& plan) {
+  std::vector<Track::Point> points;
+  for (const auto& p : plan.path)
+    points.push_back({{p.x, p.y, p.z}, p.forward ? Track::Gear::Forward : Track::Gear::Backward});
+  return points;
 }
 
 /** A flat triangle, six times as long as wide. */
@@ -237,8 +225,7 @@ void PlanPanel::plan() {
 }
 
 void PlanPanel::draw(const PlanResult* plan) {
-  // Some pixels wide from where one looks at it now.
-  const float width = std::max(0.3f, float(m_viewer.window().orbitCamera().distance) / 200);
+  const float width = bandWidth(m_viewer.window());
   m_marks->clear();
   const auto mark = [&](const std::optional<Pose>& pose, const mrpt::img::TColor& color) {
     if (!pose) return;
@@ -247,7 +234,7 @@ void PlanPanel::draw(const PlanResult* plan) {
   };
   mark(m_start, kStartColor);
   mark(m_goal, kGoalColor);
-  if (plan && plan->found()) m_marks->insert(bandAlong(*plan, width));
+  if (plan && plan->found()) m_marks->insert(bandAlong(pointsOf(*plan), width));
 }
 
 }  // namespace semantic_map_view

@@ -9,6 +9,7 @@
 #include "Application.h"
 #include "Cli.h"
 #include "CompressPanel.h"
+#include "FilesPanel.h"
 #include "PlanPanel.h"
 #include "StandardOutput.h"
 #include "WhyPanel.h"
@@ -20,11 +21,21 @@
 namespace semantic_map_view {
 namespace {
 
-std::vector<std::unique_ptr<Layer>> openLayers(const Cli& cli) {
+/** What was named on the command line. */
+struct Opened {
   std::vector<std::unique_ptr<Layer>> layers;
-  for (const auto& map : cli.maps) layers.push_back(std::make_unique<Layer>(map));
-  return layers;
-}
+  std::vector<Track> tracks;
+
+  explicit Opened(const Cli& cli) {
+    for (const auto& file : cli.files)
+      if (isTrack(file))
+        tracks.push_back(readTrack(file));
+      else
+        layers.push_back(std::make_unique<Layer>(file, cli.wantedTiles()));
+    if (layers.empty())
+      throw std::runtime_error("there is no map beside '" + cli.files.front().string() + "'");
+  }
+};
 
 /** What is wrong with them should be said before a window opens. */
 void checkSettings(const Cli& cli, const semantic_types::ClassTable& classes) {
@@ -38,13 +49,15 @@ struct Panels {
   CompressPanel compress;
   WhyPanel why;
   PlanPanel plan;
+  FilesPanel files;
 
-  Panels(Viewer& viewer, const Cli& cli)
+  Panels(Viewer& viewer, TrackScene& tracks, const Cli& cli)
       : show(viewer),
         ask(viewer),
         compress(viewer, cli.weights),
         why(viewer, compress),
-        plan(viewer, cli.classes) {
+        plan(viewer, cli.classes),
+        files(viewer, tracks, cli.wantedTiles()) {
     viewer.window().onClick([this](const map_view::Ray& ray) { why.show(ask.ask(ray)); });
     viewer.window().onGrab([this](const map_view::Ray& ray) { return plan.place(ray); });
     viewer.window().onMoved(
@@ -146,13 +159,17 @@ int run(const Cli& cli) {
   for (const auto& file : {cli.picture, cli.animation})
     if (!file.empty()) cli.outputs.check({file});
   const Clock clock;
-  auto layers = openLayers(cli);
-  checkSettings(cli, layers.front()->map().classes());
+  Opened opened(cli);
+  checkSettings(cli, opened.layers.front()->map().classes());
   const WindowSystem system;
   const auto window = ViewWindow::open("semantic-map-view", cli.width, cli.height);
-  Viewer viewer(*window, std::move(layers), cli.view);
+  Viewer viewer(*window, std::move(opened.layers), cli.view);
+  for (std::size_t i = 0; i < viewer.numLayers(); ++i)
+    if (const auto& note = viewer.layer(i).note(); !note.empty()) viewer.say(note);
+  TrackScene tracks(viewer);
+  for (Track& track : opened.tracks) tracks.add(std::move(track));
   std::optional<Panels> panels;
-  if (cli.panels) panels.emplace(viewer, cli);
+  if (cli.panels) panels.emplace(viewer, tracks, cli);
   window->performLayout();
   window->setVisible(true);
   if (cli.measure || !cli.picture.empty() || !cli.animation.empty()) {

@@ -2,8 +2,8 @@
 # view-window.sh OUTPUT PROGRAM ARGUMENTS... -- STEPS...
 # Runs a program that opens a window, does one step after the other, and ends the program. A step "X Y WORDS" clicks there
 # and waits until the program has said the words once more; "drag X Y X2 Y2 WORDS" drags once; "type X Y TEXT WORDS" enters
-# the text into the field there; "picture FILE" takes one of the screen. What the program says goes to OUTPUT. Fails if a
-# window or words do not come.
+# the text into the field there; "drop FILE WORDS" drops the file onto the window, with the program $DROP_FILES; "picture
+# FILE" takes one of the screen. What the program says goes to OUTPUT. Fails if a window or words do not come.
 output=$1 program=()
 shift
 while [[ $# -gt 0 && $1 != -- ]]; do program+=("$1"); shift; done
@@ -22,20 +22,23 @@ for step in "$@"; do
   case $step in
     "picture "*) import -window root "${step#picture }"; continue ;;
     "drag "*) read -r kind x y x2 y2 words <<< "$step" ;;
+    "drop "*) read -r kind file words <<< "$step" ;;
     "type "*) read -r kind x y text words <<< "$step" ;;
     *) read -r x y words <<< "$step" ;;
   esac
   before=$(grep -c -- "$words" "$output")
   for ((i = 0; ; i++)); do
     # A click may come before the first frame, or while meshes are made: again every few seconds.
-    if ((i % 50 == 0)) && [[ $kind != drag || $i -eq 0 ]]; then
+    if [[ $kind == drop ]]; then
+      ((i > 0)) || timeout 60 "$DROP_FILES" "$window" "$file" || fail "cannot drop $file"
+    elif ((i % 50 == 0)) && [[ $kind != drag || $i -eq 0 ]]; then
       press
       [[ $kind == drag ]] && xdotool mousemove --window "$window" "$x2" "$y2" sleep 0.2
       xdotool mouseup 1
       [[ $kind == type ]] && xdotool sleep 0.2 key ctrl+a sleep 0.2 type "$text" && xdotool sleep 0.2 key Return
     fi
     (($(grep -c -- "$words" "$output") > before)) && break
-    if ((i == 1000)) || ! kill -0 $child; then fail "no '$words' after a click at $x $y"; fi
+    if ((i == 1000)) || ! kill -0 $child; then fail "no '$words' after '$step'"; fi
     sleep 0.1
   done
 done

@@ -14,6 +14,7 @@
 #include "rawlog2semantic-map/Config.h"
 #include "semantic-map-info/PointQuery.h"
 #include "semantic-map-merge/MapPoses.h"
+#include "semantic-map-view/Track.h"
 #include "simulated_drive/DriveConfig.h"
 
 namespace {
@@ -109,6 +110,7 @@ std::vector<Reader> programReaders() {
       {"map-poses", fromFile("", poses), {}},
       {"study", fromFolder({"study.json", "study.csv"}, join), {}},
       {"queries", askMap, {}},
+      {"path", fromFile(".csv", [](const fs::path& f) { semantic_map_view::readTrack(f); }), {}},
       {"mapping-config",
        fromFile("", rawlog2semantic_map::loadConfig),
        {"config/maps/synthetic.ini"}},

@@ -3,6 +3,7 @@
 #include <map_view/CellSource.h>
 
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "RandomMap.h"
@@ -140,6 +141,93 @@ TEST(CompressedCells, AreTheLeavesOfTheCompressedTree) {
       EXPECT_EQ(cells.at({x, y, z}).isOccupied(), occupied);
     }
   }
+}
+
+namespace {
+
+/** The box around all leaves, keys. */
+KeyBox boxAround(const SemanticOcTree& map) {
+  KeyBox box = {Eigen::Array3i::Constant(kNumKeys), Eigen::Array3i::Zero()};
+  for (auto it = map.begin_leafs(); it != map.end_leafs(); ++it) {
+    const octomap::OcTreeKey key = it.getIndexKey();
+    const Eigen::Array3i low(key[0], key[1], key[2]);
+    const int edge = semantic_octree::edgeAtDepth(int(it.getDepth()));
+    box.low = box.low.min(low), box.high = box.high.max(low + edge - 1);
+  }
+  return box;
+}
+
+template <class F>
+void forEachKey(const KeyBox& box, const F& f) {
+  for (int z = box.low.z(); z <= box.high.z(); ++z)
+    for (int y = box.low.y(); y <= box.high.y(); ++y)
+      for (int x = box.low.x(); x <= box.high.x(); ++x) f(Eigen::Array3i(x, y, z));
+}
+
+bool isUnknown(const SemanticOcTree& map, const Eigen::Array3i& key) {
+  return !map.search(semantic_octree::octomapKey(key.x(), key.y(), key.z()));
+}
+
+CellLook withUnknownSpace(const SemanticOcTree& map, const Eigen::AlignedBox3d& clip) {
+  ViewStyle style;
+  style.unknownSpace = true;
+  style.clip = clip;
+  CellLook look(map);
+  look.setStyle(style);
+  return look;
+}
+
+}  // namespace
+
+TEST(UnknownSpace, IsWhatNoLeafHoldsWithinTheirBoundingBoxAndTheClippingBox) {
+  const SemanticOcTree map = randomMap(15);
+  const FullCells cells(map);
+  for (const auto& clip :
+       {ViewStyle::everywhere(),
+        Eigen::AlignedBox3d(Eigen::Vector3d(-8.33, -90, -4.1), Eigen::Vector3d(11.5, 8.71, 3))}) {
+    const CellLook look = withUnknownSpace(map, clip);
+    std::set<Cube> voxels, expected;
+    std::size_t number = 0;
+    cells.forEachShown(kAll, kTreeDepth, look, [&](const ViewCell& cell) {
+      if (cell.node) return;
+      ++number;
+      forEachKey({cell.lowest, cell.lowest + cell.edge() - 1}, [&](const Eigen::Array3i& key) {
+        EXPECT_TRUE(voxels.insert(cubeOf(key, kTreeDepth)).second);
+      });
+    });
+    forEachKey(boxAround(map), [&](const Eigen::Array3i& key) {
+      const Eigen::Vector3d center = (key.cast<double>() + 0.5 - 32768) * 0.2;
+      if (isUnknown(map, key) && clip.contains(center)) expected.insert(cubeOf(key, kTreeDepth));
+    });
+    ASSERT_GT(expected.size(), 5000u);
+    EXPECT_TRUE(voxels == expected) << voxels.size() << ' ' << expected.size();
+    EXPECT_LT(number, expected.size() / 2) << "large cubes";
+  }
+}
+
+TEST(UnknownSpace, IsCoarseWhereAllOfACubeIsUnknown) {
+  const SemanticOcTree map = randomMap(16);
+  const FullCells cells(map);
+  constexpr int kDepth = 13;
+  const auto cubes = shown(cells, withUnknownSpace(map, ViewStyle::everywhere()), kDepth),
+             occupied = shown(cells, CellLook(map), kDepth);
+  const KeyBox box = boxAround(map);
+  std::map<Cube, bool> allUnknown;
+  forEachKey(box, [&](const Eigen::Array3i& key) {
+    bool& all = allUnknown.emplace(cubeOf(atDepth(key, kDepth), kDepth), true).first->second;
+    all = all && isUnknown(map, key);
+  });
+  int unknown = 0;
+  for (const auto& [cube, all] : allUnknown) {
+    const auto [x, y, z, depth] = cube;
+    if (!box.contains({x, y, z}, semantic_octree::edgeAtDepth(depth))) continue;
+    // It may be a part of a larger one.
+    int holders = 0;
+    for (int d = 0; d <= kDepth; ++d) holders += int(cubes.count(cubeOf(atDepth({x, y, z}, d), d)));
+    EXPECT_EQ(holders, int(all || occupied.count(cube) > 0));
+    unknown += all;
+  }
+  EXPECT_GT(unknown, 50);
 }
 
 TEST(CellLook, HidesClassesAndWhatIsAbove) {

@@ -183,11 +183,50 @@ TEST(TileMesh, ShowsFreeSpaceWhereItEnds) {
   const CellLook plain(map);
   for (const Tile& tile : tilesOf(map, kFinestTiles)) {
     const TileMesh mesh = meshOf(tile, cells, look);
-    free += mesh.free.size(), occupied += occupiedOf(mesh).size();
+    free += mesh.translucent.size(), occupied += occupiedOf(mesh).size();
     before += occupiedOf(meshOf(tile, cells, plain)).size();
   }
   EXPECT_GT(free, 1000u);
   EXPECT_EQ(occupied, before);
+}
+
+TEST(TileMesh, ShowsUnknownSpaceWhereItEnds) {
+  const SemanticOcTree map = randomMap(38, 1);
+  const FullCells cells(map);
+  CellLook look(map);
+  ViewStyle style;
+  style.unknownSpace = true;
+  style.clip = {Eigen::Vector3d(-3, -2, -5), Eigen::Vector3d(4, 3, 2)};
+  look.setStyle(style);
+  const auto isUnknown = [&](const Eigen::Array3i& k) {
+    const auto node = map.search(semantic_octree::octomapKey(k.x(), k.y(), k.z()));
+    return look.isShown({k, kTreeDepth, node, 0}) && !node;
+  };
+  const auto isSolid = [&](const Eigen::Array3i& k) {
+    const auto node = map.search(semantic_octree::octomapKey(k.x(), k.y(), k.z()));
+    return look.isShown({k, kTreeDepth, node, 0}) && node && map.isNodeOccupied(node);
+  };
+  std::set<Side> expected;
+  for (int x = -16; x < 21; ++x)
+    for (int y = -11; y < 16; ++y)
+      for (int z = -26; z < 11; ++z)
+        for (int n = 0; n < 6; ++n) {
+          const Eigen::Array3i key = Eigen::Array3i(x, y, z) + kKeyOfOrigin,
+                               next = key + kNormals[std::size_t(n)];
+          if (isUnknown(key) && !isUnknown(next) && !isSolid(next))
+            expected.insert({key.x(), key.y(), key.z(), n});
+        }
+  ASSERT_GT(expected.size(), 2000u);
+  std::map<Side, int> drawn;
+  View view;
+  view.pixelsPerCell = 0.1;
+  for (const Tile& tile : tilesSeen(map, view, look))
+    for (const Face& face : meshOf(tile, cells, look).translucent)
+      for (const Side& side : sidesOf(face)) ++drawn[side];
+  for (const Side& side : expected) ASSERT_EQ(drawn[side], 1);
+  for (const auto& [side, times] : drawn) EXPECT_EQ(times, 1);
+  // A large cell's side is drawn as a whole if a part of it is open.
+  EXPECT_LT(drawn.size(), expected.size() * 5 / 4);
 }
 
 TEST(TileMesh, SidesThatLookAwayFromAPlaceAreNotSeenFromThere) {

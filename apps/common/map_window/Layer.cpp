@@ -1,10 +1,5 @@
 #include "Layer.h"
 
-#include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_map/ImportOctomap.h>
-#include <semantic_octree/OctomapConversion.h>
-#include <semantic_octree/TreeFile.h>
-
 #include <algorithm>
 #include <array>
 
@@ -14,11 +9,9 @@ using semantic_octree::SemanticOcTree;
 
 namespace {
 
-SemanticOcTree load(const std::filesystem::path& file) {
-  if (file.extension() != ".ot" && file.extension() != ".bt")
-    return semantic_octree::loadTree(file.string());
-  return semantic_octree::fromOcTree(*semantic_map::readOctomapFile(file),
-                                     semantic_map::CSemanticOctoMap::occupancyOnly());
+/** Of a folder, too. */
+std::string nameOf(const std::filesystem::path& file) {
+  return (file.has_filename() ? file : file.parent_path()).filename().string();
 }
 
 /** Without the first and last of 500. */
@@ -32,9 +25,10 @@ std::pair<float, float> mostOf(std::vector<float>& values) {
 
 }  // namespace
 
-Layer::Layer(const std::filesystem::path& file)
-    : m_name(file.filename().string()),
-      m_own(std::make_unique<SemanticOcTree>(load(file))),
+Layer::Layer(const std::filesystem::path& file, OpenedMap opened)
+    : m_name(nameOf(file)),
+      m_note(std::move(opened.note)),
+      m_own(std::make_unique<SemanticOcTree>(std::move(opened.map))),
       m_map(m_own.get()),
       m_look(*m_map),
       m_cells(std::make_unique<map_view::FullCells>(*m_map)) {

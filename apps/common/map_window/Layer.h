@@ -4,19 +4,22 @@
 #include <filesystem>
 #include <memory>
 
+#include "MapFile.h"
+
 namespace map_window {
 
 /** A map that is open. */
 class Layer {
  public:
-  /** A map's own file, or OctoMap's. \throw std::runtime_error naming the file and what is wrong.
-   */
-  explicit Layer(const std::filesystem::path& file);
+  explicit Layer(const std::filesystem::path& file, const WantedTiles& wanted = {})
+      : Layer(file, openMap(file, wanted)) {}
   /** One that a program makes. It must outlive the layer; grown() says that it has changed. */
   Layer(const std::string& name, const semantic_octree::SemanticOcTree& map);
   void grown();
 
   const std::string& name() const { return m_name; }
+  /** What there is to say of a map that was opened. */
+  const std::string& note() const { return m_note; }
   const semantic_octree::SemanticOcTree& map() const { return *m_map; }
   /** The map that was opened. */
   semantic_octree::SemanticOcTree& ownMap() { return *m_own; }
@@ -31,9 +34,10 @@ class Layer {
   const Eigen::AlignedBox3d& extent() const { return m_extent; }
 
  private:
+  Layer(const std::filesystem::path& file, OpenedMap opened);
   void count();
 
-  std::string m_name;
+  std::string m_name, m_note;
   std::unique_ptr<semantic_octree::SemanticOcTree> m_own;
   const semantic_octree::SemanticOcTree* m_map;
   map_view::CellLook m_look;

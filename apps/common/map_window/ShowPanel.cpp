@@ -27,7 +27,7 @@ std::string shortNumber(double number) {
   return text;
 }
 
-std::string nameOf(const Layer& layer) {
+std::string captionOf(const Layer& layer) {
   return layer.name() + ": " + shortNumber(double(layer.map().getNumLeafNodes())) + " leaves";
 }
 
@@ -35,55 +35,72 @@ std::string nameOf(const Layer& layer) {
 
 ShowPanel::ShowPanel(Viewer& viewer)
     : m_viewer(viewer), m_window(addWindow(&viewer.window(), "Map", {8, 8}, kShowWidth + 16)) {
-  addLayers(m_window);
+  addLayers();
   addColoring(m_window);
   addClasses(m_window);
   addClip(m_window);
   addCameras(m_window);
   m_camera = addText(m_window, "", kShowWidth);
   m_said = addText(m_window, "", kShowWidth);
+  m_said->setFixedHeight(0);  // as many lines as it takes
   viewer.onActivated([this] { listClasses(); });
+  viewer.onAdded([this] {
+    listLayers();
+    fitClip();
+    m_viewer.window().performLayout();
+  });
   viewer.onFrame([this] { update(); });
 }
 
 void ShowPanel::refresh() {
-  if (m_name) m_name->setCaption(nameOf(m_viewer.layer()));
+  m_name->setCaption(captionOf(m_viewer.layer()));
   listClasses();
   fitClip();
 }
 
 void ShowPanel::update() {
   m_camera->setCaption("--camera " + m_viewer.window().orbitCamera().text());
+  if (m_said->caption() == m_viewer.said()) return;
   m_said->setCaption(m_viewer.said());
+  m_viewer.window().performLayout();
 }
 
-void ShowPanel::addLayers(Widget* parent) {
+void ShowPanel::addLayers() {
+  m_layers = m_window->add<Widget>();
+  m_layers->setLayout(
+      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 0, 5));
+  m_activeRow = addRow(m_window);
+  addText(m_activeRow, "active", 50);
+  m_active = m_activeRow->add<nanogui::ComboBox>();
+  m_active->setFixedWidth(kShowWidth - 56);
+  m_active->setTooltip("The one that clicks ask, that is compressed and planned upon");
+  m_active->setCallback([this](int layer) {
+    m_viewer.activate(std::size_t(layer));
+    m_shown[std::size_t(layer)]->setChecked(true);
+  });
+  listLayers();
+}
+
+void ShowPanel::listLayers() {
+  removeChildren(m_layers);
+  m_shown.clear();
+  m_activeRow->setVisible(m_viewer.numLayers() > 1);
   if (m_viewer.numLayers() == 1) {
-    m_name = addText(parent, nameOf(m_viewer.layer()), kShowWidth);
+    m_name = addText(m_layers, captionOf(m_viewer.layer()), kShowWidth);
     return;
   }
   std::vector<std::string> names;
-  std::vector<nanogui::CheckBox*> boxes;
   for (std::size_t i = 0; i < m_viewer.numLayers(); ++i) {
     names.push_back(m_viewer.layer(i).name());
-    boxes.push_back(parent->add<nanogui::CheckBox>(nameOf(m_viewer.layer(i))));
-    boxes.back()->setFixedSize({kShowWidth, 17});
-    boxes.back()->setFontSize(15);
-    boxes.back()->setChecked(m_viewer.isShown(i));
-    boxes.back()->setCallback([this, i](bool on) {
+    auto* box = addCheckBox(m_layers, captionOf(m_viewer.layer(i)), kShowWidth);
+    box->setChecked(m_viewer.isShown(i));
+    box->setCallback([this, i](bool on) {
       m_viewer.setShown(i, on);
       m_viewer.say((on ? "shows " : "hides ") + m_viewer.layer(i).name());
     });
+    m_shown.push_back(box);
   }
-  auto* row = addRow(parent);
-  addText(row, "active", 50);
-  auto* active = row->add<nanogui::ComboBox>(names);
-  active->setFixedWidth(kShowWidth - 56);
-  active->setTooltip("The one that clicks ask, that is compressed and planned upon");
-  active->setCallback([this, boxes](int layer) {
-    m_viewer.activate(std::size_t(layer));
-    boxes[std::size_t(layer)]->setChecked(true);
-  });
+  m_active->setItems(names);
 }
 
 void ShowPanel::addColoring(Widget* parent) {
@@ -113,18 +130,26 @@ void ShowPanel::addClasses(Widget* parent) {
   m_classes->setLayout(
       new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 2, 1));
   listClasses();
-  auto* free = parent->add<nanogui::CheckBox>("free space");
-  free->setChecked(m_viewer.style().freeSpace);
-  free->setCallback([this](bool on) {
+  auto* row = addRow(parent);
+  addSpace(row, "free space", &map_view::ViewStyle::freeSpace);
+  addSpace(row, "unknown", &map_view::ViewStyle::unknownSpace);
+}
+
+void ShowPanel::addSpace(Widget* parent, const std::string& name,
+                         bool map_view::ViewStyle::*isShown) {
+  auto* box = parent->add<nanogui::CheckBox>(name);
+  box->setFixedSize({kShowWidth / 2 - 3, 20});
+  box->setChecked(m_viewer.style().*isShown);
+  box->setCallback([this, isShown](bool on) {
     map_view::ViewStyle style = m_viewer.style();
-    style.freeSpace = on;
+    style.*isShown = on;
     m_viewer.setStyle(style);
   });
 }
 
 /** The most frequent first. */
 void ShowPanel::listClasses() {
-  while (m_classes->childCount() > 0) m_classes->removeChild(0);
+  removeChildren(m_classes);
   const std::vector<std::size_t>& leaves = m_viewer.layer().leavesOfClass();
   std::vector<std::size_t> ids(leaves.size());
   std::iota(ids.begin(), ids.end(), 0);
@@ -137,9 +162,7 @@ void ShowPanel::listClasses() {
     const auto classId = static_cast<semantic_types::ClassId>(id);
     auto* row = addRow(m_classes);
     new Swatch(row, semantic_types::colorOf(classId, classes));
-    auto* box = row->add<nanogui::CheckBox>(classes.name(classId));
-    box->setFixedSize({135, 17});
-    box->setFontSize(15);
+    auto* box = addCheckBox(row, classes.name(classId), 135);
     box->setChecked(id >= hidden.size() || !hidden[id]);
     box->setCallback([this, id](bool on) { hide(id, !on); });
     addText(row, shortNumber(double(leaves[id])), 50);
@@ -221,7 +244,7 @@ void ShowPanel::addCameras(Widget* parent) {
     try {
       m_viewer.say("wrote " + m_viewer.savePicture(".").string());
     } catch (const std::exception& e) {
-      m_viewer.say(e.what());
+      m_viewer.complain(e);
     }
   });
 }

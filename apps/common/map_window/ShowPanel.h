@@ -16,9 +16,12 @@ class ShowPanel {
  private:
   /** What the viewer says, and where the camera is. */
   void update();
-  void addLayers(nanogui::Widget* parent);
+  void addLayers();
+  void listLayers();
   void addColoring(nanogui::Widget* parent);
   void addClasses(nanogui::Widget* parent);
+  void addSpace(nanogui::Widget* parent, const std::string& name,
+                bool map_view::ViewStyle::*isShown);
   void addClip(nanogui::Widget* parent);
   void addCameras(nanogui::Widget* parent);
   void listClasses();
@@ -36,6 +39,9 @@ class ShowPanel {
     nanogui::Label* text;
   };
   std::array<ClipLine, 3> m_clip{};
+  nanogui::Widget *m_layers = nullptr, *m_activeRow = nullptr;
+  nanogui::ComboBox* m_active = nullptr;
+  std::vector<nanogui::CheckBox*> m_shown;  ///< one for each layer, if there are several
   nanogui::Label *m_name = nullptr, *m_camera = nullptr, *m_said = nullptr;
 };
 

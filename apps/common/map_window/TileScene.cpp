@@ -16,7 +16,7 @@ namespace {
 
 /** Sides of cells whose meshes are kept: about 216 bytes each. */
 constexpr std::size_t kMostFaces = 2'000'000;
-constexpr std::uint8_t kFreeAlpha = 40;
+constexpr std::uint8_t kTranslucent = 40;  // of 255
 
 CSetOfTriangles::Ptr trianglesOf(const std::vector<Face>& faces, std::uint8_t alpha) {
   std::vector<TTriangle> triangles;
@@ -49,7 +49,7 @@ CSetOfTriangles::Ptr trianglesOf(const std::vector<Face>& faces, std::uint8_t al
 }  // namespace
 
 std::size_t TileScene::Meshes::faces() const {
-  std::size_t sum = free.faces;
+  std::size_t sum = translucent.faces;
   for (const Part& part : occupied) sum += part.faces;
   return sum;
 }
@@ -63,14 +63,14 @@ void TileScene::build(const Layer& layer, const Tile& tile) {
   m_kept -= meshes.faces();
   for (std::size_t i = 0; i < mesh.occupied.size(); ++i)
     meshes.occupied[i] = part(mesh.occupied[i], 255);
-  meshes.free = part(mesh.free, kFreeAlpha);
+  meshes.translucent = part(mesh.translucent, kTranslucent);
   m_kept += meshes.faces();
   m_fresh.add(tile);
 }
 
 bool TileScene::update(const Layer& layer, const map_view::View& view, double milliseconds) {
   const measuring::Stopwatch watch;
-  const std::vector<Tile> tiles = tilesSeen(layer.map(), view, layer.look().style().freeSpace);
+  const std::vector<Tile> tiles = tilesSeen(layer.map(), view, layer.look());
   bool ready = true;
   for (const Tile& tile : tiles) {
     if (m_fresh.contains(tile)) continue;
@@ -113,7 +113,7 @@ void TileScene::show(const std::vector<Tile>& tiles, const map_view::OrbitCamera
     tile = isInAnother(*tile) ? shown.erase(tile) : std::next(tile);
   m_objects->clear();
   m_faces = 0, m_shown = shown.size();
-  const auto free = CSetOfObjects::Create();
+  const auto translucent = CSetOfObjects::Create();
   const auto add = [this](const auto& objects, const Meshes::Part& part) {
     if (part.triangles) objects->insert(part.triangles);
     m_faces += part.faces;
@@ -125,12 +125,12 @@ void TileScene::show(const std::vector<Tile>& tiles, const map_view::OrbitCamera
     for (std::size_t i = 0; i < meshes.occupied.size(); ++i)
       if (mayFace(tile, i, eye, voxelSize)) add(m_objects, meshes.occupied[i]);
     // MRPT draws what it takes to be nearest last: the solid cells are to be seen through these.
-    if (meshes.free.triangles)
-      meshes.free.triangles->setLocalRepresentativePoint(
+    if (meshes.translucent.triangles)
+      meshes.translucent.triangles->setLocalRepresentativePoint(
           {float(near.x()), float(near.y()), float(near.z())});
-    add(free, meshes.free);
+    add(translucent, meshes.translucent);
   }
-  m_objects->insert(free);
+  m_objects->insert(translucent);
 }
 
 void TileScene::forgetUnseen(const std::vector<Tile>& seen) {

@@ -33,7 +33,7 @@ class TileScene {
       std::size_t faces = 0;
     };
     std::array<Part, map_view::kNumDirections> occupied;
-    Part free;
+    Part translucent;
     std::size_t faces() const;
   };
   void build(const Layer& layer, const map_view::Tile& tile);

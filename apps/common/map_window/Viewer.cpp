@@ -2,8 +2,9 @@
 
 #include <GLFW/glfw3.h>
 #include <map_pictures/MapPictures.h>
+#include <strict_files/ErrorMessage.h>
 
-#include <ostream>
+#include <iostream>
 
 #include "StandardOutput.h"
 
@@ -38,6 +39,15 @@ Viewer::Viewer(ViewWindow& window, std::vector<std::unique_ptr<Layer>> layers,
   else
     lookFrom(-120, 35);
   m_window.onFrame([this] { return frame(); });
+}
+
+void Viewer::add(std::unique_ptr<Layer> layer) {
+  map_view::ViewStyle own = style();
+  own.hiddenClasses.clear();  // it may have other classes
+  layer->look().setStyle(own);
+  m_maps.push_back({std::move(layer), {}, true});
+  insertMaps();
+  for (const auto& f : m_onAdded) f();
 }
 
 bool Viewer::frame() {
@@ -138,6 +148,12 @@ void Viewer::showCompressed(const map_view::LiveCompression& compression) {
 void Viewer::say(const std::string& text) {
   m_said = text;
   notes() << text << std::endl;
+  m_window.redraw();
+}
+
+void Viewer::complain(const std::exception& problem) {
+  m_said = strict_files::messageOf(problem);
+  std::cerr << m_window.caption() << ": " << m_said << std::endl;
   m_window.redraw();
 }
 

@@ -16,6 +16,10 @@ class Viewer {
          const Beginning& beginning);
 
   ViewWindow& window() { return m_window; }
+  /** Another map, which is shown. */
+  void add(std::unique_ptr<Layer> layer);
+  /** Called after that. */
+  void onAdded(const std::function<void()>& f) { m_onAdded.push_back(f); }
   std::size_t numLayers() const { return m_maps.size(); }
   const Layer& layer(std::size_t i) const { return *m_maps[i].layer; }
   /** The active one, and its tiles. */
@@ -47,8 +51,10 @@ class Viewer {
   /** Called before each frame. */
   void onFrame(const std::function<void()>& f) { m_onFrame.push_back(f); }
 
-  /** A line below the map. */
+  /** A line below the map, and on the standard output. */
   void say(const std::string& text);
+  /** The same of what went wrong, on the standard error. */
+  void complain(const std::exception& problem);
   const std::string& said() const { return m_said; }
 
  private:
@@ -64,7 +70,7 @@ class Viewer {
   ViewWindow& m_window;
   std::vector<OpenMap> m_maps;
   std::size_t m_active = 0;
-  std::vector<std::function<void()>> m_onActivated, m_onFrame;
+  std::vector<std::function<void()>> m_onActivated, m_onAdded, m_onFrame;
   std::string m_said, m_camera;
   bool m_hurries = false;
   double m_restAt = 0;  ///< s of GLFW's clock: the camera has come to rest

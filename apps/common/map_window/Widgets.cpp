@@ -146,6 +146,18 @@ nanogui::Label* addText(Widget* parent, const std::string& text, int width) {
   return label;
 }
 
+nanogui::CheckBox* addCheckBox(Widget* parent, const std::string& text, int width) {
+  auto* box = parent->add<nanogui::CheckBox>(text);
+  box->setFixedSize({width, kLine});
+  box->setFontSize(kFont);
+  return box;
+}
+
+void removeChildren(Widget* parent) {
+  parent->screen()->updateFocus(nullptr);
+  while (parent->childCount() > 0) parent->removeChild(parent->childCount() - 1);
+}
+
 nanogui::Window* addWindow(Widget* parent, const std::string& title, const Vector2i& place,
                            int width) {
   auto* window = new nanogui::Window(parent, title);

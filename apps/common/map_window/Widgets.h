@@ -82,6 +82,11 @@ nanogui::Widget* addRow(nanogui::Widget* parent, int spacing = 6);
 /** A line of text of a fixed width. */
 nanogui::Label* addText(nanogui::Widget* parent, const std::string& text, int width);
 
+nanogui::CheckBox* addCheckBox(nanogui::Widget* parent, const std::string& text, int width);
+
+/** Takes out all children; none of them keeps the keyboard. */
+void removeChildren(nanogui::Widget* parent);
+
 /** A window whose children stand below each other. */
 nanogui::Window* addWindow(nanogui::Widget* parent, const std::string& title,
                            const nanogui::Vector2i& place, int width);

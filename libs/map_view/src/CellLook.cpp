@@ -10,7 +10,7 @@ namespace map_view {
 
 namespace {
 
-constexpr Color kFree{120, 180, 235};
+constexpr Color kFree{120, 180, 235}, kUnknown{60, 55, 50};
 
 std::uint8_t byteOf(double x) { return static_cast<std::uint8_t>(x + 0.5); }
 
@@ -56,26 +56,41 @@ CellLook::CellLook(const SemanticOcTree& map) : m_map(map) { forget(); }
 
 void CellLook::forget() {
   m_inner.clear();
-  double x, y;
-  m_map.getMetricMin(x, y, m_lowest);
-  m_map.getMetricMax(x, y, m_highest);
+  Eigen::Vector3d low, high;
+  m_map.getMetricMin(low.x(), low.y(), low.z());
+  m_map.getMetricMax(high.x(), high.y(), high.z());
+  m_known = {low, high};
 }
 
 bool CellLook::isShown(const ViewCell& cell) const {
-  if (!cell.node || !m_style.clip.contains(cell.center(m_map.getResolution()))) return false;
+  const Eigen::Vector3d center = cell.center(m_map.getResolution());
+  if (!m_style.clip.contains(center)) return false;
+  if (!cell.node) return m_style.unknownSpace && m_known.contains(center);
   if (!cell.isOccupied()) return m_style.freeSpace;
   const ClassId id = m_style.hidesClasses() ? classOf(cell) : ClassId(0);
   return !m_style.hidesClasses() || id >= m_style.hiddenClasses.size() ||
          !m_style.hiddenClasses[id];
 }
 
+KeyBox CellLook::bounds() const {
+  const Eigen::AlignedBox3d box = m_known.intersection(m_style.clip);
+  // What is known ends at borders of voxels, up to rounding.
+  constexpr double kRounding = 1e-6;
+  const auto voxels = [this](const Eigen::Vector3d& place) {
+    return (place.array() / m_map.getResolution() - 0.5 + semantic_octree::kKeyOfOrigin).eval();
+  };
+  return {(voxels(box.min()) - kRounding).ceil().cast<int>(),
+          (voxels(box.max()) + kRounding).floor().cast<int>()};
+}
+
 Color CellLook::heightColor(const ViewCell& cell) const {
-  const double low = std::max(m_lowest, m_style.clip.min().z()),
-               high = std::min(m_highest, m_style.clip.max().z());
+  const double low = std::max(m_known.min().z(), m_style.clip.min().z()),
+               high = std::min(m_known.max().z(), m_style.clip.max().z());
   return ramp((cell.center(m_map.getResolution()).z() - low) / std::max(high - low, 1e-6));
 }
 
 Color CellLook::colorOf(const ViewCell& cell) const {
+  if (!cell.node) return kUnknown;
   if (!cell.isOccupied()) return kFree;
   switch (m_style.coloring) {
     case Coloring::Probability:

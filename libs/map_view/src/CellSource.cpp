@@ -9,16 +9,23 @@ using semantic_octree::SemanticOcTreeNode;
 
 namespace {
 
+/** Without a node. */
+ViewCell unknownChild(const ViewCell& parent, int i) {
+  return {parent.lowest + parent.edge() / 2 * Eigen::Array3i(i & 1, i >> 1 & 1, i >> 2 & 1),
+          parent.depth + 1,
+          {},
+          0};
+}
+
 /** A leaf of a map is a leaf. */
 struct MapNode {
   ViewCell cell;
 
   explicit MapNode(const SemanticOcTree& map)
       : cell{Eigen::Array3i::Zero(), 0, map.empty() ? SemanticOcTreeNode() : map.root(), 0} {}
-  MapNode(const MapNode& parent, int i)
-      : cell{parent.cell.lowest +
-                 parent.cell.edge() / 2 * Eigen::Array3i(i & 1, i >> 1 & 1, i >> 2 & 1),
-             parent.cell.depth + 1, parent.cell.node.child(i), 0} {}
+  MapNode(const MapNode& parent, int i) : cell(unknownChild(parent.cell, i)) {
+    cell.node = parent.cell.node.child(i);
+  }
 
   bool isLeaf() const { return cell.node.isLeaf(); }
   /** Calls f(child) for the known children. */
@@ -67,25 +74,41 @@ template <class Node>
 class Walk {
  public:
   Walk(const KeyBox& box, int maxDepth, const CellLook& look, const CellSource::Visit& visit)
-      : m_box(box), m_maxDepth(maxDepth), m_look(look), m_visit(visit) {}
+      : m_box(box), m_bounds(look.bounds()), m_maxDepth(maxDepth), m_look(look), m_visit(visit) {}
 
   void walk(const Node& node) const {
     const ViewCell& cell = node.cell;
     if (!m_box.meets(cell.lowest, cell.edge())) return;
-    if (!cell.isOccupied() && !m_look.style().freeSpace) return;  // nor is what is below it
+    const bool free = m_look.style().freeSpace, unknown = m_look.style().unknownSpace;
+    if (!cell.isOccupied() && !free && !unknown) return;  // nor is what is below it
     if (node.isLeaf()) {
       if (m_look.isShown(cell)) m_visit(cell);
     } else if (cell.depth == m_maxDepth) {
       ViewCell shown = cell;
-      if (findShown(node, true, shown) ||
-          (m_look.style().freeSpace && findShown(node, false, shown)))
-        m_visit(shown);
+      if (findShown(node, true, shown) || (free && findShown(node, false, shown))) m_visit(shown);
     } else {
       node.forEachChild([this](const Node& child) { walk(child); });
+      if (unknown) forEachUnknownChild(cell, [this](const ViewCell& child) { walkUnknown(child); });
     }
   }
 
  private:
+  template <class F>
+  static void forEachUnknownChild(const ViewCell& cell, const F& f) {
+    for (int i = 0; i < 8; ++i)
+      if (!cell.node.child(i)) f(unknownChild(cell, i));
+  }
+
+  /** As large cubes as there are within the bounds. */
+  void walkUnknown(const ViewCell& cell) const {
+    if (!m_box.meets(cell.lowest, cell.edge()) || !m_bounds.meets(cell.lowest, cell.edge())) return;
+    if (cell.depth == m_maxDepth || m_bounds.contains(cell.lowest, cell.edge())) {
+      if (m_look.isShown(cell)) m_visit(cell);
+    } else {
+      for (int i = 0; i < 8; ++i) walkUnknown(unknownChild(cell, i));
+    }
+  }
+
   /** A leaf below a node that is shown: from its upper half, if there is one. */
   bool findShown(const Node& node, bool occupied, ViewCell& shown) const {
     if (occupied && !node.cell.isOccupied()) return false;
@@ -103,16 +126,16 @@ class Walk {
   }
 
   const KeyBox& m_box;
+  const KeyBox m_bounds;
   int m_maxDepth;
   const CellLook& m_look;
   const CellSource::Visit& m_visit;
 };
 
-/** The child that holds a voxel, without a node. */
-ViewCell unknownChild(const ViewCell& parent, const Eigen::Array3i& key) {
-  const int depth = parent.depth + 1;
-  const auto lowest = [depth](int k) { return semantic_octree::lowestKeyAtDepth(k, depth); };
-  return {key.unaryExpr(lowest), depth, {}, 0};
+/** The child that holds a voxel. */
+int childAt(const ViewCell& parent, const Eigen::Array3i& key) {
+  const Eigen::Array3i upper = (key >= parent.lowest + parent.edge() / 2).cast<int>();
+  return upper.x() | upper.y() << 1 | upper.z() << 2;
 }
 
 template <class Node>
@@ -125,7 +148,7 @@ ViewCell leafAt(const Eigen::Array3i& key, const Node& root) {
       const KeyBox box = {key, key};
       if (box.meets(child.cell.lowest, child.cell.edge())) next = child;
     });
-    if (!next) return unknownChild(node.cell, key);
+    if (!next) return unknownChild(node.cell, childAt(node.cell, key));
     node = *next;
   }
   return node.cell;

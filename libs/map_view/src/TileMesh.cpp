@@ -18,7 +18,12 @@ const std::array<Side, kNumDirections> kSides = {{{{0, 0, 1}, {1, 0, 0}, {0, 1, 
                                                   {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, 0.66f},
                                                   {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}, 0.66f}}};
 
-enum class Content : std::uint8_t { Nothing, Free, Occupied };
+enum class Content : std::uint8_t { Nothing, Free, Unknown, Occupied };
+
+Content contentOf(const ViewCell& cell) {
+  if (!cell.node) return Content::Unknown;
+  return cell.isOccupied() ? Content::Occupied : Content::Free;
+}
 
 /** What is where in a tile and one cell around it. */
 class Grid {
@@ -63,7 +68,7 @@ class MeshBuilder {
     const int unit = m_tile.cellEdge();
     // Exact: cells outside of the tile begin at multiples of a cell, too.
     const Eigen::Array3i low = (cell.lowest - m_tile.lowest) / unit, end = low + cell.edge() / unit;
-    const Content content = cell.isOccupied() ? Content::Occupied : Content::Free;
+    const Content content = contentOf(cell);
     Grid::forEach(low.max(-1), end.min(kCellsPerTile + 1),
                   [&](const Eigen::Array3i& place) { m_grid.at(place) = content; });
     const Part part = {low.max(0), end.min(kCellsPerTile), cell};
@@ -82,11 +87,12 @@ class MeshBuilder {
     for (std::size_t i = 0; i < kNumDirections; ++i) {
       if (isHidden(part, kSides[i])) continue;
       if (!color) color = colorOf(part.cell);
-      auto& faces = part.cell.isOccupied() ? mesh.occupied[i] : mesh.free;
+      auto& faces = part.cell.isOccupied() ? mesh.occupied[i] : mesh.translucent;
       faces.push_back(face(part, kSides[i], *color));
     }
   }
 
+  /** By its own kind, or by what is solid. */
   bool isHidden(const Part& part, const Side& side) const {
     const Eigen::Array3i one = side.normal.abs();
     Eigen::Array3i low = part.low, end = part.end;
@@ -94,11 +100,12 @@ class MeshBuilder {
       low = low * (1 - one) + end * one, end = end + one;
     else
       end = end * (1 - one) + low * one, low = low - one;
-    const Content least = part.cell.isOccupied() ? Content::Occupied : Content::Free;
+    const Content own = contentOf(part.cell);
     for (int z = low.z(); z < end.z(); ++z)
       for (int y = low.y(); y < end.y(); ++y)
         for (int x = low.x(); x < end.x(); ++x)
-          if (m_grid.at({x, y, z}) < least) return false;
+          if (const Content c = m_grid.at({x, y, z}); c != own && c != Content::Occupied)
+            return false;
     return true;
   }
 

@@ -13,24 +13,26 @@ namespace {
 
 class Selection {
  public:
-  Selection(const SemanticOcTree& map, const View& view, bool withFree)
+  Selection(const SemanticOcTree& map, const View& view, const CellLook& look)
       : m_voxelSize(map.getResolution()),
         m_view(view),
         m_position(view.camera.position()),
         m_focalLength(view.camera.focalLength(view.height)),
-        m_withFree(withFree) {}
+        m_style(look.style()),
+        m_bounds(look.bounds()) {}
 
   void visit(const SemanticOcTreeNode& node, const Tile& tile) {
-    if (!node || (!m_withFree && node.getLogOdds() <= 0)) return;
+    if (!mayShow(node, tile)) return;
     const double edge = tile.edge() * m_voxelSize;
     const Eigen::Vector3d low = (tile.lowest - kKeyOfOrigin).cast<double>().matrix() * m_voxelSize;
     const Eigen::Vector3d center = low.array() + edge / 2;
     if (!m_view.camera.maySee(center, edge * std::sqrt(0.75), m_view.width, m_view.height)) return;
     const double distance = distanceTo(center, edge / 2);
-    if (tile.depth == kFinestTiles || node.isLeaf() || isFineEnough(edge, distance))
+    if (tile.depth == kFinestTiles || (node && node.isLeaf()) || isFineEnough(edge, distance))
       m_found.emplace_back(distance, tile);
     else
-      for (int i = 0; i < 8; ++i) visit(node.child(i), childOf(tile, i));
+      for (int i = 0; i < 8; ++i)
+        visit(node ? node.child(i) : SemanticOcTreeNode(), childOf(tile, i));
   }
 
   std::vector<Tile> nearestFirst() {
@@ -41,6 +43,10 @@ class Selection {
   }
 
  private:
+  bool mayShow(const SemanticOcTreeNode& node, const Tile& tile) const {
+    if (node && (m_style.freeSpace || node.getLogOdds() > 0)) return true;
+    return m_style.unknownSpace && m_bounds.meets(tile.lowest, tile.edge());
+  }
   static Tile childOf(const Tile& tile, int i) {
     const int half = tile.edge() / 2;
     return {tile.depth + 1, tile.lowest + half * Eigen::Array3i(i & 1, i >> 1 & 1, i >> 2 & 1)};
@@ -56,15 +62,16 @@ class Selection {
   const View& m_view;
   Eigen::Vector3d m_position;
   double m_focalLength;
-  bool m_withFree;
+  const ViewStyle& m_style;
+  KeyBox m_bounds;
   std::vector<std::pair<double, Tile>> m_found;
 };
 
 }  // namespace
 
-std::vector<Tile> tilesSeen(const SemanticOcTree& map, const View& view, bool withFree) {
+std::vector<Tile> tilesSeen(const SemanticOcTree& map, const View& view, const CellLook& look) {
   if (map.empty()) return {};
-  Selection selection(map, view, withFree);
+  Selection selection(map, view, look);
   selection.visit(map.root(), Tile());
   return selection.nearestFirst();
 }

@@ -26,6 +26,8 @@ struct ViewStyle {
   std::vector<bool> hiddenClasses;
   /** Free cells, in pale blue, translucent. */
   bool freeSpace = false;
+  /** What is unknown within the bounding box of what is known, in gray, translucent. */
+  bool unknownSpace = false;
   /** Cells with their center outside are not shown; m, map frame. */
   Eigen::AlignedBox3d clip = everywhere();
 
@@ -49,6 +51,9 @@ class CellLook {
   void setStyle(const ViewStyle& style) { m_style = style; }
 
   bool isShown(const ViewCell& cell) const;
+  /** Voxels with their center within the bounding box of what is known, and not cut off; nothing
+   * outside is unknown space. */
+  KeyBox bounds() const;
   /** Class: the classes' colors (gray: none). Probability of the likeliest class, entropy of the
    * distribution and occupancy: from red (unsure) over yellow to green (sure). Height: from dark
    * violet (lowest) over green to yellow (highest). */
@@ -67,7 +72,7 @@ class CellLook {
 
   const SemanticOcTree& m_map;
   ViewStyle m_style;
-  double m_lowest = 0, m_highest = 0;  ///< m, of the known cells
+  Eigen::AlignedBox3d m_known;  ///< m
   mutable std::unordered_map<std::uint64_t, State> m_inner;
 };
 

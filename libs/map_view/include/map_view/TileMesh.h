@@ -51,7 +51,8 @@ Eigen::Vector3i normalOf(std::size_t direction);
 /** What is seen of a tile: the sides of its cells that no neighbor hides, by where they look. */
 struct TileMesh {
   std::array<std::vector<Face>, kNumDirections> occupied;
-  std::vector<Face> free;
+  /** Of free cells and of unknown space. */
+  std::vector<Face> translucent;
 };
 
 /** Whether sides of a tile's cells that look there may be seen from a place (m, map frame). */

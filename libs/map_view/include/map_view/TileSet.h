@@ -15,9 +15,9 @@ struct View {
   double pixelsPerCell = 4;
 };
 
-/** The tiles that may be seen, the nearest first: coarse ones far away, fine ones near. No place is
- * in two of them. \param withFree tiles in which nothing is occupied, too */
-std::vector<Tile> tilesSeen(const SemanticOcTree& map, const View& view, bool withFree);
+/** The tiles in which something that is shown may be seen, the nearest first: coarse ones far away,
+ * fine ones near. No place is in two of them. */
+std::vector<Tile> tilesSeen(const SemanticOcTree& map, const View& view, const CellLook& look);
 
 /** Remembers whose meshes are as they should be. */
 class FreshTiles {

@@ -36,6 +36,9 @@ struct KeyBox {
   bool meets(const Eigen::Array3i& lowest, int edge) const {
     return (lowest <= high).all() && (lowest + edge > low).all();
   }
+  bool contains(const Eigen::Array3i& lowest, int edge) const {
+    return (lowest >= low).all() && (lowest + edge - 1 <= high).all();
+  }
 };
 
 }  // namespace map_view

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 namespace strict_files {
 
@@ -10,6 +11,23 @@ inline std::string csvField(const std::string& text) {
   std::string field = "\"";
   for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
   return field + '"';
+}
+
+/** The fields of a line without line ends in them. */
+inline std::vector<std::string> csvFieldsOf(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const bool doubled = quoted && line.compare(i, 2, "\"\"") == 0;
+    if (line[i] == '"' && !doubled)
+      quoted = !quoted;
+    else if (line[i] == ',' && !quoted)
+      fields.emplace_back();
+    else
+      fields.back() += line[i];
+    i += doubled;
+  }
+  return fields;
 }
 
 }  // namespace strict_files

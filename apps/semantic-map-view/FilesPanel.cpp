@@ -1,0 +1,94 @@
+#include "FilesPanel.h"
+
+#include <strict_files/OptionList.h>
+
+#include <cmath>
+#include <utility>
+
+#include "map_window/Widgets.h"
+
+namespace semantic_map_view {
+
+namespace {
+constexpr int kFilesWidth = 280, kFilesWindow = kFilesWidth + 16, kFilesHeight = 128;
+}
+
+FilesPanel::FilesPanel(Viewer& viewer, TrackScene& tracks, const WantedTiles& wanted)
+    : m_viewer(viewer), m_tracks(tracks), m_wantedTiles(wanted) {
+  auto* window = addWindow(
+      &viewer.window(), "Files",
+      {viewer.window().width() - kFilesWindow - 8, viewer.window().height() - kFilesHeight - 8},
+      kFilesWindow);
+  auto* row = addRow(window);
+  addText(row, "open", 40);
+  m_field = row->add<nanogui::TextBox>("");
+  m_field->setEditable(true);
+  m_field->setAlignment(nanogui::TextBox::Alignment::Left);
+  m_field->setFixedSize({kFilesWidth - 46, 22});
+  m_field->setFontSize(15);
+  m_field->setPlaceholder("a name, or drop files here");
+  m_field->setTooltip("Maps; trajectories (.tum, .txt) and paths (.csv)");
+  m_field->setCallback([this](const std::string& file) {
+    if (!file.empty()) want(file);
+    return false;  // empty again
+  });
+  auto* scroll = window->add<nanogui::VScrollPanel>();
+  scroll->setFixedSize({kFilesWidth, 40});
+  m_list = scroll->add<nanogui::Widget>();
+  m_list->setLayout(
+      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 2, 1));
+  listTracks();
+  viewer.window().addDropFilesCallback([this](const std::vector<std::string>& files) {
+    for (const auto& file : files) want(file);
+    return true;
+  });
+  viewer.onFrame([this] { openWanted(); });
+}
+
+void FilesPanel::want(const std::string& file) {
+  m_wanted.push_back(file);
+  m_viewer.window().redraw();
+}
+
+void FilesPanel::openWanted() {
+  for (const std::string& file : std::exchange(m_wanted, {})) {
+    try {
+      open(file);
+    } catch (const std::exception& e) {
+      m_viewer.complain(e);
+    }
+  }
+}
+
+void FilesPanel::open(const std::string& file) {
+  std::string text = "opened " + file + ": ";
+  if (isTrack(file)) {
+    m_tracks.add(readTrack(file));
+    listTracks();
+    text +=
+        strict_files::textOf(std::round(m_tracks.track(m_tracks.size() - 1).length() * 10) / 10) +
+        " m";
+  } else {
+    m_viewer.add(std::make_unique<Layer>(file, m_wantedTiles));
+    const Layer& layer = m_viewer.layer(m_viewer.numLayers() - 1);
+    text += std::to_string(layer.map().getNumLeafNodes()) + " leaves";
+    if (!layer.note().empty()) text += "; " + layer.note();
+  }
+  m_viewer.say(text);
+}
+
+/** The last one first. */
+void FilesPanel::listTracks() {
+  removeChildren(m_list);
+  for (std::size_t i = m_tracks.size(); i-- > 0;) {
+    auto* box = addCheckBox(m_list, m_tracks.track(i).name, kFilesWidth - 20);
+    box->setChecked(m_tracks.isShown(i));
+    box->setCallback([this, i](bool on) {
+      m_tracks.setShown(i, on);
+      m_viewer.say((on ? "shows " : "hides ") + m_tracks.track(i).name);
+    });
+  }
+  m_viewer.window().performLayout();
+}
+
+}  // namespace semantic_map_view

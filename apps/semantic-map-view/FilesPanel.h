@@ -1,0 +1,28 @@
+#pragma once
+#include "TrackScene.h"
+
+namespace semantic_map_view {
+
+/** Opens what is dropped onto the window or named in a field: maps, and what lies upon them. */
+class FilesPanel {
+ public:
+  FilesPanel(Viewer& viewer, TrackScene& tracks, const WantedTiles& wanted);
+  FilesPanel(const FilesPanel&) = delete;
+  FilesPanel& operator=(const FilesPanel&) = delete;
+
+ private:
+  /** Before the next frame: panels must not change while they handle what a hand does. */
+  void want(const std::string& file);
+  void openWanted();
+  void open(const std::string& file);
+  void listTracks();
+
+  Viewer& m_viewer;
+  TrackScene& m_tracks;
+  const WantedTiles m_wantedTiles;
+  nanogui::TextBox* m_field;
+  nanogui::Widget* m_list;
+  std::vector<std::string> m_wanted;
+};
+
+}  // namespace semantic_map_view

@@ -1,0 +1,225 @@
+#include <semantic_octree/MapFolder.h>
+#include <semantic_octree/MapOperations.h>
+#include <semantic_octree/OctomapConversion.h>
+
+#include <octomap/OcTree.h>
+
+#include <cmath>
+#include <regex>
+
+#include "ViewFixture.h"
+
+namespace {
+
+/** The panel at the lower right: its field, and its list of what lies upon the map. */
+constexpr int kFieldX = kWidth - 130, kFieldY = kHeight - 90, kListX = kWidth - 284,
+              kListY = kHeight - 65;
+
+SemanticOcTree part(double from, double to) {
+  return semantic_octree::cropped(smallMap(),
+                                  {Eigen::Vector3d(from, -20, -2), Eigen::Vector3d(to, 20, 5)});
+}
+
+bool isNear(const cv::Mat& picture, const cv::Point& at, const cv::Vec3i& bgr) {
+  const cv::Vec3i difference = cv::Vec3i(picture.at<cv::Vec3b>(at)) - bgr;
+  return std::max({std::abs(difference[0]), std::abs(difference[1]), std::abs(difference[2])}) < 25;
+}
+
+const cv::Vec3i kDark(20, 20, 20), kOrange(0, 159, 230), kBlue(178, 114, 0), kPaper(250, 250, 250);
+
+}  // namespace
+
+/** A map of the road, and beside it files of which nothing was opened. */
+class SemanticMapViewFiles : public SemanticMapView {
+ protected:
+  SemanticMapViewFiles() {
+    semantic_octree::saveTree(part(-20, 0), path("road.semantic"));
+    semantic_octree::toOcTree(part(2, 20))->writeBinary(path("grass.bt"));
+    folder.write("bad.semantic", "nothing of the kind");
+    // North of the map: to the east, and back again.
+    folder.write("path.csv",
+                 "x,y,z,heading,curvature,gear,class,arc_length\n"
+                 "-8,7,0,0,0,forward,\"a, b\",0\n0,7,0,0,0,forward,\"a \"\"c\"\"\",8\n"
+                 "0,8,0,0,0,backward,road,9\n-8,8,0,0,0,backward,road,17\n");
+    folder.write("drive.csv", "time,x,y,z,speed\r\n0,2,7,0,1\r\n1,5,7,0,1\r\n2,9,7,0,-1\r\n");
+    folder.write("robot.tum", "# a comment\n0 -8 -7 0 0 0 0 1\n1 8 -7 0 0 0 0 1\n");
+  }
+
+  /** \return what the window said */
+  std::string work(const std::vector<std::string>& files, const std::vector<std::string>& steps) {
+    std::vector<std::string> command{MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"),
+                                     kViewer};
+    for (const auto& file : files) command.push_back(path(file));
+    for (const auto& word :
+         {std::string("--size"), size(), std::string("--camera"), kTop, std::string("--")})
+      command.push_back(word);
+    command.insert(command.end(), steps.begin(), steps.end());
+#ifdef MSO_DROP_FILES
+    command.insert(command.begin(), {"/usr/bin/env", "DROP_FILES=" MSO_DROP_FILES});
+#endif
+    const ProgramRun run = runInX(command);
+    EXPECT_EQ(run.status, 0) << run.output << run.errors;
+    return folder.read("said.txt");
+  }
+
+  std::string type(const std::string& file, const std::string& words) const {
+    return "type " + std::to_string(kFieldX) + ' ' + std::to_string(kFieldY) + ' ' + path(file) +
+           ' ' + words;
+  }
+  std::string drop(const std::string& file, const std::string& words) const {
+    return "drop " + path(file) + ' ' + words;
+  }
+  static std::string click(const cv::Point& at, const std::string& words) {
+    return std::to_string(at.x) + ' ' + std::to_string(at.y) + ' ' + words;
+  }
+
+  static void expectPath(const cv::Mat& picture) {
+    EXPECT_TRUE(isNear(picture, pixelOf(-4, 7, 0.3), kDark)) << "forward";
+    EXPECT_TRUE(isNear(picture, pixelOf(-4, 8, 0.3), kOrange)) << "backward";
+  }
+  static bool hasTrajectory(const cv::Mat& picture) {
+    return isNear(picture, pixelOf(1, -7, 0.3), kBlue);
+  }
+};
+
+TEST_F(SemanticMapViewFiles, AreDrawnUponTheMap) {
+  SKIP_WITHOUT_WINDOWS();
+  const cv::Mat picture = draw({path("road.semantic"), path("path.csv"), path("robot.tum"),
+                                path("drive.csv"), "--no-panels", "--camera", kTop});
+  EXPECT_EQ(classAt(picture, pixelOf(-5, 2, 0.2)), 'r');
+  expectPath(picture);
+  EXPECT_TRUE(hasTrajectory(picture));
+  EXPECT_TRUE(isNear(picture, pixelOf(3, 7, 0.3), kDark)) << "speed above 0";
+  EXPECT_TRUE(isNear(picture, pixelOf(7, 7, 0.3), kOrange)) << "speed below 0";
+  EXPECT_TRUE(isNear(picture, pixelOf(-4, 7.5, 0.3), kPaper)) << "between the lines";
+}
+
+TEST_F(SemanticMapViewFiles, AreOpenedWhenTheyAreTyped) {
+  SKIP_WITHOUT_WINDOWS();
+  const std::string said =
+      work({"road.semantic"},
+           {type("none.semantic", "none.semantic'"), type("bad.semantic", "bad.semantic'"),
+            type("grass.bt", "opened .*grass.bt: [0-9]* leaves"),
+            type("path.csv", "opened .*path.csv: 17 m"),
+            click(pixelOf(-3.1, 2.1, 0.2), "occupied, road"), "picture " + path("screen.png")});
+  EXPECT_TRUE(contains(said, "semantic-map-view: cannot load map '" + path("bad.semantic")))
+      << said;
+  const cv::Mat screen = cv::imread(path("screen.png"));
+  ASSERT_FALSE(screen.empty());
+  EXPECT_EQ(classAt(screen, pixelOf(-5, 2, 0.2)), 'r');
+  EXPECT_FALSE(isNear(screen, pixelOf(3.1, 3.1, 0.2), kPaper)) << "the other map";
+  expectPath(screen);
+}
+
+TEST_F(SemanticMapViewFiles, AreOpenedWhenTheyAreDropped) {
+  SKIP_WITHOUT_WINDOWS();
+#ifndef MSO_DROP_FILES
+  GTEST_SKIP() << "built without libX11, which drops files";
+#endif
+  // The check box of the one that was opened last is the first one; the second map's is below the
+  // first one's. What was opened is on the screen once another click was answered.
+  const std::string said = work(
+      {"road.semantic", "path.csv"},
+      {drop("bad.semantic", "bad.semantic'"), drop("grass.bt", "opened .*grass.bt: [0-9]* leaves"),
+       drop("robot.tum", "opened .*robot.tum: 16 m"),
+       click(pixelOf(-3.1, 2.1, 0.2), "occupied, road"), "picture " + path("screen.png"),
+       click({kListX, kListY}, "hides robot.tum"), click({24, 69}, "hides grass.bt"),
+       click(pixelOf(-3.1, 2.1, 0.2), "occupied, road"), "picture " + path("hidden.png")});
+  const cv::Mat screen = cv::imread(path("screen.png")), hidden = cv::imread(path("hidden.png"));
+  ASSERT_FALSE(screen.empty() || hidden.empty());
+  EXPECT_TRUE(hasTrajectory(screen));
+  EXPECT_FALSE(isNear(screen, pixelOf(3.1, 3.1, 0.2), kPaper));
+  EXPECT_FALSE(hasTrajectory(hidden));
+  EXPECT_TRUE(isNear(hidden, pixelOf(3.1, 3.1, 0.2), kPaper));
+  expectPath(screen);
+  expectPath(hidden);
+}
+
+TEST_F(SemanticMapViewFiles, InFoldersOfTilesAreAsFineAsMemoryAllows) {
+  SKIP_WITHOUT_WINDOWS();
+  const SemanticOcTree map = smallMap();
+  {
+    SemanticOcTree tiles = semantic_octree::emptyLike(map);
+    semantic_octree::MapFolderOptions options;
+    options.tileSize = 3.2;
+    semantic_octree::MapFolder to(tiles, path("tiles"), semantic_octree::MapFolder::Access::Write,
+                                  options);
+    semantic_octree::copyTo(tiles, map);
+    to.save();
+  }
+  const auto said = [&](double megabytes, const std::string& clip) {
+    const ProgramRun run =
+        runInX({kViewer, path("tiles"), "--memory", std::to_string(megabytes), "--clip=" + clip,
+                "--size", size(), "--camera", kTop, "--no-panels", "-f", "-o", path("view.png")});
+    EXPECT_EQ(run.status, 0) << run.errors;
+    return run.output;
+  };
+  const auto picture = [&] { return cv::imread(path("view.png")); };
+  const std::string all = "-90,-90,-90,90,90,90";
+  EXPECT_FALSE(contains(said(10, all), "voxels of"));
+  EXPECT_EQ(classAt(picture(), pixelOf(-5, 2, 0.2)), 'r');
+  // What a fifth of the memory is enough for.
+  const double megabytes = double(map.memoryUsage()) / 1e6;
+  const std::string coarse = said(megabytes / 5, all);
+  const auto fits = [&](int levels) {
+    return double(semantic_octree::coarsened(map, levels).memoryUsage()) < megabytes / 5 * 1e6;
+  };
+  std::smatch edge;
+  ASSERT_TRUE(std::regex_search(coarse, edge, std::regex("shown with voxels of ([0-9.]+) m")))
+      << coarse;
+  const int levels = int(std::lround(std::log2(std::stod(edge[1]) / 0.2)));
+  ASSERT_GE(levels, 1);
+  EXPECT_TRUE(fits(levels)) << coarse;
+  EXPECT_FALSE(levels > 1 && fits(levels - 1)) << coarse;
+  EXPECT_EQ(classAt(picture(), pixelOf(-5, 2, 0.2)), 'r');
+  EXPECT_EQ(classAt(picture(), pixelOf(5, 0, 2)), 'w');
+  // All of a few tiles.
+  EXPECT_FALSE(contains(said(megabytes / 5, "-6,-1,-1,-4,1,1"), "voxels of"));
+  EXPECT_EQ(classAt(picture(), pixelOf(-5, 0, 0.2)), 'r');
+  EXPECT_EQ(classAt(picture(), pixelOf(-5, 2, 0.2)), ' ');
+}
+
+TEST_F(SemanticMapView, ShowsUnknownSpaceWithinWhatIsKnownOrCut) {
+  SKIP_WITHOUT_WINDOWS();
+  const auto grayAt = [&](const std::vector<std::string>& more, double x, double y) {
+    std::vector<std::string> arguments{path("map.semantic"), "--no-panels", "--camera", kTop};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const cv::Vec3b color = draw(arguments).at<cv::Vec3b>(pixelOf(x, y));
+    return color[0] < 240 && std::abs(color[0] - color[2]) < 12;
+  };
+  // Beams from 6 m above the middle leave the corners of the box around them unknown.
+  EXPECT_FALSE(grayAt({"--max-height", "-1"}, 9, 4.5));
+  EXPECT_TRUE(grayAt({"--unknown", "--clip=-90,-90,1,90,90,3"}, 9, 4.5));
+  EXPECT_FALSE(grayAt({"--unknown", "--clip=-90,-90,1,90,90,3"}, 11.5, 4.5)) << "beside the map";
+  EXPECT_FALSE(grayAt({"--unknown", "--clip=-90,-90,1,8,90,3"}, 9, 4.5)) << "cut";
+  EXPECT_FALSE(grayAt({"--unknown", "--clip=-90,-90,1,90,90,3"}, 0, 0)) << "known to be free";
+}
+
+TEST_F(SemanticMapViewFiles, ThatAreNoneAreNamed) {
+  const auto errors = [&](const std::string& name, const std::string& text) {
+    folder.write(name, text);
+    const ProgramRun run =
+        runProgram("semantic-map-view", {path("road.semantic"), path(name), "-o", path("no.png")});
+    EXPECT_EQ(run.status, 1);
+    return run.errors;
+  };
+  const auto expectError = [&](const std::string& text, const std::string& where,
+                               const std::string& words) {
+    const std::string said = errors("some.csv", text);
+    EXPECT_TRUE(contains(said, path("some.csv") + where) && contains(said, words)) << said;
+  };
+  expectError("a,b\n1,2\n", ":1:", "no column 'x'");
+  expectError("x,y\n1,2\n", ":1:", "no column 'z'");
+  expectError("x,y,z\n1,2\n", ":2:", "expected 3 fields, found 2");
+  expectError("x,y,z\n1,2,3\n\n1,2,high\n", ":4:", "z is 'high'");
+  expectError("x,y,z\n1,inf,3\n", ":2:", "y is 'inf'");
+  expectError("x,y,z,speed\n1,2,3,\n", ":2:", "speed is ''");
+  expectError("x,y,z\n", ":", "no place in this path");
+  expectError("", ":", "no place in this path");
+  EXPECT_TRUE(contains(errors("bad.tum", "1 2 3\n"), path("bad.tum") + ":1"));
+  const ProgramRun noMap = runProgram("semantic-map-view", {path("path.csv")});
+  EXPECT_EQ(noMap.status, 1);
+  EXPECT_TRUE(contains(noMap.errors, "there is no map beside") &&
+              contains(noMap.errors, "path.csv"))
+      << noMap.errors;
+}
