@@ -240,6 +240,23 @@ TEST(SearchStatus, aBoundThatIsNoneEndsInAPathOrAnErrorNotInALoop) {
   EXPECT_GT(refused, 0);
 }
 
+TEST(SearchStatus, vertexThatABoundMadeTooLateIsExpandedAgain) {
+  int found = 0;
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 40, 60, 8);
+    const CostModel model{ClassOrder(PlaneGraph::kClasses, {{0, 1, 2, 3, 4}})};
+    ColoredAStarOptions options;
+    options.lengthBound = [&](VertexId a, VertexId b) { return b % 11 * plane.bound(a, b); };
+    const PathResult result = findColoredPath(plane.graph, 0, 1, model, options);
+    if (!result.found()) continue;
+    ++found;
+    Length length = 0;
+    for (const EdgeId e : result.edges) length += plane.graph.edge(e).length;
+    EXPECT_EQ(result.cost.back(), length);
+  }
+  EXPECT_GT(found, 50);
+}
+
 TEST(SearchStatus, replannerNoticesThatAnEndWentAndCameBack) {
   ColoredGraph graph(1);
   for (int v = 0; v < 3; ++v) graph.addVertex(0);

@@ -7,6 +7,8 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <stdexcept>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -48,8 +50,9 @@ class ColoredSearch {
         m_options(options),
         m_costs(graph, model),
         m_stop(stop),
-        m_labels(graph.vertexIdEnd()),
-        m_queue(Soon{graph, m_labels}) {}
+        m_toGoal(graph.vertexIdEnd()),
+        m_expanded(graph.vertexIdEnd()),
+        m_queue(Soon{graph, m_toGoal}) {}
 
   /** Nothing if the layout has not enough bits for the costs that were met.
    * \param statistics is counted up. */
@@ -67,40 +70,39 @@ class ColoredSearch {
  private:
   using Cost = typename Layout::Cost;
 
-  /** What is known of the way from a vertex to the goal. */
-  struct Label {
-    Cost cost;               // if there is a next vertex
-    std::uint32_t next;      // the next vertex plus 1, of the goal itself; 0: not reached
-    std::uint32_t distance;  // lower bound of the length from the start plus 1; 0: not asked yet
-  };
-
-  /** The processor fetches what will soon be asked for: first the vertex, then its edges. (In a
-   * function that is not inlined, the compiler takes this for nothing and drops it.) */
+  /** The processor fetches what will soon be asked for: first the vertex, then its edges, then what
+   * is known of its neighbors. (In a function that is not inlined, the compiler takes this for
+   * nothing and drops it.) */
   struct Soon {
     const ColoredGraph& graph;
-    const ZeroedArray<Label>& labels;
+    const ZeroedArray<Cost>& toGoal;
     [[gnu::always_inline]] void operator()(const QueueEntry<Cost>& entry, std::size_t turns) const {
       if (turns > 256) return;
-      graph.prefetch(entry.vertex);
-      if (turns > 64) return;
-      __builtin_prefetch(&labels[entry.vertex]);
+      if (turns > 64) return graph.prefetch(entry.vertex);
       const EdgeRow row = graph.row(entry.vertex);
+      if (turns <= 4) return neighbors(row);
+      __builtin_prefetch(&toGoal[entry.vertex]);
       __builtin_prefetch(row.halves);
       if (row.size > 0) __builtin_prefetch(row.halves + row.size - 1);
+    }
+    [[gnu::always_inline]] void neighbors(const EdgeRow& row) const {
+      for (std::size_t i = 0; i < row.size; ++i)
+        __builtin_prefetch(&toGoal[row.halves[i].neighbor]);
     }
   };
 
   SearchStatus search(SearchStatistics& statistics) {
     if (isHopeless(m_goal)) return reasonForNoPath();
-    reach(m_goal, Cost(), m_goal);
+    reach(m_goal, m_costs.layout().edge(0, 0));
     while (!m_queue.empty() && !m_costs.layout().overflowed()) {
       if (const auto stopped = m_stop.inLoop()) return *stopped;
       const QueueEntry<Cost> entry = m_queue.pop();
       if (!entry.isVertex()) {
         if (const auto stopped = tryEdge(entry, statistics)) return *stopped;
-      } else if (entry.key == estimate(entry.vertex, m_labels[entry.vertex].cost)) {
+      } else if (!m_expanded[entry.vertex]) {  // else a better entry was there before
         if (entry.vertex == m_start) return SearchStatus::Found;
         ++statistics.expansions;
+        m_expanded[entry.vertex] = true;
         expand(entry.vertex);
       }
     }
@@ -114,54 +116,52 @@ class ColoredSearch {
   }
 
   void expand(VertexId from) {
-    const Cost before = m_labels[from].cost;
+    const Cost before = m_toGoal[from];
     const EdgeRow row = m_graph.row(from);
+    m_queue.soon().neighbors(row);
     for (std::size_t i = 0; i < row.size; ++i) {
       const HalfEdge half = row.halves[i];
-      const Label& to = m_labels[half.neighbor];
-      if (to.next != 0 && to.cost < before) continue;  // most are on the way back
+      const Cost& known = m_toGoal[half.neighbor];
+      if (isReached(known) && known < before) continue;  // most are on the way back
       const Cost step = m_costs(from, half, Way::In);
       if (step.isInfinite()) continue;
       const Cost cost = before + step;
-      if (!improves(cost, from, to) || isHopeless(half.neighbor)) continue;
+      if (!improves(cost, known) || isHopeless(half.neighbor)) continue;
       if (m_graph.state(half) == EdgeState::Unevaluated)
         m_queue.push({estimate(half.neighbor, cost), half.neighbor, row.edges[i]});
       else
-        reach(half.neighbor, cost, from);
+        reach(half.neighbor, cost);
     }
   }
 
   /** Evaluates an edge that came to the front, unless it has become useless meanwhile. */
   std::optional<SearchStatus> tryEdge(const QueueEntry<Cost>& entry, SearchStatistics& statistics) {
     const VertexId from = m_graph.edge(entry.edge).other(entry.vertex);
-    const Label& to = m_labels[entry.vertex];
-    const Cost before = m_labels[from].cost;
-    if (to.next != 0 && !(before + m_costs(entry.edge, from) < to.cost)) return std::nullopt;
+    const Cost& known = m_toGoal[entry.vertex];
+    const Cost before = m_toGoal[from];
+    if (!improves(before + m_costs(entry.edge, from), known)) return std::nullopt;
     if (m_graph.edge(entry.edge).state == EdgeState::Unevaluated) {
       if (const auto stopped = m_stop.now()) return stopped;
       ++statistics.edgesEvaluated;
       evaluateEdge(m_graph, entry.edge, m_options.evaluate);
     }
     const Cost step = m_costs(entry.edge, from);
-    if (!step.isInfinite() && improves(before + step, from, to))
-      reach(entry.vertex, before + step, from);
+    if (!step.isInfinite() && improves(before + step, known)) reach(entry.vertex, before + step);
     return std::nullopt;
   }
 
-  /** Ties go to the smaller next vertex: its edges count one more, so this makes no cycle. */
-  static bool improves(const Cost& cost, VertexId next, const Label& label) {
-    if (cost.isInfinite()) return false;
-    if (label.next == 0 || cost < label.cost) return true;
-    return cost == label.cost && next + 1 < label.next;
+  static bool isReached(const Cost& known) { return !(known == Cost()); }
+
+  static bool improves(const Cost& cost, const Cost& known) {
+    return !cost.isInfinite() && (!isReached(known) || cost < known);
   }
 
-  void reach(VertexId v, const Cost& cost, VertexId next) {
+  void reach(VertexId v, const Cost& cost) {
     m_costs.layout().check(cost);
-    Label& label = m_labels[v];
-    const bool better = label.next == 0 || cost < label.cost;
-    label.cost = cost;
-    label.next = next + 1;
-    if (better) m_queue.push({estimate(v, cost), v, kNoEdge});
+    m_toGoal[v] = cost;
+    m_expanded[v] = false;
+    m_graph.prefetch(v);
+    m_queue.push({estimate(v, cost), v, kNoEdge});
   }
 
   /** Whether no way leads from the start to v, as far as the bound of the worst rank knows. */
@@ -171,7 +171,7 @@ class ColoredSearch {
 
   /** Lower bound of the cost of a path through v, given the cost from there: consistent in every
    * component. */
-  Cost estimate(VertexId v, const Cost& cost) {
+  Cost estimate(VertexId v, const Cost& cost) const {
     const Cost whole = cost + m_costs.layout().ofLength(distance(v));
     if (m_worstBound.empty()) return whole;
     Cost bound{};
@@ -179,37 +179,40 @@ class ColoredSearch {
     return whole + bound;
   }
 
-  Length distance(VertexId v) {
+  Length distance(VertexId v) const {
     constexpr Length kLongest = std::numeric_limits<std::uint32_t>::max() - 1;
-    std::uint32_t& known = m_labels[v].distance;
-    if (known == 0) {
-      const Length bound = m_options.lengthBound ? m_options.lengthBound(m_start, v) : 0;
-      known = static_cast<std::uint32_t>(std::clamp(bound, Length{0}, kLongest) + 1);
-    }
-    return known - 1;
+    if (!m_options.lengthBound) return 0;
+    return std::clamp(m_options.lengthBound(m_start, v), Length{0}, kLongest);
   }
 
-  /** The edge that the label of v stands for; the first by id where there are several. */
-  EdgeId edgeToNext(VertexId v) const {
-    const VertexId next = m_labels[v].next - 1;
+  /** The next edge of a path from v, by which its cost came about; of several the one to the
+   * smallest vertex, then that of the smallest id. Each edge counts one, so this makes no cycle. */
+  Incidence nextStep(VertexId v) const {
     const EdgeRow row = m_graph.row(v);
-    EdgeId best = kNoEdge;
+    Incidence best{kNoVertex, kNoEdge};
     for (std::size_t i = 0; i < row.size; ++i) {
       const HalfEdge& half = row.halves[i];
-      if (half.neighbor != next || m_graph.state(half) != EdgeState::Usable) continue;
+      const Cost& after = m_toGoal[half.neighbor];
+      if (!isReached(after) || m_graph.state(half) != EdgeState::Usable) continue;
       const Cost step = m_costs(v, half, Way::Out);
-      if (!step.isInfinite() && m_labels[next].cost + step == m_labels[v].cost)
-        best = std::min(best, row.edges[i]);
+      if (step.isInfinite() || !(after + step == m_toGoal[v])) continue;
+      if (std::tie(half.neighbor, row.edges[i]) < std::tie(best.neighbor, best.edge))
+        best = {half.neighbor, row.edges[i]};
     }
+    if (best.edge == kNoEdge)
+      throw std::invalid_argument("SearchOptions: lengthBound is not consistent");
     return best;
   }
 
   PathResult path() const {
     std::vector<EdgeId> edges;
-    for (VertexId v = m_start; v != m_goal; v = m_labels[v].next - 1)
-      edges.push_back(edgeToNext(v));
+    for (VertexId v = m_start; v != m_goal;) {
+      const Incidence step = nextStep(v);
+      edges.push_back(step.edge);
+      v = step.neighbor;
+    }
     PathResult result = assemblePath(m_graph, m_start, std::move(edges));
-    result.cost = m_costs.layout().parts(m_labels[m_start].cost);
+    result.cost = m_costs.layout().parts(m_toGoal[m_start]);
     return result;
   }
 
@@ -219,7 +222,8 @@ class ColoredSearch {
   const ColoredAStarOptions& m_options;
   const EdgeCosts<Layout> m_costs;
   StopCheck& m_stop;
-  ZeroedArray<Label> m_labels;
+  ZeroedArray<Cost> m_toGoal;  // and an edge more, so that 0 stands for not reached
+  std::vector<bool> m_expanded;
   std::vector<std::int64_t> m_worstBound;  // empty unless asked for
   RadixQueue<Cost, Soon> m_queue;
 };

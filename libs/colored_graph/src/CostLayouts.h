@@ -1,6 +1,7 @@
 #pragma once
 #include <colored_graph/CostModel.h>
 #include <colored_graph/CostVector.h>
+#include <colored_graph/HalfEdge.h>
 
 #include <algorithm>
 #include <array>
@@ -30,6 +31,12 @@ class VectorLayout {
     Cost cost = ofLength(length);
     cost[kEdgesAt] = 1;
     if (m_rankZeroAt < kLengthAt) cost[m_rankZeroAt] += toll;
+    return cost;
+  }
+  /** Of an edge that a half edge has room for, in one rank. */
+  Cost narrow(Length length, Rank rank, Length counted) const {
+    Cost cost = edge(length, 0);
+    addToRank(cost, rank, counted);
     return cost;
   }
   void addToRank(Cost& cost, Rank rank, Length amount) const {
@@ -66,7 +73,7 @@ class PackedLayout {
   using Cost = PackedCost;
 
   /** Whether it is worth trying: components of 26 bits or more hold several kilometers. */
-  static bool suits(const CostModel& model) { return width(model) >= 26; }
+  static bool suits(const CostModel& model) { return width(model) >= kLeastWidth; }
 
   explicit PackedLayout(const CostModel& model)
       : m_ranks(model.order.ranks()),
@@ -82,6 +89,11 @@ class PackedLayout {
 
   Cost edge(Length length, Length toll) const {
     return Cost(held(length) * m_lengths + held(toll) * m_toll + 1);
+  }
+  Cost narrow(Length length, Rank rank, Length counted) const {
+    static_assert(HalfEdge::kLongest < Length{1} << (kLeastWidth - 1));
+    return Cost(static_cast<std::uint64_t>(length) * m_lengths + held(counted) * m_rankUnits[rank] +
+                1);
   }
   void addToRank(Cost& cost, Rank rank, Length amount) const {
     cost = Cost(cost.bits() + held(amount) * m_rankUnits[rank]);
@@ -100,7 +112,7 @@ class PackedLayout {
   bool overflowed() const { return m_overflowed; }
 
  private:
-  static constexpr int kEdgeBits = 20;
+  static constexpr int kEdgeBits = 20, kLeastWidth = 26;
 
   static int width(const CostModel& model) {
     return std::min(62, (PackedCost::kBits - kEdgeBits) / model.components());

@@ -34,9 +34,7 @@ class EdgeCosts {
     const Rank own = m_rankOfKind[half.kind()];
     const Rank r = m_model.edges == EdgeModel::Profile ? own : std::max(own, worseEnd(v, half));
     if (r == kForbidden || !half.leads(way)) return Cost::infinite();
-    Cost cost = m_layout.edge(half.length(), 0);
-    m_layout.addToRank(cost, r, counted(half.length()));
-    return cost;
+    return m_layout.narrow(half.length(), r, counted(half.length()));
   }
   /** Of an edge, driven to its end `to`. */
   Cost operator()(EdgeId e, VertexId to) const { return (*this)(to, m_graph.half(e, to), Way::In); }

@@ -34,6 +34,7 @@ class RadixQueue {
 
   explicit RadixQueue(const Soon& soon) : m_soon(soon) {}
 
+  const Soon& soon() const { return m_soon; }
   bool empty() const { return m_size == 0; }
 
   void push(const Entry& entry) {
@@ -44,17 +45,26 @@ class RadixQueue {
   }
 
   Entry pop() {
-    if (m_buckets[0].empty()) refill();
     std::vector<Entry>& first = m_buckets[0];
+    --m_size;
+    if (first.empty()) {
+      std::vector<Entry>& next = nextBucket();
+      if (next.size() == 1) {  // half of all turns
+        const Entry entry = next.front();
+        next.clear();
+        m_last = entry.key;
+        return entry;
+      }
+      spread(next);
+    }
     std::pop_heap(first.begin(), first.end(), comesLater);
     const Entry entry = first.back();
     first.pop_back();
-    --m_size;
     return entry;
   }
 
  private:
-  static constexpr std::size_t kLarge = 1024;  // a bucket of more entries gives its memory back
+  static constexpr std::size_t kLarge = 256;  // a bucket of more entries gives its memory back
 
   static constexpr int kBuckets = Cost::kBits + 1;
 
@@ -68,14 +78,18 @@ class RadixQueue {
     m_filled[number / 64] |= std::uint64_t{1} << number % 64;
   }
 
-  /** The smallest keys to bucket 0, and those that shared a bucket with them nearer to it. */
-  void refill() {
+  /** The one with the smallest keys, no longer marked as filled. */
+  std::vector<Entry>& nextBucket() {
     m_filled[0] &= ~std::uint64_t{1};
     int word = 0;
     while (m_filled[word] == 0) ++word;
     const int number = 64 * word + __builtin_ctzll(m_filled[word]);
     m_filled[word] &= m_filled[word] - 1;
-    std::vector<Entry>& bucket = m_buckets[number];
+    return m_buckets[number];
+  }
+
+  /** The smallest keys to bucket 0, and those that shared a bucket with them nearer to it. */
+  void spread(std::vector<Entry>& bucket) {
     m_last = bucket.front().key;
     for (const Entry& entry : bucket)
       if (entry.key < m_last) m_last = entry.key;

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <deque>
 
 namespace colored_graph {
 
@@ -21,7 +21,7 @@ class ChangeLog {
 
  private:
   std::uint64_t m_dropped = 0;
-  std::vector<VertexId> m_vertices;
+  std::deque<VertexId> m_vertices;
 };
 
 }  // namespace colored_graph

@@ -19,7 +19,8 @@ struct ColoredAStarOptions : SearchOptions {
  * it takes the smaller vertex id at each step from the start; among unevaluated edges that could
  * only tie it does not look. \param graph keeps the profiles of the edges that were evaluated.
  * \throw std::invalid_argument options or model invalid, an unevaluated edge without
- * options.evaluate, or an evaluation that contradicts the edge's least length. */
+ * options.evaluate, an evaluation that contradicts the edge's least length, or a lower bound of
+ * lengths that turns out not to be consistent. */
 PathResult findColoredPath(ColoredGraph& graph, VertexId start, VertexId goal,
                            const CostModel& model, const ColoredAStarOptions& options = {});
 

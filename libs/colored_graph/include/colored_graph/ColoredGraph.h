@@ -79,7 +79,7 @@ class ColoredGraph {
   Edge edge(EdgeId e) const;
 
   /** For searches: the edges at a vertex that is in the graph, which is not checked. */
-  EdgeRow row(VertexId v) const { return m_rows.row(m_vertices[v].edges()); }
+  [[gnu::always_inline]] EdgeRow row(VertexId v) const { return m_rows.row(m_vertices[v].edges()); }
   /** The edge as its end `v` keeps it. */
   HalfEdge half(EdgeId e, VertexId v) const;
   const WideEdge& wide(const HalfEdge& half) const { return m_wide[half.place()]; }
