@@ -19,8 +19,8 @@ class CellSource {
   const SemanticOcTree& map() const { return m_map; }
 
   /** Calls visit(cell) for all cells in a box that are shown. Finer ones than a depth are drawn
-   * together: a cube of this depth stands for them, occupied if one of them is. Unknown are cubes of
-   * which nothing is known. */
+   * together: a cube of this depth stands for them, occupied if one of them is. Unknown are cubes
+   * of which nothing is known. */
   virtual void forEachShown(const KeyBox& box, int maxDepth, const CellLook& look,
                             const Visit& visit) const = 0;
   /** The cell that holds a voxel; where that is unknown, the largest unknown cube. */
