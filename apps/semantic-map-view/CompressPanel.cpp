@@ -191,7 +191,10 @@ void CompressPanel::setWeight(std::size_t term, double weight) {
 
 /** Map and numbers follow the compressed tree. */
 void CompressPanel::follow() {
-  m_viewer.changed(m_live->takeChange());
+  auto boxes = m_live->takeChange();
+  if (m_viewer.style().coloring == map_view::Coloring::Retained)
+    boxes = {map_view::KeyBox::everything()};  // colors change where leaves do not
+  m_viewer.changed(boxes);
   m_alphaText->setCaption(rounded(m_live->alpha(), 3));
   m_leaves->setCaption(std::to_string(m_live->numLeaves()) + " leaves");
   m_wantedLeaves->setValue(int(m_live->numLeaves()));

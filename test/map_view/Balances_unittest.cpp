@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <map_view/CellSource.h>
 #include <map_view/LiveCompression.h>
 
 #include <cmath>
@@ -59,6 +60,20 @@ class Definition {
   double gValue(const Node& node) const {
     if (!node || node.isLeaf()) return 0;
     return std::max(0.0, gain(node) - m_live.alpha() * std::log(8) + ofChildren(node));
+  }
+  /** Of a block: what its inner nodes tell of what is relevant, and those that are expanded. */
+  struct Relevant {
+    double all = 0, kept = 0;
+  };
+  void addRelevant(const Node& node, double share, bool isAboveExpanded, Relevant& sums) const {
+    if (!node || node.isLeaf()) return;
+    double told = 0;
+    for (std::size_t t = 0; t < m_live.numTerms(); ++t)
+      told += std::max(0.0, m_live.weight(t)) * divergence(node, classOf(t));
+    const bool isExpanded = isAboveExpanded && gValue(node) > 1e-9;
+    sums.all += share * told;
+    if (isExpanded) sums.kept += share * told;
+    for (int i = 0; i < 8; ++i) addRelevant(node.child(i), share / 8, isExpanded, sums);
   }
   /** Of a term; 0: free space. */
   std::size_t classOf(std::size_t term) const {
@@ -134,4 +149,48 @@ TEST(Balances, AreNoneBesideTheMap) {
   SemanticOcTree map = randomMap(63);
   const LiveCompression live(map, LiveCompression::allClasses(map), {});
   EXPECT_TRUE(live.balancesAround(Eigen::Array3i(1, 1, 1)).empty());
+}
+
+TEST(Balances, OfABlockItsShareOfWhatIsRelevantIsRetained) {
+  SemanticOcTree map = randomMap(64);
+  semantic_octree::AbstractionOptions space;
+  space.blockSize = kBlock;
+  LiveCompression live(map, LiveCompression::allClasses(map), space);
+  live.setWeight(1, -0.2);
+  int between = 0;
+  const double low = live.lowestAlpha(), high = live.highestAlpha();
+  for (double at = 0.5; at < 1; at += 0.01) {
+    const double alpha = low * std::pow(high / low, at);
+    live.setAlpha(alpha);
+    for (const semantic_types::ClassId id : {1, 2, 3}) {
+      const Eigen::Array3i key = voxelOfClass(map, id);
+      Definition::Relevant sums;
+      Definition(map, live).addRelevant(nodesAround(map, key).front(), 1, true, sums);
+      ASSERT_GT(sums.all, 0);
+      const float retained =
+          live.retainedAround(map_view::CompressedCells(map, live).at(key).around);
+      EXPECT_NEAR(retained, sums.kept / sums.all, 1e-5) << alpha << ' ' << int(id);
+      between += retained > 0.01f && retained < 0.99f;
+    }
+  }
+  EXPECT_GT(between, 5);
+}
+
+TEST(Balances, WhatIsRetainedIsGreenAndWhatIsLostRed) {
+  SemanticOcTree map = randomMap(65);
+  LiveCompression live(map, LiveCompression::allClasses(map), {});
+  const map_view::CompressedCells cells(map, live);
+  map_view::CellLook look(map);
+  map_view::ViewStyle style;
+  style.coloring = map_view::Coloring::Retained;
+  look.setStyle(style);
+  const auto colorAt = [&](double alpha) {
+    live.setAlpha(alpha);
+    return look.colorOf(cells.at(voxelOfClass(map, 1)));
+  };
+  const semantic_types::Color green{0, 215, 30}, red{235, 0, 30};
+  EXPECT_EQ(colorAt(10), green) << "of the full map all is there";
+  look.setCompression(&live);
+  EXPECT_EQ(colorAt(0), green);
+  EXPECT_EQ(colorAt(10), red);
 }

@@ -40,10 +40,8 @@ std::set<Cube> leavesOf(const SemanticOcTree& map, const LiveCompression& live) 
   style.freeSpace = true;
   look.setStyle(style);
   std::set<Cube> leaves;
-  const KeyBox all = {Eigen::Array3i::Zero(),
-                      Eigen::Array3i::Constant(semantic_octree::kNumKeys - 1)};
   map_view::CompressedCells(map, live).forEachShown(
-      all, semantic_octree::kTreeDepth, look, [&](const map_view::ViewCell& cell) {
+      KeyBox::everything(), semantic_octree::kTreeDepth, look, [&](const map_view::ViewCell& cell) {
         EXPECT_TRUE(leaves.insert(cubeOf(cell.lowest, cell.depth)).second);
       });
   return leaves;

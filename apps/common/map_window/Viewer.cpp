@@ -135,12 +135,14 @@ fs::path Viewer::savePicture(const fs::path& folder) {
 
 void Viewer::showFull() {
   layer().setCells(std::make_unique<map_view::FullCells>(layer().map()));
+  layer().look().setCompression(nullptr);
   tiles().touch();
   m_window.redraw();
 }
 
 void Viewer::showCompressed(const map_view::LiveCompression& compression) {
   layer().setCells(std::make_unique<map_view::CompressedCells>(layer().map(), compression));
+  layer().look().setCompression(&compression);
   tiles().touch();
   m_window.redraw();
 }

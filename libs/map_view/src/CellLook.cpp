@@ -1,4 +1,5 @@
 #include <map_view/CellLook.h>
+#include <map_view/LiveCompression.h>
 #include <semantic_types/ClassColors.h>
 #include <tree_abstraction/Information.h>
 
@@ -40,11 +41,10 @@ double relativeEntropy(const std::vector<double>& p) {
 }  // namespace
 
 const strict_files::Choices<Coloring>& choicesOf(Coloring) {
-  static const strict_files::Choices<Coloring> choices = {{"class", Coloring::Class},
-                                                          {"probability", Coloring::Probability},
-                                                          {"entropy", Coloring::Entropy},
-                                                          {"occupancy", Coloring::Occupancy},
-                                                          {"height", Coloring::Height}};
+  static const strict_files::Choices<Coloring> choices = {
+      {"class", Coloring::Class},     {"probability", Coloring::Probability},
+      {"entropy", Coloring::Entropy}, {"occupancy", Coloring::Occupancy},
+      {"height", Coloring::Height},   {"retained", Coloring::Retained}};
   return choices;
 }
 
@@ -101,6 +101,8 @@ Color CellLook::colorOf(const ViewCell& cell) const {
       return trafficLight(2 * cell.node.getOccupancy() - 1);
     case Coloring::Height:
       return heightColor(cell);
+    case Coloring::Retained:
+      return trafficLight(m_compression ? m_compression->retainedAround(cell.around) : 1);
     case Coloring::Class:
       break;
   }

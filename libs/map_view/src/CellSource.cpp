@@ -63,10 +63,13 @@ struct CompressedNode : MapNode {
  private:
   CompressedNode(const CompressedNode& parent, int i, InformationTree::Index at)
       : MapNode(parent, i), compression(parent.compression), index(at) {
+    cell.around = parent.cell.around;
     mark();
   }
   void mark() {
-    if (cell.node && !cell.node.isLeaf()) cell.innerNode = std::uint64_t(index) + 1;
+    if (!cell.node || cell.node.isLeaf()) return;
+    cell.innerNode = std::uint64_t(index) + 1;
+    cell.around = index;
   }
 };
 

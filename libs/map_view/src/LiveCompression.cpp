@@ -72,12 +72,14 @@ void LiveCompression::findAlphas() {
   std::vector<double> weights;
   for (const InformationTerm& term : terms()) weights.push_back(term.weight);
   m_tree.setWeights(weights);
+  m_retained.clear();
 }
 
 void LiveCompression::change(const AbstractionWeights& weights) {
   weights.validate(m_numClasses);
   m_weights = weights;
   m_threshold = alpha() + m_weights.eps();
+  m_retained.clear();
 }
 
 void LiveCompression::setWeight(std::size_t term, double weight) {
@@ -111,6 +113,11 @@ SemanticOcTree LiveCompression::compressedMap(const SemanticOcTree& map) const {
     next = isExpanded(node) ? node + 1 : m_tree.end(node);
     return isExpanded(node);
   });
+}
+
+float LiveCompression::retainedAround(InformationTree::Index node) const {
+  if (m_retained.empty()) m_retained = m_tree.retainedInBlocks(m_threshold);
+  return m_retained.empty() ? 1.f : m_retained[std::size_t(node)];
 }
 
 double LiveCompression::lowestAlpha() const {

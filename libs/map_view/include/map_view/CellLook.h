@@ -16,8 +16,10 @@ using semantic_types::ClassId;
 using semantic_types::Color;
 
 /** What the color of an occupied cell says. */
-enum class Coloring { Class, Probability, Entropy, Occupancy, Height };
+enum class Coloring { Class, Probability, Entropy, Occupancy, Height, Retained };
 const strict_files::Choices<Coloring>& choicesOf(Coloring);
+
+class LiveCompression;
 
 /** What a view shows of a map, and how. */
 struct ViewStyle {
@@ -49,6 +51,8 @@ class CellLook {
 
   const ViewStyle& style() const { return m_style; }
   void setStyle(const ViewStyle& style) { m_style = style; }
+  /** Whose leaves are shown; null: the map's. It must outlive this, or be taken away before. */
+  void setCompression(const LiveCompression* compression) { m_compression = compression; }
 
   bool isShown(const ViewCell& cell) const;
   /** Voxels with their center within the bounding box of what is known, and not cut off; nothing
@@ -56,7 +60,8 @@ class CellLook {
   KeyBox bounds() const;
   /** Class: the classes' colors (gray: none). Probability of the likeliest class, entropy of the
    * distribution and occupancy: from red (unsure) over yellow to green (sure). Height: from dark
-   * violet (lowest) over green to yellow (highest). */
+   * violet (lowest) over green to yellow (highest). Retained of what is worth telling in the cell's
+   * block: from red (nothing) to green (all). */
   Color colorOf(const ViewCell& cell) const;
   /** Likeliest class of an occupied cell. */
   ClassId classOf(const ViewCell& cell) const { return stateOf(cell).likeliestClass; }
@@ -71,6 +76,7 @@ class CellLook {
   Color heightColor(const ViewCell& cell) const;
 
   const SemanticOcTree& m_map;
+  const LiveCompression* m_compression = nullptr;
   ViewStyle m_style;
   Eigen::AlignedBox3d m_known;  ///< m
   mutable std::unordered_map<std::uint64_t, State> m_inner;

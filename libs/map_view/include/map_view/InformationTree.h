@@ -42,6 +42,11 @@ class InformationTree {
    * see semantic_octree::AbstractionMeasures::retention(). */
   std::vector<std::optional<double>> retained(double alpha) const;
 
+  /** By node: of what is worth telling (terms with a positive weight, times that) in its block, the
+   * largest node around it that is not free, the share that the compressed tree of an alpha
+   * retains. 1 where there is nothing worth telling, and above the blocks. */
+  std::vector<float> retainedInBlocks(double alpha) const;
+
   /** Why a node that is not free pays, or does not, at an alpha: nats for each unit of p(n). */
   struct Balance {
     Index node;
@@ -70,6 +75,7 @@ class InformationTree {
   std::vector<Index> m_charged;
   std::vector<std::int32_t> m_parents;
   std::vector<double> m_shares, m_prices, m_gains;
+  std::vector<double> m_relevant;  ///< the terms of m_gains with a positive weight
 };
 
 /** Three keys and a depth in one number. */

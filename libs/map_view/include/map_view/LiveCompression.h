@@ -54,6 +54,10 @@ class LiveCompression {
   /** Share of each term's information that the compressed tree keeps. */
   std::vector<std::optional<double>> retained() const { return m_tree.retained(m_threshold); }
 
+  /** Of what is worth telling in the block of an inner node, the share that the compressed tree
+   * keeps: see InformationTree::retainedInBlocks(). */
+  float retainedAround(InformationTree::Index node) const;
+
   /** The map's inner nodes. */
   const InformationTree& tree() const { return m_tree; }
   /** Why the tree expands those that hold a voxel, or does not: see
@@ -80,8 +84,9 @@ class LiveCompression {
   std::string m_name;
   tree_abstraction::AbstractionWeights m_weights;
   InformationTree m_tree;
-  double m_threshold = 0;            ///< alpha, and what counts as a tie
-  std::vector<char> m_toldExpanded;  ///< by node; empty: nothing was told
+  double m_threshold = 0;                 ///< alpha, and what counts as a tie
+  mutable std::vector<float> m_retained;  ///< in blocks, by node; empty: not asked for yet
+  std::vector<char> m_toldExpanded;       ///< by node; empty: nothing was told
 };
 
 }  // namespace map_view

@@ -16,6 +16,9 @@ struct ViewCell {
   semantic_octree::SemanticOcTreeNode node;
   /** Tells inner nodes of the map apart; 0 for leaves. */
   std::uint64_t innerNode = 0;
+  /** In a compressed tree, InformationTree's number of the inner node: the cube's, or the smallest
+   * one around it. */
+  std::int32_t around = 0;
 
   /** Edge, in voxels. */
   int edge() const { return semantic_octree::edgeAtDepth(depth); }
@@ -33,6 +36,9 @@ struct ViewCell {
 /** A box of voxels: keys, both ends included. */
 struct KeyBox {
   Eigen::Array3i low, high;
+  static KeyBox everything() {
+    return {Eigen::Array3i::Zero(), Eigen::Array3i::Constant(semantic_octree::kNumKeys - 1)};
+  }
   bool meets(const Eigen::Array3i& lowest, int edge) const {
     return (lowest <= high).all() && (lowest + edge > low).all();
   }
