@@ -11,8 +11,8 @@ namespace semantic_map_view {
 
 namespace {
 
-constexpr int kPictures = 36;
-constexpr double kPeriod = 0.25;  // s a frame
+constexpr int kPictures = 72;
+constexpr double kPeriod = 0.28;  // s a frame: 20 s in all
 /** Of the leaves that the tree has at first. */
 constexpr double kFewest = 0.004;
 /** After that the panel says what the tree retains. */
