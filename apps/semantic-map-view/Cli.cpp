@@ -58,6 +58,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   auto* animated = app.add_option("--animation", animation,
                                   "Turn once around the map while it is compressed more and less, "
                                   "write that (GIF), and end");
+  outputs.addOther(animated);
   app.add_option_function<std::string>(
          "--size", [this](const std::string& text) { readSize(text, *this); },
          "Of the window, pixels")

@@ -64,16 +64,12 @@ KeyBox InformationTree::box(Index node) const {
 }
 
 void InformationTree::setWeights(const std::vector<double>& weights) {
+  m_weights = weights;
   m_gains.clear();
-  m_relevant.clear();
   for (const Index node : m_charged) {
-    double gain = 0, relevant = 0;
-    for (std::size_t t = 0; t < m_numTerms; ++t) {
-      gain += weights[t] * information(node, t);
-      relevant += std::max(0.0, weights[t]) * information(node, t);
-    }
+    double gain = 0;
+    for (std::size_t t = 0; t < m_numTerms; ++t) gain += weights[t] * information(node, t);
     m_gains.push_back(gain);
-    m_relevant.push_back(relevant);
   }
   const auto alphas = tree_abstraction::collapseAlphas(m_parents, m_gains, m_prices);
   for (std::size_t i = 0; i < alphas.size(); ++i) m_alphas[std::size_t(m_charged[i])] = alphas[i];
@@ -135,8 +131,11 @@ std::vector<float> InformationTree::retainedInBlocks(double alpha) const {
     const Index block = m_charged[i], end = this->end(block);
     double all = 0, kept = 0;
     for (; i < m_charged.size() && m_charged[i] < end; ++i) {
-      all += m_relevant[i];
-      if (this->alpha(m_charged[i]) > alpha) kept += m_relevant[i];
+      double relevant = 0;
+      for (std::size_t t = 0; t < m_numTerms; ++t)
+        relevant += std::max(0.0, m_weights[t]) * information(m_charged[i], t);
+      all += relevant;
+      if (this->alpha(m_charged[i]) > alpha) kept += relevant;
     }
     if (all >= kNothing) std::fill(shares.begin() + block, shares.begin() + end, float(kept / all));
   }

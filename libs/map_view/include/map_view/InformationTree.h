@@ -75,7 +75,7 @@ class InformationTree {
   std::vector<Index> m_charged;
   std::vector<std::int32_t> m_parents;
   std::vector<double> m_shares, m_prices, m_gains;
-  std::vector<double> m_relevant;  ///< the terms of m_gains with a positive weight
+  std::vector<double> m_weights;
 };
 
 /** Three keys and a depth in one number. */
