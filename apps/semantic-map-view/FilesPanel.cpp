@@ -32,9 +32,9 @@ FilesPanel::FilesPanel(Viewer& viewer, TrackScene& tracks, const WantedTiles& wa
     if (!file.empty()) want(file);
     return false;  // empty again
   });
-  auto* scroll = window->add<nanogui::VScrollPanel>();
-  scroll->setFixedSize({kFilesWidth, 40});
-  m_list = scroll->add<nanogui::Widget>();
+  m_scroll = window->add<nanogui::VScrollPanel>();
+  m_scroll->setFixedSize({kFilesWidth, 40});
+  m_list = m_scroll->add<nanogui::Widget>();
   m_list->setLayout(
       new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 2, 1));
   listTracks();
@@ -88,6 +88,7 @@ void FilesPanel::listTracks() {
       m_viewer.say((on ? "shows " : "hides ") + m_tracks.track(i).name);
     });
   }
+  m_scroll->setVisible(m_tracks.size() > 0);
   m_viewer.window().performLayout();
 }
 

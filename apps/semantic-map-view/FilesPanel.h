@@ -21,6 +21,7 @@ class FilesPanel {
   TrackScene& m_tracks;
   const WantedTiles m_wantedTiles;
   nanogui::TextBox* m_field;
+  nanogui::VScrollPanel* m_scroll;
   nanogui::Widget* m_list;
   std::vector<std::string> m_wanted;
 };

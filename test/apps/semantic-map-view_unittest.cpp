@@ -71,8 +71,7 @@ TEST_F(SemanticMapView, ShowsSeveralMapsTogether) {
 TEST_F(SemanticMapView, WritesAnAnimation) {
   SKIP_WITHOUT_WINDOWS();
   const ProgramRun run = runInX({kViewer, path("map.semantic"), "--size", size(), "--camera", kTop,
-                                 "--animation", folder.write("turn.gif", "before").string(),
-                                 "-f"});
+                                 "--animation", folder.write("turn.gif", "before").string(), "-f"});
   EXPECT_EQ(run.status, 0) << run.output << run.errors;
   const std::string gif = folder.read("turn.gif");
   EXPECT_EQ(gif.substr(0, 6), "GIF89a");
