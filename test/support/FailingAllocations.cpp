@@ -25,5 +25,9 @@ NOT_INLINE void* operator new(std::size_t size) {
   if (!memory) throw std::bad_alloc();
   return memory;
 }
+/** As the standard library's, but sanitizers have one that does not call the above. */
+NOT_INLINE void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return fails() ? nullptr : std::malloc(size);
+}
 NOT_INLINE void operator delete(void* memory) noexcept { std::free(memory); }
 NOT_INLINE void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
