@@ -12,7 +12,10 @@ void* aligned_malloc(std::size_t bytes, std::size_t alignment);
  * \throw std::bad_alloc there is no memory, or it is more than any image takes */
 void* aligned_malloc(std::size_t bytes, std::size_t alignment) {
   constexpr std::size_t kMost = std::size_t{1} << 30;  // 16384 x 16384 distances
-  void* const memory = bytes <= kMost ? std::aligned_alloc(alignment, bytes) : nullptr;
+  if (bytes > kMost) throw std::bad_alloc();
+  // aligned_alloc() is defined for multiples of the alignment.
+  const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
+  void* const memory = std::aligned_alloc(alignment, whole);
   if (!memory) throw std::bad_alloc();
   return memory;
 }
