@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <semantic_octree/MapOperations.h>
 #include <synthetic_world/Scene.h>
 
 #include <algorithm>
@@ -47,6 +48,23 @@ TEST(NoisyPose, CorrectedBySlamLeadsToTheGoal) {
   const auto error = toJson(record, syntheticOrder()).at("poseError");
   EXPECT_EQ(error.at("believed").at("largest"), largestError(record, &DriveRow::believed));
   EXPECT_GT(error.at("odometry").at("mean"), error.at("believed").at("mean"));
+}
+
+TEST(NoisyPose, IsInTheFrameOfTheMapWithWhichItBegins) {
+  auto scene = synthetic_world::makeScene("village", 1);
+  const TPose2D start(-14, -19, 10 * M_PI / 180), goal(0, -17, 0);
+  DriveConfig exact = smallConfig();
+  exact.timeLimit = 6;
+  DriveLoop mapping(exact, scene.world, syntheticOrder(), start, goal, {});
+  mapping.run();
+  const Eigen::Isometry3d T_map_world(Eigen::Translation3d(0.4, -0.2, 0));
+  DriveConfig config = noisyConfig();
+  config.timeLimit = 4;
+  DriveLoop loop(config, scene.world, syntheticOrder(), start, goal, {},
+                 semantic_octree::moved(mapping.mapper().map(), T_map_world));
+  const DriveRow last = loop.run().rows.back();
+  EXPECT_NEAR(last.believed.x - last.pose.x, 0.4, 0.1);
+  EXPECT_NEAR(last.believed.y - last.pose.y, -0.2, 0.1);
 }
 
 TEST(NoisyPose, WithoutCorrectionIsThatOfOdometry) {

@@ -95,7 +95,8 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_pose(start, config.pose, config.slam, m_movers.isMover(), config.sensors.seed),
       m_state(m_robot.state()),
       m_footprint(trueFootprint(config.planner.vehicle)) {
-  if (m_mapper->beganWithMap() && !config.pose.isExact()) m_pose.setReference(m_mapper->map());
+  if (!config.pose.isExact() && config.pose.correct && !m_mapper->map().empty())
+    m_pose.setReference(m_mapper->map());
   m_controller.setClassSpeeds(config.drive.classSpeeds(order));
   const auto classes = synthetic_world::classTable().size() + 1;
   m_record.drivenPerClass.resize(classes);

@@ -29,7 +29,6 @@ SemanticOcTree prepared(SemanticOcTree map, const DriveConfig& config, const Cla
 Mapper::Mapper(const DriveConfig& config, const ClassOrder& order)
     : Mapper(config, order,
              SemanticOcTree(config.voxelSize, synthetic_world::classTable(), config.filter)) {
-  m_beganWithMap = false;
   if (!config.pose.isExact() && config.pose.correct)
     m_keyframes = std::make_unique<KeyframeMap>(m_map, std::filesystem::temp_directory_path());
 }

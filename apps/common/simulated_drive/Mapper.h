@@ -42,7 +42,6 @@ class Mapper {
                                              bool ofFullTree);
 
   const semantic_octree::SemanticOcTree& map() const { return m_map; }
-  bool beganWithMap() const { return m_beganWithMap; }
   semantic_planning::SemanticPlanner& planner() { return m_planner; }
   const semantic_planning::SemanticPlanner& planner() const { return m_planner; }
 
@@ -52,7 +51,6 @@ class Mapper {
   DriveConfig m_config;
   semantic_octree::SemanticOcTree m_map;
   std::unique_ptr<semantic_octree::KeyframeMap> m_keyframes;  ///< if the map may be corrected
-  bool m_beganWithMap = true;
   int m_leftOut = 0;  ///< scans since the last that was inserted
   semantic_planning::SemanticPlanner m_planner;
   bool m_stands = false;  ///< standOn() was called
