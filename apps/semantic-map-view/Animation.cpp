@@ -3,9 +3,7 @@
 #include <map_pictures/GifFile.h>
 #include <map_pictures/Sheet.h>
 
-#include <chrono>
 #include <cmath>
-#include <thread>
 
 namespace semantic_map_view {
 
@@ -15,14 +13,10 @@ constexpr int kPictures = 72;
 constexpr double kPeriod = 0.28;  // s a frame: 20 s in all
 /** Of the leaves that the tree has at first. */
 constexpr double kFewest = 0.004;
-/** After that the panel says what the tree retains. */
-constexpr std::chrono::milliseconds kPause(300);
 
 cv::Mat restingPicture(ViewWindow& window) {
   while (window.drawFrame()) {
   }
-  std::this_thread::sleep_for(kPause);
-  window.drawFrame();
   return window.drawPicture();
 }
 
@@ -37,6 +31,7 @@ void animate(ViewWindow& window, CompressPanel& panel, const std::filesystem::pa
   for (int i = 0; i < kPictures; ++i) {
     const double turned = 2 * M_PI * i / kPictures;
     panel.setLeaves(std::size_t(most * std::pow(kFewest, (1 - std::cos(turned)) / 2)));
+    panel.measure();
     window.setOrbitCamera(camera);
     cv::Mat picture = restingPicture(window);
     map_pictures::drawScaleBar(picture, camera.focalLength(window.pixelHeight()) / camera.distance);

@@ -205,7 +205,10 @@ void CompressPanel::follow() {
 }
 
 void CompressPanel::update() {
-  if (!m_live || m_measureAt == 0 || glfwGetTime() < m_measureAt) return;
+  if (m_live && m_measureAt != 0 && glfwGetTime() >= m_measureAt) measure();
+}
+
+void CompressPanel::measure() {
   m_measureAt = 0;
   const auto retained = m_live->retained();
   for (std::size_t term = 0; term < m_lines.size(); ++term) {

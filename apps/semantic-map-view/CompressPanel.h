@@ -25,6 +25,9 @@ class CompressPanel {
   void setLeaves(std::size_t leaves);
   void setBytes(std::size_t bytes);
   void setWeight(std::size_t term, double weight);
+  /** Says at once what takes longer and is else said when the hand rests: what the tree retains,
+   * and how many bytes its file has. */
+  void measure();
   /** None before the compressed tree was first shown. */
   const map_view::LiveCompression* compression() const { return m_live ? &*m_live : nullptr; }
   /** Called after the compressed tree has changed, has come or has gone. */
@@ -40,7 +43,7 @@ class CompressPanel {
   };
   void begin();
   void forget();
-  /** Before each frame: what takes longer, when the hand rests. */
+  /** Before each frame. */
   void update();
   /** Says what is new. \param bytes of the file; 0: not known yet */
   void tell(std::size_t bytes);

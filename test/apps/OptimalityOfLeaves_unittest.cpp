@@ -5,6 +5,7 @@
 #include <random>
 
 #include "../semantic_octree/SmallScans.h"
+#include "CompressionOptions.h"
 #include "DataSets.h"
 #include "LeafObjective.h"
 #include "SharedData.h"
@@ -14,14 +15,6 @@ using tree_abstraction::irrelevant;
 using tree_abstraction::relevant;
 
 namespace {
-
-AbstractionOptions optionsOf(std::vector<tree_abstraction::InformationTerm> terms, double alpha) {
-  AbstractionOptions options;
-  options.weights.terms = std::move(terms);
-  options.weights.alpha = alpha;
-  options.blockSize = 3.2;
-  return options;
-}
 
 SemanticOcTree smallPlace() {
   SemanticOcTree map(0.2, numberedClasses(6));

@@ -10,18 +10,13 @@
 
 namespace fs = std::filesystem;
 
-namespace {
-
-const fs::path kSources = MSO_SOURCE_DIR;
-
-}  // namespace
-
 TEST(SampleMap, theVillageIsMappedWithItsClasses) {
   const TemporaryFolder folder;
+  const fs::path sources = MSO_SOURCE_DIR;
   const ProgramRun run =
       runProgram("rawlog2semantic-map",
-                 {"--config", (kSources / "config/maps/synthetic.ini").string(), "--output",
-                  folder.path().string(), (kSources / "rawlog-samples/village.rawlog").string()});
+                 {"--config", (sources / "config/maps/synthetic.ini").string(), "--output",
+                  folder.path().string(), (sources / "rawlog-samples/village.rawlog").string()});
   ASSERT_EQ(run.status, 0) << run.errors;
 
   const auto summary = nlohmann::json::parse(folder.read("summary.json"));

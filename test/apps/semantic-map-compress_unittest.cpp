@@ -4,6 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "CompressionOptions.h"
 #include "CsvTable.h"
 #include "SemanticMapCompress.h"
 
@@ -17,14 +18,6 @@ using tree_abstraction::relevant;
 namespace {
 
 const char* const kToSize = "{name: a, relevant: {post: 1}, everything: 0.2, block_size: 3.2}";
-
-AbstractionOptions optionsOf(std::vector<tree_abstraction::InformationTerm> terms, double alpha) {
-  AbstractionOptions options;
-  options.weights.terms = std::move(terms);
-  options.weights.alpha = alpha;
-  options.blockSize = 3.2;
-  return options;
-}
 
 /** A map with the weights of kToSize. */
 SemanticOcTree withTheseWeights(SemanticOcTree map) {

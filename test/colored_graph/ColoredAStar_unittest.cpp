@@ -9,13 +9,10 @@
 #include "PlaneGraph.h"
 
 using namespace colored_graph;
+using oracles::costOf;
 using oracles::Tuple;
 
 namespace {
-
-std::optional<Tuple> costOf(const PathResult& result) {
-  return result.found() ? std::optional<Tuple>(result.cost) : std::nullopt;
-}
 
 /** The path leads from start to goal along its edges, and costs what it says. */
 void expectSound(const ColoredGraph& graph, const CostModel& model, VertexId start, VertexId goal,

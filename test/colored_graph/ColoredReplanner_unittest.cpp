@@ -8,12 +8,9 @@
 #include "PlaneGraph.h"
 
 using namespace colored_graph;
+using oracles::costOf;
 
 namespace {
-
-std::optional<oracles::Tuple> costOf(const PathResult& result) {
-  return result.found() ? std::optional<oracles::Tuple>(result.cost) : std::nullopt;
-}
 
 constexpr double kReach = 5;  // cells
 

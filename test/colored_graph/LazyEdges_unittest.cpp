@@ -9,6 +9,7 @@
 #include "PlaneGraph.h"
 
 using namespace colored_graph;
+using oracles::costOf;
 
 namespace {
 
@@ -46,10 +47,6 @@ struct LazyWorld {
   std::map<EdgeId, int> calls;
   ColoredAStarOptions options;
 };
-
-std::optional<oracles::Tuple> costOf(const PathResult& result) {
-  return result.found() ? std::optional<oracles::Tuple>(result.cost) : std::nullopt;
-}
 
 bool allEvaluated(const ColoredGraph& graph, const PathResult& result) {
   for (const EdgeId e : result.edges)

@@ -1,5 +1,6 @@
 #pragma once
 #include <colored_graph/CostModel.h>
+#include <colored_graph/PathResult.h>
 
 #include <algorithm>
 #include <optional>
@@ -21,6 +22,10 @@ using colored_graph::VertexId;
 /** (worst rank, ..., rank 1; length with tolls, if these count; total length); std::vector compares
  * it as it should be compared. */
 using Tuple = std::vector<std::int64_t>;
+
+inline std::optional<Tuple> costOf(const colored_graph::PathResult& result) {
+  return result.found() ? std::optional<Tuple>(result.cost) : std::nullopt;
+}
 
 inline Tuple zero(const CostModel& model) {
   return Tuple(model.order.ranks() + (model.tolls ? 1 : 0), 0);

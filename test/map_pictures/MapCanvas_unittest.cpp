@@ -29,12 +29,6 @@ cv::Vec3b pixelAt(const MapCanvas& canvas, double x, double y) {
   return canvas.picture().at<cv::Vec3b>(int(std::floor(p.y)), int(std::floor(p.x)));
 }
 
-int count(const cv::Mat& picture, const Color& color) {
-  cv::Mat mask;
-  cv::inRange(picture, bgr(color), bgr(color), mask);
-  return cv::countNonZero(mask);
-}
-
 /** Longest run of a color in a row of the picture. */
 int longestRun(const cv::Mat& picture, const Color& color) {
   int longest = 0;

@@ -7,6 +7,13 @@ constexpr semantic_types::Color kRoad{200, 30, 30}, kTree{30, 180, 60}, kWall{40
 
 inline cv::Vec3b pixelOf(const semantic_types::Color& c) { return {c.b, c.g, c.r}; }
 
+/** How many pixels have the color. */
+inline int count(const cv::Mat& picture, const semantic_types::Color& c) {
+  cv::Mat mask;
+  cv::inRange(picture, cv::Scalar(c.b, c.g, c.r), cv::Scalar(c.b, c.g, c.r), mask);
+  return cv::countNonZero(mask);
+}
+
 /** road (red), tree (green), wall (blue) */
 inline semantic_types::ClassTable paintedClasses() {
   semantic_types::ClassTable table;

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
 
+#include "PaintedField.h"
+
 using map_pictures::bgr;
 using map_pictures::Color;
 using map_pictures::LegendEntry;
@@ -11,12 +13,6 @@ using map_pictures::LegendEntry;
 namespace {
 
 const cv::Mat kPicture(400, 500, CV_8UC3, cv::Scalar(40, 90, 140));
-
-int count(const cv::Mat& picture, const Color& color) {
-  cv::Mat mask;
-  cv::inRange(picture, bgr(color), bgr(color), mask);
-  return cv::countNonZero(mask);
-}
 
 /** Colors that are found again. */
 std::vector<LegendEntry> entries(int number) {

@@ -4,7 +4,6 @@
 
 #include <map>
 #include <set>
-#include <tuple>
 
 #include "RandomMap.h"
 
@@ -15,13 +14,7 @@ using semantic_octree::kNumKeys;
 using semantic_octree::kTreeDepth;
 using semantic_octree::lowestKeyAtDepth;
 
-using Cube = std::tuple<int, int, int, int>;  // keys of the lowest voxel, depth
-
 const KeyBox kAll = {Eigen::Array3i::Zero(), Eigen::Array3i::Constant(kNumKeys - 1)};
-
-Cube cubeOf(const Eigen::Array3i& lowest, int depth) {
-  return {lowest.x(), lowest.y(), lowest.z(), depth};
-}
 
 Eigen::Array3i atDepth(const Eigen::Array3i& key, int depth) {
   return key.unaryExpr([depth](int k) { return lowestKeyAtDepth(k, depth); });

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
-#include <tuple>
 
 #include "RandomMap.h"
 #include "TemporaryFolder.h"
@@ -25,12 +24,6 @@ std::size_t termNamed(const LiveCompression& live, const std::string& name) {
   std::size_t term = 0;
   while (live.name(term) != name) ++term;
   return term;
-}
-
-using Cube = std::tuple<int, int, int, int>;
-
-Cube cubeOf(const Eigen::Array3i& lowest, int depth) {
-  return {lowest.x(), lowest.y(), lowest.z(), depth};
 }
 
 /** Of the compressed tree. */

@@ -2,6 +2,13 @@
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <random>
+#include <tuple>
+
+using Cube = std::tuple<int, int, int, int>;  // keys of the lowest voxel, depth
+
+inline Cube cubeOf(const Eigen::Array3i& lowest, int depth) {
+  return {lowest.x(), lowest.y(), lowest.z(), depth};
+}
 
 /** road, tree, wall */
 inline semantic_types::ClassTable threeClasses() {

@@ -11,7 +11,7 @@ using semantic_types::ClassTable;
 
 namespace {
 
-struct Share {
+struct RightPoints {
   int points = 0, right = 0;
   void add(bool isRight) { ++points, right += isRight; }
   double value() const { return double(right) / points; }
@@ -20,7 +20,7 @@ struct Share {
 /** Of points near the sensor, which is 1.73 m above the street: of the road in free cells, and of
  * what stands there, half a meter to one and a half above it, in occupied ones. */
 void judge(const COccupancyGridMap2D& grid, const LabeledFrame& frame, const ClassTable& classes,
-           Share& road, Share& standing) {
+           RightPoints& road, RightPoints& standing) {
   for (std::size_t i = 0; i < frame.cloud.size(); ++i) {
     const Eigen::Vector3f& p = frame.cloud.points[i];
     const auto id = frame.cloud.classes[i];
@@ -49,7 +49,7 @@ TEST(StreetGrid, theRoadIsFreeAndCarsAndWallsAreOccupied) {
     byClass.ground.push_back(*classes.find(name));
   for (const auto& options : {semantic_map::GridOptions(), byClass}) {
     const COccupancyGridMap2D grid = gridOf(map, options);
-    Share road, standing;
+    RightPoints road, standing;
     for (const LabeledFrame& frame : frames) judge(grid, frame, classes, road, standing);
     EXPECT_GT(road.points, 10000);
     EXPECT_GT(standing.points, 1000);

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <random>
 
-#include "PaintedWorld.h"
+#include "PaintedGround.h"
 
 using namespace semantic_planning;
+using painted_ground::kOrigin;
 
 namespace {
 
-constexpr int kOrigin = semantic_octree::kKeyOfOrigin;
 constexpr int kHalf = 40;  // columns of the world to each side
 
 /** Looks at every surface and every column around it, by the definition alone. */

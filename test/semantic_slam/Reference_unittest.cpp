@@ -31,12 +31,12 @@ void moveOdometry(Recording& r, const Eigen::Isometry3d& T_map_odometry) {
   for (Eigen::Isometry3d& T : r.odometry) T = T_map_odometry * T;
 }
 
-struct Errors {
+struct FrameErrors {
   double first, last, largest, degrees;
 };
 
-Errors errorsOf(const Slam& slam, const Recording& r) {
-  Errors e{};
+FrameErrors errorsOf(const Slam& slam, const Recording& r) {
+  FrameErrors e{};
   for (std::size_t k = 0; k < slam.poses().size(); ++k) {
     const Vector6 off = vectorOf(r.truth[k].inverse() * slam.poses()[k]);
     e.last = off.head<3>().norm();
@@ -68,7 +68,7 @@ TEST(Reference, aDriveIsInTheFrameOfAMapThatIsThere) {
     addAll(alone, r, kRobotLidar);
     slam.setReference(map);
     addAll(slam, r, kRobotLidar);
-    const Errors without = errorsOf(alone, r), with = errorsOf(slam, r);
+    const FrameErrors without = errorsOf(alone, r), with = errorsOf(slam, r);
     EXPECT_GT(without.last, 1) << useClasses;
     EXPECT_LT(with.first, 0.06) << useClasses;
     EXPECT_LT(with.largest, 0.06) << useClasses;
@@ -83,7 +83,7 @@ TEST(Reference, aCameraFindsItselfInTheMapOfALidar) {
   Slam slam({});
   slam.setReference(mapOf("campus", 1, 80));
   addAll(slam, r, kRobotCamera);
-  const Errors with = errorsOf(slam, r);
+  const FrameErrors with = errorsOf(slam, r);
   EXPECT_LT(with.largest, 0.12);
   EXPECT_GT(slam.numReferenced(), 20u);
 }
