@@ -1,5 +1,9 @@
 #include "planner/GuideSearch.h"
 
+#include <cmath>
+#include <queue>
+#include <random>
+
 #include "PlannerFixture.h"
 #include "ground/SurfaceTile.h"
 #include "planner/GuideField.h"
@@ -129,6 +133,63 @@ TEST_F(GuideSearch, eachDrivableSurfaceHasANameInTheOrderOfTilesColumnsAndHeight
       }
     });
   EXPECT_GT(upon, 200);
+}
+
+/** Against a search in all directions, which knows no bound of what is to come. */
+TEST_F(GuideSearch, noWayBetweenAnyPlacesCostsLess) {
+  options.vehicle.wheelTrack = 0;
+  options.roadmap.buffer = std::numeric_limits<double>::infinity();
+  std::mt19937 random(3);
+  constexpr int kEdge = 60;  // voxels
+  const PaintedWorld::Class classes[] = {PaintedWorld::Road, PaintedWorld::Grass,
+                                         PaintedWorld::Mud};
+  for (int round = 0; round < 12; ++round) {
+    world = PaintedWorld();
+    world.floor(-8, 8, -8, 8, PaintedWorld::Mud);
+    std::vector<int> rank(kEdge * kEdge, 2);
+    const int patch = 2 << (round % 4);
+    for (int y = 4; y + patch <= kEdge - 4; y += patch)
+      for (int x = 4; x + patch <= kEdge - 4; x += patch) {
+        const int painted = static_cast<int>(random() % 3);
+        for (int i = 0; i < patch * patch; ++i) {
+          const int vx = x + i % patch, vy = y + i / patch;
+          rank[static_cast<std::size_t>(vy * kEdge + vx)] = painted;
+          world.voxel(vx - kEdge / 2, vy - kEdge / 2, -1, classes[painted]);
+        }
+      }
+    const auto anywhere = [&] { return static_cast<int>(4 + random() % (kEdge - 8)); };
+    const auto at = [](int key) { return (key - kEdge / 2 + 0.5) * 0.2; };
+    const int sx = anywhere(), sy = anywhere(), gx = anywhere(), gy = anywhere();
+    start = {at(sx), at(sy), 0};
+    goal = {at(gx), at(gy), 0};
+    const std::vector<std::int64_t> weights = weightsOfRanks(order);
+    using Reached = std::pair<std::int64_t, int>;
+    std::vector<std::int64_t> least(kEdge * kEdge, std::numeric_limits<std::int64_t>::max());
+    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
+    queue.push({0, sy * kEdge + sx});
+    least[static_cast<std::size_t>(sy * kEdge + sx)] = 0;
+    while (!queue.empty()) {
+      const auto [cost, place] = queue.top();
+      queue.pop();
+      if (cost > least[static_cast<std::size_t>(place)]) continue;
+      for (int step = 0; step < 9; ++step) {
+        const int dx = step % 3 - 1, dy = step / 3 - 1;
+        const int x = place % kEdge + dx, y = place / kEdge + dy;
+        if (x < 0 || y < 0 || x >= kEdge || y >= kEdge) continue;
+        const auto to = static_cast<std::size_t>(y * kEdge + x);
+        const std::int64_t sum =
+            cost + (dx && dy ? 7 : 5) * weights[static_cast<std::size_t>(rank[to])];
+        if (sum >= least[to]) continue;
+        least[to] = sum;
+        queue.push({sum, y * kEdge + x});
+      }
+    }
+    std::int64_t cost = 0;
+    const Guide found = search();
+    for (std::size_t i = 0; i < found.lengthPerRank.size(); ++i)  // in fifths of a voxel
+      cost += std::llround(found.lengthPerRank[i] / 0.04) * weights[i];
+    EXPECT_EQ(cost, least[static_cast<std::size_t>(gy * kEdge + gx)]) << round;
+  }
 }
 
 TEST_F(GuideSearch, keepsTheFootprintOffWalls) {

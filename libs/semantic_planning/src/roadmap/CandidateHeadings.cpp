@@ -14,14 +14,14 @@ double freeLength(const CandidatePoint& point, double direction, colored_graph::
                   const EdgeChecker& checker) {
   const Ground& ground = checker.ground();
   const int steps = static_cast<int>(kHeadingReach / (kStep * ground.voxelSize()));
+  const double cosine = std::cos(direction), sine = std::sin(direction);
   int z = point.z;
   for (int i = 1; i <= steps; ++i) {
     const auto along = [&](double share) {
       return static_cast<int>(std::lround(i * kStep * share));
     };
-    const Surface* s = ground.near(
-        {point.column.x + along(std::cos(direction)), point.column.y + along(std::sin(direction))},
-        z, kStep * ground.step());
+    const Surface* s = ground.near({point.column.x + along(cosine), point.column.y + along(sine)},
+                                   z, kStep * ground.step());
     if (!s || !s->drivable || s->clearance2 == 0 || checker.order().rank(s->classId) > rank)
       return (i - 1) * kStep * ground.voxelSize();
     z = s->z;
