@@ -29,6 +29,66 @@ class GuideSearch : public PlannerTest {
   }
 };
 
+/** Square patches of road, grass and mud, with mud around them. Places are numbered row by row. */
+class Patches {
+ public:
+  /** \param edge of a patch, voxels */
+  Patches(PaintedWorld& world, int edge, std::mt19937& random) : m_rank(kEdge * kEdge, 2) {
+    const PaintedWorld::Class classes[] = {PaintedWorld::Road, PaintedWorld::Grass,
+                                           PaintedWorld::Mud};
+    world.floor(-8, 8, -8, 8, PaintedWorld::Mud);
+    for (int y = kBorder; y + edge <= kEdge - kBorder; y += edge)
+      for (int x = kBorder; x + edge <= kEdge - kBorder; x += edge) {
+        const int rank = static_cast<int>(random() % 3);
+        for (int i = 0; i < edge * edge; ++i) {
+          const int vx = x + i % edge, vy = y + i / edge;
+          m_rank[static_cast<std::size_t>(vy * kEdge + vx)] = rank;
+          world.voxel(vx - kEdge / 2, vy - kEdge / 2, -1, classes[rank]);
+        }
+      }
+  }
+
+  int anywhere(std::mt19937& random) const {
+    const auto inside = [&] { return int(kBorder + random() % (kEdge - 2 * kBorder)); };
+    const int y = inside();
+    return y * kEdge + inside();
+  }
+  mrpt::math::TPose2D poseAt(int place) const {
+    const auto at = [](int key) { return (key - kEdge / 2 + 0.5) * 0.2; };
+    return {at(place % kEdge), at(place / kEdge), 0};
+  }
+
+  /** Dijkstra's, in steps of 5 straight on and 7 aslant. */
+  std::int64_t leastCost(int from, int to, const std::vector<std::int64_t>& weights) const {
+    using Reached = std::pair<std::int64_t, int>;
+    std::vector<std::int64_t> least(m_rank.size(), std::numeric_limits<std::int64_t>::max());
+    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
+    const auto reach = [&](int place, std::int64_t cost) {
+      if (cost >= least[static_cast<std::size_t>(place)]) return;
+      least[static_cast<std::size_t>(place)] = cost;
+      queue.push({cost, place});
+    };
+    reach(from, 0);
+    while (!queue.empty()) {
+      const auto [cost, place] = queue.top();
+      queue.pop();
+      if (cost > least[static_cast<std::size_t>(place)]) continue;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int x = place % kEdge + dx, y = place / kEdge + dy;
+          if (x < 0 || y < 0 || x >= kEdge || y >= kEdge) continue;
+          const int rank = m_rank[static_cast<std::size_t>(y * kEdge + x)];
+          reach(y * kEdge + x, cost + (dx && dy ? 7 : 5) * weights[std::size_t(rank)]);
+        }
+    }
+    return least[static_cast<std::size_t>(to)];
+  }
+
+ private:
+  static constexpr int kEdge = 60, kBorder = 4;  // voxels
+  std::vector<int> m_rank;
+};
+
 }  // namespace
 
 TEST_F(GuideSearch, goesAroundOverTheBetterClassHoweverFar) {
@@ -139,56 +199,19 @@ TEST_F(GuideSearch, eachDrivableSurfaceHasANameInTheOrderOfTilesColumnsAndHeight
 TEST_F(GuideSearch, noWayBetweenAnyPlacesCostsLess) {
   options.vehicle.wheelTrack = 0;
   options.roadmap.buffer = std::numeric_limits<double>::infinity();
+  const std::vector<std::int64_t> weights = weightsOfRanks(order);
   std::mt19937 random(3);
-  constexpr int kEdge = 60;  // voxels
-  const PaintedWorld::Class classes[] = {PaintedWorld::Road, PaintedWorld::Grass,
-                                         PaintedWorld::Mud};
   for (int round = 0; round < 12; ++round) {
     world = PaintedWorld();
-    world.floor(-8, 8, -8, 8, PaintedWorld::Mud);
-    std::vector<int> rank(kEdge * kEdge, 2);
-    const int patch = 2 << (round % 4);
-    for (int y = 4; y + patch <= kEdge - 4; y += patch)
-      for (int x = 4; x + patch <= kEdge - 4; x += patch) {
-        const int painted = static_cast<int>(random() % 3);
-        for (int i = 0; i < patch * patch; ++i) {
-          const int vx = x + i % patch, vy = y + i / patch;
-          rank[static_cast<std::size_t>(vy * kEdge + vx)] = painted;
-          world.voxel(vx - kEdge / 2, vy - kEdge / 2, -1, classes[painted]);
-        }
-      }
-    const auto anywhere = [&] { return static_cast<int>(4 + random() % (kEdge - 8)); };
-    const auto at = [](int key) { return (key - kEdge / 2 + 0.5) * 0.2; };
-    const int sx = anywhere(), sy = anywhere(), gx = anywhere(), gy = anywhere();
-    start = {at(sx), at(sy), 0};
-    goal = {at(gx), at(gy), 0};
-    const std::vector<std::int64_t> weights = weightsOfRanks(order);
-    using Reached = std::pair<std::int64_t, int>;
-    std::vector<std::int64_t> least(kEdge * kEdge, std::numeric_limits<std::int64_t>::max());
-    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
-    queue.push({0, sy * kEdge + sx});
-    least[static_cast<std::size_t>(sy * kEdge + sx)] = 0;
-    while (!queue.empty()) {
-      const auto [cost, place] = queue.top();
-      queue.pop();
-      if (cost > least[static_cast<std::size_t>(place)]) continue;
-      for (int step = 0; step < 9; ++step) {
-        const int dx = step % 3 - 1, dy = step / 3 - 1;
-        const int x = place % kEdge + dx, y = place / kEdge + dy;
-        if (x < 0 || y < 0 || x >= kEdge || y >= kEdge) continue;
-        const auto to = static_cast<std::size_t>(y * kEdge + x);
-        const std::int64_t sum =
-            cost + (dx && dy ? 7 : 5) * weights[static_cast<std::size_t>(rank[to])];
-        if (sum >= least[to]) continue;
-        least[to] = sum;
-        queue.push({sum, y * kEdge + x});
-      }
-    }
+    const Patches patches(world, 2 << (round % 4), random);
+    const int from = patches.anywhere(random), to = patches.anywhere(random);
+    start = patches.poseAt(from);
+    goal = patches.poseAt(to);
     std::int64_t cost = 0;
     const Guide found = search();
     for (std::size_t i = 0; i < found.lengthPerRank.size(); ++i)  // in fifths of a voxel
       cost += std::llround(found.lengthPerRank[i] / 0.04) * weights[i];
-    EXPECT_EQ(cost, least[static_cast<std::size_t>(gy * kEdge + gx)]) << round;
+    EXPECT_EQ(cost, patches.leastCost(from, to, weights)) << round;
   }
 }
 
