@@ -32,6 +32,12 @@ double largestJerk(const std::vector<Trial>& trials) {
   return largest;
 }
 
+double longestBackwards(const std::vector<Trial>& trials) {
+  double longest = 0;
+  for (const Trial& t : trials) longest = std::max(longest, t.smooth.longestBackwards);
+  return longest;
+}
+
 ordered_json summaryOf(const std::vector<Trial>& trials) {
   const auto count = [&trials](auto isOne) {
     return std::count_if(trials.begin(), trials.end(), isOne);
@@ -58,6 +64,7 @@ ordered_json summaryOf(const std::vector<Trial>& trials) {
       {"leastClearance", least},
       {"meters", sum([](const Trial& t) { return t.length; })},
       {"metersBackwards", sum([](const Trial& t) { return t.smooth.backwards; })},
+      {"longestBackwards", longestBackwards(trials)},
       {"gearChanges", sum([](const Trial& t) { return t.smooth.gearChanges; })},
       {"turnSignChanges", sum([](const Trial& t) { return t.smooth.turnChanges; })},
       {"turnSignChangesOfPaths", sum([](const Trial& t) { return t.smooth.pathTurnChanges; })},
@@ -74,7 +81,8 @@ std::string toCsv(const std::vector<Trial>& trials) {
   std::ostringstream out;
   out << "scene,number,start_x,start_y,start_deg,goal_x,goal_y,goal_deg,path,path_length,"
          "path_worse,end,fault,seconds,length,worse,worse_planned,collisions,clearance,replans,"
-         "explored,seen,refused,jerk,backwards,gear_changes,turn_changes,path_turn_changes,"
+         "explored,seen,refused,jerk,backwards,longest_backwards,gear_changes,turn_changes,path_"
+         "turn_changes,"
          "pose_error,largest_pose_error,odometry_error,cycle,slow_cycle,leaves,processor,why_no_"
          "path,"
          "reason\n";
@@ -86,11 +94,11 @@ std::string toCsv(const std::vector<Trial>& trials) {
         << nameOf(t.end) << ',' << t.fault() << ',' << t.seconds << ',' << t.length << ','
         << t.badDriven << ',' << t.badFollowed << ',' << t.collisions << ',' << t.leastClearance
         << ',' << t.replans << ',' << t.explored << ',' << t.seenAt << ',' << t.refusedAt << ','
-        << t.smooth.jerk << ',' << t.smooth.backwards << ',' << t.smooth.gearChanges << ','
-        << t.smooth.turnChanges << ',' << t.smooth.pathTurnChanges << ',' << t.poseErrors.mean
-        << ',' << t.poseErrors.largest << ',' << t.odometryErrors.mean << ',' << t.cycle << ','
-        << t.slowCycle << ',' << t.leaves << ',' << t.processorSeconds << ','
-        << csvField(t.task.reason) << ',' << csvField(t.reason) << '\n';
+        << t.smooth.jerk << ',' << t.smooth.backwards << ',' << t.smooth.longestBackwards << ','
+        << t.smooth.gearChanges << ',' << t.smooth.turnChanges << ',' << t.smooth.pathTurnChanges
+        << ',' << t.poseErrors.mean << ',' << t.poseErrors.largest << ',' << t.odometryErrors.mean
+        << ',' << t.cycle << ',' << t.slowCycle << ',' << t.leaves << ',' << t.processorSeconds
+        << ',' << csvField(t.task.reason) << ',' << csvField(t.reason) << '\n';
   }
   return out.str();
 }

@@ -16,10 +16,34 @@ namespace {
 
 const auto kFootprint = semantic_planning::Footprint::rectangle(-0.25, 0.55, 0.6);
 
+ReactiveNavigator::Options robotIni() {
+  ReactiveNavigator::Options options;
+  options.config = std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini";
+  options.footprint = kFootprint;
+  return options;
+}
+
 /** 12 m along x. */
 DrivePath straight() {
   std::vector<PathPoint> points;
   for (int i = 0; i <= 120; ++i) points.push_back({0.1 * i, 0, 0, 0, 0, true, 0, 0});
+  return DrivePath(points);
+}
+
+/** Straight on for 4 m, an arc to the left by an angle, and straight on again for 6 m. */
+DrivePath bend(double radius, double angle) {
+  constexpr double kStep = 0.1;  // m
+  std::vector<PathPoint> points;
+  const mrpt::math::TPose2D after{4 + radius * std::sin(angle), radius * (1 - std::cos(angle)),
+                                  angle};
+  for (double s = 0; s < 4; s += kStep) points.push_back({s, 0, 0, 0, 0, true, 0, 0});
+  for (double a = 0; a < angle; a += kStep / radius)
+    points.push_back(
+        {4 + radius * std::sin(a), radius * (1 - std::cos(a)), 0, a, 1 / radius, true, 0, 0});
+  for (double s = 0; s < 6; s += kStep) {
+    const mrpt::math::TPose2D p = after + mrpt::math::TPose2D(s, 0, 0);
+    points.push_back({p.x, p.y, 0, angle, 0, true, 0, 0});
+  }
   return DrivePath(points);
 }
 
@@ -74,10 +98,7 @@ class Drive {
 }  // namespace
 
 TEST(DriveController, PassesAPersonByTheReactiveNavigatorWithoutANewPath) {
-  ReactiveNavigator::Options reactive;
-  reactive.config = std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini";
-  reactive.footprint = kFootprint;
-  DriveController controller(Drive::onlyAround(), reactive);
+  DriveController controller(Drive::onlyAround(), robotIni());
   controller.setPath(straight());
   Drive drive;
   int reactiveSteps = 0;
@@ -95,13 +116,11 @@ TEST(DriveController, PassesAPersonByTheReactiveNavigatorWithoutANewPath) {
 
 TEST(DriveController, DrivesAFreeWayOnWhichTheReactiveNavigatorStands) {
   const TemporaryFolder folder;
-  ReactiveNavigator::Options reactive;
+  ReactiveNavigator::Options reactive = robotIni();
+  std::filesystem::copy_file(reactive.config, folder / "stands.ini");
   reactive.config = folder / "stands.ini";
-  std::filesystem::copy_file(std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini",
-                             reactive.config);
   mrpt::config::CConfigFile(reactive.config.string())
       .write("CHolonomicFullEval", "TOO_CLOSE_OBSTACLE", 2);  // everything is too close
-  reactive.footprint = kFootprint;
   DriveController controller({}, reactive);
   controller.setPath(straight());
   Drive drive;
@@ -115,6 +134,29 @@ TEST(DriveController, DrivesAFreeWayOnWhichTheReactiveNavigatorStands) {
       {});
   EXPECT_TRUE(controller.tracker().finished());
   EXPECT_NEAR(reactiveSteps, 10, 2);  // for a second
+}
+
+TEST(PathTracker, DoesNotSteerTheOtherWayAfterABend) {
+  for (const double speed : {0.6, 0.8, 1.2})
+    for (const double angle : {0.3, 0.8, 1.6, 2.5}) {
+      DriveOptions options = Drive::onlyAround();
+      options.maxSpeed = speed;
+      DriveController controller(options, robotIni());
+      controller.setPath(bend(1.1, angle));
+      Drive drive;
+      double least = 0, most = 0;
+      drive.run(
+          [&](const ObstaclePoints& seen, double seconds) {
+            const DriveCommand command = controller.step(drive.state(), seen, 0, seconds);
+            least = std::min(least, drive.state().turn);
+            most = std::max(most, drive.state().turn);
+            return command;
+          },
+          {});
+      EXPECT_TRUE(controller.tracker().finished());
+      EXPECT_GT(most, 0.3 * speed);
+      EXPECT_GT(least, -0.02) << speed << " m/s, " << angle << " rad";
+    }
 }
 
 TEST(PathTracker, AloneStandsBeforeAPerson) {

@@ -135,6 +135,9 @@ TEST(GuideTransitions, AfterAnAnswer) {
   const auto enclosed = [](Answer& a) { a.enclosed = true; };
   const auto better = [](Answer& a) { a.better = true; };
   const auto empty = [](Answer& a) { a.empty = a.better = true; };
+  const auto shunting = [](bool early) {
+    return [early](Answer& a) { a.shunts = true, a.early = early; };
+  };
   const SeekGoal goal{}, betterGoal{From::Ahead, true, false}, seen{From::Ahead, false, true};
   const SeekFrontier frontier{}, another{From::Ahead, false, false};
   const GuideState idle = doing(Idle{19}), exploring = doing(ToFrontier{});
@@ -150,6 +153,11 @@ TEST(GuideTransitions, AfterAnAnswer) {
       {"a goal at last", exploring, answer(seen, true), "goal", "follow"},
       {"no goal yet", exploring, answer(seen, false), "frontier", "seek frontier ahead"},
       {"another frontier", exploring, answer(another, true), "frontier", "follow"},
+      {"one with a change of gear, early", exploring, answer(another, true, shunting(true)),
+       "frontier", "go on"},
+      {"and when it is there", exploring, answer(another, true, shunting(false)), "frontier",
+       "follow"},
+      {"and at rest", idle, answer(frontier, true, shunting(true)), "frontier", "follow"},
       {"no other frontier", exploring, answer(another, false), "frontier", "go on"},
       {"a frontier", idle, answer(frontier, true), "frontier", "follow"},
       {"no frontier", idle, answer(frontier, false), "idle, since 19", "seek back"},

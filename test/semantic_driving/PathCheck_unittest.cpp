@@ -37,6 +37,7 @@ class OfAPath : public testing::Test {
 PathJudgment judged(std::vector<double> perRank) {
   PathJudgment judgment;
   for (const double length : perRank) judgment.length += length;
+  judgment.price = judgment.length;
   judgment.lengthPerRank = std::move(perRank);
   return judgment;
 }
@@ -64,6 +65,26 @@ TEST_F(OfAPath, TellsHowFarItIsFree) {
 TEST_F(OfAPath, ForbiddenGroundIsInTheWay) {
   world.floor(6, 7, -4, 4, PaintedWorld::Mud);
   EXPECT_NEAR(judge(alongX(12)).freeFor, 6 - 0.1, kVoxel);  // the wheels come there
+}
+
+TEST_F(OfAPath, TellsThePriceOfDrivingTheRest) {
+  EXPECT_NEAR(judge(alongX(12), 4).price, 8, 1e-6);
+  std::vector<PathPoint> points = alongX(4).points();
+  for (int i = 1; i <= 10; ++i) points.push_back({4.1 - 0.1 * i, 0.1, 0, 0, 0, true, 0, 0});
+  const VehicleOptions vehicle;  // the planner's
+  const double back = vehicle.gearChange + vehicle.reverseWeight;
+  const double piece = 0.1 * (vehicle.reverseWeight - 1);  // before the change counts as backwards
+  EXPECT_NEAR(judge(DrivePath(points), 1).price, 3 + back, piece + 1e-6);
+  EXPECT_NEAR(judge(DrivePath(points), 4.5).price, 0.5 * vehicle.reverseWeight, 1e-6);
+}
+
+TEST(PathJudgment, AChangeOfGearOutweighsSomeMeters) {
+  PathJudgment shunting = judged({8, 0}), ahead = judged({9, 0});
+  shunting.price = 8 + 2.5 + 1.5;
+  EXPECT_TRUE(ahead.isClearlyBetterThan(shunting));
+  EXPECT_FALSE(shunting.isClearlyBetterThan(ahead));
+  ahead.price = 11.4;  // less than half a meter less
+  EXPECT_FALSE(ahead.isClearlyBetterThan(shunting, {0.7, 0}));
 }
 
 TEST(PathJudgment, IsBetterOnBetterClassesAndThenIfShorter) {

@@ -97,12 +97,16 @@ Smoothness smoothnessOf(const DriveRecord& record) {
     return (rows[i].speed - rows[i - 1].speed) / (rows[i].time - rows[i - 1].time);
   };
   SignChanges turns, bends, gears;
+  double stretch = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const DriveRow& row = rows[i];
     if (i > 1)
       s.jerk = std::max(
           s.jerk, std::abs(acceleration(i) - acceleration(i - 1)) / (row.time - rows[i - 1].time));
-    if (i > 0) s.backwards += std::max(0.0, -row.speed * (row.time - rows[i - 1].time));
+    const double back = i > 0 ? std::max(0.0, -row.speed * (row.time - rows[i - 1].time)) : 0;
+    s.backwards += back;
+    stretch = row.speed > kStraight ? 0 : stretch + back;
+    s.longestBackwards = std::max(s.longestBackwards, stretch);
     turns.add(row.turn, kStraight);
     bends.add(row.bend * row.speed, kStraight);
     gears.add(row.speed, kStraight);
@@ -142,6 +146,7 @@ nlohmann::json toJson(const DriveRecord& record, const colored_graph::ClassOrder
   const Smoothness smooth = smoothnessOf(record);
   json["smoothness"] = {{"jerk", smooth.jerk},
                         {"metersBackwards", smooth.backwards},
+                        {"longestBackwards", smooth.longestBackwards},
                         {"gearChanges", smooth.gearChanges},
                         {"turnSignChanges", smooth.turnChanges},
                         {"turnSignChangesOfPath", smooth.pathTurnChanges}};

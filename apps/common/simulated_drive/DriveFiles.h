@@ -11,8 +11,9 @@ std::string toCsv(const DriveRecord& record);
 
 /** What somebody feels who sits in it; rates from step to step of the control. */
 struct Smoothness {
-  double jerk = 0;       ///< largest, along the way, m/s^3
-  double backwards = 0;  ///< m
+  double jerk = 0;              ///< largest, along the way, m/s^3
+  double backwards = 0;         ///< m
+  double longestBackwards = 0;  ///< m, until it goes ahead again
   /** How often turning (faster than 0.02 rad/s) changes its side; of the paths that it followed, as
    * they were planned; and gears. */
   int turnChanges = 0, pathTurnChanges = 0, gearChanges = 0;

@@ -45,7 +45,12 @@ std::string reasonOf(const Exploration& enclosed) {
 }  // namespace
 
 DriveGuide::DriveGuide(const GuideOptions& options, SemanticPlanner& planner, const TPose2D& goal)
-    : m_options(options), m_planner(planner), m_check(planner), m_goal(goal), m_aim(goal) {
+    : m_options(options),
+      m_planner(planner),
+      m_check(planner),
+      m_turns(planner),
+      m_goal(goal),
+      m_aim(goal) {
   m_options.validate();
 }
 
@@ -130,10 +135,14 @@ DrivePath DriveGuide::untilRest(const Situation& now) const {
 }
 
 void DriveGuide::apply(const Action& action, const Situation& now, DriveController& drive) {
-  if (is<Follow>(action)) drive.setPath(std::move(*m_found));
+  if (is<Follow>(action)) {
+    drive.setPath(std::move(*m_found));
+    m_seen.insert(m_seen.end(), m_tried.begin(), m_tried.end());
+  }
   if (is<ComeToRest>(action)) drive.setPath(untilRest(now));
   if (is<Stop>(action)) drive.setPath({});
   m_found.reset();
+  m_tried.clear();
 }
 
 Answer DriveGuide::answer(const Action& question, const Situation& now) {
@@ -141,14 +150,14 @@ Answer DriveGuide::answer(const Action& question, const Situation& now) {
   if (const auto* goal = std::get_if<SeekGoal>(&question)) {
     const Departure from = departureOf(now, goal->from);
     m_found = toGoal(from);
+    if (goal->from == From::Ahead && goal->replaces) answer.better = improves(from, now);
     answer.empty = m_found && m_found->empty();
-    join(from);
-    answer.better = goal->from == From::Ahead && goal->replaces && isBetter(now);
   } else if (const auto* frontier = std::get_if<SeekFrontier>(&question)) {
     const Departure from = departureOf(now, frontier->from);
     m_found = toFrontier(from, frontier->last, answer.enclosed);
     answer.empty = m_found && m_found->empty();
-    join(from);
+    answer.shunts = m_found && !m_found->empty() && m_found->stretchEnd(0) < m_found->length();
+    answer.early = isEarly(now);
   } else if (const auto* way = std::get_if<SeekRecovery>(&question)) {
     m_found = recovery(now, way->blind);
   } else if (is<SeekNearest>(question)) {
@@ -162,10 +171,28 @@ Answer DriveGuide::answer(const Action& question, const Situation& now) {
   return answer;
 }
 
-/** The path that was found begins where it leaves the present one. */
-void DriveGuide::join(const Departure& from) {
-  if (m_found && !m_found->empty() && !from.before.empty())
-    m_found = from.before.part(0, from.before.length(), *m_found);
+/** A path begins where it leaves the present one. */
+DrivePath DriveGuide::joined(const Departure& from, DrivePath path) const {
+  if (path.empty()) return path;
+  if (!from.before.empty()) path = from.before.part(0, from.before.length(), path);
+  return m_turns.find(path, from.before.length(), m_options.same.length).value_or(path);
+}
+
+/** If what was found is no better than the present path, it is the rest of that with a turn ahead
+ * for which there was no room before. */
+bool DriveGuide::improves(const Departure& from, const Situation& now) {
+  if (isBetter(now)) return true;
+  const PathTracker& tracker = now.drive.tracker();
+  m_found = m_turns.find(tracker.path().part(tracker.progress(), tracker.path().length()),
+                         from.before.length(), m_options.same.length);
+  return m_found.has_value();
+}
+
+/** Whether it still drives its path when it looks the next time. */
+bool DriveGuide::isEarly(const Situation& now) const {
+  const PathTracker& tracker = now.drive.tracker();
+  return tracker.path().length() - tracker.progress() >
+         std::abs(now.state.speed) * m_options.period;
 }
 
 /** What was found than the present path. */
@@ -186,28 +213,44 @@ std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
   }
   DrivePath path(plan.path);
   m_plan = std::move(plan);
-  return path;
+  const double last = path.stretchBegin(path.length());
+  const bool isWorthIt = last <= 0 || path.length() - last >= m_options.shortestShunt;
+  return joined(from, isWorthIt ? path : path.part(0, last));
 }
 
-/** \param last no place that is tried is tried again, even if none can be reached */
+/** To the place of the least cost, if what its path costs beyond its length, as changes of gear and
+ * meters backwards do, counts, too. \param last places that are not reached are not tried again,
+ * even if none can be */
 std::optional<DrivePath> DriveGuide::toFrontier(const Departure& from, bool last, bool& enclosed) {
-  std::vector<TPose2D> tried;
+  const semantic_planning::DrivePrice price(m_planner.options().vehicle);
+  std::vector<TPose2D> useless;  // if it is not seen from there, it is not seen
+  std::optional<Frontier> chosen;
   std::optional<DrivePath> path;
   const Exploration places =
       findFrontiers(m_planner, from.pose, from.z, m_aim, m_seen, m_options.frontiers);
   enclosed = places.enclosed;
   if (enclosed) m_reason = reasonOf(places);
-  for (const Frontier& f : places.frontiers) {
+  for (Frontier f : places.frontiers) {
+    if (chosen && f.cost >= chosen->cost) break;
     m_planned = false;
     PlanResult plan = m_planner.plan(from.pose, f.pose, from.z, f.z);
-    tried.push_back(f.pose);  // if it is not seen from there, it is not seen
-    if (!plan.found() || plan.length < m_options.shortestWay) continue;
-    path.emplace(plan.path);
+    if (!plan.found() || plan.length < m_options.shortestWay) {
+      useless.push_back(f.pose);
+      continue;
+    }
+    DrivePath found = joined(from, DrivePath(plan.path));
+    f.cost += price.of(found.points()) - found.length();
+    if (chosen && f.cost >= chosen->cost) continue;
+    chosen = f;
+    path = std::move(found);
     m_plan = std::move(plan);
-    break;
   }
+  if (chosen) useless.push_back(chosen->pose);
   // If there is no way to any, it may be for where the vehicle stands.
-  if (path || last) m_seen.insert(m_seen.end(), tried.begin(), tried.end());
+  if (path)
+    m_tried = std::move(useless);
+  else if (last)
+    m_seen.insert(m_seen.end(), useless.begin(), useless.end());
   return path;
 }
 

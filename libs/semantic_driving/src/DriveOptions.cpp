@@ -49,6 +49,8 @@ void describeTracker(DriveOptions& o, OptionList& list) {
   list.add("side_gain", o.sideGain, "1/m^2", above(0), "of the steering, for a place off the path");
   list.add("heading_gain", o.headingGain, "1/m", above(0),
            "of the steering, for a heading off the path's");
+  list.add("steering_delay", o.steeringDelay, "s", atLeast(0),
+           "until the steering has an effect: so far ahead the path's curvature is taken");
   list.add("search_ahead", o.searchAhead, "m", above(0),
            "how far ahead on the path the vehicle is looked for");
   list.add("search_back", o.searchBack, "m", atLeast(0), "and how far back");

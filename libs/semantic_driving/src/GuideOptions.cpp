@@ -23,6 +23,8 @@ void describeChanges(GuideOptions& o, OptionList& list) {
            "paths that differ by less are equally good");
   list.add("same_share", o.same.share, "", between(0, 1),
            "paths that differ by less of their length are, too");
+  list.add("shortest_shunt", o.shortestShunt, "m", atLeast(0),
+           "a shorter last stretch to the goal is not worth a change of gear, and left out");
 }
 
 }  // namespace

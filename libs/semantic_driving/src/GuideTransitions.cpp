@@ -132,8 +132,9 @@ Transition after(GuideState state, const SeekFrontier& sought, const Answer& ans
                  const GuideOptions& options) {
   const bool ahead = sought.from == From::Ahead;
   state.enclosed = answer.enclosed;
-  if (answer.found && !(ahead && answer.empty))
-    return followPlan(state, ToFrontier{}, sought.replaces);
+  // What is seen until the next look may spare a change of gear.
+  const bool waits = answer.empty || (answer.shunts && answer.early);
+  if (answer.found && !(ahead && waits)) return followPlan(state, ToFrontier{}, sought.replaces);
   if (ahead) return {state, GoOn{}};
   // At the beginning it may stand where its sensors do not see the ground.
   if (does<Idle>(state) && !state.hasPlanned && !(state.enclosed && state.recoveredBlind)) {

@@ -28,15 +28,14 @@ double speedFor(double curvature, double off, const DriveOptions& limits) {
   return std::max(most, limits.slowest);
 }
 
-/** The greatest acceleration that a limited jerk takes back until the speed has changed so much. */
+/** The greatest acceleration that a limited jerk takes back, step by step, until the speed has
+ * changed so much: with n + 1 steps a, a - J, ..., a - nJ, the last of them less than J. */
 double accelerationFor(double change, double seconds, const DriveOptions& limits) {
-  double most = std::min(limits.maxAcceleration, std::abs(change) / seconds);
-  if (std::isfinite(limits.maxJerk)) {
-    constexpr double kShare = 0.9;  // as it changes from step to step only
-    const double jerk = kShare * limits.maxJerk, half = jerk * seconds / 2;
-    most = std::min(most, std::sqrt(2 * jerk * std::abs(change) + half * half) - half);
-  }
-  return std::copysign(most, change);
+  const double sum = std::abs(change) / seconds;  // of the accelerations
+  const double less = limits.maxJerk * seconds;   // J
+  const double n = std::floor(std::sqrt(2 * sum / less + 0.25) - 0.5);
+  const double most = n > 0 ? (sum + less * n * (n + 1) / 2) / (n + 1) : sum;
+  return std::copysign(std::min(limits.maxAcceleration, most), change);
 }
 
 }  // namespace

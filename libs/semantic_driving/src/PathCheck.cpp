@@ -16,7 +16,7 @@ bool PathJudgment::isClearlyBetterThan(const PathJudgment& other,
     const double more = lengthPerRank[rank] - other.lengthPerRank[rank];
     if (std::abs(more) > same) return more < 0;
   }
-  return length < other.length - same;
+  return price < other.price - std::max(tolerance.length, tolerance.share * other.price);
 }
 
 PathCheck::PathCheck(const SemanticPlanner& planner)
@@ -27,6 +27,7 @@ PathCheck::PathCheck(const SemanticPlanner& planner)
 PathJudgment PathCheck::judge(const DrivePath& path, double from) const {
   PathJudgment judgment;
   judgment.lengthPerRank.resize(m_planner.order().ranks());
+  if (!path.empty()) judgment.price = m_checker.price().of(path.part(from, path.length()).points());
   const double step = m_planner.ground().voxelSize();
   for (double s = from; s < path.length(); s += step) {
     const PathPoint p = path.at(s);

@@ -111,8 +111,9 @@ double PathTracker::speedBefore(double free, double limit) const {
 DriveCommand PathTracker::command(const DriveState& state, const ObstaclePoints& obstacles,
                                   double speedLimit) const {
   if (finished()) return {};
-  PathPoint place = m_path.at(m_progress + 1e-3);
-  place.curvature = curvatureAt(m_progress + 1e-3);
+  const double here = m_progress + 1e-3, ahead = std::abs(state.speed) * m_options.steeringDelay;
+  PathPoint place = m_path.at(here);
+  place.curvature = curvatureAt(std::min(here + ahead, m_path.stretchEnd(here) - 1e-3));
   const double speed = speedBefore(freeAhead(state, obstacles), speedLimit);
   const double v = place.forward ? speed : -speed;
   const double dx = state.pose.x - place.x, dy = state.pose.y - place.y;

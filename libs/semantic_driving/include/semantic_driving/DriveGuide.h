@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_driving/DriveController.h>
+#include <semantic_driving/ForwardTurns.h>
 #include <semantic_driving/GoalFit.h>
 #include <semantic_driving/GuideTransitions.h>
 #include <semantic_driving/ObstacleSensing.h>
@@ -88,7 +89,9 @@ class DriveGuide {
 
   /** Leaves in m_found what it finds. */
   Answer answer(const Action& question, const Situation& now);
-  void join(const Departure& from);
+  DrivePath joined(const Departure& from, DrivePath path) const;
+  bool improves(const Departure& from, const Situation& now);
+  bool isEarly(const Situation& now) const;
   bool isBetter(const Situation& now) const;
   std::optional<DrivePath> toGoal(const Departure& from);
   std::optional<DrivePath> toFrontier(const Departure& from, bool last, bool& enclosed);
@@ -99,6 +102,7 @@ class DriveGuide {
   GuideOptions m_options;
   semantic_planning::SemanticPlanner& m_planner;
   PathCheck m_check;
+  ForwardTurns m_turns;
   const mrpt::math::TPose2D m_goal;
   mrpt::math::TPose2D m_aim;
   std::optional<GoalMisfit> m_misfit;  ///< as seen last
@@ -106,8 +110,9 @@ class DriveGuide {
   GuideState m_state;
   std::optional<DrivePath> m_found;  ///< by the last question, if anything
   semantic_planning::PlanResult m_plan;
-  bool m_planned = false;                   ///< the planner's roadmap is for the goal
-  std::vector<mrpt::math::TPose2D> m_seen;  ///< frontiers that were visited, or not to be reached
+  bool m_planned = false;                    ///< the planner's roadmap is for the goal
+  std::vector<mrpt::math::TPose2D> m_seen;   ///< frontiers that were visited, or not to be reached
+  std::vector<mrpt::math::TPose2D> m_tried;  ///< the same, if the path that was found is driven
   std::string m_reason;
 };
 

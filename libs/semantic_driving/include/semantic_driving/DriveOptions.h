@@ -45,6 +45,8 @@ struct DriveOptions {
   double sideGain = 1.2;       ///< of the steering, for a place off the path, 1/m^2
   double curvatureOver = 0.6;  ///< meters that the path's curvature is a mean over
   double headingGain = 2;      ///< of the steering, for a heading off the path's, 1/m
+  /** Until the steering has an effect, seconds: so far ahead the path's curvature is taken. */
+  double steeringDelay = 0.15;
   /** How far ahead of its last place on the path, and back, the vehicle is looked for, meters. */
   double searchAhead = 1.5, searchBack = 0.3;
   double trackLength = 10;  ///< of the driven track that is kept to go back on, meters

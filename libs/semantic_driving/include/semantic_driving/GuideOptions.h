@@ -30,6 +30,9 @@ struct GuideOptions {
    * so many meters ahead. */
   double leadTime = 1, leadDistance = 0.5;
   PathTolerance same;  ///< paths that differ by less are equally good
+  /** A shorter last stretch to the goal (meters) is not worth a change of gear, and left out; less
+   * than atGoal. */
+  double shortestShunt = 0.15;
 
   double nearFrontier = 3;   ///< meters before a frontier the next one is looked for
   double shortestWay = 0.5;  ///< meters; nearer frontiers are seen from here

@@ -106,6 +106,8 @@ struct Answer {
   bool found = false;     ///< a path, or a pose
   bool empty = false;     ///< it is there already
   bool better = false;    ///< clearly, than the present path
+  bool shunts = false;    ///< the path changes its gear, or that of the present one
+  bool early = false;     ///< there is time for another look before the present path is at its end
   bool enclosed = false;  ///< of SeekFrontier: Exploration::enclosed
 };
 

@@ -10,7 +10,7 @@ namespace semantic_driving {
 /** By how much paths may differ and be equally good: the larger of both. */
 struct PathTolerance {
   double length = 0.5;  ///< meters
-  double share = 0.1;   ///< of a path's length
+  double share = 0.1;   ///< of a path's length, or price
 };
 
 /** What the map says of a path that was planned some time ago. */
@@ -19,9 +19,11 @@ struct PathJudgment {
   double freeFor = std::numeric_limits<double>::infinity();
   std::vector<double> lengthPerRank;  ///< meters, best rank first
   double length = 0;                  ///< meters
+  double price = 0;  ///< of driving all of it (semantic_planning::DrivePrice), meters forward
 
   bool isFree() const { return freeFor == std::numeric_limits<double>::infinity(); }
-  /** Classes before length. \param tolerance its share is of the other path's length */
+  /** Classes before the price of driving. \param tolerance its share is of the other path's length
+   * where classes are compared, and of its price */
   bool isClearlyBetterThan(const PathJudgment& other, const PathTolerance& tolerance = {}) const;
 };
 

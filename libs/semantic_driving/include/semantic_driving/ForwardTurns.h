@@ -1,0 +1,39 @@
+#pragma once
+#include <semantic_driving/DrivePath.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
+
+#include <optional>
+
+namespace semantic_driving {
+
+/** Finds turns ahead in the place of changes of gear, on the planner's ground as it is now.
+ *
+ * A planner that puts classes before the price of driving backs up on grass wherever that takes
+ * fewer meters of grass than turning around ahead. Where all is grass it does not matter. */
+class ForwardTurns {
+ public:
+  /** \param planner must outlive this. */
+  explicit ForwardTurns(const semantic_planning::SemanticPlanner& planner);
+
+  /** The path with a shortest curve that only goes forward (ReedsShepp::connectForward()) between
+   * two of its places with changes of gear between them, of the least DrivePrice. The curve goes
+   * over no worse class than the part in whose place it is, but may be longer there.
+   * \param from arc length up to which the path stays, meters \param worth by so much the price has
+   * to be lower, meters forward \return nothing if there is none */
+  std::optional<DrivePath> find(const DrivePath& path, double from, double worth) const;
+
+ private:
+  struct Curve {
+    double from, to, price;  ///< arc lengths; of the whole path
+    semantic_planning::ReedsSheppCurve curve;
+  };
+  std::vector<double> places(const DrivePath& path, double from) const;
+  std::vector<Curve> curves(const DrivePath& path, double from, double most) const;
+  double priceOf(const DrivePath& path, double from, double to) const;
+  bool isDrivable(const Curve& c, const DrivePath& path) const;
+
+  const semantic_planning::SemanticPlanner& m_planner;
+  semantic_planning::EdgeChecker m_checker;
+};
+
+}  // namespace semantic_driving
