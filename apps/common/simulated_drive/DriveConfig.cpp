@@ -27,6 +27,10 @@ void describeLoop(DriveConfig& config, std::string& reactive, OptionList& list) 
   list.add("compressed_obstacles", config.compressedObstacles, "",
            "leaves of the compressed tree are obstacles");
   list.add("control_period", config.controlPeriod, "s", above(0), "between commands");
+  list.add(
+      "mapping_latency", config.mappingLatency, "s", strict_files::atLeast(0),
+      "from a scan until the map has it, in a thread of its own; till then the robot drives by "
+      "what it knew");
   list.add("time_limit", config.timeLimit, "s", above(0), "of simulated time");
   list.add("turn_acceleration", config.turnAcceleration, "rad/s^2", above(0),
            "of the simulated robot's steering");

@@ -18,6 +18,7 @@ using mrpt::math::TPose2D;
 namespace {
 
 constexpr double kEpoch = 1704067200;  // 2024-01-01, UTC
+constexpr double kSameTime = 1e-6;     // s
 
 std::unique_ptr<Mapper> mapperOf(const DriveConfig& config, const colored_graph::ClassOrder& order,
                                  std::optional<semantic_octree::SemanticOcTree> map) {
@@ -128,15 +129,19 @@ const DriveRecord& DriveLoop::run() {
   while (!isOver()) {
     setClock(m_time);
     m_world.setMovables(m_events.at(m_world, m_time));
-    if (m_time - m_lookedAt >= m_config.sensors.period - 1e-6) {
+    if (m_time - m_lookedAt >= m_config.sensors.period - kSameTime) {
       m_lookedAt = m_time;
+      m_guidesNext = true;
       sense();
-      guide();
     }
+    if (isInserting() && m_time - m_insertingFrom >= m_config.mappingLatency - kSameTime)
+      endInsertion();
+    if (m_guidesNext && !isInserting()) guide();
     drive();
     for (DriveObserver* o : m_observers) o->onDriven(*this);
     m_time += m_config.controlPeriod;
   }
+  if (isInserting()) endInsertion();
   m_record.replans = m_guide->replans();
   m_record.refusal = m_guide->refusal();
   for (DriveObserver* o : m_observers) o->onFinished(*this);
@@ -148,30 +153,53 @@ void DriveLoop::sense() {
   Stopwatch watch(measuring::TimeOf::Thread);
   const std::vector<Observation> seen = m_sensors.sense(m_world, T_world_robot());
   note("simulate", watch.lap());
-  insert(seen);
+  if (!isInserting()) insert(seen);
   Stopwatch following(measuring::TimeOf::Thread);
   for (const Observation& o : seen) m_movers.see(o.cloud, T_map_robot() * o.T_robot_sensor);
   m_movers.update(m_time);
   note("movers", following.lap());
-  m_sensedAt = m_time;
   for (DriveObserver* o : m_observers) o->onSensed(*this, seen);
 }
 
+/** Begins to. */
 void DriveLoop::insert(const std::vector<Observation>& seen) {
-  m_mapper->age(m_sensedAt < 0 ? 0 : m_time - m_sensedAt);
+  m_mapper->age(m_insertedFrom < 0 ? 0 : m_time - m_insertedFrom);
   focus();
-  semantic_planning::StageTimes times;
-  if (m_record.exactPose || !m_config.pose.correct) {
-    times = m_mapper->insert(seen, T_map_robot());
-  } else {
-    Stopwatch watch(measuring::TimeOf::Thread);
-    const auto added = m_pose.correct(seen, T_level_robot());
-    m_state.pose = m_pose.pose();
-    note("localize", watch.lap());
-    times = m_mapper->insert(seen, added, m_pose.slam());
+  m_insertingFrom = m_time;
+  const auto insertNow = insertion(seen);
+  if (m_config.mappingLatency == 0) {
+    m_inserting = std::async(std::launch::deferred, insertNow);
+    return endInsertion();
   }
-  for (const auto& [stage, ms] : times) note(stage, ms);
+  m_before =
+      knownObstacles(m_config.obstacles.radius + m_config.drive.maxSpeed * m_config.mappingLatency);
+  for (Eigen::Vector2d& p : m_before) {
+    const auto inMap = state().pose.composePoint({p.x(), p.y()});
+    p = {inMap.x, inMap.y};
+  }
+  m_inserting = std::async(std::launch::async, insertNow);
+}
+
+/** Where the robot is when it sees that is told now, the map may be filled later. */
+std::function<StageTimes()> DriveLoop::insertion(const std::vector<Observation>& seen) {
+  if (m_record.exactPose || !m_config.pose.correct)
+    return [this, seen, T = T_map_robot()] { return m_mapper->insert(seen, T); };
+  Stopwatch watch(measuring::TimeOf::Thread);
+  const auto added = m_pose.correct(seen, T_level_robot());
+  m_state.pose = m_pose.pose();
+  note("localize", watch.lap());
+  return [this, seen, added] { return m_mapper->insert(seen, added, m_pose.slam()); };
+}
+
+void DriveLoop::endInsertion() {
+  for (const auto& [stage, ms] : m_inserting.get()) note(stage, ms);
   m_record.leaves.push_back(static_cast<double>(m_mapper->numCompressedLeaves()));
+  m_insertedFrom = m_insertingFrom;
+}
+
+Mapper& DriveLoop::waitedFor() const {
+  if (isInserting()) m_inserting.wait();
+  return *m_mapper;
 }
 
 void DriveLoop::focus() {
@@ -185,10 +213,11 @@ void DriveLoop::focus() {
 
 void DriveLoop::guide() {
   Stopwatch watch(measuring::TimeOf::Thread);
+  m_guidesNext = false;
   m_guide->update(state(), groundZ(), m_controller, m_time);
   const double replan = watch.lap();
   note("replan", replan);
-  if (m_sensedAt == m_time)
+  if (m_insertedFrom >= m_lookedAt)
     note("insert+update+replan", (m_config.focus.isOn() ? m_record.times["focus"].back() : 0) +
                                      m_record.times["insert"].back() +
                                      m_record.times["update"].back() + replan);
@@ -202,13 +231,31 @@ bool DriveLoop::wantsFineObstacles() {
   return !m_config.compressedObstacles || m_time < m_fineUntil;
 }
 
+/** What of the map is in the way, in the robot's frame. */
+ObstaclePoints DriveLoop::knownObstacles(double radius) {
+  ObstacleOptions options = m_guide->obstacles(m_config.obstacles);
+  options.radius = radius;
+  return m_mapper->obstacles(state().pose, groundZ(), options, wantsFineObstacles());
+}
+
+/** The same; while a scan is inserted, as it was known before. */
+ObstaclePoints DriveLoop::obstacles() {
+  const double radius = m_config.obstacles.radius;
+  if (!isInserting()) return knownObstacles(radius);
+  ObstaclePoints obstacles;
+  for (const Eigen::Vector2d& p : m_before) {
+    const auto here = state().pose.inverseComposePoint({p.x(), p.y()});
+    if (here.norm() <= radius) obstacles.emplace_back(here.x, here.y);
+  }
+  return obstacles;
+}
+
 void DriveLoop::drive() {
   Stopwatch watch(measuring::TimeOf::Thread);
-  const auto obstacles = m_mapper->obstacles(
-      state().pose, groundZ(), m_guide->obstacles(m_config.obstacles), wantsFineObstacles());
+  const ObstaclePoints around = obstacles();
   note("obstacles", watch.lap());
   const DriveCommand command =
-      m_controller.step(state(), obstacles, m_time - m_sensedAt, m_time, m_movers.at(m_time));
+      m_controller.step(state(), around, m_time - m_insertedFrom, m_time, m_movers.at(m_time));
   note("react", watch.lap());
   addRow();
   move(command);

@@ -2,6 +2,7 @@
 #include <synthetic_world/Scene.h>
 
 #include <functional>
+#include <future>
 
 #include "DriveRecord.h"
 #include "Events.h"
@@ -20,7 +21,7 @@ synthetic_world::Footprint trueFootprint(const semantic_planning::VehicleOptions
 class DriveObserver {
  public:
   virtual ~DriveObserver() = default;
-  /** Sensors saw something, and the map has it. */
+  /** Sensors saw something, and the map has it, or will have (mapping_latency). */
   virtual void onSensed(const DriveLoop&, const std::vector<Observation>&) {}
   /** The control made a step. */
   virtual void onDriven(const DriveLoop&) {}
@@ -29,7 +30,9 @@ class DriveObserver {
 };
 
 /** The closed loop, in simulated time: the world is seen, the map grows, plans change, the robot
- * drives. The same input makes the same drive, however fast the machine is. */
+ * drives. With a mapping latency a thread inserts each scan while the robot drives on by what was
+ * known before it; a scan that comes meanwhile is not inserted. The same input makes the same
+ * drive, however fast the machine is. */
 class DriveLoop {
  public:
   /** \param world changes as the events say
@@ -48,8 +51,9 @@ class DriveLoop {
 
   double time() const { return m_time; }
   const DriveRecord& record() const { return m_record; }
-  const Mapper& mapper() const { return *m_mapper; }
-  semantic_octree::SemanticOcTree compressedMap() const { return m_mapper->compressed(); }
+  /** Waits for the scan that is being inserted, as the next one does. */
+  const Mapper& mapper() const { return waitedFor(); }
+  semantic_octree::SemanticOcTree compressedMap() const { return waitedFor().compressed(); }
   const semantic_driving::DriveGuide& guide() const { return *m_guide; }
   const semantic_driving::DriveController& controller() const { return m_controller; }
   const mrpt::math::TPose2D& start() const { return m_start; }
@@ -64,8 +68,14 @@ class DriveLoop {
   void sense();
   void focus();
   void insert(const std::vector<Observation>& seen);
+  std::function<semantic_planning::StageTimes()> insertion(const std::vector<Observation>& seen);
+  bool isInserting() const { return m_inserting.valid(); }
+  void endInsertion();
+  Mapper& waitedFor() const;
   void guide();
   bool wantsFineObstacles();
+  semantic_driving::ObstaclePoints knownObstacles(double radius);
+  semantic_driving::ObstaclePoints obstacles();
   void drive();
   void move(const semantic_driving::DriveCommand& command);
   void addRow();
@@ -94,7 +104,12 @@ class DriveLoop {
   DriveRecord m_record;
   std::vector<DriveObserver*> m_observers;
   std::function<bool()> m_stop;
-  double m_time = 0, m_sensedAt = -1e9, m_lookedAt = -1e9, m_fineUntil = -1e9;
+  double m_time = 0, m_lookedAt = -1e9, m_fineUntil = -1e9;
+  bool m_guidesNext = false;                  ///< as soon as the map has what was seen
+  double m_insertedFrom = -1e9;               ///< when the last scan that the map has was taken
+  double m_insertingFrom = -1e9;              ///< and the one that is being inserted
+  semantic_driving::ObstaclePoints m_before;  ///< map frame: known without that one
+  std::future<semantic_planning::StageTimes> m_inserting;  ///< last: it uses the others
 };
 
 }  // namespace simulated_drive
