@@ -20,9 +20,7 @@ class Animation : public DriveObserver {
   void onFinished(const DriveLoop& loop) override { shoot(loop); }
 
  private:
-  void shoot(const DriveLoop& loop) {
-    m_show(map_pictures::withTitle(m_picture.draw(loop).picture(), caption(loop)));
-  }
+  void shoot(const DriveLoop& loop) { m_show(m_picture.frame(loop)); }
 
   DrivePicture m_picture;
   double m_period, m_next = 0;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <opencv2/imgproc.hpp>
 
 namespace semantic_map_drive {
 
@@ -82,7 +83,7 @@ MapCanvas DrivePicture::paperFor(double voxel) const {
   const Eigen::Array2d low = (m_region.min().array() / voxel).floor(),
                        high = (m_region.max().array() / voxel).ceil();
   const Eigen::Array2d voxels = high - low;
-  const double pixels = std::max(1.0, std::round(m_longerEdge / voxels.maxCoeff()));
+  const double pixels = std::ceil(m_longerEdge / voxels.maxCoeff());
   return {{(low * voxel).matrix(), (high * voxel).matrix()},
           cv::Size(int(voxels.x() * pixels), int(voxels.y() * pixels))};
 }
@@ -101,6 +102,28 @@ MapCanvas DrivePicture::draw(const DriveLoop& loop) const {
   drawEnd(canvas, "goal", loop.goal(), kGoal);
   drawRobot(canvas, loop);
   return canvas;
+}
+
+cv::Mat DrivePicture::frame(const DriveLoop& loop) const {
+  constexpr int kBelow = 64;  // pixels
+  const MapCanvas canvas = draw(loop);
+  const auto& classes = loop.mapper().map().classes();
+  std::vector<std::size_t> all(classes.size() + 1, 1);
+  all[0] = 0;
+  auto legend = map_pictures::classLegend(classes, all);
+  for (const map_pictures::LegendEntry& entry :
+       std::initializer_list<map_pictures::LegendEntry>{{"driven", kTrack},
+                                                        {"path", kPath},
+                                                        {"start", kStart},
+                                                        {"goal", kGoal},
+                                                        {"robot", kRobotColor}})
+    legend.push_back(entry);
+  cv::Mat picture;
+  cv::copyMakeBorder(canvas.picture(), picture, 0, kBelow, 0, 0, cv::BORDER_CONSTANT,
+                     map_pictures::bgr(map_pictures::kPaper));
+  cv::Mat below = picture.rowRange(canvas.picture().rows, picture.rows);
+  map_pictures::drawScaleBar(below, canvas.pixelsPerMeter());
+  return map_pictures::withTitle(map_pictures::withLegend(picture, {}, legend), caption(loop));
 }
 
 void addOtherTrack(MapCanvas& canvas, const DriveRecord& record) {

@@ -20,7 +20,8 @@ std::string caption(const DriveLoop& loop);
  * the path, the driven track, and the robot. One picture is like the other in place and size. */
 class DrivePicture {
  public:
-  /** \param longerEdge of the map's part, pixels, about \param compressed shows the compressed tree
+  /** \param longerEdge of the map's part, at least so many pixels \param compressed shows the
+   * compressed tree
    */
   DrivePicture(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, int longerEdge,
                bool compressed);
@@ -28,6 +29,8 @@ class DrivePicture {
   void include(const DriveRecord& record);
 
   map_pictures::MapCanvas draw(const DriveLoop& loop) const;
+  /** The same with title, scale and legend, all in places that stay from frame to frame. */
+  cv::Mat frame(const DriveLoop& loop) const;
 
  private:
   map_pictures::MapCanvas paperFor(double voxel) const;

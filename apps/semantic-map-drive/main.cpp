@@ -46,7 +46,7 @@ class DriveProgram {
         m_config(loadDriveConfig(cli.config)),
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
         m_output(cli.output),
-        m_picture(cli.start, cli.goal, 560, cli.compressed),
+        m_picture(cli.start, cli.goal, 960, cli.compressed),
         m_whole(cli.start, cli.goal, 1200, cli.compressed) {
     m_config.sensors.seed = cli.seed;
     if (!cli.map.empty()) m_map = semantic_octree::loadTree(cli.map.string());
