@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <semantic_driving/CompressedObstacles.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
+#include <synthetic_world/Random.h>
 
 #include <algorithm>
 #include <chrono>
@@ -108,4 +109,24 @@ TEST_F(ObstacleSensing, OfTheCompressedTreeMissesNothing) {
       EXPECT_TRUE(isEnclosed(mapBorder, inMap(p))) << inMap(p).transpose();
     }
   }
+}
+
+TEST(SeenFrom, IsWhereTheObstaclesAreForTheVehicleAfterItsMotion) {
+  const mrpt::math::TPose2D from(3, -2, 0.4), to(4.5, -1, 1.7);
+  synthetic_world::Random random(5);
+  ObstaclePoints obstacles;
+  for (int i = 0; i < 200; ++i) obstacles.emplace_back(6 * random.normal(), 6 * random.normal());
+  const ObstaclePoints seen = semantic_driving::seenFrom(obstacles, from, to, 5);
+  ObstaclePoints expected;
+  for (const Eigen::Vector2d& p : obstacles) {
+    const Eigen::Vector2d inMap =
+        Eigen::Vector2d(from.x, from.y) + Eigen::Rotation2Dd(from.phi) * p;
+    const Eigen::Vector2d there =
+        Eigen::Rotation2Dd(-to.phi) * (inMap - Eigen::Vector2d(to.x, to.y));
+    if (there.norm() <= 5) expected.push_back(there);
+  }
+  ASSERT_GT(expected.size(), 20u);
+  ASSERT_EQ(seen.size(), expected.size());
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    EXPECT_LT((seen[i] - expected[i]).norm(), 1e-12) << i;
 }

@@ -20,12 +20,6 @@ namespace {
 constexpr double kEpoch = 1704067200;  // 2024-01-01, UTC
 constexpr double kSameTime = 1e-6;     // s
 
-std::unique_ptr<Mapper> mapperOf(const DriveConfig& config, const colored_graph::ClassOrder& order,
-                                 std::optional<semantic_octree::SemanticOcTree> map) {
-  if (map) return std::make_unique<Mapper>(config, order, std::move(*map));
-  return std::make_unique<Mapper>(config, order);
-}
-
 ReactiveNavigator::Options reactiveOf(const DriveConfig& config,
                                       const std::filesystem::path& navlogs) {
   ReactiveNavigator::Options options;
@@ -44,14 +38,6 @@ std::string meters(double value) {
   return text;
 }
 
-/** x, y and heading only. */
-Eigen::Isometry3d planar(const TPose2D& pose) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() << pose.x, pose.y, 0;
-  T.rotate(Eigen::AngleAxisd(pose.phi, Eigen::Vector3d::UnitZ()));
-  return T;
-}
-
 void setClock(double seconds) {
   mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
   mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(kEpoch + seconds));
@@ -67,16 +53,6 @@ synthetic_world::Footprint trueFootprint(const VehicleOptions& vehicle) {
   return footprint;
 }
 
-const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd) {
-  static const strict_files::Choices<DriveEnd> choices = {
-      {"arrived", DriveEnd::Arrived},      {"nearest", DriveEnd::Nearest},
-      {"astray", DriveEnd::Astray},        {"unreachable", DriveEnd::Unreachable},
-      {"time_limit", DriveEnd::TimeLimit}, {"stopped", DriveEnd::Stopped}};
-  return choices;
-}
-
-const char* nameOf(DriveEnd end) { return strict_files::nameIn(choicesOf(end), end); }
-
 DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
                      const colored_graph::ClassOrder& order, const TPose2D& start,
                      const TPose2D& goal, Events events,
@@ -88,7 +64,8 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_start(start),
       m_goal(goal),
       m_sensors(config.sensors, false),
-      m_mapper(mapperOf(config, order, std::move(map))),
+      m_mapper(map ? std::make_unique<Mapper>(config, order, std::move(*map))
+                   : std::make_unique<Mapper>(config, order)),
       m_guide(std::make_unique<DriveGuide>(config.guide, m_mapper->planner(), goal)),
       m_controller(config.drive, reactiveOf(config, navlogs)),
       m_movers(config.movers, synthetic_world::classTable()),
@@ -113,11 +90,11 @@ Eigen::Isometry3d DriveLoop::T_world_robot() const {
 
 /** Height, roll and pitch are known. */
 Eigen::Isometry3d DriveLoop::T_level_robot() const {
-  return planar(m_robot.state().pose).inverse() * T_world_robot();
+  return isometry(m_robot.state().pose).inverse() * T_world_robot();
 }
 
 Eigen::Isometry3d DriveLoop::T_map_robot() const {
-  return m_record.exactPose ? T_world_robot() : planar(state().pose) * T_level_robot();
+  return m_record.exactPose ? T_world_robot() : isometry(state().pose) * T_level_robot();
 }
 
 double DriveLoop::groundZ() const {
@@ -173,10 +150,7 @@ void DriveLoop::insert(const std::vector<Observation>& seen) {
   }
   m_before =
       knownObstacles(m_config.obstacles.radius + m_config.drive.maxSpeed * m_config.mappingLatency);
-  for (Eigen::Vector2d& p : m_before) {
-    const auto inMap = state().pose.composePoint({p.x(), p.y()});
-    p = {inMap.x, inMap.y};
-  }
+  m_beforeAt = state().pose;
   m_inserting = std::async(std::launch::async, insertNow);
 }
 
@@ -241,13 +215,8 @@ ObstaclePoints DriveLoop::knownObstacles(double radius) {
 /** The same; while a scan is inserted, as it was known before. */
 ObstaclePoints DriveLoop::obstacles() {
   const double radius = m_config.obstacles.radius;
-  if (!isInserting()) return knownObstacles(radius);
-  ObstaclePoints obstacles;
-  for (const Eigen::Vector2d& p : m_before) {
-    const auto here = state().pose.inverseComposePoint({p.x(), p.y()});
-    if (here.norm() <= radius) obstacles.emplace_back(here.x, here.y);
-  }
-  return obstacles;
+  return isInserting() ? seenFrom(m_before, m_beforeAt, state().pose, radius)
+                       : knownObstacles(radius);
 }
 
 void DriveLoop::drive() {
@@ -285,18 +254,13 @@ void DriveLoop::addRow() {
   row.driver = m_controller.driver();
   const PathTracker& tracker = m_controller.tracker();
   if (!tracker.path().empty()) row.offset = tracker.offset();
-  const double way = std::abs(row.speed) * m_config.controlPeriod;
-  m_record.drivenPerClass[row.classId] += way;
+  std::optional<semantic_types::ClassId> planned;
   if (!tracker.path().empty()) {
     const PathPoint p = tracker.path().at(tracker.progress());
     row.bend = p.curvature;
-    m_record.plannedPerClass[m_world.groundClass(p.x, p.y)] += way;
+    planned = m_world.groundClass(p.x, p.y);
   }
-  m_record.length += way;
-  const bool touchedBefore = !m_record.rows.empty() && m_record.rows.back().clearance <= 0;
-  if (row.clearance <= 0 && !touchedBefore) ++m_record.collisions;
-  m_record.leastClearance = std::min(m_record.leastClearance, row.clearance);
-  m_record.rows.push_back(row);
+  m_record.add(row, planned, std::abs(row.speed) * m_config.controlPeriod);
 }
 
 void DriveLoop::endAtGoal() {

@@ -108,7 +108,8 @@ class DriveLoop {
   bool m_guidesNext = false;                  ///< as soon as the map has what was seen
   double m_insertedFrom = -1e9;               ///< when the last scan that the map has was taken
   double m_insertingFrom = -1e9;              ///< and the one that is being inserted
-  semantic_driving::ObstaclePoints m_before;  ///< map frame: known without that one
+  semantic_driving::ObstaclePoints m_before;  ///< known without that one, and the robot's pose then
+  mrpt::math::TPose2D m_beforeAt;
   std::future<semantic_planning::StageTimes> m_inserting;  ///< last: it uses the others
 };
 

@@ -50,6 +50,9 @@ struct DriveRecord {
   /** Milliseconds of each stage, cycle by cycle. */
   std::map<std::string, std::vector<double>> times;
 
+  /** A step of the control. \param planned true ground below the path there, if there is one
+   * \param way driven in it, m */
+  void add(const DriveRow& row, std::optional<semantic_types::ClassId> planned, double way);
   bool arrived() const { return end == DriveEnd::Arrived; }
   double duration() const { return rows.empty() ? 0 : rows.back().time; }
 };

@@ -18,15 +18,14 @@ semantic_slam::SlamOptions knowing(const PoseOptions& pose, semantic_slam::SlamO
   return slam;
 }
 
-/** x, y and heading only. */
+}  // namespace
+
 Eigen::Isometry3d isometry(const TPose2D& pose) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translation() << pose.x, pose.y, 0;
   T.rotate(Eigen::AngleAxisd(pose.phi, Eigen::Vector3d::UnitZ()));
   return T;
 }
-
-}  // namespace
 
 void PoseOptions::describe(strict_files::OptionList& list) {
   using strict_files::between;

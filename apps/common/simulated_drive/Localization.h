@@ -8,6 +8,9 @@
 
 namespace simulated_drive {
 
+/** On the plane z = 0. */
+Eigen::Isometry3d isometry(const mrpt::math::TPose2D& pose);
+
 /** Where the robot believes to be: odometry with noise, corrected by SLAM. Scans are registered to
  * keyframes that do not change, not to the map that is made of them: what a pose is wrong by does
  * not come back as evidence for it. */

@@ -62,4 +62,15 @@ ObstaclePoints3 senseObstacles3(const SemanticPlanner& planner, const mrpt::math
   return obstacles;
 }
 
+ObstaclePoints seenFrom(const ObstaclePoints& obstacles, const mrpt::math::TPose2D& from,
+                        const mrpt::math::TPose2D& to, double radius) {
+  const mrpt::math::TPose2D T_to_from = from - to;
+  ObstaclePoints seen;
+  for (const Eigen::Vector2d& p : obstacles) {
+    const auto there = T_to_from.composePoint({p.x(), p.y()});
+    if (there.norm() <= radius) seen.emplace_back(there.x, there.y);
+  }
+  return seen;
+}
+
 }  // namespace semantic_driving

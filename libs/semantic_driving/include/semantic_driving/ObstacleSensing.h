@@ -34,4 +34,9 @@ ObstaclePoints3 senseObstacles3(const semantic_planning::SemanticPlanner& planne
                                 const mrpt::math::TPose2D& pose, double z,
                                 const ObstacleOptions& options = {});
 
+/** Obstacles in the frame of a vehicle at `from`, in that of one at `to`: those within `radius`
+ * meters of it. For a vehicle that drove on while its map was not to be asked. */
+ObstaclePoints seenFrom(const ObstaclePoints& obstacles, const mrpt::math::TPose2D& from,
+                        const mrpt::math::TPose2D& to, double radius);
+
 }  // namespace semantic_driving
