@@ -60,6 +60,14 @@ TEST_F(Rawlog2SemanticMap, aDepthImageThatClaimsToBeHugeIsRefusedBeforeItTakesMe
   EXPECT_LT(run("huge.rawlog").peakKilobytes, 500'000);
 }
 
+TEST_F(Rawlog2SemanticMap, aScanThatClaimsToHaveAHugeCalibrationIsRefusedBeforeItTakesMemory) {
+  fs::copy_file(
+      fs::path(MSO_SOURCE_DIR) / "test/fuzz/corpus/rawlog/velodyne_calibration_beyond_memory",
+      folder / "calibration.rawlog");
+  expectRefusal({"calibration.rawlog", "object 2"}, "calibration.rawlog");
+  EXPECT_LT(run("calibration.rawlog").peakKilobytes, 500'000);
+}
+
 TEST_F(Rawlog2SemanticMap, aRawlogThatBreaksOffWhileItIsMappedLeavesNothing) {
   const std::string whole = folder.read("small.rawlog");
   folder.write("cut.rawlog", whole.substr(0, whole.size() - 1));

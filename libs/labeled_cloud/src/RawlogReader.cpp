@@ -2,6 +2,7 @@
 #include <labeled_cloud/RawlogReader.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
+#include <strict_files/AllocationLimit.h>
 #include <strict_files/ErrorMessage.h>
 
 #include <stdexcept>
@@ -34,6 +35,7 @@ CSerializable::Ptr RawlogReader::readObject() {
   const std::uint64_t begin = m_stream->delivered();
   std::string problem;
   try {
+    const strict_files::AllocationLimit limit;
     auto archive = mrpt::serialization::archiveFrom(*m_stream);
     if (auto object = archive.ReadObject()) return object;
     problem = "an empty object";

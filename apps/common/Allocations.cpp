@@ -1,0 +1,39 @@
+// Allocations of this program and of all libraries in it: symbols of a program are found before
+// those of libraries.
+#include <strict_files/AllocationLimit.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+using strict_files::AllocationLimit;
+
+namespace mrpt {
+
+void* aligned_malloc(std::size_t bytes, std::size_t alignment);
+
+/** Replaces MRPT's own: matrices and depth images take it for an allocator and write to what it
+ * returns, which there is null if a damaged file asks for more than there is, and zeros for
+ * gigabytes if for less.
+ * \throw std::bad_alloc there is no memory, or it is more than any image takes */
+void* aligned_malloc(std::size_t bytes, std::size_t alignment) {
+  if (bytes > AllocationLimit::kMost) throw std::bad_alloc();  // 16384 x 16384 distances
+  // aligned_alloc() is defined for multiples of the alignment.
+  const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
+  void* const memory = std::aligned_alloc(alignment, whole);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace mrpt
+
+// As the standard library's, but for the limit. Not inline: or the compiler pairs malloc() here
+// with delete there, and warns.
+#define NOT_INLINE __attribute__((noinline))
+NOT_INLINE void* operator new(std::size_t size) {
+  void* const memory = AllocationLimit::isAllowed(size) ? std::malloc(size) : nullptr;
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+NOT_INLINE void operator delete(void* memory) noexcept { std::free(memory); }
+NOT_INLINE void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }

@@ -1,0 +1,25 @@
+#pragma once
+#include <cstddef>
+
+namespace strict_files {
+
+/** While one lives, its thread gets no single piece of memory of more than 1 GiB, in programs whose
+ * operator new asks isAllowed(), as those of this project do. For what others read from files that
+ * may be damaged: they make room for as many elements as a file says it has. */
+class AllocationLimit {
+ public:
+  static constexpr std::size_t kMost = std::size_t{1} << 30;  ///< bytes
+
+  AllocationLimit() { ++living(); }
+  ~AllocationLimit() { --living(); }
+  AllocationLimit(const AllocationLimit&) = delete;
+  AllocationLimit& operator=(const AllocationLimit&) = delete;
+
+  static bool isAllowed(std::size_t bytes) { return bytes <= kMost || living() == 0; }
+
+ private:
+  /** In this thread. */
+  static int& living();
+};
+
+}  // namespace strict_files

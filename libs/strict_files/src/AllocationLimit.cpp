@@ -1,0 +1,10 @@
+#include <strict_files/AllocationLimit.h>
+
+namespace strict_files {
+
+int& AllocationLimit::living() {
+  thread_local int count = 0;
+  return count;
+}
+
+}  // namespace strict_files
