@@ -27,13 +27,37 @@ void* aligned_malloc(std::size_t bytes, std::size_t alignment) {
 
 }  // namespace mrpt
 
-// As the standard library's, but for the limit. Not inline: or the compiler pairs malloc() here
-// with delete there, and warns.
-#define NOT_INLINE __attribute__((noinline))
-NOT_INLINE void* operator new(std::size_t size) {
-  void* const memory = AllocationLimit::isAllowed(size) ? std::malloc(size) : nullptr;
+namespace {
+
+void* allocate(std::size_t size) noexcept {
+  return AllocationLimit::isAllowed(size) ? std::malloc(size ? size : 1) : nullptr;
+}
+
+void* allocateOrThrow(std::size_t size) {
+  void* const memory = allocate(size);
   if (!memory) throw std::bad_alloc();
   return memory;
 }
+
+}  // namespace
+
+// As the standard library's, but for the limit. All forms but those for large alignments: a
+// sanitizer has its own for each that is left out, and misses memory that one of them got and
+// another frees. Not inline: or the compiler pairs malloc() here with delete there, and warns.
+#define NOT_INLINE __attribute__((noinline))
+NOT_INLINE void* operator new(std::size_t size) { return allocateOrThrow(size); }
+NOT_INLINE void* operator new[](std::size_t size) { return allocateOrThrow(size); }
+NOT_INLINE void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return allocate(size);
+}
+NOT_INLINE void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return allocate(size);
+}
 NOT_INLINE void operator delete(void* memory) noexcept { std::free(memory); }
+NOT_INLINE void operator delete[](void* memory) noexcept { std::free(memory); }
 NOT_INLINE void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+NOT_INLINE void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+NOT_INLINE void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+NOT_INLINE void operator delete[](void* memory, const std::nothrow_t&) noexcept {
+  std::free(memory);
+}

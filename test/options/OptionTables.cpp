@@ -25,17 +25,17 @@ using strict_files::OptionList;
 namespace {
 
 /** Adds the options of a struct at their defaults. */
-template <class Options>
-void add(OptionTable& table, void (Options::*describe)(OptionList&)) {
+template <class Options, class Describe>
+void add(OptionTable& table, Describe describe) {
   const auto options = std::make_shared<Options>();
-  ((*options).*describe)(table.list);
+  describe(*options, table.list);
   table.owners.push_back(options);
 }
 
 template <class... Options>
 OptionTable table(const std::string& title, const std::string& where) {
   OptionTable t{title, where, {}, {}};
-  (add<Options>(t, &Options::describe), ...);
+  (add<Options>(t, [](Options& o, OptionList& list) { o.describe(list); }), ...);
   return t;
 }
 
@@ -83,11 +83,11 @@ std::vector<OptionTable> mapTables() {
 std::vector<OptionTable> labelTables() {
   using namespace labeled_cloud;
   OptionTable network{"Networks", "`batch` stands outside of both sections.", {}, {}};
-  add(network, &NetworkOptions::describe);
+  add<NetworkOptions>(network, [](auto& o, OptionList& list) { o.describe(list); });
   OptionTable input{"Networks: input", "Section `input` of a network's configuration.", {}, {}};
-  add(input, &NetworkOptions::describeInput);
+  add<NetworkOptions>(input, [](auto& o, OptionList& list) { o.describeInput(list); });
   OptionTable output{"Networks: output", "Section `output` of a network's configuration.", {}, {}};
-  add(output, &NetworkOptions::describeOutput);
+  add<NetworkOptions>(output, [](auto& o, OptionList& list) { o.describeOutput(list); });
   return {
       table<TrajectoryOptions>("Trajectory", "`[trajectory]` of `rawlog2semantic-map`."),
       table<LabelFolderOptions, LabelModel, ScanStreamOptions>(

@@ -21,7 +21,7 @@ class Frontiers : public testing::Test {
 
   Exploration explore(const TPose2D& goal, const std::vector<TPose2D>& avoid = {},
                       const FrontierOptions& options = {}) {
-    return findFrontiers(plannerOver(world), kStart, 0, goal, avoid, options);
+    return findFrontiers(plannerOver(world), kStart, 0, goal, avoid, {}, options);
   }
   void wall(double x0, double x1, double y0, double y1) {
     world.box(x0, x1, y0, y1, 0, 1, PaintedWorld::Wall);
@@ -88,6 +88,24 @@ TEST_F(Frontiers, OverWorseClassesCostTheirRankMore) {
   for (const Frontier& f : found.frontiers)
     if (f.pose.x > 6.4) {
       EXPECT_NEAR(f.cost, 2 * octile(kStart, f.pose) + 2 * octile(f.pose, goal), 1e-6);
+    }
+}
+
+TEST_F(Frontiers, CostMoreOfTheUnknownTheMoreItWasHopedForInVain) {
+  const TPose2D goal(30.1, 4.1, 0);
+  const FrontierOptions options = turningFor(0);
+  const Exploration first = explore(goal, {}, options);
+  const Effort asHoped{7, first.hoped + 7}, inVain{50, first.hoped};
+  const auto again = findFrontiers(plannerOver(world), kStart, 0, goal, {}, asHoped, options);
+  ASSERT_EQ(again.frontiers.size(), first.frontiers.size());
+  for (std::size_t i = 0; i < first.frontiers.size(); ++i)
+    EXPECT_EQ(again.frontiers[i].cost, first.frontiers[i].cost);
+  const auto doubted = findFrontiers(plannerOver(world), kStart, 0, goal, {}, inVain, options);
+  EXPECT_EQ(doubted.hoped, first.hoped);
+  const double doubt = std::sqrt((50 + first.hoped) / first.hoped);
+  for (const Frontier& f : doubted.frontiers)
+    if (f.pose.x > 6.4) {
+      EXPECT_NEAR(f.cost, octile(kStart, f.pose) + 2 * doubt * octile(f.pose, goal), 1e-6);
     }
 }
 

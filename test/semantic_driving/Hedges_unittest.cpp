@@ -14,7 +14,7 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-constexpr double kHalf = 30;  // m
+constexpr double kHalf = 30, kFar = 60;  // m
 
 /** A garden with a goal behind a hedge. */
 struct Garden {
@@ -57,6 +57,22 @@ Garden garden(std::uint32_t seed) {
           {right, 0, between(-M_PI, M_PI)}};
 }
 
+/** A goal behind a hedge that ends 25 m behind the robot, and ahead of it at the garden's border,
+ * so that there is always hope for a gap just beyond what is seen. */
+Garden lane() {
+  synthetic_world::Solids solids;
+  for (double y = -25; y < kFar; y += 5) {
+    const auto panel = synthetic_world::hedgePanel({0, y, 0}, {0, y + 5, 0});
+    solids.insert(solids.end(), panel.begin(), panel.end());
+  }
+  synthetic_world::GroundCover cover(kFar, synthetic_world::kGrass);
+  for (const double x : {-6.0, 6.0})
+    cover.paintBand(synthetic_world::kRoad, {x, -28}, {x, kFar - 2}, 4);
+  return {synthetic_world::World(synthetic_world::Terrain(kFar, {}), cover, std::move(solids)),
+          {-6, 0, M_PI / 2},
+          {6, 8, M_PI / 2}};
+}
+
 /** How many gardens: MSO_HEDGES of the environment, or a few. */
 std::uint32_t gardens() {
   const char* text = std::getenv("MSO_HEDGES");
@@ -85,4 +101,20 @@ TEST(Hedges, DoNotKeepARobotFromAGoalBehindThem) {
     within += record.arrived() && record.length <= 3 * task.length ? 1 : 0;
   }
   EXPECT_GE(10 * within, 9 * gardens());
+}
+
+TEST(Hedges, AreNotFollowedToTheirEndHoweverFar) {
+  auto config = smallConfig();
+  config.timeLimit = 400;
+  Garden g = lane();
+  const auto order = syntheticOrder();
+  simulated_drive::DriveLoop loop(config, g.world, order, g.start, g.goal, {});
+  const simulated_drive::DriveRecord& record = loop.run();
+  EXPECT_EQ(record.end, simulated_drive::DriveEnd::Arrived) << record.reason;
+  double farthest = 0;
+  for (const simulated_drive::DriveRow& row : record.rows)
+    farthest = std::max(farthest, row.pose.y);
+  RecordProperty("farthest", std::to_string(farthest));
+  RecordProperty("driven", std::to_string(record.length));
+  EXPECT_LT(farthest, kFar / 2);
 }

@@ -49,6 +49,7 @@ DriveGuide::DriveGuide(const GuideOptions& options, SemanticPlanner& planner, co
       m_planner(planner),
       m_check(planner),
       m_turns(planner),
+      m_explorer(options, planner),
       m_goal(goal),
       m_aim(goal) {
   m_options.validate();
@@ -57,6 +58,7 @@ DriveGuide::DriveGuide(const GuideOptions& options, SemanticPlanner& planner, co
 void DriveGuide::update(const DriveState& state, double z, DriveController& drive, double seconds) {
   const Situation now{state, drive, z, seconds};
   const bool gaveUpBefore = gaveUp();
+  m_explorer.moveTo(state.pose, z);
   m_misfit = misfit(now);
   Transition next = transition(m_state, look(now), m_options);
   while (isQuestion(next.action))
@@ -135,14 +137,11 @@ DrivePath DriveGuide::untilRest(const Situation& now) const {
 }
 
 void DriveGuide::apply(const Action& action, const Situation& now, DriveController& drive) {
-  if (is<Follow>(action)) {
-    drive.setPath(std::move(*m_found));
-    m_seen.insert(m_seen.end(), m_tried.begin(), m_tried.end());
-  }
+  if (is<Follow>(action)) drive.setPath(std::move(*m_found));
   if (is<ComeToRest>(action)) drive.setPath(untilRest(now));
   if (is<Stop>(action)) drive.setPath({});
+  m_explorer.end(is<Follow>(action));
   m_found.reset();
-  m_tried.clear();
 }
 
 Answer DriveGuide::answer(const Action& question, const Situation& now) {
@@ -218,40 +217,17 @@ std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
   return joined(from, isWorthIt ? path : path.part(0, last));
 }
 
-/** To the place of the least cost, if what its path costs beyond its length, as changes of gear and
- * meters backwards do, counts, too. \param last places that are not reached are not tried again,
- * even if none can be */
 std::optional<DrivePath> DriveGuide::toFrontier(const Departure& from, bool last, bool& enclosed) {
-  const semantic_planning::DrivePrice price(m_planner.options().vehicle);
-  std::vector<TPose2D> useless;  // if it is not seen from there, it is not seen
-  std::optional<Frontier> chosen;
-  std::optional<DrivePath> path;
-  const Exploration places =
-      findFrontiers(m_planner, from.pose, from.z, m_aim, m_seen, m_options.frontiers);
+  const Exploration places = m_explorer.places(from.pose, from.z, m_aim);
   enclosed = places.enclosed;
   if (enclosed) m_reason = reasonOf(places);
-  for (Frontier f : places.frontiers) {
-    if (chosen && f.cost >= chosen->cost) break;
-    m_planned = false;
-    PlanResult plan = m_planner.plan(from.pose, f.pose, from.z, f.z);
-    if (!plan.found() || plan.length < m_options.shortestWay) {
-      useless.push_back(f.pose);
-      continue;
-    }
-    DrivePath found = joined(from, DrivePath(plan.path));
-    f.cost += price.of(found.points()) - found.length();
-    if (chosen && f.cost >= chosen->cost) continue;
-    chosen = f;
-    path = std::move(found);
-    m_plan = std::move(plan);
-  }
-  if (chosen) useless.push_back(chosen->pose);
-  // If there is no way to any, it may be for where the vehicle stands.
-  if (path)
-    m_tried = std::move(useless);
-  else if (last)
-    m_seen.insert(m_seen.end(), useless.begin(), useless.end());
-  return path;
+  m_planned = m_planned && places.frontiers.empty();
+  auto way = m_explorer.choose(
+      places, from.pose, from.z, [&](DrivePath path) { return joined(from, std::move(path)); },
+      last);
+  if (!way) return {};
+  m_plan = std::move(way->plan);
+  return std::move(way->path);
 }
 
 std::optional<DrivePath> DriveGuide::recovery(const Situation& now, bool blind) {

@@ -23,12 +23,31 @@ class FrontierSearch {
  public:
   FrontierSearch(const SemanticPlanner& planner, const GroundFlood& flood, const GoalRegion& region,
                  const WayLeft& wayLeft, const FrontierOptions& options)
-      : m_ground(planner.ground()),
+      : m_planner(planner),
+        m_ground(planner.ground()),
         m_flood(flood),
         m_region(region),
         m_wayLeft(wayLeft),
         m_options(options) {}
 
+  /** The best ones that the vehicle can stand at, apart from each other and from those to avoid. */
+  std::vector<Frontier> chosen(const std::vector<TPose2D>& avoid) const {
+    std::vector<Frontier> chosen;
+    for (const Frontier& f : all()) {
+      const auto isNear = [&](const TPose2D& p) {
+        return std::hypot(p.x - f.pose.x, p.y - f.pose.y) < m_options.apart;
+      };
+      if (chosen.size() == m_options.most) break;
+      if (std::any_of(avoid.begin(), avoid.end(), isNear)) continue;
+      if (std::any_of(chosen.begin(), chosen.end(),
+                      [&](const Frontier& c) { return isNear(c.pose); }))
+        continue;
+      if (m_planner.check(f.pose, f.z) == PlanStatus::Found) chosen.push_back(f);
+    }
+    return chosen;
+  }
+
+ private:
   std::vector<Frontier> all() const {
     std::vector<Frontier> found;
     m_flood.forEach([&](Column c, const GroundFlood::Place& place) {
@@ -44,7 +63,6 @@ class FrontierSearch {
     return found;
   }
 
- private:
   bool isUnknown(Column c, int z) const {
     if (!m_ground.surfaces(c).empty()) return false;
     for (int k = z - 1; k <= z; ++k)
@@ -83,6 +101,7 @@ class FrontierSearch {
     return before == c ? 0 : std::atan2(c.y - before.y, c.x - before.x);
   }
 
+  const SemanticPlanner& m_planner;
   const Ground& m_ground;
   const GroundFlood& m_flood;
   const GoalRegion& m_region;
@@ -113,9 +132,13 @@ void FrontierOptions::describe(strict_files::OptionList& list) {
 
 void FrontierOptions::validate() const { strict_files::checkOptions(*this, "FrontierOptions"); }
 
+double Effort::doubt(double left) const {
+  return expected > 0 ? std::sqrt(std::max(1.0, (spent + left) / expected)) : 1;
+}
+
 Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, double z,
                           const TPose2D& goal, const std::vector<TPose2D>& avoid,
-                          const FrontierOptions& options) {
+                          const Effort& effort, const FrontierOptions& options) {
   options.validate();
   const double voxel = planner.ground().voxelSize();
   const int key = planner.ground().keyOf(z);
@@ -126,19 +149,18 @@ Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, d
   found.enclosed = region.isEnclosed();
   if (!region.isOpen()) found.goalArea = region.columns() * voxel * voxel;
   if (found.enclosed) return found;
-  std::vector<Frontier>& chosen = found.frontiers;
-  const WayLeft wayLeft(planner, flood, region, goal, options);
-  for (const Frontier& f : FrontierSearch(planner, flood, region, wayLeft, options).all()) {
-    const auto isNear = [&](const TPose2D& p) {
-      return std::hypot(p.x - f.pose.x, p.y - f.pose.y) < options.apart;
-    };
-    if (chosen.size() == options.most) break;
-    if (std::any_of(avoid.begin(), avoid.end(), isNear)) continue;
-    if (std::any_of(chosen.begin(), chosen.end(),
-                    [&](const Frontier& c) { return isNear(c.pose); }))
-      continue;
-    if (planner.check(f.pose, f.z) == PlanStatus::Found) chosen.push_back(f);
-  }
+  const auto search = [&](const FrontierOptions& wanted) {
+    const WayLeft wayLeft(planner, flood, region, goal, wanted);
+    return FrontierSearch(planner, flood, region, wayLeft, wanted).chosen(avoid);
+  };
+  found.frontiers = search(options);
+  if (found.frontiers.empty()) return found;
+  found.hoped = found.frontiers.front().cost;
+  const double doubt = effort.doubt(found.hoped);
+  if (doubt == 1) return found;
+  FrontierOptions wiser = options;
+  wiser.unknownFactor *= doubt;
+  found.frontiers = search(wiser);
   return found;
 }
 

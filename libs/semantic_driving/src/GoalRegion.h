@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_planning/planner/SemanticPlanner.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "ColumnSquare.h"
@@ -32,6 +33,9 @@ class GoalRegion {
   bool contains(semantic_planning::Column c) const {
     return m_goalReached || m_region[m_square.indexOf(c)];
   }
+  /** The vehicle can get there. \param c in the square */
+  bool isReached(semantic_planning::Column c) const { return m_reached[m_square.indexOf(c)]; }
+  std::size_t numReached() const { return std::count(m_reached.begin(), m_reached.end(), true); }
   /** Something is in the way. \param c in the square */
   bool isObstacle(semantic_planning::Column c) const { return m_obstacle[m_square.indexOf(c)]; }
   /** So near to an obstacle that the vehicle cannot be there. \param c in the square */

@@ -1,5 +1,6 @@
 #include "WayLeft.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,8 @@ WayLeft::WayLeft(const SemanticPlanner& planner, const GroundFlood& flood, const
       m_region(region),
       m_square(flood.square()),
       m_unknown(options.unknownFactor),
+      m_width(std::max(1.0, m_unknown) * m_ground.voxelSize()),
+      m_beyond(std::hypot(1, 1) * options.sight * m_unknown),
       m_ways(m_square.size(), std::numeric_limits<double>::infinity()) {
   start(goal, options.aroundGoal);
   search();
@@ -46,29 +49,46 @@ void WayLeft::goAround(double x, double y, double way) {
 void WayLeft::offer(Column c, double way) {
   if (!m_square.contains(c)) return;
   const std::size_t i = m_square.indexOf(c);
-  if (way >= m_ways[i] || (m_region.isKept(c) && !m_flood.at(c).done)) return;
+  if (way >= m_ways[i] || (m_region.isKept(c) && !m_region.isReached(c))) return;
   m_ways[i] = way;
-  m_open.emplace(way, i);
+  const auto bucket = static_cast<std::size_t>(way / m_width);
+  if (bucket >= m_open.size()) m_open.resize(bucket + 1);
+  m_open[bucket].emplace_back(way, i);
 }
 
 /** Of a meter. */
 double WayLeft::costOf(Column c) const {
-  const GroundFlood::Place& place = m_flood.at(c);
-  const auto* surface = place.done ? m_ground.near(c, place.z, 0) : nullptr;
+  const auto* surface = m_region.isReached(c) ? m_ground.near(c, m_flood.at(c).z, 0) : nullptr;
   return surface ? m_planner.order().rank(surface->classId) + 1 : m_unknown;
 }
 
+/** What is offered meanwhile comes into the same bucket or a later one. Ends where all that is
+ * reached has its way. */
 void WayLeft::search() {
-  while (!m_open.empty()) {
-    const auto [way, i] = m_open.top();
-    m_open.pop();
-    if (way > m_ways[i]) continue;
-    const Column c = m_square.columnOf(i);
-    if (m_square.isAtRim(c)) goAround(m_ground.centerOf(c.x), m_ground.centerOf(c.y), way);
-    const double meter = costOf(c) * m_ground.voxelSize();
-    for (const Column& d : kNeighbors)
-      offer({c.x + d.x, c.y + d.y}, way + meter * std::hypot(d.x, d.y));
+  std::size_t left = m_region.numReached();
+  std::size_t end = std::numeric_limits<std::size_t>::max();
+  for (std::size_t b = 0; b < std::min(end, m_open.size()); ++b) {
+    for (std::size_t k = 0; k < m_open[b].size(); ++k) expand(Open(m_open[b][k]));
+    if (left == 0) continue;
+    left -= reachedIn(m_open[b]);
+    if (left == 0) end = b + 2 + static_cast<std::size_t>(m_beyond / m_width);
   }
+}
+
+std::size_t WayLeft::reachedIn(const std::vector<Open>& bucket) const {
+  return std::count_if(bucket.begin(), bucket.end(), [this](const Open& open) {
+    return open.first == m_ways[open.second] && m_region.isReached(m_square.columnOf(open.second));
+  });
+}
+
+void WayLeft::expand(const Open& open) {
+  const auto [way, i] = open;
+  if (way > m_ways[i]) return;
+  const Column c = m_square.columnOf(i);
+  if (m_square.isAtRim(c)) goAround(m_ground.centerOf(c.x), m_ground.centerOf(c.y), way);
+  const double straight = costOf(c) * m_ground.voxelSize(), diagonal = straight * std::hypot(1, 1);
+  for (const Column& d : kNeighbors)
+    offer({c.x + d.x, c.y + d.y}, way + (d.x != 0 && d.y != 0 ? diagonal : straight));
 }
 
 }  // namespace semantic_driving

@@ -1,5 +1,4 @@
 #pragma once
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -8,16 +7,18 @@
 
 namespace semantic_driving {
 
-/** The least way from anywhere on to a goal, if all that is not known to be in the way is not:
- * Dijkstra's search from the goal, over ground that is reached as its rank counts, else as the
- * unknown does. (The freespace assumption: Koenig and Likhachev, "D* Lite", 2002.) */
+/** The least way from anywhere on to a goal, if all that is not known to be in the way is not: a
+ * search from the goal, over ground that is reached as its rank counts, else as the unknown does,
+ * with ways in buckets (Dial, "Algorithm 360", 1969) instead of a heap. (The freespace assumption:
+ * Koenig and Likhachev, "D* Lite", 2002.) */
 class WayLeft {
  public:
   WayLeft(const semantic_planning::SemanticPlanner& planner, const GroundFlood& flood,
           const GoalRegion& region, const mrpt::math::TPose2D& goal,
           const FrontierOptions& options);
 
-  /** Weighted meters; infinite where something is in the way. \param c in the square */
+  /** Weighted meters; infinite where something is in the way.
+   * \param c in the square, within FrontierOptions::sight of what is reached */
   double from(semantic_planning::Column c) const { return m_ways[m_square.indexOf(c)]; }
 
  private:
@@ -25,6 +26,8 @@ class WayLeft {
 
   void start(const mrpt::math::TPose2D& goal, double around);
   void search();
+  std::size_t reachedIn(const std::vector<Open>& bucket) const;
+  void expand(const Open& open);
   void offer(semantic_planning::Column c, double way);
   void goAround(double x, double y, double way);
   double costOf(semantic_planning::Column c) const;
@@ -35,9 +38,11 @@ class WayLeft {
   const GoalRegion& m_region;
   ColumnSquare m_square;
   double m_unknown;  ///< what a meter through it counts
+  double m_width;    ///< of a bucket, weighted meters
+  double m_beyond;   ///< the farthest that is reached ways are asked for, weighted meters
   std::vector<double> m_ways;
-  bool m_around = false;  ///< the rim is reached
-  std::priority_queue<Open, std::vector<Open>, std::greater<>> m_open;
+  bool m_around = false;                  ///< the rim is reached
+  std::vector<std::vector<Open>> m_open;  ///< by how often the width fits into the way
 };
 
 }  // namespace semantic_driving

@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_driving/DriveController.h>
+#include <semantic_driving/Explorer.h>
 #include <semantic_driving/ForwardTurns.h>
 #include <semantic_driving/GoalFit.h>
 #include <semantic_driving/GuideTransitions.h>
@@ -59,9 +60,7 @@ class DriveGuide {
    * ground that ground does not. \param usual options for all other ways */
   ObstacleOptions obstacles(ObstacleOptions usual = {}) const;
 
-  /** Places at the border of what is known that were driven to, or could not be reached. None is
-   * looked at twice, nor others within FrontierOptions::apart of it: exploring comes to an end. */
-  std::size_t explored() const { return m_seen.size(); }
+  std::size_t explored() const { return m_explorer.explored(); }
   /** Paths that were given up for another one, before their end. */
   int replans() const { return m_state.replans; }
   /** The last plan that was found. */
@@ -103,6 +102,7 @@ class DriveGuide {
   semantic_planning::SemanticPlanner& m_planner;
   PathCheck m_check;
   ForwardTurns m_turns;
+  Explorer m_explorer;
   const mrpt::math::TPose2D m_goal;
   mrpt::math::TPose2D m_aim;
   std::optional<GoalMisfit> m_misfit;  ///< as seen last
@@ -110,9 +110,7 @@ class DriveGuide {
   GuideState m_state;
   std::optional<DrivePath> m_found;  ///< by the last question, if anything
   semantic_planning::PlanResult m_plan;
-  bool m_planned = false;                    ///< the planner's roadmap is for the goal
-  std::vector<mrpt::math::TPose2D> m_seen;   ///< frontiers that were visited, or not to be reached
-  std::vector<mrpt::math::TPose2D> m_tried;  ///< the same, if the path that was found is driven
+  bool m_planned = false;  ///< the planner's roadmap is for the goal
   std::string m_reason;
 };
 

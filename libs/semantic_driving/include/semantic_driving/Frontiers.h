@@ -9,7 +9,7 @@ namespace semantic_driving {
 
 /** How places to explore are looked for. */
 struct FrontierOptions {
-  double radius = 40;        ///< how far over known ground, meters
+  double radius = 80;        ///< how far over known ground, meters; a wall beyond is forgotten
   double unknownFactor = 2;  ///< what a meter through the unknown counts against one on rank 0
   double turning = 4;        ///< what turning around at the start counts, meters on rank 0
   double apart = 3;          ///< between places, meters
@@ -31,9 +31,21 @@ struct Frontier {
   double cost = 0;           ///< weighted meters by way of it to the goal
 };
 
+/** What exploring took, in weighted meters as Frontier::cost. */
+struct Effort {
+  double spent = 0;     ///< by now
+  double expected = 0;  ///< in all, when it began (Exploration::hoped); 0: it begins now
+  /** What the unknown is worth of what it was at first: how much more it all takes than expected,
+   * half of that as an exponent. The freespace assumption is wrong again and again along a hedge,
+   * where it always hopes for a gap just beyond what is seen. \param left by now, weighted meters
+   */
+  double doubt(double left) const;
+};
+
 /** Where looking may show a way to a goal. */
 struct Exploration {
   std::vector<Frontier> frontiers;  ///< most promising first
+  double hoped = 0;  ///< what the first one costs if nothing is doubted, weighted meters
   /** No way leads to the goal: what is known to be in the way, or forbidden, is all around it, or
    * around the vehicle. */
   bool enclosed = false;
@@ -56,11 +68,12 @@ struct Exploration {
  * passable in doubt, as does all that is farther than the radius.
  * \param from where the vehicle is and heads, on ground of height z (meters)
  * \param avoid places that are not looked for again, nor others within `apart` of them
+ * \param effort until now: the unknown counts unknownFactor times its doubt()
  * \throw std::invalid_argument bad options. */
 Exploration findFrontiers(const semantic_planning::SemanticPlanner& planner,
                           const mrpt::math::TPose2D& from, double z,
                           const mrpt::math::TPose2D& goal,
-                          const std::vector<mrpt::math::TPose2D>& avoid,
+                          const std::vector<mrpt::math::TPose2D>& avoid, const Effort& effort = {},
                           const FrontierOptions& options = {});
 
 }  // namespace semantic_driving
