@@ -10,6 +10,8 @@ using namespace semantic_planning;
 
 namespace {
 
+constexpr double kLongest = 8;  // m backwards
+
 /** Ahead along x from 0.1 to 3.1 m, and back to -3.9 m. */
 DrivePath thereAndBack(PaintedWorld::Class ground = PaintedWorld::Grass) {
   std::vector<PathPoint> points;
@@ -27,7 +29,7 @@ class InPlaceOfBackingUp : public testing::Test {
                                 PaintedWorld::Class ground = PaintedWorld::Grass) {
     const SemanticPlanner planner = plannerOver(world);
     const DrivePath path = thereAndBack(ground);
-    const auto found = ForwardTurns(planner).find(path, from, worth);
+    const auto found = ForwardTurns(planner, kLongest).find(path, from, worth);
     if (found) {
       const DrivePrice price(planner.options().vehicle);
       EXPECT_LT(price.of(found->points()), price.of(path.points()) - worth);
@@ -72,8 +74,20 @@ TEST_F(InPlaceOfBackingUp, ThereIsNothingOverAWorseClass) {
   EXPECT_TRUE(find(0, 0.5, PaintedWorld::Road));
 }
 
+TEST_F(InPlaceOfBackingUp, FarThereMayBeWhatThePathMeetsElsewhere) {
+  world.floor(-12, 12, -1, 1.2, PaintedWorld::Road);
+  std::vector<PathPoint> points = thereAndBack(PaintedWorld::Road).points();
+  points.front().classId = PaintedWorld::Grass;
+  const SemanticPlanner planner = plannerOver(world);
+  EXPECT_FALSE(ForwardTurns(planner, 8).find(DrivePath(points), 0.5, 0.5));
+  const auto found = ForwardTurns(planner, 6).find(DrivePath(points), 0.5, 0.5);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->longestBackwards(), 0);
+  EXPECT_FALSE(ForwardTurns(planner, 6).find(thereAndBack(PaintedWorld::Road), 0.5, 0.5));
+}
+
 TEST_F(InPlaceOfBackingUp, APathWithoutChangesStays) {
   const SemanticPlanner planner = plannerOver(world);
-  EXPECT_FALSE(ForwardTurns(planner).find(thereAndBack().part(0, 3), 0, 0));
-  EXPECT_FALSE(ForwardTurns(planner).find({}, 0, 0));
+  EXPECT_FALSE(ForwardTurns(planner, kLongest).find(thereAndBack().part(0, 3), 0, 0));
+  EXPECT_FALSE(ForwardTurns(planner, kLongest).find({}, 0, 0));
 }

@@ -87,6 +87,27 @@ TEST(PathJudgment, AChangeOfGearOutweighsSomeMeters) {
   EXPECT_FALSE(ahead.isClearlyBetterThan(shunting, {0.7, 0}));
 }
 
+TEST(PathJudgment, AFewMetersOfAWorseClassDoNotOutweighALongStretchBackwards) {
+  PathJudgment far = judged({12, 0}), ahead = judged({9, 3});
+  far.longestBackwards = 9;
+  EXPECT_TRUE(ahead.isClearlyBetterThan(far));
+  EXPECT_FALSE(far.isClearlyBetterThan(ahead));
+  ahead.longestBackwards = 5;  // both
+  EXPECT_TRUE(far.isClearlyBetterThan(ahead));
+  EXPECT_TRUE(far.isClearlyBetterThan(judged({9, 3}), {0.5, 0.1, 9}));
+}
+
+TEST_F(OfAPath, TellsTheLongestStretchBackwardsOfTheRest) {
+  std::vector<PathPoint> points = alongX(4).points();
+  for (int i = 1; i <= 20; ++i) points.push_back({4.1 - 0.1 * i, 0.1, 0, 0, 0, true, 0, 0});
+  for (int i = 1; i <= 10; ++i) points.push_back({2.1 + 0.1 * i, 0.1, 0, 0, 0, true, 0, 0});
+  for (int i = 1; i <= 3; ++i) points.push_back({3.1 - 0.1 * i, 0.1, 0, 0, 0, true, 0, 0});
+  EXPECT_NEAR(judge(DrivePath(points)).longestBackwards, 2, 1e-6);
+  EXPECT_NEAR(judge(DrivePath(points), 5).longestBackwards, 1, 1e-6);
+  EXPECT_NEAR(judge(DrivePath(points), 6.5).longestBackwards, 0.3, 1e-6);
+  EXPECT_EQ(judge(alongX(4)).longestBackwards, 0);
+}
+
 TEST(PathJudgment, IsBetterOnBetterClassesAndThenIfShorter) {
   struct Row {
     std::vector<double> path, other;

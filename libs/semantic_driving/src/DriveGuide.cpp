@@ -48,7 +48,7 @@ DriveGuide::DriveGuide(const GuideOptions& options, SemanticPlanner& planner, co
     : m_options(options),
       m_planner(planner),
       m_check(planner),
-      m_turns(planner),
+      m_turns(planner, options.same.backwards),
       m_explorer(options, planner),
       m_goal(goal),
       m_aim(goal) {

@@ -90,6 +90,16 @@ double DrivePath::stretchBegin(double s) const {
   return begin;
 }
 
+double DrivePath::longestBackwards(double s) const {
+  double longest = 0;
+  while (s < length() - kSame) {
+    const double end = stretchEnd(s);
+    if (!at((s + end) / 2).forward) longest = std::max(longest, end - s);
+    s = end;
+  }
+  return longest;
+}
+
 DrivePath DrivePath::part(double from, double to, const DrivePath& then) const {
   std::vector<PathPoint> joined{at(from)};
   for (const PathPoint& p : m_points)

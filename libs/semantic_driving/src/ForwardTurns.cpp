@@ -12,15 +12,16 @@ using semantic_planning::SemanticPlanner;
 namespace {
 
 constexpr double kStep = 0.5;     // m, between places that a curve connects
-constexpr double kReach = 10;     // m, of the path that it replaces
+constexpr double kReach = 16;     // m, of the path that it replaces
 constexpr double kInside = 1e-3;  // m
 
 }  // namespace
 
-ForwardTurns::ForwardTurns(const SemanticPlanner& planner)
+ForwardTurns::ForwardTurns(const SemanticPlanner& planner, double longest)
     : m_planner(planner),
       m_checker(planner.ground(), planner.options().vehicle, planner.order(),
-                planner.options().reading) {}
+                planner.options().reading),
+      m_longest(longest) {}
 
 double ForwardTurns::priceOf(const DrivePath& path, double from, double to) const {
   return to > from ? m_checker.price().of(path.part(from, to).points()) : 0;
@@ -55,16 +56,21 @@ std::vector<ForwardTurns::Curve> ForwardTurns::curves(const DrivePath& path, dou
   return curves;
 }
 
-/** It fits, and meets no worse class than the path does between its ends. */
+Rank ForwardTurns::worstOf(const DrivePath& path) const {
+  Rank worst = 0;
+  for (const PathPoint& p : path.points())
+    worst = std::max(worst, m_planner.order().rank(p.classId));
+  return worst;
+}
+
+/** It fits, and meets no worse class than it may. */
 bool ForwardTurns::isDrivable(const Curve& c, const DrivePath& path) const {
   const semantic_planning::Ground& ground = m_planner.ground();
   const auto profile =
       m_checker.profile(c.curve, ground.keyOf(path.at(c.from).z), ground.keyOf(path.at(c.to).z));
   if (!profile) return false;
-  Rank worst = 0;
-  const DrivePath replaced = path.part(c.from, c.to);
-  for (const PathPoint& p : replaced.points())
-    worst = std::max(worst, m_planner.order().rank(p.classId));
+  const bool backsUp = path.longestBackwards(c.from) > m_longest;
+  const Rank worst = worstOf(backsUp ? path : path.part(c.from, c.to));
   return std::all_of(profile->begin(), profile->end(), [&](const colored_graph::Stretch& s) {
     return m_planner.order().rank(s.classId) <= worst;
   });

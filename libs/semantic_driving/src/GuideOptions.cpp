@@ -23,6 +23,10 @@ void describeChanges(GuideOptions& o, OptionList& list) {
            "paths that differ by less are equally good");
   list.add("same_share", o.same.share, "", between(0, 1),
            "paths that differ by less of their length are, too");
+  list.add(
+      "longest_backwards", o.same.backwards, "m", atLeast(0),
+      "a path with a longer stretch backwards is worse than one without, whatever its classes; "
+      "for a turn ahead in its place all classes will do that the path has anyway");
   list.add("shortest_shunt", o.shortestShunt, "m", atLeast(0),
            "a shorter last stretch to the goal is not worth a change of gear, and left out");
 }

@@ -11,6 +11,9 @@ using semantic_planning::SemanticPlanner;
 
 bool PathJudgment::isClearlyBetterThan(const PathJudgment& other,
                                        const PathTolerance& tolerance) const {
+  const bool backsUp = longestBackwards > tolerance.backwards;
+  const bool otherBacksUp = other.longestBackwards > tolerance.backwards;
+  if (backsUp != otherBacksUp) return otherBacksUp;
   const double same = std::max(tolerance.length, tolerance.share * other.length);  // m
   for (std::size_t rank = lengthPerRank.size(); rank-- > 1;) {
     const double more = lengthPerRank[rank] - other.lengthPerRank[rank];
@@ -27,6 +30,7 @@ PathCheck::PathCheck(const SemanticPlanner& planner)
 PathJudgment PathCheck::judge(const DrivePath& path, double from) const {
   PathJudgment judgment;
   judgment.lengthPerRank.resize(m_planner.order().ranks());
+  judgment.longestBackwards = path.longestBackwards(from);
   if (!path.empty()) judgment.price = m_checker.price().of(path.part(from, path.length()).points());
   const double step = m_planner.ground().voxelSize();
   for (double s = from; s < path.length(); s += step) {

@@ -26,6 +26,8 @@ class DrivePath {
   double stretchEnd(double s) const;
   /** Where the stretch that s is in or at the end of began. */
   double stretchBegin(double s) const;
+  /** The longest stretch backwards from s on, meters. */
+  double longestBackwards(double s = 0) const;
 
   /** The part between two arc lengths, and then another path that begins at its end. */
   DrivePath part(double from, double to, const DrivePath& then = {}) const;

@@ -12,12 +12,13 @@ namespace semantic_driving {
  * fewer meters of grass than turning around ahead. Where all is grass it does not matter. */
 class ForwardTurns {
  public:
-  /** \param planner must outlive this. */
-  explicit ForwardTurns(const semantic_planning::SemanticPlanner& planner);
+  /** \param planner must outlive this \param longest stretch backwards that is not too long, m */
+  ForwardTurns(const semantic_planning::SemanticPlanner& planner, double longest);
 
   /** The path with a shortest curve that only goes forward (ReedsShepp::connectForward()) between
    * two of its places with changes of gear between them, of the least DrivePrice. The curve goes
-   * over no worse class than the part in whose place it is, but may be longer there.
+   * over no worse class than the part in whose place it is, or than the whole path if that has too
+   * long a stretch backwards, but may be longer there.
    * \param from arc length up to which the path stays, meters \param worth by so much the price has
    * to be lower, meters forward \return nothing if there is none */
   std::optional<DrivePath> find(const DrivePath& path, double from, double worth) const;
@@ -30,10 +31,12 @@ class ForwardTurns {
   std::vector<double> places(const DrivePath& path, double from) const;
   std::vector<Curve> curves(const DrivePath& path, double from, double most) const;
   double priceOf(const DrivePath& path, double from, double to) const;
+  colored_graph::Rank worstOf(const DrivePath& path) const;
   bool isDrivable(const Curve& c, const DrivePath& path) const;
 
   const semantic_planning::SemanticPlanner& m_planner;
   semantic_planning::EdgeChecker m_checker;
+  double m_longest;
 };
 
 }  // namespace semantic_driving

@@ -7,10 +7,11 @@
 
 namespace semantic_driving {
 
-/** By how much paths may differ and be equally good: the larger of both. */
+/** By how much paths may differ and be equally good: the larger of length and share. */
 struct PathTolerance {
-  double length = 0.5;  ///< meters
-  double share = 0.1;   ///< of a path's length, or price
+  double length = 0.5;   ///< meters
+  double share = 0.1;    ///< of a path's length, or price
+  double backwards = 4;  ///< nobody backs up farther at a stretch if it can be helped, meters
 };
 
 /** What the map says of a path that was planned some time ago. */
@@ -19,11 +20,12 @@ struct PathJudgment {
   double freeFor = std::numeric_limits<double>::infinity();
   std::vector<double> lengthPerRank;  ///< meters, best rank first
   double length = 0;                  ///< meters
+  double longestBackwards = 0;        ///< stretch, meters
   double price = 0;  ///< of driving all of it (semantic_planning::DrivePrice), meters forward
 
   bool isFree() const { return freeFor == std::numeric_limits<double>::infinity(); }
-  /** Classes before the price of driving. \param tolerance its share is of the other path's length
-   * where classes are compared, and of its price */
+  /** No long stretch backwards before classes before the price of driving. \param tolerance its
+   * share is of the other path's length where classes are compared, and of its price */
   bool isClearlyBetterThan(const PathJudgment& other, const PathTolerance& tolerance = {}) const;
 };
 
