@@ -35,10 +35,10 @@ struct Frontier {
 struct Effort {
   double spent = 0;     ///< by now
   double expected = 0;  ///< in all, when it began (Exploration::hoped); 0: it begins now
-  /** What the unknown is worth of what it was at first: how much more it all takes than expected,
-   * half of that as an exponent. The freespace assumption is wrong again and again along a hedge,
-   * where it always hopes for a gap just beyond what is seen. \param left by now, weighted meters
-   */
+  /** What a meter through the unknown counts, of what it counted at first: the root of how many
+   * times the way that was expected it has become. The freespace assumption is wrong again and
+   * again along a hedge, where it always hopes for a gap just beyond what is seen.
+   * \param left to the goal by now, weighted meters */
   double doubt(double left) const;
 };
 
