@@ -193,16 +193,15 @@ TEST(GuideTransitions, WaitForWhatStandsAtTheGoalAndThenSaySo) {
   next = transition(next.state, misfit(20.5), options);
   ASSERT_EQ(words(next.action), "seek nearest");
 
-  const Transition offered = transition(next.state, answer(next.action, true), options);
+  const Transition offered = transition(next.state, answer(next.action, false), options);
   EXPECT_EQ(words(offered.state.activity), "gave up");
   EXPECT_EQ(words(offered.action), "come to rest");
   EXPECT_EQ(words(transition(offered.state, driving(21), options).action), "go on");
   EXPECT_EQ(words(transition(offered.state, ended(22), options).action), "stop");
 }
 
-TEST(GuideTransitions, DriveToTheNearestPoseIfAsked) {
-  GuideOptions options;
-  options.driveToNearest = true;
+TEST(GuideTransitions, DriveToTheNearestPoseIfItWillDo) {
+  const GuideOptions options;
   Transition next = transition(doing(ToGoal{}), answer(SeekNearest{}, true), options);
   EXPECT_EQ(words(next.action), "come to rest");
   next = transition(next.state, ended(21), options);
@@ -241,8 +240,7 @@ TEST(GuideTransitions, AnEnclosedVehicleLooksForABlindRecoveryOnce) {
 
 TEST(GuideTransitions, WhateverHappensQuestionsEndAndTheVehicleGoesBackThreeTimesAtMost) {
   EXPECT_TRUE(rc::check([] {
-    GuideOptions options;
-    options.driveToNearest = *rc::gen::arbitrary<bool>();
+    const GuideOptions options;
     GuideState state;
     int back = 0;
     for (int i = 0; i < 60; ++i) {

@@ -47,6 +47,24 @@ TEST(Drives, SayAtOnceThatAGoalDoesNotFitAndWhichPoseDoes) {
   EXPECT_LT(std::hypot(end.x - goal.x, end.y - goal.y), 1.2);
 }
 
+TEST(Drives, EndBesideAWallWhereTheMapLeavesNoRoomForTheLastCentimeters) {
+  synthetic_world::Solids solids;
+  addWall(solids, {4, -6}, {4, 6});
+  World world = plain(solids);
+  int asGood = 0;
+  for (const double x : {2.8, 2.85, 2.9}) {
+    const TPose2D goal(x, 0, 0);  // half a meter from its front to the wall
+    DriveLoop loop(smallConfig(), world, syntheticOrder(), {-4, 0, 0}, goal, {});
+    const DriveRecord& record = loop.run();
+    EXPECT_EQ(record.end, DriveEnd::Arrived) << x << ": " << record.reason;
+    EXPECT_EQ(record.collisions, 0);
+    const TPose2D end = record.rows.back().pose, aim = std::as_const(loop).guide().goal();
+    EXPECT_LT(std::hypot(end.x - goal.x, end.y - goal.y), 0.3) << x;
+    asGood += std::hypot(aim.x - goal.x, aim.y - goal.y) > 0.01 ? 1 : 0;
+  }
+  EXPECT_GE(asGood, 1);
+}
+
 TEST(Drives, WaitForSomebodyWhoStandsAtTheGoalForSomeSeconds) {
   synthetic_world::Solids solids;
   addWall(solids, {5, -6}, {5, 6});  // beams that end there see that somebody is gone

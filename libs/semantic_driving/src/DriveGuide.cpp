@@ -160,8 +160,7 @@ Answer DriveGuide::answer(const Action& question, const Situation& now) {
   } else if (const auto* way = std::get_if<SeekRecovery>(&question)) {
     m_found = recovery(now, way->blind);
   } else if (is<SeekNearest>(question)) {
-    refuse(now);
-    answer.found = m_refusal->nearest.has_value();
+    answer.found = aimsElsewhere(now);
     return answer;
   } else {
     m_found = back(now);
@@ -238,17 +237,22 @@ std::optional<DrivePath> DriveGuide::recovery(const Situation& now, bool blind) 
   return {};
 }
 
-/** Says so, and offers the nearest pose that fits. */
-void DriveGuide::refuse(const Situation& now) {
-  m_refusal = RefusedGoal{describe(*m_misfit, m_aim, m_planner.ground().map().classes()),
-                          nearestFit(m_planner, now.state.pose, now.z, m_goal,
-                                     m_options.nearestWithin, m_options.frontiers),
-                          now.seconds};
-  m_reason = m_refusal->reason + "; the nearest pose known to fit: ";
-  m_reason += m_refusal->nearest ? textOf(*m_refusal->nearest) : "none";
-  if (!m_options.driveToNearest || !m_refusal->nearest) return;
-  m_aim = *m_refusal->nearest;
+/** Says that the goal does not fit, and offers the nearest pose that does, unless that is as good.
+ * \return whether it drives there from now on */
+bool DriveGuide::aimsElsewhere(const Situation& now) {
+  const auto nearest = nearestFit(m_planner, now.state.pose, now.z, m_goal, m_options.nearestWithin,
+                                  m_options.frontiers);
+  const bool asGood = nearest && m_options.isAsGood(*nearest, m_goal);
+  if (!asGood) {
+    m_refusal = RefusedGoal{describe(*m_misfit, m_aim, m_planner.ground().map().classes()), nearest,
+                            now.seconds};
+    m_reason = m_refusal->reason + "; the nearest pose known to fit: ";
+    m_reason += nearest ? textOf(*nearest) : "none";
+  }
+  if (!nearest || !(asGood || m_options.driveToNearest)) return false;
+  m_aim = *nearest;
   m_planned = false;
+  return true;
 }
 
 /** Along the vehicle's own track to where it can plan, and a little on: what is close to it may be

@@ -1,4 +1,7 @@
+#include <mrpt/math/wrap2pi.h>
 #include <semantic_driving/GuideOptions.h>
+
+#include <cmath>
 
 namespace semantic_driving {
 
@@ -46,7 +49,10 @@ void GuideOptions::describe(OptionList& list) {
            "of a goal that does not fit, where the nearest pose that fits is looked for");
   list.add("drive_to_nearest", driveToNearest, "",
            "drives to that pose; or stops, and only says which it is");
-  list.add("at_goal", atGoal, "m", above(0), "so near to the goal's place is there");
+  list.add(
+      "at_goal", atGoal, "m", above(0),
+      "so near to the goal's place is there; where it does not fit, a pose that does within 0.7 "
+      "of that, headed within 23 degrees, takes its place");
   list.add("at_rest", atRest, "m/s", above(0), "a slower vehicle stands");
   describeChanges(*this, list);
   list.add("near_frontier", nearFrontier, "m", atLeast(0),
@@ -57,6 +63,13 @@ void GuideOptions::describe(OptionList& list) {
            "back on the track beyond where planning is possible again");
   list.add("most_times_back", mostTimesBack, "", atLeast(0),
            "back on the track without a plan between, before there is no path");
+}
+
+bool GuideOptions::isAsGood(const mrpt::math::TPose2D& pose,
+                            const mrpt::math::TPose2D& goal) const {
+  constexpr double kShare = 0.7, kHeading = 0.4;  // of what counts as there; rad
+  return std::hypot(pose.x - goal.x, pose.y - goal.y) <= kShare * atGoal &&
+         std::abs(mrpt::math::wrapToPi(pose.phi - goal.phi)) <= kHeading;
 }
 
 void GuideOptions::validate() const {

@@ -159,10 +159,9 @@ Transition after(GuideState state, const SeekBack&, const Answer& answer,
 }
 
 /** Another goal, or none. */
-Transition after(GuideState state, const SeekNearest&, const Answer& answer,
-                 const GuideOptions& options) {
+Transition after(GuideState state, const SeekNearest&, const Answer& answer, const GuideOptions&) {
   state.misfitSince.reset();
-  if (!answer.found || !options.driveToNearest) {
+  if (!answer.found) {
     const bool stands = does<Idle>(state);
     state.activity = GaveUp{};
     return {state, stands ? Action(Stop{}) : ComeToRest{}};

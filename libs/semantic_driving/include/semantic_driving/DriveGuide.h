@@ -96,7 +96,7 @@ class DriveGuide {
   std::optional<DrivePath> toFrontier(const Departure& from, bool last, bool& enclosed);
   std::optional<DrivePath> recovery(const Situation& now, bool blind);
   std::optional<DrivePath> back(const Situation& now) const;
-  void refuse(const Situation& now);
+  bool aimsElsewhere(const Situation& now);
 
   GuideOptions m_options;
   semantic_planning::SemanticPlanner& m_planner;

@@ -50,6 +50,8 @@ struct GuideOptions {
     return speed * speed / (2 * (restBraking * drive.braking())) +
            speed * delayOfStop(drive.maxAcceleration / 2, drive);
   }
+  /** Who is there is at the goal, though not to the last centimeter. */
+  bool isAsGood(const mrpt::math::TPose2D& pose, const mrpt::math::TPose2D& goal) const;
   /** Of all. \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };

@@ -94,7 +94,7 @@ struct SeekRecovery {
   bool blind = false;
 };
 struct SeekBack {};
-/** The pose nearest to a goal that does not fit. */
+/** The pose nearest to a goal that does not fit, if it drives there in its place. */
 struct SeekNearest {};
 using Action = std::variant<GoOn, Stop, ComeToRest, Follow, SeekGoal, SeekFrontier, SeekRecovery,
                             SeekBack, SeekNearest>;
