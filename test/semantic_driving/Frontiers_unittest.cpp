@@ -80,6 +80,15 @@ TEST_F(Frontiers, CostTheWayThereAndTwiceThatThroughTheUnknown) {
   EXPECT_GE(ahead, 2);
 }
 
+TEST_F(Frontiers, OfAGoalAMillionKilometersAwayAreThoseTowardsIt) {
+  for (const double side : {1.0, -1.0}) {
+    const Exploration found = explore({side * 1e9, 0, 0}, {}, turningFor(0));
+    ASSERT_FALSE(found.frontiers.empty());
+    EXPECT_GT(side * found.frontiers[0].pose.x, 6);
+    EXPECT_NEAR(found.hoped, 2e9, 10);
+  }
+}
+
 TEST_F(Frontiers, OverWorseClassesCostTheirRankMore) {
   world.floor(-8, 8, -8, 8, PaintedWorld::Grass);
   const TPose2D goal(30.1, 4.1, 0);

@@ -2,6 +2,7 @@
 #include <semantic_planning/ground/Column.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 
 namespace semantic_driving {
@@ -26,8 +27,10 @@ class ColumnSquare {
   }
 
  private:
-  int far(semantic_planning::Column c) const {
-    return std::max(std::abs(c.x - m_center.x), std::abs(c.y - m_center.y));
+  /** Of columns anywhere. */
+  std::int64_t far(semantic_planning::Column c) const {
+    return std::max(std::abs(std::int64_t{c.x} - m_center.x),
+                    std::abs(std::int64_t{c.y} - m_center.y));
   }
 
   semantic_planning::Column m_center;

@@ -27,13 +27,25 @@ WayLeft::WayLeft(const SemanticPlanner& planner, const GroundFlood& flood, const
 
 void WayLeft::start(const TPose2D& goal, double around) {
   const Column c = m_ground.columnAt(goal.x, goal.y);
-  if (!m_square.contains(c)) return goAround(goal.x, goal.y, 0);
+  if (!m_square.contains(c)) {
+    m_first = wayTo(goal);
+    return goAround(goal.x, goal.y, 0);
+  }
   const double voxel = m_ground.voxelSize();
   const int reach = m_region.isKept(c) ? static_cast<int>(around / voxel) : 0;
   for (int y = -reach; y <= reach; ++y)
     for (int x = -reach; x <= reach; ++x)
       if (std::hypot(x, y) <= reach)
         offer({c.x + x, c.y + y}, m_unknown * voxel * std::hypot(x, y));
+}
+
+/** From the square, at least; weighted meters. */
+double WayLeft::wayTo(const TPose2D& goal) const {
+  const Column low = m_square.columnOf(0), high = m_square.columnOf(m_square.size() - 1);
+  const double x = (m_ground.centerOf(low.x) + m_ground.centerOf(high.x)) / 2;
+  const double y = (m_ground.centerOf(low.y) + m_ground.centerOf(high.y)) / 2;
+  const double toCorner = std::hypot(m_ground.centerOf(low.x) - x, m_ground.centerOf(low.y) - y);
+  return m_unknown * std::max(0.0, std::hypot(goal.x - x, goal.y - y) - toCorner);
 }
 
 /** What lies beyond the square is unknown: from one place at the rim to all others. */
@@ -51,7 +63,7 @@ void WayLeft::offer(Column c, double way) {
   const std::size_t i = m_square.indexOf(c);
   if (way >= m_ways[i] || (m_region.isKept(c) && !m_region.isReached(c))) return;
   m_ways[i] = way;
-  const auto bucket = static_cast<std::size_t>(way / m_width);
+  const auto bucket = static_cast<std::size_t>(std::max(0.0, way - m_first) / m_width);
   if (bucket >= m_open.size()) m_open.resize(bucket + 1);
   m_open[bucket].emplace_back(way, i);
 }

@@ -30,6 +30,7 @@ class WayLeft {
   void expand(const Open& open);
   void offer(semantic_planning::Column c, double way);
   void goAround(double x, double y, double way);
+  double wayTo(const mrpt::math::TPose2D& goal) const;
   double costOf(semantic_planning::Column c) const;
 
   const semantic_planning::SemanticPlanner& m_planner;
@@ -37,12 +38,14 @@ class WayLeft {
   const GroundFlood& m_flood;
   const GoalRegion& m_region;
   ColumnSquare m_square;
-  double m_unknown;  ///< what a meter through it counts
-  double m_width;    ///< of a bucket, weighted meters
-  double m_beyond;   ///< the farthest that is reached ways are asked for, weighted meters
+  double m_unknown;    ///< what a meter through it counts
+  double m_width;      ///< of a bucket, weighted meters
+  double m_first = 0;  ///< no way is shorter, weighted meters
+  double m_beyond;     ///< the farthest that is reached ways are asked for, weighted meters
   std::vector<double> m_ways;
-  bool m_around = false;                  ///< the rim is reached
-  std::vector<std::vector<Open>> m_open;  ///< by how often the width fits into the way
+  bool m_around = false;  ///< the rim is reached
+  std::vector<std::vector<Open>>
+      m_open;  ///< by how often the width fits into what a way is longer than the first
 };
 
 }  // namespace semantic_driving
