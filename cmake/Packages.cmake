@@ -47,6 +47,8 @@ foreach(component ${CPACK_COMPONENTS_ALL})
   install(FILES LICENSE RENAME copyright DESTINATION ${folder} COMPONENT ${component} EXCLUDE_FROM_ALL)
   install(FILES ${PROJECT_BINARY_DIR}/debian/changelog.gz DESTINATION ${folder} COMPONENT ${component} EXCLUDE_FROM_ALL)
 endforeach()
+install(FILES cmake/debian/lintian-overrides RENAME ${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME}
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides COMPONENT library EXCLUDE_FROM_ALL)
 
 include(CPack)
 cpack_add_component(library DESCRIPTION "Shared libraries, and the plugin for MRPT's applications")
