@@ -34,10 +34,16 @@ void MapSheet::add(const SemanticOcTree& map, const std::string& title) {
   style.width = m_tile.width, style.height = m_tile.height;
   auto canvas = m_first ? m_first->blank() : MapCanvas::ofMap(map, style);
   if (m_first) canvas.drawMap(map, style);
+  for (const auto& entry : canvas.legend()) explain(entry);
   cv::Mat picture = canvas.picture().clone();
   map_pictures::drawScaleBar(picture, canvas.pixelsPerMeter());
   if (!m_first) m_first = std::move(canvas);
   m_tiles.push_back(map_pictures::withTitle(onPaper(picture, m_tile), title));
+}
+
+void MapSheet::explain(const map_pictures::LegendEntry& entry) {
+  const auto hasName = [&entry](const auto& other) { return other.name == entry.name; };
+  if (std::none_of(m_legend.begin(), m_legend.end(), hasName)) m_legend.push_back(entry);
 }
 
 cv::Mat MapSheet::picture() const {
@@ -52,7 +58,7 @@ cv::Mat MapSheet::picture() const {
   }
   cv::Mat maps;
   cv::vconcat(rows, maps);
-  return withLegend(maps, "", m_first->legend());
+  return withLegend(maps, "", m_legend);
 }
 
 }  // namespace semantic_map_compress

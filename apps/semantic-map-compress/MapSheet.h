@@ -16,13 +16,16 @@ class MapSheet {
   explicit MapSheet(std::size_t numMaps);
 
   void add(const semantic_octree::SemanticOcTree& map, const std::string& title);
-  /** All maps in rows, and to their right the first one's legend. BGR. */
+  /** All maps in rows, and to their right the legend of all. BGR. */
   cv::Mat picture() const;
 
  private:
+  void explain(const map_pictures::LegendEntry& entry);
+
   int m_columns;
   cv::Size m_tile;
   std::optional<map_pictures::MapCanvas> m_first;
+  std::vector<map_pictures::LegendEntry> m_legend;
   std::vector<cv::Mat> m_tiles;
 };
 

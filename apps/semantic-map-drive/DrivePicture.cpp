@@ -118,6 +118,7 @@ cv::Mat DrivePicture::frame(const DriveLoop& loop) const {
                                                         {"goal", kGoal},
                                                         {"robot", kRobotColor}})
     legend.push_back(entry);
+  if (m_compressed) legend.push_back(map_pictures::coarseCellEntry());
   cv::Mat picture;
   cv::copyMakeBorder(canvas.picture(), picture, 0, kBelow, 0, 0, cv::BORDER_CONSTANT,
                      map_pictures::bgr(map_pictures::kPaper));

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <map_pictures/MapCanvas.h>
 #include <rapidcheck/gtest.h>
+#include <semantic_octree/Abstraction.h>
 
 #include <opencv2/imgproc.hpp>
 
@@ -165,6 +166,32 @@ TEST(MapCanvas, theLegendStandsBesideThePictureAndNamesTheMapsClassesFirst) {
   const cv::Mat sheet = c.sheet("plan"), picture = c.withScale();
   EXPECT_EQ(cv::norm(sheet(cv::Rect({0, 0}, picture.size())), picture, cv::NORM_INF), 0);
   EXPECT_GT(count(sheet.colRange(picture.cols, sheet.cols), kPurple), 10);
+}
+
+TEST(MapCanvas, coarseCellsAreHatchedAndTheLegendSaysSo) {
+  auto tree = paintedField();
+  semantic_octree::AbstractionOptions options;
+  options.weights.terms = {tree_abstraction::relevant("wall", 1, {3})};
+  options.weights.alpha = 1;
+  options.blockSize = 1.6;
+  tree.setAbstraction(options);
+  MapCanvas fine = canvas(), coarse = canvas();
+  fine.drawMap(tree, {});
+  coarse.drawMap(semantic_octree::Abstraction(tree).compressedMap(), {});
+  EXPECT_EQ(coarse.legend().size(), fine.legend().size() + 1);
+  EXPECT_EQ(coarse.legend().back().name, map_pictures::coarseCellEntry().name);
+
+  // In the middle of a block nothing is shaded, and columns of 0.2 m are 8 pixels wide.
+  const cv::Vec3b road = pixelOf(kRoad), pale(173, 173, 232);  // 0.35 and 0.65 of the paper
+  int ofEach[2] = {0, 0};
+  for (double x = 1.7; x < 3; x += 0.2)
+    for (double y = 1.7; y < 3; y += 0.2) {
+      EXPECT_EQ(pixelAt(fine, x, y), road);
+      ++ofEach[pixelAt(coarse, x, y) == pale];
+      EXPECT_TRUE(pixelAt(coarse, x, y) == pale || pixelAt(coarse, x, y) == road) << x << ' ' << y;
+      EXPECT_EQ(pixelAt(coarse, x, y), pixelAt(coarse, x + 0.2, y + 0.2)) << "along a stripe";
+    }
+  EXPECT_NEAR(ofEach[0], ofEach[1], 7);
 }
 
 TEST(MapCanvas, theScaleBarIsAsLongAsItSays) {

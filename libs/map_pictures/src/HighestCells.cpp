@@ -5,9 +5,17 @@
 #include <cmath>
 
 #include <map_pictures/Drawing.h>
+#include "Hatching.h"
 #include "Relief.h"
 
 namespace map_pictures {
+
+namespace {
+
+/** Cells of that many columns are coarse; and a hatch has a stripe every so many columns. */
+constexpr int kCoarse = 4, kStripes = 4;
+
+}  // namespace
 
 cv::Rect columnsUnder(const Eigen::Vector2d& center, double size, double edge) {
   const int width = std::max(1, int(std::lround(size / edge)));
@@ -19,10 +27,12 @@ HighestCells::HighestCells(const cv::Rect& columns, double edge)
     : m_columns(columns),
       m_edge(edge),
       m_height(columns.size(), CV_32F, cv::Scalar(NAN)),
-      m_classId(columns.size(), CV_8U, cv::Scalar(0)) {}
+      m_classId(columns.size(), CV_8U, cv::Scalar(0)),
+      m_coarse(columns.size(), CV_8U, cv::Scalar(0)) {}
 
 void HighestCells::add(const Eigen::Vector3d& center, double size, semantic_types::ClassId id) {
-  const cv::Rect seen = columnsUnder(center.head<2>(), size, m_edge) & m_columns;
+  const cv::Rect covered = columnsUnder(center.head<2>(), size, m_edge);
+  const cv::Rect seen = covered & m_columns;
   const float top = float(center.z() + size / 2);
   for (int y = seen.y; y < seen.br().y; ++y)
     for (int x = seen.x; x < seen.br().x; ++x) {
@@ -31,6 +41,7 @@ void HighestCells::add(const Eigen::Vector3d& center, double size, semantic_type
       if (height >= top) continue;
       height = top;
       m_classId.at<std::uint8_t>(pixel) = id;
+      m_coarse.at<std::uint8_t>(pixel) = covered.width >= kCoarse;
     }
 }
 
@@ -55,7 +66,11 @@ cv::Mat HighestCells::inColors(const semantic_types::ClassTable& classes) const 
 }
 
 cv::Mat HighestCells::inRelief(const semantic_types::ClassTable& classes) const {
-  cv::Mat picture = inColors(classes);
+  cv::Mat_<cv::Vec3b> picture = inColors(classes);
+  for (int row = 0; row < picture.rows; ++row)
+    for (int col = 0; col < picture.cols; ++col)
+      if (m_coarse.at<std::uint8_t>(row, col))
+        picture(row, col) = hatched(picture(row, col), col, row, kStripes);
   shadeByRelief(picture, m_height, m_edge);
   return picture;
 }

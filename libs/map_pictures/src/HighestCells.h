@@ -23,14 +23,17 @@ class HighestCells {
   /** A pixel per column in its class's color, paper where there is nothing; the first row is that
    * of the largest y. */
   cv::Mat inColors(const semantic_types::ClassTable& classes) const;
-  /** The same, shaded as maps are. */
+  /** The same, shaded as maps are, coarse cells hatched: there is something of that class in them,
+   * but they are not full of it. */
   cv::Mat inRelief(const semantic_types::ClassTable& classes) const;
+  bool showsCoarseCells() const { return cv::countNonZero(m_coarse) > 0; }
 
  private:
   cv::Rect m_columns;
   double m_edge;
   cv::Mat m_height;   ///< upper side, m, 32 bit float; NaN: there is nothing
   cv::Mat m_classId;  ///< 8 bit
+  cv::Mat m_coarse;   ///< 8 bit; not 0 where the cell is many columns wide
 };
 
 }  // namespace map_pictures

@@ -118,6 +118,7 @@ void MapCanvas::drawCells(const MapCells& map, const SemanticOcTree& tree) {
         nearestPixel(at(columns.x * edge, columns.br().y * edge)), m_picture);
   const auto legend = classLegend(tree.classes(), map.countClasses(tree.numClasses()));
   m_legend.insert(m_legend.begin(), legend.begin(), legend.end());
+  if (highest.showsCoarseCells()) explain(coarseCellEntry());
 }
 
 void MapCanvas::fillSquare(const Eigen::Vector2d& center, double edge, const Color& color) {

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 
+#include "Hatching.h"
+
 namespace map_pictures {
 
 using semantic_types::ClassId;
@@ -60,6 +62,14 @@ struct Sample {
     cv::rectangle(sheet, place, bgr(color), cv::FILLED);
     cv::rectangle(sheet, place, bgr(kInk), 1, cv::LINE_AA);
   }
+  void operator()(const Hatch& hatch) const {
+    constexpr int kStripes = 8;
+    const cv::Vec3b color(hatch.color.b, hatch.color.g, hatch.color.r);
+    for (int y = 0; y < place.height; ++y)
+      for (int x = 0; x < place.width; ++x)
+        sheet.at<cv::Vec3b>(place.tl() + cv::Point(x, y)) = hatched(color, x, y, kStripes);
+    cv::rectangle(sheet, place, bgr(kInk), 1, cv::LINE_AA);
+  }
   void operator()(const Stroke& stroke) const {
     const double middle = place.y + place.height / 2.0;
     drawLine(sheet, {{double(place.x), middle}, {double(place.br().x), middle}}, stroke);
@@ -88,6 +98,10 @@ std::vector<LegendEntry> classLegend(const semantic_types::ClassTable& classes,
     entries.push_back({i == 0 ? "no class" : classes.name(id), colorOf(id, classes)});
   }
   return entries;
+}
+
+LegendEntry coarseCellEntry() {
+  return {"coarse cell with some of it", Hatch{semantic_types::kColorWithoutClass}};
 }
 
 int legendHeight(std::size_t entries) { return int(entries) * kRow + 2 * kMargin; }

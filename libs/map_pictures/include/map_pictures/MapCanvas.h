@@ -37,9 +37,9 @@ class MapCanvas {
   }
 
   /** The map from above: per column the highest occupied cell in the color of its likeliest class
-   * (gray: none), shaded by the relief. Its classes are the first entries of the legend.
-   * \param style its heights and occupancy
-   * \throw std::invalid_argument as PictureStyle::validate(). */
+   * (gray: none), shaded by the relief; cells much coarser than the finest are hatched, for they
+   * are not full of that class. Its classes are the first entries of the legend. \param style its
+   * heights and occupancy \throw std::invalid_argument as PictureStyle::validate(). */
   void drawMap(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
   /** A square with sides along the axes. \param edge m */
   void fillSquare(const Eigen::Vector2d& center, double edge, const Color& color);

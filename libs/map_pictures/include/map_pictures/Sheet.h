@@ -7,16 +7,24 @@
 
 namespace map_pictures {
 
-/** A name, and how that looks in the picture: an area's color, a line, or a pose. */
+/** How coarse cells are drawn: stripes in a color and a paler one. */
+struct Hatch {
+  Color color;
+};
+
+/** A name, and how that looks in the picture: an area's color, a hatch, a line, or a pose. */
 struct LegendEntry {
   std::string name;
-  std::variant<Color, Stroke, Arrow> look;
+  std::variant<Color, Hatch, Stroke, Arrow> look;
 };
 
 /** The classes that are there, the most frequent first, and "no class" at the end.
  * \param counts how much of each class, [0] of none */
 std::vector<LegendEntry> classLegend(const semantic_types::ClassTable& classes,
                                      const std::vector<std::size_t>& counts);
+
+/** What the hatch of MapCanvas::drawMap() means. */
+LegendEntry coarseCellEntry();
 
 /** The picture with all of the legend to its right, in as many columns as that needs. */
 cv::Mat withLegend(const cv::Mat& picture, const std::string& title,
