@@ -101,7 +101,7 @@ void StationSearch::connect(const Place& from, Place& to, const WayPricing& pric
     const bool forward = endOf(connection.curve).forward;
     const Length limit = this->limit(to, forward);
     if (!before || cost >= limit) continue;
-    evaluate(connection, limit - cost);
+    evaluate(connection, limit - cost, pricing);
     if (!connection.profile) continue;
     cost += pricing.of(*connection.profile);
     if (cost < limit) to.labels[forward ? 0 : 1] = {cost, &connection, before, true};
@@ -121,13 +121,15 @@ StationSearch::Span StationSearch::connections(const Place& from, Place& to) {
   return span;
 }
 
-void StationSearch::evaluate(Connection& connection, Length most) {
-  if (connection.state == Connection::Known) return;
-  constexpr double kSlack = 1e-3;  // m: lengths are rounded
-  m_budget.left = colored_graph::toMeters(most) + kSlack;
+void StationSearch::evaluate(Connection& connection, Length most, const WayPricing& pricing) {
+  constexpr Length kSlack = 10;  // lengths are rounded
+  if (connection.state == Connection::Known || pricing.of(connection.seen) - kSlack > most) return;
+  m_budget.left = colored_graph::toMeters(most) + colored_graph::toMeters(kSlack);
   connection.profile =
       m_checker.profile(connection.curve, connection.from, connection.to, &m_budget);
-  connection.state = m_budget.isSpent() ? Connection::Costly : Connection::Known;
+  const bool isForbidden = std::isinf(m_budget.left);  // in other runs, too
+  connection.state = m_budget.isSpent() && !isForbidden ? Connection::Costly : Connection::Known;
+  if (connection.state == Connection::Costly) connection.seen.swap(m_budget.seen);
 }
 
 std::pair<const StationSearch::Label*, Length> StationSearch::leastBefore(

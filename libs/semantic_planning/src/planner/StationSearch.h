@@ -69,8 +69,9 @@ class StationSearch {
     ReedsSheppCurve curve;
     int from, to;  ///< keys of the surfaces
     Length price;
-    enum { New, Costly, Known } state = New;  ///< costly: too much so, in the present run at least
+    enum { New, Costly, Known } state = New;  ///< costly: too much so, in one run at least
     std::optional<colored_graph::EdgeProfile> profile;  ///< if known; none: it cannot be driven
+    colored_graph::EdgeProfile seen;                    ///< if costly: the part that was looked at
   };
   /** A place from which a curve may lead on. */
   struct Origin {
@@ -85,8 +86,9 @@ class StationSearch {
   Length limit(const Place& to, bool forward) const;
   void connect(const Place& from, Place& to, const WayPricing& pricing);
   Span connections(const Place& from, Place& to);
-  /** Looks at a curve unless its classes cost more than `most`. */
-  void evaluate(Connection& connection, Length most);
+  /** Looks at a curve until its classes cost more than `most`, or not at all where those of the
+   * part that is known do. */
+  void evaluate(Connection& connection, Length most, const WayPricing& pricing);
   /** The least cost up to where a connection's curve has been driven, its classes left out. */
   std::pair<const Label*, Length> leastBefore(const Place& from,
                                               const Connection& connection) const;

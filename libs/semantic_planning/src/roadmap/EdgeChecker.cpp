@@ -14,20 +14,20 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-int piecesOf(double length, double longest) {
-  return std::max(1, static_cast<int>(std::ceil(length / longest)));
+/** Lengths by class, meters, in the graph's units. */
+EdgeProfile roundedDown(const std::vector<double>& lengths) {
+  EdgeProfile profile;
+  for (std::size_t id = 0; id < lengths.size(); ++id)
+    if (lengths[id] > 0)
+      profile.push_back({static_cast<ClassId>(id), colored_graph::lengthDown(lengths[id])});
+  return profile;
 }
 
-/** Lengths by class, meters, in the graph's units; they add up to the total. */
+/** They add up to the total. */
 EdgeProfile rounded(const std::vector<double>& lengths, double total) {
-  EdgeProfile profile;
+  EdgeProfile profile = roundedDown(lengths);
   colored_graph::Length left = colored_graph::lengthUp(total);
-  for (std::size_t id = 0; id < lengths.size(); ++id) {
-    if (lengths[id] <= 0) continue;
-    const auto length = std::min(left, colored_graph::lengthDown(lengths[id]));
-    profile.push_back({static_cast<colored_graph::GraphClass>(id), length});
-    left -= length;
-  }
+  for (auto& stretch : profile) left -= stretch.length = std::min(left, stretch.length);
   const auto longest =
       std::max_element(profile.begin(), profile.end(),
                        [](const auto& l, const auto& r) { return l.length < r.length; });
@@ -278,7 +278,7 @@ std::optional<EdgeProfile> EdgeChecker::profile(const GroundPose& a, const Groun
 
 std::optional<EdgeProfile> EdgeChecker::profile(const ReedsSheppCurve& curve, int from, int to,
                                                 ClassBudget* budget) const {
-  const int n = piecesOf(curve.length(), m_piece);
+  const int n = std::max(1, static_cast<int>(std::ceil(curve.length() / m_piece)));
   const double piece = curve.length() / n;
   Lengths lengths(m_order.classes());
   Sweep sweep(*this, Placement(curve.from()), from);
@@ -287,7 +287,9 @@ std::optional<EdgeProfile> EdgeChecker::profile(const ReedsSheppCurve& curve, in
     return sweep.moveTo(placed) && sweep.addClasses(placed, piece, lengths) &&
            (!budget || pay(*budget, sweep.worst(), piece));
   };
-  if (!walkCurve(curve, n, counts, fits)) return std::nullopt;
+  const bool isFree = walkCurve(curve, n, counts, fits);
+  if (budget && budget->isSpent()) budget->seen = roundedDown(lengths);
+  if (!isFree) return std::nullopt;
   if (std::abs(sweep.z() - to) > m_ground.step()) return std::nullopt;
   EdgeProfile profile = rounded(lengths, curve.length());
   if (profile.empty()) profile.push_back({classAt({curve.from(), from}), 0});  // without length
