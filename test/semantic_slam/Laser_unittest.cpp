@@ -18,10 +18,10 @@ const std::filesystem::path kLog =
 
 using Path = std::vector<Eigen::Isometry3d>;
 
-/** A laser scanner's scans, as points in the robot's frame, and odometry. */
+/** A laser scanner's scans, where it sat on the robot, and odometry. */
 struct Drive {
   std::vector<LabeledCloud> clouds;
-  Path odometry;
+  Path T_robot_sensor, odometry;
 
   Drive() {
     const semantic_types::ClassTable classes;
@@ -30,9 +30,8 @@ struct Drive {
     labeled_cloud::ScanStream stream({kLog}, converter, trajectory, nullptr);
     while (auto read = stream.next()) {
       if (!read->scan) continue;
-      const Eigen::Isometry3f T_robot_sensor = isometry(read->scan->T_robot_sensor).cast<float>();
       clouds.push_back(read->scan->cloud);
-      for (Eigen::Vector3f& p : clouds.back().points) p = T_robot_sensor * p;
+      T_robot_sensor.push_back(isometry(read->scan->T_robot_sensor));
       odometry.push_back(isometry(read->T_map_robot));
     }
   }
@@ -72,7 +71,7 @@ double blurOf(const Drive& drive, const Path& poses) {
   for (std::size_t i = 0; i < poses.size(); ++i)
     for (const Eigen::Vector3f& p : drive.clouds[i].points) {
       if (p.norm() > 15) continue;
-      const Eigen::Vector2d q = (poses[i] * p.cast<double>()).head<2>();
+      const Eigen::Vector2d q = (poses[i] * drive.T_robot_sensor[i] * p.cast<double>()).head<2>();
       if (2 * i < poses.size()) {
         first.add(q);
       } else {
@@ -92,7 +91,7 @@ TEST(Slam, closesTheLoopOfARealLaserScanner) {
   Slam slam({});
   std::vector<Slam::Added> added;
   for (std::size_t i = 0; i < drive.clouds.size(); ++i)
-    added.push_back(slam.add(drive.clouds[i], Eigen::Isometry3d::Identity(), drive.odometry[i]));
+    added.push_back(slam.add(drive.clouds[i], drive.T_robot_sensor[i], drive.odometry[i]));
   EXPECT_GT(slam.numLoops(), 0u);
   Path corrected;
   for (const Slam::Added& a : added)
