@@ -79,7 +79,7 @@ struct Cli {
                                 "Time each insertion without upkeep of the abstraction, too");
     auto* corrected = app.add_flag("--slam", slam,
                                    "Correct the poses: register scans to each other, close loops; "
-                                   "for LiDARs and RGB-D cameras")
+                                   "for LiDARs, RGB-D cameras, laser scanners")
                           ->excludes(upkeep);
     app.add_option("--reference", reference,
                    "Map that is there already (.semantic, or a folder of tiles): poses are "

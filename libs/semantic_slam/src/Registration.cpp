@@ -1,6 +1,8 @@
 #include <semantic_slam/Registration.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 #include <random>
 #include <unordered_map>
 
@@ -19,6 +21,8 @@ constexpr double kNarrowest = 0.3;
 /** Squared distances, in standard deviations, at which a point's weight is a quarter, and up to
  * which it matches. */
 constexpr double kScale = 9, kMatch = 9;
+/** Sines of beams' heights, up to which they are horizontal: a laser scanner, somewhat tilted. */
+constexpr float kHorizontal = 0.03f;
 
 Eigen::Array3i cubeOf(const Eigen::Vector3d& p, double edge) {
   return (p.array() / edge).floor().cast<int>();
@@ -83,26 +87,38 @@ void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cl
   }
 }
 
-void Submap::finish() {
+auto Submap::distributionOf(const Sum& s) const -> Distribution {
   const double ofFilledCube = 12 / (m_cellSize * m_cellSize);
+  const Eigen::Vector3d mean = s.sum / s.n;
+  Eigen::Matrix3d covariance = s.squares / s.n - mean * mean.transpose();
+  // What a plane of beams says of height is zero: it is made the widest axis, then left out.
+  if (m_isPlanar) {
+    covariance.row(2).setZero();
+    covariance.col(2).setZero();
+    covariance(2, 2) = covariance.trace() + 1;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+  Eigen::Vector3d variances = axes.eigenvalues().cwiseMax(kThinnest * kThinnest);
+  if (!m_isPlanar) variances[1] = std::max(variances[1], kNarrowest * variances[2]);
+  const auto along = [&axes](const Eigen::Vector3d& values) -> Eigen::Matrix3d {
+    return axes.eigenvectors() * values.asDiagonal() * axes.eigenvectors().transpose();
+  };
+  Eigen::Vector3d information = variances.cwiseInverse();
+  if (m_isPlanar) information[2] = 0;
+  return {mean, along(information), along((information.array() - ofFilledCube).max(0).matrix())};
+}
+
+void Submap::finish() {
   for (const auto& [key, s] : m_sums) {
     if (s.n < kFewestPoints) continue;
-    const Eigen::Vector3d mean = s.sum / s.n;
-    const Eigen::Matrix3d covariance = s.squares / s.n - mean * mean.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
-    Eigen::Vector3d variances = axes.eigenvalues().cwiseMax(kThinnest * kThinnest);
-    variances[1] = std::max(variances[1], kNarrowest * variances[2]);
     Eigen::Vector3d corner;
     for (int i = 0; i < 3; ++i) {
       const auto bits = static_cast<std::int64_t>(key >> (8 + 18 * (2 - i)) & 0x3ffff);
       corner[i] = static_cast<double>(bits >= 0x20000 ? bits - 0x40000 : bits) * m_cellSize;
     }
-    const auto along = [&axes](const Eigen::Vector3d& values) -> Eigen::Matrix3d {
-      return axes.eigenvectors() * values.asDiagonal() * axes.eigenvectors().transpose();
-    };
-    const Eigen::Vector3d information = variances.cwiseInverse();
-    m_distributions[key] = {corner + mean, along(information),
-                            along((information.array() - ofFilledCube).max(0).matrix())};
+    Distribution d = distributionOf(s);
+    d.mean += corner;
+    m_distributions[key] = d;
   }
   m_sums.clear();
 }
@@ -128,6 +144,13 @@ auto Submap::find(const Eigen::Vector3d& point, ClassId id, double& squaredDista
       look(beside);
     }
   return best;
+}
+
+bool isHorizontal(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor) {
+  const Eigen::Vector3f up = T_robot_sensor.linear().row(2).transpose().cast<float>();
+  return std::all_of(cloud.points.begin(), cloud.points.end(), [&up](const Eigen::Vector3f& p) {
+    return std::abs(up.dot(p)) <= kHorizontal * p.norm();
+  });
 }
 
 LabeledCloud thinned(const LabeledCloud& cloud, double cubeSize, double maxRange) {

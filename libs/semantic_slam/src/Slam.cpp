@@ -79,6 +79,7 @@ void Slam::setReference(const semantic_octree::SemanticOcTree& map) {
 auto Slam::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
                const Eigen::Isometry3d& T_odometry_robot) -> Added {
   const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
+  m_isPlanar = m_isPlanar && isHorizontal(cloud, T_robot_sensor);
   if (m_keyframes.empty()) {
     Seen first = seen(cloud, T_robot_sensor, T_odometry_robot);
     const auto found = findInReference(first, T_odometry_robot);
@@ -102,7 +103,7 @@ auto Slam::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_senso
   }
   const double way = T_guess.translation().norm();
   m_edges.push_back({last, last + 1, T_last_robot,
-                     registered ? registered->information : odometryInformation(way)});
+                     registered ? registered->information : odometryInformation(way, T_guess)});
   if (!registered) ++m_numLost;
   begin(std::move(now), rigid(m_poses.back() * T_last_robot));
   m_keyframes.back().way = m_keyframes[last].way + way;
@@ -138,8 +139,8 @@ std::optional<Registration> Slam::track(const Seen& seen, const Eigen::Isometry3
   const auto before = static_cast<std::size_t>(m_options.submapKeyframes) - 1;
   if (m_nearby.empty())
     m_nearby = submapsOf(last - std::min(last, before), last, last, kCellsNearby);
-  const double way = (m_T_odometry_last.inverse() * seen.T_odometry_robot).translation().norm();
-  const Matrix6 information = odometryInformation(way);
+  const Eigen::Isometry3d T_step = m_T_odometry_last.inverse() * seen.T_odometry_robot;
+  const Matrix6 information = odometryInformation(T_step.translation().norm(), T_step);
   Registration r = match(m_nearby, seen, T_last_guess, information / kOwnInformation);
   if (r.matchedShare < m_options.registrationShare ||
       isFar(T_last_guess.inverse() * r.T_submap_scan, information))
@@ -150,15 +151,16 @@ std::optional<Registration> Slam::track(const Seen& seen, const Eigen::Isometry3
   return r;
 }
 
-Matrix6 Slam::odometryInformation(double way) const {
-  const double root = std::sqrt(way);
-  return informationOf(0.01 + m_options.odometryShare * root,
-                       (0.1 + m_options.odometryAngle * root) * kDegree);
+Matrix6 Slam::odometryInformation(double way, const Eigen::Isometry3d& T_step) const {
+  const double root = std::sqrt(way), turned = vectorOf(T_step).tail<3>().norm();
+  return informationOf(
+      0.01 + m_options.odometryShare * root,
+      (0.1 + m_options.odometryAngle * root) * kDegree + m_options.odometryTurn * turned);
 }
 
 Eigen::Isometry3d Slam::levelled(const Eigen::Isometry3d& T_map_robot,
                                  const Eigen::Isometry3d& T_odometry_robot) const {
-  if (!m_options.level) return T_map_robot;
+  if (!isLevel()) return T_map_robot;
   return rigid(planar(T_map_robot) * planar(T_odometry_robot).inverse() * T_odometry_robot);
 }
 
@@ -166,7 +168,7 @@ std::vector<Submap> Slam::submapsOf(std::size_t first, std::size_t last, std::si
                                     const std::vector<double>& cellSizes) const {
   std::vector<Submap> submaps;
   for (const double size : cellSizes) {
-    submaps.emplace_back(size, m_options.useClasses);
+    submaps.emplace_back(size, m_options.useClasses, m_isPlanar);
     for (std::size_t k = first; k <= last; ++k)
       submaps.back().add(m_keyframes[k].seen.cloud, m_poses[frame].inverse() * m_poses[k]);
     submaps.back().finish();
@@ -175,7 +177,7 @@ std::vector<Submap> Slam::submapsOf(std::size_t first, std::size_t last, std::si
 }
 
 Matrix6 Slam::levelOf(const Eigen::Isometry3d& T_odometry_robot) const {
-  if (!m_options.level) return Matrix6::Zero();
+  if (!isLevel()) return Matrix6::Zero();
   Matrix6 toLevel = Matrix6::Zero();
   toLevel.topLeftCorner<3, 3>() = toLevel.bottomRightCorner<3, 3>() =
       (planar(T_odometry_robot).inverse() * T_odometry_robot).linear();
@@ -188,8 +190,11 @@ Registration Slam::match(const std::vector<Submap>& submaps, const Seen& seen,
                          const Eigen::Isometry3d& T_submap_guess, const Matrix6& prior) const {
   std::vector<const Submap*> pointers;
   for (const Submap& submap : submaps) pointers.push_back(&submap);
+  const Matrix6 known = prior + levelOf(seen.T_odometry_robot);
+  // Of a plane there are but squares, few enough.
+  if (m_isPlanar) return registerScan(pointers, seen.cloud, T_submap_guess, known);
   return registerScan(pointers, thinned(seen.cloud, kRegisteredCube, m_options.maxRange),
-                      T_submap_guess, prior + levelOf(seen.T_odometry_robot));
+                      T_submap_guess, known);
 }
 
 std::size_t Slam::placeOfLoop() const {
@@ -210,10 +215,11 @@ std::size_t Slam::placeOfLoop() const {
 }
 
 bool Slam::agree(const PoseEdge& before, const PoseEdge& edge) const {
-  const Eigen::Isometry3d T_map_by_before =
-      m_poses[before.a] * before.T_a_b * (m_poses[before.b].inverse() * m_poses[edge.b]);
+  const Eigen::Isometry3d T_step = m_poses[before.b].inverse() * m_poses[edge.b];
+  const Eigen::Isometry3d T_map_by_before = m_poses[before.a] * before.T_a_b * T_step;
   const double way = m_keyframes[edge.b].way - m_keyframes[before.b].way;
-  return !isFar(T_map_by_before.inverse() * m_poses[edge.a] * edge.T_a_b, odometryInformation(way));
+  return !isFar(T_map_by_before.inverse() * m_poses[edge.a] * edge.T_a_b,
+                odometryInformation(way, T_step));
 }
 
 bool Slam::confirm(std::optional<PoseEdge>& last, const PoseEdge& edge) {

@@ -16,12 +16,16 @@ void SlamOptions::describe(strict_files::OptionList& list) {
   list.add("use_classes", useClasses, "", "points fit only what is of their class");
   list.add("register_all", registerAll, "",
            "scans between keyframes are registered, too; else they are where odometry has them");
-  list.add("level", level, "", "odometry knows height, roll and pitch, as with an IMU");
+  list.add("level", level, "",
+           "odometry knows height, roll and pitch, as with an IMU; so it is if all beams are "
+           "horizontal");
   list.add("max_range", maxRange, "m", above(0), "points beyond it are not registered");
   list.add("cube_size", cubeSize, "m", above(0), "of the points in such a cube one is used");
   list.add("odometry_share", odometryShare, "m", atLeast(0),
            "standard deviation of odometry after a meter; grows with the square root of the way");
   list.add("odometry_angle", odometryAngle, "degrees", atLeast(0), "of its headings; grows alike");
+  list.add("odometry_turn", odometryTurn, "", atLeast(0),
+           "so much more of its headings, of the angle turned since");
   list.add("registration_share", registrationShare, "", between(0, 1),
            "of a keyframe's points that have to fit those before it; else odometry has to do");
   list.add("loop_length", loopLength, "m", above(0), "of the way between a loop's ends, at least");

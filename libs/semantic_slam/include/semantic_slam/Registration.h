@@ -12,8 +12,11 @@ using semantic_types::LabeledCloud;
 /** Points in cubes: of each cube, and of each class in it, mean and covariance. */
 class Submap {
  public:
-  /** \param cellSize edge of a cube, meters \param useClasses false: all points are of one class */
-  Submap(double cellSize, bool useClasses) : m_cellSize(cellSize), m_useClasses(useClasses) {}
+  /** \param cellSize edge of a cube, meters \param useClasses false: all points are of one class
+   * \param isPlanar points are of horizontal beams: they are compared in x and y alone, and lines
+   * of them are walls, as thin as they seem */
+  Submap(double cellSize, bool useClasses, bool isPlanar = false)
+      : m_cellSize(cellSize), m_useClasses(useClasses), m_isPlanar(isPlanar) {}
 
   void add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud);
   /** Computes the distributions; nothing can be added afterwards. */
@@ -41,12 +44,17 @@ class Submap {
   using Key = std::uint64_t;
   Key keyOf(const Eigen::Array3i& cell, semantic_types::ClassId id) const;
   Eigen::Array3i cellOf(const Eigen::Vector3d& point) const;
+  /** Mean relative to the cube. */
+  Distribution distributionOf(const Sum& sum) const;
 
   double m_cellSize;
-  bool m_useClasses;
+  bool m_useClasses, m_isPlanar;
   std::unordered_map<Key, Sum> m_sums;
   std::unordered_map<Key, Distribution> m_distributions;
 };
+
+/** Whether all beams are, as the robot stands. \param cloud sensor frame */
+bool isHorizontal(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor);
 
 /** One point per cube, drawn from those in it, each as likely (Vitter, "Random Sampling with a
  * Reservoir"), the same each time; none beyond a range. The first ones would be biased: where an

@@ -58,6 +58,8 @@ class Slam {
   Seen seen(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
             const Eigen::Isometry3d& T_odometry_robot) const;
   void begin(Seen seen, const Eigen::Isometry3d& T_map_robot);
+  /** Height and tilt are odometry's: as was said, or because no beam ever told of them. */
+  bool isLevel() const { return m_options.level || m_isPlanar; }
   /** That height and tilt are known, frame of the robot. */
   Matrix6 levelOf(const Eigen::Isometry3d& T_odometry_robot) const;
   /** A scan was registered there. */
@@ -66,8 +68,8 @@ class Slam {
    * odometry has it, frame of the last keyframe
    * \return nothing: it fits badly, or says otherwise than odometry. */
   std::optional<Registration> track(const Seen& seen, const Eigen::Isometry3d& T_last_guess);
-  /** Of a step, frame of its end. \param way meters */
-  Matrix6 odometryInformation(double way) const;
+  /** Of a step, frame of its end. \param way meters \param T_step from beginning to end */
+  Matrix6 odometryInformation(double way, const Eigen::Isometry3d& T_step) const;
   /** Height, roll and pitch as odometry has them. */
   Eigen::Isometry3d levelled(const Eigen::Isometry3d& T_map_robot,
                              const Eigen::Isometry3d& T_odometry_robot) const;
@@ -91,6 +93,7 @@ class Slam {
                      const Eigen::Isometry3d& T_submap_guess, const Matrix6& prior) const;
 
   SlamOptions m_options;
+  bool m_isPlanar = true;  ///< all scans so far had horizontal beams only
   std::vector<Keyframe> m_keyframes;
   std::vector<Eigen::Isometry3d> m_poses;
   std::vector<PoseEdge> m_edges;

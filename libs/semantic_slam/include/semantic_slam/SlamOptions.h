@@ -10,12 +10,13 @@ struct SlamOptions {
   int submapKeyframes = 10;     // that a scan is registered to
   bool useClasses = true;       // a point fits what is of its class only
   bool registerAll = false;     // scans between keyframes, too; else odometry has them
-  bool level = false;           // odometry knows height, roll and pitch
+  bool level = false;           // odometry knows height, roll and pitch; so if beams are horizontal
   double maxRange = 30;         // m; points beyond it are not used
   double cubeSize = 0.25;       // m; one point per cube is used
 
   double odometryShare = 0.01;     // standard deviation of odometry after a meter, m
   double odometryAngle = 0.1;      // the same of its headings, degrees
+  double odometryTurn = 0.05;      // more of its headings, of the angle turned
   double registrationShare = 0.5;  // of the points that fit, at least; else odometry holds alone
 
   double loopLength = 30;   // m of the way, at least, between the ends of a loop
