@@ -1,7 +1,6 @@
 // Makes a semantic octree map, pictures of it and a summary from labeled rawlogs.
 #include <labeled_cloud/RawlogClasses.h>
 #include <labeled_cloud/RawlogTrajectory.h>
-#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_types/ClassTableFile.h>
 #include <strict_files/ErrorMessage.h>
@@ -31,7 +30,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using semantic_map::CSemanticOctoMap;
-using semantic_octree::MapFolder;
 using semantic_octree::SemanticOcTree;
 using semantic_types::ClassTable;
 using strict_files::OutputFolder;
@@ -41,8 +39,8 @@ const std::vector<std::string> kFiles = {"map.semantic",  "summary.json",       
                                          "trajectory.tum"};
 
 struct Cli {
-  fs::path config, output, trajectory, classes, confusion, saveLabeled, preview, tiles, reference;
-  semantic_octree::MapFolderOptions folder;
+  fs::path config, output, trajectory, classes, confusion, saveLabeled, preview, reference;
+  semantic_map::TFolderOptions folder;
   LabelSources labels;
   std::optional<double> resolution, maxRange;
   std::size_t previewEvery = 10;
@@ -93,10 +91,10 @@ struct Cli {
 
   CLI::Option* addTilesTo(CLI::App& app) {
     strict_files::OptionList list;
-    folder.describe(list);
+    folder.tiles.describe(list);
     addOptions(app, list, "Maps larger than memory");
     return app
-        .add_option("--tiles", tiles,
+        .add_option("--tiles", folder.folder,
                     "Folder that the map goes into, tile by tile, added to what is there; "
                     "pictures are for semantic-map-export")
         ->group("Maps larger than memory");
@@ -252,9 +250,8 @@ int run(const Cli& cli) {
   const ClassTable table = classesOf(cli, config);
   CSemanticOctoMap map(config.map.resolution, table, config.insertion.filter);
   map.insertionOptions = config.insertion;
-  std::optional<MapFolder> tiles;
-  if (!cli.tiles.empty())
-    tiles.emplace(map.tree(), cli.tiles, MapFolder::Access::Write, cli.folder);
+  if (!cli.folder.folder.empty())
+    map.openFolder(cli.folder);
   else
     setAbstraction(map, cli, config);
   std::optional<LiveScans> live;
@@ -262,10 +259,10 @@ int run(const Cli& cli) {
   OutputFolder output(cli.output);
 
   const Summary summary = buildMap(cli, config, stop, live ? &*live : nullptr, map, output);
-  writeJson(output.staged("summary.json"), toJson(summary, map.tree(), !tiles));
+  writeJson(output.staged("summary.json"), toJson(summary, map.tree(), !map.folder()));
   std::string problem;
-  if (tiles)
-    tiles->save();
+  if (map.folder())
+    map.folder()->save();
   else
     problem = writeMap(map, config, output);
   output.commit(kFiles);

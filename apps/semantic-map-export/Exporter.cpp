@@ -5,6 +5,7 @@
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ExportOctomap.h>
 #include <semantic_map/SceneFile.h>
+#include <semantic_octree/MapOperations.h>
 
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -138,7 +139,9 @@ void Exporter::writeMapServer(const fs::path& file) {
 }
 
 void Exporter::writeScene(const fs::path& file) {
-  semantic_map::CSemanticOctoMap map(m_map);
+  semantic_octree::SemanticOcTree copy = semantic_octree::emptyLike(m_map);
+  copyTo(copy, m_map);
+  semantic_map::CSemanticOctoMap map(std::move(copy));
   if (m_options.maxHeight) map.renderingOptions.maxHeight = *m_options.maxHeight;
   const auto objects = mrpt_compat::drawing::CSetOfObjects::Create();
   map.getVisualizationInto(*objects);

@@ -76,19 +76,22 @@ std::vector<fs::path> allFiles(const std::vector<fs::path>& files) {
   return all;
 }
 
-/** A scene is made of a copy of the map; neighbors may lie in other tiles than what is gone
- * through.
- */
-bool needsAll(const Cli& cli) {
-  return cli.options.points.smoothing.neighborWeight > 0 ||
-         std::any_of(cli.files.begin(), cli.files.end(),
+bool hasScene(const std::vector<fs::path>& files) {
+  return std::any_of(files.begin(), files.end(),
                      [](const fs::path& file) { return file.extension() == ".3Dscene"; });
+}
+
+/** A scene is made of a copy of the map; neighbors may lie in other tiles than what is gone
+ * through. */
+void prepare(semantic_octree::MapFolder& folder, const Cli& cli) {
+  if (hasScene(cli.files)) folder.checkFits();
+  if (cli.options.points.smoothing.neighborWeight > 0) folder.bringAll();
 }
 
 int run(const Cli& cli) {
   cli.outputs.check(allFiles(cli.files));
   StoredMap map(cli.map, cli.memory);
-  if (map.folder() && needsAll(cli)) map.folder()->bringAll();
+  if (map.folder()) prepare(*map.folder(), cli);
   ExportOptions options = cli.options;
   options.grid.ground = classesNamed(cli.ground, map.tree().classes());
   Exporter exporter(map.tree(), options);

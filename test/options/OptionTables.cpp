@@ -10,7 +10,6 @@
 #include <semantic_driving/ObstacleSensing.h>
 #include <semantic_map/ExportGrid.h>
 #include <semantic_map/MapOptions.h>
-#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/SmoothedView.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 #include <semantic_slam/SlamOptions.h>
@@ -58,10 +57,10 @@ std::vector<OptionTable> mapTables() {
           "the same options, with lists of their own for classes, `prior` and `regions`: see [its "
           "page](../../apps/semantic-map-compress/README.md). How to choose: "
           "[compression](compression.md)."),
-      table<semantic_octree::MapFolderOptions>(
-          "Maps in folders",
-          "`semantic_octree::MapFolder`, `rawlog2semantic-map --tiles`; `--memory` of the programs "
-          "that read maps. See [large maps](large-maps.md)."),
+      table<TFolderOptions>("Maps in folders",
+                            "`_folderOpts`. Of `rawlog2semantic-map`, `folder` is `--tiles`; other "
+                            "programs that read "
+                            "maps have `--memory`. See [large maps](large-maps.md)."),
       table<semantic_slam::SlamOptions>(
           "Poses put right",
           "`[slam]` of `rawlog2semantic-map`, with `--slam`; of drives with noise in the pose."),

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "CachedConverter.h"
+#include "FolderOfMap.h"
 #include "LikelihoodCache.h"
 #include "SensorPose.h"
 
@@ -32,13 +33,14 @@ CSemanticOctoMap::CSemanticOctoMap(SemanticOcTree tree)
 CSemanticOctoMap::~CSemanticOctoMap() = default;
 
 // Those who observe a map do not observe its copies, which is why the base class is not copied.
-CSemanticOctoMap::CSemanticOctoMap(const CSemanticOctoMap& o) : CSemanticOctoMap(o.m_tree) {
+CSemanticOctoMap::CSemanticOctoMap(const CSemanticOctoMap& o) : CSemanticOctoMap(o.wholeTree()) {
   copyAllButTree(o);
 }
 
 CSemanticOctoMap& CSemanticOctoMap::operator=(const CSemanticOctoMap& o) {
   if (this == &o) return *this;
-  m_tree = o.m_tree;
+  checkMayBecomeAnother();
+  m_tree = o.wholeTree();
   copyAllButTree(o);
   return *this;
 }
@@ -58,10 +60,15 @@ void CSemanticOctoMap::copyAllButTree(const CSemanticOctoMap& o) {
 
 void CSemanticOctoMap::setAbstraction(const TAbstractionOptions& options) {
   TAbstractionOptions kept = options;
-  if (options.isSet())
-    m_tree.setAbstraction(options.forClasses(m_tree.classes()));
-  else
-    m_tree.dropAbstraction();
+  try {
+    if (options.isSet())
+      m_tree.setAbstraction(options.forClasses(m_tree.classes()));
+    else
+      m_tree.dropAbstraction();
+  } catch (...) {  // of a map in a folder none is left where a tile cannot be read
+    if (!m_tree.hasAbstraction()) m_abstractionOptions = {};
+    throw;
+  }
   m_abstractionOptions = std::move(kept);
 }
 
@@ -82,11 +89,12 @@ void CSemanticOctoMap::setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> l
 void CSemanticOctoMap::auxParticleFilterCleanUp() { m_likelihoodCache->clear(); }
 
 void CSemanticOctoMap::internal_clear() {
-  m_tree.clear();
+  if (!m_folder || !m_tree.empty()) m_tree.clear();
   m_observationClock = ObservationClock();
 }
 
 std::string CSemanticOctoMap::asString() const {
+  const auto lock = reading();
   std::ostringstream text;
   text << "CSemanticOctoMap: voxels of " << m_tree.getResolution() << " m, " << m_tree.numClasses()
        << " classes, " << m_tree.getNumLeafNodes() << " leaves, "
@@ -144,10 +152,10 @@ semantic_octree::InsertionReport CSemanticOctoMap::insertScan(const LabeledScan&
 
 void CSemanticOctoMap::useFilterOfOptions() {
   if (insertionOptions.filter == m_tree.filterParameters()) return;
-  if (!m_tree.empty())
+  if (!m_tree.empty() || m_folder)
     throw std::logic_error(
         "the filter parameters in insertionOptions are not those that the map was built with; they "
-        "can change only while the map is empty");
+        "can change only while the map is empty, and not in a folder");
   SemanticOcTree tree(m_tree.getResolution(), m_tree.classes(), insertionOptions.filter);
   tree.setPruning(m_tree.pruning());
   if (m_abstractionOptions.isSet())

@@ -31,6 +31,8 @@ void registerMaps() {
 uint8_t CSemanticOctoMap::serializeGetVersion() const { return 2; }
 
 void CSemanticOctoMap::serializeTo(CArchive& out) const {
+  const auto lock = reading();
+  if (m_folder) folder()->checkFits();  // whoever reads the archive has all of it in memory
   out << genericMapParams;
   insertionOptions.writeTo(out);
   likelihoodOptions.writeTo(out);
@@ -49,6 +51,7 @@ void CSemanticOctoMap::serializeFrom(CArchive& in, uint8_t version) {
         "of "
         "its options: load its .semantic file instead");
   if (version != 2) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  checkMayBecomeAnother();
   mrpt::maps::TMapGenericParams generic;
   TInsertionOptions insertion;
   TLikelihoodOptions likelihood;

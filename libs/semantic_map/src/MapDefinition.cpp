@@ -23,6 +23,7 @@ using semantic_types::ClassTable;
 namespace {
 
 constexpr const char* kCreation = "_creationOpts";
+constexpr const char* kFolder = "_folderOpts";
 constexpr const char* kInsertion = "_insertOpts";
 constexpr const char* kLikelihood = "_likelihoodOpts";
 constexpr const char* kAbstraction = "_abstractionOpts";
@@ -31,7 +32,7 @@ constexpr const char* kRendering = "_renderOpts";
 /** A misspelled section would leave all of its options at their defaults, unnoticed. */
 void refuseUnknownSections(const CConfigFileBase& source, const std::string& prefix) {
   std::vector<std::string> sections, known;
-  for (const char* end : {kCreation, kInsertion, kLikelihood, kAbstraction, kRendering})
+  for (const char* end : {kCreation, kFolder, kInsertion, kLikelihood, kAbstraction, kRendering})
     known.push_back(prefix + end);
   source.getAllSections(sections);
   for (const std::string& section : sections)
@@ -105,6 +106,7 @@ void CSemanticOctoMap::TMapDefinition::loadFromConfigFile_map_specific(
     refuseUnknownNumbers(source, parts);
   }
   creationOpts.loadFromConfigFile(source, prefix + kCreation);
+  folderOpts.loadFromConfigFile(source, prefix + kFolder);
   insertionOpts.loadFromConfigFile(source, prefix + kInsertion);
   likelihoodOpts.loadFromConfigFile(source, prefix + kLikelihood);
   abstractionOpts.loadFromConfigFile(source, prefix + kAbstraction);
@@ -115,6 +117,7 @@ void CSemanticOctoMap::TMapDefinition::saveToConfigFile(CConfigFileBase& target,
                                                         const std::string& prefix) const {
   genericMapParams.saveToConfigFile(target, prefix + kCreation);
   creationOpts.saveToConfigFile(target, prefix + kCreation);
+  folderOpts.saveToConfigFile(target, prefix + kFolder);
   insertionOpts.saveToConfigFile(target, prefix + kInsertion);
   likelihoodOpts.saveToConfigFile(target, prefix + kLikelihood);
   abstractionOpts.saveToConfigFile(target, prefix + kAbstraction);
@@ -127,6 +130,7 @@ void CSemanticOctoMap::TMapDefinition::dumpToTextStream_map_specific(std::ostrea
     options.dumpToTextStream(out);
   };
   dump(kCreation, creationOpts);
+  dump(kFolder, folderOpts);
   dump(kInsertion, insertionOpts);
   dump(kLikelihood, likelihoodOpts);
   dump(kAbstraction, abstractionOpts);
@@ -144,6 +148,7 @@ mrpt_compat::CreatedMap CSemanticOctoMap::internal_CreateFromMapDefinition(
   map->insertionOptions = d.insertionOpts;
   map->likelihoodOptions = d.likelihoodOpts;
   map->renderingOptions = d.renderOpts;
+  if (!d.folderOpts.folder.empty()) map->openFolder(d.folderOpts);
   map->setAbstraction(d.abstractionOpts);
   return mrpt_compat::CreatedMap(map.release());
 }

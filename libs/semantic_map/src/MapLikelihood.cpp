@@ -81,6 +81,7 @@ double CSemanticOctoMap::internal_computeObservationLikelihood(
   const auto scan = scanForLikelihood(observation);
   if (!scan) return 0;
   const auto T_map_sensor = sensorPose(T_map_robot, scan->T_robot_sensor);
+  const auto lock = reading();
   const BeamLikelihood likelihood(m_tree, scan->cloud, T_map_sensor, likelihoodOptions,
                                   insertionOptions.scan);
   double sum = 0;

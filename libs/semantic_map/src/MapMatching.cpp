@@ -109,6 +109,7 @@ void CSemanticOctoMap::determineMatching2D(const CMetricMap* other,
                                            TMatchingPairList& pairs, const TMatchingParams& params,
                                            TMatchingExtraResults& extra) const {
   const CPointsMap& points = pointsOf(other);
+  const auto lock = reading();
   Matcher matcher(m_tree, NearestOccupied::Distance::FromAbove, params);
   matcher.match(points, mrpt::poses::CPose3D(T_this_other));
   matcher.results(points.size(), pairs, extra);
@@ -119,6 +120,7 @@ void CSemanticOctoMap::determineMatching3D(const CMetricMap* other,
                                            TMatchingPairList& pairs, const TMatchingParams& params,
                                            TMatchingExtraResults& extra) const {
   const CPointsMap& points = pointsOf(other);
+  const auto lock = reading();
   Matcher matcher(m_tree, NearestOccupied::Distance::InSpace, params);
   matcher.match(points, T_this_other);
   matcher.results(points.size(), pairs, extra);
@@ -136,6 +138,7 @@ float CSemanticOctoMap::compute3DMatchingRatio(
 }
 
 float CSemanticOctoMap::squareDistanceToClosestCorrespondence(float x, float y) const {
+  const auto lock = reading();
   const NearestOccupied nearest(m_tree, NearestOccupied::Distance::FromAbove);
   const auto voxel = nearest({x, y, 0}, std::numeric_limits<double>::infinity());
   if (!voxel) throw std::logic_error("the map has no occupied voxel");

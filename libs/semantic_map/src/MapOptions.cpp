@@ -113,6 +113,16 @@ void TCreationOptions::describe(OptionList& list) {
 
 void TCreationOptions::validate() const { checkOptions(*this, "TCreationOptions"); }
 
+void TFolderOptions::describe(OptionList& list) {
+  list.add("folder", folder, "",
+           "folder of tiles that the map is in, relative to the working directory. Without: the "
+           "map is in memory");
+  list.add("read_only", readOnly, "", "its map is read, by as many as like, and stays as it is");
+  tiles.describe(list);
+}
+
+void TFolderOptions::validate() const { checkOptions(*this, "TFolderOptions"); }
+
 void TInsertionOptions::describe(OptionList& list) {
   scan.describe(list);
   list.add("max_gap", maxGap, "s", atLeast(0),
@@ -164,6 +174,7 @@ void TRenderingOptions::validate() const {
 }
 
 template class TNamedOptions<TCreationOptions>;
+template class TNamedOptions<TFolderOptions>;
 template class TNamedOptions<TInsertionOptions>;
 template class TNamedOptions<TLikelihoodOptions>;
 template class TNamedOptions<TAbstractionOptions>;

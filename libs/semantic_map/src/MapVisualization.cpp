@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "CellColors.h"
+#include "FolderOfMap.h"
 
 namespace semantic_map {
 
@@ -51,6 +52,11 @@ class VoxelSets {
 }  // namespace
 
 mrpt::math::TBoundingBoxf CSemanticOctoMap::boundingBox() const {
+  const auto lock = reading();
+  return knownBox();
+}
+
+mrpt::math::TBoundingBoxf CSemanticOctoMap::knownBox() const {
   double low[3] = {}, high[3] = {};
   m_tree.getMetricMin(low[0], low[1], low[2]);
   m_tree.getMetricMax(high[0], high[1], high[2]);
@@ -59,8 +65,10 @@ mrpt::math::TBoundingBoxf CSemanticOctoMap::boundingBox() const {
 }
 
 void CSemanticOctoMap::getVisualizationInto(mrpt_compat::drawing::CSetOfObjects& o) const {
-  if (!genericMapParams.enableSaveAs3DObject || m_tree.empty()) return;
+  if (!genericMapParams.enableSaveAs3DObject || isEmpty()) return;
+  const auto lock = reading();
   if (!renderingOptions.compressed || !m_tree.hasAbstraction()) return draw(m_tree, o);
+  if (m_folder) return draw(m_folder->compressed(), o);
   SemanticOcTree copy(m_tree);
   draw(semantic_octree::Abstraction(copy).compressedMap(), o);
 }
@@ -71,12 +79,13 @@ void CSemanticOctoMap::draw(const SemanticOcTree& tree,
   for (auto it = tree.begin_leafs(), end = tree.end_leafs(); it != end; ++it)
     sets.add(*it, {float(it.getX()), float(it.getY()), float(it.getZ())}, it.getSize());
   const auto voxels = sets.take();
-  const auto box = boundingBox();
+  const auto box = knownBox();
   voxels->setBoundingBox(mrpt::math::TPoint3D(box.min), mrpt::math::TPoint3D(box.max));
   o.insert(voxels);
 }
 
 void CSemanticOctoMap::saveMetricMapRepresentationToFile(const std::string& prefix) const {
+  if (m_folder) return m_folder->save();
   semantic_octree::saveTree(m_tree, prefix + ".semantic");
   strict_files::StagedFile file(prefix + ".3Dscene");
   mrpt_compat::Scene scene;

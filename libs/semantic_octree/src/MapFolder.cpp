@@ -78,14 +78,8 @@ TileIndex onlyWanted(TileIndex index, const decltype(MapFolderOptions::wanted)& 
   return index;
 }
 
-/** Of nodes and records, as maps of streets have them: 5 to 7 bytes a leaf. */
-std::uint64_t bytesInMemory(const TileIndex& index) {
-  constexpr std::uint64_t kBytesOfLeaf = 6;
-  std::uint64_t leaves = 0;
-  for (const TileIndex::Tile& tile : index.tiles)
-    leaves += static_cast<std::uint64_t>(tile.nodes - tile.innerNodes);
-  return kBytesOfLeaf * leaves;
-}
+/** Of nodes and records, as maps of streets have them: 5 to 7. */
+constexpr std::uint64_t kBytesOfLeaf = 6;
 
 }  // namespace
 
@@ -134,14 +128,13 @@ class MapFolder::Tiles {
     removeOthers();
   }
 
-  void bringAll(std::optional<std::size_t> most) {
+  void checkFits(std::optional<std::size_t> most) const {
     const std::uint64_t available = most.value_or(strict_files::availableMemory());
-    const std::uint64_t needed = bytesInMemory(tiles->index());
+    const std::uint64_t needed = kBytesOfLeaf * m_map.getNumLeafNodes();
     if (needed > available)
       throw std::runtime_error(m_folder.string() + ": as a whole it needs about " +
                                strict_files::sizeText(needed) + " of memory, and " +
                                strict_files::sizeText(available) + " are left");
-    tiles->bringAll();
   }
 
   std::uint64_t bytesOnDisk() const {
@@ -233,7 +226,12 @@ MapFolder::~MapFolder() = default;
 
 void MapFolder::save() { m->save(); }
 
-void MapFolder::bringAll(std::optional<std::size_t> available) { m->bringAll(available); }
+void MapFolder::checkFits(std::optional<std::size_t> available) const { m->checkFits(available); }
+
+void MapFolder::bringAll(std::optional<std::size_t> available) {
+  m->checkFits(available);
+  m->tiles->bringAll();
+}
 
 std::vector<std::string> MapFolder::problems() { return m->tiles->problems(); }
 

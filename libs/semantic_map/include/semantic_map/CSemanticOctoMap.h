@@ -11,6 +11,7 @@
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -39,6 +40,7 @@ struct InsertionResult {
  * In an .ini file it is `semanticOctoMap_count=1`, with the sections
  *
  *     [<prefix>_semanticOctoMap_00_creationOpts]     TCreationOptions
+ *     [<prefix>_semanticOctoMap_00_folderOpts]       TFolderOptions
  *     [<prefix>_semanticOctoMap_00_insertOpts]       TInsertionOptions
  *     [<prefix>_semanticOctoMap_00_likelihoodOpts]   TLikelihoodOptions
  *     [<prefix>_semanticOctoMap_00_abstractionOpts]  TAbstractionOptions
@@ -56,7 +58,21 @@ struct InsertionResult {
  * other kinds and for those that cannot be used (no points, an unknown class, ...), whose
  * likelihood is 0 at every pose: they tell nothing, and the reason goes to logger() as a warning.
  *
- * Reading, drawing and likelihoods are safe from several threads at a time; all else is not. */
+ * Reading, drawing and likelihoods are safe from several threads at a time; all else is not.
+ *
+ * A map may be in a folder of tiles (TFolderOptions, openFolder()), and larger than memory: what an
+ * observation or a question needs comes in, and goes out by least use. It answers as a map in
+ * memory does, to the last bit. But
+ * - it is saved by saveMetricMapRepresentationToFile() or folder()->save(), and not when it is
+ * gone;
+ * - one map writes into a folder: another one, of this process or another, is refused;
+ * - a copy, and what is read from its archive, is a map of its own in memory, which no folder knows
+ *   of. It is made if there is memory for all of it, else std::runtime_error says how much it
+ * takes;
+ * - clear() of what has content, and becoming another map (assignment, reading an archive) are
+ *   std::logic_error, so that nothing is lost by them;
+ * - threads that read it wait for each other; tree() is for one at a time;
+ * - what is drawn of it is in memory, as a whole. */
 class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   DEFINE_SERIALIZABLE(CSemanticOctoMap, semantic_map)
  public:
@@ -80,6 +96,13 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   TInsertionOptions insertionOptions;
   TLikelihoodOptions likelihoodOptions;
   TRenderingOptions renderingOptions;
+
+  /** Becomes the map of a folder, see there.
+   * \throw std::exception as MapFolder's constructor: also if the map is not empty, or the folder's
+   * has another resolution, other classes or parameters; the map is then as it was. */
+  void openFolder(const TFolderOptions& options);
+  /** Null: the map is in memory. */
+  semantic_octree::MapFolder* folder() const;
 
   /** Keeps G-values from now on, or no longer if no weights are set.
    * \throw std::invalid_argument naming the option and its value. */
@@ -109,7 +132,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   semantic_octree::InsertionReport insertScan(const labeled_cloud::LabeledScan& scan,
                                               const mrpt::poses::CPose3D& T_map_robot);
 
-  bool isEmpty() const override { return m_tree.empty(); }
+  bool isEmpty() const override;
   /** One line: resolution, classes, leaves, bytes. */
   std::string asString() const override;
   /** Of all nodes, also free ones; from 0 to 0 if the map is empty. */
@@ -142,12 +165,14 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
 
   /** Forgets the scan of the last observation whose likelihood was asked for. */
   void auxParticleFilterCleanUp() override;
-  /** Writes PREFIX.semantic, the map's own file, and PREFIX.3Dscene.
+  /** Writes PREFIX.semantic, the map's own file, and PREFIX.3Dscene. A map in a folder saves what
+   * changed there instead, and writes no other files.
    * \throw std::runtime_error a file cannot be written. */
   void saveMetricMapRepresentationToFile(const std::string& prefix) const override;
 
   MAP_DEFINITION_START(CSemanticOctoMap)
   TCreationOptions creationOpts;
+  TFolderOptions folderOpts;
   TInsertionOptions insertionOpts;
   TLikelihoodOptions likelihoodOpts;
   TAbstractionOptions abstractionOpts;
@@ -167,6 +192,14 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   bool internal_canComputeObservationLikelihood(
       const mrpt::obs::CObservation& observation) const override;
 
+  struct Folder;
+  /** Held while a map in a folder is read: tiles come and go. Others have nothing to wait for. */
+  std::unique_lock<std::mutex> reading() const;
+  /** In memory. \throw std::runtime_error there is not enough. */
+  semantic_octree::SemanticOcTree wholeTree() const;
+  /** \throw std::logic_error it is in a folder. */
+  void checkMayBecomeAnother() const;
+  mrpt::math::TBoundingBoxf knownBox() const;
   void draw(const semantic_octree::SemanticOcTree& tree,
             mrpt_compat::drawing::CSetOfObjects& o) const;
   void copyAllButTree(const CSemanticOctoMap& o);
@@ -179,6 +212,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   void useFilterOfOptions();
 
   semantic_octree::SemanticOcTree m_tree;
+  std::unique_ptr<Folder> m_folder;  ///< null: the map is in memory
   TAbstractionOptions m_abstractionOptions;
   std::shared_ptr<labeled_cloud::ImageLabeler> m_labeler;
   InsertionResult m_lastInsertion;

@@ -4,6 +4,7 @@
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/InsertionOptions.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/WeightsFile.h>
 #include <semantic_types/ClassTable.h>
 
@@ -43,6 +44,21 @@ struct TCreationOptions : public TNamedOptions<TCreationOptions> {
   /** File of the class table, relative to the WORKING directory: MRPT does not tell where the .ini
    * file is. Empty: a single class, "occupied". */
   std::string classes;
+
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
+  void validate() const;
+};
+
+/** Where a map is that may be larger than memory: section `[..._folderOpts]`. */
+struct TFolderOptions : public TNamedOptions<TFolderOptions> {
+  /** Folder of tiles, see semantic_octree::MapFolder; relative to the WORKING directory. Empty: the
+   * map is in memory, and the other options mean nothing. */
+  std::string folder;
+  /** The folder's map is read and takes no observations. Otherwise the map is the one that may
+   * write, and the folder may be new. */
+  bool readOnly = false;
+  semantic_octree::MapFolderOptions tiles;
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
@@ -132,6 +148,7 @@ struct TRenderingOptions : public TNamedOptions<TRenderingOptions> {
 const strict_files::Choices<TRenderingOptions::Coloring>& choicesOf(TRenderingOptions::Coloring);
 
 extern template class TNamedOptions<TCreationOptions>;
+extern template class TNamedOptions<TFolderOptions>;
 extern template class TNamedOptions<TInsertionOptions>;
 extern template class TNamedOptions<TLikelihoodOptions>;
 extern template class TNamedOptions<TAbstractionOptions>;

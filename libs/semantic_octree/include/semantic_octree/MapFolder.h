@@ -77,10 +77,11 @@ class MapFolder {
   /** Brings what changed to the disk. If this fails, the map and the folder are what they were.
    * \throw std::runtime_error naming the file; std::logic_error opened to be read. */
   void save();
+  /** \param available bytes of memory; without, those that the system has left
+   * \throw std::runtime_error naming the bytes that the map needs as a whole, if these are more */
+  void checkFits(std::optional<std::size_t> available = {}) const;
   /** Has all tiles in memory, whatever the budget: the map may then outlive this.
-   * \param available bytes of memory; without, those that the system has left
-   * \throw std::runtime_error naming the bytes that it needs, before it begins, if these are more
-   */
+   * \throw std::runtime_error as checkFits(), before it begins */
   void bringAll(std::optional<std::size_t> available = {});
 
   /** What is wrong with tiles, each naming its file: missing, cut, altered. Reads all of them. */
