@@ -1,6 +1,7 @@
 #include "StudyFigures.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "Study.h"
 #include "figures/FigureScript.h"
@@ -15,14 +16,21 @@ namespace {
 constexpr std::size_t kColumnWidth = 420, kRowHeight = 320, kKeyHeight = 40;  // pixels
 constexpr double kBox = 0.15;  // width; budgets stand at 0, 1, 2...
 
-/** One line for all plots, below them. */
+/** One line for all plots, below them; the first plot draws it. */
 void writeKey(std::ostream& out, const ordered_json& graphs) {
+  constexpr double kHeight = 0.035, kHalfLine = 0.022;  // of the sheet
   out << "unset key\n";
-  for (std::size_t g = 0; g < graphs.size(); ++g)
-    out << "set label " << gnuplotText(graphs[g]) << " at screen "
-        << (static_cast<double>(g) + 0.3) / static_cast<double>(graphs.size())
-        << ",0.035 point pt 5 ps 1.5 lc rgb '" << colorOf(g) << "' offset 1,0\n";
+  for (std::size_t g = 0; g < graphs.size(); ++g) {
+    const double x = (static_cast<double>(g) + 0.3) / static_cast<double>(graphs.size());
+    const std::string style = " lc rgb '" + std::string(colorOf(g)) + "'";
+    out << "set arrow from screen " << x - kHalfLine << ',' << kHeight << " to screen "
+        << x + kHalfLine << ',' << kHeight << " nohead lw 2 dt " << dashOf(g) << style << '\n'
+        << "set label " << gnuplotText(graphs[g]) << " at screen " << x << ',' << kHeight
+        << " point pt " << pointOf(g) << " ps 1.5" << style << " offset 3.5,0\n";
+  }
 }
+
+const char* const kKeyIsDrawn = "unset label\nunset arrow\n";
 
 std::ostringstream sheetFor(const ordered_json& study, std::size_t rows,
                             const std::filesystem::path& file) {
@@ -75,13 +83,14 @@ class Plot {
     }
   }
 
-  /** "plot" with these styles. */
-  void plot(std::ostream& out, const std::vector<std::string>& styles) const {
+  /** "plot" with these styles. \param look of a graph in all of them */
+  void plot(std::ostream& out, const std::vector<std::string>& styles,
+            std::string (*look)(std::size_t)) const {
     const auto& graphs = m_study["options"]["graphs"];
     out << "$dot << EOD\n0 1\nEOD\nplot ";  // gnuplot refuses axes without a valid point
     for (std::size_t g = 0; g < graphs.size(); ++g)
       for (const std::string& style : styles)
-        out << "$g" << g << ' ' << style << " lc rgb '" << colorOf(g) << "', ";
+        out << "$g" << g << ' ' << style << ' ' << look(g) << ", ";
     out << "$dot with dots lc rgb '#ffffff'\n";
   }
 
@@ -103,6 +112,9 @@ std::string box(const ordered_json& d) {
     out << d[part] << ' ';
   return out.str();
 }
+
+/** Boxes have no dashes. */
+std::string boxOf(std::size_t graph) { return std::string("lc rgb '") + colorOf(graph) + "'"; }
 
 std::string valueWithInterval(const ordered_json& estimate) {
   std::ostringstream out;
@@ -132,6 +144,18 @@ std::string rangeOfTimes(const ordered_json& study) {
   return out.str();
 }
 
+/** The same for all plots, and where something is: near 100 %, curves would hide each other. */
+std::string rangeOfShares(const ordered_json& study) {
+  double low = 1;
+  for (const ordered_json& map : study["maps"])
+    for (const ordered_json& way : map["ways"])
+      if (way["judgment"] == "profile" && way["memory"] == "cold" && way["graph"] != kReference)
+        low = std::min(low, way["success"]["low"].get<double>());
+  std::ostringstream out;
+  out << '[' << 10 * std::floor(10 * std::min(low, 0.9)) << ":101]";
+  return out.str();
+}
+
 }  // namespace
 
 void drawTimes(const ordered_json& study, const std::filesystem::path& file) {
@@ -146,9 +170,11 @@ void drawTimes(const ordered_json& study, const std::filesystem::path& file) {
       label(out, first, memory + ": planning time [ms]");
       const Plot plot(study, map, memory);
       plot.write(out, [](const ordered_json& way) { return box(way["milliseconds"]["planning"]); });
-      plot.plot(out, {"using 1:2:3:4:5 with candlesticks whiskerbars 0.5",
-                      "using 1:6:6:6:6 with candlesticks lw 2"});
-      out << "unset label\nunset title\nset xlabel 'vertices'\n";
+      plot.plot(out,
+                {"using 1:2:3:4:5 with candlesticks whiskerbars 0.5",
+                 "using 1:6:6:6:6 with candlesticks lw 2"},
+                boxOf);
+      out << kKeyIsDrawn << "unset title\nset xlabel 'vertices'\n";
     }
     first = false;
   }
@@ -158,20 +184,21 @@ void drawTimes(const ordered_json& study, const std::filesystem::path& file) {
 
 void drawPaths(const ordered_json& study, const std::filesystem::path& file) {
   auto out = sheetFor(study, 2, file);
+  const std::string shares = rangeOfShares(study);
   bool first = true;
   for (const ordered_json& map : study["maps"]) {
     const Plot plot(study, map);
-    out << "set title " << gnuplotText(map["name"]) << "\nset yrange [0:103]\nunset xlabel\n";
+    out << "set title " << gnuplotText(map["name"]) << "\nset yrange " << shares
+        << "\nunset xlabel\n";
     label(out, first, "tasks solved [%]");
     plot.write(out, [](const ordered_json& way) { return valueWithInterval(way["success"]); });
-    plot.plot(out,
-              {"using 1:2 with linespoints pt 7 lw 1.5", "using 1:2:3:4 with yerrorbars pt 7"});
-    out << "unset label\nunset title\nset autoscale y\nset yrange [0:*]\nset xlabel 'vertices'\n";
+    plot.plot(out, {"using 1:2 with linespoints lw 2", "using 1:2:3:4 with yerrorbars ps 1.3"},
+              styleOf);
+    out << kKeyIsDrawn << "unset title\nset autoscale y\nset yrange [0:*]\nset xlabel 'vertices'\n";
     label(out, first, "outside the best rank [m]");
     plot.write(out, [](const ordered_json& way) { return box(way["metersOutsideBest"]); });
-    plot.plot(out,
-              {"using 1:6 with linespoints pt 7 lw 1.5", "using 1:6:2:5 with yerrorbars pt 7"});
-    out << "unset label\n";
+    plot.plot(out, {"using 1:6 with linespoints lw 2", "using 1:6:2:5 with yerrorbars ps 1.3"},
+              styleOf);
     first = false;
   }
   out << "unset multiplot\n";

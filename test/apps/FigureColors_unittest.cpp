@@ -53,8 +53,10 @@ TEST(FigureColors, AreToldApartWithDeuteranopia) {
       EXPECT_GT(difference(a, b), a < 5 ? 20 : 15) << figures::colorOf(a) << figures::colorOf(b);
 }
 
-TEST(FigureColors, ComeWithDashesOfTheirOwn) {
+TEST(FigureColors, ComeWithDashesAndPointsOfTheirOwn) {
   for (std::size_t a = 0; a < 5; ++a)
-    for (std::size_t b = 0; b < a; ++b)
+    for (std::size_t b = 0; b < a; ++b) {
       EXPECT_NE(std::string(figures::dashOf(a)), figures::dashOf(b));
+      EXPECT_NE(figures::pointOf(a), figures::pointOf(b));
+    }
 }

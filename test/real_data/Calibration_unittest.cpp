@@ -43,12 +43,14 @@ struct Street {
 
 TEST(StreetCalibration, ofAMapIsRight) {
   SKIP_WITHOUT_DATA("semantic_kitti");
-  for (const char* sequence : {"00", "07"}) {
-    const Street street(sequence);
-    const Evaluation full = street.evaluate(street.map);
-    EXPECT_LE(full.logLoss(), 0.13) << sequence;
-    EXPECT_LE(full.calibrationError(), 0.015) << sequence;
-  }
+  for (const char* sequence : {"00", "07"})
+    for (const double resolution : {0.2, 0.1}) {
+      const Street street(sequence, resolution);
+      const Evaluation full = street.evaluate(street.map);
+      EXPECT_LE(full.logLoss(), 0.13) << sequence << " at " << resolution << " m";
+      // The aim is 0.015; what is left is room for other streets.
+      EXPECT_LE(full.calibrationError(), 0.0125) << sequence << " at " << resolution << " m";
+    }
 }
 
 TEST(StreetCalibration, followsTheAccuracyThatLabelsAreSaidToHave) {

@@ -266,9 +266,10 @@ void draw(const std::vector<Outcome>& outcomes, const std::filesystem::path& fil
   }
   out << "set logscale xy\nset xlabel 'kilobytes that came'\nset ylabel 'cost of the path, with "
          "the whole map 1'\n"
-         "set yrange [0.95:]\nset grid\nplot ";
+         "set yrange [0.95:]\nset ytics (1, 1.5, 2, 3, 4, 5, 7, 10)\nset grid\nset key samplen 5\n"
+         "plot ";
   for (std::size_t m = 0; m < methods.size(); ++m)
-    out << "$m" << m << " with linespoints pt 7 lw 2 lc rgb '" << figures::colorOf(m) << "' title "
+    out << "$m" << m << " with linespoints lw 2 ps 1.3 " << figures::styleOf(m) << " title "
         << figures::gnuplotText(methods[m]) << ", ";
   out << "NaN notitle\n";
   figures::drawWithGnuplot(out.str());

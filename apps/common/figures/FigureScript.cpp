@@ -17,6 +17,16 @@ const char* dashOf(std::size_t solution) {
   return dashes[solution % dashes.size()];
 }
 
+int pointOf(std::size_t solution) {
+  static const std::array<int, 5> points = {7, 5, 9, 13, 11};
+  return points[solution % points.size()];
+}
+
+std::string styleOf(std::size_t solution) {
+  return std::string("dt ") + dashOf(solution) + " pt " + std::to_string(pointOf(solution)) +
+         " lc rgb '" + colorOf(solution) + "'";
+}
+
 std::ostringstream scriptFor(const std::filesystem::path& file, std::size_t width,
                              std::size_t height) {
   std::ostringstream out;

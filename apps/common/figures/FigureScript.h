@@ -13,6 +13,12 @@ const char* colorOf(std::size_t solution);
 /** Its line's dashes, as gnuplot's `dashtype` has them: a curve shows through one upon it. */
 const char* dashOf(std::size_t solution);
 
+/** Its points, as gnuplot's `pointtype` has them: filled shapes. */
+int pointOf(std::size_t solution);
+
+/** How a solution is drawn "with linespoints": dashes, points and color. */
+std::string styleOf(std::size_t solution);
+
 /** Beginning of a script that draws into a file of that size, pixels. */
 std::ostringstream scriptFor(const std::filesystem::path& file, std::size_t width,
                              std::size_t height);

@@ -17,8 +17,10 @@ struct FilterParameters {
   Increments increments = Increments::LikelihoodConsistent;
 
   /** Share of labels that name the true class, (1/K, 1). Of scans whose labels disagree in cells
-   * more than that allows, it is less (LabelAgreement). */
-  double accuracy = 0.9;
+   * more than that allows, it is less (LabelAgreement). Labels of annotated data are right in 98 to
+   * 99 of 100, those of segmentation networks in 90 to 95 where these do well: the default lies
+   * between. */
+  double accuracy = 0.93;
   /** Largest correlation of any two labels of one scan in one cell, given the cell's class, [0, 1].
    * 0: each counts by itself, 1: many that agree say no more than one. What errs about a surface
    * errs about most of its points. Of scans whose labels disagree more, it is less, too. */
