@@ -1,6 +1,7 @@
 #include "Exporter.h"
 
 #include <map_pictures/ClassMap.h>
+#include <map_pictures/PngFile.h>
 #include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ExportOctomap.h>
@@ -8,7 +9,6 @@
 #include <semantic_octree/MapOperations.h>
 
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 namespace semantic_map_export {
@@ -120,11 +120,11 @@ void Exporter::writeOctree(const fs::path& file) {
 }
 
 void Exporter::writeClassMap(const fs::path& file) {
-  const auto classMap = map_pictures::classMapOf(m_map, m_options.maxHeight);
-  std::vector<std::uint8_t> png;
-  if (!cv::imencode(".png", classMap.picture, png)) throw std::runtime_error("cannot be encoded");
-  stage(file, [&png](std::ostream& out) {
-    out.write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
+  const map_pictures::ClassMap classMap(m_map, m_options.maxHeight);
+  stageFile(file, [&classMap](const fs::path& staged) {
+    map_pictures::PngFile png(staged, classMap.size());
+    classMap.forEachBand([&png](const cv::Mat& rows) { png.add(rows); });
+    png.close();
   });
   stage(fs::path(file).replace_extension(".pgw"),
         [&classMap](std::ostream& out) { out << classMap.worldFile(); });

@@ -1,6 +1,7 @@
 // Programs and folders of tiles: what comes out is what comes of the map in one piece.
 #include <gtest/gtest.h>
 #include <semantic_octree/MapFolder.h>
+#include <semantic_octree/MapOperations.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/TextFile.h>
 
@@ -91,6 +92,30 @@ TEST_F(MapFolders, areReadTileByTileToTheSameResults) {
   expectSame("semantic-map-export", "smooth.csv", {"--neighbor-weight", "0.5"});
   expectSame("semantic-map-merge", "part.semantic",
              {path("plain/map.semantic"), "--box", "-25.6", "-inf", "-1", "12.8", "0", "inf"});
+}
+
+TEST_F(MapFolders, areDrawnWithinABudgetHoweverFarApartThingsAre) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes memory of its own";
+#endif
+  const auto exported = [](double meters) {
+    SemanticOcTree map = MapFolder::emptyMap(path("tiles"));
+    StoredMap apart(emptyLike(map), path("apart"), {});
+    for (const double at : {-meters, meters}) {
+      Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+      T.translation() << at, at, 1;
+      semantic_types::LabeledCloud cloud;
+      cloud.points = {{3, 0, 0}, {0, 3, 0}};
+      apart.tree().insert(cloud, T);
+    }
+    apart.folder()->save();
+    return run("semantic-map-export", {path("apart"), "-f", "-o", path("apart.png"), "--max-height",
+                                       "9", "--memory", "0.1"})
+        .peakKilobytes;
+  };
+  constexpr double kHalf = 1600, kColumns = 1e-3 * (2 * kHalf / 0.8) * (2 * kHalf / 0.8);
+  const long least = exported(10), peak = exported(kHalf);  // the latter: 16 million columns
+  EXPECT_LT(double(peak - least), 4 * kColumns);
 }
 
 TEST_F(MapFolders, takeSumsIn) {

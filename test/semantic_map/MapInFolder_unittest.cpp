@@ -7,7 +7,6 @@
 #include <mrpt_compat/Drawing.h>
 #include <semantic_octree/TreeFile.h>
 #include <sys/resource.h>
-
 #include <atomic>
 #include <thread>
 
@@ -238,6 +237,7 @@ TEST_F(InFolder, namesATileThatCannotBeRead) {
   map.folder()->save();
   CSemanticOctoMap damaged = empty();
   damaged.openFolder(tilesIn(folder / "tiles", true));
+  damaged.setAbstraction(someAbstraction());
   for (const auto& entry : std::filesystem::directory_iterator(folder / "tiles"))
     if (entry.path().filename().string().rfind("tile_", 0) == 0)
       std::filesystem::resize_file(entry.path(), 50);
