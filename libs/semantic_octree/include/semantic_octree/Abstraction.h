@@ -10,7 +10,8 @@
 
 namespace semantic_octree {
 
-/** \file Words: the abstraction of a map is an optimization, given by weights and alpha
+/** \file
+ * Words: the abstraction of a map is an optimization, given by weights and alpha
  * (AbstractionOptions); the compressed tree is what comes out, and compressedMap() a map of it.
  *
  * From alpha to the leaves: AbstractionOptions -> GTree (src/GTree.h: from the leaves up, G-values)

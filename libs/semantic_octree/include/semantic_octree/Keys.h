@@ -6,7 +6,8 @@
 // Uses these three without including them.
 #include <octomap/OcTreeKey.h>
 
-/** \file Keys: OctoMap's numbers of the voxels along an axis, 0 to 65535. They are whole numbers of
+/** \file
+ * Keys: OctoMap's numbers of the voxels along an axis, 0 to 65535. They are whole numbers of
  * type int here, because differences and neighbors may lie outside. */
 
 namespace semantic_octree {

@@ -6,7 +6,8 @@
 
 namespace semantic_octree {
 
-/** \file What comes of maps: new ones, or others that are to be filled. The latter have to be empty
+/** \file
+ * What comes of maps: new ones, or others that are to be filled. The latter have to be empty
  * and like emptyLike(), and may be in a folder of tiles that is open for writing (MapFolder), so
  * that they need not fit into memory. If filling fails they are not to be used. */
 

@@ -9,7 +9,8 @@
 
 namespace semantic_octree {
 
-/** \file A compressed tree in packets, over a radio that loses, exchanges and repeats them.
+/** \file
+ * A compressed tree in packets, over a radio that loses, exchanges and repeats them.
  *
  * The tree's leaves travel in the order of the alphas at which they appear (see
  * Abstraction::alphaPath()): first the blocks, each a leaf, then, by falling alpha, what expanding

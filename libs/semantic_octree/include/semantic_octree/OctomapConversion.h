@@ -10,7 +10,8 @@ class OcTree;
 
 namespace semantic_octree {
 
-/** \file Maps as OctoMap's trees, and back: the same resolution, nodes and log-odds. A log-odds of
+/** \file
+ * Maps as OctoMap's trees, and back: the same resolution, nodes and log-odds. A log-odds of
  * exactly 0, which OctoMap takes for occupied, becomes the next smaller number. */
 
 /** The occupancy. */
