@@ -68,9 +68,7 @@ endfunction()
 
 # What all tests are built with. Their own code is compiled once and runs for moments: it is optimized little.
 add_library(mso_test_settings INTERFACE)
-# (Compiled together, fixtures in anonymous namespaces seem to GCC to come from a header.)
-target_compile_options(mso_test_settings INTERFACE $<$<CONFIG:Release>:-O1>
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+target_compile_options(mso_test_settings INTERFACE $<$<CONFIG:Release>:-O1>)
 target_link_libraries(mso_test_settings INTERFACE GTest::gtest GTest::gtest_main rapidcheck
   nlohmann_json::nlohmann_json)
 

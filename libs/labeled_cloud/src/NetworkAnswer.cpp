@@ -7,7 +7,6 @@ namespace labeled_cloud {
 
 using semantic_types::ClassId;
 using semantic_types::kNoClass;
-using Content = NetworkOptions::Content;
 
 namespace {
 
@@ -53,7 +52,7 @@ void dropUnsure(double minConfidence, cv::Mat1f& planes) {
 NetworkAnswer::NetworkAnswer(const cv::Mat& output, std::size_t images,
                              const NetworkOptions& options, const std::filesystem::path& network)
     : m_options(options), m_network(network) {
-  const bool ids = options.content == Content::Ids;
+  const bool ids = options.content == NetworkOptions::Content::Ids;
   const bool flat = ids && output.dims == 3;
   m_channels = flat ? 1 : output.dims == 4 ? output.size[1] : 0;
   if (m_channels == 0 || output.size[0] != int(images))
@@ -93,11 +92,11 @@ LabelImage NetworkAnswer::labels(std::size_t image, int numClasses) const {
   LabelImage labels;
   labels.rows = m_rows, labels.cols = m_cols;
   const cv::Mat planes = planesOf(image);
-  if (m_options.content == Content::Ids) {
+  if (m_options.content == NetworkOptions::Content::Ids) {
     labels.classes = classesOfIds(planes);
     return labels;
   }
-  if (m_options.content == Content::Scores) softmax(planes);
+  if (m_options.content == NetworkOptions::Content::Scores) softmax(planes);
   cv::Mat1f classes = folded(planes, m_options.classes, numClasses);
   dropUnsure(m_options.minConfidence, classes);
   labels.probabilities.assign(classes.begin(), classes.end());

@@ -20,8 +20,6 @@ namespace {
 /** Header entries by their first word, up to and with DATA. */
 using Header = std::map<std::string, TextLine>;
 
-constexpr std::size_t kLongestHeader = 1 << 16;
-
 /** Where the data begins: behind the line DATA, or if there is none where a header would be over.
  */
 std::size_t dataBeginOf(const std::string& bytes) {

@@ -22,8 +22,6 @@ const std::map<std::string, std::pair<char, std::size_t>> kTypes = {
     {"int", {'I', 4}},   {"int32", {'I', 4}},   {"uint", {'U', 4}},   {"uint32", {'U', 4}},
     {"float", {'F', 4}}, {"float32", {'F', 4}}, {"double", {'F', 8}}, {"float64", {'F', 8}}};
 
-constexpr std::size_t kLongestHeader = 1 << 16;
-
 std::size_t dataBeginOf(const std::string& bytes, const std::string& file) {
   const std::size_t end = bytes.substr(0, kLongestHeader).find("\nend_header");
   const std::size_t line = end == std::string::npos ? end : bytes.find('\n', end + 1);

@@ -6,6 +6,8 @@
 
 namespace labeled_cloud {
 
+constexpr std::size_t kLongestHeader = 1 << 16;  ///< bytes that are searched for its end
+
 /** A column of a file of points, or several of one name. */
 struct PointField {
   std::string name;

@@ -11,9 +11,9 @@ using semantic_octree::kNumKeys;
 namespace {
 
 /** Walks along a ray from cube to cube. All in voxels, from the map's lowest corner. */
-class Walk {
+class RayWalk {
  public:
-  Walk(const Ray& ray, double voxelSize)
+  RayWalk(const Ray& ray, double voxelSize)
       : m_origin(ray.origin.array() / voxelSize + kKeyOfOrigin), m_direction(ray.direction) {
     // Into the map, if the ray begins outside.
     double enter = 0;
@@ -55,7 +55,7 @@ class Walk {
 }  // namespace
 
 std::optional<ViewCell> firstShown(const CellSource& cells, const CellLook& look, const Ray& ray) {
-  for (Walk walk(ray, cells.map().getResolution()); walk.isInMap();) {
+  for (RayWalk walk(ray, cells.map().getResolution()); walk.isInMap();) {
     const ViewCell cell = cells.at(walk.key());
     if (cell.isOccupied() && look.isShown(cell)) return cell;
     walk.leave(cell);

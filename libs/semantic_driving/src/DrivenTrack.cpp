@@ -13,10 +13,10 @@ namespace {
 constexpr double kSpacing = 0.1;      // m
 constexpr double kSameHeading = 0.2;  // rad
 
-double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+double apart(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 bool isSame(const TPose2D& a, const TPose2D& b) {
-  return distance(a, b) < kSpacing && std::abs(mrpt::math::wrapToPi(a.phi - b.phi)) < kSameHeading;
+  return apart(a, b) < kSpacing && std::abs(mrpt::math::wrapToPi(a.phi - b.phi)) < kSameHeading;
 }
 
 /** Of the steering on the way from one place to the other, 1/m; the gear does not matter. */
@@ -30,7 +30,7 @@ double curvature(const TPose2D& a, const TPose2D& b) {
 
 void DrivenTrack::add(const TPose2D& pose) {
   while (m_poses.size() > 1 && isSame(pose, m_poses[m_poses.size() - 2])) m_poses.pop_back();
-  if (m_poses.empty() || distance(pose, m_poses.back()) >= kSpacing) m_poses.push_back(pose);
+  if (m_poses.empty() || apart(pose, m_poses.back()) >= kSpacing) m_poses.push_back(pose);
   const auto most = static_cast<std::size_t>(m_length / kSpacing);
   while (m_poses.size() > most) m_poses.pop_front();
 }

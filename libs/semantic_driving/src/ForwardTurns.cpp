@@ -11,7 +11,7 @@ using semantic_planning::SemanticPlanner;
 
 namespace {
 
-constexpr double kStep = 0.5;     // m, between places that a curve connects
+constexpr double kBetween = 0.5;  // m, between places that a curve connects
 constexpr double kReach = 16;     // m, of the path that it replaces
 constexpr double kInside = 1e-3;  // m
 
@@ -30,7 +30,7 @@ double ForwardTurns::priceOf(const DrivePath& path, double from, double to) cons
 /** Where the path goes forward, and its ends. */
 std::vector<double> ForwardTurns::places(const DrivePath& path, double from) const {
   std::vector<double> places{from};
-  for (double s = from + kStep; s < path.length() - kInside; s += kStep)
+  for (double s = from + kBetween; s < path.length() - kInside; s += kBetween)
     if (path.at(s).forward) places.push_back(s);
   places.push_back(path.length());
   return places;

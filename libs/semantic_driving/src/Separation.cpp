@@ -8,7 +8,7 @@ namespace semantic_driving {
 
 namespace {
 
-constexpr double kStep = 0.1;  // s
+constexpr double kTick = 0.1;  // s
 
 /** A vehicle that goes on along its way, or brakes after its time of reaction. */
 class Forecast {
@@ -25,7 +25,7 @@ class Forecast {
   /** Nobody touches it as it brakes, while it is not slow. */
   bool canStop(double target, const Mover& mover) const {
     double speed = m_speed, way = 0;
-    for (double t = 0; t < m_reaction || speed > m_options.slowest; t += kStep) {
+    for (double t = 0; t < m_reaction || speed > m_options.slowest; t += kTick) {
       if (speed > kSlow * m_options.slowest && touches(mover, way, t, spreadAfter(mover, t)))
         return false;
       move(speed, way, t < m_reaction ? target : 0);
@@ -49,7 +49,7 @@ class Forecast {
     const double last =
         m_reaction + std::max(m_speed, target) / m_options.braking() + m_options.moverLinger;
     double speed = m_speed, way = 0;
-    for (double t = 0; t < last; t += kStep) {
+    for (double t = 0; t < last; t += kTick) {
       if (touches(mover, way, t, spreads ? spreadAfter(mover, t) : 0)) return false;
       move(speed, way, brakes && t >= m_reaction ? 0 : target);
     }
@@ -57,10 +57,10 @@ class Forecast {
   }
 
   void move(double& speed, double& way, double target) const {
-    const double most = m_options.braking() * kStep;
+    const double most = m_options.braking() * kTick;
     const double before = speed;
     speed += std::clamp(target - speed, -most, most);
-    way += (before + speed) / 2 * kStep;
+    way += (before + speed) / 2 * kTick;
   }
   double spreadAfter(const Mover& mover, double seconds) const {
     return std::min(m_options.moverSpread, mover.speedNoise * seconds);

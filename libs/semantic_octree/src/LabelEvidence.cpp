@@ -9,7 +9,7 @@ namespace {
 /** Counts of labels whose evidence is kept. */
 constexpr int kFew = 64;
 /** At it hundreds of labels count one by one, and the digits suffice. */
-constexpr double kLeastCorrelation = 1e-9;
+constexpr double kNoCorrelation = 1e-9;
 
 /** ln Gamma(x) less a constant, by Stirling's series: 1e-8 for x of 64 and more. */
 double logGamma(double x) { return (x - 0.5) * std::log(x) - x + 1 / (12 * x); }
@@ -17,7 +17,7 @@ double logGamma(double x) { return (x - 0.5) * std::log(x) - x + 1 / (12 * x); }
 }  // namespace
 
 LabelEvidence::LabelEvidence(double accuracy, int numClasses, double correlation) {
-  const double s = 1 / std::max(correlation, kLeastCorrelation) - 1;
+  const double s = 1 / std::max(correlation, kNoCorrelation) - 1;
   const double wrong = (1 - accuracy) / (numClasses - 1);
   m_right = s * accuracy;
   m_wrong = s * wrong;

@@ -103,17 +103,19 @@ class PartFormat {
   }
 
   void code(StreamLeaf& leaf) {
-    using Kind = StreamLeaf::Kind;
     const std::size_t context = m_kindBefore + 3 * m_wasOctet;
-    bool isNone = leaf.kind == Kind::None, hasRecord = leaf.kind == Kind::WithRecord;
+    bool isNone = leaf.kind == StreamLeaf::Kind::None,
+         hasRecord = leaf.kind == StreamLeaf::Kind::WithRecord;
     bit(kIsNone + context, isNone);
     if (!isNone) bit(kHasRecord + context, hasRecord);
-    leaf.kind = isNone ? Kind::None : hasRecord ? Kind::WithRecord : Kind::Plain;
+    leaf.kind = isNone      ? StreamLeaf::Kind::None
+                : hasRecord ? StreamLeaf::Kind::WithRecord
+                            : StreamLeaf::Kind::Plain;
     m_kindBefore = static_cast<std::size_t>(leaf.kind);
-    if (leaf.kind == Kind::Plain)
+    if (leaf.kind == StreamLeaf::Kind::Plain)
       m_plainBefore = std::min<std::size_t>(
           3, code(kPlain + 256 * m_plainBefore, m_tables.m_plain, leaf.value));
-    if (leaf.kind == Kind::WithRecord) codeWithRecord(leaf);
+    if (leaf.kind == StreamLeaf::Kind::WithRecord) codeWithRecord(leaf);
   }
 
   void codeWithRecord(StreamLeaf& leaf) {

@@ -7,7 +7,7 @@
 namespace semantic_slam {
 namespace {
 
-constexpr int kMostIterations = 50;
+constexpr int kMostSteps = 50;
 /** Cauchy's c^2: beyond some standard deviations of six values together an edge counts less. */
 constexpr double kDoubt = 16;
 
@@ -130,7 +130,7 @@ void optimize(Poses& poses, const std::vector<PoseEdge>& edges) {
                                   std::to_string(poses.size()));
   if (poses.size() < 2) return;
   double cost = costOf(edges, poses), damping = 1e-6;
-  for (int i = 0; i < kMostIterations && damping < 1e12; ++i) {
+  for (int i = 0; i < kMostSteps && damping < 1e12; ++i) {
     Equations equations(edges, poses);
     for (int k = 0; k < equations.H.rows(); ++k) equations.H.coeffRef(k, k) *= 1 + damping;
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(equations.H);

@@ -4,7 +4,6 @@ namespace synthetic_world {
 namespace {
 
 constexpr double kFoundation = 3.0;  // m below the ground: hills may be steep
-constexpr double kStorey = 2.9;
 
 constexpr Color kPlaster[] = {{226, 214, 190}, {214, 188, 150}, {196, 128, 98}, {206, 206, 200},
                               {228, 206, 150}, {172, 110, 88},  {186, 196, 200}};

@@ -8,7 +8,7 @@ namespace synthetic_world {
 namespace {
 
 constexpr double kFarthest = 250;  // m that the color image reaches
-constexpr std::uint64_t kStream = 1;
+constexpr std::uint64_t kCameraStream = 1;
 
 }  // namespace
 
@@ -54,7 +54,7 @@ CameraFrame renderCamera(const World& world, const Eigen::Isometry3d& T_world_ca
       if (!hit) continue;
 
       const auto pixel = static_cast<std::uint64_t>(row) * w + column;
-      Random random = Random::ofStream(seed.seed, kStream + 4 * seed.frame, pixel);
+      Random random = Random::ofStream(seed.seed, kCameraStream + 4 * seed.frame, pixel);
       const double depth = options.noise.disturbed(hit->range / rangePerDepth, random);
       if (depth < options.minRange || depth > options.maxRange) continue;
       if (options.noise.drops(random)) continue;

@@ -5,7 +5,7 @@
 namespace synthetic_world {
 namespace {
 
-constexpr double kLane = 1.3;
+constexpr double kCampusLane = 1.3;
 
 struct Block {
   Eigen::Vector2d at, size;
@@ -96,7 +96,7 @@ Scene makeCampus(std::uint64_t seed, double hills) {
   b.bushes(40, {{-60, -60}, {60, 60}});
   b.scatter(10, {{-40, -24}, {40, 34}}, 0.9, 0.3,
             [&](const Eigen::Vector3d& base) { b.add(rock(base, b.random)); });
-  return b.finish("campus", seed, ring.parallel(-kLane));
+  return b.finish("campus", seed, ring.parallel(-kCampusLane));
 }
 
 }  // namespace synthetic_world

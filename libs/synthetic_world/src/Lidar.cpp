@@ -7,7 +7,7 @@
 namespace synthetic_world {
 namespace {
 
-constexpr std::uint64_t kStream = 2;
+constexpr std::uint64_t kLidarStream = 2;
 
 }  // namespace
 
@@ -49,7 +49,7 @@ LabeledCloud scanLidar(const World& world, const Eigen::Isometry3d& T_world_lida
                                      options.maxRange + 5 * options.noise.range);
       if (!hit) continue;
       const auto ray = static_cast<std::uint64_t>(ring) * options.columns + column;
-      Random random = Random::ofStream(seed.seed, kStream + 4 * seed.frame, ray);
+      Random random = Random::ofStream(seed.seed, kLidarStream + 4 * seed.frame, ray);
       const double range = options.noise.disturbed(hit->range, random);
       if (range < options.minRange || range > options.maxRange) continue;
       if (options.noise.drops(random)) continue;

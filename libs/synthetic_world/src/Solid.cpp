@@ -7,7 +7,7 @@ namespace synthetic_world {
 namespace {
 
 // Windows: meters.
-constexpr double kStorey = 2.9, kWindowLow = 1.0, kWindowHigh = 2.3;
+constexpr double kWindowLow = 1.0, kWindowHigh = 2.3;
 constexpr double kWindowPitch = 2.4, kWindowWidth = 1.2;
 
 Eigen::Vector2d middleOf(const Polygon& polygon) {

@@ -3,7 +3,7 @@
 namespace synthetic_world {
 namespace {
 
-constexpr double kLane = 1.1, kRadius = 12;
+constexpr double kVillageLane = 1.1, kRadius = 12;
 
 const std::vector<Eigen::Vector2d> kRing{{-38, -22}, {4, -14}, {42, -22},
                                          {40, 24},   {2, 32},  {-40, 22}};
@@ -69,7 +69,7 @@ Scene makeVillage(std::uint64_t seed, double hills) {
   b.bushes(50, {{-55, -45}, {55, 50}});
   b.scatter(8, {{-24, -6}, {0, 22}}, 0.9, 0.3,
             [&](const Eigen::Vector3d& base) { b.add(rock(base, b.random)); });
-  return b.finish("village", seed, ring.parallel(-kLane));
+  return b.finish("village", seed, ring.parallel(-kVillageLane));
 }
 
 }  // namespace synthetic_world

@@ -7,6 +7,7 @@
 #include <queue>
 
 #include "CoarseGround.h"
+#include "GuideField.h"
 #include "GuideSearch.h"
 #include "PlannerCore.h"
 #include "ground/GroundTiles.h"
@@ -19,13 +20,7 @@ using mrpt::math::TPose2D;
 namespace {
 
 using Id = CoarseGround::Id;
-using Cost = std::int64_t;
-constexpr Cost kStraight = 5, kDiagonal = 7;  // lengths of steps, in fifths of a tile
-
-Cost lengthBetween(Column a, Column b) {
-  const Cost dx = std::abs(a.x - b.x), dy = std::abs(a.y - b.y);
-  return kStraight * std::max(dx, dy) + (kDiagonal - kStraight) * std::min(dx, dy);
-}
+using Cost = GuideField::Cost;
 
 /** A* from part to part. */
 class CorridorSearch {
@@ -57,7 +52,7 @@ class CorridorSearch {
   using Entry = std::pair<Cost, Id>;
 
   void take(const Id& from, Cost cost, const Id& to) {
-    cost += lengthBetween(from.tile, to.tile) *
+    cost += stepsBetween(from.tile, to.tile) *
             m_weights[static_cast<std::size_t>(m_ground.at(to).rank)];
     const auto known = m_labels.find(to);
     if (known == m_labels.end() || cost < known->second.cost) reach(to, {cost, from, false});
@@ -65,7 +60,7 @@ class CorridorSearch {
 
   void reach(const Id& id, const Label& label) {
     m_labels[id] = label;
-    m_queue.push({label.cost + lengthBetween(id.tile, m_goal), id});
+    m_queue.push({label.cost + stepsBetween(id.tile, m_goal), id});
   }
 
   std::vector<Column> tilesTo(Id id) const {

@@ -1,7 +1,9 @@
 #pragma once
 #include <semantic_planning/ground/Ground.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <vector>
 
@@ -9,6 +11,15 @@
 #include "roadmap/PlanningRegion.h"
 
 namespace semantic_planning {
+
+/** Lengths of steps to neighbors on a grid, in fifths of its spacing. */
+constexpr std::int64_t kStraightStep = 5, kDiagonalStep = 7;
+
+/** Least length of steps between two columns. */
+inline std::int64_t stepsBetween(Column a, Column b) {
+  const std::int64_t dx = std::abs(a.x - b.x), dy = std::abs(a.y - b.y);
+  return kStraightStep * std::max(dx, dy) + (kDiagonalStep - kStraightStep) * std::min(dx, dy);
+}
 
 /** What a search from one drivable surface of a region to the next knows about each of them. Only
  * tiles that it gets to take memory: a way along a road is a small part of its region. */

@@ -14,7 +14,6 @@ namespace semantic_planning {
 namespace {
 
 using Cost = GuideField::Cost;
-constexpr Cost kStraight = 5, kDiagonal = 7;  // lengths of steps, in fifths of a voxel
 
 /** A step to a neighboring column, and where discs and wheels are when it has been taken. */
 struct Step {
@@ -34,7 +33,7 @@ std::array<Step, 8> stepsOf(const EdgeChecker& checker) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const double angle = static_cast<double>(i) * M_PI / 4;
     steps[i].by = rotated(1.2 * voxel, 0, angle, voxel);
-    steps[i].length = i % 2 ? kDiagonal : kStraight;
+    steps[i].length = i % 2 ? kDiagonalStep : kStraightStep;
     for (const auto& d : checker.discs())
       steps[i].discs.push_back(rotated(d.disc.x, d.disc.y, angle, voxel));
     for (const double y : checker.wheels()) steps[i].wheels.push_back(rotated(0, y, angle, voxel));
@@ -125,10 +124,7 @@ class GuideSearch {
     m_queue.push({reached.cost + bound(place.column), place.cell});
   }
 
-  Cost bound(Column c) const {
-    const Cost dx = std::abs(c.x - m_goal.column.x), dy = std::abs(c.y - m_goal.column.y);
-    return kStraight * std::max(dx, dy) + (kDiagonal - kStraight) * std::min(dx, dy);
-  }
+  Cost bound(Column c) const { return stepsBetween(c, m_goal.column); }
 
   PathPoint pointAt(const Cell& cell) const {
     const Ground& ground = m_checker.ground();
@@ -151,7 +147,7 @@ class GuideSearch {
       const Cost weight = (at.cost - m_field.label(at.before()).cost) / length;
       const auto rank = std::lower_bound(m_weights.begin(), m_weights.end(), weight);
       guide.lengthPerRank[static_cast<std::size_t>(rank - m_weights.begin())] +=
-          static_cast<double>(length) / kStraight * m_checker.ground().voxelSize();
+          static_cast<double>(length) / kStraightStep * m_checker.ground().voxelSize();
     }
     std::reverse(guide.path.begin(), guide.path.end());
   }

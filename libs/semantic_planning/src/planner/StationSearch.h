@@ -71,7 +71,7 @@ class StationSearch {
     Length price;
     enum { New, Costly, Known } state = New;  ///< costly: too much so, in one run at least
     std::optional<colored_graph::EdgeProfile> profile;  ///< if known; none: it cannot be driven
-    colored_graph::EdgeProfile seen;                    ///< if costly: the part that was looked at
+    colored_graph::EdgeProfile seen{};                  ///< if costly: the part that was looked at
   };
   /** A place from which a curve may lead on. */
   struct Origin {

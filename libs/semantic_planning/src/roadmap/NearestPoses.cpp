@@ -11,7 +11,7 @@ namespace {
 
 /** A lower bound, or a distance on the plane, may exceed a distance by what rounding makes of it.
  */
-constexpr double kRounding = 1e-9;
+constexpr double kInexact = 1e-9;
 
 double squared(double x) { return x * x; }
 
@@ -88,7 +88,7 @@ void NearestPoses::offer(VertexId to, const Neighbor& neighbor) {
 }
 
 bool NearestPoses::mayCount(const PairBound& p) const {
-  const double bound = p.bound - kRounding;
+  const double bound = p.bound - kInexact;
   return bound <= farthest(m_entries[p.a]) || bound <= farthest(m_entries[p.b]);
 }
 
@@ -138,7 +138,7 @@ void NearestPoses::complete(std::vector<VertexId> open, double radius) {
     radius = std::min(m_radius, 2 * radius);
     open.erase(
         std::remove_if(open.begin(), open.end(),
-                       [&](VertexId id) { return farthest(m_entries[id]) <= beyond - kRounding; }),
+                       [&](VertexId id) { return farthest(m_entries[id]) <= beyond - kInexact; }),
         open.end());
   }
 }
@@ -200,7 +200,7 @@ std::vector<NearestPoses::Neighbor> NearestPoses::nearestTo(const GroundPose& po
   std::sort(bounds.begin(), bounds.end());
   std::vector<Neighbor> nearest;
   for (const auto& [bound, id] : bounds) {
-    if (nearest.size() == count && bound - kRounding > nearest.back().distance) break;
+    if (nearest.size() == count && bound - kInexact > nearest.back().distance) break;
     const GroundPose& other = m_entries[id].pose;
     const Neighbor n{id, PosePair(pose, other).distance(m_reedsShepp), other};
     if (n.distance > m_radius) continue;

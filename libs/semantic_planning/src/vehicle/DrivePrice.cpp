@@ -11,10 +11,10 @@ using mrpt::math::TPose2D;
 namespace {
 
 /** Segments that are shorter are what rounding leaves, meters. */
-constexpr double kNothing = 1e-6;
+constexpr double kStandstill = 1e-6;
 
 bool isSomething(const ReedsSheppCurve::Segment& segment) {
-  return std::abs(segment.length) > kNothing;
+  return std::abs(segment.length) > kStandstill;
 }
 
 DriveState stateOf(const ReedsSheppCurve::Segment& segment, double turningRadius) {
@@ -73,7 +73,7 @@ ReedsSheppCurve DrivePrice::shortest(const TPose2D& a, const TPose2D& b) const {
 
 std::vector<ReedsSheppCurve> DrivePrice::curves(const TPose2D& a, const TPose2D& b) const {
   std::vector<ReedsSheppCurve> curves{shortest(a, b)};
-  const auto isBackward = [](const auto& segment) { return segment.length < -kNothing; };
+  const auto isBackward = [](const auto& segment) { return segment.length < -kStandstill; };
   const auto& segments = curves.front().segments();
   if (std::none_of(segments.begin(), segments.end(), isBackward)) return curves;
   curves.push_back(m_reedsShepp.connectForward(a, b));

@@ -10,12 +10,13 @@ using mrpt::math::TPose2D;
 namespace {
 
 constexpr double kTurn = 2 * M_PI;
-constexpr double kNothing = 1e-9;  // arcs that only rounding keeps from being none, or a whole turn
+constexpr double kSameTurn =
+    1e-9;  // arcs that only rounding keeps from being none, or a whole turn
 
 /** Into [0, a whole turn). */
 double positive(double angle) {
   const double turned = angle - kTurn * std::floor(angle / kTurn);
-  return turned > kTurn - kNothing ? 0 : turned;
+  return turned > kTurn - kSameTurn ? 0 : turned;
 }
 
 /** Solves words for curves that begin with an arc to the left; those that begin to the right are

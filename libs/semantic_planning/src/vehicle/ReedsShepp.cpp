@@ -15,16 +15,14 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-constexpr double kRounding = 1e-9;  // m: sums of segments' lengths are not exact
-
-double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
+constexpr double kNoLength = 1e-9;  // m: sums of segments' lengths are not exact
 
 /** Where `s` meters (negative: backwards) along a segment lead. */
 TPose2D advance(const TPose2D& p, int turn, double s, double radius) {
   if (turn == 0) return {p.x + s * std::cos(p.phi), p.y + s * std::sin(p.phi), p.phi};
   const double phi = p.phi + turn * s / radius;
   return {p.x + turn * radius * (std::sin(phi) - std::sin(p.phi)),
-          p.y - turn * radius * (std::cos(phi) - std::cos(p.phi)), wrapped(phi)};
+          p.y - turn * radius * (std::cos(phi) - std::cos(p.phi)), std::remainder(phi, 2 * M_PI)};
 }
 
 }  // namespace
@@ -45,7 +43,7 @@ CurvePoint ReedsSheppCurve::at(double s) const {
     point.curvature = segment.turn / m_radius;
     point.forward = segment.length > 0;
     left -= length;
-    if (left <= kRounding) break;
+    if (left <= kNoLength) break;
   }
   return point;
 }
@@ -72,7 +70,8 @@ double ReedsShepp::distance(const TPose2D& a, const TPose2D& b) const {
 }
 
 double ReedsShepp::lowerBound(const TPose2D& a, const TPose2D& b) const {
-  return std::max(std::hypot(b.x - a.x, b.y - a.y), m_radius * std::abs(wrapped(b.phi - a.phi)));
+  return std::max(std::hypot(b.x - a.x, b.y - a.y),
+                  m_radius * std::abs(std::remainder(b.phi - a.phi, 2 * M_PI)));
 }
 
 ReedsSheppCurve ReedsShepp::connect(const TPose2D& a, const TPose2D& b) const {

@@ -11,11 +11,11 @@ using mrpt::math::TPose2D;
 namespace {
 
 constexpr double kPi = M_PI, kHalfPi = M_PI / 2;
-constexpr double kTie = 1e-12;      // part of a length by which another must be shorter to count
-constexpr double kSame = 1e-12;     // centers of circles that are nearer to each other are the same
-constexpr double kNothing = 1e-11;  // segments that move the goal by less are left out
+constexpr double kTie = 1e-12;   // part of a length by which another must be shorter to count
+constexpr double kSame = 1e-12;  // centers of circles that are nearer to each other are the same
+constexpr double kNoSegment = 1e-11;  // segments that move the goal by less are left out
 
-double wrapped(double angle) { return angle - 2 * kPi * std::nearbyint(angle / (2 * kPi)); }
+double wrappedQuickly(double angle) { return angle - 2 * kPi * std::nearbyint(angle / (2 * kPi)); }
 
 /** Absolute value of the wrapped angle; for up to one turn and a half. */
 double arc(double angle) { return std::abs(kPi - std::abs(kPi - std::abs(angle))); }
@@ -219,11 +219,11 @@ class Search {
 
 /** The word as it is named: one turn to the left ... */
 Word wordOf(const Candidate& w) {
-  return {{{1, wrapped(w.firstTurn())},
+  return {{{1, wrappedQuickly(w.firstTurn())},
            {-1, -w.middle.right},
            {0, w.middle.straight},
            {1, w.middle.left},
-           {w.last, w.last * wrapped(w.lastTurn())}}};
+           {w.last, w.last * wrappedQuickly(w.lastTurn())}}};
 }
 
 /** Undoes how a word was looked at: a goal with positive coordinates, and the word's own view. */
@@ -246,7 +246,7 @@ Word shortestWord(const TPose2D& from, const TPose2D& to) {
   Word word = wordOf(search.shortest());
   undo(goal, search.shortest().view, word);
   for (WordSegment& segment : word)
-    if (std::abs(segment.length) * (1 + search.length()) < kNothing) segment.length = 0;
+    if (std::abs(segment.length) * (1 + search.length()) < kNoSegment) segment.length = 0;
   return word;
 }
 

@@ -9,7 +9,7 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-constexpr double kStraight = 1e-7;  // 1/m: less is none
+constexpr double kLeastCurvature = 1e-7;  // 1/m: less is none
 
 TPoint2D leftOf(double heading) { return {-std::sin(heading), std::cos(heading)}; }
 double dot(const TPoint2D& a, const TPoint2D& b) { return a.x * b.x + a.y * b.y; }
@@ -36,7 +36,7 @@ std::optional<double> curvatureInto(const TPose2D& from, const Arc& into) {
   }
   if (std::abs(below) < 1e-9) return std::nullopt;
   const double curvature = above / below;
-  return std::abs(curvature) < kStraight ? 0 : curvature;
+  return std::abs(curvature) < kLeastCurvature ? 0 : curvature;
 }
 
 /** The heading of both where they meet. */

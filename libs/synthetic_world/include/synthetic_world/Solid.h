@@ -4,6 +4,8 @@
 
 namespace synthetic_world {
 
+constexpr double kStorey = 2.9;  ///< m: a row of windows in each
+
 /** A class, and the color in which a camera sees it. */
 struct Material {
   ClassId id = kNoClass;

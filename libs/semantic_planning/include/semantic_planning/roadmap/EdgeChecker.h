@@ -31,7 +31,7 @@ enum class Fit {
 struct ClassBudget {
   std::vector<double> prices;  ///< of a meter, by class
   double left = 0;
-  colored_graph::EdgeProfile seen;  ///< what was looked at when it was spent, rounded down
+  colored_graph::EdgeProfile seen{};  ///< what was looked at when it was spent, rounded down
   bool isSpent() const { return left < 0; }
 };
 
