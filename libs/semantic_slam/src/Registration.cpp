@@ -13,7 +13,9 @@ using semantic_types::kNoClass;
 
 namespace {
 
-constexpr int kMostIterations = 40, kFewestPoints = 6;
+constexpr int kMostIterations = 40;
+/** Of a distribution: as many as its covariance has numbers. */
+constexpr int kFewestInSpace = 6, kFewestInPlane = 3;
 /** Standard deviation of surfaces that are as thin as they seem, m. */
 constexpr double kThinnest = 0.05;
 /** Of surfaces' two widths, squared. A narrow one is but a ring that a LiDAR left on it. */
@@ -68,7 +70,9 @@ struct Normals {
 }  // namespace
 
 auto Submap::cellOf(const Eigen::Vector3d& point) const -> Eigen::Array3i {
-  return cubeOf(point, m_cellSize);
+  Eigen::Array3i cell = cubeOf(point, m_cellSize);
+  if (m_isPlanar) cell.z() = 0;
+  return cell;
 }
 
 auto Submap::keyOf(const Eigen::Array3i& cell, ClassId id) const -> Key {
@@ -110,7 +114,7 @@ auto Submap::distributionOf(const Sum& s) const -> Distribution {
 
 void Submap::finish() {
   for (const auto& [key, s] : m_sums) {
-    if (s.n < kFewestPoints) continue;
+    if (s.n < (m_isPlanar ? kFewestInPlane : kFewestInSpace)) continue;
     Eigen::Vector3d corner;
     for (int i = 0; i < 3; ++i) {
       const auto bits = static_cast<std::int64_t>(key >> (8 + 18 * (2 - i)) & 0x3ffff);
@@ -137,7 +141,7 @@ auto Submap::find(const Eigen::Vector3d& point, ClassId id, double& squaredDista
     squaredDistance = squared;
   };
   look(cell);
-  for (int axis = 0; axis < 3; ++axis)
+  for (int axis = 0; axis < (m_isPlanar ? 2 : 3); ++axis)
     for (const int side : {-1, 1}) {
       Eigen::Array3i beside = cell;
       beside[axis] += side;
