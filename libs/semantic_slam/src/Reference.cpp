@@ -38,7 +38,7 @@ std::vector<Submap> Reference::submapsOf(const LabeledCloud& cloud, bool isPlana
   std::vector<Submap> submaps;
   for (const double size : m_cellSizes) {
     submaps.emplace_back(size, m_useClasses, isPlanar);
-    submaps.back().add(cloud, Eigen::Isometry3d::Identity());
+    submaps.back().add(cloud, Eigen::Isometry3d::Identity(), deviation());
     submaps.back().finish();
   }
   return submaps;

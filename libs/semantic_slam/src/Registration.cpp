@@ -16,8 +16,9 @@ namespace {
 constexpr int kMostIterations = 40;
 /** Of a distribution: as many as its covariance has numbers. */
 constexpr int kFewestInSpace = 6, kFewestInPlane = 3;
-/** Standard deviation of surfaces that are as thin as they seem, m. */
-constexpr double kThinnest = 0.05;
+/** Least standard deviation of a surface, of a cube's edge: in small cubes it counts as thin as it
+ * is, and those of large ones reach out to points that are far off yet. */
+constexpr double kThinnest = 0.03;
 /** Of surfaces' two widths, squared. A narrow one is but a ring that a LiDAR left on it. */
 constexpr double kNarrowest = 0.3;
 /** Squared distances, in standard deviations, at which a point's weight is a quarter, and up to
@@ -79,7 +80,9 @@ auto Submap::keyOf(const Eigen::Array3i& cell, ClassId id) const -> Key {
   return pack(cell) << 8 | (m_useClasses ? id : kNoClass);
 }
 
-void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud) {
+void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud,
+                 double deviation) {
+  const Eigen::Matrix3d spread = deviation * deviation * Eigen::Matrix3d::Identity();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d p = T_submap_cloud * cloud.points[i].cast<double>();
     Sum& s = m_sums[keyOf(cellOf(p), classOf(cloud, i))];
@@ -87,7 +90,7 @@ void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cl
     const Eigen::Vector3d r = p - cellOf(p).cast<double>().matrix() * m_cellSize;
     s.n += 1;
     s.sum += r;
-    s.squares += r * r.transpose();
+    s.squares += r * r.transpose() + spread;
   }
 }
 
@@ -102,7 +105,8 @@ auto Submap::distributionOf(const Sum& s) const -> Distribution {
     covariance(2, 2) = covariance.trace() + 1;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
-  Eigen::Vector3d variances = axes.eigenvalues().cwiseMax(kThinnest * kThinnest);
+  const double thinnest = kThinnest * m_cellSize;
+  Eigen::Vector3d variances = axes.eigenvalues().cwiseMax(thinnest * thinnest);
   if (!m_isPlanar) variances[1] = std::max(variances[1], kNarrowest * variances[2]);
   const auto along = [&axes](const Eigen::Vector3d& values) -> Eigen::Matrix3d {
     return axes.eigenvectors() * values.asDiagonal() * axes.eigenvectors().transpose();
