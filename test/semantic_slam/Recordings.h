@@ -45,6 +45,23 @@ inline Sensor lidarOf(double labelNoise) {
   };
 }
 
+inline const Eigen::Isometry3d kRobotLaser(Eigen::Translation3d(0.2, 0, 0.6));
+
+/** A laser scanner in the plane, at knee height, two beams a degree. It knows no classes. */
+inline Sensor laserOf() {
+  synthetic_world::LidarOptions laser;
+  laser.rings = 1;
+  laser.columns = 720;
+  laser.lowest = laser.highest = 0;
+  laser.maxRange = 30;
+  laser.noise.range = 0.02;
+  return [laser](const auto& world, const auto& T_world_robot, FrameSeed seed) {
+    LabeledCloud cloud = scanLidar(world, T_world_robot * kRobotLaser, laser, seed);
+    cloud.classes.clear();
+    return cloud;
+  };
+}
+
 /** A single RGB-D camera, 160 x 120 pixels. \param maxRange meters */
 inline Sensor cameraOf(double maxRange) {
   synthetic_world::CameraOptions camera;
@@ -70,10 +87,11 @@ inline Sensor cameraOf(double maxRange) {
 }
 
 /** Once around a scene and some meters more; odometry that is 1 % too long, and turns 0.1
- * degrees a meter too far, with as much noise beside. */
+ * degrees a meter too far, with as much noise beside.
+ * \param hills of the scene; where it is flat, odometry does not tilt */
 inline Recording recordingOf(const std::string& scene, std::uint64_t seed, const Sensor& sensor,
-                             double meters = 1e9) {
-  const synthetic_world::Scene place = synthetic_world::makeScene(scene, seed);
+                             double meters = 1e9, double hills = 1) {
+  const synthetic_world::Scene place = synthetic_world::makeScene(scene, seed, hills);
   const synthetic_world::Drive drive(place, 1);
   std::mt19937 random(static_cast<unsigned>(seed));
   const auto uniform = [&random] { return static_cast<double>(random()) / 2147483648.0 - 1; };
@@ -88,7 +106,7 @@ inline Recording recordingOf(const std::string& scene, std::uint64_t seed, const
       const double way = motion.head<3>().norm(), angle = 0.1 * M_PI / 180 * way;
       motion.head<3>() *= 1.01 + 0.01 * uniform();
       motion[5] += angle * (1 + uniform());
-      for (int axis : {3, 4}) motion[axis] += 0.2 * angle * uniform();
+      for (int axis : {3, 4}) motion[axis] += 0.2 * hills * angle * uniform();
       r.odometry.push_back(r.odometry.back() * poseOf(motion));
     }
     r.truth.push_back(T);

@@ -23,21 +23,59 @@ void addVoxels(const SemanticOcTree& map, const SemanticOcTree::leaf_iterator& l
 
 }  // namespace
 
-std::vector<Submap> referenceOf(const SemanticOcTree& map, const std::vector<double>& cellSizes,
-                                bool useClasses) {
-  const double largest = *std::min_element(cellSizes.begin(), cellSizes.end());
-  LabeledCloud cloud;
+Reference::Reference(const SemanticOcTree& map, std::vector<double> cellSizes, bool useClasses)
+    : m_voxelSize(map.getResolution()),
+      m_cellSizes(std::move(cellSizes)),
+      m_useClasses(useClasses) {
+  const double largest = *std::min_element(m_cellSizes.begin(), m_cellSizes.end());
   for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf)
-    if (map.isNodeOccupied(*leaf) && leaf.getSize() <= largest) addVoxels(map, leaf, cloud);
+    if (map.isNodeOccupied(*leaf) && leaf.getSize() <= largest) addVoxels(map, leaf, m_voxels);
+}
+
+double Reference::deviation() const { return m_voxelSize / std::sqrt(12); }
+
+std::vector<Submap> Reference::submapsOf(const LabeledCloud& cloud, bool isPlanar) const {
   std::vector<Submap> submaps;
-  for (const double size : cellSizes) {
-    submaps.emplace_back(size, useClasses);
-    submaps.back().add(cloud, Eigen::Isometry3d::Identity());
+  for (const double size : m_cellSizes) {
+    submaps.emplace_back(size, m_useClasses, isPlanar);
+    submaps.back().add(cloud, Eigen::Isometry3d::Identity(), deviation());
     submaps.back().finish();
   }
   return submaps;
 }
 
-double deviationOfVoxels(double voxelSize) { return voxelSize / std::sqrt(12); }
+const std::vector<Submap>& Reference::inSpace() {
+  if (m_isSlice || m_submaps.empty()) m_submaps = submapsOf(m_voxels, false);
+  m_isSlice = false;
+  return m_submaps;
+}
+
+auto Reference::layersOf(const LabeledCloud& scan, const Eigen::Isometry3d& T_map_scan) const
+    -> Layers {
+  double lowest = HUGE_VAL, highest = -HUGE_VAL;
+  for (const Eigen::Vector3f& p : scan.points) {
+    const double z = (T_map_scan * p.cast<double>()).z() / m_voxelSize;
+    lowest = std::min(lowest, z);
+    highest = std::max(highest, z);
+  }
+  return {std::round(lowest) - 1, std::round(highest) + 1};
+}
+
+const std::vector<Submap>& Reference::sliceAt(const LabeledCloud& scan,
+                                              const Eigen::Isometry3d& T_map_scan) {
+  const Layers layers = layersOf(scan, T_map_scan);
+  if (m_isSlice && layers == m_layers) return m_submaps;
+  LabeledCloud cloud;
+  for (std::size_t i = 0; i < m_voxels.size(); ++i) {
+    const double z = m_voxels.points[i].z() / m_voxelSize;
+    if (z < layers.first || z > layers.second) continue;
+    cloud.points.push_back(m_voxels.points[i]);
+    cloud.classes.push_back(m_voxels.classes[i]);
+  }
+  m_submaps = submapsOf(cloud, true);
+  m_layers = layers;
+  m_isSlice = true;
+  return m_submaps;
+}
 
 }  // namespace semantic_slam

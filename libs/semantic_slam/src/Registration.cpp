@@ -13,9 +13,12 @@ using semantic_types::kNoClass;
 
 namespace {
 
-constexpr int kMostIterations = 40, kFewestPoints = 6;
-/** Standard deviation of surfaces that are as thin as they seem, m. */
-constexpr double kThinnest = 0.05;
+constexpr int kMostIterations = 40;
+/** Of a distribution: as many as its covariance has numbers. */
+constexpr int kFewestInSpace = 6, kFewestInPlane = 3;
+/** Least standard deviation of a surface, of a cube's edge: in small cubes it counts as thin as it
+ * is, and those of large ones reach out to points that are far off yet. */
+constexpr double kThinnest = 0.03;
 /** Of surfaces' two widths, squared. A narrow one is but a ring that a LiDAR left on it. */
 constexpr double kNarrowest = 0.3;
 /** Squared distances, in standard deviations, at which a point's weight is a quarter, and up to
@@ -68,14 +71,18 @@ struct Normals {
 }  // namespace
 
 auto Submap::cellOf(const Eigen::Vector3d& point) const -> Eigen::Array3i {
-  return cubeOf(point, m_cellSize);
+  Eigen::Array3i cell = cubeOf(point, m_cellSize);
+  if (m_isPlanar) cell.z() = 0;
+  return cell;
 }
 
 auto Submap::keyOf(const Eigen::Array3i& cell, ClassId id) const -> Key {
   return pack(cell) << 8 | (m_useClasses ? id : kNoClass);
 }
 
-void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud) {
+void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud,
+                 double deviation) {
+  const Eigen::Matrix3d spread = deviation * deviation * Eigen::Matrix3d::Identity();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d p = T_submap_cloud * cloud.points[i].cast<double>();
     Sum& s = m_sums[keyOf(cellOf(p), classOf(cloud, i))];
@@ -83,7 +90,7 @@ void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cl
     const Eigen::Vector3d r = p - cellOf(p).cast<double>().matrix() * m_cellSize;
     s.n += 1;
     s.sum += r;
-    s.squares += r * r.transpose();
+    s.squares += r * r.transpose() + spread;
   }
 }
 
@@ -98,7 +105,8 @@ auto Submap::distributionOf(const Sum& s) const -> Distribution {
     covariance(2, 2) = covariance.trace() + 1;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
-  Eigen::Vector3d variances = axes.eigenvalues().cwiseMax(kThinnest * kThinnest);
+  const double thinnest = kThinnest * m_cellSize;
+  Eigen::Vector3d variances = axes.eigenvalues().cwiseMax(thinnest * thinnest);
   if (!m_isPlanar) variances[1] = std::max(variances[1], kNarrowest * variances[2]);
   const auto along = [&axes](const Eigen::Vector3d& values) -> Eigen::Matrix3d {
     return axes.eigenvectors() * values.asDiagonal() * axes.eigenvectors().transpose();
@@ -110,7 +118,7 @@ auto Submap::distributionOf(const Sum& s) const -> Distribution {
 
 void Submap::finish() {
   for (const auto& [key, s] : m_sums) {
-    if (s.n < kFewestPoints) continue;
+    if (s.n < (m_isPlanar ? kFewestInPlane : kFewestInSpace)) continue;
     Eigen::Vector3d corner;
     for (int i = 0; i < 3; ++i) {
       const auto bits = static_cast<std::int64_t>(key >> (8 + 18 * (2 - i)) & 0x3ffff);
@@ -137,7 +145,7 @@ auto Submap::find(const Eigen::Vector3d& point, ClassId id, double& squaredDista
     squaredDistance = squared;
   };
   look(cell);
-  for (int axis = 0; axis < 3; ++axis)
+  for (int axis = 0; axis < (m_isPlanar ? 2 : 3); ++axis)
     for (const int side : {-1, 1}) {
       Eigen::Array3i beside = cell;
       beside[axis] += side;

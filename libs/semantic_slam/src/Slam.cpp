@@ -1,4 +1,3 @@
-#include <semantic_slam/Reference.h>
 #include <semantic_slam/Slam.h>
 
 #include <algorithm>
@@ -71,9 +70,8 @@ Slam::Slam(const SlamOptions& options) : m_options(options) { m_options.validate
 
 void Slam::setReference(const semantic_octree::SemanticOcTree& map) {
   if (!m_keyframes.empty()) throw std::logic_error("Slam: a reference, but scans were added");
-  m_reference = referenceOf(map, kCellsOfLoops, m_options.useClasses);
-  m_mostOfReference =
-      informationOf(std::max(kLoopMeters, deviationOfVoxels(map.getResolution())), kLoopAngle);
+  m_reference = Reference(map, kCellsOfLoops, m_options.useClasses);
+  m_mostOfReference = informationOf(std::max(kLoopMeters, m_reference.deviation()), kLoopAngle);
 }
 
 auto Slam::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
@@ -237,9 +235,11 @@ bool Slam::fits(const Registration& r) const {
 }
 
 std::optional<Registration> Slam::findInReference(const Seen& seen,
-                                                  const Eigen::Isometry3d& T_map_guess) const {
-  if (m_reference.empty()) return std::nullopt;
-  const Registration r = match(m_reference, seen, T_map_guess, Matrix6::Zero());
+                                                  const Eigen::Isometry3d& T_map_guess) {
+  if (!m_reference.exists()) return std::nullopt;
+  const auto& submaps =
+      m_isPlanar ? m_reference.sliceAt(seen.cloud, T_map_guess) : m_reference.inSpace();
+  const Registration r = match(submaps, seen, T_map_guess, Matrix6::Zero());
   return fits(r) ? std::make_optional(r) : std::nullopt;
 }
 

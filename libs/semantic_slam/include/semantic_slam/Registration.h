@@ -18,7 +18,9 @@ class Submap {
   Submap(double cellSize, bool useClasses, bool isPlanar = false)
       : m_cellSize(cellSize), m_useClasses(useClasses), m_isPlanar(isPlanar) {}
 
-  void add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud);
+  /** \param deviation standard deviation of each point, along each axis, m */
+  void add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud,
+           double deviation = 0);
   /** Computes the distributions; nothing can be added afterwards. */
   void finish();
 

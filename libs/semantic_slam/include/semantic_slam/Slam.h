@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_octree/KeyframeMap.h>
 #include <semantic_slam/PoseGraph.h>
+#include <semantic_slam/Reference.h>
 #include <semantic_slam/Registration.h>
 #include <semantic_slam/SlamOptions.h>
 
@@ -75,7 +76,7 @@ class Slam {
                              const Eigen::Isometry3d& T_odometry_robot) const;
   /** What the reference says of a scan, if it does. \return T_submap_scan is T_map_robot */
   std::optional<Registration> findInReference(const Seen& seen,
-                                              const Eigen::Isometry3d& T_map_guess) const;
+                                              const Eigen::Isometry3d& T_map_guess);
   /** \return whether poses moved */
   bool followReference();
   bool closeLoop();
@@ -100,7 +101,7 @@ class Slam {
   std::size_t m_numLoops = 0, m_numReferenced = 0, m_numLost = 0;
   double m_lastLook = 0, m_lastReferenced = 0;      // m of the way
   std::optional<PoseEdge> m_lastLoop, m_lastFound;  ///< they may be wrong
-  std::vector<Submap> m_reference;                  ///< map frame; none: there is no map
+  Reference m_reference;                            ///< none: there is no map
   Matrix6 m_mostOfReference = Matrix6::Zero();      ///< information, at most
   std::vector<Submap> m_nearby;  ///< of the last keyframes, in the frame of the last; or none yet
   /** Where the last scan that was registered was, in the last keyframe's frame, and where odometry

@@ -1,0 +1,197 @@
+// A laser scanner in the plane: x, y and heading, of a world that is known.
+#include <gtest/gtest.h>
+#include <semantic_slam/Slam.h>
+
+#include <cmath>
+
+#include "Recordings.h"
+
+using namespace recordings;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+constexpr double kFlat = 0;
+constexpr double kWhole = 1e9, kDriven = 90, kMapped = 100;  // m
+
+/** What another scanner saw of a flat scene, from between the poses of recordingOf().
+ * \param voxelSize meters */
+SemanticOcTree mapOf(const std::string& scene, std::uint64_t seed, double voxelSize,
+                     const Sensor& sensor, const Eigen::Isometry3d& T_robot_sensor) {
+  const synthetic_world::Scene place = synthetic_world::makeScene(scene, seed, kFlat);
+  const synthetic_world::Drive drive(place, 1);
+  SemanticOcTree map(voxelSize, synthetic_world::classTable());
+  semantic_octree::InsertionOptions options;
+  options.maxRange = 30;
+  for (double s = 0.5; s < kMapped; s += 2) {
+    const Eigen::Isometry3d T = drive.T_world_robot(s);
+    const auto frame = static_cast<std::uint64_t>(1000 + s);
+    map.insert(sensor(place.world, T, {seed, frame}), T * T_robot_sensor, options);
+  }
+  return map;
+}
+
+/** 1 m and 4 degrees beside where it began. */
+void moveOdometry(Recording& r) {
+  Vector6 off;
+  off << 0.8, -0.6, 0, 0, 0, 4 * M_PI / 180;
+  const Eigen::Isometry3d T = r.truth[0] * poseOf(off) * r.truth[0].inverse();
+  for (Eigen::Isometry3d& pose : r.odometry) pose = T * pose;
+}
+
+void addAll(Slam& slam, const Recording& r) {
+  for (std::size_t i = 0; i < r.clouds.size(); ++i)
+    slam.add(r.clouds[i], kRobotLaser, r.odometry[i]);
+  ASSERT_EQ(slam.poses().size(), r.truth.size()) << "each scan is a keyframe";
+}
+
+struct PathErrors {
+  double rootMeanSquare = 0, first = 0, largest = 0, last = 0;  // m
+  double degrees = 0;                                           // largest
+};
+
+PathErrors errorsOf(const std::vector<Eigen::Isometry3d>& poses, const Recording& r) {
+  PathErrors e;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Vector6 off = vectorOf(r.truth[k].inverse() * poses[k]);
+    e.last = off.head<3>().norm();
+    if (k == 0) e.first = e.last;
+    e.rootMeanSquare += e.last * e.last / static_cast<double>(poses.size());
+    e.largest = std::max(e.largest, e.last);
+    e.degrees = std::max(e.degrees, off.tail<3>().norm() * 180 / M_PI);
+  }
+  e.rootMeanSquare = std::sqrt(e.rootMeanSquare);
+  return e;
+}
+
+/** Along x from 0 to 1 m at y = 0.5 m, eight points 0.125 m apart, off by 0.02 m to either side.
+ * \param climb height per meter */
+LabeledCloud wall(float climb) {
+  LabeledCloud cloud;
+  for (int i = 0; i < 8; ++i) {
+    const float x = 0.0625f + 0.125f * static_cast<float>(i), side = (i + 1) / 2 % 2 ? -1 : 1;
+    cloud.points.emplace_back(x, 0.5f + 0.02f * side, 0.15f + climb * x);
+  }
+  return cloud;
+}
+
+}  // namespace
+
+TEST(Planar, aWallIsThinAcrossItselfAndHasNoHeight) {
+  Submap submap(1, false, true);
+  submap.add(wall(0.3f), Eigen::Isometry3d::Identity());
+  submap.finish();
+  double squared = 0;
+  const auto* d = submap.find({0.5, 0.6, 0.15}, semantic_types::kNoClass, squared);
+  ASSERT_NE(d, nullptr);
+  const double along = (8 * 8 - 1) / 12. * 0.125 * 0.125, across = 0.03 * 0.03;
+  EXPECT_NEAR(d->information(0, 0), 1 / along, 1e-3);
+  EXPECT_NEAR(d->information(1, 1), 1 / across, 1e-2);
+  EXPECT_NEAR(d->information.row(2).norm() + d->information.col(2).norm(), 0, 1e-9);
+  EXPECT_NEAR(squared, 0.1 * 0.1 / across, 1e-3);
+  EXPECT_NEAR(d->evidence(0, 0), 1 / along - 12, 1e-3) << "nearly none: it goes on";
+  EXPECT_NEAR(d->evidence(1, 1), 1 / across - 12, 1e-2);
+  EXPECT_NEAR(d->evidence.row(2).norm() + d->evidence.col(2).norm(), 0, 1e-9);
+}
+
+TEST(Planar, wallsInSmallCubesAreThinner) {
+  for (const double edge : {1, 4}) {
+    Submap submap(edge, false, true);
+    submap.add(wall(0), Eigen::Isometry3d::Identity());
+    submap.finish();
+    double squared = 0;
+    ASSERT_NE(submap.find({0.5, 0.7, 0}, semantic_types::kNoClass, squared), nullptr);
+    EXPECT_NEAR(squared, std::pow(0.2 / (0.03 * edge), 2), 0.01 * squared) << edge;
+  }
+}
+
+TEST(Planar, aRowOfVoxelsIsAWallAsWideAsThey) {
+  LabeledCloud middles;
+  for (int i = 0; i < 5; ++i) middles.points.emplace_back(0.1f + 0.2f * i, 0.5f, 0.f);
+  Submap submap(1, false, true);
+  submap.add(middles, Eigen::Isometry3d::Identity(), 0.2 / std::sqrt(12));
+  submap.finish();
+  double squared = 0;
+  const auto* d = submap.find({0.5, 0.5, 0}, semantic_types::kNoClass, squared);
+  ASSERT_NE(d, nullptr);
+  EXPECT_NEAR(d->information(0, 0), 12, 1e-4) << "they fill the cube";
+  EXPECT_NEAR(d->evidence(0, 0), 0, 1e-4) << "so they say nothing along it";
+  EXPECT_NEAR(d->information(1, 1), 12 / (0.2 * 0.2), 1e-2);
+}
+
+TEST(Planar, inSpaceALineOfPointsMayBeARingOnAWiderSurface) {
+  Submap submap(1, false);
+  submap.add(wall(0), Eigen::Isometry3d::Identity());
+  submap.finish();
+  double squared = 0;
+  ASSERT_NE(submap.find({0.5, 0.6, 0.15}, semantic_types::kNoClass, squared), nullptr);
+  EXPECT_LT(squared, 1);
+}
+
+TEST(Planar, heightsOfPointsDoNotMatter) {
+  Submap submap(1, false, true);
+  submap.add(wall(0.3f), Eigen::Isometry3d::Identity());
+  submap.finish();
+  double here = 0, above = 0;
+  const auto* d = submap.find({0.5, 0.6, 0.15}, semantic_types::kNoClass, here);
+  ASSERT_NE(d, nullptr);
+  EXPECT_EQ(submap.find({0.5, 0.6, 7}, semantic_types::kNoClass, above), d);
+  EXPECT_EQ(above, here);
+}
+
+TEST(Planar, aLaserScannersLoopCloses) {
+  const Recording r = recordingOf("village", 1, laserOf(), kWhole, kFlat);
+  Slam slam({});
+  addAll(slam, r);
+  const PathErrors odometry = errorsOf(r.odometry, r), e = errorsOf(slam.poses(), r);
+  EXPECT_GT(odometry.rootMeanSquare, 9);
+  EXPECT_GT(slam.numLoops(), 0u);
+  EXPECT_LT(e.rootMeanSquare, 0.045);
+  EXPECT_LT(e.last, 0.06);
+  EXPECT_LT(e.degrees, 0.2);
+}
+
+TEST(Planar, aDriveIsInTheFrameOfALaserScannersMap) {
+  Recording r = recordingOf("village", 3, laserOf(), kDriven, kFlat);
+  moveOdometry(r);
+  Slam alone({});
+  addAll(alone, r);
+  EXPECT_GT(errorsOf(alone.poses(), r).largest, 1);
+  for (const double voxelSize : {0.1, 0.2, 0.4}) {
+    Slam slam({});
+    slam.setReference(mapOf("village", 3, voxelSize, laserOf(), kRobotLaser));
+    addAll(slam, r);
+    const PathErrors e = errorsOf(slam.poses(), r);
+    EXPECT_LT(e.first, 0.3 * voxelSize) << voxelSize;
+    EXPECT_LT(e.largest, 0.03 + 0.2 * voxelSize) << voxelSize;
+    EXPECT_LT(e.degrees, 0.3) << voxelSize;
+    EXPECT_GT(slam.numReferenced(), 25u) << voxelSize;
+  }
+}
+
+TEST(Planar, aDriveIsInTheFrameOfAMapInSpace) {
+  Recording r = recordingOf("village", 3, laserOf(), kDriven, kFlat);
+  moveOdometry(r);
+  SlamOptions options;
+  options.useClasses = false;
+  Slam slam(options);
+  slam.setReference(mapOf("village", 3, 0.2, lidarOf(0), kRobotLidar));
+  addAll(slam, r);
+  const PathErrors e = errorsOf(slam.poses(), r);
+  EXPECT_LT(e.first, 0.2 / std::sqrt(12)) << "as well as its voxels say";
+  EXPECT_LT(e.largest, 0.06);
+  EXPECT_LT(e.degrees, 0.3);
+}
+
+TEST(Planar, whatIsAtOtherHeightsIsNotCompared) {
+  // A map of walls 1 m beside those that are there, but 1 m higher.
+  const Recording r = recordingOf("village", 1, laserOf(), 10, kFlat);
+  SemanticOcTree map(0.2, synthetic_world::classTable());
+  for (std::size_t k = 0; k < r.truth.size(); ++k)
+    map.insert(r.clouds[k], Eigen::Translation3d(1, 0, 1) * r.truth[k] * kRobotLaser, {});
+  Slam slam({});
+  slam.setReference(map);
+  addAll(slam, r);
+  EXPECT_EQ(slam.numReferenced(), 0u);
+  EXPECT_LT((slam.poses()[0].translation() - r.odometry[0].translation()).norm(), 1e-9);
+}
