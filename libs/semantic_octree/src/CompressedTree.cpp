@@ -49,12 +49,16 @@ void LeafChanges::becomeLeaf(Update& u, Index& told, const Node& node, const Cel
   if (told == kLeaf) return;
   remove(u, told, cell);
   told = kLeaf;
+  ++m_numLeaves;
   u.change.added.push_back(leafCell(node, cell));
 }
 
 void LeafChanges::remove(Update& u, Index told, const Cell& cell) {
   if (told == kNone) return;
-  if (told == kLeaf) return u.change.removed.push_back(leafCell(Node(), cell));
+  if (told == kLeaf) {
+    --m_numLeaves;
+    return u.change.removed.push_back(leafCell(Node(), cell));
+  }
   for (int i = 0; i < 8; ++i) remove(u, m_inner[told - kFirstInner][i], cell.child(i));
   m_free.push_back(told);
 }

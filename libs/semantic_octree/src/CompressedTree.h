@@ -67,6 +67,8 @@ class LeafChanges {
 
   /** The same for a map that is empty now. */
   TreeChange clear(const NodeStore& store, const GTree& gTree);
+  /** That were told and are not gone. */
+  std::size_t numLeaves() const { return m_numLeaves; }
 
  private:
   using Index = std::uint32_t;
@@ -84,6 +86,7 @@ class LeafChanges {
   Index newInner();
 
   Index m_root = kNone;
+  std::size_t m_numLeaves = 0;
   std::vector<std::array<Index, 8>> m_inner;
   std::vector<Index> m_free;
 };
