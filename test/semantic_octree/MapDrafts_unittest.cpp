@@ -109,3 +109,26 @@ TEST(MapDrafts, leavesThatWereTakenAreCountedAsScansComeIn) {
   abstraction.takeChange();
   EXPECT_EQ(abstraction.numTakenLeaves(), 0u);
 }
+
+TEST(MapDrafts, whatWasForgottenIsNotToldAndAllElseIs) {
+  const auto scans = someScans(8, 12);
+  SemanticOcTree map = emptyMap(), same = emptyMap();
+  std::size_t changes = 0;
+  for (SemanticOcTree* each : {&map, &same}) each->setAbstraction(someAbstraction());
+  for (std::size_t i = 0; i + 1 < scans.size(); i += 2) {
+    for (SemanticOcTree* each : {&map, &same}) insertAll(*each, {scans[i]});
+    Abstraction(map).forgetChange();
+    Abstraction(same).takeChange();
+    EXPECT_EQ(Abstraction(map).numTakenLeaves(), Abstraction(map).leaves().size());
+    for (SemanticOcTree* each : {&map, &same}) insertAll(*each, {scans[i + 1]});
+    const TreeChange told = Abstraction(map).takeChange(), all = Abstraction(same).takeChange();
+    changes += all.added.size();
+    EXPECT_EQ(told.added, all.added);
+    EXPECT_EQ(told.removed, all.removed);
+  }
+  EXPECT_GT(changes, 100u);
+  map.clear();
+  Abstraction(map).forgetChange();
+  EXPECT_EQ(Abstraction(map).numTakenLeaves(), 0u);
+  EXPECT_TRUE(Abstraction(map).takeChange().removed.empty());
+}

@@ -64,9 +64,10 @@ class LeafChanges {
   /** Compares with the map as it is now, remembers that, and returns the difference. Visits only
    * nodes that changed or have changed nodes below them. */
   TreeChange update(const NodeStore& store, const GTree& gTree, const Node& root);
-
   /** The same for a map that is empty now. */
   TreeChange clear(const NodeStore& store, const GTree& gTree);
+  /** As update(), without a word. */
+  void forget(const NodeStore& store, const GTree& gTree, const Node& root);
   /** That were told and are not gone. */
   std::size_t numLeaves() const { return m_numLeaves; }
 
@@ -76,7 +77,8 @@ class LeafChanges {
 
   struct Update {
     CompressedTree tree;
-    TreeChange change;
+    TreeChange change = {};
+    bool tells = true;
   };
   void update(Update& u, Index& told, const Node& node, const Cell& cell);
   void updateChildren(Update& u, Index& told, const Node& node, const Cell& cell);

@@ -5,6 +5,7 @@
 #include <tree_abstraction/AlphaPath.h>
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace semantic_octree {
 
 class CompressedTree;
 class GTree;
+class LeafChanges;
 
 /** A leaf of the compressed tree: a cube of the map. */
 struct LeafCell {
@@ -116,7 +118,9 @@ class Abstraction {
   /** What changed in leaves() since the last call (at first: since the map was empty), in time
    * proportional to the nodes that scans touched and the leaves that changed. */
   TreeChange takeChange();
-  /** Of leaves() at the last call of takeChange(), in no time. */
+  /** The same, for who knows leaves() anyway: without a list of what may be all of a map. */
+  void forgetChange();
+  /** Of leaves() at the last call of either, in no time. */
   std::size_t numTakenLeaves() const;
 
   /** New alpha: computes all inner nodes anew. \throw std::invalid_argument */
@@ -178,6 +182,8 @@ class Abstraction {
 
  private:
   CompressedTree compressedTree() const;
+  /** The map has none until they are given back: they are lost if what is done with them fails. */
+  std::unique_ptr<LeafChanges> takenChanges() const;
   /** p(x) of the whole map, unnormalized. */
   double totalDensity() const;
   /** Calls f(InnerNode) for all inner nodes, parents first. */
