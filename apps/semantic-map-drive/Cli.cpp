@@ -3,6 +3,7 @@
 #include <synthetic_world/Scene.h>
 
 #include "Choice.h"
+#include "MemoryOption.h"
 #include "NumberChecks.h"
 #include "poses/Poses.h"
 
@@ -38,7 +39,10 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_option("--hills", hills, "Factor of the ground's heights; 0 is flat")
       ->check(isNumber(strict_files::between(0.0, 2.0)))
       ->capture_default_str();
-  app.add_option("--map", map, "What the robot knows of it (.semantic); none: nothing");
+  app.add_option("--map", map,
+                 "What the robot knows of it (.semantic, or a folder of tiles, which stays as it "
+                 "is); none: nothing");
+  addMemoryOption(app, memory);
   poses::addPose(app, "--start", start, "Where the robot is")->required();
   poses::addPose(app, "--goal", goal, "Where it is to go")->required();
   app.add_option("--classes", classes,

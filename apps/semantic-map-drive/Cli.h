@@ -1,6 +1,8 @@
 #pragma once
 #include <mrpt/math/TPose2D.h>
 
+#include <semantic_octree/MapFolder.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
@@ -20,6 +22,7 @@ struct Cli {
   std::string scene = "village";
   std::uint64_t seed = 1;
   double hills = 1, pictureEvery = 0;
+  double memory = semantic_octree::MapFolderOptions().memory;
   mrpt::math::TPose2D start, goal;
   bool rawlog = true, pictures = true, navlog = false, live = false, compressed = false;
   Events events;

@@ -93,9 +93,9 @@ MapCanvas DrivePicture::draw(const DriveLoop& loop) const {
   map_pictures::PictureStyle style;
   style.maxAboveGround = kCutAbove;
   if (m_compressed)
-    canvas.drawMap(loop.compressedMap(), style);
+    canvas.drawMapAround(loop.compressedMap(), style);
   else
-    canvas.drawMap(loop.mapper().map(), style);
+    canvas.drawMapAround(loop.mapper().map(), style);
   drawTrack(canvas, loop.record(), "driven", kTrack);
   drawRoute(canvas, loop.controller().tracker());
   drawEnd(canvas, "start", loop.start(), kStart);

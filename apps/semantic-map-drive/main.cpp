@@ -1,5 +1,6 @@
 // Drives a robot through a synthetic world: it maps, compresses, plans and drives.
 #include <map_pictures/GifFile.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <strict_files/OutputFolder.h>
@@ -49,7 +50,6 @@ class DriveProgram {
         m_picture(cli.start, cli.goal, 960, cli.compressed),
         m_whole(cli.start, cli.goal, 1200, cli.compressed) {
     m_config.sensors.seed = cli.seed;
-    if (!cli.map.empty()) m_map = semantic_octree::loadTree(cli.map.string());
   }
 
   int run() {
@@ -71,10 +71,20 @@ class DriveProgram {
   /** MRPT gives its logs names of its own, and finishes them when the drive is gone. */
   fs::path navlogs() const { return m_output.staged("navlogs"); }
 
+  /** What the robot knows: each drive begins with it. Tiles of a folder that the drive changes are
+   * kept apart. */
+  std::unique_ptr<semantic_octree::StoredMap> known(const std::string& name) const {
+    if (m_cli.map.empty()) return nullptr;
+    semantic_octree::MapFolderOptions options;
+    options.memory = m_cli.memory;
+    options.draft = m_output.staged(name + "-tiles");
+    return std::make_unique<semantic_octree::StoredMap>(m_cli.map, options);
+  }
+
   DriveRecord drive(const fs::path& classes, const std::string& name) {
     const auto order = semantic_planning::loadClassOrder(classes, synthetic_world::classTable());
-    DriveLoop loop(m_config, m_scene.world, order, m_cli.start, m_cli.goal, m_cli.events, m_map,
-                   m_cli.navlog && name == "drive" ? navlogs() : fs::path());
+    DriveLoop loop(m_config, m_scene.world, order, m_cli.start, m_cli.goal, m_cli.events,
+                   known(name), m_cli.navlog && name == "drive" ? navlogs() : fs::path());
     loop.stopWhen([this] { return m_stop.pending(); });
     std::optional<Recorder> recorder;
     if (m_cli.rawlog && name == "drive") {
@@ -131,6 +141,8 @@ class DriveProgram {
     std::vector<std::string> names = kFiles;
     for (const char* name : {"drive", "drive2"}) names.push_back(numbered(name, 0));
     cli.outputs.checkFolder(cli.output, names);
+    if (cli.live && semantic_octree::MapFolder::isAt(cli.map))
+      throw std::runtime_error("--live: a map in a folder of tiles is not shown");
     return cli;
   }
 
@@ -141,7 +153,6 @@ class DriveProgram {
   strict_files::OutputFolder m_output;
   DrivePicture m_picture;  ///< on the way
   DrivePicture m_whole;    ///< of all that was driven
-  std::optional<semantic_octree::SemanticOcTree> m_map;
   std::optional<map_pictures::MapCanvas> m_last;
   std::vector<std::string> m_onTheWay;  ///< names of pictures
 };

@@ -2,6 +2,8 @@
 #include <map_pictures/MapCanvas.h>
 #include <rapidcheck/gtest.h>
 #include <semantic_octree/Abstraction.h>
+#include <semantic_octree/MapFolder.h>
+#include <semantic_octree/MapOperations.h>
 
 #include <opencv2/imgproc.hpp>
 
@@ -154,6 +156,33 @@ TEST(MapCanvas, blankPaperOfTheSamePlaceShowsTheSameMapTheSame) {
   second.drawMap(tree, {});
   EXPECT_EQ(cv::norm(first.picture(), second.picture(), cv::NORM_INF), 0);
   EXPECT_EQ(first.at(1, 2), second.at(1, 2));
+}
+
+TEST(MapCanvas, aMapAroundTheCanvasIsDrawnAsIfThereWereNoMore) {
+  using namespace semantic_octree;
+  const TemporaryFolder folder;
+  const auto near = paintedField({-5, -3}, 4), far = paintedField({-125, 60}), all = merged({&near, &far});
+  MapFolderOptions options;
+  options.tileSize = 12.8;
+  StoredMap tiles(emptyLike(all), folder / "tiles", options);
+  copyTo(tiles.tree(), all);
+  tiles.folder()->save();
+  StoredMap stored(folder / "tiles", 0.0);
+  map_pictures::PictureStyle style;
+  for (const bool cut : {false, true}) {
+    if (cut) style.maxAboveGround = 2.5;
+    MapCanvas expected = canvas(), whole = canvas(), ofTiles = canvas();
+    expected.drawMap(near, style);
+    whole.drawMapAround(all, style);
+    ofTiles.drawMapAround(stored.tree(), style);
+    EXPECT_EQ(count(expected.picture(), kWall) > 0, !cut);
+    EXPECT_EQ(cv::norm(expected.picture(), whole.picture(), cv::NORM_INF), 0);
+    EXPECT_EQ(cv::norm(expected.picture(), ofTiles.picture(), cv::NORM_INF), 0);
+    EXPECT_EQ(whole.legend().size(), expected.legend().size());
+  }
+  const auto contents = stored.folder()->contents();
+  EXPECT_GT(contents.tiles, 8u);
+  EXPECT_LE(contents.broughtIn, 2 * 2 * 8u);  // two drawings, two passes, two by two by two
 }
 
 TEST(MapCanvas, theLegendStandsBesideThePictureAndNamesTheMapsClassesFirst) {

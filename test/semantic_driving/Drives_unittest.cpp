@@ -189,7 +189,8 @@ TEST(Drives, LeaveAPersonToTheReactiveNavigatorWithoutANewPlan) {
   const TPose2D start(-6, 0, 0), goal(3, 0, 0);
   const auto driveKnowing = [&](const Events& events) {  // the ground, but for the person
     DriveLoop loop(config, world, syntheticOrder(), start, goal, events,
-                   drive_study::trueMap(world, config.voxelSize, 1.4));
+                   std::make_unique<semantic_octree::StoredMap>(
+                       drive_study::trueMap(world, config.voxelSize, 1.4)));
     return loop.run();
   };
   Events events;

@@ -61,7 +61,8 @@ TEST(NoisyPose, IsInTheFrameOfTheMapWithWhichItBegins) {
   DriveConfig config = noisyConfig();
   config.timeLimit = 8;
   DriveLoop loop(config, scene.world, syntheticOrder(), start, goal, {},
-                 semantic_octree::moved(mapping.mapper().map(), T_map_world));
+                 std::make_unique<semantic_octree::StoredMap>(
+                     semantic_octree::moved(mapping.mapper().map(), T_map_world)));
   const DriveRow last = loop.run().rows.back();
   EXPECT_NEAR(last.believed.x - last.pose.x, 0.4, 0.1);
   EXPECT_NEAR(last.believed.y - last.pose.y, -0.2, 0.1);

@@ -56,7 +56,7 @@ synthetic_world::Footprint trueFootprint(const VehicleOptions& vehicle) {
 DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
                      const colored_graph::ClassOrder& order, const TPose2D& start,
                      const TPose2D& goal, Events events,
-                     std::optional<semantic_octree::SemanticOcTree> map,
+                     std::unique_ptr<semantic_octree::StoredMap> map,
                      std::filesystem::path navlogs)
     : m_config(config),
       m_world(world),
@@ -64,7 +64,7 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_start(start),
       m_goal(goal),
       m_sensors(config.sensors, false),
-      m_mapper(map ? std::make_unique<Mapper>(config, order, std::move(*map))
+      m_mapper(map ? std::make_unique<Mapper>(config, order, std::move(map))
                    : std::make_unique<Mapper>(config, order)),
       m_guide(std::make_unique<DriveGuide>(config.guide, m_mapper->planner(), goal)),
       m_controller(config.drive, reactiveOf(config, navlogs)),

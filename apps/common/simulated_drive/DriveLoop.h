@@ -40,7 +40,7 @@ class DriveLoop {
   DriveLoop(const DriveConfig& config, synthetic_world::World& world,
             const colored_graph::ClassOrder& order, const mrpt::math::TPose2D& start,
             const mrpt::math::TPose2D& goal, Events events,
-            std::optional<semantic_octree::SemanticOcTree> map = {},
+            std::unique_ptr<semantic_octree::StoredMap> map = {},
             std::filesystem::path navlogs = {});
 
   void addObserver(DriveObserver& observer) { m_observers.push_back(&observer); }

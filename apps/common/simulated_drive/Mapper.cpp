@@ -15,10 +15,11 @@ using measuring::Stopwatch;
 using semantic_octree::Abstraction;
 using semantic_octree::KeyframeMap;
 using semantic_octree::SemanticOcTree;
+using semantic_octree::StoredMap;
 
 namespace {
 
-SemanticOcTree prepared(SemanticOcTree map, const DriveConfig& config, const ClassOrder& order) {
+SemanticOcTree& prepared(SemanticOcTree& map, const DriveConfig& config, const ClassOrder& order) {
   if (!config.halfLives.empty()) map.setHalfLives(semantic_types::loadClassTable(config.halfLives));
   map.setAbstraction(abstractionFor(order, config.focus));
   return map;
@@ -28,14 +29,16 @@ SemanticOcTree prepared(SemanticOcTree map, const DriveConfig& config, const Cla
 
 Mapper::Mapper(const DriveConfig& config, const ClassOrder& order)
     : Mapper(config, order,
-             SemanticOcTree(config.voxelSize, synthetic_world::classTable(), config.filter)) {
+             std::make_unique<StoredMap>(SemanticOcTree(
+                 config.voxelSize, synthetic_world::classTable(), config.filter))) {
   if (!config.pose.isExact() && config.pose.correct)
     m_keyframes = std::make_unique<KeyframeMap>(m_map, std::filesystem::temp_directory_path());
 }
 
-Mapper::Mapper(const DriveConfig& config, const ClassOrder& order, SemanticOcTree map)
+Mapper::Mapper(const DriveConfig& config, const ClassOrder& order, std::unique_ptr<StoredMap> map)
     : m_config(config),
-      m_map(prepared(std::move(map), config, order)),
+      m_stored(std::move(map)),
+      m_map(prepared(m_stored->tree(), config, order)),
       m_planner(m_map, order, config.planner) {}
 
 /** The robot begins where it has room: there is ground below its footprint and around it, as far as
@@ -111,7 +114,12 @@ void Mapper::focus(const std::vector<semantic_octree::Region>& regions) {
 
 SemanticOcTree Mapper::compressed() { return Abstraction(m_map).compressedMap(); }
 
-std::size_t Mapper::numCompressedLeaves() { return Abstraction(m_map).leaves().size(); }
+/** The planner has taken the changes, if it follows the compressed tree. */
+std::size_t Mapper::numCompressedLeaves() {
+  const Abstraction abstraction(m_map);
+  return isOfTree(m_config.planner.roadmap.kind) ? abstraction.numTakenLeaves()
+                                                 : abstraction.leaves().size();
+}
 
 semantic_driving::ObstaclePoints Mapper::obstacles(const mrpt::math::TPose2D& pose, double z,
                                                    const semantic_driving::ObstacleOptions& options,

@@ -2,6 +2,7 @@
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <semantic_octree/KeyframeMap.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_slam/Slam.h>
 
 #include "SimulatedSensors.h"
@@ -13,9 +14,9 @@ class Mapper {
  public:
   /** Begins with an empty map. */
   Mapper(const DriveConfig& config, const colored_graph::ClassOrder& order);
-  /** Goes on with a map. */
+  /** Goes on with a map, which changes. */
   Mapper(const DriveConfig& config, const colored_graph::ClassOrder& order,
-         semantic_octree::SemanticOcTree map);
+         std::unique_ptr<semantic_octree::StoredMap> map);
 
   /** \return milliseconds of insert (with the compressed tree's upkeep) and of update (ground and
    * roadmap) */
@@ -35,7 +36,7 @@ class Mapper {
   void focus(const std::vector<semantic_octree::Region>& regions);
   /** The compressed tree as a map. */
   semantic_octree::SemanticOcTree compressed();
-  std::size_t numCompressedLeaves();
+  std::size_t numCompressedLeaves();  ///< after insert()
   /** As senseObstacles(), of the full or the compressed tree. */
   semantic_driving::ObstaclePoints obstacles(const mrpt::math::TPose2D& pose, double z,
                                              const semantic_driving::ObstacleOptions& options,
@@ -49,7 +50,8 @@ class Mapper {
   void standOn(const Eigen::Isometry3d& T_map_robot);
 
   DriveConfig m_config;
-  semantic_octree::SemanticOcTree m_map;
+  std::unique_ptr<semantic_octree::StoredMap> m_stored;
+  semantic_octree::SemanticOcTree& m_map;
   std::unique_ptr<semantic_octree::KeyframeMap> m_keyframes;  ///< if the map may be corrected
   int m_leftOut = 0;  ///< scans since the last that was inserted
   semantic_planning::SemanticPlanner m_planner;

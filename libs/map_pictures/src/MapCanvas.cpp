@@ -109,6 +109,15 @@ void MapCanvas::drawMap(const SemanticOcTree& tree, const PictureStyle& style) {
   drawCells(collectCells(tree, style), tree);
 }
 
+void MapCanvas::drawMapAround(const SemanticOcTree& tree, const PictureStyle& style) {
+  constexpr double kBeside = 5;  // m: what is cut off depends on what is beside it
+  style.validate();
+  const Eigen::Vector2d beside(kBeside, kBeside);
+  drawCells(collectCells(tree, style,
+                         Eigen::AlignedBox2d(m_region.min() - beside, m_region.max() + beside)),
+            tree);
+}
+
 void MapCanvas::drawCells(const MapCells& map, const SemanticOcTree& tree) {
   const double edge = columnEdge(m_region.sizes(), tree.getNodeSize(map.depth));
   const cv::Rect columns = columnsIn(m_region, edge);

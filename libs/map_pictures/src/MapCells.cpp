@@ -22,13 +22,35 @@ struct Drawn {
   std::size_t cells;  ///< at most
 };
 
+/** Which nodes are worth a look. */
+class Filter {
+ public:
+  Filter(const SemanticOcTree& tree, double minOccupancy,
+         const std::optional<Eigen::AlignedBox2d>& part)
+      : m_voxelSize(tree.getResolution()), m_minOccupancy(minOccupancy), m_part(part) {}
+
+  bool takes(const SemanticOcTree::Node& node, const Cube& cube) const {
+    return node.getOccupancy() > m_minOccupancy && (!m_part || isInPart(cube));
+  }
+
+ private:
+  bool isInPart(const Cube& cube) const {
+    const Eigen::Vector2d center = cube.center(m_voxelSize).head<2>();
+    const Eigen::Vector2d nearest = center.cwiseMax(m_part->min()).cwiseMin(m_part->max());
+    return (nearest - center).cwiseAbs().maxCoeff() < m_voxelSize * cube.edge() / 2;
+  }
+
+  double m_voxelSize, m_minOccupancy;
+  std::optional<Eigen::AlignedBox2d> m_part;
+};
+
 /** The largest depth at which there are not too many cells. Of a map in tiles, each tile comes in
  * once at most. */
-Drawn depthToDraw(const SemanticOcTree& tree, double minOccupancy) {
+Drawn depthToDraw(const SemanticOcTree& tree, const Filter& filter) {
   std::array<std::size_t, semantic_octree::kTreeDepth + 1> cells{};  // at each depth
   int deepest = semantic_octree::kTreeDepth;
   forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
-    if (!(node.getOccupancy() > minOccupancy)) return false;
+    if (!filter.takes(node, cube)) return false;
     const int last = node.isLeaf() ? deepest : cube.depth;
     for (int depth = cube.depth; depth <= last; ++depth) ++cells[depth];
     while (deepest > 1 && cells[deepest] > kMostCells) --deepest;
@@ -62,16 +84,18 @@ std::vector<std::size_t> MapCells::countClasses(int numClasses) const {
   return count;
 }
 
-MapCells collectCells(const SemanticOcTree& tree, const PictureStyle& style) {
+MapCells collectCells(const SemanticOcTree& tree, const PictureStyle& style,
+                      const std::optional<Eigen::AlignedBox2d>& part) {
   MapCells map;
   map.minOccupancy = style.minOccupancy;
-  const Drawn drawn = depthToDraw(tree, style.minOccupancy);
+  const Filter filter(tree, style.minOccupancy, part);
+  const Drawn drawn = depthToDraw(tree, filter);
   map.depth = drawn.depth;
   map.cells.reserve(drawn.cells);
   const bool smooth = style.neighborWeight > 0 && map.depth == tree.getTreeDepth();
   const SmoothedView view(tree, {style.neighborWeight});
   forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
-    if (!(node.getOccupancy() > style.minOccupancy)) return false;
+    if (!filter.takes(node, cube)) return false;
     if (!node.isLeaf() && cube.depth < static_cast<int>(map.depth)) return true;
     MapCell cell = cellOf(cube, tree.getResolution());
     if (!smooth) cell.id = tree.query(node).likeliestClass;

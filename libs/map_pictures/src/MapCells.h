@@ -1,10 +1,12 @@
 #pragma once
 #include <map_pictures/MapPictures.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "LowestCells.h"
@@ -42,8 +44,9 @@ struct MapCells {
 };
 
 /** The occupied cells of a map, in OctoMap's order; coarser ones if there are more than a picture
- * can show. Cuts off what the style says. */
-MapCells collectCells(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
+ * can show. Cuts off what the style says. \param part where they are, m; none: everywhere */
+MapCells collectCells(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style,
+                      const std::optional<Eigen::AlignedBox2d>& part = {});
 
 /** The value below which that share of the values is, one of them; changes their order. */
 template <class T>

@@ -1,11 +1,6 @@
-#include <semantic_octree/Abstraction.h>
-#include <tree_abstraction/AlphaPath.h>
-
-#include <array>
-#include <cmath>
 #include <stdexcept>
 
-#include "CompressedTree.h"
+#include "InnerNodes.h"
 #include "TreeBuilder.h"
 
 namespace semantic_octree {
@@ -15,21 +10,6 @@ GTree& gTreeOf(GTree* gTree) {
   if (!gTree) throw std::logic_error("the map keeps no G-values: call setAbstraction() first");
   return *gTree;
 }
-
-/** p(n) of a node per unit of density: its share of the whole map's volume. */
-double volumeOf(const Cell& cell) { return std::ldexp(1.0, -3 * cell.depth); }
-
-/** Tells which inner nodes are in the compressed tree, as they are visited, parents first. */
-class InCompressedTree {
- public:
-  bool visit(const InnerNode& n) {
-    const int depth = n.cell.depth;
-    return m_atDepth[depth] = n.isExpanded && (depth == 0 || m_atDepth[depth - 1]);
-  }
-
- private:
-  std::array<bool, kTreeDepth> m_atDepth{};  ///< of the node that was visited last
-};
 
 using IsExpanded = std::function<bool(const Node&)>;
 
@@ -111,20 +91,6 @@ double Abstraction::objective() const {
   return root.isInner() ? compressedTree().state(root)->gValue : 0.0;
 }
 
-template <typename F>
-void Abstraction::forEachInner(const F& f) const {
-  NodeStore& store = m_map.store();
-  GTree::Worker& worker = m_gTree.worker(0);
-  const auto visit = [&](const auto& self, const Slot& slot, const Cell& cell) -> void {
-    if (!slot.isInner()) return;
-    store.bring(slot);
-    worker.inspect(store, slot, cell, f);
-    if (slot.kind == Slot::Kind::Octant)
-      for (int i = 0; i < 8; ++i) self(self, store.octant(slot).slots[i], cell.child(i));
-  };
-  visit(visit, store.root(), Cell());
-}
-
 AbstractionMeasures Abstraction::measures() const {
   AbstractionMeasures m;
   const std::size_t numTerms = options().weights.terms.size();
@@ -182,16 +148,35 @@ void Abstraction::compressTo(SemanticOcTree& compressed) const {
                     TreeBuilder::Merge::Never);
 }
 
-TreeChange Abstraction::takeChange() {
-  const Node root = m_map.root();
-  auto changes = std::move(m_map.m_leafChanges);  // lost if this fails
+std::unique_ptr<LeafChanges> Abstraction::takenChanges() const {
+  auto changes = std::move(m_map.m_leafChanges);
   if (!changes)
     throw std::logic_error(
         "changes of the compressed tree were lost when memory ran out: call setAbstraction() anew");
+  return changes;
+}
+
+TreeChange Abstraction::takeChange() {
+  const Node root = m_map.root();
+  auto changes = takenChanges();
   TreeChange change =
       root ? changes->update(m_map.store(), m_gTree, root) : changes->clear(m_map.store(), m_gTree);
   m_map.m_leafChanges = std::move(changes);
   return change;
+}
+
+void Abstraction::forgetChange() {
+  const Node root = m_map.root();
+  auto changes = takenChanges();
+  if (root)
+    changes->forget(m_map.store(), m_gTree, root);
+  else
+    changes->clear(m_map.store(), m_gTree);
+  m_map.m_leafChanges = std::move(changes);
+}
+
+std::size_t Abstraction::numTakenLeaves() const {
+  return m_map.m_leafChanges ? m_map.m_leafChanges->numLeaves() : 0;
 }
 
 void Abstraction::setAlpha(double alpha) {
@@ -221,66 +206,6 @@ void Abstraction::setRegions(const std::vector<Region>& regions) {
   m_gTree.setRegions(regions, m_map.getResolution());
   worker.recomputeWhereChanged(m_map.store(), m_map.store().root(), Cell(),
                                {before, m_gTree.density()});
-}
-
-Abstraction::Path Abstraction::alphaPath() const {
-  std::vector<std::int32_t> parents;
-  std::vector<double> gains, prices, addedLeaves;
-  std::size_t numRoots = m_map.getNumLeafNodes();
-  const double total = totalDensity();
-  std::array<std::int32_t, kTreeDepth> lastAtDepth;  // node visited last; -1: of the free frame
-  forEachInner([&](const InnerNode& n) {
-    std::int32_t& index = lastAtDepth[n.cell.depth] = -1;
-    if (m_gTree.isFreeFrame(n.cell.depth)) return;
-    const double p = total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
-    index = static_cast<std::int32_t>(parents.size());
-    parents.push_back(n.cell.depth == 0 ? -1 : lastAtDepth[n.cell.depth - 1]);
-    gains.push_back(p * n.weightedDivergence);
-    prices.push_back(p * n.splitEntropy);
-    addedLeaves.push_back(n.numChildren - 1);
-    numRoots -= n.numChildren - 1;
-  });
-  return {tree_abstraction::AlphaPath(tree_abstraction::collapseAlphas(parents, gains, prices)),
-          std::move(addedLeaves), numRoots};
-}
-
-Abstraction::PathInformation Abstraction::pathInformation(
-    const std::vector<double>& termWeights) const {
-  const std::size_t numTerms = options().weights.terms.size();
-  if (termWeights.size() != numTerms)
-    throw std::invalid_argument(
-        "information along the path: " + std::to_string(termWeights.size()) +
-        " weights, expected one for each of the " + std::to_string(numTerms) + " terms");
-  PathInformation information;
-  const double total = totalDensity();
-  forEachInner([&](const InnerNode& n) {
-    double gain = 0;
-    for (std::size_t t = 0; t < numTerms; ++t)
-      gain += termWeights[t] * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
-    gain *= total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
-    if (m_gTree.isFreeFrame(n.cell.depth))
-      information.ofRoots += gain;
-    else
-      information.added.push_back(gain);
-  });
-  return information;
-}
-
-void Abstraction::forEachPathNode(const VisitPathNode& visit) const {
-  std::vector<double> information(options().weights.terms.size());
-  const double total = totalDensity();
-  forEachInner([&](const InnerNode& n) {
-    const double p = total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
-    for (std::size_t t = 0; t < information.size(); ++t)
-      information[t] = p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
-    visit({n.cell.lowest(), n.cell.depth, m_gTree.isFreeFrame(n.cell.depth), p, p * n.splitEntropy,
-           n.numChildren - 1},
-          information);
-  });
-}
-
-double Abstraction::Path::alphaForLeaves(std::size_t wanted) const {
-  return trees.alpha(trees.largestWithLeaves(wanted, addedLeaves, numRoots));
 }
 
 SemanticOcTree compressedMap(const SemanticOcTree& map, const IsExpanded& isExpanded) {

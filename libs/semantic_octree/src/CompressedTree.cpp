@@ -3,16 +3,22 @@
 namespace semantic_octree {
 
 TreeChange LeafChanges::clear(const NodeStore& store, const GTree& gTree) {
-  Update u{CompressedTree(store, gTree), {}};
+  Update u{CompressedTree(store, gTree)};
   remove(u, m_root, Cell());
   m_root = kNone;
   return std::move(u.change);
 }
 
 TreeChange LeafChanges::update(const NodeStore& store, const GTree& gTree, const Node& root) {
-  Update u{CompressedTree(store, gTree), {}};
+  Update u{CompressedTree(store, gTree)};
   update(u, m_root, root, Cell());
   return std::move(u.change);
+}
+
+void LeafChanges::forget(const NodeStore& store, const GTree& gTree, const Node& root) {
+  Update u{CompressedTree(store, gTree)};
+  u.tells = false;
+  update(u, m_root, root, Cell());
 }
 
 void LeafChanges::update(Update& u, Index& told, const Node& node, const Cell& cell) {
@@ -49,12 +55,17 @@ void LeafChanges::becomeLeaf(Update& u, Index& told, const Node& node, const Cel
   if (told == kLeaf) return;
   remove(u, told, cell);
   told = kLeaf;
-  u.change.added.push_back(leafCell(node, cell));
+  ++m_numLeaves;
+  if (u.tells) u.change.added.push_back(leafCell(node, cell));
 }
 
 void LeafChanges::remove(Update& u, Index told, const Cell& cell) {
   if (told == kNone) return;
-  if (told == kLeaf) return u.change.removed.push_back(leafCell(Node(), cell));
+  if (told == kLeaf) {
+    --m_numLeaves;
+    if (u.tells) u.change.removed.push_back(leafCell(Node(), cell));
+    return;
+  }
   for (int i = 0; i < 8; ++i) remove(u, m_inner[told - kFirstInner][i], cell.child(i));
   m_free.push_back(told);
 }

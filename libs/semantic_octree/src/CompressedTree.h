@@ -64,9 +64,12 @@ class LeafChanges {
   /** Compares with the map as it is now, remembers that, and returns the difference. Visits only
    * nodes that changed or have changed nodes below them. */
   TreeChange update(const NodeStore& store, const GTree& gTree, const Node& root);
-
   /** The same for a map that is empty now. */
   TreeChange clear(const NodeStore& store, const GTree& gTree);
+  /** As update(), without a word. */
+  void forget(const NodeStore& store, const GTree& gTree, const Node& root);
+  /** That were told and are not gone. */
+  std::size_t numLeaves() const { return m_numLeaves; }
 
  private:
   using Index = std::uint32_t;
@@ -74,7 +77,8 @@ class LeafChanges {
 
   struct Update {
     CompressedTree tree;
-    TreeChange change;
+    TreeChange change = {};
+    bool tells = true;
   };
   void update(Update& u, Index& told, const Node& node, const Cell& cell);
   void updateChildren(Update& u, Index& told, const Node& node, const Cell& cell);
@@ -84,6 +88,7 @@ class LeafChanges {
   Index newInner();
 
   Index m_root = kNone;
+  std::size_t m_numLeaves = 0;
   std::vector<std::array<Index, 8>> m_inner;
   std::vector<Index> m_free;
 };

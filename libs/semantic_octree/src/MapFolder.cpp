@@ -86,17 +86,23 @@ constexpr std::uint64_t kBytesOfLeaf = 6;
 class MapFolder::Tiles {
  public:
   Tiles(SemanticOcTree& map, fs::path folder, Access access, const MapFolderOptions& options)
-      : m_map(map), m_folder(std::move(folder)), m_access(access) {
+      : m_map(map),
+        m_folder(std::move(folder)),
+        m_draft(access == Access::Draft ? options.draft : fs::path()),
+        m_access(access) {
     options.validate();
     if (!map.empty()) throw std::invalid_argument("a map for a folder of tiles has to be empty");
     if (map.classes().hasHalfLives())
       throw std::invalid_argument(
           "a map of classes with half-lives cannot be in a folder of tiles");
     map.checkNotInTiles();
+    if (access == Access::Draft && options.draft.empty())
+      throw std::invalid_argument("a draft of a folder of tiles needs a place for what changes");
     TileIndex index = open(options);
     constexpr double kAll = 1e18;  // bytes
     const auto budget = static_cast<std::size_t>(std::min(options.memory * 1e6, kAll));
-    const TilesOnDisk::Place place{m_folder, index.depth, budget, access != Access::Read};
+    const TilesOnDisk::Place place{m_folder, index.depth, budget, access != Access::Read,
+                                   m_draft.empty() ? m_folder : m_draft};
     tiles = std::make_unique<TilesOnDisk>(map, place, std::move(index));
     auto empty = std::make_unique<NodeStore>(map.store().stateBytes());
     try {
@@ -110,12 +116,12 @@ class MapFolder::Tiles {
   }
   ~Tiles() {
     if (isOfMap()) m_map.store().setTiles(nullptr);
+    removeDraft();
   }
 
   void save() {
     if (!isOfMap()) throw std::logic_error("saving a map that is no longer the folder's");
-    if (m_access == Access::Read)
-      throw std::logic_error("saving a map whose folder was opened to be read");
+    if (!saves()) throw std::logic_error("saving a map whose folder was opened to be read");
     TileIndex index = tiles->writeChanged();
     SemanticOcTree leaves = emptyLike(m_map);
     TreeBuilder::fill(leaves, LeavesCursor(m_map, index.depth, m_map.root(), 0),
@@ -152,8 +158,10 @@ class MapFolder::Tiles {
  private:
   bool isOfMap() const { return !m_map.isBroken() && m_map.store().tiles() == tiles.get(); }
 
+  bool saves() const { return m_access == Access::Write || m_access == Access::Replace; }
+
   TileIndex open(const MapFolderOptions& options) {
-    if (m_access != Access::Read) {
+    if (saves()) {
       fs::create_directories(m_folder);
       m_writer = FileLock::tryTo(m_folder / kWriterLock, FileLock::Kind::Exclusive);
       if (!m_writer)
@@ -162,6 +170,10 @@ class MapFolder::Tiles {
       m_reader.emplace(m_folder / kReadersLock, FileLock::Kind::Shared);
     }
     if (m_access == Access::Read) return onlyWanted(readIndex(m_folder), options.wanted);
+    if (m_access == Access::Draft) {
+      fs::create_directories(m_draft);
+      return readIndex(m_folder);
+    }
     const bool wasSaved = isAt(m_folder);
     if (wasSaved && m_access == Access::Write) return readIndex(m_folder);
     TileIndex index;
@@ -195,15 +207,25 @@ class MapFolder::Tiles {
     const auto alone = FileLock::tryTo(m_folder / kReadersLock, FileLock::Kind::Exclusive);
     if (!alone) return;
     const std::set<std::string> names = namesInIndex();
+    removeTiles(m_folder, names);
+  }
+  /** All tiles, and what else a folder has of a map, but for these. */
+  static void removeTiles(const fs::path& folder, const std::set<std::string>& kept) {
     std::error_code ignored;
-    for (const auto& file : fs::directory_iterator(m_folder, ignored)) {
+    for (const auto& file : fs::directory_iterator(folder, ignored)) {
       const std::string name = file.path().filename().string();
-      if (TileIndex::isName(name) && names.count(name) == 0) fs::remove(file.path(), ignored);
+      if (TileIndex::isName(name) && kept.count(name) == 0) fs::remove(file.path(), ignored);
     }
+  }
+  void removeDraft() const {
+    if (m_draft.empty()) return;
+    removeTiles(m_draft, {});
+    std::error_code ignored;
+    fs::remove(m_draft, ignored);
   }
 
   SemanticOcTree& m_map;
-  fs::path m_folder;
+  fs::path m_folder, m_draft;  ///< the latter empty: it is none
   Access m_access;
   std::optional<FileLock> m_writer, m_reader;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <deque>
+#include <iterator>
 #include <stdexcept>
 
 #include "StreamPackets.h"
@@ -20,12 +21,22 @@ struct Packet {
   std::uint32_t sequence = 0;  ///< when it was sent last; 0: never
 };
 
+std::vector<Packet> packetsOf(const TreeParts& parts, const PartCoder& coder) {
+  std::vector<Packet> packets;
+  for (PacketContent& packet : semantic_octree::packetsOf(parts, coder, kMaxContent)) {
+    packets.emplace_back();
+    packets.back().content = std::move(packet.bytes);
+    packets.back().prefix = packet.prefix;
+  }
+  return packets;
+}
+
 }  // namespace
 
 struct MapSender::State {
   std::uint32_t stream;
   PacketHeader header;  ///< of the present revision
-  StreamTree told;
+  std::unique_ptr<SemanticOcTree> told;  ///< what the receiver will have; null: nothing
   std::unique_ptr<SemanticOcTree> kind;  ///< an empty map
   std::unique_ptr<PartCoder> coder;
   std::vector<Packet> packets;
@@ -33,8 +44,10 @@ struct MapSender::State {
   std::size_t numCome = 0, numNew = 0;  ///< packets that came; that were sent at all
   std::deque<std::size_t> lost;
 
-  void describe(const SemanticOcTree& compressed, int rootDepth);
-  void take(TreeParts parts);
+  std::vector<Packet> description(std::uint32_t checksum, const PartCoder& with,
+                                  const SemanticOcTree& like) const;
+  void take(std::vector<Packet> all, std::size_t numDescription);
+  void checkNext(const SemanticOcTree& empty, int rootDepth) const;
   void countPrefixes();
   void lose(std::size_t number);
 };
@@ -45,58 +58,67 @@ MapSender::MapSender(std::uint32_t stream) : m_state(std::make_unique<State>()) 
 MapSender::~MapSender() = default;
 MapSender::MapSender(MapSender&&) noexcept = default;
 
+void MapSender::State::checkNext(const SemanticOcTree& empty, int rootDepth) const {
+  if (kind && *kind != empty)
+    throw std::invalid_argument(
+        "the next map differs from the one before in resolution, filter or class table");
+  if (coder && coder->rootDepth() != rootDepth)
+    throw std::invalid_argument("the next map's blocks are not those of the one before");
+}
+
+/** Parts, packets and the compressed tree take as much memory as each other: the first are gone when
+ * the last is made. */
 void MapSender::setMap(SemanticOcTree& map, bool isLast) {
   State& s = *m_state;
   if (!isComplete()) throw std::logic_error("the receiver does not have the map before yet");
   const Abstraction abstraction(map);
-  const SemanticOcTree empty(map.getResolution(), map.classes(), map.filterParameters());
-  if (s.kind && *s.kind != empty)
-    throw std::invalid_argument(
-        "the next map differs from the one before in resolution, filter or class table");
-  if (s.coder && s.coder->rootDepth() != abstraction.rootDepth())
-    throw std::invalid_argument("the next map's blocks are not those of the one before");
-  TreeParts parts = partsOfChange(map, s.told);
-  if (!s.kind) {
-    s.kind = std::make_unique<SemanticOcTree>(empty);
-    s.coder =
-        std::make_unique<PartCoder>(coderFor(parts, map.numClasses(), abstraction.rootDepth()));
-  }
-  ++s.header.revision;
+  auto kind = std::make_unique<SemanticOcTree>(map.getResolution(), map.classes(),
+                                               map.filterParameters());
+  s.checkNext(*kind, abstraction.rootDepth());
+  auto parts = std::make_unique<TreeParts>(partsOfChange(map, s.told.get()));
+  auto coder = std::make_unique<PartCoder>(
+      s.coder ? *s.coder : coderFor(*parts, map.numClasses(), abstraction.rootDepth()));
+  std::vector<Packet> data = packetsOf(*parts, *coder);
+  parts = nullptr;
+  auto compressed = std::make_unique<SemanticOcTree>(abstraction.compressedMap());
+  std::vector<Packet> all = s.description(checksumOf(*compressed), *coder, *kind);
+  const std::size_t numDescription = all.size();
+  std::move(data.begin(), data.end(), std::back_inserter(all));
+  if (all.size() > kMaxPackets)
+    throw std::invalid_argument("a map of " + std::to_string(all.size()) +
+                                " packets is too large to be sent");
+  s.kind = std::move(kind);
+  s.coder = std::move(coder);
+  s.told = std::move(compressed);
   s.header.isLast = isLast;
-  s.packets.clear();
-  s.describe(abstraction.compressedMap(), abstraction.rootDepth());
-  s.take(std::move(parts));
+  s.take(std::move(all), numDescription);
 }
 
-/** \param compressed what is sent */
-void MapSender::State::describe(const SemanticOcTree& compressed, int rootDepth) {
+/** What is told before the parts: of the first map how it is coded, too. */
+std::vector<Packet> MapSender::State::description(std::uint32_t checksum, const PartCoder& with,
+                                                  const SemanticOcTree& like) const {
   StreamDescription d;
-  d.checksum = checksumOf(compressed);
-  d.rootDepth = rootDepth;
-  if (header.revision == 1) {
-    d.coding = coder->toText();
-    d.kind = fileOf(*kind);
+  d.checksum = checksum;
+  d.rootDepth = with.rootDepth();
+  if (header.revision == 0) {
+    d.coding = with.toText();
+    d.kind = fileOf(like);
   }
   const std::string text = d.compressed();
+  std::vector<Packet> described;
   for (std::size_t at = 0; at < text.size(); at += kMaxContent) {
-    packets.emplace_back();
-    packets.back().content = text.substr(at, kMaxContent);
+    described.emplace_back();
+    described.back().content = text.substr(at, kMaxContent);
   }
-  if (packets.size() > kMaxDescriptionPackets)
+  if (described.size() > kMaxDescriptionPackets)
     throw std::invalid_argument("a class table too long to be sent");
-  header.numDescription = static_cast<std::uint8_t>(packets.size());
+  return described;
 }
 
-void MapSender::State::take(TreeParts parts) {
-  for (PacketContent& packet : packetsOf(parts, *coder, kMaxContent)) {
-    packets.emplace_back();
-    packets.back().content = std::move(packet.bytes);
-    packets.back().prefix = packet.prefix;
-  }
-  if (packets.size() > kMaxPackets)
-    throw std::invalid_argument("a map of " + std::to_string(packets.size()) +
-                                " packets is too large to be sent");
-  for (const OrderedPart& ordered : parts.parts) told.apply(ordered.part, header.revision);
+void MapSender::State::take(std::vector<Packet> all, std::size_t numDescription) {
+  packets = std::move(all);
+  ++header.revision;
+  header.numDescription = static_cast<std::uint8_t>(numDescription);
   header.count = static_cast<std::uint32_t>(packets.size());
   numCome = numNew = 0;
   lost.clear();

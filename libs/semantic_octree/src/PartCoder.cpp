@@ -31,6 +31,25 @@ std::vector<T> mostFrequent(const std::map<T, std::size_t, Less>& counts, std::s
   return values;
 }
 
+/** How often what is said. */
+struct LeafCounts {
+  std::map<Units, std::size_t, std::less<Units>> plain, rests, differences;
+  std::map<StreamLeaf, std::size_t, ByBytes> records;
+
+  void add(const TreePart& part) {
+    for (int i = 0; i < 8; ++i)
+      if (part.mask >> i & 1) add(part.leaves[i]);
+  }
+  void add(const StreamLeaf& leaf) {
+    if (leaf.kind == StreamLeaf::Kind::Plain) ++plain[leaf.value];
+    if (leaf.kind != StreamLeaf::Kind::WithRecord) return;
+    ++records[leaf];
+    ++rests[leaf.record.rest];
+    for (int c = 0; c < leaf.record.count; ++c)
+      ++differences[static_cast<Units>(leaf.record.logOdds[c] - leaf.record.rest)];
+  }
+};
+
 template <typename T>
 void put(std::string& text, const T& value) {
   text.append(reinterpret_cast<const char*>(&value), sizeof(T));
@@ -65,34 +84,25 @@ PartCoder::PartCoder(int numClasses, int rootDepth)
       m_rootDepth(rootDepth),
       m_models(kNumContexts, 1 << (kModelBits - 1)) {}
 
-void PartCoder::learn(const std::vector<std::vector<const TreePart*>>& groups) {
-  std::map<Units, std::size_t, std::less<Units>> plain, rests, differences;
-  std::map<StreamLeaf, std::size_t, ByBytes> records;
-  for (const auto& group : groups)
-    for (const TreePart* part : group)
-      for (int i = 0; i < 8; ++i) {
-        const StreamLeaf& leaf = part->leaves[i];
-        if (!(part->mask >> i & 1)) continue;
-        if (leaf.kind == StreamLeaf::Kind::Plain) ++plain[leaf.value];
-        if (leaf.kind != StreamLeaf::Kind::WithRecord) continue;
-        ++records[leaf];
-        ++rests[leaf.record.rest];
-        for (int c = 0; c < leaf.record.count; ++c)
-          ++differences[static_cast<Units>(leaf.record.logOdds[c] - leaf.record.rest)];
-      }
+void PartCoder::learn(const std::function<void(const VisitGroup&)>& forEachGroup) {
+  LeafCounts counts;
+  forEachGroup([&](const auto& group) {
+    for (const TreePart* part : group) counts.add(*part);
+  });
   // A table's entry must save more than it costs: 2 bytes, or 14 that compress to half.
-  m_plain = mostFrequent(plain, 3);
-  m_rests = mostFrequent(rests, 4);
-  m_differences = mostFrequent(differences, 4);
-  m_records = mostFrequent(records, 8);
+  m_plain = mostFrequent(counts.plain, 3);
+  m_rests = mostFrequent(counts.rests, 4);
+  m_differences = mostFrequent(counts.differences, 4);
+  m_records = mostFrequent(counts.records, 8);
+  counts = {};
   BitCounter counter(kNumContexts);
-  for (const auto& group : groups) {
+  forEachGroup([&](const auto& group) {
     PartFormat<BitCounter> format(*this, counter);
     for (const TreePart* part : group) {
       TreePart copy = *part;
       format.code(copy);
     }
-  }
+  });
   const std::string probabilities = counter.probabilities();
   for (std::size_t i = 0; i < kNumContexts; ++i)
     m_models[i] = static_cast<std::uint16_t>(static_cast<std::uint8_t>(probabilities[i]) << 3);

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <istream>
 
 #include "RangeCoder.h"
@@ -15,8 +16,10 @@ class PartCoder {
    * leaves that are no octet's are not below */
   PartCoder(int numClasses, int rootDepth);
   int rootDepth() const { return m_rootDepth; }
-  /** What is frequent in these. \param groups sorted parts of a packet each */
-  void learn(const std::vector<std::vector<const TreePart*>>& groups);
+  /** Takes sorted parts of a packet. */
+  using VisitGroup = std::function<void(const std::vector<const TreePart*>&)>;
+  /** What is frequent in these. \param forEachGroup hands over all, the same each time */
+  void learn(const std::function<void(const VisitGroup&)>& forEachGroup);
 
   /** \param parts at most 65535, sorted by cell */
   std::string encode(const std::vector<const TreePart*>& parts) const;

@@ -9,16 +9,34 @@ namespace semantic_octree {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+SemanticOcTree beginningOf(const fs::path& path) {
+  return MapFolder::isAt(path) ? MapFolder::emptyMap(path) : loadTree(path.string());
+}
+
+}  // namespace
+
 StoredMap::StoredMap(const fs::path& path, double memory, decltype(MapFolderOptions::wanted) wanted)
-    : m_tree(MapFolder::isAt(path) ? MapFolder::emptyMap(path) : loadTree(path.string())) {
+    : m_tree(beginningOf(path)) {
+  MapFolderOptions options;
+  options.memory = memory;
+  options.wanted = std::move(wanted);
+  open(path, MapFolder::Access::Read, options);
+}
+
+StoredMap::StoredMap(const fs::path& path, const MapFolderOptions& options)
+    : m_tree(beginningOf(path)) {
+  open(path, MapFolder::Access::Draft, options);
+}
+
+void StoredMap::open(const fs::path& path, MapFolder::Access access,
+                     const MapFolderOptions& options) {
   if (!MapFolder::isAt(path)) {
     m_bytesOnDisk = fs::file_size(path);
     return;
   }
-  MapFolderOptions options;
-  options.memory = memory;
-  options.wanted = std::move(wanted);
-  m_folder = std::make_unique<MapFolder>(m_tree, path, MapFolder::Access::Read, options);
+  m_folder = std::make_unique<MapFolder>(m_tree, path, access, options);
   m_bytesOnDisk = m_folder->contents().bytesOnDisk;
 }
 

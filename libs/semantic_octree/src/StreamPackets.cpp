@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cstring>
+#include <deque>
+#include <ostream>
 #include <sstream>
 #include <stdexcept>
+#include <streambuf>
 
 namespace semantic_octree {
 namespace {
@@ -47,45 +50,83 @@ class Fields {
 constexpr std::uint8_t kLastFlag = 1, kOptimalFlag = 2;
 constexpr std::uint32_t kMaxDescription = 1 << 24;
 
-using Iterator = std::vector<OrderedPart>::const_iterator;
+/** Some of a list's parts in a row, unpacked. */
+class PartWindow {
+ public:
+  explicit PartWindow(const PartList& parts) : m_parts(parts) {}
 
-std::vector<const TreePart*> sorted(Iterator begin, Iterator end) {
-  std::vector<const TreePart*> parts;
-  for (; begin != end; ++begin) parts.push_back(&begin->part);
-  std::stable_sort(parts.begin(), parts.end(),
-                   [](const TreePart* a, const TreePart* b) { return a->cell < b->cell; });
-  return parts;
-}
+  /** Valid until the next call. \param begin, end neither before those of the last call's */
+  std::vector<const TreePart*> sorted(std::size_t begin, std::size_t end) {
+    for (; m_begin < begin && !m_unpacked.empty(); ++m_begin) m_unpacked.pop_front();
+    m_begin = begin;
+    while (m_begin + m_unpacked.size() < end)
+      m_unpacked.push_back(m_parts.part(m_begin + m_unpacked.size()));
+    std::vector<const TreePart*> parts;
+    for (std::size_t i = begin; i < end; ++i) parts.push_back(&m_unpacked[i - begin]);
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const TreePart* a, const TreePart* b) { return a->cell < b->cell; });
+    return parts;
+  }
+
+ private:
+  const PartList& m_parts;
+  std::size_t m_begin = 0;
+  std::deque<TreePart> m_unpacked;  ///< from there on
+};
+
+/** Of what is written into it. */
+class Crc : public std::streambuf {
+ public:
+  std::uint32_t value() const { return static_cast<std::uint32_t>(m_crc); }
+
+ protected:
+  std::streamsize xsputn(const char* bytes, std::streamsize number) override {
+    m_crc = crc32_z(m_crc, reinterpret_cast<const unsigned char*>(bytes),
+                    static_cast<std::size_t>(number));
+    return number;
+  }
+  int_type overflow(int_type byte) override {
+    const char c = traits_type::to_char_type(byte);
+    xsputn(&c, 1);
+    return traits_type::not_eof(byte);
+  }
+
+ private:
+  unsigned long m_crc = 0;
+};
 
 /** Fills packets, one behind the other. */
 class Packer {
  public:
   Packer(const TreeParts& parts, const PartCoder& coder, std::size_t maxBytes)
-      : m_parts(parts.parts), m_all(parts), m_coder(coder), m_maxBytes(maxBytes) {}
+      : m_parts(parts.parts),
+        m_all(parts),
+        m_window(parts.parts),
+        m_coder(coder),
+        m_maxBytes(maxBytes) {}
 
   std::vector<PacketContent> packets() {
     std::vector<PacketContent> packets;
-    for (Iterator at = m_parts.begin(); at != m_parts.end();) {
-      Iterator end = at + static_cast<std::ptrdiff_t>(numThatFit(at));
-      for (Iterator cut = end; cut != at; --cut)
-        if (cut == m_parts.end() || cut->begins) {
+    for (std::size_t at = 0; at != m_parts.size();) {
+      std::size_t end = at + numThatFit(at);
+      for (std::size_t cut = end; cut != at; --cut)
+        if (cut == m_parts.size() || m_parts.begins(cut)) {
           end = cut;
           break;
         }
-      packets.push_back({m_coder.encode(sorted(at, end)), prefixBefore(end)});
+      packets.push_back({m_coder.encode(m_window.sorted(at, end)), prefixBefore(end)});
       at = end;
     }
     return packets;
   }
 
  private:
-  std::size_t sizeOf(Iterator at, std::size_t number) const {
-    return m_coder.encode(sorted(at, at + static_cast<std::ptrdiff_t>(number))).size();
+  std::size_t sizeOf(std::size_t at, std::size_t number) {
+    return m_coder.encode(m_window.sorted(at, at + number)).size();
   }
   /** Up to a 64th; one always does. */
-  std::size_t numThatFit(Iterator at) {
-    const std::size_t most =
-        std::min<std::size_t>(static_cast<std::size_t>(m_parts.end() - at), UINT16_MAX);
+  std::size_t numThatFit(std::size_t at) {
+    const std::size_t most = std::min<std::size_t>(m_parts.size() - at, UINT16_MAX);
     std::size_t fits = 1, exceeds = most + 1;
     for (std::size_t n = m_last; exceeds - fits > 1 + fits / 64;) {
       n = std::clamp(n, fits + 1, exceeds - 1);
@@ -95,21 +136,23 @@ class Packer {
     }
     return m_last = fits;
   }
-  StreamPrefix prefixBefore(Iterator end) const {
+  StreamPrefix prefixBefore(std::size_t end) const {
     StreamPrefix prefix;
-    const std::size_t step = (end - 1)->step;
-    prefix.isWhole = end == m_parts.end() || end->step != step;
-    const bool isOptimal = end == m_parts.end() || (end->begins && (step > 0 || prefix.isWhole));
+    const bool isEnd = end == m_parts.size();
+    const std::size_t step = m_parts.step(end - 1);
+    prefix.isWhole = isEnd || m_parts.step(end) != step;
+    const bool isOptimal = isEnd || (m_parts.begins(end) && (step > 0 || prefix.isWhole));
     if (!isOptimal) return prefix;
-    if (end == m_parts.end())
+    if (isEnd)
       prefix.alpha = m_all.alphas.back();
     else
       prefix.alpha = prefix.isWhole ? m_all.alphas[step] : m_all.ties[step];
     return prefix;
   }
 
-  const std::vector<OrderedPart>& m_parts;
+  const PartList& m_parts;
   const TreeParts& m_all;
+  PartWindow m_window;
   const PartCoder& m_coder;
   std::size_t m_maxBytes, m_last = 64;
 };
@@ -193,9 +236,10 @@ std::string fileOf(const SemanticOcTree& map) {
 }
 
 std::uint32_t checksumOf(const SemanticOcTree& map) {
-  const std::string file = fileOf(map);
-  return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const unsigned char*>(file.data()), file.size()));
+  Crc crc;
+  std::ostream out(&crc);
+  writeTree(out, map);
+  return crc.value();
 }
 
 std::vector<PacketContent> packetsOf(const TreeParts& parts, const PartCoder& coder,
@@ -204,13 +248,13 @@ std::vector<PacketContent> packetsOf(const TreeParts& parts, const PartCoder& co
 }
 
 PartCoder coderFor(const TreeParts& parts, int numClasses, int rootDepth) {
-  constexpr std::ptrdiff_t kPerGroup = 128;  // about a packet's
-  std::vector<std::vector<const TreePart*>> groups;
-  const auto end = parts.parts.end();
-  for (auto at = parts.parts.begin(); at != end; at += std::min(kPerGroup, end - at))
-    groups.push_back(sorted(at, at + std::min(kPerGroup, end - at)));
+  constexpr std::size_t kPerGroup = 128;  // about a packet's
   PartCoder coder(numClasses, rootDepth);
-  coder.learn(groups);
+  coder.learn([&](const PartCoder::VisitGroup& visit) {
+    PartWindow window(parts.parts);
+    for (std::size_t at = 0; at < parts.parts.size(); at += kPerGroup)
+      visit(window.sorted(at, std::min(at + kPerGroup, parts.parts.size())));
+  });
   return coder;
 }
 

@@ -18,6 +18,7 @@ class TilesOnDisk : public TileSource {
     int depth;
     std::size_t budget;  ///< bytes
     bool mayWrite;
+    std::filesystem::path changed;  ///< where tiles of the next generation are
   };
   TilesOnDisk(SemanticOcTree& map, Place place, TileIndex index)
       : m_map(map), m_place(std::move(place)), m_index(std::move(index)) {}
@@ -52,7 +53,10 @@ class TilesOnDisk : public TileSource {
   NodeStore& store() const { return m_map.store(); }
   Cell cellOf(const Tile& tile) const { return {tile.place, m_place.depth}; }
   std::string fileOf(const Tile& tile) const {
-    return (m_place.folder / m_index.nameOf(tile.place, tile.written)).string();
+    const bool isSaved = tile.written <= m_index.generation;
+    return ((isSaved ? m_place.folder : m_place.changed) /
+            m_index.nameOf(tile.place, tile.written))
+        .string();
   }
   NodeArena& arenaWith(bool most);
   /** Null: it is no inner node (any more). */

@@ -5,27 +5,41 @@
 namespace semantic_octree {
 namespace {
 
-/** Of inner nodes, asked for in the order of a walk depth first. */
+/** When inner nodes of the compressed tree come in: asked for in the order of a walk depth first.
+ */
 class Steps {
  public:
-  Steps(const Abstraction& abstraction, const std::vector<std::size_t>& firstTrees) {
-    std::size_t i = 0;
-    abstraction.forEachPathNode([&](const Abstraction::PathNode& n, const std::vector<double>&) {
-      if (!n.isFree) m_steps.push_back({CellPath::of(n.lowest, n.depth), firstTrees[i++]});
-    });
-  }
+  explicit Steps(const Abstraction& abstraction) : m_steps(stepsOf(abstraction)) {}
+
   std::size_t of(const CellPath& cell) {
-    while (m_next + 1 < m_steps.size() && m_steps[m_next].cell < cell) ++m_next;
-    return m_steps[m_next].step;
+    while (m_next + 1 < m_tau.size() && cellOf(m_next) < cell) ++m_next;
+    return m_steps.stepOf(m_tau[m_next]);
   }
+  const tree_abstraction::AlphaSteps& alphas() const { return m_steps; }
 
  private:
-  struct Step {
-    CellPath cell;
-    std::size_t step;
-  };
-  std::vector<Step> m_steps;
+  /** Fills m_tau and m_cells, too. */
+  tree_abstraction::AlphaSteps stepsOf(const Abstraction& abstraction) {
+    std::vector<double> all;
+    abstraction.forEachTau([&](const Abstraction::NodeTau& n) {
+      if (n.tau > 0) all.push_back(n.tau);
+      if (!n.isExpanded) return;
+      m_tau.push_back(n.tau);
+      const CellPath cell = CellPath::of(n.lowest, n.depth);
+      m_cells.push_back(cell.path << kDepthBits | static_cast<unsigned>(cell.depth));
+    });
+    return {std::move(all), m_tau};
+  }
+  CellPath cellOf(std::size_t i) const {
+    constexpr std::uint64_t kDepths = (1 << kDepthBits) - 1;
+    return {m_cells[i] >> kDepthBits, static_cast<int>(m_cells[i] & kDepths)};
+  }
+
+  static constexpr int kDepthBits = 5;
+  std::vector<double> m_tau;
+  std::vector<std::uint64_t> m_cells;  ///< path and depth
   std::size_t m_next = 0;
+  tree_abstraction::AlphaSteps m_steps;
 };
 
 /** What a receiver has of a cube. */
@@ -33,35 +47,32 @@ struct Before {
   /** Part: of a larger leaf. */
   enum class Kind { None, Leaf, Inner, Part };
   Kind kind = Kind::None;
-  const StreamTree::Node* node = nullptr;  ///< leaf or inner node
+  Node node;  ///< leaf or inner node
 
-  static Before of(const StreamTree::Node& node) {
-    if (!node.isKnown()) return {};
-    return {node.isInner() ? Kind::Inner : Kind::Leaf, &node};
+  static Before of(const Node& node) {
+    if (!node) return {};
+    return {node.isLeaf() ? Kind::Leaf : Kind::Inner, node};
   }
-  Before child(const StreamTree& tree, int i) const {
-    if (kind == Kind::Inner) return of(tree.child(*node, i));
-    return {kind == Kind::None ? Kind::None : Kind::Part, nullptr};
+  Before child(int i) const {
+    if (kind == Kind::Inner) return of(node.child(i));
+    return {kind == Kind::None ? Kind::None : Kind::Part, {}};
   }
   bool isNode() const { return kind == Kind::Leaf || kind == Kind::Inner; }
-  bool isLeafOf(const StreamLeaf& leaf) const { return kind == Kind::Leaf && node->leaf == leaf; }
 };
 
 class Comparison {
  public:
-  Comparison(const SemanticOcTree& map, const Abstraction& abstraction, const StreamTree& before,
-             Steps steps)
+  Comparison(const SemanticOcTree& map, const Abstraction& abstraction,
+             const SemanticOcTree* before, Steps& steps, PartList& parts)
       : m_map(map),
         m_abstraction(abstraction),
         m_before(before),
-        m_steps(std::move(steps)),
-        m_rootDepth(abstraction.rootDepth()) {}
+        m_steps(steps),
+        m_rootDepth(abstraction.rootDepth()),
+        m_parts(parts) {}
 
-  std::vector<OrderedPart> parts() {
-    compare(m_map.root(), CellPath(), Before::of(m_before.root()));
-    std::stable_sort(m_parts.begin(), m_parts.end(),
-                     [](const OrderedPart& a, const OrderedPart& b) { return a.step < b.step; });
-    return std::move(m_parts);
+  void run() {
+    compare(m_map.root(), CellPath(), Before::of(m_before ? m_before->root() : Node()));
   }
 
  private:
@@ -69,76 +80,78 @@ class Comparison {
   StreamLeaf leafOf(const Node& node) const {
     return node ? StreamLeaf::of(contentOf(m_map, node)) : StreamLeaf();
   }
+  bool isLeafOf(const Before& before, const StreamLeaf& leaf) const {
+    return before.kind == Before::Kind::Leaf &&
+           StreamLeaf::of(contentOf(*m_before, before.node)) == leaf;
+  }
 
   /** At the depth of the roots and above. */
   void compare(const Node& node, const CellPath& cell, const Before& before) {
     const bool inner = isInner(node);
     if (inner && cell.depth < m_rootDepth) {
-      for (int i = 0; i < 8; ++i) compare(node.child(i), cell.child(i), before.child(m_before, i));
+      for (int i = 0; i < 8; ++i) compare(node.child(i), cell.child(i), before.child(i));
     } else if (inner) {
       if (!before.isNode()) addLeaf(cell, leafOf(node));
       compareOctet(node, cell, before, 0);
     } else if (node || before.kind != Before::Kind::None) {
       const StreamLeaf leaf = leafOf(node);
-      if (!before.isLeafOf(leaf)) addLeaf(cell, leaf);
+      if (!isLeafOf(before, leaf)) addLeaf(cell, leaf);
     }
   }
 
   void addLeaf(const CellPath& cell, const StreamLeaf& leaf) {
-    OrderedPart ordered;
-    ordered.part.cell = cell;
-    ordered.part.leaves[0] = leaf;
-    m_parts.push_back(ordered);
+    TreePart part;
+    part.cell = cell;
+    part.leaves[0] = leaf;
+    m_parts.add(part, 0, true);
   }
 
   /** \param stepAbove of the node's parent */
   void compareOctet(const Node& node, const CellPath& cell, const Before& before,
                     std::size_t stepAbove) {
-    OrderedPart ordered;
-    ordered.part.cell = cell;
-    ordered.part.isOctet = true;
-    ordered.part.mask = 0;
-    ordered.step = m_steps.of(cell);
-    ordered.begins = stepAbove < ordered.step;
+    TreePart part;
+    part.cell = cell;
+    part.isOctet = true;
+    part.mask = 0;
+    const std::size_t step = m_steps.of(cell);
     const bool wasInner = before.kind == Before::Kind::Inner;
     for (int i = 0; i < 8; ++i) {
       const Node child = node.child(i);
-      const Before was = wasInner ? before.child(m_before, i) : Before();
+      const Before was = wasInner ? before.child(i) : Before();
       if (isInner(child) ? was.isNode() : !child && was.kind == Before::Kind::None) continue;
-      ordered.part.leaves[i] = leafOf(child);
-      const bool isSame = !isInner(child) && was.isLeafOf(ordered.part.leaves[i]);
-      ordered.part.mask |= static_cast<std::uint8_t>(!isSame << i);
+      part.leaves[i] = leafOf(child);
+      const bool isSame = !isInner(child) && isLeafOf(was, part.leaves[i]);
+      part.mask |= static_cast<std::uint8_t>(!isSame << i);
     }
-    if (ordered.part.mask != 0) m_parts.push_back(ordered);
+    if (part.mask != 0) m_parts.add(part, step, stepAbove < step);
     for (int i = 0; i < 8; ++i)
       if (const Node child = node.child(i); isInner(child))
-        compareOctet(child, cell.child(i), wasInner ? before.child(m_before, i) : Before(),
-                     ordered.step);
+        compareOctet(child, cell.child(i), wasInner ? before.child(i) : Before(), step);
   }
 
   const SemanticOcTree& m_map;
   const Abstraction& m_abstraction;
-  const StreamTree& m_before;
-  Steps m_steps;
+  const SemanticOcTree* m_before;
+  Steps& m_steps;
   int m_rootDepth;
-  std::vector<OrderedPart> m_parts;
+  PartList& m_parts;
 };
 
 }  // namespace
 
-TreeParts partsOfChange(SemanticOcTree& map, const StreamTree& before) {
+TreeParts partsOfChange(SemanticOcTree& map, const SemanticOcTree* before) {
   const Abstraction abstraction(map);
+  Steps steps(abstraction);
   TreeParts result;
-  const tree_abstraction::AlphaPath trees = abstraction.alphaPath().trees;
-  for (std::size_t k = 0; k < trees.numTrees(); ++k) {
-    result.alphas.push_back(trees.alpha(k));
-    result.ties.push_back(trees.highestAlpha(k));
+  for (std::size_t step = 0; step + 1 < steps.alphas().numSteps(); ++step) {
+    result.alphas.push_back(steps.alphas().alpha(step));
+    result.ties.push_back(steps.alphas().highestAlpha(step));
   }
   // Also of what rounding alone expands.
   result.alphas.push_back(abstraction.options().weights.alpha);
   result.ties.push_back(result.alphas.back());
-  result.parts =
-      Comparison(map, abstraction, before, Steps(abstraction, trees.firstTrees())).parts();
+  Comparison(map, abstraction, before, steps, result.parts).run();
+  result.parts.sort();
   return result;
 }
 

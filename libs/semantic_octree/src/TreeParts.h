@@ -1,28 +1,22 @@
 #pragma once
 #include <semantic_octree/Abstraction.h>
+#include <tree_abstraction/AlphaSteps.h>
 
-#include "StreamTree.h"
+#include "PartList.h"
 
 namespace semantic_octree {
 
-/** A part, and when it is its turn. */
-struct OrderedPart {
-  TreePart part;
-  /** The tree of Abstraction::alphaPath() that it is part of first; leaves at the trees' roots and
-   * above are of tree 0. */
-  std::size_t step = 0;
-  /** The tree without it, and what comes behind it, is optimal for some alpha. */
-  bool begins = true;
-};
-
-/** What leads from a stream's tree to the compressed tree of a map. */
+/** What leads from the map that a receiver has to the compressed tree of another map. */
 struct TreeParts {
-  /** By step, then depth first. */
-  std::vector<OrderedPart> parts;
+  /** By step, then depth first. A part's step is that of the alpha path's tree that it is part of
+   * first; leaves at the trees' roots and above are of step 0. It begins something if the tree
+   * without it, and what comes behind it, is optimal for some alpha. */
+  PartList parts;
   /** Of each step: an alpha that leads to its tree, and the alpha at which what it brings is worth
    * its price. The last is the map's own. */
   std::vector<double> alphas, ties;
 };
-TreeParts partsOfChange(SemanticOcTree& map, const StreamTree& before);
+/** \param before what the receiver has; null: nothing */
+TreeParts partsOfChange(SemanticOcTree& map, const SemanticOcTree* before);
 
 }  // namespace semantic_octree

@@ -7,13 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "AlphaTies.h"
+
 namespace tree_abstraction {
 namespace {
-
-bool isTie(double larger, double smaller) {
-  constexpr double kTolerance = 1e-12;
-  return larger == smaller || larger - smaller <= kTolerance * smaller;
-}
 
 void requireSize(const std::string& field, std::size_t size, std::size_t expected) {
   if (size == expected) return;
@@ -59,9 +56,7 @@ double AlphaPath::highestAlpha(std::size_t k) const {
 }
 
 double AlphaPath::alpha(std::size_t k) const {
-  const double low = lowestAlpha(k), high = highestAlpha(k);
-  if (std::isfinite(high)) return low + 0.5 * (high - low);
-  return low > 0 ? 2.0 * low : 1.0;
+  return alphaBetween(lowestAlpha(k), highestAlpha(k));
 }
 
 std::vector<char> AlphaPath::expanded(std::size_t k) const {

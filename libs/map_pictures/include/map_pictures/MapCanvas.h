@@ -41,6 +41,9 @@ class MapCanvas {
    * are not full of that class. Its classes are the first entries of the legend. \param style its
    * heights and occupancy \throw std::invalid_argument as PictureStyle::validate(). */
   void drawMap(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
+  /** The same, of what lies on the canvas or up to 5 m beside it: as fine as that can be drawn, and
+   * cut off as if there were no more. The rest of a large map is not looked at. */
+  void drawMapAround(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
   /** A square with sides along the axes. \param edge m */
   void fillSquare(const Eigen::Vector2d& center, double edge, const Color& color);
   void drawLine(const std::vector<Eigen::Vector2d>& points, const Stroke& stroke);

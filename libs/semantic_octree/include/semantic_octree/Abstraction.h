@@ -5,6 +5,7 @@
 #include <tree_abstraction/AlphaPath.h>
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace semantic_octree {
 
 class CompressedTree;
 class GTree;
+class LeafChanges;
 
 /** A leaf of the compressed tree: a cube of the map. */
 struct LeafCell {
@@ -116,6 +118,10 @@ class Abstraction {
   /** What changed in leaves() since the last call (at first: since the map was empty), in time
    * proportional to the nodes that scans touched and the leaves that changed. */
   TreeChange takeChange();
+  /** The same, for who knows leaves() anyway: without a list of what may be all of a map. */
+  void forgetChange();
+  /** Of leaves() at the last call of either, in no time. */
+  std::size_t numTakenLeaves() const;
 
   /** New alpha: computes all inner nodes anew. \throw std::invalid_argument */
   void setAlpha(double alpha);
@@ -135,6 +141,18 @@ class Abstraction {
     double alphaForLeaves(std::size_t wanted) const;
   };
   Path alphaPath() const;
+
+  /** A node of alphaPath(). */
+  struct NodeTau {
+    Eigen::Array3i lowest;  ///< keys of its lowest voxel
+    int depth;
+    int addedLeaves;      ///< known children - 1
+    bool isExpanded;      ///< in the compressed tree
+    double tau;           ///< see tree_abstraction::collapseAlphas()
+  };
+  /** Calls visit(node) for the nodes of alphaPath(), in their order; where the frame is free, no
+   * more than those below one block are in memory. */
+  void forEachTau(const std::function<void(const NodeTau&)>& visit) const;
 
   /** sum_t weight_t I_t of the trees of alphaPath(), nats, for weights that need not be those of
    * the path: what its trees tell about some of the terms. Tree k of the path has
@@ -164,6 +182,8 @@ class Abstraction {
 
  private:
   CompressedTree compressedTree() const;
+  /** The map has none until they are given back: they are lost if what is done with them fails. */
+  std::unique_ptr<LeafChanges> takenChanges() const;
   /** p(x) of the whole map, unnormalized. */
   double totalDensity() const;
   /** Calls f(InnerNode) for all inner nodes, parents first. */

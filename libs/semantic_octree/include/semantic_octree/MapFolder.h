@@ -22,6 +22,9 @@ struct MapFolderOptions {
   /** Of a folder that is opened to be read: only tiles for whose cube (meters, map frame) this
    * answers true; the others' are unknown space. None: all tiles. */
   std::function<bool(const Eigen::AlignedBox3d& cube)> wanted = {};
+  /** Of a folder that is opened as a draft: a folder where tiles that changed go when memory is
+   * short. It is created, must not be used by anything else, and goes with the MapFolder. */
+  std::filesystem::path draft = {};
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
@@ -52,7 +55,8 @@ class MapFolder {
   enum class Access {
     Read,
     Write,
-    Replace  ///< to write, but the map begins empty: with the first save() all that was there goes
+    Replace,  ///< to write, but the map begins empty: with the first save() all that was there goes
+    Draft     ///< to change the map, which is not saved: the folder stays as it is
   };
 
   /** The file that makes a folder one. */
@@ -64,7 +68,8 @@ class MapFolder {
 
   /** Makes a map what the folder says. For writing, the folder may be new.
    * \param map empty, like that of the folder; must outlive this
-   * \throw std::invalid_argument the map is not empty, has half-lives, or bad options
+   * \throw std::invalid_argument the map is not empty, has half-lives, or bad options; a draft
+   * without a place
    * \throw std::runtime_error naming the folder or file: it cannot be read or written, is of a map
    * with another resolution, other classes or parameters, or another process writes into it. */
   MapFolder(SemanticOcTree& map, const std::filesystem::path& folder, Access access,
@@ -75,7 +80,7 @@ class MapFolder {
   MapFolder& operator=(const MapFolder&) = delete;
 
   /** Brings what changed to the disk. If this fails, the map and the folder are what they were.
-   * \throw std::runtime_error naming the file; std::logic_error opened to be read. */
+   * \throw std::runtime_error naming the file; std::logic_error opened to be read, or a draft. */
   void save();
   /** \param available bytes of memory; without, those that the system has left
    * \throw std::runtime_error naming the bytes that the map needs as a whole, if these are more */
@@ -109,6 +114,9 @@ class StoredMap {
    * loadTree() */
   explicit StoredMap(const std::filesystem::path& path, double memory = MapFolderOptions().memory,
                      decltype(MapFolderOptions::wanted) wanted = {});
+  /** One that changes, while what it is read from stays as it is. \param options of a folder, with
+   * a place for a draft \throw std::runtime_error as loadTree() */
+  StoredMap(const std::filesystem::path& path, const MapFolderOptions& options);
   /** One that is in memory. */
   explicit StoredMap(SemanticOcTree tree) : m_tree(std::move(tree)) {}
   /** An empty one, to be filled (MapOperations.h) and saved in place of what the folder has.
@@ -124,6 +132,9 @@ class StoredMap {
   std::uint64_t bytesOnDisk() const { return m_bytesOnDisk; }
 
  private:
+  void open(const std::filesystem::path& path, MapFolder::Access access,
+            const MapFolderOptions& options);
+
   SemanticOcTree m_tree;
   std::unique_ptr<MapFolder> m_folder;
   std::uint64_t m_bytesOnDisk = 0;

@@ -13,7 +13,7 @@ using semantic_octree::LeafCell;
 CandidateStore::CandidateStore(semantic_octree::SemanticOcTree& map, const Ground& ground,
                                const RoadmapOptions& options)
     : m_map(map), m_ground(ground), m_options(options) {
-  if (follows()) Abstraction(map).takeChange();  // begins with all
+  if (follows()) Abstraction(map).forgetChange();  // begins with all
 }
 
 CandidateStore::Tile CandidateStore::make(Column tile) const {
