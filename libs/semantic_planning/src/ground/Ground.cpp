@@ -97,6 +97,7 @@ Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions&
     : m_map(map),
       m_voxelSize(map.getResolution()),
       m_clearance(vehicle.clearance),
+      m_perMeter(1 / m_voxelSize),
       m_isLimited(within) {
   vehicle.validate();
   options.validate();

@@ -6,6 +6,7 @@
 #include "PathSmoothing.h"
 #include "PathStations.h"
 #include "PathTracing.h"
+#include "TurnSearch.h"
 
 namespace semantic_planning {
 
@@ -70,6 +71,9 @@ class Improvement {
         through(stationsOn(m_result.path, m_checker), kSpanOn);
     }
     smooth();
+    if (!turnBetter()) return;
+    if (changesGear(m_result.path)) through(stationsOn(m_result.path, m_checker), kSpanOn);
+    smooth();
   }
 
  private:
@@ -89,6 +93,22 @@ class Improvement {
       const auto over = m_order.worseRank(m_order.ranks(cheap), m_least);
       if (!over) return offer(cheap) || isBetter;
       m_weights[m_weights.size() - 1 - *over] *= kMoreWeight;
+    }
+    return isBetter;
+  }
+
+  /** Where the path begins and ends: there the vehicle may have to turn around, by a way that is
+   * far from all poses beside it. \return whether it has less of a class. */
+  bool turnBetter() {
+    bool isBetter = false;
+    for (const auto search : {withBetterBegin, withBetterEnd}) {
+      const auto path = search(m_result.path, m_checker, m_options.classTolerance);
+      if (!path) continue;
+      PlanResult offered = withLegs(m_result, legsAlong(*path, m_checker), m_checker);
+      if (!m_order.worseRank(m_order.ranks(m_result), m_order.ranks(offered))) continue;
+      lower(m_order.ranks(offered));
+      m_result = std::move(offered);
+      isBetter = true;
     }
     return isBetter;
   }

@@ -62,6 +62,10 @@ class Smoothing {
       while (m_looks > 0 && improve()) {
       }
     }
+    return legs();
+  }
+
+  std::vector<Leg> legs() const {
     std::vector<Leg> legs;
     for (std::size_t i = 0; i < m_parts.size(); ++i)
       legs.push_back({curveOf(m_parts[i].arc), m_parts[i].z,
@@ -95,9 +99,12 @@ class Smoothing {
    * places: between these it may touch what is forbidden, which is left out. */
   EdgeProfile known(const std::vector<PathPoint>& path, std::size_t from, std::size_t to) const {
     std::vector<double> lengths(m_prices.size());
-    ClassId id = path[from].classId;
+    const auto isAllowed = [this](const PathPoint& p) { return m_prices[p.classId] == 0; };
+    const auto first =
+        std::find_if(path.begin() + static_cast<std::ptrdiff_t>(from), path.end(), isAllowed);
+    ClassId id = first == path.end() ? semantic_types::kNoClass : first->classId;
     for (std::size_t i = from + 1; i <= to; ++i) {
-      if (m_prices[path[i].classId] == 0) id = path[i].classId;
+      if (isAllowed(path[i])) id = path[i].classId;
       lengths[id] += path[i].arcLength - path[i - 1].arcLength;
     }
     EdgeProfile profile;
@@ -276,6 +283,10 @@ class Smoothing {
 std::vector<Leg> smoothed(const std::vector<PathPoint>& path, const EdgeChecker& checker,
                           const std::function<bool(const ClassLengths&)>& accepts) {
   return Smoothing(path, checker, accepts).run();
+}
+
+std::vector<Leg> legsAlong(const std::vector<PathPoint>& path, const EdgeChecker& checker) {
+  return Smoothing(path, checker, [](const ClassLengths&) { return true; }).legs();
 }
 
 }  // namespace semantic_planning

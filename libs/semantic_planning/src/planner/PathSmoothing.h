@@ -18,4 +18,7 @@ using ClassLengths = std::vector<colored_graph::Length>;
 std::vector<Leg> smoothed(const std::vector<PathPoint>& path, const EdgeChecker& checker,
                           const std::function<bool(const ClassLengths&)>& accepts);
 
+/** The stretches of constant curvature that a path is made of. */
+std::vector<Leg> legsAlong(const std::vector<PathPoint>& path, const EdgeChecker& checker);
+
 }  // namespace semantic_planning

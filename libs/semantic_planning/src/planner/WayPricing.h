@@ -28,7 +28,10 @@ class WayPricing {
   }
 
   Length of(colored_graph::GraphClass id, Length length) const {
-    return m_weights[static_cast<std::size_t>(m_order.rank(id))] * length;
+    return ofRank(m_order.rank(id), length);
+  }
+  Length ofRank(colored_graph::Rank rank, Length length) const {
+    return m_weights[static_cast<std::size_t>(rank)] * length;
   }
   /** Of a meter of each class, infinite if it is forbidden. */
   std::vector<double> perMeter() const {

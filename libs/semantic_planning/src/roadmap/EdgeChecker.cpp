@@ -1,9 +1,11 @@
 #include <semantic_planning/roadmap/EdgeChecker.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "ProfileRounding.h"
 #include "ground/GroundTiles.h"
 #include "vehicle/CurveWalk.h"
 
@@ -13,27 +15,6 @@ using colored_graph::EdgeProfile;
 using mrpt::math::TPose2D;
 
 namespace {
-
-/** Lengths by class, meters, in the graph's units. */
-EdgeProfile roundedDown(const std::vector<double>& lengths) {
-  EdgeProfile profile;
-  for (std::size_t id = 0; id < lengths.size(); ++id)
-    if (lengths[id] > 0)
-      profile.push_back({static_cast<ClassId>(id), colored_graph::lengthDown(lengths[id])});
-  return profile;
-}
-
-/** They add up to the total. */
-EdgeProfile rounded(const std::vector<double>& lengths, double total) {
-  EdgeProfile profile = roundedDown(lengths);
-  colored_graph::Length left = colored_graph::lengthUp(total);
-  for (auto& stretch : profile) left -= stretch.length = std::min(left, stretch.length);
-  const auto longest =
-      std::max_element(profile.begin(), profile.end(),
-                       [](const auto& l, const auto& r) { return l.length < r.length; });
-  if (longest != profile.end()) longest->length += left;
-  return profile;
-}
 
 /** Whether the budget reaches. */
 bool pay(ClassBudget& budget, std::optional<ClassId> id, double length) {
@@ -80,7 +61,8 @@ class EdgeChecker::Sweep {
       : m_checker(checker),
         m_z(z),
         m_column(checker.m_ground.columnAt(begin.x, begin.y)),
-        m_wheels(checker.m_wheels.size()) {
+        m_discs(discsOfThread()) {
+    m_discs.clear();
     for (const CheckedDisc& d : checker.m_discs) m_discs.push_back(at(d, begin));
   }
 
@@ -106,7 +88,7 @@ class EdgeChecker::Sweep {
     if (m_checker.m_reading.kind == ClassReading::Kind::Expected)
       return m_checker.addExpected(placed, m_z, length, lengths);
     bool isSame = m_worst && m_worstZ == m_z;
-    for (std::size_t i = 0; i < m_wheels.size(); ++i) {
+    for (std::size_t i = 0; i < m_checker.m_wheels.size(); ++i) {
       const auto [x, y] = placed(0, m_checker.m_wheels[i]);
       const Column column = m_checker.m_ground.columnAt(x, y);
       isSame = isSame && column == m_wheels[i];
@@ -125,6 +107,13 @@ class EdgeChecker::Sweep {
     double x, y;  ///< meters
     Column column;
   };
+
+  /** A thread's sweeps come one after another, and most are short: to ask for memory each time
+   * would be a good part of their time. */
+  static std::vector<At>& discsOfThread() {
+    thread_local std::vector<At> discs;
+    return discs;
+  }
 
   At at(const CheckedDisc& d, const Placement& placed) const {
     const auto [x, y] = placed(d.disc.x, d.disc.y);
@@ -149,8 +138,8 @@ class EdgeChecker::Sweep {
   const EdgeChecker& m_checker;
   int m_z;
   Column m_column;
-  std::vector<At> m_discs;
-  std::vector<Column> m_wheels;
+  std::vector<At>& m_discs;
+  std::array<Column, 2> m_wheels;
   std::optional<ClassId> m_worst;  ///< under the wheels, when they were there and at this height:
   int m_worstZ = 0;
 };
@@ -280,7 +269,8 @@ std::optional<EdgeProfile> EdgeChecker::profile(const ReedsSheppCurve& curve, in
                                                 ClassBudget* budget) const {
   const int n = std::max(1, static_cast<int>(std::ceil(curve.length() / m_piece)));
   const double piece = curve.length() / n;
-  Lengths lengths(m_order.classes());
+  thread_local Lengths lengths;
+  lengths.assign(static_cast<std::size_t>(m_order.classes()), 0);
   Sweep sweep(*this, Placement(curve.from()), from);
   const auto fits = [&](const Placement& placed) { return sweep.moveTo(placed); };
   const auto counts = [&](const Placement& placed) {

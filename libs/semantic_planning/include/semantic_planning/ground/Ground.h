@@ -49,7 +49,9 @@ class Ground {
   double voxelSize() const { return m_voxelSize; }
 
   /** Key of the voxel that holds a coordinate, and the center of one: map frame, meters. */
-  int keyOf(double meters) const { return semantic_octree::keyOf(meters, m_voxelSize); }
+  int keyOf(double meters) const {
+    return semantic_octree::floorOf(meters * m_perMeter) + semantic_octree::kKeyOfOrigin;
+  }
   double centerOf(int key) const { return semantic_octree::centerOf(key, m_voxelSize); }
 
   /** The column that holds a point, map frame, meters. */
@@ -87,6 +89,7 @@ class Ground {
   std::unique_ptr<GroundTiles> m_tiles;
   const semantic_octree::SemanticOcTree& m_map;
   double m_voxelSize, m_clearance;
+  double m_perMeter;  ///< voxels, as keyOf() of semantic_octree has them: it divides each time
   int m_step, m_largestClearance;
   bool m_isLimited;
 };

@@ -1,0 +1,105 @@
+#include "planner/TurnSearch.h"
+
+#include "PlannerFixture.h"
+#include "planner/PathTracing.h"
+
+using namespace semantic_planning;
+
+namespace {
+
+using Segments = std::vector<ReedsSheppCurve::Segment>;
+
+/** A road of 3 m along y = 0 in the grass: wide enough to turn around on in several moves, too
+ * narrow for a turn of 1 m to both sides of which there are wheels. */
+class TurnSearchTest : public PlannerTest {
+ protected:
+  static constexpr double kTolerance = 0.2, kHalfWidth = 1.5;
+
+  TurnSearchTest() {
+    world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+    world.floor(-15, 15, -kHalfWidth, kHalfWidth, PaintedWorld::Road);
+  }
+
+  const EdgeChecker& checker() {
+    if (!m_ground) {
+      m_ground.emplace(map(), options.vehicle, options.ground, order);
+      m_checker.emplace(*m_ground, options.vehicle, order, options.reading);
+    }
+    return *m_checker;
+  }
+  std::vector<PathPoint> drive(const TPose2D& from, const Segments& segments) {
+    std::vector<PathPoint> path;
+    GroundPose at = *checker().place(from);
+    for (const auto& segment : segments) {
+      const ReedsSheppCurve curve(at.pose, options.vehicle.turningRadius, {{segment}});
+      appendCurve(checker().trace(curve, at.z), path);
+      at.pose = curve.at(curve.length()).pose;
+    }
+    return path;
+  }
+  /** Around to the left, over the grass, and back to the road. */
+  std::vector<PathPoint> turnAtBegin() {
+    return drive({0, 0, 0}, {{2, 0}, {M_PI, 1}, {1.2, 1}, {1.2, -1}, {11, 0}});
+  }
+  std::vector<PathPoint> turnAtEnd() {
+    return drive({-11, 0.7, 0}, {{11, 0}, {1.2, 1}, {1.2, -1}, {M_PI, -1}, {2, 0}});
+  }
+  /** Meters with a wheel off the road, by geometry alone; a voxel's width is for nobody to tell. */
+  double metersOnGrass(const std::vector<PathPoint>& path) {
+    double meters = 0;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const double aside = options.vehicle.wheelTrack / 2 * std::abs(std::cos(path[i].heading));
+      if (std::abs(path[i].y) + aside > kHalfWidth + world.map().getResolution())
+        meters += path[i].arcLength - path[i - 1].arcLength;
+    }
+    return meters;
+  }
+  void expectSameEnds(const std::vector<PathPoint>& path, const std::vector<PathPoint>& other) {
+    for (const auto& [a, b] :
+         {std::pair(path.front(), other.front()), std::pair(path.back(), other.back())}) {
+      EXPECT_NEAR(a.x, b.x, 1e-4);
+      EXPECT_NEAR(a.y, b.y, 1e-4);
+      EXPECT_NEAR(std::remainder(a.heading - b.heading, 2 * M_PI), 0, 1e-4);
+    }
+  }
+
+ private:
+  std::optional<Ground> m_ground;
+  std::optional<EdgeChecker> m_checker;
+};
+
+}  // namespace
+
+TEST_F(TurnSearchTest, whereAVehicleTurnsOverGrassAWayToTurnOnTheRoadIsFound) {
+  for (const bool atBegin : {true, false}) {
+    const auto before = atBegin ? turnAtBegin() : turnAtEnd();
+    ASSERT_GT(metersOnGrass(before), 1.5);
+    const auto after = (atBegin ? withBetterBegin : withBetterEnd)(before, checker(), kTolerance);
+    ASSERT_TRUE(after) << atBegin;
+    PathChecker(world.map(), options.vehicle).expectDrivable(*after);
+    expectSameEnds(*after, before);
+    EXPECT_LE(metersOnGrass(*after), kTolerance);
+    const auto& other = atBegin ? withBetterEnd : withBetterBegin;
+    EXPECT_FALSE(other(before, checker(), kTolerance)) << "nothing is wrong at the other end";
+  }
+}
+
+TEST_F(TurnSearchTest, whatHasNoMoreThanItMustIsLeftAsItIs) {
+  const auto onRoad = drive({-12, 0, 0}, {{10, 0}, {0.5, 1}, {0.5, -1}, {8, 0}});
+  EXPECT_FALSE(withBetterBegin(onRoad, checker(), kTolerance));
+  EXPECT_FALSE(withBetterEnd(onRoad, checker(), kTolerance));
+  const auto straightOffTheGrass = drive({0, -6, M_PI / 2}, {{5, 0}, {M_PI / 2, -1}, {8, 0}});
+  EXPECT_FALSE(withBetterBegin(straightOffTheGrass, checker(), kTolerance));
+}
+
+TEST_F(TurnSearchTest, aVehicleThatOnlyDrivesForwardIsGivenNoWayBackwards) {
+  options.vehicle.reverseWeight = std::numeric_limits<double>::infinity();
+  const auto detour = drive({0, 1, 0}, {{2 * M_PI, 1}, {12, 0}});  // a circle for nothing
+  const auto after = withBetterBegin(detour, checker(), kTolerance);
+  ASSERT_TRUE(after);
+  EXPECT_LE(metersOnGrass(*after), kTolerance);
+  for (const auto& path :
+       {*after,
+        withBetterEnd(turnAtEnd(), checker(), kTolerance).value_or(std::vector<PathPoint>())})
+    for (const PathPoint& p : path) ASSERT_TRUE(p.forward);
+}
