@@ -161,7 +161,8 @@ TEST(MapCanvas, blankPaperOfTheSamePlaceShowsTheSameMapTheSame) {
 TEST(MapCanvas, aMapAroundTheCanvasIsDrawnAsIfThereWereNoMore) {
   using namespace semantic_octree;
   const TemporaryFolder folder;
-  const auto near = paintedField({-5, -3}, 4), far = paintedField({-125, 60}), all = merged({&near, &far});
+  const auto near = paintedField({-5, -3}, 4), far = paintedField({-125, 60}),
+             all = merged({&near, &far});
   MapFolderOptions options;
   options.tileSize = 12.8;
   StoredMap tiles(emptyLike(all), folder / "tiles", options);
