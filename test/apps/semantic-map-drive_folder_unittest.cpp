@@ -2,6 +2,7 @@
 #include <semantic_octree/TreeFile.h>
 
 #include <map>
+#include <regex>
 
 #include "SemanticMapDrive.h"
 
@@ -15,8 +16,7 @@ class DrivesInFolders : public SemanticMapDrive {
     const std::string config = std::string(MSO_SOURCE_DIR) + "/config/maps/synthetic.ini";
     const std::string log = std::string(MSO_SOURCE_DIR) + "/rawlog-samples/village.rawlog";
     const auto path = [](const char* name) { return (*made / name).string(); };
-    const std::vector<std::string> mapping = {"--config", config, "--resolution", "0.4", log,
-                                              "--output"};
+    const std::vector<std::string> mapping = {"--config", config, log, "--output"};
     std::vector<std::string> whole = mapping, tiles = mapping;
     whole.push_back(path("map"));
     tiles.insert(tiles.end(), {path("log"), "--tiles", path("tiles"), "--tile-size", "12.8"});
@@ -33,6 +33,16 @@ class DrivesInFolders : public SemanticMapDrive {
     }
     return files;
   }
+  /** The shipped configuration, with another latency. */
+  std::string configWithLatency(const std::string& seconds) const {
+    std::ifstream in(kConfig + "drives/synthetic.ini");
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    text = std::regex_replace(text, std::regex("\\.\\./"), kConfig);
+    return folder
+        .write("drive.ini", std::regex_replace(text, std::regex("mapping_latency = 0"),
+                                               "mapping_latency = " + seconds))
+        .string();
+  }
   static std::string of(const char* name) { return (*made / name).string(); }
 
   static std::unique_ptr<TemporaryFolder> made;
@@ -48,9 +58,8 @@ TEST_F(DrivesInFolders, AreTheDrivesInTheMapInOnePieceToTheLastBit) {
   for (const std::string latency : {"0", "0.3"}) {
     SCOPED_TRACE(latency);
     const auto driveIn = [&](const std::string& map, const std::string& output) {
-      auto arguments =
-          argumentsWith({"--config", configWith("mapping_latency = " + latency + "\n"), "--output",
-                         path(output), "--memory", "1"});
+      auto arguments = argumentsWith(
+          {"--config", configWithLatency(latency), "--output", path(output), "--memory", "1"});
       arguments.insert(arguments.end(), ends.begin(), ends.end());
       arguments.push_back(map);
       const ProgramRun run = runProgram("semantic-map-drive", arguments);

@@ -51,8 +51,8 @@ void expectTheOrderOfThePath(SemanticOcTree& map) {
         key |= (c.childAt(depth) >> axis & 1) << (kTreeDepth - depth);
       return key;
     });
-    const auto node = map.search(
-        octomapKey(lowest.x(), lowest.y(), lowest.z()), static_cast<unsigned>(cell.depth));
+    const auto node = map.search(octomapKey(lowest.x(), lowest.y(), lowest.z()),
+                                 static_cast<unsigned>(cell.depth));
     expanded += node && !node.isLeaf() && abstraction.isExpanded(node);
   }
   EXPECT_GE(expanded, octets);  // some are below one that is not expanded
@@ -65,7 +65,8 @@ StreamLeaf someLeaf(std::mt19937& random) {
   if (leaf.kind == StreamLeaf::Kind::None) return leaf;
   leaf.value = static_cast<Units>(random());
   if (leaf.kind == StreamLeaf::Kind::Plain) return leaf;
-  leaf.record = {{static_cast<Units>(random()), -3, 4}, 5, {1, static_cast<ClassId>(random()), 3}, 3};
+  leaf.record = {
+      {static_cast<Units>(random()), -3, 4}, 5, {1, static_cast<ClassId>(random()), 3}, 3};
   return leaf;
 }
 

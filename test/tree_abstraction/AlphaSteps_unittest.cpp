@@ -15,8 +15,8 @@ namespace {
 std::vector<double> someTaus(std::mt19937& random, std::size_t number) {
   std::vector<double> tau;
   while (tau.size() < number) {
-    double t = std::ldexp(1.0 + static_cast<double>(random() % 16) / 16,
-                          static_cast<int>(random() % 4));
+    double t =
+        std::ldexp(1.0 + static_cast<double>(random() % 16) / 16, static_cast<int>(random() % 4));
     for (int i = static_cast<int>(random() % 4); i >= 0; --i, t *= 1 + 0.7e-12) tau.push_back(t);
     if (random() % 10 == 0) tau.push_back(std::numeric_limits<double>::infinity());
     if (random() % 10 == 0) tau.push_back(-1.0 * static_cast<double>(random() % 2));

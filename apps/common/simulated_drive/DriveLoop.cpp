@@ -56,8 +56,7 @@ synthetic_world::Footprint trueFootprint(const VehicleOptions& vehicle) {
 DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
                      const colored_graph::ClassOrder& order, const TPose2D& start,
                      const TPose2D& goal, Events events,
-                     std::unique_ptr<semantic_octree::StoredMap> map,
-                     std::filesystem::path navlogs)
+                     std::unique_ptr<semantic_octree::StoredMap> map, std::filesystem::path navlogs)
     : m_config(config),
       m_world(world),
       m_events(std::move(events)),

@@ -29,8 +29,8 @@ SemanticOcTree& prepared(SemanticOcTree& map, const DriveConfig& config, const C
 
 Mapper::Mapper(const DriveConfig& config, const ClassOrder& order)
     : Mapper(config, order,
-             std::make_unique<StoredMap>(SemanticOcTree(
-                 config.voxelSize, synthetic_world::classTable(), config.filter))) {
+             std::make_unique<StoredMap>(
+                 SemanticOcTree(config.voxelSize, synthetic_world::classTable(), config.filter))) {
   if (!config.pose.isExact() && config.pose.correct)
     m_keyframes = std::make_unique<KeyframeMap>(m_map, std::filesystem::temp_directory_path());
 }

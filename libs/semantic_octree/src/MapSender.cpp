@@ -35,7 +35,7 @@ std::vector<Packet> packetsOf(const TreeParts& parts, const PartCoder& coder) {
 
 struct MapSender::State {
   std::uint32_t stream;
-  PacketHeader header;  ///< of the present revision
+  PacketHeader header;                   ///< of the present revision
   std::unique_ptr<SemanticOcTree> told;  ///< what the receiver will have; null: nothing
   std::unique_ptr<SemanticOcTree> kind;  ///< an empty map
   std::unique_ptr<PartCoder> coder;
@@ -66,14 +66,14 @@ void MapSender::State::checkNext(const SemanticOcTree& empty, int rootDepth) con
     throw std::invalid_argument("the next map's blocks are not those of the one before");
 }
 
-/** Parts, packets and the compressed tree take as much memory as each other: the first are gone when
- * the last is made. */
+/** Parts, packets and the compressed tree take as much memory as each other: the first are gone
+ * when the last is made. */
 void MapSender::setMap(SemanticOcTree& map, bool isLast) {
   State& s = *m_state;
   if (!isComplete()) throw std::logic_error("the receiver does not have the map before yet");
   const Abstraction abstraction(map);
-  auto kind = std::make_unique<SemanticOcTree>(map.getResolution(), map.classes(),
-                                               map.filterParameters());
+  auto kind =
+      std::make_unique<SemanticOcTree>(map.getResolution(), map.classes(), map.filterParameters());
   s.checkNext(*kind, abstraction.rootDepth());
   auto parts = std::make_unique<TreeParts>(partsOfChange(map, s.told.get()));
   auto coder = std::make_unique<PartCoder>(

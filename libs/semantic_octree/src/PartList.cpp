@@ -45,10 +45,10 @@ void PartList::add(const TreePart& part, std::size_t step, bool begins) {
     m_chunks.push_back(std::make_unique<char[]>(kChunk));
     m_used = 0;
   }
-  m_entries.push_back({part.cell.path, static_cast<std::uint32_t>(step),
-                       static_cast<std::uint32_t>(m_chunks.size() - 1),
-                       static_cast<std::uint32_t>(m_used),
-                       static_cast<std::uint8_t>(part.cell.depth), part.mask, part.isOctet, begins});
+  m_entries.push_back(
+      {part.cell.path, static_cast<std::uint32_t>(step),
+       static_cast<std::uint32_t>(m_chunks.size() - 1), static_cast<std::uint32_t>(m_used),
+       static_cast<std::uint8_t>(part.cell.depth), part.mask, part.isOctet, begins});
   char* const chunk = m_chunks.back().get();
   char* to = chunk + m_used;
   for (int i = 0; i < 8; ++i)

@@ -54,8 +54,7 @@ class TilesOnDisk : public TileSource {
   Cell cellOf(const Tile& tile) const { return {tile.place, m_place.depth}; }
   std::string fileOf(const Tile& tile) const {
     const bool isSaved = tile.written <= m_index.generation;
-    return ((isSaved ? m_place.folder : m_place.changed) /
-            m_index.nameOf(tile.place, tile.written))
+    return ((isSaved ? m_place.folder : m_place.changed) / m_index.nameOf(tile.place, tile.written))
         .string();
   }
   NodeArena& arenaWith(bool most);

@@ -146,9 +146,9 @@ class Abstraction {
   struct NodeTau {
     Eigen::Array3i lowest;  ///< keys of its lowest voxel
     int depth;
-    int addedLeaves;      ///< known children - 1
-    bool isExpanded;      ///< in the compressed tree
-    double tau;           ///< see tree_abstraction::collapseAlphas()
+    int addedLeaves;  ///< known children - 1
+    bool isExpanded;  ///< in the compressed tree
+    double tau;       ///< see tree_abstraction::collapseAlphas()
   };
   /** Calls visit(node) for the nodes of alphaPath(), in their order; where the frame is free, no
    * more than those below one block are in memory. */
