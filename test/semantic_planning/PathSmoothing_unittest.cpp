@@ -1,52 +1,21 @@
 #include "planner/PathSmoothing.h"
 
-#include "PlannerFixture.h"
-#include "planner/PathTracing.h"
+#include "PathFixture.h"
 
 using namespace semantic_planning;
 
 namespace {
 
-class PathSmoothing : public PlannerTest {
+class PathSmoothing : public PathTest {
  protected:
   PathSmoothing() { world.floor(-15, 15, -15, 15, PaintedWorld::Road); }
 
-  /** Along given stretches from the start. */
-  std::vector<PathPoint> drive(const std::vector<ReedsSheppCurve::Segment>& segments) {
-    std::vector<PathPoint> path;
-    GroundPose at = *checker().place(start);
-    for (const auto& segment : segments) {
-      const ReedsSheppCurve curve(at.pose, options.vehicle.turningRadius, {{segment}});
-      appendCurve(checker().trace(curve, at.z), path);
-      at.pose = curve.at(curve.length()).pose;
-    }
-    return path;
-  }
   /** Smoothed; the arguments are those of the path. */
   std::vector<PathPoint> smooth(const std::vector<PathPoint>& path) {
     std::vector<PathPoint> after;
     for (const Leg& leg : smoothed(path, checker(), accepts))
       appendCurve(checker().trace(leg.curve, leg.from), after);
     return after;
-  }
-  /** After something was painted. */
-  void readGroundAgain() {
-    m_checker.reset();
-    m_ground.reset();
-  }
-  const EdgeChecker& checker() {
-    if (!m_ground) {
-      m_ground.emplace(map(), options.vehicle, options.ground, order);
-      m_checker.emplace(*m_ground, options.vehicle, order, options.reading);
-    }
-    return *m_checker;
-  }
-  void expectSameEnds(const std::vector<PathPoint>& path, const std::vector<PathPoint>& other) {
-    EXPECT_NEAR(path.front().x, other.front().x, 1e-6);
-    EXPECT_NEAR(path.front().y, other.front().y, 1e-6);
-    EXPECT_NEAR(path.back().x, other.back().x, 1e-4);
-    EXPECT_NEAR(path.back().y, other.back().y, 1e-4);
-    EXPECT_NEAR(std::remainder(path.back().heading - other.back().heading, 2 * M_PI), 0, 1e-4);
   }
   static int steeringChanges(const std::vector<PathPoint>& path) {
     int changes = 0;
@@ -56,10 +25,6 @@ class PathSmoothing : public PlannerTest {
   }
 
   std::function<bool(const ClassLengths&)> accepts = [](const ClassLengths&) { return true; };
-
- private:
-  std::optional<Ground> m_ground;
-  std::optional<EdgeChecker> m_checker;
 };
 
 const std::vector<ReedsSheppCurve::Segment> kWinding = {{3, 0}, {0.5, 1}, {2, 0}, {0.7, -1},
@@ -70,7 +35,7 @@ const std::vector<ReedsSheppCurve::Segment> kWinding = {{3, 0}, {0.5, 1}, {2, 0}
 
 TEST_F(PathSmoothing, aWindingWayIsStraightenedAndEndsWhereItDid) {
   start = {-10, 0, 0};
-  const auto before = drive(kWinding), after = smooth(before);
+  const auto before = drive(start, kWinding), after = smooth(before);
   PathChecker(world.map(), options.vehicle).expectDrivable(after);
   expectSameEnds(after, before);
   EXPECT_LT(after.back().arcLength, before.back().arcLength);
@@ -80,7 +45,7 @@ TEST_F(PathSmoothing, aWindingWayIsStraightenedAndEndsWhereItDid) {
 
 TEST_F(PathSmoothing, keepsOffWalls) {
   start = {-10, 0, 0};
-  const auto before = drive(kWinding);
+  const auto before = drive(start, kWinding);
   for (std::size_t i = 60; i + 60 < before.size(); i += 40)  // beside it, on both sides
     for (const int side : {-1, 1}) {
       const double x = before[i].x - side * 1.2 * std::sin(before[i].heading);
@@ -97,7 +62,7 @@ TEST_F(PathSmoothing, keepsOffWalls) {
 TEST_F(PathSmoothing, lengthsInClassesStayAsAccepted) {
   start = {-10, 0, 0};
   world.floor(-6, 6, -3, 0.2, PaintedWorld::Grass);
-  const auto before = drive(kWinding);
+  const auto before = drive(start, kWinding);
   const auto grass = [&] {
     colored_graph::Length length = 0;
     for (const Leg& leg : smoothed(before, checker(), accepts))
@@ -114,19 +79,19 @@ TEST_F(PathSmoothing, lengthsInClassesStayAsAccepted) {
 
 TEST_F(PathSmoothing, gearsAndWaysBackwardsStayAsTheyAre) {
   start = {-10, 0, 0};
-  const auto before = drive({{4, 0},
-                             {0.5, 1},
-                             {2, 0},
-                             {0.5, -1},
-                             {2, 0},
-                             {-1, 1},
-                             {-1, 0},
-                             {-1, -1},
-                             {2, 0},
-                             {0.5, 1},
-                             {1, 0},
-                             {0.5, -1},
-                             {3, 0}});
+  const auto before = drive(start, {{4, 0},
+                                    {0.5, 1},
+                                    {2, 0},
+                                    {0.5, -1},
+                                    {2, 0},
+                                    {-1, 1},
+                                    {-1, 0},
+                                    {-1, -1},
+                                    {2, 0},
+                                    {0.5, 1},
+                                    {1, 0},
+                                    {0.5, -1},
+                                    {3, 0}});
   const auto after = smooth(before);
   PathChecker(world.map(), options.vehicle).expectDrivable(after);
   expectSameEnds(after, before);

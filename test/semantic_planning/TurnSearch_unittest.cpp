@@ -1,17 +1,14 @@
 #include "planner/TurnSearch.h"
 
-#include "PlannerFixture.h"
-#include "planner/PathTracing.h"
+#include "PathFixture.h"
 
 using namespace semantic_planning;
 
 namespace {
 
-using Segments = std::vector<ReedsSheppCurve::Segment>;
-
 /** A road of 3 m along y = 0 in the grass: wide enough to turn around on in several moves, too
  * narrow for a turn of 1 m to both sides of which there are wheels. */
-class TurnSearchTest : public PlannerTest {
+class TurnSearchTest : public PathTest {
  protected:
   static constexpr double kTolerance = 0.2, kHalfWidth = 1.5;
 
@@ -20,23 +17,6 @@ class TurnSearchTest : public PlannerTest {
     world.floor(-15, 15, -kHalfWidth, kHalfWidth, PaintedWorld::Road);
   }
 
-  const EdgeChecker& checker() {
-    if (!m_ground) {
-      m_ground.emplace(map(), options.vehicle, options.ground, order);
-      m_checker.emplace(*m_ground, options.vehicle, order, options.reading);
-    }
-    return *m_checker;
-  }
-  std::vector<PathPoint> drive(const TPose2D& from, const Segments& segments) {
-    std::vector<PathPoint> path;
-    GroundPose at = *checker().place(from);
-    for (const auto& segment : segments) {
-      const ReedsSheppCurve curve(at.pose, options.vehicle.turningRadius, {{segment}});
-      appendCurve(checker().trace(curve, at.z), path);
-      at.pose = curve.at(curve.length()).pose;
-    }
-    return path;
-  }
   /** Around to the left, over the grass, and back to the road. */
   std::vector<PathPoint> turnAtBegin() {
     return drive({0, 0, 0}, {{2, 0}, {M_PI, 1}, {1.2, 1}, {1.2, -1}, {11, 0}});
@@ -54,18 +34,6 @@ class TurnSearchTest : public PlannerTest {
     }
     return meters;
   }
-  void expectSameEnds(const std::vector<PathPoint>& path, const std::vector<PathPoint>& other) {
-    for (const auto& [a, b] :
-         {std::pair(path.front(), other.front()), std::pair(path.back(), other.back())}) {
-      EXPECT_NEAR(a.x, b.x, 1e-4);
-      EXPECT_NEAR(a.y, b.y, 1e-4);
-      EXPECT_NEAR(std::remainder(a.heading - b.heading, 2 * M_PI), 0, 1e-4);
-    }
-  }
-
- private:
-  std::optional<Ground> m_ground;
-  std::optional<EdgeChecker> m_checker;
 };
 
 }  // namespace

@@ -12,56 +12,19 @@ using semantic_octree::SemanticOcTree;
 namespace {
 
 constexpr double kFlat = 0;
-constexpr double kWhole = 1e9, kDriven = 90, kMapped = 100;  // m
+constexpr double kWhole = 1e9, kDriven = 90;  // m
 
-/** What another scanner saw of a flat scene, from between the poses of recordingOf().
- * \param voxelSize meters */
-SemanticOcTree mapOf(const std::string& scene, std::uint64_t seed, double voxelSize,
-                     const Sensor& sensor, const Eigen::Isometry3d& T_robot_sensor) {
-  const synthetic_world::Scene place = synthetic_world::makeScene(scene, seed, kFlat);
-  const synthetic_world::Drive drive(place, 1);
-  SemanticOcTree map(voxelSize, synthetic_world::classTable());
-  semantic_octree::InsertionOptions options;
-  options.maxRange = 30;
-  for (double s = 0.5; s < kMapped; s += 2) {
-    const Eigen::Isometry3d T = drive.T_world_robot(s);
-    const auto frame = static_cast<std::uint64_t>(1000 + s);
-    map.insert(sensor(place.world, T, {seed, frame}), T * T_robot_sensor, options);
-  }
-  return map;
+/** Of the flat village. \param voxelSize meters */
+SemanticOcTree mapOf(double voxelSize, const Sensor& sensor,
+                     const Eigen::Isometry3d& T_robot_sensor) {
+  return recordings::mapOf("village", 3, {sensor, T_robot_sensor, 100, voxelSize, kFlat, 2});
 }
 
 /** 1 m and 4 degrees beside where it began. */
 void moveOdometry(Recording& r) {
   Vector6 off;
   off << 0.8, -0.6, 0, 0, 0, 4 * M_PI / 180;
-  const Eigen::Isometry3d T = r.truth[0] * poseOf(off) * r.truth[0].inverse();
-  for (Eigen::Isometry3d& pose : r.odometry) pose = T * pose;
-}
-
-void addAll(Slam& slam, const Recording& r) {
-  for (std::size_t i = 0; i < r.clouds.size(); ++i)
-    slam.add(r.clouds[i], kRobotLaser, r.odometry[i]);
-  ASSERT_EQ(slam.poses().size(), r.truth.size()) << "each scan is a keyframe";
-}
-
-struct PathErrors {
-  double rootMeanSquare = 0, first = 0, largest = 0, last = 0;  // m
-  double degrees = 0;                                           // largest
-};
-
-PathErrors errorsOf(const std::vector<Eigen::Isometry3d>& poses, const Recording& r) {
-  PathErrors e;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    const Vector6 off = vectorOf(r.truth[k].inverse() * poses[k]);
-    e.last = off.head<3>().norm();
-    if (k == 0) e.first = e.last;
-    e.rootMeanSquare += e.last * e.last / static_cast<double>(poses.size());
-    e.largest = std::max(e.largest, e.last);
-    e.degrees = std::max(e.degrees, off.tail<3>().norm() * 180 / M_PI);
-  }
-  e.rootMeanSquare = std::sqrt(e.rootMeanSquare);
-  return e;
+  recordings::moveOdometry(r, off);
 }
 
 /** Along x from 0 to 1 m at y = 0.5 m, eight points 0.125 m apart, off by 0.02 m to either side.
@@ -142,7 +105,7 @@ TEST(Planar, heightsOfPointsDoNotMatter) {
 TEST(Planar, aLaserScannersLoopCloses) {
   const Recording r = recordingOf("village", 1, laserOf(), kWhole, kFlat);
   Slam slam({});
-  addAll(slam, r);
+  addAll(slam, r, kRobotLaser);
   const PathErrors odometry = errorsOf(r.odometry, r), e = errorsOf(slam.poses(), r);
   EXPECT_GT(odometry.rootMeanSquare, 9);
   EXPECT_GT(slam.numLoops(), 0u);
@@ -155,12 +118,12 @@ TEST(Planar, aDriveIsInTheFrameOfALaserScannersMap) {
   Recording r = recordingOf("village", 3, laserOf(), kDriven, kFlat);
   moveOdometry(r);
   Slam alone({});
-  addAll(alone, r);
+  addAll(alone, r, kRobotLaser);
   EXPECT_GT(errorsOf(alone.poses(), r).largest, 1);
   for (const double voxelSize : {0.1, 0.2, 0.4}) {
     Slam slam({});
-    slam.setReference(mapOf("village", 3, voxelSize, laserOf(), kRobotLaser));
-    addAll(slam, r);
+    slam.setReference(mapOf(voxelSize, laserOf(), kRobotLaser));
+    addAll(slam, r, kRobotLaser);
     const PathErrors e = errorsOf(slam.poses(), r);
     EXPECT_LT(e.first, 0.3 * voxelSize) << voxelSize;
     EXPECT_LT(e.largest, 0.03 + 0.2 * voxelSize) << voxelSize;
@@ -175,8 +138,8 @@ TEST(Planar, aDriveIsInTheFrameOfAMapInSpace) {
   SlamOptions options;
   options.useClasses = false;
   Slam slam(options);
-  slam.setReference(mapOf("village", 3, 0.2, lidarOf(0), kRobotLidar));
-  addAll(slam, r);
+  slam.setReference(mapOf(0.2, lidarOf(0), kRobotLidar));
+  addAll(slam, r, kRobotLaser);
   const PathErrors e = errorsOf(slam.poses(), r);
   EXPECT_LT(e.first, 0.2 / std::sqrt(12)) << "as well as its voxels say";
   EXPECT_LT(e.largest, 0.06);
@@ -191,7 +154,7 @@ TEST(Planar, whatIsAtOtherHeightsIsNotCompared) {
     map.insert(r.clouds[k], Eigen::Translation3d(1, 0, 1) * r.truth[k] * kRobotLaser, {});
   Slam slam({});
   slam.setReference(map);
-  addAll(slam, r);
+  addAll(slam, r, kRobotLaser);
   EXPECT_EQ(slam.numReferenced(), 0u);
   EXPECT_LT((slam.poses()[0].translation() - r.odometry[0].translation()).norm(), 1e-9);
 }

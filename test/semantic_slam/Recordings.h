@@ -1,6 +1,6 @@
 #pragma once
-#include <semantic_slam/PoseGraph.h>
-#include <semantic_slam/Registration.h>
+#include <gtest/gtest.h>
+#include <semantic_slam/Slam.h>
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Drive.h>
 #include <synthetic_world/Lidar.h>
@@ -112,6 +112,62 @@ inline Recording recordingOf(const std::string& scene, std::uint64_t seed, const
     r.truth.push_back(T);
   }
   return r;
+}
+
+/** Who saw a scene for a map of it, until when. */
+struct Mapping {
+  Sensor sensor;
+  Eigen::Isometry3d T_robot_sensor;
+  double meters, voxelSize = 0.2;
+  double hills = 1;  ///< of the scene
+  double step = 3;   ///< m, between scans
+};
+
+/** What somebody else saw of a scene, other scans from between the poses of recordingOf(). */
+inline semantic_octree::SemanticOcTree mapOf(const std::string& scene, std::uint64_t seed,
+                                             const Mapping& by) {
+  const synthetic_world::Scene place = synthetic_world::makeScene(scene, seed, by.hills);
+  const synthetic_world::Drive drive(place, 1);
+  semantic_octree::SemanticOcTree map(by.voxelSize, synthetic_world::classTable());
+  semantic_octree::InsertionOptions options;
+  options.maxRange = 30;
+  for (double s = 0.5; s < by.meters; s += by.step) {
+    const Eigen::Isometry3d T = drive.T_world_robot(s);
+    const auto frame = static_cast<std::uint64_t>(1000 + s);
+    map.insert(by.sensor(place.world, T, {seed, frame}), T * by.T_robot_sensor, options);
+  }
+  return map;
+}
+
+/** Odometry that begins elsewhere. \param off from where it began, in the robot's frame */
+inline void moveOdometry(Recording& r, const Vector6& off) {
+  const Eigen::Isometry3d T = r.truth[0] * poseOf(off) * r.truth[0].inverse();
+  for (Eigen::Isometry3d& pose : r.odometry) pose = T * pose;
+}
+
+inline void addAll(Slam& slam, const Recording& r, const Eigen::Isometry3d& T_robot_sensor) {
+  for (std::size_t i = 0; i < r.clouds.size(); ++i)
+    slam.add(r.clouds[i], T_robot_sensor, r.odometry[i]);
+  ASSERT_EQ(slam.poses().size(), r.truth.size()) << "each scan is a keyframe";
+}
+
+struct PathErrors {
+  double rootMeanSquare = 0, first = 0, largest = 0, last = 0;  // m
+  double degrees = 0;                                           // largest
+};
+
+inline PathErrors errorsOf(const std::vector<Eigen::Isometry3d>& poses, const Recording& r) {
+  PathErrors e;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Vector6 off = vectorOf(r.truth[k].inverse() * poses[k]);
+    e.last = off.head<3>().norm();
+    if (k == 0) e.first = e.last;
+    e.rootMeanSquare += e.last * e.last / static_cast<double>(poses.size());
+    e.largest = std::max(e.largest, e.last);
+    e.degrees = std::max(e.degrees, off.tail<3>().norm() * 180 / M_PI);
+  }
+  e.rootMeanSquare = std::sqrt(e.rootMeanSquare);
+  return e;
 }
 
 }  // namespace recordings

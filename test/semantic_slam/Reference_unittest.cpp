@@ -10,47 +10,9 @@ using semantic_octree::SemanticOcTree;
 
 namespace {
 
-/** What somebody else saw of a scene, other scans from between those of recordingOf(). */
+/** Of classes, a tenth of them wrong. */
 SemanticOcTree mapOf(const std::string& scene, std::uint64_t seed, double meters) {
-  const synthetic_world::Scene place = synthetic_world::makeScene(scene, seed);
-  const synthetic_world::Drive drive(place, 1);
-  const Sensor lidar = lidarOf(0.1);
-  SemanticOcTree map(0.2, synthetic_world::classTable());
-  semantic_octree::InsertionOptions options;
-  options.maxRange = 30;
-  for (double s = 0.5; s < meters; s += 3) {
-    const Eigen::Isometry3d T = drive.T_world_robot(s);
-    const auto frame = static_cast<std::uint64_t>(1000 + s);
-    map.insert(lidar(place.world, T, {seed, frame}), T * kRobotLidar, options);
-  }
-  return map;
-}
-
-/** Odometry that begins elsewhere. */
-void moveOdometry(Recording& r, const Eigen::Isometry3d& T_map_odometry) {
-  for (Eigen::Isometry3d& T : r.odometry) T = T_map_odometry * T;
-}
-
-struct FrameErrors {
-  double first, last, largest, degrees;
-};
-
-FrameErrors errorsOf(const Slam& slam, const Recording& r) {
-  FrameErrors e{};
-  for (std::size_t k = 0; k < slam.poses().size(); ++k) {
-    const Vector6 off = vectorOf(r.truth[k].inverse() * slam.poses()[k]);
-    e.last = off.head<3>().norm();
-    if (k == 0) e.first = e.last;
-    e.largest = std::max(e.largest, e.last);
-    e.degrees = std::max(e.degrees, off.tail<3>().norm() * 180 / M_PI);
-  }
-  return e;
-}
-
-void addAll(Slam& slam, const Recording& r, const Eigen::Isometry3d& T_robot_sensor) {
-  for (std::size_t i = 0; i < r.clouds.size(); ++i)
-    slam.add(r.clouds[i], T_robot_sensor, r.odometry[i]);
-  ASSERT_EQ(slam.poses().size(), r.truth.size()) << "each scan is a keyframe";
+  return recordings::mapOf(scene, seed, {lidarOf(0.1), kRobotLidar, meters});
 }
 
 }  // namespace
@@ -59,7 +21,7 @@ TEST(Reference, aDriveIsInTheFrameOfAMapThatIsThere) {
   Recording r = recordingOf("village", 1, lidarOf(0.1), 90);
   Vector6 off;
   off << 1, -0.8, 0.2, 0, 0, 0.08;
-  moveOdometry(r, r.truth[0] * poseOf(off) * r.truth[0].inverse());
+  moveOdometry(r, off);
   const SemanticOcTree map = mapOf("village", 1, 100);
   for (const bool useClasses : {false, true}) {
     SlamOptions options;
@@ -68,7 +30,7 @@ TEST(Reference, aDriveIsInTheFrameOfAMapThatIsThere) {
     addAll(alone, r, kRobotLidar);
     slam.setReference(map);
     addAll(slam, r, kRobotLidar);
-    const FrameErrors without = errorsOf(alone, r), with = errorsOf(slam, r);
+    const PathErrors without = errorsOf(alone.poses(), r), with = errorsOf(slam.poses(), r);
     EXPECT_GT(without.last, 1) << useClasses;
     EXPECT_LT(with.first, 0.06) << useClasses;
     EXPECT_LT(with.largest, 0.06) << useClasses;
@@ -83,7 +45,7 @@ TEST(Reference, aCameraFindsItselfInTheMapOfALidar) {
   Slam slam({});
   slam.setReference(mapOf("campus", 1, 80));
   addAll(slam, r, kRobotCamera);
-  const FrameErrors with = errorsOf(slam, r);
+  const PathErrors with = errorsOf(slam.poses(), r);
   EXPECT_LT(with.largest, 0.12);
   EXPECT_GT(slam.numReferenced(), 20u);
 }
@@ -95,7 +57,7 @@ TEST(Reference, beyondItsEndScansAreRegisteredToEachOther) {
   addAll(slam, r, kRobotLidar);
   EXPECT_LT(slam.numReferenced(), 25u);
   EXPECT_EQ(slam.numLost(), 0u);
-  EXPECT_LT(errorsOf(slam, r).largest, 0.15);
+  EXPECT_LT(errorsOf(slam.poses(), r).largest, 0.15);
 }
 
 TEST(Reference, theMapOfAnotherPlaceMovesNothing) {
