@@ -182,6 +182,10 @@ TEST(MapCanvas, aMapAroundTheCanvasIsDrawnAsIfThereWereNoMore) {
     EXPECT_EQ(cv::norm(expected.picture(), ofTiles.picture(), cv::NORM_INF), 0);
     EXPECT_EQ(whole.legend().size(), expected.legend().size());
   }
+  MapCanvas expected(region(-4, -2, 4, 2), {800, 400}), around = expected.blank();
+  expected.drawMap(near, {});
+  around.drawMapAround(near, {});
+  EXPECT_EQ(cv::norm(expected.picture(), around.picture(), cv::NORM_INF), 0) << "to its border";
   const auto contents = stored.folder()->contents();
   EXPECT_GT(contents.tiles, 8u);
   EXPECT_LE(contents.broughtIn, 2 * 2 * 8u);  // two drawings, two passes, two by two by two
