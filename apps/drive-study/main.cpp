@@ -4,6 +4,7 @@
 #include <strict_files/TextFile.h>
 #include <synthetic_world/Scene.h>
 
+#include <algorithm>
 #include <ostream>
 
 #include "Application.h"

@@ -7,6 +7,7 @@
 #include <mrpt_compat/Images.h>
 #include <semantic_types/ClassTableFile.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "NearestColorNetwork.h"

@@ -6,6 +6,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include <algorithm>
+
 #include "RunProgram.h"
 #include "TemporaryFolder.h"
 #include "XServer.h"

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 #include "RunProgram.h"
 #include "TemporaryFolder.h"
 

@@ -1,5 +1,7 @@
 #include <opencv2/imgcodecs.hpp>
 
+#include <algorithm>
+
 #include "MappingFixture.h"
 #include "XServer.h"
 

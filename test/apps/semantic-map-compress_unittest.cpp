@@ -4,6 +4,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <algorithm>
+
 #include "CompressionOptions.h"
 #include "CsvTable.h"
 #include "SemanticMapCompress.h"

@@ -5,6 +5,7 @@
 #include <semantic_octree/Abstraction.h>
 #include <semantic_octree/SmoothedView.h>
 
+#include <algorithm>
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 #include "RunProgram.h"
 #include "ShellCommand.h"
 #include "TemporaryFolder.h"

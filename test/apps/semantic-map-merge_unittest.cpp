@@ -1,5 +1,6 @@
 #include <labeled_cloud/RawlogWriter.h>
 
+#include <algorithm>
 #include <array>
 #include <future>
 #include <numeric>

@@ -1,6 +1,7 @@
 #include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>

@@ -4,6 +4,7 @@
 #include <mrpt/serialization/CArchive.h>
 #include <rapidcheck.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "TemporaryFolder.h"

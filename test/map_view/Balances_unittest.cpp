@@ -2,6 +2,7 @@
 #include <map_view/CellSource.h>
 #include <map_view/LiveCompression.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "RandomMap.h"

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <map_view/OrbitCamera.h>
 
+#include <algorithm>
 #include <random>
 
 #include "TemporaryFolder.h"

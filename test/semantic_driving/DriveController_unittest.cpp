@@ -14,12 +14,12 @@ using namespace semantic_planning;
 
 namespace {
 
-const auto kFootprint = semantic_planning::Footprint::rectangle(-0.25, 0.55, 0.6);
+const auto kRobotFootprint = semantic_planning::Footprint::rectangle(-0.25, 0.55, 0.6);
 
 ReactiveNavigator::Options robotIni() {
   ReactiveNavigator::Options options;
   options.config = std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini";
-  options.footprint = kFootprint;
+  options.footprint = kRobotFootprint;
   return options;
 }
 
@@ -81,7 +81,7 @@ class Drive {
   /** Until half a minute is over: one command each 0.1 s. */
   template <class Command>
   void run(Command command, const std::vector<Eigen::Vector2d>& columns = person()) {
-    const PathTracker outline({}, kFootprint);
+    const PathTracker outline({}, kRobotFootprint);
     for (int i = 0; i < 300; ++i) {
       mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + 0.1 * i));
       const ObstaclePoints seen = seenFrom(state().pose, columns);
@@ -160,7 +160,7 @@ TEST(PathTracker, DoesNotSteerTheOtherWayAfterABend) {
 }
 
 TEST(PathTracker, AloneStandsBeforeAPerson) {
-  PathTracker tracker(Drive::onlyAround(), kFootprint);
+  PathTracker tracker(Drive::onlyAround(), kRobotFootprint);
   tracker.setPath(straight());
   Drive drive;
   drive.run([&](const ObstaclePoints& seen, double) {

@@ -66,7 +66,7 @@ TEST(PathTracker, BacksUpWhereThePathDoes) {
 
 TEST(PathTracker, StopsBeforeAnObstacle) {
   PathTracker tracker = trackerOn(thereAndBack());
-  const DriveState state{{0, 0, 0}, 0, 0};
+  const semantic_driving::DriveState state{{0, 0, 0}, 0, 0};
   tracker.locate(state);
   EXPECT_GT(tracker.command(state, {}, 1).speed, 0.9);
   EXPECT_NEAR(tracker.freeAhead(state, {{1.5, 0}}), 1.5 - 0.55 - 0.1, 0.16);

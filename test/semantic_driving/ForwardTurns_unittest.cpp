@@ -13,7 +13,7 @@ namespace {
 constexpr double kLongest = 8;  // m backwards
 
 /** Ahead along x from 0.1 to 3.1 m, and back to -3.9 m. */
-DrivePath thereAndBack(PaintedWorld::Class ground = PaintedWorld::Grass) {
+DrivePath pathThereAndBack(PaintedWorld::Class ground = PaintedWorld::Grass) {
   std::vector<PathPoint> points;
   for (int i = 0; i <= 30; ++i) points.push_back({0.1 + 0.1 * i, 0.1, -0.1, 0, 0, true, ground, 0});
   for (int i = 1; i <= 70; ++i)
@@ -28,7 +28,7 @@ class InPlaceOfBackingUp : public testing::Test {
   std::optional<DrivePath> find(double from = 0, double worth = 0.5,
                                 PaintedWorld::Class ground = PaintedWorld::Grass) {
     const SemanticPlanner planner = plannerOver(world);
-    const DrivePath path = thereAndBack(ground);
+    const DrivePath path = pathThereAndBack(ground);
     const auto found = ForwardTurns(planner, kLongest).find(path, from, worth);
     if (found) {
       const DrivePrice price(planner.options().vehicle);
@@ -76,18 +76,18 @@ TEST_F(InPlaceOfBackingUp, ThereIsNothingOverAWorseClass) {
 
 TEST_F(InPlaceOfBackingUp, FarThereMayBeWhatThePathMeetsElsewhere) {
   world.floor(-12, 12, -1, 1.2, PaintedWorld::Road);
-  std::vector<PathPoint> points = thereAndBack(PaintedWorld::Road).points();
+  std::vector<PathPoint> points = pathThereAndBack(PaintedWorld::Road).points();
   points.front().classId = PaintedWorld::Grass;
   const SemanticPlanner planner = plannerOver(world);
   EXPECT_FALSE(ForwardTurns(planner, 8).find(DrivePath(points), 0.5, 0.5));
   const auto found = ForwardTurns(planner, 6).find(DrivePath(points), 0.5, 0.5);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->longestBackwards(), 0);
-  EXPECT_FALSE(ForwardTurns(planner, 6).find(thereAndBack(PaintedWorld::Road), 0.5, 0.5));
+  EXPECT_FALSE(ForwardTurns(planner, 6).find(pathThereAndBack(PaintedWorld::Road), 0.5, 0.5));
 }
 
 TEST_F(InPlaceOfBackingUp, APathWithoutChangesStays) {
   const SemanticPlanner planner = plannerOver(world);
-  EXPECT_FALSE(ForwardTurns(planner, kLongest).find(thereAndBack().part(0, 3), 0, 0));
+  EXPECT_FALSE(ForwardTurns(planner, kLongest).find(pathThereAndBack().part(0, 3), 0, 0));
   EXPECT_FALSE(ForwardTurns(planner, kLongest).find({}, 0, 0));
 }

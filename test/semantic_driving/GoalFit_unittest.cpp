@@ -14,7 +14,7 @@ namespace {
 
 const TPose2D kStart{0.1, 0.1, 0};
 
-double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+double distanceOf(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 /** Flat ground, 16 m by 16 m, with walls and mud, which is forbidden; nothing beyond is known. */
 class GoalFit : public testing::Test {
@@ -82,7 +82,8 @@ TEST_F(GoalFit, NoPoseWithTheGoalsHeadingIsNearerThanTheNearest) {
   synthetic_world::Random random(6);
   for (int i = 0; i < 2000; ++i) {
     const TPose2D other(goal.x - random.uniform(0, 2), goal.y + random.uniform(-2, 2), goal.phi);
-    if (distance(other, goal) > distance(*nearest, goal) - 0.3) continue;  // between those tried
+    if (distanceOf(other, goal) > distanceOf(*nearest, goal) - 0.3)
+      continue;  // between those tried
     EXPECT_NE(planner.check(other), PlanStatus::Found) << other.asString();
   }
 }
@@ -94,7 +95,7 @@ TEST_F(GoalFit, TheNearestPoseFitsAndIsOnThisSideOfTheWall) {
     const auto nearest = nearestFit(planner, kStart, 0, goal, 5);
     ASSERT_TRUE(nearest) << goal.asString();
     EXPECT_EQ(planner.check(*nearest), PlanStatus::Found);
-    EXPECT_LT(distance(*nearest, goal), 2.5);
+    EXPECT_LT(distanceOf(*nearest, goal), 2.5);
   }
   // Beyond the wall's end one gets to the other side.
   EXPECT_GT(nearestFit(planner, kStart, 0, {4.2, 0, 1.57}, 5)->x, 3.2);

@@ -13,10 +13,10 @@ using namespace semantic_planning;
 
 namespace {
 
-constexpr double kVoxel = 0.2;  // m
-constexpr double kDisc = 0.35;  // m: the footprint's inner radius, and the clearance
-constexpr int kReach = 20;      // columns
-constexpr int kAroundGoal = 5;  // columns, 1 m
+constexpr double kRegionVoxel = 0.2;  // m
+constexpr double kDisc = 0.35;        // m: the footprint's inner radius, and the clearance
+constexpr int kReach = 20;            // columns
+constexpr int kAroundGoal = 5;        // columns, 1 m
 
 using Place = std::pair<int, int>;  ///< a column, counted from the origin
 
@@ -28,7 +28,7 @@ struct Walls {
   /** A pose in the column is too near to a wall, wherever in it. */
   bool keep(int x, int y) const {
     for (const auto& [wx, wy] : columns)
-      if (kVoxel * std::hypot(wx - x, wy - y) < kDisc - 1e-5) return true;
+      if (kRegionVoxel * std::hypot(wx - x, wy - y) < kDisc - 1e-5) return true;
     return false;
   }
   SemanticPlanner planner(PaintedWorld& world) const {
@@ -40,11 +40,11 @@ struct Walls {
 };
 
 /** What GoalRegion says it is, by spreading until nothing changes any more. */
-struct Oracle {
+struct FloodedRegion {
   std::set<Place> region;
   bool open = false, enclosed = true;
 
-  Oracle(const Walls& walls, const std::set<Place>& reached, const Place& goal) {
+  FloodedRegion(const Walls& walls, const std::set<Place>& reached, const Place& goal) {
     const auto inside = [](int x, int y) { return std::max(std::abs(x), std::abs(y)) <= kReach; };
     std::set<Place> candidates;
     const auto take = [&](int x, int y) {
@@ -106,7 +106,7 @@ Walls square(const Place& middle, int half) {
 
 Column columnOf(const Place& place) { return {32768 + place.first, 32768 + place.second}; }
 mrpt::math::TPose2D poseIn(const Place& place) {
-  return {(place.first + 0.5) * kVoxel, (place.second + 0.5) * kVoxel, 0};
+  return {(place.first + 0.5) * kRegionVoxel, (place.second + 0.5) * kRegionVoxel, 0};
 }
 
 GoalRegion regionOf(const SemanticPlanner& planner, const std::set<Place>& reached,
@@ -140,7 +140,7 @@ TEST(GoalRegion, IsThatOfAFloodByHandAmongRandomWalls) {
     PaintedWorld world;
     const SemanticPlanner planner = walls.planner(world);
     const GoalRegion region = regionOf(planner, reached, goal);
-    const Oracle oracle(walls, reached, goal);
+    const FloodedRegion oracle(walls, reached, goal);
     EXPECT_EQ(region.isEnclosed(), oracle.enclosed);
     EXPECT_EQ(region.isOpen(), oracle.open);
     EXPECT_EQ(region.columns(), oracle.region.size());

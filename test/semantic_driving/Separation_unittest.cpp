@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kPeriod = 0.1;  // s
 constexpr int kPerScan = 5;
-constexpr double kBody = 0.3;                                // m, radius of a person
-constexpr double kBack = -0.25, kFront = 0.55, kHalf = 0.3;  // m, of the robot
+constexpr double kBody = 0.3;                                               // m, radius of a person
+constexpr double kRobotBack = -0.25, kRobotFront = 0.55, kRobotHalf = 0.3;  // m, of the robot
 
 /** Walks straight on. */
 struct Person {
@@ -41,8 +41,8 @@ DrivePath bent() {
 /** Meters between the robot and a person's body; the rectangle's corners are all it knows. */
 double gap(const TPose2D& robot, const Vector2d& person) {
   const auto p = robot.inverseComposePoint({person.x(), person.y()});
-  const double x = std::max({kBack - p.x, 0.0, p.x - kFront});
-  const double y = std::max(0.0, std::abs(p.y) - kHalf);
+  const double x = std::max({kRobotBack - p.x, 0.0, p.x - kRobotFront});
+  const double y = std::max(0.0, std::abs(p.y) - kRobotHalf);
   return std::hypot(x, y) - kBody;
 }
 
@@ -66,7 +66,8 @@ struct Outcome {
   double seconds = 1e9;        ///< until the path's end
   double standing = 0;         ///< s
 
-  void add(const DriveState& state, const std::vector<Person>& persons, double time) {
+  void add(const semantic_driving::DriveState& state, const std::vector<Person>& persons,
+           double time) {
     for (const Person& p : persons)
       if (gap(state.pose, p.at(time)) <= 0)
         fastestContact = std::max(fastestContact, std::abs(state.speed));

@@ -7,6 +7,8 @@
 #include <mrpt/obs/CObservationVelodyneScan.h>
 #include <mrpt/system/CObserver.h>
 
+#include <algorithm>
+
 #include "SmallMaps.h"
 #include "TemporaryFolder.h"
 

@@ -3,6 +3,7 @@
 #include <mrpt/obs/CObservationRobotPose.h>
 #include <semantic_types/ClassTableFile.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

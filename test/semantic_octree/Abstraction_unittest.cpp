@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <semantic_octree/Abstraction.h>
 
+#include <algorithm>
 #include <set>
 
 #include "FollowedTree.h"
@@ -11,10 +12,10 @@ namespace {
 
 using namespace semantic_octree;
 
-constexpr int K = 6;
-constexpr double kResolution = 0.2;
+constexpr int kTreeClasses = 6;
+constexpr double kTreeResolution = 0.2;
 
-AbstractionOptions someOptions(double alpha) { return threeTerms(alpha, K, 0.05); }
+AbstractionOptions someOptions(double alpha) { return threeTerms(alpha, kTreeClasses, 0.05); }
 
 InsertionOptions someInsertion(int threads = 1) {
   InsertionOptions o;
@@ -26,7 +27,7 @@ InsertionOptions someInsertion(int threads = 1) {
 SemanticOcTree mapOf(const std::vector<PosedCloud>& scans,
                      const AbstractionOptions* options = nullptr, bool pruning = true,
                      int threads = 1) {
-  SemanticOcTree map(kResolution, numberedClasses(K));
+  SemanticOcTree map(kTreeResolution, numberedClasses(kTreeClasses));
   map.setPruning(pruning);
   if (options) map.setAbstraction(*options);
   for (const PosedCloud& s : scans) map.insert(s.cloud, s.T_map_sensor, someInsertion(threads));
@@ -36,9 +37,9 @@ SemanticOcTree mapOf(const std::vector<PosedCloud>& scans,
 TEST(Abstraction, incrementalUpkeepEqualsBatchToTheLastBitAfterEveryScan) {
   const auto options = someOptions(0.01);
   for (const bool pruning : {true, false}) {
-    std::vector<PosedCloud> scans = scansOfSmallPlace(5, 3000, K, 7);
+    std::vector<PosedCloud> scans = scansOfSmallPlace(5, 3000, kTreeClasses, 7);
     for (int order = 0; order < 2; ++order) {
-      SemanticOcTree map(kResolution, numberedClasses(K));
+      SemanticOcTree map(kTreeResolution, numberedClasses(kTreeClasses));
       map.setPruning(pruning);
       map.setAbstraction(options);
       for (const PosedCloud& s : scans) {
@@ -55,7 +56,7 @@ TEST(Abstraction, incrementalUpkeepEqualsBatchToTheLastBitAfterEveryScan) {
 
 TEST(Abstraction, threadsLeaveNoTrace) {
   const auto options = someOptions(0.01);
-  const auto scans = scansOfSmallPlace(4, 4000, K, 3);
+  const auto scans = scansOfSmallPlace(4, 4000, kTreeClasses, 3);
   EXPECT_TRUE(mapOf(scans, &options, true, 1) == mapOf(scans, &options, true, 3));
 }
 
@@ -65,7 +66,7 @@ TEST(Abstraction, agreesWithThePlainSearchOnTheSameTree) {
       AbstractionOptions options = someOptions(alpha);
       options.frame = frame;
       options.unknownWeight = 0.5;
-      SemanticOcTree map = mapOf(scansOfSmallPlace(3, 2000, K, 11), &options);
+      SemanticOcTree map = mapOf(scansOfSmallPlace(3, 2000, kTreeClasses, 11), &options);
       const int blockDepth = 12;  // 3.2 m = 16 voxels
       const bool free = frame == AbstractionOptions::Frame::Free;
       const auto oracle = reference::findOptimalTree(
@@ -100,7 +101,7 @@ TEST(Abstraction, agreesWithThePlainSearchOnTheSameTree) {
 
 TEST(Abstraction, prunedMapHasTheCompressedTreeOfTheUnprunedOne) {
   const auto options = someOptions(0.01);
-  const auto scans = scansOfSmallPlace(5, 3000, K, 5);
+  const auto scans = scansOfSmallPlace(5, 3000, kTreeClasses, 5);
   SemanticOcTree pruned = mapOf(scans, &options), unpruned = mapOf(scans, &options, false);
   ASSERT_LT(pruned.size(), unpruned.size());
   EXPECT_EQ(idsOf(Abstraction(pruned).leaves()), idsOf(Abstraction(unpruned).leaves()));
@@ -111,11 +112,11 @@ TEST(Abstraction, prunedMapHasTheCompressedTreeOfTheUnprunedOne) {
 }
 
 TEST(Abstraction, changesAddUpToTheLeaves) {
-  SemanticOcTree map(kResolution, numberedClasses(K));
+  SemanticOcTree map(kTreeResolution, numberedClasses(kTreeClasses));
   map.setAbstraction(someOptions(0.01));
   Abstraction abstraction(map);
   FollowedTree kept;
-  for (const PosedCloud& s : scansOfSmallPlace(6, 3000, K, 9)) {
+  for (const PosedCloud& s : scansOfSmallPlace(6, 3000, kTreeClasses, 9)) {
     map.insert(s.cloud, s.T_map_sensor, someInsertion());
     kept.follow(abstraction);
   }
@@ -131,7 +132,7 @@ TEST(Abstraction, changesAddUpToTheLeaves) {
 }
 
 TEST(Abstraction, newWeightsEqualStartingWithThem) {
-  const auto scans = scansOfSmallPlace(3, 3000, K, 4);
+  const auto scans = scansOfSmallPlace(3, 3000, kTreeClasses, 4);
   AbstractionOptions options = someOptions(0.01);
   SemanticOcTree map = mapOf(scans, &options);
   Abstraction(map).setWeights({0.2, -0.7, 0.3}, 0.002);
@@ -142,7 +143,7 @@ TEST(Abstraction, newWeightsEqualStartingWithThem) {
 }
 
 TEST(Abstraction, movedRegionsEqualStartingWithThem) {
-  const auto scans = scansOfSmallPlace(3, 3000, K, 4);
+  const auto scans = scansOfSmallPlace(3, 3000, kTreeClasses, 4);
   AbstractionOptions options = someOptions(0.01);
   const auto region = [](Region::Shape shape, double x, double weight) {
     return Region{shape, {x, -2, -1}, {x + 2, 3, 2}, 1.5, weight};
@@ -156,7 +157,7 @@ TEST(Abstraction, movedRegionsEqualStartingWithThem) {
 }
 
 TEST(Abstraction, regionsWithWeightZeroVanish) {
-  const auto scans = scansOfSmallPlace(3, 3000, K, 4);
+  const auto scans = scansOfSmallPlace(3, 3000, kTreeClasses, 4);
   AbstractionOptions options = someOptions(1e-6);
   options.regions = {{Region::Shape::Box, {-100, -100, -100}, {0, 100, 100}, 0, 0.0}};
   SemanticOcTree map = mapOf(scans, &options);
@@ -173,7 +174,7 @@ TEST(Abstraction, regionsWithWeightZeroVanish) {
 
 TEST(Abstraction, wholeMapCollapsesToItsRootWithoutBlocksOrFreeFrame) {
   // 16 levels are mostly unknown space: what is known is too small a part of it to pay.
-  const auto scans = scansOfSmallPlace(3, 3000, K, 4);
+  const auto scans = scansOfSmallPlace(3, 3000, kTreeClasses, 4);
   AbstractionOptions options = someOptions(1e-4);
   EXPECT_GT(Abstraction(*std::make_unique<SemanticOcTree>(mapOf(scans, &options))).leaves().size(),
             1000u);
@@ -185,7 +186,7 @@ TEST(Abstraction, wholeMapCollapsesToItsRootWithoutBlocksOrFreeFrame) {
 
 TEST(Abstraction, pathOverAlphaLeadsToAWantedNumberOfLeaves) {
   const AbstractionOptions options = someOptions(0.01);
-  SemanticOcTree map = mapOf(scansOfSmallPlace(4, 4000, K, 6), &options);
+  SemanticOcTree map = mapOf(scansOfSmallPlace(4, 4000, kTreeClasses, 6), &options);
   Abstraction abstraction(map);
   const Abstraction::Path path = abstraction.alphaPath();
   const std::size_t most = path.trees.totals(path.addedLeaves, path.numRoots).back();
@@ -204,7 +205,7 @@ TEST(Abstraction, pathOverAlphaLeadsToAWantedNumberOfLeaves) {
 
 TEST(Abstraction, leavesInABoxAreThoseOfAllThatMeetIt) {
   const AbstractionOptions options = someOptions(0.02);
-  SemanticOcTree map = mapOf(scansOfSmallPlace(3, 3000, K, 8), &options);
+  SemanticOcTree map = mapOf(scansOfSmallPlace(3, 3000, kTreeClasses, 8), &options);
   const Abstraction abstraction(map);
   const octomap::OcTreeKey low(32760, 32750, 32760), high(32775, 32790, 32770);
   for (const bool onlyOccupied : {false, true}) {
@@ -225,7 +226,7 @@ TEST(Abstraction, leavesInABoxAreThoseOfAllThatMeetIt) {
 
 TEST(Abstraction, compressedMapHasTheCompressedTreesLeavesAndAnswersQueries) {
   const AbstractionOptions options = someOptions(0.02);
-  SemanticOcTree map = mapOf(scansOfSmallPlace(4, 4000, K, 6), &options);
+  SemanticOcTree map = mapOf(scansOfSmallPlace(4, 4000, kTreeClasses, 6), &options);
   const Abstraction abstraction(map);
   const SemanticOcTree compressed = abstraction.compressedMap();
   const auto leaves = abstraction.leaves();
@@ -240,19 +241,19 @@ TEST(Abstraction, compressedMapHasTheCompressedTreesLeavesAndAnswersQueries) {
 
 TEST(Abstraction, leavesKnowTheVoxelsThatTheyStandFor) {
   const AbstractionOptions options = someOptions(0.02);
-  SemanticOcTree map = mapOf(scansOfSmallPlace(2, 2000, K, 6), &options);
+  SemanticOcTree map = mapOf(scansOfSmallPlace(2, 2000, kTreeClasses, 6), &options);
   for (const LeafCell& l : Abstraction(map).leaves()) {
     const octomap::point3d center = map.keyToCoord(l.key, l.depth);
-    ASSERT_NEAR(l.edge() * kResolution, map.getNodeSize(l.depth), 1e-9);
+    ASSERT_NEAR(l.edge() * kTreeResolution, map.getNodeSize(l.depth), 1e-9);
     for (unsigned axis = 0; axis < 3; ++axis)
-      ASSERT_NEAR(lowerBorderOf(l.lowest()[axis], kResolution) + l.edge() * kResolution / 2,
+      ASSERT_NEAR(lowerBorderOf(l.lowest()[axis], kTreeResolution) + l.edge() * kTreeResolution / 2,
                   center(axis), 1e-3);
   }
 }
 
 TEST(Abstraction, knownShareIsTheKnownVolume) {
   const AbstractionOptions options = someOptions(0.02);
-  SemanticOcTree map = mapOf(scansOfSmallPlace(2, 2000, K, 6), &options);
+  SemanticOcTree map = mapOf(scansOfSmallPlace(2, 2000, kTreeClasses, 6), &options);
   const Abstraction abstraction(map);
   double volume = 0, expected = 0;
   for (const LeafCell& l : abstraction.leaves())
@@ -263,7 +264,7 @@ TEST(Abstraction, knownShareIsTheKnownVolume) {
 }
 
 TEST(Abstraction, refusesBadOptionsAndNamesThem) {
-  SemanticOcTree map(kResolution, numberedClasses(K));
+  SemanticOcTree map(kTreeResolution, numberedClasses(kTreeClasses));
   EXPECT_THROW(Abstraction{map}, std::logic_error);
   const auto message = [&](auto change) {
     AbstractionOptions o = someOptions(0.01);
@@ -281,7 +282,7 @@ TEST(Abstraction, refusesBadOptionsAndNamesThem) {
   };
   EXPECT_PRED2(says, message([](O& o) { o.weights.alpha = -1; }), "alpha");
   EXPECT_PRED2(says, message([](O& o) { o.weights.terms[0].weight = NAN; }), "weight");
-  EXPECT_PRED2(says, message([](O& o) { o.weights.terms[0].groups = {{K + 1}}; }), "7");
+  EXPECT_PRED2(says, message([](O& o) { o.weights.terms[0].groups = {{kTreeClasses + 1}}; }), "7");
   EXPECT_PRED2(says, message([](O& o) { o.weights.terms[1].groups = {{1}}; }), "1");
   EXPECT_PRED2(says, message([](O& o) { o.blockSize = -2; }), "block_size");
   EXPECT_PRED2(says, message([](O& o) { o.unknownWeight = 1.5; }), "unknown_weight");

@@ -2,6 +2,7 @@
 #include <octomap/OcTree.h>
 #include <rapidcheck.h>
 
+#include <algorithm>
 #include <type_traits>
 
 #include "FilterStreams.h"

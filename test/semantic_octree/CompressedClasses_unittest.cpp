@@ -11,13 +11,13 @@ using namespace semantic_octree;
 
 namespace {
 
-constexpr int K = 3;  // all of them are named: nothing is truncated
+constexpr int kNamedClasses = 3;  // all of them are named: nothing is truncated
 
 SemanticOcTree smallMap() {
-  SemanticOcTree map(0.2, numberedClasses(K));
+  SemanticOcTree map(0.2, numberedClasses(kNamedClasses));
   InsertionOptions insertion;
   insertion.maxRange = 9;
-  for (const PosedCloud& s : scansOfSmallPlace(4, 4000, K, 6))
+  for (const PosedCloud& s : scansOfSmallPlace(4, 4000, kNamedClasses, 6))
     map.insert(s.cloud, s.T_map_sensor, insertion);
   return map;
 }
@@ -28,8 +28,8 @@ std::map<VoxelId, std::vector<double>> labeledSums(const SemanticOcTree& map, un
   for (const auto& [id, p] : voxelsOf(map)) {
     if (map.query(keyOf(id)).likeliestClass == kNoClass) continue;
     const VoxelId cell = {id[0] >> levels, id[1] >> levels, id[2] >> levels};
-    auto& sum = sums.emplace(cell, std::vector<double>(K + 1)).first->second;
-    for (int k = 1; k <= K; ++k) sum[k] += p[k];
+    auto& sum = sums.emplace(cell, std::vector<double>(kNamedClasses + 1)).first->second;
+    for (int k = 1; k <= kNamedClasses; ++k) sum[k] += p[k];
   }
   return sums;
 }
@@ -37,13 +37,14 @@ std::map<VoxelId, std::vector<double>> labeledSums(const SemanticOcTree& map, un
 /** p(class | occupied) of a node. */
 std::vector<double> givenOccupied(const SemanticOcTree& map, const SemanticOcTree::Node& node) {
   std::vector<double> p = map.distribution(node);
-  for (int k = 1; k <= K; ++k) p[k] /= 1 - p[0];
+  for (int k = 1; k <= kNamedClasses; ++k) p[k] /= 1 - p[0];
   return p;
 }
 
 void expectShares(const std::vector<double>& sum, const std::vector<double>& p) {
   const double all = sum[1] + sum[2] + sum[3];
-  for (int k = 1; k <= K; ++k) EXPECT_NEAR(p[k], sum[k] / all, 5e-4) << "class " << k;  // the grid
+  for (int k = 1; k <= kNamedClasses; ++k)
+    EXPECT_NEAR(p[k], sum[k] / all, 5e-4) << "class " << k;  // the grid
 }
 
 }  // namespace

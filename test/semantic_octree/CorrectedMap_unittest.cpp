@@ -1,6 +1,7 @@
 // Maps of keyframes that come, move and go, against mapping from scratch.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "FollowedTree.h"

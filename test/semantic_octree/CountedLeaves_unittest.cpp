@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <semantic_octree/Abstraction.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "RandomScans.h"
@@ -9,8 +10,8 @@ using namespace semantic_octree;
 
 namespace {
 
-constexpr int K = 3;
-constexpr double kResolution = 0.2;
+constexpr int kLeafClasses = 3;
+constexpr double kLeafResolution = 0.2;
 
 AbstractionOptions optionsWith(double blockSize) {
   AbstractionOptions o;
@@ -32,11 +33,12 @@ SemanticOcTree mapWithLargeLeaves(unsigned seed, bool pruning) {
     const bool isReturn = random() % 20 == 0;
     scan.cloud.points.push_back(
         (direction.normalized() * (isReturn ? between(random, 2, 4) : 50)).cast<float>());
-    scan.cloud.classes.push_back(static_cast<semantic_types::ClassId>(random() % (K + 1)));
+    scan.cloud.classes.push_back(
+        static_cast<semantic_types::ClassId>(random() % (kLeafClasses + 1)));
   }
   InsertionOptions options;
   options.maxRange = 4;
-  SemanticOcTree map(kResolution, numberedClasses(K));
+  SemanticOcTree map(kLeafResolution, numberedClasses(kLeafClasses));
   map.setPruning(pruning);
   for (int i = 0; i < 5; ++i) map.insert(scan.cloud, scan.T_map_sensor, options);
   return map;
@@ -60,7 +62,7 @@ Counts countLeaves(const SemanticOcTree& map, unsigned blockDepth) {
 }
 
 unsigned depthOfBlocks(double blockSize) {
-  return 16 - std::lround(std::log2(blockSize / kResolution));
+  return 16 - std::lround(std::log2(blockSize / kLeafResolution));
 }
 
 /** About `most` of a path's trees, first and last among them. */

@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_octree/ClassFilter.h>
 
+#include <algorithm>
 #include <random>
 #include <vector>
 

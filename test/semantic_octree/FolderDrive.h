@@ -2,6 +2,7 @@
 #include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "RandomScans.h"

@@ -2,16 +2,18 @@
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
 
+#include <algorithm>
+
 #include "Voxels.h"
 
 using namespace semantic_octree;
 
 namespace {
 
-constexpr double kResolution = 0.3;
+constexpr double kPlaceResolution = 0.3;
 
 Eigen::Array3d voxelsOfPoint(const octomap::point3d& p) {
-  return Eigen::Array3d(p.x(), p.y(), p.z()) / kResolution;
+  return Eigen::Array3d(p.x(), p.y(), p.z()) / kPlaceResolution;
 }
 
 octomap::point3d randomPoint(std::mt19937& random, double spread) {
@@ -102,8 +104,8 @@ TEST(Geometry, keysAreOctomapsOnBordersToo) {
 
 TEST(Geometry, voxelsAlongALineAreThoseThatItCrossesAndOctomaps) {
   std::mt19937 random(1);
-  const SemanticOcTree map(kResolution, numberedClasses(1));
-  const octomap::OcTree octree(kResolution);
+  const SemanticOcTree map(kPlaceResolution, numberedClasses(1));
+  const octomap::OcTree octree(kPlaceResolution);
   int compared = 0;
   for (int i = 0; i < 2000; ++i) {
     const octomap::point3d a = randomPoint(random, 3), b = randomPoint(random, 3);
@@ -145,7 +147,7 @@ TEST(Geometry, voxelsAlongALineThroughEdgesAreConnectedAndEndBeforeTheLast) {
 }
 
 TEST(Geometry, linesThatLeaveTheMapHaveNoVoxels) {
-  const SemanticOcTree map(kResolution, numberedClasses(1));
+  const SemanticOcTree map(kPlaceResolution, numberedClasses(1));
   octomap::KeyRay ray;
   for (const float outside : {1e5f, -1e5f, NAN, HUGE_VALF}) {
     EXPECT_FALSE(map.computeRayKeys({0, 0, 0}, {0, outside, 0}, ray));
@@ -156,7 +158,7 @@ TEST(Geometry, linesThatLeaveTheMapHaveNoVoxels) {
 
 TEST(Geometry, extentIsTheBoxAroundAllLeaves) {
   std::mt19937 random(3);
-  SemanticOcTree map(kResolution, numberedClasses(5));
+  SemanticOcTree map(kPlaceResolution, numberedClasses(5));
   Eigen::Vector3d low, high;
   const auto expectExtent = [&](const Eigen::AlignedBox3d& box) {
     map.getMetricMin(low.x(), low.y(), low.z());
@@ -171,9 +173,9 @@ TEST(Geometry, extentIsTheBoxAroundAllLeaves) {
     map.insert(scan.cloud, scan.T_map_sensor);
     Eigen::AlignedBox3d box;
     for (const auto& voxel : voxelsOf(map)) {
-      const Eigen::Vector3d center = centerOf(voxel.first, kResolution);
-      box.extend(center - Eigen::Vector3d::Constant(kResolution / 2));
-      box.extend(center + Eigen::Vector3d::Constant(kResolution / 2));
+      const Eigen::Vector3d center = centerOf(voxel.first, kPlaceResolution);
+      box.extend(center - Eigen::Vector3d::Constant(kPlaceResolution / 2));
+      box.extend(center + Eigen::Vector3d::Constant(kPlaceResolution / 2));
     }
     expectExtent(box);
   }

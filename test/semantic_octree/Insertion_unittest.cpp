@@ -7,7 +7,7 @@ using namespace semantic_octree;
 
 namespace {
 
-constexpr double kResolution = 0.2;
+constexpr double kInsertedResolution = 0.2;
 
 /** Scans from several places, each several times: values reach their limits and leaves merge. */
 std::vector<PosedCloud> severalScans(unsigned seed, const RandomScanOptions& options = {}) {
@@ -24,11 +24,12 @@ std::vector<PosedCloud> severalScans(unsigned seed, const RandomScanOptions& opt
 /** Inserts into trees with and without pruning and into the plain map, and compares after each. */
 void expectPlainResult(const std::vector<PosedCloud>& scans, const InsertionOptions& options,
                        int classes = 5, const FilterParameters& parameters = {}) {
-  SemanticOcTree pruned(kResolution, numberedClasses(classes), parameters), unpruned = pruned;
+  SemanticOcTree pruned(kInsertedResolution, numberedClasses(classes), parameters),
+      unpruned = pruned;
   unpruned.setPruning(false);
-  PlainMap plain(kResolution, classes, parameters);
+  PlainMap plain(kInsertedResolution, classes, parameters);
   for (const PosedCloud& scan : scans) {
-    const PlainScan expected = plainScan(scan, kResolution, options);
+    const PlainScan expected = plainScan(scan, kInsertedResolution, options);
     for (SemanticOcTree* tree : {&pruned, &unpruned}) {
       const InsertionReport report = tree->insert(scan.cloud, scan.T_map_sensor, options);
       EXPECT_EQ(report.hitVoxels, expected.hits.size());
@@ -100,8 +101,8 @@ TEST(Insertion, withPublishedConstantsGivesThePlainMap) {
 
 TEST(Insertion, keepsTheExactDistributionWhereAtMostThreeClassesWereSeen) {
   const InsertionOptions options = range(6);
-  SemanticOcTree tree(kResolution, numberedClasses(5));
-  PlainMap plain(kResolution, 5);
+  SemanticOcTree tree(kInsertedResolution, numberedClasses(5));
+  PlainMap plain(kInsertedResolution, 5);
   for (const PosedCloud& scan : severalScans(81)) {
     tree.insert(scan.cloud, scan.T_map_sensor, options);
     plain.insert(scan, options);
@@ -122,7 +123,7 @@ TEST(Insertion, givesTheSameMapWithAnyNumberOfThreads) {
     for (const bool soft : {false, true}) {
       RandomScanOptions scanOptions;
       scanOptions.softLabels = soft;
-      std::vector<SemanticOcTree> trees(3, SemanticOcTree(kResolution, numberedClasses(5)));
+      std::vector<SemanticOcTree> trees(3, SemanticOcTree(kInsertedResolution, numberedClasses(5)));
       for (const PosedCloud& scan : severalScans(91, scanOptions))
         for (int threads = 1; threads <= 3; ++threads) {
           InsertionOptions options = range(6);

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "KeyframeScans.h"
 #include "TemporaryFolder.h"
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <semantic_octree/LabelEvidence.h>
 
+#include <algorithm>
 #include <numeric>
 #include <random>
 

@@ -3,6 +3,7 @@
 #include <semantic_octree/KeyframeMap.h>
 #include <semantic_octree/LabelReliability.h>
 
+#include <algorithm>
 #include <random>
 
 #include "PackedScan.h"

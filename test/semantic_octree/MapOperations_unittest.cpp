@@ -3,6 +3,7 @@
 #include <semantic_octree/MapOperations.h>
 #include <semantic_octree/OctomapConversion.h>
 
+#include <algorithm>
 #include <set>
 
 #include "Voxels.h"
@@ -11,10 +12,10 @@ using namespace semantic_octree;
 
 namespace {
 
-constexpr double kResolution = 0.4;
+constexpr double kMergedResolution = 0.4;
 
 /** Limits that ten scans do not reach. */
-FilterParameters wideLimits() {
+FilterParameters laxLimits() {
   FilterParameters p;
   p.minOccupancy = 1e-9;
   p.maxProbability = 1 - 1e-9;
@@ -32,7 +33,7 @@ std::vector<PosedCloud> scans(int n, int classes) {
 
 SemanticOcTree mapOf(const std::vector<PosedCloud>& scans, int classes,
                      const FilterParameters& filter = {}) {
-  SemanticOcTree map(kResolution, numberedClasses(classes), filter);
+  SemanticOcTree map(kMergedResolution, numberedClasses(classes), filter);
   for (const PosedCloud& scan : scans) map.insert(scan.cloud, scan.T_map_sensor);
   return map;
 }
@@ -81,8 +82,8 @@ struct Group {
 
 TEST(MergedMap, ofSingleScansIsTheMapOfAllToTheLastBitWhileNoLimitIsReached) {
   const auto some = scans(10, 3);
-  const auto single = mapsOfSingle(some, 3, wideLimits());
-  EXPECT_TRUE(merged(pointers(single)) == mapOf(some, 3, wideLimits()));
+  const auto single = mapsOfSingle(some, 3, laxLimits());
+  EXPECT_TRUE(merged(pointers(single)) == mapOf(some, 3, laxLimits()));
 }
 
 TEST(MergedMap, doesNotDependOnTheOrderOfTheMaps) {
@@ -126,7 +127,7 @@ TEST(MergedMap, keepsWhichClassIsLikelierInSumsThatAreTooLarge) {
   LabeledCloud cloud;
   cloud.points.assign(7, {1, 1, 1});
   cloud.classes = {2, 2, 2, 2, 1, 1, 1};
-  SemanticOcTree map(kResolution, numberedClasses(3));
+  SemanticOcTree map(kMergedResolution, numberedClasses(3));
   map.insert(cloud, Eigen::Isometry3d::Identity());
   const SemanticOcTree sum = merged(std::vector<const SemanticOcTree*>(11, &map), Limits::Keep);
   const auto difference = [](const SemanticOcTree& of, ClassId id) {
@@ -142,14 +143,14 @@ TEST(MergedMap, keepsWhichClassIsLikelierInSumsThatAreTooLarge) {
 TEST(MergedMap, ofOneMapIsThatMap) {
   const SemanticOcTree map = mapOf(scans(4, 5), 5);
   EXPECT_TRUE(merged({&map}) == map);
-  const SemanticOcTree empty(kResolution, numberedClasses(5));
+  const SemanticOcTree empty(kMergedResolution, numberedClasses(5));
   EXPECT_TRUE(merged({&map, &empty}) == map);
   EXPECT_TRUE(merged({&empty, &empty}).empty());
 }
 
 TEST(MergedMap, ofMapsThatDifferInKindIsRefused) {
   const SemanticOcTree map(0.4, numberedClasses(3)), finer(0.2, numberedClasses(3)),
-      others(0.4, numberedClasses(4)), filtered(0.4, numberedClasses(3), wideLimits());
+      others(0.4, numberedClasses(4)), filtered(0.4, numberedClasses(3), laxLimits());
   for (const SemanticOcTree* other : {&finer, &others, &filtered})
     EXPECT_THROW(merged({&map, other}), std::invalid_argument);
   EXPECT_THROW(merged({}), std::invalid_argument);
@@ -160,8 +161,8 @@ TEST(CroppedMap, hasTheVoxelsWhoseCentersAreInTheBox) {
   const Eigen::AlignedBox3d box(Eigen::Vector3d(-3.1, -2, -1.5), Eigen::Vector3d(2.25, 4.4, 0.9));
   auto expected = voxelsOf(map);
   for (auto voxel = expected.begin(); voxel != expected.end();)
-    voxel = box.contains(centerOf(voxel->first, kResolution)) ? std::next(voxel)
-                                                              : expected.erase(voxel);
+    voxel = box.contains(centerOf(voxel->first, kMergedResolution)) ? std::next(voxel)
+                                                                    : expected.erase(voxel);
   ASSERT_GT(expected.size(), 100u);
   EXPECT_EQ(voxelsOf(cropped(map, box)), expected);
 }
@@ -179,7 +180,7 @@ TEST(CoarsenedMap, hasTheMostOccupiedVoxelAndTheMixtureOfEachGroup) {
   const SemanticOcTree map = mapOf(scans(4, 3), 3);
   for (const int levels : {1, 2}) {
     const SemanticOcTree coarse = coarsened(map, levels);
-    EXPECT_EQ(coarse.getResolution(), kResolution * (1 << levels));
+    EXPECT_EQ(coarse.getResolution(), kMergedResolution * (1 << levels));
     std::map<VoxelId, Group> groups;
     for (const auto& [id, p] : voxelsOf(map))
       groups[{id[0] >> levels, id[1] >> levels, id[2] >> levels}].add(
@@ -206,7 +207,7 @@ TEST(MovedMap, byWholeVoxelsAndQuarterTurnsLosesNothing) {
   const SemanticOcTree map = mapOf(scans(4, 5), 5);
   Eigen::Isometry3d there(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
   there.linear() = there.linear().array().round().matrix();
-  there.translation() = kResolution * Eigen::Vector3d(17, -40, 3);
+  there.translation() = kMergedResolution * Eigen::Vector3d(17, -40, 3);
   const SemanticOcTree away = moved(map, there);
   EXPECT_FALSE(away == map);
   EXPECT_TRUE(moved(away, there.inverse()) == map);
@@ -222,7 +223,7 @@ TEST(MovedMap, takesEachVoxelFromWhereItsCenterWas) {
       for (int y = -60; y < 60; ++y)
         for (int z = -60; z < 60; ++z) {
           const VoxelId id{x, y, z};
-          const Eigen::Vector3d p = there.inverse() * centerOf(id, kResolution);
+          const Eigen::Vector3d p = there.inverse() * centerOf(id, kMergedResolution);
           octomap::OcTreeKey key;
           ASSERT_TRUE(map.coordToKeyChecked(octomap::point3d(p.x(), p.y(), p.z()), key));
           if (const auto node = map.search(key)) expected[id] = map.distribution(*node);
@@ -247,7 +248,7 @@ TEST(MovedMap, refusesWhatIsNotAPoseOrLeadsOutside) {
 }
 
 TEST(ImportedOccupancy, isTheOccupancyWithinTheLimits) {
-  octomap::OcTree occupancy(kResolution);
+  octomap::OcTree occupancy(kMergedResolution);
   for (const PosedCloud& scan : scans(5, 5)) {
     octomap::Pointcloud points;
     for (const Eigen::Vector3f& p : scan.cloud.points) {

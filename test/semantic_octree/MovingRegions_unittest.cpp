@@ -12,8 +12,8 @@ namespace {
 
 using namespace semantic_octree;
 
-constexpr int K = 6;
-constexpr double kResolution = 0.2, kAround = 2, kCorridor = 1.2;
+constexpr int kRegionClasses = 6;
+constexpr double kRegionResolution = 0.2, kAround = 2, kCorridor = 1.2;
 
 /** A way over the small place, and where the robot is on it at each scan. */
 const std::vector<Eigen::Vector3d> kWay = {{-5, -4, 0}, {-1, -2, 0.1}, {2, 2, 0}, {5, 3, 0.2}};
@@ -44,7 +44,7 @@ double densityAt(const Eigen::Vector3d& place, int scan) {
 }
 
 AbstractionOptions optionsOf(int scan, double alpha) {
-  AbstractionOptions options = threeTerms(alpha, K, 0.05);
+  AbstractionOptions options = threeTerms(alpha, kRegionClasses, 0.05);
   options.regions = regionsOf(scan);
   return options;
 }
@@ -63,14 +63,14 @@ CellSet idsOf(const std::vector<LeafCell>& leaves) {
 }
 
 TEST(MovingRegions, leaveGValuesAndLeavesOfAMapThatHadThemFromTheStartToTheLastBit) {
-  const auto scans = scansOfSmallPlace(9, 2000, K, 4);
-  SemanticOcTree moved(kResolution, numberedClasses(K));
-  moved.setAbstraction(threeTerms(0.002, K, 0.05));
+  const auto scans = scansOfSmallPlace(9, 2000, kRegionClasses, 4);
+  SemanticOcTree moved(kRegionResolution, numberedClasses(kRegionClasses));
+  moved.setAbstraction(threeTerms(0.002, kRegionClasses, 0.05));
   CellSet kept;
   for (int i = 0; i < static_cast<int>(scans.size()); ++i) {
     Abstraction(moved).setRegions(regionsOf(i));
     insert(moved, scans[i]);
-    SemanticOcTree fresh(kResolution, numberedClasses(K));
+    SemanticOcTree fresh(kRegionResolution, numberedClasses(kRegionClasses));
     fresh.setAbstraction(optionsOf(i, 0.002));
     for (int j = 0; j <= i; ++j) insert(fresh, scans[j]);
     ASSERT_TRUE(moved == fresh) << i;
@@ -83,9 +83,9 @@ TEST(MovingRegions, leaveGValuesAndLeavesOfAMapThatHadThemFromTheStartToTheLastB
 }
 
 TEST(MovingRegions, leaveTheTreeOfThePlainSearchWithTheDensityOfEachVoxel) {
-  const auto scans = scansOfSmallPlace(9, 2000, K, 4);
+  const auto scans = scansOfSmallPlace(9, 2000, kRegionClasses, 4);
   for (const double alpha : {0.0, 0.002, 0.02}) {
-    SemanticOcTree map(kResolution, numberedClasses(K));
+    SemanticOcTree map(kRegionResolution, numberedClasses(kRegionClasses));
     map.setAbstraction(optionsOf(0, alpha));
     for (const PosedCloud& scan : scans) insert(map, scan);
     for (const int at : {2, 5, 8}) {

@@ -9,24 +9,24 @@ using namespace semantic_octree;
 
 namespace {
 
-constexpr int K = 6;
+constexpr int kPathClasses = 6;
 
 AbstractionOptions optionsWith(double blockSize, AbstractionOptions::Frame frame) {
   AbstractionOptions o;
   o.weights.terms = {tree_abstraction::relevant("posts", 1.0, {1}),
                      tree_abstraction::irrelevant("ground", 0.3, {2, 3}),
-                     tree_abstraction::wholeClassVariable("everything", 0.05, K)};
+                     tree_abstraction::wholeClassVariable("everything", 0.05, kPathClasses)};
   o.blockSize = blockSize;
   o.frame = frame;
   return o;
 }
 
 SemanticOcTree smallMap(const AbstractionOptions& options) {
-  SemanticOcTree map(0.2, numberedClasses(K));
+  SemanticOcTree map(0.2, numberedClasses(kPathClasses));
   map.setAbstraction(options);
   InsertionOptions insertion;
   insertion.maxRange = 9;
-  for (const PosedCloud& s : scansOfSmallPlace(3, 2000, K, 5))
+  for (const PosedCloud& s : scansOfSmallPlace(3, 2000, kPathClasses, 5))
     map.insert(s.cloud, s.T_map_sensor, insertion);
   return map;
 }
@@ -94,7 +94,7 @@ TEST(PathInformation, isToldNodeByNodeToo) {
 
 TEST(PathInformation, isNoneWhereNothingIsKnownOrCounts) {
   const AbstractionOptions options = optionsWith(0.8, AbstractionOptions::Frame::Free);
-  SemanticOcTree empty(0.2, numberedClasses(K));
+  SemanticOcTree empty(0.2, numberedClasses(kPathClasses));
   empty.setAbstraction(options);
   EXPECT_TRUE(Abstraction(empty).pathInformation({1, 1, 1}).added.empty());
   SemanticOcTree map = smallMap(options);

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "PlainMap.h"
 #include "RandomScans.h"
 
@@ -7,8 +9,8 @@ using namespace semantic_octree;
 
 namespace {
 
-constexpr double kResolution = 0.25;
-constexpr int K = 5;
+constexpr double kQueryResolution = 0.25;
+constexpr int kQueryClasses = 5;
 
 InsertionOptions insertion() {
   InsertionOptions options;
@@ -18,8 +20,8 @@ InsertionOptions insertion() {
 
 /** The same scans in a pruned tree, an unpruned one and a plain map. */
 struct ThreeMaps {
-  SemanticOcTree pruned{kResolution, numberedClasses(K)}, unpruned = pruned;
-  PlainMap plain{kResolution, K};
+  SemanticOcTree pruned{kQueryResolution, numberedClasses(kQueryClasses)}, unpruned = pruned;
+  PlainMap plain{kQueryResolution, kQueryClasses};
 
   explicit ThreeMaps(unsigned seed) {
     unpruned.setPruning(false);
@@ -124,8 +126,8 @@ TEST(Queries, tellTheStateOfEveryVoxel) {
       EXPECT_EQ(state.likeliestClass, kNoClass);
       continue;
     }
-    std::vector<double> p(K + 1);
-    voxel.record->distribution(K, p.data());
+    std::vector<double> p(kQueryClasses + 1);
+    voxel.record->distribution(kQueryClasses, p.data());
     const auto best = std::max_element(p.begin() + 1, p.end());
     EXPECT_EQ(state.likeliestClass, best - p.begin());
     EXPECT_EQ(state.probability, *best);
@@ -155,12 +157,13 @@ TEST(Queries, ofAnInnerNodeMixItsKnownLeavesByVolumeAndTakeTheHighestOccupancy) 
         cells;  // sum of distributions, maximum
     const int shift = static_cast<int>(16 - depth);
     for (const auto& [id, voxel] : plain.voxels()) {
-      auto& [sum, highest] = cells
-                                 .emplace(VoxelId{id[0] >> shift, id[1] >> shift, id[2] >> shift},
-                                          std::make_pair(std::vector<double>(K + 1), -HUGE_VALF))
-                                 .first->second;
+      auto& [sum, highest] =
+          cells
+              .emplace(VoxelId{id[0] >> shift, id[1] >> shift, id[2] >> shift},
+                       std::make_pair(std::vector<double>(kQueryClasses + 1), -HUGE_VALF))
+              .first->second;
       const auto p = tree.distribution(*tree.search(keyOf(id)));
-      for (int k = 0; k <= K; ++k) sum[k] += p[k];
+      for (int k = 0; k <= kQueryClasses; ++k) sum[k] += p[k];
       highest = std::max(highest, voxel.value);
     }
     for (const auto& [cell, expected] : cells) {
@@ -171,7 +174,7 @@ TEST(Queries, ofAnInnerNodeMixItsKnownLeavesByVolumeAndTakeTheHighestOccupancy) 
       const std::vector<double> p = tree.distribution(*node);
       double total = 0;
       for (const double x : expected.first) total += x;
-      for (int k = 0; k <= K; ++k) EXPECT_NEAR(p[k], expected.first[k] / total, 1e-9);
+      for (int k = 0; k <= kQueryClasses; ++k) EXPECT_NEAR(p[k], expected.first[k] / total, 1e-9);
     }
   }
 }

@@ -1,6 +1,8 @@
 // What single scans do that can be told by hand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "PlainMap.h"
 #include "RandomScans.h"
 
@@ -8,7 +10,7 @@ using namespace semantic_octree;
 
 namespace {
 
-constexpr double kResolution = 0.2;
+constexpr double kScanResolution = 0.2;
 
 }  // namespace
 
@@ -31,7 +33,7 @@ TEST(SingleScans, namesTheMajorityOfLabelsAndTheLowestIdOnATie) {
 TEST(SingleScans, inventsNoClass) {
   // Voxels with points of classes 3 and 200: nothing in between may come out.
   std::mt19937 random(5);
-  SemanticOcTree tree(kResolution, numberedClasses(254));
+  SemanticOcTree tree(kScanResolution, numberedClasses(254));
   for (int i = 0; i < 10; ++i) {
     PosedCloud scan = randomScan(random);
     for (ClassId& id : scan.cloud.classes) id = id % 2 ? 3 : 200;
@@ -45,8 +47,8 @@ TEST(SingleScans, inventsNoClass) {
 
 TEST(SingleScans, countsAVoxelOnceForEachScanForever) {
   // A voxel seen again exactly n scans later for every n up to ten, and 300 scans in a row.
-  SemanticOcTree tree(kResolution, numberedClasses(2));
-  PlainMap plain(kResolution, 2);
+  SemanticOcTree tree(kScanResolution, numberedClasses(2));
+  PlainMap plain(kScanResolution, 2);
   PosedCloud here, elsewhere;
   here.cloud.points = {{1.1f, 0.1f, 0.1f}, {1.12f, 0.1f, 0.1f}, {3.1f, 0.1f, 0.1f}};
   elsewhere.cloud.points = {{-1.1f, 0.1f, 0.1f}};
@@ -181,7 +183,7 @@ TEST(SingleScans, takesAMillionPoints) {
     scan.cloud.points.push_back(p.normalized() * 10.f);
     scan.cloud.classes.push_back(static_cast<ClassId>(1 + random() % 5));
   }
-  SemanticOcTree tree(kResolution, numberedClasses(5));
+  SemanticOcTree tree(kScanResolution, numberedClasses(5));
   const InsertionReport report = tree.insert(scan.cloud, scan.T_map_sensor);
   EXPECT_EQ(report.points, 1000000u);
   // A sphere of radius 50 voxels, all of it seen.

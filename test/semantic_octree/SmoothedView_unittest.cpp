@@ -2,6 +2,7 @@
 #include <rapidcheck/gtest.h>
 #include <semantic_octree/SmoothedView.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "Voxels.h"
@@ -10,11 +11,11 @@ using namespace semantic_octree;
 
 namespace {
 
-constexpr double kResolution = 0.3;
-constexpr int K = 5;
+constexpr double kViewResolution = 0.3;
+constexpr int kViewClasses = 5;
 
 SemanticOcTree randomMap(unsigned seed, bool pruning = true) {
-  SemanticOcTree map(kResolution, numberedClasses(K));
+  SemanticOcTree map(kViewResolution, numberedClasses(kViewClasses));
   map.setPruning(pruning);
   std::mt19937 random(seed);
   for (int place = 0; place < 3; ++place) {
@@ -37,16 +38,16 @@ std::vector<VoxelId> voxelsIn(const SemanticOcTree& map) {
 std::optional<std::vector<double>> ownLogs(const SemanticOcTree& map, const VoxelId& id) {
   if (map.query(keyOf(id)).likeliestClass == kNoClass) return std::nullopt;
   std::vector<double> logs = map.distribution(*map.search(keyOf(id)));
-  for (int k = 1; k <= K; ++k) logs[k] = std::log(logs[k] / (1 - logs[0]));
+  for (int k = 1; k <= kViewClasses; ++k) logs[k] = std::log(logs[k] / (1 - logs[0]));
   return logs;
 }
 
-/** The sum of the documentation, term by term: K + 1 probabilities; none where no voxel has a
- * label. */
+/** The sum of the documentation, term by term: kViewClasses + 1 probabilities; none where no voxel
+ * has a label. */
 std::optional<std::vector<double>> expectedClasses(const SemanticOcTree& map, const VoxelId& id,
                                                    double weight) {
   const auto own = ownLogs(map, id);
-  std::vector<double> sum = own.value_or(std::vector<double>(K + 1));
+  std::vector<double> sum = own.value_or(std::vector<double>(kViewClasses + 1));
   bool any = own.has_value();
   for (int x = -1; x <= 1; ++x)
     for (int y = -1; y <= 1; ++y)
@@ -54,18 +55,18 @@ std::optional<std::vector<double>> expectedClasses(const SemanticOcTree& map, co
         const int axes = std::abs(x) + std::abs(y) + std::abs(z);
         if (axes == 0 || (own && axes > 1)) continue;
         const auto logs = ownLogs(map, {id[0] + x, id[1] + y, id[2] + z});
-        for (int k = 1; logs && k <= K; ++k)
+        for (int k = 1; logs && k <= kViewClasses; ++k)
           sum[k] += weight / (axes == 1 ? 1 : axes == 2 ? 2 : 4) * (*logs)[k];
         any |= logs.has_value();
       }
   if (!any) return std::nullopt;
   const FilterParameters& f = map.filterParameters();
   const double lowest = *std::max_element(sum.begin() + 1, sum.end()) +
-                        std::log(f.minOccupancy / (1 - f.minOccupancy) / K) -
+                        std::log(f.minOccupancy / (1 - f.minOccupancy) / kViewClasses) -
                         std::log(f.maxProbability / (1 - f.maxProbability));
   double total = 0;
-  for (int k = 1; k <= K; ++k) total += sum[k] = std::exp(std::max(sum[k], lowest));
-  for (int k = 1; k <= K; ++k) sum[k] /= total;
+  for (int k = 1; k <= kViewClasses; ++k) total += sum[k] = std::exp(std::max(sum[k], lowest));
+  for (int k = 1; k <= kViewClasses; ++k) sum[k] /= total;
   return sum;
 }
 
@@ -76,12 +77,12 @@ struct Label {
   int times = 1;
 };
 SemanticOcTree mapOf(const std::vector<Label>& labels) {
-  SemanticOcTree map(kResolution, numberedClasses(K));
+  SemanticOcTree map(kViewResolution, numberedClasses(kViewClasses));
   for (int time = 0;; ++time) {
     LabeledCloud cloud;
     for (const Label& label : labels) {
       if (time >= label.times) continue;
-      cloud.points.push_back(centerOf(label.voxel, kResolution).cast<float>());
+      cloud.points.push_back(centerOf(label.voxel, kViewResolution).cast<float>());
       cloud.classes.push_back(label.id);
     }
     if (cloud.empty()) return map;
@@ -113,7 +114,7 @@ TEST(SmoothedView, addsWhatNeighborsTellAsDocumented) {
         }
         const std::vector<double> p = view.distribution(keyOf(id));
         EXPECT_NEAR(p[0], 1 - own.occupancy, 1e-12);
-        for (int k = 1; k <= K; ++k)
+        for (int k = 1; k <= kViewClasses; ++k)
           ASSERT_NEAR(p[k], own.occupancy * (*expected)[k], 1e-5) << "class " << k;
         EXPECT_EQ(state.probability, p[state.likeliestClass]);
         EXPECT_EQ(state.probability, *std::max_element(p.begin() + 1, p.end()));
@@ -201,7 +202,7 @@ TEST(SmoothedView, answersForVoxelsThatWereNotHit) {
   EXPECT_EQ(state.likeliestClass, 1);
   EXPECT_EQ(state.status, CellState::Status::Unknown);
   EXPECT_EQ(state.occupancy, 0.5);
-  EXPECT_GT(state.probability, 0.5 / K);
+  EXPECT_GT(state.probability, 0.5 / kViewClasses);
   EXPECT_EQ(SmoothedView(map, {0.4, false}).query(keyOf(gap)).likeliestClass, kNoClass);
   EXPECT_EQ(SmoothedView(map).query(keyOf({2, 2, 2})).likeliestClass, 2);
   EXPECT_EQ(SmoothedView(map).query(keyOf({5, 5, 5})).likeliestClass, kNoClass);
@@ -213,12 +214,12 @@ TEST(SmoothedView, isNoSurerThanTheFilterMayBeOfOneVoxel) {
   const SemanticOcTree map = mapOf(labels);
   const std::vector<double> own = map.distribution(*map.search(keyOf({1, 1, 2})));
   const std::vector<double> all = SmoothedView(map, {1.0}).distribution(keyOf({1, 1, 2}));
-  for (int k = 1; k <= K; ++k)
+  for (int k = 1; k <= kViewClasses; ++k)
     EXPECT_NEAR(std::log(all[1] / all[k]), std::log(own[1] / own[k]), 1e-3);  // the grid
 }
 
 TEST(SmoothedView, worksAtTheMapsBorderAndOutside) {
-  SemanticOcTree map(1.0, numberedClasses(K));
+  SemanticOcTree map(1.0, numberedClasses(kViewClasses));
   const auto insertAt = [&map](const Eigen::Vector3d& place, ClassId id) {
     LabeledCloud cloud;
     cloud.points = {{1.5f, 0.f, 0.f}};

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "FilterStreams.h"
 
 using namespace semantic_octree;

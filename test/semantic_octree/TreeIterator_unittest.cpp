@@ -2,19 +2,21 @@
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
 
+#include <algorithm>
+
 #include "Voxels.h"
 
 using namespace semantic_octree;
 
 namespace {
 
-constexpr double kResolution = 0.4;
+constexpr double kVisitedResolution = 0.4;
 
 SemanticOcTree someMap(bool withClasses, bool pruning = true) {
   std::mt19937 random(5);
   RandomScanOptions options;
   options.unlabeledShare = withClasses ? 0.2 : 1;
-  SemanticOcTree map(kResolution, numberedClasses(5));
+  SemanticOcTree map(kVisitedResolution, numberedClasses(5));
   map.setPruning(pruning);
   for (int i = 0; i < 3; ++i) {
     const PosedCloud scan = randomScan(random, options);
@@ -63,14 +65,14 @@ struct Stop {
         isLeaf(isNodeLeaf) {}
   Stop(const SemanticOcTreeNode& node, int cubeDepth, const std::array<int, 3>& first)
       : depth(static_cast<unsigned>(cubeDepth)),
-        size(kResolution * edgeAtDepth(cubeDepth)),
+        size(kVisitedResolution * edgeAtDepth(cubeDepth)),
         value(node.getLogOdds()),
         isLeaf(node.isLeaf()) {
     const int half = edgeAtDepth(cubeDepth) / 2;
     lowest = octomapKey(first[0], first[1], first[2]);
     key = octomapKey(first[0] + half, first[1] + half, first[2] + half);
     const auto center = [&](int axis) {
-      return (first[axis] - kKeyOfOrigin) * kResolution + size / 2;
+      return (first[axis] - kKeyOfOrigin) * kVisitedResolution + size / 2;
     };
     x = center(0), y = center(1), z = center(2);
   }

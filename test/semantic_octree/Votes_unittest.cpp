@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <semantic_octree/ClassFilter.h>
 
+#include <algorithm>
 #include <numeric>
 #include <random>
 

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <ompl/base/samplers/deterministic/HaltonSequence.h>
 
+#include <algorithm>
+
 #include "roadmap/Halton.h"
 
 using namespace semantic_planning;

@@ -1,6 +1,7 @@
 #include <mrpt/graphs/dijkstra.h>
 #include <semantic_planning/roadmap/MrptGraph.h>
 
+#include <algorithm>
 #include <map>
 
 #include "PlannerFixture.h"

@@ -8,9 +8,9 @@
 namespace {
 
 using synthetic_world::Curve;
-using V = Eigen::Vector2d;
+using V2 = Eigen::Vector2d;
 
-const std::vector<V> kRing{{-20, -10}, {25, -14}, {30, 12}, {0, 20}, {-22, 14}};
+const std::vector<V2> kRing{{-20, -10}, {25, -14}, {30, 12}, {0, 20}, {-22, 14}};
 
 TEST(Curve, roundedSquareHasTheLengthOfItsStraightsAndArcs) {
   const Curve curve({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 2, true);
@@ -21,7 +21,7 @@ TEST(Curve, headingIsTheDirectionOfMotionAndHasNoKink) {
   const Curve curve(kRing, 6, true);
   const double h = 1e-5;
   for (double s = 0; s < curve.length(); s += 0.37) {
-    const V moved = (curve.at(s + h) - curve.at(s - h)) / (2 * h);
+    const V2 moved = (curve.at(s + h) - curve.at(s - h)) / (2 * h);
     EXPECT_NEAR(moved.norm(), 1, 1e-5) << s;
     EXPECT_NEAR(moved.x(), std::cos(curve.heading(s)), 1e-4) << s;
     EXPECT_NEAR(moved.y(), std::sin(curve.heading(s)), 1e-4) << s;

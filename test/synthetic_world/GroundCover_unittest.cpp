@@ -7,7 +7,7 @@
 namespace {
 
 using namespace synthetic_world;
-using V = Eigen::Vector2d;
+using V2 = Eigen::Vector2d;
 
 TEST(GroundCover, laterStrokesCoverEarlierOnes) {
   GroundCover cover(20, kGrass);
@@ -31,7 +31,7 @@ TEST(GroundCover, stripAroundACurveIsWhatLiesWithinItsHalfWidth) {
   Random random(3);
   int onRoad = 0;
   for (int i = 0; i < 3000; ++i) {
-    const V p(random.uniform(-20, 20), random.uniform(-20, 20));
+    const V2 p(random.uniform(-20, 20), random.uniform(-20, 20));
     double far = 1e9;
     for (double s = 0; s <= curve.length(); s += 0.02)
       far = std::min(far, (curve.at(s) - p).norm());

@@ -2,6 +2,7 @@
 #include <tree_abstraction/AlphaPath.h>
 #include <tree_abstraction/AlphaSteps.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>

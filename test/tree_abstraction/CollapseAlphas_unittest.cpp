@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <tree_abstraction/AlphaPath.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "PathExamples.h"

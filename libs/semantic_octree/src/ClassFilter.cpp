@@ -1,5 +1,6 @@
 #include <semantic_octree/ClassFilter.h>
 
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 #include <string>

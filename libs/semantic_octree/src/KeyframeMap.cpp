@@ -1,5 +1,6 @@
 #include <semantic_octree/KeyframeMap.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 

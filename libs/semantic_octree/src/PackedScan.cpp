@@ -1,5 +1,7 @@
 #include "PackedScan.h"
 
+#include <algorithm>
+
 #include "Scan.h"
 
 namespace semantic_octree {

@@ -1,5 +1,6 @@
 #include "PartCoder.h"
 
+#include <algorithm>
 #include <map>
 
 #include "PartFormat.h"

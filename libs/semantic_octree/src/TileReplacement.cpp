@@ -1,5 +1,7 @@
 #include "TileReplacement.h"
 
+#include <algorithm>
+
 #include "TreeComparison.h"
 
 namespace semantic_octree {

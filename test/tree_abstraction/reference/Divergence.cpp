@@ -1,5 +1,6 @@
 #include "Divergence.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
