@@ -4,14 +4,14 @@ _mrpt_semantic_octree() {
   local word=$2 before=$3 help values
   COMPREPLY=()
   help=$({ "$1" --help-all || "$1" --help; } 2>/dev/null) || return
-  values=$(sed -n "s/^ *\\(-.,\\)\\?${before}[ ,].*{\\([a-z0-9_,]*\\)}.*/\\2/p" <<<"$help" | head -n 1)
+  values=$(sed -n "s/^ *\\(-., *\\)\\?${before}[ ,].*{\\([a-z0-9_,]*\\)}.*/\\2/p" <<<"$help" | head -n 1)
   if [[ $before == -* && -n $values ]]; then
     mapfile -t COMPREPLY < <(compgen -W "${values//,/ }" -- "$word")
   elif [[ $word == -* ]]; then
-    values=$(grep -oE '^ +-[^ ]*' <<<"$help" | tr ',' ' ')
+    values=$(grep -oE '^ +(-., *)?-[^ ]*' <<<"$help" | tr ',' ' ')
     mapfile -t COMPREPLY < <(compgen -W "$values" -- "$word" | sort -u)
   elif [[ $COMP_CWORD == 1 ]]; then
-    values=$(sed -n '/^Subcommands:/,$s/^\([a-z0-9-]*\)$/\1/p' <<<"$help")
+    values=$(sed -n '/^Subcommands:/I,$s/^\([a-z0-9-]*\)$/\1/p' <<<"$help")
     mapfile -t COMPREPLY < <(compgen -W "$values" -- "$word")
   fi
 }

@@ -7,14 +7,14 @@
 
 #include <stdexcept>
 
-#include "GzipInputStream.h"
+#include "CompressedInputStream.h"
 
 namespace labeled_cloud {
 
 using mrpt::serialization::CSerializable;
 
 RawlogReader::RawlogReader(const std::filesystem::path& file)
-    : m_file(file), m_stream(std::make_unique<GzipInputStream>(file)) {
+    : m_file(file), m_stream(std::make_unique<CompressedInputStream>(file)) {
   registerObservations();
 }
 

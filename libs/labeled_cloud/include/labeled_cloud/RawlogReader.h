@@ -10,7 +10,7 @@
 
 namespace labeled_cloud {
 
-class GzipInputStream;
+class CompressedInputStream;
 
 /** One object of a rawlog: what the robot did, or what it saw. */
 struct RawlogEntry {
@@ -45,7 +45,7 @@ class RawlogReader {
   [[noreturn]] void fail(const std::string& what);
 
   std::filesystem::path m_file;
-  std::unique_ptr<GzipInputStream> m_stream;
+  std::unique_ptr<CompressedInputStream> m_stream;
   std::size_t m_objects = 0;
   bool m_ended = false;
 };
