@@ -9,11 +9,11 @@ using namespace reference;
 
 namespace {
 
-constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const AbstractionWeights kWeights{{relevant("one", 1, {1})}, 0.1};
 
 /** Message with which the search rejects a tree with this one leaf beside a good one. */
-std::string whyRefused(double weight, const std::vector<double>& distribution) {
+std::string rejection(double weight, const std::vector<double>& distribution) {
   VectorTree tree(1);
   const auto root = tree.addInner(VectorTree::kNoParent);
   tree.addLeaf(root, 1.0, {0.5, 0.5});
@@ -26,8 +26,8 @@ std::string whyRefused(double weight, const std::vector<double>& distribution) {
   return "";
 }
 
-void expectRefused(double weight, const std::vector<double>& p, const std::string& word) {
-  const std::string message = whyRefused(weight, p);
+void expectRejected(double weight, const std::vector<double>& p, const std::string& word) {
+  const std::string message = rejection(weight, p);
   EXPECT_NE(message.find("leaf 2"), std::string::npos) << message;
   EXPECT_NE(message.find(word), std::string::npos) << message;
 }
@@ -35,18 +35,18 @@ void expectRefused(double weight, const std::vector<double>& p, const std::strin
 }  // namespace
 
 TEST(BadInput, leavesWithBadWeightsAreNamed) {
-  EXPECT_EQ(whyRefused(0.0, {0.5, 0.5}), "");
-  expectRefused(-1.0, {0.5, 0.5}, "weight is -1");
-  expectRefused(kNoNumber, {0.5, 0.5}, "weight is nan");
-  expectRefused(std::numeric_limits<double>::infinity(), {0.5, 0.5}, "weight is inf");
+  EXPECT_EQ(rejection(0.0, {0.5, 0.5}), "");
+  expectRejected(-1.0, {0.5, 0.5}, "weight is -1");
+  expectRejected(kNan, {0.5, 0.5}, "weight is nan");
+  expectRejected(std::numeric_limits<double>::infinity(), {0.5, 0.5}, "weight is inf");
 }
 
 TEST(BadInput, leavesWithBadDistributionsAreNamed) {
-  expectRefused(1.0, {1.0}, "distribution of 1 classes, expected 2");
-  expectRefused(1.0, {0.5, 0.25, 0.25}, "distribution of 3 classes, expected 2");
-  expectRefused(1.0, {1.5, -0.5}, "class 1 is -0.5");
-  expectRefused(1.0, {kNoNumber, 1.0}, "class 0 is nan");
-  expectRefused(1.0, {0.5, 0.4}, "sum to 0.9");
+  expectRejected(1.0, {1.0}, "distribution of 1 classes, expected 2");
+  expectRejected(1.0, {0.5, 0.25, 0.25}, "distribution of 3 classes, expected 2");
+  expectRejected(1.0, {1.5, -0.5}, "class 1 is -0.5");
+  expectRejected(1.0, {kNan, 1.0}, "class 0 is nan");
+  expectRejected(1.0, {0.5, 0.4}, "sum to 0.9");
 }
 
 TEST(BadInput, aTreeWithoutWeightHasNoOptimum) {
@@ -60,8 +60,7 @@ TEST(BadInput, badWeightsAreRejectedBeforeTheSearch) {
   VectorTree tree(1);
   tree.addLeaf(VectorTree::kNoParent, 1.0, {0.5, 0.5});
   EXPECT_THROW(findOptimalTree(tree, {{relevant("two", 1, {2})}, 0.1}), std::invalid_argument);
-  EXPECT_THROW(findOptimalTree(tree, {{relevant("one", 1, {1})}, kNoNumber}),
-               std::invalid_argument);
+  EXPECT_THROW(findOptimalTree(tree, {{relevant("one", 1, {1})}, kNan}), std::invalid_argument);
 }
 
 TEST(BadInput, vectorTreesRejectParentsThatAreNotInnerNodes) {

@@ -40,7 +40,7 @@ struct Tally {
 };
 
 /** Trees of this shape that brute force can manage, one a seed. */
-Tally compareOnShape(const Shape& shape, int numSeeds) {
+Tally checkShape(const Shape& shape, int numSeeds) {
   Tally tally;
   for (int seed = 1; seed <= numSeeds; ++seed) {
     SCOPED_TRACE(seed);
@@ -60,7 +60,7 @@ Tally compareOnShape(const Shape& shape, int numSeeds) {
 }  // namespace
 
 TEST(GTreeSearch, agreesWithBruteForceOnFullQuadtreesOfDepthThree) {
-  const Tally tally = compareOnShape({}, 25);
+  const Tally tally = checkShape({}, 25);
   EXPECT_EQ(tally.trees, 25);
   EXPECT_GE(tally.expandedPartly, 8);
 }
@@ -70,7 +70,7 @@ TEST(GTreeSearch, agreesWithBruteForceOnQuadtreesFullOfTies) {
   shape.splitProbability = 0.8;
   shape.numClasses = 1;
   shape.tieRich = true;
-  const Tally tally = compareOnShape(shape, 300);
+  const Tally tally = checkShape(shape, 300);
   EXPECT_EQ(tally.trees, 300);
   EXPECT_GE(tally.withTies, 40);
 }
@@ -79,7 +79,7 @@ TEST(GTreeSearch, agreesWithBruteForceOnSparseOctreesOfDepthTwo) {
   Shape shape{2, 8, 8, 0.6};
   shape.missingProbability = 0.4;
   shape.numClasses = 3;
-  const Tally tally = compareOnShape(shape, 200);
+  const Tally tally = checkShape(shape, 200);
   EXPECT_EQ(tally.trees, 200);
   EXPECT_GE(tally.expandedPartly, 20);
 }
@@ -87,7 +87,7 @@ TEST(GTreeSearch, agreesWithBruteForceOnSparseOctreesOfDepthTwo) {
 TEST(GTreeSearch, agreesWithBruteForceOnSparseOctreesOfDepthThree) {
   Shape shape{3, 8, 8, 0.3};
   shape.missingProbability = 0.3;
-  const Tally tally = compareOnShape(shape, 150);
+  const Tally tally = checkShape(shape, 150);
   EXPECT_GE(tally.trees, 80);
   EXPECT_GE(tally.expandedPartly, 20);
 }
@@ -97,21 +97,21 @@ TEST(GTreeSearch, agreesWithBruteForceOnOctreesFullOfTiesWithMissingChildren) {
   shape.missingProbability = 0.2;
   shape.numClasses = 1;
   shape.tieRich = true;
-  EXPECT_GE(compareOnShape(shape, 150).withTies, 5);
+  EXPECT_GE(checkShape(shape, 150).withTies, 5);
 }
 
 TEST(GTreeSearch, agreesWithBruteForceOnTernaryTrees) {
-  EXPECT_GE(compareOnShape({3, 3, 3, 0.9}, 60).expandedPartly, 20);
+  EXPECT_GE(checkShape({3, 3, 3, 0.9}, 60).expandedPartly, 20);
 }
 
 TEST(GTreeSearch, agreesWithBruteForceOnTreesOfMixedArity) {
   Shape shape{4, 1, 4, 0.6};
   shape.missingProbability = 0.2;
-  EXPECT_GE(compareOnShape(shape, 120).expandedPartly, 30);
+  EXPECT_GE(checkShape(shape, 120).expandedPartly, 30);
 }
 
 TEST(GTreeSearch, agreesWithBruteForceOnForestsWhoseFrameIsFree) {
   Shape shape{2, 4, 4, 0.7};
   shape.numRoots = 3;
-  EXPECT_GE(compareOnShape(shape, 80).expandedPartly, 20);
+  EXPECT_GE(checkShape(shape, 80).expandedPartly, 20);
 }

@@ -76,7 +76,7 @@ std::vector<Node> sortedOriginals(const std::vector<Node>& nodes, const Copier& 
   return originals;
 }
 
-std::vector<Node> inOrder(std::vector<Node> nodes) {
+std::vector<Node> sorted(std::vector<Node> nodes) {
   std::sort(nodes.begin(), nodes.end());
   return nodes;
 }
@@ -114,7 +114,7 @@ TEST(Invariance, theUnitOfWeightDoesNotMatter) {
     const auto heavy =
         copier.copy([&](Copier& c, Node n, Node inner) { scaleLeaves(scaleLeaves, c, n, inner); });
     const auto found = findOptimalTree(tree, weights), again = findOptimalTree(heavy, weights);
-    EXPECT_EQ(sortedOriginals(again.interior(), copier), inOrder(found.interior()));
+    EXPECT_EQ(sortedOriginals(again.interior(), copier), sorted(found.interior()));
     EXPECT_NEAR(again.objective, found.objective, 1e-13);
   }
 }
@@ -134,7 +134,7 @@ TEST(Invariance, theOrderOfChildrenDoesNotMatter) {
     const auto permuted =
         copier.copy([&](Copier& c, Node n, Node inner) { reverse(reverse, c, n, inner); });
     const auto found = findOptimalTree(tree, weights), again = findOptimalTree(permuted, weights);
-    EXPECT_EQ(sortedOriginals(again.interior(), copier), inOrder(found.interior()));
+    EXPECT_EQ(sortedOriginals(again.interior(), copier), sorted(found.interior()));
     EXPECT_NEAR(again.objective, found.objective, 1e-13);
   }
 }
@@ -158,7 +158,7 @@ TEST(Invariance, mergingEqualLeavesBeforehandChangesNothingBitForBit) {
     for (const auto form : {DivergenceForm::Stable, DivergenceForm::Fast}) {
       const auto found = findOptimalTree(tree, weights, {form});
       const auto again = findOptimalTree(unpruned, weights, {form});
-      EXPECT_EQ(sortedOriginals(again.interior(), copier), inOrder(found.interior()));
+      EXPECT_EQ(sortedOriginals(again.interior(), copier), sorted(found.interior()));
       EXPECT_EQ(again.objective, found.objective);
       for (std::size_t t = 0; t < weights.terms.size(); ++t) {
         EXPECT_NEAR(again.full.information[t], found.full.information[t], 1e-14);
