@@ -80,7 +80,10 @@ TEST(UsageErrors, offerTheValueThatWasMeant) {
   EXPECT_TRUE(contains(usageErrorOf("synth-rawlog -o a.rawlog --scene vilage"), "'village'?"));
   EXPECT_TRUE(contains(usageErrorOf("synth-rawlog -o a.rawlog --sensor lidr"), "'lidar'?"));
   EXPECT_TRUE(contains(usageErrorOf("insertion-benchmark --rays al x"), "'all'?"));
-  EXPECT_TRUE(contains(usageErrorOf("semantic-map-plan --graph compresed"), "'compressed'?"));
+  EXPECT_TRUE(
+      contains(usageErrorOf("semantic-map-plan m --start=0,0,0 --goal=1,1,0 --classes c -o p "
+                            "--graph compresed"),
+               "'compressed'?"));
   EXPECT_TRUE(contains(usageErrorOf("dataset2rawlog semantic-kiti x"), "'semantic-kitti'?"));
 }
 

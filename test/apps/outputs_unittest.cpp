@@ -1,6 +1,7 @@
 // Nothing that a user has is written over unless it is asked for, and no input ever is.
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "BuiltPrograms.h"
 #include "ExportFixture.h"
@@ -170,9 +171,8 @@ TEST(Programs, thatWriteNameTheirOutputAlike) {
   for (const std::string& program : kWriters) {
     if (!missingLibraryOf(program).empty()) continue;
     const std::string help = runProgram(program, {"--help"}).output;
-    EXPECT_TRUE(contains(help, "-o,--output")) << program;
-    EXPECT_TRUE(contains(help, "-f,--overwrite")) << program;
-    EXPECT_TRUE(contains(help, "-q,--quiet")) << program;
+    for (const std::string option : {"-o, *--output", "-f, *--overwrite", "-q, *--quiet"})
+      EXPECT_TRUE(std::regex_search(help, std::regex(option))) << program << ' ' << option;
   }
 }
 
