@@ -180,6 +180,13 @@ TEST(RawlogReader, alteredBytesAreNoticed) {
     }
 }
 
+TEST(RawlogReader, aSumThatIsWrongIsSaid) {
+  const TemporaryFolder folder;
+  std::string altered = zstd(piecesOf(folder));
+  altered.back() ^= 1;
+  EXPECT_TRUE(contains(errorReading(folder.write("bad.rawlog", altered)), "checksum"));
+}
+
 TEST(RawlogReader, somethingElseThanARawlogIsRefusedWithoutACallStack) {
   const TemporaryFolder folder;
   const auto text = folder.write("text.rawlog", "This is no rawlog, but a text of some length.");

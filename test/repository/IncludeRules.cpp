@@ -113,3 +113,20 @@ std::vector<std::string> forbiddenIncludes(const fs::path& libs, const IncludeTa
   }
   return findings;
 }
+
+std::vector<std::string> algorithmsWithoutTheirHeader(const fs::path& root) {
+  static const std::regex call(
+      R"(std::((stable_|partial_)?sort|nth_element|find(_if(_not)?)?|(all|any|none)_of|count(_if)?)"
+      R"(|copy(_if|_n)?|fill(_n)?|shuffle|reverse|rotate|unique|remove_if|(lower|upper)_bound)"
+      R"(|equal(_range)?|binary_search|(min|max|minmax)_element|minmax|clamp|adjacent_find|search)"
+      R"(|includes|set_(union|difference|intersection)|next_permutation|(push|pop|make)_heap)\()");
+  std::vector<std::string> findings;
+  std::set<fs::path> known;  // files that include it, or were found already
+  for (const SourceLine& line : linesOfSources(root)) {
+    std::smatch match;
+    if (line.text == "#include <algorithm>") known.insert(line.file);
+    if (!std::regex_search(line.text, match, call) || !known.insert(line.file).second) continue;
+    findings.push_back(line.where(root) + ": std::" + match[1].str() + " needs <algorithm>");
+  }
+  return findings;
+}

@@ -16,3 +16,7 @@ const IncludeTable& includeTable();
  * "library/src/File.cpp:12: what is wrong". A library without a row in the table is one, too. */
 std::vector<std::string> forbiddenIncludes(const std::filesystem::path& libs,
                                            const IncludeTable& table);
+
+/** The first call in each C++ file below a folder of what only <algorithm> has, if the file does
+ * not include that: which other headers bring it along changes with the compiler. */
+std::vector<std::string> algorithmsWithoutTheirHeader(const std::filesystem::path& root);

@@ -107,6 +107,19 @@ TEST_F(Repository, aLibraryWithoutARowIsFound) {
             Findings{"fresh/src/File.cpp:1: fresh has no row in the table of includes"});
 }
 
+TEST_F(Repository, whoeverSortsOrFindsIncludesAlgorithm) {
+  for (const char* folder : {"libs", "apps", "test", "doc"})
+    EXPECT_EQ(algorithmsWithoutTheirHeader(root / folder), Findings());
+  write("Good.cpp",
+        "#include <algorithm>\nvoid f(V& v) { std::"
+        "sort(v.begin(), v.end()); }\n");
+  write("Bad.cpp",
+        "#include <vector>\nint n = text.find(x);\nauto i = std::"
+        "find_if(a, b, c);\n");
+  EXPECT_EQ(algorithmsWithoutTheirHeader(scratch),
+            Findings{"Bad.cpp:3: std::find_if needs <algorithm>"});
+}
+
 TEST_F(Repository, theTableOfIncludesIsThatOfTheDocument) {
   static const std::regex row(R"(^\| `([a-z_/]+)` \| ([\w., /-]+) \|$)"), name(R"([\w./-]+)");
   const std::string document = textOf(root / "doc/development.md");

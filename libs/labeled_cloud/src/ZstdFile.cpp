@@ -1,5 +1,6 @@
 #include "ZstdFile.h"
 
+#include <new>
 #include <stdexcept>
 #include <string_view>
 
