@@ -34,6 +34,12 @@ class TurnSearchTest : public PathTest {
     }
     return meters;
   }
+  static double metersOf(ClassId id, const std::vector<PathPoint>& path) {
+    double meters = 0;
+    for (std::size_t i = 1; i < path.size(); ++i)
+      if (path[i].classId == id) meters += path[i].arcLength - path[i - 1].arcLength;
+    return meters;
+  }
 };
 
 }  // namespace
@@ -50,6 +56,18 @@ TEST_F(TurnSearchTest, whereAVehicleTurnsOverGrassAWayToTurnOnTheRoadIsFound) {
     const auto& other = atBegin ? withBetterEnd : withBetterBegin;
     EXPECT_FALSE(other(before, checker(), kTolerance)) << "nothing is wrong at the other end";
   }
+}
+
+TEST_F(TurnSearchTest, aLittleOfAClassThatIsWorseDoesNotHideWhatThereIsOfABetterOne) {
+  world.floor(2, 2.2, kHalfWidth, 4, PaintedWorld::Mud);
+  const auto before = turnAtBegin();
+  const double mud = metersOf(PaintedWorld::Mud, before);
+  ASSERT_GT(mud, 0.1);
+  ASSERT_LT(mud, kTolerance + 0.1) << "a path may have as much";
+  const auto after = withBetterBegin(before, checker(), kTolerance);
+  ASSERT_TRUE(after);
+  EXPECT_LE(metersOnGrass(*after), kTolerance);
+  EXPECT_LE(metersOf(PaintedWorld::Mud, *after), mud);
 }
 
 TEST_F(TurnSearchTest, whatHasNoMoreThanItMustIsLeftAsItIs) {

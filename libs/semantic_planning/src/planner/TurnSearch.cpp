@@ -24,6 +24,9 @@ double radiusFor(const EdgeChecker& checker) {
   return std::max(kLeast, kInTurningRadii * checker.reedsShepp().turningRadius());
 }
 
+/** How far along the path places lie that a way may lead to. */
+double reachFor(double radius) { return 1.5 * radius; }
+
 double stepFor(const EdgeChecker& checker) {
   constexpr double kVoxels = 2, kInTurningRadii = 0.2;
   return std::max(kVoxels * checker.ground().voxelSize(),
@@ -100,7 +103,7 @@ void TurnSearch::sumUp() {
 void TurnSearch::aim() {
   constexpr double kSpacing = 0.5, kMargin = 0.3;  // m
   double last = 0;
-  for (std::size_t i = 1; i < m_path.size() && m_path[i].arcLength < 1.5 * m_radius; ++i) {
+  for (std::size_t i = 1; i < m_path.size() && m_path[i].arcLength < reachFor(m_radius); ++i) {
     const PathPoint& p = m_path[i];
     if (std::hypot(p.x - m_path[0].x, p.y - m_path[0].y) > m_radius - kMargin) continue;
     m_field.add(poseAt(i), m_toGo[i]);
@@ -236,28 +239,45 @@ namespace {
 
 constexpr double kSlack = 0.05;  // m, beyond the tolerance
 
-/** The worst rank in which the path has more than it might, if that is more than a tolerance. */
-std::optional<Rank> rankToGain(const std::vector<PathPoint>& path, bool isReversed,
-                               const EdgeChecker& checker, double tolerance) {
-  const WayPricing inOrder = WayPricing::inOrder(checker.order());
-  const Length excess = TurnSearch(path, isReversed, checker, inOrder).excess();
-  for (Rank rank = checker.order().ranks() - 1; rank > 0; --rank) {
-    const Length ofMeter = inOrder.ofRank(rank, colored_graph::kLengthUnitsPerMeter);
-    const double more = static_cast<double>(excess) / static_cast<double>(ofMeter);
-    if (more > kSlack) return more > tolerance + 2 * kSlack ? std::optional(rank) : std::nullopt;
-  }
-  return std::nullopt;
+/** Where one rank counts, and others by whether they are better or worse. */
+WayPricing pricingFor(Rank rank, Length ofBetter, Length ofRank, Length ofWorse,
+                      const colored_graph::ClassOrder& order) {
+  std::vector<Length> weights{0};
+  for (Rank r = 1; r < order.ranks(); ++r)
+    weights.push_back(r < rank ? ofBetter : r == rank ? ofRank : ofWorse);
+  return {order, weights};
 }
 
+/** Meters of a rank and of those that are worse, as far as they may be avoided. */
+double metersOf(Rank rank, const std::vector<PathPoint>& path, const EdgeChecker& checker) {
+  double meters = 0;
+  const double reach = reachFor(radiusFor(checker));
+  for (std::size_t i = 1; i < path.size() && path[i].arcLength < reach; ++i) {
+    const Rank own = checker.order().rank(path[i].classId);
+    if (own >= rank && own != kForbidden) meters += path[i].arcLength - path[i - 1].arcLength;
+  }
+  return meters;
+}
+
+/** Whether a path has more of a rank, together with those that are worse, than it might, by more
+ * than a tolerance. */
+bool hasTooMuch(Rank rank, const std::vector<PathPoint>& path, bool isReversed,
+                const EdgeChecker& checker, double tolerance) {
+  constexpr Length kMuch = 1 << 20;  // beside the price of driving
+  const double most = tolerance + 2 * kSlack;
+  if (metersOf(rank, path, checker) <= most) return false;
+  const WayPricing pricing = pricingFor(rank, 0, kMuch, kMuch, checker.order());
+  return TurnSearch(path, isReversed, checker, pricing).excess() > kMuch * lengthDown(most);
+}
+
+/** The worst of the ranks of which the path has too much is the one that it should have less of. */
 std::optional<std::vector<PathPoint>> better(const std::vector<PathPoint>& path, bool isReversed,
                                              const EdgeChecker& checker, double tolerance) {
   constexpr Length kWeight = 36, kOfWorse = 36 * kWeight, kOfBetter = 6;
-  const auto rank = rankToGain(path, isReversed, checker, tolerance);
-  if (!rank) return std::nullopt;
-  std::vector<Length> weights{0};
-  for (Rank r = 1; r < checker.order().ranks(); ++r)
-    weights.push_back(r < *rank ? kOfBetter : r == *rank ? kWeight : kOfWorse);
-  const WayPricing pricing(checker.order(), weights);
+  Rank rank = checker.order().ranks() - 1;
+  while (rank > 0 && !hasTooMuch(rank, path, isReversed, checker, tolerance)) --rank;
+  if (rank == 0) return std::nullopt;
+  const WayPricing pricing = pricingFor(rank, kOfBetter, kWeight, kOfWorse, checker.order());
   return TurnSearch(path, isReversed, checker, pricing)
       .run(kWeight * lengthDown(tolerance + kSlack));
 }

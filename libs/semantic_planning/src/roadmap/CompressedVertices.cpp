@@ -61,12 +61,10 @@ double priorityOf(const Cell& cell, const RoadmapOptions& options) {
 }  // namespace
 
 double dither(unsigned x, unsigned y, unsigned seed) {
-  double value = 0, weight = 0.5;
-  for (unsigned bit = 0; bit < 16; ++bit, weight /= 4) {
-    value += weight * (((x ^ y) >> bit) & 1);
-    value += weight / 2 * ((y >> bit) & 1);
-  }
-  value += unitHash(seed, 1, 2);
+  std::uint32_t bits = 0;  // of both by turns, lowest first
+  for (unsigned bit = 0; bit < 16; ++bit)
+    bits = bits << 2 | ((x ^ y) >> bit & 1) << 1 | (y >> bit & 1);
+  const double value = bits * 0x1p-32 + unitHash(seed, 1, 2);
   return value - std::floor(value);
 }
 

@@ -87,14 +87,10 @@ class EdgeChecker::Sweep {
   bool addClasses(const Placement& placed, double length, Lengths& lengths) {
     if (m_checker.m_reading.kind == ClassReading::Kind::Expected)
       return m_checker.addExpected(placed, m_z, length, lengths);
-    bool isSame = m_worst && m_worstZ == m_z;
-    for (std::size_t i = 0; i < m_checker.m_wheels.size(); ++i) {
-      const auto [x, y] = placed(0, m_checker.m_wheels[i]);
-      const Column column = m_checker.m_ground.columnAt(x, y);
-      isSame = isSame && column == m_wheels[i];
-      m_wheels[i] = column;
-    }
-    if (!isSame) m_worst = m_checker.worstUnderWheels(placed, m_z);
+    const WheelColumns wheels = m_checker.wheelColumns(placed);
+    if (!m_worst || m_worstZ != m_z || wheels != m_wheels)
+      m_worst = m_checker.worstUnder(wheels, m_z);
+    m_wheels = wheels;
     m_worstZ = m_z;
     if (m_worst) lengths[*m_worst] += length;
     return m_worst.has_value();
@@ -139,7 +135,7 @@ class EdgeChecker::Sweep {
   int m_z;
   Column m_column;
   std::vector<At>& m_discs;
-  std::array<Column, 2> m_wheels;
+  WheelColumns m_wheels;
   std::optional<ClassId> m_worst;  ///< under the wheels, when they were there and at this height:
   int m_worstZ = 0;
 };
@@ -196,19 +192,26 @@ Fit EdgeChecker::fit(const GroundPose& pose) const {
   return isFree ? Fit::Free : Fit::Blocked;
 }
 
+inline EdgeChecker::WheelColumns EdgeChecker::wheelColumns(const Placement& placed) const {
+  WheelColumns columns;
+  for (std::size_t i = 0; i < m_wheels.size(); ++i) {
+    const auto [x, y] = placed(0, m_wheels[i]);
+    columns[i] = m_ground.columnAt(x, y);
+  }
+  return columns;
+}
+
 template <class F>
-bool EdgeChecker::forWheels(const Placement& placed, int z, F f) const {
-  for (const double y : m_wheels) {
-    const auto [wx, wy] = placed(0, y);
-    const Column c = m_ground.columnAt(wx, wy);
-    const Surface* s = near(c, z, m_wheelTolerance);
+bool EdgeChecker::forWheels(const WheelColumns& columns, int z, F f) const {
+  for (std::size_t i = 0; i < m_wheels.size(); ++i) {
+    const Surface* s = near(columns[i], z, m_wheelTolerance);
     if (!s) return false;
-    f(*s, c);
+    f(*s, columns[i]);
   }
   return true;
 }
 
-ClassId EdgeChecker::read(Column c, const Surface& s) const {
+inline ClassId EdgeChecker::read(Column c, const Surface& s) const {
   if (m_reading.kind != ClassReading::Kind::Cautious || s.filled) return s.classId;
   const auto node = m_ground.map().search(
       {static_cast<std::uint16_t>(c.x), static_cast<std::uint16_t>(c.y), s.z});
@@ -221,9 +224,9 @@ ClassId EdgeChecker::read(Column c, const Surface& s) const {
   return worst;
 }
 
-std::optional<ClassId> EdgeChecker::worstUnderWheels(const Placement& placed, int z) const {
+std::optional<ClassId> EdgeChecker::worstUnder(const WheelColumns& wheels, int z) const {
   std::optional<ClassId> worst;
-  const bool grounded = forWheels(placed, z, [&](const Surface& s, Column c) {
+  const bool grounded = forWheels(wheels, z, [&](const Surface& s, Column c) {
     const ClassId id = read(c, s);
     if (!worst || m_order.rank(id) > m_order.rank(*worst)) worst = id;
   });
@@ -231,7 +234,7 @@ std::optional<ClassId> EdgeChecker::worstUnderWheels(const Placement& placed, in
 }
 
 ClassId EdgeChecker::classAt(const GroundPose& pose) const {
-  return worstUnderWheels(Placement(pose.pose), pose.z).value_or(semantic_types::kNoClass);
+  return worstUnder(wheelColumns(Placement(pose.pose)), pose.z).value_or(semantic_types::kNoClass);
 }
 
 /** Spreads a length over the classes that a voxel may have. */
@@ -256,7 +259,7 @@ void EdgeChecker::addDistribution(Column c, const Surface& s, double length,
 
 bool EdgeChecker::addExpected(const Placement& placed, int z, double length,
                               Lengths& lengths) const {
-  return forWheels(placed, z, [&](const Surface& s, Column c) {
+  return forWheels(wheelColumns(placed), z, [&](const Surface& s, Column c) {
     addDistribution(c, s, length / static_cast<double>(m_wheels.size()), lengths);
   });
 }

@@ -7,6 +7,7 @@
 #include <semantic_planning/vehicle/PathPoint.h>
 #include <semantic_planning/vehicle/ReedsShepp.h>
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -89,13 +90,16 @@ class EdgeChecker {
   const Surface* near(Column c, int z, int tolerance) const;
   class Sweep;
   bool isFree(const CheckedDisc& disc, Column c, int z) const;
-  /** f(surface, its column) for the ground under each wheel track; false if there is none. */
+  /** Under each wheel track; there are one or two. */
+  using WheelColumns = std::array<Column, 2>;
+  WheelColumns wheelColumns(const Placement& placed) const;
+  /** f(surface, its column) for the ground in each of them; false if there is none. */
   template <class F>
-  bool forWheels(const Placement& placed, int z, F f) const;
+  bool forWheels(const WheelColumns& columns, int z, F f) const;
   bool addExpected(const Placement& placed, int z, double length, Lengths& lengths) const;
   void addDistribution(Column c, const Surface& s, double length, Lengths& lengths) const;
   ClassId read(Column c, const Surface& s) const;
-  std::optional<ClassId> worstUnderWheels(const Placement& placed, int z) const;
+  std::optional<ClassId> worstUnder(const WheelColumns& wheels, int z) const;
 
   const Ground& m_ground;
   const colored_graph::ClassOrder m_order;
