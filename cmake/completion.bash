@@ -4,8 +4,11 @@ _mrpt_semantic_octree() {
   local word=$2 before=$3 help values
   COMPREPLY=()
   help=$({ "$1" --help-all || "$1" --help; } 2>/dev/null) || return
-  values=$(sed -n "s/^ *\\(-., *\\)\\?${before}[ ,].*{\\([a-z0-9_,]*\\)}.*/\\2/p" <<<"$help" | head -n 1)
-  if [[ $before == -* && -n $values ]]; then
+  values=
+  if [[ $before =~ ^--?[a-z0-9-]+$ ]]; then # else it may be a file's name, and mean something to sed
+    values=$(sed -n "s/^ *\\(-., *\\)\\?${before}[ ,].*{\\([a-z0-9_,]*\\)}.*/\\2/p" <<<"$help" | head -n 1)
+  fi
+  if [[ -n $values ]]; then
     mapfile -t COMPREPLY < <(compgen -W "${values//,/ }" -- "$word")
   elif [[ $word == -* ]]; then
     values=$(grep -oE '^ +(-., *)?-[^ ]*' <<<"$help" | tr ',' ' ')

@@ -1,6 +1,7 @@
 #include "Application.h"
 
 #include <strict_files/ErrorMessage.h>
+#include <strict_files/Words.h>
 
 #include <filesystem>
 #include <iostream>
@@ -16,7 +17,7 @@ constexpr int kUsage = 64;  // EX_USAGE of sysexits.h
 int parseAndRun(CLI::App& app, int argc, char** argv, const std::function<int()>& program,
                 const SignalWatch& watch) {
   const auto complain = [&app](const std::string& message) {
-    std::cerr << app.get_name() << ": " << message << std::endl;
+    std::cerr << app.get_name() << ": " << strict_files::printable(message) << std::endl;
   };
   try {
     app.parse(argc, argv);
@@ -24,7 +25,8 @@ int parseAndRun(CLI::App& app, int argc, char** argv, const std::function<int()>
     return watch.stoppedBy() != 0 ? 128 + watch.stoppedBy() : status;
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    complain(problemOf(app, e) + "\nSee " + app.get_name() + " --help");
+    complain(problemOf(app, e));
+    std::cerr << "See " << app.get_name() << " --help" << std::endl;
     return kUsage;
   } catch (const std::exception& e) {
     complain(strict_files::messageOf(e));

@@ -1,14 +1,54 @@
 #include "StandardOutput.h"
 
 #include <fcntl.h>
+#include <strict_files/Words.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <iostream>
+#include <mutex>
 
 namespace {
 
 bool quiet = false, verbose = false;
+
+/** Stands before a stream's own buffer, and passes on what a terminal only shows. */
+class ShownBuffer : public std::streambuf {
+ public:
+  explicit ShownBuffer(std::ostream& stream) : m_target(stream.rdbuf(this)) {}
+
+ protected:
+  int_type overflow(int_type c) override {
+    const char letter = traits_type::to_char_type(c);
+    if (traits_type::eq_int_type(c, traits_type::eof())) return traits_type::not_eof(c);
+    return xsputn(&letter, 1) == 1 ? c : traits_type::eof();
+  }
+  std::streamsize xsputn(const char* text, std::streamsize size) override {
+    const std::lock_guard lock(m_mutex);
+    for (std::streamsize i = 0; i < size; ++i) {
+      const bool ends = text[i] == '\n' || text[i] == '\t';
+      if (!ends) m_part += text[i];
+      if (ends && !(pass() && m_target->sputc(text[i]) == text[i])) return i;
+    }
+    return size;
+  }
+  int sync() override {
+    const std::lock_guard lock(m_mutex);
+    return pass() ? m_target->pubsync() : -1;
+  }
+
+ private:
+  bool pass() {
+    const std::string shown = strict_files::printable(m_part);
+    m_part.clear();
+    const auto size = static_cast<std::streamsize>(shown.size());
+    return m_target->sputn(shown.data(), size) == size;
+  }
+
+  std::streambuf* const m_target;
+  std::mutex m_mutex;  ///< threads may print, too
+  std::string m_part;  ///< letters that came since the last line, tab or flush
+};
 
 std::ostream& nowhere() {
   static std::ostream stream(nullptr);
@@ -26,6 +66,14 @@ void openStandardStreams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(descriptor, F_GETFD) == -1)  // open() gives the lowest that is free
       (void)!open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  new ShownBuffer(std::cout);  // never deleted: the streams are flushed after everything else
+  new ShownBuffer(std::cerr);
+}
+
+void replaceLine() {
+  if (quiet || !isatty(STDOUT_FILENO)) return;
+  std::cout.flush();
+  std::fputs("\r\033[K", stdout);
 }
 
 bool flushStandardOutput() {

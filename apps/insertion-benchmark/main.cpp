@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 
@@ -78,6 +79,11 @@ std::vector<Entry> chosenEntries(const std::string& only) {
   return entries;
 }
 
+/** On a terminal, what is said next stands in place of the line that was begun. */
+void clearLine() {
+  if (isatty(STDERR_FILENO)) std::fputs("\r\033[K", stderr);
+}
+
 int run(const Cli& cli) {
   if (cli.sceneFile.empty() && cli.rawlog.empty()) throw CLI::RequiredError("SCENE or --rawlog");
   if (!cli.rawlog.empty() && cli.classes.empty())
@@ -97,9 +103,10 @@ int run(const Cli& cli) {
   getloadavg(&conditions.loadAverage, 1);
   const std::vector<Result> results =
       compare(chosenEntries(cli.only), scene, cli.settings, cli.repeats, [&](const auto& name) {
-        if (isatty(STDERR_FILENO)) std::cerr << "\r\033[K" << name << std::flush;
+        clearLine();
+        if (isatty(STDERR_FILENO)) std::cerr << name << std::flush;
       });
-  if (isatty(STDERR_FILENO)) std::cerr << "\r\033[K";
+  clearLine();
   conditions.touchedVoxels = results.front().touchedVoxels;
   (cli.json ? printJson : printTable)(std::cout, conditions, results, kReference);
   return 0;

@@ -32,14 +32,13 @@ void writeKey(std::ostream& out, const ordered_json& graphs) {
 
 const char* const kKeyIsDrawn = "unset label\nunset arrow\n";
 
-std::ostringstream sheetFor(const ordered_json& study, std::size_t rows,
-                            const std::filesystem::path& file) {
+std::ostringstream sheetFor(const ordered_json& study, std::size_t rows) {
   const auto maps = static_cast<double>(study["maps"].size());
   const std::size_t height = rows * kRowHeight + kKeyHeight;
   const auto share = [&](std::size_t pixels) {
     return static_cast<double>(pixels) / static_cast<double>(height);
   };
-  auto out = scriptFor(file, study["maps"].size() * kColumnWidth, height);
+  auto out = scriptFor(study["maps"].size() * kColumnWidth, height);
   const auto& budgets = study["options"]["budgets"];
   out << "set multiplot layout " << rows << ',' << maps << " columnsfirst margins " << 0.17 / maps
       << ",0.99," << share(kKeyHeight + 50) << ',' << 1 - share(40) << " spacing " << 0.17 / maps
@@ -109,7 +108,7 @@ class Plot {
 std::string box(const ordered_json& d) {
   std::ostringstream out;
   for (const char* part : {"quartile1", "percentile5", "percentile95", "quartile3", "median"})
-    out << d[part] << ' ';
+    out << d[part].get<double>() << ' ';
   return out.str();
 }
 
@@ -159,7 +158,7 @@ std::string rangeOfShares(const ordered_json& study) {
 }  // namespace
 
 void drawTimes(const ordered_json& study, const std::filesystem::path& file) {
-  auto out = sheetFor(study, 2, file);
+  auto out = sheetFor(study, 2);
   out << "set logscale y\nset format y '%g'\nset boxwidth " << 0.85 * kBox
       << "\nset style fill solid 0.35\n"
       << rangeOfTimes(study);
@@ -179,11 +178,11 @@ void drawTimes(const ordered_json& study, const std::filesystem::path& file) {
     first = false;
   }
   out << "unset multiplot\n";
-  drawWithGnuplot(out.str());
+  drawWithGnuplot(out.str(), file);
 }
 
 void drawPaths(const ordered_json& study, const std::filesystem::path& file) {
-  auto out = sheetFor(study, 2, file);
+  auto out = sheetFor(study, 2);
   const std::string shares = rangeOfShares(study);
   bool first = true;
   for (const ordered_json& map : study["maps"]) {
@@ -202,7 +201,7 @@ void drawPaths(const ordered_json& study, const std::filesystem::path& file) {
     first = false;
   }
   out << "unset multiplot\n";
-  drawWithGnuplot(out.str());
+  drawWithGnuplot(out.str(), file);
 }
 
 }  // namespace planning_study

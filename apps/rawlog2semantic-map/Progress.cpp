@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kBetweenBars = 100, kBetweenLines = 5000;  // ms
 constexpr int kBarWidth = 30;
-const char* const kClearLine = "\r\033[K";
 
 }  // namespace
 
@@ -35,13 +34,14 @@ void Progress::update(std::uint64_t done, const std::string& note) {
 
 void Progress::drawBar(double share, const std::string& note) {
   const int full = static_cast<int>(share * kBarWidth);
-  notes() << kClearLine << m_task << " [" << std::string(full, '#')
-          << std::string(kBarWidth - full, '.') << "] " << static_cast<int>(100 * share) << " % "
-          << note << std::flush;
+  replaceLine();
+  notes() << m_task << " [" << std::string(full, '#') << std::string(kBarWidth - full, '.') << "] "
+          << static_cast<int>(100 * share) << " % " << note << std::flush;
 }
 
 void Progress::finish(const std::string& note) {
-  notes() << (m_onTerminal ? kClearLine : "") << m_task << ": " << note << std::endl;
+  replaceLine();
+  notes() << m_task << ": " << note << std::endl;
 }
 
 }  // namespace rawlog2semantic_map

@@ -27,7 +27,7 @@ std::string plotCurve(std::ostream& out, const Compression& c, Share share, std:
 }  // namespace
 
 void drawCurves(const std::vector<Compression>& compressions, const std::filesystem::path& file) {
-  auto out = scriptFor(file, 1000, 600);
+  auto out = scriptFor(1000, 600);
   out << "set logscale x\nset format x '%.0s %c'\nset xlabel 'known leaves'\n"
       << "set ylabel 'information retained [%]'\nset yrange [0:103]\n"
       << "set key outside right top samplen 2 spacing 1.25 Left reverse\n";
@@ -38,7 +38,7 @@ void drawCurves(const std::vector<Compression>& compressions, const std::filesys
       plots += plotCurve(out, compressions[s], share, s, relevant);
     }
   out << "plot " << plots << "NaN notitle\n";
-  drawWithGnuplot(out.str());
+  drawWithGnuplot(out.str(), file);
 }
 
 }  // namespace semantic_map_compress

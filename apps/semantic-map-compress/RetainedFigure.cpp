@@ -60,7 +60,7 @@ void drawRetained(const FullMap& map, const std::vector<Compression>& compressio
                   const TermCatalog& catalog, const std::filesystem::path& file) {
   const auto classes = presentClasses(map);
   const std::size_t bars = classes.size() * (compressions.size() + 1);
-  auto out = scriptFor(file, std::clamp<std::size_t>(120 + 9 * bars, 1000, 4000), 760);
+  auto out = scriptFor(std::clamp<std::size_t>(120 + 9 * bars, 1000, 4000), 760);
   out << "set multiplot\nset lmargin 10; set rmargin 2\n"
       << "set tmargin at screen 0.92; set bmargin at screen 0.48\n"
       << "set key at screen 0.5, screen 0.965 center maxrows 1 samplen 1 width 2 Left reverse\n"
@@ -77,7 +77,7 @@ void drawRetained(const FullMap& map, const std::vector<Compression>& compressio
       << '\n';
   plotLeafRatios(out, compressions);
   out << "unset multiplot\n";
-  drawWithGnuplot(out.str());
+  drawWithGnuplot(out.str(), file);
 }
 
 }  // namespace semantic_map_compress

@@ -47,8 +47,8 @@ void drawWeights(const std::vector<Compression>& compressions, const TermCatalog
   double largest = 1e-300;
   for (const Compression& c : compressions)
     for (const double w : catalog.allWeights(c.solution)) largest = std::max(largest, std::abs(w));
-  auto out = scriptFor(file, 290 + 46 * std::max<std::size_t>(terms.size(), 8),
-                       135 + 44 * compressions.size());
+  auto out =
+      scriptFor(290 + 46 * std::max<std::size_t>(terms.size(), 8), 135 + 44 * compressions.size());
   out << "unset border\nunset grid\nunset key\n"
       << "set lmargin 30; set rmargin 2; set bmargin 6.5; set tmargin 1\n";
   int object = 0;
@@ -79,7 +79,7 @@ void drawWeights(const std::vector<Compression>& compressions, const TermCatalog
       << '\n'
       << "plot [-0.5:" << static_cast<double>(terms.size()) - 0.5 << "] ["
       << static_cast<double>(compressions.size()) - 0.5 << ":-0.5] NaN notitle\n";
-  drawWithGnuplot(out.str());
+  drawWithGnuplot(out.str(), file);
 }
 
 }  // namespace semantic_map_compress

@@ -34,7 +34,7 @@ std::string linesOf(const std::vector<NamedEvaluation>& maps, const std::string&
 }  // namespace
 
 void drawReliability(const std::vector<NamedEvaluation>& maps, const std::filesystem::path& file) {
-  auto out = scriptFor(file, 760, 820);
+  auto out = scriptFor(760, 820);
   for (std::size_t i = 0; i < maps.size(); ++i) writeData(out, maps[i], i);
   out << "set multiplot\nset lmargin 10; set rmargin 3\nset xrange [0:100]\n"
       << "set tmargin at screen 0.97; set bmargin at screen 0.36\n"
@@ -45,7 +45,7 @@ void drawReliability(const std::vector<NamedEvaluation>& maps, const std::filesy
       << "set xlabel 'stated probability of the class, where occupied [%]'\n"
       << "set ylabel 'share of the points [%]'\nset yrange [0.02:100]\nset logscale y\n"
       << "plot NaN notitle" << linesOf(maps, "1:3", false) << "\nunset multiplot\n";
-  drawWithGnuplot(out.str());
+  drawWithGnuplot(out.str(), file);
 }
 
 }  // namespace semantic_map_evaluate

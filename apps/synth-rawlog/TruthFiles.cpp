@@ -1,5 +1,8 @@
 #include "TruthFiles.h"
 
+#include <strict_files/StrictYaml.h>
+#include <strict_files/Words.h>
+
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -28,14 +31,15 @@ const char* nameOf(PointTruth::State state) {
 void writeTruth(const Cli& cli, const WorldClasses& classes, int frames,
                 const std::filesystem::path& file) {
   std::ostringstream out;
-  out << "# The world that " << cli.output.filename().string() << " shows.\n"
+  out << "# The world that " << strict_files::printable(cli.output.filename().string())
+      << " shows.\n"
       << "scene: " << cli.scene << "\nseed: " << cli.seed << "\nhills: " << cli.hills
       << "\nframes: " << frames << "\nlabel_noise: " << cli.noise.label << "\nclasses:\n";
   const synthetic_world::ClassTable& table = classes.table();
   for (synthetic_world::ClassId id = 1; id <= table.size(); ++id) {
     const auto c = table.color(id);
-    out << "  - {id: " << +id << ", name: " << table.name(id) << ", color: [" << +c.r << ", "
-        << +c.g << ", " << +c.b << "]}\n";
+    out << "  - {id: " << +id << ", name: " << strict_files::yamlText(table.name(id))
+        << ", color: [" << +c.r << ", " << +c.g << ", " << +c.b << "]}\n";
   }
   strict_files::writeText(file, out.str());
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "../semantic_octree/CraftedTreeFile.h"
 #include "CompressionOptions.h"
 #include "CsvTable.h"
 #include "SemanticMapCompress.h"
@@ -238,6 +239,40 @@ TEST_F(SemanticMapCompress, picturesAndFiguresShowSomething) {
     EXPECT_GT(picture.cols, 400) << name;
     EXPECT_GT(cv::countNonZero(picture < 200), 1000) << name;
   }
+}
+
+TEST_F(SemanticMapCompress, namesAreNoCommandsForGnuplot) {
+  semantic_types::ClassTable table;
+  for (const char* name :
+       {"post", "road'\"`touch x`", "100 %s", "@x {/Bold y}", "|touch x", "!touch x"})
+    table.add(name, {});
+  saveTree(smallMap(table), folder / "a'\n!touch x\n.semantic");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  folder.write("weights.yaml",
+               "{name: a, relevant: {post: 1, \"road'\\\"`touch x`\": 0.5}, block_size: 3.2}");
+  for (const char* output : {"|touch x", "b'\n!touch x\n"}) {
+    const ProgramRun run =
+        runProgram("semantic-map-compress",
+                   {"a'\n!touch x\n.semantic", "--weights", "weights.yaml", "-o", output});
+    EXPECT_EQ(run.status, 0) << run.errors;
+    EXPECT_FALSE(cv::imread(fs::path(output) / "retained.png").empty()) << output;
+  }
+  EXPECT_FALSE(fs::exists("x"));
+  fs::current_path(before);
+}
+
+TEST_F(SemanticMapCompress, aMapWhoseClassNameWouldBeACommandIsRefused) {
+  std::string content = contentIn(folder.read("map.semantic"));
+  const std::string name = "road\n!touch x\n", old = bytesOf(std::uint16_t(4)) + "road";
+  content.replace(content.find(old), old.size(), bytesOf(std::uint16_t(name.size())) + name);
+  folder.write("map.semantic", fileAround(content));
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  expectRefusalOf("{name: a, relevant: {post: 1}}",
+                  {"map.semantic", "the name of class 2, 'road\\x0a!touch x\\x0a'"});
+  EXPECT_FALSE(fs::exists("x"));
+  fs::current_path(before);
 }
 
 TEST_F(SemanticMapCompress, withoutGnuplotAllButTheFiguresIsWritten) {

@@ -130,6 +130,21 @@ TEST_F(SemanticMapEvaluate, comparesMapsAndTakesRangeAndNeighbors) {
   EXPECT_TRUE(both["empty"]["accuracy"].is_null());
 }
 
+TEST_F(SemanticMapEvaluate, namesAreNoCommandsForGnuplot) {
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  for (const char* map : {"a'\n!touch x\n.semantic", "`touch x`.semantic"})
+    for (const char* output : {"|touch x", "b'\n!touch x\n"}) {
+      saveTree(smallMap(), map);
+      const ProgramRun run =
+          runProgram("semantic-map-evaluate", {map, "--scans", "scans.rawlog", "-f", "-o", output});
+      EXPECT_EQ(run.status, 0) << run.errors;
+      EXPECT_FALSE(cv::imread(std::string(output) + "/reliability.png").empty()) << output;
+    }
+  EXPECT_FALSE(std::filesystem::exists("x"));
+  std::filesystem::current_path(before);
+}
+
 TEST_F(SemanticMapEvaluate, refusesMapsOfOtherClassesOrOneNameAndScansWithoutLabels) {
   ClassTable other;
   for (const char* name : {"wall", "tree"}) other.add(name, {});

@@ -4,6 +4,7 @@
 #include <mrpt_compat/Drawing.h>
 #include <semantic_octree/Abstraction.h>
 #include <semantic_octree/SmoothedView.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cstring>
@@ -177,6 +178,15 @@ TEST_F(SemanticMapExport, mrptLoadsTheMapServersGrid) {
       if (std::fabs(grid.getCell(cx, cy) - 0.5f) > 0.1f) {
         ASSERT_EQ(ros.getCell(cx, cy) > 0.5f, grid.getCell(cx, cy) > 0.5f) << cx << " " << cy;
       }
+}
+
+TEST_F(SemanticMapExport, theMapServersFileNamesItsPictureWhateverItsName) {
+  for (const char* name : {"plain", "a: b #c", "x'\nnegate: 1\n\""}) {
+    ASSERT_EQ(exportTo({std::string(name) + ".yaml"}).status, 0);
+    const YAML::Node node = YAML::LoadFile(path(std::string(name) + ".yaml"));
+    EXPECT_EQ(node["image"].as<std::string>(), std::string(name) + ".png");
+    EXPECT_EQ(node["negate"].as<int>(), 0);
+  }
 }
 
 TEST_F(SemanticMapExport, classMapsLieWhereTheirWorldFilesSay) {

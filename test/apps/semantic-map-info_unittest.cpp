@@ -182,6 +182,20 @@ TEST_F(SemanticMapInfo, missingFilesAreRefusedByName) {
                 {"none.txt"});
 }
 
+TEST_F(SemanticMapInfo, namesDoNotReachATerminalAsTheyAre) {
+  const std::string name =
+      "map\x1b[2J\n\xC2\x9B"
+      "1m.semantic";
+  const ProgramRun missing = runProgram("semantic-map-info", {(folder / name).string()});
+  expectRefusal(missing, {"map\\x1b[2J\\x0a\\xc2\\x9b1m.semantic"});
+  std::filesystem::rename(map(), folder / name);
+  const ProgramRun run = runProgram("semantic-map-info", {(folder / name).string()});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_TRUE(contains(run.output, "map\\x1b[2J")) << run.output;
+  EXPECT_FALSE(contains(run.output, "\x1b"));
+  EXPECT_FALSE(contains(run.output, "\xC2\x9B"));
+}
+
 TEST_F(SemanticMapInfo, damagedMapsAreRefusedByName) {
   const std::string whole = folder.read("map.semantic");
   std::string altered = whole;

@@ -109,6 +109,15 @@ TEST(CObservationLabeledCloud, corruptBytesNeverCrash) {
   }));
 }
 
+TEST(CObservationLabeledCloud, namesWithControlCharactersAreRefusedWhenWrittenAndWhenRead) {
+  CObservationLabeledCloud obs = exampleCloud();
+  auto bytes = streamed(obs);
+  obs.classNames[1] = "\n!id\n";
+  EXPECT_TRUE(contains(errorOf([&] { obs.validate(); }), "the class name '\\x0a!id\\x0a'"));
+  bytes[countPosition(bytes) - 1] = '\n';
+  EXPECT_TRUE(contains(errorOf([&] { readBack(bytes); }), "the class name 'gras\\x0a'"));
+}
+
 TEST(CObservationLabeledCloud, aClassWithoutANameIsRefusedWhenWrittenAndWhenRead) {
   CObservationLabeledCloud obs = exampleCloud();
   auto bytes = streamed(obs);

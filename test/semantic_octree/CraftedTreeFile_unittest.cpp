@@ -58,6 +58,12 @@ TEST(CraftedTreeFile, ofSenselessHeadersIsRefused) {
   EXPECT_TRUE(contains(error({}, "more"), "more content"));
 }
 
+TEST(CraftedTreeFile, ofClassNamesWithControlCharactersIsRefused) {
+  Header h;
+  h.names = {"road\n!touch x\n", "b"};
+  EXPECT_TRUE(contains(error(h), "the name of class 1, 'road\\x0a!touch x\\x0a'")) << error(h);
+}
+
 TEST(CraftedTreeFile, ofBrokenNodesIsRefused) {
   const i16 half = 512, most = 32767, none = -32768;
   EXPECT_EQ(error(1, bytesOf(u8(1), most)), "");

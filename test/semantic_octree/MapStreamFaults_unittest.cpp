@@ -5,6 +5,7 @@
 #include <random>
 #include <sstream>
 
+#include "CraftedTreeFile.h"
 #include "StreamedMaps.h"
 #include "TemporaryFolder.h"
 
@@ -82,6 +83,34 @@ TEST(MapStreamFaults, alteredPacketsAreRefusedAndLeaveAValidMap) {
     std::istringstream in(file);
     ASSERT_TRUE(fileOf(readTree(in)) == file);
   }
+}
+
+/** A stream's first packet, if its first class had another name. */
+Datagram withFirstClassNamed(const std::string& name, Datagram packet) {
+  PacketHeader h = PacketHeader::of(packet.payload);
+  StreamDescription d = StreamDescription::of(packet.payload.substr(PacketHeader::kBytes));
+  std::string content = contentIn(d.kind);
+  const std::string old = numberedClasses(K).name(1);
+  const auto withSize = [](const std::string& text) {
+    return bytesOf(static_cast<std::uint16_t>(text.size())) + text;
+  };
+  content.replace(content.find(withSize(old)), 2 + old.size(), withSize(name));
+  d.kind = fileAround(content);
+  packet.payload = h.bytes() + d.compressed();
+  return packet;
+}
+
+TEST(MapStreamFaults, classNamesWithControlCharactersAreRefused) {
+  SemanticOcTree map = smallPlace(someOptions(0.01));
+  MapSender sender(kStream);
+  sender.setMap(map);
+  const Datagram first = *sender.next();
+  ASSERT_EQ(PacketHeader::of(first.payload).numDescription, 1);
+  MapReceiver receiver(kStream), other(kStream);
+  const std::string refusal =
+      errorOf([&] { receiver.accept(withFirstClassNamed("road\n!touch x\n", first)); });
+  EXPECT_TRUE(contains(refusal, "the name of class 1, 'road\\x0a!touch x\\x0a'")) << refusal;
+  EXPECT_EQ(errorOf([&] { other.accept(withFirstClassNamed("road, touch x", first)); }), "");
 }
 
 /** A coder's tables with one frequent class record. */

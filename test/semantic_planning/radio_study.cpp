@@ -255,7 +255,7 @@ class Study {
 };
 
 void draw(const std::vector<Outcome>& outcomes, const std::filesystem::path& file) {
-  auto out = figures::scriptFor(file, 900, 460);
+  auto out = figures::scriptFor(900, 460);
   const std::vector<std::string> methods = {"semantic-map-send", "OctoMap .bt",
                                             "leaves in random order", "whole map"};
   for (std::size_t m = 0; m < methods.size(); ++m) {
@@ -272,7 +272,7 @@ void draw(const std::vector<Outcome>& outcomes, const std::filesystem::path& fil
     out << "$m" << m << " with linespoints lw 2 ps 1.3 " << figures::styleOf(m) << " title "
         << figures::gnuplotText(methods[m]) << ", ";
   out << "NaN notitle\n";
-  figures::drawWithGnuplot(out.str());
+  figures::drawWithGnuplot(out.str(), file);
 }
 
 }  // namespace

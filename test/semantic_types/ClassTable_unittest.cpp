@@ -83,6 +83,18 @@ TEST(ClassTable, refusesWhatIsAmbiguous) {
   EXPECT_EQ(classes.size(), 3);
 }
 
+TEST(ClassTable, refusesNamesWithControlCharactersOrBytesThatAreNoUtf8AndShowsThem) {
+  ClassTable classes = table();
+  EXPECT_EQ(errorOf([&] { classes.add("road\n!touch x\n", {}); }),
+            "class table: the name of class 4, 'road\\x0a!touch x\\x0a', has control characters or "
+            "is not UTF-8");
+  for (const char* name : {"\x1b[2J", "a\tb", "\x7f", "\xC2\x85",
+                           "stra\xDF"
+                           "e"})
+    EXPECT_THROW(classes.add(name, {}), std::invalid_argument) << name;
+  EXPECT_EQ(classes.size(), 3);
+}
+
 TEST(ClassTable, holdsUpTo254Classes) {
   ClassTable classes;
   for (int i = 1; i <= 254; ++i) EXPECT_EQ(classes.add("class " + std::to_string(i), {}), i);

@@ -3,6 +3,7 @@
 #include <strict_files/ErrorMessage.h>
 #include <strict_files/Words.h>
 
+#include <cstdio>
 #include <stdexcept>
 
 using strict_files::sameWord;
@@ -63,15 +64,39 @@ TEST(Words, sizesAreForPeople) {
   for (const auto& [bytes, text] : cases) EXPECT_EQ(strict_files::sizeText(bytes), text) << bytes;
 }
 
-TEST(Words, utf8IsToldFromOtherBytes) {
-  for (const char* text : {"", "road",
+TEST(Words, textInUtf8IsPrintableAsItIs) {
+  for (const char* text : {"", "road", "a \\ b",
                            "Stra\xC3\x9F"
                            "e",
-                           "\xE8\xB7\xAF", "\xF0\x9F\x9A\x97"})
-    EXPECT_TRUE(strict_files::isUtf8(text)) << text;
-  for (const char* bytes : {"Stra\xDF"
+                           "\xC2\xA0", "\xE8\xB7\xAF", "\xF0\x9F\x9A\x97"})
+    EXPECT_EQ(strict_files::printable(text), text);
+}
+
+TEST(Words, controlCharactersAreShownByTheirBytes) {
+  using strict_files::printable;
+  EXPECT_EQ(printable("road\n!touch x\n"), "road\\x0a!touch x\\x0a");
+  EXPECT_EQ(printable(std::string("a\0b", 3)), "a\\x00b");
+  EXPECT_EQ(printable("\t\x1b[2J\x7f"), "\\x09\\x1b[2J\\x7f");
+  EXPECT_EQ(printable("\xC2\x9B"
+                      "1m"),
+            "\\xc2\\x9b1m");  // CSI, of C1
+}
+
+TEST(Words, bytesThatAreNoUtf8AreShownOneByOne) {
+  for (const char* bytes : {"\xDF"
                             "e",
                             "\xC3", "\xE8\xB7", "\x9F", "\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80",
-                            "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80", "a\xFF"})
-    EXPECT_FALSE(strict_files::isUtf8(bytes)) << bytes;
+                            "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80", "\xFF"}) {
+    char first[5];
+    std::snprintf(first, sizeof first, "\\x%02x", static_cast<unsigned char>(bytes[0]));
+    EXPECT_EQ(strict_files::printable(std::string("a") + bytes).rfind("a" + std::string(first), 0),
+              0u)
+        << first;
+  }
+}
+
+RC_GTEST_PROP(Words, whatIsPrintableStaysSo, (const std::string& bytes)) {
+  const std::string shown = strict_files::printable(bytes);
+  RC_ASSERT(strict_files::printable(shown) == shown);
+  for (const char c : shown) RC_ASSERT(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);
 }

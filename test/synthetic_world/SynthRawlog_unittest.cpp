@@ -5,6 +5,7 @@
 #include <synthetic_world/Scene.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "SynthRawlogRun.h"
@@ -204,6 +205,20 @@ TEST(SynthRawlog, writesTheSameWorldInRugdsClasses) {
       }
     }
   EXPECT_NE(contents(folder / "y.truth.yaml").find("name: rock-bed"), std::string::npos);
+}
+
+TEST(SynthRawlog, theTruthNamesClassesWhateverTheirNames) {
+  const Folder folder;
+  const std::string names[] = {"a, b: {c}", "it's \"#1\"", "[d]"};
+  std::ofstream table(folder / "odd.yaml");
+  table << "unknown_raw_id: no_class\nclasses:\n";
+  for (int id = 1; id <= 3; ++id)
+    table << "  - {id: " << id << ", name: " << nlohmann::json(names[id - 1])
+          << ", color: [0, 0, 0], raw: [" << id << "]}\n";
+  table.close();
+  ASSERT_EQ(run(folder, "-o x.rawlog" + kSmall + "--classes odd.yaml").status, 0);
+  const auto truth = mrpt::containers::yaml::FromFile((folder / "x.truth.yaml").string());
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(truth["classes"](i)["name"].as<std::string>(), names[i]);
 }
 
 TEST(SynthRawlog, refusesAClassTableThatDoesNotFoldTheWorldOrIsTooLarge) {

@@ -27,16 +27,20 @@ std::string styleOf(std::size_t solution) {
          " lc rgb '" + colorOf(solution) + "'";
 }
 
-std::ostringstream scriptFor(const std::filesystem::path& file, std::size_t width,
-                             std::size_t height) {
+std::ostringstream scriptFor(std::size_t width, std::size_t height) {
   std::ostringstream out;
   out << "set terminal pngcairo noenhanced size " << width << ',' << height
       << " font 'DejaVu Sans,11' background '#ffffff'\n"
-      << "set output " << gnuplotText(file.string()) << '\n'
       << "set border 3 lc rgb '#808080'\n"
       << "set tics nomirror out scale 0.5 textcolor rgb '#303030'\n"
       << "set grid ytics lc rgb '#d8d8d8' lt 1\n";
   return out;
+}
+
+std::string ticText(const std::string& text) {
+  std::string format;
+  for (const char c : text) format += c == '%' ? std::string("%%") : std::string(1, c);
+  return gnuplotText(format);
 }
 
 }  // namespace figures

@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <sstream>
 #include <string>
 
@@ -19,16 +18,18 @@ int pointOf(std::size_t solution);
 /** How a solution is drawn "with linespoints": dashes, points and color. */
 std::string styleOf(std::size_t solution);
 
-/** Beginning of a script that draws into a file of that size, pixels. */
-std::ostringstream scriptFor(const std::filesystem::path& file, std::size_t width,
-                             std::size_t height);
+/** Beginning of a script that draws a picture (PNG) of that size, pixels. */
+std::ostringstream scriptFor(std::size_t width, std::size_t height);
+
+/** A text as gnuplot's tics have it, which are formats of the number that they stand at. */
+std::string ticText(const std::string& text);
 
 /** Names at 0, 1, 2... of an axis. */
 template <typename Names>
 std::string tics(std::size_t count, const Names& name) {
   std::string text = "(";
   for (std::size_t i = 0; i < count; ++i)
-    text += (i ? ", " : "") + gnuplotText(name(i)) + " " + std::to_string(i);
+    text += (i ? ", " : "") + ticText(name(i)) + " " + std::to_string(i);
   return text + ")";
 }
 

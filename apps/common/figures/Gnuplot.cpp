@@ -1,30 +1,86 @@
 #include "Gnuplot.h"
 
+#include <fcntl.h>
+#include <spawn.h>
+#include <strict_files/Words.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <cctype>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <stdexcept>
 
 namespace figures {
 
-void drawWithGnuplot(const std::string& script) {
-  constexpr int kNotFound = 127;                        // as the shell has it
-  const auto previous = std::signal(SIGPIPE, SIG_IGN);  // gnuplot may be gone before it has read
-  std::FILE* pipe = popen("command -v gnuplot > /dev/null || exit 127; exec gnuplot", "w");
-  if (!pipe) throw std::runtime_error("gnuplot cannot be started");
-  std::fputs(script.c_str(), pipe);
-  const int status = pclose(pipe);
-  std::signal(SIGPIPE, previous);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == kNotFound)
-    throw std::runtime_error("gnuplot is not installed (Debian's package gnuplot-nox)");
-  if (status != 0) throw std::runtime_error("gnuplot could not draw");
+namespace {
+
+/** Starts gnuplot without its user's settings. \return what posix_spawnp() does */
+int start(int input, int output, pid_t& child) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
+  char name[] = "gnuplot", noSettings[] = "-d";
+  char* const arguments[] = {name, noSettings, nullptr};
+  const int error = posix_spawnp(&child, name, &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  return error;
 }
 
+void send(const std::string& script, int pipe) {
+  const auto previous = std::signal(SIGPIPE, SIG_IGN);  // gnuplot may be gone before it has read
+  std::FILE* stream = fdopen(pipe, "w");
+  std::fputs(script.c_str(), stream);
+  std::fclose(stream);
+  std::signal(SIGPIPE, previous);
+}
+
+/** Of a process that ends. */
+int statusOf(pid_t child) {
+  int status = -1;
+  while (waitpid(child, &status, 0) == -1 && errno == EINTR) {
+  }
+  return status;
+}
+
+/** \return what is wrong */
+std::string draw(const std::string& script, int output) {
+  int ends[2] = {-1, -1};
+  if (pipe2(ends, O_CLOEXEC) == -1) return "gnuplot cannot be started";
+  pid_t child = 0;
+  const int error = start(ends[0], output, child);
+  close(ends[0]);
+  send(error == 0 ? script : "", ends[1]);
+  if (error == ENOENT) return "gnuplot is not installed (Debian's package gnuplot-nox)";
+  if (error != 0) return "gnuplot cannot be started";
+  return statusOf(child) == 0 ? "" : "gnuplot could not draw";
+}
+
+}  // namespace
+
+void drawWithGnuplot(const std::string& script, const std::filesystem::path& file) {
+  const int output = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (output == -1) throw std::runtime_error(file.string() + ": cannot be written");
+  const std::string problem = draw(script, output);
+  close(output);
+  if (problem.empty()) return;
+  std::error_code error;
+  std::filesystem::remove(file, error);
+  throw std::runtime_error(problem);
+}
+
+// In single quotes, some texts with quotes of their own end the string (gnuplot 5.4).
 std::string gnuplotText(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-  return result + "'";
+  std::string result = "\"";
+  for (const unsigned char c : strict_files::printable(text)) {
+    char octal[5] = {static_cast<char>(c), '\0'};
+    const bool isPlain = c == ' ' || (c < 0x80 && std::isalnum(c));
+    if (!isPlain) std::snprintf(octal, sizeof octal, "\\%03o", c);
+    result += octal;
+  }
+  return result + '"';
 }
 
 }  // namespace figures

@@ -1,5 +1,6 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <mrpt/serialization/CArchive.h>
+#include <strict_files/Words.h>
 
 #include <algorithm>
 #include <array>
@@ -80,6 +81,9 @@ void CObservationLabeledCloud::validate() const {
                                        cloud.probabilities.size() / n > kMaxClasses))
     refuse(perPoint(cloud.probabilities.size(), " class probabilities for ", n));
   if (classNames.size() > kMaxClasses) refuse(std::to_string(classNames.size()) + " class names");
+  for (const std::string& name : classNames)
+    if (const std::string shown = strict_files::printable(name); shown != name)
+      refuse("the class name '" + shown + "' has control characters or is not UTF-8");
   const int limit = classNames.empty() ? kMaxClasses : static_cast<int>(classNames.size());
   const auto highest = std::max_element(cloud.classes.begin(), cloud.classes.end());
   if (highest != cloud.classes.end() && *highest > limit)

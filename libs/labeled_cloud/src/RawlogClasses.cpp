@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace labeled_cloud {
 namespace {
@@ -58,8 +59,12 @@ ClassTable classesIn(const std::vector<std::filesystem::path>& rawlogs) {
   Collector collector;
   for (const std::filesystem::path& file : rawlogs) {
     RawlogReader reader(file);
-    while (const auto entry = reader.next())
-      for (const auto& observation : entry->observations) collector.add(*observation);
+    try {
+      while (const auto entry = reader.next())
+        for (const auto& observation : entry->observations) collector.add(*observation);
+    } catch (const std::invalid_argument& e) {
+      throw std::runtime_error(file.string() + ": " + e.what());
+    }
   }
   return collector.table();
 }

@@ -37,17 +37,10 @@ void writeBytes(std::ostream& out, const Values&... values) {
   (out.write(reinterpret_cast<const char*>(&values), sizeof(values)), ...);
 }
 
-std::string onOneLine(std::string name) {
-  for (char& c : name)
-    if (c == '\n' || c == '\r') c = ' ';
-  return name;
-}
-
 void writePlyHeader(std::ostream& out, const ClassTable& classes, std::size_t points) {
   out << "ply\nformat binary_little_endian 1.0\n";
   for (int id = 1; id <= classes.size(); ++id)
-    out << "comment class " << id << " " << onOneLine(classes.name(static_cast<ClassId>(id)))
-        << "\n";
+    out << "comment class " << id << " " << classes.name(static_cast<ClassId>(id)) << "\n";
   out << "element vertex " << points << "\n";
   for (const char* property :
        {"float x", "float y", "float z", "uchar red", "uchar green", "uchar blue", "uchar class",

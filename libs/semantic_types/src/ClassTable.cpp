@@ -8,9 +8,9 @@ namespace semantic_types {
 
 ClassId ClassTable::add(const std::string& name, Color color) {
   if (name.empty()) throw std::invalid_argument("class table: a class without a name");
-  if (!strict_files::isUtf8(name))
+  if (const std::string shown = strict_files::printable(name); shown != name)
     throw std::invalid_argument("class table: the name of class " + std::to_string(size() + 1) +
-                                " is not UTF-8");
+                                ", '" + shown + "', has control characters or is not UTF-8");
   if (m_ids.count(name))
     throw std::invalid_argument("class table: two classes named '" + name + "'");
   if (size() == kMaxClasses)

@@ -29,6 +29,13 @@ int lineOfSecondDocument(const std::string& text) {
 
 }  // namespace
 
+std::string yamlText(const std::string& text) {
+  YAML::Emitter out;
+  out << YAML::Flow << YAML::BeginSeq << text << YAML::EndSeq;
+  const std::string list = out.c_str();  // "[text]"
+  return list.substr(1, list.size() - 2);
+}
+
 StrictYaml::StrictYaml(const std::filesystem::path& file) : m_file(file.string()) {
   std::ifstream stream(file);
   if (!stream || std::filesystem::is_directory(file))

@@ -46,11 +46,28 @@ const std::string* nearestOf(const std::string& word, const std::vector<std::str
   return nearest;
 }
 
-/** Of UTF-8: how many bytes follow the first of a letter; more than 3 if none begins with it. */
+/** How many bytes follow the first of a letter in UTF-8; more than 3 if no letter begins with it.
+ */
 std::size_t continuationOf(unsigned char first) {
   if (first < 0x80) return 0;
   if (first < 0xc0 || first >= 0xf8) return 4;
   return first < 0xe0 ? 1 : first < 0xf0 ? 2 : 3;
+}
+
+/** Bytes of the letter in UTF-8 that begins there; 0 if there is none, or a control character. */
+std::size_t printableBytes(const std::string& text, std::size_t begin) {
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[begin + i]); };
+  const std::size_t more = continuationOf(at(0));
+  if (more > 3 || text.size() - begin <= more) return 0;
+  char32_t letter = more == 0 ? at(0) : at(0) & (0x3f >> more);
+  for (std::size_t k = 1; k <= more; ++k) {
+    if ((at(k) & 0xc0) != 0x80) return 0;
+    letter = letter << 6 | (at(k) & 0x3f);
+  }
+  static const char32_t least[] = {0x20, 0xa0, 0x800, 0x10000};  // without C0 and C1
+  const bool isLetter = letter >= least[more] && letter != 0x7f && letter <= 0x10ffff &&
+                        !(letter >= 0xd800 && letter < 0xe000);
+  return isLetter ? 1 + more : 0;
 }
 
 }  // namespace
@@ -69,22 +86,20 @@ std::string unknownWord(const std::string& kind, const std::string& word,
   return unknown + (known.empty() ? "; none is known" : "; known are " + joined(known));
 }
 
-bool isUtf8(const std::string& bytes) {
-  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
-  for (std::size_t i = 0; i < bytes.size();) {
-    const std::size_t more = continuationOf(at(i));
-    if (more > 3 || bytes.size() - i <= more) return false;
-    char32_t letter = more == 0 ? at(i) : at(i) & (0x3f >> more);
-    for (std::size_t k = 1; k <= more; ++k) {
-      if ((at(i + k) & 0xc0) != 0x80) return false;
-      letter = letter << 6 | (at(i + k) & 0x3f);
+std::string printable(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t bytes = printableBytes(text, i);
+    if (bytes > 0) {
+      result.append(text, i, bytes);
+    } else {
+      char hex[5];
+      std::snprintf(hex, sizeof hex, "\\x%02x", static_cast<unsigned char>(text[i]));
+      result += hex;
     }
-    static const char32_t least[] = {0, 0x80, 0x800, 0x10000};
-    if (letter < least[more] || letter > 0x10ffff || (letter >= 0xd800 && letter < 0xe000))
-      return false;
-    i += 1 + more;
+    i += bytes > 0 ? bytes : 1;
   }
-  return true;
+  return result;
 }
 
 std::string sizeText(std::uint64_t bytes) {

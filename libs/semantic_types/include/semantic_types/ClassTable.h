@@ -35,7 +35,8 @@ class ClassTable {
   enum class UnknownRawId { Error, NoClass };
 
   /** Appends a class and returns its id.
-   * \throw std::invalid_argument name empty or used already, or more than 254 classes. */
+   * \throw std::invalid_argument name empty, used already, with control characters, or not UTF-8;
+   * more than 254 classes. */
   ClassId add(const std::string& name, Color color);
 
   /** Number of classes K, free space not counted. */

@@ -10,6 +10,9 @@
 
 namespace strict_files {
 
+/** A text as YAML files have it, also in flow style: in quotes where it needs them. */
+std::string yamlText(const std::string& text);
+
 /** A YAML file whose every key and value is checked. All functions throw std::runtime_error with
  * file, line, and what was expected. */
 class StrictYaml {

@@ -19,8 +19,9 @@ std::string unknownWord(const std::string& kind, const std::string& word,
  * them is near. */
 std::string didYouMean(const std::string& word, const std::vector<std::string>& known);
 
-/** Whether the bytes are text in UTF-8. */
-bool isUtf8(const std::string& bytes);
+/** The text as it can be shown: bytes of control characters, and those that are not UTF-8, are
+ * written as "\x1b". Only text without these comes out as it was. */
+std::string printable(const std::string& text);
 
 /** A size as people read it: "950 bytes", "1.2 kB", "35 MB" (of 1000 kB each), "2.1 GB". */
 std::string sizeText(std::uint64_t bytes);
