@@ -4,7 +4,6 @@
 #include <iterator>
 #include <regex>
 
-#include "ErrorTexts.h"
 #include "SourceTree.h"
 
 namespace fs = std::filesystem;
@@ -75,53 +74,19 @@ std::vector<Entry> entriesOf(const fs::path& markdownFile) {
   return entries;
 }
 
-bool isSaidBy(const std::vector<std::string>& parts, const std::string& text) {
-  std::size_t from = 0;
-  for (const std::string& part : parts) {
-    const std::size_t at = text.find(part, from);
-    if (at == std::string::npos) return false;
-    from = at + part.size();
-  }
-  return !parts.empty();
-}
-
-template <class Action>
-void forEachSource(const std::vector<fs::path>& folders, const Action& action) {
-  for (const fs::path& folder : folders)
-    for (const fs::path& file : textFiles(folder))
-      if (isCppFile(file)) action(file, folder);
-}
-
 }  // namespace
 
 std::vector<std::string> messagesNobodySays(const fs::path& markdownFile,
                                             const std::vector<fs::path>& sources) {
   std::vector<std::string> literals, findings;
-  forEachSource(sources, [&](const fs::path& file, const fs::path&) {
-    const auto more = literalsOf(file);
-    literals.insert(literals.end(), more.begin(), more.end());
-  });
+  for (const fs::path& folder : sources)
+    for (const fs::path& file : textFiles(folder)) {
+      const auto more = isCppFile(file) ? literalsOf(file) : std::vector<std::string>();
+      literals.insert(literals.end(), more.begin(), more.end());
+    }
   for (const Entry& entry : entriesOf(markdownFile))
     for (const std::string& part : fixedParts(entry.message))
       if (!isSaid(part, literals))
         findings.push_back(entry.line.where(markdownFile.parent_path()) + ": " + part);
-  return findings;
-}
-
-std::vector<std::string> messagesWithoutEntry(const fs::path& markdownFile,
-                                              const std::vector<fs::path>& sources) {
-  std::vector<std::vector<std::string>> entries;
-  for (const Entry& entry : entriesOf(markdownFile)) entries.push_back(fixedParts(entry.message));
-  std::vector<std::string> findings;
-  forEachSource(sources, [&](const fs::path& file, const fs::path& folder) {
-    for (const ErrorText& said : errorTextsOf(file)) {
-      const auto explains = [&](const auto& parts) { return isSaidBy(parts, said.text); };
-      if (std::any_of(entries.begin(), entries.end(), explains)) continue;
-      std::string text = said.text;
-      std::replace(text.begin(), text.end(), kGap, '*');
-      findings.push_back(file.lexically_relative(folder).string() + ":" +
-                         std::to_string(said.line) + ": " + text);
-    }
-  });
   return findings;
 }

@@ -9,9 +9,3 @@
  * \return "file:line: part that is not said" */
 std::vector<std::string> messagesNobodySays(const std::filesystem::path& markdownFile,
                                             const std::vector<std::filesystem::path>& sources);
-
-/** Messages of these sources that the Markdown file does not explain: none of its messages has its
- * fixed parts, one behind the other, in what the source says.
- * \return "file:line: message" */
-std::vector<std::string> messagesWithoutEntry(const std::filesystem::path& markdownFile,
-                                              const std::vector<std::filesystem::path>& sources);

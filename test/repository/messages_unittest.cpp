@@ -30,24 +30,3 @@ TEST(Messages, thatNobodySaysAreFound) {
   EXPECT_EQ(messagesNobodySays(folder / "file.md", {folder.path()}),
             (Findings{"file.md:5: has no bytes", "file.md:5: unknown key"}));
 }
-
-TEST(Messages, ofTheSourcesAreExplainedByTheHandbook) {
-  EXPECT_EQ(messagesWithoutEntry(kRoot / "doc/handbook/troubleshooting.md",
-                                 {kRoot / "libs", kRoot / "apps"}),
-            Findings());
-}
-
-TEST(Messages, thatAreNotExplainedAreFound) {
-  const TemporaryFolder folder;
-  folder.write(
-      "main.cpp",
-      "void fail(const std::string& what) { throw Error(file + \": \" + what); }  // \"none\"\n"
-      "if (a) fail(\"has \" + count + \" bytes too \"\n     \"many\");\n"
-      "throw Error(\"a \\\"word\\\" that \" + (b ? \"nobody\" : \"somebody\") + \" knows\");\n");
-  folder.write("file.md",
-               "| message | what |\n|---|---|\n| `has 3 bytes too many` | `a X that X knows` |\n");
-  EXPECT_EQ(messagesWithoutEntry(folder / "file.md", {folder.path()}),
-            Findings{"main.cpp:4: a \"word\" that *nobody*somebody* knows"});
-  folder.write("file.md", "| `has ... too many` | |\n| `a \"word\" that ... knows` | |\n");
-  EXPECT_EQ(messagesWithoutEntry(folder / "file.md", {folder.path()}), Findings());
-}
