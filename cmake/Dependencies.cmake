@@ -2,8 +2,8 @@
 # ThirdPartyTargets.cmake, in libs/mrpt_compat and, for its navigator, in
 # libs/semantic_driving/src/ReactiveSystem.h, nowhere else.
 
-# mso_external(TARGET DEBIAN_PACKAGE PACKAGE [arguments of find_package]): finds what libraries link. Those that hand
-# TARGET on to their users need it found again by the package's CMake config, and DEBIAN_PACKAGE beside the headers.
+# mso_external(TARGET DEBIAN_PACKAGES PACKAGE [arguments of find_package]): finds what libraries link. Those that hand
+# TARGET on to their users need it found again by the package's CMake config, and DEBIAN_PACKAGES beside the headers.
 macro(mso_external target debian)
   find_package(${ARGN} REQUIRED)
   set_property(GLOBAL PROPERTY MSO_FIND_${target} "${ARGN}")
@@ -22,7 +22,7 @@ macro(mso_external_mrpt name)
 endmacro()
 mso_external(Eigen3::Eigen libeigen3-dev Eigen3 NO_MODULE)
 mso_external(mso_octomap liboctomap-dev octomap)
-mso_external(mso_opencv libopencv-dev OpenCV COMPONENTS core imgproc imgcodecs calib3d dnn)
+mso_external(mso_opencv "libopencv-imgproc-dev;libopencv-imgcodecs-dev;libopencv-calib3d-dev;libopencv-dnn-dev" mso_opencv)
 mso_external(Threads::Threads libc6-dev Threads)
 mso_external(PNG::PNG libpng-dev PNG)
 mso_external(Freetype::Freetype libfreetype-dev Freetype)
@@ -57,7 +57,7 @@ if(MSO_BUILD_APPS OR MSO_BUILD_TESTS)
     target_include_directories(mso_ompl SYSTEM INTERFACE ${OMPL_INCLUDE_DIR})
     target_link_libraries(mso_ompl INTERFACE ${ompl_library})
   else()
-    message(WARNING "OMPL is not installed: planning-study, and tests that compare with OMPL, are left out")
+    message(STATUS "planning-study, and tests that compare with OMPL, are left out: there is no OMPL (libompl-dev)")
   endif()
 endif()
 

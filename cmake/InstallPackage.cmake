@@ -45,11 +45,14 @@ configure_package_config_file(cmake/mrpt_semantic_octree-config.cmake.in
   ${PROJECT_BINARY_DIR}/mrpt_semantic_octree-config.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/mrpt_semantic_octree-config-version.cmake
   COMPATIBILITY SameMinorVersion)
-configure_file(cmake/ThirdPartyTargets.cmake ${PROJECT_BINARY_DIR}/ThirdPartyTargets.cmake COPYONLY)
+foreach(file ThirdPartyTargets.cmake Findmso_opencv.cmake)
+  configure_file(cmake/${file} ${PROJECT_BINARY_DIR}/${file} COPYONLY)
+endforeach()
 install(FILES
   ${PROJECT_BINARY_DIR}/mrpt_semantic_octree-config.cmake
   ${PROJECT_BINARY_DIR}/mrpt_semantic_octree-config-version.cmake
   cmake/ThirdPartyTargets.cmake
+  cmake/Findmso_opencv.cmake
   DESTINATION ${package_dir} COMPONENT development)
 install(DIRECTORY config/ USE_SOURCE_PERMISSIONS DESTINATION ${CMAKE_INSTALL_DATADIR}/mrpt_semantic_octree/config
   COMPONENT tools)

@@ -7,13 +7,6 @@ if(octomap_FOUND AND NOT TARGET mso_octomap)
   target_link_libraries(mso_octomap INTERFACE ${OCTOMAP_LIBRARIES})
 endif()
 
-if(OpenCV_FOUND AND NOT TARGET mso_opencv)
-  add_library(mso_opencv INTERFACE IMPORTED)
-  target_include_directories(mso_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
-  target_link_libraries(mso_opencv INTERFACE
-    opencv_core opencv_imgproc opencv_imgcodecs opencv_calib3d opencv_dnn)
-endif()
-
 # MRPT 3 calls them mrpt::mrpt_X.
 foreach(library poses obs maps opengl graphs nav gui)
   if(TARGET mrpt::mrpt_${library} AND NOT TARGET mrpt::${library})

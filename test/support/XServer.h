@@ -21,12 +21,12 @@ inline ProgramRun runInX(const std::vector<std::string>& command) {
   return runProgram("/usr/bin/xvfb-run", all);
 }
 
-/** Whether programs were built with windows: MRPT has nanogui. */
+/** Whether programs were built with windows. */
 inline bool hasWindows() { return missingLibraryOf("semantic-map-view").empty(); }
 
 /** Skips the running test, saying so, where it cannot open windows and work with them. */
 #define SKIP_WITHOUT_WINDOWS()                                                           \
-  if (!hasWindows()) GTEST_SKIP() << "built without windows: MRPT has no nanogui";       \
+  if (!hasWindows()) GTEST_SKIP() << "built without windows";                            \
   if (const std::string missing = missingOf({"xvfb-run", "xauth", "xdotool", "import"}); \
       !missing.empty())                                                                  \
   GTEST_SKIP() << "needs " << missing

@@ -1,0 +1,20 @@
+# The libraries of OpenCV that this project uses, as the target mso_opencv. Found one by one: Debian's packages of single
+# libraries have no CMake files.
+find_path(MSO_OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4)
+mark_as_advanced(MSO_OPENCV_INCLUDE_DIR)
+set(mso_opencv_libraries)
+foreach(library core imgproc imgcodecs calib3d dnn)
+  find_library(MSO_OPENCV_${library} opencv_${library})
+  mark_as_advanced(MSO_OPENCV_${library})
+  list(APPEND mso_opencv_libraries MSO_OPENCV_${library})
+endforeach()
+
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(mso_opencv REQUIRED_VARS MSO_OPENCV_INCLUDE_DIR ${mso_opencv_libraries})
+if(mso_opencv_FOUND AND NOT TARGET mso_opencv)
+  add_library(mso_opencv INTERFACE IMPORTED)
+  target_include_directories(mso_opencv SYSTEM INTERFACE ${MSO_OPENCV_INCLUDE_DIR})
+  foreach(library ${mso_opencv_libraries})
+    target_link_libraries(mso_opencv INTERFACE ${${library}})
+  endforeach()
+endif()
