@@ -88,30 +88,6 @@ TEST(MapFolderFaults, whatCannotBeReadLeavesTheMapAsItWas) {
   EXPECT_TRUE(tiles.problems().empty());
 }
 
-TEST(MapFolderFaults, aBadIndexIsNamedWithItsLine) {
-  const TemporaryFolder folder;
-  saveScans(folder / "map", someScans(3, 2));
-  const fs::path index = folder / "map/index.yaml";
-  const std::string good = contentOf(index);
-  const auto errorWith = [&](const std::string& from, const std::string& to) {
-    std::string bad = good;
-    bad.replace(bad.find(from), from.size(), to);
-    write(index, bad);
-    const std::string error = errorOf([&] { loadTree(folder / "map"); });
-    EXPECT_TRUE(contains(error, index.string())) << error;
-    return error;
-  };
-  EXPECT_TRUE(contains(errorWith("version: 1", "version: 2"), "version of the format"));
-  EXPECT_TRUE(contains(errorWith("tile_size: 6.4", "tile_size: -3"), "tile_size"));
-  EXPECT_TRUE(contains(errorWith("nodes: ", "nodes: -"), "out of range"));
-  EXPECT_TRUE(contains(errorWith("nodes: ", "nodes: 9999999"), "out of range"));
-  EXPECT_TRUE(contains(errorWith("frame", "fame"), "unknown key 'fame'"));
-  EXPECT_TRUE(contains(errorWith("at: [", "at: [0.5, "), "at"));
-  EXPECT_FALSE(errorWith("highest: ", "highest: 9").empty());
-  write(index, good);
-  EXPECT_TRUE(errorOf([&] { loadTree(folder / "map"); }).empty());
-}
-
 TEST(MapFolderFaults, ofAnotherKindOfMapIsRefused) {
   const TemporaryFolder folder;
   saveScans(folder / "map", someScans(4, 2));
