@@ -2,7 +2,6 @@
 #include <sys/wait.h>
 
 #include <csignal>
-#include <fstream>
 
 #include "FolderDrive.h"
 #include "FullDisk.h"
@@ -23,15 +22,6 @@ SemanticOcTree mapOf(const std::vector<PosedCloud>& scans, std::size_t number) {
 std::vector<std::string> problemsOf(const fs::path& folder) {
   SemanticOcTree map = emptyMap();
   return MapFolder(map, folder, kRead, tight()).problems();
-}
-
-void write(const fs::path& file, const std::string& content) {
-  std::ofstream(file, std::ios::binary) << content;
-}
-
-std::string contentOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <regex>
