@@ -1,5 +1,6 @@
 #include <semantic_map/ExportPoints.h>
 #include <semantic_types/ClassColors.h>
+#include <strict_files/ClassicNumbers.h>
 #include <strict_files/Csv.h>
 
 #include <iomanip>
@@ -38,6 +39,7 @@ void writeBytes(std::ostream& out, const Values&... values) {
 }
 
 void writePlyHeader(std::ostream& out, const ClassTable& classes, std::size_t points) {
+  const strict_files::ClassicNumbers classic(out);
   out << "ply\nformat binary_little_endian 1.0\n";
   for (int id = 1; id <= classes.size(); ++id)
     out << "comment class " << id << " " << classes.name(static_cast<ClassId>(id)) << "\n";
@@ -69,6 +71,7 @@ void writePly(std::ostream& out, const SemanticOcTree& tree, const PointOptions&
 }
 
 void writeCsv(std::ostream& out, const SemanticOcTree& tree, const PointOptions& options) {
+  const strict_files::ClassicNumbers classic(out);
   out << "x,y,z,size,occupancy,class,name,probability\n" << std::setprecision(7);
   forEachState(tree, options, [&](const auto& leaf, const CellState& state) {
     const ClassId id = state.likeliestClass;

@@ -27,6 +27,16 @@ int lineOfSecondDocument(const std::string& text) {
   return 0;
 }
 
+/** As numberOf(); yaml-cpp reads numbers as the program's global locale has them. */
+bool decode(const YAML::Node& node, double& value) {
+  try {
+    if (node.IsScalar()) value = numberOf(node.Scalar());
+    return node.IsScalar();
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 std::string yamlText(const std::string& text) {
@@ -122,8 +132,17 @@ std::string StrictYaml::quoted(const YAML::Node& node) {
 
 double StrictYaml::number(const YAML::Node& node, const std::string& field) const {
   double value = NAN;
-  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value))
+  if (!decode(node, value) || !std::isfinite(value))
     fail(node, field + ": expected a number, found " + quoted(node));
+  return value;
+}
+
+double StrictYaml::whole(const YAML::Node& node, const std::string& expected, double low,
+                         double high) const {
+  double value = NAN;
+  if (!decode(node, value) || value != std::floor(value) || value < low || value > high ||
+      std::fabs(value) >= 0x1p53)  // others are rounded
+    fail(node, "expected " + expected + ", found " + quoted(node));
   return value;
 }
 

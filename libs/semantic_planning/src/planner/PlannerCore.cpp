@@ -1,6 +1,7 @@
 #include "PlannerCore.h"
 
 #include <colored_graph/ColoredAStar.h>
+#include <strict_files/ClassicNumbers.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,7 @@ PlanStatus atGoal(PlanStatus start) {
 std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPose2D& pose,
                      const Ground& ground) {
   std::ostringstream reason;
+  const strict_files::ClassicNumbers classic(reason);
   reason << "the " << what << " (" << pose.x << ", " << pose.y << ") ";
   if (status == PlanStatus::StartOffGround)
     reason << "is not on drivable ground: "
