@@ -1,7 +1,8 @@
 #include "MapBuilder.h"
 
 #include <labeled_cloud/ReadAhead.h>
-#include <semantic_octree/TreeFile.h>
+#include <semantic_octree/Abstraction.h>
+#include <semantic_octree/MapFolder.h>
 #include <strict_files/ErrorMessage.h>
 
 #include <cmath>
@@ -51,7 +52,7 @@ void MapBuilder::correctPoses(const semantic_slam::SlamOptions& options, const f
                               const fs::path& reference) {
   m_correction = std::make_unique<PoseCorrection>(m_map.tree(), options, folder);
   if (reference.empty()) return;
-  const semantic_octree::SemanticOcTree map = semantic_octree::loadTree(reference.string());
+  const semantic_octree::SemanticOcTree map = semantic_octree::loadMap(reference.string());
   if (options.useClasses && map.classes() != m_map.tree().classes())
     throw std::runtime_error(reference.string() +
                              ": its class table is another one than that of the scans");
@@ -105,7 +106,7 @@ void MapBuilder::insertScan(const StreamedObservation& observation) try {
   m_summary.add(scan.counts);
   m_summary.withoutLabels += scan.labelsMissing;
   m_summary.conversionTimes.push_back(observation.milliseconds);
-  if (m_map.tree().hasAbstraction()) noteAbstraction(scan, observation.T_map_robot);
+  if (hasAbstraction(m_map.tree())) noteAbstraction(scan, observation.T_map_robot);
   if (m_onScan) m_onScan(scan, observation.T_map_robot);
 } catch (const std::exception& e) {
   throw std::runtime_error(observation.name + ": " + strict_files::messageOf(e));

@@ -65,7 +65,7 @@ SemanticOcTree import(const fs::path& file, const fs::path& like) {
   const auto occupancy = semantic_map::readOctomapFile(file);
   if (like.empty())
     return semantic_octree::fromOcTree(*occupancy, CSemanticOctoMap::occupancyOnly());
-  const SemanticOcTree model = semantic_octree::loadTree(like.string());
+  const SemanticOcTree model = semantic_octree::loadMap(like.string());
   return semantic_octree::fromOcTree(*occupancy, model.classes(), model.filterParameters());
 }
 

@@ -15,7 +15,7 @@ int main(int argc, char** argv) try {
   semantic_octree::SemanticOcTree map(0.2, synthetic_world::classTable());
   semantic_octree::AbstractionOptions options;
   options.weights = {{tree_abstraction::relevant("road", 1.0, {synthetic_world::kRoad})}, 0.01};
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   semantic_octree::Abstraction compressed(map);
 
   for (double s = 0; s < 40; s += 4) {

@@ -26,7 +26,7 @@ int main(int argc, char** argv) try {
   std::cout << "starts on " << map.classes().name(below.likeliestClass) << "\n";
 
   const auto order = loadClassOrder(argv[2], map.classes());  // road before grass before ...
-  map.setAbstraction(abstractionFor(order));                  // keeps what the order tells apart
+  setAbstraction(map, abstractionFor(order));                 // keeps what the order tells apart
   std::cout << Abstraction(map).leaves().size() << " of " << map.getNumLeafNodes() << " leaves\n";
 
   SemanticPlanner planner(map, order);

@@ -218,7 +218,7 @@ TEST_F(SemanticMapExport, compressedMapsAreMapsToo) {
   options.blockSize = 3.2;
   options.weights.terms = {tree_abstraction::relevant("post", 1.0, {1})};
   options.weights.alpha = 0.05;
-  full.setAbstraction(options);
+  setAbstraction(full, options);
   const SemanticOcTree compressed = semantic_octree::Abstraction(full).compressedMap();
   ASSERT_LT(compressed.getNumLeafNodes(), map.getNumLeafNodes() / 4);
   saveTree(compressed, path("small.semantic"));

@@ -1,3 +1,4 @@
+#include <semantic_octree/Abstraction.h>
 #include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 
@@ -32,7 +33,7 @@ SemanticOcTree someMap() {
   semantic_octree::AbstractionOptions options;
   options.weights.terms = {tree_abstraction::relevant("road", 1.0, {1})};
   options.blockSize = 3.2;
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   return map;
 }
 
@@ -64,7 +65,7 @@ void readTiles(const fs::path& folder) {
   std::ostringstream content;
   content << std::ifstream(tile, std::ios::binary).rdbuf();
   std::ofstream(tile, std::ios::binary) << fileAround(content.str(), 2);
-  expectSound(semantic_octree::loadTree(folder.string()));
+  expectSound(semantic_octree::loadMap(folder.string()));
 }
 
 /** Each behind its length (2 bytes). */

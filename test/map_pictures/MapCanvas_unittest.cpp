@@ -209,7 +209,7 @@ TEST(MapCanvas, coarseCellsAreHatchedAndTheLegendSaysSo) {
   options.weights.terms = {tree_abstraction::relevant("wall", 1, {3})};
   options.weights.alpha = 1;
   options.blockSize = 1.6;
-  tree.setAbstraction(options);
+  setAbstraction(tree, options);
   MapCanvas fine = canvas(), coarse = canvas();
   fine.drawMap(tree, {});
   coarse.drawMap(semantic_octree::Abstraction(tree).compressedMap(), {});

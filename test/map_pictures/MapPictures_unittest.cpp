@@ -177,7 +177,7 @@ TEST(TopView, aMapOfOneEnormousCellIsDrawnWithoutEnormousMemory) {
   options.weights.alpha = 1;
   options.blockSize = 0;
   options.frame = semantic_octree::AbstractionOptions::Frame::Charged;
-  tree.setAbstraction(options);
+  setAbstraction(tree, options);
   const SemanticOcTree collapsed = semantic_octree::Abstraction(tree).compressedMap();
   ASSERT_EQ(collapsed.getNumLeafNodes(), 1u);
   const cv::Mat picture = renderTopView(collapsed, plain());

@@ -36,8 +36,8 @@ TEST_P(CorrectedStreet, isTheMapOfTheTruePosesToTheBit) {
   AbstractionOptions abstraction;
   abstraction.weights.terms = {tree_abstraction::relevant("1", 1, {1})};
   abstraction.weights.alpha = 0.002;
-  map.setAbstraction(abstraction);
-  expected.setAbstraction(abstraction);
+  setAbstraction(map, abstraction);
+  setAbstraction(expected, abstraction);
   KeyframeMap keyframes(map);
   InsertionOptions options;
   options.maxRange = 30;

@@ -5,6 +5,7 @@
 #include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <mrpt_compat/Drawing.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <sys/resource.h>
 #include <atomic>
@@ -117,7 +118,7 @@ TEST_F(InFolder, isSavedThereAndNowhereElse) {
   for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
     entries += entry.path().filename().string().rfind("saved", 0) == 0;
   EXPECT_EQ(entries, 0u);
-  EXPECT_TRUE(semantic_octree::loadTree((folder / "tiles").string()) == plain.tree());
+  EXPECT_TRUE(semantic_octree::loadMap((folder / "tiles").string()) == plain.tree());
 }
 
 TEST_F(InFolder, goesOnWhereItWasSaved) {
@@ -203,7 +204,7 @@ TEST_F(InFolder, isCopiedToMapsInMemory) {
   }
   EXPECT_TRUE(bytesOf(map) == bytes);
   map.folder()->save();
-  EXPECT_TRUE(semantic_octree::loadTree((folder / "tiles").string()) == plain.tree());
+  EXPECT_TRUE(semantic_octree::loadMap((folder / "tiles").string()) == plain.tree());
 }
 
 TEST_F(InFolder, isNotCopiedWhereThereIsNoMemoryForIt) {

@@ -29,7 +29,7 @@ SemanticOcTree mapOf(const std::vector<PosedCloud>& scans,
                      int threads = 1) {
   SemanticOcTree map(kTreeResolution, numberedClasses(kTreeClasses));
   map.setPruning(pruning);
-  if (options) map.setAbstraction(*options);
+  if (options) setAbstraction(map, *options);
   for (const PosedCloud& s : scans) map.insert(s.cloud, s.T_map_sensor, someInsertion(threads));
   return map;
 }
@@ -41,12 +41,12 @@ TEST(Abstraction, incrementalUpkeepEqualsBatchToTheLastBitAfterEveryScan) {
     for (int order = 0; order < 2; ++order) {
       SemanticOcTree map(kTreeResolution, numberedClasses(kTreeClasses));
       map.setPruning(pruning);
-      map.setAbstraction(options);
+      setAbstraction(map, options);
       for (const PosedCloud& s : scans) {
         map.insert(s.cloud, s.T_map_sensor, someInsertion());
         SemanticOcTree batch(map);
-        batch.dropAbstraction();
-        batch.setAbstraction(options);
+        dropAbstraction(batch);
+        setAbstraction(batch, options);
         ASSERT_TRUE(map == batch);
       }
       std::reverse(scans.begin(), scans.end());
@@ -113,7 +113,7 @@ TEST(Abstraction, prunedMapHasTheCompressedTreeOfTheUnprunedOne) {
 
 TEST(Abstraction, changesAddUpToTheLeaves) {
   SemanticOcTree map(kTreeResolution, numberedClasses(kTreeClasses));
-  map.setAbstraction(someOptions(0.01));
+  setAbstraction(map, someOptions(0.01));
   Abstraction abstraction(map);
   FollowedTree kept;
   for (const PosedCloud& s : scansOfSmallPlace(6, 3000, kTreeClasses, 9)) {
@@ -270,7 +270,7 @@ TEST(Abstraction, refusesBadOptionsAndNamesThem) {
     AbstractionOptions o = someOptions(0.01);
     change(o);
     try {
-      map.setAbstraction(o);
+      setAbstraction(map, o);
     } catch (const std::invalid_argument& e) {
       return std::string(e.what());
     }
@@ -291,7 +291,7 @@ TEST(Abstraction, refusesBadOptionsAndNamesThem) {
                  o.regions = {{Region::Shape::Sphere, {}, {}, -1, 1}};
                }),
                "radius");
-  EXPECT_FALSE(map.hasAbstraction());
+  EXPECT_FALSE(hasAbstraction(map));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // What follows a map that ages: files, G-values, changes, sums.
 #include <gtest/gtest.h>
+#include <semantic_octree/Abstraction.h>
 #include <semantic_octree/MapFolder.h>
 #include <semantic_octree/MapOperations.h>
 
@@ -52,14 +53,14 @@ TEST(Decay, mixturesGValuesAndTheCompressedTreesChangeFollow) {
     map.setPruning(seed % 3 != 0);
     AbstractionOptions options = abstraction(0.01 + 0.05 * (seed - 30));
     if (seed % 2 == 0) options.blockSize = 1.6;  // of 4 x 4 x 4 voxels
-    map.setAbstraction(options);
+    setAbstraction(map, options);
     FollowedTree told;
     for (int i = 0; i < 30; ++i) {
       i % 10 == 0 ? insertRandom(map, random, 0.2) : map.age(between(random, 0, 0.7));
       told.follow(Abstraction(map));
       ASSERT_FALSE(HasFailure()) << seed << ", " << i;
       SemanticOcTree anew = reloaded(map);
-      anew.setAbstraction(options);
+      setAbstraction(anew, options);
       ASSERT_TRUE(map == anew) << seed << ", " << i;
     }
   }
@@ -70,7 +71,7 @@ TEST(Decay, aBlockThatIsNotWorthItsPriceAnyMoreIsTold) {
   SemanticOcTree map(0.5, classes(false));
   AbstractionOptions options = abstraction(0.01);
   options.blockSize = 2;
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   LabeledCloud cloud;
   cloud.points = {{0.25f, 0.25f, 0.25f}, {1.25f, 1.25f, 1.25f}};
   cloud.classes = {1, 2};

@@ -94,7 +94,7 @@ class Maps {
   Maps(int classes, const FilterParameters& p)
       : pruned(1.0, numberedClasses(classes), p), plain(1.0, classes, p) {
     unpruned.setPruning(false);
-    abstracted.setAbstraction(someTerms());
+    setAbstraction(abstracted, someTerms());
   }
   void insert(const PosedCloud& scan) {
     InsertionOptions threads;
@@ -113,7 +113,7 @@ class Maps {
     EXPECT_TRUE(shared == pruned) << "by several threads";
     EXPECT_EQ(shared.size(), pruned.size());
     SemanticOcTree anew = pruned;
-    anew.setAbstraction(someTerms());
+    setAbstraction(anew, someTerms());
     EXPECT_TRUE(abstracted == anew) << "bookkeeping that is kept up to date";
   }
 

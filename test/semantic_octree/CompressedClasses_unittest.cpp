@@ -55,7 +55,7 @@ TEST(CompressedClasses, ofACompressedCellAreThoseOfItsVoxelsInWhichLabelsWereSee
   options.weights.terms = {tree_abstraction::relevant("posts", 1.0, {1})};
   options.weights.alpha = 0.02;
   options.blockSize = 3.2;
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   const Abstraction abstraction(map);
   const SemanticOcTree compressed = abstraction.compressedMap();
   std::map<unsigned, std::map<VoxelId, std::vector<double>>> sums;

@@ -83,7 +83,7 @@ TEST(CountedLeaves, ofEachTreeOnThePathAreTheCompressedTreesForEveryBlockSize) {
         ASSERT_LE(shallowest, 13u) << "there are leaves larger than some blocks";
       }
       for (const double blockSize : {0.2, 0.4, 0.8, 1.6, 3.2, 12.8}) {
-        map.setAbstraction(optionsWith(blockSize));
+        setAbstraction(map, optionsWith(blockSize));
         Abstraction abstraction(map);
         const Abstraction::Path path = abstraction.alphaPath();
         const auto totals = path.trees.totals(path.addedLeaves, double(path.numRoots));
@@ -95,7 +95,7 @@ TEST(CountedLeaves, ofEachTreeOnThePathAreTheCompressedTreesForEveryBlockSize) {
           ASSERT_EQ(abstraction.measures().compressed.numKnownLeaves, counts.leaves);
           ASSERT_EQ(abstraction.leaves().size(), counts.inBlocks);
         }
-        map.dropAbstraction();
+        dropAbstraction(map);
       }
     }
   }
@@ -104,7 +104,7 @@ TEST(CountedLeaves, ofEachTreeOnThePathAreTheCompressedTreesForEveryBlockSize) {
 TEST(CountedLeaves, wantedInAnyNumberFromTheRootsToTheWholeMapAreGranted) {
   for (const double blockSize : {0.4, 0.8, 3.2}) {
     SemanticOcTree map = mapWithLargeLeaves(4, true);
-    map.setAbstraction(optionsWith(blockSize));
+    setAbstraction(map, optionsWith(blockSize));
     Abstraction abstraction(map);
     const Abstraction::Path path = abstraction.alphaPath();
     const auto totals = path.trees.totals(path.addedLeaves, double(path.numRoots));

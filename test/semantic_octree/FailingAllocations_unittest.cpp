@@ -28,7 +28,7 @@ SemanticOcTree mapOf(unsigned seed, int numScans, bool withAbstraction) {
     options.weights.terms = {tree_abstraction::relevant("1", 1, {1}),
                              tree_abstraction::irrelevant("2", 0.5, {2})};
     options.weights.alpha = 0.01;
-    map.setAbstraction(options);
+    setAbstraction(map, options);
   }
   for (int i = 0; i < numScans; ++i) {
     const PosedCloud scan = randomScan(random);
@@ -111,7 +111,7 @@ TEST(FailingAllocations, elsewhereLeaveTheMapAsItWas) {
   const Eigen::Isometry3d T(Eigen::Translation3d(0.3, 1, 0) *
                             Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()));
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { SemanticOcTree copy = m; }), 3);
-  EXPECT_GT(sweep(map, [](SemanticOcTree& m) { m.setAbstraction(Abstraction(m).options()); }), 3);
+  EXPECT_GT(sweep(map, [](SemanticOcTree& m) { setAbstraction(m, Abstraction(m).options()); }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { Abstraction(m).leaves(); }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { Abstraction(m).alphaPath(); }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { Abstraction(m).compressedMap(); }), 3);
@@ -217,7 +217,7 @@ TEST(FailingAllocations, whileTilesComeAndGoLeaveTheMapOrABrokenOne) {
         EXPECT_EQ(bytesOf(*map), expected);
       });
   EXPECT_LT(broken, failures);
-  EXPECT_EQ(bytesOf(loadTree(folder.path().string())), expected);
+  EXPECT_EQ(bytesOf(loadMap(folder.path().string())), expected);
 }
 
 TEST(FailingAllocations, whileAMapIsSavedLeaveTheOldFile) {

@@ -1,6 +1,7 @@
 // Maps that are made of others, in folders of tiles: what would not fit into memory as a whole.
 #include <gtest/gtest.h>
 #include <semantic_octree/Abstraction.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/MapOperations.h>
 
 #include <strict_files/Words.h>
@@ -19,7 +20,7 @@ std::vector<SemanticOcTree> someMaps() {
     insertAll(maps.back(), someScans(seed, 8));
   }
   SemanticOcTree full = maps.front();
-  full.setAbstraction(someAbstraction());
+  setAbstraction(full, someAbstraction());
   maps.push_back(Abstraction(full).compressedMap());
   return maps;
 }
@@ -35,7 +36,7 @@ void expectFilled(const SemanticOcTree& expected, const F& fill) {
     EXPECT_TRUE(stored.tree() == expected);
     EXPECT_EQ(stored.tree().getNumLeafNodes(), expected.getNumLeafNodes());
     stored.folder()->save();
-    EXPECT_TRUE(loadTree(folder / "map") == expected);
+    EXPECT_TRUE(loadMap(folder / "map") == expected);
     EXPECT_EQ(bytesOf(stored.tree()), bytesOf(expected));
   }
 }
@@ -67,8 +68,8 @@ TEST(FilledFolders, compressedTreesAreThoseInMemory) {
     StoredMap stored(folder / "map", tight().memory);
     AbstractionOptions options = someAbstraction();
     options.frame = frame;
-    whole.setAbstraction(options);
-    stored.tree().setAbstraction(options);
+    setAbstraction(whole, options);
+    setAbstraction(stored.tree(), options);
     expectFilled(Abstraction(whole).compressedMap(), [&](SemanticOcTree& compressed) {
       Abstraction(stored.tree()).compressTo(compressed);
     });
@@ -95,19 +96,19 @@ TEST(FilledFolders, abstractionIsKeptAnewAndNoMoreWhereverTilesAre) {
   AbstractionOptions more = someAbstraction();
   more.weights.terms.push_back(tree_abstraction::relevant("3", 1, {3, 4}));
   for (const AbstractionOptions& options : {someAbstraction(), more}) {
-    whole.setAbstraction(options);
-    map.setAbstraction(options);
+    setAbstraction(whole, options);
+    setAbstraction(map, options);
     EXPECT_TRUE(map == whole);
   }
-  whole.dropAbstraction();
-  map.dropAbstraction();
+  dropAbstraction(whole);
+  dropAbstraction(map);
   EXPECT_TRUE(map == whole);
   EXPECT_EQ(map.size(), whole.size());
   insertAll(whole, scans);
   insertAll(map, scans);
   EXPECT_TRUE(map == whole);
   tiles.save();
-  EXPECT_TRUE(loadTree(folder / "map") == whole);
+  EXPECT_TRUE(loadMap(folder / "map") == whole);
 }
 
 TEST(FilledFolders, refuseWhatIsNoTarget) {
@@ -115,7 +116,7 @@ TEST(FilledFolders, refuseWhatIsNoTarget) {
   SemanticOcTree map = emptyMap();
   insertAll(map, someScans(27, 3));
   SemanticOcTree full = map, other(0.2, numberedClasses(5)), watched = emptyMap();
-  watched.setAbstraction(someAbstraction());
+  setAbstraction(watched, someAbstraction());
   for (SemanticOcTree* target : {&full, &other, &watched}) {
     EXPECT_THROW(copyTo(*target, map), std::invalid_argument);
     EXPECT_THROW(mergeTo(*target, {&map}), std::invalid_argument);
@@ -129,7 +130,7 @@ TEST(FilledFolders, refuseWhatIsNoTarget) {
 TEST(FilledFolders, thatDoNotFitIntoMemorySayHowMuchTheyNeed) {
   const TemporaryFolder folder;
   saveScans(folder / "map", someScans(28, 8));
-  const SemanticOcTree whole = loadTree(folder / "map");
+  const SemanticOcTree whole = loadMap(folder / "map");
   StoredMap stored(folder / "map", 0);
   const std::string message = errorOf([&] { stored.folder()->bringAll(whole.memoryUsage() / 4); });
   EXPECT_TRUE(contains(message, (folder / "map").string())) << message;

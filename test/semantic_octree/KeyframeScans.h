@@ -40,7 +40,7 @@ inline SemanticOcTree emptyMap(const Variant& variant, const FilterParameters& f
     if (variant.ages) classes.setHalfLife(id, 0.7 + 0.4 * id);
   SemanticOcTree map(0.4, classes, filter);
   map.setPruning(variant.pruning);
-  map.setAbstraction(abstractionOf(variant));
+  setAbstraction(map, abstractionOf(variant));
   return map;
 }
 

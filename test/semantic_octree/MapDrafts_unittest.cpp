@@ -44,8 +44,8 @@ TEST(MapDrafts, becomeTheMapInOnePieceAndLeaveTheFolderAsItIs) {
     insertAll(whole, firstOf(scans, 6));
     {
       MapFolder draft(map, folder / "map", kDraft, draftIn(folder / "draft"));
-      map.setAbstraction(someAbstraction());
-      whole.setAbstraction(someAbstraction());
+      setAbstraction(map, someAbstraction());
+      setAbstraction(whole, someAbstraction());
       EXPECT_FALSE(map.isReadOnly());
       for (std::size_t i = 6; i < scans.size(); ++i) {
         insertAll(map, {scans[i]});
@@ -97,7 +97,7 @@ TEST(MapDrafts, ofMapsInOneFileAreTheMap) {
 TEST(MapDrafts, leavesThatWereTakenAreCountedAsScansComeIn) {
   const auto scans = someScans(7, 12);
   SemanticOcTree map = emptyMap();
-  map.setAbstraction(someAbstraction());
+  setAbstraction(map, someAbstraction());
   Abstraction abstraction(map);
   EXPECT_EQ(abstraction.numTakenLeaves(), 0u);
   for (const PosedCloud& scan : scans) {
@@ -114,7 +114,7 @@ TEST(MapDrafts, whatWasForgottenIsNotToldAndAllElseIs) {
   const auto scans = someScans(8, 12);
   SemanticOcTree map = emptyMap(), same = emptyMap();
   std::size_t changes = 0;
-  for (SemanticOcTree* each : {&map, &same}) each->setAbstraction(someAbstraction());
+  for (SemanticOcTree* each : {&map, &same}) setAbstraction(*each, someAbstraction());
   for (std::size_t i = 0; i + 1 < scans.size(); i += 2) {
     for (SemanticOcTree* each : {&map, &same}) insertAll(*each, {scans[i]});
     Abstraction(map).forgetChange();

@@ -57,7 +57,7 @@ TEST(MapFolderFaults, aBadTileIsNamedAndTheRestIsUsable) {
     ASSERT_EQ(problems.size(), 1u) << message;
     EXPECT_TRUE(contains(problems[0], files[3])) << problems[0];
     EXPECT_TRUE(contains(problems[0], message)) << problems[0];
-    EXPECT_TRUE(contains(errorOf([&] { loadTree(folder / "map"); }), files[3]));
+    EXPECT_TRUE(contains(errorOf([&] { loadMap(folder / "map"); }), files[3]));
   }
   fs::remove(files[3]);
   EXPECT_EQ(problemsOf(folder / "map").size(), 1u);
@@ -97,7 +97,7 @@ TEST(MapFolderFaults, aBadIndexIsNamedWithItsLine) {
     std::string bad = good;
     bad.replace(bad.find(from), from.size(), to);
     write(index, bad);
-    const std::string error = errorOf([&] { loadTree(folder / "map"); });
+    const std::string error = errorOf([&] { loadMap(folder / "map"); });
     EXPECT_TRUE(contains(error, index.string())) << error;
     return error;
   };
@@ -109,7 +109,7 @@ TEST(MapFolderFaults, aBadIndexIsNamedWithItsLine) {
   EXPECT_TRUE(contains(errorWith("at: [", "at: [0.5, "), "at"));
   EXPECT_FALSE(errorWith("highest: ", "highest: 9").empty());
   write(index, good);
-  EXPECT_TRUE(errorOf([&] { loadTree(folder / "map"); }).empty());
+  EXPECT_TRUE(errorOf([&] { loadMap(folder / "map"); }).empty());
 }
 
 TEST(MapFolderFaults, ofAnotherKindOfMapIsRefused) {
@@ -141,12 +141,12 @@ TEST(MapFolderFaults, oneWritesAndOthersReadWhatWasSaved) {
     insertAll(map, {scans.begin() + 4, scans.end()});
     writer.save();
     EXPECT_TRUE(readers == mapOf(scans, 4));  // nothing that it needs was removed
-    EXPECT_TRUE(loadTree(folder / "map") == mapOf(scans, 8));
+    EXPECT_TRUE(loadMap(folder / "map") == mapOf(scans, 8));
   }
   const std::size_t before = tileFiles(folder / "map").size();
   writer.save();
   EXPECT_LT(tileFiles(folder / "map").size(), before);  // now it was
-  EXPECT_TRUE(loadTree(folder / "map") == mapOf(scans, 8));
+  EXPECT_TRUE(loadMap(folder / "map") == mapOf(scans, 8));
 }
 
 TEST(MapFolderFaults, aFullDiskLosesNothing) {
@@ -169,9 +169,9 @@ TEST(MapFolderFaults, aFullDiskLosesNothing) {
     const FullDisk full(100);
     EXPECT_THROW(tiles.save(), std::runtime_error);
   }
-  EXPECT_TRUE(loadTree(folder / "map") == mapOf(scans, 4));
+  EXPECT_TRUE(loadMap(folder / "map") == mapOf(scans, 4));
   tiles.save();
-  EXPECT_TRUE(loadTree(folder / "map") == mapOf(scans, 8));
+  EXPECT_TRUE(loadMap(folder / "map") == mapOf(scans, 8));
 }
 
 TEST(MapFolderFaults, killedAtAnyMomentItIsWhatWasSavedLast) {
@@ -192,12 +192,12 @@ TEST(MapFolderFaults, killedAtAnyMomentItIsWhatWasSavedLast) {
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     if (!MapFolder::isAt(folder / "map")) continue;  // it was killed before
-    const SemanticOcTree found = loadTree(folder / "map");
+    const SemanticOcTree found = loadMap(folder / "map");
     bool isOne = false;
     for (std::size_t n = 3; n <= scans.size(); n += 3) isOne |= found == mapOf(scans, n);
     EXPECT_TRUE(isOne);
     saveScans(folder / "map", {});  // the next one clears up
     const auto files = tileFiles(folder / "map");
-    for (const auto& file : files) EXPECT_NO_THROW(loadTree(file));
+    for (const auto& file : files) EXPECT_NO_THROW(loadMap(file));
   }
 }

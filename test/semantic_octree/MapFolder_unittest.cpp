@@ -2,6 +2,7 @@
 #include <semantic_octree/Abstraction.h>
 #include <semantic_octree/KeyframeMap.h>
 #include <semantic_octree/MapContents.h>
+#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/MapOperations.h>
 
 #include "FolderDrive.h"
@@ -65,9 +66,9 @@ TEST(MapFolder, isTheMapInOnePieceToTheLastBit) {
     EXPECT_TRUE(map == whole);
     EXPECT_EQ(bytesOf(map), bytesOf(whole));
     tiles.save();
-    EXPECT_TRUE(loadTree(folder / "map") == whole);
-    EXPECT_EQ(loadTree(folder / "map").size(), whole.size());
-    EXPECT_EQ(loadTree(folder / "map").memoryUsage(), whole.memoryUsage());
+    EXPECT_TRUE(loadMap(folder / "map") == whole);
+    EXPECT_EQ(loadMap(folder / "map").size(), whole.size());
+    EXPECT_EQ(loadMap(folder / "map").memoryUsage(), whole.memoryUsage());
   }
 }
 
@@ -83,7 +84,7 @@ TEST(MapFolder, goesOnWhereAnotherEnded) {
       insertAll(map, {scans.begin() + i, scans.begin() + i + 3});
       if (again) tiles.save();
     }
-  EXPECT_TRUE(loadTree(folder / "map") == whole);
+  EXPECT_TRUE(loadMap(folder / "map") == whole);
 }
 
 TEST(MapFolder, staysWithinItsBudgetButForAScan) {
@@ -109,7 +110,7 @@ TEST(MapFolder, keepsWhatWasUsedLast) {
   saveScans(folder / "map", someScans(4, 6));
   SemanticOcTree map = emptyMap();
   MapFolderOptions options = tight();
-  options.memory = 1e-6 * static_cast<double>(loadTree(folder / "map").memoryUsage()) / 2;
+  options.memory = 1e-6 * static_cast<double>(loadMap(folder / "map").memoryUsage()) / 2;
   MapFolder tiles(map, folder / "map", kRead, options);
   const auto ask = [&](std::size_t i) {
     const Eigen::Vector3d center = 6.4 * (placeOf(tileFiles(folder / "map")[i]).array() + 0.5);
@@ -134,7 +135,7 @@ TEST(MapFolder, aTilesFileIsAMapOfItsCubeAlone) {
   std::map<VoxelId, std::vector<double>> all;
   for (const auto& file : tileFiles(folder / "map")) {
     const Eigen::Vector3d at = placeOf(file);
-    const SemanticOcTree tile = loadTree(file);
+    const SemanticOcTree tile = loadMap(file);
     const auto voxels = voxelsOf(tile);
     for (const auto& [voxel, p] : voxels)
       for (int axis = 0; axis < 3; ++axis)
@@ -143,7 +144,7 @@ TEST(MapFolder, aTilesFileIsAMapOfItsCubeAlone) {
   }
   for (const auto& file : std::filesystem::directory_iterator(folder / "map"))
     if (file.path().filename().string().rfind("leaves", 0) == 0) {
-      const auto voxels = voxelsOf(loadTree(file.path()));
+      const auto voxels = voxelsOf(loadMap(file.path()));
       EXPECT_FALSE(voxels.empty());  // what is free as a whole
       all.insert(voxels.begin(), voxels.end());
     }
@@ -159,12 +160,12 @@ TEST(MapFolder, abstractionByTileIsThatOfTheWhole) {
       options.frame = frame;
       options.regions = {{Region::Shape::Sphere, {1, 2, 0}, {}, 5, 3}};
       SemanticOcTree whole = emptyMap(), map = emptyMap();
-      whole.setAbstraction(options);
+      setAbstraction(whole, options);
       MapFolder tiles(map, folder / "map", kWrite, tight(before ? 6.4 : 12.8));
-      if (before) map.setAbstraction(options);
+      if (before) setAbstraction(map, options);
       insertAll(whole, scans);
       insertAll(map, scans);
-      if (!before) map.setAbstraction(options);
+      if (!before) setAbstraction(map, options);
       Abstraction a(map), b(whole);
       const auto expectSame = [&] {
         EXPECT_EQ(a.objective(), b.objective());
@@ -189,8 +190,8 @@ TEST(MapFolder, abstractionByTileIsThatOfTheWhole) {
 TEST(MapFolder, tellsWhatChangedOfTheCompressedTree) {
   const TemporaryFolder folder;
   SemanticOcTree whole = emptyMap(), map = emptyMap();
-  whole.setAbstraction(someAbstraction());
-  map.setAbstraction(someAbstraction());
+  setAbstraction(whole, someAbstraction());
+  setAbstraction(map, someAbstraction());
   MapFolder tiles(map, folder / "map", kWrite, tight());
   for (const PosedCloud& scan : someScans(7, 8)) {
     whole.insert(scan.cloud, scan.T_map_sensor);
@@ -252,7 +253,7 @@ TEST(MapFolder, anEmptyMapIsOne) {
   const TemporaryFolder folder;
   saveScans(folder / "map", {});
   EXPECT_TRUE(MapFolder::isAt(folder / "map"));
-  EXPECT_TRUE(loadTree(folder / "map") == emptyMap());
+  EXPECT_TRUE(loadMap(folder / "map") == emptyMap());
 }
 
 TEST(MapFolder, withoutTilesThatAreNotWantedTheirCubesAreUnknown) {

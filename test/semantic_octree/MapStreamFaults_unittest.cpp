@@ -51,11 +51,11 @@ TEST(MapStreamFaults, mapsOfAnotherKindAreNoChange) {
   sender.accept(receiver.receipt());
   ASSERT_TRUE(sender.isComplete());
   SemanticOcTree other(0.2, numberedClasses(K + 1));
-  other.setAbstraction(someOptions(0.01));
+  setAbstraction(other, someOptions(0.01));
   EXPECT_TRUE(contains(errorOf([&] { sender.setMap(other); }), "class table"));
   AbstractionOptions options = someOptions(0.01);
   options.blockSize = 6.4;
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   EXPECT_TRUE(contains(errorOf([&] { sender.setMap(map); }), "blocks"));
 }
 

@@ -65,13 +65,13 @@ CellSet idsOf(const std::vector<LeafCell>& leaves) {
 TEST(MovingRegions, leaveGValuesAndLeavesOfAMapThatHadThemFromTheStartToTheLastBit) {
   const auto scans = scansOfSmallPlace(9, 2000, kRegionClasses, 4);
   SemanticOcTree moved(kRegionResolution, numberedClasses(kRegionClasses));
-  moved.setAbstraction(threeTerms(0.002, kRegionClasses, 0.05));
+  setAbstraction(moved, threeTerms(0.002, kRegionClasses, 0.05));
   CellSet kept;
   for (int i = 0; i < static_cast<int>(scans.size()); ++i) {
     Abstraction(moved).setRegions(regionsOf(i));
     insert(moved, scans[i]);
     SemanticOcTree fresh(kRegionResolution, numberedClasses(kRegionClasses));
-    fresh.setAbstraction(optionsOf(i, 0.002));
+    setAbstraction(fresh, optionsOf(i, 0.002));
     for (int j = 0; j <= i; ++j) insert(fresh, scans[j]);
     ASSERT_TRUE(moved == fresh) << i;
     const TreeChange change = Abstraction(moved).takeChange();
@@ -86,7 +86,7 @@ TEST(MovingRegions, leaveTheTreeOfThePlainSearchWithTheDensityOfEachVoxel) {
   const auto scans = scansOfSmallPlace(9, 2000, kRegionClasses, 4);
   for (const double alpha : {0.0, 0.002, 0.02}) {
     SemanticOcTree map(kRegionResolution, numberedClasses(kRegionClasses));
-    map.setAbstraction(optionsOf(0, alpha));
+    setAbstraction(map, optionsOf(0, alpha));
     for (const PosedCloud& scan : scans) insert(map, scan);
     for (const int at : {2, 5, 8}) {
       Abstraction(map).setRegions(regionsOf(at));

@@ -23,7 +23,7 @@ AbstractionOptions optionsWith(double blockSize, AbstractionOptions::Frame frame
 
 SemanticOcTree smallMap(const AbstractionOptions& options) {
   SemanticOcTree map(0.2, numberedClasses(kPathClasses));
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   InsertionOptions insertion;
   insertion.maxRange = 9;
   for (const PosedCloud& s : scansOfSmallPlace(3, 2000, kPathClasses, 5))
@@ -95,7 +95,7 @@ TEST(PathInformation, isToldNodeByNodeToo) {
 TEST(PathInformation, isNoneWhereNothingIsKnownOrCounts) {
   const AbstractionOptions options = optionsWith(0.8, AbstractionOptions::Frame::Free);
   SemanticOcTree empty(0.2, numberedClasses(kPathClasses));
-  empty.setAbstraction(options);
+  setAbstraction(empty, options);
   EXPECT_TRUE(Abstraction(empty).pathInformation({1, 1, 1}).added.empty());
   SemanticOcTree map = smallMap(options);
   Abstraction abstraction(map);

@@ -1,4 +1,5 @@
 #pragma once
+#include <semantic_octree/Abstraction.h>
 #include <semantic_octree/MapStream.h>
 #include <semantic_octree/TreeFile.h>
 
@@ -18,7 +19,7 @@ inline AbstractionOptions someOptions(double alpha) { return threeTerms(alpha, K
 inline SemanticOcTree mapOf(const std::vector<PosedCloud>& scans,
                             const AbstractionOptions& options) {
   SemanticOcTree map(0.2, numberedClasses(K));
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   for (const PosedCloud& s : scans) map.insert(s.cloud, s.T_map_sensor);
   return map;
 }

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <semantic_octree/Abstraction.h>
 
 #include "PlainMap.h"
 #include "RandomScans.h"
@@ -51,13 +52,13 @@ TEST(Tree, keepsItsNodesWhereBookkeepingComesAndGoes) {
   AbstractionOptions options;
   for (unsigned seed = 20; seed < 24; ++seed) {
     options.weights.terms.push_back(tree_abstraction::relevant(std::to_string(seed), 1, {1}));
-    tree.setAbstraction(options);
+    setAbstraction(tree, options);
     EXPECT_TRUE(tree == plain);
     SemanticOcTree copy = tree;
     for (SemanticOcTree* map : {&plain, &tree, &copy}) insertOne(*map, seed);
     EXPECT_TRUE(copy == tree);
     EXPECT_TRUE(tree == plain);
-    if (seed % 2) tree.dropAbstraction();
+    if (seed % 2) dropAbstraction(tree);
     insertOne(copy, seed + 10);
     EXPECT_FALSE(copy == tree);
     EXPECT_TRUE(tree == plain);

@@ -182,7 +182,7 @@ void run(const std::string& folder, int size, double memory, bool compress) {
   say(tiles, map);
   if (compress) {
     begin = seconds();
-    map.setAbstraction(abstraction());
+    setAbstraction(map, abstraction());
     StoredMap compressed(Abstraction(map).emptyCompressedMap(), folder + "/compressed",
                          {memory / 10, options.tileSize});
     Abstraction(map).compressTo(compressed.tree());

@@ -3,6 +3,7 @@
 #include <Scan.h>
 #include <ScanMerger.h>
 #include <benchmark/benchmark.h>
+#include <semantic_octree/Abstraction.h>
 #include <semantic_octree/SmoothedView.h>
 #include <semantic_octree/TreeFile.h>
 
@@ -42,7 +43,7 @@ SemanticOcTree streetMap(double resolution, int scans, bool withAbstraction = fa
   for (int i = 1; i <= 4; ++i)
     options.weights.terms.push_back(tree_abstraction::relevant(std::to_string(i), 1, {i}));
   options.weights.alpha = 0.02;
-  if (withAbstraction) map.setAbstraction(options);
+  if (withAbstraction) setAbstraction(map, options);
   for (int i = 0; i < scans; ++i) map.insert(street().cloud, street().T_map_sensor, insertion());
   return map;
 }

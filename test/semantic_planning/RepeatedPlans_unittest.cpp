@@ -113,7 +113,7 @@ TEST_F(RepeatedPlansTest, planAsFreshPlannersDoWithClassesOfLeavesInMapsWithLarg
   options.roadmap.spacing = 6.4;
   auto abstraction = abstractionFor(order);
   abstraction.blockSize = 12.8;
-  world.map().setAbstraction(abstraction);
+  setAbstraction(world.map(), abstraction);
   expectAnswersOfFreshPlanners(8);
 }
 

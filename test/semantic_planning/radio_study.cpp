@@ -193,7 +193,7 @@ class Study {
   void stream() {
     SemanticOcTree map = m_map;
     m_options.weights.alpha = 0;
-    map.setAbstraction(m_options);
+    setAbstraction(map, m_options);
     semantic_octree::MapSender sender(1);
     sender.setMap(map);
     semantic_octree::MapReceiver receiver(1);

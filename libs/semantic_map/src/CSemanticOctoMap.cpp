@@ -1,5 +1,6 @@
 #include <labeled_cloud/ScanConverter.h>
 #include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_octree/Abstraction.h>
 #include <strict_files/Words.h>
 
 #include <sstream>
@@ -62,11 +63,11 @@ void CSemanticOctoMap::setAbstraction(const TAbstractionOptions& options) {
   TAbstractionOptions kept = options;
   try {
     if (options.isSet())
-      m_tree.setAbstraction(options.forClasses(m_tree.classes()));
+      semantic_octree::setAbstraction(m_tree, options.forClasses(m_tree.classes()));
     else
-      m_tree.dropAbstraction();
+      semantic_octree::dropAbstraction(m_tree);
   } catch (...) {  // of a map in a folder none is left where a tile cannot be read
-    if (!m_tree.hasAbstraction()) m_abstractionOptions = {};
+    if (!semantic_octree::hasAbstraction(m_tree)) m_abstractionOptions = {};
     throw;
   }
   m_abstractionOptions = std::move(kept);
@@ -159,7 +160,7 @@ void CSemanticOctoMap::useFilterOfOptions() {
   SemanticOcTree tree(m_tree.getResolution(), m_tree.classes(), insertionOptions.filter);
   tree.setPruning(m_tree.pruning());
   if (m_abstractionOptions.isSet())
-    tree.setAbstraction(m_abstractionOptions.forClasses(tree.classes()));
+    semantic_octree::setAbstraction(tree, m_abstractionOptions.forClasses(tree.classes()));
   m_tree = std::move(tree);
 }
 

@@ -6,9 +6,11 @@
 namespace semantic_octree {
 namespace {
 
-GTree& gTreeOf(GTree* gTree) {
-  if (!gTree) throw std::logic_error("the map keeps no G-values: call setAbstraction() first");
-  return *gTree;
+GTree* gTreeOf(const SemanticOcTree& map) { return dynamic_cast<GTree*>(MapAccess::observer(map)); }
+
+GTree& neededGTreeOf(const SemanticOcTree& map) {
+  if (GTree* const gTree = gTreeOf(map)) return *gTree;
+  throw std::logic_error("the map keeps no G-values: call setAbstraction() first");
 }
 
 using IsExpanded = std::function<bool(const Node&)>;
@@ -16,18 +18,18 @@ using IsExpanded = std::function<bool(const Node&)>;
 /** A map's nodes, down to the compressed tree's leaves (see TreeBuilder). */
 class CompressedCursor {
  public:
-  CompressedCursor(const SemanticOcTree& map, const IsExpanded& isExpanded, const Node& node)
-      : m_map(map),
+  CompressedCursor(int numClasses, const IsExpanded& isExpanded, const Node& node)
+      : m_numClasses(numClasses),
         m_isExpanded(isExpanded),
         m_node(node),
         m_isLeaf(!node || node.isLeaf() || !isExpanded(node)) {}
   bool known() const { return static_cast<bool>(m_node); }
   bool isLeaf() const { return m_isLeaf; }
-  LeafContent content() const { return contentOf(m_map, m_node); }
-  CompressedCursor child(int i) const { return {m_map, m_isExpanded, m_node.child(i)}; }
+  LeafContent content() const { return contentOf(m_node, m_numClasses); }
+  CompressedCursor child(int i) const { return {m_numClasses, m_isExpanded, m_node.child(i)}; }
 
  private:
-  const SemanticOcTree& m_map;
+  int m_numClasses;
   const IsExpanded& m_isExpanded;
   Node m_node;
   bool m_isLeaf;
@@ -48,9 +50,19 @@ std::optional<double> AbstractionMeasures::retention(std::size_t term) const {
   return compressed.information[term] / full.information[term];
 }
 
-Abstraction::Abstraction(SemanticOcTree& map) : m_map(map), m_gTree(gTreeOf(map.m_gTree.get())) {}
+void setAbstraction(SemanticOcTree& map, const AbstractionOptions& options) {
+  options.validate(map.numClasses());
+  MapAccess::setObserver(
+      map, std::make_unique<GTree>(options, MapAccess::filter(map), map.getResolution()));
+}
 
-CompressedTree Abstraction::compressedTree() const { return {m_map.store(), m_gTree}; }
+void dropAbstraction(SemanticOcTree& map) { MapAccess::setObserver(map, nullptr); }
+
+bool hasAbstraction(const SemanticOcTree& map) { return gTreeOf(map) != nullptr; }
+
+Abstraction::Abstraction(SemanticOcTree& map) : m_map(map), m_gTree(neededGTreeOf(map)) {}
+
+CompressedTree Abstraction::compressedTree() const { return {MapAccess::store(m_map), m_gTree}; }
 
 const AbstractionOptions& Abstraction::options() const { return m_gTree.options(); }
 
@@ -87,7 +99,7 @@ std::vector<LeafCell> Abstraction::leavesIn(const octomap::OcTreeKey& low,
 }
 
 double Abstraction::objective() const {
-  const Slot& root = m_map.store().root();
+  const Slot& root = MapAccess::store(m_map).root();
   return root.isInner() ? compressedTree().state(root)->gValue : 0.0;
 }
 
@@ -117,7 +129,7 @@ AbstractionMeasures Abstraction::measures() const {
 }
 
 double Abstraction::totalDensity() const {
-  const Slot& root = m_map.store().root();
+  const Slot& root = MapAccess::store(m_map).root();
   return root.isInner() ? compressedTree().state(root)->density : 1.0;
 }
 
@@ -144,12 +156,12 @@ void Abstraction::compressTo(SemanticOcTree& compressed) const {
   if (m_map.empty()) return;
   const CompressedTree tree = compressedTree();
   const IsExpanded isExpanded = [&tree](const Node& node) { return tree.isExpanded(node); };
-  TreeBuilder::fill(compressed, CompressedCursor(m_map, isExpanded, m_map.root()),
+  TreeBuilder::fill(compressed, CompressedCursor(m_map.numClasses(), isExpanded, m_map.root()),
                     TreeBuilder::Merge::Never);
 }
 
 std::unique_ptr<LeafChanges> Abstraction::takenChanges() const {
-  auto changes = std::move(m_map.m_leafChanges);
+  auto changes = std::move(m_gTree.leafChanges);
   if (!changes)
     throw std::logic_error(
         "changes of the compressed tree were lost when memory ran out: call setAbstraction() anew");
@@ -159,9 +171,9 @@ std::unique_ptr<LeafChanges> Abstraction::takenChanges() const {
 TreeChange Abstraction::takeChange() {
   const Node root = m_map.root();
   auto changes = takenChanges();
-  TreeChange change =
-      root ? changes->update(m_map.store(), m_gTree, root) : changes->clear(m_map.store(), m_gTree);
-  m_map.m_leafChanges = std::move(changes);
+  TreeChange change = root ? changes->update(MapAccess::store(m_map), m_gTree, root)
+                           : changes->clear(MapAccess::store(m_map), m_gTree);
+  m_gTree.leafChanges = std::move(changes);
   return change;
 }
 
@@ -169,14 +181,14 @@ void Abstraction::forgetChange() {
   const Node root = m_map.root();
   auto changes = takenChanges();
   if (root)
-    changes->forget(m_map.store(), m_gTree, root);
+    changes->forget(MapAccess::store(m_map), m_gTree, root);
   else
-    changes->clear(m_map.store(), m_gTree);
-  m_map.m_leafChanges = std::move(changes);
+    changes->clear(MapAccess::store(m_map), m_gTree);
+  m_gTree.leafChanges = std::move(changes);
 }
 
 std::size_t Abstraction::numTakenLeaves() const {
-  return m_map.m_leafChanges ? m_map.m_leafChanges->numLeaves() : 0;
+  return m_gTree.leafChanges ? m_gTree.leafChanges->numLeaves() : 0;
 }
 
 void Abstraction::setAlpha(double alpha) {
@@ -196,22 +208,22 @@ void Abstraction::setWeights(const std::vector<double>& termWeights, double alph
   weights.validate(m_map.numClasses());
   GTree::Worker& worker = m_gTree.worker(0);
   m_gTree.setWeights(termWeights, alpha);
-  worker.recomputeAll(m_map.store(), m_map.store().root(), Cell());
+  recomputeAll(worker, MapAccess::store(m_map), MapAccess::store(m_map).root(), Cell());
 }
 
 void Abstraction::setRegions(const std::vector<Region>& regions) {
   for (const Region& region : regions) region.validate();
   const DensityField before = m_gTree.density();
   GTree::Worker& worker = m_gTree.worker(0);
-  m_gTree.setRegions(regions, m_map.getResolution());
-  worker.recomputeWhereChanged(m_map.store(), m_map.store().root(), Cell(),
+  m_gTree.setRegions(regions);
+  worker.recomputeWhereChanged(MapAccess::store(m_map), MapAccess::store(m_map).root(), Cell(),
                                {before, m_gTree.density()});
 }
 
 SemanticOcTree compressedMap(const SemanticOcTree& map, const IsExpanded& isExpanded) {
   SemanticOcTree compressed(map.getResolution(), map.classes(), map.filterParameters());
   if (map.empty()) return compressed;
-  TreeBuilder::fill(compressed, CompressedCursor(map, isExpanded, map.root()),
+  TreeBuilder::fill(compressed, CompressedCursor(map.numClasses(), isExpanded, map.root()),
                     TreeBuilder::Merge::Never);
   return compressed;
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "LeafContent.h"
-#include "ScanMerger.h"
+#include "NodeEditor.h"
 
 namespace semantic_octree {
 

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+
+#include "CompressedTree.h"
 
 namespace semantic_octree {
 namespace {
@@ -48,9 +51,11 @@ double entropyOfShares(const double* shares) {
 }  // namespace
 
 GTree::GTree(const AbstractionOptions& options, const ClassFilter<float>& filter, double resolution)
-    : m_options(options),
+    : leafChanges(std::make_unique<LeafChanges>()),
+      m_options(options),
       m_layout(options, filter.numClasses()),
       m_filter(filter),
+      m_resolution(resolution),
       m_blockDepth(depthOfBlocks(options.blockSize, resolution)),
       m_density(options.regions, resolution) {
   std::vector<double> termWeights;
@@ -58,8 +63,22 @@ GTree::GTree(const AbstractionOptions& options, const ClassFilter<float>& filter
   setWeights(termWeights, options.weights.alpha);
 }
 
+GTree::~GTree() = default;
+
 std::size_t GTree::stateBytes() const {
   return sizeof(InnerState) + m_layout.rowSize() * sizeof(double);
+}
+
+bool GTree::sameState(const NodeStore& a, const Slot& inA, const NodeStore& b,
+                      const Slot& inB) const {
+  const InnerState &x = *a.state<InnerState>(inA), &y = *b.state<InnerState>(inB);
+  return x.density == y.density && x.gValue == y.gValue && x.isExpanded == y.isExpanded &&
+         x.expandedOctants == y.expandedOctants &&
+         std::memcmp(x.row(), y.row(), stateBytes() - sizeof(InnerState)) == 0;
+}
+
+std::unique_ptr<NodeObserver> GTree::clone() const {
+  return std::make_unique<GTree>(m_options, m_filter, m_resolution);
 }
 
 void GTree::setWeights(const std::vector<double>& termWeights, double alpha) {
@@ -73,8 +92,8 @@ void GTree::setWeights(const std::vector<double>& termWeights, double alpha) {
   m_eps = m_options.weights.eps();
 }
 
-void GTree::setRegions(std::vector<Region> regions, double resolution) {
-  DensityField density(regions, resolution);
+void GTree::setRegions(std::vector<Region> regions) {
+  DensityField density(regions, m_resolution);
   std::swap(m_options.regions, regions);
   std::swap(m_density, density);
 }
@@ -258,17 +277,6 @@ void GTree::Worker::noteChildren(const NodeStore& store, const Slot& inner, Inne
   }
   s.changedBelow |= s.childKinds != kinds;
   s.childKinds = static_cast<std::uint16_t>(kinds);
-}
-
-void GTree::Worker::recomputeAll(NodeStore& store, Slot& slot, const Cell& cell) {
-  if (!slot.isInner()) return;
-  if (slot.kind == Slot::Kind::Away) return store.bring(slot);  // whoever brings it computes it
-  if (slot.kind == Slot::Kind::Octant) {
-    Octant& octant = store.octant(slot);
-    for (const Slot& child : octant.slots) store.prefetchInner(child);
-    for (int i = 0; i < 8; ++i) recomputeAll(store, octant.slots[i], cell.child(i));
-  }
-  recompute(store, slot, cell, false);
 }
 
 bool GTree::Worker::recomputeWhereChanged(NodeStore& store, Slot& slot, const Cell& cell,

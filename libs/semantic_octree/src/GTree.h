@@ -5,10 +5,12 @@
 
 #include "Cell.h"
 #include "DensityField.h"
-#include "NodeStore.h"
+#include "NodeObserver.h"
 #include "RowLayout.h"
 
 namespace semantic_octree {
+
+class LeafChanges;
 
 /** Bookkeeping of an inner node at depth 14 or above. Behind it stands the node's row (see
  * RowLayout). All of it is a function of the children alone. */
@@ -44,13 +46,19 @@ struct InnerNode {
  *
  * A scan recomputes the nodes above the voxels that it changed, each once, from their eight
  * children; none is adjusted, so that the order of updates leaves no trace. */
-class GTree {
+class GTree final : public NodeObserver {
  public:
   GTree(const AbstractionOptions& options, const ClassFilter<float>& filter, double resolution);
+  ~GTree() override;
 
   const AbstractionOptions& options() const { return m_options; }
   const RowLayout& layout() const { return m_layout; }
-  std::size_t stateBytes() const;
+  std::size_t stateBytes() const override;
+  /** What a node is, not what was told of it. */
+  bool sameState(const NodeStore& a, const Slot& inA, const NodeStore& b,
+                 const Slot& inB) const override;
+  /** Of which nothing was told yet. */
+  std::unique_ptr<NodeObserver> clone() const override;
 
   /** Depth of the blocks' nodes: at this depth and below, unknown space has weight. */
   int blockDepth() const { return m_blockDepth; }
@@ -79,19 +87,15 @@ class GTree {
 
   /** New weights of the same terms, and alpha. What is kept of nodes is then out of date. */
   void setWeights(const std::vector<double>& termWeights, double alpha);
-  void setRegions(std::vector<Region> regions, double resolution);
+  void setRegions(std::vector<Region> regions);
 
   /** One thread's part: buffers, and rows of frequent values. */
-  class Worker {
+  class Worker final : public NodeObserver::Worker {
    public:
     explicit Worker(const GTree& gTree);
     /** Before the weights change. */
     void forgetGValues() { m_patterns.clear(); }
-    /** From what is kept of the children. \param reshaped whether a block's voxels or octants are
-     * not those that were known, or leaves, before */
-    void recompute(NodeStore& store, Slot& inner, const Cell& cell, bool reshaped);
-    /** A node and all inner nodes below. */
-    void recomputeAll(NodeStore& store, Slot& slot, const Cell& cell);
+    void recompute(NodeStore& store, Slot& inner, const Cell& cell, bool reshaped) override;
     /** Nodes in whose cell the density is not what it was. \return whether there were any */
     bool recomputeWhereChanged(NodeStore& store, Slot& slot, const Cell& cell,
                                const DensityChange& change);
@@ -137,13 +141,16 @@ class GTree {
     unsigned m_expandedOctants = 0;
     static constexpr int kOwn = 8;
   };
-  /** The i-th thread's; made when first asked for (not thread safe). */
-  Worker& worker(int i);
+  Worker& worker(int i) override;
+
+  /** What was told of the compressed tree's leaves. Null: memory ran out when it was to be told. */
+  std::unique_ptr<LeafChanges> leafChanges;
 
  private:
   AbstractionOptions m_options;
   RowLayout m_layout;
   ClassFilter<float> m_filter;
+  double m_resolution;
   int m_blockDepth;
   double m_eps;
   std::vector<double> m_weights;  ///< in the layout's order

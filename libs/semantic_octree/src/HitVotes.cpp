@@ -66,6 +66,29 @@ void HitVotes::addSoftLabels(const LabeledCloud& cloud, const std::vector<std::u
       m_softSums[voxel * K + k] /= static_cast<float>(m_softCounts[voxel]);
 }
 
+void HitVotes::begin(int numClasses) {
+  m_numClasses = numClasses;
+  m_labels.clear();
+  m_endsOfLabels.clear();
+  m_softSums.clear();
+  m_softCounts.clear();
+}
+
+void HitVotes::add(const ClassVotes* votes, std::size_t numVoted) {
+  for (std::size_t i = 0; i < numVoted; ++i)
+    m_labels.insert(m_labels.end(), votes[i].count, votes[i].id);
+  m_endsOfLabels.push_back(static_cast<std::uint32_t>(m_labels.size()));
+}
+
+void HitVotes::add(const float* softLabel) {
+  m_softCounts.push_back(softLabel != nullptr);
+  if (softLabel)
+    m_softSums.insert(m_softSums.end(), softLabel, softLabel + m_numClasses);
+  else
+    m_softSums.resize(m_softSums.size() + m_numClasses, 0.f);
+  m_endsOfLabels.push_back(0);
+}
+
 std::size_t HitVotes::bytes() const {
   return m_labels.capacity() * sizeof(ClassId) + m_softSums.capacity() * sizeof(float) +
          (m_endsOfLabels.capacity() + m_softCounts.capacity()) * sizeof(std::uint32_t);

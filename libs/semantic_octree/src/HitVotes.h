@@ -39,11 +39,14 @@ class HitVotes {
   bool isSoft() const { return !m_softCounts.empty(); }
   /** Of the labels that were counted; none with soft labels. */
   const LabelAgreement& agreement() const { return m_agreement; }
-  /** A voxel's votes, for unpack(). */
-  void pack(std::uint32_t voxel, std::vector<char>& bytes) const;
-  /** Forgets all voxels; unpack() then adds one after the other. */
-  void beginUnpacking(int numClasses);
-  void unpack(const char*& bytes, bool soft);
+  int numClasses() const { return m_numClasses; }
+
+  /** Forgets all voxels; add() then adds one after the other. */
+  void begin(int numClasses);
+  /** The next voxel's votes, as votesOf() tells them. */
+  void add(const ClassVotes* votes, std::size_t numVoted);
+  /** The next voxel's mean of soft labels; null if there are none for it. */
+  void add(const float* softLabel);
 
   std::size_t bytes() const;
 

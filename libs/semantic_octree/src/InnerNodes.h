@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "CompressedTree.h"
+#include "MapAccess.h"
 
 namespace semantic_octree {
 
@@ -25,7 +26,7 @@ class InCompressedTree {
 
 template <typename F>
 void Abstraction::forEachInner(const F& f) const {
-  NodeStore& store = m_map.store();
+  NodeStore& store = MapAccess::store(m_map);
   GTree::Worker& worker = m_gTree.worker(0);
   const auto visit = [&](const auto& self, const Slot& slot, const Cell& cell) -> void {
     if (!slot.isInner()) return;

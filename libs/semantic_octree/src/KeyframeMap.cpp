@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "Scan.h"
+#include "MapAccess.h"
 #include "ScanStorage.h"
-#include "TreeBuilder.h"
+#include "TileReplacement.h"
 
 namespace semantic_octree {
 
@@ -40,7 +40,8 @@ struct KeyframeMap::Content {
   }
   void trace(const StoredScan& s, const LabeledCloud& cloud, const Eigen::Isometry3d& T,
              Scan& scan) const {
-    scan.set(cloud, T * s.T_keyframe_sensor, map.getResolution(), map.m_filter, s.options);
+    scan.set(cloud, T * s.T_keyframe_sensor, map.getResolution(), MapAccess::filter(map),
+             s.options);
   }
   StoredVoxels keep(PackedScan voxels) {
     const TileBox box(tilesOf(voxels));
@@ -89,7 +90,7 @@ class KeyframeMap::Correction {
     const LabeledCloud cloud = unpackCloud(m.storage.load(s.cloud));
     m.inBuffers([&](Scan& traced) {
       m.trace(s, cloud, T_map_keyframe, traced);
-      PackedScan after = traced.pack();
+      PackedScan after = packed(traced);
       addTiles(differingTiles(before, after));
       m_voxels[scan] = m.keep(std::move(after));
     });
@@ -106,14 +107,17 @@ class KeyframeMap::Correction {
     m_report.tiles = m_tiles.size();
     if (m_tiles.empty()) return accept();
     SemanticOcTree anew = emptyLike(m.map);
-    anew.m_clock = 0;
+    MapAccess::setClock(anew, 0);
     const TileBox box(m_tiles);
     for (std::size_t i = 0; i < m.scans.size(); ++i) {
-      anew.ageUntil(m.scans[i].time);
+      MapAccess::ageUntil(anew, m.scans[i].time);
       if (voxelsOf(i).box.meets(box)) merge(i, anew);
     }
-    anew.ageUntil(m.map.m_clock);
-    m.map.replace(m_tiles, anew);
+    MapAccess::ageUntil(anew, MapAccess::clock(m.map));
+    MapAccess::checkNotInTiles(m.map);
+    MapAccess::change(m.map, [&](const MergeTarget& target) {
+      replaceTiles(target, m_tiles, MapAccess::store(anew));
+    });
     return accept();
   }
 
@@ -132,10 +136,10 @@ class KeyframeMap::Correction {
   }
   void merge(std::size_t i, SemanticOcTree& anew) {
     const InsertionOptions& options = m.scans[i].options;
-    const PackedScan packed = m.load(voxelsOf(i));
+    const PackedScan voxels = m.load(voxelsOf(i));
     m.inBuffers([&](Scan& scan) {
-      scan.unpack(packed, m_tiles, m.map.numClasses(), options);
-      anew.merge(scan, options.threads);
+      unpack(voxels, m_tiles, m.map.numClasses(), options, scan);
+      MapAccess::merge(anew, scan, options.threads);
       m_report.scansMerged += scan.hasVoxels();
     });
   }
@@ -168,7 +172,7 @@ InsertionReport KeyframeMap::insert(const LabeledCloud& cloud,
                                     const Eigen::Isometry3d& T_keyframe_sensor,
                                     const InsertionOptions& options, double secondsSince) {
   options.validate();
-  const std::int64_t time = m->map.timeIn(secondsSince);
+  const std::int64_t time = MapAccess::timeIn(m->map, secondsSince);
   if (m->keyframes.empty() || m->keyframes.back().isRemoved)
     throw std::logic_error("keyframes: a scan is inserted before a keyframe has begun");
   const KeyframeId id = m->keyframes.size() - 1;
@@ -178,9 +182,9 @@ InsertionReport KeyframeMap::insert(const LabeledCloud& cloud,
   m->inBuffers([&](Scan& scan) {
     m->trace(stored, cloud, m->keyframes[id].T_map_keyframe, scan);
     stored.cloud = m->storage.keep(packCloud(cloud));
-    stored.voxels = m->keep(scan.pack());
-    m->map.ageUntil(time);
-    m->map.merge(scan, options.threads);
+    stored.voxels = m->keep(packed(scan));
+    MapAccess::ageUntil(m->map, time);
+    MapAccess::merge(m->map, scan, options.threads);
     report = scan.report();
   });
   m->scans.push_back(std::move(stored));

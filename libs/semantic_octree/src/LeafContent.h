@@ -1,6 +1,4 @@
 #pragma once
-#include <semantic_octree/SemanticOcTree.h>
-
 #include <optional>
 #include <vector>
 
@@ -20,14 +18,14 @@ struct LeafContent {
   }
 };
 
-/** p(class k | occupied) of a node, K shares: of the mixture, by volume, of the leaves below in which
- * labels were seen. (Free space and what was hit without a label know nothing of classes; with them,
- * a cell that holds both would state too little.) Empty if there are none. */
-std::vector<double> classShares(const SemanticOcTree& map, const Node& node);
+/** p(class k | occupied) of a node, K shares: of the mixture, by volume, of the leaves below in
+ * which labels were seen. (Free space and what was hit without a label know nothing of classes;
+ * with them, a cell that holds both would state too little.) Empty if there are none. */
+std::vector<double> classShares(const Node& node, int numClasses);
 
 /** Of a leaf, or of an inner node that becomes one: occupancy of its most occupied leaf, classes as
  * by classShares(). */
-LeafContent contentOf(const SemanticOcTree& map, const Node& node);
+LeafContent contentOf(const Node& node, int numClasses);
 
 struct ClassLogOdds {
   double logOdds;

@@ -26,18 +26,17 @@ constexpr const char* kReadersLock = ".readers.lock";
 /** A map without its tiles. */
 class LeavesCursor {
  public:
-  LeavesCursor(const SemanticOcTree& map, int tileDepth, const Node& node, int depth)
-      : m_map(map), m_tileDepth(tileDepth), m_node(node), m_depth(depth) {}
+  LeavesCursor(int numClasses, int tileDepth, const Node& node, int depth)
+      : m_numClasses(numClasses), m_tileDepth(tileDepth), m_node(node), m_depth(depth) {}
   bool known() const { return m_node && (m_node.isLeaf() || m_depth < m_tileDepth); }
   bool isLeaf() const { return m_node.isLeaf(); }
-  LeafContent content() const { return contentOf(m_map, m_node); }
+  LeafContent content() const { return contentOf(m_node, m_numClasses); }
   LeavesCursor child(int i) const {
-    return {m_map, m_tileDepth, m_node.isLeaf() ? m_node : m_node.child(i), m_depth + 1};
+    return {m_numClasses, m_tileDepth, m_node.isLeaf() ? m_node : m_node.child(i), m_depth + 1};
   }
 
  private:
-  const SemanticOcTree& m_map;
-  int m_tileDepth;
+  int m_numClasses, m_tileDepth;
   Node m_node;
   int m_depth;
 };
@@ -57,7 +56,7 @@ std::vector<std::string> namesOf(const ClassTable& classes) {
 
 SemanticOcTree loadLeaves(const fs::path& folder, const TileIndex& index) {
   const fs::path file = folder / TileIndex::leavesName(index.generation);
-  SemanticOcTree leaves = loadTreeFile(file.string());
+  SemanticOcTree leaves = loadTree(file.string());
   if (leaves.getResolution() != index.resolution || namesOf(leaves.classes()) != index.classes)
     throw std::runtime_error("cannot load map '" + file.string() +
                              "': it has another resolution or other classes than " +
@@ -95,7 +94,7 @@ class MapFolder::Tiles {
     if (map.classes().hasHalfLives())
       throw std::invalid_argument(
           "a map of classes with half-lives cannot be in a folder of tiles");
-    map.checkNotInTiles();
+    MapAccess::checkNotInTiles(map);
     if (access == Access::Draft && options.draft.empty())
       throw std::invalid_argument("a draft of a folder of tiles needs a place for what changes");
     TileIndex index = open(options);
@@ -104,18 +103,18 @@ class MapFolder::Tiles {
     const TilesOnDisk::Place place{m_folder, index.depth, budget, access != Access::Read,
                                    m_draft.empty() ? m_folder : m_draft};
     tiles = std::make_unique<TilesOnDisk>(map, place, std::move(index));
-    auto empty = std::make_unique<NodeStore>(map.store().stateBytes());
+    auto empty = std::make_unique<NodeStore>(MapAccess::store(map).stateBytes());
     try {
       if (tiles->index().generation > 0 && access != Access::Replace) takeContents();
-      map.store().setTiles(tiles.get());
-      if (map.hasAbstraction()) map.computeTileByTile();
+      MapAccess::store(map).setTiles(tiles.get());
+      MapAccess::recomputeTileByTile(map);
     } catch (...) {
-      std::swap(map.m_store, empty);
+      MapAccess::setStore(map, std::move(empty));
       throw;
     }
   }
   ~Tiles() {
-    if (isOfMap()) m_map.store().setTiles(nullptr);
+    if (isOfMap()) MapAccess::store(m_map).setTiles(nullptr);
     removeDraft();
   }
 
@@ -124,7 +123,7 @@ class MapFolder::Tiles {
     if (!saves()) throw std::logic_error("saving a map whose folder was opened to be read");
     TileIndex index = tiles->writeChanged();
     SemanticOcTree leaves = emptyLike(m_map);
-    TreeBuilder::fill(leaves, LeavesCursor(m_map, index.depth, m_map.root(), 0),
+    TreeBuilder::fill(leaves, LeavesCursor(m_map.numClasses(), index.depth, m_map.root(), 0),
                       TreeBuilder::Merge::Never);
     for (auto leaf = leaves.begin_leafs(); leaf != leaves.end_leafs(); ++leaf)
       index.leaves.push_back(cellOf(leaf));
@@ -156,7 +155,9 @@ class MapFolder::Tiles {
   std::unique_ptr<TilesOnDisk> tiles;
 
  private:
-  bool isOfMap() const { return !m_map.isBroken() && m_map.store().tiles() == tiles.get(); }
+  bool isOfMap() const {
+    return !m_map.isBroken() && MapAccess::store(m_map).tiles() == tiles.get();
+  }
 
   bool saves() const { return m_access == Access::Write || m_access == Access::Replace; }
 
@@ -189,7 +190,8 @@ class MapFolder::Tiles {
     if (emptyLike(leaves) != emptyLike(m_map))
       throw std::runtime_error(m_folder.string() +
                                ": its map has another resolution, other classes or parameters");
-    m_map.m_store = std::make_unique<NodeStore>(leaves.store(), m_map.store().stateBytes());
+    MapAccess::setStore(m_map, std::make_unique<NodeStore>(MapAccess::store(leaves),
+                                                           MapAccess::store(m_map).stateBytes()));
     tiles->addFromIndex();
     if (m_access == Access::Write) removeOthers();
   }

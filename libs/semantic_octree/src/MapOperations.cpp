@@ -11,14 +11,16 @@ namespace {
 /** A map's nodes as they are. */
 class CopyCursor {
  public:
-  CopyCursor(const SemanticOcTree& map, const Node& node) : m_map(map), m_node(node) {}
+  CopyCursor(int numClasses, const Node& node) : m_numClasses(numClasses), m_node(node) {}
   bool known() const { return static_cast<bool>(m_node); }
   bool isLeaf() const { return m_node.isLeaf(); }
-  LeafContent content() const { return contentOf(m_map, m_node); }
-  CopyCursor child(int i) const { return {m_map, m_node.isLeaf() ? m_node : m_node.child(i)}; }
+  LeafContent content() const { return contentOf(m_node, m_numClasses); }
+  CopyCursor child(int i) const {
+    return {m_numClasses, m_node.isLeaf() ? m_node : m_node.child(i)};
+  }
 
  private:
-  const SemanticOcTree& m_map;
+  int m_numClasses;
   Node m_node;
 };
 
@@ -29,8 +31,8 @@ struct VoxelBox {
 
 class CropCursor {
  public:
-  CropCursor(const SemanticOcTree& map, const VoxelBox& box, const Node& node, const Cell& cell)
-      : m_map(map), m_box(box), m_node(node), m_cell(cell) {}
+  CropCursor(int numClasses, const VoxelBox& box, const Node& node, const Cell& cell)
+      : m_numClasses(numClasses), m_box(box), m_node(node), m_cell(cell) {}
 
   bool known() const {
     return m_node && (m_cell.lowest() <= m_box.last).all() && (highest() >= m_box.first).all();
@@ -39,16 +41,16 @@ class CropCursor {
     return m_node.isLeaf() && (m_cell.lowest() >= m_box.first).all() &&
            (highest() <= m_box.last).all();
   }
-  LeafContent content() const { return contentOf(m_map, m_node); }
+  LeafContent content() const { return contentOf(m_node, m_numClasses); }
   CropCursor child(int i) const {
     const Node node = m_node.isLeaf() ? m_node : m_node.child(i);
-    return {m_map, m_box, node, m_cell.child(i)};
+    return {m_numClasses, m_box, node, m_cell.child(i)};
   }
 
  private:
   VoxelIndex highest() const { return m_cell.lowest() + (m_cell.edge() - 1); }
 
-  const SemanticOcTree& m_map;
+  int m_numClasses;
   const VoxelBox& m_box;
   Node m_node;
   Cell m_cell;
@@ -70,30 +72,35 @@ VoxelBox voxelsIn(const Eigen::AlignedBox3d& box, double resolution) {
 class CoarseCursor {
  public:
   CoarseCursor(const SemanticOcTree& map, int levels)
-      : CoarseCursor(map, levels, map.root(), 0, -1) {}
+      : CoarseCursor(map.numClasses(), levels, map.root(), 0, -1) {}
 
   bool known() const { return static_cast<bool>(m_node); }
   bool isLeaf() const { return m_depth == kTreeDepth || (m_depth > m_levels && m_node.isLeaf()); }
-  LeafContent content() const { return contentOf(m_map, m_node); }
+  LeafContent content() const { return contentOf(m_node, m_numClasses); }
 
   CoarseCursor child(int i) const {
     if (m_depth < m_levels) {
       const bool towardsMiddle = m_depth == 0 || i == 7 - m_octant;
       const int octant = m_depth == 0 ? i : m_octant;
-      return {m_map, m_levels, towardsMiddle ? m_node : Node(), m_depth + 1, octant};
+      return {m_numClasses, m_levels, towardsMiddle ? m_node : Node(), m_depth + 1, octant};
     }
     if (m_depth == m_levels && m_depth > 0)
-      return {m_map, m_levels, i == 7 - m_octant ? childNode(m_octant) : Node(), m_depth + 1, -1};
-    return {m_map, m_levels, childNode(i), m_depth + 1, -1};
+      return {m_numClasses, m_levels, i == 7 - m_octant ? childNode(m_octant) : Node(), m_depth + 1,
+              -1};
+    return {m_numClasses, m_levels, childNode(i), m_depth + 1, -1};
   }
 
  private:
-  CoarseCursor(const SemanticOcTree& map, int levels, const Node& node, int depth, int octant)
-      : m_map(map), m_levels(levels), m_node(node), m_depth(depth), m_octant(octant) {}
+  CoarseCursor(int numClasses, int levels, const Node& node, int depth, int octant)
+      : m_numClasses(numClasses),
+        m_levels(levels),
+        m_node(node),
+        m_depth(depth),
+        m_octant(octant) {}
 
   Node childNode(int i) const { return m_node.isLeaf() ? m_node : m_node.child(i); }
 
-  const SemanticOcTree& m_map;
+  int m_numClasses;
   int m_levels;
   Node m_node;
   int m_depth, m_octant;
@@ -101,13 +108,9 @@ class CoarseCursor {
 
 }  // namespace
 
-SemanticOcTree emptyLike(const SemanticOcTree& map) {
-  return TreeBuilder::emptyWith(map, map.getResolution());
-}
-
 void copyTo(SemanticOcTree& copy, const SemanticOcTree& map) {
   TreeBuilder::checkTarget(copy, map);
-  TreeBuilder::fill(copy, CopyCursor(map, map.root()), TreeBuilder::Merge::Never);
+  TreeBuilder::fill(copy, CopyCursor(map.numClasses(), map.root()), TreeBuilder::Merge::Never);
 }
 
 SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box) {
@@ -115,7 +118,7 @@ SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box
     throw std::invalid_argument("cropping: the box is empty, or not a number");
   SemanticOcTree part = emptyLike(map);
   const VoxelBox voxels = voxelsIn(box, map.getResolution());
-  TreeBuilder::fill(part, CropCursor(map, voxels, map.root(), Cell()));
+  TreeBuilder::fill(part, CropCursor(map.numClasses(), voxels, map.root(), Cell()));
   return part;
 }
 
@@ -123,7 +126,7 @@ SemanticOcTree coarsened(const SemanticOcTree& map, int levels) {
   if (levels < 0 || levels > 8)
     throw std::invalid_argument("coarsening: levels = " + std::to_string(levels) +
                                 ", expected 0 to 8");
-  SemanticOcTree coarse = TreeBuilder::emptyWith(map, map.getResolution() * (1 << levels));
+  SemanticOcTree coarse = MapAccess::emptyWith(map, map.getResolution() * (1 << levels));
   TreeBuilder::fill(coarse, CoarseCursor(map, levels));
   return coarse;
 }

@@ -42,7 +42,7 @@ class MoveCursor {
                                       : anyKnown(m_node, m_nodeCell, bounds());
   }
   bool isLeaf() const { return m_node.isLeaf(); }
-  LeafContent content() const { return contentOf(m_move.map, m_node); }
+  LeafContent content() const { return contentOf(m_node, m_move.map.numClasses()); }
   MoveCursor child(int i) const { return {m_move, m_cell.child(i), m_node, m_nodeCell}; }
 
  private:

@@ -149,7 +149,7 @@ class NodeStore {
   ClassRecord* recordsOf(const Block& block) const { return recordAt(block.records); }
   BlockContent contentOf(const Block& block) const;
   /** Of a leaf that has one. */
-  const ClassRecord& record(const Node& leaf) const;
+  static const ClassRecord& record(const Node& leaf);
 
   /** Null: all nodes are in memory. */
   TileSource* tiles() const { return m_tiles; }

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "Scan.h"
-
 namespace semantic_octree {
 namespace {
 
@@ -62,14 +60,16 @@ TileCodes differingTiles(const PackedScan& a, const PackedScan& b) {
   return codes;
 }
 
-void HitVotes::pack(std::uint32_t voxel, Bytes& bytes) const {
-  if (!m_softCounts.empty()) {
-    const float* const soft = softLabelOf(voxel);
+namespace {
+
+void packVotes(const HitVotes& votes, std::uint32_t voxel, Bytes& bytes) {
+  if (votes.isSoft()) {
+    const float* const soft = votes.softLabelOf(voxel);
     bytes.push_back(soft != nullptr);
-    for (int k = 0; soft && k < m_numClasses; ++k) appendTo(bytes, soft[k]);
+    for (int k = 0; soft && k < votes.numClasses(); ++k) appendTo(bytes, soft[k]);
     return;
   }
-  const Result result = votesOf(voxel);
+  const HitVotes::Result result = votes.votesOf(voxel);
   appendTo(bytes, static_cast<std::uint8_t>(result.numVoted));
   for (std::size_t i = 0; i < result.numVoted; ++i) {
     appendTo(bytes, result.votes[i].id);
@@ -77,49 +77,23 @@ void HitVotes::pack(std::uint32_t voxel, Bytes& bytes) const {
   }
 }
 
-void HitVotes::beginUnpacking(int numClasses) {
-  m_numClasses = numClasses;
-  m_labels.clear();
-  m_endsOfLabels.clear();
-  m_softSums.clear();
-  m_softCounts.clear();
-}
-
-void HitVotes::unpack(const char*& bytes, bool soft) {
+void unpackVotes(const char*& bytes, bool soft, HitVotes& votes) {
   const auto number = takeFrom<std::uint8_t>(bytes);
   if (soft) {
-    m_softCounts.push_back(number);
-    for (int k = 0; k < m_numClasses; ++k)
-      m_softSums.push_back(number ? takeFrom<float>(bytes) : 0.f);
-  } else {
-    for (int i = 0; i < number; ++i) {
-      const auto id = takeFrom<ClassId>(bytes);
-      m_labels.insert(m_labels.end(), takeCount(bytes), id);
-    }
+    std::vector<float> label(votes.numClasses());
+    for (std::size_t k = 0; number && k < label.size(); ++k) label[k] = takeFrom<float>(bytes);
+    return votes.add(number ? label.data() : nullptr);
   }
-  m_endsOfLabels.push_back(static_cast<std::uint32_t>(m_labels.size()));
+  HitVotes::Result result;
+  for (; result.numVoted < number; ++result.numVoted) {
+    ClassVotes& of = result.votes[result.numVoted];
+    of.id = takeFrom<ClassId>(bytes);
+    of.count = takeCount(bytes);
+  }
+  votes.add(result.votes.data(), result.numVoted);
 }
 
-PackedScan Scan::pack() const {
-  std::vector<std::pair<std::uint64_t, VoxelIndex>> tiles;
-  if (hasVoxels())
-    m_free[0].forEachTile([&](const VoxelIndex& tile, std::size_t number) {
-      if (m_pyramid.tile(number).any()) {
-        const VoxelIndex at = m_free[0].firstTile() + tile;
-        tiles.emplace_back(tileCode(at), at);
-      }
-    });
-  std::sort(tiles.begin(), tiles.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
-  PackedScan packed(m_votes.isSoft(), labels());
-  for (const auto& [code, at] : tiles) {
-    packTile(tile(at), packed.beginTile(code));
-    packed.endTile();
-  }
-  return packed;
-}
-
-void Scan::packTile(const Tile& tile, Bytes& bytes) const {
+void packTile(const Scan::Tile& tile, const HitVotes& votes, Bytes& bytes) {
   const std::uint8_t free = wordsWithBits(tile.free), hit = wordsWithBits(tile.hit.words);
   if (std::all_of(tile.free, tile.free + ScanGrid::kWords, [](VoxelBits b) { return !~b; })) return;
   bytes.push_back(static_cast<char>(free));
@@ -128,39 +102,48 @@ void Scan::packTile(const Tile& tile, Bytes& bytes) const {
   appendWords(bytes, tile.hit.words, hit);
   for (int w = 0; w < ScanGrid::kWords; ++w)
     for (int i = 0; i < countOf(tile.hit.words[w]); ++i)
-      m_votes.pack(tile.hit.ranks[w] + static_cast<std::uint32_t>(i), bytes);
+      packVotes(votes, tile.hit.ranks[w] + static_cast<std::uint32_t>(i), bytes);
 }
 
-void Scan::unpack(const PackedScan& scan, const TileCodes& wanted, int numClasses,
-                  const InsertionOptions& options) {
-  m_report = InsertionReport();
-  m_report.labels = scan.labels();
-  TileBox box;
-  forEachTileIn(scan, wanted, [&](const PackedTile& tile) { box.add(tileOf(tile.code)); });
-  if (box.empty()) return;
-  m_free.resize(1);
-  // The box that ends one voxel inside of the outer tiles is the one that has no others.
-  m_free[0].cover(box.lowest() * 8 - kKeyOfOrigin + 1, box.highest() * 8 - kKeyOfOrigin + 6,
-                  maxTiles(options));
-  m_hits.cover(m_free[0].numTilesInAll());
-  m_votes.beginUnpacking(numClasses);
-  forEachTileIn(scan, wanted, [&](const PackedTile& tile) { unpackTile(tile, scan.isSoft()); });
-  m_report.hitVoxels = m_hits.rank();
-  summarize();
-}
-
-void Scan::unpackTile(const PackedTile& tile, bool soft) {
-  const VoxelIndex relative = tileOf(tile.code) - m_free[0].firstTile();
-  VoxelBits* const free = m_free[0].words(relative);
-  if (tile.size == 0) return void(std::fill_n(free, ScanGrid::kWords, ~VoxelBits(0)));
+void unpackTile(const PackedTile& tile, bool soft, Scan& scan) {
+  VoxelBits free[ScanGrid::kWords] = {}, hit[ScanGrid::kWords] = {};
   const char* bytes = tile.content;
-  const auto freeMask = takeFrom<std::uint8_t>(bytes), hitMask = takeFrom<std::uint8_t>(bytes);
-  VoxelBits hit[ScanGrid::kWords] = {};
-  takeWords(bytes, free, freeMask);
-  takeWords(bytes, hit, hitMask);
-  if (hitMask) m_hits.add(m_free[0].numberOf(relative), hit);
+  if (tile.size == 0) {
+    std::fill_n(free, ScanGrid::kWords, ~VoxelBits(0));
+  } else {
+    const auto freeMask = takeFrom<std::uint8_t>(bytes), hitMask = takeFrom<std::uint8_t>(bytes);
+    takeWords(bytes, free, freeMask);
+    takeWords(bytes, hit, hitMask);
+  }
+  scan.addTile(tileOf(tile.code), free, hit);
   for (int w = 0; w < ScanGrid::kWords; ++w)
-    for (int i = countOf(hit[w]); i > 0; --i) m_votes.unpack(bytes, soft);
+    for (int i = countOf(hit[w]); i > 0; --i) unpackVotes(bytes, soft, scan.votes());
+}
+
+}  // namespace
+
+PackedScan packed(const Scan& scan) {
+  std::vector<std::pair<std::uint64_t, VoxelIndex>> tiles;
+  for (const VoxelIndex& tile : scan.tiles()) tiles.emplace_back(tileCode(tile), tile);
+  std::sort(tiles.begin(), tiles.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  PackedScan result(scan.votes().isSoft(), scan.labels());
+  for (const auto& [code, at] : tiles) {
+    packTile(scan.tile(at), scan.votes(), result.beginTile(code));
+    result.endTile();
+  }
+  return result;
+}
+
+void unpack(const PackedScan& packed, const TileCodes& wanted, int numClasses,
+            const InsertionOptions& options, Scan& scan) {
+  TileBox box;
+  forEachTileIn(packed, wanted, [&](const PackedTile& tile) { box.add(tileOf(tile.code)); });
+  if (box.empty()) return scan.reset();
+  scan.begin(box, packed.labels(), numClasses, options);
+  forEachTileIn(packed, wanted,
+                [&](const PackedTile& tile) { unpackTile(tile, packed.isSoft(), scan); });
+  scan.finish();
 }
 
 }  // namespace semantic_octree

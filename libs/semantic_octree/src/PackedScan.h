@@ -1,9 +1,7 @@
 #pragma once
-#include <semantic_octree/LabelReliability.h>
-
 #include <cstring>
 
-#include "TileCodes.h"
+#include "Scan.h"
 
 namespace semantic_octree {
 
@@ -35,7 +33,7 @@ struct PackedTile {
 
 /** The voxels of a scan, tile by tile, ascending: what it takes to merge the scan, or a part of it,
  * without following its beams once more. It is the same whenever the scan is traced from the same
- * pose. Made by Scan::pack(), for this process only. */
+ * pose. For this process only. */
 class PackedScan {
  public:
   PackedScan(bool soft, const LabelReliability& labels) {
@@ -96,6 +94,13 @@ class PackedScan {
   Bytes m_bytes;
   std::size_t m_begin = 0;
 };
+
+/** What is to be kept of a scan to merge it again. */
+PackedScan packed(const Scan& scan);
+/** Some tiles of a scan that was packed. \param options its memory's limit
+ * \param scan whose content is replaced \throw std::length_error the limit is too small. */
+void unpack(const PackedScan& packed, const TileCodes& wanted, int numClasses,
+            const InsertionOptions& options, Scan& scan);
 
 /** All tiles of a scan. */
 TileCodes tilesOf(const PackedScan& scan);

@@ -1,10 +1,10 @@
 #pragma once
 #include "HitTiles.h"
 #include "HitVotes.h"
-#include "PackedScan.h"
 #include "ScanBeams.h"
 #include "ScanGrid.h"
 #include "ScanPyramid.h"
+#include "TileCodes.h"
 
 namespace semantic_octree {
 
@@ -20,12 +20,18 @@ class Scan {
   void set(const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
            double resolution, const ClassFilter<float>& filter, const InsertionOptions& options);
 
-  /** What is to be kept of it to merge it again. */
-  PackedScan pack() const;
-  /** Replaces the content by some tiles of a scan that was packed. \param options its memory's
+  /** Replaces the content by what will come: tiles in a box, which is not empty, one by one
+   * (addTile()), then finish(). \param labels how far they are trusted \param options its memory's
    * limit \throw std::length_error it is too small. */
-  void unpack(const PackedScan& scan, const TileCodes& wanted, int numClasses,
-              const InsertionOptions& options);
+  void begin(const TileBox& box, const LabelReliability& labels, int numClasses,
+             const InsertionOptions& options);
+  /** \param tile key of a voxel in it / 8 \param free, hit a word for each block. What the hit
+   * voxels' labels say is to be added to votes(), voxel by voxel. */
+  void addTile(const VoxelIndex& tile, const VoxelBits* free, const VoxelBits* hit);
+  HitVotes& votes() { return m_votes; }
+  void finish();
+  /** Forgets all. */
+  void reset() { m_report = InsertionReport(); }
 
   const InsertionReport& report() const { return m_report; }
   const ScanPyramid& pyramid() const { return m_pyramid; }
@@ -39,6 +45,8 @@ class Scan {
   };
   /** \param tile key of a voxel in it / 8 */
   Tile tile(const VoxelIndex& tile) const;
+  /** Those in which anything was seen; none if there are no voxels. */
+  std::vector<VoxelIndex> tiles() const;
   bool hasVoxels() const { return report().hitVoxels + report().freeVoxels > 0; }
   /** Forgets the voxels, keeps the buffers. */
   void clear();
@@ -56,8 +64,6 @@ class Scan {
   /** Follows a part's beams, and notes in which voxels they end. */
   void markFreePart(const ScanBeams& beams, int part, const InsertionOptions& options,
                     double margin);
-  void packTile(const Tile& tile, Bytes& bytes) const;
-  void unpackTile(const PackedTile& tile, bool soft);
   void summarize();
   CubeContent summarizeTile(const VoxelIndex& tile, std::size_t number);
   ScanGrid::Place placeOf(const Beam& beam) const {

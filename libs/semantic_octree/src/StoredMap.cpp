@@ -44,16 +44,13 @@ StoredMap::StoredMap(SemanticOcTree empty, const fs::path& folder, const MapFold
     : m_tree(std::move(empty)),
       m_folder(std::make_unique<MapFolder>(m_tree, folder, MapFolder::Access::Replace, options)) {}
 
-SemanticOcTree loadFolder(const fs::path& folder) {
-  SemanticOcTree map = MapFolder::emptyMap(folder);
+SemanticOcTree loadMap(const fs::path& path) {
+  if (!MapFolder::isAt(path)) return loadTree(path.string());
+  SemanticOcTree map = MapFolder::emptyMap(path);
   MapFolderOptions options;
   options.memory = std::numeric_limits<double>::max();
-  MapFolder(map, folder, MapFolder::Access::Read, options).bringAll();
+  MapFolder(map, path, MapFolder::Access::Read, options).bringAll();
   return map;
-}
-
-SemanticOcTree loadTree(const std::string& path) {
-  return MapFolder::isAt(path) ? loadFolder(path) : loadTreeFile(path);
 }
 
 }  // namespace semantic_octree

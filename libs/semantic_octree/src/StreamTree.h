@@ -1,4 +1,6 @@
 #pragma once
+#include <semantic_octree/SemanticOcTree.h>
+
 #include <array>
 #include <unordered_map>
 #include <vector>

@@ -10,21 +10,25 @@ namespace {
 class TileReplacement {
  public:
   TileReplacement(const MergeTarget& target, const NodeStore& source)
-      : m_target(target),
+      : m_nodes(target, 0),
         m_store(target.store),
         m_source(source),
-        m_arena(target.store.arena(0)),
-        m_gTree(target.gTree ? &target.gTree->worker(0) : nullptr),
-        m_comparison(target.store, source, false) {}
+        m_comparison(target.store, source, nullptr) {}
 
+  void replace(const TileRange& tiles) {
+    replace(m_store.root(), Cell(), tiles, m_source.root());
+    m_nodes.tellNoted();
+  }
+
+ private:
   /** \param tiles those below the node \param source the other tree's node there; a leaf stands for
    * all that is below \return whether anything changed */
   bool replace(Slot& slot, const Cell& cell, const TileRange& tiles, const Slot& source) {
-    if (cell.depth == kTileDepth) return note(cell, replaceAll(slot, cell, source));
+    if (cell.depth == kTileDepth) return m_nodes.note(cell, replaceAll(slot, cell, source));
     if (!slot.isInner() && !source.isInner() && m_comparison.same(slot, source)) return false;
     Octant& octant = slot.isInner()   ? m_store.octant(slot)
-                     : slot.isKnown() ? m_arena.expandToOctant(slot)
-                                      : m_arena.createOctant(slot);
+                     : slot.isKnown() ? m_nodes.arena.expandToOctant(slot)
+                                      : m_nodes.arena.createOctant(slot);
     bool changed = false;
     for (int i = 0; i < 8; ++i) {
       const TileRange below = tiles.below(cell.depth, i);
@@ -34,35 +38,26 @@ class TileReplacement {
     return finish(slot, cell, changed);
   }
 
- private:
-  bool note(const Cell& tile, bool changed) {
-    if (changed && m_target.touched) m_target.touched->add(tile);
-    return changed;
-  }
-
   bool finish(Slot& slot, const Cell& cell, bool changed) {
     const Octant& octant = m_store.octant(slot);
-    if (std::none_of(octant.slots, octant.slots + 8, [](const Slot& s) { return s.isKnown(); })) {
-      m_arena.remove(slot);
-      return changed;
+    const bool isEmpty = std::none_of(octant.slots, octant.slots + 8,
+                                      [](const Slot& child) { return child.isKnown(); });
+    if (isEmpty && !changed) {  // it was made in vain
+      m_nodes.arena.remove(slot);
+      return false;
     }
-    if ((m_target.pruning && m_arena.prune(slot)) || !changed) return changed;
-    slot.value = m_store.highestValueBelow(slot);
-    recompute(slot, cell);
-    return true;
+    return m_nodes.finish(slot, cell, changed, true);
   }
 
   /** A node that was replaced knows nothing of what was told of the one before: it counts as
    * reshaped. */
-  void recompute(Slot& inner, const Cell& cell) {
-    if (m_gTree) m_gTree->recompute(m_store, inner, cell, true);
-  }
+  void recompute(Slot& inner, const Cell& cell) { m_nodes.recompute(inner, cell, true); }
 
   /** A tile, or a node below. What is alike stays where it is. */
   bool replaceAll(Slot& slot, const Cell& cell, const Slot& source) {
     if (m_comparison.same(slot, source)) return false;
     if (slot.kind != Slot::Kind::Octant || source.kind != Slot::Kind::Octant) {
-      if (slot.isKnown()) m_arena.remove(slot);
+      if (slot.isKnown()) m_nodes.arena.remove(slot);
       copy(slot, cell, source);
       return true;
     }
@@ -75,25 +70,23 @@ class TileReplacement {
 
   void copy(Slot& unknown, const Cell& cell, const Slot& source) {
     if (source.isLeaf()) {
-      m_arena.createLeaf(unknown, source.value);
+      m_nodes.arena.createLeaf(unknown, source.value);
       if (source.kind == Slot::Kind::LeafWithRecord)
-        m_arena.setRecord(unknown, m_source.record(source));
+        m_nodes.arena.setRecord(unknown, m_source.record(source));
     } else if (source.kind == Slot::Kind::Octant) {
-      Octant& octant = m_arena.createOctant(unknown);
+      Octant& octant = m_nodes.arena.createOctant(unknown);
       for (int i = 0; i < 8; ++i)
         copy(octant.slots[i], cell.child(i), m_source.octant(source).slots[i]);
     } else if (source.kind == Slot::Kind::Block) {
-      m_arena.createBlock(unknown, m_source.contentOf(m_source.block(source)));
+      m_nodes.arena.createBlock(unknown, m_source.contentOf(m_source.block(source)));
     }
     unknown.value = source.value;
     if (unknown.isInner()) recompute(unknown, cell);
   }
 
-  const MergeTarget& m_target;
+  NodeEditor m_nodes;
   NodeStore& m_store;
   const NodeStore& m_source;
-  NodeArena& m_arena;
-  GTree::Worker* m_gTree;
   TreeComparison m_comparison;
 };
 
@@ -101,8 +94,7 @@ class TileReplacement {
 
 void replaceTiles(const MergeTarget& target, const TileCodes& tiles, const NodeStore& source) {
   const TileRange all{tiles.begin(), tiles.end()};
-  if (!all.empty())
-    TileReplacement(target, source).replace(target.store.root(), Cell(), all, source.root());
+  if (!all.empty()) TileReplacement(target, source).replace(all);
 }
 
 }  // namespace semantic_octree

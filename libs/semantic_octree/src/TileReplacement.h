@@ -1,5 +1,5 @@
 #pragma once
-#include "ScanMerger.h"
+#include "NodeEditor.h"
 #include "TileCodes.h"
 
 namespace semantic_octree {

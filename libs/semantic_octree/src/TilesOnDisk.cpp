@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "GTree.h"
 #include "Scan.h"
 #include "TreeFormat.h"
 
@@ -126,7 +125,8 @@ void TilesOnDisk::read(Slot& slot, const Tile& tile) {
     if (nodes.highestValueBelow(slot) != slot.value)
       throw std::runtime_error("cannot load map '" + fileOf(tile) +
                                "': altered: it is not the file that the index is of");
-    if (m_map.hasAbstraction()) m_map.m_gTree->worker(0).recomputeAll(nodes, slot, cellOf(tile));
+    if (NodeObserver* const observer = MapAccess::observer(m_map))
+      recomputeAll(observer->worker(0), nodes, slot, cellOf(tile));
   } catch (...) {
     removeChildren(arena, slot);
     slot.kind = Kind::Away;
@@ -142,7 +142,7 @@ void TilesOnDisk::removeChildren(NodeArena& arena, const Slot& octant) {
     for (Slot& child : store().octant(octant).slots)
       if (child.isKnown()) arena.remove(child);
   } catch (...) {
-    m_map.m_store = nullptr;
+    MapAccess::setStore(m_map, nullptr);
     throw;
   }
 }

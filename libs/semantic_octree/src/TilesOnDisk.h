@@ -3,7 +3,7 @@
 
 #include <unordered_map>
 
-#include "NodeStore.h"
+#include "MapAccess.h"
 #include "TileCodes.h"
 #include "TileIndex.h"
 
@@ -50,7 +50,7 @@ class TilesOnDisk : public TileSource {
   };
   using Entry = std::pair<const std::uint64_t, Tile>;
 
-  NodeStore& store() const { return m_map.store(); }
+  NodeStore& store() const { return MapAccess::store(m_map); }
   Cell cellOf(const Tile& tile) const { return {tile.place, m_place.depth}; }
   std::string fileOf(const Tile& tile) const {
     const bool isSaved = tile.written <= m_index.generation;

@@ -1,10 +1,8 @@
 #pragma once
-#include <semantic_octree/MapOperations.h>
-
 #include <stdexcept>
 
-#include "Cell.h"
 #include "LeafContent.h"
+#include "MapAccess.h"
 
 namespace semantic_octree {
 
@@ -21,29 +19,23 @@ class TreeBuilder {
   /** A map in a folder of tiles that is open for writing sends tiles away meanwhile. */
   template <typename Cursor>
   static void fill(SemanticOcTree& map, const Cursor& root, Merge merge = Merge::AsTheMapDoes) {
-    TreeBuilder(map, merge).build(map.store().root(), root, Cell());
-  }
-  /** An empty map of the same kind and time. \param resolution its voxels' edge, m */
-  static SemanticOcTree emptyWith(const SemanticOcTree& map, double resolution) {
-    SemanticOcTree empty(resolution, map.classes(), map.filterParameters());
-    empty.setPruning(map.pruning());
-    empty.m_clock = map.m_clock;
-    return empty;
+    NodeStore& store = MapAccess::store(map);
+    TreeBuilder(store, map.pruning(), merge).build(store.root(), root, Cell());
   }
   /** \throw std::invalid_argument a map that is to be filled is not empty, keeps an abstraction, or
    * is of another kind than `like`. */
   static void checkTarget(const SemanticOcTree& map, const SemanticOcTree& like) {
-    if (!map.empty() || map.hasAbstraction() || emptyLike(map) != emptyLike(like))
+    if (!map.empty() || MapAccess::observer(map) || emptyLike(map) != emptyLike(like))
       throw std::invalid_argument(
           "a map that is to be filled has to be empty, of the same kind, without abstraction");
   }
 
  private:
-  TreeBuilder(SemanticOcTree& map, Merge merge)
-      : m_arena(map.store().arena(0)),
-        m_tiles(map.store().tiles()),
-        m_allowsLargeLeaves(map.pruning()),
-        m_merges(map.pruning() && merge == Merge::AsTheMapDoes) {}
+  TreeBuilder(NodeStore& store, bool pruning, Merge merge)
+      : m_arena(store.arena(0)),
+        m_tiles(store.tiles()),
+        m_allowsLargeLeaves(pruning),
+        m_merges(pruning && merge == Merge::AsTheMapDoes) {}
 
   template <typename Cursor>
   void build(Slot& slot, const Cursor& cursor, const Cell& cell) {

@@ -1,17 +1,16 @@
 #pragma once
 #include <algorithm>
-#include <cstring>
 
-#include "GTree.h"
-#include "NodeStore.h"
+#include "NodeObserver.h"
 
 namespace semantic_octree {
 
 /** Compares nodes of two trees, and all that is below. */
 class TreeComparison {
  public:
-  TreeComparison(const NodeStore& a, const NodeStore& b, bool withState)
-      : m_a(a), m_b(b), m_withState(withState) {}
+  /** \param observer of both, whose bookkeeping counts; null: it does not */
+  TreeComparison(const NodeStore& a, const NodeStore& b, const NodeObserver* observer)
+      : m_a(a), m_b(b), m_observer(observer) {}
 
   bool same(const Slot& a, const Slot& b) const {
     m_a.bring(a);
@@ -45,17 +44,12 @@ class TreeComparison {
            (!a.recorded ||
             std::equal(m_a.recordsOf(a), m_a.recordsOf(a) + a.numRecords(), m_b.recordsOf(b)));
   }
-  /** What a node is, not what was told of it. */
   bool sameState(const Slot& a, const Slot& b) const {
-    if (!m_withState) return true;
-    const InnerState &x = *m_a.state<InnerState>(a), &y = *m_b.state<InnerState>(b);
-    return x.density == y.density && x.gValue == y.gValue && x.isExpanded == y.isExpanded &&
-           x.expandedOctants == y.expandedOctants &&
-           std::memcmp(x.row(), y.row(), m_a.stateBytes() - sizeof(InnerState)) == 0;
+    return !m_observer || m_observer->sameState(m_a, a, m_b, b);
   }
 
   const NodeStore &m_a, &m_b;
-  bool m_withState;
+  const NodeObserver* m_observer;
 };
 
 }  // namespace semantic_octree

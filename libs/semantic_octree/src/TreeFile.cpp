@@ -129,7 +129,7 @@ void saveTree(const SemanticOcTree& tree, const std::string& path) {
   save(path, StagedFile::Disk::Now, [&](std::ostream& out) { writeTree(out, tree); });
 }
 
-SemanticOcTree loadTreeFile(const std::string& path) {
+SemanticOcTree loadTree(const std::string& path) {
   return load(path, [](std::istream& in) { return readTree(in); });
 }
 

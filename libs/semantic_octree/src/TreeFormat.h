@@ -81,7 +81,8 @@ class TreeReader {
   void fill(Octant& octant, int depth);
   FilterParameters getParameters();
   ClassTable getClasses();
-  void getTime(SemanticOcTree& tree);
+  /** Half-lives. \return the clock */
+  std::int64_t getTime(ClassTable& classes);
   void getNodes(SemanticOcTree& tree, std::uint64_t expectedNodes);
   void getNode(Slot& slot, NodeKind kind, int depth);
   void getChildren(Slot& inner, int depth);
@@ -103,9 +104,6 @@ class TreeReader {
   NodeArena* m_arena = nullptr;
   int m_numClasses = 0;
 };
-
-/** As loadTree(), of files alone. */
-SemanticOcTree loadTreeFile(const std::string& path);
 
 /** A tile's file, see TreeWriter::writeTile(); not yet on the disk. \throw std::runtime_error
  * naming the file */

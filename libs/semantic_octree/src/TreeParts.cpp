@@ -78,11 +78,11 @@ class Comparison {
  private:
   bool isInner(const Node& node) const { return node && m_abstraction.isExpanded(node); }
   StreamLeaf leafOf(const Node& node) const {
-    return node ? StreamLeaf::of(contentOf(m_map, node)) : StreamLeaf();
+    return node ? StreamLeaf::of(contentOf(node, m_map.numClasses())) : StreamLeaf();
   }
   bool isLeafOf(const Before& before, const StreamLeaf& leaf) const {
     return before.kind == Before::Kind::Leaf &&
-           StreamLeaf::of(contentOf(*m_before, before.node)) == leaf;
+           StreamLeaf::of(contentOf(before.node, m_map.numClasses())) == leaf;
   }
 
   /** At the depth of the roots and above. */

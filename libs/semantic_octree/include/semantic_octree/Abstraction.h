@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/Keys.h>
+#include <semantic_octree/AbstractionOptions.h>
 #include <semantic_octree/SemanticOcTree.h>
 #include <tree_abstraction/AbstractionWeights.h>
 #include <tree_abstraction/AlphaPath.h>
@@ -62,7 +62,14 @@ struct TreeChange {
   std::vector<LeafCell> added;
 };
 
-/** The abstraction of a map that keeps G-values (SemanticOcTree::setAbstraction), and the
+/** A map keeps the class mixtures and G-values of inner nodes from now on: insert() updates them in
+ * the same pass. \throw std::invalid_argument bad options. */
+void setAbstraction(SemanticOcTree& map, const AbstractionOptions& options);
+/** It keeps them no longer. */
+void dropAbstraction(SemanticOcTree& map);
+bool hasAbstraction(const SemanticOcTree& map);
+
+/** The abstraction of a map that keeps G-values (setAbstraction()), and the
  * compressed tree that it leads to: the one with the largest J(T) = sum_t weight_t I_t(T) - alpha
  * I_X(T) of all trees that can be had by turning inner nodes into leaves; the smallest one if
  * several have it. (Larsson et al., "Information-theoretic Abstraction of Semantic Octree Models

@@ -107,7 +107,7 @@ class MapFolder {
 };
 
 /** A map that was saved, in one file or in a folder of tiles, for whatever reads it depth first and
- * from one thread. Others have loadTree(). */
+ * from one thread. Others have loadMap(). */
 class StoredMap {
  public:
   /** \param memory, wanted of a folder's map: see MapFolderOptions \throw std::runtime_error as
@@ -140,7 +140,8 @@ class StoredMap {
   std::uint64_t m_bytesOnDisk = 0;
 };
 
-/** All of a folder's map. \throw std::runtime_error as loadTree() and MapFolder::bringAll() */
-SemanticOcTree loadFolder(const std::filesystem::path& folder);
+/** All of a map that was saved, in one file or in a folder of tiles.
+ * \throw std::runtime_error as loadTree() and MapFolder::bringAll() */
+SemanticOcTree loadMap(const std::filesystem::path& path);
 
 }  // namespace semantic_octree

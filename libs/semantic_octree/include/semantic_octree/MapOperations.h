@@ -11,10 +11,6 @@ namespace semantic_octree {
  * and like emptyLike(), and may be in a folder of tiles that is open for writing (MapFolder), so
  * that they need not fit into memory. If filling fails they are not to be used. */
 
-/** An empty map of the same kind and time: resolution, classes, filter parameters, pruning, clock.
- */
-SemanticOcTree emptyLike(const SemanticOcTree& map);
-
 /** The same nodes, to the last bit.
  * \param copy to be filled \throw std::invalid_argument it is not empty, or not like the map. */
 void copyTo(SemanticOcTree& copy, const SemanticOcTree& map);

@@ -59,7 +59,7 @@ class MapSender {
   MapSender(MapSender&&) noexcept;
 
   /** Begins with a map, or goes on with what it became meanwhile: computes the packets.
-   * \param map keeps G-values (SemanticOcTree::setAbstraction), always of the same weights
+   * \param map keeps G-values (setAbstraction()), always of the same weights
    * \param isLast no other map comes behind it
    * \throw std::logic_error the receiver does not have all of the map before, or it keeps none
    * \throw std::invalid_argument of another resolution, filter or class table, or other blocks,

@@ -1,6 +1,5 @@
 #pragma once
 #include <octomap/octomap_types.h>
-#include <semantic_octree/AbstractionOptions.h>
 #include <semantic_octree/ClassFilter.h>
 #include <semantic_octree/InsertionOptions.h>
 #include <semantic_octree/Keys.h>
@@ -20,8 +19,7 @@ namespace semantic_octree {
 using semantic_types::ClassTable;
 using semantic_types::LabeledCloud;
 
-class GTree;
-class LeafChanges;
+class NodeObserver;
 class NodeStore;
 class Scan;
 class TouchedTiles;
@@ -203,50 +201,25 @@ class SemanticOcTree {
   void setPruning(bool on);
   bool pruning() const { return m_pruning; }
 
-  /** Keeps the class mixtures and G-values of inner nodes from now on: insert() updates them in the
-   * same pass. See Abstraction for what can be had from them.
-   * \throw std::invalid_argument bad options. */
-  void setAbstraction(const AbstractionOptions& options);
-  /** Keeps them no longer. */
-  void dropAbstraction();
-  bool hasAbstraction() const { return m_gTree != nullptr; }
-
  private:
-  friend class Abstraction;
-  friend class KeyframeMap;
-  friend class MapFolder;
-  friend class TilesOnDisk;
-  friend class TreeBuilder;
-  friend class TreeReader;
-  friend class TreeWriter;
+  friend class MapAccess;
   /** \throw std::logic_error the map is broken. */
   NodeStore& store() const;
-  /** \throw std::logic_error the map is in a folder of tiles. */
-  void checkNotInTiles() const;
-  void computeTileByTile();
-  /** The same nodes with room for this bookkeeping; those of tiles are away then. */
-  std::unique_ptr<NodeStore> storeFor(std::size_t stateBytes) const;
-  /** Whoever changes nodes does it in here: if it fails, the map is broken. */
-  template <typename F>
-  void change(const F& f);
-  void merge(const Scan& scan, int threads);
-  /** \param time of the map's clock, ns; not before now */
-  void ageUntil(std::int64_t time);
-  /** What the clock will say after some seconds, ns. \throw see age(). */
-  std::int64_t timeIn(double seconds) const;
-  /** Makes tiles (see TileCodes) what they are in another map. */
-  void replace(const std::vector<std::uint64_t>& tiles, const SemanticOcTree& source);
+
   double m_resolution;
   ClassTable m_classes;
   FilterParameters m_parameters;
   ClassFilter<float> m_filter;
   bool m_pruning = true;
-  std::int64_t m_clock = 0;            ///< ns; stands still while nothing has a half-life
-  std::unique_ptr<NodeStore> m_store;  ///< null: the map is broken
-  std::unique_ptr<GTree> m_gTree;      ///< null: no abstraction is kept
-  std::unique_ptr<LeafChanges> m_leafChanges;
-  std::unique_ptr<TouchedTiles> m_touched;  ///< null: nobody asks for them
-  std::unique_ptr<Scan> m_scan;             ///< buffers of the last insertion, if there was one
+  std::int64_t m_clock = 0;                  ///< ns; stands still while nothing has a half-life
+  std::unique_ptr<NodeStore> m_store;        ///< null: the map is broken
+  std::unique_ptr<NodeObserver> m_observer;  ///< null: nothing is kept of inner nodes
+  std::unique_ptr<TouchedTiles> m_touched;   ///< null: nobody asks for them
+  std::unique_ptr<Scan> m_scan;              ///< buffers of the last insertion, if there was one
 };
+
+/** An empty map of the same kind and time: resolution, classes, filter parameters, pruning, clock.
+ */
+SemanticOcTree emptyLike(const SemanticOcTree& map);
 
 }  // namespace semantic_octree

@@ -1,6 +1,7 @@
 #include "PlannerCore.h"
 
 #include <colored_graph/ColoredAStar.h>
+#include <semantic_octree/Abstraction.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ namespace {
 PlannerOptions validated(const PlannerOptions& options,
                          const semantic_octree::SemanticOcTree& map) {
   options.validate();
-  if (isOfTree(options.roadmap.kind) && !map.hasAbstraction())
+  if (isOfTree(options.roadmap.kind) && !hasAbstraction(map))
     throw std::logic_error("SemanticPlanner: the map keeps no G-values (setAbstraction)");
   return options;
 }

@@ -66,7 +66,7 @@ class PlannerCore;
 class SemanticPlanner {
  public:
   /** \param map must outlive the planner. With a graph of the tree (isOfTree) it has to keep
-   * G-values (SemanticOcTree::setAbstraction). \param order over the map's class ids, 0 = unknown
+   * G-values (setAbstraction()). \param order over the map's class ids, 0 = unknown
    * ground (loadClassOrder) \param corridor where ground is looked at, of a map that does not
    * change (findCorridor()); vertices lie within RoadmapOptions::buffer from its way. Without: all
    * ground. \throw std::invalid_argument bad options, or an order of other classes
