@@ -1,4 +1,4 @@
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include "Runner.h"

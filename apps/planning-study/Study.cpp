@@ -1,7 +1,7 @@
 #include "Study.h"
 
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapFolder.h>
+#include <map_folders/MapFolder.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 

@@ -1,8 +1,8 @@
 #include "MapBuilder.h"
 
 #include <labeled_cloud/ReadAhead.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapFolder.h>
+#include <map_folders/MapFolder.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <strict_files/ErrorMessage.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "Summary.h"
 
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapContents.h>
+#include <map_operations/MapContents.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include "measuring/Quantile.h"
 

@@ -1,6 +1,6 @@
 #include "Compressor.h"
 
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <stdexcept>

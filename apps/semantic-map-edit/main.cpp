@@ -1,10 +1,10 @@
 // Crops, coarsens, moves and ages a semantic octree map, puts it into tiles, and imports maps of
 // OctoMap's.
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
+#include <map_operations/OctomapConversion.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
-#include <semantic_octree/OctomapConversion.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_types/ClassTableFile.h>
 

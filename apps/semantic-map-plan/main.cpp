@@ -1,7 +1,7 @@
 // Plans a path of a vehicle over a semantic map, classes before length.
+#include <map_folders/MapFolder.h>
 #include <map_pictures/MapCanvas.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapFolder.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>

@@ -1,5 +1,5 @@
 // Receives a map from semantic-map-send, over a radio that may lose, exchange and repeat datagrams.
-#include <semantic_octree/MapFolder.h>
+#include <map_folders/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/TextFile.h>
 

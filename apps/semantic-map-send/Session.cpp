@@ -1,6 +1,6 @@
 #include "Session.h"
 
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 namespace semantic_map_send {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <map_view/RayCast.h>
 #include <mrpt_compat/Drawing.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 

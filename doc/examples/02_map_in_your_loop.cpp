@@ -1,6 +1,6 @@
 // Makes a map of scans, one after the other, and keeps its compressed form up to date:
 //     02_map_in_your_loop OUTPUT.semantic
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 #include <synthetic_world/Lidar.h>
 #include <synthetic_world/Scene.h>

@@ -1,6 +1,6 @@
 // Compresses a map to a number of leaves, of which those are kept that tell most about a class:
 //     03_compress MAP.semantic CLASS LEAVES OUTPUT.semantic
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <cstdlib>

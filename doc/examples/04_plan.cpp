@@ -1,6 +1,6 @@
 // Plans a path over a map that puts classes before length:
 //     04_plan MAP.semantic ORDER.yaml X Y HEADING X Y HEADING      (meters, degrees)
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>

@@ -1,6 +1,6 @@
 // Whether probabilities mean what they say, in a world whose truth is known.
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <synthetic_world/Lidar.h>
 #include <synthetic_world/Scene.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <gtest/gtest.h>
 #include <map_view/OrbitCamera.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <opencv2/imgcodecs.hpp>

@@ -1,4 +1,4 @@
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <strict_files/OptionList.h>
 #include <tree_abstraction/Information.h>
 

@@ -1,4 +1,4 @@
-#include <semantic_octree/MapFolder.h>
+#include <map_folders/MapFolder.h>
 
 #include <map>
 #include <regex>

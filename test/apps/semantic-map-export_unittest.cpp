@@ -1,9 +1,9 @@
+#include <map_operations/SmoothedView.h>
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/serialization/CArchive.h>
 #include <mrpt_compat/Drawing.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/SmoothedView.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <algorithm>
 #include <cstring>

@@ -1,6 +1,6 @@
 // semantic-map-send and semantic-map-receive, as processes on this machine.
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include "../semantic_planning/PaintedWorld.h"

@@ -1,5 +1,5 @@
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapFolder.h>
+#include <map_folders/MapFolder.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <algorithm>

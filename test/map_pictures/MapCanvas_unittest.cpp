@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
 #include <map_pictures/MapCanvas.h>
 #include <rapidcheck/gtest.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <opencv2/imgproc.hpp>
 

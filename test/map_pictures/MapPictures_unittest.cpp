@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <map_pictures/MapPictures.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <map_view/CellAnswer.h>
 #include <map_view/CellSource.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <map>
 #include <set>

@@ -1,6 +1,6 @@
 // Whether probabilities mean what they say on streets: even scans make a map, odd ones ask it.
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include "CountedLabels.h"
 #include "DataSets.h"

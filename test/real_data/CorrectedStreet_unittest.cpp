@@ -1,7 +1,7 @@
 // A street that was mapped at wrong poses, and is put right.
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/KeyframeMap.h>
+#include <map_correction/KeyframeMap.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_types/ClassTableFile.h>
 
 #include <random>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/CompressedObstacles.h>
-#include <semantic_octree/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <synthetic_world/Random.h>
 

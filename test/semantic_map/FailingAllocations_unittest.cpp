@@ -1,12 +1,12 @@
 // What memory that runs out leaves of maps, files and answers.
 #include "FailingAllocations.h"
 
+#include <map_operations/OctomapConversion.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/ExportGrid.h>
 #include <semantic_map/ExportOctomap.h>
 #include <semantic_map/ExportPoints.h>
 #include <semantic_map/ImportOctomap.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/OctomapConversion.h>
 
 #include <optional>
 #include <sstream>

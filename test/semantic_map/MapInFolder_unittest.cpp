@@ -1,11 +1,11 @@
 // A map in a folder of tiles is the map that it would be in memory, to the last bit.
 #include <gtest/gtest.h>
+#include <map_folders/MapFolder.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/maps/CMultiMetricMap.h>
 #include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <mrpt_compat/Drawing.h>
-#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <sys/resource.h>
 #include <atomic>

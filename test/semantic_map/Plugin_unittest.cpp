@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
+#include <map_folders/MapFolder.h>
 #include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <mrpt_compat/Release.h>
-#include <semantic_octree/MapFolder.h>
 
 #include <cstdlib>
 

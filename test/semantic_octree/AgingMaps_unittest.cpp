@@ -1,8 +1,8 @@
 // What follows a map that ages: files, G-values, changes, sums.
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <cmath>
 #include <set>

@@ -1,6 +1,6 @@
 // What scans do to blocks of 4 x 4 x 4 voxels, against voxels that are on their own.
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include "BlockScans.h"
 #include "FollowedTree.h"

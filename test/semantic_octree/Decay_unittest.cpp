@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
+#include <map_operations/MapContents.h>
+#include <map_operations/OctomapConversion.h>
 #include <octomap/OcTree.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapContents.h>
-#include <semantic_octree/OctomapConversion.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <cmath>
 

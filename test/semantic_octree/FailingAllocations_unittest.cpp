@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
+#include <map_correction/KeyframeMap.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
+#include <map_operations/OctomapConversion.h>
+#include <map_streams/MapStream.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/KeyframeMap.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
-#include <semantic_octree/MapStream.h>
-#include <semantic_octree/OctomapConversion.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <optional>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include "PlainMap.h"
 #include "RandomScans.h"

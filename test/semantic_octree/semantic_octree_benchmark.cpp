@@ -1,16 +1,16 @@
 // The parts of an insertion, on a LiDAR scan of 64 x 1024 beams in a street.
-#include <RayMarking.h>
-#include <Scan.h>
-#include <ScanMerger.h>
 #include <benchmark/benchmark.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/SmoothedView.h>
+#include <map_operations/SmoothedView.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
+#include <semantic_octree/store/Scan.h>
 
 #include <sstream>
 
 #include "FilterStreams.h"
 #include "RandomScans.h"
+#include "RayMarking.h"
+#include "ScanMerger.h"
 
 using namespace semantic_octree;
 

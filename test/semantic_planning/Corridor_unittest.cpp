@@ -1,6 +1,6 @@
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <array>
 #include <cstdint>

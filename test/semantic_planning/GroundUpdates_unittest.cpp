@@ -1,6 +1,6 @@
 // Ground that follows its map, and ground of parts of a map, against ground that is read anew.
 #include <gtest/gtest.h>
-#include <semantic_octree/KeyframeMap.h>
+#include <map_correction/KeyframeMap.h>
 
 #include <algorithm>
 

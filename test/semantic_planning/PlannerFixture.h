@@ -1,7 +1,7 @@
 #pragma once
 #include <colored_graph/ColoredAStar.h>
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 

@@ -1,6 +1,6 @@
 // What a planner keeps between plans must not show in its answers: they are those of a planner that
 // is made for each.
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <algorithm>
 #include <random>

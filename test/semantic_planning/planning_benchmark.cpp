@@ -1,7 +1,7 @@
 // Planning across a map of 100 m, ground known, in stages; reading the ground; replanning after 1 %
 // of the map's columns changed. One core.
 #include <benchmark/benchmark.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <memory>

@@ -1,7 +1,7 @@
 #include "Mapper.h"
 
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/CompressedObstacles.h>
-#include <semantic_octree/Abstraction.h>
 #include <semantic_types/ClassTableFile.h>
 #include <synthetic_world/Classes.h>
 

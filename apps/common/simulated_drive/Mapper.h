@@ -1,8 +1,8 @@
 #pragma once
 #include <semantic_planning/planner/SemanticPlanner.h>
 
-#include <semantic_octree/KeyframeMap.h>
-#include <semantic_octree/MapFolder.h>
+#include <map_correction/KeyframeMap.h>
+#include <map_folders/MapFolder.h>
 #include <semantic_slam/Slam.h>
 
 #include "SimulatedSensors.h"

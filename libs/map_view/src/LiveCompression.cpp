@@ -1,6 +1,6 @@
 #include <map_view/CellSource.h>
 #include <map_view/LiveCompression.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include <labeled_cloud/ScanConverter.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_octree/Abstraction.h>
 #include <strict_files/Words.h>
 
 #include <sstream>

@@ -1,7 +1,7 @@
 #include "FolderOfMap.h"
 
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapOperations.h>
+#include <map_operations/MapOperations.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <stdexcept>
 

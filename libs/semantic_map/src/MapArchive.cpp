@@ -1,5 +1,5 @@
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_octree/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <istream>

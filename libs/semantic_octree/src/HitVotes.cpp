@@ -1,4 +1,4 @@
-#include "HitVotes.h"
+#include <semantic_octree/store/HitVotes.h>
 
 #include <algorithm>
 #include <utility>

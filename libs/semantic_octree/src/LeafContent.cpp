@@ -1,4 +1,4 @@
-#include "LeafContent.h"
+#include <semantic_octree/store/LeafContent.h>
 
 #include <algorithm>
 #include <cmath>

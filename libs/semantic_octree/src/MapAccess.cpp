@@ -1,4 +1,5 @@
-#include "MapAccess.h"
+#include <semantic_octree/store/MapAccess.h>
+#include <semantic_octree/store/Scan.h>
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +7,6 @@
 #include <string>
 
 #include "Decay.h"
-#include "Scan.h"
 #include "ScanMerger.h"
 
 namespace semantic_octree {

@@ -1,4 +1,4 @@
-#include "NodeObserver.h"
+#include <semantic_octree/store/NodeObserver.h>
 
 namespace semantic_octree {
 

@@ -1,4 +1,4 @@
-#include "NodeStore.h"
+#include <semantic_octree/store/NodeStore.h>
 
 #include <algorithm>
 #include <stdexcept>

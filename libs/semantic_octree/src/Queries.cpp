@@ -1,11 +1,10 @@
 #include <semantic_octree/Keys.h>
 #include <semantic_octree/SemanticOcTree.h>
+#include <semantic_octree/store/LeafContent.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-#include "LeafContent.h"
 
 namespace semantic_octree {
 namespace {

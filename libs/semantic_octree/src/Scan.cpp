@@ -1,4 +1,4 @@
-#include "Scan.h"
+#include <semantic_octree/store/Scan.h>
 
 #include <algorithm>
 #include <cmath>

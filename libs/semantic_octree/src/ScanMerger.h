@@ -1,11 +1,11 @@
 #pragma once
 #include <semantic_octree/ClassFilter.h>
+#include <semantic_octree/store/NodeEditor.h>
+#include <semantic_octree/store/Scan.h>
 
 #include <vector>
 
 #include "BlockUpdate.h"
-#include "NodeEditor.h"
-#include "Scan.h"
 
 namespace semantic_octree {
 

@@ -1,13 +1,12 @@
 #include <semantic_octree/SemanticOcTree.h>
+#include <semantic_octree/store/MapAccess.h>
+#include <semantic_octree/store/Scan.h>
+#include <semantic_octree/store/TreeComparison.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <typeinfo>
-
-#include "MapAccess.h"
-#include "Scan.h"
-#include "TreeComparison.h"
 
 namespace semantic_octree {
 namespace {

@@ -1,4 +1,4 @@
-#include "TouchedTiles.h"
+#include <semantic_octree/store/TouchedTiles.h>
 
 #include <algorithm>
 

@@ -1,4 +1,5 @@
 #include <semantic_octree/TreeFile.h>
+#include <semantic_octree/store/TreeFormat.h>
 #include <strict_files/StagedFile.h>
 
 #include <cerrno>
@@ -6,8 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <streambuf>
-
-#include "TreeFormat.h"
 
 namespace semantic_octree {
 namespace {

@@ -1,4 +1,5 @@
-#include "TreeFormat.h"
+#include <semantic_octree/store/MapAccess.h>
+#include <semantic_octree/store/TreeFormat.h>
 
 #include <semantic_octree/Keys.h>
 
@@ -6,7 +7,6 @@
 #include <cmath>
 
 #include "Decay.h"
-#include "MapAccess.h"
 
 namespace semantic_octree {
 

@@ -1,5 +1,5 @@
-#include "MapAccess.h"
-#include "TreeFormat.h"
+#include <semantic_octree/store/MapAccess.h>
+#include <semantic_octree/store/TreeFormat.h>
 
 namespace semantic_octree {
 

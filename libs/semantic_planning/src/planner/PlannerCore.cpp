@@ -1,7 +1,7 @@
 #include "PlannerCore.h"
 
 #include <colored_graph/ColoredAStar.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <algorithm>
 #include <cmath>
