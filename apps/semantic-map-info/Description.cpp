@@ -55,11 +55,11 @@ ordered_json classesJson(const SemanticOcTree& map, const MapContents& contents)
   return classes;
 }
 
-ordered_json folderJson(const semantic_octree::MapFolder::Contents& folder) {
-  return {{"tiles", folder.tiles},
-          {"tileSize", folder.tileSize},
-          {"generation", folder.generation},
-          {"bytes", folder.bytesOnDisk}};
+ordered_json folderJson(const semantic_octree::MapFolder::Contents& folder,
+                        const semantic_octree::MapFolder::Others& others) {
+  return {{"tiles", folder.tiles},           {"tileSize", folder.tileSize},
+          {"generation", folder.generation}, {"bytes", folder.bytesOnDisk},
+          {"otherFiles", others.files},      {"otherBytes", others.bytes}};
 }
 
 void printBox(const ordered_json& box, std::ostream& out) {
@@ -71,6 +71,15 @@ void printBox(const ordered_json& box, std::ostream& out) {
     out << (axis ? ", " : "") << "xyz"[axis] << " " << box["min"][axis].get<double>() << " to "
         << box["max"][axis].get<double>();
   out << " m\n";
+}
+
+void printFolder(const ordered_json& folder, std::ostream& out) {
+  out << "\n  folder        " << folder["tiles"] << " tiles of " << folder["tileSize"] << " m, "
+      << strict_files::sizeText(folder["bytes"]) << ", saved " << folder["generation"] << " times";
+  if (folder["otherFiles"] > 0)
+    out << "\n  not of it     " << folder["otherFiles"] << " files, "
+        << strict_files::sizeText(folder["otherBytes"])
+        << ", that index.yaml does not name: of a process that writes, was killed, or others";
 }
 
 void printTime(const ordered_json& d, std::ostream& out) {
@@ -87,7 +96,7 @@ void printTime(const ordered_json& d, std::ostream& out) {
 
 }  // namespace
 
-ordered_json describe(semantic_octree::StoredMap& stored) {
+ordered_json describe(semantic_octree::StoredMap& stored, const std::filesystem::path& path) {
   const SemanticOcTree& map = stored.tree();
   const MapContents contents = contentsOf(map);
   ordered_json description = {{"resolution", map.getResolution()},
@@ -106,7 +115,9 @@ ordered_json describe(semantic_octree::StoredMap& stored) {
     description["freeSpace"] = ordered_json::object();
     addHalfLife(map, semantic_types::kNoClass, description["freeSpace"]);
   }
-  if (stored.folder()) description["folder"] = folderJson(stored.folder()->contents());
+  if (stored.folder())
+    description["folder"] =
+        folderJson(stored.folder()->contents(), semantic_octree::MapFolder::othersAt(path));
   return description;
 }
 
@@ -122,10 +133,7 @@ void printText(const std::string& name, const ordered_json& d, std::ostream& out
       << "  filter       ";
   for (const auto& [key, value] : d["filter"].items())
     out << " " << key << " " << (value.is_string() ? value.get<std::string>() : value.dump());
-  if (d.contains("folder"))
-    out << "\n  folder        " << d["folder"]["tiles"] << " tiles of " << d["folder"]["tileSize"]
-        << " m, " << strict_files::sizeText(d["folder"]["bytes"]) << ", saved "
-        << d["folder"]["generation"] << " times";
+  if (d.contains("folder")) printFolder(d["folder"], out);
   if (d.contains("clock")) printTime(d, out);
   out << "\n  occupied voxels by likeliest class (of " << d["classes"].size() << " classes)\n";
   const auto line = [&out](const std::string& id, const ordered_json& voxels,

@@ -82,7 +82,7 @@ int run(const Cli& cli) {
     return 0;
   }
   if (map.folder()) checkTiles(*map.folder());
-  const auto description = describe(map);
+  const auto description = describe(map, cli.map);
   if (cli.json)
     std::cout << textOf(description);
   else

@@ -227,6 +227,61 @@ TEST_F(MapFolders, withABadTileAreUsableWhereItIsNot) {
   EXPECT_EQ(runProgram("rawlog2semantic-map", {"--tiles", path("bad"), "--slam"}).status, 64);
 }
 
+TEST_F(MapFolders, withAnIndexThatIsNotOfTheirFilesAreRefusedByEveryProgram) {
+  const std::filesystem::path bad = path("wrong");
+  std::filesystem::copy(path("tiles"), bad);
+  const std::string index = strict_files::readText(bad / "index.yaml");
+  const std::size_t nodes = index.find("nodes: ") + 7;
+  std::string more = index;
+  more.insert(nodes, "1");
+  const std::size_t files = std::distance(std::filesystem::directory_iterator(bad), {});
+  const std::string order = kSources + "/config/orders/synthetic.yaml",
+                    weights = kSources + "/config/weights/synthetic.yaml";
+  const std::vector<std::vector<std::string>> runs = {
+      {"semantic-map-info"},
+      {"semantic-map-info", "--at", "0,0,0"},
+      {"semantic-map-edit", "-o", path("never.semantic")},
+      {"semantic-map-merge", path("plain/map.semantic"), "-o", path("never.semantic")},
+      {"semantic-map-compress", "-o", path("never"), "--weights", weights},
+      {"semantic-map-export", "-o", path("never.csv")},
+      {"semantic-map-plan", "--start=-14,-19,10", "--goal=25,-12,90", "--classes", order, "-o",
+       path("never")},
+      {"semantic-map-edit", path("plain/map.semantic"), "-o", bad.string(), "--tiles", "12.8",
+       "-f"},
+      {"semantic-map-send", "--port", "0", "--timeout", "1"}};
+  for (const std::string& text : {index.substr(0, index.size() / 2), more}) {
+    strict_files::writeText(bad / "index.yaml", text);
+    for (std::vector<std::string> arguments : runs) {
+      const std::string program = arguments[0];
+      if (std::count(arguments.begin(), arguments.end(), bad.string()))
+        arguments.erase(arguments.begin());
+      else
+        arguments[0] = bad.string();
+      const ProgramRun run = runProgram(program, arguments);
+      EXPECT_NE(run.status, 0) << program;
+      EXPECT_TRUE(contains(run.errors, (bad / "index.yaml").string())) << program << run.errors;
+      EXPECT_EQ(std::distance(std::filesystem::directory_iterator(bad), {}), long(files));
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("never.semantic")));
+  EXPECT_FALSE(std::filesystem::exists(path("never")));
+  std::filesystem::remove(bad / "index.yaml");
+  std::filesystem::remove_all(path("anew"));
+  std::vector<std::string> tiles = {"-o", path("anew"), "--tiles", "12.8"};
+  for (const auto& entry : std::filesystem::directory_iterator(bad))
+    if (entry.path().extension() == ".semantic") tiles.push_back(entry.path().string());
+  run("semantic-map-merge", tiles);
+  EXPECT_TRUE(loadMap(path("anew")) == loadMap(path("tiles")));
+}
+
+TEST_F(MapFolders, tellOfFilesThatTheirIndexDoesNotName) {
+  std::filesystem::copy(path("tiles"), path("littered"));
+  EXPECT_FALSE(contains(run("semantic-map-info", {path("littered")}).output, "not of it"));
+  folder->write("littered/tile_9_9_9.4.semantic", "0123456789");
+  const std::string output = run("semantic-map-info", {path("littered")}).output;
+  EXPECT_TRUE(contains(output, "not of it     1 files, 10 bytes")) << output;
+}
+
 TEST_F(MapFolders, haveOneWriter) {
   SemanticOcTree map = MapFolder::emptyMap(path("tiles"));
   const MapFolder writer(map, path("tiles"), MapFolder::Access::Write);

@@ -54,17 +54,44 @@ void readMapContent(const std::string& bytes) {
   readMap(fileAround(bytes.substr(1), 1 + static_cast<unsigned char>(bytes[0]) % 4));
 }
 
+std::uint32_t crcOf(const std::string& bytes) {
+  return static_cast<std::uint32_t>(
+      crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
+}
+
+std::string textIn(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/** The last checksum in a map's file: that of all its blocks, before the length of the empty one.
+ */
+std::uint32_t checksumOf(const fs::path& map) {
+  const std::string bytes = textIn(map);
+  std::uint32_t checksum = 0;
+  std::memcpy(&checksum, &bytes[bytes.size() - sizeof(checksum)], sizeof(checksum));
+  return checksum;
+}
+
 /** The file of leaves that an index of generation 1 names is there, and one tile with right
- * checksums around what the folder has. */
+ * checksums around what the folder has. The index gets its checksum, and theirs for `leaves` and
+ * `tile` behind "checksum: ". */
 void readTiles(const fs::path& folder) {
+  const fs::path tile = folder / "tile_0_0_0.1.semantic", leaves = folder / "leaves.1.semantic";
   semantic_octree::FilterParameters ofVersion2;
   ofVersion2.labelCorrelation = 0.5;
-  semantic_octree::saveTree(SemanticOcTree(0.4, fuzzedClasses(), ofVersion2),
-                            (folder / "leaves.1.semantic").string());
-  const fs::path tile = folder / "tile_0_0_0.1.semantic";
-  std::ostringstream content;
-  content << std::ifstream(tile, std::ios::binary).rdbuf();
-  std::ofstream(tile, std::ios::binary) << fileAround(content.str(), 2);
+  semantic_octree::saveTree(SemanticOcTree(0.4, fuzzedClasses(), ofVersion2), leaves.string());
+  const std::string content = textIn(tile);
+  std::ofstream(tile, std::ios::binary) << fileAround(content, 2);
+  std::string index = textIn(folder / "index.yaml");
+  for (const auto& [name, file] : {std::pair("tile", tile), std::pair("leaves", leaves)}) {
+    const std::string mark = std::string("checksum: ") + name;
+    if (const std::size_t at = index.find(mark); at != std::string::npos)
+      index.replace(at, mark.size(), "checksum: " + std::to_string(checksumOf(file)));
+  }
+  std::ofstream(folder / "index.yaml", std::ios::binary)
+      << index << "checksum: " << crcOf(index) << '\n';
   expectSound(semantic_octree::loadMap(folder.string()));
 }
 

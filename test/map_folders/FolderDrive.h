@@ -3,6 +3,7 @@
 #include <semantic_octree/TreeFile.h>
 
 #include <algorithm>
+#include <fstream>
 #include <sstream>
 
 #include "RandomScans.h"
@@ -93,6 +94,15 @@ inline std::vector<std::filesystem::path> tileFiles(const std::filesystem::path&
     if (entry.path().filename().string().rfind("tile_", 0) == 0) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
+}
+
+inline std::string contentOf(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline void write(const std::filesystem::path& file, const std::string& content) {
+  std::ofstream(file, std::ios::binary) << content;
 }
 
 /** Of a tile, by its file's name. */

@@ -2,7 +2,6 @@
 #include <sys/wait.h>
 
 #include <csignal>
-#include <fstream>
 
 #include "FolderDrive.h"
 #include "FullDisk.h"
@@ -23,15 +22,6 @@ SemanticOcTree mapOf(const std::vector<PosedCloud>& scans, std::size_t number) {
 std::vector<std::string> problemsOf(const fs::path& folder) {
   SemanticOcTree map = emptyMap();
   return MapFolder(map, folder, kRead, tight()).problems();
-}
-
-void write(const fs::path& file, const std::string& content) {
-  std::ofstream(file, std::ios::binary) << content;
-}
-
-std::string contentOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
@@ -86,30 +76,6 @@ TEST(MapFolderFaults, whatCannotBeReadLeavesTheMapAsItWas) {
   EXPECT_FALSE(map.isBroken());
   write(files[5], content);
   EXPECT_TRUE(tiles.problems().empty());
-}
-
-TEST(MapFolderFaults, aBadIndexIsNamedWithItsLine) {
-  const TemporaryFolder folder;
-  saveScans(folder / "map", someScans(3, 2));
-  const fs::path index = folder / "map/index.yaml";
-  const std::string good = contentOf(index);
-  const auto errorWith = [&](const std::string& from, const std::string& to) {
-    std::string bad = good;
-    bad.replace(bad.find(from), from.size(), to);
-    write(index, bad);
-    const std::string error = errorOf([&] { loadMap(folder / "map"); });
-    EXPECT_TRUE(contains(error, index.string())) << error;
-    return error;
-  };
-  EXPECT_TRUE(contains(errorWith("version: 1", "version: 2"), "version of the format"));
-  EXPECT_TRUE(contains(errorWith("tile_size: 6.4", "tile_size: -3"), "tile_size"));
-  EXPECT_TRUE(contains(errorWith("nodes: ", "nodes: -"), "out of range"));
-  EXPECT_TRUE(contains(errorWith("nodes: ", "nodes: 9999999"), "out of range"));
-  EXPECT_TRUE(contains(errorWith("frame", "fame"), "unknown key 'fame'"));
-  EXPECT_TRUE(contains(errorWith("at: [", "at: [0.5, "), "at"));
-  EXPECT_FALSE(errorWith("highest: ", "highest: 9").empty());
-  write(index, good);
-  EXPECT_TRUE(errorOf([&] { loadMap(folder / "map"); }).empty());
 }
 
 TEST(MapFolderFaults, ofAnotherKindOfMapIsRefused) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <random>
 
+#include "CommaHost.h"
 #include "TemporaryFolder.h"
 
 namespace {
@@ -98,6 +99,7 @@ TEST(OrbitCamera, NeverLosesABallThatIsSeen) {
 TEST(OrbitCamera, IsWrittenAndRead) {
   OrbitCamera camera = someCamera(-120, 35.5);
   camera.target.x() = 0.125;
+  const CommaHost host;
   const OrbitCamera read = OrbitCamera::ofText(camera.text());
   EXPECT_EQ(read.text(), "0.125,-4,2,25,-120,35.5");
   EXPECT_EQ(read.target, camera.target);

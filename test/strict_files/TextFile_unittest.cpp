@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
+#include <strict_files/ClassicNumbers.h>
+#include <strict_files/StrictYaml.h>
 #include <strict_files/TextFile.h>
 
-#include <clocale>
+#include <sstream>
 
+#include "CommaHost.h"
 #include "TemporaryFolder.h"
 
 using namespace strict_files;
@@ -57,9 +60,22 @@ TEST(TextLines, haveAsManyNumbersAsExpected) {
 }
 
 TEST(TextLines, haveNumbersWithPointsWhateverTheHostsLocaleIs) {
-  const std::string before = std::setlocale(LC_NUMERIC, nullptr);
-  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE"}) std::setlocale(LC_NUMERIC, name);
+  const CommaHost host;
   EXPECT_EQ(numbersOf({"0.5 +1.25 1e-3", "f:1"}, 3), (std::vector<double>{0.5, 1.25, 0.001}));
   EXPECT_NE(errorOf([] { numbersOf({"0,5", "f:1"}, 1); }), "");
-  std::setlocale(LC_NUMERIC, before.c_str());
+  const StrictYaml yaml("half: 0.5\nmany: 1234567\nwrong: 1.234\n", "y");
+  EXPECT_EQ(yaml.number(yaml.root()["half"], "half"), 0.5);
+  EXPECT_EQ(yaml.value<int>(yaml.root()["many"], "a whole number"), 1234567);
+  EXPECT_NE(errorOf([&] { yaml.value<int>(yaml.root()["wrong"], "a whole number"); }), "");
+}
+
+TEST(ClassicNumbers, areThoseOfAStreamOnlyWhileTheyLive) {
+  const CommaHost host;
+  std::ostringstream text;
+  {
+    const ClassicNumbers classic(text);
+    text << 1234.5 << ' ';
+  }
+  text << 1234.5;
+  EXPECT_EQ(text.str(), "1234.5 1.234,5");
 }

@@ -1,6 +1,7 @@
 #include <labeled_cloud/CameraCalibration.h>
 #include <mrpt/core/bits_math.h>
 #include <mrpt/math/TPose3D.h>
+#include <strict_files/ClassicNumbers.h>
 
 #include <algorithm>
 #include <sstream>
@@ -62,6 +63,7 @@ CameraCalibration CameraDescription::calibration() const {
                           ? mrpt::img::DistortionModel::plumb_bob
                           : mrpt::img::DistortionModel::kannala_brandt;
   std::istringstream stream(dist);
+  const strict_files::ClassicNumbers classic(stream);
   std::size_t count = 0;
   for (double k; stream >> k && count < camera.dist.size();) camera.dist[count++] = k;
   if (!stream.eof() && !dist.empty())

@@ -1,6 +1,7 @@
 #include <labeled_cloud/Seconds.h>
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/poses/CPose3DQuat.h>
+#include <strict_files/ClassicNumbers.h>
 #include <strict_files/TextFile.h>
 
 #include <array>
@@ -15,6 +16,7 @@ namespace {
 /** `t tx ty tz qx qy qz qw`. \throw std::runtime_error the line is something else. */
 std::array<double, 8> parseLine(const std::string& line) {
   std::istringstream stream(line);
+  const strict_files::ClassicNumbers classic(stream);
   std::array<double, 8> values;
   for (double& value : values)
     if (!(stream >> value) || !std::isfinite(value))

@@ -4,6 +4,7 @@
 #include <semantic_octree/store/TreeFormat.h>
 #include <strict_files/AvailableMemory.h>
 #include <strict_files/FileLock.h>
+#include <strict_files/OutputFolder.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>
@@ -19,9 +20,6 @@ namespace fs = std::filesystem;
 using strict_files::FileLock;
 
 namespace {
-
-constexpr const char* kWriterLock = ".writer.lock";
-constexpr const char* kReadersLock = ".readers.lock";
 
 /** A map without its tiles. */
 class LeavesCursor {
@@ -54,27 +52,28 @@ std::vector<std::string> namesOf(const ClassTable& classes) {
   return names;
 }
 
-SemanticOcTree loadLeaves(const fs::path& folder, const TileIndex& index) {
-  const fs::path file = folder / TileIndex::leavesName(index.generation);
-  SemanticOcTree leaves = loadTree(file.string());
-  if (leaves.getResolution() != index.resolution || namesOf(leaves.classes()) != index.classes)
-    throw std::runtime_error("cannot load map '" + file.string() +
-                             "': it has another resolution or other classes than " +
-                             MapFolder::kIndexFile + " says");
-  return leaves;
+std::vector<Cell> cellsOf(const SemanticOcTree& leaves) {
+  std::vector<Cell> cells;
+  for (auto leaf = leaves.begin_leafs(); leaf != leaves.end_leafs(); ++leaf)
+    cells.push_back(cellOf(leaf));
+  return cells;
 }
 
-/** Its tiles that are not wanted go. */
-TileIndex onlyWanted(TileIndex index, const decltype(MapFolderOptions::wanted)& wanted) {
-  if (!wanted) return index;
-  const auto isUnwanted = [&](const TileIndex::Tile& tile) {
-    const VoxelIndex origin = VoxelIndex::Constant(kKeyOfOrigin / edgeAtDepth(index.depth));
-    const Eigen::Vector3d low = (tile.place - origin).matrix().cast<double>() * index.tileSize();
-    return !wanted({low, low + Eigen::Vector3d::Constant(index.tileSize())});
+SemanticOcTree loadLeaves(const fs::path& folder, const TileIndex& index) {
+  const fs::path file = folder / TileIndex::leavesName(index.generation);
+  std::uint32_t checksum = 0;
+  SemanticOcTree leaves = loadTreeFile(file.string(), &checksum);
+  const auto refuse = [&file](const std::string& why) {
+    throw std::runtime_error("cannot load map '" + file.string() + "': " + why);
   };
-  index.tiles.erase(std::remove_if(index.tiles.begin(), index.tiles.end(), isUnwanted),
-                    index.tiles.end());
-  return index;
+  if (leaves.getResolution() != index.resolution || namesOf(leaves.classes()) != index.classes)
+    refuse(std::string("it has another resolution or other classes than ") + MapFolder::kIndexFile +
+           " says");
+  if (checksum != index.leavesChecksum || cellsOf(leaves) != index.leaves)
+    refuse(std::string("it is not the file that ") + MapFolder::kIndexFile + " names: checksum " +
+           std::to_string(checksum) + ", expected " + std::to_string(index.leavesChecksum) +
+           " and the leaves that it lists");
+  return leaves;
 }
 
 /** Of nodes and records, as maps of streets have them: 5 to 7. */
@@ -85,10 +84,7 @@ constexpr std::uint64_t kBytesOfLeaf = 6;
 class MapFolder::Tiles {
  public:
   Tiles(SemanticOcTree& map, fs::path folder, Access access, const MapFolderOptions& options)
-      : m_map(map),
-        m_folder(std::move(folder)),
-        m_draft(access == Access::Draft ? options.draft : fs::path()),
-        m_access(access) {
+      : m_map(map), m_folder(std::move(folder)), m_access(access) {
     options.validate();
     if (!map.empty()) throw std::invalid_argument("a map for a folder of tiles has to be empty");
     if (map.classes().hasHalfLives())
@@ -100,8 +96,13 @@ class MapFolder::Tiles {
     TileIndex index = open(options);
     constexpr double kAll = 1e18;  // bytes
     const auto budget = static_cast<std::size_t>(std::min(options.memory * 1e6, kAll));
-    const TilesOnDisk::Place place{m_folder, index.depth, budget, access != Access::Read,
-                                   m_draft.empty() ? m_folder : m_draft};
+    const TilesOnDisk::Place place{
+        m_folder,
+        index.depth,
+        budget,
+        m_unsaved.has_value(),
+        m_unsaved ? m_unsaved->staged("") : m_folder,
+        saves() ? nextGeneration(m_folder, index) : index.generation + 1};
     tiles = std::make_unique<TilesOnDisk>(map, place, std::move(index));
     auto empty = std::make_unique<NodeStore>(MapAccess::store(map).stateBytes());
     try {
@@ -115,7 +116,7 @@ class MapFolder::Tiles {
   }
   ~Tiles() {
     if (isOfMap()) MapAccess::store(m_map).setTiles(nullptr);
-    removeDraft();
+    removePlaced();
   }
 
   void save() {
@@ -125,12 +126,15 @@ class MapFolder::Tiles {
     SemanticOcTree leaves = emptyLike(m_map);
     TreeBuilder::fill(leaves, LeavesCursor(m_map.numClasses(), index.depth, m_map.root(), 0),
                       TreeBuilder::Merge::Never);
-    for (auto leaf = leaves.begin_leafs(); leaf != leaves.end_leafs(); ++leaf)
-      index.leaves.push_back(cellOf(leaf));
-    saveTree(leaves, (m_folder / TileIndex::leavesName(index.generation)).string());
-    writeIndex(m_folder, index);
+    index.leaves = cellsOf(leaves);
+    index.leavesChecksum =
+        saveTreeFile(leaves, m_unsaved->staged(TileIndex::leavesName(index.generation)).string());
+    index.old = oldFor(index);
+    writeIndex(m_unsaved->staged(""), index);
+    place(index);
     tiles->setIndex(std::move(index));
-    removeOthers();
+    m_placed.clear();
+    removeOld();
   }
 
   void checkFits(std::optional<std::size_t> most) const {
@@ -144,7 +148,7 @@ class MapFolder::Tiles {
 
   std::uint64_t bytesOnDisk() const {
     std::uint64_t bytes = 0;
-    for (const std::string& name : namesInIndex()) {
+    for (const std::string& name : tiles->index().files()) {
       std::error_code missing;
       const auto size = fs::file_size(m_folder / name, missing);
       if (!missing) bytes += size;
@@ -162,23 +166,30 @@ class MapFolder::Tiles {
   bool saves() const { return m_access == Access::Write || m_access == Access::Replace; }
 
   TileIndex open(const MapFolderOptions& options) {
+    if (m_access == Access::Draft) m_unsaved.emplace(options.draft);
     if (saves()) {
-      fs::create_directories(m_folder);
-      m_writer = FileLock::tryTo(m_folder / kWriterLock, FileLock::Kind::Exclusive);
+      m_unsaved.emplace(m_folder);
+      m_writer = FileLock::tryTo(m_folder / TileIndex::kWriterLock, FileLock::Kind::Exclusive);
       if (!m_writer)
         throw std::runtime_error(m_folder.string() + ": another process writes into this folder");
+      m_unsaved->takeAlong(TileIndex::kWriterLock);
     } else {
-      m_reader.emplace(m_folder / kReadersLock, FileLock::Kind::Shared);
-    }
-    if (m_access == Access::Read) return onlyWanted(readIndex(m_folder), options.wanted);
-    if (m_access == Access::Draft) {
-      fs::create_directories(m_draft);
-      return readIndex(m_folder);
+      m_reader.emplace(m_folder / TileIndex::kReadersLock, FileLock::Kind::Shared);
     }
     const bool wasSaved = isAt(m_folder);
-    if (wasSaved && m_access == Access::Write) return readIndex(m_folder);
     TileIndex index;
-    if (wasSaved) index.generation = readIndex(m_folder).generation;
+    if (!saves() || (wasSaved && m_access == Access::Write)) {
+      index = readIndex(m_folder);
+      if (m_access == Access::Read && options.wanted) index.keepWanted(options.wanted);
+      return index;
+    }
+    if (wasSaved) {
+      const TileIndex before = readIndex(m_folder);
+      const std::set<std::string> files = before.files();
+      index.generation = before.generation;
+      index.old = before.old;
+      index.old.insert(index.old.end(), files.begin(), files.end());
+    }
     index.resolution = m_map.getResolution();
     index.depth = depthOfTiles(options.tileSize, index.resolution);
     index.classes = namesOf(m_map.classes());
@@ -193,52 +204,63 @@ class MapFolder::Tiles {
     MapAccess::setStore(m_map, std::make_unique<NodeStore>(MapAccess::store(leaves),
                                                            MapAccess::store(m_map).stateBytes()));
     tiles->addFromIndex();
-    if (m_access == Access::Write) removeOthers();
+    if (m_access == Access::Write) removeOld();
   }
 
-  std::set<std::string> namesInIndex() const {
-    const TileIndex& index = tiles->index();
-    std::set<std::string> names = {TileIndex::leavesName(index.generation)};
-    for (const TileIndex::Tile& tile : index.tiles)
-      names.insert(index.nameOf(tile.place, tile.generation));
-    return names;
+  /** What the next index calls old: files that are there, and that it does not need. */
+  std::vector<std::string> oldFor(const TileIndex& next) const {
+    std::set<std::string> files = tiles->index().files();
+    files.insert(tiles->index().old.begin(), tiles->index().old.end());
+    files.insert(m_placed.begin(), m_placed.end());
+    for (const std::string& name : next.files()) files.erase(name);
+    std::vector<std::string> old;
+    for (const std::string& name : files)
+      if (fs::exists(m_folder / name)) old.push_back(name);
+    return old;
   }
 
-  /** Files of before, unless somebody may still want them; and those that were never saved. */
-  void removeOthers() const {
-    const auto alone = FileLock::tryTo(m_folder / kReadersLock, FileLock::Kind::Exclusive);
-    if (!alone) return;
-    const std::set<std::string> names = namesInIndex();
-    removeTiles(m_folder, names);
+  /** Puts files that are not in the folder yet there, the index last. */
+  void place(const TileIndex& index) {
+    std::vector<std::string> names;
+    for (const std::string& name : index.files())
+      if (fs::exists(m_unsaved->staged(name))) names.push_back(name);
+    m_placed.insert(names.begin(), names.end());
+    names.push_back(kIndexFile);
+    m_unsaved->commit(names);
   }
-  /** All tiles, and what else a folder has of a map, but for these. */
-  static void removeTiles(const fs::path& folder, const std::set<std::string>& kept) {
-    std::error_code ignored;
-    for (const auto& file : fs::directory_iterator(folder, ignored)) {
-      const std::string name = file.path().filename().string();
-      if (TileIndex::isName(name) && kept.count(name) == 0) fs::remove(file.path(), ignored);
+
+  /** Unless somebody may still want them. */
+  void removeOld() const {
+    const auto alone =
+        FileLock::tryTo(m_folder / TileIndex::kReadersLock, FileLock::Kind::Exclusive);
+    if (alone) remove(tiles->index().old);
+  }
+  /** What a save put there that then failed, unless the index had taken its place. */
+  void removePlaced() {
+    if (m_placed.empty()) return;
+    try {
+      if (isAt(m_folder))
+        for (const std::string& name : readIndex(m_folder).files()) m_placed.erase(name);
+      remove(m_placed);
+    } catch (const std::exception&) {  // then they stay, and semantic-map-info tells of them
     }
   }
-  void removeDraft() const {
-    if (m_draft.empty()) return;
-    removeTiles(m_draft, {});
+  template <class Names>
+  void remove(const Names& names) const {
     std::error_code ignored;
-    fs::remove(m_draft, ignored);
+    for (const std::string& name : names) fs::remove(m_folder / name, ignored);
   }
 
   SemanticOcTree& m_map;
-  fs::path m_folder, m_draft;  ///< the latter empty: it is none
+  fs::path m_folder;
   Access m_access;
   std::optional<FileLock> m_writer, m_reader;
+  std::optional<strict_files::OutputFolder> m_unsaved;  ///< of those who write
+  std::set<std::string> m_placed;  ///< files that a save which then failed put into the folder
 };
 
-bool MapFolder::isAt(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::is_regular_file(folder / MapFolder::kIndexFile, ignored);
-}
-
 SemanticOcTree MapFolder::emptyMap(const fs::path& folder) {
-  const FileLock lock(folder / kReadersLock, FileLock::Kind::Shared);
+  const FileLock lock(folder / TileIndex::kReadersLock, FileLock::Kind::Shared);
   return emptyLike(loadLeaves(folder, readIndex(folder)));
 }
 

@@ -25,6 +25,10 @@ std::uint64_t codeOfAway(const Octant& octant) {
   return std::uint64_t(octant.slots[1].index) << 32 | octant.slots[0].index;
 }
 
+long difference(std::size_t now, std::size_t before) {
+  return static_cast<long>(now) - static_cast<long>(before);
+}
+
 /** Nodes below one. */
 void countBelow(const NodeStore& store, const Slot& inner, Count& count) {
   if (inner.kind == Kind::Block) {
@@ -70,7 +74,7 @@ void TilesOnDisk::addFromIndex() {
     add(add, nodes.root(), Cell(), t);
     const std::uint64_t code = tileCode(t.place);
     Tile& tile = m_tiles[code];
-    tile = {t.place, t.generation, 0, true, false, t.nodes, t.innerNodes};
+    tile = {t.place, t.generation, 0, true, false, t.nodes, t.innerNodes, t.checksum};
     Slot& slot = *slotOf(tile);
     slot.kind = Kind::Away;
     markAway(nodes.octant(slot), code);
@@ -86,6 +90,14 @@ Slot* TilesOnDisk::slotOf(const Tile& tile) const {
     slot = &nodes.octant(*slot).slots[cellOf(tile).childOnTheWay(depth)];
   }
   return slot->isInner() ? slot : nullptr;
+}
+
+/** A save that failed halfway has put files into the folder, too. */
+std::string TilesOnDisk::fileOf(const Tile& tile) const {
+  const std::string name = m_index.nameOf(tile.place, tile.written);
+  const bool isSaved = tile.written <= m_index.generation;
+  const bool isThere = isSaved || (tile.isAway && !std::filesystem::exists(m_place.changed / name));
+  return ((isThere ? m_place.folder : m_place.changed) / name).string();
 }
 
 /** Memory that tiles leave is taken by what comes next: so that threads, each of which has its own,
@@ -116,14 +128,24 @@ void TilesOnDisk::fetch(Slot& slot, Tile& tile) {
 void TilesOnDisk::read(Slot& slot, const Tile& tile) {
   NodeStore& nodes = store();
   NodeArena& arena = arenaWith(true);
+  const std::size_t numNodes = nodes.numNodes(), numInner = nodes.numInnerNodes();
   nodes.countAway(-tile.nodes, -tile.innerNodes);
   slot.kind = Kind::Octant;
   nodes.octant(slot) = Octant();
   try {
-    loadTile(m_map, arena, nodes.octant(slot), cellOf(tile), fileOf(tile));
-    if (nodes.highestValueBelow(slot) != slot.value)
-      throw std::runtime_error("cannot load map '" + fileOf(tile) +
-                               "': altered: it is not the file that the index is of");
+    const std::uint32_t checksum =
+        loadTile(m_map, arena, nodes.octant(slot), cellOf(tile), fileOf(tile));
+    const auto expect = [&](const char* what, long found, long expected) {
+      if (found != expected)
+        throw std::runtime_error("cannot load map '" + fileOf(tile) +
+                                 "': it is not the file that " + MapFolder::kIndexFile +
+                                 " names: " + what + " " + std::to_string(found) + ", expected " +
+                                 std::to_string(expected));
+    };
+    expect("checksum", checksum, tile.checksum);
+    expect("nodes", tile.nodes + difference(nodes.numNodes(), numNodes), tile.nodes);
+    expect("inner", tile.innerNodes + difference(nodes.numInnerNodes(), numInner), tile.innerNodes);
+    expect("highest", nodes.highestValueBelow(slot), slot.value);
     if (NodeObserver* const observer = MapAccess::observer(m_map))
       recomputeAll(observer->worker(0), nodes, slot, cellOf(tile));
   } catch (...) {
@@ -214,15 +236,16 @@ void TilesOnDisk::write(const Slot& slot, Tile& tile) {
   Count count;
   countBelow(store(), slot, count);
   Tile next = tile;
-  next.written = m_index.generation + 1;
-  saveTile(m_map, slot, cellOf(tile), static_cast<std::uint64_t>(count.nodes), fileOf(next));
+  next.written = m_place.next;
+  tile.checksum =
+      saveTile(m_map, slot, cellOf(tile), static_cast<std::uint64_t>(count.nodes), fileOf(next));
   tile.written = next.written;
   tile.isDirty = false;
 }
 
 TileIndex TilesOnDisk::writeChanged() {
   TileIndex index = m_index;
-  ++index.generation;
+  index.generation = m_place.next;
   index.tiles.clear();
   for (auto it = m_tiles.begin(); it != m_tiles.end();) {
     Tile& tile = it->second;
@@ -232,10 +255,10 @@ TileIndex TilesOnDisk::writeChanged() {
       continue;
     }
     if (tile.isDirty) write(*slot, tile);
-    if (tile.written == index.generation) strict_files::toDisk(fileOf(tile));
     Count count{tile.nodes, tile.innerNodes};
     if (!tile.isAway) countBelow(store(), *slot, count = Count());
-    index.tiles.push_back({tile.place, tile.written, count.nodes, count.inner, slot->value});
+    index.tiles.push_back(
+        {tile.place, tile.written, count.nodes, count.inner, slot->value, tile.checksum});
     ++it;
   }
   std::sort(index.tiles.begin(), index.tiles.end(),

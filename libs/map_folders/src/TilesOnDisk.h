@@ -18,7 +18,8 @@ class TilesOnDisk : public TileSource {
     int depth;
     std::size_t budget;  ///< bytes
     bool mayWrite;
-    std::filesystem::path changed;  ///< where tiles of the next generation are
+    std::filesystem::path changed;  ///< where tiles of the next generation are until they are saved
+    std::uint64_t next;             ///< generation
   };
   TilesOnDisk(SemanticOcTree& map, Place place, TileIndex index)
       : m_map(map), m_place(std::move(place)), m_index(std::move(index)) {}
@@ -33,10 +34,13 @@ class TilesOnDisk : public TileSource {
   /** Adds the tiles that the index has to a map that has none. */
   void addFromIndex();
   void bringAll();
-  /** Writes what changed as files of the next generation. \return the index of all tiles */
+  /** Writes what changed as files of the next generation. \return the index, but for leaves */
   TileIndex writeChanged();
   const TileIndex& index() const { return m_index; }
-  void setIndex(TileIndex index) { m_index = std::move(index); }
+  void setIndex(TileIndex index) {
+    m_index = std::move(index);
+    m_place.next = m_index.generation + 1;
+  }
   std::vector<std::string> problems();
   void addTo(MapFolder::Contents& contents) const;
 
@@ -47,16 +51,14 @@ class TilesOnDisk : public TileSource {
     std::uint64_t used = 0;     ///< when, by m_clock
     bool isAway = false, isDirty = false;
     long nodes = 0, innerNodes = 0;  ///< below it, if it is away
+    std::uint32_t checksum = 0;      ///< of its file
   };
   using Entry = std::pair<const std::uint64_t, Tile>;
 
   NodeStore& store() const { return MapAccess::store(m_map); }
   Cell cellOf(const Tile& tile) const { return {tile.place, m_place.depth}; }
-  std::string fileOf(const Tile& tile) const {
-    const bool isSaved = tile.written <= m_index.generation;
-    return ((isSaved ? m_place.folder : m_place.changed) / m_index.nameOf(tile.place, tile.written))
-        .string();
-  }
+  /** Where it is, or is to be written. */
+  std::string fileOf(const Tile& tile) const;
   NodeArena& arenaWith(bool most);
   /** Null: it is no inner node (any more). */
   Slot* slotOf(const Tile& tile) const;

@@ -1,5 +1,6 @@
 #include <map_pictures/ClassMap.h>
 #include <map_pictures/Sheet.h>
+#include <strict_files/ClassicNumbers.h>
 
 #include <algorithm>
 #include <cmath>
@@ -116,6 +117,7 @@ cv::Size ClassMap::size() const { return {m_width + m_legend.cols, m_legend.rows
 std::string ClassMap::worldFile() const {
   const cv::Point2d center = m_upperLeft + cv::Point2d(m_metersPerPixel, -m_metersPerPixel) / 2;
   std::ostringstream text;
+  const strict_files::ClassicNumbers classic(text);
   text << std::setprecision(12);
   for (const double value : {m_metersPerPixel, 0.0, 0.0, -m_metersPerPixel, center.x, center.y})
     text << value << '\n';

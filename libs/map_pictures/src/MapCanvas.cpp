@@ -1,4 +1,5 @@
 #include <map_pictures/MapCanvas.h>
+#include <strict_files/ClassicNumbers.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -63,6 +64,7 @@ MapCanvas::MapCanvas(const Eigen::AlignedBox2d& region, const cv::Size& most, in
       std::min((most.width - 2 * border) / size.x(), (most.height - 2 * border) / size.y());
   if (!(size.minCoeff() > 0 && m_pixelsPerMeter > 0 && std::isfinite(m_pixelsPerMeter))) {
     std::ostringstream what;
+    const strict_files::ClassicNumbers classic(what);
     what << "picture: " << size.x() << " m x " << size.y() << " m do not fit into " << most.width
          << " x " << most.height << " pixels with a border of " << border;
     throw std::invalid_argument(what.str());

@@ -1,4 +1,5 @@
 #include <map_view/OrbitCamera.h>
+#include <strict_files/ClassicNumbers.h>
 #include <strict_files/OptionList.h>
 
 #include <array>
@@ -68,6 +69,7 @@ std::string OrbitCamera::text() const {
   std::string text;
   for (const double number : {target.x(), target.y(), target.z(), distance, azimuth, elevation}) {
     std::ostringstream rounded;
+    const strict_files::ClassicNumbers classic(rounded);
     rounded << std::round(number * 1000) / 1000;
     text += (text.empty() ? "" : ",") + rounded.str();
   }

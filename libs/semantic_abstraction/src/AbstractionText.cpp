@@ -1,4 +1,5 @@
 #include <semantic_abstraction/WeightsFile.h>
+#include <strict_files/ClassicNumbers.h>
 #include <strict_files/Words.h>
 
 #include <cmath>
@@ -61,6 +62,7 @@ NamedNumbers numbersIn(const std::string& option, const std::string& text) {
 
 Region regionIn(const std::string& text) {
   std::istringstream in(text);
+  const strict_files::ClassicNumbers classic(in);
   std::string shape, rest;
   Region region;
   in >> shape;

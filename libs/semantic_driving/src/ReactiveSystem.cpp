@@ -3,6 +3,7 @@
 #include <mrpt/config/CConfigFile.h>
 #include <mrpt/nav/reactive/CReactiveNavigationSystem.h>
 #include <mrpt/nav/reactive/CReactiveNavigationSystem3D.h>
+#include <strict_files/ClassicNumbers.h>
 
 #include <iomanip>
 #include <limits>
@@ -53,6 +54,7 @@ void writeSlices(CConfigFile& file, const Options& options) {
   for (std::size_t i = 0; i < options.slices.size(); ++i) {
     const std::string level = "LEVEL" + std::to_string(i + 1);
     std::ostringstream x, y;
+    const strict_files::ClassicNumbers classicX(x), classicY(y);
     for (const Eigen::Vector2d& p : options.slices[i].outline.inflated(options.margin))
       x << p.x() << ' ', y << p.y() << ' ';
     file.write(kSection3D, level + "_HEIGHT", options.slices[i].height);
@@ -93,6 +95,7 @@ void completeHolonomicFactors(mrpt::config::CConfigFileBase& file, std::size_t f
     if (values.size() != 7 || factors == 7) continue;
     values.resize(factors, 0);
     std::ostringstream list;
+    const strict_files::ClassicNumbers classic(list);
     list << std::setprecision(std::numeric_limits<double>::max_digits10);
     for (const double value : values) list << value << ' ';
     file.write(section, key, list.str());

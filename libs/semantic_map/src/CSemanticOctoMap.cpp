@@ -1,6 +1,7 @@
 #include <labeled_cloud/ScanConverter.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
+#include <strict_files/ClassicNumbers.h>
 #include <strict_files/Words.h>
 
 #include <sstream>
@@ -97,6 +98,7 @@ void CSemanticOctoMap::internal_clear() {
 std::string CSemanticOctoMap::asString() const {
   const auto lock = reading();
   std::ostringstream text;
+  const strict_files::ClassicNumbers classic(text);
   text << "CSemanticOctoMap: voxels of " << m_tree.getResolution() << " m, " << m_tree.numClasses()
        << " classes, " << m_tree.getNumLeafNodes() << " leaves, "
        << strict_files::sizeText(m_tree.memoryUsage());

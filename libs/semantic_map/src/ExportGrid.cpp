@@ -2,6 +2,7 @@
 #include <mrpt/serialization/CArchive.h>
 #include <octomap/octomap_utils.h>
 #include <semantic_map/ExportGrid.h>
+#include <strict_files/ClassicNumbers.h>
 
 #include <algorithm>
 #include <cmath>
@@ -133,6 +134,7 @@ MapServerFiles mapServerFiles(const COccupancyGridMap2D& grid, const std::string
   std::vector<std::uint8_t> png;
   if (!cv::imencode(".png", picture, png)) throw std::runtime_error("cannot encode the grid");
   std::ostringstream yaml;
+  const strict_files::ClassicNumbers classic(yaml);
   yaml << "image: " << pngName << "\nresolution: " << grid.getResolution() << "\norigin: ["
        << grid.getXMin() << ", " << grid.getYMin()
        << ", 0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\nnegate: 0\n";

@@ -2,6 +2,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 #include <semantic_map/ExportOctomap.h>
+#include <strict_files/ClassicNumbers.h>
 
 #include <iomanip>
 #include <limits>
@@ -18,6 +19,7 @@ namespace {
 /** OctoMap's own functions print what they do. */
 void writeHeader(std::ostream& out, const std::string& firstLine,
                  const octomap::AbstractOcTree& tree) {
+  const strict_files::ClassicNumbers classic(out);
   out << firstLine << "\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
       << std::setprecision(std::numeric_limits<double>::digits10) << tree.getResolution()
       << "\ndata\n";

@@ -1,5 +1,6 @@
 #include <semantic_map/ExportPoints.h>
 #include <semantic_types/ClassColors.h>
+#include <strict_files/ClassicNumbers.h>
 #include <strict_files/Csv.h>
 
 #include <iomanip>
@@ -44,6 +45,7 @@ std::string onOneLine(std::string name) {
 }
 
 void writePlyHeader(std::ostream& out, const ClassTable& classes, std::size_t points) {
+  const strict_files::ClassicNumbers classic(out);
   out << "ply\nformat binary_little_endian 1.0\n";
   for (int id = 1; id <= classes.size(); ++id)
     out << "comment class " << id << " " << onOneLine(classes.name(static_cast<ClassId>(id)))
@@ -76,6 +78,7 @@ void writePly(std::ostream& out, const SemanticOcTree& tree, const PointOptions&
 }
 
 void writeCsv(std::ostream& out, const SemanticOcTree& tree, const PointOptions& options) {
+  const strict_files::ClassicNumbers classic(out);
   out << "x,y,z,size,occupancy,class,name,probability\n" << std::setprecision(7);
   forEachState(tree, options, [&](const auto& leaf, const CellState& state) {
     const ClassId id = state.likeliestClass;

@@ -1,4 +1,5 @@
 #include <semantic_map/ImportOctomap.h>
+#include <strict_files/ClassicNumbers.h>
 
 #include <cmath>
 #include <cstring>
@@ -27,6 +28,7 @@ Header readHeader(std::istream& in) {
     throw std::runtime_error("is no map of OctoMap's");
   while (std::getline(in, line) && line != "data") {
     std::istringstream words(line);
+    const strict_files::ClassicNumbers classic(words);
     std::string key;
     words >> key;
     if (key == "id") words >> header.type;

@@ -3,13 +3,10 @@
 #include <zlib.h>
 
 namespace semantic_octree {
-namespace {
 
 std::uint32_t extendCrc(std::uint32_t crc, const void* bytes, std::size_t size) {
   return static_cast<std::uint32_t>(crc32_z(crc, static_cast<const unsigned char*>(bytes), size));
 }
-
-}  // namespace
 
 void CheckedWriter::put(const std::string& text) {
   if (text.size() > UINT16_MAX)
@@ -28,10 +25,11 @@ void CheckedWriter::flush() {
   m_used = 0;
 }
 
-void CheckedWriter::finish() {
+std::uint32_t CheckedWriter::finish() {
   if (m_used > 0) flush();
   flush();
   if (!m_out) throw std::runtime_error("the map could not be written completely");
+  return m_crc;
 }
 
 std::string CheckedReader::getText() {

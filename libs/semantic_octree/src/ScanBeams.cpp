@@ -1,5 +1,7 @@
 #include <semantic_octree/store/ScanBeams.h>
 
+#include <strict_files/ClassicNumbers.h>
+
 #include <algorithm>
 #include <limits>
 #include <sstream>
@@ -22,6 +24,7 @@ ScanBeams::ScanBeams(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_s
   if (!T_map_sensor.matrix().allFinite() || !insideMap(m_origin)) {
     const Eigen::Vector3d sensor = T_map_sensor.translation();
     std::ostringstream what;
+    const strict_files::ClassicNumbers classic(what);
     what << "sensor at (" << sensor.x() << ", " << sensor.y() << ", " << sensor.z()
          << ") m is outside the map, which reaches " << kKeyOfOrigin * resolution
          << " m from its origin";

@@ -82,16 +82,22 @@ auto readContent(std::istream& in, const F& read) {
   }
 }
 
-/** Calls write(stream). */
+std::uint32_t write(std::ostream& out, const SemanticOcTree& tree) {
+  writeBeginning(out);
+  return TreeWriter(out, tree).write();
+}
+
+/** Calls write(stream), which tells the checksum. */
 template <typename F>
-void save(const std::string& path, StagedFile::Disk when, const F& write) {
+std::uint32_t save(const std::string& path, StagedFile::Disk when, const F& write) {
   try {
     StagedFile file(path);
     std::ofstream out(file.path(), std::ios::binary | std::ios::trunc);
-    write(out);
+    const std::uint32_t checksum = write(out);
     out.close();
     if (!out) throw std::runtime_error("the file could not be written completely");
     file.commit(when);
+    return checksum;
   } catch (const std::exception& e) {
     throw std::runtime_error("cannot save map '" + path + "': " + reasonOf(e, path));
   }
@@ -108,10 +114,7 @@ auto load(const std::string& path, const F& read) {
 
 }  // namespace
 
-void writeTree(std::ostream& out, const SemanticOcTree& tree) {
-  writeBeginning(out);
-  TreeWriter(out, tree).write();
-}
+void writeTree(std::ostream& out, const SemanticOcTree& tree) { write(out, tree); }
 
 std::size_t fileSize(const SemanticOcTree& tree) {
   CountingBuffer buffer;
@@ -125,27 +128,39 @@ SemanticOcTree readTree(std::istream& in) {
 }
 
 void saveTree(const SemanticOcTree& tree, const std::string& path) {
-  save(path, StagedFile::Disk::Now, [&](std::ostream& out) { writeTree(out, tree); });
+  save(path, StagedFile::Disk::Now, [&](std::ostream& out) { return write(out, tree); });
 }
 
-SemanticOcTree loadTree(const std::string& path) {
-  return load(path, [](std::istream& in) { return readTree(in); });
+std::uint32_t saveTreeFile(const SemanticOcTree& tree, const std::string& path) {
+  return save(path, StagedFile::Disk::Later, [&](std::ostream& out) { return write(out, tree); });
 }
 
-void saveTile(const SemanticOcTree& tree, const Slot& octant, const Cell& cell, std::uint64_t nodes,
-              const std::string& path) {
-  save(path, StagedFile::Disk::Later, [&](std::ostream& out) {
-    writeBeginning(out);
-    TreeWriter(out, tree).writeTile(octant, cell, nodes);
+SemanticOcTree loadTree(const std::string& path) { return loadTreeFile(path); }
+
+SemanticOcTree loadTreeFile(const std::string& path, std::uint32_t* checksum) {
+  return load(path, [&](std::istream& in) {
+    return readContent(in, [&](TreeReader& reader) {
+      SemanticOcTree tree = reader.read();
+      if (checksum) *checksum = reader.checksum();
+      return tree;
+    });
   });
 }
 
-void loadTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant, const Cell& cell,
-              const std::string& path) {
-  load(path, [&](std::istream& in) {
+std::uint32_t saveTile(const SemanticOcTree& tree, const Slot& octant, const Cell& cell,
+                       std::uint64_t nodes, const std::string& path) {
+  return save(path, StagedFile::Disk::Later, [&](std::ostream& out) {
+    writeBeginning(out);
+    return TreeWriter(out, tree).writeTile(octant, cell, nodes);
+  });
+}
+
+std::uint32_t loadTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant,
+                       const Cell& cell, const std::string& path) {
+  return load(path, [&](std::istream& in) {
     return readContent(in, [&](TreeReader& reader) {
       reader.readTile(tree, arena, octant, cell);
-      return true;
+      return reader.checksum();
     });
   });
 }

@@ -16,7 +16,7 @@ void TreeWriter::putHeader() {
   putTime();
 }
 
-void TreeWriter::writeTile(const Slot& octant, const Cell& cell, std::uint64_t nodes) {
+std::uint32_t TreeWriter::writeTile(const Slot& octant, const Cell& cell, std::uint64_t nodes) {
   putHeader();
   m_out.put<std::uint64_t>(nodes + static_cast<std::uint64_t>(cell.depth) + 1);
   m_out.put(static_cast<std::uint8_t>(NodeKind::Inner));
@@ -24,17 +24,17 @@ void TreeWriter::writeTile(const Slot& octant, const Cell& cell, std::uint64_t n
     m_out.put(static_cast<std::uint16_t>(static_cast<unsigned>(NodeKind::Inner)
                                          << 2 * cell.childOnTheWay(depth)));
   putSlot(octant);
-  m_out.finish();
+  return m_out.finish();
 }
 
-void TreeWriter::write() {
+std::uint32_t TreeWriter::write() {
   putHeader();
   m_out.put<std::uint64_t>(m_tree.size());
   if (!m_tree.empty()) {
     m_out.put(static_cast<std::uint8_t>(kindOf(m_store.root())));
     putSlot(m_store.root());
   }
-  m_out.finish();
+  return m_out.finish();
 }
 
 void TreeWriter::putParameters(const FilterParameters& p) {

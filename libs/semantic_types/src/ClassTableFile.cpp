@@ -48,7 +48,7 @@ class Reader {
   }
 
   void addClass(const YAML::Node& entry) {
-    const auto name = m_yaml.value<std::string>(m_yaml.required(entry, "name"), "the class's name");
+    const auto name = m_yaml.text(m_yaml.required(entry, "name"), "name");
     const Color rgb = color(m_yaml.required(entry, "color"));
     const ClassId id = located(entry, [&] { return m_table.add(name, rgb); });
     setHalfLife(entry["half_life"], id);
@@ -89,7 +89,7 @@ class Reader {
 
   Policy unknownRawId(const YAML::Node& node) const {
     if (!node) return Policy::Error;
-    const auto text = m_yaml.value<std::string>(node, "error or no_class");
+    const auto text = m_yaml.text(node, "unknown_raw_id");
     if (text == "error") return Policy::Error;
     if (text == "no_class") return Policy::NoClass;
     m_yaml.fail(node, "unknown_raw_id: expected error or no_class, found '" + text + "'");
@@ -109,10 +109,11 @@ class Reader {
   ClassTable m_table;
 };
 
-std::vector<std::uint32_t> rawIdsOf(const ClassTable& table, ClassId id) {
-  std::vector<std::uint32_t> rawIds;
+/** As text, for yaml-cpp writes numbers as the program's global locale has them. */
+std::vector<std::string> rawIdsOf(const ClassTable& table, ClassId id) {
+  std::vector<std::string> rawIds;
   for (const auto& [raw, folded] : table.folds())
-    if (folded == id) rawIds.push_back(raw);
+    if (folded == id) rawIds.push_back(std::to_string(raw));
   return rawIds;
 }
 
@@ -120,12 +121,12 @@ YAML::Emitter& operator<<(YAML::Emitter& out, const Color& c) {
   return out << YAML::Flow << std::vector<int>{c.r, c.g, c.b};
 }
 
-void emitRawIds(YAML::Emitter& out, const char* key, const std::vector<std::uint32_t>& rawIds) {
+void emitRawIds(YAML::Emitter& out, const char* key, const std::vector<std::string>& rawIds) {
   if (!rawIds.empty()) out << YAML::Key << key << YAML::Value << YAML::Flow << rawIds;
 }
 
 void emitHalfLife(YAML::Emitter& out, const char* key, double seconds) {
-  if (seconds != kForever) out << YAML::Key << key << YAML::Value << seconds;
+  if (seconds != kForever) out << YAML::Key << key << YAML::Value << strict_files::textOf(seconds);
 }
 
 void emit(YAML::Emitter& out, const ClassTable& table) {

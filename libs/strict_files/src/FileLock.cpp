@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "Unfinished.h"
+
 namespace strict_files {
 namespace {
 
@@ -24,11 +26,14 @@ FileLock::FileLock(const std::filesystem::path& file, Kind kind) : FileLock(file
 }
 
 std::optional<FileLock> FileLock::tryTo(const std::filesystem::path& file, Kind kind) {
-  FileLock lock(file);
-  if (lock.m_descriptor >= 0 && flock(lock.m_descriptor, operationOf(kind) | LOCK_NB) != 0 &&
-      errno == EWOULDBLOCK)
-    return std::nullopt;
-  return lock;
+  constexpr int kMost = 10;
+  for (int i = 1;; ++i) {  // who held it may have taken the file along, so that others see another
+    FileLock lock(file);
+    if (lock.m_descriptor < 0) return lock;
+    if (flock(lock.m_descriptor, operationOf(kind) | LOCK_NB) != 0)
+      return errno == EWOULDBLOCK ? std::nullopt : std::optional(std::move(lock));
+    if (leadsTo(file, lock.m_descriptor) || i == kMost) return lock;
+  }
 }
 
 FileLock::~FileLock() {

@@ -34,6 +34,8 @@ OutputFolder::~OutputFolder() = default;
 
 fs::path OutputFolder::staged(const std::string& name) const { return m_staging->path() / name; }
 
+void OutputFolder::takeAlong(const std::string& lock) { m_staging->takeAlong(lock); }
+
 /** Where each file goes, when all are on the disk. \throw filesystem_error or runtime_error */
 Placement OutputFolder::prepare(const std::string& name) const {
   checkPlace(m_folder / name);

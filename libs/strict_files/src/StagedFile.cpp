@@ -68,12 +68,4 @@ void StagedFile::commit(Disk when) {
   }
 }
 
-void toDisk(const fs::path& file) {
-  try {
-    synchronize(file);
-  } catch (const std::exception& e) {
-    throw std::runtime_error(file.string() + ": cannot be written: " + e.what());
-  }
-}
-
 }  // namespace strict_files

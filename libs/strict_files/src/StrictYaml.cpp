@@ -1,6 +1,7 @@
 #include <strict_files/StrictYaml.h>
 #include <strict_files/Words.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -25,6 +26,16 @@ int lineOfSecondDocument(const std::string& text) {
     hasContent |= isMark || !isBlank;
   }
   return 0;
+}
+
+/** As numberOf(); yaml-cpp reads numbers as the program's global locale has them. */
+bool decode(const YAML::Node& node, double& value) {
+  try {
+    if (node.IsScalar()) value = numberOf(node.Scalar());
+    return node.IsScalar();
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -115,8 +126,17 @@ std::string StrictYaml::quoted(const YAML::Node& node) {
 
 double StrictYaml::number(const YAML::Node& node, const std::string& field) const {
   double value = NAN;
-  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value))
+  if (!decode(node, value) || !std::isfinite(value))
     fail(node, field + ": expected a number, found " + quoted(node));
+  return value;
+}
+
+double StrictYaml::whole(const YAML::Node& node, const std::string& expected, double low,
+                         double high) const {
+  double value = NAN;
+  if (!decode(node, value) || value != std::floor(value) || value < std::max(low, -0x1p53) ||
+      value > std::min(high, 0x1p53))
+    fail(node, "expected " + expected + ", found " + quoted(node));
   return value;
 }
 

@@ -70,6 +70,15 @@ void removeDead(const fs::path& folder) {
     if (isName(it->path().filename().string())) removeIfDead(it->path());
 }
 
+/** Whether nothing else is in its folder. */
+bool isAlone(const fs::path& file) {
+  std::error_code error;
+  for (fs::directory_iterator it(file.parent_path(), error), end; !error && it != end;
+       it.increment(error))
+    if (it->path().filename() != file.filename()) return false;
+  return !error;
+}
+
 fs::path orHere(const fs::path& folder) { return folder.empty() ? fs::path(".") : folder; }
 
 }  // namespace
@@ -117,10 +126,7 @@ bool Unfinished::make(Kind kind) {
 /** False if, before it was locked, another process took it for one of the dead. */
 bool Unfinished::lock() {
   flock(m_descriptor, LOCK_EX);
-  struct stat mine = {}, there = {};
-  if (fstat(m_descriptor, &mine) == 0 && lstat(m_path.c_str(), &there) == 0 &&
-      mine.st_ino == there.st_ino && mine.st_dev == there.st_dev)
-    return true;
+  if (leadsTo(m_path, m_descriptor)) return true;
   close(m_descriptor);
   m_descriptor = -1;
   return false;
@@ -129,13 +135,21 @@ bool Unfinished::lock() {
 void Unfinished::discard() noexcept {
   std::error_code ignored;
   fs::remove_all(m_path, ignored);
+  if (!m_companion.empty() && isAlone(m_companion)) fs::remove(m_companion, ignored);
   if (m_madeFolder) fs::remove(m_folder, ignored);  // only if it is empty
 }
 
 void leaveWithoutOutputs(int status) {
   const auto held = Unfinished::hold();  // to the end: nothing is begun or takes its place now
-  for (Unfinished* unfinished : registry().all) unfinished->discard();
+  for (int i = 0; i < 2; ++i)            // a folder that is in another may be the last to leave it
+    for (Unfinished* unfinished : registry().all) unfinished->discard();
   _exit(status);
+}
+
+bool leadsTo(const fs::path& path, int descriptor) {
+  struct stat open = {}, there = {};
+  return fstat(descriptor, &open) == 0 && stat(path.c_str(), &there) == 0 &&
+         open.st_ino == there.st_ino && open.st_dev == there.st_dev;
 }
 
 void synchronize(int descriptor) {

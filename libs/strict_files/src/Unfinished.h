@@ -25,6 +25,9 @@ class Unfinished {
   /** Of the file or folder, open. */
   int descriptor() const { return m_descriptor; }
 
+  /** A file beside it, a lock, goes with it if nothing else is left in the folder. */
+  void takeAlong(const std::string& name) { m_companion = m_folder / name; }
+
   /** Gives it a name that stays, for the user: "kept-..." \return its path */
   std::filesystem::path keep();
 
@@ -37,10 +40,13 @@ class Unfinished {
   bool lock();
   void discard() noexcept;
 
-  std::filesystem::path m_folder, m_path;
+  std::filesystem::path m_folder, m_path, m_companion;
   bool m_madeFolder = false;
   int m_descriptor = -1;
 };
+
+/** Whether a path leads to what is open. */
+bool leadsTo(const std::filesystem::path& path, int descriptor);
 
 /** Brings the content of a file or folder to the disk. \throw std::runtime_error saying why not */
 void synchronize(int descriptor);

@@ -23,7 +23,7 @@ struct MapFolderOptions {
    * answers true; the others' are unknown space. None: all tiles. */
   std::function<bool(const Eigen::AlignedBox3d& cube)> wanted = {};
   /** Of a folder that is opened as a draft: a folder where tiles that changed go when memory is
-   * short. It is created, must not be used by anything else, and goes with the MapFolder. */
+   * short. It is created, and goes with the MapFolder. */
   std::filesystem::path draft = {};
 
   void describe(strict_files::OptionList& list);
@@ -49,7 +49,9 @@ struct MapFolderOptions {
  *
  * Nothing that was saved is touched before the next save(), which is done when the index takes its
  * place: whenever the process ends, the folder is what it was when it was last saved. One process
- * writes, others read what was saved when they opened it (doc/handbook/large-maps.md). */
+ * writes, others read what was saved when they opened it. The index tells the checksum and counts
+ * of each file, and its own: a file is compared with them when it is read, and removed only if an
+ * index calls it old (doc/handbook/large-maps.md). */
 class MapFolder {
  public:
   enum class Access {
@@ -63,6 +65,14 @@ class MapFolder {
   static constexpr const char* kIndexFile = "index.yaml";
   /** Whether a map was saved there. */
   static bool isAt(const std::filesystem::path& folder);
+  /** Files that no save of a folder names: put there, or left by a process that was killed. Who
+   * writes next removes only what such a process had not begun to save. */
+  struct Others {
+    std::size_t files = 0;
+    std::uint64_t bytes = 0;
+  };
+  /** \throw std::runtime_error as loadTree() */
+  static Others othersAt(const std::filesystem::path& folder);
   /** An empty map like that of a folder. \throw std::runtime_error as loadTree() */
   static SemanticOcTree emptyMap(const std::filesystem::path& folder);
 

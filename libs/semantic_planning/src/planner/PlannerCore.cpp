@@ -2,6 +2,7 @@
 
 #include <colored_graph/ColoredAStar.h>
 #include <semantic_abstraction/Abstraction.h>
+#include <strict_files/ClassicNumbers.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,6 +52,7 @@ PlanStatus atGoal(PlanStatus start) {
 std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPose2D& pose,
                      const Ground& ground) {
   std::ostringstream reason;
+  const strict_files::ClassicNumbers classic(reason);
   reason << "the " << what << " (" << pose.x << ", " << pose.y << ") ";
   if (status == PlanStatus::StartOffGround)
     reason << "is not on drivable ground: "

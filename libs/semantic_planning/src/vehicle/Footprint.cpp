@@ -1,4 +1,5 @@
 #include <semantic_planning/vehicle/Footprint.h>
+#include <strict_files/ClassicNumbers.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@ using Eigen::Vector2d;
 
 [[noreturn]] void refuse(const std::string& problem, const Vector2d& corner) {
   std::ostringstream text;
+  const strict_files::ClassicNumbers classic(text);
   text << "footprint " << problem << " (" << corner.x() << ", " << corner.y() << ")";
   throw std::invalid_argument(text.str());
 }

@@ -5,7 +5,7 @@
 namespace strict_files {
 
 /** A lock between processes (flock), held as long as this lives, or as the process does. The file
- * is made if need be, and stays. Where the file system has no locks, or the file cannot be made,
+ * is made if need be. Where the file system has no locks, or the file cannot be made,
  * everybody gets it. */
 class FileLock {
  public:

@@ -24,11 +24,14 @@ class OutputFolder {
 
   /** Where to write a file. */
   std::filesystem::path staged(const std::string& name) const;
-  /** Puts these files in place. One that was not written removes its predecessor, so that files of
-   * different maps are never side by side.
-   * \throw std::runtime_error naming the file that cannot be written, or whose place something else
-   * has that is no regular file, or that is there although it was to be new (declareNew()): then
-   * the files that have no place are kept in a folder beside them, which is said. */
+  /** The folder's lock (FileLock), held by this process, goes with what was not committed, if
+   * nothing else is in the folder. */
+  void takeAlong(const std::string& lock);
+  /** Puts these files in place, in this order; may be called again with others. One that was not
+   * written removes its predecessor, so that files of different maps are never side by side. \throw
+   * std::runtime_error naming the file that cannot be written, or whose place something else has
+   * that is no regular file, or that is there although it was to be new (declareNew()): then the
+   * files that have no place are kept in a folder beside them, which is said. */
   void commit(const std::vector<std::string>& names);
 
  private:

@@ -26,7 +26,7 @@ class StagedFile {
   /** Gives the closed file its name. \throw std::runtime_error naming the target; if it was to be
    * new (declareNew()) and is there, what was written is kept under another name, which is said. */
   void commit() { commit(Disk::Now); }
-  /** Later: it takes its name at once, for what is not relied on before toDisk(). */
+  /** Later: it takes its name at once, for what OutputFolder has on the disk before it counts. */
   enum class Disk { Now, Later };
   void commit(Disk when);
 
@@ -34,8 +34,5 @@ class StagedFile {
   std::filesystem::path m_target;
   std::unique_ptr<Unfinished> m_unfinished;
 };
-
-/** Has a file's content on the disk. \throw std::runtime_error naming the file */
-void toDisk(const std::filesystem::path& file);
 
 }  // namespace strict_files

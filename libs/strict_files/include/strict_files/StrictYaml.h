@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -32,14 +33,13 @@ class StrictYaml {
   void checkList(const YAML::Node& list, const std::string& field) const;
   YAML::Node required(const YAML::Node& map, const std::string& key) const;
 
-  /** \param expected What to say if it is no T: "a class id". */
+  /** A whole number that fits. \param expected What to say if it is none: "a class id". */
   template <typename T>
   T value(const YAML::Node& node, const std::string& expected) const {
-    try {
-      return node.as<T>();
-    } catch (const YAML::Exception&) {
-      fail(node, "expected " + expected + ", found " + quoted(node));
-    }
+    using Limits = std::numeric_limits<T>;
+    static_assert(Limits::is_integer);
+    return static_cast<T>(whole(node, expected, static_cast<double>(Limits::lowest()),
+                                static_cast<double>(Limits::max())));
   }
   /** One of some words. */
   template <typename T>
@@ -59,6 +59,7 @@ class StrictYaml {
   Eigen::Vector3d point(const YAML::Node& node, const std::string& field) const;
 
  private:
+  double whole(const YAML::Node& node, const std::string& expected, double low, double high) const;
   static std::string quoted(const YAML::Node& node);
   [[noreturn]] void fail(const YAML::Mark& where, const std::string& what) const;
   void parse(const std::string& text);

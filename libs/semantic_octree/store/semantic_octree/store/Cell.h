@@ -16,6 +16,7 @@ struct Cell {
   VoxelIndex index = VoxelIndex::Zero();
   int depth = 0;
 
+  bool operator==(const Cell& o) const { return depth == o.depth && (index == o.index).all(); }
   /** i-th of the eight children in OctoMap's order: x is bit 0, y bit 1, z bit 2. */
   Cell child(int i) const { return {index * 2 + VoxelIndex(i & 1, i >> 1 & 1, i >> 2), depth + 1}; }
   /** Which child, of its ancestor above, the ancestor at a depth is. */

@@ -36,8 +36,9 @@ class CheckedWriter {
   }
   /** At most 65535 characters. */
   void put(const std::string& text);
-  /** Writes what is left, and the end. \throw std::runtime_error the stream failed. */
-  void finish();
+  /** Writes what is left, and the end. \return the CRC of all blocks
+   * \throw std::runtime_error the stream failed. */
+  std::uint32_t finish();
 
  private:
   void flush();
@@ -72,6 +73,8 @@ class CheckedReader {
   std::string getText();
   /** Expects the end. */
   void finish();
+  /** The CRC of all blocks up to here. */
+  std::uint32_t checksum() const { return m_crc; }
 
  private:
   void getAcrossBlocks(char* to, std::size_t bytes);
@@ -82,6 +85,9 @@ class CheckedReader {
   std::size_t m_next = 0, m_size = 0;
   std::uint32_t m_crc = 0;
 };
+
+/** The CRC-32 of bytes behind others that have this one. */
+std::uint32_t extendCrc(std::uint32_t crc, const void* bytes, std::size_t size);
 
 /** \throw std::runtime_error the stream ends before. */
 void readBytes(std::istream& in, char* to, std::size_t bytes);

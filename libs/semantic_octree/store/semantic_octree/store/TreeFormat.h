@@ -40,10 +40,11 @@ enum class NodeKind : std::uint8_t { None, Leaf, LeafWithRecord, Inner };
 class TreeWriter {
  public:
   TreeWriter(std::ostream& out, const SemanticOcTree& tree);
-  void write();
+  /** \return its checksum: the CRC of all blocks */
+  std::uint32_t write();
   /** A map of nothing but one inner node above the blocks, and its ancestors.
-   * \param nodes below it */
-  void writeTile(const Slot& octant, const Cell& cell, std::uint64_t nodes);
+   * \param nodes below it \return its checksum */
+  std::uint32_t writeTile(const Slot& octant, const Cell& cell, std::uint64_t nodes);
 
  private:
   void putHeader();
@@ -72,6 +73,8 @@ class TreeReader {
   /** What writeTile() wrote of a map that is like this one: adds the children of an octant that has
    * none. If it fails, some of them may be there. */
   void readTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant, const Cell& cell);
+  /** Of what was read. */
+  std::uint32_t checksum() const { return m_in.checksum(); }
 
  private:
   SemanticOcTree getHeader();
@@ -104,12 +107,19 @@ class TreeReader {
   int m_numClasses = 0;
 };
 
-/** A tile's file, see TreeWriter::writeTile(); not yet on the disk. \throw std::runtime_error
- * naming the file */
-void saveTile(const SemanticOcTree& tree, const Slot& octant, const Cell& cell, std::uint64_t nodes,
-              const std::string& path);
-/** See TreeReader::readTile(). \throw std::runtime_error naming the file */
-void loadTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant, const Cell& cell,
-              const std::string& path);
+/** As loadTree(). \param checksum becomes that of the file */
+SemanticOcTree loadTreeFile(const std::string& path, std::uint32_t* checksum = nullptr);
+/** As saveTree(), but not yet on the disk. \return the file's checksum */
+std::uint32_t saveTreeFile(const SemanticOcTree& tree, const std::string& path);
+
+/** A tile's file, see TreeWriter::writeTile(); not yet on the disk. \return the file's checksum
+ * \throw std::runtime_error naming the file */
+std::uint32_t saveTile(const SemanticOcTree& tree, const Slot& octant, const Cell& cell,
+                       std::uint64_t nodes, const std::string& path);
+/** See TreeReader::readTile(). \return the file's checksum \throw std::runtime_error naming the
+ * file
+ */
+std::uint32_t loadTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant,
+                       const Cell& cell, const std::string& path);
 
 }  // namespace semantic_octree
