@@ -14,7 +14,7 @@ namespace {
 constexpr double kViewResolution = 0.3;
 constexpr int kViewClasses = 5;
 
-SemanticOcTree randomMap(unsigned seed, bool pruning = true) {
+SemanticOcTree mapOfScans(unsigned seed, bool pruning = true) {
   SemanticOcTree map(kViewResolution, numberedClasses(kViewClasses));
   map.setPruning(pruning);
   std::mt19937 random(seed);
@@ -76,7 +76,7 @@ struct Label {
   ClassId id;
   int times = 1;
 };
-SemanticOcTree mapOf(const std::vector<Label>& labels) {
+SemanticOcTree mapOfLabels(const std::vector<Label>& labels) {
   SemanticOcTree map(kViewResolution, numberedClasses(kViewClasses));
   for (int time = 0;; ++time) {
     LabeledCloud cloud;
@@ -99,7 +99,7 @@ SemanticOcTree mapOf(const std::vector<Label>& labels) {
 
 TEST(SmoothedView, addsWhatNeighborsTellAsDocumented) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
-    const SemanticOcTree map = randomMap(seed);
+    const SemanticOcTree map = mapOfScans(seed);
     for (const double weight : {0.1, 0.4, 1.0}) {
       const SmoothedView view(map, {weight});
       int answered = 0, changed = 0;
@@ -128,7 +128,7 @@ TEST(SmoothedView, addsWhatNeighborsTellAsDocumented) {
 }
 
 TEST(SmoothedView, withoutWeightIsTheMapItself) {
-  const SemanticOcTree map = randomMap(4);
+  const SemanticOcTree map = mapOfScans(4);
   const SmoothedView view(map, {0.0});
   for (const VoxelId& id : voxelsIn(map)) {
     const CellState own = map.query(keyOf(id)), state = view.query(keyOf(id));
@@ -139,7 +139,7 @@ TEST(SmoothedView, withoutWeightIsTheMapItself) {
 }
 
 TEST(SmoothedView, ofAPrunedMapIsThatOfTheUnpruned) {
-  const SemanticOcTree pruned = randomMap(5, true), unpruned = randomMap(5, false);
+  const SemanticOcTree pruned = mapOfScans(5, true), unpruned = mapOfScans(5, false);
   EXPECT_LT(pruned.size(), unpruned.size());
   const SmoothedView a(pruned), b(unpruned);
   for (const VoxelId& id : voxelsIn(pruned))
@@ -157,7 +157,7 @@ RC_GTEST_PROP(SmoothedView, leavesStraightBordersWhereTheyAre, ()) {
       const bool left = x * std::cos(angle) + y * std::sin(angle) < offset;
       labels.push_back({{x, y, 0}, static_cast<ClassId>(left ? 1 : 2), 4});
     }
-  const SemanticOcTree map = mapOf(labels);
+  const SemanticOcTree map = mapOfLabels(labels);
   const SmoothedView view(map, {weight});
   for (const Label& label : labels) {
     const auto [x, y, z] = label.voxel;
@@ -173,7 +173,7 @@ TEST(SmoothedView, keepsThinLinesAndWithALowWeightSinglePosts) {
       const bool special = x == 0 || (x == 3 && y == 3);
       labels.push_back({{x, y, 0}, static_cast<ClassId>(special ? 3 : 1), 4});
     }
-  const SemanticOcTree map = mapOf(labels);
+  const SemanticOcTree map = mapOfLabels(labels);
   const auto classAt = [&](double weight, int x, int y) {
     return SmoothedView(map, {weight}).query(keyOf({x, y, 0})).likeliestClass;
   };
@@ -189,13 +189,14 @@ TEST(SmoothedView, outvotesAWrongLabelAmongRightOnes) {
       const bool wrong = x == 0 && y == 0;
       labels.push_back({{x, y, 0}, static_cast<ClassId>(wrong ? 4 : 2), wrong ? 1 : 3});
     }
-  const SemanticOcTree map = mapOf(labels);
+  const SemanticOcTree map = mapOfLabels(labels);
   EXPECT_EQ(map.query(keyOf({0, 0, 0})).likeliestClass, 4);
   EXPECT_EQ(SmoothedView(map).query(0.1, 0.1, 0.1).likeliestClass, 2);
 }
 
 TEST(SmoothedView, answersForVoxelsThatWereNotHit) {
-  const SemanticOcTree map = mapOf({{{-1, 0, 0}, 1, 2}, {{1, 1, 1}, 2, 2}, {{0, 0, 9}, 5, 0}});
+  const SemanticOcTree map =
+      mapOfLabels({{{-1, 0, 0}, 1, 2}, {{1, 1, 1}, 2, 2}, {{0, 0, 9}, 5, 0}});
   const VoxelId gap = {0, 0, 0};  // a face neighbor of class 1, a corner neighbor of class 2
   EXPECT_EQ(map.query(keyOf(gap)).likeliestClass, kNoClass);
   const CellState state = SmoothedView(map).query(keyOf(gap));
@@ -211,7 +212,7 @@ TEST(SmoothedView, answersForVoxelsThatWereNotHit) {
 TEST(SmoothedView, isNoSurerThanTheFilterMayBeOfOneVoxel) {
   std::vector<Label> labels;
   for (int i = 0; i < 27; ++i) labels.push_back({{i % 3, i / 3 % 3, i / 9}, 1, 30});
-  const SemanticOcTree map = mapOf(labels);
+  const SemanticOcTree map = mapOfLabels(labels);
   const std::vector<double> own = map.distribution(*map.search(keyOf({1, 1, 2})));
   const std::vector<double> all = SmoothedView(map, {1.0}).distribution(keyOf({1, 1, 2}));
   for (int k = 1; k <= kViewClasses; ++k)

@@ -5,6 +5,7 @@
 
 #include "RandomScans.h"
 #include "StreamPackets.h"
+#include "ThreeTerms.h"
 
 /** Maps to be sent, and their packets. */
 namespace streamed_maps {

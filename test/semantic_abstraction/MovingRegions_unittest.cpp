@@ -7,6 +7,7 @@
 
 #include "OctreeAsTree.h"
 #include "SmallScans.h"
+#include "ThreeTerms.h"
 
 namespace {
 
