@@ -2,6 +2,7 @@
 #include <semantic_octree/Abstraction.h>
 #include <semantic_octree/KeyframeMap.h>
 #include <semantic_octree/MapContents.h>
+#include <semantic_octree/MapFollower.h>
 #include <semantic_octree/MapOperations.h>
 
 #include "FolderDrive.h"
@@ -192,14 +193,28 @@ TEST(MapFolder, tellsWhatChangedOfTheCompressedTree) {
   whole.setAbstraction(someAbstraction());
   map.setAbstraction(someAbstraction());
   MapFolder tiles(map, folder / "map", kWrite, tight());
+  MapFollower ofMap = map.follow(), ofWhole = whole.follow();
   for (const PosedCloud& scan : someScans(7, 8)) {
     whole.insert(scan.cloud, scan.T_map_sensor);
     map.insert(scan.cloud, scan.T_map_sensor);
-    const TreeChange a = Abstraction(map).takeChange(), b = Abstraction(whole).takeChange();
+    const TreeChange a = ofMap.leaves(), b = ofWhole.leaves();
     EXPECT_EQ(a.added, b.added);
     EXPECT_EQ(a.removed, b.removed);
-    EXPECT_EQ(map.takeTouchedTiles(), whole.takeTouchedTiles());
+    EXPECT_EQ(ofMap.tiles().tiles, ofWhole.tiles().tiles);
   }
+}
+
+TEST(MapFolder, whoFollowedTheMapBeforeIsToldAllThatIsInIt) {
+  const TemporaryFolder folder;
+  saveScans(folder / "map", someScans(7, 4));
+  SemanticOcTree map = emptyMap();
+  MapFollower follower = map.follow();
+  EXPECT_TRUE(follower.tiles().tiles.empty());
+  const MapFolder tiles(map, folder / "map", MapFolder::Access::Read, tight());
+  const TileChange change = follower.tiles();
+  EXPECT_TRUE(change.all);
+  EXPECT_EQ(change.tiles, map.follow().tiles().tiles);
+  EXPECT_GT(change.tiles.size(), 100u);
 }
 
 TEST(MapFolder, operationsReadItTileByTile) {

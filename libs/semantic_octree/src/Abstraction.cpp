@@ -1,6 +1,7 @@
 #include <stdexcept>
 
 #include "InnerNodes.h"
+#include "LeafLog.h"
 #include "TreeBuilder.h"
 
 namespace semantic_octree {
@@ -148,35 +149,15 @@ void Abstraction::compressTo(SemanticOcTree& compressed) const {
                     TreeBuilder::Merge::Never);
 }
 
-std::unique_ptr<LeafChanges> Abstraction::takenChanges() const {
-  auto changes = std::move(m_map.m_leafChanges);
-  if (!changes)
-    throw std::logic_error(
-        "changes of the compressed tree were lost when memory ran out: call setAbstraction() anew");
-  return changes;
-}
-
-TreeChange Abstraction::takeChange() {
-  const Node root = m_map.root();
-  auto changes = takenChanges();
-  TreeChange change =
-      root ? changes->update(m_map.store(), m_gTree, root) : changes->clear(m_map.store(), m_gTree);
-  m_map.m_leafChanges = std::move(changes);
-  return change;
-}
-
-void Abstraction::forgetChange() {
-  const Node root = m_map.root();
-  auto changes = takenChanges();
-  if (root)
-    changes->forget(m_map.store(), m_gTree, root);
-  else
-    changes->clear(m_map.store(), m_gTree);
-  m_map.m_leafChanges = std::move(changes);
-}
-
-std::size_t Abstraction::numTakenLeaves() const {
-  return m_map.m_leafChanges ? m_map.m_leafChanges->numLeaves() : 0;
+std::shared_ptr<LeafLog> Abstraction::leafLog() const {
+  const auto log = readLog(m_map.m_leafLog);
+  try {
+    log->update(m_map.store(), m_gTree, m_map.root());
+  } catch (...) {
+    m_map.m_leafLog.reset();
+    throw;
+  }
+  return log;
 }
 
 void Abstraction::setAlpha(double alpha) {

@@ -190,6 +190,7 @@ class MapFolder::Tiles {
       throw std::runtime_error(m_folder.string() +
                                ": its map has another resolution, other classes or parameters");
     m_map.m_store = std::make_unique<NodeStore>(leaves.store(), m_map.store().stateBytes());
+    m_map.tellAll();
     tiles->addFromIndex();
     if (m_access == Access::Write) removeOthers();
   }

@@ -7,7 +7,7 @@
 #include "GTree.h"
 #include "NodeStore.h"
 #include "Scan.h"
-#include "TouchedTiles.h"
+#include "TileLog.h"
 
 namespace semantic_octree {
 
@@ -18,7 +18,7 @@ struct MergeTarget {
   /** Keeps inner nodes' bookkeeping up to date; null: there is none. */
   GTree* gTree;
   /** Is told where something changed; null: nobody wants to know. */
-  TouchedTiles* touched;
+  TileLog* touched;
   /** Children that agree are merged; off: every known leaf is a voxel. */
   bool pruning;
 };

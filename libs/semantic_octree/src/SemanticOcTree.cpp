@@ -4,13 +4,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "CompressedTree.h"
 #include "Decay.h"
 #include "NodeStore.h"
 #include "Scan.h"
 #include "ScanMerger.h"
 #include "TileReplacement.h"
-#include "TouchedTiles.h"
 #include "TreeComparison.h"
 
 namespace semantic_octree {
@@ -21,13 +19,6 @@ double positive(double meters) {
     throw std::invalid_argument("resolution = " + std::to_string(meters) +
                                 " m, expected a positive number");
   return meters;
-}
-
-/** Adds the tiles below a node. */
-void addTiles(const Node& node, const Cell& cell, TouchedTiles& tiles) {
-  if (node.isLeaf() || cell.depth == TouchedTiles::kDepth) return tiles.add(cell);
-  for (int i = 0; i < 8; ++i)
-    if (const Node child = node.child(i)) addTiles(child, cell.child(i), tiles);
 }
 
 }  // namespace
@@ -46,10 +37,8 @@ SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
   o.checkNotInTiles();
   m_pruning = o.m_pruning;
   m_clock = o.m_clock;
-  if (o.hasAbstraction()) {
+  if (o.hasAbstraction())
     m_gTree = std::make_unique<GTree>(o.m_gTree->options(), m_filter, m_resolution);
-    m_leafChanges = std::make_unique<LeafChanges>();
-  }
   m_store = std::make_unique<NodeStore>(o.store(), o.store().stateBytes());
 }
 
@@ -73,9 +62,9 @@ void SemanticOcTree::swap(SemanticOcTree& o) {
   std::swap(m_clock, o.m_clock);
   std::swap(m_store, o.m_store);
   std::swap(m_gTree, o.m_gTree);
-  std::swap(m_leafChanges, o.m_leafChanges);
-  std::swap(m_touched, o.m_touched);
   std::swap(m_scan, o.m_scan);
+  tellAll();
+  o.tellAll();
 }
 
 bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
@@ -98,19 +87,13 @@ void SemanticOcTree::clear() {
   checkNotInTiles();
   m_store = std::make_unique<NodeStore>(m_gTree ? m_gTree->stateBytes() : 0);
   m_clock = 0;
-  if (m_touched) m_touched->take();
+  tellAll();
 }
 
-std::vector<octomap::OcTreeKey> SemanticOcTree::takeTouchedTiles() {
-  if (!m_touched) {
-    auto touched = std::make_unique<TouchedTiles>();
-    if (!empty()) addTiles(root(), Cell(), *touched);
-    m_touched = std::move(touched);
-  }
-  return m_touched->take();
+void SemanticOcTree::tellAll() {
+  m_tileLog.reset();
+  m_leafLog.reset();
 }
-
-void SemanticOcTree::forgetTouchedTiles() { m_touched = std::make_unique<TouchedTiles>(); }
 
 void SemanticOcTree::setPruning(bool on) {
   if (!empty()) throw std::logic_error("pruning can be switched in an empty tree only");
@@ -120,11 +103,10 @@ void SemanticOcTree::setPruning(bool on) {
 void SemanticOcTree::setAbstraction(const AbstractionOptions& options) {
   options.validate(numClasses());
   auto gTree = std::make_unique<GTree>(options, m_filter, m_resolution);
-  auto leafChanges = std::make_unique<LeafChanges>();
   auto newStore = storeFor(gTree->stateBytes());
   if (!store().tiles()) gTree->worker(0).recomputeAll(*newStore, newStore->root(), Cell());
   std::swap(m_gTree, gTree);
-  std::swap(m_leafChanges, leafChanges);
+  m_leafLog.reset();
   m_store = std::move(newStore);  // first, so that tiles come in where the old nodes were
   if (store().tiles()) computeTileByTile();
 }
@@ -140,7 +122,6 @@ void SemanticOcTree::computeTileByTile() {
     m_gTree->worker(0).recomputeAll(store(), store().root(), Cell());
   } catch (...) {  // tiles came and went meanwhile: what was cannot be had back
     m_gTree = nullptr;
-    m_leafChanges = nullptr;
     throw;
   }
 }
@@ -148,7 +129,7 @@ void SemanticOcTree::computeTileByTile() {
 void SemanticOcTree::dropAbstraction() {
   m_store = storeFor(0);
   m_gTree = nullptr;
-  m_leafChanges = nullptr;
+  m_leafLog.reset();
 }
 
 NodeStore& SemanticOcTree::store() const {
@@ -168,7 +149,9 @@ std::size_t SemanticOcTree::memoryUsage() const { return store().bytes(); }
 
 template <typename F>
 void SemanticOcTree::change(const F& f) {
-  const MergeTarget target{store(), m_filter, m_gTree.get(), m_touched.get(), m_pruning};
+  const auto log = m_tileLog.lock();
+  TileLog* const touched = log && log->isRead() ? log.get() : nullptr;
+  const MergeTarget target{store(), m_filter, m_gTree.get(), touched, m_pruning};
   try {
     f(target);
   } catch (...) {

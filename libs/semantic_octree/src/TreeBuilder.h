@@ -21,6 +21,7 @@ class TreeBuilder {
   /** A map in a folder of tiles that is open for writing sends tiles away meanwhile. */
   template <typename Cursor>
   static void fill(SemanticOcTree& map, const Cursor& root, Merge merge = Merge::AsTheMapDoes) {
+    map.tellAll();
     TreeBuilder(map, merge).build(map.store().root(), root, Cell());
   }
   /** An empty map of the same kind and time. \param resolution its voxels' edge, m */
