@@ -41,7 +41,7 @@ std::uint64_t totalSize(const std::vector<fs::path>& files) {
 }  // namespace
 
 MapBuilder::MapBuilder(semantic_map::CSemanticOctoMap& map, OnScan onScan)
-    : m_map(map), m_onScan(std::move(onScan)) {}
+    : m_map(map), m_follower(map.tree()), m_onScan(std::move(onScan)) {}
 
 void MapBuilder::timeWithoutAbstraction() {
   m_plainMap = std::make_unique<semantic_map::CSemanticOctoMap>(m_map);
@@ -125,10 +125,8 @@ semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& sc
 
 void MapBuilder::noteAbstraction(const LabeledScan& scan, const CPose3D& T_map_robot) {
   AbstractionSummary& a = m_summary.abstraction;
-  semantic_octree::TreeChange change;
-  a.changeTimes.push_back(timeOf([&] { change = m_map.abstraction().takeChange(); }));
-  const std::size_t before = a.compressedLeaves.empty() ? 0 : a.compressedLeaves.back();
-  a.compressedLeaves.push_back(before + change.added.size() - change.removed.size());
+  a.changeTimes.push_back(timeOf([&] { m_follower.leaves(); }));
+  a.compressedLeaves.push_back(m_follower.skipLeaves());
   a.leaves.push_back(m_map.tree().getNumLeafNodes());
   if (m_plainMap)
     a.insertionTimesWithout.push_back(timeOf([&] { m_plainMap->insertScan(scan, T_map_robot); }));

@@ -16,7 +16,7 @@ int main(int argc, char** argv) try {
   semantic_octree::AbstractionOptions options;
   options.weights = {{tree_abstraction::relevant("road", 1.0, {synthetic_world::kRoad})}, 0.01};
   setAbstraction(map, options);
-  semantic_octree::Abstraction compressed(map);
+  semantic_octree::LeafFollower follower(map);
 
   for (double s = 0; s < 40; s += 4) {
     // Your localization and your LiDAR or camera: here they are made up.
@@ -27,7 +27,7 @@ int main(int argc, char** argv) try {
     const semantic_types::LabeledCloud cloud = scanLidar(village.world, T_map_sensor, {});
 
     map.insert(cloud, T_map_sensor);
-    const auto change = compressed.takeChange();  // all that another robot needs to be told
+    const auto change = follower.leaves();  // all that another robot needs to be told
     std::cout << cloud.size() << " points, " << map.getNumLeafNodes()
               << " leaves; compressed: " << change.added.size() << " came, "
               << change.removed.size() << " went\n";

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "FolderDrive.h"
+#include "FollowedTree.h"
 
 using namespace folder_drive;
 
@@ -47,10 +48,12 @@ TEST(MapDrafts, becomeTheMapInOnePieceAndLeaveTheFolderAsItIs) {
       setAbstraction(map, someAbstraction());
       setAbstraction(whole, someAbstraction());
       EXPECT_FALSE(map.isReadOnly());
+      FollowedTree told(map);
       for (std::size_t i = 6; i < scans.size(); ++i) {
         insertAll(map, {scans[i]});
         insertAll(whole, {scans[i]});
         EXPECT_EQ(Abstraction(map).leaves(), Abstraction(whole).leaves());
+        told.follow();
       }
       EXPECT_FALSE(std::filesystem::is_empty(folder / "draft"));
       EXPECT_GT(draft.contents().sentOut, 10u);
@@ -92,43 +95,4 @@ TEST(MapDrafts, ofMapsInOneFileAreTheMap) {
   StoredMap stored(folder / "map.semantic", draftIn(folder / "draft"));
   EXPECT_TRUE(stored.tree() == whole);
   EXPECT_EQ(stored.folder(), nullptr);
-}
-
-TEST(MapDrafts, leavesThatWereTakenAreCountedAsScansComeIn) {
-  const auto scans = someScans(7, 12);
-  SemanticOcTree map = emptyMap();
-  setAbstraction(map, someAbstraction());
-  Abstraction abstraction(map);
-  EXPECT_EQ(abstraction.numTakenLeaves(), 0u);
-  for (const PosedCloud& scan : scans) {
-    insertAll(map, {scan});
-    abstraction.takeChange();
-    EXPECT_EQ(abstraction.numTakenLeaves(), abstraction.leaves().size());
-  }
-  map.clear();
-  abstraction.takeChange();
-  EXPECT_EQ(abstraction.numTakenLeaves(), 0u);
-}
-
-TEST(MapDrafts, whatWasForgottenIsNotToldAndAllElseIs) {
-  const auto scans = someScans(8, 12);
-  SemanticOcTree map = emptyMap(), same = emptyMap();
-  std::size_t changes = 0;
-  for (SemanticOcTree* each : {&map, &same}) setAbstraction(*each, someAbstraction());
-  for (std::size_t i = 0; i + 1 < scans.size(); i += 2) {
-    for (SemanticOcTree* each : {&map, &same}) insertAll(*each, {scans[i]});
-    Abstraction(map).forgetChange();
-    Abstraction(same).takeChange();
-    EXPECT_EQ(Abstraction(map).numTakenLeaves(), Abstraction(map).leaves().size());
-    for (SemanticOcTree* each : {&map, &same}) insertAll(*each, {scans[i + 1]});
-    const TreeChange told = Abstraction(map).takeChange(), all = Abstraction(same).takeChange();
-    changes += all.added.size();
-    EXPECT_EQ(told.added, all.added);
-    EXPECT_EQ(told.removed, all.removed);
-  }
-  EXPECT_GT(changes, 100u);
-  map.clear();
-  Abstraction(map).forgetChange();
-  EXPECT_EQ(Abstraction(map).numTakenLeaves(), 0u);
-  EXPECT_TRUE(Abstraction(map).takeChange().removed.empty());
 }

@@ -4,6 +4,7 @@
 #include <map_operations/MapContents.h>
 #include <map_operations/MapOperations.h>
 #include <semantic_abstraction/Abstraction.h>
+#include <semantic_octree/MapFollower.h>
 
 #include "FolderDrive.h"
 #include "Voxels.h"
@@ -193,14 +194,29 @@ TEST(MapFolder, tellsWhatChangedOfTheCompressedTree) {
   setAbstraction(whole, someAbstraction());
   setAbstraction(map, someAbstraction());
   MapFolder tiles(map, folder / "map", kWrite, tight());
+  MapFollower tilesOfMap = map.follow(), tilesOfWhole = whole.follow();
+  LeafFollower ofMap(map), ofWhole(whole);
   for (const PosedCloud& scan : someScans(7, 8)) {
     whole.insert(scan.cloud, scan.T_map_sensor);
     map.insert(scan.cloud, scan.T_map_sensor);
-    const TreeChange a = Abstraction(map).takeChange(), b = Abstraction(whole).takeChange();
+    const TreeChange a = ofMap.leaves(), b = ofWhole.leaves();
     EXPECT_EQ(a.added, b.added);
     EXPECT_EQ(a.removed, b.removed);
-    EXPECT_EQ(map.takeTouchedTiles(), whole.takeTouchedTiles());
+    EXPECT_EQ(tilesOfMap.tiles().tiles, tilesOfWhole.tiles().tiles);
   }
+}
+
+TEST(MapFolder, whoFollowedTheMapBeforeIsToldAllThatIsInIt) {
+  const TemporaryFolder folder;
+  saveScans(folder / "map", someScans(7, 4));
+  SemanticOcTree map = emptyMap();
+  MapFollower follower = map.follow();
+  EXPECT_TRUE(follower.tiles().tiles.empty());
+  const MapFolder tiles(map, folder / "map", MapFolder::Access::Read, tight());
+  const TileChange change = follower.tiles();
+  EXPECT_TRUE(change.all);
+  EXPECT_EQ(change.tiles, map.follow().tiles().tiles);
+  EXPECT_GT(change.tiles.size(), 100u);
 }
 
 TEST(MapFolder, operationsReadItTileByTile) {

@@ -105,21 +105,21 @@ void reweigh(benchmark::State& state) {
 BENCHMARK(reweigh)->Unit(benchmark::kMillisecond);
 
 /** Changes of the compressed tree after one more scan. */
-void takeChange(benchmark::State& state) {
+void followChange(benchmark::State& state) {
   const Place place(4);
   std::size_t changed = 0;
   for (auto _ : state) {
     state.PauseTiming();
     SemanticOcTree map(place.map);
-    Abstraction abstraction(map);
-    abstraction.takeChange();
+    LeafFollower follower(map);
+    follower.skipLeaves();
     place.insertOneMore(map);
     state.ResumeTiming();
-    const TreeChange change = abstraction.takeChange();
+    const TreeChange change = follower.leaves();
     changed = change.added.size() + change.removed.size();
   }
   state.counters["changed"] = static_cast<double>(changed);
 }
-BENCHMARK(takeChange)->Unit(benchmark::kMillisecond);
+BENCHMARK(followChange)->Unit(benchmark::kMillisecond);
 
 }  // namespace

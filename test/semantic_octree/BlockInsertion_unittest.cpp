@@ -103,7 +103,7 @@ class Maps {
       tree->insert(scan.cloud, scan.T_map_sensor);
     shared.insert(scan.cloud, scan.T_map_sensor, threads);
     plain.insert(scan, {});
-    m_compressed.follow(Abstraction(abstracted));
+    m_compressed.follow();
   }
   void compare() const {
     expectSame(pruned, plain);
@@ -121,7 +121,7 @@ class Maps {
   PlainMap plain;
 
  private:
-  FollowedTree m_compressed;
+  FollowedTree m_compressed{abstracted};
 };
 
 void expectPlainResult(unsigned seed, int classes, const FilterParameters& parameters,

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "FailingAllocations.h"
+#include "FollowedTree.h"
 #include "RandomScans.h"
 #include "TemporaryFolder.h"
 
@@ -115,7 +116,7 @@ TEST(FailingAllocations, elsewhereLeaveTheMapAsItWas) {
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { Abstraction(m).leaves(); }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { Abstraction(m).alphaPath(); }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { Abstraction(m).compressedMap(); }), 3);
-  EXPECT_GT(sweep(map, [](SemanticOcTree& m) { m.takeTouchedTiles(); }), 3);
+  EXPECT_GT(sweep(map, [](SemanticOcTree& m) { m.follow().tiles(); }), 3);
   EXPECT_GT(sweep(map, [&](SemanticOcTree& m) { merged({&m, &other}); }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { coarsened(m, 1); }), 3);
   EXPECT_GT(sweep(map, [&](SemanticOcTree& m) { cropped(m, box); }), 3);
@@ -173,16 +174,23 @@ TEST(FailingAllocations, whileKeyframesAreCorrectedLeaveTheMapOrABrokenOne) {
   EXPECT_LT(broken, failures);
 }
 
-TEST(FailingAllocations, ofTheCompressedTreesChangeAreRemembered) {
+TEST(FailingAllocations, ofWhoFollowsLeaveNoReaderBlind) {
   const SemanticOcTree before = mapOf(7, 2, true);
+  std::mt19937 random(8);
+  const PosedCloud scan = randomScan(random);
   std::optional<SemanticOcTree> map;
-  const int lost =
-      failEachAllocation([&] { map.emplace(before); }, [&] { Abstraction(*map).takeChange(); },
-                         [&] {
-                           EXPECT_THROW(Abstraction(*map).takeChange(), std::logic_error);
-                           EXPECT_TRUE(*map == before);
-                         });
-  EXPECT_GT(lost, 3);
+  std::optional<FollowedTree> first, second;
+  const int failures = failEachAllocation(
+      [&] {
+        map.emplace(before);
+        for (auto* tree : {&first, &second}) tree->emplace(*map).follow();
+        map->insert(scan.cloud, scan.T_map_sensor);
+      },
+      [&] { LeafFollower(*map).leaves(); },
+      [&] {
+        for (auto* tree : {&first, &second}) (*tree)->follow();
+      });
+  EXPECT_GT(failures, 3);
 }
 
 TEST(FailingAllocations, whileTilesComeAndGoLeaveTheMapOrABrokenOne) {

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "InnerNodes.h"
+#include "LeafLog.h"
 
 namespace semantic_octree {
 namespace {
@@ -161,35 +162,15 @@ void Abstraction::compressTo(SemanticOcTree& compressed) const {
                     TreeBuilder::Merge::Never);
 }
 
-std::unique_ptr<LeafChanges> Abstraction::takenChanges() const {
-  auto changes = std::move(m_gTree.leafChanges);
-  if (!changes)
-    throw std::logic_error(
-        "changes of the compressed tree were lost when memory ran out: call setAbstraction() anew");
-  return changes;
-}
-
-TreeChange Abstraction::takeChange() {
-  const Node root = m_map.root();
-  auto changes = takenChanges();
-  TreeChange change = root ? changes->update(MapAccess::store(m_map), m_gTree, root)
-                           : changes->clear(MapAccess::store(m_map), m_gTree);
-  m_gTree.leafChanges = std::move(changes);
-  return change;
-}
-
-void Abstraction::forgetChange() {
-  const Node root = m_map.root();
-  auto changes = takenChanges();
-  if (root)
-    changes->forget(MapAccess::store(m_map), m_gTree, root);
-  else
-    changes->clear(MapAccess::store(m_map), m_gTree);
-  m_gTree.leafChanges = std::move(changes);
-}
-
-std::size_t Abstraction::numTakenLeaves() const {
-  return m_gTree.leafChanges ? m_gTree.leafChanges->numLeaves() : 0;
+std::shared_ptr<LeafLog> Abstraction::leafLog() const {
+  const auto log = readLog(m_gTree.leafLog);
+  try {
+    log->update(MapAccess::store(m_map), m_gTree, m_map.root());
+  } catch (...) {
+    m_gTree.leafLog.reset();
+    throw;
+  }
+  return log;
 }
 
 void Abstraction::setAlpha(double alpha) {

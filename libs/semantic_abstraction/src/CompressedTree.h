@@ -1,10 +1,6 @@
 #pragma once
 #include <semantic_abstraction/Abstraction.h>
 
-#include <array>
-#include <cstdint>
-#include <vector>
-
 #include "GTree.h"
 
 namespace semantic_octree {
@@ -56,41 +52,5 @@ class CompressedTree {
 inline LeafCell leafCell(const Node& node, const Cell& cell) {
   return {cell.key(), static_cast<unsigned>(cell.depth), node};
 }
-
-/** The compressed tree whose leaves were told last, to tell which came and went since. A node is an
- * index: none, a leaf, or an inner node's eight children. */
-class LeafChanges {
- public:
-  /** Compares with the map as it is now, remembers that, and returns the difference. Visits only
-   * nodes that changed or have changed nodes below them. */
-  TreeChange update(const NodeStore& store, const GTree& gTree, const Node& root);
-  /** The same for a map that is empty now. */
-  TreeChange clear(const NodeStore& store, const GTree& gTree);
-  /** As update(), without a word. */
-  void forget(const NodeStore& store, const GTree& gTree, const Node& root);
-  /** That were told and are not gone. */
-  std::size_t numLeaves() const { return m_numLeaves; }
-
- private:
-  using Index = std::uint32_t;
-  static constexpr Index kNone = 0, kLeaf = 1, kFirstInner = 2;
-
-  struct Update {
-    CompressedTree tree;
-    TreeChange change = {};
-    bool tells = true;
-  };
-  void update(Update& u, Index& told, const Node& node, const Cell& cell);
-  void updateChildren(Update& u, Index& told, const Node& node, const Cell& cell);
-  void becomeLeaf(Update& u, Index& told, const Node& node, const Cell& cell);
-  /** Forgets a subtree, telling that its leaves are gone. */
-  void remove(Update& u, Index told, const Cell& cell);
-  Index newInner();
-
-  Index m_root = kNone;
-  std::size_t m_numLeaves = 0;
-  std::vector<std::array<Index, 8>> m_inner;
-  std::vector<Index> m_free;
-};
 
 }  // namespace semantic_octree

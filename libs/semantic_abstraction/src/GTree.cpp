@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "CompressedTree.h"
-
 namespace semantic_octree {
 namespace {
 
@@ -51,8 +49,7 @@ double entropyOfShares(const double* shares) {
 }  // namespace
 
 GTree::GTree(const AbstractionOptions& options, const ClassFilter<float>& filter, double resolution)
-    : leafChanges(std::make_unique<LeafChanges>()),
-      m_options(options),
+    : m_options(options),
       m_layout(options, filter.numClasses()),
       m_filter(filter),
       m_resolution(resolution),
@@ -62,8 +59,6 @@ GTree::GTree(const AbstractionOptions& options, const ClassFilter<float>& filter
   for (const auto& term : options.weights.terms) termWeights.push_back(term.weight);
   setWeights(termWeights, options.weights.alpha);
 }
-
-GTree::~GTree() = default;
 
 std::size_t GTree::stateBytes() const {
   return sizeof(InnerState) + m_layout.rowSize() * sizeof(double);

@@ -10,7 +10,7 @@
 
 namespace semantic_octree {
 
-class LeafChanges;
+class LeafLog;
 
 /** Bookkeeping of an inner node at depth 14 or above. Behind it stands the node's row (see
  * RowLayout). All of it is a function of the children alone. */
@@ -49,7 +49,6 @@ struct InnerNode {
 class GTree final : public NodeObserver {
  public:
   GTree(const AbstractionOptions& options, const ClassFilter<float>& filter, double resolution);
-  ~GTree() override;
 
   const AbstractionOptions& options() const { return m_options; }
   const RowLayout& layout() const { return m_layout; }
@@ -57,7 +56,7 @@ class GTree final : public NodeObserver {
   /** What a node is, not what was told of it. */
   bool sameState(const NodeStore& a, const Slot& inA, const NodeStore& b,
                  const Slot& inB) const override;
-  /** Of which nothing was told yet. */
+  void tellAll() override { leafLog.reset(); }
   std::unique_ptr<NodeObserver> clone() const override;
 
   /** Depth of the blocks' nodes: at this depth and below, unknown space has weight. */
@@ -143,8 +142,8 @@ class GTree final : public NodeObserver {
   };
   Worker& worker(int i) override;
 
-  /** What was told of the compressed tree's leaves. Null: memory ran out when it was to be told. */
-  std::unique_ptr<LeafChanges> leafChanges;
+  /** Of the compressed tree's leaves; readers own what they read. */
+  std::weak_ptr<LeafLog> leafLog;
 
  private:
   AbstractionOptions m_options;

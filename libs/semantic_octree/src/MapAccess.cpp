@@ -40,6 +40,23 @@ void MapAccess::recomputeTileByTile(SemanticOcTree& map) {
   }
 }
 
+std::weak_ptr<SemanticOcTree*> MapAccess::self(SemanticOcTree& map) {
+  if (!map.m_self) map.m_self = std::make_shared<SemanticOcTree*>(&map);
+  return map.m_self;
+}
+
+void MapAccess::tellAll(SemanticOcTree& map) {
+  map.m_tileLog.reset();
+  if (map.m_observer) map.m_observer->tellAll();
+}
+
+SemanticOcTree& FollowedMap::get() const {
+  const auto map = m_map.lock();
+  if (!map) throw std::logic_error("the map that is followed is gone");
+  MapAccess::store(**map);  // it is not broken
+  return **map;
+}
+
 void MapAccess::checkNotInTiles(const SemanticOcTree& map) {
   if (map.m_store && map.m_store->tiles())
     throw std::logic_error(

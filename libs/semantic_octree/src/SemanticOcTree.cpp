@@ -18,13 +18,6 @@ double positive(double meters) {
   return meters;
 }
 
-/** Adds the tiles below a node. */
-void addTiles(const Node& node, const Cell& cell, TouchedTiles& tiles) {
-  if (node.isLeaf() || cell.depth == TouchedTiles::kDepth) return tiles.add(cell);
-  for (int i = 0; i < 8; ++i)
-    if (const Node child = node.child(i)) addTiles(child, cell.child(i), tiles);
-}
-
 /** \return an observer of both, whose bookkeeping can be compared; null: there is none */
 const NodeObserver* observerOf(const SemanticOcTree& a, const SemanticOcTree& b) {
   const NodeObserver *x = MapAccess::observer(a), *y = MapAccess::observer(b);
@@ -71,8 +64,9 @@ void SemanticOcTree::swap(SemanticOcTree& o) {
   std::swap(m_clock, o.m_clock);
   std::swap(m_store, o.m_store);
   std::swap(m_observer, o.m_observer);
-  std::swap(m_touched, o.m_touched);
   std::swap(m_scan, o.m_scan);
+  MapAccess::tellAll(*this);
+  MapAccess::tellAll(o);
 }
 
 bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
@@ -87,21 +81,10 @@ bool SemanticOcTree::isReadOnly() const { return store().tiles() && !store().til
 
 void SemanticOcTree::clear() {
   MapAccess::checkNotInTiles(*this);
-  m_store = std::make_unique<NodeStore>(m_observer ? m_observer->stateBytes() : 0);
+  MapAccess::setStore(*this,
+                      std::make_unique<NodeStore>(m_observer ? m_observer->stateBytes() : 0));
   m_clock = 0;
-  if (m_touched) m_touched->take();
 }
-
-std::vector<octomap::OcTreeKey> SemanticOcTree::takeTouchedTiles() {
-  if (!m_touched) {
-    auto touched = std::make_unique<TouchedTiles>();
-    if (!empty()) addTiles(root(), Cell(), *touched);
-    m_touched = std::move(touched);
-  }
-  return m_touched->take();
-}
-
-void SemanticOcTree::forgetTouchedTiles() { m_touched = std::make_unique<TouchedTiles>(); }
 
 void SemanticOcTree::setPruning(bool on) {
   if (!empty()) throw std::logic_error("pruning can be switched in an empty tree only");

@@ -32,8 +32,7 @@ struct CorrectionReport {
  * the scans that are left make of an empty map, in their order, at their present poses and at their
  * times of its clock (see SemanticOcTree::age(), which may be called at any time): nodes,
  * class records and G-values, also where log-odds are at their limits or more than three classes
- * were seen. What a map tells of its changes (takeTouchedTiles(), Abstraction::takeChange()) covers
- * corrections as it does insertions.
+ * were seen. Readers of its changes (MapFollower) are told of corrections as of insertions.
  *
  * How (doc/how-it-works/corrected-maps.md): of each scan its points are kept, and which voxels it
  * saw how, packed tile by tile. A correction follows the beams of the scans that move, and finds

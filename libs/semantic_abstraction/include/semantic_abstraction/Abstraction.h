@@ -20,7 +20,7 @@ namespace semantic_octree {
 
 class CompressedTree;
 class GTree;
-class LeafChanges;
+class LeafLog;
 
 /** A leaf of the compressed tree: a cube of the map. */
 struct LeafCell {
@@ -56,9 +56,12 @@ struct AbstractionMeasures {
   std::optional<double> retention(std::size_t term) const;
 };
 
-/** Leaves that came and went between two calls. */
+/** Leaves of the compressed tree that came and went between two looks (LeafFollower::leaves()):
+ * cubes without their `node`. */
 struct TreeChange {
-  std::vector<LeafCell> removed;  ///< `node` is none
+  /** What came is all that there is. What the reader knew before does not count. */
+  bool all = false;
+  std::vector<LeafCell> removed;
   std::vector<LeafCell> added;
 };
 
@@ -122,14 +125,6 @@ class Abstraction {
   /** Of the same resolution, classes and filter parameters as the map. */
   SemanticOcTree emptyCompressedMap() const;
 
-  /** What changed in leaves() since the last call (at first: since the map was empty), in time
-   * proportional to the nodes that scans touched and the leaves that changed. */
-  TreeChange takeChange();
-  /** The same, for who knows leaves() anyway: without a list of what may be all of a map. */
-  void forgetChange();
-  /** Of leaves() at the last call of either, in no time. */
-  std::size_t numTakenLeaves() const;
-
   /** New alpha: computes all inner nodes anew. \throw std::invalid_argument */
   void setAlpha(double alpha);
   /** New weights, in the order of the options' terms: the same. \throw std::invalid_argument */
@@ -188,9 +183,11 @@ class Abstraction {
   void forEachPathNode(const VisitPathNode& visit) const;
 
  private:
+  friend class LeafFollower;
+
   CompressedTree compressedTree() const;
-  /** The map has none until they are given back: they are lost if what is done with them fails. */
-  std::unique_ptr<LeafChanges> takenChanges() const;
+  /** Up to date. If that fails, readers are told everything next. */
+  std::shared_ptr<LeafLog> leafLog() const;
   /** p(x) of the whole map, unnormalized. */
   double totalDensity() const;
   /** Calls f(InnerNode) for all inner nodes, parents first. */
@@ -199,6 +196,28 @@ class Abstraction {
 
   SemanticOcTree& m_map;
   GTree& m_gTree;
+};
+
+/** A reader of the leaves of a map's compressed tree, as MapFollower is one of its tiles: what is
+ * said there of readers holds, and a new abstraction is told as everything.
+ * \throw std::logic_error in all functions: the map is gone, broken, or keeps no G-values. */
+class LeafFollower {
+ public:
+  /** \param map need not keep G-values yet */
+  explicit LeafFollower(SemanticOcTree& map);
+  ~LeafFollower();
+  LeafFollower(LeafFollower&&) noexcept;
+  LeafFollower& operator=(LeafFollower&&) noexcept;
+
+  /** Leaves that came and went since the last call, in time proportional to the nodes that
+   * changed. */
+  TreeChange leaves();
+  /** The same, without a list of what may be all of a map. \return number of leaves now */
+  std::size_t skipLeaves();
+
+ private:
+  struct Content;
+  std::unique_ptr<Content> m;
 };
 
 /** A map of the nodes down to those that are not expanded: see Abstraction::compressedMap().

@@ -16,6 +16,7 @@ class MapAccess {
   /** Other nodes; null: the map is broken. */
   static void setStore(SemanticOcTree& map, std::unique_ptr<NodeStore> store) {
     map.m_store = std::move(store);
+    tellAll(map);
   }
   static const ClassFilter<float>& filter(const SemanticOcTree& map) { return map.m_filter; }
 
@@ -27,12 +28,20 @@ class MapAccess {
   /** The same for nodes that came into the map, of which some are away. */
   static void recomputeTileByTile(SemanticOcTree& map);
 
+  /** For readers, who may outlive the map. */
+  static std::weak_ptr<SemanticOcTree*> self(SemanticOcTree& map);
+  static std::shared_ptr<TileLog> tileLog(SemanticOcTree& map) { return readLog(map.m_tileLog); }
+  /** At their next look, readers are told everything. */
+  static void tellAll(SemanticOcTree& map);
+
   /** \throw std::logic_error the map is in a folder of tiles. */
   static void checkNotInTiles(const SemanticOcTree& map);
   /** Whoever changes nodes does it in f(MergeTarget): if it fails, the map is broken. */
   template <typename F>
   static void change(SemanticOcTree& map, const F& f) {
-    const MergeTarget target{map.store(), map.m_filter, map.m_observer.get(), map.m_touched.get(),
+    const auto log = map.m_tileLog.lock();
+    TileLog* const touched = log && log->isRead() ? log.get() : nullptr;
+    const MergeTarget target{map.store(), map.m_filter, map.m_observer.get(), touched,
                              map.m_pruning};
     try {
       f(target);
@@ -53,6 +62,17 @@ class MapAccess {
   static std::int64_t timeIn(const SemanticOcTree& map, double seconds);
   /** \param time not before now */
   static void ageUntil(SemanticOcTree& map, std::int64_t time);
+};
+
+/** A map that may be gone. */
+class FollowedMap {
+ public:
+  explicit FollowedMap(SemanticOcTree& map) : m_map(MapAccess::self(map)) {}
+  /** \throw std::logic_error the map is gone, or broken. */
+  SemanticOcTree& get() const;
+
+ private:
+  std::weak_ptr<SemanticOcTree*> m_map;
 };
 
 }  // namespace semantic_octree

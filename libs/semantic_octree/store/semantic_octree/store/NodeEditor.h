@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_octree/store/NodeObserver.h>
-#include <semantic_octree/store/TouchedTiles.h>
+#include <semantic_octree/store/TileLog.h>
 
 namespace semantic_octree {
 
@@ -11,7 +11,7 @@ struct MergeTarget {
   /** Keeps inner nodes' bookkeeping up to date; null: there is none. */
   NodeObserver* observer;
   /** Is told where something changed; null: nobody wants to know. */
-  TouchedTiles* touched;
+  TileLog* touched;
   /** Children that agree are merged; off: every known leaf is a voxel. */
   bool pruning;
 };
@@ -60,7 +60,7 @@ class NodeEditor {
 
  private:
   NodeObserver::Worker* m_observer;
-  TouchedTiles* m_touched;
+  TileLog* m_touched;
   std::vector<Cell> m_changed;
 };
 

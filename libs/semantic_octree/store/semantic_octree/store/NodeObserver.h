@@ -29,6 +29,8 @@ class NodeObserver {
    * much room. */
   virtual bool sameState(const NodeStore& a, const Slot& inA, const NodeStore& b,
                          const Slot& inB) const = 0;
+  /** The map has other nodes: whoever is told of changes is told everything next. */
+  virtual void tellAll() = 0;
   /** For a copy of the map. */
   virtual std::unique_ptr<NodeObserver> clone() const = 0;
 };

@@ -19,6 +19,7 @@ class TreeBuilder {
   /** A map in a folder of tiles that is open for writing sends tiles away meanwhile. */
   template <typename Cursor>
   static void fill(SemanticOcTree& map, const Cursor& root, Merge merge = Merge::AsTheMapDoes) {
+    MapAccess::tellAll(map);
     NodeStore& store = MapAccess::store(map);
     TreeBuilder(store, map.pruning(), merge).build(store.root(), root, Cell());
   }

@@ -60,9 +60,8 @@ class PlannerCore;
  * for the next plan until the map changes there: points for vertices (but not in a corridor, where
  * memory is short), and what was found about edges; answers are those of a new planner. One that
  * runs out of memory, or whose `cancelled` throws, is broken: all further calls throw
- * std::logic_error. Not thread safe; the map must not change during a call, and what a planner's
- * map tells about its changes (takeTouchedTiles(), Abstraction::takeChange()) is for one planner
- * only. */
+ * std::logic_error. Not thread safe; the map must not change during a call. A map may have any
+ * number of planners, and other readers of its changes (MapFollower). */
 class SemanticPlanner {
  public:
   /** \param map must outlive the planner. With a graph of the tree (isOfTree) it has to keep
