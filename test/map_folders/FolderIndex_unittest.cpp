@@ -105,17 +105,17 @@ TEST_F(FolderIndex, withAnotherNumberIsRefused) {
 }
 
 TEST_F(FolderIndex, withAnotherNumberAndItsChecksumIsComparedWithTheFiles) {
-  const std::size_t end = good.find("\nold:");
+  const std::string tables = good.substr(0, good.find("\nold:")), rest = "\nold: []\nchecksum: 0\n";
+  EXPECT_EQ(refusalOf(checked(tables + rest)), "");
   const std::regex number("[0-9]+");
-  for (std::sregex_iterator
-           it(good.begin() + long(good.find("\nversion")), good.begin() + long(end), number),
-       last;
-       it != last; ++it) {
-    const std::size_t at = good.find("\nversion") + static_cast<std::size_t>(it->position());
-    std::string altered = good;
-    char& digit = altered[at + static_cast<std::size_t>(it->length()) - 1];
+  const auto begin = static_cast<std::ptrdiff_t>(tables.find("\nversion"));
+  for (std::sregex_iterator it(tables.begin() + begin, tables.end(), number), end; it != end;
+       ++it) {
+    std::string altered = tables;
+    char& digit = altered[static_cast<std::size_t>(begin + it->position() + it->length() - 1)];
     digit = digit == '9' ? '8' : static_cast<char>(digit + 1);
-    EXPECT_NE(refusalOf(checked(altered)), "") << good.substr(at > 40 ? at - 40 : 0, 80);
+    EXPECT_NE(refusalOf(checked(altered + rest)), "")
+        << altered.substr(begin + it->position() - 20, 60);
   }
 }
 
@@ -196,9 +196,10 @@ TEST_F(FolderIndex, hasGenerationsUpToWhereTheNextCanBeRead) {
     return std::pair(toRead, toWrite);
   };
   constexpr std::uint64_t kMost = std::uint64_t(1) << 53;
-  EXPECT_TRUE(contains(atGeneration(kMost + 1).first, "generation"));
-  EXPECT_EQ(atGeneration(kMost).first, "");
-  EXPECT_TRUE(contains(atGeneration(kMost).second, "to write into this folder"));
+  for (const std::uint64_t generation : {kMost, kMost + 1})
+    EXPECT_TRUE(contains(atGeneration(generation).first, "found '" + std::to_string(generation)));
+  EXPECT_EQ(atGeneration(kMost - 1).first, "");
+  EXPECT_TRUE(contains(atGeneration(kMost - 1).second, "to write into this folder"));
   EXPECT_EQ(atGeneration(kMost / 2).second, "");
 }
 
@@ -216,6 +217,7 @@ TEST_F(FolderIndex, isWhatTellsOldFilesFromThoseOfOthers) {
 }
 
 TEST_F(FolderIndex, isLeftAloneWhenADiskIsFullOrAProcessToldToLeave) {
+  EXPECT_EQ(refusalOf(good), "");  // who opens it to write removes what is old
   const auto before = filesThere();
   for (const fs::path& place : {map, folder / "new"}) {
     for (const bool isTold : {false, true}) {

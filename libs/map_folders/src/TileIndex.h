@@ -52,7 +52,7 @@ struct TileIndex {
   static constexpr const char *kWriterLock = ".writer.lock", *kReadersLock = ".readers.lock";
   /** Up to which an index is read, and up to which a folder is opened to write: no process saves as
    * often as there are generations in between. */
-  static constexpr std::uint64_t kMostToRead = std::uint64_t(1) << 53,
+  static constexpr std::uint64_t kMostToRead = (std::uint64_t(1) << 53) - 1,
                                  kMostToWrite = std::uint64_t(1) << 52;
 };
 

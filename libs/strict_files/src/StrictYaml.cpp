@@ -1,7 +1,6 @@
 #include <strict_files/StrictYaml.h>
 #include <strict_files/Words.h>
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -134,8 +133,8 @@ double StrictYaml::number(const YAML::Node& node, const std::string& field) cons
 double StrictYaml::whole(const YAML::Node& node, const std::string& expected, double low,
                          double high) const {
   double value = NAN;
-  if (!decode(node, value) || value != std::floor(value) || value < std::max(low, -0x1p53) ||
-      value > std::min(high, 0x1p53))
+  if (!decode(node, value) || value != std::floor(value) || value < low || value > high ||
+      std::fabs(value) >= 0x1p53)  // others are rounded
     fail(node, "expected " + expected + ", found " + quoted(node));
   return value;
 }
