@@ -17,7 +17,7 @@ using namespace semantic_octree;
 namespace {
 
 /** RapidCheck draws the same cases in every run, unless told otherwise. */
-const int kSeedIsFixed = setenv("RC_PARAMS", "seed=20240517", 0);
+const int kReadersSeedIsFixed = setenv("RC_PARAMS", "seed=20240517", 0);
 
 using Tiles = std::set<VoxelId>;  // lowest voxel of each
 
