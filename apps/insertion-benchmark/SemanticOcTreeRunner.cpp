@@ -1,3 +1,4 @@
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include "Runner.h"
@@ -14,7 +15,7 @@ class OurRunner : public Runner {
     m_options.maxRange = settings.maxRange;
     m_options.rays = settings.rays;
     m_options.threads = settings.threads;
-    if (withAbstraction) m_map.setAbstraction(abstraction(settings.terms, scene.numClasses));
+    if (withAbstraction) setAbstraction(m_map, abstraction(settings.terms, scene.numClasses));
   }
   void insert(std::size_t scan) override {
     m_map.insert(m_scene.scans[scan].cloud, m_scene.scans[scan].T_map_sensor, m_options);

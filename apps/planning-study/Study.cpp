@@ -1,7 +1,7 @@
 #include "Study.h"
 
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/TreeFile.h>
+#include <map_folders/MapFolder.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 
@@ -46,9 +46,9 @@ void append(std::vector<Trial> more, std::vector<Trial>& trials) {
 void measurePreparation(SemanticOcTree& map, const colored_graph::ClassOrder& order,
                         const StudyOptions& options, MapStudy& study) {
   measuring::Stopwatch watch(measuring::TimeOf::Process);
-  map.setAbstraction(options.weights.empty()
-                         ? abstractionFor(order)
-                         : abstractionOf(options.weights, options.solution, map.classes()));
+  setAbstraction(map, options.weights.empty()
+                          ? abstractionFor(order)
+                          : abstractionOf(options.weights, options.solution, map.classes()));
   study.abstractionTime = watch.lap();
   const Ground ground(map, options.planner.vehicle, options.planner.ground, order);
   study.groundTime = watch.lap();
@@ -77,7 +77,7 @@ class StudyRunner::Contest {
  public:
   Contest(const std::string& file, const std::string& classesFile, const StudyOptions& options)
       : m_options(options),
-        m_map(semantic_octree::loadTree(file)),
+        m_map(semantic_octree::loadMap(file)),
         m_order(loadClassOrder(classesFile, m_map.classes())) {
     study.ranks = m_order.ranks();
     measurePreparation(m_map, m_order, options, study);

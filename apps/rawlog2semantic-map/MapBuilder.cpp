@@ -1,7 +1,8 @@
 #include "MapBuilder.h"
 
 #include <labeled_cloud/ReadAhead.h>
-#include <semantic_octree/TreeFile.h>
+#include <map_folders/MapFolder.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <strict_files/ErrorMessage.h>
 
 #include <cmath>
@@ -40,7 +41,7 @@ std::uint64_t totalSize(const std::vector<fs::path>& files) {
 }  // namespace
 
 MapBuilder::MapBuilder(semantic_map::CSemanticOctoMap& map, OnScan onScan)
-    : m_map(map), m_onScan(std::move(onScan)) {}
+    : m_map(map), m_follower(map.tree()), m_onScan(std::move(onScan)) {}
 
 void MapBuilder::timeWithoutAbstraction() {
   m_plainMap = std::make_unique<semantic_map::CSemanticOctoMap>(m_map);
@@ -51,7 +52,7 @@ void MapBuilder::correctPoses(const semantic_slam::SlamOptions& options, const f
                               const fs::path& reference) {
   m_correction = std::make_unique<PoseCorrection>(m_map.tree(), options, folder);
   if (reference.empty()) return;
-  const semantic_octree::SemanticOcTree map = semantic_octree::loadTree(reference.string());
+  const semantic_octree::SemanticOcTree map = semantic_octree::loadMap(reference.string());
   if (options.useClasses && map.classes() != m_map.tree().classes())
     throw std::runtime_error(reference.string() +
                              ": its class table is another one than that of the scans");
@@ -105,7 +106,7 @@ void MapBuilder::insertScan(const StreamedObservation& observation) try {
   m_summary.add(scan.counts);
   m_summary.withoutLabels += scan.labelsMissing;
   m_summary.conversionTimes.push_back(observation.milliseconds);
-  if (m_map.tree().hasAbstraction()) noteAbstraction(scan, observation.T_map_robot);
+  if (hasAbstraction(m_map.tree())) noteAbstraction(scan, observation.T_map_robot);
   if (m_onScan) m_onScan(scan, observation.T_map_robot);
 } catch (const std::exception& e) {
   throw std::runtime_error(observation.name + ": " + strict_files::messageOf(e));
@@ -124,10 +125,8 @@ semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& sc
 
 void MapBuilder::noteAbstraction(const LabeledScan& scan, const CPose3D& T_map_robot) {
   AbstractionSummary& a = m_summary.abstraction;
-  semantic_octree::TreeChange change;
-  a.changeTimes.push_back(timeOf([&] { change = m_map.abstraction().takeChange(); }));
-  const std::size_t before = a.compressedLeaves.empty() ? 0 : a.compressedLeaves.back();
-  a.compressedLeaves.push_back(before + change.added.size() - change.removed.size());
+  a.changeTimes.push_back(timeOf([&] { m_follower.leaves(); }));
+  a.compressedLeaves.push_back(m_follower.skipLeaves());
   a.leaves.push_back(m_map.tree().getNumLeafNodes());
   if (m_plainMap)
     a.insertionTimesWithout.push_back(timeOf([&] { m_plainMap->insertScan(scan, T_map_robot); }));

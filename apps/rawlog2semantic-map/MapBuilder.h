@@ -1,5 +1,6 @@
 #pragma once
 #include <labeled_cloud/ScanStream.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 
 #include <filesystem>
@@ -56,6 +57,7 @@ class MapBuilder {
                                                  const mrpt::poses::CPose3D& T_map_robot);
 
   semantic_map::CSemanticOctoMap& m_map;
+  semantic_octree::LeafFollower m_follower;
   std::unique_ptr<PoseCorrection> m_correction;
   semantic_map::ObservationClock m_clock;  ///< of scans whose poses are corrected
   OnScan m_onScan;

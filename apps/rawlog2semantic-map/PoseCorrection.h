@@ -1,6 +1,6 @@
 #pragma once
 #include <labeled_cloud/LabeledScan.h>
-#include <semantic_octree/KeyframeMap.h>
+#include <map_correction/KeyframeMap.h>
 #include <semantic_slam/Slam.h>
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 #include "Summary.h"
 
-#include <semantic_octree/MapContents.h>
+#include <map_operations/MapContents.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include "measuring/Quantile.h"
 
@@ -148,7 +149,7 @@ ordered_json toJson(const Summary& s, const SemanticOcTree& tree, bool countVoxe
                     {"loops", s.slam->loops},
                     {"referenced", s.slam->referenced},
                     {"lost", s.slam->lost}};
-  if (tree.hasAbstraction()) json["abstraction"] = abstractionJson(s);
+  if (hasAbstraction(tree)) json["abstraction"] = abstractionJson(s);
   return json;
 }
 

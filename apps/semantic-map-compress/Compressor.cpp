@@ -1,5 +1,6 @@
 #include "Compressor.h"
 
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <stdexcept>
@@ -41,8 +42,8 @@ Compressor::Compressor(SemanticOcTree& map, const TermCatalog& catalog,
 void Compressor::useBatch(std::size_t b) {
   m_batch = b;
   m_options.weights.terms = m_catalog.terms(b);
-  m_map.dropAbstraction();
-  m_map.setAbstraction(m_options);
+  dropAbstraction(m_map);
+  setAbstraction(m_map, m_options);
 }
 
 void Compressor::weigh(const Solution& solution, double alpha) {

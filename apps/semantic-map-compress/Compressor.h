@@ -1,7 +1,7 @@
 #pragma once
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/TermCatalog.h>
+#include <map_folders/MapFolder.h>
+#include <semantic_abstraction/Abstraction.h>
+#include <semantic_abstraction/TermCatalog.h>
 
 namespace semantic_map_compress {
 

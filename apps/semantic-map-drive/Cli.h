@@ -1,7 +1,7 @@
 #pragma once
 #include <mrpt/math/TPose2D.h>
 
-#include <semantic_octree/MapFolder.h>
+#include <map_folders/MapFolder.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>

@@ -1,6 +1,6 @@
 // Drives a robot through a synthetic world: it maps, compresses, plans and drives.
+#include <map_folders/MapFolder.h>
 #include <map_pictures/GifFile.h>
-#include <semantic_octree/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <strict_files/OutputFolder.h>

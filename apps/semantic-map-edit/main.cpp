@@ -1,10 +1,10 @@
 // Crops, coarsens, moves and ages a semantic octree map, puts it into tiles, and imports maps of
 // OctoMap's.
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
+#include <map_operations/OctomapConversion.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
-#include <semantic_octree/OctomapConversion.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_types/ClassTableFile.h>
 
@@ -65,7 +65,7 @@ SemanticOcTree import(const fs::path& file, const fs::path& like) {
   const auto occupancy = semantic_map::readOctomapFile(file);
   if (like.empty())
     return semantic_octree::fromOcTree(*occupancy, CSemanticOctoMap::occupancyOnly());
-  const SemanticOcTree model = semantic_octree::loadTree(like.string());
+  const SemanticOcTree model = semantic_octree::loadMap(like.string());
   return semantic_octree::fromOcTree(*occupancy, model.classes(), model.filterParameters());
 }
 

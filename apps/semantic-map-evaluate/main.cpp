@@ -2,7 +2,7 @@
 #include <labeled_cloud/EigenPose.h>
 #include <labeled_cloud/RawlogTrajectory.h>
 #include <labeled_cloud/ScanStream.h>
-#include <semantic_octree/MapFolder.h>
+#include <map_folders/MapFolder.h>
 #include <strict_files/OutputFolder.h>
 
 #include <cmath>

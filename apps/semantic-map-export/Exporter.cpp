@@ -1,12 +1,12 @@
 #include "Exporter.h"
 
+#include <map_operations/MapOperations.h>
 #include <map_pictures/ClassMap.h>
 #include <map_pictures/PngFile.h>
 #include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ExportOctomap.h>
 #include <semantic_map/SceneFile.h>
-#include <semantic_octree/MapOperations.h>
 
 #include <fstream>
 #include <stdexcept>

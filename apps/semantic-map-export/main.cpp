@@ -1,5 +1,5 @@
 // Writes a semantic octree map into files that other programs read.
-#include <semantic_octree/MapFolder.h>
+#include <map_folders/MapFolder.h>
 
 #include <algorithm>
 #include <ostream>

@@ -1,6 +1,6 @@
 #include "Description.h"
 
-#include <semantic_octree/MapContents.h>
+#include <map_operations/MapContents.h>
 #include <strict_files/Words.h>
 
 #include <iomanip>

@@ -1,5 +1,5 @@
 // Says what is in a semantic octree map, as a whole or at points.
-#include <semantic_octree/MapFolder.h>
+#include <map_folders/MapFolder.h>
 
 #include <algorithm>
 #include <filesystem>

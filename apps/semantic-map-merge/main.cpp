@@ -1,7 +1,7 @@
 // Adds semantic octree maps up.
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <array>

@@ -1,6 +1,7 @@
 // Plans a path of a vehicle over a semantic map, classes before length.
+#include <map_folders/MapFolder.h>
 #include <map_pictures/MapCanvas.h>
-#include <semantic_octree/MapFolder.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
@@ -95,9 +96,9 @@ int run(Cli& cli) {
   MapCanvas canvas = MapCanvas::ofMap(map, {});
   watch.lap();
   if (isOfTree(cli.planner.roadmap.kind))
-    map.setAbstraction(cli.weights.empty()
-                           ? abstractionFor(order)
-                           : abstractionOf(cli.weights, cli.solution, map.classes()));
+    setAbstraction(map, cli.weights.empty()
+                            ? abstractionFor(order)
+                            : abstractionOf(cli.weights, cli.solution, map.classes()));
   const double abstraction = watch.lap();
   SemanticPlanner planner(map, order, cli.planner, corridor);
   const double ground = watch.lap();

@@ -1,4 +1,5 @@
 // Receives a map from semantic-map-send, over a radio that may lose, exchange and repeat datagrams.
+#include <map_folders/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/TextFile.h>
 
@@ -81,7 +82,7 @@ int run(Cli& cli) {
   cli.outputs.check({cli.output});
   if (!cli.weights.empty()) cli.wish.weights = strict_files::readText(cli.weights);
   std::optional<SemanticOcTree> own;
-  if (!cli.like.empty()) own = semantic_octree::loadTree(cli.like.string());
+  if (!cli.like.empty()) own = semantic_octree::loadMap(cli.like.string());
   const StopRequest stop("after this packet");
   Reception reception(peerOf(cli.sender), cli.wish, cli.reception);
   bool isOurs = false;

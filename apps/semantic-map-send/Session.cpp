@@ -1,5 +1,7 @@
 #include "Session.h"
 
+#include <semantic_abstraction/Abstraction.h>
+
 namespace semantic_map_send {
 namespace {
 
@@ -58,9 +60,9 @@ void Session::begin(radio::Wish wish) {
 
 void Session::sendNextMap() {
   semantic_octree::SemanticOcTree& map = m_maps[m_nextMap++].tree();
-  map.setAbstraction(*m_options);
+  setAbstraction(map, *m_options);
   m_sender.setMap(map, m_nextMap == m_maps.size());
-  map.dropAbstraction();
+  dropAbstraction(map);
   m_lastHeard = Clock::now();  // it did not have to wait for us
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/MapFolder.h>
+#include <map_folders/MapFolder.h>
 
 #include <chrono>
 #include <deque>

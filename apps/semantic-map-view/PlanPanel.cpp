@@ -2,6 +2,7 @@
 
 #include <map_view/RayCast.h>
 #include <mrpt_compat/Drawing.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 
@@ -197,7 +198,7 @@ void PlanPanel::turn(const map_view::Ray& ray, bool letsGo) {
 void PlanPanel::begin() {
   m_map = std::make_unique<semantic_octree::SemanticOcTree>(m_viewer.layer().map());
   const colored_graph::ClassOrder order(m_numClasses, m_ranks);
-  m_map->setAbstraction(semantic_planning::abstractionFor(order));
+  setAbstraction(*m_map, semantic_planning::abstractionFor(order));
   semantic_planning::PlannerOptions options;
   options.shorten = true;
   m_planner.emplace(*m_map, order, options);

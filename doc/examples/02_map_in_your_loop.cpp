@@ -1,6 +1,6 @@
 // Makes a map of scans, one after the other, and keeps its compressed form up to date:
 //     02_map_in_your_loop OUTPUT.semantic
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 #include <synthetic_world/Lidar.h>
 #include <synthetic_world/Scene.h>
@@ -15,8 +15,8 @@ int main(int argc, char** argv) try {
   semantic_octree::SemanticOcTree map(0.2, synthetic_world::classTable());
   semantic_octree::AbstractionOptions options;
   options.weights = {{tree_abstraction::relevant("road", 1.0, {synthetic_world::kRoad})}, 0.01};
-  map.setAbstraction(options);
-  semantic_octree::Abstraction compressed(map);
+  setAbstraction(map, options);
+  semantic_octree::LeafFollower follower(map);
 
   for (double s = 0; s < 40; s += 4) {
     // Your localization and your LiDAR or camera: here they are made up.
@@ -27,7 +27,7 @@ int main(int argc, char** argv) try {
     const semantic_types::LabeledCloud cloud = scanLidar(village.world, T_map_sensor, {});
 
     map.insert(cloud, T_map_sensor);
-    const auto change = compressed.takeChange();  // all that another robot needs to be told
+    const auto change = follower.leaves();  // all that another robot needs to be told
     std::cout << cloud.size() << " points, " << map.getNumLeafNodes()
               << " leaves; compressed: " << change.added.size() << " came, "
               << change.removed.size() << " went\n";

@@ -1,6 +1,6 @@
 // Compresses a map to a number of leaves, of which those are kept that tell most about a class:
 //     03_compress MAP.semantic CLASS LEAVES OUTPUT.semantic
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <cstdlib>
@@ -14,7 +14,7 @@ int main(int argc, char** argv) try {
 
   semantic_octree::AbstractionOptions options;
   options.weights.terms = {tree_abstraction::relevant(argv[2], 1.0, {*relevant})};
-  map.setAbstraction(options);
+  setAbstraction(map, options);
 
   // All optimal trees are known at once, by the price of detail; the largest one that fits is ours.
   semantic_octree::Abstraction abstraction(map);

@@ -1,6 +1,6 @@
 // Plans a path over a map that puts classes before length:
 //     04_plan MAP.semantic ORDER.yaml X Y HEADING X Y HEADING      (meters, degrees)
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
@@ -26,7 +26,7 @@ int main(int argc, char** argv) try {
   std::cout << "starts on " << map.classes().name(below.likeliestClass) << "\n";
 
   const auto order = loadClassOrder(argv[2], map.classes());  // road before grass before ...
-  map.setAbstraction(abstractionFor(order));                  // keeps what the order tells apart
+  setAbstraction(map, abstractionFor(order));                 // keeps what the order tells apart
   std::cout << Abstraction(map).leaves().size() << " of " << map.getNumLeafNodes() << " leaves\n";
 
   SemanticPlanner planner(map, order);

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   semantic_octree::SemanticOcTree map(0.2, synthetic_world::classTable());
   // From best to worst: road and its markings, sidewalk and gravel, dirt, grass, unknown ground.
   const colored_graph::ClassOrder order(map.numClasses() + 1, {{1, 2}, {3, 4}, {5}, {6}, {0}});
-  map.setAbstraction(semantic_planning::abstractionFor(order));
+  setAbstraction(map, semantic_planning::abstractionFor(order));
   semantic_planning::SemanticPlanner planner(map, order);
   semantic_driving::DriveGuide guide({}, planner, {0, -18, 0});  // which path is driven
   semantic_driving::ReactiveNavigator::Options reactive;

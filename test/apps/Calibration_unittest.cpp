@@ -1,6 +1,6 @@
 // Whether probabilities mean what they say, in a world whose truth is known.
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <synthetic_world/Lidar.h>
 #include <synthetic_world/Scene.h>
 
@@ -70,7 +70,7 @@ TEST(Calibration, ofACompressedMapIsNearlyThatOfTheMap) {
     options.weights.terms = {tree_abstraction::relevant("road", 1, {synthetic_world::kRoad})};
     options.weights.alpha = 0.005;
     options.blockSize = 3.2;
-    village.map().setAbstraction(options);
+    setAbstraction(village.map(), options);
     const SemanticOcTree compressed = Abstraction(village.map()).compressedMap();
     const Evaluation e = village.evaluate(compressed);
     EXPECT_LT(compressed.getNumLeafNodes(), village.map().getNumLeafNodes() / 10);

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <utility>
 #include <vector>

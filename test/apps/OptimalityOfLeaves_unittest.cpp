@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_types/ClassTableFile.h>
 
 #include <cmath>
@@ -20,8 +21,8 @@ SemanticOcTree smallPlace() {
   SemanticOcTree map(0.2, numberedClasses(6));
   for (const PosedCloud& scan : scansOfSmallPlace(3, 4000, 6, 2))
     map.insert(scan.cloud, scan.T_map_sensor);
-  map.setAbstraction(
-      optionsOf({relevant("posts", 1, {1}), irrelevant("ground", 0.4, {2, 3})}, 0.01));
+  setAbstraction(map,
+                 optionsOf({relevant("posts", 1, {1}), irrelevant("ground", 0.4, {2, 3})}, 0.01));
   return map;
 }
 
@@ -35,9 +36,9 @@ SemanticOcTree street() {
   for (const LabeledFrame& frame : readSemanticKitti(sharedDataDir() / "semantic_kitti/00", table))
     map.insert(frame.cloud, frame.T_map_sensor, options);
   const int vegetation = *table.find("vegetation"), terrain = *table.find("terrain");
-  map.setAbstraction(optionsOf({relevant("road", 1, {*table.find("road")}),
-                                irrelevant("greenery", 0.3, {vegetation, terrain})},
-                               0.005));
+  setAbstraction(map, optionsOf({relevant("road", 1, {*table.find("road")}),
+                                 irrelevant("greenery", 0.3, {vegetation, terrain})},
+                                0.005));
   return map;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <nlohmann/json.hpp>

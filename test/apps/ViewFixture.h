@@ -1,7 +1,7 @@
 #pragma once
 #include <gtest/gtest.h>
 #include <map_view/OrbitCamera.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <opencv2/imgcodecs.hpp>
@@ -76,7 +76,7 @@ class SemanticMapView : public testing::Test {
       options.weights.terms.push_back(
           tree_abstraction::relevant(map.classes().name(semantic_types::ClassId(id)), 1, {id}));
     options.weights.alpha = alpha;
-    map.setAbstraction(options);
+    setAbstraction(map, options);
     const semantic_octree::Abstraction abstraction(map);
     std::map<std::string, bool> expanded;
     semantic_octree::SemanticOcTreeNode node = map.root();

@@ -1,8 +1,7 @@
 // Programs and folders of tiles: what comes out is what comes of the map in one piece.
 #include <gtest/gtest.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
-#include <semantic_octree/TreeFile.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
 #include <strict_files/TextFile.h>
 
 #include <nlohmann/json.hpp>
@@ -72,7 +71,7 @@ TemporaryFolder* MapFolders::folder = nullptr;
 
 TEST_F(MapFolders, haveTheMapThatAFileHas) {
   EXPECT_TRUE(MapFolder::isAt(path("tiles")));
-  EXPECT_TRUE(loadTree(path("tiles")) == loadTree(path("plain/map.semantic")));
+  EXPECT_TRUE(loadMap(path("tiles")) == loadMap(path("plain/map.semantic")));
   EXPECT_FALSE(std::filesystem::exists(path("tiled/map.semantic")));
   const auto summaryOf = [](const std::string& output) {
     return nlohmann::json::parse(folder->read(output + "/summary.json"));
@@ -125,9 +124,9 @@ TEST_F(MapFolders, takeSumsIn) {
                              "--tiles", "25.6", "--memory", "0.1"});
   run("semantic-map-merge",
       {path("plain/map.semantic"), path("tiles"), "-o", path("twice.semantic")});
-  EXPECT_TRUE(loadTree(path("twice")) == loadTree(path("twice.semantic")));
+  EXPECT_TRUE(loadMap(path("twice")) == loadMap(path("twice.semantic")));
   run("semantic-map-edit", {path("twice"), "-o", path("smaller"), "--tiles", "12.8"});
-  EXPECT_TRUE(loadTree(path("smaller")) == loadTree(path("twice.semantic")));
+  EXPECT_TRUE(loadMap(path("smaller")) == loadMap(path("twice.semantic")));
 }
 
 TEST_F(MapFolders, areAskedAndPlannedOnAsMapsInOnePiece) {
@@ -207,7 +206,7 @@ TEST_F(MapFolders, takeAnotherDriveIn) {
   const ProgramRun info = run("semantic-map-info", {path("both")});
   EXPECT_TRUE(contains(info.output, "tiles of 12.8 m")) << info.output;
   EXPECT_TRUE(contains(info.output, "saved 2 times")) << info.output;
-  EXPECT_FALSE(loadTree(path("both")) == loadTree(path("tiles")));
+  EXPECT_FALSE(loadMap(path("both")) == loadMap(path("tiles")));
 }
 
 TEST_F(MapFolders, withABadTileAreUsableWhereItIsNot) {
@@ -272,7 +271,7 @@ TEST_F(MapFolders, withAnIndexThatIsNotOfTheirFilesAreRefusedByEveryProgram) {
   for (const auto& entry : std::filesystem::directory_iterator(bad))
     if (entry.path().extension() == ".semantic") tiles.push_back(entry.path().string());
   run("semantic-map-merge", tiles);
-  EXPECT_TRUE(loadTree(path("anew")) == loadTree(path("tiles")));
+  EXPECT_TRUE(loadMap(path("anew")) == loadMap(path("tiles")));
 }
 
 TEST_F(MapFolders, tellOfFilesThatTheirIndexDoesNotName) {

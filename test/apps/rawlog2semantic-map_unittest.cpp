@@ -1,4 +1,4 @@
-#include <semantic_octree/MapContents.h>
+#include <map_operations/MapContents.h>
 #include <semantic_types/ClassTableFile.h>
 
 #include <limits>

@@ -1,3 +1,4 @@
+#include <semantic_abstraction/Abstraction.h>
 #include <strict_files/OptionList.h>
 #include <tree_abstraction/Information.h>
 
@@ -24,7 +25,8 @@ const char* const kToSize = "{name: a, relevant: {post: 1}, everything: 0.2, blo
 
 /** A map with the weights of kToSize. */
 SemanticOcTree withTheseWeights(SemanticOcTree map) {
-  map.setAbstraction(
+  setAbstraction(
+      map,
       optionsOf({relevant("a", 1, {1}), tree_abstraction::wholeClassVariable("b", 0.2, K)}, 0));
   return map;
 }
@@ -34,12 +36,12 @@ SemanticOcTree withTheseWeights(SemanticOcTree map) {
 TEST_F(SemanticMapCompress, writesTheOptimalTreesOfItsSolutions) {
   ASSERT_EQ(compress(kTwoSolutions).status, 0);
   SemanticOcTree map = loadTree(mapFile());
-  map.setAbstraction(optionsOf({relevant("a", 1, {1}), irrelevant("b", 0.2, {3})}, 0.01));
+  setAbstraction(map, optionsOf({relevant("a", 1, {1}), irrelevant("b", 0.2, {3})}, 0.01));
   EXPECT_TRUE(loadTree((output() / "posts.semantic").string()) == Abstraction(map).compressedMap());
-  map.dropAbstraction();
-  map.setAbstraction(optionsOf({relevant("a", 1, {2, 3}), relevant("b", 0.5, {6}),
-                                tree_abstraction::wholeClassVariable("c", 0.1, K)},
-                               0.02));
+  dropAbstraction(map);
+  setAbstraction(map, optionsOf({relevant("a", 1, {2, 3}), relevant("b", 0.5, {6}),
+                                 tree_abstraction::wholeClassVariable("c", 0.1, K)},
+                                0.02));
   EXPECT_TRUE(loadTree((output() / "ground_and-cars.semantic").string()) ==
               Abstraction(map).compressedMap());
 }
@@ -51,7 +53,7 @@ TEST_F(SemanticMapCompress, reportHoldsTheMeasuresOfTheTreesThatAreWritten) {
   for (int id = 0; id <= K; ++id) terms.push_back({std::to_string(id), 0, {{id}}});
   terms[1].weight = 1;
   terms[3].weight = -0.2;
-  map.setAbstraction(optionsOf(terms, 0.01));
+  setAbstraction(map, optionsOf(terms, 0.01));
   const AbstractionMeasures expected = Abstraction(map).measures();
 
   const json& posts = report["solutions"][0];
@@ -106,8 +108,8 @@ TEST_F(SemanticMapCompress, classesBeyondTheFirstBatchAreMeasuredAsIfAlone) {
     std::vector<tree_abstraction::InformationTerm> terms = {relevant("1", 1, {1}),
                                                             relevant("55", 2, {55})};
     if (id != 55) terms.push_back(relevant("x", 0, {id}));
-    map.dropAbstraction();
-    map.setAbstraction(optionsOf(terms, 0.01));
+    dropAbstraction(map);
+    setAbstraction(map, optionsOf(terms, 0.01));
     EXPECT_NEAR(classes["class " + std::to_string(id)]["share"],
                 *Abstraction(map).measures().retention(terms.size() - 1), 1e-12)
         << id;
@@ -203,7 +205,7 @@ TEST_F(SemanticMapCompress, spaceOptionsAndRegionsReachTheSearch) {
     options.blockSize = O().blockSize;
     change(options);
     SemanticOcTree map = loadTree(mapFile());
-    map.setAbstraction(options);
+    setAbstraction(map, options);
     EXPECT_TRUE(loadTree((output() / "a.semantic").string()) == Abstraction(map).compressedMap())
         << yaml;
   };

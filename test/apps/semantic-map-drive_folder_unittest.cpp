@@ -1,5 +1,4 @@
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/TreeFile.h>
+#include <map_folders/MapFolder.h>
 
 #include <map>
 #include <regex>
@@ -77,8 +76,8 @@ TEST_F(DrivesInFolders, AreTheDrivesInTheMapInOnePieceToTheLastBit) {
               jsonIn("tiles/drive.json")["compressedLeaves"]);
   }
   EXPECT_TRUE(filesIn(of("tiles")) == before);
-  EXPECT_TRUE(semantic_octree::loadTree(of("tiles")) ==
-              semantic_octree::loadTree(of("map/map.semantic")));
+  EXPECT_TRUE(semantic_octree::loadMap(of("tiles")) ==
+              semantic_octree::loadMap(of("map/map.semantic")));
 }
 
 TEST_F(DrivesInFolders, HaveNoWindow) {

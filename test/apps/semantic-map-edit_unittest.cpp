@@ -1,7 +1,8 @@
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
+#include <map_operations/OctomapConversion.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
-#include <semantic_octree/MapOperations.h>
-#include <semantic_octree/OctomapConversion.h>
 #include <semantic_types/ClassTableFile.h>
 
 #include <yaml-cpp/yaml.h>
@@ -34,7 +35,7 @@ class SemanticMapEdit : public MapTool {
     all.push_back("-f");
     const ProgramRun run = edit(in, "out.semantic", all);
     EXPECT_EQ(run.status, 0) << run.errors;
-    return semantic_octree::loadTree(path("out.semantic"));
+    return semantic_octree::loadMap(path("out.semantic"));
   }
 };
 
@@ -106,8 +107,8 @@ TEST_F(SemanticMapEdit, tilesAreAFolderWithTheMapInIt) {
   saveTree(semantic_octree::fromOcTree(free, coloredClasses()), path("sure.semantic"));
   for (const char* name : {"sure", "map"}) {
     ASSERT_EQ(edit(std::string(name) + ".semantic", name, {"--tiles", "1.6"}).status, 0);
-    EXPECT_TRUE(semantic_octree::loadTree(path(name)) ==
-                semantic_octree::loadTree(path(std::string(name) + ".semantic")));
+    EXPECT_TRUE(semantic_octree::loadMap(path(name)) ==
+                semantic_octree::loadMap(path(std::string(name) + ".semantic")));
   }
   // Others, that have no library, know from the index where something is.
   const YAML::Node index = YAML::LoadFile(path("sure/index.yaml"));
@@ -147,8 +148,8 @@ TEST_F(SemanticMapEdit, tilesAreNotWrittenOverUnlessThatIsWanted) {
   ASSERT_EQ(edit("map.semantic", "corner.semantic", {all.begin() + 2, all.end()}).status, 0);
   all.push_back("-f");
   ASSERT_EQ(edit("map.semantic", "tiles", all).status, 0);
-  EXPECT_TRUE(semantic_octree::loadTree(path("tiles")) ==
-              semantic_octree::loadTree(path("corner.semantic")));
+  EXPECT_TRUE(semantic_octree::loadMap(path("tiles")) ==
+              semantic_octree::loadMap(path("corner.semantic")));
 }
 
 TEST_F(SemanticMapEdit, octomapsFilesBecomeOccupancy) {

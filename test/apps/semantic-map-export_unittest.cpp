@@ -1,9 +1,10 @@
+#include <map_operations/SmoothedView.h>
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/serialization/CArchive.h>
 #include <mrpt_compat/Drawing.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/SmoothedView.h>
+#include <map_operations/SmoothedView.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -228,7 +229,7 @@ TEST_F(SemanticMapExport, compressedMapsAreMapsToo) {
   options.blockSize = 3.2;
   options.weights.terms = {tree_abstraction::relevant("post", 1.0, {1})};
   options.weights.alpha = 0.05;
-  full.setAbstraction(options);
+  setAbstraction(full, options);
   const SemanticOcTree compressed = semantic_octree::Abstraction(full).compressedMap();
   ASSERT_LT(compressed.getNumLeafNodes(), map.getNumLeafNodes() / 4);
   saveTree(compressed, path("small.semantic"));

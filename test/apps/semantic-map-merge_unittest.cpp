@@ -38,7 +38,7 @@ class SemanticMapMerge : public testing::Test {
     return names;
   }
   SemanticOcTree load(const std::string& file) const {
-    return semantic_octree::loadTree(path(file));
+    return semantic_octree::loadMap(path(file));
   }
 
   TemporaryFolder folder;

@@ -1,7 +1,7 @@
 // Plans over maps that are larger than the memory for them.
 #include <gtest/gtest.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,6 @@
 // semantic-map-send and semantic-map-receive, as processes on this machine.
 #include <gtest/gtest.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include "../semantic_planning/PaintedWorld.h"
@@ -90,7 +91,7 @@ TEST_F(MapRadio, prefixesAreTheTreesOfSoManyBytes) {
   folder.write("weights.yaml", kTwoSolutions);
   const std::string solution = "ground_and-cars";
   const radio::Wish wish{kTwoSolutions, solution, 0.0};
-  map.setAbstraction(wish.forClasses(map.classes(), "weights"));
+  setAbstraction(map, wish.forClasses(map.classes(), "weights"));
   semantic_octree::MapSender sender(1);
   sender.setMap(map);
   semantic_octree::MapReceiver receiver(1);

@@ -1,6 +1,6 @@
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
-#include <semantic_octree/OctomapConversion.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
+#include <map_operations/OctomapConversion.h>
 
 #include <octomap/OcTree.h>
 

@@ -1,5 +1,5 @@
-#include <semantic_octree/MapOperations.h>
-#include <semantic_octree/OctomapConversion.h>
+#include <map_operations/MapOperations.h>
+#include <map_operations/OctomapConversion.h>
 
 #include <octomap/OcTree.h>
 

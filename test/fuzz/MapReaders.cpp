@@ -1,4 +1,5 @@
-#include <semantic_octree/MapFolder.h>
+#include <map_folders/MapFolder.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <algorithm>
@@ -32,7 +33,7 @@ SemanticOcTree someMap() {
   semantic_octree::AbstractionOptions options;
   options.weights.terms = {tree_abstraction::relevant("road", 1.0, {1})};
   options.blockSize = 3.2;
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   return map;
 }
 
@@ -91,7 +92,7 @@ void readTiles(const fs::path& folder) {
   }
   std::ofstream(folder / "index.yaml", std::ios::binary)
       << index << "checksum: " << crcOf(index) << '\n';
-  expectSound(semantic_octree::loadTree(folder.string()));
+  expectSound(semantic_octree::loadMap(folder.string()));
 }
 
 /** Each behind its length (2 bytes). */

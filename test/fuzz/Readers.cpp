@@ -8,14 +8,14 @@
 #include <labeled_cloud/RawlogReader.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
+#include <map_operations/OctomapConversion.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
 #include <octomap/OcTree.h>
+#include <semantic_abstraction/WeightsFile.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
-#include <semantic_octree/OctomapConversion.h>
-#include <semantic_octree/WeightsFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
 #include <semantic_types/ClassTableFile.h>

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
 #include <map_pictures/MapCanvas.h>
 #include <rapidcheck/gtest.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <opencv2/imgproc.hpp>
 
@@ -209,7 +209,7 @@ TEST(MapCanvas, coarseCellsAreHatchedAndTheLegendSaysSo) {
   options.weights.terms = {tree_abstraction::relevant("wall", 1, {3})};
   options.weights.alpha = 1;
   options.blockSize = 1.6;
-  tree.setAbstraction(options);
+  setAbstraction(tree, options);
   MapCanvas fine = canvas(), coarse = canvas();
   fine.drawMap(tree, {});
   coarse.drawMap(semantic_octree::Abstraction(tree).compressedMap(), {});

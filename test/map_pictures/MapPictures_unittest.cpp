@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <map_pictures/MapPictures.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -177,7 +177,7 @@ TEST(TopView, aMapOfOneEnormousCellIsDrawnWithoutEnormousMemory) {
   options.weights.alpha = 1;
   options.blockSize = 0;
   options.frame = semantic_octree::AbstractionOptions::Frame::Charged;
-  tree.setAbstraction(options);
+  setAbstraction(tree, options);
   const SemanticOcTree collapsed = semantic_octree::Abstraction(tree).compressedMap();
   ASSERT_EQ(collapsed.getNumLeafNodes(), 1u);
   const cv::Mat picture = renderTopView(collapsed, plain());

@@ -1,9 +1,9 @@
 // Pictures of maps in folders of tiles are those of the map in one piece.
 #include <gtest/gtest.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
 #include <map_pictures/ClassMap.h>
 #include <map_pictures/MapPictures.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
 
 #include "PaintedField.h"
 #include "TemporaryFolder.h"

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <map_view/CellAnswer.h>
 #include <map_view/CellSource.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <map>
 #include <set>
@@ -114,7 +115,7 @@ TEST(CompressedCells, AreTheLeavesOfTheCompressedTree) {
   semantic_octree::AbstractionOptions options;
   options.weights.terms = keepRoads().terms;
   options.weights.alpha = *keepRoads().alpha;
-  other.setAbstraction(options);
+  setAbstraction(other, options);
   CellLook look(map);
   for (const bool withFree : {false, true}) {
     ViewStyle style;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <map_view/CellSource.h>
 #include <map_view/LiveCompression.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <algorithm>
@@ -46,7 +47,7 @@ std::set<Cube> leavesOfSolution(SemanticOcTree map, const Solution& solution,
   const semantic_octree::TermCatalog catalog(map.classes(), {solution});
   AbstractionOptions options = space;
   options.weights.terms = catalog.terms(0);
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   Abstraction abstraction(map);
   abstraction.setWeights(catalog.weights(solution, 0), *solution.alpha);
   std::set<Cube> leaves;
@@ -107,7 +108,7 @@ TEST(LiveCompression, IsTheMapThatGValuesLeadTo) {
   options.weights.terms = live.solution().terms;
   options.weights.alpha = 0.004;
   live.setAlpha(0.004);
-  other.setAbstraction(options);
+  setAbstraction(other, options);
   const SemanticOcTree expected = Abstraction(other).compressedMap();
   EXPECT_TRUE(live.compressedMap(map) == expected);
   EXPECT_LT(expected.getNumLeafNodes(), map.getNumLeafNodes());
@@ -172,7 +173,7 @@ TEST(LiveCompression, RetainsWhatGValuesSay) {
   const semantic_octree::TermCatalog catalog(map.classes(), {LiveCompression::allClasses(map)});
   AbstractionOptions options;
   options.weights.terms = catalog.terms(0);
-  other.setAbstraction(options);
+  setAbstraction(other, options);
   Abstraction abstraction(other);
   abstraction.setWeights(catalog.weights(live.solution(), 0), live.alpha());
   const auto measures = abstraction.measures();

@@ -4,13 +4,13 @@
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/NetworkLabeler.h>
 #include <labeled_cloud/ScanStream.h>
+#include <map_operations/SmoothedView.h>
 #include <map_pictures/MapPictures.h>
 #include <semantic_driving/DriveGuide.h>
 #include <semantic_driving/Movers.h>
 #include <semantic_driving/ObstacleSensing.h>
 #include <semantic_map/ExportGrid.h>
 #include <semantic_map/MapOptions.h>
-#include <semantic_octree/SmoothedView.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 #include <semantic_slam/SlamOptions.h>
 #include <synthetic_world/Camera.h>

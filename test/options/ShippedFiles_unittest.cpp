@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_octree/WeightsFile.h>
+#include <semantic_abstraction/WeightsFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_types/ClassTableFile.h>
 

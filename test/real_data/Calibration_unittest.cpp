@@ -1,6 +1,6 @@
 // Whether probabilities mean what they say on streets: even scans make a map, odd ones ask it.
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include "CountedLabels.h"
 #include "DataSets.h"
@@ -77,7 +77,7 @@ TEST(StreetCalibration, ofACompressedMapIsNearlyThatOfTheMap) {
     options.weights.terms = {tree_abstraction::relevant("road", 1, {*street.table.find("road")})};
     options.weights.alpha = 0.005;
     options.blockSize = 3.2;
-    street.map.setAbstraction(options);
+    setAbstraction(street.map, options);
     const SemanticOcTree compressed = semantic_octree::Abstraction(street.map).compressedMap();
     const Evaluation e = street.evaluate(compressed);
     EXPECT_LE(e.calibrationError(), 0.08) << sequence;

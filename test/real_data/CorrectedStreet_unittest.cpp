@@ -1,7 +1,7 @@
 // A street that was mapped at wrong poses, and is put right.
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/KeyframeMap.h>
+#include <map_correction/KeyframeMap.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_types/ClassTableFile.h>
 
 #include <random>
@@ -36,8 +36,8 @@ TEST_P(CorrectedStreet, isTheMapOfTheTruePosesToTheBit) {
   AbstractionOptions abstraction;
   abstraction.weights.terms = {tree_abstraction::relevant("1", 1, {1})};
   abstraction.weights.alpha = 0.002;
-  map.setAbstraction(abstraction);
-  expected.setAbstraction(abstraction);
+  setAbstraction(map, abstraction);
+  setAbstraction(expected, abstraction);
   KeyframeMap keyframes(map);
   InsertionOptions options;
   options.maxRange = 30;

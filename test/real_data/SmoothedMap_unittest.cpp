@@ -1,6 +1,6 @@
 // What neighbors bring: maps of even frames, asked for the points of the odd ones.
 #include <gtest/gtest.h>
-#include <semantic_octree/SmoothedView.h>
+#include <map_operations/SmoothedView.h>
 
 #include <cmath>
 

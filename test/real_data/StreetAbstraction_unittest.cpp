@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_types/ClassTableFile.h>
 
 #include "DataSets.h"
@@ -30,13 +30,13 @@ TEST(StreetAbstraction, incrementalEqualsBatchAfterEveryScanAndPrunedEqualsUnpru
   insertion.maxRange = 25;
   SemanticOcTree pruned(0.2, table), unpruned(0.2, table);
   unpruned.setPruning(false);
-  pruned.setAbstraction(options), unpruned.setAbstraction(options);
+  setAbstraction(pruned, options), setAbstraction(unpruned, options);
   for (const LabeledFrame& f : readSemanticKitti(sharedDataDir() / "semantic_kitti/00", table)) {
     pruned.insert(f.cloud, f.T_map_sensor, insertion);
     unpruned.insert(f.cloud, f.T_map_sensor, insertion);
     SemanticOcTree batch(pruned);
-    batch.dropAbstraction();
-    batch.setAbstraction(options);
+    dropAbstraction(batch);
+    setAbstraction(batch, options);
     ASSERT_TRUE(pruned == batch);
   }
   const Abstraction a(pruned), b(unpruned);

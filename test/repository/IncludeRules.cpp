@@ -12,42 +12,58 @@ const IncludeTable& includeTable() {
       {"strict_files", {"Eigen", "fcntl.h", "sys", "unistd.h", "yaml-cpp"}},
       {"semantic_types", {"Eigen", "yaml-cpp", "strict_files"}},
       {"tree_abstraction", {}},
-      {"semantic_octree",
-       {"Eigen", "octomap", "zlib.h", "semantic_types", "strict_files", "tree_abstraction"}},
+      {"semantic_octree", {"Eigen", "octomap", "zlib.h", "semantic_types", "strict_files"}},
+      {"semantic_abstraction",
+       {"Eigen", "semantic_octree", "semantic_octree/store", "semantic_types", "strict_files",
+        "tree_abstraction"}},
+      {"map_folders", {"Eigen", "semantic_octree", "semantic_octree/store", "strict_files"}},
+      {"map_streams",
+       {"zlib.h", "semantic_abstraction", "semantic_octree", "semantic_octree/store",
+        "tree_abstraction"}},
+      {"map_correction",
+       {"Eigen", "semantic_octree", "semantic_octree/store", "semantic_types", "strict_files"}},
+      {"map_operations",
+       {"Eigen", "octomap", "semantic_octree", "semantic_octree/store", "semantic_types"}},
       {"mrpt_compat", {"mrpt", "opencv2"}},
       {"labeled_cloud",
        {"Eigen", "lzf.h", "mrpt", "opencv2", "png.h", "yaml-cpp", "zlib.h", "zstd.h",
         "semantic_types", "strict_files", "mrpt_compat"}},
       {"semantic_map",
        {"Eigen", "mrpt", "octomap", "opencv2", "zlib.h", "labeled_cloud", "mrpt_compat",
-        "semantic_octree", "semantic_types", "strict_files", "tree_abstraction"}},
+        "map_folders", "map_operations", "semantic_abstraction", "semantic_octree",
+        "semantic_types", "strict_files", "tree_abstraction"}},
       {"map_pictures",
        {"Eigen", "ft2build.h", "gif_lib.h", "mrpt", "octomap", "opencv2", "png.h", "zlib.h",
-        "mrpt_compat", "semantic_octree", "semantic_types", "strict_files"}},
+        "mrpt_compat", "map_operations", "semantic_octree", "semantic_types", "strict_files"}},
       {"map_view",
-       {"Eigen", "yaml-cpp", "semantic_octree", "semantic_types", "strict_files",
-        "tree_abstraction"}},
+       {"Eigen", "yaml-cpp", "semantic_abstraction", "semantic_octree", "semantic_types",
+        "strict_files", "tree_abstraction"}},
       {"colored_graph", {}},
       {"semantic_planning/vehicle", {"Eigen", "mrpt", "semantic_types", "strict_files"}},
       {"semantic_planning/ground",
        {"colored_graph", "semantic_octree", "semantic_types", "strict_files",
         "semantic_planning/vehicle"}},
       {"semantic_planning/roadmap",
-       {"mrpt", "colored_graph", "semantic_octree", "strict_files", "semantic_planning/vehicle",
-        "semantic_planning/ground"}},
+       {"mrpt", "colored_graph", "semantic_abstraction", "semantic_octree", "strict_files",
+        "semantic_planning/vehicle", "semantic_planning/ground"}},
       {"semantic_planning/planner",
-       {"mrpt", "colored_graph", "semantic_octree", "semantic_types", "strict_files",
-        "semantic_planning/vehicle", "semantic_planning/ground", "semantic_planning/roadmap"}},
+       {"mrpt", "colored_graph", "semantic_abstraction", "semantic_octree", "semantic_types",
+        "strict_files", "semantic_planning/vehicle", "semantic_planning/ground",
+        "semantic_planning/roadmap"}},
       {"semantic_driving",
-       {"Eigen", "mrpt", "octomap", "colored_graph", "mrpt_compat", "semantic_octree",
-        "semantic_types", "strict_files", "semantic_planning"}},
+       {"Eigen", "mrpt", "octomap", "colored_graph", "mrpt_compat", "semantic_abstraction",
+        "semantic_octree", "semantic_types", "strict_files", "semantic_planning"}},
       {"synthetic_world", {"Eigen", "semantic_types", "strict_files"}},
-      {"semantic_slam", {"Eigen", "semantic_octree", "semantic_types", "strict_files"}},
+      {"semantic_slam",
+       {"Eigen", "map_correction", "semantic_octree", "semantic_types", "strict_files"}},
   };
   return table;
 }
 
 namespace {
+
+/** The folder of headers that a library has for some others, and does not install. */
+const std::string kStore = "store";
 
 struct Include {
   bool quoted;
@@ -61,21 +77,24 @@ std::optional<Include> parseInclude(const std::string& line) {
   return Include{match[1] == "\"", match[2]};
 }
 
-/** "library", or "library/room" for a file in a folder of include/library/ or of src/. */
+/** "library", or "library/room" for a file in a folder of include/library/ or of src/. What is in
+ * store/ is of the library itself. */
 std::string roomOf(const fs::path& file, const fs::path& libs) {
   const fs::path relative = file.lexically_relative(libs);
   std::vector<std::string> parts(relative.begin(), relative.end());
   parts.pop_back();
   const std::string library = parts.front();
+  if (parts.size() > 1 && parts[1] == kStore) return library;
   const std::size_t above = parts.size() > 1 && parts[1] == "include" ? 3 : 2;
   return parts.size() > above ? library + "/" + parts[above] : library;
 }
 
-/** What the table calls the includes of a path: "mrpt", and the first two parts, "library/room". */
+/** What the table calls the includes of a path: "mrpt", and the first two parts, "library/room".
+ * Who may include a library may not yet include what is in its store/. */
 std::vector<std::string> namesOf(const fs::path& path) {
   std::vector<std::string> names;
   const std::vector<std::string> parts(path.begin(), path.end());
-  if (!parts.empty()) names.push_back(parts[0]);
+  if (!parts.empty() && (parts.size() < 3 || parts[1] != kStore)) names.push_back(parts[0]);
   if (parts.size() > 2) names.push_back(parts[0] + "/" + parts[1]);
   return names;
 }
@@ -92,7 +111,7 @@ std::optional<std::string> objection(const Include& include, const fs::path& fil
   const fs::path path =
       include.quoted && !upwards ? library / include.path : fs::path(include.path);
   for (const std::string& name : namesOf(path))
-    if (name == room || allowed.count(name)) return {};
+    if (name == room || name == room + "/" + kStore || allowed.count(name)) return {};
   const bool standard = include.path.find_first_of("./") == std::string::npos;
   if (standard) return {};
   return room + " may not include " + include.path;

@@ -96,6 +96,13 @@ TEST_F(Repository, anIncludeBackUpBetweenTheRoomsOfALibraryIsFound) {
                       "house/src/cellar/Bad.cpp:2: house/cellar may not include attic/Beams.h"}));
 }
 
+TEST_F(Repository, anIncludeOfAStoreThatIsForOthersIsFound) {
+  write("house/store/house/store/Beams.h", "#include <house/store/Nails.h>\n");
+  write("guest/src/Bad.cpp", "#include <house/Door.h>\n#include <house/store/Beams.h>\n");
+  EXPECT_EQ(forbiddenIncludes(scratch, {{"house", {}}, {"guest", {"house"}}}),
+            Findings{"guest/src/Bad.cpp:2: guest may not include house/store/Beams.h"});
+}
+
 TEST_F(Repository, aLibraryThatPrintsIsFound) {
   write("pure/src/Bad.cpp", "#include <iostream>\n");
   EXPECT_EQ(forbiddenIncludes(scratch, {{"pure", {}}}),

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/Focus.h>
-#include <semantic_octree/Abstraction.h>
 
 #include <algorithm>
 #include <cmath>
@@ -57,8 +57,8 @@ class FromScratch : public simulated_drive::DriveObserver {
     SemanticOcTree anew = loop.mapper().map();
     auto options = abstractionFor(syntheticOrder(), m_focus);
     options.regions = semantic_octree::Abstraction(anew).options().regions;
-    anew.dropAbstraction();
-    anew.setAbstraction(options);
+    dropAbstraction(anew);
+    setAbstraction(anew, options);
     same += anew == loop.mapper().map();
     ++compared;
     corridors = std::max(corridors, options.regions.size() - 2);

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_octree/MapOperations.h>
+#include <map_operations/MapOperations.h>
 #include <synthetic_world/Scene.h>
 
 #include <algorithm>

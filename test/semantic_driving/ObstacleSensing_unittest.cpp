@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/CompressedObstacles.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <synthetic_world/Random.h>
@@ -26,7 +27,7 @@ class ObstacleSensing : public testing::Test {
 
   semantic_octree::SemanticOcTree& map() {
     semantic_octree::SemanticOcTree& m = world.map();
-    if (!m.hasAbstraction()) m.setAbstraction(abstractionFor(order));
+    if (!hasAbstraction(m)) setAbstraction(m, abstractionFor(order));
     return m;
   }
   SemanticPlanner planner() { return SemanticPlanner(map(), order, {}); }

@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/CameraCalibration.h>
 #include <labeled_cloud/Trajectory.h>
+#include <semantic_abstraction/WeightsFile.h>
 #include <semantic_map/ExportGrid.h>
 #include <semantic_map/ExportOctomap.h>
 #include <semantic_map/ExportPoints.h>
 #include <semantic_map/ImportOctomap.h>
-#include <semantic_octree/WeightsFile.h>
 
 #include <sstream>
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/maps/CMultiMetricMap.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include "SmallMaps.h"
 
@@ -105,7 +106,7 @@ TEST(MapAbstraction, withoutWeightsNoneIsKept) {
   CSemanticOctoMap map(0.2, threeClasses());
   map.setAbstraction(someOptions());
   map.setAbstraction(TAbstractionOptions());
-  EXPECT_FALSE(map.tree().hasAbstraction());
+  EXPECT_FALSE(hasAbstraction(map.tree()));
   EXPECT_THROW(map.abstraction(), std::logic_error);
 }
 

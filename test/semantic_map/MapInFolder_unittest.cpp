@@ -1,5 +1,6 @@
 // A map in a folder of tiles is the map that it would be in memory, to the last bit.
 #include <gtest/gtest.h>
+#include <map_folders/MapFolder.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/maps/CMultiMetricMap.h>
 #include <mrpt/maps/CSimpleMap.h>
@@ -117,7 +118,7 @@ TEST_F(InFolder, isSavedThereAndNowhereElse) {
   for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
     entries += entry.path().filename().string().rfind("saved", 0) == 0;
   EXPECT_EQ(entries, 0u);
-  EXPECT_TRUE(semantic_octree::loadTree((folder / "tiles").string()) == plain.tree());
+  EXPECT_TRUE(semantic_octree::loadMap((folder / "tiles").string()) == plain.tree());
 }
 
 TEST_F(InFolder, goesOnWhereItWasSaved) {
@@ -203,7 +204,7 @@ TEST_F(InFolder, isCopiedToMapsInMemory) {
   }
   EXPECT_TRUE(bytesOf(map) == bytes);
   map.folder()->save();
-  EXPECT_TRUE(semantic_octree::loadTree((folder / "tiles").string()) == plain.tree());
+  EXPECT_TRUE(semantic_octree::loadMap((folder / "tiles").string()) == plain.tree());
 }
 
 TEST_F(InFolder, isNotCopiedWhereThereIsNoMemoryForIt) {

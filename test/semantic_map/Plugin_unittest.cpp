@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
+#include <map_folders/MapFolder.h>
 #include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <mrpt_compat/Release.h>
-#include <semantic_octree/TreeFile.h>
 
 #include <cstdlib>
 
@@ -52,7 +52,7 @@ TEST(Plugin, observations2mapMakesAMapOfASimpleMap) {
   for (const auto& file : std::filesystem::directory_iterator(folder.path()))
     if (file.path().extension() == ".semantic") found = file.path().string();
   ASSERT_FALSE(found.empty()) << output;
-  const auto tree = semantic_octree::loadTree(found);
+  const auto tree = semantic_octree::loadMap(found);
   EXPECT_EQ(tree.getResolution(), 0.2);
   EXPECT_EQ(tree.query(4.05, 2.05, 0.05).status, semantic_octree::CellState::Status::Occupied);
 }
@@ -83,8 +83,8 @@ TEST(Plugin, mapsInAFolderWithinItsBudgetWhatItMapsInMemory) {
   for (const auto& file : std::filesystem::directory_iterator(folder.path()))
     if (file.path().extension() == ".semantic") map = file.path().string(), ++saved;
   ASSERT_EQ(saved, 1u);
-  const auto tree = semantic_octree::loadTree(map);
-  EXPECT_TRUE(semantic_octree::loadTree((folder / "tiles").string()) == tree);
+  const auto tree = semantic_octree::loadMap(map);
+  EXPECT_TRUE(semantic_octree::loadMap((folder / "tiles").string()) == tree);
   const double kilobytes = double(tree.memoryUsage()) / 1e3;
   EXPECT_GT(kilobytes, 10000);
   EXPECT_LT(double(inFolder.peakKilobytes), double(inMemory.peakKilobytes) - 0.7 * kilobytes);

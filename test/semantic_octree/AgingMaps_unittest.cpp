@@ -1,7 +1,8 @@
 // What follows a map that ages: files, G-values, changes, sums.
 #include <gtest/gtest.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <cmath>
 #include <set>
@@ -52,14 +53,14 @@ TEST(Decay, mixturesGValuesAndTheCompressedTreesChangeFollow) {
     map.setPruning(seed % 3 != 0);
     AbstractionOptions options = abstraction(0.01 + 0.05 * (seed - 30));
     if (seed % 2 == 0) options.blockSize = 1.6;  // of 4 x 4 x 4 voxels
-    map.setAbstraction(options);
-    FollowedTree told;
+    setAbstraction(map, options);
+    FollowedTree told(map);
     for (int i = 0; i < 30; ++i) {
       i % 10 == 0 ? insertRandom(map, random, 0.2) : map.age(between(random, 0, 0.7));
-      told.follow(Abstraction(map));
+      told.follow();
       ASSERT_FALSE(HasFailure()) << seed << ", " << i;
       SemanticOcTree anew = reloaded(map);
-      anew.setAbstraction(options);
+      setAbstraction(anew, options);
       ASSERT_TRUE(map == anew) << seed << ", " << i;
     }
   }
@@ -70,21 +71,23 @@ TEST(Decay, aBlockThatIsNotWorthItsPriceAnyMoreIsTold) {
   SemanticOcTree map(0.5, classes(false));
   AbstractionOptions options = abstraction(0.01);
   options.blockSize = 2;
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   LabeledCloud cloud;
   cloud.points = {{0.25f, 0.25f, 0.25f}, {1.25f, 1.25f, 1.25f}};
   cloud.classes = {1, 2};
   map.insert(cloud, Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.1, 0.1)));
-  Abstraction(map).takeChange();
+  LeafFollower follower(map);
+  follower.skipLeaves();
   const std::size_t before = Abstraction(map).leaves().size();
   map.age(20);
   EXPECT_LT(Abstraction(map).leaves().size(), before);
-  EXPECT_FALSE(Abstraction(map).takeChange().removed.empty());
+  EXPECT_FALSE(follower.leaves().removed.empty());
 }
 
 TEST(Decay, tellsWhichTilesChanged) {
   SemanticOcTree map = randomMap(40, classes());
-  map.takeTouchedTiles();
+  MapFollower follower = map.follow();
+  follower.skipTiles();
   for (int i = 0; i < 12; ++i) {
     const auto before = voxelsOf(map);
     map.age(0.3);
@@ -93,7 +96,7 @@ TEST(Decay, tellsWhichTilesChanged) {
     for (const auto& [v, p] : before)
       if (const auto it = after.find(v); it == after.end() || it->second != p)
         tiles.insert({v[0] & ~7, v[1] & ~7, v[2] & ~7});
-    for (const auto& k : map.takeTouchedTiles()) told.insert(voxelAt(k[0], k[1], k[2]));
+    for (const auto& k : follower.tiles().tiles) told.insert(voxelAt(k[0], k[1], k[2]));
     ASSERT_EQ(told, tiles) << i;
   }
 }

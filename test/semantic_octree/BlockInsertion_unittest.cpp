@@ -1,6 +1,6 @@
 // What scans do to blocks of 4 x 4 x 4 voxels, against voxels that are on their own.
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include "BlockScans.h"
 #include "FollowedTree.h"
@@ -94,7 +94,7 @@ class Maps {
   Maps(int classes, const FilterParameters& p)
       : pruned(1.0, numberedClasses(classes), p), plain(1.0, classes, p) {
     unpruned.setPruning(false);
-    abstracted.setAbstraction(someTerms());
+    setAbstraction(abstracted, someTerms());
   }
   void insert(const PosedCloud& scan) {
     InsertionOptions threads;
@@ -103,7 +103,7 @@ class Maps {
       tree->insert(scan.cloud, scan.T_map_sensor);
     shared.insert(scan.cloud, scan.T_map_sensor, threads);
     plain.insert(scan, {});
-    m_compressed.follow(Abstraction(abstracted));
+    m_compressed.follow();
   }
   void compare() const {
     expectSame(pruned, plain);
@@ -113,7 +113,7 @@ class Maps {
     EXPECT_TRUE(shared == pruned) << "by several threads";
     EXPECT_EQ(shared.size(), pruned.size());
     SemanticOcTree anew = pruned;
-    anew.setAbstraction(someTerms());
+    setAbstraction(anew, someTerms());
     EXPECT_TRUE(abstracted == anew) << "bookkeeping that is kept up to date";
   }
 
@@ -121,7 +121,7 @@ class Maps {
   PlainMap plain;
 
  private:
-  FollowedTree m_compressed;
+  FollowedTree m_compressed{abstracted};
 };
 
 void expectPlainResult(unsigned seed, int classes, const FilterParameters& parameters,

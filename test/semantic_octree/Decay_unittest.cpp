@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
+#include <map_operations/MapContents.h>
+#include <map_operations/OctomapConversion.h>
 #include <octomap/OcTree.h>
-#include <semantic_octree/MapContents.h>
-#include <semantic_octree/OctomapConversion.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <cmath>
 
@@ -91,7 +92,7 @@ TEST(Decay, manyShortTimesDoWhatALongOneDoes) {
   std::mt19937 random(3);
   for (unsigned seed = 10; seed < 16; ++seed) {
     SemanticOcTree once = randomMap(seed, classes(), seed % 2 == 0);
-    if (seed % 3 == 0) once.setAbstraction(abstraction());
+    if (seed % 3 == 0) setAbstraction(once, abstraction());
     SemanticOcTree often = once;
     double left = 6;
     while (left > 0) {

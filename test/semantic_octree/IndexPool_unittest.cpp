@@ -1,6 +1,6 @@
 // The memory of nodes and class records.
-#include <IndexPool.h>
 #include <gtest/gtest.h>
+#include <semantic_octree/store/IndexPool.h>
 
 #include <cstring>
 #include <random>

@@ -1,12 +1,11 @@
 // What a scan's labels say of their own reliability, next to urns whose reliability is known.
 #include <gtest/gtest.h>
-#include <semantic_octree/KeyframeMap.h>
+#include <map_correction/KeyframeMap.h>
 #include <semantic_octree/LabelReliability.h>
 
 #include <algorithm>
 #include <random>
 
-#include "PackedScan.h"
 #include "PlainMap.h"
 
 using namespace semantic_octree;
@@ -164,18 +163,4 @@ TEST(LabelReliability, isKeptWithScansThatMayMove) {
   keyframes.insert(noisy.cloud, sensor);
   keyframes.move({{last, there}});
   EXPECT_TRUE(moved == map);
-}
-
-TEST(LabelReliability, isPartOfWhatAScanSawInEachTile) {
-  const auto scanOfTwoTiles = [](const LabelReliability& labels) {
-    PackedScan scan(false, labels);
-    for (const std::uint64_t code : {3, 8}) {
-      scan.beginTile(code).push_back(1);
-      scan.endTile();
-    }
-    return scan;
-  };
-  const PackedScan scan = scanOfTwoTiles({0.9, 0.5});
-  EXPECT_EQ(differingTiles(scan, scanOfTwoTiles({0.9, 0.5})), TileCodes());
-  EXPECT_EQ(differingTiles(scan, scanOfTwoTiles({0.9, 0.4})), (TileCodes{3, 8}));
 }

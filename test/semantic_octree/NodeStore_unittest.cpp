@@ -1,6 +1,6 @@
 // Nodes, class records and what is merged.
-#include <NodeStore.h>
 #include <gtest/gtest.h>
+#include <semantic_octree/store/NodeStore.h>
 
 using namespace semantic_octree;
 

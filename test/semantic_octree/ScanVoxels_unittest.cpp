@@ -1,8 +1,8 @@
 // A scan's voxels: where their bits are, their ranks, and what was voted for in them.
-#include <HitTiles.h>
-#include <HitVotes.h>
-#include <ScanGrid.h>
 #include <gtest/gtest.h>
+#include <semantic_octree/store/HitTiles.h>
+#include <semantic_octree/store/HitVotes.h>
+#include <semantic_octree/store/ScanGrid.h>
 
 #include <map>
 #include <random>

@@ -17,18 +17,6 @@ inline semantic_types::ClassTable numberedClasses(int K) {
   return table;
 }
 
-/** Posts matter, the ground's classes are held against them, and all classes count a little: with
- * blocks of 3.2 m. \param all weight of the latter */
-inline semantic_octree::AbstractionOptions threeTerms(double alpha, int classes, double all) {
-  using namespace tree_abstraction;
-  semantic_octree::AbstractionOptions options;
-  options.weights.terms = {relevant("posts", 1.0, {1}), irrelevant("ground", 0.3, {2, 3}),
-                           wholeClassVariable("everything", all, classes)};
-  options.weights.alpha = alpha;
-  options.blockSize = 3.2;
-  return options;
-}
-
 /** Scans of a bumpy ground of several classes with posts on it, seen from a sensor that moves
  * along. \param classes K >= 3 */
 inline std::vector<PosedCloud> scansOfSmallPlace(int numScans, int pointsPerScan, int classes,

@@ -1,4 +1,5 @@
 #pragma once
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include "RandomScans.h"
@@ -39,7 +40,7 @@ inline SemanticOcTree emptyMap(bool withAbstraction = false,
   for (int i = 1; i <= 4; ++i)
     options.weights.terms.push_back(tree_abstraction::relevant(std::to_string(i), 1, {i}));
   options.weights.alpha = 0.02;
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   return map;
 }
 

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include "PlainMap.h"
 #include "RandomScans.h"
@@ -7,7 +8,7 @@ using namespace semantic_octree;
 
 namespace {
 
-SemanticOcTree someTree(unsigned seed, double resolution = 0.3, int classes = 5) {
+SemanticOcTree treeOfScans(unsigned seed, double resolution = 0.3, int classes = 5) {
   std::mt19937 random(seed);
   SemanticOcTree tree(resolution, numberedClasses(classes));
   for (int i = 0; i < 3; ++i) {
@@ -26,7 +27,7 @@ void insertOne(SemanticOcTree& tree, unsigned seed, const InsertionOptions& opti
 }  // namespace
 
 TEST(Tree, copiesShareNothing) {
-  SemanticOcTree original = someTree(1);
+  SemanticOcTree original = treeOfScans(1);
   const SemanticOcTree copy = original, second = original;
   EXPECT_TRUE(copy == original);
   insertOne(original, 2);
@@ -37,7 +38,7 @@ TEST(Tree, copiesShareNothing) {
 }
 
 TEST(Tree, copiesGoOnLikeTheOriginal) {
-  SemanticOcTree original = someTree(3), copy = original;
+  SemanticOcTree original = treeOfScans(3), copy = original;
   for (unsigned seed = 10; seed < 15; ++seed) {
     insertOne(original, seed);
     insertOne(copy, seed);
@@ -47,17 +48,17 @@ TEST(Tree, copiesGoOnLikeTheOriginal) {
 }
 
 TEST(Tree, keepsItsNodesWhereBookkeepingComesAndGoes) {
-  SemanticOcTree plain = someTree(18), tree = plain;
+  SemanticOcTree plain = treeOfScans(18), tree = plain;
   AbstractionOptions options;
   for (unsigned seed = 20; seed < 24; ++seed) {
     options.weights.terms.push_back(tree_abstraction::relevant(std::to_string(seed), 1, {1}));
-    tree.setAbstraction(options);
+    setAbstraction(tree, options);
     EXPECT_TRUE(tree == plain);
     SemanticOcTree copy = tree;
     for (SemanticOcTree* map : {&plain, &tree, &copy}) insertOne(*map, seed);
     EXPECT_TRUE(copy == tree);
     EXPECT_TRUE(tree == plain);
-    if (seed % 2) tree.dropAbstraction();
+    if (seed % 2) dropAbstraction(tree);
     insertOne(copy, seed + 10);
     EXPECT_FALSE(copy == tree);
     EXPECT_TRUE(tree == plain);
@@ -66,8 +67,8 @@ TEST(Tree, keepsItsNodesWhereBookkeepingComesAndGoes) {
 }
 
 TEST(Tree, assignmentReplacesEverything) {
-  const SemanticOcTree a = someTree(4, 0.3);
-  SemanticOcTree b = someTree(5, 0.5, 9);
+  const SemanticOcTree a = treeOfScans(4, 0.3);
+  SemanticOcTree b = treeOfScans(5, 0.5, 9);
   b = a;
   EXPECT_TRUE(a == b);
   EXPECT_EQ(b.getResolution(), 0.3);
@@ -78,7 +79,7 @@ TEST(Tree, assignmentReplacesEverything) {
 }
 
 TEST(Tree, movingLeavesAnEmptyMapOfTheSameKindBehind) {
-  SemanticOcTree original = someTree(6);
+  SemanticOcTree original = treeOfScans(6);
   const SemanticOcTree copy = original;
   const SemanticOcTree moved = std::move(original);
   EXPECT_TRUE(moved == copy);
@@ -91,7 +92,7 @@ TEST(Tree, movingLeavesAnEmptyMapOfTheSameKindBehind) {
 }
 
 TEST(Tree, swappingExchangesEverything) {
-  SemanticOcTree a = someTree(8, 0.3), b = someTree(9, 0.5, 9);
+  SemanticOcTree a = treeOfScans(8, 0.3), b = treeOfScans(9, 0.5, 9);
   const SemanticOcTree copyOfA = a, copyOfB = b;
   a.swap(b);
   EXPECT_TRUE(a == copyOfB);
@@ -104,7 +105,7 @@ TEST(Tree, swappingExchangesEverything) {
 }
 
 TEST(Tree, clearedStartsAnew) {
-  SemanticOcTree tree = someTree(11);
+  SemanticOcTree tree = treeOfScans(11);
   tree.clear();
   EXPECT_TRUE(tree.empty());
   EXPECT_EQ(tree.size(), 0u);
@@ -117,9 +118,9 @@ TEST(Tree, clearedStartsAnew) {
 }
 
 TEST(Tree, differsFromAnotherInEachPart) {
-  const SemanticOcTree tree = someTree(13);
-  EXPECT_FALSE(tree == someTree(14));
-  EXPECT_FALSE(tree == someTree(13, 0.31));
+  const SemanticOcTree tree = treeOfScans(13);
+  EXPECT_FALSE(tree == treeOfScans(14));
+  EXPECT_FALSE(tree == treeOfScans(13, 0.31));
   EXPECT_FALSE(SemanticOcTree(0.1, numberedClasses(5)) == SemanticOcTree(0.1, numberedClasses(6)));
   FilterParameters other;
   other.accuracy = 0.8;
@@ -131,7 +132,7 @@ TEST(Tree, differsFromAnotherInEachPart) {
 }
 
 TEST(Tree, countsItsNodesAndMemory) {
-  SemanticOcTree tree = someTree(15);
+  SemanticOcTree tree = treeOfScans(15);
   std::size_t nodes = 0;
   for (auto node = tree.begin_tree(); node != tree.end_tree(); ++node) ++nodes;
   EXPECT_EQ(tree.size(), nodes);
@@ -160,7 +161,7 @@ TEST(Tree, mergesSpaceThatWasSeenFreeForLong) {
 }
 
 TEST(Tree, pruningIsChosenWhileTheTreeIsEmpty) {
-  SemanticOcTree tree = someTree(16);
+  SemanticOcTree tree = treeOfScans(16);
   EXPECT_TRUE(tree.pruning());
   EXPECT_THROW(tree.setPruning(false), std::logic_error);
   tree.clear();

@@ -1,7 +1,7 @@
 // What forgetting costs: a drive through a street, 64 x 1024 beams, ten scans a second, and the
 // time that passes between two of them.
 #include <benchmark/benchmark.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include "StreetDrive.h"
 

@@ -1,15 +1,16 @@
 // The parts of an insertion, on a LiDAR scan of 64 x 1024 beams in a street.
-#include <RayMarking.h>
-#include <Scan.h>
-#include <ScanMerger.h>
 #include <benchmark/benchmark.h>
-#include <semantic_octree/SmoothedView.h>
+#include <map_operations/SmoothedView.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
+#include <semantic_octree/store/Scan.h>
 
 #include <sstream>
 
 #include "FilterStreams.h"
 #include "RandomScans.h"
+#include "RayMarking.h"
+#include "ScanMerger.h"
 
 using namespace semantic_octree;
 
@@ -42,7 +43,7 @@ SemanticOcTree streetMap(double resolution, int scans, bool withAbstraction = fa
   for (int i = 1; i <= 4; ++i)
     options.weights.terms.push_back(tree_abstraction::relevant(std::to_string(i), 1, {i}));
   options.weights.alpha = 0.02;
-  if (withAbstraction) map.setAbstraction(options);
+  if (withAbstraction) setAbstraction(map, options);
   for (int i = 0; i < scans; ++i) map.insert(street().cloud, street().T_map_sensor, insertion());
   return map;
 }

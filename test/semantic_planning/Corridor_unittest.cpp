@@ -1,5 +1,6 @@
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/MapOperations.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <array>
 #include <cstdint>
@@ -23,7 +24,7 @@ class CorridorTest : public PlannerTest {
     return findCorridor(of, order, options, {start, goal, {}, {}, width});
   }
   PlanResult planIn(SemanticOcTree& of, const std::optional<Corridor>& corridor) const {
-    if (!of.hasAbstraction()) of.setAbstraction(abstractionFor(order));
+    if (!hasAbstraction(of)) setAbstraction(of, abstractionFor(order));
     return SemanticPlanner(of, order, options, corridor).plan(start, goal);
   }
   static void expectSame(const PlanResult& a, const PlanResult& b) {

@@ -1,6 +1,6 @@
 // Ground that follows its map, and ground of parts of a map, against ground that is read anew.
 #include <gtest/gtest.h>
-#include <semantic_octree/KeyframeMap.h>
+#include <map_correction/KeyframeMap.h>
 
 #include <algorithm>
 
@@ -27,12 +27,13 @@ TEST(Ground, afterUpdatesItIsTheGroundReadAnew) {
   world.floor(-6, 6, -6, 6, PaintedWorld::Road);
   SemanticOcTree& map = world.map();
   const GroundOptions filling;
-  map.takeTouchedTiles();
+  semantic_octree::MapFollower follower = map.follow();
+  follower.skipTiles();
   Ground ground = groundOf(map, VehicleOptions(), filling);
   for (unsigned round = 0; round < 8; ++round) {
     addRubble(world, 100 + round, 25);
     world.map({0.05 + 0.3 * round, 0.05, 20});
-    ground.update(map.takeTouchedTiles());
+    ground.update(follower.tiles());
     expectSame(ground, groundOf(map, VehicleOptions(), filling));
   }
 }
@@ -73,13 +74,14 @@ TEST(Ground, withinSomeTilesDoesNotFollowChanges) {
   PaintedWorld world;
   world.floor(-2, 2, -2, 2, PaintedWorld::Road);
   SemanticOcTree& map = world.map();
-  map.takeTouchedTiles();
+  semantic_octree::MapFollower follower = map.follow();
+  follower.skipTiles();
   Ground ground(map, VehicleOptions(), {}, anyClass(),
                 std::vector<Column>{tileOf({kOrigin, kOrigin})});
-  EXPECT_TRUE(ground.update(map.takeTouchedTiles()).empty());
+  EXPECT_TRUE(ground.update(follower.tiles()).empty());
   world.voxel(0, 0, 0, PaintedWorld::Wall);
   world.map();
-  EXPECT_THROW(ground.update(map.takeTouchedTiles()), std::logic_error);
+  EXPECT_THROW(ground.update(follower.tiles()), std::logic_error);
 }
 
 TEST(Ground, followsKeyframesThatAreMovedAndRemoved) {
@@ -87,7 +89,8 @@ TEST(Ground, followsKeyframesThatAreMovedAndRemoved) {
   SemanticOcTree map(world.map().getResolution(), world.map().classes());
   const GroundOptions filling;
   semantic_octree::KeyframeMap keyframes(map);
-  map.takeTouchedTiles();
+  semantic_octree::MapFollower follower = map.follow();
+  follower.skipTiles();
   Ground ground = groundOf(map, VehicleOptions(), filling);
   std::mt19937 random(4);
   const auto slab = [&random](double height) {
@@ -100,7 +103,7 @@ TEST(Ground, followsKeyframesThatAreMovedAndRemoved) {
     return cloud;
   };
   const auto expectFollowed = [&] {
-    ground.update(map.takeTouchedTiles());
+    ground.update(follower.tiles());
     expectSame(ground, groundOf(map, VehicleOptions(), filling));
   };
   const Eigen::Isometry3d above(Eigen::Translation3d(0.05, 0.05, 2));
@@ -120,12 +123,13 @@ TEST(Ground, aHoleThatNoBeamEnteredIsFilledAfterAnUpdateAsInTheGroundReadAnew) {
   PaintedWorld world;
   const GroundOptions filling;
   SemanticOcTree& map = world.map();
-  map.takeTouchedTiles();
+  semantic_octree::MapFollower follower = map.follow();
+  follower.skipTiles();
   Ground ground = groundOf(map, VehicleOptions(), filling);
   world.floor(-3.2, 0, 0, 3.2, PaintedWorld::Road).map({-1.65, 1.65, 20});
-  ground.update(map.takeTouchedTiles());
+  ground.update(follower.tiles());
   world.floor(3.2, 6.4, 0, 3.2, PaintedWorld::Road).map({4.85, 1.65, 20});
-  ground.update(map.takeTouchedTiles());
+  ground.update(follower.tiles());
   expectSame(ground, groundOf(map, VehicleOptions(), filling));
   EXPECT_TRUE(ground.connected(*ground.find(-1, 1.6), *ground.find(5, 1.6)));
 }
@@ -134,12 +138,34 @@ TEST(Ground, anUpdateTellsTheTilesThatChanged) {
   PaintedWorld world;
   world.floor(-20, 20, -20, 20, PaintedWorld::Road);
   SemanticOcTree& map = world.map();
-  map.takeTouchedTiles();
+  semantic_octree::MapFollower follower = map.follow();
+  follower.skipTiles();
   Ground ground = groundOf(map);
   EXPECT_TRUE(ground.update({}).empty());
   world.box(8.1, 8.3, 8.1, 8.3, 0, 1, PaintedWorld::Wall).map({8.05, 8.05, 10});
-  const std::vector<Column> changed = ground.update(map.takeTouchedTiles());
+  const std::vector<Column> changed = ground.update(follower.tiles());
   const Column tile = tileOf(ground.columnAt(8.1, 8.1));
   EXPECT_NE(std::find(changed.begin(), changed.end(), tile), changed.end());
   EXPECT_LE(changed.size(), 4u);
+}
+
+TEST(Ground, followsAMapThatIsClearedAndOneThatBecomesAnother) {
+  PaintedWorld world, other;
+  addRubble(world, 2, 600);
+  addRubble(other.floor(-6, 6, 2, 9, PaintedWorld::Road), 5, 300);
+  SemanticOcTree& map = world.map();
+  semantic_octree::MapFollower follower = map.follow();
+  follower.skipTiles();
+  Ground ground = groundOf(map);
+  const auto expectFollowed = [&] {
+    EXPECT_FALSE(ground.update(follower.tiles()).empty());
+    expectSame(ground, groundOf(map));
+  };
+  map.clear();
+  expectFollowed();
+  addRubble(world, 3, 600);
+  world.map();
+  expectFollowed();
+  map = other.map();
+  expectFollowed();
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <colored_graph/ColoredAStar.h>
 #include <gtest/gtest.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
@@ -31,7 +32,7 @@ class PlannerTest : public testing::Test {
 
   semantic_octree::SemanticOcTree& map() {
     semantic_octree::SemanticOcTree& m = world.map();
-    if (!m.hasAbstraction()) m.setAbstraction(semantic_planning::abstractionFor(order));
+    if (!hasAbstraction(m)) setAbstraction(m, semantic_planning::abstractionFor(order));
     return m;
   }
   SemanticPlanner planner() { return SemanticPlanner(map(), order, options); }

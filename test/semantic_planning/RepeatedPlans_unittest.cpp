@@ -1,6 +1,6 @@
 // What a planner keeps between plans must not show in its answers: they are those of a planner that
 // is made for each.
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <algorithm>
 #include <random>
@@ -113,7 +113,7 @@ TEST_F(RepeatedPlansTest, planAsFreshPlannersDoWithClassesOfLeavesInMapsWithLarg
   options.roadmap.spacing = 6.4;
   auto abstraction = abstractionFor(order);
   abstraction.blockSize = 12.8;
-  world.map().setAbstraction(abstraction);
+  setAbstraction(world.map(), abstraction);
   expectAnswersOfFreshPlanners(8);
 }
 

@@ -1,4 +1,4 @@
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <array>
 #include <set>
@@ -27,9 +27,9 @@ TEST_F(PlannerTest, takesTheStraightLineWhereClassesAreEqual) {
 
 TEST_F(PlannerTest, everyKindOfGraphFindsADrivablePath) {
   paintCorner();
-  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Leaves, GraphKind::Halton,
-                               GraphKind::HaltonDrivable, GraphKind::HaltonByClass,
-                               GraphKind::HaltonMap, GraphKind::Full}) {
+  for (const GraphKind kind :
+       {GraphKind::Compressed, GraphKind::Leaves, GraphKind::Halton, GraphKind::HaltonDrivable,
+        GraphKind::HaltonByClass, GraphKind::HaltonMap, GraphKind::Full}) {
     options.roadmap.kind = kind;
     expectDrivable(plan());
   }

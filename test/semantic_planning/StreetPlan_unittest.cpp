@@ -1,5 +1,6 @@
 // Planning over ten scans of SemanticKITTI 00.
 #include <gtest/gtest.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
@@ -28,7 +29,7 @@ class StreetPlan : public testing::Test {
     if (!s_street) readStreet();
     map.emplace(*s_street);
     order.emplace(loadClassOrder(kConfig / "orders/semantic_kitti.yaml", map->classes()));
-    map->setAbstraction(abstractionFor(*order));
+    setAbstraction(*map, abstractionFor(*order));
   }
 
   static void TearDownTestSuite() { s_street.reset(); }

@@ -1,4 +1,5 @@
 #pragma once
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 
 #include "PaintedWorld.h"
@@ -32,7 +33,7 @@ inline PaintedWorld world() {
 inline semantic_octree::SemanticOcTree& map() {
   static PaintedWorld painted = world();
   static semantic_octree::SemanticOcTree& map = painted.map({0.05, 0.05, 60});
-  if (!map.hasAbstraction()) map.setAbstraction(semantic_planning::abstractionFor(order()));
+  if (!hasAbstraction(map)) setAbstraction(map, semantic_planning::abstractionFor(order()));
   return map;
 }
 

@@ -1,6 +1,7 @@
 // Planning across a map of 100 m, ground known, in stages; reading the ground; replanning after 1 %
 // of the map's columns changed. One core.
 #include <benchmark/benchmark.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <memory>
@@ -85,7 +86,7 @@ BENCHMARK(planAgain)->Apply(eachKind);
 void replanAfterOnePercentChanged(benchmark::State& state) {
   PaintedWorld world = town::world();
   semantic_octree::SemanticOcTree& map = world.map({0.05, 0.05, 60});
-  map.setAbstraction(abstractionFor(town::order()));
+  setAbstraction(map, abstractionFor(town::order()));
   SemanticPlanner planner(map, town::order(), optionsOf(GraphKind::Compressed));
   planner.plan(kStart, kGoal);
   planner.replan(kStart);

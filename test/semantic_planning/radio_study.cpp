@@ -8,11 +8,11 @@
 // are expected there: of the ground's voxel, and of occupied ones up to 1.2 m above it. Where the
 // ground is is known; what it is, and what stands on it, is what is asked of the map. What a path
 // costs in the end, the whole map says.
+#include <map_operations/MapOperations.h>
+#include <map_operations/OctomapConversion.h>
+#include <map_streams/MapStream.h>
 #include <octomap/OcTree.h>
-#include <semantic_octree/Abstraction.h>
-#include <semantic_octree/MapOperations.h>
-#include <semantic_octree/MapStream.h>
-#include <semantic_octree/OctomapConversion.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
@@ -193,7 +193,7 @@ class Study {
   void stream() {
     SemanticOcTree map = m_map;
     m_options.weights.alpha = 0;
-    map.setAbstraction(m_options);
+    setAbstraction(map, m_options);
     semantic_octree::MapSender sender(1);
     sender.setMap(map);
     semantic_octree::MapReceiver receiver(1);

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_octree/KeyframeMap.h>
+#include <map_correction/KeyframeMap.h>
 #include <semantic_slam/Slam.h>
 
 #include <cmath>

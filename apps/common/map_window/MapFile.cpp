@@ -1,10 +1,10 @@
 #include "MapFile.h"
 
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
+#include <map_operations/OctomapConversion.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/ImportOctomap.h>
-#include <semantic_octree/MapOperations.h>
-#include <semantic_octree/OctomapConversion.h>
-#include <semantic_octree/TreeFile.h>
 #include <strict_files/ErrorMessage.h>
 
 #include <array>
@@ -71,7 +71,7 @@ OpenedMap openFolder(const fs::path& folder, const WantedTiles& wanted) {
 OpenedMap openMap(const fs::path& file, const WantedTiles& wanted) {
   if (MapFolder::isAt(file)) return openFolder(file, wanted);
   if (file.extension() != ".ot" && file.extension() != ".bt")
-    return {semantic_octree::loadTree(file.string()), {}};
+    return {semantic_octree::loadMap(file.string()), {}};
   return {semantic_octree::fromOcTree(*semantic_map::readOctomapFile(file),
                                       semantic_map::CSemanticOctoMap::occupancyOnly()),
           {}};

@@ -1,7 +1,7 @@
 #include "Wish.h"
 
-#include <semantic_octree/TermCatalog.h>
-#include <semantic_octree/WeightsFile.h>
+#include <semantic_abstraction/TermCatalog.h>
+#include <semantic_abstraction/WeightsFile.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
-#include <semantic_octree/AbstractionOptions.h>
-#include <semantic_octree/MapStream.h>
+#include <map_streams/MapStream.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_types/ClassTable.h>
 
 #include <map>

@@ -1,5 +1,6 @@
 #include "Mapper.h"
 
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/CompressedObstacles.h>
 #include <semantic_types/ClassTableFile.h>
 #include <synthetic_world/Classes.h>
@@ -21,7 +22,7 @@ namespace {
 
 SemanticOcTree& prepared(SemanticOcTree& map, const DriveConfig& config, const ClassOrder& order) {
   if (!config.halfLives.empty()) map.setHalfLives(semantic_types::loadClassTable(config.halfLives));
-  map.setAbstraction(abstractionFor(order, config.focus));
+  setAbstraction(map, abstractionFor(order, config.focus));
   return map;
 }
 
@@ -39,6 +40,7 @@ Mapper::Mapper(const DriveConfig& config, const ClassOrder& order, std::unique_p
     : m_config(config),
       m_stored(std::move(map)),
       m_map(prepared(m_stored->tree(), config, order)),
+      m_follower(m_map),
       m_planner(m_map, order, config.planner) {}
 
 /** The robot begins where it has room: there is ground below its footprint and around it, as far as
@@ -114,12 +116,7 @@ void Mapper::focus(const std::vector<semantic_octree::Region>& regions) {
 
 SemanticOcTree Mapper::compressed() { return Abstraction(m_map).compressedMap(); }
 
-/** The planner has taken the changes, if it follows the compressed tree. */
-std::size_t Mapper::numCompressedLeaves() {
-  const Abstraction abstraction(m_map);
-  return isOfTree(m_config.planner.roadmap.kind) ? abstraction.numTakenLeaves()
-                                                 : abstraction.leaves().size();
-}
+std::size_t Mapper::numCompressedLeaves() { return m_follower.skipLeaves(); }
 
 semantic_driving::ObstaclePoints Mapper::obstacles(const mrpt::math::TPose2D& pose, double z,
                                                    const semantic_driving::ObstacleOptions& options,

@@ -1,8 +1,9 @@
 #pragma once
 #include <semantic_planning/planner/SemanticPlanner.h>
 
-#include <semantic_octree/KeyframeMap.h>
-#include <semantic_octree/MapFolder.h>
+#include <map_correction/KeyframeMap.h>
+#include <map_folders/MapFolder.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_slam/Slam.h>
 
 #include "SimulatedSensors.h"
@@ -36,7 +37,7 @@ class Mapper {
   void focus(const std::vector<semantic_octree::Region>& regions);
   /** The compressed tree as a map. */
   semantic_octree::SemanticOcTree compressed();
-  std::size_t numCompressedLeaves();  ///< after insert()
+  std::size_t numCompressedLeaves();
   /** As senseObstacles(), of the full or the compressed tree. */
   semantic_driving::ObstaclePoints obstacles(const mrpt::math::TPose2D& pose, double z,
                                              const semantic_driving::ObstacleOptions& options,
@@ -52,6 +53,7 @@ class Mapper {
   DriveConfig m_config;
   std::unique_ptr<semantic_octree::StoredMap> m_stored;
   semantic_octree::SemanticOcTree& m_map;
+  semantic_octree::LeafFollower m_follower;
   std::unique_ptr<semantic_octree::KeyframeMap> m_keyframes;  ///< if the map may be corrected
   int m_leftOut = 0;  ///< scans since the last that was inserted
   semantic_planning::SemanticPlanner m_planner;

@@ -1,6 +1,6 @@
 #include "MapCells.h"
 
-#include <semantic_octree/SmoothedView.h>
+#include <map_operations/SmoothedView.h>
 
 #include <algorithm>
 #include <array>

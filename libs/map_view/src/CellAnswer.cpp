@@ -1,5 +1,5 @@
 #include <map_view/CellAnswer.h>
-#include <semantic_octree/WeightsFile.h>
+#include <semantic_abstraction/WeightsFile.h>
 
 #include <algorithm>
 

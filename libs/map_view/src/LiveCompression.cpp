@@ -1,5 +1,6 @@
 #include <map_view/CellSource.h>
 #include <map_view/LiveCompression.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ AbstractionWeights addTerms(SemanticOcTree& map, const Solution& solution,
   const std::vector<double> weights = catalog.weights(all, 0);
   for (std::size_t t = 0; t < weights.size(); ++t) options.weights.terms[t].weight = weights[t];
   options.weights.alpha = solution.alpha.value_or(kAlpha);
-  map.setAbstraction(options);
+  setAbstraction(map, options);
   return options.weights;
 }
 
@@ -63,7 +64,7 @@ LiveCompression::LiveCompression(SemanticOcTree& map, const Solution& solution,
       m_name(solution.name),
       m_weights(addTerms(map, solution, space)),
       m_tree(map) {
-  map.dropAbstraction();
+  dropAbstraction(map);
   change(m_weights);
   findAlphas();
 }

@@ -1,4 +1,5 @@
 #include <labeled_cloud/ScanConverter.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <strict_files/ClassicNumbers.h>
 #include <strict_files/Words.h>
@@ -63,11 +64,11 @@ void CSemanticOctoMap::setAbstraction(const TAbstractionOptions& options) {
   TAbstractionOptions kept = options;
   try {
     if (options.isSet())
-      m_tree.setAbstraction(options.forClasses(m_tree.classes()));
+      semantic_octree::setAbstraction(m_tree, options.forClasses(m_tree.classes()));
     else
-      m_tree.dropAbstraction();
+      semantic_octree::dropAbstraction(m_tree);
   } catch (...) {  // of a map in a folder none is left where a tile cannot be read
-    if (!m_tree.hasAbstraction()) m_abstractionOptions = {};
+    if (!semantic_octree::hasAbstraction(m_tree)) m_abstractionOptions = {};
     throw;
   }
   m_abstractionOptions = std::move(kept);
@@ -161,7 +162,7 @@ void CSemanticOctoMap::useFilterOfOptions() {
   SemanticOcTree tree(m_tree.getResolution(), m_tree.classes(), insertionOptions.filter);
   tree.setPruning(m_tree.pruning());
   if (m_abstractionOptions.isSet())
-    tree.setAbstraction(m_abstractionOptions.forClasses(tree.classes()));
+    semantic_octree::setAbstraction(tree, m_abstractionOptions.forClasses(tree.classes()));
   m_tree = std::move(tree);
 }
 

@@ -1,7 +1,7 @@
+#include <map_operations/OctomapConversion.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 #include <semantic_map/ExportOctomap.h>
-#include <semantic_octree/OctomapConversion.h>
 #include <strict_files/ClassicNumbers.h>
 
 #include <iomanip>

@@ -1,6 +1,7 @@
 #include "FolderOfMap.h"
 
-#include <semantic_octree/MapOperations.h>
+#include <map_operations/MapOperations.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <stdexcept>
 
@@ -33,8 +34,8 @@ SemanticOcTree CSemanticOctoMap::wholeTree() const {
   m_folder->tiles.checkFits();
   SemanticOcTree whole = emptyLike(m_tree);
   copyTo(whole, m_tree);
-  if (m_tree.hasAbstraction())
-    whole.setAbstraction(semantic_octree::Abstraction(m_folder->map).options());
+  if (hasAbstraction(m_tree))
+    semantic_octree::setAbstraction(whole, semantic_octree::Abstraction(m_folder->map).options());
   return whole;
 }
 

@@ -1,3 +1,4 @@
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_octree/TreeFile.h>
 
@@ -65,7 +66,8 @@ void CSemanticOctoMap::serializeFrom(CArchive& in, uint8_t version) {
   ArchiveStreambuf buffer(in);
   std::istream stream(&buffer);
   semantic_octree::SemanticOcTree tree = semantic_octree::readTree(stream);
-  if (abstractions.isSet()) tree.setAbstraction(abstractions.forClasses(tree.classes()));
+  if (abstractions.isSet())
+    semantic_octree::setAbstraction(tree, abstractions.forClasses(tree.classes()));
 
   m_tree = std::move(tree);
   m_abstractionOptions = abstractions;

@@ -1,4 +1,5 @@
 #include <mrpt_compat/Drawing.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/SceneFile.h>
 #include <semantic_octree/TreeFile.h>
@@ -67,7 +68,7 @@ mrpt::math::TBoundingBoxf CSemanticOctoMap::knownBox() const {
 void CSemanticOctoMap::getVisualizationInto(mrpt_compat::drawing::CSetOfObjects& o) const {
   if (!genericMapParams.enableSaveAs3DObject || isEmpty()) return;
   const auto lock = reading();
-  if (!renderingOptions.compressed || !m_tree.hasAbstraction()) return draw(m_tree, o);
+  if (!renderingOptions.compressed || !hasAbstraction(m_tree)) return draw(m_tree, o);
   if (m_folder) return draw(m_folder->compressed(), o);
   SemanticOcTree copy(m_tree);
   draw(semantic_octree::Abstraction(copy).compressedMap(), o);

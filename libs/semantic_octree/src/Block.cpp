@@ -1,6 +1,6 @@
-#include <algorithm>
+#include <semantic_octree/store/NodeStore.h>
 
-#include "NodeStore.h"
+#include <algorithm>
 
 namespace semantic_octree {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <semantic_octree/ClassFilter.h>
 
-#include "HitVotes.h"
-#include "NodeStore.h"
+#include <semantic_octree/store/HitVotes.h>
+#include <semantic_octree/store/NodeStore.h>
 
 namespace semantic_octree {
 

@@ -1,4 +1,4 @@
-#include "CheckedStream.h"
+#include <semantic_octree/store/CheckedStream.h>
 
 #include <zlib.h>
 

@@ -49,24 +49,24 @@ ClassRecord withDifferences(const ClassRecord& record, Units occupancy, int numC
 class Sweep {
  public:
   Sweep(const MergeTarget& target, const std::vector<int>& steps)
-      : m_target(target),
-        m_store(target.store),
-        m_arena(target.store.arena(0)),
-        m_gTree(target.gTree ? &target.gTree->worker(0) : nullptr),
-        m_steps(steps) {}
+      : m_nodes(target, 0), m_store(target.store), m_filter(target.filter), m_steps(steps) {}
 
+  void decayAll() {
+    decay(m_store.root(), Cell());
+    m_nodes.tellNoted();
+  }
+
+ private:
   /** \return whether anything changed */
   bool decay(Slot& slot, const Cell& cell) {
     const bool isTile = cell.depth == kTileDepth || (cell.depth < kTileDepth && slot.isLeaf());
     const bool changed = slot.kind == Slot::Kind::Octant  ? decayChildren(slot, cell)
                          : slot.kind == Slot::Kind::Block ? decayBlock(slot, cell)
                                                           : slot.isKnown() && decayLeaf(slot);
-    if (changed && isTile && m_target.touched) m_target.touched->add(cell);
-    return changed;
+    return isTile ? m_nodes.note(cell, changed) : changed;
   }
 
- private:
-  int numClasses() const { return m_target.filter.numClasses(); }
+  int numClasses() const { return m_filter.numClasses(); }
   int stepsOf(Units value, const ClassRecord* record) const {
     const auto id = decaysAs(value, record, numClasses());
     return id ? m_steps[*id] : 0;
@@ -83,7 +83,7 @@ class Sweep {
     if (stepsOf(before.value, before.recordOrNull()) == 0) return false;
     const auto after = decayed(before);
     if (!after) {
-      m_arena.remove(slot);
+      m_nodes.arena.remove(slot);
       return true;
     }
     slot.value = after->value;
@@ -95,19 +95,17 @@ class Sweep {
     Octant& octant = m_store.octant(slot);
     bool changed = false;
     for (int i = 0; i < 8; ++i) changed |= decay(octant.slots[i], cell.child(i));
-    if (changed) finish(slot, cell);
-    return changed;
+    return changed && finish(slot, cell);
   }
 
   bool decayBlock(Slot& slot, const Cell& cell) {
     const Block& block = m_store.block(slot);
     if (!anyDecays(block)) return false;
     const BlockContent after = decayed(m_store.contentOf(block));
-    m_arena.remove(slot);
+    m_nodes.arena.remove(slot);
     if (!after.known) return true;
-    m_arena.createBlock(slot, after);
-    finish(slot, cell);
-    return true;
+    m_nodes.arena.createBlock(slot, after);
+    return finish(slot, cell);
   }
 
   bool anyDecays(const Block& block) const {
@@ -131,25 +129,18 @@ class Sweep {
         if (left && isLeaf) after.setLeafOctant(o, left->value, left->recordOrNull());
         if (left && !isLeaf) after.setVoxel(voxel, left->value, left->recordOrNull());
       }
-      if (m_target.pruning) after.mergeOctant(o);
+      if (m_nodes.pruning) after.mergeOctant(o);
     }
     return after;
   }
 
-  /** Removes, prunes or recomputes an inner node. */
-  void finish(Slot& slot, const Cell& cell) {
-    const Units highest = m_store.highestValueBelow(slot);
-    if (highest == kUnknown) return m_arena.remove(slot);
-    if (m_target.pruning && m_arena.prune(slot)) return;
-    slot.value = highest;
-    // What was told of a block that was replaced is not known: it counts as reshaped.
-    if (m_gTree) m_gTree->recompute(m_store, slot, cell, true);
-  }
+  /** A changed node. What was told of a block that was replaced is not known: it counts as
+   * reshaped. */
+  bool finish(Slot& inner, const Cell& cell) { return m_nodes.finish(inner, cell, true, true); }
 
-  const MergeTarget& m_target;
+  NodeEditor m_nodes;
   NodeStore& m_store;
-  NodeArena& m_arena;
-  GTree::Worker* m_gTree;
+  const ClassFilter<float>& m_filter;
   const std::vector<int>& m_steps;
 };
 
@@ -180,7 +171,7 @@ std::optional<LeafContent> decayed(const LeafContent& leaf, int steps, int numCl
 }
 
 void decay(const MergeTarget& target, const std::vector<int>& steps) {
-  Sweep(target, steps).decay(target.store.root(), Cell());
+  Sweep(target, steps).decayAll();
 }
 
 }  // namespace semantic_octree

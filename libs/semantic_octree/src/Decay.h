@@ -1,10 +1,10 @@
 #pragma once
+#include <semantic_octree/store/LeafContent.h>
+#include <semantic_octree/store/NodeEditor.h>
+
 #include <cstdint>
 #include <optional>
 #include <vector>
-
-#include "LeafContent.h"
-#include "ScanMerger.h"
 
 namespace semantic_octree {
 

@@ -1,4 +1,4 @@
-#include "HitTiles.h"
+#include <semantic_octree/store/HitTiles.h>
 
 namespace semantic_octree {
 

@@ -1,4 +1,4 @@
-#include "HitVotes.h"
+#include <semantic_octree/store/HitVotes.h>
 
 #include <algorithm>
 #include <utility>
@@ -64,6 +64,29 @@ void HitVotes::addSoftLabels(const LabeledCloud& cloud, const std::vector<std::u
   for (std::size_t voxel = 0; voxel < m_softCounts.size(); ++voxel)
     for (std::size_t k = 0; m_softCounts[voxel] > 1 && k < K; ++k)
       m_softSums[voxel * K + k] /= static_cast<float>(m_softCounts[voxel]);
+}
+
+void HitVotes::begin(int numClasses) {
+  m_numClasses = numClasses;
+  m_labels.clear();
+  m_endsOfLabels.clear();
+  m_softSums.clear();
+  m_softCounts.clear();
+}
+
+void HitVotes::add(const ClassVotes* votes, std::size_t numVoted) {
+  for (std::size_t i = 0; i < numVoted; ++i)
+    m_labels.insert(m_labels.end(), votes[i].count, votes[i].id);
+  m_endsOfLabels.push_back(static_cast<std::uint32_t>(m_labels.size()));
+}
+
+void HitVotes::add(const float* softLabel) {
+  m_softCounts.push_back(softLabel != nullptr);
+  if (softLabel)
+    m_softSums.insert(m_softSums.end(), softLabel, softLabel + m_numClasses);
+  else
+    m_softSums.resize(m_softSums.size() + m_numClasses, 0.f);
+  m_endsOfLabels.push_back(0);
 }
 
 std::size_t HitVotes::bytes() const {

@@ -1,4 +1,4 @@
-#include "IndexPool.h"
+#include <semantic_octree/store/IndexPool.h>
 
 #include <algorithm>
 #include <cstring>

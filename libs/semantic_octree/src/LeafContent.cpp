@@ -1,4 +1,4 @@
-#include "LeafContent.h"
+#include <semantic_octree/store/LeafContent.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,24 +39,24 @@ struct Mixture {
     rest += weight * p.rest;
     for (int i = 0; i < belief.count; ++i) named[belief.ids[i]] += weight * (p.named[i] - p.rest);
   }
-  void addBelow(const SemanticOcTree& map, const Node& node, double weight) {
+  void addBelow(const Node& node, double weight) {
     if (node.isLeaf()) {
-      if (node.hasClassRecord()) add(map.belief(node), weight);
+      if (node.hasClassRecord()) add(NodeStore::record(node).belief(), weight);
       return;
     }
     for (int i = 0; i < 8; ++i)
-      if (const Node child = node.child(i)) addBelow(map, child, weight / 8);
+      if (const Node child = node.child(i)) addBelow(child, weight / 8);
   }
 };
 
 }  // namespace
 
-std::vector<double> classShares(const SemanticOcTree& map, const Node& node) {
+std::vector<double> classShares(const Node& node, int numClasses) {
   Mixture mixture;
-  mixture.named.assign(map.numClasses() + 1, 0.0);
-  mixture.addBelow(map, node, 1);
+  mixture.named.assign(numClasses + 1, 0.0);
+  mixture.addBelow(node, 1);
   std::vector<double> shares;
-  for (int k = 1; k <= map.numClasses(); ++k)
+  for (int k = 1; k <= numClasses; ++k)
     shares.push_back(std::max(0.0, mixture.rest + mixture.named[k]));
   const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
   if (sum == 0) return {};
@@ -64,19 +64,19 @@ std::vector<double> classShares(const SemanticOcTree& map, const Node& node) {
   return shares;
 }
 
-LeafContent contentOf(const SemanticOcTree& map, const Node& node) {
+LeafContent contentOf(const Node& node, int numClasses) {
   const float occupancy = node.getLogOdds();
   LeafContent content{toUnits(occupancy), std::nullopt};
   if (node.hasClassRecord()) {
-    content.record = ClassRecord::of(map.belief(node));
+    content.record = NodeStore::record(node);
   } else if (!node.isLeaf()) {
-    const std::vector<double> shares = classShares(map, node);
+    const std::vector<double> shares = classShares(node, numClasses);
     if (shares.empty()) return content;
     std::vector<ClassLogOdds> named;
-    for (int k = 1; k <= map.numClasses(); ++k)
+    for (int k = 1; k <= numClasses; ++k)
       named.push_back(
           {occupancy + std::log(std::max(shares[k - 1], 1e-12)), static_cast<ClassId>(k)});
-    content.record = ClassRecord::of(truncated(std::move(named), 0, map.numClasses()));
+    content.record = ClassRecord::of(truncated(std::move(named), 0, numClasses));
   }
   return content;
 }

@@ -1,4 +1,4 @@
-#include "NodeStore.h"
+#include <semantic_octree/store/NodeStore.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -50,12 +50,13 @@ BlockContent NodeStore::contentOf(const Block& block) const {
   return content;
 }
 
-const ClassRecord& NodeStore::record(const Node& leaf) const {
+const ClassRecord& NodeStore::record(const Node& leaf) {
+  const NodeStore& store = *leaf.m_store;
   const Slot& slot = slotOf(leaf);
-  if (leaf.m_part == Node::kWhole) return record(slot);
+  if (leaf.m_part == Node::kWhole) return store.record(slot);
   const int voxel =
       leaf.isOctant() ? 8 * (leaf.m_part - Node::kFirstOctant) : leaf.m_part - Node::kFirstVoxel;
-  return record(block(slot), voxel);
+  return store.record(store.block(slot), voxel);
 }
 
 void NodeStore::bringAway(const Slot& slot) const {

@@ -1,13 +1,10 @@
 #include <semantic_octree/Keys.h>
-#include <semantic_octree/MapContents.h>
 #include <semantic_octree/SemanticOcTree.h>
+#include <semantic_octree/store/LeafContent.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-#include "LeafContent.h"
-#include "NodeStore.h"
 
 namespace semantic_octree {
 namespace {
@@ -43,7 +40,7 @@ void addExtent(const Node& node, const Cell& cell, VoxelIndex& low, VoxelIndex& 
 }  // namespace
 
 SemanticOcTree::Belief SemanticOcTree::belief(const Node& leaf) const {
-  return leaf.hasClassRecord() ? store().record(leaf).belief()
+  return leaf.hasClassRecord() ? NodeStore::record(leaf).belief()
                                : m_filter.uniform(leaf.getLogOdds());
 }
 
@@ -58,7 +55,7 @@ CellState SemanticOcTree::query(const Node& node) const {
   CellState state;
   state.occupancy = node.getOccupancy();
   state.status = isNodeOccupied(node) ? CellState::Status::Occupied : CellState::Status::Free;
-  const std::vector<double> shares = classShares(*this, node);
+  const std::vector<double> shares = classShares(node, numClasses());
   if (shares.empty()) return state;
   const auto best = std::max_element(shares.begin(), shares.end());
   state.likeliestClass = static_cast<ClassId>(best - shares.begin() + 1);
@@ -164,28 +161,6 @@ void SemanticOcTree::getMetricMax(double& x, double& y, double& z) const {
   x = lowerBorderOf(high.x() + 1, m_resolution);
   y = lowerBorderOf(high.y() + 1, m_resolution);
   z = lowerBorderOf(high.z() + 1, m_resolution);
-}
-
-MapContents contentsOf(const SemanticOcTree& tree) {
-  MapContents contents;
-  contents.bytes = tree.memoryUsage();
-  contents.voxelsOfClass.assign(tree.numClasses() + 1, 0);
-  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
-    ++contents.leaves;
-    const std::uint64_t voxels = std::uint64_t(1) << 3 * (tree.getTreeDepth() - leaf.getDepth());
-    const Eigen::Vector3d center(leaf.getX(), leaf.getY(), leaf.getZ());
-    const Eigen::Vector3d half = Eigen::Vector3d::Constant(leaf.getSize() / 2);
-    contents.box.extend(center - half).extend(center + half);
-    const CellState state = tree.query(*leaf);
-    if (state.status != CellState::Status::Occupied) {
-      contents.freeVoxels += voxels;
-      continue;
-    }
-    contents.occupiedVoxels += voxels;
-    contents.voxelsOfClass[state.likeliestClass] += voxels;
-  }
-  contents.innerNodes = tree.size() - contents.leaves;
-  return contents;
 }
 
 }  // namespace semantic_octree

@@ -1,9 +1,9 @@
 #include "RayMarking.h"
 
+#include <semantic_octree/store/Lanes.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include "Lanes.h"
 
 namespace semantic_octree {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
+#include <semantic_octree/store/ScanGrid.h>
+
 #include <Eigen/Core>
 #include <cstddef>
-
-#include "ScanGrid.h"
 
 namespace semantic_octree {
 

@@ -1,4 +1,4 @@
-#include "Scan.h"
+#include <semantic_octree/store/Scan.h>
 
 #include <algorithm>
 #include <cmath>
@@ -152,6 +152,39 @@ CubeContent Scan::summarizeTile(const VoxelIndex& tile, std::size_t number) {
   if (~allFree) content.flags |= CubeContent::kNotAllFree;
   if (anyFree) m_report.freeVoxels += countBits(free, ScanGrid::kWords);
   return content;
+}
+
+void Scan::begin(const TileBox& box, const LabelReliability& labels, int numClasses,
+                 const InsertionOptions& options) {
+  reset();
+  m_report.labels = labels;
+  m_free.resize(1);
+  // The box that ends one voxel inside of the outer tiles is the one that has no others.
+  m_free[0].cover(box.lowest() * 8 - kKeyOfOrigin + 1, box.highest() * 8 - kKeyOfOrigin + 6,
+                  maxTiles(options));
+  m_hits.cover(m_free[0].numTilesInAll());
+  m_votes.begin(numClasses);
+}
+
+void Scan::addTile(const VoxelIndex& tile, const VoxelBits* free, const VoxelBits* hit) {
+  const VoxelIndex relative = tile - m_free[0].firstTile();
+  std::copy_n(free, ScanGrid::kWords, m_free[0].words(relative));
+  if (std::any_of(hit, hit + ScanGrid::kWords, [](VoxelBits bits) { return bits != 0; }))
+    m_hits.add(m_free[0].numberOf(relative), hit);
+}
+
+void Scan::finish() {
+  m_report.hitVoxels = m_hits.rank();
+  summarize();
+}
+
+std::vector<VoxelIndex> Scan::tiles() const {
+  std::vector<VoxelIndex> tiles;
+  if (!hasVoxels()) return tiles;
+  m_free[0].forEachTile([&](const VoxelIndex& tile, std::size_t number) {
+    if (m_pyramid.tile(number).any()) tiles.push_back(m_free[0].firstTile() + tile);
+  });
+  return tiles;
 }
 
 Scan::Tile Scan::tile(const VoxelIndex& tile) const {

@@ -1,4 +1,4 @@
-#include "ScanBeams.h"
+#include <semantic_octree/store/ScanBeams.h>
 
 #include <strict_files/ClassicNumbers.h>
 

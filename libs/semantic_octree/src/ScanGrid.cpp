@@ -1,10 +1,9 @@
-#include "ScanGrid.h"
+#include <semantic_octree/store/Lanes.h>
+#include <semantic_octree/store/ScanGrid.h>
 
 #include <new>
 #include <stdexcept>
 #include <string>
-
-#include "Lanes.h"
 
 namespace semantic_octree {
 namespace {

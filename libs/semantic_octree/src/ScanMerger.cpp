@@ -24,42 +24,29 @@ void forEachTouchedChild(const Scan& scan, const ScanCube& cube, F f) {
 bool ScanMerger::merge(const ScanCube& cube) {
   const CubeContent content = cube.content(m_scan);
   const Whole whole = updateWhole(*cube.slot, content.allFree(), content.hit());
-  if (whole != Whole::Descend) return note(cube.cell, whole == Whole::Changed);
-  if (cube.level() == 0) return note(cube.cell, mergeTile(cube));
+  if (whole != Whole::Descend) return m_nodes.note(cube.cell, whole == Whole::Changed);
+  if (cube.level() == 0) return m_nodes.note(cube.cell, mergeTile(cube));
   Octant& octant = childrenOf(*cube.slot);
   bool changed = false;
   forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
     changed |= merge({&octant.slots[i], cell});
   });
-  return finish(*cube.slot, cube.cell, changed);
-}
-
-bool ScanMerger::note(const Cell& cube, bool changed) {
-  if (changed && m_target.touched) m_changed.push_back(cube);
-  return changed;
+  return m_nodes.finish(*cube.slot, cube.cell, changed, false);
 }
 
 ScanMerger::Whole ScanMerger::updateWhole(Slot& slot, bool allFree, bool anyHit) {
-  if (anyHit || !m_target.pruning || slot.isInner()) return Whole::Descend;
+  if (anyHit || !m_nodes.pruning || slot.isInner()) return Whole::Descend;
   if (slot.kind == Slot::Kind::Leaf && slot.value <= m_voxels.lowest())
     return Whole::Unchanged;  // free for certain, and seen free once more
   if (!allFree) return Whole::Descend;
   const bool isNew = !slot.isKnown();
-  if (isNew) m_arena.createLeaf(slot, 0);
+  if (isNew) m_nodes.arena.createLeaf(slot, 0);
   return m_voxels.miss(slot) || isNew ? Whole::Changed : Whole::Unchanged;
 }
 
 Octant& ScanMerger::childrenOf(Slot& slot) {
-  if (slot.isInner()) return m_store.octant(slot);
-  return slot.isKnown() ? m_arena.expandToOctant(slot) : m_arena.createOctant(slot);
-}
-
-bool ScanMerger::finish(Slot& slot, const Cell& cell, bool changed, bool reshaped) {
-  if (m_target.pruning && m_arena.prune(slot)) return changed;
-  if (!changed) return false;
-  slot.value = m_store.highestValueBelow(slot);
-  if (m_gTree) m_gTree->recompute(m_store, slot, cell, reshaped);
-  return true;
+  if (slot.isInner()) return m_nodes.store.octant(slot);
+  return slot.isKnown() ? m_nodes.arena.expandToOctant(slot) : m_nodes.arena.createOctant(slot);
 }
 
 bool ScanMerger::mergeTile(const ScanCube& cube) {
@@ -69,12 +56,12 @@ bool ScanMerger::mergeTile(const ScanCube& cube) {
   };
   Octant& octant = childrenOf(*cube.slot);
   for (int i = 0; i < 8; ++i)
-    if (blockScan(i).touched()) m_store.prefetchInner(octant.slots[i]);
+    if (blockScan(i).touched()) m_nodes.store.prefetchInner(octant.slots[i]);
   bool changed = false;
   for (int i = 0; i < 8; ++i)
     if (blockScan(i).touched())
       changed |= mergeBlock({&octant.slots[i], cube.cell.child(i)}, blockScan(i));
-  return finish(*cube.slot, cube.cell, changed);
+  return m_nodes.finish(*cube.slot, cube.cell, changed, false);
 }
 
 bool ScanMerger::mergeBlock(const ScanCube& cube, const BlockScan& scan) {
@@ -82,11 +69,11 @@ bool ScanMerger::mergeBlock(const ScanCube& cube, const BlockScan& scan) {
   const Whole whole = updateWhole(slot, !~scan.free, scan.hit);
   if (whole != Whole::Descend) return whole == Whole::Changed;
   const bool wasInner = slot.isInner();
-  Block& block = wasInner         ? m_store.block(slot)
-                 : slot.isKnown() ? m_arena.expandToBlock(slot)
-                                  : m_arena.createBlock(slot);
+  Block& block = wasInner         ? m_nodes.store.block(slot)
+                 : slot.isKnown() ? m_nodes.arena.expandToBlock(slot)
+                                  : m_nodes.arena.createBlock(slot);
   const auto result = m_voxels.update(block, scan);
-  return finish(slot, cube.cell, result.changed || !wasInner, result.reshaped || !wasInner);
+  return m_nodes.finish(slot, cube.cell, result.changed || !wasInner, result.reshaped || !wasInner);
 }
 
 void ScanMerger::collect(const ScanCube& cube, std::vector<ScanCube>& parts) {
@@ -100,12 +87,12 @@ void ScanMerger::collect(const ScanCube& cube, std::vector<ScanCube>& parts) {
 bool ScanMerger::finishAbove(const ScanCube& cube, const std::vector<char>& changed,
                              std::size_t& next) {
   if (cube.cell.depth == kSharedDepth) return changed[next++];
-  Octant& octant = m_store.octant(*cube.slot);
+  Octant& octant = m_nodes.store.octant(*cube.slot);
   bool anyChanged = false;
   forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
     anyChanged |= finishAbove({&octant.slots[i], cell}, changed, next);
   });
-  return finish(*cube.slot, cube.cell, anyChanged);
+  return m_nodes.finish(*cube.slot, cube.cell, anyChanged, false);
 }
 
 void mergeScan(const MergeTarget& target, const Scan& scan, int threads) {
@@ -123,8 +110,7 @@ void mergeScan(const MergeTarget& target, const Scan& scan, int threads) {
   };
   inParallel(threads, [&](int i) { work(mergers[i]); });
 
-  for (const ScanMerger& merger : mergers)
-    for (const Cell& cube : merger.m_changed) target.touched->add(cube);
+  for (ScanMerger& merger : mergers) merger.m_nodes.tellNoted();
   std::size_t next = 0;
   mergers[0].finishAbove(whole, changed, next);
 }

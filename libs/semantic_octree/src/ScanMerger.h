@@ -1,27 +1,13 @@
 #pragma once
 #include <semantic_octree/ClassFilter.h>
+#include <semantic_octree/store/NodeEditor.h>
+#include <semantic_octree/store/Scan.h>
 
 #include <vector>
 
 #include "BlockUpdate.h"
-#include "GTree.h"
-#include "NodeStore.h"
-#include "Scan.h"
-#include "TouchedTiles.h"
 
 namespace semantic_octree {
-
-/** What a scan is merged into. */
-struct MergeTarget {
-  NodeStore& store;
-  const ClassFilter<float>& filter;
-  /** Keeps inner nodes' bookkeeping up to date; null: there is none. */
-  GTree* gTree;
-  /** Is told where something changed; null: nobody wants to know. */
-  TouchedTiles* touched;
-  /** Children that agree are merged; off: every known leaf is a voxel. */
-  bool pruning;
-};
 
 /** A cube of the scan (see ScanPyramid) and the tree's node for it. */
 struct ScanCube {
@@ -44,12 +30,9 @@ class ScanMerger {
    * works in */
   ScanMerger(const MergeTarget& target, const ClassFilter<float>& filter, const Scan& scan,
              int thread)
-      : m_target(target),
-        m_store(target.store),
+      : m_nodes(target, thread),
         m_scan(scan),
-        m_arena(target.store.arena(thread)),
-        m_voxels(target.store, m_arena, filter, target.pruning),
-        m_gTree(target.gTree ? &target.gTree->worker(thread) : nullptr) {}
+        m_voxels(target.store, m_nodes.arena, filter, target.pruning) {}
 
   /** \return whether anything changed */
   bool merge(const ScanCube& cube);
@@ -58,10 +41,6 @@ class ScanMerger {
   enum class Whole { Unchanged, Changed, Descend };
   Whole updateWhole(Slot& slot, bool allFree, bool anyHit);
   Octant& childrenOf(Slot& slot);
-  /** Prunes or recomputes an inner node. \return changed */
-  bool finish(Slot& slot, const Cell& cell, bool changed, bool reshaped = false);
-  /** Takes down that a cube changed. \return changed */
-  bool note(const Cell& cube, bool changed);
 
   bool mergeTile(const ScanCube& cube);
   bool mergeBlock(const ScanCube& cube, const BlockScan& scan);
@@ -70,13 +49,9 @@ class ScanMerger {
   void collect(const ScanCube& cube, std::vector<ScanCube>& parts);
   bool finishAbove(const ScanCube& cube, const std::vector<char>& changed, std::size_t& next);
 
-  const MergeTarget& m_target;
-  NodeStore& m_store;
+  NodeEditor m_nodes;
   const Scan& m_scan;
-  NodeArena& m_arena;
   BlockUpdate m_voxels;
-  GTree::Worker* m_gTree;
-  std::vector<Cell> m_changed;
 };
 
 /** Merges a scan into the whole tree. The cubes of one level are shared among the threads, then the

@@ -1,4 +1,4 @@
-#include "ScanPyramid.h"
+#include <semantic_octree/store/ScanPyramid.h>
 
 namespace semantic_octree {
 

@@ -1,17 +1,12 @@
 #include <semantic_octree/SemanticOcTree.h>
+#include <semantic_octree/store/MapAccess.h>
+#include <semantic_octree/store/Scan.h>
+#include <semantic_octree/store/TreeComparison.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-#include "CompressedTree.h"
-#include "Decay.h"
-#include "NodeStore.h"
-#include "Scan.h"
-#include "ScanMerger.h"
-#include "TileReplacement.h"
-#include "TouchedTiles.h"
-#include "TreeComparison.h"
+#include <typeinfo>
 
 namespace semantic_octree {
 namespace {
@@ -23,11 +18,10 @@ double positive(double meters) {
   return meters;
 }
 
-/** Adds the tiles below a node. */
-void addTiles(const Node& node, const Cell& cell, TouchedTiles& tiles) {
-  if (node.isLeaf() || cell.depth == TouchedTiles::kDepth) return tiles.add(cell);
-  for (int i = 0; i < 8; ++i)
-    if (const Node child = node.child(i)) addTiles(child, cell.child(i), tiles);
+/** \return an observer of both, whose bookkeeping can be compared; null: there is none */
+const NodeObserver* observerOf(const SemanticOcTree& a, const SemanticOcTree& b) {
+  const NodeObserver *x = MapAccess::observer(a), *y = MapAccess::observer(b);
+  return x && y && typeid(*x) == typeid(*y) && x->stateBytes() == y->stateBytes() ? x : nullptr;
 }
 
 }  // namespace
@@ -43,13 +37,10 @@ SemanticOcTree::~SemanticOcTree() = default;
 
 SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
     : SemanticOcTree(o.m_resolution, o.m_classes, o.m_parameters) {
-  o.checkNotInTiles();
+  MapAccess::checkNotInTiles(o);
   m_pruning = o.m_pruning;
   m_clock = o.m_clock;
-  if (o.hasAbstraction()) {
-    m_gTree = std::make_unique<GTree>(o.m_gTree->options(), m_filter, m_resolution);
-    m_leafChanges = std::make_unique<LeafChanges>();
-  }
+  if (o.m_observer) m_observer = o.m_observer->clone();
   m_store = std::make_unique<NodeStore>(o.store(), o.store().stateBytes());
 }
 
@@ -72,83 +63,32 @@ void SemanticOcTree::swap(SemanticOcTree& o) {
   std::swap(m_pruning, o.m_pruning);
   std::swap(m_clock, o.m_clock);
   std::swap(m_store, o.m_store);
-  std::swap(m_gTree, o.m_gTree);
-  std::swap(m_leafChanges, o.m_leafChanges);
-  std::swap(m_touched, o.m_touched);
+  std::swap(m_observer, o.m_observer);
   std::swap(m_scan, o.m_scan);
+  MapAccess::tellAll(*this);
+  MapAccess::tellAll(o);
 }
 
 bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
   if (m_resolution != o.m_resolution || m_classes != o.m_classes ||
       !(m_parameters == o.m_parameters) || m_pruning != o.m_pruning || m_clock != o.m_clock)
     return false;
-  const bool sameRows = m_gTree && o.m_gTree && m_gTree->stateBytes() == o.m_gTree->stateBytes();
-  return TreeComparison(store(), o.store(), sameRows).same(store().root(), o.store().root());
-}
-
-void SemanticOcTree::checkNotInTiles() const {
-  if (m_store && m_store->tiles())
-    throw std::logic_error(
-        "a map in a folder of tiles cannot be copied, cleared, corrected or have half-lives");
+  return TreeComparison(store(), o.store(), observerOf(*this, o))
+      .same(store().root(), o.store().root());
 }
 
 bool SemanticOcTree::isReadOnly() const { return store().tiles() && !store().tiles()->mayChange(); }
 
 void SemanticOcTree::clear() {
-  checkNotInTiles();
-  m_store = std::make_unique<NodeStore>(m_gTree ? m_gTree->stateBytes() : 0);
+  MapAccess::checkNotInTiles(*this);
+  MapAccess::setStore(*this,
+                      std::make_unique<NodeStore>(m_observer ? m_observer->stateBytes() : 0));
   m_clock = 0;
-  if (m_touched) m_touched->take();
 }
-
-std::vector<octomap::OcTreeKey> SemanticOcTree::takeTouchedTiles() {
-  if (!m_touched) {
-    auto touched = std::make_unique<TouchedTiles>();
-    if (!empty()) addTiles(root(), Cell(), *touched);
-    m_touched = std::move(touched);
-  }
-  return m_touched->take();
-}
-
-void SemanticOcTree::forgetTouchedTiles() { m_touched = std::make_unique<TouchedTiles>(); }
 
 void SemanticOcTree::setPruning(bool on) {
   if (!empty()) throw std::logic_error("pruning can be switched in an empty tree only");
   m_pruning = on;
-}
-
-void SemanticOcTree::setAbstraction(const AbstractionOptions& options) {
-  options.validate(numClasses());
-  auto gTree = std::make_unique<GTree>(options, m_filter, m_resolution);
-  auto leafChanges = std::make_unique<LeafChanges>();
-  auto newStore = storeFor(gTree->stateBytes());
-  if (!store().tiles()) gTree->worker(0).recomputeAll(*newStore, newStore->root(), Cell());
-  std::swap(m_gTree, gTree);
-  std::swap(m_leafChanges, leafChanges);
-  m_store = std::move(newStore);  // first, so that tiles come in where the old nodes were
-  if (store().tiles()) computeTileByTile();
-}
-
-std::unique_ptr<NodeStore> SemanticOcTree::storeFor(std::size_t stateBytes) const {
-  if (!store().tiles()) return std::make_unique<NodeStore>(store(), stateBytes);
-  store().tiles()->sendAway();
-  return store().frame(stateBytes);
-}
-
-void SemanticOcTree::computeTileByTile() {
-  try {
-    m_gTree->worker(0).recomputeAll(store(), store().root(), Cell());
-  } catch (...) {  // tiles came and went meanwhile: what was cannot be had back
-    m_gTree = nullptr;
-    m_leafChanges = nullptr;
-    throw;
-  }
-}
-
-void SemanticOcTree::dropAbstraction() {
-  m_store = storeFor(0);
-  m_gTree = nullptr;
-  m_leafChanges = nullptr;
 }
 
 NodeStore& SemanticOcTree::store() const {
@@ -166,50 +106,13 @@ std::size_t SemanticOcTree::getNumLeafNodes() const {
 
 std::size_t SemanticOcTree::memoryUsage() const { return store().bytes(); }
 
-template <typename F>
-void SemanticOcTree::change(const F& f) {
-  const MergeTarget target{store(), m_filter, m_gTree.get(), m_touched.get(), m_pruning};
-  try {
-    f(target);
-  } catch (...) {
-    m_store = nullptr;  // what is half changed cannot be told from what was there
-    throw;
-  }
-}
-
-void SemanticOcTree::merge(const Scan& scan, int threads) {
-  if (!scan.hasVoxels()) return;
-  if (store().tiles()) store().tiles()->prepare(scan);
-  change([&](const MergeTarget& target) { mergeScan(target, scan, threads); });
-}
-
-std::int64_t SemanticOcTree::timeIn(double seconds) const {
-  if (!(seconds >= 0 && seconds <= 1e9))
-    throw std::invalid_argument("a map ages by 0 to 1000000000 s, not by " +
-                                std::to_string(seconds) + " s");
-  if (!m_classes.hasHalfLives()) return m_clock;
-  const std::int64_t time = m_clock + std::llround(seconds * 1e9);
-  if (time > kOldestMap) throw std::out_of_range("a map ages by no more than 200 years in all");
-  return time;
-}
-
 void SemanticOcTree::age(double seconds) {
   store();
-  ageUntil(timeIn(seconds));
-}
-
-void SemanticOcTree::ageUntil(std::int64_t time) {
-  if (time == m_clock) return;
-  std::vector<int> steps;
-  for (int id = 0; id <= numClasses(); ++id)
-    steps.push_back(decaySteps(m_classes.halfLife(static_cast<ClassId>(id)), m_clock, time));
-  if (!empty() && std::any_of(steps.begin(), steps.end(), [](int n) { return n > 0; }))
-    change([&](const MergeTarget& target) { decay(target, steps); });
-  m_clock = time;
+  MapAccess::ageUntil(*this, MapAccess::timeIn(*this, seconds));
 }
 
 void SemanticOcTree::setHalfLives(const ClassTable& table) {
-  checkNotInTiles();
+  MapAccess::checkNotInTiles(*this);
   for (int i = 1; i <= numClasses(); ++i) {
     const auto id = static_cast<ClassId>(i);
     if (const auto same = table.find(m_classes.name(id)))
@@ -218,10 +121,8 @@ void SemanticOcTree::setHalfLives(const ClassTable& table) {
   m_classes.setHalfLife(kNoClass, table.halfLife(kNoClass));
 }
 
-void SemanticOcTree::replace(const std::vector<std::uint64_t>& tiles,
-                             const SemanticOcTree& source) {
-  checkNotInTiles();
-  change([&](const MergeTarget& target) { replaceTiles(target, tiles, source.store()); });
+SemanticOcTree emptyLike(const SemanticOcTree& map) {
+  return MapAccess::emptyWith(map, map.getResolution());
 }
 
 InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
@@ -229,12 +130,12 @@ InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
                                        const InsertionOptions& options, double secondsSince) {
   options.validate();
   store();
-  const std::int64_t time = timeIn(secondsSince);
+  const std::int64_t time = MapAccess::timeIn(*this, secondsSince);
   if (!m_scan) m_scan = std::make_unique<Scan>();
   try {
     m_scan->set(cloud, T_map_sensor, m_resolution, m_filter, options);
-    ageUntil(time);
-    merge(*m_scan, options.threads);
+    MapAccess::ageUntil(*this, time);
+    MapAccess::merge(*this, *m_scan, options.threads);
   } catch (...) {
     m_scan = nullptr;  // half-filled buffers must not leak into the next scan
     throw;

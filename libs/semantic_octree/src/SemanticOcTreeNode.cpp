@@ -1,9 +1,8 @@
 #include <semantic_octree/SemanticOcTreeNode.h>
+#include <semantic_octree/store/NodeStore.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "NodeStore.h"
 
 namespace semantic_octree {
 

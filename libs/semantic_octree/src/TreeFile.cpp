@@ -1,4 +1,5 @@
 #include <semantic_octree/TreeFile.h>
+#include <semantic_octree/store/TreeFormat.h>
 #include <strict_files/StagedFile.h>
 
 #include <cerrno>
@@ -6,8 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <streambuf>
-
-#include "TreeFormat.h"
 
 namespace semantic_octree {
 namespace {
@@ -135,6 +134,8 @@ void saveTree(const SemanticOcTree& tree, const std::string& path) {
 std::uint32_t saveTreeFile(const SemanticOcTree& tree, const std::string& path) {
   return save(path, StagedFile::Disk::Later, [&](std::ostream& out) { return write(out, tree); });
 }
+
+SemanticOcTree loadTree(const std::string& path) { return loadTreeFile(path); }
 
 SemanticOcTree loadTreeFile(const std::string& path, std::uint32_t* checksum) {
   return load(path, [&](std::istream& in) {

@@ -1,4 +1,5 @@
-#include "TreeFormat.h"
+#include <semantic_octree/store/MapAccess.h>
+#include <semantic_octree/store/TreeFormat.h>
 
 #include <semantic_octree/Keys.h>
 
@@ -6,8 +7,6 @@
 #include <cmath>
 
 #include "Decay.h"
-#include "NodeStore.h"
-#include "TreeBuilder.h"
 
 namespace semantic_octree {
 
@@ -18,9 +17,11 @@ SemanticOcTree TreeReader::getHeader() {
   const auto resolution = m_in.get<double>();
   const bool pruning = getUpTo(1, "pruning");
   const FilterParameters parameters = getParameters();
-  SemanticOcTree tree(resolution, getClasses(), parameters);
+  ClassTable classes = getClasses();
+  const std::int64_t clock = m_version > kVersionWithoutTime ? getTime(classes) : 0;
+  SemanticOcTree tree(resolution, std::move(classes), parameters);
   tree.setPruning(pruning);
-  if (m_version > kVersionWithoutTime) getTime(tree);
+  MapAccess::setClock(tree, clock);
   return tree;
 }
 
@@ -41,7 +42,7 @@ void TreeReader::readTile(const SemanticOcTree& tree, NodeArena& arena, Octant& 
 }
 
 void TreeReader::begin(const SemanticOcTree& tree, NodeArena& arena) {
-  m_store = &tree.store();
+  m_store = &MapAccess::store(tree);
   m_arena = &arena;
   m_numClasses = tree.numClasses();
 }
@@ -95,18 +96,18 @@ ClassTable TreeReader::getClasses() {
   return classes;
 }
 
-void TreeReader::getTime(SemanticOcTree& tree) {
-  for (int id = 0; id <= tree.numClasses(); ++id)
+std::int64_t TreeReader::getTime(ClassTable& classes) {
+  for (int id = 0; id <= classes.size(); ++id)
     if (const auto halfLife = m_in.get<double>(); halfLife != 0)
-      tree.m_classes.setHalfLife(static_cast<ClassId>(id), halfLife);
-  tree.m_clock = m_in.get<std::int64_t>();
-  const std::int64_t latest = tree.m_classes.hasHalfLives() ? kOldestMap : 0;
-  if (tree.m_clock < 0 || tree.m_clock > latest)
+      classes.setHalfLife(static_cast<ClassId>(id), halfLife);
+  const auto clock = m_in.get<std::int64_t>();
+  if (clock < 0 || clock > (classes.hasHalfLives() ? kOldestMap : 0))
     throw std::runtime_error("altered: a clock that cannot be");
+  return clock;
 }
 
 void TreeReader::getNodes(SemanticOcTree& tree, std::uint64_t expectedNodes) {
-  begin(tree, tree.store().arena(0));
+  begin(tree, MapAccess::store(tree).arena(0));
   getNode(m_store->root(), static_cast<NodeKind>(getUpTo(3, "node kind")), 0);
   checkNodes(m_store->numNodes(), expectedNodes);
 }

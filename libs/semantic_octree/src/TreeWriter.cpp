@@ -1,12 +1,12 @@
-#include "NodeStore.h"
-#include "TreeFormat.h"
+#include <semantic_octree/store/MapAccess.h>
+#include <semantic_octree/store/TreeFormat.h>
 
 namespace semantic_octree {
 
 using semantic_types::Color;
 
 TreeWriter::TreeWriter(std::ostream& out, const SemanticOcTree& tree)
-    : m_out(out), m_tree(tree), m_store(tree.store()) {}
+    : m_out(out), m_tree(tree), m_store(MapAccess::store(tree)) {}
 
 void TreeWriter::putHeader() {
   m_out.put(m_tree.getResolution());
@@ -64,7 +64,7 @@ void TreeWriter::putTime() {
     const double halfLife = m_tree.classes().halfLife(static_cast<ClassId>(id));
     m_out.put(halfLife == semantic_types::kForever ? 0.0 : halfLife);
   }
-  m_out.put(m_tree.classes().hasHalfLives() ? m_tree.m_clock : 0);
+  m_out.put(m_tree.classes().hasHalfLives() ? MapAccess::clock(m_tree) : 0);
 }
 
 NodeKind TreeWriter::kindOf(const Slot& slot) {

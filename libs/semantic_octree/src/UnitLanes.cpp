@@ -1,6 +1,6 @@
 #include "UnitLanes.h"
 
-#include "Lanes.h"
+#include <semantic_octree/store/Lanes.h>
 
 namespace semantic_octree {
 namespace {
@@ -22,8 +22,8 @@ MSO_VECTORIZED void missWhere(Units* values, std::uint64_t where, const UnitIncr
   for (int i = 0; i < kLanesOfUnits; ++i) bitOfLane[i] = static_cast<Units>(1u << i);
   // Limits are kept before adding, so that nothing overflows.
   const UnitVector low = ofAll(nearest(by.lowest - by.increment)),
-                   high = ofAll(nearest(by.highest - by.increment)),
-                   unknown = ofAll(kUnknown), zero = {};
+                   high = ofAll(nearest(by.highest - by.increment)), unknown = ofAll(kUnknown),
+                   zero = {};
   for (int i = 0; i < 64; i += kLanesOfUnits, where >>= kLanesOfUnits) {
     UnitVector old;
     std::memcpy(&old, values + i, sizeof old);

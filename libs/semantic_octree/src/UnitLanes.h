@@ -1,5 +1,5 @@
 #pragma once
-#include "ClassRecord.h"
+#include <semantic_octree/store/ClassRecord.h>
 
 namespace semantic_octree {
 

@@ -1,6 +1,6 @@
 #pragma once
 #include <map_view/ViewCell.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <cstdint>
 #include <optional>

@@ -1,6 +1,6 @@
 #pragma once
 #include <map_view/InformationTree.h>
-#include <semantic_octree/TermCatalog.h>
+#include <semantic_abstraction/TermCatalog.h>
 
 #include <optional>
 #include <string>

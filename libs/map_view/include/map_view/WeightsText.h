@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/WeightsFile.h>
+#include <semantic_abstraction/WeightsFile.h>
 
 #include <string>
 

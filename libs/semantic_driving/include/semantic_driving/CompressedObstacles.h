@@ -1,6 +1,6 @@
 #pragma once
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/ObstacleSensing.h>
-#include <semantic_octree/Abstraction.h>
 
 namespace semantic_driving {
 

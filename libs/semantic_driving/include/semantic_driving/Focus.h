@@ -1,7 +1,7 @@
 #pragma once
 #include <colored_graph/ClassOrder.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_driving/DrivePath.h>
-#include <semantic_octree/AbstractionOptions.h>
 
 namespace semantic_driving {
 

@@ -5,9 +5,9 @@
 #include <mrpt/math/TBoundingBox.h>
 #include <mrpt/system/COutputLogger.h>
 #include <mrpt_compat/Maps.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/MapOptions.h>
 #include <semantic_map/ObservationClock.h>
-#include <semantic_octree/Abstraction.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <memory>

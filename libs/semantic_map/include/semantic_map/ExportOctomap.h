@@ -4,7 +4,7 @@
 #include <iosfwd>
 
 /** \file
- * The map in OctoMap's file formats, see semantic_octree/OctomapConversion.h. */
+ * The map in OctoMap's file formats, see map_operations/OctomapConversion.h. */
 
 namespace semantic_map {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/SmoothedView.h>
+#include <map_operations/SmoothedView.h>
 
 #include <iosfwd>
 

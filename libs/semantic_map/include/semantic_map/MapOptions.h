@@ -1,11 +1,11 @@
 #pragma once
 #include <labeled_cloud/ScanConverter.h>
+#include <map_folders/MapFolder.h>
 #include <mrpt/config/CLoadableOptions.h>
 #include <mrpt/serialization/CArchive.h>
+#include <semantic_abstraction/WeightsFile.h>
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/InsertionOptions.h>
-#include <semantic_octree/MapFolder.h>
-#include <semantic_octree/WeightsFile.h>
 #include <semantic_types/ClassTable.h>
 
 #include <limits>

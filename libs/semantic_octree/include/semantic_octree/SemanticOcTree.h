@@ -1,6 +1,5 @@
 #pragma once
 #include <octomap/octomap_types.h>
-#include <semantic_octree/AbstractionOptions.h>
 #include <semantic_octree/ClassFilter.h>
 #include <semantic_octree/InsertionOptions.h>
 #include <semantic_octree/Keys.h>
@@ -20,11 +19,11 @@ namespace semantic_octree {
 using semantic_types::ClassTable;
 using semantic_types::LabeledCloud;
 
-class GTree;
-class LeafChanges;
+class MapFollower;
+class NodeObserver;
 class NodeStore;
 class Scan;
-class TouchedTiles;
+class TileLog;
 
 /** What the map knows about a place. */
 struct CellState {
@@ -178,7 +177,7 @@ class SemanticOcTree {
    * occupancy and the differences between its classes' log-odds halve within the half-life of its
    * likeliest class, in eight steps; with less than 0.1 left of its occupancy, it is unknown
    * (doc/how-it-works/decay.md). Many short times do what a long one does, to the last bit. Without
-   * half-lives it does nothing. What takeTouchedTiles() and Abstraction tell follows.
+   * half-lives it does nothing.
    * \throw std::invalid_argument not 0 to 1e9 seconds \throw std::out_of_range more than 200 years
    * in all \throw std::bad_alloc no memory; look at isBroken(). */
   void age(double seconds);
@@ -189,64 +188,36 @@ class SemanticOcTree {
   void setHalfLives(const ClassTable& table);
   /** Memory ran out during an insertion. */
   bool isBroken() const { return m_store == nullptr; }
-  /** Removes all nodes; the clock begins anew. Tiles that were touched before are not reported any
-   * more. */
+  /** Removes all nodes; the clock begins anew. */
   void clear();
-  /** Lowest keys of the tiles of 8 x 8 x 8 voxels in which insert() changed something since the
-   * last call, sorted; keys are multiples of 8. The first call reports all tiles of the map that
-   * are known in part, and starts the record. */
-  std::vector<octomap::OcTreeKey> takeTouchedTiles();
-  /** Starts the record, or starts it anew: what was touched so far is not reported any more. */
-  void forgetTouchedTiles();
+  /** A new reader of what changes: which tiles. (Of leaves of the compressed tree: LeafFollower.)
+   */
+  MapFollower follow();
   /** Whether children that agree are merged (default). Only an empty tree can be changed.
    * \throw std::logic_error the tree is not empty. */
   void setPruning(bool on);
   bool pruning() const { return m_pruning; }
 
-  /** Keeps the class mixtures and G-values of inner nodes from now on: insert() updates them in the
-   * same pass. See Abstraction for what can be had from them.
-   * \throw std::invalid_argument bad options. */
-  void setAbstraction(const AbstractionOptions& options);
-  /** Keeps them no longer. */
-  void dropAbstraction();
-  bool hasAbstraction() const { return m_gTree != nullptr; }
-
  private:
-  friend class Abstraction;
-  friend class KeyframeMap;
-  friend class MapFolder;
-  friend class TilesOnDisk;
-  friend class TreeBuilder;
-  friend class TreeReader;
-  friend class TreeWriter;
+  friend class MapAccess;
   /** \throw std::logic_error the map is broken. */
   NodeStore& store() const;
-  /** \throw std::logic_error the map is in a folder of tiles. */
-  void checkNotInTiles() const;
-  void computeTileByTile();
-  /** The same nodes with room for this bookkeeping; those of tiles are away then. */
-  std::unique_ptr<NodeStore> storeFor(std::size_t stateBytes) const;
-  /** Whoever changes nodes does it in here: if it fails, the map is broken. */
-  template <typename F>
-  void change(const F& f);
-  void merge(const Scan& scan, int threads);
-  /** \param time of the map's clock, ns; not before now */
-  void ageUntil(std::int64_t time);
-  /** What the clock will say after some seconds, ns. \throw see age(). */
-  std::int64_t timeIn(double seconds) const;
-  /** Makes tiles (see TileCodes) what they are in another map. */
-  void replace(const std::vector<std::uint64_t>& tiles, const SemanticOcTree& source);
+
   double m_resolution;
   ClassTable m_classes;
   FilterParameters m_parameters;
   ClassFilter<float> m_filter;
   bool m_pruning = true;
-  std::int64_t m_clock = 0;            ///< ns; stands still while nothing has a half-life
-  std::unique_ptr<NodeStore> m_store;  ///< null: the map is broken
-  std::unique_ptr<GTree> m_gTree;      ///< null: no abstraction is kept
-  std::unique_ptr<LeafChanges> m_leafChanges;
-  std::unique_ptr<TouchedTiles> m_touched;  ///< null: nobody asks for them
-  std::unique_ptr<Scan> m_scan;             ///< buffers of the last insertion, if there was one
+  std::int64_t m_clock = 0;                  ///< ns; stands still while nothing has a half-life
+  std::unique_ptr<NodeStore> m_store;        ///< null: the map is broken
+  std::unique_ptr<NodeObserver> m_observer;  ///< null: nothing is kept of inner nodes
+  std::unique_ptr<Scan> m_scan;              ///< buffers of the last insertion, if there was one
+  std::shared_ptr<SemanticOcTree*> m_self;   ///< readers see that it is gone; null: there was none
+  std::weak_ptr<TileLog> m_tileLog;          ///< readers own what they read
 };
+
+/** An empty map of the same kind and time: resolution, classes, filter parameters, pruning, clock.
+ */
+SemanticOcTree emptyLike(const SemanticOcTree& map);
 
 }  // namespace semantic_octree

@@ -10,7 +10,7 @@ namespace semantic_octree {
  * fails. \throw std::runtime_error naming the file and what is wrong. */
 void saveTree(const SemanticOcTree& tree, const std::string& path);
 
-/** Loads a map, all of it or nothing; of a folder of tiles (see MapFolder), too.
+/** Loads a map, all of it or nothing.
  * \throw std::runtime_error naming the file and what is wrong: missing, no map, of a newer version,
  * truncated, altered (each byte is covered by a checksum). */
 SemanticOcTree loadTree(const std::string& path);

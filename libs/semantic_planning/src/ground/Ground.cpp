@@ -118,14 +118,17 @@ Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions&
 Ground::~Ground() = default;
 Ground::Ground(Ground&&) noexcept = default;
 
-std::vector<Column> Ground::update(const std::vector<octomap::OcTreeKey>& touchedTiles) {
-  if (m_isLimited && !touchedTiles.empty())
+std::vector<Column> Ground::update(const semantic_octree::TileChange& change) {
+  if (m_isLimited && (change.all || !change.tiles.empty()))
     throw std::logic_error("Ground: a part of a map's ground does not follow changes");
-  std::vector<Column> tiles;
-  for (const octomap::OcTreeKey& key : touchedTiles) tiles.push_back(tileOf({key[0], key[1]}));
-  std::sort(tiles.begin(), tiles.end());
-  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
-  return m_tiles->update(tiles);
+  return m_tiles->update(touchedBy(change));
+}
+
+std::vector<Column> Ground::touchedBy(const semantic_octree::TileChange& change) const {
+  std::vector<Column> tiles = change.all ? m_tiles->scanned() : std::vector<Column>();
+  for (const octomap::OcTreeKey& key : change.tiles) tiles.push_back(tileOf({key[0], key[1]}));
+  sortOut(tiles);
+  return tiles;
 }
 
 SurfaceRange Ground::surfaces(Column c) const { return surfacesAt(m_tiles->surfaces(), c); }

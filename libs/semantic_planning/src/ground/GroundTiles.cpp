@@ -86,6 +86,12 @@ std::vector<Column> GroundTiles::update(const std::vector<Column>& tiles) {
   return tilesOf(changed);
 }
 
+std::vector<Column> GroundTiles::scanned() const {
+  std::vector<Column> tiles;
+  m_columns.forEach([&](Column tile, const ColumnTile&) { tiles.push_back(tile); });
+  return tiles;
+}
+
 void GroundTiles::forgetWhatChangesNeed() {
   m_columns = {};
   m_measured = {};

@@ -35,6 +35,9 @@ class GroundTiles {
    * before are made square by square and forgotten. */
   void readWithin(const std::vector<Column>& tiles);
 
+  /** Tiles in which the map has been read, and has something. */
+  std::vector<Column> scanned() const;
+
   const GroundShape& shape() const { return m_shape; }
   const SurfaceGrid& surfaces() const { return m_surfaces; }
   const GroundComponents& components() const;

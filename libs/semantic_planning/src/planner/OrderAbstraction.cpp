@@ -1,4 +1,4 @@
-#include <semantic_octree/WeightsFile.h>
+#include <semantic_abstraction/WeightsFile.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 
 #include <algorithm>

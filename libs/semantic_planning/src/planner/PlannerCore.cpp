@@ -1,6 +1,7 @@
 #include "PlannerCore.h"
 
 #include <colored_graph/ColoredAStar.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <strict_files/ClassicNumbers.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 
 #include "PathTracing.h"
+#include "ground/ColumnBox.h"
 
 namespace semantic_planning {
 
@@ -22,7 +24,7 @@ namespace {
 PlannerOptions validated(const PlannerOptions& options,
                          const semantic_octree::SemanticOcTree& map) {
   options.validate();
-  if (isOfTree(options.roadmap.kind) && !map.hasAbstraction())
+  if (isOfTree(options.roadmap.kind) && !hasAbstraction(map))
     throw std::logic_error("SemanticPlanner: the map keeps no G-values (setAbstraction)");
   return options;
 }
@@ -64,19 +66,12 @@ std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPos
   return reason.str();
 }
 
-/** Where classes are read from the map itself, which may change below ground that does not. */
-void addTilesOf(const std::vector<octomap::OcTreeKey>& touched, std::vector<Column>& tiles) {
-  for (const octomap::OcTreeKey& key : touched) tiles.push_back(tileOf({key[0], key[1]}));
-  std::sort(tiles.begin(), tiles.end());
-  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
-}
-
 }  // namespace
 
 PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
                          const colored_graph::ClassOrder& order, const PlannerOptions& options,
                          const std::optional<Corridor>& corridor)
-    : m_map(map),
+    : m_follower(map.follow()),
       m_options(validated(options, map)),
       m_corridor(corridor),
       m_ground(map, options.vehicle, options.ground, order, tilesOf(corridor, map.getResolution())),
@@ -85,7 +80,7 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
       m_edges(m_checker),
       m_model{order, options.edges, options.cost, true,
               colored_graph::lengthDown(options.shorten ? options.classTolerance : 0)} {
-  map.forgetTouchedTiles();  // the ground began with the whole map
+  m_follower.skipTiles();  // the ground began with the whole map
 }
 
 void PlannerCore::checkFinite(const char* what, const Place& place) {
@@ -210,11 +205,16 @@ void PlannerCore::forget() {
 }
 
 PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
-  const auto touched = m_map.takeTouchedTiles();
+  const semantic_octree::TileChange touched = m_follower.tiles();
   MapChange change;
-  change.tilesTouched = touched.size();
+  change.tilesTouched = touched.tiles.size();
   change.tiles = m_ground.update(touched);
-  if (m_options.reading.kind != ClassReading::Kind::Likeliest) addTilesOf(touched, change.tiles);
+  if (m_options.reading.kind != ClassReading::Kind::Likeliest) {
+    // Classes are read from the map itself, which may change below ground that does not.
+    const std::vector<Column> all = m_ground.touchedBy(touched);
+    change.tiles.insert(change.tiles.end(), all.begin(), all.end());
+    sortOut(change.tiles);
+  }
   clock.end("ground");
   m_edges.groundChanged(change.tiles);
   change.points = m_candidates.update(touched, change.tiles);

@@ -1,5 +1,6 @@
 #pragma once
 #include <colored_graph/ColoredReplanner.h>
+#include <semantic_octree/MapFollower.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <exception>
@@ -82,7 +83,7 @@ class PlannerCore {
   PlanResult refined(const Guide& guide, int round, const PlanResult& before);
   void finish(const colored_graph::PathResult& path, StageClock& clock, PlanResult& result);
 
-  semantic_octree::SemanticOcTree& m_map;
+  semantic_octree::MapFollower m_follower;  ///< of what the ground has not read
   const PlannerOptions m_options;
   const std::optional<Corridor> m_corridor;
   Ground m_ground;

@@ -12,8 +12,8 @@ using semantic_octree::LeafCell;
 
 CandidateStore::CandidateStore(semantic_octree::SemanticOcTree& map, const Ground& ground,
                                const RoadmapOptions& options)
-    : m_map(map), m_ground(ground), m_options(options) {
-  if (follows()) Abstraction(map).forgetChange();  // begins with all
+    : m_map(map), m_follower(map), m_ground(ground), m_options(options) {
+  if (follows()) m_follower.skipLeaves();  // begins with all
 }
 
 CandidateStore::Tile CandidateStore::make(Column tile) const {
@@ -53,14 +53,20 @@ void CandidateStore::addTilesOf(const LeafCell& leaf, std::vector<Column>& tiles
 
 /** Where leaves came or went, and where those that stayed may be of another class, or have become
  * occupied or free. */
-std::vector<Column> CandidateStore::outdated(const std::vector<octomap::OcTreeKey>& touched) {
-  Abstraction abstraction(m_map);
-  const semantic_octree::TreeChange change = abstraction.takeChange();
+std::vector<Column> CandidateStore::outdated(const semantic_octree::TileChange& touched) {
+  const semantic_octree::TreeChange change = m_follower.leaves();
   std::vector<Column> tiles;
+  if (touched.all || change.all) {
+    m_tiles.forEach([&](Column c, const Tile& tile) {
+      if (tile.made) tiles.push_back(c);
+    });
+    return tiles;
+  }
+  const Abstraction abstraction(m_map);
   for (const auto* leaves : {&change.removed, &change.added})
     for (const LeafCell& leaf : *leaves) addTilesOf(leaf, tiles);
   constexpr unsigned kTouchedDepth = 13;  // 8 voxels
-  for (const octomap::OcTreeKey& key : touched) {
+  for (const octomap::OcTreeKey& key : touched.tiles) {
     addTilesOf({key, kTouchedDepth, {}}, tiles);
     for (const LeafCell& leaf : abstraction.leavesIn(key, key, false))
       if (leaf.depth < kTouchedDepth) addTilesOf(leaf, tiles);
@@ -68,7 +74,7 @@ std::vector<Column> CandidateStore::outdated(const std::vector<octomap::OcTreeKe
   return tiles;
 }
 
-CandidateStore::Change CandidateStore::update(const std::vector<octomap::OcTreeKey>& touched,
+CandidateStore::Change CandidateStore::update(const semantic_octree::TileChange& touched,
                                               const std::vector<Column>& changedTiles) {
   std::vector<Column> tiles;
   if (follows()) tiles = outdated(touched);

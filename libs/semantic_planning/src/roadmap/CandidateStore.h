@@ -30,10 +30,9 @@ class CandidateStore {
   struct Change {
     std::vector<CandidatePoint> removed, added;
   };
-  /** Brings the store up to date with map and ground. \param touched as
-   * SemanticOcTree::takeTouchedTiles() gives it \param changedTiles of the ground
+  /** Brings the store up to date with map and ground. \param changedTiles of the ground
    * \return what changed in tiles that were asked for, or whose ground changed. */
-  Change update(const std::vector<octomap::OcTreeKey>& touched,
+  Change update(const semantic_octree::TileChange& touched,
                 const std::vector<Column>& changedTiles);
 
  private:
@@ -49,9 +48,10 @@ class CandidateStore {
   Tile make(Column tile) const;
   /** Tiles whose points may depend on a leaf. */
   void addTilesOf(const semantic_octree::LeafCell& leaf, std::vector<Column>& tiles);
-  std::vector<Column> outdated(const std::vector<octomap::OcTreeKey>& touched);
+  std::vector<Column> outdated(const semantic_octree::TileChange& touched);
 
   semantic_octree::SemanticOcTree& m_map;
+  semantic_octree::LeafFollower m_follower;  ///< of the compressed tree's leaves
   const Ground& m_ground;
   const RoadmapOptions m_options;
   ColumnGrid<Tile> m_tiles;

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/KeyframeMap.h>
+#include <map_correction/KeyframeMap.h>
 #include <semantic_slam/PoseGraph.h>
 #include <semantic_slam/Reference.h>
 #include <semantic_slam/Registration.h>

@@ -1,6 +1,7 @@
 #pragma once
 #include <colored_graph/ClassOrder.h>
 #include <semantic_octree/Keys.h>
+#include <semantic_octree/MapFollower.h>
 #include <semantic_octree/SemanticOcTree.h>
 #include <semantic_planning/ground/Column.h>
 #include <semantic_planning/ground/GroundOptions.h>
@@ -40,10 +41,13 @@ class Ground {
   ~Ground();
   Ground(Ground&&) noexcept;
 
-  /** Reads again what changed. \param touchedTiles as SemanticOcTree::takeTouchedTiles() gives
-   * them. \return the tiles (of kTileEdge x kTileEdge columns) whose surfaces changed in anything.
+  /** Reads again what changed. \return the tiles (of kTileEdge x kTileEdge columns) whose surfaces
+   * changed in anything.
    * \throw std::logic_error something changed, and the ground was made within some tiles only */
-  std::vector<Column> update(const std::vector<octomap::OcTreeKey>& touchedTiles);
+  std::vector<Column> update(const semantic_octree::TileChange& change);
+  /** The tiles in which the map changed, sorted; those that the ground knows are among them if all
+   * did. */
+  std::vector<Column> touchedBy(const semantic_octree::TileChange& change) const;
 
   const semantic_octree::SemanticOcTree& map() const { return m_map; }
   double voxelSize() const { return m_voxelSize; }

@@ -1,6 +1,6 @@
 #pragma once
 #include <colored_graph/ClassOrder.h>
-#include <semantic_octree/AbstractionOptions.h>
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_types/ClassTable.h>
 
 #include <filesystem>

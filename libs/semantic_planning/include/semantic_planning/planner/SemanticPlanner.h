@@ -60,13 +60,12 @@ class PlannerCore;
  * for the next plan until the map changes there: points for vertices (but not in a corridor, where
  * memory is short), and what was found about edges; answers are those of a new planner. One that
  * runs out of memory, or whose `cancelled` throws, is broken: all further calls throw
- * std::logic_error. Not thread safe; the map must not change during a call, and what a planner's
- * map tells about its changes (takeTouchedTiles(), Abstraction::takeChange()) is for one planner
- * only. */
+ * std::logic_error. Not thread safe; the map must not change during a call. A map may have any
+ * number of planners, and other readers of its changes (MapFollower). */
 class SemanticPlanner {
  public:
   /** \param map must outlive the planner. With a graph of the tree (isOfTree) it has to keep
-   * G-values (SemanticOcTree::setAbstraction). \param order over the map's class ids, 0 = unknown
+   * G-values (setAbstraction()). \param order over the map's class ids, 0 = unknown
    * ground (loadClassOrder) \param corridor where ground is looked at, of a map that does not
    * change (findCorridor()); vertices lie within RoadmapOptions::buffer from its way. Without: all
    * ground. \throw std::invalid_argument bad options, or an order of other classes

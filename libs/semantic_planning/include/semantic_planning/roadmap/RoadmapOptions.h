@@ -8,7 +8,7 @@ namespace semantic_planning {
 /** Where a roadmap's vertices come from. */
 enum class GraphKind {
   Compressed,      ///< ground in the leaves of the map's compressed tree
-                   ///< (SemanticOcTree::setAbstraction); large ones have several points
+                   ///< (setAbstraction()); large ones have several points
   Leaves,          ///< the same, one point a leaf, as published
   Halton,          ///< a Halton sequence; samples off the ground or in the way are dropped
   HaltonDrivable,  ///< the same, and goes on until there are as many drivable vertices as asked for

@@ -1,0 +1,89 @@
+#pragma once
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace semantic_octree {
+
+/** Number of a keyframe, in the order in which they began. */
+using KeyframeId = std::size_t;
+
+/** A pose that a keyframe is to have. */
+struct KeyframePose {
+  KeyframeId keyframe;
+  Eigen::Isometry3d T_map_keyframe;
+};
+
+/** What it took to correct a map. */
+struct CorrectionReport {
+  std::size_t scansTraced = 0;  ///< whose beams were followed once more
+  std::size_t scansMerged = 0;  ///< of which parts were merged once more
+  std::size_t tiles = 0;        ///< of 8 x 8 x 8 voxels that were made anew
+};
+
+/** A map that can be corrected: it remembers the scans that it is made of, keyframe by keyframe, so
+ * that keyframes can be moved, as a closed loop asks for, and removed.
+ *
+ * After any sequence of insertions, moves and removals the map is, bit for bit, what insertions of
+ * the scans that are left make of an empty map, in their order, at their present poses and at their
+ * times of its clock (see SemanticOcTree::age(), which may be called at any time): nodes,
+ * class records and G-values, also where log-odds are at their limits or more than three classes
+ * were seen. Readers of its changes (MapFollower) are told of corrections as of insertions.
+ *
+ * How (doc/how-it-works/corrected-maps.md): of each scan its points are kept, and which voxels it
+ * saw how, packed tile by tile. A correction follows the beams of the scans that move, and finds
+ * the tiles in which one of them now sees something else. Only these tiles are made anew, from what
+ * all scans saw in them. */
+class KeyframeMap {
+ public:
+  /** Scans are kept in memory.
+   * \param map empty; must outlive this, and be changed through this alone (except for its
+   * abstraction) \throw std::invalid_argument it is not empty. */
+  explicit KeyframeMap(SemanticOcTree& map);
+  /** Scans are kept in a file in a folder, which goes when this goes.
+   * \throw std::runtime_error naming the folder: it cannot be written to. */
+  KeyframeMap(SemanticOcTree& map, const std::filesystem::path& folder);
+  ~KeyframeMap();
+  KeyframeMap(const KeyframeMap&) = delete;
+  KeyframeMap& operator=(const KeyframeMap&) = delete;
+
+  /** Begins a keyframe, to which scans belong from now on. */
+  KeyframeId begin(const Eigen::Isometry3d& T_map_keyframe);
+  /** Inserts a scan into the last keyframe; see SemanticOcTree::insert().
+   * \throw std::logic_error there is no keyframe, or the last one was removed
+   * \throw std::runtime_error the folder's disk is full; the map is as it was. */
+  InsertionReport insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_keyframe_sensor,
+                         const InsertionOptions& options = {}, double secondsSince = 0);
+
+  /** Gives keyframes other poses, all at once: tiles that several of them see are made anew once.
+   * Of several poses of a keyframe the last one counts. If it fails, the map is as it was, unless
+   * memory ran out at the end; look at SemanticOcTree::isBroken().
+   * \throw std::out_of_range no such keyframe, or a sensor would be outside of the map. */
+  CorrectionReport move(const std::vector<KeyframePose>& poses);
+  /** Takes a keyframe's scans out of the map, as if they had never been.
+   * \throw std::out_of_range no such keyframe. */
+  CorrectionReport remove(KeyframeId keyframe);
+
+  /** Those that began, also those that were removed. */
+  std::size_t numKeyframes() const;
+  std::size_t numScans() const;
+  /** \throw std::out_of_range no such keyframe. */
+  const Eigen::Isometry3d& pose(KeyframeId keyframe) const;
+  /** Bytes of the scans: points, voxels. */
+  struct Bytes {
+    std::size_t inMemory = 0, onDisk = 0;
+  };
+  Bytes bytes() const;
+  const SemanticOcTree& map() const;
+
+ private:
+  class Correction;
+  struct Content;
+  std::unique_ptr<Content> m;
+};
+
+}  // namespace semantic_octree

@@ -1,0 +1,250 @@
+#include <map_correction/KeyframeMap.h>
+#include <semantic_octree/store/MapAccess.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "ScanStorage.h"
+#include "TileReplacement.h"
+
+namespace semantic_octree {
+
+struct KeyframeMap::Content {
+  /** What a scan saw. The box tells, without reading it, where that can be. */
+  struct StoredVoxels {
+    ScanStorage::Piece packed;
+    TileBox box;
+  };
+  struct StoredScan {
+    KeyframeId keyframe;
+    Eigen::Isometry3d T_keyframe_sensor;
+    InsertionOptions options;
+    std::int64_t time;  ///< of the map's clock
+    ScanStorage::Piece cloud;
+    StoredVoxels voxels;
+  };
+  struct Keyframe {
+    Eigen::Isometry3d T_map_keyframe;
+    bool isRemoved = false;
+  };
+
+  Content(SemanticOcTree& tree, const std::optional<std::filesystem::path>& folder)
+      : map(tree), storage(folder) {
+    if (!map.empty()) throw std::invalid_argument("keyframes: their map is not empty at first");
+  }
+
+  Keyframe& keyframe(KeyframeId id) {
+    if (id < keyframes.size() && !keyframes[id].isRemoved) return keyframes[id];
+    throw std::out_of_range("keyframes: there is no keyframe " + std::to_string(id));
+  }
+  void trace(const StoredScan& s, const LabeledCloud& cloud, const Eigen::Isometry3d& T,
+             Scan& scan) const {
+    scan.set(cloud, T * s.T_keyframe_sensor, map.getResolution(), MapAccess::filter(map),
+             s.options);
+  }
+  StoredVoxels keep(PackedScan voxels) {
+    const TileBox box(tilesOf(voxels));
+    return {storage.keep(voxels.release()), box};
+  }
+  PackedScan load(const StoredVoxels& voxels) const {
+    return PackedScan(storage.load(voxels.packed));
+  }
+  /** Calls f with a scan for it to fill; what fails half-filled must not leak into the next. */
+  template <typename F>
+  void inBuffers(const F& f) {
+    if (!buffers) buffers = std::make_unique<Scan>();
+    try {
+      f(*buffers);
+    } catch (...) {
+      buffers = nullptr;
+      throw;
+    }
+    if (buffers->bytes() > Scan::kTooManyBytes)
+      buffers = nullptr;
+    else if (buffers->hasVoxels())
+      buffers->clear();
+  }
+
+  SemanticOcTree& map;
+  ScanStorage storage;
+  std::vector<Keyframe> keyframes;
+  std::vector<StoredScan> scans;  ///< in the order of their insertion
+  std::unique_ptr<Scan> buffers;
+};
+
+/** One correction, until it is done. */
+class KeyframeMap::Correction {
+ public:
+  explicit Correction(Content& content) : m(content), m_voxels(content.scans.size()) {}
+  /** Drops what was prepared, if it does not come to pass. */
+  ~Correction() {
+    for (auto& voxels : m_voxels)
+      if (voxels) m.storage.drop(voxels->packed);
+  }
+
+  /** The scan is to be as if its keyframe were there. */
+  void move(std::size_t scan, const Eigen::Isometry3d& T_map_keyframe) {
+    const auto& s = m.scans[scan];
+    const PackedScan before = m.load(s.voxels);
+    const LabeledCloud cloud = unpackCloud(m.storage.load(s.cloud));
+    m.inBuffers([&](Scan& traced) {
+      m.trace(s, cloud, T_map_keyframe, traced);
+      PackedScan after = packed(traced);
+      addTiles(differingTiles(before, after));
+      m_voxels[scan] = m.keep(std::move(after));
+    });
+    ++m_report.scansTraced;
+  }
+  /** The scan is to be as if it had seen nothing. */
+  void remove(std::size_t scan) {
+    addTiles(tilesOf(m.load(m.scans[scan].voxels)));
+    m_voxels[scan] = m.keep(PackedScan(false, {}));
+  }
+
+  /** Puts it into the map. */
+  CorrectionReport apply() {
+    m_report.tiles = m_tiles.size();
+    if (m_tiles.empty()) return accept();
+    SemanticOcTree anew = emptyLike(m.map);
+    MapAccess::setClock(anew, 0);
+    const TileBox box(m_tiles);
+    for (std::size_t i = 0; i < m.scans.size(); ++i) {
+      MapAccess::ageUntil(anew, m.scans[i].time);
+      if (voxelsOf(i).box.meets(box)) merge(i, anew);
+    }
+    MapAccess::ageUntil(anew, MapAccess::clock(m.map));
+    MapAccess::checkNotInTiles(m.map);
+    MapAccess::change(m.map, [&](const MergeTarget& target) {
+      replaceTiles(target, m_tiles, MapAccess::store(anew));
+    });
+    return accept();
+  }
+
+ private:
+  void addTiles(const TileCodes& tiles) {
+    TileCodes all;
+    all.reserve(m_tiles.size() + tiles.size());
+    std::set_union(m_tiles.begin(), m_tiles.end(), tiles.begin(), tiles.end(),
+                   std::back_inserter(all));
+    m_tiles.swap(all);
+  }
+
+  /** As they will be. */
+  const Content::StoredVoxels& voxelsOf(std::size_t scan) const {
+    return m_voxels[scan] ? *m_voxels[scan] : m.scans[scan].voxels;
+  }
+  void merge(std::size_t i, SemanticOcTree& anew) {
+    const InsertionOptions& options = m.scans[i].options;
+    const PackedScan voxels = m.load(voxelsOf(i));
+    m.inBuffers([&](Scan& scan) {
+      unpack(voxels, m_tiles, m.map.numClasses(), options, scan);
+      MapAccess::merge(anew, scan, options.threads);
+      m_report.scansMerged += scan.hasVoxels();
+    });
+  }
+
+  CorrectionReport accept() {
+    for (std::size_t i = 0; i < m_voxels.size(); ++i)
+      if (m_voxels[i]) std::swap(m.scans[i].voxels, *m_voxels[i]);
+    return m_report;
+  }
+
+  Content& m;
+  std::vector<std::optional<Content::StoredVoxels>> m_voxels;  ///< of scans that change
+  TileCodes m_tiles;                                           ///< to be made anew
+  CorrectionReport m_report;
+};
+
+KeyframeMap::KeyframeMap(SemanticOcTree& map) : m(std::make_unique<Content>(map, std::nullopt)) {}
+
+KeyframeMap::KeyframeMap(SemanticOcTree& map, const std::filesystem::path& folder)
+    : m(std::make_unique<Content>(map, folder)) {}
+
+KeyframeMap::~KeyframeMap() = default;
+
+KeyframeId KeyframeMap::begin(const Eigen::Isometry3d& T_map_keyframe) {
+  m->keyframes.push_back({T_map_keyframe});
+  return m->keyframes.size() - 1;
+}
+
+InsertionReport KeyframeMap::insert(const LabeledCloud& cloud,
+                                    const Eigen::Isometry3d& T_keyframe_sensor,
+                                    const InsertionOptions& options, double secondsSince) {
+  options.validate();
+  const std::int64_t time = MapAccess::timeIn(m->map, secondsSince);
+  if (m->keyframes.empty() || m->keyframes.back().isRemoved)
+    throw std::logic_error("keyframes: a scan is inserted before a keyframe has begun");
+  const KeyframeId id = m->keyframes.size() - 1;
+  m->scans.reserve(m->scans.size() + 1);
+  Content::StoredScan stored{id, T_keyframe_sensor, options, time, {}, {}};
+  InsertionReport report;
+  m->inBuffers([&](Scan& scan) {
+    m->trace(stored, cloud, m->keyframes[id].T_map_keyframe, scan);
+    stored.cloud = m->storage.keep(packCloud(cloud));
+    stored.voxels = m->keep(packed(scan));
+    MapAccess::ageUntil(m->map, time);
+    MapAccess::merge(m->map, scan, options.threads);
+    report = scan.report();
+  });
+  m->scans.push_back(std::move(stored));
+  return report;
+}
+
+CorrectionReport KeyframeMap::move(const std::vector<KeyframePose>& poses) {
+  std::vector<std::optional<Eigen::Isometry3d>> newPoses(m->keyframes.size());
+  for (const KeyframePose& p : poses) {
+    m->keyframe(p.keyframe);
+    newPoses[p.keyframe] = p.T_map_keyframe;
+  }
+  Correction correction(*m);
+  for (std::size_t i = 0; i < m->scans.size(); ++i) {
+    const KeyframeId id = m->scans[i].keyframe;
+    const auto& pose = newPoses[id];
+    if (pose && pose->matrix() != m->keyframes[id].T_map_keyframe.matrix())
+      correction.move(i, *pose);
+  }
+  const CorrectionReport report = correction.apply();
+  for (KeyframeId id = 0; id < newPoses.size(); ++id)
+    if (newPoses[id]) m->keyframes[id].T_map_keyframe = *newPoses[id];
+  return report;
+}
+
+CorrectionReport KeyframeMap::remove(KeyframeId keyframe) {
+  m->keyframe(keyframe);
+  Correction correction(*m);
+  const auto isOfKeyframe = [keyframe](const auto& s) { return s.keyframe == keyframe; };
+  for (std::size_t i = 0; i < m->scans.size(); ++i)
+    if (isOfKeyframe(m->scans[i])) correction.remove(i);
+  const CorrectionReport report = correction.apply();
+  m->keyframes[keyframe].isRemoved = true;
+  for (auto& s : m->scans)
+    if (isOfKeyframe(s)) {
+      m->storage.drop(s.cloud);
+      m->storage.drop(s.voxels.packed);
+    }
+  m->scans.erase(std::remove_if(m->scans.begin(), m->scans.end(), isOfKeyframe), m->scans.end());
+  return report;
+}
+
+std::size_t KeyframeMap::numKeyframes() const { return m->keyframes.size(); }
+
+std::size_t KeyframeMap::numScans() const { return m->scans.size(); }
+
+const Eigen::Isometry3d& KeyframeMap::pose(KeyframeId keyframe) const {
+  return m->keyframe(keyframe).T_map_keyframe;
+}
+
+auto KeyframeMap::bytes() const -> Bytes {
+  Bytes bytes;
+  for (const auto& s : m->scans)
+    (m->storage.isInMemory() ? bytes.inMemory : bytes.onDisk) +=
+        s.cloud.size + s.voxels.packed.size;
+  bytes.inMemory += m->scans.size() * sizeof(Content::StoredScan) +
+                    m->keyframes.size() * sizeof(Content::Keyframe);
+  return bytes;
+}
+
+const SemanticOcTree& KeyframeMap::map() const { return m->map; }
+
+}  // namespace semantic_octree

@@ -1,0 +1,293 @@
+#include <map_folders/MapFolder.h>
+#include <semantic_octree/TreeFile.h>
+#include <semantic_octree/store/TreeBuilder.h>
+#include <semantic_octree/store/TreeFormat.h>
+#include <strict_files/AvailableMemory.h>
+#include <strict_files/FileLock.h>
+#include <strict_files/OutputFolder.h>
+#include <strict_files/Words.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <stdexcept>
+
+#include "TilesOnDisk.h"
+
+namespace semantic_octree {
+
+namespace fs = std::filesystem;
+using strict_files::FileLock;
+
+namespace {
+
+/** A map without its tiles. */
+class LeavesCursor {
+ public:
+  LeavesCursor(int numClasses, int tileDepth, const Node& node, int depth)
+      : m_numClasses(numClasses), m_tileDepth(tileDepth), m_node(node), m_depth(depth) {}
+  bool known() const { return m_node && (m_node.isLeaf() || m_depth < m_tileDepth); }
+  bool isLeaf() const { return m_node.isLeaf(); }
+  LeafContent content() const { return contentOf(m_node, m_numClasses); }
+  LeavesCursor child(int i) const {
+    return {m_numClasses, m_tileDepth, m_node.isLeaf() ? m_node : m_node.child(i), m_depth + 1};
+  }
+
+ private:
+  int m_numClasses, m_tileDepth;
+  Node m_node;
+  int m_depth;
+};
+
+Cell cellOf(const TreeIterator& node) {
+  const auto key = node.getIndexKey();
+  const auto depth = static_cast<int>(node.getDepth());
+  return {VoxelIndex(key[0], key[1], key[2]) / edgeAtDepth(depth), depth};
+}
+
+std::vector<std::string> namesOf(const ClassTable& classes) {
+  std::vector<std::string> names;
+  for (int id = 1; id <= classes.size(); ++id)
+    names.push_back(classes.name(static_cast<semantic_types::ClassId>(id)));
+  return names;
+}
+
+std::vector<Cell> cellsOf(const SemanticOcTree& leaves) {
+  std::vector<Cell> cells;
+  for (auto leaf = leaves.begin_leafs(); leaf != leaves.end_leafs(); ++leaf)
+    cells.push_back(cellOf(leaf));
+  return cells;
+}
+
+SemanticOcTree loadLeaves(const fs::path& folder, const TileIndex& index) {
+  const fs::path file = folder / TileIndex::leavesName(index.generation);
+  std::uint32_t checksum = 0;
+  SemanticOcTree leaves = loadTreeFile(file.string(), &checksum);
+  const auto refuse = [&file](const std::string& why) {
+    throw std::runtime_error("cannot load map '" + file.string() + "': " + why);
+  };
+  if (leaves.getResolution() != index.resolution || namesOf(leaves.classes()) != index.classes)
+    refuse(std::string("it has another resolution or other classes than ") + MapFolder::kIndexFile +
+           " says");
+  if (checksum != index.leavesChecksum || cellsOf(leaves) != index.leaves)
+    refuse(std::string("it is not the file that ") + MapFolder::kIndexFile + " names: checksum " +
+           std::to_string(checksum) + ", expected " + std::to_string(index.leavesChecksum) +
+           " and the leaves that it lists");
+  return leaves;
+}
+
+/** Of nodes and records, as maps of streets have them: 5 to 7. */
+constexpr std::uint64_t kBytesOfLeaf = 6;
+
+}  // namespace
+
+class MapFolder::Tiles {
+ public:
+  Tiles(SemanticOcTree& map, fs::path folder, Access access, const MapFolderOptions& options)
+      : m_map(map), m_folder(std::move(folder)), m_access(access) {
+    options.validate();
+    if (!map.empty()) throw std::invalid_argument("a map for a folder of tiles has to be empty");
+    if (map.classes().hasHalfLives())
+      throw std::invalid_argument(
+          "a map of classes with half-lives cannot be in a folder of tiles");
+    MapAccess::checkNotInTiles(map);
+    if (access == Access::Draft && options.draft.empty())
+      throw std::invalid_argument("a draft of a folder of tiles needs a place for what changes");
+    TileIndex index = open(options);
+    constexpr double kAll = 1e18;  // bytes
+    const auto budget = static_cast<std::size_t>(std::min(options.memory * 1e6, kAll));
+    const TilesOnDisk::Place place{
+        m_folder,
+        index.depth,
+        budget,
+        m_unsaved.has_value(),
+        m_unsaved ? m_unsaved->staged("") : m_folder,
+        saves() ? nextGeneration(m_folder, index) : index.generation + 1};
+    tiles = std::make_unique<TilesOnDisk>(map, place, std::move(index));
+    auto empty = std::make_unique<NodeStore>(MapAccess::store(map).stateBytes());
+    try {
+      if (tiles->index().generation > 0 && access != Access::Replace) takeContents();
+      MapAccess::store(map).setTiles(tiles.get());
+      MapAccess::recomputeTileByTile(map);
+    } catch (...) {
+      MapAccess::setStore(map, std::move(empty));
+      throw;
+    }
+  }
+  ~Tiles() {
+    if (isOfMap()) MapAccess::store(m_map).setTiles(nullptr);
+    removePlaced();
+  }
+
+  void save() {
+    if (!isOfMap()) throw std::logic_error("saving a map that is no longer the folder's");
+    if (!saves()) throw std::logic_error("saving a map whose folder was opened to be read");
+    TileIndex index = tiles->writeChanged();
+    SemanticOcTree leaves = emptyLike(m_map);
+    TreeBuilder::fill(leaves, LeavesCursor(m_map.numClasses(), index.depth, m_map.root(), 0),
+                      TreeBuilder::Merge::Never);
+    index.leaves = cellsOf(leaves);
+    index.leavesChecksum =
+        saveTreeFile(leaves, m_unsaved->staged(TileIndex::leavesName(index.generation)).string());
+    index.old = oldFor(index);
+    writeIndex(m_unsaved->staged(""), index);
+    place(index);
+    tiles->setIndex(std::move(index));
+    m_placed.clear();
+    removeOld();
+  }
+
+  void checkFits(std::optional<std::size_t> most) const {
+    const std::uint64_t available = most.value_or(strict_files::availableMemory());
+    const std::uint64_t needed = kBytesOfLeaf * m_map.getNumLeafNodes();
+    if (needed > available)
+      throw std::runtime_error(m_folder.string() + ": as a whole it needs about " +
+                               strict_files::sizeText(needed) + " of memory, and " +
+                               strict_files::sizeText(available) + " are left");
+  }
+
+  std::uint64_t bytesOnDisk() const {
+    std::uint64_t bytes = 0;
+    for (const std::string& name : tiles->index().files()) {
+      std::error_code missing;
+      const auto size = fs::file_size(m_folder / name, missing);
+      if (!missing) bytes += size;
+    }
+    return bytes;
+  }
+
+  std::unique_ptr<TilesOnDisk> tiles;
+
+ private:
+  bool isOfMap() const {
+    return !m_map.isBroken() && MapAccess::store(m_map).tiles() == tiles.get();
+  }
+
+  bool saves() const { return m_access == Access::Write || m_access == Access::Replace; }
+
+  TileIndex open(const MapFolderOptions& options) {
+    if (m_access == Access::Draft) m_unsaved.emplace(options.draft);
+    if (saves()) {
+      m_unsaved.emplace(m_folder);
+      m_writer = FileLock::tryTo(m_folder / TileIndex::kWriterLock, FileLock::Kind::Exclusive);
+      if (!m_writer)
+        throw std::runtime_error(m_folder.string() + ": another process writes into this folder");
+      m_unsaved->takeAlong(TileIndex::kWriterLock);
+    } else {
+      m_reader.emplace(m_folder / TileIndex::kReadersLock, FileLock::Kind::Shared);
+    }
+    const bool wasSaved = isAt(m_folder);
+    TileIndex index;
+    if (!saves() || (wasSaved && m_access == Access::Write)) {
+      index = readIndex(m_folder);
+      if (m_access == Access::Read && options.wanted) index.keepWanted(options.wanted);
+      return index;
+    }
+    if (wasSaved) {
+      const TileIndex before = readIndex(m_folder);
+      const std::set<std::string> files = before.files();
+      index.generation = before.generation;
+      index.old = before.old;
+      index.old.insert(index.old.end(), files.begin(), files.end());
+    }
+    index.resolution = m_map.getResolution();
+    index.depth = depthOfTiles(options.tileSize, index.resolution);
+    index.classes = namesOf(m_map.classes());
+    return index;
+  }
+
+  void takeContents() {
+    SemanticOcTree leaves = loadLeaves(m_folder, tiles->index());
+    if (emptyLike(leaves) != emptyLike(m_map))
+      throw std::runtime_error(m_folder.string() +
+                               ": its map has another resolution, other classes or parameters");
+    MapAccess::setStore(m_map, std::make_unique<NodeStore>(MapAccess::store(leaves),
+                                                           MapAccess::store(m_map).stateBytes()));
+    tiles->addFromIndex();
+    if (m_access == Access::Write) removeOld();
+  }
+
+  /** What the next index calls old: files that are there, and that it does not need. */
+  std::vector<std::string> oldFor(const TileIndex& next) const {
+    std::set<std::string> files = tiles->index().files();
+    files.insert(tiles->index().old.begin(), tiles->index().old.end());
+    files.insert(m_placed.begin(), m_placed.end());
+    for (const std::string& name : next.files()) files.erase(name);
+    std::vector<std::string> old;
+    for (const std::string& name : files)
+      if (fs::exists(m_folder / name)) old.push_back(name);
+    return old;
+  }
+
+  /** Puts files that are not in the folder yet there, the index last. */
+  void place(const TileIndex& index) {
+    std::vector<std::string> names;
+    for (const std::string& name : index.files())
+      if (fs::exists(m_unsaved->staged(name))) names.push_back(name);
+    m_placed.insert(names.begin(), names.end());
+    names.push_back(kIndexFile);
+    m_unsaved->commit(names);
+  }
+
+  /** Unless somebody may still want them. */
+  void removeOld() const {
+    const auto alone =
+        FileLock::tryTo(m_folder / TileIndex::kReadersLock, FileLock::Kind::Exclusive);
+    if (alone) remove(tiles->index().old);
+  }
+  /** What a save put there that then failed, unless the index had taken its place. */
+  void removePlaced() {
+    if (m_placed.empty()) return;
+    try {
+      if (isAt(m_folder))
+        for (const std::string& name : readIndex(m_folder).files()) m_placed.erase(name);
+      remove(m_placed);
+    } catch (const std::exception&) {  // then they stay, and semantic-map-info tells of them
+    }
+  }
+  template <class Names>
+  void remove(const Names& names) const {
+    std::error_code ignored;
+    for (const std::string& name : names) fs::remove(m_folder / name, ignored);
+  }
+
+  SemanticOcTree& m_map;
+  fs::path m_folder;
+  Access m_access;
+  std::optional<FileLock> m_writer, m_reader;
+  std::optional<strict_files::OutputFolder> m_unsaved;  ///< of those who write
+  std::set<std::string> m_placed;  ///< files that a save which then failed put into the folder
+};
+
+SemanticOcTree MapFolder::emptyMap(const fs::path& folder) {
+  const FileLock lock(folder / TileIndex::kReadersLock, FileLock::Kind::Shared);
+  return emptyLike(loadLeaves(folder, readIndex(folder)));
+}
+
+MapFolder::MapFolder(SemanticOcTree& map, const fs::path& folder, Access access,
+                     const MapFolderOptions& options)
+    : m(std::make_unique<Tiles>(map, folder, access, options)) {}
+
+MapFolder::~MapFolder() = default;
+
+void MapFolder::save() { m->save(); }
+
+void MapFolder::checkFits(std::optional<std::size_t> available) const { m->checkFits(available); }
+
+void MapFolder::bringAll(std::optional<std::size_t> available) {
+  m->checkFits(available);
+  m->tiles->bringAll();
+}
+
+std::vector<std::string> MapFolder::problems() { return m->tiles->problems(); }
+
+MapFolder::Contents MapFolder::contents() const {
+  Contents contents;
+  m->tiles->addTo(contents);
+  contents.tileSize = m->tiles->index().tileSize();
+  contents.generation = m->tiles->index().generation;
+  contents.bytesOnDisk = m->bytesOnDisk();
+  return contents;
+}
+
+}  // namespace semantic_octree

@@ -1,0 +1,301 @@
+#include "TilesOnDisk.h"
+
+#include <semantic_octree/store/Scan.h>
+#include <semantic_octree/store/TreeFormat.h>
+#include <strict_files/StagedFile.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace semantic_octree {
+namespace {
+
+using Kind = Slot::Kind;
+
+struct Count {
+  long nodes = 0, inner = 0;
+};
+
+/** A tile that is away is known by its Morton code, which stands where its children come back. */
+void markAway(Octant& octant, std::uint64_t code) {
+  octant.slots[0].index = static_cast<std::uint32_t>(code);
+  octant.slots[1].index = static_cast<std::uint32_t>(code >> 32);
+}
+std::uint64_t codeOfAway(const Octant& octant) {
+  return std::uint64_t(octant.slots[1].index) << 32 | octant.slots[0].index;
+}
+
+long difference(std::size_t now, std::size_t before) {
+  return static_cast<long>(now) - static_cast<long>(before);
+}
+
+/** Nodes below one. */
+void countBelow(const NodeStore& store, const Slot& inner, Count& count) {
+  if (inner.kind == Kind::Block) {
+    const Block::Count block = store.block(inner).count();
+    count.nodes += block.nodes;
+    count.inner += block.inner;
+    return;
+  }
+  for (const Slot& child : store.octant(inner).slots) {
+    count.nodes += child.isKnown();
+    count.inner += child.isInner();
+    if (child.isInner()) countBelow(store, child, count);
+  }
+}
+
+/** Adds the cubes at a depth that a scan touched. */
+void addTouched(const Scan& scan, const Cell& cell, int depth, std::vector<VoxelIndex>& cubes) {
+  if (!scan.pyramid().at(ScanPyramid::kTopLevel - cell.depth, cell.index).any()) return;
+  if (cell.depth == depth) return cubes.push_back(cell.index);
+  for (int i = 0; i < 8; ++i) addTouched(scan, cell.child(i), depth, cubes);
+}
+
+}  // namespace
+
+void TilesOnDisk::addFromIndex() {
+  NodeStore& nodes = store();
+  NodeArena& arena = nodes.arena(0);
+  const auto add = [&](const auto& self, Slot& slot, const Cell& cell,
+                       const TileIndex::Tile& tile) -> void {
+    if (slot.isLeaf())
+      throw std::runtime_error((m_place.folder / MapFolder::kIndexFile).string() +
+                               ": altered: a tile where all is one leaf");
+    if (!slot.isKnown()) {
+      arena.createOctant(slot);
+      slot.value = kUnknown;
+    }
+    slot.value = std::max(slot.value, tile.highest);
+    if (cell.depth == m_place.depth) return;
+    const int i = Cell{tile.place, m_place.depth}.childOnTheWay(cell.depth + 1);
+    self(self, nodes.octant(slot).slots[i], cell.child(i), tile);
+  };
+  for (const TileIndex::Tile& t : m_index.tiles) {
+    add(add, nodes.root(), Cell(), t);
+    const std::uint64_t code = tileCode(t.place);
+    Tile& tile = m_tiles[code];
+    tile = {t.place, t.generation, 0, true, false, t.nodes, t.innerNodes, t.checksum};
+    Slot& slot = *slotOf(tile);
+    slot.kind = Kind::Away;
+    markAway(nodes.octant(slot), code);
+    nodes.countAway(t.nodes, t.innerNodes);
+  }
+}
+
+Slot* TilesOnDisk::slotOf(const Tile& tile) const {
+  const NodeStore& nodes = store();
+  Slot* slot = &store().root();
+  for (int depth = 1; depth <= m_place.depth; ++depth) {
+    if (slot->kind != Kind::Octant) return nullptr;
+    slot = &nodes.octant(*slot).slots[cellOf(tile).childOnTheWay(depth)];
+  }
+  return slot->isInner() ? slot : nullptr;
+}
+
+/** A save that failed halfway has put files into the folder, too. */
+std::string TilesOnDisk::fileOf(const Tile& tile) const {
+  const std::string name = m_index.nameOf(tile.place, tile.written);
+  const bool isSaved = tile.written <= m_index.generation;
+  const bool isThere = isSaved || (tile.isAway && !std::filesystem::exists(m_place.changed / name));
+  return ((isThere ? m_place.folder : m_place.changed) / name).string();
+}
+
+/** Memory that tiles leave is taken by what comes next: so that threads, each of which has its own,
+ * get their share. */
+NodeArena& TilesOnDisk::arenaWith(bool most) {
+  NodeStore& nodes = store();
+  int best = 0;
+  for (int i = 1; i < nodes.numArenas(); ++i) {
+    const std::size_t spare = nodes.arena(i).spareBlocks(), least = nodes.arena(best).spareBlocks();
+    if (most ? spare > least : spare < least) best = i;
+  }
+  return nodes.arena(best);
+}
+
+void TilesOnDisk::bring(Slot& away) {
+  Tile& tile = m_tiles.at(codeOfAway(store().octant(away)));
+  fetch(away, tile);
+  tile.used = ++m_clock;
+  makeRoom(m_clock, m_place.budget);
+}
+
+void TilesOnDisk::fetch(Slot& slot, Tile& tile) {
+  read(slot, tile);
+  tile.isAway = false;
+  ++m_broughtIn;
+}
+
+void TilesOnDisk::read(Slot& slot, const Tile& tile) {
+  NodeStore& nodes = store();
+  NodeArena& arena = arenaWith(true);
+  const std::size_t numNodes = nodes.numNodes(), numInner = nodes.numInnerNodes();
+  nodes.countAway(-tile.nodes, -tile.innerNodes);
+  slot.kind = Kind::Octant;
+  nodes.octant(slot) = Octant();
+  try {
+    const std::uint32_t checksum =
+        loadTile(m_map, arena, nodes.octant(slot), cellOf(tile), fileOf(tile));
+    const auto expect = [&](const char* what, long found, long expected) {
+      if (found != expected)
+        throw std::runtime_error("cannot load map '" + fileOf(tile) +
+                                 "': it is not the file that " + MapFolder::kIndexFile +
+                                 " names: " + what + " " + std::to_string(found) + ", expected " +
+                                 std::to_string(expected));
+    };
+    expect("checksum", checksum, tile.checksum);
+    expect("nodes", tile.nodes + difference(nodes.numNodes(), numNodes), tile.nodes);
+    expect("inner", tile.innerNodes + difference(nodes.numInnerNodes(), numInner), tile.innerNodes);
+    expect("highest", nodes.highestValueBelow(slot), slot.value);
+    if (NodeObserver* const observer = MapAccess::observer(m_map))
+      recomputeAll(observer->worker(0), nodes, slot, cellOf(tile));
+  } catch (...) {
+    removeChildren(arena, slot);
+    slot.kind = Kind::Away;
+    markAway(nodes.octant(slot), tileCode(tile.place));
+    nodes.countAway(tile.nodes, tile.innerNodes);
+    throw;
+  }
+}
+
+/** If memory runs out, the map is broken; the folder is what it was. */
+void TilesOnDisk::removeChildren(NodeArena& arena, const Slot& octant) {
+  try {
+    for (Slot& child : store().octant(octant).slots)
+      if (child.isKnown()) arena.remove(child);
+  } catch (...) {
+    MapAccess::setStore(m_map, nullptr);
+    throw;
+  }
+}
+
+void TilesOnDisk::prepare(const Scan& scan) {
+  if (!m_place.mayWrite)
+    throw std::logic_error("a scan for a map whose folder was opened to be read");
+  std::vector<VoxelIndex> cubes;
+  addTouched(scan, Cell(), m_place.depth, cubes);
+  ++m_clock;
+  for (const VoxelIndex& cube : cubes) {
+    Tile& tile = m_tiles[tileCode(cube)];
+    tile.place = cube;
+    tile.used = m_clock;
+  }
+  makeRoom(m_clock, m_place.budget);
+  for (const VoxelIndex& cube : cubes) {
+    Tile& tile = m_tiles.at(tileCode(cube));
+    if (!tile.isAway) continue;
+    fetch(*slotOf(tile), tile);
+    makeRoom(m_clock, m_place.budget);
+  }
+  for (const VoxelIndex& cube : cubes) m_tiles.at(tileCode(cube)).isDirty = true;
+}
+
+void TilesOnDisk::wasBuilt(const Cell& cell) {
+  if (!m_place.mayWrite) throw std::logic_error("filling a map whose folder was opened to be read");
+  Tile& tile = m_tiles[tileCode(cell.index)];
+  tile.place = cell.index;
+  tile.used = ++m_clock;
+  tile.isDirty = true;
+  makeRoom(m_clock, m_place.budget);
+}
+
+void TilesOnDisk::sendAway() { makeRoom(m_clock + 1, 0); }
+
+void TilesOnDisk::makeRoom(std::uint64_t usedBefore, std::size_t budget) {
+  if (store().bytes() <= budget) return;
+  std::vector<Tile*> candidates;
+  for (Entry& entry : m_tiles)
+    if (!entry.second.isAway && entry.second.used < usedBefore) candidates.push_back(&entry.second);
+  std::sort(candidates.begin(), candidates.end(), [](const Tile* a, const Tile* b) {
+    return a->used != b->used ? a->used < b->used : tileCode(a->place) < tileCode(b->place);
+  });
+  for (Tile* tile : candidates) {
+    if (store().bytes() <= budget) return;
+    if (Slot* const slot = slotOf(*tile))
+      send(*slot, *tile);
+    else
+      m_tiles.erase(tileCode(tile->place));
+  }
+}
+
+void TilesOnDisk::send(Slot& slot, Tile& tile) {
+  NodeStore& nodes = store();
+  if (tile.isDirty) write(slot, tile);
+  Count count;
+  countBelow(nodes, slot, count);
+  removeChildren(arenaWith(false), slot);
+  slot.kind = Kind::Away;
+  markAway(nodes.octant(slot), tileCode(tile.place));
+  tile.isAway = true;
+  tile.nodes = count.nodes;
+  tile.innerNodes = count.inner;
+  nodes.countAway(count.nodes, count.inner);
+  ++m_sentOut;
+}
+
+void TilesOnDisk::write(const Slot& slot, Tile& tile) {
+  Count count;
+  countBelow(store(), slot, count);
+  Tile next = tile;
+  next.written = m_place.next;
+  tile.checksum =
+      saveTile(m_map, slot, cellOf(tile), static_cast<std::uint64_t>(count.nodes), fileOf(next));
+  tile.written = next.written;
+  tile.isDirty = false;
+}
+
+TileIndex TilesOnDisk::writeChanged() {
+  TileIndex index = m_index;
+  index.generation = m_place.next;
+  index.tiles.clear();
+  for (auto it = m_tiles.begin(); it != m_tiles.end();) {
+    Tile& tile = it->second;
+    const Slot* const slot = slotOf(tile);
+    if (!slot) {
+      it = m_tiles.erase(it);
+      continue;
+    }
+    if (tile.isDirty) write(*slot, tile);
+    Count count{tile.nodes, tile.innerNodes};
+    if (!tile.isAway) countBelow(store(), *slot, count = Count());
+    index.tiles.push_back(
+        {tile.place, tile.written, count.nodes, count.inner, slot->value, tile.checksum});
+    ++it;
+  }
+  std::sort(index.tiles.begin(), index.tiles.end(),
+            [](const auto& a, const auto& b) { return tileCode(a.place) < tileCode(b.place); });
+  return index;
+}
+
+void TilesOnDisk::bringAll() {
+  for (Entry& entry : m_tiles)
+    if (entry.second.isAway) fetch(*slotOf(entry.second), entry.second);
+}
+
+std::vector<std::string> TilesOnDisk::problems() {
+  std::vector<std::string> problems;
+  std::vector<std::uint64_t> codes;
+  for (const Entry& entry : m_tiles) codes.push_back(entry.first);
+  std::sort(codes.begin(), codes.end());
+  for (const std::uint64_t code : codes) {
+    const auto tile = m_tiles.find(code);
+    if (tile == m_tiles.end() || !tile->second.isAway) continue;
+    try {
+      bring(*slotOf(tile->second));
+    } catch (const std::runtime_error& e) {
+      problems.push_back(e.what());
+    }
+  }
+  return problems;
+}
+
+void TilesOnDisk::addTo(MapFolder::Contents& contents) const {
+  for (const Entry& entry : m_tiles) {
+    const bool exists = slotOf(entry.second) != nullptr;
+    contents.tiles += exists;
+    contents.tilesInMemory += exists && !entry.second.isAway;
+  }
+  contents.broughtIn = m_broughtIn;
+  contents.sentOut = m_sentOut;
+}
+
+}  // namespace semantic_octree

@@ -1,0 +1,81 @@
+#pragma once
+#include <map_folders/MapFolder.h>
+#include <semantic_octree/store/MapAccess.h>
+#include <semantic_octree/store/TileCodes.h>
+
+#include <unordered_map>
+
+#include "TileIndex.h"
+
+namespace semantic_octree {
+
+/** Which tiles of a map are in memory. A tile is an inner node at a depth: if it goes away, it
+ * keeps its value and bookkeeping, so that nothing above it has to know. */
+class TilesOnDisk : public TileSource {
+ public:
+  struct Place {
+    std::filesystem::path folder;
+    int depth;
+    std::size_t budget;  ///< bytes
+    bool mayWrite;
+    std::filesystem::path changed;  ///< where tiles of the next generation are until they are saved
+    std::uint64_t next;             ///< generation
+  };
+  TilesOnDisk(SemanticOcTree& map, Place place, TileIndex index)
+      : m_map(map), m_place(std::move(place)), m_index(std::move(index)) {}
+
+  void bring(Slot& away) override;
+  void prepare(const Scan& scan) override;
+  void sendAway() override;
+  bool mayChange() const override { return m_place.mayWrite; }
+  int depth() const override { return m_place.depth; }
+  void wasBuilt(const Cell& cell) override;
+
+  /** Adds the tiles that the index has to a map that has none. */
+  void addFromIndex();
+  void bringAll();
+  /** Writes what changed as files of the next generation. \return the index, but for leaves */
+  TileIndex writeChanged();
+  const TileIndex& index() const { return m_index; }
+  void setIndex(TileIndex index) {
+    m_index = std::move(index);
+    m_place.next = m_index.generation + 1;
+  }
+  std::vector<std::string> problems();
+  void addTo(MapFolder::Contents& contents) const;
+
+ private:
+  struct Tile {
+    VoxelIndex place;
+    std::uint64_t written = 0;  ///< generation of its file; 0: it has none
+    std::uint64_t used = 0;     ///< when, by m_clock
+    bool isAway = false, isDirty = false;
+    long nodes = 0, innerNodes = 0;  ///< below it, if it is away
+    std::uint32_t checksum = 0;      ///< of its file
+  };
+  using Entry = std::pair<const std::uint64_t, Tile>;
+
+  NodeStore& store() const { return MapAccess::store(m_map); }
+  Cell cellOf(const Tile& tile) const { return {tile.place, m_place.depth}; }
+  /** Where it is, or is to be written. */
+  std::string fileOf(const Tile& tile) const;
+  NodeArena& arenaWith(bool most);
+  /** Null: it is no inner node (any more). */
+  Slot* slotOf(const Tile& tile) const;
+  void fetch(Slot& slot, Tile& tile);
+  void read(Slot& slot, const Tile& tile);
+  void send(Slot& slot, Tile& tile);
+  void removeChildren(NodeArena& arena, const Slot& octant);
+  void write(const Slot& slot, Tile& tile);
+  /** Sends tiles away that were used before a time, until the rest is within the budget. */
+  void makeRoom(std::uint64_t usedBefore, std::size_t budget);
+
+  SemanticOcTree& m_map;
+  Place m_place;
+  TileIndex m_index;                                ///< as it was saved
+  std::unordered_map<std::uint64_t, Tile> m_tiles;  ///< by Morton code
+  std::uint64_t m_clock = 0;
+  std::size_t m_broughtIn = 0, m_sentOut = 0;
+};
+
+}  // namespace semantic_octree

@@ -1,0 +1,59 @@
+#pragma once
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace semantic_octree {
+
+/** \file
+ * What comes of maps: new ones, or others that are to be filled. The latter have to be empty
+ * and like emptyLike(), and may be in a folder of tiles that is open for writing (MapFolder), so
+ * that they need not fit into memory. If filling fails they are not to be used. */
+
+/** The same nodes, to the last bit.
+ * \param copy to be filled \throw std::invalid_argument it is not empty, or not like the map. */
+void copyTo(SemanticOcTree& copy, const SemanticOcTree& map);
+
+/** Whether a sum of evidence is put into the class filter's limits. */
+enum class Limits {
+  /** As after an insertion. */
+  Apply,
+  /** Left as it is, to be added to further maps; the next scan that meets a voxel limits it. */
+  Keep
+};
+
+/** Adds what maps of one frame know, as if each had been made of scans that the others have not
+ * seen: log-odds h_k - prior are summed voxel by voxel.
+ *
+ * Maps that age (SemanticOcTree::age()) are added as they are now; the sum's clock is the latest of
+ * theirs.
+ *
+ * The order of the maps leaves no trace, not even in the last bit. Neither does grouping, as long
+ * as partial sums are made with Limits::Keep, no voxel has more than three named classes, and no
+ * sum leaves the range of log-odds, 31.99 on either side (four maps of 24 classes that are all as
+ * sure as they can be). What is beyond is lowered into the range, all classes alike.
+ * \throw std::invalid_argument no maps, or maps that differ in resolution, classes or filter
+ * parameters; says which. */
+SemanticOcTree merged(const std::vector<const SemanticOcTree*>& maps,
+                      Limits limits = Limits::Apply);
+/** \param sum to be filled \throw std::invalid_argument also if it is not empty. */
+void mergeTo(SemanticOcTree& sum, const std::vector<const SemanticOcTree*>& maps,
+             Limits limits = Limits::Apply);
+
+/** The voxels whose centers are in a box (meters, map frame).
+ * \throw std::invalid_argument an empty box, or NaN. */
+SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box);
+
+/** The same map with voxels of 2^levels times the edge. A voxel is as occupied as the most occupied
+ * one in it, its classes are those of the voxels in it with labels, as in
+ * Abstraction::compressedMap. \throw std::invalid_argument levels not 0 to 8. */
+SemanticOcTree coarsened(const SemanticOcTree& map, int levels);
+
+/** The map seen from another frame: a voxel takes the state of the one in which its center lies.
+ * \param T_new_old pose of the map's frame in the new one
+ * \throw std::invalid_argument the pose is not a rigid transformation
+ * \throw std::out_of_range a known part of the map would be outside the new one. */
+SemanticOcTree moved(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_old);
+
+}  // namespace semantic_octree

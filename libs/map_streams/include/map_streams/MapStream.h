@@ -1,0 +1,122 @@
+#pragma once
+#include <semantic_octree/SemanticOcTree.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace semantic_octree {
+
+/** \file
+ * A compressed tree in packets, over a radio that loses, exchanges and repeats them.
+ *
+ * The tree's leaves travel in the order of the alphas at which they appear (see
+ * Abstraction::alphaPath()): first the blocks, each a leaf, then, by falling alpha, what expanding
+ * a node tells, its eight children. So each prefix is an optimal tree. Packets can be read one by
+ * one; what is told of a node that is not there yet waits for it. A map that changed is told by
+ * what differs from the tree that the receiver has. Nothing here knows of sockets or clocks. */
+
+constexpr std::size_t kMaxDatagramBytes = 1000;
+
+/** What travels at once, at most kMaxDatagramBytes. */
+struct Datagram {
+  enum class Type : std::uint8_t {
+    Request = 1,  ///< receiver: these weights
+    Data,         ///< sender
+    Receipt,      ///< receiver: what of the data came
+    End,          ///< sender: nothing comes any more; receiver: this is enough
+    Refusal       ///< sender: why there will be nothing, a text
+  };
+  Type type = Type::Data;
+  /** Chosen by the receiver; all that belongs to its map has it. */
+  std::uint32_t stream = 0;
+  std::string payload;
+
+  std::string bytes() const;
+  /** \throw std::runtime_error not of this program, of another version, cut, or altered (all bytes
+   * are covered by a checksum). */
+  static Datagram of(const std::string& bytes);
+};
+
+/** How far a prefix of a stream leads. */
+struct StreamPrefix {
+  std::size_t packets = 0;
+  std::size_t bytes = 0;  ///< of all datagrams up to its end
+  /** Its tree is the compressed one of this alpha: there, the largest J belongs to it. None: blocks
+   * are missing, or it ends within what belongs together. */
+  std::optional<double> alpha;
+  /** And it is the smallest such tree, as Abstraction has it: all that goes with it is there. */
+  bool isWhole = false;
+};
+
+/** Sends a map to one receiver. */
+class MapSender {
+ public:
+  explicit MapSender(std::uint32_t stream);
+  ~MapSender();
+  MapSender(MapSender&&) noexcept;
+
+  /** Begins with a map, or goes on with what it became meanwhile: computes the packets.
+   * \param map keeps G-values (setAbstraction()), always of the same weights
+   * \param isLast no other map comes behind it
+   * \throw std::logic_error the receiver does not have all of the map before, or it keeps none
+   * \throw std::invalid_argument of another resolution, filter or class table, or other blocks,
+   * than the one before; or more than kMaxPackets packets. */
+  void setMap(SemanticOcTree& map, bool isLast = true);
+  static constexpr std::size_t kMaxPackets = 1 << 20;
+
+  /** What to send next: new packets, and before them those which a receipt told were lost. None:
+   * all were sent. */
+  std::optional<Datagram> next();
+  /** A receipt. \throw std::runtime_error of another stream, or altered. */
+  void accept(const Datagram& receipt);
+  /** Nothing was heard for a while: what was not acknowledged is sent once more. */
+  void repeat();
+  /** The receiver has all of the map. */
+  bool isComplete() const;
+
+  /** After each of the map's packets, in the order of their numbers. */
+  const std::vector<StreamPrefix>& prefixes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> m_state;
+};
+
+/** Receives what a MapSender sends. */
+class MapReceiver {
+ public:
+  explicit MapReceiver(std::uint32_t stream);
+  ~MapReceiver();
+  MapReceiver(MapReceiver&&) noexcept;
+
+  /** Data; what came before is ignored. The map stays valid if this fails.
+   * \throw std::runtime_error of another stream, or altered; or the map is complete and not the
+   * sender's. */
+  void accept(const Datagram& data);
+  /** What came, for the sender. */
+  Datagram receipt() const;
+  /** All of a map, or of its last change, is there. */
+  bool isComplete() const;
+  /** And nothing else comes. */
+  bool isFinished() const;
+
+  /** There is a map: which classes it has is known. */
+  bool hasMap() const;
+  /** What is known up to now. \throw std::logic_error there is none. */
+  SemanticOcTree map() const;
+  std::size_t numLeaves() const;
+  /** Of the present map or change: the packets that came without a gap. */
+  StreamPrefix prefix() const;
+  /** Of the present map or change: all that came, and all that there are (0: not known yet). */
+  std::size_t numPackets() const;
+  std::size_t numExpected() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> m_state;
+};
+
+}  // namespace semantic_octree

@@ -1,0 +1,192 @@
+#include <semantic_abstraction/Abstraction.h>
+
+#include <algorithm>
+#include <cstring>
+#include <deque>
+#include <iterator>
+#include <stdexcept>
+
+#include "StreamPackets.h"
+#include "StreamReceipt.h"
+
+namespace semantic_octree {
+namespace {
+
+constexpr std::size_t kMaxDescriptionPackets = 255;
+
+struct Packet {
+  std::string content;
+  StreamPrefix prefix;
+  bool hasCome = false, isQueued = false;
+  std::uint32_t sequence = 0;  ///< when it was sent last; 0: never
+};
+
+std::vector<Packet> packetsOf(const TreeParts& parts, const PartCoder& coder) {
+  std::vector<Packet> packets;
+  for (PacketContent& packet : semantic_octree::packetsOf(parts, coder, kMaxContent)) {
+    packets.emplace_back();
+    packets.back().content = std::move(packet.bytes);
+    packets.back().prefix = packet.prefix;
+  }
+  return packets;
+}
+
+}  // namespace
+
+struct MapSender::State {
+  std::uint32_t stream;
+  PacketHeader header;                   ///< of the present revision
+  std::unique_ptr<SemanticOcTree> told;  ///< what the receiver will have; null: nothing
+  std::unique_ptr<SemanticOcTree> kind;  ///< an empty map
+  std::unique_ptr<PartCoder> coder;
+  std::vector<Packet> packets;
+  std::vector<StreamPrefix> prefixes;
+  std::size_t numCome = 0, numNew = 0;  ///< packets that came; that were sent at all
+  std::deque<std::size_t> lost;
+
+  std::vector<Packet> description(std::uint32_t checksum, const PartCoder& with,
+                                  const SemanticOcTree& like) const;
+  void take(std::vector<Packet> all, std::size_t numDescription);
+  void checkNext(const SemanticOcTree& empty, int rootDepth) const;
+  void countPrefixes();
+  void lose(std::size_t number);
+};
+
+MapSender::MapSender(std::uint32_t stream) : m_state(std::make_unique<State>()) {
+  m_state->stream = stream;
+}
+MapSender::~MapSender() = default;
+MapSender::MapSender(MapSender&&) noexcept = default;
+
+void MapSender::State::checkNext(const SemanticOcTree& empty, int rootDepth) const {
+  if (kind && *kind != empty)
+    throw std::invalid_argument(
+        "the next map differs from the one before in resolution, filter or class table");
+  if (coder && coder->rootDepth() != rootDepth)
+    throw std::invalid_argument("the next map's blocks are not those of the one before");
+}
+
+/** Parts, packets and the compressed tree take as much memory as each other: the first are gone
+ * when the last is made. */
+void MapSender::setMap(SemanticOcTree& map, bool isLast) {
+  State& s = *m_state;
+  if (!isComplete()) throw std::logic_error("the receiver does not have the map before yet");
+  const Abstraction abstraction(map);
+  auto kind =
+      std::make_unique<SemanticOcTree>(map.getResolution(), map.classes(), map.filterParameters());
+  s.checkNext(*kind, abstraction.rootDepth());
+  auto parts = std::make_unique<TreeParts>(partsOfChange(map, s.told.get()));
+  auto coder = std::make_unique<PartCoder>(
+      s.coder ? *s.coder : coderFor(*parts, map.numClasses(), abstraction.rootDepth()));
+  std::vector<Packet> data = packetsOf(*parts, *coder);
+  parts = nullptr;
+  auto compressed = std::make_unique<SemanticOcTree>(abstraction.compressedMap());
+  std::vector<Packet> all = s.description(checksumOf(*compressed), *coder, *kind);
+  const std::size_t numDescription = all.size();
+  std::move(data.begin(), data.end(), std::back_inserter(all));
+  if (all.size() > kMaxPackets)
+    throw std::invalid_argument("a map of " + std::to_string(all.size()) +
+                                " packets is too large to be sent");
+  s.kind = std::move(kind);
+  s.coder = std::move(coder);
+  s.told = std::move(compressed);
+  s.header.isLast = isLast;
+  s.take(std::move(all), numDescription);
+}
+
+/** What is told before the parts: of the first map how it is coded, too. */
+std::vector<Packet> MapSender::State::description(std::uint32_t checksum, const PartCoder& with,
+                                                  const SemanticOcTree& like) const {
+  StreamDescription d;
+  d.checksum = checksum;
+  d.rootDepth = with.rootDepth();
+  if (header.revision == 0) {
+    d.coding = with.toText();
+    d.kind = fileOf(like);
+  }
+  const std::string text = d.compressed();
+  std::vector<Packet> described;
+  for (std::size_t at = 0; at < text.size(); at += kMaxContent) {
+    described.emplace_back();
+    described.back().content = text.substr(at, kMaxContent);
+  }
+  if (described.size() > kMaxDescriptionPackets)
+    throw std::invalid_argument("a class table too long to be sent");
+  return described;
+}
+
+void MapSender::State::take(std::vector<Packet> all, std::size_t numDescription) {
+  packets = std::move(all);
+  ++header.revision;
+  header.numDescription = static_cast<std::uint8_t>(numDescription);
+  header.count = static_cast<std::uint32_t>(packets.size());
+  numCome = numNew = 0;
+  lost.clear();
+  countPrefixes();
+}
+
+void MapSender::State::countPrefixes() {
+  prefixes.clear();
+  std::size_t bytes = 0;
+  for (const Packet& packet : packets) {
+    prefixes.push_back(packet.prefix);
+    prefixes.back().packets = prefixes.size();
+    prefixes.back().bytes = bytes += kHeaderBytes + packet.content.size();
+  }
+}
+
+std::optional<Datagram> MapSender::next() {
+  State& s = *m_state;
+  while (!s.lost.empty() && s.packets[s.lost.front()].hasCome) s.lost.pop_front();
+  std::size_t number = s.numNew;
+  if (!s.lost.empty()) {
+    number = s.lost.front();
+    s.lost.pop_front();
+  } else if (s.numNew == s.packets.size()) {
+    return std::nullopt;
+  } else {
+    ++s.numNew;
+  }
+  Packet& packet = s.packets[number];
+  packet.isQueued = false;
+  packet.sequence = ++s.header.sequence;
+  s.header.number = static_cast<std::uint32_t>(number);
+  s.header.isOptimal = packet.prefix.alpha.has_value();
+  s.header.alpha = static_cast<float>(packet.prefix.alpha.value_or(0));
+  return Datagram{Datagram::Type::Data, s.stream, s.header.bytes() + packet.content};
+}
+
+void MapSender::State::lose(std::size_t number) {
+  Packet& packet = packets[number];
+  if (packet.hasCome || packet.isQueued || packet.sequence == 0) return;
+  packet.isQueued = true;
+  lost.push_back(number);
+}
+
+void MapSender::accept(const Datagram& receipt) {
+  State& s = *m_state;
+  if (receipt.stream != s.stream || receipt.type != Datagram::Type::Receipt)
+    throw std::runtime_error("a datagram of stream " + std::to_string(receipt.stream) +
+                             ", expected a receipt of stream " + std::to_string(s.stream));
+  const StreamReceipt r = StreamReceipt::of(receipt.payload);
+  if (r.revision != s.header.revision) return;
+  const std::size_t known = std::min(s.packets.size(), r.numPackets());
+  for (std::size_t i = 0; i < known; ++i) {
+    Packet& packet = s.packets[i];
+    if (r.has(i) && !packet.hasCome) {
+      packet.hasCome = true;
+      ++s.numCome;
+    }
+    if (!r.has(i) && packet.sequence <= r.sequence) s.lose(i);
+  }
+}
+
+void MapSender::repeat() {
+  for (std::size_t i = 0; i < m_state->packets.size(); ++i) m_state->lose(i);
+}
+
+bool MapSender::isComplete() const { return m_state->numCome == m_state->packets.size(); }
+
+const std::vector<StreamPrefix>& MapSender::prefixes() const { return m_state->prefixes; }
+
+}  // namespace semantic_octree

@@ -1,0 +1,59 @@
+#pragma once
+#include <map_streams/MapStream.h>
+
+#include "PartCoder.h"
+#include "TreeParts.h"
+
+namespace semantic_octree {
+
+/** Of a Data datagram's payload, before the packet's own bytes. Little endian, without gaps. */
+struct PacketHeader {
+  std::uint16_t revision = 0;           ///< 1: the first map, 2: its first change, ...
+  std::uint8_t numDescription = 0;      ///< so many packets from the first on are its description
+  bool isLast = false;                  ///< of the stream
+  bool isOptimal = false;               ///< the prefix up to here, for `alpha`
+  std::uint32_t number = 0, count = 0;  ///< of the packet, from 0; of all
+  std::uint32_t sequence = 0;           ///< how many were sent up to now, repetitions counted
+  float alpha = 0;
+
+  static constexpr std::size_t kBytes = 20;
+  std::string bytes() const;
+  /** \throw std::runtime_error what cannot be. */
+  static PacketHeader of(const std::string& payload);
+};
+
+/** Bytes of a datagram's and of a packet's header; for what is behind them. */
+constexpr std::size_t kHeaderBytes = 12 + PacketHeader::kBytes;
+constexpr std::size_t kMaxContent = kMaxDatagramBytes - kHeaderBytes;
+
+/** What is told before the parts: of the first map which classes it has, how its parts are coded,
+ * and of each a checksum of its file. */
+struct StreamDescription {
+  std::uint32_t checksum = 0;
+  int rootDepth = 0;
+  std::string coding;  ///< PartCoder::toText()
+  std::string kind;    ///< an empty map as a file
+
+  std::string compressed() const;
+  /** \throw std::runtime_error altered. */
+  static StreamDescription of(const std::string& compressed);
+};
+
+/** CRC-32 of a map's file. */
+std::uint32_t checksumOf(const SemanticOcTree& map);
+std::string fileOf(const SemanticOcTree& map);
+
+/** What stands in a packet behind its header. */
+struct PacketContent {
+  std::string bytes;
+  StreamPrefix prefix;  ///< without its numbers of packets and bytes
+};
+
+/** Parts, in order, as packets of at most so many bytes. They end where optimal trees do, unless
+ * one packet cannot hold what belongs together. */
+std::vector<PacketContent> packetsOf(const TreeParts& parts, const PartCoder& coder,
+                                     std::size_t maxBytes);
+/** A coder that has learned from these. */
+PartCoder coderFor(const TreeParts& parts, int numClasses, int rootDepth);
+
+}  // namespace semantic_octree

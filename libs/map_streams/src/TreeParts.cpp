@@ -1,0 +1,158 @@
+#include "TreeParts.h"
+
+#include <algorithm>
+
+namespace semantic_octree {
+namespace {
+
+/** When inner nodes of the compressed tree come in: asked for in the order of a walk depth first.
+ */
+class Steps {
+ public:
+  explicit Steps(const Abstraction& abstraction) : m_steps(stepsOf(abstraction)) {}
+
+  std::size_t of(const CellPath& cell) {
+    while (m_next + 1 < m_tau.size() && cellOf(m_next) < cell) ++m_next;
+    return m_steps.stepOf(m_tau[m_next]);
+  }
+  const tree_abstraction::AlphaSteps& alphas() const { return m_steps; }
+
+ private:
+  /** Fills m_tau and m_cells, too. */
+  tree_abstraction::AlphaSteps stepsOf(const Abstraction& abstraction) {
+    std::vector<double> all;
+    abstraction.forEachTau([&](const Abstraction::NodeTau& n) {
+      if (n.tau > 0) all.push_back(n.tau);
+      if (!n.isExpanded) return;
+      m_tau.push_back(n.tau);
+      const CellPath cell = CellPath::of(n.lowest, n.depth);
+      m_cells.push_back(cell.path << kDepthBits | static_cast<unsigned>(cell.depth));
+    });
+    return {std::move(all), m_tau};
+  }
+  CellPath cellOf(std::size_t i) const {
+    constexpr std::uint64_t kDepths = (1 << kDepthBits) - 1;
+    return {m_cells[i] >> kDepthBits, static_cast<int>(m_cells[i] & kDepths)};
+  }
+
+  static constexpr int kDepthBits = 5;
+  std::vector<double> m_tau;
+  std::vector<std::uint64_t> m_cells;  ///< path and depth
+  std::size_t m_next = 0;
+  tree_abstraction::AlphaSteps m_steps;
+};
+
+/** What a receiver has of a cube. */
+struct Before {
+  /** Part: of a larger leaf. */
+  enum class Kind { None, Leaf, Inner, Part };
+  Kind kind = Kind::None;
+  Node node;  ///< leaf or inner node
+
+  static Before of(const Node& node) {
+    if (!node) return {};
+    return {node.isLeaf() ? Kind::Leaf : Kind::Inner, node};
+  }
+  Before child(int i) const {
+    if (kind == Kind::Inner) return of(node.child(i));
+    return {kind == Kind::None ? Kind::None : Kind::Part, {}};
+  }
+  bool isNode() const { return kind == Kind::Leaf || kind == Kind::Inner; }
+};
+
+class Comparison {
+ public:
+  Comparison(const SemanticOcTree& map, const Abstraction& abstraction,
+             const SemanticOcTree* before, Steps& steps, PartList& parts)
+      : m_map(map),
+        m_abstraction(abstraction),
+        m_before(before),
+        m_steps(steps),
+        m_rootDepth(abstraction.rootDepth()),
+        m_parts(parts) {}
+
+  void run() {
+    compare(m_map.root(), CellPath(), Before::of(m_before ? m_before->root() : Node()));
+  }
+
+ private:
+  bool isInner(const Node& node) const { return node && m_abstraction.isExpanded(node); }
+  StreamLeaf leafOf(const Node& node) const {
+    return node ? StreamLeaf::of(contentOf(node, m_map.numClasses())) : StreamLeaf();
+  }
+  bool isLeafOf(const Before& before, const StreamLeaf& leaf) const {
+    return before.kind == Before::Kind::Leaf &&
+           StreamLeaf::of(contentOf(before.node, m_map.numClasses())) == leaf;
+  }
+
+  /** At the depth of the roots and above. */
+  void compare(const Node& node, const CellPath& cell, const Before& before) {
+    const bool inner = isInner(node);
+    if (inner && cell.depth < m_rootDepth) {
+      for (int i = 0; i < 8; ++i) compare(node.child(i), cell.child(i), before.child(i));
+    } else if (inner) {
+      if (!before.isNode()) addLeaf(cell, leafOf(node));
+      compareOctet(node, cell, before, 0);
+    } else if (node || before.kind != Before::Kind::None) {
+      const StreamLeaf leaf = leafOf(node);
+      if (!isLeafOf(before, leaf)) addLeaf(cell, leaf);
+    }
+  }
+
+  void addLeaf(const CellPath& cell, const StreamLeaf& leaf) {
+    TreePart part;
+    part.cell = cell;
+    part.leaves[0] = leaf;
+    m_parts.add(part, 0, true);
+  }
+
+  /** \param stepAbove of the node's parent */
+  void compareOctet(const Node& node, const CellPath& cell, const Before& before,
+                    std::size_t stepAbove) {
+    TreePart part;
+    part.cell = cell;
+    part.isOctet = true;
+    part.mask = 0;
+    const std::size_t step = m_steps.of(cell);
+    const bool wasInner = before.kind == Before::Kind::Inner;
+    for (int i = 0; i < 8; ++i) {
+      const Node child = node.child(i);
+      const Before was = wasInner ? before.child(i) : Before();
+      if (isInner(child) ? was.isNode() : !child && was.kind == Before::Kind::None) continue;
+      part.leaves[i] = leafOf(child);
+      const bool isSame = !isInner(child) && isLeafOf(was, part.leaves[i]);
+      part.mask |= static_cast<std::uint8_t>(!isSame << i);
+    }
+    if (part.mask != 0) m_parts.add(part, step, stepAbove < step);
+    for (int i = 0; i < 8; ++i)
+      if (const Node child = node.child(i); isInner(child))
+        compareOctet(child, cell.child(i), wasInner ? before.child(i) : Before(), step);
+  }
+
+  const SemanticOcTree& m_map;
+  const Abstraction& m_abstraction;
+  const SemanticOcTree* m_before;
+  Steps& m_steps;
+  int m_rootDepth;
+  PartList& m_parts;
+};
+
+}  // namespace
+
+TreeParts partsOfChange(SemanticOcTree& map, const SemanticOcTree* before) {
+  const Abstraction abstraction(map);
+  Steps steps(abstraction);
+  TreeParts result;
+  for (std::size_t step = 0; step + 1 < steps.alphas().numSteps(); ++step) {
+    result.alphas.push_back(steps.alphas().alpha(step));
+    result.ties.push_back(steps.alphas().highestAlpha(step));
+  }
+  // Also of what rounding alone expands.
+  result.alphas.push_back(abstraction.options().weights.alpha);
+  result.ties.push_back(result.alphas.back());
+  Comparison(map, abstraction, before, steps, result.parts).run();
+  result.parts.sort();
+  return result;
+}
+
+}  // namespace semantic_octree

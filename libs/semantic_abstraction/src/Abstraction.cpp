@@ -1,0 +1,213 @@
+#include <semantic_octree/store/TreeBuilder.h>
+
+#include <stdexcept>
+
+#include "InnerNodes.h"
+#include "LeafLog.h"
+
+namespace semantic_octree {
+namespace {
+
+GTree* gTreeOf(const SemanticOcTree& map) { return dynamic_cast<GTree*>(MapAccess::observer(map)); }
+
+GTree& neededGTreeOf(const SemanticOcTree& map) {
+  if (GTree* const gTree = gTreeOf(map)) return *gTree;
+  throw std::logic_error("the map keeps no G-values: call setAbstraction() first");
+}
+
+using IsExpanded = std::function<bool(const Node&)>;
+
+/** A map's nodes, down to the compressed tree's leaves (see TreeBuilder). */
+class CompressedCursor {
+ public:
+  CompressedCursor(int numClasses, const IsExpanded& isExpanded, const Node& node)
+      : m_numClasses(numClasses),
+        m_isExpanded(isExpanded),
+        m_node(node),
+        m_isLeaf(!node || node.isLeaf() || !isExpanded(node)) {}
+  bool known() const { return static_cast<bool>(m_node); }
+  bool isLeaf() const { return m_isLeaf; }
+  LeafContent content() const { return contentOf(m_node, m_numClasses); }
+  CompressedCursor child(int i) const { return {m_numClasses, m_isExpanded, m_node.child(i)}; }
+
+ private:
+  int m_numClasses;
+  const IsExpanded& m_isExpanded;
+  Node m_node;
+  bool m_isLeaf;
+};
+
+double knownVolume(const Node& node) {
+  if (node.isLeaf()) return 1;
+  double sum = 0;
+  for (int i = 0; i < 8; ++i)
+    if (const Node child = node.child(i)) sum += knownVolume(child);
+  return sum / 8;
+}
+
+}  // namespace
+
+std::optional<double> AbstractionMeasures::retention(std::size_t term) const {
+  if (full.information[term] < 1e-12) return std::nullopt;
+  return compressed.information[term] / full.information[term];
+}
+
+void setAbstraction(SemanticOcTree& map, const AbstractionOptions& options) {
+  options.validate(map.numClasses());
+  MapAccess::setObserver(
+      map, std::make_unique<GTree>(options, MapAccess::filter(map), map.getResolution()));
+}
+
+void dropAbstraction(SemanticOcTree& map) { MapAccess::setObserver(map, nullptr); }
+
+bool hasAbstraction(const SemanticOcTree& map) { return gTreeOf(map) != nullptr; }
+
+Abstraction::Abstraction(SemanticOcTree& map) : m_map(map), m_gTree(neededGTreeOf(map)) {}
+
+CompressedTree Abstraction::compressedTree() const { return {MapAccess::store(m_map), m_gTree}; }
+
+const AbstractionOptions& Abstraction::options() const { return m_gTree.options(); }
+
+int Abstraction::rootDepth() const {
+  return options().frame == AbstractionOptions::Frame::Free ? m_gTree.blockDepth() : 0;
+}
+
+bool Abstraction::isExpanded(const Node& node) const { return compressedTree().isExpanded(node); }
+
+std::vector<LeafCell> Abstraction::leaves() const {
+  std::vector<LeafCell> leaves;
+  if (m_map.empty()) return leaves;
+  compressedTree().forEachLeaf(m_map.root(), Cell(), [&](const Node& node, const Cell& cell) {
+    leaves.push_back(leafCell(node, cell));
+  });
+  return leaves;
+}
+
+std::vector<LeafCell> Abstraction::leavesIn(const octomap::OcTreeKey& low,
+                                            const octomap::OcTreeKey& high,
+                                            bool onlyOccupied) const {
+  std::vector<LeafCell> leaves;
+  if (m_map.empty()) return leaves;
+  const VoxelIndex first(low[0], low[1], low[2]), last(high[0], high[1], high[2]);
+  const auto isWanted = [&](const Node& node, const Cell& cell) {
+    const VoxelIndex lowest = cell.lowest();
+    return (!onlyOccupied || node.getLogOdds() > 0) && (lowest <= last).all() &&
+           (lowest + cell.edge() > first).all();
+  };
+  compressedTree().forEachLeaf(
+      m_map.root(), Cell(), isWanted,
+      [&](const Node& node, const Cell& cell) { leaves.push_back(leafCell(node, cell)); });
+  return leaves;
+}
+
+double Abstraction::objective() const {
+  const Slot& root = MapAccess::store(m_map).root();
+  return root.isInner() ? compressedTree().state(root)->gValue : 0.0;
+}
+
+AbstractionMeasures Abstraction::measures() const {
+  AbstractionMeasures m;
+  const std::size_t numTerms = options().weights.terms.size();
+  m.full.information.assign(numTerms, 0.0);
+  m.compressed.information.assign(numTerms, 0.0);
+  if (m_map.empty()) return m;
+  m.objective = objective();
+  for (auto* tree : {&m.full, &m.compressed}) tree->numLeaves = tree->numKnownLeaves = 1;
+  const double total = totalDensity();
+  const auto count = [&](tree_abstraction::TreeMeasures& tree, const InnerNode& n) {
+    const double p = total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
+    tree.leafEntropy += p * n.splitEntropy;
+    for (std::size_t t = 0; t < numTerms; ++t)
+      tree.information[t] += p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
+    tree.numKnownLeaves += n.numChildren - 1;
+    tree.numLeaves += (n.cell.depth < m_gTree.blockDepth() ? n.numChildren : 8) - 1;
+  };
+  InCompressedTree inCompressed;
+  forEachInner([&](const InnerNode& n) {
+    count(m.full, n);
+    if (inCompressed.visit(n)) count(m.compressed, n);
+  });
+  return m;
+}
+
+double Abstraction::totalDensity() const {
+  const Slot& root = MapAccess::store(m_map).root();
+  return root.isInner() ? compressedTree().state(root)->density : 1.0;
+}
+
+std::vector<double> Abstraction::distribution(const LeafCell& leaf) const {
+  return m_map.distribution(m_map.search(leaf.key, leaf.depth));
+}
+
+double Abstraction::knownShare(const LeafCell& leaf) const {
+  return knownVolume(m_map.search(leaf.key, leaf.depth));
+}
+
+SemanticOcTree Abstraction::compressedMap() const {
+  SemanticOcTree compressed = emptyCompressedMap();
+  compressTo(compressed);
+  return compressed;
+}
+
+SemanticOcTree Abstraction::emptyCompressedMap() const {
+  return {m_map.getResolution(), m_map.classes(), m_map.filterParameters()};
+}
+
+void Abstraction::compressTo(SemanticOcTree& compressed) const {
+  TreeBuilder::checkTarget(compressed, emptyCompressedMap());
+  if (m_map.empty()) return;
+  const CompressedTree tree = compressedTree();
+  const IsExpanded isExpanded = [&tree](const Node& node) { return tree.isExpanded(node); };
+  TreeBuilder::fill(compressed, CompressedCursor(m_map.numClasses(), isExpanded, m_map.root()),
+                    TreeBuilder::Merge::Never);
+}
+
+std::shared_ptr<LeafLog> Abstraction::leafLog() const {
+  const auto log = readLog(m_gTree.leafLog);
+  try {
+    log->update(MapAccess::store(m_map), m_gTree, m_map.root());
+  } catch (...) {
+    m_gTree.leafLog.reset();
+    throw;
+  }
+  return log;
+}
+
+void Abstraction::setAlpha(double alpha) {
+  std::vector<double> weights;
+  for (const auto& term : options().weights.terms) weights.push_back(term.weight);
+  setWeights(weights, alpha);
+}
+
+void Abstraction::setWeights(const std::vector<double>& termWeights, double alpha) {
+  tree_abstraction::AbstractionWeights weights = options().weights;
+  if (termWeights.size() != weights.terms.size())
+    throw std::invalid_argument("abstraction: " + std::to_string(termWeights.size()) +
+                                " weights, expected one for each of the " +
+                                std::to_string(weights.terms.size()) + " terms");
+  for (std::size_t t = 0; t < termWeights.size(); ++t) weights.terms[t].weight = termWeights[t];
+  weights.alpha = alpha;
+  weights.validate(m_map.numClasses());
+  GTree::Worker& worker = m_gTree.worker(0);
+  m_gTree.setWeights(termWeights, alpha);
+  recomputeAll(worker, MapAccess::store(m_map), MapAccess::store(m_map).root(), Cell());
+}
+
+void Abstraction::setRegions(const std::vector<Region>& regions) {
+  for (const Region& region : regions) region.validate();
+  const DensityField before = m_gTree.density();
+  GTree::Worker& worker = m_gTree.worker(0);
+  m_gTree.setRegions(regions);
+  worker.recomputeWhereChanged(MapAccess::store(m_map), MapAccess::store(m_map).root(), Cell(),
+                               {before, m_gTree.density()});
+}
+
+SemanticOcTree compressedMap(const SemanticOcTree& map, const IsExpanded& isExpanded) {
+  SemanticOcTree compressed(map.getResolution(), map.classes(), map.filterParameters());
+  if (map.empty()) return compressed;
+  TreeBuilder::fill(compressed, CompressedCursor(map.numClasses(), isExpanded, map.root()),
+                    TreeBuilder::Merge::Never);
+  return compressed;
+}
+
+}  // namespace semantic_octree

@@ -1,0 +1,56 @@
+#pragma once
+#include <semantic_abstraction/Abstraction.h>
+
+#include "GTree.h"
+
+namespace semantic_octree {
+
+/** G-tree search, its second half: the walk from a map's root down, along the nodes that GTree has
+ * found worth expanding, to the leaves of the compressed tree. */
+class CompressedTree {
+ public:
+  CompressedTree(const NodeStore& store, const GTree& gTree) : m_store(store), m_gTree(gTree) {}
+
+  bool isExpanded(const Node& node) const {
+    if (node.isLeaf()) return false;
+    const InnerState& s = *state(NodeStore::slotOf(node));
+    const int octant = NodeStore::octantOf(node);
+    return octant < 0 ? s.isExpanded : s.expandedOctants >> octant & 1;
+  }
+  InnerState* state(const Slot& inner) const { return m_store.state<InnerState>(inner); }
+  /** A leaf of the map that reaches above the blocks, where everything is expanded: its blocks are
+   * the compressed tree's leaves. */
+  bool isSplitAbove(const Node& node, const Cell& cell) const {
+    return node.isLeaf() && m_gTree.isFreeFrame(cell.depth);
+  }
+
+  /** Calls f(node, cell) for each leaf in a cell, depth first. Does not go into nodes for which
+   * isWanted(node, cell) is false. */
+  template <typename F, typename W>
+  void forEachLeaf(const Node& node, const Cell& cell, const W& isWanted, const F& f) const {
+    if (!isWanted(node, cell)) return;
+    if (isSplitAbove(node, cell)) {
+      for (int i = 0; i < 8; ++i) forEachLeaf(node, cell.child(i), isWanted, f);
+    } else if (isExpanded(node)) {
+      for (int i = 0; i < 8; ++i)
+        if (const Node child = node.child(i)) forEachLeaf(child, cell.child(i), isWanted, f);
+    } else {
+      f(node, cell);
+    }
+  }
+  template <typename F>
+  void forEachLeaf(const Node& node, const Cell& cell, const F& f) const {
+    forEachLeaf(
+        node, cell, [](const Node&, const Cell&) { return true; }, f);
+  }
+
+ private:
+  const NodeStore& m_store;
+  const GTree& m_gTree;
+};
+
+inline LeafCell leafCell(const Node& node, const Cell& cell) {
+  return {cell.key(), static_cast<unsigned>(cell.depth), node};
+}
+
+}  // namespace semantic_octree

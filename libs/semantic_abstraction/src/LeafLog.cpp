@@ -1,0 +1,152 @@
+#include "LeafLog.h"
+
+#include <semantic_octree/store/MapAccess.h>
+
+namespace semantic_octree {
+namespace {
+
+/** A leaf's key and depth, and whether it came. */
+constexpr int kDepthAt = 48, kAddedAt = 63;
+
+std::uint64_t pack(const Cell& leaf, bool isAdded) {
+  const octomap::OcTreeKey key = leaf.key();
+  return std::uint64_t(isAdded) << kAddedAt | std::uint64_t(leaf.depth) << kDepthAt |
+         std::uint64_t(key[2]) << 32 | std::uint64_t(key[1]) << 16 | key[0];
+}
+
+bool isAdded(std::uint64_t packed) { return packed >> kAddedAt; }
+std::uint64_t leafOf(std::uint64_t packed) { return packed << 1 >> 1; }
+
+LeafCell unpack(std::uint64_t packed) {
+  const auto key = [packed](int at) { return static_cast<octomap::key_type>(packed >> at); };
+  return {{key(0), key(16), key(32)}, static_cast<unsigned>(leafOf(packed) >> kDepthAt), {}};
+}
+
+}  // namespace
+
+void LeafLog::update(const NodeStore& store, const GTree& gTree, const Node& root) {
+  m_notes = isRead();
+  if (root) return update(CompressedTree(store, gTree), m_root, root, Cell());
+  remove(m_root, Cell());
+  m_root = kNone;
+}
+
+TreeChange LeafLog::everything() const {
+  TreeChange change;
+  change.all = true;
+  change.added.reserve(m_numLeaves);
+  addLeaves(m_root, Cell(), change.added);
+  return change;
+}
+
+/** A leaf that came and went, or went and came back, is as if nothing had happened. */
+TreeChange LeafLog::since(const Place& place) {
+  std::vector<std::uint64_t> entries(place.begin(), place.end());
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](std::uint64_t a, std::uint64_t b) { return leafOf(a) < leafOf(b); });
+  TreeChange change;
+  for (auto it = entries.begin(); it != entries.end();) {
+    const auto ofNext = std::find_if(
+        it, entries.end(), [&](std::uint64_t entry) { return leafOf(entry) != leafOf(*it); });
+    if ((ofNext - it) % 2 == 1)
+      (isAdded(*it) ? change.added : change.removed).push_back(unpack(*it));
+    it = ofNext;
+  }
+  return change;
+}
+
+void LeafLog::update(const CompressedTree& tree, Index& told, const Node& node, const Cell& cell) {
+  if (!tree.isExpanded(node) && !tree.isSplitAbove(node, cell)) return becomeLeaf(told, cell);
+  const bool wasInner = told >= kFirstInner;
+  const bool hasState = !node.isLeaf() && NodeStore::octantOf(node) < 0;
+  InnerState* state = hasState ? tree.state(NodeStore::slotOf(node)) : nullptr;
+  if (wasInner && state && !state->changedBelow) return;
+  if (!wasInner) {
+    remove(told, cell);
+    told = newInner();
+  }
+  updateChildren(tree, told, node, cell);
+  if (state) state->changedBelow = 0;
+}
+
+void LeafLog::updateChildren(const CompressedTree& tree, Index& told, const Node& node,
+                             const Cell& cell) {
+  for (int i = 0; i < 8; ++i) {
+    Index below = m_inner[told - kFirstInner][i];
+    if (node.isLeaf()) {  // a leaf of the map above the blocks stands for each of its parts
+      update(tree, below, node, cell.child(i));
+    } else if (const Node child = node.child(i)) {
+      update(tree, below, child, cell.child(i));
+    } else {
+      remove(below, cell.child(i));
+      below = kNone;
+    }
+    m_inner[told - kFirstInner][i] = below;
+  }
+}
+
+void LeafLog::becomeLeaf(Index& told, const Cell& cell) {
+  if (told == kLeaf) return;
+  remove(told, cell);
+  told = kLeaf;
+  ++m_numLeaves;
+  note(cell, true);
+}
+
+void LeafLog::remove(Index told, const Cell& cell) {
+  if (told == kNone) return;
+  if (told == kLeaf) {
+    --m_numLeaves;
+    return note(cell, false);
+  }
+  for (int i = 0; i < 8; ++i) remove(m_inner[told - kFirstInner][i], cell.child(i));
+  m_free.push_back(told);
+}
+
+void LeafLog::note(const Cell& leaf, bool isAdded) {
+  if (m_notes) push(pack(leaf, isAdded));
+}
+
+LeafLog::Index LeafLog::newInner() {
+  if (m_free.empty()) {
+    m_inner.push_back({});
+    return static_cast<Index>(m_inner.size()) - 1 + kFirstInner;
+  }
+  const Index index = m_free.back();
+  m_free.pop_back();
+  m_inner[index - kFirstInner].fill(kNone);
+  return index;
+}
+
+void LeafLog::addLeaves(Index told, const Cell& cell, std::vector<LeafCell>& leaves) const {
+  if (told == kLeaf) leaves.push_back(leafCell(Node(), cell));
+  if (told < kFirstInner) return;
+  for (int i = 0; i < 8; ++i) addLeaves(m_inner[told - kFirstInner][i], cell.child(i), leaves);
+}
+
+struct LeafFollower::Content {
+  FollowedMap map;
+  std::unique_ptr<LeafLog::Place> place = nullptr;
+};
+
+LeafFollower::LeafFollower(SemanticOcTree& map)
+    : m(std::make_unique<Content>(Content{FollowedMap(map)})) {}
+LeafFollower::~LeafFollower() = default;
+LeafFollower::LeafFollower(LeafFollower&&) noexcept = default;
+LeafFollower& LeafFollower::operator=(LeafFollower&&) noexcept = default;
+
+TreeChange LeafFollower::leaves() {
+  const auto log = Abstraction(m->map.get()).leafLog();
+  LeafLog::Place& place = placeIn(m->place, log);
+  TreeChange change = place.isLost() ? log->everything() : LeafLog::since(place);
+  place.moveToEnd();
+  return change;
+}
+
+std::size_t LeafFollower::skipLeaves() {
+  const auto log = Abstraction(m->map.get()).leafLog();
+  placeIn(m->place, log).moveToEnd();
+  return log->numLeaves();
+}
+
+}  // namespace semantic_octree

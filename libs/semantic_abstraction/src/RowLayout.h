@@ -1,0 +1,172 @@
+#pragma once
+#include <semantic_abstraction/AbstractionOptions.h>
+#include <semantic_octree/store/Cell.h>
+#include <semantic_octree/store/ClassRecord.h>
+#include <tree_abstraction/TermSet.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "RowKernel.h"
+
+namespace semantic_octree {
+
+/** How a node's class distribution becomes a row of outcome probabilities and entropies (see
+ * RowSizes), and what the row of unknown space is. */
+class RowLayout {
+ public:
+  RowLayout(const AbstractionOptions& options, int numClasses);
+
+  const RowSizes& sizes() const { return m_sizes; }
+  /** Doubles of a row: probabilities and entropies. */
+  int rowSize() const { return m_sizes.row(); }
+  /** Where term t of the options stands among the entropies and divergences. */
+  int positionOf(int term) const { return m_order[term]; }
+
+  /** Row of a cell. */
+  void rowOf(const Belief& belief, double* row) const;
+  const double* unknownRow() const { return m_unknownRow.data(); }
+  /** Row and divergences of a node from its children's rows and shares (null: each is 1/8). */
+  void mix(const double* const children[8], const double* shares, double* row, double* js) const;
+
+ private:
+  /** Entry of a row = p(free) * free + number of classes * p(rest) + what named classes exceed it
+   * by. */
+  struct Entry {
+    double free = 0, classes = 0;
+  };
+  struct WideTerm {
+    int position, first, width;
+  };
+  /** Fills in the entropies behind the probabilities. */
+  void fillEntropies(double* row) const;
+  void fillWideEntropies(double* row) const;
+  void addTerm(const tree_abstraction::TermSet& terms, std::size_t term, int firstEntry);
+
+  int m_numClasses;
+  RowSizes m_sizes;
+  std::vector<int> m_order;
+  std::vector<Entry> m_entries;
+  std::vector<std::vector<int>> m_entriesOfClass;
+  std::vector<WideTerm> m_wideTerms;
+  std::vector<double> m_unknownRow;
+};
+
+inline std::size_t hashOf(const ClassRecord& record) {
+  std::uint32_t bits[3];
+  static_assert(sizeof(ClassRecord) == sizeof bits);
+  std::memcpy(bits, &record, sizeof bits);
+  std::size_t hash = 0;
+  for (const std::uint32_t b : bits) hash = (hash ^ b) * 0x9e3779b97f4a7c15u;
+  return hash ^ hash << 32;
+}
+
+/** An octant's eight values. */
+struct OctantPattern {
+  std::uint64_t low = 0, high = 0;
+  OctantPattern() = default;
+  explicit OctantPattern(const Units* values) {
+    std::memcpy(&low, values, sizeof low);
+    std::memcpy(&high, values + 4, sizeof high);
+  }
+  bool operator==(const OctantPattern& o) const { return low == o.low && high == o.high; }
+};
+
+inline std::size_t hashOf(const OctantPattern& p) {
+  const std::size_t hash = (p.low * 0x9e3779b97f4a7c15u ^ p.high) * 0xd6e8feb86659fd93u;
+  return hash ^ hash << 32;
+}
+
+/** Rows of leaves without a class record (see RowLayout), by their log-odds: each is computed when
+ * first asked for, and kept. */
+class ValueRows {
+ public:
+  explicit ValueRows(std::size_t rowSize)
+      : m_rowSize(rowSize),
+        m_known(kValues),
+        m_rows(static_cast<double*>(std::calloc(kValues * rowSize, sizeof(double)))) {
+    if (!m_rows) throw std::bad_alloc();
+  }
+
+  /** \param compute computes a row that is not there: compute(value, row) */
+  template <typename F>
+  const double* row(Units value, const F& compute) {
+    const std::size_t i = static_cast<std::uint16_t>(value);
+    double* const row = m_rows.get() + i * m_rowSize;
+    if (!m_known[i]) {
+      compute(value, row);
+      m_known[i] = 1;
+    }
+    return row;
+  }
+
+ private:
+  static constexpr std::size_t kValues = 1 << 16;
+  struct Free {
+    void operator()(double* p) const { std::free(p); }
+  };
+  std::size_t m_rowSize;
+  std::vector<char> m_known;
+  /** Pages that no value touches cost nothing. */
+  std::unique_ptr<double, Free> m_rows;
+};
+
+/** Rows of leaves (see RowLayout) by what the leaves hold. A few values make up most of a map, and
+ * a row takes exponentials and logarithms to compute. A row stays where it is until release(). */
+template <typename Key>
+class RowCache {
+ public:
+  explicit RowCache(std::size_t rowSize)
+      : m_rowSize(rowSize), m_slots(kSlots), m_rows((kSlots + kInUse) * rowSize) {}
+
+  /** Rows asked for up to now are not in use any more. At most eight are between two releases. */
+  void release() {
+    ++m_age;
+    m_numSpares = 0;
+  }
+
+  void clear() {
+    for (Slot& slot : m_slots) slot.usedAt = 0;
+  }
+
+  /** \param compute computes a row that is not there: compute(key, row) */
+  template <typename F>
+  const double* row(const Key& key, const F& compute) {
+    const std::size_t i = hashOf(key) >> (64 - kSlotBits);
+    Slot& slot = m_slots[i];
+    if (slot.usedAt != 0 && slot.key == key) {
+      slot.usedAt = m_age;
+      return &m_rows[i * m_rowSize];
+    }
+    return newRow(key, i, compute);
+  }
+
+ private:
+  static constexpr int kSlotBits = 11, kInUse = 8;
+  static constexpr std::size_t kSlots = std::size_t(1) << kSlotBits;
+  struct Slot {
+    Key key{};
+    std::uint64_t usedAt = 0;  ///< 0: empty
+  };
+
+  template <typename F>
+  const double* newRow(const Key& key, std::size_t i, const F& compute) {
+    const bool inUse = m_slots[i].usedAt == m_age;
+    double* const row = &m_rows[(inUse ? kSlots + m_numSpares++ : i) * m_rowSize];
+    compute(key, row);
+    if (!inUse) m_slots[i] = {key, m_age};
+    return row;
+  }
+
+  std::size_t m_rowSize;
+  std::uint64_t m_age = 1;
+  std::size_t m_numSpares = 0;
+  std::vector<Slot> m_slots;
+  std::vector<double> m_rows;  ///< of the slots, then spare ones for keys that meet in a slot
+};
+
+}  // namespace semantic_octree

@@ -1,0 +1,100 @@
+#include <semantic_octree/store/MapAccess.h>
+#include <semantic_octree/store/Scan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "Decay.h"
+#include "ScanMerger.h"
+
+namespace semantic_octree {
+namespace {
+
+/** The same nodes with room for this bookkeeping; those of tiles are away then. */
+std::unique_ptr<NodeStore> storeFor(const NodeStore& store, std::size_t stateBytes) {
+  if (!store.tiles()) return std::make_unique<NodeStore>(store, stateBytes);
+  store.tiles()->sendAway();
+  return store.frame(stateBytes);
+}
+
+}  // namespace
+
+void MapAccess::setObserver(SemanticOcTree& map, std::unique_ptr<NodeObserver> observer) {
+  const bool isInTiles = store(map).tiles();
+  auto nodes = storeFor(store(map), observer ? observer->stateBytes() : 0);
+  if (observer && !isInTiles) recomputeAll(observer->worker(0), *nodes, nodes->root(), Cell());
+  std::swap(map.m_observer, observer);
+  map.m_store = std::move(nodes);  // first, so that tiles come in where the old nodes were
+  if (isInTiles) recomputeTileByTile(map);
+}
+
+void MapAccess::recomputeTileByTile(SemanticOcTree& map) {
+  if (!map.m_observer) return;
+  try {
+    recomputeAll(map.m_observer->worker(0), store(map), store(map).root(), Cell());
+  } catch (...) {  // tiles came and went meanwhile: what was cannot be had back
+    map.m_observer = nullptr;
+    throw;
+  }
+}
+
+std::weak_ptr<SemanticOcTree*> MapAccess::self(SemanticOcTree& map) {
+  if (!map.m_self) map.m_self = std::make_shared<SemanticOcTree*>(&map);
+  return map.m_self;
+}
+
+void MapAccess::tellAll(SemanticOcTree& map) {
+  map.m_tileLog.reset();
+  if (map.m_observer) map.m_observer->tellAll();
+}
+
+SemanticOcTree& FollowedMap::get() const {
+  const auto map = m_map.lock();
+  if (!map) throw std::logic_error("the map that is followed is gone");
+  MapAccess::store(**map);  // it is not broken
+  return **map;
+}
+
+void MapAccess::checkNotInTiles(const SemanticOcTree& map) {
+  if (map.m_store && map.m_store->tiles())
+    throw std::logic_error(
+        "a map in a folder of tiles cannot be copied, cleared, corrected or have half-lives");
+}
+
+SemanticOcTree MapAccess::emptyWith(const SemanticOcTree& map, double resolution) {
+  SemanticOcTree empty(resolution, map.classes(), map.filterParameters());
+  empty.setPruning(map.pruning());
+  empty.m_clock = map.m_clock;
+  return empty;
+}
+
+void MapAccess::merge(SemanticOcTree& map, const Scan& scan, int threads) {
+  if (!scan.hasVoxels()) return;
+  if (store(map).tiles()) store(map).tiles()->prepare(scan);
+  change(map, [&](const MergeTarget& target) { mergeScan(target, scan, threads); });
+}
+
+std::int64_t MapAccess::timeIn(const SemanticOcTree& map, double seconds) {
+  if (!(seconds >= 0 && seconds <= 1e9))
+    throw std::invalid_argument("a map ages by 0 to 1000000000 s, not by " +
+                                std::to_string(seconds) + " s");
+  if (!map.classes().hasHalfLives()) return map.m_clock;
+  const std::int64_t time = map.m_clock + std::llround(seconds * 1e9);
+  if (time > kOldestMap) throw std::out_of_range("a map ages by no more than 200 years in all");
+  return time;
+}
+
+void MapAccess::ageUntil(SemanticOcTree& map, std::int64_t time) {
+  if (time == map.m_clock) return;
+  std::vector<int> steps;
+  for (int id = 0; id <= map.numClasses(); ++id)
+    steps.push_back(
+        decaySteps(map.classes().halfLife(static_cast<ClassId>(id)), map.m_clock, time));
+  if (!map.empty() && std::any_of(steps.begin(), steps.end(), [](int n) { return n > 0; }))
+    change(map, [&](const MergeTarget& target) { decay(target, steps); });
+  map.m_clock = time;
+}
+
+}  // namespace semantic_octree

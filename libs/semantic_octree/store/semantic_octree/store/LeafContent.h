@@ -1,0 +1,40 @@
+#pragma once
+#include <semantic_octree/store/NodeStore.h>
+
+#include <optional>
+#include <vector>
+
+namespace semantic_octree {
+
+/** What a leaf holds. */
+struct LeafContent {
+  Units value = 0;
+  std::optional<ClassRecord> record;
+
+  const ClassRecord* recordOrNull() const { return record ? &*record : nullptr; }
+  void write(NodeArena& arena, Slot& unknown) const {
+    arena.createLeaf(unknown, value);
+    if (record) arena.setRecord(unknown, *record);
+  }
+};
+
+/** p(class k | occupied) of a node, K shares: of the mixture, by volume, of the leaves below in
+ * which labels were seen. (Free space and what was hit without a label know nothing of classes;
+ * with them, a cell that holds both would state too little.) Empty if there are none. */
+std::vector<double> classShares(const Node& node, int numClasses);
+
+/** Of a leaf, or of an inner node that becomes one: occupancy of its most occupied leaf, classes as
+ * by classShares(). */
+LeafContent contentOf(const Node& node, int numClasses);
+
+struct ClassLogOdds {
+  double logOdds;
+  ClassId id;
+};
+
+/** Keeps the likeliest of the named classes by name; the others join the rest, whose value becomes
+ * the logarithm of the mean odds of its members.
+ * \param rest log-odds of each of the numClasses - named.size() classes that have no name */
+Belief truncated(std::vector<ClassLogOdds> named, double rest, int numClasses);
+
+}  // namespace semantic_octree

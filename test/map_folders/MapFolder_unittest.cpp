@@ -1,0 +1,291 @@
+#include <gtest/gtest.h>
+#include <map_correction/KeyframeMap.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapContents.h>
+#include <map_operations/MapOperations.h>
+#include <semantic_abstraction/Abstraction.h>
+#include <semantic_octree/MapFollower.h>
+
+#include "FolderDrive.h"
+#include "Voxels.h"
+
+using namespace folder_drive;
+
+namespace {
+
+struct Variant {
+  const char* name;
+  double tileSize = 3.2;
+  bool pruning = true, softLabels = false;
+  int threads = 1;
+};
+
+const Variant kVariants[] = {{"smallest tiles"},
+                             {"larger tiles", 12.8},
+                             {"not pruned", 6.4, false},
+                             {"soft labels", 6.4, true, true},
+                             {"three threads", 6.4, true, false, 3}};
+
+void expectSameAnswers(const SemanticOcTree& map, const SemanticOcTree& expected) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 500; ++i) {
+    const octomap::point3d at(static_cast<float>(between(random, -15, 15)),
+                              static_cast<float>(between(random, -15, 15)),
+                              static_cast<float>(between(random, -15, 15)));
+    const CellState a = map.query(at.x(), at.y(), at.z()),
+                    b = expected.query(at.x(), at.y(), at.z());
+    EXPECT_EQ(a.status, b.status);
+    EXPECT_EQ(a.occupancy, b.occupancy);
+    EXPECT_EQ(a.likeliestClass, b.likeliestClass);
+    EXPECT_EQ(a.probability, b.probability);
+    if (i % 10) continue;
+    const auto hit = map.castRay({0, 0, 0}, at), other = expected.castRay({0, 0, 0}, at);
+    ASSERT_EQ(hit.has_value(), other.has_value());
+    if (hit) {
+      EXPECT_EQ(hit->key, other->key);
+    }
+  }
+}
+
+}  // namespace
+
+TEST(MapFolder, isTheMapInOnePieceToTheLastBit) {
+  for (const Variant& v : kVariants) {
+    SCOPED_TRACE(v.name);
+    const TemporaryFolder folder;
+    const auto scans = someScans(1, 12, v.softLabels);
+    SemanticOcTree whole = emptyMap(v.pruning), map = emptyMap(v.pruning);
+    MapFolder tiles(map, folder / "map", kWrite, tight(v.tileSize));
+    insertAll(whole, scans, v.threads);
+    insertAll(map, scans, v.threads);
+    EXPECT_GT(tiles.contents().broughtIn, 10u);
+    EXPECT_GT(tiles.contents().sentOut, 10u);
+    EXPECT_EQ(map.size(), whole.size());
+    EXPECT_EQ(map.getNumLeafNodes(), whole.getNumLeafNodes());
+    expectSameAnswers(map, whole);
+    EXPECT_EQ(voxelsOf(map), voxelsOf(whole));
+    EXPECT_TRUE(map == whole);
+    EXPECT_EQ(bytesOf(map), bytesOf(whole));
+    tiles.save();
+    EXPECT_TRUE(loadMap(folder / "map") == whole);
+    EXPECT_EQ(loadMap(folder / "map").size(), whole.size());
+    EXPECT_EQ(loadMap(folder / "map").memoryUsage(), whole.memoryUsage());
+  }
+}
+
+TEST(MapFolder, goesOnWhereAnotherEnded) {
+  const TemporaryFolder folder;
+  const auto scans = someScans(2, 9);
+  SemanticOcTree whole = emptyMap();
+  insertAll(whole, scans);
+  for (std::size_t i = 0; i < scans.size(); i += 3)
+    for (int again = 0; again < 2; ++again) {  // the first time it is not saved
+      SemanticOcTree map = emptyMap();
+      MapFolder tiles(map, folder / "map", kWrite, tight());
+      insertAll(map, {scans.begin() + i, scans.begin() + i + 3});
+      if (again) tiles.save();
+    }
+  EXPECT_TRUE(loadMap(folder / "map") == whole);
+}
+
+TEST(MapFolder, staysWithinItsBudgetButForAScan) {
+  const TemporaryFolder folder;
+  SemanticOcTree map = emptyMap();
+  MapFolderOptions options = tight();
+  options.memory = 0.3;
+  MapFolder tiles(map, folder / "map", kWrite, options);
+  for (const PosedCloud& scan : someScans(3, 60)) {
+    SemanticOcTree alone = emptyMap();
+    alone.insert(scan.cloud, scan.T_map_sensor);
+    map.insert(scan.cloud, scan.T_map_sensor);
+    EXPECT_LT(map.memoryUsage(), 300000 + 4 * alone.memoryUsage());
+  }
+  const std::size_t least = tiles.contents().tilesInMemory;
+  EXPECT_GT(least, 0u);
+  EXPECT_LT(least, tiles.contents().tiles);
+  EXPECT_TRUE(map.query(100, 100, 100).status == CellState::Status::Unknown);
+}
+
+TEST(MapFolder, keepsWhatWasUsedLast) {
+  const TemporaryFolder folder;
+  saveScans(folder / "map", someScans(4, 6));
+  SemanticOcTree map = emptyMap();
+  MapFolderOptions options = tight();
+  options.memory = 1e-6 * static_cast<double>(loadMap(folder / "map").memoryUsage()) / 2;
+  MapFolder tiles(map, folder / "map", kRead, options);
+  const auto ask = [&](std::size_t i) {
+    const Eigen::Vector3d center = 6.4 * (placeOf(tileFiles(folder / "map")[i]).array() + 0.5);
+    map.query(center.x(), center.y(), center.z());
+    return tiles.contents().broughtIn;
+  };
+  EXPECT_EQ(ask(0), 1u);
+  EXPECT_EQ(ask(1), 2u);
+  EXPECT_EQ(ask(0), 2u);
+  const std::size_t n = tiles.contents().tiles;
+  for (std::size_t i = 2; i < n; ++i) EXPECT_EQ(ask(i), i + 1);
+  EXPECT_EQ(ask(n - 1), n);
+  EXPECT_EQ(ask(0), n + 1);
+}
+
+TEST(MapFolder, aTilesFileIsAMapOfItsCubeAlone) {
+  const TemporaryFolder folder;
+  const auto scans = someScans(5, 2);
+  saveScans(folder / "map", scans);
+  SemanticOcTree whole = emptyMap();
+  insertAll(whole, scans);
+  std::map<VoxelId, std::vector<double>> all;
+  for (const auto& file : tileFiles(folder / "map")) {
+    const Eigen::Vector3d at = placeOf(file);
+    const SemanticOcTree tile = loadMap(file);
+    const auto voxels = voxelsOf(tile);
+    for (const auto& [voxel, p] : voxels)
+      for (int axis = 0; axis < 3; ++axis)
+        EXPECT_EQ(std::floor((voxel[axis] - (voxel[axis] > 10000 ? 32768 : 0)) / 16.0), at[axis]);
+    all.insert(voxels.begin(), voxels.end());
+  }
+  for (const auto& file : std::filesystem::directory_iterator(folder / "map"))
+    if (file.path().filename().string().rfind("leaves", 0) == 0) {
+      const auto voxels = voxelsOf(loadMap(file.path()));
+      EXPECT_FALSE(voxels.empty());  // what is free as a whole
+      all.insert(voxels.begin(), voxels.end());
+    }
+  EXPECT_EQ(all, voxelsOf(whole));
+}
+
+TEST(MapFolder, abstractionByTileIsThatOfTheWhole) {
+  for (const auto frame : {AbstractionOptions::Frame::Free, AbstractionOptions::Frame::Charged})
+    for (const bool before : {true, false}) {
+      const TemporaryFolder folder;
+      const auto scans = someScans(6, 10);
+      AbstractionOptions options = someAbstraction();
+      options.frame = frame;
+      options.regions = {{Region::Shape::Sphere, {1, 2, 0}, {}, 5, 3}};
+      SemanticOcTree whole = emptyMap(), map = emptyMap();
+      setAbstraction(whole, options);
+      MapFolder tiles(map, folder / "map", kWrite, tight(before ? 6.4 : 12.8));
+      if (before) setAbstraction(map, options);
+      insertAll(whole, scans);
+      insertAll(map, scans);
+      if (!before) setAbstraction(map, options);
+      Abstraction a(map), b(whole);
+      const auto expectSame = [&] {
+        EXPECT_EQ(a.objective(), b.objective());
+        EXPECT_EQ(a.measures().compressed.information, b.measures().compressed.information);
+        EXPECT_EQ(a.measures().compressed.numLeaves, b.measures().compressed.numLeaves);
+        EXPECT_EQ(a.alphaPath().alphaForLeaves(3000), b.alphaPath().alphaForLeaves(3000));
+        EXPECT_TRUE(a.compressedMap() == b.compressedMap());
+        EXPECT_EQ(a.leaves(), b.leaves());
+        EXPECT_TRUE(map == whole);  // all G-values and mixtures
+      };
+      expectSame();
+      a.setWeights({2, 1}, 0.003);
+      b.setWeights({2, 1}, 0.003);
+      expectSame();
+      a.setRegions({});
+      b.setRegions({});
+      expectSame();
+      EXPECT_LT(tiles.contents().tilesInMemory, tiles.contents().tiles);
+    }
+}
+
+TEST(MapFolder, tellsWhatChangedOfTheCompressedTree) {
+  const TemporaryFolder folder;
+  SemanticOcTree whole = emptyMap(), map = emptyMap();
+  setAbstraction(whole, someAbstraction());
+  setAbstraction(map, someAbstraction());
+  MapFolder tiles(map, folder / "map", kWrite, tight());
+  MapFollower tilesOfMap = map.follow(), tilesOfWhole = whole.follow();
+  LeafFollower ofMap(map), ofWhole(whole);
+  for (const PosedCloud& scan : someScans(7, 8)) {
+    whole.insert(scan.cloud, scan.T_map_sensor);
+    map.insert(scan.cloud, scan.T_map_sensor);
+    const TreeChange a = ofMap.leaves(), b = ofWhole.leaves();
+    EXPECT_EQ(a.added, b.added);
+    EXPECT_EQ(a.removed, b.removed);
+    EXPECT_EQ(tilesOfMap.tiles().tiles, tilesOfWhole.tiles().tiles);
+  }
+}
+
+TEST(MapFolder, whoFollowedTheMapBeforeIsToldAllThatIsInIt) {
+  const TemporaryFolder folder;
+  saveScans(folder / "map", someScans(7, 4));
+  SemanticOcTree map = emptyMap();
+  MapFollower follower = map.follow();
+  EXPECT_TRUE(follower.tiles().tiles.empty());
+  const MapFolder tiles(map, folder / "map", MapFolder::Access::Read, tight());
+  const TileChange change = follower.tiles();
+  EXPECT_TRUE(change.all);
+  EXPECT_EQ(change.tiles, map.follow().tiles().tiles);
+  EXPECT_GT(change.tiles.size(), 100u);
+}
+
+TEST(MapFolder, operationsReadItTileByTile) {
+  const TemporaryFolder folder;
+  const auto scans = someScans(8, 8);
+  SemanticOcTree whole = emptyMap(), map = emptyMap();
+  insertAll(whole, scans);
+  saveScans(folder / "map", scans);
+  MapFolder tiles(map, folder / "map", kRead, tight());
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(-5, -6, -2), Eigen::Vector3d(7, 5, 4));
+  EXPECT_TRUE(cropped(map, box) == cropped(whole, box));
+  EXPECT_LT(tiles.contents().broughtIn, tiles.contents().tiles);
+  EXPECT_TRUE(coarsened(map, 2) == coarsened(whole, 2));
+  EXPECT_TRUE(merged({&map, &whole}) == merged({&whole, &whole}));
+  const Eigen::Isometry3d pose =
+      Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.5, Eigen::Vector3d(0, 0.6, 0.8));
+  EXPECT_TRUE(moved(map, pose) == moved(whole, pose));
+  EXPECT_EQ(contentsOf(map).voxelsOfClass, contentsOf(whole).voxelsOfClass);
+  double a[3], b[3];
+  map.getMetricMax(a[0], a[1], a[2]);
+  whole.getMetricMax(b[0], b[1], b[2]);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(a[i], b[i]);
+}
+
+TEST(MapFolder, refusesWhatAMapInPartsCannotDo) {
+  const TemporaryFolder folder;
+  const auto scans = someScans(9, 3);
+  saveScans(folder / "map", scans);
+  SemanticOcTree map = emptyMap();
+  {
+    MapFolder tiles(map, folder / "map", kRead, tight());
+    EXPECT_THROW(SemanticOcTree copy(map), std::logic_error);
+    EXPECT_THROW(map.clear(), std::logic_error);
+    EXPECT_THROW(insertAll(map, scans), std::logic_error);
+    EXPECT_THROW(tiles.save(), std::logic_error);
+    EXPECT_THROW(MapFolder(map, folder / "map", kRead), std::invalid_argument);
+  }
+  EXPECT_THROW(bytesOf(map), std::logic_error);  // its folder was closed
+  SemanticOcTree corrected = emptyMap();
+  MapFolder tiles(corrected, folder / "other", kWrite, tight());
+  KeyframeMap keyframes(corrected);
+  const KeyframeId k = keyframes.begin(Eigen::Isometry3d::Identity());
+  keyframes.insert(scans[0].cloud, scans[0].T_map_sensor);
+  EXPECT_THROW(keyframes.remove(k), std::logic_error);
+  EXPECT_FALSE(corrected.isBroken());
+  EXPECT_FALSE(MapFolder::isAt(folder / "other"));  // nothing was saved
+}
+
+TEST(MapFolder, anEmptyMapIsOne) {
+  const TemporaryFolder folder;
+  saveScans(folder / "map", {});
+  EXPECT_TRUE(MapFolder::isAt(folder / "map"));
+  EXPECT_TRUE(loadMap(folder / "map") == emptyMap());
+}
+
+TEST(MapFolder, withoutTilesThatAreNotWantedTheirCubesAreUnknown) {
+  const TemporaryFolder folder;
+  saveScans(folder / "map", someScans(3, 8));
+  const auto isRight = [](const Eigen::AlignedBox3d& cube) { return cube.min().x() >= 0; };
+  StoredMap all(folder / "map"), right(folder / "map", 500, isRight);
+  constexpr double kFar = 60;
+  const Eigen::AlignedBox3d half(Eigen::Vector3d(0, -kFar, -kFar), Eigen::Vector3d::Constant(kFar));
+  EXPECT_TRUE(cropped(right.tree(), half) == cropped(all.tree(), half));
+  std::size_t leaves = 0;
+  for (auto leaf = right.tree().begin_leafs(); leaf != right.tree().end_leafs(); ++leaf)
+    if (const auto cube = leaf.getCoordinate(); cube.x() < 0)
+      EXPECT_GE(leaf.getSize(), 6.4);  // those are in no tile
+    else
+      ++leaves;
+  EXPECT_GT(leaves, 1000u);
+  EXPECT_LT(right.folder()->contents().tiles, all.folder()->contents().tiles);
+}

@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+#include <map_operations/OctomapConversion.h>
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
+
+#include "RandomScans.h"
+
+using namespace semantic_octree;
+
+namespace {
+
+SemanticOcTree someMap(unsigned seed, bool labeled = true) {
+  std::mt19937 random(seed);
+  semantic_types::ClassTable classes;
+  for (int id = 1; id <= 5; ++id)
+    classes.add("class " + std::to_string(id),
+                {static_cast<std::uint8_t>(40 * id), 7, static_cast<std::uint8_t>(id)});
+  SemanticOcTree map(0.4, classes);
+  for (int i = 0; i < 4; ++i) {
+    PosedCloud scan = randomScan(random);
+    if (!labeled) scan.cloud.classes.clear();
+    map.insert(scan.cloud, scan.T_map_sensor);
+  }
+  return map;
+}
+
+/** Calls f(ours, theirs) for each node of both, which must be the same cubes. */
+template <class Tree, class F>
+void forEachPair(const SemanticOcTree& map, const Tree& tree, const F& f) {
+  ASSERT_EQ(map.size(), tree.size());
+  ASSERT_EQ(map.getNumLeafNodes(), tree.getNumLeafNodes());
+  auto ours = map.begin_tree();
+  for (auto theirs = tree.begin_tree(); theirs != tree.end_tree(); ++theirs, ++ours) {
+    ASSERT_TRUE(ours != map.end_tree());
+    ASSERT_EQ(ours.getKey(), theirs.getKey());
+    ASSERT_EQ(ours.getIndexKey(), theirs.getIndexKey());
+    ASSERT_EQ(ours.getDepth(), theirs.getDepth());
+    ASSERT_EQ(ours.isLeaf(), theirs.isLeaf());
+    ASSERT_EQ(ours.getSize(), theirs.getSize());
+    ASSERT_LT(ours.getCoordinate().distance(theirs.getCoordinate()), 1e-4);
+    f(*ours, *theirs);
+  }
+  EXPECT_TRUE(ours == map.end_tree());
+}
+
+}  // namespace
+
+TEST(OctomapConversion, keepsEveryNodeInOrderWithItsLogOdds) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const SemanticOcTree map = someMap(seed);
+    const auto tree = toOcTree(map);
+    forEachPair(map, *tree, [](const SemanticOcTreeNode& ours, const octomap::OcTreeNode& theirs) {
+      ASSERT_NEAR(ours.getLogOdds(), theirs.getLogOdds(), 1e-30);
+      ASSERT_EQ(ours.getLogOdds() > 0, theirs.getLogOdds() >= 0);
+    });
+  }
+}
+
+TEST(OctomapConversion, ofAMapWithoutClassesBringsItBackToTheLastBit) {
+  const SemanticOcTree map = someMap(5, false);
+  EXPECT_TRUE(fromOcTree(*toOcTree(map), map.classes()) == map);
+}
+
+TEST(OctomapConversion, byColorsBringsTheLikeliestClassesBack) {
+  const SemanticOcTree map = someMap(6);
+  const SemanticOcTree back = fromColorOcTree(*toColorOcTree(map), map.classes());
+  std::size_t occupied = 0;
+  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+    const CellState was = map.query(*leaf), is = back.query(leaf.getKey());
+    ASSERT_EQ(was.status, is.status);
+    ASSERT_NEAR(was.occupancy, is.occupancy, 0.03);  // a sure class lowers it, see the limits
+    if (was.status != CellState::Status::Occupied) continue;
+    ++occupied;
+    ASSERT_EQ(was.likeliestClass, is.likeliestClass);
+  }
+  EXPECT_GT(occupied, 100u);
+}
+
+TEST(OctomapConversion, ofAnEmptyMapIsEmpty) {
+  const SemanticOcTree empty(0.4, semantic_types::ClassTable(someMap(1).classes()));
+  EXPECT_EQ(toOcTree(empty)->size(), 0u);
+  EXPECT_EQ(toColorOcTree(empty)->size(), 0u);
+  EXPECT_TRUE(fromOcTree(octomap::OcTree(0.4), empty.classes()) == empty);
+}

@@ -1,0 +1,194 @@
+// Datagrams and maps that a stream does not take.
+#include <gtest/gtest.h>
+#include <semantic_abstraction/Abstraction.h>
+
+#include <random>
+#include <sstream>
+
+#include "CraftedTreeFile.h"
+#include "StreamedMaps.h"
+#include "TemporaryFolder.h"
+
+namespace {
+
+using namespace streamed_maps;
+
+/** CRC-32, bit by bit. */
+std::uint32_t crcOf(const std::string& bytes) {
+  std::uint32_t crc = ~0u;
+  for (const unsigned char byte : bytes) {
+    crc ^= byte;
+    for (int i = 0; i < 8; ++i) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+  }
+  return ~crc;
+}
+
+TEST(MapStreamFaults, whatDoesNotBelongHereIsRefusedByName) {
+  SemanticOcTree map = smallPlace(someOptions(0.01));
+  MapSender sender(kStream);
+  sender.setMap(map);
+  const Datagram packet = *sender.next();
+  std::string bytes = packet.bytes();
+  MapReceiver receiver(kStream + 1);
+  EXPECT_TRUE(contains(errorOf([&] { receiver.accept(packet); }), "of stream 24301"));
+  EXPECT_TRUE(contains(errorOf([&] { sender.accept(packet); }), "expected a receipt"));
+  EXPECT_TRUE(contains(errorOf([&] { Datagram::of("hello, world"); }), "another program"));
+  EXPECT_TRUE(contains(errorOf([&] { sender.setMap(map); }), "does not have the map"));
+  bytes[6] = 9;  // the version
+  const std::uint32_t crc = crcOf(bytes.substr(4));
+  bytes.replace(0, 4, reinterpret_cast<const char*>(&crc), 4);
+  EXPECT_TRUE(contains(errorOf([&] { Datagram::of(bytes); }), "version 9 of the protocol"));
+  bytes = packet.bytes();
+  bytes.back() ^= 1;
+  EXPECT_TRUE(contains(errorOf([&] { Datagram::of(bytes); }), "checksum"));
+}
+
+TEST(MapStreamFaults, mapsOfAnotherKindAreNoChange) {
+  SemanticOcTree map = smallPlace(someOptions(0.01));
+  MapSender sender(kStream);
+  MapReceiver receiver(kStream);
+  sender.setMap(map);
+  for (const Datagram& packet : packetsOf(sender)) receiver.accept(packet);
+  sender.accept(receiver.receipt());
+  ASSERT_TRUE(sender.isComplete());
+  SemanticOcTree other(0.2, numberedClasses(K + 1));
+  setAbstraction(other, someOptions(0.01));
+  EXPECT_TRUE(contains(errorOf([&] { sender.setMap(other); }), "class table"));
+  AbstractionOptions options = someOptions(0.01);
+  options.blockSize = 6.4;
+  setAbstraction(map, options);
+  EXPECT_TRUE(contains(errorOf([&] { sender.setMap(map); }), "blocks"));
+}
+
+TEST(MapStreamFaults, alteredPacketsAreRefusedAndLeaveAValidMap) {
+  SemanticOcTree map = smallPlace(someOptions(0.01));
+  MapSender sender(kStream);
+  sender.setMap(map);
+  const auto packets = packetsOf(sender);
+  std::mt19937 random(5);
+  for (int trial = 0; trial < 300; ++trial) {
+    MapReceiver receiver(kStream);
+    for (Datagram packet : packets) {
+      if (random() % 4 == 0)  // the checksum of such a datagram matches
+        for (std::size_t n = 1 + random() % 3; n > 0; --n)
+          packet.payload[random() % packet.payload.size()] = static_cast<char>(random());
+      if (random() % 16 == 0) packet.payload.resize(random() % packet.payload.size());
+      try {
+        receiver.accept(packet);
+      } catch (const std::exception&) {
+      }
+    }
+    if (!receiver.hasMap()) continue;
+    const std::string file = fileOf(receiver.map());
+    std::istringstream in(file);
+    ASSERT_TRUE(fileOf(readTree(in)) == file);
+  }
+}
+
+/** A stream's first packet, if its first class had another name. */
+Datagram withFirstClassNamed(const std::string& name, Datagram packet) {
+  PacketHeader h = PacketHeader::of(packet.payload);
+  StreamDescription d = StreamDescription::of(packet.payload.substr(PacketHeader::kBytes));
+  std::string content = contentIn(d.kind);
+  const std::string old = numberedClasses(K).name(1);
+  const auto withSize = [](const std::string& text) {
+    return bytesOf(static_cast<std::uint16_t>(text.size())) + text;
+  };
+  content.replace(content.find(withSize(old)), 2 + old.size(), withSize(name));
+  d.kind = fileAround(content);
+  packet.payload = h.bytes() + d.compressed();
+  return packet;
+}
+
+TEST(MapStreamFaults, classNamesWithControlCharactersAreRefused) {
+  SemanticOcTree map = smallPlace(someOptions(0.01));
+  MapSender sender(kStream);
+  sender.setMap(map);
+  const Datagram first = *sender.next();
+  ASSERT_EQ(PacketHeader::of(first.payload).numDescription, 1);
+  MapReceiver receiver(kStream), other(kStream);
+  const std::string refusal =
+      errorOf([&] { receiver.accept(withFirstClassNamed("road\n!touch x\n", first)); });
+  EXPECT_TRUE(contains(refusal, "the name of class 1, 'road\\x0a!touch x\\x0a'")) << refusal;
+  EXPECT_EQ(errorOf([&] { other.accept(withFirstClassNamed("road, touch x", first)); }), "");
+}
+
+/** A coder's tables with one frequent class record. */
+std::string codingWith(const ClassRecord& record, int numClasses, int rootDepth) {
+  const std::string none = PartCoder(numClasses, rootDepth).toText();
+  std::string text = none.substr(0, 3) + '\1';
+  text.append(reinterpret_cast<const char*>(&record), sizeof(record));
+  return text + std::string(sizeof(Units), '\0') + none.substr(4);
+}
+
+TEST(MapStreamFaults, frequentRecordsThatCannotBeAreRefused) {
+  for (int count = 0; count < 256; ++count) {
+    SCOPED_TRACE(count);
+    ClassRecord record{};
+    record.count = static_cast<std::uint8_t>(count);
+    for (int i = 0; i < std::min(count, 3); ++i) record.ids[i] = static_cast<ClassId>(i + 1);
+    std::size_t next = 0;
+    PartCoder coder(K, 10);
+    const std::string error = errorOf([&] { coder.fromText(codingWith(record, K, 10), next); });
+    EXPECT_EQ(error.empty(), count <= 3) << error;
+  }
+}
+
+TEST(MapStreamFaults, nothingStaysOfADescriptionThatFailed) {
+  MapReceiver receiver(kStream);
+  const auto accept = [&](std::uint32_t number, const std::string& content) {
+    PacketHeader header;
+    header.revision = 1;
+    header.numDescription = 1;
+    header.count = 3;
+    header.number = number;
+    receiver.accept({Datagram::Type::Data, kStream, header.bytes() + content});
+  };
+  const auto descriptionOf = [](ClassId id, int numClasses, int rootDepth) {
+    ClassRecord record{};
+    record.count = 1;
+    record.ids[0] = id;
+    StreamDescription d;
+    d.rootDepth = rootDepth;
+    d.coding = codingWith(record, numClasses, rootDepth);
+    d.kind = fileOf(SemanticOcTree(0.2, numberedClasses(numClasses)));
+    return d.compressed();
+  };
+  // A leaf with the frequent record, in another cube by each of the descriptions.
+  PartCoder coder(K, 10);
+  std::size_t next = 0;
+  ClassRecord record{};
+  record.count = 1;
+  record.ids[0] = K;
+  coder.fromText(codingWith(record, K, 10), next);
+  TreePart part;
+  part.cell = {0777, 10};
+  part.leaves[0].kind = StreamLeaf::Kind::WithRecord;
+  part.leaves[0].record = record;
+  accept(1, coder.encode({&part}));
+  accept(2, "x");
+  EXPECT_EQ(errorOf([&] { accept(0, descriptionOf(K, K, 10)); }),
+            "altered: a description too short");
+  EXPECT_EQ(receiver.map().getNumLeafNodes(), 1u);
+  EXPECT_EQ(errorOf([&] { accept(0, descriptionOf(1, 1, 12)); }),
+            "altered: a description too short");
+  EXPECT_EQ(receiver.map().numClasses(), 1);
+  EXPECT_EQ(receiver.map().getNumLeafNodes(), 1u);
+}
+
+TEST(MapStreamFaults, cutAndAlteredDatagramsDoNotPass) {
+  SemanticOcTree map = smallPlace(someOptions(0.01));
+  MapSender sender(kStream);
+  sender.setMap(map);
+  const std::string whole = sender.next()->bytes();
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_THROW(Datagram::of(whole.substr(0, size)), std::runtime_error);
+  std::mt19937 random(1);
+  for (int i = 0; i < 2000; ++i) {
+    std::string altered = whole;
+    altered[random() % altered.size()] ^= static_cast<char>(1 << random() % 8);
+    EXPECT_THROW(Datagram::of(altered), std::runtime_error);
+  }
+}
+
+}  // namespace

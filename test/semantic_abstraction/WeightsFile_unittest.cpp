@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+#include <semantic_abstraction/TermCatalog.h>
+#include <semantic_abstraction/WeightsFile.h>
+
+#include "TemporaryFolder.h"
+
+using semantic_octree::AbstractionOptions;
+using semantic_octree::AbstractionText;
+using semantic_octree::loadWeights;
+using semantic_types::ClassTable;
+
+namespace {
+
+ClassTable roadTreeWall() {
+  ClassTable table;
+  for (const char* name : {"road", "tree", "wall"}) table.add(name, {});
+  return table;
+}
+
+/** What a file with one solution says. */
+AbstractionOptions ofFile(const std::string& text) {
+  const TemporaryFolder folder;
+  const auto file = loadWeights(folder.write("w.yaml", "name: a\n" + text), roadTreeWall());
+  AbstractionOptions options = file.space;
+  options.weights.terms = file.solutions.at(0).terms;
+  options.weights.alpha = file.solutions.at(0).alpha.value_or(-1);
+  return options;
+}
+
+AbstractionText someText() {
+  AbstractionText text;
+  text.relevant = "road: 1, tree: 0.5";
+  return text;
+}
+
+void expectSame(const AbstractionOptions& a, const AbstractionOptions& b) {
+  EXPECT_EQ(a.blockSize, b.blockSize);
+  EXPECT_EQ(a.unknown, b.unknown);
+  EXPECT_EQ(a.unknownWeight, b.unknownWeight);
+  EXPECT_EQ(a.frame, b.frame);
+  EXPECT_EQ(a.prior, b.prior);
+  EXPECT_EQ(a.weights.alpha, b.weights.alpha);
+  ASSERT_EQ(a.weights.terms.size(), b.weights.terms.size());
+  for (std::size_t i = 0; i < a.weights.terms.size(); ++i) {
+    EXPECT_EQ(a.weights.terms[i].weight, b.weights.terms[i].weight);
+    EXPECT_EQ(a.weights.terms[i].groups, b.weights.terms[i].groups);
+  }
+  ASSERT_EQ(a.regions.size(), b.regions.size());
+  for (std::size_t i = 0; i < a.regions.size(); ++i) {
+    EXPECT_EQ(a.regions[i].shape, b.regions[i].shape);
+    EXPECT_EQ(a.regions[i].a, b.regions[i].a);
+    EXPECT_EQ(a.regions[i].b, b.regions[i].b);
+    EXPECT_EQ(a.regions[i].radius, b.regions[i].radius);
+    EXPECT_EQ(a.regions[i].weight, b.regions[i].weight);
+  }
+}
+
+}  // namespace
+
+TEST(WeightsFile, linesOfTextAndYamlSayTheSame) {
+  AbstractionText text;
+  text.relevant = "road: 1, tree+free_space: 0.5";
+  text.irrelevant = "wall: 0.25";
+  text.everything = 0.1;
+  text.alpha = 0.03;
+  text.blockSize = 1.6;
+  text.unknown = AbstractionText::Unknown::Prior;
+  text.unknownWeight = 0.5;
+  text.frame = AbstractionText::Frame::Charged;
+  text.prior = "free_space: 0.4, wall: 0.4";
+  text.regions = "box 0 0 -1 10 5 3 5; sphere 4 2 0 3 2; corridor 0 0 0 20 0 0 3 4";
+  const AbstractionOptions options = text.forClasses(roadTreeWall());
+  expectSame(options,
+             ofFile("relevant: {road: 1, soft: {classes: [tree, free_space], weight: 0.5}}\n"
+                    "irrelevant: {wall: 0.25}\neverything: 0.1\nalpha: 0.03\n"
+                    "block_size: 1.6\nunknown: prior\nunknown_weight: 0.5\nframe: charged\n"
+                    "prior: {free_space: 0.4, wall: 0.4}\n"
+                    "regions:\n"
+                    " - {box: [[0, 0, -1], [10, 5, 3]], weight: 5}\n"
+                    " - {sphere: [4, 2, 0], radius: 3, weight: 2}\n"
+                    " - {corridor: [[0, 0, 0], [20, 0, 0]], radius: 3, weight: 4}\n"));
+  EXPECT_EQ(options.weights.terms[1].groups, (std::vector<std::vector<int>>{{0, 2}}));
+  EXPECT_EQ(options.weights.terms[2].weight, -0.25);
+  EXPECT_EQ(options.regions[2].radius, 3);
+}
+
+TEST(WeightsFile, classesWithoutAPriorShareTheRest) {
+  AbstractionText text = someText();
+  text.prior = "free_space: 0.4, wall: 0.4";
+  const auto prior = text.forClasses(roadTreeWall()).prior;
+  ASSERT_EQ(prior.size(), 4u);
+  EXPECT_DOUBLE_EQ(prior[0], 0.4);
+  EXPECT_DOUBLE_EQ(prior[1], 0.1);
+  EXPECT_DOUBLE_EQ(prior[2], 0.1);
+  EXPECT_DOUBLE_EQ(prior[3], 0.4);
+  EXPECT_TRUE(someText().forClasses(roadTreeWall()).prior.empty());
+}
+
+TEST(WeightsFile, aBadPriorIsNamed) {
+  const auto refusal = [](const std::string& prior) {
+    AbstractionText text = someText();
+    text.prior = prior;
+    return errorOf([&] { text.forClasses(roadTreeWall()); });
+  };
+  EXPECT_TRUE(contains(refusal("wood: 0.1"), "prior: unknown class 'wood'"))
+      << refusal("wood: 0.1");
+  EXPECT_TRUE(contains(refusal("road: 0.7, tree: 0.7"), "sum to 1.4"));
+  EXPECT_TRUE(contains(refusal("free_space: 0.1, road: 0.1, tree: 0.1, wall: 0.1"), "sum to 0.4"));
+  EXPECT_TRUE(contains(refusal("road: 0.1, road: 0.1"), "'road' twice"));
+  EXPECT_TRUE(contains(refusal("road: -0.1"), "road: -0.1"));
+  EXPECT_TRUE(contains(errorOf([] { ofFile("everything: 1\nprior: {wood: 1}\n"); }),
+                       "w.yaml:3: unknown class 'wood'"));
+}
+
+TEST(WeightsFile, linesOfTextAreCheckedWithoutClasses) {
+  const auto refusal = [](auto change) {
+    AbstractionText text = someText();
+    change(text);
+    return errorOf([&] { text.validate(); });
+  };
+  EXPECT_EQ(refusal([](AbstractionText&) {}), "");
+  EXPECT_TRUE(contains(refusal([](auto& t) { t.relevant = "road"; }), "relevant: 'road'"));
+  EXPECT_TRUE(contains(refusal([](auto& t) { t.irrelevant = "road: inf"; }), "irrelevant"));
+  EXPECT_TRUE(contains(refusal([](auto& t) { t.alpha = -1; }), "alpha is -1"));
+  EXPECT_TRUE(contains(refusal([](auto& t) { t.regions = "sphere 0 0 0 -1 2"; }), "radius"));
+  EXPECT_TRUE(contains(refusal([](auto& t) { t.regions = "cube 1"; }), "cube 1"));
+}
+
+TEST(WeightsFile, aClassCannotBeBothKeptAndDropped) {
+  AbstractionText text = someText();
+  text.irrelevant = "wall+road: 1";
+  EXPECT_TRUE(contains(errorOf([&] { text.forClasses(roadTreeWall()); }),
+                       "class 'road' is both relevant ('road') and irrelevant ('wall+road')"));
+}
+
+TEST(TermCatalog, hasClassesFirstAndEachGroupOnce) {
+  const TemporaryFolder folder;
+  const auto file = loadWeights(
+      folder.write("w.yaml",
+                   "solutions:\n"
+                   " - {name: a, relevant: {g: {classes: [road, tree], weight: 1}, wall: 2}}\n"
+                   " - {name: b, irrelevant: {h: {classes: [tree, road], weight: 3}}}\n"),
+      roadTreeWall());
+  const semantic_octree::TermCatalog catalog(roadTreeWall(), file.solutions);
+  ASSERT_EQ(catalog.size(), 5u);
+  EXPECT_EQ(catalog.name(0), "free_space");
+  EXPECT_EQ(catalog.name(3), "wall");
+  EXPECT_EQ(catalog.name(4), "g");
+  EXPECT_EQ(catalog.allWeights(file.solutions[0]), (std::vector<double>{0, 0, 0, 2, 1}));
+  EXPECT_EQ(catalog.allWeights(file.solutions[1]), (std::vector<double>{0, 0, 0, 0, -3}));
+}
