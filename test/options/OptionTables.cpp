@@ -129,8 +129,6 @@ std::vector<OptionTable> drivingTables() {
   return {
       table<DriveOptions>("Driving", "`[drive]` of `semantic-map-drive` and `drive-study`."),
       table<GuideOptions>("Which path is driven", "`[guide]`."),
-      table<FrontierOptions>("Exploring", "`[frontiers]`."),
-      table<RecoveryOptions>("Recovery from where the robot must not be", "`[recovery]`."),
       table<ObstacleOptions>("Obstacles", "`[obstacles]`."),
       table<MoverOptions>("Those who move", "`[movers]`."),
       table<FocusOptions>("Detail along the path",

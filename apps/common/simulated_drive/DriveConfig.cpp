@@ -137,8 +137,6 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     readPlanner(sections, file.parent_path(), config.planner);
     readDrive(sections, file.parent_path(), config);
     sections.readAll("guide", config.guide);
-    sections.readAll("frontiers", config.guide.frontiers);
-    sections.readAll("recovery", config.guide.recovery);
     sections.readAll("obstacles", config.obstacles);
     sections.readAll("movers", config.movers);
     sections.readAll("focus", config.focus);

@@ -278,7 +278,7 @@ bool DriveLoop::isOver() {
     endAtGoal();
     return true;
   }
-  if (m_guide->gaveUp() && std::abs(state().speed) < m_config.guide.atRest) {
+  if (m_guide->gaveUp() && std::abs(state().speed) < semantic_driving::DriveOptions::kAtRest) {
     m_record.end = DriveEnd::Unreachable;
     m_record.reason = m_guide->reason();
     return true;
