@@ -80,6 +80,7 @@ void readSensors(Sections& sections, SensorConfig& sensors) {
   sensors.describe(general);
   const IniSection section = sections.read("sensors", general);
   if (!sensors.hasCamera && !sensors.hasLidar) section.fail("camera and lidar are both off");
+  sensors.lidar.noise = sensors.camera.noise;
   sensors.camera.describe(camera);
   camera.add("pitch", sensors.cameraPitch, "degrees", between(-90, 90), "how far down it looks");
   sections.read("camera", camera);
@@ -117,6 +118,7 @@ void SensorConfig::describe(OptionList& list) {
   list.add("period", period, "s", above(0), "between observations");
   list.add("camera", hasCamera, "", "the robot has a labeled camera");
   list.add("lidar", hasLidar, "", "the robot has a labeled LiDAR");
+  camera.noise.describe(list);
 }
 
 DriveConfig loadDriveConfig(const fs::path& file) {

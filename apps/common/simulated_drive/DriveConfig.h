@@ -23,7 +23,7 @@ struct SensorConfig {
   double period = 0.5;     ///< s
   std::uint64_t seed = 1;  ///< of the odometry's noise, too
 
-  /** What is not the camera's or the LiDAR's. */
+  /** What is not the camera's or the LiDAR's alone: the LiDAR has the camera's noise. */
   void describe(strict_files::OptionList& list);
 };
 
