@@ -73,7 +73,7 @@ TEST(MapDefinition, everyOptionIsReadFromItsSection) {
       "[Maps_semanticOctoMap_00_likelihoodOpts]\ndecimation = 7\nuse_labels = false\n"
       "point_weight = 0.5\n"
       "[Maps_semanticOctoMap_00_renderOpts]\ncoloring = height\noccupied = no\nfree = yes\n"
-      "min_occupancy = 0.6\nmin_probability = 0.4\nmin_height = -1\nmax_height = inf\n");
+      "min_height = -1\nmax_height = inf\n");
   const auto& insertion = map->insertionOptions;
   EXPECT_EQ(map->tree().getResolution(), 0.25);
   EXPECT_EQ(map->tree().classes().name(2), "tree");
@@ -97,8 +97,6 @@ TEST(MapDefinition, everyOptionIsReadFromItsSection) {
   EXPECT_EQ(map->renderingOptions.coloring, TRenderingOptions::Coloring::Height);
   EXPECT_FALSE(map->renderingOptions.occupied);
   EXPECT_TRUE(map->renderingOptions.free);
-  EXPECT_EQ(map->renderingOptions.minOccupancy, 0.6);
-  EXPECT_EQ(map->renderingOptions.minProbability, 0.4);
   EXPECT_EQ(map->renderingOptions.minHeight, -1);
   EXPECT_EQ(map->renderingOptions.maxHeight, INFINITY);
 }

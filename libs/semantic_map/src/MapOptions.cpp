@@ -15,7 +15,6 @@ using mrpt::config::CConfigFileBase;
 using mrpt::serialization::CArchive;
 using strict_files::above;
 using strict_files::atLeast;
-using strict_files::between;
 using strict_files::checkOptions;
 using strict_files::IniSection;
 using strict_files::Option;
@@ -160,9 +159,6 @@ void TRenderingOptions::describe(OptionList& list) {
   list.add("occupied", occupied, "", "show occupied cells");
   list.add("free", free, "", "show free cells");
   list.add("compressed", compressed, "", "show the optimal abstraction, where one is kept");
-  list.add("min_occupancy", minOccupancy, "", between(0, 1), "above it, cells are occupied");
-  list.add("min_probability", minProbability, "", between(0, 1),
-           "of the likeliest class of the occupied cells that are shown");
   list.add("min_height", minHeight, "m", anything, "lower cells are left out");
   list.add("max_height", maxHeight, "m", anything, "higher cells are left out");
 }
