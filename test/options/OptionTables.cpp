@@ -46,10 +46,9 @@ std::vector<OptionTable> mapTables() {
                               "applications."),
       table<TInsertionOptions>(
           "Insertion",
-          "`[insertion]`; `_insertOpts`. Of `rawlog2semantic-map`, `kind` and `min_confidence` are "
-          "in `[labels]`, `occlusion_parallax` is in `[cameras]`. `increments` and all behind it "
-          "are "
-          "the filter's: they are stored in the map, and only maps of the same filter can be "
+          "`[insertion]`; `_insertOpts`, which has `kind` and `min_confidence` of "
+          "[labels](#labels), too. `increments` and all behind it are the filter's: they are "
+          "stored in the map, and only maps of the same filter can be "
           "merged; `semantic-map-info MAP --json` says what a map has."),
       table<TAbstractionOptions>(
           "Abstraction",
@@ -90,8 +89,7 @@ std::vector<OptionTable> labelTables() {
   return {
       table<TrajectoryOptions>("Trajectory", "`[trajectory]` of `rawlog2semantic-map`."),
       table<LabelFolderOptions, LabelModel, ScanStreamOptions>(
-          "Labels",
-          "`[labels]` of `rawlog2semantic-map`; `pictures_every` is its `--preview-every`."),
+          "Labels", "`[labels]` of `rawlog2semantic-map`."),
       table<CloudLabelerOptions>("Cameras that label the points of other sensors",
                                  "`[cameras]` of `rawlog2semantic-map`."),
       table<CameraDescription>(
