@@ -43,14 +43,12 @@ void InsertionOptions::describe(OptionList& list) {
            "angles erodes");
   list.add("threads", threads, "", between(1, 256),
            "that share the work on a scan; the map does not depend on it");
-  list.add(
-      "max_scan_memory", maxScanMemory, "MB", between(1, 1000000),
-      "a scan that needs larger buffers is refused: its points are too far from each other for "
-      "voxels of this size");
 }
 
 void InsertionOptions::validate() const {
   checkOptions(*this, "InsertionOptions");
+  require(maxScanMemory >= 1 && maxScanMemory <= 1000000, "InsertionOptions::maxScanMemory",
+          maxScanMemory, "1 to 1000000 MB");
   require(maxRange == 0 || minRange < maxRange, "InsertionOptions::min_range", minRange,
           "less than max_range");
 }
