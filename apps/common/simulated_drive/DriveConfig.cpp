@@ -32,8 +32,6 @@ void describeLoop(DriveConfig& config, std::string& reactive, OptionList& list) 
       "from a scan until the map has it, in a thread of its own; till then the robot drives by "
       "what it knew");
   list.add("time_limit", config.timeLimit, "s", above(0), "of simulated time");
-  list.add("turn_acceleration", config.turnAcceleration, "rad/s^2", above(0),
-           "of the simulated robot's steering");
 }
 
 /** Reads sections strictly, one after the other, and knows in the end which there are. */

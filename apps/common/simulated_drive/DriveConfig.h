@@ -47,7 +47,6 @@ struct DriveConfig {
   double controlPeriod = 0.1;        ///< s
   double mappingLatency = 0;         ///< s from a scan until the map has it
   double timeLimit = 600;            ///< s of simulated time
-  double turnAcceleration = 4;       ///< of the simulated robot's steering, rad/s^2
   std::filesystem::path reactive;
 };
 
