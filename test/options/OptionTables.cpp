@@ -40,16 +40,17 @@ OptionTable table(const std::string& title, const std::string& where) {
 
 std::vector<OptionTable> mapTables() {
   using namespace semantic_map;
+  OptionTable insertion = table<TInsertionOptions>(
+      "Insertion",
+      "`[insertion]`; `_insertOpts`, which has `kind` and `min_confidence` of [labels](#labels), "
+      "too. `increments` and all behind it are the filter's: they are stored in the map, and only "
+      "maps of the same filter can be merged; `semantic-map-info MAP --json` says what a map has.");
+  for (const char* ofLabels : {"kind", "min_confidence"}) insertion.list.remove(ofLabels);
   return {
       table<TCreationOptions>("The map",
                               "`[map]` of `rawlog2semantic-map`; `_creationOpts` in MRPT's "
                               "applications."),
-      table<TInsertionOptions>(
-          "Insertion",
-          "`[insertion]`; `_insertOpts`, which has `kind` and `min_confidence` of "
-          "[labels](#labels), too. `increments` and all behind it are the filter's: they are "
-          "stored in the map, and only maps of the same filter can be "
-          "merged; `semantic-map-info MAP --json` says what a map has."),
+      insertion,
       table<TAbstractionOptions>(
           "Abstraction",
           "`[abstraction]`; `_abstractionOpts`. Files of weights for `semantic-map-compress` have "

@@ -2,7 +2,6 @@
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_map/MapOptions.h>
 #include <strict_files/IniSection.h>
-#include <strict_files/Words.h>
 
 #include <ostream>
 #include <stdexcept>
@@ -87,7 +86,7 @@ void TNamedOptions<Derived>::readFrom(CArchive& in) {
   for (auto left = in.ReadAs<std::uint32_t>(); left > 0; --left) {
     const std::string name = readText(in), text = readText(in);
     const Option* option = list.find(name);
-    if (!option) throw std::runtime_error(strict_files::unknownWord("option", name, list.names()));
+    if (!option) continue;  // one that programs had before: the map is worth more
     try {
       option->set(text);
     } catch (const std::invalid_argument& e) {
