@@ -35,8 +35,10 @@ void addGraphs(CLI::App& app, StudyOptions& study) {
 void addPlanner(CLI::App& app, semantic_planning::PlannerOptions& planner) {
   strict_files::OptionList options;
   planner.describe(options);
-  for (const char* studied : {"graph", "vertices", "max_edges", "seed", "edges", "reading",
-                              "least_probability", "shorten", "time_limit"})
+  options.add("class_of_leaf", planner.roadmap.classOfLeaf, "",
+              "vertices have the class of their leaf, as in the paper, not of the ground");
+  for (const char* studied :
+       {"graph", "vertices", "edges", "reading", "least_probability", "shorten", "time_limit"})
     options.remove(studied);
   addOptions(app, options, "Planner");
 }

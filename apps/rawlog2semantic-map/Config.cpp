@@ -20,13 +20,12 @@ using strict_files::readSection;
 
 namespace {
 
-/** Label model and occlusion are known by [labels] and [cameras]. */
+/** The label model is known by [labels]. */
 void readInsertion(const CConfigFileBase& ini, semantic_map::TInsertionOptions& insertion) {
   OptionList list, labels;
   insertion.describe(list);
   insertion.conversion.labels.describe(labels);
   for (const std::string& name : labels.names()) list.remove(name);
-  list.remove("occlusion_parallax");
   IniSection section(ini, "insertion");
   section.read(list);
   section.finish();

@@ -18,7 +18,6 @@ void readLabels(const CConfigFileBase& ini, Config& config) {
   config.labels.describe(list);
   config.insertion.conversion.labels.describe(list);
   config.stream.describe(list);
-  list.remove("pictures_every");  // --preview-every
   IniSection section(ini, "labels");
   section.read(list);
   section.finish();

@@ -115,7 +115,7 @@ struct Cli {
     outputs.addOther(
         app.add_option("--preview", preview,
                        "Folder of pictures: labels and points over the images they are from"));
-    app.add_option("--preview-every", previewEvery, "Every so-manieth scan has pictures")
+    app.add_option("--preview-every", previewEvery, "Every N-th scan has pictures")
         ->check(isNumber(strict_files::above(0)));
   }
 };

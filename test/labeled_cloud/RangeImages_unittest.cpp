@@ -171,8 +171,8 @@ TEST(RangeImages, ofMorePixelsThanMemoryMayHoldAreRefused) {
   obs->cameraParams.ncols = obs->cameraParams.nrows = 18000;
   obs->points3D_x = obs->points3D_y = obs->points3D_z = {1.f};
   obs->points3D_idxs_x = obs->points3D_idxs_y = {5};
-  EXPECT_TRUE(contains(errorConverting(*obs),
-                       "a camera of 18000 x 18000 pixels; max_pixels allows 40 million"))
+  EXPECT_TRUE(
+      contains(errorConverting(*obs), "a camera of 18000 x 18000 pixels; 40 million are allowed"))
       << errorConverting(*obs);
 }
 

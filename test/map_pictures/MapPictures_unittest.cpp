@@ -205,14 +205,6 @@ TEST(PerspectiveView, straightDownItIsTheTopView) {
   EXPECT_EQ(picture.at<cv::Vec3b>(picture.rows / 2, picture.cols * 3 / 4), pixelOf(kTree));
 }
 
-TEST(PerspectiveView, zoomEnlarges) {
-  Viewpoint far, near;
-  far.tilt = near.tilt = 90;
-  far.zoom = 0.5;
-  EXPECT_GT(count(renderPerspective(paintedField(), plain(), near), pixelOf(kRoad), 5),
-            2 * count(renderPerspective(paintedField(), plain(), far), pixelOf(kRoad), 5));
-}
-
 TEST(Pictures, badStylesAreNamed) {
   const auto error = [](auto change) {
     PictureStyle style = plain();
@@ -221,7 +213,6 @@ TEST(Pictures, badStylesAreNamed) {
   };
   EXPECT_TRUE(contains(error([](auto& s) { s.width = 0; }), "width is 0"));
   EXPECT_TRUE(contains(error([](auto& s) { s.height = 100000; }), "height is 100000"));
-  EXPECT_TRUE(contains(error([](auto& s) { s.minOccupancy = 1; }), "min_occupancy"));
   EXPECT_TRUE(contains(error([](auto& s) { s.maxHeight = NAN; }), "max_height"));
   const auto viewError = [](auto change) {
     Viewpoint viewpoint;
@@ -229,7 +220,6 @@ TEST(Pictures, badStylesAreNamed) {
     return errorOf([&] { renderPerspective(paintedField(), plain(), viewpoint); });
   };
   EXPECT_TRUE(contains(viewError([](auto& v) { v.tilt = 0; }), "tilt"));
-  EXPECT_TRUE(contains(viewError([](auto& v) { v.zoom = -1; }), "zoom"));
   EXPECT_TRUE(contains(viewError([](auto& v) { v.heading = NAN; }), "heading"));
 }
 

@@ -40,17 +40,17 @@ OptionTable table(const std::string& title, const std::string& where) {
 
 std::vector<OptionTable> mapTables() {
   using namespace semantic_map;
+  OptionTable insertion = table<TInsertionOptions>(
+      "Insertion",
+      "`[insertion]`; `_insertOpts`, which has `kind` and `min_confidence` of [labels](#labels), "
+      "too. `increments` and all behind it are the filter's: they are stored in the map, and only "
+      "maps of the same filter can be merged; `semantic-map-info MAP --json` says what a map has.");
+  for (const char* ofLabels : {"kind", "min_confidence"}) insertion.list.remove(ofLabels);
   return {
       table<TCreationOptions>("The map",
                               "`[map]` of `rawlog2semantic-map`; `_creationOpts` in MRPT's "
                               "applications."),
-      table<TInsertionOptions>(
-          "Insertion",
-          "`[insertion]`; `_insertOpts`. Of `rawlog2semantic-map`, `kind` and `min_confidence` are "
-          "in `[labels]`, `occlusion_parallax` is in `[cameras]`. `increments` and all behind it "
-          "are "
-          "the filter's: they are stored in the map, and only maps of the same filter can be "
-          "merged; `semantic-map-info MAP --json` says what a map has."),
+      insertion,
       table<TAbstractionOptions>(
           "Abstraction",
           "`[abstraction]`; `_abstractionOpts`. Files of weights for `semantic-map-compress` have "
@@ -90,8 +90,7 @@ std::vector<OptionTable> labelTables() {
   return {
       table<TrajectoryOptions>("Trajectory", "`[trajectory]` of `rawlog2semantic-map`."),
       table<LabelFolderOptions, LabelModel, ScanStreamOptions>(
-          "Labels",
-          "`[labels]` of `rawlog2semantic-map`; `pictures_every` is its `--preview-every`."),
+          "Labels", "`[labels]` of `rawlog2semantic-map`."),
       table<CloudLabelerOptions>("Cameras that label the points of other sensors",
                                  "`[cameras]` of `rawlog2semantic-map`."),
       table<CameraDescription>(
@@ -129,8 +128,6 @@ std::vector<OptionTable> drivingTables() {
   return {
       table<DriveOptions>("Driving", "`[drive]` of `semantic-map-drive` and `drive-study`."),
       table<GuideOptions>("Which path is driven", "`[guide]`."),
-      table<FrontierOptions>("Exploring", "`[frontiers]`."),
-      table<RecoveryOptions>("Recovery from where the robot must not be", "`[recovery]`."),
       table<ObstacleOptions>("Obstacles", "`[obstacles]`."),
       table<MoverOptions>("Those who move", "`[movers]`."),
       table<FocusOptions>("Detail along the path",

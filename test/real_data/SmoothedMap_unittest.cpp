@@ -14,7 +14,7 @@ using semantic_octree::SmoothedView;
 
 namespace {
 
-constexpr std::size_t kEvery = 5;  // so-manieth point is asked for: there are half a million
+constexpr std::size_t kEvery = 5;  // every fifth point is asked for: there are half a million
 
 /** A map of the even frames with a share of wrong labels, and the same labels counted. */
 struct NoisyMap {

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_driving/GuideOptions.h>
+#include <semantic_driving/Motion.h>
 #include <semantic_driving/PathTracker.h>
 
 #include <cmath>
@@ -40,8 +40,7 @@ double overshoot(double acceleration) {
   EXPECT_NEAR(robot.state().speed, options.maxSpeed, 1e-6) << acceleration;
   tracker.locate(robot.state());
   const double here = tracker.progress();
-  const GuideOptions guide;
-  const double way = guide.restingWay(robot.state().speed, options) + guide.restMargin;
+  const double way = restingWay(robot.state().speed, options) + 0.1;  // DriveGuide's margin
   const double end = robot.state().pose.x + way;
   tracker.setPath(tracker.path().part(here, here + way));
   drive(300);
@@ -77,11 +76,8 @@ TEST(DriveOptions, ComesToRestMoreGentlyThanTheTrackerBrakesAtAnyAcceleration) {
   for (const double acceleration : {0.05, 0.3, 0.74, 0.8, 5.0}) {
     DriveOptions drive;
     drive.maxAcceleration = acceleration;
-    const GuideOptions guide;
-    const double way = guide.restingWay(1, drive);
-    EXPECT_GT(way, 1 / (2 * drive.braking())) << acceleration;
+    EXPECT_GT(restingWay(1, drive), 1 / (2 * drive.braking())) << acceleration;
   }
-  EXPECT_DOUBLE_EQ(GuideOptions().restBraking * DriveOptions().braking(), 0.6);
 }
 
 TEST(DriveOptions, HoweverFastAVehicleIsItStandsBeforeItIsBlind) {
@@ -108,23 +104,16 @@ TEST(DriveOptions, SpeedsOfClassesFollowTheOrder) {
   EXPECT_EQ(options.classSpeeds(order), (std::vector<double>{0.4, 1, 0.4, 0.4, 0.4}));
 }
 
-TEST(DriveOptions, ComingToRestAsFastAsTheTrackerBrakesIsRefused) {
-  GuideOptions options;
-  options.restBraking = 1;
-  EXPECT_THROW(options.validate(), std::invalid_argument);
-}
-
 TEST(DriveOptions, AreReadFromTheirSections) {
   const auto config = loaded(
       "max_speed = 0.5\ncontrol_period = 0.05\n[guide]\nat_goal = 0.2\n"
-      "[frontiers]\nradius = 20\n[recovery]\nblind = 1\n"
-      "[obstacles]\nforbidden_ground = false\n[pose]\nturn_noise = 2\n[slam]\nmax_range = 20\n");
+      "frontier_radius = 20\n[obstacles]\nradius = 5\n[pose]\nturn_noise = 2\n[slam]\nmax_range = "
+      "20\n");
   EXPECT_EQ(config.drive.maxSpeed, 0.5);
   EXPECT_EQ(config.controlPeriod, 0.05);
   EXPECT_EQ(config.guide.atGoal, 0.2);
-  EXPECT_EQ(config.guide.frontiers.radius, 20);
-  EXPECT_EQ(config.guide.recovery.blind, 1);
-  EXPECT_FALSE(config.obstacles.forbiddenGround);
+  EXPECT_EQ(config.guide.frontierRadius, 20);
+  EXPECT_EQ(config.obstacles.radius, 5);
   EXPECT_EQ(config.pose.turnNoise, 2);
   EXPECT_EQ(config.slam.maxRange, 20);
 }
@@ -138,9 +127,8 @@ TEST(DriveOptions, AreReadInMrptsWayOfWritingToo) {
 TEST(DriveOptions, SaysWhatIsWrongInAConfiguration) {
   EXPECT_NE(faultOf("max_sped = 1\n").find("did you mean 'max_speed'"), std::string::npos);
   EXPECT_NE(faultOf("max_speed = 0\n").find("[drive] max_speed is 0"), std::string::npos);
-  EXPECT_NE(faultOf("[frontier]\nradius = 3\n").find("did you mean 'frontiers'"),
-            std::string::npos);
-  EXPECT_NE(faultOf("[guide]\nrest_braking = 1\n").find("rest_braking is 1"), std::string::npos);
+  EXPECT_NE(faultOf("[guid]\nperiod = 3\n").find("did you mean 'guide'"), std::string::npos);
+  EXPECT_NE(faultOf("[guide]\nat_goal = 0\n").find("at_goal is 0"), std::string::npos);
   EXPECT_NE(faultOf("[movers]\nclasses = ghost\n").find("ini: MoverOptions: 'ghost' is no class"),
             std::string::npos);
   EXPECT_NE(faultOf("[sensors]\ncamera = no\nlidar = no\n").find("both off"), std::string::npos);

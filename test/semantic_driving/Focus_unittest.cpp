@@ -17,7 +17,7 @@ namespace {
 
 FocusOptions someFocus() {
   FocusOptions focus;
-  focus.corridor = 1.5, focus.around = 4, focus.ahead = 8, focus.obstacles = true;
+  focus.corridor = 1.5, focus.around = 4, focus.obstacles = true;
   return focus;
 }
 
@@ -84,9 +84,9 @@ TEST(Focus, IsAroundTheVehicleAndAlongThePathAhead) {
     for (double x = -10; x < 30; x += 0.73)
       for (double y = -10; y < 30; y += 0.73) {
         double toPath = 1e9, toLongerPath = 1e9;
-        for (double s = progress; s <= std::min(progress + 8, 40.0); s += 0.05)
+        for (double s = progress; s <= std::min(progress + 15, 40.0); s += 0.05)
           toPath = std::min(toPath, std::hypot(path.at(s).x - x, path.at(s).y - y));
-        for (double s = std::max(0.0, progress - 3); s <= std::min(progress + 11, 40.0); s += 0.05)
+        for (double s = std::max(0.0, progress - 3); s <= std::min(progress + 18, 40.0); s += 0.05)
           toLongerPath = std::min(toLongerPath, std::hypot(path.at(s).x - x, path.at(s).y - y));
         const double toVehicle = std::hypot(p.x - x, p.y - y);
         const double density = densityAt(regions, x, y);

@@ -114,7 +114,7 @@ GoalRegion regionOf(const SemanticPlanner& planner, const std::set<Place>& reach
   const ColumnSquare columns(columnOf({0, 0}), kReach);
   std::vector<bool> marked(columns.size());
   for (const Place& p : reached) marked[columns.indexOf(columnOf(p))] = true;
-  return GoalRegion(planner, columns, marked, poseIn({0, 0}), 0, poseIn(goal), 1);
+  return GoalRegion(planner, columns, marked, poseIn({0, 0}), 0, poseIn(goal));
 }
 
 /** Free places around the vehicle. */

@@ -193,7 +193,7 @@ TEST(GuideTransitions, WaitForWhatStandsAtTheGoalAndThenSaySo) {
   next = transition(next.state, misfit(20.5), options);
   ASSERT_EQ(words(next.action), "seek nearest");
 
-  const Transition offered = transition(next.state, answer(next.action, false), options);
+  const Transition offered = transition(next.state, answer(next.action, false));
   EXPECT_EQ(words(offered.state.activity), "gave up");
   EXPECT_EQ(words(offered.action), "come to rest");
   EXPECT_EQ(words(transition(offered.state, driving(21), options).action), "go on");
@@ -202,15 +202,15 @@ TEST(GuideTransitions, WaitForWhatStandsAtTheGoalAndThenSaySo) {
 
 TEST(GuideTransitions, DriveToTheNearestPoseIfItWillDo) {
   const GuideOptions options;
-  Transition next = transition(doing(ToGoal{}), answer(SeekNearest{}, true), options);
+  Transition next = transition(doing(ToGoal{}), answer(SeekNearest{}, true));
   EXPECT_EQ(words(next.action), "come to rest");
   next = transition(next.state, ended(21), options);
   EXPECT_EQ(words(next.action), "seek goal, replacing, or frontier");
-  next = transition(doing(Idle{}), answer(SeekNearest{}, true), options);
+  next = transition(doing(Idle{}), answer(SeekNearest{}, true));
   EXPECT_EQ(words(next.action), "stop");
   EXPECT_EQ(words(transition(next.state, withoutPath(21), options).action),
             "seek goal, or frontier");
-  next = transition(doing(ToGoal{}), answer(SeekNearest{}, false), options);  // there is none
+  next = transition(doing(ToGoal{}), answer(SeekNearest{}, false));  // there is none
   EXPECT_EQ(words(next.state.activity), "gave up");
 }
 
@@ -220,10 +220,10 @@ TEST(GuideTransitions, CountPathsThatWereLeftBeforeTheirEnd) {
   EXPECT_EQ(state.replans, 0);
   const Transition rest = transition(state, ended(14), options);  // at rest, at the path's new end
   EXPECT_EQ(words(rest.action), "seek goal, replacing, or frontier");
-  state = transition(rest.state, answer(rest.action, true), options).state;
+  state = transition(rest.state, answer(rest.action, true)).state;
   EXPECT_EQ(state.replans, 1);
   const Transition end = transition(state, ended(20), options);
-  EXPECT_EQ(transition(end.state, answer(end.action, true), options).state.replans, 1);
+  EXPECT_EQ(transition(end.state, answer(end.action, true)).state.replans, 1);
 }
 
 TEST(GuideTransitions, AnEnclosedVehicleLooksForABlindRecoveryOnce) {
@@ -232,7 +232,7 @@ TEST(GuideTransitions, AnEnclosedVehicleLooksForABlindRecoveryOnce) {
   const auto enclosed = [](Answer& a) { a.enclosed = true; };
   for (const char* expected : {"seek recovery, blind", "stop"}) {
     state = transition(state, withoutPath(1), options).state;
-    const Transition next = transition(state, answer(SeekFrontier{}, false, enclosed), options);
+    const Transition next = transition(state, answer(SeekFrontier{}, false, enclosed));
     EXPECT_EQ(words(next.action), expected);
     state = next.state;
   }
@@ -257,7 +257,7 @@ TEST(GuideTransitions, WhateverHappensQuestionsEndAndTheVehicleGoesBackThreeTime
         RC_ASSERT(++questions <= 4);  // goal, frontier, recovery, back
         Answer a{next.action, look.seconds};
         a.found = *rc::gen::inRange(0, 4) == 0, a.better = a.found, a.enclosed = !a.found && i > 40;
-        next = transition(next.state, a, options);
+        next = transition(next.state, a);
       }
       state = next.state;
       const std::string now = words(state.activity);
@@ -265,7 +265,7 @@ TEST(GuideTransitions, WhateverHappensQuestionsEndAndTheVehicleGoesBackThreeTime
                 (now == "gave up" && words(next.action) == (look.finished ? "stop" : "go on")));
       const bool follows = words(next.action) == "follow";
       if (follows && (now == "goal" || now == "frontier")) back = 0;
-      if (follows && now == "back") RC_ASSERT(++back <= options.mostTimesBack);
+      if (follows && now == "back") RC_ASSERT(++back <= GuideState::kMostTimesBack);
       if (now != "gave up")  // it may have to come to rest yet
         RC_ASSERT((state.target() == Target::None) == (words(next.action) == "stop"));
     }

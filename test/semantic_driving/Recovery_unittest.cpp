@@ -69,19 +69,14 @@ TEST_F(Recovery, GetsAwayFromAWallThatIsTooClose) {
 TEST_F(Recovery, OfABlindVehicleLeadsAsFarAsItIsBlind) {
   const SemanticPlanner planner = this->planner();
   const TPose2D from(4, 0, 0);
-  const DrivePath path = findRecovery(planner, from, 0, {}, 2);
+  const DrivePath path = findRecovery(planner, from, 0, 2);
   ASSERT_FALSE(path.empty());
   const PathPoint end = path.points().back();
   EXPECT_GT(std::hypot(end.x - from.x, end.y - from.y), 2);
 }
 
-TEST_F(Recovery, ThereIsNoneBeyondTheRadius) {
+TEST_F(Recovery, ThereIsNoneBeyondEightMeters) {
   const SemanticPlanner planner = this->planner();
-  RecoveryOptions options;
-  options.radius = 3;
-  EXPECT_TRUE(findRecovery(planner, {-4, 0, 0}, 0, options).empty());
-  options.radius = 6;
-  EXPECT_FALSE(findRecovery(planner, {-4, 0, 0}, 0, options).empty());
-  options.directions = 0;
-  EXPECT_THROW(findRecovery(planner, {-4, 0, 0}, 0, options), std::invalid_argument);
+  EXPECT_TRUE(findRecovery(planner, {-9, 0, 0}, 0).empty());
+  EXPECT_FALSE(findRecovery(planner, {-6, 0, 0}, 0).empty());
 }

@@ -35,7 +35,8 @@ TEST(Drives, SayAtOnceThatAGoalDoesNotFitAndWhichPoseDoes) {
   EXPECT_NE(told.reason.find("; the nearest pose known to fit: "), std::string::npos);
   DriveConfig config = smallConfig();  // at rest a step after its last row
   EXPECT_LT(std::abs(told.rows.back().speed),
-            config.guide.atRest + config.drive.maxAcceleration * config.controlPeriod);
+            semantic_driving::DriveOptions::kAtRest +
+                config.drive.maxAcceleration * config.controlPeriod);
 
   config.guide.driveToNearest = true;
   const DriveRecord driven = drive(world, {-4, 0, 0}, goal, {}, config);

@@ -201,7 +201,7 @@ TEST(Separation, TheSlowerTheNearerOneStands) {
     Mover mover{{1, side}, {0, 0}, 0.35, 0.5};
     const double speed = separationSpeed(along, 0.2, 0, 1.2, {mover}, footprint, options());
     EXPECT_GE(speed, before) << side;
-    EXPECT_GE(speed, options().slowest) << side;
+    EXPECT_GE(speed, DriveOptions::kSlowest) << side;
     before = speed;
   }
   EXPECT_EQ(before, 1.2);

@@ -16,6 +16,7 @@ namespace {
 CSemanticOctoMap unusualMap() {
   semantic_octree::FilterParameters filter;
   filter.accuracy = 0.7, filter.hitProbability = 0.65, filter.falseAlarmProbability = 0.15;
+  filter.minOccupancy = 0.2, filter.maxProbability = 0.9, filter.softLabelFloor = 0.01;
   CSemanticOctoMap map(0.3, threeClasses(), filter);
   map.genericMapParams.enableSaveAs3DObject = false;
   map.insertionOptions.scan.rays = semantic_octree::InsertionOptions::Rays::EndVoxels;
@@ -74,6 +75,17 @@ TEST(MapArchive, whatIsReadBackEqualsBitForBit) {
   EXPECT_FALSE(read.genericMapParams.enableSaveAs3DObject);
   EXPECT_EQ(read.renderingOptions.coloring, TRenderingOptions::Coloring::Height);
   EXPECT_EQ(read.likelihoodOptions.decimation, 4);
+  EXPECT_TRUE(read.insertionOptions.filter == map.tree().filterParameters());
+}
+
+TEST(MapArchive, optionsThatAreNoneAnyMoreAreLeftOut) {
+  std::string bytes = bytesOf(unusualMap());
+  bytes.replace(bytes.find("point_weight"), 5, "plane");
+  CSemanticOctoMap read;
+  readBytes(read, bytes);
+  EXPECT_TRUE(read.tree() == unusualMap().tree());
+  EXPECT_EQ(read.likelihoodOptions.decimation, 4);
+  EXPECT_EQ(read.likelihoodOptions.pointWeight, 1);
 }
 
 TEST(MapArchive, anArchiveKnowsTheClassByName) {

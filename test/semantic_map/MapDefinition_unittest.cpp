@@ -69,11 +69,10 @@ TEST(MapDefinition, everyOptionIsReadFromItsSection) {
       "carving_margin = 0.2\nthreads = 2\ndecimation = 3\nflying_pixel_threshold = 0.05\n"
       "increments = ssmi\naccuracy = 0.8\nlabel_correlation = 0.4\nhit_probability = 0.7\n"
       "false_alarm_probability = 0.2\n"
-      "min_occupancy = 0.2\nmax_probability = 0.9\nsoft_label_floor = 0.01\n"
       "[Maps_semanticOctoMap_00_likelihoodOpts]\ndecimation = 7\nuse_labels = false\n"
       "point_weight = 0.5\n"
       "[Maps_semanticOctoMap_00_renderOpts]\ncoloring = height\noccupied = no\nfree = yes\n"
-      "min_occupancy = 0.6\nmin_probability = 0.4\nmin_height = -1\nmax_height = inf\n");
+      "min_height = -1\nmax_height = inf\n");
   const auto& insertion = map->insertionOptions;
   EXPECT_EQ(map->tree().getResolution(), 0.25);
   EXPECT_EQ(map->tree().classes().name(2), "tree");
@@ -89,7 +88,6 @@ TEST(MapDefinition, everyOptionIsReadFromItsSection) {
   filter.increments = FilterParameters::Increments::Ssmi;
   filter.accuracy = 0.8, filter.labelCorrelation = 0.4;
   filter.hitProbability = 0.7, filter.falseAlarmProbability = 0.2;
-  filter.minOccupancy = 0.2, filter.maxProbability = 0.9, filter.softLabelFloor = 0.01;
   EXPECT_TRUE(map->tree().filterParameters() == filter);
   EXPECT_EQ(map->likelihoodOptions.decimation, 7);
   EXPECT_FALSE(map->likelihoodOptions.useLabels);
@@ -97,8 +95,6 @@ TEST(MapDefinition, everyOptionIsReadFromItsSection) {
   EXPECT_EQ(map->renderingOptions.coloring, TRenderingOptions::Coloring::Height);
   EXPECT_FALSE(map->renderingOptions.occupied);
   EXPECT_TRUE(map->renderingOptions.free);
-  EXPECT_EQ(map->renderingOptions.minOccupancy, 0.6);
-  EXPECT_EQ(map->renderingOptions.minProbability, 0.4);
   EXPECT_EQ(map->renderingOptions.minHeight, -1);
   EXPECT_EQ(map->renderingOptions.maxHeight, INFINITY);
 }

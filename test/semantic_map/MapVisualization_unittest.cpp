@@ -65,12 +65,6 @@ TEST(MapVisualization, optionsChooseTheCells) {
   map.renderingOptions = {};
   map.renderingOptions.minHeight = 0.5;
   EXPECT_EQ(voxelsOf(map)->getVoxelCount(kOccupied), 1u);
-  map.renderingOptions = {};
-  map.renderingOptions.minProbability = 0.99;
-  EXPECT_EQ(voxelsOf(map)->getVoxelCount(kOccupied), 0u);
-  map.renderingOptions = {};
-  map.renderingOptions.minOccupancy = 0.99;
-  EXPECT_EQ(voxelsOf(map)->getVoxelCount(kOccupied), 0u);
 }
 
 TEST(MapVisualization, colorsCanShowHeightOrProbability) {

@@ -92,7 +92,7 @@ TEST(BadInput, scansThatNeedMoreMemoryThanAllowedAreRefusedAndLeaveTheMapUsable)
   far.points = {{60, 60, 20}, {-60, -60, 0}};
   InsertionOptions options;
   options.maxScanMemory = 1;
-  expectRefused("max_scan_memory", far, at(0, 0, 0), options);
+  expectRefused("set max_range", far, at(0, 0, 0), options);
   SemanticOcTree tree(0.1, numberedClasses(3)), other = tree;
   EXPECT_THROW(tree.insert(far, at(0, 0, 0), options), std::length_error);
   EXPECT_TRUE(tree.empty());

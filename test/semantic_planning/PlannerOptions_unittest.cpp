@@ -33,8 +33,8 @@ TEST(PlannerOptions, areSetByTheirNames) {
   options.describe(list);
   const auto set = [&](const char* name, const char* text) { list.find(name)->set(text); };
   set("graph", "halton_map");
-  set("max_edges", "700");
-  set("longest-edge", "7.5");
+  set("vertices", "700");
+  set("least-probability", "0.2");
   set("edges", "sweep");
   set("cost", "count");
   set("reading", "cautious");
@@ -42,8 +42,8 @@ TEST(PlannerOptions, areSetByTheirNames) {
   set("keep_off", "true");
   set("time_limit", "inf");
   EXPECT_EQ(options.roadmap.kind, GraphKind::HaltonMap);
-  EXPECT_EQ(options.roadmap.maxEdges, 700u);
-  EXPECT_EQ(options.roadmap.longestEdge, 7.5);
+  EXPECT_EQ(options.roadmap.vertices, 700u);
+  EXPECT_EQ(options.reading.leastProbability, 0.2);
   EXPECT_EQ(options.edges, colored_graph::EdgeModel::Sweep);
   EXPECT_EQ(options.cost, colored_graph::CostKind::Count);
   EXPECT_EQ(options.reading.kind, ClassReading::Kind::Cautious);

@@ -61,8 +61,8 @@ TEST_F(PlannerTest, refusesBadOptionsNamingThem) {
     return errorOf([&] { SemanticPlanner(map(), order, spoiled); });
   };
   EXPECT_TRUE(contains(refusal([](auto& o) { o.vehicle.turningRadius = 0; }), "turning_radius"));
-  EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.neighbors = 0; }), "neighbors is 0"));
-  EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.longestEdge = NAN; }), "longest_edge"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.headings = 0; }), "headings is 0"));
+  EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.buffer = NAN; }), "buffer"));
   EXPECT_TRUE(contains(refusal([](auto& o) { o.ground.fillGap = -1; }), "fill_gap is -1"));
   EXPECT_TRUE(
       contains(refusal([](auto& o) { o.reading.leastProbability = 2; }), "least_probability is 2"));

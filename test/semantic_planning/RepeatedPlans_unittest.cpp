@@ -110,7 +110,6 @@ TEST_F(RepeatedPlansTest, planAsFreshPlannersDoWithClassesThatTheGroundDoesNotTe
 TEST_F(RepeatedPlansTest, planAsFreshPlannersDoWithClassesOfLeavesInMapsWithLargeOnes) {
   options.roadmap.classOfLeaf = true;
   options.edges = colored_graph::EdgeModel::Endpoint;
-  options.roadmap.spacing = 6.4;
   auto abstraction = abstractionFor(order);
   abstraction.blockSize = 12.8;
   setAbstraction(world.map(), abstraction);

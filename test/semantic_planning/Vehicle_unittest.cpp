@@ -50,13 +50,13 @@ TEST_F(VehicleFile, setsEveryOption) {
                                  "footprint: [[0, -1], [0, 1], [2, 0]]\nheight: 2\n"
                                  "turning_radius: 3\nclearance: 0.4\nstep_height: 0.5\n"
                                  "max_slope: 6\nwheel_track: 0.7\nreverse_weight: inf\n"
-                                 "gear_change: 4\nsteering_change: 0.3\n");
+                                 "gear_change: 4\n");
   const VehicleOptions v = loadVehicle(file);
   EXPECT_EQ(v.footprint[0], Eigen::Vector2d(2, 0)) << "the corners are turned round";
   EXPECT_EQ(std::tie(v.height, v.turningRadius, v.clearance), std::tuple(2, 3, 0.4));
   EXPECT_EQ(std::tie(v.stepHeight, v.maxSlope, v.wheelTrack), std::tuple(0.5, 6, 0.7));
-  EXPECT_EQ(std::tie(v.reverseWeight, v.gearChange, v.steeringChange),
-            std::tuple(std::numeric_limits<double>::infinity(), 4, 0.3));
+  EXPECT_EQ(std::tie(v.reverseWeight, v.gearChange),
+            std::tuple(std::numeric_limits<double>::infinity(), 4));
 }
 
 TEST_F(VehicleFile, isReadStrictly) {

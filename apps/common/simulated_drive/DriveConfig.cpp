@@ -32,8 +32,6 @@ void describeLoop(DriveConfig& config, std::string& reactive, OptionList& list) 
       "from a scan until the map has it, in a thread of its own; till then the robot drives by "
       "what it knew");
   list.add("time_limit", config.timeLimit, "s", above(0), "of simulated time");
-  list.add("turn_acceleration", config.turnAcceleration, "rad/s^2", above(0),
-           "of the simulated robot's steering");
 }
 
 /** Reads sections strictly, one after the other, and knows in the end which there are. */
@@ -80,6 +78,7 @@ void readSensors(Sections& sections, SensorConfig& sensors) {
   sensors.describe(general);
   const IniSection section = sections.read("sensors", general);
   if (!sensors.hasCamera && !sensors.hasLidar) section.fail("camera and lidar are both off");
+  sensors.lidar.noise = sensors.camera.noise;
   sensors.camera.describe(camera);
   camera.add("pitch", sensors.cameraPitch, "degrees", between(-90, 90), "how far down it looks");
   sections.read("camera", camera);
@@ -117,6 +116,7 @@ void SensorConfig::describe(OptionList& list) {
   list.add("period", period, "s", above(0), "between observations");
   list.add("camera", hasCamera, "", "the robot has a labeled camera");
   list.add("lidar", hasLidar, "", "the robot has a labeled LiDAR");
+  camera.noise.describe(list);
 }
 
 DriveConfig loadDriveConfig(const fs::path& file) {
@@ -137,8 +137,6 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     readPlanner(sections, file.parent_path(), config.planner);
     readDrive(sections, file.parent_path(), config);
     sections.readAll("guide", config.guide);
-    sections.readAll("frontiers", config.guide.frontiers);
-    sections.readAll("recovery", config.guide.recovery);
     sections.readAll("obstacles", config.obstacles);
     sections.readAll("movers", config.movers);
     sections.readAll("focus", config.focus);

@@ -23,7 +23,7 @@ struct SensorConfig {
   double period = 0.5;     ///< s
   std::uint64_t seed = 1;  ///< of the odometry's noise, too
 
-  /** What is not the camera's or the LiDAR's. */
+  /** What is not the camera's or the LiDAR's alone: the LiDAR has the camera's noise. */
   void describe(strict_files::OptionList& list);
 };
 
@@ -47,7 +47,6 @@ struct DriveConfig {
   double controlPeriod = 0.1;        ///< s
   double mappingLatency = 0;         ///< s from a scan until the map has it
   double timeLimit = 600;            ///< s of simulated time
-  double turnAcceleration = 4;       ///< of the simulated robot's steering, rad/s^2
   std::filesystem::path reactive;
 };
 

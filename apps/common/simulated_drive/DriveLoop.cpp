@@ -68,7 +68,7 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_guide(std::make_unique<DriveGuide>(config.guide, m_mapper->planner(), goal)),
       m_controller(config.drive, reactiveOf(config, navlogs)),
       m_movers(config.movers, synthetic_world::classTable()),
-      m_robot(start, config.drive, config.turnAcceleration),
+      m_robot(start, config.drive),
       m_pose(start, config.pose, config.slam, m_movers.isMover(), config.sensors.seed),
       m_state(m_robot.state()),
       m_footprint(trueFootprint(config.planner.vehicle)) {
@@ -278,7 +278,7 @@ bool DriveLoop::isOver() {
     endAtGoal();
     return true;
   }
-  if (m_guide->gaveUp() && std::abs(state().speed) < m_config.guide.atRest) {
+  if (m_guide->gaveUp() && std::abs(state().speed) < semantic_driving::DriveOptions::kAtRest) {
     m_record.end = DriveEnd::Unreachable;
     m_record.reason = m_guide->reason();
     return true;

@@ -19,9 +19,8 @@ double towards(double from, double to, double most) {
 }  // namespace
 
 SimulatedRobot::SimulatedRobot(const mrpt::math::TPose2D& start,
-                               const semantic_driving::DriveOptions& limits,
-                               double turnAcceleration)
-    : m_limits(limits), m_turnAcceleration(turnAcceleration) {
+                               const semantic_driving::DriveOptions& limits)
+    : m_limits(limits) {
   m_state.pose = start;
 }
 
@@ -31,13 +30,14 @@ void SimulatedRobot::drive(const DriveCommand& command, double seconds) {
 }
 
 void SimulatedRobot::step(const DriveCommand& command, double seconds) {
+  constexpr double kTurnAcceleration = 4;  // rad/s^2, of the steering
   const double wanted = std::clamp(command.speed, -m_limits.maxSpeed, m_limits.maxSpeed);
   m_state.speed = towards(m_state.speed, wanted, m_limits.maxAcceleration * seconds);
   // The command's curve, not its turning: a car that is not up to its speed steers as if it were.
   const double curvature = std::abs(command.speed) > 1e-6 ? command.turn / command.speed : 0;
   const double most = std::abs(m_state.speed) / m_limits.turningRadius;
   const double turn = std::clamp(curvature * m_state.speed, -most, most);
-  m_state.turn = std::clamp(towards(m_state.turn, turn, m_turnAcceleration * seconds), -most, most);
+  m_state.turn = std::clamp(towards(m_state.turn, turn, kTurnAcceleration * seconds), -most, most);
   const double heading = m_state.pose.phi + m_state.turn * seconds / 2;
   m_state.pose.x += m_state.speed * seconds * std::cos(heading);
   m_state.pose.y += m_state.speed * seconds * std::sin(heading);

@@ -6,9 +6,7 @@ namespace simulated_drive {
 /** The true motion of a car-like robot: commands are followed as fast as it can. */
 class SimulatedRobot {
  public:
-  /** \param turnAcceleration of the steering, rad/s^2 */
-  SimulatedRobot(const mrpt::math::TPose2D& start, const semantic_driving::DriveOptions& limits,
-                 double turnAcceleration = 4);
+  SimulatedRobot(const mrpt::math::TPose2D& start, const semantic_driving::DriveOptions& limits);
 
   const semantic_driving::DriveState& state() const { return m_state; }
   /** \param seconds until the next command */
@@ -18,7 +16,6 @@ class SimulatedRobot {
   void step(const semantic_driving::DriveCommand& command, double seconds);
 
   semantic_driving::DriveOptions m_limits;
-  double m_turnAcceleration;
   semantic_driving::DriveState m_state;
 };
 

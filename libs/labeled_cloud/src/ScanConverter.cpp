@@ -20,6 +20,9 @@ using semantic_types::kNoClass;
 
 namespace {
 
+/** What a damaged file says of a camera could take all memory. */
+constexpr double kMostPixels = 40e6;
+
 /** MRPT 3's own error does not name the file. */
 void checkDepthFile(const CObservation& observation) {
   const auto* scan = dynamic_cast<const CObservation3DRangeScan*>(&observation);
@@ -94,12 +97,6 @@ void ScanConverterOptions::describe(strict_files::OptionList& list) {
   list.add("flying_pixel_threshold", flyingPixelThreshold, "", atLeast(0).below(1),
            "depth images: leaves out pixels that hang in the air at depth edges, farther from both "
            "sides than this share of their depth (0.02); 0: keeps all");
-  list.add(
-      "occlusion_parallax", occlusionParallax, "pixels", atLeast(0),
-      "depth images with labels in another camera's image: how far a point in front must shift "
-      "against one behind it, between the views, to hide it; 0: nothing is hidden");
-  list.add("max_pixels", maxPixels, "millions", strict_files::above(0).upTo(1000),
-           "depth images of more pixels are refused: a damaged file may say any number");
   labels.describe(list);
 }
 
@@ -145,10 +142,9 @@ void ScanConverter::addRangeScan(const CObservation3DRangeScan& observation, Lab
   if (!observation.hasRangeImage && !observation.hasPoints3D)
     throw std::invalid_argument("it has neither a range image nor 3D points");
   const mrpt::img::TCamera& camera = observation.cameraParams;
-  if (double(camera.nrows) * camera.ncols > m_options.maxPixels * 1e6)
+  if (double(camera.nrows) * camera.ncols > kMostPixels)
     throw std::invalid_argument("a camera of " + std::to_string(camera.ncols) + " x " +
-                                std::to_string(camera.nrows) + " pixels; max_pixels allows " +
-                                strict_files::textOf(m_options.maxPixels) + " million");
+                                std::to_string(camera.nrows) + " pixels; 40 million are allowed");
   if (observation.hasRangeImage) checkSize(observation);
   if (observation.hasRangeImage && !(m_rays && m_rays->isFor(camera)))
     m_rays = std::make_unique<PixelRays>(camera);

@@ -52,8 +52,6 @@ void ScanStreamOptions::describe(strict_files::OptionList& list) {
   list.add("on_problem", onProblem, "", "what to do about an observation that cannot be used");
   list.add("unlabeled", unlabeled, "",
            "what becomes of a scan without any label: it counts for occupancy, or is left out");
-  list.add("pictures_every", picturesEvery, "",
-           "every so-manieth scan comes with the pictures that its labels are from; 0: none");
 }
 
 ScanStream::ScanStream(std::vector<fs::path> rawlogs, ScanConverter& converter,

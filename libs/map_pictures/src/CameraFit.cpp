@@ -64,7 +64,6 @@ PictureCamera fitCamera(const std::vector<MapCell>& cells, const Viewpoint& view
       camera.R_map_camera * Eigen::Vector3d(horizontal.offset, vertical.offset, -distance);
   camera.near = std::max(0.1 * size, 0.2 * (nearest + distance));
   camera.far = 3 * (farthest + distance) + size;
-  camera.focalLength *= viewpoint.zoom;
   return camera;
 }
 

@@ -25,12 +25,11 @@ struct Drawn {
 /** Which nodes are worth a look. */
 class Filter {
  public:
-  Filter(const SemanticOcTree& tree, double minOccupancy,
-         const std::optional<Eigen::AlignedBox2d>& part)
-      : m_voxelSize(tree.getResolution()), m_minOccupancy(minOccupancy), m_part(part) {}
+  Filter(const SemanticOcTree& tree, const std::optional<Eigen::AlignedBox2d>& part)
+      : m_voxelSize(tree.getResolution()), m_part(part) {}
 
   bool takes(const SemanticOcTree::Node& node, const Cube& cube) const {
-    return node.getOccupancy() > m_minOccupancy && (!m_part || isInPart(cube));
+    return node.getOccupancy() > MapCells::kOccupied && (!m_part || isInPart(cube));
   }
 
  private:
@@ -40,7 +39,7 @@ class Filter {
     return (nearest - center).cwiseAbs().maxCoeff() < m_voxelSize * cube.edge() / 2;
   }
 
-  double m_voxelSize, m_minOccupancy;
+  double m_voxelSize;
   std::optional<Eigen::AlignedBox2d> m_part;
 };
 
@@ -87,8 +86,7 @@ std::vector<std::size_t> MapCells::countClasses(int numClasses) const {
 MapCells collectCells(const SemanticOcTree& tree, const PictureStyle& style,
                       const std::optional<Eigen::AlignedBox2d>& part) {
   MapCells map;
-  map.minOccupancy = style.minOccupancy;
-  const Filter filter(tree, style.minOccupancy, part);
+  const Filter filter(tree, part);
   const Drawn drawn = depthToDraw(tree, filter);
   map.depth = drawn.depth;
   map.cells.reserve(drawn.cells);

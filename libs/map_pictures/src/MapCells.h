@@ -24,12 +24,14 @@ struct MapCell {
 
 /** What a picture shows of a map. */
 struct MapCells {
+  /** Cells count as occupied above this occupancy. */
+  static constexpr double kOccupied = 0.5;
+
   std::vector<MapCell> cells;
   /** Nothing finer than this depth is drawn. */
   unsigned depth;
   /** Nothing with its center above is drawn, m. */
   double maxHeight = std::numeric_limits<double>::infinity();
-  double minOccupancy;
   /** Nothing with its center that much above the lowest cells around is drawn, m. */
   double maxAboveGround = std::numeric_limits<double>::infinity();
   LowestCells ground;  ///< for that; empty if nothing is cut off so

@@ -9,7 +9,6 @@
 namespace map_pictures {
 
 using strict_files::above;
-using strict_files::atLeast;
 using strict_files::between;
 using strict_files::checkOptions;
 using strict_files::OptionList;
@@ -18,13 +17,10 @@ void PictureStyle::describe(OptionList& list) {
   constexpr int kMost = 16384;
   list.add("width", width, "pixels", between(200, kMost), "of the picture without its legend");
   list.add("height", height, "pixels", between(200, kMost), "of the picture");
-  list.add("legend", legend, "", "names and colors of the classes");
-  list.add("title", title, "", "written above the legend");
   list.add("max_height", maxHeight, "m", strict_files::Range().orInfinite(),
            "higher cells are not drawn; none: all but the ceiling of an indoor map");
   list.add("max_above_ground", maxAboveGround, "m", above(0),
            "cells that are higher above the ground are not drawn; none: all");
-  list.add("min_occupancy", minOccupancy, "", atLeast(0).below(1), "above it, cells are occupied");
   list.add("neighbor_weight", neighborWeight, "", between(0, 1),
            "what a voxel across a face tells about a voxel's class, beside 1 for itself; 0: "
            "nothing, 0.4: pictures of noisy labels become clear");
@@ -36,7 +32,6 @@ void Viewpoint::describe(OptionList& list) {
   list.add("heading", heading, "degrees",
            "direction in which the perspective looks, from +x towards +y");
   list.add("tilt", tilt, "degrees", above(0).upTo(90), "how far it looks down");
-  list.add("zoom", zoom, "", above(0), "above 1: nearer than what shows the whole map");
 }
 
 void Viewpoint::validate() const { checkOptions(*this, "Viewpoint"); }

@@ -50,7 +50,7 @@ class Neighborhood {
       key[axis] = static_cast<octomap::key_type>(k);
     }
     const auto node = m_tree.search(key, m_cell.depth);
-    return node && node->getOccupancy() > m_map.minOccupancy &&
+    return node && node->getOccupancy() > MapCells::kOccupied &&
            (node->isLeaf() || m_cell.depth == m_map.depth);
   }
 

@@ -12,6 +12,13 @@ using semantic_planning::PathPoint;
 
 namespace {
 
+constexpr double kTrackLength = 10;  // m of the driven track that are kept to go back on
+// For MRPT's navigator: between waypoints, how near is near enough, and what room around the
+// footprint they have, or are left out; m.
+constexpr double kWaypointSpacing = 1.2, kWaypointReach = 0.5, kWaypointMargin = 0.3;
+constexpr double kReactivePause = 2;  // s until it is asked again after it found no way
+constexpr double kReactiveStall = 1;  // s that it may stand before a free way
+
 /** Where a vehicle is after some seconds, from a pose on. */
 TPose2D after(const TPose2D& pose, const DriveCommand& c, double seconds) {
   const double way = c.speed * seconds, heading = pose.phi + c.turn * seconds / 2;
@@ -33,8 +40,7 @@ const char* nameOf(DriveController::Driver driver) {
 
 DriveController::DriveController(const DriveOptions& options,
                                  const ReactiveNavigator::Options& reactive)
-
-    : m_tracker(options, reactive.footprint), m_track(options.trackLength), m_reactive(reactive) {}
+    : m_tracker(options, reactive.footprint), m_track(kTrackLength), m_reactive(reactive) {}
 
 void DriveController::setPath(DrivePath path) {
   m_tracker.setPath(std::move(path));
@@ -56,8 +62,7 @@ DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints
                    movers);
   const double since = seconds - std::exchange(m_steppedAt, seconds).value_or(seconds);
   m_motion = safeMotion(state, wanted, obstacles, since);
-  if (std::abs(m_motion.speed) > m_tracker.options().movingSpeed || m_tracker.finished())
-    m_movedAt = seconds;
+  if (std::abs(m_motion.speed) > DriveOptions::kAtRest || m_tracker.finished()) m_movedAt = seconds;
   return m_motion.command();
 }
 
@@ -72,26 +77,23 @@ bool DriveController::wantsReactive(const DriveState& state, const ObstaclePoint
   const double left = path.stretchEnd(here) - here, begin = path.stretchBegin(here + 1e-3);
   if (!path.at(here + 1e-3).forward || left < options.exactEnd) return false;
   if (m_tracker.freeAhead(state, obstacles) < std::min(left, options.lookAhead)) return true;
-  if (m_driver == Driver::Reactive && stoppedFor(seconds) >= options.reactiveStall)
-    m_stalledFrom = begin;
+  if (m_driver == Driver::Reactive && stoppedFor(seconds) >= kReactiveStall) m_stalledFrom = begin;
   return options.alwaysReactive && m_stalledFrom != begin;
 }
 
 bool DriveController::isOpen(const PathPoint& place, const DriveState& state,
                              const ObstaclePoints& obstacles) const {
-  return m_tracker.isFree(poseOf(place) - state.pose, obstacles,
-                          m_tracker.options().waypointMargin);
+  return m_tracker.isFree(poseOf(place) - state.pose, obstacles, kWaypointMargin);
 }
 
 /** To the end of the stretch, without those where something stands: they cannot be reached. */
 void DriveController::setWaypoints(const DriveState& state, const ObstaclePoints& obstacles) {
-  m_waypoints =
-      m_tracker.path().waypoints(m_tracker.progress(), m_tracker.options().waypointSpacing);
+  m_waypoints = m_tracker.path().waypoints(m_tracker.progress(), kWaypointSpacing);
   m_waypoints.erase(
       std::remove_if(m_waypoints.begin(), m_waypoints.end() - 1,
                      [&](const PathPoint& p) { return !isOpen(p, state, obstacles); }),
       m_waypoints.end() - 1);
-  m_reactive.setWaypoints(m_waypoints, m_tracker.options().waypointReach);
+  m_reactive.setWaypoints(m_waypoints, kWaypointReach);
 }
 
 DriveCommand DriveController::driveReactively(const DriveState& state,
@@ -108,7 +110,7 @@ DriveCommand DriveController::driveReactively(const DriveState& state,
   m_reactiveFrom = begin;
   DriveCommand c = m_reactive.step(state, obstacles, seconds);
   if (m_reactive.status() != ReactiveNavigator::Status::Driving) {
-    m_reactiveAgain = seconds + m_tracker.options().reactivePause;
+    m_reactiveAgain = seconds + kReactivePause;
     return m_tracker.command(state, obstacles, speedLimit);
   }
   const double curve = std::sqrt(m_tracker.options().maxSideAcceleration *
@@ -152,7 +154,8 @@ DriveCommand DriveController::besideMovers(const DriveState& state, DriveCommand
 Motion DriveController::safeMotion(const DriveState& state, const DriveCommand& wanted,
                                    const ObstaclePoints& obstacles, double since) const {
   const DriveOptions& options = m_tracker.options();
-  const double slow = std::min(1.0, options.slowest / std::max(1e-9, std::abs(wanted.speed)));
+  const double slow =
+      std::min(1.0, DriveOptions::kSlowest / std::max(1e-9, std::abs(wanted.speed)));
   for (const double share : {1.0, slow}) {
     const DriveCommand command{share * wanted.speed, share * wanted.turn};
     const Motion motion = next(m_motion, command, state.speed, since, options);

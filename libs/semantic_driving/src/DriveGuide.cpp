@@ -1,4 +1,6 @@
 #include <semantic_driving/DriveGuide.h>
+#include <semantic_driving/Motion.h>
+#include <semantic_driving/Recovery.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +16,14 @@ using semantic_planning::PlanStatus;
 using semantic_planning::SemanticPlanner;
 
 namespace {
+
+// A better path leaves the present one where the vehicle is after so many seconds, or at least so
+// many meters ahead.
+constexpr double kLeadTime = 1, kLeadDistance = 0.5;
+constexpr double kRestMargin = 0.1;      // m more than coming to rest takes
+constexpr double kShortestShunt = 0.15;  // m; shorter last stretches are not worth a change of gear
+constexpr double kBlind = 2;             // m; sensors may not see the ground nearer than this
+constexpr double kNearestWithin = 5;     // m around a goal that does not fit
 
 double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
@@ -48,8 +58,8 @@ DriveGuide::DriveGuide(const GuideOptions& options, SemanticPlanner& planner, co
     : m_options(options),
       m_planner(planner),
       m_check(planner),
-      m_turns(planner, options.same.backwards),
-      m_explorer(options, planner),
+      m_turns(planner, options.longestBackwards),
+      m_explorer(planner, options.frontierRadius),
       m_goal(goal),
       m_aim(goal) {
   m_options.validate();
@@ -61,8 +71,7 @@ void DriveGuide::update(const DriveState& state, double z, DriveController& driv
   m_explorer.moveTo(state.pose, z);
   m_misfit = misfit(now);
   Transition next = transition(m_state, look(now), m_options);
-  while (isQuestion(next.action))
-    next = transition(next.state, answer(next.action, now), m_options);
+  while (isQuestion(next.action)) next = transition(next.state, answer(next.action, now));
   m_state = next.state;
   apply(next.action, now, drive);
   if (gaveUp() && !gaveUpBefore && explored() > 0)
@@ -72,7 +81,7 @@ void DriveGuide::update(const DriveState& state, double z, DriveController& driv
 /** Where it fits nothing is looked for, nor where it stands or is about to. */
 std::optional<GoalMisfit> DriveGuide::misfit(const Situation& now) const {
   const double far = distance(now.state.pose, m_aim);
-  if (far < m_options.atGoal || far > m_options.frontiers.radius) return {};
+  if (far < m_options.atGoal || far > m_options.frontierRadius) return {};
   if (m_planner.check(m_aim) == PlanStatus::Found) return {};
   return findMisfit(m_planner, now.state.pose, now.z, m_aim);
 }
@@ -84,7 +93,7 @@ bool DriveGuide::isNearGoal(const DriveState& state) const {
 bool DriveGuide::arrived(const DriveState& state, const DriveController& drive) const {
   const PathTracker& tracker = drive.tracker();
   return target() == Target::Goal && isNearGoal(state) && !tracker.path().empty() &&
-         tracker.finished() && std::abs(state.speed) < m_options.atRest;
+         tracker.finished() && std::abs(state.speed) < DriveOptions::kAtRest;
 }
 
 ObstacleOptions DriveGuide::obstacles(ObstacleOptions usual) const {
@@ -119,8 +128,7 @@ DriveGuide::Departure DriveGuide::departureOf(const Situation& now, From from) c
   if (from == From::Here || tracker.finished()) return {now.state.pose, now.z, {}};
   const DrivePath& path = tracker.path();
   const double here = tracker.progress();
-  const double ahead =
-      std::max(m_options.leadDistance, std::abs(now.state.speed) * m_options.leadTime);
+  const double ahead = std::max(kLeadDistance, std::abs(now.state.speed) * kLeadTime);
   const double there = std::min(path.stretchEnd(here), here + ahead);
   return {poseOf(path.at(there)), path.at(there).z, path.part(here, there)};
 }
@@ -131,8 +139,8 @@ DrivePath DriveGuide::untilRest(const Situation& now) const {
   const PathTracker& tracker = now.drive.tracker();
   const DrivePath& path = tracker.path();
   const double here = tracker.progress();
-  const double there = here + m_options.restingWay(std::abs(now.state.speed), tracker.options()) +
-                       m_options.restMargin;
+  const double there =
+      here + restingWay(std::abs(now.state.speed), tracker.options()) + kRestMargin;
   return path.part(here, std::min(there, path.stretchEnd(here)));
 }
 
@@ -173,7 +181,7 @@ Answer DriveGuide::answer(const Action& question, const Situation& now) {
 DrivePath DriveGuide::joined(const Departure& from, DrivePath path) const {
   if (path.empty()) return path;
   if (!from.before.empty()) path = from.before.part(0, from.before.length(), path);
-  return m_turns.find(path, from.before.length(), m_options.same.length).value_or(path);
+  return m_turns.find(path, from.before.length(), PathJudgment::kSameLength).value_or(path);
 }
 
 /** If what was found is no better than the present path, it is the rest of that with a turn ahead
@@ -182,7 +190,7 @@ bool DriveGuide::improves(const Departure& from, const Situation& now) {
   if (isBetter(now)) return true;
   const PathTracker& tracker = now.drive.tracker();
   m_found = m_turns.find(tracker.path().part(tracker.progress(), tracker.path().length()),
-                         from.before.length(), m_options.same.length);
+                         from.before.length(), PathJudgment::kSameLength);
   return m_found.has_value();
 }
 
@@ -198,7 +206,8 @@ bool DriveGuide::isBetter(const Situation& now) const {
   if (!m_found || m_found->empty()) return false;
   const PathTracker& tracker = now.drive.tracker();
   return m_check.judge(*m_found, 0)
-      .isClearlyBetterThan(m_check.judge(tracker.path(), tracker.progress()), m_options.same);
+      .isClearlyBetterThan(m_check.judge(tracker.path(), tracker.progress()),
+                           m_options.longestBackwards);
 }
 
 std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
@@ -212,7 +221,7 @@ std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
   DrivePath path(plan.path);
   m_plan = std::move(plan);
   const double last = path.stretchBegin(path.length());
-  const bool isWorthIt = last <= 0 || path.length() - last >= m_options.shortestShunt;
+  const bool isWorthIt = last <= 0 || path.length() - last >= kShortestShunt;
   return joined(from, isWorthIt ? path : path.part(0, last));
 }
 
@@ -230,8 +239,7 @@ std::optional<DrivePath> DriveGuide::toFrontier(const Departure& from, bool last
 }
 
 std::optional<DrivePath> DriveGuide::recovery(const Situation& now, bool blind) {
-  DrivePath path = findRecovery(m_planner, now.state.pose, now.z, m_options.recovery,
-                                blind ? m_options.recovery.blind : 0);
+  DrivePath path = findRecovery(m_planner, now.state.pose, now.z, blind ? kBlind : 0);
   if (!path.empty()) return path;
   if (!blind) m_reason = "the vehicle is where it must not be, and finds no way out";
   return {};
@@ -240,8 +248,8 @@ std::optional<DrivePath> DriveGuide::recovery(const Situation& now, bool blind) 
 /** Says that the goal does not fit, and offers the nearest pose that does, unless that is as good.
  * \return whether it drives there from now on */
 bool DriveGuide::aimsElsewhere(const Situation& now) {
-  const auto nearest = nearestFit(m_planner, now.state.pose, now.z, m_goal, m_options.nearestWithin,
-                                  m_options.frontiers);
+  const auto nearest = nearestFit(m_planner, now.state.pose, now.z, m_goal, kNearestWithin,
+                                  m_options.frontierRadius);
   const bool asGood = nearest && m_options.isAsGood(*nearest, m_goal);
   if (!asGood) {
     m_refusal = RefusedGoal{describe(*m_misfit, m_aim, m_planner.ground().map().classes()), nearest,
@@ -266,11 +274,11 @@ std::optional<DrivePath> DriveGuide::back(const Situation& now) const {
     p.z = z;
   }
   const DrivePath track(std::move(points));
-  constexpr double kStep = 0.2;  // m
+  constexpr double kStep = 0.2, kBeyond = 1;  // m
   for (double s = kStep; s < track.length(); s += kStep) {
     const PathPoint p = track.at(s);
     if (m_planner.check(poseOf(p), p.z) == PlanStatus::Found)
-      return track.part(0, std::min(track.length(), s + m_options.backBeyond));
+      return track.part(0, std::min(track.length(), s + kBeyond));
   }
   return {};
 }

@@ -9,8 +9,8 @@ using mrpt::math::TPose2D;
 using semantic_planning::PlanResult;
 using semantic_planning::SemanticPlanner;
 
-Explorer::Explorer(const GuideOptions& options, SemanticPlanner& planner)
-    : m_options(options.frontiers), m_shortestWay(options.shortestWay), m_planner(planner) {}
+Explorer::Explorer(SemanticPlanner& planner, double radius)
+    : m_planner(planner), m_radius(radius) {}
 
 void Explorer::moveTo(const TPose2D& pose, double z) {
   const TPose2D before = std::exchange(m_pose, pose).value_or(pose);
@@ -22,7 +22,7 @@ void Explorer::moveTo(const TPose2D& pose, double z) {
 }
 
 Exploration Explorer::places(const TPose2D& from, double z, const TPose2D& goal) {
-  Exploration found = findFrontiers(m_planner, from, z, goal, m_seen, m_effort, m_options);
+  Exploration found = findFrontiers(m_planner, from, z, goal, m_seen, m_effort, m_radius);
   if (m_effort.expected == 0 && !found.frontiers.empty())
     m_effort.expected = m_effort.spent + found.hoped;
   return found;
@@ -32,6 +32,7 @@ std::optional<Explorer::Way> Explorer::choose(const Exploration& places, const T
                                               double z,
                                               const std::function<DrivePath(DrivePath)>& joined,
                                               bool last) {
+  constexpr double kShortestWay = 0.5;  // m; nearer frontiers are seen from here
   const semantic_planning::DrivePrice price(m_planner.options().vehicle);
   Poses useless;  // if it is not seen from there, it is not seen
   std::optional<Frontier> chosen;
@@ -39,7 +40,7 @@ std::optional<Explorer::Way> Explorer::choose(const Exploration& places, const T
   for (Frontier f : places.frontiers) {
     if (chosen && f.cost >= chosen->cost) break;
     PlanResult plan = m_planner.plan(from, f.pose, z, f.z);
-    if (!plan.found() || plan.length < m_shortestWay) {
+    if (!plan.found() || plan.length < kShortestWay) {
       useless.push_back(f.pose);
       continue;
     }

@@ -24,7 +24,6 @@ Eigen::Vector3d placeAt(const DrivePath& path, double s) {
 void FocusOptions::describe(strict_files::OptionList& list) {
   list.add("corridor", corridor, "m", atLeast(0),
            "on both sides of the path ahead, where the compressed tree has detail; 0: everywhere");
-  list.add("ahead", ahead, "m", above(0), "of the path");
   list.add("around", around, "m", above(0),
            "around the vehicle; more than obstacles are looked for");
   list.add("alpha", alpha, "", atLeast(0), "price of detail");
@@ -44,12 +43,13 @@ semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrd
 std::vector<Region> regionsAhead(const DrivePath& path, double progress,
                                  const Eigen::Vector3d& vehicle, const FocusOptions& options) {
   constexpr double kFar = 1e6, kStretch = 3;  // m
+  constexpr double kAhead = 15;               // m of the path
   if (!options.isOn()) return {};
   const Eigen::Vector3d far = Eigen::Vector3d::Constant(kFar);
   std::vector<Region> regions = {
       {Region::Shape::Box, -far, far, 0, 0},
       {Region::Shape::Sphere, onMeters(vehicle), far, options.around + std::sqrt(0.75), 1}};
-  const double end = path.empty() ? 0 : std::min(path.length(), progress + options.ahead);
+  const double end = path.empty() ? 0 : std::min(path.length(), progress + kAhead);
   for (double s = kStretch * std::floor(progress / kStretch); s < end; s += kStretch)
     regions.push_back({Region::Shape::Corridor, placeAt(path, s), placeAt(path, s + kStretch),
                        options.corridor, 1});

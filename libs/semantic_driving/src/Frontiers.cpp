@@ -19,25 +19,29 @@ using semantic_planning::Surface;
 
 namespace {
 
+constexpr double kUnknownFactor = 2;   // what a meter through the unknown counts, of one on rank 0
+constexpr double kFrontiersApart = 3;  // m
+constexpr std::size_t kMostFrontiers = 6;
+
 class FrontierSearch {
  public:
   FrontierSearch(const SemanticPlanner& planner, const GroundFlood& flood, const GoalRegion& region,
-                 const WayLeft& wayLeft, const FrontierOptions& options)
+                 const WayLeft& wayLeft, double unknownFactor)
       : m_planner(planner),
         m_ground(planner.ground()),
         m_flood(flood),
         m_region(region),
         m_wayLeft(wayLeft),
-        m_options(options) {}
+        m_unknownFactor(unknownFactor) {}
 
   /** The best ones that the vehicle can stand at, apart from each other and from those to avoid. */
   std::vector<Frontier> chosen(const std::vector<TPose2D>& avoid) const {
     std::vector<Frontier> chosen;
     for (const Frontier& f : all()) {
       const auto isNear = [&](const TPose2D& p) {
-        return std::hypot(p.x - f.pose.x, p.y - f.pose.y) < m_options.apart;
+        return std::hypot(p.x - f.pose.x, p.y - f.pose.y) < kFrontiersApart;
       };
-      if (chosen.size() == m_options.most) break;
+      if (chosen.size() == kMostFrontiers) break;
       if (std::any_of(avoid.begin(), avoid.end(), isNear)) continue;
       if (std::any_of(chosen.begin(), chosen.end(),
                       [&](const Frontier& c) { return isNear(c.pose); }))
@@ -77,11 +81,11 @@ class FrontierSearch {
    * eight directions; infinite: there is none. */
   double leftFrom(Column c, int z) const {
     double least = std::numeric_limits<double>::infinity();
-    const int far = static_cast<int>(std::lround(m_options.sight / m_ground.voxelSize()));
+    const int far = static_cast<int>(std::lround(WayLeft::kSight / m_ground.voxelSize()));
     for (const Column& d : kNeighbors)
       for (int i = 1; i <= far; ++i) {
         const Column there{c.x + i * d.x, c.y + i * d.y};
-        const double step = m_options.unknownFactor * m_ground.voxelSize() * std::hypot(d.x, d.y);
+        const double step = m_unknownFactor * m_ground.voxelSize() * std::hypot(d.x, d.y);
         if (!m_flood.square().contains(there)) {
           least = std::min(least, (i - 1) * step + m_wayLeft.from({there.x - d.x, there.y - d.y}));
           break;
@@ -95,7 +99,8 @@ class FrontierSearch {
   }
 
   double headingAt(Column c) const {
-    const auto columns = std::lround(m_options.headingOver / m_ground.voxelSize());
+    constexpr double kOver = 2;  // m, the last part of the way
+    const auto columns = std::lround(kOver / m_ground.voxelSize());
     Column before = c;
     for (long i = 0; i < columns; ++i) before = m_flood.at(before).from;
     return before == c ? 0 : std::atan2(c.y - before.y, c.x - before.x);
@@ -106,31 +111,10 @@ class FrontierSearch {
   const GroundFlood& m_flood;
   const GoalRegion& m_region;
   const WayLeft& m_wayLeft;
-  const FrontierOptions& m_options;
+  double m_unknownFactor;
 };
 
 }  // namespace
-
-void FrontierOptions::describe(strict_files::OptionList& list) {
-  using strict_files::above;
-  using strict_files::atLeast;
-  list.add("radius", radius, "m", above(0), "how far places are looked for");
-  list.add("unknown_factor", unknownFactor, "", atLeast(0),
-           "what a meter through the unknown counts against one on the best class");
-  list.add("turning", turning, "m", atLeast(0),
-           "what turning around at the start counts, on the best class");
-  list.add("apart", apart, "m", atLeast(0), "between places");
-  list.add("most", most, "", atLeast(1), "places");
-  list.add("sight", sight, "m", above(0), "how far from a place the unknown is, at most");
-  list.add("lenient", lenient, "m", atLeast(0),
-           "so near to the vehicle less than its clearance is enough");
-  list.add("heading_over", headingOver, "m", above(0),
-           "last part of the way, which a place's heading is taken from");
-  list.add("around_goal", aroundGoal, "m", atLeast(0),
-           "a goal that seems not to be passable counts as so wide");
-}
-
-void FrontierOptions::validate() const { strict_files::checkOptions(*this, "FrontierOptions"); }
 
 double Effort::doubt(double left) const {
   return expected > 0 ? std::sqrt(std::max(1.0, (spent + left) / expected)) : 1;
@@ -138,29 +122,24 @@ double Effort::doubt(double left) const {
 
 Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, double z,
                           const TPose2D& goal, const std::vector<TPose2D>& avoid,
-                          const Effort& effort, const FrontierOptions& options) {
-  options.validate();
+                          const Effort& effort, double radius) {
   const double voxel = planner.ground().voxelSize();
   const int key = planner.ground().keyOf(z);
-  const GroundFlood flood(planner, from, key, options);
-  const GoalRegion region(planner, flood.square(), flood.reached(), from, z, goal,
-                          options.aroundGoal);
+  const GroundFlood flood(planner, from, key, radius);
+  const GoalRegion region(planner, flood.square(), flood.reached(), from, z, goal);
   Exploration found;
   found.enclosed = region.isEnclosed();
   if (!region.isOpen()) found.goalArea = region.columns() * voxel * voxel;
   if (found.enclosed) return found;
-  const auto search = [&](const FrontierOptions& wanted) {
-    const WayLeft wayLeft(planner, flood, region, goal, wanted);
-    return FrontierSearch(planner, flood, region, wayLeft, wanted).chosen(avoid);
+  const auto search = [&](double unknownFactor) {
+    const WayLeft wayLeft(planner, flood, region, goal, unknownFactor);
+    return FrontierSearch(planner, flood, region, wayLeft, unknownFactor).chosen(avoid);
   };
-  found.frontiers = search(options);
+  found.frontiers = search(kUnknownFactor);
   if (found.frontiers.empty()) return found;
   found.hoped = found.frontiers.front().cost;
   const double doubt = effort.doubt(found.hoped);
-  if (doubt == 1) return found;
-  FrontierOptions wiser = options;
-  wiser.unknownFactor *= doubt;
-  found.frontiers = search(wiser);
+  if (doubt != 1) found.frontiers = search(kUnknownFactor * doubt);
   return found;
 }
 

@@ -29,7 +29,7 @@ void forDisc(Column center, double radius, F f) {
 
 GoalRegion::GoalRegion(const SemanticPlanner& planner, const ColumnSquare& square,
                        std::vector<bool> reached, const TPose2D& from, double z,
-                       const TPose2D& goal, double aroundGoal)
+                       const TPose2D& goal)
     : m_square(square),
       m_reached(std::move(reached)),
       m_obstacle(square.size()),
@@ -37,7 +37,7 @@ GoalRegion::GoalRegion(const SemanticPlanner& planner, const ColumnSquare& squar
       m_region(square.size()) {
   markObstacles(planner, from, z);
   m_enclosed = std::find(m_reached.begin(), m_reached.end(), true) != m_reached.end();
-  start(planner.ground(), goal, aroundGoal);
+  start(planner.ground(), goal);
   flood();
 }
 
@@ -65,7 +65,7 @@ void GoalRegion::keepAround(Column obstacle, double radius) {
   });
 }
 
-void GoalRegion::start(const Ground& ground, const TPose2D& goal, double around) {
+void GoalRegion::start(const Ground& ground, const TPose2D& goal) {
   const Column c = ground.columnAt(goal.x, goal.y);
   if (!m_square.contains(c)) return offerRim();
   if (!m_kept[m_square.indexOf(c)]) {
@@ -73,7 +73,7 @@ void GoalRegion::start(const Ground& ground, const TPose2D& goal, double around)
     if (m_goalReached) m_enclosed = false;
     return offer(c);
   }
-  forDisc(c, around / ground.voxelSize(), [this](Column near) { offer(near); });
+  forDisc(c, kAroundGoal / ground.voxelSize(), [this](Column near) { offer(near); });
 }
 
 void GoalRegion::offer(Column c) {

@@ -23,11 +23,13 @@ namespace semantic_driving {
 class GoalRegion {
  public:
   /** \param reached for each column of the square, whether the vehicle gets there
-   * \param from where the vehicle is, on ground of height z (meters)
-   * \param aroundGoal how far around a goal that seems not to be passable, meters */
+   * \param from where the vehicle is, on ground of height z (meters) */
   GoalRegion(const semantic_planning::SemanticPlanner& planner, const ColumnSquare& square,
              std::vector<bool> reached, const mrpt::math::TPose2D& from, double z,
-             const mrpt::math::TPose2D& goal, double aroundGoal);
+             const mrpt::math::TPose2D& goal);
+
+  /** A goal that seems not to be passable counts as so wide, meters. */
+  static constexpr double kAroundGoal = 1;
 
   /** Whether seeing an unknown column may help. \param c in the square */
   bool contains(semantic_planning::Column c) const {
@@ -54,8 +56,7 @@ class GoalRegion {
   void markObstacles(const semantic_planning::SemanticPlanner& planner,
                      const mrpt::math::TPose2D& from, double z);
   void keepAround(semantic_planning::Column obstacle, double radius);
-  void start(const semantic_planning::Ground& ground, const mrpt::math::TPose2D& goal,
-             double around);
+  void start(const semantic_planning::Ground& ground, const mrpt::math::TPose2D& goal);
   void offer(semantic_planning::Column c);
   void offerRim();
   void flood();

@@ -11,14 +11,12 @@ using semantic_planning::SemanticPlanner;
 using semantic_planning::Surface;
 
 GroundFlood::GroundFlood(const SemanticPlanner& planner, const mrpt::math::TPose2D& from, int z,
-                         const FrontierOptions& options)
+                         double radius)
     : m_planner(planner),
       m_ground(planner.ground()),
       m_center(m_ground.columnAt(from.x, from.y)),
-      m_square(m_center, static_cast<int>(options.radius / m_ground.voxelSize())),
-      m_lenient(options.lenient / m_ground.voxelSize()),
+      m_square(m_center, static_cast<int>(radius / m_ground.voxelSize())),
       m_ahead{std::cos(from.phi), std::sin(from.phi)},
-      m_turning(options.turning),
       m_discs(planner.options().vehicle.footprint.coveringDiscs()),
       m_inner(planner.options().vehicle.footprint.inscribedRadius()),
       m_places(m_square.size()) {
@@ -34,7 +32,8 @@ std::vector<bool> GroundFlood::reached() const {
 
 /** Where the vehicle stands there may be less clearance. */
 bool GroundFlood::isNear(Column c) const {
-  return std::hypot(c.x - m_center.x, c.y - m_center.y) < m_lenient;
+  constexpr double kLenient = 1.5;  // m
+  return std::hypot(c.x - m_center.x, c.y - m_center.y) < kLenient / m_ground.voxelSize();
 }
 
 bool GroundFlood::fits(Column c, const Surface& surface, const Column& direction) const {
@@ -77,11 +76,12 @@ void GroundFlood::flood(int z) {
 
 /** Of a step in the direction d to c: who leaves the place where it does not head has to turn. */
 double GroundFlood::turningOf(Column c, const Column& d) const {
-  constexpr double kWithin = 1;  // m
+  constexpr double kWithin = 1;   // m
+  constexpr double kTurning = 4;  // m on rank 0, for turning around
   const double voxel = m_ground.voxelSize();
   if (std::hypot(c.x - m_center.x, c.y - m_center.y) * voxel > kWithin) return 0;
   const double ahead = (d.x * m_ahead.x + d.y * m_ahead.y) / std::hypot(d.x, d.y);
-  return m_turning * (1 - ahead) / 2 * std::hypot(d.x, d.y) * voxel / kWithin;
+  return kTurning * (1 - ahead) / 2 * std::hypot(d.x, d.y) * voxel / kWithin;
 }
 
 void GroundFlood::expand(Column c, const Place& place) {

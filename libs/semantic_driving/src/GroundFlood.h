@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_driving/Frontiers.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 #include <semantic_planning/vehicle/Footprint.h>
 
 #include <array>
@@ -22,9 +22,9 @@ constexpr std::array<semantic_planning::Column, 8> kNeighbors = {
  * it turns in between is not asked. */
 class GroundFlood {
  public:
-  /** \param z key of the ground's height below the vehicle */
+  /** \param z key of the ground's height below the vehicle \param radius how far, meters */
   GroundFlood(const semantic_planning::SemanticPlanner& planner, const mrpt::math::TPose2D& from,
-              int z, const FrontierOptions& options);
+              int z, double radius);
 
   struct Place {
     double cost = std::numeric_limits<double>::infinity();
@@ -65,9 +65,7 @@ class GroundFlood {
   const semantic_planning::Ground& m_ground;
   semantic_planning::Column m_center;
   ColumnSquare m_square;
-  double m_lenient;              ///< voxels
   mrpt::math::TPoint2D m_ahead;  ///< where the vehicle heads
-  double m_turning;              ///< price of turning around, weighted meters
   std::vector<semantic_planning::Disc> m_discs;
   double m_inner, m_outer = 0;  ///< radii about the origin: in the footprint, around it; meters
   std::vector<Place> m_places;

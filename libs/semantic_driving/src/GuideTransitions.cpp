@@ -18,6 +18,13 @@ const char* nameOf(Target target) { return strict_files::nameIn(choicesOf(target
 
 namespace {
 
+constexpr double kStuckAfter = 4;    // s without getting on, until another path is looked for
+constexpr double kGiveUpAfter = 4;   // s at rest without any path
+constexpr double kNearFrontier = 3;  // m before a frontier the next one is looked for
+// A faster vehicle comes to rest before it leaves its path for another one, which may begin
+// backwards; m/s.
+constexpr double kSlow = 0.2;
+
 template <class... F>
 struct Overloaded : F... {
   using F::operator()...;
@@ -42,8 +49,7 @@ std::optional<double>* blockedSince(Activity& activity) {
 }
 
 bool isStuck(const GuideState& state, const Look& look, const GuideOptions& options) {
-  return look.stoppedFor >= options.stuckAfter &&
-         look.seconds - state.plannedAt >= options.patience;
+  return look.stoppedFor >= kStuckAfter && look.seconds - state.plannedAt >= options.patience;
 }
 
 /** For long. Notes since when. */
@@ -68,8 +74,8 @@ bool mustChange(GuideState& state, const Look& look, const GuideOptions& options
   return isStuck(state, look, options);
 }
 
-Transition choose(GuideState state, const Look& look, const GuideOptions& options) {
-  if (!look.finished && look.speed > options.slow) {
+Transition choose(GuideState state, const Look& look) {
+  if (!look.finished && look.speed > kSlow) {
     state.comesToRest = true;
     return {state, ComeToRest{}};
   }
@@ -82,10 +88,10 @@ Transition choose(GuideState state, const Look& look, const GuideOptions& option
   return {state, SeekGoal{From::Here, replaces, true}};
 }
 
-Transition improve(GuideState state, const Look& look, const GuideOptions& options) {
+Transition improve(GuideState state, const Look& look) {
   state.plannedAt = look.seconds;
   const bool exploring = does<ToFrontier>(state);
-  const bool next = exploring && look.left <= options.nearFrontier;
+  const bool next = exploring && look.left <= kNearFrontier;
   if (!look.mayPlanAhead || (exploring && !look.mayStandAtGoal && !next)) return {state, GoOn{}};
   return {state, SeekGoal{From::Ahead, !exploring, next}};
 }
@@ -103,33 +109,31 @@ Transition followPlan(GuideState state, Activity activity, bool replaces) {
   return follow(state, activity);
 }
 
-Transition fail(GuideState state, double seconds, const GuideOptions& options) {
+Transition fail(GuideState state, double seconds) {
   const auto* idle = std::get_if<Idle>(&state.activity);
   const double since = idle && idle->since ? *idle->since : seconds;
   state.activity = Idle{since};
-  if (seconds - since >= options.giveUpAfter) state.activity = GaveUp{};
+  if (seconds - since >= kGiveUpAfter) state.activity = GaveUp{};
   return {state, Stop{}};
 }
 
-Transition goBack(GuideState state, double seconds, const GuideOptions& options) {
-  if (state.timesBack >= options.mostTimesBack) return fail(state, seconds, options);
+Transition goBack(GuideState state, double seconds) {
+  if (state.timesBack >= GuideState::kMostTimesBack) return fail(state, seconds);
   return {state, SeekBack{}};
 }
 
-Transition after(GuideState state, const SeekGoal& sought, const Answer& answer,
-                 const GuideOptions& options) {
+Transition after(GuideState state, const SeekGoal& sought, const Answer& answer) {
   const bool ahead = sought.from == From::Ahead;
   if (!answer.found) {
     if (!sought.orFrontier) return {state, GoOn{}};
-    const bool last = state.timesBack >= options.mostTimesBack;
+    const bool last = state.timesBack >= GuideState::kMostTimesBack;
     return {state, SeekFrontier{sought.from, sought.replaces, last}};
   }
   if (ahead && (answer.empty || (sought.replaces && !answer.better))) return {state, GoOn{}};
   return followPlan(state, ToGoal{}, sought.replaces);
 }
 
-Transition after(GuideState state, const SeekFrontier& sought, const Answer& answer,
-                 const GuideOptions& options) {
+Transition after(GuideState state, const SeekFrontier& sought, const Answer& answer) {
   const bool ahead = sought.from == From::Ahead;
   state.enclosed = answer.enclosed;
   // What is seen until the next look may spare a change of gear.
@@ -141,25 +145,23 @@ Transition after(GuideState state, const SeekFrontier& sought, const Answer& ans
     state.recoveredBlind = true;
     return {state, SeekRecovery{true}};
   }
-  if (state.enclosed) return fail(state, answer.seconds, options);
-  return goBack(state, answer.seconds, options);
+  if (state.enclosed) return fail(state, answer.seconds);
+  return goBack(state, answer.seconds);
 }
 
-Transition after(GuideState state, const SeekRecovery& sought, const Answer& answer,
-                 const GuideOptions& options) {
+Transition after(GuideState state, const SeekRecovery& sought, const Answer& answer) {
   if (answer.found) return follow(state, Recovering{sought.blind, {}});
-  return goBack(state, answer.seconds, options);
+  return goBack(state, answer.seconds);
 }
 
-Transition after(GuideState state, const SeekBack&, const Answer& answer,
-                 const GuideOptions& options) {
-  if (!answer.found) return fail(state, answer.seconds, options);
+Transition after(GuideState state, const SeekBack&, const Answer& answer) {
+  if (!answer.found) return fail(state, answer.seconds);
   ++state.timesBack;
   return follow(state, GoingBack{});
 }
 
 /** Another goal, or none. */
-Transition after(GuideState state, const SeekNearest&, const Answer& answer, const GuideOptions&) {
+Transition after(GuideState state, const SeekNearest&, const Answer& answer) {
   state.misfitSince.reset();
   if (!answer.found) {
     const bool stands = does<Idle>(state);
@@ -174,7 +176,7 @@ Transition after(GuideState state, const SeekNearest&, const Answer& answer, con
 
 /** No question. */
 template <class Other>
-Transition after(GuideState state, const Other&, const Answer&, const GuideOptions&) {
+Transition after(GuideState state, const Other&, const Answer&) {
   return {state, GoOn{}};
 }
 
@@ -189,17 +191,16 @@ Target GuideState::target() const {
 Transition transition(GuideState state, const Look& look, const GuideOptions& options) {
   if (does<GaveUp>(state)) return {state, look.finished ? Action(Stop{}) : GoOn{}};
   if (goalMisfits(state, look, options)) return {state, SeekNearest{}};
-  if (does<Idle>(state) || mustChange(state, look, options)) return choose(state, look, options);
+  if (does<Idle>(state) || mustChange(state, look, options)) return choose(state, look);
   const auto* blocked = blockedSince(state.activity);
   const bool soon = look.seconds - state.plannedAt < options.period;
   if (does<GoingBack>(state) || soon || (blocked && *blocked)) return {state, GoOn{}};
-  return improve(state, look, options);
+  return improve(state, look);
 }
 
-Transition transition(GuideState state, const Answer& answer, const GuideOptions& options) {
-  return std::visit(
-      [&](const auto& question) { return after(std::move(state), question, answer, options); },
-      answer.question);
+Transition transition(GuideState state, const Answer& answer) {
+  return std::visit([&](const auto& question) { return after(std::move(state), question, answer); },
+                    answer.question);
 }
 
 }  // namespace semantic_driving

@@ -25,7 +25,7 @@ double speedFor(double curvature, double off, const DriveOptions& limits) {
   constexpr double kWay = 0.2;  // m
   double most = std::sqrt(limits.maxSideAcceleration / std::max(1e-9, std::abs(curvature)));
   if (off > 0) most = std::min(most, kWay * limits.maxSteeringRate / off);
-  return std::max(most, limits.slowest);
+  return std::max(most, DriveOptions::kSlowest);
 }
 
 /** The greatest acceleration that a limited jerk takes back, step by step, until the speed has
@@ -61,6 +61,12 @@ Motion steered(const Motion& motion, const DriveCommand& wanted, double seconds,
   later.curvature =
       towards(motion.curvature, bendOf(wanted, motion), limits.maxSteeringRate * seconds);
   return later;
+}
+
+double restingWay(double speed, const DriveOptions& limits) {
+  constexpr double kShare = 0.9375;  // of braking(): so gently that the tracker keeps to it
+  return speed * speed / (2 * (kShare * limits.braking())) +
+         speed * delayOfStop(limits.maxAcceleration / 2, limits);
 }
 
 double delayOfStop(double acceleration, const DriveOptions& limits) {

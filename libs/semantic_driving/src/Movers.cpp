@@ -13,6 +13,16 @@ using semantic_types::ClassId;
 
 namespace {
 
+constexpr double kApart = 0.4;  // m; points of one are no farther apart
+constexpr std::size_t kLeastPoints = 3;
+constexpr double kBody = 0.35;         // m: radius about the middle
+constexpr double kPlaceNoise = 0.1;    // m: standard deviation of a middle that is seen
+constexpr double kFirstSpeed = 1;      // m/s: likewise, of one who is seen for the first time
+constexpr double kWalking = 0.6;       // m/s^2: likewise, the acceleration of one who walks
+constexpr double kFastest = 2.5;       // m/s; a middle that is seen farther off is somebody else's
+constexpr double kStandsBelow = 0.25;  // m/s
+constexpr double kForget = 1.5;        // s until one who is not seen any more is forgotten
+
 /** By class id. */
 std::vector<bool> classesIn(const std::string& names, const semantic_types::ClassTable& table) {
   std::vector<bool> chosen(static_cast<std::size_t>(table.size()) + 1);
@@ -30,20 +40,9 @@ std::vector<bool> classesIn(const std::string& names, const semantic_types::Clas
 }  // namespace
 
 void MoverOptions::describe(strict_files::OptionList& list) {
-  using strict_files::above;
-  using strict_files::atLeast;
   list.add("classes", classes, "", "of those who move, with commas between; empty: none");
-  list.add("radius", radius, "m", above(0), "how far from the sensor they are followed");
-  list.add("apart", apart, "m", above(0), "points of one are no farther apart");
-  list.add("least_points", leastPoints, "", atLeast(1), "of one");
-  list.add("size", size, "m", atLeast(0), "radius of one about the middle");
-  list.add("place_noise", placeNoise, "m", above(0), "of a middle that is seen");
-  list.add("first_speed", firstSpeed, "m/s", above(0),
-           "noise of one who is seen for the first time");
-  list.add("acceleration", acceleration, "m/s^2", above(0), "noise of one who walks");
-  list.add("fastest", fastest, "m/s", above(0), "a middle that is farther off is somebody else's");
-  list.add("still", still, "m/s", atLeast(0), "who is slower stands");
-  list.add("forget", forget, "s", atLeast(0), "until one who is not seen any more is forgotten");
+  list.add("radius", radius, "m", strict_files::above(0),
+           "how far from the sensor they are followed");
 }
 
 void MoverOptions::validate() const { strict_files::checkOptions(*this, "MoverOptions"); }
@@ -75,11 +74,11 @@ std::vector<Vector2d> MoverTracker::middles() const {
     std::vector<std::size_t> cluster{first};
     for (std::size_t next = 0; next < cluster.size(); ++next)
       for (std::size_t i = first; i < m_seen.size(); ++i)
-        if (!done[i] && (m_seen[i] - m_seen[cluster[next]]).norm() <= m_options.apart) {
+        if (!done[i] && (m_seen[i] - m_seen[cluster[next]]).norm() <= kApart) {
           done[i] = true;
           cluster.push_back(i);
         }
-    if (cluster.size() < static_cast<std::size_t>(m_options.leastPoints)) continue;
+    if (cluster.size() < kLeastPoints) continue;
     Vector2d sum = Vector2d::Zero();
     for (const std::size_t i : cluster) sum += m_seen[i];
     middles.push_back(sum / static_cast<double>(cluster.size()));
@@ -87,16 +86,16 @@ std::vector<Vector2d> MoverTracker::middles() const {
   return middles;
 }
 
-void MoverTracker::predict(Track& track, double seconds) const {
-  const double a = m_options.acceleration * seconds;
+void MoverTracker::predict(Track& track, double seconds) {
+  const double a = kWalking * seconds;
   track.place += seconds * track.velocity;
   track.pp += seconds * (2 * track.pv + seconds * track.vv) + a * a * seconds * seconds / 4;
   track.pv += seconds * track.vv + a * a * seconds / 2;
   track.vv += a * a;
 }
 
-void MoverTracker::correct(Track& track, const Vector2d& middle) const {
-  const double sum = track.pp + m_options.placeNoise * m_options.placeNoise;
+void MoverTracker::correct(Track& track, const Vector2d& middle) {
+  const double sum = track.pp + kPlaceNoise * kPlaceNoise;
   const double gain = track.pp / sum, speedGain = track.pv / sum;
   const Vector2d off = middle - track.place;
   track.place += gain * off;
@@ -113,7 +112,7 @@ void MoverTracker::update(double seconds) {
   m_updatedAt = seconds;
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;  // distance, track, seen
   for (std::size_t t = 0; t < m_tracks.size(); ++t) {
-    const double most = m_options.apart + m_options.fastest * (seconds - m_tracks[t].seenAt);
+    const double most = kApart + kFastest * (seconds - m_tracks[t].seenAt);
     predict(m_tracks[t], since);
     for (std::size_t i = 0; i < seen.size(); ++i)
       if (const double far = (seen[i] - m_tracks[t].place).norm(); far <= most)
@@ -127,23 +126,22 @@ void MoverTracker::update(double seconds) {
     m_tracks[t].seenAt = seconds;
     correct(m_tracks[t], seen[i]);
   }
-  m_tracks.erase(
-      std::remove_if(m_tracks.begin(), m_tracks.end(),
-                     [&](const Track& t) { return seconds - t.seenAt > m_options.forget; }),
-      m_tracks.end());
+  m_tracks.erase(std::remove_if(m_tracks.begin(), m_tracks.end(),
+                                [&](const Track& t) { return seconds - t.seenAt > kForget; }),
+                 m_tracks.end());
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (!taken[i])
-      m_tracks.push_back({seen[i], Vector2d::Zero(), m_options.placeNoise * m_options.placeNoise, 0,
-                          m_options.firstSpeed * m_options.firstSpeed, seconds});
+      m_tracks.push_back({seen[i], Vector2d::Zero(), kPlaceNoise * kPlaceNoise, 0,
+                          kFirstSpeed * kFirstSpeed, seconds});
 }
 
 Movers MoverTracker::at(double seconds) const {
   Movers movers;
   for (Track track : m_tracks) {
     predict(track, std::max(0.0, seconds - m_updatedAt));
-    const bool stands = track.velocity.norm() < m_options.still;
+    const bool stands = track.velocity.norm() < kStandsBelow;
     const Vector2d velocity = stands ? Vector2d::Zero() : track.velocity;
-    movers.push_back({track.place, velocity, m_options.size, std::sqrt(track.vv)});
+    movers.push_back({track.place, velocity, kBody, std::sqrt(track.vv)});
   }
   return movers;
 }

@@ -14,8 +14,6 @@ using semantic_planning::Surface;
 
 void ObstacleOptions::describe(strict_files::OptionList& list) {
   list.add("radius", radius, "m", strict_files::above(0), "how far obstacles are looked for");
-  list.add("forbidden_ground", forbiddenGround, "",
-           "ground of forbidden classes is an obstacle, even when flat");
 }
 
 void ObstacleOptions::validate() const { strict_files::checkOptions(*this, "ObstacleOptions"); }

@@ -9,17 +9,16 @@ using semantic_planning::Fit;
 using semantic_planning::PathPoint;
 using semantic_planning::SemanticPlanner;
 
-bool PathJudgment::isClearlyBetterThan(const PathJudgment& other,
-                                       const PathTolerance& tolerance) const {
-  const bool backsUp = longestBackwards > tolerance.backwards;
-  const bool otherBacksUp = other.longestBackwards > tolerance.backwards;
+bool PathJudgment::isClearlyBetterThan(const PathJudgment& other, double mostBackwards) const {
+  const bool backsUp = longestBackwards > mostBackwards;
+  const bool otherBacksUp = other.longestBackwards > mostBackwards;
   if (backsUp != otherBacksUp) return otherBacksUp;
-  const double same = std::max(tolerance.length, tolerance.share * other.length);  // m
+  const double same = std::max(kSameLength, kSameShare * other.length);  // m
   for (std::size_t rank = lengthPerRank.size(); rank-- > 1;) {
     const double more = lengthPerRank[rank] - other.lengthPerRank[rank];
     if (std::abs(more) > same) return more < 0;
   }
-  return price < other.price - std::max(tolerance.length, tolerance.share * other.price);
+  return price < other.price - std::max(kSameLength, kSameShare * other.price);
 }
 
 PathCheck::PathCheck(const SemanticPlanner& planner)

@@ -9,6 +9,21 @@ namespace semantic_driving {
 using mrpt::math::TPose2D;
 using semantic_planning::PathPoint;
 
+namespace {
+
+constexpr double kLookStep = 0.15;      // m between poses on the way ahead that are looked at
+constexpr double kStandoff = 0.3;       // m from where it stops to what stands in the way
+constexpr double kPathEnd = 0.04;       // m; stretches end when no more than this is left
+constexpr double kSideGain = 1.2;       // 1/m^2, of the steering, for a place off the path
+constexpr double kHeadingGain = 2;      // 1/m, of the steering, for a heading off the path's
+constexpr double kCurvatureOver = 0.6;  // m that the path's curvature is a mean over
+// Until the steering has an effect, s: so far ahead the path's curvature is taken.
+constexpr double kSteeringDelay = 0.15;
+// How far ahead of its last place on the path, and back, the vehicle is looked for, m.
+constexpr double kSearchAhead = 1.5, kSearchBack = 0.3;
+
+}  // namespace
+
 PathTracker::PathTracker(const DriveOptions& options, semantic_planning::Footprint footprint)
     : m_options(options), m_footprint(std::move(footprint)) {
   m_options.validate();
@@ -20,17 +35,17 @@ void PathTracker::setPath(DrivePath path) {
 }
 
 bool PathTracker::finished() const {
-  return m_path.empty() || m_progress >= m_path.length() - m_options.pathEnd;
+  return m_path.empty() || m_progress >= m_path.length() - kPathEnd;
 }
 
 void PathTracker::locate(const DriveState& state) {
   if (m_path.empty()) return;
   const double end = m_path.stretchEnd(m_progress);
-  const double from = std::max(m_path.stretchBegin(m_progress + m_options.pathEnd),
-                               m_progress - m_options.searchBack);
+  const double from =
+      std::max(m_path.stretchBegin(m_progress + kPathEnd), m_progress - kSearchBack);
   m_progress = m_path.nearest(state.pose, std::min(from, m_progress),
-                              std::min(end, m_progress + m_options.searchAhead));
-  if (end - m_progress < m_options.pathEnd && end < m_path.length()) m_progress = end;
+                              std::min(end, m_progress + kSearchAhead));
+  if (end - m_progress < kPathEnd && end < m_path.length()) m_progress = end;
   const PathPoint p = m_path.at(m_progress);
   m_offset = std::hypot(p.x - state.pose.x, p.y - state.pose.y);
 }
@@ -56,25 +71,24 @@ bool PathTracker::approaches(const DriveCommand& command, const ObstaclePoints& 
 }
 
 double PathTracker::freeAhead(const DriveState& state, const ObstaclePoints& obstacles) const {
-  const double step = m_options.lookStep;
   const double most = std::min(m_options.lookAhead, m_path.stretchEnd(m_progress) - m_progress);
   if (most <= 0) return 0;
   // What is within the margin already does not keep the vehicle from driving away from it.
   const double margin = isFree({}, obstacles, m_options.margin) ? m_options.margin : 0;
-  for (double ahead = step; ahead < most + step; ahead += step) {
+  for (double ahead = kLookStep; ahead < most + kLookStep; ahead += kLookStep) {
     const TPose2D pose = poseOf(m_path.at(m_progress + std::min(ahead, most)));
     const TPose2D relative = pose - state.pose;
-    if (!isFree(relative, obstacles, margin)) return ahead - step;
+    if (!isFree(relative, obstacles, margin)) return ahead - kLookStep;
   }
   return most;
 }
 
 /** Of the steering, as a mean over some of the stretch: at once it turns by nothing. */
 double PathTracker::curvatureAt(double s) const {
-  const double half = m_options.curvatureOver / 2;
+  const double half = kCurvatureOver / 2;
   const double from = std::max(s - half, m_path.stretchBegin(s));
   const double to = std::min(s + half, m_path.stretchEnd(s));
-  if (to - from < m_options.pathEnd) return m_path.at(s).curvature;
+  if (to - from < kPathEnd) return m_path.at(s).curvature;
   const PathPoint a = m_path.at(from), b = m_path.at(to);
   const double turned = mrpt::math::wrapToPi(b.heading - a.heading) / (to - from);
   return a.forward ? turned : -turned;
@@ -89,7 +103,7 @@ double PathTracker::speedAt(double s) const {
   const double change = std::max(std::abs(curvatureAt(s + kStep) - bend) / kStep, 1e-6);
   const double onClass =
       place.classId < m_classSpeeds.size() ? m_classSpeeds[place.classId] : m_options.maxSpeed;
-  return std::max(m_options.slowest,
+  return std::max(DriveOptions::kSlowest,
                   std::min({onClass, std::sqrt(m_options.maxSideAcceleration / curve),
                             m_options.maxSteeringRate / change}));
 }
@@ -98,9 +112,9 @@ double PathTracker::speedBefore(double free, double limit) const {
   constexpr double kStep = 0.1;  // m
   const double braking = m_options.braking();
   const double left = m_path.stretchEnd(m_progress) - m_progress;
-  double speed = std::min(limit, std::max(m_options.slowest, std::sqrt(2 * braking * left)));
+  double speed = std::min(limit, std::max(DriveOptions::kSlowest, std::sqrt(2 * braking * left)));
   if (free < m_options.lookAhead && free < left)
-    speed = std::min(speed, std::sqrt(2 * braking * std::max(0.0, free - m_options.standoff)));
+    speed = std::min(speed, std::sqrt(2 * braking * std::max(0.0, free - kStandoff)));
   for (double ahead = 0; ahead < left && 2 * braking * ahead < speed * speed; ahead += kStep) {
     const double there = speedAt(m_progress + ahead + 1e-3);
     speed = std::min(speed, std::sqrt(there * there + 2 * braking * ahead));
@@ -111,7 +125,7 @@ double PathTracker::speedBefore(double free, double limit) const {
 DriveCommand PathTracker::command(const DriveState& state, const ObstaclePoints& obstacles,
                                   double speedLimit) const {
   if (finished()) return {};
-  const double here = m_progress + 1e-3, ahead = std::abs(state.speed) * m_options.steeringDelay;
+  const double here = m_progress + 1e-3, ahead = std::abs(state.speed) * kSteeringDelay;
   PathPoint place = m_path.at(here);
   place.curvature = curvatureAt(std::min(here + ahead, m_path.stretchEnd(here) - 1e-3));
   const double speed = speedBefore(freeAhead(state, obstacles), speedLimit);
@@ -121,9 +135,8 @@ DriveCommand PathTracker::command(const DriveState& state, const ObstaclePoints&
   const double heading = mrpt::math::wrapToPi(state.pose.phi - place.heading);
   const double sinc = std::abs(heading) < 1e-6 ? 1 : std::sin(heading) / heading;
   const double bend = std::max(0.3, 1 - place.curvature * side);
-  const double turn = v * place.curvature * std::cos(heading) / bend -
-                      m_options.sideGain * v * side * sinc -
-                      m_options.headingGain * std::abs(v) * heading;
+  const double turn = v * place.curvature * std::cos(heading) / bend - kSideGain * v * side * sinc -
+                      kHeadingGain * std::abs(v) * heading;
   const double most = std::abs(v) / m_options.turningRadius;
   return {v, std::clamp(turn, -most, most)};
 }

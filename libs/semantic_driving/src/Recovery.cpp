@@ -18,6 +18,14 @@ using semantic_planning::VehicleOptions;
 
 namespace {
 
+constexpr double kRecoveryRadius = 8;    // m: how far ways out are looked for
+constexpr double kRecoveryStep = 0.4;    // m between distances of places that are tried
+constexpr int kRecoveryDirections = 16;  // in which they lie
+constexpr int kRecoveryHeadings = 8;     // of each place
+constexpr double kSameForbidden = 0.1;   // m of forbidden ground that make no difference
+// m beyond the least way over forbidden ground where a shorter way is looked for
+constexpr double kRecoveryFurther = 2;
+
 /** What was forbidden is one rank behind the others. */
 ClassOrder allowingAll(const ClassOrder& order) {
   std::vector<std::vector<colored_graph::GraphClass>> ranks(order.ranks() + 1);
@@ -47,9 +55,8 @@ GroundOptions withoutKeepingOff(GroundOptions ground) {
 
 class RecoverySearch {
  public:
-  RecoverySearch(const SemanticPlanner& planner, double z, const RecoveryOptions& options)
+  RecoverySearch(const SemanticPlanner& planner, double z)
       : m_planner(planner),
-        m_options(options),
         m_z(z),
         m_vehicle(withoutClearance(planner.options().vehicle)),
         m_order(allowingAll(planner.order())),
@@ -60,20 +67,19 @@ class RecoverySearch {
   DrivePath search(const TPose2D& from, double nearest) {
     const auto start = m_checker.place(from, m_z);
     if (!start) return {};
-    const double step = m_options.step;
-    for (double r = nearest + step; isWorthwhile(r, nearest); r += step)
-      for (int direction = 0; direction < m_options.directions; ++direction)
-        for (int heading = 0; heading < m_options.headings; ++heading) {
-          const double to = from.phi + direction * 2 * M_PI / m_options.directions;
+    for (double r = nearest + kRecoveryStep; isWorthwhile(r, nearest); r += kRecoveryStep)
+      for (int direction = 0; direction < kRecoveryDirections; ++direction)
+        for (int heading = 0; heading < kRecoveryHeadings; ++heading) {
+          const double to = from.phi + direction * 2 * M_PI / kRecoveryDirections;
           consider(*start, {from.x + r * std::cos(to), from.y + r * std::sin(to),
-                            from.phi + heading * 2 * M_PI / m_options.headings});
+                            from.phi + heading * 2 * M_PI / kRecoveryHeadings});
         }
     return DrivePath(m_best);
   }
 
  private:
   bool isWorthwhile(double r, double nearest) const {
-    return r <= m_options.radius && r < m_leastForbidden + nearest + m_options.further;
+    return r <= kRecoveryRadius && r < m_leastForbidden + nearest + kRecoveryFurther;
   }
 
   void consider(const GroundPose& start, const TPose2D& pose) {
@@ -89,15 +95,13 @@ class RecoverySearch {
       if (m_planner.order().rank(points[i].classId) == colored_graph::kForbidden)
         forbidden += piece;
     }
-    const double same = m_options.same;
-    const bool less = forbidden < m_leastForbidden - same;
-    if (!less && (forbidden > m_leastForbidden + same || length >= m_leastLength)) return;
+    const bool less = forbidden < m_leastForbidden - kSameForbidden;
+    if (!less && (forbidden > m_leastForbidden + kSameForbidden || length >= m_leastLength)) return;
     m_leastForbidden = forbidden, m_leastLength = length;
     m_best = points;
   }
 
   const SemanticPlanner& m_planner;
-  const RecoveryOptions& m_options;
   double m_z;
   VehicleOptions m_vehicle;
   ClassOrder m_order;
@@ -109,26 +113,9 @@ class RecoverySearch {
 
 }  // namespace
 
-void RecoveryOptions::describe(strict_files::OptionList& list) {
-  using strict_files::above;
-  using strict_files::atLeast;
-  list.add("radius", radius, "m", above(0), "how far ways out are looked for");
-  list.add("blind", blind, "m", atLeast(0),
-           "how near the sensors may not see the ground, at the beginning");
-  list.add("step", step, "m", above(0), "between distances of places that are tried");
-  list.add("directions", directions, "", atLeast(1), "wherein they lie");
-  list.add("headings", headings, "", atLeast(1), "of each place");
-  list.add("same", same, "m", atLeast(0), "of forbidden ground, that makes no difference");
-  list.add("further", further, "m", atLeast(0),
-           "beyond the least way over forbidden ground, where a shorter way is looked for");
-}
-
-void RecoveryOptions::validate() const { strict_files::checkOptions(*this, "RecoveryOptions"); }
-
 DrivePath findRecovery(const SemanticPlanner& planner, const TPose2D& from, double z,
-                       const RecoveryOptions& options, double nearest) {
-  options.validate();
-  return RecoverySearch(planner, z, options).search(from, nearest);
+                       double nearest) {
+  return RecoverySearch(planner, z).search(from, nearest);
 }
 
 }  // namespace semantic_driving

@@ -8,7 +8,9 @@ namespace semantic_driving {
 
 namespace {
 
-constexpr double kTick = 0.1;  // s
+constexpr double kTick = 0.1;    // s
+constexpr double kLinger = 1;    // s that those who walk find it at rest where they do not walk
+constexpr double kSpread = 0.5;  // m, at most, for what is not known of how they walk
 
 /** A vehicle that goes on along its way, or brakes after its time of reaction. */
 class Forecast {
@@ -25,8 +27,8 @@ class Forecast {
   /** Nobody touches it as it brakes, while it is not slow. */
   bool canStop(double target, const Mover& mover) const {
     double speed = m_speed, way = 0;
-    for (double t = 0; t < m_reaction || speed > m_options.slowest; t += kTick) {
-      if (speed > kSlow * m_options.slowest && touches(mover, way, t, spreadAfter(mover, t)))
+    for (double t = 0; t < m_reaction || speed > DriveOptions::kSlowest; t += kTick) {
+      if (speed > kSlow * DriveOptions::kSlowest && touches(mover, way, t, spreadAfter(mover, t)))
         return false;
       move(speed, way, t < m_reaction ? target : 0);
     }
@@ -43,11 +45,10 @@ class Forecast {
   }
 
  private:
-  static constexpr double kSlow = 1.05;  // of DriveOptions::slowest
+  static constexpr double kSlow = 1.05;  // of DriveOptions::kSlowest
 
   bool isFree(double target, const Mover& mover, bool brakes, bool spreads) const {
-    const double last =
-        m_reaction + std::max(m_speed, target) / m_options.braking() + m_options.moverLinger;
+    const double last = m_reaction + std::max(m_speed, target) / m_options.braking() + kLinger;
     double speed = m_speed, way = 0;
     for (double t = 0; t < last; t += kTick) {
       if (touches(mover, way, t, spreads ? spreadAfter(mover, t) : 0)) return false;
@@ -63,7 +64,7 @@ class Forecast {
     way += (before + speed) / 2 * kTick;
   }
   double spreadAfter(const Mover& mover, double seconds) const {
-    return std::min(m_options.moverSpread, mover.speedNoise * seconds);
+    return std::min(kSpread, mover.speedNoise * seconds);
   }
   bool touches(const Mover& mover, double way, double seconds, double spread) const {
     const Eigen::Vector2d place = mover.placeAfter(seconds);
@@ -108,7 +109,7 @@ double separationSpeed(const std::function<mrpt::math::TPose2D(double)>& poseAft
   const Forecast forecast(poseAfter, speed, acceleration, footprint, options);
   double slowest = wanted;
   for (const Mover& mover : movers)
-    slowest = std::min(slowest, speedBeside(forecast, mover, wanted, options.slowest));
+    slowest = std::min(slowest, speedBeside(forecast, mover, wanted, DriveOptions::kSlowest));
   return slowest;
 }
 

@@ -11,28 +11,28 @@ using semantic_planning::Column;
 using semantic_planning::SemanticPlanner;
 
 WayLeft::WayLeft(const SemanticPlanner& planner, const GroundFlood& flood, const GoalRegion& region,
-                 const TPose2D& goal, const FrontierOptions& options)
+                 const TPose2D& goal, double unknownFactor)
     : m_planner(planner),
       m_ground(planner.ground()),
       m_flood(flood),
       m_region(region),
       m_square(flood.square()),
-      m_unknown(options.unknownFactor),
+      m_unknown(unknownFactor),
       m_width(std::max(1.0, m_unknown) * m_ground.voxelSize()),
-      m_beyond(std::hypot(1, 1) * options.sight * m_unknown),
+      m_beyond(std::hypot(1, 1) * kSight * m_unknown),
       m_ways(m_square.size(), std::numeric_limits<double>::infinity()) {
-  start(goal, options.aroundGoal);
+  start(goal);
   search();
 }
 
-void WayLeft::start(const TPose2D& goal, double around) {
+void WayLeft::start(const TPose2D& goal) {
   const Column c = m_ground.columnAt(goal.x, goal.y);
   if (!m_square.contains(c)) {
     m_first = wayTo(goal);
     return goAround(goal.x, goal.y, 0);
   }
   const double voxel = m_ground.voxelSize();
-  const int reach = m_region.isKept(c) ? static_cast<int>(around / voxel) : 0;
+  const int reach = m_region.isKept(c) ? static_cast<int>(GoalRegion::kAroundGoal / voxel) : 0;
   for (int y = -reach; y <= reach; ++y)
     for (int x = -reach; x <= reach; ++x)
       if (std::hypot(x, y) <= reach)

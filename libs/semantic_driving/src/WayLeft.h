@@ -14,17 +14,19 @@ namespace semantic_driving {
 class WayLeft {
  public:
   WayLeft(const semantic_planning::SemanticPlanner& planner, const GroundFlood& flood,
-          const GoalRegion& region, const mrpt::math::TPose2D& goal,
-          const FrontierOptions& options);
+          const GoalRegion& region, const mrpt::math::TPose2D& goal, double unknownFactor);
+
+  /** How far the unknown may be from where it is seen, meters. */
+  static constexpr double kSight = 1.4;
 
   /** Weighted meters; infinite where something is in the way.
-   * \param c in the square, within FrontierOptions::sight of what is reached */
+   * \param c in the square, within kSight of what is reached */
   double from(semantic_planning::Column c) const { return m_ways[m_square.indexOf(c)]; }
 
  private:
   using Open = std::pair<double, std::size_t>;
 
-  void start(const mrpt::math::TPose2D& goal, double around);
+  void start(const mrpt::math::TPose2D& goal);
   void search();
   std::size_t reachedIn(const std::vector<Open>& bucket) const;
   void expand(const Open& open);

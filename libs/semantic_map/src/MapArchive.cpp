@@ -73,6 +73,10 @@ void CSemanticOctoMap::serializeFrom(CArchive& in, uint8_t version) {
   m_abstractionOptions = abstractions;
   genericMapParams = generic;
   insertionOptions = insertion;
+  auto& filter = insertionOptions.filter;  // what of it has no name is in the tree alone
+  filter.minOccupancy = m_tree.filterParameters().minOccupancy;
+  filter.maxProbability = m_tree.filterParameters().maxProbability;
+  filter.softLabelFloor = m_tree.filterParameters().softLabelFloor;
   likelihoodOptions = likelihood;
   renderingOptions = rendering;
   m_lastInsertion = {};

@@ -2,7 +2,6 @@
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_map/MapOptions.h>
 #include <strict_files/IniSection.h>
-#include <strict_files/Words.h>
 
 #include <ostream>
 #include <stdexcept>
@@ -15,7 +14,6 @@ using mrpt::config::CConfigFileBase;
 using mrpt::serialization::CArchive;
 using strict_files::above;
 using strict_files::atLeast;
-using strict_files::between;
 using strict_files::checkOptions;
 using strict_files::IniSection;
 using strict_files::Option;
@@ -88,7 +86,7 @@ void TNamedOptions<Derived>::readFrom(CArchive& in) {
   for (auto left = in.ReadAs<std::uint32_t>(); left > 0; --left) {
     const std::string name = readText(in), text = readText(in);
     const Option* option = list.find(name);
-    if (!option) throw std::runtime_error(strict_files::unknownWord("option", name, list.names()));
+    if (!option) continue;  // one that programs had before: the map is worth more
     try {
       option->set(text);
     } catch (const std::invalid_argument& e) {
@@ -160,9 +158,6 @@ void TRenderingOptions::describe(OptionList& list) {
   list.add("occupied", occupied, "", "show occupied cells");
   list.add("free", free, "", "show free cells");
   list.add("compressed", compressed, "", "show the optimal abstraction, where one is kept");
-  list.add("min_occupancy", minOccupancy, "", between(0, 1), "above it, cells are occupied");
-  list.add("min_probability", minProbability, "", between(0, 1),
-           "of the likeliest class of the occupied cells that are shown");
   list.add("min_height", minHeight, "m", anything, "lower cells are left out");
   list.add("max_height", maxHeight, "m", anything, "higher cells are left out");
 }

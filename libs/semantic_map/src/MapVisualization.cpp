@@ -32,9 +32,9 @@ class VoxelSets {
   void add(const SemanticOcTree::Node& node, const mrpt::math::TPoint3Df& center, double size) {
     const CellState state = m_tree.query(node);
     if (center.z < m_options.minHeight || center.z > m_options.maxHeight) return;
-    const bool occupied = state.occupancy > m_options.minOccupancy;
+    constexpr double kOccupied = 0.5;
+    const bool occupied = state.occupancy > kOccupied;
     if (!(occupied ? m_options.occupied : m_options.free)) return;
-    if (occupied && state.probability < m_options.minProbability) return;
     m_voxels->push_back_Voxel(
         occupied ? mrpt_compat::drawing::VOXEL_SET_OCCUPIED
                  : mrpt_compat::drawing::VOXEL_SET_FREESPACE,

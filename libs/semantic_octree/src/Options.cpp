@@ -37,14 +37,12 @@ void InsertionOptions::describe(OptionList& list) {
            "angles erodes");
   list.add("threads", threads, "", between(1, 256),
            "that share the work on a scan; the map does not depend on it");
-  list.add(
-      "max_scan_memory", maxScanMemory, "MB", between(1, 1000000),
-      "a scan that needs larger buffers is refused: its points are too far from each other for "
-      "voxels of this size");
 }
 
 void InsertionOptions::validate() const {
   checkOptions(*this, "InsertionOptions");
+  require(maxScanMemory >= 1 && maxScanMemory <= 1000000, "InsertionOptions::maxScanMemory",
+          maxScanMemory, "1 to 1000000 MB");
   require(maxRange == 0 || minRange < maxRange, "InsertionOptions::min_range", minRange,
           "less than max_range");
 }
@@ -76,16 +74,16 @@ void FilterParameters::describe(OptionList& list) {
       "false_alarm_probability", falseAlarmProbability, "", probability,
       "of a return from a free voxel, below hit_probability. Larger: moving objects leave less "
       "behind; smaller: thin things survive");
-  list.add("min_occupancy", minOccupancy, "", atLeast(kLeastProbability).below(0.5),
-           "of what was seen free for long. Larger: the map forgets faster and merges more space");
-  list.add("max_probability", maxProbability, "", above(0.5).upTo(1 - kLeastProbability),
-           "of a class that was seen for long. Smaller: the map forgets faster");
-  list.add("soft_label_floor", softLabelFloor, "", probability,
-           "probabilities in soft labels are raised to it");
 }
 
 void FilterParameters::validate(int numClasses) const {
-  checkOptions(*this, "FilterParameters");
+  FilterParameters copy = *this;
+  OptionList all;
+  copy.describe(all);
+  all.add("min_occupancy", copy.minOccupancy, "", atLeast(kLeastProbability).below(0.5), "");
+  all.add("max_probability", copy.maxProbability, "", above(0.5).upTo(1 - kLeastProbability), "");
+  all.add("soft_label_floor", copy.softLabelFloor, "", above(0).below(1), "");
+  checkAll(all, "FilterParameters");
   require(numClasses >= 1 && numClasses <= semantic_types::kMaxClasses, "number of classes",
           numClasses, "1 to 254");
   if (increments == Increments::Ssmi) return;

@@ -47,7 +47,7 @@ void ScanGrid::cover(const VoxelIndex& lowest, const VoxelIndex& highest, std::s
   if (m_numPages * kTilesPerPage > maxTiles)
     throw std::length_error(
         "scan too large to insert: " + std::to_string(m_numPages * kTilesPerPage) +
-        " tiles of 8 x 8 x 8 voxels, max_scan_memory allows " + std::to_string(maxTiles) +
+        " tiles of 8 x 8 x 8 voxels, where memory allows " + std::to_string(maxTiles) +
         "; set max_range");
   reserve();
 }

@@ -24,12 +24,11 @@ void CameraOptions::describe(strict_files::OptionList& list) {
   list.add("min_range", minRange, "m", strict_files::atLeast(0), "nearer returns are lost");
   list.add("max_range", maxRange, "m", strict_files::above(0).upTo(kFarthest),
            "greatest depth, more than min_range");
-  list.add("color", color, "", "render the color image, too");
-  noise.describe(list);
 }
 
 void CameraOptions::validate() const {
   strict_files::checkOptions(*this, "CameraOptions");
+  noise.validate();
   strict_files::require(maxRange > minRange, "CameraOptions::max_range", maxRange,
                         "more than min_range");
 }

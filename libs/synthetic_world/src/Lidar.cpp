@@ -20,11 +20,11 @@ void LidarOptions::describe(strict_files::OptionList& list) {
   list.add("highest", highest, "degrees", above(-90).below(90), "elevation of the highest ring");
   list.add("min_range", minRange, "m", strict_files::atLeast(0), "nearer returns are lost");
   list.add("max_range", maxRange, "m", above(0), "more than min_range");
-  noise.describe(list);
 }
 
 void LidarOptions::validate() const {
   strict_files::checkOptions(*this, "LidarOptions");
+  noise.validate();
   strict_files::require(lowest <= highest, "LidarOptions::lowest", lowest, "at most highest");
   strict_files::require(maxRange > minRange, "LidarOptions::max_range", maxRange,
                         "more than min_range");

@@ -24,9 +24,6 @@ struct ScanConverterOptions {
   /** Depth images with labels in a color image of another camera: how many pixels a point in front
    * must shift against one behind it, between the two views, to hide it. 0: nothing is hidden. */
   double occlusionParallax = 1.5;
-  /** Millions. Depth images of more pixels are refused: what a damaged file says of a camera could
-   * take all memory. */
-  double maxPixels = 40;
   /** What the labels say. */
   LabelModel labels;
 

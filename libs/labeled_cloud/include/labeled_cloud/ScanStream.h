@@ -23,7 +23,7 @@ struct ScanStreamOptions {
    * out. */
   enum class Unlabeled { Occupancy, Skip };
   Unlabeled unlabeled = Unlabeled::Occupancy;
-  /** Every so-manieth scan comes with the pictures its labels are from. 0: none does. */
+  /** Every N-th scan comes with the pictures that its labels are from. 0: none does. */
   std::size_t picturesEvery = 0;
 
   void describe(strict_files::OptionList& list);

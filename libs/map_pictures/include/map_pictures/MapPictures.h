@@ -13,10 +13,6 @@ namespace map_pictures {
 struct PictureStyle {
   /** Size of the map's part of the picture, pixels; the legend stands to its right. */
   int width = 1600, height = 1200;
-  /** Names and colors of the classes that the picture shows. */
-  bool legend = true;
-  /** Written above the legend. */
-  std::string title;
   /** Cells with their center above are not drawn, m. Without: nothing is cut off, except the
    * ceiling of a map that lies under one (an indoor map). */
   std::optional<double> maxHeight;
@@ -24,12 +20,14 @@ struct PictureStyle {
    * occupied cell within about 1.5 m to 3 m. On hills one height would be too high here and too low
    * there. Without: nothing is cut off so. */
   std::optional<double> maxAboveGround;
-  /** Cells count as occupied above this occupancy. */
-  double minOccupancy = 0.5;
   /** Above 0: voxels have the class that they have together with their neighbors, see
    * semantic_octree::SmoothingOptions. Where a picture is too small for voxels, they have their
    * own. */
   double neighborWeight = 0;
+
+  // For programs, without a name in files.
+  bool legend = true;  ///< names and colors of the classes that the picture shows
+  std::string title;   ///< written above the legend
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */
@@ -49,8 +47,6 @@ struct Viewpoint {
   double heading = 60;
   /** How far it looks down, degrees, (0, 90]. */
   double tilt = 35;
-  /** Above 1: nearer than what shows the whole map. */
-  double zoom = 1;
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */

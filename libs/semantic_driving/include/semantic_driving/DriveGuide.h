@@ -5,6 +5,7 @@
 #include <semantic_driving/GoalFit.h>
 #include <semantic_driving/GuideTransitions.h>
 #include <semantic_driving/ObstacleSensing.h>
+#include <semantic_driving/PathCheck.h>
 
 #include <optional>
 #include <string>

@@ -27,8 +27,7 @@ struct DriveOptions {
   /** Kept free around the footprint where the way ahead is looked at, meters: half a voxel, as
    * obstacles are the centers of columns. */
   double margin = 0.1;
-  /** How far ahead the way is looked at, and how densely, meters. */
-  double lookAhead = 4, lookStep = 0.15;
+  double lookAhead = 4;  ///< how far ahead the way is looked at, meters
   /** Whether MRPT's reactive navigator drives all forward stretches, or only around obstacles that
    * stand in the planned way. */
   bool alwaysReactive = true;
@@ -38,38 +37,18 @@ struct DriveOptions {
    * three times as old. A vehicle that takes longer to brake begins earlier. */
   double maxSensorAge = 0.8;
 
-  double brakingShare = 0.8;   ///< of maxAcceleration, that stops are planned with
-  double standoff = 0.3;       ///< meters from where it stops to what stands in the way
-  double slowest = 0.1;        ///< m/s, as long as there is way left
-  double pathEnd = 0.04;       ///< stretches end when no more than this is left, meters
-  double sideGain = 1.2;       ///< of the steering, for a place off the path, 1/m^2
-  double curvatureOver = 0.6;  ///< meters that the path's curvature is a mean over
-  double headingGain = 2;      ///< of the steering, for a heading off the path's, 1/m
-  /** Until the steering has an effect, seconds: so far ahead the path's curvature is taken. */
-  double steeringDelay = 0.15;
-  /** How far ahead of its last place on the path, and back, the vehicle is looked for, meters. */
-  double searchAhead = 1.5, searchBack = 0.3;
-  double trackLength = 10;  ///< of the driven track that is kept to go back on, meters
-
-  /** Between waypoints for the reactive navigator, and how near is near enough, meters. */
-  double waypointSpacing = 1.2, waypointReach = 0.5;
-  double waypointMargin =
-      0.3;                    ///< waypoints without so much room around the footprint are left out
-  double reactivePause = 2;   ///< seconds until it is asked again after it found no way
-  double reactiveStall = 1;   ///< seconds that it may stand before a free way
   double reactionTime = 0.3;  ///< seconds until a command has an effect
-  double movingSpeed = 0.05;  ///< m/s; a slower vehicle does not get on
+  double moverMargin = 0.25;  ///< meters between the vehicle and those who walk
 
-  /** Meters between the vehicle and those who walk, and at most so many more for what is not known
-   * of how they do; seconds for which they find it at rest where they do not walk. See
-   * separationSpeed(). */
-  double moverMargin = 0.25, moverSpread = 0.5, moverLinger = 1;
+  static constexpr double kSlowest = 0.1;       ///< m/s, as long as there is way left
+  static constexpr double kAtRest = 0.05;       ///< m/s; a slower vehicle stands
+  static constexpr double kBrakingShare = 0.8;  ///< of maxAcceleration, that stops are planned with
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
   /** What stops are planned with, m/s^2. */
-  double braking() const { return brakingShare * maxAcceleration; }
+  double braking() const { return kBrakingShare * maxAcceleration; }
   /** Highest speed with observations of an age, m/s. */
   double speedFor(double sensorAge) const;
   /** Highest speed on each class, m/s. */

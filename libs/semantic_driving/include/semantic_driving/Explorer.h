@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_driving/DrivePath.h>
-#include <semantic_driving/GuideOptions.h>
+#include <semantic_driving/Frontiers.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <functional>
@@ -13,8 +13,8 @@ namespace semantic_driving {
  * that costs: where ways through the unknown were hoped for in vain, it hopes for less. */
 class Explorer {
  public:
-  /** \param planner must outlive this. */
-  Explorer(const GuideOptions& options, semantic_planning::SemanticPlanner& planner);
+  /** \param planner must outlive this. \param radius of findFrontiers(), meters */
+  Explorer(semantic_planning::SemanticPlanner& planner, double radius);
 
   /** Counts the way that the vehicle drove since the last call. \param z of the ground, meters */
   void moveTo(const mrpt::math::TPose2D& pose, double z);
@@ -36,15 +36,14 @@ class Explorer {
   void end(bool drives);
 
   /** Places that were driven to, or could not be reached. None is looked at twice, nor others
-   * within FrontierOptions::apart of it: exploring comes to an end. */
+   * within 3 m of it: exploring comes to an end. */
   std::size_t explored() const { return m_seen.size(); }
 
  private:
   using Poses = std::vector<mrpt::math::TPose2D>;
 
-  const FrontierOptions m_options;
-  const double m_shortestWay;
   semantic_planning::SemanticPlanner& m_planner;
+  const double m_radius;
   Effort m_effort;
   std::optional<mrpt::math::TPose2D> m_pose;  ///< where the vehicle was last
   Poses m_seen;                               ///< visited, or not to be reached

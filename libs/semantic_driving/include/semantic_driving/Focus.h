@@ -9,7 +9,6 @@ namespace semantic_driving {
  * vehicle and along the path ahead, and 0 elsewhere. */
 struct FocusOptions {
   double corridor = 0;     ///< on both sides of the path ahead, meters; 0: p(x) is 1 everywhere
-  double ahead = 15;       ///< of the path, meters
   double around = 7;       ///< around the vehicle, meters; more than ObstacleOptions::radius
   double alpha = 0.005;    ///< price of detail, see AbstractionWeights::alpha
   bool obstacles = false;  ///< keeps what tells obstacles from air, too

@@ -1,28 +1,10 @@
 #pragma once
 #include <semantic_planning/planner/SemanticPlanner.h>
-#include <strict_files/OptionList.h>
 
 #include <limits>
 #include <vector>
 
 namespace semantic_driving {
-
-/** How places to explore are looked for. */
-struct FrontierOptions {
-  double radius = 80;        ///< how far over known ground, meters; a wall beyond is forgotten
-  double unknownFactor = 2;  ///< what a meter through the unknown counts against one on rank 0
-  double turning = 4;        ///< what turning around at the start counts, meters on rank 0
-  double apart = 3;          ///< between places, meters
-  std::size_t most = 6;      ///< places
-  double sight = 1.4;        ///< how far from a place the unknown is, at most, meters
-  double lenient = 1.5;      ///< so near to the vehicle less than its clearance is enough, meters
-  double headingOver = 2;    ///< last part of the way that a place's heading is taken from, meters
-  double aroundGoal = 1;     ///< a goal that seems not to be passable counts as so wide, meters
-
-  void describe(strict_files::OptionList& list);
-  /** \throw std::invalid_argument naming the option and its value. */
-  void validate() const;
-};
 
 /** A place at the border of what is known. */
 struct Frontier {
@@ -67,13 +49,14 @@ struct Exploration {
  * in the way stays there, so that nothing that is yet to be seen opens a way. Gaps count as
  * passable in doubt, as does all that is farther than the radius.
  * \param from where the vehicle is and heads, on ground of height z (meters)
- * \param avoid places that are not looked for again, nor others within `apart` of them
- * \param effort until now: the unknown counts unknownFactor times its doubt()
- * \throw std::invalid_argument bad options. */
+ * \param avoid places that are not looked for again, nor others within 3 m of them
+ * \param effort until now: a meter through the unknown counts two on rank 0, times its doubt()
+ * \param radius how far over known ground, meters; a wall beyond is forgotten
+ * \return at most six, 3 m apart */
 Exploration findFrontiers(const semantic_planning::SemanticPlanner& planner,
                           const mrpt::math::TPose2D& from, double z,
                           const mrpt::math::TPose2D& goal,
                           const std::vector<mrpt::math::TPose2D>& avoid, const Effort& effort = {},
-                          const FrontierOptions& options = {});
+                          double radius = 80);
 
 }  // namespace semantic_driving

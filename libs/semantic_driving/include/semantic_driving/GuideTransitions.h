@@ -41,11 +41,12 @@ using Activity = std::variant<Idle, ToGoal, ToFrontier, Recovering, GoingBack, G
 struct GuideState {
   Activity activity;
   double plannedAt = -std::numeric_limits<double>::infinity();  ///< a path was last looked for
-  bool hasPlanned = false;            ///< a path to the goal or a frontier was driven
-  int timesBack = 0;                  ///< since then
-  bool comesToRest = false;           ///< before the end of its path, to take another one
-  bool enclosed = false;              ///< no way leads to the goal, whatever else is seen
-  std::optional<double> misfitSince;  ///< what is known keeps the vehicle from the goal
+  bool hasPlanned = false;                  ///< a path to the goal or a frontier was driven
+  int timesBack = 0;                        ///< since then, back on its track
+  static constexpr int kMostTimesBack = 3;  ///< then there is no path
+  bool comesToRest = false;                 ///< before the end of its path, to take another one
+  bool enclosed = false;                    ///< no way leads to the goal, whatever else is seen
+  std::optional<double> misfitSince;        ///< what is known keeps the vehicle from the goal
   bool recoveredBlind = false;  ///< the last recovery that was looked for is for a blind vehicle
   int replans = 0;              ///< paths that were left for another one before their end
 
@@ -119,6 +120,6 @@ struct Transition {
 /** The state machine of DriveGuide, without planner and map: what follows a look, or the answer to
  * a question. \param options valid */
 Transition transition(GuideState state, const Look& look, const GuideOptions& options);
-Transition transition(GuideState state, const Answer& answer, const GuideOptions& options);
+Transition transition(GuideState state, const Answer& answer);
 
 }  // namespace semantic_driving

@@ -22,6 +22,10 @@ Motion next(const Motion& last, const DriveCommand& wanted, double speed, double
 Motion steered(const Motion& motion, const DriveCommand& wanted, double seconds,
                const DriveOptions& limits);
 
+/** Meters that a vehicle takes to come to rest, also if it gets faster yet; a little more gently
+ * than DriveOptions::braking(). \param speed m/s */
+double restingWay(double speed, const DriveOptions& limits);
+
 /** By how many seconds a limited jerk delays a stop: it ends so much later than one that brakes
  * with the whole acceleration at once. \param acceleration now, along the motion, m/s^2 */
 double delayOfStop(double acceleration, const DriveOptions& limits);

@@ -13,15 +13,6 @@ namespace semantic_driving {
 struct MoverOptions {
   std::string classes = "person";  ///< names, with commas between; empty: nobody is followed
   double radius = 12;              ///< how far from the sensor, meters
-  double apart = 0.4;              ///< points of one are no farther apart, meters
-  int leastPoints = 3;             ///< of one
-  double size = 0.35;              ///< radius about the middle, meters
-  double placeNoise = 0.1;         ///< of a middle that is seen: standard deviation, meters
-  double firstSpeed = 1;           ///< of one who is seen for the first time, likewise, m/s
-  double acceleration = 0.6;       ///< of one who walks, likewise, m/s^2
-  double fastest = 2.5;            ///< a middle that is seen farther off is somebody else's, m/s
-  double still = 0.25;             ///< who is slower stands, m/s
-  double forget = 1.5;             ///< seconds until one who is not seen any more is forgotten
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
@@ -67,8 +58,8 @@ class MoverTracker {
     double seenAt;
   };
   std::vector<Eigen::Vector2d> middles() const;
-  void predict(Track& track, double seconds) const;
-  void correct(Track& track, const Eigen::Vector2d& middle) const;
+  static void predict(Track& track, double seconds);
+  static void correct(Track& track, const Eigen::Vector2d& middle);
 
   MoverOptions m_options;
   std::vector<bool> m_isMover;  ///< by class id

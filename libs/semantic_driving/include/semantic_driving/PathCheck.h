@@ -7,13 +7,6 @@
 
 namespace semantic_driving {
 
-/** By how much paths may differ and be equally good: the larger of length and share. */
-struct PathTolerance {
-  double length = 0.5;   ///< meters
-  double share = 0.1;    ///< of a path's length, or price
-  double backwards = 4;  ///< nobody backs up farther at a stretch if it can be helped, meters
-};
-
 /** What the map says of a path that was planned some time ago. */
 struct PathJudgment {
   /** Meters from where it was looked at to where the vehicle does not fit, or must not be. */
@@ -24,9 +17,12 @@ struct PathJudgment {
   double price = 0;  ///< of driving all of it (semantic_planning::DrivePrice), meters forward
 
   bool isFree() const { return freeFor == std::numeric_limits<double>::infinity(); }
-  /** No long stretch backwards before classes before the price of driving. \param tolerance its
-   * share is of the other path's length where classes are compared, and of its price */
-  bool isClearlyBetterThan(const PathJudgment& other, const PathTolerance& tolerance = {}) const;
+  static constexpr double kSameLength = 0.5;  ///< paths that differ by less are as good, meters
+  static constexpr double kSameShare = 0.1;   ///< or by less of the other path's length, or price
+
+  /** No long stretch backwards before classes before the price of driving.
+   * \param mostBackwards longer stretches are long, meters */
+  bool isClearlyBetterThan(const PathJudgment& other, double mostBackwards) const;
 };
 
 /** Looks at paths again, on the planner's ground as it is now. */

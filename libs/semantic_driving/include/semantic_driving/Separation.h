@@ -13,13 +13,13 @@ namespace semantic_driving {
  *
  * For each of those who move the speed must be such that
  * - while the vehicle brakes to a standstill, after its time of reaction, nobody's predicted place
- *   touches it before it is as slow as DriveOptions::slowest. The place grows with what is not
+ *   touches it before it is as slow as DriveOptions::kSlowest. The place grows with what is not
  *   known of the velocity. This is passive safety: if there is contact, the vehicle is at rest.
  *   (Bouraine, Fraichard and Salhi, "Provably safe navigation for mobile robots with limited
  *   field-of-views in dynamic environments", 2012; that persons come on during reaction and
  *   braking is ISO 13855's distance.)
- * - nobody who walks meets the vehicle where it would stand then, either, for `moverLinger`
- *   seconds, or else not where it would be if it went on. So it lets others pass, or passes before
+ * - nobody who walks meets the vehicle where it would stand then, either, for a
+ *   second, or else not where it would be if it went on. So it lets others pass, or passes before
  *   them, and goes on beside and behind them.
  *
  * Where braking comes too late it goes on if that helps.

@@ -132,10 +132,6 @@ struct TRenderingOptions : public TNamedOptions<TRenderingOptions> {
   bool free = false;
   /** The cells of the optimal abstraction, as long as the map keeps one, instead of its own. */
   bool compressed = false;
-  /** Cells are occupied above this occupancy, else free. */
-  double minOccupancy = 0.5;
-  /** Occupied cells whose likeliest class is less probable than this are left out. */
-  double minProbability = 0;
   /** Cells with their center below or above are left out, m. */
   double minHeight = -std::numeric_limits<double>::infinity();
   double maxHeight = std::numeric_limits<double>::infinity();

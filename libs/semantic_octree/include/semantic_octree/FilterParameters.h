@@ -34,6 +34,8 @@ struct FilterParameters {
    * outweighs four beams that pass; with less, ground seen at grazing angles erodes. Real sensors
    * have 0.0002 to 0.004, to which this leaves room for objects that move. */
   double falseAlarmProbability = 0.03;
+
+  // Without a name in files.
   /** p(occupied) of a cell that was seen free for long: each class's log-odds stay above
    * ln(q / (1 - q)) - ln K. As OctoMap's lower clamping: a larger value merges more free space. */
   double minOccupancy = 0.12;

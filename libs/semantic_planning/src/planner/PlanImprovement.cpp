@@ -32,7 +32,7 @@ Guide PlannerCore::searchWideGuide() const {
 void PlannerCore::improve(StageClock& clock, PlanResult& result) {
   const Guide guide = searchWideGuide();
   clock.end("guide");
-  const ImprovementOptions options{m_options.roadmap.longestEdge, m_options.classTolerance};
+  const ImprovementOptions options{RoadmapOptions::kLongestEdge, m_options.classTolerance};
   PathOrder::Lengths least;
   improvePath(result, least, guide.path, m_checker, options);
   clock.end("shorten");

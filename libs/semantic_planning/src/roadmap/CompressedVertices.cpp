@@ -11,6 +11,9 @@ using semantic_octree::LeafCell;
 
 namespace {
 
+/** Largest distance between points in a large leaf, or of the grid, meters. */
+constexpr double kSpacing = 2;
+
 /** A square of columns in which one point is wanted. */
 struct Cell {
   Column low;
@@ -46,7 +49,7 @@ ClassId likeliestIn(const LeafCell& leaf, const Abstraction& abstraction) {
 int largestCell(const Ground& ground, const RoadmapOptions& options) {
   constexpr int kTree = 65536;
   return options.kind == GraphKind::Leaves ? kTree
-                                           : powerOfTwoWithin(options.spacing / ground.voxelSize());
+                                           : powerOfTwoWithin(kSpacing / ground.voxelSize());
 }
 
 /** Large cells go before small ones: the middle of what is all alike comes before its border, where
@@ -94,7 +97,7 @@ std::vector<CandidatePoint> compressedPoints(Column tile, const Abstraction& abs
 
 std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
                                        const RoadmapOptions& options) {
-  const int edge = powerOfTwoWithin(options.spacing / ground.voxelSize());
+  const int edge = powerOfTwoWithin(kSpacing / ground.voxelSize());
   std::vector<CandidatePoint> points;
   forCellsOf(firstColumnOf(tile), kTileEdge, edge, tile, [&](const Cell& cell) {
     for (const Surface& s : ground.surfaces(cell.low))

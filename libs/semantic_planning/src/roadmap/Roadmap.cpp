@@ -31,9 +31,9 @@ Length tollOf(const ReedsSheppCurve& curve, const DrivePrice& price) {
 
 /** More vertices want more neighbors, for paths to become better with them. */
 int neighborsFor(const RoadmapOptions& options) {
-  constexpr double kBase = 1000;
+  constexpr double kBase = 1000, kMore = 6;
   const double doublings = std::log2(std::max(kBase, double(options.vertices)) / kBase);
-  return options.neighbors + static_cast<int>(std::lround(options.moreNeighbors * doublings));
+  return RoadmapOptions::kNeighbors + static_cast<int>(std::lround(kMore * doublings));
 }
 
 }  // namespace
@@ -42,10 +42,10 @@ Roadmap::Roadmap(const EdgeChecker& checker, const RoadmapOptions& options)
     : m_checker(checker),
       m_graph(checker.order().classes()),
       m_nearest(std::make_unique<NearestPoses>(checker.reedsShepp(), neighborsFor(options),
-                                               options.longestEdge)),
+                                               RoadmapOptions::kLongestEdge)),
       m_queryNeighbors(2 * static_cast<std::size_t>(neighborsFor(options))),
       m_mostEdges(options.maxEdges),
-      m_radius(options.longestEdge) {}
+      m_radius(RoadmapOptions::kLongestEdge) {}
 
 Roadmap::~Roadmap() = default;
 

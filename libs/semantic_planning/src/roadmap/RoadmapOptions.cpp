@@ -2,7 +2,6 @@
 
 namespace semantic_planning {
 
-using strict_files::above;
 using strict_files::atLeast;
 using strict_files::between;
 using strict_files::Choices;
@@ -30,22 +29,13 @@ void RoadmapOptions::describe(strict_files::OptionList& list) {
   strict_files::Range buffers = atLeast(0);
   buffers.withInfinity = true;
   list.add("graph", kind, "", "where the graph's vertices come from");
-  list.add("vertices", vertices, "", "how many; of halton, draws; 0: all that the map offers");
-  list.add("max_edges", maxEdges, "", "most edges; 0: as many as the neighbors give");
-  list.add("neighbors", neighbors, "", between(1, 1000), "each vertex is connected with so many");
-  list.add("more_neighbors", moreNeighbors, "", between(0, 100),
-           "so many more for each doubling of vertices beyond 1000");
-  list.add("longest_edge", longestEdge, "m", above(0), "longest edge");
+  list.add("vertices", vertices, "",
+           "how many; more: better paths, more time; of halton, draws; 0: all that the map offers");
   list.add("headings", headings, "", between(1, 360), "at each point (compressed, leaves, full)");
   list.add(
       "align_headings", alignHeadings, "",
       "headings follow roads and free space; false: they look random (compressed, leaves, full)");
-  list.add("spacing", spacing, "m", above(0),
-           "between points in large leaves (compressed), or of the grid (full)");
   list.add("buffer", buffer, "m", buffers, "vertices lie this near to the line from start to goal");
-  list.add("class_of_leaf", classOfLeaf, "",
-           "vertices have the class of their leaf, not of the ground (with edges = endpoint)");
-  list.add("seed", seed, "", "other vertices of the same kind");
 }
 
 void RoadmapOptions::validate() const { strict_files::checkOptions(*this, "RoadmapOptions"); }

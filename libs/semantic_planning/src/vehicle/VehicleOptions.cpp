@@ -18,8 +18,6 @@ void VehicleOptions::describe(strict_files::OptionList& list) {
   list.add("reverse_weight", reverseWeight, "", weights,
            "what a meter backwards counts; inf: it only drives forward");
   list.add("gear_change", gearChange, "m", atLeast(0), "what a change of gear counts");
-  list.add("steering_change", steeringChange, "m", atLeast(0),
-           "what a change of the steering counts");
 }
 
 void VehicleOptions::validate() const { strict_files::checkOptions(*this, "VehicleOptions"); }

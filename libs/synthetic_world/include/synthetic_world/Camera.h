@@ -24,6 +24,7 @@ struct CameraOptions {
   Eigen::Vector3d ray(double row, double column) const {
     return {1, (cx() - column) / focalLength(), (cy() - row) / focalLength()};
   }
+  /** Its own, without the noise, which sensors may share. */
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field. */
   void validate() const;

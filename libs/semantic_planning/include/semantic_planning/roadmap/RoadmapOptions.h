@@ -32,29 +32,28 @@ struct RoadmapOptions {
   /** Vertices, start and goal not counted; of Halton, samples. 0: all that Compressed, Leaves
    * and Full have, 1000 for the others. */
   std::size_t vertices = 1000;
-  /** Most edges, start's and goal's not counted, also after updates; 0: as many as the nearest
-   * neighbors give. Every vertex's nearest go first. */
-  std::size_t maxEdges = 0;
-  /** Each vertex is connected with that many nearest ones in Reeds-Shepp distance. */
-  int neighbors = 10;
-  /** So many more for each doubling of `vertices` beyond 1000. */
-  double moreNeighbors = 6;
-  /** Longest edge, meters. */
-  double longestEdge = 15;
   /** Compressed, Leaves, Full: headings at each point, evenly spaced. */
   int headings = 2;
   /** Compressed, Leaves, Full: the first heading follows the free space of the point's class and
    * better ones; otherwise it looks random. */
   bool alignHeadings = true;
-  /** Compressed: largest distance between points in a large leaf; Full: between points; meters. */
-  double spacing = 2;
   /** Vertices lie within this distance from the line between start and goal, meters. */
   double buffer = 30;
+
+  // For studies, without a name in files.
+  /** Most edges, start's and goal's not counted, also after updates; 0: as many as the nearest
+   * neighbors give. Every vertex's nearest go first. */
+  std::size_t maxEdges = 0;
   /** Compressed, Leaves: a vertex has the class of its leaf (as in the paper) instead of the finest
    * map's ground. It matters for colored_graph::EdgeModel::Endpoint only. */
   bool classOfLeaf = false;
   /** Another value gives other vertices of the same kind. */
   unsigned seed = 0;
+
+  /** Each vertex is connected with that many nearest ones in Reeds-Shepp distance, and with six
+   * more for each doubling of `vertices` beyond 1000. */
+  static constexpr int kNeighbors = 10;
+  static constexpr double kLongestEdge = 15;  ///< meters
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
