@@ -135,12 +135,13 @@ bool ColumnTile::isKnown(int column, int z) const {
          std::any_of(spaces.begin(column), spaces.end(column), holds);
 }
 
-bool ColumnTile::isOpen(int column, int from, int to, int margin) const {
+/** Whether free space goes from one height to another, at the lower one of which it is sure. */
+bool ColumnTile::isSureFrom(int column, int low, int high) const {
   const Space* const end = spaces.end(column);
-  const Space* s =
-      std::find_if(spaces.begin(column), end, [to](const Space& space) { return space.top >= to; });
-  if (s == end || s->bottom > to || (!s->isSure && s->top <= from + margin)) return false;
-  while (s->top < from) {
+  const Space* s = std::find_if(spaces.begin(column), end,
+                                [low](const Space& space) { return space.top >= low; });
+  if (s == end || s->bottom > low || !s->isSure) return false;
+  while (s->top < high) {
     const Space* above = s + 1;
     if (above == end || above->bottom != s->top + 1) return false;
     s = above;
@@ -148,29 +149,41 @@ bool ColumnTile::isOpen(int column, int from, int to, int margin) const {
   return true;
 }
 
-bool ColumnTile::isSeenBetween(int column, int low, int high) const {
+bool ColumnTile::isOverDrop(int column, int low, int high, int step, int near) const {
+  const int deep = low - step;
+  if (isSureFrom(column, deep, high)) return isKnown(column, deep - 1);
+  const Space *begin = spaces.begin(column), *end = spaces.end(column);
+  if (std::any_of(begin, end, [](const Space& s) { return s.isSure; })) return false;
+  return std::any_of(begin, end, [&](const Space& s) {
+    return s.bottom < deep && s.top >= s.bottom + 2 && s.top >= deep - near;
+  });
+}
+
+bool ColumnTile::isGhost(int column, int low, int high) const {
   int seen = 0;
+  bool isSureAbove = false;
   for (const Space* s = spaces.begin(column); s != spaces.end(column); ++s) {
+    isSureAbove = isSureAbove || (s->isSure && s->top > high);
     const int bottom = std::max(low + 1, int(s->bottom)), top = std::min(high - 1, int(s->top));
     if (bottom > top) continue;
-    if (s->isSure) return true;
+    if (s->isSure) return false;
     seen += top - bottom + 1;
   }
-  return 2 * seen >= high - low - 1;
+  return isSureAbove && 2 * seen < high - low - 1;
 }
 
 int ColumnTile::floorOf(int column, int margin) const {
   for (const Run* run = runs.begin(column); run != runs.end(column); ++run) {
     const Run* next = run + 1;
-    if (next == runs.end(column)) {
-      const Space* sure =
-          std::find_if(spaces.begin(column), spaces.end(column),
-                       [run](const Space& s) { return s.isSure && s.bottom > run->top; });
-      const bool isGhost = sure != spaces.end(column) && sure->bottom > run->top + 1 + margin &&
-                           !isSeenBetween(column, run->top, sure->bottom);
-      return isGhost ? kNumKeys : run->bottom;
+    if (next != runs.end(column)) {
+      if (!isGhost(column, run->top, next->bottom)) return run->bottom;
+      continue;
     }
-    if (isSeenBetween(column, run->top, next->bottom)) return run->bottom;
+    const Space* sure =
+        std::find_if(spaces.begin(column), spaces.end(column),
+                     [run](const Space& s) { return s.isSure && s.bottom > run->top; });
+    const bool isFar = sure != spaces.end(column) && sure->bottom > run->top + 1 + margin;
+    if (!isFar || !isGhost(column, run->top, sure->bottom - 1)) return run->bottom;
   }
   return kNumKeys;
 }

@@ -52,18 +52,23 @@ struct ColumnTile {
   bool sameColumn(int column, const ColumnTile& o) const {
     return runs.sameColumn(column, o.runs) && spaces.sameColumn(column, o.spaces);
   }
-  /** Whether anything is known of a voxel. */
-  bool isKnown(int column, int z) const;
-  /** Whether free space goes down without a gap from height `from` to `to`, at which it is sure or,
-   * like what is more than `margin` above `from`, seen by one scan only. The beam of a ghost (a
-   * return that came by way of a mirror) frees voxels, too, but few, and seldom twice. */
-  bool isOpen(int column, int from, int to, int margin) const;
-  /** Whether the map saw the space between two heights: some of it surely, or half of it. If not,
-   * what is at the lower one, under ground at the higher one, is a ghost. */
-  bool isSeenBetween(int column, int low, int high) const;
-  /** Bottom of the lowest run that is no ghost: under the next run, or under sure space that begins
-   * more than `margin` above, the map saw something; kNumKeys if there is none. */
+  /** Whether ground between two heights would hang over a drop of more than a step: sure free space
+   * goes down from `high` to a step below `low` without a gap, and what is under that is known. The
+   * beam of a ghost (a return that came by way of a mirror) frees voxels below the ground, too, but
+   * seldom twice. Where nothing is sure, free space below counts if it is near and too high for a
+   * single flat beam: three voxels.
+   * \param step, near voxels */
+  bool isOverDrop(int column, int low, int high, int step, int near) const;
+  /** Whether what is at height `low` is a ghost: more than one scan saw what is above `high`, where
+   * there is ground, and the map saw nothing surely, and not the half, of the space between. */
+  bool isGhost(int column, int low, int high) const;
+  /** Bottom of the lowest run that is no ghost under the next run, or under sure space that begins
+   * more than `margin` above; kNumKeys if there is none. */
   int floorOf(int column, int margin) const;
+
+ private:
+  bool isKnown(int column, int z) const;
+  bool isSureFrom(int column, int low, int high) const;
 };
 
 /** Reads tiles of a map, which must outlive it. */

@@ -94,7 +94,7 @@ void dropGhosts(const ColumnTile& columns, int column, std::ptrdiff_t begin,
                 std::vector<Surface>& surfaces) {
   auto kept = surfaces.begin() + begin;
   for (auto s = kept; s != surfaces.end(); ++s)
-    if (s + 1 == surfaces.end() || columns.isSeenBetween(column, s->z, (s + 1)->z)) *kept++ = *s;
+    if (s + 1 == surfaces.end() || !columns.isGhost(column, s->z, (s + 1)->z)) *kept++ = *s;
   surfaces.erase(kept, surfaces.end());
 }
 

@@ -63,13 +63,11 @@ class GapFillSearch {
   }
 
   /** Whether, for every height from `low` to `high`, the column has something that stands in the
-   * way, or a drop: free space to a step below, and under that more of it or ground. What is not
-   * known under it is ground within the rounding of heights. */
+   * way, or a drop. */
   bool isInTheWay(Column c, int low, int high) const {
     const ColumnTile& tile = m_columns.around(c);
     const int column = indexInTile(c), step = m_shape.step;
-    if (tile.isOpen(column, high, low - step, step) && tile.isKnown(column, low - step - 1))
-      return true;
+    if (tile.isOverDrop(column, low, high, step, m_shape.height)) return true;
     return std::any_of(tile.runs.begin(column), tile.runs.end(column), [&](const Run& run) {
       return run.bottom <= low + m_shape.height && run.top >= high - step;
     });

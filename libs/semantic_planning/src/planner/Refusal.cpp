@@ -41,7 +41,8 @@ std::string whatIsAt(const Ground& ground, const Obstacle& obstacle, int z) {
   for (const Run* run = tile.runs.begin(column); run != tile.runs.end(column); ++run)
     if (run->top > obstacle.z + step && run->bottom <= obstacle.z + height)
       return "an obstacle (" + named(ground, run->topClass) + ")";
-  return tile.isOpen(column, obstacle.z, obstacle.z - step, step) ? "a drop" : "ground not known";
+  return tile.isOverDrop(column, obstacle.z, obstacle.z, step, height) ? "a drop"
+                                                                       : "ground not known";
 }
 
 /** Of what is in the way of the footprint's discs, the nearest to them. */
