@@ -18,6 +18,8 @@ constexpr Stroke kForward{{20, 20, 20}, 3, 2}, kBackward{{230, 159, 0}, 3, 2},
     kUsable{{20, 60, 90}, 1, 0}, kNotEvaluated{{140, 170, 200}, 1, 0};
 constexpr Arrow kStart{{0, 160, 60}, 26, 2}, kGoal{{220, 30, 30}, 26, 2},
     kVertex{{0, 40, 90}, 7, 0};
+constexpr Stroke kFootprint{{20, 20, 20}, 1, 1}, kInTheWay{{200, 0, 200}, 3, 2};
+constexpr map_pictures::Color kHole{120, 90, 150};
 
 /** \return whether some of it is of no class */
 bool drawGround(MapCanvas& canvas, const Ground& ground,
@@ -35,6 +37,28 @@ bool drawGround(MapCanvas& canvas, const Ground& ground,
       unlabeled |= s->classId == semantic_types::kNoClass;
     }
   return unlabeled;
+}
+
+bool isBesideGround(const Ground& ground, Column c) {
+  for (int y = c.y - 1; y <= c.y + 1; ++y)
+    for (int x = c.x - 1; x <= c.x + 1; ++x)
+      for (const Surface& s : ground.surfaces({x, y}))
+        if (s.drivable) return true;
+  return false;
+}
+
+/** Columns of which nothing is known, next to ground that could be driven upon. */
+void drawHoles(MapCanvas& canvas, const Ground& ground) {
+  bool drawn = false;
+  for (const Column& tile : ground.tiles())
+    for (int i = 0; i < kTileColumns; ++i) {
+      const Column first = firstColumnOf(tile);
+      const Column c{first.x + i % kTileEdge, first.y + i / kTileEdge};
+      if (!ground.surfaces(c).empty() || !isBesideGround(ground, c)) continue;
+      canvas.fillSquare({ground.centerOf(c.x), ground.centerOf(c.y)}, ground.voxelSize(), kHole);
+      drawn = true;
+    }
+  if (drawn) canvas.explain({"ground not known", kHole});
 }
 
 void drawCurve(MapCanvas& canvas, const ReedsSheppCurve& curve, const Stroke& stroke) {
@@ -84,6 +108,24 @@ void drawPath(MapCanvas& canvas, const PlanResult& plan) {
   if (drawn[false]) canvas.explain({"path, backward", kBackward});
 }
 
+void drawFootprint(MapCanvas& canvas, const Footprint& footprint, const TPose2D& pose) {
+  std::vector<Eigen::Vector2d> outline;
+  for (std::size_t i = 0; i <= footprint.size(); ++i) {
+    const Eigen::Vector2d& corner = footprint[i % footprint.size()];
+    const auto at = pose.composePoint({corner.x(), corner.y()});
+    outline.emplace_back(at.x, at.y);
+  }
+  canvas.drawLine(outline, kFootprint);
+}
+
+/** A cross. */
+void drawInTheWay(MapCanvas& canvas, const mrpt::math::TPoint2D& place) {
+  const double arm = 7 / canvas.pixelsPerMeter();
+  canvas.drawLine({{place.x - arm, place.y - arm}, {place.x + arm, place.y + arm}}, kInTheWay);
+  canvas.drawLine({{place.x - arm, place.y + arm}, {place.x + arm, place.y - arm}}, kInTheWay);
+  canvas.explain({"in the way", kInTheWay});
+}
+
 void drawEnd(MapCanvas& canvas, const std::string& name, const TPose2D& pose, const Arrow& arrow) {
   canvas.drawPose(pose, arrow);
   canvas.explain({name, arrow});
@@ -99,10 +141,15 @@ cv::Mat drawPlan(MapCanvas canvas, const SemanticPlanner& planner, const PlanRes
   canvas.drawThrough(kGroundShare,
                      [&] { unlabeled = drawGround(canvas, ground, ground.map().classes()); });
   if (unlabeled) canvas.explain({"ground without a class", semantic_types::kColorWithoutClass});
+  drawHoles(canvas, ground);
   if (planner.hasRoadmap()) drawGraph(canvas, planner.roadmap());
   if (plan.found()) drawPath(canvas, plan);
   drawEnd(canvas, "start", start, kStart);
   drawEnd(canvas, "goal", goal, kGoal);
+  for (const TPose2D& pose : {start, goal})
+    drawFootprint(canvas, planner.options().vehicle.footprint, pose);
+  canvas.explain({"footprint", kFootprint});
+  if (plan.obstacle) drawInTheWay(canvas, *plan.obstacle);
   return canvas.sheet("plan");
 }
 

@@ -55,6 +55,10 @@ void addSensors(CLI::App& app, Cli& cli) {
   app.add_option("--rings", cli.lidar.rings, "Of the LiDAR")->capture_default_str();
   app.add_option("--columns", cli.lidar.columns, "Of the LiDAR")->capture_default_str();
   app.add_option("--lidar-range", cli.lidar.maxRange, "Greatest range, m")->capture_default_str();
+  app.add_option("--ghosts", cli.lidar.ghosts,
+                 "Share of the LiDAR's beams on windows, cars, water and signs that return by way "
+                 "of what these mirror")
+      ->capture_default_str();
   app.add_option("--range-noise", cli.noise.range, "Standard deviation, m")->capture_default_str();
   app.add_option("--label-noise", cli.noise.label, "Share of labels that are wrong")
       ->capture_default_str();

@@ -21,6 +21,24 @@ TEST_F(PlannerTest, saysWhyAStartOrGoalWillNotDo) {
   EXPECT_FALSE(p.hasRoadmap());
 }
 
+TEST_F(PlannerTest, aRefusalSaysWhatIsInTheWayAndWhere) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
+  world.box(4.4, 4.6, -1, 1, 0, 2, PaintedWorld::Wall);
+  world.box(-6, -5, -2, 2, -0.2, 0, PaintedWorld::Wall);  // forbidden, and flat
+  SemanticPlanner p = planner();
+  const PlanResult wall = p.plan({0, -5, 0}, {4, 0, 0});
+  EXPECT_TRUE(contains(wall.reason, "m from the goal: an obstacle (wall)")) << wall.reason;
+  ASSERT_TRUE(wall.obstacle);
+  EXPECT_NEAR(wall.obstacle->x, 4.5, 0.11);
+  const PlanResult edge = p.plan({0, -5, 0}, {14.6, 5, 0});
+  EXPECT_TRUE(contains(edge.reason, "m from the goal: ground not known")) << edge.reason;
+  EXPECT_TRUE(contains(edge.reason, ": (15.1, ")) << edge.reason;
+  const PlanResult forbidden = p.plan({-5.5, 0, 0}, {0, 0, 0});
+  EXPECT_TRUE(contains(forbidden.reason, "m from the start: ground of wall, which the order"))
+      << forbidden.reason;
+  EXPECT_FALSE(p.plan({0, -5, 0}, {0, 5, 0}).obstacle);
+}
+
 TEST_F(PlannerTest, saysThatAllWaysAreForbidden) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.floor(-1, 1, -15, 15, PaintedWorld::Wall);

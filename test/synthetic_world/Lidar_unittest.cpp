@@ -62,6 +62,30 @@ TEST(Lidar, returnsOutsideItsRangesAreLost) {
   }
 }
 
+TEST(Lidar, ghostsLieOnTheirBeamsBehindMirrorsManyBelowTheGround) {
+  const Scene scene = makeScene("campus", 6);
+  const Eigen::Isometry3d T = Drive(scene).T_world_robot(40) * raised(1.8);
+  LidarOptions options;
+  const LabeledCloud plain = scanLidar(scene.world, T, options);
+  options.ghosts = 1;
+  const LabeledCloud haunted = scanLidar(scene.world, T, options);
+  std::size_t ghosts = 0, below = 0;
+  for (const auto& p : haunted.points) {
+    const V q = T * p.cast<double>(), beam = T.linear() * p.cast<double>().normalized();
+    const auto hit = scene.world.castRay(T.translation(), beam, options.maxRange);
+    ASSERT_TRUE(hit);
+    EXPECT_LT(hit->range, p.norm() + 1e-3);
+    if (hit->range > p.norm() - 1e-3) continue;
+    ++ghosts;
+    const ClassId mirror = hit->material.id;
+    EXPECT_TRUE(mirror == kWindow || mirror == kCar || mirror == kWater || mirror == kSign);
+    below += q.z() < scene.world.groundHeight(q.x(), q.y()) - 0.5;
+  }
+  EXPECT_GT(ghosts, 100u);
+  EXPECT_GT(below, 20u);
+  EXPECT_LT(haunted.size(), plain.size());  // what mirrors show of the sky does not return
+}
+
 TEST(Lidar, badOptionsAreNamed) {
   using small_world::messageOf;
   const auto message = [](auto change) {
@@ -80,6 +104,7 @@ TEST(Lidar, badOptionsAreNamed) {
             std::string::npos);
   EXPECT_NE(message([](auto& o) { o.maxRange = 0; }).find("LidarOptions::max_range"),
             std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.ghosts = 2; }).find("ghosts"), std::string::npos);
   EXPECT_NE(message([](auto& o) { o.noise.range = -1; }).find("range_noise"), std::string::npos);
 }
 

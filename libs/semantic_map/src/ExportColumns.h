@@ -1,4 +1,5 @@
 #pragma once
+#include <semantic_octree/Column.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <opencv2/core.hpp>
@@ -18,6 +19,10 @@ class ExportColumns {
   double resolution() const { return m_resolution; }
   /** Outer corner of pixel (0, 0), m. */
   cv::Point2d upperLeft() const;
+  /** Keys of a pixel's column. */
+  semantic_octree::Column columnAt(int row, int col) const {
+    return {m_keys.x + col, m_keys.br().y - 1 - row};
+  }
   /** The columns that a leaf covers, at least in part in the picture. */
   cv::Rect under(const semantic_octree::SemanticOcTree::leaf_iterator& leaf) const;
 

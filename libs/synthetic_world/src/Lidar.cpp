@@ -9,6 +9,22 @@ namespace {
 
 constexpr std::uint64_t kLidarStream = 2;
 
+bool isMirror(ClassId id) { return id == kWindow || id == kCar || id == kWater || id == kSign; }
+
+/** What a beam meets by way of the mirror that it hit, with the range of both ways together. Car
+ * bodies are round, and windows lean: the mirror's normal is off by some degrees. */
+std::optional<Hit> mirrored(const World& world, const Hit& mirror, const Eigen::Vector3d& beam,
+                            double maxRange, Random& random) {
+  constexpr double kOff = 0.2, kAbove = 1e-3;  // rad, m
+  const Eigen::Vector3d off(random.normal(), random.normal(), random.normal());
+  const Eigen::Vector3d normal = (mirror.normal + kOff * off).normalized();
+  const Eigen::Vector3d away = beam - 2 * beam.dot(normal) * normal;
+  if (away.dot(mirror.normal) <= 0) return std::nullopt;
+  auto hit = world.castRay(mirror.point + kAbove * mirror.normal, away, maxRange - mirror.range);
+  if (hit) hit->range += mirror.range;
+  return hit;
+}
+
 }  // namespace
 
 void LidarOptions::describe(strict_files::OptionList& list) {
@@ -20,6 +36,9 @@ void LidarOptions::describe(strict_files::OptionList& list) {
   list.add("highest", highest, "degrees", above(-90).below(90), "elevation of the highest ring");
   list.add("min_range", minRange, "m", strict_files::atLeast(0), "nearer returns are lost");
   list.add("max_range", maxRange, "m", above(0), "more than min_range");
+  list.add("ghosts", ghosts, "", between(0, 1),
+           "share of the beams on windows, cars, water and signs that return by way of what these "
+           "mirror: from behind them, often from below the ground");
 }
 
 void LidarOptions::validate() const {
@@ -45,11 +64,15 @@ LabeledCloud scanLidar(const World& world, const Eigen::Isometry3d& T_world_lida
   for (int ring = 0; ring < options.rings; ++ring)
     for (int column = 0; column < options.columns; ++column) {
       const Eigen::Vector3d beam = options.beam(ring, column);
-      const auto hit = world.castRay(T_world_lidar.translation(), T_world_lidar.linear() * beam,
-                                     options.maxRange + 5 * options.noise.range);
+      const Eigen::Vector3d direction = T_world_lidar.linear() * beam;
+      const double farthest = options.maxRange + 5 * options.noise.range;
+      auto hit = world.castRay(T_world_lidar.translation(), direction, farthest);
       if (!hit) continue;
       const auto ray = static_cast<std::uint64_t>(ring) * options.columns + column;
       Random random = Random::ofStream(seed.seed, kLidarStream + 4 * seed.frame, ray);
+      if (options.ghosts > 0 && isMirror(hit->material.id) && random.chance(options.ghosts))
+        hit = mirrored(world, *hit, direction, farthest, random);
+      if (!hit) continue;
       const double range = options.noise.disturbed(hit->range, random);
       if (range < options.minRange || range > options.maxRange) continue;
       if (options.noise.drops(random)) continue;

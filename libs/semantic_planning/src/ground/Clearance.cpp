@@ -61,6 +61,16 @@ class FlatDistances {
   std::array<int, kTileColumns> m_squared;
 };
 
+/** The obstacle of a column at about height z; or null. */
+const std::uint16_t* obstacleAt(const TileWindow<ObstacleTile>& obstacles, Column c, int z,
+                                int tolerance) {
+  const ObstacleTile& tile = obstacles.around(c);
+  const int column = indexInTile(c);
+  const auto* found = std::find_if(tile.begin(column), tile.end(column),
+                                   [&](int height) { return std::abs(height - z) <= tolerance; });
+  return found == tile.end(column) ? nullptr : found;
+}
+
 }  // namespace
 
 /** A tile's surroundings. */
@@ -78,19 +88,12 @@ class ClearanceMeter::Tile {
     const std::vector<Place>& places = m_meter.m_places;
     const auto first = static_cast<std::ptrdiff_t>(m_meter.m_firstAt[m_flat[indexInTile(c)]]);
     const auto nearest = std::find_if(places.begin() + first, places.end(), [&](const Place& p) {
-      return isObstacle({c.x + p.x, c.y + p.y}, z, p.tolerance);
+      return obstacleAt(m_obstacles, {c.x + p.x, c.y + p.y}, z, p.tolerance);
     });
     return nearest == places.end() ? farthest : nearest->clearance2;
   }
 
  private:
-  bool isObstacle(Column c, int z, int tolerance) const {
-    const ObstacleTile& tile = m_obstacles.around(c);
-    const int column = indexInTile(c);
-    return std::any_of(tile.begin(column), tile.end(column),
-                       [&](int height) { return std::abs(height - z) <= tolerance; });
-  }
-
   const ClearanceMeter& m_meter;
   const TileWindow<ObstacleTile> m_obstacles;
   const FlatDistances m_flat;
@@ -108,6 +111,17 @@ ClearanceMeter::ClearanceMeter(const GroundShape& shape) : m_farthest(shape.larg
                    [](const Place& l, const Place& r) { return l.clearance2 < r.clearance2; });
   m_firstAt.resize(farthest2);
   for (std::size_t i = m_places.size(); i-- > 0;) m_firstAt[m_places[i].clearance2] = i;
+}
+
+std::optional<ClearanceMeter::Obstacle> ClearanceMeter::nearest(const ObstacleGrid& obstacles,
+                                                                Column c, int z) const {
+  const TileWindow<ObstacleTile> around(obstacles, tileOf(c), m_farthest);
+  for (const Place& p : m_places) {
+    const Column at{c.x + p.x, c.y + p.y};
+    if (const auto* height = obstacleAt(around, at, z, p.tolerance))
+      return Obstacle{at, *height, p.clearance2};
+  }
+  return std::nullopt;
 }
 
 ColumnBox ClearanceMeter::measure(const ObstacleGrid& obstacles, Column tile,

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "ColumnBox.h"
@@ -11,6 +12,15 @@ namespace semantic_planning {
 class ClearanceMeter {
  public:
   explicit ClearanceMeter(const GroundShape& shape);
+
+  /** Where the vehicle must not be, and about which height. */
+  struct Obstacle {
+    Column column;
+    int z;
+    int clearance2;  ///< of the surface that asks
+  };
+  /** The nearest one to a column at height z. */
+  std::optional<Obstacle> nearest(const ObstacleGrid& obstacles, Column c, int z) const;
 
   /** Sets the clearance of a tile's surfaces. \return the columns where it changed. */
   ColumnBox measure(const ObstacleGrid& obstacles, Column tile, SurfaceTile& measured) const;

@@ -88,8 +88,19 @@ Surface surfaceOf(const Offer& offer) {
 
 bool isLower(const Surface& l, const Surface& r) { return l.z < r.z; }
 
+/** Takes the ghosts out of a column's surfaces, which are sorted.
+ * \param surfaces in which they begin at `begin` */
+void dropGhosts(const ColumnTile& columns, int column, std::ptrdiff_t begin,
+                std::vector<Surface>& surfaces) {
+  auto kept = surfaces.begin() + begin;
+  for (auto s = kept; s != surfaces.end(); ++s)
+    if (s + 1 == surfaces.end() || !columns.isGhost(column, s->z, (s + 1)->z)) *kept++ = *s;
+  surfaces.erase(kept, surfaces.end());
+}
+
 /** A tile's own surfaces and what is offered. */
-SurfaceTile merged(const SurfaceTile& own, const std::vector<Offer>& offers) {
+SurfaceTile merged(const SurfaceTile& own, const std::vector<Offer>& offers,
+                   const ColumnTile& columns) {
   SurfaceTile result;
   auto offer = offers.begin();
   for (int column = 0; column < kTileColumns; ++column) {
@@ -98,6 +109,7 @@ SurfaceTile merged(const SurfaceTile& own, const std::vector<Offer>& offers) {
     for (; offer != offers.end() && offer->column == column; ++offer)
       result.surfaces.push_back(surfaceOf(*offer));
     std::sort(result.surfaces.begin() + begin, result.surfaces.end(), isLower);
+    dropGhosts(columns, column, begin, result.surfaces);
     result.first[column + 1] = static_cast<std::uint16_t>(result.surfaces.size());
   }
   result.surfaces.shrink_to_fit();
@@ -106,12 +118,12 @@ SurfaceTile merged(const SurfaceTile& own, const std::vector<Offer>& offers) {
 
 }  // namespace
 
-SurfaceTile filledSurfaces(const GapFillGrid& fills, const SurfaceGrid& measured, Column tile,
-                           const GroundShape& shape) {
+SurfaceTile filledSurfaces(const GapFillGrid& fills, const SurfaceGrid& measured,
+                           const ScanGrid& columns, Column tile, const GroundShape& shape) {
   const SurfaceTile* own = measured.find(tile);
+  const ColumnTile* scanned = columns.find(tile);
   const std::vector<Offer> offers = bestOffers(offersTo(tile, fills, shape), shape.step);
-  if (own && offers.empty()) return *own;
-  return merged(own ? *own : SurfaceTile(), offers);
+  return merged(own ? *own : SurfaceTile(), offers, scanned ? *scanned : ColumnTile());
 }
 
 }  // namespace semantic_planning

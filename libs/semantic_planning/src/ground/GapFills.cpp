@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace semantic_planning {
 namespace {
@@ -62,13 +63,13 @@ class GapFillSearch {
   }
 
   /** Whether, for every height from `low` to `high`, the column has something that stands in the
-   * way, or free space below. */
+   * way, or a drop. */
   bool isInTheWay(Column c, int low, int high) const {
     const ColumnTile& tile = m_columns.around(c);
-    const int column = indexInTile(c);
-    if (tile.lowestFree[column] < low - m_shape.step) return true;
-    return std::any_of(tile.begin(column), tile.end(column), [&](const Run& run) {
-      return run.bottom <= low + m_shape.height && run.top >= high - m_shape.step;
+    const int column = indexInTile(c), step = m_shape.step;
+    if (tile.isOverDrop(column, low, high, step, m_shape.height)) return true;
+    return std::any_of(tile.runs.begin(column), tile.runs.end(column), [&](const Run& run) {
+      return run.bottom <= low + m_shape.height && run.top >= high - step;
     });
   }
 
@@ -78,27 +79,59 @@ class GapFillSearch {
   std::vector<GapFill> m_found;
 };
 
+/** The class of a surface that is of a forbidden one: its own, unless most of what is around it
+ * within a step is of others. */
+ClassId classAmong(const TileWindow<ColumnTile>& columns, Column c, const Surface& s,
+                   const GroundShape& shape) {
+  constexpr int kMost = (2 * kReachOfClasses + 1) * (2 * kReachOfClasses + 1);
+  std::array<ClassId, kMost> others;
+  int forbidden = 0, allowed = 0;
+  for (int y = c.y - kReachOfClasses; y <= c.y + kReachOfClasses; ++y)
+    for (int x = c.x - kReachOfClasses; x <= c.x + kReachOfClasses; ++x) {
+      const auto& runs = columns.around({x, y}).runs;
+      const int column = indexInTile({x, y});
+      const Run* run = std::find_if(runs.begin(column), runs.end(column), [&](const Run& r) {
+        return std::abs(r.top - s.z) <= shape.step;
+      });
+      if (run == runs.end(column)) continue;
+      if (shape.ranks[run->topClass] == colored_graph::kForbidden)
+        ++forbidden;
+      else
+        others[allowed++] = run->topClass;
+    }
+  if (allowed <= forbidden) return s.classId;
+  const auto end = others.begin() + allowed;
+  return *std::max_element(others.begin(), end, [&](ClassId a, ClassId b) {
+    return std::count(others.begin(), end, a) < std::count(others.begin(), end, b);
+  });
+}
+
 }  // namespace
 
 int GapFill::height(int i) const {
   return z + static_cast<int>(std::lround(double(int(otherZ) - z) * i / columns));
 }
 
-SurfaceTile measuredSurfaces(const ColumnTile& columns, const GroundShape& shape) {
-  SurfaceTile tile;
-  for (int column = 0; column < kTileColumns; ++column) {
-    for (const Run* run = columns.begin(column); run != columns.end(column); ++run) {
+SurfaceTile measuredSurfaces(const ScanGrid& columns, Column tile, const GroundShape& shape) {
+  const TileWindow<ColumnTile> window(columns, tile, kReachOfClasses);
+  SurfaceTile measured;
+  forColumnsOf(tile, [&](Column c) {
+    const int column = indexInTile(c);
+    const auto& runs = window.around(c).runs;
+    for (const Run* run = runs.begin(column); run != runs.end(column); ++run) {
       const Run* above = run + 1;
-      if (above != columns.end(column) && above->bottom <= run->top + shape.height) continue;
+      if (above != runs.end(column) && above->bottom <= run->top + shape.height) continue;
       Surface s;
       s.z = run->top;
       s.classId = run->topClass;
-      tile.surfaces.push_back(s);
+      if (shape.ranks[s.classId] == colored_graph::kForbidden)
+        s.classId = classAmong(window, c, s, shape);
+      measured.surfaces.push_back(s);
     }
-    tile.first[column + 1] = static_cast<std::uint16_t>(tile.surfaces.size());
-  }
-  tile.surfaces.shrink_to_fit();
-  return tile;
+    measured.first[column + 1] = static_cast<std::uint16_t>(measured.surfaces.size());
+  });
+  measured.surfaces.shrink_to_fit();
+  return measured;
 }
 
 std::vector<GapFill> gapFillsFrom(const ScanGrid& columns, const SurfaceGrid& measured, Column tile,

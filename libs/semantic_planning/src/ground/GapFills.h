@@ -1,18 +1,26 @@
 #pragma once
+#include <semantic_octree/ColumnScan.h>
+
 #include <array>
 #include <tuple>
 #include <vector>
 
-#include "ColumnScan.h"
 #include "GroundShape.h"
 #include "SurfaceTile.h"
 
 namespace semantic_planning {
 
+using semantic_octree::ColumnTile;
+using semantic_octree::Run;
 using ScanGrid = ColumnGrid<ColumnTile>;
 
-/** Top voxels with enough free space above. */
-SurfaceTile measuredSurfaces(const ColumnTile& columns, const GroundShape& shape);
+/** Columns around one that tell what class it has. */
+constexpr int kReachOfClasses = 1;
+
+/** Top voxels with enough free space above. One of a forbidden class has the class of most around
+ * it that it can be driven to, if these are more than the forbidden ones: single wrong labels close
+ * no road. */
+SurfaceTile measuredSurfaces(const ScanGrid& columns, Column tile, const GroundShape& shape);
 
 /** Directions of gap fills; the opposite ones are the same fills from their other ends. */
 struct Direction {
@@ -55,8 +63,8 @@ inline int reachOfGapFills(const GroundShape& shape) {
 }
 
 /** The fills whose first end is in a tile: from each surface that lacks a neighbor in a direction
- * to the next surface at about its height, where nothing stands in between and no free space was
- * seen below. Sorted. */
+ * to the next surface at about its height, where nothing stands in between and no drop was seen
+ * below. Sorted. */
 std::vector<GapFill> gapFillsFrom(const ScanGrid& columns, const SurfaceGrid& measured, Column tile,
                                   const GroundShape& shape);
 

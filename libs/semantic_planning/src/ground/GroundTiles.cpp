@@ -114,7 +114,9 @@ void GroundTiles::readWithin(const std::vector<Column>& tiles) {
 
 std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles) {
   std::vector<Column> refilled;
-  const auto scanned = changedBy(inMortonOrder(tiles), [&](Column t) { return scan(t, refilled); });
+  auto scanned = changedBy(inMortonOrder(tiles), [&](Column t) { return scan(t, refilled); });
+  append(scanned, changedBy(tilesWithin(scanned, kReachOfClasses),
+                            [&](Column t) { return measure(t, refilled); }));
   const int reach = reachOfGapFills(m_shape);
   for (const Column& t : tilesWithin(scanned, {reach, reach, reach, 0})) findFills(t, refilled);
   sortOut(refilled);
@@ -137,10 +139,15 @@ std::vector<ColumnBox> GroundTiles::updateClearance(const std::vector<ColumnBox>
 }
 
 ColumnBox GroundTiles::scan(Column tile, std::vector<Column>& refilled) {
-  ColumnTile columns = scanColumns(m_map, tile);
-  if (!replace(m_measured, tile, measuredSurfaces(columns, m_shape)).empty())
-    refilled.push_back(tile);
-  return replace(m_columns, tile, std::move(columns));
+  const ColumnBox changed = replace(m_columns, tile, m_scanner.scan(tile));
+  if (!changed.empty()) refilled.push_back(tile);
+  return changed;
+}
+
+ColumnBox GroundTiles::measure(Column tile, std::vector<Column>& refilled) {
+  const ColumnBox changed = replace(m_measured, tile, measuredSurfaces(m_columns, tile, m_shape));
+  if (!changed.empty()) refilled.push_back(tile);
+  return changed;
 }
 
 void GroundTiles::findFills(Column tile, std::vector<Column>& refilled) {
@@ -155,7 +162,7 @@ void GroundTiles::findFills(Column tile, std::vector<Column>& refilled) {
 }
 
 ColumnBox GroundTiles::fill(Column tile) {
-  SurfaceTile filled = filledSurfaces(m_fills, m_measured, tile, m_shape);
+  SurfaceTile filled = filledSurfaces(m_fills, m_measured, m_columns, tile, m_shape);
   if (const SurfaceTile* before = m_surfaces.find(tile)) keepMarks(*before, filled);
   return replace(m_surfaces, tile, std::move(filled));
 }
@@ -177,6 +184,13 @@ ColumnBox GroundTiles::measureClearance(Column tile) {
 ColumnBox GroundTiles::connect(Column tile) {
   SurfaceTile* connected = m_surfaces.find(tile);
   return connected ? markComponents(tile, *connected, m_shape) : ColumnBox();
+}
+
+std::optional<ClearanceMeter::Obstacle> GroundTiles::obstacleNear(Column c, int z) const {
+  ObstacleGrid obstacles;
+  for (const Column& tile : tilesWithin({{c, c}}, m_shape.largestClearance))
+    obstacles.at(tile) = obstaclesIn(m_surfaces, tile, m_shape);
+  return m_clearanceMeter.nearest(obstacles, c, z);
 }
 
 const GroundComponents& GroundTiles::components() const {

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "Clearance.h"
 #include "ColumnBox.h"
@@ -16,7 +17,7 @@ inline Column squareOf(Column tile) { return {tile.x >> 5, tile.y >> 5}; }
 
 /** Columns within which what the map holds may matter to a column's surfaces. */
 inline int reachOfGround(const GroundShape& shape) {
-  return reachOfGapFills(shape) + shape.baseline + 1 + shape.largestClearance;
+  return kReachOfClasses + reachOfGapFills(shape) + shape.baseline + 1 + shape.largestClearance;
 }
 
 /** The stages from the map to the ground, each tile by tile; what a column becomes depends only on
@@ -24,7 +25,7 @@ inline int reachOfGround(const GroundShape& shape) {
 class GroundTiles {
  public:
   GroundTiles(const semantic_octree::SemanticOcTree& map, const GroundShape& shape)
-      : m_map(map), m_shape(shape), m_clearanceMeter(shape) {}
+      : m_map(map), m_shape(shape), m_clearanceMeter(shape), m_scanner(map) {}
 
   /** Makes room for tiles, before there are any. */
   void cover(const std::vector<Column>& tiles);
@@ -40,6 +41,8 @@ class GroundTiles {
 
   const GroundShape& shape() const { return m_shape; }
   const SurfaceGrid& surfaces() const { return m_surfaces; }
+  /** What surfaces near a column at height z keep their clearance from; none within the largest. */
+  std::optional<ClearanceMeter::Obstacle> obstacleNear(Column c, int z) const;
   const GroundComponents& components() const;
 
  private:
@@ -51,8 +54,9 @@ class GroundTiles {
   std::vector<ColumnBox> updateClearance(const std::vector<ColumnBox>& changed);
 
   /** Stages tell which columns of a tile changed.
-   * \param refilled gets the tile if its surfaces changed */
+   * \param refilled gets the tile if anything changed */
   ColumnBox scan(Column tile, std::vector<Column>& refilled);
+  ColumnBox measure(Column tile, std::vector<Column>& refilled);
   /** \param refilled gets the tiles that fills cross which came or went */
   void findFills(Column tile, std::vector<Column>& refilled);
   ColumnBox fill(Column tile);
@@ -64,6 +68,7 @@ class GroundTiles {
   const semantic_octree::SemanticOcTree& m_map;
   const GroundShape m_shape;
   const ClearanceMeter m_clearanceMeter;
+  const semantic_octree::ColumnScanner m_scanner;
   ScanGrid m_columns;
   SurfaceGrid m_measured;
   GapFillGrid m_fills;

@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
 
 #include "PathTracing.h"
+#include "Refusal.h"
 #include "ground/ColumnBox.h"
 
 namespace semantic_planning {
@@ -50,19 +52,19 @@ PlanStatus atGoal(PlanStatus start) {
   }
 }
 
+/** "the goal (25, 4) is blocked: (25.1, 3.9), 0.4 m from the goal: ground not known" */
 std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPose2D& pose,
-                     const Ground& ground) {
+                     const Refusal& refusal) {
   std::ostringstream reason;
   const strict_files::ClassicNumbers classic(reason);
-  reason << "the " << what << " (" << pose.x << ", " << pose.y << ") ";
-  if (status == PlanStatus::StartOffGround)
-    reason << "is not on drivable ground: "
-           << (ground.surfaces(ground.columnAt(pose.x, pose.y)).empty() ? "the map has none there"
-                                                                        : "it is too steep");
-  else if (status == PlanStatus::StartBlocked)
-    reason << "is blocked: the footprint, with its clearance, does not fit between obstacles";
-  else
-    reason << "is on ground of a class that the order forbids";
+  reason << "the " << what << " (" << pose.x << ", " << pose.y << ") is "
+         << (status == PlanStatus::StartOffGround ? "off the ground"
+             : status == PlanStatus::StartBlocked ? "blocked"
+                                                  : "on forbidden ground")
+         << std::fixed << std::setprecision(1) << ": (" << refusal.place.x << ", "
+         << refusal.place.y << "), "
+         << std::hypot(refusal.place.x - pose.x, refusal.place.y - pose.y) << " m from the " << what
+         << ": " << refusal.what;
   return reason.str();
 }
 
@@ -120,15 +122,19 @@ PlanStatus PlannerCore::check(const Place& place) const {
   return placed(place, pose);
 }
 
-bool PlannerCore::refuse(const Place& start, const Place& goal, PlanResult& result) {
-  result.status = placed(start, m_startPose);
-  if (result.status != PlanStatus::Found) {
-    result.reason = reasonOf("start", result.status, start.pose, m_ground);
-    return true;
-  }
-  result.status = placed(goal, m_goalPose);
+bool PlannerCore::isRefused(const char* what, const Place& place, std::optional<GroundPose>& pose,
+                            PlanResult& result) const {
+  result.status = placed(place, pose);
   if (result.status == PlanStatus::Found) return false;
-  result.reason = reasonOf("goal", result.status, goal.pose, m_ground);
+  const Refusal refusal = refusalOf(m_checker, result.status, place.pose, pose);
+  result.reason = reasonOf(what, result.status, place.pose, refusal);
+  result.obstacle = refusal.place;
+  return true;
+}
+
+bool PlannerCore::refuse(const Place& start, const Place& goal, PlanResult& result) {
+  if (isRefused("start", start, m_startPose, result)) return true;
+  if (!isRefused("goal", goal, m_goalPose, result)) return false;
   result.status = atGoal(result.status);
   return true;
 }

@@ -13,6 +13,9 @@ struct LidarOptions {
   double lowest = -25, highest = 15;  // elevation of the first and last ring, degrees
   double minRange = 0.8;              // m
   double maxRange = 60;               // m
+  /** Share of the beams on windows, cars, water and signs that return by way of what these mirror:
+   * such ghosts lie behind the surface, many of them below the ground; 0..1. */
+  double ghosts = 0;
   SensorNoise noise;
 
   /** Unit vector of a beam, sensor frame; ring 0 is the highest, column 0 looks ahead. */

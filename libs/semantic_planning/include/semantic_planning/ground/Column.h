@@ -1,23 +1,14 @@
 #pragma once
+#include <semantic_octree/Column.h>
 
 namespace semantic_planning {
 
-/** A column of the map: keys of its voxels in x and y. Differences may leave the range of keys. */
-struct Column {
-  int x = 0, y = 0;
-  bool operator==(const Column& o) const { return x == o.x && y == o.y; }
-  bool operator<(const Column& o) const { return x != o.x ? x < o.x : y < o.y; }
-};
-
-/** Columns come in square tiles of this edge, so that what changed can be told by tiles. */
-constexpr int kTileEdge = 16;
-constexpr int kTileColumns = kTileEdge * kTileEdge;
-
-inline Column tileOf(Column c) { return {c.x >> 4, c.y >> 4}; }
-inline Column firstColumnOf(Column tile) { return {tile.x * kTileEdge, tile.y * kTileEdge}; }
-inline Column lastColumnOf(Column tile) {
-  return {tile.x * kTileEdge + kTileEdge - 1, tile.y * kTileEdge + kTileEdge - 1};
-}
-inline int indexInTile(Column c) { return (c.y & 15) * kTileEdge + (c.x & 15); }
+using semantic_octree::Column;
+using semantic_octree::firstColumnOf;
+using semantic_octree::indexInTile;
+using semantic_octree::kTileColumns;
+using semantic_octree::kTileEdge;
+using semantic_octree::lastColumnOf;
+using semantic_octree::tileOf;
 
 }  // namespace semantic_planning

@@ -1,11 +1,13 @@
 #pragma once
 #include <colored_graph/PathResult.h>
+#include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 #include <semantic_planning/vehicle/PathPoint.h>
 #include <strict_files/OptionList.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +38,8 @@ using StageTimes = std::vector<std::pair<std::string, double>>;
 struct PlanResult {
   PlanStatus status = PlanStatus::NotConnected;
   std::string reason;  ///< a sentence with the numbers; empty if found
+  /** Where something is in the way of the start or goal, if that is refused; map frame, meters. */
+  std::optional<mrpt::math::TPoint2D> obstacle;
   /** Worst rank first: one number for each rank but rank 0, then the price of driving (DrivePrice),
    * then the total length, in colored_graph's units (0.1 mm) or edges. */
   std::vector<std::int64_t> cost;
