@@ -43,6 +43,9 @@ const IncludeTable& includeTable() {
         "semantic_types", "strict_files", "semantic_planning"}},
       {"synthetic_world", {"Eigen", "semantic_types", "strict_files"}},
       {"semantic_slam", {"Eigen", "semantic_octree", "semantic_types", "strict_files"}},
+      {"semantic_navigation",
+       {"Eigen", "mrpt", "colored_graph", "semantic_driving", "semantic_octree",
+        "semantic_planning", "semantic_slam", "semantic_types"}},
   };
   return table;
 }
