@@ -1,11 +1,14 @@
 #include "MapBuilder.h"
 
+#include <labeled_cloud/EigenPose.h>
 #include <labeled_cloud/ReadAhead.h>
 #include <map_folders/MapFolder.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <strict_files/ErrorMessage.h>
 
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <stdexcept>
 
 #include "Progress.h"
@@ -50,13 +53,20 @@ void MapBuilder::timeWithoutAbstraction() {
 
 void MapBuilder::correctPoses(const semantic_slam::SlamOptions& options, const fs::path& folder,
                               const fs::path& reference) {
-  m_correction = std::make_unique<PoseCorrection>(m_map.tree(), options, folder);
-  if (reference.empty()) return;
+  semantic_slam::MapperOptions mapping;
+  mapping.insertion = m_map.insertionOptions.scan;
+  mapping.localize = true;
+  mapping.slam = options;
+  mapping.scans = folder;
+  if (reference.empty()) {
+    m_mapper.emplace(m_map.tree(), mapping);
+    return;
+  }
   const semantic_octree::SemanticOcTree map = semantic_octree::loadMap(reference.string());
   if (options.useClasses && map.classes() != m_map.tree().classes())
     throw std::runtime_error(reference.string() +
                              ": its class table is another one than that of the scans");
-  m_correction->setReference(map);
+  m_mapper.emplace(m_map.tree(), mapping, &map);
 }
 
 void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::ScanStream& stream,
@@ -70,7 +80,7 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
     if ((m_summary.stopped = stop.pending())) break;
     progress.update(observation->bytesRead, std::to_string(m_summary.inserted) + " scans");
   }
-  if (m_correction) m_correction->finish();
+  if (m_mapper) m_mapper->finish();
   progress.finish((m_summary.stopped ? "stopped early, " : "") +
                   std::to_string(m_summary.inserted) + " scans inserted, " +
                   m_summary.skippedText());
@@ -114,13 +124,34 @@ void MapBuilder::insertScan(const StreamedObservation& observation) try {
 
 semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& scan,
                                                            const CPose3D& T_map_robot) {
-  if (!m_correction) return m_map.insertScan(scan, T_map_robot);
+  if (!m_mapper) return m_map.insertScan(scan, T_map_robot);
   m_clock.setMaxGap(m_map.insertionOptions.maxGap);
-  const auto report = m_correction->insert(scan, T_map_robot, m_map.insertionOptions.scan,
-                                           m_clock.secondsUntil(scan.timestamp));
+  m_seconds += m_clock.secondsUntil(scan.timestamp);
+  const auto inserted = m_mapper->insert(scan.cloud, labeled_cloud::toEigen(scan.T_robot_sensor),
+                                         labeled_cloud::toEigen(T_map_robot), m_seconds);
   m_clock.note(scan.timestamp);
-  m_summary.slam = m_correction->summary();
-  return report;
+  if (inserted.place.added->isNew) m_keyframeTimes.push_back(mrpt::Clock::toDouble(scan.timestamp));
+  m_summary.slam = slamSummary();
+  return inserted.scans.front();
+}
+
+SlamSummary MapBuilder::slamSummary() const {
+  const semantic_slam::Slam& slam = *m_mapper->slam();
+  return {slam.poses().size(), slam.numLoops(), slam.numReferenced(), slam.numLost()};
+}
+
+std::string MapBuilder::trajectory() const {
+  std::ostringstream out;
+  for (std::size_t k = 0; k < m_keyframeTimes.size(); ++k) {
+    const Eigen::Isometry3d& T = m_mapper->slam()->poses()[k];
+    const Eigen::Quaterniond q(T.linear());
+    out << std::fixed << std::setprecision(6) << m_keyframeTimes[k] << std::setprecision(9);
+    for (const double x : {T.translation().x(), T.translation().y(), T.translation().z(), q.x(),
+                           q.y(), q.z(), q.w()})
+      out << ' ' << x;
+    out << '\n';
+  }
+  return out.str();
 }
 
 void MapBuilder::noteAbstraction(const LabeledScan& scan, const CPose3D& T_map_robot) {

@@ -2,13 +2,15 @@
 #include <labeled_cloud/ScanStream.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_slam/Mapper.h>
 
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "PoseCorrection.h"
 #include "Signals.h"
 #include "Summary.h"
 
@@ -32,8 +34,8 @@ class MapBuilder {
    * \throw std::runtime_error naming the reference: it cannot be read, or has other classes */
   void correctPoses(const semantic_slam::SlamOptions& options, const std::filesystem::path& folder,
                     const std::filesystem::path& reference);
-  /** Keyframes' poses, if they are corrected. */
-  const PoseCorrection* poseCorrection() const { return m_correction.get(); }
+  /** Of all keyframes, if poses are corrected, in the format of the TUM data sets. */
+  std::string trajectory() const;
 
   /** Counts the observations that hold poses as used: those of the robot are from the rawlogs. */
   void countPoses() { m_summary.posesAreUsed = true; }
@@ -55,11 +57,14 @@ class MapBuilder {
 
   semantic_octree::InsertionReport insertIntoMap(const labeled_cloud::LabeledScan& scan,
                                                  const mrpt::poses::CPose3D& T_map_robot);
+  SlamSummary slamSummary() const;
 
   semantic_map::CSemanticOctoMap& m_map;
   semantic_octree::LeafFollower m_follower;
-  std::unique_ptr<PoseCorrection> m_correction;
-  semantic_map::ObservationClock m_clock;  ///< of scans whose poses are corrected
+  std::optional<semantic_slam::Mapper> m_mapper;  ///< if poses are corrected
+  semantic_map::ObservationClock m_clock;         ///< of its scans
+  double m_seconds = 0;                           ///< that passed, by the clock
+  std::vector<double> m_keyframeTimes;            ///< seconds
   OnScan m_onScan;
   std::unique_ptr<semantic_map::CSemanticOctoMap> m_plainMap;
   Summary m_summary;

@@ -212,7 +212,7 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
     throw std::runtime_error("nothing to map: no observation was inserted, " +
                              builder.summary().skippedText());
   outputs.finish();
-  if (cli.slam) strict_files::writeText(trajectoryFile, builder.poseCorrection()->trajectory());
+  if (cli.slam) strict_files::writeText(trajectoryFile, builder.trajectory());
   return builder.summary();
 }
 

@@ -56,6 +56,9 @@ const IncludeTable& includeTable() {
       {"synthetic_world", {"Eigen", "semantic_types", "strict_files"}},
       {"semantic_slam",
        {"Eigen", "map_correction", "semantic_octree", "semantic_types", "strict_files"}},
+      {"semantic_navigation",
+       {"Eigen", "mrpt", "colored_graph", "semantic_abstraction", "semantic_driving",
+        "semantic_octree", "semantic_planning", "semantic_slam", "semantic_types"}},
   };
   return table;
 }

@@ -36,7 +36,36 @@ double largestError(const DriveRecord& record, TPose2D DriveRow::*pose) {
   return largest;
 }
 
+/** Ten meters straight ahead, as odometry has them. */
+TPose2D tenMeters(double odometryNoise, double turnNoise, std::uint64_t seed) {
+  PoseOptions options;
+  options.odometryNoise = odometryNoise;
+  options.turnNoise = turnNoise;
+  SimulatedOdometry odometry({0, 0, 0}, options, seed);
+  for (int i = 0; i < 100; ++i) odometry.move({0.1, 0, 0});
+  return odometry.pose();
+}
+
 }  // namespace
+
+TEST(SimulatedOdometry, WithoutNoiseIsExact) {
+  const TPose2D pose = tenMeters(0, 0, 1);
+  EXPECT_NEAR(pose.x, 10, 1e-9);
+  EXPECT_EQ(pose.y, 0);
+  EXPECT_EQ(pose.phi, 0);
+}
+
+TEST(SimulatedOdometry, ErsByTheSquareRootOfTheWay) {
+  constexpr int kDrives = 2000;
+  double way = 0, turn = 0;
+  for (int seed = 0; seed < kDrives; ++seed) {
+    way += std::pow(tenMeters(0.1, 0, seed).x - 10, 2) / kDrives;
+    turn += std::pow(tenMeters(0, 3, seed).phi * 180 / M_PI, 2) / kDrives;
+  }
+  // After 10 m; the standard error of a standard deviation is 1 / sqrt(2 * kDrives) of it.
+  EXPECT_NEAR(std::sqrt(way), 0.1 * std::sqrt(10.0), 0.1 * std::sqrt(10.0) * 0.07);
+  EXPECT_NEAR(std::sqrt(turn), 3 * std::sqrt(10.0), 3 * std::sqrt(10.0) * 0.07);
+}
 
 TEST(NoisyPose, CorrectedBySlamLeadsToTheGoal) {
   const DriveRecord record = drive(noisyConfig());

@@ -7,6 +7,7 @@
 #include <strict_files/TextFile.h>
 #include <synthetic_world/Classes.h>
 
+#include <algorithm>
 #include <fstream>
 #include <stdexcept>
 
@@ -119,13 +120,24 @@ void SensorConfig::describe(OptionList& list) {
   camera.noise.describe(list);
 }
 
+semantic_slam::MapperOptions DriveConfig::mapping() const {
+  semantic_slam::MapperOptions mapping;
+  mapping.insertion = insertion;
+  mapping.localize = !pose.isExact() && pose.correct;
+  mapping.slam = slam;
+  mapping.slam.odometryShare = std::max(slam.odometryShare, pose.odometryNoise);
+  mapping.slam.odometryAngle = std::max(slam.odometryAngle, pose.turnNoise);
+  mapping.slam.registerAll = mapping.slam.level = true;
+  mapping.insertEvery = 3;  // it may wait for somebody to go away
+  mapping.scans = fs::temp_directory_path();
+  return mapping;
+}
+
 DriveConfig loadDriveConfig(const fs::path& file) {
   if (!fs::is_regular_file(file) || !std::ifstream(file))
     throw std::runtime_error(file.string() + ": cannot be read");
   try {
     DriveConfig config;
-    config.planner.ground.keepOff = true;
-    config.planner.shorten = true;
     strict_files::checkIniText(strict_files::readText(file));
     mrpt::config::CConfigFile ini(file.string());
     ini.discardSavingChanges();

@@ -1,16 +1,12 @@
 #pragma once
-#include <semantic_driving/DriveGuide.h>
-#include <semantic_driving/Focus.h>
+#include <semantic_navigation/Navigator.h>
 #include <semantic_octree/FilterParameters.h>
-#include <semantic_octree/InsertionOptions.h>
-#include <semantic_planning/planner/SemanticPlanner.h>
-#include <semantic_slam/SlamOptions.h>
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Lidar.h>
 
 #include <filesystem>
 
-#include "PoseOptions.h"
+#include "SimulatedOdometry.h"
 
 namespace simulated_drive {
 
@@ -28,7 +24,7 @@ struct SensorConfig {
 };
 
 /** Everything that the .ini file says. */
-struct DriveConfig {
+struct DriveConfig : semantic_navigation::NavigatorOptions {
   double voxelSize = 0.2;  ///< m
   std::filesystem::path
       halfLives;  ///< class table whose half-lives the map has; empty: it keeps its own
@@ -37,17 +33,11 @@ struct DriveConfig {
   SensorConfig sensors;
   PoseOptions pose;
   semantic_slam::SlamOptions slam;  ///< with noise
-  semantic_planning::PlannerOptions planner;
-  semantic_driving::DriveOptions drive;
-  semantic_driving::GuideOptions guide;
-  semantic_driving::ObstacleOptions obstacles;
-  semantic_driving::MoverOptions movers;
-  semantic_driving::FocusOptions focus;
-  bool compressedObstacles = false;  ///< the compressed tree's leaves are obstacles
-  double controlPeriod = 0.1;        ///< s
-  double mappingLatency = 0;         ///< s from a scan until the map has it
-  double timeLimit = 600;            ///< s of simulated time
-  std::filesystem::path reactive;
+  double controlPeriod = 0.1;       ///< s
+  double timeLimit = 600;           ///< s of simulated time
+
+  /** What is known of odometry, it is told: its noise, and that height and tilt are right. */
+  semantic_slam::MapperOptions mapping() const;
 };
 
 /** Reads a configuration; what is absent has its default. Files that it names are relative to it.

@@ -1,14 +1,14 @@
 #pragma once
+#include <map_folders/MapFolder.h>
 #include <synthetic_world/Scene.h>
 
 #include <functional>
-#include <future>
+#include <memory>
 
 #include "DriveRecord.h"
 #include "Events.h"
-#include "Localization.h"
-#include "Mapper.h"
 #include "SimulatedRobot.h"
+#include "SimulatedSensors.h"
 
 namespace simulated_drive {
 
@@ -29,10 +29,8 @@ class DriveObserver {
   virtual void onFinished(const DriveLoop&) {}
 };
 
-/** The closed loop, in simulated time: the world is seen, the map grows, plans change, the robot
- * drives. With a mapping latency a thread inserts each scan while the robot drives on by what was
- * known before it; a scan that comes meanwhile is not inserted. The same input makes the same
- * drive, however fast the machine is. */
+/** The closed loop, in simulated time: the world is seen, and a Navigator drives the robot. The
+ * same input makes the same drive, however fast the machine is. */
 class DriveLoop {
  public:
   /** \param world changes as the events say
@@ -51,66 +49,45 @@ class DriveLoop {
 
   double time() const { return m_time; }
   const DriveRecord& record() const { return m_record; }
-  /** Waits for the scan that is being inserted, as the next one does. */
-  const Mapper& mapper() const { return waitedFor(); }
-  semantic_octree::SemanticOcTree compressedMap() const { return waitedFor().compressed(); }
-  const semantic_driving::DriveGuide& guide() const { return *m_guide; }
-  const semantic_driving::DriveController& controller() const { return m_controller; }
+  /** With the map; waits for the scan that is being inserted. */
+  const semantic_slam::Mapper& mapper() const { return m_navigator.mapper(); }
+  semantic_octree::SemanticOcTree compressedMap() const;
+  const semantic_driving::DriveGuide& guide() const { return m_navigator.guide(); }
+  const semantic_driving::DriveController& controller() const { return m_navigator.controller(); }
   const mrpt::math::TPose2D& start() const { return m_start; }
   const mrpt::math::TPose2D& goal() const { return m_goal; }
   const DriveConfig& config() const { return m_config; }
   /** With the pose that the robot believes to have. */
-  const semantic_driving::DriveState& state() const { return m_state; }
+  const semantic_driving::DriveState& state() const { return m_navigator.state(); }
   /** The true pose. */
   Eigen::Isometry3d T_world_robot() const;
 
  private:
   void sense();
-  void focus();
-  void insert(const std::vector<Observation>& seen);
-  std::function<semantic_planning::StageTimes()> insertion(const std::vector<Observation>& seen);
-  bool isInserting() const { return m_inserting.valid(); }
-  void endInsertion();
-  Mapper& waitedFor() const;
-  void guide();
-  bool wantsFineObstacles();
-  semantic_driving::ObstaclePoints knownObstacles(double radius);
-  semantic_driving::ObstaclePoints obstacles();
-  void drive();
   void move(const semantic_driving::DriveCommand& command);
+  void updateRobot();
   void addRow();
   bool isOver();
-  void endAtGoal();
-  Eigen::Isometry3d T_level_robot() const;
-  Eigen::Isometry3d T_map_robot() const;
+  bool endAtGoal();
+  bool end(DriveEnd end, const std::string& reason);
   double groundZ() const;
-  void note(const std::string& stage, double milliseconds) {
-    m_record.times[stage].push_back(milliseconds);
-  }
+  void note(const std::string& stage, double milliseconds);
 
   DriveConfig m_config;
   synthetic_world::World& m_world;
   Events m_events;
   mrpt::math::TPose2D m_start, m_goal;
   SimulatedSensors m_sensors;
-  std::unique_ptr<Mapper> m_mapper;
-  std::unique_ptr<semantic_driving::DriveGuide> m_guide;
-  semantic_driving::DriveController m_controller;
-  semantic_driving::MoverTracker m_movers;
+  std::unique_ptr<semantic_octree::StoredMap> m_map;
+  semantic_slam::Mapper m_mapper;
+  semantic_navigation::Navigator m_navigator;
   SimulatedRobot m_robot;
-  Localization m_pose;
-  semantic_driving::DriveState m_state;
+  SimulatedOdometry m_odometry;
   synthetic_world::Footprint m_footprint;
   DriveRecord m_record;
   std::vector<DriveObserver*> m_observers;
   std::function<bool()> m_stop;
-  double m_time = 0, m_lookedAt = -1e9, m_fineUntil = -1e9;
-  bool m_guidesNext = false;                  ///< as soon as the map has what was seen
-  double m_insertedFrom = -1e9;               ///< when the last scan that the map has was taken
-  double m_insertingFrom = -1e9;              ///< and the one that is being inserted
-  semantic_driving::ObstaclePoints m_before;  ///< known without that one, and the robot's pose then
-  mrpt::math::TPose2D m_beforeAt;
-  std::future<semantic_planning::StageTimes> m_inserting;  ///< last: it uses the others
+  double m_time = 0, m_lookedAt = -1e9;
 };
 
 }  // namespace simulated_drive

@@ -1,6 +1,5 @@
 #pragma once
 #include <mrpt/obs/CObservation.h>
-#include <semantic_types/LabeledCloud.h>
 #include <synthetic_world/World.h>
 
 #include <optional>
@@ -10,9 +9,7 @@
 namespace simulated_drive {
 
 /** What one sensor saw, once. */
-struct Observation {
-  semantic_types::LabeledCloud cloud;  ///< sensor frame
-  Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
+struct Observation : semantic_slam::SensorScan {
   mrpt::obs::CObservation::Ptr original;  ///< for the rawlog; null if not asked for
 };
 

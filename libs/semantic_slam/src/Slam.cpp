@@ -274,22 +274,4 @@ bool Slam::closeLoop() {
   return true;
 }
 
-std::vector<semantic_octree::KeyframePose> posesOf(const Slam& slam) {
-  std::vector<semantic_octree::KeyframePose> poses;
-  for (const Eigen::Isometry3d& T : slam.poses()) poses.push_back({poses.size(), T});
-  return poses;
-}
-
-std::vector<semantic_octree::KeyframePose> posesOff(const Slam& slam,
-                                                    const semantic_octree::KeyframeMap& map,
-                                                    double meters) {
-  constexpr double kSeenFrom = 10;  // m
-  std::vector<semantic_octree::KeyframePose> off;
-  for (const auto& pose : posesOf(slam)) {
-    const Vector6 by = vectorOf(map.pose(pose.keyframe).inverse() * pose.T_map_keyframe);
-    if (by.head<3>().norm() + kSeenFrom * by.tail<3>().norm() > meters) off.push_back(pose);
-  }
-  return off;
-}
-
 }  // namespace semantic_slam

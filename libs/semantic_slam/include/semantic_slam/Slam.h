@@ -1,5 +1,4 @@
 #pragma once
-#include <map_correction/KeyframeMap.h>
 #include <semantic_slam/PoseGraph.h>
 #include <semantic_slam/Reference.h>
 #include <semantic_slam/Registration.h>
@@ -108,14 +107,5 @@ class Slam {
    * had it. */
   Eigen::Isometry3d m_T_keyframe_last, m_T_odometry_last;
 };
-
-/** All keyframes' poses, for KeyframeMap::move(). */
-std::vector<semantic_octree::KeyframePose> posesOf(const Slam& slam);
-
-/** Of the keyframes that a map has elsewhere by so much that what is 10 m away is off by more.
- * \param meters 0: of all that are elsewhere */
-std::vector<semantic_octree::KeyframePose> posesOff(const Slam& slam,
-                                                    const semantic_octree::KeyframeMap& map,
-                                                    double meters);
 
 }  // namespace semantic_slam

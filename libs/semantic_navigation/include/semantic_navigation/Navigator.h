@@ -1,0 +1,142 @@
+#pragma once
+#include <semantic_abstraction/Abstraction.h>
+#include <semantic_driving/DriveGuide.h>
+#include <semantic_driving/Focus.h>
+#include <semantic_slam/Mapper.h>
+
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace semantic_navigation {
+
+/** How a robot plans and drives. */
+struct NavigatorOptions {
+  semantic_planning::PlannerOptions planner;  ///< keepOff and shorten are on
+  semantic_driving::DriveOptions drive;
+  semantic_driving::GuideOptions guide;
+  semantic_driving::ObstacleOptions obstacles;
+  semantic_driving::MoverOptions movers;
+  semantic_driving::FocusOptions focus;
+  bool compressedObstacles = false;  ///< the compressed tree's leaves are obstacles
+  /** Seconds from a scan until the map has it. Above 0 a thread inserts it meanwhile, and is waited
+   * for if it takes longer; the robot drives on by what was known before. */
+  double mappingLatency = 0;
+  std::filesystem::path reactive;   ///< MRPT's navigator (.ini), see config/reactive
+  std::filesystem::path logFolder;  ///< of that navigator's logs; empty: none
+
+  NavigatorOptions() { planner.ground.keepOff = planner.shorten = true; }
+};
+
+/** Where odometry has the robot, and how it moves. */
+struct RobotState {
+  semantic_driving::DriveState drive;  ///< pose in the frame of odometry
+  /** The same pose with the height of the ground below the robot, and its tilt. */
+  Eigen::Isometry3d T_odometry_robot = Eigen::Isometry3d::Identity();
+};
+
+/** Drives a robot to goals over a map that grows meanwhile.
+ *
+ *     Mapper mapper(map, mapperOptions);
+ *     Navigator navigator(mapper, order, options);
+ *     navigator.setGoal(goal);
+ *     while (navigator.isDriving()) {  // ten times a second
+ *       navigator.update(robot);
+ *       if (scanCame()) navigator.see(scans, seconds);
+ *       sendToMotors(navigator.step(seconds));
+ *     }
+ *
+ * What comes out depends on what goes in alone, not on how long threads take. Calls come from one
+ * thread. Seconds are of one clock that goes forward; MRPT's navigator takes mrpt::Clock. */
+class Navigator {
+ public:
+  enum class Status {
+    Idle,     ///< no goal was set
+    Driving,  ///< or waiting, as long as there is hope
+    Arrived,
+    Nearest,     ///< at the pose nearest to the goal that fits (GuideOptions::driveToNearest)
+    Unreachable  ///< for good, see reason()
+  };
+  /** Is told how long a stage took, in milliseconds of its thread's processor time: localize,
+   * focus, insert and update of a scan, movers, replan, obstacles, react. */
+  using OnStage = std::function<void(const std::string& stage, double milliseconds)>;
+
+  /** The map keeps from now on what tells the order's ranks apart (abstractionFor()).
+   * \param mapper must outlive this; nobody else inserts \param order over the map's class ids
+   * \throw std::exception bad options, or what MRPT does not like about its file. */
+  Navigator(semantic_slam::Mapper& mapper, const colored_graph::ClassOrder& order,
+            const NavigatorOptions& options);
+  /** In the thread of whoever calls. */
+  void onStage(OnStage onStage) { m_onStage = std::move(onStage); }
+
+  /** Map frame. A robot that drives comes to rest first. */
+  void setGoal(const mrpt::math::TPose2D& goal);
+  /** Where the robot is now. */
+  void update(const RobotState& robot);
+  /** What the sensors saw there. A scan that comes while another one is inserted is for the movers
+   * alone. To be called also if nothing was seen for as long: the guide looks all the same. */
+  void see(const std::vector<semantic_slam::SensorScan>& seen, double seconds);
+  /** What the robot is to do now. The map gets what is due, the guide looks, if the sensors did. */
+  semantic_driving::DriveCommand step(double seconds);
+  /** Waits until the map has what was seen. */
+  void finish();
+
+  Status status() const;
+  bool isDriving() const { return status() == Status::Driving; }
+  bool hasArrived() const { return status() == Status::Arrived; }
+  /** Why it is not at the goal, and will not be. */
+  std::string reason() const;
+  /** Where the robot is in the map. */
+  const semantic_driving::DriveState& state() const { return m_state; }
+  /** When the newest scan that the map has was taken, seconds; before all: far in the past. */
+  double mappedAt() const { return m_mappedAt; }
+  /** Of the compressed tree, as the planner knows it. Waits as mapper(). */
+  std::size_t numCompressedLeaves();
+
+  /** Waits for the scan that is being inserted. */
+  const semantic_slam::Mapper& mapper() const { return waitedFor(); }
+  /** The goal has to be set. */
+  const semantic_driving::DriveGuide& guide() const { return *m_guide; }
+  const semantic_driving::DriveController& controller() const { return m_controller; }
+
+ private:
+  bool isInserting() const { return m_inserting.valid(); }
+  semantic_slam::Mapper& waitedFor() const;
+  void insert(const std::vector<semantic_slam::SensorScan>& seen, double seconds);
+  semantic_planning::StageTimes fill(const std::vector<semantic_slam::SensorScan>& seen,
+                                     const semantic_slam::Mapper::Place& place, double seconds);
+  semantic_slam::Mapper::Place locate(const std::vector<semantic_slam::SensorScan>& seen);
+  void focus();
+  void correctState();
+  bool mayGuide() const;
+  void guide(double seconds);
+  bool wantsFineObstacles(double seconds);
+  semantic_driving::ObstaclePoints knownObstacles(double radius, double seconds);
+  semantic_driving::ObstaclePoints obstacles(double seconds);
+  void note(const std::string& stage, double milliseconds) const;
+
+  NavigatorOptions m_options;
+  semantic_slam::Mapper& m_mapper;
+  semantic_planning::SemanticPlanner m_planner;
+  semantic_octree::LeafFollower m_leaves;
+  std::optional<semantic_driving::DriveGuide> m_guide;
+  semantic_driving::DriveController m_controller;
+  semantic_driving::MoverTracker m_movers;
+  OnStage m_onStage;
+  RobotState m_robot;
+  semantic_driving::DriveState m_state;       ///< map frame
+  double m_z = 0;                             ///< of the ground below it, map frame
+  bool m_stands = false;                      ///< the map has what the robot stands on
+  bool m_guidesNext = false;                  ///< as soon as the map has what was seen
+  bool m_restsFirst = false;                  ///< before it looks for a way to a new goal
+  double m_fineUntil, m_mappedAt;             ///< seconds
+  double m_insertingFrom = 0;                 ///< when the scan that is being inserted was taken
+  semantic_driving::ObstaclePoints m_before;  ///< known without that one, and the robot's pose then
+  mrpt::math::TPose2D m_beforeAt;
+  std::future<semantic_planning::StageTimes> m_inserting;  ///< last: it uses the others
+};
+
+}  // namespace semantic_navigation

@@ -1,0 +1,248 @@
+#include <semantic_abstraction/Abstraction.h>
+#include <semantic_driving/CompressedObstacles.h>
+#include <semantic_navigation/Navigator.h>
+
+#include <cmath>
+#include <utility>
+
+#include "ThreadClock.h"
+
+namespace semantic_navigation {
+
+using namespace semantic_driving;
+using mrpt::math::TPose2D;
+using semantic_octree::Abstraction;
+using semantic_planning::SemanticPlanner;
+using semantic_planning::StageTimes;
+using semantic_slam::Mapper;
+using semantic_slam::SensorScan;
+
+namespace {
+
+constexpr double kSameTime = 1e-6;  // s
+constexpr double kNever = -1e9;     // s
+
+ReactiveNavigator::Options reactiveOf(const NavigatorOptions& options) {
+  ReactiveNavigator::Options reactive;
+  reactive.config = options.reactive;
+  reactive.footprint = options.planner.vehicle.footprint;
+  reactive.margin = options.drive.margin;
+  reactive.maxSpeed = options.drive.maxSpeed;
+  reactive.turningRadius = options.drive.turningRadius;
+  reactive.logFolder = options.logFolder;
+  return reactive;
+}
+
+SemanticPlanner plannerOn(semantic_octree::SemanticOcTree& map,
+                          const colored_graph::ClassOrder& order, const NavigatorOptions& options) {
+  setAbstraction(map, abstractionFor(order, options.focus));
+  return SemanticPlanner(map, order, options.planner);
+}
+
+/** What a robot stands on where it begins: ground below its footprint and around it, as far as the
+ * planner wants to know. Sensors do not see that near: it has the class of what they see on both
+ * sides (GroundOptions::unknownGap), if that is one, otherwise whatever class.
+ * \return points in the robot's frame, in the voxels that hold the ground */
+semantic_types::LabeledCloud groundBelow(const semantic_planning::SemanticPlanner& planner,
+                                         const Eigen::Isometry3d& T_map_robot) {
+  constexpr double kBelow = 1e-3;  // m
+  const semantic_planning::VehicleOptions& vehicle = planner.options().vehicle;
+  const semantic_planning::Ground& ground = planner.ground();
+  const double room = vehicle.clearance + ground.voxelSize(), step = ground.voxelSize() / 2;
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : vehicle.footprint) box.extend(corner);
+  semantic_types::LabeledCloud cloud;
+  for (double x = box.min().x() - room; x < box.max().x() + room; x += step)
+    for (double y = box.min().y() - room; y < box.max().y() + room; y += step) {
+      const Eigen::Vector3d below(x, y, -kBelow), p = T_map_robot * below;
+      const auto* known =
+          ground.near(ground.columnAt(p.x(), p.y()), ground.keyOf(p.z()), ground.step());
+      cloud.points.push_back(below.cast<float>());
+      cloud.classes.push_back(known ? known->classId : semantic_types::kNoClass);
+    }
+  return cloud;
+}
+
+}  // namespace
+
+Navigator::Navigator(Mapper& mapper, const colored_graph::ClassOrder& order,
+                     const NavigatorOptions& options)
+    : m_options(options),
+      m_mapper(mapper),
+      m_planner(plannerOn(mapper.map(), order, options)),
+      m_leaves(mapper.map()),
+      m_controller(options.drive, reactiveOf(options)),
+      m_movers(options.movers, mapper.map().classes()),
+      m_fineUntil(kNever),
+      m_mappedAt(kNever) {
+  m_mapper.setMovers(m_movers.isMover());
+  m_controller.setClassSpeeds(options.drive.classSpeeds(order));
+}
+
+void Navigator::setGoal(const TPose2D& goal) {
+  m_guide.emplace(m_options.guide, m_planner, goal);
+  m_controller.setPath({});
+  m_restsFirst = m_guidesNext = true;
+}
+
+void Navigator::update(const RobotState& robot) {
+  m_robot = robot;
+  correctState();
+}
+
+/** Without corrections it is where odometry has it, to the last bit. */
+void Navigator::correctState() {
+  m_state = m_robot.drive;
+  m_z = m_robot.T_odometry_robot.translation().z();
+  if (!m_mapper.slam()) return;
+  const TPose2D& p = m_robot.drive.pose;
+  const Eigen::Isometry3d T = m_mapper.T_map_odometry() * Eigen::Translation3d(p.x, p.y, m_z) *
+                              Eigen::AngleAxisd(p.phi, Eigen::Vector3d::UnitZ());
+  m_state.pose = {T.translation().x(), T.translation().y(), std::atan2(T(1, 0), T(0, 0))};
+  m_z = T.translation().z();
+}
+
+void Navigator::see(const std::vector<SensorScan>& seen, double seconds) {
+  m_guidesNext = true;
+  if (seen.empty()) return;
+  if (!isInserting()) insert(seen, seconds);
+  ThreadClock clock;
+  const Eigen::Isometry3d T_map_robot = m_mapper.T_map_odometry() * m_robot.T_odometry_robot;
+  for (const SensorScan& scan : seen) m_movers.see(scan.cloud, T_map_robot * scan.T_robot_sensor);
+  m_movers.update(seconds);
+  note("movers", clock.lap());
+}
+
+/** Begins to. Where the robot is when it sees that is told now, the map may be filled later. */
+void Navigator::insert(const std::vector<SensorScan>& seen, double seconds) {
+  m_mapper.age(seconds);
+  focus();
+  m_insertingFrom = seconds;
+  auto fillMap = [this, seen, at = locate(seen), seconds] { return fill(seen, at, seconds); };
+  if (m_options.mappingLatency == 0) {
+    m_inserting = std::async(std::launch::deferred, std::move(fillMap));
+    return finish();
+  }
+  const double drivenMeanwhile = m_options.drive.maxSpeed * m_options.mappingLatency;
+  m_before = knownObstacles(m_options.obstacles.radius + drivenMeanwhile, seconds);
+  m_beforeAt = m_state.pose;
+  m_inserting = std::async(std::launch::async, std::move(fillMap));
+}
+
+Mapper::Place Navigator::locate(const std::vector<SensorScan>& seen) {
+  ThreadClock clock;
+  const Mapper::Place at = m_mapper.locate(seen, m_robot.T_odometry_robot);
+  if (!at.added) return at;
+  correctState();
+  note("localize", clock.lap());
+  return at;
+}
+
+StageTimes Navigator::fill(const std::vector<SensorScan>& seen, const Mapper::Place& at,
+                           double seconds) {
+  ThreadClock clock;
+  m_mapper.insert(seen, at, seconds);
+  StageTimes times{{"insert", clock.lap()}};
+  m_planner.update();
+  if (!std::exchange(m_stands, true)) {
+    m_mapper.insertBelow(groundBelow(m_planner, at.T_map_robot), at);
+    m_planner.update();
+  }
+  times.emplace_back("update", clock.lap());
+  return times;
+}
+
+void Navigator::finish() {
+  if (!isInserting()) return;
+  const StageTimes times = m_inserting.get();
+  m_mappedAt = m_insertingFrom;
+  for (const auto& [stage, milliseconds] : times) note(stage, milliseconds);
+}
+
+Mapper& Navigator::waitedFor() const {
+  if (isInserting()) m_inserting.wait();
+  return m_mapper;
+}
+
+void Navigator::focus() {
+  if (!m_options.focus.isOn()) return;
+  ThreadClock clock;
+  const PathTracker& tracker = m_controller.tracker();
+  const Eigen::Vector3d robot(m_state.pose.x, m_state.pose.y, m_z);
+  Abstraction(m_mapper.map())
+      .setRegions(regionsAhead(tracker.path(), tracker.progress(), robot, m_options.focus));
+  note("focus", clock.lap());
+}
+
+std::size_t Navigator::numCompressedLeaves() {
+  waitedFor();
+  return m_leaves.skipLeaves();
+}
+
+DriveCommand Navigator::step(double seconds) {
+  if (isInserting() && seconds - m_insertingFrom >= m_options.mappingLatency - kSameTime) finish();
+  if (m_guidesNext && mayGuide()) guide(seconds);
+  ThreadClock clock;
+  const ObstaclePoints around = obstacles(seconds);
+  note("obstacles", clock.lap());
+  const DriveCommand command =
+      m_controller.step(m_state, around, seconds - m_mappedAt, seconds, m_movers.at(seconds));
+  note("react", clock.lap());
+  return command;
+}
+
+bool Navigator::mayGuide() const {
+  const bool rests = !m_restsFirst || std::abs(m_state.speed) < DriveOptions::kAtRest;
+  return m_guide && !isInserting() && rests;
+}
+
+void Navigator::guide(double seconds) {
+  ThreadClock clock;
+  m_guidesNext = m_restsFirst = false;
+  m_guide->update(m_state, m_z, m_controller, seconds);
+  note("replan", clock.lap());
+}
+
+/** Cells of the compressed tree are in the way as a whole. Where the robot stands before them the
+ * voxels of the full tree count, for as long as it takes to get by. */
+bool Navigator::wantsFineObstacles(double seconds) {
+  constexpr double kFor = 5;  // s
+  if (m_controller.stoppedFor(seconds) >= m_options.guide.patience) m_fineUntil = seconds + kFor;
+  return !m_options.compressedObstacles || seconds < m_fineUntil;
+}
+
+/** What of the map is in the way, in the robot's frame. */
+ObstaclePoints Navigator::knownObstacles(double radius, double seconds) {
+  ObstacleOptions options = m_guide ? m_guide->obstacles(m_options.obstacles) : m_options.obstacles;
+  options.radius = radius;
+  if (wantsFineObstacles(seconds)) return senseObstacles(m_planner, m_state.pose, m_z, options);
+  return senseCompressedObstacles(m_planner, Abstraction(m_mapper.map()), m_state.pose, m_z,
+                                  options);
+}
+
+/** The same; while a scan is inserted, as it was known before. */
+ObstaclePoints Navigator::obstacles(double seconds) {
+  const double radius = m_options.obstacles.radius;
+  return isInserting() ? seenFrom(m_before, m_beforeAt, m_state.pose, radius)
+                       : knownObstacles(radius, seconds);
+}
+
+Navigator::Status Navigator::status() const {
+  if (!m_guide) return Status::Idle;
+  if (m_guide->arrived(m_state, m_controller))
+    return m_guide->refusal() ? Status::Nearest : Status::Arrived;
+  const bool stands = std::abs(m_state.speed) < DriveOptions::kAtRest;
+  return m_guide->gaveUp() && stands ? Status::Unreachable : Status::Driving;
+}
+
+std::string Navigator::reason() const {
+  const Status now = status();
+  if (now == Status::Nearest) return m_guide->refusal()->reason;
+  return now == Status::Unreachable ? m_guide->reason() : std::string();
+}
+
+void Navigator::note(const std::string& stage, double milliseconds) const {
+  if (m_onStage) m_onStage(stage, milliseconds);
+}
+
+}  // namespace semantic_navigation

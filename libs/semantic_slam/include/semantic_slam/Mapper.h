@@ -1,0 +1,114 @@
+#pragma once
+#include <map_correction/KeyframeMap.h>
+#include <semantic_slam/Slam.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace semantic_slam {
+
+/** What one sensor saw, once. */
+struct SensorScan {
+  LabeledCloud cloud;  ///< sensor frame, meters
+  Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
+};
+
+/** What a Mapper does with scans. */
+struct MapperOptions {
+  semantic_octree::InsertionOptions insertion;
+  /** Scans are registered to each other, loops are closed, and the map follows. Without, odometry
+   * is believed. */
+  bool localize = false;
+  SlamOptions slam;
+  /** With `localize`: of the scans that begin no keyframe each n-th is inserted; 1: all. With more,
+   * a robot that waits does not become ever surer of what may go away. */
+  int insertEvery = 1;
+  /** With `localize`: a folder for the scans that a closed loop may move; empty: in memory. */
+  std::filesystem::path scans;
+};
+
+/** Keeps a robot's map and where the robot is in it. Scans are registered to keyframes that do not
+ * change, not to the map that is made of them: what a pose is wrong by does not come back as
+ * evidence for it. It starts no thread. */
+class Mapper {
+ public:
+  /** With `localize`, an empty map must be changed by the mapper alone (but for its abstraction),
+   * and follows when poses move; one with content is not moved, and poses are in its frame.
+   * \param map must outlive the mapper \param reference another map in whose frame poses are to
+   * be, see Slam; not needed afterwards
+   * \throw std::invalid_argument bad options \throw std::runtime_error as KeyframeMap. */
+  Mapper(semantic_octree::SemanticOcTree& map, const MapperOptions& options,
+         const semantic_octree::SemanticOcTree* reference = nullptr);
+
+  /** \param isMover by class id: its points are no evidence of where the robot is. */
+  void setMovers(std::vector<bool> isMover) { m_isMover = std::move(isMover); }
+
+  /** Where a scan was taken. */
+  struct Place {
+    Eigen::Isometry3d T_map_robot;
+    std::optional<Slam::Added> added;  ///< to the keyframes, if it localizes
+  };
+  /** Scans of sensors, seen at a time, that are in the map now. */
+  struct Inserted {
+    Place place;
+    std::vector<semantic_octree::InsertionReport> scans;  ///< none: left out (`insertEvery`)
+  };
+
+  /** locate() and insert(), see there. */
+  Inserted insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
+                  const Eigen::Isometry3d& T_odometry_robot, double seconds) {
+    const std::vector<SensorScan> seen = {{cloud, T_robot_sensor}};
+    return insert(seen, locate(seen, T_odometry_robot), seconds);
+  }
+  /** Finds where scans were taken, and closes loops. T_map_odometry() knows at once, the map with
+   * insert(), which has to follow, before the next locate().
+   * \param T_odometry_robot of the robot's frame when they were taken; with SlamOptions::level its
+   * height and tilt are right */
+  Place locate(const std::vector<SensorScan>& seen, const Eigen::Isometry3d& T_odometry_robot);
+  /** Inserts what was seen at once, or leaves it out; moves keyframes, if a loop was closed. The
+   * map ages by the time since the last scan. Another thread may do it, as long as none reads the
+   * map.
+   * \param seconds when they were taken, of any clock \throw std::exception as
+   * SemanticOcTree::insert() */
+  Inserted insert(const std::vector<SensorScan>& seen, const Place& place, double seconds);
+  /** Adds what the robot stands on, and its sensors do not see.
+   * \param points in the robot's frame; nothing is carved \param place of the last insert() */
+  void insertBelow(const LabeledCloud& points, const Place& place);
+  /** The map ages until then, see SemanticOcTree::age(). */
+  void age(double seconds);
+  /** Moves keyframes that are off by less than it is worth on the way: the map is then that of
+   * slam()'s poses, to the last bit. */
+  void finish();
+
+  /** ROS's transform from "map" to "odom": identity, and with `localize` what scans correct. */
+  const Eigen::Isometry3d& T_map_odometry() const { return m_T_map_odometry; }
+  /** Null without `localize`. */
+  const Slam* slam() const { return m_slam ? &*m_slam : nullptr; }
+  semantic_octree::SemanticOcTree& map() { return m_map; }
+  const semantic_octree::SemanticOcTree& map() const { return m_map; }
+
+ private:
+  Slam::Added addToSlam(const std::vector<SensorScan>& seen,
+                        const Eigen::Isometry3d& T_odometry_robot);
+  LabeledCloud evidenceOf(const std::vector<SensorScan>& seen) const;
+  bool isLeftOut(const Place& place);
+  semantic_octree::InsertionReport insertAt(const Place& place, const LabeledCloud& cloud,
+                                            const Eigen::Isometry3d& T_robot_cloud,
+                                            const semantic_octree::InsertionOptions& options,
+                                            double secondsSince);
+  void moveKeyframes(double meters);
+  double secondsUntil(double seconds) const;
+
+  semantic_octree::SemanticOcTree& m_map;
+  MapperOptions m_options;
+  std::vector<bool> m_isMover;
+  std::optional<Slam> m_slam;
+  std::unique_ptr<semantic_octree::KeyframeMap> m_keyframes;  ///< if the map may be corrected
+  Eigen::Isometry3d m_T_map_odometry = Eigen::Isometry3d::Identity();
+  int m_leftOut = 0;               ///< scans since the last that was inserted
+  std::optional<double> m_agedAt;  ///< seconds
+};
+
+}  // namespace semantic_slam

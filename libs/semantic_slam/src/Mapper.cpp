@@ -1,0 +1,116 @@
+#include <semantic_slam/Mapper.h>
+
+#include <algorithm>
+
+namespace semantic_slam {
+
+using semantic_octree::InsertionReport;
+using semantic_octree::KeyframeMap;
+using semantic_octree::SemanticOcTree;
+
+Mapper::Mapper(SemanticOcTree& map, const MapperOptions& options, const SemanticOcTree* reference)
+    : m_map(map), m_options(options) {
+  m_options.insertion.validate();
+  if (!m_options.localize) return;
+  m_slam.emplace(m_options.slam);
+  if (!map.empty() && !reference) reference = &map;
+  if (reference) m_slam->setReference(*reference);
+  if (!map.empty()) return;
+  m_keyframes = m_options.scans.empty() ? std::make_unique<KeyframeMap>(map)
+                                        : std::make_unique<KeyframeMap>(map, m_options.scans);
+}
+
+auto Mapper::locate(const std::vector<SensorScan>& seen, const Eigen::Isometry3d& T_odometry_robot)
+    -> Place {
+  if (!m_slam) return {T_odometry_robot, {}};
+  const Slam::Added added = addToSlam(seen, T_odometry_robot);
+  const Eigen::Isometry3d T_map_robot = m_slam->poses().back() * added.T_keyframe_robot;
+  m_T_map_odometry = T_map_robot * T_odometry_robot.inverse();
+  return {T_map_robot, added};
+}
+
+Slam::Added Mapper::addToSlam(const std::vector<SensorScan>& seen,
+                              const Eigen::Isometry3d& T_odometry_robot) {
+  if (seen.size() == 1 && m_isMover.empty())
+    return m_slam->add(seen[0].cloud, seen[0].T_robot_sensor, T_odometry_robot);
+  return m_slam->add(evidenceOf(seen), Eigen::Isometry3d::Identity(), T_odometry_robot);
+}
+
+/** What does not move, frame of the robot. */
+LabeledCloud Mapper::evidenceOf(const std::vector<SensorScan>& seen) const {
+  LabeledCloud cloud;
+  for (const SensorScan& scan : seen)
+    for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
+      const auto id = scan.cloud.classes.empty() ? semantic_types::kNoClass : scan.cloud.classes[i];
+      if (id < m_isMover.size() && m_isMover[id]) continue;
+      cloud.points.push_back(
+          (scan.T_robot_sensor * scan.cloud.points[i].cast<double>()).cast<float>());
+      cloud.classes.push_back(id);
+    }
+  return cloud;
+}
+
+bool Mapper::isLeftOut(const Place& place) {
+  if (!place.added || place.added->isNew || ++m_leftOut >= m_options.insertEvery) m_leftOut = 0;
+  return m_leftOut > 0;
+}
+
+auto Mapper::insert(const std::vector<SensorScan>& seen, const Place& place, double seconds)
+    -> Inserted {
+  constexpr double kOff = 0.25;  // voxels: keyframes that are off by more are moved
+  Inserted inserted{place, {}};
+  if (m_keyframes && place.added->isNew) m_keyframes->begin(m_slam->poses().back());
+  if (!isLeftOut(place))
+    for (const SensorScan& scan : seen) {
+      inserted.scans.push_back(insertAt(place, scan.cloud, scan.T_robot_sensor, m_options.insertion,
+                                        secondsUntil(seconds)));
+      m_agedAt = std::max(seconds, m_agedAt.value_or(seconds));
+    }
+  if (m_keyframes && place.added->posesMoved) moveKeyframes(kOff * m_map.getResolution());
+  return inserted;
+}
+
+InsertionReport Mapper::insertAt(const Place& place, const LabeledCloud& cloud,
+                                 const Eigen::Isometry3d& T_robot_cloud,
+                                 const semantic_octree::InsertionOptions& options,
+                                 double secondsSince) {
+  if (!place.added)
+    return m_map.insert(cloud, place.T_map_robot * T_robot_cloud, options, secondsSince);
+  const Eigen::Isometry3d T_keyframe_cloud = place.added->T_keyframe_robot * T_robot_cloud;
+  if (m_keyframes) return m_keyframes->insert(cloud, T_keyframe_cloud, options, secondsSince);
+  return m_map.insert(cloud, m_slam->poses().back() * T_keyframe_cloud, options, secondsSince);
+}
+
+void Mapper::insertBelow(const LabeledCloud& points, const Place& place) {
+  semantic_octree::InsertionOptions noRays;
+  noRays.carvingMargin = 1e3;
+  insertAt(place, points, Eigen::Isometry3d::Identity(), noRays, 0);
+}
+
+double Mapper::secondsUntil(double seconds) const {
+  return m_agedAt ? std::max(0.0, seconds - *m_agedAt) : 0;
+}
+
+void Mapper::age(double seconds) {
+  m_map.age(secondsUntil(seconds));
+  m_agedAt = std::max(seconds, m_agedAt.value_or(seconds));
+}
+
+void Mapper::finish() {
+  if (m_keyframes) moveKeyframes(-1);
+}
+
+/** Those that are elsewhere by so much that what is 10 m away is off by more; below 0: all. */
+void Mapper::moveKeyframes(double meters) {
+  constexpr double kSeenFrom = 10;  // m
+  std::vector<semantic_octree::KeyframePose> off;
+  for (std::size_t k = 0; k < m_slam->poses().size(); ++k) {
+    const Eigen::Isometry3d& T_map_keyframe = m_slam->poses()[k];
+    const Vector6 by = vectorOf(m_keyframes->pose(k).inverse() * T_map_keyframe);
+    if (by.head<3>().norm() + kSeenFrom * by.tail<3>().norm() > meters)
+      off.push_back({k, T_map_keyframe});
+  }
+  m_keyframes->move(off);
+}
+
+}  // namespace semantic_slam

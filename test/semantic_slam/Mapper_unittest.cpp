@@ -1,0 +1,228 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+#include <semantic_slam/Mapper.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "Recordings.h"
+
+using namespace recordings;
+using semantic_octree::SemanticOcTree;
+using semantic_slam::Mapper;
+using semantic_slam::MapperOptions;
+using semantic_slam::SensorScan;
+
+namespace {
+
+constexpr semantic_types::ClassId kWall = 1, kCar = 2;
+
+semantic_types::ClassTable wallsAndCars() {
+  semantic_types::ClassTable table;
+  table.add("wall", {200, 100, 60});
+  table.add("car", {90, 90, 100});
+  table.setHalfLife(kCar, 3);
+  return table;
+}
+
+Eigen::Isometry3d planar(double x, double y, double heading) {
+  return Eigen::Translation3d(x, y, 0) * Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
+}
+
+/** What is seen of a yard of 12 m x 10 m with walls, frame of the robot. \param carAt a row of cars
+ * ahead of the robot, m; 0: none */
+LabeledCloud yardFrom(const Eigen::Isometry3d& T_yard_robot, double carAt = 0) {
+  LabeledCloud cloud;
+  const auto add = [&](double x, double y, double z, semantic_types::ClassId id) {
+    cloud.points.push_back((T_yard_robot.inverse() * Eigen::Vector3d(x, y, z)).cast<float>());
+    cloud.classes.push_back(id);
+  };
+  for (double z = 0.1; z < 2; z += 0.2) {
+    for (double x = -6; x < 6; x += 0.1)
+      for (const double y : {-5., 5.}) add(x, y, z, kWall);
+    for (double y = -5; y < 5; y += 0.1)
+      for (const double x : {-6., 6.}) add(x, y, z, kWall);
+    for (double y = -3; carAt > 0 && y < 3; y += 0.1)
+      add(T_yard_robot.translation().x() + carAt, y, z, kCar);
+  }
+  return cloud;
+}
+
+/** A way through the yard, and odometry with noise of it; both begin at its first pose. */
+struct Way {
+  std::vector<Eigen::Isometry3d> truth, odometry;
+
+  Way(int steps, const Eigen::Isometry3d& T_step, double noise, unsigned seed,
+      const Eigen::Isometry3d& begin = planar(-1.5, 0, 0))
+      : truth{begin}, odometry{begin} {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < steps; ++i) {
+      truth.push_back(truth.back() * T_step);
+      odometry.push_back(odometry.back() * T_step *
+                         planar(noise * normal(random), 0, noise / 5 * normal(random)));
+    }
+  }
+  double errorOf(const Eigen::Isometry3d& T_map_odometry, std::size_t i) const {
+    return ((T_map_odometry * odometry[i]).translation() - truth[i].translation()).norm();
+  }
+};
+
+MapperOptions localizing() {
+  MapperOptions options;
+  options.localize = options.slam.level = options.slam.registerAll = true;
+  options.slam.odometryShare = 0.1;
+  options.slam.odometryAngle = 3;
+  return options;
+}
+
+/** Three meters ahead, with scans each half a meter. \return the error at the end */
+double errorInYard(Mapper& mapper, const Way& way, double carAt = 0) {
+  for (std::size_t i = 0; i < way.truth.size(); ++i)
+    mapper.insert(yardFrom(way.truth[i], carAt), Eigen::Isometry3d::Identity(), way.odometry[i], 0);
+  return way.errorOf(mapper.T_map_odometry(), way.truth.size() - 1);
+}
+
+double errorInYard(const Way& way, double carAt = 0, std::vector<bool> isMover = {}) {
+  SemanticOcTree map(0.2, wallsAndCars());
+  Mapper mapper(map, localizing());
+  mapper.setMovers(std::move(isMover));
+  return errorInYard(mapper, way, carAt);
+}
+
+const Way kAhead(6, planar(0.5, 0, 0.05), 0.07, 1);
+
+}  // namespace
+
+RC_GTEST_PROP(Mapper, withoutLocalizationIsInsertionToTheLastBit, ()) {
+  SemanticOcTree direct(0.2, wallsAndCars()), map(0.2, wallsAndCars());
+  MapperOptions options;
+  options.insertion.maxRange = 7;
+  Mapper mapper(map, options);
+  double seconds = 100;
+  for (int i = *rc::gen::inRange(1, 6); i > 0; --i) {
+    const auto number = [] { return *rc::gen::inRange(-100, 100) * 0.013; };
+    const Eigen::Isometry3d T_map_robot = planar(number(), number(), number());
+    const Eigen::Isometry3d T_robot_sensor = planar(number(), 0, number());
+    const LabeledCloud cloud = yardFrom(T_map_robot * T_robot_sensor, 2);
+    const double since = *rc::gen::inRange(0, 40) * 0.1;
+    seconds += since;
+    direct.insert(cloud, T_map_robot * T_robot_sensor, options.insertion,
+                  direct.empty() ? 0 : since);
+    mapper.insert(cloud, T_robot_sensor, T_map_robot, seconds);
+    RC_ASSERT(mapper.T_map_odometry().matrix() == Eigen::Matrix4d::Identity());
+  }
+  RC_ASSERT(map == direct);
+  RC_ASSERT(map.clock() == direct.clock());
+}
+
+TEST(Mapper, agesByTheTimeBetweenScansHoweverOftenItIsTold) {
+  SemanticOcTree once(0.2, wallsAndCars()), often(0.2, wallsAndCars());
+  Mapper a(once, {}), b(often, {});
+  for (int i = 0; i < 4; ++i) {
+    const auto T = planar(0.3 * i, 0, 0);
+    a.insert(yardFrom(T, 2), Eigen::Isometry3d::Identity(), T, 1e9 + 0.7 * i);
+    b.age(1e9 + 0.7 * i - 0.3);
+    b.age(1e9 + 0.7 * i - 0.1);
+    b.insert(yardFrom(T, 2), Eigen::Isometry3d::Identity(), T, 1e9 + 0.7 * i);
+  }
+  EXPECT_NEAR(once.clock(), 2.1, 1e-6);
+  EXPECT_NEAR(often.clock(), 2.4, 1e-6) << "told first 0.3 s before the first scan";
+}
+
+TEST(Mapper, mapToOdometryIsNearlyTheIdentityWhereOdometryIsExact) {
+  EXPECT_LT(errorInYard(Way(6, planar(0.5, 0, 0.05), 0, 1)), 0.005);
+}
+
+TEST(Mapper, scansCorrectWhatOdometryMeasuredBadly) {
+  double odometry = 0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const Way way(6, planar(0.5, 0, 0.05), 0.07, seed);
+    EXPECT_LT(errorInYard(way), 0.03) << seed;
+    odometry += way.errorOf(Eigen::Isometry3d::Identity(), 6) / 10;
+  }
+  EXPECT_GT(odometry, 0.1);
+}
+
+TEST(Mapper, whatMovesIsNoEvidence) {
+  std::vector<bool> isMover(256, false);
+  const double still = errorInYard(kAhead, 0, isMover);
+  EXPECT_NE(still, errorInYard(kAhead, 3, isMover));
+  isMover[kCar] = true;
+  EXPECT_EQ(still, errorInYard(kAhead, 3, isMover));
+}
+
+TEST(Mapper, withNothingSeenOdometryIsBelieved) {
+  SemanticOcTree map(0.2, wallsAndCars());
+  Mapper mapper(map, localizing());
+  for (int i = 0; i < 10; ++i)
+    mapper.insert({}, Eigen::Isometry3d::Identity(), planar(0.5 * i, 0, 0), 0);
+  EXPECT_TRUE(mapper.T_map_odometry().isApprox(Eigen::Isometry3d::Identity(), 1e-9));
+  EXPECT_GT(mapper.slam()->numLost(), 0u);
+}
+
+TEST(Mapper, closesLoopsAndItsMapIsTheOneOfTheCorrectedPosesToTheLastBit) {
+  const Recording r = recordingOf("park", 1, lidarOf(0.1));
+  MapperOptions options;
+  options.localize = true;
+  options.insertion.maxRange = 20;
+  SemanticOcTree map(0.4, synthetic_world::classTable()), anew(0.4, synthetic_world::classTable());
+  Mapper mapper(map, options);
+  bool moved = false;
+  std::vector<Slam::Added> added;
+  for (std::size_t i = 0; i < r.clouds.size(); ++i) {
+    added.push_back(*mapper.insert(r.clouds[i], kRobotLidar, r.odometry[i], 0).place.added);
+    moved = moved || added.back().posesMoved;
+  }
+  EXPECT_TRUE(moved);
+  EXPECT_GT((mapper.T_map_odometry().translation()).norm(), 3);
+  const Eigen::Isometry3d T_map_robot = mapper.T_map_odometry() * r.odometry.back();
+  EXPECT_LT((T_map_robot.translation() - r.truth.back().translation()).norm(), 0.3);
+  mapper.finish();
+  for (std::size_t i = 0; i < r.clouds.size(); ++i)
+    anew.insert(
+        r.clouds[i],
+        mapper.slam()->poses()[added[i].keyframe] * (added[i].T_keyframe_robot * kRobotLidar),
+        options.insertion);
+  EXPECT_TRUE(map == anew);
+}
+
+TEST(Mapper, insertsEachNthScanWhereNoKeyframeBegins) {
+  SemanticOcTree map(0.2, wallsAndCars());
+  MapperOptions options = localizing();
+  options.insertEvery = 3;
+  Mapper mapper(map, options);
+  std::string inserted;
+  for (const double x : {0., 0., 0., 0., 0., 1.2, 1.2, 1.2, 1.2}) {
+    const auto T = planar(x, 0, 0);
+    const auto report = mapper.insert(yardFrom(T), Eigen::Isometry3d::Identity(), T, 0);
+    inserted += report.scans.empty() ? '.' : 'x';
+  }
+  EXPECT_EQ(inserted, "x..x.x..x");
+}
+
+TEST(Mapper, aMapWithContentIsTheFrameAndIsNotMoved) {
+  SemanticOcTree map(0.2, wallsAndCars());
+  const Eigen::Isometry3d T_map_yard = planar(0.4, -0.2, 0.03);
+  map.insert(yardFrom(planar(0, 0, 0)), T_map_yard);
+  Mapper mapper(map, localizing());
+  errorInYard(mapper, Way(6, planar(0.5, 0, 0.05), 0, 1));
+  EXPECT_TRUE(mapper.T_map_odometry().isApprox(T_map_yard, 0.05))
+      << mapper.T_map_odometry().matrix();
+}
+
+TEST(Mapper, whatTheRobotStandsOnCarvesNothing) {
+  for (const bool localize : {false, true}) {
+    SemanticOcTree map(0.2, wallsAndCars());
+    MapperOptions options = localizing();
+    options.localize = localize;
+    Mapper mapper(map, options);
+    const auto T = planar(1, 1, 0);
+    const auto inserted = mapper.insert(yardFrom(T), Eigen::Isometry3d::Identity(), T, 0);
+    mapper.insertBelow({{{0.5f, 0, -2}}, {kCar}, {}}, inserted.place);
+    EXPECT_EQ(map.query(1.5, 1, -2).likeliestClass, kCar);
+    EXPECT_EQ(map.query(1.25, 1, -1).status, semantic_octree::CellState::Status::Unknown);
+  }
+}
