@@ -173,7 +173,7 @@ TEST(GuideTransitions, AfterAnAnswer) {
       {"none", doing(ToGoal{15}), answer(SeekBack{}, false), "idle, since 20", "stop"}};
   for (const AnswerRow& row : table) {
     SCOPED_TRACE(row.what);
-    const Transition next = transition(row.before, row.answer, {});
+    const Transition next = transition(row.before, row.answer);
     EXPECT_EQ(words(next.state.activity), row.after);
     EXPECT_EQ(words(next.action), row.action);
   }

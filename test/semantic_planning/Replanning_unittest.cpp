@@ -115,6 +115,7 @@ TEST_F(PlannerTest, afterEveryChangeOfTheMapTheRepairedPathIsTheBest) {
 TEST_F(PlannerTest, theRoadmapFollowsTheCompressedTree) {
   paintCorner();
   options.roadmap.vertices = 0;
+  options.roadmap.neighbors = 3;
   options.shorten = false;
   SemanticPlanner p = planner();
   p.plan(start, goal);

@@ -181,6 +181,6 @@ TEST_F(PlannerTest, verticesAndEdgesStayWithinTheirBudgets) {
     const PlanResult result = plan();
     EXPECT_EQ(result.numVertices, 302u);  // with start and goal
     EXPECT_GE(result.numEdges, 900u);
-    EXPECT_LE(result.numEdges, 900u + 4 * RoadmapOptions::kNeighbors + 1);
+    EXPECT_LE(result.numEdges, 900u + 4 * options.roadmap.neighbors + 1);
   }
 }

@@ -33,7 +33,7 @@ Length tollOf(const ReedsSheppCurve& curve, const DrivePrice& price) {
 int neighborsFor(const RoadmapOptions& options) {
   constexpr double kBase = 1000, kMore = 6;
   const double doublings = std::log2(std::max(kBase, double(options.vertices)) / kBase);
-  return RoadmapOptions::kNeighbors + static_cast<int>(std::lround(kMore * doublings));
+  return options.neighbors + static_cast<int>(std::lround(kMore * doublings));
 }
 
 }  // namespace

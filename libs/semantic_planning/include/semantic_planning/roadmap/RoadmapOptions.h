@@ -40,7 +40,10 @@ struct RoadmapOptions {
   /** Vertices lie within this distance from the line between start and goal, meters. */
   double buffer = 30;
 
-  // For studies, without a name in files.
+  // For studies and tests, without a name in files.
+  /** Each vertex is connected with that many nearest ones in Reeds-Shepp distance, and with six
+   * more for each doubling of `vertices` beyond 1000. */
+  int neighbors = 10;
   /** Most edges, start's and goal's not counted, also after updates; 0: as many as the nearest
    * neighbors give. Every vertex's nearest go first. */
   std::size_t maxEdges = 0;
@@ -50,9 +53,6 @@ struct RoadmapOptions {
   /** Another value gives other vertices of the same kind. */
   unsigned seed = 0;
 
-  /** Each vertex is connected with that many nearest ones in Reeds-Shepp distance, and with six
-   * more for each doubling of `vertices` beyond 1000. */
-  static constexpr int kNeighbors = 10;
   static constexpr double kLongestEdge = 15;  ///< meters
 
   void describe(strict_files::OptionList& list);
