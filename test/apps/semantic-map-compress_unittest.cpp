@@ -252,7 +252,7 @@ TEST_F(SemanticMapCompress, namesAreNoCommandsForGnuplot) {
   const fs::path before = fs::current_path();
   fs::current_path(folder.path());
   folder.write("weights.yaml",
-               "{name: a, relevant: {post: 1, \"road'\\\"`touch x`\": 0.5}, block_size: 3.2}");
+               "{name: a, relevant: {post: 1, \"road'\\\"`touch x`\": 0.5}, alpha: 0.01}");
   for (const char* output : {"|touch x", "b'\n!touch x\n"}) {
     const ProgramRun run =
         runProgram("semantic-map-compress",
@@ -271,7 +271,7 @@ TEST_F(SemanticMapCompress, aMapWhoseClassNameWouldBeACommandIsRefused) {
   folder.write("map.semantic", fileAround(content));
   const fs::path before = fs::current_path();
   fs::current_path(folder.path());
-  expectRefusalOf("{name: a, relevant: {post: 1}}",
+  expectRefusalOf("{name: a, relevant: {post: 1}, alpha: 0.01}",
                   {"map.semantic", "the name of class 2, 'road\\x0a!touch x\\x0a'"});
   EXPECT_FALSE(fs::exists("x"));
   fs::current_path(before);

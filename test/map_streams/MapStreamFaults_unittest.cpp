@@ -85,17 +85,22 @@ TEST(MapStreamFaults, alteredPacketsAreRefusedAndLeaveAValidMap) {
   }
 }
 
-/** A stream's first packet, if its first class had another name. */
-Datagram withFirstClassNamed(const std::string& name, Datagram packet) {
-  PacketHeader h = PacketHeader::of(packet.payload);
-  StreamDescription d = StreamDescription::of(packet.payload.substr(PacketHeader::kBytes));
+/** The description of a stream's map, in one packet, if its first class had another name. */
+Datagram withFirstClassNamed(const std::string& name, const std::vector<Datagram>& packets) {
+  PacketHeader h = PacketHeader::of(packets[0].payload);
+  std::string description;
+  for (std::size_t i = 0; i < h.numDescription; ++i)
+    description += packets[i].payload.substr(PacketHeader::kBytes);
+  StreamDescription d = StreamDescription::of(description);
   std::string content = contentIn(d.kind);
-  const std::string old = numberedClasses(K).name(1);
   const auto withSize = [](const std::string& text) {
     return bytesOf(static_cast<std::uint16_t>(text.size())) + text;
   };
-  content.replace(content.find(withSize(old)), 2 + old.size(), withSize(name));
+  const std::string old = withSize(numberedClasses(K).name(1));
+  content.replace(content.find(old), old.size(), withSize(name));
   d.kind = fileAround(content);
+  h.numDescription = 1;
+  Datagram packet = packets[0];
   packet.payload = h.bytes() + d.compressed();
   return packet;
 }
@@ -104,13 +109,12 @@ TEST(MapStreamFaults, classNamesWithControlCharactersAreRefused) {
   SemanticOcTree map = smallPlace(someOptions(0.01));
   MapSender sender(kStream);
   sender.setMap(map);
-  const Datagram first = *sender.next();
-  ASSERT_EQ(PacketHeader::of(first.payload).numDescription, 1);
+  const auto packets = packetsOf(sender);
   MapReceiver receiver(kStream), other(kStream);
   const std::string refusal =
-      errorOf([&] { receiver.accept(withFirstClassNamed("road\n!touch x\n", first)); });
+      errorOf([&] { receiver.accept(withFirstClassNamed("road\n!touch x\n", packets)); });
   EXPECT_TRUE(contains(refusal, "the name of class 1, 'road\\x0a!touch x\\x0a'")) << refusal;
-  EXPECT_EQ(errorOf([&] { other.accept(withFirstClassNamed("road, touch x", first)); }), "");
+  EXPECT_EQ(errorOf([&] { other.accept(withFirstClassNamed("road, touch x", packets)); }), "");
 }
 
 /** A coder's tables with one frequent class record. */
