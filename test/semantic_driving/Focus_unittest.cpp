@@ -90,7 +90,8 @@ TEST(Focus, IsAroundTheVehicleAndAlongThePathAhead) {
           toLongerPath = std::min(toLongerPath, std::hypot(path.at(s).x - x, path.at(s).y - y));
         const double toVehicle = std::hypot(p.x - x, p.y - y);
         const double density = densityAt(regions, x, y);
-        if (toPath < 1.0 || toVehicle < 4) {  // a stretch cuts the bend's corner by 0.5 m at most
+        // A stretch of 3 m cuts the bend's corner by 2 * 1 / sqrt(5) m = 0.9 m at most.
+        if (toPath < 0.6 || toVehicle < 4) {
           EXPECT_EQ(density, 1) << progress << ": " << x << ", " << y;
         }
         if (toLongerPath > 2.0 && toVehicle > 4 + 2 * std::sqrt(0.75)) {

@@ -2,6 +2,8 @@
 
 #include <semantic_octree/store/MapAccess.h>
 
+#include <algorithm>
+
 namespace semantic_octree {
 namespace {
 

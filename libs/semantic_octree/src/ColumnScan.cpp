@@ -1,5 +1,6 @@
 #include <semantic_octree/ColumnScan.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace semantic_octree {

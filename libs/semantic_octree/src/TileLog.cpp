@@ -1,5 +1,7 @@
 #include <semantic_octree/store/TileLog.h>
 
+#include <algorithm>
+
 namespace semantic_octree {
 namespace {
 
