@@ -110,12 +110,12 @@ TEST_F(SemanticMapPlan, everyKindOfGraphEdgeCostAndReadingIsKnown) {
 TEST_F(SemanticMapPlan, setsOptionsOfGroundRoadmapReadingAndSearch) {
   EXPECT_EQ(
       run("-8,0,0", "8,0,0",
-          {"--fill-gap", "0.5", "--unknown-gap", "2", "--keep-off", "--vertices", "300", "--buffer",
+          {"--fill-gap", "0.5", "--unknown-gap", "2", "--keep-off", "--headings", "1", "--buffer",
            "5", "--least-probability", "0.2", "--no-shorten", "--time-limit", "60"})
           .status,
       0);
   EXPECT_EQ(report()["cost"], report()["graphCost"]) << "--no-shorten";
-  EXPECT_LE(report()["vertices"], 302);  // with start and goal
+  EXPECT_LE(report()["vertices"], 202);  // with start and goal
 }
 
 TEST_F(SemanticMapPlan, withoutAPathItSaysWhyAndTheStatusIsTwo) {
