@@ -19,7 +19,7 @@ constexpr Stroke kForward{{20, 20, 20}, 3, 2}, kBackward{{230, 159, 0}, 3, 2},
 constexpr Arrow kStart{{0, 160, 60}, 26, 2}, kGoal{{220, 30, 30}, 26, 2},
     kVertex{{0, 40, 90}, 7, 0};
 constexpr Stroke kFootprint{{20, 20, 20}, 1, 1}, kInTheWay{{200, 0, 200}, 3, 2};
-constexpr map_pictures::Color kHole{120, 90, 150};
+constexpr map_pictures::Color kHole{214, 204, 226};
 
 /** \return whether some of it is of no class */
 bool drawGround(MapCanvas& canvas, const Ground& ground,
