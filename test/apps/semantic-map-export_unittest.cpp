@@ -3,7 +3,6 @@
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/serialization/CArchive.h>
 #include <mrpt_compat/Drawing.h>
-#include <map_operations/SmoothedView.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <yaml-cpp/yaml.h>
 
