@@ -57,7 +57,7 @@ class Scan {
   std::size_t bytes() const;
 
  private:
-  /** Tiles whose bits, and what is noted of them, fit into max_scan_memory. */
+  /** Tiles whose bits, and what is noted of them, fit into InsertionOptions::maxScanMemory. */
   static std::size_t maxTiles(const InsertionOptions& options);
   void markHits(const ScanBeams& beams, const InsertionOptions& options);
   void markFree(const ScanBeams& beams, const InsertionOptions& options, double margin);
