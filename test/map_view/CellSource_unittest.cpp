@@ -245,13 +245,14 @@ TEST(CellLook, ColorsSayWhatTheyShould) {
   ASSERT_EQ(look.classOf(road), 1);
   EXPECT_EQ(look.colorOf(road), map.classes().color(1));
   ViewStyle style;
-  for (const Coloring coloring : {Coloring::Probability, Coloring::Entropy, Coloring::Occupancy}) {
+  for (const ViewColoring coloring :
+       {ViewColoring::Probability, ViewColoring::Entropy, ViewColoring::Occupancy}) {
     style.coloring = coloring;
     look.setStyle(style);
     const Color c = look.colorOf(road);
     EXPECT_GT(c.g, c.b) << int(coloring);  // red, yellow or green
   }
-  style.coloring = Coloring::Height;
+  style.coloring = ViewColoring::Height;
   look.setStyle(style);
   const auto colorAt = [&](int z) {
     return look.colorOf({Eigen::Array3i(32768, 32768, z), kTreeDepth, road.node});
