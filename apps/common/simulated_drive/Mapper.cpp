@@ -1,6 +1,7 @@
 #include "Mapper.h"
 
 #include <semantic_driving/CompressedObstacles.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_types/ClassTableFile.h>
 #include <synthetic_world/Classes.h>
 
@@ -21,7 +22,8 @@ namespace {
 
 SemanticOcTree& prepared(SemanticOcTree& map, const DriveConfig& config, const ClassOrder& order) {
   if (!config.halfLives.empty()) map.setHalfLives(semantic_types::loadClassTable(config.halfLives));
-  map.setAbstraction(abstractionFor(order, config.focus));
+  map.setAbstraction(
+      semantic_planning::abstractionFor(order, config.focus.alpha, config.focus.obstacles));
   return map;
 }
 

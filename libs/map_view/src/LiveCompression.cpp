@@ -11,10 +11,9 @@ namespace map_view {
 using semantic_octree::TermCatalog;
 using tree_abstraction::AbstractionWeights;
 using tree_abstraction::InformationTerm;
+using tree_abstraction::kAlpha;
 
 namespace {
-
-constexpr double kAlpha = 0.002;
 
 /** Of a class variable, in which free space and the classes are told apart. */
 bool sameGroups(const InformationTerm& a, const InformationTerm& b) { return a.groups == b.groups; }

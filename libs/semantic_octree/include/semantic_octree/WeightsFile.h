@@ -20,7 +20,7 @@ struct AbstractionText : AbstractionSpace {
   /** Weight of the whole class variable (which class it is, or free); negative: worth dropping. */
   double everything = 0;
   /** Price of a nat of I_X. */
-  double alpha = 0.002;
+  double alpha = tree_abstraction::kAlpha;
   /** What unknown space is, for `unknown = prior`: "free_space: 0.6, road: 0.2"; classes that are
    * not named share the rest evenly. */
   std::string prior;
