@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "AllAlphas.h"
 #include "CompressionOptions.h"
 #include "CsvTable.h"
 #include "SemanticMapCompress.h"
@@ -130,8 +131,7 @@ solutions:
 
 TEST_F(SemanticMapCompress, aWantedNumberOfLeavesGivesTheLargestOptimalTreeWithin) {
   SemanticOcTree map = withTheseWeights(loadTree(mapFile()));
-  const Abstraction::Path path = Abstraction(map).alphaPath();
-  const auto totals = path.trees.totals(path.addedLeaves, double(path.numRoots));
+  const auto totals = AllAlphas(Abstraction(map)).leaves;
   for (const std::size_t wanted : {500, 2000, 5000}) {
     const json report = reportOf(kToSize, {"--leaves", std::to_string(wanted)});
     const auto beyond = std::upper_bound(totals.begin(), totals.end(), double(wanted));
@@ -142,15 +142,14 @@ TEST_F(SemanticMapCompress, aWantedNumberOfLeavesGivesTheLargestOptimalTreeWithi
 TEST_F(SemanticMapCompress, aWantedNumberOfBytesIsKeptAndTheNextLargerTreeExceedsIt) {
   SemanticOcTree map = withTheseWeights(loadTree(mapFile()));
   Abstraction abstraction(map);
-  const Abstraction::Path path = abstraction.alphaPath();
-  const auto totals = path.trees.totals(path.addedLeaves, double(path.numRoots));
+  const AllAlphas path(abstraction);
   for (const std::size_t wanted : {20000, 50000}) {
     const json report = reportOf(kToSize, {"--bytes", std::to_string(wanted)});
     const json& solution = report["solutions"][0];
     EXPECT_LE(fs::file_size(output() / "a.semantic"), wanted);
-    const auto next = std::upper_bound(totals.begin(), totals.end(),
+    const auto next = std::upper_bound(path.leaves.begin(), path.leaves.end(),
                                        solution["tree"]["knownLeaves"].get<double>());
-    abstraction.setAlpha(path.trees.alpha(static_cast<std::size_t>(next - totals.begin())));
+    abstraction.setAlpha(path.trees.alpha(static_cast<std::size_t>(next - path.leaves.begin())));
     saveTree(abstraction.compressedMap(), (folder / "next.semantic").string());
     EXPECT_GT(fs::file_size(folder / "next.semantic"), wanted);
   }

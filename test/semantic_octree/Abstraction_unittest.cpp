@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_octree/AlphaTrees.h>
 
 #include <algorithm>
 #include <set>
@@ -188,19 +188,20 @@ TEST(Abstraction, pathOverAlphaLeadsToAWantedNumberOfLeaves) {
   const AbstractionOptions options = someOptions(0.01);
   SemanticOcTree map = mapOf(scansOfSmallPlace(4, 4000, kTreeClasses, 6), &options);
   Abstraction abstraction(map);
-  const Abstraction::Path path = abstraction.alphaPath();
-  const std::size_t most = path.trees.totals(path.addedLeaves, path.numRoots).back();
+  const AlphaTrees trees(abstraction);
+  const auto least = static_cast<std::size_t>(trees.tree(0).leaves),
+             most = static_cast<std::size_t>(trees.tree(trees.numTrees() - 1).leaves);
   std::size_t before = 0;
-  for (std::size_t wanted = path.numRoots; wanted < most; wanted += 1 + most / 17) {
-    abstraction.setAlpha(path.alphaForLeaves(wanted));
+  for (std::size_t wanted = least; wanted < most; wanted += 1 + most / 17) {
+    abstraction.setAlpha(trees.alphaForLeaves(wanted));
     const std::size_t leaves = abstraction.leaves().size();
     EXPECT_LE(leaves, wanted);
     EXPECT_GE(leaves, before);
     before = leaves;
   }
   EXPECT_GT(before, most / 2);
-  EXPECT_THROW(path.alphaForLeaves(10 * map.size()), std::invalid_argument);
-  EXPECT_THROW(path.alphaForLeaves(0), std::invalid_argument);
+  EXPECT_THROW(trees.alphaForLeaves(10 * map.size()), std::invalid_argument);
+  EXPECT_THROW(trees.alphaForLeaves(0), std::invalid_argument);
 }
 
 TEST(Abstraction, leavesInABoxAreThoseOfAllThatMeetIt) {
@@ -249,18 +250,6 @@ TEST(Abstraction, leavesKnowTheVoxelsThatTheyStandFor) {
       ASSERT_NEAR(lowerBorderOf(l.lowest()[axis], kTreeResolution) + l.edge() * kTreeResolution / 2,
                   center(axis), 1e-3);
   }
-}
-
-TEST(Abstraction, knownShareIsTheKnownVolume) {
-  const AbstractionOptions options = someOptions(0.02);
-  SemanticOcTree map = mapOf(scansOfSmallPlace(2, 2000, kTreeClasses, 6), &options);
-  const Abstraction abstraction(map);
-  double volume = 0, expected = 0;
-  for (const LeafCell& l : abstraction.leaves())
-    volume += abstraction.knownShare(l) * std::pow(map.getNodeSize(l.depth), 3);
-  for (auto it = map.begin_leafs(); it != map.end_leafs(); ++it)
-    expected += std::pow(it.getSize(), 3);
-  EXPECT_NEAR(volume, expected, 1e-6 * expected);
 }
 
 TEST(Abstraction, refusesBadOptionsAndNamesThem) {

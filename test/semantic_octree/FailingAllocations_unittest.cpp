@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_octree/AlphaTrees.h>
 #include <semantic_octree/KeyframeMap.h>
 #include <semantic_octree/MapFolder.h>
 #include <semantic_octree/MapOperations.h>
@@ -113,7 +113,7 @@ TEST(FailingAllocations, elsewhereLeaveTheMapAsItWas) {
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { SemanticOcTree copy = m; }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { m.setAbstraction(Abstraction(m).options()); }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { Abstraction(m).leaves(); }), 3);
-  EXPECT_GT(sweep(map, [](SemanticOcTree& m) { Abstraction(m).alphaPath(); }), 3);
+  EXPECT_GT(sweep(map, [](SemanticOcTree& m) { AlphaTrees{Abstraction(m)}; }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { Abstraction(m).compressedMap(); }), 3);
   EXPECT_GT(sweep(map, [](SemanticOcTree& m) { m.takeTouchedTiles(); }), 3);
   EXPECT_GT(sweep(map, [&](SemanticOcTree& m) { merged({&m, &other}); }), 3);

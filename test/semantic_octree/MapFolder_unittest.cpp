@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_octree/AlphaTrees.h>
 #include <semantic_octree/KeyframeMap.h>
 #include <semantic_octree/MapContents.h>
 #include <semantic_octree/MapOperations.h>
@@ -170,7 +170,7 @@ TEST(MapFolder, abstractionByTileIsThatOfTheWhole) {
         EXPECT_EQ(a.objective(), b.objective());
         EXPECT_EQ(a.measures().compressed.information, b.measures().compressed.information);
         EXPECT_EQ(a.measures().compressed.numLeaves, b.measures().compressed.numLeaves);
-        EXPECT_EQ(a.alphaPath().alphaForLeaves(3000), b.alphaPath().alphaForLeaves(3000));
+        EXPECT_EQ(AlphaTrees(a).alphaForLeaves(3000), AlphaTrees(b).alphaForLeaves(3000));
         EXPECT_TRUE(a.compressedMap() == b.compressedMap());
         EXPECT_EQ(a.leaves(), b.leaves());
         EXPECT_TRUE(map == whole);  // all G-values and mixtures

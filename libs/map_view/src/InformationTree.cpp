@@ -8,7 +8,7 @@
 namespace map_view {
 
 using semantic_octree::Abstraction;
-using tree_abstraction::AlphaPath;
+using semantic_octree::AlphaTrees;
 
 namespace {
 
@@ -82,18 +82,11 @@ std::size_t InformationTree::numLeaves(double alpha) const {
   return static_cast<std::size_t>(leaves);
 }
 
-AlphaPath InformationTree::path() const {
-  std::vector<double> alphas;
-  for (const Index node : m_charged) alphas.push_back(alpha(node));
-  return AlphaPath(std::move(alphas));
-}
-
-double InformationTree::alphaForLeaves(std::size_t wanted) const {
-  std::vector<double> added;
-  for (const Index node : m_charged) added.push_back(m_addedLeaves[std::size_t(node)]);
-  const AlphaPath path = this->path();
-  const double budget = double(std::max(wanted, m_numRoots));
-  return path.alpha(path.largestWithin(budget, added, double(m_numRoots)));
+AlphaTrees InformationTree::trees() const {
+  return AlphaTrees([this](const AlphaTrees::Visit& visit) -> semantic_octree::AddedToTree {
+    for (const Index node : m_charged) visit(alpha(node), {m_addedLeaves[std::size_t(node)], 0, 0});
+    return {double(m_numRoots), 0, 0};
+  });
 }
 
 double InformationTree::lowestAlpha(double above) const {

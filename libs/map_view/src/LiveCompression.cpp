@@ -94,15 +94,18 @@ void LiveCompression::setAlpha(double alpha) {
   change(weights);
 }
 
-void LiveCompression::setLeaves(std::size_t wanted) { setAlpha(m_tree.alphaForLeaves(wanted)); }
+void LiveCompression::setLeaves(std::size_t wanted) {
+  const semantic_octree::AlphaTrees trees = m_tree.trees();
+  const auto least = static_cast<std::size_t>(trees.tree(0).leaves),
+             most = static_cast<std::size_t>(trees.full().leaves);
+  setAlpha(trees.alphaForLeaves(std::clamp(wanted, least, most)));
+}
 
 void LiveCompression::setBytes(const SemanticOcTree& map, std::size_t wanted) {
-  const tree_abstraction::AlphaPath path = m_tree.path();
-  const std::size_t largest = path.largestThat([&](std::size_t k) {
-    setAlpha(path.alpha(k));
+  setAlpha(m_tree.trees().largestThat([&](double alpha) {
+    setAlpha(alpha);
     return semantic_octree::fileSize(compressedMap(map)) <= wanted;
-  });
-  setAlpha(path.alpha(largest));
+  }));
 }
 
 SemanticOcTree LiveCompression::compressedMap(const SemanticOcTree& map) const {

@@ -1,6 +1,6 @@
 #pragma once
 #include <map_view/ViewCell.h>
-#include <semantic_octree/Abstraction.h>
+#include <semantic_octree/AlphaTrees.h>
 
 #include <cstdint>
 #include <optional>
@@ -31,10 +31,8 @@ class InformationTree {
   double alpha(Index node) const { return m_alphas[std::size_t(node)]; }
   /** Known leaves of the compressed tree. */
   std::size_t numLeaves(double alpha) const;
-  /** Alpha of the largest compressed tree with at most that many leaves, or of the smallest one. */
-  double alphaForLeaves(std::size_t wanted) const;
-  /** The compressed trees of all alphas. */
-  tree_abstraction::AlphaPath path() const;
+  /** The compressed trees of all alphas, without what their terms tell. They look at this one. */
+  semantic_octree::AlphaTrees trees() const;
   /** Of the nodes' finite alphas above a value; it if there are none. */
   double lowestAlpha(double above) const;
   double highestAlpha() const;
