@@ -14,8 +14,8 @@
 namespace fs = std::filesystem;
 using namespace semantic_octree;
 using nlohmann::json;
-using tree_abstraction::bitsToNats;
 using tree_abstraction::irrelevant;
+using tree_abstraction::kLn2;
 using tree_abstraction::relevant;
 
 namespace {
@@ -62,13 +62,14 @@ TEST_F(SemanticMapCompress, reportHoldsTheMeasuresOfTheTreesThatAreWritten) {
   EXPECT_EQ(report["map"]["tree"]["allLeaves"], expected.full.numLeaves);
   EXPECT_EQ(posts["tree"]["knownLeaves"], expected.compressed.numKnownLeaves);
   EXPECT_EQ(posts["tree"]["allLeaves"], expected.compressed.numLeaves);
-  EXPECT_NEAR(bitsToNats(posts["tree"]["leafEntropy"]), expected.compressed.leafEntropy, 1e-12);
-  EXPECT_NEAR(bitsToNats(posts["objective"]), expected.objective, 1e-12);
+  EXPECT_NEAR(kLn2 * posts["tree"]["leafEntropy"].get<double>(), expected.compressed.leafEntropy,
+              1e-12);
+  EXPECT_NEAR(kLn2 * posts["objective"].get<double>(), expected.objective, 1e-12);
   EXPECT_EQ(posts["classes"].size(), K + 1u);
   for (std::size_t id = 0; id <= K; ++id) {
     const json& kept = posts["classes"][id == 0 ? "free_space" : kNames[id - 1]];
-    EXPECT_NEAR(bitsToNats(kept["full"]), expected.full.information[id], 1e-12);
-    EXPECT_NEAR(bitsToNats(kept["kept"]), expected.compressed.information[id], 1e-12);
+    EXPECT_NEAR(kLn2 * kept["full"].get<double>(), expected.full.information[id], 1e-12);
+    EXPECT_NEAR(kLn2 * kept["kept"].get<double>(), expected.compressed.information[id], 1e-12);
     EXPECT_NEAR(kept["share"], *expected.retention(id), 1e-12);
   }
   for (const json& solution : report["solutions"]) {

@@ -12,8 +12,6 @@ constexpr double kLn2 = 0.693147180559945309417232121458;
 
 /** Information in nats -> bits, for reports. */
 constexpr double natsToBits(double nats) { return nats / kLn2; }
-/** Information in bits -> nats. */
-constexpr double bitsToNats(double bits) { return bits * kLn2; }
 
 /** x ln x, continued by 0 at x = 0. */
 inline double xLogX(double x) { return x > 0 ? x * std::log(x) : 0.0; }
