@@ -28,12 +28,12 @@ std::size_t termNamed(const LiveCompression& live, const std::string& name) {
 }
 
 /** Of the compressed tree. */
-std::set<Cube> leavesOf(const SemanticOcTree& map, const LiveCompression& live) {
+std::set<CubeId> leavesOf(const SemanticOcTree& map, const LiveCompression& live) {
   map_view::CellLook look(map);
   map_view::ViewStyle style;
   style.freeSpace = true;
   look.setStyle(style);
-  std::set<Cube> leaves;
+  std::set<CubeId> leaves;
   map_view::CompressedCells(map, live).forEachShown(
       KeyBox::everything(), semantic_octree::kTreeDepth, look, [&](const map_view::ViewCell& cell) {
         EXPECT_TRUE(leaves.insert(cubeOf(cell.lowest, cell.depth)).second);
@@ -42,25 +42,23 @@ std::set<Cube> leavesOf(const SemanticOcTree& map, const LiveCompression& live) 
 }
 
 /** With G-values: of a solution with its terms alone, as semantic-map-compress finds it. */
-std::set<Cube> leavesOfSolution(SemanticOcTree map, const Solution& solution,
-                                const AbstractionOptions& space) {
+std::set<CubeId> leavesOfSolution(SemanticOcTree map, const Solution& solution,
+                                  const AbstractionOptions& space) {
   const semantic_octree::TermCatalog catalog(map.classes(), {solution});
   AbstractionOptions options = space;
   options.weights.terms = catalog.terms(0);
   map.setAbstraction(options);
   Abstraction abstraction(map);
   abstraction.setWeights(catalog.weights(solution, 0), *solution.alpha);
-  std::set<Cube> leaves;
-  for (const LeafCell& leaf : abstraction.leaves())
-    leaves.insert(cubeOf(leaf.lowest(), int(leaf.depth)));
+  std::set<CubeId> leaves;
+  for (const LeafCell& leaf : abstraction.leaves()) leaves.insert(cubeOf(leaf.lowest, leaf.depth));
   return leaves;
 }
 
-bool isIn(const Cube& cube, const std::vector<KeyBox>& boxes) {
+bool isIn(const CubeId& cube, const std::vector<KeyBox>& boxes) {
   const auto [x, y, z, depth] = cube;
-  const int edge = semantic_octree::edgeAtDepth(depth);
   for (const KeyBox& box : boxes)
-    if (box.meets({x, y, z}, edge)) return true;
+    if (box.meets({{x, y, z}, depth})) return true;
   return false;
 }
 
@@ -204,13 +202,13 @@ TEST(LiveCompression, TellsWhereLeavesCameAndWent) {
     change();
     const auto after = leavesOf(map, live);
     const std::vector<KeyBox> boxes = live.takeChange();
-    std::set<Cube> differ;
+    std::set<CubeId> differ;
     std::set_symmetric_difference(before.begin(), before.end(), after.begin(), after.end(),
                                   std::inserter(differ, differ.end()));
     EXPECT_FALSE(differ.empty());
-    for (const Cube& cube : differ) ASSERT_TRUE(isIn(cube, boxes));
+    for (const CubeId& cube : differ) ASSERT_TRUE(isIn(cube, boxes));
     for (const KeyBox& box : boxes) {
-      const auto isHere = [&](const Cube& cube) { return isIn(cube, {box}); };
+      const auto isHere = [&](const CubeId& cube) { return isIn(cube, {box}); };
       ASSERT_TRUE(std::any_of(differ.begin(), differ.end(), isHere));
     }
   };

@@ -163,10 +163,10 @@ TEST(Abstraction, regionsWithWeightZeroVanish) {
   SemanticOcTree map = mapOf(scans, &options);
   std::size_t fine = 0;
   for (const LeafCell& l : Abstraction(map).leaves()) {
-    const auto center = map.keyToCoord(l.key, l.depth);
+    const auto center = map.keyToCoord(l.key(), l.depth);
     fine += center.x() > 0 && l.depth == 16;
     if (center.x() < -1.6) {
-      EXPECT_EQ(l.depth, 12u);
+      EXPECT_EQ(l.depth, 12);
     }
   }
   EXPECT_GT(fine, 100u);
@@ -215,7 +215,7 @@ TEST(Abstraction, leavesInABoxAreThoseOfAllThatMeetIt) {
       const int edge = 1 << (16 - l.depth);
       bool meets = !onlyOccupied || l.node->getLogOdds() > 0;
       for (int i = 0; i < 3; ++i) {
-        const int first = l.key[i] / edge * edge;
+        const int first = l.key()[i] / edge * edge;
         meets = meets && first <= high[i] && first + edge > low[i];
       }
       if (meets) expected.push_back(l);
@@ -233,7 +233,7 @@ TEST(Abstraction, compressedMapHasTheCompressedTreesLeavesAndAnswersQueries) {
   const auto leaves = abstraction.leaves();
   EXPECT_EQ(compressed.getNumLeafNodes(), leaves.size());
   for (const LeafCell& l : leaves) {
-    const CellState fine = map.query(l.key, l.depth), coarse = compressed.query(l.key, l.depth);
+    const CellState fine = map.query(l.key(), l.depth), coarse = compressed.query(l.key(), l.depth);
     ASSERT_EQ(fine.status, coarse.status);
     ASSERT_EQ(fine.occupancy, coarse.occupancy);
     ASSERT_EQ(fine.likeliestClass, coarse.likeliestClass);
@@ -244,10 +244,10 @@ TEST(Abstraction, leavesKnowTheVoxelsThatTheyStandFor) {
   const AbstractionOptions options = someOptions(0.02);
   SemanticOcTree map = mapOf(scansOfSmallPlace(2, 2000, kTreeClasses, 6), &options);
   for (const LeafCell& l : Abstraction(map).leaves()) {
-    const octomap::point3d center = map.keyToCoord(l.key, l.depth);
+    const octomap::point3d center = map.keyToCoord(l.key(), l.depth);
     ASSERT_NEAR(l.edge() * kTreeResolution, map.getNodeSize(l.depth), 1e-9);
     for (unsigned axis = 0; axis < 3; ++axis)
-      ASSERT_NEAR(lowerBorderOf(l.lowest()[axis], kTreeResolution) + l.edge() * kTreeResolution / 2,
+      ASSERT_NEAR(lowerBorderOf(l.lowest[axis], kTreeResolution) + l.edge() * kTreeResolution / 2,
                   center(axis), 1e-3);
   }
 }

@@ -58,7 +58,7 @@ void insert(SemanticOcTree& map, const PosedCloud& scan) {
 using CellSet = std::set<std::tuple<int, int, int, unsigned>>;
 CellSet idsOf(const std::vector<LeafCell>& leaves) {
   CellSet ids;
-  for (const LeafCell& l : leaves) ids.insert({l.key[0], l.key[1], l.key[2], l.depth});
+  for (const LeafCell& l : leaves) ids.insert({l.key()[0], l.key()[1], l.key()[2], l.depth});
   return ids;
 }
 

@@ -19,7 +19,7 @@ std::map<CellPath, std::size_t> firstTrees(const Abstraction& abstraction,
   std::map<CellPath, std::size_t> byCell;
   std::size_t i = 0;
   abstraction.forEachPathNode([&](const Abstraction::PathNode& n, const auto&) {
-    if (!n.isFree) byCell[CellPath::of(n.lowest, n.depth)] = first[i++];
+    if (!n.isFree) byCell[CellPath::of(n)] = first[i++];
   });
   return byCell;
 }

@@ -136,14 +136,14 @@ std::vector<KeyBox> LiveCompression::takeChange() {
   std::vector<KeyBox> boxes;
   const bool isFirst = m_toldExpanded.empty();
   m_toldExpanded.resize(std::size_t(m_tree.size()), false);
-  if (isFirst && m_tree.size() > 0) boxes.push_back(m_tree.box(0));
+  if (isFirst && m_tree.size() > 0) boxes.push_back(KeyBox::of(m_tree.cube(0)));
   InformationTree::Index inBox = isFirst ? m_tree.size() : 0;  // the last box's nodes end there
   for (InformationTree::Index node = 0; node < m_tree.size(); ++node) {
     char& told = m_toldExpanded[std::size_t(node)];
     if (bool(told) == isExpanded(node)) continue;
     told = isExpanded(node);
     if (node < inBox) continue;
-    boxes.push_back(m_tree.box(node));
+    boxes.push_back(KeyBox::of(m_tree.cube(node)));
     inBox = m_tree.end(node);
   }
   return boxes;

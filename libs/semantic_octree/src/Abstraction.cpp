@@ -114,7 +114,7 @@ double Abstraction::totalDensity() const {
 }
 
 std::vector<double> Abstraction::distribution(const LeafCell& leaf) const {
-  return m_map.distribution(m_map.search(leaf.key, leaf.depth));
+  return m_map.distribution(m_map.search(leaf.key(), static_cast<unsigned>(leaf.depth)));
 }
 
 SemanticOcTree Abstraction::compressedMap() const {

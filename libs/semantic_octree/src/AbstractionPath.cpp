@@ -68,7 +68,7 @@ AddedToTree Abstraction::forEachTau(const std::function<void(const NodeTau&)>& v
     if (m_gTree.isFreeFrame(n.cell.depth))
       frame += added;
     else
-      trees.add({n.cell.lowest(), n.cell.depth, isExpanded, added, 0}, p * n.splitEntropy);
+      trees.add({n.cell.cube(), isExpanded, added, 0}, p * n.splitEntropy);
   });
   trees.finish();
   return frame;
@@ -81,7 +81,7 @@ void Abstraction::forEachPathNode(const VisitPathNode& visit) const {
     const double p = shareOf(n, total);
     for (std::size_t t = 0; t < information.size(); ++t)
       information[t] = p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
-    visit({n.cell.lowest(), n.cell.depth, m_gTree.isFreeFrame(n.cell.depth), p, p * n.splitEntropy,
+    visit({n.cell.cube(), m_gTree.isFreeFrame(n.cell.depth), p, p * n.splitEntropy,
            n.numChildren - 1},
           information);
   });

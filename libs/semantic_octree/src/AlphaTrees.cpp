@@ -1,6 +1,7 @@
 #include <semantic_octree/AlphaTrees.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <map>

@@ -53,9 +53,7 @@ class CompressedTree {
   const GTree& m_gTree;
 };
 
-inline LeafCell leafCell(const Node& node, const Cell& cell) {
-  return {cell.key(), static_cast<unsigned>(cell.depth), node};
-}
+inline LeafCell leafCell(const Node& node, const Cell& cell) { return {cell.cube(), node}; }
 
 /** The compressed tree whose leaves were told last, to tell which came and went since. A node is an
  * index: none, a leaf, or an inner node's eight children. */

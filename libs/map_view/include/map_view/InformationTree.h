@@ -22,7 +22,7 @@ class InformationTree {
   Index size() const { return static_cast<Index>(m_end.size()); }
   /** The one behind the last node of a subtree. */
   Index end(Index node) const { return m_end[std::size_t(node)]; }
-  KeyBox box(Index node) const;
+  Cube cube(Index node) const;
 
   /** Computes the nodes' alphas, see tree_abstraction::collapseAlphas(). \param weights one for
    * each term of the map's options */
@@ -75,11 +75,5 @@ class InformationTree {
   std::vector<double> m_shares, m_prices, m_gains;
   std::vector<double> m_weights;
 };
-
-/** Three keys and a depth in one number. */
-inline std::uint64_t packed(const Eigen::Array3i& lowest, int depth) {
-  return std::uint64_t(lowest.x()) | std::uint64_t(lowest.y()) << 16 |
-         std::uint64_t(lowest.z()) << 32 | std::uint64_t(depth) << 48;
-}
 
 }  // namespace map_view

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/Keys.h>
+#include <semantic_octree/Cube.h>
 #include <semantic_octree/SemanticOcTree.h>
 #include <tree_abstraction/AbstractionWeights.h>
 
@@ -22,24 +22,10 @@ class GTree;
 class LeafChanges;
 
 /** A leaf of the compressed tree: a cube of the map. */
-struct LeafCell {
-  octomap::OcTreeKey key;  ///< as OctoMap's iterators give it
-  unsigned depth = 0;
+struct LeafCell : Cube {
   /** The map's node for the cube, or for a larger cube around it that is a leaf of the map. Valid
    * until the map changes. */
   SemanticOcTreeNode node;
-
-  /** Edge, in voxels. */
-  int edge() const { return edgeAtDepth(static_cast<int>(depth)); }
-  /** Keys of its lowest voxel. */
-  Eigen::Array3i lowest() const {
-    const auto lowestKey = [this](int axis) {
-      return lowestKeyAtDepth(key[static_cast<unsigned>(axis)], static_cast<int>(depth));
-    };
-    return {lowestKey(0), lowestKey(1), lowestKey(2)};
-  }
-  /** The same cube (whatever node stands for it). */
-  bool operator==(const LeafCell& o) const { return key == o.key && depth == o.depth; }
 };
 
 /** What the compressed tree keeps of what the whole map tells. Known leaves are nodes, all leaves
@@ -137,9 +123,7 @@ class Abstraction {
   void setRegions(const std::vector<Region>& regions);
 
   /** An inner node below the roots, and the alpha from which on it is not expanded: AlphaTrees. */
-  struct NodeTau {
-    Eigen::Array3i lowest;  ///< keys of its lowest voxel
-    int depth;
+  struct NodeTau : Cube {
     bool isExpanded;    ///< in the compressed tree
     AddedToTree added;  ///< by expanding it
     double tau;         ///< see tree_abstraction::collapseAlphas()
@@ -150,9 +134,7 @@ class Abstraction {
   AddedToTree forEachTau(const std::function<void(const NodeTau&)>& visit) const;
 
   /** An inner node as the compressed trees of all weights and alphas see it. */
-  struct PathNode {
-    Eigen::Array3i lowest;  ///< keys of its lowest voxel
-    int depth;
+  struct PathNode : Cube {
     bool isFree;      ///< in the free frame: expanded by every tree
     double share;     ///< p(n)
     double price;     ///< what expanding it costs, p(n) H(Pi): nats for each unit of alpha
