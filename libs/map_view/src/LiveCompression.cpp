@@ -29,11 +29,8 @@ AbstractionWeights addTerms(SemanticOcTree& map, const Solution& solution,
     if (std::none_of(all.terms.begin(), all.terms.end(), same))
       all.terms.push_back({term.name, 0, term.groups});
   }
-  const TermCatalog catalog(map.classes(), {all});
   AbstractionOptions options = space;
-  options.weights.terms = catalog.terms(0);
-  const std::vector<double> weights = catalog.weights(all, 0);
-  for (std::size_t t = 0; t < weights.size(); ++t) options.weights.terms[t].weight = weights[t];
+  options.weights.terms = TermCatalog(map.classes(), {all}).weighedTerms(all, 0);
   options.weights.alpha = solution.alpha.value_or(kAlpha);
   map.setAbstraction(options);
   return options.weights;

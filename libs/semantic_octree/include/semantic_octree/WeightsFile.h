@@ -48,9 +48,14 @@ struct Solution {
 
 /** What a file of weights holds. */
 struct WeightsFile {
+  std::string name;  ///< what messages call it
   std::vector<Solution> solutions;
   /** All but the weights; the same for all solutions, so that they can be compared. */
   AbstractionOptions space;
+
+  /** \param wanted a solution's name; empty: the first \throw std::runtime_error naming the file:
+   * it has none of this name. */
+  const Solution& solution(const std::string& wanted) const;
 };
 
 /** Reads one solution or a list `solutions` (YAML); the syntax stands in the README of

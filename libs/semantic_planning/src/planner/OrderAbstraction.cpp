@@ -1,9 +1,6 @@
 #include <semantic_octree/WeightsFile.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 
-#include <algorithm>
-#include <stdexcept>
-
 namespace semantic_planning {
 
 semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order,
@@ -28,13 +25,10 @@ semantic_octree::AbstractionOptions abstractionOf(const std::filesystem::path& w
                                                   const std::string& solution,
                                                   const semantic_types::ClassTable& classes) {
   const semantic_octree::WeightsFile file = semantic_octree::loadWeights(weights, classes);
-  const auto named = [&](const auto& s) { return solution.empty() || s.name == solution; };
-  const auto found = std::find_if(file.solutions.begin(), file.solutions.end(), named);
-  if (found == file.solutions.end())
-    throw std::runtime_error(weights.string() + ": has no solution '" + solution + "'");
+  const semantic_octree::Solution& found = file.solution(solution);
   semantic_octree::AbstractionOptions options = file.space;
-  options.weights.terms = found->terms;
-  options.weights.alpha = found->alpha.value_or(tree_abstraction::kPlanningAlpha);
+  options.weights.terms = found.terms;
+  options.weights.alpha = found.alpha.value_or(tree_abstraction::kPlanningAlpha);
   return options;
 }
 
