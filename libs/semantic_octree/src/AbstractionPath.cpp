@@ -52,23 +52,18 @@ AddedToTree& AddedToTree::operator+=(const AddedToTree& o) {
 }
 
 AddedToTree Abstraction::forEachTau(const std::function<void(const NodeTau&)>& visit) const {
-  const double total = totalDensity();
   const auto& terms = options().weights.terms;
   AddedToTree frame;
   WholeTrees trees(rootDepth(), visit);
-  InCompressedTree inCompressed;
-  forEachInner([&](const InnerNode& n) {
-    const bool isExpanded = inCompressed.visit(n);
-    const double p = shareOf(n, total);
-    AddedToTree added{static_cast<double>(n.numChildren - 1), 0, 0};
+  forEachPathNode([&](const PathNode& n, const std::vector<double>& information) {
+    AddedToTree added{static_cast<double>(n.addedLeaves), 0, 0};
     for (std::size_t t = 0; t < terms.size(); ++t)
       (terms[t].weight > 0 ? added.relevant : added.irrelevant) +=
-          std::fabs(terms[t].weight) *
-          (p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))]);
-    if (m_gTree.isFreeFrame(n.cell.depth))
+          std::fabs(terms[t].weight) * information[t];
+    if (n.isFree)
       frame += added;
     else
-      trees.add({n.cell.cube(), isExpanded, added, 0}, p * n.splitEntropy);
+      trees.add({n, n.isExpanded, added, 0}, n.price);
   });
   trees.finish();
   return frame;
@@ -77,12 +72,13 @@ AddedToTree Abstraction::forEachTau(const std::function<void(const NodeTau&)>& v
 void Abstraction::forEachPathNode(const VisitPathNode& visit) const {
   std::vector<double> information(options().weights.terms.size());
   const double total = totalDensity();
+  InCompressedTree inCompressed;
   forEachInner([&](const InnerNode& n) {
     const double p = shareOf(n, total);
     for (std::size_t t = 0; t < information.size(); ++t)
       information[t] = p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
-    visit({n.cell.cube(), m_gTree.isFreeFrame(n.cell.depth), p, p * n.splitEntropy,
-           n.numChildren - 1},
+    visit({n.cell.cube(), m_gTree.isFreeFrame(n.cell.depth), inCompressed.visit(n), p,
+           p * n.splitEntropy, n.numChildren - 1},
           information);
   });
 }

@@ -136,6 +136,7 @@ class Abstraction {
   /** An inner node as the compressed trees of all weights and alphas see it. */
   struct PathNode : Cube {
     bool isFree;      ///< in the free frame: expanded by every tree
+    bool isExpanded;  ///< in the compressed tree
     double share;     ///< p(n)
     double price;     ///< what expanding it costs, p(n) H(Pi): nats for each unit of alpha
     int addedLeaves;  ///< known children - 1
