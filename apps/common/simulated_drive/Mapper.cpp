@@ -2,6 +2,7 @@
 
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/CompressedObstacles.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_types/ClassTableFile.h>
 #include <synthetic_world/Classes.h>
 
@@ -22,7 +23,8 @@ namespace {
 
 SemanticOcTree& prepared(SemanticOcTree& map, const DriveConfig& config, const ClassOrder& order) {
   if (!config.halfLives.empty()) map.setHalfLives(semantic_types::loadClassTable(config.halfLives));
-  setAbstraction(map, abstractionFor(order, config.focus));
+  setAbstraction(
+      map, semantic_planning::abstractionFor(order, config.focus.alpha, config.focus.obstacles));
   return map;
 }
 
