@@ -1,4 +1,6 @@
 #pragma once
+#include <strict_files/OptionList.h>
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -7,6 +9,9 @@
  * of files may be) become U+FFFD. */
 std::string textOf(const nlohmann::json& json);
 std::string textOf(const nlohmann::ordered_json& json);
+
+/** The values of options: numbers, booleans, else texts; block_size is "blockSize". */
+nlohmann::ordered_json jsonOf(const strict_files::OptionList& options);
 
 /** Writes it into a file. \throw std::runtime_error naming the file: it cannot be written. */
 void writeJson(const std::filesystem::path& file, const nlohmann::json& json);

@@ -31,18 +31,6 @@ void addGraphs(CLI::App& app, StudyOptions& study) {
       ->capture_default_str();
 }
 
-/** Of all planners; what tells them apart is the study's. */
-void addPlanner(CLI::App& app, semantic_planning::PlannerOptions& planner) {
-  strict_files::OptionList options;
-  planner.describe(options);
-  options.add("class_of_leaf", planner.roadmap.classOfLeaf, "",
-              "vertices have the class of their leaf, as in the paper, not of the ground");
-  for (const char* studied :
-       {"graph", "vertices", "edges", "reading", "least_probability", "shorten", "time_limit"})
-    options.remove(studied);
-  addOptions(app, options, "Planner");
-}
-
 void addPeers(CLI::App& app, StudyOptions& study) {
   auto* group = app.add_option_group("Peers");
   group->add_flag("--peers", study.peers, "OMPL's PRM*, LazyPRM* and BIT*, too");
@@ -91,7 +79,7 @@ void Cli::addTo(CLI::App& app) {
   app.add_option("--solution", study.solution, "Which of the weights; none: the first")
       ->needs("--weights");
   addGraphs(app, study);
-  addPlanner(app, study.planner);
+  addOptions(app, sharedOptions(study.planner), "Planner");
   addPeers(app, study);
 }
 

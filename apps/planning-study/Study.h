@@ -41,6 +41,10 @@ struct StudyOptions {
   void validate() const;
 };
 
+/** The options of all planners; what tells them apart is the study's.
+ * \param planner must outlive the list. */
+strict_files::OptionList sharedOptions(semantic_planning::PlannerOptions& planner);
+
 extern const char* const kReference;  ///< Trial::graph of the dense graph
 
 /** What was studied on a map. */

@@ -1,6 +1,7 @@
 #include "Summary.h"
 
 #include "Groups.h"
+#include "JsonFile.h"
 #include "RoadmapSearch.h"
 
 namespace planning_study {
@@ -163,24 +164,20 @@ ordered_json mapJson(const MapStudy& map, const std::string& firstGraph) {
           {"pairs", pairs}};
 }
 
-ordered_json optionsJson(const StudyOptions& options) {
+ordered_json optionsJson(StudyOptions options) {
   std::vector<std::string> graphs;
   for (const auto kind : options.graphs) graphs.push_back(nameOf(kind));
-  const auto& roadmap = options.planner.roadmap;
-  return {{"instances", options.instances},
-          {"seed", options.seed},
-          {"minDistance", options.minDistance},
-          {"budgets", options.budgets},
-          {"graphs", graphs},
-          {"edgesPerVertex", options.edgesPerVertex},
-          {"reference", options.reference},
-          {"headings", roadmap.headings},
-          {"buffer", roadmap.buffer},
-          {"fillGap", options.planner.ground.fillGap},
-          {"unknownGap", options.planner.ground.unknownGap},
-          {"keepOff", options.planner.ground.keepOff},
-          {"peerSeconds", options.peerTimes},
-          {"peerInstances", options.peers ? options.peerInstances : 0}};
+  ordered_json json = {{"instances", options.instances},
+                       {"seed", options.seed},
+                       {"minDistance", options.minDistance},
+                       {"budgets", options.budgets},
+                       {"graphs", graphs},
+                       {"edgesPerVertex", options.edgesPerVertex},
+                       {"reference", options.reference},
+                       {"peerSeconds", options.peerTimes},
+                       {"peerInstances", options.peers ? options.peerInstances : 0}};
+  json.update(jsonOf(sharedOptions(options.planner)));
+  return json;
 }
 
 }  // namespace

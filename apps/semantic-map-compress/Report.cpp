@@ -5,12 +5,13 @@
 
 #include <sstream>
 
+#include "JsonFile.h"
+
 namespace semantic_map_compress {
 
 using nlohmann::ordered_json;
 using semantic_octree::AbstractionOptions;
 using strict_files::csvField;
-using strict_files::nameIn;
 using tree_abstraction::natsToBits;
 using tree_abstraction::TreeMeasures;
 
@@ -32,12 +33,12 @@ ordered_json toJson(const TreeMeasures& tree) {
           {"leafEntropy", natsToBits(tree.leafEntropy)}};
 }
 
-ordered_json toJson(const AbstractionOptions& space) {
-  return {{"blockSize", space.blockSize},
-          {"unknown", nameIn(choicesOf(space.unknown), space.unknown)},
-          {"unknownWeight", space.unknownWeight},
-          {"frame", nameIn(choicesOf(space.frame), space.frame)},
-          {"regions", space.regions.size()}};
+ordered_json toJson(AbstractionOptions space) {
+  strict_files::OptionList options;
+  space.describe(options);
+  ordered_json json = jsonOf(options);
+  json["regions"] = space.regions.size();
+  return json;
 }
 
 ordered_json informationJson(const TermCatalog& catalog, const std::vector<KeptInformation>& kept,

@@ -25,7 +25,6 @@ int main(int argc, char** argv) try {
         village.world.poseOnGround(p.x(), p.y(), village.route.heading(s)) *
         Eigen::Translation3d(0, 0, 1.5);
     const semantic_types::LabeledCloud cloud = scanLidar(village.world, T_map_sensor, {});
-
     map.insert(cloud, T_map_sensor);
     const auto change = follower.leaves();  // all that another robot needs to be told
     std::cout << cloud.size() << " points, " << map.getNumLeafNodes()

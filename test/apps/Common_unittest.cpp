@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include "JsonFile.h"
@@ -71,6 +72,19 @@ TEST(JsonFile, replacesWhatIsNoUtf8InsteadOfFailing) {
             "Stra\xEF\xBF\xBD"
             "e, Stra\xC3\x9F"
             "e");
+}
+
+TEST(JsonFile, echoesOptionsAsNumbersBooleansAndTexts) {
+  double edge = 0.25, far = std::numeric_limits<double>::infinity();
+  bool keeps = true;
+  std::string classes = "road, car";
+  strict_files::OptionList list;
+  list.add("block_size", edge, "m", "");
+  list.add("max_range", far, "m", strict_files::Range().orInfinite(), "");
+  list.add("keep_off", keeps, "", "");
+  list.add("classes", classes, "", "");
+  EXPECT_EQ(jsonOf(list).dump(),
+            R"({"blockSize":0.25,"maxRange":"inf","keepOff":true,"classes":"road, car"})");
 }
 
 TEST(JsonFile, namesAFileThatCannotBeWritten) {

@@ -52,7 +52,7 @@ const IncludeTable& includeTable() {
         "semantic_planning/roadmap"}},
       {"semantic_driving",
        {"Eigen", "mrpt", "octomap", "colored_graph", "mrpt_compat", "semantic_abstraction",
-        "semantic_octree", "semantic_types", "strict_files", "semantic_planning"}},
+        "semantic_types", "strict_files", "semantic_planning"}},
       {"synthetic_world", {"Eigen", "semantic_types", "strict_files"}},
       {"semantic_slam",
        {"Eigen", "map_correction", "semantic_octree", "semantic_types", "strict_files"}},

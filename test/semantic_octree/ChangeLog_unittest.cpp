@@ -11,13 +11,13 @@ using namespace semantic_octree;
 namespace {
 
 /** RapidCheck draws the same cases in every run, unless told otherwise. */
-const int kSeedIsFixed = setenv("RC_PARAMS", "seed=20240517", 0);
+const int kSeedOfLogsIsFixed = setenv("RC_PARAMS", "seed=20240517", 0);
 
 using Log = ChangeLog<int>;
 constexpr std::size_t kMost = 16;
 
 /** A reader, and what it should know. */
-struct Reader {
+struct LogReader {
   std::optional<Log::Place> place;
   std::vector<int> unread;
   bool hasRead = false;
@@ -39,11 +39,11 @@ struct Reader {
 TEST(ChangeLog, tellsEachReaderWhatItHasNotReadOrThatItIsLost) {
   EXPECT_TRUE(rc::check([] {
     const auto log = std::make_shared<Log>(kMost);
-    Reader readers[3];
+    LogReader readers[3];
     int next = 0;
     for (const int step : *rc::gen::container<std::vector<int>>(200, rc::gen::inRange(0, 30))) {
       if (step < 3) {
-        Reader& reader = readers[step];
+        LogReader& reader = readers[step];
         if (reader.place && next % 7 == 0)
           reader.end();
         else if (reader.place)
@@ -52,10 +52,10 @@ TEST(ChangeLog, tellsEachReaderWhatItHasNotReadOrThatItIsLost) {
           RC_ASSERT(reader.place.emplace(log).isLost());
       } else {
         log->push(++next);
-        for (Reader& reader : readers) reader.unread.push_back(next);
+        for (LogReader& reader : readers) reader.unread.push_back(next);
       }
       RC_ASSERT(log->size() <= kMost);
-      for (const Reader& reader : readers)
+      for (const LogReader& reader : readers)
         if (reader.hasRead && reader.unread.size() <= kMost / 2) RC_ASSERT(!reader.place->isLost());
     }
   }));

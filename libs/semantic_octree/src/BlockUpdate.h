@@ -1,6 +1,5 @@
 #pragma once
 #include <semantic_octree/ClassFilter.h>
-
 #include <semantic_octree/store/HitVotes.h>
 #include <semantic_octree/store/NodeStore.h>
 

@@ -11,7 +11,10 @@ using Node = SemanticOcTree::Node;
 template <class T>
 class Stacks {
  public:
-  Stacks() { m_last.fill(-1); }
+  Stacks() {
+    m_last.fill(-1);
+    m_all.reserve(2 * kTileColumns);
+  }
 
   /** \param grows whether what is below goes on in it, if it touches that */
   template <class F>

@@ -88,6 +88,13 @@ Surface surfaceOf(const Offer& offer) {
 
 bool isLower(const Surface& l, const Surface& r) { return l.z < r.z; }
 
+/** Whether a column has more than one surface. */
+bool hasLevels(const SurfaceTile& tile) {
+  for (int column = 0; column < kTileColumns; ++column)
+    if (tile.first[column + 1] > tile.first[column] + 1) return true;
+  return false;
+}
+
 /** Takes the ghosts out of a column's surfaces, which are sorted.
  * \param surfaces in which they begin at `begin` */
 void dropGhosts(const ColumnTile& columns, int column, std::ptrdiff_t begin,
@@ -123,6 +130,7 @@ SurfaceTile filledSurfaces(const GapFillGrid& fills, const SurfaceGrid& measured
   const SurfaceTile* own = measured.find(tile);
   const ColumnTile* scanned = columns.find(tile);
   const std::vector<Offer> offers = bestOffers(offersTo(tile, fills, shape), shape.step);
+  if (own && offers.empty() && !hasLevels(*own)) return *own;
   return merged(own ? *own : SurfaceTile(), offers, scanned ? *scanned : ColumnTile());
 }
 

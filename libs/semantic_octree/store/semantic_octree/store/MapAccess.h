@@ -1,6 +1,5 @@
 #pragma once
 #include <semantic_octree/SemanticOcTree.h>
-
 #include <semantic_octree/store/NodeEditor.h>
 
 namespace semantic_octree {

@@ -1,7 +1,6 @@
 #pragma once
 #include <semantic_octree/MapFollower.h>
 #include <semantic_octree/SemanticOcTreeNode.h>
-
 #include <semantic_octree/store/ChangeLog.h>
 #include <semantic_octree/store/TileCodes.h>
 
