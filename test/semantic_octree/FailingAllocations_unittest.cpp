@@ -7,6 +7,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 #include <semantic_abstraction/AlphaTrees.h>
+#include <semantic_octree/MapFollower.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <optional>

@@ -222,7 +222,7 @@ class Study {
     for (std::size_t i = 0; i < leaves.size() && static_cast<double>(i) < number; ++i) {
       TreePart part;
       part.cell = CellPath::of(leaves[i]);
-      part.leaves[0] = StreamLeaf::of(contentOf(map, leaves[i].node));
+      part.leaves[0] = StreamLeaf::of(contentOf(leaves[i].node, map.numClasses()));
       tree.apply(part, 0);
     }
     return tree.map(SemanticOcTree(map.getResolution(), map.classes(), map.filterParameters()));
