@@ -1,5 +1,6 @@
 // Maps of keyframes that come, move and go, against mapping from scratch.
 #include <gtest/gtest.h>
+#include <semantic_octree/MapFollower.h>
 
 #include <algorithm>
 #include <set>

@@ -3,6 +3,7 @@
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
 #include <semantic_abstraction/Abstraction.h>
+#include <semantic_octree/MapFollower.h>
 
 #include <cmath>
 #include <set>
