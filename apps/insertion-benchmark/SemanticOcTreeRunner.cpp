@@ -36,7 +36,6 @@ class OurRunner : public Runner {
                                           ? tree_abstraction::relevant(name, 1.0, {i + 1})
                                           : tree_abstraction::irrelevant(name, 0.3, {i + 1}));
     }
-    options.weights.alpha = 0.02;
     return options;
   }
 

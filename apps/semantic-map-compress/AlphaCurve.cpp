@@ -1,10 +1,10 @@
 #include "AlphaCurve.h"
 
+#include <semantic_abstraction/AlphaTrees.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-
-#include "AlphaBins.h"
 
 namespace semantic_map_compress {
 
@@ -58,15 +58,16 @@ CurvePoint curvePoint(Compressor& compressor, const AbstractionMeasures& m) {
 }
 
 std::vector<CurvePoint> alphaCurve(Compressor& compressor) {
-  const AlphaBins bins(compressor.abstraction());
+  const semantic_octree::Abstraction present = compressor.abstraction();
+  const semantic_octree::AlphaTrees trees(present);
   std::vector<double> leaves;
-  for (std::size_t k = 0; k < bins.numTrees(); ++k) leaves.push_back(bins.tree(k).leaves);
+  for (std::size_t k = 0; k < trees.numTrees(); ++k) leaves.push_back(trees.tree(k).leaves);
   std::vector<CurvePoint> curve;
   for (const std::size_t k : spread(leaves)) {
-    const Added& tree = bins.tree(k);
-    curve.push_back({bins.alpha(k), static_cast<std::size_t>(tree.leaves),
-                     share(tree.relevant, bins.full().relevant),
-                     share(tree.irrelevant, bins.full().irrelevant)});
+    const semantic_octree::AddedToTree& tree = trees.tree(k);
+    curve.push_back({trees.alpha(k), static_cast<std::size_t>(tree.leaves),
+                     share(tree.relevant, trees.full().relevant),
+                     share(tree.irrelevant, trees.full().irrelevant)});
   }
   return curve;
 }

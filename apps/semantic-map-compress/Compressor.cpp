@@ -1,30 +1,19 @@
 #include "Compressor.h"
 
-#include <semantic_abstraction/Abstraction.h>
+#include <semantic_abstraction/AlphaTrees.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <stdexcept>
-
-#include "AlphaBins.h"
 
 namespace semantic_map_compress {
 
 using semantic_octree::Abstraction;
 using semantic_octree::AbstractionMeasures;
+using semantic_octree::AlphaTrees;
 using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
 
 namespace {
-
-/** The last number for which it is true, as it is for `first`, and not for `end`, by bisection. */
-template <typename F>
-std::size_t lastThat(const F& f, std::size_t first, std::size_t end) {
-  while (end - first > 1) {
-    const std::size_t middle = first + (end - first) / 2;
-    (f(middle) ? first : end) = middle;
-  }
-  return first;
-}
 
 [[noreturn]] void refuse(const Solution& solution, const std::string& what) {
   throw std::runtime_error("solution '" + solution.name + "': " + what);
@@ -70,44 +59,26 @@ double Compressor::alphaFor(const Solution& solution, const Target& target) {
 double Compressor::alphaForLeaves(const Solution& solution, std::size_t wanted) {
   weigh(solution, 0);
   const Abstraction present = abstraction();
-  const AlphaBins bins(present);
-  if (static_cast<double>(wanted) < bins.tree(0).leaves)
-    refuse(solution, std::to_string(wanted) + " leaves wanted, but the map has " +
-                         std::to_string(static_cast<std::size_t>(bins.tree(0).leaves)) +
-                         " blocks, each of which is a leaf at least (see block_size)");
-  const std::size_t most = m_map.getNumLeafNodes();
-  if (wanted > most)
-    refuse(solution,
-           std::to_string(wanted) + " leaves wanted, but the map has only " + std::to_string(most));
-  const auto fits = [&](std::size_t k) {
-    return bins.tree(k).leaves <= static_cast<double>(wanted);
-  };
-  const std::size_t k = lastThat(fits, 0, bins.numTrees());
-  if (k + 1 == bins.numTrees()) return bins.alpha(k);
-  const AlphaBins::Path path = bins.within(k);
-  const double more = static_cast<double>(wanted) - bins.tree(k).leaves;
-  return path.trees.alpha(path.trees.largestWithin(more, path.addedLeaves, 0));
+  try {
+    return AlphaTrees(present).alphaForLeaves(wanted);
+  } catch (const std::invalid_argument& e) {
+    refuse(solution, e.what());
+  }
 }
 
 double Compressor::alphaForBytes(const Solution& solution, std::size_t wanted) {
   weigh(solution, 0);
   const Abstraction present = abstraction();
-  const AlphaBins bins(present);
+  const AlphaTrees trees(present);
   const auto bytesOf = [&](double alpha) {
     weigh(solution, alpha);
     return semantic_octree::fileSize(Compressed(*this).map());
   };
-  const std::size_t least = bytesOf(bins.alpha(0));
+  const std::size_t least = bytesOf(trees.alpha(0));
   if (least > wanted)
     refuse(solution, std::to_string(wanted) + " bytes wanted, but the smallest map takes " +
                          std::to_string(least) + " (see block_size)");
-  const std::size_t k =
-      lastThat([&](std::size_t i) { return bytesOf(bins.alpha(i)) <= wanted; }, 0, bins.numTrees());
-  if (k + 1 == bins.numTrees()) return bins.alpha(k);
-  const AlphaBins::Path path = bins.within(k);
-  return path.trees.alpha(
-      lastThat([&](std::size_t i) { return bytesOf(path.trees.alpha(i)) <= wanted; }, path.first,
-               path.last));
+  return trees.largestThat([&](double alpha) { return bytesOf(alpha) <= wanted; });
 }
 
 Compressed::Compressed(Compressor& compressor)

@@ -68,8 +68,8 @@ Cli::Cli(CLI::App& app) : outputs(app) {
       "Where it looks at and from: m and degrees, as the window says it");
   from->type_name("X,Y,Z,DISTANCE,AZIMUTH,ELEVATION");
   app.add_flag("--top", view.top, "From above, north up")->excludes(from);
-  std::map<std::string, map_view::Coloring> colorings;
-  for (const auto& [name, value] : choicesOf(map_view::Coloring())) colorings[name] = value;
+  std::map<std::string, map_view::ViewColoring> colorings;
+  for (const auto& [name, value] : choicesOf(map_view::ViewColoring())) colorings[name] = value;
   addChoice(app.add_option("--color", view.style.coloring, "What the cells' colors say"),
             colorings);
   auto* clip = app.add_option_function<std::string>(

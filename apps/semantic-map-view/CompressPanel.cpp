@@ -192,7 +192,7 @@ void CompressPanel::setWeight(std::size_t term, double weight) {
 /** Map and numbers follow the compressed tree. */
 void CompressPanel::follow() {
   auto boxes = m_live->takeChange();
-  if (m_viewer.style().coloring == map_view::Coloring::Retained)
+  if (m_viewer.style().coloring == map_view::ViewColoring::Retained)
     boxes = {map_view::KeyBox::everything()};  // colors change where leaves do not
   m_viewer.changed(boxes);
   m_alphaText->setCaption(rounded(m_live->alpha(), 3));

@@ -24,8 +24,7 @@ std::string rounded(double number) {
 }
 
 std::string edgeOf(const Balance& balance, const LiveCompression& live, double voxelSize) {
-  const map_view::KeyBox box = live.tree().box(balance.node);
-  return rounded((box.high.x() - box.low.x() + 1) * voxelSize) + " m";
+  return rounded(live.tree().cube(balance.node).edge() * voxelSize) + " m";
 }
 
 std::string textOf(const Balance& balance, const LiveCompression& live) {
@@ -105,8 +104,7 @@ void WhyPanel::update() {
   std::vector<Balance> balances = live->balancesAround(m_cell->lowest);
   // What is below the cell would not say why it is as large as it is.
   const auto isBelow = [&](const Balance& b) {
-    const map_view::KeyBox box = live->tree().box(b.node);
-    return box.high.x() - box.low.x() + 1 < m_cell->edge();
+    return live->tree().cube(b.node).edge() < m_cell->edge();
   };
   balances.erase(std::remove_if(balances.begin(), balances.end(), isBelow), balances.end());
   std::string told;

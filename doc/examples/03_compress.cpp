@@ -1,6 +1,6 @@
 // Compresses a map to a number of leaves, of which those are kept that tell most about a class:
 //     03_compress MAP.semantic CLASS LEAVES OUTPUT.semantic
-#include <semantic_abstraction/Abstraction.h>
+#include <semantic_abstraction/AlphaTrees.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <cstdlib>
@@ -18,7 +18,8 @@ int main(int argc, char** argv) try {
 
   // All optimal trees are known at once, by the price of detail; the largest one that fits is ours.
   semantic_octree::Abstraction abstraction(map);
-  abstraction.setAlpha(abstraction.alphaPath().alphaForLeaves(std::strtoul(argv[3], nullptr, 10)));
+  const semantic_octree::AlphaTrees trees(abstraction);
+  abstraction.setAlpha(trees.alphaForLeaves(std::strtoul(argv[3], nullptr, 10)));
   const semantic_octree::SemanticOcTree compressed = abstraction.compressedMap();
 
   std::cout << compressed.getNumLeafNodes() << " of " << map.getNumLeafNodes() << " leaves keep "

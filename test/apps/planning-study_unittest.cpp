@@ -108,7 +108,7 @@ TEST_F(PlanningStudy, costsMayCountEdgesInGraphsOfAFileOfWeights) {
   folder.write("weights.yaml", "relevant: {road: 1}\nalpha: 0.001\nname: roads\n");
   const std::string weights = (folder / "weights.yaml").string();
   expectRefused(study({"--graphs", "leaves", "--weights", weights, "--solution", "none"}),
-                weights + ": has no solution 'none'");
+                weights + ": unknown solution 'none'");
   ASSERT_EQ(study({"--graphs", "leaves", "--weights", weights, "--solution", "roads", "--cost",
                    "count", "--class-of-leaf"})
                 .status,

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "../semantic_octree/CraftedTreeFile.h"
+#include "AllAlphas.h"
 #include "CompressionOptions.h"
 #include "CsvTable.h"
 #include "SemanticMapCompress.h"
@@ -15,8 +16,8 @@
 namespace fs = std::filesystem;
 using namespace semantic_octree;
 using nlohmann::json;
-using tree_abstraction::bitsToNats;
 using tree_abstraction::irrelevant;
+using tree_abstraction::kLn2;
 using tree_abstraction::relevant;
 
 namespace {
@@ -64,13 +65,14 @@ TEST_F(SemanticMapCompress, reportHoldsTheMeasuresOfTheTreesThatAreWritten) {
   EXPECT_EQ(report["map"]["tree"]["allLeaves"], expected.full.numLeaves);
   EXPECT_EQ(posts["tree"]["knownLeaves"], expected.compressed.numKnownLeaves);
   EXPECT_EQ(posts["tree"]["allLeaves"], expected.compressed.numLeaves);
-  EXPECT_NEAR(bitsToNats(posts["tree"]["leafEntropy"]), expected.compressed.leafEntropy, 1e-12);
-  EXPECT_NEAR(bitsToNats(posts["objective"]), expected.objective, 1e-12);
+  EXPECT_NEAR(kLn2 * posts["tree"]["leafEntropy"].get<double>(), expected.compressed.leafEntropy,
+              1e-12);
+  EXPECT_NEAR(kLn2 * posts["objective"].get<double>(), expected.objective, 1e-12);
   EXPECT_EQ(posts["classes"].size(), K + 1u);
   for (std::size_t id = 0; id <= K; ++id) {
     const json& kept = posts["classes"][id == 0 ? "free_space" : kNames[id - 1]];
-    EXPECT_NEAR(bitsToNats(kept["full"]), expected.full.information[id], 1e-12);
-    EXPECT_NEAR(bitsToNats(kept["kept"]), expected.compressed.information[id], 1e-12);
+    EXPECT_NEAR(kLn2 * kept["full"].get<double>(), expected.full.information[id], 1e-12);
+    EXPECT_NEAR(kLn2 * kept["kept"].get<double>(), expected.compressed.information[id], 1e-12);
     EXPECT_NEAR(kept["share"], *expected.retention(id), 1e-12);
   }
   for (const json& solution : report["solutions"]) {
@@ -133,8 +135,7 @@ solutions:
 
 TEST_F(SemanticMapCompress, aWantedNumberOfLeavesGivesTheLargestOptimalTreeWithin) {
   SemanticOcTree map = withTheseWeights(loadTree(mapFile()));
-  const Abstraction::Path path = Abstraction(map).alphaPath();
-  const auto totals = path.trees.totals(path.addedLeaves, double(path.numRoots));
+  const auto totals = AllAlphas(Abstraction(map)).leaves;
   for (const std::size_t wanted : {500, 2000, 5000}) {
     const json report = reportOf(kToSize, {"--leaves", std::to_string(wanted)});
     const auto beyond = std::upper_bound(totals.begin(), totals.end(), double(wanted));
@@ -145,15 +146,14 @@ TEST_F(SemanticMapCompress, aWantedNumberOfLeavesGivesTheLargestOptimalTreeWithi
 TEST_F(SemanticMapCompress, aWantedNumberOfBytesIsKeptAndTheNextLargerTreeExceedsIt) {
   SemanticOcTree map = withTheseWeights(loadTree(mapFile()));
   Abstraction abstraction(map);
-  const Abstraction::Path path = abstraction.alphaPath();
-  const auto totals = path.trees.totals(path.addedLeaves, double(path.numRoots));
+  const AllAlphas path(abstraction);
   for (const std::size_t wanted : {20000, 50000}) {
     const json report = reportOf(kToSize, {"--bytes", std::to_string(wanted)});
     const json& solution = report["solutions"][0];
     EXPECT_LE(fs::file_size(output() / "a.semantic"), wanted);
-    const auto next = std::upper_bound(totals.begin(), totals.end(),
+    const auto next = std::upper_bound(path.leaves.begin(), path.leaves.end(),
                                        solution["tree"]["knownLeaves"].get<double>());
-    abstraction.setAlpha(path.trees.alpha(static_cast<std::size_t>(next - totals.begin())));
+    abstraction.setAlpha(path.trees.alpha(static_cast<std::size_t>(next - path.leaves.begin())));
     saveTree(abstraction.compressedMap(), (folder / "next.semantic").string());
     EXPECT_GT(fs::file_size(folder / "next.semantic"), wanted);
   }

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "EdgeChanges.h"
+
 using namespace colored_graph;
 
 namespace {
@@ -143,7 +145,7 @@ TEST(ColoredGraph, keepsEveryKindOfContent) {
       } else {
         content.tolls = {*rc::gen::element<Length>(0, 5, kClosed),
                          *rc::gen::element<Length>(0, 5, kClosed)};
-        graph.setTolls(e, content.tolls);
+        setTolls(graph, e, content.tolls);
       }
       for (EdgeId each = 0; each < 4; ++each) same(graph.edge(each), contents[each]);
     }
@@ -184,8 +186,6 @@ TEST(ColoredGraph, logsTheVerticesAtWhoseEdgesSomethingChanged) {
   using Set = std::set<VertexId>;
   EXPECT_EQ(changesOf([&] { graph.setProfile(0, {{1, 11}}); }), (Set{0, 1}));
   EXPECT_EQ(changesOf([&] { graph.setBlocked(0); }), (Set{0, 1}));
-  EXPECT_EQ(changesOf([&] { graph.setUnevaluated(0, 3); }), (Set{0, 1}));
-  EXPECT_EQ(changesOf([&] { graph.setTolls(0, {3, kClosed}); }), (Set{0, 1}));
   EXPECT_EQ(changesOf([&] { graph.addEdge(lonely, 2, {{0, 1}}); }), (Set{2, lonely}));
   EXPECT_EQ(changesOf([&] { graph.setVertexClass(2, 1); }), (Set{0, 1, 2, lonely}));
   EXPECT_EQ(changesOf([&] { graph.setVertexClass(2, 1); }), Set{});
@@ -219,8 +219,6 @@ TEST(ColoredGraph, refusesUnknownIds) {
     EXPECT_THROW(graph.edge(e), std::out_of_range);
     EXPECT_THROW(graph.setProfile(e, {{0, 1}}), std::out_of_range);
     EXPECT_THROW(graph.setBlocked(e), std::out_of_range);
-    EXPECT_THROW(graph.setUnevaluated(e, 1), std::out_of_range);
-    EXPECT_THROW(graph.setTolls(e, {}), std::out_of_range);
   }
   EXPECT_EQ(graph.edgeCount(), 3u);
   EXPECT_EQ(graph.changes().end(), log);
@@ -249,14 +247,12 @@ TEST(ColoredGraph, refusesBadProfilesAndStaysAsItWas) {
     EXPECT_THROW(graph.setProfile(0, profile), std::invalid_argument);
   }
   EXPECT_THROW(graph.addUnevaluatedEdge(0, 1, -1), std::invalid_argument);
-  EXPECT_THROW(graph.setUnevaluated(0, -5), std::invalid_argument);
   EXPECT_THROW(graph.addEdge(1, 1, {{0, 1}}), std::invalid_argument);
   EXPECT_THROW(graph.addUnevaluatedEdge(1, 1, 1), std::invalid_argument);
   for (const Tolls& tolls :
        {Tolls{-1, 0}, Tolls{0, -1}, Tolls{Length{1} << 62, 0}, Tolls{0, huge - 1}}) {
     EXPECT_THROW(graph.addEdge(0, 1, {{0, 1}}, tolls), std::invalid_argument);
     EXPECT_THROW(graph.addUnevaluatedEdge(0, 1, 1, tolls), std::invalid_argument);
-    EXPECT_THROW(graph.setTolls(0, tolls), std::invalid_argument);
   }
   EXPECT_THROW(graph.addVertex(3), std::invalid_argument);
   EXPECT_THROW(graph.setVertexClass(0, 3), std::invalid_argument);

@@ -48,7 +48,7 @@ void change(PlaneGraph& plane, VertexId start, VertexId goal, bool tolled = fals
       if (graph.vertexCount() < 180) insertVertex(plane);
       break;
     case 6:
-      if (tolled) graph.setTolls(e, plane.randomTolls());
+      if (tolled) setTolls(graph, e, plane.randomTolls());
       break;
     default:
       graph.setProfile(e, plane.randomProfile(graph.edge(e).a, graph.edge(e).b));
@@ -167,10 +167,10 @@ TEST(ColoredReplanner, staysExactWithLazyEdgesThatChange) {
         const EdgeId e = plane.randomEdge();
         const VertexId a = graph.edge(e).a, b = graph.edge(e).b;
         plane.graph.setProfile(e, plane.randomProfile(a, b));
-        graph.setUnevaluated(e, plane.bound(a, b));
+        setUnevaluated(graph, e, plane.bound(a, b));
       }
       for (EdgeId e = 0; i == 0 && e < graph.edgeIdEnd(); ++e)
-        graph.setUnevaluated(e, plane.bound(graph.edge(e).a, graph.edge(e).b));
+        setUnevaluated(graph, e, plane.bound(graph.edge(e).a, graph.edge(e).b));
       ASSERT_EQ(costOf(replanner.solve()), oracles::tupleDijkstra(plane.graph, model, start, goal))
           << "seed " << seed << ", round " << i;
     }

@@ -17,7 +17,7 @@ namespace {
 struct LazyWorld {
   explicit LazyWorld(PlaneGraph& plane) : graph(plane.graph), truth(plane.graph) {
     for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) {
-      if (graph.containsEdge(e)) graph.setUnevaluated(e, minLength(plane, e));
+      if (graph.containsEdge(e)) setUnevaluated(graph, e, minLength(plane, e));
     }
     options.lengthBound = [&plane](VertexId a, VertexId b) { return plane.bound(a, b); };
     options.evaluate = [this](EdgeId e) -> std::optional<EdgeProfile> {

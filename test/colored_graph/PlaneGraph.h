@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "EdgeChanges.h"
+
 /** A random graph on points of a coarse grid, so that points coincide (edges of length 0) and
  * lengths tie, with a consistent lower bound of lengths. */
 class PlaneGraph {
@@ -47,7 +49,7 @@ class PlaneGraph {
   /** Every third edge gets tolls, of these every third leads one way. */
   void addTolls() {
     for (colored_graph::EdgeId e = 0; e < graph.edgeIdEnd(); ++e)
-      if (graph.containsEdge(e) && below(3) == 0) graph.setTolls(e, randomTolls());
+      if (graph.containsEdge(e) && below(3) == 0) setTolls(graph, e, randomTolls());
   }
   colored_graph::Tolls randomTolls() {
     const colored_graph::Length toA = below(30), toB = below(30);

@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "EdgeChanges.h"
 #include "Oracles.h"
 #include "PlaneGraph.h"
 
@@ -97,10 +98,10 @@ TEST_P(SearchStatusOf, aForbiddenClassInTheWayIsNamed) {
 
 TEST_P(SearchStatusOf, aForbiddenClassInTheWayOfAnUnevaluatedEdgeIsNamed) {
   chain(2);
-  graph.setUnevaluated(0, 5);
+  setUnevaluated(graph, 0, 5);
   options.evaluate = [](EdgeId) { return EdgeProfile{{2, 10}}; };
   EXPECT_EQ(solve(0, 1).status, SearchStatus::OnlyForbidden);
-  graph.setUnevaluated(0, 5);
+  setUnevaluated(graph, 0, 5);
   options.evaluate = [](EdgeId) { return std::nullopt; };
   EXPECT_EQ(solve(0, 1).status, SearchStatus::NotConnected);
 }
@@ -128,7 +129,7 @@ TEST_P(SearchStatusOf, cancelStopsTheSearch) {
 
 TEST_P(SearchStatusOf, timeLimitStopsTheSearchBetweenSlowEvaluations) {
   chain(1000);
-  for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) graph.setUnevaluated(e, 10);
+  for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) setUnevaluated(graph, e, 10);
   options.timeLimit = 0.03;
   options.evaluate = [](EdgeId) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

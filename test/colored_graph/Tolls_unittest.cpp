@@ -5,6 +5,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "EdgeChanges.h"
 #include "Oracles.h"
 
 using namespace colored_graph;
@@ -67,7 +68,7 @@ TEST_P(TollsIn, eachWayHasItsOwnToll) {
   const EdgeId e = graph.addEdge(0, 1, {{0, 10}}, {3, 50});
   EXPECT_EQ(solve(0, 1).cost, (Tuple{0, 13, 10}));
   EXPECT_EQ(solve(1, 0).cost, (Tuple{0, 60, 10}));
-  graph.setTolls(e, {0, 1});
+  setTolls(graph, e, {0, 1});
   EXPECT_EQ(solve(1, 0).cost, (Tuple{0, 11, 10}));
 }
 

@@ -3,7 +3,7 @@
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapContents.h>
 #include <map_operations/MapOperations.h>
-#include <semantic_abstraction/Abstraction.h>
+#include <semantic_abstraction/AlphaTrees.h>
 #include <semantic_octree/MapFollower.h>
 
 #include "FolderDrive.h"
@@ -172,7 +172,7 @@ TEST(MapFolder, abstractionByTileIsThatOfTheWhole) {
         EXPECT_EQ(a.objective(), b.objective());
         EXPECT_EQ(a.measures().compressed.information, b.measures().compressed.information);
         EXPECT_EQ(a.measures().compressed.numLeaves, b.measures().compressed.numLeaves);
-        EXPECT_EQ(a.alphaPath().alphaForLeaves(3000), b.alphaPath().alphaForLeaves(3000));
+        EXPECT_EQ(AlphaTrees(a).alphaForLeaves(3000), AlphaTrees(b).alphaForLeaves(3000));
         EXPECT_TRUE(a.compressedMap() == b.compressedMap());
         EXPECT_EQ(a.leaves(), b.leaves());
         EXPECT_TRUE(map == whole);  // all G-values and mixtures

@@ -200,7 +200,7 @@ TEST(MapStream, partsOfOneRevisionLeadToOneTreeInAnyOrder) {
     part.leaves[0] = {{}, value, StreamLeaf::Kind::Plain};
     return part;
   };
-  const CellPath large = CellPath::of({32768, 32768, 32768}, 10);
+  const CellPath large = CellPath::of({{32768, 32768, 32768}, 10});
   std::vector<TreePart> parts;
   for (int i = 0; i < 8; ++i) parts.push_back(leaf(large.child(i), static_cast<Units>(i)));
   TreePart octet = leaf(large.child(5), 50);

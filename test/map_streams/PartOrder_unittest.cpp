@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "AllAlphas.h"
+#include "FirstTrees.h"
 #include "StreamedMaps.h"
 #include "TreeParts.h"
 
@@ -13,18 +15,18 @@ namespace {
 /** By cell: the first tree of the alpha path that expands an inner node. */
 std::map<CellPath, std::size_t> firstTrees(const Abstraction& abstraction,
                                            const tree_abstraction::AlphaPath& trees) {
-  const auto first = trees.firstTrees();
+  const auto first = firstTreesOf(trees);
   std::map<CellPath, std::size_t> byCell;
   std::size_t i = 0;
   abstraction.forEachPathNode([&](const Abstraction::PathNode& n, const auto&) {
-    if (!n.isFree) byCell[CellPath::of(n.lowest, n.depth)] = first[i++];
+    if (!n.isFree) byCell[CellPath::of(n)] = first[i++];
   });
   return byCell;
 }
 
 void expectTheOrderOfThePath(SemanticOcTree& map) {
   const Abstraction abstraction(map);
-  const tree_abstraction::AlphaPath trees = abstraction.alphaPath().trees;
+  const tree_abstraction::AlphaPath trees = AllAlphas(abstraction).trees;
   const auto first = firstTrees(abstraction, trees);
   const TreeParts parts = partsOfChange(map, nullptr);
   ASSERT_GT(parts.parts.size(), 10u);

@@ -183,7 +183,7 @@ TEST(Balances, WhatIsRetainedIsGreenAndWhatIsLostRed) {
   const map_view::CompressedCells cells(map, live);
   map_view::CellLook look(map);
   map_view::ViewStyle style;
-  style.coloring = map_view::Coloring::Retained;
+  style.coloring = map_view::ViewColoring::Retained;
   look.setStyle(style);
   const auto colorAt = [&](double alpha) {
     live.setAlpha(alpha);

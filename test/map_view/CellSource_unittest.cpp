@@ -22,9 +22,9 @@ Eigen::Array3i atDepth(const Eigen::Array3i& key, int depth) {
 }
 
 /** Whether they are occupied. */
-std::map<Cube, bool> shown(const CellSource& cells, const CellLook& look, int maxDepth,
-                           const KeyBox& box = kAll) {
-  std::map<Cube, bool> found;
+std::map<CubeId, bool> shown(const CellSource& cells, const CellLook& look, int maxDepth,
+                             const KeyBox& box = kAll) {
+  std::map<CubeId, bool> found;
   cells.forEachShown(box, maxDepth, look, [&](const ViewCell& cell) {
     EXPECT_TRUE(found.emplace(cubeOf(cell.lowest, cell.depth), cell.isOccupied()).second);
   });
@@ -32,8 +32,8 @@ std::map<Cube, bool> shown(const CellSource& cells, const CellLook& look, int ma
 }
 
 /** What finer leaves become at a depth. */
-std::map<Cube, bool> together(const std::map<Cube, bool>& leaves, int maxDepth) {
-  std::map<Cube, bool> cubes;
+std::map<CubeId, bool> together(const std::map<CubeId, bool>& leaves, int maxDepth) {
+  std::map<CubeId, bool> cubes;
   for (const auto& [cube, occupied] : leaves) {
     const auto [x, y, z, depth] = cube;
     const int d = std::min(depth, maxDepth);
@@ -43,8 +43,8 @@ std::map<Cube, bool> together(const std::map<Cube, bool>& leaves, int maxDepth) 
   return cubes;
 }
 
-std::map<Cube, bool> leavesOf(const SemanticOcTree& map, bool withFree) {
-  std::map<Cube, bool> leaves;
+std::map<CubeId, bool> leavesOf(const SemanticOcTree& map, bool withFree) {
+  std::map<CubeId, bool> leaves;
   for (auto it = map.begin_leafs(); it != map.end_leafs(); ++it) {
     const octomap::OcTreeKey key = it.getIndexKey();
     if (withFree || map.isNodeOccupied(*it))
@@ -82,10 +82,10 @@ TEST(FullCells, AreThoseOfABoxOnly) {
   const FullCells cells(map);
   const CellLook look(map);
   const KeyBox box = {Eigen::Array3i(32760, 32750, 32740), Eigen::Array3i(32790, 32800, 32771)};
-  std::map<Cube, bool> expected;
+  std::map<CubeId, bool> expected;
   for (const auto& [cube, occupied] : shown(cells, look, kTreeDepth)) {
     const auto [x, y, z, depth] = cube;
-    if (box.meets({x, y, z}, semantic_octree::edgeAtDepth(depth))) expected[cube] = occupied;
+    if (box.meets({{x, y, z}, depth})) expected[cube] = occupied;
   }
   EXPECT_GT(expected.size(), 100u);
   EXPECT_EQ(shown(cells, look, kTreeDepth, box), expected);
@@ -121,10 +121,10 @@ TEST(CompressedCells, AreTheLeavesOfTheCompressedTree) {
     ViewStyle style;
     style.freeSpace = withFree;
     look.setStyle(style);
-    std::map<Cube, bool> leaves;
+    std::map<CubeId, bool> leaves;
     for (const auto& leaf : semantic_octree::Abstraction(other).leaves())
       if (withFree || other.isNodeOccupied(leaf.node))
-        leaves[cubeOf(leaf.lowest(), int(leaf.depth))] = other.isNodeOccupied(leaf.node);
+        leaves[cubeOf(leaf.lowest, leaf.depth)] = other.isNodeOccupied(leaf.node);
     ASSERT_GT(leaves.size(), 100u);
     ASSERT_LT(leaves.size(), map.getNumLeafNodes());
     for (const int depth : {kTreeDepth, 13, 10})
@@ -180,7 +180,7 @@ TEST(UnknownSpace, IsWhatNoLeafHoldsWithinTheirBoundingBoxAndTheClippingBox) {
        {ViewStyle::everywhere(),
         Eigen::AlignedBox3d(Eigen::Vector3d(-8.33, -90, -4.1), Eigen::Vector3d(11.5, 8.71, 3))}) {
     const CellLook look = withUnknownSpace(map, clip);
-    std::set<Cube> voxels, expected;
+    std::set<CubeId> voxels, expected;
     std::size_t number = 0;
     cells.forEachShown(kAll, kTreeDepth, look, [&](const ViewCell& cell) {
       if (cell.node) return;
@@ -206,7 +206,7 @@ TEST(UnknownSpace, IsCoarseWhereAllOfACubeIsUnknown) {
   const auto cubes = shown(cells, withUnknownSpace(map, ViewStyle::everywhere()), kDepth),
              occupied = shown(cells, CellLook(map), kDepth);
   const KeyBox box = boxAround(map);
-  std::map<Cube, bool> allUnknown;
+  std::map<CubeId, bool> allUnknown;
   forEachKey(box, [&](const Eigen::Array3i& key) {
     bool& all = allUnknown.emplace(cubeOf(atDepth(key, kDepth), kDepth), true).first->second;
     all = all && isUnknown(map, key);
@@ -214,7 +214,7 @@ TEST(UnknownSpace, IsCoarseWhereAllOfACubeIsUnknown) {
   int unknown = 0;
   for (const auto& [cube, all] : allUnknown) {
     const auto [x, y, z, depth] = cube;
-    if (!box.contains({x, y, z}, semantic_octree::edgeAtDepth(depth))) continue;
+    if (!box.contains({{x, y, z}, depth})) continue;
     // It may be a part of a larger one.
     int holders = 0;
     for (int d = 0; d <= kDepth; ++d) holders += int(cubes.count(cubeOf(atDepth({x, y, z}, d), d)));
@@ -246,13 +246,14 @@ TEST(CellLook, ColorsSayWhatTheyShould) {
   ASSERT_EQ(look.classOf(road), 1);
   EXPECT_EQ(look.colorOf(road), map.classes().color(1));
   ViewStyle style;
-  for (const Coloring coloring : {Coloring::Probability, Coloring::Entropy, Coloring::Occupancy}) {
+  for (const ViewColoring coloring :
+       {ViewColoring::Probability, ViewColoring::Entropy, ViewColoring::Occupancy}) {
     style.coloring = coloring;
     look.setStyle(style);
     const Color c = look.colorOf(road);
     EXPECT_GT(c.g, c.b) << int(coloring);  // red, yellow or green
   }
-  style.coloring = Coloring::Height;
+  style.coloring = ViewColoring::Height;
   look.setStyle(style);
   const auto colorAt = [&](int z) {
     return look.colorOf({Eigen::Array3i(32768, 32768, z), kTreeDepth, road.node});

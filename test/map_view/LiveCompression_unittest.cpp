@@ -5,6 +5,7 @@
 #include <semantic_octree/TreeFile.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 
@@ -28,12 +29,12 @@ std::size_t termNamed(const LiveCompression& live, const std::string& name) {
 }
 
 /** Of the compressed tree. */
-std::set<Cube> leavesOf(const SemanticOcTree& map, const LiveCompression& live) {
+std::set<CubeId> leavesOf(const SemanticOcTree& map, const LiveCompression& live) {
   map_view::CellLook look(map);
   map_view::ViewStyle style;
   style.freeSpace = true;
   look.setStyle(style);
-  std::set<Cube> leaves;
+  std::set<CubeId> leaves;
   map_view::CompressedCells(map, live).forEachShown(
       KeyBox::everything(), semantic_octree::kTreeDepth, look, [&](const map_view::ViewCell& cell) {
         EXPECT_TRUE(leaves.insert(cubeOf(cell.lowest, cell.depth)).second);
@@ -42,26 +43,32 @@ std::set<Cube> leavesOf(const SemanticOcTree& map, const LiveCompression& live) 
 }
 
 /** With G-values: of a solution with its terms alone, as semantic-map-compress finds it. */
-std::set<Cube> leavesOfSolution(SemanticOcTree map, const Solution& solution,
-                                const AbstractionOptions& space) {
+std::set<CubeId> leavesOfSolution(SemanticOcTree map, const Solution& solution,
+                                  const AbstractionOptions& space) {
   const semantic_octree::TermCatalog catalog(map.classes(), {solution});
   AbstractionOptions options = space;
   options.weights.terms = catalog.terms(0);
   setAbstraction(map, options);
   Abstraction abstraction(map);
   abstraction.setWeights(catalog.weights(solution, 0), *solution.alpha);
-  std::set<Cube> leaves;
-  for (const LeafCell& leaf : abstraction.leaves())
-    leaves.insert(cubeOf(leaf.lowest(), int(leaf.depth)));
+  std::set<CubeId> leaves;
+  for (const LeafCell& leaf : abstraction.leaves()) leaves.insert(cubeOf(leaf.lowest, leaf.depth));
   return leaves;
 }
 
-bool isIn(const Cube& cube, const std::vector<KeyBox>& boxes) {
+bool isIn(const CubeId& cube, const std::vector<KeyBox>& boxes) {
   const auto [x, y, z, depth] = cube;
-  const int edge = semantic_octree::edgeAtDepth(depth);
   for (const KeyBox& box : boxes)
-    if (box.meets({x, y, z}, edge)) return true;
+    if (box.meets({{x, y, z}, depth})) return true;
   return false;
+}
+
+/** The trees of all alphas; there are nodes above the blocks, which all of them expand. */
+tree_abstraction::AlphaPath pathOf(const map_view::InformationTree& tree) {
+  std::vector<double> taus;
+  for (map_view::InformationTree::Index node = 0; node < tree.size(); ++node)
+    if (std::isfinite(tree.alpha(node))) taus.push_back(tree.alpha(node));
+  return tree_abstraction::AlphaPath(std::move(taus));
 }
 
 }  // namespace
@@ -126,7 +133,7 @@ TEST(LiveCompression, FindsTheTreeOfAWantedNumberOfBytes) {
     EXPECT_LE(bytes(), wanted);
     const std::size_t leaves = live.numLeaves();
     // The next larger tree takes more.
-    const auto path = live.tree().path();
+    const auto path = pathOf(live.tree());
     std::size_t k = 0;
     while (path.alpha(k) > live.alpha()) ++k;
     live.setAlpha(path.alpha(k + 1));
@@ -134,7 +141,7 @@ TEST(LiveCompression, FindsTheTreeOfAWantedNumberOfBytes) {
     EXPECT_GT(bytes(), wanted);
   }
   live.setBytes(map, 1);
-  EXPECT_EQ(live.alpha(), live.tree().path().alpha(0)) << "the smallest one";
+  EXPECT_EQ(live.alpha(), pathOf(live.tree()).alpha(0)) << "the smallest one";
 }
 
 TEST(LiveCompression, HasTheLeavesOfItsSolutionAlone) {
@@ -196,13 +203,13 @@ TEST(LiveCompression, TellsWhereLeavesCameAndWent) {
     change();
     const auto after = leavesOf(map, live);
     const std::vector<KeyBox> boxes = live.takeChange();
-    std::set<Cube> differ;
+    std::set<CubeId> differ;
     std::set_symmetric_difference(before.begin(), before.end(), after.begin(), after.end(),
                                   std::inserter(differ, differ.end()));
     EXPECT_FALSE(differ.empty());
-    for (const Cube& cube : differ) ASSERT_TRUE(isIn(cube, boxes));
+    for (const CubeId& cube : differ) ASSERT_TRUE(isIn(cube, boxes));
     for (const KeyBox& box : boxes) {
-      const auto isHere = [&](const Cube& cube) { return isIn(cube, {box}); };
+      const auto isHere = [&](const CubeId& cube) { return isIn(cube, {box}); };
       ASSERT_TRUE(std::any_of(differ.begin(), differ.end(), isHere));
     }
   };

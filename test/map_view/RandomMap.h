@@ -4,9 +4,9 @@
 #include <random>
 #include <tuple>
 
-using Cube = std::tuple<int, int, int, int>;  // keys of the lowest voxel, depth
+using CubeId = std::tuple<int, int, int, int>;  // keys of the lowest voxel, depth
 
-inline Cube cubeOf(const Eigen::Array3i& lowest, int depth) {
+inline CubeId cubeOf(const Eigen::Array3i& lowest, int depth) {
   return {lowest.x(), lowest.y(), lowest.z(), depth};
 }
 

@@ -66,7 +66,7 @@ TEST(TilesSeen, HoldUnknownSpaceOnce) {
     for (int i = 0; i < 30000; ++i) {
       const auto near = [&] { return octomap::key_type(32768 + int(random() % 400) - 80); };
       const octomap::OcTreeKey key(near(), near(), near());
-      const ViewCell cell = {{key[0], key[1], key[2]}, kFinestTiles + kTileLevels, {}, 0};
+      const ViewCell cell = {{{key[0], key[1], key[2]}, kFinestTiles + kTileLevels}, {}};
       if (map.search(key) || !look.isShown(cell)) continue;
       int holders = 0;
       for (const Tile& tile : tiles) holders += contains(tile, key);
@@ -110,9 +110,9 @@ TEST(TilesSeen, OfNothingAreNone) {
 
 TEST(FreshTiles, AreThoseWhoseCellsAndTheirNeighborsStayedAsTheyWere) {
   FreshTiles fresh;
-  const int edge = Tile{kFinestTiles, {}}.edge();
-  const auto tileAt = [&](int x) { return Tile{kFinestTiles, {x * edge, 0, 0}}; };
-  const Tile around = {kFinestTiles - 2, {0, 0, 0}};
+  const int edge = Tile{{{0, 0, 0}, kFinestTiles}}.edge();
+  const auto tileAt = [&](int x) { return Tile{{{x * edge, 0, 0}, kFinestTiles}}; };
+  const Tile around = {{{0, 0, 0}, kFinestTiles - 2}};
   const auto refill = [&] {
     for (int x = 0; x < 8; ++x) fresh.add(tileAt(x));
     fresh.add(around);

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_abstraction/Abstraction.h>
+#include <semantic_abstraction/AlphaTrees.h>
 
 #include <algorithm>
 #include <set>
@@ -163,10 +163,10 @@ TEST(Abstraction, regionsWithWeightZeroVanish) {
   SemanticOcTree map = mapOf(scans, &options);
   std::size_t fine = 0;
   for (const LeafCell& l : Abstraction(map).leaves()) {
-    const auto center = map.keyToCoord(l.key, l.depth);
+    const auto center = map.keyToCoord(l.key(), l.depth);
     fine += center.x() > 0 && l.depth == 16;
     if (center.x() < -1.6) {
-      EXPECT_EQ(l.depth, 12u);
+      EXPECT_EQ(l.depth, 12);
     }
   }
   EXPECT_GT(fine, 100u);
@@ -188,19 +188,20 @@ TEST(Abstraction, pathOverAlphaLeadsToAWantedNumberOfLeaves) {
   const AbstractionOptions options = someOptions(0.01);
   SemanticOcTree map = mapOf(scansOfSmallPlace(4, 4000, kTreeClasses, 6), &options);
   Abstraction abstraction(map);
-  const Abstraction::Path path = abstraction.alphaPath();
-  const std::size_t most = path.trees.totals(path.addedLeaves, path.numRoots).back();
+  const AlphaTrees trees(abstraction);
+  const auto least = static_cast<std::size_t>(trees.tree(0).leaves),
+             most = static_cast<std::size_t>(trees.tree(trees.numTrees() - 1).leaves);
   std::size_t before = 0;
-  for (std::size_t wanted = path.numRoots; wanted < most; wanted += 1 + most / 17) {
-    abstraction.setAlpha(path.alphaForLeaves(wanted));
+  for (std::size_t wanted = least; wanted < most; wanted += 1 + most / 17) {
+    abstraction.setAlpha(trees.alphaForLeaves(wanted));
     const std::size_t leaves = abstraction.leaves().size();
     EXPECT_LE(leaves, wanted);
     EXPECT_GE(leaves, before);
     before = leaves;
   }
   EXPECT_GT(before, most / 2);
-  EXPECT_THROW(path.alphaForLeaves(10 * map.size()), std::invalid_argument);
-  EXPECT_THROW(path.alphaForLeaves(0), std::invalid_argument);
+  EXPECT_THROW(trees.alphaForLeaves(10 * map.size()), std::invalid_argument);
+  EXPECT_THROW(trees.alphaForLeaves(0), std::invalid_argument);
 }
 
 TEST(Abstraction, leavesInABoxAreThoseOfAllThatMeetIt) {
@@ -214,7 +215,7 @@ TEST(Abstraction, leavesInABoxAreThoseOfAllThatMeetIt) {
       const int edge = 1 << (16 - l.depth);
       bool meets = !onlyOccupied || l.node->getLogOdds() > 0;
       for (int i = 0; i < 3; ++i) {
-        const int first = l.key[i] / edge * edge;
+        const int first = l.key()[i] / edge * edge;
         meets = meets && first <= high[i] && first + edge > low[i];
       }
       if (meets) expected.push_back(l);
@@ -232,7 +233,7 @@ TEST(Abstraction, compressedMapHasTheCompressedTreesLeavesAndAnswersQueries) {
   const auto leaves = abstraction.leaves();
   EXPECT_EQ(compressed.getNumLeafNodes(), leaves.size());
   for (const LeafCell& l : leaves) {
-    const CellState fine = map.query(l.key, l.depth), coarse = compressed.query(l.key, l.depth);
+    const CellState fine = map.query(l.key(), l.depth), coarse = compressed.query(l.key(), l.depth);
     ASSERT_EQ(fine.status, coarse.status);
     ASSERT_EQ(fine.occupancy, coarse.occupancy);
     ASSERT_EQ(fine.likeliestClass, coarse.likeliestClass);
@@ -243,24 +244,12 @@ TEST(Abstraction, leavesKnowTheVoxelsThatTheyStandFor) {
   const AbstractionOptions options = someOptions(0.02);
   SemanticOcTree map = mapOf(scansOfSmallPlace(2, 2000, kTreeClasses, 6), &options);
   for (const LeafCell& l : Abstraction(map).leaves()) {
-    const octomap::point3d center = map.keyToCoord(l.key, l.depth);
+    const octomap::point3d center = map.keyToCoord(l.key(), l.depth);
     ASSERT_NEAR(l.edge() * kTreeResolution, map.getNodeSize(l.depth), 1e-9);
     for (unsigned axis = 0; axis < 3; ++axis)
-      ASSERT_NEAR(lowerBorderOf(l.lowest()[axis], kTreeResolution) + l.edge() * kTreeResolution / 2,
+      ASSERT_NEAR(lowerBorderOf(l.lowest[axis], kTreeResolution) + l.edge() * kTreeResolution / 2,
                   center(axis), 1e-3);
   }
-}
-
-TEST(Abstraction, knownShareIsTheKnownVolume) {
-  const AbstractionOptions options = someOptions(0.02);
-  SemanticOcTree map = mapOf(scansOfSmallPlace(2, 2000, kTreeClasses, 6), &options);
-  const Abstraction abstraction(map);
-  double volume = 0, expected = 0;
-  for (const LeafCell& l : abstraction.leaves())
-    volume += abstraction.knownShare(l) * std::pow(map.getNodeSize(l.depth), 3);
-  for (auto it = map.begin_leafs(); it != map.end_leafs(); ++it)
-    expected += std::pow(it.getSize(), 3);
-  EXPECT_NEAR(volume, expected, 1e-6 * expected);
 }
 
 TEST(Abstraction, refusesBadOptionsAndNamesThem) {

@@ -62,14 +62,14 @@ TEST(CompressedClasses, ofACompressedCellAreThoseOfItsVoxelsInWhichLabelsWereSee
   for (unsigned levels = 0; levels <= 4; ++levels) sums[levels] = labeledSums(map, levels);
   int merged = 0;
   for (const LeafCell& leaf : abstraction.leaves()) {
-    const unsigned levels = kTreeDepth - leaf.depth;
-    const VoxelId id = voxelAt(leaf.key[0], leaf.key[1], leaf.key[2]);
+    const auto levels = static_cast<unsigned>(kTreeDepth - leaf.depth);
+    const VoxelId id = voxelAt(leaf.key()[0], leaf.key()[1], leaf.key()[2]);
     const auto sum = sums.at(levels).find({id[0] >> levels, id[1] >> levels, id[2] >> levels});
-    const CellState state = compressed.query(leaf.key);
+    const CellState state = compressed.query(leaf.key());
     EXPECT_EQ(state.likeliestClass != kNoClass, sum != sums.at(levels).end());
     if (state.likeliestClass == kNoClass) continue;
-    expectShares(sum->second, givenOccupied(compressed, *compressed.search(leaf.key)));
-    EXPECT_EQ(state.occupancy, map.query(leaf.key, leaf.depth).occupancy);
+    expectShares(sum->second, givenOccupied(compressed, *compressed.search(leaf.key())));
+    EXPECT_EQ(state.occupancy, map.query(leaf.key(), leaf.depth).occupancy);
     merged += levels > 0;
   }
   EXPECT_GT(merged, 50);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "AllAlphas.h"
 #include "RandomScans.h"
 
 using namespace semantic_octree;
@@ -85,13 +86,12 @@ TEST(CountedLeaves, ofEachTreeOnThePathAreTheCompressedTreesForEveryBlockSize) {
       for (const double blockSize : {0.2, 0.4, 0.8, 1.6, 3.2, 12.8}) {
         setAbstraction(map, optionsWith(blockSize));
         Abstraction abstraction(map);
-        const Abstraction::Path path = abstraction.alphaPath();
-        const auto totals = path.trees.totals(path.addedLeaves, double(path.numRoots));
+        const AllAlphas path(abstraction);
         EXPECT_EQ(abstraction.measures().full.numKnownLeaves, map.getNumLeafNodes());
         for (const std::size_t k : someTrees(path.trees.numTrees(), 10)) {
           abstraction.setAlpha(path.trees.alpha(k));
           const Counts counts = countLeaves(abstraction.compressedMap(), depthOfBlocks(blockSize));
-          ASSERT_EQ(totals[k], counts.leaves) << "block " << blockSize << ", tree " << k;
+          ASSERT_EQ(path.leaves[k], counts.leaves) << "block " << blockSize << ", tree " << k;
           ASSERT_EQ(abstraction.measures().compressed.numKnownLeaves, counts.leaves);
           ASSERT_EQ(abstraction.leaves().size(), counts.inBlocks);
         }
@@ -106,16 +106,16 @@ TEST(CountedLeaves, wantedInAnyNumberFromTheRootsToTheWholeMapAreGranted) {
     SemanticOcTree map = mapWithLargeLeaves(4, true);
     setAbstraction(map, optionsWith(blockSize));
     Abstraction abstraction(map);
-    const Abstraction::Path path = abstraction.alphaPath();
-    const auto totals = path.trees.totals(path.addedLeaves, double(path.numRoots));
+    const AllAlphas path(abstraction);
+    const AlphaTrees trees(abstraction);
     const std::size_t most = map.getNumLeafNodes();
     for (std::size_t wanted = path.numRoots; wanted <= most; wanted += 1 + most / 17) {
-      abstraction.setAlpha(path.alphaForLeaves(wanted));
-      const auto beyond = std::upper_bound(totals.begin(), totals.end(), double(wanted));
+      abstraction.setAlpha(trees.alphaForLeaves(wanted));
+      const auto beyond = std::upper_bound(path.leaves.begin(), path.leaves.end(), double(wanted));
       EXPECT_EQ(abstraction.measures().compressed.numKnownLeaves, *(beyond - 1));
     }
-    EXPECT_NO_THROW(path.alphaForLeaves(most));
-    EXPECT_THROW(path.alphaForLeaves(most + 1), std::invalid_argument);
-    EXPECT_THROW(path.alphaForLeaves(path.numRoots - 1), std::invalid_argument);
+    EXPECT_NO_THROW(trees.alphaForLeaves(most));
+    EXPECT_THROW(trees.alphaForLeaves(most + 1), std::invalid_argument);
+    EXPECT_THROW(trees.alphaForLeaves(path.numRoots - 1), std::invalid_argument);
   }
 }

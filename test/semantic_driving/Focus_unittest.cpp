@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/Focus.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +56,8 @@ class FromScratch : public simulated_drive::DriveObserver {
 
   void onSensed(const DriveLoop& loop, const std::vector<simulated_drive::Observation>&) override {
     SemanticOcTree anew = loop.mapper().map();
-    auto options = abstractionFor(syntheticOrder(), m_focus);
+    auto options =
+        semantic_planning::abstractionFor(syntheticOrder(), m_focus.alpha, m_focus.obstacles);
     options.regions = semantic_octree::Abstraction(anew).options().regions;
     dropAbstraction(anew);
     setAbstraction(anew, options);

@@ -35,7 +35,7 @@ std::string failureOf(const std::string& lines) {
 
 std::vector<std::pair<octomap::OcTreeKey, unsigned>> leavesOf(CSemanticOctoMap& map) {
   std::vector<std::pair<octomap::OcTreeKey, unsigned>> leaves;
-  for (const auto& l : map.abstraction().leaves()) leaves.emplace_back(l.key, l.depth);
+  for (const auto& l : map.abstraction().leaves()) leaves.emplace_back(l.key(), l.depth);
   return leaves;
 }
 

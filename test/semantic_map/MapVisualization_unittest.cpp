@@ -77,7 +77,7 @@ TEST(MapVisualization, colorsCanShowHeightOrProbability) {
   }
   map.renderingOptions.coloring = TRenderingOptions::Coloring::Probability;
   const double p = map.tree().query(3.05, 0.05, 0.05).probability;
-  EXPECT_NEAR(voxelsOf(map)->getVoxel(kOccupied, 0).color.R, std::min(255.0, 255 * (2 - 2 * p)), 1);
+  EXPECT_NEAR(voxelsOf(map)->getVoxel(kOccupied, 0).color.R, std::min(235.0, 235 * (2 - 2 * p)), 1);
 }
 
 TEST(MapVisualization, colorsCanShowEntropy) {
@@ -89,8 +89,8 @@ TEST(MapVisualization, colorsCanShowEntropy) {
   for (const double q : p) entropy -= q * std::log(q);
   const double certain = 1 - entropy / std::log(4.0);
   const auto color = voxelsOf(map)->getVoxel(kOccupied, 0).color;
-  EXPECT_NEAR(color.R, std::min(255.0, 255 * (2 - 2 * certain)), 1);
-  EXPECT_NEAR(color.G, std::min(255.0, 255 * 2 * certain), 1);
+  EXPECT_NEAR(color.R, std::min(235.0, 235 * (2 - 2 * certain)), 1);
+  EXPECT_NEAR(color.G, std::min(215.0, 215 * 2 * certain), 1);
 }
 
 TEST(MapVisualization, theCompressedMapCanBeShownInstead) {

@@ -11,7 +11,8 @@ using LeafId = std::tuple<int, int, int, unsigned>;
 
 inline std::set<LeafId> idsOf(const std::vector<semantic_octree::LeafCell>& leaves) {
   std::set<LeafId> ids;
-  for (const auto& leaf : leaves) ids.insert({leaf.key[0], leaf.key[1], leaf.key[2], leaf.depth});
+  for (const auto& leaf : leaves)
+    ids.insert({leaf.key()[0], leaf.key()[1], leaf.key()[2], leaf.depth});
   return ids;
 }
 

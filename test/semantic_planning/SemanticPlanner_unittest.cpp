@@ -45,7 +45,7 @@ TEST_F(PlannerTest, leavesAsPublishedHaveOnePointInTheirMiddleAtMost) {
   const Ground& ground = p.ground();
   std::set<std::array<int, 2>> middles;
   for (const auto& leaf : semantic_octree::Abstraction(map()).leaves())
-    middles.insert({leaf.lowest().x() + leaf.edge() / 2, leaf.lowest().y() + leaf.edge() / 2});
+    middles.insert({leaf.lowest.x() + leaf.edge() / 2, leaf.lowest.y() + leaf.edge() / 2});
   std::set<std::array<int, 2>> seen;
   std::size_t inMiddles = 0;
   for (colored_graph::VertexId v = 0; v < p.roadmap().graph().vertexIdEnd(); ++v) {

@@ -221,7 +221,7 @@ class Study {
     StreamTree tree;
     for (std::size_t i = 0; i < leaves.size() && static_cast<double>(i) < number; ++i) {
       TreePart part;
-      part.cell = CellPath::of(leaves[i].lowest(), static_cast<int>(leaves[i].depth));
+      part.cell = CellPath::of(leaves[i]);
       part.leaves[0] = StreamLeaf::of(contentOf(leaves[i].node, map.numClasses()));
       tree.apply(part, 0);
     }

@@ -41,15 +41,6 @@ TEST(AlphaPath, treesAreNestedAndEachIsTheOptimumAtItsAlpha) {
   }
 }
 
-TEST(AlphaPath, knowsTheFirstTreeThatExpandsANode) {
-  const AlphaPath path(tausOf(makeExample(6)));
-  const auto first = path.firstTrees();
-  for (std::size_t k = 0; k < path.numTrees(); ++k) {
-    const auto expanded = path.expanded(k);
-    for (std::size_t n = 0; n < first.size(); ++n) EXPECT_EQ(expanded[n], first[n] <= k);
-  }
-}
-
 TEST(AlphaPath, totalsCountLeavesAndInformationAlongThePath) {
   const auto found = makeExample(6);
   const AlphaPath path(tausOf(found));
@@ -70,29 +61,12 @@ TEST(AlphaPath, givesTheLargestTreeWithinAWantedNumberOfLeaves) {
   const auto leaves = path.totals(added, 1.0);
   const std::size_t all = found.full.numLeaves;
   for (std::size_t wanted = 1; wanted <= all; ++wanted) {
-    const std::size_t k = path.largestWithLeaves(wanted, added, 1);
+    const std::size_t k = path.largestWithin(static_cast<double>(wanted), added, 1);
     EXPECT_LE(leaves[k], static_cast<double>(wanted));
     if (k + 1 < path.numTrees()) {
       EXPECT_GT(leaves[k + 1], static_cast<double>(wanted));
     }
   }
-}
-
-TEST(AlphaPath, moreLeavesThanThereAreOrNoneIsAnError) {
-  const auto found = makeExample(7);
-  const AlphaPath path(tausOf(found));
-  const auto added = addedLeaves(found.tree);
-  const std::size_t all = found.full.numLeaves;
-  try {
-    path.largestWithLeaves(all + 1, added, 1);
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    const std::string message = error.what();
-    EXPECT_NE(message.find(std::to_string(all + 1) + " leaves wanted"), std::string::npos)
-        << message;
-    EXPECT_NE(message.find("only " + std::to_string(all)), std::string::npos) << message;
-  }
-  EXPECT_THROW(path.largestWithLeaves(0, added, 1), std::invalid_argument);
 }
 
 TEST(AlphaPath, aBudgetOfBytesMayExceedTheWholeTreeButNotFallBelowTheRoots) {
@@ -109,22 +83,12 @@ TEST(AlphaPath, aBudgetOfBytesMayExceedTheWholeTreeButNotFallBelowTheRoots) {
   EXPECT_THROW(path.largestWithin(kNan, bytes, 4), std::invalid_argument);
 }
 
-TEST(AlphaPath, findsTheLargestTreeThatFitsByBisection) {
-  const AlphaPath path({5, 4, 3, 2, 1});
-  ASSERT_EQ(path.numTrees(), 6u);
-  for (std::size_t last = 0; last < path.numTrees(); ++last) {
-    int calls = 0;
-    EXPECT_EQ(path.largestThat([&](std::size_t k) { return ++calls, k <= last; }), last);
-    EXPECT_LE(calls, 3);
-  }
-}
-
 TEST(AlphaPath, rejectsCostsThatDoNotFit) {
   const AlphaPath path({3, 2});
   EXPECT_THROW(path.totals({1}, 0), std::invalid_argument);
   EXPECT_THROW(path.largestWithin(5, {1, -1}, 1), std::invalid_argument);
   EXPECT_THROW(path.largestWithin(5, {1, kNan}, 1), std::invalid_argument);
-  EXPECT_THROW(path.largestWithLeaves(1, {1, 1, 1}, 1), std::invalid_argument);
+  EXPECT_THROW(path.largestWithin(1, {1, 1, 1}, 1), std::invalid_argument);
   EXPECT_THROW(path.expanded(3), std::out_of_range);
   EXPECT_THROW(AlphaPath({1, kNan}), std::invalid_argument);
 }

@@ -8,6 +8,8 @@
 #include <map>
 #include <random>
 
+#include "FirstTrees.h"
+
 using namespace tree_abstraction;
 
 namespace {
@@ -29,7 +31,7 @@ std::vector<double> someTaus(std::mt19937& random, std::size_t number) {
 /** \param share of the nodes that are asked for */
 void expectThePathsTrees(const std::vector<double>& tau, double share, std::mt19937& random) {
   const AlphaPath path{std::vector<double>(tau)};
-  const auto first = path.firstTrees();
+  const auto first = firstTreesOf(path);
   std::vector<double> asked;
   std::map<std::size_t, std::size_t> trees = {{0, 0}};  // and their steps
   for (std::size_t i = 0; i < tau.size(); ++i) {

@@ -30,6 +30,13 @@ inline std::vector<double> addedLeaves(const BreadthFirstTree& tree) {
   return added;
 }
 
+/** Nodes the compressed tree of one alpha expands. \param eps what counts as a tie */
+inline std::vector<char> expandedAt(const std::vector<double>& tau, double alpha, double eps = 0) {
+  std::vector<char> mask;
+  for (const double t : tau) mask.push_back(t > alpha + eps);
+  return mask;
+}
+
 /** A sparse octree searched at alpha = 0. */
 inline SearchResult makeExample(unsigned seed) {
   Engine random(seed);

@@ -108,7 +108,7 @@ void ShowPanel::addColoring(Widget* parent) {
   addText(row, "color", 50);
   std::vector<std::string> names;
   int chosen = 0;
-  const auto& choices = choicesOf(map_view::Coloring());
+  const auto& choices = choicesOf(map_view::ViewColoring());
   for (std::size_t i = 0; i < choices.size(); ++i) {
     names.push_back(choices[i].first);
     if (choices[i].second == m_viewer.style().coloring) chosen = int(i);

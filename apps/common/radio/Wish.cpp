@@ -2,31 +2,18 @@
 
 #include <semantic_abstraction/TermCatalog.h>
 #include <semantic_abstraction/WeightsFile.h>
-#include <strict_files/Words.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 namespace radio {
 
 using semantic_octree::Datagram;
-using semantic_octree::Solution;
 
 namespace {
 
 /** Behind a datagram's header and two bytes: which part this is, and how many there are. */
 constexpr std::size_t kMaxPart = semantic_octree::kMaxDatagramBytes - 14, kMaxParts = 255;
-
-const Solution& chosen(const std::vector<Solution>& solutions, const std::string& solution,
-                       const std::string& name) {
-  std::vector<std::string> names;
-  for (const Solution& s : solutions) {
-    if (solution.empty() || s.name == solution) return s;
-    names.push_back(s.name);
-  }
-  throw std::runtime_error(name + ": " + strict_files::unknownWord("solution", solution, names));
-}
 
 }  // namespace
 
@@ -35,14 +22,10 @@ semantic_octree::AbstractionOptions Wish::forClasses(const semantic_types::Class
   if (weights.empty())
     throw std::runtime_error("no weights: neither the sender nor the receiver has --weights");
   const auto file = semantic_octree::weightsOfText(weights, name, classes);
-  const Solution& s = chosen(file.solutions, solution, name);
+  const semantic_octree::Solution& s = file.solution(solution);
   // The terms of semantic-map-compress, in its order: rounding decides no tie otherwise.
-  const semantic_octree::TermCatalog catalog(classes, {s});
   semantic_octree::AbstractionOptions options = file.space;
-  options.weights.terms = catalog.terms(0);
-  const std::vector<double> termWeights = catalog.weights(s, 0);
-  for (std::size_t t = 0; t < termWeights.size(); ++t)
-    options.weights.terms[t].weight = termWeights[t];
+  options.weights.terms = semantic_octree::TermCatalog(classes, {s}).weighedTerms(s, 0);
   options.weights.alpha = alpha.value_or(s.alpha.value_or(0));
   return options;
 }

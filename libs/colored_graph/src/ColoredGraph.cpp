@@ -179,18 +179,6 @@ void ColoredGraph::setBlocked(EdgeId e) {
   setContent(e, before.b, {before.a, EdgeState::Blocked, before.length, before.tolls, {}});
 }
 
-void ColoredGraph::setUnevaluated(EdgeId e, Length minLength) {
-  const Edge before = edge(e);
-  checkLength(minLength);
-  setContent(e, before.b, {before.a, EdgeState::Unevaluated, minLength, before.tolls, {}});
-}
-
-void ColoredGraph::setTolls(EdgeId e, Tolls tolls) {
-  const Edge before = edge(e);
-  checkTolls(tolls);
-  setContent(e, before.b, {before.a, before.state, before.length, tolls, before.profile});
-}
-
 HalfEdge ColoredGraph::half(EdgeId e, VertexId v) const {
   return row(v).halves[m_rows.find(m_vertices[v].edges(), e)];
 }

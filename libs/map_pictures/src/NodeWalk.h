@@ -1,28 +1,10 @@
 #pragma once
+#include <semantic_octree/Cube.h>
 #include <semantic_octree/SemanticOcTree.h>
-
-#include <Eigen/Core>
 
 namespace map_pictures {
 
-/** What a node stands for. */
-struct Cube {
-  Eigen::Array3i lowest{0, 0, 0};  ///< keys of its lowest voxel
-  int depth = 0;
-
-  /** In voxels. */
-  int edge() const { return semantic_octree::edgeAtDepth(depth); }
-  /** m */
-  Eigen::Vector3d center(double voxelSize) const {
-    const auto along = [&](int axis) {
-      return semantic_octree::centerOf(lowest[axis], voxelSize, depth);
-    };
-    return {along(0), along(1), along(2)};
-  }
-  Cube child(int i) const {
-    return {lowest + Eigen::Array3i(i & 1, i >> 1 & 1, i >> 2) * (edge() / 2), depth + 1};
-  }
-};
+using semantic_octree::Cube;
 
 /** Calls visit(node, cube) for a map's nodes, in OctoMap's order; goes below a node only if it is
  * told to. (OctoMap's iterators go everywhere.) */

@@ -21,10 +21,11 @@ class StreamCursor {
 
 }  // namespace
 
-CellPath CellPath::of(const Eigen::Array3i& lowest, int depth) {
+CellPath CellPath::of(const Cube& cube) {
   CellPath cell;
-  while (cell.depth < depth) {
+  while (cell.depth < cube.depth) {
     const int bit = kTreeDepth - 1 - cell.depth;
+    const Eigen::Array3i& lowest = cube.lowest;
     cell = cell.child((lowest.x() >> bit & 1) | (lowest.y() >> bit & 1) << 1 |
                       (lowest.z() >> bit & 1) << 2);
   }

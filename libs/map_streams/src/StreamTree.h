@@ -15,7 +15,7 @@ struct CellPath {
   std::uint64_t path = 0;
   int depth = 0;
 
-  static CellPath of(const Eigen::Array3i& lowest, int depth);
+  static CellPath of(const Cube& cube);
   CellPath child(int i) const { return {path << 3 | static_cast<unsigned>(i), depth + 1}; }
   CellPath above(int atDepth) const { return {path >> 3 * (depth - atDepth), atDepth}; }
   /** Which child of its parent the cube's ancestor at a depth from 1 on is. */

@@ -25,7 +25,7 @@ class Steps {
       if (n.tau > 0) all.push_back(n.tau);
       if (!n.isExpanded) return;
       m_tau.push_back(n.tau);
-      const CellPath cell = CellPath::of(n.lowest, n.depth);
+      const CellPath cell = CellPath::of(n);
       m_cells.push_back(cell.path << kDepthBits | static_cast<unsigned>(cell.depth));
     });
     return {std::move(all), m_tau};

@@ -11,7 +11,7 @@ CellAnswer answerOf(const ViewCell& cell, const SemanticOcTree& map) {
   constexpr double kLeast = 0.0005;
   CellAnswer answer;
   const double voxel = map.getResolution();
-  answer.key = cell.key();
+  answer.key = semantic_octree::octomapKey(cell.lowest.x(), cell.lowest.y(), cell.lowest.z());
   answer.center = cell.center(voxel);
   answer.size = map.getNodeSize(static_cast<unsigned>(cell.depth));
   answer.state = "unknown", answer.occupancy = 0.5;

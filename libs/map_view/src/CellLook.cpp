@@ -9,17 +9,14 @@
 
 namespace map_view {
 
+using semantic_types::trafficLight;
+using tree_abstraction::relativeEntropy;
+
 namespace {
 
 constexpr Color kFree{120, 180, 235}, kUnknown{60, 55, 50};
 
 std::uint8_t byteOf(double x) { return static_cast<std::uint8_t>(x + 0.5); }
-
-/** Red (0) over yellow to green (1). */
-Color trafficLight(double value) {
-  const double v = std::clamp(value, 0.0, 1.0);
-  return {byteOf(235 * std::min(1.0, 2 - 2 * v)), byteOf(215 * std::min(1.0, 2 * v)), 30};
-}
 
 /** From dark violet (0) over blue and green to yellow (1), brighter and brighter. */
 Color ramp(double value) {
@@ -33,18 +30,13 @@ Color ramp(double value) {
   return {mixed(0), mixed(1), mixed(2)};
 }
 
-/** Of a distribution relative to that of the uniform one, 0 to 1. */
-double relativeEntropy(const std::vector<double>& p) {
-  return tree_abstraction::entropy(p.data(), p.size()) / std::log(double(p.size()));
-}
-
 }  // namespace
 
-const strict_files::Choices<Coloring>& choicesOf(Coloring) {
-  static const strict_files::Choices<Coloring> choices = {
-      {"class", Coloring::Class},     {"probability", Coloring::Probability},
-      {"entropy", Coloring::Entropy}, {"occupancy", Coloring::Occupancy},
-      {"height", Coloring::Height},   {"retained", Coloring::Retained}};
+const strict_files::Choices<ViewColoring>& choicesOf(ViewColoring) {
+  static const strict_files::Choices<ViewColoring> choices = {
+      {"class", ViewColoring::Class},     {"probability", ViewColoring::Probability},
+      {"entropy", ViewColoring::Entropy}, {"occupancy", ViewColoring::Occupancy},
+      {"height", ViewColoring::Height},   {"retained", ViewColoring::Retained}};
   return choices;
 }
 
@@ -93,17 +85,17 @@ Color CellLook::colorOf(const ViewCell& cell) const {
   if (!cell.node) return kUnknown;
   if (!cell.isOccupied()) return kFree;
   switch (m_style.coloring) {
-    case Coloring::Probability:
+    case ViewColoring::Probability:
       return trafficLight(stateOf(cell).probability);
-    case Coloring::Entropy:
+    case ViewColoring::Entropy:
       return trafficLight(1 - relativeEntropy(m_map.distribution(cell.node)));
-    case Coloring::Occupancy:
+    case ViewColoring::Occupancy:
       return trafficLight(2 * cell.node.getOccupancy() - 1);
-    case Coloring::Height:
+    case ViewColoring::Height:
       return heightColor(cell);
-    case Coloring::Retained:
+    case ViewColoring::Retained:
       return trafficLight(m_compression ? m_compression->retainedAround(cell.around) : 1);
-    case Coloring::Class:
+    case ViewColoring::Class:
       break;
   }
   return semantic_types::colorOf(classOf(cell), m_map.classes());

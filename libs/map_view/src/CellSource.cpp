@@ -10,19 +10,14 @@ using semantic_octree::SemanticOcTreeNode;
 namespace {
 
 /** Without a node. */
-ViewCell unknownChild(const ViewCell& parent, int i) {
-  return {parent.lowest + parent.edge() / 2 * Eigen::Array3i(i & 1, i >> 1 & 1, i >> 2 & 1),
-          parent.depth + 1,
-          {},
-          0};
-}
+ViewCell unknownChild(const ViewCell& parent, int i) { return {parent.child(i), {}}; }
 
 /** A leaf of a map is a leaf. */
 struct MapNode {
   ViewCell cell;
 
   explicit MapNode(const SemanticOcTree& map)
-      : cell{Eigen::Array3i::Zero(), 0, map.empty() ? SemanticOcTreeNode() : map.root(), 0} {}
+      : cell{Cube(), map.empty() ? SemanticOcTreeNode() : map.root()} {}
   MapNode(const MapNode& parent, int i) : cell(unknownChild(parent.cell, i)) {
     cell.node = parent.cell.node.child(i);
   }
@@ -81,7 +76,7 @@ class Walk {
 
   void walk(const Node& node) const {
     const ViewCell& cell = node.cell;
-    if (!m_box.meets(cell.lowest, cell.edge())) return;
+    if (!m_box.meets(cell)) return;
     const bool free = m_look.style().freeSpace, unknown = m_look.style().unknownSpace;
     if (!cell.isOccupied() && !free && !unknown) return;  // nor is what is below it
     if (node.isLeaf()) {
@@ -104,8 +99,8 @@ class Walk {
 
   /** As large cubes as there are within the bounds. */
   void walkUnknown(const ViewCell& cell) const {
-    if (!m_box.meets(cell.lowest, cell.edge()) || !m_bounds.meets(cell.lowest, cell.edge())) return;
-    if (cell.depth == m_maxDepth || m_bounds.contains(cell.lowest, cell.edge())) {
+    if (!m_box.meets(cell) || !m_bounds.meets(cell)) return;
+    if (cell.depth == m_maxDepth || m_bounds.contains(cell)) {
       if (m_look.isShown(cell)) m_visit(cell);
     } else {
       for (int i = 0; i < 8; ++i) walkUnknown(unknownChild(cell, i));
@@ -135,12 +130,6 @@ class Walk {
   const CellSource::Visit& m_visit;
 };
 
-/** The child that holds a voxel. */
-int childAt(const ViewCell& parent, const Eigen::Array3i& key) {
-  const Eigen::Array3i upper = (key >= parent.lowest + parent.edge() / 2).cast<int>();
-  return upper.x() | upper.y() << 1 | upper.z() << 2;
-}
-
 template <class Node>
 ViewCell leafAt(const Eigen::Array3i& key, const Node& root) {
   if (!root.cell.node) return root.cell;
@@ -148,10 +137,9 @@ ViewCell leafAt(const Eigen::Array3i& key, const Node& root) {
   while (!node.isLeaf()) {
     std::optional<Node> next;
     node.forEachChild([&](const Node& child) {
-      const KeyBox box = {key, key};
-      if (box.meets(child.cell.lowest, child.cell.edge())) next = child;
+      if (child.cell.contains(key)) next = child;
     });
-    if (!next) return unknownChild(node.cell, childAt(node.cell, key));
+    if (!next) return unknownChild(node.cell, node.cell.childAt(key));
     node = *next;
   }
   return node.cell;

@@ -8,7 +8,7 @@
 namespace map_view {
 
 using semantic_octree::Abstraction;
-using tree_abstraction::AlphaPath;
+using semantic_octree::AlphaTrees;
 
 namespace {
 
@@ -17,6 +17,12 @@ constexpr std::int32_t kNone = -1;
 
 /** Below that there is nothing to retain, nats. */
 constexpr double kNothing = 1e-12;
+
+/** A cube in one number. */
+std::uint64_t packed(const Cube& cube) {
+  return std::uint64_t(cube.lowest.x()) | std::uint64_t(cube.lowest.y()) << 16 |
+         std::uint64_t(cube.lowest.z()) << 32 | std::uint64_t(cube.depth) << 48;
+}
 
 }  // namespace
 
@@ -48,7 +54,7 @@ InformationTree::InformationTree(semantic_octree::SemanticOcTree& map)
       m_numRoots -= std::size_t(n.addedLeaves);
     }
     m_end.push_back(0);
-    m_places.push_back(packed(n.lowest, n.depth));
+    m_places.push_back(packed(n));
     m_addedLeaves.push_back(n.isFree ? 0 : n.addedLeaves);
     m_information.insert(m_information.end(), information.begin(), information.end());
   });
@@ -56,11 +62,10 @@ InformationTree::InformationTree(semantic_octree::SemanticOcTree& map)
   m_alphas.assign(m_end.size(), kInfinity);
 }
 
-KeyBox InformationTree::box(Index node) const {
+Cube InformationTree::cube(Index node) const {
   const std::uint64_t place = m_places[std::size_t(node)];
   const auto key = [place](int shift) { return int(place >> shift & 0xffff); };
-  const Eigen::Array3i lowest(key(0), key(16), key(32));
-  return {lowest, lowest + (semantic_octree::edgeAtDepth(key(48)) - 1)};
+  return {{key(0), key(16), key(32)}, key(48)};
 }
 
 void InformationTree::setWeights(const std::vector<double>& weights) {
@@ -82,18 +87,11 @@ std::size_t InformationTree::numLeaves(double alpha) const {
   return static_cast<std::size_t>(leaves);
 }
 
-AlphaPath InformationTree::path() const {
-  std::vector<double> alphas;
-  for (const Index node : m_charged) alphas.push_back(alpha(node));
-  return AlphaPath(std::move(alphas));
-}
-
-double InformationTree::alphaForLeaves(std::size_t wanted) const {
-  std::vector<double> added;
-  for (const Index node : m_charged) added.push_back(m_addedLeaves[std::size_t(node)]);
-  const AlphaPath path = this->path();
-  const double budget = double(std::max(wanted, m_numRoots));
-  return path.alpha(path.largestWithin(budget, added, double(m_numRoots)));
+AlphaTrees InformationTree::trees() const {
+  return AlphaTrees([this](const AlphaTrees::Visit& visit) -> semantic_octree::AddedToTree {
+    for (const Index node : m_charged) visit(alpha(node), {m_addedLeaves[std::size_t(node)], 0, 0});
+    return {double(m_numRoots), 0, 0};
+  });
 }
 
 double InformationTree::lowestAlpha(double above) const {
@@ -143,14 +141,9 @@ std::vector<float> InformationTree::retainedInBlocks(double alpha) const {
 }
 
 std::vector<std::size_t> InformationTree::chargedAround(const Eigen::Array3i& key) const {
-  const KeyBox voxel = {key, key};
-  const auto holds = [&](Index node) {
-    const KeyBox cube = box(node);
-    return voxel.meets(cube.low, cube.high.x() - cube.low.x() + 1);
-  };
   std::vector<std::size_t> found;
   for (Index node = 0, end = size(); node < end;) {
-    if (!holds(node)) {
+    if (!cube(node).contains(key)) {
       node = m_end[std::size_t(node)];  // over its subtree
       continue;
     }

@@ -12,10 +12,9 @@ namespace map_view {
 using semantic_octree::TermCatalog;
 using tree_abstraction::AbstractionWeights;
 using tree_abstraction::InformationTerm;
+using tree_abstraction::kAlpha;
 
 namespace {
-
-constexpr double kAlpha = 0.002;
 
 /** Of a class variable, in which free space and the classes are told apart. */
 bool sameGroups(const InformationTerm& a, const InformationTerm& b) { return a.groups == b.groups; }
@@ -31,11 +30,8 @@ AbstractionWeights addTerms(SemanticOcTree& map, const Solution& solution,
     if (std::none_of(all.terms.begin(), all.terms.end(), same))
       all.terms.push_back({term.name, 0, term.groups});
   }
-  const TermCatalog catalog(map.classes(), {all});
   AbstractionOptions options = space;
-  options.weights.terms = catalog.terms(0);
-  const std::vector<double> weights = catalog.weights(all, 0);
-  for (std::size_t t = 0; t < weights.size(); ++t) options.weights.terms[t].weight = weights[t];
+  options.weights.terms = TermCatalog(map.classes(), {all}).weighedTerms(all, 0);
   options.weights.alpha = solution.alpha.value_or(kAlpha);
   setAbstraction(map, options);
   return options.weights;
@@ -96,15 +92,18 @@ void LiveCompression::setAlpha(double alpha) {
   change(weights);
 }
 
-void LiveCompression::setLeaves(std::size_t wanted) { setAlpha(m_tree.alphaForLeaves(wanted)); }
+void LiveCompression::setLeaves(std::size_t wanted) {
+  const semantic_octree::AlphaTrees trees = m_tree.trees();
+  const auto least = static_cast<std::size_t>(trees.tree(0).leaves),
+             most = static_cast<std::size_t>(trees.full().leaves);
+  setAlpha(trees.alphaForLeaves(std::clamp(wanted, least, most)));
+}
 
 void LiveCompression::setBytes(const SemanticOcTree& map, std::size_t wanted) {
-  const tree_abstraction::AlphaPath path = m_tree.path();
-  const std::size_t largest = path.largestThat([&](std::size_t k) {
-    setAlpha(path.alpha(k));
+  setAlpha(m_tree.trees().largestThat([&](double alpha) {
+    setAlpha(alpha);
     return semantic_octree::fileSize(compressedMap(map)) <= wanted;
-  });
-  setAlpha(path.alpha(largest));
+  }));
 }
 
 SemanticOcTree LiveCompression::compressedMap(const SemanticOcTree& map) const {
@@ -135,14 +134,14 @@ std::vector<KeyBox> LiveCompression::takeChange() {
   std::vector<KeyBox> boxes;
   const bool isFirst = m_toldExpanded.empty();
   m_toldExpanded.resize(std::size_t(m_tree.size()), false);
-  if (isFirst && m_tree.size() > 0) boxes.push_back(m_tree.box(0));
+  if (isFirst && m_tree.size() > 0) boxes.push_back(KeyBox::of(m_tree.cube(0)));
   InformationTree::Index inBox = isFirst ? m_tree.size() : 0;  // the last box's nodes end there
   for (InformationTree::Index node = 0; node < m_tree.size(); ++node) {
     char& told = m_toldExpanded[std::size_t(node)];
     if (bool(told) == isExpanded(node)) continue;
     told = isExpanded(node);
     if (node < inBox) continue;
-    boxes.push_back(m_tree.box(node));
+    boxes.push_back(KeyBox::of(m_tree.cube(node)));
     inBox = m_tree.end(node);
   }
   return boxes;

@@ -32,7 +32,7 @@ class Selection {
       m_found.emplace_back(distance, tile);
     else
       for (int i = 0; i < 8; ++i)
-        visit(node ? node.child(i) : SemanticOcTreeNode(), childOf(tile, i));
+        visit(node ? node.child(i) : SemanticOcTreeNode(), Tile{tile.child(i)});
   }
 
   std::vector<Tile> nearestFirst() {
@@ -45,11 +45,7 @@ class Selection {
  private:
   bool mayShow(const SemanticOcTreeNode& node, const Tile& tile) const {
     if (node && (m_style.freeSpace || node.getLogOdds() > 0)) return true;
-    return m_style.unknownSpace && m_bounds.meets(tile.lowest, tile.edge());
-  }
-  static Tile childOf(const Tile& tile, int i) {
-    const int half = tile.edge() / 2;
-    return {tile.depth + 1, tile.lowest + half * Eigen::Array3i(i & 1, i >> 1 & 1, i >> 2 & 1)};
+    return m_style.unknownSpace && m_bounds.meets(tile);
   }
   double distanceTo(const Eigen::Vector3d& center, double half) const {
     return ((m_position - center).array().abs() - half).max(0).matrix().norm();
@@ -91,7 +87,7 @@ void FreshTiles::remove(const std::vector<KeyBox>& boxes) {
     const int border = tile.cellEdge();
     return std::any_of(cubes.begin(), cubes.end(), [&](const auto& entry) {
       const KeyBox& box = entry.second;
-      return KeyBox{box.low - border, box.high + border}.meets(tile.lowest, tile.edge());
+      return KeyBox{box.low - border, box.high + border}.meets(tile);
     });
   };
   for (auto tile = m_tiles.begin(); tile != m_tiles.end();)

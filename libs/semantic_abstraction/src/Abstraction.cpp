@@ -37,14 +37,6 @@ class CompressedCursor {
   bool m_isLeaf;
 };
 
-double knownVolume(const Node& node) {
-  if (node.isLeaf()) return 1;
-  double sum = 0;
-  for (int i = 0; i < 8; ++i)
-    if (const Node child = node.child(i)) sum += knownVolume(child);
-  return sum / 8;
-}
-
 }  // namespace
 
 std::optional<double> AbstractionMeasures::retention(std::size_t term) const {
@@ -115,7 +107,7 @@ AbstractionMeasures Abstraction::measures() const {
   for (auto* tree : {&m.full, &m.compressed}) tree->numLeaves = tree->numKnownLeaves = 1;
   const double total = totalDensity();
   const auto count = [&](tree_abstraction::TreeMeasures& tree, const InnerNode& n) {
-    const double p = total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
+    const double p = shareOf(n, total);
     tree.leafEntropy += p * n.splitEntropy;
     for (std::size_t t = 0; t < numTerms; ++t)
       tree.information[t] += p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
@@ -136,11 +128,7 @@ double Abstraction::totalDensity() const {
 }
 
 std::vector<double> Abstraction::distribution(const LeafCell& leaf) const {
-  return m_map.distribution(m_map.search(leaf.key, leaf.depth));
-}
-
-double Abstraction::knownShare(const LeafCell& leaf) const {
-  return knownVolume(m_map.search(leaf.key, leaf.depth));
+  return m_map.distribution(m_map.search(leaf.key(), static_cast<unsigned>(leaf.depth)));
 }
 
 SemanticOcTree Abstraction::compressedMap() const {

@@ -1,35 +1,42 @@
-#include <stdexcept>
+#include <tree_abstraction/AlphaPath.h>
 
 #include "InnerNodes.h"
 
 namespace semantic_octree {
 namespace {
 
-/** Nodes below one that has no parent among them: no other tree matters to their taus. */
-class TauTree {
+/** Nodes of trees that are whole, depth first: other trees leave no trace in their taus. */
+class WholeTrees {
  public:
   using NodeTau = Abstraction::NodeTau;
+  using Visit = std::function<void(const NodeTau&)>;
 
-  /** \param node its tau is its gain, for now \return its index, from 0 */
-  std::int32_t add(const NodeTau& node, std::int32_t parent, double price) {
-    m_nodes.push_back(node);
-    m_parents.push_back(parent);
-    m_gains.push_back(node.tau);
+  WholeTrees(int rootDepth, const Visit& visit) : m_rootDepth(rootDepth), m_visit(visit) {}
+
+  void add(const NodeTau& node, double price) {
+    constexpr std::size_t kEnough = 1 << 18;
+    const bool isRoot = node.depth == m_rootDepth;
+    if (isRoot && m_nodes.size() > kEnough) finish();
+    m_lastAtDepth[node.depth] = static_cast<std::int32_t>(m_nodes.size());
+    m_parents.push_back(isRoot ? -1 : m_lastAtDepth[node.depth - 1]);
+    m_gains.push_back(node.added.relevant - node.added.irrelevant);
     m_prices.push_back(price);
-    return static_cast<std::int32_t>(m_nodes.size()) - 1;
+    m_nodes.push_back(node);
   }
   /** Tells what there is, and begins anew. */
-  void finish(const std::function<void(const NodeTau&)>& visit) {
-    if (m_nodes.empty()) return;
+  void finish() {
     const auto tau = tree_abstraction::collapseAlphas(m_parents, m_gains, m_prices);
     for (std::size_t i = 0; i < m_nodes.size(); ++i) {
       m_nodes[i].tau = tau[i];
-      visit(m_nodes[i]);
+      m_visit(m_nodes[i]);
     }
     m_nodes.clear(), m_parents.clear(), m_gains.clear(), m_prices.clear();
   }
 
  private:
+  int m_rootDepth;
+  const Visit& m_visit;
+  std::array<std::int32_t, kTreeDepth> m_lastAtDepth{};
   std::vector<NodeTau> m_nodes;
   std::vector<std::int32_t> m_parents;
   std::vector<double> m_gains, m_prices;
@@ -37,73 +44,43 @@ class TauTree {
 
 }  // namespace
 
-void Abstraction::forEachTau(const std::function<void(const NodeTau&)>& visit) const {
-  const double total = totalDensity();
-  TauTree tree;
-  std::array<std::int32_t, kTreeDepth> lastAtDepth;  // node visited last; -1: of the free frame
-  InCompressedTree inCompressed;
-  forEachInner([&](const InnerNode& n) {
-    const bool isExpanded = inCompressed.visit(n);
-    std::int32_t& index = lastAtDepth[n.cell.depth] = -1;
-    if (m_gTree.isFreeFrame(n.cell.depth)) return;
-    const std::int32_t parent = n.cell.depth == 0 ? -1 : lastAtDepth[n.cell.depth - 1];
-    if (parent < 0) tree.finish(visit);
-    const double p = total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
-    index = tree.add(
-        {n.cell.lowest(), n.cell.depth, n.numChildren - 1, isExpanded, p * n.weightedDivergence},
-        parent, p * n.splitEntropy);
-  });
-  tree.finish(visit);
+AddedToTree& AddedToTree::operator+=(const AddedToTree& o) {
+  leaves += o.leaves;
+  relevant += o.relevant;
+  irrelevant += o.irrelevant;
+  return *this;
 }
 
-Abstraction::Path Abstraction::alphaPath() const {
-  std::vector<double> tau, addedLeaves;
-  std::size_t numRoots = m_map.getNumLeafNodes();
-  forEachTau([&](const NodeTau& n) {
-    tau.push_back(n.tau);
-    addedLeaves.push_back(n.addedLeaves);
-    numRoots -= static_cast<std::size_t>(n.addedLeaves);
-  });
-  return {tree_abstraction::AlphaPath(std::move(tau)), std::move(addedLeaves), numRoots};
-}
-
-Abstraction::PathInformation Abstraction::pathInformation(
-    const std::vector<double>& termWeights) const {
-  const std::size_t numTerms = options().weights.terms.size();
-  if (termWeights.size() != numTerms)
-    throw std::invalid_argument(
-        "information along the path: " + std::to_string(termWeights.size()) +
-        " weights, expected one for each of the " + std::to_string(numTerms) + " terms");
-  PathInformation information;
-  const double total = totalDensity();
-  forEachInner([&](const InnerNode& n) {
-    double gain = 0;
-    for (std::size_t t = 0; t < numTerms; ++t)
-      gain += termWeights[t] * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
-    gain *= total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
-    if (m_gTree.isFreeFrame(n.cell.depth))
-      information.ofRoots += gain;
+AddedToTree Abstraction::forEachTau(const std::function<void(const NodeTau&)>& visit) const {
+  const auto& terms = options().weights.terms;
+  AddedToTree frame;
+  WholeTrees trees(rootDepth(), visit);
+  forEachPathNode([&](const PathNode& n, const std::vector<double>& information) {
+    AddedToTree added{static_cast<double>(n.addedLeaves), 0, 0};
+    for (std::size_t t = 0; t < terms.size(); ++t)
+      (terms[t].weight > 0 ? added.relevant : added.irrelevant) +=
+          std::fabs(terms[t].weight) * information[t];
+    if (n.isFree)
+      frame += added;
     else
-      information.added.push_back(gain);
+      trees.add({n, n.isExpanded, added, 0}, n.price);
   });
-  return information;
+  trees.finish();
+  return frame;
 }
 
 void Abstraction::forEachPathNode(const VisitPathNode& visit) const {
   std::vector<double> information(options().weights.terms.size());
   const double total = totalDensity();
+  InCompressedTree inCompressed;
   forEachInner([&](const InnerNode& n) {
-    const double p = total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
+    const double p = shareOf(n, total);
     for (std::size_t t = 0; t < information.size(); ++t)
       information[t] = p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
-    visit({n.cell.lowest(), n.cell.depth, m_gTree.isFreeFrame(n.cell.depth), p, p * n.splitEntropy,
-           n.numChildren - 1},
+    visit({n.cell.cube(), m_gTree.isFreeFrame(n.cell.depth), inCompressed.visit(n), p,
+           p * n.splitEntropy, n.numChildren - 1},
           information);
   });
-}
-
-double Abstraction::Path::alphaForLeaves(std::size_t wanted) const {
-  return trees.alpha(trees.largestWithLeaves(wanted, addedLeaves, numRoots));
 }
 
 }  // namespace semantic_octree

@@ -49,8 +49,6 @@ class CompressedTree {
   const GTree& m_gTree;
 };
 
-inline LeafCell leafCell(const Node& node, const Cell& cell) {
-  return {cell.key(), static_cast<unsigned>(cell.depth), node};
-}
+inline LeafCell leafCell(const Node& node, const Cell& cell) { return {cell.cube(), node}; }
 
 }  // namespace semantic_octree

@@ -12,6 +12,11 @@ namespace semantic_octree {
 /** p(n) of a node per unit of density: its share of the whole map's volume. */
 inline double volumeOf(const Cell& cell) { return std::ldexp(1.0, -3 * cell.depth); }
 
+/** p(n). \param total p(x) of the whole map, unnormalized */
+inline double shareOf(const InnerNode& n, double total) {
+  return total > 0 ? n.density * volumeOf(n.cell) / total : 0.0;
+}
+
 /** Tells which inner nodes are in the compressed tree, as they are visited, parents first. */
 class InCompressedTree {
  public:

@@ -21,7 +21,8 @@ std::uint64_t leafOf(std::uint64_t packed) { return packed << 1 >> 1; }
 
 LeafCell unpack(std::uint64_t packed) {
   const auto key = [packed](int at) { return static_cast<octomap::key_type>(packed >> at); };
-  return {{key(0), key(16), key(32)}, static_cast<unsigned>(leafOf(packed) >> kDepthAt), {}};
+  return {Cube::around({key(0), key(16), key(32)}, static_cast<int>(leafOf(packed) >> kDepthAt)),
+          {}};
 }
 
 }  // namespace

@@ -61,6 +61,14 @@ std::vector<InformationTerm> TermCatalog::terms(std::size_t b) const {
   return terms;
 }
 
+std::vector<InformationTerm> TermCatalog::weighedTerms(const Solution& solution,
+                                                       std::size_t b) const {
+  std::vector<InformationTerm> weighed = terms(b);
+  const std::vector<double> weights = this->weights(solution, b);
+  for (std::size_t t = 0; t < weighed.size(); ++t) weighed[t].weight = weights[t];
+  return weighed;
+}
+
 std::vector<double> TermCatalog::allWeights(const Solution& solution) const {
   std::vector<double> weights(size(), 0.0);
   for (const InformationTerm& term : solution.terms) weights[indexOf(term)] += term.weight;

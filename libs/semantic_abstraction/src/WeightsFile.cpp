@@ -29,10 +29,11 @@ class Reader {
   Reader(StrictYaml yaml, const ClassTable& classes)
       : m_yaml(std::move(yaml)), m_classes(classes), m_terms(classes) {}
 
-  WeightsFile read() const {
+  WeightsFile read(const std::string& name) const {
     const YAML::Node& root = m_yaml.root();
     m_yaml.checkMap(root);
     WeightsFile file;
+    file.name = name;
     const std::set<std::string> spaceKeys = readSpace(root, file.space);
     if (const YAML::Node list = root["solutions"]) {
       m_yaml.checkKeys(root, with(spaceKeys, {"solutions"}));
@@ -185,13 +186,22 @@ class Reader {
 
 }  // namespace
 
+const Solution& WeightsFile::solution(const std::string& wanted) const {
+  std::vector<std::string> names;
+  for (const Solution& s : solutions) {
+    if (wanted.empty() || s.name == wanted) return s;
+    names.push_back(s.name);
+  }
+  throw std::runtime_error(name + ": " + strict_files::unknownWord("solution", wanted, names));
+}
+
 WeightsFile loadWeights(const std::filesystem::path& file, const ClassTable& classes) {
-  return Reader(StrictYaml(file), classes).read();
+  return Reader(StrictYaml(file), classes).read(file.string());
 }
 
 WeightsFile weightsOfText(const std::string& text, const std::string& name,
                           const ClassTable& classes) {
-  return Reader(StrictYaml(text, name), classes).read();
+  return Reader(StrictYaml(text, name), classes).read(name);
 }
 
 }  // namespace semantic_octree

@@ -16,16 +16,9 @@ using semantic_planning::Surface;
 
 namespace {
 
-/** A leaf as keys. */
-struct Cube {
-  explicit Cube(const LeafCell& leaf)
-      : edge(leaf.edge()), low{leaf.lowest().x(), leaf.lowest().y()}, bottom(leaf.lowest().z()) {}
-
-  bool meets(int lowest, int highest) const { return bottom <= highest && bottom + edge > lowest; }
-  int edge;
-  Column low;
-  int bottom;
-};
+bool meets(const LeafCell& leaf, int lowest, int highest) {
+  return leaf.lowest.z() <= highest && leaf.lowest.z() + leaf.edge() > lowest;
+}
 
 class CompressedFinder {
  public:
@@ -57,7 +50,7 @@ class CompressedFinder {
     const int step = m_ground.step();
     for (const LeafCell& leaf :
          compressed.leavesIn(key(m_low, lowest - step), key(high, highest + m_height + step), true))
-      if (const Cube cube(leaf); isInTheWay(cube)) mark(cube);
+      if (isInTheWay(leaf)) mark(leaf);
     m_surroundings.forEach([&](Column c, int, const Surface* s) {  // no leaf is there
       if (s && s->filled && !s->drivable) m_covered[indexOf(c)] = true;
     });
@@ -81,28 +74,28 @@ class CompressedFinder {
     return static_cast<std::size_t>(c.y - m_low.y) * m_edge + (c.x - m_low.x);
   }
   template <class Predicate>
-  bool anyColumn(const Cube& cube, Predicate predicate) const {
-    for (int y = cube.low.y; y < cube.low.y + cube.edge; ++y)
-      for (int x = cube.low.x; x < cube.low.x + cube.edge; ++x)
+  bool anyColumn(const LeafCell& leaf, Predicate predicate) const {
+    for (int y = leaf.lowest.y(); y < leaf.lowest.y() + leaf.edge(); ++y)
+      for (int x = leaf.lowest.x(); x < leaf.lowest.x() + leaf.edge(); ++x)
         if (m_surroundings.contains({x, y}) && predicate(Column{x, y})) return true;
     return false;
   }
 
-  bool isInTheWay(const Cube& cube) const {
+  bool isInTheWay(const LeafCell& leaf) const {
     const int step = m_ground.step();
-    return anyColumn(cube, [&](Column c) {
+    return anyColumn(leaf, [&](Column c) {
       const int z = m_surroundings.height(c);
       const Surface* s = m_ground.near(c, z, step);
-      if (!s) return cube.meets(z + step + 1, z + m_height);
-      return isBad(*s) && cube.meets(s->z, s->z);
+      if (!s) return meets(leaf, z + step + 1, z + m_height);
+      return isBad(*s) && meets(leaf, s->z, s->z);
     });
   }
   bool isBad(const Surface& s) const {
     return !s.drivable || (m_options.forbiddenGround && !s.filled &&
                            m_planner.order().rank(s.classId) == colored_graph::kForbidden);
   }
-  void mark(const Cube& cube) {
-    anyColumn(cube, [&](Column c) {
+  void mark(const LeafCell& leaf) {
+    anyColumn(leaf, [&](Column c) {
       m_covered[indexOf(c)] = true;
       return false;
     });

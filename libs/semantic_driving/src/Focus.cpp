@@ -1,5 +1,4 @@
 #include <semantic_driving/Focus.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
 
 #include <cmath>
 
@@ -31,14 +30,6 @@ void FocusOptions::describe(strict_files::OptionList& list) {
 }
 
 void FocusOptions::validate() const { strict_files::checkOptions(*this, "FocusOptions"); }
-
-semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order,
-                                                   const FocusOptions& options) {
-  auto abstraction = semantic_planning::abstractionFor(order, options.alpha);
-  if (options.obstacles)
-    abstraction.weights.terms.push_back(tree_abstraction::relevant("obstacles", 1, {0}));
-  return abstraction;
-}
 
 std::vector<Region> regionsAhead(const DrivePath& path, double progress,
                                  const Eigen::Vector3d& vehicle, const FocusOptions& options) {

@@ -35,7 +35,7 @@ ReactiveNavigator::Options reactiveOf(const NavigatorOptions& options) {
 
 SemanticPlanner plannerOn(semantic_octree::SemanticOcTree& map,
                           const colored_graph::ClassOrder& order, const NavigatorOptions& options) {
-  setAbstraction(map, abstractionFor(order, options.focus));
+  setAbstraction(map, abstractionFor(order, options.focus.alpha, options.focus.obstacles));
   return SemanticPlanner(map, order, options.planner);
 }
 

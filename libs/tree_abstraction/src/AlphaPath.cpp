@@ -1,13 +1,10 @@
 #include <tree_abstraction/AlphaPath.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
-
-#include "AlphaTies.h"
 
 namespace tree_abstraction {
 namespace {
@@ -65,14 +62,6 @@ std::vector<char> AlphaPath::expanded(std::size_t k) const {
   return mask;
 }
 
-std::vector<std::size_t> AlphaPath::firstTrees() const {
-  std::vector<std::size_t> first(m_tau.size(), numTrees());
-  for (std::size_t k = 1; k < numTrees(); ++k)
-    for (std::size_t i = m_end[k - 1]; i < m_end[k]; ++i)
-      first[static_cast<std::size_t>(m_order[i])] = k;
-  return first;
-}
-
 std::vector<double> AlphaPath::totals(const std::vector<double>& amounts, double base) const {
   requireSize("amounts", amounts.size(), m_tau.size());
   std::vector<double> sums{base};
@@ -97,34 +86,6 @@ std::size_t AlphaPath::largestWithin(double budget, const std::vector<double>& c
   const auto sums = totals(costs, base);  // ascending
   const auto beyond = std::upper_bound(sums.begin(), sums.end(), budget);
   return static_cast<std::size_t>(beyond - sums.begin()) - 1;
-}
-
-std::size_t AlphaPath::largestWithLeaves(std::size_t wanted, const std::vector<double>& addedLeaves,
-                                         std::size_t numRoots) const {
-  requireSize("counts of added leaves", addedLeaves.size(), m_tau.size());
-  double all = static_cast<double>(numRoots);
-  for (const double added : addedLeaves) all += added;
-  if (static_cast<double>(wanted) > all) {
-    throw std::invalid_argument("AlphaPath: " + std::to_string(wanted) +
-                                " leaves wanted, but the whole tree has only " +
-                                std::to_string(static_cast<std::size_t>(all)));
-  }
-  return largestWithin(static_cast<double>(wanted), addedLeaves, static_cast<double>(numRoots));
-}
-
-std::size_t AlphaPath::largestThat(const std::function<bool(std::size_t)>& fits) const {
-  std::size_t fitting = 0, exceeding = numTrees();  // the latter does not fit, or is none
-  while (exceeding - fitting > 1) {
-    const std::size_t middle = fitting + (exceeding - fitting) / 2;
-    (fits(middle) ? fitting : exceeding) = middle;
-  }
-  return fitting;
-}
-
-std::vector<char> expandedAt(const std::vector<double>& tau, double alpha, double eps) {
-  std::vector<char> mask(tau.size());
-  for (std::size_t i = 0; i < tau.size(); ++i) mask[i] = tau[i] > alpha + eps;
-  return mask;
 }
 
 }  // namespace tree_abstraction

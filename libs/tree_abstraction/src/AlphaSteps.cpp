@@ -1,11 +1,9 @@
+#include <tree_abstraction/AlphaPath.h>
 #include <tree_abstraction/AlphaSteps.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
-
-#include "AlphaTies.h"
 
 namespace tree_abstraction {
 

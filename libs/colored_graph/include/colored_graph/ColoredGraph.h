@@ -56,10 +56,6 @@ class ColoredGraph {
    * than its lower bound: searches relied on that. */
   void setProfile(EdgeId e, EdgeProfile profile);
   void setBlocked(EdgeId e);
-  /** \throw std::invalid_argument negative length. */
-  void setUnevaluated(EdgeId e, Length minLength);
-  /** \throw std::invalid_argument as addEdge(). */
-  void setTolls(EdgeId e, Tolls tolls);
 
   int classes() const { return m_classes; }
   std::size_t vertexCount() const { return m_vertexCount; }

@@ -26,10 +26,4 @@ std::unique_ptr<octomap::ColorOcTree> toColorOcTree(const SemanticOcTree& map);
 SemanticOcTree fromOcTree(const octomap::OcTree& map, const ClassTable& classes,
                           const FilterParameters& filter = {});
 
-/** The same; an occupied leaf that has the color of a class is of this class, as sure as the
- * filter's accuracy. Of classes with one color, the first is meant.
- * \throw std::invalid_argument as above. */
-SemanticOcTree fromColorOcTree(const octomap::ColorOcTree& map, const ClassTable& classes,
-                               const FilterParameters& filter = {});
-
 }  // namespace semantic_octree

@@ -16,14 +16,14 @@ using semantic_types::ClassId;
 using semantic_types::Color;
 
 /** What the color of an occupied cell says. */
-enum class Coloring { Class, Probability, Entropy, Occupancy, Height, Retained };
-const strict_files::Choices<Coloring>& choicesOf(Coloring);
+enum class ViewColoring { Class, Probability, Entropy, Occupancy, Height, Retained };
+const strict_files::Choices<ViewColoring>& choicesOf(ViewColoring);
 
 class LiveCompression;
 
 /** What a view shows of a map, and how. */
 struct ViewStyle {
-  Coloring coloring = Coloring::Class;
+  ViewColoring coloring = ViewColoring::Class;
   /** K + 1 switches, [0] for cells without a class; empty: all classes are shown. */
   std::vector<bool> hiddenClasses;
   /** Free cells, in pale blue, translucent. */

@@ -1,6 +1,6 @@
 #pragma once
 #include <map_view/ViewCell.h>
-#include <semantic_abstraction/Abstraction.h>
+#include <semantic_abstraction/AlphaTrees.h>
 
 #include <cstdint>
 #include <optional>
@@ -22,7 +22,7 @@ class InformationTree {
   Index size() const { return static_cast<Index>(m_end.size()); }
   /** The one behind the last node of a subtree. */
   Index end(Index node) const { return m_end[std::size_t(node)]; }
-  KeyBox box(Index node) const;
+  Cube cube(Index node) const;
 
   /** Computes the nodes' alphas, see tree_abstraction::collapseAlphas(). \param weights one for
    * each term of the map's options */
@@ -31,10 +31,8 @@ class InformationTree {
   double alpha(Index node) const { return m_alphas[std::size_t(node)]; }
   /** Known leaves of the compressed tree. */
   std::size_t numLeaves(double alpha) const;
-  /** Alpha of the largest compressed tree with at most that many leaves, or of the smallest one. */
-  double alphaForLeaves(std::size_t wanted) const;
-  /** The compressed trees of all alphas. */
-  tree_abstraction::AlphaPath path() const;
+  /** The compressed trees of all alphas, without what their terms tell. They look at this one. */
+  semantic_octree::AlphaTrees trees() const;
   /** Of the nodes' finite alphas above a value; it if there are none. */
   double lowestAlpha(double above) const;
   double highestAlpha() const;
@@ -77,11 +75,5 @@ class InformationTree {
   std::vector<double> m_shares, m_prices, m_gains;
   std::vector<double> m_weights;
 };
-
-/** Three keys and a depth in one number. */
-inline std::uint64_t packed(const Eigen::Array3i& lowest, int depth) {
-  return std::uint64_t(lowest.x()) | std::uint64_t(lowest.y()) << 16 |
-         std::uint64_t(lowest.z()) << 32 | std::uint64_t(depth) << 48;
-}
 
 }  // namespace map_view

@@ -12,22 +12,13 @@ constexpr int kTileLevels = 6;  ///< between a tile and its cells
 /** Depth of the finest tiles. */
 constexpr int kFinestTiles = semantic_octree::kTreeDepth - kTileLevels;
 
-/** A cube of the octree that is drawn at once, with cells of kCellsPerTile to its edge. */
-struct Tile {
-  int depth = 0;  ///< 0 to kFinestTiles
-  Eigen::Array3i lowest = Eigen::Array3i::Zero();
-
-  int edge() const { return semantic_octree::edgeAtDepth(depth); }
+/** A cube of depth 0 to kFinestTiles that is drawn at once, with cells of kCellsPerTile to its
+ * edge. */
+struct Tile : Cube {
   int cellDepth() const { return depth + kTileLevels; }
   int cellEdge() const { return edge() / kCellsPerTile; }
   /** The next coarser one; depth > 0. */
-  Tile around() const {
-    const int above = depth - 1;
-    const auto lowestAbove = [above](int key) {
-      return semantic_octree::lowestKeyAtDepth(key, above);
-    };
-    return {above, lowest.unaryExpr(lowestAbove)};
-  }
+  Tile around() const { return {Cube::around(lowest, depth - 1)}; }
   bool operator<(const Tile& o) const {
     const auto tuple = [](const Tile& t) {
       return std::make_tuple(t.depth, t.lowest.x(), t.lowest.y(), t.lowest.z());

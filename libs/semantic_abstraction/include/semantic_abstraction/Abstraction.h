@@ -1,8 +1,8 @@
 #pragma once
 #include <semantic_abstraction/AbstractionOptions.h>
+#include <semantic_octree/Cube.h>
 #include <semantic_octree/SemanticOcTree.h>
 #include <tree_abstraction/AbstractionWeights.h>
-#include <tree_abstraction/AlphaPath.h>
 
 #include <functional>
 #include <memory>
@@ -23,24 +23,10 @@ class GTree;
 class LeafLog;
 
 /** A leaf of the compressed tree: a cube of the map. */
-struct LeafCell {
-  octomap::OcTreeKey key;  ///< as OctoMap's iterators give it
-  unsigned depth = 0;
+struct LeafCell : Cube {
   /** The map's node for the cube, or for a larger cube around it that is a leaf of the map. Valid
    * until the map changes. */
   SemanticOcTreeNode node;
-
-  /** Edge, in voxels. */
-  int edge() const { return edgeAtDepth(static_cast<int>(depth)); }
-  /** Keys of its lowest voxel. */
-  Eigen::Array3i lowest() const {
-    const auto lowestKey = [this](int axis) {
-      return lowestKeyAtDepth(key[static_cast<unsigned>(axis)], static_cast<int>(depth));
-    };
-    return {lowestKey(0), lowestKey(1), lowestKey(2)};
-  }
-  /** The same cube (whatever node stands for it). */
-  bool operator==(const LeafCell& o) const { return key == o.key && depth == o.depth; }
 };
 
 /** What the compressed tree keeps of what the whole map tells. Known leaves are nodes, all leaves
@@ -54,6 +40,15 @@ struct AbstractionMeasures {
   /** Share of a term's information that the compressed tree keeps; none where there is none to keep
    * (below 1e-12 nats). */
   std::optional<double> retention(std::size_t term) const;
+};
+
+/** What a tree has, or what expanding nodes adds to it. */
+struct AddedToTree {
+  double leaves = 0;  ///< known ones
+  /** Information of the terms of either sign, times the amounts of their weights, nats. */
+  double relevant = 0, irrelevant = 0;
+
+  AddedToTree& operator+=(const AddedToTree& o);
 };
 
 /** Leaves of the compressed tree that came and went between two looks (LeafFollower::leaves()):
@@ -107,8 +102,6 @@ class Abstraction {
 
   /** Mixture of the known leaves in a cube by volume: K + 1 probabilities, [0] = free. */
   std::vector<double> distribution(const LeafCell& leaf) const;
-  /** Known part of a cube's volume, (0, 1]. */
-  double knownShare(const LeafCell& leaf) const;
 
   /** The compressed tree as a map of its own. A leaf is as occupied as its most occupied voxel
    * (safe for collision checks); its p(class | occupied) is that of the voxels in which labels
@@ -132,53 +125,28 @@ class Abstraction {
   /** New regions: recomputes the cells whose density changes and what is above them. */
   void setRegions(const std::vector<Region>& regions);
 
-  /** The compressed trees of all alphas, for the present weights and regions. Its costs count the
-   * leaves: see AlphaPath::largestWithLeaves. */
-  struct Path {
-    tree_abstraction::AlphaPath trees;
-    std::vector<double> addedLeaves;  ///< by expanding each node: known children - 1
-    std::size_t numRoots;             ///< blocks, and leaves of the map that reach above them
-    /** Alpha of the largest compressed tree with at most this many known leaves.
-     * \throw std::invalid_argument fewer than the roots, or more than the full tree has. */
-    double alphaForLeaves(std::size_t wanted) const;
+  /** An inner node below the roots, and the alpha from which on it is not expanded: AlphaTrees. */
+  struct NodeTau : Cube {
+    bool isExpanded;    ///< in the compressed tree
+    AddedToTree added;  ///< by expanding it
+    double tau;         ///< see tree_abstraction::collapseAlphas()
   };
-  Path alphaPath() const;
-
-  /** A node of alphaPath(). */
-  struct NodeTau {
-    Eigen::Array3i lowest;  ///< keys of its lowest voxel
-    int depth;
-    int addedLeaves;  ///< known children - 1
-    bool isExpanded;  ///< in the compressed tree
-    double tau;       ///< see tree_abstraction::collapseAlphas()
-  };
-  /** Calls visit(node) for the nodes of alphaPath(), in their order; where the frame is free, no
-   * more than those below one block are in memory. */
-  void forEachTau(const std::function<void(const NodeTau&)>& visit) const;
-
-  /** sum_t weight_t I_t of the trees of alphaPath(), nats, for weights that need not be those of
-   * the path: what its trees tell about some of the terms. Tree k of the path has
-   * trees.totals(added, ofRoots)[k]. */
-  struct PathInformation {
-    double ofRoots = 0;         ///< of the tree of the roots alone
-    std::vector<double> added;  ///< by expanding each node
-  };
-  /** \param termWeights in the order of the options' terms
-   * \throw std::invalid_argument another number of weights than of terms. */
-  PathInformation pathInformation(const std::vector<double>& termWeights) const;
+  /** Calls visit(node) for all nodes that are not in the free frame, depth first; keeps some
+   * 262,144 of them in memory, or those below one root if that are more.
+   * \return what the free frame above them adds to a single leaf */
+  AddedToTree forEachTau(const std::function<void(const NodeTau&)>& visit) const;
 
   /** An inner node as the compressed trees of all weights and alphas see it. */
-  struct PathNode {
-    Eigen::Array3i lowest;  ///< keys of its lowest voxel
-    int depth;
-    bool isFree;      ///< in the free frame: expanded by every tree, and not part of alphaPath()
+  struct PathNode : Cube {
+    bool isFree;      ///< in the free frame: expanded by every tree
+    bool isExpanded;  ///< in the compressed tree
     double share;     ///< p(n)
     double price;     ///< what expanding it costs, p(n) H(Pi): nats for each unit of alpha
     int addedLeaves;  ///< known children - 1
   };
   using VisitPathNode = std::function<void(const PathNode&, const std::vector<double>&)>;
   /** Calls visit(node, information) for all inner nodes, a node's subtree right behind it in the
-   * order of its children: nodes that are not free are those of alphaPath(). `information` is what
+   * order of its children: nodes that are not free are those of forEachTau(). `information` is what
    * expanding the node adds to each term, nats, in the order of the options' terms. */
   void forEachPathNode(const VisitPathNode& visit) const;
 

@@ -22,6 +22,9 @@ class TermCatalog {
   const std::vector<std::size_t>& batch(std::size_t b) const { return m_batches[b]; }
   /** The terms themselves, with weight 0. */
   std::vector<tree_abstraction::InformationTerm> terms(std::size_t b) const;
+  /** A batch's terms with the weights that a solution gives them. */
+  std::vector<tree_abstraction::InformationTerm> weighedTerms(const Solution& solution,
+                                                              std::size_t b) const;
   /** Weight of each term in a solution. */
   std::vector<double> allWeights(const Solution& solution) const;
   /** Weight of each of the batch's terms in a solution. */

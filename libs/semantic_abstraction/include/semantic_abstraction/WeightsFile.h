@@ -20,7 +20,7 @@ struct AbstractionText : AbstractionSpace {
   /** Weight of the whole class variable (which class it is, or free); negative: worth dropping. */
   double everything = 0;
   /** Price of a nat of I_X. */
-  double alpha = 0.002;
+  double alpha = tree_abstraction::kAlpha;
   /** What unknown space is, for `unknown = prior`: "free_space: 0.6, road: 0.2"; classes that are
    * not named share the rest evenly. */
   std::string prior;
@@ -48,9 +48,14 @@ struct Solution {
 
 /** What a file of weights holds. */
 struct WeightsFile {
+  std::string name;  ///< what messages call it
   std::vector<Solution> solutions;
   /** All but the weights; the same for all solutions, so that they can be compared. */
   AbstractionOptions space;
+
+  /** \param wanted a solution's name; empty: the first \throw std::runtime_error naming the file:
+   * it has none of this name. */
+  const Solution& solution(const std::string& wanted) const;
 };
 
 /** Reads one solution or a list `solutions` (YAML); the syntax stands in the README of

@@ -1,5 +1,4 @@
 #pragma once
-#include <colored_graph/ClassOrder.h>
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_driving/DrivePath.h>
 
@@ -8,20 +7,17 @@ namespace semantic_driving {
 /** Where a drive wants all detail of the compressed tree: p(x) of the abstraction is 1 around the
  * vehicle and along the path ahead, and 0 elsewhere. */
 struct FocusOptions {
-  double corridor = 0;     ///< on both sides of the path ahead, meters; 0: p(x) is 1 everywhere
-  double around = 7;       ///< around the vehicle, meters; more than ObstacleOptions::radius
-  double alpha = 0.005;    ///< price of detail, see AbstractionWeights::alpha
-  bool obstacles = false;  ///< keeps what tells obstacles from air, too
+  double corridor = 0;  ///< on both sides of the path ahead, meters; 0: p(x) is 1 everywhere
+  double around = 7;    ///< around the vehicle, meters; more than ObstacleOptions::radius
+  double alpha =
+      tree_abstraction::kPlanningAlpha;  ///< as semantic_planning::abstractionFor() has it
+  bool obstacles = false;                ///< the same
 
   bool isOn() const { return corridor > 0; }
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
-
-/** As semantic_planning::abstractionFor(), with the options' alpha and terms, and p(x) = 1. */
-semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order,
-                                                   const FocusOptions& options);
 
 /** The regions of p(x) for a vehicle (map frame, meters) on its path; none without a focus. A
  * stretch of the path keeps its region as long as any of it is ahead, so that little changes from

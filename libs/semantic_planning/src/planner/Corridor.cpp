@@ -7,9 +7,9 @@
 #include <queue>
 
 #include "CoarseGround.h"
-#include "GuideField.h"
-#include "GuideSearch.h"
 #include "PlannerCore.h"
+#include "RelaxedField.h"
+#include "RelaxedSearch.h"
 #include "ground/GroundTiles.h"
 
 namespace semantic_planning {
@@ -20,7 +20,7 @@ using mrpt::math::TPose2D;
 namespace {
 
 using Id = CoarseGround::Id;
-using Cost = GuideField::Cost;
+using Cost = RelaxedField::Cost;
 
 /** A* from part to part. */
 class CorridorSearch {

@@ -1,13 +1,10 @@
 #include <semantic_abstraction/WeightsFile.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 
-#include <algorithm>
-#include <stdexcept>
-
 namespace semantic_planning {
 
 semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order,
-                                                   double alpha) {
+                                                   double alpha, bool obstacles) {
   std::vector<std::vector<int>> groups(order.ranks());
   for (int id = 1; id < order.classes(); ++id) {  // 0 would be free space
     const colored_graph::Rank rank = order.rank(static_cast<colored_graph::GraphClass>(id));
@@ -19,6 +16,7 @@ semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrd
   semantic_octree::AbstractionOptions options;
   options.blockSize = 3.2;
   options.weights.terms = {ranks};
+  if (obstacles) options.weights.terms.push_back(tree_abstraction::relevant("obstacles", 1, {0}));
   options.weights.alpha = alpha;
   return options;
 }
@@ -27,13 +25,10 @@ semantic_octree::AbstractionOptions abstractionOf(const std::filesystem::path& w
                                                   const std::string& solution,
                                                   const semantic_types::ClassTable& classes) {
   const semantic_octree::WeightsFile file = semantic_octree::loadWeights(weights, classes);
-  const auto named = [&](const auto& s) { return solution.empty() || s.name == solution; };
-  const auto found = std::find_if(file.solutions.begin(), file.solutions.end(), named);
-  if (found == file.solutions.end())
-    throw std::runtime_error(weights.string() + ": has no solution '" + solution + "'");
+  const semantic_octree::Solution& found = file.solution(solution);
   semantic_octree::AbstractionOptions options = file.space;
-  options.weights.terms = found->terms;
-  options.weights.alpha = found->alpha.value_or(0.005);
+  options.weights.terms = found.terms;
+  options.weights.alpha = found.alpha.value_or(tree_abstraction::kPlanningAlpha);
   return options;
 }
 

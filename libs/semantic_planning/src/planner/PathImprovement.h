@@ -38,7 +38,7 @@ class PathOrder {
 
 /** Replaces a path by the best that is found beside a guide, which does not depend on the one that
  * was there before. If that has more of a class, the path itself is improved in the same way, and
- * the better one taken. \param guide Guide::path; may be empty
+ * the better one taken. \param guide RelaxedPath::path; may be empty
  * \param least by rank, the least that are known; empty: none. They become less. */
 void improvePath(PlanResult& result, PathOrder::Lengths& least, const std::vector<PathPoint>& guide,
                  const EdgeChecker& checker, const ImprovementOptions& options);

@@ -29,7 +29,7 @@ struct Part {
   int number;
   EdgeProfile profile;
 
-  DriveState state() const { return {arc.length > 0, arc.curvature}; }
+  CurveState state() const { return {arc.length > 0, arc.curvature}; }
 };
 
 /** A new arc instead of what is between two parts, which become shorter or longer. */
@@ -181,8 +181,8 @@ class Smoothing {
   double priceOf(const Replacement& r, Iterator begin, Iterator end) const {
     const DrivePrice& price = m_checker.price();
     double sum = 0;
-    std::optional<DriveState> last;
-    const auto go = [&](const DriveState& state) {
+    std::optional<CurveState> last;
+    const auto go = [&](const CurveState& state) {
       if (last) sum += price.ofChange(*last, state);
       last = state;
     };

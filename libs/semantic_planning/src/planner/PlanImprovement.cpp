@@ -18,19 +18,19 @@ bool PlannerCore::mayImprove(const PlanResult& result) const {
 
 /** Farther off than vertices lie, for it costs less than they do; if there is no way, wherever
  * there is ground. */
-Guide PlannerCore::searchWideGuide() const {
+RelaxedPath PlannerCore::searchWideRelaxed() const {
   const std::size_t all = m_roadmap->reachable(*m_goalPose) ? m_ground.tiles().size() : 0;
   constexpr double kLeast = 1;  // m
   for (double buffer = m_options.roadmap.buffer;;) {
     buffer = std::max(kLeast, 2 * buffer);
     const PlanningRegion wide = region(buffer);
-    Guide guide = searchGuide(m_checker, wide, *m_startPose, *m_goalPose);
+    RelaxedPath guide = searchRelaxed(m_checker, wide, *m_startPose, *m_goalPose);
     if (!guide.path.empty() || tilesIn(wide, m_ground).size() >= all) return guide;
   }
 }
 
 void PlannerCore::improve(StageClock& clock, PlanResult& result) {
-  const Guide guide = searchWideGuide();
+  const RelaxedPath guide = searchWideRelaxed();
   clock.end("guide");
   const ImprovementOptions options{RoadmapOptions::kLongestEdge, m_options.classTolerance};
   PathOrder::Lengths least;
@@ -49,7 +49,7 @@ void PlannerCore::improve(StageClock& clock, PlanResult& result) {
   }
 }
 
-bool PlannerCore::mayBeBetter(const PlanResult& result, const Guide& guide) const {
+bool PlannerCore::mayBeBetter(const PlanResult& result, const RelaxedPath& guide) const {
   constexpr double kMoreLength = 1.1, kMoreOfAClass = 0.3;  // m
   const bool isRefinable =
       m_options.roadmap.kind == GraphKind::Compressed || m_options.roadmap.kind == GraphKind::Full;
@@ -63,7 +63,7 @@ bool PlannerCore::mayBeBetter(const PlanResult& result, const Guide& guide) cons
   return false;
 }
 
-PlanResult PlannerCore::refined(const Guide& guide, int round, const PlanResult& before) {
+PlanResult PlannerCore::refined(const RelaxedPath& guide, int round, const PlanResult& before) {
   constexpr std::size_t kEvery = 4;        // point of the guide
   constexpr double kDistance = 3;          // m
   constexpr std::size_t kVertices = 1000;  // whatever the first graph has: more are never worse

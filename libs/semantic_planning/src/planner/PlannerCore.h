@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "GuideSearch.h"
+#include "RelaxedSearch.h"
 #include "StageClock.h"
 #include "roadmap/CandidateStore.h"
 #include "roadmap/EdgeMemory.h"
@@ -80,10 +80,10 @@ class PlannerCore {
   void improve(StageClock& clock, PlanResult& result);
   /** Between start and goal. \param buffer to each side, meters */
   PlanningRegion region(double buffer) const;
-  Guide searchWideGuide() const;
-  bool mayBeBetter(const PlanResult& result, const Guide& guide) const;
+  RelaxedPath searchWideRelaxed() const;
+  bool mayBeBetter(const PlanResult& result, const RelaxedPath& guide) const;
   /** What the best path is of a graph that is finer near a guide. */
-  PlanResult refined(const Guide& guide, int round, const PlanResult& before);
+  PlanResult refined(const RelaxedPath& guide, int round, const PlanResult& before);
   void finish(const colored_graph::PathResult& path, StageClock& clock, PlanResult& result);
 
   semantic_octree::MapFollower m_follower;  ///< of what the ground has not read

@@ -135,7 +135,7 @@ void StationSearch::evaluate(Connection& connection, Length most, const WayPrici
 std::pair<const StationSearch::Label*, Length> StationSearch::leastBefore(
     const Place& from, const Connection& connection) const {
   std::pair<const Label*, Length> least{nullptr, 0};
-  const DriveState begin = beginOf(connection.curve);
+  const CurveState begin = beginOf(connection.curve);
   for (const Label& label : from.labels) {
     if (!label.reached) continue;
     const double change = label.last ? m_price.ofChange(endOf(label.last->curve), begin) : 0;

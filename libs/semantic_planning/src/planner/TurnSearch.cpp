@@ -71,7 +71,7 @@ GroundPose TurnSearch::poseAt(std::size_t point) const {
   return {{p.x, p.y, p.heading}, m_checker.ground().keyOf(p.z)};
 }
 
-DriveState TurnSearch::stateAt(std::size_t point) const {
+CurveState TurnSearch::stateAt(std::size_t point) const {
   return {m_path[point].forward, m_path[point].curvature};
 }
 
@@ -79,7 +79,7 @@ Length TurnSearch::ofWay(double length, bool forward) const {
   return lengthDown(m_checker.price().ofWay(length, forward != m_isReversed));
 }
 
-Length TurnSearch::ofChange(const Node& from, const DriveState& to) const {
+Length TurnSearch::ofChange(const Node& from, const CurveState& to) const {
   return from.before < 0 ? 0 : lengthDown(m_checker.price().ofChange(from.state(), to));
 }
 

@@ -40,13 +40,13 @@ class TurnSearch {
     Length cost;
     int before;             ///< -1: it is the first
     ReedsSheppCurve curve;  ///< from there
-    DriveState state() const { return endOf(curve); }
+    CurveState state() const { return endOf(curve); }
   };
   /** A place of the path. */
   struct Target {
     std::size_t point;
     GroundPose pose;
-    DriveState state;  ///< from there on
+    CurveState state;  ///< from there on
   };
   struct Entry {
     Length estimate;
@@ -63,12 +63,12 @@ class TurnSearch {
   };
 
   GroundPose poseAt(std::size_t point) const;
-  DriveState stateAt(std::size_t point) const;
+  CurveState stateAt(std::size_t point) const;
   void sumUp();
   void aim();
   Length most() const { return m_best - m_gain; }
   Length ofWay(double length, bool forward) const;
-  Length ofChange(const Node& from, const DriveState& to) const;
+  Length ofChange(const Node& from, const CurveState& to) const;
   const Node& node(int i) const { return m_nodes[static_cast<std::size_t>(i)]; }
   void reach(const Node& node, Length rest);
   void goOn(int from);

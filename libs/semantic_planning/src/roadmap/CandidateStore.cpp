@@ -42,9 +42,9 @@ CandidateStore::Tile& CandidateStore::made(Column tile) {
   return kept;
 }
 
-void CandidateStore::addTilesOf(const LeafCell& leaf, std::vector<Column>& tiles) {
-  const int size = leaf.edge(), z = leaf.lowest().z();
-  const Column low{leaf.lowest().x(), leaf.lowest().y()};
+void CandidateStore::addTilesOf(const semantic_octree::Cube& leaf, std::vector<Column>& tiles) {
+  const int size = leaf.edge(), z = leaf.lowest.z();
+  const Column low{leaf.lowest.x(), leaf.lowest.y()};
   const Column first = tileOf(low), last = tileOf({low.x + size - 1, low.y + size - 1});
   m_tiles.forEachIn(first, last, [&](Column c, const Tile& tile) {
     if (tile.made && z <= tile.highest && z + size > tile.lowest) tiles.push_back(c);
@@ -65,9 +65,9 @@ std::vector<Column> CandidateStore::outdated(const semantic_octree::TileChange& 
   const Abstraction abstraction(m_map);
   for (const auto* leaves : {&change.removed, &change.added})
     for (const LeafCell& leaf : *leaves) addTilesOf(leaf, tiles);
-  constexpr unsigned kTouchedDepth = 13;  // 8 voxels
+  constexpr int kTouchedDepth = 13;  // 8 voxels
   for (const octomap::OcTreeKey& key : touched.tiles) {
-    addTilesOf({key, kTouchedDepth, {}}, tiles);
+    addTilesOf(semantic_octree::Cube::around({key[0], key[1], key[2]}, kTouchedDepth), tiles);
     for (const LeafCell& leaf : abstraction.leavesIn(key, key, false))
       if (leaf.depth < kTouchedDepth) addTilesOf(leaf, tiles);
   }

@@ -47,7 +47,7 @@ class CandidateStore {
   Tile& made(Column tile);
   Tile make(Column tile) const;
   /** Tiles whose points may depend on a leaf. */
-  void addTilesOf(const semantic_octree::LeafCell& leaf, std::vector<Column>& tiles);
+  void addTilesOf(const semantic_octree::Cube& leaf, std::vector<Column>& tiles);
   std::vector<Column> outdated(const semantic_octree::TileChange& touched);
 
   semantic_octree::SemanticOcTree& m_map;

@@ -82,10 +82,10 @@ std::vector<CandidatePoint> compressedPoints(Column tile, const Abstraction& abs
   };
   std::vector<CandidatePoint> points;
   for (const LeafCell& leaf : abstraction.leavesIn(key(0, 0), key(kTileEdge - 1, 65535), true)) {
-    const int size = leaf.edge(), z = leaf.lowest().z();
+    const int size = leaf.edge(), z = leaf.lowest.z();
     std::optional<ClassId> classId;
     if (options.classOfLeaf) classId = likeliestIn(leaf, abstraction);
-    const Column low{leaf.lowest().x(), leaf.lowest().y()};
+    const Column low{leaf.lowest.x(), leaf.lowest.y()};
     forCellsOf(low, size, largest, tile, [&](const Cell& cell) {
       for (const Surface& s : ground.surfaces(cell.center()))
         if (s.drivable && s.z >= z && s.z < z + size)

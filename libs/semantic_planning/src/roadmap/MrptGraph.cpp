@@ -1,15 +1,10 @@
 #include <semantic_planning/roadmap/MrptGraph.h>
 
-#include <map>
-#include <stdexcept>
-#include <string>
-
 namespace semantic_planning {
 
 using colored_graph::EdgeId;
 using colored_graph::EdgeState;
 using colored_graph::VertexId;
-using mrpt::graphs::CNetworkOfPoses2D;
 using mrpt::poses::CPose2D;
 
 ClassNetwork toNetwork(const Roadmap& roadmap, const std::vector<std::string>& classNames) {
@@ -28,31 +23,6 @@ ClassNetwork toNetwork(const Roadmap& roadmap, const std::vector<std::string>& c
   }
   if (!network.nodes.empty()) network.root = network.nodes.begin()->first;
   return network;
-}
-
-ImportedGraph fromNetwork(const CNetworkOfPoses2D& network, const EdgeChecker& checker) {
-  ImportedGraph imported{colored_graph::ColoredGraph(checker.order().classes()), {}};
-  std::map<mrpt::graphs::TNodeID, VertexId> vertexOf;
-  for (const auto& [node, pose] : network.nodes) {
-    const auto onGround = checker.place(pose.asTPose());
-    if (!onGround)
-      throw std::invalid_argument("node " + std::to_string(node) + " is not on drivable ground");
-    vertexOf[node] = imported.graph.addVertex(checker.classAt(*onGround));
-    imported.poses.push_back(*onGround);
-  }
-  const auto vertex = [&](mrpt::graphs::TNodeID node) {
-    const auto found = vertexOf.find(node);
-    if (found == vertexOf.end())
-      throw std::invalid_argument("node " + std::to_string(node) + " has an edge and no pose");
-    return found->second;
-  };
-  for (const auto& [nodes, unused] : network.edges) {
-    const VertexId a = vertex(nodes.first), b = vertex(nodes.second);
-    const double length =
-        checker.reedsShepp().distance(imported.poses[a].pose, imported.poses[b].pose);
-    imported.graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(length));
-  }
-  return imported;
 }
 
 }  // namespace semantic_planning

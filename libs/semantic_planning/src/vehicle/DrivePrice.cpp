@@ -17,25 +17,25 @@ bool isSomething(const ReedsSheppCurve::Segment& segment) {
   return std::abs(segment.length) > kStandstill;
 }
 
-DriveState stateOf(const ReedsSheppCurve::Segment& segment, double turningRadius) {
+CurveState stateOf(const ReedsSheppCurve::Segment& segment, double turningRadius) {
   return {segment.length > 0, segment.turn / turningRadius};
 }
 
-DriveState stateAt(const PathPoint& p) { return {p.forward, p.curvature}; }
+CurveState stateAt(const PathPoint& p) { return {p.forward, p.curvature}; }
 
 template <class Iterator>
-DriveState firstOf(Iterator begin, Iterator end, double turningRadius) {
+CurveState firstOf(Iterator begin, Iterator end, double turningRadius) {
   const Iterator first = std::find_if(begin, end, isSomething);
-  return first == end ? DriveState() : stateOf(*first, turningRadius);
+  return first == end ? CurveState() : stateOf(*first, turningRadius);
 }
 
 }  // namespace
 
-DriveState beginOf(const ReedsSheppCurve& curve) {
+CurveState beginOf(const ReedsSheppCurve& curve) {
   return firstOf(curve.segments().begin(), curve.segments().end(), curve.turningRadius());
 }
 
-DriveState endOf(const ReedsSheppCurve& curve) {
+CurveState endOf(const ReedsSheppCurve& curve) {
   return firstOf(curve.segments().rbegin(), curve.segments().rend(), curve.turningRadius());
 }
 
@@ -47,10 +47,10 @@ DrivePrice::DrivePrice(const VehicleOptions& vehicle)
 
 double DrivePrice::of(const ReedsSheppCurve& curve) const {
   double price = 0;
-  std::optional<DriveState> before;
+  std::optional<CurveState> before;
   for (const ReedsSheppCurve::Segment& segment : curve.segments()) {
     if (!isSomething(segment)) continue;
-    const DriveState state = stateOf(segment, curve.turningRadius());
+    const CurveState state = stateOf(segment, curve.turningRadius());
     price += ofWay(std::abs(segment.length), state.forward);
     if (before) price += ofChange(*before, state);
     before = state;

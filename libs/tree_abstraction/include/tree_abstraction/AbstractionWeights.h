@@ -27,11 +27,15 @@ InformationTerm irrelevant(std::string name, double gamma, std::vector<int> clas
 /** The whole class variable with its K + 1 outcomes. */
 InformationTerm wholeClassVariable(std::string name, double weight, int numClasses);
 
+/** Prices of detail (AbstractionWeights::alpha) that serve: in a map, and in one that paths are
+ * planned in, which needs less of it. */
+constexpr double kAlpha = 0.002, kPlanningAlpha = 0.005;
+
 /** What the compressed tree maximizes: J(T) = sum_t weight_t I_t(T) - alpha I_X(T). */
 struct AbstractionWeights {
   std::vector<InformationTerm> terms;
   /** Price of a nat of I_X, the entropy of the leaf that holds a random point of space; >= 0. */
-  double alpha = 0;
+  double alpha = kAlpha;
 
   /** Checks all fields for a map of numClasses classes (K; free space not counted).
    * \throw std::invalid_argument naming the field and its value: a weight or alpha that is not

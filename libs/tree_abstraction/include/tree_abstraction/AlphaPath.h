@@ -1,7 +1,7 @@
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace tree_abstraction {
@@ -46,8 +46,6 @@ class AlphaPath {
 
   /** Per node of tau(): whether tree k expands it. */
   std::vector<char> expanded(std::size_t k) const;
-  /** Per node of tau(): the first tree that expands it, or numTrees() if none does. */
-  std::vector<std::size_t> firstTrees() const;
   /** Per tree: `base` plus the sum of `amounts` over the nodes it expands. Counts leaves (number of
    * children - 1 a node), bytes, information (p(n) JS) along the path.
    * \throw std::invalid_argument as many amounts as nodes expected. */
@@ -57,15 +55,6 @@ class AlphaPath {
    * \param costs Per node what expanding it adds, >= 0. \param base What the roots alone cost.
    * \throw std::invalid_argument naming the field: a bad cost, or a budget below `base`. */
   std::size_t largestWithin(double budget, const std::vector<double>& costs, double base) const;
-  /** The same for a wanted number of leaves.
-   * \param addedLeaves Per node the known children - 1. \param numRoots Leaves of the roots alone.
-   * \throw std::invalid_argument also if more leaves are wanted than the whole tree has. */
-  std::size_t largestWithLeaves(std::size_t wanted, const std::vector<double>& addedLeaves,
-                                std::size_t numRoots) const;
-  /** The largest tree that fits, where larger trees than one that does not fit do not fit either:
-   * by bisection. \param fits called with indices of trees; the roots alone (tree 0) are taken to
-   * fit */
-  std::size_t largestThat(const std::function<bool(std::size_t)>& fits) const;
 
  private:
   std::vector<double> m_tau;
@@ -74,8 +63,16 @@ class AlphaPath {
   std::vector<std::size_t> m_end;
 };
 
-/** Nodes the compressed tree of one alpha expands: tau > alpha.
- * \param eps Excess over alpha that counts as a tie: AbstractionWeights::eps(). */
-std::vector<char> expandedAt(const std::vector<double>& tau, double alpha, double eps = 0);
+/** Whether two taus agree but for rounding. */
+inline bool isTie(double larger, double smaller) {
+  constexpr double kTolerance = 1e-12;
+  return larger == smaller || larger - smaller <= kTolerance * smaller;
+}
+
+/** Amid the alphas of a tree; infinite if only an infinite alpha gives it. */
+inline double alphaBetween(double low, double high) {
+  if (std::isfinite(high)) return low + 0.5 * (high - low);
+  return low > 0 ? 2.0 * low : 1.0;
+}
 
 }  // namespace tree_abstraction

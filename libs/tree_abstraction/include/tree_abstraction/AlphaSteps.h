@@ -14,7 +14,7 @@ class AlphaSteps {
 
   /** 0: the tree of the roots alone; the last: what no tree expands. */
   std::size_t numSteps() const { return m_lowest.size() + 2; }
-  /** Of a node that was asked for: as AlphaPath::firstTrees(), but without the trees between. */
+  /** Of a node that was asked for: the first step that expands it. */
   std::size_t stepOf(double tau) const;
   /** As AlphaPath::alpha() and highestAlpha(). \param step not the last */
   double alpha(std::size_t step) const;

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/Keys.h>
+#include <semantic_octree/Cube.h>
 #include <semantic_octree/SemanticOcTreeNode.h>
 
 #include <Eigen/Core>
@@ -28,11 +28,9 @@ struct Cell {
   int edge() const { return edgeAtDepth(depth); }
   /** Lowest voxel, as a key. */
   VoxelIndex lowest() const { return index * edge(); }
+  Cube cube() const { return {lowest(), depth}; }
   /** Key as OctoMap's iterators give it: of the voxel just above the cell's center. */
-  octomap::OcTreeKey key() const {
-    const VoxelIndex k = lowest() + edge() / 2;
-    return octomapKey(k.x(), k.y(), k.z());
-  }
+  octomap::OcTreeKey key() const { return cube().key(); }
 };
 
 }  // namespace semantic_octree

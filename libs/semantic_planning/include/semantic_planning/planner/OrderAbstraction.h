@@ -10,12 +10,14 @@ namespace semantic_planning {
 
 /** A compressed tree for planning with this order (over the map's class ids, 0 = unknown ground):
  * it keeps what tells the ranks apart, each from the others and from all that is forbidden.
- * \param alpha price of detail, see AbstractionWeights::alpha */
+ * \param alpha price of detail, see AbstractionWeights::alpha \param obstacles keeps what tells
+ * these from air, too */
 semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order,
-                                                   double alpha = 0.005);
+                                                   double alpha = tree_abstraction::kPlanningAlpha,
+                                                   bool obstacles = false);
 
 /** One that keeps what a solution of a file of weights says (see semantic_octree::loadWeights); its
- * alpha is 0.005 if the file says none. \param solution its name; empty: the first
+ * alpha is kPlanningAlpha if the file says none. \param solution its name; empty: the first
  * \throw std::runtime_error naming the file and what is wrong with it, or that it has no such
  * solution */
 semantic_octree::AbstractionOptions abstractionOf(const std::filesystem::path& weights,

@@ -23,15 +23,4 @@ using ClassNetwork =
  * \param classNames by class id. */
 ClassNetwork toNetwork(const Roadmap& roadmap, const std::vector<std::string>& classNames);
 
-/** The graph of a network, such as loadFromTextFile() reads, with vertices on the ground.
- * Edges are unevaluated, their lower bound is the vehicle's shortest curve. */
-struct ImportedGraph {
-  colored_graph::ColoredGraph graph;
-  std::vector<GroundPose> poses;  ///< by vertex id
-};
-/** \throw std::invalid_argument naming the node: an edge to a node without a pose, or a node that
- * is not on drivable ground. */
-ImportedGraph fromNetwork(const mrpt::graphs::CNetworkOfPoses2D& network,
-                          const EdgeChecker& checker);
-
 }  // namespace semantic_planning

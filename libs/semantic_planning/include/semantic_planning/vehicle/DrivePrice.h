@@ -9,7 +9,7 @@
 namespace semantic_planning {
 
 /** How a curve is entered or left. */
-struct DriveState {
+struct CurveState {
   bool forward = true;
   double curvature = 0;  ///< 1/m, of the steering: positive to the left, whatever the gear
 };
@@ -24,7 +24,7 @@ class DrivePrice {
   double gearChange() const { return m_gearChange; }
   /** Of a way without changes. */
   double ofWay(double meters, bool forward) const { return forward ? meters : m_reverse * meters; }
-  double ofChange(const DriveState& from, const DriveState& to) const {
+  double ofChange(const CurveState& from, const CurveState& to) const {
     return (from.forward != to.forward ? m_gearChange : 0) +
            (steers(from.curvature, to.curvature) ? m_steering : 0);
   }
@@ -48,7 +48,7 @@ class DrivePrice {
 };
 
 /** How a curve begins and ends; of one without length, going ahead. */
-DriveState beginOf(const ReedsSheppCurve& curve);
-DriveState endOf(const ReedsSheppCurve& curve);
+CurveState beginOf(const ReedsSheppCurve& curve);
+CurveState endOf(const ReedsSheppCurve& curve);
 
 }  // namespace semantic_planning

@@ -23,7 +23,7 @@ inline std::int64_t stepsBetween(Column a, Column b) {
 
 /** What a search from one drivable surface of a region to the next knows about each of them. Only
  * tiles that it gets to take memory: a way along a road is a small part of its region. */
-class GuideField {
+class RelaxedField {
  public:
   using Cost = std::int64_t;
   static constexpr Cost kUnreached = std::numeric_limits<Cost>::max();
@@ -55,7 +55,7 @@ class GuideField {
   };
 
   /** \param ground must outlive the field. */
-  GuideField(const Ground& ground, const PlanningRegion& region);
+  RelaxedField(const Ground& ground, const PlanningRegion& region);
 
   /** The column's drivable surface nearest to a height, at most `tolerance` voxels off; or null. */
   const Surface* near(Column c, int z, int tolerance) const;

@@ -1,4 +1,4 @@
-#include "planner/GuideSearch.h"
+#include "planner/RelaxedSearch.h"
 
 #include <cmath>
 #include <queue>
@@ -6,19 +6,19 @@
 
 #include "PlannerFixture.h"
 #include "ground/SurfaceTile.h"
-#include "planner/GuideField.h"
+#include "planner/RelaxedField.h"
 
 using namespace semantic_planning;
 
 namespace {
 
-class GuideSearch : public PlannerTest {
+class RelaxedSearch : public PlannerTest {
  protected:
-  Guide search() {
+  RelaxedPath search() {
     const Ground ground(map(), options.vehicle, options.ground, order);
     const EdgeChecker checker(ground, options.vehicle, order, options.reading);
-    return searchGuide(checker, {start, goal, options.roadmap.buffer}, *checker.place(start),
-                       *checker.place(goal));
+    return searchRelaxed(checker, {start, goal, options.roadmap.buffer}, *checker.place(start),
+                         *checker.place(goal));
   }
   std::vector<PathPoint> guide() { return search().path; }
   static double meters(const std::vector<PathPoint>& path, PaintedWorld::Class id) {
@@ -91,7 +91,7 @@ class Patches {
 
 }  // namespace
 
-TEST_F(GuideSearch, goesAroundOverTheBetterClassHoweverFar) {
+TEST_F(RelaxedSearch, goesAroundOverTheBetterClassHoweverFar) {
   paintCorner();
   const auto path = guide();
   ASSERT_FALSE(path.empty());
@@ -102,7 +102,7 @@ TEST_F(GuideSearch, goesAroundOverTheBetterClassHoweverFar) {
   EXPECT_LT(guide().back().arcLength, 1.09 * straight);  // in eight directions
 }
 
-TEST_F(GuideSearch, findsTheOnlyWayAroundTheWorstClassAndThePathFollows) {
+TEST_F(RelaxedSearch, findsTheOnlyWayAroundTheWorstClassAndThePathFollows) {
   paintCorner();
   world.floor(-15, 15, 0, 1.4, PaintedWorld::Mud);
   world.floor(2, 6, 0, 1.4, PaintedWorld::Grass);  // the only way through
@@ -114,7 +114,7 @@ TEST_F(GuideSearch, findsTheOnlyWayAroundTheWorstClassAndThePathFollows) {
   }
 }
 
-TEST_F(GuideSearch, aWayAroundThatLeavesTheBufferIsTakenForItsClasses) {
+TEST_F(RelaxedSearch, aWayAroundThatLeavesTheBufferIsTakenForItsClasses) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Mud);
   world.floor(-15, -12, -15, 15, PaintedWorld::Road);
   world.floor(-15, 15, 12, 15, PaintedWorld::Road);
@@ -130,7 +130,7 @@ TEST_F(GuideSearch, aWayAroundThatLeavesTheBufferIsTakenForItsClasses) {
   EXPECT_LE(meters(found.path, PaintedWorld::Mud), options.classTolerance);
 }
 
-TEST_F(GuideSearch, theOnlyWayAroundIsFoundHoweverFarOff) {
+TEST_F(RelaxedSearch, theOnlyWayAroundIsFoundHoweverFarOff) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.box(-1, -0.6, -15, 12, 0, 2, PaintedWorld::Wall);
   options.shorten = true;
@@ -144,7 +144,7 @@ TEST_F(GuideSearch, theOnlyWayAroundIsFoundHoweverFarOff) {
   }
 }
 
-TEST_F(GuideSearch, anInfiniteBufferTakesAllOfTheMapWhateverTheGraph) {
+TEST_F(RelaxedSearch, anInfiniteBufferTakesAllOfTheMapWhateverTheGraph) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   start = {-5, -13, 0};
   goal = {5, -13, 0};
@@ -155,13 +155,13 @@ TEST_F(GuideSearch, anInfiniteBufferTakesAllOfTheMapWhateverTheGraph) {
   }
 }
 
-TEST_F(GuideSearch, tellsItsLengthInEachRank) {
+TEST_F(RelaxedSearch, tellsItsLengthInEachRank) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Road);
   world.floor(-3, -1, -15, 15, PaintedWorld::Grass);
   world.floor(4, 5, -15, 15, PaintedWorld::Mud);
   start = {-10, 0.1, 0};
   goal = {10, 0.1, 0};
-  const Guide found = search();
+  const RelaxedPath found = search();
   ASSERT_EQ(found.lengthPerRank.size(), 4u);
   EXPECT_NEAR(found.lengthPerRank[1], 2, 0.21);
   EXPECT_NEAR(found.lengthPerRank[2], 1, 0.21);
@@ -169,24 +169,24 @@ TEST_F(GuideSearch, tellsItsLengthInEachRank) {
   EXPECT_NEAR(found.lengthPerRank[0] + 3, found.path.back().arcLength, 0.5);
 }
 
-TEST_F(GuideSearch, eachDrivableSurfaceHasANameInTheOrderOfTilesColumnsAndHeights) {
+TEST_F(RelaxedSearch, eachDrivableSurfaceHasANameInTheOrderOfTilesColumnsAndHeights) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.box(-4, 4, -2, 2, 2, 2.2, PaintedWorld::Road);  // a bridge
   const Ground ground(map(), options.vehicle, options.ground, order);
-  GuideField field(ground, {start, goal, std::numeric_limits<double>::infinity()});
-  GuideField::Cell before;
+  RelaxedField field(ground, {start, goal, std::numeric_limits<double>::infinity()});
+  RelaxedField::Cell before;
   int upon = 0;
   for (const Column& tile : ground.tiles())
     forColumnsOf(tile, [&](Column c) {
       for (const Surface& s : ground.surfaces(c)) {
         if (!s.drivable) continue;
-        const GuideField::Place place = field.placeNear(c, s.z, 0);
+        const RelaxedField::Place place = field.placeNear(c, s.z, 0);
         ASSERT_EQ(place.surface, &s);
         EXPECT_TRUE(place.column == c);
         EXPECT_EQ(field.placeOf(place.cell).surface, &s);
         EXPECT_TRUE(field.placeOf(place.cell).column == c);
         EXPECT_TRUE(before < place.cell);
-        EXPECT_EQ(field.label(place.cell).cost, GuideField::kUnreached);
+        EXPECT_EQ(field.label(place.cell).cost, RelaxedField::kUnreached);
         field.label(place.cell).cost = 0;
         before = place.cell;
         upon += ground.surfaces(c).first != &s;
@@ -196,7 +196,7 @@ TEST_F(GuideSearch, eachDrivableSurfaceHasANameInTheOrderOfTilesColumnsAndHeight
 }
 
 /** Against a search in all directions, which knows no bound of what is to come. */
-TEST_F(GuideSearch, noWayBetweenAnyPlacesCostsLess) {
+TEST_F(RelaxedSearch, noWayBetweenAnyPlacesCostsLess) {
   options.vehicle.wheelTrack = 0;
   options.roadmap.buffer = std::numeric_limits<double>::infinity();
   const std::vector<std::int64_t> weights = weightsOfRanks(order);
@@ -208,14 +208,14 @@ TEST_F(GuideSearch, noWayBetweenAnyPlacesCostsLess) {
     start = patches.poseAt(from);
     goal = patches.poseAt(to);
     std::int64_t cost = 0;
-    const Guide found = search();
+    const RelaxedPath found = search();
     for (std::size_t i = 0; i < found.lengthPerRank.size(); ++i)  // in fifths of a voxel
       cost += std::llround(found.lengthPerRank[i] / 0.04) * weights[i];
     EXPECT_EQ(cost, patches.leastCost(from, to, weights)) << round;
   }
 }
 
-TEST_F(GuideSearch, keepsTheFootprintOffWalls) {
+TEST_F(RelaxedSearch, keepsTheFootprintOffWalls) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.box(-1, -0.6, -15, 4, 0, 2, PaintedWorld::Wall);
   world.box(-1, -0.6, 4.6, 9, 0, 2, PaintedWorld::Wall);  // a gap of 0.6 m, and a way around
@@ -227,7 +227,7 @@ TEST_F(GuideSearch, keepsTheFootprintOffWalls) {
   for (const PathPoint& p : path) EXPECT_TRUE(std::abs(p.x + 0.8) > 0.3 || p.y > 9) << p.y;
 }
 
-TEST_F(GuideSearch, isEmptyWhereNoWayIsWideEnough) {
+TEST_F(RelaxedSearch, isEmptyWhereNoWayIsWideEnough) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.box(-1, -0.6, -15, 4, 0, 2, PaintedWorld::Wall);
   world.box(-1, -0.6, 4.6, 15, 0, 2, PaintedWorld::Wall);

@@ -1,4 +1,4 @@
-#include "GuideField.h"
+#include "RelaxedField.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -7,7 +7,7 @@
 
 namespace semantic_planning {
 
-GuideField::GuideField(const Ground& ground, const PlanningRegion& region) {
+RelaxedField::RelaxedField(const Ground& ground, const PlanningRegion& region) {
   for (const Column& place : tilesIn(region, ground)) {
     Tile& tile = m_tiles.at(place);
     tile.surfaces = ground.layers().surfaces().find(place);
@@ -17,7 +17,7 @@ GuideField::GuideField(const Ground& ground, const PlanningRegion& region) {
   }
 }
 
-const Surface* GuideField::near(Column c, int z, int tolerance) const {
+const Surface* RelaxedField::near(Column c, int z, int tolerance) const {
   const Tile* const tile = m_tiles.find(tileOf(c));
   if (!tile) return nullptr;
   const Surface* best = nullptr;
@@ -29,7 +29,7 @@ const Surface* GuideField::near(Column c, int z, int tolerance) const {
   return best;
 }
 
-GuideField::Place GuideField::placeNear(Column c, int z, int tolerance) const {
+RelaxedField::Place RelaxedField::placeNear(Column c, int z, int tolerance) const {
   const Surface* const surface = near(c, z, tolerance);
   if (!surface) return {};
   const Tile& tile = *m_tiles.find(tileOf(c));
@@ -37,7 +37,7 @@ GuideField::Place GuideField::placeNear(Column c, int z, int tolerance) const {
   return {c, surface, {tile.number, static_cast<std::uint16_t>(index)}};
 }
 
-GuideField::Place GuideField::placeOf(const Cell& cell) const {
+RelaxedField::Place RelaxedField::placeOf(const Cell& cell) const {
   const Tile& tile = this->tile(cell);
   const auto& first = tile.surfaces->first;
   const auto after = std::upper_bound(first.begin(), first.end(), cell.index);
@@ -48,7 +48,7 @@ GuideField::Place GuideField::placeOf(const Cell& cell) const {
           cell};
 }
 
-GuideField::Label& GuideField::label(const Cell& cell) {
+RelaxedField::Label& RelaxedField::label(const Cell& cell) {
   Tile& tile = this->tile(cell);
   if (tile.labels.empty()) tile.labels.resize(tile.surfaces->surfaces.size());
   return tile.labels[cell.index];

@@ -10,7 +10,7 @@
 namespace semantic_planning {
 
 /** The way of a vehicle that could turn on the spot. */
-struct Guide {
+struct RelaxedPath {
   PlanningRegion region;        ///< in which it was looked for
   std::vector<PathPoint> path;  ///< headings are those of travel; empty if there is no way
   /** Of the path, by rank, best first; meters. */
@@ -24,7 +24,7 @@ std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order)
 /** From column to column in eight directions: the least way through the worst class, then through
  * the next better one, and so on (a meter of a class outweighs what is likely of all better ones).
  * It knows no turning radius, so that hardly any path has less way through the worst class. */
-Guide searchGuide(const EdgeChecker& checker, const PlanningRegion& region, const GroundPose& start,
-                  const GroundPose& goal);
+RelaxedPath searchRelaxed(const EdgeChecker& checker, const PlanningRegion& region,
+                          const GroundPose& start, const GroundPose& goal);
 
 }  // namespace semantic_planning

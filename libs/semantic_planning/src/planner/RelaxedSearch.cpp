@@ -1,4 +1,4 @@
-#include "GuideSearch.h"
+#include "RelaxedSearch.h"
 
 #include <algorithm>
 #include <array>
@@ -7,13 +7,13 @@
 #include <queue>
 #include <utility>
 
-#include "GuideField.h"
+#include "RelaxedField.h"
 
 namespace semantic_planning {
 
 namespace {
 
-using Cost = GuideField::Cost;
+using Cost = RelaxedField::Cost;
 
 /** A step to a neighboring column, and where discs and wheels are when it has been taken. */
 struct Step {
@@ -43,20 +43,20 @@ std::array<Step, 8> stepsOf(const EdgeChecker& checker) {
 
 Column operator+(Column a, Column b) { return {a.x + b.x, a.y + b.y}; }
 
-class GuideSearch {
+class RelaxedSearch {
  public:
-  GuideSearch(const EdgeChecker& checker, const PlanningRegion& region)
+  RelaxedSearch(const EdgeChecker& checker, const PlanningRegion& region)
       : m_checker(checker),
         m_field(checker.ground(), region),
         m_steps(stepsOf(checker)),
         m_weights(weightsOfRanks(checker.order())) {}
 
   /** From one to the other, if there is a way. */
-  void run(const GroundPose& start, const GroundPose& goal, Guide& guide) {
+  void run(const GroundPose& start, const GroundPose& goal, RelaxedPath& guide) {
     const Place from = placeAt(start);
     m_goal = placeAt(goal);
     if (!from.surface || !m_goal.surface) return;
-    reach(from, {0, GuideField::kNone, 0, 0, false});
+    reach(from, {0, RelaxedField::kNone, 0, 0, false});
     while (!m_queue.empty()) {
       const Cell cell = m_queue.top().cell;
       m_queue.pop();
@@ -68,9 +68,9 @@ class GuideSearch {
   }
 
  private:
-  using Cell = GuideField::Cell;
-  using Label = GuideField::Label;
-  using Place = GuideField::Place;
+  using Cell = RelaxedField::Cell;
+  using Label = RelaxedField::Label;
+  using Place = RelaxedField::Place;
   struct Entry {
     Cost estimate;
     Cell cell;
@@ -137,7 +137,7 @@ class GuideSearch {
     return p;
   }
 
-  void traceTo(Cell cell, Guide& guide) {
+  void traceTo(Cell cell, RelaxedPath& guide) {
     guide.lengthPerRank.resize(m_weights.size());
     for (; cell; cell = m_field.label(cell).before()) {
       guide.path.push_back(pointAt(cell));
@@ -153,7 +153,7 @@ class GuideSearch {
   }
 
   const EdgeChecker& m_checker;
-  GuideField m_field;
+  RelaxedField m_field;
   const std::array<Step, 8> m_steps;
   const std::vector<Cost> m_weights;  ///< of a length, by rank
   std::priority_queue<Entry> m_queue;
@@ -170,11 +170,11 @@ std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order)
   return weights;
 }
 
-Guide searchGuide(const EdgeChecker& checker, const PlanningRegion& region, const GroundPose& start,
-                  const GroundPose& goal) {
-  Guide guide{region, {}, {}};
+RelaxedPath searchRelaxed(const EdgeChecker& checker, const PlanningRegion& region,
+                          const GroundPose& start, const GroundPose& goal) {
+  RelaxedPath guide{region, {}, {}};
   std::vector<PathPoint>& path = guide.path;
-  GuideSearch(checker, region).run(start, goal, guide);
+  RelaxedSearch(checker, region).run(start, goal, guide);
   if (path.size() < 2) path.clear();
   if (path.empty()) return guide;
   for (std::size_t i = 1; i < path.size(); ++i) {

@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+#include <semantic_abstraction/Abstraction.h>
+
+#include <algorithm>
+#include <string>
+
+#include "AllAlphas.h"
+#include "SmallScans.h"
+
+using namespace semantic_octree;
+using Frame = AbstractionOptions::Frame;
+
+namespace {
+
+constexpr int kPathClasses = 6;
+
+AbstractionOptions optionsWith(double blockSize, Frame frame) {
+  AbstractionOptions o;
+  o.weights.terms = {tree_abstraction::relevant("posts", 1.0, {1}),
+                     tree_abstraction::irrelevant("ground", 0.3, {2, 3}),
+                     tree_abstraction::wholeClassVariable("everything", 0.05, kPathClasses)};
+  o.blockSize = blockSize;
+  o.frame = frame;
+  return o;
+}
+
+SemanticOcTree smallMap(const AbstractionOptions& options) {
+  SemanticOcTree map(0.2, numberedClasses(kPathClasses));
+  setAbstraction(map, options);
+  InsertionOptions insertion;
+  insertion.maxRange = 9;
+  for (const PosedCloud& s : scansOfSmallPlace(3, 2000, kPathClasses, 5))
+    map.insert(s.cloud, s.T_map_sensor, insertion);
+  return map;
+}
+
+/** Information of the terms of one sign, times the amounts of their weights. */
+double ofSign(double sign, const AbstractionOptions& options, const std::vector<double>& values) {
+  double sum = 0;
+  for (std::size_t t = 0; t < values.size(); ++t)
+    sum += std::max(0.0, sign * options.weights.terms[t].weight) * values[t];
+  return sum;
+}
+
+/** Calls f(abstraction) for maps with blocks of several sizes and either frame. */
+template <typename F>
+void forEachMap(const F& f) {
+  for (const double blockSize : {0.0, 0.8, 3.2})
+    for (const auto frame : {Frame::Free, Frame::Charged}) {
+      SCOPED_TRACE("block " + std::to_string(blockSize) + (frame == Frame::Free ? ", free" : ""));
+      SemanticOcTree map = smallMap(optionsWith(blockSize, frame));
+      Abstraction abstraction(map);
+      f(abstraction);
+    }
+}
+
+std::string complaintOf(const AlphaTrees& trees, std::size_t wanted) {
+  try {
+    trees.alphaForLeaves(wanted);
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST(AlphaTrees, haveWhatTheCompressedTreesOfTheirAlphasHave) {
+  forEachMap([](Abstraction& abstraction) {
+    const AlphaTrees trees(abstraction);
+    const AbstractionOptions options = abstraction.options();
+    const auto expectSame = [&](const AddedToTree& tree, const auto& measured) {
+      EXPECT_EQ(tree.leaves, static_cast<double>(measured.numKnownLeaves));
+      EXPECT_NEAR(tree.relevant, ofSign(1, options, measured.information),
+                  1e-12 * trees.full().relevant);
+      EXPECT_NEAR(tree.irrelevant, ofSign(-1, options, measured.information),
+                  1e-12 * trees.full().irrelevant);
+    };
+    const std::size_t last = trees.numTrees() - 1;
+    for (std::size_t k = 0; k <= last; k += 1 + last / 9) {
+      abstraction.setAlpha(trees.alpha(k));
+      expectSame(trees.tree(k), abstraction.measures().compressed);
+    }
+    expectSame(trees.full(), abstraction.measures().full);
+  });
+}
+
+TEST(AlphaTrees, findTheTreeThatAllTreesAreSearchedFor) {
+  forEachMap([](Abstraction& abstraction) {
+    const AlphaTrees trees(abstraction);
+    const AllAlphas all(abstraction);
+    EXPECT_LE(trees.numTrees(), all.trees.numTrees());
+    const auto most = static_cast<std::size_t>(trees.full().leaves);
+    for (std::size_t wanted = all.numRoots; wanted <= most; wanted += 1 + most / 60) {
+      EXPECT_EQ(trees.alphaForLeaves(wanted), all.alphaForLeaves(wanted)) << wanted;
+      const auto fits = [&](double alpha) {
+        std::size_t k = 0;
+        while (k + 1 < all.trees.numTrees() && all.trees.highestAlpha(k + 1) > alpha) ++k;
+        return all.leaves[k] <= static_cast<double>(wanted);
+      };
+      EXPECT_EQ(trees.largestThat(fits), all.alphaForLeaves(wanted)) << wanted;
+    }
+    const std::string few = complaintOf(trees, all.numRoots - 1);
+    EXPECT_NE(few.find("the map has " + std::to_string(all.numRoots) + " blocks"), few.npos) << few;
+    const std::string many = complaintOf(trees, most + 1);
+    EXPECT_NE(many.find("the map has only " + std::to_string(most)), many.npos) << many;
+  });
+}
+
+TEST(AlphaTrees, areMadeOfTheInnerNodesInTheirOrder) {
+  forEachMap([](const Abstraction& abstraction) {
+    std::vector<Abstraction::NodeTau> nodes;
+    const AddedToTree roots =
+        abstraction.forEachTau([&](const auto& node) { nodes.push_back(node); });
+    AddedToTree free;
+    std::size_t i = 0;
+    int depthBefore = -1;
+    abstraction.forEachPathNode([&](const Abstraction::PathNode& n, const auto& information) {
+      EXPECT_LE(n.depth, depthBefore + 1) << "below one that was told, or beside it";
+      depthBefore = n.depth;
+      const AddedToTree added = {static_cast<double>(n.addedLeaves),
+                                 ofSign(1, abstraction.options(), information),
+                                 ofSign(-1, abstraction.options(), information)};
+      if (n.isFree) {
+        free += added;
+        return;
+      }
+      ASSERT_LT(i, nodes.size());
+      EXPECT_TRUE((nodes[i].lowest == n.lowest).all() && nodes[i].depth == n.depth);
+      EXPECT_EQ(nodes[i].added.leaves, added.leaves);
+      EXPECT_NEAR(nodes[i].added.relevant, added.relevant, 1e-15);
+      EXPECT_NEAR(nodes[i].added.irrelevant, added.irrelevant, 1e-15);
+      EXPECT_GE(n.price, 0);
+      ++i;
+    });
+    EXPECT_EQ(i, nodes.size());
+    EXPECT_EQ(roots.leaves, free.leaves);
+    EXPECT_NEAR(roots.relevant, free.relevant, 1e-12);
+    EXPECT_NEAR(roots.irrelevant, free.irrelevant, 1e-12);
+  });
+}
+
+TEST(AlphaTrees, areOneTreeWhereNothingIsKnownOrCounts) {
+  const AbstractionOptions options = optionsWith(0.8, Frame::Free);
+  SemanticOcTree empty(0.2, numberedClasses(kPathClasses));
+  setAbstraction(empty, options);
+  const Abstraction ofNothing(empty);
+  EXPECT_EQ(AlphaTrees(ofNothing).numTrees(), 1u);
+  SemanticOcTree map = smallMap(options);
+  Abstraction abstraction(map);
+  const double far = 1e4;
+  abstraction.setRegions({{Region::Shape::Box, {-far, -far, -far}, {far, far, far}, 0, 0}});
+  const AlphaTrees trees(abstraction);
+  EXPECT_EQ(trees.numTrees(), 1u);
+  EXPECT_EQ(trees.full().relevant, 0);
+  EXPECT_EQ(trees.full().leaves, static_cast<double>(map.getNumLeafNodes()));
+}
