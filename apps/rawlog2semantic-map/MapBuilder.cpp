@@ -84,6 +84,7 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
   progress.finish((m_summary.stopped ? "stopped early, " : "") +
                   std::to_string(m_summary.inserted) + " scans inserted, " +
                   m_summary.skippedText());
+  if (m_mapper) noteSlam();
   noteLabels();
 }
 
@@ -130,22 +131,27 @@ semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& sc
   const auto inserted = m_mapper->insert(scan.cloud, labeled_cloud::toEigen(scan.T_robot_sensor),
                                          labeled_cloud::toEigen(T_map_robot), m_seconds);
   m_clock.note(scan.timestamp);
-  if (inserted.place.added->isNew) m_keyframeTimes.push_back(mrpt::Clock::toDouble(scan.timestamp));
-  m_summary.slam = slamSummary();
+  const semantic_slam::Slam::Added& added = *inserted.place.added;
+  m_placed.push_back(
+      {mrpt::Clock::toDouble(scan.timestamp), added.keyframe, added.T_keyframe_robot});
   return inserted.scans.front();
 }
 
-SlamSummary MapBuilder::slamSummary() const {
-  const semantic_slam::Slam& slam = *m_mapper->slam();
-  return {slam.poses().size(), slam.numLoops(), slam.numReferenced(), slam.numLost()};
+void MapBuilder::noteSlam() {
+  m_summary.slam = m_mapper->slam()->report();
+  const semantic_slam::SlamReport& report = *m_summary.slam;
+  notes() << "Poses: " << std::lround(report.way) << " m of way, " << report.keyframes
+          << " keyframes, " << report.loops << " loops; " << report.lost << " of " << report.scans
+          << " scans fit nothing that was seen before" << std::endl;
+  for (const std::string& warning : report.warnings()) notes() << "Warning: " << warning << std::endl;
 }
 
 std::string MapBuilder::trajectory() const {
   std::ostringstream out;
-  for (std::size_t k = 0; k < m_keyframeTimes.size(); ++k) {
-    const Eigen::Isometry3d& T = m_mapper->slam()->poses()[k];
+  for (const PlacedScan& scan : m_placed) {
+    const Eigen::Isometry3d T = m_mapper->slam()->poses()[scan.keyframe] * scan.T_keyframe_robot;
     const Eigen::Quaterniond q(T.linear());
-    out << std::fixed << std::setprecision(6) << m_keyframeTimes[k] << std::setprecision(9);
+    out << std::fixed << std::setprecision(6) << scan.seconds << std::setprecision(9);
     for (const double x : {T.translation().x(), T.translation().y(), T.translation().z(), q.x(),
                            q.y(), q.z(), q.w()})
       out << ' ' << x;

@@ -57,14 +57,19 @@ class MapBuilder {
 
   semantic_octree::InsertionReport insertIntoMap(const labeled_cloud::LabeledScan& scan,
                                                  const mrpt::poses::CPose3D& T_map_robot);
-  SlamSummary slamSummary() const;
+  void noteSlam();
 
   semantic_map::CSemanticOctoMap& m_map;
   semantic_octree::LeafFollower m_follower;
   std::optional<semantic_slam::Mapper> m_mapper;  ///< if poses are corrected
   semantic_map::ObservationClock m_clock;         ///< of its scans
   double m_seconds = 0;                           ///< that passed, by the clock
-  std::vector<double> m_keyframeTimes;            ///< seconds
+  struct PlacedScan {
+    double seconds;
+    std::size_t keyframe;
+    Eigen::Isometry3d T_keyframe_robot;
+  };
+  std::vector<PlacedScan> m_placed;
   OnScan m_onScan;
   std::unique_ptr<semantic_map::CSemanticOctoMap> m_plainMap;
   Summary m_summary;

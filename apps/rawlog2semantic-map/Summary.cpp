@@ -148,7 +148,12 @@ ordered_json toJson(const Summary& s, const SemanticOcTree& tree, bool countVoxe
     json["slam"] = {{"keyframes", s.slam->keyframes},
                     {"loops", s.slam->loops},
                     {"referenced", s.slam->referenced},
-                    {"lost", s.slam->lost}};
+                    {"lost", s.slam->lost},
+                    {"undone", s.slam->undone},
+                    {"way", s.slam->way},
+                    {"odometry_way_error", s.slam->wayError},
+                    {"odometry_turn_error", s.slam->turnError},
+                    {"warnings", s.slam->warnings()}};
   if (hasAbstraction(tree)) json["abstraction"] = abstractionJson(s);
   return json;
 }

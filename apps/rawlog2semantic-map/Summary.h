@@ -2,6 +2,7 @@
 #include <labeled_cloud/ScanStream.h>
 #include <semantic_octree/InsertionOptions.h>
 #include <semantic_octree/SemanticOcTree.h>
+#include <semantic_slam/Slam.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -16,11 +17,6 @@ struct AbstractionSummary {
   std::vector<std::size_t> leaves, compressedLeaves;
   /** Telling what changed in the optimal tree; inserting without upkeep, if that was tried: ms. */
   std::vector<double> changeTimes, insertionTimesWithout;
-};
-
-/** What became of the poses, if they were corrected. */
-struct SlamSummary {
-  std::size_t keyframes = 0, loops = 0, referenced = 0, lost = 0;
 };
 
 /** What became of the observations on their way into the map. */
@@ -49,7 +45,7 @@ struct Summary {
   std::vector<double> conversionTimes, insertionTimes;
   /** Where an abstraction is kept, after each inserted scan. */
   AbstractionSummary abstraction;
-  std::optional<SlamSummary> slam;
+  std::optional<semantic_slam::SlamReport> slam;  ///< if poses were corrected
 
   void add(const labeled_cloud::ScanCounts& counts);
   void addProblems(const std::vector<std::string>& more);

@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   const auto world = synthetic_world::makeScene("village", 1).world;
   semantic_octree::SemanticOcTree map(0.2, synthetic_world::classTable());
   semantic_slam::MapperOptions mapping;
-  mapping.localize = mapping.slam.level = mapping.slam.registerAll = true;  // x, y, heading
+  mapping.localize = mapping.slam.level = true;  // x, y, heading
   semantic_slam::Mapper mapper(map, mapping);
   // From best to worst: road and its markings, sidewalk and gravel, dirt, grass, unknown ground.
   const colored_graph::ClassOrder order(map.numClasses() + 1, {{1, 2}, {3, 4}, {5}, {6}, {0}});

@@ -92,7 +92,7 @@ TEST(Slam, closesTheLoopOfARealLaserScanner) {
   std::vector<Slam::Added> added;
   for (std::size_t i = 0; i < drive.clouds.size(); ++i)
     added.push_back(slam.add(drive.clouds[i], drive.T_robot_sensor[i], drive.odometry[i]));
-  EXPECT_GT(slam.numLoops(), 0u);
+  EXPECT_GT(slam.report().loops, 0u);
   Path corrected;
   for (const Slam::Added& a : added)
     corrected.push_back(slam.poses()[a.keyframe] * a.T_keyframe_robot);

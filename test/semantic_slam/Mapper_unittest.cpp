@@ -72,9 +72,7 @@ struct Way {
 
 MapperOptions localizing() {
   MapperOptions options;
-  options.localize = options.slam.level = options.slam.registerAll = true;
-  options.slam.odometryShare = 0.1;
-  options.slam.odometryAngle = 3;
+  options.localize = options.slam.level = true;
   return options;
 }
 
@@ -160,7 +158,7 @@ TEST(Mapper, withNothingSeenOdometryIsBelieved) {
   for (int i = 0; i < 10; ++i)
     mapper.insert({}, Eigen::Isometry3d::Identity(), planar(0.5 * i, 0, 0), 0);
   EXPECT_TRUE(mapper.T_map_odometry().isApprox(Eigen::Isometry3d::Identity(), 1e-9));
-  EXPECT_GT(mapper.slam()->numLost(), 0u);
+  EXPECT_GT(mapper.slam()->report().lost, 0u);
 }
 
 TEST(Mapper, closesLoopsAndItsMapIsTheOneOfTheCorrectedPosesToTheLastBit) {

@@ -1,5 +1,6 @@
 // A laser scanner in the plane: x, y and heading, of a world that is known.
 #include <gtest/gtest.h>
+#include <semantic_slam/Registration.h>
 #include <semantic_slam/Slam.h>
 
 #include <cmath>
@@ -108,7 +109,7 @@ TEST(Planar, aLaserScannersLoopCloses) {
   addAll(slam, r, kRobotLaser);
   const PathErrors odometry = errorsOf(r.odometry, r), e = errorsOf(slam.poses(), r);
   EXPECT_GT(odometry.rootMeanSquare, 9);
-  EXPECT_GT(slam.numLoops(), 0u);
+  EXPECT_GT(slam.report().loops, 0u);
   EXPECT_LT(e.rootMeanSquare, 0.045);
   EXPECT_LT(e.last, 0.06);
   EXPECT_LT(e.degrees, 0.2);
@@ -128,7 +129,7 @@ TEST(Planar, aDriveIsInTheFrameOfALaserScannersMap) {
     EXPECT_LT(e.first, 0.3 * voxelSize) << voxelSize;
     EXPECT_LT(e.largest, 0.03 + 0.2 * voxelSize) << voxelSize;
     EXPECT_LT(e.degrees, 0.3) << voxelSize;
-    EXPECT_GT(slam.numReferenced(), 25u) << voxelSize;
+    EXPECT_GT(slam.report().referenced, 25u) << voxelSize;
   }
 }
 
@@ -155,6 +156,6 @@ TEST(Planar, whatIsAtOtherHeightsIsNotCompared) {
   Slam slam({});
   slam.setReference(map);
   addAll(slam, r, kRobotLaser);
-  EXPECT_EQ(slam.numReferenced(), 0u);
+  EXPECT_EQ(slam.report().referenced, 0u);
   EXPECT_LT((slam.poses()[0].translation() - r.odometry[0].translation()).norm(), 1e-9);
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <gtest/gtest.h>
+#include <semantic_slam/Registration.h>
 #include <semantic_slam/Slam.h>
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Drive.h>

@@ -35,8 +35,8 @@ TEST(Reference, aDriveIsInTheFrameOfAMapThatIsThere) {
     EXPECT_LT(with.first, 0.06) << useClasses;
     EXPECT_LT(with.largest, 0.06) << useClasses;
     EXPECT_LT(with.degrees, 0.2) << useClasses;
-    EXPECT_EQ(slam.numLoops(), 0u);
-    EXPECT_GT(slam.numReferenced(), 25u) << useClasses;
+    EXPECT_EQ(slam.report().loops, 0u);
+    EXPECT_GT(slam.report().referenced, 25u) << useClasses;
   }
 }
 
@@ -47,7 +47,7 @@ TEST(Reference, aCameraFindsItselfInTheMapOfALidar) {
   addAll(slam, r, kRobotCamera);
   const PathErrors with = errorsOf(slam.poses(), r);
   EXPECT_LT(with.largest, 0.12);
-  EXPECT_GT(slam.numReferenced(), 20u);
+  EXPECT_GT(slam.report().referenced, 20u);
 }
 
 TEST(Reference, beyondItsEndScansAreRegisteredToEachOther) {
@@ -55,8 +55,8 @@ TEST(Reference, beyondItsEndScansAreRegisteredToEachOther) {
   Slam slam({});
   slam.setReference(mapOf("village", 1, 40));
   addAll(slam, r, kRobotLidar);
-  EXPECT_LT(slam.numReferenced(), 25u);
-  EXPECT_EQ(slam.numLost(), 0u);
+  EXPECT_LT(slam.report().referenced, 25u);
+  EXPECT_EQ(slam.report().lost, 0u);
   EXPECT_LT(errorsOf(slam.poses(), r).largest, 0.15);
 }
 
@@ -66,7 +66,7 @@ TEST(Reference, theMapOfAnotherPlaceMovesNothing) {
   addAll(alone, r, kRobotLidar);
   slam.setReference(mapOf("campus", 1, 60));
   addAll(slam, r, kRobotLidar);
-  EXPECT_EQ(slam.numReferenced(), 0u);
+  EXPECT_EQ(slam.report().referenced, 0u);
   for (std::size_t k = 0; k < r.truth.size(); ++k)
     EXPECT_TRUE(slam.poses()[k].isApprox(alone.poses()[k], 0)) << k;
 }

@@ -125,9 +125,7 @@ semantic_slam::MapperOptions DriveConfig::mapping() const {
   mapping.insertion = insertion;
   mapping.localize = !pose.isExact() && pose.correct;
   mapping.slam = slam;
-  mapping.slam.odometryShare = std::max(slam.odometryShare, pose.odometryNoise);
-  mapping.slam.odometryAngle = std::max(slam.odometryAngle, pose.turnNoise);
-  mapping.slam.registerAll = mapping.slam.level = true;
+  mapping.slam.level = true;
   mapping.insertEvery = 3;  // it may wait for somebody to go away
   mapping.scans = fs::temp_directory_path();
   return mapping;

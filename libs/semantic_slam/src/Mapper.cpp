@@ -97,6 +97,7 @@ void Mapper::age(double seconds) {
 }
 
 void Mapper::finish() {
+  if (m_slam) m_slam->finish();
   if (m_keyframes) moveKeyframes(-1);
 }
 

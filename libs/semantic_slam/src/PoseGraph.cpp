@@ -10,6 +10,11 @@ namespace {
 constexpr int kMostSteps = 50;
 /** Cauchy's c^2: beyond some standard deviations of six values together an edge counts less. */
 constexpr double kDoubt = 16;
+/** An edge may be far off at first, and right: doubt begins with the largest error and grows in such
+ * steps (graduated non-convexity: Yang et al., "Graduated Non-Convexity for Robust Spatial
+ * Perception", 2020). */
+constexpr double kStage = 16;
+constexpr double kConverged = 1e-6;
 
 Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
@@ -45,23 +50,23 @@ Vector6 errorOf(const PoseEdge& edge, const Poses& poses) {
   return vectorOf(edge.T_a_b.inverse() * poses[edge.a].inverse() * poses[edge.b]);
 }
 
-double costOf(const std::vector<PoseEdge>& edges, const Poses& poses) {
+double costOf(const std::vector<PoseEdge>& edges, const Poses& poses, double doubt) {
   double cost = 0;
   for (const PoseEdge& edge : edges) {
-    const Vector6 e = errorOf(edge, poses);
-    const double squared = e.dot(edge.information * e);
-    cost += edge.isDoubtful ? kDoubt * std::log1p(squared / kDoubt) : squared;
+    const double squared = squaredError(edge, poses);
+    cost += edge.isDoubtful ? doubt * std::log1p(squared / doubt) : squared;
   }
   return cost;
 }
 
-/** The normal equations of all poses but the first. */
+/** The normal equations of all poses but the first; of H the lower triangle. */
 struct Equations {
+  double m_doubt;
   Eigen::SparseMatrix<double> H;
   Eigen::VectorXd b;
 
-  Equations(const std::vector<PoseEdge>& edges, const Poses& poses)
-      : b(Eigen::VectorXd::Zero(6 * (static_cast<int>(poses.size()) - 1))) {
+  Equations(const std::vector<PoseEdge>& edges, const Poses& poses, double doubt)
+      : m_doubt(doubt), b(Eigen::VectorXd::Zero(6 * (static_cast<int>(poses.size()) - 1))) {
     for (const PoseEdge& edge : edges) add(edge, poses);
     H.resize(b.size(), b.size());
     H.setFromTriplets(m_entries.begin(), m_entries.end());
@@ -71,12 +76,12 @@ struct Equations {
   void add(const PoseEdge& edge, const Poses& poses) {
     const Vector6 e = errorOf(edge, poses);
     const double squared = e.dot(edge.information * e);
-    const Matrix6 weight = edge.information * (edge.isDoubtful ? 1 / (1 + squared / kDoubt) : 1.0);
+    const Matrix6 weight = edge.information * (edge.isDoubtful ? 1 / (1 + squared / m_doubt) : 1.0);
     const Matrix6 ofB = derivativeAt(e);
     const Matrix6 ofA = -ofB * adjoint(poses[edge.b].inverse() * poses[edge.a]);
     addBlock(edge.a, edge.a, ofA.transpose() * weight * ofA);
-    addBlock(edge.a, edge.b, ofA.transpose() * weight * ofB);
-    addBlock(edge.b, edge.a, ofB.transpose() * weight * ofA);
+    edge.a > edge.b ? addBlock(edge.a, edge.b, ofA.transpose() * weight * ofB)
+                    : addBlock(edge.b, edge.a, ofB.transpose() * weight * ofA);
     addBlock(edge.b, edge.b, ofB.transpose() * weight * ofB);
     if (edge.a > 0) b.segment<6>(6 * rowOf(edge.a)) -= ofA.transpose() * weight * e;
     if (edge.b > 0) b.segment<6>(6 * rowOf(edge.b)) -= ofB.transpose() * weight * e;
@@ -90,6 +95,33 @@ struct Equations {
   }
   std::vector<Eigen::Triplet<double>> m_entries;
 };
+
+/** To the minimum for a doubt, by Gauss-Newton with Levenberg's damping. */
+void descend(Poses& poses, const std::vector<PoseEdge>& edges, double doubt) {
+  if (poses.size() < 2) return;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+  double cost = costOf(edges, poses, doubt), damping = 1e-6;
+  for (int i = 0; i < kMostSteps && damping < 1e12; ++i) {
+    Equations equations(edges, poses, doubt);
+    for (int k = 0; k < equations.H.rows(); ++k) equations.H.coeffRef(k, k) *= 1 + damping;
+    if (i == 0) solver.analyzePattern(equations.H);
+    solver.factorize(equations.H);
+    const Eigen::VectorXd step = solver.solve(equations.b);
+    Poses next = poses;
+    for (std::size_t p = 1; p < poses.size(); ++p)
+      next[p] = rigid(poses[p] * poseOf(step.segment<6>(6 * (static_cast<int>(p) - 1))));
+    const double nextCost = costOf(edges, next, doubt);
+    if (solver.info() != Eigen::Success || !(nextCost <= cost)) {
+      damping = std::max(1e-6, damping * 10);
+      continue;
+    }
+    const bool isLast = cost - nextCost < kConverged * (cost + kConverged);
+    poses.swap(next);
+    cost = nextCost;
+    damping *= 0.1;
+    if (isLast) return;
+  }
+}
 
 }  // namespace
 
@@ -122,33 +154,22 @@ Eigen::Isometry3d rigid(const Eigen::Isometry3d& T) {
   return result;
 }
 
+double squaredError(const PoseEdge& edge, const Poses& poses) {
+  const Vector6 e = errorOf(edge, poses);
+  return e.dot(edge.information * e);
+}
+
 void optimize(Poses& poses, const std::vector<PoseEdge>& edges) {
-  for (const PoseEdge& edge : edges)
+  double doubt = kDoubt;
+  for (const PoseEdge& edge : edges) {
     if (edge.a >= poses.size() || edge.b >= poses.size() || edge.a == edge.b)
       throw std::invalid_argument("pose graph: an edge of pose " + std::to_string(edge.a) +
                                   " and pose " + std::to_string(edge.b) + ", of " +
                                   std::to_string(poses.size()));
-  if (poses.size() < 2) return;
-  double cost = costOf(edges, poses), damping = 1e-6;
-  for (int i = 0; i < kMostSteps && damping < 1e12; ++i) {
-    Equations equations(edges, poses);
-    for (int k = 0; k < equations.H.rows(); ++k) equations.H.coeffRef(k, k) *= 1 + damping;
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(equations.H);
-    const Eigen::VectorXd step = solver.solve(equations.b);
-    Poses next = poses;
-    for (std::size_t p = 1; p < poses.size(); ++p)
-      next[p] = rigid(poses[p] * poseOf(step.segment<6>(6 * (static_cast<int>(p) - 1))));
-    const double nextCost = costOf(edges, next);
-    if (solver.info() != Eigen::Success || !(nextCost <= cost)) {
-      damping = std::max(1e-6, damping * 10);
-      continue;
-    }
-    const bool isLast = cost - nextCost < 1e-9 * (cost + 1e-9);
-    poses.swap(next);
-    cost = nextCost;
-    damping *= 0.1;
-    if (isLast) return;
+    if (edge.isDoubtful) doubt = std::max(doubt, squaredError(edge, poses));
   }
+  for (; doubt > kDoubt; doubt /= kStage) descend(poses, edges, doubt);
+  descend(poses, edges, kDoubt);
 }
 
 }  // namespace semantic_slam

@@ -14,6 +14,8 @@ using semantic_types::kNoClass;
 namespace {
 
 constexpr int kMostIterations = 40;
+/** Steps, m, at which the iteration ends; in coarse cubes, as a share of their edge; 1/m of turns. */
+constexpr double kStill = 2e-4, kStillCoarse = 2e-3, kPerMeter = 0.1;
 /** Of a distribution: as many as its covariance has numbers. */
 constexpr int kFewestInSpace = 6, kFewestInPlane = 3;
 /** Least standard deviation of a surface, of a cube's edge: in small cubes it counts as thin as it
@@ -85,7 +87,10 @@ void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cl
   const Eigen::Matrix3d spread = deviation * deviation * Eigen::Matrix3d::Identity();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d p = T_submap_cloud * cloud.points[i].cast<double>();
-    Sum& s = m_sums[keyOf(cellOf(p), classOf(cloud, i))];
+    const Key key = keyOf(cellOf(p), classOf(cloud, i));
+    Sum& s = m_sums[key];
+    if (!s.isNew) m_new.push_back(key);
+    s.isNew = true;
     // Relative to the cube, so that squares stay exact far from the origin.
     const Eigen::Vector3d r = p - cellOf(p).cast<double>().matrix() * m_cellSize;
     s.n += 1;
@@ -117,7 +122,9 @@ auto Submap::distributionOf(const Sum& s) const -> Distribution {
 }
 
 void Submap::finish() {
-  for (const auto& [key, s] : m_sums) {
+  for (const Key key : m_new) {
+    Sum& s = m_sums[key];
+    s.isNew = false;
     if (s.n < (m_isPlanar ? kFewestInPlane : kFewestInSpace)) continue;
     Eigen::Vector3d corner;
     for (int i = 0; i < 3; ++i) {
@@ -128,7 +135,7 @@ void Submap::finish() {
     d.mean += corner;
     m_distributions[key] = d;
   }
-  m_sums.clear();
+  m_new.clear();
 }
 
 auto Submap::find(const Eigen::Vector3d& point, ClassId id, double& squaredDistance) const
@@ -198,7 +205,8 @@ Registration registerScan(const std::vector<const Submap*>& submaps, const Label
           (n.H + prior + 1e-6 * Matrix6::Identity()).ldlt().solve(n.b - prior * off);
       if (!step.allFinite()) return result;
       result.T_submap_scan = rigid(result.T_submap_scan * poseOf(step));
-      if (step.head<3>().norm() < 1e-4 && step.tail<3>().norm() < 1e-5) break;
+      const double still = submap == submaps.back() ? kStill : kStillCoarse * submap->cellSize();
+      if (step.head<3>().norm() < still && step.tail<3>().norm() < still * kPerMeter) break;
     }
   return result;
 }

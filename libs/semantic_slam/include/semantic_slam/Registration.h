@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <unordered_map>
+#include <vector>
 
 namespace semantic_slam {
 
@@ -21,7 +22,7 @@ class Submap {
   /** \param deviation standard deviation of each point, along each axis, m */
   void add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud,
            double deviation = 0);
-  /** Computes the distributions; nothing can be added afterwards. */
+  /** Computes the distributions of cubes to which points were added. */
   void finish();
 
   struct Distribution {
@@ -42,6 +43,7 @@ class Submap {
     double n = 0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    bool isNew = false;  ///< something was added since finish()
   };
   using Key = std::uint64_t;
   Key keyOf(const Eigen::Array3i& cell, semantic_types::ClassId id) const;
@@ -52,6 +54,7 @@ class Submap {
   double m_cellSize;
   bool m_useClasses, m_isPlanar;
   std::unordered_map<Key, Sum> m_sums;
+  std::vector<Key> m_new;  ///< of sums that are new
   std::unordered_map<Key, Distribution> m_distributions;
 };
 

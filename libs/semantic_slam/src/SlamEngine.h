@@ -1,0 +1,101 @@
+#pragma once
+#include <semantic_slam/Reference.h>
+#include <semantic_slam/Slam.h>
+
+#include "LocalMap.h"
+#include "MotionNoise.h"
+#include "PlaneSearch.h"
+
+namespace semantic_slam {
+
+/** What Slam does: tracking (SlamTracking.cpp), loops and the reference (SlamLoops.cpp). */
+class SlamEngine {
+ public:
+  using Pose = Eigen::Isometry3d;
+
+  explicit SlamEngine(const SlamOptions& options) : m_options(options) {}
+  void setReference(const semantic_octree::SemanticOcTree& map);
+  Slam::Added add(const LabeledCloud& cloud, const Pose& T_robot_sensor,
+                  const std::optional<Pose>& T_odometry_robot);
+  bool finish();
+  const std::vector<Pose>& poses() const { return m_poses; }
+  const std::vector<PoseEdge>& edges() const { return m_edges; }
+  SlamReport report() const;
+
+ private:
+  /** What one scan brings. */
+  struct Seen {
+    LabeledCloud cloud;  ///< thinned, frame of the robot
+    Pose T_odometry_robot;
+  };
+  struct Keyframe {
+    Seen seen;
+    double way;  ///< from the first one, m
+  };
+
+  // --- Tracking ---
+  void setScale(const LabeledCloud& cloud, const Pose& T_robot_sensor);
+  /** From the last scan to this one, as odometry or the last steps say. */
+  Pose predictedStep(const std::optional<Pose>& T_odometry_robot) const;
+  bool isSmall(const Pose& T_step) const;
+  Slam::Added beginFirst(Seen seen);
+  void begin(Seen seen, const Pose& T_map_robot, const Pose& T_last_keyframe);
+  /** Where the last keyframes' points have a scan, frame of the last one; nothing: it fits badly. */
+  std::optional<Registration> track(const Seen& seen, const Pose& T_step);
+  std::optional<Registration> searchAround(const Seen& seen, const Pose& T_local_guess,
+                                           const Matrix6& information) const;
+  /** \param T_step as it was predicted; m_T_step is as it was registered. */
+  void learn(const Pose& T_step, const Registration& registered);
+  /** Height and tilt are odometry's: as was said, or because no beam ever told of them. */
+  bool isLevel() const { return (m_options.level && m_hasOdometry) || m_scale.isPlanar; }
+  /** Information of height and tilt that are known, frame of the robot. */
+  Matrix6 levelOf(const Pose& T_odometry_robot) const;
+  /** Height, roll and pitch as odometry has them. */
+  Pose levelled(const Pose& T_map_robot, const Pose& T_odometry_robot) const;
+  Registration match(const std::vector<Submap>& submaps, const Seen& seen,
+                     const Pose& T_submap_guess, const Matrix6& prior) const;
+
+  // --- Loops and the reference ---
+  bool closeLoops();
+  /** Keyframes of before that the newest may be near, one of each visit; the nearest first. */
+  std::vector<std::size_t> placesWithin(double radius) const;
+  std::optional<PoseEdge> edgeTo(std::size_t place, const Seen& stretch,
+                                 const PlaneSearch::Window& window) const;
+  /** Points of some keyframes in the frame of one of them. */
+  Seen pointsOf(std::size_t first, std::size_t last, std::size_t frame) const;
+  std::optional<Registration> findInReference(const Seen& seen, const Pose& T_map_guess);
+  bool followReference();
+  bool fits(const Registration& r) const;
+  /** Takes an edge of the newest keyframe, and those before it that say the same of where the robot
+   * is; one alone has to wait. \return whether poses moved */
+  bool confirm(std::vector<PoseEdge>& pending, const PoseEdge& edge);
+  bool agree(const PoseEdge& before, const PoseEdge& edge) const;
+  /** \param added edges at the end that are new \return whether they are kept */
+  bool optimizeWith(std::size_t added);
+  void optimizePoses();
+  double worstStep() const;
+
+  SlamOptions m_options;
+  SensorScale m_scale;
+  std::vector<Keyframe> m_keyframes;
+  std::vector<Pose> m_poses;
+  std::vector<PoseEdge> m_edges;
+  SlamReport m_report;
+  LocalMap m_local;
+  MotionNoise m_noise;
+  bool m_hasOdometry = true;
+  /** The last scan: in the frame of the last keyframe, where odometry had it, and how it got there.
+   */
+  Pose m_T_keyframe_last = Pose::Identity(), m_T_odometry_last = Pose::Identity(),
+       m_T_step = Pose::Identity();
+  int m_numSmall = 0;  ///< small steps since the last registration
+  double m_wayOfOdometry = 0, m_wayOfScans = 0, m_turnOfOdometry = 0, m_turnOfScans = 0;
+  double m_lastLook = 0, m_lastLoop = 0, m_lastReferenced = 0;  ///< m of the way
+  double m_lostWay = 0;                                         ///< m since the last loop
+  std::vector<PoseEdge> m_pendingLoops, m_pendingReferences;    ///< they may be wrong
+  bool m_isOptimized = true;
+  Reference m_reference;                        ///< none: there is no map
+  Matrix6 m_mostOfReference = Matrix6::Zero();  ///< information, at most
+};
+
+}  // namespace semantic_slam

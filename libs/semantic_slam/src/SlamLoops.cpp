@@ -1,0 +1,239 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "SlamEngine.h"
+
+namespace semantic_slam {
+namespace {
+
+/** Standard deviations of what loops say: less certain than their points, for they may be wrong. */
+constexpr double kLoopMeters = 0.03, kLoopAngle = 0.1 * kDegree;
+/** Edges of cubes at a loop's other end, as multiples of the finest. */
+constexpr double kCoarsest = 8;
+/** Looks for loops are so many keyframe distances apart. */
+constexpr double kLookEvery = 2;
+/** Window of a search: at first, in cells of the grid; per meter of the way since the last loop; at
+ * most, in cells of the grid. */
+constexpr double kWindow = 10, kWindowDrift = 0.03, kLargestWindow = 100;
+constexpr double kAngle = 8 * kDegree, kAngleDrift = 0.3 * kDegree, kLargestAngle = 45 * kDegree;
+/** Share of the way without registration that the robot may be off. */
+constexpr double kLostDrift = 0.3;
+constexpr std::size_t kMostPlaces = 3;
+constexpr double kLeastScore = 0.5;
+/** Share of a stretch's points where the loop's other end has some. */
+constexpr double kCovered = 0.3;
+/** Two loops agree up to so much, more for each meter between; farther apart they are not compared.
+ */
+constexpr double kAgree = 0.2, kAgreeWay = 0.03, kAgreeAngle = 2 * kDegree,
+                 kAgreeAngleWay = 0.2 * kDegree, kCompared = 20;  // of the latter, keyframe distances
+/** An edge that is off by less, m and radians, can wait for the next optimization. */
+constexpr double kNear = 0.05, kNearAngle = 0.5 * kDegree;
+/** Squared error of a step between keyframes that loops may leave. */
+constexpr double kTorn = 100, kTornMore = 1.5;
+
+double headingOf(const Eigen::Isometry3d& T) { return std::atan2(T(1, 0), T(0, 0)); }
+
+}  // namespace
+
+void SlamEngine::setReference(const semantic_octree::SemanticOcTree& map) {
+  if (!m_keyframes.empty()) throw std::logic_error("Slam: a reference, but scans were added");
+  m_reference = Reference(map, {8, 4, 2, 1}, m_options.useClasses);
+  m_mostOfReference = informationOf(std::max(kLoopMeters, m_reference.deviation()), kLoopAngle);
+}
+
+auto SlamEngine::pointsOf(std::size_t first, std::size_t last, std::size_t frame) const -> Seen {
+  Seen all{{}, m_keyframes[frame].seen.T_odometry_robot};
+  for (std::size_t k = first; k <= last; ++k) {
+    const Eigen::Isometry3f T = (m_poses[frame].inverse() * m_poses[k]).cast<float>();
+    const LabeledCloud& cloud = m_keyframes[k].seen.cloud;
+    for (std::size_t i = 0; i < cloud.size(); ++i) all.cloud.points.push_back(T * cloud.points[i]);
+    all.cloud.classes.insert(all.cloud.classes.end(), cloud.classes.begin(), cloud.classes.end());
+  }
+  return all;
+}
+
+std::vector<std::size_t> SlamEngine::placesWithin(double radius) const {
+  const double way = m_keyframes.back().way;
+  const auto distance = [this](std::size_t k) {
+    return (m_poses[k].translation() - m_poses.back().translation()).norm();
+  };
+  std::vector<std::size_t> places;
+  std::size_t previous = 0;
+  for (std::size_t k = 0; k < m_keyframes.size() && way - m_keyframes[k].way >= m_scale.loopLength;
+       ++k) {
+    if (distance(k) > radius) continue;
+    const auto apart = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
+    if (places.empty() || k - previous > apart)
+      places.push_back(k);
+    else if (distance(k) < distance(places.back()))
+      places.back() = k;
+    previous = k;
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+  if (places.size() > kMostPlaces) places.resize(kMostPlaces);
+  return places;
+}
+
+bool SlamEngine::closeLoops() {
+  const std::size_t newest = m_keyframes.size() - 1;
+  const double way = m_keyframes[newest].way;
+  if (way < m_lastLook + kLookEvery * m_scale.keyframeDistance) return false;
+  m_lastLook = way;
+  const double since = way - m_lastLoop;
+  const PlaneSearch::Window window{
+      std::min(kWindow * m_scale.gridCell + kWindowDrift * since + kLostDrift * m_lostWay,
+               kLargestWindow * m_scale.gridCell),
+      std::min(kAngle + kAngleDrift * since, kLargestAngle)};
+  const auto places = placesWithin(1.4 * window.radius);
+  if (places.empty()) return false;
+  const auto beside = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
+  const Seen stretch = pointsOf(newest - std::min(newest, beside), newest, newest);
+  bool moved = false;
+  for (const std::size_t place : places)
+    if (const auto edge = edgeTo(place, stretch, window)) {
+      const std::size_t before = m_edges.size();
+      moved |= confirm(m_pendingLoops, *edge);
+      if (m_edges.size() == before) continue;
+      m_report.loops += m_edges.size() - before;
+      m_lastLoop = way;
+      m_lostWay = 0;
+    }
+  return moved;
+}
+
+std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch,
+                                           const PlaneSearch::Window& window) const {
+  const std::size_t newest = m_keyframes.size() - 1;
+  const auto beside = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
+  std::size_t last = place;
+  while (last < place + beside &&
+         m_keyframes[newest].way - m_keyframes[last + 1].way > m_scale.loopLength / 2)
+    ++last;
+  const Seen then = pointsOf(place - std::min(place, beside), last, place);
+  const Pose T_guess = m_poses[place].inverse() * m_poses[newest];
+  const auto upright = [this](const LabeledCloud& cloud) {
+    return uprightPoints(cloud, m_scale.isPlanar, m_scale.gridCell);
+  };
+  // Seen from above, height and tilt aside.
+  const Pose T_turn(Eigen::AngleAxisd(headingOf(T_guess), Eigen::Vector3d::UnitZ()));
+  Seen level = stretch;
+  const Eigen::Matrix3f T_level =
+      (T_turn.linear().transpose() * T_guess.linear()).cast<float>();
+  for (Eigen::Vector3f& p : level.cloud.points) p = T_level * p;
+  const Eigen::Vector3d guess(T_guess(0, 3), T_guess(1, 3), headingOf(T_guess));
+  const auto found = PlaneSearch(upright(then.cloud), m_scale.gridCell)
+                         .find(upright(level.cloud), guess, window, kLeastScore);
+  if (!found) return std::nullopt;
+  Pose T_found(Eigen::Translation3d((*found)[0], (*found)[1], T_guess(2, 3)));
+  T_found.rotate(Eigen::AngleAxisd((*found)[2], Eigen::Vector3d::UnitZ()));
+  T_found.rotate(T_turn.linear().transpose() * T_guess.linear());
+  std::vector<Submap> submaps;
+  const double finest = m_scale.cells.back();
+  for (double size = (m_scale.isPlanar ? m_scale.cells.front() / finest : kCoarsest) * finest;
+       size >= finest; size /= 2) {
+    submaps.emplace_back(size, m_options.useClasses, m_scale.isPlanar);
+    submaps.back().add(then.cloud, Pose::Identity());
+    submaps.back().finish();
+  }
+  const Registration r = match(submaps, stretch, T_found, Matrix6::Zero());
+  if (!fits(r)) return std::nullopt;
+  return PoseEdge{place, newest, r.T_submap_scan, informationOf(kLoopMeters, kLoopAngle), true};
+}
+
+bool SlamEngine::fits(const Registration& r) const {
+  return r.coveredShare >= kCovered && r.matchedShare >= m_scale.leastMatched;
+}
+
+bool SlamEngine::agree(const PoseEdge& before, const PoseEdge& edge) const {
+  if (before.b == edge.b) return false;
+  const double way = m_keyframes[edge.b].way - m_keyframes[before.b].way;
+  const Pose T_step = m_poses[before.b].inverse() * m_poses[edge.b];
+  const Pose T_map_by_before = m_poses[before.a] * before.T_a_b * T_step;
+  const Vector6 off = vectorOf(T_map_by_before.inverse() * m_poses[edge.a] * edge.T_a_b);
+  return off.head<3>().norm() < kAgree + kAgreeWay * way &&
+         off.tail<3>().norm() < kAgreeAngle + kAgreeAngleWay * way;
+}
+
+bool SlamEngine::confirm(std::vector<PoseEdge>& pending, const PoseEdge& edge) {
+  const double oldest = m_keyframes[edge.b].way - kCompared * m_scale.keyframeDistance;
+  const std::size_t numEdges = m_edges.size();
+  std::vector<PoseEdge> left;
+  for (const PoseEdge& before : pending)
+    if (m_keyframes[before.b].way >= oldest) (agree(before, edge) ? m_edges : left).push_back(before);
+  const bool isConfirmed = m_edges.size() > numEdges;
+  (isConfirmed ? m_edges : left).push_back(edge);
+  pending = std::move(left);
+  return isConfirmed && optimizeWith(m_edges.size() - numEdges);
+}
+
+double SlamEngine::worstStep() const {
+  double worst = 0;
+  for (const PoseEdge& edge : m_edges)
+    if (!edge.isDoubtful) worst = std::max(worst, squaredError(edge, m_poses));
+  return worst;
+}
+
+bool SlamEngine::optimizeWith(std::size_t added) {
+  bool areNear = true;
+  for (std::size_t e = m_edges.size() - added; e < m_edges.size(); ++e) {
+    const PoseEdge& edge = m_edges[e];
+    const Vector6 off =
+        vectorOf(edge.T_a_b.inverse() * m_poses[edge.a].inverse() * m_poses[edge.b]);
+    areNear &= off.head<3>().norm() < kNear && off.tail<3>().norm() < kNearAngle;
+  }
+  m_isOptimized = false;
+  if (areNear) return false;
+  const auto before = m_poses;
+  const double worst = worstStep();
+  optimizePoses();
+  if (worstStep() <= std::max(kTorn, kTornMore * worst)) return true;
+  m_poses = before;
+  m_edges.resize(m_edges.size() - added);
+  m_report.undone += added;
+  return false;
+}
+
+void SlamEngine::optimizePoses() {
+  optimize(m_poses, m_edges);
+  for (std::size_t k = 0; k < m_poses.size(); ++k)
+    m_poses[k] = levelled(m_poses[k], m_keyframes[k].seen.T_odometry_robot);
+  m_isOptimized = true;
+}
+
+bool SlamEngine::finish() {
+  if (m_isOptimized) return false;
+  optimizePoses();
+  return true;
+}
+
+std::optional<Registration> SlamEngine::findInReference(const Seen& seen,
+                                                        const Pose& T_map_guess) {
+  if (!m_reference.exists()) return std::nullopt;
+  const auto& submaps = m_scale.isPlanar ? m_reference.sliceAt(seen.cloud, T_map_guess)
+                                         : m_reference.inSpace();
+  const Registration r = match(submaps, seen, T_map_guess, Matrix6::Zero());
+  const bool isFound = r.coveredShare >= kCovered && r.matchedShare >= 0.6;
+  return isFound ? std::make_optional(r) : std::nullopt;
+}
+
+bool SlamEngine::followReference() {
+  const std::size_t newest = m_keyframes.size() - 1;
+  constexpr double kEvery = 3;  // m
+  if (m_keyframes[newest].way < m_lastReferenced + kEvery) return false;
+  m_lastReferenced = m_keyframes[newest].way;
+  const auto found = findInReference(m_keyframes[newest].seen, m_poses[newest]);
+  if (!found) return false;
+  const Matrix6 own = 0.5 * found->information;
+  // Both errors together. The first pose stays, so an edge from it says where the other is.
+  const Matrix6 information = m_mostOfReference * (m_mostOfReference + own).inverse() * own;
+  const Pose T_first_robot = m_poses.front().inverse() * found->T_submap_scan;
+  const std::size_t before = m_edges.size();
+  const bool moved =
+      confirm(m_pendingReferences, {0, newest, T_first_robot, information, true});
+  m_report.referenced += m_edges.size() - before;
+  return moved;
+}
+
+}  // namespace semantic_slam

@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <cmath>
+
+#include "SlamEngine.h"
+
+namespace semantic_slam {
+namespace {
+
+/** Share of the information that a registration's points would have if each were off by itself. */
+constexpr double kOwnInformation = 0.5;
+/** Information (1/m^2, 1/rad^2) of a height and a tilt that are known. */
+constexpr double kLevel = 1e12;
+/** Shares of a scan's points that fit: too few say nothing, most say more than wheels do. */
+constexpr double kFits = 0.5, kFitsWell = 0.8;
+/** Share of a scan's points where the last keyframes have some. */
+constexpr double kTracked = 0.3;
+/** Robots whose sensors see space have better odometry than those of laser scanners. */
+constexpr double kInSpace = 0.1;
+/** A scan that fits badly is believed up to so many standard deviations of the prediction. */
+constexpr double kFar = 4;
+/** Steps are small up to this share of what makes a keyframe; so many are not registered. */
+constexpr double kSmall = 1.0 / 8;
+constexpr int kMostSmall = 10;
+/** Least share of the highest score where a scan is searched around its prediction. */
+constexpr double kTrackedScore = 0.4;
+
+LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T) {
+  for (Eigen::Vector3f& p : cloud.points) p = (T * p.cast<double>()).cast<float>();
+  return cloud;
+}
+
+/** x, y and heading of a pose. */
+Eigen::Isometry3d planar(const Eigen::Isometry3d& T) {
+  Eigen::Isometry3d result(Eigen::Translation3d(T.translation().x(), T.translation().y(), 0));
+  result.rotate(Eigen::AngleAxisd(std::atan2(T(1, 0), T(0, 0)), Eigen::Vector3d::UnitZ()));
+  return result;
+}
+
+double wayOf(const Eigen::Isometry3d& T) { return T.translation().norm(); }
+double turnOf(const Eigen::Isometry3d& T) { return vectorOf(T).tail<3>().norm(); }
+
+}  // namespace
+
+Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_sensor,
+                            const std::optional<Pose>& T_odometry_robot) {
+  ++m_report.scans;
+  if (m_keyframes.empty()) m_hasOdometry = T_odometry_robot.has_value();
+  setScale(cloud, T_robot_sensor);
+  if (m_keyframes.empty())
+    m_noise = MotionNoise(!m_hasOdometry, m_hasOdometry && !m_scale.isPlanar ? kInSpace : 1);
+  const std::size_t last = m_keyframes.size() - 1;
+  const Pose T_step = predictedStep(T_odometry_robot), T_guess = m_T_keyframe_last * T_step;
+  const Pose T_odometry = m_keyframes.empty() ? T_odometry_robot.value_or(Pose::Identity())
+                                              : T_odometry_robot.value_or(m_poses[last] * T_guess);
+  if (!m_keyframes.empty() && isSmall(T_step) && ++m_numSmall < kMostSmall) return {last, T_guess};
+  Seen now{moved(thinned(cloud, m_scale.cube, m_options.maxRange), T_robot_sensor), T_odometry};
+  if (!m_options.useClasses)
+    std::fill(now.cloud.classes.begin(), now.cloud.classes.end(), semantic_types::kNoClass);
+  if (m_keyframes.empty()) return beginFirst(std::move(now));
+
+  const auto registered = track(now, T_step);
+  const Pose T_last_robot = registered ? registered->T_submap_scan : T_guess;
+  m_T_step = registered ? rigid(m_T_keyframe_last.inverse() * T_last_robot) : T_step;
+  m_report.way += wayOf(m_T_step);
+  if (registered) learn(T_step, *registered);
+  if (!registered) {
+    ++m_report.lost;
+    m_lostWay += wayOf(T_step);
+  }
+  m_T_keyframe_last = T_last_robot;
+  m_T_odometry_last = T_odometry;
+  m_numSmall = 0;
+  if (wayOf(T_last_robot) < m_scale.keyframeDistance && turnOf(T_last_robot) < m_scale.keyframeAngle)
+    return {last, T_last_robot};
+  m_edges.push_back({last, last + 1, T_last_robot,
+                     registered ? registered->information : m_noise.information(T_last_robot)});
+  begin(std::move(now), rigid(m_poses.back() * T_last_robot), T_last_robot);
+  const bool followed = followReference();
+  return {last + 1, Pose::Identity(), true, closeLoops() || followed};
+}
+
+void SlamEngine::setScale(const LabeledCloud& cloud, const Pose& T_robot_sensor) {
+  const bool isPlanar = m_scale.isPlanar && isHorizontal(cloud, T_robot_sensor);
+  if (!m_keyframes.empty() && isPlanar == m_scale.isPlanar) return;
+  m_scale = SensorScale::of(moved(cloud, T_robot_sensor), isPlanar);
+  // Nothing tells how fast the robot is at first.
+  if (!m_hasOdometry && !isPlanar)
+    m_scale.cells.insert(m_scale.cells.begin(), {4 * m_scale.cells[0], 2 * m_scale.cells[0]});
+  m_local.clear();  // of another sensor
+  if (!m_keyframes.empty())
+    m_local.add(m_keyframes.back().seen.cloud, Pose::Identity(), m_scale, m_options.useClasses);
+}
+
+Eigen::Isometry3d SlamEngine::predictedStep(const std::optional<Pose>& T_odometry_robot) const {
+  return T_odometry_robot ? m_T_odometry_last.inverse() * *T_odometry_robot : m_T_step;
+}
+
+bool SlamEngine::isSmall(const Pose& T_step) const {
+  return m_hasOdometry && wayOf(T_step) < kSmall * m_scale.keyframeDistance &&
+         turnOf(T_step) < kSmall * m_scale.keyframeAngle;
+}
+
+Slam::Added SlamEngine::beginFirst(Seen seen) {
+  const auto found = findInReference(seen, seen.T_odometry_robot);
+  m_report.referenced += found.has_value();
+  const Pose T_map_robot = found ? found->T_submap_scan : seen.T_odometry_robot;
+  m_T_odometry_last = seen.T_odometry_robot;
+  begin(std::move(seen), T_map_robot, Pose::Identity());
+  return {0, Pose::Identity(), true, false};
+}
+
+void SlamEngine::begin(Seen seen, const Pose& T_map_robot, const Pose& T_last_keyframe) {
+  m_T_keyframe_last = Pose::Identity();
+  m_poses.push_back(levelled(T_map_robot, seen.T_odometry_robot));
+  m_local.add(seen.cloud, T_last_keyframe, m_scale, m_options.useClasses);
+  m_keyframes.push_back({std::move(seen), m_report.way});
+}
+
+std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_step) {
+  const std::size_t last = m_keyframes.size() - 1;
+  const Matrix6 information = m_noise.information(T_step);
+  const Pose T_guess = m_local.T_local_last() * m_T_keyframe_last * T_step;
+  std::optional<Registration> r =
+      match(m_local.submaps(), seen, T_guess, information / kOwnInformation);
+  const Vector6 off = vectorOf(T_guess.inverse() * r->T_submap_scan);
+  const bool isFar = off.head<3>().norm() > kFar / std::sqrt(information(0, 0)) ||
+                     off.tail<3>().norm() > kFar / std::sqrt(information(5, 5));
+  // Beams in a plane fit but where they belong; in space much is ground, which fits anywhere.
+  const bool mayBeFar = m_scale.isPlanar && r->matchedShare >= kFitsWell;
+  if (isFar && r->matchedShare >= kFitsWell)
+    m_noise.note(T_step, T_guess.inverse() * r->T_submap_scan,
+                 kOwnInformation * r->information + information);
+  if (r->coveredShare < kTracked || r->matchedShare < kFits || (isFar && !mayBeFar))
+    r = searchAround(seen, T_guess, information);
+  if (!r) return std::nullopt;
+  r->information = kOwnInformation * r->information + information;
+  const Pose T_map = m_poses[last] * m_local.T_local_last().inverse() * r->T_submap_scan;
+  r->T_submap_scan = m_poses[last].inverse() * levelled(T_map, seen.T_odometry_robot);
+  return r;
+}
+
+std::optional<Registration> SlamEngine::searchAround(const Seen& seen, const Pose& T_local_guess,
+                                                     const Matrix6& information) const {
+  PlanePoints points;
+  const std::size_t first = m_keyframes.size() - m_local.poses().size();
+  for (std::size_t k = first; k < m_keyframes.size(); ++k) {
+    const Pose& T = m_local.poses()[k - first];
+    for (const Eigen::Vector2d& p :
+         uprightPoints(moved(m_keyframes[k].seen.cloud, T), m_scale.isPlanar, m_scale.gridCell))
+      points.push_back(p);
+  }
+  const PlaneSearch::Window window{
+      std::clamp(kFar / std::sqrt(information(0, 0)), 5 * m_scale.gridCell, 30 * m_scale.gridCell),
+      std::clamp(kFar / std::sqrt(information(5, 5)), 5 * kDegree, 45 * kDegree)};
+  const Eigen::Isometry3d flat = planar(T_local_guess);
+  const Eigen::Vector3d guess(flat(0, 3), flat(1, 3), std::atan2(flat(1, 0), flat(0, 0)));
+  const auto found = PlaneSearch(points, m_scale.gridCell)
+                         .find(uprightPoints(moved(seen.cloud, flat.inverse() * T_local_guess),
+                                             m_scale.isPlanar, m_scale.gridCell),
+                               guess, window, kTrackedScore);
+  if (!found) return std::nullopt;
+  Pose T_found(Eigen::Translation3d((*found)[0], (*found)[1], 0));
+  T_found.rotate(Eigen::AngleAxisd((*found)[2], Eigen::Vector3d::UnitZ()));
+  const Registration r = match(m_local.submaps(), seen, T_found * (flat.inverse() * T_local_guess),
+                               Matrix6::Zero());
+  if (r.coveredShare < kTracked || r.matchedShare < kFitsWell) return std::nullopt;
+  return r;
+}
+
+void SlamEngine::learn(const Pose& T_step, const Registration& registered) {
+  const Pose& T_registered = m_T_step;
+  m_noise.note(T_step, T_step.inverse() * T_registered, registered.information);
+  m_wayOfOdometry += wayOf(T_step);
+  m_wayOfScans += wayOf(T_registered);
+  const double turn = vectorOf(T_registered)[5];
+  m_turnOfScans += std::abs(turn);
+  m_turnOfOdometry += std::copysign(1.0, turn) * vectorOf(T_step)[5];
+}
+
+Matrix6 SlamEngine::levelOf(const Pose& T_odometry_robot) const {
+  if (!isLevel()) return Matrix6::Zero();
+  Matrix6 toLevel = Matrix6::Zero();
+  toLevel.topLeftCorner<3, 3>() = toLevel.bottomRightCorner<3, 3>() =
+      (planar(T_odometry_robot).inverse() * T_odometry_robot).linear();
+  Vector6 known = Vector6::Zero();
+  known.segment<3>(2).setConstant(kLevel);
+  return toLevel.transpose() * known.asDiagonal() * toLevel;
+}
+
+Eigen::Isometry3d SlamEngine::levelled(const Pose& T_map_robot,
+                                       const Pose& T_odometry_robot) const {
+  if (!isLevel()) return T_map_robot;
+  return rigid(planar(T_map_robot) * planar(T_odometry_robot).inverse() * T_odometry_robot);
+}
+
+Registration SlamEngine::match(const std::vector<Submap>& submaps, const Seen& seen,
+                               const Pose& T_submap_guess, const Matrix6& prior) const {
+  std::vector<const Submap*> pointers;
+  for (const Submap& submap : submaps) pointers.push_back(&submap);
+  const Matrix6 known = prior + levelOf(seen.T_odometry_robot);
+  if (m_scale.registeredCube == 0) return registerScan(pointers, seen.cloud, T_submap_guess, known);
+  return registerScan(pointers, thinned(seen.cloud, m_scale.registeredCube, m_options.maxRange),
+                      T_submap_guess, known);
+}
+
+}  // namespace semantic_slam
