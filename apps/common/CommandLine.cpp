@@ -31,7 +31,7 @@ std::vector<std::string> commandsOf(const CLI::App& app) {
   return names;
 }
 
-/** Of what was left over, or empty. */
+/** Names an argument that was left over; empty if there is none. */
 std::string unexpected(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining(true);
   for (const std::string& word : words)

@@ -25,7 +25,7 @@ class SignalWatch {
   std::thread m_thread;
 };
 
-/** Of a program that can stop before its end, and keep what it has: while this lives, the first
+/** Lets a program stop before its end and keep what it has: while this lives, the first
  * SIGINT or SIGTERM asks for that, and the next one ends the program at once. */
 class StopRequest {
  public:

@@ -34,7 +34,7 @@ struct Compression {
   Solution solution;
   double alpha = 0;
   semantic_octree::AbstractionMeasures measures;
-  /** Of each term of the catalog. */
+  /** What is kept of each term of the catalog. */
   std::vector<KeptInformation> kept;
   std::vector<CurvePoint> curve;
   CurvePoint chosen;

@@ -24,7 +24,7 @@ struct KeptInformation {
 
 /** Where compressed maps are while they are made. */
 struct CompressedPlace {
-  /** Of a map that may be larger than memory; none: they are in memory. */
+  /** The folder's options if the map may be larger than memory; none: it is in memory. */
   std::optional<semantic_octree::MapFolderOptions> tiles;
   std::filesystem::path scratch;  ///< a folder for that, which comes and goes
 };

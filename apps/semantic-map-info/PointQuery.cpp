@@ -47,7 +47,7 @@ ordered_json distributionAt(const SemanticOcTree& map, const Point& p) {
   return json;
 }
 
-/** Of what the octree walks through, which number it has: x, y, z by turns, bit by bit. */
+/** The point's number in the octree's order: bits of x, y and z by turns. */
 std::uint64_t placeInTree(const SemanticOcTree& map, const Point& p) {
   octomap::OcTreeKey key;
   if (!map.coordToKeyChecked(p[0], p[1], p[2], key)) return 0;

@@ -45,7 +45,7 @@ struct Cli {
     addTilesOption(app, tiles);
     addMemoryOption(app, memory);
   }
-  /** Of each of the maps, MB. */
+  /** The memory of each of the maps, MB. */
   double memoryOfMap() const {
     return memory / static_cast<double>(maps.size() + tiles.has_value());
   }

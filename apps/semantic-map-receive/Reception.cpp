@@ -9,7 +9,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/** Of silence, before a request or a receipt goes out again. */
+/** The silence before a request or a receipt goes out again. */
 constexpr milliseconds kPatience(200);
 constexpr std::size_t kPacketsPerReceipt = 16;
 /** So often the sender is told that all is there, unless it says so, too. */

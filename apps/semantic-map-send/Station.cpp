@@ -8,7 +8,7 @@
 namespace semantic_map_send {
 namespace {
 
-/** Of IP and UDP. */
+/** Bytes of the headers of IP and UDP. */
 constexpr std::size_t kHeaders = 28;
 /** Who does not know yet that it has all is told so, if it asks that late. */
 constexpr std::chrono::milliseconds kFarewell(1000), kTick(20);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kPictures = 72;
 constexpr double kPeriod = 0.28;  // s a frame: 20 s in all
-/** Of the leaves that the tree has at first. */
+/** A share of the leaves that the tree has at first. */
 constexpr double kFewest = 0.004;
 
 cv::Mat restingPicture(ViewWindow& window) {

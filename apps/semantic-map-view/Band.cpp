@@ -12,7 +12,7 @@ using mrpt_compat::drawing::TTriangle;
 namespace {
 
 constexpr Color kForward{20, 20, 20}, kBackward{230, 159, 0}, kEitherWay{0, 114, 178};
-/** Of the width: the border on each side, and how much lower it lies. */
+/** Shares of the width: the border on each side, and how much lower it lies. */
 constexpr float kBorder = 0.25f, kBelow = 0.05f;
 
 Color colorFor(Track::Gear gear) {

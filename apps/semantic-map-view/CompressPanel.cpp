@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kWidth = 280, kWindow = kWidth + 16;
 constexpr double kRest = 0.25;  // s
-/** Of the leaves, that share is a begin from which sliders lead to both sides. */
+/** One leaf in so many: a start from which sliders lead to both sides. */
 constexpr std::size_t kShare = 10;
 
 std::string rounded(double number, int digits) {

@@ -37,7 +37,7 @@ void send(const std::string& script, int pipe) {
   std::signal(SIGPIPE, previous);
 }
 
-/** Of a process that ends. */
+/** The exit status of a process that ends. */
 int statusOf(pid_t child) {
   int status = -1;
   while (waitpid(child, &status, 0) == -1 && errno == EINTR) {

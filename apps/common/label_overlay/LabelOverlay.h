@@ -6,7 +6,7 @@
 
 namespace label_overlay {
 
-/** Of a class, BGR. */
+/** The color of a class, BGR. */
 cv::Vec3b pixelOf(semantic_types::ClassId id, const semantic_types::ClassTable& classes);
 
 /** The photograph, or black where there is none. */

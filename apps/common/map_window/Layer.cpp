@@ -9,7 +9,7 @@ using semantic_octree::SemanticOcTree;
 
 namespace {
 
-/** Of a folder, too. */
+/** The name of a file or of a folder. */
 std::string nameOf(const std::filesystem::path& file) {
   return (file.has_filename() ? file : file.parent_path()).filename().string();
 }

@@ -20,7 +20,7 @@ constexpr int kWidth = 1280, kHeight = 720, kPanel = 230, kMostLines = 4, kPictu
 constexpr double kAttend = 0.005;  // s between looks at what hands do
 /** Between counts of a map's leaves, at first; as the map grows they take longer, s. */
 constexpr double kCountEvery = 1;
-/** Of the slider: steps a second; at its right end as many as there can be. */
+/** The slider's steps a second; at its right end there are as many as can be. */
 constexpr float kFastest = 30;
 
 std::vector<std::unique_ptr<Layer>> layersOf(const semantic_octree::SemanticOcTree& map) {

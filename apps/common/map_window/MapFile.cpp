@@ -19,7 +19,7 @@ using semantic_octree::SemanticOcTree;
 namespace {
 
 constexpr int kMostLevels = 8;
-/** Of the budget, for tiles while a coarser map is made of them. */
+/** The share of the budget for tiles while a coarser map is made of them. */
 constexpr double kShareOfTiles = 0.25;
 /** As maps of streets have them. */
 constexpr std::size_t kBytesOfLeaf = 6;

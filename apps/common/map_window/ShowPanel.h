@@ -33,7 +33,7 @@ class ShowPanel {
   Viewer& m_viewer;
   nanogui::Window* m_window;
   nanogui::Widget* m_classes = nullptr;
-  /** Of the box outside of which nothing is shown: along x, y, z. */
+  /** A side, along x, y or z, of the box outside of which nothing is shown. */
   struct ClipLine {
     nanogui::Slider *from, *to;
     nanogui::Label* text;

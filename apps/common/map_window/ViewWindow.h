@@ -8,7 +8,7 @@
 
 namespace map_window {
 
-/** Of MRPT's windows; one at a time. */
+/** The system of MRPT's windows; there is one at a time. */
 class WindowSystem {
  public:
   /** \throw std::runtime_error there is no display. */

@@ -33,7 +33,7 @@ class Viewer {
   void onActivated(const std::function<void()>& f) { m_onActivated.push_back(f); }
 
   const map_view::ViewStyle& style() const { return m_maps[m_active].layer->look().style(); }
-  /** Of all maps; the hidden classes are those of the active one. */
+  /** Sets the style of all maps; the hidden classes are those of the active one. */
   void setStyle(const map_view::ViewStyle& style);
   /** The leaves of the map, or of its compressed tree. */
   void showFull();
@@ -53,7 +53,7 @@ class Viewer {
 
   /** A line below the map, and on the standard output. */
   void say(const std::string& text);
-  /** The same of what went wrong, on the standard error. */
+  /** Says what went wrong, also on the standard error. */
   void complain(const std::exception& problem);
   const std::string& said() const { return m_said; }
 

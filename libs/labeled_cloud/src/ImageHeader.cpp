@@ -44,7 +44,7 @@ std::uint64_t ImageHeader::number(std::size_t at, int bytes, bool isHighestFirst
   return value;
 }
 
-/** Of a PNM file's text, without its comments; at most ten digits. */
+/** The next number in a PNM file's text, outside of comments; at most ten digits. */
 std::uint64_t ImageHeader::nextNumber(std::size_t& at) const {
   while (at < m_bytes.size() && !isIn(m_bytes[at], '0', '9'))
     at = m_bytes[at] == '#' ? std::min(m_bytes.find('\n', at), m_bytes.size()) : at + 1;

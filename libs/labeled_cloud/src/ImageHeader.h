@@ -30,7 +30,7 @@ class ImageHeader {
   Size sizeOfPnm() const;
   Size sizeOfTiff() const;
   Size sizeOfJpeg() const;
-  /** Of `bytes` bytes; beyond the end are zeros. */
+  /** The number in `bytes` bytes; bytes beyond the end are zeros. */
   std::uint64_t number(std::size_t at, int bytes, bool isHighestFirst) const;
   std::uint64_t nextNumber(std::size_t& at) const;
 

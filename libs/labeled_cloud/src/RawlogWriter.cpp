@@ -6,7 +6,7 @@ namespace labeled_cloud {
 
 namespace {
 
-/** Of 1 to 9: labeled clouds hardly shrink more at higher levels, which take several times longer.
+/** gzip's level, 1 to 9. Higher levels hardly shrink labeled clouds and take several times longer.
  */
 constexpr int kCompression = 2;
 

@@ -16,7 +16,7 @@ using tree_abstraction::kAlpha;
 
 namespace {
 
-/** Of a class variable, in which free space and the classes are told apart. */
+/** Whether two terms tell free space and the classes apart in one way. */
 bool sameGroups(const InformationTerm& a, const InformationTerm& b) { return a.groups == b.groups; }
 
 /** In the order in which semantic-map-compress has them, so that sums round alike; the map keeps

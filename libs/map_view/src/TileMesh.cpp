@@ -137,7 +137,7 @@ class MeshBuilder {
     return face;
   }
 
-  /** Of a corner: -1 is the low end of an axis, 1 the high one; m. */
+  /** Where a corner is, m: -1 is the low end of an axis, 1 the high one. */
   Eigen::Vector3f place(const Part& part, const Eigen::Array3i& corner) const {
     const Eigen::Array3i at = (corner < 0).select(part.low, part.end);
     const Eigen::Array3i key = m_tile.lowest + at * m_tile.cellEdge();

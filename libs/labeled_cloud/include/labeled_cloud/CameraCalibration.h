@@ -15,7 +15,7 @@ struct CameraCalibration {
   std::optional<mrpt::poses::CPose3D> T_robot_camera;
 };
 
-/** The same as files have it: the optics, or the pose, may be left out as a whole. */
+/** A calibration as files have it: the optics, or the pose, may be left out as a whole. */
 struct CameraDescription {
   enum class Distortion { PlumbBob, KannalaBrandt };
 

@@ -55,7 +55,8 @@ struct LabelModel {
   Kind kind = Kind::Soft;
   /** Labels that are less sure than this are none, [0, 1]. */
   double minConfidence = 0;
-  /** Of the classifier that gave the hard labels; where there is one, its rows are the labels. */
+  /** The confusions of the classifier that gave the hard labels; if set, its rows are the labels.
+   */
   std::shared_ptr<const ConfusionMatrix> confusion;
 
   void describe(strict_files::OptionList& list);

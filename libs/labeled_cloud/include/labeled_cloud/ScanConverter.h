@@ -74,7 +74,7 @@ class ScanConverter {
   semantic_types::ClassTable m_table;
   ScanConverterOptions m_options;
   std::shared_ptr<ImageLabeler> m_labeler;
-  /** Of the camera met last. */
+  /** The rays of the camera met last. */
   std::unique_ptr<PixelRays> m_rays;
   bool m_keepPictures = false;
 };

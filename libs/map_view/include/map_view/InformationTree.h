@@ -33,7 +33,7 @@ class InformationTree {
   std::size_t numLeaves(double alpha) const;
   /** The compressed trees of all alphas, without what their terms tell. They look at this one. */
   semantic_octree::AlphaTrees trees() const;
-  /** Of the nodes' finite alphas above a value; it if there are none. */
+  /** The lowest of the nodes' finite alphas above a value; the value itself if there are none. */
   double lowestAlpha(double above) const;
   double highestAlpha() const;
   /** What the compressed tree of an alpha retains of each term, if there is something to retain:
@@ -54,7 +54,7 @@ class InformationTree {
     double ofChildren;                ///< sum_c Pi_c G_Pi(c)
     double gValue;                    ///< G_Pi(n) = max(0, gain - alpha H(Pi_n) + ofChildren)
   };
-  /** Of the nodes that hold a voxel, the largest first. Visits what is below the largest one. */
+  /** The balances of the nodes that hold a voxel, the largest first. Visits what is below it. */
   std::vector<Balance> balancesAround(const Eigen::Array3i& key, double alpha) const;
 
  private:

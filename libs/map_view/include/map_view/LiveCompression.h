@@ -54,8 +54,8 @@ class LiveCompression {
   /** Share of each term's information that the compressed tree keeps. */
   std::vector<std::optional<double>> retained() const { return m_tree.retained(m_threshold); }
 
-  /** Of what is worth telling in the block of an inner node, the share that the compressed tree
-   * keeps: see InformationTree::retainedInBlocks(). */
+  /** The share of what is worth telling in an inner node's block that the compressed tree keeps:
+   * see InformationTree::retainedInBlocks(). */
   float retainedAround(InformationTree::Index node) const;
 
   /** The map's inner nodes. */

@@ -28,7 +28,7 @@ struct OrbitCamera {
   /** Whether a ball may be seen in a picture of this size. */
   bool maySee(const Eigen::Vector3d& center, double radius, int width, int height) const;
 
-  /** The same direction, so far away that a box fills the picture. */
+  /** A camera of this direction, so far away that a box fills the picture. */
   OrbitCamera seeing(const Eigen::AlignedBox3d& box, int width, int height) const;
 
   /** "X,Y,Z,DISTANCE,AZIMUTH,ELEVATION" */

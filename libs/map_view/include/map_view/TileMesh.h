@@ -42,7 +42,7 @@ Eigen::Vector3i normalOf(std::size_t direction);
 /** What is seen of a tile: the sides of its cells that no neighbor hides, by where they look. */
 struct TileMesh {
   std::array<std::vector<Face>, kNumDirections> occupied;
-  /** Of free cells and of unknown space. */
+  /** The faces of free cells and of unknown space. */
   std::vector<Face> translucent;
 };
 
@@ -50,7 +50,7 @@ struct TileMesh {
 bool mayFace(const Tile& tile, std::size_t direction, const Eigen::Vector3d& place,
              double voxelSize);
 
-/** Of cells that reach into other tiles their part in this one. */
+/** The mesh of a tile. Cells that reach into other tiles give their part in this one. */
 TileMesh meshOf(const Tile& tile, const CellSource& cells, const CellLook& look);
 
 }  // namespace map_view

@@ -4,7 +4,7 @@
 
 namespace mrpt_compat {
 
-/** Of one of MRPT's color maps. \param share where in it, 0 to 1 */
+/** A color of one of MRPT's color maps. \param share where in it, 0 to 1 */
 inline mrpt::img::TColor colorAt(mrpt::img::TColormap map, double share) {
 #if MSO_MRPT_AT_LEAST(3, 0, 0)
   return mrpt::img::colormap(map, static_cast<float>(share)).asTColor();

@@ -9,7 +9,7 @@ namespace mrpt_compat {
  * image holds an OpenCV one. \throw std::exception if it is empty, or has other pixels. */
 cv::Mat toOpenCv(const mrpt::img::CImage& image);
 
-/** The same the other way round, a copy. */
+/** A copy of an OpenCV image as one of MRPT. */
 mrpt::img::CImage toMrpt(const cv::Mat& image);
 
 /** From now on this process writes images into rawlogs as they are, not as JPEG. Since MRPT 3 they
