@@ -20,6 +20,10 @@ std::vector<std::string> SlamReport::warnings() const {
     warnings.push_back(percent(static_cast<double>(lost) / static_cast<double>(scans)) +
                        " of the scans fit nothing that was seen before, and are where odometry has "
                        "them: the map is probably wrong there");
+  if (torn > 0)
+    warnings.push_back("at " + std::to_string(torn) +
+                       " places scans fit nothing that was seen before, and there is no odometry: "
+                       "parts of the map may be beside each other; poses of odometry help");
   if (undone > loops)
     warnings.push_back("more places seem to be seen again than fit together (" +
                        std::to_string(undone) + " loops were undone): the map may be torn");

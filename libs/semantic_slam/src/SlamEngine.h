@@ -40,10 +40,22 @@ class SlamEngine {
   bool isSmall(const Pose& T_step) const;
   Slam::Added beginFirst(Seen seen);
   void begin(Seen seen, const Pose& T_map_robot, const Pose& T_last_keyframe);
-  /** Where the last keyframes' points have a scan, frame of the last one; nothing: it fits badly. */
+  bool beginsKeyframe(const Pose& T_last_robot) const;
+  void noteFound(const Pose& T_step, const Pose& T_last_robot, const Registration& registered);
+  void noteLost(const Pose& T_step);
+  /** Whether scans fit nothing, one after the other, and there is no odometry: what follows is
+   * registered to each other. */
+  bool isTorn() const;
+  /** Information of a step that was not registered, frame of its end. */
+  Matrix6 guessed(const Pose& T_step) const;
+  /** Where the last keyframes' points have a scan, frame of the last one; nothing: it fits badly.
+   */
   std::optional<Registration> track(const Seen& seen, const Pose& T_step);
   std::optional<Registration> searchAround(const Seen& seen, const Pose& T_local_guess,
-                                           const Matrix6& information) const;
+                                           const PlaneSearch::Window& window) const;
+  PlaneSearch::Window windowAround(const Pose& T_step, const Matrix6& information) const;
+  /** Whether enough of a scan's points are where others saw some, of those that can be. */
+  bool isCovered(const Registration& r, const Seen& seen) const;
   /** \param T_step as it was predicted; m_T_step is as it was registered. */
   void learn(const Pose& T_step, const Registration& registered);
   /** Height and tilt are odometry's: as was said, or because no beam ever told of them. */
@@ -88,7 +100,9 @@ class SlamEngine {
    */
   Pose m_T_keyframe_last = Pose::Identity(), m_T_odometry_last = Pose::Identity(),
        m_T_step = Pose::Identity();
-  int m_numSmall = 0;  ///< small steps since the last registration
+  Pose m_T_keyframe_found = Pose::Identity();  ///< of the last scan that was registered
+  int m_lostInRow = 0;                         ///< scans since then
+  int m_numSmall = 0;                          ///< small steps since the last registration
   double m_wayOfOdometry = 0, m_wayOfScans = 0, m_turnOfOdometry = 0, m_turnOfScans = 0;
   double m_lastLook = 0, m_lastLoop = 0, m_lastReferenced = 0;  ///< m of the way
   double m_lostWay = 0;                                         ///< m since the last loop

@@ -23,6 +23,8 @@ constexpr double kSmall = 1.0 / 8;
 constexpr int kMostSmall = 10;
 /** Least share of the highest score where a scan is searched around its prediction. */
 constexpr double kTrackedScore = 0.4;
+/** Without odometry, after so many scans in a row that fit nothing, what follows begins anew. */
+constexpr int kMostLost = 3;
 
 LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T) {
   for (Eigen::Vector3f& p : cloud.points) p = (T * p.cast<double>()).cast<float>();
@@ -60,20 +62,16 @@ Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_senso
 
   const auto registered = track(now, T_step);
   const Pose T_last_robot = registered ? registered->T_submap_scan : T_guess;
-  m_T_step = registered ? rigid(m_T_keyframe_last.inverse() * T_last_robot) : T_step;
-  m_report.way += wayOf(m_T_step);
-  if (registered) learn(T_step, *registered);
-  if (!registered) {
-    ++m_report.lost;
-    m_lostWay += wayOf(T_step);
-  }
+  const Pose T_moved = rigid(m_T_keyframe_last.inverse() * T_last_robot);
+  m_report.way += wayOf(T_moved);
+  registered ? noteFound(T_step, T_last_robot, *registered) : noteLost(T_step);
   m_T_keyframe_last = T_last_robot;
   m_T_odometry_last = T_odometry;
   m_numSmall = 0;
-  if (wayOf(T_last_robot) < m_scale.keyframeDistance && turnOf(T_last_robot) < m_scale.keyframeAngle)
-    return {last, T_last_robot};
-  m_edges.push_back({last, last + 1, T_last_robot,
-                     registered ? registered->information : m_noise.information(T_last_robot)});
+  if (!beginsKeyframe(T_last_robot)) return {last, T_last_robot};
+  m_edges.push_back(
+      {last, last + 1, T_last_robot, registered ? registered->information : guessed(T_last_robot)});
+  if (isTorn()) m_local.clear();
   begin(std::move(now), rigid(m_poses.back() * T_last_robot), T_last_robot);
   const bool followed = followReference();
   return {last + 1, Pose::Identity(), true, closeLoops() || followed};
@@ -100,6 +98,39 @@ bool SlamEngine::isSmall(const Pose& T_step) const {
          turnOf(T_step) < kSmall * m_scale.keyframeAngle;
 }
 
+void SlamEngine::noteFound(const Pose& T_step, const Pose& T_last_robot,
+                           const Registration& registered) {
+  if (m_lostInRow == 0) {
+    m_T_step = rigid(m_T_keyframe_last.inverse() * T_last_robot);
+    learn(T_step, registered);
+  } else {
+    const Vector6 since = vectorOf(m_T_keyframe_found.inverse() * T_last_robot);
+    m_T_step = poseOf(since / (m_lostInRow + 1));
+  }
+  m_lostInRow = 0;
+  m_T_keyframe_found = T_last_robot;
+}
+
+void SlamEngine::noteLost(const Pose& T_step) {
+  ++m_report.lost;
+  m_lostWay += wayOf(T_step);
+  // Nobody knows whether it goes on so: half way between that and standing.
+  m_T_step = poseOf(0.5 * vectorOf(T_step));
+  if (++m_lostInRow > kMostLost && !m_hasOdometry) ++m_report.torn;
+}
+
+bool SlamEngine::isTorn() const { return !m_hasOdometry && m_lostInRow > kMostLost; }
+
+bool SlamEngine::beginsKeyframe(const Pose& T_last_robot) const {
+  if (!m_hasOdometry && m_lostInRow > 0) return isTorn();
+  return wayOf(T_last_robot) >= m_scale.keyframeDistance ||
+         turnOf(T_last_robot) >= m_scale.keyframeAngle;
+}
+
+Matrix6 SlamEngine::guessed(const Pose& T_step) const {
+  return m_hasOdometry ? m_noise.information(T_step) : MotionNoise(true).information(T_step);
+}
+
 Slam::Added SlamEngine::beginFirst(Seen seen) {
   const auto found = findInReference(seen, seen.T_odometry_robot);
   m_report.referenced += found.has_value();
@@ -110,7 +141,8 @@ Slam::Added SlamEngine::beginFirst(Seen seen) {
 }
 
 void SlamEngine::begin(Seen seen, const Pose& T_map_robot, const Pose& T_last_keyframe) {
-  m_T_keyframe_last = Pose::Identity();
+  m_T_keyframe_last = m_T_keyframe_found = Pose::Identity();
+  if (isTorn()) m_lostInRow = 0;
   m_poses.push_back(levelled(T_map_robot, seen.T_odometry_robot));
   m_local.add(seen.cloud, T_last_keyframe, m_scale, m_options.useClasses);
   m_keyframes.push_back({std::move(seen), m_report.way});
@@ -130,8 +162,8 @@ std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_st
   if (isFar && r->matchedShare >= kFitsWell)
     m_noise.note(T_step, T_guess.inverse() * r->T_submap_scan,
                  kOwnInformation * r->information + information);
-  if (r->coveredShare < kTracked || r->matchedShare < kFits || (isFar && !mayBeFar))
-    r = searchAround(seen, T_guess, information);
+  if (!isCovered(*r, seen) || r->matchedShare < kFits || (isFar && !mayBeFar))
+    r = searchAround(seen, T_guess, windowAround(T_step, information));
   if (!r) return std::nullopt;
   r->information = kOwnInformation * r->information + information;
   const Pose T_map = m_poses[last] * m_local.T_local_last().inverse() * r->T_submap_scan;
@@ -139,8 +171,28 @@ std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_st
   return r;
 }
 
+PlaneSearch::Window SlamEngine::windowAround(const Pose& T_step, const Matrix6& information) const {
+  double way = kFar / std::sqrt(information(0, 0)), turn = kFar / std::sqrt(information(5, 5));
+  if (!m_hasOdometry) {  // it may have stopped
+    way = (way + wayOf(T_step)) * (1 + m_lostInRow);
+    turn = (turn + turnOf(T_step)) * (1 + m_lostInRow);
+  }
+  return {std::clamp(way, 5 * m_scale.gridCell, 30 * m_scale.gridCell),
+          std::clamp(turn, 5 * kDegree, (m_hasOdometry ? 45 : 90) * kDegree)};
+}
+
+bool SlamEngine::isCovered(const Registration& r, const Seen& seen) const {
+  if (r.coveredShare >= kTracked) return true;
+  // Few points may leave cubes empty that they are in, or alone in.
+  Submap own(m_scale.cells.back(), m_options.useClasses, m_scale.isPlanar);
+  own.add(seen.cloud, Pose::Identity());
+  own.finish();
+  const Registration itself = match({own}, seen, Pose::Identity(), Matrix6::Zero());
+  return r.coveredShare >= kTracked * itself.coveredShare;
+}
+
 std::optional<Registration> SlamEngine::searchAround(const Seen& seen, const Pose& T_local_guess,
-                                                     const Matrix6& information) const {
+                                                     const PlaneSearch::Window& window) const {
   PlanePoints points;
   const std::size_t first = m_keyframes.size() - m_local.poses().size();
   for (std::size_t k = first; k < m_keyframes.size(); ++k) {
@@ -149,9 +201,6 @@ std::optional<Registration> SlamEngine::searchAround(const Seen& seen, const Pos
          uprightPoints(moved(m_keyframes[k].seen.cloud, T), m_scale.isPlanar, m_scale.gridCell))
       points.push_back(p);
   }
-  const PlaneSearch::Window window{
-      std::clamp(kFar / std::sqrt(information(0, 0)), 5 * m_scale.gridCell, 30 * m_scale.gridCell),
-      std::clamp(kFar / std::sqrt(information(5, 5)), 5 * kDegree, 45 * kDegree)};
   const Eigen::Isometry3d flat = planar(T_local_guess);
   const Eigen::Vector3d guess(flat(0, 3), flat(1, 3), std::atan2(flat(1, 0), flat(0, 0)));
   const auto found = PlaneSearch(points, m_scale.gridCell)
@@ -161,9 +210,9 @@ std::optional<Registration> SlamEngine::searchAround(const Seen& seen, const Pos
   if (!found) return std::nullopt;
   Pose T_found(Eigen::Translation3d((*found)[0], (*found)[1], 0));
   T_found.rotate(Eigen::AngleAxisd((*found)[2], Eigen::Vector3d::UnitZ()));
-  const Registration r = match(m_local.submaps(), seen, T_found * (flat.inverse() * T_local_guess),
-                               Matrix6::Zero());
-  if (r.coveredShare < kTracked || r.matchedShare < kFitsWell) return std::nullopt;
+  const Registration r =
+      match(m_local.submaps(), seen, T_found * (flat.inverse() * T_local_guess), Matrix6::Zero());
+  if (!isCovered(r, seen) || r.matchedShare < kFitsWell) return std::nullopt;
   return r;
 }
 

@@ -17,11 +17,13 @@ using semantic_types::LabeledCloud;
 struct SlamReport {
   std::size_t scans = 0, keyframes = 0;
   std::size_t lost = 0;        ///< scans that fit nothing: they are where odometry has them
+  std::size_t torn = 0;        ///< places that nothing but a guess leads across, without odometry
   std::size_t loops = 0;       ///< edges to places of before
   std::size_t undone = 0;      ///< loops that contradicted the trajectory between their ends
   std::size_t referenced = 0;  ///< keyframes that were found in the reference
   double way = 0;              ///< m
-  /** By how much odometry says more than the scans: of the way (0.1: 10 % too far), and of turns. */
+  /** By how much odometry says more than the scans: of the way (0.1: 10 % too far), and of turns.
+   */
   double wayError = 0, turnError = 0;
   bool hasOdometry = false;
 
@@ -30,8 +32,8 @@ struct SlamReport {
 };
 
 /** A trajectory from labeled scans, and from odometry where there is some, as a graph of keyframes'
- * poses. Each scan is registered to the keyframes before it. Where the robot may be back at a place,
- * the last stretch is searched in what was seen there, and registered to it.
+ * poses. Each scan is registered to the keyframes before it. Where the robot may be back at a
+ * place, the last stretch is searched in what was seen there, and registered to it.
  *
  * Keyframes are numbered as by semantic_octree::KeyframeMap, which a map follows it with. */
 class Slam {
