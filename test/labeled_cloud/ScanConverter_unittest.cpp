@@ -6,12 +6,15 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
+#include <sstream>
+
 #include "Conversions.h"
 #include "RawlogFile.h"
 
 using namespace labeled_cloud;
 using Eigen::Vector3f;
 using mrpt::obs::CObservation3DRangeScan;
+using mrpt::obs::CObservationComment;
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
 
@@ -117,6 +120,37 @@ TEST(ScanConverter, otherObservationsAreNoneOfItsBusiness) {
   const mrpt::obs::CObservationComment comment;
   EXPECT_FALSE(ScanConverter::accepts(comment));
   EXPECT_FALSE(ScanConverter(abc()).convert(comment));
+}
+
+TEST(PointSources, ofOthersAreTakenWithTheirClassesByName) {
+  struct Notes : PointSource {
+    bool accepts(const mrpt::obs::CObservation& o) const override {
+      return o.sensorLabel == "dictated" && dynamic_cast<const CObservationComment*>(&o);
+    }
+    NamedCloud read(const mrpt::obs::CObservation& o) const override {
+      NamedCloud named;
+      std::istringstream text(dynamic_cast<const CObservationComment&>(o).text);
+      for (std::string name; text >> name;) {
+        Vector3f point;
+        text >> point.x() >> point.y() >> point.z();
+        named.cloud.points.push_back(point);
+        named.classNames.push_back(name);
+        named.cloud.classes.push_back(static_cast<ClassId>(named.classNames.size()));
+      }
+      return named;
+    }
+  };
+  addPointSource(std::make_shared<Notes>());
+  CObservationComment comment;
+  comment.sensorLabel = "dictated";
+  comment.text = "c 1 2 3  a 4 5 6  b 0 0 0";
+  ASSERT_TRUE(ScanConverter::accepts(comment));
+  const auto scan = convert(comment);
+  EXPECT_EQ(scan.cloud.points, (std::vector<Vector3f>{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(scan.cloud.classes, (std::vector<ClassId>{3, 1}));
+  EXPECT_EQ(scan.counts.invalid, 1u);
+  comment.text = "unheard-of 1 2 3";
+  EXPECT_TRUE(contains(errorConverting(comment), "its class 'unheard-of' is not in the table"));
 }
 
 TEST(ScanConverter, badOptionsAreNamed) {

@@ -8,7 +8,7 @@
 
 #include "ObservationName.h"
 #include "PointGrid.h"
-#include "UnlabeledPoints.h"
+#include "PointSources.h"
 
 namespace labeled_cloud {
 
@@ -46,9 +46,8 @@ class LoadedObservation {
   const CObservation& m_observation;
 };
 
-template <typename Observation>
-bool is(const CObservation& observation) {
-  return dynamic_cast<const Observation*>(&observation) != nullptr;
+const CObservation3DRangeScan* asRangeScan(const CObservation& observation) {
+  return dynamic_cast<const CObservation3DRangeScan*>(&observation);
 }
 
 /** Pixel of the nearest point of a block of the grid, if it has any. */
@@ -74,16 +73,6 @@ std::vector<std::size_t> choosePixels(const PointGrid& grid, int decimation) {
     for (int col = 0; col < grid.cols; col += decimation)
       if (const auto pixel = nearestOfBlock(grid, row, col, decimation)) pixels.push_back(*pixel);
   return pixels;
-}
-
-void addUnlabeled(const CObservation& observation, LabeledScan& scan) {
-  auto points = unlabeledPoints(observation);
-  const std::size_t read = points.size();
-  points.erase(std::remove_if(points.begin(), points.end(),
-                              [](const auto& p) { return !PointGrid::isReturn(p); }),
-               points.end());
-  scan.counts.invalid = read - points.size();
-  scan.cloud.points = std::move(points);
 }
 
 }  // namespace
@@ -114,23 +103,22 @@ ScanConverter::ScanConverter(const ClassTable& table, const ScanConverterOptions
 ScanConverter::~ScanConverter() = default;
 
 bool ScanConverter::accepts(const CObservation& observation) {
-  return is<CObservation3DRangeScan>(observation) || is<CObservationLabeledCloud>(observation) ||
-         hasUnlabeledPoints(observation);
+  return pointSourceOf(observation) || asRangeScan(observation);
 }
 
 std::optional<LabeledScan> ScanConverter::convert(const CObservation& observation) try {
-  if (!accepts(observation)) return std::nullopt;
+  const auto source = pointSourceOf(observation);
+  const auto* range = asRangeScan(observation);
+  if (!source && !range) return std::nullopt;
   const LoadedObservation loaded(observation);
   LabeledScan scan;
   observation.getSensorPose(scan.T_robot_sensor);
   scan.timestamp = observation.timestamp;
   scan.sensorLabel = observation.sensorLabel;
-  if (const auto* range = dynamic_cast<const CObservation3DRangeScan*>(&observation))
-    addRangeScan(*range, scan);
-  else if (const auto* labeled = dynamic_cast<const CObservationLabeledCloud*>(&observation))
-    addLabeledCloud(*labeled, scan);
+  if (source)
+    addNamedCloud(source->read(observation), scan);
   else
-    addUnlabeled(observation, scan);
+    addRangeScan(*range, scan);
   scan.counts.points = scan.cloud.size();
   scan.countLabels();
   return scan;

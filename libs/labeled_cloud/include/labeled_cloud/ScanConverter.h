@@ -1,8 +1,8 @@
 #pragma once
-#include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/LabelModel.h>
 #include <labeled_cloud/LabeledScan.h>
+#include <labeled_cloud/PointSource.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semantic_types/ClassTable.h>
 
@@ -43,6 +43,7 @@ struct ScanConverterOptions {
  *   class table; otherwise its class ids are those of the table.
  * - CObservationPointCloud, CObservationVelodyneScan, CObservation2DRangeScan: points without a
  *   class, which count for occupancy only.
+ * - What a PointSource that was added accepts.
  *
  * Externally stored data is loaded, and unloaded at the end. */
 class ScanConverter {
@@ -69,7 +70,7 @@ class ScanConverter {
   void addRangeScan(const mrpt::obs::CObservation3DRangeScan& observation, LabeledScan& scan);
   void addLabels(const mrpt::obs::CObservation3DRangeScan& observation, const PointGrid& grid,
                  const std::vector<std::size_t>& pixels, LabelImage labels, LabeledScan& scan);
-  void addLabeledCloud(const CObservationLabeledCloud& observation, LabeledScan& scan) const;
+  void addNamedCloud(NamedCloud named, LabeledScan& scan) const;
 
   semantic_types::ClassTable m_table;
   ScanConverterOptions m_options;

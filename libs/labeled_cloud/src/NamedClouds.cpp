@@ -29,6 +29,8 @@ class ClassTranslation {
  private:
   ClassId lookUp(ClassId id) const {
     const bool named = !m_names.empty();
+    if (named && id > m_names.size())
+      throw std::invalid_argument("its class " + std::to_string(id) + " has no name");
     if (!named && m_table.contains(id)) return id;
     if (named)
       if (const auto found = m_table.find(m_names[id - 1])) return *found;
@@ -56,28 +58,26 @@ void appendTranslated(const float* from, std::size_t classes, ClassTranslation& 
 
 }  // namespace
 
-void ScanConverter::addLabeledCloud(const CObservationLabeledCloud& observation,
-                                    LabeledScan& scan) const {
-  observation.validate();
-  const auto& from = observation.cloud;
+void ScanConverter::addNamedCloud(NamedCloud named, LabeledScan& scan) const {
+  const auto& from = named.cloud;
   auto& to = scan.cloud;
-  ClassTranslation translate(m_table, observation.classNames);
+  ClassTranslation translate(m_table, named.classNames);
   const std::size_t classes = from.empty() ? 0 : from.probabilities.size() / from.size();
-  if (!observation.classNames.empty() && classes > observation.classNames.size())
+  if (!named.classNames.empty() && classes > named.classNames.size())
     throw std::invalid_argument("probabilities of " + std::to_string(classes) +
                                 " classes, but names of " +
-                                std::to_string(observation.classNames.size()));
+                                std::to_string(named.classNames.size()));
   to.points.reserve(from.size());
   for (std::size_t i = 0; i < from.size(); ++i) {
     if (!PointGrid::isReturn(from.points[i])) continue;
     to.points.push_back(from.points[i]);
-    if (!from.classes.empty()) to.classes.push_back(translate(from.classes[i]));
+    if (!from.classes.empty()) to.classes.push_back(translate(from.classes.at(i)));
     if (classes > 0)
       appendTranslated(&from.probabilities[i * classes], classes, translate, m_table.size(),
                        to.probabilities);
   }
   scan.counts.invalid = from.size() - to.size();
-  m_options.labels.apply(m_table.size(), {}, to);
+  if (!from.classes.empty() || classes > 0) m_options.labels.apply(m_table.size(), {}, to);
 }
 
 }  // namespace labeled_cloud

@@ -1,12 +1,14 @@
-#include "UnlabeledPoints.h"
+#include "PointSources.h"
 
+#include <labeled_cloud/CObservationLabeledCloud.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
 #include <cmath>
+#include <mutex>
 #include <stdexcept>
-#include <string>
+#include <utility>
 
 namespace labeled_cloud {
 
@@ -14,9 +16,10 @@ using mrpt::obs::CObservation;
 using mrpt::obs::CObservation2DRangeScan;
 using mrpt::obs::CObservationPointCloud;
 using mrpt::obs::CObservationVelodyneScan;
-using Points = std::vector<Eigen::Vector3f>;
 
 namespace {
+
+using Points = std::vector<Eigen::Vector3f>;
 
 template <typename Xs>
 Points zip(const Xs& xs, const Xs& ys, const Xs& zs) {
@@ -59,23 +62,60 @@ Points pointsOf(const CObservation2DRangeScan& scan) {
   return points;
 }
 
+/** An observation that says where something is, but not what. */
 template <typename Observation>
-const Observation* as(const CObservation& observation) {
-  return dynamic_cast<const Observation*>(&observation);
+NamedCloud cloudOf(const Observation& observation) {
+  NamedCloud named;
+  named.cloud.points = pointsOf(observation);
+  return named;
+}
+
+NamedCloud cloudOf(const CObservationLabeledCloud& observation) {
+  observation.validate();
+  return {observation.cloud, observation.classNames};
+}
+
+template <typename Observation>
+class SourceOf final : public PointSource {
+ public:
+  bool accepts(const CObservation& observation) const override { return as(observation); }
+  NamedCloud read(const CObservation& observation) const override {
+    return cloudOf(*as(observation));
+  }
+
+ private:
+  static const Observation* as(const CObservation& observation) {
+    return dynamic_cast<const Observation*>(&observation);
+  }
+};
+
+struct Registry {
+  std::mutex mutex;
+  std::vector<std::shared_ptr<const PointSource>> sources{
+      std::make_shared<SourceOf<CObservation2DRangeScan>>(),
+      std::make_shared<SourceOf<CObservationVelodyneScan>>(),
+      std::make_shared<SourceOf<CObservationPointCloud>>(),
+      std::make_shared<SourceOf<CObservationLabeledCloud>>()};
+};
+
+Registry& registry() {
+  static Registry all;
+  return all;
 }
 
 }  // namespace
 
-Points unlabeledPoints(const CObservation& observation) {
-  if (const auto* cloud = as<CObservationPointCloud>(observation)) return pointsOf(*cloud);
-  if (const auto* packets = as<CObservationVelodyneScan>(observation)) return pointsOf(*packets);
-  if (const auto* scan = as<CObservation2DRangeScan>(observation)) return pointsOf(*scan);
-  throw std::invalid_argument("it holds no points");
+void addPointSource(std::shared_ptr<const PointSource> source) {
+  const std::lock_guard<std::mutex> lock(registry().mutex);
+  registry().sources.push_back(std::move(source));
 }
 
-bool hasUnlabeledPoints(const CObservation& observation) {
-  return as<CObservationPointCloud>(observation) || as<CObservationVelodyneScan>(observation) ||
-         as<CObservation2DRangeScan>(observation);
+std::shared_ptr<const PointSource> pointSourceOf(const CObservation& observation) {
+  const std::lock_guard<std::mutex> lock(registry().mutex);
+  const auto& sources = registry().sources;
+  for (auto source = sources.rbegin(); source != sources.rend(); ++source)
+    if ((*source)->accepts(observation)) return *source;
+  return nullptr;
 }
 
 }  // namespace labeled_cloud

@@ -1,0 +1,9 @@
+#pragma once
+#include <labeled_cloud/PointSource.h>
+
+namespace labeled_cloud {
+
+/** The source that reads this observation, null if there is none. */
+std::shared_ptr<const PointSource> pointSourceOf(const mrpt::obs::CObservation& observation);
+
+}  // namespace labeled_cloud
