@@ -1,3 +1,4 @@
+#include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/ScanStream.h>
 #include <mrpt/img/CImage.h>
 #include <mrpt/obs/CObservationOdometry.h>
