@@ -78,7 +78,7 @@ std::set<Tile> tilesOf(const SemanticOcTree& map, int depth) {
   for (auto it = map.begin_tree(unsigned(depth)); it != map.end_tree(); ++it)
     if (int(it.getDepth()) == depth) {
       const octomap::OcTreeKey key = it.getIndexKey();
-      tiles.insert({depth, {key[0], key[1], key[2]}});
+      tiles.insert(Tile{{Eigen::Array3i(key[0], key[1], key[2]), depth}});
     }
   return tiles;
 }

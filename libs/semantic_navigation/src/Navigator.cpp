@@ -1,6 +1,7 @@
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/CompressedObstacles.h>
 #include <semantic_navigation/Navigator.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
 
 #include <cmath>
 #include <utility>
