@@ -36,7 +36,8 @@ ReactiveNavigator::Options reactiveOf(const NavigatorOptions& options) {
 
 SemanticPlanner plannerOn(semantic_octree::SemanticOcTree& map,
                           const colored_graph::ClassOrder& order, const NavigatorOptions& options) {
-  setAbstraction(map, abstractionFor(order, options.focus.alpha, options.focus.obstacles));
+  setAbstraction(
+      map, semantic_planning::abstractionFor(order, options.focus.alpha, options.focus.obstacles));
   return SemanticPlanner(map, order, options.planner);
 }
 
