@@ -256,6 +256,46 @@ TEST_F(PathImprovementTest, aRoadmapIsMadeOnlyWhereThereIsNoPathBesideTheRelaxed
   EXPECT_TRUE(contains(none.reason, "m from the goal")) << none.reason;
 }
 
+TEST_F(PathImprovementTest, whoIsOnAPathThatIsFreeKeepsIt) {
+  paintCorner();
+  SemanticPlanner p = planner();
+  const PlanResult first = p.plan(start, goal);
+  const PathPoint& ahead = first.path[first.path.size() / 3];
+  start = {ahead.x, ahead.y, ahead.heading};
+  const auto expectRest = [&](const PlanResult& rest) {
+    expectDrivable(rest);
+    EXPECT_NEAR(rest.length, first.length - ahead.arcLength, 0.02);
+    EXPECT_NEAR(rest.price,
+                MotionCost(options.vehicle).of(rest.path) + 4 * meters(rest, PaintedWorld::Grass),
+                1e-6);
+    for (const auto& [stage, ms] : rest.times) EXPECT_NE(stage, "beside");
+  };
+  expectRest(p.replan(start));
+  world.box(3, 4, -9, -8, 0, 2, PaintedWorld::Wall).map();  // far from it
+  p.update();
+  expectRest(p.replan(start));
+}
+
+TEST_F(PathImprovementTest, whatStandsOnAPathOrSparesMetersEndsIt) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Road);
+  world.floor(-1, 1, -15, 15, PaintedWorld::Mud);
+  start = {-12, 0, 0};
+  goal = {12, 0, 0};
+  SemanticPlanner p = planner();
+  const PlanResult across = p.plan(start, goal);
+  expectDrivable(across);
+  world.box(-5, -4.6, -4, 4, 0, 2, PaintedWorld::Wall).map();
+  p.update();
+  const PlanResult around = p.replan(start);
+  expectDrivable(around);
+  EXPECT_GT(around.price, across.price + 0.5);
+  for (int i = 0; i < 6; ++i) world.floor(-1, 1, 7, 10, PaintedWorld::Road).map();
+  p.update();
+  const PlanResult spared = p.replan(start);
+  expectDrivable(spared);
+  EXPECT_LT(spared.price, around.price - 5);
+}
+
 TEST_F(PathImprovementTest, theSteeringSeldomChanges) {
   paintCorner();
   const PlanResult result = plan();

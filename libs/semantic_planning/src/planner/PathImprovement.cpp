@@ -129,6 +129,28 @@ double priceOf(const PlanResult& plan, const CollisionChecker& checker, const Cl
   return price;
 }
 
+void setLengths(PlanResult& plan, const CollisionChecker& checker, const ClassPrices& prices) {
+  std::vector<PathPoint>& path = plan.path;
+  plan.lengthPerClass.assign(static_cast<std::size_t>(checker.order().classes()), 0);
+  plan.vertices = {{path.front().x, path.front().y, path.front().heading}};
+  path.front().arcLength = 0;
+  ClassId id = path.front().classId;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const PathPoint& before = path[i - 1];
+    PathPoint& p = path[i];
+    const double length = std::hypot(p.x - before.x, p.y - before.y);
+    p.arcLength = before.arcLength + length;
+    if (checker.order().rank(p.classId) != colored_graph::kForbidden) id = p.classId;
+    plan.lengthPerClass[id] += length;
+    const bool goesOn = i + 1 < path.size() && path[i + 1].forward == p.forward &&
+                        !MotionCost::steers(p.curvature, path[i + 1].curvature);
+    if (!goesOn) plan.vertices.emplace_back(p.x, p.y, p.heading);
+  }
+  plan.length = path.back().arcLength;
+  plan.cost = costOf(plan, checker);
+  plan.price = priceOf(plan, checker, prices);
+}
+
 PlanResult pathBeside(const std::vector<PathPoint>& way, const CollisionChecker& checker,
                       const ClassPrices& prices, double reach, const PlanResult& before) {
   PlanResult result = before;

@@ -11,6 +11,10 @@ namespace semantic_planning {
 /** What a path costs: its motion cost, and for each length in a class its rate; meters. */
 double priceOf(const PlanResult& plan, const CollisionChecker& checker, const ClassPrices& prices);
 
+/** Fills in what follows from a path's points: arc lengths, lengths in classes, cost, price and
+ * where its curves meet. */
+void setLengths(PlanResult& plan, const CollisionChecker& checker, const ClassPrices& prices);
+
 /** The path of least price that is found beside a way, or not found. \param before what the result
  * has beside the path \param reach longest curve, meters */
 PlanResult pathBeside(const std::vector<PathPoint>& way, const CollisionChecker& checker,

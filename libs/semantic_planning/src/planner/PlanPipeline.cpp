@@ -22,6 +22,28 @@ PlanResult PlannerCore::solve(StageClock& clock) {
   if (!mayShorten()) return searchRoadmap(clock);
   const RelaxedPath relaxed = relaxedPath();
   clock.end("relaxed");
+  const PlanResult result = solve(relaxed, clock);
+  m_kept.drop();
+  if (result.found()) m_kept.keep(result, relaxed.price);
+  return result;
+}
+
+/** No search at all if the vehicle is on a path that is free and nothing can cost clearly less. */
+PlanResult PlannerCore::keepOrSolve(StageClock& clock) {
+  std::optional<PlanResult> rest;
+  if (mayShorten()) rest = m_kept.restFrom(*m_startPose);
+  if (!rest) return solve(clock);
+  if (m_kept.isOfThisGround()) return *rest;
+  const RelaxedPath relaxed = relaxedPath();
+  clock.end("relaxed");
+  if (!m_kept.mayBeBeaten(*rest, relaxed.price)) return *rest;
+  PlanResult other = solve(relaxed, clock);
+  if (!other.found() || rest->price <= other.price) other = std::move(*rest);
+  m_kept.keep(other, relaxed.price);
+  return other;
+}
+
+PlanResult PlannerCore::solve(const RelaxedPath& relaxed, StageClock& clock) {
   PlanResult result = beside(relaxed.path, {});
   clock.end("beside");
   if (result.found() && result.price <= mostOf(relaxed)) {

@@ -81,6 +81,7 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
       m_checker(m_ground, options.vehicle, options.strict ? order.strict() : order,
                 options.reading),
       m_prices(m_checker.order()),
+      m_kept(m_checker, m_prices),
       m_candidates(map, m_ground, options.roadmap),
       m_edges(m_checker),
       m_model{order, options.edges, options.cost, true} {
@@ -173,6 +174,7 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   const Change change(*this);
   m_replanner.reset();
   m_roadmap.reset();
+  m_kept.drop();
   m_goalPlace = goal;
   followMap(clock);
   m_hasPlanned = !refuse(start, goal, result);
@@ -278,6 +280,7 @@ void PlannerCore::forget() {
   m_roadmap.reset();
   m_candidates.forget();
   m_edges.forget();
+  m_kept.drop();
   m_hasPlanned = false;
 }
 
@@ -294,6 +297,7 @@ PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
   }
   clock.end("ground");
   m_edges.groundChanged(change.tiles);
+  m_kept.groundChanged(change.tiles);
   change.points = m_candidates.update(touched, change.tiles);
   return change;
 }
@@ -344,7 +348,7 @@ PlanResult PlannerCore::replan(const Place& start) {
   checkFinite("start", start);
   const Change change(*this);
   if (refuse(start, m_goalPlace, result)) return result;
-  result = solve(clock);
+  result = keepOrSolve(clock);
   result.times = clock.take();
   return result;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "ClassPrices.h"
+#include "KeptPath.h"
 #include "RelaxedSearch.h"
 #include "StageClock.h"
 #include "roadmap/CandidateStore.h"
@@ -82,6 +83,8 @@ class PlannerCore {
   void moveEnds(Roadmap& map);
   bool mayShorten() const;
   PlanResult solve(StageClock& clock);
+  PlanResult solve(const RelaxedPath& relaxed, StageClock& clock);
+  PlanResult keepOrSolve(StageClock& clock);
   PlanResult searchRoadmap(StageClock& clock);
   RelaxedPath relaxedPath() const;
   PlanResult beside(const std::vector<PathPoint>& way, const PlanResult& before) const;
@@ -98,6 +101,7 @@ class PlannerCore {
   Ground m_ground;
   CollisionChecker m_checker;
   const ClassPrices m_prices;
+  KeptPath m_kept;
   CandidateStore m_candidates;
   EdgeMemory m_edges;
   colored_graph::CostModel m_model;
