@@ -16,7 +16,7 @@ constexpr int kMostTries = 100000;  // for one instance
 
 class PoseDraw {
  public:
-  PoseDraw(const EdgeChecker& checker, std::uint64_t seed)
+  PoseDraw(const CollisionChecker& checker, std::uint64_t seed)
       : m_checker(checker), m_tiles(checker.ground().tiles()), m_random(seed) {
     if (m_tiles.empty()) throw std::runtime_error("the map has no ground");
   }
@@ -37,7 +37,7 @@ class PoseDraw {
   /** In [0, 1), the same with every standard library. */
   double unit() { return std::ldexp(static_cast<double>(m_random() >> 11), -53); }
 
-  const EdgeChecker& m_checker;
+  const CollisionChecker& m_checker;
   const std::vector<Column> m_tiles;
   std::mt19937_64 m_random;
 };
@@ -48,7 +48,7 @@ bool isConnected(const Ground& ground, const Instance& instance) {
   return a && b && ground.connected(*a, *b);
 }
 
-Instance drawInstance(const EdgeChecker& checker, PoseDraw& draw, double minDistance) {
+Instance drawInstance(const CollisionChecker& checker, PoseDraw& draw, double minDistance) {
   for (int i = 0; i < kMostTries; ++i) {
     const auto start = draw.pose(), goal = draw.pose();
     if (!start || !goal) continue;
@@ -62,13 +62,13 @@ Instance drawInstance(const EdgeChecker& checker, PoseDraw& draw, double minDist
 
 }  // namespace
 
-bool isFree(const EdgeChecker& checker, const TPose2D& pose) {
+bool isFree(const CollisionChecker& checker, const TPose2D& pose) {
   const auto placed = checker.place(pose);
   return placed && checker.fit(*placed) == Fit::Free &&
          checker.order().rank(checker.classAt(*placed)) != colored_graph::kForbidden;
 }
 
-std::vector<Instance> drawInstances(const EdgeChecker& checker, std::size_t count,
+std::vector<Instance> drawInstances(const CollisionChecker& checker, std::size_t count,
                                     double minDistance, std::uint64_t seed) {
   PoseDraw draw(checker, seed);
   std::vector<Instance> instances;

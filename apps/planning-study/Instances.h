@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
 
 #include <cstdint>
 #include <vector>
@@ -9,13 +9,13 @@
 namespace planning_study {
 
 /** Whether the vehicle can stand there, on ground that is not forbidden. */
-bool isFree(const semantic_planning::EdgeChecker& checker, const mrpt::math::TPose2D& pose);
+bool isFree(const semantic_planning::CollisionChecker& checker, const mrpt::math::TPose2D& pose);
 
 /** Pairs of poses, drawn evenly over the ground where the vehicle can stand, with any heading; each
  * pair is connected by ground and at least `minDistance` meters apart. They depend on the ground,
  * the count and the seed alone: not on any graph. The first n of more are those of n.
  * \throw std::runtime_error hardly any such pair is found. */
-std::vector<Instance> drawInstances(const semantic_planning::EdgeChecker& checker,
+std::vector<Instance> drawInstances(const semantic_planning::CollisionChecker& checker,
                                     std::size_t count, double minDistance, std::uint64_t seed);
 
 }  // namespace planning_study

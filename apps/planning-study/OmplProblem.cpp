@@ -78,7 +78,7 @@ class MotionOracle {
 
  private:
   std::mutex m_mutex;
-  EdgeChecker m_checker;
+  CollisionChecker m_checker;
   std::map<std::array<double, 6>, std::optional<EdgeProfile>> m_known;
 };
 

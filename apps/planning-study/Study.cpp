@@ -97,8 +97,8 @@ class StudyRunner::Contest {
         for (const bool kept : {false, true})
           m_runners.emplace_back(m_map, m_order, withGraph(options, kind, budget), kept);
     if (options.reference > 0) prepareReference();
-    const EdgeChecker checker(anyPlanner().ground(), options.planner.vehicle, m_order,
-                              options.planner.reading);
+    const CollisionChecker checker(anyPlanner().ground(), options.planner.vehicle, m_order,
+                                   options.planner.reading);
     m_instances = drawInstances(checker, options.instances, options.minDistance, options.seed);
   }
 

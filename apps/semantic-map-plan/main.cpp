@@ -58,8 +58,10 @@ void printSummary(const PlanResult& plan, const semantic_types::ClassTable& clas
     if (plan.lengthPerClass[id] > 0)
       notes() << ' ' << plan.lengthPerClass[id] << " m "
               << groundName(static_cast<semantic_types::ClassId>(id), classes);
-  notes() << "\nGraph of " << plan.numVertices << " vertices and " << plan.numEdges << " edges, "
-          << plan.search.edgesEvaluated << " of them evaluated\n";
+  notes() << '\n';
+  if (plan.numVertices > 0)
+    notes() << "Graph of " << plan.numVertices << " vertices and " << plan.numEdges << " edges, "
+            << plan.search.edgesEvaluated << " of them evaluated\n";
 }
 
 /** None: all ground is looked at. */

@@ -62,12 +62,13 @@ TEST_F(SemanticMapPlan, writesPathReportPictureAndScene) {
   EXPECT_EQ(report()["lengthPerClass"].size(), 1u);
   EXPECT_GE(report()["lengthPerClass"]["road"], 16);
   EXPECT_GT(report()["milliseconds"]["ground"], 0);
-  EXPECT_EQ(report()["vertices"], 202);
+  EXPECT_EQ(report()["vertices"], 0) << "no roadmap was needed";
+  EXPECT_GE(report()["price"], 16);
   const std::string csv = folder.read("out/path.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')), "x,y,z,heading,curvature,gear,class,arc_length");
   EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 160);
   EXPECT_TRUE(contains(csv, ",forward,road,"));
-  for (const char* name : {"plan.png", "plan.3Dscene", "roadmap.graph"})
+  for (const char* name : {"plan.png", "plan.3Dscene"})
     EXPECT_GT(folder.read(std::string("out/") + name).size(), 1000u) << name;
 }
 

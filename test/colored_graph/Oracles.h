@@ -50,11 +50,6 @@ inline std::vector<std::pair<int, std::int64_t>> stretchesSeen(const ColoredGrap
   return {{*ranks.rbegin(), edge.length}};
 }
 
-inline std::int64_t nearestMultiple(std::int64_t length, std::int64_t quantum) {
-  const std::int64_t below = length - length % quantum;
-  return 2 * (length - below) < quantum ? below : below + quantum;
-}
-
 /** Cost of an evaluated edge, driven to its end `to`, or nothing if it cannot be used. */
 inline std::optional<Tuple> edgeCost(const ColoredGraph& graph, const CostModel& model, EdgeId e,
                                      VertexId to) {
@@ -68,8 +63,6 @@ inline std::optional<Tuple> edgeCost(const ColoredGraph& graph, const CostModel&
     perRank[rank] = model.kind == CostKind::Count ? 1 : perRank[rank] + length;
     total += length;
   }
-  if (model.kind == CostKind::ArcLength && model.quantum > 0)
-    for (std::int64_t& part : perRank) part = nearestMultiple(part, model.quantum);
   Tuple cost(perRank.rbegin(), perRank.rend() - 1);
   if (model.tolls) cost.push_back(total + toll);
   cost.push_back(total);

@@ -113,31 +113,6 @@ TEST_P(TollsIn, aForbiddenClassBehindAClosedWayIsNotNamed) {
   EXPECT_EQ(solve(1, 0).status, SearchStatus::NotConnected);
 }
 
-TEST_P(TollsIn, lengthsOfAClassAreRoundedPerEdgeAndRank) {
-  model.quantum = 10;
-  graph.addEdge(0, 1, {{1, 2}, {0, 100}, {1, 2}});  // 4 counts as 0
-  graph.addEdge(1, 2, {{1, 3}, {1, 2}});            // 5 as 10
-  graph.addEdge(2, 3, {{1, 24}});                   // 24 as 20
-  EXPECT_EQ(solve(0, 1).cost, (Tuple{0, 104, 104}));
-  EXPECT_EQ(solve(0, 3).cost, (Tuple{30, 133, 133}));
-  EXPECT_EQ(solve(0, 3).lengthPerClass, (std::vector<Length>{100, 33}));
-  model.kind = CostKind::Count;
-  EXPECT_EQ(solve(0, 3).cost, (Tuple{3, 133, 133}));
-}
-
-TEST_P(TollsIn, aClassThatIsHardlyTouchedIsNoReasonForADetour) {
-  const EdgeId kerb = graph.addEdge(0, 1, {{0, 100}, {1, 4}});
-  const EdgeId detour = graph.addEdge(0, 1, {{0, 5000}});
-  EXPECT_EQ(solve(0, 1).edges, std::vector<EdgeId>{detour});
-  model.quantum = 10;
-  EXPECT_EQ(solve(0, 1).edges, std::vector<EdgeId>{kerb});
-}
-
-TEST_P(TollsIn, aQuantumBelowZeroIsRefused) {
-  model.quantum = -1;
-  EXPECT_THROW(solve(0, 1), std::invalid_argument);
-}
-
 INSTANTIATE_TEST_SUITE_P(BothSearches, TollsIn, ::testing::Values(false, true),
                          [](const auto& p) { return p.param ? "replanner" : "scratch"; });
 

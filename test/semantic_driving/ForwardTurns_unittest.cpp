@@ -31,7 +31,7 @@ class InPlaceOfBackingUp : public testing::Test {
     const DrivePath path = pathThereAndBack(ground);
     const auto found = ForwardTurns(planner, kLongest).find(path, from, worth);
     if (found) {
-      const DrivePrice price(planner.options().vehicle);
+      const MotionCost price(planner.options().vehicle);
       EXPECT_LT(price.of(found->points()), price.of(path.points()) - worth);
     }
     return found;

@@ -1,6 +1,6 @@
 // Curves that only go forward, and what curves cost their vehicle.
 #include <gtest/gtest.h>
-#include <semantic_planning/vehicle/DrivePrice.h>
+#include <semantic_planning/vehicle/MotionCost.h>
 
 #include <cmath>
 #include <random>
@@ -88,7 +88,7 @@ TEST_F(ForwardCurves, aPathCostsWhatItsCurveDoes) {
   vehicle.reverseWeight = 3;
   vehicle.gearChange = 2;
   vehicle.steeringChange = 0.5;
-  const DrivePrice price(vehicle);
+  const MotionCost price(vehicle);
   const ReedsSheppCurve there({0, 0, 0}, 1, {{{2, 0}, {1, 1}, {-1.5, 0}, {-1, -1}, {0, 0}}});
   EXPECT_NEAR(price.of(there), 3 + 3 * 2.5 + 2 + 0.5 + 0.5 + 0.5, 1e-9);
   EXPECT_NEAR(price.of(there.reversed()), 2.5 + 3 * 3 + 2 + 0.5 + 0.5 + 0.5, 1e-9);
@@ -105,7 +105,7 @@ TEST_F(ForwardCurves, aPathCostsWhatItsCurveDoes) {
 TEST_F(ForwardCurves, areTheOnlyOnesOfAVehicleThatOnlyDrivesForward) {
   VehicleOptions vehicle;
   vehicle.reverseWeight = std::numeric_limits<double>::infinity();
-  const DrivePrice price(vehicle);
+  const MotionCost price(vehicle);
   EXPECT_FALSE(price.canReverse());
   for (int i = 0; i < 100; ++i)
     for (const ReedsSheppCurve& curve : price.curves(draw(), draw()))

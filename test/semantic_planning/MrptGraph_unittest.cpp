@@ -72,7 +72,6 @@ TEST_F(PlannerTest, dijkstraOfMrptFindsTheSameFewestEdgesOfEachClassInTheNetwork
   options.roadmap.vertices = 150;
   options.edges = colored_graph::EdgeModel::Endpoint;
   options.cost = colored_graph::CostKind::Count;
-  options.classTolerance = 0;
   SemanticPlanner p = planner();
   const PlanResult plan = p.plan(start, goal);
   ASSERT_TRUE(plan.found());

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <semantic_planning/planner/OrderFile.h>
 
+#include <cmath>
+
 #include "PaintedWorld.h"
 #include "TemporaryFolder.h"
 
@@ -38,6 +40,26 @@ TEST_F(OrderFile, isStrictAboutClassesAndKeys) {
   EXPECT_TRUE(contains(orderError("best_to_worst: [road"), "order.yaml"));
   EXPECT_TRUE(contains(orderError("{}"), "'best_to_worst' is missing"));
   EXPECT_NE(errorOf([] { loadClassOrder("nowhere.yaml", PaintedWorld::classTable()); }), "");
+}
+
+TEST_F(OrderFile, ratesAreOfAllRanksButTheBest) {
+  const auto load = [&](const std::string& rates) {
+    return loadClassOrder(
+        folder.write("order.yaml", "best_to_worst: [road, grass, mud, unknown]\n" + rates),
+        PaintedWorld::classTable());
+  };
+  const auto usual = load(""), own = load("rates: [0.5, 3, inf]\n");
+  EXPECT_EQ(usual.rate(0), 0);
+  EXPECT_EQ(usual.rate(1), 4);
+  EXPECT_EQ(usual.rate(3), 36);
+  EXPECT_EQ(own.rate(1), 0.5);
+  EXPECT_TRUE(std::isinf(own.rate(3)));
+  const auto error = [&](const std::string& rates) { return errorOf([&] { load(rates); }); };
+  EXPECT_TRUE(contains(error("rates: [1, 2]"), "2 rates for 4 ranks"));
+  EXPECT_TRUE(contains(error("rates: [3, 2, 5]"), "rate 2, expected a number from 3"));
+  EXPECT_TRUE(contains(error("rates: [1, 2, 1e9]"), "to 1000, or inf"));
+  EXPECT_TRUE(contains(error("rates: [1, 2, much]"), "rates"));
+  EXPECT_TRUE(contains(error("rates: 4"), "not a list"));
 }
 
 TEST_F(OrderFile, thoseOfTheRepositoryLoad) {

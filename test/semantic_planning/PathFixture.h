@@ -11,7 +11,7 @@ class PathTest : public PlannerTest {
   using PathPoint = semantic_planning::PathPoint;
   using Segments = std::vector<semantic_planning::ReedsSheppCurve::Segment>;
 
-  const semantic_planning::EdgeChecker& checker() {
+  const semantic_planning::CollisionChecker& checker() {
     if (!m_ground) {
       m_ground.emplace(map(), options.vehicle, options.ground, order);
       m_checker.emplace(*m_ground, options.vehicle, order, options.reading);
@@ -46,5 +46,5 @@ class PathTest : public PlannerTest {
 
  private:
   std::optional<semantic_planning::Ground> m_ground;
-  std::optional<semantic_planning::EdgeChecker> m_checker;
+  std::optional<semantic_planning::CollisionChecker> m_checker;
 };

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "PlannerFixture.h"
-#include "planner/PathImprovement.h"
+#include "TemporaryFolder.h"
 
 using namespace semantic_planning;
 
@@ -82,10 +82,7 @@ TEST_F(PathImprovementTest, anImprovedPathIsDrivableAndNeverWorse) {
     const PlanResult improved = plan();
     expectDrivable(improved);
     EXPECT_EQ(asFound.cost, asFound.roadmapCost);
-    EXPECT_LT(meters(improved, PaintedWorld::Grass),
-              meters(asFound, PaintedWorld::Grass) + options.classTolerance);
-    EXPECT_LT(DrivePrice(options.vehicle).of(improved.path),
-              DrivePrice(options.vehicle).of(asFound.path));
+    EXPECT_LT(improved.price, asFound.price);
   }
 }
 
@@ -112,7 +109,7 @@ TEST_F(PathImprovementTest, aWayAroundTheCornerIsDrivenForwardAndKeepsToTheRoad)
     const PlanResult result = plan();
     expectDrivable(result);
     EXPECT_EQ(metersBackwards(result), 0) << "seed " << seed;
-    EXPECT_LE(meters(result, PaintedWorld::Grass), options.classTolerance) << "seed " << seed;
+    EXPECT_LE(meters(result, PaintedWorld::Grass), 0.2) << "seed " << seed;
   }
 }
 
@@ -190,47 +187,113 @@ TEST_F(PathImprovementTest, aPathIsFoundBesideTheGuideWhereTheRoadmapHasNone) {
   EXPECT_LE(gearChanges(result), 2);
 }
 
-TEST_F(PathImprovementTest, ofPathsThatDifferByLessThanTheToleranceTheBetterDrivenIsTaken) {
-  world.floor(-15, 15, -15, 15, PaintedWorld::Road);
-  world.floor(-1, 1, -15, 15, PaintedWorld::Grass);  // has to be crossed, and can be at an angle
-  start = {-12, -6, 0};
-  goal = {12, 6, 0};
-  options.classTolerance = 0;
-  const PlanResult exact = plan();
-  options.classTolerance = 1;
-  const PlanResult tolerant = plan();
-  expectDrivable(tolerant);
-  EXPECT_LE(meters(tolerant, PaintedWorld::Grass), meters(exact, PaintedWorld::Grass) + 1);
-  EXPECT_LT(DrivePrice(options.vehicle).of(tolerant.path),
-            DrivePrice(options.vehicle).of(exact.path));
+TEST_F(PathImprovementTest, thePriceIsMotionCostAndTheRatesOfTheClasses) {
+  paintCorner();
+  world.floor(-9, -2, -4, 2, PaintedWorld::Mud);
+  order = order.withRates({3, 7, 20});
+  for (const bool shorten : {false, true}) {
+    options.shorten = shorten;
+    const PlanResult result = plan();
+    expectDrivable(result);
+    EXPECT_NEAR(result.price,
+                MotionCost(options.vehicle).of(result.path) +
+                    3 * meters(result, PaintedWorld::Grass) + 7 * meters(result, PaintedWorld::Mud),
+                1e-3);
+  }
 }
 
-TEST_F(PathImprovementTest, moreVerticesOrRefinementsAreNeverWorse) {
-  paintCorner();
-  world.floor(-9.5, -8.5, 2, 4, PaintedWorld::Mud);
-  world.floor(0, 3, 8.5, 10.4, PaintedWorld::Grass);
-  paintWall({4, 5, 9.6, 11.5});
-  const Ground ground(map(), options.vehicle, options.ground, order);
-  const EdgeChecker checker(ground, options.vehicle, order, options.reading);
-  const PathOrder better(checker, options.classTolerance);
-  for (const int refinements : {0, 1}) {
-    PlanResult fewest;
-    options.refinements = refinements;
-    for (const std::size_t vertices : {30, 100, 300, 1000}) {
-      options.roadmap.vertices = vertices;
-      const PlanResult result = plan();
-      expectDrivable(result);
-      EXPECT_FALSE(better.isBetter(fewest, result)) << vertices;
-      if (better.isBetter(result, fewest)) fewest = result;
-    }
-  }
-  options.roadmap.vertices = 30;
-  PlanResult last;
-  for (options.refinements = 0; options.refinements < 4; ++options.refinements) {
+TEST_F(PathImprovementTest, aStripThatIsHardlyThereIsNoReasonForALongDetourUnlessTheOrderIsStrict) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Wall);  // forbidden, and flat
+  world.floor(-14, 14, -14, -10, PaintedWorld::Road);
+  world.floor(-14, -10, -14, 14, PaintedWorld::Road);  // a detour around three sides
+  world.floor(-14, 14, 10, 14, PaintedWorld::Road);
+  world.floor(10, 14, -14, 14, PaintedWorld::Road);
+  world.floor(0, 0.2, -14, -10, PaintedWorld::Grass);
+  start = {-5, -12, 0};
+  goal = {5, -12, 0};
+  const PlanResult usual = plan();
+  expectDrivable(usual);
+  EXPECT_LT(usual.length, 12);
+  EXPECT_GT(meters(usual, PaintedWorld::Grass), 0);
+  options.strict = true;
+  const PlanResult strict = plan();
+  expectDrivable(strict);
+  EXPECT_EQ(meters(strict, PaintedWorld::Grass), 0);
+  EXPECT_GT(strict.length, 60);
+}
+
+TEST_F(PathImprovementTest, higherRatesOfAClassNeverGiveMoreOfIt) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Road);
+  world.floor(-1, 1, -15, 13, PaintedWorld::Grass);
+  start = {-12, -6, 0};
+  goal = {12, 6, 0};
+  double last = 30;
+  for (const double rate : {0., 1., 4., 20.}) {
+    order = order.withRates({rate, 100, 200});
     const PlanResult result = plan();
-    EXPECT_FALSE(better.isBetter(last, result)) << options.refinements;
-    last = result;
+    expectDrivable(result);
+    EXPECT_LE(meters(result, PaintedWorld::Grass), last + 0.05) << rate;
+    last = meters(result, PaintedWorld::Grass);
   }
+  EXPECT_EQ(last, 0);
+}
+
+TEST_F(PathImprovementTest, aRoadmapIsMadeOnlyWhereThereIsNoPathBesideTheRelaxedOne) {
+  paintCorner();
+  SemanticPlanner p = planner();
+  ASSERT_TRUE(p.plan(start, goal).found());
+  EXPECT_FALSE(p.hasRoadmap());
+  EXPECT_TRUE(p.hasPlanned());
+  world.box(-13, 14, 4, 4.4, 0, 2, PaintedWorld::Wall).map();
+  world.box(-15, -12.9, 4, 4.4, 0, 2, PaintedWorld::Wall).map();
+  world.box(13, 15, 4, 4.4, 0, 2, PaintedWorld::Wall).map();
+  p.update();
+  const PlanResult none = p.replan(start);
+  EXPECT_FALSE(none.found());
+  EXPECT_TRUE(p.hasRoadmap());
+  ASSERT_TRUE(none.obstacle);
+  EXPECT_NEAR(none.obstacle->y, 3.5, 0.6);
+  EXPECT_TRUE(contains(none.reason, "m from the goal")) << none.reason;
+}
+
+TEST_F(PathImprovementTest, whoIsOnAPathThatIsFreeKeepsIt) {
+  paintCorner();
+  SemanticPlanner p = planner();
+  const PlanResult first = p.plan(start, goal);
+  const PathPoint& ahead = first.path[first.path.size() / 3];
+  start = {ahead.x, ahead.y, ahead.heading};
+  const auto expectRest = [&](const PlanResult& rest) {
+    expectDrivable(rest);
+    EXPECT_NEAR(rest.length, first.length - ahead.arcLength, 0.02);
+    EXPECT_NEAR(rest.price,
+                MotionCost(options.vehicle).of(rest.path) + 4 * meters(rest, PaintedWorld::Grass),
+                1e-6);
+    for (const auto& [stage, ms] : rest.times) EXPECT_NE(stage, "beside");
+  };
+  expectRest(p.replan(start));
+  world.box(3, 4, -9, -8, 0, 2, PaintedWorld::Wall).map();  // far from it
+  p.update();
+  expectRest(p.replan(start));
+}
+
+TEST_F(PathImprovementTest, whatStandsOnAPathOrSparesMetersEndsIt) {
+  world.floor(-15, 15, -15, 15, PaintedWorld::Road);
+  world.floor(-1, 1, -15, 15, PaintedWorld::Mud);
+  start = {-12, 0, 0};
+  goal = {12, 0, 0};
+  SemanticPlanner p = planner();
+  const PlanResult across = p.plan(start, goal);
+  expectDrivable(across);
+  world.box(-5, -4.6, -4, 4, 0, 2, PaintedWorld::Wall).map();
+  p.update();
+  const PlanResult around = p.replan(start);
+  expectDrivable(around);
+  EXPECT_GT(around.price, across.price + 0.5);
+  for (int i = 0; i < 6; ++i) world.floor(-1, 1, 7, 10, PaintedWorld::Road).map();
+  p.update();
+  const PlanResult spared = p.replan(start);
+  expectDrivable(spared);
+  EXPECT_LT(spared.price, around.price - 5);
 }
 
 TEST_F(PathImprovementTest, theSteeringSeldomChanges) {

@@ -13,7 +13,7 @@ class PathSmoothing : public PathTest {
   /** Smoothed; the arguments are those of the path. */
   std::vector<PathPoint> smooth(const std::vector<PathPoint>& path) {
     std::vector<PathPoint> after;
-    for (const Leg& leg : smoothed(path, checker(), accepts))
+    for (const Leg& leg : smoothed(path, checker(), ClassPrices(checker().order())))
       appendCurve(checker().trace(leg.curve, leg.from), after);
     return after;
   }
@@ -23,8 +23,6 @@ class PathSmoothing : public PathTest {
       changes += std::abs(path[i].curvature - path[i - 1].curvature) > 1e-6;
     return changes;
   }
-
-  std::function<bool(const ClassLengths&)> accepts = [](const ClassLengths&) { return true; };
 };
 
 const std::vector<ReedsSheppCurve::Segment> kWinding = {{3, 0}, {0.5, 1}, {2, 0}, {0.7, -1},
@@ -59,22 +57,22 @@ TEST_F(PathSmoothing, keepsOffWalls) {
   EXPECT_LT(steeringChanges(after), steeringChanges(before));
 }
 
-TEST_F(PathSmoothing, lengthsInClassesStayAsAccepted) {
+TEST_F(PathSmoothing, neverCostsMoreWhateverTheRate) {
   start = {-10, 0, 0};
   world.floor(-6, 6, -3, 0.2, PaintedWorld::Grass);
-  const auto before = drive(start, kWinding);
-  const auto grass = [&] {
-    colored_graph::Length length = 0;
-    for (const Leg& leg : smoothed(before, checker(), accepts))
-      for (const auto& stretch : leg.profile)
-        if (stretch.classId == PaintedWorld::Grass) length += stretch.length;
-    return length;
-  };
-  accepts = [](const ClassLengths&) { return false; };
-  EXPECT_EQ(steeringChanges(smooth(before)), steeringChanges(before));
-  const colored_graph::Length most = grass() / 2;
-  accepts = [&](const ClassLengths& l) { return l[PaintedWorld::Grass] <= most; };
-  EXPECT_LE(grass(), most);
+  for (const double rate : {0., 1., 10., 100.}) {
+    readGroundAgain();
+    order = order.withRates({rate, 200, 300});
+    const auto before = drive(start, kWinding);
+    const ClassPrices prices(checker().order());
+    const auto price = [&](const std::vector<PathPoint>& path, const std::vector<Leg>& legs) {
+      double sum = checker().motionCost().of(path);
+      for (const Leg& leg : legs) sum += colored_graph::toMeters(prices.of(leg.profile));
+      return sum;
+    };
+    const auto legs = smoothed(before, checker(), prices);
+    EXPECT_LT(price(smooth(before), legs), price(before, legsAlong(before, checker(), prices)));
+  }
 }
 
 TEST_F(PathSmoothing, gearsAndWaysBackwardsStayAsTheyAre) {

@@ -48,44 +48,34 @@ TEST_F(TurnSearchTest, whereAVehicleTurnsOverGrassAWayToTurnOnTheRoadIsFound) {
   for (const bool atBegin : {true, false}) {
     const auto before = atBegin ? turnAtBegin() : turnAtEnd();
     ASSERT_GT(metersOnGrass(before), 1.5);
-    const auto after = (atBegin ? withBetterBegin : withBetterEnd)(before, checker(), kTolerance);
+    const auto after = (atBegin ? withBetterBegin : withBetterEnd)(before, checker(),
+                                                                   ClassPrices(checker().order()));
     ASSERT_TRUE(after) << atBegin;
     PathChecker(world.map(), options.vehicle).expectDrivable(*after);
     expectSameEnds(*after, before);
     EXPECT_LE(metersOnGrass(*after), kTolerance);
     const auto& other = atBegin ? withBetterEnd : withBetterBegin;
-    EXPECT_FALSE(other(before, checker(), kTolerance)) << "nothing is wrong at the other end";
+    EXPECT_FALSE(other(before, checker(), ClassPrices(checker().order())))
+        << "nothing is wrong at the other end";
   }
-}
-
-TEST_F(TurnSearchTest, aLittleOfAClassThatIsWorseDoesNotHideWhatThereIsOfABetterOne) {
-  world.floor(2, 2.2, kHalfWidth, 4, PaintedWorld::Mud);
-  const auto before = turnAtBegin();
-  const double mud = metersOf(PaintedWorld::Mud, before);
-  ASSERT_GT(mud, 0.1);
-  ASSERT_LT(mud, kTolerance + 0.1) << "a path may have as much";
-  const auto after = withBetterBegin(before, checker(), kTolerance);
-  ASSERT_TRUE(after);
-  EXPECT_LE(metersOnGrass(*after), kTolerance);
-  EXPECT_LE(metersOf(PaintedWorld::Mud, *after), mud);
 }
 
 TEST_F(TurnSearchTest, whatHasNoMoreThanItMustIsLeftAsItIs) {
   const auto onRoad = drive({-12, 0, 0}, {{10, 0}, {0.5, 1}, {0.5, -1}, {8, 0}});
-  EXPECT_FALSE(withBetterBegin(onRoad, checker(), kTolerance));
-  EXPECT_FALSE(withBetterEnd(onRoad, checker(), kTolerance));
+  EXPECT_FALSE(withBetterBegin(onRoad, checker(), ClassPrices(checker().order())));
+  EXPECT_FALSE(withBetterEnd(onRoad, checker(), ClassPrices(checker().order())));
   const auto straightOffTheGrass = drive({0, -6, M_PI / 2}, {{5, 0}, {M_PI / 2, -1}, {8, 0}});
-  EXPECT_FALSE(withBetterBegin(straightOffTheGrass, checker(), kTolerance));
+  EXPECT_FALSE(withBetterBegin(straightOffTheGrass, checker(), ClassPrices(checker().order())));
 }
 
 TEST_F(TurnSearchTest, aVehicleThatOnlyDrivesForwardIsGivenNoWayBackwards) {
   options.vehicle.reverseWeight = std::numeric_limits<double>::infinity();
   const auto detour = drive({0, 1, 0}, {{2 * M_PI, 1}, {12, 0}});  // a circle for nothing
-  const auto after = withBetterBegin(detour, checker(), kTolerance);
+  const auto after = withBetterBegin(detour, checker(), ClassPrices(checker().order()));
   ASSERT_TRUE(after);
   EXPECT_LE(metersOnGrass(*after), kTolerance);
   for (const auto& path :
-       {*after,
-        withBetterEnd(turnAtEnd(), checker(), kTolerance).value_or(std::vector<PathPoint>())})
+       {*after, withBetterEnd(turnAtEnd(), checker(), ClassPrices(checker().order()))
+                    .value_or(std::vector<PathPoint>())})
     for (const PathPoint& p : path) ASSERT_TRUE(p.forward);
 }

@@ -1,6 +1,6 @@
 // Looking at edges between poses in a town: as far from each other as neighbors of a roadmap are.
 #include <benchmark/benchmark.h>
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
 
 #include <algorithm>
 #include <random>
@@ -13,7 +13,7 @@ using namespace semantic_planning;
 namespace {
 
 /** Free poses, each a neighbor of the one before. */
-std::vector<GroundPose> walkThroughTown(const EdgeChecker& checker) {
+std::vector<GroundPose> walkThroughTown(const CollisionChecker& checker) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> step(-1.5, 1.5), heading(-M_PI, M_PI);
   std::vector<GroundPose> poses{*checker.place({-47, -47, 0})};
@@ -29,7 +29,7 @@ std::vector<GroundPose> walkThroughTown(const EdgeChecker& checker) {
 void profile(benchmark::State& state) {
   const VehicleOptions vehicle;  // turning radius 1 m
   const Ground ground(town::map(), vehicle, {}, town::order());
-  const EdgeChecker checker(ground, vehicle, town::order(), {});
+  const CollisionChecker checker(ground, vehicle, town::order(), {});
   const std::vector<GroundPose> poses = walkThroughTown(checker);
   std::size_t i = 0, blocked = 0;
   double meters = 0;

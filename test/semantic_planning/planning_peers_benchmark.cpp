@@ -36,7 +36,7 @@ RoadmapTrials& compressed() {
 const std::vector<Instance>& tasks() {
   static const std::vector<Instance> tasks = [] {
     const SemanticPlanner& planner = compressed().planner();
-    const EdgeChecker checker(planner.ground(), planner.options().vehicle, town::order(), {});
+    const CollisionChecker checker(planner.ground(), planner.options().vehicle, town::order(), {});
     return drawInstances(checker, kTasks, kMinDistance, 1);
   }();
   return tasks;

@@ -1,5 +1,9 @@
 #include <colored_graph/ClassOrder.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -23,6 +27,34 @@ ClassOrder::ClassOrder(int classes, const std::vector<std::vector<GraphClass>>& 
     if (bestToWorst[rank].empty()) rejectOrder("rank " + std::to_string(rank) + " has no class");
     for (const GraphClass id : bestToWorst[rank]) assign(id, rank);
   }
+  constexpr double kFirstRate = 4, kFactor = 3;  // 4, 12, 36, 108, ...
+  m_rates = {0};
+  for (double rate = kFirstRate; static_cast<int>(m_rates.size()) < m_ranks; rate *= kFactor)
+    m_rates.push_back(std::min(rate, kHighestRate));
+}
+
+ClassOrder ClassOrder::withRates(const std::vector<double>& rates) const {
+  if (static_cast<int>(rates.size()) + 1 != m_ranks)
+    rejectOrder(std::to_string(rates.size()) + " rates for " + std::to_string(m_ranks) +
+                " ranks, expected one for each but the best");
+  ClassOrder order = *this;
+  order.m_rates = {0};
+  for (const double rate : rates) {
+    const bool isInRange = rate <= kHighestRate || std::isinf(rate);
+    if (!(rate >= order.m_rates.back()) || !isInRange) {
+      std::ostringstream text;
+      text << "rate " << rate << ", expected a number from " << order.m_rates.back()
+           << " (the one before) to " << kHighestRate << ", or inf";
+      rejectOrder(text.str());
+    }
+    order.m_rates.push_back(rate);
+  }
+  return order;
+}
+
+ClassOrder ClassOrder::strict() const {
+  return withRates(std::vector<double>(static_cast<std::size_t>(m_ranks) - 1,
+                                       std::numeric_limits<double>::infinity()));
 }
 
 void ClassOrder::assign(GraphClass id, Rank rank) {

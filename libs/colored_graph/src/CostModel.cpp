@@ -35,9 +35,6 @@ void CostModel::validate(const ColoredGraph& graph) const {
   if (order.classes() != graph.classes())
     throw std::invalid_argument("CostModel: order of " + std::to_string(order.classes()) +
                                 " classes for a graph with " + std::to_string(graph.classes()));
-  if (quantum < 0 || quantum > Length{1} << 62)
-    throw std::invalid_argument("CostModel: quantum " + std::to_string(quantum) +
-                                ", expected 0 to 2^62");
 }
 
 }  // namespace colored_graph

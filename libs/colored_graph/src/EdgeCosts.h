@@ -46,12 +46,8 @@ class EdgeCosts {
     return std::max(rank(m_graph.vertexClass(v)), rank(m_graph.vertexClass(half.neighbor)));
   }
 
-  /** What a length in a rank counts for. Rounding keeps lower bounds: it keeps the order. */
-  Length counted(Length length) const {
-    if (m_model.kind == CostKind::Count) return 1;
-    const Length quantum = m_model.quantum;
-    return quantum > 0 ? (length + quantum / 2) / quantum * quantum : length;
-  }
+  /** What a length in a rank counts for. */
+  Length counted(Length length) const { return m_model.kind == CostKind::Count ? 1 : length; }
 
   Cost ofWide(VertexId v, const HalfEdge& half, Way way) const {
     const WideEdge& edge = m_graph.wide(half);

@@ -213,7 +213,7 @@ bool DriveGuide::isBetter(const Situation& now) const {
 std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
   PlanResult plan =
       m_planned ? m_planner.replan(from.pose, from.z) : m_planner.plan(from.pose, m_aim, from.z);
-  m_planned = m_planner.hasRoadmap();
+  m_planned = m_planner.hasPlanned();
   if (!plan.found()) {
     m_reason = plan.reason;
     return {};

@@ -33,7 +33,7 @@ std::optional<Explorer::Way> Explorer::choose(const Exploration& places, const T
                                               const std::function<DrivePath(DrivePath)>& joined,
                                               bool last) {
   constexpr double kShortestWay = 0.5;  // m; nearer frontiers are seen from here
-  const semantic_planning::DrivePrice price(m_planner.options().vehicle);
+  const semantic_planning::MotionCost price(m_planner.options().vehicle);
   Poses useless;  // if it is not seen from there, it is not seen
   std::optional<Frontier> chosen;
   std::optional<Way> way;

@@ -24,7 +24,7 @@ ForwardTurns::ForwardTurns(const SemanticPlanner& planner, double longest)
       m_longest(longest) {}
 
 double ForwardTurns::priceOf(const DrivePath& path, double from, double to) const {
-  return to > from ? m_checker.price().of(path.part(from, to).points()) : 0;
+  return to > from ? m_checker.motionCost().of(path.part(from, to).points()) : 0;
 }
 
 /** Where the path goes forward, and its ends. */
@@ -47,7 +47,8 @@ std::vector<ForwardTurns::Curve> ForwardTurns::curves(const DrivePath& path, dou
       if (b > a + kReach || path.stretchEnd(a + kInside) > b - kInside) continue;
       const ReedsSheppCurve curve =
           m_checker.reedsShepp().connectForward(poseOf(path.at(a)), poseOf(path.at(b)));
-      const double price = before + m_checker.price().of(curve) + priceOf(path, b, path.length());
+      const double price =
+          before + m_checker.motionCost().of(curve) + priceOf(path, b, path.length());
       if (price < most) curves.push_back({a, b, price, curve});
     }
   }

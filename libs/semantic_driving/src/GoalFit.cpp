@@ -1,6 +1,6 @@
 #include <mrpt/math/wrap2pi.h>
 #include <semantic_driving/GoalFit.h>
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@ namespace semantic_driving {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
+using semantic_planning::CollisionChecker;
 using semantic_planning::Column;
-using semantic_planning::EdgeChecker;
 using semantic_planning::Ground;
 using semantic_planning::PlanStatus;
 using semantic_planning::SemanticPlanner;
@@ -54,7 +54,7 @@ class Claim {
   /** f(column, only wheels) */
   template <class F>
   void forEach(F f) const {
-    for (const EdgeChecker::CheckedDisc& d : m_checker.discs()) {
+    for (const CollisionChecker::CheckedDisc& d : m_checker.discs()) {
       const Column center = at(d.disc.x, d.disc.y);
       forSquare(center, static_cast<int>(std::ceil(std::sqrt(d.needed2))), [&](Column c) {
         if (clearance2(center, c) < d.needed2) f(c, false);
@@ -84,7 +84,7 @@ class Claim {
   }
 
   const Ground& m_ground;
-  EdgeChecker m_checker;
+  CollisionChecker m_checker;
   const TPose2D& m_goal;
 };
 

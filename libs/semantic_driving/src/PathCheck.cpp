@@ -30,7 +30,8 @@ PathJudgment PathCheck::judge(const DrivePath& path, double from) const {
   PathJudgment judgment;
   judgment.lengthPerRank.resize(m_planner.order().ranks());
   judgment.longestBackwards = path.longestBackwards(from);
-  if (!path.empty()) judgment.price = m_checker.price().of(path.part(from, path.length()).points());
+  if (!path.empty())
+    judgment.price = m_checker.motionCost().of(path.part(from, path.length()).points());
   const double step = m_planner.ground().voxelSize();
   for (double s = from; s < path.length(); s += step) {
     const PathPoint p = path.at(s);

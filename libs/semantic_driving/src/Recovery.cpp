@@ -7,7 +7,7 @@ namespace semantic_driving {
 
 using colored_graph::ClassOrder;
 using mrpt::math::TPose2D;
-using semantic_planning::EdgeChecker;
+using semantic_planning::CollisionChecker;
 using semantic_planning::Ground;
 using semantic_planning::GroundOptions;
 using semantic_planning::GroundPose;
@@ -106,7 +106,7 @@ class RecoverySearch {
   VehicleOptions m_vehicle;
   ClassOrder m_order;
   Ground m_ground;
-  EdgeChecker m_checker;
+  CollisionChecker m_checker;
   std::vector<PathPoint> m_best;
   double m_leastForbidden = std::numeric_limits<double>::infinity(), m_leastLength = 0;
 };

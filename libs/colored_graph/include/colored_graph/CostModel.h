@@ -41,14 +41,10 @@ struct CostModel {
   CostKind kind = CostKind::ArcLength;
   /** Whether tolls count: after the classes, and before length. */
   bool tolls = false;
-  /** With ArcLength: what an edge counts for a rank is rounded to a multiple of this (halves up),
-   * so that a class that is hardly touched does not outweigh any detour; 0: exact. */
-  Length quantum = 0;
 
   /** Numbers in the cost of a path. */
   int components() const { return order.ranks() + (tolls ? 1 : 0); }
-  /** \throw std::invalid_argument the order is one of more or fewer classes than the graph has, or
-   * a quantum negative or above 2^62. */
+  /** \throw std::invalid_argument the order is one of more or fewer classes than the graph has. */
   void validate(const ColoredGraph& graph) const;
 };
 

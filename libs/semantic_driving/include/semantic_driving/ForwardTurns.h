@@ -16,7 +16,7 @@ class ForwardTurns {
   ForwardTurns(const semantic_planning::SemanticPlanner& planner, double longest);
 
   /** The path with a shortest curve that only goes forward (ReedsShepp::connectForward()) between
-   * two of its places with changes of gear between them, of the least DrivePrice. The curve goes
+   * two of its places with changes of gear between them, of the least MotionCost. The curve goes
    * over no worse class than the part in whose place it is, or than the whole path if that has too
    * long a stretch backwards, but may be longer there.
    * \param from arc length up to which the path stays, meters \param worth by so much the price has
@@ -35,7 +35,7 @@ class ForwardTurns {
   bool isDrivable(const Curve& c, const DrivePath& path) const;
 
   const semantic_planning::SemanticPlanner& m_planner;
-  semantic_planning::EdgeChecker m_checker;
+  semantic_planning::CollisionChecker m_checker;
   double m_longest;
 };
 

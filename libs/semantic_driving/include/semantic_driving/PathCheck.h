@@ -14,7 +14,7 @@ struct PathJudgment {
   std::vector<double> lengthPerRank;  ///< meters, best rank first
   double length = 0;                  ///< meters
   double longestBackwards = 0;        ///< stretch, meters
-  double price = 0;  ///< of driving all of it (semantic_planning::DrivePrice), meters forward
+  double price = 0;  ///< of driving all of it (semantic_planning::MotionCost), meters forward
 
   bool isFree() const { return freeFor == std::numeric_limits<double>::infinity(); }
   static constexpr double kSameLength = 0.5;  ///< paths that differ by less are as good, meters
@@ -36,7 +36,7 @@ class PathCheck {
 
  private:
   const semantic_planning::SemanticPlanner& m_planner;
-  semantic_planning::EdgeChecker m_checker;
+  semantic_planning::CollisionChecker m_checker;
 };
 
 }  // namespace semantic_driving

@@ -60,7 +60,7 @@ class CorridorSearch {
 
   void reach(const Id& id, const Label& label) {
     m_labels[id] = label;
-    m_queue.push({label.cost + stepsBetween(id.tile, m_goal), id});
+    m_queue.push({label.cost + kWeightOfLength * stepsBetween(id.tile, m_goal), id});
   }
 
   std::vector<Column> tilesTo(Id id) const {

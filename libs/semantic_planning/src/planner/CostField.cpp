@@ -16,9 +16,9 @@ constexpr double kShare = 0.96;
 
 }  // namespace
 
-CostField::CostField(const GroundPose& center, double radius, const EdgeChecker& checker,
-                     const WayPricing& pricing)
-    : m_checker(checker), m_pricing(pricing) {
+CostField::CostField(const GroundPose& center, double radius, const CollisionChecker& checker,
+                     const ClassPrices& prices)
+    : m_checker(checker), m_prices(prices) {
   const Ground& ground = checker.ground();
   const int reach = static_cast<int>(radius / ground.voxelSize());
   const Column c = ground.columnAt(center.pose.x, center.pose.y);
@@ -57,7 +57,7 @@ Length CostField::ofStep(Column to, int z, std::size_t direction) const {
   if (rank == colored_graph::kForbidden) return kUnreached;
   const double voxels = direction % 2 ? M_SQRT2 : 1;
   const Length length = colored_graph::lengthDown(kShare * voxels * ground.voxelSize());
-  return length + m_pricing.of(worst->classId, length);
+  return length + m_prices.of(worst->classId, length);
 }
 
 /** To its neighbors, from each of which a step leads here. */

@@ -1,12 +1,12 @@
 #pragma once
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
 
 #include <array>
 #include <limits>
 #include <queue>
 #include <vector>
 
-#include "WayPricing.h"
+#include "ClassPrices.h"
 
 namespace semantic_planning {
 
@@ -18,9 +18,9 @@ class CostField {
   using Length = colored_graph::Length;
   static constexpr Length kUnreached = std::numeric_limits<Length>::max();
 
-  /** \param radius meters; the field is a square \param checker, pricing must outlive the field */
-  CostField(const GroundPose& center, double radius, const EdgeChecker& checker,
-            const WayPricing& pricing);
+  /** \param radius meters; the field is a square \param checker, prices must outlive the field */
+  CostField(const GroundPose& center, double radius, const CollisionChecker& checker,
+            const ClassPrices& prices);
 
   /** A place from which the rest costs so much. */
   void add(const GroundPose& pose, Length cost);
@@ -49,8 +49,8 @@ class CostField {
   /** Of a step to a column, in one of four directions or back. */
   Length ofStep(Column to, int z, std::size_t direction) const;
 
-  const EdgeChecker& m_checker;
-  const WayPricing& m_pricing;
+  const CollisionChecker& m_checker;
+  const ClassPrices& m_prices;
   std::array<std::vector<Column>, 4> m_wheels;  ///< where they are, by direction
   Column m_low;
   int m_edge;  ///< columns

@@ -1,6 +1,7 @@
 #include <semantic_planning/planner/OrderFile.h>
 #include <strict_files/StrictYaml.h>
 
+#include <limits>
 #include <stdexcept>
 
 namespace semantic_planning {
@@ -29,17 +30,35 @@ std::vector<OrderId> readRank(const StrictYaml& yaml, const YAML::Node& node,
   return rank;
 }
 
-}  // namespace
+double readRate(const StrictYaml& yaml, const YAML::Node& node) {
+  if (node.IsScalar() && node.Scalar() == "inf") return std::numeric_limits<double>::infinity();
+  return yaml.number(node, "rates");
+}
 
-ClassOrder loadClassOrder(const std::filesystem::path& file, const ClassTable& classes) {
-  const StrictYaml yaml(file);
-  yaml.checkKeys(yaml.root(), {"best_to_worst"});
-  const YAML::Node list = yaml.required(yaml.root(), "best_to_worst");
+ClassOrder readOrder(const StrictYaml& yaml, const ClassTable& classes, const YAML::Node& list) {
   yaml.checkList(list, "best_to_worst");
   std::vector<std::vector<OrderId>> ranks;
   for (const YAML::Node& rank : list) ranks.push_back(readRank(yaml, rank, classes));
   try {
     return ClassOrder(classes.size() + 1, ranks);
+  } catch (const std::invalid_argument& e) {
+    yaml.fail(list, e.what());
+  }
+}
+
+}  // namespace
+
+ClassOrder loadClassOrder(const std::filesystem::path& file, const ClassTable& classes) {
+  const StrictYaml yaml(file);
+  yaml.checkKeys(yaml.root(), {"best_to_worst", "rates"});
+  const ClassOrder order = readOrder(yaml, classes, yaml.required(yaml.root(), "best_to_worst"));
+  const YAML::Node list = yaml.root()["rates"];
+  if (!list) return order;
+  std::vector<double> rates;
+  if (!list.IsSequence()) yaml.fail(list, "'rates' is not a list");
+  for (const YAML::Node& rate : list) rates.push_back(readRate(yaml, rate));
+  try {
+    return order.withRates(rates);
   } catch (const std::invalid_argument& e) {
     yaml.fail(list, e.what());
   }

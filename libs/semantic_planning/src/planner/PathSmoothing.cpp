@@ -43,24 +43,15 @@ struct Replacement {
 
 class Smoothing {
  public:
-  using Accepts = std::function<bool(const ClassLengths&)>;
-
-  Smoothing(const std::vector<PathPoint>& path, const EdgeChecker& checker, const Accepts& accepts)
-      : m_checker(checker), m_accepts(accepts), m_lengths(checker.order().classes()) {
-    for (int id = 0; id < checker.order().classes(); ++id)
-      m_prices.push_back(checker.order().rank(static_cast<ClassId>(id)) == colored_graph::kForbidden
-                             ? std::numeric_limits<double>::infinity()
-                             : 0);
+  Smoothing(const std::vector<PathPoint>& path, const CollisionChecker& checker,
+            const ClassPrices& prices)
+      : m_checker(checker), m_perMeter(prices.perMeter()) {
     for (std::size_t i = 0; i + 1 < path.size();) i = addPart(path, i);
     m_end = checker.ground().keyOf(path.back().z);
   }
 
   std::vector<Leg> run() {
-    for (const bool spends : {false, true}) {  // what costs nothing in classes goes first
-      m_spends = spends;
-      m_seen.clear();
-      while (m_looks > 0 && improve()) {
-      }
+    while (m_looks > 0 && improve()) {
     }
     return legs();
   }
@@ -90,7 +81,6 @@ class Smoothing {
               m_numbers++,
               {}};
     if (!evaluate(part, m_checker.ground().keyOf(path[to].z))) part.profile = known(path, from, to);
-    add(part.profile, 1);
     m_parts.push_back(part);
     return to;
   }
@@ -98,8 +88,10 @@ class Smoothing {
   /** Classes of a part of the given path. It was looked at as a part of longer curves, at other
    * places: between these it may touch what is forbidden, which is left out. */
   EdgeProfile known(const std::vector<PathPoint>& path, std::size_t from, std::size_t to) const {
-    std::vector<double> lengths(m_prices.size());
-    const auto isAllowed = [this](const PathPoint& p) { return m_prices[p.classId] == 0; };
+    std::vector<double> lengths(m_perMeter.size());
+    const auto isAllowed = [this](const PathPoint& p) {
+      return std::isfinite(m_perMeter[p.classId]);
+    };
     const auto first =
         std::find_if(path.begin() + static_cast<std::ptrdiff_t>(from), path.end(), isAllowed);
     ClassId id = first == path.end() ? semantic_types::kNoClass : first->classId;
@@ -123,14 +115,10 @@ class Smoothing {
 
   /** \param end key of the surface at its end */
   bool evaluate(Part& part, int end) const {
-    ClassBudget budget{m_prices};
+    ClassBudget budget{m_perMeter, std::numeric_limits<double>::max()};
     auto profile = m_checker.profile(curveOf(part.arc), part.z, end, &budget);
     if (profile) part.profile = std::move(*profile);
     return profile.has_value();
-  }
-
-  void add(const EdgeProfile& profile, int sign) {
-    for (const auto& stretch : profile) m_lengths[stretch.classId] += sign * stretch.length;
   }
 
   bool improve() {
@@ -179,7 +167,7 @@ class Smoothing {
 
   template <class Iterator>
   double priceOf(const Replacement& r, Iterator begin, Iterator end) const {
-    const DrivePrice& price = m_checker.price();
+    const MotionCost& price = m_checker.motionCost();
     double sum = 0;
     std::optional<CurveState> last;
     const auto go = [&](const CurveState& state) {
@@ -202,7 +190,7 @@ class Smoothing {
            priceOf(r, parts.begin(), parts.end());
   }
 
-  /** If the vehicle can drive it and classes allow it. */
+  /** If the vehicle can drive it and classes do not cost more than it gains. */
   bool apply(const Replacement& r) {
     if (m_looks == 0 ||
         !m_seen.insert({m_parts[r.before].number, m_parts[r.after].number, r.leave}).second)
@@ -210,18 +198,10 @@ class Smoothing {
     --m_looks;
     std::vector<Part> parts = partsOf(r);
     if (!evaluate(r, parts)) return false;
-    const ClassLengths lengths = m_lengths;
     const auto begin = m_parts.begin() + static_cast<std::ptrdiff_t>(r.before),
                end = m_parts.begin() + static_cast<std::ptrdiff_t>(r.after) + 1;
-    for (auto part = begin; part != end; ++part) add(part->profile, -1);
-    for (Part& part : parts) {
-      add(part.profile, 1);
-      part.number = m_numbers++;
-    }
-    if ((!m_spends && isLonger(m_lengths, lengths)) || !m_accepts(m_lengths)) {
-      m_lengths = lengths;
-      return false;
-    }
+    if (r.gain - moreOfClasses({begin, end}, parts) < kLeastGain) return false;
+    for (Part& part : parts) part.number = m_numbers++;
     m_parts.insert(m_parts.erase(begin, end), parts.begin(), parts.end());
     return true;
   }
@@ -230,14 +210,19 @@ class Smoothing {
     return r.after + 1 < m_parts.size() ? m_parts[r.after + 1].z : m_end;
   }
 
-  /** In any class that is not of the best rank. */
-  bool isLonger(const ClassLengths& lengths, const ClassLengths& than) const {
+  /** What the classes of some parts cost more than those of others, meters. */
+  double moreOfClasses(const std::vector<Part>& before, const std::vector<Part>& after) const {
     constexpr Length kRounding = 20;
-    for (std::size_t id = 0; id < lengths.size(); ++id)
-      if (m_checker.order().rank(static_cast<ClassId>(id)) > 0 &&
-          lengths[id] > than[id] + kRounding)
-        return true;
-    return false;
+    std::vector<Length> more(m_perMeter.size());
+    for (const Part& part : before)
+      for (const auto& stretch : part.profile) more[stretch.classId] -= stretch.length;
+    for (const Part& part : after)
+      for (const auto& stretch : part.profile) more[stretch.classId] += stretch.length;
+    double price = 0;
+    for (std::size_t id = 0; id < more.size(); ++id)
+      if (std::abs(more[id]) > kRounding)
+        price += m_perMeter[id] * colored_graph::toMeters(more[id]);
+    return price;
   }
 
   /** Few places tell most arcs that do not fit. */
@@ -267,26 +252,24 @@ class Smoothing {
     return true;
   }
 
-  const EdgeChecker& m_checker;
-  const Accepts& m_accepts;
-  std::vector<double> m_prices;  ///< by class: that of the forbidden ones is infinite
-  ClassLengths m_lengths;
+  const CollisionChecker& m_checker;
+  const std::vector<double> m_perMeter;
   std::vector<Part> m_parts;
   std::set<std::tuple<int, int, int>> m_seen;
   int m_end = 0;  ///< key of the surface where the path ends
   int m_numbers = 0, m_looks = 2000;
-  bool m_spends = false;
 };
 
 }  // namespace
 
-std::vector<Leg> smoothed(const std::vector<PathPoint>& path, const EdgeChecker& checker,
-                          const std::function<bool(const ClassLengths&)>& accepts) {
-  return Smoothing(path, checker, accepts).run();
+std::vector<Leg> smoothed(const std::vector<PathPoint>& path, const CollisionChecker& checker,
+                          const ClassPrices& prices) {
+  return Smoothing(path, checker, prices).run();
 }
 
-std::vector<Leg> legsAlong(const std::vector<PathPoint>& path, const EdgeChecker& checker) {
-  return Smoothing(path, checker, [](const ClassLengths&) { return true; }).legs();
+std::vector<Leg> legsAlong(const std::vector<PathPoint>& path, const CollisionChecker& checker,
+                           const ClassPrices& prices) {
+  return Smoothing(path, checker, prices).legs();
 }
 
 }  // namespace semantic_planning

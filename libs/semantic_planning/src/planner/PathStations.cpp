@@ -27,7 +27,7 @@ std::vector<std::size_t> pointsOf(const std::vector<PathPoint>& path, double spa
   return points;
 }
 
-std::optional<GroundPose> poseAt(const PathPoint& p, const EdgeChecker& checker) {
+std::optional<GroundPose> poseAt(const PathPoint& p, const CollisionChecker& checker) {
   const auto pose = checker.place({p.x, p.y, p.heading}, p.z);
   return pose && checker.fit(*pose) == Fit::Free ? pose : std::nullopt;
 }
@@ -60,7 +60,8 @@ bool isNear(double arcLength, const std::vector<double>& places) {
 /** Poses of a station. */
 class StationPoses {
  public:
-  StationPoses(const PathPoint& p, const EdgeChecker& checker) : m_point(p), m_checker(checker) {
+  StationPoses(const PathPoint& p, const CollisionChecker& checker)
+      : m_point(p), m_checker(checker) {
     if (const auto own = poseAt(p, checker)) m_poses.push_back(*own);
   }
 
@@ -80,15 +81,15 @@ class StationPoses {
 
  private:
   const PathPoint& m_point;
-  const EdgeChecker& m_checker;
+  const CollisionChecker& m_checker;
   Station m_poses;
 };
 
 /** The path's ends by themselves, and what f(poses, station) adds between. */
 template <class F>
 std::vector<Station> stationsAt(const std::vector<PathPoint>& path,
-                                const std::vector<std::size_t>& points, const EdgeChecker& checker,
-                                F f) {
+                                const std::vector<std::size_t>& points,
+                                const CollisionChecker& checker, F f) {
   std::vector<Station> stations;
   for (std::size_t i = 0; i < points.size(); ++i) {
     StationPoses poses(path[points[i]], checker);
@@ -100,7 +101,8 @@ std::vector<Station> stationsAt(const std::vector<PathPoint>& path,
 
 }  // namespace
 
-std::vector<Station> stationsOn(const std::vector<PathPoint>& path, const EdgeChecker& checker) {
+std::vector<Station> stationsOn(const std::vector<PathPoint>& path,
+                                const CollisionChecker& checker) {
   const std::vector<std::size_t> points = pointsOf(path, kSpacing, true);
   const auto direction = [&](std::size_t from, std::size_t to) {
     const PathPoint &a = path[points[from]], &b = path[points[to]];
@@ -115,8 +117,8 @@ std::vector<Station> stationsOn(const std::vector<PathPoint>& path, const EdgeCh
   });
 }
 
-std::vector<Station> stationsBeside(const std::vector<PathPoint>& path, const EdgeChecker& checker,
-                                    const BesideOptions& options) {
+std::vector<Station> stationsBeside(const std::vector<PathPoint>& path,
+                                    const CollisionChecker& checker, const BesideOptions& options) {
   constexpr double kReach = 1.5;  // m
   const std::vector<std::size_t> points = pointsOf(path, kSpacing, false);
   const std::vector<double> changes = gearChangesOf(path);

@@ -33,7 +33,7 @@ void appendCurve(const std::vector<PathPoint>& curve, std::vector<PathPoint>& pa
 }
 
 std::vector<PathPoint> tracePath(const PathResult& path, const Roadmap& roadmap,
-                                 const EdgeChecker& checker) {
+                                 const CollisionChecker& checker) {
   std::vector<PathPoint> points;
   for (std::size_t i = 0; i < path.edges.size(); ++i) {
     const auto from = path.vertices[i];
@@ -52,7 +52,7 @@ void setLengths(const PathResult& path, PlanResult& result) {
   }
 }
 
-void describePath(const PathResult& path, const Roadmap& roadmap, const EdgeChecker& checker,
+void describePath(const PathResult& path, const Roadmap& roadmap, const CollisionChecker& checker,
                   PlanResult& result) {
   result.status = statusOf(path.status);
   result.search = path.statistics;

@@ -6,7 +6,7 @@ namespace semantic_planning {
 
 /** The poses along a path of the roadmap, with their arc lengths. */
 std::vector<PathPoint> tracePath(const colored_graph::PathResult& path, const Roadmap& roadmap,
-                                 const EdgeChecker& checker);
+                                 const CollisionChecker& checker);
 
 /** Appends a curve's points to a path; the first is where the last one ended, perhaps in another
  * gear. */
@@ -17,6 +17,6 @@ void setLengths(const colored_graph::PathResult& path, PlanResult& result);
 
 /** Lengths, cost and poses of a search's result, or why there is none. */
 void describePath(const colored_graph::PathResult& path, const Roadmap& roadmap,
-                  const EdgeChecker& checker, PlanResult& result);
+                  const CollisionChecker& checker, PlanResult& result);
 
 }  // namespace semantic_planning

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "PathImprovement.h"
 #include "PathTracing.h"
 #include "Refusal.h"
 #include "ground/ColumnBox.h"
@@ -77,11 +78,13 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
       m_options(validated(options, map)),
       m_corridor(corridor),
       m_ground(map, options.vehicle, options.ground, order, tilesOf(corridor, map.getResolution())),
-      m_checker(m_ground, options.vehicle, order, options.reading),
+      m_checker(m_ground, options.vehicle, options.strict ? order.strict() : order,
+                options.reading),
+      m_prices(m_checker.order()),
+      m_kept(m_checker, m_prices),
       m_candidates(map, m_ground, options.roadmap),
       m_edges(m_checker),
-      m_model{order, options.edges, options.cost, true,
-              colored_graph::lengthDown(options.shorten ? options.classTolerance : 0)} {
+      m_model{order, options.edges, options.cost, true} {
   m_follower.skipTiles();  // the ground began with the whole map
 }
 
@@ -103,7 +106,7 @@ const Ground& PlannerCore::ground() const {
 
 const Roadmap& PlannerCore::roadmap() const {
   checkWhole();
-  if (!m_roadmap) throw std::logic_error("SemanticPlanner: nothing was planned yet");
+  if (!m_roadmap) throw std::logic_error("SemanticPlanner: the last plan had no roadmap");
   return m_roadmap->roadmap();
 }
 
@@ -171,17 +174,13 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   const Change change(*this);
   m_replanner.reset();
   m_roadmap.reset();
+  m_kept.drop();
   m_goalPlace = goal;
   followMap(clock);
-  if (refuse(start, goal, result)) return result;
-  m_roadmap = std::make_unique<MapRoadmap>(m_candidates, m_checker, m_options.roadmap, *m_startPose,
-                                           region(m_options.roadmap.buffer));
-  if (m_corridor) m_candidates.forget();  // of a map that is too large: they take as much as ground
-  m_start = m_roadmap->roadmap().addQueryVertex(*m_startPose);
-  m_goal = m_roadmap->roadmap().addQueryVertex(*m_goalPose);
-  clock.end("roadmap");
-  m_evaluating = 0;
-  finish(search(m_roadmap->roadmap(), m_start, m_goal), clock, result);
+  m_hasPlanned = !refuse(start, goal, result);
+  if (!m_hasPlanned) return result;
+  result = solve(clock);
+  result.times = clock.take();
   return result;
 }
 
@@ -191,15 +190,88 @@ PathResult PlannerCore::search(Roadmap& map, VertexId start, VertexId goal) {
   return findColoredPath(map.graph(), start, goal, m_model, options);
 }
 
-void PlannerCore::finish(const PathResult& path, StageClock& clock, PlanResult& result) {
+void PlannerCore::makeRoadmap() {
+  m_replanner.reset();
+  m_roadmap = std::make_unique<MapRoadmap>(m_candidates, m_checker, m_options.roadmap, *m_startPose,
+                                           region(m_options.roadmap.buffer));
+  if (m_corridor) m_candidates.forget();  // of a map that is too large: they take as much as ground
+  m_start = m_roadmap->roadmap().addQueryVertex(*m_startPose);
+  m_goal = m_roadmap->roadmap().addQueryVertex(*m_goalPose);
+}
+
+/** From scratch in a new roadmap, otherwise repairing what it found before. */
+PlanResult PlannerCore::searchRoadmap(StageClock& clock) {
+  const bool isNew = !m_roadmap;
+  if (isNew) makeRoadmap();
+  Roadmap& map = m_roadmap->roadmap();
+  if (!isNew) moveEnds(map);
+  if (!isNew && !m_replanner)
+    m_replanner.emplace(map.graph(), m_start, m_goal, m_model, searchOptions(map));
+  clock.end("roadmap");
+  m_evaluating = 0;
+  const PathResult path = isNew ? search(map, m_start, m_goal) : m_replanner->solve();
   clock.end("search", "evaluateEdges", m_evaluating);
-  describePath(path, roadmap(), m_checker, result);
-  result.numVertices = roadmap().graph().vertexCount();
-  result.numEdges = roadmap().graph().edgeCount();
+  PlanResult result;
+  describePath(path, map, m_checker, result);
+  result.price = priceOf(result, m_checker, m_prices);
+  result.numVertices = map.graph().vertexCount();
+  result.numEdges = map.graph().edgeCount();
   result.edgesRemembered = m_edges.takeRemembered();
   clock.end("path");
-  if (mayImprove(result)) improve(clock, result);
-  result.times = clock.take();
+  return result;
+}
+
+bool PlannerCore::mayShorten() const {
+  return m_options.shorten && m_model.edges == colored_graph::EdgeModel::Profile &&
+         m_model.kind == colored_graph::CostKind::ArcLength &&
+         !(m_options.cancelled && m_options.cancelled());
+}
+
+/** Where the ground does not connect them, that is known before any search. */
+RelaxedPath PlannerCore::relaxedPath() const {
+  return searchRelaxed(m_checker, *m_startPose, *m_goalPose);
+}
+
+PlanResult PlannerCore::beside(const std::vector<PathPoint>& way, const PlanResult& before) const {
+  return pathBeside(way, m_checker, m_prices, RoadmapOptions::kLongestEdge, before);
+}
+
+PlanResult PlannerCore::finerRoadmap(const RelaxedPath& relaxed, int round,
+                                     const PlanResult& before) {
+  constexpr std::size_t kEvery = 4;        // point of the way
+  constexpr double kDistance = 3;          // m
+  constexpr std::size_t kVertices = 1000;  // whatever the first roadmap has
+  std::vector<mrpt::math::TPoint2D> way;
+  for (std::size_t i = 0; i < relaxed.path.size(); i += kEvery)
+    way.emplace_back(relaxed.path[i].x, relaxed.path[i].y);
+  RoadmapOptions options = m_options.roadmap;
+  options.headings *= 2;
+  options.vertices = kVertices << round;
+  MapRoadmap fine(m_candidates, m_checker, options, *m_startPose,
+                  region(std::numeric_limits<double>::infinity()).near(way, kDistance));
+  const VertexId start = fine.roadmap().addQueryVertex(*m_startPose);
+  const VertexId goal = fine.roadmap().addQueryVertex(*m_goalPose);
+  PlanResult result = before;
+  describePath(search(fine.roadmap(), start, goal), fine.roadmap(), m_checker, result);
+  if (result.found()) result.reason.clear();
+  result.price = priceOf(result, m_checker, m_prices);
+  m_edges.takeRemembered();  // what is told is that of the first roadmap
+  result.search = before.search;
+  result.roadmapCost = before.roadmapCost;
+  return result;
+}
+
+/** "...; what can be reached ends at (3.1, 2.9), 4.2 m from the goal" */
+void PlannerCore::sayWhere(const RelaxedPath& relaxed, PlanResult& result) const {
+  if (!relaxed.nearest) return;
+  result.obstacle = relaxed.nearest;
+  const mrpt::math::TPoint2D& place = *relaxed.nearest;
+  const mrpt::math::TPose2D& goal = m_goalPose->pose;
+  std::ostringstream text;
+  const strict_files::ClassicNumbers classic(text);
+  text << std::fixed << std::setprecision(1) << "; what can be reached ends at (" << place.x << ", "
+       << place.y << "), " << std::hypot(place.x - goal.x, place.y - goal.y) << " m from the goal";
+  result.reason += text.str();
 }
 
 void PlannerCore::forget() {
@@ -208,6 +280,8 @@ void PlannerCore::forget() {
   m_roadmap.reset();
   m_candidates.forget();
   m_edges.forget();
+  m_kept.drop();
+  m_hasPlanned = false;
 }
 
 PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
@@ -223,6 +297,7 @@ PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
   }
   clock.end("ground");
   m_edges.groundChanged(change.tiles);
+  m_kept.groundChanged(change.tiles);
   change.points = m_candidates.update(touched, change.tiles);
   return change;
 }
@@ -251,35 +326,30 @@ UpdateResult PlannerCore::update() {
 }
 
 /** A start that stays where it is keeps what the search knows. */
-void PlannerCore::moveStart(Roadmap& map) {
-  const GroundPose& present = map.pose(m_start);
-  if (present.pose == m_startPose->pose && present.z == m_startPose->z) return;
-  const VertexId before = m_start;
-  m_start = map.addQueryVertex(*m_startPose);  // first, so that it is another id
-  map.removeQueryVertex(before);
-}
-
-PlanResult PlannerCore::replan(const Place& start) {
-  StageClock clock;
-  PlanResult result;
-  roadmap();  // or nothing was planned
-  checkFinite("start", start);
-  const Change change(*this);
-  if (refuse(start, m_goalPlace, result)) return result;
-  Roadmap& map = m_roadmap->roadmap();
-  moveStart(map);
+void PlannerCore::moveEnds(Roadmap& map) {
   if (map.pose(m_goal).z != m_goalPose->z) {
     map.removeQueryVertex(m_goal);
     m_goal = map.addQueryVertex(*m_goalPose);
     m_replanner.reset();
   }
-  if (m_replanner)
-    m_replanner->moveStart(m_start);
-  else
-    m_replanner.emplace(map.graph(), m_start, m_goal, m_model, searchOptions(map));
-  clock.end("start");
-  m_evaluating = 0;
-  finish(m_replanner->solve(), clock, result);
+  const GroundPose& present = map.pose(m_start);
+  if (present.pose == m_startPose->pose && present.z == m_startPose->z) return;
+  const VertexId before = m_start;
+  m_start = map.addQueryVertex(*m_startPose);  // first, so that it is another id
+  map.removeQueryVertex(before);
+  if (m_replanner) m_replanner->moveStart(m_start);
+}
+
+PlanResult PlannerCore::replan(const Place& start) {
+  StageClock clock;
+  PlanResult result;
+  checkWhole();
+  if (!m_hasPlanned) throw std::logic_error("SemanticPlanner: nothing was planned yet");
+  checkFinite("start", start);
+  const Change change(*this);
+  if (refuse(start, m_goalPlace, result)) return result;
+  result = keepOrSolve(clock);
+  result.times = clock.take();
   return result;
 }
 

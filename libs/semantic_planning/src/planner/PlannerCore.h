@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 
+#include "ClassPrices.h"
+#include "KeptPath.h"
 #include "RelaxedSearch.h"
 #include "StageClock.h"
 #include "roadmap/CandidateStore.h"
@@ -37,6 +39,7 @@ class PlannerCore {
   const PlannerOptions& options() const { return m_options; }
   const colored_graph::ClassOrder& order() const { return m_checker.order(); }
   const Ground& ground() const;
+  bool hasPlanned() const { return m_hasPlanned; }
   bool hasRoadmap() const { return m_roadmap != nullptr; }
   const Roadmap& roadmap() const;
 
@@ -75,22 +78,30 @@ class PlannerCore {
   std::optional<colored_graph::EdgeProfile> evaluateTimed(const Roadmap& map,
                                                           colored_graph::EdgeId e);
   colored_graph::PathResult search(Roadmap& map, VertexId start, VertexId goal);
-  void moveStart(Roadmap& map);
-  bool mayImprove(const PlanResult& result) const;
-  void improve(StageClock& clock, PlanResult& result);
+  void makeRoadmap();
+  /** Puts start and goal where they are now. */
+  void moveEnds(Roadmap& map);
+  bool mayShorten() const;
+  PlanResult solve(StageClock& clock);
+  PlanResult solve(const RelaxedPath& relaxed, StageClock& clock);
+  PlanResult keepOrSolve(StageClock& clock);
+  PlanResult searchRoadmap(StageClock& clock);
+  RelaxedPath relaxedPath() const;
+  PlanResult beside(const std::vector<PathPoint>& way, const PlanResult& before) const;
+  void tryFinerRoadmaps(const RelaxedPath& relaxed, StageClock& clock, PlanResult& result);
+  /** What the best path is of a roadmap that is finer near a way. */
+  PlanResult finerRoadmap(const RelaxedPath& relaxed, int round, const PlanResult& before);
+  void sayWhere(const RelaxedPath& relaxed, PlanResult& result) const;
   /** Between start and goal. \param buffer to each side, meters */
   PlanningRegion region(double buffer) const;
-  RelaxedPath searchWideRelaxed() const;
-  bool mayBeBetter(const PlanResult& result, const RelaxedPath& guide) const;
-  /** What the best path is of a graph that is finer near a guide. */
-  PlanResult refined(const RelaxedPath& guide, int round, const PlanResult& before);
-  void finish(const colored_graph::PathResult& path, StageClock& clock, PlanResult& result);
 
   semantic_octree::MapFollower m_follower;  ///< of what the ground has not read
   const PlannerOptions m_options;
   const std::optional<Corridor> m_corridor;
   Ground m_ground;
-  EdgeChecker m_checker;
+  CollisionChecker m_checker;
+  const ClassPrices m_prices;
+  KeptPath m_kept;
   CandidateStore m_candidates;
   EdgeMemory m_edges;
   colored_graph::CostModel m_model;
@@ -99,7 +110,7 @@ class PlannerCore {
   Place m_goalPlace;
   VertexId m_start = colored_graph::kNoVertex, m_goal = colored_graph::kNoVertex;
   std::optional<colored_graph::ColoredReplanner> m_replanner;
-  bool m_broken = false;
+  bool m_hasPlanned = false, m_broken = false;
   double m_evaluating = 0;  ///< milliseconds of the present search
 };
 

@@ -46,12 +46,12 @@ std::string whatIsAt(const Ground& ground, const Obstacle& obstacle, int z) {
 }
 
 /** Of what is in the way of the footprint's discs, the nearest to them. */
-Refusal blocking(const EdgeChecker& checker, const GroundPose& pose) {
+Refusal blocking(const CollisionChecker& checker, const GroundPose& pose) {
   const Ground& ground = checker.ground();
   const Placement placed(pose.pose);
   double nearest = std::numeric_limits<double>::infinity();
   Obstacle obstacle{ground.columnAt(pose.pose.x, pose.pose.y), pose.z, 0};
-  for (const EdgeChecker::CheckedDisc& d : checker.discs()) {
+  for (const CollisionChecker::CheckedDisc& d : checker.discs()) {
     const auto [x, y] = placed(d.disc.x, d.disc.y);
     const Column c = ground.columnAt(x, y);
     const Surface* s = ground.near(c, pose.z, d.tolerance);
@@ -67,7 +67,7 @@ Refusal blocking(const EdgeChecker& checker, const GroundPose& pose) {
 }
 
 /** The first wheel that is over forbidden ground. */
-Refusal underWheels(const EdgeChecker& checker, const GroundPose& pose) {
+Refusal underWheels(const CollisionChecker& checker, const GroundPose& pose) {
   const Ground& ground = checker.ground();
   const ClassId id = checker.classAt(pose);
   const Placement placed(pose.pose);
@@ -83,8 +83,8 @@ Refusal underWheels(const EdgeChecker& checker, const GroundPose& pose) {
 
 }  // namespace
 
-Refusal refusalOf(const EdgeChecker& checker, PlanStatus status, const mrpt::math::TPose2D& pose,
-                  const std::optional<GroundPose>& placed) {
+Refusal refusalOf(const CollisionChecker& checker, PlanStatus status,
+                  const mrpt::math::TPose2D& pose, const std::optional<GroundPose>& placed) {
   const Ground& ground = checker.ground();
   if (status == PlanStatus::StartForbidden) return underWheels(checker, *placed);
   if (status == PlanStatus::StartBlocked) return blocking(checker, *placed);

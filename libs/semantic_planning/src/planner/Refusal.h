@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_planning/planner/PlanResult.h>
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
 
 #include <optional>
 #include <string>
@@ -14,7 +14,7 @@ struct Refusal {
 };
 
 /** \param status of the pose as a start, not PlanStatus::Found \param placed none: off ground */
-Refusal refusalOf(const EdgeChecker& checker, PlanStatus status, const mrpt::math::TPose2D& pose,
-                  const std::optional<GroundPose>& placed);
+Refusal refusalOf(const CollisionChecker& checker, PlanStatus status,
+                  const mrpt::math::TPose2D& pose, const std::optional<GroundPose>& placed);
 
 }  // namespace semantic_planning

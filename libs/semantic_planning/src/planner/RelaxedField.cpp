@@ -7,8 +7,8 @@
 
 namespace semantic_planning {
 
-RelaxedField::RelaxedField(const Ground& ground, const PlanningRegion& region) {
-  for (const Column& place : tilesIn(region, ground)) {
+RelaxedField::RelaxedField(const Ground& ground) {
+  for (const Column& place : ground.tiles()) {
     Tile& tile = m_tiles.at(place);
     tile.surfaces = ground.layers().surfaces().find(place);
     tile.place = place;

@@ -55,7 +55,7 @@ class RelaxedField {
   };
 
   /** \param ground must outlive the field. */
-  RelaxedField(const Ground& ground, const PlanningRegion& region);
+  explicit RelaxedField(const Ground& ground);
 
   /** The column's drivable surface nearest to a height, at most `tolerance` voxels off; or null. */
   const Surface* near(Column c, int z, int tolerance) const;

@@ -7,6 +7,7 @@
 #include <queue>
 #include <utility>
 
+#include "ClassPrices.h"
 #include "RelaxedField.h"
 
 namespace semantic_planning {
@@ -27,7 +28,7 @@ Column rotated(double x, double y, double angle, double voxel) {
           static_cast<int>(std::lround((std::sin(angle) * x + std::cos(angle) * y) / voxel))};
 }
 
-std::array<Step, 8> stepsOf(const EdgeChecker& checker) {
+std::array<Step, 8> stepsOf(const CollisionChecker& checker) {
   const double voxel = checker.ground().voxelSize();
   std::array<Step, 8> steps;
   for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -45,9 +46,9 @@ Column operator+(Column a, Column b) { return {a.x + b.x, a.y + b.y}; }
 
 class RelaxedSearch {
  public:
-  RelaxedSearch(const EdgeChecker& checker, const PlanningRegion& region)
+  explicit RelaxedSearch(const CollisionChecker& checker)
       : m_checker(checker),
-        m_field(checker.ground(), region),
+        m_field(checker.ground()),
         m_steps(stepsOf(checker)),
         m_weights(weightsOfRanks(checker.order())) {}
 
@@ -63,6 +64,7 @@ class RelaxedSearch {
       if (cell == m_goal.cell) return traceTo(cell, guide);
       if (std::exchange(m_field.label(cell).done, true)) continue;
       const Place place = m_field.placeOf(cell);
+      noteNearest(place.column, guide);
       for (std::size_t i = 0; i < m_steps.size(); ++i) take(i, place);
     }
   }
@@ -124,7 +126,14 @@ class RelaxedSearch {
     m_queue.push({reached.cost + bound(place.column), place.cell});
   }
 
-  Cost bound(Column c) const { return stepsBetween(c, m_goal.column); }
+  Cost bound(Column c) const { return kWeightOfLength * stepsBetween(c, m_goal.column); }
+
+  void noteNearest(Column c, RelaxedPath& guide) {
+    const double far = std::hypot(c.x - m_goal.column.x, c.y - m_goal.column.y);
+    if (guide.nearest && far >= m_nearest) return;
+    m_nearest = far;
+    guide.nearest = {m_checker.ground().centerOf(c.x), m_checker.ground().centerOf(c.y)};
+  }
 
   PathPoint pointAt(const Cell& cell) const {
     const Ground& ground = m_checker.ground();
@@ -138,43 +147,37 @@ class RelaxedSearch {
   }
 
   void traceTo(Cell cell, RelaxedPath& guide) {
-    guide.lengthPerRank.resize(m_weights.size());
-    for (; cell; cell = m_field.label(cell).before()) {
-      guide.path.push_back(pointAt(cell));
-      const Label& at = m_field.label(cell);
-      if (!at.before()) continue;
-      const Cost length = m_steps[static_cast<std::size_t>(at.step)].length;
-      const Cost weight = (at.cost - m_field.label(at.before()).cost) / length;
-      const auto rank = std::lower_bound(m_weights.begin(), m_weights.end(), weight);
-      guide.lengthPerRank[static_cast<std::size_t>(rank - m_weights.begin())] +=
-          static_cast<double>(length) / kStraightStep * m_checker.ground().voxelSize();
-    }
+    guide.nearest.reset();
+    guide.price = static_cast<double>(m_field.label(cell).cost) / kWeightOfLength / kStraightStep *
+                  m_checker.ground().voxelSize();
+    for (; cell; cell = m_field.label(cell).before()) guide.path.push_back(pointAt(cell));
     std::reverse(guide.path.begin(), guide.path.end());
   }
 
-  const EdgeChecker& m_checker;
+  const CollisionChecker& m_checker;
   RelaxedField m_field;
   const std::array<Step, 8> m_steps;
   const std::vector<Cost> m_weights;  ///< of a length, by rank
   std::priority_queue<Entry> m_queue;
   Place m_goal;
+  double m_nearest = 0;  ///< columns from the goal
 };
 
 }  // namespace
 
 std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order) {
-  const Cost factor = std::min<Cost>(256, Cost{1} << (40 / std::max(1, order.ranks() - 1)));
+  const ClassPrices prices(order);
   std::vector<Cost> weights;
   for (int rank = 0; rank < order.ranks(); ++rank)
-    weights.push_back(rank == 0 ? 1 : weights.back() * factor);
+    weights.push_back(std::llround(kWeightOfLength * (1 + prices.rate(rank))));
   return weights;
 }
 
-RelaxedPath searchRelaxed(const EdgeChecker& checker, const PlanningRegion& region,
-                          const GroundPose& start, const GroundPose& goal) {
-  RelaxedPath guide{region, {}, {}};
+RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& start,
+                          const GroundPose& goal) {
+  RelaxedPath guide;
   std::vector<PathPoint>& path = guide.path;
-  RelaxedSearch(checker, region).run(start, goal, guide);
+  RelaxedSearch(checker).run(start, goal, guide);
   if (path.size() < 2) path.clear();
   if (path.empty()) return guide;
   for (std::size_t i = 1; i < path.size(); ++i) {

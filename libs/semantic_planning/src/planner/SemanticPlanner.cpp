@@ -12,11 +12,8 @@ void PlannerOptions::describe(strict_files::OptionList& list) {
   list.add("cost", cost, "", "what is least, worst class first");
   list.add("edges", edges, "", "which of the classes along an edge it counts for");
   reading.describe(list);
-  list.add("class_tolerance", classTolerance, "m", strict_files::between(0, 10),
-           "with shorten: differences of the length in a class that do not matter");
-  list.add("shorten", shorten, "", "look for a better path beside the graph's");
-  list.add("refinements", refinements, "", strict_files::between(0, 10),
-           "with shorten: finer graphs near where the path should be, while it may be better");
+  list.add("shorten", shorten, "", "look for the path of least price, not in the graph only");
+  list.add("strict", strict, "", "classes come before length, whatever the order's rates");
   list.add("time_limit", timeLimit, "s", limits, "of a search");
   ground.describe(list);
 }
@@ -51,6 +48,7 @@ void SemanticPlanner::forget() { m_core->forget(); }
 const PlannerOptions& SemanticPlanner::options() const { return m_core->options(); }
 const colored_graph::ClassOrder& SemanticPlanner::order() const { return m_core->order(); }
 const Ground& SemanticPlanner::ground() const { return m_core->ground(); }
+bool SemanticPlanner::hasPlanned() const { return m_core->hasPlanned(); }
 bool SemanticPlanner::hasRoadmap() const { return m_core->hasRoadmap(); }
 const Roadmap& SemanticPlanner::roadmap() const { return m_core->roadmap(); }
 

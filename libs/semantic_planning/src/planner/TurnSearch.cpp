@@ -10,7 +10,6 @@ namespace semantic_planning {
 using colored_graph::kForbidden;
 using colored_graph::Length;
 using colored_graph::lengthDown;
-using colored_graph::Rank;
 using mrpt::math::TPose2D;
 
 namespace {
@@ -19,7 +18,7 @@ constexpr double kTurns[] = {0, 1, -1, 0.5, -0.5};  // of the tightest curvature
 constexpr int kHeadings = 36;                       // that are not the same
 constexpr int kShareOfTargets = 6;                  // one of so many is looked at from each pose
 
-double radiusFor(const EdgeChecker& checker) {
+double radiusFor(const CollisionChecker& checker) {
   constexpr double kLeast = 8, kInTurningRadii = 2.5;
   return std::max(kLeast, kInTurningRadii * checker.reedsShepp().turningRadius());
 }
@@ -27,7 +26,7 @@ double radiusFor(const EdgeChecker& checker) {
 /** How far along the path places lie that a way may lead to. */
 double reachFor(double radius) { return 1.5 * radius; }
 
-double stepFor(const EdgeChecker& checker) {
+double stepFor(const CollisionChecker& checker) {
   constexpr double kVoxels = 2, kInTurningRadii = 0.2;
   return std::max(kVoxels * checker.ground().voxelSize(),
                   kInTurningRadii * checker.reedsShepp().turningRadius());
@@ -54,14 +53,14 @@ std::vector<PathPoint> reversed(const std::vector<PathPoint>& path) {
 }  // namespace
 
 TurnSearch::TurnSearch(const std::vector<PathPoint>& path, bool isReversed,
-                       const EdgeChecker& checker, const WayPricing& pricing)
+                       const CollisionChecker& checker, const ClassPrices& prices)
     : m_path(path),
       m_isReversed(isReversed),
       m_checker(checker),
-      m_pricing(pricing),
+      m_prices(prices),
       m_radius(radiusFor(checker)),
       m_step(stepFor(checker)),
-      m_field(poseAt(0), m_radius, checker, pricing) {
+      m_field(poseAt(0), m_radius, checker, prices) {
   sumUp();
   aim();
 }
@@ -76,11 +75,11 @@ CurveState TurnSearch::stateAt(std::size_t point) const {
 }
 
 Length TurnSearch::ofWay(double length, bool forward) const {
-  return lengthDown(m_checker.price().ofWay(length, forward != m_isReversed));
+  return lengthDown(m_checker.motionCost().ofWay(length, forward != m_isReversed));
 }
 
 Length TurnSearch::ofChange(const Node& from, const CurveState& to) const {
-  return from.before < 0 ? 0 : lengthDown(m_checker.price().ofChange(from.state(), to));
+  return from.before < 0 ? 0 : lengthDown(m_checker.motionCost().ofChange(from.state(), to));
 }
 
 /** Between places that were looked at the path may touch what is forbidden: that is left out. */
@@ -91,9 +90,9 @@ void TurnSearch::sumUp() {
     const double length = p.arcLength - m_path[i - 1].arcLength;
     Length cost = m_toGo[i] + ofWay(length, p.forward);
     if (i + 1 < m_path.size())
-      cost += lengthDown(m_checker.price().ofChange(stateAt(i), stateAt(i + 1)));
+      cost += lengthDown(m_checker.motionCost().ofChange(stateAt(i), stateAt(i + 1)));
     if (m_checker.order().rank(p.classId) != kForbidden)
-      cost += m_pricing.of(p.classId, lengthDown(length));
+      cost += m_prices.of(p.classId, lengthDown(length));
     m_toGo[i - 1] = cost;
   }
   m_best = m_toGo.front();
@@ -120,9 +119,8 @@ Length TurnSearch::excess() {
 }
 
 std::optional<std::vector<PathPoint>> TurnSearch::run(Length gain) {
-  if (excess() <= gain) return std::nullopt;
   m_gain = gain;
-  m_budget.prices = m_pricing.perMeter();
+  m_budget.prices = m_prices.perMeter();
   m_field.spread(most(), nullptr);
   const ReedsSheppCurve none({}, 1, {});
   reach({poseAt(0), 0, -1, none}, m_field.at(poseAt(0)));
@@ -145,7 +143,7 @@ void TurnSearch::reach(const Node& node, Length rest) {
 void TurnSearch::goOn(int from) {
   for (const double turn : kTurns)
     for (const bool forward : {true, false})
-      if (forward != m_isReversed || m_checker.price().canReverse()) step(from, turn, forward);
+      if (forward != m_isReversed || m_checker.motionCost().canReverse()) step(from, turn, forward);
 }
 
 void TurnSearch::step(int from, double turn, bool forward) {
@@ -180,7 +178,7 @@ std::optional<Length> TurnSearch::costOver(const ReedsSheppCurve& curve, int fro
   m_budget.left = colored_graph::toMeters(most() - cost - rest);
   const auto profile = m_checker.profile(curve, from, to, &m_budget);
   if (!profile) return std::nullopt;
-  cost += m_pricing.of(*profile);
+  cost += m_prices.of(*profile);
   return cost + rest < most() ? std::optional(cost) : std::nullopt;
 }
 
@@ -198,7 +196,7 @@ void TurnSearch::join(int from) {
 }
 
 void TurnSearch::join(int from, const Target& target) {
-  const DrivePrice& price = m_checker.price();
+  const MotionCost& price = m_checker.motionCost();
   for (const ReedsSheppCurve& curve : curves(node(from).pose, target.pose)) {
     if (curve.length() > 1.25 * m_radius) continue;
     const Length cost = node(from).cost + ofChange(node(from), beginOf(curve)) +
@@ -214,8 +212,8 @@ void TurnSearch::join(int from, const Target& target) {
 
 std::vector<ReedsSheppCurve> TurnSearch::curves(const GroundPose& from,
                                                 const GroundPose& to) const {
-  if (!m_isReversed) return m_checker.price().curves(from.pose, to.pose);
-  std::vector<ReedsSheppCurve> curves = m_checker.price().curves(to.pose, from.pose);
+  if (!m_isReversed) return m_checker.motionCost().curves(from.pose, to.pose);
+  std::vector<ReedsSheppCurve> curves = m_checker.motionCost().curves(to.pose, from.pose);
   for (ReedsSheppCurve& curve : curves) curve = curve.reversed();
   return curves;
 }
@@ -237,62 +235,32 @@ std::vector<PathPoint> TurnSearch::joined() const {
 
 namespace {
 
-constexpr double kSlack = 0.05;  // m, beyond the tolerance
-
-/** Where one rank counts, and others by whether they are better or worse. */
-WayPricing pricingFor(Rank rank, Length ofBetter, Length ofRank, Length ofWorse,
-                      const colored_graph::ClassOrder& order) {
-  std::vector<Length> weights{0};
-  for (Rank r = 1; r < order.ranks(); ++r)
-    weights.push_back(r < rank ? ofBetter : r == rank ? ofRank : ofWorse);
-  return {order, weights};
+/** To turn around costs as much anywhere: that is no reason to look for another way. */
+double costOfTurning(const CollisionChecker& checker) {
+  return M_PI * checker.reedsShepp().turningRadius() + checker.motionCost().gearChange();
 }
 
-/** Meters of a rank and of those that are worse, as far as they may be avoided. */
-double metersOf(Rank rank, const std::vector<PathPoint>& path, const EdgeChecker& checker) {
-  double meters = 0;
-  const double reach = reachFor(radiusFor(checker));
-  for (std::size_t i = 1; i < path.size() && path[i].arcLength < reach; ++i) {
-    const Rank own = checker.order().rank(path[i].classId);
-    if (own >= rank && own != kForbidden) meters += path[i].arcLength - path[i - 1].arcLength;
-  }
-  return meters;
-}
-
-/** Whether a path has more of a rank, together with those that are worse, than it might, by more
- * than a tolerance. */
-bool hasTooMuch(Rank rank, const std::vector<PathPoint>& path, bool isReversed,
-                const EdgeChecker& checker, double tolerance) {
-  constexpr Length kMuch = 1 << 20;  // beside the price of driving
-  const double most = tolerance + 2 * kSlack;
-  if (metersOf(rank, path, checker) <= most) return false;
-  const WayPricing pricing = pricingFor(rank, 0, kMuch, kMuch, checker.order());
-  return TurnSearch(path, isReversed, checker, pricing).excess() > kMuch * lengthDown(most);
-}
-
-/** The worst of the ranks of which the path has too much is the one that it should have less of. */
 std::optional<std::vector<PathPoint>> better(const std::vector<PathPoint>& path, bool isReversed,
-                                             const EdgeChecker& checker, double tolerance) {
-  constexpr Length kWeight = 36, kOfWorse = 36 * kWeight, kOfBetter = 6;
-  Rank rank = checker.order().ranks() - 1;
-  while (rank > 0 && !hasTooMuch(rank, path, isReversed, checker, tolerance)) --rank;
-  if (rank == 0) return std::nullopt;
-  const WayPricing pricing = pricingFor(rank, kOfBetter, kWeight, kOfWorse, checker.order());
-  return TurnSearch(path, isReversed, checker, pricing)
-      .run(kWeight * lengthDown(tolerance + kSlack));
+                                             const CollisionChecker& checker,
+                                             const ClassPrices& prices) {
+  constexpr double kLeastGain = 0.2;  // m
+  TurnSearch search(path, isReversed, checker, prices);
+  if (search.excess() <= lengthDown(costOfTurning(checker))) return std::nullopt;
+  return search.run(lengthDown(kLeastGain));
 }
 
 }  // namespace
 
 std::optional<std::vector<PathPoint>> withBetterBegin(const std::vector<PathPoint>& path,
-                                                      const EdgeChecker& checker,
-                                                      double tolerance) {
-  return better(path, false, checker, tolerance);
+                                                      const CollisionChecker& checker,
+                                                      const ClassPrices& prices) {
+  return better(path, false, checker, prices);
 }
 
 std::optional<std::vector<PathPoint>> withBetterEnd(const std::vector<PathPoint>& path,
-                                                    const EdgeChecker& checker, double tolerance) {
-  auto found = better(reversed(path), true, checker, tolerance);
+                                                    const CollisionChecker& checker,
+                                                    const ClassPrices& prices) {
+  auto found = better(reversed(path), true, checker, prices);
   if (found) *found = reversed(*found);
   return found;
 }

@@ -11,8 +11,8 @@
 
 namespace semantic_planning {
 
-/** Looks near a path's first point for a way to turn around that has less of worse classes, and
- * leads to the path some meters on: best first over short arcs and straights in both gears, of
+/** Looks near a path's first point for a cheaper way to turn around that leads to the path some
+ * meters on: best first over short arcs and straights in both gears, of
  * which those between poses that are much the same are dropped (as in Dolgov et al., "Path Planning
  * for Autonomous Vehicles in Unknown Semi-structured Environments", 2010), and from these poses by
  * the vehicle's shortest curves. The rest of the path, and what a CostField says of the way there,
@@ -22,9 +22,9 @@ class TurnSearch {
   using Length = colored_graph::Length;
 
   /** \param isReversed whether the path is one that is driven from its end to its begin
-   * \param pricing must outlive the search, as path and checker must */
-  TurnSearch(const std::vector<PathPoint>& path, bool isReversed, const EdgeChecker& checker,
-             const WayPricing& pricing);
+   * \param prices must outlive the search, as path and checker must */
+  TurnSearch(const std::vector<PathPoint>& path, bool isReversed, const CollisionChecker& checker,
+             const ClassPrices& prices);
 
   /** What the path costs more than any other could. */
   Length excess();
@@ -83,8 +83,8 @@ class TurnSearch {
 
   const std::vector<PathPoint>& m_path;
   const bool m_isReversed;
-  const EdgeChecker& m_checker;
-  const WayPricing& m_pricing;
+  const CollisionChecker& m_checker;
+  const ClassPrices& m_prices;
   const double m_radius, m_step;
   CostField m_field;
   std::vector<Length> m_toGo;  ///< from each point on
@@ -98,12 +98,13 @@ class TurnSearch {
   int m_left = 500;  ///< poses to go on from
 };
 
-/** A path that begins, or ends, with less of a class worse than the best by more than a tolerance,
- * meters; found by a TurnSearch, which prices classes so that a few changes of gear do not pay for
- * less of them than that. */
+/** A path of lower price that begins, or ends, in another way; found by a TurnSearch, if what the
+ * path costs more than it might is more than it takes to turn around. */
 std::optional<std::vector<PathPoint>> withBetterBegin(const std::vector<PathPoint>& path,
-                                                      const EdgeChecker& checker, double tolerance);
+                                                      const CollisionChecker& checker,
+                                                      const ClassPrices& prices);
 std::optional<std::vector<PathPoint>> withBetterEnd(const std::vector<PathPoint>& path,
-                                                    const EdgeChecker& checker, double tolerance);
+                                                    const CollisionChecker& checker,
+                                                    const ClassPrices& prices);
 
 }  // namespace semantic_planning

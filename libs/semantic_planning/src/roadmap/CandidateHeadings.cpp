@@ -11,7 +11,7 @@ constexpr int kRays = 16, kStep = 2;  // columns between places of a ray that ar
 
 /** How far it goes on from a point over ground that is no worse than there, meters. */
 double freeLength(const CandidatePoint& point, double direction, colored_graph::Rank rank,
-                  const EdgeChecker& checker) {
+                  const CollisionChecker& checker) {
   const Ground& ground = checker.ground();
   const int steps = static_cast<int>(kHeadingReach / (kStep * ground.voxelSize()));
   const double cosine = std::cos(direction), sine = std::sin(direction);
@@ -31,7 +31,7 @@ double freeLength(const CandidatePoint& point, double direction, colored_graph::
 
 /** The axis of the free space around a point: that of the rays' second moments; or nothing if they
  * are much the same. */
-std::optional<double> axisAt(const CandidatePoint& point, const EdgeChecker& checker) {
+std::optional<double> axisAt(const CandidatePoint& point, const CollisionChecker& checker) {
   const Surface* s = checker.ground().near(point.column, point.z, 0);
   const colored_graph::Rank rank = s ? checker.order().rank(s->classId) : 0;
   std::complex<double> moments;
@@ -49,7 +49,7 @@ std::optional<double> axisAt(const CandidatePoint& point, const EdgeChecker& che
 
 }  // namespace
 
-std::vector<Candidate> candidatesAt(const CandidatePoint& point, const EdgeChecker& checker,
+std::vector<Candidate> candidatesAt(const CandidatePoint& point, const CollisionChecker& checker,
                                     const RoadmapOptions& options) {
   const double random = unitHash(static_cast<std::uint32_t>(point.column.x),
                                  static_cast<std::uint32_t>(point.column.y), options.seed);

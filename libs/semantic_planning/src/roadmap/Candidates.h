@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
 #include <semantic_planning/roadmap/RoadmapOptions.h>
 
 #include <cstdint>
@@ -44,7 +44,7 @@ std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
 
 /** A point's poses, in evenly spaced headings: from the direction in which the free space around
  * runs, or one that looks random. They depend on ground within kHeadingReach meters. */
-std::vector<Candidate> candidatesAt(const CandidatePoint& point, const EdgeChecker& checker,
+std::vector<Candidate> candidatesAt(const CandidatePoint& point, const CollisionChecker& checker,
                                     const RoadmapOptions& options);
 constexpr double kHeadingReach = 5;
 

@@ -1,4 +1,4 @@
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ std::vector<double> stations(const ReedsSheppCurve& curve, double voxelSize) {
 
 }  // namespace
 
-std::vector<PathPoint> EdgeChecker::trace(const ReedsSheppCurve& curve, int z) const {
+std::vector<PathPoint> CollisionChecker::trace(const ReedsSheppCurve& curve, int z) const {
   std::vector<PathPoint> points;
   for (const double s : stations(curve, m_ground.voxelSize())) {
     const CurvePoint c = curve.at(s);

@@ -50,7 +50,8 @@ void EdgeMemory::groundChanged(const std::vector<Column>& tiles) {
 
 bool EdgeMemory::holds(const PosePair& poses, std::uint32_t time) const {
   if (time == m_now) return true;
-  const double length = m_checker.price().shortest(poses.first.pose, poses.second.pose).length();
+  const double length =
+      m_checker.motionCost().shortest(poses.first.pose, poses.second.pose).length();
   const Square square = squareAround(poses, length, m_checker);
   return !anyTileIn(m_checker.ground(), square, [&](Column tile) {
     const std::uint32_t* changed = m_changed.find(tile);

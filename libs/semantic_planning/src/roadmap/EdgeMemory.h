@@ -15,9 +15,9 @@ namespace semantic_planning {
 class EdgeMemory {
  public:
   /** \param checker must outlive the memory. */
-  explicit EdgeMemory(const EdgeChecker& checker) : m_checker(checker) {}
+  explicit EdgeMemory(const CollisionChecker& checker) : m_checker(checker) {}
 
-  /** EdgeChecker::profile() of the pair's curve. */
+  /** CollisionChecker::profile() of the pair's curve. */
   std::optional<colored_graph::EdgeProfile> profile(const PosePair& poses);
   /** The checker's answers may be others now where curves come near these tiles. */
   void groundChanged(const std::vector<Column>& tiles);
@@ -37,7 +37,7 @@ class EdgeMemory {
   };
   bool holds(const PosePair& poses, std::uint32_t time) const;
 
-  const EdgeChecker& m_checker;
+  const CollisionChecker& m_checker;
   std::unordered_map<PosePair, Answer, Hash> m_answers;
   ColumnGrid<std::uint32_t> m_changed;  ///< when tiles did last
   std::uint32_t m_now = 0;              ///< counts the changes

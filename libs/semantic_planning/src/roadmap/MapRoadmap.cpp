@@ -23,7 +23,7 @@ RoadmapOptions withDefaults(RoadmapOptions options) {
 
 }  // namespace
 
-MapRoadmap::MapRoadmap(CandidateStore& store, const EdgeChecker& checker,
+MapRoadmap::MapRoadmap(CandidateStore& store, const CollisionChecker& checker,
                        const RoadmapOptions& options, const GroundPose& start,
                        const PlanningRegion& region)
     : m_checker(checker),

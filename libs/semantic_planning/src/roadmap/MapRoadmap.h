@@ -10,7 +10,7 @@ namespace semantic_planning {
 class MapRoadmap {
  public:
   /** \param store, checker must outlive the roadmap \param start on the ground */
-  MapRoadmap(CandidateStore& store, const EdgeChecker& checker, const RoadmapOptions& options,
+  MapRoadmap(CandidateStore& store, const CollisionChecker& checker, const RoadmapOptions& options,
              const GroundPose& start, const PlanningRegion& region);
 
   Roadmap& roadmap() { return m_roadmap; }
@@ -29,7 +29,7 @@ class MapRoadmap {
   void takeByPriority(CandidateStore& store);
   void takeHalton();
 
-  const EdgeChecker& m_checker;
+  const CollisionChecker& m_checker;
   const RoadmapOptions m_options;
   const PlanningRegion m_region;
   const GroundPose m_start;

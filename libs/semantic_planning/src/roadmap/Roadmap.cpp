@@ -25,7 +25,7 @@ bool isSame(const EdgeProfile& l, const colored_graph::Stretches& r) {
 }
 
 /** What driving a curve costs beyond its length. */
-Length tollOf(const ReedsSheppCurve& curve, const DrivePrice& price) {
+Length tollOf(const ReedsSheppCurve& curve, const MotionCost& price) {
   return colored_graph::lengthDown(std::max(0.0, price.of(curve) - curve.length()));
 }
 
@@ -38,7 +38,7 @@ int neighborsFor(const RoadmapOptions& options) {
 
 }  // namespace
 
-Roadmap::Roadmap(const EdgeChecker& checker, const RoadmapOptions& options)
+Roadmap::Roadmap(const CollisionChecker& checker, const RoadmapOptions& options)
     : m_checker(checker),
       m_graph(checker.order().classes()),
       m_nearest(std::make_unique<NearestPoses>(checker.reedsShepp(), neighborsFor(options),
@@ -103,7 +103,7 @@ void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
 }
 
 void Roadmap::link(VertexId a, VertexId b) {
-  const DrivePrice& price = m_checker.price();
+  const MotionCost& price = m_checker.motionCost();
   if (!price.canReverse()) {
     linkOneWay(a, b);
     return linkOneWay(b, a);
@@ -115,7 +115,7 @@ void Roadmap::link(VertexId a, VertexId b) {
 }
 
 void Roadmap::linkOneWay(VertexId from, VertexId to) {
-  const DrivePrice& price = m_checker.price();
+  const MotionCost& price = m_checker.motionCost();
   const ReedsSheppCurve curve = price.shortest(pose(from).pose, pose(to).pose);
   if (curve.length() > m_radius) return;
   const colored_graph::Tolls tolls{tollOf(curve, price), colored_graph::kClosed};
@@ -194,12 +194,12 @@ void Roadmap::reevaluate(EdgeId e) {
 
 PosePair Roadmap::ends(EdgeId e) const {
   const Edge edge = m_graph.edge(e);
-  return m_checker.price().canReverse() ? PosePair(pose(edge.a), pose(edge.b))
-                                        : PosePair::oneWay(pose(edge.a), pose(edge.b));
+  return m_checker.motionCost().canReverse() ? PosePair(pose(edge.a), pose(edge.b))
+                                             : PosePair::oneWay(pose(edge.a), pose(edge.b));
 }
 
 ReedsSheppCurve Roadmap::curve(EdgeId e, VertexId from) const {
-  return ends(e).curveFrom(pose(from), m_checker.price());
+  return ends(e).curveFrom(pose(from), m_checker.motionCost());
 }
 
 std::optional<EdgeProfile> Roadmap::evaluate(EdgeId e) const {

@@ -14,7 +14,7 @@ struct Square {
 
 /** Where columns lie that an edge's outcome may depend on: a curve stays within half its length of
  * the middle between its ends. \param length of the curve, meters */
-inline Square squareAround(const PosePair& ends, double length, const EdgeChecker& checker) {
+inline Square squareAround(const PosePair& ends, double length, const CollisionChecker& checker) {
   const auto &a = ends.first.pose, &b = ends.second.pose;
   return {(a.x + b.x) / 2, (a.y + b.y) / 2, length / 2 + checker.reach()};
 }

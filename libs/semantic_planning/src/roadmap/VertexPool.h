@@ -19,7 +19,7 @@ class VertexPool {
     std::size_t inserted = 0, removed = 0, recolored = 0;
   };
 
-  VertexPool(const EdgeChecker& checker, Roadmap& roadmap)
+  VertexPool(const CollisionChecker& checker, Roadmap& roadmap)
       : m_checker(checker), m_roadmap(roadmap) {}
 
   /** Whether a candidate could be a vertex now. */
@@ -52,7 +52,7 @@ class VertexPool {
   void dropVertex(Member& member);
   bool standsOnGround(Member& member);
 
-  const EdgeChecker& m_checker;
+  const CollisionChecker& m_checker;
   Roadmap& m_roadmap;
   std::vector<Member> m_members;
   std::vector<std::size_t> m_free;

@@ -15,10 +15,13 @@ constexpr const char* kUnknownGround = "unknown";
  *       - [road, lane-marking]  # several classes may share a rank
  *       - sidewalk
  *       - unknown               # ground of unknown class
+ *     rates: [4, 12]            # of all ranks but the best: so many meters more of driving a meter
+ *                               # is worth avoiding; inf: any number. Without: 4, 12, 36, 108, ...
  *
  * \return over the map's class ids 0..K, 0 = unknown ground.
  * \throw std::runtime_error naming file, line and value: unreadable, YAML syntax, unknown or
- * repeated key, a class that the table does not have or that is named twice, more than 16 ranks. */
+ * repeated key, a class that the table does not have or that is named twice, more than 16 ranks,
+ * rates that ClassOrder::withRates() refuses. */
 colored_graph::ClassOrder loadClassOrder(const std::filesystem::path& file,
                                          const semantic_types::ClassTable& classes);
 

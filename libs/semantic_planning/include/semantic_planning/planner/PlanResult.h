@@ -38,14 +38,18 @@ using StageTimes = std::vector<std::pair<std::string, double>>;
 struct PlanResult {
   PlanStatus status = PlanStatus::NotConnected;
   std::string reason;  ///< a sentence with the numbers; empty if found
-  /** Where something is in the way of the start or goal, if that is refused; map frame, meters. */
+  /** Where something is in the way: of the start or goal, if that is refused, or where what can be
+   * reached comes nearest to the goal; map frame, meters. */
   std::optional<mrpt::math::TPoint2D> obstacle;
-  /** Worst rank first: one number for each rank but rank 0, then the price of driving (DrivePrice),
+  /** Worst rank first: one number for each rank but rank 0, then the price of driving (MotionCost),
    * then the total length, in colored_graph's units (0.1 mm) or edges. */
   std::vector<std::int64_t> cost;
-  /** Of the roadmap's best path, before a better one was looked for (PlannerOptions::shorten), with
-   * classes as its search rounds them (classTolerance); empty if the roadmap has none. Its price
-   * leaves out what changes where edges meet. */
+  /** Meters: MotionCost, and each rank's rate (ClassOrder) for each of its meters. An infinite rate
+   * counts as a large one. */
+  double price = 0;
+  /** Of the roadmap's best path, before a better one was looked for (PlannerOptions::shorten);
+   * empty if the roadmap has none, or was not needed. Its motion cost leaves out what changes where
+   * edges meet. */
   std::vector<std::int64_t> roadmapCost;
   std::vector<double> lengthPerClass;         ///< meters by class id; [0]: unknown ground
   double length = 0;                          ///< meters

@@ -21,18 +21,16 @@ struct PlannerOptions {
   ClassReading reading;
   colored_graph::EdgeModel edges = colored_graph::EdgeModel::Profile;
   colored_graph::CostKind cost = colored_graph::CostKind::ArcLength;
-  /** Looks for a better path beside the roadmap's, and along the way that a vehicle would take
-   * which turns on the spot; with EdgeModel::Profile and CostKind::ArcLength only. */
+  /** Looks for the path of least price (PlanResult::price) beside the way that a vehicle would take
+   * which turns on the spot. A roadmap is made only if there is none, or one that costs much more
+   * than that way. With EdgeModel::Profile and CostKind::ArcLength only; otherwise, and without,
+   * the roadmap's best path is the result, classes before length. */
   bool shorten = false;
-  /** With `shorten`: so many times the roadmap is made anew, finer and near the way of a vehicle
-   * that turns on the spot, while there is no path or one that is longer than that way by a tenth,
-   * or by 0.3 m in a class. The best of all paths counts. Up to three times in any case while there
-   * is no path. Compressed and Full only. */
-  int refinements = 0;
-  /** With `shorten`, differences of the length in a class up to this (meters) do not matter: of
-   * paths that differ by no more, the one that is driven best is taken (VehicleOptions), and the
-   * roadmap's search rounds what an edge has of a class to a multiple. 0: exact. */
-  double classTolerance = 0.2;
+  /** With `shorten`: classes come before length, whatever the order's rates (ClassOrder). */
+  bool strict = false;
+  /** With `shorten`: so many finer roadmaps are tried while there is no path; fewer bound what it
+   * takes to find none. Without a name in files. */
+  int finerRoadmaps = 3;
   /** Of a search, seconds. */
   double timeLimit = std::numeric_limits<double>::infinity();
   /** Asked often during a search, which stops when it answers true. */
@@ -46,7 +44,7 @@ struct PlannerOptions {
 
 class PlannerCore;
 
-/** Plans paths of a vehicle over a semantic map that put classes before length.
+/** Plans paths of a vehicle over a semantic map, by what driving and each class cost.
  *
  *     SemanticPlanner planner(map, loadClassOrder("order.yaml", map.classes()), options);
  *     PlanResult plan = planner.plan(start, goal);
@@ -85,8 +83,9 @@ class SemanticPlanner {
    * went insert or remove vertices, and edges over ground that changed are looked at again. */
   UpdateResult update();
 
-  /** The best path now, from where the vehicle is, to the same goal: repairs the last one instead
-   * of searching anew. \throw std::logic_error nothing was planned before. */
+  /** The best path now, from where the vehicle is, to the same goal. What it has of a path is kept
+   * if it is free and nothing costs 0.5 m less. A roadmap's search is repaired. \throw
+   * std::logic_error nothing was planned before. */
   PlanResult replan(const mrpt::math::TPose2D& start, std::optional<double> startZ = {});
 
   /** Forgets all that plans before have found out, but for the ground: the next plan() takes as
@@ -96,9 +95,12 @@ class SemanticPlanner {
   const PlannerOptions& options() const;
   const colored_graph::ClassOrder& order() const;
   const Ground& ground() const;
-  /** False before the first plan, and after one whose start or goal was refused. */
+  /** Whether replan() has something to go on with: false before the first plan, and after one whose
+   * start or goal was refused. */
+  bool hasPlanned() const;
+  /** Whether the last plan needed a roadmap. */
   bool hasRoadmap() const;
-  /** The roadmap of the last plan. \throw std::logic_error nothing was planned before. */
+  /** The roadmap of the last plan. \throw std::logic_error it had none. */
   const Roadmap& roadmap() const;
   /** Whether the vehicle can stand there: PlanStatus::Found, or what is the matter at a start. */
   PlanStatus check(const mrpt::math::TPose2D& pose, std::optional<double> z = {}) const;

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
 
 #include <tuple>
 
@@ -37,7 +37,7 @@ struct PosePair {
     return reedsShepp.distance(first.pose, second.pose);
   }
   /** The vehicle's curve between them that starts at `from`, one of them. */
-  ReedsSheppCurve curveFrom(const GroundPose& from, const DrivePrice& price) const {
+  ReedsSheppCurve curveFrom(const GroundPose& from, const MotionCost& price) const {
     const ReedsSheppCurve curve = price.shortest(first.pose, second.pose);
     return keyOf(from) == keyOf(first) ? curve : curve.reversed();
   }

@@ -1,6 +1,6 @@
 #pragma once
 #include <colored_graph/ColoredGraph.h>
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
 #include <semantic_planning/roadmap/PosePair.h>
 #include <semantic_planning/roadmap/RoadmapOptions.h>
 
@@ -15,7 +15,7 @@ namespace semantic_planning {
 class NearestPoses;
 
 /** Poses on the ground as vertices of a colored graph, and Reeds-Shepp curves as its edges, whose
- * tolls are what driving them costs beyond their length (DrivePrice). A vehicle that only drives
+ * tolls are what driving them costs beyond their length (MotionCost). A vehicle that only drives
  * forward has an edge for each way.
  *
  * An edge connects a with b if b is among the k nearest of a, or a among those of b; this holds
@@ -31,7 +31,7 @@ class Roadmap {
   using EdgeId = colored_graph::EdgeId;
 
   /** \param checker must outlive the roadmap. */
-  Roadmap(const EdgeChecker& checker, const RoadmapOptions& options);
+  Roadmap(const CollisionChecker& checker, const RoadmapOptions& options);
   ~Roadmap();
 
   /** Removes vertices, then inserts others; those that are near them get other neighbors.
@@ -78,7 +78,7 @@ class Roadmap {
   void reevaluate(EdgeId e);
   void keepPose(VertexId v, const GroundPose& pose);
 
-  const EdgeChecker& m_checker;
+  const CollisionChecker& m_checker;
   colored_graph::ColoredGraph m_graph;
   std::unique_ptr<NearestPoses> m_nearest;
   std::size_t m_queryNeighbors, m_mostEdges;

@@ -16,9 +16,9 @@ struct CurveState {
 
 /** What driving costs a vehicle beside the classes that it drives over, in meters forward: meters,
  * those backwards weighted, and changes of gear and steering. */
-class DrivePrice {
+class MotionCost {
  public:
-  explicit DrivePrice(const VehicleOptions& vehicle);
+  explicit MotionCost(const VehicleOptions& vehicle);
 
   bool canReverse() const { return std::isfinite(m_reverse); }
   double gearChange() const { return m_gearChange; }

@@ -1,4 +1,4 @@
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
 
 #include <algorithm>
 #include <array>
@@ -42,11 +42,11 @@ Column between(const Ground& ground, Column a, const mrpt::math::TPoint2D& from,
 
 }  // namespace
 
-inline const Surface* EdgeChecker::near(Column c, int z, int tolerance) const {
+inline const Surface* CollisionChecker::near(Column c, int z, int tolerance) const {
   return surfaceNear(m_ground.layers().surfaces(), c, z, tolerance);
 }
 
-inline bool EdgeChecker::isFree(const CheckedDisc& d, Column c, int z) const {
+inline bool CollisionChecker::isFree(const CheckedDisc& d, Column c, int z) const {
   const Surface* s = near(c, z, d.tolerance);
   return s && s->drivable && s->clearance2 >= d.needed2;
 }
@@ -54,10 +54,10 @@ inline bool EdgeChecker::isFree(const CheckedDisc& d, Column c, int z) const {
 /** Moves the vehicle from placement to placement and looks at all columns that its discs' centers
  * come through: what is between placements is seen, too. What lies below the same columns is not
  * looked up again; where it begins is not looked at. */
-class EdgeChecker::Sweep {
+class CollisionChecker::Sweep {
  public:
   /** \param z key of the surface below the placement */
-  Sweep(const EdgeChecker& checker, const Placement& begin, int z)
+  Sweep(const CollisionChecker& checker, const Placement& begin, int z)
       : m_checker(checker),
         m_z(z),
         m_column(checker.m_ground.columnAt(begin.x, begin.y)),
@@ -131,7 +131,7 @@ class EdgeChecker::Sweep {
     return true;
   }
 
-  const EdgeChecker& m_checker;
+  const CollisionChecker& m_checker;
   int m_z;
   Column m_column;
   std::vector<At>& m_discs;
@@ -140,13 +140,14 @@ class EdgeChecker::Sweep {
   int m_worstZ = 0;
 };
 
-EdgeChecker::EdgeChecker(const Ground& ground, const VehicleOptions& vehicle,
-                         const colored_graph::ClassOrder& order, const ClassReading& reading)
+CollisionChecker::CollisionChecker(const Ground& ground, const VehicleOptions& vehicle,
+                                   const colored_graph::ClassOrder& order,
+                                   const ClassReading& reading)
     : m_ground(ground),
       m_order(order),
       m_reading(reading),
       m_reedsShepp(vehicle.turningRadius),
-      m_price(vehicle) {
+      m_motionCost(vehicle) {
   vehicle.validate();
   reading.validate();
   const double voxel = ground.voxelSize(), rise = std::tan(vehicle.maxSlope * M_PI / 180);
@@ -174,14 +175,14 @@ EdgeChecker::EdgeChecker(const Ground& ground, const VehicleOptions& vehicle,
   m_wheelTolerance = tolerance(vehicle.wheelTrack / 2);
 }
 
-std::optional<GroundPose> EdgeChecker::place(const TPose2D& pose,
-                                             std::optional<double> nearZ) const {
+std::optional<GroundPose> CollisionChecker::place(const TPose2D& pose,
+                                                  std::optional<double> nearZ) const {
   const auto point = m_ground.find(pose.x, pose.y, nearZ);
   if (!point) return std::nullopt;
   return GroundPose{pose, point->surface.z};
 }
 
-Fit EdgeChecker::fit(const GroundPose& pose) const {
+Fit CollisionChecker::fit(const GroundPose& pose) const {
   const Surface* s = near(m_ground.columnAt(pose.pose.x, pose.pose.y), pose.z, 0);
   if (!s || !s->drivable) return Fit::OffGround;
   const Placement placed(pose.pose);
@@ -192,7 +193,8 @@ Fit EdgeChecker::fit(const GroundPose& pose) const {
   return isFree ? Fit::Free : Fit::Blocked;
 }
 
-inline EdgeChecker::WheelColumns EdgeChecker::wheelColumns(const Placement& placed) const {
+inline CollisionChecker::WheelColumns CollisionChecker::wheelColumns(
+    const Placement& placed) const {
   WheelColumns columns;
   for (std::size_t i = 0; i < m_wheels.size(); ++i) {
     const auto [x, y] = placed(0, m_wheels[i]);
@@ -202,7 +204,7 @@ inline EdgeChecker::WheelColumns EdgeChecker::wheelColumns(const Placement& plac
 }
 
 template <class F>
-bool EdgeChecker::forWheels(const WheelColumns& columns, int z, F f) const {
+bool CollisionChecker::forWheels(const WheelColumns& columns, int z, F f) const {
   for (std::size_t i = 0; i < m_wheels.size(); ++i) {
     const Surface* s = near(columns[i], z, m_wheelTolerance);
     if (!s) return false;
@@ -211,7 +213,7 @@ bool EdgeChecker::forWheels(const WheelColumns& columns, int z, F f) const {
   return true;
 }
 
-inline ClassId EdgeChecker::read(Column c, const Surface& s) const {
+inline ClassId CollisionChecker::read(Column c, const Surface& s) const {
   if (m_reading.kind != ClassReading::Kind::Cautious || s.filled) return s.classId;
   const auto node = m_ground.map().search(
       {static_cast<std::uint16_t>(c.x), static_cast<std::uint16_t>(c.y), s.z});
@@ -224,7 +226,7 @@ inline ClassId EdgeChecker::read(Column c, const Surface& s) const {
   return worst;
 }
 
-std::optional<ClassId> EdgeChecker::worstUnder(const WheelColumns& wheels, int z) const {
+std::optional<ClassId> CollisionChecker::worstUnder(const WheelColumns& wheels, int z) const {
   std::optional<ClassId> worst;
   const bool grounded = forWheels(wheels, z, [&](const Surface& s, Column c) {
     const ClassId id = read(c, s);
@@ -233,13 +235,13 @@ std::optional<ClassId> EdgeChecker::worstUnder(const WheelColumns& wheels, int z
   return grounded ? worst : std::nullopt;
 }
 
-ClassId EdgeChecker::classAt(const GroundPose& pose) const {
+ClassId CollisionChecker::classAt(const GroundPose& pose) const {
   return worstUnder(wheelColumns(Placement(pose.pose)), pose.z).value_or(semantic_types::kNoClass);
 }
 
 /** Spreads a length over the classes that a voxel may have. */
-void EdgeChecker::addDistribution(Column c, const Surface& s, double length,
-                                  Lengths& lengths) const {
+void CollisionChecker::addDistribution(Column c, const Surface& s, double length,
+                                       Lengths& lengths) const {
   semantic_octree::SemanticOcTreeNode node;
   if (!s.filled)
     node = m_ground.map().search(
@@ -257,19 +259,20 @@ void EdgeChecker::addDistribution(Column c, const Surface& s, double length,
     if (p[id] > least) lengths[id] += length * p[id] / sum;
 }
 
-bool EdgeChecker::addExpected(const Placement& placed, int z, double length,
-                              Lengths& lengths) const {
+bool CollisionChecker::addExpected(const Placement& placed, int z, double length,
+                                   Lengths& lengths) const {
   return forWheels(wheelColumns(placed), z, [&](const Surface& s, Column c) {
     addDistribution(c, s, length / static_cast<double>(m_wheels.size()), lengths);
   });
 }
 
-std::optional<EdgeProfile> EdgeChecker::profile(const GroundPose& a, const GroundPose& b) const {
-  return profile(m_price.shortest(a.pose, b.pose), a.z, b.z);
+std::optional<EdgeProfile> CollisionChecker::profile(const GroundPose& a,
+                                                     const GroundPose& b) const {
+  return profile(m_motionCost.shortest(a.pose, b.pose), a.z, b.z);
 }
 
-std::optional<EdgeProfile> EdgeChecker::profile(const ReedsSheppCurve& curve, int from, int to,
-                                                ClassBudget* budget) const {
+std::optional<EdgeProfile> CollisionChecker::profile(const ReedsSheppCurve& curve, int from, int to,
+                                                     ClassBudget* budget) const {
   const int n = std::max(1, static_cast<int>(std::ceil(curve.length() / m_piece)));
   const double piece = curve.length() / n;
   thread_local Lengths lengths;
@@ -281,7 +284,6 @@ std::optional<EdgeProfile> EdgeChecker::profile(const ReedsSheppCurve& curve, in
            (!budget || pay(*budget, sweep.worst(), piece));
   };
   const bool isFree = walkCurve(curve, n, counts, fits);
-  if (budget && budget->isSpent()) budget->seen = roundedDown(lengths);
   if (!isFree) return std::nullopt;
   if (std::abs(sweep.z() - to) > m_ground.step()) return std::nullopt;
   EdgeProfile profile = rounded(lengths, curve.length());

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_planning/roadmap/EdgeChecker.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
 
 #include <algorithm>
 #include <cmath>
@@ -112,7 +112,7 @@ PaintedWorld roughWorld() {
 
 }  // namespace
 
-class EdgeCheckerTest : public testing::Test {
+class CollisionCheckerTest : public testing::Test {
  protected:
   std::optional<GroundPose> draw() {
     std::uniform_real_distribution<double> at(-8, 8), heading(-M_PI, M_PI);
@@ -152,12 +152,12 @@ class EdgeCheckerTest : public testing::Test {
   colored_graph::ClassOrder order{5, {{1}, {2}, {4}, {0}}};
   VehicleOptions vehicle;
   Ground ground{world.map(), vehicle, {}, order};
-  EdgeChecker checker{ground, vehicle, order, {}};
+  CollisionChecker checker{ground, vehicle, order, {}};
   std::mt19937 random{5};
   int free = 0, blocked = 0, overcautious = 0;
 };
 
-TEST_F(EdgeCheckerTest, seesWhatADenseLookSees) {
+TEST_F(CollisionCheckerTest, seesWhatADenseLookSees) {
   for (int i = 0; i < 20000 && !HasFatalFailure(); ++i) {
     const auto a = draw(), b = draw();
     if (a && b && isNear(*a, *b)) expectAsDense(*a, *b);
@@ -167,7 +167,7 @@ TEST_F(EdgeCheckerTest, seesWhatADenseLookSees) {
   EXPECT_LE(overcautious, blocked / 100);
 }
 
-TEST_F(EdgeCheckerTest, seesWhatADenseLookSeesAlongLinesOfVoxels) {
+TEST_F(CollisionCheckerTest, seesWhatADenseLookSeesAlongLinesOfVoxels) {
   for (int i = 0; i < 20000 && !HasFatalFailure(); ++i) {
     const auto a = drawAligned(), b = drawAligned();
     if (a && b && isNear(*a, *b)) expectAsDense(*a, *b);
@@ -177,7 +177,7 @@ TEST_F(EdgeCheckerTest, seesWhatADenseLookSeesAlongLinesOfVoxels) {
   EXPECT_LE(overcautious, blocked / 100);
 }
 
-TEST_F(EdgeCheckerTest, givesAnEdgeToItselfItsClass) {
+TEST_F(CollisionCheckerTest, givesAnEdgeToItselfItsClass) {
   const auto pose = checker.place({0, 0, 1});
   const auto profile = checker.profile(*pose, *pose);
   ASSERT_TRUE(profile);
@@ -186,7 +186,7 @@ TEST_F(EdgeCheckerTest, givesAnEdgeToItselfItsClass) {
   EXPECT_EQ(profile->front().length, 0);
 }
 
-TEST_F(EdgeCheckerTest, answersSeveralThreadsAsOne) {
+TEST_F(CollisionCheckerTest, answersSeveralThreadsAsOne) {
   std::vector<std::pair<GroundPose, GroundPose>> edges;
   while (edges.size() < 2000) {
     const auto a = draw(), b = draw();

@@ -3,7 +3,7 @@
 #include <colored_graph/ColoredGraph.h>
 #include <semantic_planning/ground/Ground.h>
 #include <semantic_planning/roadmap/RoadmapOptions.h>
-#include <semantic_planning/vehicle/DrivePrice.h>
+#include <semantic_planning/vehicle/MotionCost.h>
 #include <semantic_planning/vehicle/PathPoint.h>
 #include <semantic_planning/vehicle/ReedsShepp.h>
 
@@ -32,14 +32,13 @@ enum class Fit {
 struct ClassBudget {
   std::vector<double> prices;  ///< of a meter, by class
   double left = 0;
-  colored_graph::EdgeProfile seen{};  ///< what was looked at when it was spent, rounded down
   bool isSpent() const { return left < 0; }
 };
 
 /** Where a vehicle fits, and over which classes it goes. The footprint is checked as discs, which
  * keep their distance from whole voxels: this errs to the safe side by about a voxel. Several
  * threads may ask at a time. */
-class EdgeChecker {
+class CollisionChecker {
  public:
   /** A disc of the footprint, and what it asks of the surface below its center. */
   struct CheckedDisc {
@@ -49,12 +48,12 @@ class EdgeChecker {
   };
 
   /** \param ground must outlive the checker. \throw std::invalid_argument bad options. */
-  EdgeChecker(const Ground& ground, const VehicleOptions& vehicle,
-              const colored_graph::ClassOrder& order, const ClassReading& reading);
+  CollisionChecker(const Ground& ground, const VehicleOptions& vehicle,
+                   const colored_graph::ClassOrder& order, const ClassReading& reading);
 
   const Ground& ground() const { return m_ground; }
   const ReedsShepp& reedsShepp() const { return m_reedsShepp; }
-  const DrivePrice& price() const { return m_price; }
+  const MotionCost& motionCost() const { return m_motionCost; }
   const colored_graph::ClassOrder& order() const { return m_order; }
   const std::vector<CheckedDisc>& discs() const { return m_discs; }
   /** Where wheel tracks run: y in the vehicle's frame, meters. */
@@ -105,7 +104,7 @@ class EdgeChecker {
   const colored_graph::ClassOrder m_order;
   const ClassReading m_reading;
   ReedsShepp m_reedsShepp;
-  DrivePrice m_price;
+  MotionCost m_motionCost;
   std::vector<CheckedDisc> m_discs;
   double m_piece;                ///< of curves, between places that are looked at; meters
   std::vector<double> m_wheels;  ///< y in the vehicle's frame

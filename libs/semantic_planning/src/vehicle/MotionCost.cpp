@@ -1,4 +1,4 @@
-#include <semantic_planning/vehicle/DrivePrice.h>
+#include <semantic_planning/vehicle/MotionCost.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,13 +39,13 @@ CurveState endOf(const ReedsSheppCurve& curve) {
   return firstOf(curve.segments().rbegin(), curve.segments().rend(), curve.turningRadius());
 }
 
-DrivePrice::DrivePrice(const VehicleOptions& vehicle)
+MotionCost::MotionCost(const VehicleOptions& vehicle)
     : m_reedsShepp(vehicle.turningRadius),
       m_reverse(vehicle.reverseWeight),
       m_gearChange(vehicle.gearChange),
       m_steering(vehicle.steeringChange) {}
 
-double DrivePrice::of(const ReedsSheppCurve& curve) const {
+double MotionCost::of(const ReedsSheppCurve& curve) const {
   double price = 0;
   std::optional<CurveState> before;
   for (const ReedsSheppCurve::Segment& segment : curve.segments()) {
@@ -58,7 +58,7 @@ double DrivePrice::of(const ReedsSheppCurve& curve) const {
   return price;
 }
 
-double DrivePrice::of(const std::vector<PathPoint>& path) const {
+double MotionCost::of(const std::vector<PathPoint>& path) const {
   double price = 0;
   for (std::size_t i = 1; i < path.size(); ++i) {
     price += ofWay(path[i].arcLength - path[i - 1].arcLength, path[i].forward);
@@ -67,11 +67,11 @@ double DrivePrice::of(const std::vector<PathPoint>& path) const {
   return price;
 }
 
-ReedsSheppCurve DrivePrice::shortest(const TPose2D& a, const TPose2D& b) const {
+ReedsSheppCurve MotionCost::shortest(const TPose2D& a, const TPose2D& b) const {
   return canReverse() ? m_reedsShepp.connect(a, b) : m_reedsShepp.connectForward(a, b);
 }
 
-std::vector<ReedsSheppCurve> DrivePrice::curves(const TPose2D& a, const TPose2D& b) const {
+std::vector<ReedsSheppCurve> MotionCost::curves(const TPose2D& a, const TPose2D& b) const {
   std::vector<ReedsSheppCurve> curves{shortest(a, b)};
   const auto isBackward = [](const auto& segment) { return segment.length < -kStandstill; };
   const auto& segments = curves.front().segments();

@@ -1,0 +1,45 @@
+#pragma once
+#include <semantic_planning/planner/PlanResult.h>
+#include <semantic_planning/roadmap/CollisionChecker.h>
+
+#include <optional>
+#include <vector>
+
+#include "ClassPrices.h"
+
+namespace semantic_planning {
+
+/** The path that was planned last, kept true to the ground: a vehicle on its way along it needs no
+ * search as long as nothing is in the way and no other way costs clearly less. */
+class KeptPath {
+ public:
+  /** Both must outlive this. */
+  KeptPath(const CollisionChecker& checker, const ClassPrices& prices)
+      : m_checker(checker), m_prices(prices) {}
+
+  /** \param least what the way of a vehicle costs that turns on the spot, meters */
+  void keep(const PlanResult& plan, double least);
+  void drop() { m_plan = {}; }
+  /** Looks again at the path if it comes near one of these tiles. */
+  void groundChanged(const std::vector<Column>& tiles);
+
+  /** What is left of the path from a pose on it; none: it is not on it, or the path is blocked. */
+  std::optional<PlanResult> restFrom(const GroundPose& pose) const;
+  /** Whether the ground is what it was when the path was planned. */
+  bool isOfThisGround() const { return !m_changed; }
+  /** Whether another path may cost 0.5 m less, now that the way of a vehicle that turns on the spot
+   * costs `least`. */
+  bool mayBeBeaten(const PlanResult& rest, double least) const;
+
+ private:
+  bool isNear(const std::vector<Column>& tiles) const;
+  bool lookAgain();
+
+  const CollisionChecker& m_checker;
+  const ClassPrices& m_prices;
+  PlanResult m_plan;
+  double m_excess = 0;  ///< of its price over the least, meters
+  bool m_changed = false;
+};
+
+}  // namespace semantic_planning
