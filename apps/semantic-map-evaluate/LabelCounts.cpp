@@ -6,6 +6,12 @@ namespace semantic_map_evaluate {
 
 using semantic_octree::ClassId;
 using semantic_octree::kNoClass;
+namespace {
+
+/** Labels that are nearly always right: one alone states 0.91. */
+constexpr double kPriorLabels = 0.1;
+
+}  // namespace
 
 double& LabelCounts::countOf(Counts& counts, ClassId id) {
   const auto found =
@@ -37,8 +43,8 @@ Evaluation::Answer LabelCounts::answer(const Eigen::Vector3d& point, ClassId tru
   if (!m_map.coordToKeyChecked(point.x(), point.y(), point.z(), key)) return {};
   const auto found = m_voxels.find(key);
   if (found == m_voxels.end()) return {};
-  const double prior = 1.0 / m_map.numClasses();
-  double all = 1, most = 0, ofTruth = 0;
+  const double prior = kPriorLabels / m_map.numClasses();
+  double all = kPriorLabels, most = 0, ofTruth = 0;
   ClassId likeliest = kNoClass;
   for (const auto& [id, count] : found->second) {
     all += count;

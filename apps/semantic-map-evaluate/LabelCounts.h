@@ -12,8 +12,8 @@
 namespace semantic_map_evaluate {
 
 /** What maps are held against: the labels in each voxel, counted. With n_k of class k of n, and K
- * classes, p(class k) = (n_k + 1/K) / (n + 1): the mean of a Dirichlet distribution with Perks's
- * prior, which counts like one label. */
+ * classes, p(class k) = (n_k + a/K) / (n + a): the mean of a Dirichlet distribution whose prior
+ * counts like a = 0.1 labels. */
 class LabelCounts {
  public:
   enum class Counted {

@@ -128,11 +128,11 @@ TEST(LabelCounts, statesTheMeanOfADirichletDistributionOfLabelsOrOfScans) {
   const auto byLabels = labels.answer({4.9, 0.1, 0.1}, 1),
              byScans = scans.answer({4.9, 0.1, 0.1}, 2);
   EXPECT_EQ(byLabels.likeliest, 3);  // 3 of 5 labels
-  EXPECT_NEAR(byLabels.ofLikeliest, (3 + 1 / 3.0) / 6, 1e-12);
-  EXPECT_NEAR(byLabels.ofTruth, (2 + 1 / 3.0) / 6, 1e-12);
+  EXPECT_NEAR(byLabels.ofLikeliest, (3 + 0.1 / 3) / 5.1, 1e-12);
+  EXPECT_NEAR(byLabels.ofTruth, (2 + 0.1 / 3) / 5.1, 1e-12);
   EXPECT_EQ(byScans.likeliest, 1);  // 1.25 of 2 scans
-  EXPECT_NEAR(byScans.ofLikeliest, (1.25 + 1 / 3.0) / 3, 1e-12);
-  EXPECT_NEAR(byScans.ofTruth, 1 / 3.0 / 3, 1e-12);
+  EXPECT_NEAR(byScans.ofLikeliest, (1.25 + 0.1 / 3) / 2.1, 1e-12);
+  EXPECT_NEAR(byScans.ofTruth, 0.1 / 3 / 2.1, 1e-12);
 }
 
 TEST_F(SemanticMapEvaluate, tellsInATableWhatMapsAndCountingKnow) {
@@ -146,7 +146,7 @@ TEST_F(SemanticMapEvaluate, tellsInATableWhatMapsAndCountingKnow) {
   const json report = json::parse(folder.read("out/quality.json"));
   EXPECT_EQ(report["map"]["meanRecall"], 0.5);
   EXPECT_EQ(report["labels counted"]["accuracy"], 1);
-  EXPECT_NEAR(report["labels counted"]["stated"], (1 + 1 / 3.0) / 2, 1e-12);
+  EXPECT_NEAR(report["labels counted"]["stated"], (1 + 0.1 / 3) / 1.1, 1e-12);
 }
 
 TEST_F(SemanticMapEvaluate, asksTheMapForTheLabeledPointsOfTheScans) {
