@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "FrameRange.h"
+#include "LabelNoise.h"
 #include "Signals.h"
 
 namespace dataset2rawlog {
@@ -16,8 +17,9 @@ struct Conversion {
   /** Class table file; empty: the data set's ids are the classes (PCD and PLY only). */
   std::filesystem::path classes;
   FrameRange frames;
-  /** Share of the labels that is replaced by random other classes, and with which seed. */
+  /** Share of the labels that is replaced by other classes, how, and with which seed. */
   double labelNoise = 0;
+  LabelNoise::Kind labelNoiseKind = LabelNoise::Kind::Points;
   std::uint64_t seed = 1;
   /** Whether scans come with their labels. */
   bool labels = true;

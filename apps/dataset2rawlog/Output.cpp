@@ -1,5 +1,6 @@
 #include "Output.h"
 
+#include <labeled_cloud/EigenPose.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 
 #include <algorithm>
@@ -11,7 +12,7 @@ using semantic_types::kNoClass;
 
 Output::Output(const Conversion& conversion, const semantic_types::ClassTable& table)
     : m_writer(conversion.output),
-      m_noise(conversion.labelNoise, conversion.seed, table.size()),
+      m_noise(conversion.labelNoise, conversion.labelNoiseKind, conversion.seed, table.size()),
       m_file(conversion.output) {
   for (int id = 1; id <= table.size(); ++id) m_classNames.push_back(table.name(id));
 }
@@ -21,6 +22,7 @@ void Output::writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D&
   pose.timestamp = time;
   pose.sensorLabel = "ground truth";
   pose.pose.mean = T_map_robot;
+  m_T_map_sensor = labeled_cloud::toEigen(T_map_robot);
   m_writer.write(pose);
 }
 
@@ -31,8 +33,8 @@ void Output::writeCloud(mrpt::Clock::time_point time, const std::string& sensorL
   observation.sensorLabel = sensorLabel;
   observation.classNames = m_classNames;
   observation.cloud = std::move(cloud);
-  auto& classes = observation.cloud.classes;
-  m_noise.apply(classes);
+  m_noise.apply(observation.cloud, m_T_map_sensor);
+  const auto& classes = observation.cloud.classes;
   const auto unlabeled = std::count(classes.begin(), classes.end(), kNoClass);
   writeScan(observation, observation.cloud.size(), classes.size() - unlabeled);
 }

@@ -35,6 +35,7 @@ class Output {
  private:
   labeled_cloud::RawlogWriter m_writer;
   LabelNoise m_noise;
+  Eigen::Isometry3d m_T_map_sensor = Eigen::Isometry3d::Identity();  ///< of the last pose
   std::vector<std::string> m_classNames;
   std::filesystem::path m_file;
   Summary m_summary;

@@ -89,6 +89,8 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
 }
 
 void MapBuilder::noteLabels() const {
+  if (m_summary.conversion.points > 0 && m_map.tree().numClasses() > 1)
+    notes() << m_summary.labeledText() << std::endl;
   const auto labels = m_summary.labelReliability();
   constexpr double kWorthTelling = 0.05;
   if (!labels || labels->accuracy > m_map.tree().filterParameters().accuracy - kWorthTelling)
@@ -143,7 +145,8 @@ void MapBuilder::noteSlam() {
   notes() << "Poses: " << std::lround(report.way) << " m of way, " << report.keyframes
           << " keyframes, " << report.loops << " loops; " << report.lost << " of " << report.scans
           << " scans fit nothing that was seen before" << std::endl;
-  for (const std::string& warning : report.warnings()) notes() << "Warning: " << warning << std::endl;
+  for (const std::string& warning : report.warnings())
+    notes() << "Warning: " << warning << std::endl;
 }
 
 std::string MapBuilder::trajectory() const {

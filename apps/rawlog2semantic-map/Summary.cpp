@@ -3,6 +3,8 @@
 #include <map_operations/MapContents.h>
 #include <semantic_abstraction/Abstraction.h>
 
+#include <sstream>
+
 #include "measuring/Quantile.h"
 
 namespace rawlog2semantic_map {
@@ -64,6 +66,19 @@ std::string Summary::skippedText() const {
     separator = ", ";
   }
   return skipped.empty() ? text : text + ")";
+}
+
+std::string Summary::labeledText() const {
+  std::ostringstream text;
+  text.precision(3);
+  const double share =
+      static_cast<double>(conversion.labeled) / static_cast<double>(conversion.points);
+  text << 100 * share << " % of " << conversion.points << " points have a label";
+  if (withoutLabels > 0) text << "; " << withoutLabels << " of " << inserted << " scans found none";
+  if (share < 0.5)
+    text << ". Warning: less than half. Are label images named by their time in seconds, does "
+            "their camera see the points, and does the class table know their ids?";
+  return text.str();
 }
 
 namespace {

@@ -55,6 +55,8 @@ struct Summary {
   std::size_t numSkipped() const;
   /** The medians of all scans with labels; nothing if there are none. */
   std::optional<semantic_octree::LabelReliability> labelReliability() const;
+  /** What share of the points has a label, with a warning below a half. */
+  std::string labeledText() const;
   /** "3 skipped (2 outside the trajectory, 1 CObservationImage)" */
   std::string skippedText() const;
 };

@@ -9,6 +9,12 @@ namespace semantic_map_evaluate {
 /** How often a map is right about labeled points, and how often it says so. */
 class Evaluation {
  public:
+  /** What is said of a point's voxel. */
+  struct Answer {
+    bool isOccupied = false;
+    semantic_octree::ClassId likeliest = semantic_octree::kNoClass;
+    double ofLikeliest = 0, ofTruth = 0;  ///< p(class | occupied)
+  };
   /** Points that were answered for with a probability of some range. */
   struct Bin {
     std::size_t points = 0, right = 0;
@@ -24,6 +30,7 @@ class Evaluation {
   /** Asks for the class of a point (meters, map frame) that is known to be of class `truth`. */
   void ask(const semantic_octree::SmoothedView& view, const Eigen::Vector3d& point,
            semantic_octree::ClassId truth);
+  void add(const Answer& answer, semantic_octree::ClassId truth);
 
   std::size_t points() const { return m_points; }
   /** Of all points, those in occupied voxels. */
@@ -34,6 +41,10 @@ class Evaluation {
   /** Points in occupied voxels that name a class. What follows is about them. */
   std::size_t answered() const { return m_answered.points; }
   double accuracy() const { return share(m_answered.right, m_answered.points); }
+  /** Mean over the classes that occur of the share of their points that is right. */
+  double meanRecall() const;
+  /** Mean of p(likeliest class | occupied). */
+  double meanStated() const { return m_answered.meanStated(); }
   /** Mean of -ln p(true class | occupied), nats. */
   double logLoss() const { return m_logLoss / static_cast<double>(m_answered.points); }
   /** Mean difference of what is stated, p(likeliest class | occupied), and the share that is right,

@@ -5,14 +5,18 @@
 #include <map_folders/MapFolder.h>
 #include <strict_files/OutputFolder.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <list>
 #include <ostream>
 #include <set>
+#include <sstream>
 
 #include "Application.h"
 #include "Figures.h"
 #include "JsonFile.h"
+#include "LabelCounts.h"
 #include "MemoryOption.h"
 #include "NumberChecks.h"
 #include "OptionFlags.h"
@@ -30,7 +34,7 @@ using semantic_octree::SmoothedView;
 const std::vector<std::string> kFiles = {"quality.json", "reliability.png"};
 
 struct Cli {
-  std::vector<fs::path> maps, rawlogs;
+  std::vector<fs::path> maps, rawlogs, madeFrom;
   fs::path output;
   double maxRange = HUGE_VAL;
   double memory = semantic_octree::MapFolderOptions().memory;
@@ -43,6 +47,9 @@ struct Cli {
         ->required();
     app.add_option("--scans", rawlogs, "Rawlogs of labeled scans that the maps were not made from")
         ->required();
+    app.add_option(
+        "--made-from", madeFrom,
+        "Rawlogs that the maps were made from: their labels are counted, and asked, too");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     app.add_option("--max-range", maxRange, "Points farther from the sensor are not asked for, m")
         ->check(isNumber(strict_files::above(0)));
@@ -67,15 +74,23 @@ struct Asked {
   NamedEvaluation result;
 };
 
+/** Counted labels, and what came of their questions. */
+struct Counting {
+  LabelCounts counts;
+  NamedEvaluation result;
+};
+
 void ask(const labeled_cloud::LabeledScan& scan, const mrpt::poses::CPose3D& T_map_robot,
-         double maxRange, std::list<Asked>& maps) {
+         double maxRange, std::list<Asked>& maps, std::list<Counting>& peers) {
   const Eigen::Isometry3d T = labeled_cloud::toEigen(T_map_robot + scan.T_robot_sensor);
   for (std::size_t i = 0; i < scan.cloud.classes.size(); ++i) {
     const auto truth = scan.cloud.classes[i];
     const Eigen::Vector3f& point = scan.cloud.points[i];
     if (truth == semantic_octree::kNoClass || point.norm() > maxRange) continue;
-    for (Asked& asked : maps)
-      asked.result.evaluation.ask(asked.view, T * point.cast<double>(), truth);
+    const Eigen::Vector3d inMap = T * point.cast<double>();
+    for (Asked& asked : maps) asked.result.evaluation.ask(asked.view, inMap, truth);
+    for (Counting& peer : peers)
+      peer.result.evaluation.add(peer.counts.answer(inMap, truth), truth);
   }
 }
 
@@ -107,23 +122,78 @@ ordered_json toJson(const Evaluation& e, const ClassTable& classes) {
           {"rightOfAll", e.rightOfAll()},
           {"answered", e.answered()},
           {"accuracy", e.accuracy()},
+          {"meanRecall", e.meanRecall()},
+          {"stated", e.meanStated()},
           {"logLoss", e.logLoss()},
           {"calibrationError", e.calibrationError()},
           {"reliability", reliability},
           {"classes", ofClass}};
 }
 
-void writeResults(const Cli& cli, std::list<Asked>& maps) {
+void writeResults(const Cli& cli, const std::vector<NamedEvaluation>& results,
+                  const ClassTable& classes) {
   strict_files::OutputFolder output(cli.output);
-  std::vector<NamedEvaluation> results;
   ordered_json report = ordered_json::object();
-  for (Asked& asked : maps) {
-    results.push_back(asked.result);
-    report[asked.result.name] = toJson(asked.result.evaluation, asked.classes());
-  }
+  for (const NamedEvaluation& result : results)
+    report[result.name] = toJson(result.evaluation, classes);
   writeJson(output.staged("quality.json"), report);
   drawReliability(results, output.staged("reliability.png"));
   output.commit(kFiles);
+}
+
+/** "1200 points", "1.20 M points" */
+std::string pointsText(std::size_t points) {
+  std::ostringstream text;
+  if (points < 100000)
+    text << points;
+  else
+    text << std::fixed << std::setprecision(2) << static_cast<double>(points) / 1e6 << " M";
+  text << " points";
+  return text.str();
+}
+
+/** A sentence on the first map, and a line for each. */
+std::string tableOf(const std::vector<NamedEvaluation>& results) {
+  std::size_t width = 0;
+  for (const NamedEvaluation& result : results) width = std::max(width, result.name.size());
+  const Evaluation& first = results.front().evaluation;
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << results.front().name << ": "
+       << 100 * first.coverage() << " % of " << pointsText(first.points())
+       << " lie in occupied voxels; " << 100 * first.accuracy()
+       << " % of these that name a class have the right class\n"
+       << std::string(width, ' ') << "  occupied  right  stated  recall  log loss  calibration\n";
+  for (const auto& [name, e] : results)
+    text << std::setprecision(1) << name << std::string(width - name.size(), ' ') << std::setw(8)
+         << 100 * e.coverage() << " %" << std::setw(7) << 100 * e.accuracy() << std::setw(8)
+         << 100 * e.meanStated() << std::setw(8) << 100 * e.meanRecall() << std::setprecision(3)
+         << std::setw(10) << e.logLoss() << std::setw(13) << e.calibrationError() << '\n';
+  return text.str();
+}
+
+/** Calls f(scan, T_map_robot) for each scan of rawlogs. */
+template <typename F>
+void forEachScan(const std::vector<fs::path>& rawlogs, const ClassTable& classes, const F& f) {
+  const auto trajectory = labeled_cloud::readTrajectory(rawlogs);
+  labeled_cloud::ScanConverter converter(classes);
+  labeled_cloud::ScanStream stream(rawlogs, converter, trajectory, nullptr);
+  while (const auto observation = stream.next())
+    if (observation->scan) f(*observation->scan, observation->T_map_robot);
+}
+
+/** Labels that the maps were made from, counted in the first map's voxels. */
+std::list<Counting> countLabels(const Cli& cli, Asked& first) {
+  std::list<Counting> peers;
+  if (cli.madeFrom.empty()) return peers;
+  const semantic_octree::SemanticOcTree& map = first.stored.tree();
+  const Evaluation none(map.numClasses());
+  peers.push_back({{map, LabelCounts::Counted::Labels}, {"labels counted", none}});
+  peers.push_back({{map, LabelCounts::Counted::Scans}, {"scans counted", none}});
+  forEachScan(cli.madeFrom, first.classes(), [&](const auto& scan, const auto& T_map_robot) {
+    const Eigen::Isometry3d T = labeled_cloud::toEigen(T_map_robot + scan.T_robot_sensor);
+    for (Counting& peer : peers) peer.counts.add(scan.cloud, T);
+  });
+  return peers;
 }
 
 int run(const Cli& cli) {
@@ -134,20 +204,17 @@ int run(const Cli& cli) {
     maps.emplace_back(file, memory, cli.smoothing);
   }
   requireComparable(maps);
-  const auto trajectory = labeled_cloud::readTrajectory(cli.rawlogs);
-  labeled_cloud::ScanConverter converter(maps.front().classes());
-  labeled_cloud::ScanStream stream(cli.rawlogs, converter, trajectory, nullptr);
-  while (const auto observation = stream.next())
-    if (observation->scan) ask(*observation->scan, observation->T_map_robot, cli.maxRange, maps);
-  if (maps.front().result.evaluation.points() == 0)
+  std::list<Counting> peers = countLabels(cli, maps.front());
+  forEachScan(cli.rawlogs, maps.front().classes(), [&](const auto& scan, const auto& T_map_robot) {
+    ask(scan, T_map_robot, cli.maxRange, maps, peers);
+  });
+  std::vector<NamedEvaluation> results;
+  for (const Asked& asked : maps) results.push_back(asked.result);
+  for (const Counting& peer : peers) results.push_back(peer.result);
+  if (results.front().evaluation.points() == 0)
     throw std::runtime_error("no point of the scans has a class");
-  writeResults(cli, maps);
-  for (const Asked& asked : maps) {
-    const Evaluation& e = asked.result.evaluation;
-    notes() << asked.result.name << ": right " << 100 * e.accuracy() << " % of "
-            << 100 * e.coverage() << " % of " << e.points() << " points, log loss " << e.logLoss()
-            << ", calibration error " << e.calibrationError() << '\n';
-  }
+  writeResults(cli, results, maps.front().classes());
+  notes() << tableOf(results);
   return 0;
 }
 

@@ -227,6 +227,49 @@ TEST(LabelNoise, replacesThatShareByOtherClassesTheSameForASeed) {
       EXPECT_NEAR((changes[{before, after}]) / (n / 4.0), before == after ? 0.7 : 0.15, 0.02);
 }
 
+TEST(LabelNoise, blobsAreWrongAsAWholeAndPersistentOnesInAllScans) {
+  const TemporaryFolder folder;
+  writeSmallKitti(folder);
+  // Things of 7 mm, farther apart than blobs are large.
+  std::vector<float> points;
+  std::vector<std::uint32_t> labels;
+  for (int cube = 0; cube < 4000; ++cube)
+    for (int i = 0; i < 8; ++i) {
+      points.insert(points.end(), {5 + 7.123f * float(cube % 20) + 0.001f * float(i),
+                                   7.123f * float(cube / 20 % 20), 7.123f * float(cube / 400), 0});
+      labels.push_back(40);
+    }
+  folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n");
+  folder.write("times.txt", "0\n1\n");
+  for (const char* frame : {"000000", "000001"}) {
+    folder.write(std::string("velodyne/") + frame + ".bin", bytesOf(points));
+    folder.write(std::string("labels/") + frame + ".label", bytesOf(labels));
+  }
+  const ClassTable table = loadClassTable(folder / "classes.yaml");
+  for (const bool persistent : {false, true}) {
+    const auto scans =
+        convertAndRead(kittiArguments(folder) + " --label-noise 0.3 --seed 2 --label-noise-kind " +
+                           (persistent ? "persistent" : "blobs"),
+                       folder / "out.rawlog", table);
+    const auto& a = scans.at(0).scan.cloud.classes;
+    const auto& b = scans.at(1).scan.cloud.classes;
+    int wrong = 0, both = 0, split = 0;
+    for (std::size_t i = 0; i < a.size(); i += 8) {
+      wrong += a[i] != 1;
+      both += a[i] != 1 && b[i] != 1;
+      split += std::any_of(&a[i], &a[i] + 8, [&](auto label) { return label != a[i]; });
+    }
+    EXPECT_LT(split, 60);  // where a border crosses one
+    const double share = wrong / 4000.0;
+    EXPECT_GT(share, 0.3 / 4 - 0.03);
+    EXPECT_LT(share, 0.3 * 7 / 4 + 0.03);
+    if (persistent)
+      EXPECT_GT(both / 4000.0, share / 2);
+    else
+      EXPECT_NEAR(both / 4000.0, share * share, 0.03);
+  }
+}
+
 TEST(LabelNoise, badSharesAreNamed) {
   const TemporaryFolder folder;
   writeSmallKitti(folder);

@@ -38,6 +38,18 @@ TEST_F(CameraMapping, withoutLabelsOrWithThemSkippedIsAnOption) {
   EXPECT_TRUE(contains(run("camera.rawlog").errors, "1 without labels"));
 }
 
+TEST_F(CameraMapping, tellsTheShareOfLabeledPointsAndWarnsBelowAHalf) {
+  const ProgramRun labeled = run("camera.rawlog", labels());
+  EXPECT_TRUE(contains(labeled.output, "100 % of 2 points have a label")) << labeled.output;
+  EXPECT_FALSE(contains(labeled.output, "Warning")) << labeled.output;
+  fs::rename(folder / "labels/10.01.png", folder / "labels/000000.png");  // read as 0 s
+  const ProgramRun misnamed = run("camera.rawlog", labels());
+  ASSERT_EQ(misnamed.status, 0) << misnamed.errors;
+  EXPECT_TRUE(contains(misnamed.output, "0 % of 2 points have a label; 1 of 1 scans found none"))
+      << misnamed.output;
+  EXPECT_TRUE(contains(misnamed.output, "Warning: less than half")) << misnamed.output;
+}
+
 TEST_F(CameraMapping, theIniFileMayCalibrateTheCamera) {
   auto uncalibrated = picture(10.01);
   uncalibrated.cameraParams = {};

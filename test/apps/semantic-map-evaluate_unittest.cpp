@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "Evaluation.h"
+#include "LabelCounts.h"
 #include "RunProgram.h"
 #include "SmallRawlogs.h"
 #include "TemporaryFolder.h"
@@ -13,6 +14,7 @@
 using namespace semantic_octree;
 using nlohmann::json;
 using semantic_map_evaluate::Evaluation;
+using semantic_map_evaluate::LabelCounts;
 
 namespace {
 
@@ -82,6 +84,7 @@ TEST(Evaluation, tellsWhereAMapAnswersHowOftenItIsRightAndHowSureItIs) {
   EXPECT_EQ(e.rightOfAll(), 2 / 7.0);
   EXPECT_EQ(e.answered(), 3u);
   EXPECT_EQ(e.accuracy(), 2 / 3.0);
+  EXPECT_EQ(e.meanRecall(), (1 + 0.5) / 2);
   const auto given = [&](double x, int k) {
     const auto p = map.distribution(*map.search(map.coordToKey(x, 0.5, 0.5)));
     return p[k] / (1 - p[0]);
@@ -104,6 +107,46 @@ TEST(Evaluation, countsRightAnswersOfVoxelsThatWereNotHit) {
   e.ask(SmoothedView(map), {4.5, 1.5, 0.5}, 1);
   EXPECT_EQ(e.rightOfAll(), 1);
   EXPECT_EQ(e.answered(), 0u);
+}
+
+TEST(LabelCounts, statesTheMeanOfADirichletDistributionOfLabelsOrOfScans) {
+  const SemanticOcTree map(1.0, roadGrassCar());
+  LabelCounts labels(map, LabelCounts::Counted::Labels), scans(map, LabelCounts::Counted::Scans);
+  LabeledCloud cloud;
+  cloud.points = {{4, 0, 0}, {4.1f, 0, 0}, {4.2f, 0, 0}, {4.3f, 0, 0}, {9, 0, 0}};
+  cloud.classes = {3, 3, 3, 1, kNoClass};
+  const Eigen::Isometry3d T(Eigen::Translation3d(0.5, 0.5, 0.5));
+  for (LabelCounts* counts : {&labels, &scans}) {
+    counts->add(cloud, T);
+    LabeledCloud other;
+    other.points = {{4, 0, 0}};
+    other.classes = {1};
+    counts->add(other, T);
+    EXPECT_FALSE(counts->answer({9.5, 0.5, 0.5}, 1).isOccupied);
+    EXPECT_FALSE(counts->answer({1e9, 0.5, 0.5}, 1).isOccupied);
+  }
+  const auto byLabels = labels.answer({4.9, 0.1, 0.1}, 1),
+             byScans = scans.answer({4.9, 0.1, 0.1}, 2);
+  EXPECT_EQ(byLabels.likeliest, 3);  // 3 of 5 labels
+  EXPECT_NEAR(byLabels.ofLikeliest, (3 + 0.1 / 3) / 5.1, 1e-12);
+  EXPECT_NEAR(byLabels.ofTruth, (2 + 0.1 / 3) / 5.1, 1e-12);
+  EXPECT_EQ(byScans.likeliest, 1);  // 1.25 of 2 scans
+  EXPECT_NEAR(byScans.ofLikeliest, (1.25 + 0.1 / 3) / 2.1, 1e-12);
+  EXPECT_NEAR(byScans.ofTruth, 0.1 / 3 / 2.1, 1e-12);
+}
+
+TEST_F(SemanticMapEvaluate, tellsInATableWhatMapsAndCountingKnow) {
+  const ProgramRun run = evaluate(
+      {file("map.semantic"), "--scans", file("scans.rawlog"), "--made-from", file("scans.rawlog")});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_TRUE(contains(run.output, "map: 100.0 % of 2 points lie in occupied voxels; 50.0 % of"))
+      << run.output;
+  for (const char* line : {"\nmap ", "\nlabels counted ", "\nscans counted "})
+    EXPECT_TRUE(contains(run.output, line)) << run.output;
+  const json report = json::parse(folder.read("out/quality.json"));
+  EXPECT_EQ(report["map"]["meanRecall"], 0.5);
+  EXPECT_EQ(report["labels counted"]["accuracy"], 1);
+  EXPECT_NEAR(report["labels counted"]["stated"], (1 + 0.1 / 3) / 1.1, 1e-12);
 }
 
 TEST_F(SemanticMapEvaluate, asksTheMapForTheLabeledPointsOfTheScans) {

@@ -42,30 +42,28 @@ std::optional<std::vector<double>> ownLogs(const SemanticOcTree& map, const Voxe
   return logs;
 }
 
-/** The sum of the documentation, term by term: kViewClasses + 1 probabilities; none where no voxel
+/** The mean of the documentation, term by term: kViewClasses + 1 probabilities; none where no voxel
  * has a label. */
 std::optional<std::vector<double>> expectedClasses(const SemanticOcTree& map, const VoxelId& id,
                                                    double weight) {
   const auto own = ownLogs(map, id);
   std::vector<double> sum = own.value_or(std::vector<double>(kViewClasses + 1));
-  bool any = own.has_value();
+  double weights = own ? 1 : 0;
   for (int x = -1; x <= 1; ++x)
     for (int y = -1; y <= 1; ++y)
       for (int z = -1; z <= 1; ++z) {
         const int axes = std::abs(x) + std::abs(y) + std::abs(z);
         if (axes == 0 || (own && axes > 1)) continue;
         const auto logs = ownLogs(map, {id[0] + x, id[1] + y, id[2] + z});
-        for (int k = 1; logs && k <= kViewClasses; ++k)
-          sum[k] += weight / (axes == 1 ? 1 : axes == 2 ? 2 : 4) * (*logs)[k];
-        any |= logs.has_value();
+        if (!logs) continue;
+        const double share = weight / (axes == 1 ? 1 : axes == 2 ? 2 : 4);
+        for (int k = 1; k <= kViewClasses; ++k) sum[k] += share * (*logs)[k];
+        weights += share;
       }
-  if (!any) return std::nullopt;
-  const FilterParameters& f = map.filterParameters();
-  const double lowest = *std::max_element(sum.begin() + 1, sum.end()) +
-                        std::log(f.minOccupancy / (1 - f.minOccupancy) / kViewClasses) -
-                        std::log(f.maxProbability / (1 - f.maxProbability));
+  if (weights == 0) return std::nullopt;
   double total = 0;
-  for (int k = 1; k <= kViewClasses; ++k) total += sum[k] = std::exp(std::max(sum[k], lowest));
+  for (int k = 1; k <= kViewClasses; ++k)
+    total += sum[k] = std::exp(sum[k] / std::max(1.0, weights));
   for (int k = 1; k <= kViewClasses; ++k) sum[k] /= total;
   return sum;
 }
