@@ -4,6 +4,7 @@
 #include <mrpt_compat/Release.h>
 #include <semantic_types/ClassTableFile.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <opencv2/imgcodecs.hpp>

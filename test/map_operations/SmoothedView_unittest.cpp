@@ -42,7 +42,7 @@ std::optional<std::vector<double>> ownLogs(const SemanticOcTree& map, const Voxe
   return logs;
 }
 
-/** The mean of the documentation, term by term: kViewClasses + 1 probabilities; none where no voxel
+/** The sum of the documentation, term by term: kViewClasses + 1 probabilities; none where no voxel
  * has a label. */
 std::optional<std::vector<double>> expectedClasses(const SemanticOcTree& map, const VoxelId& id,
                                                    double weight) {
@@ -61,9 +61,13 @@ std::optional<std::vector<double>> expectedClasses(const SemanticOcTree& map, co
         weights += share;
       }
   if (weights == 0) return std::nullopt;
+  for (double& x : sum) x /= std::sqrt(std::max(1.0, weights));
+  const FilterParameters& f = map.filterParameters();
+  const double lowest = *std::max_element(sum.begin() + 1, sum.end()) +
+                        std::log(f.minOccupancy / (1 - f.minOccupancy) / kViewClasses) -
+                        std::log(f.maxProbability / (1 - f.maxProbability));
   double total = 0;
-  for (int k = 1; k <= kViewClasses; ++k)
-    total += sum[k] = std::exp(sum[k] / std::max(1.0, weights));
+  for (int k = 1; k <= kViewClasses; ++k) total += sum[k] = std::exp(std::max(sum[k], lowest));
   for (int k = 1; k <= kViewClasses; ++k) sum[k] /= total;
   return sum;
 }

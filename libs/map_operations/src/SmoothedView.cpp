@@ -8,6 +8,13 @@
 namespace semantic_octree {
 namespace {
 
+double logit(double p) { return std::log(p / (1 - p)); }
+
+/** How far the filter lets a class fall behind the likeliest. */
+double mostBehind(const FilterParameters& p, int numClasses) {
+  return logit(p.maxProbability) - logit(p.minOccupancy) + std::log(numClasses);
+}
+
 struct Neighbor {
   Eigen::Array3i offset;
   double share;  ///< of the weight: 1 across a face, 1/2 an edge, 1/4 a corner
@@ -44,7 +51,9 @@ void SmoothingOptions::describe(strict_files::OptionList& list) {
 void SmoothingOptions::validate() const { strict_files::checkOptions(*this, "SmoothingOptions"); }
 
 SmoothedView::SmoothedView(const SemanticOcTree& map, const SmoothingOptions& options)
-    : m_map(map), m_options(options) {
+    : m_map(map),
+      m_options(options),
+      m_mostBehind(mostBehind(map.filterParameters(), map.numClasses())) {
   options.validate();
 }
 
@@ -93,16 +102,19 @@ std::vector<double> SmoothedView::logClasses(const octomap::OcTreeKey& key) cons
   std::vector<double> logs(m_map.numClasses(), 0.0);
   const Eigen::Array3i voxel(key[0], key[1], key[2]);
   const bool own = add(voxel, 1, logs);
-  double heard = own ? 1 : 0;
+  double ofOthers = 0;
   if (m_options.neighborWeight > 0 && (own || m_options.fillGaps)) {
     const auto begin = neighbors().begin(), end = own ? begin + kFaces : neighbors().end();
     for (auto n = begin; n != end; ++n)
       if (const double weight = m_options.neighborWeight * n->share;
           add(voxel + n->offset, weight, logs))
-        heard += weight;
+        ofOthers += weight;
   }
-  if (heard == 0) return {};
-  for (double& x : logs) x /= std::max(1.0, heard);
+  if (ofOthers == 0) return own ? logs : std::vector<double>();
+  const double heard = ofOthers + own;
+  const double spread = std::sqrt(std::max(1.0, heard));
+  const double lowest = *std::max_element(logs.begin(), logs.end()) / spread - m_mostBehind;
+  for (double& x : logs) x = std::max(x / spread, lowest);
   return logs;
 }
 

@@ -26,11 +26,13 @@ struct SmoothingOptions {
  *
  * With h_k the log-odds of a voxel's classes,
  *
- *     ln p(class k | occupied) = (h_k(voxel) + weight sum_n h_k(neighbor n)) / W + constant,
+ *     ln p(class k | occupied) = (h_k(voxel) + weight sum_n h_k(neighbor n)) / sqrt(W)
+ *                              + constant,
  *
- * where W is the sum of the weights, 1 for the voxel. The sum finds the class; its mean is stated,
- * for neighbors see the same errors. Voxels without a label tell nothing and have no weight; where
- * W is below 1, it counts as 1. Occupancy and status are the voxel's own.
+ * where W is the sum of the weights, 1 for the voxel; below 1 it counts as 1. A sum would be right
+ * if neighbors erred by themselves, a mean (W instead of its root) if they all erred alike. Voxels
+ * without a label tell nothing and have no weight. No class falls farther behind the likeliest than
+ * the filter's limits let it in one voxel. Occupancy and status are the voxel's own.
  *
  * For maps of voxels: in a leaf of a compressed map, which is larger, the same mixture would count
  * several times. The map must outlive the view. Safe from several threads while the map does not
@@ -61,6 +63,7 @@ class SmoothedView {
 
   const SemanticOcTree& m_map;
   SmoothingOptions m_options;
+  double m_mostBehind;  ///< the likeliest class
 };
 
 }  // namespace semantic_octree
