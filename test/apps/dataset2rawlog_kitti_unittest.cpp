@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <mrpt/obs/CObservationImage.h>
 #include <mrpt_compat/Release.h>

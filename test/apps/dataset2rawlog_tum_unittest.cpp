@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/LabelFolder.h>
 #include <labeled_cloud/RawlogReader.h>
 #include <mrpt_compat/Images.h>

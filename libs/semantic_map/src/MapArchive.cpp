@@ -1,3 +1,4 @@
+#include <labeled_cloud/CObservationLabeledCloud.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_octree/TreeFile.h>
