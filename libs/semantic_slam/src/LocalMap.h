@@ -16,7 +16,8 @@ class LocalMap {
   void clear() { m_parts.clear(); }
   bool empty() const { return m_parts.empty(); }
 
-  /** \param cloud of a new keyframe, its frame \param T_last_keyframe in the frame of the one before */
+  /** \param cloud of a new keyframe, its frame \param T_last_keyframe in the frame of the one
+   * before */
   void add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_last_keyframe,
            const SensorScale& scale, bool useClasses);
 

@@ -15,9 +15,9 @@ class MotionNoise {
   /** Information of a predicted step, frame of its end. */
   Matrix6 information(const Eigen::Isometry3d& T_step) const;
   /** A scan was registered elsewhere than predicted. What the registration leaves uncertain counts
-   * as if it were off, too (expectation maximization): else a narrow prediction would confirm itself.
-   * \param T_off from the predicted end of the step to the registered one
-   * \param information of the registered end, with that of the prediction, frame of the end */
+   * as if it were off, too (expectation maximization): else a narrow prediction would confirm
+   * itself. \param T_off from the predicted end of the step to the registered one \param
+   * information of the registered end, with that of the prediction, frame of the end */
   void note(const Eigen::Isometry3d& T_step, const Eigen::Isometry3d& T_off,
             const Matrix6& information);
 

@@ -31,9 +31,8 @@ PlanePoints uprightPoints(const LabeledCloud& cloud, bool isPlanar, double cell)
     const Eigen::Vector2d q = p.head<2>().cast<double>();
     const auto x = static_cast<std::uint32_t>(cellOf(q.x(), cell)),
                y = static_cast<std::uint32_t>(cellOf(q.y(), cell));
-    Column& column =
-        columns.try_emplace(std::uint64_t{x} << 32 | y, Column{p.z(), p.z(), SIZE_MAX})
-            .first->second;
+    Column& column = columns.try_emplace(std::uint64_t{x} << 32 | y, Column{p.z(), p.z(), SIZE_MAX})
+                         .first->second;
     column.low = std::min(column.low, p.z());
     column.high = std::max(column.high, p.z());
     const bool isUpright = isPlanar || column.high - column.low > kUpright * cell;
@@ -65,8 +64,8 @@ void PlaneSearch::drawPoints(const PlanePoints& points) {
   std::uint8_t kernel[2 * kReach + 1][2 * kReach + 1];
   for (int i = -kReach; i <= kReach; ++i)
     for (int j = -kReach; j <= kReach; ++j)
-      kernel[i + kReach][j + kReach] =
-          static_cast<std::uint8_t>(std::lround(kBest * std::exp(-0.5 * (i * i + j * j) / (kBlur * kBlur))));
+      kernel[i + kReach][j + kReach] = static_cast<std::uint8_t>(
+          std::lround(kBest * std::exp(-0.5 * (i * i + j * j) / (kBlur * kBlur))));
   for (const Eigen::Vector2d& p : points) {
     const int x = cellOf(p.x() - m_corner.x(), m_cell), y = cellOf(p.y() - m_corner.y(), m_cell);
     for (int i = -kReach; i <= kReach; ++i)
@@ -174,8 +173,8 @@ class PlaneSearch::Search {
 };
 
 std::optional<Eigen::Vector3d> PlaneSearch::find(const PlanePoints& scan,
-                                                 const Eigen::Vector3d& guess,
-                                                 const Window& window, double least) const {
+                                                 const Eigen::Vector3d& guess, const Window& window,
+                                                 double least) const {
   if (scan.empty() || m_width == 0) return std::nullopt;
   Search search(*this, scan, guess, window);
   const auto best = search.best(static_cast<int>(least * kBest * static_cast<double>(scan.size())));

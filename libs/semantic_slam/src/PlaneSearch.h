@@ -16,9 +16,9 @@ using PlanePoints = std::vector<Eigen::Vector2d>;
  * \param cell edge of a column, m; a column counts if it is three times as high */
 PlanePoints uprightPoints(const LabeledCloud& cloud, bool isPlanar, double cell);
 
-/** Where in a plane a scan fits best, in a window that may be large: exhaustive search by branch and
- * bound (Hess et al., "Real-Time Loop Closure in 2D LIDAR SLAM", 2016). Scores are integers, so that
- * every machine finds the same. */
+/** Where in a plane a scan fits best, in a window that may be large: exhaustive search by branch
+ * and bound (Hess et al., "Real-Time Loop Closure in 2D LIDAR SLAM", 2016). Scores are integers, so
+ * that every machine finds the same. */
 class PlaneSearch {
  public:
   /** \param points that others saw, m \param cell edge of the grid's cells, m */

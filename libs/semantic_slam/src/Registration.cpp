@@ -14,7 +14,8 @@ using semantic_types::kNoClass;
 namespace {
 
 constexpr int kMostIterations = 40;
-/** Steps, m, at which the iteration ends; in coarse cubes, as a share of their edge; 1/m of turns. */
+/** Steps, m, at which the iteration ends; in coarse cubes, as a share of their edge; 1/m of turns.
+ */
 constexpr double kStill = 2e-4, kStillCoarse = 2e-3, kPerMeter = 0.1;
 /** Of a distribution: as many as its covariance has numbers. */
 constexpr int kFewestInSpace = 6, kFewestInPlane = 3;

@@ -6,7 +6,6 @@
 namespace semantic_slam {
 namespace {
 
-
 /** Median distance of points from the robot, m; 0 of none. */
 double medianDistance(const LabeledCloud& cloud) {
   std::vector<float> distances;
@@ -25,7 +24,7 @@ SensorScale SensorScale::of(const LabeledCloud& cloud, bool isPlanar) {
   constexpr double kStreet = 8;
   const double octaves = std::round(std::log2(std::max(medianDistance(cloud), 1e-3) / kStreet));
   const double size = std::exp2(std::clamp(octaves, -2., 0.));
-  return {false,      0.8 * size,     15 * kDegree, 10,        0.25 * size,
+  return {false,      0.8 * size,       15 * kDegree, 10,        0.25 * size,
           0.5 * size, {2 * size, size}, 0.4 * size,   30 * size, 0.6};
 }
 

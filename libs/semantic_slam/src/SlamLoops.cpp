@@ -26,7 +26,8 @@ constexpr double kCovered = 0.3;
 /** Two loops agree up to so much, more for each meter between; farther apart they are not compared.
  */
 constexpr double kAgree = 0.2, kAgreeWay = 0.03, kAgreeAngle = 2 * kDegree,
-                 kAgreeAngleWay = 0.2 * kDegree, kCompared = 20;  // of the latter, keyframe distances
+                 kAgreeAngleWay = 0.2 * kDegree,
+                 kCompared = 20;  // of the latter, keyframe distances
 /** An edge that is off by less, m and radians, can wait for the next optimization. */
 constexpr double kNear = 0.05, kNearAngle = 0.5 * kDegree;
 /** Squared error of a step between keyframes that loops may leave. */
@@ -119,8 +120,7 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
   // Seen from above, height and tilt aside.
   const Pose T_turn(Eigen::AngleAxisd(headingOf(T_guess), Eigen::Vector3d::UnitZ()));
   Seen level = stretch;
-  const Eigen::Matrix3f T_level =
-      (T_turn.linear().transpose() * T_guess.linear()).cast<float>();
+  const Eigen::Matrix3f T_level = (T_turn.linear().transpose() * T_guess.linear()).cast<float>();
   for (Eigen::Vector3f& p : level.cloud.points) p = T_level * p;
   const Eigen::Vector3d guess(T_guess(0, 3), T_guess(1, 3), headingOf(T_guess));
   const auto found = PlaneSearch(upright(then.cloud), m_scale.gridCell)
@@ -161,7 +161,8 @@ bool SlamEngine::confirm(std::vector<PoseEdge>& pending, const PoseEdge& edge) {
   const std::size_t numEdges = m_edges.size();
   std::vector<PoseEdge> left;
   for (const PoseEdge& before : pending)
-    if (m_keyframes[before.b].way >= oldest) (agree(before, edge) ? m_edges : left).push_back(before);
+    if (m_keyframes[before.b].way >= oldest)
+      (agree(before, edge) ? m_edges : left).push_back(before);
   const bool isConfirmed = m_edges.size() > numEdges;
   (isConfirmed ? m_edges : left).push_back(edge);
   pending = std::move(left);
@@ -208,11 +209,10 @@ bool SlamEngine::finish() {
   return true;
 }
 
-std::optional<Registration> SlamEngine::findInReference(const Seen& seen,
-                                                        const Pose& T_map_guess) {
+std::optional<Registration> SlamEngine::findInReference(const Seen& seen, const Pose& T_map_guess) {
   if (!m_reference.exists()) return std::nullopt;
-  const auto& submaps = m_scale.isPlanar ? m_reference.sliceAt(seen.cloud, T_map_guess)
-                                         : m_reference.inSpace();
+  const auto& submaps =
+      m_scale.isPlanar ? m_reference.sliceAt(seen.cloud, T_map_guess) : m_reference.inSpace();
   const Registration r = match(submaps, seen, T_map_guess, Matrix6::Zero());
   const bool isFound = r.coveredShare >= kCovered && r.matchedShare >= 0.6;
   return isFound ? std::make_optional(r) : std::nullopt;
@@ -230,8 +230,7 @@ bool SlamEngine::followReference() {
   const Matrix6 information = m_mostOfReference * (m_mostOfReference + own).inverse() * own;
   const Pose T_first_robot = m_poses.front().inverse() * found->T_submap_scan;
   const std::size_t before = m_edges.size();
-  const bool moved =
-      confirm(m_pendingReferences, {0, newest, T_first_robot, information, true});
+  const bool moved = confirm(m_pendingReferences, {0, newest, T_first_robot, information, true});
   m_report.referenced += m_edges.size() - before;
   return moved;
 }
