@@ -15,7 +15,7 @@ constexpr double kFits = 0.5, kFitsWell = 0.8;
 /** Share of a scan's points where the last keyframes have some. */
 constexpr double kTracked = 0.3;
 /** Robots whose sensors see space have better odometry than those of laser scanners. */
-constexpr double kInSpace = 0.1;
+constexpr double kInSpace = 0.2;
 /** A scan that fits badly is believed up to so many standard deviations of the prediction. */
 constexpr double kFar = 4;
 /** Steps are small up to this share of what makes a keyframe; so many are not registered. */
