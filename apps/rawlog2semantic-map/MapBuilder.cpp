@@ -110,26 +110,30 @@ void MapBuilder::add(const StreamedObservation& observation) {
 void MapBuilder::insertScan(const StreamedObservation& observation) try {
   const LabeledScan& scan = *observation.scan;
   semantic_octree::InsertionReport report;
-  m_summary.insertionTimes.push_back(
-      timeOf([&] { report = insertIntoMap(scan, observation.T_map_robot); }));
+  CPose3D T_map_robot = observation.T_map_robot;
+  m_summary.insertionTimes.push_back(timeOf([&] { report = insertIntoMap(scan, T_map_robot); }));
   m_summary.add(report);
   if (scan.counts.labeled > 0) m_summary.labels.push_back(report.labels);
   m_summary.add(scan.counts);
   m_summary.withoutLabels += scan.labelsMissing;
   m_summary.conversionTimes.push_back(observation.milliseconds);
-  if (hasAbstraction(m_map.tree())) noteAbstraction(scan, observation.T_map_robot);
-  if (m_onScan) m_onScan(scan, observation.T_map_robot);
+  if (hasAbstraction(m_map.tree())) noteAbstraction(scan, T_map_robot);
+  if (m_onScan) m_onScan(scan, T_map_robot);
 } catch (const std::exception& e) {
   throw std::runtime_error(observation.name + ": " + strict_files::messageOf(e));
 }
 
 semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& scan,
-                                                           const CPose3D& T_map_robot) {
+                                                           CPose3D& T_map_robot) {
   if (!m_mapper) return m_map.insertScan(scan, T_map_robot);
   m_clock.setMaxGap(m_map.insertionOptions.maxGap);
   m_seconds += m_clock.secondsUntil(scan.timestamp);
+  std::optional<Eigen::Isometry3d> T_odometry_robot;
+  if (m_hasOdometry) T_odometry_robot = labeled_cloud::toEigen(T_map_robot);
   const auto inserted = m_mapper->insert(scan.cloud, labeled_cloud::toEigen(scan.T_robot_sensor),
-                                         labeled_cloud::toEigen(T_map_robot), m_seconds);
+                                         T_odometry_robot, m_seconds);
+  if (!m_hasOdometry)
+    T_map_robot = CPose3D(mrpt::math::CMatrixDouble44(inserted.place.T_map_robot.matrix()));
   m_clock.note(scan.timestamp);
   const semantic_slam::Slam::Added& added = *inserted.place.added;
   m_placed.push_back(
@@ -143,7 +147,8 @@ void MapBuilder::noteSlam() {
   notes() << "Poses: " << std::lround(report.way) << " m of way, " << report.keyframes
           << " keyframes, " << report.loops << " loops; " << report.lost << " of " << report.scans
           << " scans fit nothing that was seen before" << std::endl;
-  for (const std::string& warning : report.warnings()) notes() << "Warning: " << warning << std::endl;
+  for (const std::string& warning : report.warnings())
+    notes() << "Warning: " << warning << std::endl;
 }
 
 std::string MapBuilder::trajectory() const {

@@ -19,7 +19,7 @@ namespace rawlog2semantic_map {
 /** Inserts a stream of scans into a map; the next scans are made meanwhile. */
 class MapBuilder {
  public:
-  /** Is told of each scan that was inserted. */
+  /** Is told of each scan that was inserted, and where: as odometry has it, if there is any. */
   using OnScan = std::function<void(const labeled_cloud::LabeledScan& scan,
                                     const mrpt::poses::CPose3D& T_map_robot)>;
 
@@ -34,7 +34,9 @@ class MapBuilder {
    * \throw std::runtime_error naming the reference: it cannot be read, or has other classes */
   void correctPoses(const semantic_slam::SlamOptions& options, const std::filesystem::path& folder,
                     const std::filesystem::path& reference);
-  /** Of all keyframes, if poses are corrected, in the format of the TUM data sets. */
+  /** The rawlogs have no poses: with correctPoses(), scans are registered without a guess. */
+  void withoutOdometry() { m_hasOdometry = false; }
+  /** Of all scans, if poses are corrected, in the format of the TUM data sets. */
   std::string trajectory() const;
 
   /** Counts the observations that hold poses as used: those of the robot are from the rawlogs. */
@@ -55,15 +57,17 @@ class MapBuilder {
   void noteAbstraction(const labeled_cloud::LabeledScan& scan,
                        const mrpt::poses::CPose3D& T_map_robot);
 
+  /** \param T_map_robot of odometry; without any, where the scan was found */
   semantic_octree::InsertionReport insertIntoMap(const labeled_cloud::LabeledScan& scan,
-                                                 const mrpt::poses::CPose3D& T_map_robot);
+                                                 mrpt::poses::CPose3D& T_map_robot);
   void noteSlam();
 
   semantic_map::CSemanticOctoMap& m_map;
   semantic_octree::LeafFollower m_follower;
   std::optional<semantic_slam::Mapper> m_mapper;  ///< if poses are corrected
-  semantic_map::ObservationClock m_clock;         ///< of its scans
-  double m_seconds = 0;                           ///< that passed, by the clock
+  bool m_hasOdometry = true;
+  semantic_map::ObservationClock m_clock;  ///< of its scans
+  double m_seconds = 0;                    ///< that passed, by the clock
   struct PlacedScan {
     double seconds;
     std::size_t keyframe;

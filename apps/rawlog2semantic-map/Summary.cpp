@@ -149,6 +149,7 @@ ordered_json toJson(const Summary& s, const SemanticOcTree& tree, bool countVoxe
                     {"loops", s.slam->loops},
                     {"referenced", s.slam->referenced},
                     {"lost", s.slam->lost},
+                    {"torn", s.slam->torn},
                     {"undone", s.slam->undone},
                     {"way", s.slam->way},
                     {"odometry_way_error", s.slam->wayError},

@@ -64,8 +64,9 @@ struct Cli {
     addLabelsTo(app);
     auto* poses = app.add_option("--trajectory", trajectory,
                                  "Poses of the robot (TUM format), instead of those in the rawlog");
-    app.add_flag("--static-pose", staticPose, "The robot never moved: for rawlogs without poses")
-        ->excludes(poses);
+    auto* rest = app.add_flag("--static-pose", staticPose,
+                              "The robot never moved: for rawlogs without poses")
+                     ->excludes(poses);
     app.add_option("--classes", classes, "Class table (YAML), instead of the configuration's");
     app.add_option("--resolution", resolution, "Edge of a voxel, m")
         ->check(isNumber(strict_files::above(0)));
@@ -78,7 +79,8 @@ struct Cli {
     auto* corrected = app.add_flag("--slam", slam,
                                    "Correct the poses: register scans to each other, close loops; "
                                    "for LiDARs, RGB-D cameras, laser scanners")
-                          ->excludes(upkeep);
+                          ->excludes(upkeep)
+                          ->excludes(rest);
     app.add_option("--reference", reference,
                    "Map that is there already (.semantic, or a folder of tiles): poses are "
                    "corrected to be in its frame")
@@ -157,11 +159,13 @@ void setAbstraction(CSemanticOctoMap& map, const Cli& cli, const Config& config)
                            ": " + strict_files::messageOf(e));
 }
 
+/** Empty with --slam, if the rawlogs have none. */
 labeled_cloud::Trajectory trajectoryOf(const Cli& cli, const Config& config) {
   if (cli.staticPose) return restAtOrigin();
   if (!cli.trajectory.empty())
     return labeled_cloud::loadTumTrajectory(cli.trajectory, config.trajectory);
   notes() << "Reading the robot's poses" << std::endl;
+  if (cli.slam) return labeled_cloud::findTrajectory(cli.rawlogs, config.trajectory);
   return labeled_cloud::readTrajectory(cli.rawlogs, config.trajectory);
 }
 
@@ -193,7 +197,12 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
         labeled_cloud::loadConfusionMatrix(cli.confusion, table));
   const auto labeler = makeLabeler(cli.labels, table, config);
   labeled_cloud::ScanConverter converter(table, config.insertion.conversion, labeler);
-  const labeled_cloud::Trajectory trajectory = trajectoryOf(cli, config);
+  labeled_cloud::Trajectory trajectory = trajectoryOf(cli, config);
+  const bool hasPoses = !trajectory.empty();
+  if (!hasPoses) {
+    notes() << "There are no poses: scans alone tell where the robot is" << std::endl;
+    trajectory = restAtOrigin();
+  }
   labeled_cloud::CloudLabeler clouds(labeler, table.size(), config.insertion.conversion.labels,
                                      trajectory, config.cameras);
   labeled_cloud::ScanStream stream(cli.rawlogs, converter, trajectory, labeler ? &clouds : nullptr,
@@ -207,6 +216,7 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
   if (cli.compareUpkeep) builder.timeWithoutAbstraction();
   const fs::path trajectoryFile = output.staged("trajectory.tum");
   if (cli.slam) builder.correctPoses(config.slam, trajectoryFile.parent_path(), cli.reference);
+  if (!hasPoses) builder.withoutOdometry();
   builder.insert(cli.rawlogs, stream, stop);
   if (builder.summary().inserted == 0)
     throw std::runtime_error("nothing to map: no observation was inserted, " +

@@ -1,5 +1,9 @@
 // A drive whose trajectory drifts, and what --slam makes of it.
 #include <gtest/gtest.h>
+#include <labeled_cloud/RawlogReader.h>
+#include <mrpt/io/CFileGZOutputStream.h>
+#include <mrpt/obs/CObservationRobotPose.h>
+#include <mrpt/serialization/CArchive.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <Eigen/Geometry>
@@ -104,8 +108,12 @@ TEST(Rawlog2SemanticMapWithSlam, correctsATrajectoryThatDrifts) {
   EXPECT_GT(shareOccupiedIn(trueMap, map), 0.8);
 
   const Poses corrected = readPoses(folder.read("out/trajectory.tum"));
-  const auto slam = nlohmann::json::parse(folder.read("out/summary.json"))["slam"];
-  EXPECT_EQ(slam["keyframes"], corrected.size());
+  const auto summary = nlohmann::json::parse(folder.read("out/summary.json"));
+  const auto& slam = summary["slam"];
+  EXPECT_EQ(corrected.size(), summary["observations"]["inserted"]) << "each scan has a pose";
+  EXPECT_LE(slam["keyframes"], corrected.size());
+  EXPECT_EQ(slam["torn"], 0);
+  EXPECT_TRUE(slam["warnings"].empty()) << slam["warnings"];
   EXPECT_GT(slam["loops"], 0);
   ASSERT_GT(corrected.size(), 100u);
   const double last = corrected.rbegin()->first;
@@ -165,6 +173,37 @@ TEST(Rawlog2SemanticMapWithSlam, bringsADriveIntoTheFrameOfAMap) {
   const auto slam = nlohmann::json::parse(street.folder.read("after/summary.json"))["slam"];
   EXPECT_GT(slam["referenced"], 10);
   EXPECT_EQ(slam["loops"], 0);
+}
+
+TEST(Rawlog2SemanticMapWithSlam, mapsARawlogWithoutPoses) {
+  const Street street;
+  const auto bare = street.folder / "bare.rawlog";
+  {
+    mrpt::io::CFileGZOutputStream file(bare.string());
+    auto archive = mrpt::serialization::archiveFrom(file);
+    labeled_cloud::RawlogReader reader(street.rawlog);
+    while (const auto entry = reader.next())
+      for (const auto& observation : entry->observations)
+        if (!std::dynamic_pointer_cast<mrpt::obs::CObservationRobotPose>(observation))
+          archive << *observation;
+  }
+  const std::string out = (street.folder / "out").string();
+  const std::vector<std::string> arguments = {"--output",    out,  "--resolution", "0.2",
+                                              "--max-range", "20", bare.string()};
+  EXPECT_EQ(runProgram("rawlog2semantic-map", arguments).status, 1) << "it needs poses";
+  auto slam = arguments;
+  slam.emplace_back("--slam");
+  const ProgramRun run = runProgram("rawlog2semantic-map", slam);
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const Poses truth = readPoses(street.folder.read("street.tum")),
+              found = readPoses(street.folder.read("out/trajectory.tum"));
+  ASSERT_EQ(found.size(), 50u);
+  for (const auto& [time, T] : found) {
+    const auto& T_true = std::prev(truth.upper_bound(time + 1e-4))->second;
+    EXPECT_LT(distance(truth.begin()->second * T, T_true), 0.1) << time;
+  }
+  slam.emplace_back("--static-pose");
+  EXPECT_EQ(runProgram("rawlog2semantic-map", slam).status, 64) << "it moves, or it does not";
 }
 
 TEST(Rawlog2SemanticMapWithSlam, saysWhyAReferenceCannotBeUsed) {

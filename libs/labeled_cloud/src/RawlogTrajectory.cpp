@@ -67,19 +67,25 @@ void addNaming(const std::filesystem::path& file, const RawlogEntry& entry, Rawl
 
 }  // namespace
 
-Trajectory readTrajectory(const std::vector<std::filesystem::path>& rawlogs,
+Trajectory findTrajectory(const std::vector<std::filesystem::path>& rawlogs,
                           const TrajectoryOptions& options) {
   RawlogTrajectory collected(options);
   for (const auto& file : rawlogs) {
     RawlogReader reader(file);
     while (const auto entry = reader.next()) addNaming(file, *entry, collected);
   }
-  if (collected.trajectory().empty())
+  return collected.trajectory();
+}
+
+Trajectory readTrajectory(const std::vector<std::filesystem::path>& rawlogs,
+                          const TrajectoryOptions& options) {
+  Trajectory found = findTrajectory(rawlogs, options);
+  if (found.empty())
     throw std::runtime_error(
         (rawlogs.empty() ? std::string("no rawlog") : rawlogs.front().string()) +
         ": no robot poses (CObservationRobotPose, movements, or "
         "CObservationOdometry); give a trajectory file");
-  return collected.trajectory();
+  return found;
 }
 
 }  // namespace labeled_cloud

@@ -1,6 +1,7 @@
 #include <semantic_slam/Mapper.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace semantic_slam {
 
@@ -20,17 +21,19 @@ Mapper::Mapper(SemanticOcTree& map, const MapperOptions& options, const Semantic
                                         : std::make_unique<KeyframeMap>(map, m_options.scans);
 }
 
-auto Mapper::locate(const std::vector<SensorScan>& seen, const Eigen::Isometry3d& T_odometry_robot)
-    -> Place {
-  if (!m_slam) return {T_odometry_robot, {}};
+auto Mapper::locate(const std::vector<SensorScan>& seen,
+                    const std::optional<Eigen::Isometry3d>& T_odometry_robot) -> Place {
+  if (!m_slam && !T_odometry_robot)
+    throw std::invalid_argument("Mapper: scans without a pose of odometry need localize");
+  if (!m_slam) return {*T_odometry_robot, {}};
   const Slam::Added added = addToSlam(seen, T_odometry_robot);
   const Eigen::Isometry3d T_map_robot = m_slam->poses().back() * added.T_keyframe_robot;
-  m_T_map_odometry = T_map_robot * T_odometry_robot.inverse();
+  if (T_odometry_robot) m_T_map_odometry = T_map_robot * T_odometry_robot->inverse();
   return {T_map_robot, added};
 }
 
 Slam::Added Mapper::addToSlam(const std::vector<SensorScan>& seen,
-                              const Eigen::Isometry3d& T_odometry_robot) {
+                              const std::optional<Eigen::Isometry3d>& T_odometry_robot) {
   if (seen.size() == 1 && m_isMover.empty())
     return m_slam->add(seen[0].cloud, seen[0].T_robot_sensor, T_odometry_robot);
   return m_slam->add(evidenceOf(seen), Eigen::Isometry3d::Identity(), T_odometry_robot);

@@ -37,9 +37,12 @@ class RawlogTrajectory {
   bool m_moved = false;
 };
 
-/** Reads all poses of some rawlogs that continue each other, in that order.
- * \throw std::runtime_error as RawlogReader does, and if there are no poses: naming the file and
- * what would have been taken. */
+/** Reads all poses of some rawlogs that continue each other, in that order; empty: there are none.
+ * \throw std::runtime_error as RawlogReader does, or naming the file: a pose is not finite. */
+Trajectory findTrajectory(const std::vector<std::filesystem::path>& rawlogs,
+                          const TrajectoryOptions& options = {});
+/** findTrajectory(). \throw std::runtime_error also if there are no poses: naming the file and what
+ * would have been taken. */
 Trajectory readTrajectory(const std::vector<std::filesystem::path>& rawlogs,
                           const TrajectoryOptions& options = {});
 

@@ -58,15 +58,18 @@ class Mapper {
 
   /** locate() and insert(), see there. */
   Inserted insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
-                  const Eigen::Isometry3d& T_odometry_robot, double seconds) {
+                  const std::optional<Eigen::Isometry3d>& T_odometry_robot, double seconds) {
     const std::vector<SensorScan> seen = {{cloud, T_robot_sensor}};
     return insert(seen, locate(seen, T_odometry_robot), seconds);
   }
   /** Finds where scans were taken, and closes loops. T_map_odometry() knows at once, the map with
    * insert(), which has to follow, before the next locate().
    * \param T_odometry_robot of the robot's frame when they were taken; with SlamOptions::level its
-   * height and tilt are right */
-  Place locate(const std::vector<SensorScan>& seen, const Eigen::Isometry3d& T_odometry_robot);
+   * height and tilt are right. None: with `localize` scans alone tell where the robot is, and
+   * T_map_odometry() stays
+   * \throw std::invalid_argument there is none, and no `localize` */
+  Place locate(const std::vector<SensorScan>& seen,
+               const std::optional<Eigen::Isometry3d>& T_odometry_robot);
   /** Inserts what was seen at once, or leaves it out; moves keyframes, if a loop was closed. The
    * map ages by the time since the last scan. Another thread may do it, as long as none reads the
    * map.
@@ -91,7 +94,7 @@ class Mapper {
 
  private:
   Slam::Added addToSlam(const std::vector<SensorScan>& seen,
-                        const Eigen::Isometry3d& T_odometry_robot);
+                        const std::optional<Eigen::Isometry3d>& T_odometry_robot);
   LabeledCloud evidenceOf(const std::vector<SensorScan>& seen) const;
   bool isLeftOut(const Place& place);
   semantic_octree::InsertionReport insertAt(const Place& place, const LabeledCloud& cloud,
