@@ -121,14 +121,13 @@ inline PlaneGraph randomPlaneGraph(unsigned seed, int vertices, int edges, int c
   return plane;
 }
 
-/** All edge models and cost kinds with this order, exact, and with tolls and rounded. */
+/** All edge models and cost kinds with this order, without and with tolls. */
 inline std::vector<colored_graph::CostModel> allModels(const colored_graph::ClassOrder& order) {
   using namespace colored_graph;
   std::vector<CostModel> models;
   for (const EdgeModel edges : {EdgeModel::Endpoint, EdgeModel::Sweep, EdgeModel::Profile})
     for (const CostKind kind : {CostKind::Count, CostKind::ArcLength})
-      for (const bool whole : {false, true})
-        models.push_back({order, edges, kind, whole, whole ? Length{10} : Length{0}});
+      for (const bool tolls : {false, true}) models.push_back({order, edges, kind, tolls});
   return models;
 }
 
