@@ -87,7 +87,7 @@ TEST_F(SemanticMapPlan, drawsWhatIsDrivenBackwardInAColorOfItsOwn) {
 }
 
 TEST_F(SemanticMapPlan, writesTheRoadmapForApplicationsOfMrpt) {
-  ASSERT_EQ(run("-8,0,0", "8,0,0").status, 0);
+  ASSERT_EQ(run("-8,0,0", "8,0,0", {"--no-shorten"}).status, 0);
   const std::string graph = folder.read("out/roadmap.graph");
   EXPECT_TRUE(contains(graph, " | class road\n"));
   EXPECT_TRUE(contains(graph, " | class grass\n"));
@@ -128,7 +128,7 @@ TEST_F(SemanticMapPlan, withoutAPathItSaysWhyAndTheStatusIsTwo) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out/path.csv"));
   EXPECT_EQ(run("-8,0,0", "50,0,0").status, 2);
   EXPECT_EQ(report()["status"], "goal off ground");
-  EXPECT_EQ(run("-8,0,0", "8,0,0", {"--time-limit", "0"}).status, 2);
+  EXPECT_EQ(run("-8,0,0", "8,0,0", {"--no-shorten", "--time-limit", "0"}).status, 2);
   EXPECT_EQ(report()["status"], "time limit");
 }
 

@@ -41,6 +41,12 @@ Eigen::Isometry3d planar(const Eigen::Isometry3d& T) {
 double wayOf(const Eigen::Isometry3d& T) { return T.translation().norm(); }
 double turnOf(const Eigen::Isometry3d& T) { return vectorOf(T).tail<3>().norm(); }
 
+/** Whether a motion is more standard deviations away than a scan that fits badly may be. */
+bool isBeyond(const Vector6& off, const Matrix6& information) {
+  return off.head<3>().norm() > kFar / std::sqrt(information(0, 0)) ||
+         off.tail<3>().norm() > kFar / std::sqrt(information(5, 5));
+}
+
 }  // namespace
 
 Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_sensor,
@@ -155,10 +161,11 @@ std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_st
   std::optional<Registration> r =
       match(m_local.submaps(), seen, T_guess, information / kOwnInformation);
   const Vector6 off = vectorOf(T_guess.inverse() * r->T_submap_scan);
-  const bool isFar = off.head<3>().norm() > kFar / std::sqrt(information(0, 0)) ||
-                     off.tail<3>().norm() > kFar / std::sqrt(information(5, 5));
+  const bool isFar = isBeyond(off, information);
   // Beams in a plane fit but where they belong; in space much is ground, which fits anywhere.
-  const bool mayBeFar = m_scale.isPlanar && r->matchedShare >= kFitsWell;
+  const bool mayBeFar =
+      r->matchedShare >= kFitsWell &&
+      (m_scale.isPlanar || !isBeyond(off, MotionNoise(!m_hasOdometry).information(T_step)));
   if (isFar && r->matchedShare >= kFitsWell)
     m_noise.note(T_step, T_guess.inverse() * r->T_submap_scan,
                  kOwnInformation * r->information + information);
