@@ -260,10 +260,11 @@ int run(const Cli& cli) {
   const ClassTable table = classesOf(cli, config);
   CSemanticOctoMap map(config.map.resolution, table, config.insertion.filter);
   map.insertionOptions = config.insertion;
-  if (!cli.folder.folder.empty())
-    map.openFolder(cli.folder);
-  else
-    setAbstraction(map, cli, config);
+  const bool isInFolder = !cli.folder.folder.empty();
+  isInFolder ? map.openFolder(cli.folder) : setAbstraction(map, cli, config);
+  if (isInFolder && config.abstraction.isSet())
+    notes() << "[abstraction] is left out with --tiles: semantic-map-compress compresses the folder"
+            << std::endl;
   std::optional<LiveScans> live;
   if (cli.live) live.emplace(map.tree(), stop, cli.pause);
   OutputFolder output(cli.output);

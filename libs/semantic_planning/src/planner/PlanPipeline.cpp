@@ -5,6 +5,8 @@ namespace semantic_planning {
 
 namespace {
 
+constexpr int kFinerRoadmaps = 3;
+
 /** What a path may cost before a roadmap is tried: turning takes some meters at both ends. */
 double mostOf(const RelaxedPath& relaxed) {
   constexpr double kShare = 1.2, kTurns = 20;  // m
@@ -68,7 +70,7 @@ void PlannerCore::tryFinerRoadmaps(const RelaxedPath& relaxed, StageClock& clock
                                    PlanResult& result) {
   const GraphKind kind = m_options.roadmap.kind;
   if (relaxed.path.empty() || (kind != GraphKind::Compressed && kind != GraphKind::Full)) return;
-  for (int i = 0; i < m_options.finerRoadmaps && !result.found(); ++i) {
+  for (int i = 0; i < kFinerRoadmaps && !result.found(); ++i) {
     const PlanResult finer = finerRoadmap(relaxed, i, result);
     if (finer.found()) result = beside(finer.path, finer);
     if (finer.found() && !result.found()) result = finer;

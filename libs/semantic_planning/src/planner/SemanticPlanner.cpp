@@ -14,7 +14,7 @@ void PlannerOptions::describe(strict_files::OptionList& list) {
   reading.describe(list);
   list.add("shorten", shorten, "", "look for the path of least price, not in the graph only");
   list.add("strict", strict, "", "classes come before length, whatever the order's rates");
-  list.add("time_limit", timeLimit, "s", limits, "of a search");
+  list.add("time_limit", timeLimit, "s", limits, "of a search in the roadmap");
   ground.describe(list);
 }
 

@@ -28,10 +28,7 @@ struct PlannerOptions {
   bool shorten = false;
   /** With `shorten`: classes come before length, whatever the order's rates (ClassOrder). */
   bool strict = false;
-  /** With `shorten`: so many finer roadmaps are tried while there is no path; fewer bound what it
-   * takes to find none. Without a name in files. */
-  int finerRoadmaps = 3;
-  /** Of a search, seconds. */
+  /** Of a search in the roadmap, seconds. */
   double timeLimit = std::numeric_limits<double>::infinity();
   /** Asked often during a search, which stops when it answers true. */
   std::function<bool()> cancelled;
