@@ -1,6 +1,6 @@
 // Allocations of this program and of all libraries in it: symbols of a program are found before
 // those of libraries.
-#include <strict_files/AllocationLimit.h>
+#include <strict_files/Memory.h>
 
 #include <cstddef>
 #include <cstdlib>

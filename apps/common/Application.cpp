@@ -1,6 +1,5 @@
 #include "Application.h"
 
-#include <strict_files/ErrorMessage.h>
 #include <strict_files/Words.h>
 
 #include <filesystem>

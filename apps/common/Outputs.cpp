@@ -1,6 +1,6 @@
 #include "Outputs.h"
 
-#include <strict_files/NewFiles.h>
+#include <strict_files/OutputFiles.h>
 
 #include <algorithm>
 #include <set>

@@ -1,7 +1,7 @@
 #include "Signals.h"
 
 #include <fcntl.h>
-#include <strict_files/LeaveWithoutOutputs.h>
+#include <strict_files/OutputFiles.h>
 #include <unistd.h>
 
 #include <atomic>

@@ -1,6 +1,6 @@
 #include "KittiCamera.h"
 
-#include <labeled_cloud/ImageFile.h>
+#include <labeled_cloud/Pictures.h>
 
 #include <opencv2/core.hpp>
 #include <stdexcept>

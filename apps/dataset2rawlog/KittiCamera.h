@@ -1,6 +1,6 @@
 #pragma once
 #include <mrpt/obs/CObservationImage.h>
-#include <strict_files/OutputFolder.h>
+#include <strict_files/OutputFiles.h>
 
 #include <Eigen/Geometry>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "Output.h"
 
-#include <labeled_cloud/EigenPose.h>
+#include <labeled_cloud/Trajectory.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/RawlogWriter.h>
+#include <labeled_cloud/Rawlogs.h>
 
 #include "Conversion.h"
 #include "LabelNoise.h"

@@ -1,5 +1,5 @@
 #include <labeled_cloud/PointFile.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <Eigen/Geometry>
 #include <stdexcept>

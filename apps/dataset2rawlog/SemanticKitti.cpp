@@ -1,5 +1,5 @@
-#include <labeled_cloud/Seconds.h>
-#include <semantic_types/ClassTableFile.h>
+#include <labeled_cloud/Trajectory.h>
+#include <semantic_types/ClassTable.h>
 
 #include <Eigen/Geometry>
 #include <fstream>

@@ -1,10 +1,10 @@
 #include "TumFiles.h"
 
-#include <labeled_cloud/ImageFile.h>
-#include <labeled_cloud/Seconds.h>
+#include <labeled_cloud/Pictures.h>
+#include <labeled_cloud/Trajectory.h>
 #include <mrpt/config/CConfigFile.h>
 #include <mrpt_compat/Images.h>
-#include <strict_files/ErrorMessage.h>
+#include <strict_files/Words.h>
 
 #include <algorithm>
 #include <opencv2/core.hpp>

@@ -1,8 +1,8 @@
-#include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt_compat/Images.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "StudyFiles.h"
 
-#include <strict_files/Csv.h>
+#include <strict_files/TextFile.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 #include <semantic_planning/planner/SemanticPlanner.h>
 #include <strict_files/OptionList.h>
-#include <synthetic_world/Random.h>
+#include <synthetic_world/Objects.h>
 #include <synthetic_world/World.h>
 
 #include <map>

@@ -1,6 +1,6 @@
 #include "TrueMap.h"
 
-#include <synthetic_world/Classes.h>
+#include <synthetic_world/Solids.h>
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // Drives through the synthetic worlds between random places, and counts what goes wrong.
 #include <semantic_planning/planner/OrderFile.h>
-#include <strict_files/OutputFolder.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 #include <synthetic_world/Scene.h>
 

@@ -1,7 +1,7 @@
-#include <labeled_cloud/RawlogReader.h>
-#include <labeled_cloud/RawlogTrajectory.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <labeled_cloud/ScanConverter.h>
-#include <semantic_types/ClassTableFile.h>
+#include <labeled_cloud/Trajectory.h>
+#include <semantic_types/ClassTable.h>
 
 #include "Scene.h"
 

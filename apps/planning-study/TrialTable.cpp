@@ -1,4 +1,4 @@
-#include <strict_files/Csv.h>
+#include <strict_files/TextFile.h>
 
 #include <sstream>
 

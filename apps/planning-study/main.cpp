@@ -1,7 +1,7 @@
 // Compares kinds of graphs, and other planners, on random tasks over semantic maps.
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
-#include <strict_files/OutputFolder.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 
 #include <ostream>

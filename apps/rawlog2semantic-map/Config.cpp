@@ -1,9 +1,9 @@
 #include "Config.h"
 
 #include <mrpt/config/CConfigFile.h>
-#include <strict_files/ErrorMessage.h>
 #include <strict_files/IniSection.h>
 #include <strict_files/TextFile.h>
+#include <strict_files/Words.h>
 
 #include <fstream>
 #include <stdexcept>

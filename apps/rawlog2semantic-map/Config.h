@@ -1,6 +1,6 @@
 #pragma once
 #include <labeled_cloud/CloudLabeler.h>
-#include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/ScanStream.h>
 #include <labeled_cloud/Trajectory.h>
 #include <map_pictures/MapPictures.h>

@@ -1,6 +1,6 @@
 #include "LiveScans.h"
 
-#include <labeled_cloud/EigenPose.h>
+#include <labeled_cloud/Trajectory.h>
 #include <mrpt_compat/Drawing.h>
 
 #include <cstdio>

@@ -1,10 +1,10 @@
 #include "MapBuilder.h"
 
-#include <labeled_cloud/EigenPose.h>
-#include <labeled_cloud/ReadAhead.h>
+#include <labeled_cloud/ScanStream.h>
+#include <labeled_cloud/Trajectory.h>
 #include <map_folders/MapFolder.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <strict_files/ErrorMessage.h>
+#include <strict_files/Words.h>
 
 #include <cmath>
 #include <iomanip>

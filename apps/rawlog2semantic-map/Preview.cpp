@@ -1,8 +1,8 @@
 #include "Preview.h"
 
-#include <labeled_cloud/EigenPose.h>
 #include <labeled_cloud/LabelModel.h>
-#include <labeled_cloud/VisiblePixels.h>
+#include <labeled_cloud/Pictures.h>
+#include <labeled_cloud/Trajectory.h>
 #include <map_pictures/MapPictures.h>
 
 #include <opencv2/imgproc.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-#include <labeled_cloud/LabeledScan.h>
+#include <labeled_cloud/ScanConverter.h>
 #include <semantic_types/ClassTable.h>
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 #pragma once
-#include <labeled_cloud/LabeledScan.h>
-#include <labeled_cloud/RawlogWriter.h>
+#include <labeled_cloud/Rawlogs.h>
+#include <labeled_cloud/ScanConverter.h>
 #include <semantic_types/ClassTable.h>
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "Summary.h"
 
-#include <map_operations/MapContents.h>
+#include <map_operations/MapOperations.h>
 #include <semantic_abstraction/Abstraction.h>
 
 #include <sstream>

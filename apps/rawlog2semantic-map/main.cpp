@@ -1,11 +1,11 @@
 // Makes a semantic octree map, pictures of it and a summary from labeled rawlogs.
-#include <labeled_cloud/RawlogClasses.h>
-#include <labeled_cloud/RawlogTrajectory.h>
+#include <labeled_cloud/Rawlogs.h>
+#include <labeled_cloud/Trajectory.h>
 #include <semantic_octree/TreeFile.h>
-#include <semantic_types/ClassTableFile.h>
-#include <strict_files/ErrorMessage.h>
-#include <strict_files/OutputFolder.h>
+#include <semantic_types/ClassTable.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
+#include <strict_files/Words.h>
 
 #include <cmath>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 #include <map_folders/MapFolder.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_abstraction/TermCatalog.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 
 namespace semantic_map_compress {
 

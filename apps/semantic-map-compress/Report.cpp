@@ -1,6 +1,6 @@
 #include "Report.h"
 
-#include <strict_files/Csv.h>
+#include <strict_files/TextFile.h>
 #include <tree_abstraction/Information.h>
 
 #include <sstream>

@@ -1,9 +1,9 @@
 // Compresses a semantic octree map to its optimal trees for given weights of the classes.
 #include <map_folders/MapFolder.h>
-#include <map_operations/MapContents.h>
+#include <map_operations/MapOperations.h>
 #include <map_pictures/MapPictures.h>
 #include <semantic_octree/TreeFile.h>
-#include <strict_files/OutputFolder.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 

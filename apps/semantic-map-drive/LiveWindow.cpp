@@ -1,6 +1,6 @@
 #include "LiveWindow.h"
 
-#include <labeled_cloud/EmbeddedLabels.h>
+#include <labeled_cloud/LabelImage.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt_compat/Drawing.h>
 

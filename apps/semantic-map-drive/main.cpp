@@ -1,9 +1,9 @@
 // Drives a robot through a synthetic world: it maps, compresses, plans and drives.
 #include <map_folders/MapFolder.h>
-#include <map_pictures/GifFile.h>
+#include <map_pictures/PictureFiles.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderFile.h>
-#include <strict_files/OutputFolder.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 
 #include <cmath>

@@ -2,11 +2,10 @@
 // OctoMap's.
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
-#include <map_operations/OctomapConversion.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_map/ImportOctomap.h>
+#include <semantic_map/MapFiles.h>
 #include <semantic_octree/TreeFile.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <array>
 #include <cmath>

@@ -1,9 +1,8 @@
 // Asks maps for the classes of labeled points that they were not made from.
-#include <labeled_cloud/EigenPose.h>
-#include <labeled_cloud/RawlogTrajectory.h>
 #include <labeled_cloud/ScanStream.h>
+#include <labeled_cloud/Trajectory.h>
 #include <map_folders/MapFolder.h>
-#include <strict_files/OutputFolder.h>
+#include <strict_files/OutputFiles.h>
 
 #include <algorithm>
 #include <cmath>

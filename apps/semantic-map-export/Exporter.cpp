@@ -1,12 +1,11 @@
 #include "Exporter.h"
 
 #include <map_operations/MapOperations.h>
-#include <map_pictures/ClassMap.h>
-#include <map_pictures/PngFile.h>
+#include <map_pictures/MapPictures.h>
+#include <map_pictures/PictureFiles.h>
 #include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_map/ExportOctomap.h>
-#include <semantic_map/SceneFile.h>
+#include <semantic_map/MapFiles.h>
 
 #include <fstream>
 #include <stdexcept>

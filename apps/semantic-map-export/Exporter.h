@@ -1,7 +1,6 @@
 #pragma once
-#include <semantic_map/ExportGrid.h>
-#include <semantic_map/ExportPoints.h>
-#include <strict_files/StagedFile.h>
+#include <semantic_map/MapFiles.h>
+#include <strict_files/OutputFiles.h>
 
 #include <filesystem>
 #include <functional>

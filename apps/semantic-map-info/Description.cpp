@@ -1,6 +1,6 @@
 #include "Description.h"
 
-#include <map_operations/MapContents.h>
+#include <map_operations/MapOperations.h>
 #include <strict_files/Words.h>
 
 #include <iomanip>

@@ -2,7 +2,6 @@
 
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/roadmap/MrptGraph.h>
-#include <strict_files/Csv.h>
 #include <strict_files/TextFile.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "PlanPicture.h"
 
-#include <semantic_types/ClassColors.h>
+#include <semantic_types/ClassTable.h>
 
 namespace semantic_map_plan {
 

@@ -2,7 +2,7 @@
 
 #include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_map/SceneFile.h>
+#include <semantic_map/MapFiles.h>
 
 namespace semantic_map_plan {
 

@@ -5,7 +5,7 @@
 #include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
-#include <strict_files/OutputFolder.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 
 #include <cmath>

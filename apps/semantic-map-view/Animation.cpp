@@ -1,7 +1,7 @@
 #include "Animation.h"
 
-#include <map_pictures/GifFile.h>
-#include <map_pictures/Sheet.h>
+#include <map_pictures/MapCanvas.h>
+#include <map_pictures/PictureFiles.h>
 
 #include <cmath>
 

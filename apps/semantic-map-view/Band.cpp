@@ -1,6 +1,6 @@
 #include "Band.h"
 
-#include <map_pictures/Drawing.h>
+#include <map_pictures/MapCanvas.h>
 
 namespace semantic_map_view {
 

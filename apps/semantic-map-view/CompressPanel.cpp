@@ -1,7 +1,7 @@
 #include "CompressPanel.h"
 
 #include <GLFW/glfw3.h>
-#include <map_view/WeightsText.h>
+#include <map_view/LiveCompression.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>

@@ -1,6 +1,6 @@
 #include "PlanPanel.h"
 
-#include <map_view/RayCast.h>
+#include <map_view/OrbitCamera.h>
 #include <mrpt_compat/Drawing.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>

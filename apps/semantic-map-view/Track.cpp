@@ -1,7 +1,6 @@
 #include "Track.h"
 
 #include <labeled_cloud/Trajectory.h>
-#include <strict_files/Csv.h>
 #include <strict_files/OptionList.h>
 #include <strict_files/TextFile.h>
 

@@ -1,6 +1,6 @@
 // Shows semantic octree maps in a window.
 #include <map_pictures/MapPictures.h>
-#include <semantic_abstraction/WeightsFile.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_planning/planner/OrderFile.h>
 
 #include <iostream>

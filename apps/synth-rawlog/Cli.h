@@ -1,6 +1,5 @@
 #pragma once
-#include <synthetic_world/Camera.h>
-#include <synthetic_world/Lidar.h>
+#include <synthetic_world/Sensors.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <iosfwd>
 
-#include <strict_files/StagedFile.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 #include <synthetic_world/Scene.h>
 #include "Cli.h"

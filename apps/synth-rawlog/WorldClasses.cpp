@@ -1,6 +1,6 @@
 #include "WorldClasses.h"
 
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <stdexcept>
 

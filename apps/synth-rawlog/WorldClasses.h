@@ -1,7 +1,6 @@
 #pragma once
-#include <synthetic_world/Camera.h>
-#include <synthetic_world/Classes.h>
-#include <synthetic_world/Lidar.h>
+#include <synthetic_world/Sensors.h>
+#include <synthetic_world/Solids.h>
 
 #include <filesystem>
 

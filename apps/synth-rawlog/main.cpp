@@ -1,7 +1,7 @@
 // Drives a robot through a synthetic world and writes what its labeled sensors see.
 #include <map_pictures/MapPictures.h>
-#include <synthetic_world/Drive.h>
-#include <synthetic_world/Shading.h>
+#include <synthetic_world/Scene.h>
+#include <synthetic_world/Sensors.h>
 
 #include <cmath>
 #include <iostream>

@@ -2,8 +2,8 @@
 //     02_map_in_your_loop OUTPUT.semantic
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
-#include <synthetic_world/Lidar.h>
 #include <synthetic_world/Scene.h>
+#include <synthetic_world/Sensors.h>
 
 #include <iostream>
 

@@ -1,8 +1,8 @@
 // A robot drives through a village of which it has no map: 05_drive_your_robot REACTIVE.ini
 #include <mrpt/core/Clock.h>
 #include <semantic_navigation/Navigator.h>
-#include <synthetic_world/Lidar.h>
 #include <synthetic_world/Scene.h>
+#include <synthetic_world/Sensors.h>
 #include <iostream>
 
 int main(int argc, char** argv) {

@@ -1,6 +1,6 @@
 // OctoMap's loops over leaves, searches and boxes work as they did:
 //     06_from_octomap MAP.semantic OUT.bt
-#include <map_operations/OctomapConversion.h>
+#include <map_operations/MapOperations.h>
 #include <octomap/OcTree.h>
 #include <semantic_octree/TreeFile.h>
 

@@ -1,8 +1,8 @@
 // Whether probabilities mean what they say, in a world whose truth is known.
 #include <gtest/gtest.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <synthetic_world/Lidar.h>
 #include <synthetic_world/Scene.h>
+#include <synthetic_world/Sensors.h>
 
 #include "Evaluation.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <mrpt/obs/CObservationImage.h>
 #include <mrpt_compat/Images.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <opencv2/imgcodecs.hpp>
 #include <string>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <semantic_octree/TreeFile.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <nlohmann/json.hpp>
 

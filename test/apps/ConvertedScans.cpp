@@ -1,8 +1,8 @@
 #include "ConvertedScans.h"
 
 #include <gtest/gtest.h>
-#include <labeled_cloud/RawlogReader.h>
-#include <labeled_cloud/RawlogTrajectory.h>
+#include <labeled_cloud/Rawlogs.h>
+#include <labeled_cloud/Trajectory.h>
 
 #include <Eigen/Geometry>
 #include <array>

@@ -2,10 +2,10 @@
 // application.
 #include <gtest/gtest.h>
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt_compat/Images.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/LabelModel.h>
 #include <semantic_octree/SemanticOcTree.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <cmath>
 #include <random>

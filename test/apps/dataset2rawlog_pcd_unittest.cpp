@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include "ConvertedScans.h"
 #include "SharedData.h"

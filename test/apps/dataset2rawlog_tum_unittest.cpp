@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/LabelFolder.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/LabelImage.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt_compat/Images.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <Eigen/Geometry>
 #include <array>

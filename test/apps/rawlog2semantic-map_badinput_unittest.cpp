@@ -1,9 +1,9 @@
 // What rawlog2semantic-map says of bad input, and that it leaves what was there.
-#include <mrpt_compat/Files.h>
 
 #include <array>
 #include <opencv2/imgcodecs.hpp>
 
+#include "CompressedInput.h"
 #include "MappingFixture.h"
 
 namespace fs = std::filesystem;
@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string uncompressed(const fs::path& file) {
-  mrpt_compat::CompressedInput in(file.string());
+  CompressedInput in(file.string());
   std::string bytes;
   for (char c; in.Read(&c, 1) == 1;) bytes += c;
   return bytes;

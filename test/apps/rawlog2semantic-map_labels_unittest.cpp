@@ -1,5 +1,5 @@
 // Labels from images and networks, through the whole application.
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 
 #include <fstream>
 #include <random>

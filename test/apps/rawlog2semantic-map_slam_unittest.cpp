@@ -1,6 +1,6 @@
 // A drive whose trajectory drifts, and what --slam makes of it.
 #include <gtest/gtest.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt/serialization/CArchive.h>

@@ -1,5 +1,5 @@
-#include <map_operations/MapContents.h>
-#include <semantic_types/ClassTableFile.h>
+#include <map_operations/MapOperations.h>
+#include <semantic_types/ClassTable.h>
 
 #include <limits>
 #include <opencv2/imgcodecs.hpp>

@@ -1,9 +1,9 @@
 #include <mrpt/nav/reactive/CLogFileRecord.h>
 #include <mrpt/serialization/CArchive.h>
-#include <mrpt_compat/Files.h>
 
 #include <algorithm>
 
+#include "CompressedInput.h"
 #include "SemanticMapDrive.h"
 
 TEST_F(SemanticMapDrive, KeepsPicturesOnTheWayAndNoneOfALongerDrive) {
@@ -55,7 +55,7 @@ TEST_F(SemanticMapDrive, ArrivesWithObstaclesOfTheCompressedTreeAndLogsWhatTheNa
       argumentsWith({"--config", config, "--output", path("drive"), "--no-rawlog", "--navlog"}));
   ASSERT_EQ(run.status, 0) << run.output << run.errors;
   EXPECT_EQ(jsonIn("drive/drive.json")["collisions"], 0);
-  mrpt_compat::CompressedInput file(path("drive/drive.reactivenavlog"));
+  CompressedInput file(path("drive/drive.reactivenavlog"));
   auto archive = mrpt::serialization::archiveFrom(file);
   int records = 0, withObstacles = 0;
   try {

@@ -1,9 +1,8 @@
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
-#include <map_operations/OctomapConversion.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <yaml-cpp/yaml.h>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <labeled_cloud/RawlogWriter.h>
+#include <labeled_cloud/Rawlogs.h>
 
 #include <algorithm>
 #include <array>

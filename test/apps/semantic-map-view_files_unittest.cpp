@@ -1,6 +1,5 @@
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
-#include <map_operations/OctomapConversion.h>
 
 #include <octomap/OcTree.h>
 

@@ -1,5 +1,4 @@
 #include <map_operations/MapOperations.h>
-#include <map_operations/OctomapConversion.h>
 
 #include <octomap/OcTree.h>
 

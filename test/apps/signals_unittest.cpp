@@ -1,7 +1,7 @@
 // What becomes of outputs when a program is told to end.
 #include <gtest/gtest.h>
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <semantic_octree/TreeFile.h>
 
 #include <nlohmann/json.hpp>

@@ -1,24 +1,24 @@
 #include "Readers.h"
 
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/LabelModel.h>
 #include <labeled_cloud/NetworkLabeler.h>
 #include <labeled_cloud/PointFile.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
-#include <map_operations/OctomapConversion.h>
+#include <map_operations/MapOperations.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
 #include <octomap/OcTree.h>
-#include <semantic_abstraction/WeightsFile.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_map/ImportOctomap.h>
+#include <semantic_map/MapFiles.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <sstream>
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/ImageFile.h>
-#include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/LabelImage.h>
+#include <labeled_cloud/Pictures.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <mrpt/obs/CObservationImage.h>
 #include <png.h>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CSensoryFrame.h>

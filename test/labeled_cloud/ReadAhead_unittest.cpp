@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/ReadAhead.h>
+#include <labeled_cloud/ScanStream.h>
 
 #include <atomic>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationComment.h>

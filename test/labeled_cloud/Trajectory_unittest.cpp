@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/RawlogTrajectory.h>
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CActionRobotMovement3D.h>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/VisiblePixels.h>
+#include <labeled_cloud/Pictures.h>
 
 #include <cmath>
 #include <random>

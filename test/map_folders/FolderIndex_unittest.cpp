@@ -1,7 +1,7 @@
 // A folder's index is believed only where it says of itself and of its files what they are.
 #include <gtest/gtest.h>
-#include <semantic_types/ClassTableFile.h>
-#include <strict_files/LeaveWithoutOutputs.h>
+#include <semantic_types/ClassTable.h>
+#include <strict_files/OutputFiles.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <zlib.h>

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 #include <map_correction/KeyframeMap.h>
 #include <map_folders/MapFolder.h>
-#include <map_operations/MapContents.h>
 #include <map_operations/MapOperations.h>
 #include <semantic_abstraction/AlphaTrees.h>
 #include <semantic_octree/MapFollower.h>

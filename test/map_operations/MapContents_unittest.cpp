@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <map_operations/MapContents.h>
+#include <map_operations/MapOperations.h>
 
 #include "RandomScans.h"
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 #include <map_operations/MapOperations.h>
-#include <map_operations/OctomapConversion.h>
 #include <octomap/OcTree.h>
 
 #include <algorithm>

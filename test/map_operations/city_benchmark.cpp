@@ -6,9 +6,9 @@
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <synthetic_world/Classes.h>
-#include <synthetic_world/Drive.h>
-#include <synthetic_world/Lidar.h>
+#include <synthetic_world/Scene.h>
+#include <synthetic_world/Sensors.h>
+#include <synthetic_world/Solids.h>
 #include <sys/resource.h>
 
 #include <chrono>

@@ -1,6 +1,6 @@
 #include <gif_lib.h>
 #include <gtest/gtest.h>
-#include <map_pictures/GifFile.h>
+#include <map_pictures/PictureFiles.h>
 #include <rapidcheck/gtest.h>
 
 #include <memory>

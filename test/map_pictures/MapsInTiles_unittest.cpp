@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
-#include <map_pictures/ClassMap.h>
 #include <map_pictures/MapPictures.h>
 
 #include "PaintedField.h"

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <map_pictures/PngFile.h>
+#include <map_pictures/PictureFiles.h>
 
 #include <opencv2/imgcodecs.hpp>
 

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <map_pictures/Sheet.h>
+#include <map_pictures/MapCanvas.h>
 
 #include <filesystem>
 #include <opencv2/imgproc.hpp>

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <map_view/CellAnswer.h>
 #include <map_view/CellSource.h>
 #include <semantic_abstraction/Abstraction.h>
 

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <map_view/RayCast.h>
+#include <map_view/OrbitCamera.h>
 
 #include "RandomMap.h"
 

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <map_view/TileMesh.h>
 #include <map_view/TileSet.h>
 
 #include <map>

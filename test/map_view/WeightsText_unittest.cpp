@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <map_view/WeightsText.h>
+#include <map_view/LiveCompression.h>
 
 #include "RandomMap.h"
 #include "TemporaryFolder.h"

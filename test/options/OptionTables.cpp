@@ -1,7 +1,7 @@
 #include "OptionTables.h"
 
 #include <labeled_cloud/CloudLabeler.h>
-#include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/NetworkLabeler.h>
 #include <labeled_cloud/ScanStream.h>
 #include <map_operations/SmoothedView.h>
@@ -9,12 +9,11 @@
 #include <semantic_driving/DriveGuide.h>
 #include <semantic_driving/Movers.h>
 #include <semantic_driving/ObstacleSensing.h>
-#include <semantic_map/ExportGrid.h>
+#include <semantic_map/MapFiles.h>
 #include <semantic_map/MapOptions.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 #include <semantic_slam/SlamOptions.h>
-#include <synthetic_world/Camera.h>
-#include <synthetic_world/Lidar.h>
+#include <synthetic_world/Sensors.h>
 
 #include "simulated_drive/DriveConfig.h"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
-#include <semantic_abstraction/WeightsFile.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_planning/planner/OrderFile.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <filesystem>
 

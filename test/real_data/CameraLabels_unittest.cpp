@@ -1,10 +1,10 @@
 // Labels painted into images come back to the points that they were painted from.
 #include <gtest/gtest.h>
 #include <labeled_cloud/CloudLabeler.h>
-#include <labeled_cloud/EigenPose.h>
 #include <labeled_cloud/ScanConverter.h>
+#include <labeled_cloud/Trajectory.h>
 #include <mrpt/obs/CObservationImage.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <algorithm>
 #include <numeric>

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <map_correction/KeyframeMap.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <random>
 

@@ -1,6 +1,6 @@
 #include "CountedLabels.h"
 
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <algorithm>
 

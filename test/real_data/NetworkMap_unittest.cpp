@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/LabelModel.h>
-#include <labeled_cloud/RawlogReader.h>
-#include <semantic_types/ClassTableFile.h>
+#include <labeled_cloud/Rawlogs.h>
+#include <semantic_types/ClassTable.h>
 
 #include <fstream>
 #include <iterator>

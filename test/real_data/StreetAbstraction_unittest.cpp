@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include "DataSets.h"
 #include "SharedData.h"

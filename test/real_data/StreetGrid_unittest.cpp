@@ -1,7 +1,7 @@
 // The 2D grid of a real street, asked for the labeled points that the map was made of.
 #include <gtest/gtest.h>
-#include <semantic_map/ExportGrid.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_map/MapFiles.h>
+#include <semantic_types/ClassTable.h>
 
 #include "DataSets.h"
 #include "SharedData.h"

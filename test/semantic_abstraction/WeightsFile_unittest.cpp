@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_abstraction/TermCatalog.h>
-#include <semantic_abstraction/WeightsFile.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 
 #include "TemporaryFolder.h"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <semantic_driving/GoalFit.h>
-#include <synthetic_world/Random.h>
+#include <synthetic_world/Objects.h>
 
 #include <cmath>
 

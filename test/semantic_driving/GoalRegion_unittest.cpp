@@ -1,7 +1,7 @@
 #include "GoalRegion.h"
 
 #include <gtest/gtest.h>
-#include <synthetic_world/Random.h>
+#include <synthetic_world/Objects.h>
 
 #include <cmath>
 #include <set>

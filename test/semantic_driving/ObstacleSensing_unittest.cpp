@@ -2,7 +2,7 @@
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/CompressedObstacles.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
-#include <synthetic_world/Random.h>
+#include <synthetic_world/Objects.h>
 
 #include <algorithm>
 #include <chrono>

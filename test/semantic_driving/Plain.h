@@ -1,7 +1,7 @@
 #pragma once
 #include <semantic_planning/planner/OrderFile.h>
-#include <synthetic_world/Classes.h>
 #include <synthetic_world/Objects.h>
+#include <synthetic_world/Solids.h>
 
 #include "simulated_drive/DriveConfig.h"
 

@@ -3,12 +3,12 @@
 #include <mrpt/core/Clock.h>
 #include <mrpt/nav/reactive/CLogFileRecord.h>
 #include <mrpt/serialization/CArchive.h>
-#include <mrpt_compat/Files.h>
 #include <semantic_driving/ReactiveNavigator.h>
 
 #include <cmath>
 #include <filesystem>
 
+#include "CompressedInput.h"
 #include "ReactiveSystem.h"
 #include "simulated_drive/SimulatedRobot.h"
 
@@ -129,7 +129,7 @@ TEST(ReactiveNavigator, WritesALogThatMrptReads) {
   ReactiveNavigator::Options options = optionsOf(0.2);
   options.logFolder = folder.path;
   EXPECT_TRUE(getsThrough(options, 0.5));
-  mrpt_compat::CompressedInput file((folder.path / "log_000.reactivenavlog").string());
+  CompressedInput file((folder.path / "log_000.reactivenavlog").string());
   auto archive = mrpt::serialization::archiveFrom(file);
   int records = 0;
   double farthest = 0;

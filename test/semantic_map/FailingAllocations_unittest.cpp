@@ -1,12 +1,9 @@
 // What memory that runs out leaves of maps, files and answers.
 #include "FailingAllocations.h"
 
-#include <map_operations/OctomapConversion.h>
+#include <map_operations/MapOperations.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_map/ExportGrid.h>
-#include <semantic_map/ExportOctomap.h>
-#include <semantic_map/ExportPoints.h>
-#include <semantic_map/ImportOctomap.h>
+#include <semantic_map/MapFiles.h>
 
 #include <optional>
 #include <sstream>

@@ -1,12 +1,9 @@
 // Files of the map, in a host whose numbers have decimal commas.
 #include <gtest/gtest.h>
-#include <labeled_cloud/CameraCalibration.h>
+#include <labeled_cloud/CloudLabeler.h>
 #include <labeled_cloud/Trajectory.h>
-#include <semantic_abstraction/WeightsFile.h>
-#include <semantic_map/ExportGrid.h>
-#include <semantic_map/ExportOctomap.h>
-#include <semantic_map/ExportPoints.h>
-#include <semantic_map/ImportOctomap.h>
+#include <semantic_abstraction/AbstractionOptions.h>
+#include <semantic_map/MapFiles.h>
 
 #include <sstream>
 

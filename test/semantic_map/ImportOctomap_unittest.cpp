@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_map/ImportOctomap.h>
+#include <semantic_map/MapFiles.h>
 #include <sys/stat.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/obs/CObservationRobotPose.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <algorithm>
 #include <cmath>

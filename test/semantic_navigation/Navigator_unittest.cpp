@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 #include <mrpt/core/Clock.h>
 #include <semantic_navigation/Navigator.h>
-#include <synthetic_world/Lidar.h>
 #include <synthetic_world/Objects.h>
+#include <synthetic_world/Sensors.h>
 
 #include <cmath>
 #include <functional>

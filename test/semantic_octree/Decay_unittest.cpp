@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
-#include <map_operations/MapContents.h>
-#include <map_operations/OctomapConversion.h>
+#include <map_operations/MapOperations.h>
 #include <octomap/OcTree.h>
 #include <semantic_abstraction/Abstraction.h>
 

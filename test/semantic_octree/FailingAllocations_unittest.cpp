@@ -2,7 +2,6 @@
 #include <map_correction/KeyframeMap.h>
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
-#include <map_operations/OctomapConversion.h>
 #include <map_streams/MapStream.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>

@@ -5,7 +5,7 @@
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,6 @@
 // ground is is known; what it is, and what stands on it, is what is asked of the map. What a path
 // costs in the end, the whole map says.
 #include <map_operations/MapOperations.h>
-#include <map_operations/OctomapConversion.h>
 #include <map_streams/MapStream.h>
 #include <octomap/OcTree.h>
 #include <semantic_abstraction/Abstraction.h>

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/EigenPose.h>
-#include <labeled_cloud/RawlogTrajectory.h>
 #include <labeled_cloud/ScanStream.h>
+#include <labeled_cloud/Trajectory.h>
 #include <semantic_slam/Slam.h>
 
 #include <cmath>

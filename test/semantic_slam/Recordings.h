@@ -2,9 +2,8 @@
 #include <gtest/gtest.h>
 #include <semantic_slam/Registration.h>
 #include <semantic_slam/Slam.h>
-#include <synthetic_world/Camera.h>
-#include <synthetic_world/Drive.h>
-#include <synthetic_world/Lidar.h>
+#include <synthetic_world/Scene.h>
+#include <synthetic_world/Sensors.h>
 
 #include <algorithm>
 #include <cmath>

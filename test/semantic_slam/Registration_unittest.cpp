@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <semantic_slam/Registration.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <random>
 #include <set>

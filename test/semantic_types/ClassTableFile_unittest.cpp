@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <set>
 

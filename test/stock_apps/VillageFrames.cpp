@@ -1,6 +1,6 @@
 #include "VillageFrames.h"
 
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 

@@ -1,7 +1,7 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include "StockApps.h"
 #include "VillageFrames.h"

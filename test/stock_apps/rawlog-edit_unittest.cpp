@@ -1,5 +1,5 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 
 #include "StockApps.h"
 

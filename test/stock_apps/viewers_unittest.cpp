@@ -1,7 +1,7 @@
-#include <labeled_cloud/RawlogWriter.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/obs/CRawlog.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include <opencv2/imgcodecs.hpp>
 

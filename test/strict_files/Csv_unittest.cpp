@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
-#include <strict_files/Csv.h>
+#include <strict_files/TextFile.h>
 
 #include <cstdlib>
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
-#include <strict_files/FileLock.h>
-#include <strict_files/StagedFile.h>
+#include <strict_files/OutputFiles.h>
 
 #include "TemporaryFolder.h"
 

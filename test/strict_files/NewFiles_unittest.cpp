@@ -1,9 +1,7 @@
 // Files that are to be new do not replace what others put there meanwhile.
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <strict_files/NewFiles.h>
-#include <strict_files/OutputFolder.h>
-#include <strict_files/StagedFile.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 #include <sys/syscall.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <strict_files/OutputFolder.h>
+#include <strict_files/OutputFiles.h>
 
 #include "StagedText.h"
 #include "TemporaryFolder.h"

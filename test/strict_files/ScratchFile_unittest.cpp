@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <strict_files/ScratchFile.h>
+#include <strict_files/OutputFiles.h>
 #include <sys/stat.h>
 
 #include <string>

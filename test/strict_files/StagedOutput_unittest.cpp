@@ -1,8 +1,6 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <strict_files/LeaveWithoutOutputs.h>
-#include <strict_files/OutputFolder.h>
-#include <strict_files/StagedFile.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>

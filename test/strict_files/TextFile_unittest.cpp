@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <strict_files/ClassicNumbers.h>
 #include <strict_files/StrictYaml.h>
 #include <strict_files/TextFile.h>
 

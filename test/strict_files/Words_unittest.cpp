@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
-#include <strict_files/ErrorMessage.h>
 #include <strict_files/Words.h>
 
 #include <cstdio>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <synthetic_world/Camera.h>
-#include <synthetic_world/Drive.h>
+#include <synthetic_world/Scene.h>
+#include <synthetic_world/Sensors.h>
 
 #include "SmallWorld.h"
 

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <synthetic_world/Curve.h>
+#include <synthetic_world/World.h>
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <synthetic_world/Polygon.h>
-#include <synthetic_world/Random.h>
+#include <synthetic_world/Objects.h>
+#include <synthetic_world/Solids.h>
 
 #include <cmath>
 

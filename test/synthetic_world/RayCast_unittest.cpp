@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <synthetic_world/Random.h>
+#include <synthetic_world/Objects.h>
 #include <synthetic_world/Scene.h>
 
 #include "SmallWorld.h"

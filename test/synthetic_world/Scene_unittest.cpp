@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
-#include <semantic_types/ClassTableFile.h>
-#include <synthetic_world/Drive.h>
-#include <synthetic_world/Lidar.h>
-#include <synthetic_world/Shading.h>
+#include <semantic_types/ClassTable.h>
+#include <synthetic_world/Scene.h>
+#include <synthetic_world/Sensors.h>
 
 #include <set>
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
-#include <synthetic_world/Camera.h>
-#include <synthetic_world/Lidar.h>
+#include <synthetic_world/Sensors.h>
 
 #include "SmallWorld.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/RawlogTrajectory.h>
+#include <labeled_cloud/Trajectory.h>
 #include <mrpt/containers/yaml.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 #include <synthetic_world/Scene.h>
 
 #include <map>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <tree_abstraction/TermSet.h>
+#include <tree_abstraction/AbstractionWeights.h>
 
 #include <cmath>
 #include <limits>

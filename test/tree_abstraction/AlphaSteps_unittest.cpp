@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 #include <tree_abstraction/AlphaPath.h>
-#include <tree_abstraction/AlphaSteps.h>
 
 #include <algorithm>
 #include <cmath>

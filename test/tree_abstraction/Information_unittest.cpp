@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <reference/Divergence.h>
-#include <tree_abstraction/TermSet.h>
+#include <tree_abstraction/AbstractionWeights.h>
 
 #include <cmath>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 #include "LabelOverlay.h"
 
 #include <mrpt_compat/Images.h>
-#include <semantic_types/ClassColors.h>
+#include <semantic_types/ClassTable.h>
 
 #include <opencv2/imgproc.hpp>
 

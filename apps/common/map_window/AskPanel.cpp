@@ -1,9 +1,9 @@
 #include "AskPanel.h"
 
-#include <map_view/CellAnswer.h>
-#include <map_view/RayCast.h>
+#include <map_view/CellSource.h>
+#include <map_view/OrbitCamera.h>
 #include <mrpt_compat/Drawing.h>
-#include <semantic_types/ClassColors.h>
+#include <semantic_types/ClassTable.h>
 
 #include <cstdarg>
 #include <ostream>

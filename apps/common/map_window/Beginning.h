@@ -1,5 +1,5 @@
 #pragma once
-#include <map_view/CellLook.h>
+#include <map_view/CellSource.h>
 #include <map_view/OrbitCamera.h>
 
 #include <optional>

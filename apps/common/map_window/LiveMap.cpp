@@ -1,7 +1,7 @@
 #include "LiveMap.h"
 
 #include <nanogui/opengl.h>
-#include <strict_files/ErrorMessage.h>
+#include <strict_files/Words.h>
 
 #include <stdexcept>
 #include <utility>

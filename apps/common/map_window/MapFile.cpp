@@ -2,10 +2,9 @@
 
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
-#include <map_operations/OctomapConversion.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_map/ImportOctomap.h>
-#include <strict_files/ErrorMessage.h>
+#include <semantic_map/MapFiles.h>
+#include <strict_files/Words.h>
 
 #include <array>
 

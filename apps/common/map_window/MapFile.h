@@ -1,6 +1,6 @@
 #pragma once
 #include <map_folders/MapFolder.h>
-#include <map_view/CellLook.h>
+#include <map_view/CellSource.h>
 
 namespace map_window {
 

@@ -1,6 +1,6 @@
 #include "ShowPanel.h"
 
-#include <semantic_types/ClassColors.h>
+#include <semantic_types/ClassTable.h>
 
 #include <algorithm>
 #include <numeric>

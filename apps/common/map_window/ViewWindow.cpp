@@ -1,6 +1,6 @@
 #include "ViewWindow.h"
 
-#include <map_pictures/Drawing.h>
+#include <map_pictures/MapCanvas.h>
 #include <mrpt_compat/Drawing.h>
 #include <nanogui/opengl.h>
 

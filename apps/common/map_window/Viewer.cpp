@@ -2,7 +2,7 @@
 
 #include <GLFW/glfw3.h>
 #include <map_pictures/MapPictures.h>
-#include <strict_files/ErrorMessage.h>
+#include <strict_files/Words.h>
 
 #include <iostream>
 

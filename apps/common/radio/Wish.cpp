@@ -1,7 +1,6 @@
 #include "Wish.h"
 
-#include <semantic_abstraction/TermCatalog.h>
-#include <semantic_abstraction/WeightsFile.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>

@@ -2,10 +2,10 @@
 
 #include <mrpt/config/CConfigFile.h>
 #include <semantic_planning/vehicle/VehicleFile.h>
-#include <strict_files/ErrorMessage.h>
 #include <strict_files/IniSection.h>
 #include <strict_files/TextFile.h>
-#include <synthetic_world/Classes.h>
+#include <strict_files/Words.h>
+#include <synthetic_world/Solids.h>
 
 #include <algorithm>
 #include <fstream>

@@ -1,8 +1,7 @@
 #pragma once
 #include <semantic_navigation/Navigator.h>
 #include <semantic_octree/FilterParameters.h>
-#include <synthetic_world/Camera.h>
-#include <synthetic_world/Lidar.h>
+#include <synthetic_world/Sensors.h>
 
 #include <filesystem>
 

@@ -2,8 +2,8 @@
 
 #include <mrpt/core/Clock.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_types/ClassTableFile.h>
-#include <synthetic_world/Classes.h>
+#include <semantic_types/ClassTable.h>
+#include <synthetic_world/Solids.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,7 +1,7 @@
 #pragma once
 #include <mrpt/math/TPose2D.h>
 #include <strict_files/OptionList.h>
-#include <synthetic_world/Random.h>
+#include <synthetic_world/Objects.h>
 
 #include <cstdint>
 

@@ -1,7 +1,7 @@
 #pragma once
-#include <labeled_cloud/RawlogWriter.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/obs/CObservation.h>
-#include <synthetic_world/Random.h>
+#include <synthetic_world/Objects.h>
 
 #include <Eigen/Geometry>
 #include <vector>

@@ -2,9 +2,8 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationRobotPose.h>
-#include <synthetic_world/Camera.h>
-#include <synthetic_world/Classes.h>
-#include <synthetic_world/Lidar.h>
+#include <synthetic_world/Sensors.h>
+#include <synthetic_world/Solids.h>
 
 #include <opencv2/core/mat.hpp>
 

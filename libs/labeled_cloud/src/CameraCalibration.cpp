@@ -1,7 +1,7 @@
-#include <labeled_cloud/CameraCalibration.h>
+#include <labeled_cloud/CloudLabeler.h>
 #include <mrpt/core/bits_math.h>
 #include <mrpt/math/TPose3D.h>
-#include <strict_files/ClassicNumbers.h>
+#include <strict_files/TextFile.h>
 
 #include <algorithm>
 #include <sstream>

@@ -1,11 +1,11 @@
 #include <labeled_cloud/CloudLabeler.h>
-#include <strict_files/ErrorMessage.h>
+#include <strict_files/Words.h>
 
 #include <algorithm>
 #include <stdexcept>
 
-#include <labeled_cloud/EigenPose.h>
-#include <labeled_cloud/VisiblePixels.h>
+#include <labeled_cloud/Pictures.h>
+#include <labeled_cloud/Trajectory.h>
 #include "ObservationName.h"
 #include "PointLabels.h"
 

@@ -1,4 +1,4 @@
-#include <labeled_cloud/ColorImage.h>
+#include <labeled_cloud/Pictures.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationImage.h>
 #include <mrpt/obs/CObservationStereoImages.h>

@@ -1,4 +1,4 @@
-#include <labeled_cloud/EmbeddedLabels.h>
+#include <labeled_cloud/LabelImage.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 
 #include <array>

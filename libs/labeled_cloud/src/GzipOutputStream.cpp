@@ -1,4 +1,4 @@
-#include <labeled_cloud/GzipOutputStream.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <zlib.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <labeled_cloud/ImageFile.h>
+#include <labeled_cloud/Pictures.h>
 
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>

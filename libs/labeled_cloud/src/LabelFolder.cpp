@@ -1,5 +1,5 @@
-#include <labeled_cloud/LabelFolder.h>
-#include <labeled_cloud/Seconds.h>
+#include <labeled_cloud/LabelImage.h>
+#include <labeled_cloud/Trajectory.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationImage.h>
 

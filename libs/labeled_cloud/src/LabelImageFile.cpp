@@ -1,5 +1,5 @@
-#include <labeled_cloud/ImageFile.h>
-#include <labeled_cloud/LabelFolder.h>
+#include <labeled_cloud/LabelImage.h>
+#include <labeled_cloud/Pictures.h>
 
 #include <opencv2/core.hpp>
 #include <stdexcept>

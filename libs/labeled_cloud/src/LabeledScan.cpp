@@ -1,4 +1,4 @@
-#include <labeled_cloud/LabeledScan.h>
+#include <labeled_cloud/ScanConverter.h>
 
 #include <algorithm>
 

@@ -1,6 +1,5 @@
-#include <labeled_cloud/ColorImage.h>
-#include <labeled_cloud/ImageFile.h>
 #include <labeled_cloud/NetworkLabeler.h>
+#include <labeled_cloud/Pictures.h>
 #include <mrpt_compat/Images.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #pragma once
-#include <labeled_cloud/PointSource.h>
+#include <labeled_cloud/ScanConverter.h>
 
 namespace labeled_cloud {
 

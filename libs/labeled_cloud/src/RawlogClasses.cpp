@@ -1,8 +1,7 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/RawlogClasses.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
-#include <mrpt_compat/Colors.h>
+#include <mrpt_compat/Images.h>
 
 #include <algorithm>
 #include <cmath>

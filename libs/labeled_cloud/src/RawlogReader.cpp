@@ -1,9 +1,9 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <labeled_cloud/RawlogReader.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
-#include <strict_files/AllocationLimit.h>
-#include <strict_files/ErrorMessage.h>
+#include <strict_files/Memory.h>
+#include <strict_files/Words.h>
 
 #include <stdexcept>
 

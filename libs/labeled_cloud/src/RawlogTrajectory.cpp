@@ -1,4 +1,4 @@
-#include <labeled_cloud/RawlogTrajectory.h>
+#include <labeled_cloud/Trajectory.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 

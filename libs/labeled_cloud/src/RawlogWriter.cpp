@@ -1,5 +1,4 @@
-#include <labeled_cloud/GzipOutputStream.h>
-#include <labeled_cloud/RawlogWriter.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/serialization/CArchive.h>
 
 namespace labeled_cloud {

@@ -1,6 +1,6 @@
-#include <labeled_cloud/EmbeddedLabels.h>
+#include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/ScanConverter.h>
-#include <strict_files/ErrorMessage.h>
+#include <strict_files/Words.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -3,8 +3,8 @@
 
 #include <stdexcept>
 
-#include <labeled_cloud/EigenPose.h>
-#include <labeled_cloud/VisiblePixels.h>
+#include <labeled_cloud/Pictures.h>
+#include <labeled_cloud/Trajectory.h>
 #include "PointGrid.h"
 #include "PointLabels.h"
 

@@ -3,7 +3,7 @@
 #include <mrpt/img/CImage.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationRobotPose.h>
-#include <strict_files/ErrorMessage.h>
+#include <strict_files/Words.h>
 
 #include <chrono>
 #include <stdexcept>

@@ -1,7 +1,5 @@
-#include <labeled_cloud/Seconds.h>
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/poses/CPose3DQuat.h>
-#include <strict_files/ClassicNumbers.h>
 #include <strict_files/TextFile.h>
 
 #include <array>

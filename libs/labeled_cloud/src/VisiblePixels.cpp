@@ -1,4 +1,4 @@
-#include <labeled_cloud/VisiblePixels.h>
+#include <labeled_cloud/Pictures.h>
 
 #include <algorithm>
 #include <cmath>

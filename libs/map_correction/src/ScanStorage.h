@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_types/LabeledCloud.h>
-#include <strict_files/ScratchFile.h>
+#include <strict_files/OutputFiles.h>
 
 #include <optional>
 

@@ -2,9 +2,8 @@
 #include <semantic_octree/TreeFile.h>
 #include <semantic_octree/store/TreeBuilder.h>
 #include <semantic_octree/store/TreeFormat.h>
-#include <strict_files/AvailableMemory.h>
-#include <strict_files/FileLock.h>
-#include <strict_files/OutputFolder.h>
+#include <strict_files/Memory.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>

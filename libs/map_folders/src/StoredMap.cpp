@@ -1,6 +1,6 @@
 #include <map_folders/MapFolder.h>
 #include <semantic_octree/TreeFile.h>
-#include <strict_files/FileLock.h>
+#include <strict_files/OutputFiles.h>
 
 #include <limits>
 

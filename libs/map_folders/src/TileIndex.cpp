@@ -3,7 +3,6 @@
 #include <map_folders/MapFolder.h>
 #include <semantic_octree/store/CheckedStream.h>
 #include <semantic_octree/store/TileCodes.h>
-#include <strict_files/ClassicNumbers.h>
 #include <strict_files/StrictYaml.h>
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>

@@ -2,7 +2,7 @@
 
 #include <semantic_octree/store/Scan.h>
 #include <semantic_octree/store/TreeFormat.h>
-#include <strict_files/StagedFile.h>
+#include <strict_files/OutputFiles.h>
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include <map_operations/MapContents.h>
+#include <map_operations/MapOperations.h>
 
 namespace semantic_octree {
 

@@ -1,8 +1,8 @@
-#include <map_operations/OctomapConversion.h>
+#include <map_operations/MapOperations.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 #include <semantic_octree/store/TreeBuilder.h>
-#include <semantic_types/ClassColors.h>
+#include <semantic_types/ClassTable.h>
 
 #include <cmath>
 #include <stdexcept>

@@ -1,6 +1,6 @@
-#include <map_pictures/ClassMap.h>
-#include <map_pictures/Sheet.h>
-#include <strict_files/ClassicNumbers.h>
+#include <map_pictures/MapCanvas.h>
+#include <map_pictures/MapPictures.h>
+#include <strict_files/TextFile.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include <ft2build.h>
-#include <map_pictures/Drawing.h>
+#include <map_pictures/MapCanvas.h>
 #include FT_FREETYPE_H
 
 #include <algorithm>

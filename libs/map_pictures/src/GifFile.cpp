@@ -1,5 +1,5 @@
 #include <gif_lib.h>
-#include <map_pictures/GifFile.h>
+#include <map_pictures/PictureFiles.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-#include <map_pictures/Drawing.h>
+#include <map_pictures/MapCanvas.h>
 
 #include <opencv2/core.hpp>
 

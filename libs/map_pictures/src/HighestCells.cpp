@@ -1,10 +1,10 @@
 #include "HighestCells.h"
 
-#include <semantic_types/ClassColors.h>
+#include <semantic_types/ClassTable.h>
 
 #include <cmath>
 
-#include <map_pictures/Drawing.h>
+#include <map_pictures/MapCanvas.h>
 #include "Hatching.h"
 #include "Relief.h"
 

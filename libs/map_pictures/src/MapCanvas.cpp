@@ -1,5 +1,5 @@
 #include <map_pictures/MapCanvas.h>
-#include <strict_files/ClassicNumbers.h>
+#include <strict_files/TextFile.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>

@@ -1,5 +1,5 @@
 #include <map_pictures/MapCanvas.h>
-#include <strict_files/StagedFile.h>
+#include <strict_files/OutputFiles.h>
 
 #include <cmath>
 #include <fstream>

@@ -1,6 +1,6 @@
-#include <map_pictures/Sheet.h>
+#include <map_pictures/MapCanvas.h>
+#include <mrpt_compat/Drawing.h>
 #include <mrpt_compat/Images.h>
-#include <mrpt_compat/Renderer.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>

@@ -1,6 +1,6 @@
-#include <map_pictures/PngFile.h>
+#include <map_pictures/PictureFiles.h>
 #include <png.h>
-#include <strict_files/StagedFile.h>
+#include <strict_files/OutputFiles.h>
 #include <zlib.h>
 
 #include <csetjmp>

@@ -1,5 +1,5 @@
-#include <map_pictures/Sheet.h>
-#include <semantic_types/ClassColors.h>
+#include <map_pictures/MapCanvas.h>
+#include <semantic_types/ClassTable.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "VoxelMesh.h"
 
-#include <semantic_types/ClassColors.h>
+#include <semantic_types/ClassTable.h>
 
 #include <array>
 #include <vector>
@@ -129,11 +129,6 @@ CSetOfTriangles::Ptr meshOf(const SemanticOcTree& tree, const MapCells& map) {
       if (!around.isFilled(face.normal)) mesh.addFace(cell, face, around);
   }
   return mesh.take();
-}
-
-CSetOfTriangles::Ptr meshOf(const SemanticOcTree& tree, const PictureStyle& style) {
-  style.validate();
-  return meshOf(tree, collectCells(tree, style));
 }
 
 }  // namespace map_pictures

@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_abstraction/Abstraction.h>
-#include <tree_abstraction/AlphaSteps.h>
+#include <tree_abstraction/AlphaPath.h>
 
 #include "PartList.h"
 

@@ -1,5 +1,5 @@
-#include <map_view/CellAnswer.h>
-#include <semantic_abstraction/WeightsFile.h>
+#include <map_view/CellSource.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
-#include <map_view/CellLook.h>
+#include <map_view/CellSource.h>
 #include <map_view/LiveCompression.h>
-#include <semantic_types/ClassColors.h>
+#include <semantic_types/ClassTable.h>
 #include <tree_abstraction/Information.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <map_view/InformationTree.h>
+#include <map_view/LiveCompression.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include <map_view/OrbitCamera.h>
-#include <strict_files/ClassicNumbers.h>
 #include <strict_files/OptionList.h>
+#include <strict_files/TextFile.h>
 
 #include <array>
 #include <cmath>

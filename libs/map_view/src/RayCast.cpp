@@ -1,4 +1,4 @@
-#include <map_view/RayCast.h>
+#include <map_view/OrbitCamera.h>
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include <map_view/TileMesh.h>
+#include <map_view/TileSet.h>
 
 #include <cstdint>
 

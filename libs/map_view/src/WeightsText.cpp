@@ -1,4 +1,4 @@
-#include <map_view/WeightsText.h>
+#include <map_view/LiveCompression.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <semantic_abstraction/WeightsFile.h>
-#include <strict_files/ClassicNumbers.h>
+#include <semantic_abstraction/AbstractionOptions.h>
+#include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
 #include <cmath>

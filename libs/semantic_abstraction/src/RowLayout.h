@@ -2,7 +2,7 @@
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_octree/store/Cell.h>
 #include <semantic_octree/store/ClassRecord.h>
-#include <tree_abstraction/TermSet.h>
+#include <tree_abstraction/AbstractionWeights.h>
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include <semantic_abstraction/TermCatalog.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "TermsByName.h"
 
-#include <semantic_abstraction/WeightsFile.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <semantic_abstraction/WeightsFile.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <strict_files/StrictYaml.h>
 #include <strict_files/Words.h>
 

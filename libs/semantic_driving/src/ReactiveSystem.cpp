@@ -3,7 +3,7 @@
 #include <mrpt/config/CConfigFile.h>
 #include <mrpt/nav/reactive/CReactiveNavigationSystem.h>
 #include <mrpt/nav/reactive/CReactiveNavigationSystem3D.h>
-#include <strict_files/ClassicNumbers.h>
+#include <strict_files/TextFile.h>
 
 #include <iomanip>
 #include <limits>

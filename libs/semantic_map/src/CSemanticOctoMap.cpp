@@ -1,7 +1,7 @@
 #include <labeled_cloud/ScanConverter.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <strict_files/ClassicNumbers.h>
+#include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
 #include <sstream>

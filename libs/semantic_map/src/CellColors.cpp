@@ -1,7 +1,7 @@
 #include "CellColors.h"
 
-#include <mrpt_compat/Colors.h>
-#include <semantic_types/ClassColors.h>
+#include <mrpt_compat/Images.h>
+#include <semantic_types/ClassTable.h>
 #include <tree_abstraction/Information.h>
 
 #include <algorithm>

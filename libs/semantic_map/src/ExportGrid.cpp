@@ -1,9 +1,9 @@
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
 #include <octomap/octomap_utils.h>
-#include <semantic_map/ExportGrid.h>
-#include <strict_files/ClassicNumbers.h>
+#include <semantic_map/MapFiles.h>
 #include <strict_files/StrictYaml.h>
+#include <strict_files/TextFile.h>
 
 #include <algorithm>
 #include <cmath>

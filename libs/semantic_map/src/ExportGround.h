@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_map/ExportGrid.h>
+#include <semantic_map/MapFiles.h>
 
 #include "ExportColumns.h"
 

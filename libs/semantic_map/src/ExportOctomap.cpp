@@ -1,8 +1,8 @@
-#include <map_operations/OctomapConversion.h>
+#include <map_operations/MapOperations.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
-#include <semantic_map/ExportOctomap.h>
-#include <strict_files/ClassicNumbers.h>
+#include <semantic_map/MapFiles.h>
+#include <strict_files/TextFile.h>
 
 #include <iomanip>
 #include <limits>

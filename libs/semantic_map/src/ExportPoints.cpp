@@ -1,7 +1,6 @@
-#include <semantic_map/ExportPoints.h>
-#include <semantic_types/ClassColors.h>
-#include <strict_files/ClassicNumbers.h>
-#include <strict_files/Csv.h>
+#include <semantic_map/MapFiles.h>
+#include <semantic_types/ClassTable.h>
+#include <strict_files/TextFile.h>
 
 #include <iomanip>
 #include <ostream>

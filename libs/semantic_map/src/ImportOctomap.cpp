@@ -1,5 +1,5 @@
-#include <semantic_map/ImportOctomap.h>
-#include <strict_files/ClassicNumbers.h>
+#include <semantic_map/MapFiles.h>
+#include <strict_files/TextFile.h>
 
 #include <cmath>
 #include <cstring>

@@ -4,7 +4,7 @@
 #include <mrpt/system/string_utils.h>
 #include <mrpt_compat/Maps.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 #include <strict_files/IniSection.h>
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_map/PointLikelihood.h>
 
 #include <cmath>
 
 #include "LikelihoodCache.h"
+#include "PointLikelihood.h"
 #include "SensorPose.h"
 
 namespace semantic_map {

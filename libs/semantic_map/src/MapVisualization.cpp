@@ -1,9 +1,9 @@
 #include <mrpt_compat/Drawing.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_map/SceneFile.h>
+#include <semantic_map/MapFiles.h>
 #include <semantic_octree/TreeFile.h>
-#include <strict_files/StagedFile.h>
+#include <strict_files/OutputFiles.h>
 
 #include <stdexcept>
 

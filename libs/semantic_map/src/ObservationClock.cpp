@@ -1,4 +1,4 @@
-#include <semantic_map/ObservationClock.h>
+#include <semantic_map/CSemanticOctoMap.h>
 
 #include <chrono>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <semantic_map/PointLikelihood.h>
+#include "PointLikelihood.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
-#include <labeled_cloud/GzipOutputStream.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/serialization/CArchive.h>
-#include <semantic_map/SceneFile.h>
+#include <semantic_map/MapFiles.h>
 
 namespace semantic_map {
 

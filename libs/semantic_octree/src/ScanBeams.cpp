@@ -1,6 +1,6 @@
 #include <semantic_octree/store/ScanBeams.h>
 
-#include <strict_files/ClassicNumbers.h>
+#include <strict_files/TextFile.h>
 
 #include <algorithm>
 #include <limits>

@@ -1,6 +1,6 @@
 #include <semantic_octree/TreeFile.h>
 #include <semantic_octree/store/TreeFormat.h>
-#include <strict_files/StagedFile.h>
+#include <strict_files/OutputFiles.h>
 
 #include <cerrno>
 #include <cstring>

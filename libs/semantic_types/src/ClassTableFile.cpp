@@ -1,5 +1,5 @@
-#include <semantic_types/ClassTableFile.h>
-#include <strict_files/StagedFile.h>
+#include <semantic_types/ClassTable.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/StrictYaml.h>
 
 #include <fstream>

@@ -1,4 +1,4 @@
-#include <strict_files/AllocationLimit.h>
+#include <strict_files/Memory.h>
 
 namespace strict_files {
 

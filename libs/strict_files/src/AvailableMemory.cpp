@@ -1,4 +1,4 @@
-#include <strict_files/AvailableMemory.h>
+#include <strict_files/Memory.h>
 #include <sys/resource.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 #include <fcntl.h>
-#include <strict_files/FileLock.h>
+#include <strict_files/OutputFiles.h>
 #include <sys/file.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include <strict_files/OutputFolder.h>
+#include <strict_files/OutputFiles.h>
 #include <sys/file.h>
 
 #include <stdexcept>

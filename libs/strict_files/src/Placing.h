@@ -1,5 +1,5 @@
 #pragma once
-#include <strict_files/NewFiles.h>
+#include <strict_files/OutputFiles.h>
 
 #include <stdexcept>
 

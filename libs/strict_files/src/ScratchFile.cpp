@@ -1,5 +1,5 @@
 #include <fcntl.h>
-#include <strict_files/ScratchFile.h>
+#include <strict_files/OutputFiles.h>
 #include <unistd.h>
 
 #include <cerrno>

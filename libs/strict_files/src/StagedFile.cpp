@@ -1,4 +1,4 @@
-#include <strict_files/StagedFile.h>
+#include <strict_files/OutputFiles.h>
 #include <sys/stat.h>
 
 #include <stdexcept>

@@ -1,5 +1,5 @@
 #include <strict_files/OptionList.h>
-#include <strict_files/StagedFile.h>
+#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 
 #include <cmath>

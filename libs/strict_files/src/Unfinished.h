@@ -1,5 +1,5 @@
 #pragma once
-#include <strict_files/LeaveWithoutOutputs.h>
+#include <strict_files/OutputFiles.h>
 
 #include <filesystem>
 #include <mutex>

@@ -1,5 +1,4 @@
-#include <synthetic_world/Camera.h>
-#include <synthetic_world/Shading.h>
+#include <synthetic_world/Sensors.h>
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include <synthetic_world/Classes.h>
+#include <synthetic_world/Solids.h>
 
 namespace synthetic_world {
 namespace {

@@ -1,4 +1,4 @@
-#include <synthetic_world/Curve.h>
+#include <synthetic_world/World.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <synthetic_world/Drive.h>
 #include <synthetic_world/Objects.h>
+#include <synthetic_world/Scene.h>
 
 #include <cmath>
 #include <stdexcept>

@@ -1,5 +1,5 @@
 #pragma once
-#include <synthetic_world/Terrain.h>
+#include <synthetic_world/World.h>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <synthetic_world/Lidar.h>
+#include <synthetic_world/Sensors.h>
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include <synthetic_world/Shapes.h>
+#include <synthetic_world/Solids.h>
 #include <Eigen/Geometry>
 #include <limits>
 #include <stdexcept>

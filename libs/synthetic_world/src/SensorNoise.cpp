@@ -1,4 +1,4 @@
-#include <synthetic_world/SensorNoise.h>
+#include <synthetic_world/Sensors.h>
 
 namespace synthetic_world {
 

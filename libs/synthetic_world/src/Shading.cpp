@@ -1,5 +1,5 @@
-#include <synthetic_world/Random.h>
-#include <synthetic_world/Shading.h>
+#include <synthetic_world/Objects.h>
+#include <synthetic_world/Sensors.h>
 
 #include <algorithm>
 #include <array>

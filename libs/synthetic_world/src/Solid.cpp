@@ -1,4 +1,4 @@
-#include <synthetic_world/Solid.h>
+#include <synthetic_world/Solids.h>
 
 #include <algorithm>
 #include <cmath>

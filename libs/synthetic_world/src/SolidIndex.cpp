@@ -1,4 +1,4 @@
-#include <synthetic_world/SolidIndex.h>
+#include <synthetic_world/World.h>
 
 #include <algorithm>
 #include <cmath>

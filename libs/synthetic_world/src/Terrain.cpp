@@ -1,4 +1,4 @@
-#include <synthetic_world/Terrain.h>
+#include <synthetic_world/World.h>
 
 #include <algorithm>
 #include <stdexcept>

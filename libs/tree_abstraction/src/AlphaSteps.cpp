@@ -1,5 +1,4 @@
 #include <tree_abstraction/AlphaPath.h>
-#include <tree_abstraction/AlphaSteps.h>
 
 #include <algorithm>
 #include <functional>

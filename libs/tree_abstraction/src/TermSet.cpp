@@ -1,4 +1,4 @@
-#include <tree_abstraction/TermSet.h>
+#include <tree_abstraction/AbstractionWeights.h>
 
 #include <algorithm>
 

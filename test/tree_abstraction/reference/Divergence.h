@@ -1,6 +1,6 @@
 #pragma once
+#include <tree_abstraction/AbstractionWeights.h>
 #include <tree_abstraction/Information.h>
-#include <tree_abstraction/TermSet.h>
 
 #include <Eigen/Core>
 #include <algorithm>

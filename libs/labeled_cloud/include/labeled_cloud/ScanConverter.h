@@ -1,15 +1,83 @@
 #pragma once
 #include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/LabelModel.h>
-#include <labeled_cloud/LabeledScan.h>
-#include <labeled_cloud/PointSource.h>
+#include <mrpt/core/Clock.h>
+#include <mrpt/img/CImage.h>
+#include <mrpt/img/TCamera.h>
+#include <mrpt/obs/CObservation.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/poses/CPose3D.h>
 #include <semantic_types/ClassTable.h>
+#include <semantic_types/LabeledCloud.h>
 
+#include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace labeled_cloud {
+
+/** What became of an observation's pixels or points. */
+struct ScanCounts {
+  /** Points in the cloud, and those of them with a class. */
+  std::size_t points = 0, labeled = 0;
+  /** Pixels or points without a usable range: zero, NaN, infinite. */
+  std::size_t invalid = 0;
+  /** Points left out because they hang in the air at a depth edge. */
+  std::size_t flying = 0;
+};
+
+/** A picture that points took their labels from. */
+struct LabeledPicture {
+  /** Empty if there is no color image of the label image's view. */
+  mrpt::img::CImage image;
+  LabelImage labels;
+  mrpt::img::TCamera camera;
+  /** The camera's optical frame (x right, y down, z forward) when the picture was taken, in that of
+   * the sensor when it saw the points. */
+  mrpt::poses::CPose3D T_sensor_camera;
+};
+
+/** One observation, ready for a map. */
+struct LabeledScan {
+  /** Points in the sensor's frame, all finite. */
+  semantic_types::LabeledCloud cloud;
+  mrpt::poses::CPose3D T_robot_sensor;
+  mrpt::Clock::time_point timestamp;
+  std::string sensorLabel;
+  ScanCounts counts;
+  /** A labeler was asked and had no labels for this observation. */
+  bool labelsMissing = false;
+  /** Where the labels come from, if that was asked for. */
+  std::vector<LabeledPicture> pictures;
+
+  /** Brings counts.labeled up to date. */
+  void countLabels();
+};
+
+/** Points in the sensor's frame, meters; what was no return is (0, 0, 0) or not finite. Class id i
+ * is called classNames[i - 1]; without names the ids are those of the user's class table. */
+struct NamedCloud {
+  semantic_types::LabeledCloud cloud;
+  std::vector<std::string> classNames;
+};
+
+/** Reads the points of some classes of observations. ScanConverter knows labeled clouds, point
+ * clouds, Velodyne packets and plane scanners by such sources; others are added. */
+class PointSource {
+ public:
+  virtual ~PointSource() = default;
+  virtual bool accepts(const mrpt::obs::CObservation& observation) const = 0;
+  /** The points of an observation that it accepts, and that is loaded. Threads may ask at once.
+   * \throw std::exception why it cannot be used */
+  virtual NamedCloud read(const mrpt::obs::CObservation& observation) const = 0;
+};
+
+/** Every ScanConverter takes from now on what this source accepts; the one added last is asked
+ * first. A library that MRPT loads calls this beside mrpt::rtti::registerClass(). Any thread may.
+ */
+void addPointSource(std::shared_ptr<const PointSource> source);
 
 class PixelRays;
 struct PointGrid;

@@ -1,14 +1,35 @@
 #pragma once
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/core/Clock.h>
 #include <mrpt/poses/CPose3D.h>
 #include <strict_files/OptionList.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace labeled_cloud {
+
+inline Eigen::Isometry3d toEigen(const mrpt::poses::CPose3D& pose) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.matrix() = pose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen();
+  return T;
+}
+
+/** A time in seconds since 1970, as data sets write it.
+ * \throw std::invalid_argument it is not finite, or beyond what MRPT's clock can tell. */
+inline mrpt::Clock::time_point timeOfSeconds(double seconds) {
+  constexpr double kMost = 2e11;  // years: 6000; the clock has 64 bits of 100 ns
+  if (!(std::abs(seconds) <= kMost))
+    throw std::invalid_argument(std::to_string(seconds) + " s is no time");
+  return mrpt::Clock::fromDouble(seconds);
+}
 
 struct TrajectoryOptions {
   /** How far outside the trajectory its first or last pose still holds, s. */
@@ -52,5 +73,43 @@ class Trajectory {
  * eight numbers, a quaternion that is not of unit length (within 1 %), a time that comes twice. */
 Trajectory loadTumTrajectory(const std::filesystem::path& file,
                              const TrajectoryOptions& options = {});
+
+/** Collects the robot's poses from a rawlog's entries, from the best source that they hold:
+ *
+ * 1. CObservationRobotPose: its `pose` is T_map_robot.
+ * 2. Movements in action/sensory-frame rawlogs (2D or 3D), summed up from the origin; all
+ *    observations of a sensory frame are taken from the pose after the movement before it.
+ * 3. CObservationOdometry: absolute 2D odometry. */
+class RawlogTrajectory {
+ public:
+  enum class Source { None, RobotPoses, Movements, Odometry };
+
+  explicit RawlogTrajectory(const TrajectoryOptions& options = {});
+
+  /** Takes the poses of the next entry. \throw std::invalid_argument a pose is not finite. */
+  void add(const RawlogEntry& entry);
+
+  /** The best source met so far. */
+  Source source() const;
+  /** The trajectory of that source, empty if there is none. */
+  const Trajectory& trajectory() const;
+
+ private:
+  void move(const mrpt::obs::CActionCollection& actions);
+  void addFrame(const std::vector<mrpt::obs::CObservation::Ptr>& observations);
+
+  Trajectory m_robotPoses, m_movements, m_odometry;
+  mrpt::poses::CPose3D m_T_map_robot;
+  bool m_moved = false;
+};
+
+/** Reads all poses of some rawlogs that continue each other, in that order; empty: there are none.
+ * \throw std::runtime_error as RawlogReader does, or naming the file: a pose is not finite. */
+Trajectory findTrajectory(const std::vector<std::filesystem::path>& rawlogs,
+                          const TrajectoryOptions& options = {});
+/** findTrajectory(). \throw std::runtime_error also if there are no poses: naming the file and what
+ * would have been taken. */
+Trajectory readTrajectory(const std::vector<std::filesystem::path>& rawlogs,
+                          const TrajectoryOptions& options = {});
 
 }  // namespace labeled_cloud

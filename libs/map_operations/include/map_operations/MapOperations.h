@@ -2,7 +2,14 @@
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
 #include <vector>
+
+namespace octomap {
+class ColorOcTree;
+class OcTree;
+}  // namespace octomap
 
 namespace semantic_octree {
 
@@ -55,5 +62,37 @@ SemanticOcTree coarsened(const SemanticOcTree& map, int levels);
  * \throw std::invalid_argument the pose is not a rigid transformation
  * \throw std::out_of_range a known part of the map would be outside the new one. */
 SemanticOcTree moved(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_old);
+
+/** How much of what is in a map. A voxel is a cell of the map's resolution: a leaf above the lowest
+ * level counts as all voxels in it, so that pruning does not change the numbers. */
+struct MapContents {
+  std::size_t leaves = 0, innerNodes = 0;
+  /** See SemanticOcTree::memoryUsage(). */
+  std::size_t bytes = 0;
+  std::uint64_t freeVoxels = 0, occupiedVoxels = 0;
+  /** K + 1 numbers of occupied voxels by their likeliest class; [0]: no class was ever seen. */
+  std::vector<std::uint64_t> voxelsOfClass;
+  /** Of all known voxels, meters, map frame; empty for an empty map. */
+  Eigen::AlignedBox3d box;
+};
+
+/** Counts; takes one look at each leaf. */
+MapContents contentsOf(const SemanticOcTree& tree);
+
+/** \file
+ * Maps as OctoMap's trees, and back: the same resolution, nodes and log-odds. A log-odds of
+ * exactly 0, which OctoMap takes for occupied, becomes the next smaller number. */
+
+/** The occupancy. */
+std::unique_ptr<octomap::OcTree> toOcTree(const SemanticOcTree& map);
+
+/** Occupied leaves in the color of their likeliest class (gray: none), inner nodes in the mean of
+ * their children; free leaves have no color. */
+std::unique_ptr<octomap::ColorOcTree> toColorOcTree(const SemanticOcTree& map);
+
+/** Occupancy, put into the filter's limits; no voxel has a class.
+ * \throw std::invalid_argument a map of another number of levels than 16, bad parameters. */
+SemanticOcTree fromOcTree(const octomap::OcTree& map, const ClassTable& classes,
+                          const FilterParameters& filter = {});
 
 }  // namespace semantic_octree

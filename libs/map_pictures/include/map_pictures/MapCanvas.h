@@ -1,12 +1,103 @@
 #pragma once
 #include <map_pictures/MapPictures.h>
-#include <map_pictures/Sheet.h>
 #include <mrpt/math/TPose2D.h>
+#include <semantic_types/ClassTable.h>
 
 #include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
 #include <functional>
+#include <opencv2/core.hpp>
+#include <string>
+#include <variant>
+#include <vector>
 
 namespace map_pictures {
+
+using semantic_types::Color;
+
+/** Drawing on pictures (BGR, 8 bits). Places are in pixels from the upper left corner, x right and
+ * y down: pixel (0, 0) reaches from 0 to 1. */
+
+/** Where a picture shows nothing: unknown and free space. */
+constexpr Color kPaper{250, 250, 250};
+/** Text, scales and outlines. */
+constexpr Color kInk{40, 45, 50};
+/** Around lines and poses, so that they show on every class's color. */
+constexpr Color kHalo{255, 255, 255};
+
+inline cv::Scalar bgr(const Color& color) {
+  return {double(color.b), double(color.g), double(color.r)};
+}
+
+struct Stroke {
+  Color color = kInk;
+  int width = 3;  ///< pixels
+  int halo = 2;   ///< pixels on each side
+};
+
+/** A pose: a dot where it is, and an arrow where it looks. */
+struct Arrow {
+  Color color = kInk;
+  double length = 22;  ///< pixels
+  int halo = 2;        ///< pixels around
+};
+
+void drawLine(cv::Mat& picture, const std::vector<cv::Point2d>& points, const Stroke& stroke);
+
+/** \param heading radians, counterclockwise from the right */
+void drawArrow(cv::Mat& picture, const cv::Point2d& place, double heading, const Arrow& arrow);
+
+/** OpenCV's own letters, made of strokes, are those of ASCII; others need DejaVu Sans. */
+enum class Font { Strokes, DejaVu };
+
+/** The one that has all letters of a UTF-8 text. Texts that stand together should share it. */
+Font fontFor(const std::string& text);
+
+/** Pixels. */
+int textWidth(const std::string& text, Font font);
+
+/** \param leftMiddle of the text. Where DejaVu Sans is not installed, "?" stands for its letters.
+ */
+void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftMiddle, Font font);
+
+/** How coarse cells are drawn: stripes in a color and a paler one. */
+struct Hatch {
+  Color color;
+};
+
+/** A name, and how that looks in the picture: an area's color, a hatch, a line, or a pose. */
+struct LegendEntry {
+  std::string name;
+  std::variant<Color, Hatch, Stroke, Arrow> look;
+};
+
+/** The classes that are there, the most frequent first, and "no class" at the end.
+ * \param counts how much of each class, [0] of none */
+std::vector<LegendEntry> classLegend(const semantic_types::ClassTable& classes,
+                                     const std::vector<std::size_t>& counts);
+
+/** What the hatch of MapCanvas::drawMap() means. */
+LegendEntry coarseCellEntry();
+
+/** The picture with all of the legend to its right, in as many columns as that needs. */
+cv::Mat withLegend(const cv::Mat& picture, const std::string& title,
+                   const std::vector<LegendEntry>& entries);
+
+/** Pixels that one column of so many entries without a title needs. */
+int legendHeight(std::size_t entries);
+
+/** The picture with a line of text above. */
+cv::Mat withTitle(const cv::Mat& picture, const std::string& title);
+
+/** A bar of 1, 2 or 5 times a power of ten meters in the emptiest corner but that which is taken.
+ */
+void drawScaleBar(cv::Mat& picture, double pixelsPerMeter, const cv::Rect& taken = {});
+
+/** The map's axes in the emptiest corner. \param directions of x, y, z in the picture (x right, y
+ * down), at most of length 1; those that point at the viewer are left out
+ * \return their place */
+cv::Rect drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions);
 
 struct MapCells;
 

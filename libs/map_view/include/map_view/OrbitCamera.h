@@ -1,5 +1,8 @@
 #pragma once
+#include <map_view/CellSource.h>
+
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 
 namespace map_view {
@@ -37,5 +40,9 @@ struct OrbitCamera {
    * outside -90 to 90. */
   static OrbitCamera ofText(const std::string& text);
 };
+
+/** The first cell along a ray that is shown and occupied: what is seen there, down to the finest
+ * cell, whatever the view draws together. */
+std::optional<ViewCell> firstShown(const CellSource& cells, const CellLook& look, const Ray& ray);
 
 }  // namespace map_view

@@ -1,5 +1,7 @@
 #pragma once
 #include <mrpt/img/CImage.h>
+#include <mrpt/img/color_maps.h>
+#include <mrpt_compat/Release.h>
 
 #include <opencv2/core/mat.hpp>
 
@@ -15,5 +17,25 @@ mrpt::img::CImage toMrpt(const cv::Mat& image);
 /** From now on this process writes images into rawlogs as they are, not as JPEG. Since MRPT 3 they
  * always are. */
 void writeImagesWithoutLoss();
+
+/** A color of one of MRPT's color maps. \param share where in it, 0 to 1 */
+inline mrpt::img::TColor colorAt(mrpt::img::TColormap map, double share) {
+#if MSO_MRPT_AT_LEAST(3, 0, 0)
+  return mrpt::img::colormap(map, static_cast<float>(share)).asTColor();
+#else
+  return mrpt::img::colormap(map, share);
+#endif
+}
+
+/** \param hue, saturation, value 0 to 1 */
+inline mrpt::img::TColorf colorOfHue(float hue, float saturation, float value) {
+#if MSO_MRPT_AT_LEAST(3, 0, 0)
+  return mrpt::img::hsv2rgb(hue, saturation, value);
+#else
+  mrpt::img::TColorf color;
+  mrpt::img::hsv2rgb(hue, saturation, value, color.R, color.G, color.B);
+  return color;
+#endif
+}
 
 }  // namespace mrpt_compat

@@ -3,7 +3,7 @@
 #include <map_folders/MapFolder.h>
 #include <mrpt/config/CLoadableOptions.h>
 #include <mrpt/serialization/CArchive.h>
-#include <semantic_abstraction/WeightsFile.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/InsertionOptions.h>
 #include <semantic_types/ClassTable.h>

@@ -1,4 +1,4 @@
-#include <semantic_abstraction/WeightsFile.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 
 namespace semantic_planning {

@@ -2,7 +2,7 @@
 
 #include <colored_graph/ColoredAStar.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <strict_files/ClassicNumbers.h>
+#include <strict_files/TextFile.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include <semantic_planning/vehicle/Footprint.h>
-#include <strict_files/ClassicNumbers.h>
+#include <strict_files/TextFile.h>
 
 #include <algorithm>
 #include <cmath>

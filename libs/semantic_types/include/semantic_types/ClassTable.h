@@ -1,6 +1,8 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
@@ -90,5 +92,38 @@ class ClassTable {
   bool m_hasOwnRawIds = true;  ///< no raw id folds to a class
   UnknownRawId m_unknownRawId = UnknownRawId::Error;
 };
+
+/** Whatever is drawn where no class was ever seen. */
+constexpr Color kColorWithoutClass{150, 150, 150};
+
+/** A class's color, or the gray of those without. \throw std::out_of_range id is not 0..K. */
+inline Color colorOf(ClassId id, const ClassTable& classes) {
+  return id == kNoClass ? kColorWithoutClass : classes.color(id);
+}
+
+/** Red (0) over yellow to green (1). */
+inline Color trafficLight(double value) {
+  const double v = std::clamp(value, 0.0, 1.0);
+  const auto byteOf = [](double x) { return static_cast<std::uint8_t>(x + 0.5); };
+  return {byteOf(235 * std::min(1.0, 2 - 2 * v)), byteOf(215 * std::min(1.0, 2 * v)), 30};
+}
+
+/** Reads a class table from a YAML file:
+ *
+ *     unknown_raw_id: error        # or no_class; may be left out (error)
+ *     no_class: [0, 1]             # raw ids of a data set that mean "no class"; may be left out
+ *     free_half_life: 3600         # of free space, seconds; may be left out (never forgotten)
+ *     classes:                     # ids 1..K without gaps, in any order
+ *       - {id: 1, name: road, color: [128, 64, 128], raw: [40, 60]}  # raw may be left out
+ *       - {id: 2, name: person, color: [220, 20, 60], half_life: 2}  # seconds; may be left out
+ *
+ * \throw std::runtime_error naming file, line and value: unreadable file, YAML syntax, unknown or
+ * repeated or missing key, ids with gaps or twice, colors that are not 0..255, half-lives that are
+ * not 0.001 to 1e9 seconds, a raw id or a name used twice. */
+ClassTable loadClassTable(const std::filesystem::path& file);
+
+/** Writes TABLE so that loadClassTable() reads the same table. The file is complete or untouched.
+ * \throw std::runtime_error the file cannot be written. */
+void saveClassTable(const ClassTable& table, const std::filesystem::path& file);
 
 }  // namespace semantic_types

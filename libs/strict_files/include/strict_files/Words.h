@@ -1,5 +1,7 @@
 #pragma once
 #include <cstdint>
+#include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -31,5 +33,16 @@ std::string trimmed(const std::string& text);
 
 /** "a, b, c" */
 std::string joined(const std::vector<std::string>& words);
+
+/** What an exception says, without the call stack that MRPT appends to the text of its own, and
+ * without those of the exceptions that it was passed on as. */
+inline std::string messageOf(const std::exception& e) {
+  if (dynamic_cast<const std::bad_alloc*>(&e)) return "more memory is needed than there is";
+  const std::string text = e.what(), begin = "Message:  ", end = "\nLocation:";
+  const std::size_t from = text.rfind(begin);
+  if (from == std::string::npos) return text;
+  const std::size_t start = from + begin.size();
+  return text.substr(start, text.find(end, start) - start);
+}
 
 }  // namespace strict_files

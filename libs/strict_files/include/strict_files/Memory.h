@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 
 namespace strict_files {
 
@@ -21,5 +22,9 @@ class AllocationLimit {
   /** In this thread. */
   static int& living();
 };
+
+/** Bytes of memory that this process could still take: what the system has left, and no more than
+ * the limit on its addresses (`ulimit -v`). Without /proc/meminfo only the latter counts. */
+std::uint64_t availableMemory();
 
 }  // namespace strict_files

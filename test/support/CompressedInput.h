@@ -5,13 +5,9 @@
 #include <mrpt/io/CFileGZInputStream.h>
 #endif
 
-namespace mrpt_compat {
-
 /** Reads files as this MRPT compresses them: with gzip, in later releases with Zstandard, too. */
 #if __has_include(<mrpt/io/CCompressedInputStream.h>)
 using CompressedInput = mrpt::io::CCompressedInputStream;
 #else
 using CompressedInput = mrpt::io::CFileGZInputStream;
 #endif
-
-}  // namespace mrpt_compat

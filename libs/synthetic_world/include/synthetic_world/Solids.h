@@ -1,11 +1,69 @@
 #pragma once
-#include <synthetic_world/Polygon.h>
+#include <semantic_types/ClassTable.h>
 #include <Eigen/Core>
+
 #include <optional>
 #include <variant>
 #include <vector>
 
 namespace synthetic_world {
+
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::Color;
+using semantic_types::kNoClass;
+
+/** The classes of every synthetic scene, in the order of config/classes/synthetic.yaml. */
+enum Class : ClassId {
+  kRoad = 1,
+  kLaneMarking,
+  kSidewalk,
+  kGravel,
+  kDirt,
+  kGrass,
+  kFlowerBed,
+  kWater,
+  kTrunk,
+  kCanopy,
+  kBush,
+  kRock,
+  kBuilding,
+  kWindow,
+  kRoof,
+  kWall,
+  kFence,
+  kPole,
+  kSign,
+  kBench,
+  kCar,
+  kPerson
+};
+constexpr int kClassCount = kPerson;
+
+/** Their names and the colors in which maps show them. */
+const ClassTable& classTable();
+
+/** What such things look like to a color camera. */
+Color naturalColor(ClassId id);
+
+/** Corners of a convex polygon, counterclockwise. */
+using Polygon = std::vector<Eigen::Vector2d>;
+
+/** \throw std::invalid_argument fewer than three corners, or not convex and counterclockwise;
+ * `what` names the polygon in the message. */
+void requireConvex(const Polygon& polygon, const char* what);
+
+/** The rectangle of this length (along the yaw's direction) and width around a center. */
+Polygon rectangle(const Eigen::Vector2d& center, double yaw, double length, double width);
+
+/** The polygon turned by yaw, then moved. */
+Polygon placed(const Polygon& polygon, const Eigen::Vector2d& position, double yaw);
+
+/** Distance in meters; 0 for a point inside. */
+double distance(const Polygon& polygon, const Eigen::Vector2d& point);
+
+/** Distance in meters; 0 for polygons that touch or overlap. */
+double distance(const Polygon& a, const Polygon& b);
 
 /** Where a ray enters a shape. */
 struct Entry {
@@ -96,5 +154,55 @@ struct Spheroid {
 };
 
 using Shape = std::variant<Polyhedron, Shaft, Spheroid>;
+
+constexpr double kStorey = 2.9;  ///< m: a row of windows in each
+
+/** A class, and the color in which a camera sees it. */
+struct Material {
+  ClassId id = kNoClass;
+  Color tint;
+
+  Material() = default;
+  /** The class in its natural color. */
+  Material(ClassId c) : id(c), tint(naturalColor(c)) {}  // NOLINT: a class is a material
+  Material(ClassId c, Color color) : id(c), tint(color) {}
+};
+
+/** One thing of the world, or a part of one. */
+class Solid {
+ public:
+  /** \param top Material of the faces that look up. */
+  Solid(Shape shape, Material side, Material top);
+  Solid(Shape shape, Material material) : Solid(std::move(shape), material, material) {}
+
+  /** Puts windows of this class into the upright faces of a polyhedron, storey over storey from the
+   * height `floor` on. */
+  Solid& withWindows(double floor);
+
+  std::optional<Entry> enter(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+  double signedDistance(const Eigen::Vector3d& p) const;
+  std::optional<Section> section(double low, double high) const;
+  double low() const;
+  double high() const;
+  /** A disk in the plane that holds the whole solid. */
+  const Eigen::Vector2d& center() const { return m_center; }
+  double radius() const { return m_radius; }
+
+  /** Material of the point p of a face. */
+  Material materialAt(const Eigen::Vector3d& p, int face) const;
+  /** Material of the surface nearest to p. */
+  Material materialAt(const Eigen::Vector3d& p) const;
+
+ private:
+  bool isWindow(const Polyhedron::Face& face, const Eigen::Vector3d& p) const;
+
+  Shape m_shape;
+  Material m_side, m_top;
+  std::optional<double> m_windowFloor;
+  Eigen::Vector2d m_center = Eigen::Vector2d::Zero();
+  double m_radius = 0;
+};
+
+using Solids = std::vector<Solid>;
 
 }  // namespace synthetic_world

@@ -1,0 +1,66 @@
+#pragma once
+#include <mrpt/img/CImage.h>
+#include <mrpt/img/TCamera.h>
+#include <mrpt/obs/CObservation.h>
+#include <mrpt/poses/CPose3D.h>
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <vector>
+
+namespace cv {
+class Mat;
+}
+
+namespace labeled_cloud {
+
+/** Which kinds of image files are read. */
+enum class ImageKinds {
+  Lossless,  ///< PNG, TIFF, BMP and PNM: values of pixels that mean something
+  All        ///< JPEG, too
+};
+
+/** The pixels of an image file as they are stored, its kind told by its first bytes. (OpenCV tries
+ * its decoders in turn: it takes some files of one kind for another, and ends the process over
+ * damaged ones.) Colors are BGR(A).
+ * \throw std::runtime_error naming the file: there is none, it is no image, it is damaged, or it
+ * announces more pixels than its bytes can hold. */
+cv::Mat readImageFile(const std::filesystem::path& file, ImageKinds kinds);
+
+/** What readImageFile() looks at before it reads the pixels, for those who have others read them.
+ * \throw std::runtime_error as above. */
+void checkImageFile(const std::filesystem::path& file, ImageKinds kinds);
+
+/** A color (or gray) image of an observation, with the camera that took it. */
+struct ColorImage {
+  /** Shares its pixels with the observation; may be stored in a file of its own. */
+  mrpt::img::CImage image;
+  mrpt::img::TCamera camera;
+  /** The camera's optical frame: x right, y down, z forward. */
+  mrpt::poses::CPose3D T_robot_camera;
+};
+
+/** Whether observations of this class are nothing but pictures: CObservationImage and
+ * CObservationStereoImages (of which the left image counts). */
+bool isPicture(const mrpt::obs::CObservation& observation);
+
+/** The color image of a picture, or of a CObservation3DRangeScan that has one.
+ * \throw std::invalid_argument the observation has none. */
+ColorImage colorImageOf(const mrpt::obs::CObservation& observation);
+
+/** The pixel (column, row) at which a camera sees each point; NaN for points that it does not see:
+ * outside of the image, behind the camera, not finite, or hidden.
+ *
+ * A point may be hidden where the points were not measured from where the camera is, at the
+ * distance b: two points at depths z and Z on one ray of the camera are b f (1/z - 1/Z) pixels
+ * apart, seen from the sensor. A point is hidden if another one within twice the points' spacing of
+ * it in the image is nearer by more than PARALLAX such pixels (one that is nearer by less leaves no
+ * more than that along its edge), and by more than a surface that passes the camera at one meter
+ * changes within that distance. \param T_camera_points The camera's optical frame: x right, y down,
+ * z forward. \param parallax pixels; 0: nothing is hidden. \throw std::invalid_argument the camera
+ * is not calibrated. */
+std::vector<Eigen::Vector2f> visiblePixels(const std::vector<Eigen::Vector3f>& points,
+                                           const Eigen::Isometry3d& T_camera_points,
+                                           const mrpt::img::TCamera& camera, double parallax);
+
+}  // namespace labeled_cloud

@@ -1,0 +1,118 @@
+#pragma once
+#include <mrpt/io/CStream.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CObservation.h>
+#include <mrpt/serialization/CSerializable.h>
+#include <semantic_types/ClassTable.h>
+#include <strict_files/OutputFiles.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+struct gzFile_s;  // zlib's
+
+namespace labeled_cloud {
+
+class CompressedInputStream;
+
+/** One object of a rawlog: what the robot did, or what it saw. */
+struct RawlogEntry {
+  /** The robot's movement since the entry before; null if the entry holds observations. */
+  mrpt::obs::CActionCollection::Ptr actions;
+  /** Those of a sensory frame (all from the pose after the movement before), or a single one. */
+  std::vector<mrpt::obs::CObservation::Ptr> observations;
+  /** The observations are a sensory frame. */
+  bool isFrame = false;
+};
+
+/** Reads a rawlog of either kind (action/sensory-frame pairs or plain observations), compressed or
+ * not, object by object: memory does not grow with the rawlog. */
+class RawlogReader {
+ public:
+  /** \throw std::runtime_error naming the file, if it cannot be opened. */
+  explicit RawlogReader(const std::filesystem::path& file);
+  ~RawlogReader();
+
+  /** The next entry, or nothing at the end.
+   * \throw std::runtime_error naming the file, the number of the object and the byte: no object at
+   * all, cut off, corrupt, or an object of a class that is not registered or not of a rawlog.
+   * After that the reader is at its end. */
+  std::optional<RawlogEntry> next();
+
+  /** Bytes read of the file, and its size, for progress. */
+  std::uint64_t bytesRead() const;
+  std::uint64_t bytesTotal() const;
+
+ private:
+  mrpt::serialization::CSerializable::Ptr readObject();
+  [[noreturn]] void fail(const std::string& what);
+
+  std::filesystem::path m_file;
+  std::unique_ptr<CompressedInputStream> m_stream;
+  std::size_t m_objects = 0;
+  bool m_ended = false;
+};
+
+/** Writes a gzip file. Unlike MRPT's own stream it tells when the disk is full. */
+class GzipOutputStream : public mrpt::io::CStream {
+ public:
+  /** \throw std::runtime_error naming the file, if it cannot be opened. */
+  GzipOutputStream(const std::filesystem::path& file, int compression);
+  ~GzipOutputStream() override;
+  GzipOutputStream(const GzipOutputStream&) = delete;
+  GzipOutputStream& operator=(const GzipOutputStream&) = delete;
+
+  /** \throw std::runtime_error naming the file, if not everything can be written. */
+  std::size_t Write(const void* buffer, std::size_t count) override;
+  /** Writes what is left. \throw std::runtime_error as Write(). */
+  void close();
+
+  /** \throw std::logic_error always: this stream only writes, from the first byte to the last. */
+  std::size_t Read(void*, std::size_t) override;
+  std::uint64_t Seek(std::int64_t, TSeekOrigin) override;
+
+  /** Bytes taken so far, before compression. */
+  std::uint64_t getTotalBytesCount() const override { return m_taken; }
+  std::uint64_t getPosition() const override { return m_taken; }
+
+ private:
+  [[noreturn]] void fail() const;
+
+  std::filesystem::path m_path;
+  gzFile_s* m_file = nullptr;
+  std::uint64_t m_taken = 0;
+};
+
+class GzipOutputStream;
+
+/** Writes a compressed rawlog, which appears under its name when it is complete. */
+class RawlogWriter {
+ public:
+  /** \throw std::runtime_error naming the file, if it cannot be written. */
+  explicit RawlogWriter(const std::filesystem::path& file);
+  ~RawlogWriter();
+
+  /** Appends an observation, a sensory frame or an action collection.
+   * \throw std::exception what of the object cannot be written, or that the disk is full. */
+  void write(const mrpt::serialization::CSerializable& object);
+
+  /** Completes the file; nothing can be written after it. Without it there will be no file.
+   * \throw std::runtime_error naming the file, if it cannot be completed. */
+  void finish();
+
+ private:
+  strict_files::StagedFile m_file;
+  std::unique_ptr<GzipOutputStream> m_stream;
+};
+
+/** A class table of what the labels in some rawlogs say of themselves, for those that come without
+ * one: names of CObservationLabeledCloud and of pixelLabels in the order in which they are met,
+ * "class N" for ids that have no name. Colors tell them apart. Empty if there are no labels.
+ * \throw std::runtime_error as RawlogReader does, and naming the rawlog: a name that a class table
+ * does not take, or more than 254 classes. */
+semantic_types::ClassTable classesIn(const std::vector<std::filesystem::path>& rawlogs);
+
+}  // namespace labeled_cloud

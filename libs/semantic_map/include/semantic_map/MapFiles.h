@@ -1,0 +1,118 @@
+#pragma once
+#include <map_operations/SmoothedView.h>
+#include <mrpt/maps/COccupancyGridMap2D.h>
+#include <mrpt_compat/Drawing.h>
+#include <octomap/OcTree.h>
+#include <semantic_octree/SemanticOcTree.h>
+#include <strict_files/OptionList.h>
+
+#include <filesystem>
+#include <iosfwd>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace semantic_map {
+
+/** What of a 3D map obstructs a robot on the ground. Heights are of centers of voxels. */
+struct GridOptions {
+  /** What lies that far above the ground obstructs, m. */
+  double low = 0.3, high = 2.0;
+  /** Classes that are ground and never obstruct. None: the lowest occupied voxel of each column is
+   * taken for ground. */
+  std::vector<semantic_types::ClassId> ground;
+  /** What stands out of its surroundings is no ground: the ground's surface is opened
+   * (morphologically) by a square of this edge, m. It should be wider than cars and narrower than
+   * hills. */
+  double window = 4;
+  /** The ground is flat and at this height, m; the two options above are then of no use. */
+  std::optional<double> floor;
+
+  /** All but `ground`. */
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
+  void validate() const;
+};
+
+/** The map's 2D occupancy grid, one cell for each column of voxels:
+ *
+ * - occupied as the most occupied voxel between `low` and `high` above the ground, if that is
+ *   occupied;
+ * - free as that voxel, or as surely as the ground below was seen, if the ground was seen or at
+ *   least half of the voxels between are known to be free;
+ * - otherwise unknown (0.5).
+ *
+ * \throw std::invalid_argument bad options, or a class that is not in the map
+ * \throw std::runtime_error the map is empty or too wide. */
+mrpt::maps::COccupancyGridMap2D gridOf(const semantic_octree::SemanticOcTree& tree,
+                                       const GridOptions& options = {});
+
+/** Writes a grid as MRPT reads it back (.gridmap). \throw std::runtime_error */
+void writeGridMap(std::ostream& out, const mrpt::maps::COccupancyGridMap2D& grid);
+
+/** A grid as ROS's map_server loads it: picture and description. Pixels are black (0) where
+ * occupied, white (254) where free, gray (205) where unknown. */
+struct MapServerFiles {
+  std::string png;   ///< bytes
+  std::string yaml;  ///< text
+};
+
+/** \param pngName of the picture's file, relative to the YAML file. */
+MapServerFiles mapServerFiles(const mrpt::maps::COccupancyGridMap2D& grid,
+                              const std::string& pngName);
+
+/** \file
+ * The map in OctoMap's file formats, see map_operations/MapOperations.h. */
+
+/** Writes an .ot file that holds a ColorOcTree. \throw std::runtime_error the stream does not take
+ * it. */
+void writeColorOcTree(std::ostream& out, const semantic_octree::SemanticOcTree& tree);
+
+/** Writes an .ot file that holds an OcTree. \throw std::runtime_error as above. */
+void writeOcTree(std::ostream& out, const semantic_octree::SemanticOcTree& tree);
+
+/** Writes a .bt file: whether a leaf is free or occupied is all that it keeps.
+ * \throw std::runtime_error as above. */
+void writeBinaryOcTree(std::ostream& out, const semantic_octree::SemanticOcTree& tree);
+
+/** \file
+ * One point for each leaf of the map: its center and what the map knows about it. */
+
+struct PointOptions {
+  /** Free leaves too, of which there are many; otherwise occupied ones only. */
+  bool free = false;
+  /** The class of an occupied leaf is seen together with its neighbors'; by default it is not. */
+  semantic_octree::SmoothingOptions smoothing{0};
+};
+
+/** Writes a binary PLY file, with vertices of
+ *
+ *     float x y z                  center, m
+ *     uchar red green blue         color of the likeliest class; gray: none was ever seen
+ *     uchar class                  its id, 0: none
+ *     float probability            of this class
+ *     float occupancy              p(occupied)
+ *     float size                   edge of the leaf, m
+ *
+ * and a comment "class ID NAME" for each class.
+ * \throw std::runtime_error the stream does not take it. */
+void writePly(std::ostream& out, const semantic_octree::SemanticOcTree& tree,
+              const PointOptions& options = {});
+
+/** Writes the same as comma-separated values, with a line of the columns' names first. Names with
+ * commas or quotes are quoted as in RFC 4180. \throw std::runtime_error as above. */
+void writeCsv(std::ostream& out, const semantic_octree::SemanticOcTree& tree,
+              const PointOptions& options = {});
+
+/** Reads the occupancy of a map of OctoMap's: .bt, or .ot with an OcTree or a ColorOcTree. Unlike
+ * OctoMap's own functions it checks the whole file first, and prints nothing.
+ * \throw std::runtime_error naming the file and what is wrong: missing, no such map, truncated,
+ * damaged. */
+std::unique_ptr<octomap::OcTree> readOctomapFile(const std::filesystem::path& file);
+
+/** Fills a file with a scene for MRPT's viewers (.3Dscene). Unlike the scene's own function it
+ * tells when the disk is full. \throw std::runtime_error naming the file. */
+void writeScene(const mrpt_compat::Scene& scene, const std::filesystem::path& file);
+
+}  // namespace semantic_map

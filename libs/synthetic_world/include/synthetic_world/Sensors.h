@@ -1,0 +1,129 @@
+#pragma once
+#include <semantic_types/LabeledCloud.h>
+#include <strict_files/OptionList.h>
+#include <synthetic_world/Objects.h>
+#include <synthetic_world/Solids.h>
+#include <synthetic_world/World.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace synthetic_world {
+
+using semantic_types::LabeledCloud;
+
+/** Pixels row by row, from the upper left. */
+template <class T>
+struct Image {
+  int width = 0, height = 0;
+  std::vector<T> pixels;
+
+  Image() = default;
+  Image(int w, int h, T value = T())
+      : width(w), height(h), pixels(static_cast<std::size_t>(w) * h, value) {}
+  bool empty() const { return pixels.empty(); }
+  T& at(int row, int column) { return pixels[static_cast<std::size_t>(row) * width + column]; }
+  const T& at(int row, int column) const {
+    return pixels[static_cast<std::size_t>(row) * width + column];
+  }
+};
+
+/** What a sensor gets wrong. All zero: nothing. */
+struct SensorNoise {
+  double range = 0;    // standard deviation of ranges and depths, m
+  double label = 0;    // share of labels replaced by one of the other classes at random, 0..1
+  double dropout = 0;  // share of rays without a return, 0..1
+
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the field. */
+  void validate() const;
+
+  bool drops(Random& random) const { return dropout > 0 && random.chance(dropout); }
+  double disturbed(double meters, Random& random) const {
+    return range > 0 ? meters + range * random.normal() : meters;
+  }
+  ClassId disturbed(ClassId id, Random& random) const;
+};
+
+/** Which of the many random choices a sensor makes: the same seed and frame, the same noise. */
+struct FrameSeed {
+  std::uint64_t seed = 1, frame = 0;
+};
+
+/** A pinhole camera with depth, color and classes.
+ *
+ * Camera frame: x ahead along the optical axis, y left, z up. Pixel (row, column) looks along
+ * (1, (cx - column) / f, (cy - row) / f); whole numbers are the pixels' centers. */
+struct CameraOptions {
+  int width = 320, height = 240;  // pixels
+  double horizontalFov = 80;      // degrees
+  double minRange = 0.3;          // m of depth; nearer returns are lost
+  double maxRange = 20;           // m of depth
+  bool color = true;              // render the color image, too
+  SensorNoise noise;
+
+  double focalLength() const;  // pixels
+  double cx() const { return (width - 1) / 2.0; }
+  double cy() const { return (height - 1) / 2.0; }
+  /** Direction of a pixel with x = 1, camera frame. */
+  Eigen::Vector3d ray(double row, double column) const {
+    return {1, (cx() - column) / focalLength(), (cy() - row) / focalLength()};
+  }
+  /** Its own, without the noise, which sensors may share. */
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the field. */
+  void validate() const;
+};
+
+struct CameraFrame {
+  Image<float> depth;     // m along the optical axis; 0: no return
+  Image<ClassId> labels;  // kNoClass where there is no return
+  Image<Color> color;     // empty if not asked for
+};
+
+/** What a camera sees from a pose.
+ * \throw std::invalid_argument the options are not valid. */
+CameraFrame renderCamera(const World& world, const Eigen::Isometry3d& T_world_camera,
+                         const CameraOptions& options, FrameSeed seed = {});
+
+/** A LiDAR that turns around its z axis. Sensor frame: x ahead, y left, z up. */
+struct LidarOptions {
+  int rings = 32, columns = 1024;
+  double lowest = -25, highest = 15;  // elevation of the first and last ring, degrees
+  double minRange = 0.8;              // m
+  double maxRange = 60;               // m
+  /** Share of the beams on windows, cars, water and signs that return by way of what these mirror:
+   * such ghosts lie behind the surface, many of them below the ground; 0..1. */
+  double ghosts = 0;
+  SensorNoise noise;
+
+  /** Unit vector of a beam, sensor frame; ring 0 is the highest, column 0 looks ahead. */
+  Eigen::Vector3d beam(int ring, int column) const;
+  /** Its own, without the noise, which sensors may share. */
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the field. */
+  void validate() const;
+};
+
+/** One turn, taken from a single pose: the returns, ring after ring.
+ * \throw std::invalid_argument the options are not valid. */
+LabeledCloud scanLidar(const World& world, const Eigen::Isometry3d& T_world_lidar,
+                       const LidarOptions& options, FrameSeed seed = {});
+
+/** Color of a surface in the afternoon sun: texture, light, cast shadow, haze. */
+Color surfaceColor(const World& world, const Hit& hit);
+
+/** Color of the sky in a direction of unit length. */
+Color skyColor(const Eigen::Vector3d& direction);
+
+/** A world seen straight from above, north (+y) up, x to the right. */
+struct TopView {
+  Image<Color> color;
+  Image<ClassId> labels;
+};
+
+/** \param metersPerPixel
+ * \throw std::invalid_argument not positive, or so small that an edge has more than 8192 pixels. */
+TopView renderTopView(const World& world, double metersPerPixel);
+
+}  // namespace synthetic_world
