@@ -70,22 +70,17 @@ TEST(Abstraction, agreesWithThePlainSearchOnTheSameTree) {
       SemanticOcTree map = mapOf(scansOfSmallPlace(3, 2000, kTreeClasses, 11), &options);
       const int blockDepth = 12;  // 3.2 m = 16 voxels
       const bool free = frame == AbstractionOptions::Frame::Free;
-      const auto oracle = reference::findOptimalTree(
-          OctreeAsTree(map, free ? blockDepth : 0, blockDepth, 0.5), options.weights);
+      const OctreeAsTree plain(map, free ? blockDepth : 0, blockDepth, 0.5);
+      const auto oracle = reference::findOptimalTree(plain.forest, options.weights);
 
       const Abstraction abstraction(map);
       const AbstractionMeasures measures = abstraction.measures();
       EXPECT_NEAR(abstraction.objective(), oracle.objective,
                   1e-9 * std::max(1.0, oracle.objective));
-      std::set<LeafId> expected;
+      const std::set<LeafId> expected = plain.knownAmong(oracle.leaves());
       std::size_t unknownInBlocks = 0;
-      for (const auto& leaf : oracle.leaves()) {
-        unknownInBlocks += !leaf.node && leaf.depth > blockDepth;
-        if (!leaf.node) continue;
-        const int edge = 1 << (16 - leaf.depth), half = edge / 2;
-        expected.insert({leaf.index[0] * edge + half, leaf.index[1] * edge + half,
-                         leaf.index[2] * edge + half, static_cast<unsigned>(leaf.depth)});
-      }
+      for (const auto leaf : oracle.leaves())
+        unknownInBlocks += !plain.places[leaf].node && plain.places[leaf].depth > blockDepth;
       EXPECT_EQ(idsOf(abstraction.leaves()), expected) << "alpha " << alpha;
       EXPECT_EQ(measures.compressed.numKnownLeaves, expected.size());
       EXPECT_EQ(measures.full.numKnownLeaves, map.getNumLeafNodes());

@@ -4,90 +4,95 @@
 
 #include <cmath>
 #include <functional>
+#include <set>
 #include <vector>
 
-/** A semantic octree as the reference's search sees a tree: an independent way to its
- * compressed tree, with distributions of all classes, logarithms of the standard library, and no
- * bookkeeping.
- *
- * Nodes at `rootDepth` are the roots (0: the whole map is one tree); unknown space weighs
- * `unknownWeight` times its volume below `rootDepth`, nothing above it. Voxels weigh what a density
- * says of their centers, if there is one. */
+#include "FollowedTree.h"
+
+/** A semantic octree for the reference's search: an independent way to its compressed tree, with
+ * distributions of all classes, logarithms of the standard library, and no bookkeeping. */
 class OctreeAsTree {
  public:
-  struct Node {
+  struct Place {
     semantic_octree::SemanticOcTreeNode node;  ///< none: unknown space
     int depth;
-    std::array<int, 3> index;
-  };
+    Eigen::Array3i index;
 
+    LeafId id() const {
+      const int edge = semantic_octree::edgeAtDepth(depth);
+      const Eigen::Array3i middle = index * edge + edge / 2;
+      return {middle.x(), middle.y(), middle.z(), static_cast<unsigned>(depth)};
+    }
+  };
   using Density = std::function<double(const Eigen::Vector3d&)>;  ///< of a place in the map, m
 
+  reference::Forest forest;
+  std::vector<Place> places;  ///< of the forest's nodes
+
+  /** \param rootDepth of the roots; 0: the whole map is one tree
+   * \param unknownWeight times its volume is what unknown space weighs below `blockDepth`; above it
+   * weighs nothing \param density of voxels, at their centers; none: 1 */
   OctreeAsTree(const semantic_octree::SemanticOcTree& map, int rootDepth, int blockDepth,
                double unknownWeight = 1, Density density = {})
       : m_map(map),
-        m_rootDepth(rootDepth),
         m_blockDepth(blockDepth),
         m_unknownWeight(unknownWeight),
-        m_density(std::move(density)) {}
+        m_density(std::move(density)) {
+    if (map.root()) addBelow({map.root(), 0, {0, 0, 0}}, rootDepth);
+  }
 
-  /** Unknown space is class K + 1. */
-  int numClasses() const { return m_map.numClasses() + 1; }
-  bool isKnown(const Node& leaf) const { return static_cast<bool>(leaf.node); }
-  double weight(const Node& leaf) const {
-    const double volume = std::ldexp(1.0, -3 * leaf.depth) * (m_density ? meanDensity(leaf) : 1.0);
-    if (leaf.node) return volume;
-    return leaf.depth > m_blockDepth ? m_unknownWeight * volume : 0.0;
-  }
-  void distribution(const Node& leaf, std::vector<double>& p) const {
-    if (leaf.node) {
-      p = m_map.distribution(*leaf.node);
-      p.push_back(0);
-    } else {
-      p.assign(numClasses() + 1, 0.0);
-      p.back() = 1;
-    }
-  }
-  template <class F>
-  void forEachRoot(const F& f) const {
-    if (m_map.root()) forEachRootBelow({m_map.root(), 0, {0, 0, 0}}, f);
-  }
-  template <class F>
-  void forEachChild(const Node& n, const F& f) const {
-    if (!n.node || n.node->isLeaf()) return;
-    for (unsigned i = 0; i < 8; ++i) f(child(n, i));
+  /** The known leaves among some nodes. */
+  std::set<LeafId> knownAmong(const std::vector<std::int32_t>& nodes) const {
+    std::set<LeafId> ids;
+    for (const std::int32_t n : nodes)
+      if (places[n].node) ids.insert(places[n].id());
+    return ids;
   }
 
  private:
-  double meanDensity(const Node& leaf) const {
+  /** The roots below a place above them. */
+  void addBelow(const Place& place, int rootDepth) {
+    if (place.depth == rootDepth) return add(place, reference::Forest::kNoParent);
+    for (int i = 0; i < 8 && !place.node->isLeaf(); ++i)
+      if (const Place c = child(place, i); c.node) addBelow(c, rootDepth);
+  }
+  void add(const Place& place, std::int32_t parent) {
+    places.push_back(place);
+    if (!place.node) {
+      std::vector<double> unknown(m_map.numClasses() + 1, 0.0);
+      unknown.push_back(1);  // a class of its own
+      forest.addMissing(parent, place.depth > m_blockDepth ? m_unknownWeight * volume(place) : 0,
+                        unknown);
+    } else if (place.node->isLeaf()) {
+      std::vector<double> p = m_map.distribution(*place.node);
+      p.push_back(0);
+      forest.addLeaf(parent, volume(place), p);
+    } else {
+      const std::int32_t inner = forest.addInner(parent);
+      for (int i = 0; i < 8; ++i) add(child(place, i), inner);
+    }
+  }
+  double volume(const Place& place) const {
+    return std::ldexp(1.0, -3 * place.depth) * (m_density ? meanDensity(place) : 1.0);
+  }
+  double meanDensity(const Place& leaf) const {
     const int edge = semantic_octree::edgeAtDepth(leaf.depth), half = 1 << 15;
     double sum = 0;
     for (int x = 0; x < edge; ++x)
       for (int y = 0; y < edge; ++y)
         for (int z = 0; z < edge; ++z) {
-          const Eigen::Array3d voxel(leaf.index[0] * edge + x, leaf.index[1] * edge + y,
-                                     leaf.index[2] * edge + z);
-          sum += m_density((voxel + 0.5 - half).matrix() * m_map.getResolution());
+          const Eigen::Array3i voxel = leaf.index * edge + Eigen::Array3i(x, y, z);
+          sum += m_density((voxel.cast<double>() + 0.5 - half).matrix() * m_map.getResolution());
         }
     return sum / edge / edge / edge;
   }
-  Node child(const Node& n, unsigned i) const {
-    const int bits[3] = {static_cast<int>(i & 1), static_cast<int>(i >> 1 & 1),
-                         static_cast<int>(i >> 2)};
-    return {n.node.child(static_cast<int>(i)),
-            n.depth + 1,
-            {2 * n.index[0] + bits[0], 2 * n.index[1] + bits[1], 2 * n.index[2] + bits[2]}};
-  }
-  template <class F>
-  void forEachRootBelow(const Node& n, const F& f) const {
-    if (n.depth == m_rootDepth) return f(n);
-    forEachChild(n, [&](const Node& c) {
-      if (c.node) forEachRootBelow(c, f);
-    });
+  static Place child(const Place& place, int i) {
+    return {place.node->child(i), place.depth + 1,
+            2 * place.index + Eigen::Array3i(i & 1, i >> 1 & 1, i >> 2)};
   }
 
   const semantic_octree::SemanticOcTree& m_map;
-  int m_rootDepth, m_blockDepth;
+  int m_blockDepth;
   double m_unknownWeight;
   Density m_density;
 };

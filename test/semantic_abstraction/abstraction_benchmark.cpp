@@ -64,7 +64,7 @@ void plainFullPass(benchmark::State& state) {
   const Place place(4);
   const auto weights = withTerms(4).weights;
   for (auto _ : state) {
-    auto found = reference::findOptimalTree(OctreeAsTree(place.map, 9, 9), weights);
+    auto found = reference::findOptimalTree(OctreeAsTree(place.map, 9, 9).forest, weights);
     benchmark::DoNotOptimize(found.objective);
   }
   state.counters["leaves"] = static_cast<double>(place.map.getNumLeafNodes());

@@ -4,10 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "RandomTrees.h"
-
 using namespace tree_abstraction;
-using namespace reference;
 
 namespace {
 
@@ -30,10 +27,12 @@ void expectRejected(const AbstractionWeights& weights, const std::vector<std::st
   for (const auto& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
 }
 
-std::vector<double> project(const InformationTerm& term, const std::vector<double>& p) {
-  const TermRows terms({{term}, 0.0}, static_cast<int>(p.size()) - 1);
-  std::vector<double> row(terms.width(), kNan);
-  terms.project(p.data(), row.data());
+/** The row of a node of this class distribution. */
+std::vector<double> project(const std::vector<InformationTerm>& weighed,
+                            const std::vector<double>& p) {
+  const TermSet terms({weighed, 0.0}, static_cast<int>(p.size()) - 1);
+  std::vector<double> row(terms.width());
+  for (const auto& [classId, entry] : terms.contributions()) row[entry] += p[classId];
   return row;
 }
 
@@ -93,45 +92,28 @@ TEST(AbstractionWeights, epsGrowsWithTheWeights) {
 }
 
 TEST(TermSet, yesOrNoTermsKeepTheirGroupsProbability) {
-  EXPECT_EQ(project(relevant("a", 1, {1}), kDistribution), std::vector<double>{0.25});
-  EXPECT_EQ(project(relevant("a", 1, {3, 1}), kDistribution), std::vector<double>{0.3125});
+  EXPECT_EQ(project({relevant("a", 1, {1})}, kDistribution), std::vector<double>{0.25});
+  EXPECT_EQ(project({relevant("a", 1, {3, 1})}, kDistribution), std::vector<double>{0.3125});
 }
 
 TEST(TermSet, otherTermsKeepEveryOutcomeTheRestLast) {
-  EXPECT_EQ(project({"a", 1, {{2}, {4, 1}}}, kDistribution),
+  EXPECT_EQ(project({{"a", 1, {{2}, {4, 1}}}}, kDistribution),
             (std::vector<double>{0.125, 0.3125, 0.5625}));
-  EXPECT_EQ(project(wholeClassVariable("all", 1, 4), kDistribution), kDistribution);
+  EXPECT_EQ(project({wholeClassVariable("all", 1, 4)}, kDistribution), kDistribution);
 }
 
 TEST(TermSet, rowsHoldTheTermsOneAfterTheOther) {
-  const TermRows terms({{relevant("a", 1, {1}), {"b", 1, {{2}, {3}}}, irrelevant("c", 1, {4})}, 0},
-                       4);
+  const std::vector<InformationTerm> weighed = {
+      relevant("a", 1, {1}), {"b", 1, {{2}, {3}}}, irrelevant("c", 1, {4})};
+  const TermSet terms({weighed, 0}, 4);
   ASSERT_EQ(terms.size(), 3u);
   EXPECT_EQ(terms.width(), 5u);
   EXPECT_TRUE(terms.slot(0).isBinary());
   EXPECT_EQ(terms.slot(1).offset, 1u);
   EXPECT_EQ(terms.slot(1).width, 3u);
   EXPECT_EQ(terms.slot(2).offset, 4u);
-  std::vector<double> row(5);
-  terms.project(kDistribution.data(), row.data());
-  EXPECT_EQ(row, (std::vector<double>{0.25, 0.125, 0.0625, 0.8125, 0.0625}));
-}
-
-TEST(TermSet, measuresAgreeWithThoseOfTheOutcomes) {
-  const TermRows terms({{relevant("a", 1, {1}), wholeClassVariable("all", 1, 4)}, 0}, 4);
-  random_trees::Engine random(3);
-  const auto p = random_trees::makeDistribution(5, random);
-  const auto q = random_trees::makeDistribution(5, random);
-  std::vector<double> rows(2 * terms.width());
-  terms.project(p.data(), rows.data());
-  terms.project(q.data(), rows.data() + terms.width());
-  EXPECT_EQ(terms.entropy(0, rows.data()), binaryEntropy(p[1]));
-  EXPECT_EQ(terms.entropy(1, rows.data()), entropy(p.data(), 5));
-  const double pi[] = {0.25, 0.75}, ones[] = {p[1], q[1]};
-  EXPECT_EQ(terms.divergence(0, pi, rows.data(), 2), binaryJensenShannon(pi, ones, 2));
-  std::vector<double> all = p;
-  all.insert(all.end(), q.begin(), q.end());
-  EXPECT_EQ(terms.divergence(1, pi, rows.data(), 2), jensenShannon(pi, all.data(), 2, 5, 5));
+  EXPECT_EQ(project(weighed, kDistribution),
+            (std::vector<double>{0.25, 0.125, 0.0625, 0.8125, 0.0625}));
 }
 
 TEST(TermSet, rejectsWhatTheWeightsReject) {

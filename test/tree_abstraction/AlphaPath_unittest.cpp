@@ -23,7 +23,7 @@ TEST(AlphaPath, treesAreNestedAndEachIsTheOptimumAtItsAlpha) {
     const auto tree = random_trees::makeTree(shape, random);
     auto weights = random_trees::makeWeights(shape, random);
     weights.alpha = 0;
-    const AlphaPath path(tausOf(findOptimalTree(tree, weights)));
+    const AlphaPath path(tausOf(findOptimalTree(tree, weights), weights));
     ASSERT_GT(path.numTrees(), 3u);
     EXPECT_EQ(count(path.expanded(0)), 0u);
     EXPECT_EQ(path.highestAlpha(0), kInfinity);
@@ -31,7 +31,7 @@ TEST(AlphaPath, treesAreNestedAndEachIsTheOptimumAtItsAlpha) {
     for (std::size_t k = 0; k < path.numTrees(); ++k) {
       EXPECT_LT(path.lowestAlpha(k), path.highestAlpha(k));
       weights.alpha = path.alpha(k);
-      EXPECT_EQ(path.expanded(k), findOptimalTree(tree, weights).expanded);
+      EXPECT_EQ(path.expanded(k), findOptimalTree(tree, weights).expanded());
       if (k == 0) continue;
       EXPECT_EQ(path.highestAlpha(k), path.lowestAlpha(k - 1));
       const auto smaller = path.expanded(k - 1), larger = path.expanded(k);
@@ -42,24 +42,23 @@ TEST(AlphaPath, treesAreNestedAndEachIsTheOptimumAtItsAlpha) {
 }
 
 TEST(AlphaPath, totalsCountLeavesAndInformationAlongThePath) {
-  const auto found = makeExample(6);
-  const AlphaPath path(tausOf(found));
-  const auto leaves = path.totals(addedLeaves(found.tree), 1.0);
-  const auto entropies = path.totals(found.values.price, 0.0);
-  const TermRows terms({{relevant("one", 1, {1}), relevant("two", 1, {2})}, 0}, 2);
+  const Example example(6);
+  const AlphaPath path(example.tau);
+  const auto leaves = path.totals(addedLeaves(example.found.forest), 1.0);
+  const auto entropies = path.totals(example.found.prices(), 0.0);
   for (std::size_t k = 0; k < path.numTrees(); k += 7) {
-    const auto measures = measure(found.tree, terms, found.information, path.expanded(k));
+    const auto measures = measuresOf(example.found, example.weights, path.expanded(k));
     EXPECT_EQ(leaves[k], static_cast<double>(measures.numLeaves));
     EXPECT_NEAR(entropies[k], measures.leafEntropy, 1e-12);
   }
 }
 
 TEST(AlphaPath, givesTheLargestTreeWithinAWantedNumberOfLeaves) {
-  const auto found = makeExample(7);
-  const AlphaPath path(tausOf(found));
-  const auto added = addedLeaves(found.tree);
+  const Example example(7);
+  const AlphaPath path(example.tau);
+  const auto added = addedLeaves(example.found.forest);
   const auto leaves = path.totals(added, 1.0);
-  const std::size_t all = found.full.numLeaves;
+  const std::size_t all = example.found.full.numLeaves;
   for (std::size_t wanted = 1; wanted <= all; ++wanted) {
     const std::size_t k = path.largestWithin(static_cast<double>(wanted), added, 1);
     EXPECT_LE(leaves[k], static_cast<double>(wanted));

@@ -7,24 +7,25 @@
 namespace brute_force {
 namespace {
 
-using reference::VectorTree;
+using reference::Forest;
 using tree_abstraction::AbstractionWeights;
 using tree_abstraction::InformationTerm;
-using Node = VectorTree::Node;
+using Node = std::int32_t;
 
 /** p(n, class) for all nodes: summed over the leaves below, over the total weight. */
 class Joint {
  public:
-  explicit Joint(const VectorTree& tree)
-      : m_table(tree.size(), std::vector<double>(static_cast<std::size_t>(tree.numClasses()) + 1)) {
-    std::vector<double> p;
+  explicit Joint(const Forest& tree) {
     double total = 0;
+    std::size_t classes = 0;
+    for (const auto& node : tree.nodes) classes = std::max(classes, node.distribution.size());
+    m_table.assign(tree.size(), std::vector<double>(classes));
     for (Node n = 0; n < static_cast<Node>(tree.size()); ++n) {
-      if (!tree.children(n).empty()) continue;
-      tree.distribution(n, p);
-      total += tree.weight(n);
-      for (Node up = n; up != VectorTree::kNoParent; up = tree.parent(up)) {
-        for (std::size_t k = 0; k < p.size(); ++k) at(up)[k] += tree.weight(n) * p[k];
+      const Forest::Node& leaf = tree[n];
+      if (!leaf.children.empty()) continue;
+      total += leaf.weight;
+      for (Node up = n; up != Forest::kNoParent; up = tree[up].parent) {
+        for (std::size_t k = 0; k < classes; ++k) at(up)[k] += leaf.weight * leaf.distribution[k];
       }
     }
     for (auto& row : m_table) {
@@ -63,10 +64,10 @@ std::vector<double> outcomes(const std::vector<double>& classes, const Informati
 /** What leaf n adds to J: sum_t w_t p(n) KL(p(y|n) || p(y)) + alpha p(n) ln p(n). */
 class LeafShares {
  public:
-  LeafShares(const VectorTree& tree, const AbstractionWeights& weights) : m_share(tree.size()) {
+  LeafShares(const Forest& tree, const AbstractionWeights& weights) : m_share(tree.size()) {
     const Joint joint(tree);
     std::vector<double> all(joint[0].size());
-    for (const Node root : tree.roots()) {
+    for (const Node root : tree.roots) {
       for (std::size_t k = 0; k < all.size(); ++k) all[k] += joint[root][k];
     }
     for (Node n = 0; n < static_cast<Node>(tree.size()); ++n) {
@@ -104,12 +105,12 @@ PrunedTrees combine(const PrunedTrees& a, const PrunedTrees& b) {
 
 class Enumeration {
  public:
-  Enumeration(const VectorTree& tree, const AbstractionWeights& weights)
+  Enumeration(const Forest& tree, const AbstractionWeights& weights)
       : m_tree(tree), m_shares(tree, weights) {}
 
   PrunedTrees ofForest() {
     PrunedTrees trees{{0, 0.0}};
-    for (const Node root : m_tree.roots()) {
+    for (const Node root : m_tree.roots) {
       auto ofRoot = below(root);
       for (auto& t : ofRoot) t.objective -= m_shares[root];
       trees = combine(trees, ofRoot);
@@ -128,51 +129,51 @@ class Enumeration {
  private:
   PrunedTrees below(Node n) {
     PrunedTrees trees{{0, m_shares[n]}};
-    if (m_tree.children(n).empty()) return trees;
+    if (m_tree[n].children.empty()) return trees;
     if (m_inner.size() == 64) throw std::logic_error("brute force: more than 64 inner nodes");
     PrunedTrees expanded{{std::uint64_t{1} << m_inner.size(), 0.0}};
     m_inner.push_back(n);
-    for (const Node child : m_tree.children(n)) expanded = combine(expanded, below(child));
+    for (const Node child : m_tree[n].children) expanded = combine(expanded, below(child));
     trees.insert(trees.end(), expanded.begin(), expanded.end());
     return trees;
   }
 
-  const VectorTree& m_tree;
+  const Forest& m_tree;
   const LeafShares m_shares;
   std::vector<Node> m_inner;
 };
 
-double countBelow(const VectorTree& tree, Node n) {
-  if (tree.children(n).empty()) return 1;
+double countBelow(const Forest& tree, Node n) {
+  if (tree[n].children.empty()) return 1;
   double product = 1;
-  for (const Node child : tree.children(n)) product *= countBelow(tree, child);
+  for (const Node child : tree[n].children) product *= countBelow(tree, child);
   return 1 + product;
 }
 
 }  // namespace
 
-double countTrees(const VectorTree& tree) {
+double countTrees(const Forest& tree) {
   double product = 1;
-  for (const Node root : tree.roots()) product *= countBelow(tree, root);
+  for (const Node root : tree.roots) product *= countBelow(tree, root);
   return product;
 }
 
-double objective(const VectorTree& tree, const AbstractionWeights& weights,
+double objective(const Forest& tree, const AbstractionWeights& weights,
                  const std::vector<Node>& interior) {
   const LeafShares shares(tree, weights);
   double j = 0;
-  for (const Node root : tree.roots()) j -= shares[root];
+  for (const Node root : tree.roots) j -= shares[root];
   const auto isInterior = [&](Node n) {
     return std::find(interior.begin(), interior.end(), n) != interior.end();
   };
   for (Node n = 0; n < static_cast<Node>(tree.size()); ++n) {
-    const bool reached = tree.parent(n) == VectorTree::kNoParent || isInterior(tree.parent(n));
+    const bool reached = tree[n].parent == Forest::kNoParent || isInterior(tree[n].parent);
     if (reached && !isInterior(n)) j += shares[n];
   }
   return j;
 }
 
-Optimum optimize(const VectorTree& tree, const AbstractionWeights& weights) {
+Optimum optimize(const Forest& tree, const AbstractionWeights& weights) {
   Enumeration enumeration(tree, weights);
   const PrunedTrees trees = enumeration.ofForest();
   Optimum best;

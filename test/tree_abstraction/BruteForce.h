@@ -1,5 +1,5 @@
 #pragma once
-#include <reference/VectorTree.h>
+#include <reference/GTreeSearch.h>
 #include <tree_abstraction/AbstractionWeights.h>
 
 #include <cstdint>
@@ -14,22 +14,21 @@ struct Optimum {
   /** Largest J over that of the roots alone. */
   double objective = 0;
   /** Interior nodes that all, and that any of the optimal trees have; ascending. */
-  std::vector<reference::VectorTree::Node> inAll, inAny;
+  std::vector<std::int32_t> inAll, inAny;
   /** Some optimal tree has exactly the interior nodes inAll. */
   bool intersectionIsOptimal = false;
 };
 
 /** Number of pruned trees: for each root 1 + the product over its children. */
-double countTrees(const reference::VectorTree& tree);
+double countTrees(const reference::Forest& tree);
 
 /** J(T) over that of the roots alone for any set of interior nodes that is closed towards the
  * roots. */
-double objective(const reference::VectorTree& tree,
-                 const tree_abstraction::AbstractionWeights& weights,
-                 const std::vector<reference::VectorTree::Node>& interior);
+double objective(const reference::Forest& tree, const tree_abstraction::AbstractionWeights& weights,
+                 const std::vector<std::int32_t>& interior);
 
 /** At most 64 inner nodes. */
-Optimum optimize(const reference::VectorTree& tree,
+Optimum optimize(const reference::Forest& tree,
                  const tree_abstraction::AbstractionWeights& weights);
 
 }  // namespace brute_force

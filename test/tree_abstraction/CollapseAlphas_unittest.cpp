@@ -18,9 +18,9 @@ std::vector<double> breakpoints(std::vector<double> tau) {
   return tau;
 }
 
-void expectPathEqualsSearch(const VectorTree& tree, AbstractionWeights weights) {
+void expectPathEqualsSearch(const Forest& tree, AbstractionWeights weights) {
   weights.alpha = 0;
-  const auto tau = tausOf(findOptimalTree(tree, weights));
+  const auto tau = tausOf(findOptimalTree(tree, weights), weights);
   std::vector<double> alphas{0.0, 1e-6, 0.01, 0.1, 1.0, 10.0};
   for (const double t : breakpoints(tau)) {
     for (const double factor : {1 - 1e-7, 1.0, 1 + 1e-7}) alphas.push_back(t * factor);
@@ -28,7 +28,7 @@ void expectPathEqualsSearch(const VectorTree& tree, AbstractionWeights weights) 
   for (const double alpha : alphas) {
     SCOPED_TRACE(alpha);
     weights.alpha = alpha;
-    EXPECT_EQ(expandedAt(tau, alpha, 2 * weights.eps()), findOptimalTree(tree, weights).expanded);
+    EXPECT_EQ(expandedAt(tau, alpha, 2 * weights.eps()), findOptimalTree(tree, weights).expanded());
   }
 }
 
@@ -117,10 +117,10 @@ TEST(CollapseAlphas, aNodeWithoutGainAndPriceLivesAsLongAsItsBestChild) {
 }
 
 TEST(CollapseAlphas, childrenNeverOutliveTheirParents) {
-  const auto found = makeExample(3);
-  const auto tau = tausOf(found);
+  const Example example(3);
+  const auto& tau = example.tau;
   for (std::size_t n = 1; n < tau.size(); ++n) {
-    EXPECT_LE(tau[n], tau[static_cast<std::size_t>(found.tree.parent[n])]);
+    EXPECT_LE(tau[n], tau[static_cast<std::size_t>(example.found.parents()[n])]);
   }
 }
 
@@ -149,13 +149,13 @@ TEST(CollapseAlphas, copesWithANodeOfManyChildrenInOrder) {
 }
 
 TEST(CollapseAlphas, worksForOtherPrices) {
-  const auto found = makeExample(4);
-  const auto leaves = addedLeaves(found.tree);
-  const auto tau = collapseAlphas(found.tree.parent, found.values.gain, leaves);
-  for (const double alpha : {1e-6, 1e-5, 1e-4, 1e-3}) {
-    EXPECT_EQ(expandedAt(tau, alpha),
-              optimumOf(found.tree.parent, found.values.gain, leaves, alpha));
-  }
+  const Example example(4);
+  const auto leaves = addedLeaves(example.found.forest);
+  const auto parents = example.found.parents();
+  const auto gains = example.found.gains(example.weights);
+  const auto tau = collapseAlphas(parents, gains, leaves);
+  for (const double alpha : {1e-6, 1e-5, 1e-4, 1e-3})
+    EXPECT_EQ(expandedAt(tau, alpha), optimumOf(parents, gains, leaves, alpha));
 }
 
 TEST(CollapseAlphas, rejectsWhatIsNoForest) {

@@ -19,14 +19,15 @@ using random_trees::Shape;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-inline std::vector<double> tausOf(const SearchResult& found) {
-  return collapseAlphas(found.tree.parent, found.values.gain, found.values.price);
+inline std::vector<double> tausOf(const SearchResult& found, const AbstractionWeights& weights) {
+  return collapseAlphas(found.parents(), found.gains(weights), found.prices());
 }
 
 /** Children - 1 of each inner node. */
-inline std::vector<double> addedLeaves(const BreadthFirstTree& tree) {
+inline std::vector<double> addedLeaves(const Forest& forest) {
   std::vector<double> added;
-  for (const int children : tree.numChildren) added.push_back(std::max(0, children - 1));
+  for (const Forest::Node& node : forest.nodes)
+    added.push_back(std::max(0.0, static_cast<double>(node.children.size()) - 1));
   return added;
 }
 
@@ -38,13 +39,20 @@ inline std::vector<char> expandedAt(const std::vector<double>& tau, double alpha
 }
 
 /** A sparse octree searched at alpha = 0. */
-inline SearchResult makeExample(unsigned seed) {
-  Engine random(seed);
-  const Shape shape{4, 8, 8, 0.5};
-  const auto tree = random_trees::makeTree(shape, random);
-  auto weights = random_trees::makeWeights(shape, random);
-  weights.alpha = 0;
-  return findOptimalTree(tree, weights);
-}
+struct Example {
+  AbstractionWeights weights;
+  SearchResult found;
+  std::vector<double> tau;
+
+  explicit Example(unsigned seed) {
+    Engine random(seed);
+    const Shape shape{4, 8, 8, 0.5};
+    const Forest forest = random_trees::makeTree(shape, random);
+    weights = random_trees::makeWeights(shape, random);
+    weights.alpha = 0;
+    found = findOptimalTree(forest, weights);
+    tau = tausOf(found, weights);
+  }
+};
 
 }  // namespace path_examples

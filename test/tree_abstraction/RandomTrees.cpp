@@ -2,12 +2,13 @@
 
 #include <tree_abstraction/Information.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace random_trees {
 namespace {
 
-using reference::VectorTree;
+using reference::Forest;
 
 /** What the leaves right below an inner node of a tie-rich tree are. */
 enum class Pattern { AllFree, AllOne, ByTurns, OddOneOut, Random };
@@ -30,18 +31,17 @@ double probabilityOfOne(Pattern pattern, int sibling, Engine& random) {
 /** One random tree on its way. */
 class Grower {
  public:
-  Grower(const Shape& shape, Engine& random)
-      : m_shape(shape), m_random(random), m_tree(shape.numClasses) {}
+  Grower(const Shape& shape, Engine& random) : m_shape(shape), m_random(random) {}
 
-  VectorTree grow() {
+  Forest grow() {
     for (int i = 0; i < m_shape.numRoots; ++i) {
-      addSubtree(m_shape.depth, 1.0, VectorTree::kNoParent, Pattern::Random, i);
+      addSubtree(m_shape.depth, 1.0, Forest::kNoParent, Pattern::Random, i);
     }
     return m_tree;
   }
 
  private:
-  void addSubtree(int depth, double volume, VectorTree::Node parent, Pattern pattern, int sibling) {
+  void addSubtree(int depth, double volume, std::int32_t parent, Pattern pattern, int sibling) {
     const bool isRoot = depth == m_shape.depth;
     const bool splits = depth > 0 && (isRoot || uniform(m_random) < m_shape.splitProbability);
     if (!splits) return addLeaf(volume, parent, pattern, sibling);
@@ -50,7 +50,7 @@ class Grower {
     const auto own = m_shape.tieRich ? static_cast<Pattern>(uniformInt(m_random, 0, 4)) : pattern;
     for (int i = 0; i < arity; ++i) addSubtree(depth - 1, volume / arity, node, own, i);
   }
-  void addLeaf(double volume, VectorTree::Node parent, Pattern pattern, int sibling) {
+  void addLeaf(double volume, std::int32_t parent, Pattern pattern, int sibling) {
     const auto size = static_cast<std::size_t>(m_shape.numClasses) + 1;
     if (uniform(m_random) < m_shape.missingProbability) {
       const double weight = volume * uniformInt(m_random, 0, 1);
@@ -67,8 +67,13 @@ class Grower {
 
   const Shape& m_shape;
   Engine& m_random;
-  VectorTree m_tree;
+  Forest m_tree;
 };
+
+double binaryEntropy(double p) {
+  const double both[] = {p, 1 - p};
+  return tree_abstraction::entropy(both, 2);
+}
 
 /** A split costs as much as one odd child tells, or half of what a half-and-half node tells, or
  * nothing. */
@@ -76,7 +81,7 @@ tree_abstraction::AbstractionWeights makeTieRichWeights(double arity, Engine& ra
   using tree_abstraction::relevant;
   switch (uniformInt(random, 0, 2)) {
     case 0:
-      return {{relevant("one", std::log(arity) / reference::binaryEntropy(1 / arity), {1})}, 1};
+      return {{relevant("one", std::log(arity) / binaryEntropy(1 / arity), {1})}, 1};
     case 1:
       return {{relevant("one", 2 * std::log2(arity), {1})}, 1};
     default:
@@ -84,11 +89,9 @@ tree_abstraction::AbstractionWeights makeTieRichWeights(double arity, Engine& ra
   }
 }
 
-bool hasWeight(const VectorTree& tree) {
-  for (VectorTree::Node n = 0; n < static_cast<VectorTree::Node>(tree.size()); ++n) {
-    if (tree.children(n).empty() && tree.weight(n) > 0) return true;
-  }
-  return false;
+bool hasWeight(const Forest& tree) {
+  return std::any_of(tree.nodes.begin(), tree.nodes.end(),
+                     [](const Forest::Node& node) { return node.weight > 0; });
 }
 
 }  // namespace
@@ -110,7 +113,7 @@ std::vector<double> makeDistribution(std::size_t size, Engine& random) {
   return p;
 }
 
-VectorTree makeTree(const Shape& shape, Engine& random) {
+Forest makeTree(const Shape& shape, Engine& random) {
   for (;;) {
     auto tree = Grower(shape, random).grow();
     if (hasWeight(tree)) return tree;

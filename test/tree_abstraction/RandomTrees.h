@@ -1,6 +1,5 @@
 #pragma once
 #include <reference/GTreeSearch.h>
-#include <reference/VectorTree.h>
 
 #include <random>
 #include <vector>
@@ -30,7 +29,7 @@ struct Shape {
 };
 
 /** Some leaf has a weight. */
-reference::VectorTree makeTree(const Shape& shape, Engine& random);
+reference::Forest makeTree(const Shape& shape, Engine& random);
 
 /** Class 1 relevant, class 2 irrelevant if there is one, with random weights and alpha; for
  * tie-rich shapes weights at which many splits cost just what they tell. */
