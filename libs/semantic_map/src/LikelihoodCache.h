@@ -1,5 +1,6 @@
 #pragma once
 #include <labeled_cloud/ScanConverter.h>
+#include <mrpt/obs/CObservation.h>
 #include <mrpt/system/COutputLogger.h>
 
 #include <cstdint>
@@ -8,6 +9,11 @@
 #include <string>
 
 namespace semantic_map {
+
+/** A number that stands for all that a scan is made of, its labels and the sensor's pose included:
+ * two observations with the same one have the same points. Reads each byte once, which takes a
+ * small part of the time that it takes to make points of them. */
+std::uint64_t fingerprintOf(const mrpt::obs::CObservation& observation);
 
 struct CachedConverter;
 

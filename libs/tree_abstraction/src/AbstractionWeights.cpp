@@ -1,11 +1,13 @@
 #include <tree_abstraction/AbstractionWeights.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 #include <stdexcept>
 
 namespace tree_abstraction {
+
 namespace {
 
 [[noreturn]] void reject(const std::string& field, const std::string& what) {
@@ -97,6 +99,38 @@ double TreeMeasures::objective(const AbstractionWeights& weights) const {
   for (std::size_t t = 0; t < information.size(); ++t)
     j += weights.terms[t].weight * information[t];
   return j;
+}
+
+namespace {
+
+/** The classes 0..K that are in none of the groups. */
+std::vector<int> classesLeftOver(const std::vector<std::vector<int>>& groups, int numClasses) {
+  std::vector<int> rest;
+  for (int id = 0; id <= numClasses; ++id) {
+    const auto holdsId = [id](const std::vector<int>& group) {
+      return std::find(group.begin(), group.end(), id) != group.end();
+    };
+    if (std::none_of(groups.begin(), groups.end(), holdsId)) rest.push_back(id);
+  }
+  return rest;
+}
+
+}  // namespace
+
+TermSet::TermSet(const AbstractionWeights& weights, int numClasses) : m_numClasses(numClasses) {
+  weights.validate(numClasses);
+  for (const auto& term : weights.terms) {
+    auto outcomes = term.groups;
+    const auto rest = classesLeftOver(term.groups, numClasses);
+    if (term.groups.size() > 1 && !rest.empty()) outcomes.push_back(rest);
+    m_slots.push_back({m_width, outcomes.size()});
+    for (const auto& outcome : outcomes) {
+      for (const int id : outcome) {
+        m_contributions.push_back({static_cast<std::size_t>(id), m_width});
+      }
+      ++m_width;
+    }
+  }
 }
 
 }  // namespace tree_abstraction

@@ -8,6 +8,12 @@
 #include <string>
 
 namespace strict_files {
+
+int& AllocationLimit::living() {
+  thread_local int count = 0;
+  return count;
+}
+
 namespace {
 
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();

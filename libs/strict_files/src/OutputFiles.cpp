@@ -1,0 +1,238 @@
+#include <fcntl.h>
+#include <strict_files/OutputFiles.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "Placing.h"
+#include "Unfinished.h"
+
+namespace strict_files {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/** What links lead to. \throw std::runtime_error nothing can be written there. */
+fs::path placeOf(const fs::path& target) {
+  const auto refuse = [&target](const std::string& why) {
+    throw std::runtime_error(target.string() + ": cannot be written, " + why);
+  };
+  std::error_code error;
+  const bool isLink = fs::is_symlink(target, error);
+  const fs::path place = isLink ? fs::canonical(target, error) : target;
+  if (isLink && error) refuse("it is a link that leads nowhere");
+  const fs::file_status status = fs::status(place, error);
+  if (fs::is_directory(status)) refuse("it is a folder");
+  if (fs::exists(status) && !fs::is_regular_file(status)) refuse("it is no regular file");
+  return place;
+}
+
+/** As the file has that is replaced. */
+void takePermissions(const fs::path& target, int descriptor) {
+  struct stat old {};
+  if (stat(target.c_str(), &old) == 0) fchmod(descriptor, old.st_mode & 07777);
+}
+
+}  // namespace
+
+StagedFile::StagedFile(fs::path target) : m_target(placeOf(target)) {
+  try {
+    m_unfinished = std::make_unique<Unfinished>(m_target.parent_path(), Unfinished::Kind::File,
+                                                m_target.filename().string());
+  } catch (const fs::filesystem_error& e) {
+    const bool nowhere = e.code() == std::errc::no_such_file_or_directory;
+    throw std::runtime_error(target.string() + ": cannot be written" +
+                             (nowhere ? " (does the folder exist?)" : ": " + e.code().message()));
+  }
+  takePermissions(m_target, m_unfinished->descriptor());
+}
+
+StagedFile::~StagedFile() = default;
+
+const fs::path& StagedFile::path() const { return m_unfinished->path(); }
+
+void StagedFile::commit(Disk when) {
+  try {
+    const Placement placement(m_unfinished->path(), m_target);
+    const OpenFolder folder(m_target.parent_path());
+    if (when == Disk::Now) synchronize(m_unfinished->descriptor());
+    const auto held = Unfinished::hold();
+    placement.take();
+    if (when == Disk::Now) folder.synchronize();
+  } catch (const PlaceTaken& e) {
+    const auto held = Unfinished::hold();
+    keepAndReport(m_target, *m_unfinished, e);
+  } catch (const fs::filesystem_error& e) {
+    throw std::runtime_error(m_target.string() + ": cannot be written: " + e.code().message());
+  } catch (const std::exception& e) {
+    throw std::runtime_error(m_target.string() + ": cannot be written: " + e.what());
+  }
+}
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/** \throw std::runtime_error something else than a file is there. */
+void checkPlace(const fs::path& place) {
+  std::error_code error;
+  const fs::file_status status = fs::status(place, error);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw std::runtime_error(fs::is_directory(status) ? "it is a folder" : "it is no regular file");
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(fs::path folder) : m_folder(std::move(folder)) {
+  try {
+    m_staging = std::make_unique<Unfinished>(m_folder, Unfinished::Kind::Folder);
+  } catch (const fs::filesystem_error& e) {
+    throw std::runtime_error(m_folder.string() +
+                             ": cannot write into this folder: " + e.code().message());
+  }
+}
+
+OutputFolder::~OutputFolder() = default;
+
+fs::path OutputFolder::staged(const std::string& name) const { return m_staging->path() / name; }
+
+void OutputFolder::takeAlong(const std::string& lock) { m_staging->takeAlong(lock); }
+
+/** Where each file goes, when all are on the disk. \throw filesystem_error or runtime_error */
+Placement OutputFolder::prepare(const std::string& name) const {
+  checkPlace(m_folder / name);
+  if (!fs::exists(staged(name))) return {{}, m_folder / name};
+  synchronize(staged(name));
+  return {staged(name), m_folder / name};
+}
+
+void OutputFolder::commit(const std::vector<std::string>& names) {
+  const auto each = [&](auto action) {
+    for (std::size_t i = 0; i < names.size(); ++i) try {
+        action(i);
+      } catch (const PlaceTaken& e) {
+        keepAndReport(m_folder / names[i], *m_staging, e);
+      } catch (const fs::filesystem_error& e) {
+        throw std::runtime_error((m_folder / names[i]).string() +
+                                 ": cannot be written: " + e.code().message());
+      } catch (const std::exception& e) {
+        throw std::runtime_error((m_folder / names[i]).string() +
+                                 ": cannot be written: " + e.what());
+      }
+  };
+  std::vector<Placement> placements;  // what can fail comes first
+  each([&](std::size_t i) { placements.push_back(prepare(names[i])); });
+  const OpenFolder folder(m_folder);
+  flock(folder.descriptor(), LOCK_EX);  // of two at the same time, the files are of one
+  const auto held = Unfinished::hold();
+  each([&](std::size_t i) { placements[i].checkFree(); });
+  each([&](std::size_t i) { placements[i].take(); });
+  folder.synchronize();
+}
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail(const fs::path& folder, const std::string& why) {
+  throw std::runtime_error(folder.string() + ": scratch file cannot be made or used: " + why);
+}
+
+std::string reason() { return std::generic_category().message(errno); }
+
+/** Calls f(bytes, size, place) until all is done. \return whether it was */
+template <typename Bytes, typename F>
+bool inPieces(Bytes* bytes, std::size_t size, std::uint64_t place, const F& f) {
+  while (size > 0) {
+    const ssize_t done = f(bytes, size, static_cast<off_t>(place));
+    if (done < 0 && errno == EINTR) continue;
+    if (done == 0) errno = EIO;
+    if (done <= 0) return false;
+    bytes += done;
+    size -= static_cast<std::size_t>(done);
+    place += static_cast<std::uint64_t>(done);
+  }
+  return true;
+}
+
+}  // namespace
+
+ScratchFile::ScratchFile(const fs::path& folder) try
+    : m_folder(folder),
+      m_file(std::make_unique<Unfinished>(folder, Unfinished::Kind::File, "scratch")) {
+} catch (const fs::filesystem_error& e) {
+  fail(folder, e.code().message());
+}
+
+ScratchFile::~ScratchFile() = default;
+
+std::uint64_t ScratchFile::append(const void* bytes, std::size_t size) {
+  const std::uint64_t place = m_end;
+  const int file = m_file->descriptor();
+  if (!inPieces(static_cast<const char*>(bytes), size, place,
+                [file](const char* b, std::size_t n, off_t at) { return pwrite(file, b, n, at); }))
+    fail(m_folder, reason());
+  m_end += size;
+  return place;
+}
+
+void ScratchFile::read(std::uint64_t place, void* bytes, std::size_t size) const {
+  const int file = m_file->descriptor();
+  if (!inPieces(static_cast<char*>(bytes), size, place,
+                [file](char* b, std::size_t n, off_t at) { return pread(file, b, n, at); }))
+    fail(m_folder, reason());
+}
+
+void ScratchFile::discard(std::uint64_t place, std::size_t size) noexcept {
+#ifdef FALLOC_FL_PUNCH_HOLE
+  if (fallocate(m_file->descriptor(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+                static_cast<off_t>(place), static_cast<off_t>(size)) != 0)
+    return;  // the file system has no holes: the file stays as large as it was
+#endif
+}
+
+namespace {
+
+int operationOf(FileLock::Kind kind) { return kind == FileLock::Kind::Shared ? LOCK_SH : LOCK_EX; }
+
+}  // namespace
+
+FileLock::FileLock(const std::filesystem::path& file)
+    : m_descriptor(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  if (m_descriptor < 0) m_descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+}
+
+FileLock::FileLock(const std::filesystem::path& file, Kind kind) : FileLock(file) {
+  while (m_descriptor >= 0 && flock(m_descriptor, operationOf(kind)) != 0 && errno == EINTR) {
+  }
+}
+
+std::optional<FileLock> FileLock::tryTo(const std::filesystem::path& file, Kind kind) {
+  constexpr int kMost = 10;
+  for (int i = 1;; ++i) {  // who held it may have taken the file along, so that others see another
+    FileLock lock(file);
+    if (lock.m_descriptor < 0) return lock;
+    if (flock(lock.m_descriptor, operationOf(kind) | LOCK_NB) != 0)
+      return errno == EWOULDBLOCK ? std::nullopt : std::optional(std::move(lock));
+    if (leadsTo(file, lock.m_descriptor) || i == kMost) return lock;
+  }
+}
+
+FileLock::~FileLock() {
+  if (m_descriptor >= 0) close(m_descriptor);
+}
+
+FileLock::FileLock(FileLock&& o) noexcept : m_descriptor(std::exchange(o.m_descriptor, -1)) {}
+
+FileLock& FileLock::operator=(FileLock o) noexcept {
+  std::swap(m_descriptor, o.m_descriptor);
+  return *this;
+}
+
+}  // namespace strict_files
