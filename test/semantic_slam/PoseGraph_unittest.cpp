@@ -101,6 +101,55 @@ TEST(PoseGraph, aLoopThatIsNoneIsOutvoted) {
   }
 }
 
+TEST(PoseGraph, wrongLoopsAreFoundOut) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    std::mt19937 random(seed);
+    const auto truth = ring(60);
+    std::vector<PoseEdge> right, wrong;
+    std::vector<Eigen::Isometry3d> drifted = {truth[0]};
+    for (std::size_t i = 1; i < truth.size(); ++i) {
+      right.push_back(edgeOf(truth, i - 1, i));
+      right.back().T_a_b = right.back().T_a_b * poseOf(randomVector(random, 0.02, 0.01));
+      drifted.push_back(drifted.back() * right.back().T_a_b);
+    }
+    for (std::size_t i = 30; i < 60; i += 3) {
+      right.push_back(edgeOf(truth, i, i - 30));
+      right.back().isDoubtful = true;
+    }
+    for (int i = 0; i < 4; ++i) {  // each elsewhere
+      wrong.push_back(edgeOf(truth, random() % 20, 30 + random() % 20));
+      wrong.back().T_a_b = wrong.back().T_a_b * poseOf(randomVector(random, 10, 1));
+      wrong.back().isDoubtful = true;
+    }
+    auto withoutThem = drifted, withThem = drifted, believed = drifted;
+    optimize(withoutThem, right);
+    auto all = right;
+    all.insert(all.end(), wrong.begin(), wrong.end());
+    optimize(withThem, all);
+    EXPECT_LT(largestError(withThem, withoutThem), 0.3) << seed << ": each pulls a little";
+    for (PoseEdge& edge : all) edge.isDoubtful = false;
+    optimize(believed, all);
+    EXPECT_GT(largestError(believed, withoutThem), 2) << seed;
+  }
+}
+
+TEST(PoseGraph, edgesFromTheMapSayWhereTheFirstPoseIs) {
+  std::mt19937 random(1);
+  const auto truth = ring(40);
+  std::vector<PoseEdge> edges;
+  for (std::size_t i = 1; i < truth.size(); ++i) edges.push_back(edgeOf(truth, i - 1, i));
+  auto poses = truth;
+  const Eigen::Isometry3d T_off = poseOf(randomVector(random, 1, 0.2));
+  for (Eigen::Isometry3d& pose : poses) pose = T_off * pose;
+  const auto elsewhere = poses;
+  optimize(poses, edges);
+  EXPECT_LT(largestError(poses, elsewhere), 1e-9) << "nothing says where they are";
+  for (const std::size_t i : {7, 20, 33})
+    edges.push_back({PoseEdge::kMap, i, truth[i], informationOf(0.1, 0.01), true});
+  optimize(poses, edges);
+  EXPECT_LT(largestError(poses, truth), 1e-4);
+}
+
 TEST(PoseGraph, refusesEdgesOfPosesThatAreNotThere) {
   std::vector<Eigen::Isometry3d> poses = ring(3);
   EXPECT_THROW(optimize(poses, {edgeOf(ring(4), 0, 3)}), std::invalid_argument);

@@ -1,6 +1,7 @@
 #include <semantic_slam/PoseGraph.h>
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -46,8 +47,12 @@ Matrix6 derivativeAt(const Vector6& v) {
 
 using Poses = std::vector<Eigen::Isometry3d>;
 
+Eigen::Isometry3d T_a_b(const PoseEdge& edge, const Poses& poses) {
+  return edge.a == PoseEdge::kMap ? poses[edge.b] : poses[edge.a].inverse() * poses[edge.b];
+}
+
 Vector6 errorOf(const PoseEdge& edge, const Poses& poses) {
-  return vectorOf(edge.T_a_b.inverse() * poses[edge.a].inverse() * poses[edge.b]);
+  return vectorOf(edge.T_a_b.inverse() * T_a_b(edge, poses));
 }
 
 double costOf(const std::vector<PoseEdge>& edges, const Poses& poses, double doubt) {
@@ -59,14 +64,17 @@ double costOf(const std::vector<PoseEdge>& edges, const Poses& poses, double dou
   return cost;
 }
 
-/** The normal equations of all poses but the first; of H the lower triangle. */
+/** The normal equations of all poses from the first that moves on; of H the lower triangle. */
 struct Equations {
   double m_doubt;
+  std::size_t m_first;
   Eigen::SparseMatrix<double> H;
   Eigen::VectorXd b;
 
-  Equations(const std::vector<PoseEdge>& edges, const Poses& poses, double doubt)
-      : m_doubt(doubt), b(Eigen::VectorXd::Zero(6 * (static_cast<int>(poses.size()) - 1))) {
+  Equations(const std::vector<PoseEdge>& edges, const Poses& poses, std::size_t first, double doubt)
+      : m_doubt(doubt),
+        m_first(first),
+        b(Eigen::VectorXd::Zero(6 * static_cast<int>(poses.size() - first))) {
     for (const PoseEdge& edge : edges) add(edge, poses);
     H.resize(b.size(), b.size());
     H.setFromTriplets(m_entries.begin(), m_entries.end());
@@ -78,17 +86,18 @@ struct Equations {
     const double squared = e.dot(edge.information * e);
     const Matrix6 weight = edge.information * (edge.isDoubtful ? 1 / (1 + squared / m_doubt) : 1.0);
     const Matrix6 ofB = derivativeAt(e);
-    const Matrix6 ofA = -ofB * adjoint(poses[edge.b].inverse() * poses[edge.a]);
+    const Matrix6 ofA = -ofB * adjoint(T_a_b(edge, poses).inverse());
     addBlock(edge.a, edge.a, ofA.transpose() * weight * ofA);
     edge.a > edge.b ? addBlock(edge.a, edge.b, ofA.transpose() * weight * ofB)
                     : addBlock(edge.b, edge.a, ofB.transpose() * weight * ofA);
     addBlock(edge.b, edge.b, ofB.transpose() * weight * ofB);
-    if (edge.a > 0) b.segment<6>(6 * rowOf(edge.a)) -= ofA.transpose() * weight * e;
-    if (edge.b > 0) b.segment<6>(6 * rowOf(edge.b)) -= ofB.transpose() * weight * e;
+    if (moves(edge.a)) b.segment<6>(6 * rowOf(edge.a)) -= ofA.transpose() * weight * e;
+    if (moves(edge.b)) b.segment<6>(6 * rowOf(edge.b)) -= ofB.transpose() * weight * e;
   }
-  static int rowOf(std::size_t pose) { return static_cast<int>(pose) - 1; }
+  bool moves(std::size_t pose) const { return pose >= m_first && pose != PoseEdge::kMap; }
+  int rowOf(std::size_t pose) const { return static_cast<int>(pose - m_first); }
   void addBlock(std::size_t i, std::size_t j, const Matrix6& block) {
-    if (i == 0 || j == 0) return;
+    if (!moves(i) || !moves(j)) return;
     for (int r = 0; r < 6; ++r)
       for (int c = 0; c < 6; ++c)
         m_entries.emplace_back(6 * rowOf(i) + r, 6 * rowOf(j) + c, block(r, c));
@@ -98,18 +107,21 @@ struct Equations {
 
 /** To the minimum for a doubt, by Gauss-Newton with Levenberg's damping. */
 void descend(Poses& poses, const std::vector<PoseEdge>& edges, double doubt) {
-  if (poses.size() < 2) return;
+  const bool isInMap = std::any_of(edges.begin(), edges.end(),
+                                   [](const PoseEdge& e) { return e.a == PoseEdge::kMap; });
+  const std::size_t first = isInMap ? 0 : 1;
+  if (poses.size() <= first) return;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
   double cost = costOf(edges, poses, doubt), damping = 1e-6;
   for (int i = 0; i < kMostSteps && damping < 1e12; ++i) {
-    Equations equations(edges, poses, doubt);
+    Equations equations(edges, poses, first, doubt);
     for (int k = 0; k < equations.H.rows(); ++k) equations.H.coeffRef(k, k) *= 1 + damping;
     if (i == 0) solver.analyzePattern(equations.H);
     solver.factorize(equations.H);
     const Eigen::VectorXd step = solver.solve(equations.b);
     Poses next = poses;
-    for (std::size_t p = 1; p < poses.size(); ++p)
-      next[p] = rigid(poses[p] * poseOf(step.segment<6>(6 * (static_cast<int>(p) - 1))));
+    for (std::size_t p = first; p < poses.size(); ++p)
+      next[p] = rigid(poses[p] * poseOf(step.segment<6>(6 * static_cast<int>(p - first))));
     const double nextCost = costOf(edges, next, doubt);
     if (solver.info() != Eigen::Success || !(nextCost <= cost)) {
       damping = std::max(1e-6, damping * 10);
@@ -162,7 +174,8 @@ double squaredError(const PoseEdge& edge, const Poses& poses) {
 void optimize(Poses& poses, const std::vector<PoseEdge>& edges) {
   double doubt = kDoubt;
   for (const PoseEdge& edge : edges) {
-    if (edge.a >= poses.size() || edge.b >= poses.size() || edge.a == edge.b)
+    if ((edge.a >= poses.size() && edge.a != PoseEdge::kMap) || edge.b >= poses.size() ||
+        edge.a == edge.b)
       throw std::invalid_argument("pose graph: an edge of pose " + std::to_string(edge.a) +
                                   " and pose " + std::to_string(edge.b) + ", of " +
                                   std::to_string(poses.size()));

@@ -76,11 +76,15 @@ class SlamEngine {
   /** Points of some keyframes in the frame of one of them. */
   Seen pointsOf(std::size_t first, std::size_t last, std::size_t frame) const;
   std::optional<Registration> findInReference(const Seen& seen, const Pose& T_map_guess);
+  /** That a keyframe was found in the reference. */
+  PoseEdge lookOf(std::size_t keyframe, const Registration& found) const;
   bool followReference();
   bool fits(const Registration& r) const;
   /** Takes an edge of the newest keyframe, and those before it that say the same of where the robot
    * is; one alone has to wait. \return whether poses moved */
   bool confirm(std::vector<PoseEdge>& pending, const PoseEdge& edge);
+  /** Where an edge has its second pose. */
+  Pose T_map_b(const PoseEdge& edge) const;
   bool agree(const PoseEdge& before, const PoseEdge& edge) const;
   /** \param added edges at the end that are new \return whether they are kept */
   bool optimizeWith(std::size_t added);

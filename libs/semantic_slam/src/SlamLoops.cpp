@@ -146,12 +146,16 @@ bool SlamEngine::fits(const Registration& r) const {
   return r.coveredShare >= kCovered && r.matchedShare >= m_scale.leastMatched;
 }
 
+Eigen::Isometry3d SlamEngine::T_map_b(const PoseEdge& edge) const {
+  return edge.a == PoseEdge::kMap ? edge.T_a_b : m_poses[edge.a] * edge.T_a_b;
+}
+
 bool SlamEngine::agree(const PoseEdge& before, const PoseEdge& edge) const {
   if (before.b == edge.b) return false;
   const double way = m_keyframes[edge.b].way - m_keyframes[before.b].way;
   const Pose T_step = m_poses[before.b].inverse() * m_poses[edge.b];
-  const Pose T_map_by_before = m_poses[before.a] * before.T_a_b * T_step;
-  const Vector6 off = vectorOf(T_map_by_before.inverse() * m_poses[edge.a] * edge.T_a_b);
+  const Pose T_map_by_before = T_map_b(before) * T_step;
+  const Vector6 off = vectorOf(T_map_by_before.inverse() * T_map_b(edge));
   return off.head<3>().norm() < kAgree + kAgreeWay * way &&
          off.tail<3>().norm() < kAgreeAngle + kAgreeAngleWay * way;
 }
@@ -180,8 +184,7 @@ bool SlamEngine::optimizeWith(std::size_t added) {
   bool areNear = true;
   for (std::size_t e = m_edges.size() - added; e < m_edges.size(); ++e) {
     const PoseEdge& edge = m_edges[e];
-    const Vector6 off =
-        vectorOf(edge.T_a_b.inverse() * m_poses[edge.a].inverse() * m_poses[edge.b]);
+    const Vector6 off = vectorOf(T_map_b(edge).inverse() * m_poses[edge.b]);
     areNear &= off.head<3>().norm() < kNear && off.tail<3>().norm() < kNearAngle;
   }
   m_isOptimized = false;
@@ -218,6 +221,14 @@ std::optional<Registration> SlamEngine::findInReference(const Seen& seen, const 
   return isFound ? std::make_optional(r) : std::nullopt;
 }
 
+PoseEdge SlamEngine::lookOf(std::size_t keyframe, const Registration& found) const {
+  const Matrix6 own =
+      0.5 * found.information + levelOf(m_keyframes[keyframe].seen.T_odometry_robot);
+  // Both errors together.
+  return {PoseEdge::kMap, keyframe, found.T_submap_scan,
+          m_mostOfReference * (m_mostOfReference + own).inverse() * own, true};
+}
+
 bool SlamEngine::followReference() {
   const std::size_t newest = m_keyframes.size() - 1;
   constexpr double kEvery = 3;  // m
@@ -225,12 +236,8 @@ bool SlamEngine::followReference() {
   m_lastReferenced = m_keyframes[newest].way;
   const auto found = findInReference(m_keyframes[newest].seen, m_poses[newest]);
   if (!found) return false;
-  const Matrix6 own = 0.5 * found->information;
-  // Both errors together. The first pose stays, so an edge from it says where the other is.
-  const Matrix6 information = m_mostOfReference * (m_mostOfReference + own).inverse() * own;
-  const Pose T_first_robot = m_poses.front().inverse() * found->T_submap_scan;
   const std::size_t before = m_edges.size();
-  const bool moved = confirm(m_pendingReferences, {0, newest, T_first_robot, information, true});
+  const bool moved = confirm(m_pendingReferences, lookOf(newest, *found));
   m_report.referenced += m_edges.size() - before;
   return moved;
 }

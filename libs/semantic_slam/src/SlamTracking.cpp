@@ -143,6 +143,7 @@ Slam::Added SlamEngine::beginFirst(Seen seen) {
   const Pose T_map_robot = found ? found->T_submap_scan : seen.T_odometry_robot;
   m_T_odometry_last = seen.T_odometry_robot;
   begin(std::move(seen), T_map_robot, Pose::Identity());
+  if (found) m_edges.push_back(lookOf(0, *found));
   return {0, Pose::Identity(), true, false};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace semantic_slam {
@@ -10,6 +11,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 /** What was measured of two poses: b, seen from a. */
 struct PoseEdge {
+  /** As a: the frame of the poses. */
+  static constexpr std::size_t kMap = SIZE_MAX;
   std::size_t a, b;
   Eigen::Isometry3d T_a_b;
   /** Inverse covariance of (translation, meters; rotation, radians), frame of b. */
@@ -35,7 +38,8 @@ double squaredError(const PoseEdge& edge, const std::vector<Eigen::Isometry3d>& 
 /** Moves poses so that sum_e rho(e^T information e) becomes least, with e = vectorOf(T_a_b^-1
  * T_a^-1 T_b) and rho the square, or for doubtful edges Cauchy's log(1 + x / c^2) c^2. Gauss-Newton
  * with Levenberg's damping (Grisetti et al., "A Tutorial on Graph-Based SLAM"). The first pose
- * stays. \throw std::invalid_argument an edge of poses that are not there. */
+ * stays, but for edges from PoseEdge::kMap. \throw std::invalid_argument an edge of poses that are
+ * not there. */
 void optimize(std::vector<Eigen::Isometry3d>& poses, const std::vector<PoseEdge>& edges);
 
 }  // namespace semantic_slam

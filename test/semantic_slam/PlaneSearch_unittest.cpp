@@ -1,0 +1,111 @@
+// Branch and bound finds what trying everything finds.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "PlaneSearch.h"
+#include "SensorScale.h"
+
+using namespace semantic_slam;
+
+namespace {
+
+constexpr double kCell = 0.1, kStep = 1.5 * kDegree;
+
+class Uniform {
+ public:
+  explicit Uniform(unsigned seed) : m_random(seed) {}
+  double operator()(double low, double high) {
+    return low + (high - low) * static_cast<double>(m_random()) / 4294967296.0;
+  }
+
+ private:
+  std::mt19937 m_random;
+};
+
+/** A room's two walls, and things in it. */
+PlanePoints room(Uniform& uniform, int n) {
+  PlanePoints points;
+  for (int i = 0; i < n; ++i) {
+    const double along = uniform(-3, 3);
+    points.emplace_back(i % 3 == 0   ? Eigen::Vector2d(along, 2)
+                        : i % 3 == 1 ? Eigen::Vector2d(-3, along)
+                                     : Eigen::Vector2d(uniform(-3, 3), uniform(-3, 3)));
+  }
+  return points;
+}
+
+/** Scores by definition: for each point of the scan, how near the nearest of the others is. */
+class Oracle {
+ public:
+  Oracle(const PlanePoints& others, const PlanePoints& scan, const Eigen::Vector3d& guess)
+      : m_scan(scan), m_guess(guess), m_corner(others.front()) {
+    for (const Eigen::Vector2d& p : others) m_corner = m_corner.cwiseMin(p);
+    m_corner.array() -= 4 * kCell;
+    for (const Eigen::Vector2d& p : others) m_cells.push_back(cellOf(p));
+  }
+  int scoreOf(int angle, int x, int y) const {
+    const Eigen::Rotation2Dd turn(m_guess[2] + angle * kStep);
+    int score = 0;
+    for (const Eigen::Vector2d& p : m_scan) {
+      const Eigen::Array2i cell = cellOf(turn * p + m_guess.head<2>()) + Eigen::Array2i(x, y);
+      int best = 0;
+      for (const Eigen::Array2i& other : m_cells) {
+        const Eigen::Array2i off = cell - other;
+        if (off.abs().maxCoeff() > 3) continue;
+        const double squared = off.matrix().squaredNorm();
+        best = std::max(best, static_cast<int>(std::lround(255 * std::exp(-squared / 2 / 1.44))));
+      }
+      score += best;
+    }
+    return score;
+  }
+  int bestWithin(int radius, int angles) const {
+    int best = 0;
+    for (int a = -angles; a <= angles; ++a)
+      for (int x = -radius; x <= radius; ++x)
+        for (int y = -radius; y <= radius; ++y) best = std::max(best, scoreOf(a, x, y));
+    return best;
+  }
+
+ private:
+  Eigen::Array2i cellOf(const Eigen::Vector2d& p) const {
+    return ((p - m_corner).array() / kCell).floor().cast<int>();
+  }
+  PlanePoints m_scan;
+  Eigen::Vector3d m_guess;
+  Eigen::Vector2d m_corner;
+  std::vector<Eigen::Array2i> m_cells;
+};
+
+}  // namespace
+
+TEST(PlaneSearch, findsNoLessThanTryingEverything) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Uniform uniform(seed);
+    const PlanePoints others = room(uniform, 40);
+    PlanePoints scan;
+    const Eigen::Vector3d truth(uniform(-1, 1), uniform(-1, 1), uniform(-0.2, 0.2));
+    for (const Eigen::Vector2d& p : others)
+      if (uniform(0, 1) < 0.3)
+        scan.push_back(Eigen::Rotation2Dd(-truth[2]) * (p - truth.head<2>()));
+    const Eigen::Vector3d guess(uniform(-1, 1), uniform(-1, 1), uniform(-0.1, 0.1));
+    const int radius = 4 + static_cast<int>(seed % 9), angles = 2 + static_cast<int>(seed % 3);
+    const Oracle oracle(others, scan, guess);
+    const int best = oracle.bestWithin(radius, angles);
+    const PlaneSearch search(others, kCell);
+    const PlaneSearch::Window window{(radius - 0.5) * kCell, (angles - 0.5) * kStep};
+    const double share = best / (255. * static_cast<double>(scan.size()));
+    const auto found = search.find(scan, guess, window, share - 0.01);
+    ASSERT_TRUE(found) << seed;
+    const Eigen::Vector3d off = *found - guess;
+    EXPECT_EQ(oracle.scoreOf(static_cast<int>(std::lround(off[2] / kStep)),
+                             static_cast<int>(std::lround(off[0] / kCell)),
+                             static_cast<int>(std::lround(off[1] / kCell))),
+              best)
+        << seed;
+    EXPECT_FALSE(search.find(scan, guess, window, share + 0.01)) << seed;
+  }
+}
