@@ -28,7 +28,7 @@ class Outputs {
    * there and was not allowed to be written over. */
   void check(const std::vector<std::filesystem::path>& files,
              const std::vector<std::filesystem::path>& more = {}) const;
-  /** The same of these files of a folder, if there is to be one. */
+  /** Checks these files of a folder likewise, if there is to be one. */
   void checkFolder(const std::filesystem::path& folder, const std::vector<std::string>& names,
                    const std::vector<std::filesystem::path>& more = {}) const;
 

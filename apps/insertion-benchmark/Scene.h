@@ -19,13 +19,9 @@ struct Scene {
   std::size_t numPoints() const;
 };
 
-/** Reads a scene in the packed format (see README.md). \param maxScans 0: all
+/** The scans of a rawlog. \param classes a class table (YAML) \param maxScans 0: all
  * \throw std::runtime_error naming the file and what is wrong. */
-Scene readSceneFile(const std::filesystem::path& file, std::size_t maxScans);
-
-/** The scans of a rawlog. \param classes a class table (YAML)
- * \throw std::runtime_error */
-Scene readRawlog(const std::filesystem::path& file, const std::filesystem::path& classes,
-                 std::size_t maxScans);
+Scene sceneOf(const std::filesystem::path& file, const std::filesystem::path& classes,
+              std::size_t maxScans);
 
 }  // namespace insertion_benchmark

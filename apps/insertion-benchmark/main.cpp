@@ -30,7 +30,7 @@ std::vector<Entry> allEntries() {
 
 struct Cli {
   CLI::App app{"Measures the insertion of labeled scans, next to other maps, in one run."};
-  std::filesystem::path sceneFile, rawlog, classes;
+  std::filesystem::path rawlog, classes;
   Settings settings;
   std::size_t scans = 0;
   int repeats = 3;
@@ -38,10 +38,8 @@ struct Cli {
   bool json = false;
 
   Cli() {
-    auto* const file = app.add_option("SCENE", sceneFile, "Scene file (see README.md)");
-    auto* const log = app.add_option("--rawlog", rawlog, "Labeled rawlog instead of a scene file");
-    file->excludes(log);
-    log->needs(app.add_option("--classes", classes, "Class table of the rawlog (YAML)"));
+    app.add_option("RAWLOG", rawlog, "With labels, and with the robot's poses")->required();
+    app.add_option("--classes", classes, "Class table (YAML)")->required();
     app.add_option("--resolution", settings.resolution, "Edge of a voxel, m")
         ->check(isNumber(strict_files::above(0)))
         ->capture_default_str();
@@ -85,15 +83,10 @@ void clearLine() {
 }
 
 int run(const Cli& cli) {
-  if (cli.sceneFile.empty() && cli.rawlog.empty()) throw CLI::RequiredError("SCENE or --rawlog");
-  if (!cli.rawlog.empty() && cli.classes.empty())
-    throw CLI::RequiredError("--classes (with --rawlog)");
-  const std::filesystem::path& file = cli.rawlog.empty() ? cli.sceneFile : cli.rawlog;
-  const Scene scene = cli.rawlog.empty() ? readSceneFile(file, cli.scans)
-                                         : readRawlog(file, cli.classes, cli.scans);
-  if (scene.scans.empty()) throw std::runtime_error(file.string() + ": no scans");
+  const Scene scene = sceneOf(cli.rawlog, cli.classes, cli.scans);
+  if (scene.scans.empty()) throw std::runtime_error(cli.rawlog.string() + ": no scans");
 
-  Conditions conditions{file.filename().string(),
+  Conditions conditions{cli.rawlog.filename().string(),
                         scene.scans.size(),
                         scene.numPoints(),
                         cli.settings,

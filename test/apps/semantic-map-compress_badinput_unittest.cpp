@@ -70,14 +70,11 @@ TEST_F(SemanticMapCompress, refusesBadSpaceOptions) {
   };
   refuse("unknown: none", {"weights.yaml:4", "own_class, uniform, prior", "'none'"});
   refuse("frame: paid", {"free, charged", "'paid'"});
-  refuse("unknown_weight: 1.5", {"unknown_weight", "0 to 1"});
-  refuse("regions: [{weight: 2}]", {"box, sphere, corridor"});
-  refuse("regions: [{sphere: [0, 0, 0], weight: 2}]", {"radius"});
-  refuse("regions: [{sphere: [0, 0, 0], radius: -1, weight: 2}]", {"radius"});
-  refuse("regions: [{sphere: [0, 0], radius: 1, weight: 2}]", {"[x, y, z]"});
-  refuse("regions: [{box: [[0, 0, 0], [1, 1, -1]], weight: 2}]", {"lowest corner first"});
-  refuse("regions: [{box: [[0, 0, 0], [1, 1, 1]]}]", {"'weight'"});
-  refuse("regions: [{box: [[0, 0, 0], [1, 1, 1]], weight: -1}]", {"weight of a region"});
+  refuse("regions: [cube 2]", {"weights.yaml:4", "box, sphere or corridor"});
+  refuse("regions: [sphere 0 0 0 2]", {"'sphere 0 0 0 2'", "the numbers of this shape"});
+  refuse("regions: [sphere 0 0 0 -1 2]", {"radius"});
+  refuse("regions: [box 0 0 0 1 1 -1 2]", {"lowest corner first"});
+  refuse("regions: [box 0 0 0 1 1 1 -1]", {"weight of a region"});
 }
 
 TEST_F(SemanticMapCompress, refusesSizesThatNoTreeHas) {

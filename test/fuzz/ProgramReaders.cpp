@@ -8,7 +8,6 @@
 #include "Readers.h"
 #include "dataset2rawlog/Conversion.h"
 #include "dataset2rawlog/TumFiles.h"
-#include "insertion-benchmark/Scene.h"
 #include "planning-study/Join.h"
 #include "poses/Poses.h"
 #include "rawlog2semantic-map/Config.h"
@@ -96,7 +95,6 @@ void parseCommandLine(const std::string& bytes) {
 }  // namespace
 
 std::vector<Reader> programReaders() {
-  const auto scene = [](const fs::path& f) { insertion_benchmark::readSceneFile(f, 0); };
   const auto poses = [](const fs::path& f) { semantic_map_merge::readMapPoses(f, {"a", "b"}); };
   return {
       {"pcd", fromFolder({"a.pcd"}, readPcd), {}},
@@ -106,7 +104,6 @@ std::vector<Reader> programReaders() {
                   readKitti),
        {}},
       {"tum", fromFolder({"camera.ini", "groundtruth.txt", "depth.txt", "depth.pgm"}, readTum), {}},
-      {"scene", fromFile("", scene), {}},
       {"map-poses", fromFile("", poses), {}},
       {"study", fromFolder({"study.json", "study.csv"}, join), {}},
       {"queries", askMap, {}},

@@ -53,19 +53,6 @@ TEST(Decimation, keepsTheGeometryOfThePixelItTook) {
   }
 }
 
-TEST(Decimation, ofMrptItselfDoesBleed) {  // why there is one of our own
-  const DepthCamera camera;
-  auto obs = poleBeforeWall(camera);
-  obs->points3D_idxs_x.clear();
-  mrpt::obs::T3DPointsProjectionParams params;
-  params.decimation = 4;
-  obs->unprojectInto(*obs, params);
-  std::size_t wrong = 0;
-  for (std::size_t i = 0; i < obs->points3D_x.size(); ++i)
-    wrong += (obs->points3D_x[i] < 2) != onPole(obs->points3D_idxs_y[i], obs->points3D_idxs_x[i]);
-  EXPECT_GT(wrong, 0u);
-}
-
 namespace {
 
 ScanConverterOptions withoutFlying() {

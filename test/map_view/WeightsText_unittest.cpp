@@ -54,7 +54,6 @@ TEST(WeightsText, IsReadAgainToTheLastBit) {
 TEST(WeightsText, HasHowSpaceCounts) {
   AbstractionOptions space;
   space.unknown = AbstractionOptions::Unknown::Prior;
-  space.unknownWeight = 0.3;
   space.blockSize = 0.1 + 0.7;
   space.frame = AbstractionOptions::Frame::Charged;
   space.prior = {0.4, 0.3, 0.2, 0.1};
@@ -65,7 +64,6 @@ TEST(WeightsText, HasHowSpaceCounts) {
   space.regions = {box, sphere, corridor};
   const AbstractionOptions read = readAgain(someSolution(), space).space;
   EXPECT_EQ(read.unknown, space.unknown);
-  EXPECT_EQ(read.unknownWeight, space.unknownWeight);
   EXPECT_EQ(read.blockSize, space.blockSize);
   EXPECT_EQ(read.frame, space.frame);
   ASSERT_EQ(read.prior.size(), 4u);

@@ -66,11 +66,10 @@ TEST(Abstraction, agreesWithThePlainSearchOnTheSameTree) {
     for (const auto frame : {AbstractionOptions::Frame::Free, AbstractionOptions::Frame::Charged}) {
       AbstractionOptions options = someOptions(alpha);
       options.frame = frame;
-      options.unknownWeight = 0.5;
       SemanticOcTree map = mapOf(scansOfSmallPlace(3, 2000, kTreeClasses, 11), &options);
       const int blockDepth = 12;  // 3.2 m = 16 voxels
       const bool free = frame == AbstractionOptions::Frame::Free;
-      const OctreeAsTree plain(map, free ? blockDepth : 0, blockDepth, 0.5);
+      const OctreeAsTree plain(map, free ? blockDepth : 0, blockDepth);
       const auto oracle = reference::findOptimalTree(plain.forest, options.weights);
 
       const Abstraction abstraction(map);
@@ -269,7 +268,6 @@ TEST(Abstraction, refusesBadOptionsAndNamesThem) {
   EXPECT_PRED2(says, message([](O& o) { o.weights.terms[0].groups = {{kTreeClasses + 1}}; }), "7");
   EXPECT_PRED2(says, message([](O& o) { o.weights.terms[1].groups = {{1}}; }), "1");
   EXPECT_PRED2(says, message([](O& o) { o.blockSize = -2; }), "block_size");
-  EXPECT_PRED2(says, message([](O& o) { o.unknownWeight = 1.5; }), "unknown_weight");
   EXPECT_PRED2(says, message([](O& o) { o.prior = {0.5, 0.5}; }), "prior");
   EXPECT_PRED2(says, message([](O& o) {
                  o.regions = {{Region::Shape::Sphere, {}, {}, -1, 1}};

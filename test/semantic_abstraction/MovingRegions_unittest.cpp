@@ -82,7 +82,7 @@ TEST(MovingRegions, leaveTheTreeOfThePlainSearchWithTheDensityOfEachVoxel) {
     for (const int at : {2, 5, 8}) {
       Abstraction(map).setRegions(regionsOf(at));
       const int blockDepth = 12;  // 3.2 m
-      const OctreeAsTree plain(map, blockDepth, blockDepth, 1,
+      const OctreeAsTree plain(map, blockDepth, blockDepth,
                                [at](const Eigen::Vector3d& place) { return densityAt(place, at); });
       const std::set<LeafId> expected = plain.knownAmong(
           reference::findOptimalTree(plain.forest, optionsOf(at, alpha).weights).leaves());

@@ -29,15 +29,11 @@ class OctreeAsTree {
   reference::Forest forest;
   std::vector<Place> places;  ///< of the forest's nodes
 
-  /** \param rootDepth of the roots; 0: the whole map is one tree
-   * \param unknownWeight times its volume is what unknown space weighs below `blockDepth`; above it
-   * weighs nothing \param density of voxels, at their centers; none: 1 */
+  /** \param rootDepth of the roots; 0: the whole map is one tree \param blockDepth above it unknown
+   * space weighs nothing \param density of voxels, at their centers; none: 1 */
   OctreeAsTree(const semantic_octree::SemanticOcTree& map, int rootDepth, int blockDepth,
-               double unknownWeight = 1, Density density = {})
-      : m_map(map),
-        m_blockDepth(blockDepth),
-        m_unknownWeight(unknownWeight),
-        m_density(std::move(density)) {
+               Density density = {})
+      : m_map(map), m_blockDepth(blockDepth), m_density(std::move(density)) {
     if (map.root()) addBelow({map.root(), 0, {0, 0, 0}}, rootDepth);
   }
 
@@ -61,8 +57,7 @@ class OctreeAsTree {
     if (!place.node) {
       std::vector<double> unknown(m_map.numClasses() + 1, 0.0);
       unknown.push_back(1);  // a class of its own
-      forest.addMissing(parent, place.depth > m_blockDepth ? m_unknownWeight * volume(place) : 0,
-                        unknown);
+      forest.addMissing(parent, place.depth > m_blockDepth ? volume(place) : 0, unknown);
     } else if (place.node->isLeaf()) {
       std::vector<double> p = m_map.distribution(*place.node);
       p.push_back(0);
@@ -93,6 +88,5 @@ class OctreeAsTree {
 
   const semantic_octree::SemanticOcTree& m_map;
   int m_blockDepth;
-  double m_unknownWeight;
   Density m_density;
 };

@@ -35,7 +35,6 @@ AbstractionText someText() {
 void expectSame(const AbstractionOptions& a, const AbstractionOptions& b) {
   EXPECT_EQ(a.blockSize, b.blockSize);
   EXPECT_EQ(a.unknown, b.unknown);
-  EXPECT_EQ(a.unknownWeight, b.unknownWeight);
   EXPECT_EQ(a.frame, b.frame);
   EXPECT_EQ(a.prior, b.prior);
   EXPECT_EQ(a.weights.alpha, b.weights.alpha);
@@ -64,7 +63,6 @@ TEST(WeightsFile, linesOfTextAndYamlSayTheSame) {
   text.alpha = 0.03;
   text.blockSize = 1.6;
   text.unknown = AbstractionText::Unknown::Prior;
-  text.unknownWeight = 0.5;
   text.frame = AbstractionText::Frame::Charged;
   text.prior = "free_space: 0.4, wall: 0.4";
   text.regions = "box 0 0 -1 10 5 3 5; sphere 4 2 0 3 2; corridor 0 0 0 20 0 0 3 4";
@@ -72,15 +70,14 @@ TEST(WeightsFile, linesOfTextAndYamlSayTheSame) {
   expectSame(options,
              ofFile("relevant: {road: 1, soft: {classes: [tree, free_space], weight: 0.5}}\n"
                     "irrelevant: {wall: 0.25}\neverything: 0.1\nalpha: 0.03\n"
-                    "block_size: 1.6\nunknown: prior\nunknown_weight: 0.5\nframe: charged\n"
+                    "block_size: 1.6\nunknown: prior\nframe: charged\n"
                     "prior: {free_space: 0.4, wall: 0.4}\n"
                     "regions:\n"
-                    " - {box: [[0, 0, -1], [10, 5, 3]], weight: 5}\n"
-                    " - {sphere: [4, 2, 0], radius: 3, weight: 2}\n"
-                    " - {corridor: [[0, 0, 0], [20, 0, 0]], radius: 3, weight: 4}\n"));
+                    " - box 0 0 -1 10 5 3 5\n - sphere 4 2 0 3 2\n - corridor 0 0 0 20 0 0 3 4\n"));
   EXPECT_EQ(options.weights.terms[1].groups, (std::vector<std::vector<int>>{{0, 2}}));
   EXPECT_EQ(options.weights.terms[2].weight, -0.25);
   EXPECT_EQ(options.regions[2].radius, 3);
+  EXPECT_EQ(options.regions[2].text(), "corridor 0 0 0 20 0 0 3 4");
 }
 
 TEST(WeightsFile, classesWithoutAPriorShareTheRest) {

@@ -120,7 +120,7 @@ TEST(MapInsertion, aDepthImageLandsWhereItsCameraSawIt) {
     const CellState state = map.tree().query(10 - 0.08, 0.04, 2.53 - 2);
     EXPECT_EQ(state.status, Status::Occupied);
     EXPECT_EQ(state.likeliestClass, labeled ? 3 : kNoClass);
-    EXPECT_EQ(map.lastInsertion().labelsMissing, !labeled);
+    EXPECT_EQ(map.lastInsertion().conversion.labeled, labeled ? 1u : 0u);
     EXPECT_EQ(map.lastInsertion().conversion.invalid, 21u * 21u - 1u);
   }
 }
@@ -129,23 +129,6 @@ TEST(MapInsertion, withoutAPoseTheRobotIsAtTheOrigin) {
   CSemanticOctoMap map = quietMap();
   EXPECT_TRUE(map.insertObservation(labeledPoints({{1.05f, 0.05f, 0.05f}}, {1})));
   EXPECT_EQ(map.tree().query(1.05, 0.05, 0.05).status, Status::Occupied);
-}
-
-TEST(MapInsertion, labelsFromALabelerReplaceThoseOfTheObservation) {
-  struct AllRoad : labeled_cloud::ImageLabeler {
-    std::optional<labeled_cloud::LabelImage> label(const mrpt::obs::CObservation&) override {
-      labeled_cloud::LabelImage image;
-      image.rows = image.cols = 21;
-      image.classes.assign(21 * 21, 1);
-      return image;
-    }
-  };
-  CSemanticOctoMap map = quietMap();
-  EXPECT_TRUE(map.insertObservation(onePixel()));
-  map.setLabeler(std::make_shared<AllRoad>());
-  EXPECT_TRUE(map.insertObservation(onePixel()));
-  EXPECT_EQ(map.tree().query(2, 0.08, 0.04).likeliestClass, 1);
-  EXPECT_FALSE(map.lastInsertion().labelsMissing);
 }
 
 TEST(MapInsertion, arrivalsAndClearingAreAnnouncedToObservers) {

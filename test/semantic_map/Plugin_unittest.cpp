@@ -1,10 +1,5 @@
 #include <gtest/gtest.h>
 #include <map_folders/MapFolder.h>
-#include <mrpt/maps/CSimpleMap.h>
-#include <mrpt/poses/CPose3DPDFGaussian.h>
-#include <mrpt_compat/Release.h>
-
-#include <cstdlib>
 
 #include "RunProgram.h"
 #include "ShellCommand.h"
@@ -26,35 +21,6 @@ TEST(Plugin, loadsIntoAProgramThatDoesNotKnowIt) {
 TEST(Plugin, withoutItTheMapIsUnknown) {
   const std::string output = runCommand(PLUGIN_HOST).output;
   EXPECT_FALSE(contains(output, "is filled")) << output;
-}
-
-TEST(Plugin, observations2mapMakesAMapOfASimpleMap) {
-  if (MSO_MRPT_AT_LEAST(3, 0, 0)) GTEST_SKIP() << "Debian's programs are built with MRPT 2";
-  if (std::system("command -v observations2map >/dev/null") != 0)
-    GTEST_SKIP() << "needs observations2map (Debian package mrpt-apps)";
-  const TemporaryFolder folder;
-  mrpt::maps::CSimpleMap observations;
-  const auto frame = mrpt::obs::CSensoryFrame::Create();
-  frame->insert(
-      labeled_cloud::CObservationLabeledCloud::Create(labeledPoints({{3.05f, 0.05f, 0.05f}}, {1})));
-  const mrpt::poses::CPose3D T_map_robot(1, 2, 0, 0, 0, 0);
-  observations.insert(mrpt::poses::CPose3DPDFGaussian::Create(T_map_robot), frame);
-  ASSERT_TRUE(observations.saveToFile((folder / "in.simplemap").string()));
-  const auto ini = folder.write("map.ini",
-                                "[Maps]\nsemanticOctoMap_count = 1\n"
-                                "[Maps_semanticOctoMap_00_creationOpts]\nresolution = 0.2\n");
-
-  const std::string output = runCommand("LD_PRELOAD=" + kPlugin + " observations2map " +
-                                        ini.string() + " " + (folder / "in.simplemap").string() +
-                                        " " + (folder / "out").string() + " -s Maps </dev/null")
-                                 .output;
-  std::string found;
-  for (const auto& file : std::filesystem::directory_iterator(folder.path()))
-    if (file.path().extension() == ".semantic") found = file.path().string();
-  ASSERT_FALSE(found.empty()) << output;
-  const auto tree = semantic_octree::loadMap(found);
-  EXPECT_EQ(tree.getResolution(), 0.2);
-  EXPECT_EQ(tree.query(4.05, 2.05, 0.05).status, semantic_octree::CellState::Status::Occupied);
 }
 
 TEST(Plugin, mapsInAFolderWithinItsBudgetWhatItMapsInMemory) {

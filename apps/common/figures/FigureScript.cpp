@@ -4,8 +4,9 @@
 
 namespace figures {
 
-// Those of M. Okabe and K. Ito ("Color Universal Design", 2008), which the color-blind tell apart,
-// in an order in which the first five differ most for them; used again from the first one on.
+// The colors of M. Okabe and K. Ito ("Color Universal Design", 2008), which the color-blind tell
+// apart, in an order in which the first five differ most for them; used again from the first one
+// on.
 const char* colorOf(std::size_t solution) {
   static const std::array<const char*, 8> colors = {"#0072b2", "#e69f00", "#009e73", "#000000",
                                                     "#56b4e9", "#d55e00", "#cc79a7", "#f0e442"};

@@ -16,7 +16,7 @@ struct Sum {
   int numClasses() const { return filter.numClasses(); }
 };
 
-/** The same cube in all maps; a leaf stands for all that is below it, null is unknown. */
+/** A cube in all maps: a leaf stands for all that is below it, null is unknown. */
 class MergeCursor {
  public:
   MergeCursor(const Sum& sum, std::vector<Node> nodes) : m_sum(sum), m_nodes(std::move(nodes)) {}
@@ -115,7 +115,7 @@ void checkAlike(const std::vector<const SemanticOcTree*>& maps) {
   }
 }
 
-/** Of the time of the newest. */
+/** The sum's clock is that of the newest map. */
 SemanticOcTree emptySumOf(const std::vector<const SemanticOcTree*>& maps) {
   const auto isEarlier = [](const auto* a, const auto* b) { return a->clock() < b->clock(); };
   SemanticOcTree sum = emptyLike(**std::max_element(maps.begin(), maps.end(), isEarlier));

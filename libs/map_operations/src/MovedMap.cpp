@@ -68,7 +68,7 @@ class MoveCursor {
     return false;
   }
 
-  /** Of the cube in the old map; of a voxel, its center. */
+  /** Bounds of the cube in the old map; a voxel counts as its center. */
   Bounds bounds() const {
     const double half = m_cell.depth == kTreeDepth ? 0 : m_cell.edge() / 2.0;
     const Eigen::Vector3d center =

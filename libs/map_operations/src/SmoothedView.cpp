@@ -44,8 +44,6 @@ void SmoothingOptions::describe(strict_files::OptionList& list) {
   list.add("neighbor_weight", neighborWeight, "", strict_files::between(0, 1),
            "what a voxel across a face tells about a voxel's class, beside 1 for itself; 0: "
            "nothing. 0.4 sees through 30 % of wrong labels, less keeps smaller things");
-  list.add("fill_gaps", fillGaps, "",
-           "voxels in which no label was seen have the class of those around them");
 }
 
 void SmoothingOptions::validate() const { strict_files::checkOptions(*this, "SmoothingOptions"); }
@@ -103,7 +101,7 @@ std::vector<double> SmoothedView::logClasses(const octomap::OcTreeKey& key) cons
   const Eigen::Array3i voxel(key[0], key[1], key[2]);
   const bool own = add(voxel, 1, logs);
   double ofOthers = 0;
-  if (m_options.neighborWeight > 0 && (own || m_options.fillGaps)) {
+  if (m_options.neighborWeight > 0) {
     const auto begin = neighbors().begin(), end = own ? begin + kFaces : neighbors().end();
     for (auto n = begin; n != end; ++n)
       if (const double weight = m_options.neighborWeight * n->share;

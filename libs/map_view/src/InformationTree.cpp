@@ -160,8 +160,8 @@ std::vector<InformationTree::Balance> InformationTree::balancesAround(const Eige
                                                                       double alpha) const {
   const std::vector<std::size_t> around = chargedAround(key);
   if (around.empty()) return {};
-  // Of the largest node and all below, children before parents, p(n) times what their children's
-  // G-values sum up to.
+  // What the children's G-values sum up to, times p(n), for the largest node and all below it,
+  // children before parents.
   const std::size_t first = around.front();
   const auto end =
       std::lower_bound(m_charged.begin(), m_charged.end(), m_end[std::size_t(m_charged[first])]);

@@ -77,28 +77,10 @@ class Writer {
     m_out << YAML::EndMap;
   }
 
-  void addPoint(const Eigen::Vector3d& p) {
-    m_out << YAML::Flow << YAML::BeginSeq << textOf(p.x()) << textOf(p.y()) << textOf(p.z())
-          << YAML::EndSeq;
-  }
-
   void addRegions(const std::vector<Region>& regions) {
     if (regions.empty()) return;
     m_out << YAML::Key << "regions" << YAML::Value << YAML::BeginSeq;
-    for (const Region& region : regions) {
-      const bool isSphere = region.shape == Region::Shape::Sphere;
-      m_out << YAML::BeginMap << YAML::Key
-            << strict_files::nameIn(choicesOf(region.shape), region.shape) << YAML::Value;
-      if (!isSphere) m_out << YAML::Flow << YAML::BeginSeq;
-      addPoint(region.a);
-      if (!isSphere) {
-        addPoint(region.b);
-        m_out << YAML::EndSeq;
-      }
-      if (region.shape != Region::Shape::Box) pair("radius", textOf(region.radius));
-      pair("weight", textOf(region.weight));
-      m_out << YAML::EndMap;
-    }
+    for (const Region& region : regions) m_out << region.text();
     m_out << YAML::EndSeq;
   }
 

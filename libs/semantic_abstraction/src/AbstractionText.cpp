@@ -1,5 +1,4 @@
 #include <semantic_abstraction/AbstractionOptions.h>
-#include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
 #include <cmath>
@@ -60,25 +59,6 @@ NamedNumbers numbersIn(const std::string& option, const std::string& text) {
   return numbers;
 }
 
-Region regionIn(const std::string& text) {
-  std::istringstream in(text);
-  const strict_files::ClassicNumbers classic(in);
-  std::string shape, rest;
-  Region region;
-  in >> shape;
-  bool known = false;
-  for (const auto& [name, value] : choicesOf(region.shape))
-    if (shape == name) region.shape = value, known = true;
-  if (!known) refuse("regions", text, "box, sphere or corridor first");
-  in >> region.a.x() >> region.a.y() >> region.a.z();
-  if (region.shape != Region::Shape::Sphere) in >> region.b.x() >> region.b.y() >> region.b.z();
-  if (region.shape != Region::Shape::Box) in >> region.radius;
-  in >> region.weight;
-  if (!in || in >> rest) refuse("regions", text, "the numbers of this shape and a weight");
-  named("regions: '" + text + "'", [&] { region.validate(); });
-  return region;
-}
-
 }  // namespace
 
 void AbstractionText::describe(strict_files::OptionList& list) {
@@ -118,7 +98,8 @@ AbstractionOptions AbstractionText::forClasses(const ClassTable& classes) const 
         tree_abstraction::wholeClassVariable("everything", everything, classes.size()));
   o.weights.alpha = alpha;
   o.prior = named("prior", [&] { return terms.prior(numbersIn("prior", prior)); });
-  for (const std::string& text : split(regions, ';')) o.regions.push_back(regionIn(text));
+  for (const std::string& text : split(regions, ';'))
+    o.regions.push_back(named("regions", [&] { return Region::ofText(text); }));
   o.validate(classes.size());
   return o;
 }
@@ -128,7 +109,8 @@ void AbstractionText::validate() const {
   numbersIn("relevant", relevant);
   numbersIn("irrelevant", irrelevant);
   numbersIn("prior", prior);
-  for (const std::string& text : split(regions, ';')) regionIn(text);
+  for (const std::string& text : split(regions, ';'))
+    named("regions", [&] { return Region::ofText(text); });
 }
 
 }  // namespace semantic_octree

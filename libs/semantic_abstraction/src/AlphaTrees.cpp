@@ -59,7 +59,7 @@ AlphaTrees::AlphaTrees(const Abstraction& abstraction)
         return roots;
       }) {}
 
-/** Those that agree but for rounding come in together. */
+/** Bins that agree but for rounding come in together. */
 void AlphaTrees::mergeTies() {
   std::vector<Bin> merged;
   for (const Bin& bin : m_bins) {

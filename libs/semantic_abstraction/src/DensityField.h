@@ -14,7 +14,7 @@ class DensityField {
   DensityField(std::vector<Region> regions, double resolution);
 
   double mean(const Cell& cell) const { return m_regions.empty() ? 1.0 : meanInRegions(cell); }
-  /** That of all of the cell, unless a border between densities may cross it. */
+  /** The density of all of the cell, unless a border between densities may cross it. */
   std::optional<double> constantIn(const Cell& cell) const;
 
  private:
@@ -30,7 +30,7 @@ class DensityField {
 /** What becomes of the density when regions move. */
 class DensityChange {
  public:
-  /** Of maps of one resolution; both fields must outlive this. */
+  /** Compares fields of maps of one resolution, which must outlive this. */
   DensityChange(const DensityField& before, const DensityField& now);
 
   /** Whether there is none anywhere in a cell, as far as can be told without going to its voxels:

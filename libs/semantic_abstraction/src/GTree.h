@@ -66,22 +66,19 @@ class GTree final : public NodeObserver {
     return depth < m_blockDepth && m_options.frame == AbstractionOptions::Frame::Free;
   }
 
-  /** Weight of unknown space at a depth relative to known space. */
-  double missingDensity(int depth) const {
-    return depth > m_blockDepth ? m_options.unknownWeight : 0.0;
-  }
-  /** That of a node whose eight children weigh the same, known or not; none if a border
+  /** Whether unknown space of a depth counts as known space does. Above the blocks, where most of
+   * it is huge, it does not. */
+  bool unknownCounts(int depth) const { return depth > m_blockDepth; }
+  /** The density of a node whose eight children weigh the same, known or not; none if a border
    * between densities may cross it. */
   std::optional<double> equalDensity(const Cell& cell) const {
-    if (missingDensity(cell.depth + 1) != 1.0) return {};
+    if (!unknownCounts(cell.depth + 1)) return {};
     return m_density.constantIn(cell);
   }
   const DensityField& density() const { return m_density; }
-  /** Of a cell without inner nodes. Above the blocks most unknown ones are huge, and count nothing.
-   */
+  /** The share of a cell without inner nodes. */
   double densityOf(bool isKnown, const Cell& cell) const {
-    const double share = isKnown ? 1.0 : missingDensity(cell.depth);
-    return share == 0 ? 0.0 : share * m_density.mean(cell);
+    return isKnown || unknownCounts(cell.depth) ? m_density.mean(cell) : 0.0;
   }
 
   /** New weights of the same terms, and alpha. What is kept of nodes is then out of date. */
@@ -104,7 +101,7 @@ class GTree final : public NodeObserver {
     void inspect(const NodeStore& store, const Slot& inner, const Cell& cell, const F& f);
 
    private:
-    /** Of eight children. */
+    /** What a node needs of its eight children. */
     struct Children {
       const double* rows[8];
       double gValues[8] = {}, densities[8];
@@ -132,8 +129,8 @@ class GTree final : public NodeObserver {
     const GTree& m_gTree;
     ValueRows m_valueRows;  ///< of leaves without a class record
     RowCache<ClassRecord> m_recordRows;
-    /** Of a block's octants, and of the node itself: row, divergences, G-value, density, whether it
-     * is expanded. */
+    /** A buffer holds row, divergences, G-value, density, and whether it is expanded, for each of a
+     * block's octants and for the node itself. */
     std::size_t m_bufferSize;
     std::vector<double> m_buffers;
     RowCache<OctantPattern> m_patterns;  ///< such buffers of octants without class records
@@ -142,7 +139,7 @@ class GTree final : public NodeObserver {
   };
   Worker& worker(int i) override;
 
-  /** Of the compressed tree's leaves; readers own what they read. */
+  /** Changes of the compressed tree's leaves; readers own what they read. */
   std::weak_ptr<LeafLog> leafLog;
 
  private:

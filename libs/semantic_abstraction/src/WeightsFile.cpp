@@ -140,43 +140,11 @@ class Reader {
     }
     if (const YAML::Node regions = root["regions"]) {
       m_yaml.checkList(regions, "regions");
-      for (const auto& region : regions) space.regions.push_back(readRegion(region));
+      for (const auto& region : regions)
+        space.regions.push_back(
+            at(region, [&] { return Region::ofText(m_yaml.text(region, "a region")); }));
     }
     return keys;
-  }
-
-  Region readRegion(const YAML::Node& node) const {
-    m_yaml.checkKeys(node, {"box", "sphere", "corridor", "radius", "weight"});
-    Region region;
-    readShape(node, region);
-    if (node["radius"].IsDefined() == (region.shape == Region::Shape::Box))
-      m_yaml.fail(node, "region: a sphere or corridor has a radius, a box has none");
-    if (node["radius"]) region.radius = m_yaml.number(node["radius"], "radius");
-    region.weight = m_yaml.notNegative(m_yaml.required(node, "weight"), "weight of a region");
-    at(node, [&] { region.validate(); });
-    return region;
-  }
-
-  void readShape(const YAML::Node& node, Region& region) const {
-    std::string field;
-    std::vector<std::string> names;
-    for (const auto& [name, shape] : choicesOf(region.shape)) {
-      names.push_back(name);
-      if (!node[name]) continue;
-      if (!field.empty()) m_yaml.fail(node, "region: both " + field + " and " + name);
-      field = name;
-      region.shape = shape;
-    }
-    if (field.empty()) m_yaml.fail(node, "region: expected one of " + strict_files::joined(names));
-    const YAML::Node place = node[field];
-    if (region.shape == Region::Shape::Sphere) {
-      region.a = m_yaml.point(place, field);
-      return;
-    }
-    if (!place.IsSequence() || place.size() != 2)
-      m_yaml.fail(place, field + ": expected two points");
-    region.a = m_yaml.point(place[0], field);
-    region.b = m_yaml.point(place[1], field);
   }
 
   const StrictYaml m_yaml;

@@ -114,17 +114,15 @@ std::uint64_t fingerprintOf(const CObservation& observation) {
 LikelihoodCache::LikelihoodCache() = default;
 LikelihoodCache::~LikelihoodCache() = default;
 
-std::shared_ptr<const LabeledScan> LikelihoodCache::scanOf(const CObservation& observation,
-                                                           const Conversion& conversion,
-                                                           mrpt::system::COutputLogger& logger) {
+std::shared_ptr<const LabeledScan> LikelihoodCache::scanOf(
+    const CObservation& observation, const semantic_types::ClassTable& classes,
+    const labeled_cloud::ScanConverterOptions& options, mrpt::system::COutputLogger& logger) {
   if (!labeled_cloud::ScanConverter::accepts(observation)) return nullptr;
   const std::uint64_t fingerprint = fingerprintOf(observation);
   const std::lock_guard lock(m_mutex);
-  const bool ready = m_converter && m_converter->isFor(conversion.classes, conversion.options);
+  const bool ready = m_converter && m_converter->isFor(classes, options);
   if (ready && fingerprint == m_fingerprint) return m_scan;
-  if (!ready)
-    m_converter = std::make_unique<CachedConverter>(conversion.classes, conversion.options,
-                                                    conversion.labeler);
+  if (!ready) m_converter = std::make_unique<CachedConverter>(classes, options);
   convert(observation, logger);
   m_fingerprint = fingerprint;
   return m_scan;

@@ -21,21 +21,14 @@ struct CachedConverter;
  * it at many poses, some of them from several threads. */
 class LikelihoodCache {
  public:
-  /** What an observation's scan depends on. */
-  struct Conversion {
-    const semantic_types::ClassTable& classes;
-    const labeled_cloud::ScanConverterOptions& options;
-    const std::shared_ptr<labeled_cloud::ImageLabeler>& labeler;
-  };
-
   LikelihoodCache();
   ~LikelihoodCache();
 
   /** The observation's scan; null if it cannot be used. The reason goes to the logger as a warning,
    * unless it is the same as the last. Safe to call from several threads. */
   std::shared_ptr<const labeled_cloud::LabeledScan> scanOf(
-      const mrpt::obs::CObservation& observation, const Conversion& conversion,
-      mrpt::system::COutputLogger& logger);
+      const mrpt::obs::CObservation& observation, const semantic_types::ClassTable& classes,
+      const labeled_cloud::ScanConverterOptions& options, mrpt::system::COutputLogger& logger);
   /** Forgets the scan, and what it depends on. */
   void clear();
 
@@ -44,7 +37,7 @@ class LikelihoodCache {
 
   std::mutex m_mutex;
   std::unique_ptr<CachedConverter> m_converter;
-  /** Of the observation that m_scan was made of; there is none without a converter. */
+  /** Fingerprint of the observation that m_scan was made of; none without a converter. */
   std::uint64_t m_fingerprint = 0;
   std::shared_ptr<const labeled_cloud::LabeledScan> m_scan;
   std::string m_refusal;

@@ -40,7 +40,7 @@ class BeamLikelihood {
   }
 
  private:
-  /** Of passing all places before a length, m. */
+  /** The likelihood that a beam passes all places before a length, m. */
   double way(const Eigen::Vector3d& direction, double length) const {
     double product = 1;
     for (double along = m_step / 2; along < length; along += m_step)
@@ -67,8 +67,8 @@ class BeamLikelihood {
 
 std::shared_ptr<const LabeledScan> CSemanticOctoMap::scanForLikelihood(
     const mrpt::obs::CObservation& observation) const {
-  return m_likelihoodCache->scanOf(
-      observation, {m_tree.classes(), insertionOptions.conversion, m_labeler}, m_logger);
+  return m_likelihoodCache->scanOf(observation, m_tree.classes(), insertionOptions.conversion,
+                                   m_logger);
 }
 
 bool CSemanticOctoMap::internal_canComputeObservationLikelihood(

@@ -20,7 +20,7 @@ struct NewFiles {
   std::set<fs::path> all;
 };
 
-/** Of this process, never destroyed, as Unfinished's registry. */
+/** The new files of this process. They are never destroyed, as Unfinished's registry. */
 NewFiles& newFiles() {
   static NewFiles* const theOnes = new NewFiles;
   return *theOnes;

@@ -28,7 +28,7 @@ struct Registry {
   std::set<fs::path> cleaned;  ///< folders without anything dead
 };
 
-/** Of this process. It is never destroyed, for the sake of outputs that live as long. */
+/** The registry of this process. It is never destroyed, for some outputs live as long. */
 Registry& registry() {
   static Registry* const theOne = new Registry;
   return *theOne;

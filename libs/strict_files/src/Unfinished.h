@@ -22,7 +22,7 @@ class Unfinished {
   Unfinished& operator=(const Unfinished&) = delete;
 
   const std::filesystem::path& path() const { return m_path; }
-  /** Of the file or folder, open. */
+  /** Descriptor of the file or folder, open. */
   int descriptor() const { return m_descriptor; }
 
   /** A file beside it, a lock, goes with it if nothing else is left in the folder. */
@@ -50,7 +50,7 @@ bool leadsTo(const std::filesystem::path& path, int descriptor);
 
 /** Brings the content of a file or folder to the disk. \throw std::runtime_error saying why not */
 void synchronize(int descriptor);
-/** The same by its path. */
+/** Brings what a path names to the disk. */
 void synchronize(const std::filesystem::path& path);
 
 }  // namespace strict_files

@@ -33,7 +33,7 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/** The one to mean by a word that is unknown, or null. */
+/** The known word that is meant by an unknown one, or null. */
 const std::string* nearestOf(const std::string& word, const std::vector<std::string>& known) {
   const std::string* nearest = nullptr;
   std::size_t least = 1 + word.size() / 2;  // farther is another word

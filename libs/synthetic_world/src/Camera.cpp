@@ -37,16 +37,13 @@ void CameraOptions::describe(strict_files::OptionList& list) {
   list.add("width", width, "pixels", between(2, 8192), "of the images");
   list.add("height", height, "pixels", between(2, 8192), "of the images");
   list.add("fov", horizontalFov, "degrees", between(1, 170), "horizontal field of view");
-  list.add("min_range", minRange, "m", strict_files::atLeast(0), "nearer returns are lost");
-  list.add("max_range", maxRange, "m", strict_files::above(0).upTo(kFarthest),
-           "greatest depth, more than min_range");
+  list.add("max_range", maxRange, "m", strict_files::above(kMinRange).upTo(kFarthest),
+           "greatest depth");
 }
 
 void CameraOptions::validate() const {
   strict_files::checkOptions(*this, "CameraOptions");
   noise.validate();
-  strict_files::require(maxRange > minRange, "CameraOptions::max_range", maxRange,
-                        "more than min_range");
 }
 
 CameraFrame renderCamera(const World& world, const Eigen::Isometry3d& T_world_camera,
@@ -71,7 +68,7 @@ CameraFrame renderCamera(const World& world, const Eigen::Isometry3d& T_world_ca
       const auto pixel = static_cast<std::uint64_t>(row) * w + column;
       Random random = Random::ofStream(seed.seed, kCameraStream + 4 * seed.frame, pixel);
       const double depth = options.noise.disturbed(hit->range / rangePerDepth, random);
-      if (depth < options.minRange || depth > options.maxRange) continue;
+      if (depth < CameraOptions::kMinRange || depth > options.maxRange) continue;
       if (options.noise.drops(random)) continue;
       frame.depth.at(row, column) = static_cast<float>(depth);
       frame.labels.at(row, column) = options.noise.disturbed(hit->material.id, random);

@@ -34,8 +34,7 @@ void LidarOptions::describe(strict_files::OptionList& list) {
   list.add("columns", columns, "", between(1, 16384), "beams beside each other, all around");
   list.add("lowest", lowest, "degrees", above(-90).below(90), "elevation of the lowest ring");
   list.add("highest", highest, "degrees", above(-90).below(90), "elevation of the highest ring");
-  list.add("min_range", minRange, "m", strict_files::atLeast(0), "nearer returns are lost");
-  list.add("max_range", maxRange, "m", above(0), "more than min_range");
+  list.add("max_range", maxRange, "m", above(kMinRange), "of returns");
   list.add("ghosts", ghosts, "", between(0, 1),
            "share of the beams on windows, cars, water and signs that return by way of what these "
            "mirror: from behind them, often from below the ground");
@@ -45,8 +44,6 @@ void LidarOptions::validate() const {
   strict_files::checkOptions(*this, "LidarOptions");
   noise.validate();
   strict_files::require(lowest <= highest, "LidarOptions::lowest", lowest, "at most highest");
-  strict_files::require(maxRange > minRange, "LidarOptions::max_range", maxRange,
-                        "more than min_range");
 }
 
 Eigen::Vector3d LidarOptions::beam(int ring, int column) const {
@@ -74,7 +71,7 @@ LabeledCloud scanLidar(const World& world, const Eigen::Isometry3d& T_world_lida
         hit = mirrored(world, *hit, direction, farthest, random);
       if (!hit) continue;
       const double range = options.noise.disturbed(hit->range, random);
-      if (range < options.minRange || range > options.maxRange) continue;
+      if (range < LidarOptions::kMinRange || range > options.maxRange) continue;
       if (options.noise.drops(random)) continue;
       cloud.points.push_back((range * beam).cast<float>());
       cloud.classes.push_back(options.noise.disturbed(hit->material.id, random));

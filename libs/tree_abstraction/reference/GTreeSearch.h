@@ -78,7 +78,7 @@ struct SearchResult {
   std::vector<NodeValues> values;  ///< by node
   /** J(T*) over J(roots): the sum of p(n) G(n) over the roots. */
   double objective = 0;
-  /** Of the roots alone (all 0 for a single root), of T*, and of the whole forest. */
+  /** Measures of the roots alone (all 0 for a single root), of T*, and of the whole forest. */
   tree_abstraction::TreeMeasures roots, optimal, full;
 
   std::vector<std::int32_t> interior() const;

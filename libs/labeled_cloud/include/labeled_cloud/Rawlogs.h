@@ -22,7 +22,7 @@ class CompressedInputStream;
 struct RawlogEntry {
   /** The robot's movement since the entry before; null if the entry holds observations. */
   mrpt::obs::CActionCollection::Ptr actions;
-  /** Those of a sensory frame (all from the pose after the movement before), or a single one. */
+  /** All of a sensory frame, from the pose after the movement before, or a single one. */
   std::vector<mrpt::obs::CObservation::Ptr> observations;
   /** The observations are a sensory frame. */
   bool isFrame = false;

@@ -18,7 +18,7 @@ namespace semantic_octree {
  * and like emptyLike(), and may be in a folder of tiles that is open for writing (MapFolder), so
  * that they need not fit into memory. If filling fails they are not to be used. */
 
-/** The same nodes, to the last bit.
+/** Fills a map with the nodes of another, to the last bit.
  * \param copy to be filled \throw std::invalid_argument it is not empty, or not like the map. */
 void copyTo(SemanticOcTree& copy, const SemanticOcTree& map);
 
@@ -52,7 +52,7 @@ void mergeTo(SemanticOcTree& sum, const std::vector<const SemanticOcTree*>& maps
  * \throw std::invalid_argument an empty box, or NaN. */
 SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box);
 
-/** The same map with voxels of 2^levels times the edge. A voxel is as occupied as the most occupied
+/** The map with voxels of 2^levels times the edge. A voxel is as occupied as the most occupied
  * one in it, its classes are those of the voxels in it with labels, as in
  * Abstraction::compressedMap. \throw std::invalid_argument levels not 0 to 8. */
 SemanticOcTree coarsened(const SemanticOcTree& map, int levels);
@@ -72,7 +72,7 @@ struct MapContents {
   std::uint64_t freeVoxels = 0, occupiedVoxels = 0;
   /** K + 1 numbers of occupied voxels by their likeliest class; [0]: no class was ever seen. */
   std::vector<std::uint64_t> voxelsOfClass;
-  /** Of all known voxels, meters, map frame; empty for an empty map. */
+  /** The box around all known voxels, meters, map frame; empty for an empty map. */
   Eigen::AlignedBox3d box;
 };
 

@@ -9,11 +9,11 @@ namespace semantic_octree {
 struct SmoothingOptions {
   /** Weight of what a voxel that shares a face tells, beside 1 for the voxel itself. Straight
    * borders between classes stay where they are whatever the weight; a single voxel that is as sure
-   * as four neighbors of another class keeps its class below 0.25. 0: each voxel for itself. */
-  double neighborWeight = 0.4;
-  /** Voxels in which no label was seen are answered for by their 26 neighbors: those across an edge
+   * as four neighbors of another class keeps its class below 0.25. 0: each voxel for itself.
+   *
+   * Voxels in which no label was seen are answered for by their 26 neighbors: those across an edge
    * with half the weight, those across a corner with a quarter. */
-  bool fillGaps = true;
+  double neighborWeight = 0.4;
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
@@ -45,12 +45,12 @@ class SmoothedView {
   /** As SemanticOcTree::query(), except that a voxel that is free or unknown may have a likeliest
    * class, too: the one it would have if it were occupied. */
   CellState query(const octomap::OcTreeKey& key) const;
-  /** Of the voxel that contains a point (meters, map frame). */
+  /** Asks the voxel that contains a point (meters, map frame). */
   CellState query(double x, double y, double z) const;
   /** K + 1 probabilities, [0] = free space; of a voxel of which nothing is known: 1/2, and the
    * classes equally likely. */
   std::vector<double> distribution(const octomap::OcTreeKey& key) const;
-  /** Of the voxel that contains a point (meters, map frame).
+  /** Asks the voxel that contains a point (meters, map frame).
    * \throw std::out_of_range the point is outside the map. */
   std::vector<double> distribution(double x, double y, double z) const;
 

@@ -51,7 +51,7 @@ void drawArrow(cv::Mat& picture, const cv::Point2d& place, double heading, const
 /** OpenCV's own letters, made of strokes, are those of ASCII; others need DejaVu Sans. */
 enum class Font { Strokes, DejaVu };
 
-/** The one that has all letters of a UTF-8 text. Texts that stand together should share it. */
+/** A font that has all letters of a UTF-8 text. Texts that stand together should share it. */
 Font fontFor(const std::string& text);
 
 /** Pixels. */

@@ -57,7 +57,7 @@ class InformationTree {
   explicit InformationTree(semantic_octree::SemanticOcTree& map);
 
   Index size() const { return static_cast<Index>(m_end.size()); }
-  /** The one behind the last node of a subtree. */
+  /** Number of the node behind the last one of a subtree. */
   Index end(Index node) const { return m_end[std::size_t(node)]; }
   Cube cube(Index node) const;
 
@@ -106,7 +106,7 @@ class InformationTree {
   std::size_t m_numTerms, m_numRoots;
   std::vector<double> m_information;  ///< node by node, its terms
   std::vector<double> m_addedLeaves, m_alphas;
-  /** Of the nodes that are not free, in the same order; parents among themselves. */
+  /** The nodes that are not free, in the same order, and their parents among them. */
   std::vector<Index> m_charged;
   std::vector<std::int32_t> m_parents;
   std::vector<double> m_shares, m_prices, m_gains;

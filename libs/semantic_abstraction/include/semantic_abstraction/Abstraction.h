@@ -90,7 +90,7 @@ class Abstraction {
    * tree expands, and its leaves. A leaf of the map that reaches above the blocks is told block by
    * block, so that the map's pruning leaves no trace; everything that counts leaves counts one. */
   std::vector<LeafCell> leaves() const;
-  /** Those of leaves() that have voxels in a box, in the same order; visits nothing outside.
+  /** The leaves() that have voxels in a box, in the same order; visits nothing outside.
    * \param low, high keys of the box's lowest and highest voxels
    * \param onlyOccupied leaves out, and does not visit, what is likelier free */
   std::vector<LeafCell> leavesIn(const octomap::OcTreeKey& low, const octomap::OcTreeKey& high,
@@ -115,7 +115,7 @@ class Abstraction {
   /** \param compressed to be filled, see MapOperations.h; like an emptyCompressedMap()
    * \throw std::invalid_argument it is not empty, or of another kind. */
   void compressTo(SemanticOcTree& compressed) const;
-  /** Of the same resolution, classes and filter parameters as the map. */
+  /** An empty map of the same resolution, classes and filter parameters. */
   SemanticOcTree emptyCompressedMap() const;
 
   /** New alpha: computes all inner nodes anew. \throw std::invalid_argument */
@@ -180,7 +180,7 @@ class LeafFollower {
   /** Leaves that came and went since the last call, in time proportional to the nodes that
    * changed. */
   TreeChange leaves();
-  /** The same, without a list of what may be all of a map. \return number of leaves now */
+  /** Skips what leaves() would tell, which may be all of a map. \return number of leaves now */
   std::size_t skipLeaves();
 
  private:

@@ -25,6 +25,11 @@ struct Region {
    * largest holds. */
   double weight = 1;
 
+  /** "box x0 y0 z0 x1 y1 z1 weight", "sphere x y z radius weight" or
+   * "corridor x0 y0 z0 x1 y1 z1 radius weight" */
+  std::string text() const;
+  /** \throw std::invalid_argument quoting the text: it is none of these. */
+  static Region ofText(const std::string& text);
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };
@@ -39,9 +44,6 @@ struct AbstractionSpace {
     Prior      ///< AbstractionOptions::prior
   };
   Unknown unknown = Unknown::OwnClass;
-  /** Weight of unknown space relative to known space of the same volume, [0, 1]. */
-  double unknownWeight = 1;
-
   /** Edge of the blocks, meters; the next smaller power of two voxels is used. Unknown space counts
    * inside blocks that hold data, and nowhere else. 0: no blocks, the whole map counts. */
   double blockSize = 6;
@@ -86,13 +88,11 @@ struct AbstractionText : AbstractionSpace {
   /** What unknown space is, for `unknown = prior`: "free_space: 0.6, road: 0.2"; classes that are
    * not named share the rest evenly. */
   std::string prior;
-  /** Regions of their own weight, m in the map's frame, separated by semicolons:
-   * "box x0 y0 z0 x1 y1 z1 weight", "sphere x y z radius weight",
-   * "corridor x0 y0 z0 x1 y1 z1 radius weight". */
+  /** Texts of regions, separated by semicolons: see Region::text(). */
   std::string regions;
 
   bool isSet() const { return !relevant.empty() || !irrelevant.empty() || everything != 0; }
-  /** The same for a map of these classes.
+  /** The options for a map of these classes.
    * \throw std::invalid_argument naming the option and its value. */
   AbstractionOptions forClasses(const semantic_types::ClassTable& classes) const;
   void describe(strict_files::OptionList& list);
@@ -127,7 +127,7 @@ struct WeightsFile {
  * relevant and irrelevant, a solution without weights, two solutions of one name. */
 WeightsFile loadWeights(const std::filesystem::path& file,
                         const semantic_types::ClassTable& classes);
-/** The same of a text. \param name What messages call it. */
+/** Reads weights from a text. \param name What messages call it. */
 WeightsFile weightsOfText(const std::string& text, const std::string& name,
                           const semantic_types::ClassTable& classes);
 

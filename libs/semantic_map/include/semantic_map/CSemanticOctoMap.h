@@ -1,5 +1,4 @@
 #pragma once
-#include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <mrpt/maps/CMetricMap.h>
 #include <mrpt/math/TBoundingBox.h>
@@ -47,8 +46,6 @@ struct InsertionResult {
   std::string refusal;
   /** What became of its pixels or points on the way to a cloud. */
   labeled_cloud::ScanCounts conversion;
-  /** A labeler was asked and had no labels for it: it counts for occupancy only. */
-  bool labelsMissing = false;
   /** What became of the cloud's points in the map. */
   semantic_octree::InsertionReport map;
 
@@ -135,10 +132,6 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   /** The optimal tree as a map with the same options. \throw std::logic_error as above. */
   Ptr compress();
 
-  /** Where labels of depth images come from; null: from the observations themselves. Copies of the
-   * map share it; archives do not hold it. */
-  void setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> labeler);
-
   /** What came of the last observation given to insertObservation().
    *
    * insertObservation() returns false for an observation that it refuses. One of another class than
@@ -156,7 +149,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   bool isEmpty() const override;
   /** One line: resolution, classes, leaves, bytes. */
   std::string asString() const override;
-  /** Of all nodes, also free ones; from 0 to 0 if the map is empty. */
+  /** The box around all nodes, also free ones; from 0 to 0 if the map is empty. */
   mrpt::math::TBoundingBoxf boundingBox() const MSO_OVERRIDE_SINCE_2_11_3;
   /** Boxes in the classes' colors, see renderingOptions; nothing if
    * genericMapParams.enableSaveAs3DObject is false. */
@@ -235,7 +228,6 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   semantic_octree::SemanticOcTree m_tree;
   std::unique_ptr<Folder> m_folder;  ///< null: the map is in memory
   TAbstractionOptions m_abstractionOptions;
-  std::shared_ptr<labeled_cloud::ImageLabeler> m_labeler;
   InsertionResult m_lastInsertion;
   ObservationClock m_observationClock;
   mutable mrpt::system::COutputLogger m_logger{"CSemanticOctoMap"};

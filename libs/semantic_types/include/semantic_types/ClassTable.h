@@ -46,13 +46,13 @@ class ClassTable {
   bool empty() const { return m_entries.empty(); }
   bool contains(ClassId id) const { return id >= 1 && id <= size(); }
 
-  /** Of kNoClass (free or unknown space, a point without a label): "no class", and a gray.
+  /** Name and color. kNoClass (free or unknown space, no label) is "no class", and gray.
    * \throw std::out_of_range id is above K. */
   const std::string& name(ClassId id) const { return entry(id).name; }
   const Color& color(ClassId id) const { return entry(id).color; }
 
   /** Seconds after which a map that sees nothing more of a class is half as sure of it; kForever
-   * unless it was set. Of kNoClass: of free space. \throw std::out_of_range id is above K. */
+   * unless it was set. That of kNoClass is free space's. \throw std::out_of_range id is above K. */
   double halfLife(ClassId id) const { return id == kNoClass ? m_freeHalfLife : entry(id).halfLife; }
   /** \throw std::out_of_range id is above K \throw std::invalid_argument neither kForever nor
    * 0.001 to 1e9 seconds. */

@@ -70,7 +70,7 @@ void checkIniText(const std::string& text);
  * \param known "camera *" stands for all that begin with "camera " */
 void checkSection(const std::string& section, const std::vector<std::string>& known);
 
-/** The same for all sections of a file that have a key. */
+/** Checks the names of all sections of a file that have a key. */
 template <class Source>
 void checkSections(const Source& source, const std::vector<std::string>& known) {
   std::vector<std::string> sections, keys;

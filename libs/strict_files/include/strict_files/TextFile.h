@@ -26,7 +26,7 @@ struct TextLine {
  * \throw std::runtime_error naming the file, if it cannot be read. */
 std::vector<TextLine> readLines(const std::filesystem::path& file);
 
-/** The same of a text. \param name What to call it in TextLine::where. */
+/** The lines of a text, as readLines() has them. \param name what TextLine::where calls it */
 std::vector<TextLine> linesOf(const std::string& text, const std::string& name);
 
 /** The numbers of a line, COUNT of them; what stands before the first is skipped if it ends with

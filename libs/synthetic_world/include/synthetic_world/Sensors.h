@@ -57,7 +57,7 @@ struct FrameSeed {
 struct CameraOptions {
   int width = 320, height = 240;  // pixels
   double horizontalFov = 80;      // degrees
-  double minRange = 0.3;          // m of depth; nearer returns are lost
+  static constexpr double kMinRange = 0.3;  // m of depth; nearer returns are lost
   double maxRange = 20;           // m of depth
   bool color = true;              // render the color image, too
   SensorNoise noise;
@@ -90,7 +90,7 @@ CameraFrame renderCamera(const World& world, const Eigen::Isometry3d& T_world_ca
 struct LidarOptions {
   int rings = 32, columns = 1024;
   double lowest = -25, highest = 15;  // elevation of the first and last ring, degrees
-  double minRange = 0.8;              // m
+  static constexpr double kMinRange = 0.8;  // m; nearer returns are lost
   double maxRange = 60;               // m
   /** Share of the beams on windows, cars, water and signs that return by way of what these mirror:
    * such ghosts lie behind the surface, many of them below the ground; 0..1. */

@@ -85,7 +85,7 @@ class AlphaSteps {
 
   /** 0: the tree of the roots alone; the last: what no tree expands. */
   std::size_t numSteps() const { return m_lowest.size() + 2; }
-  /** Of a node that was asked for: the first step that expands it. */
+  /** The first step that expands a node that was asked for. */
   std::size_t stepOf(double tau) const;
   /** As AlphaPath::alpha() and highestAlpha(). \param step not the last */
   double alpha(std::size_t step) const;
