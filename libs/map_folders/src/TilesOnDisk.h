@@ -27,9 +27,11 @@ class TilesOnDisk : public TileSource {
   void bring(Slot& away) override;
   void prepare(const Scan& scan) override;
   void sendAway() override;
+  void clear() override { m_tiles.clear(); }
   bool mayChange() const override { return m_place.mayWrite; }
   int depth() const override { return m_place.depth; }
-  void wasBuilt(const Cell& cell) override;
+  void changed(const Cell& cell) override;
+  void checkFits(std::optional<std::size_t> available) const override;
 
   /** Adds the tiles that the index has to a map that has none. */
   void addFromIndex();

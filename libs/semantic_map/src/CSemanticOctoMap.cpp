@@ -91,7 +91,7 @@ void CSemanticOctoMap::setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> l
 void CSemanticOctoMap::auxParticleFilterCleanUp() { m_likelihoodCache->clear(); }
 
 void CSemanticOctoMap::internal_clear() {
-  if (!m_folder || !m_tree.empty()) m_tree.clear();
+  m_tree.clear();
   m_observationClock = ObservationClock();
 }
 

@@ -59,10 +59,12 @@ class Sweep {
  private:
   /** \return whether anything changed */
   bool decay(Slot& slot, const Cell& cell) {
+    m_store.bring(slot);
     const bool isTile = cell.depth == kTileDepth || (cell.depth < kTileDepth && slot.isLeaf());
     const bool changed = slot.kind == Slot::Kind::Octant  ? decayChildren(slot, cell)
                          : slot.kind == Slot::Kind::Block ? decayBlock(slot, cell)
                                                           : slot.isKnown() && decayLeaf(slot);
+    if (changed) m_store.tellChanged(slot, cell);
     return isTile ? m_nodes.note(cell, changed) : changed;
   }
 

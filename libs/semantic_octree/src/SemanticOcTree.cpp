@@ -37,11 +37,13 @@ SemanticOcTree::~SemanticOcTree() = default;
 
 SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
     : SemanticOcTree(o.m_resolution, o.m_classes, o.m_parameters) {
-  MapAccess::checkNotInTiles(o);
+  const NodeStore& nodes = o.store();
+  if (nodes.tiles()) nodes.tiles()->checkFits({});
   m_pruning = o.m_pruning;
   m_clock = o.m_clock;
   if (o.m_observer) m_observer = o.m_observer->clone();
-  m_store = std::make_unique<NodeStore>(o.store(), o.store().stateBytes());
+  m_store = nodes.tiles() ? nodes.copy(nodes.stateBytes(), NodeStore::Tiles::ComeIn)
+                          : std::make_unique<NodeStore>(nodes, nodes.stateBytes());
 }
 
 SemanticOcTree::SemanticOcTree(SemanticOcTree&& o)
@@ -80,9 +82,13 @@ bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
 bool SemanticOcTree::isReadOnly() const { return store().tiles() && !store().tiles()->mayChange(); }
 
 void SemanticOcTree::clear() {
-  MapAccess::checkNotInTiles(*this);
-  MapAccess::setStore(*this,
-                      std::make_unique<NodeStore>(m_observer ? m_observer->stateBytes() : 0));
+  MapAccess::checkMayChange(*this);
+  auto empty = std::make_unique<NodeStore>(m_observer ? m_observer->stateBytes() : 0);
+  if (m_store && m_store->tiles()) {
+    m_store->tiles()->clear();
+    empty->setTiles(m_store->tiles());
+  }
+  MapAccess::setStore(*this, std::move(empty));
   m_clock = 0;
 }
 
@@ -112,7 +118,7 @@ void SemanticOcTree::age(double seconds) {
 }
 
 void SemanticOcTree::setHalfLives(const ClassTable& table) {
-  MapAccess::checkNotInTiles(*this);
+  MapAccess::checkMayChange(*this);
   for (int i = 1; i <= numClasses(); ++i) {
     const auto id = static_cast<ClassId>(i);
     if (const auto same = table.find(m_classes.name(id)))

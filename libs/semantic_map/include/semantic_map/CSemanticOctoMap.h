@@ -69,8 +69,9 @@ struct InsertionResult {
  * - a copy, and what is read from its archive, is a map of its own in memory, which no folder knows
  *   of. It is made if there is memory for all of it, else std::runtime_error says how much it
  * takes;
- * - clear() of what has content, and becoming another map (assignment, reading an archive) are
- *   std::logic_error, so that nothing is lost by them;
+ * - after clear() the folder is as it was until the map is saved: then it has the new content;
+ * - becoming another map (assignment, reading an archive), which may have other voxels and classes
+ *   than the folder, is std::logic_error;
  * - threads that read it wait for each other; tree() is for one at a time;
  * - what is drawn of it is in memory, as a whole. */
 class CSemanticOctoMap : public mrpt::maps::CMetricMap {

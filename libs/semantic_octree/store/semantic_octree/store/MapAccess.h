@@ -33,11 +33,12 @@ class MapAccess {
   /** At their next look, readers are told everything. */
   static void tellAll(SemanticOcTree& map);
 
-  /** \throw std::logic_error the map is in a folder of tiles. */
-  static void checkNotInTiles(const SemanticOcTree& map);
+  /** \throw std::logic_error the map is in a folder of tiles that was opened to be read. */
+  static void checkMayChange(const SemanticOcTree& map);
   /** Whoever changes nodes does it in f(MergeTarget): if it fails, the map is broken. */
   template <typename F>
   static void change(SemanticOcTree& map, const F& f) {
+    checkMayChange(map);
     const auto log = map.m_tileLog.lock();
     TileLog* const touched = log && log->isRead() ? log.get() : nullptr;
     const MergeTarget target{map.store(), map.m_filter, map.m_observer.get(), touched,
