@@ -279,9 +279,7 @@ TEST(CompositionOfTiles, correctionsNeedNoMoreMemoryThanATile) {
   SemanticOcTree map = emptyMapOf(making), whole = map;
   const MapFolder tiles(map, folder / "map", kWrite, tight(3.2));
   make(whole, making, [] {});
-  make(map, making, [&] {
-    EXPECT_LT(map.memoryUsage(), whole.memoryUsage() / 4);
-  });
+  make(map, making, [&] { EXPECT_LT(map.memoryUsage(), whole.memoryUsage() / 4); });
   EXPECT_LT(map.memoryUsage(), whole.memoryUsage() / 4);
 }
 

@@ -82,7 +82,8 @@ class MapFolder::Tiles {
       : m_map(map), m_folder(std::move(folder)), m_access(access) {
     options.validate();
     if (!map.empty() || MapAccess::store(map).tiles())
-      throw std::invalid_argument("a map for a folder of tiles has to be empty, and in no other one");
+      throw std::invalid_argument(
+          "a map for a folder of tiles has to be empty, and in no other one");
     if (access == Access::Draft && options.draft.empty())
       throw std::invalid_argument("a draft of a folder of tiles needs a place for what changes");
     TileIndex index = open(options);

@@ -1,5 +1,6 @@
 #include "TilesOnDisk.h"
 
+#include <semantic_octree/store/LeafContent.h>
 #include <semantic_octree/store/Scan.h>
 #include <semantic_octree/store/TreeFormat.h>
 #include <strict_files/AvailableMemory.h>
@@ -127,6 +128,7 @@ void TilesOnDisk::bring(Slot& away) {
 void TilesOnDisk::fetch(Slot& slot, Tile& tile) {
   read(slot, tile);
   tile.isAway = false;
+  tile.halfLives.reset();
   ++m_broughtIn;
 }
 
@@ -224,6 +226,8 @@ void TilesOnDisk::send(Slot& slot, Tile& tile) {
   if (tile.isDirty) write(slot, tile);
   Count count;
   countBelow(nodes, slot, count);
+  if (m_map.classes().hasHalfLives())
+    tile.halfLives = halfLivesBelow(nodes, slot, m_map.numClasses());
   removeChildren(arenaWith(false), slot);
   slot.kind = Kind::Away;
   markAway(nodes.octant(slot), tileCode(tile.place));
@@ -266,6 +270,11 @@ TileIndex TilesOnDisk::writeChanged() {
   std::sort(index.tiles.begin(), index.tiles.end(),
             [](const auto& a, const auto& b) { return tileCode(a.place) < tileCode(b.place); });
   return index;
+}
+
+bool TilesOnDisk::mayHold(const Slot& away, const ClassSet& classes) const {
+  const auto& halfLives = m_tiles.at(codeOfAway(store().octant(away))).halfLives;
+  return !halfLives || (*halfLives & classes).any();
 }
 
 void TilesOnDisk::checkFits(std::optional<std::size_t> most) const {

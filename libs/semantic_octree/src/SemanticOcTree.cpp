@@ -100,7 +100,8 @@ void SemanticOcTree::setPruning(bool on) {
 NodeStore& SemanticOcTree::store() const {
   if (!m_store)
     throw std::logic_error(
-        "the map is broken: memory ran out while a scan was inserted; clear it or load it anew");
+        "the map is broken: memory ran out, or a file failed, while it changed; clear it or load "
+        "it anew");
   return *m_store;
 }
 

@@ -4,6 +4,7 @@
 #include <semantic_octree/store/IndexPool.h>
 
 #include <algorithm>
+#include <bitset>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -96,6 +97,9 @@ struct BlockContent {
 class NodeArena;
 class Scan;
 
+/** Class ids; kNoClass is free space. */
+using ClassSet = std::bitset<256>;
+
 /** Where the children of nodes are that are away (see MapFolder). */
 class TileSource {
  public:
@@ -114,6 +118,9 @@ class TileSource {
   /** An inner node at that depth has changed, and is as it is to be, with all that is below. Others
    * may go away for it. */
   virtual void changed(const Cell& cell) = 0;
+  /** Whether there may be leaves below a node that is away whose half-life is that of one of these.
+   */
+  virtual bool mayHold(const Slot& away, const ClassSet& classes) const = 0;
   /** \param available bytes of memory; without, those that the system has left
    * \throw std::runtime_error naming the bytes that the map needs as a whole, if these are more */
   virtual void checkFits(std::optional<std::size_t> available) const = 0;
