@@ -131,23 +131,6 @@ TEST(MapInsertion, withoutAPoseTheRobotIsAtTheOrigin) {
   EXPECT_EQ(map.tree().query(1.05, 0.05, 0.05).status, Status::Occupied);
 }
 
-TEST(MapInsertion, labelsFromALabelerReplaceThoseOfTheObservation) {
-  struct AllRoad : labeled_cloud::ImageLabeler {
-    std::optional<labeled_cloud::LabelImage> label(const mrpt::obs::CObservation&) override {
-      labeled_cloud::LabelImage image;
-      image.rows = image.cols = 21;
-      image.classes.assign(21 * 21, 1);
-      return image;
-    }
-  };
-  CSemanticOctoMap map = quietMap();
-  EXPECT_TRUE(map.insertObservation(onePixel()));
-  map.setLabeler(std::make_shared<AllRoad>());
-  EXPECT_TRUE(map.insertObservation(onePixel()));
-  EXPECT_EQ(map.tree().query(2, 0.08, 0.04).likeliestClass, 1);
-  EXPECT_FALSE(map.lastInsertion().labelsMissing);
-}
-
 TEST(MapInsertion, arrivalsAndClearingAreAnnouncedToObservers) {
   struct Counter : mrpt::system::CObserver {
     int insertions = 0, clearings = 0;

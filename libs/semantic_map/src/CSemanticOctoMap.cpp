@@ -53,7 +53,6 @@ void CSemanticOctoMap::copyAllButTree(const CSemanticOctoMap& o) {
   likelihoodOptions = o.likelihoodOptions;
   renderingOptions = o.renderingOptions;
   m_abstractionOptions = o.m_abstractionOptions;
-  m_labeler = o.m_labeler;
   m_lastInsertion = o.m_lastInsertion;
   m_observationClock = o.m_observationClock;
   m_converter.reset();
@@ -82,12 +81,6 @@ CSemanticOctoMap::Ptr CSemanticOctoMap::compress() {
   return compressed;
 }
 
-void CSemanticOctoMap::setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> labeler) {
-  m_labeler = std::move(labeler);
-  m_converter.reset();
-  m_likelihoodCache->clear();
-}
-
 void CSemanticOctoMap::auxParticleFilterCleanUp() { m_likelihoodCache->clear(); }
 
 void CSemanticOctoMap::internal_clear() {
@@ -108,7 +101,7 @@ std::string CSemanticOctoMap::asString() const {
 ScanConverter& CSemanticOctoMap::converter() {
   const auto& options = insertionOptions.conversion;
   if (!m_converter || !m_converter->isFor(m_tree.classes(), options))
-    m_converter = std::make_unique<CachedConverter>(m_tree.classes(), options, m_labeler);
+    m_converter = std::make_unique<CachedConverter>(m_tree.classes(), options);
   return m_converter->converter;
 }
 

@@ -6,9 +6,8 @@ namespace semantic_map {
 /** A converter and what it was made for: it keeps the rays of the camera met last. */
 struct CachedConverter {
   CachedConverter(const semantic_types::ClassTable& table_,
-                  const labeled_cloud::ScanConverterOptions& options_,
-                  const std::shared_ptr<labeled_cloud::ImageLabeler>& labeler)
-      : table(table_), options(options_), converter(table_, options_, labeler) {}
+                  const labeled_cloud::ScanConverterOptions& options_)
+      : table(table_), options(options_), converter(table_, options_) {}
 
   bool isFor(const semantic_types::ClassTable& t,
              const labeled_cloud::ScanConverterOptions& o) const {

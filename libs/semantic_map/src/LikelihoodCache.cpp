@@ -22,8 +22,7 @@ std::shared_ptr<const LabeledScan> LikelihoodCache::scanOf(const CObservation& o
   const bool ready = m_converter && m_converter->isFor(conversion.classes, conversion.options);
   if (ready && fingerprint == m_fingerprint) return m_scan;
   if (!ready)
-    m_converter = std::make_unique<CachedConverter>(conversion.classes, conversion.options,
-                                                    conversion.labeler);
+    m_converter = std::make_unique<CachedConverter>(conversion.classes, conversion.options);
   convert(observation, logger);
   m_fingerprint = fingerprint;
   return m_scan;

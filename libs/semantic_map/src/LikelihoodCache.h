@@ -19,7 +19,6 @@ class LikelihoodCache {
   struct Conversion {
     const semantic_types::ClassTable& classes;
     const labeled_cloud::ScanConverterOptions& options;
-    const std::shared_ptr<labeled_cloud::ImageLabeler>& labeler;
   };
 
   LikelihoodCache();

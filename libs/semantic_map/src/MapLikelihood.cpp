@@ -67,8 +67,8 @@ class BeamLikelihood {
 
 std::shared_ptr<const LabeledScan> CSemanticOctoMap::scanForLikelihood(
     const mrpt::obs::CObservation& observation) const {
-  return m_likelihoodCache->scanOf(
-      observation, {m_tree.classes(), insertionOptions.conversion, m_labeler}, m_logger);
+  return m_likelihoodCache->scanOf(observation, {m_tree.classes(), insertionOptions.conversion},
+                                   m_logger);
 }
 
 bool CSemanticOctoMap::internal_canComputeObservationLikelihood(

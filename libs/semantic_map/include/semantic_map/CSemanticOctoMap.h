@@ -1,5 +1,4 @@
 #pragma once
-#include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/LabeledScan.h>
 #include <mrpt/maps/CMetricMap.h>
 #include <mrpt/math/TBoundingBox.h>
@@ -115,10 +114,6 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   /** The optimal tree as a map with the same options. \throw std::logic_error as above. */
   Ptr compress();
 
-  /** Where labels of depth images come from; null: from the observations themselves. Copies of the
-   * map share it; archives do not hold it. */
-  void setLabeler(std::shared_ptr<labeled_cloud::ImageLabeler> labeler);
-
   /** What came of the last observation given to insertObservation().
    *
    * insertObservation() returns false for an observation that it refuses. One of another class than
@@ -215,7 +210,6 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   semantic_octree::SemanticOcTree m_tree;
   std::unique_ptr<Folder> m_folder;  ///< null: the map is in memory
   TAbstractionOptions m_abstractionOptions;
-  std::shared_ptr<labeled_cloud::ImageLabeler> m_labeler;
   InsertionResult m_lastInsertion;
   ObservationClock m_observationClock;
   mutable mrpt::system::COutputLogger m_logger{"CSemanticOctoMap"};
