@@ -21,6 +21,11 @@ std::unique_ptr<NodeStore> storeFor(const NodeStore& store, std::size_t stateByt
 
 }  // namespace
 
+void MapAccess::setRule(SemanticOcTree& map, std::shared_ptr<const FusionRule> rule) {
+  if (!map.empty()) throw std::logic_error("a rule of fusion for a map that is not empty");
+  map.m_rule = std::move(rule);
+}
+
 void MapAccess::setObserver(SemanticOcTree& map, std::unique_ptr<NodeObserver> observer) {
   const bool isInTiles = store(map).tiles();
   auto nodes = storeFor(store(map), observer ? observer->stateBytes() : 0);
@@ -66,6 +71,7 @@ SemanticOcTree MapAccess::emptyWith(const SemanticOcTree& map, double resolution
   SemanticOcTree empty(resolution, map.classes(), map.filterParameters());
   empty.setPruning(map.pruning());
   empty.m_clock = map.m_clock;
+  empty.m_rule = map.m_rule;
   return empty;
 }
 

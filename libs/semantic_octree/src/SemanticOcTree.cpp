@@ -41,6 +41,7 @@ SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
   if (nodes.tiles()) nodes.tiles()->checkFits({});
   m_pruning = o.m_pruning;
   m_clock = o.m_clock;
+  m_rule = o.m_rule;
   if (o.m_observer) m_observer = o.m_observer->clone();
   m_store = nodes.tiles() ? nodes.copy(nodes.stateBytes(), NodeStore::Tiles::ComeIn)
                           : std::make_unique<NodeStore>(nodes, nodes.stateBytes());
@@ -49,6 +50,7 @@ SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
 SemanticOcTree::SemanticOcTree(SemanticOcTree&& o)
     : SemanticOcTree(o.m_resolution, o.m_classes, o.m_parameters) {
   m_pruning = o.m_pruning;
+  m_rule = o.m_rule;
   swap(o);
 }
 
@@ -62,6 +64,7 @@ void SemanticOcTree::swap(SemanticOcTree& o) {
   std::swap(m_classes, o.m_classes);
   std::swap(m_parameters, o.m_parameters);
   std::swap(m_filter, o.m_filter);
+  std::swap(m_rule, o.m_rule);
   std::swap(m_pruning, o.m_pruning);
   std::swap(m_clock, o.m_clock);
   std::swap(m_store, o.m_store);

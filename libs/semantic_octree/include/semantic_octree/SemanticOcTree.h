@@ -19,6 +19,7 @@ namespace semantic_octree {
 using semantic_types::ClassTable;
 using semantic_types::LabeledCloud;
 
+class FusionRule;
 class MapFollower;
 class NodeObserver;
 class NodeStore;
@@ -208,6 +209,7 @@ class SemanticOcTree {
   ClassTable m_classes;
   FilterParameters m_parameters;
   ClassFilter<float> m_filter;
+  std::shared_ptr<const FusionRule> m_rule;  ///< null: the filter
   bool m_pruning = true;
   std::int64_t m_clock = 0;                  ///< ns; stands still while nothing has a half-life
   std::unique_ptr<NodeStore> m_store;        ///< null: the map is broken
