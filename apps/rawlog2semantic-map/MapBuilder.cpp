@@ -44,7 +44,10 @@ std::uint64_t totalSize(const std::vector<fs::path>& files) {
 }  // namespace
 
 MapBuilder::MapBuilder(semantic_map::CSemanticOctoMap& map, OnScan onScan)
-    : m_map(map), m_follower(map.tree()), m_onScan(std::move(onScan)) {}
+    : m_map(map),
+      m_follower(map.tree()),
+      m_hadContent(!map.isEmpty()),
+      m_onScan(std::move(onScan)) {}
 
 void MapBuilder::timeWithoutAbstraction() {
   m_plainMap = std::make_unique<semantic_map::CSemanticOctoMap>(m_map);
@@ -58,6 +61,10 @@ void MapBuilder::correctPoses(const semantic_slam::SlamOptions& options, const f
   mapping.localize = true;
   mapping.slam = options;
   mapping.scans = folder;
+  if (m_hadContent)
+    notes() << "There is a map: poses are corrected to be in its frame, and scans stay where they "
+               "are put"
+            << std::endl;
   if (reference.empty()) {
     m_mapper.emplace(m_map.tree(), mapping);
     return;
@@ -85,7 +92,15 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
                   std::to_string(m_summary.inserted) + " scans inserted, " +
                   m_summary.skippedText());
   if (m_mapper) noteSlam();
+  if (m_mapper && m_hadContent) checkFoundInMap();
   noteLabels();
+}
+
+void MapBuilder::checkFoundInMap() const {
+  if (m_summary.slam->referenced == 0)
+    throw std::runtime_error(
+        "no scan was found in the map that is there: nothing is added to it; poses have to begin "
+        "near where the robot is in it");
 }
 
 void MapBuilder::noteLabels() const {

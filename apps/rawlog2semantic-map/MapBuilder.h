@@ -29,7 +29,8 @@ class MapBuilder {
   /** Also inserts each scan into a map that keeps no abstraction, for comparison. */
   void timeWithoutAbstraction();
 
-  /** Scans go where SLAM finds them. \param folder where they are kept meanwhile
+  /** Scans go where SLAM finds them. Those of a map that has content stay there.
+   * \param folder where they are kept meanwhile
    * \param reference map (.semantic, or a folder of tiles) into whose frame they go; may be empty
    * \throw std::runtime_error naming the reference: it cannot be read, or has other classes */
   void correctPoses(const semantic_slam::SlamOptions& options, const std::filesystem::path& folder,
@@ -43,7 +44,8 @@ class MapBuilder {
   void countPoses() { m_summary.posesAreUsed = true; }
 
   /** Inserts all scans of the rawlogs, or those up to when it is to stop, saying how far it is.
-   * \throw std::runtime_error naming the file: it is damaged, or a scan of it cannot be used. */
+   * \throw std::runtime_error naming the file: it is damaged, or a scan of it cannot be used; with
+   * correctPoses(), nothing was found in a map that had content. */
   void insert(const std::vector<std::filesystem::path>& rawlogs, labeled_cloud::ScanStream& stream,
               const StopRequest& stop);
 
@@ -61,11 +63,14 @@ class MapBuilder {
   semantic_octree::InsertionReport insertIntoMap(const labeled_cloud::LabeledScan& scan,
                                                  mrpt::poses::CPose3D& T_map_robot);
   void noteSlam();
+  /** \throw std::runtime_error */
+  void checkFoundInMap() const;
 
   semantic_map::CSemanticOctoMap& m_map;
   semantic_octree::LeafFollower m_follower;
   std::optional<semantic_slam::Mapper> m_mapper;  ///< if poses are corrected
   bool m_hasOdometry = true;
+  const bool m_hadContent;                 ///< the map, before the first scan
   semantic_map::ObservationClock m_clock;  ///< of its scans
   double m_seconds = 0;                    ///< that passed, by the clock
   struct PlacedScan {

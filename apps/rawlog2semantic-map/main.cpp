@@ -86,7 +86,7 @@ struct Cli {
                    "corrected to be in its frame")
         ->needs(corrected);
     auto* window = app.add_flag("--live", live, "Show the map in a window while it grows");
-    addTilesTo(app)->excludes(corrected)->excludes(upkeep)->excludes(window);
+    addTilesTo(app)->excludes(upkeep)->excludes(window);
     app.add_flag("--pause", pause, "Wait there from the first scan on")->needs(window);
     app.add_option("INPUT.rawlog", rawlogs, "Rawlogs that continue each other")->required();
   }

@@ -1,8 +1,8 @@
 #include "MapMessages.h"
 
-#include <map_operations/OctomapConversion.h>
+#include <map_operations/MapOperations.h>
 #include <octomap/OcTree.h>
-#include <semantic_types/ClassColors.h>
+#include <semantic_types/ClassTable.h>
 
 #include <cstring>
 #include <sstream>

@@ -1,7 +1,7 @@
 #include "MappingNode.h"
 
 #include <semantic_planning/planner/OrderFile.h>
-#include <strict_files/ErrorMessage.h>
+#include <strict_files/Words.h>
 
 #include <cmath>
 #include <iomanip>

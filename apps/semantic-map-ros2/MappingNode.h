@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_map/ObservationClock.h>
+#include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_slam/Mapper.h>
 
 #include <functional>

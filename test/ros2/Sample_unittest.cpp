@@ -1,12 +1,11 @@
 #include <gtest/gtest.h>
-#include <labeled_cloud/EigenPose.h>
-#include <labeled_cloud/EmbeddedLabels.h>
-#include <labeled_cloud/RawlogReader.h>
-#include <labeled_cloud/RawlogTrajectory.h>
+#include <labeled_cloud/LabelImage.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <labeled_cloud/ScanConverter.h>
+#include <labeled_cloud/Trajectory.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semantic_octree/TreeFile.h>
-#include <semantic_types/ClassTableFile.h>
+#include <semantic_types/ClassTable.h>
 
 #include "LiveMap.h"
 #include "RunProgram.h"

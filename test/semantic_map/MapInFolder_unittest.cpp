@@ -222,10 +222,22 @@ TEST_F(InFolder, isNotCopiedWhereThereIsNoMemoryForIt) {
   EXPECT_TRUE(treeOf(map) == treeOf(plain));
 }
 
-TEST_F(InFolder, losesNothing) {
+TEST_F(InFolder, isClearedAndWhatWasSavedStaysUntilItIsSavedAnew) {
+  map.folder()->save();
+  map.clear();
+  EXPECT_TRUE(map.isEmpty());
+  EXPECT_TRUE(semantic_octree::loadMap((folder / "tiles").string()) == plain.tree());
+  for (int i = 0; i < 2; ++i) fill(map);
+  plain.clear();
+  for (int i = 0; i < 2; ++i) fill(plain);
+  EXPECT_TRUE(treeOf(map) == treeOf(plain));
+  map.folder()->save();
+  EXPECT_TRUE(semantic_octree::loadMap((folder / "tiles").string()) == plain.tree());
+}
+
+TEST_F(InFolder, doesNotBecomeAnotherMap) {
   const std::string bytes = bytesOf(map);
   const CSemanticOctoMap other = empty();
-  EXPECT_TRUE(contains(errorOf([&] { map.clear(); }), "cannot be copied, cleared"));
   EXPECT_TRUE(contains(errorOf([&] { map = other; }), "cannot become another one"));
   EXPECT_TRUE(contains(errorOf([&] { readBytes(map, bytesOf(other)); }), "cannot become another"));
   EXPECT_TRUE(contains(errorOf([&] { map.openFolder(tilesIn(folder / "new")); }), "another one"));
@@ -247,7 +259,7 @@ TEST_F(InFolder, namesATileThatCannotBeRead) {
   EXPECT_FALSE(damaged.abstractionOptions().isSet());
 }
 
-TEST(MapInANewFolder, isClearedAsLongAsItIsEmptyAsMapsOfFramesAre) {
+TEST(MapInANewFolder, isFilledFromFrames) {
   const TemporaryFolder folder;
   CSemanticOctoMap map = empty(), plain = empty();
   map.openFolder(tilesIn(folder / "tiles"));

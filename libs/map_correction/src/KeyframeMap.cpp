@@ -76,7 +76,8 @@ struct KeyframeMap::Content {
 /** One correction, until it is done. */
 class KeyframeMap::Correction {
  public:
-  explicit Correction(Content& content) : m(content), m_voxels(content.scans.size()) {}
+  explicit Correction(Content& content)
+      : m(content), m_voxels(content.scans.size()), m_isMerged(content.scans.size()) {}
   /** Drops what was prepared, if it does not come to pass. */
   ~Correction() {
     for (auto& voxels : m_voxels)
@@ -106,18 +107,16 @@ class KeyframeMap::Correction {
   CorrectionReport apply() {
     m_report.tiles = m_tiles.size();
     if (m_tiles.empty()) return accept();
-    SemanticOcTree anew = emptyLike(m.map);
-    MapAccess::setClock(anew, 0);
-    const TileBox box(m_tiles);
-    for (std::size_t i = 0; i < m.scans.size(); ++i) {
-      MapAccess::ageUntil(anew, m.scans[i].time);
-      if (voxelsOf(i).box.meets(box)) merge(i, anew);
-    }
-    MapAccess::ageUntil(anew, MapAccess::clock(m.map));
-    MapAccess::checkNotInTiles(m.map);
+    const std::vector<TileCodes> parts = partsOf(m_tiles);
+    SemanticOcTree anew = madeAnew(parts.front());
     MapAccess::change(m.map, [&](const MergeTarget& target) {
-      replaceTiles(target, m_tiles, MapAccess::store(anew));
+      for (const TileCodes& part : parts) {
+        if (&part != &parts.front()) anew = madeAnew(part);
+        replaceTiles(target, part, MapAccess::store(anew));
+      }
     });
+    m_report.scansMerged =
+        static_cast<std::size_t>(std::count(m_isMerged.begin(), m_isMerged.end(), true));
     return accept();
   }
 
@@ -134,13 +133,37 @@ class KeyframeMap::Correction {
   const Content::StoredVoxels& voxelsOf(std::size_t scan) const {
     return m_voxels[scan] ? *m_voxels[scan] : m.scans[scan].voxels;
   }
-  void merge(std::size_t i, SemanticOcTree& anew) {
+  /** Of a map in a folder, those of one of its tiles at a time; else all at once. */
+  std::vector<TileCodes> partsOf(const TileCodes& tiles) const {
+    const TileSource* const folder = MapAccess::store(m.map).tiles();
+    if (!folder) return {tiles};
+    const int shift = 3 * (kTileDepth - folder->depth());
+    std::vector<TileCodes> parts;
+    for (const std::uint64_t code : tiles) {
+      if (parts.empty() || parts.back().back() >> shift != code >> shift) parts.emplace_back();
+      parts.back().push_back(code);
+    }
+    return parts;
+  }
+  /** Some tiles, from what all scans saw in them. */
+  SemanticOcTree madeAnew(const TileCodes& tiles) {
+    SemanticOcTree anew = emptyLike(m.map);
+    MapAccess::setClock(anew, 0);
+    const TileBox box(tiles);
+    for (std::size_t i = 0; i < m.scans.size(); ++i) {
+      MapAccess::ageUntil(anew, m.scans[i].time);
+      if (voxelsOf(i).box.meets(box)) merge(i, tiles, anew);
+    }
+    MapAccess::ageUntil(anew, MapAccess::clock(m.map));
+    return anew;
+  }
+  void merge(std::size_t i, const TileCodes& tiles, SemanticOcTree& anew) {
     const InsertionOptions& options = m.scans[i].options;
     const PackedScan voxels = m.load(voxelsOf(i));
     m.inBuffers([&](Scan& scan) {
-      unpack(voxels, m_tiles, m.map.numClasses(), options, scan);
+      unpack(voxels, tiles, m.map.numClasses(), options, scan);
       MapAccess::merge(anew, scan, options.threads);
-      m_report.scansMerged += scan.hasVoxels();
+      if (scan.hasVoxels()) m_isMerged[i] = true;
     });
   }
 
@@ -152,6 +175,7 @@ class KeyframeMap::Correction {
 
   Content& m;
   std::vector<std::optional<Content::StoredVoxels>> m_voxels;  ///< of scans that change
+  std::vector<bool> m_isMerged;                                ///< scans, once more
   TileCodes m_tiles;                                           ///< to be made anew
   CorrectionReport m_report;
 };

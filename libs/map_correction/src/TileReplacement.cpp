@@ -24,7 +24,15 @@ class TileReplacement {
   /** \param tiles those below the node \param source the other tree's node there; a leaf stands for
    * all that is below \return whether anything changed */
   bool replace(Slot& slot, const Cell& cell, const TileRange& tiles, const Slot& source) {
-    if (cell.depth == kTileDepth) return m_nodes.note(cell, replaceAll(slot, cell, source));
+    m_store.bring(slot);
+    const bool changed = cell.depth == kTileDepth
+                             ? m_nodes.note(cell, replaceAll(slot, cell, source))
+                             : replaceBelow(slot, cell, tiles, source);
+    if (changed) m_store.tellChanged(slot, cell);
+    return changed;
+  }
+
+  bool replaceBelow(Slot& slot, const Cell& cell, const TileRange& tiles, const Slot& source) {
     if (!slot.isInner() && !source.isInner() && m_comparison.same(slot, source)) return false;
     Octant& octant = slot.isInner()   ? m_store.octant(slot)
                      : slot.isKnown() ? m_nodes.arena.expandToOctant(slot)

@@ -75,9 +75,6 @@ SemanticOcTree loadLeaves(const fs::path& folder, const TileIndex& index) {
   return leaves;
 }
 
-/** Of nodes and records, as maps of streets have them: 5 to 7. */
-constexpr std::uint64_t kBytesOfLeaf = 6;
-
 }  // namespace
 
 class MapFolder::Tiles {
@@ -85,11 +82,9 @@ class MapFolder::Tiles {
   Tiles(SemanticOcTree& map, fs::path folder, Access access, const MapFolderOptions& options)
       : m_map(map), m_folder(std::move(folder)), m_access(access) {
     options.validate();
-    if (!map.empty()) throw std::invalid_argument("a map for a folder of tiles has to be empty");
-    if (map.classes().hasHalfLives())
+    if (!map.empty() || MapAccess::store(map).tiles())
       throw std::invalid_argument(
-          "a map of classes with half-lives cannot be in a folder of tiles");
-    MapAccess::checkNotInTiles(map);
+          "a map for a folder of tiles has to be empty, and in no other one");
     if (access == Access::Draft && options.draft.empty())
       throw std::invalid_argument("a draft of a folder of tiles needs a place for what changes");
     TileIndex index = open(options);
@@ -104,12 +99,14 @@ class MapFolder::Tiles {
         saves() ? nextGeneration(m_folder, index) : index.generation + 1};
     tiles = std::make_unique<TilesOnDisk>(map, place, std::move(index));
     auto empty = std::make_unique<NodeStore>(MapAccess::store(map).stateBytes());
+    const std::int64_t clock = MapAccess::clock(map);
     try {
       if (tiles->index().generation > 0 && access != Access::Replace) takeContents();
       MapAccess::store(map).setTiles(tiles.get());
       MapAccess::recomputeTileByTile(map);
     } catch (...) {
       MapAccess::setStore(map, std::move(empty));
+      MapAccess::setClock(map, clock);
       throw;
     }
   }
@@ -134,15 +131,6 @@ class MapFolder::Tiles {
     tiles->setIndex(std::move(index));
     m_placed.clear();
     removeOld();
-  }
-
-  void checkFits(std::optional<std::size_t> most) const {
-    const std::uint64_t available = most.value_or(strict_files::availableMemory());
-    const std::uint64_t needed = kBytesOfLeaf * m_map.getNumLeafNodes();
-    if (needed > available)
-      throw std::runtime_error(m_folder.string() + ": as a whole it needs about " +
-                               strict_files::sizeText(needed) + " of memory, and " +
-                               strict_files::sizeText(available) + " are left");
   }
 
   std::uint64_t bytesOnDisk() const {
@@ -197,6 +185,8 @@ class MapFolder::Tiles {
 
   void takeContents() {
     SemanticOcTree leaves = loadLeaves(m_folder, tiles->index());
+    leaves.setHalfLives(m_map.classes());
+    MapAccess::setClock(m_map, MapAccess::clock(leaves));
     if (emptyLike(leaves) != emptyLike(m_map))
       throw std::runtime_error(m_folder.string() +
                                ": its map has another resolution, other classes or parameters");
@@ -271,10 +261,12 @@ MapFolder::~MapFolder() = default;
 
 void MapFolder::save() { m->save(); }
 
-void MapFolder::checkFits(std::optional<std::size_t> available) const { m->checkFits(available); }
+void MapFolder::checkFits(std::optional<std::size_t> available) const {
+  m->tiles->checkFits(available);
+}
 
 void MapFolder::bringAll(std::optional<std::size_t> available) {
-  m->checkFits(available);
+  checkFits(available);
   m->tiles->bringAll();
 }
 

@@ -1,8 +1,11 @@
 #include "TilesOnDisk.h"
 
+#include <semantic_octree/store/LeafContent.h>
 #include <semantic_octree/store/Scan.h>
 #include <semantic_octree/store/TreeFormat.h>
+#include <strict_files/Memory.h>
 #include <strict_files/OutputFiles.h>
+#include <strict_files/Words.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -11,6 +14,9 @@ namespace semantic_octree {
 namespace {
 
 using Kind = Slot::Kind;
+
+/** Of nodes and records, as maps of streets have them: 5 to 7. */
+constexpr std::uint64_t kBytesOfLeaf = 6;
 
 struct Count {
   long nodes = 0, inner = 0;
@@ -122,6 +128,7 @@ void TilesOnDisk::bring(Slot& away) {
 void TilesOnDisk::fetch(Slot& slot, Tile& tile) {
   read(slot, tile);
   tile.isAway = false;
+  tile.halfLives.reset();
   ++m_broughtIn;
 }
 
@@ -169,8 +176,6 @@ void TilesOnDisk::removeChildren(NodeArena& arena, const Slot& octant) {
 }
 
 void TilesOnDisk::prepare(const Scan& scan) {
-  if (!m_place.mayWrite)
-    throw std::logic_error("a scan for a map whose folder was opened to be read");
   std::vector<VoxelIndex> cubes;
   addTouched(scan, Cell(), m_place.depth, cubes);
   ++m_clock;
@@ -189,8 +194,7 @@ void TilesOnDisk::prepare(const Scan& scan) {
   for (const VoxelIndex& cube : cubes) m_tiles.at(tileCode(cube)).isDirty = true;
 }
 
-void TilesOnDisk::wasBuilt(const Cell& cell) {
-  if (!m_place.mayWrite) throw std::logic_error("filling a map whose folder was opened to be read");
+void TilesOnDisk::changed(const Cell& cell) {
   Tile& tile = m_tiles[tileCode(cell.index)];
   tile.place = cell.index;
   tile.used = ++m_clock;
@@ -222,6 +226,8 @@ void TilesOnDisk::send(Slot& slot, Tile& tile) {
   if (tile.isDirty) write(slot, tile);
   Count count;
   countBelow(nodes, slot, count);
+  if (m_map.classes().hasHalfLives())
+    tile.halfLives = halfLivesBelow(nodes, slot, m_map.numClasses());
   removeChildren(arenaWith(false), slot);
   slot.kind = Kind::Away;
   markAway(nodes.octant(slot), tileCode(tile.place));
@@ -264,6 +270,20 @@ TileIndex TilesOnDisk::writeChanged() {
   std::sort(index.tiles.begin(), index.tiles.end(),
             [](const auto& a, const auto& b) { return tileCode(a.place) < tileCode(b.place); });
   return index;
+}
+
+bool TilesOnDisk::mayHold(const Slot& away, const ClassSet& classes) const {
+  const auto& halfLives = m_tiles.at(codeOfAway(store().octant(away))).halfLives;
+  return !halfLives || (*halfLives & classes).any();
+}
+
+void TilesOnDisk::checkFits(std::optional<std::size_t> most) const {
+  const std::uint64_t available = most.value_or(strict_files::availableMemory());
+  const std::uint64_t needed = kBytesOfLeaf * m_map.getNumLeafNodes();
+  if (needed > available)
+    throw std::runtime_error(m_place.folder.string() + ": as a whole it needs about " +
+                             strict_files::sizeText(needed) + " of memory, and " +
+                             strict_files::sizeText(available) + " are left");
 }
 
 void TilesOnDisk::bringAll() {

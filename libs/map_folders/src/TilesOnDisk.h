@@ -27,9 +27,12 @@ class TilesOnDisk : public TileSource {
   void bring(Slot& away) override;
   void prepare(const Scan& scan) override;
   void sendAway() override;
+  void clear() override { m_tiles.clear(); }
   bool mayChange() const override { return m_place.mayWrite; }
   int depth() const override { return m_place.depth; }
-  void wasBuilt(const Cell& cell) override;
+  void changed(const Cell& cell) override;
+  bool mayHold(const Slot& away, const ClassSet& classes) const override;
+  void checkFits(std::optional<std::size_t> available) const override;
 
   /** Adds the tiles that the index has to a map that has none. */
   void addFromIndex();
@@ -52,6 +55,8 @@ class TilesOnDisk : public TileSource {
     bool isAway = false, isDirty = false;
     long nodes = 0, innerNodes = 0;  ///< below it, if it is away
     std::uint32_t checksum = 0;      ///< of its file
+    /** See halfLivesBelow(), if it is away. None: nobody has looked. */
+    std::optional<ClassSet> halfLives = {};
   };
   using Entry = std::pair<const std::uint64_t, Tile>;
 

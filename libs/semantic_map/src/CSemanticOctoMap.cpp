@@ -84,7 +84,7 @@ CSemanticOctoMap::Ptr CSemanticOctoMap::compress() {
 void CSemanticOctoMap::auxParticleFilterCleanUp() { m_likelihoodCache->clear(); }
 
 void CSemanticOctoMap::internal_clear() {
-  if (!m_folder || !m_tree.empty()) m_tree.clear();
+  m_tree.clear();
   m_observationClock = ObservationClock();
 }
 

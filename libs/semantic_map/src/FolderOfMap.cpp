@@ -1,8 +1,5 @@
 #include "FolderOfMap.h"
 
-#include <map_operations/MapOperations.h>
-#include <semantic_abstraction/Abstraction.h>
-
 #include <stdexcept>
 
 namespace semantic_map {
@@ -29,14 +26,8 @@ bool CSemanticOctoMap::isEmpty() const {
 }
 
 SemanticOcTree CSemanticOctoMap::wholeTree() const {
-  if (!m_folder) return m_tree;
   const auto lock = reading();
-  m_folder->tiles.checkFits();
-  SemanticOcTree whole = emptyLike(m_tree);
-  copyTo(whole, m_tree);
-  if (hasAbstraction(m_tree))
-    semantic_octree::setAbstraction(whole, semantic_octree::Abstraction(m_folder->map).options());
-  return whole;
+  return m_tree;
 }
 
 void CSemanticOctoMap::checkMayBecomeAnother() const {

@@ -1,4 +1,5 @@
 #pragma once
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 
 namespace semantic_map {

@@ -49,7 +49,9 @@ ClassRecord withDifferences(const ClassRecord& record, Units occupancy, int numC
 class Sweep {
  public:
   Sweep(const MergeTarget& target, const std::vector<int>& steps)
-      : m_nodes(target, 0), m_store(target.store), m_filter(target.filter), m_steps(steps) {}
+      : m_nodes(target, 0), m_store(target.store), m_filter(target.filter), m_steps(steps) {
+    for (std::size_t id = 0; id < steps.size(); ++id) m_fading[id] = steps[id] > 0;
+  }
 
   void decayAll() {
     decay(m_store.root(), Cell());
@@ -59,10 +61,14 @@ class Sweep {
  private:
   /** \return whether anything changed */
   bool decay(Slot& slot, const Cell& cell) {
+    const TileSource* const tiles = m_store.tiles();
+    if (slot.kind == Slot::Kind::Away && tiles && !tiles->mayHold(slot, m_fading)) return false;
+    m_store.bring(slot);
     const bool isTile = cell.depth == kTileDepth || (cell.depth < kTileDepth && slot.isLeaf());
     const bool changed = slot.kind == Slot::Kind::Octant  ? decayChildren(slot, cell)
                          : slot.kind == Slot::Kind::Block ? decayBlock(slot, cell)
                                                           : slot.isKnown() && decayLeaf(slot);
+    if (changed) m_store.tellChanged(slot, cell);
     return isTile ? m_nodes.note(cell, changed) : changed;
   }
 
@@ -142,6 +148,7 @@ class Sweep {
   NodeStore& m_store;
   const ClassFilter<float>& m_filter;
   const std::vector<int>& m_steps;
+  ClassSet m_fading;  ///< classes with steps
 };
 
 }  // namespace
@@ -150,13 +157,6 @@ int decaySteps(double halfLife, std::int64_t from, std::int64_t to) {
   if (halfLife == semantic_types::kForever) return 0;
   const std::int64_t step = std::llround(halfLife * 1e9 / kStepsPerHalfLife);
   return static_cast<int>(std::min(kMostSteps, to / step - from / step));
-}
-
-std::optional<ClassId> decaysAs(Units value, const ClassRecord* record, int numClasses) {
-  if (value <= 0) return kNoClass;
-  if (!record || record->count == 0) return std::nullopt;
-  const bool isLikeliest = record->count == numClasses || record->logOdds[0] > record->rest;
-  return isLikeliest ? std::optional<ClassId>(record->ids[0]) : std::nullopt;
 }
 
 std::optional<LeafContent> decayed(const LeafContent& leaf, int steps, int numClasses) {

@@ -23,9 +23,6 @@ constexpr std::int64_t kOldestMap = 200LL * 365 * 86400 * 1000000000;
 /** Steps of a half-life (seconds) between two times of the map's clock (nanoseconds), 0 or more. */
 int decaySteps(double halfLife, std::int64_t from, std::int64_t to);
 
-/** Whose half-life a leaf has; none: it is not forgotten. */
-std::optional<ClassId> decaysAs(Units value, const ClassRecord* record, int numClasses);
-
 /** What is left of a leaf after some steps; nothing if its occupancy is within 0.1 of that of
  * unknown space. */
 std::optional<LeafContent> decayed(const LeafContent& leaf, int steps, int numClasses);

@@ -81,4 +81,25 @@ LeafContent contentOf(const Node& node, int numClasses) {
   return content;
 }
 
+ClassSet halfLivesBelow(const NodeStore& store, const Slot& inner, int numClasses) {
+  ClassSet classes;
+  const auto add = [&](Units value, const ClassRecord* record) {
+    if (const auto id = decaysAs(value, record, numClasses)) classes.set(*id);
+  };
+  if (inner.kind == Slot::Kind::Block) {
+    const Block& block = store.block(inner);
+    for (VoxelBits bits = block.known; bits; bits &= bits - 1) {
+      const int voxel = __builtin_ctzll(bits);
+      add(block.values[voxel], block.hasRecord(voxel) ? &store.record(block, voxel) : nullptr);
+    }
+    return classes;
+  }
+  for (const Slot& child : store.octant(inner).slots) {
+    if (child.isLeaf())
+      add(child.value, child.kind == Slot::Kind::LeafWithRecord ? &store.record(child) : nullptr);
+    if (child.isInner()) classes |= halfLivesBelow(store, child, numClasses);
+  }
+  return classes;
+}
+
 }  // namespace semantic_octree

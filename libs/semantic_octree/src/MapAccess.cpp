@@ -16,10 +16,15 @@ namespace {
 std::unique_ptr<NodeStore> storeFor(const NodeStore& store, std::size_t stateBytes) {
   if (!store.tiles()) return std::make_unique<NodeStore>(store, stateBytes);
   store.tiles()->sendAway();
-  return store.frame(stateBytes);
+  return store.copy(stateBytes, NodeStore::Tiles::StayAway);
 }
 
 }  // namespace
+
+void MapAccess::setRule(SemanticOcTree& map, std::shared_ptr<const FusionRule> rule) {
+  if (!map.empty()) throw std::logic_error("a rule of fusion for a map that is not empty");
+  map.m_rule = std::move(rule);
+}
 
 void MapAccess::setObserver(SemanticOcTree& map, std::unique_ptr<NodeObserver> observer) {
   const bool isInTiles = store(map).tiles();
@@ -57,21 +62,22 @@ SemanticOcTree& FollowedMap::get() const {
   return **map;
 }
 
-void MapAccess::checkNotInTiles(const SemanticOcTree& map) {
-  if (map.m_store && map.m_store->tiles())
-    throw std::logic_error(
-        "a map in a folder of tiles cannot be copied, cleared, corrected or have half-lives");
+void MapAccess::checkMayChange(const SemanticOcTree& map) {
+  if (map.m_store && map.isReadOnly())
+    throw std::logic_error("a map cannot change whose folder of tiles was opened to be read");
 }
 
 SemanticOcTree MapAccess::emptyWith(const SemanticOcTree& map, double resolution) {
   SemanticOcTree empty(resolution, map.classes(), map.filterParameters());
   empty.setPruning(map.pruning());
   empty.m_clock = map.m_clock;
+  empty.m_rule = map.m_rule;
   return empty;
 }
 
 void MapAccess::merge(SemanticOcTree& map, const Scan& scan, int threads) {
   if (!scan.hasVoxels()) return;
+  checkMayChange(map);
   if (store(map).tiles()) store(map).tiles()->prepare(scan);
   change(map, [&](const MergeTarget& target) { mergeScan(target, scan, threads); });
 }
@@ -88,13 +94,14 @@ std::int64_t MapAccess::timeIn(const SemanticOcTree& map, double seconds) {
 
 void MapAccess::ageUntil(SemanticOcTree& map, std::int64_t time) {
   if (time == map.m_clock) return;
+  checkMayChange(map);
   std::vector<int> steps;
   for (int id = 0; id <= map.numClasses(); ++id)
     steps.push_back(
         decaySteps(map.classes().halfLife(static_cast<ClassId>(id)), map.m_clock, time));
+  map.m_clock = time;  // first, for tiles' files
   if (!map.empty() && std::any_of(steps.begin(), steps.end(), [](int n) { return n > 0; }))
     change(map, [&](const MergeTarget& target) { decay(target, steps); });
-  map.m_clock = time;
 }
 
 }  // namespace semantic_octree

@@ -18,19 +18,17 @@ NodeStore::NodeStore(const NodeStore& o, std::size_t stateBytes) : NodeStore(sta
   m_records.copy(o.m_records);
   m_root = o.m_root;
   m_arenas = o.m_arenas;
-  m_tiles = o.m_tiles;
-  m_awayNodes = o.m_awayNodes;
-  m_awayInner = o.m_awayInner;
   for (NodeArena& arena : m_arenas) arena.m_store = this;
 }
 
-std::unique_ptr<NodeStore> NodeStore::frame(std::size_t stateBytes) const {
-  auto frame = std::make_unique<NodeStore>(stateBytes);
-  frame->arena(0).copyFrame(*this, m_root, frame->m_root);
-  frame->m_tiles = m_tiles;
-  frame->m_awayNodes = m_awayNodes;
-  frame->m_awayInner = m_awayInner;
-  return frame;
+std::unique_ptr<NodeStore> NodeStore::copy(std::size_t stateBytes, Tiles tiles) const {
+  auto copy = std::make_unique<NodeStore>(stateBytes);
+  copy->arena(0).copy(*this, m_root, copy->m_root, tiles);
+  if (tiles == Tiles::ComeIn) return copy;
+  copy->m_tiles = m_tiles;
+  copy->m_awayNodes = m_awayNodes;
+  copy->m_awayInner = m_awayInner;
+  return copy;
 }
 
 NodeArena& NodeStore::arena(int i) {
@@ -197,10 +195,14 @@ void NodeArena::remove(Slot& known) {
   known = Slot();
 }
 
-void NodeArena::copyFrame(const NodeStore& from, const Slot& source, Slot& copy) {
+void NodeArena::copy(const NodeStore& from, const Slot& source, Slot& copy,
+                     NodeStore::Tiles tiles) {
+  if (tiles == NodeStore::Tiles::ComeIn) from.bring(source);
   if (source.isLeaf()) {
     createLeaf(copy, source.value);
     if (source.kind == Kind::LeafWithRecord) setRecord(copy, from.record(source));
+  } else if (source.kind == Kind::Block) {
+    createBlock(copy, from.contentOf(from.block(source)));
   } else if (source.isInner()) {
     Octant& octant = createOctant(copy);
     copy.value = source.value;
@@ -208,8 +210,10 @@ void NodeArena::copyFrame(const NodeStore& from, const Slot& source, Slot& copy)
     const Octant& children = from.octant(source);
     if (source.kind == Kind::Away) octant = children;
     for (int i = 0; i < 8 && source.kind == Kind::Octant; ++i)
-      copyFrame(from, children.slots[i], octant.slots[i]);
+      this->copy(from, children.slots[i], octant.slots[i], tiles);
   }
+  if (source.isInner() && from.stateBytes() == m_store->stateBytes())
+    std::copy_n(from.state<std::byte>(source), from.stateBytes(), m_store->state<std::byte>(copy));
 }
 
 bool NodeArena::prune(Slot& inner) {

@@ -1,5 +1,7 @@
 #include "ScanMerger.h"
 
+#include <semantic_octree/store/BlockUpdate.h>
+
 #include <atomic>
 
 #include "Parallel.h"
@@ -19,6 +21,11 @@ void forEachTouchedChild(const Scan& scan, const ScanCube& cube, F f) {
   }
 }
 
+std::unique_ptr<const FusionRule> ruleFor(const MergeTarget& target, const Scan& scan) {
+  if (target.rule) return target.rule->trusting(scan.labels());
+  return std::make_unique<FilterRule<ClassFilter<float>>>(target.filter.trusting(scan.labels()));
+}
+
 }  // namespace
 
 bool ScanMerger::merge(const ScanCube& cube) {
@@ -36,12 +43,12 @@ bool ScanMerger::merge(const ScanCube& cube) {
 
 ScanMerger::Whole ScanMerger::updateWhole(Slot& slot, bool allFree, bool anyHit) {
   if (anyHit || !m_nodes.pruning || slot.isInner()) return Whole::Descend;
-  if (slot.kind == Slot::Kind::Leaf && slot.value <= m_voxels.lowest())
+  if (slot.kind == Slot::Kind::Leaf && slot.value <= m_lowest)
     return Whole::Unchanged;  // free for certain, and seen free once more
   if (!allFree) return Whole::Descend;
   const bool isNew = !slot.isKnown();
   if (isNew) m_nodes.arena.createLeaf(slot, 0);
-  return m_voxels.miss(slot) || isNew ? Whole::Changed : Whole::Unchanged;
+  return m_voxels->miss(slot) || isNew ? Whole::Changed : Whole::Unchanged;
 }
 
 Octant& ScanMerger::childrenOf(Slot& slot) {
@@ -72,7 +79,7 @@ bool ScanMerger::mergeBlock(const ScanCube& cube, const BlockScan& scan) {
   Block& block = wasInner         ? m_nodes.store.block(slot)
                  : slot.isKnown() ? m_nodes.arena.expandToBlock(slot)
                                   : m_nodes.arena.createBlock(slot);
-  const auto result = m_voxels.update(block, scan);
+  const auto result = m_voxels->update(block, scan);
   return m_nodes.finish(slot, cube.cell, result.changed || !wasInner, result.reshaped || !wasInner);
 }
 
@@ -96,9 +103,9 @@ bool ScanMerger::finishAbove(const ScanCube& cube, const std::vector<char>& chan
 }
 
 void mergeScan(const MergeTarget& target, const Scan& scan, int threads) {
-  const ClassFilter<float> filter = target.filter.trusting(scan.labels());
+  const auto rule = ruleFor(target, scan);
   std::deque<ScanMerger> mergers;
-  for (int i = 0; i < threads; ++i) mergers.emplace_back(target, filter, scan, i);
+  for (int i = 0; i < threads; ++i) mergers.emplace_back(target, *rule, scan, i);
   const ScanCube whole{&target.store.root(), Cell()};
   std::vector<ScanCube> parts;
   mergers[0].collect(whole, parts);

@@ -1,11 +1,10 @@
 #pragma once
-#include <semantic_octree/ClassFilter.h>
+#include <semantic_octree/store/FusionRule.h>
 #include <semantic_octree/store/NodeEditor.h>
 #include <semantic_octree/store/Scan.h>
 
+#include <memory>
 #include <vector>
-
-#include "BlockUpdate.h"
 
 namespace semantic_octree {
 
@@ -26,13 +25,13 @@ struct ScanCube {
  * one and pruning. */
 class ScanMerger {
  public:
-  /** \param filter the target's, for this scan's labels \param thread number of the thread that it
+  /** \param rule the target's, for this scan's labels \param thread number of the thread that it
    * works in */
-  ScanMerger(const MergeTarget& target, const ClassFilter<float>& filter, const Scan& scan,
-             int thread)
+  ScanMerger(const MergeTarget& target, const FusionRule& rule, const Scan& scan, int thread)
       : m_nodes(target, thread),
         m_scan(scan),
-        m_voxels(target.store, m_nodes.arena, filter, target.pruning) {}
+        m_voxels(rule.begin(target.store, m_nodes.arena, target.pruning)),
+        m_lowest(m_voxels->lowest()) {}
 
   /** \return whether anything changed */
   bool merge(const ScanCube& cube);
@@ -51,7 +50,8 @@ class ScanMerger {
 
   NodeEditor m_nodes;
   const Scan& m_scan;
-  BlockUpdate m_voxels;
+  std::unique_ptr<BlockFusion> m_voxels;
+  Units m_lowest;  ///< see BlockFusion
 };
 
 /** Merges a scan into the whole tree. The cubes of one level are shared among the threads, then the

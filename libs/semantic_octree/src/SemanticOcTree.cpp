@@ -37,16 +37,20 @@ SemanticOcTree::~SemanticOcTree() = default;
 
 SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
     : SemanticOcTree(o.m_resolution, o.m_classes, o.m_parameters) {
-  MapAccess::checkNotInTiles(o);
+  const NodeStore& nodes = o.store();
+  if (nodes.tiles()) nodes.tiles()->checkFits({});
   m_pruning = o.m_pruning;
   m_clock = o.m_clock;
+  m_rule = o.m_rule;
   if (o.m_observer) m_observer = o.m_observer->clone();
-  m_store = std::make_unique<NodeStore>(o.store(), o.store().stateBytes());
+  m_store = nodes.tiles() ? nodes.copy(nodes.stateBytes(), NodeStore::Tiles::ComeIn)
+                          : std::make_unique<NodeStore>(nodes, nodes.stateBytes());
 }
 
 SemanticOcTree::SemanticOcTree(SemanticOcTree&& o)
     : SemanticOcTree(o.m_resolution, o.m_classes, o.m_parameters) {
   m_pruning = o.m_pruning;
+  m_rule = o.m_rule;
   swap(o);
 }
 
@@ -60,6 +64,7 @@ void SemanticOcTree::swap(SemanticOcTree& o) {
   std::swap(m_classes, o.m_classes);
   std::swap(m_parameters, o.m_parameters);
   std::swap(m_filter, o.m_filter);
+  std::swap(m_rule, o.m_rule);
   std::swap(m_pruning, o.m_pruning);
   std::swap(m_clock, o.m_clock);
   std::swap(m_store, o.m_store);
@@ -80,9 +85,13 @@ bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
 bool SemanticOcTree::isReadOnly() const { return store().tiles() && !store().tiles()->mayChange(); }
 
 void SemanticOcTree::clear() {
-  MapAccess::checkNotInTiles(*this);
-  MapAccess::setStore(*this,
-                      std::make_unique<NodeStore>(m_observer ? m_observer->stateBytes() : 0));
+  MapAccess::checkMayChange(*this);
+  auto empty = std::make_unique<NodeStore>(m_observer ? m_observer->stateBytes() : 0);
+  if (m_store && m_store->tiles()) {
+    m_store->tiles()->clear();
+    empty->setTiles(m_store->tiles());
+  }
+  MapAccess::setStore(*this, std::move(empty));
   m_clock = 0;
 }
 
@@ -94,7 +103,8 @@ void SemanticOcTree::setPruning(bool on) {
 NodeStore& SemanticOcTree::store() const {
   if (!m_store)
     throw std::logic_error(
-        "the map is broken: memory ran out while a scan was inserted; clear it or load it anew");
+        "the map is broken: memory ran out, or a file failed, while it changed; clear it or load "
+        "it anew");
   return *m_store;
 }
 
@@ -112,7 +122,7 @@ void SemanticOcTree::age(double seconds) {
 }
 
 void SemanticOcTree::setHalfLives(const ClassTable& table) {
-  MapAccess::checkNotInTiles(*this);
+  MapAccess::checkMayChange(*this);
   for (int i = 1; i <= numClasses(); ++i) {
     const auto id = static_cast<ClassId>(i);
     if (const auto same = table.find(m_classes.name(id)))

@@ -27,7 +27,10 @@ SemanticOcTree TreeReader::getHeader() {
 
 void TreeReader::readTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant,
                           const Cell& cell) {
-  if (getHeader() != emptyLike(tree))
+  SemanticOcTree written = getHeader();
+  written.setHalfLives(tree.classes());  // the map's now: it may have aged since
+  MapAccess::setClock(written, MapAccess::clock(tree));
+  if (written != emptyLike(tree))
     throw std::runtime_error("it is of a map with another resolution, other classes or parameters");
   begin(tree, arena);
   const std::uint64_t others = m_store->numNodes() - static_cast<std::uint64_t>(cell.depth) - 1;

@@ -1,4 +1,4 @@
-#include "UnitLanes.h"
+#include <semantic_octree/store/UnitLanes.h>
 
 #include <semantic_octree/store/Lanes.h>
 

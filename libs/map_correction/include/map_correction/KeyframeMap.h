@@ -61,7 +61,8 @@ class KeyframeMap {
 
   /** Gives keyframes other poses, all at once: tiles that several of them see are made anew once.
    * Of several poses of a keyframe the last one counts. If it fails, the map is as it was, unless
-   * memory ran out at the end; look at SemanticOcTree::isBroken().
+   * memory ran out at the end, or a tile's file fails (MapFolder); look at
+   * SemanticOcTree::isBroken().
    * \throw std::out_of_range no such keyframe, or a sensor would be outside of the map. */
   CorrectionReport move(const std::vector<KeyframePose>& poses);
   /** Takes a keyframe's scans out of the map, as if they had never been.

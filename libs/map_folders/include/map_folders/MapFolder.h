@@ -42,8 +42,13 @@ struct MapFolderOptions {
  *   first (iterators, files, sums, the abstraction's measures and compressedMap()) can do so;
  *   Abstraction::leaves() tells cubes, but its nodes may be gone.
  * - Reading is changing: not from two threads, and it may throw std::runtime_error naming a file.
- * - It cannot be copied, cleared, corrected (KeyframeMap), or have half-lives (ClassTable), and has
- *   to stay where it is.
+ * - What goes through all of it reads all tiles, and writes those that it changes: each step of a
+ *   half-life (SemanticOcTree::age()), corrections (KeyframeMap) where they move something. If a
+ *   file fails then, the map is broken, and the folder what it was when it was last saved.
+ * - A copy is a map in memory. It is made if there is memory for all of it: std::runtime_error says
+ *   how much it takes.
+ * - After clear() the next save() replaces what was there, as with Access::Replace.
+ * - It has to stay where it is.
  * - If setAbstraction() cannot read a tile, the map keeps no abstraction. If that happens to what
  *   Abstraction changes (setWeights() and the like), setAbstraction() has to be called anew.
  *
@@ -76,9 +81,10 @@ class MapFolder {
   /** An empty map like that of a folder. \throw std::runtime_error as loadTree() */
   static SemanticOcTree emptyMap(const std::filesystem::path& folder);
 
-  /** Makes a map what the folder says. For writing, the folder may be new.
-   * \param map empty, like that of the folder; must outlive this
-   * \throw std::invalid_argument the map is not empty, has half-lives, or bad options; a draft
+  /** Makes a map what the folder says, also its clock. For writing, the folder may be new.
+   * \param map empty, like that of the folder, but for half-lives: those of its classes hold; must
+   * outlive this
+   * \throw std::invalid_argument the map is not empty, or is in a folder; bad options; a draft
    * without a place
    * \throw std::runtime_error naming the folder or file: it cannot be read or written, is of a map
    * with another resolution, other classes or parameters, or another process writes into it. */

@@ -19,6 +19,7 @@ namespace semantic_octree {
 using semantic_types::ClassTable;
 using semantic_types::LabeledCloud;
 
+class FusionRule;
 class MapFollower;
 class NodeObserver;
 class NodeStore;
@@ -52,9 +53,9 @@ struct RayHit {
  * without a node is unknown. The tree changes through the functions below only. Not thread safe,
  * except for reading from several threads.
  *
- * Functions that fail leave the map as it was. Only insert() may lose it: if memory runs out
- * halfway through a scan, all that is left is a broken map, of which every function throws
- * std::logic_error until clear(). MapFolder keeps parts of a map on disk. */
+ * Functions that fail leave the map as it was. Only insert() and age() may lose it: if memory runs
+ * out halfway, all that is left is a broken map, of which every function throws std::logic_error
+ * until clear(). MapFolder keeps parts of a map on disk. */
 class SemanticOcTree {
  public:
   using Node = SemanticOcTreeNode;
@@ -186,9 +187,10 @@ class SemanticOcTree {
   /** Classes take the half-lives that a table has for their names; free space, too. Classes that it
    * does not have keep theirs. */
   void setHalfLives(const ClassTable& table);
-  /** Memory ran out during an insertion. */
+  /** Memory ran out, or a tile's file failed (MapFolder), while it changed. */
   bool isBroken() const { return m_store == nullptr; }
-  /** Removes all nodes; the clock begins anew. */
+  /** Removes all nodes; the clock begins anew.
+   * \throw std::logic_error (whatever changes the map) isReadOnly() */
   void clear();
   /** A new reader of what changes: which tiles. (Of leaves of the compressed tree: LeafFollower.)
    */
@@ -207,6 +209,7 @@ class SemanticOcTree {
   ClassTable m_classes;
   FilterParameters m_parameters;
   ClassFilter<float> m_filter;
+  std::shared_ptr<const FusionRule> m_rule;  ///< null: the filter
   bool m_pruning = true;
   std::int64_t m_clock = 0;                  ///< ns; stands still while nothing has a half-life
   std::unique_ptr<NodeStore> m_store;        ///< null: the map is broken

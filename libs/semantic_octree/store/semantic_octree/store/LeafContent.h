@@ -27,6 +27,17 @@ std::vector<double> classShares(const Node& node, int numClasses);
  * by classShares(). */
 LeafContent contentOf(const Node& node, int numClasses);
 
+/** Whose half-life a leaf has: its likeliest class's, or kNoClass if it is free; none: it is
+ * occupied, and no class is likelier than the others. */
+inline std::optional<ClassId> decaysAs(Units value, const ClassRecord* record, int numClasses) {
+  if (value <= 0) return kNoClass;
+  if (!record || record->count == 0) return std::nullopt;
+  const bool isLikeliest = record->count == numClasses || record->logOdds[0] > record->rest;
+  return isLikeliest ? std::optional<ClassId>(record->ids[0]) : std::nullopt;
+}
+/** Of all leaves below an inner node that is in memory with all that is below. */
+ClassSet halfLivesBelow(const NodeStore& store, const Slot& inner, int numClasses);
+
 struct ClassLogOdds {
   double logOdds;
   ClassId id;

@@ -19,6 +19,11 @@ class MapAccess {
   }
   static const ClassFilter<float>& filter(const SemanticOcTree& map) { return map.m_filter; }
 
+  /** What observations make of voxels; null: the class filter. Copies of the map, and maps that are
+   * like it, have it, too; files do not: whoever goes on with one sets it anew.
+   * \throw std::logic_error the map is not empty. */
+  static void setRule(SemanticOcTree& map, std::shared_ptr<const FusionRule> rule);
+
   /** Null: nobody keeps anything of inner nodes. */
   static NodeObserver* observer(const SemanticOcTree& map) { return map.m_observer.get(); }
   /** Has it compute all that it keeps. Of a map in tiles they are read, one by one: if that fails,
@@ -33,15 +38,16 @@ class MapAccess {
   /** At their next look, readers are told everything. */
   static void tellAll(SemanticOcTree& map);
 
-  /** \throw std::logic_error the map is in a folder of tiles. */
-  static void checkNotInTiles(const SemanticOcTree& map);
+  /** \throw std::logic_error the map is in a folder of tiles that was opened to be read. */
+  static void checkMayChange(const SemanticOcTree& map);
   /** Whoever changes nodes does it in f(MergeTarget): if it fails, the map is broken. */
   template <typename F>
   static void change(SemanticOcTree& map, const F& f) {
+    checkMayChange(map);
     const auto log = map.m_tileLog.lock();
     TileLog* const touched = log && log->isRead() ? log.get() : nullptr;
-    const MergeTarget target{map.store(), map.m_filter, map.m_observer.get(), touched,
-                             map.m_pruning};
+    const MergeTarget target{map.store(),          map.m_filter, map.m_rule.get(),
+                             map.m_observer.get(), touched,      map.m_pruning};
     try {
       f(target);
     } catch (...) {

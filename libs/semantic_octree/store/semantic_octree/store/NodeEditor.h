@@ -4,10 +4,14 @@
 
 namespace semantic_octree {
 
+class FusionRule;
+
 /** A tree that is changed, and who has to know. */
 struct MergeTarget {
   NodeStore& store;
   const ClassFilter<float>& filter;
+  /** What observations make of voxels; null: the filter. */
+  const FusionRule* rule;
   /** Keeps inner nodes' bookkeeping up to date; null: there is none. */
   NodeObserver* observer;
   /** Is told where something changed; null: nobody wants to know. */

@@ -4,8 +4,10 @@
 #include <semantic_octree/store/IndexPool.h>
 
 #include <algorithm>
+#include <bitset>
 #include <deque>
 #include <memory>
+#include <optional>
 
 namespace semantic_octree {
 
@@ -95,6 +97,9 @@ struct BlockContent {
 class NodeArena;
 class Scan;
 
+/** Class ids; kNoClass is free space. */
+using ClassSet = std::bitset<256>;
+
 /** Where the children of nodes are that are away (see MapFolder). */
 class TileSource {
  public:
@@ -105,12 +110,20 @@ class TileSource {
   virtual void prepare(const Scan& scan) = 0;
   /** Makes all nodes go away that may. */
   virtual void sendAway() = 0;
+  /** Forgets all nodes. */
+  virtual void clear() = 0;
   virtual bool mayChange() const = 0;
   /** Depth of the nodes that go away. */
   virtual int depth() const = 0;
-  /** A node at that depth, which was not there, is an inner node now, with all that is below.
-   * Others may go away for it. */
-  virtual void wasBuilt(const Cell& cell) = 0;
+  /** An inner node at that depth has changed, and is as it is to be, with all that is below. Others
+   * may go away for it. */
+  virtual void changed(const Cell& cell) = 0;
+  /** Whether there may be leaves below a node that is away whose half-life is that of one of these.
+   */
+  virtual bool mayHold(const Slot& away, const ClassSet& classes) const = 0;
+  /** \param available bytes of memory; without, those that the system has left
+   * \throw std::runtime_error naming the bytes that the map needs as a whole, if these are more */
+  virtual void checkFits(std::optional<std::size_t> available) const = 0;
 };
 
 /** Memory of a tree: nodes, class records, bookkeeping of inner nodes.
@@ -124,9 +137,13 @@ class NodeStore {
   /** A copy with room for this bookkeeping (copied if both have the same size). */
   NodeStore(const NodeStore& o, std::size_t stateBytes);
   NodeStore(const NodeStore&) = delete;
-  /** A copy, without bookkeeping, of a store whose tiles are all away: of the nodes alone, and not
-   * of the memory that is set aside. \param stateBytes that there is room for */
-  std::unique_ptr<NodeStore> frame(std::size_t stateBytes) const;
+  /** What becomes of tiles in a copy. */
+  enum class Tiles {
+    StayAway,  ///< those that are away are away in the copy, too, which has the same source
+    ComeIn     ///< one after the other; the copy is in memory
+  };
+  /** A copy as above of the nodes alone, and not of the memory that is set aside. */
+  std::unique_ptr<NodeStore> copy(std::size_t stateBytes, Tiles tiles) const;
 
   Slot& root() { return m_root; }
   const Slot& root() const { return m_root; }
@@ -157,6 +174,10 @@ class NodeStore {
   /** Has the children of a node in memory, if it has any. */
   void bring(const Slot& slot) const {
     if (slot.kind == Slot::Kind::Away) bringAway(slot);
+  }
+  /** Whoever changes nodes tells it of each that is as it is to be, with all that is below. */
+  void tellChanged(const Slot& slot, const Cell& cell) const {
+    if (m_tiles && cell.depth == m_tiles->depth() && slot.isInner()) m_tiles->changed(cell);
   }
   /** Counts nodes that went away, or came back (negative). */
   void countAway(long nodes, long inner) {
@@ -243,7 +264,7 @@ class NodeArena {
 
  private:
   friend class NodeStore;
-  void copyFrame(const NodeStore& from, const Slot& source, Slot& copy);
+  void copy(const NodeStore& from, const Slot& source, Slot& copy, NodeStore::Tiles tiles);
   bool pruneOctant(Slot& inner);
   bool pruneBlock(Slot& inner);
   bool childrenAgree(const Octant& octant) const;

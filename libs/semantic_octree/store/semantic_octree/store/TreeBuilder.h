@@ -19,6 +19,7 @@ class TreeBuilder {
   /** A map in a folder of tiles that is open for writing sends tiles away meanwhile. */
   template <typename Cursor>
   static void fill(SemanticOcTree& map, const Cursor& root, Merge merge = Merge::AsTheMapDoes) {
+    MapAccess::checkMayChange(map);
     MapAccess::tellAll(map);
     NodeStore& store = MapAccess::store(map);
     TreeBuilder(store, map.pruning(), merge).build(store.root(), root, Cell());
@@ -33,8 +34,8 @@ class TreeBuilder {
 
  private:
   TreeBuilder(NodeStore& store, bool pruning, Merge merge)
-      : m_arena(store.arena(0)),
-        m_tiles(store.tiles()),
+      : m_store(store),
+        m_arena(store.arena(0)),
         m_allowsLargeLeaves(pruning),
         m_merges(pruning && merge == Merge::AsTheMapDoes) {}
 
@@ -47,7 +48,7 @@ class TreeBuilder {
       buildBlock(slot, cursor);
     else
       buildChildren(slot, cursor, cell);
-    if (m_tiles && cell.depth == m_tiles->depth() && slot.isInner()) m_tiles->wasBuilt(cell);
+    m_store.tellChanged(slot, cell);
   }
 
   template <typename Cursor>
@@ -89,8 +90,8 @@ class TreeBuilder {
     if (m_merges) content.mergeOctant(octant);
   }
 
+  NodeStore& m_store;
   NodeArena& m_arena;
-  TileSource* m_tiles;
   bool m_allowsLargeLeaves, m_merges;
 };
 

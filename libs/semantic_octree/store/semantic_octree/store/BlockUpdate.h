@@ -1,0 +1,210 @@
+#pragma once
+#include <semantic_octree/ClassFilter.h>
+#include <semantic_octree/store/FusionRule.h>
+#include <semantic_octree/store/UnitLanes.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace semantic_octree {
+
+/** A filter of single voxels, applied to a block of them at once.
+ * \tparam Filter has the functions of ClassFilter<float> that are called below */
+template <typename Filter>
+class BlockUpdate final : public BlockFusion {
+ public:
+  BlockUpdate(NodeStore& store, NodeArena& arena, const Filter& filter, bool pruning)
+      : m_store(store),
+        m_arena(arena),
+        m_filter(filter),
+        m_pruning(pruning),
+        m_miss(toUnits(filter.missIncrement())),
+        m_lowest(toUnits(filter.lowestOccupancy())),
+        m_highest(toUnits(filter.highestOccupancy())) {}
+
+  bool miss(Slot& leaf) override;
+  Units lowest() const override { return m_lowest; }
+  Result update(Block& block, const BlockScan& scan) override;
+
+ private:
+  /** Octants that are leaves with a record, and are not seen free as a whole, get a record for each
+   * voxel; voxels that are hit with a label get one. */
+  void makeRoomForRecords(Block& block, const BlockScan& scan);
+  void hit(Block& block, const BlockScan& scan);
+  void hitVoxel(Block& block, int voxel, bool isNew, std::uint32_t rank, const HitVotes& votes);
+  void missRecords(Block& block, VoxelBits free);
+  /** \return the occupancy; `isCertain`: the record says no more than that */
+  Units missRecord(ClassRecord& record, bool& isCertain) const;
+  void mergeOctants(Block& block, VoxelBits touched);
+  bool voxelsAgree(const Block& block, int octant) const;
+
+  NodeStore& m_store;
+  NodeArena& m_arena;
+  const Filter& m_filter;
+  bool m_pruning;
+  Units m_miss, m_lowest, m_highest;
+  /** Of the block at work. */
+  bool m_recordsChanged = false;
+  VoxelBits m_superfluous = 0;  ///< records to be dropped
+  VoxelBits m_fresh = 0;        ///< voxels whose record is not set yet
+};
+
+template <typename Filter>
+bool BlockUpdate<Filter>::miss(Slot& leaf) {
+  const Slot before = leaf;
+  if (leaf.kind != Slot::Kind::LeafWithRecord) {
+    leaf.value = toUnits(m_filter.occupancyAfterMiss(fromUnits(leaf.value)));
+    return leaf.value != before.value;
+  }
+  bool isCertain = false;
+  ClassRecord& record = m_store.record(leaf);
+  const ClassRecord recordBefore = record;
+  leaf.value = missRecord(record, isCertain);
+  const bool changed = leaf.value != before.value || record != recordBefore || isCertain;
+  if (isCertain) m_arena.dropRecord(leaf);
+  return changed;
+}
+
+template <typename Filter>
+Units BlockUpdate<Filter>::missRecord(ClassRecord& record, bool& isCertain) const {
+  Belief belief = record.belief();
+  m_filter.miss(belief);
+  record = ClassRecord::of(belief);
+  const float uniform = m_filter.occupancyOfUniform(belief.rest);
+  isCertain = belief.isUniform() && uniform <= m_filter.lowestOccupancy();
+  return toUnits(isCertain ? uniform : m_filter.occupancyOf(belief));
+}
+
+template <typename Filter>
+auto BlockUpdate<Filter>::update(Block& block, const BlockScan& scan) -> Result {
+  const Block before = block;
+  m_recordsChanged = false;
+  m_superfluous = m_fresh = 0;
+  const VoxelBits touched = scan.touched();
+  makeRoomForRecords(block, scan);
+  missWhere(block.values, scan.free, {m_miss, m_lowest, m_highest});
+  block.known |= touched;
+  if (scan.hit) hit(block, scan);
+  if (block.recorded & scan.free) missRecords(block, scan.free);
+  if (m_pruning) mergeOctants(block, touched);
+  m_arena.setRecorded(block, block.recorded & ~m_superfluous);
+  const bool reshaped = block.known != before.known || block.leafOctants != before.leafOctants;
+  if (reshaped) m_arena.recount(before.count(), block.count());
+  const bool changed = reshaped || m_recordsChanged || block.recorded != before.recorded ||
+                       !std::equal(before.values, before.values + 64, block.values);
+  return {changed, reshaped};
+}
+
+template <typename Filter>
+void BlockUpdate<Filter>::makeRoomForRecords(Block& block, const BlockScan& scan) {
+  VoxelBits room = block.recorded, opened = 0;
+  const VoxelBits touched = scan.touched();
+  for (int o = 0; o < 8; ++o) {
+    if (!block.isLeafOctant(o) || !octantOf(touched, o) || octantOf(scan.free, o) == 0xff) continue;
+    if (block.hasRecord(8 * o)) opened |= VoxelBits(0xff) << 8 * o;
+    block.leafOctants &= static_cast<std::uint8_t>(~(1u << o));
+  }
+  room |= opened;
+  std::uint32_t rank = scan.firstHit;
+  for (VoxelBits bits = scan.hit; bits; bits &= bits - 1, ++rank)
+    if (scan.votes.softLabelOf(rank) || scan.votes.hasVotes(rank)) room |= bits & -bits;
+  if (room == block.recorded) return;
+  m_fresh = room & ~block.recorded & ~opened;
+  m_arena.setRecorded(block, room);
+  for (; opened; opened &= opened - 1) {
+    const int voxel = __builtin_ctzll(opened);
+    if (voxel % 8 != 0) m_store.record(block, voxel) = m_store.record(block, voxel & ~7);
+  }
+}
+
+template <typename Filter>
+void BlockUpdate<Filter>::hit(Block& block, const BlockScan& scan) {
+  std::uint32_t rank = scan.firstHit;
+  for (VoxelBits bits = scan.hit; bits; bits &= bits - 1, ++rank)
+    hitVoxel(block, __builtin_ctzll(bits), m_fresh & bits & -bits, rank, scan.votes);
+}
+
+template <typename Filter>
+void BlockUpdate<Filter>::hitVoxel(Block& block, int voxel, bool isNew, std::uint32_t rank,
+                                   const HitVotes& votes) {
+  Units& value = block.values[voxel];
+  const float before = value == kUnknown ? 0.f : fromUnits(value);
+  if (!(block.recorded & (VoxelBits(1) << voxel))) {
+    value = toUnits(m_filter.occupancyAfterUnlabeledHit(before));
+    return;
+  }
+  ClassRecord& record = m_store.record(block, voxel);
+  Belief belief = isNew ? m_filter.uniform(before) : record.belief();
+  if (const float* soft = votes.softLabelOf(rank)) {
+    m_filter.hit(belief, soft);
+  } else if (votes.hasVotes(rank)) {
+    const HitVotes::Result hard = votes.votesOf(rank);
+    m_filter.hit(belief, hard.votes.data(), hard.numVoted);
+  } else {
+    m_filter.hit(belief);
+  }
+  const ClassRecord after = ClassRecord::of(belief);
+  if (!isNew && after == record) return;
+  m_recordsChanged = true;
+  record = after;
+  value = toUnits(m_filter.occupancyOf(belief));
+}
+
+template <typename Filter>
+void BlockUpdate<Filter>::missRecords(Block& block, VoxelBits free) {
+  ClassRecord* const records = m_store.recordsOf(block);
+  for (VoxelBits bits = block.recorded & free; bits; bits &= bits - 1) {
+    const int voxel = __builtin_ctzll(bits);
+    bool isCertain = false;
+    ClassRecord& record = records[block.rankOfRecord(voxel)];
+    const ClassRecord before = record;
+    const Units value = missRecord(record, isCertain);
+    std::fill_n(block.values + voxel, block.isLeafOctant(voxel / 8) ? 8 : 1, value);
+    if (isCertain) m_superfluous |= (VoxelBits(1) << voxel);
+    m_recordsChanged |= record != before;
+  }
+}
+
+template <typename Filter>
+bool BlockUpdate<Filter>::voxelsAgree(const Block& block, int octant) const {
+  const int first = 8 * octant;
+  if (!eightEqual(block.values + first)) return false;
+  const std::uint8_t recorded = octantOf(block.recorded & ~m_superfluous, octant);
+  if (recorded == 0) return true;
+  if (recorded != 0xff) return false;
+  const ClassRecord* records = &m_store.record(block, first);
+  return std::all_of(records + 1, records + 8,
+                     [&](const ClassRecord& r) { return r == records[0]; });
+}
+
+template <typename Filter>
+void BlockUpdate<Filter>::mergeOctants(Block& block, VoxelBits touched) {
+  for (int o = 0; o < 8; ++o) {
+    if (!octantOf(touched, o) || block.isLeafOctant(o)) continue;
+    if (block.knownIn(o) != 0xff || !voxelsAgree(block, o)) continue;
+    m_superfluous |= VoxelBits(0xfe) << 8 * o;  // the first voxel's record is that of all
+    block.leafOctants |= static_cast<std::uint8_t>(1u << o);
+  }
+}
+
+extern template class BlockUpdate<ClassFilter<float>>;
+
+/** A rule that is a filter of single voxels. */
+template <typename Filter>
+class FilterRule : public FusionRule {
+ public:
+  explicit FilterRule(Filter filter) : m_filter(std::move(filter)) {}
+
+  std::unique_ptr<const FusionRule> trusting(const LabelReliability& labels) const override {
+    return std::make_unique<FilterRule>(m_filter.trusting(labels));
+  }
+  std::unique_ptr<BlockFusion> begin(NodeStore& store, NodeArena& arena,
+                                     bool pruning) const override {
+    return std::make_unique<BlockUpdate<Filter>>(store, arena, m_filter, pruning);
+  }
+
+ private:
+  Filter m_filter;
+};
+
+}  // namespace semantic_octree

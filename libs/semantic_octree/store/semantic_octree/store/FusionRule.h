@@ -1,0 +1,48 @@
+#pragma once
+#include <semantic_octree/store/HitVotes.h>
+#include <semantic_octree/store/NodeStore.h>
+
+#include <memory>
+
+namespace semantic_octree {
+
+/** What a scan says of a block's voxels. */
+struct BlockScan {
+  VoxelBits free, hit;  ///< no voxel is both
+  const HitVotes& votes;
+  std::uint32_t firstHit;  ///< rank of the first hit voxel; the others follow in Morton order
+
+  VoxelBits touched() const { return free | hit; }
+};
+
+/** Puts what a scan says into nodes, in one thread. */
+class BlockFusion {
+ public:
+  virtual ~BlockFusion() = default;
+  /** A leaf without children that was seen free as a whole. \return whether it changed */
+  virtual bool miss(Slot& leaf) = 0;
+  /** A leaf without a class record, of this value or below, stays what it is in further misses. */
+  virtual Units lowest() const = 0;
+
+  struct Result {
+    bool changed;   ///< anything
+    bool reshaped;  ///< which voxels are known, or which octants are leaves
+  };
+  virtual Result update(Block& block, const BlockScan& scan) = 0;
+};
+
+/** What observations make of voxels. What a voxel is, is for all rules the same: log-odds of its
+ * occupancy, and a class record where labels were seen. (FilterRule makes one of a filter of single
+ * voxels.) */
+class FusionRule {
+ public:
+  virtual ~FusionRule() = default;
+  /** The same for a scan whose labels are trusted otherwise. */
+  virtual std::unique_ptr<const FusionRule> trusting(const LabelReliability& labels) const = 0;
+  /** One thread's part; the rule must outlive it. \param pruning octants whose voxels agree become
+   * leaves */
+  virtual std::unique_ptr<BlockFusion> begin(NodeStore& store, NodeArena& arena,
+                                             bool pruning) const = 0;
+};
+
+}  // namespace semantic_octree
