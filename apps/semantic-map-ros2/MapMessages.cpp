@@ -98,7 +98,9 @@ void MapMessages::read(const OcTreeKey& tile) {
 }
 
 ros2::Point MapMessages::centerOf(const Voxel& v) const {
-  const auto center = [this](int key) { return semantic_octree::centerOf(key, m_map.getResolution()); };
+  const auto center = [this](int key) {
+    return semantic_octree::centerOf(key, m_map.getResolution());
+  };
   return {center(v.x), center(v.y), center(v.z)};
 }
 
@@ -161,8 +163,8 @@ void MapMessages::publishPoints(Stamp stamp) {
   const std::vector<std::string> names = {"x", "y", "z", "rgb", "label", "probability"};
   std::vector<ros2::PointField> fields;
   for (std::uint32_t i = 0; i < names.size(); ++i)
-    fields.push_back({ros2::textOf(names[i]), 4 * i,
-                      std::uint8_t(names[i] == "label" ? kUint32 : kFloat32), 1});
+    fields.push_back(
+        {ros2::textOf(names[i]), 4 * i, std::uint8_t(names[i] == "label" ? kUint32 : kFloat32), 1});
   ros2::PointCloud2 message{};
   message.header = ros2::headerOf(stamp, m_frame);
   message.height = 1, message.width = static_cast<std::uint32_t>(points.size());

@@ -56,6 +56,7 @@ void addAll(const strict_files::StrictYaml& yaml, const YAML::Node& map, const s
     const std::string name = prefix + yaml.text(entry.first, "parameter");
     std::string value;
     if (entry.second.IsMap()) {
+      if (!prefix.empty()) yaml.fail(entry.second, name + ": a section within a section");
       addAll(yaml, entry.second, name + ".", folder, source);
       continue;
     }
