@@ -4,8 +4,9 @@
 #include <octomap/OcTree.h>
 #include <semantic_types/ClassColors.h>
 
-#include <cstring>
+#include <algorithm>
 #include <sstream>
+#include <utility>
 
 namespace semantic_map_ros2 {
 
@@ -87,14 +88,18 @@ void MapMessages::read(const OcTreeKey& tile) {
                             state.likeliestClass, probability});
   }
   const std::uint64_t number = numberOf(tile[0], tile[1], tile[2]), block = blockOf(tile);
-  if (voxels.empty() && m_tiles.erase(number) == 0) return;
-  m_changed.insert(block);
-  if (voxels.empty()) {
-    if (m_blocks[block].erase(number), m_blocks[block].empty()) m_blocks.erase(block);
+  std::vector<Voxel>& known = m_tiles[number];
+  const auto same = [](const Voxel& a, const Voxel& b) { return a.looksLike(b); };
+  if (!std::equal(known.begin(), known.end(), voxels.begin(), voxels.end(), same))
+    m_changed.insert(block);
+  known = std::move(voxels);
+  if (!known.empty()) {
+    m_blocks[block].insert(number);
     return;
   }
-  m_tiles[number] = std::move(voxels);
-  m_blocks[block].insert(number);
+  m_tiles.erase(number);
+  if (const auto it = m_blocks.find(block); it != m_blocks.end())
+    if (it->second.erase(number), it->second.empty()) m_blocks.erase(it);
 }
 
 ros2::Point MapMessages::centerOf(const Voxel& v) const {

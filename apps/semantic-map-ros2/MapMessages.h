@@ -31,6 +31,10 @@ class MapMessages {
     std::uint16_t x, y, z;
     ClassId classId;
     float probability;  ///< of the class; without one, of being occupied
+    /** In markers. */
+    bool looksLike(const Voxel& o) const {
+      return x == o.x && y == o.y && z == o.z && classId == o.classId;
+    }
   };
   void follow();
   void read(const octomap::OcTreeKey& tile);

@@ -19,7 +19,7 @@ using std::chrono::steady_clock;
 
 namespace {
 
-constexpr auto kStep = 100ms, kLook = 200ms, kWait = 20ms;
+constexpr auto kStep = 100ms, kLook = 50ms, kWait = 20ms;
 constexpr std::size_t kMostLatencies = 10'000;
 constexpr double kTransformsAge = 1;  // s: with an older one it is not known where the robot is
 
@@ -66,19 +66,23 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
 void MappingNode::run(const StopRequest& stop) {
   while (!stop.pending()) {
     m_queue.wait(kWait);
-    hear();
-    while (!stop.pending() && insertNext()) {
-      look();
-      publish();
-    }
-    look();
-    publish();
+    while (!stop.pending() && insertNext()) serve();
+    serve();
   }
   if (m_driving) m_driving->halt();
   m_endedAt = steady_clock::now();
   while (insertNext()) continue;
   if (m_driving && m_driving->navigator()) m_driving->navigator()->finish();
   m_mapper.finish();
+}
+
+/** What fails costs no map. */
+void MappingNode::serve() try {
+  look();
+  publish();
+} catch (const std::exception& e) {
+  if (m_driving) m_driving->halt();
+  m_complaints.say(strict_files::messageOf(e));
 }
 
 /** What is due whether scans come or not. */

@@ -38,6 +38,7 @@ class MappingNode {
   void insert(const WaitingScan& scan, const Placed& place);
   std::optional<semantic_navigation::RobotState> robotAt(ros2::Stamp stamp) const;
   void hear();
+  void serve();
   void look();
   void publish();
   void publishCorrection();

@@ -18,7 +18,6 @@ namespace {
 
 /** Bytes of the types 1 (int8) to 8 (float64). */
 constexpr std::array<std::size_t, 9> kSizes = {0, 1, 1, 2, 2, 4, 4, 4, 8};
-constexpr int kFloat32 = 7;
 
 /** Reads a field of any type, of points of either byte order. */
 class FieldReader {
@@ -47,7 +46,7 @@ class FieldReader {
         return read<std::int32_t>(point);
       case 6:
         return read<std::uint32_t>(point);
-      case kFloat32:
+      case 7:
         return static_cast<double>(read<float>(point));
       default:
         return read<double>(point);

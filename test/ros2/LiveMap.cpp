@@ -6,9 +6,12 @@
 #include <semantic_octree/TreeFile.h>
 #include <signal.h>
 #include <spawn.h>
-#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 
+#include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
@@ -18,21 +21,21 @@ extern char** environ;
 
 using namespace std::chrono_literals;
 
-/** Their ports lie below those that the system gives away. */
-DomainOfItsOwn::DomainOfItsOwn() {
+/** Their ports lie below those that the system gives away. A name in the abstract name space of
+ * sockets is taken for as long as the socket is open. */
+DomainOfItsOwn::DomainOfItsOwn() : m_lock(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   for (int round = 0; round < 6000; ++round) {
     const int domain = 10 + round % 80;
-    const auto file =
-        std::filesystem::temp_directory_path() / ("mso_dds_domain_" + std::to_string(domain));
-    m_lock = open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-    if (m_lock >= 0 && flock(m_lock, LOCK_EX | LOCK_NB) == 0) {
+    sockaddr_un address{AF_UNIX, {}};
+    const int length = std::snprintf(address.sun_path + 1, 40, "mso_dds_domain_%d", domain);
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
+    if (bind(m_lock, reinterpret_cast<const sockaddr*>(&address), size) == 0) {
       setenv("ROS_DOMAIN_ID", std::to_string(domain).c_str(), 1);
       setenv("ROS_LOCALHOST_ONLY", "1", 1);
       unsetenv("CYCLONEDDS_URI");
       return;
     }
-    if (m_lock >= 0) close(m_lock);
-    std::this_thread::sleep_for(50ms);
+    std::this_thread::sleep_for(10ms);
   }
   throw std::runtime_error("all DDS domains are taken");
 }

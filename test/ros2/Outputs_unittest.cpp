@@ -45,10 +45,17 @@ TEST_F(RoadInGrass, isSeenAsMarkersPointsAndOctomap) {
   see(1);
   ASSERT_TRUE(live->waitFor([&] { return markers.last() && voxels.last() && octomap.last(); }));
   see(2);
-  // Who comes late sees all.
+  // A thing in the air changes one block; who comes late sees all the same.
+  semantic_types::LabeledCloud beam;
+  beam.points = {Eigen::Vector3f(3, 0, -27)};
+  beam.classes = {2};
+  const std::size_t before = markers.all().size();
+  see(3, beam);
+  ASSERT_TRUE(live->waitFor([&] { return markers.all().size() > before; }));
+  EXPECT_LE(markers.last()->markers._length, 4u);
   Heard<ros2::MarkerArray> late(*live, "/semantic_map/markers");
-  std::size_t round = 3;
-  ASSERT_TRUE(live->waitFor([&] { return see(round++), late.last() != nullptr; }));
+  std::size_t round = 4;
+  ASSERT_TRUE(live->waitFor([&] { return see(round++, beam), late.last() != nullptr; }));
   const auto octree = octomap.last();
   ASSERT_EQ(live->end(), kStopped);
   const auto map = live->map();

@@ -50,11 +50,11 @@ class RoadInGrass : public testing::Test {
       }
     return cloud;
   }
-  /** Sends the scan, and waits until the map has it. \param number counts from 1 */
-  void see(std::size_t number) {
+  /** Sends a scan, and waits until the map has it. \param number counts from 1 */
+  void see(std::size_t number, const semantic_types::LabeledCloud& cloud = scan()) {
     const ros2::Stamp stamp = ros2::Stamp(number) * kSecond;
     live->place("map", "base_link", Eigen::Isometry3d::Identity(), stamp);
-    live->send(*points, PointMessage(scan(), "lidar", stamp).message());
+    live->send(*points, PointMessage(cloud, "lidar", stamp).message());
     live->waitForScans(number);
   }
 

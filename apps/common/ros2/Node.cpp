@@ -122,8 +122,13 @@ std::string Node::topic(const std::string& name) const {
 
 std::vector<std::string> Node::look() {
   std::vector<std::string> problems;
-  for (Reader* reader : m_readers) reader->adapt();
+  for (Reader* reader : m_readers) {
+    reader->adapt();
+    reader->sayLosses(problems);
+  }
   lookAtWriters(problems);
+  const auto isSaid = [this](const std::string& what) { return !m_said.insert(what).second; };
+  problems.erase(std::remove_if(problems.begin(), problems.end(), isSaid), problems.end());
   return problems;
 }
 
@@ -135,8 +140,7 @@ void Node::lookAtWriters(std::vector<std::string>& problems) {
     for (const Reader* reader : m_readers) {
       if (!info[0].valid_data || "rt" + reader->m_name != textOf(writer->topic_name)) continue;
       const std::string type = textOf(writer->type_name);
-      if (type == reader->m_type.m_typename || !m_said.insert(reader->m_name + type).second)
-        continue;
+      if (type == reader->m_type.m_typename) continue;
       problems.push_back(reader->m_name + ": somebody writes " + type +
                          ", which is not heard; expected " + reader->m_type.m_typename);
     }
@@ -187,6 +191,15 @@ void Reader::adapt() {
   open();
 }
 
+void Reader::sayLosses(std::vector<std::string>& problems) const {
+  dds_sample_lost_status_t lost;
+  if (dds_get_sample_lost_status(m_reader, &lost) == 0 && lost.total_count > 0)
+    problems.push_back(m_name +
+                       ": messages are lost on the way; a larger net.core.rmem_max of the "
+                       "system, or a reliable writer, helps");
+  if (m_lacksMemory) problems.push_back(m_name + ": messages are lost: memory is short");
+}
+
 void Reader::take(dds_entity_t reader) {
   const auto free = [this](void* m) { dds_sample_free(m, &m_type, DDS_FREE_ALL); };
   for (;;) try {
@@ -198,7 +211,7 @@ void Reader::take(dds_entity_t reader) {
       if (dds_take(reader, &sample, &info, 1, 1) <= 0) return;
       if (info.valid_data) m_onMessage(message);
     } catch (const std::exception&) {
-      ++m_lost;
+      m_lacksMemory = true;
     }
 }
 
