@@ -4,6 +4,7 @@
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ostream>
 
