@@ -4,6 +4,7 @@
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ostream>
 
@@ -87,14 +88,16 @@ void Driving::sayStatus() {
   if (status == Status::Arrived) what = "the robot is there";
   if (status == Status::Nearest) what = "the robot is as near as it can: " + m_navigator->reason();
   if (status == Status::Unreachable) what = "the robot gave up: " + m_navigator->reason();
-  if (!what.empty() && std::exchange(m_said, what) != what) notes() << "Goal: " << what << std::endl;
+  if (!what.empty() && std::exchange(m_said, what) != what)
+    notes() << "Goal: " << what << std::endl;
 }
 
 void Driving::publish(const std::vector<PathPoint>& path, ros2::Stamp stamp) {
   std::vector<geometry_msgs_msg_dds__PoseStamped_> poses;
   const ros2::Header header = ros2::headerOf(stamp, m_frame);
   for (const PathPoint& p : path)
-    poses.push_back({header, {{p.x, p.y, p.z}, {0, 0, std::sin(p.heading / 2), std::cos(p.heading / 2)}}});
+    poses.push_back(
+        {header, {{p.x, p.y, p.z}, {0, 0, std::sin(p.heading / 2), std::cos(p.heading / 2)}}});
   ros2::Path message{};
   message.header = header;
   ros2::refer(message.poses, poses);

@@ -24,7 +24,8 @@ class Driving {
   void setGoal(const mrpt::math::TPose2D& goal);
   /** The map changed: without `drive`, plans anew to the goal, if there is one. */
   void plan(const Eigen::Isometry3d& T_map_robot, ros2::Stamp stamp);
-  /** Ten times a second, with `drive`. \param robot none: it is not known where it is, and stands */
+  /** Ten times a second, with `drive`. \param robot none: it is not known where it is, and stands
+   */
   void step(const std::optional<semantic_navigation::RobotState>& robot, ros2::Stamp stamp);
   /** The robot stands. */
   void halt();

@@ -56,7 +56,8 @@ void GroundGrid::publish(ros2::Stamp stamp, const Eigen::Isometry3d& T_map_robot
     const Column begin = firstColumnOf(tile), end = lastColumnOf(tile);
     for (int y = begin.y; y <= end.y; ++y)
       for (int x = begin.x; x <= end.x; ++x)
-        cells[std::size_t(y - first.y) * width + (x - first.x)] = std::uint8_t(costAt({x, y}, robot));
+        cells[std::size_t(y - first.y) * width + (x - first.x)] =
+            std::uint8_t(costAt({x, y}, robot));
   }
   const double voxel = m_ground.voxelSize();
   ros2::OccupancyGrid message{};

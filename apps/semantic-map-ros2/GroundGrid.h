@@ -17,8 +17,9 @@ class GroundGrid {
  public:
   /** Node and map must outlive it. \param costs by rank */
   GroundGrid(ros2::Node& node, semantic_octree::SemanticOcTree& map,
-             const colored_graph::ClassOrder& order, const semantic_planning::PlannerOptions& options,
-             std::vector<int> costs, std::string frame);
+             const colored_graph::ClassOrder& order,
+             const semantic_planning::PlannerOptions& options, std::vector<int> costs,
+             std::string frame);
 
   /** If anybody reads it. */
   void publish(ros2::Stamp stamp, const Eigen::Isometry3d& T_map_robot);

@@ -4,8 +4,9 @@
 #include <octomap/OcTree.h>
 #include <semantic_types/ClassTable.h>
 
-#include <cstring>
+#include <algorithm>
 #include <sstream>
+#include <utility>
 
 namespace semantic_map_ros2 {
 
@@ -87,18 +88,24 @@ void MapMessages::read(const OcTreeKey& tile) {
                             state.likeliestClass, probability});
   }
   const std::uint64_t number = numberOf(tile[0], tile[1], tile[2]), block = blockOf(tile);
-  if (voxels.empty() && m_tiles.erase(number) == 0) return;
-  m_changed.insert(block);
-  if (voxels.empty()) {
-    if (m_blocks[block].erase(number), m_blocks[block].empty()) m_blocks.erase(block);
+  std::vector<Voxel>& known = m_tiles[number];
+  const auto same = [](const Voxel& a, const Voxel& b) { return a.looksLike(b); };
+  if (!std::equal(known.begin(), known.end(), voxels.begin(), voxels.end(), same))
+    m_changed.insert(block);
+  known = std::move(voxels);
+  if (!known.empty()) {
+    m_blocks[block].insert(number);
     return;
   }
-  m_tiles[number] = std::move(voxels);
-  m_blocks[block].insert(number);
+  m_tiles.erase(number);
+  if (const auto it = m_blocks.find(block); it != m_blocks.end())
+    if (it->second.erase(number), it->second.empty()) m_blocks.erase(it);
 }
 
 ros2::Point MapMessages::centerOf(const Voxel& v) const {
-  const auto center = [this](int key) { return semantic_octree::centerOf(key, m_map.getResolution()); };
+  const auto center = [this](int key) {
+    return semantic_octree::centerOf(key, m_map.getResolution());
+  };
   return {center(v.x), center(v.y), center(v.z)};
 }
 
@@ -161,8 +168,8 @@ void MapMessages::publishPoints(Stamp stamp) {
   const std::vector<std::string> names = {"x", "y", "z", "rgb", "label", "probability"};
   std::vector<ros2::PointField> fields;
   for (std::uint32_t i = 0; i < names.size(); ++i)
-    fields.push_back({ros2::textOf(names[i]), 4 * i,
-                      std::uint8_t(names[i] == "label" ? kUint32 : kFloat32), 1});
+    fields.push_back(
+        {ros2::textOf(names[i]), 4 * i, std::uint8_t(names[i] == "label" ? kUint32 : kFloat32), 1});
   ros2::PointCloud2 message{};
   message.header = ros2::headerOf(stamp, m_frame);
   message.height = 1, message.width = static_cast<std::uint32_t>(points.size());

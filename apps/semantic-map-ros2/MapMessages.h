@@ -31,6 +31,10 @@ class MapMessages {
     std::uint16_t x, y, z;
     ClassId classId;
     float probability;  ///< of the class; without one, of being occupied
+    /** In markers. */
+    bool looksLike(const Voxel& o) const {
+      return x == o.x && y == o.y && z == o.z && classId == o.classId;
+    }
   };
   void follow();
   void read(const octomap::OcTreeKey& tile);
@@ -46,9 +50,9 @@ class MapMessages {
   std::unordered_map<std::uint64_t, std::vector<Voxel>> m_tiles;
   /** Tiles by the block that they are in, of those that hold voxels. */
   std::map<std::uint64_t, std::set<std::uint64_t>> m_blocks;
-  std::set<std::uint64_t> m_changed;                      ///< blocks that markers do not show yet
-  std::map<std::uint64_t, std::set<ClassId>> m_shown;     ///< by block
-  std::vector<ros2::Marker> m_markers;                    ///< of a message that is made
+  std::set<std::uint64_t> m_changed;                   ///< blocks that markers do not show yet
+  std::map<std::uint64_t, std::set<ClassId>> m_shown;  ///< by block
+  std::vector<ros2::Marker> m_markers;                 ///< of a message that is made
   std::map<std::pair<std::uint64_t, ClassId>, std::vector<ros2::Point>> m_cubes;  ///< of it
   ros2::Publication<ros2::MarkerArray> m_writesMarkers;
   ros2::Publication<ros2::PointCloud2> m_writesPoints;

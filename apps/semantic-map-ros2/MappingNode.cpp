@@ -19,7 +19,7 @@ using std::chrono::steady_clock;
 
 namespace {
 
-constexpr auto kStep = 100ms, kLook = 200ms, kWait = 20ms;
+constexpr auto kStep = 100ms, kLook = 50ms, kWait = 20ms;
 constexpr std::size_t kMostLatencies = 10'000;
 constexpr double kTransformsAge = 1;  // s: with an older one it is not known where the robot is
 
@@ -66,17 +66,23 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
 void MappingNode::run(const StopRequest& stop) {
   while (!stop.pending()) {
     m_queue.wait(kWait);
-    hear();
-    while (!stop.pending() && insertNext()) {
-      look();
-      publish();
-    }
-    look();
-    publish();
+    while (!stop.pending() && insertNext()) serve();
+    serve();
   }
   if (m_driving) m_driving->halt();
+  m_endedAt = steady_clock::now();
+  while (insertNext()) continue;
   if (m_driving && m_driving->navigator()) m_driving->navigator()->finish();
   m_mapper.finish();
+}
+
+/** What fails costs no map. */
+void MappingNode::serve() try {
+  look();
+  publish();
+} catch (const std::exception& e) {
+  if (m_driving) m_driving->halt();
+  m_complaints.say(strict_files::messageOf(e));
 }
 
 /** What is due whether scans come or not. */
@@ -138,6 +144,7 @@ auto MappingNode::placeOf(const WaitingScan& scan, std::string& problem, bool& i
 
 /** It can be inserted as a whole, or has waited for long enough. */
 bool MappingNode::isDue(const WaitingScan& scan) {
+  if (m_endedAt && scan.came > *m_endedAt) return false;
   const double waited = ros2::secondsOf(m_clock.now() - scan.cameAt);
   if (waited >= m_parameters.node.transformTimeout || waited < 0) return true;
   std::string problem;
@@ -201,7 +208,8 @@ void MappingNode::publish() {
   if (m_grid) m_grid->publish(m_stamp, T_map_robot);
   if (m_driving) m_driving->plan(T_map_robot, m_stamp);
   for (const auto came : m_came)
-    m_latencies.push_back(std::chrono::duration<double, std::milli>(steady_clock::now() - came).count());
+    m_latencies.push_back(
+        std::chrono::duration<double, std::milli>(steady_clock::now() - came).count());
   m_came.clear();
   if (m_latencies.size() > 2 * kMostLatencies)
     m_latencies.erase(m_latencies.begin(), m_latencies.end() - kMostLatencies);
@@ -226,9 +234,9 @@ void MappingNode::saySummary() const {
   m_complaints.sum();
   notes() << m_scans << " scans inserted, " << m_leftOut << " left out";
   if (!m_latencies.empty())
-    notes() << std::fixed << std::setprecision(0) << "; from a scan's message to the map's: "
-            << measuring::quantile(m_latencies, 0.5) << " ms (median), "
-            << measuring::quantile(m_latencies, 0.95) << " ms (95 %)";
+    notes() << std::fixed << std::setprecision(0)
+            << "; from a scan's message to the map's: " << measuring::quantile(m_latencies, 0.5)
+            << " ms (median), " << measuring::quantile(m_latencies, 0.95) << " ms (95 %)";
   notes() << std::endl;
 }
 

@@ -23,20 +23,22 @@ class MappingNode {
   MappingNode(const Parameters& parameters, const ros2::Arguments& arguments,
               semantic_octree::SemanticOcTree& map, std::function<void()> save);
 
-  /** Until it is to stop; then the robot stands. */
+  /** Until it is to stop; then the robot stands, and what waits is inserted. */
   void run(const StopRequest& stop);
   std::size_t scans() const { return m_scans; }
   /** What became of scans, and how long it took. */
   void saySummary() const;
 
  private:
-  using Placed = std::pair<Eigen::Isometry3d, Eigen::Isometry3d>;  ///< T_world_robot, T_robot_points
+  using Placed =
+      std::pair<Eigen::Isometry3d, Eigen::Isometry3d>;  ///< T_world_robot, T_robot_points
   std::optional<Placed> placeOf(const WaitingScan& scan, std::string& problem, bool& isLost) const;
   bool isDue(const WaitingScan& scan);
   bool insertNext();
   void insert(const WaitingScan& scan, const Placed& place);
   std::optional<semantic_navigation::RobotState> robotAt(ros2::Stamp stamp) const;
   void hear();
+  void serve();
   void look();
   void publish();
   void publishCorrection();
@@ -59,12 +61,13 @@ class MappingNode {
   semantic_map::ObservationClock m_scanClock;
   double m_seconds = 0;  ///< that passed, by the scans
   std::size_t m_scans = 0, m_leftOut = 0;
-  ros2::Stamp m_stamp = 0;                 ///< of the last scan
+  ros2::Stamp m_stamp = 0;                           ///< of the last scan
   std::optional<Eigen::Isometry3d> m_T_world_robot;  ///< then
-  bool m_isNew = false;                    ///< the map has what was not published
+  bool m_isNew = false;                              ///< the map has what was not published
   std::vector<std::chrono::steady_clock::time_point> m_came;  ///< of scans not published
-  std::vector<double> m_latencies;         ///< ms, of the last scans
+  std::vector<double> m_latencies;                            ///< ms, of the last scans
   std::chrono::steady_clock::time_point m_publishedAt, m_steppedAt, m_lookedAt;
+  std::optional<std::chrono::steady_clock::time_point> m_endedAt;  ///< later scans do not count
   std::optional<ros2::Stamp> m_correctedAt;
 
   std::mutex m_mutex;  ///< of what DDS's threads leave here

@@ -16,15 +16,16 @@ using strict_files::OptionList;
 
 namespace {
 
+const std::string kNode = "ros__parameters";  // as messages call those without a section
 const std::set<std::string> kFiles = {"order", "map.classes", "planner.vehicle", "drive.reactive"};
 
-/** Parameters as sections of an .ini file: those of the node have none. */
+/** Parameters as sections of an .ini file. */
 class Source {
  public:
   void set(const std::string& name, const std::string& value, const fs::path& folder) {
     const bool isFile = kFiles.count(name) > 0 && !value.empty();
     const std::size_t dot = name.find('.');
-    const std::string section = dot == std::string::npos ? "" : name.substr(0, dot);
+    const std::string section = dot == std::string::npos ? kNode : name.substr(0, dot);
     m_sections[section][name.substr(dot == std::string::npos ? 0 : dot + 1)] =
         isFile ? (folder / value).lexically_normal().string() : value;
   }
@@ -56,6 +57,7 @@ void addAll(const strict_files::StrictYaml& yaml, const YAML::Node& map, const s
     const std::string name = prefix + yaml.text(entry.first, "parameter");
     std::string value;
     if (entry.second.IsMap()) {
+      if (!prefix.empty()) yaml.fail(entry.second, name + ": a section within a section");
       addAll(yaml, entry.second, name + ".", folder, source);
       continue;
     }
@@ -113,9 +115,9 @@ void readDrive(const Source& source, semantic_navigation::NavigatorOptions& navi
 Parameters read(const Source& source) {
   Parameters p;
   auto& n = p.navigation;
-  strict_files::checkSections(source, {"", "map", "insertion", "abstraction", "slam", "planner",
+  strict_files::checkSections(source, {kNode, "map", "insertion", "abstraction", "slam", "planner",
                                        "drive", "guide", "obstacles", "movers", "focus"});
-  strict_files::readSection(source, "", p.node);
+  strict_files::readSection(source, kNode, p.node);
   strict_files::readSection(source, "map", p.map);
   strict_files::readSection(source, "insertion", p.insertion);
   strict_files::readSection(source, "abstraction", p.abstraction);

@@ -25,9 +25,9 @@ struct Parameters {
   semantic_slam::MapperOptions mapping() const;
 };
 
-/** \param files of parameters (YAML), below `ros__parameters` as ROS has them, or plain; files that they
- * name are relative to them \param values by their names; they go before files
- * \throw std::runtime_error naming file, parameter and value. */
+/** \param files of parameters (YAML), below `ros__parameters` as ROS has them, or plain; files that
+ * they name are relative to them \param values by their names; they go before files \throw
+ * std::runtime_error naming file, parameter and value. */
 Parameters readParameters(const std::vector<std::filesystem::path>& files,
                           const std::vector<std::pair<std::string, std::string>>& values);
 

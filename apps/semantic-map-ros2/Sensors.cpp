@@ -14,7 +14,6 @@ using labeled_cloud::LabelImage;
 using mrpt::obs::CObservation3DRangeScan;
 using ros2::Stamp;
 using ros2::textOf;
-using semantic_types::ClassId;
 using semantic_types::ClassTable;
 using semantic_types::LabeledCloud;
 
@@ -41,7 +40,8 @@ LabeledCloud read(const ros2::LaserScan& message) {
   LabeledCloud cloud;
   for (std::uint32_t i = 0; i < message.ranges._length; ++i) {
     const float range = message.ranges._buffer[i];
-    if (!(range >= message.range_min && range <= message.range_max) || !std::isfinite(range)) continue;
+    if (!(range >= message.range_min && range <= message.range_max) || !std::isfinite(range))
+      continue;
     const float angle = message.angle_min + static_cast<float>(i) * message.angle_increment;
     if (std::isfinite(angle))
       cloud.points.emplace_back(range * std::cos(angle), range * std::sin(angle), 0.0f);
@@ -91,33 +91,34 @@ class Pixels {
   throw std::runtime_error("encoding '" + textOf(image.encoding) + "', expected " + expected);
 }
 
-std::function<ClassId(std::uint32_t, std::uint32_t)> classReader(const ros2::Image& image,
-                                                                 const ClassTable& table) {
+/** What a pixel is known by: a raw id, or a color 0xRRGGBB.
+ * \throw std::runtime_error it is no label image */
+std::function<double(std::uint32_t, std::uint32_t)> numberReader(const ros2::Image& image) {
   const std::string encoding = textOf(image.encoding);
   if (encoding == "mono8" || encoding == "8UC1")
-    return [&table, p = Pixels(image, 1)](auto r, auto c) { return table.fromRaw(*p.begin(r, c)); };
+    return [p = Pixels(image, 1)](auto r, auto c) { return *p.begin(r, c); };
   if (encoding == "mono16" || encoding == "16UC1")
-    return [&table, p = Pixels(image, 2)](auto r, auto c) {
-      return table.fromRaw(p.at<std::uint16_t>(r, c));
-    };
+    return [p = Pixels(image, 2)](auto r, auto c) { return p.template at<std::uint16_t>(r, c); };
   if (encoding != "rgb8" && encoding != "bgr8")
     refuseEncoding(image, "mono8, mono16, 8UC1, 16UC1 (raw ids), rgb8 or bgr8 (colors)");
-  const int red = encoding == "rgb8" ? 0 : 2;
-  return [&table, red, p = Pixels(image, 3)](auto r, auto c) {
+  const int red = encoding[0] == 'r' ? 0 : 2;
+  return [red, p = Pixels(image, 3)](auto r, auto c) {
     const std::uint8_t* pixel = p.begin(r, c);
-    return classOfColor({pixel[red], pixel[1], pixel[2 - red]}, table);
+    return pixel[red] << 16 | pixel[1] << 8 | pixel[2 - red];
   };
 }
 
-LabelImage labelsOf(const ros2::Image& image, const ClassTable& table) {
-  const auto classAt = classReader(image, table);
+LabelImage labelsOf(const ros2::Image& image, const ClassTable& table, std::string& problem) {
+  const auto numberAt = numberReader(image);
+  NumberedClasses classes(table, textOf(image.encoding).find('g') != std::string::npos);
   LabelImage labels;
   labels.rows = static_cast<int>(image.height), labels.cols = static_cast<int>(image.width);
   labels.classes.reserve(std::size_t(image.width) * image.height);
   for (std::uint32_t row = 0; row < image.height; ++row)
     for (std::uint32_t column = 0; column < image.width; ++column)
-      labels.classes.push_back(classAt(row, column));
+      labels.classes.push_back(classes.at(numberAt(row, column)));
   labels.origin = "the label image";
+  problem = classes.problem();
   return labels;
 }
 
@@ -135,8 +136,9 @@ void setRanges(const ros2::Image& image, CObservation3DRangeScan& scan) {
   scan.rangeImage_setSize(rows, cols);
   for (int row = 0; row < rows; ++row)
     for (int col = 0; col < cols; ++col) {
-      const double mm = areMeters ? std::round(1000.0 * static_cast<double>(pixels.at<float>(row, col)))
-                                  : pixels.at<std::uint16_t>(row, col);
+      const double mm = areMeters
+                            ? std::round(1000.0 * static_cast<double>(pixels.at<float>(row, col)))
+                            : pixels.at<std::uint16_t>(row, col);
       scan.rangeImage(row, col) = mm > 0 && mm <= 65535 ? static_cast<std::uint16_t>(mm) : 0;
     }
 }
@@ -144,10 +146,11 @@ void setRanges(const ros2::Image& image, CObservation3DRangeScan& scan) {
 /** \throw std::runtime_error it is of another image, or has no calibration that is known here */
 mrpt::img::TCamera cameraOf(const ros2::CameraInfo& info, const ros2::Image& image) {
   if (info.width != image.width || info.height != image.height)
-    throw std::runtime_error("the camera's calibration is for " + std::to_string(info.width) + " x " +
-                             std::to_string(info.height) + " pixels, the image has " +
+    throw std::runtime_error("the camera's calibration is for " + std::to_string(info.width) +
+                             " x " + std::to_string(info.height) + " pixels, the image has " +
                              std::to_string(image.width) + " x " + std::to_string(image.height));
-  if (!(info.k[0] > 0) || !(info.k[4] > 0)) throw std::runtime_error("the camera is not calibrated");
+  if (!(info.k[0] > 0) || !(info.k[4] > 0))
+    throw std::runtime_error("the camera is not calibrated");
   mrpt::img::TCamera camera;
   camera.ncols = info.width, camera.nrows = info.height;
   camera.setIntrinsicParamsFromValues(info.k[0], info.k[4], info.k[2], info.k[5]);
@@ -263,7 +266,9 @@ void Sensors::addDepth(Depth message) {
   WaitingScan scan;
   scan.topic = m_hearsDepth.name();
   scan.T_frame_points = T_optical_camera();
-  scan.isComplete = [this, stamp = ros2::stampOf(message->header.stamp)] { return hasLabels(stamp); };
+  scan.isComplete = [this, stamp = ros2::stampOf(message->header.stamp)] {
+    return hasLabels(stamp);
+  };
   scan.read = [this, message] { return read(*message); };
   add(std::move(scan), message->header, message->data._length);
 }
@@ -306,8 +311,11 @@ LabeledCloud Sensors::read(const ros2::Image& depth) {
   m_labeler->next.reset();
   if (!labels)
     m_complaints.say(m_hearsLabels.name() + ": nothing came with the stamp of a depth image");
-  else try {
-      m_labeler->next = labelsOf(*labels, m_classes);
+  else
+    try {
+      std::string problem;
+      m_labeler->next = labelsOf(*labels, m_classes, problem);
+      if (!problem.empty()) m_complaints.say(m_hearsLabels.name() + ": " + problem);
     } catch (const std::exception& e) {
       m_complaints.say(m_hearsLabels.name() + ": points are without classes", e.what());
     }

@@ -112,7 +112,8 @@ bool Transforms::parts(const std::string& target, const std::string& source, Cha
 
 std::optional<Isometry3d> Transforms::at(const Frame& frame, Stamp stamp) {
   const auto& poses = frame.poses;
-  if (frame.isStatic) return isometry(poses.begin()->second.translation, poses.begin()->second.rotation);
+  if (frame.isStatic)
+    return isometry(poses.begin()->second.translation, poses.begin()->second.rotation);
   const auto after = poses.lower_bound(stamp);
   if (after == poses.end()) return std::nullopt;
   const auto& [end, b] = *after;
@@ -154,7 +155,8 @@ Transforms::Answer Transforms::find(const std::string& target, const std::string
   return answer;
 }
 
-std::optional<Stamp> Transforms::latest(const std::string& target, const std::string& source) const {
+std::optional<Stamp> Transforms::latest(const std::string& target,
+                                        const std::string& source) const {
   const std::lock_guard<std::mutex> lock(m_mutex);
   Chain up, down;
   if (!parts(target, source, up, down)) return std::nullopt;

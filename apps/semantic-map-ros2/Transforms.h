@@ -23,7 +23,7 @@ class Transforms {
 
   struct Answer {
     std::optional<Eigen::Isometry3d> T_target_source;
-    std::string problem;   ///< why there is none
+    std::string problem;  ///< why there is none
     bool isLost = false;  ///< and there will not be one
   };
   /** Between the two stamps around it transforms are interpolated. */

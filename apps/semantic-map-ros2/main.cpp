@@ -23,8 +23,9 @@ struct Cli {
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    outputs.add(app, output, "FILE",
-                "The map (.semantic), written after Ctrl-C, and when somebody publishes to ~/save")
+    outputs
+        .add(app, output, "FILE",
+             "The map (.semantic), written after Ctrl-C, and when somebody publishes to ~/save")
         ->required();
     app.add_option("--map", map, "Map to go on with, in whose frame all is (.semantic)");
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of each scan");
@@ -45,7 +46,7 @@ SemanticOcTree beginning(const Cli& cli, const Parameters& parameters) {
 
 int run(const Cli& cli, const ros2::Arguments& arguments) {
   if (!arguments.problem.empty()) throw CLI::ValidationError(arguments.problem);
-  const StopRequest stop("after this scan");
+  const StopRequest stop("after the scans that wait");
   const std::vector<fs::path> files(arguments.files.begin(), arguments.files.end());
   const Parameters parameters = readParameters(files, arguments.parameters);
   cli.outputs.check({cli.output}, files);

@@ -13,8 +13,9 @@ ros2::Arguments argumentsOf(std::vector<std::string> words) {
 }  // namespace
 
 TEST(RosArguments, areBehindTheirFlagUntilTwoDashes) {
-  const auto a = argumentsOf({"program", "-o", "x", "--ros-args", "-r", "a:=/b", "--param", "p:=", "--params-file",
-                              "f", "--", "-q", "--ros-args", "-p", "s.t:=1"});
+  const auto a =
+      argumentsOf({"program", "-o", "x", "--ros-args", "-r", "a:=/b", "--param",
+                   "p:=", "--params-file", "f", "--", "-q", "--ros-args", "-p", "s.t:=1"});
   EXPECT_EQ(a.problem, "");
   EXPECT_EQ(a.others.size(), 4u);
   EXPECT_EQ(std::string(a.others.back()), "-q");
@@ -30,5 +31,6 @@ TEST(RosArguments, sayWhatIsWrong) {
   EXPECT_EQ(argumentsOf({"p", "--ros-args", "-r", "a=b"}).problem, "-r a=b: expected FROM:=TO");
   EXPECT_EQ(argumentsOf({"p", "--ros-args", "-p", ":=b"}).problem, "-p :=b: expected NAME:=VALUE");
   EXPECT_EQ(argumentsOf({"p", "--ros-args", "-p"}).problem, "-p lacks its value");
-  EXPECT_NE(argumentsOf({"p", "--ros-args", "-x", "y"}).problem.find("unknown argument '-x'"), std::string::npos);
+  EXPECT_NE(argumentsOf({"p", "--ros-args", "-x", "y"}).problem.find("unknown argument '-x'"),
+            std::string::npos);
 }

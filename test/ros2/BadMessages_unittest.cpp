@@ -8,7 +8,8 @@ namespace {
 
 std::size_t count(const std::string& text, const std::string& part) {
   std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++found;
   return found;
 }
 
@@ -21,11 +22,13 @@ TEST_F(RoadInGrass, outlivesWhatIsWrong) {
     ros2::Node peer("peer", {});
     ros2::Publication<ros2::Twist> wrong(peer, "scan", {});
     ros2::Publication<ros2::PointCloud2> dies(peer, "points", {});
-    EXPECT_TRUE(live->waitFor([&] { return contains(live->said(), "geometry_msgs::msg::dds_::Twist_"); }));
+    EXPECT_TRUE(
+        live->waitFor([&] { return contains(live->said(), "geometry_msgs::msg::dds_::Twist_"); }));
     live->waitFor([&] { return dies.isRead(); });
   }
   PointMessage good(scan(), "lidar", kSecond);
-  const auto complaint = [&](const std::string& words, const std::function<void(ros2::PointCloud2&)>& change) {
+  const auto complaint = [&](const std::string& words,
+                             const std::function<void(ros2::PointCloud2&)>& change) {
     PointMessage bad(scan(), "lidar", kSecond);
     change(bad.message());
     for (int i = 0; i < 3; ++i) {
@@ -51,9 +54,10 @@ TEST_F(RoadInGrass, outlivesWhatIsWrong) {
   EXPECT_TRUE(live->waitFor([&] { return contains(live->said(), "went back"); }));
   live->send(*points, good.message());
   EXPECT_TRUE(live->waitForScans(inserted + 1));
-  EXPECT_EQ(live->end(), 0);
+  EXPECT_EQ(live->end(), kStopped);
   for (const char* words : {"'nowhere'", "no field 'x'", "no field 'label'", "Twist_"})
-    EXPECT_LE(count(live->said(), words), 2u) << words << live->said();  // once, and how often at the end
+    EXPECT_LE(count(live->said(), words), 2u)
+        << words << live->said();  // once, and how often at the end
   EXPECT_FALSE(live->map().empty());
 }
 
@@ -67,5 +71,6 @@ TEST_F(RoadInGrass, isNotSavedWhereNothingCame) {
 TEST(RosArgumentsOfProgram, areRefusedWithTheirNames) {
   EXPECT_NE(LiveMap({"-r", "a=b"}).said().find("expected FROM:=TO"), std::string::npos);
   EXPECT_NE(LiveMap({"-p", "insertion.max_rnge:=3"}).said().find("max_range"), std::string::npos);
-  EXPECT_NE(LiveMap({"-r", "points:=a b"}).said().find("'/a b' is no name of a topic"), std::string::npos);
+  EXPECT_NE(LiveMap({"-r", "points:=a b"}).said().find("'/a b' is no name of a topic"),
+            std::string::npos);
 }

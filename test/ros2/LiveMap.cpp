@@ -6,9 +6,12 @@
 #include <semantic_octree/TreeFile.h>
 #include <signal.h>
 #include <spawn.h>
-#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 
+#include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
@@ -18,20 +21,21 @@ extern char** environ;
 
 using namespace std::chrono_literals;
 
-/** Their ports lie below those that the system gives away. */
-DomainOfItsOwn::DomainOfItsOwn() {
+/** Their ports lie below those that the system gives away. A name in the abstract name space of
+ * sockets is taken for as long as the socket is open. */
+DomainOfItsOwn::DomainOfItsOwn() : m_lock(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   for (int round = 0; round < 6000; ++round) {
     const int domain = 10 + round % 80;
-    const auto file = std::filesystem::temp_directory_path() / ("mso_dds_domain_" + std::to_string(domain));
-    m_lock = open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-    if (m_lock >= 0 && flock(m_lock, LOCK_EX | LOCK_NB) == 0) {
+    sockaddr_un address{AF_UNIX, {}};
+    const int length = std::snprintf(address.sun_path + 1, 40, "mso_dds_domain_%d", domain);
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
+    if (bind(m_lock, reinterpret_cast<const sockaddr*>(&address), size) == 0) {
       setenv("ROS_DOMAIN_ID", std::to_string(domain).c_str(), 1);
       setenv("ROS_LOCALHOST_ONLY", "1", 1);
       unsetenv("CYCLONEDDS_URI");
       return;
     }
-    if (m_lock >= 0) close(m_lock);
-    std::this_thread::sleep_for(50ms);
+    std::this_thread::sleep_for(10ms);
   }
   throw std::runtime_error("all DDS domains are taken");
 }
@@ -50,14 +54,17 @@ LiveMap::LiveMap(const std::vector<std::string>& parameters,
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 1, (folder / "said").c_str(), O_CREAT | O_WRONLY | O_APPEND, 0666);
+  posix_spawn_file_actions_addopen(&actions, 1, (folder / "said").c_str(),
+                                   O_CREAT | O_WRONLY | O_APPEND, 0666);
   posix_spawn_file_actions_adddup2(&actions, 1, 2);
   if (posix_spawn(&m_process, argv[0], &actions, nullptr, argv.data(), environ) != 0)
     throw std::runtime_error("semantic-map-ros2 cannot be run");
   posix_spawn_file_actions_destroy(&actions);
   m_node = std::make_unique<ros2::Node>("test", ros2::Arguments());
-  m_transforms = std::make_unique<ros2::Publication<ros2::TFMessage>>(*m_node, "/tf", ros2::Qos{true, false, 100});
-  m_static = std::make_unique<ros2::Publication<ros2::TFMessage>>(*m_node, "/tf_static", ros2::Qos{true, true, 1});
+  m_transforms = std::make_unique<ros2::Publication<ros2::TFMessage>>(*m_node, "/tf",
+                                                                      ros2::Qos{true, false, 100});
+  m_static = std::make_unique<ros2::Publication<ros2::TFMessage>>(*m_node, "/tf_static",
+                                                                  ros2::Qos{true, true, 1});
   waitFor([this] { return contains(said(), "Waiting for scans") || !isRunning(); });
 }
 
@@ -114,9 +121,9 @@ void LiveMap::place(const std::string& parent, const std::string& child, const E
   };
   const Eigen::Quaterniond q(T.linear());
   const auto& t = T.translation();
-  const ros2::TransformStamped transform = {
-      ros2::headerOf(stamp, keep(parent)), ros2::textOf(keep(child)),
-      {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}}};
+  const ros2::TransformStamped transform = {ros2::headerOf(stamp, keep(parent)),
+                                            ros2::textOf(keep(child)),
+                                            {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}}};
   std::vector<ros2::TransformStamped> transforms = {transform};
   if (isStatic) {
     m_staticTransforms.push_back(transform);

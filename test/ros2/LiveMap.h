@@ -21,6 +21,9 @@ class DomainOfItsOwn {
   int m_lock;
 };
 
+/** The exit status of a program that was asked to stop by Ctrl-C. */
+constexpr int kStopped = 130;
+
 /** semantic-map-ros2 as a process, and a node that speaks to it. */
 class LiveMap {
  public:
@@ -91,8 +94,8 @@ class Heard {
 /** Points as a sensor of ROS sends them: x, y, z, and a byte of class ids. */
 class PointMessage {
  public:
-  PointMessage(const semantic_types::LabeledCloud& cloud, const std::string& frame, ros2::Stamp stamp,
-               const std::string& classField = "label");
+  PointMessage(const semantic_types::LabeledCloud& cloud, const std::string& frame,
+               ros2::Stamp stamp, const std::string& classField = "label");
   const ros2::PointCloud2& message() const { return m_message; }
   ros2::PointCloud2& message() { return m_message; }
 

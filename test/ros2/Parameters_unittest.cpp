@@ -45,7 +45,8 @@ TEST(RosParameters, refuseWhatTheyDoNotKnow) {
   EXPECT_TRUE(contains(problemOf({{"insertions.max_range", "3"}}), "insertions"));
   EXPECT_TRUE(contains(problemOf({{"publish_period", "-1"}}), "publish_period"));
   EXPECT_TRUE(contains(problemOf({{"drive", "true"}}), "drive.reactive"));
-  EXPECT_TRUE(contains(errorOf([] { readParameters({"no-such-file.yaml"}, {}); }), "no-such-file.yaml"));
+  EXPECT_TRUE(
+      contains(errorOf([] { readParameters({"no-such-file.yaml"}, {}); }), "no-such-file.yaml"));
 }
 
 TEST(RosParameters, costsAreOfRanks) {

@@ -50,7 +50,8 @@ RawCloud rawOf(const std::vector<std::uint8_t>& data, std::vector<RawCloud::Fiel
   return raw;
 }
 
-const std::vector<RawCloud::Field> kXyzLabel = {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"label", 12, 4}};
+const std::vector<RawCloud::Field> kXyzLabel = {
+    {"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"label", 12, 4}};
 
 }  // namespace
 
@@ -88,10 +89,22 @@ TEST(PointFields, pointsStayWhereClassesCannotBeRead) {
   auto cloud = cloudOf(rawOf(bytes.all, kXyzLabel, 1, 14), "label", table(), problem);
   EXPECT_TRUE(contains(problem, "7")) << problem;
   EXPECT_EQ(cloud.size(), 1u);
-  EXPECT_TRUE(cloud.classes.empty());
+  EXPECT_EQ(cloud.classes, std::vector<semantic_types::ClassId>{0});
   cloud = cloudOf(rawOf(bytes.all, kXyzLabel, 1, 14), "id", table(), problem);
   EXPECT_TRUE(contains(problem, "no field 'id'")) << problem;
   EXPECT_EQ(cloud.size(), 1u);
+  EXPECT_TRUE(cloud.classes.empty());
+}
+
+TEST(PointFields, zeroIsNoClassUnlessTheTableSaysSo) {
+  const Bytes bytes = Bytes().add(1.0f).add(2.0f).add(3.0f).add(std::uint16_t(0));
+  std::string problem;
+  const RawCloud raw = rawOf(bytes.all, kXyzLabel, 1, 14);
+  EXPECT_EQ(cloudOf(raw, "label", table(), problem).classes[0], 0);
+  EXPECT_EQ(problem, "");
+  ClassTable folded = table();
+  folded.fold(0, 2);
+  EXPECT_EQ(cloudOf(raw, "label", folded, problem).classes[0], 2);
 }
 
 TEST(PointFields, refuseWhatIsNoCloud) {
@@ -108,6 +121,8 @@ TEST(PointFields, refuseWhatIsNoCloud) {
   EXPECT_TRUE(contains(refusal([](RawCloud& r) { r.fields[2].offset = 4294967295u; }), "outside"));
   EXPECT_TRUE(contains(refusal([](RawCloud& r) { r.fields[0].type = 9; }), "type 9"));
   EXPECT_TRUE(contains(refusal([](RawCloud& r) { r.width = 2; }), "14 bytes are no 2 x 1"));
-  EXPECT_TRUE(contains(refusal([](RawCloud& r) { r.height = 2, r.rowStep = 0; }), "14 bytes are no 1 x 2"));
-  EXPECT_TRUE(contains(refusal([](RawCloud& r) { r.width = r.height = r.rowStep = 4294967295u; }), "bytes are no"));
+  EXPECT_TRUE(
+      contains(refusal([](RawCloud& r) { r.height = 2, r.rowStep = 0; }), "14 bytes are no 1 x 2"));
+  EXPECT_TRUE(contains(refusal([](RawCloud& r) { r.width = r.height = r.rowStep = 4294967295u; }),
+                       "bytes are no"));
 }

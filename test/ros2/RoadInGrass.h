@@ -10,18 +10,21 @@ class RoadInGrass : public testing::Test {
   static constexpr ros2::Stamp kSecond = 1'000'000'000;
 
   void start(std::vector<std::string> parameters) {
-    parameters.insert(parameters.end(),
+    parameters.insert(parameters.begin(),
                       {"-p", "map.resolution:=0.2", "-p", "map.classes:=" + classes(), "-p",
                        "transform_timeout:=100", "-p", "publish_period:=0"});
     live = std::make_unique<LiveMap>(parameters);
-    live->place("base_link", "lidar", Eigen::Isometry3d(Eigen::Translation3d(0.05, 0.05, 30)), 0, true);
-    points = std::make_unique<ros2::Publication<ros2::PointCloud2>>(live->node(), "points", ros2::Qos());
+    live->place("base_link", "lidar", Eigen::Isometry3d(Eigen::Translation3d(0.05, 0.05, 30)), 0,
+                true);
+    points =
+        std::make_unique<ros2::Publication<ros2::PointCloud2>>(live->node(), "points", ros2::Qos());
   }
   std::string classes() const {
     return folder
         .write("classes.yaml",
                "classes:\n  - {id: 1, name: road, color: [90, 90, 100]}\n"
-               "  - {id: 2, name: grass, color: [100, 200, 80]}\n  - {id: 3, name: wall, color: [200, 100, 60]}\n"
+               "  - {id: 2, name: grass, color: [100, 200, 80]}\n  - {id: 3, name: wall, color: "
+               "[200, 100, 60]}\n"
                "  - {id: 4, name: mud, color: [120, 80, 40]}\n")
         .string();
   }
@@ -34,7 +37,8 @@ class RoadInGrass : public testing::Test {
     semantic_types::LabeledCloud cloud;
     const auto add = [&](int x, int y, int z, int id) {
       const auto center = [](int i) { return (float(i) + 0.5f) * 0.2f; };
-      cloud.points.push_back(Eigen::Vector3f(center(x), center(y), center(z)) - Eigen::Vector3f(0.05f, 0.05f, 30));
+      cloud.points.push_back(Eigen::Vector3f(center(x), center(y), center(z)) -
+                             Eigen::Vector3f(0.05f, 0.05f, 30));
       cloud.classes.push_back(semantic_types::ClassId(id));
     };
     for (int x = -50; x < 50; ++x)
@@ -46,11 +50,11 @@ class RoadInGrass : public testing::Test {
       }
     return cloud;
   }
-  /** Sends the scan, and waits until the map has it. \param number counts from 1 */
-  void see(std::size_t number) {
+  /** Sends a scan, and waits until the map has it. \param number counts from 1 */
+  void see(std::size_t number, const semantic_types::LabeledCloud& cloud = scan()) {
     const ros2::Stamp stamp = ros2::Stamp(number) * kSecond;
     live->place("map", "base_link", Eigen::Isometry3d::Identity(), stamp);
-    live->send(*points, PointMessage(scan(), "lidar", stamp).message());
+    live->send(*points, PointMessage(cloud, "lidar", stamp).message());
     live->waitForScans(number);
   }
 

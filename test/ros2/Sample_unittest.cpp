@@ -60,11 +60,13 @@ class Sender {
   std::size_t sent() const { return m_sent; }
 
  private:
-  void placeSensor(const mrpt::obs::CObservation& observation, const Eigen::Isometry3d& T_sensor_frame) {
+  void placeSensor(const mrpt::obs::CObservation& observation,
+                   const Eigen::Isometry3d& T_sensor_frame) {
     if (!m_placed.insert(observation.sensorLabel).second) return;
     mrpt::poses::CPose3D pose;
     observation.getSensorPose(pose);
-    m_live.place("base_link", observation.sensorLabel, labeled_cloud::toEigen(pose) * T_sensor_frame, 0, true);
+    m_live.place("base_link", observation.sensorLabel,
+                 labeled_cloud::toEigen(pose) * T_sensor_frame, 0, true);
   }
   void sendPoints(const mrpt::obs::CObservation& observation, Stamp stamp) {
     placeSensor(observation, Eigen::Isometry3d::Identity());
@@ -89,7 +91,8 @@ class Sender {
     ros2::CameraInfo info{};
     info.header = ros2::headerOf(stamp, scan.sensorLabel);
     info.width = camera.ncols, info.height = camera.nrows;
-    info.k[0] = camera.fx(), info.k[4] = camera.fy(), info.k[2] = camera.cx(), info.k[5] = camera.cy(), info.k[8] = 1;
+    info.k[0] = camera.fx(), info.k[4] = camera.fy(), info.k[2] = camera.cx(),
+    info.k[5] = camera.cy(), info.k[8] = 1;
     m_live.send(m_cameras, info);
     ros2::Image image{};
     image.header = info.header;
@@ -120,7 +123,8 @@ TEST(SampleOverDds, makesTheMapOfTheRawlogToTheLastBit) {
   std::string parameters = kParameters;
   parameters.replace(parameters.find("CLASSES"), 7, classes);
   const TemporaryFolder folder;
-  LiveMap live({"--params-file", folder.write("p.yaml", parameters).string(), "-p", "transform_timeout:=100"});
+  LiveMap live({"--params-file", folder.write("p.yaml", parameters).string(), "-p",
+                "transform_timeout:=100"});
   const auto table = semantic_types::loadClassTable(classes);
   Sender sender(live, table);
   const auto poses = labeled_cloud::readTrajectory({rawlog});
@@ -129,12 +133,12 @@ TEST(SampleOverDds, makesTheMapOfTheRawlogToTheLastBit) {
     for (const auto& observation : entry->observations)
       if (labeled_cloud::ScanConverter::accepts(*observation) && !HasFailure())
         sender.send(*observation, *poses.at(observation->timestamp));
-  ASSERT_EQ(live.end(), 0) << live.said();
+  ASSERT_EQ(live.end(), kStopped) << live.said();
   EXPECT_EQ(sender.sent(), 48u);
 
-  const ProgramRun run = runProgram("rawlog2semantic-map",
-                                    {"--config", (kSources / "config/maps/synthetic.ini").string(), "-o",
-                                     (folder / "out").string(), rawlog.string()});
+  const ProgramRun run = runProgram(
+      "rawlog2semantic-map", {"--config", (kSources / "config/maps/synthetic.ini").string(), "-o",
+                              (folder / "out").string(), rawlog.string()});
   ASSERT_EQ(run.status, 0) << run.errors;
   EXPECT_TRUE(live.map() == semantic_octree::loadTree((folder / "out/map.semantic").string()));
   EXPECT_TRUE(live.folder.read("map.semantic") == folder.read("out/map.semantic"));

@@ -24,13 +24,14 @@ Isometry3d at(double x, double y, double z) { return Isometry3d(Translation3d(x,
 class LiveSensors : public testing::Test {
  protected:
   void start(std::vector<std::string> parameters = {}) {
-    parameters.insert(parameters.end(), {"-p", "map.resolution:=0.2", "-p",
-                                         "map.classes:=" + folder.write("c.yaml", kTwoClasses).string(), "-p",
-                                         "transform_timeout:=100"});
+    parameters.insert(parameters.begin(),
+                      {"-p", "map.resolution:=0.2", "-p",
+                       "map.classes:=" + folder.write("c.yaml", kTwoClasses).string(), "-p",
+                       "transform_timeout:=100"});
     live = std::make_unique<LiveMap>(parameters);
   }
   CellState end(double x, double y, double z) {
-    EXPECT_EQ(live->end(), 0) << live->said();
+    EXPECT_EQ(live->end(), kStopped) << live->said();
     return live->map().query(x, y, z);
   }
 
@@ -45,7 +46,8 @@ TEST_F(LiveSensors, laserScansAndOdometry) {
   const std::string odom = "odom", base = "base_link", frame = "laser";
   live->place(base, frame, at(0.1, 0, 0.5), 0, true);
   ros2::Publication<ros2::Odometry> odometry(live->node(), "/wheels", {});
-  ros2::Publication<ros2::LaserScan> scans(live->node(), "/front/laser", {false, false, 5});  // best effort
+  ros2::Publication<ros2::LaserScan> scans(live->node(), "/front/laser",
+                                           {false, false, 5});  // best effort
   std::vector<float> ranges = {2, INFINITY, NAN, 0.01f, 3};
   ros2::LaserScan scan{};
   scan.header = ros2::headerOf(5 * kSecond, frame);
@@ -75,7 +77,8 @@ TEST_F(LiveSensors, depthAndLabelImages) {
   Isometry3d T = at(0, 0, 1);  // looks along x
   T.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   live->place("base_link", frame, T, 0, true);
-  ros2::Publication<ros2::Image> depth(live->node(), "depth/image", {}), labels(live->node(), "labels/image", {});
+  ros2::Publication<ros2::Image> depth(live->node(), "depth/image", {}),
+      labels(live->node(), "labels/image", {});
   ros2::Publication<ros2::CameraInfo> cameras(live->node(), "depth/camera_info", {});
   std::vector<float> meters(16, 3.0f);
   meters[5] = NAN, meters[6] = -1;

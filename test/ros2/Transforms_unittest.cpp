@@ -17,7 +17,9 @@ constexpr Stamp kSecond = 1'000'000'000;
 
 std::string add(Transforms& all, const std::string& parent, const std::string& child, Stamp stamp,
                 const Isometry3d& T, bool isStatic = false) {
-  return all.add({ros2::headerOf(stamp, parent), ros2::textOf(child), semantic_map_ros2::transformOf(T)}, isStatic);
+  return all.add(
+      {ros2::headerOf(stamp, parent), ros2::textOf(child), semantic_map_ros2::transformOf(T)},
+      isStatic);
 }
 
 Isometry3d at(double x, double turn = 0) {
@@ -43,7 +45,8 @@ TEST(RosTransforms, leadFromFrameToFrameInBetweenStamps) {
 
 TEST(RosTransforms, sayWhetherToWait) {
   Transforms all;
-  EXPECT_TRUE(contains(all.find("map", "base", 0).problem, "no transform connects 'map' and 'base'"));
+  EXPECT_TRUE(
+      contains(all.find("map", "base", 0).problem, "no transform connects 'map' and 'base'"));
   EXPECT_FALSE(all.find("map", "base", 0).isLost);
   add(all, "map", "base", 5 * kSecond, at(0));
   EXPECT_TRUE(all.find("map", "base", 5 * kSecond).T_target_source);
@@ -69,7 +72,8 @@ TEST(RosTransforms, refuseWhatIsNone) {
   EXPECT_TRUE(contains(add(all, "c", "c", 0, at(0)), "no two frames"));
   EXPECT_TRUE(contains(add(all, "c", "d", 0, at(NAN)), "no pose"));
   const std::string parent = "c", child = "d";
-  EXPECT_TRUE(contains(all.add({ros2::headerOf(0, parent), ros2::textOf(child), {}}, false), "no pose"));
+  EXPECT_TRUE(
+      contains(all.add({ros2::headerOf(0, parent), ros2::textOf(child), {}}, false), "no pose"));
 }
 
 TEST(RosTransforms, odometersCountWhereTfDoesNotTell) {

@@ -15,11 +15,11 @@ namespace ros2 {
 template <class Message>
 const dds_topic_descriptor_t& descriptorOf();
 
-#define ROS2_MESSAGE(package, type)                        \
-  using type = package##_msg_dds__##type##_;               \
-  template <>                                              \
+#define ROS2_MESSAGE(package, type)                           \
+  using type = package##_msg_dds__##type##_;                  \
+  template <>                                                 \
   inline const dds_topic_descriptor_t& descriptorOf<type>() { \
-    return package##_msg_dds__##type##__desc;              \
+    return package##_msg_dds__##type##__desc;                 \
   }
 ROS2_MESSAGE(std_msgs, Empty)
 ROS2_MESSAGE(rosgraph_msgs, Clock)

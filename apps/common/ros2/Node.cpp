@@ -57,8 +57,8 @@ constexpr dds_duration_t kPatience = DDS_MSECS(20);  // with readers that do not
 
 QosPointer toDds(const Qos& qos) {
   QosPointer dds(dds_create_qos());
-  dds_qset_reliability(dds.get(), qos.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
-                       kPatience);
+  dds_qset_reliability(
+      dds.get(), qos.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, kPatience);
   dds_qset_durability(dds.get(),
                       qos.latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   dds_qset_history(dds.get(), DDS_HISTORY_KEEP_LAST, qos.depth);
@@ -85,8 +85,12 @@ Node::Node(const std::string& name, const Arguments& arguments) : m_name(name) {
   topic("~/any");  // the names are right
   for (const auto& [from, to] : m_remappings) expanded(from), expanded(to);
   const dds_domainid_t domain = domainOf(std::getenv("ROS_DOMAIN_ID"));
-  if (!std::getenv("CYCLONEDDS_URI") && isForThisMachine())
-    m_domain = checked(dds_create_domain(domain, kThisMachine), "DDS");
+  if (!std::getenv("CYCLONEDDS_URI") && isForThisMachine()) {
+    m_domain = dds_create_domain(domain, kThisMachine);
+    if (m_domain == DDS_RETCODE_PRECONDITION_NOT_MET)  // another node of this process did
+      m_domain = 0;
+    checked(m_domain, "DDS");
+  }
   m_participant = checked(dds_create_participant(domain, nullptr, nullptr), "DDS");
   m_writers = checked(
       dds_create_reader(m_participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr), "DDS");
@@ -118,8 +122,13 @@ std::string Node::topic(const std::string& name) const {
 
 std::vector<std::string> Node::look() {
   std::vector<std::string> problems;
-  for (Reader* reader : m_readers) reader->adapt();
+  for (Reader* reader : m_readers) {
+    reader->adapt();
+    reader->sayLosses(problems);
+  }
   lookAtWriters(problems);
+  const auto isSaid = [this](const std::string& what) { return !m_said.insert(what).second; };
+  problems.erase(std::remove_if(problems.begin(), problems.end(), isSaid), problems.end());
   return problems;
 }
 
@@ -131,9 +140,9 @@ void Node::lookAtWriters(std::vector<std::string>& problems) {
     for (const Reader* reader : m_readers) {
       if (!info[0].valid_data || "rt" + reader->m_name != textOf(writer->topic_name)) continue;
       const std::string type = textOf(writer->type_name);
-      if (type == reader->m_type.m_typename || !m_said.insert(reader->m_name + type).second) continue;
-      problems.push_back(reader->m_name + ": somebody writes " + type + ", which is not heard; expected " +
-                         reader->m_type.m_typename);
+      if (type == reader->m_type.m_typename) continue;
+      problems.push_back(reader->m_name + ": somebody writes " + type +
+                         ", which is not heard; expected " + reader->m_type.m_typename);
     }
     dds_return_loan(m_writers, samples, 1);
     samples[0] = nullptr;
@@ -161,9 +170,8 @@ Reader::~Reader() {
 
 void Reader::open() {
   dds_listener_t* listener = dds_create_listener(this);
-  dds_lset_data_available(listener, [](dds_entity_t reader, void* self) {
-    static_cast<Reader*>(self)->take(reader);
-  });
+  dds_lset_data_available(
+      listener, [](dds_entity_t reader, void* self) { static_cast<Reader*>(self)->take(reader); });
   m_reader = dds_create_reader(m_node.participant(), m_topic, toDds(m_qos).get(), listener);
   dds_delete_listener(listener);
   checked(m_reader, m_name);
@@ -183,6 +191,15 @@ void Reader::adapt() {
   open();
 }
 
+void Reader::sayLosses(std::vector<std::string>& problems) const {
+  dds_sample_lost_status_t lost;
+  if (dds_get_sample_lost_status(m_reader, &lost) == 0 && lost.total_count > 0)
+    problems.push_back(m_name +
+                       ": messages are lost on the way; a larger net.core.rmem_max of the "
+                       "system, or a reliable writer, helps");
+  if (m_lacksMemory) problems.push_back(m_name + ": messages are lost: memory is short");
+}
+
 void Reader::take(dds_entity_t reader) {
   const auto free = [this](void* m) { dds_sample_free(m, &m_type, DDS_FREE_ALL); };
   for (;;) try {
@@ -194,7 +211,7 @@ void Reader::take(dds_entity_t reader) {
       if (dds_take(reader, &sample, &info, 1, 1) <= 0) return;
       if (info.valid_data) m_onMessage(message);
     } catch (const std::exception&) {
-      ++m_lost;
+      m_lacksMemory = true;
     }
 }
 

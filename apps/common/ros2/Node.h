@@ -39,7 +39,7 @@ class Node {
   dds_entity_t participant() const { return m_participant; }
 
   /** To be called now and then: readers adapt to their writers. \return what was not said before:
-   * others who write another type to a topic that is read here. */
+   * others who write another type to a topic that is read here, and messages that were lost. */
   std::vector<std::string> look();
 
  private:
@@ -67,14 +67,13 @@ class Reader {
   Reader& operator=(const Reader&) = delete;
 
   const std::string& name() const { return m_name; }
-  /** Of messages that memory did not suffice for. */
-  std::size_t lost() const { return m_lost; }
 
  private:
   friend class Node;
   void open();
   void close();
   void adapt();
+  void sayLosses(std::vector<std::string>& problems) const;
   void take(dds_entity_t reader);
 
   Node& m_node;
@@ -83,7 +82,7 @@ class Reader {
   OnMessage m_onMessage;
   std::string m_name;  ///< of the topic, in full
   dds_entity_t m_topic = 0, m_reader = 0;
-  std::atomic<std::size_t> m_lost{0};
+  std::atomic<bool> m_lacksMemory{false};
 };
 
 /** Hears messages of a topic. */
