@@ -41,7 +41,8 @@ class FewestEdges : public colored_graph::GraphSearch {
     for (auto v = goal; v != start; v = before[v].neighbor) {
       result.vertices.push_back(before[v].neighbor);
       result.edges.push_back(before[v].edge);
-      for (const auto& stretch : *options.evaluate(before[v].edge))
+      const auto profile = options.evaluate(before[v].edge);
+      for (const auto& stretch : *profile)
         result.lengthPerClass[stretch.classId] += stretch.length;
     }
     std::reverse(result.vertices.begin(), result.vertices.end());

@@ -63,11 +63,8 @@ DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints
                                               : m_tracker.command(state, obstacles, limit),
                                      movers);
   if (room && std::abs(wanted.speed) <= DriveOptions::kSlowest)
-    if (const auto aside =
-            stepAside(state, m_motion, *room, movers, m_tracker.footprint(), m_tracker.options())) {
-      wanted = *aside;
-      setPath({});
-    }
+    wanted = stepAside(state, m_motion, *room, movers, m_tracker.footprint(), m_tracker.options())
+                 .value_or(wanted);
   const double since = seconds - std::exchange(m_steppedAt, seconds).value_or(seconds);
   m_motion = safeMotion(state, wanted, obstacles, since);
   if (std::abs(m_motion.speed) > DriveOptions::kAtRest || m_tracker.finished()) m_movedAt = seconds;

@@ -67,6 +67,18 @@ semantic_types::LabeledCloud groundBelow(const semantic_planning::SemanticPlanne
   return cloud;
 }
 
+/** Who stands is in the way, though the map does not have him yet. */
+void addStanding(const Movers& movers, const TPose2D& robot, ObstaclePoints& obstacles) {
+  constexpr int kPoints = 8;
+  for (const Mover& mover : movers)
+    for (int i = 0; mover.stands() && i < kPoints; ++i) {
+      const double to = i * 2 * M_PI / kPoints;
+      const auto p = robot.inverseComposePoint({mover.place.x() + mover.size * std::cos(to),
+                                                mover.place.y() + mover.size * std::sin(to)});
+      obstacles.emplace_back(p.x, p.y);
+    }
+}
+
 /** The map has something in the space that the robot takes, above what its wheels climb. */
 bool isAnythingWithin(const semantic_octree::SemanticOcTree& map,
                       const semantic_planning::VehicleOptions& vehicle,
@@ -238,9 +250,10 @@ DriveCommand Navigator::step(double seconds) {
   if (isInserting() && seconds - m_insertingFrom >= m_options.mappingLatency - kSameTime) finish();
   if (m_guidesNext && mayGuide()) guide(seconds);
   ThreadClock clock;
-  const ObstaclePoints around = obstacles(seconds);
-  note("obstacles", clock.lap());
   const Movers movers = m_movers.at(seconds);
+  ObstaclePoints around = obstacles(seconds);
+  addStanding(movers, m_state.pose, around);
+  note("obstacles", clock.lap());
   ObstaclePoints room;
   if (!movers.empty())
     room =

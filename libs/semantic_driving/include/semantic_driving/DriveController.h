@@ -29,8 +29,7 @@ class DriveController {
 
   /** \param sensorAge seconds since the last observation \param seconds the time
    * \param movers where they are now, map frame \param room obstacles, and what is not known to be
-   * ground (ObstacleOptions::unknown); null: it does not step aside. If it does, it has no path any
-   * more */
+   * ground (ObstacleOptions::unknown); null: it does not step aside */
   DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double sensorAge,
                     double seconds, const Movers& movers = {},
                     const ObstaclePoints* room = nullptr);
