@@ -52,9 +52,8 @@ std::string nameOf(const std::filesystem::path& map) {
 Cli::Cli(CLI::App& app) : outputs(app) {
   study.planner.roadmap.headings = 1;  // as in the paper, and random ones
   study.planner.roadmap.alignHeadings = false;
-  study.graphs = {
-      GraphKind::Compressed,    GraphKind::Leaves,    GraphKind::Halton, GraphKind::HaltonDrivable,
-      GraphKind::HaltonByClass, GraphKind::HaltonMap, GraphKind::Full};
+  study.graphs = {GraphKind::Compressed, GraphKind::Leaves, GraphKind::Halton,
+                  GraphKind::HaltonDrivable, GraphKind::Full};
   addTo(app);
 }
 

@@ -22,8 +22,6 @@ const char* const kReference = "reference";
 strict_files::OptionList sharedOptions(PlannerOptions& planner) {
   strict_files::OptionList options;
   planner.describe(options);
-  options.add("class_of_leaf", planner.roadmap.classOfLeaf, "",
-              "vertices have the class of their leaf, as in the paper, not of the ground");
   for (const char* studied :
        {"graph", "vertices", "edges", "reading", "least_probability", "shorten", "time_limit"})
     options.remove(studied);

@@ -100,7 +100,7 @@ TEST_F(SemanticMapPlan, writesTheRoadmapForApplicationsOfMrpt) {
 }
 
 TEST_F(SemanticMapPlan, everyKindOfGraphEdgeCostAndReadingIsKnown) {
-  for (const char* graph : {"compressed", "halton", "halton_drivable", "halton_by_class", "full"})
+  for (const char* graph : {"compressed", "halton", "halton_drivable", "full"})
     EXPECT_EQ(run("-8,0,0", "8,0,0", {"--graph", graph}).status, 0) << graph;
   for (const char* edges : {"endpoint", "sweep", "profile"})
     EXPECT_EQ(run("-8,0,0", "8,0,0", {"--edges", edges, "--cost", "count"}).status, 0) << edges;

@@ -166,6 +166,21 @@ TEST(Drives, AreAtRestWhereSomebodyWalksIntoTheirSide) {
   }
 }
 
+/** Sensors see neither legs nor head of who is near: what he leaves there must not stay. */
+TEST(Drives, StepOutOfTheWayOfSomebodyWhoWalksIntoThemAndGoOn) {
+  for (const double side : {0.0, 0.3}) {
+    SCOPED_TRACE(side);
+    World world = plain();
+    DriveConfig config = smallConfig();
+    config.mappingLatency = 0.3;
+    Events events;
+    events.persons.push_back({2, 1e9, {10, side}, {-14, side}, 1.2});
+    const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0}, events, config);
+    EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
+    EXPECT_EQ(record.collisions, 0);
+  }
+}
+
 TEST(Drives, GetAroundAPersonWhoStepsInFrontAndStays) {
   World world = plain();
   const TPose2D start(-8, 0, 0), goal(8, 0, 0);

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <semantic_driving/Explorer.h>
 #include <semantic_driving/Frontiers.h>
 
 #include <algorithm>
@@ -190,6 +191,21 @@ TEST_F(Frontiers, AreNotLookedForAgain) {
   const TPose2D seen = first.frontiers[0].pose;
   for (const Frontier& f : explore({30, 0, 0}, {seen}).frontiers)
     EXPECT_GE(distance(f.pose, seen), 3);
+}
+
+TEST_F(Frontiers, FarFromAGoalThatIsReachedAreOfNoUseToWhoWasThere) {
+  world.floor(-12, 12, -12, 12, PaintedWorld::Road);
+  SemanticPlanner planner = plannerOver(world);
+  Explorer explorer(planner, 80);
+  const TPose2D goal(0.1, 0.1, 0), far(-11, 0.1, 0), near(2, 0.1, 0);
+  EXPECT_FALSE(explorer.places(far, 0, goal).frontiers.empty());
+  EXPECT_FALSE(explorer.exhausted());
+  EXPECT_TRUE(explorer.places(near, 0, goal).frontiers.empty());
+  EXPECT_TRUE(explorer.exhausted());
+  EXPECT_TRUE(explorer.places(far, 0, goal).frontiers.empty()) << "it was there";
+  EXPECT_FALSE(explorer.places(near, 0, {30, 0, 0}).frontiers.empty())
+      << "known ground ends before";
+  EXPECT_FALSE(explorer.exhausted());
 }
 
 TEST_F(Frontiers, BehindAWallAreNone) {

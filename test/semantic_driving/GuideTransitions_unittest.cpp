@@ -200,6 +200,15 @@ TEST(GuideTransitions, WaitForWhatStandsAtTheGoalAndThenSaySo) {
   EXPECT_EQ(words(transition(offered.state, ended(22), options).action), "stop");
 }
 
+TEST(GuideTransitions, WithoutAPathItWaitsAsLongForWhatStandsAtTheGoal) {
+  GuideState state = doing(Idle{10.0});
+  state.misfitSince = 12;
+  const Answer none{SeekBack{}, 20};
+  EXPECT_EQ(words(transition(state, none).state.activity), "idle, since 10");
+  state.misfitSince.reset();
+  EXPECT_EQ(words(transition(state, none).state.activity), "gave up");
+}
+
 TEST(GuideTransitions, DriveToTheNearestPoseIfItWillDo) {
   const GuideOptions options;
   Transition next = transition(doing(ToGoal{}), answer(SeekNearest{}, true));

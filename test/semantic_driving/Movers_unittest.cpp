@@ -37,6 +37,14 @@ class Follower {
     m_tracker.update(seconds);
   }
   Movers at(double seconds) const { return m_tracker.at(seconds); }
+  /** Of a point of each class at a place, how many a scan has without those who pass. */
+  std::size_t lastingAt(const Vector2d& place) const {
+    semantic_types::LabeledCloud cloud;
+    cloud.points.assign(2, {static_cast<float>(place.x()), static_cast<float>(place.y()), 0});
+    cloud.classes = {kWall, kPerson};
+    return m_tracker.withoutPassing(cloud, Eigen::Isometry3d::Identity()).size();
+  }
+  std::vector<Vector2d> takeLeft() { return m_tracker.takeLeft(); }
   /** Seen nearest to a place. */
   Mover near(const Vector2d& place, double seconds) const {
     const Movers movers = at(seconds);
@@ -67,6 +75,32 @@ TEST(MoverTracker, KnowsAfterAFewScansWhereSomebodyWalks) {
     }
     EXPECT_LT(movers[0].speedNoise, 0.7) << i;
   }
+}
+
+TEST(MoverTracker, LeavesThoseOutOfAScanWhoPassButNotWhoStands) {
+  Follower follower;
+  const Vector2d standing(3, 2), passing(-3, -2), velocity(0.8, 0.8);
+  for (double t = 0; t < 5; t += 0.5) {
+    follower.scan({standing, passing + t * velocity}, t);
+    EXPECT_EQ(follower.lastingAt(passing + t * velocity), 1u) << t;
+    if (t < 1.9) EXPECT_EQ(follower.lastingAt(standing), 1u) << "who was just seen may walk on";
+    EXPECT_EQ(follower.lastingAt({-8, 0}), 2u) << "nobody is there";
+  }
+  EXPECT_EQ(follower.lastingAt(standing), 2u);
+}
+
+TEST(MoverTracker, TellsOnceWhereSomebodyStoodWhoWalksAway) {
+  Follower follower;
+  const Vector2d place(2, 1);
+  for (double t = 0; t < 5; t += 0.5) follower.scan({place}, t);
+  EXPECT_TRUE(follower.takeLeft().empty());
+  std::vector<Vector2d> left;
+  for (double t = 5; t < 8; t += 0.5) {
+    follower.scan({place + Vector2d(0, 1.2 * (t - 5))}, t);
+    for (const Vector2d& p : follower.takeLeft()) left.push_back(p);
+  }
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_LT((left[0] - place).norm(), 0.2);
 }
 
 TEST(MoverTracker, TellsThoseApartWhoCross) {

@@ -68,6 +68,17 @@ class Robot {
     update();
   }
 
+  /** As somebody does who walks through it. */
+  void leaveSomethingInItsPlace() {
+    semantic_types::LabeledCloud cloud;
+    for (float z = 0.5f; z < 1; z += 0.1f)
+      for (const float x : {-0.1f, 0.3f}) cloud.points.emplace_back(x, 0.f, z);
+    cloud.classes.assign(cloud.points.size(), synthetic_world::kPerson);
+    semantic_octree::InsertionOptions noRays;
+    noRays.carvingMargin = 1e3;
+    for (int i = 0; i < 5; ++i) m_map.insert(cloud, m_robot.T_odometry_robot, noRays);
+  }
+
   double seconds() const { return m_seconds; }
   const TPose2D& pose() const { return m_robot.drive.pose; }
 
@@ -147,6 +158,16 @@ TEST(Navigator, DrivesToANewGoalWhenItHasComeToRest) {
   EXPECT_LT(distance(robot.pose(), goal), 0.3);
   for (std::size_t i = 1; i < robot.commands.size(); ++i)
     EXPECT_LT(std::abs(robot.commands[i].first - robot.commands[i - 1].first), 0.1) << i;
+}
+
+TEST(Navigator, IsNotHeldByWhatIsLeftInItsOwnPlace) {
+  Robot robot(someOptions());
+  const TPose2D goal(3, 2, 0);
+  robot.navigator.setGoal(goal);
+  robot.drive(4);
+  robot.leaveSomethingInItsPlace();
+  EXPECT_EQ(robot.drive(), Status::Arrived) << robot.navigator.reason();
+  EXPECT_LT(distance(robot.pose(), goal), 0.3);
 }
 
 TEST(Navigator, HasAScanInTheMapWhenItsLatencyIsOver) {

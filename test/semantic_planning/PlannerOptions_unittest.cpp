@@ -32,7 +32,7 @@ TEST(PlannerOptions, areSetByTheirNames) {
   strict_files::OptionList list;
   options.describe(list);
   const auto set = [&](const char* name, const char* text) { list.find(name)->set(text); };
-  set("graph", "halton_map");
+  set("graph", "full");
   set("vertices", "700");
   set("least-probability", "0.2");
   set("edges", "sweep");
@@ -41,7 +41,7 @@ TEST(PlannerOptions, areSetByTheirNames) {
   set("fillGap", "0.3");
   set("keep_off", "true");
   set("time_limit", "inf");
-  EXPECT_EQ(options.roadmap.kind, GraphKind::HaltonMap);
+  EXPECT_EQ(options.roadmap.kind, GraphKind::Full);
   EXPECT_EQ(options.roadmap.vertices, 700u);
   EXPECT_EQ(options.reading.leastProbability, 0.2);
   EXPECT_EQ(options.edges, colored_graph::EdgeModel::Sweep);
@@ -53,7 +53,7 @@ TEST(PlannerOptions, areSetByTheirNames) {
 }
 
 TEST(PlannerOptions, choicesHaveNamesOfTheirOwn) {
-  expectNames<GraphKind>(7);
+  expectNames<GraphKind>(5);
   expectNames<ClassReading::Kind>(3);
   expectNames<PlanStatus>(11);
 }

@@ -107,8 +107,7 @@ TEST_F(RepeatedPlansTest, planAsFreshPlannersDoWithClassesThatTheGroundDoesNotTe
   EXPECT_GT(remembered, 100u);
 }
 
-TEST_F(RepeatedPlansTest, planAsFreshPlannersDoWithClassesOfLeavesInMapsWithLargeOnes) {
-  options.roadmap.classOfLeaf = true;
+TEST_F(RepeatedPlansTest, planAsFreshPlannersDoInMapsWithLargeLeaves) {
   options.edges = colored_graph::EdgeModel::Endpoint;
   auto abstraction = abstractionFor(order);
   abstraction.blockSize = 12.8;
@@ -163,7 +162,6 @@ TEST_F(RepeatedPlansTest, theSamePosesComeAgainUnlessTheyBelongToTheTask) {
   options.roadmap.buffer = 6;
   for (const auto& [kind, again] : {std::pair(GraphKind::Compressed, true),
                                     {GraphKind::Leaves, true},
-                                    {GraphKind::HaltonMap, true},
                                     {GraphKind::HaltonDrivable, false}}) {
     options.roadmap.kind = kind;
     SemanticPlanner p = planner();

@@ -224,3 +224,20 @@ TEST(Mapper, whatTheRobotStandsOnCarvesNothing) {
     EXPECT_EQ(map.query(1.25, 1, -1).status, semantic_octree::CellState::Status::Unknown);
   }
 }
+
+TEST(Mapper, whatIsKnownToBeFreeIsFreeAfterSomeTimesAndNothingElseChanges) {
+  for (const bool localize : {false, true}) {
+    SemanticOcTree map(0.2, wallsAndCars());
+    MapperOptions options = localizing();
+    options.localize = localize;
+    Mapper mapper(map, options);
+    const auto T = planar(1, 1, 0);
+    const auto inserted = mapper.insert(yardFrom(T), Eigen::Isometry3d::Identity(), T, 0);
+    for (int i = 0; i < 5; ++i) mapper.insertBelow({{{0.5f, 0, 1}}, {kCar}, {}}, inserted.place);
+    const SemanticOcTree before = map;
+    for (int i = 0; i < 10; ++i) mapper.insertFree({0.5, 0, 1}, 0.3, inserted.place);
+    EXPECT_EQ(map.query(1.5, 1, 1).status, semantic_octree::CellState::Status::Free);
+    for (const double x : {1.0, 2.0})
+      EXPECT_EQ(map.query(x, 1, 1).occupancy, before.query(x, 1, 1).occupancy) << x;
+  }
+}

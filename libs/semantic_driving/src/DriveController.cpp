@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "StepAside.h"
+
 namespace semantic_driving {
 
 using mrpt::math::TPose2D;
@@ -48,18 +50,21 @@ void DriveController::setPath(DrivePath path) {
 }
 
 DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints& obstacles,
-                                   double sensorAge, double seconds, const Movers& movers) {
+                                   double sensorAge, double seconds, const Movers& movers,
+                                   const ObstaclePoints* room) {
   m_track.add(state.pose);
   m_tracker.locate(state);
   const double limit = m_tracker.options().speedFor(sensorAge);
   const bool reactive = seconds >= m_reactiveAgain && wantsReactive(state, obstacles, seconds);
   m_driver = reactive ? Driver::Reactive : Driver::Tracker;
   if (!reactive) m_reactiveFrom = -1;
-  const DriveCommand wanted =
-      besideMovers(state,
-                   reactive ? driveReactively(state, obstacles, limit, seconds)
-                            : m_tracker.command(state, obstacles, limit),
-                   movers);
+  DriveCommand wanted = besideMovers(state,
+                                     reactive ? driveReactively(state, obstacles, limit, seconds)
+                                              : m_tracker.command(state, obstacles, limit),
+                                     movers);
+  if (room && std::abs(wanted.speed) <= DriveOptions::kSlowest)
+    wanted = stepAside(state, m_motion, *room, movers, m_tracker.footprint(), m_tracker.options())
+                 .value_or(wanted);
   const double since = seconds - std::exchange(m_steppedAt, seconds).value_or(seconds);
   m_motion = safeMotion(state, wanted, obstacles, since);
   if (std::abs(m_motion.speed) > DriveOptions::kAtRest || m_tracker.finished()) m_movedAt = seconds;

@@ -119,7 +119,7 @@ Look DriveGuide::look(const Situation& now) const {
   const Departure ahead = departureOf(now, From::Ahead);
   look.mayPlanAhead = mayStand(ahead.pose, ahead.z);
   look.mayStandAtGoal = mayStand(m_aim, {});
-  look.goalMisfits = m_misfit.has_value();
+  look.goalMisfits = m_misfit || (m_explorer.exhausted() && !look.mayStandAtGoal);
   return look;
 }
 
@@ -251,9 +251,11 @@ bool DriveGuide::aimsElsewhere(const Situation& now) {
   const auto nearest = nearestFit(m_planner, now.state.pose, now.z, m_goal, kNearestWithin,
                                   m_options.frontierRadius);
   const bool asGood = nearest && m_options.isAsGood(*nearest, m_goal);
+  if (nearest && *nearest == m_aim) return false;  // there it was, and found no way
   if (!asGood) {
-    m_refusal = RefusedGoal{describe(*m_misfit, m_aim, m_planner.ground().map().classes()), nearest,
-                            now.seconds};
+    m_refusal = RefusedGoal{
+        m_misfit ? describe(*m_misfit, m_aim, m_planner.ground().map().classes()) : m_reason,
+        nearest, now.seconds};
     m_reason = m_refusal->reason + "; the nearest pose known to fit: ";
     m_reason += nearest ? textOf(*nearest) : "none";
   }

@@ -1,5 +1,6 @@
 #include <semantic_driving/Explorer.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -22,7 +23,18 @@ void Explorer::moveTo(const TPose2D& pose, double z) {
 }
 
 Exploration Explorer::places(const TPose2D& from, double z, const TPose2D& goal) {
+  constexpr double kAround = 8;  // m
+  const auto isThere = [&](const TPose2D& pose) {
+    return std::hypot(pose.x - goal.x, pose.y - goal.y) < kAround;
+  };
   Exploration found = findFrontiers(m_planner, from, z, goal, m_seen, m_effort, m_radius);
+  std::vector<Frontier>& frontiers = found.frontiers;
+  m_wasThere = m_wasThere || isThere(from);
+  if (m_wasThere && found.goalReached)
+    frontiers.erase(std::remove_if(frontiers.begin(), frontiers.end(),
+                                   [&](const Frontier& f) { return !isThere(f.pose); }),
+                    frontiers.end());
+  m_exhausted = m_wasThere && found.goalReached && frontiers.empty();
   if (m_effort.expected == 0 && !found.frontiers.empty())
     m_effort.expected = m_effort.spent + found.hoped;
   return found;

@@ -129,6 +129,7 @@ Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, d
   const GoalRegion region(planner, flood.square(), flood.reached(), from, z, goal);
   Exploration found;
   found.enclosed = region.isEnclosed();
+  found.goalReached = region.isGoalReached();
   if (!region.isOpen()) found.goalArea = region.columns() * voxel * voxel;
   if (found.enclosed) return found;
   const auto search = [&](double unknownFactor) {

@@ -42,6 +42,7 @@ class GoalRegion {
   bool isObstacle(semantic_planning::Column c) const { return m_obstacle[m_square.indexOf(c)]; }
   /** So near to an obstacle that the vehicle cannot be there. \param c in the square */
   bool isKept(semantic_planning::Column c) const { return m_kept[m_square.indexOf(c)]; }
+  bool isGoalReached() const { return m_goalReached; }
   /** No reached column borders on the region: no way leads to the goal. */
   bool isEnclosed() const { return m_enclosed; }
   std::size_t columns() const { return m_columns; }

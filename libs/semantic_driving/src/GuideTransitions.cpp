@@ -113,7 +113,8 @@ Transition fail(GuideState state, double seconds) {
   const auto* idle = std::get_if<Idle>(&state.activity);
   const double since = idle && idle->since ? *idle->since : seconds;
   state.activity = Idle{since};
-  if (seconds - since >= kGiveUpAfter) state.activity = GaveUp{};
+  // A goal that does not fit has a patience of its own.
+  if (seconds - since >= kGiveUpAfter && !state.misfitSince) state.activity = GaveUp{};
   return {state, Stop{}};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <tuple>
@@ -21,6 +22,8 @@ constexpr double kFirstSpeed = 1;      // m/s: likewise, of one who is seen for 
 constexpr double kWalking = 0.6;       // m/s^2: likewise, the acceleration of one who walks
 constexpr double kFastest = 2.5;       // m/s; a middle that is seen farther off is somebody else's
 constexpr double kStandsBelow = 0.25;  // m/s
+constexpr double kStays = 2;           // s at rest until one counts as one who stands
+constexpr double kGone = 0.8;          // m from where one stood
 constexpr double kForget = 1.5;        // s until one who is not seen any more is forgotten
 
 /** By class id. */
@@ -55,29 +58,77 @@ MoverTracker::MoverTracker(const MoverOptions& options, const semantic_types::Cl
 void MoverTracker::see(const semantic_types::LabeledCloud& cloud,
                        const Eigen::Isometry3d& T_map_sensor) {
   if (cloud.classes.empty()) return;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (isOfMover(cloud, i))
+      m_seen.push_back((T_map_sensor * cloud.points[i].cast<double>()).head<2>());
+}
+
+bool MoverTracker::isOfMover(const semantic_types::LabeledCloud& cloud, std::size_t i) const {
+  const ClassId id = cloud.classes[i];
+  return id < m_isMover.size() && m_isMover[id] &&
+         cloud.points[i].cast<double>().norm() <= m_options.radius;
+}
+
+semantic_types::LabeledCloud MoverTracker::withoutPassing(
+    const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor) const {
+  const auto isPassing = [&](std::size_t i) {
+    if (!isOfMover(cloud, i)) return false;
+    const Vector2d at = (T_map_sensor * cloud.points[i].cast<double>()).head<2>();
+    return std::any_of(m_tracks.begin(), m_tracks.end(), [&](const Track& track) {
+      return !track.stands && (track.place - at).norm() < kBody + kApart;
+    });
+  };
+  if (cloud.classes.empty()) return cloud;
+  const std::size_t row = cloud.probabilities.size() / std::max<std::size_t>(1, cloud.size());
+  semantic_types::LabeledCloud rest;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const ClassId id = cloud.classes[i];
-    if (id >= m_isMover.size() || !m_isMover[id]) continue;
-    const Eigen::Vector3d point = cloud.points[i].cast<double>();
-    if (!(point.norm() <= m_options.radius)) continue;
-    m_seen.push_back((T_map_sensor * point).head<2>());
+    if (isPassing(i)) continue;
+    rest.points.push_back(cloud.points[i]);
+    rest.classes.push_back(cloud.classes[i]);
+    const auto soft = cloud.probabilities.begin() + static_cast<std::ptrdiff_t>(i * row);
+    rest.probabilities.insert(rest.probabilities.end(), soft,
+                              soft + static_cast<std::ptrdiff_t>(row));
   }
+  return rest;
+}
+
+void MoverTracker::noteStanding(Track& track, double seconds) {
+  if (track.velocity.norm() >= kStandsBelow) track.walkedAt = seconds;
+  if (!track.stands && seconds - track.walkedAt >= kStays) track.stands = track.place;
+  if (!track.stands || (track.place - *track.stands).norm() < kGone) return;
+  m_left.push_back(*track.stands);
+  track.stands.reset();
 }
 
 /** Of clusters: points that are near one another, from above. */
 std::vector<Vector2d> MoverTracker::middles() const {
+  using Cell = std::pair<long, long>;
+  const auto cellOf = [](const Vector2d& p) {
+    return Cell(std::lround(p.x() / kApart), std::lround(p.y() / kApart));
+  };
+  std::map<Cell, std::vector<std::size_t>> left;
+  for (std::size_t i = 0; i < m_seen.size(); ++i) left[cellOf(m_seen[i])].push_back(i);
   std::vector<Vector2d> middles;
-  std::vector<bool> done(m_seen.size());
-  for (std::size_t first = 0; first < m_seen.size(); ++first) {
-    if (done[first]) continue;
-    done[first] = true;
-    std::vector<std::size_t> cluster{first};
-    for (std::size_t next = 0; next < cluster.size(); ++next)
-      for (std::size_t i = first; i < m_seen.size(); ++i)
-        if (!done[i] && (m_seen[i] - m_seen[cluster[next]]).norm() <= kApart) {
-          done[i] = true;
-          cluster.push_back(i);
-        }
+  while (!left.empty()) {
+    std::vector<std::size_t>& any = left.begin()->second;
+    std::vector<std::size_t> cluster{any.back()};
+    any.pop_back();
+    const auto takeNear = [&](const Vector2d& p, std::vector<std::size_t>& cell) {
+      const auto far = std::partition(cell.begin(), cell.end(), [&](std::size_t i) {
+        return (m_seen[i] - p).norm() <= kApart;
+      });
+      cluster.insert(cluster.end(), cell.begin(), far);
+      cell.erase(cell.begin(), far);
+    };
+    for (std::size_t next = 0; next < cluster.size(); ++next) {
+      const Vector2d p = m_seen[cluster[next]];
+      const auto [x, y] = cellOf(p);
+      for (long dx = -1; dx <= 1; ++dx)
+        for (long dy = -1; dy <= 1; ++dy)
+          if (const auto cell = left.find({x + dx, y + dy}); cell != left.end())
+            takeNear(p, cell->second);
+    }
+    while (!left.empty() && left.begin()->second.empty()) left.erase(left.begin());
     if (cluster.size() < kLeastPoints) continue;
     Vector2d sum = Vector2d::Zero();
     for (const std::size_t i : cluster) sum += m_seen[i];
@@ -131,8 +182,15 @@ void MoverTracker::update(double seconds) {
                  m_tracks.end());
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (!taken[i])
-      m_tracks.push_back({seen[i], Vector2d::Zero(), kPlaceNoise * kPlaceNoise, 0,
-                          kFirstSpeed * kFirstSpeed, seconds});
+      m_tracks.push_back({seen[i],
+                          Vector2d::Zero(),
+                          kPlaceNoise * kPlaceNoise,
+                          0,
+                          kFirstSpeed * kFirstSpeed,
+                          seconds,
+                          seconds,
+                          {}});
+  for (Track& track : m_tracks) noteStanding(track, seconds);
 }
 
 Movers MoverTracker::at(double seconds) const {

@@ -18,7 +18,7 @@ class ObstacleFinder {
 
   bool isObstacle(semantic_planning::Column c, int z,
                   const semantic_planning::Surface* surface) const {
-    if (!surface) return anyOccupied(c, z);
+    if (!surface) return m_options.unknown || anyOccupied(c, z);
     if (!surface->drivable) return true;
     return m_options.forbiddenGround && !surface->filled &&
            m_planner.order().rank(surface->classId) == colored_graph::kForbidden;

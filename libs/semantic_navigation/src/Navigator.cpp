@@ -3,6 +3,7 @@
 #include <semantic_navigation/Navigator.h>
 #include <semantic_planning/planner/OrderAbstraction.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -22,6 +23,7 @@ namespace {
 
 constexpr double kSameTime = 1e-6;  // s
 constexpr double kNever = -1e9;     // s
+constexpr double kRoom = 4;         // m: how far it may step aside
 
 ReactiveNavigator::Options reactiveOf(const NavigatorOptions& options) {
   ReactiveNavigator::Options reactive;
@@ -63,6 +65,36 @@ semantic_types::LabeledCloud groundBelow(const semantic_planning::SemanticPlanne
       cloud.classes.push_back(known ? known->classId : semantic_types::kNoClass);
     }
   return cloud;
+}
+
+/** Who stands is in the way, though the map does not have him yet. */
+void addStanding(const Movers& movers, const TPose2D& robot, ObstaclePoints& obstacles) {
+  constexpr int kPoints = 8;
+  for (const Mover& mover : movers)
+    for (int i = 0; mover.stands() && i < kPoints; ++i) {
+      const double to = i * 2 * M_PI / kPoints;
+      const auto p = robot.inverseComposePoint({mover.place.x() + mover.size * std::cos(to),
+                                                mover.place.y() + mover.size * std::sin(to)});
+      obstacles.emplace_back(p.x, p.y);
+    }
+}
+
+/** The map has something in the space that the robot takes, above what its wheels climb. */
+bool isAnythingWithin(const semantic_octree::SemanticOcTree& map,
+                      const semantic_planning::VehicleOptions& vehicle,
+                      const Eigen::Isometry3d& T_map_robot) {
+  const double step = map.getResolution();
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : vehicle.footprint) box.extend(corner);
+  for (double x = box.min().x(); x < box.max().x(); x += step)
+    for (double y = box.min().y(); y < box.max().y(); y += step)
+      for (double z = vehicle.stepHeight + step; z < vehicle.height; z += step) {
+        const Eigen::Vector3d p = T_map_robot * Eigen::Vector3d(x, y, z);
+        if (vehicle.footprint.distance({x, y}) == 0 &&
+            map.query(p.x(), p.y(), p.z()).status == semantic_octree::CellState::Status::Occupied)
+          return true;
+      }
+  return false;
 }
 
 }  // namespace
@@ -107,12 +139,12 @@ void Navigator::correctState() {
 void Navigator::see(const std::vector<SensorScan>& seen, double seconds) {
   m_guidesNext = true;
   if (seen.empty()) return;
-  if (!isInserting()) insert(seen, seconds);
   ThreadClock clock;
   const Eigen::Isometry3d T_map_robot = m_mapper.T_map_odometry() * m_robot.T_odometry_robot;
   for (const SensorScan& scan : seen) m_movers.see(scan.cloud, T_map_robot * scan.T_robot_sensor);
   m_movers.update(seconds);
   note("movers", clock.lap());
+  if (!isInserting()) insert(seen, seconds);
 }
 
 /** Begins to. Where the robot is when it sees that is told now, the map may be filled later. */
@@ -120,13 +152,17 @@ void Navigator::insert(const std::vector<SensorScan>& seen, double seconds) {
   m_mapper.age(seconds);
   focus();
   m_insertingFrom = seconds;
-  auto fillMap = [this, seen, at = locate(seen), seconds] { return fill(seen, at, seconds); };
+  const Mapper::Place at = locate(seen);
+  auto fillMap = [this, lasting = withoutPassing(seen), left = m_movers.takeLeft(), at, seconds] {
+    return fill(lasting, at, left, seconds);
+  };
   if (m_options.mappingLatency == 0) {
     m_inserting = std::async(std::launch::deferred, std::move(fillMap));
     return finish();
   }
   const double drivenMeanwhile = m_options.drive.maxSpeed * m_options.mappingLatency;
   m_before = knownObstacles(m_options.obstacles.radius + drivenMeanwhile, seconds);
+  m_roomBefore = knownRoom(kRoom + drivenMeanwhile);
   m_beforeAt = m_state.pose;
   m_inserting = std::async(std::launch::async, std::move(fillMap));
 }
@@ -140,10 +176,39 @@ Mapper::Place Navigator::locate(const std::vector<SensorScan>& seen) {
   return at;
 }
 
+std::vector<SensorScan> Navigator::withoutPassing(const std::vector<SensorScan>& seen) const {
+  const Eigen::Isometry3d T_map_robot = m_mapper.T_map_odometry() * m_robot.T_odometry_robot;
+  std::vector<SensorScan> lasting = seen;
+  for (SensorScan& scan : lasting)
+    scan.cloud = m_movers.withoutPassing(scan.cloud, T_map_robot * scan.T_robot_sensor);
+  return lasting;
+}
+
+/** Nothing is where the robot is, and nobody where somebody was who walked away: sensors that do
+ * not see that near, or that low, leave in the map what was there. */
+void Navigator::carve(const Mapper::Place& at, const std::vector<Eigen::Vector2d>& left) {
+  constexpr int kSure = 10;      // beams until it is free, whatever was seen before
+  constexpr double kBody = 0.4;  // m
+  const semantic_planning::VehicleOptions& vehicle = m_planner.options().vehicle;
+  const auto column = [&](const Eigen::Vector3d& base, double radius) {
+    for (double z = vehicle.stepHeight + radius; z < vehicle.height + radius; z += radius)
+      for (int i = 0; i < kSure; ++i)
+        m_mapper.insertFree(base + z * Eigen::Vector3d::UnitZ(), radius, at);
+  };
+  for (const Eigen::Vector2d& p : left)
+    column(
+        at.T_map_robot.inverse() * Eigen::Vector3d(p.x(), p.y(), at.T_map_robot.translation().z()),
+        kBody);
+  if (!isAnythingWithin(m_mapper.map(), vehicle, at.T_map_robot)) return;
+  for (const semantic_planning::Disc& d : vehicle.footprint.coveringDiscs())
+    column({d.x, d.y, 0}, d.radius);
+}
+
 StageTimes Navigator::fill(const std::vector<SensorScan>& seen, const Mapper::Place& at,
-                           double seconds) {
+                           const std::vector<Eigen::Vector2d>& left, double seconds) {
   ThreadClock clock;
   m_mapper.insert(seen, at, seconds);
+  carve(at, left);
   StageTimes times{{"insert", clock.lap()}};
   m_planner.update();
   if (!std::exchange(m_stands, true)) {
@@ -185,10 +250,16 @@ DriveCommand Navigator::step(double seconds) {
   if (isInserting() && seconds - m_insertingFrom >= m_options.mappingLatency - kSameTime) finish();
   if (m_guidesNext && mayGuide()) guide(seconds);
   ThreadClock clock;
-  const ObstaclePoints around = obstacles(seconds);
+  const Movers movers = m_movers.at(seconds);
+  ObstaclePoints around = obstacles(seconds);
+  addStanding(movers, m_state.pose, around);
   note("obstacles", clock.lap());
-  const DriveCommand command =
-      m_controller.step(m_state, around, seconds - m_mappedAt, seconds, m_movers.at(seconds));
+  ObstaclePoints room;
+  if (!movers.empty())
+    room =
+        isInserting() ? seenFrom(m_roomBefore, m_beforeAt, m_state.pose, kRoom) : knownRoom(kRoom);
+  const DriveCommand command = m_controller.step(m_state, around, seconds - m_mappedAt, seconds,
+                                                 movers, movers.empty() ? nullptr : &room);
   note("react", clock.lap());
   return command;
 }
@@ -220,6 +291,14 @@ ObstaclePoints Navigator::knownObstacles(double radius, double seconds) {
   if (wantsFineObstacles(seconds)) return senseObstacles(m_planner, m_state.pose, m_z, options);
   return senseCompressedObstacles(m_planner, Abstraction(m_mapper.map()), m_state.pose, m_z,
                                   options);
+}
+
+/** Obstacles, and what is not known to be ground. */
+ObstaclePoints Navigator::knownRoom(double radius) const {
+  ObstacleOptions options;
+  options.radius = radius;
+  options.unknown = true;
+  return senseObstacles(m_planner, m_state.pose, m_z, options);
 }
 
 /** The same; while a scan is inserted, as it was known before. */

@@ -1,6 +1,7 @@
 #include <semantic_slam/Mapper.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace semantic_slam {
@@ -88,6 +89,22 @@ void Mapper::insertBelow(const LabeledCloud& points, const Place& place) {
   semantic_octree::InsertionOptions noRays;
   noRays.carvingMargin = 1e3;
   insertAt(place, points, Eigen::Isometry3d::Identity(), noRays, 0);
+}
+
+/** Beams in all directions that end beyond. */
+void Mapper::insertFree(const Eigen::Vector3d& p, double radius, const Place& place) {
+  const double golden = M_PI * (3 - std::sqrt(5.0));
+  const double apart = m_map.getResolution() / 2;
+  const int beams = static_cast<int>(std::ceil(4 * M_PI * radius * radius / (apart * apart)));
+  LabeledCloud cloud;
+  for (int i = 0; i < beams; ++i) {
+    const double z = 1 - (2 * i + 1.0) / beams, r = std::sqrt(1 - z * z);
+    const Eigen::Vector3d direction(r * std::cos(golden * i), r * std::sin(golden * i), z);
+    cloud.points.push_back((2 * radius * direction).cast<float>());
+  }
+  semantic_octree::InsertionOptions upTo;
+  upTo.maxRange = radius;
+  insertAt(place, cloud, Eigen::Isometry3d(Eigen::Translation3d(p)), upTo, 0);
 }
 
 double Mapper::secondsUntil(double seconds) const {

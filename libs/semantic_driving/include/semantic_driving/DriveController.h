@@ -12,8 +12,8 @@ namespace semantic_driving {
 /** Drives a path: MRPT's reactive navigator where that can (forward, and not to an exact pose), the
  * tracker where the path goes backwards, shunts or ends. Whatever either of them wants, the vehicle
  * does not go where it could not stop before an obstacle, lets those who move pass
- * (separationSpeed()), and changes neither its acceleration nor its steering faster than
- * DriveOptions say. */
+ * (separationSpeed()), steps aside where somebody walks into it as it stands, and changes neither
+ * its acceleration nor its steering faster than DriveOptions say. */
 class DriveController {
  public:
   /** \throw std::exception bad options, or what the reactive navigator does not like. */
@@ -28,9 +28,11 @@ class DriveController {
   const DrivenTrack& track() const { return m_track; }
 
   /** \param sensorAge seconds since the last observation \param seconds the time
-   * \param movers where they are now, map frame */
+   * \param movers where they are now, map frame \param room obstacles, and what is not known to be
+   * ground (ObstacleOptions::unknown); null: it does not step aside */
   DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double sensorAge,
-                    double seconds, const Movers& movers = {});
+                    double seconds, const Movers& movers = {},
+                    const ObstaclePoints* room = nullptr);
 
   enum class Driver { Tracker, Reactive };
   Driver driver() const { return m_driver; }

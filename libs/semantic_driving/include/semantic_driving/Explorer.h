@@ -19,7 +19,9 @@ class Explorer {
   /** Counts the way that the vehicle drove since the last call. \param z of the ground, meters */
   void moveTo(const mrpt::math::TPose2D& pose, double z);
 
-  /** Where to explore. \param from where the vehicle leaves its path, on ground of height z */
+  /** Where to explore. A vehicle that was near a goal whose place known ground leads to looks
+   * around there only: what is missing is seen from there or not at all. \param from where the
+   * vehicle leaves its path, on ground of height z */
   Exploration places(const mrpt::math::TPose2D& from, double z, const mrpt::math::TPose2D& goal);
 
   struct Way {
@@ -38,6 +40,8 @@ class Explorer {
   /** Places that were driven to, or could not be reached. None is looked at twice, nor others
    * within 3 m of it: exploring comes to an end. */
   std::size_t explored() const { return m_seen.size(); }
+  /** Whether nothing is left to be looked at around a goal that known ground leads to. */
+  bool exhausted() const { return m_exhausted; }
 
  private:
   using Poses = std::vector<mrpt::math::TPose2D>;
@@ -45,6 +49,7 @@ class Explorer {
   semantic_planning::SemanticPlanner& m_planner;
   const double m_radius;
   Effort m_effort;
+  bool m_wasThere = false, m_exhausted = false;
   std::optional<mrpt::math::TPose2D> m_pose;  ///< where the vehicle was last
   Poses m_seen;                               ///< visited, or not to be reached
   Poses m_tried;                              ///< the same, if the way that was chosen is driven

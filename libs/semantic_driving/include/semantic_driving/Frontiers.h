@@ -35,6 +35,9 @@ struct Exploration {
    * the radius: then, if there is no way, it is the vehicle that is enclosed, as it may seem where
    * it does not see the ground that it stands on. */
   double goalArea = std::numeric_limits<double>::infinity();
+  /** Known ground leads to the goal's place, though perhaps not for a vehicle that has to turn, or
+   * is to stand there. */
+  bool goalReached = false;
 };
 
 /** Places on drivable ground next to unknown space from which to see more of the way to a goal,

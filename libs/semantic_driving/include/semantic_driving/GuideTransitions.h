@@ -65,7 +65,8 @@ struct Look {
   bool mayPlan = true;         ///< from where the vehicle is
   bool mayPlanAhead = true;    ///< from where a better path leaves the present one
   bool mayStandAtGoal = true;  ///< by what is known
-  bool goalMisfits = false;    ///< whatever is yet to be seen (findMisfit())
+  /** Whatever is yet to be seen (findMisfit()), or though nothing is left to be looked at. */
+  bool goalMisfits = false;
 };
 
 // What a guide does next. It takes paths as they are found, or asks for one more.

@@ -4,7 +4,9 @@
 #include <strict_files/OptionList.h>
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace semantic_driving {
@@ -48,6 +50,14 @@ class MoverTracker {
   /** The scan is complete. \param seconds when it was taken */
   void update(double seconds);
 
+  /** A scan without those who walk, or were seen for the first time just now: what is left of them
+   * is soon somewhere else, and may be where no sensor sees it again. Who stands stays.
+   * \param T_map_sensor where the scan was taken, at the last update() */
+  semantic_types::LabeledCloud withoutPassing(const semantic_types::LabeledCloud& cloud,
+                                              const Eigen::Isometry3d& T_map_sensor) const;
+  /** Where somebody stood who walks away now, map frame; told once. */
+  std::vector<Eigen::Vector2d> takeLeft() { return std::exchange(m_left, {}); }
+
   /** Where they are at a time at or after the last update(), map frame. */
   Movers at(double seconds) const;
 
@@ -56,7 +66,11 @@ class MoverTracker {
     Eigen::Vector2d place, velocity;
     double pp, pv, vv;  ///< covariance of place and velocity, the same along both axes
     double seenAt;
+    double walkedAt;                        ///< last
+    std::optional<Eigen::Vector2d> stands;  ///< where, for a while
   };
+  bool isOfMover(const semantic_types::LabeledCloud& cloud, std::size_t i) const;
+  void noteStanding(Track& track, double seconds);
   std::vector<Eigen::Vector2d> middles() const;
   static void predict(Track& track, double seconds);
   static void correct(Track& track, const Eigen::Vector2d& middle);
@@ -65,6 +79,7 @@ class MoverTracker {
   std::vector<bool> m_isMover;  ///< by class id
   std::vector<Eigen::Vector2d> m_seen;
   std::vector<Track> m_tracks;
+  std::vector<Eigen::Vector2d> m_left;
   double m_updatedAt = 0;
 };
 

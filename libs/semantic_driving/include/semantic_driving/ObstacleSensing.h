@@ -10,6 +10,8 @@ struct ObstacleOptions {
   double radius = 6;
   /** Ground of forbidden classes, even when flat. */
   bool forbiddenGround = true;
+  /** Whatever is not known to be ground. */
+  bool unknown = false;
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
@@ -21,7 +23,7 @@ struct ObstacleOptions {
  * there, where the ground is too steep, or of a forbidden class.
  *
  * How high the ground is spreads from column to column, from below the vehicle on; over ground that
- * is not known the height stays as it was. Nothing is said of the unknown: it is no obstacle.
+ * is not known the height stays as it was. The unknown is no obstacle, unless it is asked for.
  * \param z height of the ground below the vehicle, meters */
 ObstaclePoints senseObstacles(const semantic_planning::SemanticPlanner& planner,
                               const mrpt::math::TPose2D& pose, double z,

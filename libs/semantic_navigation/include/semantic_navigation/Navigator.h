@@ -106,8 +106,12 @@ class Navigator {
   bool isInserting() const { return m_inserting.valid(); }
   semantic_slam::Mapper& waitedFor() const;
   void insert(const std::vector<semantic_slam::SensorScan>& seen, double seconds);
+  std::vector<semantic_slam::SensorScan> withoutPassing(
+      const std::vector<semantic_slam::SensorScan>& seen) const;
   semantic_planning::StageTimes fill(const std::vector<semantic_slam::SensorScan>& seen,
-                                     const semantic_slam::Mapper::Place& place, double seconds);
+                                     const semantic_slam::Mapper::Place& place,
+                                     const std::vector<Eigen::Vector2d>& left, double seconds);
+  void carve(const semantic_slam::Mapper::Place& at, const std::vector<Eigen::Vector2d>& left);
   semantic_slam::Mapper::Place locate(const std::vector<semantic_slam::SensorScan>& seen);
   void focus();
   void correctState();
@@ -115,6 +119,7 @@ class Navigator {
   void guide(double seconds);
   bool wantsFineObstacles(double seconds);
   semantic_driving::ObstaclePoints knownObstacles(double radius, double seconds);
+  semantic_driving::ObstaclePoints knownRoom(double radius) const;
   semantic_driving::ObstaclePoints obstacles(double seconds);
   void note(const std::string& stage, double milliseconds) const;
 
@@ -135,6 +140,7 @@ class Navigator {
   double m_fineUntil, m_mappedAt;             ///< seconds
   double m_insertingFrom = 0;                 ///< when the scan that is being inserted was taken
   semantic_driving::ObstaclePoints m_before;  ///< known without that one, and the robot's pose then
+  semantic_driving::ObstaclePoints m_roomBefore;
   mrpt::math::TPose2D m_beforeAt;
   std::future<semantic_planning::StageTimes> m_inserting;  ///< last: it uses the others
 };

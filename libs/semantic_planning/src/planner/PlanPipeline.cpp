@@ -5,7 +5,7 @@ namespace semantic_planning {
 
 namespace {
 
-constexpr int kFinerRoadmaps = 3;
+constexpr int kFinerRoadmaps = 2;  // a third took most of a "no", and found nothing
 
 /** What a path may cost before a roadmap is tried: turning takes some meters at both ends. */
 double mostOf(const RelaxedPath& relaxed) {
@@ -49,7 +49,7 @@ PlanResult PlannerCore::solve(const RelaxedPath& relaxed, StageClock& clock) {
   PlanResult result = beside(relaxed.path, {});
   clock.end("beside");
   if (result.found() && result.price <= mostOf(relaxed)) {
-    m_replanner.reset();  // first: it refers to the roadmap's graph
+    m_search->forget();  // first: it refers to the roadmap's graph
     m_roadmap.reset();
     return result;
   }

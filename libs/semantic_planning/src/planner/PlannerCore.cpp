@@ -1,6 +1,5 @@
 #include "PlannerCore.h"
 
-#include <colored_graph/ColoredAStar.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <strict_files/TextFile.h>
 
@@ -84,7 +83,9 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
       m_kept(m_checker, m_prices),
       m_candidates(map, m_ground, options.roadmap),
       m_edges(m_checker),
-      m_model{order, options.edges, options.cost, true} {
+      m_model{order, options.edges, options.cost, true},
+      m_search(options.graphSearch ? options.graphSearch()
+                                   : std::make_unique<colored_graph::ColoredGraphSearch>()) {
   m_follower.skipTiles();  // the ground began with the whole map
 }
 
@@ -172,7 +173,7 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   checkFinite("start", start);
   checkFinite("goal", goal);
   const Change change(*this);
-  m_replanner.reset();
+  m_search->forget();
   m_roadmap.reset();
   m_kept.drop();
   m_goalPlace = goal;
@@ -185,13 +186,11 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
 }
 
 PathResult PlannerCore::search(Roadmap& map, VertexId start, VertexId goal) {
-  colored_graph::ColoredAStarOptions options;
-  static_cast<colored_graph::SearchOptions&>(options) = searchOptions(map);
-  return findColoredPath(map.graph(), start, goal, m_model, options);
+  return m_search->search(map.graph(), start, goal, m_model, searchOptions(map));
 }
 
 void PlannerCore::makeRoadmap() {
-  m_replanner.reset();
+  m_search->forget();
   m_roadmap = std::make_unique<MapRoadmap>(m_candidates, m_checker, m_options.roadmap, *m_startPose,
                                            region(m_options.roadmap.buffer));
   if (m_corridor) m_candidates.forget();  // of a map that is too large: they take as much as ground
@@ -205,11 +204,11 @@ PlanResult PlannerCore::searchRoadmap(StageClock& clock) {
   if (isNew) makeRoadmap();
   Roadmap& map = m_roadmap->roadmap();
   if (!isNew) moveEnds(map);
-  if (!isNew && !m_replanner)
-    m_replanner.emplace(map.graph(), m_start, m_goal, m_model, searchOptions(map));
   clock.end("roadmap");
   m_evaluating = 0;
-  const PathResult path = isNew ? search(map, m_start, m_goal) : m_replanner->solve();
+  const PathResult path =
+      isNew ? search(map, m_start, m_goal)
+            : m_search->replan(map.graph(), m_start, m_goal, m_model, searchOptions(map));
   clock.end("search", "evaluateEdges", m_evaluating);
   PlanResult result;
   describePath(path, map, m_checker, result);
@@ -276,7 +275,7 @@ void PlannerCore::sayWhere(const RelaxedPath& relaxed, PlanResult& result) const
 
 void PlannerCore::forget() {
   const Change change(*this);
-  m_replanner.reset();
+  m_search->forget();
   m_roadmap.reset();
   m_candidates.forget();
   m_edges.forget();
@@ -330,14 +329,13 @@ void PlannerCore::moveEnds(Roadmap& map) {
   if (map.pose(m_goal).z != m_goalPose->z) {
     map.removeQueryVertex(m_goal);
     m_goal = map.addQueryVertex(*m_goalPose);
-    m_replanner.reset();
+    m_search->forget();
   }
   const GroundPose& present = map.pose(m_start);
   if (present.pose == m_startPose->pose && present.z == m_startPose->z) return;
   const VertexId before = m_start;
   m_start = map.addQueryVertex(*m_startPose);  // first, so that it is another id
   map.removeQueryVertex(before);
-  if (m_replanner) m_replanner->moveStart(m_start);
 }
 
 PlanResult PlannerCore::replan(const Place& start) {

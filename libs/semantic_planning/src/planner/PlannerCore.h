@@ -1,5 +1,4 @@
 #pragma once
-#include <colored_graph/ColoredReplanner.h>
 #include <semantic_octree/MapFollower.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
@@ -109,7 +108,7 @@ class PlannerCore {
   std::optional<GroundPose> m_startPose, m_goalPose;
   Place m_goalPlace;
   VertexId m_start = colored_graph::kNoVertex, m_goal = colored_graph::kNoVertex;
-  std::optional<colored_graph::ColoredReplanner> m_replanner;
+  std::unique_ptr<colored_graph::GraphSearch> m_search;  ///< of the roadmap's graph
   bool m_hasPlanned = false, m_broken = false;
   double m_evaluating = 0;  ///< milliseconds of the present search
 };

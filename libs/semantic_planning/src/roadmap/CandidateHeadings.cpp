@@ -49,8 +49,8 @@ std::optional<double> axisAt(const CandidatePoint& point, const CollisionChecker
 
 }  // namespace
 
-std::vector<Candidate> candidatesAt(const CandidatePoint& point, const CollisionChecker& checker,
-                                    const RoadmapOptions& options) {
+std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const CollisionChecker& checker,
+                                     const RoadmapOptions& options) {
   const double random = unitHash(static_cast<std::uint32_t>(point.column.x),
                                  static_cast<std::uint32_t>(point.column.y), options.seed);
   double first = 2 * M_PI * random / options.headings;
@@ -58,10 +58,10 @@ std::vector<Candidate> candidatesAt(const CandidatePoint& point, const Collision
     first = *axis + (random < 0.5 ? 0 : M_PI);
   const Ground& ground = checker.ground();
   const double x = ground.centerOf(point.column.x), y = ground.centerOf(point.column.y);
-  std::vector<Candidate> candidates;
+  std::vector<GroundPose> candidates;
   for (int i = 0; i < options.headings; ++i) {
     const double heading = std::remainder(first + 2 * M_PI * i / options.headings, 2 * M_PI);
-    candidates.push_back({{{x, y, heading}, point.z}, point.classId});
+    candidates.push_back({{x, y, heading}, point.z});
   }
   return candidates;
 }

@@ -16,21 +16,14 @@ namespace semantic_planning {
 /** A point upon the ground where vertices may be, one for each heading. */
 struct CandidatePoint {
   Column column;
-  int z = 0;                       ///< key of its surface
-  std::optional<ClassId> classId;  ///< of its leaf; none: that of the ground
+  int z = 0;  ///< key of its surface
   /** Those with smaller numbers go first, [0, 1). However many are taken, they are spread evenly.
    */
   double priority = 0;
 
-  auto key() const { return std::tuple(priority, column.x, column.y, z, classId); }
+  auto key() const { return std::tuple(priority, column.x, column.y, z); }
   bool operator<(const CandidatePoint& o) const { return key() < o.key(); }
   bool operator==(const CandidatePoint& o) const { return key() == o.key(); }
-};
-
-/** A pose that may become a vertex. */
-struct Candidate {
-  GroundPose pose;
-  std::optional<ClassId> classId;  ///< as CandidatePoint's
 };
 
 /** The points of a tile that lie in leaves of the compressed tree, in no particular order. */
@@ -44,8 +37,8 @@ std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
 
 /** A point's poses, in evenly spaced headings: from the direction in which the free space around
  * runs, or one that looks random. They depend on ground within kHeadingReach meters. */
-std::vector<Candidate> candidatesAt(const CandidatePoint& point, const CollisionChecker& checker,
-                                    const RoadmapOptions& options);
+std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const CollisionChecker& checker,
+                                     const RoadmapOptions& options);
 constexpr double kHeadingReach = 5;
 
 /** Where a Halton sequence is laid. */
@@ -55,12 +48,12 @@ struct HaltonSearch {
   const PlanningRegion& region;
 };
 
-/** Draws from a Halton sequence over region (GraphKind::HaltonMap: the ground's rectangle) and
+/** Draws from a Halton sequence over the region's rectangle, or the ground's if it has none, and
  * headings, in order, until `enough` answers true or the sequence has become hopeless (a thousand
  * draws in the region for each vertex asked for). Draws that are not over any ground are told as
  * nothing. */
-void drawHalton(const HaltonSearch& search, const colored_graph::ClassOrder& order,
-                const std::function<bool(const std::optional<Candidate>&)>& enough);
+void drawHalton(const HaltonSearch& search,
+                const std::function<bool(const std::optional<GroundPose>&)>& enough);
 
 /** A number in [0, 1) that spreads the cells of a grid: the fraction of cells below any bound is
  * the bound, in every neighborhood (ordered dithering, Bayer 1973). */

@@ -40,11 +40,6 @@ void forCellsOf(Column low, int size, int largest, Column tile, F f) {
       if (const Cell cell{{x, y}, edge}; tileOf(cell.center()) == tile) f(cell);
 }
 
-ClassId likeliestIn(const LeafCell& leaf, const Abstraction& abstraction) {
-  const std::vector<double> p = abstraction.distribution(leaf);
-  return static_cast<ClassId>(std::max_element(p.begin() + 1, p.end()) - p.begin());
-}
-
 /** The largest cells into which leaves are split, in voxels. */
 int largestCell(const Ground& ground, const RoadmapOptions& options) {
   constexpr int kTree = 65536;
@@ -83,13 +78,11 @@ std::vector<CandidatePoint> compressedPoints(Column tile, const Abstraction& abs
   std::vector<CandidatePoint> points;
   for (const LeafCell& leaf : abstraction.leavesIn(key(0, 0), key(kTileEdge - 1, 65535), true)) {
     const int size = leaf.edge(), z = leaf.lowest.z();
-    std::optional<ClassId> classId;
-    if (options.classOfLeaf) classId = likeliestIn(leaf, abstraction);
     const Column low{leaf.lowest.x(), leaf.lowest.y()};
     forCellsOf(low, size, largest, tile, [&](const Cell& cell) {
       for (const Surface& s : ground.surfaces(cell.center()))
         if (s.drivable && s.z >= z && s.z < z + size)
-          points.push_back({cell.center(), s.z, classId, priorityOf(cell, options)});
+          points.push_back({cell.center(), s.z, priorityOf(cell, options)});
     });
   }
   return points;
@@ -101,7 +94,7 @@ std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
   std::vector<CandidatePoint> points;
   forCellsOf(firstColumnOf(tile), kTileEdge, edge, tile, [&](const Cell& cell) {
     for (const Surface& s : ground.surfaces(cell.low))
-      if (s.drivable) points.push_back({cell.low, s.z, {}, priorityOf(cell, options)});
+      if (s.drivable) points.push_back({cell.low, s.z, priorityOf(cell, options)});
   });
   return points;
 }

@@ -21,14 +21,6 @@ std::array<double, 4> rotated(std::array<double, 4> draw, unsigned seed) {
   return draw;
 }
 
-/** Drops the draws that the weights of the ranks leave out. */
-bool keepsByClass(const Ground& ground, const Candidate& c, const colored_graph::ClassOrder& order,
-                  double draw) {
-  const Surface* s = ground.near(ground.columnAt(c.pose.pose.x, c.pose.pose.y), c.pose.z, 0);
-  const colored_graph::Rank rank = s ? order.rank(s->classId) : colored_graph::kForbidden;
-  return rank != colored_graph::kForbidden && draw < std::ldexp(1.0, -rank);
-}
-
 /** The rectangle of the tiles that hold ground. */
 class GroundRectangle {
  public:
@@ -57,19 +49,18 @@ class GroundRectangle {
   double m_width, m_height;
 };
 
-std::optional<Candidate> candidateAt(const Ground& ground, const mrpt::math::TPoint2D& p,
-                                     double turn) {
+std::optional<GroundPose> candidateAt(const Ground& ground, const mrpt::math::TPoint2D& p,
+                                      double turn) {
   const auto point = ground.find(p.x, p.y);
   if (!point) return std::nullopt;
-  return Candidate{{{p.x, p.y, std::remainder(2 * M_PI * turn, 2 * M_PI)}, point->surface.z}, {}};
+  return GroundPose{{p.x, p.y, std::remainder(2 * M_PI * turn, 2 * M_PI)}, point->surface.z};
 }
 
 }  // namespace
 
-void drawHalton(const HaltonSearch& search, const colored_graph::ClassOrder& order,
-                const std::function<bool(const std::optional<Candidate>&)>& enough) {
-  const bool overMap = search.options.kind == GraphKind::HaltonMap || !search.region.hasRectangle();
-  const bool byClass = search.options.kind == GraphKind::HaltonByClass;
+void drawHalton(const HaltonSearch& search,
+                const std::function<bool(const std::optional<GroundPose>&)>& enough) {
+  const bool overMap = !search.region.hasRectangle();
   std::optional<GroundRectangle> rectangle;
   if (overMap) rectangle.emplace(search.ground);
   unsigned point = 0;
@@ -82,10 +73,7 @@ void drawHalton(const HaltonSearch& search, const colored_graph::ClassOrder& ord
       continue;
     }
     --left;
-    auto candidate = candidateAt(search.ground, p, draw[2]);
-    if (candidate && byClass && !keepsByClass(search.ground, *candidate, order, draw[3]))
-      candidate.reset();
-    if (enough(candidate)) return;
+    if (enough(candidateAt(search.ground, p, draw[2]))) return;
   }
 }
 

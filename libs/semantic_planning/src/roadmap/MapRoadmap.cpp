@@ -52,9 +52,9 @@ bool MapRoadmap::reachable(const GroundPose& pose) const {
 
 std::size_t MapRoadmap::take(const CandidatePoint& point, std::size_t most) {
   std::size_t usable = 0;
-  for (const Candidate& candidate : candidatesAt(point, m_checker, m_options)) {
-    const auto& pose = candidate.pose.pose;
-    if (usable == most || !m_region.contains(pose.x, pose.y) || !reachable(candidate.pose)) break;
+  for (const GroundPose& candidate : candidatesAt(point, m_checker, m_options)) {
+    const auto& pose = candidate.pose;
+    if (usable == most || !m_region.contains(pose.x, pose.y) || !reachable(candidate)) break;
     m_pool.add(candidate, point);
     usable += m_pool.isUsable(candidate);
   }
@@ -85,16 +85,16 @@ void MapRoadmap::takeByPriority(CandidateStore& store) {
 std::vector<CandidatePoint> MapRoadmap::turnedPoints(const std::vector<Column>& tiles) const {
   if (!m_options.alignHeadings) return {};
   return m_pool.turnedPoints(tiles, kHeadingReach, [this](const CandidatePoint& point) {
-    return candidatesAt(point, m_checker, m_options).front().pose.pose.phi;
+    return candidatesAt(point, m_checker, m_options).front().pose.phi;
   });
 }
 
 void MapRoadmap::takeHalton() {
   std::size_t draws = 0, usable = 0;
-  drawHalton({m_checker.ground(), m_options, m_region}, m_checker.order(),
-             [&](const std::optional<Candidate>& candidate) {
+  drawHalton({m_checker.ground(), m_options, m_region},
+             [&](const std::optional<GroundPose>& candidate) {
                ++draws;
-               if (candidate && reachable(candidate->pose)) {
+               if (candidate && reachable(*candidate)) {
                  m_pool.add(*candidate);
                  usable += m_pool.isUsable(*candidate);
                }

@@ -11,8 +11,6 @@ const Choices<GraphKind>& choicesOf(GraphKind) {
                                              {"leaves", GraphKind::Leaves},
                                              {"halton", GraphKind::Halton},
                                              {"halton_drivable", GraphKind::HaltonDrivable},
-                                             {"halton_by_class", GraphKind::HaltonByClass},
-                                             {"halton_map", GraphKind::HaltonMap},
                                              {"full", GraphKind::Full}};
   return choices;
 }
@@ -20,7 +18,7 @@ const Choices<GraphKind>& choicesOf(GraphKind) {
 const char* nameOf(GraphKind kind) { return strict_files::nameIn(choicesOf(kind), kind); }
 
 bool belongsToMap(GraphKind kind) {
-  return isOfTree(kind) || kind == GraphKind::HaltonMap || kind == GraphKind::Full;
+  return isOfTree(kind) || kind == GraphKind::Full;
 }
 
 bool isOfTree(GraphKind kind) { return kind == GraphKind::Compressed || kind == GraphKind::Leaves; }

@@ -8,16 +8,12 @@ namespace semantic_planning {
 
 using colored_graph::kNoVertex;
 
-ClassId VertexPool::classOf(const Candidate& candidate) const {
-  return candidate.classId ? *candidate.classId : m_checker.classAt(candidate.pose);
+bool VertexPool::isUsable(const GroundPose& candidate) const {
+  return m_checker.fit(candidate) == Fit::Free &&
+         m_checker.order().rank(m_checker.classAt(candidate)) != colored_graph::kForbidden;
 }
 
-bool VertexPool::isUsable(const Candidate& candidate) const {
-  return m_checker.fit(candidate.pose) == Fit::Free &&
-         m_checker.order().rank(classOf(candidate)) != colored_graph::kForbidden;
-}
-
-void VertexPool::add(const Candidate& candidate, const std::optional<CandidatePoint>& point) {
+void VertexPool::add(const GroundPose& candidate, const std::optional<CandidatePoint>& point) {
   std::size_t index = m_members.size();
   if (m_free.empty()) {
     m_members.emplace_back();
@@ -52,7 +48,7 @@ std::vector<CandidatePoint> VertexPool::turnedPoints(
   const TileMarks changed(m_checker.ground(), tiles);
   std::vector<CandidatePoint> turned;
   for (const auto& [point, members] : m_ofPoint) {
-    const auto& pose = m_members[members.front()].candidate.pose.pose;
+    const auto& pose = m_members[members.front()].candidate.pose;
     if (changed.anyIn({pose.x, pose.y, distance}) && headingOf(point) != pose.phi)
       turned.push_back(point);
   }
@@ -61,7 +57,7 @@ std::vector<CandidatePoint> VertexPool::turnedPoints(
 
 /** The ground may have gone up or down by what the wheels climb. */
 bool VertexPool::standsOnGround(Member& member) {
-  GroundPose& pose = member.candidate.pose;
+  GroundPose& pose = member.candidate;
   const Ground& ground = m_checker.ground();
   const Column column = ground.columnAt(pose.pose.x, pose.pose.y);
   const Surface* s = ground.near(column, pose.z, ground.step());
@@ -76,7 +72,7 @@ void VertexPool::look(std::size_t index) {
   if (!standsOnGround(member) || !isUsable(member.candidate)) return dropVertex(member);
   if (member.vertex == kNoVertex) {
     m_toInsert.push_back(index);
-  } else if (const ClassId id = classOf(member.candidate);
+  } else if (const ClassId id = m_checker.classAt(member.candidate);
              id != m_roadmap.graph().vertexClass(member.vertex)) {
     m_roadmap.graph().setVertexClass(member.vertex, id);
     ++m_counts.recolored;
@@ -86,7 +82,7 @@ void VertexPool::look(std::size_t index) {
 void VertexPool::refresh(const std::vector<Column>& changedTiles) {
   const TileMarks changed(m_checker.ground(), changedTiles);
   for (std::size_t i = 0; i < m_members.size(); ++i) {
-    const auto& pose = m_members[i].candidate.pose.pose;
+    const auto& pose = m_members[i].candidate.pose;
     if (m_members[i].present && changed.anyIn({pose.x, pose.y, m_checker.reach()})) look(i);
   }
 }
@@ -101,8 +97,8 @@ void VertexPool::apply() {
     const Member& member = m_members[index];
     if (!member.present || member.vertex != kNoVertex || !isUsable(member.candidate)) continue;
     inserted.push_back(index);
-    poses.push_back(member.candidate.pose);
-    classes.push_back(classOf(member.candidate));
+    poses.push_back(member.candidate);
+    classes.push_back(m_checker.classAt(member.candidate));
   }
   if (!poses.empty() || !m_toRemove.empty()) {
     const auto ids = m_roadmap.replace(m_toRemove, poses, classes);

@@ -23,10 +23,10 @@ class VertexPool {
       : m_checker(checker), m_roadmap(roadmap) {}
 
   /** Whether a candidate could be a vertex now. */
-  bool isUsable(const Candidate& candidate) const;
+  bool isUsable(const GroundPose& candidate) const;
 
   /** Changes take effect in the roadmap with apply(). */
-  void add(const Candidate& candidate, const std::optional<CandidatePoint>& point = {});
+  void add(const GroundPose& candidate, const std::optional<CandidatePoint>& point = {});
   /** Removes what was added with this point. */
   void remove(const CandidatePoint& point);
   /** The points that were added and lie near these tiles, and whose first candidate's heading is
@@ -42,12 +42,11 @@ class VertexPool {
 
  private:
   struct Member {
-    Candidate candidate;
+    GroundPose candidate;
     colored_graph::VertexId vertex = colored_graph::kNoVertex;
     bool present = false;
   };
 
-  ClassId classOf(const Candidate& candidate) const;
   void look(std::size_t member);
   void dropVertex(Member& member);
   bool standsOnGround(Member& member);

@@ -79,6 +79,10 @@ class Mapper {
   /** Adds what the robot stands on, and its sensors do not see.
    * \param points in the robot's frame; nothing is carved \param place of the last insert() */
   void insertBelow(const LabeledCloud& points, const Place& place);
+  /** Carves what is within a radius (meters) of a point, as if it had been seen to be free: of what
+   * sensors do not see, but is known all the same. \param p in the robot's frame, meters
+   * \param place of the last insert() */
+  void insertFree(const Eigen::Vector3d& p, double radius, const Place& place);
   /** The map ages until then, see SemanticOcTree::age(). */
   void age(double seconds);
   /** Moves keyframes that are off by less than it is worth on the way: the map is then that of

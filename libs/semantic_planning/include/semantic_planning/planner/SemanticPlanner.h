@@ -1,5 +1,6 @@
 #pragma once
 #include <colored_graph/CostModel.h>
+#include <colored_graph/GraphSearch.h>
 #include <semantic_octree/SemanticOcTree.h>
 #include <semantic_planning/ground/Ground.h>
 #include <semantic_planning/planner/Corridor.h>
@@ -32,6 +33,8 @@ struct PlannerOptions {
   double timeLimit = std::numeric_limits<double>::infinity();
   /** Asked often during a search, which stops when it answers true. */
   std::function<bool()> cancelled;
+  /** Makes a planner's search of the roadmap's graph; none: COA* (colored_graph::GraphSearch). */
+  std::function<std::unique_ptr<colored_graph::GraphSearch>()> graphSearch;
 
   /** Of all but the vehicle, which has a file of its own (loadVehicle). */
   void describe(strict_files::OptionList& list);

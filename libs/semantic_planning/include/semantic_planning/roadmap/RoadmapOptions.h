@@ -12,13 +12,10 @@ enum class GraphKind {
   Leaves,          ///< the same, one point a leaf, as published
   Halton,          ///< a Halton sequence; samples off the ground or in the way are dropped
   HaltonDrivable,  ///< the same, and goes on until there are as many drivable vertices as asked for
-  HaltonByClass,   ///< the same, with half as many vertices in each worse rank as in the one before
-  HaltonMap,       ///< as HaltonDrivable, but laid over the map's rectangle instead of the task's
-                   ///< region: the same poses come again in other tasks
   Full             ///< the ground of the finest map, on a grid
 };
 
-/** "compressed", "leaves", "halton", "halton_drivable", "halton_by_class", "halton_map", "full". */
+/** "compressed", "leaves", "halton", "halton_drivable", "full". */
 const strict_files::Choices<GraphKind>& choicesOf(GraphKind);
 const char* nameOf(GraphKind kind);
 /** Whether a kind's poses belong to the map: they come again in plans for other tasks. */
@@ -47,9 +44,6 @@ struct RoadmapOptions {
   /** Most edges, start's and goal's not counted, also after updates; 0: as many as the nearest
    * neighbors give. Every vertex's nearest go first. */
   std::size_t maxEdges = 0;
-  /** Compressed, Leaves: a vertex has the class of its leaf (as in the paper) instead of the finest
-   * map's ground. It matters for colored_graph::EdgeModel::Endpoint only. */
-  bool classOfLeaf = false;
   /** Another value gives other vertices of the same kind. */
   unsigned seed = 0;
 
