@@ -3,7 +3,7 @@
 find_path(MSO_OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4)
 mark_as_advanced(MSO_OPENCV_INCLUDE_DIR)
 set(mso_opencv_libraries)
-foreach(library core imgproc imgcodecs calib3d dnn)
+foreach(library core imgproc imgcodecs dnn)
   find_library(MSO_OPENCV_${library} opencv_${library})
   mark_as_advanced(MSO_OPENCV_${library})
   list(APPEND mso_opencv_libraries MSO_OPENCV_${library})

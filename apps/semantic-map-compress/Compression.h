@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "AlphaCurve.h"
+#include "Compressor.h"
 #include "measuring/Stopwatch.h"
 
 namespace semantic_map_compress {

@@ -2,12 +2,8 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <memory>
-#include <set>
-#include <sstream>
-#include <tuple>
 
 #include "ExportFixture.h"
 
@@ -31,8 +27,8 @@ class ExportedOctrees : public MapTool {
   }
 };
 
-#define SKIP_WITHOUT_OCTOMAP_TOOLS()                                                     \
-  if (std::system("command -v compare_octrees bt2vrml convert_octree > /dev/null") != 0) \
+#define SKIP_WITHOUT_OCTOMAP_TOOLS()                                             \
+  if (std::system("command -v compare_octrees convert_octree > /dev/null") != 0) \
   GTEST_SKIP() << "needs the package octomap-tools"
 
 /** The same occupancy through OctoMap's own insertion: all voxels one by one. */
@@ -51,21 +47,6 @@ std::unique_ptr<octomap::OcTree> octomapsOwn(const SemanticOcTree& map) {
   }
   tree->updateInnerOccupancy();
   return tree;
-}
-
-using Center = std::tuple<long, long, long>;  ///< mm
-Center centerOf(double x, double y, double z) {
-  return {std::lround(1000 * x), std::lround(1000 * y), std::lround(1000 * z)};
-}
-
-/** The boxes that bt2vrml writes. */
-std::multiset<Center> centersIn(const std::string& vrml) {
-  std::multiset<Center> centers;
-  std::istringstream in(vrml);
-  double x, y, z;
-  for (std::string word; in >> word;)
-    if (word == "translation" && in >> x >> y >> z) centers.insert(centerOf(x, y, z));
-  return centers;
 }
 
 }  // namespace
@@ -97,19 +78,6 @@ TEST_F(ExportedOctrees, compareOctreesFindsNoDifferenceToOctomapsOwnTree) {
   const std::string text = tool("compare_octrees " + path("ours.ot") + " " + path("theirs.ot"));
   EXPECT_TRUE(contains(text, "\nKLD: 0\n")) << text;
   EXPECT_FALSE(contains(text, "ERROR")) << text;
-}
-
-TEST_F(ExportedOctrees, bt2vrmlListsTheOccupiedVoxels) {
-  SKIP_WITHOUT_OCTOMAP_TOOLS();
-  ASSERT_EQ(exportTo({"map.bt"}).status, 0);
-  tool("bt2vrml " + path("map.bt"));
-  std::multiset<Center> expected;
-  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf)
-    if (map.isNodeOccupied(*leaf) && leaf.getDepth() == 16)
-      expected.insert(centerOf(leaf.getX(), leaf.getY(), leaf.getZ()));
-  const auto listed = centersIn(folder.read("map.bt.wrl"));
-  ASSERT_GT(listed.size(), 1000u);
-  for (const Center& center : expected) ASSERT_EQ(listed.count(center), 1u);
 }
 
 TEST_F(ExportedOctrees, convertOctreeKeepsWhatIsFreeAndOccupied) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "RunProgram.h"
+#include "TemporaryFolder.h"
 
 namespace {
 

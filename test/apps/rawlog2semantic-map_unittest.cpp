@@ -56,9 +56,9 @@ TEST_F(Rawlog2SemanticMap, classesWithAHalfLifeAreForgottenByTheStamps) {
     return map().query(0.1, 3, 0.2).status;
   };
   EXPECT_EQ(carAfter({}), CellState::Status::Occupied);
-  semantic_types::ClassTable table = semantic_types::loadClassTable(folder / "classes.yaml");
-  table.setHalfLife(3, 1);
-  saveClassTable(table, folder / "classes.yaml");
+  std::string table = kSmallTable;
+  table.insert(table.rfind('}'), ", half_life: 1");  // of the last class, car
+  folder.write("classes.yaml", table);
   EXPECT_EQ(carAfter({}), CellState::Status::Unknown);
   EXPECT_EQ(map().query(2.2, 0.2, 0.2).status, CellState::Status::Occupied);
   EXPECT_DOUBLE_EQ(map().clock(), 8);

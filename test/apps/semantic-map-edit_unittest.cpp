@@ -3,6 +3,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 #include <semantic_types/ClassTable.h>
+#include <strict_files/StrictYaml.h>
 
 #include <yaml-cpp/yaml.h>
 #include <cmath>
@@ -70,13 +71,12 @@ TEST_F(SemanticMapEdit, timePassesForWhatHasAHalfLife) {
   EXPECT_TRUE(contains(refused.errors, "has a half-life; --half-lives gives them"));
   EXPECT_FALSE(std::filesystem::exists(path("aged.semantic")));
 
-  ClassTable halfLives;
-  const auto first = halfLives.add(map.classes().name(1), {});
-  halfLives.setHalfLife(first, 4);
-  saveClassTable(halfLives, path("half-lives.yaml"));
+  folder.write("half-lives.yaml",
+               "classes:\n - {id: 1, name: " + strict_files::yamlText(map.classes().name(1)) +
+                   ", color: [0, 0, 0], half_life: 4}\n");
   const SemanticOcTree aged = edited({"--half-lives", path("half-lives.yaml"), "--decay", "6.5"});
   SemanticOcTree expected = map;
-  expected.setHalfLives(halfLives);
+  expected.setHalfLives(semantic_types::loadClassTable(path("half-lives.yaml")));
   expected.age(6.5);
   EXPECT_TRUE(aged == expected);
   EXPECT_FALSE(aged == map);

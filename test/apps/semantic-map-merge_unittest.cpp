@@ -1,10 +1,7 @@
 #include <labeled_cloud/Rawlogs.h>
 
-#include <algorithm>
 #include <array>
 #include <future>
-#include <numeric>
-#include <random>
 
 #include "ExportFixture.h"
 #include "SmallRawlogs.h"
@@ -46,18 +43,6 @@ class SemanticMapMerge : public testing::Test {
 
 }  // namespace
 
-TEST_F(SemanticMapMerge, tenMapsGiveOneMapInAnyOrder) {
-  auto names = all();
-  ASSERT_EQ(merge(names, "sum.semantic").status, 0);
-  const std::string expected = folder.read("sum.semantic");
-  std::mt19937 random(5);
-  for (int i = 0; i < 3; ++i) {
-    std::shuffle(names.begin(), names.end(), random);
-    ASSERT_EQ(merge(names, "other.semantic").status, 0);
-    EXPECT_EQ(folder.read("other.semantic"), expected);
-  }
-}
-
 TEST_F(SemanticMapMerge, tenMapsGiveOneMapInAnyGroups) {
   ASSERT_EQ(merge(all(), "sum.semantic").status, 0);
   ASSERT_EQ(merge({name(7), name(2), name(9)}, "a.semantic", {"--partial"}).status, 0);
@@ -65,19 +50,6 @@ TEST_F(SemanticMapMerge, tenMapsGiveOneMapInAnyGroups) {
   ASSERT_EQ(merge({name(1), name(3)}, "c.semantic", {"--partial"}).status, 0);
   ASSERT_EQ(merge({"c.semantic", name(4), name(8), "b.semantic", name(6)}, "d.semantic").status, 0);
   EXPECT_EQ(folder.read("d.semantic"), folder.read("sum.semantic"));
-}
-
-TEST_F(SemanticMapMerge, theSumIsTheMapOfAllScansButForTheLimitsInBetween) {
-  ASSERT_EQ(merge(all(), "sum.semantic").status, 0);
-  const SemanticOcTree sum = load("sum.semantic"), whole = smallPlace(0, kMaps);
-  std::size_t leaves = 0, alike = 0;
-  for (auto leaf = whole.begin_leafs(); leaf != whole.end_leafs(); ++leaf) {
-    const auto ours = whole.query(*leaf), theirs = sum.query(leaf.getKey());
-    ASSERT_NE(theirs.status, semantic_octree::CellState::Status::Unknown);
-    ++leaves;
-    alike += ours.status == theirs.status;
-  }
-  EXPECT_GT(double(alike), 0.99 * double(leaves));
 }
 
 TEST_F(SemanticMapMerge, mapsAreAddedWhereTheirPosesPutThem) {

@@ -109,8 +109,7 @@ TEST(RawlogReader, readsPlainObservationsCompressedOrNot) {
     }
     EXPECT_FALSE(reader.next());
     EXPECT_FALSE(reader.next());
-    EXPECT_EQ(reader.bytesRead(), reader.bytesTotal());
-    EXPECT_EQ(reader.bytesTotal(), std::filesystem::file_size(file));
+    EXPECT_EQ(reader.bytesRead(), std::filesystem::file_size(file));
   }
 }
 

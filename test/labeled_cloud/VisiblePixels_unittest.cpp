@@ -17,9 +17,17 @@ mrpt::img::TCamera camera(int cols = 320, int rows = 240, double f = 200) {
   return c;
 }
 
-/** The textbook's formula of radial and tangential distortion. */
-Eigen::Vector2d plumbBob(const mrpt::img::TCamera& c, double x, double y) {
-  const double r2 = x * x + y * y, radial = 1 + c.k1() * r2 + c.k2() * r2 * r2;
+/** The textbook's formulas: of radial and tangential distortion, and of a fisheye. */
+Eigen::Vector2d pixelOf(const mrpt::img::TCamera& c, double x, double y) {
+  const double r2 = x * x + y * y;
+  if (c.distortion == mrpt::img::DistortionModel::kannala_brandt) {
+    const double r = std::sqrt(r2), t = std::atan(r);
+    const double scale = (t + c.k1() * std::pow(t, 3) + c.k2() * std::pow(t, 5) +
+                          c.k3() * std::pow(t, 7) + c.k4() * std::pow(t, 9)) /
+                         r;
+    return {c.fx() * scale * x + c.cx(), c.fy() * scale * y + c.cy()};
+  }
+  const double radial = 1 + c.k1() * r2 + c.k2() * r2 * r2;
   const double u = x * radial + 2 * c.p1() * x * y + c.p2() * (r2 + 2 * x * x);
   const double v = y * radial + c.p1() * (r2 + 2 * y * y) + 2 * c.p2() * x * y;
   return {c.fx() * u + c.cx(), c.fy() * v + c.cy()};
@@ -41,10 +49,9 @@ struct BoardBeforeWall {
 
 }  // namespace
 
-TEST(VisiblePixels, lieWhereLensAndPoseSay) {
-  auto c = camera();
-  c.dist = {-0.2, 0.05, 0.001, -0.002, 0, 0, 0, 0};
-  c.distortion = mrpt::img::DistortionModel::plumb_bob;
+namespace {
+
+void expectPixelsWhereTheLensSays(const mrpt::img::TCamera& c) {
   Isometry3d T = Isometry3d::Identity();
   T.rotate(Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 3).normalized()));
   T.translation() = Eigen::Vector3d(0.3, -0.1, 0.2);
@@ -57,7 +64,7 @@ TEST(VisiblePixels, lieWhereLensAndPoseSay) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p = T * points[i].cast<double>();
     const double x = p.x() / p.z(), y = p.y() / p.z();
-    const Eigen::Vector2d expected = plumbBob(c, x, y);
+    const Eigen::Vector2d expected = pixelOf(c, x, y);
     const bool inside = p.z() > 0.01 && expected.x() >= -0.5 && expected.x() < 319.5 &&
                         expected.y() >= -0.5 && expected.y() < 239.5;
     ASSERT_EQ(pixels[i].allFinite(), inside) << p.transpose();
@@ -66,6 +73,17 @@ TEST(VisiblePixels, lieWhereLensAndPoseSay) {
     EXPECT_LT((pixels[i].cast<double>() - expected).norm(), 0.01);
   }
   EXPECT_GT(seen, 200);
+}
+
+}  // namespace
+
+TEST(VisiblePixels, lieWhereLensAndPoseSay) {
+  auto c = camera();
+  c.dist = {-0.2, 0.05, 0.001, -0.002, 0, 0, 0, 0};
+  c.distortion = mrpt::img::DistortionModel::plumb_bob;
+  expectPixelsWhereTheLensSays(c);
+  c.setDistortionKannalaBrandt(0.03, -0.01, 0.002, -0.0005);
+  expectPixelsWhereTheLensSays(c);
 }
 
 TEST(VisiblePixels, doNotSeeWhatADisplacedCameraCannotSee) {

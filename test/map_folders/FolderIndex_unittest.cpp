@@ -246,17 +246,17 @@ TEST_F(FolderIndex, isLeftAloneWhenADiskIsFullOrAProcessToldToLeave) {
 TEST_F(FolderIndex, isTheSameInAHostWithDecimalCommas) {
   const auto save = [](const fs::path& place) { saveScans(place, someScans(4, 3)); };
   save(folder / "classic");
-  semantic_types::ClassTable table = numberedClasses(2);
-  table.fold(1234567, 1);
-  table.setHalfLife(1, 0.25);
+  const fs::path classes = folder.write(
+      "classes.yaml",
+      "classes:\n - {id: 1, name: a, color: [0, 0, 0], raw: [1234567], half_life: 0.25}\n");
   {
     const CommaHost host;
     save(folder / "comma");
     EXPECT_TRUE(loadMap(folder / "comma") == loadMap(folder / "classic"));
-    saveClassTable(table, folder / "classes.yaml");
-    EXPECT_EQ(semantic_types::loadClassTable(folder / "classes.yaml"), table);
+    const semantic_types::ClassTable table = semantic_types::loadClassTable(classes);
+    EXPECT_EQ(table.fromRaw(1234567), 1);
+    EXPECT_EQ(table.halfLife(1), 0.25);
   }
-  EXPECT_EQ(semantic_types::loadClassTable(folder / "classes.yaml"), table);
   for (const auto& entry : fs::directory_iterator(folder / "classic"))
     EXPECT_EQ(contentOf(folder / "comma" / entry.path().filename().string()),
               contentOf(entry.path()));

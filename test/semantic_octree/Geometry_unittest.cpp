@@ -87,21 +87,6 @@ std::vector<octomap::OcTreeKey> keysAlong(const Map& map, const octomap::point3d
 
 }  // namespace
 
-TEST(Geometry, keysAreOctomapsOnBordersToo) {
-  for (const double resolution : {0.05, 0.1, 0.15, 0.2, 0.3, 0.35, 0.4, 1.0}) {
-    const SemanticOcTree map(resolution, numberedClasses(1));
-    const octomap::OcTree octree(resolution);
-    for (int i = -2000; i <= 2000; ++i) {
-      const double coordinate = i / 20.0;
-      octomap::OcTreeKey ours, theirs;
-      ASSERT_TRUE(map.coordToKeyChecked(coordinate, 0, -coordinate, ours));
-      ASSERT_TRUE(octree.coordToKeyChecked(coordinate, 0, -coordinate, theirs));
-      ASSERT_EQ(ours, theirs) << coordinate << " at " << resolution;
-      ASSERT_EQ(map.coordToKey(coordinate, 0, -coordinate), theirs);
-    }
-  }
-}
-
 TEST(Geometry, voxelsAlongALineAreThoseThatItCrossesAndOctomaps) {
   std::mt19937 random(1);
   const SemanticOcTree map(kPlaceResolution, numberedClasses(1));

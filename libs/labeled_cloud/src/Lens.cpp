@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/calib3d.hpp>
 #include <stdexcept>
 #include <string>
 
@@ -11,52 +10,79 @@ namespace labeled_cloud {
 using mrpt::img::DistortionModel;
 using Points = std::vector<cv::Point2d>;
 
-Lens::Lens(const mrpt::img::TCamera& camera)
-    : m_camera(camera), m_K(camera.fx(), 0, camera.cx(), 0, camera.fy(), camera.cy(), 0, 0, 1) {
+Lens::Lens(const mrpt::img::TCamera& camera) : m_camera(camera) {
   if (!(camera.fx() > 0 && camera.fy() > 0))
     throw std::invalid_argument(
         "the camera is not calibrated: fx = " + std::to_string(camera.fx()) +
         ", fy = " + std::to_string(camera.fy()));
 }
 
-cv::Vec<double, 8> Lens::plumbBob() const {
+double Lens::radial(double r2) const {
   const auto& c = m_camera;
-  return {c.k1(), c.k2(), c.p1(), c.p2(), c.k3(), c.k4(), c.k5(), c.k6()};
+  return (1 + ((c.k3() * r2 + c.k2()) * r2 + c.k1()) * r2) /
+         (1 + ((c.k6() * r2 + c.k5()) * r2 + c.k4()) * r2);
 }
 
-cv::Vec4d Lens::fisheye() const {
-  return {m_camera.k1(), m_camera.k2(), m_camera.k3(), m_camera.k4()};
+cv::Point2d Lens::tangential(const cv::Point2d& ray) const {
+  const double r2 = ray.dot(ray), xy2 = 2 * ray.x * ray.y;
+  return {m_camera.p1() * xy2 + m_camera.p2() * (r2 + 2 * ray.x * ray.x),
+          m_camera.p1() * (r2 + 2 * ray.y * ray.y) + m_camera.p2() * xy2};
+}
+
+double Lens::fisheyeAngle(double theta) const {
+  const double t2 = theta * theta;
+  const auto& c = m_camera;
+  return theta * (1 + (((c.k4() * t2 + c.k3()) * t2 + c.k2()) * t2 + c.k1()) * t2);
+}
+
+cv::Point2d Lens::bent(const cv::Point2d& ray) const {
+  if (m_camera.distortion == DistortionModel::plumb_bob)
+    return ray * radial(ray.dot(ray)) + tangential(ray);
+  const double r = std::hypot(ray.x, ray.y);
+  if (m_camera.distortion != DistortionModel::kannala_brandt || r == 0) return ray;
+  return ray * (fisheyeAngle(std::atan(r)) / r);
+}
+
+/** By fixed-point iteration, and for a fisheye by bisection of the angle, which grows with that
+ * behind the lens. */
+cv::Point2d Lens::straightened(const cv::Point2d& ray) const {
+  if (m_camera.distortion == DistortionModel::plumb_bob) {
+    constexpr int kMostSteps = 50;
+    constexpr double kExact = 1e-9;  // of a pixel
+    cv::Point2d straight = ray;
+    for (int i = 0; i < kMostSteps; ++i) {
+      straight = (ray - tangential(straight)) / radial(straight.dot(straight));
+      const cv::Point2d left = bent(straight) - ray;
+      if (std::hypot(left.x * m_camera.fx(), left.y * m_camera.fy()) < kExact) break;
+    }
+    return straight;
+  }
+  const double r = std::hypot(ray.x, ray.y);
+  if (m_camera.distortion != DistortionModel::kannala_brandt || r == 0) return ray;
+  double low = 0, high = M_PI / 2;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (fisheyeAngle(middle) < r ? low : high) = middle;
+  }
+  return ray * (std::tan(low) / r);
 }
 
 Points Lens::undistort(const Points& pixels) const {
-  const cv::TermCriteria exact(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-9);
+  const double perX = 1 / m_camera.fx(), perY = 1 / m_camera.fy();
   Points rays;
-  if (m_camera.distortion == DistortionModel::plumb_bob)
-    cv::undistortPoints(pixels, rays, m_K, plumbBob(), cv::noArray(), cv::noArray(), exact);
-  else if (m_camera.distortion == DistortionModel::kannala_brandt)
-    cv::fisheye::undistortPoints(pixels, rays, m_K, fisheye());
-  else
-    cv::undistortPoints(pixels, rays, m_K, cv::noArray());
+  rays.reserve(pixels.size());
+  for (const cv::Point2d& p : pixels)
+    rays.push_back(straightened({(p.x - m_camera.cx()) * perX, (p.y - m_camera.cy()) * perY}));
   return rays;
 }
 
 Points Lens::distort(const Points& rays) const {
   Points pixels;
-  if (rays.empty()) return pixels;
-  if (m_camera.distortion == DistortionModel::kannala_brandt) {
-    cv::fisheye::distortPoints(rays, pixels, m_K, fisheye());
-    return pixels;
-  }
-  if (m_camera.distortion == DistortionModel::plumb_bob && plumbBob() != decltype(plumbBob())()) {
-    std::vector<cv::Point3d> points;
-    for (const cv::Point2d& ray : rays) points.emplace_back(ray.x, ray.y, 1);
-    const cv::Vec3d none(0, 0, 0);
-    cv::projectPoints(points, none, none, m_K, plumbBob(), pixels);
-    return pixels;
-  }
   pixels.reserve(rays.size());
-  for (const cv::Point2d& ray : rays)
-    pixels.emplace_back(m_K(0, 0) * ray.x + m_K(0, 2), m_K(1, 1) * ray.y + m_K(1, 2));
+  for (const cv::Point2d& ray : rays) {
+    const cv::Point2d p = bent(ray);
+    pixels.emplace_back(m_camera.fx() * p.x + m_camera.cx(), m_camera.fy() * p.y + m_camera.cy());
+  }
   return pixels;
 }
 

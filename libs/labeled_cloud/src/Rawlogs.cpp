@@ -23,7 +23,6 @@ RawlogReader::RawlogReader(const std::filesystem::path& file)
 RawlogReader::~RawlogReader() = default;
 
 std::uint64_t RawlogReader::bytesRead() const { return m_stream->getPosition(); }
-std::uint64_t RawlogReader::bytesTotal() const { return m_stream->getTotalBytesCount(); }
 
 void RawlogReader::fail(const std::string& what) {
   m_ended = true;

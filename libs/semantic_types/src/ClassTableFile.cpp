@@ -1,8 +1,6 @@
 #include <semantic_types/ClassTable.h>
-#include <strict_files/OutputFiles.h>
 #include <strict_files/StrictYaml.h>
 
-#include <fstream>
 #include <stdexcept>
 
 namespace semantic_types {
@@ -109,55 +107,8 @@ class Reader {
   ClassTable m_table;
 };
 
-/** As text, for yaml-cpp writes numbers as the program's global locale has them. */
-std::vector<std::string> rawIdsOf(const ClassTable& table, ClassId id) {
-  std::vector<std::string> rawIds;
-  for (const auto& [raw, folded] : table.folds())
-    if (folded == id) rawIds.push_back(std::to_string(raw));
-  return rawIds;
-}
-
-YAML::Emitter& operator<<(YAML::Emitter& out, const Color& c) {
-  return out << YAML::Flow << std::vector<int>{c.r, c.g, c.b};
-}
-
-void emitRawIds(YAML::Emitter& out, const char* key, const std::vector<std::string>& rawIds) {
-  if (!rawIds.empty()) out << YAML::Key << key << YAML::Value << YAML::Flow << rawIds;
-}
-
-void emitHalfLife(YAML::Emitter& out, const char* key, double seconds) {
-  if (seconds != kForever) out << YAML::Key << key << YAML::Value << strict_files::textOf(seconds);
-}
-
-void emit(YAML::Emitter& out, const ClassTable& table) {
-  const bool error = table.unknownRawId() == ClassTable::UnknownRawId::Error;
-  out << YAML::BeginMap << YAML::Key << "unknown_raw_id" << (error ? "error" : "no_class");
-  emitRawIds(out, "no_class", rawIdsOf(table, kNoClass));
-  emitHalfLife(out, "free_half_life", table.halfLife(kNoClass));
-  out << YAML::Key << "classes" << YAML::BeginSeq;
-  for (int id = 1; id <= table.size(); ++id) {
-    out << YAML::Flow << YAML::BeginMap << YAML::Key << "id" << id << YAML::Key << "name"
-        << YAML::DoubleQuoted << table.name(id) << YAML::Key << "color" << table.color(id);
-    emitHalfLife(out, "half_life", table.halfLife(static_cast<ClassId>(id)));
-    emitRawIds(out, "raw", rawIdsOf(table, id));
-    out << YAML::EndMap;
-  }
-  out << YAML::EndSeq << YAML::EndMap << YAML::Newline;
-}
-
 }  // namespace
 
 ClassTable loadClassTable(const std::filesystem::path& file) { return Reader(file).read(); }
-
-void saveClassTable(const ClassTable& table, const std::filesystem::path& file) {
-  strict_files::StagedFile staged(file);
-  YAML::Emitter text;
-  emit(text, table);
-  std::ofstream stream(staged.path());
-  stream << text.c_str();
-  stream.close();
-  if (!stream) throw std::runtime_error(file.string() + ": the class table cannot be written");
-  staged.commit();
-}
 
 }  // namespace semantic_types

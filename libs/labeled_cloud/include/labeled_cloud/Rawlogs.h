@@ -42,9 +42,8 @@ class RawlogReader {
    * After that the reader is at its end. */
   std::optional<RawlogEntry> next();
 
-  /** Bytes read of the file, and its size, for progress. */
+  /** Bytes read of the file, for progress. */
   std::uint64_t bytesRead() const;
-  std::uint64_t bytesTotal() const;
 
  private:
   mrpt::serialization::CSerializable::Ptr readObject();

@@ -79,9 +79,9 @@ struct MapContents {
 /** Counts; takes one look at each leaf. */
 MapContents contentsOf(const SemanticOcTree& tree);
 
-/** \file
- * Maps as OctoMap's trees, and back: the same resolution, nodes and log-odds. A log-odds of
- * exactly 0, which OctoMap takes for occupied, becomes the next smaller number. */
+// OctoMap's trees:
+// maps become them, and come of them, with the same resolution, nodes and log-odds. A log-odds of
+// exactly 0, which OctoMap takes for occupied, becomes the next smaller number.
 
 /** The occupancy. */
 std::unique_ptr<octomap::OcTree> toOcTree(const SemanticOcTree& map);

@@ -16,8 +16,8 @@ namespace map_pictures {
 
 using semantic_types::Color;
 
-/** Drawing on pictures (BGR, 8 bits). Places are in pixels from the upper left corner, x right and
- * y down: pixel (0, 0) reaches from 0 to 1. */
+// Drawing on pictures (BGR, 8 bits). Places are in pixels from the upper left corner, x right and
+// y down: pixel (0, 0) reaches from 0 to 1.
 
 /** Where a picture shows nothing: unknown and free space. */
 constexpr Color kPaper{250, 250, 250};

@@ -62,8 +62,8 @@ struct MapServerFiles {
 MapServerFiles mapServerFiles(const mrpt::maps::COccupancyGridMap2D& grid,
                               const std::string& pngName);
 
-/** \file
- * The map in OctoMap's file formats, see map_operations/MapOperations.h. */
+// OctoMap's file formats: what becomes of a map's nodes in them is told where toOcTree() and
+// toColorOcTree() are, in map_operations/MapOperations.h.
 
 /** Writes an .ot file that holds a ColorOcTree. \throw std::runtime_error the stream does not take
  * it. */
@@ -76,8 +76,8 @@ void writeOcTree(std::ostream& out, const semantic_octree::SemanticOcTree& tree)
  * \throw std::runtime_error as above. */
 void writeBinaryOcTree(std::ostream& out, const semantic_octree::SemanticOcTree& tree);
 
-/** \file
- * One point for each leaf of the map: its center and what the map knows about it. */
+// Points: one for each leaf of the map, its center and what the map knows about it, in a binary PLY
+// file or as comma-separated values.
 
 struct PointOptions {
   /** Free leaves too, of which there are many; otherwise occupied ones only. */

@@ -122,8 +122,4 @@ inline Color trafficLight(double value) {
  * not 0.001 to 1e9 seconds, a raw id or a name used twice. */
 ClassTable loadClassTable(const std::filesystem::path& file);
 
-/** Writes TABLE so that loadClassTable() reads the same table. The file is complete or untouched.
- * \throw std::runtime_error the file cannot be written. */
-void saveClassTable(const ClassTable& table, const std::filesystem::path& file);
-
 }  // namespace semantic_types

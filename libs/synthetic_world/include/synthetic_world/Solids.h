@@ -84,9 +84,9 @@ struct Section {
 
 // Each shape is convex and answers:
 //   enter(origin, direction)  where a ray of unit direction enters it,
-//   signedDistance(p)         0 on its surface, negative inside; outside a lower bound that is
-//   exact
-//                             beside a face (a spheroid: to first order near its surface),
+//   signedDistance(p)         0 on its surface, negative inside; outside a lower bound,
+//                             exact beside a face
+//                             (a spheroid: to first order near its surface),
 //   nearestFace(p)            the face that signedDistance speaks of,
 //   section(low, high)        what of it lies between two heights, if anything,
 //   low(), high()             its heights.
