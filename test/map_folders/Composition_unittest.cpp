@@ -122,7 +122,7 @@ class Composition : public testing::TestWithParam<Making> {
 
 TEST_P(Composition, whileItIsMadeIsThatInMemory) {
   EXPECT_GT(tiles->contents().broughtIn, 10u);
-  EXPECT_LT(map.memoryUsage(), whole.memoryUsage() / 2);
+  EXPECT_LT(tiles->contents().tilesInMemory, tiles->contents().tiles / 2);
   expectSame();
 }
 
