@@ -85,6 +85,8 @@ TEST_F(MapFolders, areReadTileByTileToTheSameResults) {
   expectSame("semantic-map-edit", "corner.semantic",
              {"--box", "-20", "-20", "-1", "20", "20", "4"});
   expectSame("semantic-map-edit", "coarse.semantic", {"--resolution", "1.6"});
+  expectSame("semantic-map-edit", "aged.semantic",
+             {"--half-lives", kSources + "/config/classes/synthetic_decay.yaml", "--decay", "9"});
   expectSame("semantic-map-merge", "sum.semantic", {path("plain/map.semantic")});
   expectSame("semantic-map-export", "points.csv");
   expectSame("semantic-map-export", "tree.ot");
