@@ -85,6 +85,8 @@ TEST_F(MapFolders, areReadTileByTileToTheSameResults) {
   expectSame("semantic-map-edit", "corner.semantic",
              {"--box", "-20", "-20", "-1", "20", "20", "4"});
   expectSame("semantic-map-edit", "coarse.semantic", {"--resolution", "1.6"});
+  expectSame("semantic-map-edit", "aged.semantic",
+             {"--half-lives", kSources + "/config/classes/synthetic_decay.yaml", "--decay", "9"});
   expectSame("semantic-map-merge", "sum.semantic", {path("plain/map.semantic")});
   expectSame("semantic-map-export", "points.csv");
   expectSame("semantic-map-export", "tree.ot");
@@ -224,7 +226,15 @@ TEST_F(MapFolders, withABadTileAreUsableWhereItIsNot) {
   EXPECT_EQ(run("semantic-map-info", {path("bad"), "--at", elsewhere}).output,
             run("semantic-map-info", {path("tiles"), "--at", elsewhere}).output);
   EXPECT_EQ(runProgram("semantic-map-info", {path("bad"), "--at", inIt}).status, 1);
-  EXPECT_EQ(runProgram("rawlog2semantic-map", {"--tiles", path("bad"), "--slam"}).status, 64);
+}
+
+TEST_F(MapFolders, haveNoSecondMapToCompareWith) {
+  auto arguments = mapping("never", true);
+  arguments.push_back("--compare-upkeep");
+  const ProgramRun run = runProgram("rawlog2semantic-map", arguments);
+  EXPECT_EQ(run.status, 64);
+  EXPECT_TRUE(contains(run.errors, "--compare-upkeep")) << run.errors;
+  EXPECT_FALSE(std::filesystem::exists(path("never")));
 }
 
 TEST_F(MapFolders, withAnIndexThatIsNotOfTheirFilesAreRefusedByEveryProgram) {

@@ -1,6 +1,7 @@
 // A drive whose trajectory drifts, and what --slam makes of it.
 #include <gtest/gtest.h>
 #include <labeled_cloud/Rawlogs.h>
+#include <map_folders/MapFolder.h>
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt/serialization/CArchive.h>
@@ -173,6 +174,44 @@ TEST(Rawlog2SemanticMapWithSlam, bringsADriveIntoTheFrameOfAMap) {
   const auto slam = nlohmann::json::parse(street.folder.read("after/summary.json"))["slam"];
   EXPECT_GT(slam["referenced"], 10);
   EXPECT_EQ(slam["loops"], 0);
+}
+
+TEST(Rawlog2SemanticMapWithSlam, mapsIntoTilesWhatItMapsInMemoryAndFindsTheNextDriveThere) {
+  const Street street;
+  const Poses truth = readPoses(street.folder.read("street.tum"));
+  const auto noisy = street.folder.write("noisy.tum", textOf(drifting(truth))).string();
+  const std::string tiles = (street.folder / "tiles").string();
+  const std::vector<std::string> intoTiles = {"--tiles", tiles,      "--tile-size",
+                                              "12.8",    "--memory", "0.1"};
+  const auto with = [&](std::vector<std::string> more, const std::string& trajectory) {
+    more.insert(more.end(), {"--slam", "--trajectory", trajectory});
+    return more;
+  };
+  ASSERT_EQ(street.map("plain", with({}, noisy)).status, 0);
+  const ProgramRun first = street.map("tiled", with(intoTiles, noisy));
+  ASSERT_EQ(first.status, 0) << first.errors;
+  EXPECT_TRUE(semantic_octree::loadMap(tiles) ==
+              semantic_octree::loadTree((street.folder / "plain/map.semantic").string()));
+  EXPECT_EQ(street.folder.read("tiled/trajectory.tum"), street.folder.read("plain/trajectory.tum"));
+
+  const std::size_t leaves = semantic_octree::loadMap(tiles).getNumLeafNodes();
+  const auto moved = [&](double meters) {
+    Poses poses = truth;
+    for (auto& [time, T] : poses) T.pretranslate(Eigen::Vector3d(meters, 0, 0));
+    return street.folder.write("moved.tum", textOf(poses)).string();
+  };
+  const ProgramRun far = street.map("far", with(intoTiles, moved(2000)));
+  EXPECT_EQ(far.status, 1);
+  EXPECT_NE(far.errors.find("no scan was found in the map that is there"), std::string::npos)
+      << far.errors;
+  EXPECT_EQ(semantic_octree::loadMap(tiles).getNumLeafNodes(), leaves);
+
+  const ProgramRun second = street.map("second", with(intoTiles, moved(0.7)));
+  ASSERT_EQ(second.status, 0) << second.errors;
+  EXPECT_NE(second.output.find("There is a map"), std::string::npos) << second.output;
+  for (const auto& [time, T] : readPoses(street.folder.read("second/trajectory.tum")))
+    EXPECT_LT(distance(T, std::prev(truth.upper_bound(time + 1e-4))->second), 0.15) << time;
+  EXPECT_LT(double(semantic_octree::loadMap(tiles).getNumLeafNodes()), 1.2 * double(leaves));
 }
 
 TEST(Rawlog2SemanticMapWithSlam, mapsARawlogWithoutPoses) {

@@ -220,7 +220,10 @@ TEST(FailingAllocations, whileTilesComeAndGoLeaveTheMapOrABrokenOne) {
         map.emplace(mapOf(1, 0, true));
         tiles.emplace(*map, folder.path(), MapFolder::Access::Read, tight);
       },
-      [&] { bytesOf(*map); },
+      [&] {
+        bytesOf(*map);
+        const SemanticOcTree copy(*map);
+      },
       [&] {
         if (map->isBroken()) return expectLost(*map, &broken);
         EXPECT_EQ(bytesOf(*map), expected);
