@@ -12,6 +12,7 @@
 #include "SemanticMapCompress.h"
 #include "ShellCommand.h"
 #include "radio/Cookies.h"
+#include "radio/Seal.h"
 #include "radio/UdpSocket.h"
 #include "radio/Wish.h"
 
@@ -190,6 +191,30 @@ TEST(Wish, isOneDatagramOrRefused) {
   EXPECT_THROW((radio::Wish{weights, "", {}}.packed()), std::runtime_error);
   EXPECT_THROW((radio::Wish{std::string(100000, ' '), "", {}}.packed()), std::runtime_error);
   EXPECT_THROW(radio::Wish::of("hello"), std::runtime_error);
+}
+
+TEST(Seal, opensWhatWasSealedWithItsKeyAndNothingElse) {
+  const TemporaryFolder folder;
+  const radio::Seal none, seal(folder.write("a", "sixteen bytes or more")),
+      other(folder.write("b", "sixteen bytes or less"));
+  EXPECT_EQ(none.opened(none.sealed("hello")), "hello");
+  const std::string sealed = seal.sealed("hello");
+  EXPECT_EQ(sealed.size(), 5u + 16);
+  EXPECT_EQ(seal.opened(sealed), "hello");
+  EXPECT_EQ(seal.opened(seal.sealed("")), "");
+  EXPECT_THROW(other.opened(sealed), std::runtime_error);
+  for (std::size_t i = 0; i < sealed.size(); ++i) {
+    std::string altered = sealed;
+    altered[i] ^= 1;
+    EXPECT_THROW(seal.opened(altered), std::runtime_error) << i;
+    EXPECT_THROW(seal.opened(sealed.substr(0, i)), std::runtime_error) << i;
+  }
+  // RFC 4231, test case 6.
+  const radio::Seal known(folder.write("c", std::string(131, '\xaa')));
+  const std::string text = "Test Using Larger Than Block-Size Key - Hash Key First";
+  EXPECT_EQ(known.sealed(text), text +
+                                    "\x60\xe4\x31\x59\x1e\xe0\xb6\x7f"
+                                    "\x0d\x8a\x26\xaa\xcb\xf5\xb7\x7f");
 }
 
 TEST_F(MapRadio, eachReceiverHasItsWeightsOverARadioThatLosesAndExchanges) {

@@ -65,7 +65,11 @@ void OutputFolder::commit(const std::vector<std::string>& names) {
   const auto held = Unfinished::hold();
   each([&](std::size_t i) { placements[i].checkFree(); });
   each([&](std::size_t i) { placements[i].take(); });
-  folder.synchronize();
+  try {
+    folder.synchronize();
+  } catch (const std::exception& e) {
+    throw std::runtime_error(m_folder.string() + ": cannot be written: " + e.what());
+  }
 }
 
 }  // namespace strict_files
