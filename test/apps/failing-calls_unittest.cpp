@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 
+#include "../semantic_planning/PaintedWorld.h"
 #include "ExportFixture.h"
 #include "ShellCommand.h"
 #include "SmallRawlogs.h"
@@ -18,10 +20,18 @@ namespace {
  */
 int callsOfEach() {
   const char* number = std::getenv("MSO_CALLS_EACH");
-  return number ? std::atoi(number) : 6;
+  return number ? std::atoi(number) : 4;
 }
 
 using Files = std::map<std::string, std::string>;
+
+bool tellsTimes(const std::string& name) {
+  return fs::path(name).extension() == ".json" || name == "report.csv";
+}
+
+std::ptrdiff_t linesOf(const std::string& text) {
+  return std::count(text.begin(), text.end(), '\n');
+}
 
 /** Programs in a folder with their inputs; what they write is in `out`. */
 class FailingCalls : public testing::TestWithParam<std::string> {
@@ -31,7 +41,11 @@ class FailingCalls : public testing::TestWithParam<std::string> {
     saveTree(smallPlace(2, 1), path("other.semantic"));
     folder.write("weights.yaml",
                  "{name: road, relevant: {road: 1}, alpha: 0.01, block_size: 3.2}\n");
-    folder.write("order.yaml", "best_to_worst: [road, post]\n");
+    folder.write("order.yaml", "best_to_worst: [road, grass]\n");
+    PaintedWorld world;
+    world.floor(-10, 10, -6, 6, PaintedWorld::Grass);
+    world.floor(-10, 10, -2, 2, PaintedWorld::Road);
+    saveTree(world.map(), path("world.semantic"));
     folder.write("small.ini", "[map]\nresolution = 0.5\nclasses = classes.yaml\n");
     folder.write("classes.yaml", kSmallTable);
     folder.write("a.pcd", "FIELDS x y z label\nPOINTS 1\nDATA ascii\n1 2 3 1\n");
@@ -76,14 +90,14 @@ class FailingCalls : public testing::TestWithParam<std::string> {
     fs::create_directory(folder / "out");
     for (const auto& [name, content] : before) folder.write("out/" + name, content);
   }
-  /** \\param mayLitter what could not be removed may be there */
+  /** \param mayLitter what could not be removed may be there */
   void expectOldOrNew(bool isNew, bool mayLitter) const {
     for (const auto& [name, content] : files()) {
       const auto old = before.find(name), now = after.find(name);
       const bool isOld = old != before.end() && old->second == content;
       const bool isAfter =
-          now != after.end() && (now->second == content || (fs::path(name).extension() == ".json" &&
-                                                            nlohmann::json::accept(content)));
+          now != after.end() && (now->second == content ||
+                                 (tellsTimes(name) && linesOf(now->second) == linesOf(content)));
       EXPECT_TRUE(isAfter || (isOld && !isNew) || (mayLitter && !isOld && now == after.end()))
           << name << (now == after.end() ? " is left" : " is neither the old nor the new one");
     }
@@ -104,13 +118,14 @@ class FailingCalls : public testing::TestWithParam<std::string> {
   TemporaryFolder folder;
 };
 
-const char* const kJobs[] = {
+const std::vector<std::string> kJobs = {
     "semantic-map-edit @map.semantic -f -o @out/a.semantic",
     "semantic-map-merge @map.semantic @other.semantic -f -o @out/tiles --tiles 1.6",
     "semantic-map-export @map.semantic -f -o @out/a.csv -o @out/a.ply -o @out/a.yaml -o @out/a.ot "
     "-o @out/a.3Dscene",
     "semantic-map-compress @map.semantic --weights @weights.yaml -f -o @out",
-    "semantic-map-plan @map.semantic --classes @order.yaml --start=-1,0,0 --goal=1,0,0 -f -o @out",
+    "semantic-map-plan @world.semantic --classes @order.yaml --start=-8,0,0 --goal=8,0,0 -f -o "
+    "@out",
     "rawlog2semantic-map --config @small.ini -f -o @out --save-labeled @out/a.rawlog @small.rawlog",
     "rawlog2semantic-map --config @small.ini -f -o @out --tiles @out/tiles --tile-size 4 "
     "@small.rawlog",
@@ -118,7 +133,7 @@ const char* const kJobs[] = {
     "dataset2rawlog pcd @a.pcd --classes @classes.yaml -f -o @out/a.rawlog"};
 
 INSTANTIATE_TEST_SUITE_P(Each, FailingCalls, testing::ValuesIn(kJobs), [](const auto& each) {
-  return std::regex_replace(std::string(each.param).substr(0, 19), std::regex("[^a-z]"), "_") +
+  return std::regex_replace(each.param.substr(0, 19), std::regex("[^a-z]"), "_") +
          std::to_string(each.index);
 });
 
