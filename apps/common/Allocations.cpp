@@ -11,6 +11,7 @@
 #include <new>
 
 using strict_files::AllocationLimit;
+using strict_files::PieceTooLarge;
 
 namespace mrpt {
 
@@ -19,9 +20,9 @@ void* aligned_malloc(std::size_t bytes, std::size_t alignment);
 /** Replaces MRPT's own: matrices and depth images take it for an allocator and write to what it
  * returns, which there is null if a damaged file asks for more than there is, and zeros for
  * gigabytes if for less.
- * \throw std::bad_alloc there is no memory, or it is more than any image takes */
+ * \throw std::bad_alloc there is no memory; PieceTooLarge: it is more than any image takes */
 void* aligned_malloc(std::size_t bytes, std::size_t alignment) {
-  if (bytes > AllocationLimit::kMost) throw std::bad_alloc();  // 16384 x 16384 distances
+  if (bytes > AllocationLimit::kMost) throw PieceTooLarge();  // 16384 x 16384 distances
   // aligned_alloc() is defined for multiples of the alignment.
   const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
   void* const memory = std::aligned_alloc(alignment, whole);
@@ -38,6 +39,7 @@ void* allocate(std::size_t size) noexcept {
 }
 
 void* allocateOrThrow(std::size_t size) {
+  if (!AllocationLimit::isAllowed(size)) throw PieceTooLarge();
   void* const memory = allocate(size);
   if (!memory) throw std::bad_alloc();
   return memory;

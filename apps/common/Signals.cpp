@@ -62,7 +62,7 @@ SignalWatch::~SignalWatch() {
   for (const int descriptor : signalPipe) close(descriptor);
 }
 
-int SignalWatch::stoppedBy() const { return stopSignal; }
+int SignalWatch::stoppedBy() { return stopSignal; }
 
 void SignalWatch::watch() {
   unsigned char signal = 0;

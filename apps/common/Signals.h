@@ -1,4 +1,5 @@
 #pragma once
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -14,7 +15,7 @@ class SignalWatch {
   SignalWatch& operator=(const SignalWatch&) = delete;
 
   /** The signal that asked the program to stop early, or 0. */
-  int stoppedBy() const;
+  static int stoppedBy();
 
  private:
   void watch();
@@ -23,6 +24,12 @@ class SignalWatch {
 
   std::string m_program;
   std::thread m_thread;
+};
+
+/** What a program throws that was asked to stop before it had anything to write: its exit status is
+ * that of being stopped. */
+class StoppedTooEarly : public std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /** Lets a program stop before its end and keep what it has: while this lives, the first

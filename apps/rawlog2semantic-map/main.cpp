@@ -218,6 +218,8 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
   if (cli.slam) builder.correctPoses(config.slam, trajectoryFile.parent_path(), cli.reference);
   if (!hasPoses) builder.withoutOdometry();
   builder.insert(cli.rawlogs, stream, stop);
+  if (builder.summary().inserted == 0 && builder.summary().stopped)
+    throw StoppedTooEarly("stopped before the first scan");
   if (builder.summary().inserted == 0)
     throw std::runtime_error("nothing to map: no observation was inserted, " +
                              builder.summary().skippedText());

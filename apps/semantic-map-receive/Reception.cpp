@@ -17,12 +17,14 @@ constexpr int kFarewells = 10;
 
 }  // namespace
 
-Reception::Reception(const radio::Peer& sender, const radio::Wish& wish,
+Reception::Reception(const radio::Peer& sender, const radio::Wish& wish, const radio::Seal& seal,
                      const ReceptionOptions& options)
     : m_sender(sender),
+      m_seal(seal),
       m_options(options),
       m_stream(std::random_device()()),
-      m_requests(wish.requests(m_stream)),
+      m_cookie(radio::Cookies::kBytes, '\0'),
+      m_wish(wish.packed()),
       m_socket(0),
       m_radio(m_socket, options.loss, options.seed),
       m_receiver(m_stream),
@@ -38,10 +40,8 @@ void Reception::ask() {
   const bool isDue = Clock::now() - m_lastSent > kPatience;
   const bool isAnswered = m_receiver.numExpected() > 0;
   if (!isDue && !(isAnswered && m_numUnacknowledged >= kPacketsPerReceipt)) return;
-  if (isAnswered)
-    send(m_receiver.receipt());
-  else
-    for (const Datagram& request : m_requests) send(request);
+  send(isAnswered ? m_receiver.receipt()
+                  : Datagram{Datagram::Type::Request, m_stream, m_cookie + m_wish});
   m_numUnacknowledged = 0;
   m_lastSent = Clock::now();
 }
@@ -52,7 +52,7 @@ bool Reception::listen(milliseconds timeout) {
   if (!bytes || !(from == m_sender)) return false;
   std::optional<Datagram> datagram;
   try {
-    datagram = Datagram::of(*bytes);
+    datagram = Datagram::of(m_seal.opened(*bytes));
     if (datagram->stream != m_stream) return false;
   } catch (const std::runtime_error& e) {
     details() << from.text() << ": " << e.what() << std::endl;
@@ -67,6 +67,10 @@ void Reception::take(const Datagram& datagram) {
   if (datagram.type == Datagram::Type::Refusal)
     throw std::runtime_error("the sender " + m_sender.text() + " refuses: " + datagram.payload);
   if (datagram.type == Datagram::Type::End) m_isEnded = true;
+  if (datagram.type == Datagram::Type::Cookie && datagram.payload != m_cookie) {
+    m_cookie = datagram.payload;
+    m_lastSent = {};  // asks at once
+  }
   if (datagram.type != Datagram::Type::Data) return;
   const bool wasComplete = m_receiver.isComplete();
   m_receiver.accept(datagram);

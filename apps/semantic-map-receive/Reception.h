@@ -1,8 +1,12 @@
 #pragma once
+#include <map_streams/MapStream.h>
+
 #include <chrono>
 
 #include "Signals.h"
 #include "radio/BadRadio.h"
+#include "radio/Cookies.h"
+#include "radio/Seal.h"
 #include "radio/Wish.h"
 
 namespace semantic_map_receive {
@@ -17,7 +21,9 @@ struct ReceptionOptions {
 /** Receives one map. */
 class Reception {
  public:
-  Reception(const radio::Peer& sender, const radio::Wish& wish, const ReceptionOptions& options);
+  /** \throw std::runtime_error the wish is too long. */
+  Reception(const radio::Peer& sender, const radio::Wish& wish, const radio::Seal& seal,
+            const ReceptionOptions& options);
 
   /** Until it is there, or enough of it, or the user stops it.
    * \param check is called with the empty map once it is known which classes it has
@@ -37,13 +43,14 @@ class Reception {
   bool listen(std::chrono::milliseconds timeout);
   void take(const Datagram& datagram);
   void ask();
-  void send(const Datagram& datagram) { m_radio.send(m_sender, datagram.bytes()); }
+  void send(const Datagram& datagram) { m_radio.send(m_sender, m_seal.sealed(datagram.bytes())); }
   [[noreturn]] void failSilent() const;
 
   radio::Peer m_sender;
+  radio::Seal m_seal;
   ReceptionOptions m_options;
   std::uint32_t m_stream;
-  std::vector<Datagram> m_requests;
+  std::string m_cookie, m_wish;  ///< of a request
   radio::UdpSocket m_socket;
   radio::BadRadio m_radio;
   semantic_octree::MapReceiver m_receiver;

@@ -20,7 +20,7 @@ using semantic_octree::SemanticOcTree;
 
 struct Cli {
   std::string sender;
-  fs::path output, weights, like;
+  fs::path output, weights, like, key;
   radio::Wish wish;
   ReceptionOptions reception;
   Outputs outputs;
@@ -38,6 +38,9 @@ struct Cli {
         ->check(isNumber(strict_files::above(0)));
     app.add_option("--like", like,
                    "Refuse a map whose classes or voxels are not those of this map");
+    app.add_option("--key", key,
+                   "Listen only to who has this key: a file of 16 bytes or more, the same on both "
+                   "sides");
     app.add_option("--timeout", reception.timeout,
                    "End if the sender was not heard for so long, s (60)")
         ->check(isNumber(strict_files::above(0)));
@@ -84,7 +87,8 @@ int run(Cli& cli) {
   std::optional<SemanticOcTree> own;
   if (!cli.like.empty()) own = semantic_octree::loadMap(cli.like.string());
   const StopRequest stop("after this packet");
-  Reception reception(peerOf(cli.sender), cli.wish, cli.reception);
+  Reception reception(peerOf(cli.sender), cli.wish,
+                      cli.key.empty() ? radio::Seal() : radio::Seal(cli.key), cli.reception);
   bool isOurs = false;
   try {
     reception.receive(stop, [&](const SemanticOcTree& map) {

@@ -11,27 +11,30 @@ namespace {
 /** Bytes of the headers of IP and UDP. */
 constexpr std::size_t kHeaders = 28;
 /** Who does not know yet that it has all is told so, if it asks that late. */
-constexpr std::chrono::milliseconds kFarewell(1000), kTick(20);
+constexpr std::chrono::milliseconds kFarewell(1000);
+/** So long nothing is looked at if nobody is heard. */
+constexpr std::chrono::milliseconds kTick(100);
 
 }  // namespace
 
-Station::Station(Maps& maps, const radio::Wish& own, const StationOptions& options)
+Station::Station(Maps& maps, const radio::Wish& own, const radio::Seal& seal,
+                 const StationOptions& options)
     : m_maps(maps),
       m_own(own),
+      m_seal(seal),
       m_options(options),
       m_socket(options.port),
       m_radio(m_socket, options.loss, options.seed),
-      m_begin(Clock::now()),
-      m_nextSending(m_begin),
-      m_lastHeard(m_begin) {}
+      m_silence("nobody asked for the map at port " + std::to_string(port())),
+      m_nextSending(Clock::now()),
+      m_lastHeard(m_nextSending),
+      m_lastBusy(m_nextSending) {}
 
 void Station::serve(const StopRequest& stop) {
-  while (!stop.pending()) {
-    const bool isEnough = numServed() >= m_options.receivers;
-    if (isEnough && Clock::now() - m_lastHeard > kFarewell) break;
-    listen();
-    sendOne();
-    if (!isEnough) checkSilence();
+  while (!stop.pending() && !isOver()) {
+    const auto wait = m_nextSending - Clock::now();
+    listen(wait > wait.zero() ? wait : sendOne() ? wait.zero() : kTick);
+    forgetSilent();
   }
   for (const Session& s : m_sessions)
     if (s.isServed())
@@ -44,61 +47,105 @@ std::size_t Station::numServed() const {
                                                 [](const Session& s) { return s.isServed(); }));
 }
 
-/** Takes what comes until it is time to send. */
-void Station::listen() {
-  using std::chrono::milliseconds;
-  const auto wait = std::chrono::duration_cast<milliseconds>(m_nextSending - Clock::now());
+bool Station::isOver() const {
+  const auto silence = Clock::now() - std::max(m_lastHeard, m_lastBusy);
+  if (numServed() >= m_options.receivers) return silence > kFarewell;
+  if (numServed() == m_sessions.size() && silence > Seconds(m_options.timeout))
+    throw std::runtime_error(m_silence);
+  return false;
+}
+
+/** Takes the next datagram, if one comes in time. */
+void Station::listen(Clock::duration most) {
   radio::Peer from;
-  auto bytes = m_socket.receive(from, std::clamp(wait, milliseconds(0), kTick));
-  for (; bytes; bytes = m_socket.receive(from, milliseconds(0))) {
-    try {
-      const Datagram datagram = Datagram::of(*bytes);
-      Session& session = sessionOf(from, datagram.stream);
-      const bool wasDone = session.isDone();
-      session.accept(datagram);
-      m_lastHeard = Clock::now();
-      if (!wasDone && !session.refusal().empty())
-        notes() << from.text() << ": refused: " << session.refusal() << std::endl;
-    } catch (const std::runtime_error& e) {
-      details() << from.text() << ": " << e.what() << std::endl;
-    }
+  const auto bytes = m_socket.receive(from, most);
+  if (!bytes) return;
+  try {
+    const auto before = Clock::now();
+    const bool isNew = take(from, Datagram::of(m_seal.opened(*bytes)));
+    const auto now = Clock::now();
+    if (isNew) m_lastHeard = now;
+    if (now - before > kTick) m_lastBusy = now;
+  } catch (const std::runtime_error& e) {
+    details() << from.text() << ": " << e.what() << std::endl;
   }
 }
 
-Session& Station::sessionOf(const radio::Peer& peer, std::uint32_t stream) {
+/** \return whether a receiver told something new */
+bool Station::take(const radio::Peer& from, const Datagram& datagram) {
   for (Session& session : m_sessions)
-    if (session.isOf(peer, stream)) return session;
-  return m_sessions.emplace_back(peer, stream, m_maps, m_own);
+    if (session.isOf(from, datagram.stream)) return session.accept(datagram);
+  if (datagram.type != Datagram::Type::Request) return false;
+  if (m_cookies.isOf(datagram.payload.substr(0, radio::Cookies::kBytes), from, datagram.stream))
+    return hasRoomFor(from) && begin(from, datagram);
+  if (!m_answer)
+    m_answer.emplace(from, Datagram{Datagram::Type::Cookie, datagram.stream,
+                                    m_cookies.of(from, datagram.stream)});
+  return false;
 }
 
-/** Receivers take turns. */
-void Station::sendOne() {
-  if (Clock::now() < m_nextSending) return;
-  for (auto s = m_sessions.begin(); s != m_sessions.end(); ++s) {
-    const auto datagram = s->next();
-    if (!datagram) continue;
-    const std::string bytes = datagram->bytes();
-    m_radio.send(s->peer(), bytes);
-    const double seconds = m_options.rate > 0
-                               ? 8.0 * static_cast<double>(bytes.size() + kHeaders) / m_options.rate
-                               : 0;
-    m_nextSending = std::max(m_nextSending, Clock::now() - kTick) +
-                    std::chrono::duration_cast<Clock::duration>(Seconds(seconds));
-    m_sessions.splice(m_sessions.end(), m_sessions, s);
-    return;
+bool Station::hasRoomFor(const radio::Peer& from) const {
+  std::size_t all = 0, ofAddress = 0;
+  for (const Session& s : m_sessions) {
+    if (s.isServed()) continue;
+    ++all;
+    ofAddress += s.peer().address.sin_addr.s_addr == from.address.sin_addr.s_addr;
   }
-  m_nextSending = std::max(m_nextSending, Clock::now() + std::chrono::milliseconds(1));
+  return all < kMostAtOnce && ofAddress < kMostOfAddress;
 }
 
-void Station::checkSilence() const {
-  const auto now = Clock::now();
-  for (const Session& s : m_sessions)
-    if (!s.isDone() && now - s.lastHeard() > Seconds(m_options.timeout))
-      throw std::runtime_error("the receiver " + s.peer().text() + " fell silent");
-  const bool isIdle = std::all_of(m_sessions.begin(), m_sessions.end(),
-                                  [](const Session& s) { return s.isDone(); });
-  if (isIdle && now - m_lastHeard > Seconds(m_options.timeout))
-    throw std::runtime_error("nobody asked for the map at port " + std::to_string(port()));
+bool Station::begin(const radio::Peer& from, const Datagram& request) {
+  radio::Wish wish = radio::Wish::of(request.payload.substr(radio::Cookies::kBytes));
+  if (wish.weights.empty()) wish.weights = m_own.weights;
+  if (wish.solution.empty()) wish.solution = m_own.solution;
+  try {
+    const auto options = wish.forClasses(m_maps.front().tree().classes(), "weights");
+    m_sessions.emplace_front(from, request.stream, m_maps, options);
+    return true;
+  } catch (const std::exception& e) {
+    const std::string why = std::string(e.what()).substr(0, semantic_octree::kMaxDatagramBytes / 2);
+    notes() << from.text() << ": refused: " << why << std::endl;
+    m_answer.emplace(from, Datagram{Datagram::Type::Refusal, request.stream, why});
+    return false;
+  }
+}
+
+/** Receivers take turns, and so do they and those who ask. \return whether there was anything */
+bool Station::sendOne() {
+  m_hasAnswered = m_answer && !m_hasAnswered;
+  if (m_hasAnswered) {
+    send(m_answer->first, m_answer->second);
+    m_answer.reset();
+    return true;
+  }
+  for (auto s = m_sessions.begin(); s != m_sessions.end(); ++s)
+    if (const auto datagram = s->next()) {
+      send(s->peer(), *datagram);
+      m_sessions.splice(m_sessions.end(), m_sessions, s);
+      return true;
+    }
+  return m_answer.has_value();
+}
+
+void Station::send(const radio::Peer& to, const Datagram& datagram) {
+  const std::string bytes = m_seal.sealed(datagram.bytes());
+  m_radio.send(to, bytes);
+  const double bits = 8.0 * static_cast<double>(bytes.size() + kHeaders);
+  m_nextSending = std::max(m_nextSending, Clock::now() - kTick) +
+                  std::chrono::duration_cast<Clock::duration>(
+                      Seconds(m_options.rate > 0 ? bits / m_options.rate : 0));
+}
+
+void Station::forgetSilent() {
+  const auto since = Clock::now() - std::chrono::duration_cast<Clock::duration>(
+                                        Seconds(std::min(m_options.timeout, 1e9)));
+  if (m_lastBusy > since) return;
+  m_sessions.remove_if([&](const Session& s) {
+    if (s.isServed() || s.lastHeard() > since) return false;
+    m_silence = "the receiver " + s.peer().text() + " fell silent";
+    notes() << m_silence << std::endl;
+    return true;
+  });
 }
 
 }  // namespace semantic_map_send

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 struct Cli {
   std::vector<fs::path> maps;
-  fs::path weights;
+  fs::path weights, key;
   double memory = semantic_octree::MapFolderOptions().memory;
   radio::Wish own;
   StationOptions station;
@@ -36,9 +36,15 @@ struct Cli {
         ->check(isNumber(strict_files::between(0, 65535)));
     app.add_option("--weights", weights, "For receivers without weights of their own (YAML)");
     app.add_option("--solution", own.solution, "Which of these weights (the first)");
-    app.add_option("--receivers", station.receivers, "End after so many were served (1)")
+    app.add_option(
+        "--key", key,
+        "Serve only who has this key: a file of 16 bytes or more, the same on both sides");
+    app.add_option(
+           "--receivers", station.receivers,
+           "End after so many were served (1); at once it serves up to 16, 4 of one address")
         ->check(isNumber(strict_files::above(0)));
-    app.add_option("--timeout", station.timeout, "End if nobody was heard for so long, s (60)")
+    app.add_option("--timeout", station.timeout,
+                   "Forget who was not heard for so long; end if nobody is left, s (60)")
         ->check(isNumber(strict_files::above(0)));
     app.add_option(
            "--lose", station.loss,
@@ -66,7 +72,8 @@ int run(Cli& cli) {
   open(cli, maps);
   if (!cli.weights.empty()) cli.own.forClasses(maps.front().tree().classes(), cli.weights.string());
   const StopRequest stop("after this datagram");
-  Station station(maps, cli.own, cli.station);
+  Station station(maps, cli.own, cli.key.empty() ? radio::Seal() : radio::Seal(cli.key),
+                  cli.station);
   notes() << "Waiting at port " << station.port() << std::endl;
   station.serve(stop);
   return 0;

@@ -106,6 +106,12 @@ TEST(Pcd, badInputIsNamed) {
   EXPECT_TRUE(
       contains(failureWith("FIELDS x y z label\nCOUNT 1 1 1\nPOINTS 1\nDATA ascii\n1 2 3 4\n"),
                "3 counts for 4 fields"));
+  for (const std::string grid : {"WIDTH 3\nHEIGHT 1", "WIDTH 2\nHEIGHT 0", "WIDTH 0\nHEIGHT 0",
+                                 "WIDTH 1\nHEIGHT 1099511627776"})
+    EXPECT_TRUE(contains(
+        failureWith("FIELDS x y z label\n" + grid + "\nPOINTS 2\nDATA ascii\n1 2 3 1\n1 2 3 1\n"),
+        " points, and POINTS says 2"))
+        << grid;
   EXPECT_TRUE(contains(failureWith("nothing\n"), "no FIELDS"));
   EXPECT_TRUE(contains(failureOf("pcd only_one"), "--output is required"));
 }

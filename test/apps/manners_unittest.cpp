@@ -58,6 +58,26 @@ TEST_P(Program, endsWith64AndItsNameAfterAWrongCommandLine) {
   EXPECT_TRUE(contains(wrong.output, GetParam() + " --help")) << wrong.output;
 }
 
+TEST_P(Program, endsWithAMessageUnderAnyLimitOfMemory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes terabytes of addresses";
+#endif
+  const auto statusWith = [this](int megabytes) {
+    const CommandRun run = runCommand("ulimit -c 0 -v " + std::to_string(1024 * megabytes) +
+                                      "; " MSO_BIN_DIR "/" + GetParam() + " --version");
+    EXPECT_TRUE(run.status == 0 || run.status == 1 || run.status == 127)
+        << run.status << " with " << megabytes << " MB: " << run.output;
+    EXPECT_NE(run.output, "");
+    return run.status;
+  };
+  int tooLittle = 8, enough = 4096;
+  while (enough - tooLittle > 1) {
+    const int middle = (tooLittle + enough) / 2;
+    (statusWith(middle) == 0 ? enough : tooLittle) = middle;
+  }
+  for (int megabytes = enough - 24; megabytes < enough + 12; megabytes += 3) statusWith(megabytes);
+}
+
 TEST_P(Program, offersTheOptionThatWasMeant) {
   for (const char* meant : {"--version", "--help"}) {
     const std::string typed = std::string(meant).substr(0, 5) + std::string(meant).substr(6);

@@ -56,7 +56,7 @@ TEST_F(Rawlog2SemanticMap, aDepthImageThatClaimsToBeHugeIsRefusedBeforeItTakesMe
   const std::size_t size = bytes.find(inBytes(kRows, kCols));
   ASSERT_NE(size, std::string::npos);
   folder.write("huge.rawlog", bytes.replace(size, 8, inBytes(kClaimed, kClaimed)));
-  expectRefusal({"huge.rawlog", "more memory is needed than there is"}, "huge.rawlog");
+  expectRefusal({"huge.rawlog", "more than 1 GiB of memory is asked for at once"}, "huge.rawlog");
   EXPECT_LT(run("huge.rawlog").peakKilobytes, 500'000);
 }
 

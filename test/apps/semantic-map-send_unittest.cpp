@@ -1,15 +1,24 @@
 // semantic-map-send and semantic-map-receive, as processes on this machine.
 #include <gtest/gtest.h>
+#include <map_streams/MapStream.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
+#include <sys/resource.h>
+
+#include <future>
+#include <thread>
 
 #include "../semantic_planning/PaintedWorld.h"
 #include "SemanticMapCompress.h"
 #include "ShellCommand.h"
+#include "radio/Cookies.h"
+#include "radio/Seal.h"
+#include "radio/UdpSocket.h"
 #include "radio/Wish.h"
 
 namespace {
 
+using semantic_octree::Datagram;
 using semantic_octree::loadTree;
 
 /** A folder with a map of a road in grass beside a wall, and one that it became later. */
@@ -47,6 +56,26 @@ solutions:
     const CommandRun run = runCommand("sh '" + path("script") + "'");
     EXPECT_TRUE(contains(run.output, "status 0\n")) << run.output;
   }
+  /** Runs the sender, and when it waits, an action that knows its port. \return how it ended */
+  CommandRun withSender(const std::string& arguments,
+                        const std::function<void(int port)>& action) const {
+    folder.write("log", "");
+    const std::string command = "cd '" + folder.path().string() +
+                                "'; " MSO_BIN_DIR "/semantic-map-send --port 0 " + arguments +
+                                " >log 2>&1; status=$?; cat log; exit $status";
+    auto run = std::async(std::launch::async, [&] { return runCommand(command); });
+    std::size_t at = std::string::npos;
+    const std::string waits = "at port ";
+    while (at == std::string::npos && run.wait_for(kMoment) != std::future_status::ready)
+      at = contains(folder.read("log"), "\n") ? folder.read("log").find(waits) : at;
+    if (at != std::string::npos) action(std::stoi(folder.read("log").substr(at + waits.size())));
+    return run.get();
+  }
+  ProgramRun receive(int port, std::vector<std::string> more = {}) const {
+    more.insert(more.end(), {"localhost:" + std::to_string(port), "-f", "-o", path("r.semantic"),
+                             "--weights", path("weights.yaml"), "--solution", "road"});
+    return runProgram("semantic-map-receive", more);
+  }
   /** The tree that semantic-map-compress makes of a map. */
   std::string compressed(const std::string& map, const std::string& solution,
                          const std::vector<std::string>& more = {}) const {
@@ -58,7 +87,44 @@ solutions:
     return folder.read("out/" + solution + ".semantic");
   }
 
+  static constexpr std::chrono::milliseconds kMoment{20};
   TemporaryFolder folder;
+};
+
+/** Somebody at a port of an own who asks for a stream. */
+class Asker {
+ public:
+  Asker(int port, std::uint32_t stream)
+      : m_sender(radio::Peer::of("localhost", port)), m_stream(stream) {}
+  void send(Datagram::Type type, const std::string& payload) {
+    m_socket.send(m_sender, Datagram{type, m_stream, payload}.bytes());
+  }
+  void ask(const std::string& cookie = std::string(radio::Cookies::kBytes, '\0')) {
+    send(Datagram::Type::Request, cookie + kWish);
+  }
+  /** What comes within a while. */
+  std::optional<Datagram> hear() {
+    radio::Peer from;
+    const auto bytes = m_socket.receive(from, std::chrono::milliseconds(300));
+    return bytes ? std::optional(Datagram::of(*bytes)) : std::nullopt;
+  }
+  /** What the answer is of a whole request with the cookie that the sender gave. */
+  std::optional<Datagram> askAsOneShould() {
+    ask();
+    const auto cookie = hear();
+    if (!cookie || cookie->type != Datagram::Type::Cookie) return cookie;
+    ask(cookie->payload);
+    return hear();
+  }
+
+ private:
+  inline static const std::string kWish = radio::Wish{
+      "{name: a, relevant: {road: 1}, alpha: 0.001, block_size: 3.2}",
+      "a",
+      {}}.packed();
+  radio::Peer m_sender;
+  std::uint32_t m_stream;
+  radio::UdpSocket m_socket{0};
 };
 
 /** Not what differs, which nobody could read. */
@@ -110,14 +176,45 @@ TEST_F(MapRadio, prefixesAreTheTreesOfSoManyBytes) {
 }
 
 TEST(Wish, mayHoldBytesThatAreNoText) {
-  radio::WishReader reader;
-  std::optional<radio::Wish> wish;
-  for (const auto& request : radio::Wish{"a: \xff", "\xff", 0.5}.requests(1))
-    wish = reader.add(request);
-  ASSERT_TRUE(wish);
-  EXPECT_EQ(wish->weights, "a: \uFFFD");
-  EXPECT_EQ(wish->solution, "\uFFFD");
-  EXPECT_EQ(wish->alpha, 0.5);
+  const auto wish = radio::Wish::of(radio::Wish{"a: \xff", "\xff", 0.5}.packed());
+  EXPECT_EQ(wish.weights, "a: \uFFFD");
+  EXPECT_EQ(wish.solution, "\uFFFD");
+  EXPECT_EQ(wish.alpha, 0.5);
+}
+
+TEST(Wish, isOneDatagramOrRefused) {
+  std::mt19937 random(1);
+  std::string weights;
+  for (int i = 0; i < 900; ++i) weights += static_cast<char>('a' + random() % 26);
+  EXPECT_EQ(radio::Wish::of(radio::Wish{weights, "", {}}.packed()).weights, weights);
+  for (int i = 0; i < 2000; ++i) weights += static_cast<char>('a' + random() % 26);
+  EXPECT_THROW((radio::Wish{weights, "", {}}.packed()), std::runtime_error);
+  EXPECT_THROW((radio::Wish{std::string(100000, ' '), "", {}}.packed()), std::runtime_error);
+  EXPECT_THROW(radio::Wish::of("hello"), std::runtime_error);
+}
+
+TEST(Seal, opensWhatWasSealedWithItsKeyAndNothingElse) {
+  const TemporaryFolder folder;
+  const radio::Seal none, seal(folder.write("a", "sixteen bytes or more")),
+      other(folder.write("b", "sixteen bytes or less"));
+  EXPECT_EQ(none.opened(none.sealed("hello")), "hello");
+  const std::string sealed = seal.sealed("hello");
+  EXPECT_EQ(sealed.size(), 5u + 16);
+  EXPECT_EQ(seal.opened(sealed), "hello");
+  EXPECT_EQ(seal.opened(seal.sealed("")), "");
+  EXPECT_THROW(other.opened(sealed), std::runtime_error);
+  for (std::size_t i = 0; i < sealed.size(); ++i) {
+    std::string altered = sealed;
+    altered[i] ^= 1;
+    EXPECT_THROW(seal.opened(altered), std::runtime_error) << i;
+    EXPECT_THROW(seal.opened(sealed.substr(0, i)), std::runtime_error) << i;
+  }
+  // RFC 4231, test case 6.
+  const radio::Seal known(folder.write("c", std::string(131, '\xaa')));
+  const std::string text = "Test Using Larger Than Block-Size Key - Hash Key First";
+  EXPECT_EQ(known.sealed(text), text +
+                                    "\x60\xe4\x31\x59\x1e\xe0\xb6\x7f"
+                                    "\x0d\x8a\x26\xaa\xcb\xf5\xb7\x7f");
 }
 
 TEST_F(MapRadio, eachReceiverHasItsWeightsOverARadioThatLosesAndExchanges) {
@@ -226,4 +323,92 @@ TEST_F(MapRadio, nobodyThereAndPortsInUseAreSaid) {
              "semantic-map-send --port $port map.semantic 2>errors; test $? = 1 && grep -q "
              "\"port $port cannot be used\" errors && " +
                  kReceive + "-o r.semantic");
+}
+
+TEST_F(MapRadio, datagramsOfNobodyChangeNothing) {
+  const CommandRun run = withSender("--timeout 20 map.semantic", [&](int port) {
+    std::vector<std::unique_ptr<Asker>> askers;
+    for (std::uint32_t i = 0; i < 50; ++i)
+      askers.push_back(std::make_unique<Asker>(port, 1000 + i));
+    for (int i = 0; i < 20; ++i)
+      for (const auto& asker : askers) {
+        for (int type = 1; type <= 6; ++type)
+          asker->send(static_cast<Datagram::Type>(type), std::string(10, '\0'));
+        asker->send(Datagram::Type::End, "");
+        asker->ask();
+      }
+    EXPECT_EQ(askers[0]->hear()->bytes().size(), 20u);  // less than was asked
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    const ProgramRun received = receive(port);
+    EXPECT_EQ(received.status, 0) << received.errors;
+  });
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(run.output.find(" datagrams of "), run.output.rfind(" datagrams of ")) << run.output;
+  expectSame(folder.read("r.semantic"), compressed("map.semantic", "road"));
+}
+
+TEST_F(MapRadio, whoFallsSilentIsForgottenAlone) {
+  const CommandRun run = withSender("--timeout 1 map.semantic", [&](int port) {
+    std::vector<std::unique_ptr<Asker>> askers;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      askers.push_back(std::make_unique<Asker>(port, i));
+      EXPECT_EQ(askers.back()->askAsOneShould()->type, Datagram::Type::Data);
+    }
+    EXPECT_FALSE(Asker(port, 4).askAsOneShould());  // of this address there are enough
+    const ProgramRun received = receive(port);
+    EXPECT_EQ(received.status, 0) << received.errors;
+  });
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_TRUE(contains(run.output, "fell silent")) << run.output;
+}
+
+TEST_F(MapRadio, aCookieIsOfOneStreamAndOneAddress) {
+  const CommandRun run = withSender("--timeout 1 map.semantic", [&](int port) {
+    Asker first(port, 1), second(port, 1);
+    first.ask();
+    const std::string cookie = first.hear()->payload;
+    second.ask(cookie);
+    const auto answer = second.hear();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->type, Datagram::Type::Cookie);
+    EXPECT_NE(answer->payload, cookie);
+  });
+  EXPECT_EQ(run.status, 1) << run.output;
+}
+
+TEST_F(MapRadio, waitingTakesNoProcessorTime) {
+  const auto seconds = [] {
+    rusage usage{};
+    getrusage(RUSAGE_CHILDREN, &usage);
+    return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+  };
+  double begin = 10;
+  for (const char* timeout : {"0.01", "2"}) {
+    const double before = seconds();
+    const CommandRun run = withSender(std::string("map.semantic --timeout ") + timeout, [](int) {});
+    EXPECT_LT(seconds() - before, begin + 0.3) << run.output;
+    begin = seconds() - before;
+  }
+}
+
+TEST_F(MapRadio, onlyWhoHasTheKeyIsHeard) {
+  folder.write("key", "sixteen bytes or more");
+  folder.write("other", "sixteen bytes or less");
+  folder.write("short", "fifteen bytes..");
+  const CommandRun run = withSender("--key key --timeout 20 map.semantic", [&](int port) {
+    EXPECT_FALSE(Asker(port, 1).askAsOneShould());
+    for (const auto& key : {std::vector<std::string>(), {"--key", path("other")}}) {
+      std::vector<std::string> arguments = key;
+      arguments.insert(arguments.end(), {"--timeout", "0.5"});
+      const ProgramRun stranger = receive(port, arguments);
+      EXPECT_EQ(stranger.status, 1);
+      EXPECT_TRUE(contains(stranger.errors, "nobody answers at")) << stranger.errors;
+    }
+    const ProgramRun received = receive(port, {"--key", path("key")});
+    EXPECT_EQ(received.status, 0) << received.errors;
+  });
+  EXPECT_EQ(run.status, 0) << run.output;
+  expectSame(folder.read("r.semantic"), compressed("map.semantic", "road"));
+  EXPECT_TRUE(contains(receive(1, {"--key", path("short")}).errors, "short: a key of 15 bytes"));
 }

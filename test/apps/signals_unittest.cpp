@@ -27,13 +27,12 @@ class Interrupted : public testing::Test {
 
   /** Starts the program, and when it has inserted something, the shell's commands, which know it as
    * $pid. \return its exit status */
-  int runAnd(const std::string& commands) const {
+  int runAnd(const std::string& commands, const std::string& when = "inserted") const {
     const std::string map = (sources / "config/maps/synthetic.ini").string();
     folder.write("script", "cd '" + folder.path().string() + "'\nrm -f log\n" + MSO_BIN_DIR +
                                "/rawlog2semantic-map -v -f --config " + map + " -o out" + rawlogs +
-                               " >log 2>&1 &\npid=$!\n" +
-                               "until grep -q inserted log; do sleep 0.05; done\n" + commands +
-                               "\nwait $pid\n");
+                               " >log 2>&1 &\npid=$!\n" + "until grep -q '" + when +
+                               "' log; do sleep 0.05; done\n" + commands + "\nwait $pid\n");
     return runCommand("sh " + (folder / "script").string()).status;
   }
   std::string log() const { return folder.read("log"); }
@@ -60,6 +59,13 @@ TEST_F(Interrupted, onceItWritesWhatIsThereAndSaysSo) {
   EXPECT_GE(inserted, 1);
   EXPECT_LT(inserted, 30 * 24);
   EXPECT_GT(semantic_octree::loadTree((folder / "out/map.semantic").string()).size(), 100u);
+  EXPECT_FALSE(leftAnything());
+}
+
+TEST_F(Interrupted, beforeTheFirstScanItSaysSoAndLeavesWhatWasThere) {
+  EXPECT_EQ(runAnd("kill -INT $pid", "Reading the robot"), 130) << log();
+  EXPECT_TRUE(contains(log(), "stopped before the first scan")) << log();
+  EXPECT_EQ(folder.read("out/map.semantic"), "of before");
   EXPECT_FALSE(leftAnything());
 }
 

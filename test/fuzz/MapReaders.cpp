@@ -145,12 +145,11 @@ void acceptDatagrams(const std::string& bytes) {
   semantic_octree::MapSender sender(kStream);
   sender.setMap(map);
   semantic_octree::MapReceiver receiver(kStream);
-  radio::WishReader wishes;
   const auto take = [&](const Datagram& datagram) {
     if (datagram.type == Datagram::Type::Data) receiver.accept(datagram);
     if (datagram.type == Datagram::Type::Receipt) sender.accept(datagram);
     if (datagram.type != Datagram::Type::Request) return;
-    if (const auto wish = wishes.add(datagram)) wish->forClasses(map.classes(), "weights");
+    radio::Wish::of(datagram.payload).forClasses(map.classes(), "weights");
   };
   for (const std::string& record : recordsOf(bytes)) try {
       sender.next();

@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "CommaHost.h"
 #include "Readers.h"
 
 namespace fs = std::filesystem;
@@ -29,12 +30,14 @@ std::vector<std::string> filesOf(const Reader& reader) {
   return contents;
 }
 
-/** Takes them or refuses them, with a message. */
-void expectAnswer(const Reader& reader, const std::string& bytes) {
+/** What a reader says if it refuses them. */
+std::string expectAnswer(const Reader& reader, const std::string& bytes) {
   try {
     reader.read(bytes);
+    return {};
   } catch (const std::exception& e) {
     EXPECT_STRNE(e.what(), "") << reader.name;
+    return e.what();
   }
 }
 
@@ -52,6 +55,15 @@ TEST(Readers, answerToEachFileThatEverBrokeOne) {
     expectAnswer(reader, "");
     for (const std::string& bytes : filesOf(reader)) expectAnswer(reader, bytes);
   }
+}
+
+TEST(Readers, answerTheSameInAHostWithDecimalCommas) {
+  for (const Reader& reader : readers())
+    for (const std::string& bytes : filesOf(reader)) {
+      const std::string answer = expectAnswer(reader, bytes);
+      const CommaHost host;
+      EXPECT_EQ(expectAnswer(reader, bytes), answer) << reader.name;
+    }
 }
 
 TEST(Readers, answerToFilesThatAreCutOrAltered) {

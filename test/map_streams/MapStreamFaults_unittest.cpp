@@ -47,7 +47,7 @@ TEST(MapStreamFaults, mapsOfAnotherKindAreNoChange) {
   SemanticOcTree map = smallPlace(someOptions(0.01));
   MapSender sender(kStream);
   MapReceiver receiver(kStream);
-  sender.setMap(map);
+  sender.setMap(map, false);
   for (const Datagram& packet : packetsOf(sender)) receiver.accept(packet);
   sender.accept(receiver.receipt());
   ASSERT_TRUE(sender.isComplete());
@@ -58,6 +58,27 @@ TEST(MapStreamFaults, mapsOfAnotherKindAreNoChange) {
   options.blockSize = 6.4;
   setAbstraction(map, options);
   EXPECT_TRUE(contains(errorOf([&] { sender.setMap(map); }), "blocks"));
+  MapSender last(kStream);
+  MapReceiver all(kStream);
+  last.setMap(map);
+  for (const Datagram& packet : packetsOf(last)) all.accept(packet);
+  last.accept(all.receipt());
+  EXPECT_TRUE(contains(errorOf([&] { last.setMap(map); }), "behind the last one"));
+}
+
+TEST(MapStreamFaults, aReceiptThatIsRepeatedTellsNothingNew) {
+  SemanticOcTree map = smallPlace(someOptions(0.01));
+  MapSender sender(kStream);
+  MapReceiver receiver(kStream);
+  sender.setMap(map);
+  std::vector<Datagram> receipts;
+  for (int i = 0; i < 3; ++i) {
+    receiver.accept(*sender.next());
+    receipts.push_back(receiver.receipt());
+  }
+  EXPECT_TRUE(sender.accept(receipts[1]));
+  EXPECT_TRUE(sender.accept(receipts[2]));
+  for (const Datagram& old : receipts) EXPECT_FALSE(sender.accept(old));
 }
 
 TEST(MapStreamFaults, alteredPacketsAreRefusedAndLeaveAValidMap) {

@@ -51,10 +51,10 @@ TEST(BadInput, sensorOutsideTheMapIsRefused) {
   expectRefused("sensor at (4000, 0, 0) m", threePoints(), at(4000, 0, 0));
   expectRefused("outside the map", threePoints(), at(0, -3277, 0));
   expectRefused("outside the map", threePoints(), at(0, 0, 3276.8));
-  expectRefused("outside the map", threePoints(), at(0, 0, NAN));
+  expectRefused("not finite", threePoints(), at(0, 0, NAN));
   Eigen::Isometry3d twisted = at(0, 0, 0);
   twisted.linear()(0, 0) = INFINITY;
-  expectRefused("sensor", threePoints(), twisted);
+  expectRefused("the sensor's pose has numbers that are not finite", threePoints(), twisted);
 }
 
 TEST(BadInput, vectorsOfDifferentLengthsAreRefused) {

@@ -46,6 +46,15 @@ TEST(Words, messagesAreFreedOfMrptsCallStacks) {
             "what happened");
 }
 
+TEST(Words, messagesTellWhatMemoryIsWanting) {
+  using strict_files::messageOf;
+  EXPECT_EQ(messageOf(std::bad_alloc()), "more memory is needed than there is");
+  EXPECT_EQ(messageOf(strict_files::PieceTooLarge()),
+            "more than 1 GiB of memory is asked for at once, as a damaged file makes it");
+  const std::system_error noThread(std::make_error_code(std::errc::resource_unavailable_try_again));
+  EXPECT_EQ(messageOf(noThread).rfind("no further thread can be begun", 0), 0u);
+}
+
 RC_GTEST_PROP(Words, aWordWithOneLetterTooManyIsAnsweredWithItself, ()) {
   const auto word = *rc::gen::container<std::string>(8, rc::gen::inRange('a', 'k'));
   const auto place = *rc::gen::inRange<std::size_t>(0, word.size() + 1);

@@ -45,6 +45,14 @@ int statusOf(pid_t child) {
   return status;
 }
 
+bool isWholePng(int file) {
+  static const std::string end("IEND\xae\x42\x60\x82");
+  std::string last(end.size(), '\0');
+  const off_t size = lseek(file, 0, SEEK_END);
+  return pread(file, &last[0], last.size(), size - static_cast<off_t>(last.size())) >= 0 &&
+         last == end;
+}
+
 /** \return what is wrong */
 std::string draw(const std::string& script, int output) {
   int ends[2] = {-1, -1};
@@ -61,9 +69,11 @@ std::string draw(const std::string& script, int output) {
 }  // namespace
 
 void drawWithGnuplot(const std::string& script, const std::filesystem::path& file) {
-  const int output = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int output = open(file.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (output == -1) throw std::runtime_error(file.string() + ": cannot be written");
-  const std::string problem = draw(script, output);
+  std::string problem = draw(script, output);
+  if (problem.empty() && file.extension() == ".png" && !isWholePng(output))
+    problem = "a figure cannot be written: is the disk full?";  // gnuplot does not look
   close(output);
   if (problem.empty()) return;
   std::error_code error;

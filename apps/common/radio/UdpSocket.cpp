@@ -14,7 +14,14 @@
 namespace radio {
 namespace {
 
-constexpr std::size_t kMaxBytes = 65536;
+/** Of a datagram; what is longer is none of ours, and cut off. */
+constexpr std::size_t kMaxBytes = 2048;
+
+timespec timespecOf(std::chrono::nanoseconds time) {
+  constexpr long kSecond = 1'000'000'000;
+  const auto whole = std::max<std::chrono::nanoseconds::rep>(time.count(), 0);
+  return {whole / kSecond, whole % kSecond};
+}
 
 }  // namespace
 
@@ -63,10 +70,10 @@ void UdpSocket::send(const Peer& to, const std::string& bytes) {
          reinterpret_cast<const sockaddr*>(&to.address), sizeof(to.address));
 }
 
-std::optional<std::string> UdpSocket::receive(Peer& from, std::chrono::milliseconds timeout) {
+std::optional<std::string> UdpSocket::receive(Peer& from, std::chrono::nanoseconds timeout) {
   pollfd wait{m_descriptor, POLLIN, 0};
-  const auto milliseconds = std::max<std::chrono::milliseconds::rep>(timeout.count(), 0);
-  if (poll(&wait, 1, static_cast<int>(milliseconds)) <= 0) return std::nullopt;
+  const timespec most = timespecOf(timeout);
+  if (ppoll(&wait, 1, &most, nullptr) <= 0) return std::nullopt;
   std::string bytes(kMaxBytes, '\0');
   socklen_t size = sizeof(from.address);
   const ssize_t received = recvfrom(m_descriptor, &bytes[0], bytes.size(), MSG_DONTWAIT,

@@ -36,7 +36,7 @@ class UdpSocket {
   /** What cannot be sent is lost, as on a radio. */
   void send(const Peer& to, const std::string& bytes);
   /** The next datagram; none: none came in time, or nobody listens where the last one went. */
-  std::optional<std::string> receive(Peer& from, std::chrono::milliseconds timeout);
+  std::optional<std::string> receive(Peer& from, std::chrono::nanoseconds timeout);
 
  private:
   int m_descriptor;

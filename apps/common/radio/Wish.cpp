@@ -1,18 +1,21 @@
 #include "Wish.h"
 
+#include <map_streams/MapStream.h>
 #include <semantic_abstraction/AbstractionOptions.h>
+#include <zlib.h>
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-namespace radio {
+#include "Cookies.h"
 
-using semantic_octree::Datagram;
+namespace radio {
 
 namespace {
 
-/** Behind a datagram's header and two bytes: which part this is, and how many there are. */
-constexpr std::size_t kMaxPart = semantic_octree::kMaxDatagramBytes - 14, kMaxParts = 255;
+/** Bytes of a wish, compressed: what a datagram's header and the cookie leave; and as it is. */
+constexpr std::size_t kMaxPacked = semantic_octree::kMaxDatagramBytes - 12 - Cookies::kBytes,
+                      kMaxText = 1 << 16;
 
 }  // namespace
 
@@ -29,39 +32,37 @@ semantic_octree::AbstractionOptions Wish::forClasses(const semantic_types::Class
   return options;
 }
 
-std::vector<Datagram> Wish::requests(std::uint32_t stream) const {
+std::string Wish::packed() const {
   nlohmann::json json = {{"weights", weights}, {"solution", solution}};
   if (alpha) json["alpha"] = *alpha;
   const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  const std::size_t number = (text.size() + kMaxPart - 1) / kMaxPart;
-  if (number > kMaxParts)
+  uLongf size = compressBound(text.size());
+  std::string packed(size, '\0');
+  compress2(reinterpret_cast<Bytef*>(&packed[0]), &size,
+            reinterpret_cast<const Bytef*>(text.data()), text.size(), Z_BEST_COMPRESSION);
+  packed.resize(size);
+  if (text.size() > kMaxText || packed.size() > kMaxPacked)
     throw std::runtime_error("weights of " + std::to_string(weights.size()) +
-                             " bytes are too long to be sent");
-  std::vector<Datagram> requests;
-  for (std::size_t i = 0; i < number; ++i)
-    requests.push_back({Datagram::Type::Request, stream,
-                        std::string{static_cast<char>(i), static_cast<char>(number)} +
-                            text.substr(i * kMaxPart, kMaxPart)});
-  return requests;
+                             " bytes are too long to be sent: they have to fit into " +
+                             std::to_string(kMaxPacked) +
+                             " compressed, or to be the sender's own (--weights)");
+  return packed;
 }
 
-std::optional<Wish> WishReader::add(const Datagram& request) {
-  const std::string& bytes = request.payload;
-  const std::size_t part = bytes.size() > 1 ? static_cast<unsigned char>(bytes[0]) : 0;
-  const std::size_t number = bytes.size() > 1 ? static_cast<unsigned char>(bytes[1]) : 0;
-  if (part >= number || (m_number != 0 && m_number != number))
-    throw std::runtime_error("altered: a request that cannot be");
-  m_number = number;
-  m_parts[part] = bytes.substr(2);
-  if (m_parts.size() < m_number) return std::nullopt;
-  std::string text;
-  for (const auto& [i, piece] : m_parts) text += piece;
+Wish Wish::of(const std::string& packed) {
+  const auto check = [](bool isSo) {
+    if (!isSo) throw std::runtime_error("altered: a request that cannot be");
+  };
+  std::string text(kMaxText, '\0');
+  uLongf size = text.size();
+  check(uncompress(reinterpret_cast<Bytef*>(&text[0]), &size,
+                   reinterpret_cast<const Bytef*>(packed.data()), packed.size()) == Z_OK);
+  text.resize(size);
   const auto json = nlohmann::json::parse(text, nullptr, false);
   const auto isText = [&json](const char* key) {
     return json.contains(key) && json[key].is_string();
   };
-  if (!json.is_object() || !isText("weights") || !isText("solution"))
-    throw std::runtime_error("altered: a request that cannot be");
+  check(json.is_object() && isText("weights") && isText("solution"));
   Wish wish{json["weights"], json["solution"], std::nullopt};
   if (json.contains("alpha") && json["alpha"].is_number()) wish.alpha = json["alpha"];
   return wish;

@@ -1,12 +1,9 @@
 #pragma once
-#include <map_streams/MapStream.h>
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_types/ClassTable.h>
 
-#include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace radio {
 
@@ -22,19 +19,11 @@ struct Wish {
    * solution, or there are none at all. */
   semantic_octree::AbstractionOptions forClasses(const semantic_types::ClassTable& classes,
                                                  const std::string& name) const;
-  /** \throw std::runtime_error too long. */
-  std::vector<semantic_octree::Datagram> requests(std::uint32_t stream) const;
-};
-
-/** Puts a wish together from its requests, in any order. */
-class WishReader {
- public:
-  /** \return the wish, when all of it came. \throw std::runtime_error altered. */
-  std::optional<Wish> add(const semantic_octree::Datagram& request);
-
- private:
-  std::size_t m_number = 0;
-  std::map<std::size_t, std::string> m_parts;
+  /** For a request, which is one datagram: with a cookie before it. \throw std::runtime_error too
+   * long. */
+  std::string packed() const;
+  /** \throw std::runtime_error altered. */
+  static Wish of(const std::string& packed);
 };
 
 }  // namespace radio

@@ -65,6 +65,21 @@ std::vector<std::string> wordsForFields(const TextLine& line, const char* what,
   return words;
 }
 
+std::size_t numberIn(const TextLine& line) {
+  return wholeOf(wordsForFields(line, "words", 1)[0], line, 0x1p40);
+}
+
+/** Other programs go by WIDTH and HEIGHT. */
+void checkGrid(const Header& header, std::size_t points) {
+  const auto width = header.find("WIDTH"), height = header.find("HEIGHT");
+  if (width == header.end() || height == header.end()) return;
+  const std::size_t rows = numberIn(height->second), columns = numberIn(width->second);
+  if (rows == 0 ? points != 0 : points % rows != 0 || points / rows != columns)
+    throw std::runtime_error(height->second.where + ": a grid of " + std::to_string(columns) +
+                             " x " + std::to_string(rows) + " points, and POINTS says " +
+                             std::to_string(points));
+}
+
 std::vector<PointField> fieldsOf(const Header& header, bool binary) {
   std::vector<PointField> fields;
   for (const std::string& name : wordsOf(header.at("FIELDS"))) fields.push_back({name});
@@ -138,7 +153,8 @@ PointFile parsePcd(const std::string& bytes, const std::string& name, const std:
   PointFields fields;
   fields.fields = fieldsOf(header, format != "ascii");
   const TextLine& points = header.at("POINTS");
-  fields.points = wholeOf(wordsForFields(points, "words", 1)[0], points, 0x1p40);
+  fields.points = numberIn(points);
+  checkGrid(header, fields.points);
   fields.file = name;
   fields.where = header.at("FIELDS").where;
   fields.labelField = label;

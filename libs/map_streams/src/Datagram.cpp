@@ -9,7 +9,7 @@ namespace {
 
 /** CRC-32 of all that follows (4 bytes), "SO", version, type (1 byte), stream (4 bytes). */
 constexpr char kMark[] = {'S', 'O'};
-constexpr std::uint8_t kStreamVersion = 1;
+constexpr std::uint8_t kStreamVersion = 2;
 constexpr std::size_t kDatagramHeaderBytes = 12;
 
 std::uint32_t crcOf(const std::string& bytes, std::size_t from) {
@@ -44,7 +44,7 @@ Datagram Datagram::of(const std::string& bytes) {
                              " of the protocol, expected " + std::to_string(kStreamVersion));
   Datagram d;
   d.type = static_cast<Type>(bytes[7]);
-  if (d.type < Type::Request || d.type > Type::Refusal)
+  if (d.type < Type::Request || d.type > Type::Cookie)
     throw std::runtime_error("altered: a datagram of type " +
                              std::to_string(static_cast<std::uint8_t>(bytes[7])));
   std::memcpy(&d.stream, &bytes[8], sizeof(d.stream));

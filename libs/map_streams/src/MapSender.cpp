@@ -5,6 +5,7 @@
 #include <deque>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "StreamPackets.h"
 #include "StreamReceipt.h"
@@ -36,13 +37,14 @@ std::vector<Packet> packetsOf(const TreeParts& parts, const PartCoder& coder) {
 struct MapSender::State {
   std::uint32_t stream;
   PacketHeader header;                   ///< of the present revision
-  std::unique_ptr<SemanticOcTree> told;  ///< what the receiver will have; null: nothing
+  std::unique_ptr<SemanticOcTree> told;  ///< what the receiver will have; null: nothing, or all
   std::unique_ptr<SemanticOcTree> kind;  ///< an empty map
   std::unique_ptr<PartCoder> coder;
   std::vector<Packet> packets;
   std::vector<StreamPrefix> prefixes;
   std::size_t numCome = 0, numNew = 0;  ///< packets that came; that were sent at all
   std::deque<std::size_t> lost;
+  std::uint32_t heard = 0;  ///< the latest sequence that a receipt told of
 
   std::vector<Packet> description(std::uint32_t checksum, const PartCoder& with,
                                   const SemanticOcTree& like) const;
@@ -71,6 +73,7 @@ void MapSender::State::checkNext(const SemanticOcTree& empty, int rootDepth) con
 void MapSender::setMap(SemanticOcTree& map, bool isLast) {
   State& s = *m_state;
   if (!isComplete()) throw std::logic_error("the receiver does not have the map before yet");
+  if (s.header.isLast) throw std::logic_error("a map behind the last one");
   const Abstraction abstraction(map);
   auto kind =
       std::make_unique<SemanticOcTree>(map.getResolution(), map.classes(), map.filterParameters());
@@ -89,7 +92,7 @@ void MapSender::setMap(SemanticOcTree& map, bool isLast) {
                                 " packets is too large to be sent");
   s.kind = std::move(kind);
   s.coder = std::move(coder);
-  s.told = std::move(compressed);
+  s.told = isLast ? nullptr : std::move(compressed);
   s.header.isLast = isLast;
   s.take(std::move(all), numDescription);
 }
@@ -163,22 +166,24 @@ void MapSender::State::lose(std::size_t number) {
   lost.push_back(number);
 }
 
-void MapSender::accept(const Datagram& receipt) {
+bool MapSender::accept(const Datagram& receipt) {
   State& s = *m_state;
   if (receipt.stream != s.stream || receipt.type != Datagram::Type::Receipt)
     throw std::runtime_error("a datagram of stream " + std::to_string(receipt.stream) +
                              ", expected a receipt of stream " + std::to_string(s.stream));
   const StreamReceipt r = StreamReceipt::of(receipt.payload);
-  if (r.revision != s.header.revision) return;
+  if (r.revision != s.header.revision) return false;
+  bool isNew = r.sequence > std::exchange(s.heard, std::max(s.heard, r.sequence));
   const std::size_t known = std::min(s.packets.size(), r.numPackets());
   for (std::size_t i = 0; i < known; ++i) {
     Packet& packet = s.packets[i];
     if (r.has(i) && !packet.hasCome) {
-      packet.hasCome = true;
+      packet.hasCome = isNew = true;
       ++s.numCome;
     }
     if (!r.has(i) && packet.sequence <= r.sequence) s.lose(i);
   }
+  return isNew;
 }
 
 void MapSender::repeat() {

@@ -21,7 +21,9 @@ ScanBeams::ScanBeams(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_s
       m_maxRange(options.maxRange > 0 ? options.maxRange : std::numeric_limits<double>::max()),
       m_minRange2(options.minRange * options.minRange),
       m_maxRange2(std::min(m_maxRange * m_maxRange, std::numeric_limits<double>::max())) {
-  if (!T_map_sensor.matrix().allFinite() || !insideMap(m_origin)) {
+  if (!T_map_sensor.matrix().allFinite())
+    throw std::invalid_argument("the sensor's pose has numbers that are not finite");
+  if (!insideMap(m_origin)) {
     const Eigen::Vector3d sensor = T_map_sensor.translation();
     std::ostringstream what;
     const strict_files::ClassicNumbers classic(what);

@@ -133,7 +133,11 @@ void OutputFolder::commit(const std::vector<std::string>& names) {
   const auto held = Unfinished::hold();
   each([&](std::size_t i) { placements[i].checkFree(); });
   each([&](std::size_t i) { placements[i].take(); });
-  folder.synchronize();
+  try {
+    folder.synchronize();
+  } catch (const std::exception& e) {
+    throw std::runtime_error(m_folder.string() + ": cannot be written: " + e.what());
+  }
 }
 
 namespace fs = std::filesystem;
@@ -217,7 +221,8 @@ std::optional<FileLock> FileLock::tryTo(const std::filesystem::path& file, Kind 
   constexpr int kMost = 10;
   for (int i = 1;; ++i) {  // who held it may have taken the file along, so that others see another
     FileLock lock(file);
-    if (lock.m_descriptor < 0) return lock;
+    const bool isScarce = errno == EMFILE || errno == ENFILE;  // it may be locked all the same
+    if (lock.m_descriptor < 0) return isScarce ? std::nullopt : std::optional(std::move(lock));
     if (flock(lock.m_descriptor, operationOf(kind) | LOCK_NB) != 0)
       return errno == EWOULDBLOCK ? std::nullopt : std::optional(std::move(lock));
     if (leadsTo(file, lock.m_descriptor) || i == kMost) return lock;

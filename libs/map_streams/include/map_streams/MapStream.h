@@ -23,11 +23,12 @@ constexpr std::size_t kMaxDatagramBytes = 1000;
 /** What travels at once, at most kMaxDatagramBytes. */
 struct Datagram {
   enum class Type : std::uint8_t {
-    Request = 1,  ///< receiver: these weights
+    Request = 1,  ///< receiver: these weights, behind the cookie
     Data,         ///< sender
     Receipt,      ///< receiver: what of the data came
     End,          ///< sender: nothing comes any more; receiver: this is enough
-    Refusal       ///< sender: why there will be nothing, a text
+    Refusal,      ///< sender: why there will be nothing, a text
+    Cookie        ///< sender: what a request has to show
   };
   Type type = Type::Data;
   /** Chosen by the receiver; all that belongs to its map has it. */
@@ -61,7 +62,8 @@ class MapSender {
   /** Begins with a map, or goes on with what it became meanwhile: computes the packets.
    * \param map keeps G-values (setAbstraction()), always of the same weights
    * \param isLast no other map comes behind it
-   * \throw std::logic_error the receiver does not have all of the map before, or it keeps none
+   * \throw std::logic_error the receiver does not have all of the map before, or that was the last,
+   * or it keeps none
    * \throw std::invalid_argument of another resolution, filter or class table, or other blocks,
    * than the one before; or more than kMaxPackets packets. */
   void setMap(SemanticOcTree& map, bool isLast = true);
@@ -70,8 +72,9 @@ class MapSender {
   /** What to send next: new packets, and before them those which a receipt told were lost. None:
    * all were sent. */
   std::optional<Datagram> next();
-  /** A receipt. \throw std::runtime_error of another stream, or altered. */
-  void accept(const Datagram& receipt);
+  /** A receipt. \return whether it tells anything new
+   * \throw std::runtime_error of another stream, or altered. */
+  bool accept(const Datagram& receipt);
   /** Nothing was heard for a while: what was not acknowledged is sent once more. */
   void repeat();
   /** The receiver has all of the map. */

@@ -1,8 +1,17 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <new>
 
 namespace strict_files {
+
+/** A single piece of memory is refused for its size, however much there is. */
+class PieceTooLarge : public std::bad_alloc {
+ public:
+  const char* what() const noexcept override {
+    return "more than 1 GiB of memory is asked for at once, as a damaged file makes it";
+  }
+};
 
 /** While one lives, its thread gets no single piece of memory of more than 1 GiB, in programs whose
  * operator new asks isAllowed(), as those of this project do. For what others read from files that

@@ -118,7 +118,7 @@ class FileLock {
   enum class Kind { Shared, Exclusive };
   /** Waits for it. */
   FileLock(const std::filesystem::path& file, Kind kind);
-  /** \return nothing if somebody holds it */
+  /** \return nothing if somebody holds it, or may, as this process has too many files open */
   static std::optional<FileLock> tryTo(const std::filesystem::path& file, Kind kind);
   ~FileLock();
   FileLock(FileLock&& o) noexcept;

@@ -1,0 +1,47 @@
+#include "Seal.h"
+
+#include <sodium.h>
+#include <strict_files/TextFile.h>
+
+#include <stdexcept>
+
+namespace radio {
+namespace {
+
+/** Bytes of a code, and of the shortest key. */
+constexpr std::size_t kCode = 16, kShortestKey = 16;
+
+}  // namespace
+
+Seal::Seal(const std::filesystem::path& keyFile) : m_key(strict_files::readText(keyFile)) {
+  if (m_key.size() < kShortestKey)
+    throw std::runtime_error(keyFile.string() + ": a key of " + std::to_string(m_key.size()) +
+                             " bytes, expected 16 at least");
+}
+
+std::string Seal::codeOf(const std::string& bytes) const {
+  const auto data = [](const std::string& text) {
+    return reinterpret_cast<const unsigned char*>(text.data());
+  };
+  unsigned char code[crypto_auth_hmacsha256_BYTES];
+  crypto_auth_hmacsha256_state state;
+  crypto_auth_hmacsha256_init(&state, data(m_key), m_key.size());
+  crypto_auth_hmacsha256_update(&state, data(bytes), bytes.size());
+  crypto_auth_hmacsha256_final(&state, code);
+  return {reinterpret_cast<const char*>(code), kCode};
+}
+
+std::string Seal::sealed(const std::string& bytes) const {
+  return m_key.empty() ? bytes : bytes + codeOf(bytes);
+}
+
+std::string Seal::opened(const std::string& bytes) const {
+  if (m_key.empty()) return bytes;
+  const std::string inner = bytes.substr(0, bytes.size() - std::min(bytes.size(), kCode));
+  const std::string code = codeOf(inner);
+  if (bytes.size() < kCode || sodium_memcmp(&bytes[inner.size()], code.data(), kCode) != 0)
+    throw std::runtime_error("a datagram without the code of this key");
+  return inner;
+}
+
+}  // namespace radio
