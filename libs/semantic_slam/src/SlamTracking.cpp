@@ -165,19 +165,22 @@ std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_st
     return match(m_local.submaps(), seen, T_guess, information / kOwnInformation);
   };
   Matrix6 information = m_noise.information(T_step);
+  const Matrix6 atFirst = MotionNoise(!m_hasOdometry).information(T_step);
   std::optional<Registration> r = matchWith(information);
-  bool isFar = isBeyond(offOf(*r), information);
-  if (isFar || r->matchedShare < kFitsWell) {  // wheels may be worse than they were so far
-    const Matrix6 ofBadWheels = MotionNoise(!m_hasOdometry).information(T_step);
-    const Registration free = matchWith(ofBadWheels);
+  if (m_hasOdometry && (isBeyond(offOf(*r), information) || r->matchedShare < kFitsWell)) {
+    const Registration free = matchWith(atFirst);  // wheels may be worse than they were so far
     if (free.matchedShare > r->matchedShare) {
       r = free;
-      information = ofBadWheels;
+      information = atFirst;
     }
-    // Beams in a plane fit but where they belong; in space much is ground, which fits anywhere.
-    isFar = isBeyond(offOf(*r), ofBadWheels) && !(m_scale.isPlanar && r->matchedShare >= kFitsWell);
   }
-  if (!isCovered(*r, seen) || r->matchedShare < kFits || isFar)
+  const bool isFar = isBeyond(offOf(*r), information), fitsWell = r->matchedShare >= kFitsWell;
+  // Beams in a plane fit but where they belong; in space much is ground, which fits anywhere.
+  const bool mayBeFar = fitsWell && (m_scale.isPlanar || !isBeyond(offOf(*r), atFirst));
+  if (isFar && fitsWell)
+    m_noise.note(T_step, T_guess.inverse() * r->T_submap_scan,
+                 kOwnInformation * r->information + information);
+  if (!isCovered(*r, seen) || r->matchedShare < kFits || (isFar && !mayBeFar))
     r = searchAround(seen, T_guess, windowAround(T_step, information));
   if (!r) return std::nullopt;
   r->information = kOwnInformation * r->information + information;
