@@ -167,15 +167,17 @@ std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_st
   Matrix6 information = m_noise.information(T_step);
   const Matrix6 atFirst = MotionNoise(!m_hasOdometry).information(T_step);
   std::optional<Registration> r = matchWith(information);
-  if (m_hasOdometry && (isBeyond(offOf(*r), information) || r->matchedShare < kFitsWell)) {
+  bool isFar = isBeyond(offOf(*r), information);
+  if (m_hasOdometry && (isFar || r->matchedShare < kFitsWell)) {
     const Registration free = matchWith(atFirst);  // wheels may be worse than they were so far
     if (free.matchedShare > r->matchedShare) {
       r = free;
       information = atFirst;
     }
+    isFar = isBeyond(offOf(*r), atFirst);
   }
-  const bool isFar = isBeyond(offOf(*r), information), fitsWell = r->matchedShare >= kFitsWell;
   // Beams in a plane fit but where they belong; in space much is ground, which fits anywhere.
+  const bool fitsWell = r->matchedShare >= kFitsWell;
   const bool mayBeFar = fitsWell && (m_scale.isPlanar || !isBeyond(offOf(*r), atFirst));
   if (isFar && fitsWell)
     m_noise.note(T_step, T_guess.inverse() * r->T_submap_scan,
