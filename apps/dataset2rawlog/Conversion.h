@@ -62,4 +62,11 @@ Summary convertTumSequence(const std::filesystem::path& folder, const Conversion
 Summary convertPointFiles(const std::vector<std::filesystem::path>& files,
                           const std::string& labelField, const Conversion& conversion);
 
+/** A log of CARMEN: the scans of laser scanners become CObservation2DRangeScan, where the robot's
+ * odometry had it CObservationOdometry. Lines of other kinds are left out. Lines of FLASER and
+ * RLASER do not say how far beams are from each other: that follows from their number (180 or 181:
+ * 1 degree, 360 or 361: 0.5, 400 or 401: 0.25), or from PARAM laser_front_laser_resolution.
+ * \throw std::runtime_error naming file and line of whatever is malformed. */
+Summary convertCarmen(const std::filesystem::path& log, const Conversion& conversion);
+
 }  // namespace dataset2rawlog

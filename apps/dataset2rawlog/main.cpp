@@ -14,11 +14,11 @@ namespace {
 using namespace dataset2rawlog;
 
 struct Cli {
-  CLI::App app{"Turns data sets of labeled scans into MRPT rawlogs."};
+  CLI::App app{"Turns data sets of scans into MRPT rawlogs."};
   Outputs outputs{app};
   Conversion conversion;
   std::string frames;
-  std::filesystem::path folder;
+  std::filesystem::path source;
   std::vector<std::filesystem::path> pointFiles;
   std::string labelField = "label";
   std::function<Summary()> convert;
@@ -29,6 +29,7 @@ struct Cli {
     addSemanticKitti();
     addTum();
     addPcd();
+    addCarmen();
   }
 
  private:
@@ -37,6 +38,11 @@ struct Cli {
     outputs.add(*command, conversion.output, "FILE", "Rawlog to write")->required();
     command->add_option("--frames", frames, "Frames to take, counted from 0 (\"0:2:\": all even)")
         ->type_name("FIRST:STEP:LAST");
+    command->callback([this, action] { convert = action; });
+    return command;
+  }
+
+  void addLabelNoise(CLI::App* command) {
     command->add_option("--label-noise", conversion.labelNoise,
                         "Share of the labels to replace by other classes, 0..1");
     addChoice(
@@ -47,12 +53,11 @@ struct Cli {
                                                 {"blobs", LabelNoise::Kind::Blobs},
                                                 {"persistent", LabelNoise::Kind::Persistent}});
     command->add_option("--seed", conversion.seed, "Seed of the label noise");
-    command->callback([this, action] { convert = action; });
-    return command;
   }
 
   void addClasses(CLI::App* command) {
     command->add_option("--classes", conversion.classes, "Class table (YAML)");
+    addLabelNoise(command);
   }
 
   void addNoLabels(CLI::App* command, const std::string& what) {
@@ -67,22 +72,22 @@ struct Cli {
   void addSemanticKitti() {
     CLI::App* command = add("semantic-kitti", "A sequence of SemanticKITTI", [this] {
       requireClasses();
-      return convertSemanticKitti(folder, conversion);
+      return convertSemanticKitti(source, conversion);
     });
     addClasses(command);
     addNoLabels(command, "The scans without their labels");
     command->add_flag("--images", conversion.images, "The camera's images (image_2/) come along");
-    command->add_option("SEQUENCE_DIR", folder, "velodyne/, labels/, calib.txt ...")->required();
+    command->add_option("SEQUENCE_DIR", source, "velodyne/, labels/, calib.txt ...")->required();
   }
 
   void addTum() {
     CLI::App* command = add("tum", "A TUM RGB-D sequence with label images", [this] {
       requireClasses();
-      return convertTumSequence(folder, conversion);
+      return convertTumSequence(source, conversion);
     });
     addClasses(command);
     addNoLabels(command, "Depth and color only");
-    command->add_option("DIR", folder, "depth.txt, label.txt, groundtruth.txt ...")->required();
+    command->add_option("DIR", source, "depth.txt, label.txt, groundtruth.txt ...")->required();
   }
 
   void addPcd() {
@@ -96,6 +101,15 @@ struct Cli {
         ->capture_default_str();
     command->add_option("FILES", pointFiles, "The scans in order")->required();
   }
+
+  void addCarmen() {
+    CLI::App* command = add("carmen", "A log of CARMEN: laser scanners and odometry", [this] {
+      conversion.labels = false;
+      return convertCarmen(source, conversion);
+    });
+    command->add_option("LOG", source, "FLASER, RLASER, RAWLASER1, ROBOTLASER1, ODOM, PARAM")
+        ->required();
+  }
 };
 
 int run(Cli& cli) {
@@ -105,9 +119,12 @@ int run(Cli& cli) {
   cli.outputs.check({cli.conversion.output});
   if (cli.conversion.images) cli.outputs.check({imagesOf(cli.conversion.output)});
   const Summary summary = cli.convert();
-  const double share = summary.points ? 100.0 * summary.labeled / summary.points : 0;
   notes() << cli.conversion.output.string() << ": " << summary.scans << " scans, " << summary.points
-          << " points, " << std::fixed << std::setprecision(1) << share << " % with a class\n";
+          << " points";
+  if (cli.conversion.labels && summary.points > 0)
+    notes() << ", " << std::fixed << std::setprecision(1)
+            << 100.0 * summary.labeled / summary.points << " % with a class";
+  notes() << "\n";
   if (summary.skipped > 0)
     notes() << summary.skipped << " frames skipped: no pose or no label image at their time\n";
   return 0;

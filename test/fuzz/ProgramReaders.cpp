@@ -44,6 +44,12 @@ void readPcd(const fs::path& folder) {
   dataset2rawlog::convertPointFiles({folder / "a.pcd"}, "label", conversionTo(folder));
 }
 
+void readCarmen(const fs::path& log) {
+  const Removed folder(fuzzedPath(".d"));
+  fs::create_directories(folder.path());
+  dataset2rawlog::convertCarmen(log, conversionTo(folder.path()));
+}
+
 void join(const fs::path& folder) { planning_study::joinStudies({folder}); }
 
 void askMap(const std::string& bytes) {
@@ -126,6 +132,7 @@ void readPointFields(const std::string& bytes) {
 std::vector<Reader> programReaders() {
   const auto poses = [](const fs::path& f) { semantic_map_merge::readMapPoses(f, {"a", "b"}); };
   return {
+      {"carmen", fromFile("", readCarmen), {}},
       {"pcd", fromFolder({"a.pcd"}, readPcd), {}},
       {"kitti",
        fromFolder({"calib.txt", "poses.txt", "times.txt", "classes.yaml", "velodyne/000000.bin",

@@ -115,6 +115,26 @@ TEST(Planar, aLaserScannersLoopCloses) {
   EXPECT_LT(e.degrees, 0.2);
 }
 
+TEST(Planar, anApertureThatIsSaidToBeHalfIsNoticed) {
+  Recording r = recordingOf("village", 1, laserOf(), kDriven, kFlat);
+  const auto warningsOf = [&r] {
+    Slam slam({});
+    for (std::size_t i = 0; i < r.clouds.size(); ++i)
+      slam.add(r.clouds[i], kRobotLaser, r.odometry[i]);
+    std::string all;
+    for (const std::string& warning : slam.report().warnings()) all += warning + "\n";
+    return all;
+  };
+  EXPECT_EQ(warningsOf(), "");
+  for (LabeledCloud& cloud : r.clouds)
+    for (Eigen::Vector3f& p : cloud.points) {
+      const float angle = std::atan2(p.y(), p.x()) / 2, distance = p.head<2>().norm();
+      p.head<2>() << distance * std::cos(angle), distance * std::sin(angle);
+    }
+  EXPECT_NE(warningsOf().find("as if the scanner's aperture were "), std::string::npos)
+      << warningsOf();
+}
+
 TEST(Planar, aDriveIsInTheFrameOfALaserScannersMap) {
   Recording r = recordingOf("village", 3, laserOf(), kDriven, kFlat);
   moveOdometry(r);

@@ -9,6 +9,15 @@ namespace {
 
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
+/** Scans turn by less if their beams are said to be nearer to each other than they are. */
+std::string asOfBeams(double turnError) {
+  constexpr double kLeast = 0.4;  // no wheels are that wrong
+  if (turnError < kLeast) return {};
+  const std::string tenths = std::to_string(std::lround(10 * (1 + turnError)));
+  return ", as if the scanner's aperture were " + tenths.substr(0, tenths.size() - 1) + "." +
+         tenths.back() + " times what the rawlog says";
+}
+
 }  // namespace
 
 std::vector<std::string> SlamReport::warnings() const {
@@ -32,7 +41,8 @@ std::vector<std::string> SlamReport::warnings() const {
                        (wayError > 0 ? " more" : " less") + " way than the scans do");
   if (hasOdometry && way > kLeastWay && std::abs(turnError) > kMostWrong)
     warnings.push_back("odometry turns " + percent(std::abs(turnError)) +
-                       (turnError > 0 ? " more" : " less") + " than the scans do");
+                       (turnError > 0 ? " more" : " less") + " than the scans do" +
+                       (isPlanar ? asOfBeams(turnError) : ""));
   return warnings;
 }
 
@@ -40,6 +50,7 @@ SlamReport SlamEngine::report() const {
   SlamReport report = m_report;
   report.keyframes = m_keyframes.size();
   report.hasOdometry = m_hasOdometry;
+  report.isPlanar = m_scale.isPlanar;
   if (m_wayOfScans > 0) report.wayError = m_wayOfOdometry / m_wayOfScans - 1;
   if (m_turnOfScans > 0) report.turnError = m_turnOfOdometry / m_turnOfScans - 1;
   return report;

@@ -26,6 +26,7 @@ struct SlamReport {
    */
   double wayError = 0, turnError = 0;
   bool hasOdometry = false;
+  bool isPlanar = false;  ///< all beams are horizontal
 
   /** Sentences that say why the map is probably wrong, and what to try; none if nothing says so. */
   std::vector<std::string> warnings() const;
@@ -63,7 +64,8 @@ class Slam {
   /** Brings all loops into the poses. \return whether poses moved */
   bool finish();
 
-  /** Of all keyframes, T_map_keyframe; the first is where odometry, or the reference, had it. */
+  /** Of all keyframes, T_map_keyframe; the first is where odometry had it, unless the reference says
+   * where they are. */
   const std::vector<Eigen::Isometry3d>& poses() const;
   const std::vector<PoseEdge>& edges() const;
   SlamReport report() const;
