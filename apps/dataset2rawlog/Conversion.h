@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "FrameRange.h"
-#include "LabelNoise.h"
+#include "label_noise/LabelNoise.h"
 #include "Signals.h"
 
 namespace dataset2rawlog {
+
+using label_noise::LabelNoise;
 
 /** What all data sets have in common. */
 struct Conversion {

@@ -3,7 +3,7 @@
 #include <labeled_cloud/Rawlogs.h>
 
 #include "Conversion.h"
-#include "LabelNoise.h"
+#include "label_noise/LabelNoise.h"
 
 namespace dataset2rawlog {
 

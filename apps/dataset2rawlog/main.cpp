@@ -3,7 +3,6 @@
 #include <ostream>
 
 #include "Application.h"
-#include "Choice.h"
 #include "Conversion.h"
 #include "KittiCamera.h"
 #include "Outputs.h"
@@ -45,13 +44,7 @@ struct Cli {
   void addLabelNoise(CLI::App* command) {
     command->add_option("--label-noise", conversion.labelNoise,
                         "Share of the labels to replace by other classes, 0..1");
-    addChoice(
-        command->add_option("--label-noise-kind", conversion.labelNoiseKind,
-                            "Points: one by one. Blobs: patches of 1.5 to 4 m, as networks "
-                            "err. Persistent: half of these are wrong in all scans"),
-        std::map<std::string, LabelNoise::Kind>{{"points", LabelNoise::Kind::Points},
-                                                {"blobs", LabelNoise::Kind::Blobs},
-                                                {"persistent", LabelNoise::Kind::Persistent}});
+    label_noise::addLabelNoiseKind(*command, conversion.labelNoiseKind);
     command->add_option("--seed", conversion.seed, "Seed of the label noise");
   }
 

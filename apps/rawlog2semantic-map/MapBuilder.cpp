@@ -87,7 +87,10 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
     if ((m_summary.stopped = stop.pending())) break;
     progress.update(observation->bytesRead, std::to_string(m_summary.inserted) + " scans");
   }
-  if (m_mapper) m_mapper->finish();
+  if (m_mapper)
+    m_mapper->finish();
+  else
+    m_map.tree().setCalibration(m_calibrator.best());
   progress.finish((m_summary.stopped ? "stopped early, " : "") +
                   std::to_string(m_summary.inserted) + " scans inserted, " +
                   m_summary.skippedText());
@@ -142,7 +145,11 @@ void MapBuilder::insertScan(const StreamedObservation& observation) try {
 
 semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& scan,
                                                            CPose3D& T_map_robot) {
-  if (!m_mapper) return m_map.insertScan(scan, T_map_robot);
+  if (!m_mapper) {
+    const Eigen::Isometry3d T = labeled_cloud::toEigen(T_map_robot + scan.T_robot_sensor);
+    m_calibrator.ask(m_map.tree(), scan.cloud, T, m_map.insertionOptions.scan);
+    return m_map.insertScan(scan, T_map_robot);
+  }
   m_clock.setMaxGap(m_map.insertionOptions.maxGap);
   m_seconds += m_clock.secondsUntil(scan.timestamp);
   std::optional<Eigen::Isometry3d> T_odometry_robot;

@@ -1,5 +1,6 @@
 #pragma once
 #include <labeled_cloud/ScanStream.h>
+#include <map_operations/Calibrator.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_slam/Mapper.h>
@@ -68,6 +69,7 @@ class MapBuilder {
 
   semantic_map::CSemanticOctoMap& m_map;
   semantic_octree::LeafFollower m_follower;
+  semantic_octree::Calibrator m_calibrator;  ///< where poses are not corrected
   std::optional<semantic_slam::Mapper> m_mapper;  ///< if poses are corrected
   bool m_hasOdometry = true;
   const bool m_hadContent;                 ///< the map, before the first scan

@@ -1,4 +1,5 @@
 // Makes a semantic octree map, pictures of it and a summary from labeled rawlogs.
+#include <labeled_cloud/ConfusionEstimate.h>
 #include <labeled_cloud/Rawlogs.h>
 #include <labeled_cloud/Trajectory.h>
 #include <semantic_octree/TreeFile.h>
@@ -49,6 +50,7 @@ struct Cli {
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) { addTo(app); }
+  bool estimatesConfusion() const { return confusion == "auto"; }
   /** \throw std::runtime_error naming a file that is there, or is an input. */
   void checkOutputs(const Config& settings) const {
     outputs.checkFolder(output, kFiles);
@@ -111,7 +113,8 @@ struct Cli {
     app.add_option("--network", labels.network, "Network (ONNX) that labels the color images");
     app.add_option("--network-config", labels.networkConfig, "What it expects and answers (YAML)");
     app.add_option("--confusion", confusion,
-                   "Confusion matrix (YAML) of the classifier that gave the hard labels");
+                   "Confusion matrix (YAML) of the classifier that gave the hard labels. auto: "
+                   "estimated from where labels of several scans differ, reading all twice");
     outputs.addOther(
         app.add_option("--save-labeled", saveLabeled, "Rawlog of the scans with their labels"));
     outputs.addOther(
@@ -189,24 +192,58 @@ class SideOutputs {
   std::optional<Preview> m_preview;
 };
 
+/** The scans of rawlogs. */
+struct Scans {
+  /** Cli, table, settings and trajectory must outlive them. */
+  Scans(const Cli& cli, const ClassTable& table, const Config& config,
+        const labeled_cloud::Trajectory& trajectory)
+      : labeler(makeLabeler(cli.labels, table, config)),
+        converter(table, config.insertion.conversion, labeler),
+        clouds(labeler, table.size(), config.insertion.conversion.labels, trajectory,
+               config.cameras),
+        stream(cli.rawlogs, converter, trajectory, labeler ? &clouds : nullptr, config.stream) {}
+
+  std::shared_ptr<labeled_cloud::ImageLabeler> labeler;
+  labeled_cloud::ScanConverter converter;
+  labeled_cloud::CloudLabeler clouds;
+  labeled_cloud::ScanStream stream;
+};
+
+/** \return null: no matrix */
+std::shared_ptr<labeled_cloud::ConfusionMatrix> confusionOf(
+    const Cli& cli, const ClassTable& table, const Config& config,
+    const labeled_cloud::Trajectory& trajectory, const StopRequest& stop) {
+  using labeled_cloud::ConfusionMatrix;
+  if (cli.confusion.empty() || (cli.estimatesConfusion() && table.size() == 1)) return nullptr;
+  if (!cli.estimatesConfusion())
+    return std::make_shared<ConfusionMatrix>(
+        labeled_cloud::loadConfusionMatrix(cli.confusion, table));
+  if (cli.slam) throw std::runtime_error("--confusion auto needs poses that are right, not --slam");
+  notes() << "Reading the labels that the confusion matrix follows from" << std::endl;
+  Scans scans(cli, table, config, trajectory);
+  labeled_cloud::ConfusionEstimate estimate(config.map.resolution, table.size());
+  const semantic_octree::InsertionOptions& options = config.insertion.scan;
+  while (const auto observation = stop.pending() ? std::nullopt : scans.stream.next())
+    if (const auto& scan = observation->scan)
+      estimate.add(scan->cloud,
+                   labeled_cloud::toEigen(observation->T_map_robot + scan->T_robot_sensor),
+                   options.minRange, options.maxRange > 0 ? options.maxRange : HUGE_VAL);
+  return std::make_shared<ConfusionMatrix>(estimate.counts(config.insertion.filter.accuracy));
+}
+
 Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveScans* live,
                  CSemanticOctoMap& map, const OutputFolder& output) {
   const ClassTable& table = map.tree().classes();
-  if (!cli.confusion.empty())
-    config.insertion.conversion.labels.confusion = std::make_shared<labeled_cloud::ConfusionMatrix>(
-        labeled_cloud::loadConfusionMatrix(cli.confusion, table));
-  const auto labeler = makeLabeler(cli.labels, table, config);
-  labeled_cloud::ScanConverter converter(table, config.insertion.conversion, labeler);
   labeled_cloud::Trajectory trajectory = trajectoryOf(cli, config);
   const bool hasPoses = !trajectory.empty();
   if (!hasPoses) {
     notes() << "There are no poses: scans alone tell where the robot is" << std::endl;
     trajectory = restAtOrigin();
   }
-  labeled_cloud::CloudLabeler clouds(labeler, table.size(), config.insertion.conversion.labels,
-                                     trajectory, config.cameras);
-  labeled_cloud::ScanStream stream(cli.rawlogs, converter, trajectory, labeler ? &clouds : nullptr,
-                                   config.stream);
+  labeled_cloud::LabelModel& labels = config.insertion.conversion.labels;
+  if (cli.estimatesConfusion()) labels.kind = labeled_cloud::LabelModel::Kind::Hard;
+  labels.confusion = confusionOf(cli, table, config, trajectory, stop);
+  Scans scans(cli, table, config, trajectory);
   SideOutputs outputs(cli, table);
   MapBuilder builder(map, [&](const auto& scan, const auto& T) {
     outputs.write(scan, T);
@@ -217,7 +254,7 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
   const fs::path trajectoryFile = output.staged("trajectory.tum");
   if (cli.slam) builder.correctPoses(config.slam, trajectoryFile.parent_path(), cli.reference);
   if (!hasPoses) builder.withoutOdometry();
-  builder.insert(cli.rawlogs, stream, stop);
+  builder.insert(cli.rawlogs, scans.stream, stop);
   if (builder.summary().inserted == 0 && builder.summary().stopped)
     throw StoppedTooEarly("stopped before the first scan");
   if (builder.summary().inserted == 0)

@@ -27,7 +27,8 @@ ordered_json parametersJson(const FilterParameters& p) {
           {"falseAlarmProbability", p.falseAlarmProbability},
           {"minOccupancy", p.minOccupancy},
           {"maxProbability", p.maxProbability},
-          {"softLabelFloor", p.softLabelFloor}};
+          {"softLabelFloor", p.softLabelFloor},
+          {"calibration", {{"power", p.calibration.power}, {"shared", p.calibration.shared}}}};
 }
 
 void addHalfLife(const SemanticOcTree& map, ClassId id, ordered_json& description) {

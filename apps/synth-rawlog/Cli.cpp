@@ -60,8 +60,9 @@ void addSensors(CLI::App& app, Cli& cli) {
                  "of what these mirror")
       ->capture_default_str();
   app.add_option("--range-noise", cli.noise.range, "Standard deviation, m")->capture_default_str();
-  app.add_option("--label-noise", cli.noise.label, "Share of labels that are wrong")
+  app.add_option("--label-noise", cli.labelNoise, "Share of labels that are wrong")
       ->capture_default_str();
+  label_noise::addLabelNoiseKind(app, cli.labelNoiseKind);
   app.add_option("--dropout", cli.noise.dropout, "Share of rays without a return")
       ->capture_default_str();
   app.add_option("--classes", cli.classes,
@@ -91,6 +92,7 @@ void addOptions(CLI::App& app, Cli& cli) {
 void complete(Cli& cli) {
   if (cli.output.empty() && cli.truthQuery.empty() && cli.picture.empty())
     throw CLI::RequiredError("--output, --picture or --truth-query");
+  if (cli.labelNoiseKind == label_noise::LabelNoise::Kind::Points) cli.noise.label = cli.labelNoise;
   cli.camera.noise = cli.lidar.noise = cli.noise;
   cli.camera.validate();
   cli.lidar.validate();

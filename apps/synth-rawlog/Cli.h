@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "Outputs.h"
+#include "label_noise/LabelNoise.h"
 
 namespace synth_rawlog {
 
@@ -28,6 +29,8 @@ struct Cli {
   double cameraPitch = 8;  // degrees down
   synthetic_world::LidarOptions lidar;
   synthetic_world::SensorNoise noise{0.01, 0, 0};
+  double labelNoise = 0;  // share of labels
+  label_noise::LabelNoise::Kind labelNoiseKind = label_noise::LabelNoise::Kind::Points;
 
   std::filesystem::path classes;  // table whose raw ids are the world's classes; empty: the world's
   std::filesystem::path truthQuery, picture;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <optional>
 
 #include "Application.h"
 #include "Cli.h"
@@ -56,20 +57,37 @@ void walk(const std::vector<synthetic_world::Walker>& walkers, double time,
   world.setMovables(std::move(people));
 }
 
+/** Wrong labels for the pixels of a camera. */
+void disturb(synthetic_world::CameraFrame& frame, const synthetic_world::CameraOptions& camera,
+             const Eigen::Isometry3d& T_world_camera, label_noise::LabelNoise& noise) {
+  synthetic_world::LabeledCloud cloud;
+  for (int row = 0; row < camera.height; ++row)
+    for (int column = 0; column < camera.width; ++column)
+      cloud.points.push_back((frame.depth.at(row, column) * camera.ray(row, column)).cast<float>());
+  cloud.classes = std::move(frame.labels.pixels);
+  noise.apply(cloud, T_world_camera);
+  frame.labels.pixels = std::move(cloud.classes);
+}
+
+/** \param noise of labels; null: each sensor's own */
 std::vector<mrpt::obs::CObservation::Ptr> sense(const Cli& cli, const WorldClasses& classes,
                                                 const synthetic_world::World& world,
                                                 const Eigen::Isometry3d& T_world_robot,
-                                                std::uint64_t frame) {
+                                                std::uint64_t frame,
+                                                label_noise::LabelNoise* noise) {
   std::vector<mrpt::obs::CObservation::Ptr> seen;
   if (cli.wantsCamera()) {
     const Eigen::Isometry3d mount = T_robot_camera(cli.cameraPitch);
-    const auto image = renderCamera(world, T_world_robot * mount, cli.camera, {cli.seed, frame});
-    seen.push_back(rangeScan(classes.of(image), cli.camera, mount, classes.table()));
+    auto image =
+        classes.of(renderCamera(world, T_world_robot * mount, cli.camera, {cli.seed, frame}));
+    if (noise) disturb(image, cli.camera, T_world_robot * mount, *noise);
+    seen.push_back(rangeScan(image, cli.camera, mount, classes.table()));
   }
   if (cli.wantsLidar()) {
     const Eigen::Isometry3d mount = T_robot_lidar();
-    const auto cloud = scanLidar(world, T_world_robot * mount, cli.lidar, {cli.seed, frame});
-    seen.push_back(labeledCloud(classes.of(cloud), mount, classes.table()));
+    auto cloud = classes.of(scanLidar(world, T_world_robot * mount, cli.lidar, {cli.seed, frame}));
+    if (noise) noise->apply(cloud, T_world_robot * mount);
+    seen.push_back(labeledCloud(std::move(cloud), mount, classes.table()));
   }
   return seen;
 }
@@ -81,6 +99,9 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
   const auto walkers = walkersOn(scene.route, cli.people);
   DriveLog rawlog(cli.output, cli.odometry, cli.odometryNoise, cli.seed);
   TrajectoryWriter trajectory(beside(cli.output, ".tum"));
+  std::optional<label_noise::LabelNoise> noise;
+  if (cli.labelNoiseKind != label_noise::LabelNoise::Kind::Points)
+    noise.emplace(cli.labelNoise, cli.labelNoiseKind, cli.seed, classes.table().size());
   const StopRequest stop("after this frame");
   int k = 0;
   for (; k < frames && !stop.pending(); ++k) {
@@ -88,7 +109,8 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
     const Eigen::Isometry3d T_world_robot = drive.T_world_robot(time);
     walk(walkers, time, scene.world);
     rawlog.write(mrpt::Clock::fromDouble(kStartTime + time), T_world_robot,
-                 sense(cli, classes, scene.world, T_world_robot, static_cast<std::uint64_t>(k)));
+                 sense(cli, classes, scene.world, T_world_robot, static_cast<std::uint64_t>(k),
+                       noise ? &*noise : nullptr));
     trajectory.write(kStartTime + time, toMrpt(T_world_robot));
   }
   scene.world.setMovables({});

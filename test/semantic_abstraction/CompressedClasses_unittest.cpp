@@ -47,17 +47,21 @@ void expectShares(const std::vector<double>& sum, const std::vector<double>& p) 
     EXPECT_NEAR(p[k], sum[k] / all, 5e-4) << "class " << k;  // the grid
 }
 
-}  // namespace
-
-TEST(CompressedClasses, ofACompressedCellAreThoseOfItsVoxelsInWhichLabelsWereSeen) {
+/** Of what voxels state. */
+void expectClassesOfVoxels(const Calibration& calibration) {
   SemanticOcTree map = smallMap();
   AbstractionOptions options;
   options.weights.terms = {tree_abstraction::relevant("posts", 1.0, {1})};
   options.weights.alpha = 0.02;
   options.blockSize = 3.2;
   setAbstraction(map, options);
+  map.setCalibration(calibration);
+  SemanticOcTree again = map;
+  setAbstraction(again, options);
+  EXPECT_TRUE(again == map);  // G-values are of what is believed
   const Abstraction abstraction(map);
   const SemanticOcTree compressed = abstraction.compressedMap();
+  EXPECT_TRUE(compressed.filterParameters().calibration.isIdentity());
   std::map<unsigned, std::map<VoxelId, std::vector<double>>> sums;
   for (unsigned levels = 0; levels <= 4; ++levels) sums[levels] = labeledSums(map, levels);
   int merged = 0;
@@ -73,6 +77,16 @@ TEST(CompressedClasses, ofACompressedCellAreThoseOfItsVoxelsInWhichLabelsWereSee
     merged += levels > 0;
   }
   EXPECT_GT(merged, 50);
+}
+
+}  // namespace
+
+TEST(CompressedClasses, ofACompressedCellAreThoseOfItsVoxelsInWhichLabelsWereSeen) {
+  expectClassesOfVoxels({});
+}
+
+TEST(CompressedClasses, ofACompressedCellAreThoseThatItsVoxelsState) {
+  expectClassesOfVoxels({0.6, 0.2});
 }
 
 TEST(CompressedClasses, ofACoarsenedVoxelAreThoseOfItsVoxelsInWhichLabelsWereSeen) {

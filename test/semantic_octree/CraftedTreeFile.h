@@ -26,7 +26,7 @@ std::string bytesOf(Values... values) {
 }
 
 /** A file with right checksums around any content. */
-inline std::string fileAround(const std::string& content, std::uint32_t version = 4) {
+inline std::string fileAround(const std::string& content, std::uint32_t version = 5) {
   constexpr std::size_t kBlock = 60000;
   std::string file = "SEMOCTRE" + bytesOf(version);
   std::uint32_t crc = 0;
@@ -58,17 +58,18 @@ struct Header {
   double resolution = 0.5;
   std::uint8_t pruning = 1, increments = 0, policy = 0;
   double accuracy = 0.9, hitProbability = 0.6, falseAlarmProbability = 0.1, minOccupancy = 0.12,
-         maxProbability = 0.97, softLabelFloor = 0.001, labelCorrelation = 0.2, halfLife = 0;
+         maxProbability = 0.97, softLabelFloor = 0.001, labelCorrelation = 0.2, power = 0.7, shared = 0.2, halfLife = 0;
   std::vector<std::string> names = {"a", "b"};
   std::uint32_t numFolds = 0;
   std::int64_t clock = 0;
   std::uint64_t numNodes = 0;
 
-  std::string bytes(std::uint32_t version = 4) const {
+  std::string bytes(std::uint32_t version = 5) const {
     std::string bytes =
         bytesOf(resolution, pruning, increments, accuracy, hitProbability, falseAlarmProbability,
                 minOccupancy, maxProbability, softLabelFloor);
     if (version > 3) append(bytes, labelCorrelation);
+    if (version > 4) bytes += bytesOf(power, shared);
     append(bytes, static_cast<std::uint8_t>(names.size()));
     for (const std::string& name : names)
       bytes += bytesOf(static_cast<std::uint16_t>(name.size())) + name + "rgb";

@@ -48,6 +48,8 @@ TEST(CraftedTreeFile, ofSenselessHeadersIsRefused) {
   EXPECT_TRUE(contains(error(with([](Header& h) { h.accuracy = 3; })), "accuracy"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.minOccupancy = 1e-12; })), "min_occupancy"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.labelCorrelation = 1.01; })), "correlation"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.power = 0; })), "calibration.power"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.shared = 1; })), "calibration.shared"));
   EXPECT_EQ(error(with([](Header& h) { h.halfLife = 2, h.clock = 5; })), "");
   EXPECT_TRUE(contains(error(with([](Header& h) { h.clock = 5; })), "a clock that cannot be"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.clock = -5; })), "a clock that cannot be"));
@@ -145,5 +147,5 @@ TEST(CraftedTreeFile, withBytesAlteredOrMissingIsRefusedOrIsAMap) {
   writeTree(out, map);
   const std::string content = contentIn(out.str());
   ASSERT_TRUE(treeOf(fileAround(content)) == map);
-  EXPECT_GT(tryAlteredContent(content, 4), 100);
+  EXPECT_GT(tryAlteredContent(content, 5), 100);
 }

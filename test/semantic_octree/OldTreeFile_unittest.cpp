@@ -96,16 +96,17 @@ struct OldMap {
 
 }  // namespace
 
-TEST(OldTreeFile, hasTheCorrelationOfLabelsThatItWasNearlyMadeWith) {
+TEST(OldTreeFile, hasTheCorrelationOfLabelsThatItWasNearlyMadeWithAndNoCalibration) {
   Header header;
   header.halfLife = 2;
-  for (const std::uint32_t version : {1, 2, 3}) {
+  for (const std::uint32_t version : {1, 2, 3, 4}) {
     const SemanticOcTree map = treeOf(fileAround(header.bytes(version), version));
     FilterParameters expected = map.filterParameters();
-    expected.labelCorrelation = 0.5;
+    expected.labelCorrelation = version == 4 ? 0.2 : 0.5;
+    EXPECT_TRUE(map.filterParameters().calibration.isIdentity());
     EXPECT_EQ(map.filterParameters(), expected) << version;
     EXPECT_EQ(map.filterParameters().accuracy, header.accuracy);
-    EXPECT_EQ(map.classes().hasHalfLives(), version == 3);
+    EXPECT_EQ(map.classes().hasHalfLives(), version >= 3);
     std::stringstream again;
     writeTree(again, map);
     EXPECT_TRUE(readTree(again) == map) << version;

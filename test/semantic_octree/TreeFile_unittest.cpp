@@ -35,6 +35,7 @@ SemanticOcTree someTree(bool pruning = true, int numScans = 3, double resolution
   parameters.minOccupancy = 0.13;
   parameters.maxProbability = 0.95;
   parameters.softLabelFloor = 0.003;
+  parameters.calibration = {0.6, 0.1};
   SemanticOcTree tree(resolution, classesWithFolds(), parameters);
   tree.setPruning(pruning);
   std::mt19937 random(1);
@@ -72,6 +73,8 @@ TEST(TreeFile, bringsEveryBitBack) {
     EXPECT_EQ(loaded.pruning(), pruning);
     EXPECT_EQ(loaded.classes(), tree.classes());
     EXPECT_EQ(loaded.filterParameters(), tree.filterParameters());
+    EXPECT_EQ(loaded.filterParameters().calibration.power, 0.6);
+    EXPECT_EQ(loaded.filterParameters().calibration.shared, 0.1);
     EXPECT_EQ(loaded.getResolution(), tree.getResolution());
     EXPECT_EQ(bytesOf(loaded), bytesOf(tree));
   }
@@ -152,10 +155,10 @@ TEST(TreeFile, thatIsEmptyOrNoMapIsRefused) {
 TEST(TreeFile, ofAnUnknownVersionIsRefused) {
   const TemporaryFolder folder;
   std::string bytes = bytesOf(someTree());
-  for (const char version : {0, 5}) {
+  for (const char version : {0, 6}) {
     bytes[8] = version;
     const std::string found = "version " + std::to_string(version);
-    EXPECT_TRUE(contains(loadError(folder, bytes), found + " of the format, expected 1 to 4"));
+    EXPECT_TRUE(contains(loadError(folder, bytes), found + " of the format, expected 1 to 5"));
   }
 }
 

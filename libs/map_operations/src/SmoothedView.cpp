@@ -121,7 +121,7 @@ bool SmoothedView::add(const Eigen::Array3i& voxel, double weight,
   if (m_map.empty() || (voxel < 0).any() || (voxel >= kNumKeys).any()) return false;
   const SemanticOcTreeNode leaf = m_map.search(octomapKey(voxel.x(), voxel.y(), voxel.z()));
   if (!leaf || !leaf.hasClassRecord()) return false;
-  const SemanticOcTree::Belief b = m_map.belief(leaf);
+  const SemanticOcTree::Belief b = m_map.statedBelief(leaf);
   for (double& x : logs) x += weight * b.rest;
   for (int i = 0; i < b.count; ++i) logs[b.ids[i] - 1] += weight * (b.logOdds[i] - b.rest);
   return true;

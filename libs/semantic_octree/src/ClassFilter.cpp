@@ -93,6 +93,23 @@ Real ClassFilter<Real, Named>::occupancyOf(const Belief& b) const {
 }
 
 template <typename Real, int Named>
+auto ClassFilter<Real, Named>::stated(const Belief& b) const -> Belief {
+  const auto [power, shared] = m_parameters.calibration;
+  if (b.count == 0 || m_parameters.calibration.isIdentity()) return b;
+  const double most = b.count == m_numClasses ? b.logOdds[0] : std::max(b.logOdds[0], b.rest);
+  const auto powered = [&, power = power](Real h) { return std::exp(power * (h - most)); };
+  double sum = b.unnamed(m_numClasses) * powered(b.rest);
+  for (int i = 0; i < b.count; ++i) sum += powered(b.logOdds[i]);
+  const double occupancy = b.occupancyLogOdds(m_numClasses), own = (1 - shared) / sum;
+  Belief s = b;
+  s.rest = rounded<Real>(occupancy + std::log(own * powered(b.rest)));
+  for (int i = 0; i < b.count; ++i)
+    s.logOdds[i] =
+        rounded<Real>(occupancy + std::log(own * powered(b.logOdds[i]) + shared / b.count));
+  return s;
+}
+
+template <typename Real, int Named>
 void ClassFilter<Real, Named>::limit(Belief& b) const {
   Real highest = b.unnamed(m_numClasses) > 0 ? b.rest : b.logOdds[0];
   for (int i = 0; i < b.count; ++i) highest = std::max(highest, b.logOdds[i]);

@@ -29,8 +29,10 @@ Belief truncated(std::vector<ClassLogOdds> named, double rest, int numClasses) {
 namespace {
 
 /** Classes of leaves with a record: p(k) = rest + named[k]. */
+template <typename BeliefOf>
 struct Mixture {
-  double rest = 0;
+  BeliefOf beliefOf;  ///< of a record
+  double rest;
   std::vector<double> named;
 
   void add(const Belief& belief, double weight) {
@@ -41,7 +43,7 @@ struct Mixture {
   }
   void addBelow(const Node& node, double weight) {
     if (node.isLeaf()) {
-      if (node.hasClassRecord()) add(NodeStore::record(node).belief(), weight);
+      if (node.hasClassRecord()) add(beliefOf(NodeStore::record(node)), weight);
       return;
     }
     for (int i = 0; i < 8; ++i)
@@ -49,11 +51,9 @@ struct Mixture {
   }
 };
 
-}  // namespace
-
-std::vector<double> classShares(const Node& node, int numClasses) {
-  Mixture mixture;
-  mixture.named.assign(numClasses + 1, 0.0);
+template <typename BeliefOf>
+std::vector<double> sharesOf(const Node& node, int numClasses, const BeliefOf& beliefOf) {
+  Mixture<BeliefOf> mixture{beliefOf, 0, std::vector<double>(numClasses + 1, 0.0)};
   mixture.addBelow(node, 1);
   std::vector<double> shares;
   for (int k = 1; k <= numClasses; ++k)
@@ -64,13 +64,14 @@ std::vector<double> classShares(const Node& node, int numClasses) {
   return shares;
 }
 
-LeafContent contentOf(const Node& node, int numClasses) {
+template <typename BeliefOf>
+LeafContent content(const Node& node, int numClasses, const BeliefOf& beliefOf) {
   const float occupancy = node.getLogOdds();
   LeafContent content{toUnits(occupancy), std::nullopt};
   if (node.hasClassRecord()) {
-    content.record = NodeStore::record(node);
+    content.record = ClassRecord::of(beliefOf(NodeStore::record(node)));
   } else if (!node.isLeaf()) {
-    const std::vector<double> shares = classShares(node, numClasses);
+    const std::vector<double> shares = sharesOf(node, numClasses, beliefOf);
     if (shares.empty()) return content;
     std::vector<ClassLogOdds> named;
     for (int k = 1; k <= numClasses; ++k)
@@ -79,6 +80,27 @@ LeafContent contentOf(const Node& node, int numClasses) {
     content.record = ClassRecord::of(truncated(std::move(named), 0, numClasses));
   }
   return content;
+}
+
+auto believed() {
+  return [](const ClassRecord& record) { return record.belief(); };
+}
+auto stated(const ClassFilter<float>& filter) {
+  return [&filter](const ClassRecord& record) { return filter.stated(record.belief()); };
+}
+
+}  // namespace
+
+std::vector<double> classShares(const Node& node, const ClassFilter<float>& filter) {
+  return sharesOf(node, filter.numClasses(), stated(filter));
+}
+
+LeafContent contentOf(const Node& node, int numClasses) {
+  return content(node, numClasses, believed());
+}
+
+LeafContent statedContentOf(const Node& node, const ClassFilter<float>& filter) {
+  return content(node, filter.numClasses(), stated(filter));
 }
 
 ClassSet halfLivesBelow(const NodeStore& store, const Slot& inner, int numClasses) {

@@ -13,7 +13,7 @@ namespace {
 double addMixture(const SemanticOcTree& tree, const Node& node, double weight,
                   std::vector<double>& sum, std::vector<double>& scratch) {
   if (node.isLeaf()) {
-    tree.belief(node).distribution(tree.numClasses(), scratch.data());
+    tree.statedBelief(node).distribution(tree.numClasses(), scratch.data());
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * scratch[k];
     return weight;
   }
@@ -55,7 +55,7 @@ CellState SemanticOcTree::query(const Node& node) const {
   CellState state;
   state.occupancy = node.getOccupancy();
   state.status = isNodeOccupied(node) ? CellState::Status::Occupied : CellState::Status::Free;
-  const std::vector<double> shares = classShares(node, numClasses());
+  const std::vector<double> shares = classShares(node, m_filter);
   if (shares.empty()) return state;
   const auto best = std::max_element(shares.begin(), shares.end());
   state.likeliestClass = static_cast<ClassId>(best - shares.begin() + 1);

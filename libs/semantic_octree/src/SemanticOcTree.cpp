@@ -131,6 +131,13 @@ void SemanticOcTree::setHalfLives(const ClassTable& table) {
   m_classes.setHalfLife(kNoClass, table.halfLife(kNoClass));
 }
 
+void SemanticOcTree::setCalibration(const Calibration& calibration) {
+  FilterParameters parameters = m_parameters;
+  parameters.calibration = calibration;
+  m_filter = ClassFilter<float>(numClasses(), parameters);
+  m_parameters = parameters;
+}
+
 SemanticOcTree emptyLike(const SemanticOcTree& map) {
   return MapAccess::emptyWith(map, map.getResolution());
 }

@@ -79,6 +79,8 @@ FilterParameters TreeReader::getParameters() {
     *x = m_in.get<double>();
   p.labelCorrelation =
       m_version > kVersionWithoutCorrelation ? m_in.get<double>() : kCorrelationOfOldMaps;
+  if (m_version > kVersionWithoutCalibration)
+    for (double* x : {&p.calibration.power, &p.calibration.shared}) *x = m_in.get<double>();
   return p;
 }
 

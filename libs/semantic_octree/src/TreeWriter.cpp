@@ -39,8 +39,9 @@ std::uint32_t TreeWriter::write() {
 
 void TreeWriter::putParameters(const FilterParameters& p) {
   m_out.put(static_cast<std::uint8_t>(p.increments));
-  for (const double x : {p.accuracy, p.hitProbability, p.falseAlarmProbability, p.minOccupancy,
-                         p.maxProbability, p.softLabelFloor, p.labelCorrelation})
+  for (const double x :
+       {p.accuracy, p.hitProbability, p.falseAlarmProbability, p.minOccupancy, p.maxProbability,
+        p.softLabelFloor, p.labelCorrelation, p.calibration.power, p.calibration.shared})
     m_out.put(x);
 }
 

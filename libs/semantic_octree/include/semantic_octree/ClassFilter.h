@@ -69,6 +69,8 @@ class ClassFilter {
 
   /** Cell whose classes are equally likely, given its occupancy's log-odds. */
   Belief uniform(Real occupancyLogOdds) const;
+  /** What is stated of a cell's classes (see Calibration); its occupancy is the belief's. */
+  Belief stated(const Belief& b) const;
   /** Occupancy of a cell with a class record, ln(p(occupied) / p(free)); on the grid. */
   Real occupancyOf(const Belief& b) const;
   /** The log-odds that uniform() of a cell had, given its rest. */

@@ -3,6 +3,21 @@
 
 namespace semantic_octree {
 
+/** How what a map states of a voxel's classes follows from what its filter believes of them: with
+ * p_k the filter's p(class k | occupied), the map states
+ *
+ *   (1 - shared) p_k^power / sum_j p_j^power + shared u_k,
+ *
+ * u_k = 1 / n for the n classes that the voxel's record names and 0 for the others. A power below 1
+ * says that scans repeat each other's errors; what is shared, that voxels hold several of the
+ * classes that were seen in them. The order of classes stays. */
+struct Calibration {
+  double power = 1;   ///< (0, 1]
+  double shared = 0;  ///< [0, 1)
+
+  bool isIdentity() const { return power == 1 && shared == 0; }
+};
+
 /** Sensor and classifier model of the class filter. */
 struct FilterParameters {
   enum class Increments {
@@ -24,7 +39,7 @@ struct FilterParameters {
   /** Largest correlation of any two labels of one scan in one cell, given the cell's class, [0, 1].
    * 0: each counts by itself, 1: many that agree say no more than one. What errs about a surface
    * errs about most of its points. Of scans whose labels disagree more, it is less, too. */
-  double labelCorrelation = 0.5;
+  double labelCorrelation = 0.8;
   /** P(a return ends in the cell | the cell is occupied and a beam of the scan reaches it).
    * Surfaces fill cells in part, and beams that graze one pass through cells that it crosses: 0.42
    * to 0.69 in SemanticKITTI for cells of 0.1 to 0.4 m, 0.87 to 0.9 in a flat seen by a depth
@@ -43,10 +58,14 @@ struct FilterParameters {
   double maxProbability = 0.97;
   /** Soft labels are raised to this before their logarithm is taken. */
   double softLabelFloor = 0.001;
+  /** Set by whoever measures it (Calibrator); files keep it. */
+  Calibration calibration;
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the parameter and its value. */
   void validate(int numClasses) const;
+  /** Whether beliefs come about in the same way; the calibration, which follows from scans, does
+   * not matter. */
   bool operator==(const FilterParameters& o) const;
 };
 const strict_files::Choices<FilterParameters::Increments>& choicesOf(FilterParameters::Increments);

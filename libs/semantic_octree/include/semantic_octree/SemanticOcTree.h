@@ -144,8 +144,11 @@ class SemanticOcTree {
   CellState query(double x, double y, double z, unsigned depth = 0) const;
   CellState query(const octomap::OcTreeKey& key, unsigned depth = 0) const;
   CellState query(const Node& node) const;
-  /** The class record of a leaf; for a leaf without one, classes that are equally likely. */
+  /** The class record of a leaf, which the filter made of scans; for a leaf without one, classes
+   * that are equally likely. */
   Belief belief(const Node& leaf) const;
+  /** What is stated of it (see Calibration), here and in query() and distribution(). */
+  Belief statedBelief(const Node& leaf) const { return m_filter.stated(belief(leaf)); }
   /** K + 1 probabilities, [0] = free space: a leaf's distribution, or the mixture of the known
    * leaves below an inner node weighted by volume. */
   std::vector<double> distribution(const Node& node) const;
@@ -187,6 +190,8 @@ class SemanticOcTree {
   /** Classes take the half-lives that a table has for their names; free space, too. Classes that it
    * does not have keep theirs. */
   void setHalfLives(const ClassTable& table);
+  /** Beliefs stay as they are. \throw std::invalid_argument naming the value. */
+  void setCalibration(const Calibration& calibration);
   /** Memory ran out, or a tile's file failed (MapFolder), while it changed. */
   bool isBroken() const { return m_store == nullptr; }
   /** Removes all nodes; the clock begins anew.

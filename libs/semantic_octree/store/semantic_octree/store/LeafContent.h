@@ -18,14 +18,16 @@ struct LeafContent {
   }
 };
 
-/** p(class k | occupied) of a node, K shares: of the mixture, by volume, of the leaves below in
+/** What is stated of p(class k | occupied) of a node, K shares: of the mixture, by volume, of the leaves below in
  * which labels were seen. (Free space and what was hit without a label know nothing of classes;
  * with them, a cell that holds both would state too little.) Empty if there are none. */
-std::vector<double> classShares(const Node& node, int numClasses);
+std::vector<double> classShares(const Node& node, const ClassFilter<float>& filter);
 
 /** Of a leaf, or of an inner node that becomes one: occupancy of its most occupied leaf, classes as
- * by classShares(). */
+ * they are believed to be. */
 LeafContent contentOf(const Node& node, int numClasses);
+/** The same with classes as they are stated, as by classShares(): for a map without calibration. */
+LeafContent statedContentOf(const Node& node, const ClassFilter<float>& filter);
 
 /** Whose half-life a leaf has: its likeliest class's, or kNoClass if it is free; none: it is
  * occupied, and no class is likelier than the others. */

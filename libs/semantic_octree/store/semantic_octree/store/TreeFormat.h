@@ -9,7 +9,7 @@
 namespace semantic_octree {
 
 /** A map's bytes: kMagic, kVersion, then in checked blocks (see CheckedStream.h)
- *   resolution (double), pruning (1 byte), filter (increments 1 byte, seven doubles),
+ *   resolution (double), pruning (1 byte), filter (increments 1 byte, nine doubles),
  *   classes: number (1 byte), each name (2 bytes length, characters), r, g, b,
  *            policy for unknown raw ids (1 byte), folds (4 bytes number; raw id 4 bytes, class 1
  * byte),
@@ -28,10 +28,10 @@ namespace semantic_octree {
  * Version 1 had log-odds of 4 bytes (float), and no blocks; version 2 neither half-lives nor a
  * clock, which version 3 had only of maps with half-lives. None of them had a correlation of
  * labels: that of the row with which they counted a scan's labels, ln(n + a), is nearly
- * kCorrelationOfOldMaps. */
+ * kCorrelationOfOldMaps. Version 4 had no calibration. */
 constexpr std::array<char, 8> kMagic{'S', 'E', 'M', 'O', 'C', 'T', 'R', 'E'};
-constexpr std::uint32_t kVersion = 4, kVersionWithoutCorrelation = 3, kVersionWithoutTime = 2,
-                        kOldestVersion = 1;
+constexpr std::uint32_t kVersion = 5, kVersionWithoutCalibration = 4, kVersionWithoutCorrelation = 3,
+                        kVersionWithoutTime = 2, kOldestVersion = 1;
 constexpr double kCorrelationOfOldMaps = 0.5;
 
 enum class NodeKind : std::uint8_t { None, Leaf, LeafWithRecord, Inner };

@@ -4,7 +4,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace dataset2rawlog {
+#include "Choice.h"
+
+namespace label_noise {
 
 using semantic_types::ClassId;
 using semantic_types::kNoClass;
@@ -89,4 +91,14 @@ void LabelNoise::apply(std::vector<ClassId>& labels) {
   }
 }
 
-}  // namespace dataset2rawlog
+void addLabelNoiseKind(CLI::App& app, LabelNoise::Kind& kind) {
+  using Kind = LabelNoise::Kind;
+  addChoice(
+      app.add_option("--label-noise-kind", kind,
+                     "Points: one by one. Blobs: patches of 1.5 to 4 m, as networks err. "
+                     "Persistent: half of these are wrong in all scans"),
+      std::map<std::string, Kind>{
+          {"points", Kind::Points}, {"blobs", Kind::Blobs}, {"persistent", Kind::Persistent}});
+}
+
+}  // namespace label_noise

@@ -1,12 +1,14 @@
 #pragma once
 #include <semantic_types/LabeledCloud.h>
 
+#include <CLI/CLI.hpp>
+
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <random>
 #include <vector>
 
-namespace dataset2rawlog {
+namespace label_noise {
 
 /** Replaces a share of the labels by other classes. The same seed gives the same labels everywhere.
  * Points without a class keep none. */
@@ -48,4 +50,7 @@ class LabelNoise {
   Cubes m_fixed;
 };
 
-}  // namespace dataset2rawlog
+/** The option --label-noise-kind. */
+void addLabelNoiseKind(CLI::App& app, LabelNoise::Kind& kind);
+
+}  // namespace label_noise
