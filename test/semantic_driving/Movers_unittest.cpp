@@ -83,7 +83,9 @@ TEST(MoverTracker, LeavesThoseOutOfAScanWhoPassButNotWhoStands) {
   for (double t = 0; t < 5; t += 0.5) {
     follower.scan({standing, passing + t * velocity}, t);
     EXPECT_EQ(follower.lastingAt(passing + t * velocity), 1u) << t;
-    if (t < 1.9) EXPECT_EQ(follower.lastingAt(standing), 1u) << "who was just seen may walk on";
+    if (t < 1.9) {
+      EXPECT_EQ(follower.lastingAt(standing), 1u) << "who was just seen may walk on";
+    }
     EXPECT_EQ(follower.lastingAt({-8, 0}), 2u) << "nobody is there";
   }
   EXPECT_EQ(follower.lastingAt(standing), 2u);
