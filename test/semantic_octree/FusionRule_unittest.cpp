@@ -4,6 +4,8 @@
 #include <semantic_octree/store/BlockUpdate.h>
 #include <semantic_octree/store/MapAccess.h>
 
+#include <algorithm>
+
 #include "PlainMap.h"
 #include "RandomScans.h"
 
