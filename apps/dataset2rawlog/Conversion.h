@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "FrameRange.h"
-#include "label_noise/LabelNoise.h"
 #include "Signals.h"
+#include "label_noise/LabelNoise.h"
 
 namespace dataset2rawlog {
 

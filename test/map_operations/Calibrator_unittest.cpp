@@ -1,6 +1,7 @@
 // What maps state, fitted to scans that they do not know yet.
 #include <gtest/gtest.h>
 #include <map_operations/Calibrator.h>
+#include <map_operations/MapOperations.h>
 
 #include <cmath>
 #include <random>
@@ -142,4 +143,16 @@ TEST(Calibrator, refusesLabelsOfAnotherNumberOfPoints) {
   cloud.classes.pop_back();
   Calibrator calibrator;
   EXPECT_THROW(calibrator.ask(map, cloud, Eigen::Isometry3d::Identity()), std::invalid_argument);
+}
+
+TEST(Calibrator, makesSumsAsCautiousAsTheMostCautiousOfTheirMaps) {
+  Floor floor(0, true);
+  SemanticOcTree a = floor.map(), b = floor.map();
+  a.setCalibration({0.5, 0.1});
+  b.setCalibration({0.8, 0.3});
+  for (const auto& maps : {std::vector<const SemanticOcTree*>{&a, &b}, {&b, &a}}) {
+    const SemanticOcTree sum = merged(maps);
+    EXPECT_EQ(sum.filterParameters().calibration.power, 0.5);
+    EXPECT_EQ(sum.filterParameters().calibration.shared, 0.3);
+  }
 }

@@ -47,21 +47,17 @@ void expectShares(const std::vector<double>& sum, const std::vector<double>& p) 
     EXPECT_NEAR(p[k], sum[k] / all, 5e-4) << "class " << k;  // the grid
 }
 
-/** Of what voxels state. */
-void expectClassesOfVoxels(const Calibration& calibration) {
+}  // namespace
+
+TEST(CompressedClasses, ofACompressedCellAreThoseOfItsVoxelsInWhichLabelsWereSeen) {
   SemanticOcTree map = smallMap();
   AbstractionOptions options;
   options.weights.terms = {tree_abstraction::relevant("posts", 1.0, {1})};
   options.weights.alpha = 0.02;
   options.blockSize = 3.2;
   setAbstraction(map, options);
-  map.setCalibration(calibration);
-  SemanticOcTree again = map;
-  setAbstraction(again, options);
-  EXPECT_TRUE(again == map);  // G-values are of what is believed
   const Abstraction abstraction(map);
   const SemanticOcTree compressed = abstraction.compressedMap();
-  EXPECT_TRUE(compressed.filterParameters().calibration.isIdentity());
   std::map<unsigned, std::map<VoxelId, std::vector<double>>> sums;
   for (unsigned levels = 0; levels <= 4; ++levels) sums[levels] = labeledSums(map, levels);
   int merged = 0;
@@ -79,18 +75,25 @@ void expectClassesOfVoxels(const Calibration& calibration) {
   EXPECT_GT(merged, 50);
 }
 
-}  // namespace
-
-TEST(CompressedClasses, ofACompressedCellAreThoseOfItsVoxelsInWhichLabelsWereSeen) {
-  expectClassesOfVoxels({});
-}
-
-TEST(CompressedClasses, ofACompressedCellAreThoseThatItsVoxelsState) {
-  expectClassesOfVoxels({0.6, 0.2});
-}
-
 TEST(CompressedClasses, ofACoarsenedVoxelAreThoseOfItsVoxelsInWhichLabelsWereSeen) {
   const SemanticOcTree map = smallMap(), coarse = coarsened(map, 2);
   for (const auto& [cell, sum] : labeledSums(map, 2))
     expectShares(sum, givenOccupied(coarse, *coarse.search(keyOf(cell))));
+}
+
+TEST(CompressedClasses, areThoseThatAreBelievedWhateverIsStated) {
+  SemanticOcTree map = smallMap();
+  AbstractionOptions options;
+  options.weights.terms = {tree_abstraction::relevant("posts", 1.0, {1})};
+  options.weights.alpha = 0.02;
+  options.blockSize = 3.2;
+  setAbstraction(map, options);
+  SemanticOcTree before = map;
+  map.setCalibration({0.6, 0.2});
+  SemanticOcTree again = map;
+  setAbstraction(again, options);
+  EXPECT_TRUE(again == before);  // its G-values, too
+  const SemanticOcTree compressed = Abstraction(map).compressedMap();
+  EXPECT_TRUE(compressed == Abstraction(before).compressedMap());
+  EXPECT_TRUE(compressed.filterParameters().calibration.isIdentity());
 }

@@ -123,6 +123,17 @@ SemanticOcTree emptySumOf(const std::vector<const SemanticOcTree*>& maps) {
   return sum;
 }
 
+/** The lowest power and the largest share: the same however sums are grouped. */
+Calibration mostCautious(const std::vector<const SemanticOcTree*>& maps) {
+  Calibration calibration;
+  for (const SemanticOcTree* map : maps) {
+    const Calibration& own = map->filterParameters().calibration;
+    calibration.power = std::min(calibration.power, own.power);
+    calibration.shared = std::max(calibration.shared, own.shared);
+  }
+  return calibration;
+}
+
 }  // namespace
 
 SemanticOcTree merged(const std::vector<const SemanticOcTree*>& maps, Limits limits) {
@@ -139,6 +150,7 @@ void mergeTo(SemanticOcTree& sum, const std::vector<const SemanticOcTree*>& maps
   std::vector<Node> roots;
   for (const SemanticOcTree* map : maps) roots.push_back(map->root());
   TreeBuilder::fill(sum, MergeCursor(context, std::move(roots)));
+  sum.setCalibration(mostCautious(maps));
 }
 
 }  // namespace semantic_octree

@@ -17,7 +17,8 @@ GTree& neededGTreeOf(const SemanticOcTree& map) {
 
 using IsExpanded = std::function<bool(const Node&)>;
 
-/** For leaves whose classes are those that the map states: without its calibration. */
+/** Without the map's calibration, which is of voxels: cells name classes that few of their voxels
+ * name. */
 SemanticOcTree emptyFor(const SemanticOcTree& map) {
   FilterParameters parameters = map.filterParameters();
   parameters.calibration = {};
@@ -27,18 +28,18 @@ SemanticOcTree emptyFor(const SemanticOcTree& map) {
 /** A map's nodes, down to the compressed tree's leaves (see TreeBuilder). */
 class CompressedCursor {
  public:
-  CompressedCursor(const ClassFilter<float>& filter, const IsExpanded& isExpanded, const Node& node)
-      : m_filter(filter),
+  CompressedCursor(int numClasses, const IsExpanded& isExpanded, const Node& node)
+      : m_numClasses(numClasses),
         m_isExpanded(isExpanded),
         m_node(node),
         m_isLeaf(!node || node.isLeaf() || !isExpanded(node)) {}
   bool known() const { return static_cast<bool>(m_node); }
   bool isLeaf() const { return m_isLeaf; }
-  LeafContent content() const { return statedContentOf(m_node, m_filter); }
-  CompressedCursor child(int i) const { return {m_filter, m_isExpanded, m_node.child(i)}; }
+  LeafContent content() const { return contentOf(m_node, m_numClasses); }
+  CompressedCursor child(int i) const { return {m_numClasses, m_isExpanded, m_node.child(i)}; }
 
  private:
-  const ClassFilter<float>& m_filter;
+  int m_numClasses;
   const IsExpanded& m_isExpanded;
   Node m_node;
   bool m_isLeaf;
@@ -151,8 +152,7 @@ void Abstraction::compressTo(SemanticOcTree& compressed) const {
   if (m_map.empty()) return;
   const CompressedTree tree = compressedTree();
   const IsExpanded isExpanded = [&tree](const Node& node) { return tree.isExpanded(node); };
-  TreeBuilder::fill(compressed,
-                    CompressedCursor(MapAccess::filter(m_map), isExpanded, m_map.root()),
+  TreeBuilder::fill(compressed, CompressedCursor(m_map.numClasses(), isExpanded, m_map.root()),
                     TreeBuilder::Merge::Never);
 }
 
@@ -199,7 +199,7 @@ void Abstraction::setRegions(const std::vector<Region>& regions) {
 SemanticOcTree compressedMap(const SemanticOcTree& map, const IsExpanded& isExpanded) {
   SemanticOcTree compressed = emptyFor(map);
   if (map.empty()) return compressed;
-  TreeBuilder::fill(compressed, CompressedCursor(MapAccess::filter(map), isExpanded, map.root()),
+  TreeBuilder::fill(compressed, CompressedCursor(map.numClasses(), isExpanded, map.root()),
                     TreeBuilder::Merge::Never);
   return compressed;
 }

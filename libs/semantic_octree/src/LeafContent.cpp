@@ -64,14 +64,21 @@ std::vector<double> sharesOf(const Node& node, int numClasses, const BeliefOf& b
   return shares;
 }
 
-template <typename BeliefOf>
-LeafContent content(const Node& node, int numClasses, const BeliefOf& beliefOf) {
+}  // namespace
+
+std::vector<double> classShares(const Node& node, const ClassFilter<float>& filter) {
+  return sharesOf(node, filter.numClasses(),
+                  [&filter](const ClassRecord& record) { return filter.stated(record.belief()); });
+}
+
+LeafContent contentOf(const Node& node, int numClasses) {
   const float occupancy = node.getLogOdds();
   LeafContent content{toUnits(occupancy), std::nullopt};
   if (node.hasClassRecord()) {
-    content.record = ClassRecord::of(beliefOf(NodeStore::record(node)));
+    content.record = NodeStore::record(node);
   } else if (!node.isLeaf()) {
-    const std::vector<double> shares = sharesOf(node, numClasses, beliefOf);
+    const std::vector<double> shares =
+        sharesOf(node, numClasses, [](const ClassRecord& record) { return record.belief(); });
     if (shares.empty()) return content;
     std::vector<ClassLogOdds> named;
     for (int k = 1; k <= numClasses; ++k)
@@ -80,27 +87,6 @@ LeafContent content(const Node& node, int numClasses, const BeliefOf& beliefOf) 
     content.record = ClassRecord::of(truncated(std::move(named), 0, numClasses));
   }
   return content;
-}
-
-auto believed() {
-  return [](const ClassRecord& record) { return record.belief(); };
-}
-auto stated(const ClassFilter<float>& filter) {
-  return [&filter](const ClassRecord& record) { return filter.stated(record.belief()); };
-}
-
-}  // namespace
-
-std::vector<double> classShares(const Node& node, const ClassFilter<float>& filter) {
-  return sharesOf(node, filter.numClasses(), stated(filter));
-}
-
-LeafContent contentOf(const Node& node, int numClasses) {
-  return content(node, numClasses, believed());
-}
-
-LeafContent statedContentOf(const Node& node, const ClassFilter<float>& filter) {
-  return content(node, filter.numClasses(), stated(filter));
 }
 
 ClassSet halfLivesBelow(const NodeStore& store, const Slot& inner, int numClasses) {

@@ -26,8 +26,6 @@ std::vector<double> classShares(const Node& node, const ClassFilter<float>& filt
 /** Of a leaf, or of an inner node that becomes one: occupancy of its most occupied leaf, classes as
  * they are believed to be. */
 LeafContent contentOf(const Node& node, int numClasses);
-/** The same with classes as they are stated, as by classShares(): for a map without calibration. */
-LeafContent statedContentOf(const Node& node, const ClassFilter<float>& filter);
 
 /** Whose half-life a leaf has: its likeliest class's, or kNoClass if it is free; none: it is
  * occupied, and no class is likelier than the others. */
