@@ -63,6 +63,8 @@ endif()
 
 if(MSO_BUILD_APPS)
   find_package(CLI11 REQUIRED)
+  find_package(CycloneDDS QUIET)  # semantic-map-ros2
+  find_program(MSO_IDLC idlc)
   find_package(nlohmann_json REQUIRED)
 endif()
 if(MSO_BUILD_TESTS)
