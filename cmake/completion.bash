@@ -20,4 +20,4 @@ _mrpt_semantic_octree() {
 }
 complete -o default -F _mrpt_semantic_octree rawlog2semantic-map semantic-map-compress semantic-map-drive \
   semantic-map-edit semantic-map-export semantic-map-info semantic-map-merge semantic-map-plan semantic-map-receive \
-  semantic-map-send semantic-map-view dataset2rawlog synth-rawlog
+  semantic-map-ros2 semantic-map-send semantic-map-view dataset2rawlog synth-rawlog

@@ -1,0 +1,22 @@
+#pragma once
+#include <map>
+#include <mutex>
+#include <string>
+
+namespace semantic_map_ros2 {
+
+/** Says what is wrong with messages once for each kind, and at the end how often. Any thread may
+ * complain. */
+class Complaints {
+ public:
+  /** \param what comes again and again in the same words \param details of the first time */
+  void say(const std::string& what, const std::string& details = {});
+  /** How often each was said that was said more than once. */
+  void sum() const;
+
+ private:
+  mutable std::mutex m_mutex;
+  std::map<std::string, std::size_t> m_counts;
+};
+
+}  // namespace semantic_map_ros2

@@ -1,0 +1,107 @@
+#include "Driving.h"
+
+#include <mrpt/core/Clock.h>
+#include <semantic_abstraction/Abstraction.h>
+#include <semantic_planning/planner/OrderAbstraction.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+#include "StandardOutput.h"
+#include "Transforms.h"
+
+namespace semantic_map_ros2 {
+
+using mrpt::math::TPose2D;
+using semantic_navigation::Navigator;
+using semantic_planning::PathPoint;
+
+TPose2D planar(const Eigen::Isometry3d& T) {
+  return {T.translation().x(), T.translation().y(), std::atan2(T(1, 0), T(0, 0))};
+}
+
+Driving::Driving(ros2::Node& node, const Parameters& parameters, semantic_slam::Mapper& mapper,
+                 const colored_graph::ClassOrder& order)
+    : m_mapper(mapper),
+      m_order(order),
+      m_options(parameters.navigation.planner),
+      m_frame(parameters.node.mapFrame),
+      m_writesPath(node, "plan", {true, false, 10}) {
+  if (!parameters.node.drive) return;
+  m_navigator.emplace(mapper, order, parameters.navigation);
+  m_writesCommand.emplace(node, "cmd_vel", ros2::Qos{true, false, 1});
+}
+
+void Driving::setGoal(const TPose2D& goal) {
+  m_said.clear();
+  if (m_navigator) return m_navigator->setGoal(goal);
+  m_goal = goal;
+  m_isNew = true;
+}
+
+void Driving::plan(const Eigen::Isometry3d& T_map_robot, ros2::Stamp stamp) {
+  if (m_navigator || !m_goal) return;
+  auto& map = m_mapper.map();
+  if (!m_planner) {
+    if (!hasAbstraction(map)) setAbstraction(map, semantic_planning::abstractionFor(m_order));
+    m_planner.emplace(map, m_order, m_options);
+  }
+  m_planner->update();
+  const TPose2D start = planar(T_map_robot);
+  const double z = T_map_robot.translation().z();
+  const auto plan = m_isNew || !m_planner->hasPlanned() ? m_planner->plan(start, *m_goal, z)
+                                                        : m_planner->replan(start, z);
+  m_isNew = false;
+  const std::string what = plan.found() ? "a path was found" : "no path: " + plan.reason;
+  if (std::exchange(m_said, what) != what) notes() << "Goal: " << what << std::endl;
+  publish(plan.path, stamp);
+}
+
+void Driving::step(const std::optional<semantic_navigation::RobotState>& robot, ros2::Stamp stamp) {
+  if (!m_navigator) return;
+  if (!robot) return halt();
+  mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
+  mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(ros2::secondsOf(stamp)));
+  m_navigator->update(*robot);
+  const auto command = m_navigator->step(ros2::secondsOf(stamp));
+  sayStatus();
+  if (!m_navigator->isDriving()) return halt();
+  ros2::Twist message{};
+  message.linear.x = command.speed, message.angular.z = command.turn;
+  m_moves = true;
+  m_writesCommand->write(message);
+  const auto& path = m_navigator->controller().tracker().path().points();
+  const auto same = [](const PathPoint& a, const PathPoint& b) { return a.x == b.x && a.y == b.y; };
+  if (!std::equal(path.begin(), path.end(), m_published.begin(), m_published.end(), same))
+    publish(m_published = path, stamp);
+}
+
+void Driving::halt() {
+  if (m_navigator && std::exchange(m_moves, false)) m_writesCommand->write(ros2::Twist{});
+}
+
+void Driving::sayStatus() {
+  using Status = Navigator::Status;
+  const Status status = m_navigator->status();
+  std::string what;
+  if (status == Status::Arrived) what = "the robot is there";
+  if (status == Status::Nearest) what = "the robot is as near as it can: " + m_navigator->reason();
+  if (status == Status::Unreachable) what = "the robot gave up: " + m_navigator->reason();
+  if (!what.empty() && std::exchange(m_said, what) != what)
+    notes() << "Goal: " << what << std::endl;
+}
+
+void Driving::publish(const std::vector<PathPoint>& path, ros2::Stamp stamp) {
+  std::vector<geometry_msgs_msg_dds__PoseStamped_> poses;
+  const ros2::Header header = ros2::headerOf(stamp, m_frame);
+  for (const PathPoint& p : path)
+    poses.push_back(
+        {header, {{p.x, p.y, p.z}, {0, 0, std::sin(p.heading / 2), std::cos(p.heading / 2)}}});
+  ros2::Path message{};
+  message.header = header;
+  ros2::refer(message.poses, poses);
+  m_writesPath.write(message);
+}
+
+}  // namespace semantic_map_ros2

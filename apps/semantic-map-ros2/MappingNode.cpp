@@ -1,0 +1,243 @@
+#include "MappingNode.h"
+
+#include <semantic_planning/planner/OrderFile.h>
+#include <strict_files/ErrorMessage.h>
+
+#include <cmath>
+#include <iomanip>
+#include <ostream>
+
+#include "StandardOutput.h"
+#include "measuring/Quantile.h"
+
+namespace semantic_map_ros2 {
+
+using namespace std::chrono_literals;
+using Eigen::Isometry3d;
+using ros2::Stamp;
+using std::chrono::steady_clock;
+
+namespace {
+
+constexpr auto kStep = 100ms, kLook = 50ms, kWait = 20ms;
+constexpr std::size_t kMostLatencies = 10'000;
+constexpr double kTransformsAge = 1;  // s: with an older one it is not known where the robot is
+
+bool passed(steady_clock::time_point& since, steady_clock::duration period) {
+  const auto now = steady_clock::now();
+  if (now - since < period) return false;
+  since = now;
+  return true;
+}
+
+}  // namespace
+
+MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& arguments,
+                         semantic_octree::SemanticOcTree& map, std::function<void()> save)
+    : m_parameters(parameters),
+      m_world(parameters.node.slam ? parameters.node.odomFrame : parameters.node.mapFrame),
+      m_node("semantic_map", arguments),
+      m_clock(parameters.node.useSimTime),
+      m_queue(std::size_t(parameters.node.queueMemory) * 1'000'000),
+      m_mapper(map, parameters.mapping()),
+      m_messages(m_node, map, parameters.node.mapFrame),
+      m_writesTransforms(m_node, "/tf", {true, false, 100}),
+      m_save(std::move(save)),
+      m_scanClock(parameters.insertion.maxGap),
+      m_sensors(m_node, m_parameters.node, map.classes(), parameters.insertion.conversion, m_clock,
+                m_transforms, m_queue, m_complaints),
+      m_hearsGoal(m_node, "goal_pose", {true, false, 1},
+                  [this](auto message) {
+                    const std::lock_guard<std::mutex> lock(m_mutex);
+                    m_newGoal = message;
+                  }),
+      m_hearsSave(m_node, "~/save", {true, false, 1}, [this](auto) {
+        const std::lock_guard<std::mutex> lock(m_mutex);
+        m_isToSave = true;
+      }) {
+  const NodeOptions& node = m_parameters.node;
+  if (node.order.empty()) return;
+  const auto order = semantic_planning::loadClassOrder(node.order, map.classes());
+  m_driving.emplace(m_node, m_parameters, m_mapper, order);
+  m_grid.emplace(m_node, map, order, m_parameters.navigation.planner, node.costsOf(order.ranks()),
+                 node.mapFrame);
+}
+
+void MappingNode::run(const StopRequest& stop) {
+  while (!stop.pending()) {
+    m_queue.wait(kWait);
+    while (!stop.pending() && insertNext()) serve();
+    serve();
+  }
+  if (m_driving) m_driving->halt();
+  m_endedAt = steady_clock::now();
+  while (insertNext()) continue;
+  if (m_driving && m_driving->navigator()) m_driving->navigator()->finish();
+  m_mapper.finish();
+}
+
+/** What fails costs no map. */
+void MappingNode::serve() try {
+  look();
+  publish();
+} catch (const std::exception& e) {
+  if (m_driving) m_driving->halt();
+  m_complaints.say(strict_files::messageOf(e));
+}
+
+/** What is due whether scans come or not. */
+void MappingNode::look() {
+  hear();
+  if (m_driving && passed(m_steppedAt, kStep)) {
+    const auto latest = m_transforms.latest(m_world, m_parameters.node.baseFrame);
+    const Stamp now = m_clock.now();
+    const bool isKnown = latest && std::abs(ros2::secondsOf(now - *latest)) < kTransformsAge;
+    m_driving->step(isKnown ? robotAt(*latest) : std::nullopt, now);
+  }
+  if (!passed(m_lookedAt, kLook)) return;
+  for (const std::string& problem : m_node.look()) m_complaints.say(problem);
+  publishCorrection();
+}
+
+void MappingNode::hear() {
+  std::shared_ptr<const ros2::PoseStamped> goal;
+  bool isToSave;
+  {
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    goal = std::exchange(m_newGoal, nullptr);
+    isToSave = std::exchange(m_isToSave, false);
+  }
+  if (goal) onGoal(*goal);
+  if (isToSave) try {
+      if (m_driving && m_driving->navigator()) m_driving->navigator()->finish();
+      m_save();
+    } catch (const std::exception& e) {
+      m_complaints.say(strict_files::messageOf(e));
+    }
+}
+
+void MappingNode::onGoal(const ros2::PoseStamped& message) {
+  if (!m_driving) return m_complaints.say("a goal came, but no order says what to drive on");
+  const Isometry3d T_frame_goal = isometryOf(message.pose);
+  const std::string frame = ros2::textOf(message.header.frame_id);
+  Transforms::Answer T_map_frame{Isometry3d::Identity(), {}};
+  if (frame != m_parameters.node.mapFrame) {
+    const auto latest = m_transforms.latest(m_parameters.node.mapFrame, frame);
+    T_map_frame = m_transforms.find(m_parameters.node.mapFrame, frame, latest.value_or(0));
+  }
+  if (!T_map_frame.T_target_source || !T_frame_goal.matrix().allFinite())
+    return m_complaints.say("a goal cannot be understood", T_map_frame.problem);
+  m_driving->setGoal(planar(*T_map_frame.T_target_source * T_frame_goal));
+  if (m_T_world_robot) m_driving->plan(m_mapper.T_map_odometry() * *m_T_world_robot, m_stamp);
+}
+
+auto MappingNode::placeOf(const WaitingScan& scan, std::string& problem, bool& isLost) const
+    -> std::optional<Placed> {
+  const std::string& base = m_parameters.node.baseFrame;
+  const auto robot = m_transforms.find(m_world, base, scan.stamp);
+  const auto points = m_transforms.find(base, scan.frame, scan.stamp);
+  problem = robot.T_target_source ? points.problem : robot.problem;
+  isLost = robot.isLost || points.isLost;
+  if (!robot.T_target_source || !points.T_target_source) return std::nullopt;
+  return Placed{*robot.T_target_source, *points.T_target_source * scan.T_frame_points};
+}
+
+/** It can be inserted as a whole, or has waited for long enough. */
+bool MappingNode::isDue(const WaitingScan& scan) {
+  if (m_endedAt && scan.came > *m_endedAt) return false;
+  const double waited = ros2::secondsOf(m_clock.now() - scan.cameAt);
+  if (waited >= m_parameters.node.transformTimeout || waited < 0) return true;
+  std::string problem;
+  bool isLost = false;
+  const bool isPlaced = placeOf(scan, problem, isLost).has_value();
+  return isLost || (isPlaced && (!scan.isComplete || scan.isComplete()));
+}
+
+bool MappingNode::insertNext() {
+  const auto scan = m_queue.take([this](const WaitingScan& waiting) { return isDue(waiting); });
+  if (!scan) return false;
+  std::string problem;
+  bool isLost = false;
+  if (const auto place = placeOf(*scan, problem, isLost)) try {
+      insert(*scan, *place);
+      return true;
+    } catch (const std::exception& e) {
+      problem = strict_files::messageOf(e);
+    }
+  ++m_leftOut;
+  m_complaints.say(scan->topic + ": scans are left out: " + problem);
+  return true;
+}
+
+void MappingNode::insert(const WaitingScan& scan, const Placed& place) {
+  const std::vector<semantic_slam::SensorScan> seen = {{scan.read(), place.second}};
+  const auto stamp = mrpt::Clock::fromDouble(ros2::secondsOf(scan.stamp));
+  if (auto* navigator = m_driving ? m_driving->navigator() : nullptr) {
+    navigator->update(*robotAt(scan.stamp));
+    navigator->see(seen, ros2::secondsOf(scan.stamp));
+  } else {
+    const double seconds = m_seconds + m_scanClock.secondsUntil(stamp);
+    m_mapper.insert(seen, m_mapper.locate(seen, place.first), seconds);
+    m_seconds = seconds;
+  }
+  m_scanClock.note(stamp);
+  ++m_scans;
+  m_stamp = scan.stamp;
+  m_T_world_robot = place.first;
+  m_isNew = true;
+  m_came.push_back(scan.came);
+  details() << scan.topic << ": " << seen[0].cloud.size() << " points inserted" << std::endl;
+}
+
+std::optional<semantic_navigation::RobotState> MappingNode::robotAt(Stamp stamp) const {
+  const auto T = m_transforms.find(m_world, m_parameters.node.baseFrame, stamp).T_target_source;
+  if (!T) return std::nullopt;
+  const Speeds speeds = m_sensors.speeds();
+  return semantic_navigation::RobotState{{planar(*T), speeds.forward, speeds.turn}, *T};
+}
+
+void MappingNode::publish() {
+  if (!m_isNew) return;
+  const auto period = std::chrono::duration<double>(m_parameters.node.publishPeriod);
+  if (!passed(m_publishedAt, std::chrono::duration_cast<steady_clock::duration>(period))) return;
+  m_isNew = false;
+  if (m_driving && m_driving->navigator()) m_driving->navigator()->mapper();  // waits
+  m_messages.publish(m_stamp);
+  const Isometry3d T_map_robot = m_mapper.T_map_odometry() * *m_T_world_robot;
+  publishCorrection();
+  if (m_grid) m_grid->publish(m_stamp, T_map_robot);
+  if (m_driving) m_driving->plan(T_map_robot, m_stamp);
+  for (const auto came : m_came)
+    m_latencies.push_back(
+        std::chrono::duration<double, std::milli>(steady_clock::now() - came).count());
+  m_came.clear();
+  if (m_latencies.size() > 2 * kMostLatencies)
+    m_latencies.erase(m_latencies.begin(), m_latencies.end() - kMostLatencies);
+}
+
+/** What SLAM says holds until the next scan: for as long as odometry's transforms are known. */
+void MappingNode::publishCorrection() {
+  if (!m_parameters.node.slam || m_scans == 0) return;
+  const auto latest = m_transforms.latest(m_world, m_parameters.node.baseFrame);
+  const Stamp stamp = std::max(latest.value_or(m_stamp), m_stamp);
+  if (m_correctedAt && *m_correctedAt == stamp) return;
+  m_correctedAt = stamp;
+  std::vector<ros2::TransformStamped> transforms = {
+      {ros2::headerOf(stamp, m_parameters.node.mapFrame), ros2::textOf(m_world),
+       transformOf(m_mapper.T_map_odometry())}};
+  ros2::TFMessage message{};
+  ros2::refer(message.transforms, transforms);
+  m_writesTransforms.write(message);
+}
+
+void MappingNode::saySummary() const {
+  m_complaints.sum();
+  notes() << m_scans << " scans inserted, " << m_leftOut << " left out";
+  if (!m_latencies.empty())
+    notes() << std::fixed << std::setprecision(0)
+            << "; from a scan's message to the map's: " << measuring::quantile(m_latencies, 0.5)
+            << " ms (median), " << measuring::quantile(m_latencies, 0.95) << " ms (95 %)";
+  notes() << std::endl;
+}
+
+}  // namespace semantic_map_ros2

@@ -1,0 +1,81 @@
+#pragma once
+#include <semantic_map/ObservationClock.h>
+#include <semantic_slam/Mapper.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "Driving.h"
+#include "GroundGrid.h"
+#include "MapMessages.h"
+#include "Sensors.h"
+#include "Signals.h"
+
+namespace semantic_map_ros2 {
+
+/** The node: what sensors say goes into a map, and what is known is published. One thread, that of
+ * run(), works on the map; DDS's threads fill queues. */
+class MappingNode {
+ public:
+  /** \param map must outlive it \param save is called when somebody asks for it (`~/save`) */
+  MappingNode(const Parameters& parameters, const ros2::Arguments& arguments,
+              semantic_octree::SemanticOcTree& map, std::function<void()> save);
+
+  /** Until it is to stop; then the robot stands, and what waits is inserted. */
+  void run(const StopRequest& stop);
+  std::size_t scans() const { return m_scans; }
+  /** What became of scans, and how long it took. */
+  void saySummary() const;
+
+ private:
+  using Placed =
+      std::pair<Eigen::Isometry3d, Eigen::Isometry3d>;  ///< T_world_robot, T_robot_points
+  std::optional<Placed> placeOf(const WaitingScan& scan, std::string& problem, bool& isLost) const;
+  bool isDue(const WaitingScan& scan);
+  bool insertNext();
+  void insert(const WaitingScan& scan, const Placed& place);
+  std::optional<semantic_navigation::RobotState> robotAt(ros2::Stamp stamp) const;
+  void hear();
+  void serve();
+  void look();
+  void publish();
+  void publishCorrection();
+  void onGoal(const ros2::PoseStamped& message);
+
+  Parameters m_parameters;
+  std::string m_world;  ///< the frame in which /tf has the robot
+  ros2::Node m_node;
+  Complaints m_complaints;
+  NodeClock m_clock;
+  Transforms m_transforms;
+  ScanQueue m_queue;
+  semantic_slam::Mapper m_mapper;
+  MapMessages m_messages;
+  std::optional<Driving> m_driving;  ///< with an order
+  std::optional<GroundGrid> m_grid;  ///< with an order
+  ros2::Publication<ros2::TFMessage> m_writesTransforms;
+  std::function<void()> m_save;
+
+  semantic_map::ObservationClock m_scanClock;
+  double m_seconds = 0;  ///< that passed, by the scans
+  std::size_t m_scans = 0, m_leftOut = 0;
+  ros2::Stamp m_stamp = 0;                           ///< of the last scan
+  std::optional<Eigen::Isometry3d> m_T_world_robot;  ///< then
+  bool m_isNew = false;                              ///< the map has what was not published
+  std::vector<std::chrono::steady_clock::time_point> m_came;  ///< of scans not published
+  std::vector<double> m_latencies;                            ///< ms, of the last scans
+  std::chrono::steady_clock::time_point m_publishedAt, m_steppedAt, m_lookedAt;
+  std::optional<std::chrono::steady_clock::time_point> m_endedAt;  ///< later scans do not count
+  std::optional<ros2::Stamp> m_correctedAt;
+
+  std::mutex m_mutex;  ///< of what DDS's threads leave here
+  std::shared_ptr<const ros2::PoseStamped> m_newGoal;
+  bool m_isToSave = false;
+  Sensors m_sensors;
+  ros2::Subscription<ros2::PoseStamped> m_hearsGoal;
+  ros2::Subscription<ros2::Empty> m_hearsSave;
+};
+
+}  // namespace semantic_map_ros2

@@ -1,0 +1,155 @@
+#include "Parameters.h"
+
+#include <semantic_planning/vehicle/VehicleFile.h>
+#include <strict_files/IniSection.h>
+#include <strict_files/StrictYaml.h>
+
+#include <map>
+#include <set>
+#include <stdexcept>
+
+namespace semantic_map_ros2 {
+
+namespace fs = std::filesystem;
+using strict_files::IniSection;
+using strict_files::OptionList;
+
+namespace {
+
+const std::string kNode = "ros__parameters";  // as messages call those without a section
+const std::set<std::string> kFiles = {"order", "map.classes", "planner.vehicle", "drive.reactive"};
+
+/** Parameters as sections of an .ini file. */
+class Source {
+ public:
+  void set(const std::string& name, const std::string& value, const fs::path& folder) {
+    const bool isFile = kFiles.count(name) > 0 && !value.empty();
+    const std::size_t dot = name.find('.');
+    const std::string section = dot == std::string::npos ? kNode : name.substr(0, dot);
+    m_sections[section][name.substr(dot == std::string::npos ? 0 : dot + 1)] =
+        isFile ? (folder / value).lexically_normal().string() : value;
+  }
+
+  // As mrpt::config::CConfigFileBase, for strict_files.
+  void getAllSections(std::vector<std::string>& names) const {
+    names.clear();
+    for (const auto& [name, keys] : m_sections) names.push_back(name);
+  }
+  void getAllKeys(const std::string& section, std::vector<std::string>& names) const {
+    names.clear();
+    if (const auto it = m_sections.find(section); it != m_sections.end())
+      for (const auto& [key, value] : it->second) names.push_back(key);
+  }
+  std::string read_string(const std::string& section, const std::string& key,
+                          const std::string&) const {
+    return m_sections.at(section).at(key);
+  }
+
+ private:
+  std::map<std::string, std::map<std::string, std::string>> m_sections;
+};
+
+/** Nested maps are sections. */
+void addAll(const strict_files::StrictYaml& yaml, const YAML::Node& map, const std::string& prefix,
+            const fs::path& folder, Source& source) {
+  yaml.checkMap(map);
+  for (const auto& entry : map) {
+    const std::string name = prefix + yaml.text(entry.first, "parameter");
+    std::string value;
+    if (entry.second.IsMap()) {
+      if (!prefix.empty()) yaml.fail(entry.second, name + ": a section within a section");
+      addAll(yaml, entry.second, name + ".", folder, source);
+      continue;
+    }
+    if (entry.second.IsSequence())
+      for (const auto& element : entry.second)
+        value += (value.empty() ? "" : ", ") + yaml.text(element, name);
+    else if (!entry.second.IsNull())
+      value = yaml.text(entry.second, name);
+    source.set(name, value, folder);
+  }
+}
+
+/** Of files for many nodes, what is for all and for this one. */
+void addFile(const fs::path& file, Source& source) {
+  const strict_files::StrictYaml yaml(file);
+  yaml.checkMap(yaml.root());
+  bool isOfRos = false;
+  for (const auto& node : yaml.root()) {
+    if (!node.second.IsMap() || !node.second["ros__parameters"]) continue;
+    isOfRos = true;
+    const std::string name = yaml.text(node.first, "node");
+    if (name == "/**" || name == "semantic_map" || name == "/semantic_map")
+      addAll(yaml, node.second["ros__parameters"], "", file.parent_path(), source);
+  }
+  if (!isOfRos) addAll(yaml, yaml.root(), "", file.parent_path(), source);
+}
+
+void readPlanner(const Source& source, semantic_planning::PlannerOptions& planner) {
+  std::string vehicle;
+  OptionList list;
+  list.add("vehicle", vehicle, "", "file of the vehicle (.yaml)");
+  planner.describe(list);
+  IniSection section(source, "planner");
+  section.read(list);
+  section.finish();
+  if (!vehicle.empty()) planner.vehicle = semantic_planning::loadVehicle(vehicle);
+  planner.validate();
+}
+
+void readDrive(const Source& source, semantic_navigation::NavigatorOptions& navigation) {
+  std::string reactive;
+  OptionList list;
+  navigation.drive.describe(list);
+  list.add("reactive", reactive, "", "file of MRPT's reactive navigator (.ini)");
+  list.add("compressed_obstacles", navigation.compressedObstacles, "", "leaves are obstacles");
+  list.add("mapping_latency", navigation.mappingLatency, "s", strict_files::atLeast(0),
+           "from a scan until the map has it");
+  IniSection section(source, "drive");
+  section.read(list);
+  section.finish();
+  navigation.drive.validate();
+  navigation.reactive = reactive;
+}
+
+Parameters read(const Source& source) {
+  Parameters p;
+  auto& n = p.navigation;
+  strict_files::checkSections(source, {kNode, "map", "insertion", "abstraction", "slam", "planner",
+                                       "drive", "guide", "obstacles", "movers", "focus"});
+  strict_files::readSection(source, kNode, p.node);
+  strict_files::readSection(source, "map", p.map);
+  strict_files::readSection(source, "insertion", p.insertion);
+  strict_files::readSection(source, "abstraction", p.abstraction);
+  strict_files::readSection(source, "slam", p.slam);
+  readPlanner(source, n.planner);
+  readDrive(source, n);
+  strict_files::readSection(source, "guide", n.guide);
+  strict_files::readSection(source, "obstacles", n.obstacles);
+  strict_files::readSection(source, "movers", n.movers);
+  strict_files::readSection(source, "focus", n.focus);
+  if (p.node.drive && (p.node.order.empty() || n.reactive.empty()))
+    throw std::runtime_error("drive: expected order and drive.reactive, too");
+  return p;
+}
+
+}  // namespace
+
+semantic_slam::MapperOptions Parameters::mapping() const {
+  semantic_slam::MapperOptions mapping;
+  mapping.insertion = insertion.scan;
+  mapping.localize = node.slam;
+  mapping.slam = slam;
+  if (node.slam) mapping.scans = fs::temp_directory_path();
+  return mapping;
+}
+
+Parameters readParameters(const std::vector<fs::path>& files,
+                          const std::vector<std::pair<std::string, std::string>>& values) {
+  Source source;
+  for (const fs::path& file : files) addFile(file, source);
+  for (const auto& [name, value] : values) source.set(name, value, "");
+  return read(source);
+}
+
+}  // namespace semantic_map_ros2

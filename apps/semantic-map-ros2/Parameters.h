@@ -1,0 +1,34 @@
+#pragma once
+#include <semantic_map/MapOptions.h>
+#include <semantic_navigation/Navigator.h>
+#include <semantic_slam/SlamOptions.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "NodeOptions.h"
+
+namespace semantic_map_ros2 {
+
+/** All that parameters say: those of the node without a section, others as sections of the .ini
+ * files of rawlog2semantic-map and semantic-map-drive have them, "insertion.max_range". */
+struct Parameters {
+  NodeOptions node;
+  semantic_map::TCreationOptions map;
+  semantic_map::TInsertionOptions insertion;
+  semantic_map::TAbstractionOptions abstraction;
+  semantic_slam::SlamOptions slam;
+  semantic_navigation::NavigatorOptions navigation;  ///< planner, drive, guide, obstacles ...
+
+  semantic_slam::MapperOptions mapping() const;
+};
+
+/** \param files of parameters (YAML), below `ros__parameters` as ROS has them, or plain; files that
+ * they name are relative to them \param values by their names; they go before files \throw
+ * std::runtime_error naming file, parameter and value. */
+Parameters readParameters(const std::vector<std::filesystem::path>& files,
+                          const std::vector<std::pair<std::string, std::string>>& values);
+
+}  // namespace semantic_map_ros2

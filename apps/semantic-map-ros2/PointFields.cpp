@@ -1,0 +1,163 @@
+#include "PointFields.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+namespace semantic_map_ros2 {
+
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::Color;
+using semantic_types::kNoClass;
+using semantic_types::LabeledCloud;
+
+namespace {
+
+/** Bytes of the types 1 (int8) to 8 (float64). */
+constexpr std::array<std::size_t, 9> kSizes = {0, 1, 1, 2, 2, 4, 4, 4, 8};
+
+/** Reads a field of any type, of points of either byte order. */
+class FieldReader {
+ public:
+  FieldReader(const RawCloud& raw, const RawCloud::Field& field)
+      : m_offset(field.offset), m_type(field.type), m_swaps(raw.isBigEndian) {
+    if (m_type < 1 || m_type > 8)
+      throw std::runtime_error("field '" + field.name + "' has the type " + std::to_string(m_type) +
+                               ", expected 1 to 8");
+    if (m_offset + kSizes[m_type] > raw.pointStep)
+      throw std::runtime_error("field '" + field.name + "' lies outside of its point of " +
+                               std::to_string(raw.pointStep) + " bytes");
+  }
+
+  double number(const std::uint8_t* point) const {
+    switch (m_type) {
+      case 1:
+        return read<std::int8_t>(point);
+      case 2:
+        return read<std::uint8_t>(point);
+      case 3:
+        return read<std::int16_t>(point);
+      case 4:
+        return read<std::uint16_t>(point);
+      case 5:
+        return read<std::int32_t>(point);
+      case 6:
+        return read<std::uint32_t>(point);
+      case 7:
+        return static_cast<double>(read<float>(point));
+      default:
+        return read<double>(point);
+    }
+  }
+  /** Four bytes 0xAARRGGBB, whose type may be float; what has other types has no color. */
+  double color(const std::uint8_t* point) const {
+    return kSizes[m_type] == 4 ? read<std::uint32_t>(point) & 0xffffff : -1;
+  }
+
+ private:
+  template <class T>
+  T read(const std::uint8_t* point) const {
+    std::array<std::uint8_t, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), point + m_offset, sizeof(T));
+    if (m_swaps) std::reverse(bytes.begin(), bytes.end());
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof(T));
+    return value;
+  }
+
+  std::size_t m_offset;
+  int m_type;
+  bool m_swaps;
+};
+
+const RawCloud::Field* find(const RawCloud& raw, const std::string& name) {
+  for (const RawCloud::Field& field : raw.fields)
+    if (field.name == name) return &field;
+  return nullptr;
+}
+
+FieldReader coordinate(const RawCloud& raw, const std::string& name) {
+  const RawCloud::Field* field = find(raw, name);
+  if (!field) throw std::runtime_error("the points have no field '" + name + "'");
+  return {raw, *field};
+}
+
+/** Each point is within the data: rows of points that may have a rest between them. */
+void checkSize(const RawCloud& raw) {
+  const std::uint64_t row = std::uint64_t(raw.width) * raw.pointStep;
+  const bool fits = raw.height == 0 || raw.width == 0 ||
+                    ((raw.height == 1 || raw.rowStep >= row) &&
+                     std::uint64_t(raw.rowStep) * (raw.height - 1) + row <= raw.size);
+  if (!fits)
+    throw std::runtime_error(std::to_string(raw.size) + " bytes are no " +
+                             std::to_string(raw.width) + " x " + std::to_string(raw.height) +
+                             " points of " + std::to_string(raw.pointStep) + " bytes");
+}
+
+}  // namespace
+
+ClassId NumberedClasses::at(double number) {
+  if (m_lastClass && number == m_last) return *m_lastClass;
+  const auto known = m_known.find(number);
+  m_last = number;
+  return *(m_lastClass = known != m_known.end() ? known->second : m_known[number] = find(number));
+}
+
+ClassId NumberedClasses::find(double number) {
+  if (number == 0 && !m_areColors && m_table.folds().count(0) == 0) return kNoClass;
+  try {
+    if (!(number >= 0 && number <= 4294967295.0) || number != std::floor(number))
+      throw std::invalid_argument("a number that is no raw id");
+    const auto id = static_cast<std::uint32_t>(number);
+    if (!m_areColors) return m_table.fromRaw(id);
+    const Color color{std::uint8_t(id >> 16), std::uint8_t(id >> 8), std::uint8_t(id)};
+    const auto found = m_table.find(color);
+    if (!found && id != 0)
+      throw std::invalid_argument("a color (" + std::to_string(color.r) + ", " +
+                                  std::to_string(color.g) + ", " + std::to_string(color.b) +
+                                  ") that no class has");
+    return found.value_or(kNoClass);
+  } catch (const std::invalid_argument& e) {
+    if (m_problem.empty()) m_problem = e.what();
+    return kNoClass;
+  }
+}
+
+LabeledCloud cloudOf(const RawCloud& raw, const std::string& classField, const ClassTable& table,
+                     std::string& problem) {
+  const FieldReader x = coordinate(raw, "x"), y = coordinate(raw, "y"), z = coordinate(raw, "z");
+  checkSize(raw);
+  LabeledCloud cloud;
+  std::vector<const std::uint8_t*> places;
+  const std::uint32_t rows = raw.width > 0 ? raw.height : 0;
+  for (std::uint32_t row = 0; row < rows; ++row)
+    for (std::uint32_t column = 0; column < raw.width; ++column) {
+      const std::uint8_t* point =
+          raw.data + std::size_t(row) * raw.rowStep + std::size_t(column) * raw.pointStep;
+      const Eigen::Vector3f p =
+          Eigen::Vector3d(x.number(point), y.number(point), z.number(point)).cast<float>();
+      if (!p.allFinite()) continue;
+      cloud.points.push_back(p);
+      places.push_back(point);
+    }
+  const RawCloud::Field* field = find(raw, classField);
+  if (!field) {
+    problem = "the points have no field '" + classField + "': they are without classes";
+    return cloud;
+  }
+  const bool areColors = field->name == "rgb" || field->name == "rgba";
+  const FieldReader reader(raw, *field);
+  NumberedClasses classes(table, areColors);
+  cloud.classes.reserve(places.size());
+  for (const std::uint8_t* point : places)
+    cloud.classes.push_back(classes.at(areColors ? reader.color(point) : reader.number(point)));
+  if (!classes.problem().empty())
+    problem =
+        "field '" + classField + "': " + classes.problem() + ": such points are without classes";
+  return cloud;
+}
+
+}  // namespace semantic_map_ros2

@@ -1,0 +1,60 @@
+#pragma once
+#include <semantic_types/ClassTable.h>
+#include <semantic_types/LabeledCloud.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace semantic_map_ros2 {
+
+/** A sensor_msgs/PointCloud2 as it came: nothing of it is known to be right. */
+struct RawCloud {
+  struct Field {
+    std::string name;
+    std::uint32_t offset = 0;
+    int type = 0;  ///< sensor_msgs/PointField's number
+  };
+  std::vector<Field> fields;
+  std::uint32_t width = 0, height = 0, pointStep = 0, rowStep = 0;
+  bool isBigEndian = false;
+  const std::uint8_t* data = nullptr;
+  std::size_t size = 0;  ///< bytes of data
+};
+
+/** The points with their classes. Points that are not finite are left out.
+ * \param classField its values are raw ids of the table; "rgb" and "rgba" are colors of its classes
+ * \param problem what is wrong with the classes, if anything: points are then without
+ * \throw std::runtime_error what is wrong with the points: fields are missing or of a type that is
+ * none, or the data are too short. */
+semantic_types::LabeledCloud cloudOf(const RawCloud& raw, const std::string& classField,
+                                     const semantic_types::ClassTable& table, std::string& problem);
+
+/** Classes of a message's points or pixels by the numbers that they have; each number is looked up
+ * once. */
+class NumberedClasses {
+ public:
+  /** \param areColors numbers are 0xRRGGBB, otherwise raw ids */
+  NumberedClasses(const semantic_types::ClassTable& table, bool areColors)
+      : m_table(table), m_areColors(areColors) {}
+
+  /** None for a color or a number that the table does not know. */
+  semantic_types::ClassId at(double number);
+  /** The numbers that it does not know; 0, which is no class unless the table says so, is none. */
+  const std::string& problem() const { return m_problem; }
+
+ private:
+  semantic_types::ClassId find(double number);
+
+  const semantic_types::ClassTable& m_table;
+  bool m_areColors;
+  std::map<double, semantic_types::ClassId> m_known;
+  double m_last = 0;  ///< number, and its class
+  std::optional<semantic_types::ClassId> m_lastClass;
+  std::string m_problem;
+};
+
+}  // namespace semantic_map_ros2

@@ -1,0 +1,82 @@
+#pragma once
+#include <labeled_cloud/ScanConverter.h>
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "Complaints.h"
+#include "NodeOptions.h"
+#include "ScanQueue.h"
+#include "Transforms.h"
+#include "ros2/Node.h"
+
+namespace semantic_map_ros2 {
+
+/** Time: the machine's, or what /clock says. */
+class NodeClock {
+ public:
+  /** \param simulated the machine's time does not count */
+  explicit NodeClock(bool simulated) : m_simulated(simulated) {}
+  ros2::Stamp now() const;
+  void set(ros2::Stamp now) { m_now = now; }
+
+ private:
+  bool m_simulated;
+  std::atomic<ros2::Stamp> m_now{0};
+};
+
+/** How the robot moves, by its odometry: m/s, rad/s. */
+struct Speeds {
+  double forward = 0, turn = 0;
+};
+
+/** What the node hears of sensors and of where they are. Clouds, scans and depth images go into a
+ * queue; they are read when they are taken from it. */
+class Sensors {
+ public:
+  /** All must outlive it. */
+  Sensors(ros2::Node& node, const NodeOptions& options, const semantic_types::ClassTable& classes,
+          const labeled_cloud::ScanConverterOptions& conversion, NodeClock& clock,
+          Transforms& transforms, ScanQueue& queue, Complaints& complaints);
+  ~Sensors();
+
+  Speeds speeds() const;
+
+ private:
+  class PixelLabels;
+  using Depth = std::shared_ptr<const ros2::Image>;
+  void add(WaitingScan scan, const ros2::Header& header, std::size_t bytes);
+  void addCloud(std::shared_ptr<const ros2::PointCloud2> message);
+  void addLaser(std::shared_ptr<const ros2::LaserScan> message);
+  void addDepth(Depth message);
+  void addLabels(std::shared_ptr<const ros2::Image> message);
+  void addTransforms(const ros2::TFMessage& message, bool areStatic);
+  bool hasLabels(ros2::Stamp stamp) const;
+  semantic_types::LabeledCloud read(const ros2::PointCloud2& message);
+  semantic_types::LabeledCloud read(const ros2::Image& depth);
+
+  const NodeOptions& m_options;
+  semantic_types::ClassTable m_classes;
+  NodeClock& m_clock;
+  Transforms& m_transforms;
+  ScanQueue& m_queue;
+  Complaints& m_complaints;
+  std::shared_ptr<PixelLabels> m_labeler;
+  labeled_cloud::ScanConverter m_converter;
+
+  mutable std::mutex m_mutex;
+  std::map<ros2::Stamp, std::shared_ptr<const ros2::Image>> m_labels;
+  std::shared_ptr<const ros2::CameraInfo> m_camera;
+  Speeds m_speeds;
+  ros2::Subscription<ros2::Clock> m_hearsClock;
+  ros2::Subscription<ros2::TFMessage> m_hearsTransforms, m_hearsStatic;
+  ros2::Subscription<ros2::Odometry> m_hearsOdometry;
+  ros2::Subscription<ros2::PointCloud2> m_hearsPoints;
+  ros2::Subscription<ros2::LaserScan> m_hearsLaser;
+  ros2::Subscription<ros2::CameraInfo> m_hearsCamera;
+  ros2::Subscription<ros2::Image> m_hearsLabels, m_hearsDepth;
+};
+
+}  // namespace semantic_map_ros2

@@ -1,0 +1,75 @@
+// Makes a semantic octree map in a live ROS 2 system, without ROS.
+#include <semantic_abstraction/Abstraction.h>
+#include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_octree/TreeFile.h>
+#include <semantic_types/ClassTableFile.h>
+
+#include <ostream>
+#include <stdexcept>
+
+#include "Application.h"
+#include "MappingNode.h"
+#include "Outputs.h"
+#include "StandardOutput.h"
+
+namespace semantic_map_ros2 {
+namespace {
+
+namespace fs = std::filesystem;
+using semantic_octree::SemanticOcTree;
+
+struct Cli {
+  fs::path output, map;
+  Outputs outputs;
+
+  explicit Cli(CLI::App& app) : outputs(app) {
+    outputs
+        .add(app, output, "FILE",
+             "The map (.semantic), written after Ctrl-C, and when somebody publishes to ~/save")
+        ->required();
+    app.add_option("--map", map, "Map to go on with, in whose frame all is (.semantic)");
+    app.add_flag_callback("-v,--verbose", beVerbose, "Tell of each scan");
+    app.footer("As ROS has it: --ros-args -r FROM:=TO -p NAME:=VALUE --params-file FILE (YAML)");
+  }
+};
+
+SemanticOcTree beginning(const Cli& cli, const Parameters& parameters) {
+  if (!cli.map.empty()) return semantic_octree::loadTree(cli.map.string());
+  const std::string& file = parameters.map.classes;
+  const auto table = file.empty() ? semantic_map::CSemanticOctoMap::occupancyOnly()
+                                  : semantic_types::loadClassTable(file);
+  SemanticOcTree map(parameters.map.resolution, table, parameters.insertion.filter);
+  if (parameters.abstraction.isSet())
+    setAbstraction(map, parameters.abstraction.forClasses(map.classes()));
+  return map;
+}
+
+int run(const Cli& cli, const ros2::Arguments& arguments) {
+  if (!arguments.problem.empty()) throw CLI::ValidationError(arguments.problem);
+  const StopRequest stop("after the scans that wait");
+  const std::vector<fs::path> files(arguments.files.begin(), arguments.files.end());
+  const Parameters parameters = readParameters(files, arguments.parameters);
+  cli.outputs.check({cli.output}, files);
+  SemanticOcTree map = beginning(cli, parameters);
+  MappingNode node(parameters, arguments, map, [&] {
+    saveTree(map, cli.output.string());
+    notes() << cli.output.string() << ": saved" << std::endl;
+  });
+  notes() << "Waiting for scans; Ctrl-C ends and saves" << std::endl;
+  node.run(stop);
+  node.saySummary();
+  if (node.scans() == 0) throw std::runtime_error("no scan came: there is no map to save");
+  saveTree(map, cli.output.string());
+  return 0;
+}
+
+}  // namespace
+}  // namespace semantic_map_ros2
+
+int main(int argc, char** argv) {
+  CLI::App app("Makes a semantic octree map in a live ROS 2 system, without ROS");
+  const semantic_map_ros2::Cli cli(app);
+  ros2::Arguments arguments = ros2::argumentsOf(argc, argv);
+  return runApplication(app, static_cast<int>(arguments.others.size()), arguments.others.data(),
+                        [&] { return semantic_map_ros2::run(cli, arguments); });
+}
