@@ -13,7 +13,8 @@ const std::vector<std::string> kPrograms = {
     "rawlog2semantic-map", "semantic-map-compress", "semantic-map-plan", "semantic-map-drive",
     "semantic-map-export", "semantic-map-merge",    "semantic-map-edit", "synth-rawlog",
     "planning-study",      "drive-study",           "semantic-map-info", "insertion-benchmark",
-    "dataset2rawlog",      "semantic-map-view",     "semantic-map-send", "semantic-map-receive"};
+    "dataset2rawlog",      "semantic-map-view",     "semantic-map-send", "semantic-map-receive",
+    "semantic-map-ros2"};
 
 class Program : public testing::TestWithParam<std::string> {
  protected:

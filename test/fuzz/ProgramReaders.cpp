@@ -14,6 +14,8 @@
 #include "rawlog2semantic-map/Config.h"
 #include "semantic-map-info/PointQuery.h"
 #include "semantic-map-merge/MapPoses.h"
+#include "semantic-map-ros2/Parameters.h"
+#include "semantic-map-ros2/PointFields.h"
 #include "semantic-map-view/Track.h"
 #include "simulated_drive/DriveConfig.h"
 
@@ -93,6 +95,33 @@ void parseCommandLine(const std::string& bytes) {
   }
 }
 
+/** A cloud's message: the number of fields (name, offset, type), sizes, and what is left as data.
+ */
+void readPointFields(const std::string& bytes) {
+  std::size_t at = 0;
+  const auto number = [&](std::size_t size) {
+    std::uint32_t n = 0;
+    for (; size > 0; --size) n = n << 8 | (at < bytes.size() ? std::uint8_t(bytes[at++]) : 0);
+    return n;
+  };
+  const std::vector<std::string> names = {"x", "y", "z", "label", "rgb"};
+  semantic_map_ros2::RawCloud raw;
+  for (std::uint32_t fields = number(1) % 8; fields > 0; --fields) {
+    const std::string name = names[number(1) % names.size()];
+    const std::uint32_t offset = number(4);
+    raw.fields.push_back({name, offset, static_cast<int>(number(1))});
+  }
+  raw.width = number(4), raw.height = number(4), raw.pointStep = number(4), raw.rowStep = number(4);
+  raw.isBigEndian = number(1) % 2 == 1;
+  const std::vector<std::uint8_t> data(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                                       bytes.end());
+  raw.data = data.data(), raw.size = data.size();
+  for (const char* field : {"label", "rgb"}) {
+    std::string problem;
+    semantic_map_ros2::cloudOf(raw, field, fuzzedClasses(), problem);
+  }
+}
+
 }  // namespace
 
 std::vector<Reader> programReaders() {
@@ -117,5 +146,9 @@ std::vector<Reader> programReaders() {
       {"drive-config",
        fromFile("", simulated_drive::loadDriveConfig),
        {"config/drives/synthetic.ini"}},
+      {"ros-parameters",
+       fromFile("", [](const fs::path& f) { semantic_map_ros2::readParameters({f}, {}); }),
+       {"config/ros/semantic-map-ros2.yaml"}},
+      {"point-fields", readPointFields, {}},
       {"command-line", parseCommandLine, {}}};
 }

@@ -16,6 +16,7 @@
 #include <synthetic_world/Camera.h>
 #include <synthetic_world/Lidar.h>
 
+#include "semantic-map-ros2/NodeOptions.h"
 #include "simulated_drive/DriveConfig.h"
 
 using strict_files::Option;
@@ -135,6 +136,12 @@ std::vector<OptionTable> drivingTables() {
                           "[drives](../how-it-works/drives.md#detail-where-it-drives)."),
       table<SensorConfig>("Simulated sensors", "`[sensors]`; `[camera]` and `[lidar]` are above."),
       table<PoseOptions>("Simulated odometry", "`[pose]`; it is corrected as `[slam]` says."),
+      table<semantic_map_ros2::NodeOptions>(
+          "ROS 2",
+          "Parameters of `semantic-map-ros2`, which takes `map`, `insertion`, `abstraction`, "
+          "`slam`, "
+          "`planner`, `drive`, `guide`, `obstacles`, `movers` and `focus` of the above, too: "
+          "`insertion.max_range`. See [a live map in ROS 2](ros2.md)."),
   };
 }
 

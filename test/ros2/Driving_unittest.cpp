@@ -1,0 +1,139 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "RoadInGrass.h"
+
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Isometry3d;
+using Eigen::Translation3d;
+using Eigen::Vector3d;
+
+ros2::PoseStamped goalAt(double x, double y, const std::string& frame) {
+  ros2::PoseStamped goal{};
+  goal.header = ros2::headerOf(0, frame);
+  goal.pose.position = {x, y, 0};
+  goal.pose.orientation.w = 1;
+  return goal;
+}
+
+ros2::Stamp now() {
+  using namespace std::chrono;
+  return duration_cast<nanoseconds>(system_clock::now().time_since_epoch()).count();
+}
+
+/** What a LiDAR sees that stands in a room of 14 x 10 m, with a cupboard in a corner. */
+semantic_types::LabeledCloud room() {
+  semantic_types::LabeledCloud cloud;
+  for (int ring = -15; ring < 10; ++ring)
+    for (int column = 0; column < 360; ++column) {
+      const Eigen::Vector3d ray(std::cos(column * M_PI / 180), std::sin(column * M_PI / 180),
+                                std::tan(ring * M_PI / 90));
+      const auto until = [&](int axis, double low, double high) {
+        return ray[axis] == 0 ? 1e9 : (ray[axis] > 0 ? high : low) / ray[axis];
+      };
+      double range = std::min({until(0, -8, 6), until(1, -4, 6), until(2, -1, 2)});
+      if (ray.x() > 0 && ray.y() > 0) range = std::min(range, std::max(4 / ray.x(), 3 / ray.y()));
+      cloud.points.push_back((range * ray).cast<float>());
+      cloud.classes.push_back(3);
+    }
+  return cloud;
+}
+
+}  // namespace
+
+TEST_F(RoadInGrass, hasAPathToAGoal) {
+  start({"-p", "order:=" + order()});
+  Heard<ros2::Path> paths(*live, "/plan");
+  ros2::Publication<ros2::PoseStamped> goals(live->node(), "goal_pose", {});
+  see(1);
+  const std::string map = "map", other = "moon";
+  live->send(goals, goalAt(5, 0, other));
+  EXPECT_TRUE(live->waitFor([&] { return contains(live->said(), "a goal cannot be understood"); }));
+  live->send(goals, goalAt(5, 0, map));
+  ASSERT_TRUE(live->waitFor([&] { return paths.last() != nullptr; })) << live->said();
+  const auto path = paths.last();
+  ASSERT_GT(path->poses._length, 5u) << live->said();
+  const auto& end = path->poses._buffer[path->poses._length - 1];
+  EXPECT_EQ(ros2::textOf(end.header.frame_id), "map");
+  EXPECT_NEAR(end.pose.position.x, 5, 0.01);
+  live->send(goals, goalAt(50, 0, map));
+  EXPECT_TRUE(live->waitFor([&] { return contains(live->said(), "Goal: no path"); }));
+  EXPECT_EQ(live->end(), kStopped);
+}
+
+TEST_F(RoadInGrass, isDrivenToAGoal) {
+  const std::string sources = MSO_SOURCE_DIR;
+  start({"-p", "order:=" + order(), "-p", "drive:=true", "-p",
+         "drive.reactive:=" + sources + "/config/reactive/robot.ini", "-p",
+         "movers.classes:=", "-p", "planner.vehicle:=" + sources + "/config/vehicles/robot.yaml"});
+  Heard<ros2::Twist> commands(*live, "/cmd_vel");
+  Heard<ros2::Path> paths(*live, "/plan");
+  ros2::Publication<ros2::PoseStamped> goals(live->node(), "goal_pose", {});
+  ros2::Publication<ros2::Odometry> odometry(live->node(), "odom", {});
+  const std::string map = "map", base = "base_link";
+  double x = 0, y = 0, heading = 0;
+  std::size_t seen = 0, scans = 0;
+  const auto step = [&] {
+    const auto command = commands.last();
+    const double speed = command ? command->linear.x : 0, turn = command ? command->angular.z : 0;
+    constexpr double kSeconds = 0.05;
+    heading += kSeconds * turn;
+    x += kSeconds * speed * std::cos(heading), y += kSeconds * speed * std::sin(heading);
+    ros2::Odometry message{};
+    const ros2::Stamp stamp = now();
+    message.header = ros2::headerOf(stamp, map);
+    message.child_frame_id = ros2::textOf(base);
+    message.pose.pose = {{x, y, 0}, {0, 0, std::sin(heading / 2), std::cos(heading / 2)}};
+    message.twist.twist.linear.x = speed, message.twist.twist.angular.z = turn;
+    odometry.write(message);
+    if (scans++ % 10 == 0) {  // the same world from where the robot is
+      auto cloud = scan();
+      const Isometry3d T =
+          Isometry3d(Translation3d(x, y, 0) * AngleAxisd(heading, Vector3d::UnitZ()));
+      const Vector3d sensor(0.05, 0.05, 30);
+      for (auto& p : cloud.points)
+        p = (T.inverse() * (p.cast<double>() + sensor) - sensor).cast<float>();
+      points->write(PointMessage(cloud, "lidar", stamp).message());
+      ++seen;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  };
+  live->waitFor([&] { return odometry.isRead() && points->isRead(); });
+  live->waitFor([&] { return step(), contains(live->said(), "points inserted"); });
+  live->send(goals, goalAt(3, 0, map));
+  EXPECT_TRUE(live->waitFor([&] { return step(), contains(live->said(), "the robot is there"); }));
+  EXPECT_NEAR(x, 3, 0.5);
+  EXPECT_GT(paths.all().size(), 0u);
+  EXPECT_TRUE(live->waitFor([&] { return commands.last()->linear.x == 0; }));
+  EXPECT_EQ(live->end(), kStopped) << live->said();
+}
+
+TEST_F(RoadInGrass, correctsOdometry) {
+  start({"-p", "slam:=true", "-p", "slam.level:=true"});
+  Heard<ros2::TFMessage> transforms(*live, "/tf");
+  const auto correction = [&]() -> const ros2::TransformStamped* {
+    const ros2::TransformStamped* last = nullptr;
+    for (const auto& message : transforms.all())
+      for (std::uint32_t i = 0; i < message->transforms._length; ++i)
+        if (ros2::textOf(message->transforms._buffer[i].child_frame_id) == "odom")
+          last = &message->transforms._buffer[i];
+    return last;
+  };
+  for (int i = 1; i <= 6; ++i) {  // odometry drifts, the robot stands
+    const ros2::Stamp stamp = i * kSecond;
+    live->place("odom", "base_link", Isometry3d(Translation3d(0.03 * (i - 1), 0, 0)), stamp);
+    live->send(*points, PointMessage(room(), "base_link", stamp).message());
+    ASSERT_TRUE(live->waitForScans(std::size_t(i)));
+  }
+  const ros2::Stamp last = 6 * kSecond;
+  ASSERT_TRUE(live->waitFor(
+      [&] { return correction() && ros2::stampOf(correction()->header.stamp) >= last; }));
+  EXPECT_EQ(ros2::textOf(correction()->header.frame_id), "map");
+  EXPECT_NEAR(correction()->transform.translation.x, -0.15, 0.06);
+  EXPECT_EQ(live->end(), kStopped) << live->said();
+}
