@@ -132,7 +132,8 @@ LabeledCloud cloudOf(const RawCloud& raw, const std::string& classField, const C
   checkSize(raw);
   LabeledCloud cloud;
   std::vector<const std::uint8_t*> places;
-  for (std::uint32_t row = 0; row < raw.height; ++row)
+  const std::uint32_t rows = raw.width > 0 ? raw.height : 0;
+  for (std::uint32_t row = 0; row < rows; ++row)
     for (std::uint32_t column = 0; column < raw.width; ++column) {
       const std::uint8_t* point =
           raw.data + std::size_t(row) * raw.rowStep + std::size_t(column) * raw.pointStep;
