@@ -98,7 +98,7 @@ TEST_F(PlanningStudy, allWaysToPlanGetTheSameTasks) {
       task += row.at(part) + " ";
     EXPECT_TRUE(tasksOfWay[wayOf(row)].insert(task).second) << "twice: " << wayOf(row);
   }
-  constexpr std::size_t kGraphs = 7, kJudgments = 4, kKept = 1, kBudgets = 2, kReference = 1;
+  constexpr std::size_t kGraphs = 5, kJudgments = 4, kKept = 1, kBudgets = 2, kReference = 1;
   ASSERT_EQ(tasksOfWay.size(), kGraphs * (kJudgments + kKept) * kBudgets + kReference);
   for (const auto& [way, tasks] : tasksOfWay) EXPECT_EQ(tasks, tasksOfWay.begin()->second) << way;
 }
@@ -109,10 +109,10 @@ TEST_F(PlanningStudy, costsMayCountEdgesInGraphsOfAFileOfWeights) {
   const std::string weights = (folder / "weights.yaml").string();
   expectRefused(study({"--graphs", "leaves", "--weights", weights, "--solution", "none"}),
                 weights + ": unknown solution 'none'");
-  ASSERT_EQ(study({"--graphs", "leaves", "--weights", weights, "--solution", "roads", "--cost",
-                   "count", "--class-of-leaf"})
-                .status,
-            0);
+  ASSERT_EQ(
+      study({"--graphs", "leaves", "--weights", weights, "--solution", "roads", "--cost", "count"})
+          .status,
+      0);
   int found = 0;
   for (const Row& row : rows()) {
     if (row.at("found") != "1" || row.at("judgment") != "endpoint") continue;
@@ -218,7 +218,7 @@ TEST_F(PlanningStudy, rememberedEdgesChangeNoPath) {
     if (row.at("judgment") == "profile" && row.at("graph") != "reference")
       ways[row.at("graph") + " " + row.at("budget") + " " + row.at("instance")][row.at("memory")] =
           row.at("way [0.1 mm]");
-  EXPECT_EQ(ways.size(), 7u * 2 * 4);
+  EXPECT_EQ(ways.size(), 5u * 2 * 4);
   for (const auto& [task, way] : ways) EXPECT_EQ(way.at("kept"), way.at("cold")) << task;
 }
 

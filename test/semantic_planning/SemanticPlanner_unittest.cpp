@@ -42,8 +42,7 @@ class FewestEdges : public colored_graph::GraphSearch {
       result.vertices.push_back(before[v].neighbor);
       result.edges.push_back(before[v].edge);
       const auto profile = options.evaluate(before[v].edge);
-      for (const auto& stretch : *profile)
-        result.lengthPerClass[stretch.classId] += stretch.length;
+      for (const auto& stretch : *profile) result.lengthPerClass[stretch.classId] += stretch.length;
     }
     std::reverse(result.vertices.begin(), result.vertices.end());
     std::reverse(result.edges.begin(), result.edges.end());

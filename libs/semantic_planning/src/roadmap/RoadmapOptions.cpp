@@ -17,9 +17,7 @@ const Choices<GraphKind>& choicesOf(GraphKind) {
 
 const char* nameOf(GraphKind kind) { return strict_files::nameIn(choicesOf(kind), kind); }
 
-bool belongsToMap(GraphKind kind) {
-  return isOfTree(kind) || kind == GraphKind::Full;
-}
+bool belongsToMap(GraphKind kind) { return isOfTree(kind) || kind == GraphKind::Full; }
 
 bool isOfTree(GraphKind kind) { return kind == GraphKind::Compressed || kind == GraphKind::Leaves; }
 
