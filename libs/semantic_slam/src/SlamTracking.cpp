@@ -157,29 +157,17 @@ void SlamEngine::begin(Seen seen, const Pose& T_map_robot, const Pose& T_last_ke
 
 std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_step) {
   const std::size_t last = m_keyframes.size() - 1;
+  const Matrix6 information = m_noise.information(T_step);
   const Pose T_guess = m_local.T_local_last() * m_T_keyframe_last * T_step;
-  const auto offOf = [&T_guess](const Registration& r) {
-    return vectorOf(T_guess.inverse() * r.T_submap_scan);
-  };
-  const auto matchWith = [&](const Matrix6& information) {
-    return match(m_local.submaps(), seen, T_guess, information / kOwnInformation);
-  };
-  Matrix6 information = m_noise.information(T_step);
-  const Matrix6 atFirst = MotionNoise(!m_hasOdometry).information(T_step);
-  std::optional<Registration> r = matchWith(information);
-  bool isFar = isBeyond(offOf(*r), information);
-  if (m_hasOdometry && (isFar || r->matchedShare < kFitsWell)) {
-    const Registration free = matchWith(atFirst);  // wheels may be worse than they were so far
-    if (free.matchedShare > r->matchedShare) {
-      r = free;
-      information = atFirst;
-    }
-    isFar = isBeyond(offOf(*r), atFirst);
-  }
+  std::optional<Registration> r =
+      match(m_local.submaps(), seen, T_guess, information / kOwnInformation);
+  const Vector6 off = vectorOf(T_guess.inverse() * r->T_submap_scan);
+  const bool isFar = isBeyond(off, information);
   // Beams in a plane fit but where they belong; in space much is ground, which fits anywhere.
-  const bool fitsWell = r->matchedShare >= kFitsWell;
-  const bool mayBeFar = fitsWell && (m_scale.isPlanar || !isBeyond(offOf(*r), atFirst));
-  if (isFar && fitsWell)
+  const bool mayBeFar =
+      r->matchedShare >= kFitsWell &&
+      (m_scale.isPlanar || !isBeyond(off, MotionNoise(!m_hasOdometry).information(T_step)));
+  if (isFar && r->matchedShare >= kFitsWell)
     m_noise.note(T_step, T_guess.inverse() * r->T_submap_scan,
                  kOwnInformation * r->information + information);
   if (!isCovered(*r, seen) || r->matchedShare < kFits || (isFar && !mayBeFar))
