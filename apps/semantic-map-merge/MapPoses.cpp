@@ -1,5 +1,6 @@
 #include "MapPoses.h"
 
+#include <strict_files/ClassicNumbers.h>
 #include <strict_files/TextFile.h>
 
 #include <array>
@@ -21,6 +22,7 @@ struct Line {
 
 Line parse(const std::string& text) {
   std::istringstream in(text);
+  const strict_files::ClassicNumbers classic(in);
   Line line;
   std::array<double, 6> v{};
   std::string rest;
