@@ -4,6 +4,7 @@
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/config/CConfigFile.h>
 #include <mrpt_compat/Images.h>
+#include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>
@@ -37,6 +38,7 @@ ImageList readImageList(const fs::path& list) {
   ImageList images;
   for (const TextLine& line : readLines(list)) {
     std::istringstream stream(line.text);
+    const strict_files::ClassicNumbers classic(stream);
     double time;
     std::string file;
     if (!(stream >> time >> file))

@@ -21,6 +21,7 @@ struct Line {
 
 Line parse(const std::string& text) {
   std::istringstream in(text);
+  const strict_files::ClassicNumbers classic(in);
   Line line;
   std::array<double, 6> v{};
   std::string rest;

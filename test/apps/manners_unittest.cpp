@@ -63,19 +63,19 @@ TEST_P(Program, endsWithAMessageUnderAnyLimitOfMemory) {
   GTEST_SKIP() << "the address sanitizer takes terabytes of addresses";
 #endif
   const auto statusWith = [this](int megabytes) {
-    const CommandRun run = runCommand("ulimit -c 0 -v " + std::to_string(1024 * megabytes) +
+    const CommandRun run = runCommand("ulimit -c 0; ulimit -v " + std::to_string(1024 * megabytes) +
                                       "; " MSO_BIN_DIR "/" + GetParam() + " --version");
     EXPECT_TRUE(run.status == 0 || run.status == 1 || run.status == 127)
         << run.status << " with " << megabytes << " MB: " << run.output;
     EXPECT_NE(run.output, "");
     return run.status;
   };
-  int tooLittle = 8, enough = 4096;
-  while (enough - tooLittle > 1) {
+  int tooLittle = 8, enough = 1032;
+  while (enough - tooLittle > 4) {
     const int middle = (tooLittle + enough) / 2;
     (statusWith(middle) == 0 ? enough : tooLittle) = middle;
   }
-  for (int megabytes = enough - 24; megabytes < enough + 12; megabytes += 3) statusWith(megabytes);
+  for (int megabytes = enough - 20; megabytes < enough + 8; megabytes += 4) statusWith(megabytes);
 }
 
 TEST_P(Program, offersTheOptionThatWasMeant) {

@@ -91,7 +91,7 @@ void readTiles(const fs::path& folder) {
       index.replace(at, mark.size(), "checksum: " + std::to_string(checksumOf(file)));
   }
   std::ofstream(folder / "index.yaml", std::ios::binary)
-      << index << "checksum: " << crcOf(index) << '\n';
+      << index + "checksum: " + std::to_string(crcOf(index)) + '\n';
   expectSound(semantic_octree::loadMap(folder.string()));
 }
 

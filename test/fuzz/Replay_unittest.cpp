@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <strict_files/Words.h>
 
 #include <filesystem>
 #include <fstream>
@@ -37,7 +38,7 @@ std::string expectAnswer(const Reader& reader, const std::string& bytes) {
     return {};
   } catch (const std::exception& e) {
     EXPECT_STRNE(e.what(), "") << reader.name;
-    return e.what();
+    return strict_files::messageOf(e);
   }
 }
 

@@ -172,8 +172,8 @@ class SemanticOcTree {
    * ClassFilter::hit() for their labels), voxels that beams cross are free unless hit.
    * \param cloud points in the sensor's frame
    * \param secondsSince by which the map ages first, see age()
-   * \throw std::out_of_range the sensor is outside the map
-   * \throw std::invalid_argument vectors of different lengths, or a class that is not in the table
+   * \throw std::out_of_range the sensor is outside the map \throw std::invalid_argument its pose is
+   * not finite, vectors are of different lengths, or a class is not in the table
    * \throw std::bad_alloc no memory; look at isBroken(). */
   InsertionReport insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
                          const InsertionOptions& options = {}, double secondsSince = 0);
