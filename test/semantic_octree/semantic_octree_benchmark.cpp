@@ -130,7 +130,7 @@ void mergeIntoTree(benchmark::State& state) {
   NodeStore store(0);
   Scan scan;
   scan.set(street().cloud, street().T_map_sensor, resolution, filter, insertion());
-  const MergeTarget target{store, filter, nullptr, nullptr, true};
+  const MergeTarget target{store, filter, nullptr, nullptr, nullptr, true};
   mergeScan(target, scan, 1);
   for (auto _ : state) mergeScan(target, scan, 1);
 }
