@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
     navigator.update(robot);  // 1: your odometry
     if (step % 5 == 0) {      // 2: your sensors' points with their classes
       const auto T_map_sensor = robot.T_odometry_robot * scan.T_robot_sensor;
-      scan.cloud = scanLidar(world, T_map_sensor, {32, 512, -45, 15, 0.8, 20, {}});
+      scan.cloud = scanLidar(world, T_map_sensor, {32, 512, -45, 15, 20, 0, {}});
       navigator.see({scan}, seconds);
     }
     const auto c = navigator.step(seconds);  // 3: to your motors

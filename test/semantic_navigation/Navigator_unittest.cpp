@@ -101,7 +101,7 @@ class Robot {
   std::vector<SensorScan> scans() const {
     SensorScan scan{{}, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.4))};
     const Eigen::Isometry3d T_world_sensor = m_robot.T_odometry_robot * scan.T_robot_sensor;
-    scan.cloud = scanLidar(m_world, T_world_sensor, {24, 180, -45, 10, 0.8, 20, {}});
+    scan.cloud = scanLidar(m_world, T_world_sensor, {24, 180, -45, 10, 20, 0, {}});
     scan.cloud.points.resize(scan.cloud.points.size() + useless, {0.1f, 0, 0});
     scan.cloud.classes.resize(scan.cloud.points.size(), synthetic_world::kRoad);
     return {scan};
