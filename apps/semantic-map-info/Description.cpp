@@ -133,7 +133,12 @@ void printText(const std::string& name, const ordered_json& d, std::ostream& out
       << "  voxels        " << d["occupiedVoxels"] << " occupied, " << d["freeVoxels"] << " free\n"
       << "  filter       ";
   for (const auto& [key, value] : d["filter"].items())
-    out << " " << key << " " << (value.is_string() ? value.get<std::string>() : value.dump());
+    if (!value.is_object())
+      out << " " << key << " " << (value.is_string() ? value.get<std::string>() : value.dump());
+  const ordered_json& calibration = d["filter"]["calibration"];
+  out << "\n  stated        beliefs to the power of " << calibration["power"] << ", "
+      << 100 * calibration["shared"].get<double>()
+      << " % shared by the classes of a voxel's record";
   if (d.contains("folder")) printFolder(d["folder"], out);
   if (d.contains("clock")) printTime(d, out);
   out << "\n  occupied voxels by likeliest class (of " << d["classes"].size() << " classes)\n";

@@ -180,6 +180,6 @@ TEST_F(Rawlog2SemanticMap, howFarLabelsAreTrustedIsTold) {
     const std::string told = "agree as if 7";  // 70 %, within the prior's pull and rounding
     EXPECT_EQ(contains(result.output, told), wrong > 0) << result.output;
     EXPECT_NEAR(summary()["labels"]["accuracy"], wrong > 0 ? 0.72 : 0.93, 0.025);
-    EXPECT_NEAR(summary()["labels"]["correlation"], wrong > 0 ? 0.02 : 0.5, 1e-9);
+    EXPECT_NEAR(summary()["labels"]["correlation"], wrong > 0 ? 0.02 : 0.8, 1e-9);
   }
 }
