@@ -2,7 +2,6 @@
 
 #include <map_folders/MapFolder.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 
 #include <sstream>

@@ -1,6 +1,6 @@
 #pragma once
 #include <colored_graph/ClassOrder.h>
-#include <colored_graph/Length.h>
+#include <colored_graph/Edge.h>
 #include <mrpt/math/TPose2D.h>
 
 #include <cstdint>

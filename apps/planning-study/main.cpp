@@ -1,6 +1,6 @@
 // Compares kinds of graphs, and other planners, on random tasks over semantic maps.
 #include <semantic_planning/planner/OrderFile.h>
-#include <semantic_planning/vehicle/VehicleFile.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 

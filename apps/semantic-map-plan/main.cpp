@@ -2,9 +2,8 @@
 #include <map_folders/MapFolder.h>
 #include <map_pictures/MapCanvas.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
-#include <semantic_planning/vehicle/VehicleFile.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 

@@ -2,7 +2,7 @@
 
 #include <mrpt/core/Clock.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_planning/planner/OrderFile.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "Parameters.h"
 
-#include <semantic_planning/vehicle/VehicleFile.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
 #include <strict_files/IniSection.h>
 #include <strict_files/StrictYaml.h>
 

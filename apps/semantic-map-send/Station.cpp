@@ -144,6 +144,7 @@ void Station::forgetSilent() {
     if (s.isServed() || s.lastHeard() > since) return false;
     m_silence = "the receiver " + s.peer().text() + " fell silent";
     notes() << m_silence << std::endl;
+    m_lastHeard = Clock::now();  // now there is room for who was asking in vain
     return true;
   });
 }

@@ -3,7 +3,6 @@
 #include <map_view/OrbitCamera.h>
 #include <mrpt_compat/Drawing.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 
 #include <cmath>

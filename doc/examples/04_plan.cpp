@@ -2,7 +2,6 @@
 //     04_plan MAP.semantic ORDER.yaml X Y HEADING X Y HEADING      (meters, degrees)
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 

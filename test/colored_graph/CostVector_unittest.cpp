@@ -1,10 +1,11 @@
-#include <colored_graph/CostVector.h>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include <limits>
 #include <type_traits>
 #include <vector>
+
+#include "CostVector.h"
 
 using colored_graph::CostVector;
 using Cost = CostVector<4>;

@@ -1,4 +1,4 @@
-#include <colored_graph/Length.h>
+#include <colored_graph/Edge.h>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 

@@ -1,6 +1,6 @@
 #pragma once
+#include <colored_graph/ColoredAStar.h>
 #include <colored_graph/CostModel.h>
-#include <colored_graph/PathResult.h>
 
 #include <algorithm>
 #include <optional>

@@ -1,10 +1,10 @@
-#include <colored_graph/CostVector.h>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include <map>
 #include <tuple>
 
+#include "CostVector.h"
 #include "PackedCost.h"
 #include "RadixQueue.h"
 

@@ -17,7 +17,7 @@
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MapFiles.h>
 #include <semantic_planning/planner/OrderFile.h>
-#include <semantic_planning/vehicle/VehicleFile.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
 #include <semantic_types/ClassTable.h>
 
 #include <sstream>

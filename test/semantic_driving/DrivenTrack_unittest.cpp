@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 #include <semantic_driving/DrivePath.h>
-#include <semantic_driving/DrivenTrack.h>
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/Focus.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_planning/planner/OrderFile.h>
 
 #include <algorithm>
 #include <cmath>

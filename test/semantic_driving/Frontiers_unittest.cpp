@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 #include <semantic_driving/Explorer.h>
-#include <semantic_driving/Frontiers.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <semantic_driving/DriveController.h>
-#include <semantic_driving/Separation.h>
+#include <semantic_driving/Movers.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include <colored_graph/ColoredAStar.h>
 #include <gtest/gtest.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include "PaintedWorld.h"

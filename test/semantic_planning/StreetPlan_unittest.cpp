@@ -1,10 +1,9 @@
 // Planning over ten scans of SemanticKITTI 00.
 #include <gtest/gtest.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
-#include <semantic_planning/vehicle/VehicleFile.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
 #include <semantic_types/ClassTable.h>
 
 #include <algorithm>

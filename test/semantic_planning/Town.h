@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_planning/planner/OrderFile.h>
 
 #include "PaintedWorld.h"
 

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_planning/vehicle/VehicleFile.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
 
 #include <cmath>
 

@@ -13,7 +13,6 @@
 #include <octomap/OcTree.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 
 #include <algorithm>

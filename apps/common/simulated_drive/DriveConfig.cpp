@@ -1,7 +1,7 @@
 #include "DriveConfig.h"
 
 #include <mrpt/config/CConfigFile.h>
-#include <semantic_planning/vehicle/VehicleFile.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
 #include <strict_files/IniSection.h>
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>

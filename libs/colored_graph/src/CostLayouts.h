@@ -1,13 +1,13 @@
 #pragma once
 #include <colored_graph/CostModel.h>
-#include <colored_graph/CostVector.h>
-#include <colored_graph/HalfEdge.h>
+#include <colored_graph/Edge.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
 
+#include "CostVector.h"
 #include "PackedCost.h"
 
 /** \file Where the components of a cost stand: (worst rank, ..., rank 1; total length with tolls,

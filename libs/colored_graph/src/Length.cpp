@@ -1,4 +1,4 @@
-#include <colored_graph/Length.h>
+#include <colored_graph/Edge.h>
 
 #include <algorithm>
 #include <cmath>

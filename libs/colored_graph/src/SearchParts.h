@@ -1,6 +1,5 @@
 #pragma once
-#include <colored_graph/PathResult.h>
-#include <colored_graph/SearchOptions.h>
+#include <colored_graph/ColoredAStar.h>
 
 #include <chrono>
 #include <functional>

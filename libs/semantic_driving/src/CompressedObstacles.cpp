@@ -1,4 +1,4 @@
-#include <semantic_driving/CompressedObstacles.h>
+#include <semantic_driving/ObstacleSensing.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include <semantic_driving/DriveController.h>
-#include <semantic_driving/Separation.h>
+#include <semantic_driving/Movers.h>
 
 #include <algorithm>
 #include <cmath>

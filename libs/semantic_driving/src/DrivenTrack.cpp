@@ -1,5 +1,5 @@
 #include <mrpt/math/wrap2pi.h>
-#include <semantic_driving/DrivenTrack.h>
+#include <semantic_driving/DrivePath.h>
 
 #include <cmath>
 

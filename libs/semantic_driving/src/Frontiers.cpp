@@ -1,4 +1,4 @@
-#include <semantic_driving/Frontiers.h>
+#include <semantic_driving/Explorer.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include <mrpt/math/wrap2pi.h>
-#include <semantic_driving/GuideOptions.h>
+#include <semantic_driving/GuideTransitions.h>
 
 #include <cmath>
 

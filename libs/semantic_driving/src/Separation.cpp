@@ -1,4 +1,4 @@
-#include <semantic_driving/Separation.h>
+#include <semantic_driving/Movers.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_driving/CompressedObstacles.h>
+#include <semantic_driving/ObstacleSensing.h>
 #include <semantic_navigation/Navigator.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_planning/planner/OrderFile.h>
 
 #include <algorithm>
 #include <cmath>

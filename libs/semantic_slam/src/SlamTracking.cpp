@@ -162,11 +162,13 @@ std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_st
   std::optional<Registration> r =
       match(m_local.submaps(), seen, T_guess, information / kOwnInformation);
   const Vector6 off = vectorOf(T_guess.inverse() * r->T_submap_scan);
-  const bool isFar = isBeyond(off, information);
+  // What is believed of wheels may be less than they err by yet: in space, where beams do not say
+  // so by fitting badly, that of bad ones is the limit.
+  const Matrix6 atFirst = MotionNoise(!m_hasOdometry).information(T_step);
+  const bool isFar = isBeyond(off, m_hasOdometry && !m_scale.isPlanar ? atFirst : information);
   // Beams in a plane fit but where they belong; in space much is ground, which fits anywhere.
   const bool mayBeFar =
-      r->matchedShare >= kFitsWell &&
-      (m_scale.isPlanar || !isBeyond(off, MotionNoise(!m_hasOdometry).information(T_step)));
+      r->matchedShare >= kFitsWell && (m_scale.isPlanar || !isBeyond(off, atFirst));
   if (isFar && r->matchedShare >= kFitsWell)
     m_noise.note(T_step, T_guess.inverse() * r->T_submap_scan,
                  kOwnInformation * r->information + information);

@@ -1,9 +1,67 @@
 #pragma once
+#include <colored_graph/ColoredGraph.h>
 #include <colored_graph/CostModel.h>
-#include <colored_graph/PathResult.h>
-#include <colored_graph/SearchOptions.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
 
 namespace colored_graph {
+
+/** What a search may use, and when it gives up. The functions must not change the graph. */
+struct SearchOptions {
+  /** Lower bound of the length of every path between two vertices; none: 0. It has to be
+   * consistent: bound(s, w) <= bound(s, v) + length(v, w) for every edge that can be driven from v
+   * to w, with the least length where it is unevaluated (a metric, rounded with lengthDown(), is).
+   */
+  std::function<Length(VertexId, VertexId)> lengthBound;
+  /** The profile of an unevaluated edge, or nothing if it is blocked. The graph keeps the answer.
+   * Needed only if the search meets unevaluated edges. */
+  std::function<std::optional<EdgeProfile>(EdgeId)> evaluate;
+  /** Asked often; the search stops when it answers true. */
+  std::function<bool()> cancelled;
+  double timeLimit = std::numeric_limits<double>::infinity();  ///< s
+
+  /** \throw std::invalid_argument time limit negative or not a number. */
+  void validate() const;
+};
+
+/** How a search ended; everything but Found says why there is no path. */
+enum class SearchStatus {
+  Found,
+  StartNotInGraph,
+  GoalNotInGraph,
+  NotConnected,   ///< blocked edges left out, no path leads from start to goal
+  OnlyForbidden,  ///< paths exist, and all go through a forbidden class
+  CostOverflow,   ///< paths exist whose cost is above 2^63 - 1 in a component
+  Cancelled,
+  TimeLimit
+};
+
+/** A sentence for people. */
+const char* describe(SearchStatus status);
+
+struct SearchStatistics {
+  std::size_t expansions = 0;      ///< vertices whose edges were looked at
+  std::size_t edgesEvaluated = 0;  ///< calls of SearchOptions::evaluate
+};
+
+struct PathResult {
+  SearchStatus status = SearchStatus::NotConnected;
+  std::vector<VertexId> vertices;  ///< start to goal; empty if there is no path
+  std::vector<EdgeId> edges;       ///< one fewer than the vertices
+  /** Worst rank first: one number for each rank but rank 0, then the total length (CostKind), and
+   * before it the total length with tolls, if the model counts these. */
+  std::vector<std::int64_t> cost;
+  /** By class id: what the profiles of the edges add up to, whatever the edge model. */
+  std::vector<Length> lengthPerClass;
+  SearchStatistics statistics;
+
+  bool found() const { return status == SearchStatus::Found; }
+};
 
 struct ColoredAStarOptions : SearchOptions {
   /** Bound the cost in the worst rank exactly before the search, by one scalar pass over the

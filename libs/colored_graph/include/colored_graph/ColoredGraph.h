@@ -2,7 +2,6 @@
 #include <colored_graph/ChangeLog.h>
 #include <colored_graph/Edge.h>
 #include <colored_graph/EdgeRows.h>
-#include <colored_graph/PagedArray.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-#include <colored_graph/HalfEdge.h>
+#include <colored_graph/Edge.h>
 
 #include <array>
 #include <cstddef>
@@ -7,6 +7,26 @@
 #include <vector>
 
 namespace colored_graph {
+
+/** An array in pages: it grows without moving what it holds, and has no more room than a page
+ * beyond that. */
+template <class T>
+class PagedArray {
+ public:
+  std::size_t size() const { return m_size; }
+  T& operator[](std::size_t i) { return m_pages[i / kPage][i % kPage]; }
+  const T& operator[](std::size_t i) const { return m_pages[i / kPage][i % kPage]; }
+  void emplace_back() {
+    if (m_size == m_pages.size() * kPage) m_pages.emplace_back(kPage);
+    ++m_size;
+  }
+
+ private:
+  static constexpr std::size_t kPage = 1024;
+
+  std::vector<std::vector<T>> m_pages;
+  std::size_t m_size = 0;
+};
 
 /** The rows of edges of all vertices, each in one piece. A row that needs more room moves; the
  * place that it leaves serves other rows. */

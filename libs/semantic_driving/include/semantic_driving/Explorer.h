@@ -1,13 +1,69 @@
 #pragma once
 #include <semantic_driving/DrivePath.h>
-#include <semantic_driving/Frontiers.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
 namespace semantic_driving {
+
+/** A place at the border of what is known. */
+struct Frontier {
+  mrpt::math::TPose2D pose;  ///< headed as one comes there
+  double z = 0;              ///< height of the ground, meters
+  double cost = 0;           ///< weighted meters by way of it to the goal
+};
+
+/** What exploring took, in weighted meters as Frontier::cost. */
+struct Effort {
+  double spent = 0;     ///< by now
+  double expected = 0;  ///< in all, when it began (Exploration::hoped); 0: it begins now
+  /** What a meter through the unknown counts, of what it counted at first: the root of how many
+   * times the way that was expected it has become. The freespace assumption is wrong again and
+   * again along a hedge, where it always hopes for a gap just beyond what is seen.
+   * \param left to the goal by now, weighted meters */
+  double doubt(double left) const;
+};
+
+/** Where looking may show a way to a goal. */
+struct Exploration {
+  std::vector<Frontier> frontiers;  ///< most promising first
+  double hoped = 0;  ///< what the first one costs if nothing is doubted, weighted meters
+  /** No way leads to the goal: what is known to be in the way, or forbidden, is all around it, or
+   * around the vehicle. */
+  bool enclosed = false;
+  /** Around the goal, up to what encloses it or is reached, square meters; infinite if it leaves
+   * the radius: then, if there is no way, it is the vehicle that is enclosed, as it may seem where
+   * it does not see the ground that it stands on. */
+  double goalArea = std::numeric_limits<double>::infinity();
+  /** Known ground leads to the goal's place, though perhaps not for a vehicle that has to turn, or
+   * is to stand there. */
+  bool goalReached = false;
+};
+
+/** Places on drivable ground next to unknown space from which to see more of the way to a goal,
+ * most promising first: least way there, where rank r counts r + 1 times, and on through the
+ * unknown, around all that is known to be in the way (the freespace assumption), and what turning
+ * around costs where the vehicle does not head there. (Yamauchi, "A frontier-based approach for
+ * autonomous exploration", 1997, with a goal.)
+ *
+ * Only what borders on the goal's region counts: a flood from the goal over all that is not known
+ * to be in the way, up to where the vehicle can get. A way to the goal leaves the known ground for
+ * the last time at that border. If nothing reached borders on the region, it is enclosed: what is
+ * in the way stays there, so that nothing that is yet to be seen opens a way. Gaps count as
+ * passable in doubt, as does all that is farther than the radius.
+ * \param from where the vehicle is and heads, on ground of height z (meters)
+ * \param avoid places that are not looked for again, nor others within 3 m of them
+ * \param effort until now: a meter through the unknown counts two on rank 0, times its doubt()
+ * \param radius how far over known ground, meters; a wall beyond is forgotten
+ * \return at most six, 3 m apart */
+Exploration findFrontiers(const semantic_planning::SemanticPlanner& planner,
+                          const mrpt::math::TPose2D& from, double z,
+                          const mrpt::math::TPose2D& goal,
+                          const std::vector<mrpt::math::TPose2D>& avoid, const Effort& effort = {},
+                          double radius = 80);
 
 /** Chooses places at the border of what is known to drive to, each once, and keeps account of what
  * that costs: where ways through the unknown were hoped for in vain, it hopes for less. */

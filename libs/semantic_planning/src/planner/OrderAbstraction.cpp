@@ -1,5 +1,5 @@
 #include <semantic_abstraction/AbstractionOptions.h>
-#include <semantic_planning/planner/OrderAbstraction.h>
+#include <semantic_planning/planner/OrderFile.h>
 
 namespace semantic_planning {
 

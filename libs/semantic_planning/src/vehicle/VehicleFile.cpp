@@ -1,4 +1,4 @@
-#include <semantic_planning/vehicle/VehicleFile.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
 #include <strict_files/StrictYaml.h>
 
 #include <stdexcept>

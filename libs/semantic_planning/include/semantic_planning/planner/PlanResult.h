@@ -1,5 +1,5 @@
 #pragma once
-#include <colored_graph/PathResult.h>
+#include <colored_graph/ColoredAStar.h>
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 #include <semantic_planning/vehicle/PathPoint.h>
