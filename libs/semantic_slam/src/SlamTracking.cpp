@@ -162,18 +162,20 @@ std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_st
   std::optional<Registration> r =
       match(m_local.submaps(), seen, T_guess, information / kOwnInformation);
   const Vector6 off = vectorOf(T_guess.inverse() * r->T_submap_scan);
-  // What is believed of wheels may be less than they err by yet: in space, where beams do not say
-  // so by fitting badly, that of bad ones is the limit.
-  const Matrix6 atFirst = MotionNoise(!m_hasOdometry).information(T_step);
-  const bool isFar = isBeyond(off, m_hasOdometry && !m_scale.isPlanar ? atFirst : information);
+  const bool isFar = isBeyond(off, information);
+  const bool isFarForBadWheels = isBeyond(off, MotionNoise(!m_hasOdometry).information(T_step));
   // Beams in a plane fit but where they belong; in space much is ground, which fits anywhere.
-  const bool mayBeFar =
-      r->matchedShare >= kFitsWell && (m_scale.isPlanar || !isBeyond(off, atFirst));
+  const bool mayBeFar = r->matchedShare >= kFitsWell && (m_scale.isPlanar || !isFarForBadWheels);
   if (isFar && r->matchedShare >= kFitsWell)
     m_noise.note(T_step, T_guess.inverse() * r->T_submap_scan,
                  kOwnInformation * r->information + information);
-  if (!isCovered(*r, seen) || r->matchedShare < kFits || (isFar && !mayBeFar))
-    r = searchAround(seen, T_guess, windowAround(T_step, information));
+  const bool fits = isCovered(*r, seen) && r->matchedShare >= kFits;
+  if (!fits || (isFar && !mayBeFar)) {
+    auto found = searchAround(seen, T_guess, windowAround(T_step, information));
+    // Nowhere else it fits better: wheels may err by more than they did so far.
+    const bool stays = fits && m_hasOdometry && !m_scale.isPlanar && !isFarForBadWheels;
+    if (found || !stays) r = std::move(found);
+  }
   if (!r) return std::nullopt;
   r->information = kOwnInformation * r->information + information;
   const Pose T_map = m_poses[last] * m_local.T_local_last().inverse() * r->T_submap_scan;
