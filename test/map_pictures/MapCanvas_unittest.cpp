@@ -67,6 +67,27 @@ TEST(MapCanvas, aPoseIsWhereItIsAndLooksWhereItLooks) {
     }
 }
 
+TEST(MapCanvas, aMapInThePlaneShowsWhatIsFreeOccupiedAndUnknown) {
+  for (const bool isInPlane : {true, false}) {
+    semantic_types::LabeledCloud cloud;
+    for (int i = 0; i < 400; ++i) {
+      const double angle = M_PI * i / 400;
+      cloud.points.emplace_back(float(4 * std::cos(angle)), float(4 * std::sin(angle)),
+                                isInPlane || i < 390 ? 0 : 0.2f);
+      cloud.classes.push_back(3);
+    }
+    semantic_octree::SemanticOcTree tree(0.1, paintedClasses());
+    tree.insert(cloud, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.05)));
+    MapCanvas c = canvas();
+    c.drawMap(tree, {});
+    EXPECT_EQ(pixelAt(c, 0.05, 4.0), pixelOf(kWall));
+    EXPECT_EQ(pixelAt(c, 0.05, 2.0), pixelOf(map_pictures::kPaper));
+    const Color& unknown = isInPlane ? map_pictures::kUnknown : map_pictures::kPaper;
+    for (const double y : {5.0, -2.0}) EXPECT_EQ(pixelAt(c, 0.05, y), pixelOf(unknown));
+    EXPECT_EQ(c.legend().back().name, isInPlane ? "not known" : "wall");
+  }
+}
+
 RC_GTEST_PROP(MapCanvas, aDotsMiddleIsItsPlace, ()) {
   MapCanvas c = canvas();
   const double x = *rc::gen::inRange(-9000, 9000) / 1000.0;

@@ -3,11 +3,13 @@
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
 #include "HighestCells.h"
 #include "MapCells.h"
+#include "NodeWalk.h"
 
 namespace map_pictures {
 
@@ -47,6 +49,27 @@ cv::Mat scaledBy(const cv::Mat& image, double scale) {
 
 cv::Point nearestPixel(const cv::Point2d& p) {
   return {int(std::lround(p.x)), int(std::lround(p.y))};
+}
+
+/** Of a map in the plane, all of which is one layer of voxels, as a level laser scanner makes it:
+ * not 0 in the columns of which nothing is known, the first row that of the largest y. Of others
+ * empty.
+ */
+cv::Mat unknownColumns(const SemanticOcTree& tree, const cv::Rect& columns, double edge) {
+  cv::Mat unknown(columns.size(), CV_8U, cv::Scalar(255));
+  std::optional<int> layer;
+  bool isInPlane = true;
+  forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
+    if (!isInPlane || !node.isLeaf()) return isInPlane;
+    if (!layer) layer = cube.lowest.z();
+    isInPlane = cube.edge() == 1 && cube.lowest.z() == *layer;
+    const double size = tree.getResolution();
+    const cv::Rect seen = columnsUnder(cube.center(size).head<2>(), size, edge) & columns;
+    if (!seen.empty())
+      unknown({seen.x - columns.x, columns.br().y - seen.br().y, seen.width, seen.height}) = 0;
+    return false;
+  });
+  return isInPlane ? unknown : cv::Mat();
 }
 
 /** Copies what fits. \param corner of the image in the picture */
@@ -125,11 +148,15 @@ void MapCanvas::drawCells(const MapCells& map, const SemanticOcTree& tree) {
   const cv::Rect columns = columnsIn(m_region, edge);
   HighestCells highest(columns, edge);
   for (const MapCell& cell : map.cells) highest.add(cell.center.cast<double>(), cell.size, cell.id);
-  paste(scaledBy(highest.inRelief(tree.classes()), m_pixelsPerMeter * edge),
+  cv::Mat picture = highest.inRelief(tree.classes());
+  const cv::Mat unknown = unknownColumns(tree, columns, edge);
+  if (!unknown.empty()) picture.setTo(bgr(kUnknown), unknown);
+  paste(scaledBy(picture, m_pixelsPerMeter * edge),
         nearestPixel(at(columns.x * edge, columns.br().y * edge)), m_picture);
   const auto legend = classLegend(tree.classes(), map.countClasses(tree.numClasses()));
   m_legend.insert(m_legend.begin(), legend.begin(), legend.end());
   if (highest.showsCoarseCells()) explain(coarseCellEntry());
+  if (!unknown.empty()) explain({"not known", kUnknown});
 }
 
 void MapCanvas::fillSquare(const Eigen::Vector2d& center, double edge, const Color& color) {

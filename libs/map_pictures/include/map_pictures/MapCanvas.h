@@ -19,8 +19,10 @@ using semantic_types::Color;
 // Drawing on pictures (BGR, 8 bits). Places are in pixels from the upper left corner, x right and
 // y down: pixel (0, 0) reaches from 0 to 1.
 
-/** Where a picture shows nothing: unknown and free space. */
+/** Where a picture shows nothing: unknown and free space; of a map in the plane free space only. */
 constexpr Color kPaper{250, 250, 250};
+/** Unknown space of a map in the plane. */
+constexpr Color kUnknown{205, 205, 205};
 /** Text, scales and outlines. */
 constexpr Color kInk{40, 45, 50};
 /** Around lines and poses, so that they show on every class's color. */
@@ -129,8 +131,9 @@ class MapCanvas {
 
   /** The map from above: per column the highest occupied cell in the color of its likeliest class
    * (gray: none), shaded by the relief; cells much coarser than the finest are hatched, for they
-   * are not full of that class. Its classes are the first entries of the legend. \param style its
-   * heights and occupancy \throw std::invalid_argument as PictureStyle::validate(). */
+   * are not full of that class. Of a map in the plane, which is one layer of voxels, unknown space
+   * is gray. Its classes are the first entries of the legend. \param style its heights and
+   * occupancy \throw std::invalid_argument as PictureStyle::validate(). */
   void drawMap(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
   /** The same, of what lies on the canvas or up to 5 m beside it: as fine as that can be drawn, and
    * cut off as if there were no more. The rest of a large map is not looked at. */
