@@ -101,8 +101,10 @@ TEST(Calibrator, leavesMapsSureWhoseLabelsErrOneByOne) {
 }
 
 TEST(Calibrator, leavesWhatFewScansSaw) {
-  Floor floor(0.45, true);
-  EXPECT_TRUE(fit(floor, 3).calibration.isIdentity());
+  for (const bool asOne : {false, true}) {
+    Floor floor(0.7, asOne);
+    EXPECT_TRUE(fit(floor, 3).calibration.isIdentity());
+  }
   EXPECT_TRUE(Calibrator().best().isIdentity());
 }
 

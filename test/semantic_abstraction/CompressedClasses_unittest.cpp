@@ -47,15 +47,19 @@ void expectShares(const std::vector<double>& sum, const std::vector<double>& p) 
     EXPECT_NEAR(p[k], sum[k] / all, 5e-4) << "class " << k;  // the grid
 }
 
-}  // namespace
-
-TEST(CompressedClasses, ofACompressedCellAreThoseOfItsVoxelsInWhichLabelsWereSeen) {
-  SemanticOcTree map = smallMap();
+AbstractionOptions keepingPosts() {
   AbstractionOptions options;
   options.weights.terms = {tree_abstraction::relevant("posts", 1.0, {1})};
   options.weights.alpha = 0.02;
   options.blockSize = 3.2;
-  setAbstraction(map, options);
+  return options;
+}
+
+}  // namespace
+
+TEST(CompressedClasses, ofACompressedCellAreThoseOfItsVoxelsInWhichLabelsWereSeen) {
+  SemanticOcTree map = smallMap();
+  setAbstraction(map, keepingPosts());
   const Abstraction abstraction(map);
   const SemanticOcTree compressed = abstraction.compressedMap();
   std::map<unsigned, std::map<VoxelId, std::vector<double>>> sums;
@@ -83,15 +87,11 @@ TEST(CompressedClasses, ofACoarsenedVoxelAreThoseOfItsVoxelsInWhichLabelsWereSee
 
 TEST(CompressedClasses, areThoseThatAreBelievedWhateverIsStated) {
   SemanticOcTree map = smallMap();
-  AbstractionOptions options;
-  options.weights.terms = {tree_abstraction::relevant("posts", 1.0, {1})};
-  options.weights.alpha = 0.02;
-  options.blockSize = 3.2;
-  setAbstraction(map, options);
+  setAbstraction(map, keepingPosts());
   SemanticOcTree before = map;
   map.setCalibration({0.6, 0.2});
   SemanticOcTree again = map;
-  setAbstraction(again, options);
+  setAbstraction(again, keepingPosts());
   EXPECT_TRUE(again == before);  // its G-values, too
   const SemanticOcTree compressed = Abstraction(map).compressedMap();
   EXPECT_TRUE(compressed == Abstraction(before).compressedMap());

@@ -4,6 +4,7 @@
 #include <synthetic_world/Objects.h>
 #include <synthetic_world/Sensors.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -68,8 +69,8 @@ class Robot {
     update();
   }
 
-  /** As somebody does who walks through it. */
-  void leaveSomethingInItsPlace() {
+  /** As somebody does who walks through it. \return where, map frame */
+  std::vector<Eigen::Vector3d> leaveSomethingInItsPlace() {
     semantic_types::LabeledCloud cloud;
     for (float z = 0.5f; z < 1; z += 0.1f)
       for (const float x : {-0.1f, 0.3f}) cloud.points.emplace_back(x, 0.f, z);
@@ -77,6 +78,17 @@ class Robot {
     semantic_octree::InsertionOptions noRays;
     noRays.carvingMargin = 1e3;
     for (int i = 0; i < 5; ++i) m_map.insert(cloud, m_robot.T_odometry_robot, noRays);
+    std::vector<Eigen::Vector3d> places;
+    for (const Eigen::Vector3f& p : cloud.points)
+      places.emplace_back(m_robot.T_odometry_robot * p.cast<double>());
+    return places;
+  }
+  /** How many of these places the map takes for occupied. */
+  std::ptrdiff_t countOccupied(const std::vector<Eigen::Vector3d>& places) const {
+    return std::count_if(places.begin(), places.end(), [this](const Eigen::Vector3d& p) {
+      return m_map.query(p.x(), p.y(), p.z()).status ==
+             semantic_octree::CellState::Status::Occupied;
+    });
   }
 
   double seconds() const { return m_seconds; }
@@ -162,10 +174,13 @@ TEST(Navigator, DrivesToANewGoalWhenItHasComeToRest) {
 
 TEST(Navigator, IsNotHeldByWhatIsLeftInItsOwnPlace) {
   Robot robot(someOptions());
+  for (int i = 0; i < 10; ++i) robot.step();
+  const auto places = robot.leaveSomethingInItsPlace();
+  EXPECT_GT(robot.countOccupied(places), 5);
+  for (int i = 0; i < 6; ++i) robot.step();  // a scan, whose beams begin above
+  EXPECT_EQ(robot.countOccupied(places), 0);
   const TPose2D goal(3, 2, 0);
   robot.navigator.setGoal(goal);
-  robot.drive(4);
-  robot.leaveSomethingInItsPlace();
   EXPECT_EQ(robot.drive(), Status::Arrived) << robot.navigator.reason();
   EXPECT_LT(distance(robot.pose(), goal), 0.3);
 }

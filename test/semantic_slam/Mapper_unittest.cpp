@@ -92,6 +92,25 @@ double errorInYard(const Way& way, double carAt = 0, std::vector<bool> isMover =
 
 const Way kAhead(6, planar(0.5, 0, 0.05), 0.07, 1);
 
+/** A map with one scan of the yard, taken at (1, 1). */
+struct YardSeen {
+  SemanticOcTree map{0.2, wallsAndCars()};
+  Mapper mapper;
+  Mapper::Place place;
+
+  explicit YardSeen(bool localize) : mapper(map, optionsFor(localize)) {
+    const auto T = planar(1, 1, 0);
+    place = mapper.insert(yardFrom(T), Eigen::Isometry3d::Identity(), T, 0).place;
+  }
+
+ private:
+  static MapperOptions optionsFor(bool localize) {
+    MapperOptions options = localizing();
+    options.localize = localize;
+    return options;
+  }
+};
+
 }  // namespace
 
 RC_GTEST_PROP(Mapper, withoutLocalizationIsInsertionToTheLastBit, ()) {
@@ -213,31 +232,21 @@ TEST(Mapper, aMapWithContentIsTheFrameAndIsNotMoved) {
 
 TEST(Mapper, whatTheRobotStandsOnCarvesNothing) {
   for (const bool localize : {false, true}) {
-    SemanticOcTree map(0.2, wallsAndCars());
-    MapperOptions options = localizing();
-    options.localize = localize;
-    Mapper mapper(map, options);
-    const auto T = planar(1, 1, 0);
-    const auto inserted = mapper.insert(yardFrom(T), Eigen::Isometry3d::Identity(), T, 0);
-    mapper.insertBelow({{{0.5f, 0, -2}}, {kCar}, {}}, inserted.place);
-    EXPECT_EQ(map.query(1.5, 1, -2).likeliestClass, kCar);
-    EXPECT_EQ(map.query(1.25, 1, -1).status, semantic_octree::CellState::Status::Unknown);
+    YardSeen yard(localize);
+    yard.mapper.insertBelow({{{0.5f, 0, -2}}, {kCar}, {}}, yard.place);
+    EXPECT_EQ(yard.map.query(1.5, 1, -2).likeliestClass, kCar);
+    EXPECT_EQ(yard.map.query(1.25, 1, -1).status, semantic_octree::CellState::Status::Unknown);
   }
 }
 
 TEST(Mapper, whatIsKnownToBeFreeIsFreeAfterSomeTimesAndNothingElseChanges) {
   for (const bool localize : {false, true}) {
-    SemanticOcTree map(0.2, wallsAndCars());
-    MapperOptions options = localizing();
-    options.localize = localize;
-    Mapper mapper(map, options);
-    const auto T = planar(1, 1, 0);
-    const auto inserted = mapper.insert(yardFrom(T), Eigen::Isometry3d::Identity(), T, 0);
-    for (int i = 0; i < 5; ++i) mapper.insertBelow({{{0.5f, 0, 1}}, {kCar}, {}}, inserted.place);
-    const SemanticOcTree before = map;
-    for (int i = 0; i < 10; ++i) mapper.insertFree({0.5, 0, 1}, 0.3, inserted.place);
-    EXPECT_EQ(map.query(1.5, 1, 1).status, semantic_octree::CellState::Status::Free);
+    YardSeen yard(localize);
+    for (int i = 0; i < 5; ++i) yard.mapper.insertBelow({{{0.5f, 0, 1}}, {kCar}, {}}, yard.place);
+    const SemanticOcTree before = yard.map;
+    for (int i = 0; i < 10; ++i) yard.mapper.insertFree({0.5, 0, 1}, 0.3, yard.place);
+    EXPECT_EQ(yard.map.query(1.5, 1, 1).status, semantic_octree::CellState::Status::Free);
     for (const double x : {1.0, 2.0})
-      EXPECT_EQ(map.query(x, 1, 1).occupancy, before.query(x, 1, 1).occupancy) << x;
+      EXPECT_EQ(yard.map.query(x, 1, 1).occupancy, before.query(x, 1, 1).occupancy) << x;
   }
 }

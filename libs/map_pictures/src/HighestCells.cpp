@@ -1,10 +1,9 @@
 #include "HighestCells.h"
 
-#include <semantic_types/ClassTable.h>
+#include <map_pictures/MapCanvas.h>
 
 #include <cmath>
 
-#include <map_pictures/MapCanvas.h>
 #include "Hatching.h"
 #include "Relief.h"
 

@@ -1,8 +1,8 @@
 #pragma once
+#include <semantic_types/ClassTable.h>
+
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
-
-#include <semantic_types/ClassTable.h>
 
 namespace map_pictures {
 

@@ -9,6 +9,7 @@
 
 namespace strict_files {
 
+class Placement;
 class Unfinished;
 
 /** A file that is written beside its place and takes its name only when it is complete and on the
@@ -39,9 +40,6 @@ class StagedFile {
   std::filesystem::path m_target;
   std::unique_ptr<Unfinished> m_unfinished;
 };
-
-class Placement;
-class Unfinished;
 
 /** The folder of the results. Files are written into a folder inside it and take their place at the
  * end, all of them, when they are on the disk: what was there stays if anything fails. What killed
@@ -74,8 +72,6 @@ class OutputFolder {
   std::filesystem::path m_folder;
   std::unique_ptr<Unfinished> m_staging;
 };
-
-class Unfinished;
 
 /** Bytes that do not have to be in memory, in a file that goes with this object. What a killed
  * process left is removed by the next that writes into the same folder. */
