@@ -49,7 +49,7 @@ std::ostringstream sheetFor(const ordered_json& study, std::size_t rows) {
   return out;
 }
 
-/** Of the judgment "profile"; null if there is none. */
+/** The way with the judgment "profile"; null if there is none. */
 ordered_json wayOf(const ordered_json& map, const std::string& graph, const ordered_json& budget,
                    const std::string& memory) {
   for (const ordered_json& way : map["ways"])
@@ -129,7 +129,7 @@ void label(std::ostream& out, bool first, const std::string& text) {
     out << "unset ylabel\n";
 }
 
-/** The same for all plots: from the least whisker to the largest. */
+/** One range for all plots: from the least whisker to the largest. */
 std::string rangeOfTimes(const ordered_json& study) {
   double low = 1e9, high = 0;
   for (const ordered_json& map : study["maps"])
@@ -143,7 +143,7 @@ std::string rangeOfTimes(const ordered_json& study) {
   return out.str();
 }
 
-/** The same for all plots, and where something is: near 100 %, curves would hide each other. */
+/** One range for all plots, and where something is: near 100 %, curves hide each other. */
 std::string rangeOfShares(const ordered_json& study) {
   double low = 1;
   for (const ordered_json& map : study["maps"])

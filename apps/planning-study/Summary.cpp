@@ -21,7 +21,7 @@ ordered_json withInterval(double value, const Interval& interval) {
   return {{"value", value}, {"low", interval.low}, {"high", interval.high}};
 }
 
-/** Of the whole sample, and its bootstrap interval. */
+/** A statistic of the whole sample, and its bootstrap interval. */
 ordered_json estimated(std::size_t count, const Statistic& statistic) {
   std::vector<std::size_t> all(count);
   for (std::size_t i = 0; i < count; ++i) all[i] = i;
@@ -82,7 +82,7 @@ ordered_json differenceJson(const std::vector<double>& a, const std::vector<doub
   return estimated(a.size(), [&](const auto& which) { return mean(pick(difference, which)); });
 }
 
-/** Of two samples that belong together one by one. */
+/** Compares two samples that belong together one by one. */
 ordered_json comparison(const std::vector<double>& a, const std::vector<double>& b) {
   const auto ratioOf = [&](double (*statistic)(const std::vector<double>&)) {
     return estimated(a.size(), [&, statistic](const auto& which) {
@@ -130,7 +130,7 @@ ordered_json pairJson(const GroupKey& keyA, const Group& a, const GroupKey& keyB
 
 bool isPeer(const GroupKey& key) { return key.graph.back() == '*'; }
 
-/** Of the same graph: what a judgment, or remembering edges, changes. */
+/** Whether two groups of one graph differ in a judgment alone, or in remembering edges. */
 bool differInOneThing(const GroupKey& a, const GroupKey& b) {
   if (a.kept || b.kept) return a.kept && !b.kept && a.judgment == b.judgment;
   return a.judgment != "profile" && b.judgment == "profile";

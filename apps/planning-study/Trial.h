@@ -35,8 +35,8 @@ struct Trial {
   double firstPathTime = 0;  ///< of peers, which go on until their time is over
   /** Worst rank first, total last: what was minimized. */
   std::vector<std::int64_t> cost;
-  /** The same for all: what the path goes over. Lengths in the worst rank, ..., in rank 1; total.
-   * Empty if there is no path. */
+  /** What the path goes over, for every kind of search. Lengths in the worst rank, ..., in rank 1;
+   * total. Empty if there is no path. */
   std::vector<Length> way;
 
   double planningTime() const { return evaluationTime + searchTime; }

@@ -22,7 +22,7 @@ std::string text(const char* format, double number) {
   return line;
 }
 
-/** Of the compressed tree, if it is kept. */
+/** The time that the compressed tree took, if it is kept. */
 std::string changeTime(const Summary& summary) {
   const auto& times = summary.abstraction.changeTimes;
   return times.empty() ? std::string() : text(", tree %.1f", times.back());

@@ -38,7 +38,7 @@ class MapBuilder {
                     const std::filesystem::path& reference);
   /** The rawlogs have no poses: with correctPoses(), scans are registered without a guess. */
   void withoutOdometry() { m_hasOdometry = false; }
-  /** Of all scans, if poses are corrected, in the format of the TUM data sets. */
+  /** Poses of all scans, if poses are corrected, in the format of the TUM data sets. */
   std::string trajectory() const;
 
   /** Counts the observations that hold poses as used: those of the robot are from the rawlogs. */

@@ -14,7 +14,7 @@ class Preview {
   /** Creates the folder if need be. \throw std::runtime_error naming it, if it cannot be. */
   Preview(const std::filesystem::path& folder, const semantic_types::ClassTable& classes);
 
-  /** Of the i-th picture's file. */
+  /** The name of the i-th picture's file. */
   static std::string nameOf(std::size_t i);
 
   /** Writes a picture for each one that the scan's labels are from.

@@ -41,7 +41,7 @@ struct Summary {
   semantic_octree::InsertionReport insertion;
   /** How far the labels of each scan that has any were trusted. */
   std::vector<semantic_octree::LabelReliability> labels;
-  /** Of each inserted scan: making the cloud, inserting it, milliseconds. */
+  /** Milliseconds of each inserted scan: making the cloud, inserting it. */
   std::vector<double> conversionTimes, insertionTimes;
   /** Where an abstraction is kept, after each inserted scan. */
   AbstractionSummary abstraction;

@@ -29,7 +29,7 @@ class DrivePicture {
   void include(const DriveRecord& record);
 
   map_pictures::MapCanvas draw(const DriveLoop& loop) const;
-  /** The same with title, scale and legend, all in places that stay from frame to frame. */
+  /** The picture with title, scale and legend, all in places that stay from frame to frame. */
   cv::Mat frame(const DriveLoop& loop) const;
 
  private:

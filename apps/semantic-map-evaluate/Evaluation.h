@@ -33,9 +33,9 @@ class Evaluation {
   void add(const Answer& answer, semantic_octree::ClassId truth);
 
   std::size_t points() const { return m_points; }
-  /** Of all points, those in occupied voxels. */
+  /** The share of all points that lie in occupied voxels. */
   double coverage() const { return share(m_occupied, m_points); }
-  /** Of all points, those whose voxel names their class, whether it is occupied or not. */
+  /** The share of all points whose voxel names their class, occupied or not. */
   double rightOfAll() const { return share(m_right, m_points); }
 
   /** Points in occupied voxels that name a class. What follows is about them. */

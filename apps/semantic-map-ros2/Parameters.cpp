@@ -70,7 +70,7 @@ void addAll(const strict_files::StrictYaml& yaml, const YAML::Node& map, const s
   }
 }
 
-/** Of files for many nodes, what is for all and for this one. */
+/** Takes from a file for many nodes what is for all and for this one. */
 void addFile(const fs::path& file, Source& source) {
   const strict_files::StrictYaml yaml(file);
   yaml.checkMap(yaml.root());

@@ -18,7 +18,7 @@ class Transforms {
  public:
   /** \return what is wrong with it, if anything; then it is not taken */
   std::string add(const ros2::TransformStamped& transform, bool isStatic);
-  /** The same of an odometer's message: it counts for a frame that /tf does not tell of. */
+  /** Takes an odometer's message: it counts for a frame that /tf does not tell of. */
   std::string add(const ros2::Odometry& odometry);
 
   struct Answer {

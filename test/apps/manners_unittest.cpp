@@ -76,7 +76,8 @@ TEST_P(Program, endsWithAMessageUnderAnyLimitOfMemory) {
     const int middle = (tooLittle + enough) / 2;
     (statusWith(middle) == 0 ? enough : tooLittle) = middle;
   }
-  for (int megabytes = std::max(8, enough - 20); megabytes < enough + 8; megabytes += 4) statusWith(megabytes);
+  for (int megabytes = std::max(8, enough - 20); megabytes < enough + 8; megabytes += 4)
+    statusWith(megabytes);
 }
 
 TEST_P(Program, offersTheOptionThatWasMeant) {

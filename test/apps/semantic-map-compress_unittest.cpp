@@ -221,12 +221,12 @@ TEST_F(SemanticMapCompress, spaceOptionsAndRegionsReachTheSearch) {
     o.prior.assign(std::size_t(namedClasses().size()) + 1, 0);
     o.prior[0] = 1;
   });
-  expectSame(
-      "regions: [box 0 -1 -2 1 2 3 5, sphere 1 2 0 2 0, corridor -3 0 0 0 -3 1 1.5 3]", [](O& o) {
-        o.regions = {{Region::Shape::Box, {0, -1, -2}, {1, 2, 3}, 0, 5},
-                     {Region::Shape::Sphere, {1, 2, 0}, {0, 0, 0}, 2, 0},
-                     {Region::Shape::Corridor, {-3, 0, 0}, {0, -3, 1}, 1.5, 3}};
-      });
+  expectSame("regions: [box 0 -1 -2 1 2 3 5, sphere 1 2 0 2 0, corridor -3 0 0 0 -3 1 1.5 3]",
+             [](O& o) {
+               o.regions = {{Region::Shape::Box, {0, -1, -2}, {1, 2, 3}, 0, 5},
+                            {Region::Shape::Sphere, {1, 2, 0}, {0, 0, 0}, 2, 0},
+                            {Region::Shape::Corridor, {-3, 0, 0}, {0, -3, 1}, 1.5, 3}};
+             });
 }
 
 TEST_F(SemanticMapCompress, picturesAndFiguresShowSomething) {

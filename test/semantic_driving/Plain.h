@@ -7,8 +7,8 @@
 
 /** The robot of config/drives with sensors of few points. */
 inline simulated_drive::DriveConfig smallConfig() {
-  auto config =
-      simulated_drive::loadDriveConfig(std::string(MSO_SOURCE_DIR) + "/config/drives/synthetic.ini");
+  auto config = simulated_drive::loadDriveConfig(std::string(MSO_SOURCE_DIR) +
+                                                 "/config/drives/synthetic.ini");
   config.sensors.camera.width = 80;
   config.sensors.camera.height = 60;
   config.sensors.lidar.columns = 256;

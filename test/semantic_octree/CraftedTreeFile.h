@@ -58,7 +58,8 @@ struct Header {
   double resolution = 0.5;
   std::uint8_t pruning = 1, increments = 0, policy = 0;
   double accuracy = 0.9, hitProbability = 0.6, falseAlarmProbability = 0.1, minOccupancy = 0.12,
-         maxProbability = 0.97, softLabelFloor = 0.001, labelCorrelation = 0.2, power = 0.7, shared = 0.2, halfLife = 0;
+         maxProbability = 0.97, softLabelFloor = 0.001, labelCorrelation = 0.2, power = 0.7,
+         shared = 0.2, halfLife = 0;
   std::vector<std::string> names = {"a", "b"};
   std::uint32_t numFolds = 0;
   std::int64_t clock = 0;

@@ -3,7 +3,8 @@
 #include <filesystem>
 
 /** Folder of the real data sets that are not part of this repository (see test/README.md): the
- * environment variable SEMANTIC_OCTREE_DATA, or ../shared/data beside the sources. Empty if absent. */
+ * environment variable SEMANTIC_OCTREE_DATA, or ../shared/data beside the sources. Empty if absent.
+ */
 inline std::filesystem::path sharedDataDir() {
   namespace fs = std::filesystem;
   const char* variable = std::getenv("SEMANTIC_OCTREE_DATA");
@@ -12,6 +13,6 @@ inline std::filesystem::path sharedDataDir() {
 }
 
 /** Skips the running test, saying so, where FOLDER of the real data is absent. */
-#define SKIP_WITHOUT_DATA(FOLDER)                                                  \
+#define SKIP_WITHOUT_DATA(FOLDER)                                                      \
   if (sharedDataDir().empty() || !std::filesystem::exists(sharedDataDir() / (FOLDER))) \
   GTEST_SKIP() << "needs the data set '" << (FOLDER) << "' (set SEMANTIC_OCTREE_DATA)"

@@ -15,7 +15,8 @@ namespace {
 /** The standard library's distributions differ between its implementations; this does not. */
 double uniform(std::uint64_t bits) { return std::ldexp(static_cast<double>(bits >> 11), -53); }
 
-/** Of splitmix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators"). */
+/** The step of splitmix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators").
+ */
 std::uint64_t mixed(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15;
   x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9;
@@ -24,7 +25,7 @@ std::uint64_t mixed(std::uint64_t x) {
 }
 
 constexpr double kSmallest = 1.5, kLargest = 4;  // m
-/** Of a class's share of wrong labels in that of all. */
+/** A class's share of wrong labels, as a multiple of that of all. */
 constexpr double kLeast = 0.25, kMost = 1.75;
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace radio {
 namespace {
 
-/** Of a datagram; what is longer is none of ours, and cut off. */
+/** Datagrams are not longer; what is, is none of ours, and cut off. */
 constexpr std::size_t kMaxBytes = 2048;
 
 timespec timespecOf(std::chrono::nanoseconds time) {

@@ -50,7 +50,7 @@ class SignChanges {
   int m_last = 0, m_count = 0;
 };
 
-/** Of values that are larger. */
+/** The share of values that are larger. */
 double shareOver(const std::vector<double>& values, double most) {
   const auto above = [most](double value) { return value > most; };
   return static_cast<double>(std::count_if(values.begin(), values.end(), above)) /

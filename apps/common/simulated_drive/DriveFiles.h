@@ -27,7 +27,7 @@ struct PoseErrors {
 /** \param pose DriveRow::believed or DriveRow::odometry */
 PoseErrors poseErrorsOf(const DriveRecord& record, mrpt::math::TPose2D DriveRow::*pose);
 
-/** Of the cycles (insert, update, replan), those that took more than 100 ms: 0 to 1. */
+/** The share of cycles (insert, update, replan) that took more than 100 ms: 0 to 1. */
 double shareOfSlowCycles(const DriveRecord& record);
 
 /** What the whole drive comes to. */

@@ -26,14 +26,14 @@ class VectorLayout {
   explicit VectorLayout(const CostModel& model)
       : m_ranks(model.order.ranks()), m_rankZeroAt(model.tolls ? kLengthAt - 1 : kLengthAt) {}
 
-  /** Of an edge, but for its ranks. */
+  /** An edge's cost, but for its ranks. */
   Cost edge(Length length, Length toll) const {
     Cost cost = ofLength(length);
     cost[kEdgesAt] = 1;
     if (m_rankZeroAt < kLengthAt) cost[m_rankZeroAt] += toll;
     return cost;
   }
-  /** Of an edge that a half edge has room for, in one rank. */
+  /** The cost of an edge that a half edge has room for, in one rank. */
   Cost narrow(Length length, Rank rank, Length counted) const {
     Cost cost = edge(length, 0);
     addToRank(cost, rank, counted);

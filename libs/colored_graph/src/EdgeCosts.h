@@ -27,8 +27,8 @@ class EdgeCosts {
 
   const Layout& layout() const { return m_layout; }
 
-  /** Of an edge at v, driven away from v or to it: infinite if that cannot be. Of an unevaluated
-   * edge a lower bound, from its end points and least length. */
+  /** The cost of an edge at v, driven away from v or to it: infinite if that cannot be; of an
+   * unevaluated edge a lower bound, from its end points and least length. */
   [[gnu::always_inline]] Cost operator()(VertexId v, const HalfEdge& half, Way way) const {
     if (half.isWide()) return ofWide(v, half, way);
     const Rank own = m_rankOfKind[half.kind()];
@@ -36,7 +36,7 @@ class EdgeCosts {
     if (r == kForbidden || !half.leads(way)) return Cost::infinite();
     return m_layout.narrow(half.length(), r, counted(half.length()));
   }
-  /** Of an edge, driven to its end `to`. */
+  /** The cost of an edge that is driven to its end `to`. */
   Cost operator()(EdgeId e, VertexId to) const { return (*this)(to, m_graph.half(e, to), Way::In); }
 
  private:

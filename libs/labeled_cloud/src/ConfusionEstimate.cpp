@@ -19,7 +19,7 @@ constexpr int kSteps = 15;
 
 using Table = std::vector<std::vector<double>>;
 
-/** Of all voxels: how often each class is true, and then has which label. */
+/** How often each class is true, over all voxels, and then has which label. */
 struct Expectation {
   Table counts;
   std::vector<double> shares;

@@ -12,8 +12,8 @@
 
 namespace labeled_cloud {
 
-using mrpt::obs::CObservation3DRangeScan;
 using mrpt::obs::CObservation;
+using mrpt::obs::CObservation3DRangeScan;
 using mrpt::obs::CObservationImage;
 using mrpt::obs::CObservationStereoImages;
 

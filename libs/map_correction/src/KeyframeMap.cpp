@@ -133,7 +133,7 @@ class KeyframeMap::Correction {
   const Content::StoredVoxels& voxelsOf(std::size_t scan) const {
     return m_voxels[scan] ? *m_voxels[scan] : m.scans[scan].voxels;
   }
-  /** Of a map in a folder, those of one of its tiles at a time; else all at once. */
+  /** Parts to be made anew: one of a folder's tiles at a time; without a folder all at once. */
   std::vector<TileCodes> partsOf(const TileCodes& tiles) const {
     const TileSource* const folder = MapAccess::store(m.map).tiles();
     if (!folder) return {tiles};

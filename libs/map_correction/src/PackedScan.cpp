@@ -20,7 +20,7 @@ std::uint32_t takeCount(const char*& bytes) {
   }
 }
 
-/** Of eight words, which are not 0. */
+/** A bit for each of eight words that is not 0. */
 std::uint8_t wordsWithBits(const VoxelBits* words) {
   unsigned mask = 0;
   for (int w = 0; w < ScanGrid::kWords; ++w) mask |= unsigned(words[w] != 0) << w;

@@ -40,7 +40,7 @@ struct TileIndex {
   std::string nameOf(const VoxelIndex& place, std::uint64_t generation) const;
   /** The file of leaves that are as large as tiles, or larger. */
   static std::string leavesName(std::uint64_t generation);
-  /** Of a file with such a name; nothing: it has none. */
+  /** The generation of a file with such a name; nothing: it has none. */
   static std::optional<std::uint64_t> generationOf(const std::string& name);
   /** Names of the map's files. */
   std::set<std::string> files() const;
@@ -63,8 +63,8 @@ int depthOfTiles(double tileSize, double resolution);
 /** \throw std::runtime_error naming the file and what is wrong: of another version, cut off,
  * altered, or with a value (and its line) that cannot be. */
 TileIndex readIndex(const std::filesystem::path& folder);
-/** Of the next save: above all that are in the folder, whoever left them, so that none of their
- * files is written over. \throw std::runtime_error it would be too high */
+/** The next save's generation: above all that are in the folder, whoever left them, so that none of
+ * their files is written over. \throw std::runtime_error it would be too high */
 std::uint64_t nextGeneration(const std::filesystem::path& folder, const TileIndex& index);
 /** \throw std::runtime_error naming the file; what was there stays. */
 void writeIndex(const std::filesystem::path& folder, const TileIndex& index);

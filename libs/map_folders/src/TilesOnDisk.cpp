@@ -15,7 +15,7 @@ namespace {
 
 using Kind = Slot::Kind;
 
-/** Of nodes and records, as maps of streets have them: 5 to 7. */
+/** A leaf's nodes and records take 5 to 7 bytes in maps of streets. */
 constexpr std::uint64_t kBytesOfLeaf = 6;
 
 struct Count {

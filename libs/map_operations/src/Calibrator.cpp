@@ -16,7 +16,7 @@ constexpr std::size_t kNumPowers = std::size(kPowers), kNumShared = std::size(kS
                       kNumRight = std::size(kRight), kCells = kNumPowers * kNumShared * kNumRight;
 
 constexpr std::uint32_t kScansToAsk = 3;
-/** Of a scan's points so many are looked at. */
+/** At most so many points of a scan are looked at. */
 constexpr std::size_t kMostPoints = 32768;
 constexpr double kUnit = 1024;  // of a nat
 /** What is fitted is rounded to such parts, so that it does not depend on the machine. */

@@ -51,10 +51,8 @@ cv::Point nearestPixel(const cv::Point2d& p) {
   return {int(std::lround(p.x)), int(std::lround(p.y))};
 }
 
-/** Of a map in the plane, all of which is one layer of voxels, as a level laser scanner makes it:
- * not 0 in the columns of which nothing is known, the first row that of the largest y. Of others
- * empty.
- */
+/** Not 0 in the columns of which nothing is known, the first row that of the largest y; empty
+ * unless the map is in the plane: one layer of voxels, as a level laser scanner makes it. */
 cv::Mat unknownColumns(const SemanticOcTree& tree, const cv::Rect& columns, double edge) {
   cv::Mat unknown(columns.size(), CV_8U, cv::Scalar(255));
   std::optional<int> layer;

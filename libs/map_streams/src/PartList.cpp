@@ -9,7 +9,7 @@ namespace {
 
 using Kind = StreamLeaf::Kind;
 
-/** Of a kind, and what a leaf of it says. */
+/** Bytes of a kind, and of what a leaf of it says. */
 constexpr std::size_t kMostBytes = 1 + sizeof(Units) + sizeof(ClassRecord);
 
 template <typename T>

@@ -74,7 +74,7 @@ class PartWindow {
   std::deque<TreePart> m_unpacked;  ///< from there on
 };
 
-/** Of what is written into it. */
+/** The checksum of what is written into it. */
 class Crc : public std::streambuf {
  public:
   std::uint32_t value() const { return static_cast<std::uint32_t>(m_crc); }

@@ -6,7 +6,7 @@
 
 namespace semantic_octree {
 
-/** Of a Data datagram's payload, before the packet's own bytes. Little endian, without gaps. */
+/** Begins a Data datagram's payload, before the packet's own bytes. Little endian, without gaps. */
 struct PacketHeader {
   std::uint16_t revision = 0;           ///< 1: the first map, 2: its first change, ...
   std::uint8_t numDescription = 0;      ///< so many packets from the first on are its description

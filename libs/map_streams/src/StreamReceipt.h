@@ -17,10 +17,10 @@ struct StreamReceipt {
     const std::size_t i = number - prefix;
     return i / 8 < behind.size() && (behind[i / 8] >> i % 8 & 1);
   }
-  /** Of those behind it nothing is said. */
+  /** The packets that it speaks of, from the first on. */
   std::size_t numPackets() const { return prefix + 8 * behind.size(); }
 
-  /** Of those behind, as many as fit into a datagram: 7200. */
+  /** A receipt of the prefix and of the 7200 packets behind it, which fit into a datagram. */
   static StreamReceipt of(std::uint16_t revision, std::uint32_t sequence,
                           const std::vector<bool>& came, std::uint32_t prefix);
   std::string bytes() const;

@@ -20,7 +20,7 @@ struct CellPath {
   CellPath above(int atDepth) const { return {path >> 3 * (depth - atDepth), atDepth}; }
   /** Which child of its parent the cube's ancestor at a depth from 1 on is. */
   int childAt(int atDepth) const { return static_cast<int>(path >> 3 * (depth - atDepth) & 7); }
-  /** Of the first voxel, depth first. */
+  /** The first voxel's path, depth first. */
   std::uint64_t first() const { return path << 3 * (kTreeDepth - depth); }
   bool operator==(const CellPath& o) const { return path == o.path && depth == o.depth; }
   /** Depth first, parents before their children. */
@@ -74,7 +74,7 @@ class StreamTree {
    * larger leaf becomes eight that say the same), but does not replace an inner node of the same
    * revision: what made it one is younger. \return whether the part found its place */
   bool apply(const TreePart& part, std::uint16_t revision);
-  /** The same as a map. \param empty a map of the same kind */
+  /** The tree as a map. \param empty a map of the same kind */
   SemanticOcTree map(const SemanticOcTree& empty) const;
 
  private:

@@ -12,7 +12,7 @@ struct TreeParts {
    * first; leaves at the trees' roots and above are of step 0. It begins something if the tree
    * without it, and what comes behind it, is optimal for some alpha. */
   PartList parts;
-  /** Of each step: an alpha that leads to its tree, and the alpha at which what it brings is worth
+  /** Each step has an alpha that leads to its tree, and the alpha at which what it brings is worth
    * its price. The last is the map's own. */
   std::vector<double> alphas, ties;
 };

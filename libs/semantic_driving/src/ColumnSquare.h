@@ -27,7 +27,7 @@ class ColumnSquare {
   }
 
  private:
-  /** Of columns anywhere. */
+  /** How far a column is, which may be anywhere, in columns along x or y. */
   std::int64_t far(semantic_planning::Column c) const {
     return std::max(std::abs(std::int64_t{c.x} - m_center.x),
                     std::abs(std::int64_t{c.y} - m_center.y));

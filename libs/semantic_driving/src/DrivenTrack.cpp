@@ -19,7 +19,7 @@ bool isSame(const TPose2D& a, const TPose2D& b) {
   return apart(a, b) < kSpacing && std::abs(mrpt::math::wrapToPi(a.phi - b.phi)) < kSameHeading;
 }
 
-/** Of the steering on the way from one place to the other, 1/m; the gear does not matter. */
+/** The steering's curvature from one place to the other, 1/m; the gear does not matter. */
 double curvature(const TPose2D& a, const TPose2D& b) {
   const double turned = mrpt::math::wrapToPi(b.phi - a.phi), heading = a.phi + turned / 2;
   const double way = (b.x - a.x) * std::cos(heading) + (b.y - a.y) * std::sin(heading);

@@ -74,7 +74,7 @@ void GroundFlood::flood(int z) {
   }
 }
 
-/** Of a step in the direction d to c: who leaves the place where it does not head has to turn. */
+/** What turning adds to a step in direction d to c: who leaves where it does not head, turns. */
 double GroundFlood::turningOf(Column c, const Column& d) const {
   constexpr double kWithin = 1;   // m
   constexpr double kTurning = 4;  // m on rank 0, for turning around

@@ -100,7 +100,7 @@ void MoverTracker::noteStanding(Track& track, double seconds) {
   track.stands.reset();
 }
 
-/** Of clusters: points that are near one another, from above. */
+/** Middles of clusters: points that are near one another, seen from above. */
 std::vector<Vector2d> MoverTracker::middles() const {
   using Cell = std::pair<long, long>;
   const auto cellOf = [](const Vector2d& p) {

@@ -83,7 +83,7 @@ double PathTracker::freeAhead(const DriveState& state, const ObstaclePoints& obs
   return most;
 }
 
-/** Of the steering, as a mean over some of the stretch: at once it turns by nothing. */
+/** The steering's curvature, a mean over some of the stretch: no steering turns at once. */
 double PathTracker::curvatureAt(double s) const {
   const double half = kCurvatureOver / 2;
   const double from = std::max(s - half, m_path.stretchBegin(s));

@@ -68,7 +68,7 @@ void WayLeft::offer(Column c, double way) {
   m_open[bucket].emplace_back(way, i);
 }
 
-/** Of a meter. */
+/** What a meter costs. */
 double WayLeft::costOf(Column c) const {
   const auto* surface = m_region.isReached(c) ? m_ground.near(c, m_flood.at(c).z, 0) : nullptr;
   return surface ? m_planner.order().rank(surface->classId) + 1 : m_unknown;

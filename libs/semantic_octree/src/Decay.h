@@ -17,7 +17,7 @@ namespace semantic_octree {
  * log-odds, occupancy is rounded towards 0 and differences away from it: a leaf keeps its half-life
  * until it is unknown, so that many short times leave what a long one does, to the last bit. */
 
-/** Of the clock, nanoseconds: 200 years. */
+/** The clock's highest time, nanoseconds: 200 years. */
 constexpr std::int64_t kOldestMap = 200LL * 365 * 86400 * 1000000000;
 
 /** Steps of a half-life (seconds) between two times of the map's clock (nanoseconds), 0 or more. */

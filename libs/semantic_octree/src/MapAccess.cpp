@@ -12,7 +12,7 @@
 namespace semantic_octree {
 namespace {
 
-/** The same nodes with room for this bookkeeping; those of tiles are away then. */
+/** A store's nodes with room for this bookkeeping; those of tiles are away then. */
 std::unique_ptr<NodeStore> storeFor(const NodeStore& store, std::size_t stateBytes) {
   if (!store.tiles()) return std::make_unique<NodeStore>(store, stateBytes);
   store.tiles()->sendAway();

@@ -105,7 +105,7 @@ class RayLanes {
     }
   }
 
-  /** The same steps for all lanes. What changes is copied, so that it stays in registers. */
+  /** All lanes take so many steps. What changes is copied, so that it stays in registers. */
   MSO_INLINE void advance(std::int64_t steps) {
     AxisLanes &x = m_axes[0], &y = m_axes[1], &z = m_axes[2];
     Lanes nextX = x.next, nextY = y.next, nextZ = z.next;

@@ -22,7 +22,7 @@ class LocalMap {
            const SensorScale& scale, bool useClasses);
 
   const std::vector<Submap>& submaps() const { return m_parts.front().submaps; }
-  /** Of the last keyframe, in the frame of submaps(). */
+  /** The last keyframe's pose, in the frame of submaps(). */
   const Eigen::Isometry3d& T_local_last() const { return m_parts.front().poses.back(); }
   /** Poses of its keyframes, the last ones that were added, in the frame of submaps(). */
   const std::vector<Eigen::Isometry3d>& poses() const { return m_parts.front().poses; }

@@ -17,12 +17,13 @@ constexpr int kMostIterations = 40;
 /** Steps, m, at which the iteration ends; in coarse cubes, as a share of their edge; 1/m of turns.
  */
 constexpr double kStill = 2e-4, kStillCoarse = 2e-3, kPerMeter = 0.1;
-/** Of a distribution: as many as its covariance has numbers. */
+/** A distribution has as many points at least as its covariance has numbers. */
 constexpr int kFewestInSpace = 6, kFewestInPlane = 3;
 /** Least standard deviation of a surface, of a cube's edge: in small cubes it counts as thin as it
  * is, and those of large ones reach out to points that are far off yet. */
 constexpr double kThinnest = 0.03;
-/** Of surfaces' two widths, squared. A narrow one is but a ring that a LiDAR left on it. */
+/** The least ratio of a surface's two widths, squared. A narrow one is but a ring that a LiDAR left
+ * on it. */
 constexpr double kNarrowest = 0.3;
 /** Squared distances, in standard deviations, at which a point's weight is a quarter, and up to
  * which it matches. */

@@ -107,7 +107,7 @@ struct HalfEdge {
 
   bool isWide() const { return bits >> 31; }
   std::uint32_t place() const { return bits & ~(1u << 31); }
-  /** Of those that are not wide: kUnevaluated, kBlocked, or a class above kFirstClass. */
+  /** What an edge that is not wide is: kUnevaluated, kBlocked, or a class above kFirstClass. */
   unsigned kind() const { return bits >> 24 & (kKinds - 1); }
   Length length() const { return bits & kLongest; }
   bool leads(Way way) const { return !(bits >> (way == Way::Out ? 29 : 30) & 1); }

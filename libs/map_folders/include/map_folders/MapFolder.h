@@ -19,10 +19,10 @@ struct MapFolderOptions {
   double memory = 500;
   /** Meters: edge of a tile of a new folder; the next smaller power of two voxels is used. */
   double tileSize = 51.2;
-  /** Of a folder that is opened to be read: only tiles for whose cube (meters, map frame) this
+  /** For a folder that is opened to be read: only tiles for whose cube (meters, map frame) this
    * answers true; the others' are unknown space. None: all tiles. */
   std::function<bool(const Eigen::AlignedBox3d& cube)> wanted = {};
-  /** Of a folder that is opened as a draft: a folder where tiles that changed go when memory is
+  /** For a folder that is opened as a draft: a folder where tiles that changed go when memory is
    * short. It is created, and goes with the MapFolder. */
   std::filesystem::path draft = {};
 

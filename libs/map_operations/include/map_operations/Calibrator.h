@@ -47,7 +47,7 @@ class Calibrator {
   };
   std::unordered_map<octomap::OcTreeKey, Seen, octomap::OcTreeKey::KeyHash> m_voxels;
   std::uint32_t m_scans = 0;
-  /** Of each calibration and a, -ln p of all labels, 1/1024 nat. */
+  /** For each calibration and a: -ln p of all labels, 1/1024 nat. */
   std::vector<std::int64_t> m_losses;
 };
 

@@ -111,9 +111,9 @@ class MapReceiver {
   /** What is known up to now. \throw std::logic_error there is none. */
   SemanticOcTree map() const;
   std::size_t numLeaves() const;
-  /** Of the present map or change: the packets that came without a gap. */
+  /** The packets of the present map or change that came without a gap. */
   StreamPrefix prefix() const;
-  /** Of the present map or change: all that came, and all that there are (0: not known yet). */
+  /** All packets of the present map or change that came, and that there are (0: not known yet). */
   std::size_t numPackets() const;
   std::size_t numExpected() const;
 

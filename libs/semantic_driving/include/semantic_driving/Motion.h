@@ -18,7 +18,7 @@ struct Motion {
 Motion next(const Motion& last, const DriveCommand& wanted, double speed, double seconds,
             const DriveOptions& limits);
 
-/** The same motion when the steering was turned towards a command for some seconds. */
+/** A motion when the steering was turned towards a command for some seconds. */
 Motion steered(const Motion& motion, const DriveCommand& wanted, double seconds,
                const DriveOptions& limits);
 

@@ -30,9 +30,9 @@ ObstaclePoints senseObstacles(const semantic_planning::SemanticPlanner& planner,
                               const mrpt::math::TPose2D& pose, double z,
                               const ObstacleOptions& options = {});
 
-/** The same with heights above the ground there, meters: centers of the voxels that are in the way,
- * for a vehicle that is not as wide at all heights. Where the ground itself is an obstacle, there
- * is one at each height. */
+/** As senseObstacles(), with heights above the ground, meters: centers of the voxels that are in
+ * the way, for a vehicle that is not as wide at all heights. Where the ground itself is an
+ * obstacle, there is one at each height. */
 ObstaclePoints3 senseObstacles3(const semantic_planning::SemanticPlanner& planner,
                                 const mrpt::math::TPose2D& pose, double z,
                                 const ObstacleOptions& options = {});

@@ -34,7 +34,7 @@ struct NavigatorOptions {
 /** Where odometry has the robot, and how it moves. */
 struct RobotState {
   semantic_driving::DriveState drive;  ///< pose in the frame of odometry
-  /** The same pose with the height of the ground below the robot, and its tilt. */
+  /** The robot's pose with the height of the ground below it, and its tilt. */
   Eigen::Isometry3d T_odometry_robot = Eigen::Isometry3d::Identity();
 };
 
@@ -93,7 +93,7 @@ class Navigator {
   const semantic_driving::DriveState& state() const { return m_state; }
   /** When the newest scan that the map has was taken, seconds; before all: far in the past. */
   double mappedAt() const { return m_mappedAt; }
-  /** Of the compressed tree, as the planner knows it. Waits as mapper(). */
+  /** Leaves of the compressed tree, as the planner knows it. Waits as mapper(). */
   std::size_t numCompressedLeaves();
 
   /** Waits for the scan that is being inserted. */

@@ -48,7 +48,7 @@ class ClassFilter {
 
   int numClasses() const { return m_numClasses; }
   const FilterParameters& parameters() const { return m_parameters; }
-  /** The same for a scan whose labels are trusted otherwise. */
+  /** This filter for a scan whose labels are trusted otherwise. */
   ClassFilter trusting(const LabelReliability& labels) const;
 
   /** A return with a class label ended in the cell. */
@@ -87,7 +87,7 @@ class ClassFilter {
   Real missIncrement() const { return m_miss; }
   /** Puts all values into their limits and restores the order. */
   void limit(Belief& b) const;
-  /** The same for the occupancy of a cell without a class record. */
+  /** The limits for the occupancy of a cell without a class record. */
   Real limitedOccupancy(Real v) const {
     return std::min(highestOccupancy(), std::max(lowestOccupancy(), v));
   }

@@ -42,7 +42,7 @@ inline int keyOf(double coordinate, double voxelSize) {
 inline double lowerBorderOf(int key, double voxelSize) { return (key - kKeyOfOrigin) * voxelSize; }
 /** Coordinate (meters, map frame) of a voxel's center. */
 inline double centerOf(int key, double voxelSize) { return (key - kKeyOfOrigin + 0.5) * voxelSize; }
-/** The same of the cube at a depth that a voxel is in. */
+/** The center of the cube at a depth that a voxel is in, m. */
 inline double centerOf(int key, double voxelSize, int depth) {
   return (lowestKeyAtDepth(key, depth) - kKeyOfOrigin + 0.5 * edgeAtDepth(depth)) * voxelSize;
 }

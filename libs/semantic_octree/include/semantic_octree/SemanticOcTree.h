@@ -159,8 +159,8 @@ class SemanticOcTree {
   std::optional<RayHit> castRay(const octomap::point3d& origin, const octomap::point3d& direction,
                                 double maxRange = 0, bool ignoreUnknown = true) const;
 
-  /** The same map to the last bit: resolution, classes, parameters, nodes, class records and, where
-   * both keep it, the abstraction's bookkeeping. */
+  /** Whether both are one map to the last bit: resolution, classes, parameters, nodes, class
+   * records and, where both keep it, the abstraction's bookkeeping. */
   bool operator==(const SemanticOcTree& o) const;
   bool operator!=(const SemanticOcTree& o) const { return !(*this == o); }
 

@@ -22,7 +22,7 @@ class SemanticOcTreeNode {
   explicit operator bool() const { return m_slot != nullptr; }
   const SemanticOcTreeNode& operator*() const { return *this; }
   const SemanticOcTreeNode* operator->() const { return this; }
-  /** The same node of the same map. */
+  /** Whether both are one node of one map. */
   bool operator==(const SemanticOcTreeNode& o) const {
     return m_slot == o.m_slot && m_part == o.m_part;
   }

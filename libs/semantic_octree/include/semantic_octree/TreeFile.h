@@ -15,7 +15,7 @@ void saveTree(const SemanticOcTree& tree, const std::string& path);
  * truncated, altered (each byte is covered by a checksum). */
 SemanticOcTree loadTree(const std::string& path);
 
-/** The same bytes to a stream that may hold other things before and after.
+/** Writes the file's bytes to a stream that may hold other things before and after.
  * \throw std::runtime_error the stream does not take them. */
 void writeTree(std::ostream& out, const SemanticOcTree& tree);
 

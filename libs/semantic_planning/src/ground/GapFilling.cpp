@@ -18,7 +18,7 @@ struct Offer {
   ClassId classId;
 };
 
-/** Of a fill's columns from `low` to `high`, those in a tile; none if low > high. */
+/** A fill's columns from `low` to `high` that are in a tile; none if low > high. */
 std::pair<int, int> columnsInTile(const GapFill& fill, Column tile) {
   const Column first = firstColumnOf(tile);
   const Direction& d = kDirections[fill.direction];
@@ -58,7 +58,7 @@ auto narrowestFirst(const Offer& o) {
   return std::tie(o.column, o.width, o.z, o.from.y, o.from.x, o.direction);
 }
 
-/** Of the offers at about one height in a column, the narrowest. Sorted by column, then height. */
+/** The narrowest offer at each height of a column, about. Sorted by column, then height. */
 std::vector<Offer> bestOffers(std::vector<Offer> offers, int step) {
   std::stable_sort(offers.begin(), offers.end(), [](const Offer& l, const Offer& r) {
     return narrowestFirst(l) < narrowestFirst(r);

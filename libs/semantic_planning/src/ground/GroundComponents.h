@@ -17,7 +17,7 @@ class GroundComponents {
   /** \param surfaces with `component` set. */
   GroundComponents(const SurfaceGrid& surfaces, const GroundShape& shape);
 
-  /** The same number for all surfaces that drivable ground connects. */
+  /** One number for all surfaces that drivable ground connects. */
   std::size_t componentOf(Column c, const Surface& s) const;
 
  private:

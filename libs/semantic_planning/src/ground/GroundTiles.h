@@ -11,7 +11,7 @@
 
 namespace semantic_planning {
 
-/** Of a map of which all would be too much, ground is made in squares of so many tiles a side. */
+/** Ground of a map that is too large as a whole is made in squares of so many tiles a side. */
 constexpr int kSquareEdge = 32;
 inline Column squareOf(Column tile) { return {tile.x >> 5, tile.y >> 5}; }
 

@@ -19,7 +19,7 @@ struct SurfaceTile {
   SurfaceRange column(int index) const {
     return {surfaces.data() + first[index], surfaces.data() + first[index + 1]};
   }
-  /** The same places, whatever else is known of them. */
+  /** Whether surfaces are at the same places, whatever else is known of them. */
   bool sameColumn(int index, const SurfaceTile& o) const {
     const SurfaceRange l = column(index), r = o.column(index);
     return std::equal(l.begin(), l.end(), r.begin(), r.end(),
@@ -41,7 +41,7 @@ inline SurfaceRange surfacesAt(const SurfaceWindow& window, Column c) {
   return window.around(c).column(indexInTile(c));
 }
 
-/** Of a column's surfaces the nearest to z, at most `tolerance` off, the lower one on a tie; or
+/** A column's surface nearest to z, at most `tolerance` off, the lower one on a tie; or
  * null. */
 inline const Surface* surfaceNear(SurfaceRange column, int z, int tolerance) {
   const Surface* best = nullptr;

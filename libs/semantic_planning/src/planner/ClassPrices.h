@@ -33,7 +33,7 @@ class ClassPrices {
     for (const colored_graph::Stretch& s : profile) cost += of(s.classId, s.length);
     return cost;
   }
-  /** Of a meter of each class, infinite if it is forbidden. */
+  /** What a meter of each class costs, infinite if it is forbidden. */
   std::vector<double> perMeter() const {
     std::vector<double> prices;
     for (int id = 0; id < m_order.classes(); ++id) {

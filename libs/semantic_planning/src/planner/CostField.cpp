@@ -11,7 +11,7 @@ using colored_graph::Rank;
 namespace {
 
 constexpr std::array<Column, 4> kSteps = {{{1, 0}, {1, 1}, {0, 1}, {-1, 1}}};
-/** Of what a way along eight directions has of length: ways between these have up to 8 % less. */
+/** Share of a way along eight directions: ways between these are up to 8 % shorter. */
 constexpr double kShare = 0.96;
 
 }  // namespace

@@ -46,7 +46,7 @@ class CostField {
     return indexOf(m_checker.ground().columnAt(pose.pose.x, pose.pose.y));
   }
   void leave(const Entry& entry);
-  /** Of a step to a column, in one of four directions or back. */
+  /** What a step to a column costs, in one of four directions or back. */
   Length ofStep(Column to, int z, std::size_t direction) const;
 
   const CollisionChecker& m_checker;

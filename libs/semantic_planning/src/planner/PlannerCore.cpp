@@ -38,7 +38,7 @@ std::optional<std::vector<Column>> tilesOf(const std::optional<Corridor>& corrid
   return corridor->tiles(voxelSize);
 }
 
-/** The same trouble at the goal. */
+/** A start's trouble as the goal's. */
 PlanStatus atGoal(PlanStatus start) {
   switch (start) {
     case PlanStatus::StartOffGround:

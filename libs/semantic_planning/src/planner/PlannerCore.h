@@ -71,7 +71,7 @@ class PlannerCore {
   /** Status, reason and obstacle if a vehicle cannot stand there. \param what "start" or "goal" */
   bool isRefused(const char* what, const Place& place, std::optional<GroundPose>& pose,
                  PlanResult& result) const;
-  /** The same if nothing can be planned between these places. */
+  /** Refuses if nothing can be planned between these places. */
   bool refuse(const Place& start, const Place& goal, PlanResult& result);
   colored_graph::SearchOptions searchOptions(const Roadmap& map);
   std::optional<colored_graph::EdgeProfile> evaluateTimed(const Roadmap& map,

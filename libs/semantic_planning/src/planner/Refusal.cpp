@@ -19,7 +19,7 @@ std::string forbidden(const Ground& ground, ClassId id) {
   return "ground of " + named(ground, id) + ", which the order forbids";
 }
 
-/** Of the surfaces in a column and those next to it, one at this height; or null. */
+/** A surface at this height, in a column or one next to it; or null. */
 const Surface* surfaceAround(const Ground& ground, Column c, int z) {
   for (int y = c.y - 1; y <= c.y + 1; ++y)
     for (int x = c.x - 1; x <= c.x + 1; ++x)
@@ -45,7 +45,7 @@ std::string whatIsAt(const Ground& ground, const Obstacle& obstacle, int z) {
                                                                        : "ground not known";
 }
 
-/** Of what is in the way of the footprint's discs, the nearest to them. */
+/** What is nearest to the footprint's discs of all that is in their way. */
 Refusal blocking(const CollisionChecker& checker, const GroundPose& pose) {
   const Ground& ground = checker.ground();
   const Placement placed(pose.pose);

@@ -30,7 +30,7 @@ double doubleArea(const std::vector<Vector2d>& corners) {
   return sum;
 }
 
-/** Of a counterclockwise polygon's side, to the right, of length 1. */
+/** The normal of a counterclockwise polygon's side, to the right, of length 1. */
 Vector2d outwards(const Vector2d& side) { return Vector2d(side.y(), -side.x()) / side.norm(); }
 
 /** Extent of the footprint in y between two values of x: of a polygon's corners in between and of

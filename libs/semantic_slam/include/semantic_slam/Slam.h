@@ -64,7 +64,7 @@ class Slam {
   /** Brings all loops into the poses. \return whether poses moved */
   bool finish();
 
-  /** Of all keyframes, T_map_keyframe; the first is where odometry had it, unless the reference says
+  /** T_map_keyframe of all keyframes; the first is where odometry had it, unless the reference says
    * where they are. */
   const std::vector<Eigen::Isometry3d>& poses() const;
   const std::vector<PoseEdge>& edges() const;

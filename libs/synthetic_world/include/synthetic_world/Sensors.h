@@ -55,11 +55,11 @@ struct FrameSeed {
  * Camera frame: x ahead along the optical axis, y left, z up. Pixel (row, column) looks along
  * (1, (cx - column) / f, (cy - row) / f); whole numbers are the pixels' centers. */
 struct CameraOptions {
-  int width = 320, height = 240;  // pixels
-  double horizontalFov = 80;      // degrees
+  int width = 320, height = 240;            // pixels
+  double horizontalFov = 80;                // degrees
   static constexpr double kMinRange = 0.3;  // m of depth; nearer returns are lost
-  double maxRange = 20;           // m of depth
-  bool color = true;              // render the color image, too
+  double maxRange = 20;                     // m of depth
+  bool color = true;                        // render the color image, too
   SensorNoise noise;
 
   double focalLength() const;  // pixels
@@ -89,9 +89,9 @@ CameraFrame renderCamera(const World& world, const Eigen::Isometry3d& T_world_ca
 /** A LiDAR that turns around its z axis. Sensor frame: x ahead, y left, z up. */
 struct LidarOptions {
   int rings = 32, columns = 1024;
-  double lowest = -25, highest = 15;  // elevation of the first and last ring, degrees
+  double lowest = -25, highest = 15;        // elevation of the first and last ring, degrees
   static constexpr double kMinRange = 0.8;  // m; nearer returns are lost
-  double maxRange = 60;               // m
+  double maxRange = 60;                     // m
   /** Share of the beams on windows, cars, water and signs that return by way of what these mirror:
    * such ghosts lie behind the surface, many of them below the ground; 0..1. */
   double ghosts = 0;

@@ -43,7 +43,7 @@ class BlockUpdate final : public BlockFusion {
   const Filter& m_filter;
   bool m_pruning;
   Units m_miss, m_lowest, m_highest;
-  /** Of the block at work. */
+  /** Whether records of the block at work changed. */
   bool m_recordsChanged = false;
   VoxelBits m_superfluous = 0;  ///< records to be dropped
   VoxelBits m_fresh = 0;        ///< voxels whose record is not set yet

@@ -13,7 +13,7 @@ using Units = std::int16_t;
 /** Stands for no value, below all others. */
 constexpr Units kUnknown = INT16_MIN;
 
-/** Of log-odds on the filter's grid; what is out of range becomes the nearest that is not. */
+/** Units of log-odds on the filter's grid; what is out of range becomes the nearest that is not. */
 inline Units toUnits(float logOdds) {
   const float limit = INT16_MAX / static_cast<float>(kUnitsPerLogOdds);
   return static_cast<Units>(std::min(limit, std::max(-limit, logOdds)) * kUnitsPerLogOdds);

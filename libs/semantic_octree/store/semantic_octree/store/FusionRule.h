@@ -37,7 +37,7 @@ class BlockFusion {
 class FusionRule {
  public:
   virtual ~FusionRule() = default;
-  /** The same for a scan whose labels are trusted otherwise. */
+  /** This rule for a scan whose labels are trusted otherwise. */
   virtual std::unique_ptr<const FusionRule> trusting(const LabelReliability& labels) const = 0;
   /** One thread's part; the rule must outlive it. \param pruning octants whose voxels agree become
    * leaves */

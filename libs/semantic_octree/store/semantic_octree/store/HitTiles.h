@@ -14,7 +14,7 @@ class HitTiles {
  public:
   struct Tile {
     VoxelBits words[ScanGrid::kWords];  ///< a block each
-    /** Of each word's first voxel among all voxels; the others follow in Morton order. */
+    /** Each word's first voxel has this rank among all; the others follow in Morton order. */
     std::uint32_t ranks[ScanGrid::kWords];
   };
 

@@ -37,7 +37,7 @@ class HitVotes {
   }
 
   bool isSoft() const { return !m_softCounts.empty(); }
-  /** Of the labels that were counted; none with soft labels. */
+  /** How the labels that were counted agree; none with soft labels. */
   const LabelAgreement& agreement() const { return m_agreement; }
   int numClasses() const { return m_numClasses; }
 

@@ -63,7 +63,7 @@ class IndexAllocator {
   long m_inUse = 0;
 };
 
-/** The same for runs of up to 64 elements. Runs of a few lengths are given out; a run of n elements
+/** Gives out runs of up to 64 elements. Runs of a few lengths are given out; a run of n elements
  * is one of the next length. */
 class RunAllocator {
  public:

@@ -18,13 +18,14 @@ struct LeafContent {
   }
 };
 
-/** What is stated of p(class k | occupied) of a node, K shares: of the mixture, by volume, of the leaves below in
- * which labels were seen. (Free space and what was hit without a label know nothing of classes;
- * with them, a cell that holds both would state too little.) Empty if there are none. */
+/** What is stated of p(class k | occupied) of a node, K shares: of the mixture, by volume, of the
+ * leaves below in which labels were seen. (Free space and what was hit without a label know nothing
+ * of classes; with them, a cell that holds both would state too little.) Empty if there are none.
+ */
 std::vector<double> classShares(const Node& node, const ClassFilter<float>& filter);
 
-/** Of a leaf, or of an inner node that becomes one: occupancy of its most occupied leaf, classes as
- * they are believed to be. */
+/** What a leaf holds, or an inner node that becomes one: occupancy of its most occupied leaf,
+ * classes as they are believed to be. */
 LeafContent contentOf(const Node& node, int numClasses);
 
 /** Whose half-life a leaf has: its likeliest class's, or kNoClass if it is free; none: it is
@@ -35,7 +36,7 @@ inline std::optional<ClassId> decaysAs(Units value, const ClassRecord* record, i
   const bool isLikeliest = record->count == numClasses || record->logOdds[0] > record->rest;
   return isLikeliest ? std::optional<ClassId>(record->ids[0]) : std::nullopt;
 }
-/** Of all leaves below an inner node that is in memory with all that is below. */
+/** decaysAs() of all leaves below an inner node that is in memory with all that is below. */
 ClassSet halfLivesBelow(const NodeStore& store, const Slot& inner, int numClasses);
 
 struct ClassLogOdds {

@@ -29,7 +29,7 @@ class MapAccess {
   /** Has it compute all that it keeps. Of a map in tiles they are read, one by one: if that fails,
    * the map has none. */
   static void setObserver(SemanticOcTree& map, std::unique_ptr<NodeObserver> observer);
-  /** The same for nodes that came into the map, of which some are away. */
+  /** Recomputes for nodes that came into the map, of which some are away. */
   static void recomputeTileByTile(SemanticOcTree& map);
 
   /** For readers, who may outlive the map. */

@@ -165,7 +165,7 @@ class NodeStore {
   }
   ClassRecord* recordsOf(const Block& block) const { return recordAt(block.records); }
   BlockContent contentOf(const Block& block) const;
-  /** Of a leaf that has one. */
+  /** The class record of a leaf that has one. */
   static const ClassRecord& record(const Node& leaf);
 
   /** Null: all nodes are in memory. */

@@ -36,7 +36,7 @@ class Scan {
   const InsertionReport& report() const { return m_report; }
   const ScanPyramid& pyramid() const { return m_pyramid; }
   const HitVotes& votes() const { return m_votes; }
-  /** Of the whole scan, in parts of it too. */
+  /** How far the whole scan's labels are trusted; a part of it has its whole's. */
   const LabelReliability& labels() const { return m_report.labels; }
 
   struct Tile {
@@ -50,7 +50,7 @@ class Scan {
   bool hasVoxels() const { return report().hitVoxels + report().freeVoxels > 0; }
   /** Forgets the voxels, keeps the buffers. */
   void clear();
-  /** Of buffers that are not worth keeping for the next scan. */
+  /** Larger buffers are not kept for the next scan. */
   static constexpr std::size_t kTooManyBytes = 256000000;
 
   /** Bytes of the buffers. */

@@ -30,8 +30,8 @@ namespace semantic_octree {
  * labels: that of the row with which they counted a scan's labels, ln(n + a), is nearly
  * kCorrelationOfOldMaps. Version 4 had no calibration. */
 constexpr std::array<char, 8> kMagic{'S', 'E', 'M', 'O', 'C', 'T', 'R', 'E'};
-constexpr std::uint32_t kVersion = 5, kVersionWithoutCalibration = 4, kVersionWithoutCorrelation = 3,
-                        kVersionWithoutTime = 2, kOldestVersion = 1;
+constexpr std::uint32_t kVersion = 5, kVersionWithoutCalibration = 4,
+                        kVersionWithoutCorrelation = 3, kVersionWithoutTime = 2, kOldestVersion = 1;
 constexpr double kCorrelationOfOldMaps = 0.5;
 
 enum class NodeKind : std::uint8_t { None, Leaf, LeafWithRecord, Inner };
@@ -73,7 +73,7 @@ class TreeReader {
   /** What writeTile() wrote of a map that is like this one: adds the children of an octant that has
    * none. If it fails, some of them may be there. */
   void readTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant, const Cell& cell);
-  /** Of what was read. */
+  /** The checksum of what was read. */
   std::uint32_t checksum() const { return m_in.checksum(); }
 
  private:

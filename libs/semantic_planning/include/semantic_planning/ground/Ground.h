@@ -86,7 +86,7 @@ class Ground {
   /** The tiles that there are. */
   std::vector<Column> tiles() const;
 
-  /** Of use within the library only. */
+  /** For use within the library only. */
   const GroundTiles& layers() const { return *m_tiles; }
 
  private:

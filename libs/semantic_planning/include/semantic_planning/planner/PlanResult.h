@@ -47,9 +47,9 @@ struct PlanResult {
   /** Meters: MotionCost, and each rank's rate (ClassOrder) for each of its meters. An infinite rate
    * counts as a large one. */
   double price = 0;
-  /** Of the roadmap's best path, before a better one was looked for (PlannerOptions::shorten);
-   * empty if the roadmap has none, or was not needed. Its motion cost leaves out what changes where
-   * edges meet. */
+  /** The cost of the roadmap's best path, before a better one was looked for
+   * (PlannerOptions::shorten); empty if the roadmap has none, or was not needed. Its motion cost
+   * leaves out what changes where edges meet. */
   std::vector<std::int64_t> roadmapCost;
   std::vector<double> lengthPerClass;         ///< meters by class id; [0]: unknown ground
   double length = 0;                          ///< meters
@@ -57,7 +57,7 @@ struct PlanResult {
   std::vector<mrpt::math::TPose2D> vertices;  ///< where its curves meet
   std::size_t numVertices = 0, numEdges = 0;  ///< of the roadmap
   colored_graph::SearchStatistics search;
-  /** Of search.edgesEvaluated, those that were known from plans before, over the same ground. */
+  /** So many of search.edgesEvaluated were known from plans before, over the same ground. */
   std::size_t edgesRemembered = 0;
   StageTimes times;
 

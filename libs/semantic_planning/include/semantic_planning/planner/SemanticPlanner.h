@@ -29,14 +29,14 @@ struct PlannerOptions {
   bool shorten = false;
   /** With `shorten`: classes come before length, whatever the order's rates (ClassOrder). */
   bool strict = false;
-  /** Of a search in the roadmap, seconds. */
+  /** A search in the roadmap takes so long at most, seconds. */
   double timeLimit = std::numeric_limits<double>::infinity();
   /** Asked often during a search, which stops when it answers true. */
   std::function<bool()> cancelled;
   /** Makes a planner's search of the roadmap's graph; none: COA* (colored_graph::GraphSearch). */
   std::function<std::unique_ptr<colored_graph::GraphSearch>()> graphSearch;
 
-  /** Of all but the vehicle, which has a file of its own (loadVehicle). */
+  /** Describes all but the vehicle, which has a file of its own (loadVehicle). */
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;

@@ -73,7 +73,7 @@ class CollisionChecker {
    * there is no answer, either */
   std::optional<colored_graph::EdgeProfile> profile(const ReedsSheppCurve& curve, int from, int to,
                                                     ClassBudget* budget = nullptr) const;
-  /** Of the vehicle's shortest curve from a to b. */
+  /** The profile of the vehicle's shortest curve from a to b. */
   std::optional<colored_graph::EdgeProfile> profile(const GroundPose& a, const GroundPose& b) const;
 
   /** Points along a free curve at most half a voxel apart, from its start to its end, and wherever

@@ -36,7 +36,7 @@ class Footprint {
   Footprint inflated(double margin) const;
   /** From a point, meters; 0 within. */
   double distance(const Eigen::Vector2d& point) const;
-  /** Of the largest disc around the vehicle's origin that the footprint covers, meters; 0 if the
+  /** The radius of the largest disc around the origin that the footprint covers, meters; 0 if the
    * origin is outside. */
   double inscribedRadius() const;
   /** Discs that together cover the footprint: a vehicle whose discs are free is free. They stick

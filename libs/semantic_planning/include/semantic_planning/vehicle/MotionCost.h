@@ -22,7 +22,7 @@ class MotionCost {
 
   bool canReverse() const { return std::isfinite(m_reverse); }
   double gearChange() const { return m_gearChange; }
-  /** Of a way without changes. */
+  /** What a way without changes costs. */
   double ofWay(double meters, bool forward) const { return forward ? meters : m_reverse * meters; }
   double ofChange(const CurveState& from, const CurveState& to) const {
     return (from.forward != to.forward ? m_gearChange : 0) +
@@ -30,9 +30,9 @@ class MotionCost {
   }
   /** Whether these curvatures are more than rounding apart. */
   static bool steers(double from, double to) { return std::abs(to - from) > 1e-6; }
-  /** Of a curve by itself; infinite if the vehicle cannot drive it. */
+  /** What a curve by itself costs; infinite if the vehicle cannot drive it. */
   double of(const ReedsSheppCurve& curve) const;
-  /** Of a path, from point to point. */
+  /** What a path costs, from point to point. */
   double of(const std::vector<PathPoint>& path) const;
 
   /** The shortest curve from a to b that the vehicle can drive. */

@@ -31,7 +31,7 @@ class ReedsSheppCurve {
   double length() const { return m_length; }         ///< meters
   /** \param s arc length from the start, clamped to [0, length()], meters. */
   CurvePoint at(double s) const;
-  /** The same curve from its end to its start. */
+  /** The curve driven from its end to its start. */
   ReedsSheppCurve reversed() const;
   const std::array<Segment, 5>& segments() const { return m_segments; }
 
