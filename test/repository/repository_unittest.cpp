@@ -251,14 +251,14 @@ TEST_F(Repository, theExamplesAreShort) {
 }
 
 TEST_F(Repository, eachLibraryIsDescribedInOneSentenceAndDocumented) {
-  static const std::regex row(R"(^\| \[`(\w+)`\]\(libs/\w+\) \| (.*) \|$)");
+  static const std::regex row(R"(^\| \[`(\w+)`\]\(../libs/\w+\) \| (.*) \|$)");
   std::map<std::string, std::string> sentences;
-  for (const SourceLine& line : linesOf(root / "README.md"))
+  for (const SourceLine& line : linesOf(root / "doc/README.md"))
     if (std::smatch match; std::regex_match(line.text, match, row)) sentences[match[1]] = match[2];
   for (const auto& library : fs::directory_iterator(root / "libs")) {
     if (!library.is_directory()) continue;
     const std::string sentence = sentences[library.path().filename().string()];
-    EXPECT_GT(sentence.size(), 10u) << library.path() << " is not in the README's table";
+    EXPECT_GT(sentence.size(), 10u) << library.path() << " is not in the table of doc/README.md";
     EXPECT_EQ(firstComment(library.path() / "CMakeLists.txt").rfind(sentence, 0), 0u)
         << library.path() << ": " << sentence;
     const std::string includes = "libs/" + library.path().filename().string() + "/include";
