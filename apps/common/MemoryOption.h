@@ -6,8 +6,7 @@
 
 /** --memory, of programs that read maps tile by tile. */
 inline void addMemoryOption(CLI::App& app, double& megabytes) {
-  app.add_option("--memory", megabytes,
-                 "Of a map in a folder of tiles, so many MB are in memory at a time")
+  app.add_option("--memory", megabytes, "Memory for the tiles of a map in a folder, MB")
       ->check(isNumber(strict_files::atLeast(0)))
       ->capture_default_str();
 }

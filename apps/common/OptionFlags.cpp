@@ -33,7 +33,7 @@ void addSwitch(CLI::App& app, const strict_files::Option& option, const std::str
   const std::string name = withDashes(option.name);
   app.add_flag_callback((on ? "--no-" : "--") + name,
                         [set = option.set, on] { set(on ? "false" : "true"); },
-                        (on ? "not: " : "") + option.help)
+                        (on ? "switches off: " : "") + option.help)
       ->group(group);
 }
 

@@ -39,17 +39,18 @@ struct Cli {
              synthetic_world::sceneNames())
         ->delimiter(',')
         ->capture_default_str();
-    app.add_option("--pairs", pairs, "Of start and goal in each")
+    app.add_option("--pairs", pairs, "Drives in each world, from a random start to a random goal")
         ->check(isNumber(strict_files::atLeast(0)))
         ->capture_default_str();
-    app.add_option("--enclosed", enclosed, "And so many with barriers all around the goal")
+    app.add_option("--enclosed", enclosed, "More drives, with barriers all around the goal")
         ->check(isNumber(strict_files::atLeast(0)))
         ->capture_default_str();
-    app.add_option("--unfit", unfit, "And so many to goals where the robot does not fit")
+    app.add_option("--unfit", unfit, "More drives, to goals where the robot does not fit")
         ->check(isNumber(strict_files::atLeast(0)))
         ->capture_default_str();
-    app.add_option("--only", only, "Drive these of the pairs only (0, 1, ...)")->delimiter(',');
-    app.add_option("--scene-seed", sceneSeed, "Other worlds")->capture_default_str();
+    app.add_option("--only", only, "Numbers of the drives to do (0, 1, ...); without: all")
+        ->delimiter(',');
+    app.add_option("--scene-seed", sceneSeed, "Seed of the worlds")->capture_default_str();
     strict_files::OptionList pairsDrawn;
     tasks.describe(pairsDrawn);
     addOptions(app, pairsDrawn, "Start and goal");

@@ -38,7 +38,7 @@ struct Cli {
   bool json = false;
 
   Cli() {
-    app.add_option("RAWLOG", rawlog, "With labels, and with the robot's poses")->required();
+    app.add_option("RAWLOG", rawlog, "Rawlog with labels and poses of the robot")->required();
     app.add_option("--classes", classes, "Class table (YAML)")->required();
     app.add_option("--resolution", settings.resolution, "Edge of a voxel, m")
         ->check(isNumber(strict_files::above(0)))
@@ -58,10 +58,11 @@ struct Cli {
     app.add_option("--threads", settings.threads, "Our threads")
         ->check(isNumber(strict_files::between(1, 256)))
         ->capture_default_str();
-    app.add_option("--repeats", repeats, "How often all is measured")
+    app.add_option("--repeats", repeats, "Measurements of each runner")
         ->check(isNumber(strict_files::between(1, 1000)))
         ->capture_default_str();
-    app.add_option("--only", only, "Runners whose name contains this, and the bare traversal");
+    app.add_option("--only", only,
+                   "Measure only runners whose names contain this, and the bare traversal");
     app.add_flag("--json", json, "JSON instead of a table");
   }
 };

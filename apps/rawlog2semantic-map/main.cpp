@@ -61,7 +61,7 @@ struct Cli {
  private:
   void addTo(CLI::App& app) {
     app.add_option("--config", config,
-                   "Options (.ini); without, all as it is, and classes as the rawlog names them");
+                   "Options (.ini); without it, defaults, and the classes that the labels name");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     addLabelsTo(app);
     auto* poses = app.add_option("--trajectory", trajectory,
@@ -75,22 +75,23 @@ struct Cli {
     app.add_option("--max-range", maxRange,
                    "Returns beyond it only carve free space, m; 0: no limit")
         ->check(isNumber(strict_files::atLeast(0)));
-    app.add_flag_callback("-v,--verbose", beVerbose, "Say of each observation what became of it");
-    auto* upkeep = app.add_flag("--compare-upkeep", compareUpkeep,
-                                "Time each insertion without upkeep of the abstraction, too");
+    app.add_flag_callback("-v,--verbose", beVerbose, "Say what became of each observation");
+    auto* upkeep =
+        app.add_flag("--compare-upkeep", compareUpkeep,
+                     "Also time each insertion without keeping the abstraction up to date");
     auto* corrected = app.add_flag("--slam", slam,
                                    "Correct the poses: register scans to each other, close loops; "
                                    "for LiDARs, RGB-D cameras, laser scanners")
                           ->excludes(upkeep)
                           ->excludes(rest);
     app.add_option("--reference", reference,
-                   "Map that is there already (.semantic, or a folder of tiles): poses are "
-                   "corrected to be in its frame")
+                   "Existing map (.semantic, or a folder of tiles): poses are "
+                   "corrected into its frame")
         ->needs(corrected);
     auto* window = app.add_flag("--live", live, "Show the map in a window while it grows");
     addTilesTo(app)->excludes(upkeep)->excludes(window);
-    app.add_flag("--pause", pause, "Wait there from the first scan on")->needs(window);
-    app.add_option("INPUT.rawlog", rawlogs, "Rawlogs that continue each other")->required();
+    app.add_flag("--pause", pause, "Begin paused, before the first scan")->needs(window);
+    app.add_option("INPUT.rawlog", rawlogs, "Rawlogs, parts of one log in order")->required();
   }
 
   CLI::Option* addTilesTo(CLI::App& app) {
@@ -99,8 +100,8 @@ struct Cli {
     addOptions(app, list, "Maps larger than memory");
     return app
         .add_option("--tiles", folder.folder,
-                    "Folder that the map goes into, tile by tile, added to what is there; "
-                    "pictures are for semantic-map-export")
+                    "Folder of tiles for the map, added to what is there; "
+                    "semantic-map-export draws it")
         ->group("Maps larger than memory");
   }
 
@@ -111,16 +112,16 @@ struct Cli {
         ->type_name("[SENSOR=]FOLDER")
         ->allow_extra_args(false);
     app.add_option("--network", labels.network, "Network (ONNX) that labels the color images");
-    app.add_option("--network-config", labels.networkConfig, "What it expects and answers (YAML)");
+    app.add_option("--network-config", labels.networkConfig,
+                   "The network's input and output (YAML)");
     app.add_option("--confusion", confusion,
-                   "Confusion matrix (YAML) of the classifier that gave the hard labels. auto: "
-                   "estimated from where labels of several scans differ, reading all twice");
+                   "Confusion matrix (YAML) of the classifier that gave the labels. auto: "
+                   "estimate it from the drive, which is read twice");
     outputs.addOther(
         app.add_option("--save-labeled", saveLabeled, "Rawlog of the scans with their labels"));
-    outputs.addOther(
-        app.add_option("--preview", preview,
-                       "Folder of pictures: labels and points over the images they are from"));
-    app.add_option("--preview-every", previewEvery, "Every N-th scan has pictures")
+    outputs.addOther(app.add_option("--preview", preview,
+                                    "Folder for pictures: images with their labels and points"));
+    app.add_option("--preview-every", previewEvery, "Make pictures of every N-th scan")
         ->check(isNumber(strict_files::above(0)));
   }
 };

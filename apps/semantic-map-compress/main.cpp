@@ -38,11 +38,13 @@ struct Cli {
     app.add_option("--weights", weights, "Solutions: weights of classes (YAML)")->required();
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     auto* group = app.add_option_group("size", "Instead of each solution's own alpha");
-    group->add_option("--alpha", target.alpha, "Price of a leaf's entropy")
+    group->add_option("--alpha", target.alpha, "Price of detail (alpha)")
         ->check(isNumber(strict_files::atLeast(0)));
     group->add_option("--leaves", target.leaves, "The largest tree with at most this many leaves")
         ->check(isNumber(strict_files::above(0)));
-    group->add_option("--bytes", target.bytes, "The largest tree whose file has at most these")
+    group
+        ->add_option("--bytes", target.bytes,
+                     "The largest tree whose file has at most this many bytes")
         ->check(isNumber(strict_files::above(0)));
     group->require_option(0, 1);
     addMemoryOption(app, memory);
@@ -180,7 +182,7 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Compresses a semantic octree map to what matters, for given weights of its classes");
+      "Compresses a semantic octree map to what matters: the best tree for weights of its classes");
   const semantic_map_compress::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_compress::run(cli); });
 }

@@ -35,30 +35,32 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   addWords(app.add_option("--scene,--world", scene, "Which synthetic world"),
            synthetic_world::sceneNames())
       ->capture_default_str();
-  app.add_option("--seed", seed, "Of the world and of all noise")->capture_default_str();
+  app.add_option("--seed", seed, "Seed of the world and of all noise")->capture_default_str();
   app.add_option("--hills", hills, "Factor of the ground's heights; 0 is flat")
       ->check(isNumber(strict_files::between(0.0, 2.0)))
       ->capture_default_str();
-  app.add_option("--map", map,
-                 "What the robot knows of it (.semantic, or a folder of tiles, which stays as it "
-                 "is); none: nothing");
+  app.add_option(
+      "--map", map,
+      "Map that the robot begins with (.semantic, or a folder of tiles, which stays as it "
+      "is); without: none");
   addMemoryOption(app, memory);
   poses::addPose(app, "--start", start, "Where the robot is")->required();
-  poses::addPose(app, "--goal", goal, "Where it is to go")->required();
+  poses::addPose(app, "--goal", goal, "Where the robot shall go")->required();
   app.add_option("--classes", classes,
-                 "Classes from best to worst (YAML); a second file is driven, too, to compare")
+                 "Classes from best to worst (YAML); a second file makes a second drive to compare")
       ->required()
       ->expected(1, 2);
   app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drives)")
       ->required();
   outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
   addEvents(app);
-  app.add_option("--picture-every", pictureEvery, "Keep a picture each so many seconds on the way")
+  app.add_option("--picture-every", pictureEvery,
+                 "Write a picture every so many seconds of the drive")
       ->check(isNumber(strict_files::above(0)));
   app.add_flag("!--no-rawlog", rawlog, "Write no rawlog");
   app.add_flag("--navlog", navlog, "Write drive.reactivenavlog, for MRPT's navlog-viewer");
-  app.add_flag("--live", live, "Show the drive in a window, in real time at most");
-  app.add_flag("--compressed-pictures", compressed, "Pictures show the compressed tree");
+  app.add_flag("--live", live, "Show the drive in a window, no faster than real time");
+  app.add_flag("--compressed-pictures", compressed, "Show the compressed tree in pictures");
   app.add_flag("!--no-pictures", pictures, "Write no animation");
 }
 

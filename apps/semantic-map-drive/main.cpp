@@ -161,7 +161,7 @@ class DriveProgram {
 }  // namespace semantic_map_drive
 
 int main(int argc, char** argv) {
-  CLI::App app("Drives a robot over a semantic map that grows while it drives");
+  CLI::App app("Drives a robot through a synthetic world; it maps, plans and drives");
   const semantic_map_drive::Cli cli(app);
   return runApplication(app, argc, argv,
                         [&] { return semantic_map_drive::DriveProgram(cli).run(); });

@@ -44,18 +44,17 @@ struct Cli {
     app.add_option("--pose", pose,
                    "Where the map's origin is in the new map: x y z (m) yaw pitch roll (degrees)")
         ->type_name("X Y Z YAW PITCH ROLL");
-    app.add_option("--box", box, "Keep what is in it, m")->type_name("X0 Y0 Z0 X1 Y1 Z1");
+    app.add_option("--box", box, "Keep what is in this box, m")->type_name("X0 Y0 Z0 X1 Y1 Z1");
     app.add_option("--resolution", resolution,
                    "Coarser voxels, m: 2, 4, 8 ... times those of the map")
         ->check(isNumber(strict_files::above(0)));
     app.add_option("--half-lives", halfLives,
-                   "Class table (YAML) whose half-lives the map's classes get")
+                   "Class table (YAML) with half-lives for the map's classes")
         ->type_name("FILE.yaml");
-    app.add_option("--decay", decay, "Let so much time pass, s: what has a half-life is forgotten")
+    app.add_option("--decay", decay, "Let this much time pass, s: classes with a half-life fade")
         ->check(isNumber(strict_files::between(0, 1e9)));
     addTilesOption(app, tiles);
-    app.add_option("--like", like,
-                   "For OctoMap's files: a map whose classes and filter the new one has");
+    app.add_option("--like", like, "For OctoMap's files: take classes and filter from this map");
     addMemoryOption(app, memory);
   }
 };
@@ -132,7 +131,7 @@ int run(const Cli& cli) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Moves, crops, coarsens, ages a semantic octree map and puts it into tiles, in this order; "
+      "Moves, crops, coarsens, ages a semantic octree map, cuts it into tiles, in this order; "
       "imports OctoMap's");
   const semantic_map_edit::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_edit::run(cli); });

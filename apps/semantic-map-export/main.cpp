@@ -36,25 +36,29 @@ struct Cli {
              "A file to write, may be given several times; its ending says what (" +
                  Exporter::formats() + ")")
         ->required();
-    app.add_flag("!--no-colors", options.colors, "An OcTree in .ot files, not a ColorOcTree");
-    app.add_flag("--free", options.points.free, "Free leaves too, in .ply and .csv files");
+    app.add_flag("!--no-colors", options.colors,
+                 "Write an OcTree into .ot files, not a ColorOcTree");
+    app.add_flag("--free", options.points.free, "Write free leaves, too, in .ply and .csv files");
     app.add_option("--max-height", options.maxHeight,
-                   "Nothing above is shown in .png and .3Dscene files, m");
+                   "Cut .png and .3Dscene files off above this height, m");
     strict_files::OptionList list;
     options.points.smoothing.describe(list);
     addOptions(app, list, "Neighbors, in .ply and .csv files");
     auto* grid =
         app.add_option_group("2D grids", "What is an obstacle in .gridmap and .yaml files");
-    grid->add_option("--low", options.grid.low, "... if it is that far above the ground, m")
+    grid->add_option("--low", options.grid.low, "Lowest height above the ground that counts, m")
         ->capture_default_str();
-    grid->add_option("--high", options.grid.high, "... up to that far, m")->capture_default_str();
+    grid->add_option("--high", options.grid.high, "Highest height above the ground that counts, m")
+        ->capture_default_str();
     grid->add_option("--ground", ground,
                      "A class that is ground; may be given several times. "
-                     "None: the lowest of each column is")
+                     "Without: the lowest voxel of each column is ground")
         ->allow_extra_args(false);
-    grid->add_option("--window", options.grid.window, "What is narrower is no ground, m")
+    grid->add_option("--window", options.grid.window,
+                     "Things that stand out and are narrower are no ground, m")
         ->capture_default_str();
-    grid->add_option("--floor", options.grid.floor, "Height of a flat ground, m");
+    grid->add_option("--floor", options.grid.floor,
+                     "Height of flat ground, instead of finding it, m");
   }
 };
 

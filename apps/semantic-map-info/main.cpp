@@ -37,16 +37,16 @@ struct Cli {
 
   explicit Cli(CLI::App& app) {
     app.add_option("MAP", map, "A map's own file (.semantic), or a folder of tiles")->required();
-    app.add_flag("--json", json, "As JSON");
+    app.add_flag("--json", json, "Print JSON");
     app.add_option("--at", at, "What the map knows at this point, m; may be given several times")
         ->type_name("X,Y,Z")
         ->allow_extra_args(false)
         ->each([this](const std::string& text) { points.push_back(pointOf(text)); });
     app.add_option("--query", query,
-                   "The same of each line `x y z` of a file, or of - (standard input)")
+                   "What it knows at each line `x y z` of a file, or of - (standard input)")
         ->type_name("FILE");
     app.add_flag("--distribution", distribution,
-                 "At such points, the probabilities of all classes");
+                 "Print the probabilities of all classes at these points, too");
     addMemoryOption(app, memory);
   }
   bool asksForPoints() const { return !at.empty() || !query.empty(); }

@@ -39,8 +39,9 @@ struct Cli {
         ->required();
     app.add_option("--poses", poses, "File of lines `MAP x y z yaw pitch roll` (m, degrees)");
     app.add_flag("--partial", partial,
-                 "The sum will be added to others: do not limit yet how sure it is");
-    app.add_option("--box", box, "Add up what is in it only, m; `inf` and `-inf` are no limit")
+                 "The sum is part of a larger one: limit certainty there, not here");
+    app.add_option("--box", box,
+                   "Add up only what is in this box, m; `inf` and `-inf` are no limit")
         ->type_name("X0 Y0 Z0 X1 Y1 Z1");
     addTilesOption(app, tiles);
     addMemoryOption(app, memory);

@@ -21,19 +21,19 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_option("MAP", map, "A map's own file (.semantic), or a folder of tiles")->required();
   addMemoryOption(app, memory);
   poses::addPose(app, "--start", start, "Where the vehicle is")->required();
-  poses::addPose(app, "--goal", goal, "Where it is to go")->required();
+  poses::addPose(app, "--goal", goal, "Where the vehicle shall go")->required();
   app.add_option("--start-z", startZ, "Height, where the ground has several levels, m");
   app.add_option("--goal-z", goalZ, "Height of the goal, m");
   app.add_option("--classes", classes, "Classes from best to worst (YAML)")->required();
-  app.add_option("--vehicle", vehicle, "Its measures (YAML); none: a small robot");
+  app.add_option("--vehicle", vehicle, "The vehicle (YAML); without: a small robot");
   app.add_option("--weights", weights,
-                 "What the compressed tree keeps (YAML, as for semantic-map-compress); "
-                 "none: what tells the ranks of --classes apart");
-  app.add_option("--solution", solution, "Which of the weights; none: the first")
+                 "Weights of classes for the compressed tree (YAML, as for semantic-map-compress); "
+                 "without: what tells the ranks of --classes apart");
+  app.add_option("--solution", solution, "Name of one solution in the weights; without: the first")
       ->needs("--weights");
   app.add_option("--corridor", corridor,
-                 "Ground is looked at so near to a way that is found coarsely at first, m; inf: "
-                 "all ground of the map. None: 30 of folders of tiles, inf of other maps")
+                 "Distance from a coarse way within which ground is looked at, m; inf: all ground. "
+                 "Without: 30 for folders of tiles, inf for other maps")
       ->check(moreThanZero);
   outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
   planner.shorten = true;

@@ -121,7 +121,7 @@ int run(Cli& cli) {
 }  // namespace semantic_map_plan
 
 int main(int argc, char** argv) {
-  CLI::App app("Plans a path of a vehicle over a semantic map that puts classes before length");
+  CLI::App app("Plans the path of least price of a vehicle over a semantic map");
   semantic_map_plan::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_plan::run(cli); });
 }

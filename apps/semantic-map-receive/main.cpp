@@ -30,25 +30,25 @@ struct Cli {
                    "Where semantic-map-send is, HOST:PORT; the port may be left out (4217)")
         ->required();
     outputs.add(app, output, "FILE", "The map to write (.semantic)")->required();
-    app.add_option("--weights", weights, "What matters here (YAML); without: what the sender says");
-    app.add_option("--solution", wish.solution, "Which of these weights (the first)");
+    app.add_option("--weights", weights, "Weights of classes (YAML); without: the sender's");
+    app.add_option("--solution", wish.solution, "Name of one solution in the weights (the first)");
     app.add_option("--alpha", wish.alpha, "The price of detail, instead of the weights' own")
         ->check(isNumber(strict_files::atLeast(0)));
-    app.add_option("--bytes", reception.bytes, "Enough: end when so many came without a gap")
+    app.add_option("--bytes", reception.bytes, "End when this many bytes came without a gap")
         ->check(isNumber(strict_files::above(0)));
-    app.add_option("--like", like,
-                   "Refuse a map whose classes or voxels are not those of this map");
-    app.add_option("--key", key,
-                   "Listen only to who has this key: a file of 16 bytes or more, the same on both "
-                   "sides");
+    app.add_option("--like", like, "Refuse a map whose classes or voxels differ from this map's");
+    app.add_option(
+        "--key", key,
+        "Listen only to a sender with this key: a file of 16 bytes or more, the same on both "
+        "sides");
     app.add_option("--timeout", reception.timeout,
-                   "End if the sender was not heard for so long, s (60)")
+                   "End when the sender is silent for this long, s (60)")
         ->check(isNumber(strict_files::above(0)));
     app.add_option("--lose", reception.loss,
                    "Try a bad radio: lose this share of what goes to the sender (0)")
         ->check(isNumber(strict_files::between(0, 0.99)));
-    app.add_option("--seed", reception.seed, "Which datagrams (2)");
-    app.add_flag_callback("-v,--verbose", beVerbose, "Tell of datagrams that were not understood");
+    app.add_option("--seed", reception.seed, "Seed of the losses (2)");
+    app.add_flag_callback("-v,--verbose", beVerbose, "Tell of foreign datagrams");
   }
 };
 

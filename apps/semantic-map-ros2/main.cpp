@@ -27,7 +27,8 @@ struct Cli {
         .add(app, output, "FILE",
              "The map (.semantic), written after Ctrl-C, and when somebody publishes to ~/save")
         ->required();
-    app.add_option("--map", map, "Map to go on with, in whose frame all is (.semantic)");
+    app.add_option("--map", map,
+                   "Map to go on with (.semantic); its frame is the frame of all poses");
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of each scan");
     app.footer("As ROS has it: --ros-args -r FROM:=TO -p NAME:=VALUE --params-file FILE (YAML)");
   }

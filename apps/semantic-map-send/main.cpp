@@ -25,34 +25,35 @@ struct Cli {
   explicit Cli(CLI::App& app) {
     app.add_option(
            "MAP", maps,
-           "A map's own file (.semantic), or a folder of tiles; of further ones, which it became "
-           "later, only what changed is sent")
+           "Map to send (.semantic, or a folder of tiles); of later versions of it, given after "
+           "it, only what changed is sent")
         ->required();
     addMemoryOption(app, memory);
     app.add_option("--rate", station.rate,
-                   "Bits a second, with the headers of IP and UDP (none: as fast as can be)")
+                   "Bits a second, headers of IP and UDP included; without: as fast as possible")
         ->check(isNumber(strict_files::above(0)));
-    app.add_option("--port", station.port, "UDP port to listen at (4217); 0: any, which is said")
+    app.add_option("--port", station.port,
+                   "UDP port to listen at (4217); 0: any free one, which is printed")
         ->check(isNumber(strict_files::between(0, 65535)));
-    app.add_option("--weights", weights, "For receivers without weights of their own (YAML)");
-    app.add_option("--solution", own.solution, "Which of these weights (the first)");
+    app.add_option("--weights", weights, "Weights for receivers that send none (YAML)");
+    app.add_option("--solution", own.solution, "Name of one solution in the weights (the first)");
     app.add_option(
         "--key", key,
-        "Serve only who has this key: a file of 16 bytes or more, the same on both sides");
+        "Serve only receivers with this key: a file of 16 bytes or more, the same on both sides");
     app.add_option(
            "--receivers", station.receivers,
-           "End after so many were served (1); at once it serves up to 16, 4 of one address")
+           "End after this many receivers (1); up to 16 are served at once, 4 of one address")
         ->check(isNumber(strict_files::above(0)));
     app.add_option("--timeout", station.timeout,
-                   "Forget who was not heard for so long; end if nobody is left, s (60)")
+                   "Forget a receiver that is silent for this long; end if none is left, s (60)")
         ->check(isNumber(strict_files::above(0)));
     app.add_option(
            "--lose", station.loss,
            "Try a bad radio: lose this share of the datagrams, send some twice, some late (0)")
         ->check(isNumber(strict_files::between(0, 0.99)));
-    app.add_option("--seed", station.seed, "Which ones (1)");
+    app.add_option("--seed", station.seed, "Seed of the losses (1)");
     app.add_flag_callback("-q,--quiet", beQuiet, "Say nothing but errors");
-    app.add_flag_callback("-v,--verbose", beVerbose, "Tell of datagrams that were not understood");
+    app.add_flag_callback("-v,--verbose", beVerbose, "Tell of foreign datagrams");
   }
 };
 

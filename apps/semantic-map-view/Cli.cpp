@@ -61,23 +61,23 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   outputs.addOther(animated);
   app.add_option_function<std::string>(
          "--size", [this](const std::string& text) { readSize(text, *this); },
-         "Of the window, pixels")
+         "Size of the window, pixels")
       ->type_name("WIDTHxHEIGHT");
   auto* from = app.add_option_function<std::string>(
       "--camera", [this](const std::string& text) { readCamera(text, *this); },
-      "Where it looks at and from: m and degrees, as the window says it");
+      "Point looked at, distance (m), azimuth, elevation (degrees), as the window says them");
   from->type_name("X,Y,Z,DISTANCE,AZIMUTH,ELEVATION");
   app.add_flag("--top", view.top, "From above, north up")->excludes(from);
   std::map<std::string, map_view::ViewColoring> colorings;
   for (const auto& [name, value] : choicesOf(map_view::ViewColoring())) colorings[name] = value;
-  addChoice(app.add_option("--color", view.style.coloring, "What the cells' colors say"),
+  addChoice(app.add_option("--color", view.style.coloring, "What the colors of cells mean"),
             colorings);
   auto* clip = app.add_option_function<std::string>(
       "--clip", [this](const std::string& text) { readClip(text, *this); },
-      "Cells with their center outside of this box are not shown, m");
+      "Show only cells with their centers in this box, m");
   clip->type_name("X,Y,Z,X2,Y2,Z2");
   app.add_option("--max-height", view.style.clip.max().z(),
-                 "Cells with their center above are not shown, m")
+                 "Show no cells with their centers above this height, m")
       ->check(isNumber({}))
       ->excludes(clip);
   app.add_flag("--free", view.style.freeSpace, "Show free space");
@@ -89,7 +89,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_option("--classes", classes,
                  "Classes from best to worst, for paths (YAML, as for semantic-map-plan)");
   app.add_flag("--compress", compress, "Begin with the compressed tree");
-  app.add_flag("!--no-panels", panels, "The map alone")->excludes(animated);
+  app.add_flag("!--no-panels", panels, "Hide the panels")->excludes(animated);
   app.add_flag("--measure", measure,
                "Turn twice around the map, ask, compress, print the times, and end");
 }

@@ -14,7 +14,7 @@ void addScene(CLI::App& app, Cli& cli) {
   cli.outputs.add(app, cli.output, "FILE", "Rawlog to write");
   addWords(app.add_option("--scene", cli.scene, "Which world"), synthetic_world::sceneNames())
       ->capture_default_str();
-  app.add_option("--seed", cli.seed, "Of the world and of all noise")->capture_default_str();
+  app.add_option("--seed", cli.seed, "Seed of the world and of all noise")->capture_default_str();
   app.add_option("--hills", cli.hills, "Factor of the ground's heights; 0 is flat")
       ->check(isNumber(strict_files::between(0.0, 2.0)))
       ->capture_default_str();
@@ -26,54 +26,64 @@ void addDrive(CLI::App& app, Cli& cli) {
   app.add_option("--rate", cli.rate, "Frames a second")
       ->check(isNumber(strict_files::above(0)))
       ->capture_default_str();
-  app.add_option("--speed", cli.speed, "Of the robot, m/s")
+  app.add_option("--speed", cli.speed, "Speed of the robot, m/s")
       ->check(isNumber(strict_files::above(0)))
       ->capture_default_str();
   app.add_option("--start", cli.start, "Where on the route to begin, m")->capture_default_str();
-  app.add_option("--people", cli.people, "How many walk to and fro across the route")
+  app.add_option("--people", cli.people, "People who walk to and fro across the route")
       ->check(isNumber(strict_files::between(0, 1000)))
       ->capture_default_str();
   app.add_flag("--odometry", cli.odometry,
                "Write movements and sensory frames instead of observations with true poses");
-  app.add_option("--odometry-noise", cli.odometryNoise, "Standard deviation, share of a movement")
+  app.add_option("--odometry-noise", cli.odometryNoise,
+                 "Noise of movements, standard deviation as a share of a movement")
       ->check(isNumber(strict_files::between(0.0, 1.0)))
       ->capture_default_str();
 }
 
 void addSensors(CLI::App& app, Cli& cli) {
-  addWords(app.add_option("--sensor", cli.sensor, "What the robot has"),
+  addWords(app.add_option("--sensor", cli.sensor, "Sensors of the robot"),
            {"camera", "lidar", "both"})
       ->capture_default_str();
-  app.add_option("--width", cli.camera.width, "Of the camera's images")->capture_default_str();
-  app.add_option("--height", cli.camera.height, "Of the camera's images")->capture_default_str();
-  app.add_option("--fov", cli.camera.horizontalFov, "Of the camera, horizontal, degrees")
+  app.add_option("--width", cli.camera.width, "Width of the camera's images, pixels")
+      ->capture_default_str();
+  app.add_option("--height", cli.camera.height, "Height of the camera's images, pixels")
+      ->capture_default_str();
+  app.add_option("--fov", cli.camera.horizontalFov,
+                 "Horizontal field of view of the camera, degrees")
       ->capture_default_str();
   app.add_option("--camera-pitch", cli.cameraPitch, "How far the camera looks down, degrees")
       ->check(isNumber(strict_files::between(-80.0, 80.0)))
       ->capture_default_str();
-  app.add_option("--camera-range", cli.camera.maxRange, "Greatest depth, m")->capture_default_str();
-  app.add_option("--rings", cli.lidar.rings, "Of the LiDAR")->capture_default_str();
-  app.add_option("--columns", cli.lidar.columns, "Of the LiDAR")->capture_default_str();
-  app.add_option("--lidar-range", cli.lidar.maxRange, "Greatest range, m")->capture_default_str();
+  app.add_option("--camera-range", cli.camera.maxRange, "Largest depth of the camera, m")
+      ->capture_default_str();
+  app.add_option("--rings", cli.lidar.rings, "Rings of the LiDAR")->capture_default_str();
+  app.add_option("--columns", cli.lidar.columns, "Beams of each ring in one turn")
+      ->capture_default_str();
+  app.add_option("--lidar-range", cli.lidar.maxRange, "Largest range of the LiDAR, m")
+      ->capture_default_str();
   app.add_option("--ghosts", cli.lidar.ghosts,
                  "Share of the LiDAR's beams on windows, cars, water and signs that return by way "
                  "of what these mirror")
       ->capture_default_str();
-  app.add_option("--range-noise", cli.noise.range, "Standard deviation, m")->capture_default_str();
+  app.add_option("--range-noise", cli.noise.range,
+                 "Noise of depths and ranges, standard deviation, m")
+      ->capture_default_str();
   app.add_option("--label-noise", cli.labelNoise, "Share of labels that are wrong")
       ->capture_default_str();
   label_noise::addLabelNoiseKind(app, cli.labelNoiseKind);
   app.add_option("--dropout", cli.noise.dropout, "Share of rays without a return")
       ->capture_default_str();
-  app.add_option("--classes", cli.classes,
-                 "Class table (YAML) whose raw ids are the world's classes; by default these");
+  app.add_option(
+      "--classes", cli.classes,
+      "Class table (YAML) whose raw ids are the world's classes; without: these classes");
 }
 
 void addTruth(CLI::App& app, Cli& cli) {
   app.add_option("--truth-query", cli.truthQuery,
                  "Print what is at each point of this file (lines: x y z)")
       ->check(CLI::ExistingFile);
-  app.add_option("--tolerance", cli.tolerance, "What is this near to a surface is on it, m")
+  app.add_option("--tolerance", cli.tolerance, "Points this near to a surface are on it, m")
       ->check(isNumber(strict_files::atLeast(0)))
       ->capture_default_str();
   cli.outputs.addOther(app.add_option("--picture", cli.picture,
