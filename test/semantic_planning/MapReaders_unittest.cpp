@@ -183,3 +183,46 @@ TEST_P(ReadersOfOneMap, sayWhatEachSaysAlone) {
 INSTANTIATE_TEST_SUITE_P(Pairs, ReadersOfOneMap,
                          testing::Values(std::pair(0, 1), std::pair(0, 2), std::pair(0, 3),
                                          std::pair(1, 2), std::pair(1, 3), std::pair(2, 3)));
+
+static void insertPoint(SemanticOcTree& map) {
+  semantic_types::LabeledCloud cloud;
+  cloud.points = {{1, 1, 1}};
+  map.insert(cloud, Eigen::Isometry3d::Identity());
+}
+
+TEST_F(PlannerTest, whoChangesTheMapWhileItIsReadIsRefusedAndNothingIsLost) {
+  paintCorner();
+  SemanticOcTree& m = map();
+  const SemanticOcTree before = m;
+  int asked = 0, refused = 0;
+  options.cancelled = [&] {
+    ++asked;
+    try {
+      insertPoint(m);
+    } catch (const std::logic_error&) {
+      ++refused;
+    }
+    return false;
+  };
+  expectDrivable(plan());
+  EXPECT_GT(asked, 0);
+  EXPECT_EQ(refused, asked);
+  EXPECT_TRUE(m == before);
+  insertPoint(m);
+  EXPECT_FALSE(m == before);
+}
+
+TEST(ReadLock, HoldsWhileItLivesAgainstEachChange) {
+  PaintedWorld world;
+  world.floor(-1, 1, -1, 1, PaintedWorld::Road);
+  SemanticOcTree& m = world.map();
+  const SemanticOcTree before = m;
+  {
+    const ReadLock one(m), two(m);
+    EXPECT_THROW(insertPoint(m), std::logic_error);
+    EXPECT_THROW(m.clear(), std::logic_error);
+    EXPECT_TRUE(m == before);
+  }
+  m.clear();
+  EXPECT_TRUE(m.empty());
+}

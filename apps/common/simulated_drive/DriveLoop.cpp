@@ -84,14 +84,26 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_robot(start, config.drive),
       m_odometry(start, config.pose, config.sensors.seed),
       m_footprint(trueFootprint(config.planner.vehicle)) {
-  const auto classes = synthetic_world::classTable().size() + 1;
-  m_record.drivenPerClass.resize(classes);
-  m_record.plannedPerClass.resize(classes);
-  m_record.exactPose = config.pose.isExact();
   m_navigator.onStage([this](const auto& stage, double ms) { note(stage, ms); });
-  m_navigator.setGoal(goal);
+  begin();
   updateRobot();
   setClock(0);
+}
+
+void DriveLoop::begin() {
+  const auto classes = synthetic_world::classTable().size() + 1;
+  m_record = {};
+  m_record.drivenPerClass.resize(classes);
+  m_record.plannedPerClass.resize(classes);
+  m_record.exactPose = m_config.pose.isExact();
+  m_began = m_time;
+  m_navigator.setGoal(m_goal);
+}
+
+void DriveLoop::goOn(const TPose2D& goal) {
+  m_start = m_robot.state().pose;
+  m_goal = goal;
+  begin();
 }
 
 semantic_octree::SemanticOcTree DriveLoop::compressedMap() const {
@@ -144,7 +156,7 @@ void DriveLoop::note(const std::string& stage, double milliseconds) {
   times[stage].push_back(milliseconds);
   if (stage == "update")
     m_record.leaves.push_back(static_cast<double>(m_navigator.numCompressedLeaves()));
-  if (stage == "replan" && m_navigator.mappedAt() >= m_lookedAt)
+  if (stage == "replan" && m_navigator.mappedAt() >= m_lookedAt && !times["insert"].empty())
     times["insert+update+replan"].push_back((m_config.focus.isOn() ? times["focus"].back() : 0) +
                                             times["insert"].back() + times["update"].back() +
                                             milliseconds);
@@ -212,7 +224,7 @@ bool DriveLoop::isOver() {
   if (status == Status::Arrived || status == Status::Nearest) return endAtGoal();
   if (status == Status::Unreachable) return end(DriveEnd::Unreachable, m_navigator.reason());
   if (m_stop && m_stop()) return end(DriveEnd::Stopped, "it was stopped on the way");
-  return m_time >= m_config.timeLimit && end(DriveEnd::TimeLimit, "the time is over");
+  return m_time - m_began >= m_config.timeLimit && end(DriveEnd::TimeLimit, "the time is over");
 }
 
 }  // namespace simulated_drive

@@ -46,6 +46,8 @@ class DriveLoop {
   void stopWhen(std::function<bool()> stop) { m_stop = std::move(stop); }
   void keepOriginals() { m_sensors = SimulatedSensors(m_config.sensors, true); }
   const DriveRecord& run();
+  /** To another goal, from where it is, with a new record: then run() again. */
+  void goOn(const mrpt::math::TPose2D& goal);
 
   double time() const { return m_time; }
   const DriveRecord& record() const { return m_record; }
@@ -63,6 +65,7 @@ class DriveLoop {
   Eigen::Isometry3d T_world_robot() const;
 
  private:
+  void begin();
   void sense();
   void move(const semantic_driving::DriveCommand& command);
   void updateRobot();
@@ -87,7 +90,7 @@ class DriveLoop {
   DriveRecord m_record;
   std::vector<DriveObserver*> m_observers;
   std::function<bool()> m_stop;
-  double m_time = 0, m_lookedAt = -1e9;
+  double m_time = 0, m_lookedAt = -1e9, m_began = 0;
 };
 
 }  // namespace simulated_drive

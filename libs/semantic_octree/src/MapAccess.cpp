@@ -104,4 +104,9 @@ void MapAccess::ageUntil(SemanticOcTree& map, std::int64_t time) {
     change(map, [&](const MergeTarget& target) { decay(target, steps); });
 }
 
+ReadLock::ReadLock(const SemanticOcTree& map) : m_store(MapAccess::store(map)) {
+  m_store.beginReading();
+}
+ReadLock::~ReadLock() { m_store.endReading(); }
+
 }  // namespace semantic_octree

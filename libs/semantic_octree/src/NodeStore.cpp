@@ -297,4 +297,19 @@ void NodeArena::setRecorded(Block& block, VoxelBits recorded) {
   block.recorded = recorded;
 }
 
+void NodeStore::beginReading() const {
+  int readers = m_readers;
+  do {
+    if (readers == kChanging)
+      throw std::logic_error("the map is read while another thread changes it");
+  } while (!m_readers.compare_exchange_weak(readers, readers + 1));
+}
+
+void NodeStore::beginChanging() {
+  int readers = 0;
+  if (m_readers.compare_exchange_strong(readers, kChanging)) return;
+  throw std::logic_error(readers == kChanging ? "two threads change the map at once"
+                                              : "the map changes while another thread reads it");
+}
+
 }  // namespace semantic_octree

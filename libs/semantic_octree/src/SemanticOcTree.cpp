@@ -87,6 +87,7 @@ bool SemanticOcTree::isReadOnly() const { return store().tiles() && !store().til
 void SemanticOcTree::clear() {
   MapAccess::checkMayChange(*this);
   auto empty = std::make_unique<NodeStore>(m_observer ? m_observer->stateBytes() : 0);
+  if (m_store) m_store->beginChanging(), m_store->endChanging();  // throws if it is read
   if (m_store && m_store->tiles()) {
     m_store->tiles()->clear();
     empty->setTiles(m_store->tiles());

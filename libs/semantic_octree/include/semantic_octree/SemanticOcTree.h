@@ -224,6 +224,22 @@ class SemanticOcTree {
   std::weak_ptr<TileLog> m_tileLog;          ///< readers own what they read
 };
 
+/** A map stays as it is while this lives: whoever would change it in another thread gets
+ * std::logic_error instead, and the map is as it was. SemanticPlanner holds one whenever it looks.
+ * It waits for nobody: who inserts and reads in two threads takes turns by a mutex of their own, or
+ * has a semantic_navigation::Navigator do it. */
+class ReadLock {
+ public:
+  /** \param map must outlive this \throw std::logic_error another thread changes it now. */
+  explicit ReadLock(const SemanticOcTree& map);
+  ~ReadLock();
+  ReadLock(const ReadLock&) = delete;
+  ReadLock& operator=(const ReadLock&) = delete;
+
+ private:
+  const NodeStore& m_store;
+};
+
 /** An empty map of the same kind and time: resolution, classes, filter parameters, pruning, clock.
  */
 SemanticOcTree emptyLike(const SemanticOcTree& map);

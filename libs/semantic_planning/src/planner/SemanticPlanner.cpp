@@ -5,6 +5,8 @@
 
 namespace semantic_planning {
 
+using semantic_octree::ReadLock;
+
 void PlannerOptions::describe(strict_files::OptionList& list) {
   strict_files::Range limits = strict_files::atLeast(0);
   limits.withInfinity = true;
@@ -27,19 +29,27 @@ SemanticPlanner::SemanticPlanner(semantic_octree::SemanticOcTree& map,
                                  const colored_graph::ClassOrder& order,
                                  const PlannerOptions& options,
                                  const std::optional<Corridor>& corridor)
-    : m_core(std::make_unique<PlannerCore>(map, order, options, corridor)) {}
+    : m_map(&map) {
+  const ReadLock lock(map);
+  m_core = std::make_unique<PlannerCore>(map, order, options, corridor);
+}
 
 SemanticPlanner::~SemanticPlanner() = default;
 SemanticPlanner::SemanticPlanner(SemanticPlanner&&) noexcept = default;
 
 PlanResult SemanticPlanner::plan(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal,
                                  std::optional<double> startZ, std::optional<double> goalZ) {
+  const ReadLock lock(*m_map);
   return m_core->plan({start, startZ}, {goal, goalZ});
 }
 
-UpdateResult SemanticPlanner::update() { return m_core->update(); }
+UpdateResult SemanticPlanner::update() {
+  const ReadLock lock(*m_map);
+  return m_core->update();
+}
 
 PlanResult SemanticPlanner::replan(const mrpt::math::TPose2D& start, std::optional<double> startZ) {
+  const ReadLock lock(*m_map);
   return m_core->replan({start, startZ});
 }
 

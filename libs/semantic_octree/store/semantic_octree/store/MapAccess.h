@@ -40,7 +40,8 @@ class MapAccess {
 
   /** \throw std::logic_error the map is in a folder of tiles that was opened to be read. */
   static void checkMayChange(const SemanticOcTree& map);
-  /** Whoever changes nodes does it in f(MergeTarget): if it fails, the map is broken. */
+  /** Whoever changes nodes does it in f(MergeTarget): if it fails, the map is broken.
+   * \throw std::logic_error also where somebody holds a ReadLock: nothing has changed then. */
   template <typename F>
   static void change(SemanticOcTree& map, const F& f) {
     checkMayChange(map);
@@ -48,12 +49,14 @@ class MapAccess {
     TileLog* const touched = log && log->isRead() ? log.get() : nullptr;
     const MergeTarget target{map.store(),          map.m_filter, map.m_rule.get(),
                              map.m_observer.get(), touched,      map.m_pruning};
+    target.store.beginChanging();
     try {
       f(target);
     } catch (...) {
       map.m_store = nullptr;  // what is half changed cannot be told from what was there
       throw;
     }
+    target.store.endChanging();
   }
   static void merge(SemanticOcTree& map, const Scan& scan, int threads);
 

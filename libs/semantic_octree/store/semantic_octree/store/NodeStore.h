@@ -4,6 +4,7 @@
 #include <semantic_octree/store/IndexPool.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bitset>
 #include <deque>
 #include <memory>
@@ -204,6 +205,13 @@ class NodeStore {
   /** Brings an inner node's children and bookkeeping nearer to the processor. */
   void prefetchInner(const Slot& slot) const;
 
+  /** Nobody may read at length (ReadLock) while somebody changes nodes; the second one throws.
+   * \throw std::logic_error naming what the other one does. */
+  void beginReading() const;
+  void endReading() const noexcept { --m_readers; }
+  void beginChanging();
+  void endChanging() noexcept { m_readers = 0; }
+
   /** Bytes of nodes, records and bookkeeping in use; what is set aside for more is not counted. */
   std::size_t bytes() const;
   /** Nodes including the root, and those that are away. */
@@ -219,6 +227,9 @@ class NodeStore {
 
   void bringAway(const Slot& slot) const;
 
+  static constexpr int kChanging = -1;
+
+  mutable std::atomic<int> m_readers{0};  ///< or kChanging
   Slot m_root;
   IndexPool m_octants, m_blocks, m_records;
   std::deque<NodeArena> m_arenas;

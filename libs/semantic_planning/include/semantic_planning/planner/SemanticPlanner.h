@@ -58,8 +58,9 @@ class PlannerCore;
  * for the next plan until the map changes there: points for vertices (but not in a corridor, where
  * memory is short), and what was found about edges; answers are those of a new planner. One that
  * runs out of memory, or whose `cancelled` throws, is broken: all further calls throw
- * std::logic_error. Not thread safe; the map must not change during a call. A map may have any
- * number of planners, and other readers of its changes (MapFollower). */
+ * std::logic_error. Not thread safe. While a call reads the map, another thread that changes it
+ * gets std::logic_error, and the other way round (ReadLock). A map may have any number of planners,
+ * and other readers of its changes (MapFollower). */
 class SemanticPlanner {
  public:
   /** \param map must outlive the planner. With a graph of the tree (isOfTree) it has to keep
@@ -106,6 +107,7 @@ class SemanticPlanner {
   PlanStatus check(const mrpt::math::TPose2D& pose, std::optional<double> z = {}) const;
 
  private:
+  const semantic_octree::SemanticOcTree* m_map;
   std::unique_ptr<PlannerCore> m_core;
 };
 

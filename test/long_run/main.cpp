@@ -1,0 +1,156 @@
+// A robot drives from goal to goal through one village for hours of its time, with people and a map
+// that forgets. What it takes has to stay as it is: the program prints a table and fails where it
+// does not.
+//   long-run HOURS CONFIG ORDER [NOISE]     e.g. long-run 24 config/drives/synthetic.ini
+//   config/orders/synthetic.yaml 0.1
+#include <malloc.h>
+#include <semantic_abstraction/Abstraction.h>
+#include <semantic_planning/planner/OrderFile.h>
+#include <synthetic_world/Objects.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+
+#include "simulated_drive/DriveLoop.h"
+
+namespace {
+
+using mrpt::math::TPose2D;
+using semantic_octree::SemanticOcTree;
+using simulated_drive::DriveLoop;
+
+constexpr int kParts = 8;            // of the run, a row each
+constexpr double kMayGrow = 1.1;     // heap, from the middle of the run to its end
+constexpr double kGoalsWithin = 45;  // m around the world's middle
+
+/** What the heap gave out and has not got back. */
+double heapMegabytes() {
+  const auto use = mallinfo2();
+  return static_cast<double>(use.uordblks + use.hblkhd) / 1e6;
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+/** Poses on ways, with room around them. */
+class Goals {
+ public:
+  Goals(const synthetic_world::World& world, const synthetic_world::Footprint& footprint)
+      : m_world(world), m_footprint(footprint), m_random(1) {}
+
+  TPose2D next() {
+    while (true) {
+      const TPose2D pose(along(), along(), m_random.uniform(-M_PI, M_PI));
+      const auto ground = m_world.groundClass(pose.x, pose.y);
+      const bool isWay = ground >= 1 && ground <= 4;  // road, markings, sidewalk, gravel
+      if (isWay && m_world.clearance(m_footprint, pose.x, pose.y, pose.phi) > 1) return pose;
+    }
+  }
+
+ private:
+  double along() { return m_random.uniform(-kGoalsWithin, kGoalsWithin); }
+
+  const synthetic_world::World& m_world;
+  synthetic_world::Footprint m_footprint;
+  synthetic_world::Random m_random;
+};
+
+/** Somebody walks from one way to another each half minute, and is gone when he is there. */
+simulated_drive::Events people(Goals& goals, double seconds) {
+  simulated_drive::Events events;
+  for (double begin = 0; begin < seconds; begin += 30) {
+    const TPose2D from = goals.next(), to = goals.next();
+    simulated_drive::Events::Person person{begin, 0, {from.x, from.y}, {to.x, to.y}};
+    person.end = begin + std::min(60.0, (person.to - person.from).norm() / person.speed);
+    events.persons.push_back(person);
+  }
+  return events;
+}
+
+/** A row of the table. */
+struct Part {
+  int drives = 0, arrived = 0, collisions = 0;
+  double meters = 0, heap = 0;
+  std::size_t nodes = 0;
+  std::vector<double> insert, replan;
+
+  void add(const simulated_drive::DriveRecord& record) {
+    ++drives;
+    arrived += record.arrived();
+    collisions += record.collisions;
+    meters += record.length;
+    const auto take = [&](const char* stage, std::vector<double>& to) {
+      const auto at = record.times.find(stage);
+      if (at != record.times.end()) to.insert(to.end(), at->second.begin(), at->second.end());
+    };
+    take("insert", insert);
+    take("replan", replan);
+  }
+  void print(double hours) const {
+    std::printf("%7.2f %7d %8d %9d %8.0f %9.1f %9zu %7.1f %7.1f %7.1f %7.1f\n", hours, drives,
+                arrived, collisions, meters, heap, nodes, quantile(insert, 0.5),
+                quantile(insert, 0.95), quantile(replan, 0.5), quantile(replan, 0.95));
+    std::fflush(stdout);
+  }
+};
+
+bool isAsMadeAnew(const SemanticOcTree& map) {
+  SemanticOcTree copy = map, anew = map;
+  const auto options = semantic_octree::Abstraction(copy).options();
+  dropAbstraction(anew);
+  setAbstraction(anew, options);
+  return anew == map;
+}
+
+int run(double hours, const char* configFile, const char* orderFile, double noise) {
+  auto config = simulated_drive::loadDriveConfig(configFile);
+  config.halfLives =
+      std::filesystem::path(configFile).parent_path() / "../classes/synthetic_decay.yaml";
+  config.pose.odometryNoise = noise;
+  config.pose.turnNoise = 30 * noise;
+  config.timeLimit = 300;
+  auto scene = synthetic_world::makeScene("village", 1);
+  const auto order = semantic_planning::loadClassOrder(orderFile, synthetic_world::classTable());
+  Goals goals(scene.world, simulated_drive::trueFootprint(config.planner.vehicle));
+  const double seconds = hours * 3600;
+  const TPose2D start = goals.next();
+  DriveLoop loop(config, scene.world, order, start, goals.next(), people(goals, seconds));
+  std::printf(
+      "  hours  drives  arrived  contacts   meters   heap MB     nodes  insert    95 %%  replan    "
+      "95 %%\n");
+  std::vector<double> heap;
+  for (int i = 1; i <= kParts; ++i) {
+    Part part;
+    do {
+      part.add(loop.run());
+      loop.goOn(goals.next());
+    } while (loop.time() < seconds * i / kParts);
+    part.nodes = loop.mapper().map().size();
+    part.heap = heapMegabytes();
+    heap.push_back(part.heap);
+    part.print(loop.time() / 3600);
+  }
+  const bool isEqual = isAsMadeAnew(loop.mapper().map());
+  const double growth = heap.back() / heap[kParts / 2 - 1];
+  std::cout << "The G-values are " << (isEqual ? "" : "NOT ") << "those of the map made anew.\n"
+            << "From the middle to the end the heap grew by " << 100 * (growth - 1) << " %.\n";
+  return isEqual && growth <= kMayGrow ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    if (argc < 4) throw std::invalid_argument("usage: long-run HOURS CONFIG ORDER [NOISE]");
+    return run(std::atof(argv[1]), argv[2], argv[3], argc > 4 ? std::atof(argv[4]) : 0);
+  } catch (const std::exception& e) {
+    std::cerr << e.what() << '\n';
+    return 1;
+  }
+}
