@@ -37,6 +37,9 @@ ROS2_MESSAGE(visualization_msgs, MarkerArray)
 ROS2_MESSAGE(octomap_msgs, Octomap)
 #undef ROS2_MESSAGE
 
+/** ROS's hash of a message's definition (REP 2016), by DDS's description of it. */
+std::string typeHashOf(const dds_topic_descriptor_t& type);
+
 using Header = std_msgs_msg_dds__Header_;
 using Time = builtin_interfaces_msg_dds__Time_;
 using TransformStamped = geometry_msgs_msg_dds__TransformStamped_;

@@ -1,5 +1,8 @@
 #include "ros2/Node.h"
 
+#include <ifaddrs.h>
+#include <net/if.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -36,10 +39,24 @@ bool isForThisMachine() {
   return is("ROS_LOCALHOST_ONLY", "1") || is("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST");
 }
 
-/** Without multicast, which loopback devices may lack: participants are asked for one by one. */
-constexpr const char* kThisMachine = R"(
-<General>
-  <Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>
+/** A network beside the loopback, from which Cyclone DDS may choose. */
+bool hasNetwork() {
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return false;
+  bool found = false;
+  for (const ifaddrs* i = all; i; i = i->ifa_next)
+    found |= i->ifa_addr && i->ifa_addr->sa_family == AF_INET && (i->ifa_flags & IFF_UP) &&
+             !(i->ifa_flags & IFF_LOOPBACK);
+  freeifaddrs(all);
+  return found;
+}
+
+/** Nodes of this machine alone. Those of Humble are on the loopback, those of Jazzy on the network
+ * and look for others on the loopback. Without multicast, which loopback devices may lack,
+ * participants are asked for one by one. */
+std::string forThisMachine() {
+  const std::string network = hasNetwork() ? R"(<NetworkInterface autodetermine="true"/>)" : "";
+  return "<General><Interfaces>" + network + R"(<NetworkInterface address="127.0.0.1"/></Interfaces>
   <AllowMulticast>false</AllowMulticast>
 </General>
 <Discovery>
@@ -47,6 +64,7 @@ constexpr const char* kThisMachine = R"(
   <MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>
   <Peers><Peer address="127.0.0.1"/></Peers>
 </Discovery>)";
+}
 
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
@@ -55,8 +73,12 @@ using QosPointer = std::unique_ptr<dds_qos_t, QosDeleter>;
 
 constexpr dds_duration_t kPatience = DDS_MSECS(20);  // with readers that do not follow
 
-QosPointer toDds(const Qos& qos) {
+/** \param typeHash tells nodes from Iron on which definition of the type it is (REP 2016); without,
+ * they print a warning for each topic */
+QosPointer toDds(const Qos& qos, const std::string& typeHash) {
   QosPointer dds(dds_create_qos());
+  const std::string data = "typehash=" + typeHash + ";";
+  dds_qset_userdata(dds.get(), data.data(), data.size());
   dds_qset_reliability(
       dds.get(), qos.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, kPatience);
   dds_qset_durability(dds.get(),
@@ -86,7 +108,7 @@ Node::Node(const std::string& name, const Arguments& arguments) : m_name(name) {
   for (const auto& [from, to] : m_remappings) expanded(from), expanded(to);
   const dds_domainid_t domain = domainOf(std::getenv("ROS_DOMAIN_ID"));
   if (!std::getenv("CYCLONEDDS_URI") && isForThisMachine()) {
-    m_domain = dds_create_domain(domain, kThisMachine);
+    m_domain = dds_create_domain(domain, forThisMachine().c_str());
     if (m_domain == DDS_RETCODE_PRECONDITION_NOT_MET)  // another node of this process did
       m_domain = 0;
     checked(m_domain, "DDS");
@@ -172,7 +194,8 @@ void Reader::open() {
   dds_listener_t* listener = dds_create_listener(this);
   dds_lset_data_available(
       listener, [](dds_entity_t reader, void* self) { static_cast<Reader*>(self)->take(reader); });
-  m_reader = dds_create_reader(m_node.participant(), m_topic, toDds(m_qos).get(), listener);
+  m_reader = dds_create_reader(m_node.participant(), m_topic,
+                               toDds(m_qos, typeHashOf(m_type)).get(), listener);
   dds_delete_listener(listener);
   checked(m_reader, m_name);
 }
@@ -218,7 +241,8 @@ void Reader::take(dds_entity_t reader) {
 Writer::Writer(Node& node, const std::string& topic, const dds_topic_descriptor_t& type,
                const Qos& qos)
     : m_topic(createTopic(node, node.topic(topic), type)),
-      m_writer(checked(dds_create_writer(node.participant(), m_topic, toDds(qos).get(), nullptr),
+      m_writer(checked(dds_create_writer(node.participant(), m_topic,
+                                         toDds(qos, typeHashOf(type)).get(), nullptr),
                        topic)) {}
 
 Writer::~Writer() {
