@@ -14,6 +14,12 @@ namespace {
 
 constexpr int kMostTries = 100000;  // for one instance
 
+bool isFree(const CollisionChecker& checker, const TPose2D& pose) {
+  const auto placed = checker.place(pose);
+  return placed && checker.fit(*placed) == Fit::Free &&
+         checker.order().rank(checker.classAt(*placed)) != colored_graph::kForbidden;
+}
+
 class PoseDraw {
  public:
   PoseDraw(const CollisionChecker& checker, std::uint64_t seed)
@@ -53,7 +59,8 @@ Instance drawInstance(const CollisionChecker& checker, PoseDraw& draw, double mi
     const auto start = draw.pose(), goal = draw.pose();
     if (!start || !goal) continue;
     const Instance instance{*start, *goal};
-    if (instance.distance() >= minDistance && isConnected(checker.ground(), instance))
+    if (std::hypot(goal->x - start->x, goal->y - start->y) >= minDistance &&
+        isConnected(checker.ground(), instance))
       return instance;
   }
   throw std::runtime_error("no start and goal on connected ground, " + std::to_string(minDistance) +
@@ -61,12 +68,6 @@ Instance drawInstance(const CollisionChecker& checker, PoseDraw& draw, double mi
 }
 
 }  // namespace
-
-bool isFree(const CollisionChecker& checker, const TPose2D& pose) {
-  const auto placed = checker.place(pose);
-  return placed && checker.fit(*placed) == Fit::Free &&
-         checker.order().rank(checker.classAt(*placed)) != colored_graph::kForbidden;
-}
 
 std::vector<Instance> drawInstances(const CollisionChecker& checker, std::size_t count,
                                     double minDistance, std::uint64_t seed) {

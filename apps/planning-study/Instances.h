@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "Trial.h"
-
 namespace planning_study {
 
-/** Whether the vehicle can stand there, on ground that is not forbidden. */
-bool isFree(const semantic_planning::CollisionChecker& checker, const mrpt::math::TPose2D& pose);
+/** A task for all planners. Meters, radians; map frame. */
+struct Instance {
+  mrpt::math::TPose2D start, goal;
+};
 
 /** Pairs of poses, drawn evenly over the ground where the vehicle can stand, with any heading; each
  * pair is connected by ground and at least `minDistance` meters apart. They depend on the ground,

@@ -118,7 +118,7 @@ std::vector<OptionTable> planningTables() {
                             "Files of `config/vehicles`, which also have a `footprint`: a list of "
                             "corners [x, y] in m, x ahead, convex."),
       table<PlannerOptions>("Planner",
-                            "`semantic-map-plan`, `planning-study`; `[planner]` of drives."),
+                            "`semantic-map-plan`; `[planner]` of drives."),
   };
 }
 
