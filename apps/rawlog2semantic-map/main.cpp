@@ -166,10 +166,10 @@ void setAbstraction(CSemanticOctoMap& map, const Cli& cli, const Config& config)
 labeled_cloud::Trajectory trajectoryOf(const Cli& cli, const Config& config) {
   if (cli.staticPose) return restAtOrigin();
   if (!cli.trajectory.empty())
-    return labeled_cloud::loadTumTrajectory(cli.trajectory, config.trajectory);
+    return labeled_cloud::loadTumTrajectory(cli.trajectory);
   notes() << "Reading the robot's poses" << std::endl;
-  if (cli.slam) return labeled_cloud::findTrajectory(cli.rawlogs, config.trajectory);
-  return labeled_cloud::readTrajectory(cli.rawlogs, config.trajectory);
+  if (cli.slam) return labeled_cloud::findTrajectory(cli.rawlogs);
+  return labeled_cloud::readTrajectory(cli.rawlogs);
 }
 
 /** Where scans go beside the map. */

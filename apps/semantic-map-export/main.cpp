@@ -43,18 +43,15 @@ struct Cli {
     strict_files::OptionList list;
     options.points.smoothing.describe(list);
     addOptions(app, list, "Neighbors, in .ply and .csv files");
-    auto* grid =
-        app.add_option_group("2D grids", "What is an obstacle in .gridmap and .yaml files");
-    grid->add_option("--low", options.grid.low, "... if it is that far above the ground, m")
-        ->capture_default_str();
-    grid->add_option("--high", options.grid.high, "... up to that far, m")->capture_default_str();
-    grid->add_option("--ground", ground,
-                     "A class that is ground; may be given several times. "
-                     "None: the lowest of each column is")
-        ->allow_extra_args(false);
-    grid->add_option("--window", options.grid.window, "What is narrower is no ground, m")
-        ->capture_default_str();
-    grid->add_option("--floor", options.grid.floor, "Height of a flat ground, m");
+    const std::string kGrids = "2D grids, .gridmap and .yaml files";
+    strict_files::OptionList grid;
+    options.grid.describe(grid);
+    addOptions(app, grid, kGrids);
+    app.add_option("--ground", ground,
+                   "A class that is ground; may be given several times. "
+                   "None: the lowest of each column is")
+        ->allow_extra_args(false)
+        ->group(kGrids);
   }
 };
 
