@@ -6,10 +6,12 @@
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 
+#include <cmath>
+#include <random>
 #include <sstream>
+#include <stdexcept>
 
 #include "Application.h"
-#include "Instances.h"
 #include "NumberChecks.h"
 #include "Outputs.h"
 #include "Signals.h"
@@ -19,6 +21,7 @@ namespace planning_study {
 namespace {
 
 using colored_graph::EdgeModel;
+using mrpt::math::TPose2D;
 using semantic_octree::SemanticOcTree;
 using namespace semantic_planning;
 
@@ -54,6 +57,72 @@ struct Cli {
         ->capture_default_str();
   }
 };
+
+/** A task for all planners. Meters, radians; map frame. */
+struct Instance {
+  TPose2D start, goal;
+};
+
+constexpr int kMostTries = 100000;  // for one instance
+
+class PoseDraw {
+ public:
+  PoseDraw(const SemanticPlanner& planner, std::uint64_t seed)
+      : m_planner(planner), m_tiles(planner.ground().tiles()), m_random(seed) {
+    if (m_tiles.empty()) throw std::runtime_error("the map has no ground");
+  }
+
+  /** Nothing if the draw did not hit a place to stand. */
+  std::optional<TPose2D> pose() {
+    const Ground& ground = m_planner.ground();
+    const auto i = static_cast<std::size_t>(unit() * static_cast<double>(m_tiles.size()));
+    const Column low = firstColumnOf(m_tiles[i]);
+    const double edge = kTileEdge * ground.voxelSize(), half = ground.voxelSize() / 2;
+    const double x = ground.centerOf(low.x) - half + unit() * edge;
+    const double y = ground.centerOf(low.y) - half + unit() * edge;
+    const TPose2D pose(x, y, (2 * unit() - 1) * M_PI);
+    return m_planner.check(pose) == PlanStatus::Found ? std::optional(pose) : std::nullopt;
+  }
+
+ private:
+  /** In [0, 1), the same with every standard library. */
+  double unit() { return std::ldexp(static_cast<double>(m_random() >> 11), -53); }
+
+  const SemanticPlanner& m_planner;
+  const std::vector<Column> m_tiles;
+  std::mt19937_64 m_random;
+};
+
+bool isConnected(const Ground& ground, const Instance& instance) {
+  const auto a = ground.find(instance.start.x, instance.start.y);
+  const auto b = ground.find(instance.goal.x, instance.goal.y);
+  return a && b && ground.connected(*a, *b);
+}
+
+Instance drawInstance(const Ground& ground, PoseDraw& draw, double minDistance) {
+  for (int i = 0; i < kMostTries; ++i) {
+    const auto start = draw.pose(), goal = draw.pose();
+    if (!start || !goal) continue;
+    const Instance instance{*start, *goal};
+    if (std::hypot(goal->x - start->x, goal->y - start->y) >= minDistance &&
+        isConnected(ground, instance))
+      return instance;
+  }
+  throw std::runtime_error("no start and goal on connected ground, " + std::to_string(minDistance) +
+                           " m apart, found in " + std::to_string(kMostTries) + " draws");
+}
+
+/** Pairs of poses, drawn evenly over the ground where the vehicle can stand, with any heading; each
+ * pair is connected by ground. They depend on the ground, the count and the seed alone: not on any
+ * graph. The first n of more are those of n. \throw std::runtime_error hardly any such pair is
+ * found. */
+std::vector<Instance> drawInstances(const SemanticPlanner& planner, const Cli& cli) {
+  PoseDraw draw(planner, cli.seed);
+  std::vector<Instance> instances;
+  while (instances.size() < cli.instances)
+    instances.push_back(drawInstance(planner.ground(), draw, cli.minDistance));
+  return instances;
+}
 
 PlannerOptions optionsOf(const Cli& cli, GraphKind kind, EdgeModel judgment) {
   PlannerOptions options;
@@ -110,8 +179,7 @@ int run(const Cli& cli) {
   const auto order = loadClassOrder(cli.classes, map.classes());
   setAbstraction(map, abstractionOf(cli.weights, cli.solution, map.classes()));
   std::vector<SemanticPlanner> planners = plannersOf(cli, map, order);
-  const CollisionChecker checker(planners[0].ground(), planners[0].options().vehicle, order, {});
-  const auto instances = drawInstances(checker, cli.instances, cli.minDistance, cli.seed);
+  const auto instances = drawInstances(planners[0], cli);
   std::ostringstream csv;
   csv << "instance,judgment,graph,found,vertices,edges,edges evaluated,off the best [m],"
          "length [m],evaluation [ms],search [ms]\n";
