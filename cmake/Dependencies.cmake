@@ -47,8 +47,8 @@ find_package(liblzf QUIET)  # compressed PCD files are refused without
 
 include(ThirdPartyTargets)
 
-if(MSO_BUILD_APPS OR MSO_BUILD_TESTS)
-  # Other planners and oracles. Its CMake files also name libraries that its Debian package does not need:
+if(MSO_BUILD_TESTS)
+  # Oracles of tests. Its CMake files also name libraries that its Debian package does not need:
   # the first is its own.
   find_package(ompl QUIET)
   if(ompl_FOUND)
@@ -57,7 +57,7 @@ if(MSO_BUILD_APPS OR MSO_BUILD_TESTS)
     target_include_directories(mso_ompl SYSTEM INTERFACE ${OMPL_INCLUDE_DIR})
     target_link_libraries(mso_ompl INTERFACE ${ompl_library})
   else()
-    message(STATUS "planning-study, and tests that compare with OMPL, are left out: there is no OMPL (libompl-dev)")
+    message(STATUS "tests that compare with OMPL are left out: there is no OMPL (libompl-dev)")
   endif()
 endif()
 

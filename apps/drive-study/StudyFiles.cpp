@@ -14,126 +14,111 @@ using strict_files::csvField;
 
 namespace {
 
-void addPose(std::ostream& out, const mrpt::math::TPose2D& pose) {
-  out << pose.x << ',' << pose.y << ',' << pose.phi * 180 / M_PI << ',';
+/** What a scene's drives come to. */
+enum class Sum { None, Total, Least, Most };
+
+/** A number of each drive. */
+struct Column {
+  const char* name;
+  double (*of)(const Trial&);
+  Sum sum = Sum::None;
+};
+
+double degrees(double radians) { return radians * 180 / M_PI; }
+
+const std::vector<Column>& columns() {
+  using T = const Trial&;
+  static const std::vector<Column> columns = {
+      {"start_x", [](T t) { return t.task.start.x; }},
+      {"start_y", [](T t) { return t.task.start.y; }},
+      {"start_deg", [](T t) { return degrees(t.task.start.phi); }},
+      {"goal_x", [](T t) { return t.task.goal.x; }},
+      {"goal_y", [](T t) { return t.task.goal.y; }},
+      {"goal_deg", [](T t) { return degrees(t.task.goal.phi); }},
+      {"path_length", [](T t) { return t.task.length; }},
+      {"path_worse", [](T t) { return t.badBest; }},
+      {"seconds", [](T t) { return t.seconds; }, Sum::Total},
+      {"length", [](T t) { return t.length; }, Sum::Total},
+      {"worse", [](T t) { return t.badDriven; }, Sum::Total},
+      {"worse_planned", [](T t) { return t.badFollowed; }, Sum::Total},
+      {"collisions", [](T t) { return double(t.collisions); }, Sum::Total},
+      {"clearance", [](T t) { return t.leastClearance; }, Sum::Least},
+      {"replans", [](T t) { return double(t.replans); }, Sum::Total},
+      {"explored", [](T t) { return double(t.explored); }, Sum::Total},
+      {"seen", [](T t) { return t.seenAt; }},
+      {"refused", [](T t) { return t.refusedAt; }},
+      {"jerk", [](T t) { return t.smooth.jerk; }, Sum::Most},
+      {"backwards", [](T t) { return t.smooth.backwards; }, Sum::Total},
+      {"longest_backwards", [](T t) { return t.smooth.longestBackwards; }, Sum::Most},
+      {"gear_changes", [](T t) { return double(t.smooth.gearChanges); }, Sum::Total},
+      {"turn_changes", [](T t) { return double(t.smooth.turnChanges); }, Sum::Total},
+      {"path_turn_changes", [](T t) { return double(t.smooth.pathTurnChanges); }, Sum::Total},
+      {"pose_error", [](T t) { return t.poseErrors.mean; }},
+      {"largest_pose_error", [](T t) { return t.poseErrors.largest; }, Sum::Most},
+      {"odometry_error", [](T t) { return t.odometryErrors.mean; }},
+      {"cycle", [](T t) { return t.cycle; }},
+      {"slow_cycle", [](T t) { return t.slowCycle; }, Sum::Most},
+      {"leaves", [](T t) { return t.leaves; }},
+      {"processor", [](T t) { return t.processorSeconds; }, Sum::Total}};
+  return columns;
 }
 
-/** Seconds from when the goal was seen, of the unfit ones. */
-double latestRefusal(const std::vector<Trial>& trials) {
-  double latest = 0;
-  for (const Trial& t : trials)
-    if (t.task.unfit && t.seenAt >= 0) latest = std::max(latest, t.refusedAt - t.seenAt);
-  return latest;
-}
-
-double largestJerk(const std::vector<Trial>& trials) {
-  double largest = 0;
-  for (const Trial& t : trials) largest = std::max(largest, t.smooth.jerk);
-  return largest;
-}
-
-double longestBackwards(const std::vector<Trial>& trials) {
-  double longest = 0;
-  for (const Trial& t : trials) longest = std::max(longest, t.smooth.longestBackwards);
-  return longest;
+double sumOf(const std::vector<Trial>& trials, const Column& column) {
+  double sum = column.sum == Sum::Least ? HUGE_VAL : 0;
+  for (const Trial& t : trials) {
+    const double value = column.of(t);
+    sum = column.sum == Sum::Total   ? sum + value
+          : column.sum == Sum::Least ? std::min(sum, value)
+                                     : std::max(sum, value);
+  }
+  return sum;
 }
 
 ordered_json summaryOf(const std::vector<Trial>& trials) {
   const auto count = [&trials](auto isOne) {
     return std::count_if(trials.begin(), trials.end(), isOne);
   };
-  const auto sum = [&trials](auto of) {
-    double total = 0;
-    for (const Trial& t : trials) total += of(t);
-    return total;
-  };
-  double least = std::numeric_limits<double>::infinity();
-  for (const Trial& t : trials) least = std::min(least, t.leastClearance);
-  const auto arrived = [](const Trial& t) { return t.end == DriveEnd::Arrived; };
-  return {
+  using T = const Trial&;
+  const auto arrived = [](T t) { return t.end == DriveEnd::Arrived; };
+  ordered_json json = {
       {"drives", trials.size()},
-      {"withPath", count([](const Trial& t) { return t.task.hasPath; })},
-      {"arrivedOfThese", count([&](const Trial& t) { return t.task.hasPath && arrived(t); })},
-      {"withoutPath", count([](const Trial& t) { return !t.task.hasPath; })},
-      {"saidSo", count([](const Trial& t) { return !t.task.hasPath && t.saidSo(); })},
-      {"unfit", count([](const Trial& t) { return t.task.unfit; })},
-      {"refusedOfThese", count([](const Trial& t) { return t.task.unfit && t.refusedAt >= 0; })},
-      {"latestRefusal", latestRefusal(trials)},
-      {"arrivedNevertheless", count([&](const Trial& t) { return !t.task.hasPath && arrived(t); })},
-      {"collisions", sum([](const Trial& t) { return t.collisions; })},
-      {"leastClearance", least},
-      {"meters", sum([](const Trial& t) { return t.length; })},
-      {"metersBackwards", sum([](const Trial& t) { return t.smooth.backwards; })},
-      {"longestBackwards", longestBackwards(trials)},
-      {"gearChanges", sum([](const Trial& t) { return t.smooth.gearChanges; })},
-      {"turnSignChanges", sum([](const Trial& t) { return t.smooth.turnChanges; })},
-      {"turnSignChangesOfPaths", sum([](const Trial& t) { return t.smooth.pathTurnChanges; })},
-      {"largestJerk", largestJerk(trials)},
-      {"metersInWorseClasses", sum([](const Trial& t) { return t.badDriven; })},
-      {"metersInWorseClassesPlanned", sum([](const Trial& t) { return t.badFollowed; })},
-      {"faults", count([](const Trial& t) { return !t.fault().empty(); })},
-      {"processorSeconds", sum([](const Trial& t) { return t.processorSeconds; })}};
+      {"withPath", count([](T t) { return t.task.hasPath; })},
+      {"arrivedOfThese", count([&](T t) { return t.task.hasPath && arrived(t); })},
+      {"withoutPath", count([](T t) { return !t.task.hasPath; })},
+      {"saidSo", count([](T t) { return !t.task.hasPath && t.saidSo(); })},
+      {"unfit", count([](T t) { return t.task.unfit; })},
+      {"refusedOfThese", count([](T t) { return t.task.unfit && t.refusedAt >= 0; })},
+      {"arrivedNevertheless", count([&](T t) { return !t.task.hasPath && arrived(t); })},
+      {"faults", count([](T t) { return !t.fault().empty(); })}};
+  for (const Column& column : columns())
+    if (column.sum != Sum::None) json[column.name] = sumOf(trials, column);
+  return json;
 }
 
 }  // namespace
 
 std::string toCsv(const std::vector<Trial>& trials) {
   std::ostringstream out;
-  out << "scene,number,start_x,start_y,start_deg,goal_x,goal_y,goal_deg,path,path_length,"
-         "path_worse,end,fault,seconds,length,worse,worse_planned,collisions,clearance,replans,"
-         "explored,seen,refused,jerk,backwards,longest_backwards,gear_changes,turn_changes,path_"
-         "turn_changes,"
-         "pose_error,largest_pose_error,odometry_error,cycle,slow_cycle,leaves,processor,why_no_"
-         "path,"
-         "reason\n";
+  out << "scene,number,path,end,fault,why_no_path,reason";
+  for (const Column& column : columns()) out << ',' << column.name;
   for (const Trial& t : trials) {
-    out << t.scene << ',' << t.number << ',';
-    addPose(out, t.task.start);
-    addPose(out, t.task.goal);
-    out << (t.task.hasPath ? "yes" : "no") << ',' << t.task.length << ',' << t.badBest << ','
-        << nameOf(t.end) << ',' << t.fault() << ',' << t.seconds << ',' << t.length << ','
-        << t.badDriven << ',' << t.badFollowed << ',' << t.collisions << ',' << t.leastClearance
-        << ',' << t.replans << ',' << t.explored << ',' << t.seenAt << ',' << t.refusedAt << ','
-        << t.smooth.jerk << ',' << t.smooth.backwards << ',' << t.smooth.longestBackwards << ','
-        << t.smooth.gearChanges << ',' << t.smooth.turnChanges << ',' << t.smooth.pathTurnChanges
-        << ',' << t.poseErrors.mean << ',' << t.poseErrors.largest << ',' << t.odometryErrors.mean
-        << ',' << t.cycle << ',' << t.slowCycle << ',' << t.leaves << ',' << t.processorSeconds
-        << ',' << csvField(t.task.reason) << ',' << csvField(t.reason) << '\n';
+    out << '\n'
+        << t.scene << ',' << t.number << ',' << (t.task.hasPath ? "yes" : "no") << ','
+        << nameOf(t.end) << ',' << t.fault() << ',' << csvField(t.task.reason) << ','
+        << csvField(t.reason);
+    for (const Column& column : columns()) out << ',' << column.of(t);
   }
+  out << '\n';
   return out.str();
 }
 
 ordered_json toJson(const std::vector<Trial>& trials) {
-  std::vector<std::string> scenes;
-  for (const Trial& t : trials)
-    if (std::find(scenes.begin(), scenes.end(), t.scene) == scenes.end()) scenes.push_back(t.scene);
+  std::map<std::string, std::vector<Trial>> scenes;
+  for (const Trial& t : trials) scenes[t.scene].push_back(t);
   ordered_json study;
-  for (const std::string& scene : scenes) {
-    std::vector<Trial> some;
-    for (const Trial& t : trials)
-      if (t.scene == scene) some.push_back(t);
-    study[scene] = summaryOf(some);
-  }
+  for (const auto& [scene, some] : scenes) study[scene] = summaryOf(some);
   study["all"] = summaryOf(trials);
   return study;
-}
-
-std::string toMarkdown(const ordered_json& study) {
-  std::ostringstream out;
-  out << "| scene |";
-  for (const auto& [name, value] : study["all"].items()) out << ' ' << name << " |";
-  out << "\n|---|";
-  for (std::size_t i = 0; i < study["all"].size(); ++i) out << "---|";
-  out << '\n';
-  for (const auto& [scene, numbers] : study.items()) {
-    out << "| " << scene << " |";
-    for (const auto& value : numbers) {
-      const double number = value.get<double>();
-      out << ' ' << std::round(number * 100) / 100 << " |";
-    }
-    out << '\n';
-  }
-  return out.str();
 }
 
 }  // namespace drive_study

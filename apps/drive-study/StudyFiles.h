@@ -9,7 +9,5 @@ namespace drive_study {
 std::string toCsv(const std::vector<Trial>& trials);
 /** Each scene's numbers, and those of all. */
 nlohmann::ordered_json toJson(const std::vector<Trial>& trials);
-/** The study as a table. */
-std::string toMarkdown(const nlohmann::ordered_json& study);
 
 }  // namespace drive_study

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFaults = 2;  // exit status
-const std::vector<std::string> kFiles = {"study.csv", "study.json", "study.md"};
+const std::vector<std::string> kFiles = {"study.csv", "study.json"};
 
 struct Cli {
   fs::path classes, config, output;
@@ -109,7 +109,6 @@ int run(const Cli& cli) {
   const nlohmann::ordered_json study = toJson(trials);
   strict_files::writeText(output.staged("study.csv"), toCsv(trials));
   writeJson(output.staged("study.json"), study);
-  strict_files::writeText(output.staged("study.md"), toMarkdown(study));
   output.commit(kFiles);
   const int faults = study["all"]["faults"];
   notes() << faults << " of " << trials.size() << " drives with a fault\n";

@@ -1,14 +1,22 @@
 #pragma once
 #include <semantic_octree/InsertionOptions.h>
+#include <semantic_types/LabeledCloud.h>
 
-#include <functional>
+#include <Eigen/Geometry>
 #include <memory>
-#include <string>
 #include <vector>
 
-#include "Scene.h"
-
 namespace insertion_benchmark {
+
+struct PosedScan {
+  semantic_types::LabeledCloud cloud;
+  Eigen::Isometry3d T_map_sensor;
+};
+
+struct Scene {
+  std::vector<PosedScan> scans;
+  int numClasses = 1;
+};
 
 struct Settings {
   double resolution = 0.2, maxRange = 25;  ///< meters
@@ -28,10 +36,7 @@ class Runner {
   virtual std::size_t touchedVoxels() const { return 0; }
 };
 
-struct Entry {
-  std::string name;
-  std::function<std::unique_ptr<Runner>(const Scene&, const Settings&)> create;
-};
+using MakeRunner = std::unique_ptr<Runner> (*)(const Scene& scene, const Settings& settings);
 
 /** A byte array that beams are traced through: each voxel on the way is touched, nothing more. */
 std::unique_ptr<Runner> denseTraversal(const Scene& scene, const Settings& settings);

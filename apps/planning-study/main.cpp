@@ -1,89 +1,200 @@
-// Compares kinds of graphs, and other planners, on random tasks over semantic maps.
+// The paper's planning experiment: the same random tasks for graphs of the compressed tree and for
+// Halton graphs, with equal numbers of vertices and edges.
+#include <map_folders/MapFolder.h>
 #include <semantic_planning/planner/OrderFile.h>
-#include <semantic_planning/vehicle/VehicleOptions.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 
-#include <ostream>
+#include <cmath>
+#include <random>
+#include <sstream>
+#include <stdexcept>
 
 #include "Application.h"
-#include "Cli.h"
-#include "Join.h"
-#include "JsonFile.h"
+#include "NumberChecks.h"
+#include "Outputs.h"
 #include "Signals.h"
-#include "StandardOutput.h"
-#include "StudyFigures.h"
-#include "StudyTables.h"
-#include "Summary.h"
 #include "measuring/Stopwatch.h"
 
 namespace planning_study {
 namespace {
 
-namespace fs = std::filesystem;
+using colored_graph::EdgeModel;
+using mrpt::math::TPose2D;
+using semantic_octree::SemanticOcTree;
+using namespace semantic_planning;
 
-const std::vector<std::string> kFiles = {"study.csv", "study.json", "study.md", "times.png",
-                                         "paths.png"};
+constexpr GraphKind kGraphs[] = {GraphKind::Leaves, GraphKind::Halton, GraphKind::HaltonDrivable};
+constexpr EdgeModel kJudgments[] = {EdgeModel::Profile, EdgeModel::Endpoint};
+constexpr std::size_t kEdgesPerVertex = 5;
 
-/** Maps take turns, so that each has the same number of instances when time is over. */
-std::vector<MapStudy> studyMaps(const Cli& cli, const StopRequest& stop) {
-  const measuring::Stopwatch watch;
-  const double most = cli.study.minutes * 60e3;  // ms
-  const std::vector<std::string> names = namesOf(cli.maps);
-  std::vector<StudyRunner> runners;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    runners.emplace_back(names[i], cli.maps[i].string(), cli.classes.string(), cli.study);
-  std::size_t done = 0;
-  while (done < cli.study.instances &&
-         (done == 0 || (watch.milliseconds() < most && !stop.pending()))) {
-    for (StudyRunner& runner : runners) runner.runNextInstance();
-    if (++done % 10 == 0) notes() << done << " of " << cli.study.instances << std::endl;
+struct Cli {
+  std::filesystem::path map, classes, weights, output;
+  std::string solution;
+  std::size_t instances = 50, vertices = 500;
+  std::uint64_t seed = 1;
+  double minDistance = 30;  // m
+  Outputs outputs;
+
+  explicit Cli(CLI::App& app) : outputs(app) {
+    app.add_option("MAP", map, "A map's own file (.semantic)")->required();
+    app.add_option("--classes", classes, "Classes from best to worst (YAML)")->required();
+    app.add_option("--weights", weights, "What the compressed tree keeps (YAML)")->required();
+    app.add_option("--solution", solution, "Which of the weights; none: the first");
+    outputs.add(app, output, "FILE", "Table of all searches (CSV)")->required();
+    addNumber(app, "--instances", instances, "Pairs of start and goal");
+    addNumber(app, "--vertices", vertices, "Of each graph; of halton, draws");
+    addNumber(app, "--min-distance", minDistance, "From start to goal, m");
+    app.add_option("--seed", seed, "Other instances")->capture_default_str();
   }
-  std::vector<MapStudy> studies;
-  for (const StudyRunner& runner : runners) studies.push_back(runner.study());
-  return studies;
-}
 
-/** Numbers are worth keeping without figures: says what is wrong instead of throwing. */
-std::string drawFigures(const nlohmann::ordered_json& study,
-                        const strict_files::OutputFolder& output) {
-  try {
-    drawTimes(study, output.staged("times.png"));
-    drawPaths(study, output.staged("paths.png"));
-    return {};
-  } catch (const std::exception& e) {
-    return std::string("no figures times.png, paths.png: ") + e.what();
+ private:
+  template <class Number>
+  static void addNumber(CLI::App& app, const char* name, Number& number, const char* help) {
+    app.add_option(name, number, help)
+        ->check(isNumber(strict_files::above(0)))
+        ->capture_default_str();
   }
+};
+
+/** A task for all planners. Meters, radians; map frame. */
+struct Instance {
+  TPose2D start, goal;
+};
+
+constexpr int kMostTries = 100000;  // for one instance
+
+class PoseDraw {
+ public:
+  PoseDraw(const SemanticPlanner& planner, std::uint64_t seed)
+      : m_planner(planner), m_tiles(planner.ground().tiles()), m_random(seed) {
+    if (m_tiles.empty()) throw std::runtime_error("the map has no ground");
+  }
+
+  /** Nothing if the draw did not hit a place to stand. */
+  std::optional<TPose2D> pose() {
+    const Ground& ground = m_planner.ground();
+    const auto i = static_cast<std::size_t>(unit() * static_cast<double>(m_tiles.size()));
+    const Column low = firstColumnOf(m_tiles[i]);
+    const double edge = kTileEdge * ground.voxelSize(), half = ground.voxelSize() / 2;
+    const double x = ground.centerOf(low.x) - half + unit() * edge;
+    const double y = ground.centerOf(low.y) - half + unit() * edge;
+    const TPose2D pose(x, y, (2 * unit() - 1) * M_PI);
+    return m_planner.check(pose) == PlanStatus::Found ? std::optional(pose) : std::nullopt;
+  }
+
+ private:
+  /** In [0, 1), the same with every standard library. */
+  double unit() { return std::ldexp(static_cast<double>(m_random() >> 11), -53); }
+
+  const SemanticPlanner& m_planner;
+  const std::vector<Column> m_tiles;
+  std::mt19937_64 m_random;
+};
+
+bool isConnected(const Ground& ground, const Instance& instance) {
+  const auto a = ground.find(instance.start.x, instance.start.y);
+  const auto b = ground.find(instance.goal.x, instance.goal.y);
+  return a && b && ground.connected(*a, *b);
 }
 
-std::vector<fs::path> filesOf(const std::vector<fs::path>& studies) {
-  std::vector<fs::path> files;
-  for (const fs::path& folder : studies)
-    for (const std::string& name : kFiles) files.push_back(folder / name);
-  return files;
+Instance drawInstance(const Ground& ground, PoseDraw& draw, double minDistance) {
+  for (int i = 0; i < kMostTries; ++i) {
+    const auto start = draw.pose(), goal = draw.pose();
+    if (!start || !goal) continue;
+    const Instance instance{*start, *goal};
+    if (std::hypot(goal->x - start->x, goal->y - start->y) >= minDistance &&
+        isConnected(ground, instance))
+      return instance;
+  }
+  throw std::runtime_error("no start and goal on connected ground, " + std::to_string(minDistance) +
+                           " m apart, found in " + std::to_string(kMostTries) + " draws");
 }
 
-JoinedStudy study(Cli& cli, const StopRequest& stop) {
-  cli.study.validate();
-  if (!cli.vehicle.empty()) cli.study.planner.vehicle = semantic_planning::loadVehicle(cli.vehicle);
-  auto& vehicle = cli.study.planner.vehicle;  // direction costs nothing, as in the paper
-  vehicle.reverseWeight = 1;
-  vehicle.gearChange = vehicle.steeringChange = 0;
-  const std::vector<MapStudy> studies = studyMaps(cli, stop);
-  return {toJson(studies, cli.study), toCsv(studies)};
+/** Pairs of poses, drawn evenly over the ground where the vehicle can stand, with any heading; each
+ * pair is connected by ground. They depend on the ground, the count and the seed alone: not on any
+ * graph. The first n of more are those of n. \throw std::runtime_error hardly any such pair is
+ * found. */
+std::vector<Instance> drawInstances(const SemanticPlanner& planner, const Cli& cli) {
+  PoseDraw draw(planner, cli.seed);
+  std::vector<Instance> instances;
+  while (instances.size() < cli.instances)
+    instances.push_back(drawInstance(planner.ground(), draw, cli.minDistance));
+  return instances;
 }
 
-int run(Cli& cli) {
+PlannerOptions optionsOf(const Cli& cli, GraphKind kind, EdgeModel judgment) {
+  PlannerOptions options;
+  options.roadmap.kind = kind;
+  options.roadmap.vertices = cli.vertices;
+  options.roadmap.maxEdges = kEdgesPerVertex * cli.vertices;
+  options.roadmap.headings = 1;  // as in the paper: random ones, and costs that count edges
+  options.roadmap.alignHeadings = false;
+  options.cost = colored_graph::CostKind::Count;
+  options.edges = judgment;
+  options.vehicle.reverseWeight = 1;  // direction costs nothing, as in the paper
+  options.vehicle.gearChange = options.vehicle.steeringChange = 0;
+  return options;
+}
+
+/** Meters of a path that are not in the best rank. */
+double offTheBest(const PlanResult& plan, const colored_graph::ClassOrder& order) {
+  double meters = 0;
+  for (std::size_t id = 0; id < plan.lengthPerClass.size(); ++id)
+    if (order.rank(static_cast<colored_graph::GraphClass>(id)) > 0)
+      meters += plan.lengthPerClass[id];
+  return meters;
+}
+
+double milliseconds(const PlanResult& plan, const std::string& name) {
+  double sum = 0;
+  for (const auto& [stage, time] : plan.times)
+    if (stage == name) sum += time;
+  return sum;
+}
+
+/** Plans a task as the first one. What else runs on the machine does not count: times are of the
+ * processor, shared out as the clock on the wall says. */
+void writeRow(std::ostream& out, std::size_t number, const Instance& task,
+              SemanticPlanner& planner) {
+  planner.forget();
+  const measuring::Stopwatch processor(measuring::TimeOf::Process), wall;
+  const PlanResult plan = planner.plan(task.start, task.goal);
+  const double share = processor.milliseconds() / wall.milliseconds();
+  out << number << ',' << nameOf(planner.options().edges) << ','
+      << nameOf(planner.options().roadmap.kind) << ',' << plan.found() << ',' << plan.numVertices
+      << ',' << plan.numEdges << ',' << plan.search.edgesEvaluated << ','
+      << offTheBest(plan, planner.order()) << ',' << plan.length << ','
+      << share * milliseconds(plan, "evaluateEdges") << ',' << share * milliseconds(plan, "search")
+      << '\n';
+}
+
+std::vector<SemanticPlanner> plannersOf(const Cli& cli, SemanticOcTree& map,
+                                        const colored_graph::ClassOrder& order) {
+  std::vector<SemanticPlanner> planners;
+  for (const GraphKind kind : kGraphs)
+    for (const EdgeModel judgment : kJudgments)
+      planners.emplace_back(map, order, optionsOf(cli, kind, judgment));
+  return planners;
+}
+
+int run(const Cli& cli) {
   const StopRequest stop("after this instance");
-  cli.outputs.checkFolder(cli.output, kFiles, cli.join ? filesOf(cli.maps) : cli.maps);
-  strict_files::OutputFolder output(cli.output);
-  const auto [json, csv] = cli.join ? joinStudies(cli.maps) : study(cli, stop);
-  strict_files::writeText(output.staged("study.csv"), csv);
-  writeJson(output.staged("study.json"), json);
-  strict_files::writeText(output.staged("study.md"), toMarkdown(json));
-  const std::string problem = drawFigures(json, output);
-  output.commit(kFiles);
-  if (!problem.empty()) throw std::runtime_error(problem);
+  cli.outputs.check({cli.output});
+  SemanticOcTree map = semantic_octree::loadMap(cli.map);
+  const auto order = loadClassOrder(cli.classes, map.classes());
+  setAbstraction(map, abstractionOf(cli.weights, cli.solution, map.classes()));
+  std::vector<SemanticPlanner> planners = plannersOf(cli, map, order);
+  const auto instances = drawInstances(planners[0], cli);
+  std::ostringstream csv;
+  csv << "instance,judgment,graph,found,vertices,edges,edges evaluated,off the best [m],"
+         "length [m],evaluation [ms],search [ms]\n";
+  for (std::size_t i = 0; i < instances.size() && !stop.pending(); ++i)
+    for (SemanticPlanner& planner : planners) writeRow(csv, i, instances[i], planner);
+  strict_files::StagedFile file(cli.output);
+  strict_files::writeText(file.path(), csv.str());
+  file.commit();
   return 0;
 }
 
@@ -91,7 +202,7 @@ int run(Cli& cli) {
 }  // namespace planning_study
 
 int main(int argc, char** argv) {
-  CLI::App app("Compares kinds of graphs, and other planners, on random tasks over semantic maps");
+  CLI::App app("Plans random tasks with the published graphs: the paper's planning experiment");
   planning_study::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return planning_study::run(cli); });
 }

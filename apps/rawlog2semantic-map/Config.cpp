@@ -8,17 +8,19 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "LabelConfig.h"
-
 namespace rawlog2semantic_map {
 
 namespace fs = std::filesystem;
+using labeled_cloud::ScanStreamOptions;
 using mrpt::config::CConfigFileBase;
 using strict_files::IniSection;
 using strict_files::OptionList;
 using strict_files::readSection;
 
 namespace {
+
+/** The sections that describe a camera: [camera NAME]. */
+constexpr const char* kCameraSections = "camera *";
 
 /** The label model is known by [labels]. */
 void readInsertion(const CConfigFileBase& ini, semantic_map::TInsertionOptions& insertion) {
@@ -41,16 +43,56 @@ void readPictures(const CConfigFileBase& ini, Config& config) {
   section.finish();
 }
 
+void readLabels(const CConfigFileBase& ini, Config& config) {
+  OptionList list;
+  config.labels.describe(list);
+  config.insertion.conversion.labels.describe(list);
+  config.stream.describe(list);
+  IniSection section(ini, "labels");
+  section.read(list);
+  section.finish();
+}
+
+labeled_cloud::CameraCalibration readCamera(const CConfigFileBase& ini, const std::string& name) {
+  labeled_cloud::CameraDescription camera;
+  OptionList list;
+  camera.describe(list);
+  IniSection section(ini, name);
+  section.read(list);
+  section.finish();
+  try {
+    return camera.calibration();
+  } catch (const std::invalid_argument& e) {
+    section.fail(e.what());
+  }
+}
+
+void readCameras(const CConfigFileBase& ini, Config& config) {
+  strict_files::readSection(ini, "cameras", config.cameras);
+  const std::string prefix = std::string(kCameraSections, std::string(kCameraSections).size() - 1);
+  std::vector<std::string> names;
+  ini.getAllSections(names);
+  for (const std::string& name : names)
+    if (name.rfind(prefix, 0) == 0)
+      config.cameras.calibrations[name.substr(prefix.size())] = readCamera(ini, name);
+}
+
+void readLabelConfig(const CConfigFileBase& ini, Config& config) {
+  readLabels(ini, config);
+  readCameras(ini, config);
+  config.cameras.skipProblems = config.stream.onProblem == ScanStreamOptions::OnProblem::Skip;
+  config.insertion.conversion.occlusionParallax = config.cameras.occlusionParallax;
+}
+
 Config readConfig(const fs::path& file) {
   Config config;
   strict_files::checkIniText(strict_files::readText(file));
   const mrpt::config::CConfigFile ini(file.string());
-  strict_files::checkSections(ini, {"map", "insertion", "abstraction", "trajectory", "labels",
-                                    "cameras", kCameraSections, "slam", "pictures"});
+  strict_files::checkSections(ini, {"map", "insertion", "abstraction", "labels", "cameras",
+                                    kCameraSections, "slam", "pictures"});
   readSection(ini, "map", config.map);
   readInsertion(ini, config.insertion);
   readSection(ini, "abstraction", config.abstraction);
-  readSection(ini, "trajectory", config.trajectory);
   readLabelConfig(ini, config);
   readSection(ini, "slam", config.slam);
   readPictures(ini, config);

@@ -16,7 +16,6 @@ struct Config {
   semantic_map::TCreationOptions map;             // [map]
   semantic_map::TInsertionOptions insertion;      // [insertion]; its label model is in [labels]
   semantic_map::TAbstractionOptions abstraction;  // [abstraction]
-  labeled_cloud::TrajectoryOptions trajectory;    // [trajectory]
   labeled_cloud::LabelFolderOptions labels;       // [labels]
   labeled_cloud::ScanStreamOptions stream;        // [labels] too
   labeled_cloud::CloudLabelerOptions cameras;     // [cameras] and [camera NAME]

@@ -164,13 +164,12 @@ void setAbstraction(CSemanticOctoMap& map, const Cli& cli, const Config& config)
 }
 
 /** Empty with --slam, if the rawlogs have none. */
-labeled_cloud::Trajectory trajectoryOf(const Cli& cli, const Config& config) {
+labeled_cloud::Trajectory trajectoryOf(const Cli& cli) {
   if (cli.staticPose) return restAtOrigin();
-  if (!cli.trajectory.empty())
-    return labeled_cloud::loadTumTrajectory(cli.trajectory, config.trajectory);
+  if (!cli.trajectory.empty()) return labeled_cloud::loadTumTrajectory(cli.trajectory);
   notes() << "Reading the robot's poses" << std::endl;
-  if (cli.slam) return labeled_cloud::findTrajectory(cli.rawlogs, config.trajectory);
-  return labeled_cloud::readTrajectory(cli.rawlogs, config.trajectory);
+  if (cli.slam) return labeled_cloud::findTrajectory(cli.rawlogs);
+  return labeled_cloud::readTrajectory(cli.rawlogs);
 }
 
 /** Where scans go beside the map. */
@@ -235,7 +234,7 @@ std::shared_ptr<labeled_cloud::ConfusionMatrix> confusionOf(
 Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveScans* live,
                  CSemanticOctoMap& map, const OutputFolder& output) {
   const ClassTable& table = map.tree().classes();
-  labeled_cloud::Trajectory trajectory = trajectoryOf(cli, config);
+  labeled_cloud::Trajectory trajectory = trajectoryOf(cli);
   const bool hasPoses = !trajectory.empty();
   if (!hasPoses) {
     notes() << "There are no poses: scans alone tell where the robot is" << std::endl;

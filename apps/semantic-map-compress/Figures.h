@@ -13,10 +13,6 @@ namespace semantic_map_compress {
 void drawRetained(const FullMap& map, const std::vector<Compression>& compressions,
                   const TermCatalog& catalog, const std::filesystem::path& file);
 
-/** Weight of each class or group in each solution. */
-void drawWeights(const std::vector<Compression>& compressions, const TermCatalog& catalog,
-                 const std::filesystem::path& file);
-
 /** Information kept over the number of leaves, for all alphas; the chosen one is marked. */
 void drawCurves(const std::vector<Compression>& compressions, const std::filesystem::path& file);
 

@@ -114,17 +114,16 @@ std::string drawFigures(const FullMap& map, const std::vector<Compression>& comp
                         const TermCatalog& catalog, const OutputFolder& output) {
   try {
     drawRetained(map, compressions, catalog, output.staged("retained.png"));
-    drawWeights(compressions, catalog, output.staged("weights.png"));
     drawCurves(compressions, output.staged("curves.png"));
     return {};
   } catch (const std::exception& e) {
-    return std::string("no figures retained.png, weights.png, curves.png: ") + e.what();
+    return std::string("no figures retained.png, curves.png: ") + e.what();
   }
 }
 
 std::vector<std::string> fileNames(const std::vector<Solution>& solutions) {
-  std::vector<std::string> names = {"report.json",  "report.csv",  "maps.png",
-                                    "retained.png", "weights.png", "curves.png"};
+  std::vector<std::string> names = {"report.json", "report.csv", "maps.png", "retained.png",
+                                    "curves.png"};
   for (const Solution& solution : solutions)
     for (const char* ending : {".semantic", ".top.png"}) names.push_back(solution.name + ending);
   return names;

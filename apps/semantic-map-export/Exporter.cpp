@@ -2,7 +2,6 @@
 
 #include <map_operations/MapOperations.h>
 #include <map_pictures/MapPictures.h>
-#include <map_pictures/PictureFiles.h>
 #include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MapFiles.h>
@@ -119,14 +118,11 @@ void Exporter::writeOctree(const fs::path& file) {
 }
 
 void Exporter::writeClassMap(const fs::path& file) {
-  const map_pictures::ClassMap classMap(m_map, m_options.maxHeight);
-  stageFile(file, [&classMap](const fs::path& staged) {
-    map_pictures::PngFile png(staged, classMap.size());
-    classMap.forEachBand([&png](const cv::Mat& rows) { png.add(rows); });
-    png.close();
-  });
+  const auto drawn = map_pictures::drawClassMap(m_map, m_options.maxHeight);
+  stageFile(file,
+            [&drawn](const fs::path& staged) { map_pictures::savePicture(drawn.picture, staged); });
   stage(fs::path(file).replace_extension(".pgw"),
-        [&classMap](std::ostream& out) { out << classMap.worldFile(); });
+        [&drawn](std::ostream& out) { out << drawn.worldFile; });
 }
 
 void Exporter::writeMapServer(const fs::path& file) {

@@ -44,21 +44,15 @@ struct Cli {
     strict_files::OptionList list;
     options.points.smoothing.describe(list);
     addOptions(app, list, "Neighbors, in .ply and .csv files");
-    auto* grid =
-        app.add_option_group("2D grids", "What is an obstacle in .gridmap and .yaml files");
-    grid->add_option("--low", options.grid.low, "Lowest height above the ground that counts, m")
-        ->capture_default_str();
-    grid->add_option("--high", options.grid.high, "Highest height above the ground that counts, m")
-        ->capture_default_str();
-    grid->add_option("--ground", ground,
-                     "A class that is ground; may be given several times. "
-                     "Without: the lowest voxel of each column is ground")
-        ->allow_extra_args(false);
-    grid->add_option("--window", options.grid.window,
-                     "Things that stand out and are narrower are no ground, m")
-        ->capture_default_str();
-    grid->add_option("--floor", options.grid.floor,
-                     "Height of flat ground, instead of finding it, m");
+    const std::string kGrids = "2D grids, .gridmap and .yaml files";
+    strict_files::OptionList grid;
+    options.grid.describe(grid);
+    addOptions(app, grid, kGrids);
+    app.add_option("--ground", ground,
+                   "A class that is ground; may be given several times. "
+                   "Without: the lowest voxel of each column is ground")
+        ->allow_extra_args(false)
+        ->group(kGrids);
   }
 };
 

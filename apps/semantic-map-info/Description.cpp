@@ -16,12 +16,7 @@ using semantic_types::ClassId;
 namespace {
 
 ordered_json parametersJson(const FilterParameters& p) {
-  if (p.increments == FilterParameters::Increments::Ssmi)
-    return {{"increments", "Ssmi"},
-            {"minOccupancy", p.minOccupancy},
-            {"maxProbability", p.maxProbability}};
-  return {{"increments", "LikelihoodConsistent"},
-          {"accuracy", p.accuracy},
+  return {{"accuracy", p.accuracy},
           {"labelCorrelation", p.labelCorrelation},
           {"hitProbability", p.hitProbability},
           {"falseAlarmProbability", p.falseAlarmProbability},

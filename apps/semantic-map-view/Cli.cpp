@@ -90,8 +90,6 @@ Cli::Cli(CLI::App& app) : outputs(app) {
                  "Classes from best to worst, for paths (YAML, as for semantic-map-plan)");
   app.add_flag("--compress", compress, "Begin with the compressed tree");
   app.add_flag("!--no-panels", panels, "Hide the panels")->excludes(animated);
-  app.add_flag("--measure", measure,
-               "Turn twice around the map, ask, compress, print the times, and end");
 }
 
 }  // namespace semantic_map_view

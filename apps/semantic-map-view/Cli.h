@@ -15,7 +15,7 @@ struct Cli {
   double memory = semantic_octree::MapFolderOptions().memory;
   int width = 1280, height = 720;
   Beginning view;
-  bool panels = true, measure = false, compress = false;
+  bool panels = true, compress = false;
   Outputs outputs;
 
   explicit Cli(CLI::App& app);

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
+#include <string>
 
 #include "RunProgram.h"
 #include "TemporaryFolder.h"
@@ -19,22 +19,19 @@ ProgramRun benchmark(std::vector<std::string> arguments) {
 }  // namespace
 
 TEST(InsertionBenchmark, measuresEveryRunnerInOneRun) {
-  const ProgramRun run = benchmark({"--json"});
+  const ProgramRun run = benchmark({});
   ASSERT_EQ(run.status, 0) << run.errors;
-  const auto json = nlohmann::json::parse(run.output);
-  EXPECT_EQ(json["scans"], 2);
-  EXPECT_GT(json["points"], 10000);
-  EXPECT_GT(json["touchedVoxels"], 1000);
-  ASSERT_EQ(json["contestants"].size(), 7u);
-  for (const auto& runner : json["contestants"]) {
-    EXPECT_GT(runner["cpuMilliseconds"], 0) << runner;
-    EXPECT_GT(runner["wallMilliseconds"], 0) << runner;
-    EXPECT_EQ(runner["cpuMillisecondsOfRepeats"].size(), 2u);
-    EXPECT_EQ(runner["name"] == json["ratioTo"], runner["ratio"] == 1.0) << runner;
+  EXPECT_TRUE(contains(run.output, "2 scans"));
+  for (const char* name :
+       {"bare traversal of all rays", "semantic_octree with G", "octomap::OcTree, discretized",
+        "octomap::ColorOcTree", "mrpt::maps::COctoMap"}) {
+    const std::size_t row = run.output.find(name);
+    ASSERT_NE(row, std::string::npos) << name;
+    EXPECT_GT(std::stod(run.output.substr(row + 30)), 0) << name;
   }
 }
 
-TEST(InsertionBenchmark, printsATableOfTheChosenRunners) {
+TEST(InsertionBenchmark, measuresTheChosenRunners) {
   const ProgramRun run =
       benchmark({"--only", "ColorOcTree", "--rays", "endpoints", "--threads", "2"});
   ASSERT_EQ(run.status, 0) << run.errors;

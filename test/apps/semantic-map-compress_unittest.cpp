@@ -210,17 +210,8 @@ TEST_F(SemanticMapCompress, spaceOptionsAndRegionsReachTheSearch) {
         << yaml;
   };
   expectSame("block_size: 1.6", [](O& o) { o.blockSize = 1.6; });
-  expectSame("block_size: 0, frame: charged", [](O& o) {
-    o.blockSize = 0;
-    o.frame = O::Frame::Charged;
-  });
+  expectSame("block_size: 0", [](O& o) { o.blockSize = 0; });
   expectSame("unknown: uniform", [](O& o) { o.unknown = O::Unknown::Uniform; });
-  expectSame("unknown: prior", [](O& o) { o.unknown = O::Unknown::Prior; });
-  expectSame("unknown: prior, prior: {free_space: 1}", [](O& o) {
-    o.unknown = O::Unknown::Prior;
-    o.prior.assign(std::size_t(namedClasses().size()) + 1, 0);
-    o.prior[0] = 1;
-  });
   expectSame("regions: [box 0 -1 -2 1 2 3 5, sphere 1 2 0 2 0, corridor -3 0 0 0 -3 1 1.5 3]",
              [](O& o) {
                o.regions = {{Region::Shape::Box, {0, -1, -2}, {1, 2, 3}, 0, 5},
@@ -232,7 +223,7 @@ TEST_F(SemanticMapCompress, spaceOptionsAndRegionsReachTheSearch) {
 TEST_F(SemanticMapCompress, picturesAndFiguresShowSomething) {
   ASSERT_EQ(compress(kTwoSolutions).status, 0);
   for (const char* name : {"posts.top.png", "ground_and-cars.top.png", "maps.png", "retained.png",
-                           "weights.png", "curves.png"}) {
+                           "curves.png"}) {
     const cv::Mat picture = cv::imread((output() / name).string(), cv::IMREAD_GRAYSCALE);
     ASSERT_FALSE(picture.empty()) << name;
     EXPECT_GT(picture.cols, 400) << name;

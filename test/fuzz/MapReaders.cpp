@@ -48,11 +48,8 @@ void readMap(const std::string& bytes) {
   expectSound(semantic_octree::readTree(in));
 }
 
-/** With right checksums; the first byte tells the version. */
-void readMapContent(const std::string& bytes) {
-  if (bytes.empty()) return;
-  readMap(fileAround(bytes.substr(1), 1 + static_cast<unsigned char>(bytes[0]) % 4));
-}
+/** With right checksums. */
+void readMapContent(const std::string& bytes) { readMap(fileAround(bytes)); }
 
 std::uint32_t crcOf(const std::string& bytes) {
   return static_cast<std::uint32_t>(
@@ -79,11 +76,11 @@ std::uint32_t checksumOf(const fs::path& map) {
  * `tile` behind "checksum: ". */
 void readTiles(const fs::path& folder) {
   const fs::path tile = folder / "tile_0_0_0.1.semantic", leaves = folder / "leaves.1.semantic";
-  semantic_octree::FilterParameters ofVersion2;
-  ofVersion2.labelCorrelation = 0.5;
-  semantic_octree::saveTree(SemanticOcTree(0.4, fuzzedClasses(), ofVersion2), leaves.string());
+  semantic_octree::FilterParameters parameters;
+  parameters.labelCorrelation = 0.5;
+  semantic_octree::saveTree(SemanticOcTree(0.4, fuzzedClasses(), parameters), leaves.string());
   const std::string content = textIn(tile);
-  std::ofstream(tile, std::ios::binary) << fileAround(content, 2);
+  std::ofstream(tile, std::ios::binary) << fileAround(content);
   std::string index = textIn(folder / "index.yaml");
   for (const auto& [name, file] : {std::pair("tile", tile), std::pair("leaves", leaves)}) {
     const std::string mark = std::string("checksum: ") + name;

@@ -8,7 +8,6 @@
 #include "Readers.h"
 #include "dataset2rawlog/Conversion.h"
 #include "dataset2rawlog/TumFiles.h"
-#include "planning-study/Join.h"
 #include "poses/Poses.h"
 #include "rawlog2semantic-map/Config.h"
 #include "semantic-map-info/PointQuery.h"
@@ -49,8 +48,6 @@ void readCarmen(const fs::path& log) {
   fs::create_directories(folder.path());
   dataset2rawlog::convertCarmen(log, conversionTo(folder.path()));
 }
-
-void join(const fs::path& folder) { planning_study::joinStudies({folder}); }
 
 void askMap(const std::string& bytes) {
   static const semantic_octree::SemanticOcTree map = [] {
@@ -141,7 +138,6 @@ std::vector<Reader> programReaders() {
        {}},
       {"tum", fromFolder({"camera.ini", "groundtruth.txt", "depth.txt", "depth.pgm"}, readTum), {}},
       {"map-poses", fromFile("", poses), {}},
-      {"study", fromFolder({"study.json", "study.csv"}, join), {}},
       {"queries", askMap, {}},
       {"path", fromFile(".csv", [](const fs::path& f) { semantic_map_view::readTrack(f); }), {}},
       {"mapping-config",

@@ -53,10 +53,8 @@ TEST(WeightsText, IsReadAgainToTheLastBit) {
 
 TEST(WeightsText, HasHowSpaceCounts) {
   AbstractionOptions space;
-  space.unknown = AbstractionOptions::Unknown::Prior;
+  space.unknown = AbstractionOptions::Unknown::Uniform;
   space.blockSize = 0.1 + 0.7;
-  space.frame = AbstractionOptions::Frame::Charged;
-  space.prior = {0.4, 0.3, 0.2, 0.1};
   Region box, sphere, corridor;
   box.a = {-1, -2.5, 0}, box.b = {1, 2, 3}, box.weight = 4;
   sphere.shape = Region::Shape::Sphere, sphere.a = {1, 2, 3}, sphere.radius = 2;
@@ -65,9 +63,6 @@ TEST(WeightsText, HasHowSpaceCounts) {
   const AbstractionOptions read = readAgain(someSolution(), space).space;
   EXPECT_EQ(read.unknown, space.unknown);
   EXPECT_EQ(read.blockSize, space.blockSize);
-  EXPECT_EQ(read.frame, space.frame);
-  ASSERT_EQ(read.prior.size(), 4u);
-  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(read.prior[k], space.prior[k], 1e-15);
   ASSERT_EQ(read.regions.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(read.regions[i].shape, space.regions[i].shape);

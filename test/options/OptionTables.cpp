@@ -43,7 +43,7 @@ std::vector<OptionTable> mapTables() {
   OptionTable insertion = table<TInsertionOptions>(
       "Insertion",
       "`[insertion]`; `_insertOpts`, which has `kind` and `min_confidence` of [labels](#labels), "
-      "too. `increments` and all behind it are the filter's: they are stored in the map, and only "
+      "too. `accuracy` and all behind it are the filter's: they are stored in the map, and only "
       "maps of the same filter can be merged; `semantic-map-info MAP --json` says what a map has.");
   for (const char* ofLabels : {"kind", "min_confidence"}) insertion.list.remove(ofLabels);
   return {
@@ -54,7 +54,7 @@ std::vector<OptionTable> mapTables() {
       table<TAbstractionOptions>(
           "Abstraction",
           "`[abstraction]`; `_abstractionOpts`. Files of weights for `semantic-map-compress` have "
-          "the same options, with lists of their own for classes, `prior` and `regions`: see [its "
+          "the same options, with lists of their own for classes and `regions`: see [its "
           "page](../../apps/semantic-map-compress/README.md). How to choose: "
           "[compression](compression.md)."),
       table<TFolderOptions>("Maps in folders",
@@ -88,7 +88,6 @@ std::vector<OptionTable> labelTables() {
   OptionTable output{"Networks: output", "Section `output` of a network's configuration.", {}, {}};
   add<NetworkOptions>(output, [](auto& o, OptionList& list) { o.describeOutput(list); });
   return {
-      table<TrajectoryOptions>("Trajectory", "`[trajectory]` of `rawlog2semantic-map`."),
       table<LabelFolderOptions, LabelModel, ScanStreamOptions>(
           "Labels", "`[labels]` of `rawlog2semantic-map`."),
       table<CloudLabelerOptions>("Cameras that label the points of other sensors",
@@ -117,8 +116,7 @@ std::vector<OptionTable> planningTables() {
       table<VehicleOptions>("Vehicles",
                             "Files of `config/vehicles`, which also have a `footprint`: a list of "
                             "corners [x, y] in m, x ahead, convex."),
-      table<PlannerOptions>("Planner",
-                            "`semantic-map-plan`, `planning-study`; `[planner]` of drives."),
+      table<PlannerOptions>("Planner", "`semantic-map-plan`; `[planner]` of drives."),
   };
 }
 

@@ -33,7 +33,7 @@ const IncludeTable& includeTable() {
         "map_folders", "map_operations", "semantic_abstraction", "semantic_octree",
         "semantic_types", "strict_files", "tree_abstraction"}},
       {"map_pictures",
-       {"Eigen", "ft2build.h", "gif_lib.h", "mrpt", "octomap", "opencv2", "png.h", "zlib.h",
+       {"Eigen", "ft2build.h", "gif_lib.h", "mrpt", "octomap", "opencv2",
         "mrpt_compat", "map_operations", "semantic_octree", "semantic_types", "strict_files"}},
       {"map_view",
        {"Eigen", "yaml-cpp", "semantic_abstraction", "semantic_octree", "semantic_types",

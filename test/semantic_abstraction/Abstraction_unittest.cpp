@@ -268,7 +268,6 @@ TEST(Abstraction, refusesBadOptionsAndNamesThem) {
   EXPECT_PRED2(says, message([](O& o) { o.weights.terms[0].groups = {{kTreeClasses + 1}}; }), "7");
   EXPECT_PRED2(says, message([](O& o) { o.weights.terms[1].groups = {{1}}; }), "1");
   EXPECT_PRED2(says, message([](O& o) { o.blockSize = -2; }), "block_size");
-  EXPECT_PRED2(says, message([](O& o) { o.prior = {0.5, 0.5}; }), "prior");
   EXPECT_PRED2(says, message([](O& o) {
                  o.regions = {{Region::Shape::Sphere, {}, {}, -1, 1}};
                }),

@@ -36,7 +36,6 @@ void expectSame(const AbstractionOptions& a, const AbstractionOptions& b) {
   EXPECT_EQ(a.blockSize, b.blockSize);
   EXPECT_EQ(a.unknown, b.unknown);
   EXPECT_EQ(a.frame, b.frame);
-  EXPECT_EQ(a.prior, b.prior);
   EXPECT_EQ(a.weights.alpha, b.weights.alpha);
   ASSERT_EQ(a.weights.terms.size(), b.weights.terms.size());
   for (std::size_t i = 0; i < a.weights.terms.size(); ++i) {
@@ -62,50 +61,19 @@ TEST(WeightsFile, linesOfTextAndYamlSayTheSame) {
   text.everything = 0.1;
   text.alpha = 0.03;
   text.blockSize = 1.6;
-  text.unknown = AbstractionText::Unknown::Prior;
-  text.frame = AbstractionText::Frame::Charged;
-  text.prior = "free_space: 0.4, wall: 0.4";
+  text.unknown = AbstractionText::Unknown::Uniform;
   text.regions = "box 0 0 -1 10 5 3 5; sphere 4 2 0 3 2; corridor 0 0 0 20 0 0 3 4";
   const AbstractionOptions options = text.forClasses(roadTreeWall());
   expectSame(options,
              ofFile("relevant: {road: 1, soft: {classes: [tree, free_space], weight: 0.5}}\n"
                     "irrelevant: {wall: 0.25}\neverything: 0.1\nalpha: 0.03\n"
-                    "block_size: 1.6\nunknown: prior\nframe: charged\n"
-                    "prior: {free_space: 0.4, wall: 0.4}\n"
+                    "block_size: 1.6\nunknown: uniform\n"
                     "regions:\n"
                     " - box 0 0 -1 10 5 3 5\n - sphere 4 2 0 3 2\n - corridor 0 0 0 20 0 0 3 4\n"));
   EXPECT_EQ(options.weights.terms[1].groups, (std::vector<std::vector<int>>{{0, 2}}));
   EXPECT_EQ(options.weights.terms[2].weight, -0.25);
   EXPECT_EQ(options.regions[2].radius, 3);
   EXPECT_EQ(options.regions[2].text(), "corridor 0 0 0 20 0 0 3 4");
-}
-
-TEST(WeightsFile, classesWithoutAPriorShareTheRest) {
-  AbstractionText text = someText();
-  text.prior = "free_space: 0.4, wall: 0.4";
-  const auto prior = text.forClasses(roadTreeWall()).prior;
-  ASSERT_EQ(prior.size(), 4u);
-  EXPECT_DOUBLE_EQ(prior[0], 0.4);
-  EXPECT_DOUBLE_EQ(prior[1], 0.1);
-  EXPECT_DOUBLE_EQ(prior[2], 0.1);
-  EXPECT_DOUBLE_EQ(prior[3], 0.4);
-  EXPECT_TRUE(someText().forClasses(roadTreeWall()).prior.empty());
-}
-
-TEST(WeightsFile, aBadPriorIsNamed) {
-  const auto refusal = [](const std::string& prior) {
-    AbstractionText text = someText();
-    text.prior = prior;
-    return errorOf([&] { text.forClasses(roadTreeWall()); });
-  };
-  EXPECT_TRUE(contains(refusal("wood: 0.1"), "prior: unknown class 'wood'"))
-      << refusal("wood: 0.1");
-  EXPECT_TRUE(contains(refusal("road: 0.7, tree: 0.7"), "sum to 1.4"));
-  EXPECT_TRUE(contains(refusal("free_space: 0.1, road: 0.1, tree: 0.1, wall: 0.1"), "sum to 0.4"));
-  EXPECT_TRUE(contains(refusal("road: 0.1, road: 0.1"), "'road' twice"));
-  EXPECT_TRUE(contains(refusal("road: -0.1"), "road: -0.1"));
-  EXPECT_TRUE(contains(errorOf([] { ofFile("everything: 1\nprior: {wood: 1}\n"); }),
-                       "w.yaml:3: unknown class 'wood'"));
 }
 
 TEST(WeightsFile, linesOfTextAreCheckedWithoutClasses) {

@@ -45,7 +45,7 @@ TEST(MapAbstraction, comesFromTheIniFile) {
   const mrpt::config::CConfigFileMemory ini(
       "[m]\nsemanticOctoMap_count=1\n"
       "[m_semanticOctoMap_00_abstractionOpts]\n"
-      "relevant = occupied: 2\nalpha = 0.03 // per nat\nunknown = uniform\nframe = charged\n"
+      "relevant = occupied: 2\nalpha = 0.03 // per nat\nunknown = uniform\n"
       "regions = box 0 0 0 1 2 3 4; sphere 1 2 3 0.5 0; corridor 0 0 0 5 0 0 1 2\n");
   mrpt::maps::TSetOfMetricMapInitializers initializers;
   initializers.loadFromConfigFile(ini, "m");
@@ -58,7 +58,6 @@ TEST(MapAbstraction, comesFromTheIniFile) {
   EXPECT_EQ(o.weights.terms[0].groups, (std::vector<std::vector<int>>{{1}}));
   EXPECT_EQ(o.weights.alpha, 0.03);
   EXPECT_EQ(o.unknown, AbstractionOptions::Unknown::Uniform);
-  EXPECT_EQ(o.frame, AbstractionOptions::Frame::Charged);
   ASSERT_EQ(o.regions.size(), 3u);
   EXPECT_EQ(o.regions[0].b, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(o.regions[1].radius, 0.5);

@@ -66,12 +66,12 @@ TEST(MapDefinition, everyOptionIsReadFromItsSection) {
       classes.string() +
       "\nenableSaveAs3DObject = false\n"
       "[Maps_semanticOctoMap_00_insertOpts]\nrays = end_voxels\nmax_range = 30\nmin_range = 0.5\n"
-      "carving_margin = 0.2\nthreads = 2\ndecimation = 3\nflying_pixel_threshold = 0.05\n"
-      "increments = ssmi\naccuracy = 0.8\nlabel_correlation = 0.4\nhit_probability = 0.7\n"
+      "threads = 2\ndecimation = 3\nflying_pixel_threshold = 0.05\n"
+      "accuracy = 0.8\nlabel_correlation = 0.4\nhit_probability = 0.7\n"
       "false_alarm_probability = 0.2\n"
       "[Maps_semanticOctoMap_00_likelihoodOpts]\ndecimation = 7\nuse_labels = false\n"
       "point_weight = 0.5\n"
-      "[Maps_semanticOctoMap_00_renderOpts]\ncoloring = height\noccupied = no\nfree = yes\n"
+      "[Maps_semanticOctoMap_00_renderOpts]\ncoloring = height\nfree = yes\n"
       "min_height = -1\nmax_height = inf\n");
   const auto& insertion = map->insertionOptions;
   EXPECT_EQ(map->tree().getResolution(), 0.25);
@@ -80,12 +80,10 @@ TEST(MapDefinition, everyOptionIsReadFromItsSection) {
   EXPECT_EQ(insertion.scan.rays, InsertionOptions::Rays::EndVoxels);
   EXPECT_EQ(insertion.scan.maxRange, 30);
   EXPECT_EQ(insertion.scan.minRange, 0.5);
-  EXPECT_EQ(insertion.scan.carvingMargin, 0.2);
   EXPECT_EQ(insertion.scan.threads, 2);
   EXPECT_EQ(insertion.conversion.decimation, 3);
   EXPECT_EQ(insertion.conversion.flyingPixelThreshold, 0.05);
   FilterParameters filter;
-  filter.increments = FilterParameters::Increments::Ssmi;
   filter.accuracy = 0.8, filter.labelCorrelation = 0.4;
   filter.hitProbability = 0.7, filter.falseAlarmProbability = 0.2;
   EXPECT_TRUE(map->tree().filterParameters() == filter);
@@ -93,7 +91,6 @@ TEST(MapDefinition, everyOptionIsReadFromItsSection) {
   EXPECT_FALSE(map->likelihoodOptions.useLabels);
   EXPECT_EQ(map->likelihoodOptions.pointWeight, 0.5);
   EXPECT_EQ(map->renderingOptions.coloring, TRenderingOptions::Coloring::Height);
-  EXPECT_FALSE(map->renderingOptions.occupied);
   EXPECT_TRUE(map->renderingOptions.free);
   EXPECT_EQ(map->renderingOptions.minHeight, -1);
   EXPECT_EQ(map->renderingOptions.maxHeight, INFINITY);
@@ -192,8 +189,7 @@ TEST(MapDefinition, theDumpShowsEveryOption) {
 TEST(MapOptions, whatIsDumpedIsReadBack) {
   semantic_map::TAbstractionOptions options, read;
   options.relevant = "road: 1, tree+wall: 0.5";
-  options.unknown = semantic_octree::AbstractionOptions::Unknown::Prior;
-  options.prior = "free_space: 0.7";
+  options.unknown = semantic_octree::AbstractionOptions::Unknown::Uniform;
   options.regions = "box 0 0 0 1 2 3 4; sphere 1 2 3 0.5 0";
   options.blockSize = 1.0 / 3;
   std::ostringstream dump;
@@ -202,7 +198,6 @@ TEST(MapOptions, whatIsDumpedIsReadBack) {
   EXPECT_EQ(read.relevant, options.relevant);
   EXPECT_EQ(read.irrelevant, "");
   EXPECT_EQ(read.unknown, options.unknown);
-  EXPECT_EQ(read.prior, options.prior);
   EXPECT_EQ(read.regions, options.regions);
   EXPECT_EQ(read.blockSize, options.blockSize);
 }

@@ -57,9 +57,6 @@ TEST(MapVisualization, optionsChooseTheCells) {
   map.renderingOptions.free = true;
   EXPECT_GT(voxelsOf(map)->getVoxelCount(kFree), 10u);
   map.renderingOptions = {};
-  map.renderingOptions.occupied = false;
-  EXPECT_EQ(voxelsOf(map)->getVoxelCount(kOccupied), 0u);
-  map.renderingOptions = {};
   map.renderingOptions.maxHeight = 0.5;
   EXPECT_EQ(voxelsOf(map)->getVoxelCount(kOccupied), 1u);
   map.renderingOptions = {};

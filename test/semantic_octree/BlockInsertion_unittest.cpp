@@ -159,10 +159,3 @@ TEST(BlockInsertion, givesThePlainMapWithParametersAtTheirBounds) {
   Events events;
   for (const int classes : {1, 24, 254}) expectPlainResult(20 + classes, classes, p, events, 15);
 }
-
-TEST(BlockInsertion, givesThePlainMapWithPublishedConstants) {
-  FilterParameters ssmi;
-  ssmi.increments = FilterParameters::Increments::Ssmi;
-  Events events;
-  expectPlainResult(31, 5, ssmi, events, 20);
-}

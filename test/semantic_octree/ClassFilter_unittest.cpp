@@ -80,17 +80,9 @@ TEST(ClassFilter, equalsTheExactFilterUntilAFourthClassIsSeen) {
 }
 
 TEST(ClassFilter, inFloatEqualsTheExactFilterOnTheGridToTheLastBit) {
-  FilterParameters ssmi;
-  ssmi.increments = FilterParameters::Increments::Ssmi;
   for (const int K : {1, 2, 3, 4, 24, 254})
-    for (const FilterParameters& parameters : {FilterParameters(), wideLimits(), ssmi})
+    for (const FilterParameters& parameters : {FilterParameters(), wideLimits()})
       EXPECT_EQ(largestDeviation<float>(K, 3, parameters), 0) << "K = " << K;
-}
-
-TEST(ClassFilter, withPublishedConstantsEqualsTheExactFilterToo) {
-  FilterParameters ssmi;
-  ssmi.increments = FilterParameters::Increments::Ssmi;
-  EXPECT_LT(largestDeviation<double>(24, 3, ssmi), 1e-12);
 }
 
 TEST(ClassFilter, fourthClassLeavesTheOccupancyExact) {
@@ -248,17 +240,6 @@ TEST(ClassFilter, hitNeverLowersOccupancyWhereLabelsAgree) {
         RC_ASSERT(after >= std::min(before, highest) - 1e-6f);
     }
   }));
-}
-
-TEST(ClassFilter, withPublishedConstantsAFirstHitOf24ClassesLowersOccupancy) {
-  FilterParameters ssmi;
-  ssmi.increments = FilterParameters::Increments::Ssmi;
-  const ClassFilter<double> filter(24, ssmi);
-  ClassBelief<double> belief = filter.uniform(0);
-  filter.hit(belief, 7);
-  EXPECT_NEAR(distributionOf(belief, 24)[0], 24 / (24 + std::exp(1.0) + 23 * std::exp(-0.1)),
-              1e-12);
-  EXPECT_LT(belief.occupancyLogOdds(24), 0);
 }
 
 TEST(ClassFilter, pointsWithoutClassNeverChangeTheRatiosOfClasses) {

@@ -26,9 +26,9 @@ std::string bytesOf(Values... values) {
 }
 
 /** A file with right checksums around any content. */
-inline std::string fileAround(const std::string& content, std::uint32_t version = 5) {
+inline std::string fileAround(const std::string& content) {
   constexpr std::size_t kBlock = 60000;
-  std::string file = "SEMOCTRE" + bytesOf(version);
+  std::string file = "SEMOCTRE" + bytesOf(std::uint32_t{5});
   std::uint32_t crc = 0;
   const auto add = [&](const std::string& block) {
     const std::string size = bytesOf(static_cast<std::uint32_t>(block.size())), part = size + block;
@@ -56,7 +56,7 @@ inline std::string contentIn(const std::string& file) {
 /** What precedes a map's nodes. */
 struct Header {
   double resolution = 0.5;
-  std::uint8_t pruning = 1, increments = 0, policy = 0;
+  std::uint8_t pruning = 1, free = 0, policy = 0;
   double accuracy = 0.9, hitProbability = 0.6, falseAlarmProbability = 0.1, minOccupancy = 0.12,
          maxProbability = 0.97, softLabelFloor = 0.001, labelCorrelation = 0.2, power = 0.7,
          shared = 0.2, halfLife = 0;
@@ -65,19 +65,16 @@ struct Header {
   std::int64_t clock = 0;
   std::uint64_t numNodes = 0;
 
-  std::string bytes(std::uint32_t version = 5) const {
+  std::string bytes() const {
     std::string bytes =
-        bytesOf(resolution, pruning, increments, accuracy, hitProbability, falseAlarmProbability,
-                minOccupancy, maxProbability, softLabelFloor);
-    if (version > 3) append(bytes, labelCorrelation);
-    if (version > 4) bytes += bytesOf(power, shared);
+        bytesOf(resolution, pruning, free, accuracy, hitProbability, falseAlarmProbability,
+                minOccupancy, maxProbability, softLabelFloor, labelCorrelation, power, shared);
     append(bytes, static_cast<std::uint8_t>(names.size()));
     for (const std::string& name : names)
       bytes += bytesOf(static_cast<std::uint16_t>(name.size())) + name + "rgb";
     bytes += bytesOf(policy, numFolds);
-    for (std::size_t id = 0; version > 2 && id <= names.size(); ++id) append(bytes, halfLife);
-    if (version > 2) append(bytes, clock);
-    return bytes + bytesOf(numNodes);
+    for (std::size_t id = 0; id <= names.size(); ++id) append(bytes, halfLife);
+    return bytes + bytesOf(clock, numNodes);
   }
 };
 
@@ -88,7 +85,7 @@ inline semantic_octree::SemanticOcTree treeOf(const std::string& file) {
 
 /** Expects that content with bytes altered or missing is refused, or leads to a map that is sound.
  * \return how many were maps */
-inline int tryAlteredContent(const std::string& content, std::uint32_t version) {
+inline int tryAlteredContent(const std::string& content) {
   std::mt19937 random(1);
   int maps = 0;
   for (int round = 0; round < 3000; ++round) {
@@ -101,7 +98,7 @@ inline int tryAlteredContent(const std::string& content, std::uint32_t version) 
     else
       altered[at] = static_cast<char>(altered[at] ^ (1 + random() % 255));
     try {
-      const semantic_octree::SemanticOcTree tree = treeOf(fileAround(altered, version));
+      const semantic_octree::SemanticOcTree tree = treeOf(fileAround(altered));
       ++maps;
       std::size_t nodes = 0;
       for (auto node = tree.begin_tree(); node != tree.end_tree(); ++node) ++nodes;

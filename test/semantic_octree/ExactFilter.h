@@ -25,14 +25,7 @@ class ExactFilter {
     m_floor = p.softLabelFloor;
     m_accuracy = p.accuracy;
     m_correlation = p.labelCorrelation;
-    m_votesAreRows =
-        K > 1 &&
-        p.increments == semantic_octree::FilterParameters::Increments::LikelihoodConsistent;
-    if (p.increments == semantic_octree::FilterParameters::Increments::Ssmi) {
-      m_same = 1, m_other = m_miss = -0.1;
-      m_unlabeled = std::log((std::exp(m_same) + (K - 1) * std::exp(m_other)) / K);
-      return;
-    }
+    m_votesAreRows = K > 1;
     m_unlabeled = std::log(p.hitProbability / p.falseAlarmProbability);
     m_same = m_unlabeled + (K > 1 ? std::log(K * p.accuracy) : 0);
     m_other = m_unlabeled + (K > 1 ? std::log(K * (1 - p.accuracy) / (K - 1)) : 0);

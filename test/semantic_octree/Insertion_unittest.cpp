@@ -93,12 +93,6 @@ TEST(Insertion, ofOneOrManyClassesGivesThePlainMap) {
   }
 }
 
-TEST(Insertion, withPublishedConstantsGivesThePlainMap) {
-  FilterParameters ssmi;
-  ssmi.increments = FilterParameters::Increments::Ssmi;
-  expectPlainResult(severalScans(71), range(5), 5, ssmi);
-}
-
 TEST(Insertion, keepsTheExactDistributionWhereAtMostThreeClassesWereSeen) {
   const InsertionOptions options = range(6);
   SemanticOcTree tree(kInsertedResolution, numberedClasses(5));

@@ -124,10 +124,8 @@ TEST(LabelReliability, ofOneClassAndOfPublishedConstantsIsTheParameters) {
   const ClassId labels[] = {1, 2};
   LabelAgreement never;
   for (int i = 0; i < 10000; ++i) never.add(labels, labels + 2);
-  FilterParameters ssmi;
-  ssmi.increments = FilterParameters::Increments::Ssmi;
-  const LabelReliability most{ssmi.accuracy, ssmi.labelCorrelation};
-  EXPECT_TRUE(never.explain(ssmi, 24) == most);
+  const FilterParameters parameters;
+  const LabelReliability most{parameters.accuracy, parameters.labelCorrelation};
   EXPECT_TRUE(never.explain({}, 1) == most);
   EXPECT_FALSE(never.explain({}, 24) == most);
 }

@@ -17,24 +17,6 @@ nlohmann::json vectors() {
 
 }  // namespace
 
-TEST(Vectors, publishedConstantsGiveTheTabulatedDistributions) {
-  FilterParameters ssmi;
-  ssmi.increments = FilterParameters::Increments::Ssmi;
-  const nlohmann::json all = vectors();
-  for (const auto& v : all["semantics"]) {
-    const int K = v["K"];
-    const ClassFilter<double> filter(K, ssmi);
-    ClassBelief<double> belief = filter.uniform(0);  // prior occupancy 0.5
-    for (const int id : v["obs"]) filter.hit(belief, static_cast<ClassId>(id));
-    const std::vector<double> p = distributionOf(belief, K);
-    for (int k = 0; k <= K; ++k) EXPECT_NEAR(p[k], v["exact"][k].get<double>(), 1e-12);
-    for (const auto& [id, logOdds] : v["trunc_named"].items())
-      EXPECT_NEAR(belief.logOddsOf(static_cast<ClassId>(std::stoi(id))), logOdds.get<double>(),
-                  1e-12);
-    EXPECT_NEAR(belief.rest, v["trunc_others_per_class"].get<double>(), 1e-12);
-  }
-}
-
 TEST(Vectors, likelihoodConsistentIncrementsAreTheTabulatedOnes) {
   const auto v = vectors()["likelihood_increments"];
   const int K = v["K"];

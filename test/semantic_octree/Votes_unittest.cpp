@@ -205,20 +205,6 @@ TEST(Votes, keepLogOddsOnTheGrid) {
   }
 }
 
-TEST(Votes, withPublishedConstantsAreTheirMajority) {
-  FilterParameters ssmi;
-  ssmi.increments = FilterParameters::Increments::Ssmi;
-  const ClassFilter<float> filter(9, ssmi);
-  const auto expectHit = [&](const Votes& votes, ClassId id) {
-    ClassBelief<float> labeled = filter.uniform(0);
-    filter.hit(labeled, id);
-    EXPECT_TRUE(after(filter, votes) == labeled) << int(id);
-  };
-  expectHit({{4, 1}, {7, 2}}, 7);
-  expectHit({{4, 1}, {7, 1}}, 4);
-  expectHit({{2, 1}, {8, 2}, {9, 2}}, 8);
-}
-
 TEST(Votes, ofTheOnlyClassAreItsHit) {
   const ClassFilter<float> filter(1, {});
   ClassBelief<float> labeled = filter.uniform(0);

@@ -8,6 +8,5 @@ inline std::string missingLibraryOf(const std::string& program) {
   if (std::filesystem::exists(MSO_BIN_DIR "/" + program)) return {};
   if (program == "semantic-map-view") return "MRPT with nanogui, or OpenGL, is not installed";
   if (program == "semantic-map-ros2") return "Cyclone DDS is not installed";
-  if (program == "planning-study") return "OMPL is not installed";
   return {};
 }

@@ -112,11 +112,9 @@ void TileScene::show(const std::vector<Tile>& tiles, const map_view::OrbitCamera
   for (auto tile = shown.begin(); tile != shown.end();)
     tile = isInAnother(*tile) ? shown.erase(tile) : std::next(tile);
   m_objects->clear();
-  m_faces = 0, m_shown = shown.size();
   const auto translucent = CSetOfObjects::Create();
-  const auto add = [this](const auto& objects, const Meshes::Part& part) {
+  const auto add = [](const auto& objects, const Meshes::Part& part) {
     if (part.triangles) objects->insert(part.triangles);
-    m_faces += part.faces;
   };
   const Eigen::Vector3d eye = camera.position(),
                         near = eye + camera.distance / 50 * camera.forward();

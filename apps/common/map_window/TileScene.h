@@ -22,10 +22,6 @@ class TileScene {
   void touch() { m_fresh.clear(); }
   void touch(const std::vector<map_view::KeyBox>& boxes) { m_fresh.remove(boxes); }
 
-  std::size_t numTiles() const { return m_shown; }
-  /** Sides of cells that are drawn. */
-  std::size_t numFaces() const { return m_faces; }
-
  private:
   struct Meshes {
     struct Part {
@@ -48,7 +44,7 @@ class TileScene {
       mrpt_compat::drawing::CSetOfObjects::Create();
   std::map<map_view::Tile, Meshes> m_meshes;
   map_view::FreshTiles m_fresh;
-  std::size_t m_shown = 0, m_faces = 0, m_kept = 0;
+  std::size_t m_kept = 0;
 };
 
 }  // namespace map_window

@@ -30,11 +30,6 @@ std::string displayName() {
   return {};
 }
 
-std::string glText(unsigned name) {
-  const auto* text = reinterpret_cast<const char*>(glGetString(name));
-  return text ? text : "unknown";
-}
-
 }  // namespace
 
 WindowSystem::WindowSystem() {
@@ -69,7 +64,6 @@ ViewWindow::ViewWindow(const std::string& title, int width, int height)
   scene->insert(m_maps);
   background_scene = scene;
   glfwMakeContextCurrent(mGLFWWindow);
-  m_renderer = glText(GL_RENDERER);
 }
 
 void ViewWindow::showPicture(const mrpt::img::CImage& picture, int width) {

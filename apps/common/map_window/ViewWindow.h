@@ -57,7 +57,6 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   bool drawFrame();
   /** Draws one, and returns what it shows, BGR. */
   cv::Mat drawPicture();
-  std::string renderer() const { return m_renderer; }
   int pixelWidth() const { return mFBSize.x(); }
   int pixelHeight() const { return mFBSize.y(); }
 
@@ -86,7 +85,6 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   bool m_holds = false;                 ///< the hand has taken something
   bool m_takesPicture = false;
   cv::Mat m_picture;
-  std::string m_renderer;
 };
 
 }  // namespace map_window

@@ -31,20 +31,7 @@ CPose3D interpolate(const CPose3D& a, const CPose3D& b, double fraction) {
 
 }  // namespace
 
-void TrajectoryOptions::describe(strict_files::OptionList& list) {
-  using strict_files::above;
-  using strict_files::atLeast;
-  list.add("tolerance", tolerance, "s", atLeast(0).orInfinite(),
-           "how far outside the trajectory its first or last pose still holds");
-  list.add("max_gap", maxGap, "s", above(0).orInfinite(),
-           "poses farther apart are not interpolated between");
-}
-
-void TrajectoryOptions::validate() const { strict_files::checkOptions(*this, "TrajectoryOptions"); }
-
-Trajectory::Trajectory(const TrajectoryOptions& options) : m_options(options) {
-  m_options.validate();
-}
+Trajectory::Trajectory(const TrajectoryOptions& options) : m_options(options) {}
 
 void Trajectory::insert(Time time, const CPose3D& T_map_robot) {
   for (int i = 0; i < 6; ++i)

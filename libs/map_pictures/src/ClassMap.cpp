@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <iomanip>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -71,12 +70,6 @@ std::vector<cv::Rect> bandsOf(const cv::Rect& columns, int columnsAtOnce) {
   return bands;
 }
 
-std::vector<std::uint8_t> encoded(const cv::Mat& rows) {
-  std::vector<std::uint8_t> png;
-  if (!cv::imencode(".png", rows, png)) throw std::runtime_error("a picture cannot be encoded");
-  return png;
-}
-
 /** Pixels along a column's edge, so that a small map is no stamp. */
 int enlargement(cv::Size columns) {
   constexpr int kGoodSize = 1000;
@@ -91,64 +84,43 @@ cv::Mat legendBeside(int rows, const std::vector<LegendEntry>& entries) {
   return sheet.colRange(1, sheet.cols).clone();
 }
 
-}  // namespace
-
-ClassMap::ClassMap(const SemanticOcTree& tree, const std::optional<double>& maxHeight,
-                   int columnsAtOnce) {
-  const cv::Rect columns = occupiedColumns(tree);
-  const double top = maxHeight ? *maxHeight : collectCells(tree, {}).maxHeight;
-  std::vector<std::size_t> counts(tree.numClasses() + 1, 0);
-  for (const cv::Rect& band : bandsOf(columns, columnsAtOnce)) {
-    const HighestCells highest = highestLeaves(tree, band, top);
-    const auto inBand = highest.countClasses(tree.numClasses());
-    std::transform(counts.begin(), counts.end(), inBand.begin(), counts.begin(), std::plus<>());
-    m_bands.push_back(encoded(highest.inColors(tree.classes())));
-  }
-  m_scale = enlargement(columns.size());
-  m_width = m_scale * columns.width;
-  m_legend = legendBeside(m_scale * columns.height, classLegend(tree.classes(), counts));
-  const double edge = tree.getResolution();
-  m_metersPerPixel = edge / m_scale;
-  m_upperLeft = {columns.x * edge, columns.br().y * edge};
-}
-
-cv::Size ClassMap::size() const { return {m_width + m_legend.cols, m_legend.rows}; }
-
-std::string ClassMap::worldFile() const {
-  const cv::Point2d center = m_upperLeft + cv::Point2d(m_metersPerPixel, -m_metersPerPixel) / 2;
+/** \param upperLeft outer corner of pixel (0, 0), m, map frame */
+std::string worldFileOf(double metersPerPixel, const cv::Point2d& upperLeft) {
+  const cv::Point2d center = upperLeft + cv::Point2d(metersPerPixel, -metersPerPixel) / 2;
   std::ostringstream text;
   const strict_files::ClassicNumbers classic(text);
   text << std::setprecision(12);
-  for (const double value : {m_metersPerPixel, 0.0, 0.0, -m_metersPerPixel, center.x, center.y})
+  for (const double value : {metersPerPixel, 0.0, 0.0, -metersPerPixel, center.x, center.y})
     text << value << '\n';
   return text.str();
 }
 
-void ClassMap::forEachBand(const std::function<void(const cv::Mat& rows)>& take) const {
-  int done = 0;
-  const auto takeWithLegend = [&](const cv::Mat& map) {
-    cv::Mat rows;
-    cv::hconcat(map, m_legend.rowRange(done, done + map.rows), rows);
-    done += map.rows;
-    take(rows);
-  };
-  for (const std::vector<std::uint8_t>& band : m_bands) {
-    cv::Mat map = cv::imdecode(band, cv::IMREAD_COLOR);
-    if (m_scale > 1) cv::resize(map, map, {}, m_scale, m_scale, cv::INTER_NEAREST);
-    takeWithLegend(map);
-  }
-  if (done < m_legend.rows)
-    takeWithLegend(cv::Mat(m_legend.rows - done, m_width, CV_8UC3, bgr(kPaper)));
-}
+}  // namespace
 
-cv::Mat ClassMap::picture() const {
-  cv::Mat picture(size(), CV_8UC3);
-  int done = 0;
-  forEachBand([&](const cv::Mat& rows) {
-    rows.copyTo(picture.rowRange(done, done + rows.rows));
-    done += rows.rows;
-  });
-  return picture;
+ClassMap drawClassMap(const SemanticOcTree& tree, const std::optional<double>& maxHeight,
+                      int columnsAtOnce) {
+  const cv::Rect columns = occupiedColumns(tree);
+  const double top = maxHeight ? *maxHeight : collectCells(tree, {}).maxHeight;
+  std::vector<std::size_t> counts(tree.numClasses() + 1, 0);
+  cv::Mat map;
+  for (const cv::Rect& band : bandsOf(columns, columnsAtOnce)) {
+    const HighestCells highest = highestLeaves(tree, band, top);
+    const auto inBand = highest.countClasses(tree.numClasses());
+    std::transform(counts.begin(), counts.end(), inBand.begin(), counts.begin(), std::plus<>());
+    const cv::Mat rows = highest.inColors(tree.classes());
+    if (map.empty()) map.create(columns.size(), rows.type());
+    rows.copyTo(map.rowRange(columns.br().y - band.br().y, columns.br().y - band.y));
+  }
+  const int scale = enlargement(columns.size());
+  if (scale > 1) cv::resize(map, map, {}, scale, scale, cv::INTER_NEAREST);
+  const cv::Mat legend = legendBeside(map.rows, classLegend(tree.classes(), counts));
+  ClassMap drawn;
+  cv::copyMakeBorder(map, drawn.picture, 0, legend.rows - map.rows, 0, legend.cols,
+                     cv::BORDER_CONSTANT, bgr(kPaper));
+  legend.copyTo(drawn.picture.colRange(map.cols, drawn.picture.cols));
+  const double edge = tree.getResolution();
+  drawn.worldFile = worldFileOf(edge / scale, {columns.x * edge, columns.br().y * edge});
+  return drawn;
 }
 
 }  // namespace map_pictures

@@ -29,7 +29,6 @@ class Writer {
     strict_files::OptionList list;
     static_cast<semantic_octree::AbstractionSpace&>(space).describe(list);
     for (const strict_files::Option& option : list.options()) pair(option.name, option.text());
-    addPrior(space.prior);
     addRegions(space.regions);
     m_out << YAML::EndMap;
     return std::string(m_out.c_str()) + "\n";
@@ -67,13 +66,6 @@ class Writer {
     for (const int id : term.groups[0]) m_out << nameOf(id);
     m_out << YAML::EndSeq;
     pair("weight", weight);
-    m_out << YAML::EndMap;
-  }
-
-  void addPrior(const std::vector<double>& prior) {
-    if (prior.empty()) return;
-    m_out << YAML::Key << "prior" << YAML::Value << YAML::BeginMap;
-    for (std::size_t k = 0; k < prior.size(); ++k) pair(nameOf(int(k)), textOf(prior[k]));
     m_out << YAML::EndMap;
   }
 

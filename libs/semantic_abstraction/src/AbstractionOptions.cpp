@@ -2,7 +2,6 @@
 #include <strict_files/TextFile.h>
 
 #include <cmath>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
@@ -76,14 +75,8 @@ void Region::validate() const {
 
 const Choices<AbstractionSpace::Unknown>& choicesOf(AbstractionSpace::Unknown) {
   using Unknown = AbstractionSpace::Unknown;
-  static const Choices<Unknown> choices = {
-      {"own_class", Unknown::OwnClass}, {"uniform", Unknown::Uniform}, {"prior", Unknown::Prior}};
-  return choices;
-}
-
-const Choices<AbstractionSpace::Frame>& choicesOf(AbstractionSpace::Frame) {
-  using Frame = AbstractionSpace::Frame;
-  static const Choices<Frame> choices = {{"free", Frame::Free}, {"charged", Frame::Charged}};
+  static const Choices<Unknown> choices = {{"own_class", Unknown::OwnClass},
+                                           {"uniform", Unknown::Uniform}};
   return choices;
 }
 
@@ -92,21 +85,13 @@ void AbstractionSpace::describe(OptionList& list) {
       "block_size", blockSize, "m", atLeast(0),
       "edge of the blocks inside which unknown space counts, the coarsest cells; 0: no blocks");
   list.add("unknown", unknown, "",
-           "what unknown space is taken for: a value of its own, all classes alike, or prior");
-  list.add("frame", frame, "", "whether nodes above the blocks cost anything");
+           "what unknown space is taken for: a value of its own, or all classes alike");
 }
 
 void AbstractionOptions::validate(int numClasses) const {
   checkOptions<AbstractionSpace>(*this, "AbstractionOptions");
   weights.validate(numClasses);
   for (const Region& region : regions) region.validate();
-  if (prior.empty()) return;
-  require(static_cast<int>(prior.size()) == numClasses + 1, "size of AbstractionOptions::prior",
-          static_cast<double>(prior.size()), "number of classes + 1");
-  for (const double p : prior)
-    require(p >= 0 && p <= 1, "AbstractionOptions::prior", p, "a probability");
-  const double sum = std::accumulate(prior.begin(), prior.end(), 0.0);
-  require(std::fabs(sum - 1) < 1e-6, "sum of AbstractionOptions::prior", sum, "1");
 }
 
 }  // namespace semantic_octree

@@ -71,10 +71,6 @@ void AbstractionText::describe(strict_files::OptionList& list) {
   list.add("alpha", alpha, "", strict_files::atLeast(0), "price of detail, per nat");
   AbstractionSpace::describe(list);
   list.add(
-      "prior", prior, "",
-      "for unknown = prior: probabilities, \"free_space: 0.6, road: 0.2\"; classes that are not "
-      "named share the rest evenly. Without: half free, the classes alike");
-  list.add(
       "regions", regions, "",
       "parts of space of another weight than 1, m: \"box x0 y0 z0 x1 y1 z1 weight; sphere x y z "
       "radius weight; corridor x0 y0 z0 x1 y1 z1 radius weight\"");
@@ -97,7 +93,6 @@ AbstractionOptions AbstractionText::forClasses(const ClassTable& classes) const 
     o.weights.terms.push_back(
         tree_abstraction::wholeClassVariable("everything", everything, classes.size()));
   o.weights.alpha = alpha;
-  o.prior = named("prior", [&] { return terms.prior(numbersIn("prior", prior)); });
   for (const std::string& text : split(regions, ';'))
     o.regions.push_back(named("regions", [&] { return Region::ofText(text); }));
   o.validate(classes.size());
@@ -108,7 +103,6 @@ void AbstractionText::validate() const {
   strict_files::checkOptions(*this, "AbstractionOptions");
   numbersIn("relevant", relevant);
   numbersIn("irrelevant", irrelevant);
-  numbersIn("prior", prior);
   for (const std::string& text : split(regions, ';'))
     named("regions", [&] { return Region::ofText(text); });
 }

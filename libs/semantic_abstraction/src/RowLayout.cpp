@@ -17,18 +17,10 @@ int numOutcomes(const AbstractionOptions& options, int numClasses) {
 
 std::vector<double> unknownDistribution(const AbstractionOptions& options, int numClasses) {
   std::vector<double> p(numOutcomes(options, numClasses) + 1, 0.0);
-  switch (options.unknown) {
-    case AbstractionOptions::Unknown::OwnClass:
-      p.back() = 1;
-      break;
-    case AbstractionOptions::Unknown::Uniform:
-      p.assign(p.size(), 1.0 / (numClasses + 1));
-      break;
-    case AbstractionOptions::Unknown::Prior:
-      if (!options.prior.empty()) return options.prior;
-      p.assign(p.size(), 0.5 / numClasses);
-      p[0] = 0.5;
-  }
+  if (options.unknown == AbstractionOptions::Unknown::OwnClass)
+    p.back() = 1;
+  else
+    p.assign(p.size(), 1.0 / (numClasses + 1));
   return p;
 }
 

@@ -3,9 +3,7 @@
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <strict_files/Words.h>
 
-#include <algorithm>
 #include <map>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -48,25 +46,6 @@ void TermsByName::checkContradictions(const std::vector<InformationTerm>& terms)
         throw std::invalid_argument("class '" + nameOf(id) + "' is both relevant ('" +
                                     relevant[id]->name + "') and irrelevant ('" + term.name + "')");
   }
-}
-
-std::vector<double> TermsByName::prior(
-    const std::vector<std::pair<std::string, double>>& given) const {
-  if (given.empty()) return {};
-  std::vector<double> prior(std::size_t(m_classes.size()) + 1, -1);
-  double sum = 0;
-  for (const auto& [name, probability] : given) {
-    double& place = prior[std::size_t(idOf(name))];
-    if (place >= 0) throw std::invalid_argument("'" + name + "' twice");
-    sum += place = probability;
-  }
-  const auto others = std::count(prior.begin(), prior.end(), -1.0);
-  if (sum > 1 + 1e-9 || (others == 0 && sum < 1 - 1e-9))
-    throw std::invalid_argument("probabilities sum to " + strict_files::textOf(sum) +
-                                ", expected 1");
-  std::replace(prior.begin(), prior.end(), -1.0,
-               std::max(0.0, 1 - sum) / static_cast<double>(std::max<std::ptrdiff_t>(others, 1)));
-  return prior;
 }
 
 }  // namespace semantic_octree

@@ -3,7 +3,6 @@
 #include <semantic_types/ClassTable.h>
 
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace semantic_octree {
@@ -23,9 +22,6 @@ class TermsByName {
                                          double weight) const;
   /** Groups may bring a class in a second time, with the other sign. */
   void checkContradictions(const std::vector<tree_abstraction::InformationTerm>& terms) const;
-  /** AbstractionOptions::prior of classes with their probabilities; those without one share what is
-   * left evenly. Empty if none is given. */
-  std::vector<double> prior(const std::vector<std::pair<std::string, double>>& given) const;
 
  private:
   const semantic_types::ClassTable& m_classes;

@@ -129,15 +129,8 @@ class Reader {
     OptionList list;
     space.describe(list);
     m_yaml.read(root, list);
-    std::set<std::string> keys = {"prior", "regions"};
+    std::set<std::string> keys = {"regions"};
     for (const std::string& name : list.names()) keys.insert(name);
-    if (const YAML::Node prior = root["prior"]) {
-      m_yaml.checkMap(prior);
-      std::vector<std::pair<std::string, double>> given;
-      for (const auto& entry : prior)
-        given.emplace_back(entry.first.Scalar(), m_yaml.notNegative(entry.second, "prior"));
-      space.prior = at(prior, [&] { return m_terms.prior(given); });
-    }
     if (const YAML::Node regions = root["regions"]) {
       m_yaml.checkList(regions, "regions");
       for (const auto& region : regions)

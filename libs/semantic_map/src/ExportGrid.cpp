@@ -87,9 +87,6 @@ class Band {
 void GridOptions::describe(strict_files::OptionList& list) {
   list.add("low", low, "m", "what lies that far above the ground obstructs");
   list.add("high", high, "m", "what lies above this height does not, more than low");
-  list.add("window", window, "m", strict_files::between(0, 1000),
-           "what is narrower and stands out of its surroundings is no ground: wider than cars, "
-           "narrower than hills");
   list.add("floor", floor, "m", strict_files::Range(), "height of a ground that is flat");
 }
 

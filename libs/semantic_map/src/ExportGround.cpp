@@ -95,7 +95,10 @@ ExportGround groundOf(const SemanticOcTree& tree, const ExportColumns& columns,
     return {cv::Mat(columns.size(), CV_32F, cv::Scalar(*options.floor)),
             cv::Mat(columns.size(), CV_32F, cv::Scalar(0))};
   LowestLeaves lowest = lowestLeaves(tree, columns, options);
-  const int window = 2 * int(std::lround(options.window / columns.resolution() / 2)) + 1;
+  // What stands out of its surroundings is no ground: the surface is opened (morphologically) by a
+  // square that is wider than cars and narrower than hills.
+  constexpr double kWindow = 4;  // m
+  const int window = 2 * int(std::lround(kWindow / columns.resolution() / 2)) + 1;
   const cv::Mat height = opened(lowest.height, window);
   lowest.logOdds.setTo(0, lowest.height > height + options.low);
   return {height, lowest.logOdds};

@@ -155,7 +155,6 @@ const strict_files::Choices<TRenderingOptions::Coloring>& choicesOf(TRenderingOp
 void TRenderingOptions::describe(OptionList& list) {
   const auto anything = strict_files::Range().orInfinite();
   list.add("coloring", coloring, "", "what the colors of cells show");
-  list.add("occupied", occupied, "", "show occupied cells");
   list.add("free", free, "", "show free cells");
   list.add("compressed", compressed, "", "show the optimal abstraction, where one is kept");
   list.add("min_height", minHeight, "m", anything, "lower cells are left out");

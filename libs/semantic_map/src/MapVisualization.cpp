@@ -34,7 +34,7 @@ class VoxelSets {
     if (center.z < m_options.minHeight || center.z > m_options.maxHeight) return;
     constexpr double kOccupied = 0.5;
     const bool occupied = state.occupancy > kOccupied;
-    if (!(occupied ? m_options.occupied : m_options.free)) return;
+    if (!occupied && !m_options.free) return;
     m_voxels->push_back_Voxel(
         occupied ? mrpt_compat::drawing::VOXEL_SET_OCCUPIED
                  : mrpt_compat::drawing::VOXEL_SET_FREESPACE,

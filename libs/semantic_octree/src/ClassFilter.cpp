@@ -20,12 +20,6 @@ double logit(double p) { return std::log(p / (1 - p)); }
 /** Counts of labels whose rows are kept. */
 constexpr std::uint32_t kKeptRows = 65;
 
-const ClassVotes& majority(const ClassVotes* votes, std::size_t numVoted) {
-  return *std::max_element(votes, votes + numVoted, [](const ClassVotes& a, const ClassVotes& b) {
-    return a.count < b.count;
-  });
-}
-
 }  // namespace
 
 template <typename Real, int Named>
@@ -35,16 +29,12 @@ ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
       m_evidence(p.accuracy, std::max(2, numClasses), p.labelCorrelation) {
   p.validate(numClasses);
   const double K = numClasses;
-  double same = 1, other = -0.1, unlabeled = 0, miss = -0.1;
-  if (p.increments == FilterParameters::Increments::LikelihoodConsistent) {
-    unlabeled = std::log(p.hitProbability / p.falseAlarmProbability);
-    const double accuracy = numClasses == 1 ? 1.0 : p.accuracy;
-    same = unlabeled + std::log(accuracy * K);
-    other = numClasses == 1 ? unlabeled : unlabeled + std::log((1 - accuracy) * K / (K - 1));
-    miss = std::log((1 - p.hitProbability) / (1 - p.falseAlarmProbability));
-  } else {
-    unlabeled = std::log((std::exp(same) + (K - 1) * std::exp(other)) / K);
-  }
+  const double unlabeled = std::log(p.hitProbability / p.falseAlarmProbability);
+  const double accuracy = numClasses == 1 ? 1.0 : p.accuracy;
+  const double same = unlabeled + std::log(accuracy * K);
+  const double other =
+      numClasses == 1 ? unlabeled : unlabeled + std::log((1 - accuracy) * K / (K - 1));
+  const double miss = std::log((1 - p.hitProbability) / (1 - p.falseAlarmProbability));
   m_logNumClasses = rounded<Real>(std::log(K));
   m_min = rounded<Real>(logit(p.minOccupancy)) - m_logNumClasses;
   m_max = rounded<Real>(logit(p.maxProbability));
@@ -53,7 +43,7 @@ ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
   m_hitUnlabeled = rounded<Real>(unlabeled);
   m_miss = rounded<Real>(miss);
   m_unlabeled = unlabeled;
-  if (numClasses == 1 || p.increments != FilterParameters::Increments::LikelihoodConsistent) return;
+  if (numClasses == 1) return;
   for (std::uint32_t n = 0; n < kKeptRows; ++n) m_rowsOfFew.push_back(rowOf(n));
   m_rowsOfFew[1] = {m_hitSame, m_hitOther};
 }
@@ -162,7 +152,7 @@ void ClassFilter<Real, Named>::name(Belief& b, ClassId id, Real logOdds) const {
 
 template <typename Real, int Named>
 void ClassFilter<Real, Named>::hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const {
-  if (m_rowsOfFew.empty()) return hit(b, majority(votes, numVoted).id);
+  if (m_rowsOfFew.empty()) return hit(b, votes->id);
   if (numVoted > 1) return hitOfSeveral(b, votes, numVoted);
   const Row row = rowOf(votes->count);
   hitOf(b, votes->id, row.named, row.other);

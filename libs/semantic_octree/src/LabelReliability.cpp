@@ -33,7 +33,7 @@ void LabelAgreement::add(const ClassId* begin, const ClassId* end) {
 
 LabelReliability LabelAgreement::explain(const FilterParameters& p, int numClasses) const {
   const LabelReliability most{p.accuracy, p.labelCorrelation};
-  if (numClasses == 1 || p.increments == FilterParameters::Increments::Ssmi) return most;
+  if (numClasses == 1) return most;
   const double K = numClasses, wrong = 1 - p.accuracy;
   const double independent = p.accuracy * p.accuracy + wrong * wrong / (K - 1);
   const double expected = independent + p.labelCorrelation * (1 - independent);

@@ -3,6 +3,8 @@
 #include <semantic_octree/InsertionOptions.h>
 #include <semantic_types/ClassTable.h>
 
+#include <cmath>
+
 namespace semantic_octree {
 
 using strict_files::above;
@@ -32,9 +34,6 @@ void InsertionOptions::describe(OptionList& list) {
            "become bad: 30 for LiDARs, 5 for depth cameras");
   list.add("min_range", minRange, "m", between(0, 1000),
            "nearer returns are ignored: the robot itself");
-  list.add("carving_margin", carvingMargin, "m", atLeast(0),
-           "so much before a return is not carved; one voxel helps where ground seen at grazing "
-           "angles erodes");
   list.add("threads", threads, "", between(1, 256),
            "that share the work on a scan; the map does not depend on it");
 }
@@ -43,21 +42,14 @@ void InsertionOptions::validate() const {
   checkOptions(*this, "InsertionOptions");
   require(maxScanMemory >= 1 && maxScanMemory <= 1000000, "InsertionOptions::maxScanMemory",
           maxScanMemory, "1 to 1000000 MB");
+  require(carvingMargin >= 0 && std::isfinite(carvingMargin), "InsertionOptions::carving_margin",
+          carvingMargin, "a number of 0 or more");
   require(maxRange == 0 || minRange < maxRange, "InsertionOptions::min_range", minRange,
           "less than max_range");
 }
 
-const Choices<FilterParameters::Increments>& choicesOf(FilterParameters::Increments) {
-  using Increments = FilterParameters::Increments;
-  static const Choices<Increments> choices = {
-      {"likelihood_consistent", Increments::LikelihoodConsistent}, {"ssmi", Increments::Ssmi}};
-  return choices;
-}
-
 void FilterParameters::describe(OptionList& list) {
   const auto probability = above(0).below(1);
-  list.add("increments", increments, "",
-           "from the probabilities below, or the constants published with SSMI, to compare");
   list.add(
       "accuracy", accuracy, "", probability,
       "share of labels that name the true class, above 1 / number of classes; less for scans whose "
@@ -88,7 +80,6 @@ void FilterParameters::validate(int numClasses) const {
   checkAll(all, "FilterParameters");
   require(numClasses >= 1 && numClasses <= semantic_types::kMaxClasses, "number of classes",
           numClasses, "1 to 254");
-  if (increments == Increments::Ssmi) return;
   require(falseAlarmProbability < hitProbability, "FilterParameters::false_alarm_probability",
           falseAlarmProbability, "less than hit_probability");
   require(numClasses == 1 || accuracy * numClasses > 1, "FilterParameters::accuracy", accuracy,
@@ -96,10 +87,10 @@ void FilterParameters::validate(int numClasses) const {
 }
 
 bool FilterParameters::operator==(const FilterParameters& o) const {
-  return increments == o.increments && accuracy == o.accuracy &&
-         labelCorrelation == o.labelCorrelation && hitProbability == o.hitProbability &&
-         falseAlarmProbability == o.falseAlarmProbability && minOccupancy == o.minOccupancy &&
-         maxProbability == o.maxProbability && softLabelFloor == o.softLabelFloor;
+  return accuracy == o.accuracy && labelCorrelation == o.labelCorrelation &&
+         hitProbability == o.hitProbability && falseAlarmProbability == o.falseAlarmProbability &&
+         minOccupancy == o.minOccupancy && maxProbability == o.maxProbability &&
+         softLabelFloor == o.softLabelFloor;
 }
 
 }  // namespace semantic_octree

@@ -42,17 +42,15 @@ std::string reasonOf(const std::exception& error, const std::string& path) {
   return message.rfind(named, 0) == 0 ? message.substr(named.size()) : message;
 }
 
-/** \return the version */
-std::uint32_t readBeginning(std::istream& in) {
+void readBeginning(std::istream& in) {
   std::array<char, kMagic.size()> magic{};
   readBytes(in, magic.data(), magic.size());
   if (magic != kMagic) throw std::runtime_error("not a semantic octree map");
   std::uint32_t version = 0;
   readBytes(in, reinterpret_cast<char*>(&version), sizeof(version));
-  if (version < kOldestVersion || version > kVersion)
+  if (version != kVersion)
     throw std::runtime_error("version " + std::to_string(version) + " of the format, expected " +
-                             std::to_string(kOldestVersion) + " to " + std::to_string(kVersion));
-  return version;
+                             std::to_string(kVersion));
 }
 
 /** Calls read(stream), which has to read all of the file. */
@@ -74,7 +72,8 @@ auto readWhole(const fs::path& path, const F& read) {
 /** Calls read(reader). */
 template <typename F>
 auto readContent(std::istream& in, const F& read) {
-  TreeReader reader(in, readBeginning(in));
+  readBeginning(in);
+  TreeReader reader(in);
   try {
     return read(reader);
   } catch (const std::invalid_argument& e) {

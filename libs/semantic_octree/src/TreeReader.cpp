@@ -4,7 +4,6 @@
 #include <semantic_octree/Keys.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "Decay.h"
 
@@ -18,7 +17,7 @@ SemanticOcTree TreeReader::getHeader() {
   const bool pruning = getUpTo(1, "pruning");
   const FilterParameters parameters = getParameters();
   ClassTable classes = getClasses();
-  const std::int64_t clock = m_version > kVersionWithoutTime ? getTime(classes) : 0;
+  const std::int64_t clock = getTime(classes);
   SemanticOcTree tree(resolution, std::move(classes), parameters);
   tree.setPruning(pruning);
   MapAccess::setClock(tree, clock);
@@ -73,14 +72,11 @@ std::uint8_t TreeReader::getUpTo(int last, const char* what) {
 
 FilterParameters TreeReader::getParameters() {
   FilterParameters p;
-  p.increments = static_cast<FilterParameters::Increments>(getUpTo(1, "increments"));
+  getUpTo(0, "increments");
   for (double* x : {&p.accuracy, &p.hitProbability, &p.falseAlarmProbability, &p.minOccupancy,
-                    &p.maxProbability, &p.softLabelFloor})
+                    &p.maxProbability, &p.softLabelFloor, &p.labelCorrelation, &p.calibration.power,
+                    &p.calibration.shared})
     *x = m_in.get<double>();
-  p.labelCorrelation =
-      m_version > kVersionWithoutCorrelation ? m_in.get<double>() : kCorrelationOfOldMaps;
-  if (m_version > kVersionWithoutCalibration)
-    for (double* x : {&p.calibration.power, &p.calibration.shared}) *x = m_in.get<double>();
   return p;
 }
 
@@ -170,9 +166,7 @@ void TreeReader::fill(Octant& octant, int depth) {
     if (kindOf(i) == NodeKind::Inner) getNode(octant.slots[i], NodeKind::Inner, depth + 1);
 }
 
-void TreeReader::getBlock(Slot& inner) {
-  m_arena->createBlock(inner, m_version == 1 ? getNodesAsBlock() : getBlockContent());
-}
+void TreeReader::getBlock(Slot& inner) { m_arena->createBlock(inner, getBlockContent()); }
 
 BlockContent TreeReader::getBlockContent() {
   const auto altered = [] { throw std::runtime_error("altered: a block that cannot be"); };
@@ -220,38 +214,7 @@ void TreeReader::getValues(BlockContent& block) {
   }
 }
 
-BlockContent TreeReader::getNodesAsBlock() {
-  BlockContent block;
-  const std::uint16_t kinds = getKinds();
-  const auto kindOf = [](std::uint16_t k, int i) { return static_cast<NodeKind>(k >> 2 * i & 3); };
-  const auto isLeaf = [](NodeKind k) {
-    return k == NodeKind::Leaf || k == NodeKind::LeafWithRecord;
-  };
-  for (int o = 0; o < 8; ++o) {
-    if (!isLeaf(kindOf(kinds, o))) continue;
-    const LeafContent leaf = getLeaf(kindOf(kinds, o) == NodeKind::LeafWithRecord);
-    block.setLeafOctant(o, leaf.value, leaf.recordOrNull());
-  }
-  for (int o = 0; o < 8; ++o) {
-    if (kindOf(kinds, o) != NodeKind::Inner) continue;
-    const std::uint16_t voxels = getKinds();
-    for (int i = 0; i < 8; ++i) {
-      const NodeKind kind = kindOf(voxels, i);
-      if (kind == NodeKind::Inner) throw std::runtime_error("altered: more than 16 levels");
-      if (kind == NodeKind::None) continue;
-      const LeafContent leaf = getLeaf(kind == NodeKind::LeafWithRecord);
-      block.setVoxel(8 * o + i, leaf.value, leaf.recordOrNull());
-    }
-  }
-  return block;
-}
-
 Units TreeReader::getLogOdds() {
-  if (m_version == 1) {
-    const auto value = m_in.get<float>();
-    if (!std::isfinite(value)) throw std::runtime_error("altered: a log-odds that is not finite");
-    return toUnits(onGrid(value));
-  }
   const auto value = m_in.get<std::int16_t>();
   if (value == kUnknown) throw std::runtime_error("altered: a log-odds that is out of range");
   return value;

@@ -38,7 +38,7 @@ std::uint32_t TreeWriter::write() {
 }
 
 void TreeWriter::putParameters(const FilterParameters& p) {
-  m_out.put(static_cast<std::uint8_t>(p.increments));
+  m_out.put(std::uint8_t{0});  // kept free
   for (const double x :
        {p.accuracy, p.hitProbability, p.falseAlarmProbability, p.minOccupancy, p.maxProbability,
         p.softLabelFloor, p.labelCorrelation, p.calibration.power, p.calibration.shared})

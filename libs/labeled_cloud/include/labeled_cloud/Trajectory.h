@@ -36,10 +36,6 @@ struct TrajectoryOptions {
   double tolerance = 0.05;
   /** Poses farther apart in time are not interpolated between, s. */
   double maxGap = std::numeric_limits<double>::infinity();
-
-  void describe(strict_files::OptionList& list);
-  /** \throw std::invalid_argument naming the field and its value. */
-  void validate() const;
 };
 
 /** Where the robot was: T_map_robot over time. */

@@ -40,14 +40,13 @@ struct AbstractionSpace {
   /** What is assumed of space without a node. */
   enum class Unknown {
     OwnClass,  ///< a value of its own: no class, not free either
-    Uniform,   ///< each of free and the K classes equally likely (the paper's)
-    Prior      ///< AbstractionOptions::prior
+    Uniform    ///< each of free and the K classes equally likely (the paper's)
   };
   Unknown unknown = Unknown::OwnClass;
   /** Edge of the blocks, meters; the next smaller power of two voxels is used. Unknown space counts
    * inside blocks that hold data, and nowhere else. 0: no blocks, the whole map counts. */
   double blockSize = 6;
-  /** Nodes above the blocks. */
+  /** Nodes above the blocks; without a name in files. */
   enum class Frame {
     Free,    ///< always expanded, at no charge
     Charged  ///< expanded if that pays, as every other node (the paper's)
@@ -57,15 +56,12 @@ struct AbstractionSpace {
   void describe(strict_files::OptionList& list);
 };
 const strict_files::Choices<AbstractionSpace::Unknown>& choicesOf(AbstractionSpace::Unknown);
-const strict_files::Choices<AbstractionSpace::Frame>& choicesOf(AbstractionSpace::Frame);
 
 /** What the optimal abstraction of a semantic octree keeps. Files say the same by the classes'
  * names, see AbstractionText and WeightsFile. */
 struct AbstractionOptions : AbstractionSpace {
   /** Terms over classes 0..K (0 = free space) and alpha. */
   tree_abstraction::AbstractionWeights weights;
-  /** K + 1 probabilities for Unknown::Prior; empty: p(free) = 1/2, the classes equally likely. */
-  std::vector<double> prior;
   /** p(x): volume, times the weight of the region it lies in. */
   std::vector<Region> regions;
 
@@ -85,9 +81,6 @@ struct AbstractionText : AbstractionSpace {
   double everything = 0;
   /** Price of a nat of I_X. */
   double alpha = tree_abstraction::kAlpha;
-  /** What unknown space is, for `unknown = prior`: "free_space: 0.6, road: 0.2"; classes that are
-   * not named share the rest evenly. */
-  std::string prior;
   /** Texts of regions, separated by semicolons: see Region::text(). */
   std::string regions;
 

@@ -22,11 +22,7 @@ struct GridOptions {
   /** Classes that are ground and never obstruct. None: the lowest occupied voxel of each column is
    * taken for ground. */
   std::vector<semantic_types::ClassId> ground;
-  /** What stands out of its surroundings is no ground: the ground's surface is opened
-   * (morphologically) by a square of this edge, m. It should be wider than cars and narrower than
-   * hills. */
-  double window = 4;
-  /** The ground is flat and at this height, m; the two options above are then of no use. */
+  /** The ground is flat and at this height, m; `ground` is then of no use. */
   std::optional<double> floor;
 
   /** All but `ground`. */

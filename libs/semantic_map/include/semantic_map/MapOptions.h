@@ -127,7 +127,6 @@ struct TRenderingOptions : public TNamedOptions<TRenderingOptions> {
     Entropy       ///< of free space and classes: green (certain) over yellow to red (all alike)
   };
   Coloring coloring = Coloring::Class;
-  bool occupied = true;
   /** Free space, drawn translucent. There is much of it. */
   bool free = false;
   /** The cells of the optimal abstraction, as long as the map keeps one, instead of its own. */

@@ -56,9 +56,8 @@ class ClassFilter {
   /** Returns of one scan with labels ended in the cell, n_k of them of class k: one observation
    * with q_k proportional to exp(f(n_k)), f = LabelEvidence, so that q of a single label is
    * (accuracy, (1 - accuracy) / (K - 1), ...). Labels of one scan that agree add less than scans
-   * that do, and a tie says that either class may be. With the published constants: hit() by the
-   * majority, the lowest id on a tie. \param votes numVoted > 0 classes, ascending ids, counts > 0
-   */
+   * that do, and a tie says that either class may be.
+   * \param votes numVoted > 0 classes, ascending ids, counts > 0 */
   void hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const;
   /** A return without a label ended in the cell: every class gains equally. */
   void hit(Belief& b) const { addToAll(b, m_hitUnlabeled); }
@@ -112,7 +111,7 @@ class ClassFilter {
   Real m_hitSame, m_hitOther, m_hitUnlabeled, m_miss;
   double m_unlabeled;  ///< not rounded
   LabelEvidence m_evidence;
-  /** By number of labels; empty if not the row of votes counts, but their majority. */
+  /** By number of labels; empty with a single class. */
   std::vector<Row> m_rowsOfFew;
 };
 

@@ -18,19 +18,9 @@ struct Calibration {
   bool isIdentity() const { return power == 1 && shared == 0; }
 };
 
-/** Sensor and classifier model of the class filter. */
+/** Sensor and classifier model of the class filter: log-likelihood ratios of these probabilities
+ * are added, so that occupancy follows the binary Bayes filter. */
 struct FilterParameters {
-  enum class Increments {
-    /** Log-likelihood ratios of the probabilities below: occupancy follows the binary Bayes filter.
-     */
-    LikelihoodConsistent,
-    /** The constants published with SSMI (Asgharivaskasi, Atanasov, "Active Bayesian Multi-class
-     * Mapping from Range and Semantic Segmentation Observations"): +1 for the observed class, -0.1
-     * for all others, -0.1 for a miss. The probabilities below are not used. */
-    Ssmi
-  };
-  Increments increments = Increments::LikelihoodConsistent;
-
   /** Share of labels that name the true class, (1/K, 1). Of scans whose labels disagree in cells
    * more than that allows, it is less (LabelAgreement). Labels of annotated data are right in 98 to
    * 99 of 100, those of segmentation networks in 90 to 95 where these do well: the default lies
@@ -68,6 +58,5 @@ struct FilterParameters {
    * not matter. */
   bool operator==(const FilterParameters& o) const;
 };
-const strict_files::Choices<FilterParameters::Increments>& choicesOf(FilterParameters::Increments);
 
 }  // namespace semantic_octree

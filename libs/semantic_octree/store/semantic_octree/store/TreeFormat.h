@@ -9,7 +9,7 @@
 namespace semantic_octree {
 
 /** A map's bytes: kMagic, kVersion, then in checked blocks (see CheckedStream.h)
- *   resolution (double), pruning (1 byte), filter (increments 1 byte, nine doubles),
+ *   resolution (double), pruning (1 byte), filter (1 byte that is 0, nine doubles),
  *   classes: number (1 byte), each name (2 bytes length, characters), r, g, b,
  *            policy for unknown raw ids (1 byte), folds (4 bytes number; raw id 4 bytes, class 1
  * byte),
@@ -23,16 +23,9 @@ namespace semantic_octree {
  *
  * An inner node at depth 14 is a block: which octants are known, leaves, leaves with a record (1
  * byte each); of each known octant that is no leaf, which voxels are known, which have a record (1
- * byte each); all log-odds, then all records, in the order of the voxels.
- *
- * Version 1 had log-odds of 4 bytes (float), and no blocks; version 2 neither half-lives nor a
- * clock, which version 3 had only of maps with half-lives. None of them had a correlation of
- * labels: that of the row with which they counted a scan's labels, ln(n + a), is nearly
- * kCorrelationOfOldMaps. Version 4 had no calibration. */
+ * byte each); all log-odds, then all records, in the order of the voxels. */
 constexpr std::array<char, 8> kMagic{'S', 'E', 'M', 'O', 'C', 'T', 'R', 'E'};
-constexpr std::uint32_t kVersion = 5, kVersionWithoutCalibration = 4,
-                        kVersionWithoutCorrelation = 3, kVersionWithoutTime = 2, kOldestVersion = 1;
-constexpr double kCorrelationOfOldMaps = 0.5;
+constexpr std::uint32_t kVersion = 5;
 
 enum class NodeKind : std::uint8_t { None, Leaf, LeafWithRecord, Inner };
 
@@ -68,7 +61,7 @@ class TreeWriter {
  * \throw std::runtime_error, std::invalid_argument (bad parameters or classes). */
 class TreeReader {
  public:
-  TreeReader(std::istream& in, std::uint32_t version) : m_in(in), m_version(version) {}
+  explicit TreeReader(std::istream& in) : m_in(in) {}
   SemanticOcTree read();
   /** What writeTile() wrote of a map that is like this one: adds the children of an octant that has
    * none. If it fails, some of them may be there. */
@@ -93,7 +86,6 @@ class TreeReader {
   void getBlock(Slot& inner);
   BlockContent getBlockContent();
   void getValues(BlockContent& block);
-  BlockContent getNodesAsBlock();
   LeafContent getLeaf(bool hasRecord);
   ClassRecord getRecord();
   /** One byte, 0 to `last`. */
@@ -101,7 +93,6 @@ class TreeReader {
   Units getLogOdds();
 
   CheckedReader m_in;
-  std::uint32_t m_version;
   NodeStore* m_store = nullptr;
   NodeArena* m_arena = nullptr;
   int m_numClasses = 0;
