@@ -58,7 +58,8 @@ TEST_F(CameraMapping, theIniFileMayCalibrateTheCamera) {
   expectRefusal({"camera.rawlog: observation 2", "'front' at 10.01", "not calibrated"},
                 "camera.rawlog", labels());
   configure(
-      "[camera front]\nsize = 40 40\nintrinsics = 20 20 19.5 19.5\npose = 0 0 0 -90 0 -90\n");
+      "[camera front]\ncols = 40\nrows = 40\nfx = 20\nfy = 20\ncx = 19.5\ncy = 19.5\n"
+      "pose_x = 0\npose_y = 0\npose_z = 0\npose_yaw = -90\npose_pitch = 0\npose_roll = -90\n");
   ASSERT_EQ(run("camera.rawlog", labels()).status, 0);
   expectLabeledMap();
 }
@@ -157,8 +158,8 @@ TEST_F(CameraMapping, badNetworksAndSourcesAreRefused) {
   arguments[1] = (folder / "none.onnx").string();
   expectRefusal({"none.onnx: there is no such network"}, "camera.rawlog", arguments);
   expectRefusal({"/none: there is no such folder"}, "camera.rawlog", {"--labels", "/none"});
-  configure("[camera front]\nintrinsics = 20 20 19 19\n");
-  expectRefusal({"[camera front]", "size is missing"}, "camera.rawlog", labels());
+  configure("[camera front]\nfx = 20\n");
+  expectRefusal({"[camera front]", "cols is missing"}, "camera.rawlog", labels());
   configure("[labels]\nkind = wavy\n");
   expectRefusal({"[labels]", "'wavy'", "one of soft, hard"}, "camera.rawlog", labels());
 }

@@ -60,6 +60,7 @@ TEST(HostLocale, leavesNoTraceInFilesAndTheyAreReadAsTheyAre) {
   EXPECT_EQ(trajectory.poses().begin()->second.y(), 2.25);
   labeled_cloud::CameraDescription camera;
   camera.dist = "0.25 -0.5";
-  camera.size = "640 480", camera.intrinsics = "500.5 500 320 240";
+  camera.cols = 640, camera.rows = 480, camera.fx = 500, camera.fy = 500;
+  camera.cx = 320, camera.cy = 240;
   EXPECT_EQ(camera.calibration().intrinsics->dist[1], -0.5);
 }

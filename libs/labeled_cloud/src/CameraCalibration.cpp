@@ -10,26 +10,23 @@
 namespace labeled_cloud {
 
 using mrpt::DEG2RAD;
+using strict_files::above;
+using strict_files::atLeast;
 
 namespace {
 
-std::vector<double> numbersIn(const char* option, const std::string& text) {
-  std::istringstream stream(text);
-  const strict_files::ClassicNumbers classic(stream);
-  std::vector<double> numbers;
-  for (double number; stream >> number;) numbers.push_back(number);
-  if (!stream.eof() && !text.empty())
-    throw std::invalid_argument(std::string(option) + " is '" + text + "', expected numbers");
-  return numbers;
-}
+struct Named {
+  const char* name;
+  const std::optional<double>& value;
+};
 
-/** So many numbers, or none. */
-std::vector<double> numbersIn(const char* option, const std::string& text, std::size_t count) {
-  auto numbers = numbersIn(option, text);
-  if (!numbers.empty() && numbers.size() != count)
-    throw std::invalid_argument(std::string(option) + " is '" + text + "', expected " +
-                                std::to_string(count) + " numbers");
-  return numbers;
+/** Whether these values are given. \throw std::invalid_argument some are, some are not. */
+bool areGiven(const std::vector<Named>& values) {
+  const auto isGiven = [](const Named& n) { return n.value.has_value(); };
+  const auto missing = std::find_if_not(values.begin(), values.end(), isGiven);
+  if (missing == values.end()) return true;
+  if (std::none_of(values.begin(), values.end(), isGiven)) return false;
+  throw std::invalid_argument(std::string(missing->name) + " is missing");
 }
 
 }  // namespace
@@ -43,13 +40,20 @@ const strict_files::Choices<CameraDescription::Distortion>& choicesOf(
 }
 
 void CameraDescription::describe(strict_files::OptionList& list) {
-  list.add("size", size, "pixels", "of the images: columns, rows; numbers are separated by spaces");
-  list.add("intrinsics", intrinsics, "pixels", "fx, fy, cx, cy");
+  list.add("cols", cols, "pixels", atLeast(1), "size of the images");
+  list.add("rows", rows, "pixels", atLeast(1), "size of the images");
+  list.add("fx", fx, "pixels", above(0), "focal length");
+  list.add("fy", fy, "pixels", above(0), "focal length");
+  list.add("cx", cx, "pixels", "principal point");
+  list.add("cy", cy, "pixels", "principal point");
   list.add("distortion", distortion, "", "model of the lens");
-  list.add("dist", dist, "", "its coefficients in MRPT's order");
-  list.add("pose", pose, "m, degrees",
-           "x, y, z, yaw, pitch, roll of the optical frame (x right, y down, z forward) on the "
-           "robot");
+  list.add("dist", dist, "", "its coefficients in MRPT's order, separated by spaces");
+  list.add("pose_x", x, "m", "place of the camera on the robot");
+  list.add("pose_y", y, "m", "place of the camera on the robot");
+  list.add("pose_z", z, "m", "place of the camera on the robot");
+  list.add("pose_yaw", yaw, "degrees", "of the optical frame: x right, y down, z forward");
+  list.add("pose_pitch", pitch, "degrees", "of the optical frame");
+  list.add("pose_roll", roll, "degrees", "of the optical frame");
 }
 
 CameraCalibration CameraDescription::calibration() const {
@@ -58,26 +62,26 @@ CameraCalibration CameraDescription::calibration() const {
   camera.distortion = distortion == Distortion::PlumbBob
                           ? mrpt::img::DistortionModel::plumb_bob
                           : mrpt::img::DistortionModel::kannala_brandt;
-  const auto coefficients = numbersIn("dist", dist);
-  std::copy_n(coefficients.begin(), std::min(coefficients.size(), camera.dist.size()),
-              camera.dist.begin());
-  const auto pixels = numbersIn("size", size, 2), optics = numbersIn("intrinsics", intrinsics, 4),
-             p = numbersIn("pose", pose, 6);
-  if (pixels.empty() != optics.empty())
-    throw std::invalid_argument(std::string(pixels.empty() ? "size" : "intrinsics") +
-                                " is missing");
-  if (!pixels.empty()) {
-    if (!(pixels[0] >= 1 && pixels[1] >= 1 && optics[0] > 0 && optics[1] > 0))
-      throw std::invalid_argument("size is '" + size + "', intrinsics are '" + intrinsics +
-                                  "', expected pixels and focal lengths above 0");
-    camera.ncols = static_cast<unsigned>(pixels[0]);
-    camera.nrows = static_cast<unsigned>(pixels[1]);
-    camera.setIntrinsicParamsFromValues(optics[0], optics[1], optics[2], optics[3]);
+  std::istringstream stream(dist);
+  const strict_files::ClassicNumbers classic(stream);
+  std::size_t count = 0;
+  for (double k; stream >> k && count < camera.dist.size();) camera.dist[count++] = k;
+  if (!stream.eof() && !dist.empty())
+    throw std::invalid_argument("dist is '" + dist + "', expected numbers");
+  if (areGiven({{"cols", cols}, {"rows", rows}, {"fx", fx}, {"fy", fy}, {"cx", cx}, {"cy", cy}})) {
+    camera.ncols = static_cast<unsigned>(*cols);
+    camera.nrows = static_cast<unsigned>(*rows);
+    camera.setIntrinsicParamsFromValues(*fx, *fy, *cx, *cy);
     calibration.intrinsics = camera;
   }
-  if (!p.empty())
+  if (areGiven({{"pose_x", x},
+                {"pose_y", y},
+                {"pose_z", z},
+                {"pose_yaw", yaw},
+                {"pose_pitch", pitch},
+                {"pose_roll", roll}}))
     calibration.T_robot_camera =
-        mrpt::poses::CPose3D(p[0], p[1], p[2], DEG2RAD(p[3]), DEG2RAD(p[4]), DEG2RAD(p[5]));
+        mrpt::poses::CPose3D(*x, *y, *z, DEG2RAD(*yaw), DEG2RAD(*pitch), DEG2RAD(*roll));
   return calibration;
 }
 

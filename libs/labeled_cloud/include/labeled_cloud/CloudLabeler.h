@@ -28,12 +28,12 @@ struct CameraCalibration {
 struct CameraDescription {
   enum class Distortion { PlumbBob, KannalaBrandt };
 
-  // Numbers, separated by spaces; what is empty is not known.
-  std::string size;        ///< columns and rows of the images
-  std::string intrinsics;  ///< fx fy cx cy, pixels
+  std::optional<double> cols, rows, fx, fy, cx, cy;  ///< pixels
   Distortion distortion = Distortion::PlumbBob;
-  std::string dist;  ///< its coefficients in MRPT's order
-  std::string pose;  ///< of the optical frame in the robot's: x y z (m) yaw pitch roll (degrees)
+  /** Its coefficients in MRPT's order, separated by spaces. */
+  std::string dist;
+  std::optional<double> x, y, z;           ///< of the optical frame in the robot's, m
+  std::optional<double> yaw, pitch, roll;  ///< degrees
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming an option that is missing, or what is no coefficient. */
