@@ -11,7 +11,7 @@ namespace {
 constexpr double kGreatestDepth = 65;  // m: depth images hold millimeters in 16 bits
 
 void addScene(CLI::App& app, Cli& cli) {
-  cli.outputs.add(app, cli.output, "FILE", "Rawlog to write")->required();
+  cli.outputs.add(app, cli.output, "FILE", "Rawlog to write");
   addWords(app.add_option("--scene", cli.scene, "Which world"), synthetic_world::sceneNames())
       ->capture_default_str();
   app.add_option("--seed", cli.seed, "Seed of the world and of all noise")->capture_default_str();
@@ -79,15 +79,29 @@ void addSensors(CLI::App& app, Cli& cli) {
       "Class table (YAML) whose raw ids are the world's classes; without: these classes");
 }
 
+void addTruth(CLI::App& app, Cli& cli) {
+  app.add_option("--truth-query", cli.truthQuery,
+                 "Print what is at each point of this file (lines: x y z)")
+      ->check(CLI::ExistingFile);
+  app.add_option("--tolerance", cli.tolerance, "What is this near to a surface is on it, m")
+      ->check(isNumber(strict_files::atLeast(0)))
+      ->capture_default_str();
+  cli.outputs.addOther(app.add_option("--picture", cli.picture,
+                                      "Write the world from above, colors and classes (PNG)"));
+}
+
 }  // namespace
 
 void addOptions(CLI::App& app, Cli& cli) {
   addScene(app, cli);
   addDrive(app, cli);
   addSensors(app, cli);
+  addTruth(app, cli);
 }
 
 void complete(Cli& cli) {
+  if (cli.output.empty() && cli.truthQuery.empty() && cli.picture.empty())
+    throw CLI::RequiredError("--output, --picture or --truth-query");
   if (cli.labelNoiseKind == label_noise::LabelNoise::Kind::Points) cli.noise.label = cli.labelNoise;
   cli.camera.noise = cli.lidar.noise = cli.noise;
   cli.camera.validate();

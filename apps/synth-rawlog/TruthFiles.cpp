@@ -1,13 +1,32 @@
 #include "TruthFiles.h"
 
 #include <strict_files/StrictYaml.h>
-#include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
 namespace synth_rawlog {
+namespace {
+
+using synthetic_world::PointTruth;
+
+const char* nameOf(PointTruth::State state) {
+  switch (state) {
+    case PointTruth::State::Free:
+      return "free";
+    case PointTruth::State::Surface:
+      return "surface";
+    case PointTruth::State::Inside:
+      return "inside";
+    case PointTruth::State::Underground:
+      break;
+  }
+  return "underground";
+}
+
+}  // namespace
 
 void writeTruth(const Cli& cli, const WorldClasses& classes, int frames,
                 const std::filesystem::path& file) {
@@ -44,6 +63,17 @@ void TrajectoryWriter::commit() {
   if (!m_stream.flush()) throw std::runtime_error(m_file.path().string() + ": cannot be written");
   m_stream.close();
   m_file.commit();
+}
+
+void answerTruth(const synthetic_world::World& world, const WorldClasses& classes, double tolerance,
+                 const std::vector<strict_files::TextLine>& points, std::ostream& out) {
+  for (const strict_files::TextLine& line : points) {
+    const std::vector<double> p = numbersOf(line, 3);
+    const PointTruth truth = world.at({p[0], p[1], p[2]}, tolerance);
+    const synthetic_world::ClassId id = classes.of(truth.id);
+    out << p[0] << ' ' << p[1] << ' ' << p[2] << ' ' << nameOf(truth.state) << ' ' << +id << ' '
+        << (id == synthetic_world::kNoClass ? "-" : classes.table().name(id)) << '\n';
+  }
 }
 
 }  // namespace synth_rawlog

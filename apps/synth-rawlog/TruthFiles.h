@@ -2,8 +2,10 @@
 #include <mrpt/poses/CPose3D.h>
 
 #include <fstream>
+#include <iosfwd>
 
 #include <strict_files/OutputFiles.h>
+#include <strict_files/TextFile.h>
 #include <synthetic_world/Scene.h>
 #include "Cli.h"
 #include "WorldClasses.h"
@@ -25,5 +27,10 @@ class TrajectoryWriter {
   strict_files::StagedFile m_file;
   std::ofstream m_stream;
 };
+
+/** Prints for each line "x y z": x y z, state, class id, class name.
+ * \throw std::runtime_error naming the line that is not three numbers. */
+void answerTruth(const synthetic_world::World& world, const WorldClasses& classes, double tolerance,
+                 const std::vector<strict_files::TextLine>& points, std::ostream& out);
 
 }  // namespace synth_rawlog

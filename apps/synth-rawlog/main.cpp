@@ -1,8 +1,10 @@
 // Drives a robot through a synthetic world and writes what its labeled sensors see.
+#include <map_pictures/MapPictures.h>
 #include <synthetic_world/Scene.h>
 #include <synthetic_world/Sensors.h>
 
 #include <cmath>
+#include <iostream>
 #include <optional>
 
 #include "Application.h"
@@ -119,11 +121,39 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
           << cli.speed * k / cli.rate << " m of way\n";
 }
 
+/** Colors on the left, classes on the right. */
+void writePicture(const Cli& cli, const WorldClasses& classes,
+                  const synthetic_world::World& world) {
+  const synthetic_world::TopView view = renderTopView(world, 0.15);
+  const int size = view.color.width;
+  synthetic_world::Image<synthetic_world::Color> both(2 * size, size);
+  for (int row = 0; row < size; ++row)
+    for (int column = 0; column < size; ++column) {
+      const synthetic_world::ClassId id = classes.of(view.labels.at(row, column));
+      both.at(row, column) = view.color.at(row, column);
+      if (id != synthetic_world::kNoClass) both.at(row, size + column) = classes.table().color(id);
+    }
+  map_pictures::savePicture(pictureOf(both), cli.picture);
+}
+
+void checkOutputs(const Cli& cli) {
+  std::vector<std::filesystem::path> files = {cli.picture};
+  if (!cli.output.empty())
+    files.insert(files.end(),
+                 {cli.output, beside(cli.output, ".tum"), beside(cli.output, ".truth.yaml")});
+  cli.outputs.check(files);
+}
+
 int run(const Cli& cli) {
-  cli.outputs.check({cli.output, beside(cli.output, ".tum"), beside(cli.output, ".truth.yaml")});
+  checkOutputs(cli);
   const WorldClasses classes(cli.classes);
   synthetic_world::Scene scene = synthetic_world::makeScene(cli.scene, cli.seed, cli.hills);
-  writeRawlog(cli, classes, scene);
+  if (!cli.output.empty()) writeRawlog(cli, classes, scene);
+  if (!cli.picture.empty()) writePicture(cli, classes, scene.world);
+  if (!cli.truthQuery.empty()) {
+    answerTruth(scene.world, classes, cli.tolerance, strict_files::readLines(cli.truthQuery),
+                std::cout);
+  }
   return 0;
 }
 
