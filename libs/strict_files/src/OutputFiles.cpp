@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
+#include "Placing.h"
 #include "Unfinished.h"
 
 namespace strict_files {
@@ -39,39 +39,6 @@ void takePermissions(const fs::path& target, int descriptor) {
   if (stat(target.c_str(), &old) == 0) fchmod(descriptor, old.st_mode & 07777);
 }
 
-/** A folder, open, so that what happened in it can be brought to the disk. */
-class OpenFolder {
- public:
-  /** \throw std::runtime_error saying why not */
-  explicit OpenFolder(const fs::path& folder)
-      : m_descriptor(
-            open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (m_descriptor < 0) throw std::runtime_error(std::strerror(errno));
-  }
-  ~OpenFolder() { close(m_descriptor); }
-  OpenFolder(const OpenFolder&) = delete;
-  OpenFolder& operator=(const OpenFolder&) = delete;
-
-  /** \throw std::runtime_error saying why not */
-  void synchronize() const { strict_files::synchronize(m_descriptor); }
-  int descriptor() const { return m_descriptor; }
-
- private:
-  int m_descriptor;
-};
-
-/** Calls an action; what it throws names the file that cannot be written. */
-template <typename Action>
-void writing(const fs::path& file, const Action& action) {
-  try {
-    action();
-  } catch (const fs::filesystem_error& e) {
-    throw std::runtime_error(file.string() + ": cannot be written: " + e.code().message());
-  } catch (const std::exception& e) {
-    throw std::runtime_error(file.string() + ": cannot be written: " + e.what());
-  }
-}
-
 }  // namespace
 
 StagedFile::StagedFile(fs::path target) : m_target(placeOf(target)) {
@@ -91,13 +58,21 @@ StagedFile::~StagedFile() = default;
 const fs::path& StagedFile::path() const { return m_unfinished->path(); }
 
 void StagedFile::commit(Disk when) {
-  writing(m_target, [&] {
+  try {
+    const Placement placement(m_unfinished->path(), m_target);
     const OpenFolder folder(m_target.parent_path());
     if (when == Disk::Now) synchronize(m_unfinished->descriptor());
     const auto held = Unfinished::hold();
-    fs::rename(m_unfinished->path(), m_target);
+    placement.take();
     if (when == Disk::Now) folder.synchronize();
-  });
+  } catch (const PlaceTaken& e) {
+    const auto held = Unfinished::hold();
+    keepAndReport(m_target, *m_unfinished, e);
+  } catch (const fs::filesystem_error& e) {
+    throw std::runtime_error(m_target.string() + ": cannot be written: " + e.code().message());
+  } catch (const std::exception& e) {
+    throw std::runtime_error(m_target.string() + ": cannot be written: " + e.what());
+  }
 }
 
 namespace fs = std::filesystem;
@@ -129,24 +104,40 @@ fs::path OutputFolder::staged(const std::string& name) const { return m_staging-
 
 void OutputFolder::takeAlong(const std::string& lock) { m_staging->takeAlong(lock); }
 
+/** Where each file goes, when all are on the disk. \throw filesystem_error or runtime_error */
+Placement OutputFolder::prepare(const std::string& name) const {
+  checkPlace(m_folder / name);
+  if (!fs::exists(staged(name))) return {{}, m_folder / name};
+  synchronize(staged(name));
+  return {staged(name), m_folder / name};
+}
+
 void OutputFolder::commit(const std::vector<std::string>& names) {
-  struct Move {
-    fs::path from, to;
-    bool isThere;
+  const auto each = [&](auto action) {
+    for (std::size_t i = 0; i < names.size(); ++i) try {
+        action(i);
+      } catch (const PlaceTaken& e) {
+        keepAndReport(m_folder / names[i], *m_staging, e);
+      } catch (const fs::filesystem_error& e) {
+        throw std::runtime_error((m_folder / names[i]).string() +
+                                 ": cannot be written: " + e.code().message());
+      } catch (const std::exception& e) {
+        throw std::runtime_error((m_folder / names[i]).string() +
+                                 ": cannot be written: " + e.what());
+      }
   };
-  std::vector<Move> moves;  // what can fail comes first
-  for (const std::string& name : names)
-    writing(m_folder / name, [&] {
-      checkPlace(m_folder / name);
-      moves.push_back({staged(name), m_folder / name, fs::exists(staged(name))});
-      if (moves.back().isThere) synchronize(staged(name));
-    });
+  std::vector<Placement> placements;  // what can fail comes first
+  each([&](std::size_t i) { placements.push_back(prepare(names[i])); });
   const OpenFolder folder(m_folder);
   flock(folder.descriptor(), LOCK_EX);  // of two at the same time, the files are of one
   const auto held = Unfinished::hold();
-  for (const Move& m : moves)
-    writing(m.to, [&] { m.isThere ? fs::rename(m.from, m.to) : (void)fs::remove(m.to); });
-  writing(m_folder, [&] { folder.synchronize(); });
+  each([&](std::size_t i) { placements[i].checkFree(); });
+  each([&](std::size_t i) { placements[i].take(); });
+  try {
+    folder.synchronize();
+  } catch (const std::exception& e) {
+    throw std::runtime_error(m_folder.string() + ": cannot be written: " + e.what());
+  }
 }
 
 namespace fs = std::filesystem;
