@@ -88,7 +88,7 @@ AbstractionOptions someTerms() {
   return options;
 }
 
-/** The same scans in maps of each kind. */
+/** Maps of each kind receive equal scans. */
 class Maps {
  public:
   Maps(int classes, const FilterParameters& p)
@@ -158,11 +158,4 @@ TEST(BlockInsertion, givesThePlainMapWithParametersAtTheirBounds) {
   p.falseAlarmProbability = p.minOccupancy = 1e-9;
   Events events;
   for (const int classes : {1, 24, 254}) expectPlainResult(20 + classes, classes, p, events, 15);
-}
-
-TEST(BlockInsertion, givesThePlainMapWithPublishedConstants) {
-  FilterParameters ssmi;
-  ssmi.increments = FilterParameters::Increments::Ssmi;
-  Events events;
-  expectPlainResult(31, 5, ssmi, events, 20);
 }

@@ -69,7 +69,7 @@ class OldWriter {
   std::string m_bytes;
 };
 
-/** Of a map with leaves at several depths, some with class records. */
+/** A map with leaves at several depths, some with class records. */
 struct OldMap {
   Header header;
   SemanticOcTree map;
