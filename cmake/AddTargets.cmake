@@ -72,12 +72,13 @@ target_compile_options(mso_test_settings INTERFACE $<$<CONFIG:Release>:-O1>)
 target_link_libraries(mso_test_settings INTERFACE GTest::gtest GTest::gtest_main rapidcheck
   nlohmann_json::nlohmann_json)
 
-# mso_add_test(NAME [MRPT] SOURCES ... [DEPENDS ...]): one GoogleTest program, each of its cases one ctest.
+# mso_add_test(NAME [MRPT] [WHOLE] SOURCES ... [DEPENDS ...]): one GoogleTest program, each of its cases one ctest.
+# With WHOLE all cases are one ctest: what they share takes longer to make than what each of them does.
 # With MRPT it takes the precompiled headers that have MRPT's observations, too (test/support/CMakeLists.txt).
 # Tests find the sources through MSO_SOURCE_DIR, the programs through MSO_BIN_DIR, and data that is not in
 # the repository through the environment variable SEMANTIC_OCTREE_DATA.
 function(mso_add_test name)
-  cmake_parse_arguments(ARG "MRPT" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "MRPT;WHOLE" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -92,6 +93,11 @@ function(mso_add_test name)
   target_compile_definitions(${name} PRIVATE
     MSO_SOURCE_DIR="${PROJECT_SOURCE_DIR}" MSO_BIN_DIR="${CMAKE_BINARY_DIR}/bin" MSO_LIB_DIR="${CMAKE_BINARY_DIR}/lib")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+  if(ARG_WHOLE)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 1200)
+    return()
+  endif()
   include(GoogleTest)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
     PROPERTIES TIMEOUT ${ARG_TIMEOUT})

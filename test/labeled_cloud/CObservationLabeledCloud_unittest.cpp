@@ -2,7 +2,6 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
-#include <rapidcheck.h>
 
 #include <algorithm>
 #include <cstring>
@@ -59,12 +58,9 @@ std::size_t countPosition(const std::vector<std::uint8_t>& bytes) {
 
 }  // namespace
 
-TEST(CObservationLabeledCloud, streamsWithoutLossThroughTheClassFactory) {
-  expectSame(exampleCloud(), *readBack(streamed(exampleCloud())));
-}
-
-TEST(CObservationLabeledCloud, streamsSoftLabelsAndCloudsWithoutLabelsAndEmptyOnes) {
+TEST(CObservationLabeledCloud, streamsWithoutLossWhateverLabelsThereAre) {
   CObservationLabeledCloud obs = exampleCloud();
+  expectSame(obs, *readBack(streamed(obs)));
   obs.cloud.probabilities = {0.25f, 0.75f, 0, 0, 1, 0};
   expectSame(obs, *readBack(streamed(obs)));
   obs.cloud.probabilities.clear();
@@ -97,18 +93,6 @@ TEST(CObservationLabeledCloud, aCorruptCountIsAnErrorAndTakesNoMemory) {
   EXPECT_FALSE(contains(error, "bad_alloc")) << error;
 }
 
-TEST(CObservationLabeledCloud, corruptBytesNeverCrash) {
-  const auto bytes = streamed(exampleCloud());
-  EXPECT_TRUE(rc::check([&] {
-    auto altered = bytes;
-    altered[*rc::gen::inRange<std::size_t>(0, bytes.size())] = *rc::gen::arbitrary<std::uint8_t>();
-    try {
-      if (const auto obs = readBack(altered)) obs->validate();
-    } catch (const std::exception&) {
-    }
-  }));
-}
-
 TEST(CObservationLabeledCloud, namesWithControlCharactersAreRefusedWhenWrittenAndWhenRead) {
   CObservationLabeledCloud obs = exampleCloud();
   auto bytes = streamed(obs);
@@ -131,23 +115,8 @@ TEST(CObservationLabeledCloud, aClassWithoutANameIsRefusedWhenWrittenAndWhenRead
 TEST(CObservationLabeledCloud, numbersThatDoNotFitAreNamed) {
   CObservationLabeledCloud obs = exampleCloud();
   obs.cloud.classes.pop_back();
-  try {
-    obs.validate();
-    FAIL();
-  } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(), "CObservationLabeledCloud: 2 classes for 3 points");
-  }
+  EXPECT_EQ(errorOf([&] { obs.validate(); }), "CObservationLabeledCloud: 2 classes for 3 points");
   obs = exampleCloud();
   obs.cloud.probabilities = {1, 0};
   EXPECT_THROW(obs.validate(), std::invalid_argument);
-}
-
-TEST(CObservationLabeledCloud, describesItselfWithPointsPerClass) {
-  std::stringstream text;
-  exampleCloud().getDescriptionAsText(text);
-  EXPECT_NE(text.str().find("Points: 3"), std::string::npos) << text.str();
-  EXPECT_NE(text.str().find("2 grass: 1"), std::string::npos) << text.str();
-  EXPECT_NE(text.str().find("0 (no class): 1"), std::string::npos) << text.str();
-  EXPECT_NE(text.str().find("x -7 to 1.5, y -2 to 8, z 0.25 to 9"), std::string::npos)
-      << text.str();
 }

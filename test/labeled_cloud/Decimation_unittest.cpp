@@ -39,20 +39,6 @@ TEST(Decimation, takesTheNearestPointOfEachBlockAndNoLabelBleeds) {
   }
 }
 
-TEST(Decimation, keepsTheGeometryOfThePixelItTook) {
-  const DepthCamera camera;
-  const auto obs = poleBeforeWall(camera);
-  ScanConverterOptions options;
-  options.decimation = 4;
-  for (const Vector3f& p : convert(*obs, options).cloud.points) {
-    const double col = camera.cx - p.y() / p.x() * camera.f,
-                 row = camera.cy - p.z() / p.x() * camera.f;
-    EXPECT_NEAR(col, std::round(col), 1e-3);
-    EXPECT_NEAR(row, std::round(row), 1e-3);
-    EXPECT_EQ(p.x() < 2, onPole(0, static_cast<int>(std::lround(col))));
-  }
-}
-
 namespace {
 
 ScanConverterOptions withoutFlying() {

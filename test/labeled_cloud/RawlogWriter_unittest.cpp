@@ -2,7 +2,6 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/Rawlogs.h>
 
-#include "FullDisk.h"
 #include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
@@ -30,20 +29,4 @@ TEST(RawlogWriter, whatWasThereStaysIfItIsNotFinished) {
   EXPECT_ANY_THROW(RawlogWriter(file).write(bad));
   EXPECT_EQ(folder.read("a.rawlog"), "old");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
-}
-
-TEST(RawlogWriter, anUnwritablePlaceIsNamed) {
-  EXPECT_TRUE(contains(errorOf([] { RawlogWriter("/nowhere/a.rawlog"); }), "/nowhere/a.rawlog"));
-}
-
-TEST(RawlogWriter, aFullDiskIsNoticed) {
-  const TemporaryFolder folder;
-  const auto file = folder.write("a.rawlog", "old");
-  {
-    const FullDisk full(20);
-    RawlogWriter writer(file);
-    writer.write(CObservationLabeledCloud());
-    ASSERT_TRUE(contains(errorOf([&] { writer.finish(); }), "disk full"));
-  }
-  EXPECT_EQ(folder.read("a.rawlog"), "old");
 }

@@ -64,15 +64,6 @@ mrpt::obs::CSensoryFrame::Ptr frame(const std::vector<mrpt::obs::CObservation::P
 
 }  // namespace
 
-TEST(Trajectory, anInsertedPoseComesBackAsItWas) {
-  Trajectory path;
-  const CPose3D pose(1, 2, 3, 0.4, 0.5, 0.6);
-  path.insert(at(10.1), pose);
-  path.insert(at(11), CPose3D());
-  ASSERT_TRUE(path.at(at(10.1)));
-  EXPECT_EQ(apart(*path.at(at(10.1)), pose), 0);
-}
-
 TEST(Trajectory, betweenTwoPosesItMovesStraightAndTurnsEvenly) {
   EXPECT_TRUE(rc::check([] {
     const CPose3D a = randomPose(), b = randomPose();
@@ -80,6 +71,7 @@ TEST(Trajectory, betweenTwoPosesItMovesStraightAndTurnsEvenly) {
     Trajectory path;
     path.insert(at(100), a);
     path.insert(at(101), b);
+    RC_ASSERT(apart(*path.at(at(100)), a) == 0);
     const CPose3D c = *path.at(at(100 + f));
     RC_ASSERT(std::abs(c.x() - (1 - f) * a.x() - f * b.x()) < 1e-6);
     RC_ASSERT(std::abs(c.z() - (1 - f) * a.z() - f * b.z()) < 1e-6);
@@ -138,15 +130,16 @@ TEST(TumTrajectory, errorsNameFileAndLine) {
     const std::string file = folder.write("t.txt", text).string();
     return errorOf([&] { loadTumTrajectory(file); }).substr(file.size());
   };
-  EXPECT_EQ(error("0 0 0 0 0 0 0 1\n1 2 3\n"),
-            ":2: expected 't tx ty tz qx qy qz qw', found '1 2 3'");
-  EXPECT_TRUE(contains(error("0 0 x 0 0 0 0 1\n"), ":1: expected"));
-  EXPECT_TRUE(contains(error("0 0 nan 0 0 0 0 1\n"), ":1: expected"));
-  EXPECT_TRUE(contains(error("0 0 0 0 0 0 0 1 2\n"), ":1: more than eight values"));
-  EXPECT_TRUE(contains(error("1e300 0 0 0 0 0 0 1\n"), "s is no time"));
-  EXPECT_TRUE(contains(error("0 0 0 0 0 0 0 0\n"), ":1: the quaternion's length is 0"));
-  EXPECT_TRUE(contains(error("0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"), ":2: this time was there"));
-  EXPECT_EQ(error("# nothing\n"), ": no pose in this trajectory");
+  for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
+           {"0 0 0 0 0 0 0 1\n1 2 3\n", ":2: expected 't tx ty tz qx qy qz qw', found '1 2 3'"},
+           {"0 0 x 0 0 0 0 1\n", ":1: expected"},
+           {"0 0 nan 0 0 0 0 1\n", ":1: expected"},
+           {"0 0 0 0 0 0 0 1 2\n", ":1: more than eight values"},
+           {"1e300 0 0 0 0 0 0 1\n", "s is no time"},
+           {"0 0 0 0 0 0 0 0\n", ":1: the quaternion's length is 0"},
+           {"0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n", ":2: this time was there"},
+           {"# nothing\n", ": no pose in this trajectory"}})
+    EXPECT_TRUE(contains(error(text), words)) << error(text);
   EXPECT_TRUE(contains(errorOf([] { loadTumTrajectory("/nowhere/t.txt"); }), "/nowhere/t.txt"));
 }
 
@@ -191,13 +184,6 @@ TEST(RawlogTrajectory, plainOdometryIsTheLastResort) {
   const auto path = readTrajectory({writeRawlog(folder / "a.rawlog", {odometry(1, {1, 2, 0.5})}),
                                     writeRawlog(folder / "b.rawlog", {odometry(2, {3, 2, 0.5})})});
   EXPECT_LT(apart(*path.at(at(1.5)), CPose3D(2, 2, 0, 0.5, 0, 0)), 1e-9);
-}
-
-TEST(RawlogTrajectory, aRawlogWithoutPosesIsAnErrorThatSaysWhatIsMissing) {
-  const TemporaryFolder folder;
-  const auto file = writeRawlog(folder / "a.rawlog", {frame({})});
-  const std::string error = errorOf([&] { readTrajectory({file}); });
-  EXPECT_TRUE(contains(error, "a.rawlog: no robot poses")) << error;
 }
 
 TEST(RawlogTrajectory, aPoseThatIsNotFiniteIsNamedWithItsFile) {

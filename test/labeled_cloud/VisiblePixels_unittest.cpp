@@ -47,10 +47,6 @@ struct BoardBeforeWall {
   }
 };
 
-}  // namespace
-
-namespace {
-
 void expectPixelsWhereTheLensSays(const mrpt::img::TCamera& c) {
   Isometry3d T = Isometry3d::Identity();
   T.rotate(Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 3).normalized()));

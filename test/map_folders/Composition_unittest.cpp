@@ -38,7 +38,7 @@ SemanticOcTree emptyMapOf(const Making& making) {
   return SemanticOcTree(0.4, classes);
 }
 
-/** Of scans, for a map that is aged, 0.3 s apart. */
+/** Scans lie 0.3 s apart if the map is aged. */
 double secondsSince(const Making& making) { return making.halfLives ? 0.3 : 0; }
 
 void insert(SemanticOcTree& map, const Making& making, const std::vector<PosedCloud>& scans) {
@@ -78,7 +78,7 @@ SemanticOcTree loadedAnew(const SemanticOcTree& tree) {
   return readTree(in);
 }
 
-/** The same map, in memory and in a folder of which hardly anything is. */
+/** One map is in memory, its twin in a folder of which hardly anything is loaded. */
 class Composition : public testing::TestWithParam<Making> {
  protected:
   Composition() : whole(emptyMapOf(GetParam())), map(whole) {
@@ -138,9 +138,15 @@ TEST_P(Composition, withCopies) {
   expectSaved();
 }
 
-TEST_P(Composition, withCrops) {
+TEST_P(Composition, withOperations) {
   const Eigen::AlignedBox3d box(Eigen::Vector3d(-7, -6, -2), Eigen::Vector3d(9, 5, 4));
+  const Eigen::Isometry3d pose =
+      Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.5, Eigen::Vector3d(0, 0.6, 0.8));
   EXPECT_TRUE(cropped(map, box) == cropped(whole, box));
+  EXPECT_TRUE(coarsened(map, 2) == coarsened(whole, 2));
+  EXPECT_TRUE(moved(map, pose) == moved(whole, pose));
+  EXPECT_EQ(contentsOf(map).voxelsOfClass, contentsOf(whole).voxelsOfClass);
+  EXPECT_TRUE(contentsOf(map).box.isApprox(contentsOf(whole).box));
   expectSame();
 }
 
@@ -194,7 +200,10 @@ TEST_P(Composition, withADraft) {
   whole.age(5);
   map.age(5);
   expectSame();
+  EXPECT_THROW(tiles->save(), std::logic_error);
   EXPECT_TRUE(bytesOf(loadMap(folder / "map")) == saved);
+  tiles = nullptr;
+  EXPECT_FALSE(std::filesystem::exists(folder / "draft"));
 }
 
 TEST_P(Composition, withClearing) {

@@ -105,7 +105,7 @@ inline void write(const std::filesystem::path& file, const std::string& content)
   std::ofstream(file, std::ios::binary) << content;
 }
 
-/** Of a tile, by its file's name. */
+/** A tile's place, which its file's name tells. */
 inline Eigen::Vector3d placeOf(const std::filesystem::path& file) {
   Eigen::Vector3i at = Eigen::Vector3i::Constant(1000000);
   std::sscanf(file.filename().c_str(), "tile_%d_%d_%d.", &at.x(), &at.y(), &at.z());

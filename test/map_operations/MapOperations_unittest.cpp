@@ -202,16 +202,6 @@ TEST(CoarsenedMap, byNoLevelIsTheMap) {
   EXPECT_THROW(coarsened(map, 9), std::invalid_argument);
 }
 
-TEST(MovedMap, byWholeVoxelsAndQuarterTurnsLosesNothing) {
-  const SemanticOcTree map = mapOf(scans(4, 5), 5);
-  Eigen::Isometry3d there(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
-  there.linear() = there.linear().array().round().matrix();
-  there.translation() = kMergedResolution * Eigen::Vector3d(17, -40, 3);
-  const SemanticOcTree away = moved(map, there);
-  EXPECT_FALSE(away == map);
-  EXPECT_TRUE(moved(away, there.inverse()) == map);
-}
-
 TEST(MovedMap, takesEachVoxelFromWhereItsCenterWas) {
   std::mt19937 random(11);
   const SemanticOcTree map = mapOf(scans(2, 5), 5);

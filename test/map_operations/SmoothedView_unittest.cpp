@@ -14,9 +14,8 @@ namespace {
 constexpr double kViewResolution = 0.3;
 constexpr int kViewClasses = 5;
 
-SemanticOcTree mapOfScans(unsigned seed, bool pruning = true) {
+SemanticOcTree mapOfScans(unsigned seed) {
   SemanticOcTree map(kViewResolution, numberedClasses(kViewClasses));
-  map.setPruning(pruning);
   std::mt19937 random(seed);
   for (int place = 0; place < 3; ++place) {
     const PosedCloud scan = randomScan(random);
@@ -129,25 +128,6 @@ TEST(SmoothedView, addsWhatNeighborsTellAsDocumented) {
   }
 }
 
-TEST(SmoothedView, withoutWeightIsTheMapItself) {
-  const SemanticOcTree map = mapOfScans(4);
-  const SmoothedView view(map, {0.0});
-  for (const VoxelId& id : voxelsIn(map)) {
-    const CellState own = map.query(keyOf(id)), state = view.query(keyOf(id));
-    EXPECT_EQ(state.status, own.status);
-    EXPECT_EQ(state.likeliestClass, own.likeliestClass);
-    EXPECT_EQ(state.probability, own.probability);
-  }
-}
-
-TEST(SmoothedView, ofAPrunedMapIsThatOfTheUnpruned) {
-  const SemanticOcTree pruned = mapOfScans(5, true), unpruned = mapOfScans(5, false);
-  EXPECT_LT(pruned.size(), unpruned.size());
-  const SmoothedView a(pruned), b(unpruned);
-  for (const VoxelId& id : voxelsIn(pruned))
-    EXPECT_EQ(a.distribution(keyOf(id)), b.distribution(keyOf(id)));
-}
-
 // Two classes on either side of a line, at any angle and place, whatever the weight.
 RC_GTEST_PROP(SmoothedView, leavesStraightBordersWhereTheyAre, ()) {
   const double angle = *rc::gen::inRange(0, 360) * M_PI / 180;
@@ -182,42 +162,6 @@ TEST(SmoothedView, keepsThinLinesAndWithALowWeightSinglePosts) {
   EXPECT_EQ(classAt(1.0, 0, 2), 3);
   EXPECT_EQ(classAt(0.2, 3, 3), 3);
   EXPECT_EQ(classAt(0.4, 3, 3), 1);
-}
-
-TEST(SmoothedView, outvotesAWrongLabelAmongRightOnes) {
-  std::vector<Label> labels;
-  for (int x = -1; x <= 1; ++x)
-    for (int y = -1; y <= 1; ++y) {
-      const bool wrong = x == 0 && y == 0;
-      labels.push_back({{x, y, 0}, static_cast<ClassId>(wrong ? 4 : 2), wrong ? 1 : 3});
-    }
-  const SemanticOcTree map = mapOfLabels(labels);
-  EXPECT_EQ(map.query(keyOf({0, 0, 0})).likeliestClass, 4);
-  EXPECT_EQ(SmoothedView(map).query(0.1, 0.1, 0.1).likeliestClass, 2);
-}
-
-TEST(SmoothedView, answersForVoxelsThatWereNotHit) {
-  const SemanticOcTree map =
-      mapOfLabels({{{-1, 0, 0}, 1, 2}, {{1, 1, 1}, 2, 2}, {{0, 0, 9}, 5, 0}});
-  const VoxelId gap = {0, 0, 0};  // a face neighbor of class 1, a corner neighbor of class 2
-  EXPECT_EQ(map.query(keyOf(gap)).likeliestClass, kNoClass);
-  const CellState state = SmoothedView(map).query(keyOf(gap));
-  EXPECT_EQ(state.likeliestClass, 1);
-  EXPECT_EQ(state.status, CellState::Status::Unknown);
-  EXPECT_EQ(state.occupancy, 0.5);
-  EXPECT_GT(state.probability, 0.5 / kViewClasses);
-  EXPECT_EQ(SmoothedView(map).query(keyOf({2, 2, 2})).likeliestClass, 2);
-  EXPECT_EQ(SmoothedView(map).query(keyOf({5, 5, 5})).likeliestClass, kNoClass);
-}
-
-TEST(SmoothedView, isNoSurerThanTheFilterMayBeOfOneVoxel) {
-  std::vector<Label> labels;
-  for (int i = 0; i < 27; ++i) labels.push_back({{i % 3, i / 3 % 3, i / 9}, 1, 30});
-  const SemanticOcTree map = mapOfLabels(labels);
-  const std::vector<double> own = map.distribution(*map.search(keyOf({1, 1, 2})));
-  const std::vector<double> all = SmoothedView(map, {1.0}).distribution(keyOf({1, 1, 2}));
-  for (int k = 1; k <= kViewClasses; ++k)
-    EXPECT_NEAR(std::log(all[1] / all[k]), std::log(own[1] / own[k]), 1e-3);  // the grid
 }
 
 TEST(SmoothedView, worksAtTheMapsBorderAndOutside) {

@@ -71,25 +71,19 @@ Played play(const std::vector<cv::Mat>& frames) {
 
 }  // namespace
 
-TEST(GifFile, framesOfFewColorsComeBackAsTheyWere) {
+TEST(GifFile, framesOfFewColorsComeBackAsTheyWereAndDrawOnlyWhatChanged) {
   cv::Mat second = fields();
-  second(cv::Rect(70, 5, 8, 9)).setTo(cv::Scalar(0, 0, 0));
-  const Played played = play({fields(), second, fields()});
-  ASSERT_EQ(played.frames.size(), 3u);
+  const cv::Rect changed(70, 5, 8, 9);
+  second(changed).setTo(cv::Scalar(0, 0, 0));
+  const Played played = play({fields(), second, second, fields()});
+  ASSERT_EQ(played.frames.size(), 4u);
   EXPECT_EQ(difference(played.frames[0], fields()), 0);
-  EXPECT_EQ(difference(played.frames[1], second), 0);
-  EXPECT_EQ(difference(played.frames[2], fields()), 0);
-  EXPECT_EQ(played.delays, (std::vector<int>{12, 12, 12}));
-}
-
-TEST(GifFile, aFrameDrawsOnlyWhatChanged) {
-  cv::Mat second = fields();
-  second(cv::Rect(70, 5, 8, 9)).setTo(cv::Scalar(0, 0, 0));
-  const Played played = play({fields(), second, second});
+  for (const int i : {1, 2}) EXPECT_EQ(difference(played.frames[i], second), 0);
+  EXPECT_EQ(difference(played.frames[3], fields()), 0);
+  EXPECT_EQ(played.delays, (std::vector<int>{12, 12, 12, 12}));
   EXPECT_EQ(played.places[0], cv::Rect(0, 0, 100, 60));
-  EXPECT_EQ(played.places[1], cv::Rect(70, 5, 8, 9));
+  for (const int i : {1, 3}) EXPECT_EQ(played.places[i], changed);
   EXPECT_EQ(played.places[2].area(), 1);
-  EXPECT_EQ(difference(played.frames[2], second), 0);
 }
 
 TEST(GifFile, slowChangesAddUpUntilTheyAreDrawn) {
@@ -99,16 +93,6 @@ TEST(GifFile, slowChangesAddUpUntilTheyAreDrawn) {
   const Played played = play(frames);
   for (std::size_t i = 0; i < frames.size(); ++i)
     EXPECT_LE(difference(played.frames[i], frames[i]), 12) << i;
-}
-
-TEST(GifFile, manyColorsComeBackNearly) {
-  cv::Mat gradient(128, 128, CV_8UC3);
-  for (int row = 0; row < 128; ++row)
-    for (int col = 0; col < 128; ++col)
-      gradient.at<cv::Vec3b>(row, col) = cv::Vec3b(2 * row, 2 * col, row + col);
-  const Played played = play({gradient});
-  EXPECT_LT(difference(played.frames[0], gradient), 60);
-  EXPECT_LT(cv::norm(played.frames[0], gradient, cv::NORM_L1) / (128 * 128 * 3), 12);
 }
 
 RC_GTEST_PROP(GifFile, whateverTheFramesAreTheLastIsShownNearly, ()) {

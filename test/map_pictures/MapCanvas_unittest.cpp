@@ -160,25 +160,6 @@ TEST(MapCanvas, aMapLiesWhereItIsOnAnyRegion) {
   EXPECT_EQ(pixelAt(c, 1, -0.95), pixelOf(kTree));
 }
 
-TEST(MapCanvas, theCanvasOfAMapIsItsTopView) {
-  const auto tree = paintedField();
-  map_pictures::PictureStyle style;
-  style.width = 800, style.height = 600, style.title = "A field";
-  const MapCanvas c = MapCanvas::ofMap(tree, style);
-  EXPECT_EQ(cv::norm(c.sheet("A field"), renderTopView(tree, style), cv::NORM_INF), 0);
-}
-
-TEST(MapCanvas, blankPaperOfTheSamePlaceShowsTheSameMapTheSame) {
-  const auto tree = paintedField();
-  const MapCanvas first = MapCanvas::ofMap(tree, {});
-  MapCanvas second = first.blank();
-  EXPECT_EQ(count(second.picture(), map_pictures::kPaper), int(second.picture().total()));
-  EXPECT_TRUE(second.legend().empty());
-  second.drawMap(tree, {});
-  EXPECT_EQ(cv::norm(first.picture(), second.picture(), cv::NORM_INF), 0);
-  EXPECT_EQ(first.at(1, 2), second.at(1, 2));
-}
-
 TEST(MapCanvas, aMapAroundTheCanvasIsDrawnAsIfThereWereNoMore) {
   using namespace semantic_octree;
   const TemporaryFolder folder;

@@ -82,18 +82,6 @@ TEST(TopView, showsVoxelsTogetherWithTheirNeighborsIfAsked) {
   EXPECT_GT(count(renderTopView(map, style), pixelOf(kRoad)), 10000);
 }
 
-TEST(TopView, yPointsUp) {
-  semantic_types::LabeledCloud cloud;
-  for (float t = 0.1f; t < 10; t += 0.2f)
-    for (float s = 0.1f; s < 6; s += 0.2f)
-      cloud.points.emplace_back(s, t, -0.9f), cloud.classes.push_back(t > 5 ? 3 : 1);
-  SemanticOcTree tree(0.2, paintedClasses());
-  tree.insert(cloud, Eigen::Isometry3d::Identity());
-  const cv::Mat picture = renderTopView(tree, plain());
-  EXPECT_EQ(picture.at<cv::Vec3b>(picture.rows / 4, picture.cols / 2), pixelOf(kWall));
-  EXPECT_EQ(picture.at<cv::Vec3b>(picture.rows * 3 / 4, picture.cols / 2), pixelOf(kRoad));
-}
-
 TEST(TopView, theHighestCellCoversTheOthersUnlessItIsCutOff) {
   const SemanticOcTree tree = paintedField({0, 0}, 0.8f);
   PictureStyle style = plain();
@@ -159,15 +147,6 @@ TEST(TopView, anEmptyMapIsAnEmptySheet) {
     EXPECT_EQ(picture.size(), cv::Size(800, 600));
     EXPECT_EQ(count(picture, kPaper), 800 * 600);
   }
-}
-
-TEST(TopView, aSingleVoxelIsAPicture) {
-  semantic_types::LabeledCloud cloud;
-  cloud.points = {{1, 2, 3}}, cloud.classes = {3};
-  SemanticOcTree tree(0.1, paintedClasses());
-  tree.insert(cloud, Eigen::Isometry3d::Identity());
-  EXPECT_GT(count(renderTopView(tree, plain()), pixelOf(kWall)), 10000);
-  EXPECT_GT(count(renderPerspective(tree, plain()), pixelOf(kWall), 30), 10000);
 }
 
 TEST(TopView, aMapOfOneEnormousCellIsDrawnWithoutEnormousMemory) {

@@ -50,12 +50,6 @@ TEST(Sheet, aLegendIsCompleteHoweverLongItIs) {
   }
 }
 
-TEST(Sheet, aLegendOfALowPictureNeedsNoColumnOfItsOwnPerEntry) {
-  const cv::Mat sheet = map_pictures::withLegend(kPicture.rowRange(0, 30), "", entries(6));
-  EXPECT_EQ(sheet.rows, map_pictures::legendHeight(6));
-  EXPECT_LT(sheet.cols, kPicture.cols + 160);
-}
-
 TEST(Sheet, theLegendShowsLinesAndPosesAsTheyAreDrawn) {
   const Color purple{130, 0, 130}, orange{250, 120, 0};
   const cv::Mat sheet = map_pictures::withLegend(

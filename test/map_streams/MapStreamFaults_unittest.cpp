@@ -13,16 +13,6 @@ namespace {
 
 using namespace streamed_maps;
 
-/** CRC-32, bit by bit. */
-std::uint32_t crcOf(const std::string& bytes) {
-  std::uint32_t crc = ~0u;
-  for (const unsigned char byte : bytes) {
-    crc ^= byte;
-    for (int i = 0; i < 8; ++i) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
-  }
-  return ~crc;
-}
-
 TEST(MapStreamFaults, whatDoesNotBelongHereIsRefusedByName) {
   SemanticOcTree map = smallPlace(someOptions(0.01));
   MapSender sender(kStream);
@@ -35,7 +25,8 @@ TEST(MapStreamFaults, whatDoesNotBelongHereIsRefusedByName) {
   EXPECT_TRUE(contains(errorOf([&] { Datagram::of("hello, world"); }), "another program"));
   EXPECT_TRUE(contains(errorOf([&] { sender.setMap(map); }), "does not have the map"));
   bytes[6] = 9;  // the version
-  const std::uint32_t crc = crcOf(bytes.substr(4));
+  const auto crc = static_cast<std::uint32_t>(
+      crc32(0, reinterpret_cast<const Bytef*>(&bytes[4]), static_cast<uInt>(bytes.size() - 4)));
   bytes.replace(0, 4, reinterpret_cast<const char*>(&crc), 4);
   EXPECT_TRUE(contains(errorOf([&] { Datagram::of(bytes); }), "version 9 of the protocol"));
   bytes = packet.bytes();
@@ -79,31 +70,6 @@ TEST(MapStreamFaults, aReceiptThatIsRepeatedTellsNothingNew) {
   EXPECT_TRUE(sender.accept(receipts[1]));
   EXPECT_TRUE(sender.accept(receipts[2]));
   for (const Datagram& old : receipts) EXPECT_FALSE(sender.accept(old));
-}
-
-TEST(MapStreamFaults, alteredPacketsAreRefusedAndLeaveAValidMap) {
-  SemanticOcTree map = smallPlace(someOptions(0.01));
-  MapSender sender(kStream);
-  sender.setMap(map);
-  const auto packets = packetsOf(sender);
-  std::mt19937 random(5);
-  for (int trial = 0; trial < 300; ++trial) {
-    MapReceiver receiver(kStream);
-    for (Datagram packet : packets) {
-      if (random() % 4 == 0)  // the checksum of such a datagram matches
-        for (std::size_t n = 1 + random() % 3; n > 0; --n)
-          packet.payload[random() % packet.payload.size()] = static_cast<char>(random());
-      if (random() % 16 == 0) packet.payload.resize(random() % packet.payload.size());
-      try {
-        receiver.accept(packet);
-      } catch (const std::exception&) {
-      }
-    }
-    if (!receiver.hasMap()) continue;
-    const std::string file = fileOf(receiver.map());
-    std::istringstream in(file);
-    ASSERT_TRUE(fileOf(readTree(in)) == file);
-  }
 }
 
 /** The description of a stream's map, in one packet, if its first class had another name. */

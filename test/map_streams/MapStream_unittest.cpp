@@ -1,26 +1,30 @@
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "LossyRadio.h"
-#include "StreamTree.h"
 
 namespace {
 
 using namespace streamed_maps;
 
 TEST(MapStream, arrivesToTheLastBit) {
-  for (const double alpha : {0.0, 0.003, 0.02, 10.0}) {
-    SemanticOcTree map = smallPlace(someOptions(alpha));
-    MapSender sender(kStream);
-    sender.setMap(map);
-    MapReceiver receiver(kStream);
-    EXPECT_FALSE(receiver.hasMap());
-    for (const Datagram& packet : packetsOf(sender)) receiver.accept(packet);
-    EXPECT_TRUE(receiver.isFinished());
-    EXPECT_TRUE(fileOf(receiver.map()) == fileOf(Abstraction(map).compressedMap())) << alpha;
-    EXPECT_EQ(receiver.numLeaves(), Abstraction(map).leaves().size());
-  }
+  for (const double alpha : {0.0, 1e-9, 0.003, 0.02, 10.0})
+    for (const double blockSize : {0.0, 0.2, 3.2, 100.0})
+      for (const auto frame :
+           {AbstractionOptions::Frame::Free, AbstractionOptions::Frame::Charged}) {
+        AbstractionOptions options = someOptions(alpha);
+        options.blockSize = blockSize;
+        options.frame = frame;
+        SemanticOcTree map = smallPlace(options);
+        MapSender sender(kStream);
+        sender.setMap(map);
+        MapReceiver receiver(kStream);
+        EXPECT_FALSE(receiver.hasMap());
+        for (const Datagram& packet : packetsOf(sender)) receiver.accept(packet);
+        EXPECT_TRUE(receiver.isFinished());
+        EXPECT_TRUE(fileOf(receiver.map()) == fileOf(Abstraction(map).compressedMap())) << alpha;
+        EXPECT_EQ(receiver.numLeaves(), Abstraction(map).compressedMap().getNumLeafNodes());
+      }
 }
 
 TEST(MapStream, eachPrefixIsTheCompressedTreeOfItsAlpha) {
@@ -117,19 +121,6 @@ TEST(MapStream, isValidAtEveryMomentAndEndsWholeOverARadioThatLosesAndExchanges)
     }
 }
 
-TEST(MapStream, whatCameIsOfUseWithoutAnyReceipt) {
-  SemanticOcTree map = smallPlace(someOptions(0.001));
-  MapSender sender(kStream);
-  sender.setMap(map);
-  MapReceiver receiver(kStream);
-  std::size_t number = 0;
-  for (const Datagram& packet : packetsOf(sender))
-    if (number++ < 8 || number % 5 != 0) receiver.accept(packet);
-  EXPECT_FALSE(receiver.isComplete());
-  expectValid(receiver.map(), map);
-  EXPECT_GT(receiver.numLeaves(), Abstraction(map).leaves().size() / 3);
-}
-
 TEST(MapStream, aSecondScanSendsTheChange) {
   for (const double alpha : {0.0, 0.004}) {
     const auto scans = scansOfSmallPlace(5, 2500, K, 3);
@@ -185,46 +176,6 @@ std::size_t wander(double blockSize, unsigned seed) {
   return largeLeaves;
 }
 
-TEST(MapStream, anyMapMayBecomeAnyOther) {
-  for (unsigned seed = 0; seed < 4; ++seed) wander(3.2, seed);
-}
-
-TEST(MapStream, leavesAboveTheBlocksAreSplitAndComeBack) {
-  for (unsigned seed = 0; seed < 3; ++seed) EXPECT_GT(wander(0.2, seed), 100u);
-}
-
-TEST(MapStream, partsOfOneRevisionLeadToOneTreeInAnyOrder) {
-  const auto leaf = [](const CellPath& cell, Units value) {
-    TreePart part;
-    part.cell = cell;
-    part.leaves[0] = {{}, value, StreamLeaf::Kind::Plain};
-    return part;
-  };
-  const CellPath large = CellPath::of({{32768, 32768, 32768}, 10});
-  std::vector<TreePart> parts;
-  for (int i = 0; i < 8; ++i) parts.push_back(leaf(large.child(i), static_cast<Units>(i)));
-  TreePart octet = leaf(large.child(5), 50);
-  octet.isOctet = true;
-  octet.mask = 0xf0;
-  octet.leaves.fill(octet.leaves[0]);
-  parts.push_back(octet);
-  const SemanticOcTree empty(0.2, numberedClasses(K));
-  std::set<std::string> files;
-  std::mt19937 random(1);
-  for (int i = 0; i < 200; ++i) {
-    StreamTree tree;
-    tree.apply(leaf(large, -7), 1);
-    std::shuffle(parts.begin(), parts.end(), random);
-    std::vector<TreePart> late;  // whose cube was not there yet
-    for (const TreePart& part : parts)
-      if (!tree.apply(part, 2)) late.push_back(part);
-    for (const TreePart& part : late) EXPECT_TRUE(tree.apply(part, 2));
-    EXPECT_EQ(tree.numLeaves(), 11u);
-    files.insert(fileOf(tree.map(empty)));
-  }
-  EXPECT_EQ(files.size(), 1u);
-}
-
 TEST(MapStream, whatWasLostIsSentBeforeWhatIsNew) {
   SemanticOcTree map = smallPlace(someOptions(0.0005));
   MapSender sender(kStream);
@@ -244,19 +195,11 @@ TEST(MapStream, whatWasLostIsSentBeforeWhatIsNew) {
   EXPECT_EQ(std::count(sent.begin(), sent.end(), fresh), 0);
 }
 
-TEST(MapStream, aChargedFrameAndNoBlocksTravelToo) {
-  for (const double blockSize : {0.0, 3.2, 0.2, 100.0})
-    for (const auto frame : {AbstractionOptions::Frame::Free, AbstractionOptions::Frame::Charged}) {
-      AbstractionOptions options = someOptions(1e-9);
-      options.blockSize = blockSize;
-      options.frame = frame;
-      SemanticOcTree map = smallPlace(options);
-      MapSender sender(kStream);
-      sender.setMap(map);
-      MapReceiver receiver(kStream);
-      for (const Datagram& packet : packetsOf(sender)) receiver.accept(packet);
-      EXPECT_TRUE(fileOf(receiver.map()) == fileOf(Abstraction(map).compressedMap()));
-    }
+TEST(MapStream, anyMapMayBecomeAnyOther) {
+  for (unsigned seed = 0; seed < 3; ++seed) {
+    wander(3.2, seed);
+    EXPECT_GT(wander(0.2, seed), 100u) << "leaves that are split and come back";
+  }
 }
 
 }  // namespace

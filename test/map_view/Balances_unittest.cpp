@@ -62,7 +62,7 @@ class Definition {
     if (!node || node.isLeaf()) return 0;
     return std::max(0.0, gain(node) - m_live.alpha() * std::log(8) + ofChildren(node));
   }
-  /** Of a block: what its inner nodes tell of what is relevant, and those that are expanded. */
+  /** What a block's inner nodes tell of what is relevant, and what those tell that are expanded. */
   struct Relevant {
     double all = 0, kept = 0;
   };
@@ -76,7 +76,7 @@ class Definition {
     if (isExpanded) sums.kept += share * told;
     for (int i = 0; i < 8; ++i) addRelevant(node.child(i), share / 8, isExpanded, sums);
   }
-  /** Of a term; 0: free space. */
+  /** A term's class; 0: free space. */
   std::size_t classOf(std::size_t term) const {
     return m_map.classes().find(m_live.name(term)).value_or(0);
   }
@@ -131,6 +131,7 @@ TEST(Balances, AreThoseOfTheDefinitionsTermByTerm) {
       }
     }
   }
+  EXPECT_TRUE(live.balancesAround(Eigen::Array3i(1, 1, 1)).empty()) << "beside the map";
   EXPECT_GT(expanded, 0);
   EXPECT_LT(expanded, all);
 }
@@ -144,12 +145,6 @@ TEST(Balances, ReachUpToTheRootWhereTheFrameIsCharged) {
   EXPECT_EQ(balances.size(), 16u);
   EXPECT_EQ(balances.front().node, 0);
   EXPECT_EQ(live.isExpanded(0), balances.front().gValue > 0);
-}
-
-TEST(Balances, AreNoneBesideTheMap) {
-  SemanticOcTree map = randomMap(63);
-  const LiveCompression live(map, LiveCompression::allClasses(map), {});
-  EXPECT_TRUE(live.balancesAround(Eigen::Array3i(1, 1, 1)).empty());
 }
 
 TEST(Balances, OfABlockItsShareOfWhatIsRelevantIsRetained) {

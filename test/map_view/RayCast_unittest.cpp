@@ -23,7 +23,7 @@ Ray randomRay(std::mt19937& random) {
   return {exact, direction.cast<float>().cast<double>().normalized()};
 }
 
-/** Of a voxel's center, m. */
+/** The center of a voxel of this class, seen from above, m. */
 Eigen::Vector2d placeAbove(const SemanticOcTree& map, ClassId id) {
   const Eigen::Array3i key = voxelOfClass(map, id);
   return {(key.x() - 32768 + 0.5) * 0.2, (key.y() - 32768 + 0.5) * 0.2};
@@ -63,31 +63,6 @@ TEST(RayCast, BeginsOutsideOfTheMapAndMayMissIt) {
   EXPECT_EQ(below->key(), maps->key);
   EXPECT_FALSE(firstShown(cells, look, {{0, 0, far}, {0, 0, 1}}));
   EXPECT_FALSE(firstShown(cells, look, {{far, 0, 0}, {0, 1, 0}}));
-}
-
-TEST(RayCast, GoesThroughWhatIsHidden) {
-  const SemanticOcTree map = randomMap(14);
-  const FullCells cells(map);
-  CellLook look(map);
-  const Eigen::Vector2d place = placeAbove(map, 3);
-  const Ray down = {{place.x(), place.y(), 9}, {0, 0, -1}};
-  const auto top = firstShown(cells, look, down);
-  ASSERT_TRUE(top);
-  ViewStyle style;
-  style.clip.max().z() = top->center(0.2).z() - 0.05;
-  look.setStyle(style);
-  const auto second = firstShown(cells, look, down);
-  if (second) {
-    EXPECT_LT(second->lowest.z(), top->lowest.z());
-  }
-  style.clip.max().z() = 100;
-  style.hiddenClasses.assign(4, false);
-  style.hiddenClasses[look.classOf(*top)] = true;
-  look.setStyle(style);
-  const auto other = firstShown(cells, look, down);
-  if (other) {
-    EXPECT_NE(look.classOf(*other), look.classOf(*top));
-  }
 }
 
 TEST(RayCast, HitsCompressedCellsWhereTheyAreDrawn) {

@@ -152,43 +152,6 @@ TEST(TileMesh, OfCoarseTilesHasTheSidesOfTheirCells) {
   EXPECT_EQ(found, expected);
 }
 
-TEST(TileMesh, ShadesCornersAndTellsCellsApart) {
-  const SemanticOcTree map = randomMap(35);
-  const FullCells cells(map);
-  const CellLook look(map);
-  std::set<int> reds;
-  bool shaded = false;
-  for (const Tile& tile : tilesOf(map, kFinestTiles))
-    for (const Face& face : occupiedOf(meshOf(tile, cells, look))) {
-      if (normalOf(face).z() < 0.9f) continue;
-      for (const Color& c : face.colors) {
-        EXPECT_LE(c.r, 200);
-        reds.insert(c.r);
-        shaded = shaded || !(c == face.colors[0]);
-      }
-    }
-  EXPECT_TRUE(shaded);
-  EXPECT_GT(reds.size(), 10u);
-}
-
-TEST(TileMesh, ShowsFreeSpaceWhereItEnds) {
-  const SemanticOcTree map = randomMap(36);
-  const FullCells cells(map);
-  CellLook look(map);
-  ViewStyle style;
-  style.freeSpace = true;
-  look.setStyle(style);
-  std::size_t free = 0, occupied = 0, before = 0;
-  const CellLook plain(map);
-  for (const Tile& tile : tilesOf(map, kFinestTiles)) {
-    const TileMesh mesh = meshOf(tile, cells, look);
-    free += mesh.translucent.size(), occupied += occupiedOf(mesh).size();
-    before += occupiedOf(meshOf(tile, cells, plain)).size();
-  }
-  EXPECT_GT(free, 1000u);
-  EXPECT_EQ(occupied, before);
-}
-
 TEST(TileMesh, ShowsUnknownSpaceWhereItEnds) {
   const SemanticOcTree map = randomMap(38, 1);
   const FullCells cells(map);

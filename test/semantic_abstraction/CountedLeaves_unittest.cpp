@@ -100,22 +100,3 @@ TEST(CountedLeaves, ofEachTreeOnThePathAreTheCompressedTreesForEveryBlockSize) {
     }
   }
 }
-
-TEST(CountedLeaves, wantedInAnyNumberFromTheRootsToTheWholeMapAreGranted) {
-  for (const double blockSize : {0.4, 0.8, 3.2}) {
-    SemanticOcTree map = mapWithLargeLeaves(4, true);
-    setAbstraction(map, optionsWith(blockSize));
-    Abstraction abstraction(map);
-    const AllAlphas path(abstraction);
-    const AlphaTrees trees(abstraction);
-    const std::size_t most = map.getNumLeafNodes();
-    for (std::size_t wanted = path.numRoots; wanted <= most; wanted += 1 + most / 17) {
-      abstraction.setAlpha(trees.alphaForLeaves(wanted));
-      const auto beyond = std::upper_bound(path.leaves.begin(), path.leaves.end(), double(wanted));
-      EXPECT_EQ(abstraction.measures().compressed.numKnownLeaves, *(beyond - 1));
-    }
-    EXPECT_NO_THROW(trees.alphaForLeaves(most));
-    EXPECT_THROW(trees.alphaForLeaves(most + 1), std::invalid_argument);
-    EXPECT_THROW(trees.alphaForLeaves(path.numRoots - 1), std::invalid_argument);
-  }
-}

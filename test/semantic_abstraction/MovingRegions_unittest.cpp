@@ -30,7 +30,7 @@ std::vector<Region> regionsOf(int scan) {
   return regions;
 }
 
-/** The same, of one place: within a ball around the robot or a bend, or beside a stretch. */
+/** A place counts within a ball around the robot or a bend, or beside a stretch. */
 double densityAt(const Eigen::Vector3d& place, int scan) {
   if ((place - robotAt(scan)).norm() <= kAround) return 1;
   for (std::size_t i = scan / 4; i + 1 < kWay.size(); ++i) {

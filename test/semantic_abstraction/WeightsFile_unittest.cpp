@@ -97,6 +97,61 @@ TEST(WeightsFile, aClassCannotBeBothKeptAndDropped) {
                        "class 'road' is both relevant ('road') and irrelevant ('wall+road')"));
 }
 
+TEST(WeightsFile, badFilesAreRefusedWithTheirLine) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& text) {
+    const auto file = folder.write("weights.yaml", text);
+    return errorOf([&] { loadWeights(file, roadTreeWall()); });
+  };
+  const std::string some = "name: a\nrelevant: {road: 1}\nalpha: 0.1\n";
+  EXPECT_EQ(refusal(some), "");
+  std::vector<std::pair<std::string, std::string>> cases = {
+      {"{name: a, relevant: {rode: 1}}", "weights.yaml:1: unknown class 'rode'"},
+      {"{name: a, irrelevant: {rode: 1}}", "'rode'"},
+      {"{name: a, relevant: {g: {classes: [road, cra], weight: 1}}}", "'cra'"},
+      {"{name: a, relevant: {road: 1}, irrelevant: {road: 1}}", "both relevant and irrelevant"},
+      {"{name: a, relevant: {road: 1}, irrelevant: {g: {classes: [wall, road], weight: 1}}}",
+       "both relevant"},
+      {"name: a\nrelevent: {road: 1}\nalpha: 0.1\n", "weights.yaml:2: unknown key 'relevent'"},
+      {"solutions:\n - {name: a, relevant: {road: 1}, alfa: 1}\n", "weights.yaml:2: unknown key"},
+      {"{solutions: [{name: a, relevant: {road: 1}, alpha: 1}], alpha: 1}", "'alpha'"},
+      {"{name: a, relevant: {road: 1, road: 2}}", "'road' twice"},
+      {"{name: a, relevant: {g: {classes: [wall, wall], weight: 1}}}", "'wall' twice"},
+      {"{name: a, relevant: {g: {class: [wall], weight: 1}}}", "'class'"},
+      {"{name: a, relevant: {g: {weight: 1}}}", "'classes'"},
+      {"{name: a, relevant: {g: {classes: [wall]}}}", "'weight'"},
+      {"{name: a, relevant: {wall: {classes: [wall], weight: 1}}}", "'wall'"},
+      {"{relevant: {road: 1}}", "'name'"},
+      {"{name: a, alpha: 0.1}", "weighs nothing"},
+      {"solutions:\n - {name: a, everything: 1}\n - {name: a, everything: 1}\n",
+       "weights.yaml:3: name: two solutions called 'a'"},
+      {"name: [a\nrelevant: {road: 1}", "weights.yaml"},
+      {"- 1\n", "weights.yaml:1: expected 'key: value'"},
+      {"", "key: value"},
+      {"solutions: []", "list"},
+      {some + "unknown: none", "weights.yaml:4: "},
+      {some + "frame: paid", "free, charged"},
+      {some + "regions: [cube 2]", "box, sphere or corridor"},
+      {some + "regions: [sphere 0 0 0 2]", "the numbers of this shape"},
+      {some + "regions: [sphere 0 0 0 -1 2]", "radius"},
+      {some + "regions: [box 0 0 0 1 1 -1 2]", "lowest corner first"},
+      {some + "regions: [box 0 0 0 1 1 1 -1]", "weight of a region"}};
+  for (const std::string bad : {"-1", ".nan", "much", "[1]", ""}) {
+    cases.emplace_back("{name: a, relevant: {road: " + bad + "}}", "weight of 'road'");
+    cases.emplace_back("{name: a, relevant: {g: {classes: [wall], weight: " + bad + "}}}", "'g'");
+    cases.emplace_back("{name: a, everything: " + bad + "}", "everything");
+    cases.emplace_back("{name: a, everything: 1, alpha: " + bad + "}", "alpha");
+    if (bad != "[1]")
+      cases.emplace_back("{name: a, everything: 1, block_size: " + bad + "}", "block_size");
+  }
+  for (const std::string name : {"''", "../a", "a/b", "a.b", "a b"})
+    cases.emplace_back("{name: " + name + ", relevant: {road: 1}}", "name");
+  for (const auto& [text, words] : cases)
+    EXPECT_TRUE(contains(refusal(text), "weights.yaml") && contains(refusal(text), words))
+        << text << '\n'
+        << refusal(text);
+}
+
 TEST(TermCatalog, hasClassesFirstAndEachGroupOnce) {
   const TemporaryFolder folder;
   const auto file = loadWeights(

@@ -59,7 +59,7 @@ void insertScan(benchmark::State& state) {
 }
 BENCHMARK(insertScan)->Arg(0)->Arg(4)->Arg(24)->Unit(benchmark::kMillisecond);
 
-/** The same without upkeep: all of the map is laid out and computed anew. */
+/** Without upkeep, all of the map is laid out and computed anew. */
 void plainFullPass(benchmark::State& state) {
   const Place place(4);
   const auto weights = withTerms(4).weights;

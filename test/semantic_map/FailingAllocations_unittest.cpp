@@ -29,7 +29,7 @@ int sweep(const CSemanticOctoMap& before, const Operation& operation) {
                             [&] { EXPECT_TRUE(map->tree() == before.tree()); });
 }
 
-/** Of what is written as a whole, or refused. */
+/** Checks that a map is written as a whole, or refused. */
 template <typename Write>
 int sweepWriting(const CSemanticOctoMap& map, const Write& write) {
   std::string complete;

@@ -49,14 +49,6 @@ TEST(MapDefinition, bothNamesMakeTheMap) {
   EXPECT_FALSE(mapOf("[Maps]\npointsMap_count = 1\n"));
 }
 
-TEST(MapDefinition, withoutSectionsTheDefaultsHold) {
-  const auto map = mapOf("[Maps]\nsemanticOctoMap_count = 1\n");
-  EXPECT_EQ(map->tree().getResolution(), 0.1);
-  EXPECT_EQ(map->tree().numClasses(), 1);
-  EXPECT_TRUE(map->tree().filterParameters() == FilterParameters());
-  EXPECT_TRUE(map->isEmpty());
-}
-
 TEST(MapDefinition, everyOptionIsReadFromItsSection) {
   const TemporaryFolder folder;
   const auto classes = folder.write("classes.yaml", kClasses);
@@ -104,16 +96,13 @@ TEST(MapDefinition, namesAreReadHoweverTheirWordsAreParted) {
   EXPECT_EQ(map->insertionOptions.scan.maxRange, 30);
 }
 
-TEST(MapDefinition, anUnknownKeyIsNamedWithItsSectionAndTheNearestKnownOne) {
+TEST(MapDefinition, anUnknownKeyOrSectionIsNamedWithTheNearestKnownOne) {
   expectRefused(
       "creationOpts", "resolutoin = 0.1",
       {"Maps_semanticOctoMap_00_creationOpts", "'resolutoin'", "did you mean 'resolution'?"});
   expectRefused("insertOpts", "maxrage = 3", {"_insertOpts", "'maxrage'", "'max_range'?"});
   expectRefused("likelihoodOpts", "foo = 3", {"_likelihoodOpts", "'foo'"});
   expectRefused("renderOpts", "decimation = 3", {"_renderOpts", "'decimation'"});
-}
-
-TEST(MapDefinition, anUnknownSectionIsNamed) {
   expectRefused("insertionOpts", "max_range = 3",
                 {"Maps_semanticOctoMap_00_insertionOpts", "unknown section", "insertOpts"});
 }
@@ -151,11 +140,8 @@ TEST(MapDefinition, aBadValueIsNamedWithWhatWasExpected) {
   expectRefused("insertOpts", "accuracy = 1.5", {"accuracy", "1.5"});
   expectRefused("likelihoodOpts", "use_labels = maybe", {"use_labels", "'maybe'", "true or false"});
   expectRefused("likelihoodOpts", "point_weight = 0", {"point_weight", "0"});
-  expectRefused("renderOpts", "min_height = 5\nmax_height = 2", {"min_height", "5", "max_height"});
-}
-
-TEST(MapDefinition, aClassTableThatIsMissingIsNamed) {
   expectRefused("creationOpts", "classes = no/such.yaml", {"no/such.yaml"});
+  expectRefused("renderOpts", "min_height = 5\nmax_height = 2", {"min_height", "5", "max_height"});
 }
 
 TEST(MapDefinition, whatIsSavedIsReadBack) {
@@ -176,14 +162,6 @@ TEST(MapDefinition, whatIsSavedIsReadBack) {
   EXPECT_EQ(read.renderOpts.coloring, TRenderingOptions::Coloring::Probability);
   EXPECT_EQ(read.renderOpts.maxHeight, INFINITY);
   EXPECT_FALSE(read.genericMapParams.enableObservationLikelihood);
-}
-
-TEST(MapDefinition, theDumpShowsEveryOption) {
-  std::ostringstream dump;
-  CSemanticOctoMap::TMapDefinition().dumpToTextStream(dump);
-  for (const char* option : {"resolution = 0.1", "max_range = 0", "rays = all", "accuracy = 0.9",
-                             "use_labels = true", "coloring = class"})
-    EXPECT_TRUE(contains(dump.str(), option)) << option;
 }
 
 TEST(MapOptions, whatIsDumpedIsReadBack) {

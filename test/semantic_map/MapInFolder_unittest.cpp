@@ -121,28 +121,6 @@ TEST_F(InFolder, isSavedThereAndNowhereElse) {
   EXPECT_TRUE(semantic_octree::loadMap((folder / "tiles").string()) == plain.tree());
 }
 
-TEST_F(InFolder, goesOnWhereItWasSaved) {
-  map.folder()->save();
-  fill(plain);
-  fill(plain);
-  {
-    CSemanticOctoMap second = empty();
-    EXPECT_TRUE(contains(errorOf([&] { second.openFolder(tilesIn(folder / "tiles")); }),
-                         "writes into this folder"));
-    EXPECT_TRUE(second.isEmpty());
-    EXPECT_EQ(second.folder(), nullptr);
-  }
-  fill(map);  // is not saved, and lost
-  for (int i = 0; i < 2; ++i) {
-    owner = nullptr;
-    owner = std::make_unique<CSemanticOctoMap>(0.1, threeClasses());
-    owner->openFolder(tilesIn(folder / "tiles"));
-    fill(*owner);
-    owner->folder()->save();
-  }
-  EXPECT_TRUE(treeOf(*owner) == treeOf(plain));
-}
-
 TEST_F(InFolder, isReadByMany) {
   map.folder()->save();
   CSemanticOctoMap one = empty(), other = empty();
@@ -220,19 +198,6 @@ TEST_F(InFolder, isNotCopiedWhereThereIsNoMemoryForIt) {
   EXPECT_TRUE(contains(ofCopy, "as a whole it needs about")) << ofCopy;
   EXPECT_TRUE(contains(ofArchive, "as a whole it needs about")) << ofArchive;
   EXPECT_TRUE(treeOf(map) == treeOf(plain));
-}
-
-TEST_F(InFolder, isClearedAndWhatWasSavedStaysUntilItIsSavedAnew) {
-  map.folder()->save();
-  map.clear();
-  EXPECT_TRUE(map.isEmpty());
-  EXPECT_TRUE(semantic_octree::loadMap((folder / "tiles").string()) == plain.tree());
-  for (int i = 0; i < 2; ++i) fill(map);
-  plain.clear();
-  for (int i = 0; i < 2; ++i) fill(plain);
-  EXPECT_TRUE(treeOf(map) == treeOf(plain));
-  map.folder()->save();
-  EXPECT_TRUE(semantic_octree::loadMap((folder / "tiles").string()) == plain.tree());
 }
 
 TEST_F(InFolder, doesNotBecomeAnotherMap) {

@@ -71,36 +71,26 @@ void expectRefused(CSemanticOctoMap& map, const mrpt::obs::CObservation& observa
 
 }  // namespace
 
-TEST(MapInsertion, aLabeledCloudLandsWhereItsSensorSawIt) {
-  CSemanticOctoMap map = quietMap();
-  auto observation = labeledPoints({kPoint}, {2});
-  observation.sensorPose = kSensor;
-  EXPECT_TRUE(map.insertObservation(observation, kRobot));
-  expectOnlyThePoint(map, 2);
-  EXPECT_EQ(map.lastInsertion().conversion.labeled, 1u);
-  EXPECT_EQ(map.lastInsertion().map.hitVoxels, 1u);
-}
-
-TEST(MapInsertion, aPointCloudLandsWhereItsSensorSawItWithoutAClass) {
-  CSemanticOctoMap map = quietMap();
-  mrpt::obs::CObservationPointCloud observation;
-  observation.sensorPose = kSensor;
+TEST(MapInsertion, pointsLandWhereTheirSensorSawThem) {
+  auto labeled = labeledPoints({kPoint}, {2});
+  mrpt::obs::CObservationPointCloud cloud;
   const auto points = mrpt::maps::CSimplePointsMap::Create();
   points->insertPoint(kPoint.x(), kPoint.y(), kPoint.z());
-  observation.pointcloud = points;
-  EXPECT_TRUE(map.insertObservation(observation, kRobot));
-  expectOnlyThePoint(map, kNoClass);
-}
-
-TEST(MapInsertion, aVelodyneScanLandsWhereItsSensorSawItWithoutAClass) {
-  CSemanticOctoMap map = quietMap();
-  mrpt::obs::CObservationVelodyneScan observation;
-  observation.sensorPose = kSensor;
-  observation.point_cloud.x = {kPoint.x()};
-  observation.point_cloud.y = {kPoint.y()};
-  observation.point_cloud.z = {kPoint.z()};
-  EXPECT_TRUE(map.insertObservation(observation, kRobot));
-  expectOnlyThePoint(map, kNoClass);
+  cloud.pointcloud = points;
+  mrpt::obs::CObservationVelodyneScan velodyne;
+  velodyne.point_cloud.x = {kPoint.x()};
+  velodyne.point_cloud.y = {kPoint.y()};
+  velodyne.point_cloud.z = {kPoint.z()};
+  for (mrpt::obs::CObservation* observation :
+       std::initializer_list<mrpt::obs::CObservation*>{&labeled, &cloud, &velodyne}) {
+    CSemanticOctoMap map = quietMap();
+    observation->setSensorPose(kSensor);
+    EXPECT_TRUE(map.insertObservation(*observation, kRobot));
+    const bool hasLabels = observation == &labeled;
+    expectOnlyThePoint(map, hasLabels ? 2 : kNoClass);
+    EXPECT_EQ(map.lastInsertion().conversion.labeled, hasLabels ? 1u : 0u);
+    EXPECT_EQ(map.lastInsertion().map.hitVoxels, 1u);
+  }
 }
 
 TEST(MapInsertion, aDepthImageLandsWhereItsCameraSawIt) {
@@ -123,12 +113,6 @@ TEST(MapInsertion, aDepthImageLandsWhereItsCameraSawIt) {
     EXPECT_EQ(map.lastInsertion().conversion.labeled, labeled ? 1u : 0u);
     EXPECT_EQ(map.lastInsertion().conversion.invalid, 21u * 21u - 1u);
   }
-}
-
-TEST(MapInsertion, withoutAPoseTheRobotIsAtTheOrigin) {
-  CSemanticOctoMap map = quietMap();
-  EXPECT_TRUE(map.insertObservation(labeledPoints({{1.05f, 0.05f, 0.05f}}, {1})));
-  EXPECT_EQ(map.tree().query(1.05, 0.05, 0.05).status, Status::Occupied);
 }
 
 TEST(MapInsertion, arrivalsAndClearingAreAnnouncedToObservers) {

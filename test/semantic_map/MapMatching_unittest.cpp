@@ -52,7 +52,7 @@ CSimplePointsMap somePoints() {
 
 const CPose3D kPose(0.31, -0.17, 0.42, 0.7, 0.05, -0.03);
 
-/** The same pairs: other points, distances; which of several equally near voxels is open. */
+/** Expects equal points and distances; which of several equally near voxels is open. */
 void expectSamePairs(const TMatchingPairList& pairs, const TMatchingPairList& expected) {
   ASSERT_EQ(pairs.size(), expected.size());
   ASSERT_GT(pairs.size(), 10u);
@@ -110,13 +110,6 @@ TEST(MapMatching, eachVoxelOnceWhereAsked) {
   for (const auto& pair : pairs) voxels.insert(pair.globalIdx);
   EXPECT_EQ(voxels.size(), pairs.size());
   EXPECT_GT(pairs.size(), 10u);
-}
-
-TEST(MapMatching, itsOwnCentersMatchAllAndFarOnesNone) {
-  const CSemanticOctoMap map = filledMap();
-  const auto centers = voxelCenters(map);
-  EXPECT_EQ(map.compute3DMatchingRatio(&centers, CPose3D(), {}), 1.f);
-  EXPECT_EQ(map.compute3DMatchingRatio(&centers, CPose3D(0, 0, 100, 0, 0, 0), {}), 0.f);
 }
 
 TEST(MapMatching, whatCannotBeMatchedIsRefused) {

@@ -64,19 +64,6 @@ TEST(MapVisualization, optionsChooseTheCells) {
   EXPECT_EQ(voxelsOf(map)->getVoxelCount(kOccupied), 1u);
 }
 
-TEST(MapVisualization, colorsCanShowHeightOrProbability) {
-  CSemanticOctoMap map = twoVoxels();
-  map.renderingOptions.coloring = TRenderingOptions::Coloring::Height;
-  const auto byHeight = voxelsOf(map);
-  for (int i = 0; i < 2; ++i) {
-    const auto& voxel = byHeight->getVoxel(kOccupied, i);
-    EXPECT_EQ(voxel.color.R > voxel.color.B, voxel.coords.z > 0.5);
-  }
-  map.renderingOptions.coloring = TRenderingOptions::Coloring::Probability;
-  const double p = map.tree().query(3.05, 0.05, 0.05).probability;
-  EXPECT_NEAR(voxelsOf(map)->getVoxel(kOccupied, 0).color.R, std::min(235.0, 235 * (2 - 2 * p)), 1);
-}
-
 TEST(MapVisualization, colorsCanShowEntropy) {
   CSemanticOctoMap map = twoVoxels();
   map.renderingOptions.coloring = TRenderingOptions::Coloring::Entropy;
@@ -130,15 +117,5 @@ TEST(MapVisualization, savesItsOwnFileAndAScene) {
   ASSERT_TRUE(scene.loadFromFile((folder / "map.3Dscene").string()));
   EXPECT_TRUE(
       scene.getByClass<mrpt_compat::drawing::CSetOfObjects>()->getByClass<COctoMapVoxels>());
-}
-
-TEST(MapVisualization, anUnwritablePlaceIsAnError) {
-  EXPECT_THROW(twoVoxels().saveMetricMapRepresentationToFile("/no/such/folder/map"),
-               std::runtime_error);
-}
-
-TEST(MapVisualization, theMapDescribesItselfInALine) {
-  const std::string text = twoVoxels().asString();
-  EXPECT_TRUE(contains(text, "0.1 m")) << text;
-  EXPECT_TRUE(contains(text, "3 classes")) << text;
+  EXPECT_THROW(map.saveMetricMapRepresentationToFile("/no/such/folder/map"), std::runtime_error);
 }

@@ -88,7 +88,7 @@ AbstractionOptions someTerms() {
   return options;
 }
 
-/** The same scans in maps of each kind. */
+/** Maps of each kind receive equal scans. */
 class Maps {
  public:
   Maps(int classes, const FilterParameters& p)

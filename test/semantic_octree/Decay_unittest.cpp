@@ -1,16 +1,69 @@
+// Maps in which some classes fade, and what follows them: files, G-values, changes, sums.
 #include <gtest/gtest.h>
 #include <map_operations/MapOperations.h>
 #include <octomap/OcTree.h>
 #include <semantic_abstraction/Abstraction.h>
+#include <semantic_octree/MapFollower.h>
+#include <semantic_octree/TreeFile.h>
 
 #include <cmath>
+#include <sstream>
 
-#include "AgingMaps.h"
+#include "FollowedTree.h"
 #include "Voxels.h"
 
-using namespace aging_maps;
+using namespace semantic_octree;
+using semantic_types::kForever;
 
 namespace {
+
+constexpr int kClasses = 5;
+
+/** Seconds: free space, classes 1 to 5. Class 4 stays, class 5 goes slowly. */
+constexpr double kHalfLives[kClasses + 1] = {8, 1, 2.5, 4, kForever, 3e7};
+
+ClassTable classes(bool freeDecays = true) {
+  ClassTable table = numberedClasses(kClasses);
+  for (int id = freeDecays ? 0 : 1; id <= kClasses; ++id)
+    table.setHalfLife(static_cast<ClassId>(id), kHalfLives[id]);
+  return table;
+}
+
+AbstractionOptions abstraction(double alpha = 0.01) {
+  AbstractionOptions options;
+  options.weights.terms = {tree_abstraction::relevant("1", 1, {1}),
+                           tree_abstraction::irrelevant("2", 0.5, {2})};
+  options.weights.alpha = alpha;
+  return options;
+}
+
+void insertRandom(SemanticOcTree& map, std::mt19937& random, double secondsSince = 0) {
+  RandomScanOptions scans;
+  scans.softLabels = random() % 4 == 0;
+  const PosedCloud scan = randomScan(random, scans);
+  InsertionOptions options;
+  options.maxRange = 6;
+  map.insert(scan.cloud, scan.T_map_sensor, options, secondsSince);
+}
+
+SemanticOcTree randomMap(unsigned seed, const ClassTable& table, bool pruning = true) {
+  std::mt19937 random(seed);
+  SemanticOcTree map(0.4, table);
+  map.setPruning(pruning);
+  for (int i = 0; i < 4; ++i) insertRandom(map, random, 0.7);
+  return map;
+}
+
+std::string bytesOf(const SemanticOcTree& map) {
+  std::ostringstream out;
+  writeTree(out, map);
+  return out.str();
+}
+
+SemanticOcTree reloaded(const SemanticOcTree& map) {
+  std::istringstream in(bytesOf(map));
+  return readTree(in);
+}
 
 constexpr double kTick = 1.0 / kUnitsPerLogOdds;
 
@@ -73,20 +126,6 @@ TEST(Decay, logOddsShrinkByTheHalfLifeOfTheLikeliestClass) {
   }
 }
 
-TEST(Decay, leadsToUnknownNeverToFree) {
-  SemanticOcTree map = randomMap(2, classes(false));
-  const auto before = voxelsOf(map);
-  for (int i = 0; i < 40; ++i) {
-    map.age(0.75);
-    for (const auto& [id, p] : voxelsOf(map))
-      ASSERT_EQ(p[0] < 0.5, before.at(id)[0] < 0.5) << "a voxel that was occupied is free";
-  }
-  const MapContents contents = contentsOf(map);
-  for (const int id : {1, 2, 3}) EXPECT_EQ(contents.voxelsOfClass[id], 0u) << id;
-  for (const int id : {4, 5}) EXPECT_GT(contents.voxelsOfClass[id], 10u) << id;
-  EXPECT_EQ(contents.freeVoxels, contentsOf(randomMap(2, classes(false))).freeVoxels);
-}
-
 TEST(Decay, manyShortTimesDoWhatALongOneDoes) {
   std::mt19937 random(3);
   for (unsigned seed = 10; seed < 16; ++seed) {
@@ -143,14 +182,78 @@ TEST(Decay, mapsWithoutHalfLivesStayAsTheyAreAlsoInFiles) {
   EXPECT_EQ(bytesOf(map), before);
 }
 
-TEST(Decay, allThatHasAHalfLifeGoesInTheEnd) {
-  SemanticOcTree map = randomMap(50, classes());
-  ClassTable all = classes();
-  all.setHalfLife(4, 100);
-  map.setHalfLives(all);
-  map.age(1e9);
-  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
-    EXPECT_TRUE(map.isNodeOccupied(*leaf));
-    EXPECT_EQ(halfLifeOf(map, *leaf), kForever) << "only what never had a class stays";
+TEST(Decay, aMapThatIsLoadedGoesOnWhereItStopped) {
+  for (unsigned seed = 20; seed < 24; ++seed) {
+    std::mt19937 random(seed);
+    SemanticOcTree map = randomMap(seed, classes());
+    map.age(0.33);
+    SemanticOcTree loaded = reloaded(map);
+    ASSERT_TRUE(loaded == map);
+    EXPECT_EQ(loaded.clock(), map.clock());
+    EXPECT_EQ(loaded.classes().halfLife(2), 2.5);
+    EXPECT_EQ(loaded.classes().halfLife(kNoClass), 8);
+    for (SemanticOcTree* m : {&map, &loaded}) {
+      std::mt19937 same(seed + 100);
+      for (int i = 0; i < 3; ++i) insertRandom(*m, same, 0.41);
+    }
+    ASSERT_TRUE(loaded == map);
   }
+}
+
+TEST(Decay, mixturesGValuesAndTheCompressedTreesChangeFollow) {
+  for (unsigned seed = 30; seed < 36; ++seed) {
+    std::mt19937 random(seed);
+    SemanticOcTree map(0.4, classes(seed % 2 == 0));
+    map.setPruning(seed % 3 != 0);
+    AbstractionOptions options = abstraction(0.01 + 0.05 * (seed - 30));
+    if (seed % 2 == 0) options.blockSize = 1.6;  // of 4 x 4 x 4 voxels
+    setAbstraction(map, options);
+    FollowedTree told(map);
+    for (int i = 0; i < 30; ++i) {
+      i % 10 == 0 ? insertRandom(map, random, 0.2) : map.age(between(random, 0, 0.7));
+      told.follow();
+      ASSERT_FALSE(HasFailure()) << seed << ", " << i;
+      SemanticOcTree anew = reloaded(map);
+      setAbstraction(anew, options);
+      ASSERT_TRUE(map == anew) << seed << ", " << i;
+    }
+  }
+}
+
+/** Nothing else changes that would lead the eye there. */
+TEST(Decay, aBlockThatIsNotWorthItsPriceAnyMoreIsTold) {
+  SemanticOcTree map(0.5, classes(false));
+  AbstractionOptions options = abstraction(0.01);
+  options.blockSize = 2;
+  setAbstraction(map, options);
+  LabeledCloud cloud;
+  cloud.points = {{0.25f, 0.25f, 0.25f}, {1.25f, 1.25f, 1.25f}};
+  cloud.classes = {1, 2};
+  map.insert(cloud, Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.1, 0.1)));
+  LeafFollower follower(map);
+  follower.skipLeaves();
+  const std::size_t before = Abstraction(map).leaves().size();
+  map.age(20);
+  EXPECT_LT(Abstraction(map).leaves().size(), before);
+  EXPECT_FALSE(follower.leaves().removed.empty());
+}
+
+TEST(Decay, sumsHaveTheLatestClock) {
+  SemanticOcTree early = randomMap(60, classes()), late = randomMap(61, classes());
+  late.age(5);
+  const SemanticOcTree sum = merged({&early, &late});
+  EXPECT_EQ(sum.clock(), late.clock());
+  EXPECT_TRUE(sum == merged({&late, &early}));
+  EXPECT_EQ(coarsened(late, 1).clock(), late.clock());
+}
+
+TEST(Decay, refusesTimesThatCannotBe) {
+  SemanticOcTree map = randomMap(70, classes());
+  const std::string before = bytesOf(map);
+  for (const double seconds : {-1.0, 1.1e9, std::nan("")})
+    EXPECT_THROW(map.age(seconds), std::invalid_argument) << seconds;
+  EXPECT_EQ(bytesOf(map), before);
+  SemanticOcTree empty(0.4, classes());
+  for (int i = 0; i < 6; ++i) empty.age(1e9);
+  EXPECT_THROW(empty.age(1e9), std::out_of_range);
 }

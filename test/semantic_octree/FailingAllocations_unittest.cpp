@@ -22,6 +22,13 @@ using namespace semantic_octree;
 
 namespace {
 
+/** Few points: each allocation is made to fail, and all before it are made again. */
+PosedCloud fewPoints(std::mt19937& random) {
+  RandomScanOptions options;
+  options.points = 100;
+  return randomScan(random, options);
+}
+
 SemanticOcTree mapOf(unsigned seed, int numScans, bool withAbstraction) {
   std::mt19937 random(seed);
   SemanticOcTree map(0.5, numberedClasses(5));
@@ -33,7 +40,7 @@ SemanticOcTree mapOf(unsigned seed, int numScans, bool withAbstraction) {
     setAbstraction(map, options);
   }
   for (int i = 0; i < numScans; ++i) {
-    const PosedCloud scan = randomScan(random);
+    const PosedCloud scan = fewPoints(random);
     map.insert(scan.cloud, scan.T_map_sensor);
   }
   return map;
@@ -75,7 +82,7 @@ int sweep(const SemanticOcTree& before, const F& operation, int* broken = nullpt
 
 TEST(FailingAllocations, whileAScanIsInsertedLeaveTheMapOrABrokenOne) {
   std::mt19937 random(3);
-  const PosedCloud scan = randomScan(random);
+  const PosedCloud scan = fewPoints(random);
   int broken = 0, failures = 0;
   for (const bool withAbstraction : {false, true})
     for (const int threads : {1, 2}) {
@@ -134,7 +141,7 @@ TEST(FailingAllocations, elsewhereLeaveTheMapAsItWas) {
 
 TEST(FailingAllocations, whileKeyframesAreCorrectedLeaveTheMapOrABrokenOne) {
   std::mt19937 random(8);
-  const PosedCloud a = randomScan(random), b = randomScan(random);
+  const PosedCloud a = fewPoints(random), b = fewPoints(random);
   const Eigen::Isometry3d T(Eigen::Translation3d(0.3, 1, 0));
   std::optional<SemanticOcTree> map;
   std::optional<KeyframeMap> keyframes;
@@ -178,7 +185,7 @@ TEST(FailingAllocations, whileKeyframesAreCorrectedLeaveTheMapOrABrokenOne) {
 TEST(FailingAllocations, ofWhoFollowsLeaveNoReaderBlind) {
   const SemanticOcTree before = mapOf(7, 2, true);
   std::mt19937 random(8);
-  const PosedCloud scan = randomScan(random);
+  const PosedCloud scan = fewPoints(random);
   std::optional<SemanticOcTree> map;
   std::optional<FollowedTree> first, second;
   const int failures = failEachAllocation(
@@ -199,15 +206,13 @@ TEST(FailingAllocations, whileTilesComeAndGoLeaveTheMapOrABrokenOne) {
   std::string expected;
   MapFolderOptions tight;
   tight.memory = 0;
-  tight.tileSize = 8;
+  tight.tileSize = 16;
   {
     SemanticOcTree map = mapOf(1, 0, true);
     MapFolder tiles(map, folder.path(), MapFolder::Access::Write, tight);
     std::mt19937 random(10);
-    for (int i = 0; i < 2; ++i) {
-      const PosedCloud scan = randomScan(random);
-      map.insert(scan.cloud, scan.T_map_sensor);
-    }
+    const PosedCloud scan = fewPoints(random);
+    map.insert(scan.cloud, scan.T_map_sensor);
     tiles.save();
     expected = bytesOf(map);
   }
@@ -244,7 +249,7 @@ TEST(FailingAllocations, whileAMapIsSavedLeaveTheOldFile) {
 }
 
 TEST(FailingAllocations, aReceiverTakesAPacketThatFailedAgain) {
-  SemanticOcTree map = mapOf(3, 2, true);
+  SemanticOcTree map = mapOf(3, 6, true);
   Abstraction(map).setAlpha(0);
   MapSender sender(1);
   sender.setMap(map);

@@ -49,20 +49,6 @@ TEST(IndexPool, elementsAreApartAndStayWhereTheyAre) {
   }
 }
 
-TEST(IndexPool, elementsThatWereGivenBackAreUsedAgain) {
-  IndexPool pool(8);
-  IndexAllocator allocator;
-  std::set<std::uint32_t> used, released;
-  for (int i = 0; i < 100; ++i) used.insert(allocator.allocate(pool));
-  EXPECT_EQ(used.size(), 100u);
-  for (const std::uint32_t index : {7u, 50u, 99u}) {
-    allocator.release(index);
-    released.insert(index);
-  }
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(released.erase(allocator.allocate(pool)), 1u);
-  EXPECT_EQ(allocator.allocate(pool), 100u);
-}
-
 TEST(IndexPool, ofSeveralThreadsGivesEachElementsOfItsOwn) {
   IndexPool pool(8);
   std::vector<std::vector<std::uint32_t>> indices(3);
@@ -86,23 +72,6 @@ TEST(IndexPool, ofSeveralThreadsGivesEachElementsOfItsOwn) {
   EXPECT_EQ(all.size(), 150000u);
 }
 
-TEST(IndexPool, copiesHaveTheSameElementsWithMoreOrLessRoom) {
-  IndexPool pool(8);
-  IndexAllocator allocator;
-  for (int i = 0; i < 3000; ++i) write(pool, allocator.allocate(pool), i);
-  for (const std::size_t stride : {4u, 8u, 20u}) {
-    IndexPool copy(stride);
-    copy.copy(pool);
-    EXPECT_EQ(copy.stride(), stride);
-    for (int i = 0; i < 3000; ++i) ASSERT_EQ(read(copy, std::uint32_t(i)), i);
-    write(copy, 5, -1);
-    EXPECT_EQ(read(pool, 5), 5);
-    IndexAllocator same = allocator;
-    EXPECT_EQ(same.allocate(copy), 3000u) << "an allocator's copy goes on in the copy";
-    write(copy, 3000, 1);
-  }
-}
-
 TEST(RunAllocator, runsOfEveryLengthAreApart) {
   std::mt19937 random(1);
   IndexPool pool(4);
@@ -124,21 +93,4 @@ TEST(RunAllocator, runsOfEveryLengthAreApart) {
   }
   for (const Elements& run : runs)
     for (int k = 0; k < run.length; ++k) ASSERT_EQ(read(pool, run.index + k), run.content);
-}
-
-TEST(RunAllocator, runsThatWereGivenBackServeAllThatAreOfTheSameLength) {
-  IndexPool pool(4);
-  RunAllocator allocator;
-  for (int n = 1; n <= 64; ++n)
-    for (int m = 1; m <= 64; ++m) {
-      const std::uint32_t index = allocator.allocate(pool, n);
-      allocator.release(index, n);
-      const std::uint32_t next = allocator.allocate(pool, m);
-      EXPECT_EQ(next == index, RunAllocator::sameLength(n, m)) << n << " and " << m;
-      allocator.release(next, m);
-    }
-  for (int n = 1; n < 64; ++n) {
-    EXPECT_TRUE(RunAllocator::sameLength(n, n));
-    EXPECT_FALSE(RunAllocator::sameLength(n, 2 * n)) << "memory would be wasted";
-  }
 }

@@ -47,17 +47,6 @@ int keyOfReturn(double voxelSize, double sensor, float point) {
 
 }  // namespace
 
-TEST(Keys, coordinatesBelowZeroAreRoundedDown) {
-  EXPECT_EQ(keyOf(0, kVoxel), 32768);
-  EXPECT_EQ(keyOf(-0.01, kVoxel), 32767);
-  EXPECT_EQ(keyOf(-0.25, kVoxel), 32767);
-  EXPECT_EQ(keyOf(-0.26, kVoxel), 32766);
-  EXPECT_EQ(keyOf(0.24, kVoxel), 32768);
-  EXPECT_EQ(keyOf(-8192, kVoxel), 0);
-  EXPECT_LT(keyOf(-8192.1, kVoxel), 0);
-  EXPECT_EQ(keyOf(8192, kVoxel), kNumKeys);
-}
-
 TEST(Keys, areThoseOfOctoMap) {
   EXPECT_TRUE(rc::check([] {
     const octomap::OcTree map(kVoxel);

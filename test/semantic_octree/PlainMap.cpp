@@ -87,18 +87,13 @@ void PlainMap::insert(const PosedCloud& scan, const InsertionOptions& options) {
   const ClassFilter<float> filter(numClasses(), ofScan);
   for (const auto& [id, points] : plain.hits) {
     Voxel& v = voxel(id);
-    v.exact.trust(labels);
     scan.cloud.probabilities.empty() ? hit(v, points, scan.cloud, filter)
                                      : hitSoft(v, points, scan.cloud);
   }
   for (const VoxelId& id : plain.free) miss(voxel(id));
 }
 
-PlainMap::Voxel& PlainMap::voxel(const VoxelId& id) {
-  const ExactFilter exact(numClasses(), m_parameters, ExactFilter::Grid::Stored);
-  const Voxel unknown{0, {}, exact, {}, false};
-  return m_voxels.emplace(id, unknown).first->second;
-}
+PlainMap::Voxel& PlainMap::voxel(const VoxelId& id) { return m_voxels[id]; }
 
 void PlainMap::hit(Voxel& v, const std::vector<std::size_t>& points, const LabeledCloud& cloud,
                    const ClassFilter<float>& filter) const {
@@ -110,11 +105,9 @@ void PlainMap::hit(Voxel& v, const std::vector<std::size_t>& points, const Label
   std::vector<ClassVotes> ascending;
   for (const auto& [id, count] : votes) {
     ascending.push_back({static_cast<ClassId>(id), static_cast<std::uint32_t>(count)});
-    v.classesSeen.insert(id);
   }
   filter.hit(*v.record, ascending.data(), ascending.size());
   v.value = m_filter.occupancyOf(*v.record);
-  v.exact.hit(votes);
 }
 
 void PlainMap::hitSoft(Voxel& v, const std::vector<std::size_t>& points,
@@ -132,8 +125,6 @@ void PlainMap::hitSoft(Voxel& v, const std::vector<std::size_t>& points,
   if (!v.record) v.record = m_filter.uniform(v.value);
   m_filter.hit(*v.record, mean.data());
   v.value = m_filter.occupancyOf(*v.record);
-  v.exact.hit(mean);
-  v.hadSoftLabels = true;
 }
 
 void PlainMap::hitUnlabeled(Voxel& v) const {
@@ -143,11 +134,9 @@ void PlainMap::hitUnlabeled(Voxel& v) const {
   } else {
     v.value = m_filter.occupancyAfterUnlabeledHit(v.value);
   }
-  v.exact.hit();
 }
 
 void PlainMap::miss(Voxel& v) const {
-  v.exact.miss();
   if (!v.record) {
     v.value = m_filter.occupancyAfterMiss(v.value);
     return;

@@ -36,9 +36,6 @@ class PlainMap {
   struct Voxel {
     float value = 0;  ///< occupancy, log-odds
     std::optional<semantic_octree::ClassBelief<float>> record;
-    ExactFilter exact;           ///< of all K classes, in double, on the grid
-    std::set<int> classesSeen;   ///< beyond three, `exact` and `record` part
-    bool hadSoftLabels = false;  ///< these name all classes at once
   };
 
   PlainMap(double resolution, int K, const semantic_octree::FilterParameters& parameters = {})

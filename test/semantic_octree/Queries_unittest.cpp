@@ -18,7 +18,7 @@ InsertionOptions insertion() {
   return options;
 }
 
-/** The same scans in a pruned tree, an unpruned one and a plain map. */
+/** A pruned tree, an unpruned one and a plain map receive equal scans. */
 struct ThreeMaps {
   SemanticOcTree pruned{kQueryResolution, numberedClasses(kQueryClasses)}, unpruned = pruned;
   PlainMap plain{kQueryResolution, kQueryClasses};
@@ -100,21 +100,6 @@ TEST(Queries, prunedTreeAnswersEveryQueryLikeTheUnpruned) {
   }
 }
 
-TEST(Queries, prunedTreeCastsRaysLikeTheUnpruned) {
-  const auto& [pruned, unpruned, plain] = maps();
-  std::mt19937 random(3);
-  for (int i = 0; i < 2000; ++i) {
-    const octomap::point3d origin = randomPoint(random, 4), direction = randomPoint(random, 1);
-    const bool ignoreUnknown = i % 2;
-    const auto a = pruned.castRay(origin, direction, 5, ignoreUnknown);
-    const auto b = unpruned.castRay(origin, direction, 5, ignoreUnknown);
-    ASSERT_EQ(a.has_value(), b.has_value());
-    if (!a) continue;
-    EXPECT_EQ(a->key, b->key);
-    expectSameState(a->state, b->state);
-  }
-}
-
 TEST(Queries, tellTheStateOfEveryVoxel) {
   const auto& [tree, unpruned, plain] = maps();
   for (const auto& [id, voxel] : plain.voxels()) {
@@ -176,46 +161,6 @@ TEST(Queries, ofAnInnerNodeMixItsKnownLeavesByVolumeAndTakeTheHighestOccupancy) 
       for (const double x : expected.first) total += x;
       for (int k = 0; k <= kQueryClasses; ++k) EXPECT_NEAR(p[k], expected.first[k] / total, 1e-9);
     }
-  }
-}
-
-TEST(Queries, iteratorsVisitEachVoxelOnce) {
-  const auto& [pruned, unpruned, plain] = maps();
-  std::set<VoxelId> visited;
-  for (auto leaf = unpruned.begin_leafs(); leaf != unpruned.end_leafs(); ++leaf) {
-    const octomap::OcTreeKey key = leaf.getKey();
-    EXPECT_EQ(leaf.getDepth(), 16u);
-    EXPECT_TRUE(visited.insert(voxelAt(key[0], key[1], key[2])).second);
-  }
-  EXPECT_EQ(visited.size(), plain.voxels().size());
-  for (const auto& voxel : plain.voxels()) EXPECT_TRUE(visited.count(voxel.first));
-  EXPECT_EQ(unpruned.getNumLeafNodes(), plain.voxels().size());
-  std::size_t nodes = 0;
-  for (auto node = pruned.begin_tree(); node != pruned.end_tree(); ++node) ++nodes;
-  EXPECT_EQ(nodes, pruned.size());
-}
-
-TEST(Queries, boxIteratorsVisitTheLeavesThatTouchTheBox) {
-  const auto& [pruned, unpruned, plain] = maps();
-  std::mt19937 random(4);
-  for (int round = 0; round < 30; ++round) {
-    VoxelId low, high;
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = static_cast<int>(between(random, -20, 10));
-      high[axis] = low[axis] + static_cast<int>(between(random, 0, 15));
-    }
-    std::size_t expected = 0, found = 0;
-    for (const auto& [id, voxel] : plain.voxels()) {
-      bool inside = true;
-      for (int axis = 0; axis < 3; ++axis)
-        inside &= id[axis] >= low[axis] && id[axis] <= high[axis];
-      expected += inside;
-    }
-    for (auto leaf = unpruned.begin_leafs_bbx(keyOf(low), keyOf(high)),
-              end = unpruned.end_leafs_bbx();
-         leaf != end; ++leaf)
-      ++found;
-    EXPECT_EQ(found, expected);
   }
 }
 

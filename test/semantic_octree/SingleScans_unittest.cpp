@@ -14,37 +14,6 @@ constexpr double kScanResolution = 0.2;
 
 }  // namespace
 
-TEST(SingleScans, namesTheMajorityOfLabelsAndTheLowestIdOnATie) {
-  const auto classAfter = [](std::vector<ClassId> labels) {
-    SemanticOcTree tree(1.0, numberedClasses(9));
-    LabeledCloud cloud;
-    cloud.points.assign(labels.size(), {3.5f, 0.5f, 0.5f});
-    cloud.classes = labels;
-    tree.insert(cloud, Eigen::Isometry3d::Identity());
-    return tree.query(3.5, 0.5, 0.5).likeliestClass;
-  };
-  EXPECT_EQ(classAfter({4, 7, 7}), 7);
-  EXPECT_EQ(classAfter({7, 4}), 4);
-  EXPECT_EQ(classAfter({9, 8, 9, 8, 2}), 8);
-  EXPECT_EQ(classAfter({0, 0, 0, 6}), 6) << "points without a class do not vote";
-  EXPECT_EQ(classAfter({0, 0}), kNoClass);
-}
-
-TEST(SingleScans, inventsNoClass) {
-  // Voxels with points of classes 3 and 200: nothing in between may come out.
-  std::mt19937 random(5);
-  SemanticOcTree tree(kScanResolution, numberedClasses(254));
-  for (int i = 0; i < 10; ++i) {
-    PosedCloud scan = randomScan(random);
-    for (ClassId& id : scan.cloud.classes) id = id % 2 ? 3 : 200;
-    tree.insert(scan.cloud, scan.T_map_sensor);
-  }
-  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
-    const ClassId id = tree.query(*leaf).likeliestClass;
-    ASSERT_TRUE(id == kNoClass || id == 3 || id == 200) << int(id);
-  }
-}
-
 TEST(SingleScans, countsAVoxelOnceForEachScanForever) {
   // A voxel seen again exactly n scans later for every n up to ten, and 300 scans in a row.
   SemanticOcTree tree(kScanResolution, numberedClasses(2));
@@ -62,41 +31,6 @@ TEST(SingleScans, countsAVoxelOnceForEachScanForever) {
     for (int i = 0; i < pause; ++i) insert(elsewhere);
   }
   for (int i = 0; i < 300; ++i) insert(i % 3 ? elsewhere : here);
-}
-
-TEST(SingleScans, doesNotMissAVoxelThatIsHit) {
-  SemanticOcTree tree(1.0, numberedClasses(2));
-  LabeledCloud cloud;  // the second beam passes through the voxel in which the first one ends
-  cloud.points = {{5.5f, 0.5f, 0.5f}, {9.5f, 0.5f, 0.5f}};
-  const InsertionReport report = tree.insert(cloud, Eigen::Isometry3d::Identity());
-  EXPECT_EQ(report.hitVoxels, 2u);
-  EXPECT_EQ(report.freeVoxels, 8u);
-  const FilterParameters p;
-  EXPECT_NEAR(tree.query(5.5, 0.5, 0.5).occupancy,
-              sigmoid(stored(std::log(p.hitProbability / p.falseAlarmProbability))), 1e-6)
-      << "once hit, never missed";
-}
-
-TEST(SingleScans, carvesExactlyTheVoxelsOfAnAxisParallelBeamOnBothSidesOfZero) {
-  for (const float end : {6.5f, -6.5f}) {
-    SemanticOcTree tree(1.0, numberedClasses(2));
-    LabeledCloud cloud;
-    cloud.points = {{end, 0, 0}};
-    Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-    T_map_sensor.translation() << 0.5, -0.5, -0.5;
-    tree.insert(cloud, T_map_sensor);
-    for (int x = -8; x < 9; ++x) {
-      const auto status = tree.query(x + 0.5, -0.5, -0.5).status;
-      const int last = end > 0 ? 7 : -6;
-      if (x == last)
-        EXPECT_EQ(status, CellState::Status::Occupied) << x;
-      else if (x >= std::min(0, last) && x <= std::max(0, last))
-        EXPECT_EQ(status, CellState::Status::Free) << x;
-      else
-        EXPECT_EQ(status, CellState::Status::Unknown) << x;
-    }
-    EXPECT_EQ(tree.query(0.5, 0.5, -0.5).status, CellState::Status::Unknown);
-  }
 }
 
 TEST(SingleScans, ofBeamsAlongVoxelBordersStaysInTheBeamsNeighborhood) {
@@ -171,34 +105,4 @@ TEST(SingleScans, ofAnEmptyCloudChangesNothing) {
   onlyNan.points = {{NAN, NAN, NAN}};
   tree.insert(onlyNan, Eigen::Isometry3d::Identity());
   EXPECT_TRUE(tree.empty());
-}
-
-TEST(SingleScans, takesAMillionPoints) {
-  std::mt19937 random(6);
-  PosedCloud scan;
-  scan.T_map_sensor = randomPose(random, 2);
-  for (int i = 0; i < 1000000; ++i) {
-    Eigen::Vector3f p;
-    for (int axis = 0; axis < 3; ++axis) p[axis] = static_cast<float>(between(random, -1, 1));
-    scan.cloud.points.push_back(p.normalized() * 10.f);
-    scan.cloud.classes.push_back(static_cast<ClassId>(1 + random() % 5));
-  }
-  SemanticOcTree tree(kScanResolution, numberedClasses(5));
-  const InsertionReport report = tree.insert(scan.cloud, scan.T_map_sensor);
-  EXPECT_EQ(report.points, 1000000u);
-  // A sphere of radius 50 voxels, all of it seen.
-  EXPECT_NEAR(static_cast<double>(report.hitVoxels + report.freeVoxels),
-              4.0 / 3 * M_PI * 50 * 50 * 50, 30000);
-}
-
-TEST(SingleScans, ofBeamsShorterThanTheMarginCarveNothing) {
-  SemanticOcTree tree(0.1, numberedClasses(1));
-  LabeledCloud cloud;
-  cloud.points = {{1.05f, 0.02f, 0.03f}};
-  InsertionOptions options;
-  options.carvingMargin = 3;
-  const InsertionReport report = tree.insert(cloud, Eigen::Isometry3d::Identity(), options);
-  EXPECT_EQ(report.hitVoxels, 1u);
-  EXPECT_EQ(report.freeVoxels, 0u);
-  EXPECT_EQ(tree.getNumLeafNodes(), 1u);
 }

@@ -1,8 +1,6 @@
-// Iterators, against a walk without them and against OctoMap's.
+// Iterators, against a walk without them. (OctomapConversion_unittest.cpp holds them against
+// OctoMap's.)
 #include <gtest/gtest.h>
-#include <octomap/OcTree.h>
-
-#include <algorithm>
 
 #include "Voxels.h"
 
@@ -12,36 +10,15 @@ namespace {
 
 constexpr double kVisitedResolution = 0.4;
 
-SemanticOcTree someMap(bool withClasses, bool pruning = true) {
+SemanticOcTree someMap(bool pruning = true) {
   std::mt19937 random(5);
-  RandomScanOptions options;
-  options.unlabeledShare = withClasses ? 0.2 : 1;
   SemanticOcTree map(kVisitedResolution, numberedClasses(5));
   map.setPruning(pruning);
   for (int i = 0; i < 3; ++i) {
-    const PosedCloud scan = randomScan(random, options);
+    const PosedCloud scan = randomScan(random);
     for (int repeat = 0; repeat < 6; ++repeat) map.insert(scan.cloud, scan.T_map_sensor);
   }
   return map;
-}
-
-/** OctoMap's tree of the same voxels. */
-octomap::OcTree octomapOf(const SemanticOcTree& map) {
-  octomap::OcTree tree(map.getResolution());
-  tree.setClampingThresMin(1e-6);
-  tree.setClampingThresMax(1 - 1e-6);
-  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
-    const octomap::OcTreeKey first = leaf.getIndexKey();
-    const int edge = edgeAtDepth(static_cast<int>(leaf.getDepth()));
-    for (int x = 0; x < edge; ++x)
-      for (int y = 0; y < edge; ++y)
-        for (int z = 0; z < edge; ++z)
-          tree.setNodeValue(octomapKey(first[0] + x, first[1] + y, first[2] + z),
-                            leaf->getLogOdds(), true);
-  }
-  tree.updateInnerOccupancy();
-  if (map.pruning()) tree.prune();
-  return tree;
 }
 
 /** What an iterator says where it stands. */
@@ -99,26 +76,6 @@ std::vector<Stop> stops(TreeIterator begin, const TreeIterator& end) {
   return result;
 }
 
-template <typename Iterator>
-std::vector<Stop> stops(const octomap::OcTree& tree, Iterator begin, const Iterator& end) {
-  std::vector<Stop> result;
-  for (; begin != end; ++begin) result.emplace_back(begin, !tree.nodeHasChildren(&*begin));
-  return result;
-}
-
-/** OctoMap's iterators also visit cubes that lie beside the box. */
-std::vector<Stop> thatMeet(const octomap::OcTreeKey& low, const octomap::OcTreeKey& high,
-                           std::vector<Stop> stops) {
-  const auto isBeside = [&](const Stop& s) {
-    const int last = edgeAtDepth(static_cast<int>(s.depth)) - 1;
-    for (unsigned axis = 0; axis < 3; ++axis)
-      if (s.lowest[axis] > high[axis] || s.lowest[axis] + last < low[axis]) return true;
-    return false;
-  };
-  stops.erase(std::remove_if(stops.begin(), stops.end(), isBeside), stops.end());
-  return stops;
-}
-
 /** What a walk stops at: nodes that meet a box of keys. */
 struct Walk {
   int maxDepth;
@@ -149,7 +106,7 @@ std::vector<Stop> walk(const SemanticOcTree& map, Walk walk) {
 
 TEST(TreeIterator, visitsWhatAWalkVisitsInItsOrder) {
   for (const bool pruning : {true, false}) {
-    const SemanticOcTree map = someMap(true, pruning);
+    const SemanticOcTree map = someMap(pruning);
     for (const int depth : {0, 16, 15, 14, 13, 9, 1}) {
       const int last = depth == 0 ? 16 : depth;
       const auto maxDepth = static_cast<unsigned>(depth);
@@ -161,7 +118,7 @@ TEST(TreeIterator, visitsWhatAWalkVisitsInItsOrder) {
 
 TEST(TreeIterator, ofBoxesVisitsWhatAWalkVisits) {
   std::mt19937 random(6);
-  const SemanticOcTree map = someMap(true);
+  const SemanticOcTree map = someMap();
   for (int round = 0; round < 100; ++round) {
     Walk wanted{round % 3 ? 16 : 12 + round % 5, false};
     for (int axis = 0; axis < 3; ++axis) {
@@ -180,24 +137,4 @@ TEST(TreeIterator, ofBoxesVisitsWhatAWalkVisits) {
   }
   EXPECT_EQ(map.begin_leafs_bbx(octomap::point3d(1e6f, 0, 0), octomap::point3d(1, 1, 1)),
             map.end_leafs_bbx());
-}
-
-TEST(TreeIterator, stopsWhereOctomapsDo) {
-  for (const bool pruning : {true, false}) {
-    const SemanticOcTree map = someMap(false, pruning);
-    const octomap::OcTree octree = octomapOf(map);
-    EXPECT_EQ(map.size(), octree.size());
-    EXPECT_EQ(map.getNumLeafNodes(), octree.getNumLeafNodes());
-    const octomap::OcTreeKey low = map.coordToKey(-3, -5, -1), high = map.coordToKey(2, 4, 3);
-    for (const unsigned char depth : {0, 16, 15, 14, 13, 9, 1}) {
-      expectSameStops(stops(map.begin_leafs(depth), map.end_leafs()),
-                      stops(octree, octree.begin_leafs(depth), octree.end_leafs()));
-      expectSameStops(stops(map.begin_tree(depth), map.end_tree()),
-                      stops(octree, octree.begin_tree(depth), octree.end_tree()));
-      expectSameStops(stops(map.begin_leafs_bbx(low, high, depth), map.end_leafs_bbx()),
-                      thatMeet(low, high,
-                               stops(octree, octree.begin_leafs_bbx(low, high, depth),
-                                     octree.end_leafs_bbx())));
-    }
-  }
 }

@@ -37,16 +37,6 @@ TEST(Tree, copiesShareNothing) {
   EXPECT_TRUE(copy == second);
 }
 
-TEST(Tree, copiesGoOnLikeTheOriginal) {
-  SemanticOcTree original = treeOfScans(3), copy = original;
-  for (unsigned seed = 10; seed < 15; ++seed) {
-    insertOne(original, seed);
-    insertOne(copy, seed);
-  }
-  EXPECT_TRUE(copy == original);
-  EXPECT_EQ(copy.size(), original.size());
-}
-
 TEST(Tree, keepsItsNodesWhereBookkeepingComesAndGoes) {
   SemanticOcTree plain = treeOfScans(18), tree = plain;
   AbstractionOptions options;
@@ -104,19 +94,6 @@ TEST(Tree, swappingExchangesEverything) {
   EXPECT_TRUE(a == expected);
 }
 
-TEST(Tree, clearedStartsAnew) {
-  SemanticOcTree tree = treeOfScans(11);
-  tree.clear();
-  EXPECT_TRUE(tree.empty());
-  EXPECT_EQ(tree.size(), 0u);
-  EXPECT_EQ(tree.getNumLeafNodes(), 0u);
-  tree.clear();
-  insertOne(tree, 12);
-  SemanticOcTree fresh(0.3, numberedClasses(5));
-  insertOne(fresh, 12);
-  EXPECT_TRUE(tree == fresh);
-}
-
 TEST(Tree, differsFromAnotherInEachPart) {
   const SemanticOcTree tree = treeOfScans(13);
   EXPECT_FALSE(tree == treeOfScans(14));
@@ -129,35 +106,6 @@ TEST(Tree, differsFromAnotherInEachPart) {
   SemanticOcTree unpruned(0.1, numberedClasses(5));
   unpruned.setPruning(false);
   EXPECT_FALSE(SemanticOcTree(0.1, numberedClasses(5)) == unpruned);
-}
-
-TEST(Tree, countsItsNodesAndMemory) {
-  SemanticOcTree tree = treeOfScans(15);
-  std::size_t nodes = 0;
-  for (auto node = tree.begin_tree(); node != tree.end_tree(); ++node) ++nodes;
-  EXPECT_EQ(tree.size(), nodes);
-  EXPECT_GT(tree.memoryUsage(), 2 * tree.getNumLeafNodes()) << "16 bits of log-odds each";
-  EXPECT_EQ(tree.getTreeType(), "SemanticOcTree");
-}
-
-TEST(Tree, mergesSpaceThatWasSeenFreeForLong) {
-  SemanticOcTree tree(0.1, numberedClasses(2));
-  for (int i = 0; i < 6; ++i) {
-    PosedCloud scan;  // a dense fan of beams: everything within 3 m is seen free
-    for (int azimuth = 0; azimuth < 720; ++azimuth)
-      for (int elevation = -179; elevation < 180; ++elevation) {
-        const double a = azimuth * M_PI / 360, e = elevation * M_PI / 360;
-        scan.cloud.points.push_back(Eigen::Vector3d(3.2 * std::cos(e) * std::cos(a),
-                                                    3.2 * std::cos(e) * std::sin(a),
-                                                    3.2 * std::sin(e))
-                                        .cast<float>());
-      }
-    tree.insert(scan.cloud, scan.T_map_sensor);
-  }
-  // A ball of 32 voxels' radius; what lies near its surface stays fine.
-  const double voxels = 4.0 / 3 * M_PI * 32 * 32 * 32;
-  EXPECT_LT(static_cast<double>(tree.size()), voxels / 3);
-  EXPECT_LT(tree.search(tree.coordToKey(0.1, 0.1, 0.1))->getLogOdds(), -1.9);
 }
 
 TEST(Tree, pruningIsChosenWhileTheTreeIsEmpty) {

@@ -117,13 +117,6 @@ TEST(ClassTableFile, errorsNameFileLineAndValue) {
             "1000000000");
 }
 
-TEST(ClassTableFile, namesWithControlCharactersAreRefused) {
-  EXPECT_EQ(
-      errorFor("classes:\n  - {id: 1, name: \"road\\n!touch x\\n\", color: [0, 0, 0]}\n"),
-      ":2: class table: the name of class 1, 'road\\x0a!touch x\\x0a', has control characters "
-      "or is not UTF-8");
-}
-
 TEST(ClassTableFile, aSyntaxErrorOrATruncatedFileIsAnErrorAndNoShorterTable) {
   EXPECT_TRUE(
       contains(errorFor("classes:\n  - {id: 1, name: a, color: [1, 2, 3]}\n  - {id: 2, na"), ":"));

@@ -38,25 +38,6 @@ TEST(ClassTable, namesWhatHasNoClassAndRefusesIdsAboveItsSize) {
   EXPECT_THROW(ClassTable().name(1), std::out_of_range);
 }
 
-TEST(ClassTable, knowsNoSpecialColor) {
-  const ClassTable classes = table();
-  EXPECT_EQ(classes.find(Color{255, 255, 255}), ClassId{2});
-  EXPECT_EQ(classes.find(Color{0, 0, 0}), ClassId{3});
-  EXPECT_EQ(classes.find(Color{1, 2, 3}), std::nullopt);
-}
-
-TEST(ClassTable, foldsRawIds) {
-  ClassTable classes = table();
-  classes.fold(40, 1);
-  classes.fold(252, 1);
-  classes.fold(2, 3);
-  classes.fold(0, kNoClass);
-  EXPECT_EQ(classes.fromRaw(40), 1);
-  EXPECT_EQ(classes.fromRaw(252), 1);
-  EXPECT_EQ(classes.fromRaw(2), 3);
-  EXPECT_EQ(classes.fromRaw(0), kNoClass);
-}
-
 TEST(ClassTable, takesRawIdsForItsOwnOnlyWhereNoneFoldsToAClass) {
   ClassTable classes = table();
   classes.fold(0, kNoClass);

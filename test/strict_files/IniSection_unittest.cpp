@@ -58,11 +58,6 @@ TEST(IniSection, commentsBehindValuesAreLeftOut) {
   EXPECT_EQ(optionsOf({{"title", "http://a#b;c // d"}}).title, "http://a#b;c");
 }
 
-TEST(IniSection, keysAndValuesAreReadHoweverTheirWordsAreParted) {
-  EXPECT_EQ(optionsOf({{"maxGap", "5"}}).gap, 5);
-  EXPECT_EQ(optionsOf({{"color", "DarkRed"}}).color, some::Color::DarkRed);
-}
-
 TEST(IniSection, anUnknownKeyIsNamedWithTheNearestKnownOne) {
   EXPECT_EQ(refusal({{"max_gab", "5"}}), "[part] unknown key 'max_gab'; did you mean 'max_gap'?");
 }
@@ -96,13 +91,11 @@ TEST(IniText, holdsNothingThatMrptWouldLeaveOut) {
             "# c\n; c\n// c\n\n[a b]\nk = 1\nlong = 1 \\\n 2 3\nempty =\n[other]\nk = 2 // c\n");
       }),
       "");
-  EXPECT_EQ(errorOf([] { strict_files::checkIniText("[a]\nk 1\n"); }),
-            "line 2: 'k 1', expected key = value");
-  EXPECT_EQ(errorOf([] { strict_files::checkIniText("[a]\nk = 1\n\nK=2\n"); }),
-            "line 4: key 'K' twice");
-  EXPECT_EQ(errorOf([] { strict_files::checkIniText("[a]\nmax_gap = 1\nmaxGap = 2\n"); }),
-            "line 3: key 'maxGap' twice");
-  EXPECT_EQ(errorOf([] { strict_files::checkIniText("[a\n"); }), "line 1: '[a' has no ']'");
-  EXPECT_EQ(errorOf([] { strict_files::checkIniText("= 3\n"); }),
-            "line 1: '= 3', expected key = value");
+  for (const auto& [text, words] : std::map<std::string, std::string>{
+           {"[a]\nk 1\n", "line 2: 'k 1', expected key = value"},
+           {"[a]\nk = 1\n\nK=2\n", "line 4: key 'K' twice"},
+           {"[a]\nmax_gap = 1\nmaxGap = 2\n", "line 3: key 'maxGap' twice"},
+           {"[a\n", "line 1: '[a' has no ']'"},
+           {"= 3\n", "line 1: '= 3', expected key = value"}})
+    EXPECT_EQ(errorOf([&, &ini = text] { strict_files::checkIniText(ini); }), words);
 }

@@ -123,12 +123,6 @@ TEST(OptionList, aRemovedOptionIsNotThere) {
   EXPECT_EQ(list.names().size(), 9u);
 }
 
-TEST(OptionList, whatOptionsSayOfEachOtherIsNamed) {
-  EXPECT_NO_THROW(strict_files::require(true, "O::low", 3, "at most high"));
-  EXPECT_EQ(errorOf([] { strict_files::require(false, "O::low", 3, "at most high"); }),
-            "O::low is 3, expected at most high");
-}
-
 RC_GTEST_PROP(OptionList, textsAreReadBackWithoutLoss,
               (double length, double gap, int count, std::uint8_t small, bool on)) {
   Options options, read;

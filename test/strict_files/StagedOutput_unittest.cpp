@@ -52,17 +52,6 @@ extern "C" int rename(const char* from, const char* to) noexcept {
   return result;
 }
 
-TEST(StagedFile, takesItsNameWhenItIsComplete) {
-  const TemporaryFolder folder;
-  folder.write("a", "before");
-  StagedFile file(folder / "a");
-  write(file.path(), "after");
-  EXPECT_EQ(folder.read("a"), "before");
-  file.commit();
-  EXPECT_EQ(folder.read("a"), "after");
-  EXPECT_EQ(entriesOf(folder.path()), 1u);
-}
-
 TEST(StagedFile, withoutCommitLeavesWhatWasThere) {
   const TemporaryFolder folder;
   folder.write("a", "before");

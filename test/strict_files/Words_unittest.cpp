@@ -34,11 +34,6 @@ TEST(Words, spaceAroundTextIsTrimmed) {
   EXPECT_EQ(strict_files::trimmed(" \n "), "");
 }
 
-TEST(Words, listsAreJoined) {
-  EXPECT_EQ(strict_files::joined({}), "");
-  EXPECT_EQ(strict_files::joined({"a", "b", "c"}), "a, b, c");
-}
-
 TEST(Words, messagesAreFreedOfMrptsCallStacks) {
   EXPECT_EQ(strict_files::messageOf(std::runtime_error("plain")), "plain");
   EXPECT_EQ(strict_files::messageOf(std::runtime_error(

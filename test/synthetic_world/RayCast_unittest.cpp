@@ -102,12 +102,6 @@ TEST(RayCast, raysAlongCellBordersMissNothing) {
   }
 }
 
-TEST(RayCast, nothingIsMetBeyondTheGreatestRange) {
-  const World world = small_world::withWall();
-  EXPECT_FALSE(world.castRay({0, 0, 1}, V::UnitX(), 4.999));
-  EXPECT_TRUE(world.castRay({0, 0, 1}, V::UnitX(), 5.001));
-}
-
 TEST(RayCast, raysFromOutsideTheWorldEnterIt) {
   const World world = small_world::withWall();
   const auto hit = world.castRay({-50, 0, 1}, V::UnitX(), 100);

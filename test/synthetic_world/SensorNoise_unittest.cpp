@@ -28,12 +28,6 @@ TEST(Random, normalVariatesHaveTheMomentsOfTheNormalDistribution) {
   EXPECT_NEAR(fourth / n, 3, 0.08);
 }
 
-TEST(Random, streamsDiffer) {
-  EXPECT_NE(Random::ofStream(1, 2, 3).next(), Random::ofStream(1, 2, 4).next());
-  EXPECT_NE(Random::ofStream(1, 2, 3).next(), Random::ofStream(1, 3, 3).next());
-  EXPECT_NE(Random::ofStream(1, 2, 3).next(), Random::ofStream(2, 2, 3).next());
-}
-
 CameraFrame wall(const SensorNoise& noise, FrameSeed seed = {}) {
   CameraOptions options;
   options.noise = noise, options.color = false;
@@ -108,22 +102,6 @@ TEST(SensorNoise, lidarScattersAlongItsBeams) {
   }
   EXPECT_NEAR(std::sqrt(square / cloud.size()), 0.03, 0.003);
   EXPECT_NEAR(wrong / double(cloud.size()), 0.2, 0.03);
-}
-
-TEST(SensorNoise, badSharesAreNamed) {
-  using small_world::messageOf;
-  EXPECT_EQ(messageOf([] {
-              SensorNoise{-1, 0, 0}.validate();
-            }),
-            "SensorNoise::range_noise is -1, expected a number of 0 or more");
-  EXPECT_EQ(messageOf([] {
-              SensorNoise{0, 1.5, 0}.validate();
-            }),
-            "SensorNoise::label_noise is 1.5, expected a number from 0 to 1");
-  EXPECT_EQ(messageOf([] {
-              SensorNoise{0, 0, NAN}.validate();
-            }),
-            "SensorNoise::dropout is nan, expected a number from 0 to 1");
 }
 
 }  // namespace

@@ -85,17 +85,6 @@ TEST_P(EveryShape, normalsPointOutward) {
   }
 }
 
-TEST_P(EveryShape, raysThatStartInsideEnterAtOnce) {
-  const auto entry = enter(V(0.2, 0, 0), V::UnitX());
-  ASSERT_TRUE(entry);
-  EXPECT_EQ(entry->range, 0);
-}
-
-TEST_P(EveryShape, raysDoNotEnterWhatIsBehindThem) {
-  EXPECT_FALSE(enter(V(4, 0, 0), V::UnitX()));
-  EXPECT_FALSE(enter(V(0.2, 0.1, 4), V::UnitZ()));
-}
-
 TEST_P(EveryShape, signedDistanceNeverExceedsTheDistance) {
   // 1-Lipschitz along any line; that of the spheroid is of first order only.
   const double most = std::string(GetParam().name) == "spheroid" ? 1.5 : 1;

@@ -1,6 +1,8 @@
 #pragma once
 #include <synthetic_world/World.h>
 
+#include "TemporaryFolder.h"
+
 /** Worlds so simple that the answers are known. */
 namespace small_world {
 
@@ -18,16 +20,5 @@ inline Solid box(const Eigen::Vector2d& center, const Eigen::Vector2d& size, dou
 
 /** A wall of 1 m whose near face is the plane x = 5. */
 inline World withWall() { return flat({box({5.5, 0}, {1, 40}, -1, 8, kWall, kRoof)}); }
-
-/** What `call` throws. */
-template <class Call>
-std::string messageOf(Call call) {
-  try {
-    call();
-  } catch (const std::exception& e) {
-    return e.what();
-  }
-  return "(nothing thrown)";
-}
 
 }  // namespace small_world

@@ -5,58 +5,35 @@
 #include <mrpt/obs/CObservationRobotPose.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
+
+#include "TemporaryFolder.h"
 
 /** Runs of the program synth-rawlog, and what they leave behind. */
 namespace synth_rawlog_run {
 
 namespace fs = std::filesystem;
 
+using Folder = TemporaryFolder;
+
 inline std::string contents(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
-
-/** A folder that goes away with this object. */
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "synth_rawlog_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-    m_path = name;
-  }
-  ~Folder() { fs::remove_all(m_path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  fs::path operator/(const std::string& name) const { return m_path / name; }
-  const fs::path& path() const { return m_path; }
-
- private:
-  fs::path m_path;
-};
 
 struct Outcome {
   int status;
   std::string out, error;
 };
 
-/** Runs the program in the folder with these arguments. \param before other commands of the shell
- */
-inline Outcome run(const Folder& folder, const std::string& arguments,
-                   const std::string& before = "") {
-  const std::string command = "cd '" + folder.path().string() + "' && " + before +
-                              "'" MSO_BIN_DIR "/synth-rawlog' " + arguments +
+/** Runs the program in the folder with these arguments. */
+inline Outcome run(const Folder& folder, const std::string& arguments) {
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && '" MSO_BIN_DIR "/synth-rawlog' " + arguments +
                               " >out.txt 2>error.txt";
   const int status = std::system(command.c_str());
-  return {WEXITSTATUS(status), contents(folder / "out.txt"), contents(folder / "error.txt")};
-}
-
-/** Where no file becomes longer than 8 blocks of 512 bytes. */
-inline Outcome runOnFullDisk(const Folder& folder, const std::string& arguments) {
-  return run(folder, arguments, "ulimit -f 8 && ");
+  return {WEXITSTATUS(status), folder.read("out.txt"), folder.read("error.txt")};
 }
 
 /** All observations of a rawlog, those of sensory frames too, in their order. */

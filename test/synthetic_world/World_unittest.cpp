@@ -120,18 +120,17 @@ TEST(World, clearanceAgreesWithPointsOfSolidsInEveryScene) {
 }
 
 TEST(World, footprintsNameTheirBadField) {
-  using small_world::messageOf;
   Footprint robot;
   robot.height = 0.05;
-  EXPECT_EQ(messageOf([&] { robot.validate(); }),
+  EXPECT_EQ(errorOf([&] { robot.validate(); }),
             "footprint: height is 0.050000, more than clearance expected");
   robot = {};
   robot.clearance = -1;
-  EXPECT_EQ(messageOf([&] { robot.validate(); }),
+  EXPECT_EQ(errorOf([&] { robot.validate(); }),
             "footprint: clearance is -1.000000, 0 m or more expected");
   robot = {};
   robot.outline.pop_back(), robot.outline.pop_back();
-  EXPECT_EQ(messageOf([&] { robot.validate(); }),
+  EXPECT_EQ(errorOf([&] { robot.validate(); }),
             "footprint: outline: three or more corners, convex, counterclockwise expected");
 }
 
