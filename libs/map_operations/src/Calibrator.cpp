@@ -20,6 +20,9 @@ constexpr std::size_t kMostPoints = 32768;
 constexpr std::size_t kMostLabels = 64;
 /** What the map has counts like so many labels. */
 constexpr double kLabelsBefore = 100;
+/** Of each class, which are right with the filter's accuracy, before any are seen: a matrix is to
+ * be cautious where a class is rare, but a fit is not to state the filter's accuracy once more. */
+constexpr double kLabelsOfMatrix = 1000, kLabelsOfFit = 20;
 /** So many labels of a voxel cannot outvote each other. */
 constexpr std::size_t kFew = 2;
 constexpr double kSteps = 256;
@@ -174,15 +177,15 @@ void Calibrator::keepFewer() {
     i = keeps(i->first) ? std::next(i) : m_voxels.erase(i);
 }
 
-LabelProcess Calibrator::process(double accuracy) const {
+LabelProcess Calibrator::process(double accuracy, double labelsBefore) const {
   LabeledVoxels voxels;
   for (const auto& [voxel, labels] : m_voxels)
     if (labels.size() > 1) ++voxels[labels];
-  return LabelProcess(voxels, m_numClasses, accuracy);
+  return LabelProcess(voxels, m_numClasses, accuracy, labelsBefore);
 }
 
 std::vector<std::vector<double>> Calibrator::confusion(double accuracy) const {
-  return process(accuracy).counts();
+  return process(accuracy, kLabelsOfMatrix).counts();
 }
 
 Calibration Calibrator::fit(const SemanticOcTree& map) const {
@@ -191,7 +194,7 @@ Calibration Calibrator::fit(const SemanticOcTree& map) const {
   for (const auto& [voxel, labels] : m_voxels)
     numLabels += labels.size() - std::min(kFew, labels.size());
   if (numLabels == 0) return has;
-  const LabelProcess process = this->process(map.filterParameters().accuracy);
+  const LabelProcess process = this->process(map.filterParameters().accuracy, kLabelsOfFit);
   std::vector<Question> questions;
   for (const auto& [voxel, labels] : std::map(m_voxels.begin(), m_voxels.end())) {
     const SemanticOcTreeNode leaf = map.search(keyOf(voxel));

@@ -6,7 +6,6 @@
 namespace semantic_octree {
 namespace {
 
-constexpr double kLabelsOfEachClass = 20;
 /** Triples of labels before any are seen, which repeat nothing. */
 constexpr double kTriplesBefore = 20;
 constexpr int kExpectations = 25;
@@ -35,12 +34,13 @@ double repeatedIn(const LabeledVoxels& voxels) {
 
 }  // namespace
 
-LabelProcess::LabelProcess(const LabeledVoxels& voxels, int numClasses, double accuracy)
+LabelProcess::LabelProcess(const LabeledVoxels& voxels, int numClasses, double accuracy,
+                           double labelsBefore)
     : m_repeated(repeatedIn(voxels)), m_correlation(std::max(m_repeated, kCorrelationBefore)) {
   const auto K = static_cast<std::size_t>(numClasses);
   const double wrong = (1 - accuracy) / (numClasses - 1);
-  Table before(K, std::vector<double>(K, kLabelsOfEachClass * wrong));
-  for (std::size_t k = 0; k < K; ++k) before[k][k] = kLabelsOfEachClass * accuracy;
+  Table before(K, std::vector<double>(K, labelsBefore * wrong));
+  for (std::size_t k = 0; k < K; ++k) before[k][k] = labelsBefore * accuracy;
   m_counts = before;
   m_shares.assign(K, 1.0);
   double stride = kFirstStride;

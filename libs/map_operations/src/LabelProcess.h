@@ -22,8 +22,9 @@ using LabeledVoxels = std::map<std::string, double>;
 class LabelProcess {
  public:
   /** \param numClasses K > 1
-   * \param accuracy Beside what was seen, 20 labels of each class are right with it, (1/K, 1). */
-  LabelProcess(const LabeledVoxels& voxels, int numClasses, double accuracy);
+   * \param accuracy, labelsBefore Beside what was seen, so many labels of each class are right
+   * with this probability, (1/K, 1). */
+  LabelProcess(const LabeledVoxels& voxels, int numClasses, double accuracy, double labelsBefore);
 
   /** c, [0, 1): of three labels in succession, the first two of which differ, how much more often
    * the third is the second than the first. */

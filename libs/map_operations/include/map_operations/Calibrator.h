@@ -41,13 +41,13 @@ class Calibrator {
    * from the third of a voxel on, for fewer cannot outvote each other. In steps of 1/256. */
   Calibration fit(const SemanticOcTree& map) const;
   /** K x K expected counts for a confusion matrix: row is the true class, column the label. Beside
-   * what was seen, 100 labels of each class are right with probability `accuracy`, (1/K, 1). */
+   * what was seen, 1000 labels of each class are right with probability `accuracy`, (1/K, 1). */
   std::vector<std::vector<double>> confusion(double accuracy) const;
 
  private:
   bool keeps(std::uint64_t voxel) const;
   void keepFewer();
-  LabelProcess process(double accuracy) const;
+  LabelProcess process(double accuracy, double labelsBefore) const;
 
   double m_voxelSize;
   int m_numClasses;
