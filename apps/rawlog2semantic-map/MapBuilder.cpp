@@ -46,6 +46,7 @@ std::uint64_t totalSize(const std::vector<fs::path>& files) {
 MapBuilder::MapBuilder(semantic_map::CSemanticOctoMap& map, OnScan onScan)
     : m_map(map),
       m_follower(map.tree()),
+      m_calibrator(map.tree().getResolution(), map.tree().numClasses()),
       m_hadContent(!map.isEmpty()),
       m_onScan(std::move(onScan)) {}
 
@@ -90,7 +91,7 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
   if (m_mapper)
     m_mapper->finish();
   else
-    m_map.tree().setCalibration(m_calibrator.best());
+    m_map.tree().setCalibration(m_calibrator.fit(m_map.tree()));
   progress.finish((m_summary.stopped ? "stopped early, " : "") +
                   std::to_string(m_summary.inserted) + " scans inserted, " +
                   m_summary.skippedText());
@@ -147,7 +148,7 @@ semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& sc
                                                            CPose3D& T_map_robot) {
   if (!m_mapper) {
     const Eigen::Isometry3d T = labeled_cloud::toEigen(T_map_robot + scan.T_robot_sensor);
-    m_calibrator.ask(m_map.tree(), scan.cloud, T, m_map.insertionOptions.scan);
+    m_calibrator.add(scan.cloud, T, m_map.insertionOptions.scan);
     return m_map.insertScan(scan, T_map_robot);
   }
   m_clock.setMaxGap(m_map.insertionOptions.maxGap);

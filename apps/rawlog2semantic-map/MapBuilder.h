@@ -69,7 +69,7 @@ class MapBuilder {
 
   semantic_map::CSemanticOctoMap& m_map;
   semantic_octree::LeafFollower m_follower;
-  semantic_octree::Calibrator m_calibrator;       ///< where poses are not corrected
+  semantic_octree::Calibrator m_calibrator;       ///< the mapper has its own
   std::optional<semantic_slam::Mapper> m_mapper;  ///< if poses are corrected
   bool m_hasOdometry = true;
   const bool m_hadContent;                 ///< the map, before the first scan

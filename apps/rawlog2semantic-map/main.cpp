@@ -1,7 +1,7 @@
 // Makes a semantic octree map, pictures of it and a summary from labeled rawlogs.
-#include <labeled_cloud/ConfusionEstimate.h>
 #include <labeled_cloud/Rawlogs.h>
 #include <labeled_cloud/Trajectory.h>
+#include <map_operations/Calibrator.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_types/ClassTable.h>
 #include <strict_files/OutputFiles.h>
@@ -221,14 +221,13 @@ std::shared_ptr<labeled_cloud::ConfusionMatrix> confusionOf(
   if (cli.slam) throw std::runtime_error("--confusion auto needs poses that are right, not --slam");
   notes() << "Reading the labels that the confusion matrix follows from" << std::endl;
   Scans scans(cli, table, config, trajectory);
-  labeled_cloud::ConfusionEstimate estimate(config.map.resolution, table.size());
-  const semantic_octree::InsertionOptions& options = config.insertion.scan;
+  semantic_octree::Calibrator labels(config.map.resolution, table.size());
   while (const auto observation = stop.pending() ? std::nullopt : scans.stream.next())
     if (const auto& scan = observation->scan)
-      estimate.add(scan->cloud,
-                   labeled_cloud::toEigen(observation->T_map_robot + scan->T_robot_sensor),
-                   options.minRange, options.maxRange > 0 ? options.maxRange : HUGE_VAL);
-  return std::make_shared<ConfusionMatrix>(estimate.counts(config.insertion.filter.accuracy));
+      labels.add(scan->cloud,
+                 labeled_cloud::toEigen(observation->T_map_robot + scan->T_robot_sensor),
+                 config.insertion.scan);
+  return std::make_shared<ConfusionMatrix>(labels.confusion(config.insertion.filter.accuracy));
 }
 
 Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveScans* live,

@@ -20,12 +20,12 @@ struct Street {
       : table(shippedTable("semantic_kitti.yaml")),
         frames(readSemanticKitti(sharedDataDir() / "semantic_kitti" / sequence, table)),
         map(resolution, table, filter) {
-    semantic_octree::Calibrator calibrator;
+    semantic_octree::Calibrator calibrator(resolution, table.size());
     for (std::size_t i = 0; i < frames.size(); i += 2) {
-      calibrator.ask(map, frames[i].cloud, frames[i].T_map_sensor);
+      calibrator.add(frames[i].cloud, frames[i].T_map_sensor);
       map.insert(frames[i].cloud, frames[i].T_map_sensor);
     }
-    map.setCalibration(calibrator.best());
+    map.setCalibration(calibrator.fit(map));
   }
 
   Evaluation evaluate(const SemanticOcTree& asked) const {

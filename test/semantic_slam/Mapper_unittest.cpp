@@ -2,6 +2,7 @@
 #include <rapidcheck/gtest.h>
 #include <semantic_slam/Mapper.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -147,6 +148,31 @@ TEST(Mapper, agesByTheTimeBetweenScansHoweverOftenItIsTold) {
   }
   EXPECT_NEAR(once.clock(), 2.1, 1e-6);
   EXPECT_NEAR(often.clock(), 2.4, 1e-6) << "told first 0.3 s before the first scan";
+}
+
+TEST(Mapper, statesWhatLabelsAreWorthAsSoonAsFourScansSay) {
+  for (const bool localize : {false, true}) {
+    SemanticOcTree map(0.2, wallsAndCars());
+    MapperOptions options = localizing();
+    options.localize = localize;
+    Mapper mapper(map, options);
+    std::mt19937 random(2);
+    for (int i = 0; i < 5; ++i) {
+      EXPECT_EQ(map.filterParameters().calibration.isIdentity(), i < 4);
+      const auto T = planar(0.1 * i, 0, 0);
+      LabeledCloud cloud = yardFrom(T);
+      for (std::size_t first = 0; first < cloud.size(); first += 20)  // wrong as a whole
+        if (random() % 10 < 3)
+          std::fill_n(cloud.classes.begin() + static_cast<std::ptrdiff_t>(first),
+                      std::min<std::size_t>(20, cloud.size() - first), kCar);
+      mapper.insert(cloud, Eigen::Isometry3d::Identity(), T, 0);
+    }
+    const double afterFour = map.filterParameters().calibration.power;
+    EXPECT_LT(afterFour, 0.8);
+    mapper.finish();
+    EXPECT_NE(map.filterParameters().calibration.power, afterFour);
+    EXPECT_LT(map.filterParameters().calibration.power, 0.8);
+  }
 }
 
 TEST(Mapper, mapToOdometryIsNearlyTheIdentityWhereOdometryIsExact) {

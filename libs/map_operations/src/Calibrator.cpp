@@ -1,133 +1,214 @@
 #include <map_operations/Calibrator.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <utility>
+
+#include "ExactExponential.h"
+#include "LabelProcess.h"
 
 namespace semantic_octree {
 namespace {
 
-constexpr double kPowers[] = {1, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2};
-constexpr double kShared[] = {0, 0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.7};
-/** Share of labels that name their voxel's class. */
-constexpr double kRight[] = {1, 0.97, 0.94, 0.9, 0.85, 0.78, 0.7, 0.55};
-constexpr std::size_t kNumPowers = std::size(kPowers), kNumShared = std::size(kShared),
-                      kNumRight = std::size(kRight), kCells = kNumPowers * kNumShared * kNumRight;
-
-constexpr std::uint32_t kScansToAsk = 3;
-/** At most so many points of a scan are looked at. */
+constexpr std::size_t kMostVoxels = 32768;
+/** Of a scan. */
 constexpr std::size_t kMostPoints = 32768;
-constexpr double kUnit = 1024;  // of a nat
-/** What is fitted is rounded to such parts, so that it does not depend on the machine. */
-constexpr double kSteps = 64;
-/** No label is less likely than this, so that a few do not decide. */
-constexpr double kLeast = 1e-6;
-/** Logarithms are taken of products of so many. */
-constexpr std::size_t kGroup = 8;
+/** Of one voxel. */
+constexpr std::size_t kMostLabels = 64;
+/** What the map has counts like so many labels. */
+constexpr double kLabelsBefore = 100;
+/** Of each class, which are right with the filter's accuracy, before any are seen: a matrix is to
+ * be cautious where a class is rare, but a fit is not to state the filter's accuracy once more. */
+constexpr double kLabelsOfMatrix = 1000, kLabelsOfFit = 20;
+/** So many labels of a voxel cannot outvote each other. */
+constexpr std::size_t kFew = 2;
+constexpr double kSteps = 256;
+constexpr int kRounds = 60;
+constexpr double kLeastPower = 1.0 / 64, kMostPower = 4, kMostShared = 0.9, kLargestStep = 0.1;
 
-/** One voxel in 16. */
-bool asks(const octomap::OcTreeKey& key) {
-  const std::uint32_t mixed = key[0] * 73856093u ^ key[1] * 19349669u ^ key[2] * 83492791u;
-  return (mixed * 2654435761u) >> 28 == 0;
+/** Voxels on each side of the map's origin. */
+constexpr int kHalf = 1 << 15;
+
+octomap::OcTreeKey keyOf(std::uint64_t voxel) {
+  return {static_cast<octomap::key_type>(voxel >> 32), static_cast<octomap::key_type>(voxel >> 16),
+          static_cast<octomap::key_type>(voxel)};
 }
 
-template <std::size_t N>
-std::size_t nearest(const double (&values)[N], double x) {
-  return std::min_element(values, values + N,
-                          [x](double a, double b) { return std::abs(a - x) < std::abs(b - x); }) -
-         values;
+/** The likeliest class of a point's label. */
+ClassId labelOf(const LabeledCloud& cloud, std::size_t point, std::size_t numClasses) {
+  if (cloud.probabilities.empty()) return cloud.classes[point];
+  const float* const q = &cloud.probabilities[point * numClasses];
+  const float* const best = std::max_element(q, q + numClasses);
+  return *best > 0 ? static_cast<ClassId>(best - q + 1) : kNoClass;
+}
+
+void check(const LabeledCloud& cloud, std::size_t numClasses) {
+  if (cloud.probabilities.empty() ? !cloud.classes.empty() && cloud.classes.size() != cloud.size()
+                                  : cloud.probabilities.size() != numClasses * cloud.size())
+    throw std::invalid_argument("calibration: labels of another number of points");
+}
+
+/** What the map believes of a voxel's classes, and what its labels say. */
+struct Question {
+  int named, unnamed;              ///< how many
+  std::array<double, 4> ahead{};   ///< log-odds of the named less the largest; last: of others
+  std::array<double, 4> target{};  ///< p(class), last: of all others together
+  double labels;
+};
+
+Question questionOf(const SemanticOcTree::Belief& belief, int numClasses,
+                    const std::vector<double>& classes, std::size_t labels) {
+  Question question{belief.count, belief.unnamed(numClasses), {}, {}, static_cast<double>(labels)};
+  const double most = std::max(belief.logOdds[0], belief.rest);
+  question.ahead[3] = belief.rest - most;
+  question.target[3] = 1;
+  for (int i = 0; i < belief.count; ++i) {
+    question.ahead[i] = belief.logOdds[i] - most;
+    question.target[i] = classes[belief.ids[i] - 1];
+    question.target[3] -= question.target[i];
+  }
+  return question;
+}
+
+/** Sums over questions of what a step of the fit needs. */
+struct Step {
+  double slope = 0, curvature = 0, ofShared = 0, all = 0;
+
+  /** Expectation: of each class that was named, which part is due to what is shared. The rest is a
+   * power's, whose logarithm's slope and curvature follow. */
+  void add(const Question& question, const Calibration& now) {
+    std::array<double, 4> odds{};
+    double sum = 0, mean = 0, square = 0;
+    const auto classes = [&](auto visit) {
+      for (int i = 0; i < question.named; ++i) visit(i, 1);
+      visit(3, question.unnamed);
+    };
+    classes([&](int i, int number) {
+      odds[i] = exactExponential(now.power * question.ahead[i]);
+      sum += number * odds[i];
+      mean += number * odds[i] * question.ahead[i];
+      square += number * odds[i] * question.ahead[i] * question.ahead[i];
+    });
+    mean /= sum;
+    double own = 0, target = 0;
+    classes([&](int i, int) {
+      const double shared = i < 3 ? now.shared / question.named : 0;
+      const double share = shared / ((1 - now.shared) * odds[i] / sum + shared);
+      own += question.target[i] * (1 - share);
+      target += question.target[i] * (1 - share) * question.ahead[i];
+    });
+    slope += question.labels * (target - own * mean);
+    curvature += question.labels * own * (square / sum - mean * mean);
+    ofShared += question.labels * (1 - own);
+    all += question.labels;
+  }
+  /** Maximization, one step of Newton's for the power. */
+  Calibration after(const Calibration& now) const {
+    const double step = curvature > 0 ? slope / curvature : 0;
+    return {std::clamp(now.power + std::clamp(step, -kLargestStep, kLargestStep), kLeastPower,
+                       kMostPower),
+            std::clamp(ofShared / all, 0.0, kMostShared)};
+  }
+};
+
+Calibration fitted(const std::vector<Question>& questions) {
+  Calibration calibration{0.7, 0.1};
+  for (int round = 0; round < kRounds; ++round) {
+    Step step;
+    for (const Question& question : questions) step.add(question, calibration);
+    calibration = step.after(calibration);
+  }
+  return calibration;
 }
 
 }  // namespace
 
-void Calibrator::begin(const SemanticOcTree& map) {
-  // All others together weigh one in kCells of what the map has, until labels are seen.
-  m_losses.assign(kCells, std::llround(kUnit * 2 * std::log(static_cast<double>(kCells))));
-  const Calibration& now = map.filterParameters().calibration;
-  const std::size_t cell =
-      (nearest(kPowers, now.power) * kNumShared + nearest(kShared, now.shared)) * kNumRight;
-  std::fill_n(m_losses.begin() + static_cast<std::ptrdiff_t>(cell), kNumRight, 0);
+bool Calibrator::keeps(std::uint64_t voxel) const {
+  return (voxel * 0x9e3779b97f4a7c15u >> 48) % m_oneIn == 0;
 }
 
-void Calibrator::ask(const SemanticOcTree& map, const LabeledCloud& cloud,
-                     const Eigen::Isometry3d& T_map_sensor, const InsertionOptions& options) {
-  const auto K = static_cast<std::size_t>(map.numClasses());
-  const std::vector<float>& soft = cloud.probabilities;
-  if (soft.empty() ? !cloud.classes.empty() && cloud.classes.size() != cloud.size()
-                   : soft.size() != K * cloud.size())
-    throw std::invalid_argument("calibration: labels of another number of points");
-  if (m_losses.empty()) begin(map);
-  if (K == 1 || (soft.empty() && cloud.classes.empty())) return;
+void Calibrator::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
+                     const InsertionOptions& options) {
+  const auto K = static_cast<std::size_t>(m_numClasses);
+  check(cloud, K);
+  if (K == 1 || (cloud.classes.empty() && cloud.probabilities.empty())) return;
   const double farthest = options.maxRange > 0 ? options.maxRange : HUGE_VAL;
-  ++m_scans;
-  std::vector<Question> questions;
-  for (std::size_t i = 0; i < cloud.size(); i += 1 + cloud.size() / kMostPoints) {
-    const auto isLabel = [](float share) { return share > 0; };
-    const float* const q = soft.data() + (soft.empty() ? 0 : i * K);
-    if (soft.empty() ? cloud.classes[i] == kNoClass : std::none_of(q, q + K, isLabel)) continue;
+  const Eigen::Matrix3d turn = T_map_sensor.linear() / m_voxelSize;
+  const Eigen::Vector3d shift = (T_map_sensor.translation() / m_voxelSize).array() + kHalf;
+  std::vector<std::pair<std::uint64_t, ClassId>> labels;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const ClassId id = labelOf(cloud, i, K);
     const double range = cloud.points[i].norm();
-    if (!(range >= options.minRange && range <= farthest)) continue;
-    const Eigen::Vector3d p = T_map_sensor * cloud.points[i].cast<double>();
-    octomap::OcTreeKey key;
-    if (!map.coordToKeyChecked(p.x(), p.y(), p.z(), key) || !asks(key)) continue;
-    Seen& seen = m_voxels[key];
-    if (std::exchange(seen.last, m_scans) == m_scans || ++seen.scans <= kScansToAsk) continue;
-    const SemanticOcTreeNode leaf = map.search(key);
-    if (!leaf || !leaf.hasClassRecord()) continue;
-    Question question{map.belief(leaf), {}, 0};
-    for (std::size_t k = 0; k < K; ++k) {
-      const double share = soft.empty() ? cloud.classes[i] == k + 1 : q[k];
-      const int named = question.belief.indexOf(static_cast<ClassId>(k + 1));
-      (named < 0 ? question.others : question.named[named]) += share;
-    }
-    questions.push_back(question);
+    if (id == kNoClass || !(range >= options.minRange && range <= farthest)) continue;
+    const Eigen::Array3d p = turn * cloud.points[i].cast<double>() + shift;
+    if (!(p >= 0 && p < 2 * kHalf).all()) continue;
+    const auto voxel = static_cast<std::uint64_t>(p.x()) << 32 |
+                       static_cast<std::uint64_t>(p.y()) << 16 | static_cast<std::uint64_t>(p.z());
+    if (keeps(voxel)) labels.emplace_back(voxel, id);
   }
-  add(questions, map.numClasses());
+  while (labels.size() > kMostPoints) {
+    keepFewer();
+    labels.erase(std::remove_if(labels.begin(), labels.end(),
+                                [this](const auto& label) { return !keeps(label.first); }),
+                 labels.end());
+  }
+  std::sort(labels.begin(), labels.end());
+  for (auto i = labels.begin(); i != labels.end();) {
+    const std::uint64_t voxel = i->first;
+    ClassId best = kNoClass;
+    std::ptrdiff_t most = 0;
+    while (i != labels.end() && i->first == voxel) {
+      const auto next = std::upper_bound(i, labels.end(), *i);
+      if (next - i > most) most = next - i, best = i->second;
+      i = next;
+    }
+    std::string& ofVoxel = m_voxels[voxel];
+    if (ofVoxel.size() < kMostLabels) ofVoxel.push_back(static_cast<char>(best));
+  }
+  while (m_voxels.size() > kMostVoxels) keepFewer();
 }
 
-void Calibrator::add(const std::vector<Question>& questions, int numClasses) {
-  const double ofOther = 1.0 / (numClasses - 1);
-  std::vector<double> product(kCells, 1.0);
-  for (std::size_t n = 0; n < questions.size(); ++n) {
-    const auto& [belief, named, others] = questions[n];
-    const double most = std::max(belief.logOdds[0], belief.rest);
-    double ofShared = 0;
-    for (int i = 0; i < belief.count; ++i) ofShared += named[i] / belief.count;
-    double* cell = product.data();
-    for (const double power : kPowers) {
-      const double rest = std::exp(power * (belief.rest - most));
-      double sum = belief.unnamed(numClasses) * rest, ofLabel = others * rest;
-      for (int i = 0; i < belief.count; ++i) {
-        const double odds = std::exp(power * (belief.logOdds[i] - most));
-        sum += odds;
-        ofLabel += named[i] * odds;
-      }
-      for (const double shared : kShared) {
-        const double stated = (1 - shared) * ofLabel / sum + shared * ofShared;
-        for (const double right : kRight)
-          *cell++ *= std::max(kLeast, right * stated + (1 - right) * (1 - stated) * ofOther);
-      }
-    }
-    if ((n + 1) % kGroup != 0 && n + 1 < questions.size()) continue;
-    for (std::size_t i = 0; i < kCells; ++i)
-      m_losses[i] -= std::llround(kUnit * std::log(product[i]));
-    std::fill(product.begin(), product.end(), 1.0);
-  }
+void Calibrator::keepFewer() {
+  m_oneIn *= 2;
+  for (auto i = m_voxels.begin(); i != m_voxels.end();)
+    i = keeps(i->first) ? std::next(i) : m_voxels.erase(i);
 }
 
-Calibration Calibrator::best() const {
-  if (m_losses.empty()) return {};
-  const std::int64_t least = *std::min_element(m_losses.begin(), m_losses.end());
-  double all = 0, power = 0, shared = 0;
-  for (std::size_t i = 0; i < kCells; ++i) {
-    const double weight = std::exp(static_cast<double>(least - m_losses[i]) / kUnit);
-    all += weight;
-    power += weight * kPowers[i / kNumRight / kNumShared];
-    shared += weight * kShared[i / kNumRight % kNumShared];
+LabelProcess Calibrator::process(double accuracy, double labelsBefore) const {
+  LabeledVoxels voxels;
+  for (const auto& [voxel, labels] : m_voxels)
+    if (labels.size() > 1) ++voxels[labels];
+  return LabelProcess(voxels, m_numClasses, accuracy, labelsBefore);
+}
+
+std::vector<std::vector<double>> Calibrator::confusion(double accuracy) const {
+  return process(accuracy, kLabelsOfMatrix).counts();
+}
+
+Calibration Calibrator::fit(const SemanticOcTree& map) const {
+  const Calibration& has = map.filterParameters().calibration;
+  std::size_t numLabels = 0;
+  for (const auto& [voxel, labels] : m_voxels)
+    numLabels += labels.size() - std::min(kFew, labels.size());
+  if (numLabels == 0) return has;
+  const LabelProcess process = this->process(map.filterParameters().accuracy, kLabelsOfFit);
+  std::vector<Question> questions;
+  for (const auto& [voxel, labels] : std::map(m_voxels.begin(), m_voxels.end())) {
+    const SemanticOcTreeNode leaf = map.search(keyOf(voxel));
+    if (!leaf || !leaf.hasClassRecord() || leaf.getLogOdds() <= 0) continue;
+    questions.push_back(
+        questionOf(map.belief(leaf), m_numClasses, process.classesOf(labels), labels.size()));
   }
-  const auto onStep = [all](double sum) { return std::round(sum / all * kSteps) / kSteps; };
-  return {onStep(power), onStep(shared)};
+  if (questions.empty()) return has;
+  const Calibration found = fitted(questions);
+  const auto together = [numLabels](double had, double fits) {
+    const double mean = (kLabelsBefore * had + numLabels * fits) / (kLabelsBefore + numLabels);
+    return std::round(kSteps * mean) / kSteps;
+  };
+  return {together(has.power, found.power), together(has.shared, found.shared)};
 }
 
 }  // namespace semantic_octree

@@ -75,7 +75,7 @@ void FilterParameters::validate(int numClasses) const {
   all.add("min_occupancy", copy.minOccupancy, "", atLeast(kLeastProbability).below(0.5), "");
   all.add("max_probability", copy.maxProbability, "", above(0.5).upTo(1 - kLeastProbability), "");
   all.add("soft_label_floor", copy.softLabelFloor, "", above(0).below(1), "");
-  all.add("calibration.power", copy.calibration.power, "", above(0).upTo(1), "");
+  all.add("calibration.power", copy.calibration.power, "", above(0).upTo(4), "");
   all.add("calibration.shared", copy.calibration.shared, "", atLeast(0).below(1), "");
   checkAll(all, "FilterParameters");
   require(numClasses >= 1 && numClasses <= semantic_types::kMaxClasses, "number of classes",

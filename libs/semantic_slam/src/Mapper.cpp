@@ -11,7 +11,7 @@ using semantic_octree::KeyframeMap;
 using semantic_octree::SemanticOcTree;
 
 Mapper::Mapper(SemanticOcTree& map, const MapperOptions& options, const SemanticOcTree* reference)
-    : m_map(map), m_options(options) {
+    : m_map(map), m_options(options), m_calibrator(map.getResolution(), map.numClasses()) {
   m_options.insertion.validate();
   if (!m_options.localize) return;
   m_slam.emplace(m_options.slam);
@@ -69,6 +69,10 @@ auto Mapper::insert(const std::vector<SensorScan>& seen, const Place& place, dou
       inserted.scans.push_back(insertAt(place, scan.cloud, scan.T_robot_sensor, m_options.insertion,
                                         secondsUntil(seconds)));
       m_agedAt = std::max(seconds, m_agedAt.value_or(seconds));
+      m_calibrator.add(scan.cloud, place.T_map_robot * scan.T_robot_sensor, m_options.insertion);
+      if (++m_numScans < m_calibrateAt) continue;
+      calibrate();
+      m_calibrateAt *= 2;
     }
   if (m_keyframes && place.added->posesMoved) moveKeyframes(kOff * m_map.getResolution());
   return inserted;
@@ -117,6 +121,7 @@ void Mapper::age(double seconds) {
 }
 
 void Mapper::finish() {
+  calibrate();
   if (m_slam) m_slam->finish();
   if (m_keyframes) moveKeyframes(-1);
 }
@@ -131,6 +136,9 @@ void Mapper::moveKeyframes(double meters) {
     if (by.head<3>().norm() + kSeenFrom * by.tail<3>().norm() > meters)
       off.push_back({k, T_map_keyframe});
   }
+  if (off.empty()) return;
+  calibrate();
+  m_calibrator.clear();
   m_keyframes->move(off);
 }
 

@@ -2,53 +2,58 @@
 #include <semantic_octree/InsertionOptions.h>
 #include <semantic_octree/SemanticOcTree.h>
 
-#include <array>
 #include <cstdint>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
 namespace semantic_octree {
 
-/** Fits what a map states to scans that it does not know yet: a scan's labels ask the map for the
- * classes of their voxels before the scan is inserted, and the calibration is the mean of a grid of
- * them, weighted by how likely each made all labels so far (Dawid, "The Prequential Approach",
- * 1984).
+class LabelProcess;
+
+/** Finds out what labels are worth, from labels alone, and fits what a map states to it.
  *
- * A label names its voxel's class with probability a, and any other class with (1 - a) / (K - 1),
+ * Voxels keep the label of each scan that saw them. Expectation maximization finds how often which
+ * class is taken for which, and what each voxel is (Dawid and Skene, "Maximum Likelihood Estimation
+ * of Observer Error-Rates Using the EM Algorithm", 1979), with labels that repeat those of earlier
+ * scans: of three labels the first two of which differ, the third is more often the second than the
+ * first, if scans repeat each other. What all scans repeat cannot be seen, and is taken to be as
+ * much as what one scan repeats of the one before.
  *
- *   p(label k) = a s_k + (1 - a) (1 - s_k) / (K - 1),   s = what is stated (see Calibration),
- *
- * and a is fitted, too: labels that err one by one lower a, and the map may be sure nevertheless.
- * Errors that all scans repeat cannot be seen this way.
- *
- * One voxel in 16 asks, with one label a scan, once three scans saw it: fewer cannot outvote each
- * other. */
+ * One voxel in 4 keeps its labels, fewer in large maps: about 32 thousand voxels, 64 labels each.
+ * Only additions, multiplications and divisions are made, so that results are the same bits
+ * everywhere. */
 class Calibrator {
  public:
-  /** Before a scan is inserted. \param T_map_sensor, options as it will be
+  /** \param voxelSize meters, as the map's \param numClasses K >= 1 */
+  Calibrator(double voxelSize, int numClasses) : m_voxelSize(voxelSize), m_numClasses(numClasses) {}
+
+  /** A scan's labels, of soft ones the likeliest class: each voxel has that of most of its points,
+   * the lowest id on a tie. \param options as it is inserted
    * \throw std::invalid_argument vectors of different lengths. */
-  void ask(const SemanticOcTree& map, const LabeledCloud& cloud,
-           const Eigen::Isometry3d& T_map_sensor, const InsertionOptions& options = {});
-  /** What was fitted, in steps of 1/64; what the map had at first until labels speak against it. */
-  Calibration best() const;
+  void add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
+           const InsertionOptions& options = {});
+  /** Forgets where labels were: the map has moved. */
+  void clear() { m_voxels.clear(); }
+
+  /** What makes -sum_k q_k ln(stated p(class k | occupied)) least over the voxels, q_k what their
+   * labels say, each counting by its points. What the map has counts like 100 labels; labels count
+   * from the third of a voxel on, for fewer cannot outvote each other. In steps of 1/256. */
+  Calibration fit(const SemanticOcTree& map) const;
+  /** K x K expected counts for a confusion matrix: row is the true class, column the label. Beside
+   * what was seen, 1000 labels of each class are right with probability `accuracy`, (1/K, 1). */
+  std::vector<std::vector<double>> confusion(double accuracy) const;
 
  private:
-  /** A label, and what the map believes of its voxel. */
-  struct Question {
-    SemanticOcTree::Belief belief;
-    std::array<double, 3> named;  ///< p(label is this named class): 0 or 1, but of soft labels
-    double others;                ///< the same of all classes that are not named
-  };
-  void begin(const SemanticOcTree& map);
-  void add(const std::vector<Question>& questions, int numClasses);
+  bool keeps(std::uint64_t voxel) const;
+  void keepFewer();
+  LabelProcess process(double accuracy, double labelsBefore) const;
 
-  struct Seen {
-    std::uint32_t scans = 0, last = 0;
-  };
-  std::unordered_map<octomap::OcTreeKey, Seen, octomap::OcTreeKey::KeyHash> m_voxels;
-  std::uint32_t m_scans = 0;
-  /** For each calibration and a: -ln p of all labels, 1/1024 nat. */
-  std::vector<std::int64_t> m_losses;
+  double m_voxelSize;
+  int m_numClasses;
+  std::uint64_t m_oneIn = 1;  ///< voxels keeps its labels
+  /** By their key, 16 bits for each axis: labels, one of each scan, a byte each. */
+  std::unordered_map<std::uint64_t, std::string> m_voxels;
 };
 
 }  // namespace semantic_octree

@@ -1,5 +1,6 @@
 #pragma once
 #include <map_correction/KeyframeMap.h>
+#include <map_operations/Calibrator.h>
 #include <semantic_slam/Slam.h>
 
 #include <filesystem>
@@ -31,7 +32,8 @@ struct MapperOptions {
 
 /** Keeps a robot's map and where the robot is in it. Scans are registered to keyframes that do not
  * change, not to the map that is made of them: what a pose is wrong by does not come back as
- * evidence for it. It starts no thread. */
+ * evidence for it. What the map states is calibrated (Calibrator) after 4, 8, 16 ... scans, before
+ * keyframes move, and at the end. It starts no thread. */
 class Mapper {
  public:
   /** With `localize`, an empty map must be changed by the mapper alone (but for its abstraction),
@@ -106,6 +108,7 @@ class Mapper {
                                             const semantic_octree::InsertionOptions& options,
                                             double secondsSince);
   void moveKeyframes(double meters);
+  void calibrate() { m_map.setCalibration(m_calibrator.fit(m_map)); }
   double secondsUntil(double seconds) const;
 
   semantic_octree::SemanticOcTree& m_map;
@@ -114,7 +117,9 @@ class Mapper {
   std::optional<Slam> m_slam;
   std::unique_ptr<semantic_octree::KeyframeMap> m_keyframes;  ///< if the map may be corrected
   Eigen::Isometry3d m_T_map_odometry = Eigen::Isometry3d::Identity();
-  int m_leftOut = 0;               ///< scans since the last that was inserted
+  int m_leftOut = 0;  ///< scans since the last that was inserted
+  semantic_octree::Calibrator m_calibrator;
+  std::size_t m_numScans = 0, m_calibrateAt = 4;
   std::optional<double> m_agedAt;  ///< seconds
 };
 

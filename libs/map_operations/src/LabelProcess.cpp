@@ -1,0 +1,108 @@
+#include "LabelProcess.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace semantic_octree {
+namespace {
+
+/** Triples of labels before any are seen, which repeat nothing. */
+constexpr double kTriplesBefore = 20;
+constexpr int kExpectations = 25;
+/** Where the search for the correlation begins, and how far it goes. */
+constexpr double kCorrelationBefore = 0.1, kMostCorrelation = 0.9, kFirstStride = 1,
+                 kNextStride = 0.85;
+
+std::size_t columnOf(char label) { return static_cast<unsigned char>(label) - std::size_t{1}; }
+
+void normalize(std::vector<double>& values) {
+  const double all = std::accumulate(values.begin(), values.end(), 0.0);
+  for (double& value : values) value /= all;
+}
+
+double repeatedIn(const LabeledVoxels& voxels) {
+  double triples = kTriplesBefore, more = 0;
+  for (const auto& [labels, number] : voxels)
+    for (std::size_t i = 2; i < labels.size(); ++i) {
+      if (labels[i - 1] == labels[i - 2]) continue;
+      triples += number;
+      if (labels[i] == labels[i - 1]) more += number;
+      if (labels[i] == labels[i - 2]) more -= number;
+    }
+  return std::max(0.0, more / triples);
+}
+
+}  // namespace
+
+LabelProcess::LabelProcess(const LabeledVoxels& voxels, int numClasses, double accuracy,
+                           double labelsBefore)
+    : m_repeated(repeatedIn(voxels)), m_correlation(std::max(m_repeated, kCorrelationBefore)) {
+  const auto K = static_cast<std::size_t>(numClasses);
+  const double wrong = (1 - accuracy) / (numClasses - 1);
+  Table before(K, std::vector<double>(K, labelsBefore * wrong));
+  for (std::size_t k = 0; k < K; ++k) before[k][k] = labelsBefore * accuracy;
+  m_counts = before;
+  m_shares.assign(K, 1.0);
+  double stride = kFirstStride;
+  for (int round = 0; round < kExpectations; ++round) {
+    const double slope = step(voxels, before);
+    m_correlation *= slope > 0 ? 1 + stride : 1 / (1 + stride);
+    m_correlation = std::clamp(m_correlation, m_repeated, kMostCorrelation);
+    stride *= kNextStride;
+  }
+}
+
+double LabelProcess::step(const LabeledVoxels& voxels, const Table& before) {
+  m_rows = std::move(m_counts);
+  for (auto& row : m_rows) normalize(row);
+  normalize(m_shares);
+  m_counts = before;
+  std::vector<double> shares(m_shares.size(), 1.0);
+  std::vector<Origin> origins;
+  double slope = 0;
+  for (const auto& [labels, number] : voxels) {
+    const std::vector<double> p = classesOf(labels, &origins);
+    for (std::size_t k = 0; k < p.size(); ++k) shares[k] += number * p[k];
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      const double expected = shareDrawn(i);
+      for (std::size_t k = 0; k < p.size(); ++k) {
+        const auto& [drawn, urn] = origins[i * p.size() + k];
+        m_counts[k][columnOf(labels[i])] += number * p[k] * drawn;
+        slope += number * p[k] * (expected * (drawn + urn) - drawn);
+      }
+    }
+  }
+  m_shares = std::move(shares);
+  return slope;
+}
+
+double LabelProcess::shareDrawn(std::size_t earlier) const {
+  return (1 - m_correlation) / (1 - m_correlation + m_correlation * static_cast<double>(earlier));
+}
+
+std::vector<double> LabelProcess::classesOf(const std::string& labels) const {
+  return classesOf(labels, nullptr);
+}
+
+std::vector<double> LabelProcess::classesOf(const std::string& labels,
+                                            std::vector<Origin>* origins) const {
+  std::vector<double> p = m_shares;
+  if (origins) origins->clear();
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const auto now = labels.begin() + static_cast<std::ptrdiff_t>(i);
+    const bool again = i > 0 && now[-1] == labels[i];
+    const double repeated = i > 0 ? m_repeated : 0, drawn = (1 - repeated) * shareDrawn(i);
+    const auto same = static_cast<double>(std::count(labels.begin(), now, labels[i]));
+    const double urn = i > 0 ? (1 - repeated - drawn) * same / static_cast<double>(i) : 0;
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const double draw = drawn * m_rows[k][columnOf(labels[i])];
+      const double any = (again ? repeated : 0) + draw + urn;
+      if (origins) origins->push_back({draw / any, urn / any});
+      p[k] *= any;
+    }
+    normalize(p);
+  }
+  return p;
+}
+
+}  // namespace semantic_octree

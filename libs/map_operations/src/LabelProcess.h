@@ -1,0 +1,57 @@
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+namespace semantic_octree {
+
+/** Voxels by their labels: one of each scan that saw them, in the order of scans, a byte each. */
+using LabeledVoxels = std::map<std::string, double>;
+
+/** How labels of scans come about, from labels alone. A voxel has one class, which is not known. A
+ * scan's label of it, after t labels of other scans, is
+ *
+ *   that of the scan before, with probability c,
+ *   else that of any scan before, with probability r t / (1 - r + r t) (Polya's urn),
+ *   else drawn from the row of the voxel's class.
+ *
+ * With c = r = 0 that is Dawid and Skene, "Maximum Likelihood Estimation of Observer Error-Rates
+ * Using the EM Algorithm", 1979. Of the urn only so much can be seen as labels of one voxel differ:
+ * what all scans repeat is taken to be at least as much as what one repeats of the one before,
+ * r >= c. */
+class LabelProcess {
+ public:
+  /** \param numClasses K > 1
+   * \param accuracy, labelsBefore Beside what was seen, so many labels of each class are right
+   * with this probability, (1/K, 1). */
+  LabelProcess(const LabeledVoxels& voxels, int numClasses, double accuracy, double labelsBefore);
+
+  /** c, [0, 1): of three labels in succession, the first two of which differ, how much more often
+   * the third is the second than the first. */
+  double repeated() const { return m_repeated; }
+  /** r, [c, 1) */
+  double correlation() const { return m_correlation; }
+  /** K x K expected counts of labels that were drawn: row is the true class. */
+  const std::vector<std::vector<double>>& counts() const { return m_counts; }
+  /** p(class k + 1), given a voxel's labels. */
+  std::vector<double> classesOf(const std::string& labels) const;
+
+ private:
+  using Table = std::vector<std::vector<double>>;
+  /** Of a label, given the voxel's class, the probability that it was drawn, or is of the urn. */
+  struct Origin {
+    double drawn, urn;
+  };
+  /** \param origins of each label and class */
+  std::vector<double> classesOf(const std::string& labels, std::vector<Origin>* origins) const;
+  /** Share of the draws among labels that do not repeat the one before. */
+  double shareDrawn(std::size_t earlier) const;
+  /** \return the sign of d ln p(all labels) / dr */
+  double step(const LabeledVoxels& voxels, const Table& before);
+
+  double m_repeated, m_correlation;
+  Table m_counts, m_rows;
+  std::vector<double> m_shares;
+};
+
+}  // namespace semantic_octree
