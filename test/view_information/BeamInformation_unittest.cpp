@@ -298,6 +298,20 @@ TEST(BeamInformation, throughTheFilterEndsAtItsLimits) {
   EXPECT_LT(question.fallThrough(filter, model, lowest), 1e-6);
 }
 
+TEST(BeamInformation, isTheMeanSurpriseOfAllOutcomes) {
+  Draw draw(7);
+  for (int trial = 0; trial < 200; ++trial) {
+    const int K = 1 + draw.below(4);
+    const Distribution p = draw.distribution(K);
+    const BeamModel model = draw.model(K);
+    const Question question(weightsOf({draw.term(K, draw.number() - 0.5)}), K);
+    double mean = 0;
+    for (int w = 0; w <= K; ++w)
+      mean += model.probability(w, p.data()) * question.surprise(model, p.data(), w);
+    ASSERT_NEAR(mean, question.information(model, p.data()), 1e-12) << "trial " << trial;
+  }
+}
+
 TEST(BeamInformation, ofWhatIsIrrelevantIsALoss) {
   const int K = 3;
   const Question question(weightsOf({tree_abstraction::relevant("a", 1, {1}),

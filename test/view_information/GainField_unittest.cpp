@@ -3,21 +3,13 @@
 
 #include <cmath>
 
+#include "ThreeClasses.h"
+
 using namespace view_information;
 using semantic_octree::SemanticOcTree;
-using semantic_types::ClassTable;
 using semantic_types::LabeledCloud;
 
 namespace {
-
-constexpr double kVoxel = 0.2;
-enum : ClassId { kRoad = 1, kGrass, kWall };
-
-ClassTable threeClasses() {
-  ClassTable table;
-  for (const char* name : {"road", "grass", "wall"}) table.add(name, {});
-  return table;
-}
 
 tree_abstraction::AbstractionWeights roadMatters() {
   tree_abstraction::AbstractionWeights weights;

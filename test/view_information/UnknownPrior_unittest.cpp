@@ -1,27 +1,20 @@
 #include <gtest/gtest.h>
 #include <view_information/GainField.h>
 
+#include "ThreeClasses.h"
+
 using namespace view_information;
 using semantic_octree::kKeyOfOrigin;
 using semantic_octree::SemanticOcTree;
-using semantic_types::ClassTable;
 
 namespace {
 
-constexpr double kVoxel = 0.2;
 constexpr int kGroundKey = kKeyOfOrigin, kOrigin = kKeyOfOrigin;
-enum : ClassId { kRoad = 1, kGrass, kWall };
 
 tree_abstraction::AbstractionWeights relevantOnly(ClassId id) {
   tree_abstraction::AbstractionWeights weights;
   weights.terms = {tree_abstraction::relevant("relevant", 1, {id})};
   return weights;
-}
-
-ClassTable threeClasses() {
-  ClassTable table;
-  for (const char* name : {"road", "grass", "wall"}) table.add(name, {});
-  return table;
 }
 
 /** Road to the east (x > 0), grass to the west, each known up to 6 m; nothing else is. */
@@ -71,6 +64,17 @@ TEST(UnknownPrior, thatIsLearnedLooksForWhatMattersWhereItIsLikely) {
   const double west = -grass.eastBeforeWest(priorOfGrass);
   EXPECT_GT(east, 0.5);
   EXPECT_NEAR(east, west, 0.1 * east);
+}
+
+TEST(UnknownPrior, groundThatIsRelevantForSureIsWorthMost) {
+  TwoSides sides(kRoad);
+  LearnedPrior prior(sides.map, sides.question);
+  sides.teach(prior);
+  const auto worthAt = [&](int x) {
+    return prior.patch((kOrigin + x) / 4, (kOrigin + 10) / 4).onGround.gain;
+  };
+  EXPECT_GT(worthAt(20), 1.2F * worthAt(0));
+  EXPECT_GT(worthAt(0), 1.2F * worthAt(-20));
 }
 
 TEST(UnknownPrior, groundGoesOnAndIsOneVoxelThick) {

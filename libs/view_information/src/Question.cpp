@@ -1,6 +1,7 @@
 #include <tree_abstraction/Information.h>
 #include <view_information/BeamInformation.h>
 
+#include <cmath>
 #include <map>
 
 namespace view_information {
@@ -36,10 +37,31 @@ double Question::entropyOfRow(const std::vector<double>& row) const {
   return sum;
 }
 
-double Question::entropy(const double* p) const {
+std::vector<double> Question::rowOf(const double* p) const {
   std::vector<double> row(m_terms.width(), 0);
   for (const auto& c : m_terms.contributions()) row[c.entry] += p[c.classId];
-  return entropyOfRow(row);
+  return row;
+}
+
+double Question::entropy(const double* p) const { return entropyOfRow(rowOf(p)); }
+
+double Question::surprise(const BeamModel& model, const double* p, int outcome) const {
+  const double pw = model.probability(outcome, p);
+  std::vector<double> after(m_entries.size());
+  for (std::size_t k = 0; k < after.size(); ++k)
+    after[k] = p[k] * model.probability(outcome, static_cast<int>(k)) / pw;
+  const std::vector<double> before = rowOf(p), now = rowOf(after.data());
+  const auto part = [](double a, double b) { return a > 0 && b > 0 ? a * std::log(a / b) : 0.0; };
+  double sum = 0;
+  for (std::size_t t = 0; t < m_terms.size(); ++t) {
+    const auto slot = m_terms.slot(t);
+    double divergence = 0;
+    for (std::size_t e = slot.offset; e < slot.offset + slot.width; ++e)
+      divergence += part(now[e], before[e]);
+    if (slot.isBinary()) divergence += part(1 - now[slot.offset], 1 - before[slot.offset]);
+    sum += m_weights[t] * divergence;
+  }
+  return sum;
 }
 
 double Question::entropy(const ClassBelief<float>& belief) const {

@@ -34,10 +34,14 @@ Gain UnknownPatch::at(int x, int y, int z) const {
   return z <= top ? above : Gain{};
 }
 
-UniformPrior::UniformPrior(const Question& question, const BeamModel& model) {
-  const int K = question.numClasses();
-  std::vector<double> p(static_cast<std::size_t>(K) + 1, 0.5 / K);
+std::vector<double> nothingKnown(int numClasses) {
+  std::vector<double> p(static_cast<std::size_t>(numClasses) + 1, 0.5 / numClasses);
   p[0] = 0.5;
+  return p;
+}
+
+UniformPrior::UniformPrior(const Question& question, const BeamModel& model) {
+  const std::vector<double> p = nothingKnown(question.numClasses());
   const double gain = std::max(0.0, question.information(model, p.data()));
   m_patch.ground = std::numeric_limits<int>::min() / 2;
   m_patch.top = std::numeric_limits<int>::max();
@@ -46,7 +50,6 @@ UniformPrior::UniformPrior(const Question& question, const BeamModel& model) {
 
 LearnedPrior::LearnedPrior(const semantic_octree::SemanticOcTree& map, const Question& question)
     : m_map(map),
-      m_question(question),
       m_model(map.numClasses(), map.filterParameters()),
       m_columnArea(map.getResolution() * map.getResolution()) {
   const double edge = UnknownPatch::kEdge * map.getResolution();
@@ -54,6 +57,9 @@ LearnedPrior::LearnedPrior(const semantic_octree::SemanticOcTree& map, const Que
   for (int d2 = 0; d2 <= 2 * m_reach * m_reach; ++d2)
     m_kernel.push_back(weightAt(std::sqrt(d2) * edge));
   const auto classes = static_cast<std::size_t>(map.numClasses()) + 1;
+  const std::vector<double> nothing = nothingKnown(map.numClasses());
+  for (int w = 0; w <= map.numClasses(); ++w)
+    m_worth.push_back(question.surprise(m_model, nothing.data(), w));
   m_standsOn.assign(classes, Distribution(classes, 0));
 }
 
@@ -149,8 +155,10 @@ LearnedPrior::Distribution LearnedPrior::above(const Distribution& ground) const
 }
 
 Gain LearnedPrior::gainOf(const Distribution& p) const {
-  return {static_cast<float>(passThrough(1 - p[0], 0)),
-          static_cast<float>(std::max(0.0, m_question.information(m_model, p.data())))};
+  double gain = 0;
+  for (std::size_t w = 0; w < p.size(); ++w)
+    gain += m_model.probability(static_cast<int>(w), p.data()) * m_worth[w];
+  return {static_cast<float>(passThrough(1 - p[0], 0)), static_cast<float>(std::max(0.0, gain))};
 }
 
 void LearnedPrior::predict(int x, int y, Patch& patch) const {

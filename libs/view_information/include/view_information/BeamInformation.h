@@ -7,7 +7,7 @@
 
 /** \file
  * What beams and views tell, in nats: exact under the model that the class filter inverts. The
- * formulas (a) to (f) stand in doc/how-it-works/exploration.md. */
+ * formulas (a) to (g) stand in doc/how-it-works/exploration.md. */
 
 namespace view_information {
 
@@ -47,6 +47,10 @@ class Question {
   /** (c): what the outcome of a beam that reaches the cell tells. It may be negative: looking is no
    * loss then, but worth nothing. */
   double information(const BeamModel& model, const double* p) const;
+  /** (g): how far an outcome moves what is believed of a cell, the weighted divergence of the terms
+   * after it from before. Its mean over the outcomes as the belief predicts them is information().
+   */
+  double surprise(const BeamModel& model, const double* p, int outcome) const;
   /** (d): the expected fall of entropy when the filter gets the outcome, with its limits; below 0
    * as above. */
   double fallThrough(const semantic_octree::ClassFilter<float>& filter, const BeamModel& model,
@@ -56,6 +60,7 @@ class Question {
   const std::vector<int>& kinds() const { return m_kinds; }
 
  private:
+  std::vector<double> rowOf(const double* p) const;
   double entropyOfRow(const std::vector<double>& row) const;
 
   std::vector<double> m_weights;

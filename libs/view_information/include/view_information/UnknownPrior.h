@@ -56,8 +56,13 @@ class UniformPrior : public UnknownPrior {
   UnknownPatch m_patch;
 };
 
+/** P(free) = 1/2, the classes equally likely: what the filter has of unknown space. */
+std::vector<double> nothingKnown(int numClasses);
+
 /** Learned from what is known: ground goes on as it is near by, or else as it is on the whole; what
- * stands on it is what stands on such ground elsewhere; above is air. */
+ * stands on it is what stands on such ground elsewhere; above is air. It says which outcomes to
+ * expect; what they are worth is how far they move the map, which knows nothing yet
+ * (Question::surprise()): ground that is relevant for sure is worth most. */
 class LearnedPrior : public UnknownPrior {
  public:
   /** \param map must outlive this. */
@@ -102,14 +107,14 @@ class LearnedPrior : public UnknownPrior {
   Gain gainOf(const Distribution& p) const;
 
   const semantic_octree::SemanticOcTree& m_map;
-  const Question& m_question;
   BeamModel m_model;
   int m_reach;  ///< patches
   double m_columnArea;
   int m_usualHeight = semantic_octree::kKeyOfOrigin;  ///< where nothing near is known
   std::unordered_map<std::uint64_t, Patch> m_patches;
   std::vector<std::array<int, 2>> m_changed;
-  std::vector<double> m_kernel;          ///< by squared distance in patches
+  std::vector<double> m_kernel;  ///< by squared distance in patches
+  std::vector<double> m_worth;   ///< of each outcome, to a map that knows nothing of the voxel
   std::vector<Distribution> m_standsOn;  ///< by class of ground: air and classes that were seen
 };
 
