@@ -1,0 +1,12 @@
+#pragma once
+#include <semantic_types/ClassTable.h>
+
+/** The classes of these tests, and the edge of their voxels. */
+enum : semantic_types::ClassId { kRoad = 1, kGrass, kWall };
+constexpr double kVoxel = 0.2;  // m
+
+inline semantic_types::ClassTable threeClasses() {
+  semantic_types::ClassTable table;
+  for (const char* name : {"road", "grass", "wall"}) table.add(name, {});
+  return table;
+}
