@@ -111,7 +111,7 @@ mrpt::math::TPose2D poseIn(const Place& place) {
 
 GoalRegion regionOf(const SemanticPlanner& planner, const std::set<Place>& reached,
                     const Place& goal) {
-  const ColumnSquare columns(columnOf({0, 0}), kReach);
+  const ColumnRectangle columns = ColumnRectangle::around(columnOf({0, 0}), kReach);
   std::vector<bool> marked(columns.size());
   for (const Place& p : reached) marked[columns.indexOf(columnOf(p))] = true;
   return GoalRegion(planner, columns, marked, poseIn({0, 0}), 0, poseIn(goal));

@@ -44,6 +44,29 @@ TEST(Ground, surfacesAreTheOccupiedVoxelsWithHeadRoomOfAColumnScan) {
   EXPECT_GT(found, 1000u);
 }
 
+TEST(Ground, knowsWhatIsOccupiedInAColumnBetweenTwoHeights) {
+  PaintedWorld world;
+  addRubble(world, 2, 800);
+  const SemanticOcTree& map = world.map();
+  const Ground ground = groundOf(map), part(map, {}, {}, anyClass(), std::vector<Column>{});
+  std::mt19937 random(3);
+  int numOccupied = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const int x = int(random() % 44) - 22, y = int(random() % 44) - 22, z = int(random() % 18) - 9;
+    const int high = z + int(random() % 3);
+    bool any = false;
+    for (int k = z; k <= high; ++k) any = any || occupied(map, x, y, k);
+    const Column c{kOrigin + x, kOrigin + y};
+    ASSERT_EQ(ground.isOccupied(c, kOrigin + z, kOrigin + high), any) << x << ' ' << y << ' ' << z;
+    if (i < 100) {
+      EXPECT_EQ(part.isOccupied(c, kOrigin + z, kOrigin + high), any);
+    }
+    numOccupied += any;
+  }
+  EXPECT_GT(numOccupied, 50);
+  EXPECT_FALSE(ground.isOccupied({kOrigin + 9000, kOrigin}, 0, 65535));
+}
+
 TEST(Ground, aSurfaceHasTheLikeliestClassOfItsVoxel) {
   PaintedWorld world;
   std::mt19937 random(6);

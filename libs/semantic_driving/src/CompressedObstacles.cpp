@@ -30,13 +30,11 @@ class CompressedFinder {
         m_options(options),
         m_height(
             static_cast<int>(std::ceil(planner.options().vehicle.height / m_ground.voxelSize()))),
-        m_low(surroundings.low()),
-        m_edge(surroundings.high().x - m_low.x + 1),
-        m_covered(static_cast<std::size_t>(m_edge) * m_edge, false) {}
+        m_columns(surroundings.columns()),
+        m_covered(m_columns.size(), false) {}
 
   /** All leaves that are in the way. */
   void cover(const Abstraction& compressed) {
-    const Column high = m_surroundings.high();
     const auto key = [](Column c, int z) {
       const auto part = [](int k) {
         return static_cast<octomap::key_type>(std::clamp(k, 0, 65535));
@@ -49,10 +47,11 @@ class CompressedFinder {
     });
     const int step = m_ground.step();
     for (const LeafCell& leaf :
-         compressed.leavesIn(key(m_low, lowest - step), key(high, highest + m_height + step), true))
+         compressed.leavesIn(key(m_columns.low(), lowest - step),
+                             key(m_columns.high(), highest + m_height + step), true))
       if (isInTheWay(leaf)) mark(leaf);
     m_surroundings.forEach([&](Column c, int, const Surface* s) {  // no leaf is there
-      if (s && s->filled && !s->drivable) m_covered[indexOf(c)] = true;
+      if (s && s->filled && !s->drivable) m_covered[m_columns.indexOf(c)] = true;
     });
   }
 
@@ -62,7 +61,7 @@ class CompressedFinder {
     m_surroundings.forEach([&](Column c, int, const Surface*) {
       const auto covered = [&](int x, int y) {
         const Column next{c.x + x, c.y + y};
-        return m_surroundings.isWithinRadius(next) && m_covered[indexOf(next)];
+        return m_surroundings.isWithinRadius(next) && m_covered[m_columns.indexOf(next)];
       };
       const bool inside = covered(1, 0) && covered(-1, 0) && covered(0, 1) && covered(0, -1);
       if (covered(0, 0) && !inside) f(c);
@@ -70,9 +69,6 @@ class CompressedFinder {
   }
 
  private:
-  std::size_t indexOf(Column c) const {
-    return static_cast<std::size_t>(c.y - m_low.y) * m_edge + (c.x - m_low.x);
-  }
   template <class Predicate>
   bool anyColumn(const LeafCell& leaf, Predicate predicate) const {
     for (int y = leaf.lowest.y(); y < leaf.lowest.y() + leaf.edge(); ++y)
@@ -96,7 +92,7 @@ class CompressedFinder {
   }
   void mark(const LeafCell& leaf) {
     anyColumn(leaf, [&](Column c) {
-      m_covered[indexOf(c)] = true;
+      m_covered[m_columns.indexOf(c)] = true;
       return false;
     });
   }
@@ -106,8 +102,7 @@ class CompressedFinder {
   const Surroundings& m_surroundings;
   const ObstacleOptions& m_options;
   int m_height;
-  Column m_low;
-  int m_edge;
+  const ColumnRectangle& m_columns;
   std::vector<bool> m_covered;
 };
 

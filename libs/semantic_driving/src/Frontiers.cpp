@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "GoalRegion.h"
 #include "GroundFlood.h"
@@ -26,45 +27,75 @@ constexpr std::size_t kMostFrontiers = 6;
 class FrontierSearch {
  public:
   FrontierSearch(const SemanticPlanner& planner, const GroundFlood& flood, const GoalRegion& region,
-                 const WayLeft& wayLeft, double unknownFactor)
+                 const TPose2D& from, const TPose2D& goal)
       : m_planner(planner),
         m_ground(planner.ground()),
         m_flood(flood),
         m_region(region),
-        m_wayLeft(wayLeft),
-        m_unknownFactor(unknownFactor) {}
+        m_from(from),
+        m_goal(goal) {
+    flood.forEach([&](Column c, const GroundFlood::Place& place) {
+      if ((c.x + c.y) % 2 == 0) lookAround(c, place.z);
+    });
+  }
 
-  /** The best ones that the vehicle can stand at, apart from each other and from those to avoid. */
-  std::vector<Frontier> chosen(const std::vector<TPose2D>& avoid) const {
+  /** The best ones that the vehicle can stand at, apart from each other and from those to avoid.
+   * \param unknown what a meter through it counts */
+  std::vector<Frontier> chosen(const WayLeft& wayLeft, double unknown,
+                               const std::vector<TPose2D>& avoid) const {
     std::vector<Frontier> chosen;
-    for (const Frontier& f : all()) {
+    for (const auto& [cost, straight, c] : best(wayLeft, unknown)) {
+      const double x = m_ground.centerOf(c.x), y = m_ground.centerOf(c.y);
       const auto isNear = [&](const TPose2D& p) {
-        return std::hypot(p.x - f.pose.x, p.y - f.pose.y) < kFrontiersApart;
+        return std::hypot(p.x - x, p.y - y) < kFrontiersApart;
       };
       if (chosen.size() == kMostFrontiers) break;
       if (std::any_of(avoid.begin(), avoid.end(), isNear)) continue;
       if (std::any_of(chosen.begin(), chosen.end(),
-                      [&](const Frontier& c) { return isNear(c.pose); }))
+                      [&](const Frontier& other) { return isNear(other.pose); }))
         continue;
+      const Frontier f{{x, y, headingAt(c)}, m_ground.centerOf(m_flood.at(c).z), cost};
       if (m_planner.check(f.pose, f.z) == PlanStatus::Found) chosen.push_back(f);
     }
     return chosen;
   }
 
  private:
-  std::vector<Frontier> all() const {
-    std::vector<Frontier> found;
-    m_flood.forEach([&](Column c, const GroundFlood::Place& place) {
-      if ((c.x + c.y) % 2 != 0) return;
-      const double left = leftFrom(c, place.z);
-      if (!std::isfinite(left)) return;
-      found.push_back({{m_ground.centerOf(c.x), m_ground.centerOf(c.y), headingAt(c)},
-                       m_ground.centerOf(place.z),
-                       place.cost + left});
+  /** Unknown ground that is seen from a place. */
+  struct View {
+    Column from, unknown;
+    double distance;  ///< meters
+  };
+
+  struct Place {
+    double cost;
+    double straight;  ///< meters from the vehicle by way of it to the goal, whatever is in the way
+    Column column;
+  };
+
+  /** The least cost first. Ways over columns are as long anywhere between two diagonals: of such
+   * places that which leads straight on comes first. */
+  std::vector<Place> best(const WayLeft& wayLeft, double unknown) const {
+    constexpr double kSame = 1e-3;  // m
+    std::vector<Place> places;
+    for (const View& view : m_views) {
+      const double cost =
+          m_flood.at(view.from).cost + unknown * view.distance + wayLeft.from(view.unknown);
+      if (!std::isfinite(cost)) continue;
+      if (places.empty() || !(places.back().column == view.from))
+        places.push_back({cost, straightOver(view.from), view.from});
+      places.back().cost = std::min(places.back().cost, cost);
+    }
+    std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+      const double costOfA = std::round(a.cost / kSame), costOfB = std::round(b.cost / kSame);
+      return costOfA != costOfB ? costOfA < costOfB : a.straight < b.straight;
     });
-    std::sort(found.begin(), found.end(),
-              [](const Frontier& a, const Frontier& b) { return a.cost < b.cost; });
-    return found;
+    return places;
+  }
+
+  double straightOver(Column c) const {
+    const double x = m_ground.centerOf(c.x), y = m_ground.centerOf(c.y);
+    return std::hypot(x - m_from.x, y - m_from.y) + std::hypot(x - m_goal.x, y - m_goal.y);
   }
 
   bool isUnknown(Column c, int z) const {
@@ -77,25 +108,22 @@ class FrontierSearch {
     return true;
   }
 
-  /** The least way on to the goal by the unknown of its region that is seen from there, in one of
-   * eight directions; infinite: there is none. */
-  double leftFrom(Column c, int z) const {
-    double least = std::numeric_limits<double>::infinity();
+  /** For the unknown of the goal's region, in each of eight directions. */
+  void lookAround(Column c, int z) {
     const int far = static_cast<int>(std::lround(WayLeft::kSight / m_ground.voxelSize()));
     for (const Column& d : kNeighbors)
       for (int i = 1; i <= far; ++i) {
         const Column there{c.x + i * d.x, c.y + i * d.y};
-        const double step = m_unknownFactor * m_ground.voxelSize() * std::hypot(d.x, d.y);
-        if (!m_flood.square().contains(there)) {
-          least = std::min(least, (i - 1) * step + m_wayLeft.from({there.x - d.x, there.y - d.y}));
+        const double step = m_ground.voxelSize() * lengthOf(d);
+        if (!m_flood.columns().contains(there)) {
+          m_views.push_back({c, {there.x - d.x, there.y - d.y}, (i - 1) * step});
           break;
         }
         if (m_region.isObstacle(there)) break;
         if (i == 1 || !m_region.contains(there) || !isUnknown(there, z)) continue;
-        least = std::min(least, i * step + m_wayLeft.from(there));
+        m_views.push_back({c, there, i * step});
         break;
       }
-    return least;
   }
 
   double headingAt(Column c) const {
@@ -110,8 +138,8 @@ class FrontierSearch {
   const Ground& m_ground;
   const GroundFlood& m_flood;
   const GoalRegion& m_region;
-  const WayLeft& m_wayLeft;
-  double m_unknownFactor;
+  const TPose2D m_from, m_goal;
+  std::vector<View> m_views;
 };
 
 }  // namespace
@@ -126,15 +154,16 @@ Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, d
   const double voxel = planner.ground().voxelSize();
   const int key = planner.ground().keyOf(z);
   const GroundFlood flood(planner, from, key, radius);
-  const GoalRegion region(planner, flood.square(), flood.reached(), from, z, goal);
+  const GoalRegion region(planner, flood.columns(), flood.reached(), from, z, goal);
   Exploration found;
   found.enclosed = region.isEnclosed();
   found.goalReached = region.isGoalReached();
   if (!region.isOpen()) found.goalArea = region.columns() * voxel * voxel;
   if (found.enclosed) return found;
-  const auto search = [&](double unknownFactor) {
-    const WayLeft wayLeft(planner, flood, region, goal, unknownFactor);
-    return FrontierSearch(planner, flood, region, wayLeft, unknownFactor).chosen(avoid);
+  const FrontierSearch places(planner, flood, region, from, goal);
+  const auto search = [&](double unknown) {
+    const WayLeft wayLeft(planner.ground(), flood, region, goal, unknown);
+    return places.chosen(wayLeft, unknown, avoid);
   };
   found.frontiers = search(kUnknownFactor);
   if (found.frontiers.empty()) return found;

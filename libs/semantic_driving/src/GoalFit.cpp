@@ -140,7 +140,7 @@ std::optional<TPose2D> nearestFit(const SemanticPlanner& planner, const TPose2D&
   const auto consider = [&](double r, const TPose2D& pose) {
     const double cost = r + kTurn * std::abs(mrpt::math::wrapToPi(pose.phi - goal.phi));
     const Column c = ground.columnAt(pose.x, pose.y);
-    if (cost >= least || !flood.square().contains(c) || !flood.at(c).done) return;
+    if (cost >= least || !flood.columns().contains(c) || !flood.at(c).done) return;
     if (planner.check(pose, ground.centerOf(flood.at(c).z)) != PlanStatus::Found) return;
     least = cost;
     found = pose;

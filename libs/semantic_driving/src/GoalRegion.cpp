@@ -1,10 +1,11 @@
 #include "GoalRegion.h"
 
-#include <semantic_driving/ObstacleSensing.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "ObstacleFinder.h"
+#include "Surroundings.h"
 
 namespace semantic_driving {
 
@@ -27,16 +28,14 @@ void forDisc(Column center, double radius, F f) {
 
 }  // namespace
 
-GoalRegion::GoalRegion(const SemanticPlanner& planner, const ColumnSquare& square,
-                       std::vector<bool> reached, const TPose2D& from, double z,
+GoalRegion::GoalRegion(const SemanticPlanner& planner, const ColumnRectangle& columns,
+                       const std::vector<bool>& reached, const TPose2D& from, double z,
                        const TPose2D& goal)
-    : m_square(square),
-      m_reached(std::move(reached)),
-      m_obstacle(square.size()),
-      m_kept(square.size()),
-      m_region(square.size()) {
+    : m_columns(columns), m_marks(reached.begin(), reached.end()) {
+  static_assert(kReached == 1, "as true is");
+  m_reached = static_cast<std::size_t>(std::count(reached.begin(), reached.end(), true));
+  m_enclosed = m_reached > 0;
   markObstacles(planner, from, z);
-  m_enclosed = std::find(m_reached.begin(), m_reached.end(), true) != m_reached.end();
   start(planner.ground(), goal);
   flood();
 }
@@ -46,30 +45,29 @@ void GoalRegion::markObstacles(const SemanticPlanner& planner, const TPose2D& fr
   const VehicleOptions& vehicle = planner.options().vehicle;
   const double radius =
       (vehicle.footprint.inscribedRadius() + vehicle.clearance) / ground.voxelSize();
-  ObstacleOptions options;
-  options.radius = m_square.reach() * ground.voxelSize();
-  for (const auto& seen : senseObstacles(planner, from, z, options)) {
-    const auto p = from.composePoint({seen.x(), seen.y()});
-    const Column c = ground.columnAt(p.x, p.y);
-    if (!m_square.contains(c)) continue;
-    m_obstacle[m_square.indexOf(c)] = true;
+  const ObstacleOptions options;
+  const ObstacleFinder finder(planner, options);
+  const Surroundings heights(ground, m_columns, ground.columnAt(from.x, from.y), ground.keyOf(z));
+  heights.forEach([&](Column c, int height, const semantic_planning::Surface* surface) {
+    if (!finder.isObstacle(c, height, surface)) return;
+    m_marks[m_columns.indexOf(c)] |= kObstacle;
     keepAround(c, radius);
-  }
+  });
 }
 
 /** From anywhere in a column n away the obstacle's nearest side is at most n away. */
 void GoalRegion::keepAround(Column obstacle, double radius) {
   constexpr double kLess = 1e-6;  // n itself is far enough
   forDisc(obstacle, std::max(0.0, radius - kLess), [this](Column c) {
-    if (m_square.contains(c)) m_kept[m_square.indexOf(c)] = true;
+    if (m_columns.contains(c)) m_marks[m_columns.indexOf(c)] |= kKept;
   });
 }
 
 void GoalRegion::start(const Ground& ground, const TPose2D& goal) {
   const Column c = ground.columnAt(goal.x, goal.y);
-  if (!m_square.contains(c)) return offerRim();
-  if (!m_kept[m_square.indexOf(c)]) {
-    m_goalReached = m_reached[m_square.indexOf(c)];
+  if (!m_columns.contains(c)) return offerRim();
+  if (!isKept(c)) {
+    m_goalReached = isReached(c);
     if (m_goalReached) m_enclosed = false;
     return offer(c);
   }
@@ -77,20 +75,19 @@ void GoalRegion::start(const Ground& ground, const TPose2D& goal) {
 }
 
 void GoalRegion::offer(Column c) {
-  if (!m_square.contains(c)) return offerRim();
-  const std::size_t i = m_square.indexOf(c);
-  if (m_reached[i] && !m_kept[i]) m_enclosed = false;
-  if (!isPassable(c) || m_region[i]) return;
-  m_region[i] = true;
-  ++m_columns;
+  if (!m_columns.contains(c)) return offerRim();
+  std::uint8_t& marks = m_marks[m_columns.indexOf(c)];
+  if ((marks & kReached) && !(marks & kKept)) m_enclosed = false;
+  if (marks & (kReached | kKept | kRegion)) return;
+  marks |= kRegion;
+  ++m_size;
   m_open.push_back(c);
 }
 
-/** What lies beyond the square is passable. */
+/** What lies beyond the rectangle is passable. */
 void GoalRegion::offerRim() {
   if (std::exchange(m_rim, true)) return;
-  for (std::size_t i = 0; i < m_square.size(); ++i)
-    if (m_square.isAtRim(m_square.columnOf(i))) offer(m_square.columnOf(i));
+  m_columns.forRim([this](Column c) { offer(c); });
 }
 
 void GoalRegion::flood() {

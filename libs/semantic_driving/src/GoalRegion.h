@@ -1,10 +1,10 @@
 #pragma once
 #include <semantic_planning/planner/SemanticPlanner.h>
 
-#include <algorithm>
+#include <cstdint>
 #include <vector>
 
-#include "ColumnSquare.h"
+#include "ColumnRectangle.h"
 
 namespace semantic_driving {
 
@@ -18,41 +18,41 @@ namespace semantic_driving {
  * - the unknown is passable, and so is all ground that is not known to be an obstacle;
  * - an obstacle keeps only those columns wherein no pose leaves the planner's clearance between it
  *   and the largest disc around the vehicle's origin;
- * - beyond the square everything is passable;
+ * - beyond the rectangle everything is passable;
  * - the flood begins with what is passable around a goal that seems not to be. */
 class GoalRegion {
  public:
-  /** \param reached for each column of the square, whether the vehicle gets there
+  /** \param reached for each column of the rectangle, whether the vehicle gets there
    * \param from where the vehicle is, on ground of height z (meters) */
-  GoalRegion(const semantic_planning::SemanticPlanner& planner, const ColumnSquare& square,
-             std::vector<bool> reached, const mrpt::math::TPose2D& from, double z,
+  GoalRegion(const semantic_planning::SemanticPlanner& planner, const ColumnRectangle& columns,
+             const std::vector<bool>& reached, const mrpt::math::TPose2D& from, double z,
              const mrpt::math::TPose2D& goal);
 
   /** A goal that seems not to be passable counts as so wide, meters. */
   static constexpr double kAroundGoal = 1;
 
-  /** Whether seeing an unknown column may help. \param c in the square */
-  bool contains(semantic_planning::Column c) const {
-    return m_goalReached || m_region[m_square.indexOf(c)];
-  }
-  /** The vehicle can get there. \param c in the square */
-  bool isReached(semantic_planning::Column c) const { return m_reached[m_square.indexOf(c)]; }
-  std::size_t numReached() const { return std::count(m_reached.begin(), m_reached.end(), true); }
-  /** Something is in the way. \param c in the square */
-  bool isObstacle(semantic_planning::Column c) const { return m_obstacle[m_square.indexOf(c)]; }
-  /** So near to an obstacle that the vehicle cannot be there. \param c in the square */
-  bool isKept(semantic_planning::Column c) const { return m_kept[m_square.indexOf(c)]; }
+  /** Whether seeing an unknown column may help. \param c in the rectangle */
+  bool contains(semantic_planning::Column c) const { return m_goalReached || is(kRegion, c); }
+  /** The vehicle can get there. \param c in the rectangle */
+  bool isReached(semantic_planning::Column c) const { return is(kReached, c); }
+  std::size_t numReached() const { return m_reached; }
+  /** Something is in the way. \param c in the rectangle */
+  bool isObstacle(semantic_planning::Column c) const { return is(kObstacle, c); }
+  /** So near to an obstacle that the vehicle cannot be there. \param c in the rectangle */
+  bool isKept(semantic_planning::Column c) const { return is(kKept, c); }
   bool isGoalReached() const { return m_goalReached; }
   /** No reached column borders on the region: no way leads to the goal. */
   bool isEnclosed() const { return m_enclosed; }
-  std::size_t columns() const { return m_columns; }
-  /** It goes on beyond the square. */
+  std::size_t columns() const { return m_size; }
+  /** It goes on beyond the rectangle. */
   bool isOpen() const { return m_rim; }
 
  private:
-  bool isPassable(semantic_planning::Column c) const {
-    const std::size_t i = m_square.indexOf(c);
-    return !m_reached[i] && !m_kept[i];
+  /** What a column is. */
+  enum Mark : std::uint8_t { kReached = 1, kObstacle = 2, kKept = 4, kRegion = 8 };
+
+  bool is(Mark mark, semantic_planning::Column c) const {
+    return m_marks[m_columns.indexOf(c)] & mark;
   }
   void markObstacles(const semantic_planning::SemanticPlanner& planner,
                      const mrpt::math::TPose2D& from, double z);
@@ -62,10 +62,10 @@ class GoalRegion {
   void offerRim();
   void flood();
 
-  ColumnSquare m_square;
-  std::vector<bool> m_reached, m_obstacle, m_kept, m_region;
+  const ColumnRectangle m_columns;
+  std::vector<std::uint8_t> m_marks;
   std::vector<semantic_planning::Column> m_open;
-  std::size_t m_columns = 0;
+  std::size_t m_reached = 0, m_size = 0;  ///< columns
   bool m_goalReached = false, m_enclosed = false, m_rim = false;
 };
 

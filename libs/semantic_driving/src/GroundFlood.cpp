@@ -7,19 +7,35 @@ namespace semantic_driving {
 
 using semantic_planning::Column;
 using semantic_planning::Disc;
+using semantic_planning::Ground;
 using semantic_planning::SemanticPlanner;
 using semantic_planning::Surface;
+
+ColumnRectangle knownAround(const Ground& ground, Column center, double radius) {
+  constexpr double kMargin = 2;  // m, more than the unknown is looked at from where it is seen
+  const auto columns = [&](double meters) { return static_cast<int>(meters / ground.voxelSize()); };
+  const ColumnRectangle most = ColumnRectangle::around(center, columns(radius));
+  const int margin = columns(kMargin);
+  Column low = center, high = center;
+  for (const Column& tile : ground.tiles()) {
+    const Column first = firstColumnOf(tile), last = lastColumnOf(tile);
+    low = {std::min(low.x, first.x), std::min(low.y, first.y)};
+    high = {std::max(high.x, last.x), std::max(high.y, last.y)};
+  }
+  return {{std::max(low.x - margin, most.low().x), std::max(low.y - margin, most.low().y)},
+          {std::min(high.x + margin, most.high().x), std::min(high.y + margin, most.high().y)}};
+}
 
 GroundFlood::GroundFlood(const SemanticPlanner& planner, const mrpt::math::TPose2D& from, int z,
                          double radius)
     : m_planner(planner),
       m_ground(planner.ground()),
       m_center(m_ground.columnAt(from.x, from.y)),
-      m_square(m_center, static_cast<int>(radius / m_ground.voxelSize())),
+      m_columns(knownAround(m_ground, m_center, radius)),
       m_ahead{std::cos(from.phi), std::sin(from.phi)},
       m_discs(planner.options().vehicle.footprint.coveringDiscs()),
       m_inner(planner.options().vehicle.footprint.inscribedRadius()),
-      m_places(m_square.size()) {
+      m_places(m_columns.size()) {
   for (const Disc& d : m_discs) m_outer = std::max(m_outer, std::hypot(d.x, d.y) + d.radius);
   flood(z);
 }
@@ -30,16 +46,15 @@ std::vector<bool> GroundFlood::reached() const {
   return reached;
 }
 
-/** Where the vehicle stands there may be less clearance. */
-bool GroundFlood::isNear(Column c) const {
-  constexpr double kLenient = 1.5;  // m
-  return std::hypot(c.x - m_center.x, c.y - m_center.y) < kLenient / m_ground.voxelSize();
+bool GroundFlood::isNear(Column c, double distance) const {
+  const double x = c.x - m_center.x, y = c.y - m_center.y, most = distance / m_ground.voxelSize();
+  return x * x + y * y <= most * most;
 }
 
 bool GroundFlood::fits(Column c, const Surface& surface, const Column& direction) const {
   if (isFree(surface, m_outer)) return true;
   if (!isFree(surface, m_inner)) return false;
-  const double length = std::hypot(direction.x, direction.y);
+  const double length = lengthOf(direction);
   const double x = direction.x / length, y = direction.y / length;
   return fitsHeaded(c, surface.z, x, y) || fitsHeaded(c, surface.z, -x, -y);
 }
@@ -55,22 +70,22 @@ bool GroundFlood::fitsHeaded(Column c, int z, double x, double y) const {
   });
 }
 
-void GroundFlood::offer(Column c, double cost, int z, Column from) {
-  Place& place = m_places[m_square.indexOf(c)];
-  if (place.done || cost >= place.cost) return;
-  place.cost = cost, place.z = z, place.from = from;
-  m_open.emplace(cost, m_square.indexOf(c));
+void GroundFlood::offer(const Place& offered, Column c) {
+  const std::size_t i = m_columns.indexOf(c);
+  if (m_places[i].done || offered.cost >= m_places[i].cost) return;
+  m_places[i] = offered;
+  m_open.emplace(offered.cost, i);
 }
 
 void GroundFlood::flood(int z) {
   const Surface* s = m_ground.near(m_center, z, 2 * m_ground.step());
-  if (s) offer(m_center, 0, s->z, m_center);
+  if (s) offer({0, m_center, m_planner.order().rank(s->classId), s->z, false}, m_center);
   while (!m_open.empty()) {
     const std::size_t i = m_open.top().second;
     m_open.pop();
     if (m_places[i].done) continue;
     m_places[i].done = true;
-    expand(m_square.columnOf(i), m_places[i]);
+    expand(m_columns.columnOf(i), m_places[i]);
   }
 }
 
@@ -79,21 +94,23 @@ double GroundFlood::turningOf(Column c, const Column& d) const {
   constexpr double kWithin = 1;   // m
   constexpr double kTurning = 4;  // m on rank 0, for turning around
   const double voxel = m_ground.voxelSize();
-  if (std::hypot(c.x - m_center.x, c.y - m_center.y) * voxel > kWithin) return 0;
-  const double ahead = (d.x * m_ahead.x + d.y * m_ahead.y) / std::hypot(d.x, d.y);
-  return kTurning * (1 - ahead) / 2 * std::hypot(d.x, d.y) * voxel / kWithin;
+  if (!isNear(c, kWithin)) return 0;
+  const double ahead = (d.x * m_ahead.x + d.y * m_ahead.y) / lengthOf(d);
+  return kTurning * (1 - ahead) / 2 * lengthOf(d) * voxel / kWithin;
 }
 
 void GroundFlood::expand(Column c, const Place& place) {
+  constexpr double kLenient = 1.5;  // m around where the vehicle stands there may be less clearance
   for (const Column& d : kNeighbors) {
     const Column next{c.x + d.x, c.y + d.y};
-    if (!m_square.contains(next) || at(next).done) continue;
+    if (!m_columns.contains(next) || at(next).done) continue;
     const Surface* s = m_ground.near(next, place.z, m_ground.step());
     if (!s || !s->drivable) continue;
     const colored_graph::Rank rank = m_planner.order().rank(s->classId);
-    if (rank == colored_graph::kForbidden || !(fits(next, *s, d) || isNear(next))) continue;
-    const double way = std::hypot(d.x, d.y) * m_ground.voxelSize();
-    offer(next, place.cost + way * (rank + 1) + turningOf(next, d), s->z, c);
+    if (rank == colored_graph::kForbidden || !(fits(next, *s, d) || isNear(next, kLenient)))
+      continue;
+    const double way = lengthOf(d) * m_ground.voxelSize();
+    offer({place.cost + way * (rank + 1) + turningOf(next, d), c, rank, s->z, false}, next);
   }
 }
 

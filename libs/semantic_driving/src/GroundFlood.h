@@ -3,19 +3,26 @@
 #include <semantic_planning/vehicle/Footprint.h>
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <queue>
 #include <utility>
 #include <vector>
 
-#include "ColumnSquare.h"
+#include "ColumnRectangle.h"
 
 namespace semantic_driving {
 
 /** All around a column. */
 constexpr std::array<semantic_planning::Column, 8> kNeighbors = {
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
+
+/** Length of a step to one of them, in columns. */
+inline double lengthOf(semantic_planning::Column step) {
+  constexpr double kDiagonal = 1.4142135623730951;
+  return step.x != 0 && step.y != 0 ? kDiagonal : 1;
+}
 
 /** Where a vehicle gets over known ground, and the least way there: Dijkstra's search over the
  * columns around it. The footprint fits from column to column, headed there or away from there; how
@@ -28,8 +35,9 @@ class GroundFlood {
 
   struct Place {
     double cost = std::numeric_limits<double>::infinity();
-    int z = 0;
     semantic_planning::Column from;
+    colored_graph::Rank rank = 0;
+    std::uint16_t z = 0;
     bool done = false;
   };
 
@@ -37,26 +45,28 @@ class GroundFlood {
   template <class F>
   void forEach(F f) const {
     for (std::size_t i = 0; i < m_places.size(); ++i)
-      if (m_places[i].done) f(m_square.columnOf(i), m_places[i]);
+      if (m_places[i].done) f(m_columns.columnOf(i), m_places[i]);
   }
-  /** \param c in the square */
-  const Place& at(semantic_planning::Column c) const { return m_places[m_square.indexOf(c)]; }
+  /** \param c in columns() */
+  const Place& at(semantic_planning::Column c) const { return m_places[m_columns.indexOf(c)]; }
 
-  const ColumnSquare& square() const { return m_square; }
-  /** For each column of the square. */
+  /** Where there may be any. */
+  const ColumnRectangle& columns() const { return m_columns; }
+  /** For each of columns(). */
   std::vector<bool> reached() const;
 
  private:
   using Open = std::pair<double, std::size_t>;
 
-  bool isNear(semantic_planning::Column c) const;
+  /** \param distance from where the vehicle stands, meters */
+  bool isNear(semantic_planning::Column c, double distance) const;
   bool isFree(const semantic_planning::Surface& surface, double radius) const {
     return m_ground.hasClearance(surface, radius);
   }
   bool fits(semantic_planning::Column c, const semantic_planning::Surface& surface,
             const semantic_planning::Column& direction) const;
   bool fitsHeaded(semantic_planning::Column c, int z, double x, double y) const;
-  void offer(semantic_planning::Column c, double cost, int z, semantic_planning::Column from);
+  void offer(const Place& place, semantic_planning::Column c);
   void flood(int z);
   double turningOf(semantic_planning::Column c, const semantic_planning::Column& d) const;
   void expand(semantic_planning::Column c, const Place& place);
@@ -64,7 +74,7 @@ class GroundFlood {
   const semantic_planning::SemanticPlanner& m_planner;
   const semantic_planning::Ground& m_ground;
   semantic_planning::Column m_center;
-  ColumnSquare m_square;
+  ColumnRectangle m_columns;
   mrpt::math::TPoint2D m_ahead;  ///< where the vehicle heads
   std::vector<semantic_planning::Disc> m_discs;
   double m_inner, m_outer = 0;  ///< radii about the origin: in the footprint, around it; meters

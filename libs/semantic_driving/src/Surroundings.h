@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <deque>
+#include <limits>
 #include <vector>
+
+#include "ColumnRectangle.h"
 
 namespace semantic_driving {
 
@@ -15,36 +17,34 @@ class Surroundings {
  public:
   Surroundings(const semantic_planning::Ground& ground, const mrpt::math::TPose2D& pose, int z,
                double radius)
+      : Surroundings(ground, ground.columnAt(pose.x, pose.y), z,
+                     static_cast<int>(std::ceil(radius / ground.voxelSize()))) {}
+  /** \param center in the rectangle, all of which is within the radius */
+  Surroundings(const semantic_planning::Ground& ground, const ColumnRectangle& columns,
+               semantic_planning::Column center, int z)
       : m_ground(ground),
-        m_center(ground.columnAt(pose.x, pose.y)),
-        m_reach(static_cast<int>(std::ceil(radius / ground.voxelSize()))),
-        m_edge(2 * m_reach + 1),
-        m_heights(static_cast<std::size_t>(m_edge) * m_edge, kNotReached) {
+        m_columns(columns),
+        m_center(center),
+        m_reach2(std::numeric_limits<int>::max()),
+        m_heights(columns.size(), kNotReached) {
     spread(z);
   }
 
-  bool contains(semantic_planning::Column c) const {
-    return std::abs(c.x - m_center.x) <= m_reach && std::abs(c.y - m_center.y) <= m_reach;
-  }
+  bool contains(semantic_planning::Column c) const { return m_columns.contains(c); }
   bool isWithinRadius(semantic_planning::Column c) const {
     const int x = c.x - m_center.x, y = c.y - m_center.y;
-    return x * x + y * y <= m_reach * m_reach;
+    return x * x + y * y <= m_reach2;
   }
   /** Key of the ground's height there, or that leads there. \param c contained */
-  int height(semantic_planning::Column c) const { return m_heights[indexOf(c)]; }
-  semantic_planning::Column low() const { return {m_center.x - m_reach, m_center.y - m_reach}; }
-  semantic_planning::Column high() const { return {m_center.x + m_reach, m_center.y + m_reach}; }
+  int height(semantic_planning::Column c) const { return m_heights[m_columns.indexOf(c)]; }
+  const ColumnRectangle& columns() const { return m_columns; }
 
   /** f(column, key of the ground's height, surface there or null) */
   template <class F>
   void forEach(F f) const {
-    for (int y = -m_reach; y <= m_reach; ++y)
-      for (int x = -m_reach; x <= m_reach; ++x) {
-        const semantic_planning::Column c{m_center.x + x, m_center.y + y};
-        if (!isWithinRadius(c)) continue;
-        const int z = m_heights[indexOf(c)];
-        f(c, z, m_ground.near(c, z, m_ground.step()));
-      }
+    for (std::size_t i = 0; i < m_heights.size(); ++i)
+      if (const semantic_planning::Column c = m_columns.columnOf(i); isWithinRadius(c))
+        f(c, m_heights[i], m_ground.near(c, m_heights[i], m_ground.step()));
   }
 
  private:
@@ -56,35 +56,39 @@ class Surroundings {
     int z;
   };
 
-  std::size_t indexOf(semantic_planning::Column c) const {
-    return static_cast<std::size_t>(c.y - m_center.y + m_reach) * m_edge +
-           (c.x - m_center.x + m_reach);
+  Surroundings(const semantic_planning::Ground& ground, semantic_planning::Column center, int z,
+               int reach)
+      : m_ground(ground),
+        m_columns(ColumnRectangle::around(center, reach)),
+        m_center(center),
+        m_reach2(reach * reach),
+        m_heights(m_columns.size(), kNotReached) {
+    spread(z);
   }
 
   /** Over ground first, so that a detour over it counts for more than a jump over a gap. */
   void spread(int z) {
-    std::deque<Step> next{{m_center, z}};
-    while (!next.empty()) {
-      const Step step = next.front();
-      next.pop_front();
-      int& height = m_heights[indexOf(step.column)];
+    std::vector<Step> overGround{{m_center, z}}, overGaps;
+    for (std::size_t gap = 0; !overGround.empty() || gap < overGaps.size();) {
+      const bool isGap = overGround.empty();
+      const Step step = isGap ? overGaps[gap++] : overGround.back();
+      if (!isGap) overGround.pop_back();
+      int& height = m_heights[m_columns.indexOf(step.column)];
       if (height != kNotReached) continue;
       const semantic_planning::Surface* here = m_ground.near(step.column, step.z, m_ground.step());
       height = here ? here->z : step.z;
       for (const semantic_planning::Column& d : kNeighbors) {
         const semantic_planning::Column c{step.column.x + d.x, step.column.y + d.y};
-        if (!contains(c) || m_heights[indexOf(c)] != kNotReached) continue;
-        if (m_ground.near(c, height, m_ground.step()))
-          next.push_front({c, height});
-        else
-          next.push_back({c, height});
+        if (!contains(c) || m_heights[m_columns.indexOf(c)] != kNotReached) continue;
+        (m_ground.near(c, height, m_ground.step()) ? overGround : overGaps).push_back({c, height});
       }
     }
   }
 
   const semantic_planning::Ground& m_ground;
+  const ColumnRectangle m_columns;
   semantic_planning::Column m_center;
-  int m_reach, m_edge;
+  int m_reach2;  ///< squared radius, columns
   std::vector<int> m_heights;
 };
 

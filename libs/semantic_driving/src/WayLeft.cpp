@@ -8,29 +8,24 @@ namespace semantic_driving {
 
 using mrpt::math::TPose2D;
 using semantic_planning::Column;
-using semantic_planning::SemanticPlanner;
 
-WayLeft::WayLeft(const SemanticPlanner& planner, const GroundFlood& flood, const GoalRegion& region,
-                 const TPose2D& goal, double unknownFactor)
-    : m_planner(planner),
-      m_ground(planner.ground()),
+WayLeft::WayLeft(const semantic_planning::Ground& ground, const GroundFlood& flood,
+                 const GoalRegion& region, const TPose2D& goal, double unknownFactor)
+    : m_ground(ground),
       m_flood(flood),
       m_region(region),
-      m_square(flood.square()),
+      m_columns(flood.columns()),
       m_unknown(unknownFactor),
       m_width(std::max(1.0, m_unknown) * m_ground.voxelSize()),
       m_beyond(std::hypot(1, 1) * kSight * m_unknown),
-      m_ways(m_square.size(), std::numeric_limits<double>::infinity()) {
+      m_ways(m_columns.size(), std::numeric_limits<double>::infinity()) {
   start(goal);
   search();
 }
 
 void WayLeft::start(const TPose2D& goal) {
   const Column c = m_ground.columnAt(goal.x, goal.y);
-  if (!m_square.contains(c)) {
-    m_first = wayTo(goal);
-    return goAround(goal.x, goal.y, 0);
-  }
+  if (!m_columns.contains(c)) return startOutside(goal);
   const double voxel = m_ground.voxelSize();
   const int reach = m_region.isKept(c) ? static_cast<int>(GoalRegion::kAroundGoal / voxel) : 0;
   for (int y = -reach; y <= reach; ++y)
@@ -39,29 +34,28 @@ void WayLeft::start(const TPose2D& goal) {
         offer({c.x + x, c.y + y}, m_unknown * voxel * std::hypot(x, y));
 }
 
-/** From the square, at least; weighted meters. */
-double WayLeft::wayTo(const TPose2D& goal) const {
-  const Column low = m_square.columnOf(0), high = m_square.columnOf(m_square.size() - 1);
-  const double x = (m_ground.centerOf(low.x) + m_ground.centerOf(high.x)) / 2;
-  const double y = (m_ground.centerOf(low.y) + m_ground.centerOf(high.y)) / 2;
-  const double toCorner = std::hypot(m_ground.centerOf(low.x) - x, m_ground.centerOf(low.y) - y);
-  return m_unknown * std::max(0.0, std::hypot(goal.x - x, goal.y - y) - toCorner);
-}
-
-/** What lies beyond the square is unknown: from one place at the rim to all others. */
-void WayLeft::goAround(double x, double y, double way) {
-  if (std::exchange(m_around, true)) return;
-  const auto offerAt = [&](const Column& c) {
-    offer(c, way + m_unknown * std::hypot(m_ground.centerOf(c.x) - x, m_ground.centerOf(c.y) - y));
-  };
-  for (std::size_t i = 0; i < m_square.size(); ++i)
-    if (m_square.isAtRim(m_square.columnOf(i))) offerAt(m_square.columnOf(i));
+/** What lies beyond the rectangle is unknown: by steps in eight directions to where the rim is seen
+ * from the goal, and on along the rim. */
+void WayLeft::startOutside(const TPose2D& goal) {
+  constexpr double kFar = 1e6;  // m: farther columns have no number
+  const Column c =
+      m_ground.columnAt(std::clamp(goal.x, -kFar, kFar), std::clamp(goal.y, -kFar, kFar));
+  std::vector<std::pair<double, Column>> seen;
+  m_columns.forRim([&](Column rim) {
+    if (!m_columns.faces(rim, c)) return;
+    const auto [less, more] = std::minmax(
+        {std::abs(m_ground.centerOf(rim.x) - goal.x), std::abs(m_ground.centerOf(rim.y) - goal.y)});
+    seen.emplace_back(m_unknown * (more + (std::sqrt(2.0) - 1) * less), rim);
+  });
+  m_first = std::min_element(seen.begin(), seen.end())->first;
+  for (const auto& [way, rim] : seen) offer(rim, way);
 }
 
 void WayLeft::offer(Column c, double way) {
-  if (!m_square.contains(c)) return;
-  const std::size_t i = m_square.indexOf(c);
-  if (way >= m_ways[i] || (m_region.isKept(c) && !m_region.isReached(c))) return;
+  if (!m_columns.contains(c)) return;
+  const std::size_t i = m_columns.indexOf(c);
+  if (way >= m_ways[i]) return;
+  if (m_region.isKept(c) && !m_region.isReached(c) && !m_columns.isAtRim(c)) return;
   m_ways[i] = way;
   const auto bucket = static_cast<std::size_t>(std::max(0.0, way - m_first) / m_width);
   if (bucket >= m_open.size()) m_open.resize(bucket + 1);
@@ -70,8 +64,7 @@ void WayLeft::offer(Column c, double way) {
 
 /** What a meter costs. */
 double WayLeft::costOf(Column c) const {
-  const auto* surface = m_region.isReached(c) ? m_ground.near(c, m_flood.at(c).z, 0) : nullptr;
-  return surface ? m_planner.order().rank(surface->classId) + 1 : m_unknown;
+  return m_region.isReached(c) ? m_flood.at(c).rank + 1 : m_unknown;
 }
 
 /** What is offered meanwhile comes into the same bucket or a later one. Ends where all that is
@@ -89,18 +82,16 @@ void WayLeft::search() {
 
 std::size_t WayLeft::reachedIn(const std::vector<Open>& bucket) const {
   return std::count_if(bucket.begin(), bucket.end(), [this](const Open& open) {
-    return open.first == m_ways[open.second] && m_region.isReached(m_square.columnOf(open.second));
+    return open.first == m_ways[open.second] && m_region.isReached(m_columns.columnOf(open.second));
   });
 }
 
 void WayLeft::expand(const Open& open) {
   const auto [way, i] = open;
   if (way > m_ways[i]) return;
-  const Column c = m_square.columnOf(i);
-  if (m_square.isAtRim(c)) goAround(m_ground.centerOf(c.x), m_ground.centerOf(c.y), way);
-  const double straight = costOf(c) * m_ground.voxelSize(), diagonal = straight * std::hypot(1, 1);
-  for (const Column& d : kNeighbors)
-    offer({c.x + d.x, c.y + d.y}, way + (d.x != 0 && d.y != 0 ? diagonal : straight));
+  const Column c = m_columns.columnOf(i);
+  const double meter = costOf(c) * m_ground.voxelSize();
+  for (const Column& d : kNeighbors) offer({c.x + d.x, c.y + d.y}, way + meter * lengthOf(d));
 }
 
 }  // namespace semantic_driving

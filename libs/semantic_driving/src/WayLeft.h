@@ -13,15 +13,15 @@ namespace semantic_driving {
  * Koenig and Likhachev, "D* Lite", 2002.) */
 class WayLeft {
  public:
-  WayLeft(const semantic_planning::SemanticPlanner& planner, const GroundFlood& flood,
+  WayLeft(const semantic_planning::Ground& ground, const GroundFlood& flood,
           const GoalRegion& region, const mrpt::math::TPose2D& goal, double unknownFactor);
 
   /** How far the unknown may be from where it is seen, meters. */
   static constexpr double kSight = 1.4;
 
   /** Weighted meters; infinite where something is in the way.
-   * \param c in the square, within kSight of what is reached */
-  double from(semantic_planning::Column c) const { return m_ways[m_square.indexOf(c)]; }
+   * \param c in the rectangle, within kSight of what is reached */
+  double from(semantic_planning::Column c) const { return m_ways[m_columns.indexOf(c)]; }
 
  private:
   using Open = std::pair<double, std::size_t>;
@@ -31,23 +31,20 @@ class WayLeft {
   std::size_t reachedIn(const std::vector<Open>& bucket) const;
   void expand(const Open& open);
   void offer(semantic_planning::Column c, double way);
-  void goAround(double x, double y, double way);
-  double wayTo(const mrpt::math::TPose2D& goal) const;
+  void startOutside(const mrpt::math::TPose2D& goal);
   double costOf(semantic_planning::Column c) const;
 
-  const semantic_planning::SemanticPlanner& m_planner;
   const semantic_planning::Ground& m_ground;
   const GroundFlood& m_flood;
   const GoalRegion& m_region;
-  ColumnSquare m_square;
+  const ColumnRectangle& m_columns;
   double m_unknown;    ///< what a meter through it counts
   double m_width;      ///< of a bucket, weighted meters
   double m_first = 0;  ///< no way is shorter, weighted meters
   double m_beyond;     ///< the farthest that is reached ways are asked for, weighted meters
   std::vector<double> m_ways;
-  bool m_around = false;  ///< the rim is reached
-  std::vector<std::vector<Open>>
-      m_open;  ///< by how often the width fits into what a way is longer than the first
+  /** By how often the width fits into what a way is longer than the first. */
+  std::vector<std::vector<Open>> m_open;
 };
 
 }  // namespace semantic_driving

@@ -137,6 +137,10 @@ const Surface* Ground::near(Column c, int z, int tolerance) const {
   return surfaceNear(m_tiles->surfaces(), c, z, tolerance);
 }
 
+bool Ground::isOccupied(Column c, int low, int high) const {
+  return m_tiles->isOccupied(c, low, high);
+}
+
 std::optional<GroundPoint> Ground::find(double x, double y, std::optional<double> nearZ) const {
   const Column c = columnAt(x, y);
   const Surface* best = nullptr;

@@ -80,7 +80,8 @@ void GroundTiles::cover(const std::vector<Column>& tiles) {
 
 std::vector<Column> GroundTiles::update(const std::vector<Column>& tiles) {
   std::vector<ColumnBox> changed = updateSurfaces(tiles);
-  if (m_map.isReadOnly()) forgetWhatChangesNeed();
+  m_keepsColumns = !m_map.isReadOnly();
+  if (!m_keepsColumns) forgetWhatChangesNeed();
   append(changed, updateClearance(changed));
   if (!changed.empty()) m_components.reset();
   return tilesOf(changed);
@@ -90,6 +91,15 @@ std::vector<Column> GroundTiles::scanned() const {
   std::vector<Column> tiles;
   m_columns.forEach([&](Column tile, const ColumnTile&) { tiles.push_back(tile); });
   return tiles;
+}
+
+bool GroundTiles::isOccupied(Column c, int low, int high) const {
+  const ColumnTile* tile = m_columns.find(tileOf(c));
+  if (!tile && m_keepsColumns) return false;
+  const ColumnTile read = tile ? ColumnTile() : m_scanner.scan(tileOf(c));
+  const semantic_octree::ByColumn<Run>& runs = (tile ? *tile : read).runs;
+  return std::any_of(runs.begin(indexInTile(c)), runs.end(indexInTile(c)),
+                     [&](const Run& run) { return run.top >= low && run.bottom <= high; });
 }
 
 void GroundTiles::forgetWhatChangesNeed() {

@@ -41,6 +41,8 @@ class GroundTiles {
 
   const GroundShape& shape() const { return m_shape; }
   const SurfaceGrid& surfaces() const { return m_surfaces; }
+  /** Whether something is occupied between two heights, these included. */
+  bool isOccupied(Column c, int low, int high) const;
   /** What surfaces near a column at height z keep their clearance from; none within the largest. */
   std::optional<ClearanceMeter::Obstacle> obstacleNear(Column c, int z) const;
   const GroundComponents& components() const;
@@ -69,11 +71,12 @@ class GroundTiles {
   const GroundShape m_shape;
   const ClearanceMeter m_clearanceMeter;
   const semantic_octree::ColumnScanner m_scanner;
-  ScanGrid m_columns;
+  ScanGrid m_columns;  ///< empty if they are forgotten
   SurfaceGrid m_measured;
   GapFillGrid m_fills;
   SurfaceGrid m_surfaces;  ///< measured ones and gap fills; the stages after that fill in the rest
   ObstacleGrid m_obstacles;
+  bool m_keepsColumns = false;
   mutable std::unique_ptr<GroundComponents> m_components;
 };
 

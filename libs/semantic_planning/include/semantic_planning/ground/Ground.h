@@ -65,6 +65,9 @@ class Ground {
   /** The column's surface nearest in height to key z, at most `tolerance` voxels off; or null.
    * Valid until update(). */
   const Surface* near(Column c, int z, int tolerance) const;
+  /** Whether the map held something occupied in a column between two heights (keys, these
+   * included), at the last update. */
+  bool isOccupied(Column c, int low, int high) const;
   /** The surface nearest to a height (meters), without one the lowest drivable one. */
   std::optional<GroundPoint> find(double x, double y, std::optional<double> nearZ = {}) const;
 
