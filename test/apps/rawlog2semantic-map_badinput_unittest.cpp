@@ -120,11 +120,8 @@ TEST_F(Rawlog2SemanticMap, aFolderWithoutLabelImagesIsRefused) {
 }
 
 TEST_F(Rawlog2SemanticMap, anUnknownKeyIsRefusedWithFileSectionAndKey) {
-  const std::vector<std::pair<std::string, std::string>> wrong = {{"map", "resolutoin"},
-                                                                  {"insertion", "maxrnage"},
-                                                                  {"trajectory", "gap"},
-                                                                  {"labels", "folder"},
-                                                                  {"pictures", "size"}};
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"map", "resolutoin"}, {"insertion", "maxrnage"}, {"labels", "folder"}, {"pictures", "size"}};
   for (const auto& [section, key] : wrong) {
     folder.write("small.ini", "[" + section + "]\n" + key + " = 1\n");
     expectRefusal({"small.ini", "[" + section + "]", "'" + key + "'"});
@@ -140,7 +137,7 @@ TEST_F(Rawlog2SemanticMap, valuesOutOfRangeAreRefused) {
   const std::vector<std::array<std::string, 3>> wrong = {
       {"map", "resolution", "-0.1"},    {"map", "resolution", "fine"},
       {"insertion", "accuracy", "1.5"}, {"insertion", "max_range", "-1"},
-      {"trajectory", "tolerance", "x"}, {"labels", "match", "guess"},
+      {"labels", "tolerance", "x"},     {"labels", "match", "guess"},
       {"pictures", "width", "12.5"},    {"pictures", "tilt", "nan"}};
   for (const auto& [section, key, value] : wrong) {
     folder.write("small.ini", "[" + section + "]\n" + key + " = " + value + "\n");

@@ -68,8 +68,7 @@ TEST_F(SemanticMapCompress, refusesBadSpaceOptions) {
   const auto refuse = [&](const std::string& options, const std::vector<std::string>& parts) {
     expectRefusalOf("name: a\nrelevant: {road: 1}\nalpha: 0.1\n" + options + "\n", parts);
   };
-  refuse("unknown: none", {"weights.yaml:4", "own_class, uniform, prior", "'none'"});
-  refuse("frame: paid", {"free, charged", "'paid'"});
+  refuse("unknown: none", {"weights.yaml:4", "own_class, uniform", "'none'"});
   refuse("regions: [cube 2]", {"weights.yaml:4", "box, sphere or corridor"});
   refuse("regions: [sphere 0 0 0 2]", {"'sphere 0 0 0 2'", "the numbers of this shape"});
   refuse("regions: [sphere 0 0 0 -1 2]", {"radius"});
