@@ -1,6 +1,7 @@
 #include "Arguments.h"
 
 #include <pybind11/stl/filesystem.h>
+#include <strict_files/Memory.h>
 #include <strict_files/Words.h>
 
 #include <cstdint>
@@ -124,6 +125,10 @@ Rows::Rows(const py::object& argument, std::string name, py::ssize_t columns)
     throw py::value_error(m_name + ": expected N x " + std::to_string(columns) +
                           " real numbers, got " + typeOf(m_array) + " of shape " +
                           shapeOf(m_array));
+  constexpr std::size_t kBytes = 64;  // of what becomes of a row
+  if (static_cast<std::size_t>(m_array.shape(0)) > strict_files::availableMemory() / kBytes)
+    throw py::value_error(m_name + ": " + std::to_string(m_array.shape(0)) +
+                          " rows are more than memory holds");
   m_areFloats = isNative<float>(m_array);
   if (!m_areFloats && !isNative<double>(m_array)) m_array = py::array_t<double>::ensure(m_array);
 }

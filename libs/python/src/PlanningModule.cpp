@@ -148,7 +148,8 @@ void addPlanning(py::module_& module, MapClass& map) {
                           "arc_length");
   const auto none = [](const char* name) { return py::arg(name) = py::none(); };
   py::class_<Plan>(module, "Plan", "A path, or why there is none. True if there is one.")
-      .def_property_readonly("found", [](const Plan& p) { return p.result.found(); })
+      .def_property_readonly(
+          "found", [](const Plan& p) { return p.result.found(); }, "Whether there is a path.")
       .def("__bool__", [](const Plan& p) { return p.result.found(); })
       .def_property_readonly(
           "status", [](const Plan& p) { return nameOf(p.result.status); },
