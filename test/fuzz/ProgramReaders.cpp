@@ -9,12 +9,12 @@
 #include "dataset2rawlog/Conversion.h"
 #include "dataset2rawlog/TumFiles.h"
 #include "planning-study/Join.h"
+#include "point_fields/PointFields.h"
 #include "poses/Poses.h"
 #include "rawlog2semantic-map/Config.h"
 #include "semantic-map-info/PointQuery.h"
 #include "semantic-map-merge/MapPoses.h"
 #include "semantic-map-ros2/Parameters.h"
-#include "semantic-map-ros2/PointFields.h"
 #include "semantic-map-view/Track.h"
 #include "simulated_drive/DriveConfig.h"
 
@@ -49,6 +49,16 @@ void readCarmen(const fs::path& log) {
   fs::create_directories(folder.path());
   dataset2rawlog::convertCarmen(log, conversionTo(folder.path()));
 }
+
+#ifdef MSO_BAGS
+void readBag(const fs::path& bag) {
+  const Removed folder(fuzzedPath(".out"));
+  fs::create_directories(folder.path());
+  dataset2rawlog::Conversion conversion = conversionTo(folder.path());
+  conversion.labels = false;
+  dataset2rawlog::convertRosbag2(bag, {}, "", conversion);
+}
+#endif
 
 void join(const fs::path& folder) { planning_study::joinStudies({folder}); }
 
@@ -110,7 +120,7 @@ void readPointFields(const std::string& bytes) {
     return n;
   };
   const std::vector<std::string> names = {"x", "y", "z", "label", "rgb"};
-  semantic_map_ros2::RawCloud raw;
+  point_fields::RawCloud raw;
   for (std::uint32_t fields = number(1) % 8; fields > 0; --fields) {
     const std::string name = names[number(1) % names.size()];
     const std::uint32_t offset = number(4);
@@ -123,7 +133,7 @@ void readPointFields(const std::string& bytes) {
   raw.data = data.data(), raw.size = data.size();
   for (const char* field : {"label", "rgb"}) {
     std::string problem;
-    semantic_map_ros2::cloudOf(raw, field, fuzzedClasses(), problem);
+    point_fields::cloudOf(raw, field, fuzzedClasses(), problem);
   }
 }
 
@@ -154,5 +164,9 @@ std::vector<Reader> programReaders() {
        fromFile("", [](const fs::path& f) { semantic_map_ros2::readParameters({f}, {}); }),
        {"config/ros/semantic-map-ros2.yaml"}},
       {"point-fields", readPointFields, {}},
+#ifdef MSO_BAGS
+      {"mcap", fromFile(".mcap", readBag), {}},
+      {"sqlite-bag", fromFile(".db3", readBag), {}},
+#endif
       {"command-line", parseCommandLine, {}}};
 }
