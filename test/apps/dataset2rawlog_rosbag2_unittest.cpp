@@ -99,8 +99,8 @@ TEST(Rosbag2, odometryCountsWhereNoTransformTells) {
   const auto scans = scansOf(quoted(folder.write("a.mcap", mcapOf(bag, "lz4"))), folder);
   ASSERT_EQ(scans.size(), 1u);
   EXPECT_LT((scans[0].inMap(0) - Vector3d(3, 1, 1)).norm(), 1e-5);
-  bag.push_back(transformMessage("/tf", 100, "world", "base_link", at(7, 0, 0)));
-  bag.push_back(transformMessage("/tf", 102, "world", "base_link", at(7, 0, 0)));
+  bag.push_back(transformMessage("/tf", 100, "odom", "base_link", at(7, 0, 0)));
+  bag.push_back(transformMessage("/tf", 102, "odom", "base_link", at(7, 0, 0)));
   const auto others = scansOf(quoted(folder.write("b.mcap", mcapOf(bag, ""))), folder);
   EXPECT_LT((others.at(0).inMap(0) - Vector3d(8, 0, 1)).norm(), 1e-5);
 }
