@@ -45,6 +45,13 @@ if(MSO_BUILD_APPS)
 endif()
 find_package(liblzf QUIET)  # compressed PCD files are refused without
 
+# The Python package is for Debian's interpreter, whichever comes first in the path.
+find_program(MSO_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(MSO_PYTHON python3)
+set(Python3_EXECUTABLE ${MSO_PYTHON})
+find_package(Python3 QUIET COMPONENTS Interpreter Development.Module)
+find_package(pybind11 QUIET)
+
 include(ThirdPartyTargets)
 
 if(MSO_BUILD_TESTS)

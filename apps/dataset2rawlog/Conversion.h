@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "FrameRange.h"
@@ -70,5 +71,15 @@ Summary convertPointFiles(const std::vector<std::filesystem::path>& files,
  * 1 degree, 360 or 361: 0.5, 400 or 401: 0.25), or from PARAM laser_front_laser_resolution.
  * \throw std::runtime_error naming file and line of whatever is malformed. */
 Summary convertCarmen(const std::filesystem::path& log, const Conversion& conversion);
+
+/** A bag of ROS 2: .mcap, .db3, or a folder of these. Clouds (sensor_msgs/PointCloud2) become
+ * CObservationLabeledCloud, each behind a CObservationRobotPose. The robot is the frame that moves,
+ * from the cloud's upwards; the map's frame is the highest that /tf knows, or that of odometry
+ * (nav_msgs/Odometry) where /tf does not tell. Where nothing moves there are no poses.
+ * \param topics of clouds; none: the only one that the bag has \param labelField the points' field
+ * with raw ids of the class table, or "rgb" \throw std::runtime_error naming the file, the number
+ * of the message and its topic. */
+Summary convertRosbag2(const std::filesystem::path& bag, const std::vector<std::string>& topics,
+                       const std::string& labelField, const Conversion& conversion);
 
 }  // namespace dataset2rawlog

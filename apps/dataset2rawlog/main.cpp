@@ -20,6 +20,7 @@ struct Cli {
   std::filesystem::path source;
   std::vector<std::filesystem::path> pointFiles;
   std::string labelField = "label";
+  std::vector<std::string> topics;
   std::function<Summary()> convert;
 
   Cli() {
@@ -29,6 +30,9 @@ struct Cli {
     addTum();
     addPcd();
     addCarmen();
+#ifdef MSO_BAGS  // where SQLite and LZ4 are
+    addRosbag2();
+#endif
   }
 
  private:
@@ -103,6 +107,27 @@ struct Cli {
     command->add_option("LOG", source, "FLASER, RLASER, RAWLASER1, ROBOTLASER1, ODOM, PARAM")
         ->required();
   }
+
+#ifdef MSO_BAGS
+  void addRosbag2() {
+    CLI::App* command =
+        add("rosbag2", "A bag of ROS 2: clouds of points, and where the robot is", [this] {
+          requireClasses();
+          return convertRosbag2(source, topics, labelField, conversion);
+        });
+    command->add_option("--classes", conversion.classes, "Class table (YAML)");
+    addNoLabels(command, "x, y and z only");
+    command
+        ->add_option("--label-field", labelField, "The points' field with the labels; rgb: colors")
+        ->type_name("NAME")
+        ->capture_default_str();
+    command
+        ->add_option("--topics", topics,
+                     "Topics of points (sensor_msgs/PointCloud2), if there are several")
+        ->type_name("NAME");
+    command->add_option("BAG", source, "A file (.mcap, .db3), or a folder of these")->required();
+  }
+#endif
 };
 
 int run(Cli& cli) {

@@ -25,7 +25,7 @@ const std::vector<Exporter::Format>& Exporter::allFormats() {
       {".ot", "OctoMap's tree, with colors of classes", &Exporter::writeOctree},
       {".bt", "OctoMap's binary tree",
        [](Exporter& e, const fs::path& file) {
-         e.stage(file, [&e](std::ostream& out) { semantic_map::writeBinaryOcTree(out, e.m_map); });
+         e.stage(file, [&e](std::ostream& out) { writeBinaryOcTree(out, e.m_map); });
        }},
       {".ply", "points with class, probability and color",
        [](Exporter& e, const fs::path& file) {
@@ -112,8 +112,7 @@ void Exporter::stage(const fs::path& file, const Writer& writer) {
 
 void Exporter::writeOctree(const fs::path& file) {
   stage(file, [this](std::ostream& out) {
-    m_options.colors ? semantic_map::writeColorOcTree(out, m_map)
-                     : semantic_map::writeOcTree(out, m_map);
+    m_options.colors ? writeColorOcTree(out, m_map) : writeOcTree(out, m_map);
   });
 }
 

@@ -6,12 +6,15 @@
 #include <stdexcept>
 #include <utility>
 
-#include "PointFields.h"
+#include "point_fields/PointFields.h"
 
 namespace semantic_map_ros2 {
 
 using labeled_cloud::LabelImage;
 using mrpt::obs::CObservation3DRangeScan;
+using point_fields::cloudOf;
+using point_fields::NumberedClasses;
+using point_fields::RawCloud;
 using ros2::Stamp;
 using ros2::textOf;
 using semantic_types::ClassTable;

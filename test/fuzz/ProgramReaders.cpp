@@ -8,12 +8,12 @@
 #include "Readers.h"
 #include "dataset2rawlog/Conversion.h"
 #include "dataset2rawlog/TumFiles.h"
+#include "point_fields/PointFields.h"
 #include "poses/Poses.h"
 #include "rawlog2semantic-map/Config.h"
 #include "semantic-map-info/PointQuery.h"
 #include "semantic-map-merge/MapPoses.h"
 #include "semantic-map-ros2/Parameters.h"
-#include "semantic-map-ros2/PointFields.h"
 #include "semantic-map-view/Track.h"
 #include "simulated_drive/DriveConfig.h"
 
@@ -48,6 +48,16 @@ void readCarmen(const fs::path& log) {
   fs::create_directories(folder.path());
   dataset2rawlog::convertCarmen(log, conversionTo(folder.path()));
 }
+
+#ifdef MSO_BAGS
+void readBag(const fs::path& bag) {
+  const Removed folder(fuzzedPath(".out"));
+  fs::create_directories(folder.path());
+  dataset2rawlog::Conversion conversion = conversionTo(folder.path());
+  conversion.labels = false;
+  dataset2rawlog::convertRosbag2(bag, {}, "", conversion);
+}
+#endif
 
 void askMap(const std::string& bytes) {
   static const semantic_octree::SemanticOcTree map = [] {
@@ -107,7 +117,7 @@ void readPointFields(const std::string& bytes) {
     return n;
   };
   const std::vector<std::string> names = {"x", "y", "z", "label", "rgb"};
-  semantic_map_ros2::RawCloud raw;
+  point_fields::RawCloud raw;
   for (std::uint32_t fields = number(1) % 8; fields > 0; --fields) {
     const std::string name = names[number(1) % names.size()];
     const std::uint32_t offset = number(4);
@@ -120,7 +130,7 @@ void readPointFields(const std::string& bytes) {
   raw.data = data.data(), raw.size = data.size();
   for (const char* field : {"label", "rgb"}) {
     std::string problem;
-    semantic_map_ros2::cloudOf(raw, field, fuzzedClasses(), problem);
+    point_fields::cloudOf(raw, field, fuzzedClasses(), problem);
   }
 }
 
@@ -150,5 +160,9 @@ std::vector<Reader> programReaders() {
        fromFile("", [](const fs::path& f) { semantic_map_ros2::readParameters({f}, {}); }),
        {"config/ros/semantic-map-ros2.yaml"}},
       {"point-fields", readPointFields, {}},
+#ifdef MSO_BAGS
+      {"mcap", fromFile(".mcap", readBag), {}},
+      {"sqlite-bag", fromFile(".db3", readBag), {}},
+#endif
       {"command-line", parseCommandLine, {}}};
 }

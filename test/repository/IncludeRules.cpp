@@ -23,7 +23,8 @@ const IncludeTable& includeTable() {
       {"map_correction",
        {"Eigen", "semantic_octree", "semantic_octree/store", "semantic_types", "strict_files"}},
       {"map_operations",
-       {"Eigen", "octomap", "semantic_octree", "semantic_octree/store", "semantic_types"}},
+       {"Eigen", "octomap", "semantic_octree", "semantic_octree/store", "semantic_types",
+        "strict_files"}},
       {"mrpt_compat", {"mrpt", "opencv2"}},
       {"labeled_cloud",
        {"Eigen", "lzf.h", "mrpt", "opencv2", "png.h", "yaml-cpp", "zlib.h", "zstd.h",
@@ -60,6 +61,9 @@ const IncludeTable& includeTable() {
       {"semantic_navigation",
        {"Eigen", "mrpt", "colored_graph", "semantic_abstraction", "semantic_driving",
         "semantic_octree", "semantic_planning", "semantic_slam", "semantic_types"}},
+      {"python",
+       {"Eigen", "pybind11", "colored_graph", "map_operations", "semantic_abstraction",
+        "semantic_octree", "semantic_planning", "semantic_types", "strict_files"}},
   };
   return table;
 }

@@ -75,21 +75,21 @@ std::string withoutIndents(const std::string& text) {
   return std::regex_replace(text, std::regex(R"(\s*\n\s*)"), "\n");
 }
 
-/** A block of C++ in a document, below a line that links to a source. */
+/** A block of C++ or Python in a document, below a line that links to a source. */
 struct Excerpt {
   std::size_t line;
   std::string source, text;
 };
 
 std::vector<Excerpt> excerptsOf(const fs::path& markdownFile) {
-  static const std::regex link(R"(\]\(([^)]*\.cpp)\))");
+  static const std::regex link(R"(\]\(([^)]*\.(?:cpp|py))\))");
   std::vector<Excerpt> excerpts;
   std::string source;
   bool inside = false;
   for (const SourceLine& line : linesOf(markdownFile)) {
     std::smatch match;
     if (line.text.rfind("```", 0) == 0) {
-      inside = line.text == "```cpp" && !source.empty();
+      inside = (line.text == "```cpp" || line.text == "```python") && !source.empty();
       if (inside) excerpts.push_back({line.number, source, "\n"});
       source.clear();
     } else if (inside) {

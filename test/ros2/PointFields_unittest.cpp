@@ -1,4 +1,4 @@
-#include "PointFields.h"
+#include "point_fields/PointFields.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "TemporaryFolder.h"
 
-using semantic_map_ros2::cloudOf;
-using semantic_map_ros2::RawCloud;
+using point_fields::cloudOf;
+using point_fields::RawCloud;
 using semantic_types::ClassTable;
 
 namespace {

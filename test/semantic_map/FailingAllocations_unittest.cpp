@@ -112,7 +112,7 @@ TEST(FailingAllocations, whileTheFilterOrTheAbstractionChangesLeaveBoth) {
 TEST(FailingAllocations, whileAMapOfOctomapsIsReadAreErrors) {
   const TemporaryFolder folder;
   std::ostringstream out;
-  semantic_map::writeOcTree(out, smallMap().tree());
+  writeOcTree(out, smallMap().tree());
   const auto file = folder.write("a.ot", out.str());
   std::size_t leaves = 0;
   EXPECT_GT(failEachAllocation(

@@ -3,8 +3,12 @@
 #include <octomap/OcTree.h>
 #include <semantic_octree/store/TreeBuilder.h>
 #include <semantic_types/ClassTable.h>
+#include <strict_files/TextFile.h>
 
 #include <cmath>
+#include <iomanip>
+#include <limits>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 
@@ -69,6 +73,25 @@ class OctomapCursor {
   const octomap::OcTreeNode* m_node;
 };
 
+void writeHeader(std::ostream& out, const std::string& firstLine,
+                 const octomap::AbstractOcTree& tree) {
+  const strict_files::ClassicNumbers classic(out);
+  out << firstLine << "\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
+      << std::setprecision(std::numeric_limits<double>::digits10) << tree.getResolution()
+      << "\ndata\n";
+}
+
+void checkWritten(const std::ostream& out) {
+  if (!out) throw std::runtime_error("cannot write the octree");
+}
+
+template <class Tree>
+void writeFull(std::ostream& out, const Tree& tree) {
+  writeHeader(out, "# Octomap OcTree file", tree);
+  tree.writeData(out);
+  checkWritten(out);
+}
+
 }  // namespace
 
 std::unique_ptr<octomap::OcTree> toOcTree(const SemanticOcTree& map) {
@@ -79,6 +102,21 @@ std::unique_ptr<octomap::ColorOcTree> toColorOcTree(const SemanticOcTree& map) {
   auto copy = std::make_unique<Copy<octomap::ColorOcTree, octomap::ColorOcTreeNode>>(map);
   if (!map.empty()) copy->updateInnerOccupancy();  // and colors
   return copy;
+}
+
+void writeColorOcTree(std::ostream& out, const SemanticOcTree& map) {
+  writeFull(out, *toColorOcTree(map));
+}
+
+void writeOcTree(std::ostream& out, const SemanticOcTree& map) { writeFull(out, *toOcTree(map)); }
+
+void writeBinaryOcTree(std::ostream& out, const SemanticOcTree& map) {
+  const auto copy = toOcTree(map);
+  copy->toMaxLikelihood();
+  copy->prune();
+  writeHeader(out, "# Octomap OcTree binary file", *copy);
+  if (!map.empty()) copy->writeBinaryData(out);
+  checkWritten(out);
 }
 
 SemanticOcTree fromOcTree(const octomap::OcTree& map, const ClassTable& classes,

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <iosfwd>
 #include <memory>
 #include <vector>
 
@@ -89,6 +90,17 @@ std::unique_ptr<octomap::OcTree> toOcTree(const SemanticOcTree& map);
 /** Occupied leaves in the color of their likeliest class (gray: none), inner nodes in the mean of
  * their children; free leaves have no color. */
 std::unique_ptr<octomap::ColorOcTree> toColorOcTree(const SemanticOcTree& map);
+
+// Their files. OctoMap's own functions print what they do.
+
+/** Writes an .ot file that holds a ColorOcTree. \throw std::runtime_error the stream does not take
+ * it. */
+void writeColorOcTree(std::ostream& out, const SemanticOcTree& map);
+/** Writes an .ot file that holds an OcTree. \throw std::runtime_error as above. */
+void writeOcTree(std::ostream& out, const SemanticOcTree& map);
+/** Writes a .bt file: whether a leaf is free or occupied is all that it keeps.
+ * \throw std::runtime_error as above. */
+void writeBinaryOcTree(std::ostream& out, const SemanticOcTree& map);
 
 /** Occupancy, put into the filter's limits; no voxel has a class.
  * \throw std::invalid_argument a map of another number of levels than 16, bad parameters. */

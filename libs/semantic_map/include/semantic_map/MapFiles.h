@@ -58,20 +58,6 @@ struct MapServerFiles {
 MapServerFiles mapServerFiles(const mrpt::maps::COccupancyGridMap2D& grid,
                               const std::string& pngName);
 
-// OctoMap's file formats: what becomes of a map's nodes in them is told where toOcTree() and
-// toColorOcTree() are, in map_operations/MapOperations.h.
-
-/** Writes an .ot file that holds a ColorOcTree. \throw std::runtime_error the stream does not take
- * it. */
-void writeColorOcTree(std::ostream& out, const semantic_octree::SemanticOcTree& tree);
-
-/** Writes an .ot file that holds an OcTree. \throw std::runtime_error as above. */
-void writeOcTree(std::ostream& out, const semantic_octree::SemanticOcTree& tree);
-
-/** Writes a .bt file: whether a leaf is free or occupied is all that it keeps.
- * \throw std::runtime_error as above. */
-void writeBinaryOcTree(std::ostream& out, const semantic_octree::SemanticOcTree& tree);
-
 // Points: one for each leaf of the map, its center and what the map knows about it, in a binary PLY
 // file or as comma-separated values.
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace semantic_map_ros2 {
+namespace point_fields {
 
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
@@ -160,4 +160,4 @@ LabeledCloud cloudOf(const RawCloud& raw, const std::string& classField, const C
   return cloud;
 }
 
-}  // namespace semantic_map_ros2
+}  // namespace point_fields

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace semantic_map_ros2 {
+namespace point_fields {
 
 /** A sensor_msgs/PointCloud2 as it came: nothing of it is known to be right. */
 struct RawCloud {
@@ -57,4 +57,4 @@ class NumberedClasses {
   std::string m_problem;
 };
 
-}  // namespace semantic_map_ros2
+}  // namespace point_fields

@@ -1,0 +1,146 @@
+#include <zlib.h>
+
+#include <fstream>
+#include <map>
+#include <optional>
+#include <stdexcept>
+
+#include "Bag.h"
+#include "ByteReader.h"
+#include "ChunkBytes.h"
+
+namespace bags {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
+constexpr std::uint64_t kMostRecordBytes = kMostChunkBytes;
+
+enum Opcode : std::uint8_t {
+  kFooter = 0x02,
+  kSchema = 0x03,
+  kChannel = 0x04,
+  kMessage = 0x05,
+  kChunk = 0x06,
+  kDataEnd = 0x0f
+};
+
+/** The records of a file from its begin to the end of its data. What stands behind, the summary, is
+ * not looked at. */
+class McapReader {
+ public:
+  McapReader(const fs::path& file, const WantsTopic& wants, const TakeMessage& take)
+      : m_in(file, std::ios::binary), m_wants(wants), m_take(take) {
+    if (!m_in) throw std::runtime_error("cannot be read");
+    m_left = fs::file_size(file);
+  }
+
+  void read() {
+    if (next(kMagic.size()) != kMagic) throw std::runtime_error("is no MCAP file");
+    while (m_goesOn) {
+      const std::string head = next(9);
+      ByteReader reader(head);
+      const auto opcode = reader.number<std::uint8_t>();
+      const auto size = reader.number<std::uint64_t>();
+      if (opcode == kDataEnd || opcode == kFooter) return;
+      if (isOfUse(opcode))
+        add(opcode, next(size), true);
+      else
+        skip(size);
+    }
+  }
+
+ private:
+  static bool isOfUse(std::uint8_t opcode) { return opcode >= kSchema && opcode <= kChunk; }
+
+  std::string next(std::uint64_t size) {
+    check(size);
+    if (size > kMostRecordBytes)
+      throw std::runtime_error("a record of " + std::to_string(size) + " bytes, expected at most " +
+                               std::to_string(kMostRecordBytes));
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    m_in.read(bytes.data(), static_cast<std::streamsize>(size));
+    if (!m_in) throw std::runtime_error("cannot be read");
+    return bytes;
+  }
+  void skip(std::uint64_t size) {
+    check(size);
+    m_in.seekg(static_cast<std::streamoff>(size), std::ios::cur);
+  }
+  void check(std::uint64_t size) {
+    if (size > m_left)
+      throw std::runtime_error("is cut off: " + std::to_string(size) + " bytes expected, " +
+                               std::to_string(m_left) + " are left");
+    m_left -= size;
+  }
+
+  void add(std::uint8_t opcode, std::string_view content, bool mayBeChunk) {
+    ByteReader reader(content);
+    if (opcode == kSchema)
+      addSchema(reader);
+    else if (opcode == kChannel)
+      addChannel(reader);
+    else if (opcode == kMessage)
+      addMessage(reader);
+    else if (opcode == kChunk && mayBeChunk)
+      addChunk(reader);
+  }
+  void addSchema(ByteReader& reader) {
+    const auto id = reader.number<std::uint16_t>();
+    m_schemas[id] = std::string(reader.text());
+  }
+  void addChannel(ByteReader& reader) {
+    const auto id = reader.number<std::uint16_t>(), schema = reader.number<std::uint16_t>();
+    BagTopic topic;
+    topic.name = std::string(reader.text());
+    const std::string_view encoding = reader.text();
+    const auto type = m_schemas.find(schema);
+    if (type != m_schemas.end()) topic.type = type->second;
+    const bool isKnown = m_channels.count(id) > 0;
+    if (isKnown) return;
+    const bool isWanted = encoding == "cdr" && m_wants(topic);
+    m_channels[id] = isWanted ? std::optional<BagTopic>(topic) : std::nullopt;
+  }
+  void addMessage(ByteReader& reader) {
+    const auto channel = m_channels.find(reader.number<std::uint16_t>());
+    if (channel == m_channels.end()) throw std::runtime_error("a message has no channel");
+    constexpr std::uint64_t kRest = 4 + 8 + 8;  // its number and two times
+    reader.bytes(kRest);
+    if (channel->second && m_goesOn)
+      m_goesOn = m_take(*channel->second, reader.bytes(reader.left()));
+  }
+  void addChunk(ByteReader& reader) {
+    reader.bytes(16);  // two times
+    const auto size = reader.number<std::uint64_t>();
+    const auto checksum = reader.number<std::uint32_t>();
+    const std::string_view compression = reader.text();
+    const std::string records =
+        uncompressed(reader.bytes(reader.number<std::uint64_t>()), compression, size);
+    if (checksum != 0 &&
+        checksum != crc32_z(0, reinterpret_cast<const Bytef*>(records.data()), records.size()))
+      throw std::runtime_error("a chunk is damaged: its checksum is another");
+    ByteReader inside(records);
+    while (!inside.atEnd() && m_goesOn) {
+      const auto opcode = inside.number<std::uint8_t>();
+      add(opcode, inside.bytes(inside.number<std::uint64_t>()), false);
+    }
+  }
+
+  std::ifstream m_in;
+  std::uint64_t m_left = 0;
+  const WantsTopic& m_wants;
+  const TakeMessage& m_take;
+  bool m_goesOn = true;
+  std::map<std::uint16_t, std::string> m_schemas;
+  std::map<std::uint16_t, std::optional<BagTopic>> m_channels;  ///< none: not wanted
+};
+
+}  // namespace
+
+void readMcap(const fs::path& file, const WantsTopic& wants, const TakeMessage& take) {
+  McapReader(file, wants, take).read();
+}
+
+}  // namespace bags
