@@ -107,7 +107,7 @@ Trial RoadmapTrials::plan(const Instance& instance) {
   splitTime(sinceSearchBegan, plan, trial);
   trial.found = plan.found();
   trial.status = nameOf(plan.status);
-  trial.evaluated = plan.search.edgesEvaluated - plan.edgesRemembered;
+  trial.evaluated = plan.search.edgesEvaluated;
   trial.expansions = plan.search.expansions;
   trial.cost = plan.cost;
   if (trial.found) trial.way = wayOf(inUnits(plan.lengthPerClass), m_planner.order());
