@@ -39,10 +39,14 @@ const DriveRow& passing(const DriveRecord& record, double at) {
 
 /** Somebody who steps into the robot's way when it passes x = `at`, `before` meters ahead of it. */
 Events::Person stepsInFront(const DriveRecord& record, double at, double before) {
-  const DriveRow& row = passing(record, at);
   constexpr double kFront = 0.55, kAside = 0.9, kSpeed = 1.5;  // m, m, m/s
+  const DriveRow& row = passing(record, at);
+  const auto there = std::find_if(record.rows.begin(), record.rows.end(), [&](const DriveRow& r) {
+    return r.time > row.time &&
+           std::hypot(r.pose.x - row.pose.x, r.pose.y - row.pose.y) >= kFront + before;
+  });
   const auto placed = [&](double side) {
-    const auto p = row.pose.composePoint({kFront + before, side});
+    const auto p = there->pose.composePoint({0, side});
     return Eigen::Vector2d(p.x, p.y);
   };
   return {row.time - kAside / kSpeed, 1e9, placed(kAside), placed(0), kSpeed};

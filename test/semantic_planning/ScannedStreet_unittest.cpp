@@ -117,3 +117,21 @@ TEST(ScannedStreet, singleVoxelsOfAForbiddenClassAreGroundOfThatAroundThem) {
   EXPECT_EQ(ground.find(1.5, 1.5)->surface.classId, PaintedWorld::Wall);
   EXPECT_EQ(ground.find(1.1, 1.5)->surface.classId, PaintedWorld::Wall);
 }
+
+TEST(ScannedStreet, whereFewColumnsWereHitThoseBeyondTellAForbiddenClass) {
+  const colored_graph::ClassOrder order(5, {{PaintedWorld::Road, 0}});
+  const auto classOfMiddle = [&](bool withNext) {
+    PaintedWorld world;
+    world.voxel(0, 0, -1, PaintedWorld::Mud).voxel(1, 0, -1, PaintedWorld::Mud);
+    if (withNext)
+      for (const int y : {-1, 1})
+        world.voxel(0, y, -1, PaintedWorld::Mud).voxel(1, y, -1, PaintedWorld::Mud);
+    for (const int x : {-2, 2})
+      for (int y = -2; y <= 2; ++y) world.voxel(x, y, -1, PaintedWorld::Road);
+    const Ground ground(world.map(), VehicleOptions(), GroundOptions(), order);
+    constexpr int kMiddle = semantic_octree::kKeyOfOrigin;
+    return ground.near({kMiddle, kMiddle}, kMiddle - 1, 0)->classId;
+  };
+  EXPECT_EQ(classOfMiddle(false), PaintedWorld::Road);
+  EXPECT_EQ(classOfMiddle(true), PaintedWorld::Mud);
+}

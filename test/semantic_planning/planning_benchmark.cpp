@@ -34,7 +34,6 @@ void reportPlan(benchmark::State& state, const PlanResult& plan) {
   state.counters["vertices"] = double(plan.numVertices);
   state.counters["edges"] = double(plan.numEdges);
   state.counters["evaluated"] = double(plan.search.edgesEvaluated);
-  state.counters["remembered"] = double(plan.edgesRemembered);
   state.counters["length_m"] = plan.length;
   state.counters["grass_m"] = plan.found() ? plan.lengthPerClass[PaintedWorld::Grass] : -1;
 }

@@ -79,31 +79,46 @@ class GapFillSearch {
   std::vector<GapFill> m_found;
 };
 
-/** The class of a surface that is of a forbidden one: its own, unless most of what is around it
- * within a step is of others. */
+/** Classes of what is around a surface, within a step in height. */
+struct Votes {
+  std::array<ClassId, (2 * kReachOfClasses + 1) * (2 * kReachOfClasses + 1)> allowed;
+  int numAllowed = 0, numForbidden = 0;
+
+  Votes(const TileWindow<ColumnTile>& columns, Column c, int z, int reach,
+        const GroundShape& shape) {
+    for (int y = c.y - reach; y <= c.y + reach; ++y)
+      for (int x = c.x - reach; x <= c.x + reach; ++x) {
+        const auto& runs = columns.around({x, y}).runs;
+        const int column = indexInTile({x, y});
+        const Run* run = std::find_if(runs.begin(column), runs.end(column), [&](const Run& r) {
+          return std::abs(r.top - z) <= shape.step;
+        });
+        if (run == runs.end(column)) continue;
+        if (shape.ranks[run->topClass] == colored_graph::kForbidden)
+          ++numForbidden;
+        else
+          allowed[static_cast<std::size_t>(numAllowed++)] = run->topClass;
+      }
+  }
+  ClassId mostFrequent() const {
+    const auto end = allowed.begin() + numAllowed;
+    return *std::max_element(allowed.begin(), end, [&](ClassId a, ClassId b) {
+      return std::count(allowed.begin(), end, a) < std::count(allowed.begin(), end, b);
+    });
+  }
+};
+
+/** The class of a surface that is of a forbidden one: its own, unless most of what is around it is
+ * of others. Where few columns next to it have any, those beyond count, too. */
 ClassId classAmong(const TileWindow<ColumnTile>& columns, Column c, const Surface& s,
                    const GroundShape& shape) {
-  constexpr int kMost = (2 * kReachOfClasses + 1) * (2 * kReachOfClasses + 1);
-  std::array<ClassId, kMost> others;
-  int forbidden = 0, allowed = 0;
-  for (int y = c.y - kReachOfClasses; y <= c.y + kReachOfClasses; ++y)
-    for (int x = c.x - kReachOfClasses; x <= c.x + kReachOfClasses; ++x) {
-      const auto& runs = columns.around({x, y}).runs;
-      const int column = indexInTile({x, y});
-      const Run* run = std::find_if(runs.begin(column), runs.end(column), [&](const Run& r) {
-        return std::abs(r.top - s.z) <= shape.step;
-      });
-      if (run == runs.end(column)) continue;
-      if (shape.ranks[run->topClass] == colored_graph::kForbidden)
-        ++forbidden;
-      else
-        others[allowed++] = run->topClass;
-    }
-  if (allowed <= forbidden) return s.classId;
-  const auto end = others.begin() + allowed;
-  return *std::max_element(others.begin(), end, [&](ClassId a, ClassId b) {
-    return std::count(others.begin(), end, a) < std::count(others.begin(), end, b);
-  });
+  constexpr int kFew = 5;  // most of nine
+  for (int reach = 1; reach <= kReachOfClasses; ++reach) {
+    const Votes votes(columns, c, s.z, reach, shape);
+    if (votes.numAllowed > votes.numForbidden) return votes.mostFrequent();
+    if (votes.numAllowed + votes.numForbidden >= kFew) break;
+  }
+  return s.classId;
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using semantic_octree::Run;
 using ScanGrid = ColumnGrid<ColumnTile>;
 
 /** Columns around one that tell what class it has. */
-constexpr int kReachOfClasses = 1;
+constexpr int kReachOfClasses = 2;
 
 /** Top voxels with enough free space above. One of a forbidden class has the class of most around
  * it that it can be driven to, if these are more than the forbidden ones: single wrong labels close

@@ -5,8 +5,6 @@ namespace semantic_planning {
 
 namespace {
 
-constexpr int kFinerRoadmaps = 2;  // a third took most of a "no", and found nothing
-
 /** What a path may cost before a roadmap is tried: turning takes some meters at both ends. */
 double mostOf(const RelaxedPath& relaxed) {
   constexpr double kShare = 1.2, kTurns = 20;  // m
@@ -18,8 +16,7 @@ double mostOf(const RelaxedPath& relaxed) {
 /** From the price field to a path:
  * 1. the way of least price of a vehicle that turns on the spot,
  * 2. beside it the best path that the vehicle can drive, which is smoothed,
- * 3. if there is none, or one that costs much more than that way: the roadmap's, improved alike,
- * 4. if there is none still: those of finer roadmaps near the way. */
+ * 3. if there is none, or one that costs much more than that way: the roadmap's, improved alike. */
 PlanResult PlannerCore::solve(StageClock& clock) {
   if (!mayShorten()) return searchRoadmap(clock);
   const RelaxedPath relaxed = relaxedPath();
@@ -60,22 +57,8 @@ PlanResult PlannerCore::solve(const RelaxedPath& relaxed, StageClock& clock) {
     clock.end("shorten");
   }
   if (!result.found() || (other.found() && other.price < result.price)) result = std::move(other);
-  if (result.status == PlanStatus::NotConnected || result.status == PlanStatus::OnlyForbidden)
-    tryFinerRoadmaps(relaxed, clock, result);
   if (!result.found()) sayWhere(relaxed, result);
   return result;
-}
-
-void PlannerCore::tryFinerRoadmaps(const RelaxedPath& relaxed, StageClock& clock,
-                                   PlanResult& result) {
-  const GraphKind kind = m_options.roadmap.kind;
-  if (relaxed.path.empty() || (kind != GraphKind::Compressed && kind != GraphKind::Full)) return;
-  for (int i = 0; i < kFinerRoadmaps && !result.found(); ++i) {
-    const PlanResult finer = finerRoadmap(relaxed, i, result);
-    if (finer.found()) result = beside(finer.path, finer);
-    if (finer.found() && !result.found()) result = finer;
-    clock.end("refine");
-  }
 }
 
 }  // namespace semantic_planning

@@ -82,7 +82,6 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
       m_prices(m_checker.order()),
       m_kept(m_checker, m_prices),
       m_candidates(map, m_ground, options.roadmap),
-      m_edges(m_checker),
       m_model{order, options.edges, options.cost, true},
       m_search(options.graphSearch ? options.graphSearch()
                                    : std::make_unique<colored_graph::ColoredGraphSearch>()) {
@@ -145,8 +144,7 @@ bool PlannerCore::refuse(const Place& start, const Place& goal, PlanResult& resu
 
 std::optional<EdgeProfile> PlannerCore::evaluateTimed(const Roadmap& map, colored_graph::EdgeId e) {
   const auto begin = std::chrono::steady_clock::now();
-  auto profile =
-      belongsToMap(m_options.roadmap.kind) ? m_edges.profile(map.ends(e)) : map.evaluate(e);
+  auto profile = map.evaluate(e);
   m_evaluating += StageClock::millisecondsSince(begin);
   return profile;
 }
@@ -160,8 +158,9 @@ colored_graph::SearchOptions PlannerCore::searchOptions(const Roadmap& map) {
   return search;
 }
 
-PlanningRegion PlannerCore::region(double buffer) const {
+PlanningRegion PlannerCore::region() const {
   constexpr double kEverywhere = std::numeric_limits<double>::infinity();
+  const double buffer = m_options.roadmap.buffer;
   const PlanningRegion rectangle(m_startPose->pose, m_goalPose->pose,
                                  m_corridor ? kEverywhere : buffer);
   return m_corridor ? rectangle.near(m_corridor->way, buffer) : rectangle;
@@ -192,7 +191,7 @@ PathResult PlannerCore::search(Roadmap& map, VertexId start, VertexId goal) {
 void PlannerCore::makeRoadmap() {
   m_search->forget();
   m_roadmap = std::make_unique<MapRoadmap>(m_candidates, m_checker, m_options.roadmap, *m_startPose,
-                                           region(m_options.roadmap.buffer));
+                                           region());
   if (m_corridor) m_candidates.forget();  // of a map that is too large: they take as much as ground
   m_start = m_roadmap->roadmap().addQueryVertex(*m_startPose);
   m_goal = m_roadmap->roadmap().addQueryVertex(*m_goalPose);
@@ -215,7 +214,6 @@ PlanResult PlannerCore::searchRoadmap(StageClock& clock) {
   result.price = priceOf(result, m_checker, m_prices);
   result.numVertices = map.graph().vertexCount();
   result.numEdges = map.graph().edgeCount();
-  result.edgesRemembered = m_edges.takeRemembered();
   clock.end("path");
   return result;
 }
@@ -233,31 +231,6 @@ RelaxedPath PlannerCore::relaxedPath() const {
 
 PlanResult PlannerCore::beside(const std::vector<PathPoint>& way, const PlanResult& before) const {
   return pathBeside(way, m_checker, m_prices, RoadmapOptions::kLongestEdge, before);
-}
-
-PlanResult PlannerCore::finerRoadmap(const RelaxedPath& relaxed, int round,
-                                     const PlanResult& before) {
-  constexpr std::size_t kEvery = 4;        // point of the way
-  constexpr double kDistance = 3;          // m
-  constexpr std::size_t kVertices = 1000;  // whatever the first roadmap has
-  std::vector<mrpt::math::TPoint2D> way;
-  for (std::size_t i = 0; i < relaxed.path.size(); i += kEvery)
-    way.emplace_back(relaxed.path[i].x, relaxed.path[i].y);
-  RoadmapOptions options = m_options.roadmap;
-  options.headings *= 2;
-  options.vertices = kVertices << round;
-  MapRoadmap fine(m_candidates, m_checker, options, *m_startPose,
-                  region(std::numeric_limits<double>::infinity()).near(way, kDistance));
-  const VertexId start = fine.roadmap().addQueryVertex(*m_startPose);
-  const VertexId goal = fine.roadmap().addQueryVertex(*m_goalPose);
-  PlanResult result = before;
-  describePath(search(fine.roadmap(), start, goal), fine.roadmap(), m_checker, result);
-  if (result.found()) result.reason.clear();
-  result.price = priceOf(result, m_checker, m_prices);
-  m_edges.takeRemembered();  // what is told is that of the first roadmap
-  result.search = before.search;
-  result.roadmapCost = before.roadmapCost;
-  return result;
 }
 
 /** "...; what can be reached ends at (3.1, 2.9), 4.2 m from the goal" */
@@ -278,7 +251,6 @@ void PlannerCore::forget() {
   m_search->forget();
   m_roadmap.reset();
   m_candidates.forget();
-  m_edges.forget();
   m_kept.drop();
   m_hasPlanned = false;
 }
@@ -295,7 +267,6 @@ PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
     sortOut(change.tiles);
   }
   clock.end("ground");
-  m_edges.groundChanged(change.tiles);
   m_kept.groundChanged(change.tiles);
   change.points = m_candidates.update(touched, change.tiles);
   return change;

@@ -11,7 +11,6 @@
 #include "RelaxedSearch.h"
 #include "StageClock.h"
 #include "roadmap/CandidateStore.h"
-#include "roadmap/EdgeMemory.h"
 #include "roadmap/MapRoadmap.h"
 
 namespace semantic_planning {
@@ -87,12 +86,9 @@ class PlannerCore {
   PlanResult searchRoadmap(StageClock& clock);
   RelaxedPath relaxedPath() const;
   PlanResult beside(const std::vector<PathPoint>& way, const PlanResult& before) const;
-  void tryFinerRoadmaps(const RelaxedPath& relaxed, StageClock& clock, PlanResult& result);
-  /** What the best path is of a roadmap that is finer near a way. */
-  PlanResult finerRoadmap(const RelaxedPath& relaxed, int round, const PlanResult& before);
   void sayWhere(const RelaxedPath& relaxed, PlanResult& result) const;
-  /** Between start and goal. \param buffer to each side, meters */
-  PlanningRegion region(double buffer) const;
+  /** Between start and goal. */
+  PlanningRegion region() const;
 
   semantic_octree::MapFollower m_follower;  ///< of what the ground has not read
   const PlannerOptions m_options;
@@ -102,7 +98,6 @@ class PlannerCore {
   const ClassPrices m_prices;
   KeptPath m_kept;
   CandidateStore m_candidates;
-  EdgeMemory m_edges;
   colored_graph::CostModel m_model;
   std::unique_ptr<MapRoadmap> m_roadmap;
   std::optional<GroundPose> m_startPose, m_goalPose;

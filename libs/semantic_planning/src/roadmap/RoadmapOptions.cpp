@@ -17,8 +17,6 @@ const Choices<GraphKind>& choicesOf(GraphKind) {
 
 const char* nameOf(GraphKind kind) { return strict_files::nameIn(choicesOf(kind), kind); }
 
-bool belongsToMap(GraphKind kind) { return isOfTree(kind) || kind == GraphKind::Full; }
-
 bool isOfTree(GraphKind kind) { return kind == GraphKind::Compressed || kind == GraphKind::Leaves; }
 
 void RoadmapOptions::describe(strict_files::OptionList& list) {

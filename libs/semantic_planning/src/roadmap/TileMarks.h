@@ -19,17 +19,6 @@ inline Square squareAround(const PosePair& ends, double length, const CollisionC
   return {(a.x + b.x) / 2, (a.y + b.y) / 2, length / 2 + checker.reach()};
 }
 
-/** Whether f(tile) answers true for any tile that meets the square. */
-template <class F>
-bool anyTileIn(const Ground& ground, const Square& s, F f) {
-  const Column low = tileOf(ground.columnAt(s.x - s.distance, s.y - s.distance));
-  const Column high = tileOf(ground.columnAt(s.x + s.distance, s.y + s.distance));
-  for (int ty = low.y; ty <= high.y; ++ty)
-    for (int tx = low.x; tx <= high.x; ++tx)
-      if (f(Column{tx, ty})) return true;
-  return false;
-}
-
 /** Some tiles, to be asked for often. */
 class TileMarks {
  public:
@@ -39,10 +28,14 @@ class TileMarks {
 
   /** Whether one of them meets the square. */
   bool anyIn(const Square& square) const {
-    return anyTileIn(m_ground, square, [this](Column tile) {
-      const char* mark = m_marks.find(tile);
-      return mark && *mark;
-    });
+    const Column low =
+        tileOf(m_ground.columnAt(square.x - square.distance, square.y - square.distance));
+    const Column high =
+        tileOf(m_ground.columnAt(square.x + square.distance, square.y + square.distance));
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x)
+        if (m_marks.find({x, y})) return true;
+    return false;
   }
 
  private:

@@ -57,8 +57,6 @@ struct PlanResult {
   std::vector<mrpt::math::TPose2D> vertices;  ///< where its curves meet
   std::size_t numVertices = 0, numEdges = 0;  ///< of the roadmap
   colored_graph::SearchStatistics search;
-  /** So many of search.edgesEvaluated were known from plans before, over the same ground. */
-  std::size_t edgesRemembered = 0;
   StageTimes times;
 
   bool found() const { return status == PlanStatus::Found; }

@@ -56,7 +56,7 @@ class PlannerCore;
  *
  * A plan to another goal makes a roadmap of its own. What does not depend on start and goal is kept
  * for the next plan until the map changes there: points for vertices (but not in a corridor, where
- * memory is short), and what was found about edges; answers are those of a new planner. One that
+ * memory is short); answers are those of a new planner. One that
  * runs out of memory, or whose `cancelled` throws, is broken: all further calls throw
  * std::logic_error. Not thread safe. While a call reads the map, another thread that changes it
  * gets std::logic_error, and the other way round (ReadLock). A map may have any number of planners,

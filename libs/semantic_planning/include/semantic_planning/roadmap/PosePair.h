@@ -25,9 +25,6 @@ struct PosePair {
     return pair;
   }
 
-  bool operator==(const PosePair& o) const {
-    return keyOf(first) == keyOf(o.first) && keyOf(second) == keyOf(o.second);
-  }
   bool operator<(const PosePair& o) const {
     return std::tuple_cat(keyOf(first), keyOf(second)) <
            std::tuple_cat(keyOf(o.first), keyOf(o.second));

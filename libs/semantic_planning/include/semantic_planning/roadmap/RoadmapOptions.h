@@ -18,8 +18,6 @@ enum class GraphKind {
 /** "compressed", "leaves", "halton", "halton_drivable", "full". */
 const strict_files::Choices<GraphKind>& choicesOf(GraphKind);
 const char* nameOf(GraphKind kind);
-/** Whether a kind's poses belong to the map: they come again in plans for other tasks. */
-bool belongsToMap(GraphKind kind);
 /** Whether a kind's points lie in leaves of the compressed tree, which the map then has to keep. */
 bool isOfTree(GraphKind kind);
 
