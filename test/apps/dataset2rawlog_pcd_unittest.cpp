@@ -78,41 +78,35 @@ TEST(Pcd, fieldsOfSeveralValuesMoveTheOthers) {
 }
 
 TEST(Pcd, badInputIsNamed) {
-  const auto failureWith = [](const std::string& text) {
-    const TemporaryFolder folder;
-    const auto file = folder.write("a.pcd", text);
-    const std::string failure =
-        failureOf("pcd " + quoted(file) + " -o " + quoted(folder / "out.rawlog"));
-    EXPECT_TRUE(contains(failure, "a.pcd")) << failure;
-    return failure;
+  const std::string head = kPcdHead, fields = "FIELDS x y z label\n", data = "DATA ascii\n";
+  const auto grid = [&](const std::string& size) {
+    return fields + size + "\nPOINTS 2\n" + data + "1 2 3 1\n1 2 3 1\n";
   };
-  const std::string head = kPcdHead;
-  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 3\n"), "1 lines of data for 2 points"));
-  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 3\n9 5 6\n"), "a.pcd:13"));
-  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 3\n9 5 x 7 3\n"), "a.pcd:13"));
-  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 3\n9 5 6 7 255\n"), "label 255 is not one of"));
-  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 3\n9 5 6 7 -1\n"), "no class id"));
-  EXPECT_TRUE(
-      contains(failureWith("FIELDS x y z\nPOINTS 1\nDATA ascii\n1 2 3\n"), "no field 'label'"));
-  EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS 1\nDATA raw\n"), "expected ascii"));
-  for (const std::string number : {"-1", "0.5", "1e300"})
-    EXPECT_TRUE(contains(failureWith("FIELDS x y z label\nPOINTS " + number + "\nDATA ascii\n"),
-                         "expected a whole number"))
-        << number;
-  EXPECT_TRUE(contains(failureWith(head + "9 5 6 7 2abc\n9 5 6 7 3\n"), "2abc"));
-  EXPECT_TRUE(
-      contains(failureWith("FIELDS x y z label\nCOUNT 1 1 2 1\nPOINTS 1\nDATA ascii\n1 2 3 4 5\n"),
-               "field 'z' has several values"));
-  EXPECT_TRUE(
-      contains(failureWith("FIELDS x y z label\nCOUNT 1 1 1\nPOINTS 1\nDATA ascii\n1 2 3 4\n"),
-               "3 counts for 4 fields"));
-  for (const std::string grid : {"WIDTH 3\nHEIGHT 1", "WIDTH 2\nHEIGHT 0", "WIDTH 0\nHEIGHT 0",
-                                 "WIDTH 1\nHEIGHT 1099511627776"})
-    EXPECT_TRUE(contains(
-        failureWith("FIELDS x y z label\n" + grid + "\nPOINTS 2\nDATA ascii\n1 2 3 1\n1 2 3 1\n"),
-        " points, and POINTS says 2"))
-        << grid;
-  EXPECT_TRUE(contains(failureWith("nothing\n"), "no FIELDS"));
+  const char* const otherNumber = " points, and POINTS says 2";
+  for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
+           {head + "9 5 6 7 3\n", "1 lines of data for 2 points"},
+           {head + "9 5 6 7 3\n9 5 6\n", "a.pcd:13"},
+           {head + "9 5 6 7 3\n9 5 x 7 3\n", "a.pcd:13"},
+           {head + "9 5 6 7 3\n9 5 6 7 255\n", "label 255 is not one of"},
+           {head + "9 5 6 7 3\n9 5 6 7 -1\n", "no class id"},
+           {head + "9 5 6 7 2abc\n9 5 6 7 3\n", "2abc"},
+           {"FIELDS x y z\nPOINTS 1\n" + data + "1 2 3\n", "no field 'label'"},
+           {fields + "POINTS 1\nDATA raw\n", "expected ascii"},
+           {fields + "POINTS -1\n" + data, "expected a whole number"},
+           {fields + "POINTS 0.5\n" + data, "expected a whole number"},
+           {fields + "POINTS 1e300\n" + data, "expected a whole number"},
+           {fields + "COUNT 1 1 2 1\nPOINTS 1\n" + data + "1 2 3 4 5\n", "'z' has several values"},
+           {fields + "COUNT 1 1 1\nPOINTS 1\n" + data + "1 2 3 4\n", "3 counts for 4 fields"},
+           {grid("WIDTH 3\nHEIGHT 1"), otherNumber},
+           {grid("WIDTH 2\nHEIGHT 0"), otherNumber},
+           {grid("WIDTH 0\nHEIGHT 0"), otherNumber},
+           {grid("WIDTH 1\nHEIGHT 1099511627776"), otherNumber},
+           {"nothing\n", "no FIELDS"}}) {
+    const TemporaryFolder folder;
+    const std::string file = quoted(folder.write("a.pcd", text));
+    const std::string failure = failureOf("pcd " + file + " -o " + quoted(folder / "out.rawlog"));
+    EXPECT_TRUE(contains(failure, "a.pcd") && contains(failure, message)) << failure;
+  }
   EXPECT_TRUE(contains(failureOf("pcd only_one"), "--output is required"));
 }
 

@@ -182,7 +182,7 @@ TEST(Tum, framesOfARealFlatAgreeWithEachOther) {
   ASSERT_EQ(scans.size(), 5u);
   EXPECT_GE(agreement(scans, 0.05), 0.98);
 
-  // The same through depth images and a folder of label images.
+  // Depth images and a folder of label images give equal scans.
   const fs::path flat = sharedDataDir() / "replica_apartment_0";
   const CommandRun plain = dataset2rawlog("tum --no-labels --frames 0:5:20 " + quoted(flat) +
                                           " -o " + quoted(folder / "plain.rawlog"));

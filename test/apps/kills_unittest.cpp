@@ -16,7 +16,7 @@ namespace {
 /** How often: MSO_KILLS, or a few times. */
 int kills() {
   const char* number = std::getenv("MSO_KILLS");
-  return number ? std::atoi(number) : 8;
+  return number ? std::atoi(number) : 4;
 }
 
 /** rawlog2semantic-map into one folder, of the sample's drive with one voxel size or another. */

@@ -97,30 +97,6 @@ TEST_F(MapFolders, areReadTileByTileToTheSameResults) {
              {path("plain/map.semantic"), "--box", "-25.6", "-inf", "-1", "12.8", "0", "inf"});
 }
 
-TEST_F(MapFolders, areDrawnWithinABudgetHoweverFarApartThingsAre) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the address sanitizer takes memory of its own";
-#endif
-  const auto exported = [](double meters) {
-    SemanticOcTree map = MapFolder::emptyMap(path("tiles"));
-    StoredMap apart(emptyLike(map), path("apart"), {});
-    for (const double at : {-meters, meters}) {
-      Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-      T.translation() << at, at, 1;
-      semantic_types::LabeledCloud cloud;
-      cloud.points = {{3, 0, 0}, {0, 3, 0}};
-      apart.tree().insert(cloud, T);
-    }
-    apart.folder()->save();
-    return run("semantic-map-export", {path("apart"), "-f", "-o", path("apart.png"), "--max-height",
-                                       "9", "--memory", "0.1"})
-        .peakKilobytes;
-  };
-  constexpr double kHalf = 1600, kColumns = 1e-3 * (2 * kHalf / 0.8) * (2 * kHalf / 0.8);
-  const long least = exported(10), peak = exported(kHalf);  // the latter: 16 million columns
-  EXPECT_LT(double(peak - least), 4 * kColumns);
-}
-
 TEST_F(MapFolders, takeSumsIn) {
   run("semantic-map-merge", {path("tiles"), path("plain/map.semantic"), "-o", path("twice"),
                              "--tiles", "25.6", "--memory", "0.1"});
@@ -282,14 +258,6 @@ TEST_F(MapFolders, withAnIndexThatIsNotOfTheirFilesAreRefusedByEveryProgram) {
     if (entry.path().extension() == ".semantic") tiles.push_back(entry.path().string());
   run("semantic-map-merge", tiles);
   EXPECT_TRUE(loadMap(path("anew")) == loadMap(path("tiles")));
-}
-
-TEST_F(MapFolders, tellOfFilesThatTheirIndexDoesNotName) {
-  std::filesystem::copy(path("tiles"), path("littered"));
-  EXPECT_FALSE(contains(run("semantic-map-info", {path("littered")}).output, "not of it"));
-  folder->write("littered/tile_9_9_9.4.semantic", "0123456789");
-  const std::string output = run("semantic-map-info", {path("littered")}).output;
-  EXPECT_TRUE(contains(output, "not of it     1 files, 10 bytes")) << output;
 }
 
 TEST_F(MapFolders, haveOneWriter) {

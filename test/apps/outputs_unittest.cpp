@@ -191,13 +191,3 @@ TEST_F(UserData, namesThatAreNoUtf8DoNotDiscardARun) {
             "Stra\xEF\xBF\xBD"
             "e.rawlog");
 }
-
-TEST_F(UserData, classNamesThatAreNoUtf8AreRefusedOnLoading) {
-  folder.write("config.ini", "[map]\nresolution = 0.5\nclasses = classes.yaml\n");
-  folder.write("classes.yaml",
-               "classes:\n  - {id: 1, name: stra\xDF"
-               "e, color: [255, 0, 0]}\n");
-  writeSmallRawlog(folder / "a.rawlog", robotPose(10, 1), labeledCloud(10, {{1, 0.2f, 0.2f}}, {1}));
-  expectUntouched("rawlog2semantic-map", {"--config", "config.ini", "-o", "out", "a.rawlog"},
-                  "not UTF-8", {});
-}

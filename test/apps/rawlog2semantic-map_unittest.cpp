@@ -2,7 +2,6 @@
 #include <map_operations/MapOperations.h>
 #include <semantic_types/ClassTable.h>
 
-#include <limits>
 #include <opencv2/imgcodecs.hpp>
 
 #include "MappingFixture.h"
@@ -163,17 +162,6 @@ TEST_F(Rawlog2SemanticMap, depthImagesTakeTheirLabelsFromAFolder) {
   EXPECT_EQ(map().query(2.1, 0.2, 0.2).likeliestClass, 2);
   EXPECT_EQ(summary()["observations"]["inserted"], 2);
   EXPECT_EQ(summary()["observations"]["insertedWithoutLabels"], 1);
-}
-
-TEST_F(Rawlog2SemanticMap, pointsThatAreNotFiniteAreSkippedAndCounted) {
-  const float nan = std::nanf(""), infinity = std::numeric_limits<float>::infinity();
-  writeSmallRawlog(
-      folder / "holes.rawlog", robotPose(10, 1.1),
-      labeledCloud(10, {{1.1f, 0.2f, 0.2f}, {nan, 0, 0}, {0, infinity, 0}}, {1, 2, 3}));
-  ASSERT_EQ(run("holes.rawlog").status, 0);
-  EXPECT_EQ(summary()["points"]["read"], 3);
-  EXPECT_EQ(summary()["points"]["withoutRange"], 2);
-  EXPECT_EQ(summary()["map"]["occupiedVoxels"], 1);
 }
 
 TEST_F(Rawlog2SemanticMap, memoryDoesNotGrowWithTheRawlog) {

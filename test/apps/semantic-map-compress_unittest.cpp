@@ -7,7 +7,6 @@
 
 #include <algorithm>
 
-#include "../semantic_octree/CraftedTreeFile.h"
 #include "AllAlphas.h"
 #include "CompressionOptions.h"
 #include "CsvTable.h"
@@ -118,21 +117,6 @@ TEST_F(SemanticMapCompress, classesBeyondTheFirstBatchAreMeasuredAsIfAlone) {
   }
 }
 
-TEST_F(SemanticMapCompress, strongerPenaltiesKeepLess) {
-  const json report = reportOf(R"(
-block_size: 3.2
-solutions:
-  - {name: none, relevant: {post: 1}, alpha: 0.002}
-  - {name: weak, relevant: {post: 1}, irrelevant: {road: 0.3}, alpha: 0.002}
-  - {name: strong, relevant: {post: 1}, irrelevant: {road: 2}, alpha: 0.002}
-)");
-  const auto kept = [&](int i) {
-    return report["solutions"][i]["classes"]["road"]["share"].get<double>();
-  };
-  EXPECT_GT(kept(0), kept(1));
-  EXPECT_GT(kept(1), kept(2));
-}
-
 TEST_F(SemanticMapCompress, aWantedNumberOfLeavesGivesTheLargestOptimalTreeWithin) {
   SemanticOcTree map = withTheseWeights(loadTree(mapFile()));
   const auto totals = AllAlphas(Abstraction(map)).leaves;
@@ -157,11 +141,6 @@ TEST_F(SemanticMapCompress, aWantedNumberOfBytesIsKeptAndTheNextLargerTreeExceed
     saveTree(abstraction.compressedMap(), (folder / "next.semantic").string());
     EXPECT_GT(fs::file_size(folder / "next.semantic"), wanted);
   }
-}
-
-TEST_F(SemanticMapCompress, theCommandLinesAlphaGoesBeforeTheFiles) {
-  const json report = reportOf(kTwoSolutions, {"--alpha", "0.05"});
-  for (const json& solution : report["solutions"]) EXPECT_EQ(solution["alpha"], 0.05);
 }
 
 TEST_F(SemanticMapCompress, curveLeadsFromTheBlocksToAlphaZeroThroughTheChosenTree) {
@@ -248,19 +227,6 @@ TEST_F(SemanticMapCompress, namesAreNoCommandsForGnuplot) {
     EXPECT_EQ(run.status, 0) << run.errors;
     EXPECT_FALSE(cv::imread(fs::path(output) / "retained.png").empty()) << output;
   }
-  EXPECT_FALSE(fs::exists("x"));
-  fs::current_path(before);
-}
-
-TEST_F(SemanticMapCompress, aMapWhoseClassNameWouldBeACommandIsRefused) {
-  std::string content = contentIn(folder.read("map.semantic"));
-  const std::string name = "road\n!touch x\n", old = bytesOf(std::uint16_t(4)) + "road";
-  content.replace(content.find(old), old.size(), bytesOf(std::uint16_t(name.size())) + name);
-  folder.write("map.semantic", fileAround(content));
-  const fs::path before = fs::current_path();
-  fs::current_path(folder.path());
-  expectRefusalOf("{name: a, relevant: {post: 1}, alpha: 0.01}",
-                  {"map.semantic", "the name of class 2, 'road\\x0a!touch x\\x0a'"});
   EXPECT_FALSE(fs::exists("x"));
   fs::current_path(before);
 }

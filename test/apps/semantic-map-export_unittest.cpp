@@ -153,17 +153,6 @@ TEST_F(SemanticMapExport, groundThatIsNamedNeverObstructs) {
   EXPECT_LT(obstacles(readGrid("none.gridmap")), 10);  // voxels where no class was seen
 }
 
-TEST_F(SemanticMapExport, aFloorTakesHeightsAsTheyAre) {
-  ASSERT_EQ(exportTo({"map.gridmap"}, {"--floor", "1.0", "--low", "0", "--high", "0.5"}).status, 0);
-  const auto grid = readGrid("map.gridmap");
-  for (unsigned cx = 0; cx < grid.getSizeX(); ++cx)
-    for (unsigned cy = 0; cy < grid.getSizeY(); ++cy) {
-      const double x = grid.idx2x(int(cx)), y = grid.idx2y(int(cy));
-      const bool any = anyIn(map, x, y, 1.1, 1.6, CellState::Status::Occupied);
-      ASSERT_EQ(grid.getCell(int(cx), int(cy)) < 0.5f, any) << x << " " << y;
-    }
-}
-
 TEST_F(SemanticMapExport, mrptLoadsTheMapServersGrid) {
   ASSERT_EQ(exportTo({"map.gridmap", "ros.yaml"}).status, 0);
   const auto grid = readGrid("map.gridmap");

@@ -102,17 +102,6 @@ TEST_F(SemanticMapInfo, textNamesResolutionSpaceAndClasses) {
   EXPECT_FALSE(contains(run.output, "road")) << run.output;
 }
 
-TEST_F(SemanticMapInfo, anEmptyMapIsDescribed) {
-  ClassTable table;
-  table.add("road", {255, 0, 0});
-  saveTree(SemanticOcTree(0.5, table), map());
-  const ProgramRun text = runProgram("semantic-map-info", {map()});
-  EXPECT_EQ(text.status, 0) << text.errors;
-  EXPECT_TRUE(contains(text.output, "nothing is known")) << text.output;
-  const ProgramRun json = runProgram("semantic-map-info", {map(), "--json"});
-  EXPECT_TRUE(nlohmann::json::parse(json.output)["boundingBox"].is_null());
-}
-
 TEST_F(SemanticMapInfo, pointsAreAnsweredWithStateClassAndOccupancy) {
   const ProgramRun run = query("3.6 0.1 0.2\n\n# free:\n1.1 0.2 0.3  # here\n9 -9 9\n1e9 0 0\n");
   ASSERT_EQ(run.status, 0) << run.errors;
@@ -194,17 +183,4 @@ TEST_F(SemanticMapInfo, namesDoNotReachATerminalAsTheyAre) {
   EXPECT_TRUE(contains(run.output, "map\\x1b[2J")) << run.output;
   EXPECT_FALSE(contains(run.output, "\x1b"));
   EXPECT_FALSE(contains(run.output, "\xC2\x9B"));
-}
-
-TEST_F(SemanticMapInfo, damagedMapsAreRefusedByName) {
-  const std::string whole = folder.read("map.semantic");
-  std::string altered = whole;
-  altered[altered.size() - 20] ^= 1;
-  for (const std::string& bytes :
-       {std::string(), std::string("no map"), altered, whole.substr(0, whole.size() / 2),
-        whole.substr(0, whole.size() - 1), whole + "x"}) {
-    folder.write("bad.semantic", bytes);
-    expectRefusal(runProgram("semantic-map-info", {(folder / "bad.semantic").string()}),
-                  {"bad.semantic"});
-  }
 }

@@ -1,10 +1,4 @@
-#include <labeled_cloud/Rawlogs.h>
-
-#include <array>
-#include <future>
-
 #include "ExportFixture.h"
-#include "SmallRawlogs.h"
 
 using semantic_octree::SemanticOcTree;
 
@@ -67,42 +61,6 @@ TEST_F(SemanticMapMerge, mapsAreAddedWhereTheirPosesPutThem) {
     ++looked;
   }
   EXPECT_GT(looked, 1000);
-}
-
-TEST_F(SemanticMapMerge, fourProcessesOnFourRawlogsAddUpToTheMapOfAll) {
-  folder.write("config.ini",
-               "[map]\nresolution = 0.2\nclasses = classes.yaml\n"
-               "[pictures]\nwidth = 300\nheight = 200\n");
-  folder.write("classes.yaml", kSmallTable);
-  const auto scans = scansOfSmallPlace(4, 3000, 3, 3);
-  std::array<std::future<ProgramRun>, 4> runs;
-  for (int i = 0; i < 4; ++i) {
-    const std::string rawlog = path("drive" + std::to_string(i) + ".rawlog");
-    labeled_cloud::CObservationLabeledCloud cloud = labeledCloud(i, {}, {});
-    cloud.cloud = scans[i].cloud;
-    writeSmallRawlog(rawlog, robotPose(i, 1.2 * i), cloud);
-    runs[i] = std::async(std::launch::async, runProgram, "rawlog2semantic-map",
-                         std::vector<std::string>{"--config", path("config.ini"), "--output",
-                                                  path("part" + std::to_string(i)), rawlog});
-  }
-  for (auto& run : runs) EXPECT_EQ(run.get().status, 0);
-  ASSERT_EQ(merge({"part0/map.semantic", "part1/map.semantic", "part2/map.semantic",
-                   "part3/map.semantic"},
-                  "sum.semantic")
-                .status,
-            0);
-  ASSERT_EQ(
-      runProgram("rawlog2semantic-map",
-                 {"--config", path("config.ini"), "--output", path("all"), path("drive0.rawlog"),
-                  path("drive1.rawlog"), path("drive2.rawlog"), path("drive3.rawlog")})
-          .status,
-      0);
-  const SemanticOcTree sum = load("sum.semantic"), whole = load("all/map.semantic");
-  std::size_t leaves = 0, alike = 0;
-  for (auto leaf = whole.begin_leafs(); leaf != whole.end_leafs(); ++leaf, ++leaves)
-    alike += whole.query(*leaf).status == sum.query(leaf.getKey()).status;
-  EXPECT_GT(leaves, 1000u);
-  EXPECT_GT(double(alike), 0.99 * double(leaves));
 }
 
 TEST_F(SemanticMapMerge, mapsThatDoNotFitAreRefusedByName) {

@@ -134,47 +134,6 @@ const std::string kReceive = "semantic-map-receive localhost:$port ";
 
 }  // namespace
 
-TEST_F(MapRadio, whatArrivesIsTheCompressedTreeToTheLastBit) {
-  withSender("map.semantic", kReceive + "--weights weights.yaml --solution road -o r.semantic");
-  expectSame(folder.read("r.semantic"), compressed("map.semantic", "road"));
-}
-
-TEST_F(MapRadio, aTreeOfSoManyBytesArrivesToo) {
-  const std::string wanted = compressed("map.semantic", "road", {"--bytes", "3000"});
-  const auto report = nlohmann::json::parse(folder.read("out/report.json"));
-  std::ostringstream alpha;
-  alpha.precision(17);
-  alpha << report["solutions"][0]["alpha"].get<double>();
-  withSender("map.semantic",
-             kReceive + "--weights weights.yaml --alpha " + alpha.str() + " -o r.semantic");
-  EXPECT_LE(wanted.size(), 3000u);
-  expectSame(folder.read("r.semantic"), wanted);
-}
-
-TEST_F(MapRadio, prefixesAreTheTreesOfSoManyBytes) {
-  semantic_octree::SemanticOcTree map = smallMap(namedClasses());
-  saveTree(map, path("map.semantic"));
-  folder.write("weights.yaml", kTwoSolutions);
-  const std::string solution = "ground_and-cars";
-  const radio::Wish wish{kTwoSolutions, solution, 0.0};
-  setAbstraction(map, wish.forClasses(map.classes(), "weights"));
-  semantic_octree::MapSender sender(1);
-  sender.setMap(map);
-  semantic_octree::MapReceiver receiver(1);
-  std::size_t compared = 0, next = 0;
-  for (const semantic_octree::StreamPrefix& prefix : sender.prefixes()) {
-    receiver.accept(*sender.next());
-    if (!prefix.isWhole || prefix.packets < next) continue;
-    next = prefix.packets + sender.prefixes().size() / 4;
-    saveTree(receiver.map(), path("prefix.semantic"));
-    const std::string file = folder.read("prefix.semantic");
-    expectSame(file,
-               compressed("map.semantic", solution, {"--bytes", std::to_string(file.size())}));
-    ++compared;
-  }
-  EXPECT_GE(compared, 3u);
-}
-
 TEST(Wish, mayHoldBytesThatAreNoText) {
   const auto wish = radio::Wish::of(radio::Wish{"a: \xff", "\xff", 0.5}.packed());
   EXPECT_EQ(wish.weights, "a: \uFFFD");
@@ -241,35 +200,6 @@ TEST_F(MapRadio, foldersOfTilesAreSentAsWhatTheyHoldWithoutABudgetToSpeakOf) {
   withSender("--memory 0 --weights weights.yaml --solution obstacles map later",
              kReceive + "-o r.semantic");
   expectSame(folder.read("r.semantic"), compressed("later.semantic", "obstacles"));
-}
-
-TEST_F(MapRadio, aTileThatCannotBeReadIsToldBeforeAnybodyWaits) {
-  ASSERT_EQ(runProgram("semantic-map-merge",
-                       {path("map.semantic"), "-o", path("tiles"), "--tiles", "3.2"})
-                .status,
-            0);
-  std::filesystem::path tile;
-  for (const auto& entry : std::filesystem::directory_iterator(path("tiles")))
-    if (entry.path().filename().string().rfind("tile_", 0) == 0) tile = entry.path();
-  std::filesystem::resize_file(tile, 10);
-  const ProgramRun run = runProgram("semantic-map-send", {path("tiles"), "--timeout", "1"});
-  EXPECT_EQ(run.status, 1);
-  EXPECT_TRUE(contains(run.errors, tile.filename().string())) << run.errors;
-}
-
-TEST_F(MapRadio, twoRobotsPlanOnWhatTheyShare) {
-  withSender("--receivers 2 --lose 0.2 --weights weights.yaml map.semantic",
-             kReceive + "--like map.semantic -o one.semantic && " + kReceive +
-                 "--solution obstacles -o two.semantic");
-  for (const std::string name : {"one", "two"}) {
-    const ProgramRun plan =
-        runProgram("semantic-map-plan",
-                   {path(name + ".semantic"), "--start=-8,0,0", "--goal=8,0,0", "--classes",
-                    path("order.yaml"), "-o", path("plan-" + name), "--vertices", "200"});
-    ASSERT_EQ(plan.status, 0) << plan.errors;
-    const auto report = nlohmann::json::parse(folder.read("plan-" + name + "/path.json"));
-    EXPECT_GE(report["lengthPerClass"]["road"], 15) << report["lengthPerClass"];
-  }
 }
 
 TEST_F(MapRadio, enoughIsEnough) {

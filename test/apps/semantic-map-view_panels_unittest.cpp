@@ -81,27 +81,6 @@ TEST_F(SemanticMapView, SavesWeightsFromWhichTheSameLeavesFollow) {
   EXPECT_EQ(view[1], compress[1]);
 }
 
-TEST_F(SemanticMapView, FindsTheTreeOfAWantedNumberOfKilobytes) {
-  SKIP_WITHOUT_WINDOWS();
-  // In the panel at the right: the number of kB is clicked, typed and entered.
-  const std::string x = std::to_string(kWidth - 130);
-  const ProgramRun run = runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"),
-                                 kViewer, path("map.semantic"), "--size", size(), "--compress",
-                                 "--", "type " + x + " 320 4 at most 4000 bytes: "});
-  ASSERT_EQ(run.status, 0) << run.output << run.errors;
-  const std::string said = folder.read("said.txt");
-  std::smatch view, compress;
-  ASSERT_TRUE(std::regex_search(said, view, std::regex("4000 bytes: ([0-9]+) leaves"))) << said;
-  folder.write("weights.yaml", "name: a\nrelevant: {road: 1, grass: 1, wall: 1}\n");
-  const ProgramRun other =
-      runProgram("semantic-map-compress", {path("map.semantic"), "--weights", path("weights.yaml"),
-                                           "--bytes", "4000", "-o", path("compressed")});
-  EXPECT_EQ(other.status, 0) << other.errors;
-  ASSERT_TRUE(std::regex_search(other.output, compress, std::regex("([0-9]+) of [0-9]+ leaves")))
-      << other.output;
-  EXPECT_EQ(view[1], compress[1]) << said;
-}
-
 /** The window with an order of classes; the panel at the lower left has the buttons "start" and
  * "goal". */
 class SemanticMapViewPlans : public SemanticMapView {
@@ -137,7 +116,7 @@ class SemanticMapViewPlans : public SemanticMapView {
     return std::to_string(p.x) + " " + std::to_string(p.y);
   }
 
-  /** Of all paths that the window told, m. */
+  /** The lengths of all paths that the window told, m. */
   std::vector<double> lengths() const {
     const std::regex path("path of ([0-9.]+) m");
     std::vector<double> found;

@@ -69,19 +69,14 @@ TEST_F(Interrupted, beforeTheFirstScanItSaysSoAndLeavesWhatWasThere) {
   EXPECT_FALSE(leftAnything());
 }
 
-TEST_F(Interrupted, twiceItLeavesWithWhatItBegan) {
-  EXPECT_EQ(runAnd("kill -INT $pid; until grep -q 'will stop' log; do sleep 0.01; done;"
-                   "kill -INT $pid"),
-            130)
-      << log();
-  EXPECT_EQ(folder.read("out/map.semantic"), "of before");
-  EXPECT_FALSE(leftAnything());
-}
-
-TEST_F(Interrupted, byItsTerminalsEndItLeavesAtOnce) {
-  EXPECT_EQ(runAnd("kill -HUP $pid"), 129) << log();
-  EXPECT_EQ(folder.read("out/map.semantic"), "of before");
-  EXPECT_FALSE(leftAnything());
+TEST_F(Interrupted, twiceOrByItsTerminalsEndItLeavesAtOnce) {
+  const std::string twice =
+      "kill -INT $pid; until grep -q 'will stop' log; do sleep 0.01; done; kill -INT $pid";
+  for (const auto& [commands, status] : {std::pair(twice, 130), {"kill -HUP $pid", 129}}) {
+    EXPECT_EQ(runAnd(commands), status) << log();
+    EXPECT_EQ(folder.read("out/map.semantic"), "of before");
+    EXPECT_FALSE(leftAnything());
+  }
 }
 
 TEST_F(Interrupted, killedItLeavesWhatTheNextRunRemoves) {

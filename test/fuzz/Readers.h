@@ -13,14 +13,14 @@ struct Reader {
   std::vector<std::string> examples;
 };
 
-/** Of maps' files and folders, and of what comes by radio. */
+/** The readers of maps' files and folders, and of what comes by radio. */
 std::vector<Reader> mapReaders();
-/** Of the libraries' other functions. */
+/** The readers among the libraries' other functions. */
 std::vector<Reader> libraryReaders();
-/** Of what only programs read. */
+/** The readers of what only programs read. */
 std::vector<Reader> programReaders();
-/** All of them. */
+/** All readers. */
 const std::vector<Reader>& readers();
 
-/** Of the maps and files that readers expect. */
+/** The classes of the maps and files that readers expect. */
 const semantic_types::ClassTable& fuzzedClasses();

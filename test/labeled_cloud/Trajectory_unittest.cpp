@@ -71,7 +71,7 @@ TEST(Trajectory, betweenTwoPosesItMovesStraightAndTurnsEvenly) {
     Trajectory path;
     path.insert(at(100), a);
     path.insert(at(101), b);
-    RC_ASSERT(apart(*path.at(at(100)), a) == 0);
+    RC_ASSERT(apart(*path.at(at(100)), a) == 0 && apart(*path.at(at(101)), b) == 0);
     const CPose3D c = *path.at(at(100 + f));
     RC_ASSERT(std::abs(c.x() - (1 - f) * a.x() - f * b.x()) < 1e-6);
     RC_ASSERT(std::abs(c.z() - (1 - f) * a.z() - f * b.z()) < 1e-6);

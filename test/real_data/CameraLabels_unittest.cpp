@@ -72,7 +72,7 @@ LabelImage paint(const semantic_types::LabeledCloud& cloud, const Eigen::Isometr
   return image;
 }
 
-/** Of the points that have a class and received one: how many, and how many the same. */
+/** Counts the points that have a class and received one, and those that received their own. */
 struct Share {
   std::size_t points = 0, same = 0;
   double value() const { return double(same) / double(points); }

@@ -10,6 +10,7 @@
 
 #include "IncludeRules.h"
 #include "SourceTree.h"
+#include "TemporaryFolder.h"
 #include "TextRules.h"
 
 namespace fs = std::filesystem;
@@ -18,21 +19,13 @@ namespace {
 
 using Findings = std::vector<std::string>;
 
-/** A folder of one test, removed at its end. */
 class Repository : public testing::Test {
  protected:
   const fs::path root = MSO_SOURCE_DIR;
-  const fs::path scratch =
-      fs::path(testing::TempDir()) /
-      (std::string("repository-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  const TemporaryFolder own;
+  const fs::path scratch = own.path();
 
-  void SetUp() override { fs::remove_all(scratch); }
-  void TearDown() override { fs::remove_all(scratch); }
-
-  void write(const std::string& file, const std::string& text) const {
-    fs::create_directories((scratch / file).parent_path());
-    std::ofstream(scratch / file) << text;
-  }
+  void write(const std::string& file, const std::string& text) const { own.write(file, text); }
 
   /** What this project consists of, without what a build or a user puts beside it. */
   std::vector<fs::path> projectFolders() const {
@@ -146,9 +139,6 @@ TEST_F(Repository, longSourcesAreNamed) {
   for (const char* folder : {"libs", "apps", "test"})
     for (const std::string& finding : filesLongerThan(400, root / folder))
       std::cout << "warning: " << folder << '/' << finding << '\n';
-}
-
-TEST_F(Repository, aLongSourceIsFound) {
   write("Long.cpp", "1\n2\n3\n");
   write("Short.h", "1\n2\n");
   EXPECT_EQ(filesLongerThan(2, scratch), Findings{"Long.cpp:3: more than 2 lines"});
@@ -157,9 +147,6 @@ TEST_F(Repository, aLongSourceIsFound) {
 TEST_F(Repository, programsAndTestsLinkLibrariesInsteadOfSourcesOfPrograms) {
   for (const char* folder : {"apps", "test"})
     EXPECT_EQ(borrowedSources(root / folder), Findings()) << folder;
-}
-
-TEST_F(Repository, aBorrowedSourceIsFound) {
   write("a/CMakeLists.txt", "add_executable(a\n  ../map-tool/Report.cpp\n  Near.cpp)\n");
   write("a/main.cpp",
         "#include \"../../apps/map-tool/Report.h\"\n#include \"../fixtures/Town.h\"\n");
@@ -169,51 +156,29 @@ TEST_F(Repository, aBorrowedSourceIsFound) {
 
 TEST_F(Repository, namesOfOptionsHaveNoSpaces) {
   EXPECT_EQ(optionNamesWithSpaces(root / "apps"), Findings());
-}
-
-TEST_F(Repository, aNameOfAnOptionWithSpacesIsFound) {
   write("main.cpp",
         "app.add_option(\"FILE\", file, \"A file to read\");\n"
         "app.add_option_function<std::string>(\n    \"FILE... OUT\", take);\n");
   EXPECT_EQ(optionNamesWithSpaces(scratch), Findings{"main.cpp:2: a name with spaces"});
 }
 
-TEST_F(Repository, noLineEndsWithSpace) {
-  for (const fs::path& folder : projectFolders())
-    EXPECT_EQ(linesWithTrailingSpace(folder), Findings()) << folder;
-}
-
-TEST_F(Repository, aLineThatEndsWithSpaceIsFound) {
-  write("file.txt", "good\nbad \nbad\t\n");
+TEST_F(Repository, linesHaveNoSpaceAtTheirEndNoCarriageReturnAndNoPathOfAMachine) {
+  for (const auto rule : {linesWithTrailingSpace, linesWithCarriageReturn, linesTiedToAMachine})
+    for (const fs::path& part : projectFolders()) EXPECT_EQ(rule(part), Findings()) << part;
+  write("space.txt", "good\nbad \nbad\t\n");
   EXPECT_EQ(linesWithTrailingSpace(scratch),
-            (Findings{"file.txt:2: space at the end of the line",
-                      "file.txt:3: space at the end of the line"}));
-}
-
-TEST_F(Repository, noFileHasACarriageReturn) {
-  for (const fs::path& folder : projectFolders())
-    EXPECT_EQ(linesWithCarriageReturn(folder), Findings()) << folder;
-}
-
-TEST_F(Repository, aCarriageReturnIsFound) {
-  write("file.txt", "good\nb\rad\nbad\r\n");
+            (Findings{"space.txt:2: space at the end of the line",
+                      "space.txt:3: space at the end of the line"}));
+  write("return.txt", "good\nb\rad\nbad\r\n");
   EXPECT_EQ(linesWithCarriageReturn(scratch),
-            (Findings{"file.txt:2: a carriage return", "file.txt:3: a carriage return"}));
-}
-
-TEST_F(Repository, nothingIsTiedToOneMachine) {
-  for (const fs::path& folder : projectFolders())
-    EXPECT_EQ(linesTiedToAMachine(folder), Findings()) << folder;
-}
-
-TEST_F(Repository, whatIsTiedToOneMachineIsFound) {
-  write("file.txt",
+            (Findings{"return.txt:2: a carriage return", "return.txt:3: a carriage return"}));
+  write("machine.txt",
         "cd /"
         "home/me\nhttps://deb."
         "debian.org\na/tmp/b /usr/share/mrpt\n");
   EXPECT_EQ(linesTiedToAMachine(scratch),
-            (Findings{"file.txt:1: a path or a server of one machine",
-                      "file.txt:2: a path or a server of one machine"}));
+            (Findings{"machine.txt:1: a path or a server of one machine",
+                      "machine.txt:2: a path or a server of one machine"}));
 }
 
 TEST_F(Repository, linksBetweenDocumentsLeadSomewhere) {
@@ -223,9 +188,6 @@ TEST_F(Repository, linksBetweenDocumentsLeadSomewhere) {
       EXPECT_EQ(brokenLinks(file), Findings());
     }
   }
-}
-
-TEST_F(Repository, aLinkThatLeadsNowhereIsFound) {
   write("there.md", "");
   write("file.md", "[a](there.md) [b](there.md#part)\n[c](https://x.org/y) ![d](gone.png)\n");
   EXPECT_EQ(brokenLinks(scratch / "file.md"), Findings{"file.md:2: no file gone.png"});
@@ -235,9 +197,6 @@ TEST_F(Repository, documentsShowTheExamplesAsTheyAre) {
   for (const fs::path& folder : {root / "README.md", root / "doc"})
     for (const fs::path& file : textFiles(folder))
       EXPECT_EQ(excerptsThatDiffer(file), Findings()) << file;
-}
-
-TEST_F(Repository, anExcerptThatItsSourceDoesNotHaveIsFound) {
   write("main.cpp", "int main() {\n  load();\n  save();\n}\n");
   write("file.md",
         "From [it](main.cpp):\n\n```cpp\nload();\nsave();\n```\nOf nothing:\n```cpp\nx();\n```\n"

@@ -15,13 +15,13 @@ class Observations2Map : public StockApps {
     ASSERT_TRUE(villageFrames(2).saveToFile((folder / "village.simplemap").string()));
     std::filesystem::create_directory(folder / "out");
   }
-  CommandRun make(Plugin plugin) const {
+  CommandRun make() const {
     return run("observations2map config/stock-apps/observations2map.ini village.simplemap out/map",
-               plugin);
+               Plugin::Preloaded);
   }
 };
 
-/** The same map, made without the application. */
+/** The map that the application makes, made without it. */
 semantic_octree::SemanticOcTree expectedMap() {
   semantic_map::CSemanticOctoMap map(
       0.2, semantic_types::loadClassTable(MSO_SOURCE_DIR "/config/classes/synthetic.yaml"));
@@ -51,7 +51,7 @@ double shareOfLabelsIn(const semantic_octree::SemanticOcTree& map) {
 }  // namespace
 
 TEST_F(Observations2Map, theMapIsThatOfTheLibraryBitForBit) {
-  const CommandRun made = make(Plugin::Preloaded);
+  const CommandRun made = make();
   ASSERT_EQ(made.status, 0) << made.output;
   const auto map = mapIn("out");
   ASSERT_TRUE(map) << made.output;
@@ -61,7 +61,7 @@ TEST_F(Observations2Map, theMapIsThatOfTheLibraryBitForBit) {
 }
 
 TEST_F(Observations2Map, theSceneShowsTheClasses) {
-  ASSERT_EQ(make(Plugin::Preloaded).status, 0);
+  ASSERT_EQ(make().status, 0);
   mrpt_compat::Scene scene;
   ASSERT_TRUE(
       scene.loadFromFile((folder / "out/map_semantic_map__CSemanticOctoMap_00.3Dscene").string()));
@@ -69,9 +69,4 @@ TEST_F(Observations2Map, theSceneShowsTheClasses) {
                           ->getByClass<mrpt_compat::drawing::COctoMapVoxels>();
   ASSERT_TRUE(voxels);
   EXPECT_GT(voxels->getVoxelCount(mrpt_compat::drawing::VOXEL_SET_OCCUPIED), 1000u);
-}
-
-TEST_F(Observations2Map, withoutThePluginThereIsNoMap) {
-  make(Plugin::Absent);
-  EXPECT_FALSE(mapIn("out"));
 }
