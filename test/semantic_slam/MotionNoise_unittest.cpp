@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include "MotionNoise.h"
 
@@ -51,4 +52,68 @@ TEST(MotionNoise, scansThatSayNothingTeachNothing) {
   const auto [way, turn] = learned(3, 3, 1e-6);
   EXPECT_NEAR(way, 1, 0.01);
   EXPECT_NEAR(turn, 1, 0.01);
+}
+
+namespace {
+
+/** After a drive with corners, of wheels that say too much way and too much of turns, and that turn
+ * a robot which goes straight. \param seen information of registrations, times that of the
+ * prediction at first */
+MotionNoise driven(double way, double turn, double perMeter, double seen) {
+  MotionNoise noise;
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 2000; ++i) {
+    Vector6 truth = Vector6::Zero(), said = Vector6::Zero();
+    truth << 0.3, 0, 0, 0, 0, i % 40 < 6 ? 0.25 : 0.0;  // 86 degrees each 12 m
+    said << way * 0.3 + 0.005 * normal(random), 0, 0, 0, 0,
+        turn * truth[5] + perMeter * 0.3 + 0.005 * normal(random);
+    const Eigen::Isometry3d T_odometry = poseOf(said), T_step = noise.calibrated(T_odometry);
+    const Matrix6 own = seen * MotionNoise().information(T_step),
+                  both = own + noise.information(T_step);
+    const Eigen::Isometry3d T_off =
+        poseOf(both.inverse() * own * vectorOf(T_step.inverse() * poseOf(truth)));
+    noise.calibrate(T_odometry, T_step, T_off, both);
+    noise.note(T_step, T_off, both);
+  }
+  return noise;
+}
+
+}  // namespace
+
+TEST(MotionNoise, whatWheelsDoWrongAtEachStepIsTakenOff) {
+  for (const double seen : {1., 100.})
+    for (const auto& [way, turn, perMeter] :
+         {std::tuple(1., 1., 0.), {0.5, 1., 0.}, {1.02, 0.8, 0.01}, {0.98, 1.25, -0.01}}) {
+      const MotionNoise noise = driven(way, turn, perMeter, seen);
+      Vector6 said = Vector6::Zero();
+      said << way * 0.3, 0, 0, 0, 0, turn * 0.25 + perMeter * 0.3;
+      const Vector6 found = vectorOf(noise.calibrated(poseOf(said)));
+      EXPECT_NEAR(found[0], 0.3, 0.004) << way << " seen " << seen;
+      EXPECT_NEAR(found[5], 0.25, 0.006) << turn << " seen " << seen;
+      EXPECT_NEAR(noise.turnError(), turn - 1, 0.03) << turn << " seen " << seen;
+    }
+}
+
+TEST(MotionNoise, scansThatSayNothingDoNotCalibrate) {
+  const MotionNoise noise = driven(0.5, 0.8, 0.02, 1e-6);
+  const Eigen::Isometry3d T_odometry(Eigen::Translation3d(0.3, 0, 0));
+  EXPECT_LT(vectorOf(T_odometry.inverse() * noise.calibrated(T_odometry)).norm(), 0.01);
+}
+
+TEST(MotionNoise, noiseOfAStraightWayIsNoTurn) {
+  MotionNoise noise;
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 2000; ++i) {
+    Vector6 truth = Vector6::Zero(), said;
+    truth[0] = 0.15;
+    said << 0.15, 0, 0, 0, 0, 0.004 * normal(random);
+    const Eigen::Isometry3d T_odometry = poseOf(said), T_step = noise.calibrated(T_odometry);
+    const Matrix6 both = 100 * noise.information(T_step);
+    const Eigen::Isometry3d T_off = T_step.inverse() * poseOf(truth);
+    noise.calibrate(T_odometry, T_step, T_off, both);
+    noise.note(T_step, T_off, both);
+  }
+  EXPECT_NEAR(noise.turnError(), 0, 0.1);
 }

@@ -154,3 +154,52 @@ TEST(PoseGraph, refusesEdgesOfPosesThatAreNotThere) {
   std::vector<Eigen::Isometry3d> poses = ring(3);
   EXPECT_THROW(optimize(poses, {edgeOf(ring(4), 0, 3)}), std::invalid_argument);
 }
+
+namespace {
+
+/** What optimize() makes least. */
+double costOf(const std::vector<PoseEdge>& edges, const std::vector<Eigen::Isometry3d>& poses) {
+  double cost = 0;
+  for (const PoseEdge& edge : edges) {
+    const double squared = squaredError(edge, poses);
+    cost += edge.isDoubtful ? 16 * std::log1p(squared / 16) : squared;
+  }
+  return cost;
+}
+
+}  // namespace
+
+TEST(PoseGraph, loopsThatAreFarOffAtFirstAreBelieved) {
+  struct Case {
+    double drift, deviation;  // m a step; of each step, m
+    int wrong;                // loops
+  };
+  for (const Case& c : {Case{0.1, 0.02, 0}, {0.1, 0.02, 2}, {0.1, 0.02, 4}})
+    for (unsigned seed = 1; seed <= 8; ++seed) {
+      std::mt19937 random(seed);
+      const auto truth = ring(60);
+      Vector6 bias;
+      bias << c.drift, 0, 0, 0, 0, 0.2 * c.drift;
+      std::vector<PoseEdge> edges;
+      std::vector<Eigen::Isometry3d> poses = {truth[0]};
+      for (std::size_t i = 1; i < truth.size(); ++i) {
+        edges.push_back({i - 1, i, truth[i - 1].inverse() * truth[i] * poseOf(bias),
+                         informationOf(c.deviation, c.deviation / 2)});
+        poses.push_back(poses.back() * edges.back().T_a_b);
+      }
+      const auto addLoop = [&](std::size_t a, std::size_t b, const Vector6& off) {
+        edges.push_back(
+            {a, b, truth[a].inverse() * truth[b] * poseOf(off), informationOf(0.03, 0.0017), true});
+      };
+      for (const std::size_t i : {0, 2}) addLoop(i, 57 + i, Vector6::Zero());
+      auto right = truth;
+      optimize(right, edges);
+      for (int i = 0; i < c.wrong; ++i) {  // each elsewhere
+        const std::size_t a = random() % 20, b = 40 + random() % 20;
+        addLoop(a, b, randomVector(random, 5, 1));
+      }
+      optimize(poses, edges);
+      EXPECT_LT(costOf(edges, poses), 1.15 * costOf(edges, right))
+          << c.drift << " " << c.deviation << " " << c.wrong << ", seed " << seed;
+    }
+}

@@ -4,14 +4,20 @@
 namespace semantic_slam {
 
 /** How far off predictions of the robot's motion are (odometry's, or those of constant velocity),
- * measured while it drives: two factors, of the way and of the heading, on standard deviations that
- * are wide at first. */
+ * measured while it drives. Two factors, of the way and of the heading, on standard deviations that
+ * are wide at first. And what wheels do wrong at each step: they say too much way, too much of
+ * turns, and turn the robot that goes straight. */
 class MotionNoise {
  public:
   /** \param isConstantVelocity predictions are the last step again: their errors are accelerations,
    * and do not depend on the step \param factor of the deviations, at first */
-  explicit MotionNoise(bool isConstantVelocity = false, double factor = 1)
-      : m_isConstantVelocity(isConstantVelocity), m_way(factor * factor), m_turn(factor * factor) {}
+  explicit MotionNoise(bool isConstantVelocity = false, double factor = 1);
+  /** A step of odometry without what is wrong at each step. */
+  Eigen::Isometry3d calibrated(const Eigen::Isometry3d& T_odometry_step) const;
+  /** What is wrong at each step is learnt from a registered one (recursive least squares of what
+   * the scans alone say). \param T_off, information as note() \param T_step as predicted */
+  void calibrate(const Eigen::Isometry3d& T_odometry_step, const Eigen::Isometry3d& T_step,
+                 const Eigen::Isometry3d& T_off, const Matrix6& information);
   /** Information of a predicted step, frame of its end. */
   Matrix6 information(const Eigen::Isometry3d& T_step) const;
   /** A scan was registered elsewhere than predicted. What the registration leaves uncertain counts
@@ -21,6 +27,8 @@ class MotionNoise {
   void note(const Eigen::Isometry3d& T_step, const Eigen::Isometry3d& T_off,
             const Matrix6& information);
 
+  /** By how much odometry turns more than the robot: 0.1: 10 %. */
+  double turnError() const { return 1 / m_turnFactors.values[0] - 1; }
   double wayFactor() const { return std::sqrt(m_way); }
   double turnFactor() const { return std::sqrt(m_turn); }
 
@@ -31,8 +39,26 @@ class MotionNoise {
   /** At first. */
   Deviations deviationsOf(const Eigen::Isometry3d& T_step) const;
 
+  /** Some steps together, so that what is wrong at each stands out of the noise. */
+  struct Stretch {
+    double way = 0, turn = 0;  ///< as odometry says
+    Eigen::Array2d off = {0, 0}, variance = {0, 0},
+                   share = {0, 0};  ///< of way and turn: registered less predicted; of the latter;
+                                    ///< of what is registered, the scans' part times the variance
+  };
+  /** Factors on what odometry says, and how certain they are. */
+  template <int kSize>
+  struct Factors {
+    Eigen::Matrix<double, kSize, 1> values;
+    Eigen::Matrix<double, kSize, kSize> information;
+    void learn(const Eigen::Matrix<double, kSize, 1>& said, const Stretch& stretch, int of);
+  };
   bool m_isConstantVelocity;
-  double m_way, m_turn;  ///< squared factors
+  Stretch m_stretch;
+  Factors<1> m_wayFactors;   ///< of the way
+  Factors<2> m_turnFactors;  ///< of the turn, and radians for each meter of the way
+  double m_way, m_turn;      ///< squared factors
+  double m_numSteps = 0;     ///< that these are from; those of long ago do not count
 };
 
 }  // namespace semantic_slam

@@ -36,8 +36,10 @@ class SlamEngine {
   // --- Tracking ---
   void setScale(const LabeledCloud& cloud, const Pose& T_robot_sensor);
   /** From the last scan to this one, as odometry or the last steps say. */
-  Pose predictedStep(const std::optional<Pose>& T_odometry_robot) const;
+  Pose predictedStep(const std::optional<Pose>& T_odometry_robot);
   bool isSmall(const Pose& T_step) const;
+  /** From the last scan to this one, if the robot goes on as before. */
+  Pose goingOn() const;
   Slam::Added beginFirst(Seen seen);
   void begin(Seen seen, const Pose& T_map_robot, const Pose& T_last_keyframe);
   bool beginsKeyframe(const Pose& T_last_robot) const;
@@ -71,8 +73,12 @@ class SlamEngine {
   bool closeLoops();
   /** Keyframes of before that the newest may be near, one of each visit; the nearest first. */
   std::vector<std::size_t> placesWithin(double radius) const;
-  std::optional<PoseEdge> edgeTo(std::size_t place, const Seen& stretch,
-                                 const PlaneSearch::Window& window) const;
+  std::optional<PoseEdge> edgeTo(std::size_t place, const Seen& stretch) const;
+  /** Where the robot may be off, relative to where it was: what it has driven since, or since the
+   * last loop. \param then m of the way */
+  PlaneSearch::Window windowSince(double then) const;
+  /** Information of what was found, by its points and by what is known of such finds at most. */
+  Matrix6 bothErrors(const Matrix6& most, const Registration& found, std::size_t keyframe) const;
   /** Points of some keyframes in the frame of one of them. */
   Seen pointsOf(std::size_t first, std::size_t last, std::size_t frame) const;
   std::optional<Registration> findInReference(const Seen& seen, const Pose& T_map_guess);
@@ -104,10 +110,12 @@ class SlamEngine {
    */
   Pose m_T_keyframe_last = Pose::Identity(), m_T_odometry_last = Pose::Identity(),
        m_T_step = Pose::Identity();
+  Pose m_T_odometry_step = Pose::Identity();   ///< to this scan, as odometry says
   Pose m_T_keyframe_found = Pose::Identity();  ///< of the last scan that was registered
   int m_lostInRow = 0;                         ///< scans since then
+  int m_stepScans = 1;                         ///< scans from the registration before to the last
   int m_numSmall = 0;                          ///< small steps since the last registration
-  double m_wayOfOdometry = 0, m_wayOfScans = 0, m_turnOfOdometry = 0, m_turnOfScans = 0;
+  double m_wayOfOdometry = 0, m_wayOfScans = 0;
   double m_lastLook = 0, m_lastLoop = 0, m_lastReferenced = 0;  ///< m of the way
   double m_lostWay = 0;                                         ///< m since the last loop
   std::vector<PoseEdge> m_pendingLoops, m_pendingReferences;    ///< they may be wrong

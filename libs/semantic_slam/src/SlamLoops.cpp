@@ -82,18 +82,13 @@ bool SlamEngine::closeLoops() {
   const double way = m_keyframes[newest].way;
   if (way < m_lastLook + kLookEvery * m_scale.keyframeDistance) return false;
   m_lastLook = way;
-  const double since = way - m_lastLoop;
-  const PlaneSearch::Window window{
-      std::min(kWindow * m_scale.gridCell + kWindowDrift * since + kLostDrift * m_lostWay,
-               kLargestWindow * m_scale.gridCell),
-      std::min(kAngle + kAngleDrift * since, kLargestAngle)};
-  const auto places = placesWithin(1.4 * window.radius);
+  const auto places = placesWithin(1.4 * windowSince(m_lastLoop).radius);
   if (places.empty()) return false;
   const auto beside = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
   const Seen stretch = pointsOf(newest - std::min(newest, beside), newest, newest);
   bool moved = false;
   for (const std::size_t place : places)
-    if (const auto edge = edgeTo(place, stretch, window)) {
+    if (const auto edge = edgeTo(place, stretch)) {
       const std::size_t before = m_edges.size();
       moved |= confirm(m_pendingLoops, *edge);
       if (m_edges.size() == before) continue;
@@ -104,8 +99,14 @@ bool SlamEngine::closeLoops() {
   return moved;
 }
 
-std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch,
-                                           const PlaneSearch::Window& window) const {
+PlaneSearch::Window SlamEngine::windowSince(double then) const {
+  const double since = m_keyframes.back().way - std::max(then, m_lastLoop);
+  return {std::min(kWindow * m_scale.gridCell + kWindowDrift * since + kLostDrift * m_lostWay,
+                   kLargestWindow * m_scale.gridCell),
+          std::min(kAngle + kAngleDrift * since, kLargestAngle)};
+}
+
+std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch) const {
   const std::size_t newest = m_keyframes.size() - 1;
   const auto beside = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
   std::size_t last = place;
@@ -123,8 +124,9 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
   const Eigen::Matrix3f T_level = (T_turn.linear().transpose() * T_guess.linear()).cast<float>();
   for (Eigen::Vector3f& p : level.cloud.points) p = T_level * p;
   const Eigen::Vector3d guess(T_guess(0, 3), T_guess(1, 3), headingOf(T_guess));
-  const auto found = PlaneSearch(upright(then.cloud), m_scale.gridCell)
-                         .find(upright(level.cloud), guess, window, kLeastScore);
+  const auto found =
+      PlaneSearch(upright(then.cloud), m_scale.gridCell)
+          .find(upright(level.cloud), guess, windowSince(m_keyframes[place].way), kLeastScore);
   if (!found) return std::nullopt;
   Pose T_found(Eigen::Translation3d((*found)[0], (*found)[1], T_guess(2, 3)));
   T_found.rotate(Eigen::AngleAxisd((*found)[2], Eigen::Vector3d::UnitZ()));
@@ -139,7 +141,8 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
   }
   const Registration r = match(submaps, stretch, T_found, Matrix6::Zero());
   if (!fits(r)) return std::nullopt;
-  return PoseEdge{place, newest, r.T_submap_scan, informationOf(kLoopMeters, kLoopAngle), true};
+  return PoseEdge{place, newest, r.T_submap_scan,
+                  bothErrors(informationOf(kLoopMeters, kLoopAngle), r, newest), true};
 }
 
 bool SlamEngine::fits(const Registration& r) const {
@@ -222,11 +225,15 @@ std::optional<Registration> SlamEngine::findInReference(const Seen& seen, const 
 }
 
 PoseEdge SlamEngine::lookOf(std::size_t keyframe, const Registration& found) const {
+  return {PoseEdge::kMap, keyframe, found.T_submap_scan,
+          bothErrors(m_mostOfReference, found, keyframe), true};
+}
+
+Matrix6 SlamEngine::bothErrors(const Matrix6& most, const Registration& found,
+                               std::size_t keyframe) const {
   const Matrix6 own =
       0.5 * found.information + levelOf(m_keyframes[keyframe].seen.T_odometry_robot);
-  // Both errors together.
-  return {PoseEdge::kMap, keyframe, found.T_submap_scan,
-          m_mostOfReference * (m_mostOfReference + own).inverse() * own, true};
+  return most * (most + own).inverse() * own;
 }
 
 bool SlamEngine::followReference() {

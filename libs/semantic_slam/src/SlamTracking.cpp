@@ -60,7 +60,8 @@ Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_senso
   const Pose T_step = predictedStep(T_odometry_robot), T_guess = m_T_keyframe_last * T_step;
   const Pose T_odometry = m_keyframes.empty() ? T_odometry_robot.value_or(Pose::Identity())
                                               : T_odometry_robot.value_or(m_poses[last] * T_guess);
-  if (!m_keyframes.empty() && isSmall(T_step) && ++m_numSmall < kMostSmall) return {last, T_guess};
+  const bool stands = m_hasOdometry && isSmall(T_step) && isSmall(goingOn());
+  if (!m_keyframes.empty() && stands && ++m_numSmall < kMostSmall) return {last, T_guess};
   Seen now{moved(thinned(cloud, m_scale.cube, m_options.maxRange), T_robot_sensor), T_odometry};
   if (!m_options.useClasses)
     std::fill(now.cloud.classes.begin(), now.cloud.classes.end(), semantic_types::kNoClass);
@@ -73,6 +74,7 @@ Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_senso
   registered ? noteFound(T_step, T_last_robot, *registered) : noteLost(T_step);
   m_T_keyframe_last = T_last_robot;
   m_T_odometry_last = T_odometry;
+  m_stepScans = 1 + m_numSmall;
   m_numSmall = 0;
   if (!beginsKeyframe(T_last_robot)) return {last, T_last_robot};
   m_edges.push_back(
@@ -95,13 +97,19 @@ void SlamEngine::setScale(const LabeledCloud& cloud, const Pose& T_robot_sensor)
     m_local.add(m_keyframes.back().seen.cloud, Pose::Identity(), m_scale, m_options.useClasses);
 }
 
-Eigen::Isometry3d SlamEngine::predictedStep(const std::optional<Pose>& T_odometry_robot) const {
-  return T_odometry_robot ? m_T_odometry_last.inverse() * *T_odometry_robot : m_T_step;
+Eigen::Isometry3d SlamEngine::predictedStep(const std::optional<Pose>& T_odometry_robot) {
+  if (!T_odometry_robot) return m_T_odometry_step = m_T_step;
+  m_T_odometry_step = m_T_odometry_last.inverse() * *T_odometry_robot;
+  return m_noise.calibrated(m_T_odometry_step);
 }
 
 bool SlamEngine::isSmall(const Pose& T_step) const {
-  return m_hasOdometry && wayOf(T_step) < kSmall * m_scale.keyframeDistance &&
+  return wayOf(T_step) < kSmall * m_scale.keyframeDistance &&
          turnOf(T_step) < kSmall * m_scale.keyframeAngle;
+}
+
+Eigen::Isometry3d SlamEngine::goingOn() const {
+  return poseOf(vectorOf(m_T_step) * (1 + m_numSmall) / m_stepScans);
 }
 
 void SlamEngine::noteFound(const Pose& T_step, const Pose& T_last_robot,
@@ -184,11 +192,16 @@ std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_st
 }
 
 PlaneSearch::Window SlamEngine::windowAround(const Pose& T_step, const Matrix6& information) const {
-  double way = kFar / std::sqrt(information(0, 0)), turn = kFar / std::sqrt(information(5, 5));
+  // Wheels that were good so far may slip.
+  const Matrix6 first = MotionNoise(!m_hasOdometry).information(T_step);
+  double way = kFar / std::sqrt(std::min(information(0, 0), first(0, 0))),
+         turn = kFar / std::sqrt(std::min(information(5, 5), first(5, 5)));
   if (!m_hasOdometry) {  // it may have stopped
-    way = (way + wayOf(T_step)) * (1 + m_lostInRow);
-    turn = (turn + turnOf(T_step)) * (1 + m_lostInRow);
+    way += wayOf(T_step);
+    turn += turnOf(T_step);
   }
+  way *= 1 + m_lostInRow;
+  turn *= 1 + m_lostInRow;
   return {std::clamp(way, 5 * m_scale.gridCell, 30 * m_scale.gridCell),
           std::clamp(turn, 5 * kDegree, (m_hasOdometry ? 45 : 90) * kDegree)};
 }
@@ -230,12 +243,11 @@ std::optional<Registration> SlamEngine::searchAround(const Seen& seen, const Pos
 
 void SlamEngine::learn(const Pose& T_step, const Registration& registered) {
   const Pose& T_registered = m_T_step;
-  m_noise.note(T_step, T_step.inverse() * T_registered, registered.information);
-  m_wayOfOdometry += wayOf(T_step);
+  const Pose T_off = T_step.inverse() * T_registered;
+  m_noise.calibrate(m_T_odometry_step, T_step, T_off, registered.information);
+  m_noise.note(T_step, T_off, registered.information);
+  m_wayOfOdometry += wayOf(m_T_odometry_step);
   m_wayOfScans += wayOf(T_registered);
-  const double turn = vectorOf(T_registered)[5];
-  m_turnOfScans += std::abs(turn);
-  m_turnOfOdometry += std::copysign(1.0, turn) * vectorOf(T_step)[5];
 }
 
 Matrix6 SlamEngine::levelOf(const Pose& T_odometry_robot) const {
