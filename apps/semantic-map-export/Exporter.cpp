@@ -5,6 +5,7 @@
 #include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MapFiles.h>
+#include <semantic_planning/planner/OrderFile.h>
 
 #include <fstream>
 #include <stdexcept>
@@ -45,7 +46,7 @@ const std::vector<Exporter::Format>& Exporter::allFormats() {
            semantic_map::writeGridMap(out, semantic_map::gridOf(e.m_map, e.m_options.grid));
          });
        }},
-      {".yaml", "the same for ROS's map_server, with its .png beside", &Exporter::writeMapServer,
+      {".yaml", "the same for ROS's map_server, with its picture beside", &Exporter::writeMapServer,
        ".png"},
       {".png", "classes from above, with a world file (.pgw) beside", &Exporter::writeClassMap,
        ".pgw"},
@@ -70,10 +71,12 @@ const Exporter::Format& Exporter::formatOf(const fs::path& file) {
                            endings);
 }
 
-std::vector<fs::path> Exporter::filesOf(const fs::path& file) {
+std::vector<fs::path> Exporter::filesOf(const fs::path& file, const ExportOptions& options) {
   std::vector<fs::path> files = {file};
-  if (const char* beside = formatOf(file).beside)
-    files.push_back(fs::path(file).replace_extension(beside));
+  const char* beside = formatOf(file).beside;
+  if (file.extension() == ".yaml" && !options.costs.order.empty())
+    beside = endingOf(options.costs.mode);
+  if (beside) files.push_back(fs::path(file).replace_extension(beside));
   return files;
 }
 
@@ -124,7 +127,20 @@ void Exporter::writeClassMap(const fs::path& file) {
         [&drawn](std::ostream& out) { out << drawn.worldFile; });
 }
 
+void Exporter::writeCosts(const fs::path& file) {
+  const CostOptions& costs = m_options.costs;
+  const auto order = semantic_planning::loadClassOrder(costs.order, m_map.classes());
+  const auto vehicle = costs.vehicle.empty() ? semantic_planning::VehicleOptions()
+                                             : semantic_planning::loadVehicle(costs.vehicle);
+  const fs::path picture = fs::path(file).replace_extension(endingOf(costs.mode));
+  const CostFiles files = semantic_map_export::filesOf(costGridOf(m_map, order, vehicle),
+                                                       costs.mode, picture.filename().string());
+  stage(file, [&files](std::ostream& out) { out << files.yaml; });
+  stage(picture, [&files](std::ostream& out) { out << files.picture; });
+}
+
 void Exporter::writeMapServer(const fs::path& file) {
+  if (!m_options.costs.order.empty()) return writeCosts(file);
   const fs::path picture = fs::path(file).replace_extension(".png");
   const auto files = semantic_map::mapServerFiles(semantic_map::gridOf(m_map, m_options.grid),
                                                   picture.filename().string());

@@ -9,13 +9,23 @@
 #include <ostream>
 #include <string>
 
+#include "CostGrid.h"
+
 namespace semantic_map_export {
+
+/** Makes .yaml files costs of driving, not occupancy. */
+struct CostOptions {
+  std::filesystem::path order,
+      vehicle;  ///< an empty order: occupancy; an empty vehicle: a small robot
+  CostMode mode = CostMode::Trinary;
+};
 
 struct ExportOptions {
   bool colors = true;  ///< in .ot files
   semantic_map::PointOptions points;
   semantic_map::GridOptions grid;
   std::optional<double> maxHeight;  ///< of pictures, m
+  CostOptions costs;
 };
 
 /** Writes a map into files of other formats. They take their names together, in commit(): what was
@@ -30,7 +40,8 @@ class Exporter {
   static std::string formats();
   /** The file and what is written beside it.
    * \throw std::runtime_error naming the file: no format has its ending. */
-  static std::vector<std::filesystem::path> filesOf(const std::filesystem::path& file);
+  static std::vector<std::filesystem::path> filesOf(const std::filesystem::path& file,
+                                                    const ExportOptions& options);
 
   /** Writes a file, and what belongs beside it, in the format that its ending says.
    * \throw std::exception naming the file. */
@@ -50,6 +61,7 @@ class Exporter {
   void writeOctree(const std::filesystem::path& file);
   void writeClassMap(const std::filesystem::path& file);
   void writeMapServer(const std::filesystem::path& file);
+  void writeCosts(const std::filesystem::path& file);
   void writeScene(const std::filesystem::path& file);
 
   struct Staged {

@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "Application.h"
+#include "Choice.h"
 #include "Exporter.h"
 #include "MemoryOption.h"
 #include "OptionFlags.h"
@@ -53,6 +54,23 @@ struct Cli {
                    "Without: the lowest voxel of each column is ground")
         ->allow_extra_args(false)
         ->group(kGrids);
+    addCosts(app);
+  }
+
+ private:
+  void addCosts(CLI::App& app) {
+    auto* costs = app.add_option_group(
+        "Costs", "What driving costs, in .yaml files, for nav2 and map_server");
+    auto* order =
+        costs->add_option("--costs", options.costs.order,
+                          "Classes from best to worst (YAML): costs take the place of occupancy");
+    costs
+        ->add_option("--vehicle", options.costs.vehicle, "Its measures (YAML); none: a small robot")
+        ->needs(order);
+    addChoice<CostMode>(
+        costs->add_option("--mode", options.costs.mode, "How the picture holds them"),
+        {{"trinary", CostMode::Trinary}, {"scale", CostMode::Scale}, {"raw", CostMode::Raw}})
+        ->needs(order);
   }
 };
 
@@ -67,10 +85,10 @@ std::vector<semantic_types::ClassId> classesNamed(const std::vector<std::string>
   return ids;
 }
 
-std::vector<fs::path> allFiles(const std::vector<fs::path>& files) {
+std::vector<fs::path> allFiles(const std::vector<fs::path>& files, const ExportOptions& options) {
   std::vector<fs::path> all;
   for (const fs::path& file : files)
-    for (const fs::path& each : Exporter::filesOf(file)) all.push_back(each);
+    for (const fs::path& each : Exporter::filesOf(file, options)) all.push_back(each);
   return all;
 }
 
@@ -87,7 +105,7 @@ void prepare(semantic_octree::MapFolder& folder, const Cli& cli) {
 }
 
 int run(const Cli& cli) {
-  cli.outputs.check(allFiles(cli.files));
+  cli.outputs.check(allFiles(cli.files, cli.options));
   StoredMap map(cli.map, cli.memory);
   if (map.folder()) prepare(*map.folder(), cli);
   ExportOptions options = cli.options;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/CloudLabeler.h>
 #include <labeled_cloud/Trajectory.h>
+#include <map_operations/MapOperations.h>
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_map/MapFiles.h>
 

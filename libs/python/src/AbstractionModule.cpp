@@ -2,8 +2,10 @@
 #include <pybind11/stl/filesystem.h>
 #include <semantic_abstraction/AlphaTrees.h>
 
+#include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "Arguments.h"

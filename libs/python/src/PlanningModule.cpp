@@ -4,8 +4,11 @@
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
+#include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "Arguments.h"
 #include "SharedMap.h"

@@ -2,11 +2,14 @@
 #include <pybind11/pybind11.h>
 #include <semantic_octree/SemanticOcTree.h>
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <shared_mutex>
 #include <utility>
+#include <vector>
 
 namespace python {
 

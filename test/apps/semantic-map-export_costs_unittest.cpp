@@ -1,0 +1,138 @@
+// Costs of driving by class, as map_server's pictures.
+#include <mrpt/maps/COccupancyGridMap2D.h>
+#include <yaml-cpp/yaml.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "ExportFixture.h"
+
+using semantic_octree::SemanticOcTree;
+using semantic_types::LabeledCloud;
+
+namespace {
+
+/** Ground from -5 to 5 m: road where |y| < 1.5, beyond it grass, and water behind y = 4; a wall of
+ * 1 m at x = 3. */
+SemanticOcTree yard() {
+  semantic_types::ClassTable table;
+  for (const char* name : {"road", "grass", "water", "wall"}) table.add(name, {});
+  SemanticOcTree map(0.2, table);
+  LabeledCloud cloud;
+  const auto add = [&cloud](double x, double y, double z, int id) {
+    cloud.points.push_back(Eigen::Vector3d(x, y, z - 4).cast<float>());
+    cloud.classes.push_back(static_cast<semantic_types::ClassId>(id));
+  };
+  for (double x = -4.95; x < 5; x += 0.05)
+    for (double y = -4.95; y < 5; y += 0.05) {
+      add(x, y, 0.1, std::abs(y) < 1.5 ? 1 : y < 4 ? 2 : 3);
+      if (x > 3 && x < 3.2)
+        for (double z = 0.3; z < 1.1; z += 0.2) add(x, y, z, 4);
+    }
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation().z() = 4;
+  for (int i = 0; i < 3; ++i) map.insert(cloud, T);
+  return map;
+}
+
+class CostExport : public testing::Test {
+ protected:
+  void SetUp() override {
+    saveTree(yard(), (folder / "map.semantic").string());
+    folder.write("order.yaml", "best_to_worst: [road, grass]\n");
+    folder.write("vehicle.yaml",
+                 "footprint: [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]\nclearance: 0\n");
+  }
+  ProgramRun costs(const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {(folder / "map.semantic").string(), "-o",
+                                          (folder / name).string(), "--costs",
+                                          (folder / "order.yaml").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram("semantic-map-export", arguments);
+  }
+  std::string vehicle() const { return (folder / "vehicle.yaml").string(); }
+  /** The pixel where a place is, by what the description says. */
+  cv::Vec4b pixel(const std::string& name, double x, double y) const {
+    const YAML::Node node = YAML::LoadFile((folder / name).string());
+    cv::Mat picture =
+        cv::imread((folder / node["image"].as<std::string>()).string(), cv::IMREAD_UNCHANGED);
+    const double resolution = node["resolution"].as<double>();
+    const int column = int(std::floor((x - node["origin"][0].as<double>()) / resolution));
+    const int row =
+        picture.rows - 1 - int(std::floor((y - node["origin"][1].as<double>()) / resolution));
+    EXPECT_TRUE(column >= 0 && column < picture.cols && row >= 0 && row < picture.rows);
+    if (picture.channels() == 4) return picture.at<cv::Vec4b>(row, column);
+    return {picture.at<std::uint8_t>(row, column), 0, 0, 255};
+  }
+
+  TemporaryFolder folder;
+};
+
+struct Place {
+  double x, y;
+  int cost;
+};
+/** The disc of 0.5 m keeps off the wall, and the wheels off the water. */
+const std::vector<Place> kPlaces = {
+    {-2, 0.1, 0},    {0, 1.1, 0},     {-2, 2.5, 90},  {-3, -3, 90},  {2.3, 0.1, 0}, {2.7, 0.1, 99},
+    {2.9, -2.1, 99}, {3.1, 0.1, 100}, {-2, 4.5, 100}, {-2, 3.7, 90}, {-5.9, 0, -1}};
+
+}  // namespace
+
+TEST_F(CostExport, rawPicturesHoldTheCostsThemselves) {
+  const ProgramRun run = costs("raw.yaml", {"--vehicle", vehicle(), "--mode", "raw"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_TRUE(contains(run.output, "raw.pgm")) << run.output;
+  for (const Place& p : kPlaces)
+    EXPECT_EQ(pixel("raw.yaml", p.x, p.y)[0], p.cost < 0 ? 255 : p.cost) << p.x << ' ' << p.y;
+  EXPECT_EQ(YAML::LoadFile((folder / "raw.yaml").string())["mode"].as<std::string>(), "raw");
+}
+
+TEST_F(CostExport, scaledPicturesHoldThemAsShadesAndWhatIsUnknownIsTransparent) {
+  ASSERT_EQ(costs("s.yaml", {"--vehicle", vehicle(), "--mode", "scale"}).status, 0);
+  const YAML::Node node = YAML::LoadFile((folder / "s.yaml").string());
+  const double occupied = node["occupied_thresh"].as<double>(),
+               free = node["free_thresh"].as<double>();
+  for (const Place& p : kPlaces) {
+    const cv::Vec4b gray = pixel("s.yaml", p.x, p.y);
+    const double share = (255 - gray[0]) / 255.0;  // as map_server reads it
+    const int cost = gray[3] < 255      ? -1
+                     : share > occupied ? 100
+                     : share < free     ? 0
+                                    : int(std::lround(100 * (share - free) / (occupied - free)));
+    EXPECT_NEAR(cost, p.cost, p.cost > 0 && p.cost < 100 ? 1 : 0) << p.x << ' ' << p.y;
+  }
+}
+
+TEST_F(CostExport, mrptReadsThePictureOfThreeValues) {
+  ASSERT_EQ(costs("t.yaml", {"--vehicle", vehicle()}).status, 0);
+  const auto grid =
+      mrpt::maps::COccupancyGridMap2D::FromROSMapServerYAML((folder / "t.yaml").string());
+  for (const Place& p : kPlaces) {
+    const float free = grid.getPos(float(p.x), float(p.y));
+    if (p.cost < 0)
+      EXPECT_NEAR(free, 0.5, 0.31) << p.x << ' ' << p.y;
+    else
+      EXPECT_EQ(free > 0.9, p.cost < 100) << p.x << ' ' << p.y << ": " << free;
+  }
+}
+
+TEST_F(CostExport, aSmallRobotFitsWhereALargeOneDoesNot) {
+  ASSERT_EQ(costs("small.yaml", {"--mode", "raw"}).status, 0);
+  EXPECT_EQ(pixel("small.yaml", 2.5, 0.1)[0], 0);
+  EXPECT_EQ(pixel("small.yaml", 2.9, 0.1)[0], 99);
+}
+
+TEST_F(CostExport, badInputIsRefusedByName) {
+  const ProgramRun grey = costs("a.yaml", {"--mode", "grey"});
+  EXPECT_EQ(grey.status, 64);
+  EXPECT_TRUE(contains(grey.errors, "unknown value 'grey'")) << grey.errors;
+  expectRefusal(costs("a.yaml", {"--vehicle", (folder / "gone.yaml").string()}), {"gone.yaml"});
+  folder.write("order.yaml", "best_to_worst: [rod]\n");
+  expectRefusal(costs("a.yaml", {}), {"order.yaml", "'rod'"});
+  folder.write("order.yaml", "best_to_worst: [road]\n");
+  SemanticOcTree air(0.2, yard().classes());
+  saveTree(air, (folder / "map.semantic").string());
+  expectRefusal(costs("a.yaml", {}), {"a.yaml", "no drivable ground"});
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.yaml"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.pgm"));
+}
