@@ -100,6 +100,7 @@ std::vector<LeafRow> leavesOf(const SemanticOcTree& map, const Eigen::Vector3d& 
                               const Eigen::Vector3d& high);
 
 using MapClass = py::class_<SharedMap, std::shared_ptr<SharedMap>>;
+void addReading(MapClass& map);
 void addMap(py::module_& module, MapClass& map);
 void addAbstraction(py::module_& module, MapClass& map);
 void addPlanning(py::module_& module, MapClass& map);
