@@ -13,6 +13,7 @@ const IncludeTable& includeTable() {
       {"semantic_types", {"Eigen", "yaml-cpp", "strict_files"}},
       {"tree_abstraction", {}},
       {"semantic_octree", {"Eigen", "octomap", "zlib.h", "semantic_types", "strict_files"}},
+      {"view_information", {"semantic_octree", "tree_abstraction"}},
       {"semantic_abstraction",
        {"Eigen", "semantic_octree", "semantic_octree/store", "semantic_types", "strict_files",
         "tree_abstraction"}},
@@ -52,13 +53,14 @@ const IncludeTable& includeTable() {
         "semantic_planning/roadmap"}},
       {"semantic_driving",
        {"Eigen", "mrpt", "octomap", "colored_graph", "mrpt_compat", "semantic_abstraction",
-        "semantic_types", "strict_files", "semantic_planning"}},
+        "semantic_types", "strict_files", "semantic_planning", "view_information"}},
       {"synthetic_world", {"Eigen", "semantic_types", "strict_files"}},
       {"semantic_slam",
        {"Eigen", "map_correction", "semantic_octree", "semantic_types", "strict_files"}},
       {"semantic_navigation",
        {"Eigen", "mrpt", "colored_graph", "semantic_abstraction", "semantic_driving",
-        "semantic_octree", "semantic_planning", "semantic_slam", "semantic_types"}},
+        "semantic_octree", "semantic_planning", "semantic_slam", "semantic_types",
+        "tree_abstraction"}},
   };
   return table;
 }
