@@ -1,14 +1,17 @@
 // Drives through the synthetic worlds between random places, and counts what goes wrong.
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 #include <synthetic_world/Scene.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ostream>
 
 #include "Application.h"
 #include "Choice.h"
+#include "ExploreFiles.h"
 #include "JsonFile.h"
 #include "NumberChecks.h"
 #include "OptionFlags.h"
@@ -22,14 +25,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFaults = 2;  // exit status
-const std::vector<std::string> kFiles = {"study.csv", "study.json"};
+constexpr int kFaults = 2;              // exit status
+constexpr double kStartsWithin = 0.84;  // of how far exploring goes from the world's middle
+const std::vector<std::string> kFiles = {"study.csv", "study.json", "exploration.csv",
+                                         "exploration.md"};
 
 struct Cli {
-  fs::path classes, config, output;
+  fs::path classes, config, output, weights;
+  std::string solution;
   std::vector<std::string> scenes = synthetic_world::sceneNames();
   int pairs = 20, enclosed = 0, unfit = 0;
   std::vector<int> only;
+  bool explore = false;
   std::uint64_t sceneSeed = 1;
   TaskOptions tasks;
   Outputs outputs;
@@ -50,6 +57,12 @@ struct Cli {
         ->capture_default_str();
     app.add_option("--only", only, "Numbers of the drives to do (0, 1, ...); without: all")
         ->delimiter(',');
+    CLI::Option* exploring =
+        app.add_flag("--explore", explore, "Look around from the starts instead, by each strategy");
+    CLI::Option* file =
+        app.add_option("--weights", weights, "What is looked for (YAML, see config/weights)");
+    exploring->needs(file), file->needs(exploring);
+    app.add_option("--solution", solution, "Of the weights; without: the first")->needs(file);
     app.add_option("--scene-seed", sceneSeed, "Seed of the worlds")->capture_default_str();
     strict_files::OptionList pairsDrawn;
     tasks.describe(pairsDrawn);
@@ -99,10 +112,66 @@ void studyScene(const std::string& name, const Cli& cli, const simulated_drive::
   }
 }
 
+ExploreTask exploreTask(const Cli& cli) {
+  ExploreTask task;
+  task.weights.terms = semantic_octree::loadWeights(cli.weights, synthetic_world::classTable())
+                           .solution(cli.solution)
+                           .terms;
+  for (const auto& term : task.weights.terms)
+    for (const auto& group : term.groups)
+      for (const int id : group)
+        if (term.weight > 0) task.ground.insert(static_cast<semantic_types::ClassId>(id));
+  return task;
+}
+
+void print(const ExploreTrial& trial) {
+  notes() << trial.scene << ' ' << trial.number << ", "
+          << strict_files::nameIn(choicesOf(trial.how), trial.how) << ": 80 % after "
+          << trial.metersTo(0.8) << " m, 90 % after " << trial.metersTo(0.9) << " m, "
+          << std::lround(100 * trial.share()) << " % after " << trial.meters() << " m; "
+          << trial.end << std::endl;
+}
+
+void exploreScene(const std::string& name, const Cli& cli,
+                  const simulated_drive::DriveConfig& config, const StopRequest& stop,
+                  std::vector<ExploreTrial>& trials) {
+  const synthetic_world::Scene scene = synthetic_world::makeScene(name, cli.sceneSeed);
+  const auto order = semantic_planning::loadClassOrder(cli.classes, synthetic_world::classTable());
+  const ExploreTask task = exploreTask(cli);
+  TaskDraw draw(scene.world, order, config.planner.vehicle, cli.tasks);
+  for (int i = 0; i < cli.pairs; ++i) {
+    mrpt::math::TPose2D start;
+    do start = draw.next().start;
+    while (std::hypot(start.x, start.y) > kStartsWithin * task.within);
+    for (const auto& [strategy, how] : choicesOf(Exploring())) {
+      if (stop.pending() || !cli.wants(i)) continue;
+      simulated_drive::DriveConfig itsOwn = config;
+      itsOwn.sensors.seed = cli.tasks.seed + static_cast<std::uint64_t>(i);
+      trials.push_back(explore(itsOwn, scene, order, task, start, how));
+      trials.back().scene = name, trials.back().number = i;
+      print(trials.back());
+    }
+  }
+}
+
+int runExploring(const Cli& cli, const simulated_drive::DriveConfig& config,
+                 const StopRequest& stop) {
+  strict_files::OutputFolder output(cli.output);
+  std::vector<ExploreTrial> trials;
+  for (const std::string& scene : cli.scenes) exploreScene(scene, cli, config, stop, trials);
+  strict_files::writeText(output.staged("exploration.csv"), toCsv(trials));
+  strict_files::writeText(output.staged("exploration.md"), toMarkdown(trials));
+  output.commit(kFiles);
+  const bool touched = std::any_of(trials.begin(), trials.end(),
+                                   [](const ExploreTrial& t) { return t.collisions > 0; });
+  return touched ? kFaults : 0;
+}
+
 int run(const Cli& cli) {
   const StopRequest stop("after this drive");
   cli.outputs.checkFolder(cli.output, kFiles);
   const auto config = simulated_drive::loadDriveConfig(cli.config);
+  if (cli.explore) return runExploring(cli, config, stop);
   strict_files::OutputFolder output(cli.output);
   std::vector<Trial> trials;
   for (const std::string& scene : cli.scenes) studyScene(scene, cli, config, stop, trials);

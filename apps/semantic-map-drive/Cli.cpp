@@ -45,7 +45,14 @@ Cli::Cli(CLI::App& app) : outputs(app) {
       "is); without: none");
   addMemoryOption(app, memory);
   poses::addPose(app, "--start", start, "Where the robot is")->required();
-  poses::addPose(app, "--goal", goal, "Where the robot shall go")->required();
+  CLI::Option_group* where = app.add_option_group("Where to");
+  poses::addPose(*where, "--goal", goal, "Where the robot shall go");
+  CLI::Option* exploring =
+      where->add_flag("--explore", explore, "Instead of a goal: look around until that is enough");
+  where->require_option(1);
+  app.add_option("--weights", weights, "What is looked for (YAML, see config/weights)")
+      ->needs(exploring);
+  app.add_option("--solution", solution, "Of the weights; without: the first")->needs("--weights");
   app.add_option("--classes", classes,
                  "Classes from best to worst (YAML); a second file makes a second drive to compare")
       ->required()

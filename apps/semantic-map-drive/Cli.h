@@ -18,6 +18,8 @@ using namespace simulated_drive;
 /** What the command line says. */
 struct Cli {
   std::filesystem::path map, config, output;
+  std::filesystem::path weights;  ///< of what is explored for; empty: for whatever is unknown
+  std::string solution;
   std::vector<std::filesystem::path> classes;
   std::string scene = "village";
   std::uint64_t seed = 1;
@@ -25,6 +27,7 @@ struct Cli {
   double memory = semantic_octree::MapFolderOptions().memory;
   mrpt::math::TPose2D start, goal;
   bool rawlog = true, pictures = true, navlog = false, live = false, compressed = false;
+  bool explore = false;
   Events events;
   Outputs outputs;
 

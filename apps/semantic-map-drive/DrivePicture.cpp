@@ -1,5 +1,6 @@
 #include "DrivePicture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
@@ -125,6 +126,26 @@ cv::Mat DrivePicture::frame(const DriveLoop& loop) const {
   cv::Mat below = picture.rowRange(canvas.picture().rows, picture.rows);
   map_pictures::drawScaleBar(below, canvas.pixelsPerMeter());
   return map_pictures::withTitle(map_pictures::withLegend(picture, {}, legend), caption(loop));
+}
+
+cv::Mat DrivePicture::whatIsLeft(DriveLoop& loop) const {
+  constexpr double kEdge = 0.4, kMost = 0.2, kLeast = 0.01;  // m, nats in a column
+  MapCanvas canvas = paperFor(loop.mapper().map().getResolution());
+  map_pictures::PictureStyle style;
+  style.maxAboveGround = kCutAbove;
+  canvas.drawMapAround(loop.mapper().map(), style);
+  for (double x = m_region.min().x(); x < m_region.max().x(); x += kEdge)
+    for (double y = m_region.min().y(); y < m_region.max().y(); y += kEdge) {
+      const double left = loop.leftToSee(x, y);
+      if (left < kLeast) continue;
+      canvas.drawThrough(0.85 * std::min(1.0, left / kMost), [&] {
+        canvas.fillSquare({x, y}, kEdge, kLeftColor);
+      });
+    }
+  canvas.explain({"may still tell something", kLeftColor});
+  drawTrack(canvas, loop.record(), "driven", kTrack);
+  drawRobot(canvas, loop);
+  return map_pictures::withTitle(canvas.sheet(), caption(loop));
 }
 
 void addOtherTrack(MapCanvas& canvas, const DriveRecord& record) {

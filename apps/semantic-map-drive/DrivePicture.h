@@ -9,7 +9,7 @@ using namespace simulated_drive;
 
 /** Colors of pictures and of the window. */
 constexpr semantic_types::Color kPathColor{220, 40, 40}, kGoalColor{200, 30, 30},
-    kRobotColor{20, 120, 230};
+    kRobotColor{20, 120, 230}, kLeftColor{225, 30, 160};
 /** What is that far above the ground is not shown: crowns of trees would hide the way. m */
 constexpr double kCutAbove = 2.5;
 
@@ -29,6 +29,8 @@ class DrivePicture {
   void include(const DriveRecord& record);
 
   map_pictures::MapCanvas draw(const DriveLoop& loop) const;
+  /** What looking may still tell, in shades over the map; with legend. */
+  cv::Mat whatIsLeft(DriveLoop& loop) const;
   /** The picture with title, scale and legend, all in places that stay from frame to frame. */
   cv::Mat frame(const DriveLoop& loop) const;
 

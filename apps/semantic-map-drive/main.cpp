@@ -1,6 +1,7 @@
 // Drives a robot through a synthetic world: it maps, compresses, plans and drives.
 #include <map_folders/MapFolder.h>
 #include <map_pictures/PictureFiles.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <strict_files/OutputFiles.h>
@@ -26,10 +27,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kNotArrived = 2;  // exit status
-const std::vector<std::string> kFiles = {"drive.csv",  "drive.json",   "drive.png",
-                                         "drive.gif",  "drive.rawlog", "map.semantic",
-                                         "drive2.csv", "drive2.json",  "drive2.png",
-                                         "drive2.gif", "both.png",     "drive.reactivenavlog"};
+const std::vector<std::string> kFiles = {
+    "drive.csv",    "drive.json", "drive.png",           "drive.gif",  "drive.rawlog",
+    "map.semantic", "drive2.csv", "drive2.json",         "drive2.png", "drive2.gif",
+    "both.png",     "left.png",   "drive.reactivenavlog"};
 
 void printSummary(const DriveRecord& record) {
   notes() << nameOf(record.end) << " after " << record.duration() << " s and " << record.length
@@ -45,10 +46,11 @@ class DriveProgram {
   explicit DriveProgram(const Cli& cli)
       : m_cli(checked(cli)),
         m_config(loadDriveConfig(cli.config)),
+        m_weights(weightsOf(cli)),
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
         m_output(cli.output),
-        m_picture(cli.start, cli.goal, 960, cli.compressed),
-        m_whole(cli.start, cli.goal, 1200, cli.compressed) {
+        m_picture(cli.start, goalOf(cli), 960, cli.compressed),
+        m_whole(cli.start, goalOf(cli), 1200, cli.compressed) {
     m_config.sensors.seed = cli.seed;
   }
 
@@ -64,7 +66,7 @@ class DriveProgram {
     std::vector<std::string> names = kFiles;
     names.insert(names.end(), m_onTheWay.begin(), m_onTheWay.end());
     m_output.commit(names);
-    return first.arrived() ? 0 : kNotArrived;
+    return first.arrived() || first.end == DriveEnd::Explored ? 0 : kNotArrived;
   }
 
  private:
@@ -83,8 +85,9 @@ class DriveProgram {
 
   DriveRecord drive(const fs::path& classes, const std::string& name) {
     const auto order = semantic_planning::loadClassOrder(classes, synthetic_world::classTable());
-    DriveLoop loop(m_config, m_scene.world, order, m_cli.start, m_cli.goal, m_cli.events,
+    DriveLoop loop(m_config, m_scene.world, order, m_cli.start, goalOf(m_cli), m_cli.events,
                    known(name), m_cli.navlog && name == "drive" ? navlogs() : fs::path());
+    if (m_cli.explore) loop.explore(m_weights);
     loop.stopWhen([this] { return m_stop.pending(); });
     std::optional<Recorder> recorder;
     if (m_cli.rawlog && name == "drive") {
@@ -106,7 +109,7 @@ class DriveProgram {
     std::optional<LiveWindow> window;
     if (m_cli.live) {
       loop.keepOriginals();
-      loop.addObserver(window.emplace(loop, m_scene.world, m_cli.start, m_cli.goal));
+      loop.addObserver(window.emplace(loop, m_scene.world, m_cli.start, goalOf(m_cli)));
       window->stopWhen([this] { return m_stop.pending(); });
     }
     const DriveRecord record = loop.run();
@@ -115,6 +118,8 @@ class DriveProgram {
     if (name == "drive")
       semantic_octree::saveTree(loop.mapper().map(), m_output.staged("map.semantic").string());
     m_whole.include(record);
+    if (m_cli.explore && name == "drive")
+      map_pictures::savePicture(m_whole.whatIsLeft(loop), m_output.staged("left.png"));
     m_last = m_whole.draw(loop);
     map_pictures::savePicture(map_pictures::withTitle(m_last->sheet(), caption(loop)),
                               m_output.staged(name + ".png"));
@@ -137,6 +142,15 @@ class DriveProgram {
       m_onTheWay.push_back(numbered(name, i));
   }
 
+  static mrpt::math::TPose2D goalOf(const Cli& cli) { return cli.explore ? cli.start : cli.goal; }
+  static std::optional<tree_abstraction::AbstractionWeights> weightsOf(const Cli& cli) {
+    if (cli.weights.empty()) return {};
+    tree_abstraction::AbstractionWeights weights;
+    weights.terms = semantic_octree::loadWeights(cli.weights, synthetic_world::classTable())
+                        .solution(cli.solution)
+                        .terms;
+    return weights;
+  }
   static const Cli& checked(const Cli& cli) {
     std::vector<std::string> names = kFiles;
     for (const char* name : {"drive", "drive2"}) names.push_back(numbered(name, 0));
@@ -149,6 +163,7 @@ class DriveProgram {
   const StopRequest m_stop{"after this step of the control"};
   const Cli& m_cli;
   DriveConfig m_config;
+  const std::optional<tree_abstraction::AbstractionWeights> m_weights;  ///< explored for
   synthetic_world::Scene m_scene;
   strict_files::OutputFolder m_output;
   DrivePicture m_picture;  ///< on the way

@@ -9,6 +9,7 @@
 #include <semantic_driving/DriveGuide.h>
 #include <semantic_driving/Movers.h>
 #include <semantic_driving/ObstacleSensing.h>
+#include <semantic_driving/ViewStrategy.h>
 #include <semantic_map/MapFiles.h>
 #include <semantic_map/MapOptions.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
@@ -131,6 +132,9 @@ std::vector<OptionTable> drivingTables() {
       table<FocusOptions>("Detail along the path",
                           "`[focus]`. What it brings: "
                           "[drives](../how-it-works/drives.md#detail-where-it-drives)."),
+      table<ExploreOptions>("Looking around",
+                            "`[explore]`, for `--explore`: "
+                            "[exploration](../how-it-works/exploration.md)."),
       table<SensorConfig>("Simulated sensors", "`[sensors]`; `[camera]` and `[lidar]` are above."),
       table<PoseOptions>("Simulated odometry", "`[pose]`; it is corrected as `[slam]` says."),
       table<semantic_map_ros2::NodeOptions>(

@@ -66,8 +66,11 @@ class Robot {
     commands.push_back({c.speed, c.turn});
     m_robot.drive = {m_robot.drive.pose + TPose2D(0.1 * c.speed, 0, 0.1 * c.turn), c.speed, c.turn};
     m_seconds += 0.1;
+    m_driven += 0.1 * std::abs(c.speed);
     update();
   }
+
+  double driven() const { return m_driven; }
 
   /** As somebody does who walks through it. \return where, map frame */
   std::vector<Eigen::Vector3d> leaveSomethingInItsPlace() {
@@ -222,4 +225,30 @@ TEST(Navigator, LooksAlsoIfItsSensorsSeeNothing) {
   robot.navigator.step(0.5);
   robot.navigator.step(0.6);
   EXPECT_EQ(looks, 2);
+}
+
+TEST(Navigator, exploresUntilItIsEnoughAndSaysSo) {
+  NavigatorOptions options = someOptions();
+  options.explore.sensor = {8, -45, 10, 360};
+  options.explore.leftShare = 0.3;
+  Robot robot(options);
+  tree_abstraction::AbstractionWeights weights;
+  weights.terms = {tree_abstraction::relevant("road", 1, {synthetic_world::kRoad})};
+  robot.navigator.explore(weights);
+  EXPECT_EQ(robot.drive(300), Status::Explored) << robot.navigator.reason();
+  EXPECT_GT(robot.driven(), 3);
+  EXPECT_NE(robot.navigator.reason().find("left within reach"), std::string::npos);
+}
+
+TEST(Navigator, exploresNoFartherThanItsBudgetAndThenDrivesToAGoal) {
+  NavigatorOptions options = someOptions();
+  options.explore.sensor = {8, -45, 10, 360};
+  options.explore.budget = 6;
+  Robot robot(options);
+  robot.navigator.explore({});
+  EXPECT_EQ(robot.drive(120), Status::Explored) << robot.navigator.reason();
+  EXPECT_LT(robot.driven(), 14);
+  EXPECT_NE(robot.navigator.reason().find("budget"), std::string::npos);
+  robot.navigator.setGoal({-5, 0, 0});
+  EXPECT_EQ(robot.drive(), Status::Arrived) << robot.navigator.reason();
 }

@@ -8,6 +8,7 @@
 #include <synthetic_world/Solids.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <stdexcept>
 
@@ -87,6 +88,25 @@ void readSensors(Sections& sections, SensorConfig& sensors) {
   sections.readAll("lidar", sensors.lidar);
 }
 
+/** Exploring knows the sensors: the LiDAR, if there is one, for it sees all around. */
+void setSensor(DriveConfig& config) {
+  constexpr double kLidarHeight = 1.4, kCameraHeight = 1.2;  // m
+  const SensorConfig& sensors = config.sensors;
+  semantic_driving::ExploreOptions& explore = config.explore;
+  explore.sensorHeight = sensors.hasLidar ? kLidarHeight : kCameraHeight;
+  if (sensors.hasLidar) {
+    explore.sensor = {sensors.lidar.maxRange, sensors.lidar.lowest, sensors.lidar.highest, 360};
+  } else {
+    const auto& camera = sensors.camera;
+    const double half = std::atan(camera.cy() / camera.focalLength()) * 180 / M_PI;
+    explore.sensor = {camera.maxRange, -sensors.cameraPitch - half, half - sensors.cameraPitch,
+                      camera.horizontalFov};
+  }
+  if (config.insertion.maxRange > 0)
+    explore.sensor.range = std::min(explore.sensor.range, config.insertion.maxRange);
+  explore.radius = config.guide.frontierRadius;
+}
+
 void readPlanner(Sections& sections, const fs::path& folder,
                  semantic_planning::PlannerOptions& planner) {
   std::string vehicle;
@@ -117,6 +137,10 @@ void SensorConfig::describe(OptionList& list) {
   list.add("period", period, "s", above(0), "between observations");
   list.add("camera", hasCamera, "", "the robot has a labeled camera");
   list.add("lidar", hasLidar, "", "the robot has a labeled LiDAR");
+  list.add(
+      "empty_carves", emptyCarves, "",
+      "a pixel or beam without a return says that nothing is within range; not for sensors that "
+      "lose returns");
   camera.noise.describe(list);
 }
 
@@ -150,6 +174,8 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     sections.readAll("obstacles", config.obstacles);
     sections.readAll("movers", config.movers);
     sections.readAll("focus", config.focus);
+    sections.readAll("explore", config.explore);
+    setSensor(config);
     const semantic_driving::MoverTracker known(config.movers, synthetic_world::classTable());
     sections.refuseOthers();
     return config;

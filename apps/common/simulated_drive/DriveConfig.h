@@ -15,7 +15,9 @@ struct SensorConfig {
   synthetic_world::CameraOptions camera;
   double cameraPitch = 15;  ///< degrees down
   synthetic_world::LidarOptions lidar;
-  double period = 0.5;     ///< s
+  double period = 0.5;  ///< s
+  /** A pixel or beam without a return says that nothing is within the sensor's range. */
+  bool emptyCarves = false;
   std::uint64_t seed = 1;  ///< of the odometry's noise, too
 
   /** What is not the camera's or the LiDAR's alone: the LiDAR has the camera's noise. */

@@ -223,6 +223,7 @@ bool DriveLoop::isOver() {
   const Status status = m_navigator.status();
   if (status == Status::Arrived || status == Status::Nearest) return endAtGoal();
   if (status == Status::Unreachable) return end(DriveEnd::Unreachable, m_navigator.reason());
+  if (status == Status::Explored) return end(DriveEnd::Explored, m_navigator.reason());
   if (m_stop && m_stop()) return end(DriveEnd::Stopped, "it was stopped on the way");
   return m_time - m_began >= m_config.timeLimit && end(DriveEnd::TimeLimit, "the time is over");
 }

@@ -44,6 +44,11 @@ class DriveLoop {
   void addObserver(DriveObserver& observer) { m_observers.push_back(&observer); }
   /** The drive ends when this says so. */
   void stopWhen(std::function<bool()> stop) { m_stop = std::move(stop); }
+  /** Looks around instead of driving to the goal, see Navigator::explore(). */
+  void explore(const std::optional<tree_abstraction::AbstractionWeights>& weights) {
+    m_navigator.explore(weights);
+  }
+  double leftToSee(double x, double y) { return m_navigator.leftToSee(x, y); }
   void keepOriginals() { m_sensors = SimulatedSensors(m_config.sensors, true); }
   const DriveRecord& run();
   /** To another goal, from where it is, with a new record: then run() again. */

@@ -8,7 +8,8 @@ const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd) {
   static const strict_files::Choices<DriveEnd> choices = {
       {"arrived", DriveEnd::Arrived},      {"nearest", DriveEnd::Nearest},
       {"astray", DriveEnd::Astray},        {"unreachable", DriveEnd::Unreachable},
-      {"time_limit", DriveEnd::TimeLimit}, {"stopped", DriveEnd::Stopped}};
+      {"time_limit", DriveEnd::TimeLimit}, {"stopped", DriveEnd::Stopped},
+      {"explored", DriveEnd::Explored}};
   return choices;
 }
 

@@ -27,11 +27,12 @@ struct DriveRow {
       semantic_driving::DriveController::Driver::Tracker;
 };
 
-/** Nearest: it is at the pose nearest to the goal that fits. Astray: it believes to have arrived,
- * but has not. Stopped: the user wanted no more of it. */
-enum class DriveEnd { Arrived, Nearest, Astray, Unreachable, TimeLimit, Stopped };
+/** Explored: it looked around, and that is over. Nearest: it is at the pose nearest to the goal
+ * that fits. Astray: it believes to have arrived, but has not. Stopped: the user wanted no more of
+ * it. */
+enum class DriveEnd { Arrived, Nearest, Astray, Unreachable, TimeLimit, Stopped, Explored };
 const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd);
-/** "arrived", "nearest", "astray", "unreachable" or "time_limit". */
+/** "arrived", "nearest", "astray", "unreachable", "time_limit", "stopped" or "explored". */
 const char* nameOf(DriveEnd end);
 
 /** A whole drive. */

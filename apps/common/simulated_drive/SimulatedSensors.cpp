@@ -26,11 +26,13 @@ Eigen::Isometry3d T_robot_lidar() {
   return T;
 }
 
-LabeledCloud cloudOf(const CameraFrame& frame, const CameraOptions& options) {
+/** \param emptyAt depth of pixels without a return; 0: these are left out */
+LabeledCloud cloudOf(const CameraFrame& frame, const CameraOptions& options, double emptyAt) {
   LabeledCloud cloud;
   for (int row = 0; row < frame.depth.height; ++row)
     for (int column = 0; column < frame.depth.width; ++column) {
-      const float depth = frame.depth.at(row, column);
+      const float seen = frame.depth.at(row, column);
+      const double depth = seen > 0 ? seen : emptyAt;
       if (depth <= 0) continue;
       cloud.points.push_back((depth * options.ray(row, column)).cast<float>());
       cloud.classes.push_back(frame.labels.at(row, column));
@@ -56,7 +58,7 @@ Observation SimulatedSensors::camera(const World& world, const Eigen::Isometry3d
   options.color = m_keepOriginals;
   const CameraFrame frame =
       renderCamera(world, T_world_robot * seen.T_robot_sensor, options, {m_config.seed, m_frame});
-  seen.cloud = cloudOf(frame, options);
+  seen.cloud = cloudOf(frame, options, m_config.emptyCarves ? options.maxRange : 0);
   if (m_keepOriginals)
     seen.original = synthetic_rawlog::rangeScan(frame, options, seen.T_robot_sensor);
   return seen;

@@ -117,10 +117,28 @@ void Navigator::setGoal(const TPose2D& goal) {
   m_guide.emplace(m_options.guide, m_planner, goal);
   m_controller.setPath({});
   m_restsFirst = m_guidesNext = true;
+  m_views.reset();
+  m_conclusion.clear();
+}
+
+void Navigator::explore(const std::optional<tree_abstraction::AbstractionWeights>& weights) {
+  auto views = weights ? relevantViews(m_planner, waitedFor().map(), *weights, m_options.explore)
+                       : nearestFrontier(m_planner, m_options.explore);
+  setGoal(m_state.pose);
+  m_views = std::move(views);
+  m_view.reset();
+  m_driven = 0;
+}
+
+double Navigator::leftToSee(double x, double y) {
+  waitedFor();
+  return m_views ? m_views->left(m_planner.ground().columnAt(x, y)) : 0;
 }
 
 void Navigator::update(const RobotState& robot) {
+  const TPose2D before = m_robot.drive.pose;
   m_robot = robot;
+  m_driven += std::hypot(robot.drive.pose.x - before.x, robot.drive.pose.y - before.y);
   correctState();
 }
 
@@ -272,8 +290,33 @@ bool Navigator::mayGuide() const {
 void Navigator::guide(double seconds) {
   ThreadClock clock;
   m_guidesNext = m_restsFirst = false;
-  m_guide->update(m_state, m_z, m_controller, seconds);
+  if (m_views && m_conclusion.empty() && isTimeToChoose()) chooseView();
+  if (m_conclusion.empty()) m_guide->update(m_state, m_z, m_controller, seconds);
   note("replan", clock.lap());
+}
+
+/** At the view, where it cannot be reached, and on a long way there. */
+bool Navigator::isTimeToChoose() const {
+  constexpr double kBetween = 5;  // m
+  return !m_view || m_guide->arrived(m_state, m_controller) || m_guide->gaveUp() ||
+         m_driven - m_chosenAt >= kBetween;
+}
+
+void Navigator::chooseView() {
+  if (m_view && (m_guide->arrived(m_state, m_controller) || m_guide->gaveUp()))
+    m_views->done(*m_view);
+  m_chosenAt = m_driven;
+  const bool isBudgetDriven = m_driven >= m_options.explore.budget;
+  const auto next = isBudgetDriven ? std::nullopt : m_views->next(m_state.pose, m_z);
+  if (!next) {
+    m_conclusion = isBudgetDriven ? "the budget is driven; " : "";
+    m_conclusion += m_views->conclusion();
+    m_controller.setPath({});
+    return;
+  }
+  if (m_view && m_view->pose == next->pose && !m_guide->gaveUp()) return;
+  m_view = next;
+  m_guide.emplace(m_options.guide, m_planner, next->pose);
 }
 
 /** Cells of the compressed tree are in the way as a whole. Where the robot stands before them the
@@ -310,6 +353,10 @@ ObstaclePoints Navigator::obstacles(double seconds) {
 
 Navigator::Status Navigator::status() const {
   if (!m_guide) return Status::Idle;
+  if (m_views) {
+    const bool isOver = !m_conclusion.empty() && std::abs(m_state.speed) < DriveOptions::kAtRest;
+    return isOver ? Status::Explored : Status::Driving;
+  }
   if (m_guide->arrived(m_state, m_controller))
     return m_guide->refusal() ? Status::Nearest : Status::Arrived;
   const bool stands = std::abs(m_state.speed) < DriveOptions::kAtRest;
@@ -318,6 +365,7 @@ Navigator::Status Navigator::status() const {
 
 std::string Navigator::reason() const {
   const Status now = status();
+  if (now == Status::Explored) return m_conclusion;
   if (now == Status::Nearest) return m_guide->refusal()->reason;
   return now == Status::Unreachable ? m_guide->reason() : std::string();
 }

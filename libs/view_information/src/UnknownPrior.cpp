@@ -50,6 +50,7 @@ UniformPrior::UniformPrior(const Question& question, const BeamModel& model) {
 
 LearnedPrior::LearnedPrior(const semantic_octree::SemanticOcTree& map, const Question& question)
     : m_map(map),
+      m_question(question),
       m_model(map.numClasses(), map.filterParameters()),
       m_columnArea(map.getResolution() * map.getResolution()) {
   const double edge = UnknownPatch::kEdge * map.getResolution();
@@ -57,9 +58,7 @@ LearnedPrior::LearnedPrior(const semantic_octree::SemanticOcTree& map, const Que
   for (int d2 = 0; d2 <= 2 * m_reach * m_reach; ++d2)
     m_kernel.push_back(weightAt(std::sqrt(d2) * edge));
   const auto classes = static_cast<std::size_t>(map.numClasses()) + 1;
-  const std::vector<double> nothing = nothingKnown(map.numClasses());
-  for (int w = 0; w <= map.numClasses(); ++w)
-    m_worth.push_back(question.surprise(m_model, nothing.data(), w));
+  m_worthOfGround = worthOf(nothingKnown(map.numClasses()));
   m_standsOn.assign(classes, Distribution(classes, 0));
 }
 
@@ -154,10 +153,18 @@ LearnedPrior::Distribution LearnedPrior::above(const Distribution& ground) const
   return p;
 }
 
-Gain LearnedPrior::gainOf(const Distribution& p) const {
+/** Of each outcome, to who believed something before. */
+LearnedPrior::Distribution LearnedPrior::worthOf(const Distribution& before) const {
+  Distribution worth;
+  for (int w = 0; w <= m_question.numClasses(); ++w)
+    worth.push_back(m_question.surprise(m_model, before.data(), w));
+  return worth;
+}
+
+Gain LearnedPrior::gainOf(const Distribution& p, const Distribution& worth) const {
   double gain = 0;
   for (std::size_t w = 0; w < p.size(); ++w)
-    gain += m_model.probability(static_cast<int>(w), p.data()) * m_worth[w];
+    gain += m_model.probability(static_cast<int>(w), p.data()) * worth[w];
   return {static_cast<float>(passThrough(1 - p[0], 0)), static_cast<float>(std::max(0.0, gain))};
 }
 
@@ -168,7 +175,9 @@ void LearnedPrior::predict(int x, int y, Patch& patch) const {
   prior.ground = around.heights > 0 ? static_cast<int>(std::lround(around.height / around.heights))
                                     : m_usualHeight;
   prior.top = prior.ground + static_cast<int>(kHighest / m_map.getResolution());
-  prior.onGround = gainOf(g), prior.above = gainOf(above(g));
+  const Distribution usual = ground({Distribution(m_standsOn.size(), 0)});
+  prior.onGround = gainOf(g, m_worthOfGround);
+  prior.above = gainOf(above(g), worthOf(above(usual)));
 }
 
 std::size_t LearnedPrior::memoryUsage() const {

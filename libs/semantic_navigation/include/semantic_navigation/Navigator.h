@@ -2,6 +2,7 @@
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/DriveGuide.h>
 #include <semantic_driving/Focus.h>
+#include <semantic_driving/ViewStrategy.h>
 #include <semantic_slam/Mapper.h>
 
 #include <filesystem>
@@ -21,7 +22,8 @@ struct NavigatorOptions {
   semantic_driving::ObstacleOptions obstacles;
   semantic_driving::MoverOptions movers;
   semantic_driving::FocusOptions focus;
-  bool compressedObstacles = false;  ///< the compressed tree's leaves are obstacles
+  semantic_driving::ExploreOptions explore;  ///< its sensor has to be set
+  bool compressedObstacles = false;          ///< the compressed tree's leaves are obstacles
   /** Seconds from a scan until the map has it. Above 0 a thread inserts it meanwhile, and is waited
    * for if it takes longer; the robot drives on by what was known before. */
   double mappingLatency = 0;
@@ -57,8 +59,9 @@ class Navigator {
     Idle,     ///< no goal was set
     Driving,  ///< or waiting, as long as there is hope
     Arrived,
-    Nearest,     ///< at the pose nearest to the goal that fits (GuideOptions::driveToNearest)
-    Unreachable  ///< for good, see reason()
+    Nearest,      ///< at the pose nearest to the goal that fits (GuideOptions::driveToNearest)
+    Unreachable,  ///< for good, see reason()
+    Explored      ///< it explored, and that is over, see reason()
   };
   /** Is told how long a stage took, in milliseconds of its thread's processor time: localize,
    * focus, insert and update of a scan, movers, replan, obstacles, react. */
@@ -74,6 +77,12 @@ class Navigator {
 
   /** Map frame. A robot that drives comes to rest first. */
   void setGoal(const mrpt::math::TPose2D& goal);
+  /** From now on it looks around, without a goal, until it is over (Status::Explored).
+   * \param weights of what it looks for; none: it drives to the nearest border of what is known
+   * \throw std::invalid_argument bad options or weights. */
+  void explore(const std::optional<tree_abstraction::AbstractionWeights>& weights);
+  /** What looking at a column (map frame, meters) may still tell, nats; 0 without exploring. */
+  double leftToSee(double x, double y);
   /** Where the robot is now. */
   void update(const RobotState& robot);
   /** What the sensors saw there. A scan that comes while another one is inserted is for the movers
@@ -117,6 +126,8 @@ class Navigator {
   void correctState();
   bool mayGuide() const;
   void guide(double seconds);
+  void chooseView();
+  bool isTimeToChoose() const;
   bool wantsFineObstacles(double seconds);
   semantic_driving::ObstaclePoints knownObstacles(double radius, double seconds);
   semantic_driving::ObstaclePoints knownRoom(double radius) const;
@@ -130,6 +141,10 @@ class Navigator {
   std::optional<semantic_driving::DriveGuide> m_guide;
   semantic_driving::DriveController m_controller;
   semantic_driving::MoverTracker m_movers;
+  std::unique_ptr<semantic_driving::ViewStrategy> m_views;  ///< null: it has a goal, or none
+  std::optional<semantic_driving::View> m_view;             ///< the guide's goal, then
+  double m_driven = 0, m_chosenAt = 0;                      ///< m
+  std::string m_conclusion;                                 ///< of exploring that is over
   OnStage m_onStage;
   RobotState m_robot;
   semantic_driving::DriveState m_state;       ///< map frame

@@ -61,8 +61,9 @@ std::vector<double> nothingKnown(int numClasses);
 
 /** Learned from what is known: ground goes on as it is near by, or else as it is on the whole; what
  * stands on it is what stands on such ground elsewhere; above is air. It says which outcomes to
- * expect; what they are worth is how far they move the map, which knows nothing yet
- * (Question::surprise()): ground that is relevant for sure is worth most. */
+ * expect. What they are worth is how far they move (Question::surprise()), on the ground, a map
+ * that knows nothing yet: ground that is relevant for sure is worth most; above it, who expects
+ * what is there on the whole: air is worth nothing. */
 class LearnedPrior : public UnknownPrior {
  public:
   /** \param map must outlive this. */
@@ -104,17 +105,19 @@ class LearnedPrior : public UnknownPrior {
   Near near(int x, int y) const;
   Distribution ground(const Near& near) const;
   Distribution above(const Distribution& ground) const;
-  Gain gainOf(const Distribution& p) const;
+  Distribution worthOf(const Distribution& before) const;
+  Gain gainOf(const Distribution& p, const Distribution& worth) const;
 
   const semantic_octree::SemanticOcTree& m_map;
+  const Question& m_question;
   BeamModel m_model;
   int m_reach;  ///< patches
   double m_columnArea;
   int m_usualHeight = semantic_octree::kKeyOfOrigin;  ///< where nothing near is known
   std::unordered_map<std::uint64_t, Patch> m_patches;
   std::vector<std::array<int, 2>> m_changed;
-  std::vector<double> m_kernel;  ///< by squared distance in patches
-  std::vector<double> m_worth;   ///< of each outcome, to a map that knows nothing of the voxel
+  std::vector<double> m_kernel;          ///< by squared distance in patches
+  Distribution m_worthOfGround;          ///< of each outcome
   std::vector<Distribution> m_standsOn;  ///< by class of ground: air and classes that were seen
 };
 

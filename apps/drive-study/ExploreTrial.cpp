@@ -1,0 +1,262 @@
+#include "ExploreTrial.h"
+
+#include <semantic_driving/PathCheck.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "measuring/Stopwatch.h"
+#include "simulated_drive/DriveLoop.h"
+
+namespace drive_study {
+
+using mrpt::math::TPose2D;
+using semantic_driving::DrivePath;
+using semantic_driving::ExploreOptions;
+using semantic_driving::View;
+using semantic_driving::ViewStrategy;
+using semantic_octree::SemanticOcTree;
+using semantic_planning::SemanticPlanner;
+using semantic_types::ClassId;
+using synthetic_world::World;
+
+namespace {
+
+/** Its graph needs no compressed tree. */
+semantic_planning::PlannerOptions plannerOf(const simulated_drive::DriveConfig& config) {
+  semantic_planning::PlannerOptions options = config.planner;
+  options.roadmap.kind = semantic_planning::GraphKind::HaltonDrivable;
+  return options;
+}
+
+/** Of the columns of relevant ground that nothing stands on, those that a map has right. */
+class KnownGround {
+ public:
+  KnownGround(SemanticOcTree& map, const World& world, const ExploreTask& task)
+      : m_map(map),
+        m_world(world),
+        m_classes(task.ground),
+        m_far(task.within),
+        m_follower(map.follow()) {
+    for (double x = -m_far; x < m_far; x += map.getResolution())
+      for (double y = -m_far; y < m_far; y += map.getResolution()) m_all += isOne(x, y);
+  }
+  double share() {
+    for (const auto& tile : m_follower.tiles().tiles) m_tiles[{tile[0], tile[1]}] = true;
+    for (auto& [tile, isStale] : m_tiles)
+      if (std::exchange(isStale, false)) look(tile);
+    return static_cast<double>(m_known.size()) / static_cast<double>(std::max(1, m_all));
+  }
+
+ private:
+  using Column = semantic_planning::Column;
+  bool isOne(double x, double y) const {
+    constexpr double kAbove = 0.3;  // m
+    if (std::max(std::abs(x), std::abs(y)) > m_far) return false;
+    if (m_classes.count(m_world.groundClass(x, y)) == 0) return false;
+    const double z = m_world.groundHeight(x, y) + kAbove;
+    return m_world.at({x, y, z}).state == synthetic_world::PointTruth::State::Free;
+  }
+  void look(Column tile) {
+    const double voxel = m_map.getResolution();
+    for (int x = tile.x; x < tile.x + 8; ++x)
+      for (int y = tile.y; y < tile.y + 8; ++y) {
+        const double wx = semantic_octree::centerOf(x, voxel),
+                     wy = semantic_octree::centerOf(y, voxel);
+        if (hasRight(x, y, semantic_octree::keyOf(m_world.groundHeight(wx, wy), voxel)) &&
+            isOne(wx, wy))
+          m_known.insert({x, y});
+        else
+          m_known.erase({x, y});
+      }
+  }
+  bool hasRight(int x, int y, int z) const {
+    for (int k = z + 1; k >= z - 1; --k) {
+      const auto state = m_map.query(semantic_octree::octomapKey(x, y, k));
+      if (m_classes.count(state.likeliestClass) > 0) return true;
+    }
+    return false;
+  }
+
+  SemanticOcTree& m_map;
+  const World& m_world;
+  const std::set<ClassId> m_classes;
+  const double m_far;
+  semantic_octree::MapFollower m_follower;
+  std::map<Column, bool> m_tiles;
+  std::set<Column> m_known;
+  int m_all = 0;
+};
+
+class Glide {
+ public:
+  Glide(const simulated_drive::DriveConfig& config, const synthetic_world::Scene& scene,
+        const colored_graph::ClassOrder& order, const ExploreTask& task, Exploring how)
+      : m_config(config),
+        m_world(scene.world),
+        m_task(task),
+        m_map(config.voxelSize, synthetic_world::classTable(), config.filter),
+        m_planner(m_map, order, plannerOf(config)),
+        m_check(m_planner),
+        m_sensors(config.sensors, false),
+        m_known(m_map, m_world, task),
+        m_strategy(strategyFor(how)),
+        m_footprint(simulated_drive::trueFootprint(config.planner.vehicle)) {}
+
+  ExploreTrial run(const TPose2D& start) {
+    m_trial.start = start;
+    place(start);
+    standOnGround();
+    for (int i = 0; i < 4; ++i) place({start.x, start.y, start.phi + i * M_PI / 2}), look();
+    place(start);
+    while (m_meters < m_config.explore.budget) {
+      const measuring::Stopwatch watch(measuring::TimeOf::Thread);
+      const auto view = m_strategy->next(m_pose, z());
+      m_trial.secondsOfChoices += watch.milliseconds() / 1000;
+      if (!view) return over(m_strategy->conclusion());
+      ++m_trial.decisions;
+      goTo(*view);
+      if (m_unreachedInARow > kMostUnreached) return over("no view can be reached any more");
+    }
+    return over("the budget is driven");
+  }
+
+ private:
+  static constexpr int kMostUnreached = 30;
+
+  std::unique_ptr<ViewStrategy> strategyFor(Exploring how) {
+    constexpr double kRim = 1;  // m
+    ExploreOptions options = m_config.explore;
+    const Eigen::Vector2d far = Eigen::Vector2d::Constant(m_task.within - kRim);
+    options.area = {-far, far};
+    if (how == Exploring::Frontier) return semantic_driving::nearestFrontier(m_planner, options);
+    const bool plain = how == Exploring::Plain;
+    tree_abstraction::AbstractionWeights weights = m_task.weights;
+    if (plain) weights.terms = {tree_abstraction::wholeClassVariable("all", 1, m_map.numClasses())};
+    return semantic_driving::relevantViews(m_planner, m_map, weights, options, !plain);
+  }
+  ExploreTrial over(const std::string& why) {
+    m_trial.end = why;
+    return m_trial;
+  }
+
+  double z() const { return m_world.groundHeight(m_pose.x, m_pose.y); }
+  Eigen::Isometry3d T_world_robot() const {
+    return m_world.poseOnGround(m_pose.x, m_pose.y, m_pose.phi);
+  }
+  void place(const TPose2D& pose) {
+    m_pose = pose;
+    m_trial.track.push_back(pose);
+  }
+
+  /** It knows what is below it where it begins. */
+  void standOnGround() {
+    constexpr double kAround = 1.2;  // m
+    semantic_types::LabeledCloud cloud;
+    for (double x = -kAround; x < kAround; x += 0.1)
+      for (double y = -kAround; y < kAround; y += 0.1) {
+        const double wx = m_pose.x + x, wy = m_pose.y + y;
+        cloud.points.emplace_back(x, y, m_world.groundHeight(wx, wy) - z() - 1.001);
+        cloud.classes.push_back(m_world.groundClass(wx, wy));
+      }
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.translation() << m_pose.x, m_pose.y, z() + 1;
+    m_map.insert(cloud, T);
+    m_planner.update();
+  }
+
+  void look() {
+    for (const auto& seen : m_sensors.sense(m_world, T_world_robot()))
+      m_map.insert(seen.cloud, T_world_robot() * seen.T_robot_sensor, m_config.insertion);
+    m_planner.update();
+    m_lookedAt = m_meters;
+    m_trial.known.push_back({m_meters, m_known.share()});
+  }
+
+  void goTo(const View& view) {
+    const auto plan = m_planner.plan(m_pose, view.pose, z(), view.z);
+    if (plan.found()) {
+      m_unreachedInARow = 0;
+      return glide(DrivePath(plan.path), view);
+    }
+    ++m_trial.unreached, ++m_unreachedInARow;
+    if (m_planner.check(m_pose, z()) == semantic_planning::PlanStatus::Found)
+      return m_strategy->done(view);
+    goBack();
+  }
+
+  /** A part of the way, until it is time to choose again, or the way is not free. */
+  void glide(const DrivePath& path, const View& view) {
+    constexpr double kStep = 0.2, kBetweenLooks = 1, kBetweenChoices = 5;  // m
+    for (double s = 0; s < path.length() && s < kBetweenChoices;) {
+      const double step = std::min(kStep, path.length() - s);
+      s += step;
+      move(semantic_driving::poseOf(path.at(s)), step);
+      if (m_meters - m_lookedAt < kBetweenLooks) continue;
+      look();
+      if (!m_check.judge(path, s).isFree()) return;
+    }
+    if (path.length() > kBetweenChoices) return;
+    look();
+    m_strategy->done(view);
+  }
+
+  /** From where it must not be, along its track. */
+  void goBack() {
+    constexpr std::size_t kSteps = 5;
+    std::vector<TPose2D> track = m_trial.track;
+    for (std::size_t i = 2; i < 2 + kSteps && i <= track.size(); ++i) {
+      const TPose2D& pose = track[track.size() - i];
+      move(pose, std::hypot(pose.x - m_pose.x, pose.y - m_pose.y));
+      m_trial.track.resize(m_trial.track.size() - 2);
+    }
+    look();
+  }
+
+  void move(const TPose2D& pose, double way) {
+    m_meters += way;
+    place(pose);
+    m_trial.collisions += !m_world.isFree(m_footprint, pose.x, pose.y, pose.phi);
+  }
+
+  const simulated_drive::DriveConfig& m_config;
+  const World& m_world;
+  const ExploreTask& m_task;
+  SemanticOcTree m_map;
+  SemanticPlanner m_planner;
+  semantic_driving::PathCheck m_check;
+  simulated_drive::SimulatedSensors m_sensors;
+  KnownGround m_known;
+  std::unique_ptr<ViewStrategy> m_strategy;
+  synthetic_world::Footprint m_footprint;
+  ExploreTrial m_trial;
+  TPose2D m_pose;
+  double m_meters = 0, m_lookedAt = 0;
+  int m_unreachedInARow = 0;
+};
+
+}  // namespace
+
+const strict_files::Choices<Exploring>& choicesOf(Exploring) {
+  static const strict_files::Choices<Exploring> choices = {{"frontier", Exploring::Frontier},
+                                                           {"plain", Exploring::Plain},
+                                                           {"relevant", Exploring::Relevant}};
+  return choices;
+}
+
+double ExploreTrial::metersTo(double share) const {
+  for (const KnownShare& k : known)
+    if (k.share >= share) return k.meters;
+  return std::numeric_limits<double>::infinity();
+}
+
+ExploreTrial explore(const simulated_drive::DriveConfig& config,
+                     const synthetic_world::Scene& scene, const colored_graph::ClassOrder& order,
+                     const ExploreTask& task, const TPose2D& start, Exploring how) {
+  ExploreTrial trial = Glide(config, scene, order, task, how).run(start);
+  trial.how = how;
+  return trial;
+}
+
+}  // namespace drive_study

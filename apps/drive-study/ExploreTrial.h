@@ -1,0 +1,54 @@
+#pragma once
+#include <semantic_driving/ViewStrategy.h>
+#include <synthetic_world/Scene.h>
+#include <tree_abstraction/AbstractionWeights.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "simulated_drive/DriveConfig.h"
+
+namespace drive_study {
+
+/** How places to look from are chosen: the nearest border of what is known; information of all
+ * classes, of which unknown space has all alike; of what weights ask for, by a learned prior. */
+enum class Exploring { Frontier, Plain, Relevant };
+const strict_files::Choices<Exploring>& choicesOf(Exploring);
+
+/** What is looked for: the weights, and the ground that is to be known in the end. */
+struct ExploreTask {
+  tree_abstraction::AbstractionWeights weights;
+  std::set<semantic_types::ClassId> ground;  ///< classes of all that is relevant
+  double within = 50;                        ///< m from the world's middle, along x and y
+};
+
+/** How much of the relevant ground a map knows, after so many meters. */
+struct KnownShare {
+  double meters = 0, share = 0;
+};
+
+struct ExploreTrial {
+  std::string scene;
+  int number = 0;
+  Exploring how = Exploring::Relevant;
+  mrpt::math::TPose2D start;
+  std::vector<KnownShare> known;
+  std::string end;  ///< why it is over
+  int decisions = 0, unreached = 0, collisions = 0;
+  double secondsOfChoices = 0;  ///< of the processor
+  std::vector<mrpt::math::TPose2D> track;
+
+  double meters() const { return known.empty() ? 0 : known.back().meters; }
+  double share() const { return known.empty() ? 0 : known.back().share; }
+  /** Meters until so much was known; infinite: never. */
+  double metersTo(double share) const;
+};
+
+/** A robot that glides along planned paths, without time, and looks around each meter: where it
+ * looks next is all that matters. \param order of the planner */
+ExploreTrial explore(const simulated_drive::DriveConfig& config,
+                     const synthetic_world::Scene& scene, const colored_graph::ClassOrder& order,
+                     const ExploreTask& task, const mrpt::math::TPose2D& start, Exploring how);
+
+}  // namespace drive_study

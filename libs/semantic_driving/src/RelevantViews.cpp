@@ -1,0 +1,284 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "ViewPlaces.h"
+
+namespace semantic_driving {
+
+using mrpt::math::TPose2D;
+using semantic_planning::Column;
+using semantic_planning::Ground;
+using semantic_planning::GroundPoint;
+using semantic_planning::SemanticPlanner;
+using namespace view_information;
+
+namespace {
+
+constexpr double kSetOut = 2;         // m that each view costs beside its way
+constexpr double kClustersApart = 8;  // m
+constexpr std::size_t kMostClusters = 8;
+constexpr int kTile = 8;  // voxels, of the map's changes
+
+/** The sweeps that were made, as long as nothing changed in their reach. */
+class SweepMemory {
+ public:
+  explicit SweepMemory(int reach) : m_reach(reach) {}
+  void changed(const semantic_octree::TileChange& change) {
+    ++m_now;
+    for (const auto& tile : change.tiles) m_changed[{tile[0] / kBlock, tile[1] / kBlock}] = m_now;
+  }
+  /** \param sweep makes it anew */
+  template <class Sweep>
+  const SectorGains& of(Column c, Sweep sweep) {
+    Entry& entry = m_entries[c];
+    if (entry.made == 0 || changedAt(c) > entry.made) entry = {sweep(), m_now};
+    return entry.gains;
+  }
+
+ private:
+  static constexpr int kBlock = 32;  // voxels
+  struct Entry {
+    SectorGains gains;
+    int made = 0;
+  };
+  int changedAt(Column c) const {
+    int last = 0;
+    for (int x = (c.x - m_reach) / kBlock; x <= (c.x + m_reach) / kBlock; ++x)
+      for (int y = (c.y - m_reach) / kBlock; y <= (c.y + m_reach) / kBlock; ++y) {
+        const auto found = m_changed.find({x, y});
+        if (found != m_changed.end()) last = std::max(last, found->second);
+      }
+    return last;
+  }
+
+  int m_reach, m_now = 0;
+  std::map<Column, int> m_changed;
+  std::map<Column, Entry> m_entries;
+};
+
+class RelevantViews : public ViewStrategy {
+ public:
+  RelevantViews(const SemanticPlanner& planner, semantic_octree::SemanticOcTree& map,
+                const tree_abstraction::AbstractionWeights& weights, const ExploreOptions& options,
+                bool learned)
+      : m_planner(planner),
+        m_ground(planner.ground()),
+        m_options(options),
+        m_question(weights, map.numClasses()),
+        m_field(map, m_question),
+        m_view(options.sensor, map.getResolution()),
+        m_sweeps(m_view.reach() + static_cast<int>(kPriorsReach / map.getResolution())) {
+    m_options.validate();
+    if (learned)
+      m_prior.reset(m_learned = new LearnedPrior(map, m_question));
+    else
+      m_prior = std::make_unique<UniformPrior>(m_question,
+                                               BeamModel(map.numClasses(), map.filterParameters()));
+  }
+
+  std::optional<View> next(const TPose2D& from, double z) override;
+  void done(const View& view) override;
+  std::string conclusion() const override;
+  double left(Column c) override;
+
+ private:
+  static constexpr double kPriorsReach = 5;  // m: what changes there changes what is predicted
+
+  struct Candidate {
+    View view;
+    Column column;
+  };
+  void follow(const TPose2D& from, double z);
+  void learnTile(Column first, const GroundPoint& here);
+  SectorGains sweepFrom(const ViewPlace& place);
+  std::vector<Candidate> candidates(const GroundFlood& flood, double heading);
+  void addBest(const ViewPlace& place, double heading, std::vector<Candidate>& candidates);
+  std::vector<Candidate> centers(std::vector<Candidate> candidates) const;
+  const View& firstOf(const std::vector<Candidate>& stops, const GroundFlood& flood) const;
+
+  const SemanticPlanner& m_planner;
+  const Ground& m_ground;
+  const ExploreOptions m_options;
+  const Question m_question;
+  GainField m_field;
+  const ViewTemplate m_view;
+  std::unique_ptr<UnknownPrior> m_prior;
+  LearnedPrior* m_learned = nullptr;  ///< the prior, if it is one
+  SweepMemory m_sweeps;
+  DoneViews m_done;
+  std::set<Column> m_toLearn;      ///< first columns of tiles whose ground may not be connected yet
+  double m_found = 0, m_left = 0;  ///< nats
+};
+
+double distanceOf(const View& a, const View& b) {
+  return std::hypot(a.pose.x - b.pose.x, a.pose.y - b.pose.y);
+}
+
+double scoreOf(const View& view) { return view.promise / (view.way + kSetOut); }
+
+/** Field and prior follow the map. */
+void RelevantViews::follow(const TPose2D& from, double z) {
+  const semantic_octree::TileChange change = m_field.update();
+  m_sweeps.changed(change);
+  if (!m_learned) return;
+  for (const auto& tile : change.tiles) m_toLearn.insert({tile[0], tile[1]});
+  const auto here = m_ground.find(from.x, from.y, z);
+  if (!here) return;
+  for (const Column& first : std::exchange(m_toLearn, {})) learnTile(first, *here);
+}
+
+/** Ground is what the vehicle's own ground goes on to, whether it may be driven on or not. */
+void RelevantViews::learnTile(Column first, const GroundPoint& here) {
+  for (int x = first.x; x < first.x + kTile; ++x)
+    for (int y = first.y; y < first.y + kTile; ++y)
+      for (const auto& surface : m_ground.surfaces({x, y})) {
+        if (surface.filled || !surface.drivable) continue;
+        if (m_ground.connected(here, {{x, y}, surface}))
+          m_learned->learn(x, y, surface.z, surface.classId);
+        else
+          m_toLearn.insert(first);
+        break;
+      }
+}
+
+SectorGains RelevantViews::sweepFrom(const ViewPlace& place) {
+  const double z = m_ground.centerOf(place.z) + m_options.sensorHeight;
+  return m_field.sweep(
+      m_view, *m_prior,
+      semantic_octree::octomapKey(place.column.x, place.column.y, m_ground.keyOf(z)));
+}
+
+/** The best of a place's headings, unless all were done. \param heading of the vehicle */
+void RelevantViews::addBest(const ViewPlace& place, double heading,
+                            std::vector<Candidate>& candidates) {
+  const double width = m_view.shape().width, z = m_ground.centerOf(place.z);
+  const bool isAllAround = width >= 360;
+  const SectorGains& gains = m_sweeps.of(place.column, [&] { return sweepFrom(place); });
+  std::optional<View> best;
+  for (int s = 0; s < (isAllAround ? 1 : ViewTemplate::kHeadings); ++s) {
+    const TPose2D pose{m_ground.centerOf(place.column.x), m_ground.centerOf(place.column.y),
+                       isAllAround ? place.arrival.value_or(heading) : headingOf(s)};
+    const double radius = m_planner.options().vehicle.turningRadius;
+    const View view{pose, z, wayTo(place, heading, pose.phi, radius),
+                    gainOfHeading(gains, s, width)};
+    if (view.promise > 0 && (!best || scoreOf(view) > scoreOf(*best)) &&
+        !m_done.has(pose, width * M_PI / 180) &&
+        m_planner.check(pose, z) == semantic_planning::PlanStatus::Found)
+      best = view;
+  }
+  if (best) candidates.push_back({*best, place.column});
+}
+
+std::vector<RelevantViews::Candidate> RelevantViews::candidates(const GroundFlood& flood,
+                                                                double heading) {
+  std::vector<Candidate> all;
+  for (const ViewPlace& place : placesOf(flood, m_ground, m_options.area))
+    if (headingToUnknown(m_ground, place)) addBest(place, heading, all);
+  return all;
+}
+
+/** The best views that are apart from each other. */
+std::vector<RelevantViews::Candidate> RelevantViews::centers(
+    std::vector<Candidate> candidates) const {
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [](const Candidate& a, const Candidate& b) { return a.view.promise > b.view.promise; });
+  std::vector<Candidate> centers;
+  for (const Candidate& c : candidates) {
+    if (centers.size() == kMostClusters) break;
+    const auto isNear = [&](const Candidate& o) {
+      return distanceOf(o.view, c.view) < kClustersApart;
+    };
+    if (std::none_of(centers.begin(), centers.end(), isNear)) centers.push_back(c);
+  }
+  return centers;
+}
+
+/** Where the tour over the stops goes first. */
+const View& RelevantViews::firstOf(const std::vector<Candidate>& stops,
+                                   const GroundFlood& flood) const {
+  std::vector<double> worth;
+  std::vector<std::vector<double>> ways(stops.size() + 1, std::vector<double>(stops.size()));
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    worth.push_back(stops[i].view.promise);
+    ways.back()[i] = stops[i].view.way + kSetOut;
+    for (std::size_t j = 0; j < stops.size(); ++j)
+      ways[i][j] =
+          wayBetween(flood, m_ground.voxelSize(), stops[i].column, stops[j].column) + kSetOut;
+  }
+  return stops[firstStop(ways, worth)].view;
+}
+
+std::optional<View> RelevantViews::next(const TPose2D& from, double z) {
+  follow(from, z);
+  const GroundFlood flood(m_planner, from, m_ground.keyOf(z), m_options.radius);
+  const std::vector<Candidate> all = candidates(flood, from.phi);
+  const std::vector<Candidate> stops = centers(all);
+  m_left = 0;
+  for (const Candidate& stop : stops) m_left += stop.view.promise;
+  if (stops.empty() || m_left < m_options.leftShare * (m_found + m_left)) return {};
+  const View& stop = firstOf(stops, flood);
+  const View* best = &stop;
+  for (const Candidate& c : all)
+    if (distanceOf(c.view, stop) < kClustersApart && scoreOf(c.view) > scoreOf(*best))
+      best = &c.view;
+  return *best;
+}
+
+void RelevantViews::done(const View& view) {
+  m_done.add(view.pose);
+  m_found += view.promise;
+}
+
+std::string RelevantViews::conclusion() const {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "what is left within reach promises %.1f nat, %.1f %% of what was found and is "
+                "left; places looked from: %zu",
+                m_left, 100 * m_left / std::max(1e-9, m_left + m_found), m_done.size());
+  return text;
+}
+
+/** Of an unknown column the ground and what stands on it, of a known one its surfaces. */
+double RelevantViews::left(Column c) {
+  constexpr int kBelow = 2;  // voxels
+  constexpr int kEdge = UnknownPatch::kEdge;
+  if (!m_learned) return 0;
+  const UnknownPatch& patch = m_learned->patch(c.x / kEdge, c.y / kEdge);
+  double sum = 0;
+  for (int z = patch.ground - kBelow; z <= patch.top; ++z) {
+    const auto key = semantic_octree::octomapKey(c.x, c.y, z);
+    const auto known = m_field.at(key);
+    if (!known)
+      sum += patch.at(c.x, c.y, z).gain;
+    else if (known->pass < 0.5F)
+      sum += known->gain;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::unique_ptr<ViewStrategy> relevantViews(const SemanticPlanner& planner,
+                                            semantic_octree::SemanticOcTree& map,
+                                            const tree_abstraction::AbstractionWeights& weights,
+                                            const ExploreOptions& options, bool learned) {
+  return std::make_unique<RelevantViews>(planner, map, weights, options, learned);
+}
+
+void ExploreOptions::describe(strict_files::OptionList& list) {
+  using strict_files::above;
+  list.add("budget", budget, "m", above(0).orInfinite(),
+           "that it drives at most, looking around; inf: no limit");
+  list.add("left_share", leftShare, "", strict_files::between(0, 1),
+           "exploring ends when what is left within reach promises less than this share of what "
+           "was found and is left");
+}
+
+void ExploreOptions::validate() const { strict_files::checkOptions(*this, "ExploreOptions"); }
+
+}  // namespace semantic_driving
