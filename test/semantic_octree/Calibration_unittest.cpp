@@ -79,6 +79,10 @@ TEST(Calibration, isOfWhatMapsStateAndNotOfTheirBeliefs) {
   EXPECT_TRUE(map.belief(leaf) == before.belief(before.search(before.coordToKey(2.5, 0.5, 0.5))));
   EXPECT_EQ(emptyLike(map).filterParameters().calibration.power, 0.4);
   EXPECT_THROW(map.setCalibration({0, 0}), std::invalid_argument);
+  EXPECT_THROW(map.setCalibration({4.5, 0}), std::invalid_argument);
+  map.setCalibration({4, 0});
+  EXPECT_GT(map.query(2.5, 0.5, 0.5).probability, was.probability);
+  map.setCalibration({0.4, 0.2});
   EXPECT_THROW(map.setCalibration({0.5, 1}), std::invalid_argument);
   EXPECT_EQ(map.filterParameters().calibration.power, 0.4);
 }

@@ -9,10 +9,10 @@ namespace semantic_octree {
  *   (1 - shared) p_k^power / sum_j p_j^power + shared u_k,
  *
  * u_k = 1 / n for the n classes that the voxel's record names and 0 for the others. A power below 1
- * says that scans repeat each other's errors; what is shared, that voxels hold several of the
- * classes that were seen in them. The order of classes stays. */
+ * says that labels err more often, or repeat each other more, than the filter takes them to, above
+ * 1 less; what is shared, that voxels hold several classes. The order of classes stays. */
 struct Calibration {
-  double power = 1;   ///< (0, 1]
+  double power = 1;   ///< (0, 4]
   double shared = 0;  ///< [0, 1)
 
   bool isIdentity() const { return power == 1 && shared == 0; }
