@@ -27,8 +27,6 @@ class MotionNoise {
   void note(const Eigen::Isometry3d& T_step, const Eigen::Isometry3d& T_off,
             const Matrix6& information);
 
-  /** By how much odometry turns more than the robot: 0.1: 10 %. */
-  double turnError() const { return 1 / m_turnFactors.values[0] - 1; }
   double wayFactor() const { return std::sqrt(m_way); }
   double turnFactor() const { return std::sqrt(m_turn); }
 

@@ -52,7 +52,7 @@ SlamReport SlamEngine::report() const {
   report.hasOdometry = m_hasOdometry;
   report.isPlanar = m_scale.isPlanar;
   if (m_wayOfScans > 0) report.wayError = m_wayOfOdometry / m_wayOfScans - 1;
-  report.turnError = m_noise.turnError();
+  if (m_turnOfScans > 0) report.turnError = m_turnOfOdometry / m_turnOfScans - 1;
   return report;
 }
 

@@ -115,7 +115,7 @@ class SlamEngine {
   int m_lostInRow = 0;                         ///< scans since then
   int m_stepScans = 1;                         ///< scans from the registration before to the last
   int m_numSmall = 0;                          ///< small steps since the last registration
-  double m_wayOfOdometry = 0, m_wayOfScans = 0;
+  double m_wayOfOdometry = 0, m_wayOfScans = 0, m_turnOfOdometry = 0, m_turnOfScans = 0;
   double m_lastLook = 0, m_lastLoop = 0, m_lastReferenced = 0;  ///< m of the way
   double m_lostWay = 0;                                         ///< m since the last loop
   std::vector<PoseEdge> m_pendingLoops, m_pendingReferences;    ///< they may be wrong

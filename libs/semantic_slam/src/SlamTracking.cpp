@@ -244,10 +244,15 @@ std::optional<Registration> SlamEngine::searchAround(const Seen& seen, const Pos
 void SlamEngine::learn(const Pose& T_step, const Registration& registered) {
   const Pose& T_registered = m_T_step;
   const Pose T_off = T_step.inverse() * T_registered;
-  m_noise.calibrate(m_T_odometry_step, T_step, T_off, registered.information);
+  // In space chance says a little of the way along a corridor without an end: it would be learnt.
+  if (m_scale.isPlanar) m_noise.calibrate(m_T_odometry_step, T_step, T_off, registered.information);
   m_noise.note(T_step, T_off, registered.information);
   m_wayOfOdometry += wayOf(m_T_odometry_step);
   m_wayOfScans += wayOf(T_registered);
+  const double turn = vectorOf(T_registered)[5];
+  if (std::abs(turn) < kSmall * m_scale.keyframeAngle) return;  // else noise would be summed up
+  m_turnOfScans += std::abs(turn);
+  m_turnOfOdometry += std::copysign(1.0, turn) * vectorOf(m_T_odometry_step)[5];
 }
 
 Matrix6 SlamEngine::levelOf(const Pose& T_odometry_robot) const {
