@@ -126,7 +126,7 @@ class Robot {
   semantic_octree::SemanticOcTree m_map{0.2, synthetic_world::classTable()};
   semantic_slam::Mapper m_mapper;
   RobotState m_robot;
-  double m_seconds = 0;
+  double m_seconds = 0, m_driven = 0;  // s, m
   int m_steps = 0;
 
  public:
