@@ -39,6 +39,16 @@ LabeledCloud wall(float climb) {
   return cloud;
 }
 
+/** What the program says in the end. */
+std::string warningsOf(const Recording& r) {
+  Slam slam({});
+  for (std::size_t i = 0; i < r.clouds.size(); ++i)
+    slam.add(r.clouds[i], kRobotLaser, r.odometry[i]);
+  std::string all;
+  for (const std::string& warning : slam.report().warnings()) all += warning + "\n";
+  return all;
+}
+
 }  // namespace
 
 TEST(Planar, aWallIsThinAcrossItselfAndHasNoHeight) {
@@ -117,22 +127,22 @@ TEST(Planar, aLaserScannersLoopCloses) {
 
 TEST(Planar, anApertureThatIsSaidToBeHalfIsNoticed) {
   Recording r = recordingOf("village", 1, laserOf(), kDriven, kFlat);
-  const auto warningsOf = [&r] {
-    Slam slam({});
-    for (std::size_t i = 0; i < r.clouds.size(); ++i)
-      slam.add(r.clouds[i], kRobotLaser, r.odometry[i]);
-    std::string all;
-    for (const std::string& warning : slam.report().warnings()) all += warning + "\n";
-    return all;
-  };
-  EXPECT_EQ(warningsOf(), "");
+  EXPECT_EQ(warningsOf(r), "");
   for (LabeledCloud& cloud : r.clouds)
     for (Eigen::Vector3f& p : cloud.points) {
       const float angle = std::atan2(p.y(), p.x()) / 2, distance = p.head<2>().norm();
       p.head<2>() << distance * std::cos(angle), distance * std::sin(angle);
     }
-  EXPECT_NE(warningsOf().find("as if the scanner's aperture were "), std::string::npos)
-      << warningsOf();
+  EXPECT_NE(warningsOf(r).find("as if the scanner's aperture were "), std::string::npos);
+}
+
+TEST(Planar, odometryThatStandsStillWhileTheRobotDrivesIsNoticed) {
+  Recording r = recordingOf("village", 1, laserOf(), kDriven, kFlat);
+  const Eigen::Isometry3d T_stopped = r.odometry[40], T_on = T_stopped * r.odometry[55].inverse();
+  for (std::size_t i = 41; i < r.odometry.size(); ++i)
+    r.odometry[i] = i < 55 ? T_stopped : T_on * r.odometry[i];
+  EXPECT_NE(warningsOf(r).find("odometry stood still while the robot drove 1"), std::string::npos)
+      << warningsOf(r);
 }
 
 TEST(Planar, aDriveIsInTheFrameOfALaserScannersMap) {

@@ -9,6 +9,12 @@ namespace {
 
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
+std::string meters(double way) {
+  const std::string tenths = std::to_string(std::lround(10 * way));
+  return (tenths.size() > 1 ? tenths.substr(0, tenths.size() - 1) : "0") + "." + tenths.back() +
+         " m";
+}
+
 /** Scans turn by less if their beams are said to be nearer to each other than they are. */
 std::string asOfBeams(double turnError) {
   constexpr double kLeast = 0.4;  // no wheels are that wrong
@@ -21,7 +27,8 @@ std::string asOfBeams(double turnError) {
 }  // namespace
 
 std::vector<std::string> SlamReport::warnings() const {
-  constexpr double kMostLost = 0.05, kMostWrong = 0.15, kLeastWay = 20;  // the latter: m
+  constexpr double kMostLost = 0.05, kMostWrong = 0.15;
+  constexpr double kLeastWay = 20, kMostStanding = 0.5;  // m
   std::vector<std::string> warnings;
   if (scans > 1 && way < 0.01 * static_cast<double>(scans) && way < 1)
     warnings.push_back("the robot does not seem to move: all scans are at one place");
@@ -36,6 +43,9 @@ std::vector<std::string> SlamReport::warnings() const {
   if (undone > loops)
     warnings.push_back("more places seem to be seen again than fit together (" +
                        std::to_string(undone) + " loops were undone): the map may be torn");
+  if (standing > kMostStanding)
+    warnings.push_back("odometry stood still while the robot drove " + meters(standing) +
+                       " by its scans: the map may be wrong there");
   if (hasOdometry && way > kLeastWay && std::abs(wayError) > kMostWrong)
     warnings.push_back("odometry says " + percent(std::abs(wayError)) +
                        (wayError > 0 ? " more" : " less") + " way than the scans do");

@@ -45,6 +45,8 @@ class SlamEngine {
   bool beginsKeyframe(const Pose& T_last_robot) const;
   void noteFound(const Pose& T_step, const Pose& T_last_robot, const Registration& registered);
   void noteLost(const Pose& T_step);
+  /** Whether scans move while odometry does not. \param T_moved by this scan */
+  void noteStanding(const Pose& T_moved);
   /** Whether scans fit nothing, one after the other, and there is no odometry: what follows is
    * registered to each other. */
   bool isTorn() const;
@@ -112,6 +114,7 @@ class SlamEngine {
        m_T_step = Pose::Identity();
   Pose m_T_odometry_step = Pose::Identity();   ///< to this scan, as odometry says
   Pose m_T_keyframe_found = Pose::Identity();  ///< of the last scan that was registered
+  Pose m_T_standing = Pose::Identity();        ///< by scans, since odometry moved
   int m_lostInRow = 0;                         ///< scans since then
   int m_stepScans = 1;                         ///< scans from the registration before to the last
   int m_numSmall = 0;                          ///< small steps since the last registration

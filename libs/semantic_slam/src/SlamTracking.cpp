@@ -71,6 +71,7 @@ Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_senso
   const Pose T_last_robot = registered ? registered->T_submap_scan : T_guess;
   const Pose T_moved = rigid(m_T_keyframe_last.inverse() * T_last_robot);
   m_report.way += wayOf(T_moved);
+  noteStanding(T_moved);
   registered ? noteFound(T_step, T_last_robot, *registered) : noteLost(T_step);
   m_T_keyframe_last = T_last_robot;
   m_T_odometry_last = T_odometry;
@@ -131,6 +132,12 @@ void SlamEngine::noteLost(const Pose& T_step) {
   // Nobody knows whether it goes on so: half way between that and standing.
   m_T_step = poseOf(0.5 * vectorOf(T_step));
   if (++m_lostInRow > kMostLost && !m_hasOdometry) ++m_report.torn;
+}
+
+void SlamEngine::noteStanding(const Pose& T_moved) {
+  const bool stands = m_hasOdometry && m_T_odometry_step.isApprox(Pose::Identity());
+  m_T_standing = stands ? rigid(m_T_standing * T_moved) : Pose::Identity();
+  m_report.standing = std::max(m_report.standing, wayOf(m_T_standing));
 }
 
 bool SlamEngine::isTorn() const { return !m_hasOdometry && m_lostInRow > kMostLost; }

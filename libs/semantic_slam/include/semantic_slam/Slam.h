@@ -22,6 +22,7 @@ struct SlamReport {
   std::size_t undone = 0;      ///< loops that contradicted the trajectory between their ends
   std::size_t referenced = 0;  ///< keyframes that were found in the reference
   double way = 0;              ///< m
+  double standing = 0;         ///< m that scans moved at most while odometry stood still as if off
   /** By how much odometry says more than the scans: of the way (0.1: 10 % too far), and of turns.
    */
   double wayError = 0, turnError = 0;
