@@ -41,7 +41,7 @@ Votes randomVotes(std::mt19937& random, int K, int most) {
 
 /** Compares the filter with the exact one along streams of votes for up to three classes. */
 template <typename Real>
-void expectExactFilter(int K, ExactFilter::Grid grid, std::mt19937& random) {
+void expectExactVotes(int K, ExactFilter::Grid grid, std::mt19937& random) {
   FilterParameters p;
   p.labelCorrelation = between(random, 0.001, 1);
   const ClassFilter<Real> filter(K, p);
@@ -169,8 +169,8 @@ TEST(Votes, thatTieLeaveTheChoiceToTheNextScan) {
 TEST(Votes, ofUpToThreeClassesEqualTheExactFilter) {
   std::mt19937 random(5);
   for (const int K : {2, 3, 4, 24}) {
-    expectExactFilter<double>(K, ExactFilter::Grid::None, random);
-    expectExactFilter<float>(K, ExactFilter::Grid::Stored, random);
+    expectExactVotes<double>(K, ExactFilter::Grid::None, random);
+    expectExactVotes<float>(K, ExactFilter::Grid::Stored, random);
   }
 }
 
