@@ -66,7 +66,8 @@ struct Cli {
     addNumber(app, "--threads", settings.threads, "Our threads", strict_files::between(1, 256));
     addNumber(app, "--repeats", repeats, "Measurements of each runner",
               strict_files::between(1, 1000));
-    app.add_option("--only", only, "Measure only runners whose names contain this, and the bare traversal");
+    app.add_option("--only", only,
+                   "Measure only runners whose names contain this, and the bare traversal");
   }
 
  private:

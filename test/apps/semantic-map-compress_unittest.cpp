@@ -201,8 +201,8 @@ TEST_F(SemanticMapCompress, spaceOptionsAndRegionsReachTheSearch) {
 
 TEST_F(SemanticMapCompress, picturesAndFiguresShowSomething) {
   ASSERT_EQ(compress(kTwoSolutions).status, 0);
-  for (const char* name : {"posts.top.png", "ground_and-cars.top.png", "maps.png", "retained.png",
-                           "curves.png"}) {
+  for (const char* name :
+       {"posts.top.png", "ground_and-cars.top.png", "maps.png", "retained.png", "curves.png"}) {
     const cv::Mat picture = cv::imread((output() / name).string(), cv::IMREAD_GRAYSCALE);
     ASSERT_FALSE(picture.empty()) << name;
     EXPECT_GT(picture.cols, 400) << name;

@@ -60,10 +60,11 @@ TEST(Prose, ofLongPagesIsNamed) {
 
 TEST(Prose, isCountedWithoutHeadingsAndCode) {
   EXPECT_EQ(
-      sentencesOf("# A heading of five words\n\nOne two [three four](five.md) `a b`\nsix. "
-                  "And a second *sentence* here!\n\n    code of four words\n\n"
-                  "```sh\nmore code of words\n```\n"
-                  "- an item of words\n- only three words\n\n| a cell of words | no |\n|---|---|\n"),
+      sentencesOf(
+          "# A heading of five words\n\nOne two [three four](five.md) `a b`\nsix. "
+          "And a second *sentence* here!\n\n    code of four words\n\n"
+          "```sh\nmore code of words\n```\n"
+          "- an item of words\n- only three words\n\n| a cell of words | no |\n|---|---|\n"),
       (std::vector<std::string>{"One two three four Code six", "And a second *sentence* here! ",
                                 "an item of words ", " a cell of words "}));
   EXPECT_EQ(countWords("one - two2 | (three) --"), 3u);
