@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
-#include <semantic_driving/Recovery.h>
 
 #include <cmath>
 
 #include "PaintedPlanner.h"
+#include "Recovery.h"
 
 using namespace semantic_driving;
 using namespace semantic_planning;

@@ -1,11 +1,12 @@
 #include <semantic_driving/DriveGuide.h>
 #include <semantic_driving/Motion.h>
-#include <semantic_driving/Recovery.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
+
+#include "Recovery.h"
 
 namespace semantic_driving {
 

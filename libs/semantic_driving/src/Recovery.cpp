@@ -1,4 +1,4 @@
-#include <semantic_driving/Recovery.h>
+#include "Recovery.h"
 
 #include <cmath>
 #include <limits>
