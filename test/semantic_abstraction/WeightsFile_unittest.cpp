@@ -130,7 +130,7 @@ TEST(WeightsFile, badFilesAreRefusedWithTheirLine) {
       {"", "key: value"},
       {"solutions: []", "list"},
       {some + "unknown: none", "weights.yaml:4: "},
-      {some + "frame: paid", "free, charged"},
+      {some + "frame: free", "weights.yaml:4: unknown key 'frame'"},
       {some + "regions: [cube 2]", "box, sphere or corridor"},
       {some + "regions: [sphere 0 0 0 2]", "the numbers of this shape"},
       {some + "regions: [sphere 0 0 0 -1 2]", "radius"},
