@@ -28,7 +28,8 @@ std::string asOfBeams(double turnError) {
 
 std::vector<std::string> SlamReport::warnings() const {
   constexpr double kMostLost = 0.05, kMostWrong = 0.15;
-  constexpr double kLeastWay = 20, kMostStanding = 0.5;  // m
+  constexpr double kLeastWay = 20,
+                   kMostStanding = 2;  // m; odometry of real robots lags by some decimeters
   std::vector<std::string> warnings;
   if (scans > 1 && way < 0.01 * static_cast<double>(scans) && way < 1)
     warnings.push_back("the robot does not seem to move: all scans are at one place");
