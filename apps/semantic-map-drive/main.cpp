@@ -8,7 +8,9 @@
 #include <strict_files/TextFile.h>
 
 #include <cmath>
+#include <iomanip>
 #include <ostream>
+#include <sstream>
 
 #include "Animation.h"
 #include "Application.h"
@@ -33,10 +35,13 @@ const std::vector<std::string> kFiles = {
     "both.png",     "left.png",   "drive.reactivenavlog"};
 
 void printSummary(const DriveRecord& record) {
-  notes() << nameOf(record.end) << " after " << record.duration() << " s and " << record.length
-          << " m; " << record.replans << " replans, " << record.collisions
-          << " collisions, least clearance " << record.leastClearance << " m; "
-          << std::lround(100 * shareOfSlowCycles(record)) << " % of cycles took more than 100 ms\n";
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << nameOf(record.end) << " after " << record.duration()
+       << " s and " << record.length << " m; " << record.replans << " replans, "
+       << record.collisions << " collisions, least clearance " << std::setprecision(2)
+       << record.leastClearance << " m; " << std::lround(100 * shareOfSlowCycles(record))
+       << " % of cycles took more than 100 ms\n";
+  notes() << text.str();
   if (!record.reason.empty()) notes() << record.reason << '\n';
 }
 

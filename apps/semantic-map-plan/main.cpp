@@ -8,9 +8,12 @@
 #include <strict_files/TextFile.h>
 
 #include <cmath>
+#include <iomanip>
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <sstream>
+#include <utility>
 
 #include "Application.h"
 #include "Cli.h"
@@ -52,12 +55,14 @@ void write(const Cli& cli, MapCanvas canvas, const SemanticPlanner& planner, con
 }
 
 void printSummary(const PlanResult& plan, const semantic_types::ClassTable& classes) {
-  notes() << "Path of " << plan.length << " m:";
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << "Path of " << plan.length << " m";
+  const char* before = ": ";
   for (std::size_t id = 0; id < plan.lengthPerClass.size(); ++id)
     if (plan.lengthPerClass[id] > 0)
-      notes() << ' ' << plan.lengthPerClass[id] << " m "
-              << groundName(static_cast<semantic_types::ClassId>(id), classes);
-  notes() << '\n';
+      text << std::exchange(before, ", ") << plan.lengthPerClass[id] << " m "
+           << groundName(static_cast<semantic_types::ClassId>(id), classes);
+  notes() << text.str() << '\n';
   if (plan.numVertices > 0)
     notes() << "Graph of " << plan.numVertices << " vertices and " << plan.numEdges << " edges, "
             << plan.search.edgesEvaluated << " of them evaluated\n";
