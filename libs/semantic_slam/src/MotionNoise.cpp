@@ -99,8 +99,6 @@ void MotionNoise::note(const Eigen::Isometry3d& T_step, const Eigen::Isometry3d&
   const Deviations first = deviationsOf(T_step);
   const Vector6 off = vectorOf(T_off);
   const Matrix6 covariance = information.inverse();
-  m_numSteps = std::min(m_numSteps + 1, kRemembered - kAssumed);
-  const double remembered = kAssumed + m_numSteps;
   // Walls beside the robot say nothing of how far it goes along them, and so little of the whole:
   // the harmonic mean of what scans tell of both directions.
   const Matrix6 predicted = this->information(T_step);
@@ -108,10 +106,13 @@ void MotionNoise::note(const Eigen::Isometry3d& T_step, const Eigen::Isometry3d&
     return std::clamp(1 - covariance(axis, axis) * predicted(axis, axis), 1e-3, 1.);
   };
   const double told = 2 / (1 / toldOf(0) + 1 / toldOf(1));
+  m_numSteps = std::min(m_numSteps + 1, kRemembered - kAssumed);
+  m_toldSteps = std::min(m_toldSteps + told, kRemembered - kAssumed);
+  const double remembered = kAssumed + m_numSteps;
   m_way = measured(m_way,
                    (off.head<2>().squaredNorm() + covariance(0, 0) + covariance(1, 1)) /
                        (2 * first.way * first.way),
-                   remembered / told);
+                   (kAssumed + m_toldSteps) / told);
   m_turn = measured(m_turn, (off[5] * off[5] + covariance(5, 5)) / (first.turn * first.turn),
                     remembered);
 }

@@ -56,7 +56,9 @@ class MotionNoise {
   Factors<1> m_wayFactors;   ///< of the way
   Factors<2> m_turnFactors;  ///< of the turn, and radians for each meter of the way
   double m_way, m_turn;      ///< squared factors
-  double m_numSteps = 0;     ///< that these are from; those of long ago do not count
+  /** Steps that the latter, and by what scans told the former, are from; those of long ago do not
+   * count. */
+  double m_numSteps = 0, m_toldSteps = 0;
 };
 
 }  // namespace semantic_slam
