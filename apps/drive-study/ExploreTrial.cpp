@@ -30,7 +30,7 @@ semantic_planning::PlannerOptions plannerOf(const simulated_drive::DriveConfig& 
   return options;
 }
 
-/** Of the columns of relevant ground that nothing stands on, those that a map has right. */
+/** Counts the columns that a map has right, of relevant ground that nothing stands on. */
 class KnownGround {
  public:
   KnownGround(SemanticOcTree& map, const World& world, const ExploreTask& task)

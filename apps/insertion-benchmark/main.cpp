@@ -107,7 +107,8 @@ double memory(const std::string& entry) {
   return kilobytes * 1024;
 }
 
-/** Of one turn, in which a runner inserts all scans; milliseconds are medians over the scans. */
+/** What one turn takes, in which a runner inserts all scans. Milliseconds are medians over scans.
+ */
 struct Figures {
   double cpu = 0, cpu95 = 0, wall = 0;
   double mapBytes = 0;   ///< resident memory after the last scan, less that before the first

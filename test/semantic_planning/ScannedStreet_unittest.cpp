@@ -34,7 +34,7 @@ bool isCrossed(const Ground& ground, double from, double to, double y) {
   return true;
 }
 
-/** Of the rows from y = -3 to 3 m those in which the trench is crossed. */
+/** The share of rows from y = -3 to 3 m in which the trench is crossed. */
 double shareCrossed(const Ground& ground, double from, double to) {
   int crossed = 0, rows = 0;
   for (double y = -3; y <= 3; y += ground.voxelSize(), ++rows)

@@ -15,7 +15,7 @@ namespace {
 constexpr double kFlat = 0;
 constexpr double kWhole = 1e9, kDriven = 90;  // m
 
-/** Of the flat village. \param voxelSize meters */
+/** A map of the flat village. \param voxelSize meters */
 SemanticOcTree mapOf(double voxelSize, const Sensor& sensor,
                      const Eigen::Isometry3d& T_robot_sensor) {
   return recordings::mapOf("village", 3, {sensor, T_robot_sensor, 100, voxelSize, kFlat, 2});

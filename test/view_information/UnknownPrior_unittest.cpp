@@ -30,7 +30,7 @@ struct TwoSides {
       for (int y = -8; y < 8; ++y)
         prior.learn(kOrigin + x, kOrigin + y, kGroundKey, x < 0 ? kGrass : kRoad);
   }
-  /** Of a view to the east from its border there, less that of one to the west from that one. */
+  /** The gain of a view to the east from the border there, less that of a view to the west. */
   double eastBeforeWest(UnknownPrior& prior) {
     constexpr int kEast = ViewTemplate::kHeadings / 2, kWest = 0;
     const auto at = [](int x) {

@@ -33,7 +33,7 @@ void readBag(const std::filesystem::path& bag, const WantsTopic& wants, const Ta
 /** The topics of a bag. \throw std::runtime_error as readBag(). */
 std::set<BagTopic> topicsOfBag(const std::filesystem::path& bag);
 
-// Of one file. MCAP: its summary section is not needed, and not read.
+// These read one file. The summary section of MCAP is not read.
 void readMcap(const std::filesystem::path& file, const WantsTopic& wants, const TakeMessage& take);
 void readSqliteBag(const std::filesystem::path& file, const WantsTopic& wants,
                    const TakeMessage& take);

@@ -35,7 +35,7 @@ struct FramePose {
 // early, or are of another encoding.
 
 BagCloud cloudOfMessage(std::string_view message);
-/** Of a tf2_msgs/TFMessage. */
+/** The transforms in a tf2_msgs/TFMessage. */
 std::vector<FramePose> transformsOfMessage(std::string_view message);
 FramePose odometryOfMessage(std::string_view message);
 

@@ -14,14 +14,14 @@ namespace semantic_octree {
 namespace {
 
 constexpr std::size_t kMostVoxels = 32768;
-/** Of a scan. */
+/** So many points of a scan are looked at, at most. */
 constexpr std::size_t kMostPoints = 32768;
-/** Of one voxel. */
+/** So many labels of a voxel are kept, at most. */
 constexpr std::size_t kMostLabels = 64;
 /** What the map has counts like so many labels. */
 constexpr double kLabelsBefore = 100;
-/** Of each class, which are right with the filter's accuracy, before any are seen: a matrix is to
- * be cautious where a class is rare, but a fit is not to state the filter's accuracy once more. */
+/** Labels of each class that count as seen at first, right as often as the filter's accuracy says.
+ * A matrix is cautious where a class is rare; a fit does not state the accuracy once more. */
 constexpr double kLabelsOfMatrix = 1000, kLabelsOfFit = 20;
 /** So many labels of a voxel cannot outvote each other. */
 constexpr std::size_t kFew = 2;

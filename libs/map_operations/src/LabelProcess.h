@@ -38,7 +38,7 @@ class LabelProcess {
 
  private:
   using Table = std::vector<std::vector<double>>;
-  /** Of a label, given the voxel's class, the probability that it was drawn, or is of the urn. */
+  /** Probabilities of a label, given the voxel's class: that it was drawn, or is of the urn. */
   struct Origin {
     double drawn, urn;
   };

@@ -48,7 +48,7 @@ class SharedMap {
   int numClasses() const { return m_map.numClasses(); }
   const semantic_types::ClassTable& classes() const { return m_map.classes(); }
 
-  /** Of the abstractions that it was given. */
+  /** How many abstractions the map was given so far. */
   std::size_t numAbstractions = 0;
 
  private:

@@ -243,7 +243,8 @@ std::string RelevantViews::conclusion() const {
   return text;
 }
 
-/** Of an unknown column the ground and what stands on it, of a known one its surfaces. */
+/** What is left to see of a column: the ground and what stands on it where it is unknown, else its
+ * surfaces. */
 double RelevantViews::left(Column c) {
   constexpr int kBelow = 2;  // voxels
   constexpr int kEdge = UnknownPatch::kEdge;

@@ -153,7 +153,7 @@ LearnedPrior::Distribution LearnedPrior::above(const Distribution& ground) const
   return p;
 }
 
-/** Of each outcome, to who believed something before. */
+/** What each outcome is worth to who believed something before. */
 LearnedPrior::Distribution LearnedPrior::worthOf(const Distribution& before) const {
   Distribution worth;
   for (int w = 0; w <= m_question.numClasses(); ++w)

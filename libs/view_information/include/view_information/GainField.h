@@ -44,8 +44,9 @@ class ViewTemplate {
 
 /** What is gained by sector of ViewTemplate::kHeadings, nats. */
 using SectorGains = std::array<float, ViewTemplate::kHeadings>;
-/** Of a view in a sector's middle; and the heading of a sector's middle, radians. */
+/** What a view gains that looks along a sector's middle. */
 double gainOfHeading(const SectorGains& gains, int sector, double width);
+/** The heading of a sector's middle, radians. */
 double headingOf(int sector);
 
 /** What observing each known voxel of a map gains once more, and how far beams get through it:

@@ -10,7 +10,8 @@
 
 namespace view_information {
 
-/** Of a voxel: P(a beam that reaches it passes on), and what observing it once gains, nats. */
+/** What a voxel does to a beam: P(a beam that reaches it passes on), and what observing it once
+ * gains, nats. */
 struct Gain {
   float pass = 1, gain = 0;
 };
@@ -38,7 +39,8 @@ struct UnknownPatch {
 class UnknownPrior {
  public:
   virtual ~UnknownPrior() = default;
-  /** Of the patch of keys kEdge * x, kEdge * y and on. Valid until what is known changes. */
+  /** The prior of the patch of keys kEdge * x, kEdge * y and on. Valid until what is known changes.
+   */
   virtual const UnknownPatch& patch(int x, int y) = 0;
   /** Whether space that beams passed is air, of which nobody asks a second time. Without, each look
    * at it is worth what the filter makes of it. */
