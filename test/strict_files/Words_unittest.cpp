@@ -39,6 +39,15 @@ TEST(Words, messagesAreFreedOfMrptsCallStacks) {
   EXPECT_EQ(strict_files::messageOf(std::runtime_error(
                 "==== MRPT exception ====\nMessage:  what happened\nLocation: file.cpp\n")),
             "what happened");
+  EXPECT_EQ(strict_files::messageOf(std::runtime_error(
+                "==== MRPT exception ====\nwhat happened\nCall stack backtrace:\n[0 ] 0x7f\n")),
+            "what happened");
+}
+
+TEST(Words, messagesNameOutputsAsTheyWouldBeCalled) {
+  EXPECT_EQ(strict_files::messageOf(std::runtime_error(
+                "a/.unfinished-0k3x9z-b.rawlog and out/.unfinished-qwerty/map.semantic: full")),
+            "a/b.rawlog and out/map.semantic: full");
 }
 
 TEST(Words, messagesTellWhatMemoryIsWanting) {

@@ -7,6 +7,8 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <stdexcept>
 
 #include "CompressedInputStream.h"
@@ -124,7 +126,7 @@ void GzipOutputStream::close() {
 }
 
 void GzipOutputStream::fail() const {
-  throw std::runtime_error(m_path.string() + ": cannot be written (is the disk full?)");
+  throw std::runtime_error(m_path.string() + ": cannot be written: " + std::strerror(errno));
 }
 
 std::size_t GzipOutputStream::Read(void*, std::size_t) {

@@ -2,6 +2,9 @@
 
 #include <zlib.h>
 
+#include <cerrno>
+#include <cstring>
+
 namespace semantic_octree {
 
 std::uint32_t extendCrc(std::uint32_t crc, const void* bytes, std::size_t size) {
@@ -28,7 +31,9 @@ void CheckedWriter::flush() {
 std::uint32_t CheckedWriter::finish() {
   if (m_used > 0) flush();
   flush();
-  if (!m_out) throw std::runtime_error("the map could not be written completely");
+  if (!m_out)
+    throw std::runtime_error("the map could not be written completely: " +
+                             std::string(std::strerror(errno)));
   return m_crc;
 }
 

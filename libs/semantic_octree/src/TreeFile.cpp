@@ -91,10 +91,13 @@ template <typename F>
 std::uint32_t save(const std::string& path, StagedFile::Disk when, const F& write) {
   try {
     StagedFile file(path);
+    errno = 0;
     std::ofstream out(file.path(), std::ios::binary | std::ios::trunc);
     const std::uint32_t checksum = write(out);
     out.close();
-    if (!out) throw std::runtime_error("the file could not be written completely");
+    if (!out)
+      throw std::runtime_error("the file could not be written completely: " +
+                               std::string(std::strerror(errno)));
     file.commit(when);
     return checksum;
   } catch (const std::exception& e) {

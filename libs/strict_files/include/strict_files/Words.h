@@ -1,6 +1,7 @@
 #pragma once
 #include <strict_files/Memory.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <exception>
 #include <new>
@@ -38,18 +39,27 @@ std::string trimmed(const std::string& text);
 std::string joined(const std::vector<std::string>& words);
 
 /** What an exception says, without the call stack that MRPT appends to the text of its own, and
- * without those of the exceptions that it was passed on as. */
+ * without those of the exceptions that it was passed on as. Outputs that are not complete (see
+ * OutputFiles.h) have the names that they would have got. */
 inline std::string messageOf(const std::exception& e) {
   if (dynamic_cast<const PieceTooLarge*>(&e)) return e.what();
   if (dynamic_cast<const std::bad_alloc*>(&e)) return "more memory is needed than there is";
   if (const auto* error = dynamic_cast<const std::system_error*>(&e);
       error && error->code() == std::errc::resource_unavailable_try_again)
     return "no further thread can be begun: memory, or the number of processes, is at its limit";
-  const std::string text = e.what(), begin = "Message:  ", end = "\nLocation:";
-  const std::size_t from = text.rfind(begin);
-  if (from == std::string::npos) return text;
-  const std::size_t start = from + begin.size();
-  return text.substr(start, text.find(end, start) - start);
+  std::string text = e.what();
+  const auto keepBetween = [&text](const std::string& begin, const std::string& end) {
+    const std::size_t at = text.rfind(begin);
+    if (at == std::string::npos) return;
+    text.erase(0, at + begin.size());
+    text.erase(std::min(text.find(end), text.size()));
+  };
+  keepBetween("==== MRPT exception ====\n", "\nCall stack backtrace:");
+  keepBetween("Message:  ", "\nLocation:");
+  const std::string staged = ".unfinished-", letters = "abcdef-";
+  for (std::size_t at = 0; (at = text.find(staged, at)) != std::string::npos;)
+    text.erase(at, staged.size() + letters.size());
+  return text;
 }
 
 }  // namespace strict_files
