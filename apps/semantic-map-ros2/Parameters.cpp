@@ -1,5 +1,7 @@
 #include "Parameters.h"
 
+#include <semantic_abstraction/Abstraction.h>
+#include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_planning/vehicle/VehicleOptions.h>
 #include <strict_files/IniSection.h>
 #include <strict_files/StrictYaml.h>
@@ -142,6 +144,14 @@ semantic_slam::MapperOptions Parameters::mapping() const {
   mapping.slam = slam;
   if (node.slam) mapping.scans = fs::temp_directory_path();
   return mapping;
+}
+
+semantic_octree::SemanticOcTree Parameters::newMap() const {
+  const auto table = map.classes.empty() ? semantic_map::CSemanticOctoMap::occupancyOnly()
+                                         : semantic_types::loadClassTable(map.classes);
+  semantic_octree::SemanticOcTree tree(map.resolution, table, insertion.filter);
+  if (abstraction.isSet()) setAbstraction(tree, abstraction.forClasses(tree.classes()));
+  return tree;
 }
 
 Parameters readParameters(const std::vector<fs::path>& files,

@@ -23,6 +23,8 @@ struct Parameters {
   semantic_navigation::NavigatorOptions navigation;  ///< planner, drive, guide, obstacles ...
 
   semantic_slam::MapperOptions mapping() const;
+  /** An empty map. \throw std::runtime_error naming the file of classes that cannot be read. */
+  semantic_octree::SemanticOcTree newMap() const;
 };
 
 /** \param files of parameters (YAML), below `ros__parameters` as ROS has them, or plain; files that

@@ -1,8 +1,5 @@
 // Makes a semantic octree map in a live ROS 2 system, without ROS.
-#include <semantic_abstraction/Abstraction.h>
-#include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_octree/TreeFile.h>
-#include <semantic_types/ClassTable.h>
 
 #include <ostream>
 #include <stdexcept>
@@ -34,24 +31,14 @@ struct Cli {
   }
 };
 
-SemanticOcTree beginning(const Cli& cli, const Parameters& parameters) {
-  if (!cli.map.empty()) return semantic_octree::loadTree(cli.map.string());
-  const std::string& file = parameters.map.classes;
-  const auto table = file.empty() ? semantic_map::CSemanticOctoMap::occupancyOnly()
-                                  : semantic_types::loadClassTable(file);
-  SemanticOcTree map(parameters.map.resolution, table, parameters.insertion.filter);
-  if (parameters.abstraction.isSet())
-    setAbstraction(map, parameters.abstraction.forClasses(map.classes()));
-  return map;
-}
-
 int run(const Cli& cli, const ros2::Arguments& arguments) {
   if (!arguments.problem.empty()) throw CLI::ValidationError(arguments.problem);
   const StopRequest stop("after the scans that wait");
   const std::vector<fs::path> files(arguments.files.begin(), arguments.files.end());
   const Parameters parameters = readParameters(files, arguments.parameters);
   cli.outputs.check({cli.output}, files);
-  SemanticOcTree map = beginning(cli, parameters);
+  SemanticOcTree map =
+      cli.map.empty() ? parameters.newMap() : semantic_octree::loadTree(cli.map.string());
   MappingNode node(parameters, arguments, map, [&] {
     saveTree(map, cli.output.string());
     notes() << cli.output.string() << ": saved" << std::endl;

@@ -1,0 +1,240 @@
+// A node of rclcpp that maps labeled clouds, for those who compose nodes.
+#include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_octree/TreeFile.h>
+#include <semantic_slam/Mapper.h>
+#include <strict_files/Words.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_broadcaster.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <chrono>
+#include <deque>
+#include <rclcpp/rclcpp.hpp>
+#include <rclcpp_components/register_node_macro.hpp>
+#include <sensor_msgs/msg/point_cloud2.hpp>
+#include <sensor_msgs/point_cloud2_iterator.hpp>
+#include <std_srvs/srv/trigger.hpp>
+#include <tf2_eigen/tf2_eigen.hpp>
+
+#include "Parameters.h"
+#include "point_fields/PointFields.h"
+
+namespace semantic_map_ros2 {
+
+using sensor_msgs::msg::PointCloud2;
+
+/** Maps the clouds of `points`, whose poses tf2 knows, by the runtime of semantic-map-ros2, and
+ * publishes `~/occupied` (x, y, z, rgb, label, probability of each occupied leaf) and, with `slam`,
+ * the transform from map to odom. `~/save` writes the file that `output` names, and so does the
+ * end. Its parameters are those of semantic-map-ros2; planning, driving, images and laser scans are
+ * that program's alone. Everything runs in the executor's thread. */
+class SemanticMapComponent : public rclcpp::Node {
+ public:
+  /** \throw std::runtime_error naming the parameter or file that is wrong */
+  explicit SemanticMapComponent(const rclcpp::NodeOptions& options)
+      : Node("semantic_map", options),
+        m_output(
+            declare_parameter("output", std::string(), describedAs("file of the map (.semantic)"))),
+        m_parameters(declared()),
+        m_map(m_parameters.newMap()),
+        m_mapper(m_map, m_parameters.mapping()),
+        m_clock(m_parameters.insertion.maxGap) {
+    m_hears = create_subscription<PointCloud2>(
+        "points", rclcpp::SensorDataQoS().keep_last(50),
+        [this](PointCloud2::ConstSharedPtr cloud) { wait(std::move(cloud)); });
+    m_says = create_publisher<PointCloud2>("~/occupied", rclcpp::QoS(1).transient_local());
+    m_saves = create_service<std_srvs::srv::Trigger>(
+        "~/save", [this](std_srvs::srv::Trigger::Request::ConstSharedPtr,
+                         std_srvs::srv::Trigger::Response::SharedPtr response) {
+          response->message = save();
+          response->success = response->message.empty();
+        });
+    m_inserts = create_wall_timer(std::chrono::milliseconds(20), [this] { insertWaiting(); });
+    m_publishes = create_wall_timer(std::chrono::duration<double>(m_parameters.node.publishPeriod),
+                                    [this] { publish(); });
+  }
+
+  ~SemanticMapComponent() override {
+    m_mapper.finish();
+    const std::string problem = m_scans == 0 || m_output.empty() ? "" : save();
+    if (!problem.empty()) RCLCPP_ERROR(get_logger(), "%s", problem.c_str());
+  }
+
+ private:
+  static rcl_interfaces::msg::ParameterDescriptor describedAs(const std::string& help) {
+    rcl_interfaces::msg::ParameterDescriptor descriptor;
+    descriptor.description = help;
+    descriptor.dynamic_typing = true;  // 30 is as good as 30.0
+    descriptor.read_only = true;
+    return descriptor;
+  }
+
+  /** Declares the options of a section, and adds those that somebody set to the values. */
+  template <class Options>
+  void declare(const std::string& section, Options options) {
+    strict_files::OptionList list;
+    options.describe(list);
+    for (const strict_files::Option& option : list.options()) {
+      if (has_parameter(section + option.name)) continue;  // use_sim_time
+      const auto unit = option.unit.empty() ? "" : " (" + option.unit + ")";
+      const rclcpp::ParameterValue before(option.text());
+      const auto value =
+          declare_parameter(section + option.name, before, describedAs(option.help + unit));
+      if (value != before) m_values.emplace_back(section + option.name, rclcpp::to_string(value));
+    }
+  }
+
+  Parameters declared() {
+    const Parameters defaults;
+    declare("", defaults.node);
+    declare("map.", defaults.map);
+    declare("insertion.", defaults.insertion);
+    declare("abstraction.", defaults.abstraction);
+    declare("slam.", defaults.slam);
+    for (const auto& [name, value] : get_node_parameters_interface()->get_parameter_overrides())
+      if (!has_parameter(name) && name.rfind("qos_overrides.", 0) != 0)
+        throw std::runtime_error("unknown parameter '" + name + "'" +
+                                 strict_files::didYouMean(name, list_parameters({}, 0).names));
+    return readParameters({}, m_values);
+  }
+
+  std::string save() try {
+    m_mapper.finish();
+    saveTree(m_map, m_output);
+    return "";
+  } catch (const std::exception& e) {
+    return strict_files::messageOf(e);
+  }
+
+  void warn(const std::string& problem) {
+    RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 5000, "%s", problem.c_str());
+  }
+
+  void wait(PointCloud2::ConstSharedPtr cloud) {
+    m_bytes += cloud->data.size();
+    m_waiting.push_back(std::move(cloud));
+    while (m_bytes > std::size_t(m_parameters.node.queueMemory) * 1'000'000 && !m_waiting.empty()) {
+      warn("clouds come faster than they are inserted; the oldest are left out");
+      dropFirst();
+    }
+  }
+
+  void dropFirst() {
+    m_bytes -= m_waiting.front()->data.size();
+    m_waiting.pop_front();
+  }
+
+  /** Clouds wait for their transforms, as long as `transform_timeout` says. */
+  void insertWaiting() {
+    while (!m_waiting.empty()) {
+      const PointCloud2& cloud = *m_waiting.front();
+      const rclcpp::Time stamp(cloud.header.stamp, get_clock()->get_clock_type());
+      try {
+        insert(cloud, stamp);
+      } catch (const tf2::TransformException& e) {
+        if ((now() - stamp).seconds() < m_parameters.node.transformTimeout) return;
+        warn(std::string("a cloud is left out: ") + e.what());
+      } catch (const std::exception& e) {
+        warn("a cloud is left out: " + strict_files::messageOf(e));
+      }
+      dropFirst();
+    }
+  }
+
+  Eigen::Isometry3d transform(const std::string& target, const std::string& source,
+                              const rclcpp::Time& stamp) const {
+    return tf2::transformToEigen(m_transforms.lookupTransform(target, source, stamp));
+  }
+
+  void insert(const PointCloud2& message, const rclcpp::Time& stamp) {
+    const NodeOptions& node = m_parameters.node;
+    const auto T_world_robot = transform(worldFrame(), node.baseFrame, stamp);
+    const auto T_robot_cloud = transform(node.baseFrame, message.header.frame_id, stamp);
+    point_fields::RawCloud raw;
+    for (const auto& f : message.fields) raw.fields.push_back({f.name, f.offset, f.datatype});
+    raw.width = message.width, raw.height = message.height;
+    raw.pointStep = message.point_step, raw.rowStep = message.row_step;
+    raw.isBigEndian = message.is_bigendian;
+    raw.data = message.data.data(), raw.size = message.data.size();
+    std::string problem;
+    const auto cloud = cloudOf(raw, node.classField, m_map.classes(), problem);
+    if (!problem.empty()) warn(problem);
+    const auto time = mrpt::Clock::fromDouble(stamp.seconds());
+    m_seconds += m_clock.secondsUntil(time);
+    m_clock.note(time);
+    m_mapper.insert(cloud, T_robot_cloud, T_world_robot, m_seconds);
+    ++m_scans;
+    m_stamp = stamp;
+    if (node.slam) sayCorrection();
+  }
+
+  const std::string& worldFrame() const {
+    return m_parameters.node.slam ? m_parameters.node.odomFrame : m_parameters.node.mapFrame;
+  }
+
+  void sayCorrection() {
+    geometry_msgs::msg::TransformStamped correction =
+        tf2::eigenToTransform(m_mapper.T_map_odometry());
+    correction.header.stamp = m_stamp;
+    correction.header.frame_id = m_parameters.node.mapFrame;
+    correction.child_frame_id = worldFrame();
+    m_corrects.sendTransform(correction);
+  }
+
+  void publish() {
+    if (m_scans == m_published || m_says->get_subscription_count() == 0) return;
+    m_published = m_scans;
+    auto message = std::make_unique<PointCloud2>();
+    message->header.frame_id = m_parameters.node.mapFrame;
+    message->header.stamp = m_stamp;
+    using Field = sensor_msgs::msg::PointField;
+    sensor_msgs::PointCloud2Modifier fields(*message);
+    fields.setPointCloud2Fields(6, "x", 1, Field::FLOAT32, "y", 1, Field::FLOAT32, "z", 1,
+                                Field::FLOAT32, "rgb", 1, Field::UINT32, "label", 1, Field::UINT32,
+                                "probability", 1, Field::FLOAT32);
+    std::vector<std::uint8_t>& bytes = message->data;
+    for (auto leaf = m_map.begin_leafs(); leaf != m_map.end_leafs(); ++leaf) {
+      if (!m_map.isNodeOccupied(*leaf)) continue;
+      const auto state = m_map.query(*leaf);
+      const auto color = semantic_types::colorOf(state.likeliestClass, m_map.classes());
+      const struct {
+        float x, y, z;
+        std::uint32_t rgb, label;
+        float probability;
+      } point = {
+          float(leaf.getX()),   float(leaf.getY()),
+          float(leaf.getZ()),   std::uint32_t(color.r << 16 | color.g << 8 | color.b),
+          state.likeliestClass, float(state.likeliestClass ? state.probability : state.occupancy)};
+      const auto* begin = reinterpret_cast<const std::uint8_t*>(&point);
+      bytes.insert(bytes.end(), begin, begin + sizeof(point));
+    }
+    message->height = 1;
+    message->width = std::uint32_t(bytes.size() / message->point_step);
+    message->row_step = std::uint32_t(bytes.size());
+    message->is_dense = true;
+    m_says->publish(std::move(message));
+  }
+
+  std::string m_output;
+  std::vector<std::pair<std::string, std::string>> m_values;  ///< of parameters that were set
+  Parameters m_parameters;
+  semantic_octree::SemanticOcTree m_map;
+  semantic_slam::Mapper m_mapper;
+  semantic_map::ObservationClock m_clock;
+  std::deque<PointCloud2::ConstSharedPtr> m_waiting;
+  std::size_t m_bytes = 0;  ///< of those that wait
+  double m_seconds = 0;     ///< that passed, by the clouds
+  std::size_t m_scans = 0, m_published = 0;
+  rclcpp::Time m_stamp;  ///< of the last cloud
+  tf2_ros::Buffer m_transforms{get_clock()};
+  tf2_ros::TransformListener m_listener{m_transforms, this};
+  tf2_ros::TransformBroadcaster m_corrects{this};
+  rclcpp::Subscription<PointCloud2>::SharedPtr m_hears;
+  rclcpp::Publisher<PointCloud2>::SharedPtr m_says;
+  rclcpp::Service<std_srvs::srv::Trigger>::SharedPtr m_saves;
+  rclcpp::TimerBase::SharedPtr m_inserts, m_publishes;
+};
+
+}  // namespace semantic_map_ros2
+
+RCLCPP_COMPONENTS_REGISTER_NODE(semantic_map_ros2::SemanticMapComponent)
