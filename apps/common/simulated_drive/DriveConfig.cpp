@@ -104,7 +104,6 @@ void setSensor(DriveConfig& config) {
   }
   if (config.insertion.maxRange > 0)
     explore.sensor.range = std::min(explore.sensor.range, config.insertion.maxRange);
-  explore.radius = config.guide.frontierRadius;
 }
 
 void readPlanner(Sections& sections, const fs::path& folder,
@@ -127,8 +126,6 @@ void readDrive(Sections& sections, const fs::path& folder, DriveConfig& config) 
   config.drive.validate();
   if (reactive.empty()) section.fail("reactive: expected MRPT's .ini file");
   config.reactive = (folder / reactive).lexically_normal();
-  if (config.drive.turningRadius > config.planner.vehicle.turningRadius)
-    section.fail("turning_radius is larger than the planner's vehicle's");
 }
 
 }  // namespace
@@ -147,7 +144,7 @@ void SensorConfig::describe(OptionList& list) {
 semantic_slam::MapperOptions DriveConfig::mapping() const {
   semantic_slam::MapperOptions mapping;
   mapping.insertion = insertion;
-  mapping.localize = !pose.isExact() && pose.correct;
+  mapping.localize = !pose.isExact();
   mapping.slam = slam;
   mapping.slam.level = true;
   mapping.insertEvery = 3;  // it may wait for somebody to go away
@@ -171,7 +168,6 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     readPlanner(sections, file.parent_path(), config.planner);
     readDrive(sections, file.parent_path(), config);
     sections.readAll("guide", config.guide);
-    sections.readAll("obstacles", config.obstacles);
     sections.readAll("movers", config.movers);
     sections.readAll("focus", config.focus);
     sections.readAll("explore", config.explore);

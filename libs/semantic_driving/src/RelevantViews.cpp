@@ -1,3 +1,5 @@
+#include <semantic_driving/Explorer.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -215,7 +217,7 @@ const View& RelevantViews::firstOf(const std::vector<Candidate>& stops,
 
 std::optional<View> RelevantViews::next(const TPose2D& from, double z) {
   follow(from, z);
-  const GroundFlood flood(m_planner, from, m_ground.keyOf(z), m_options.radius);
+  const GroundFlood flood(m_planner, from, m_ground.keyOf(z), kFrontierRadius);
   const std::vector<Candidate> all = candidates(flood, from.phi);
   const std::vector<Candidate> stops = centers(all);
   m_left = 0;
@@ -272,12 +274,8 @@ std::unique_ptr<ViewStrategy> relevantViews(const SemanticPlanner& planner,
 }
 
 void ExploreOptions::describe(strict_files::OptionList& list) {
-  using strict_files::above;
-  list.add("budget", budget, "m", above(0).orInfinite(),
+  list.add("budget", budget, "m", strict_files::above(0).orInfinite(),
            "that it drives at most, looking around; inf: no limit");
-  list.add("left_share", leftShare, "", strict_files::between(0, 1),
-           "exploring ends when what is left within reach promises less than this share of what "
-           "was found and is left");
 }
 
 void ExploreOptions::validate() const { strict_files::checkOptions(*this, "ExploreOptions"); }
