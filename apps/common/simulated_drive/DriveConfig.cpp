@@ -95,7 +95,8 @@ void setSensor(DriveConfig& config) {
   semantic_driving::ExploreOptions& explore = config.explore;
   explore.sensorHeight = sensors.hasLidar ? kLidarHeight : kCameraHeight;
   if (sensors.hasLidar) {
-    explore.sensor = {sensors.lidar.maxRange, sensors.lidar.lowest, sensors.lidar.highest, 360};
+    const auto& lidar = sensors.lidar;
+    explore.sensor = {lidar.maxRange, lidar.lowest, lidar.highest, 360, lidar.rings, lidar.columns};
   } else {
     const auto& camera = sensors.camera;
     const double half = std::atan(camera.cy() / camera.focalLength()) * 180 / M_PI;

@@ -245,21 +245,24 @@ std::string RelevantViews::conclusion() const {
   return text;
 }
 
-/** What is left to see of a column: the ground and what stands on it where it is unknown, else its
- * surfaces. */
+/** What is left to see of a column: what may stand there, and the first ground from above, as far
+ * as these are unknown; of known surfaces, what another look tells. */
 double RelevantViews::left(Column c) {
-  constexpr int kBelow = 2;  // voxels
+  constexpr int kBelow = 10;  // voxels
   constexpr int kEdge = UnknownPatch::kEdge;
   if (!m_learned) return 0;
   const UnknownPatch& patch = m_learned->patch(c.x / kEdge, c.y / kEdge);
   double sum = 0;
-  for (int z = patch.ground - kBelow; z <= patch.top; ++z) {
-    const auto key = semantic_octree::octomapKey(c.x, c.y, z);
-    const auto known = m_field.at(key);
-    if (!known)
-      sum += patch.at(c.x, c.y, z).gain;
-    else if (known->pass < 0.5F)
-      sum += known->gain;
+  bool isBelowFree = false;
+  for (int z = patch.top; z >= patch.ground - kBelow; --z) {
+    const auto known = m_field.at(semantic_octree::octomapKey(c.x, c.y, z));
+    const Gain gain = known         ? *known
+                      : isBelowFree ? patch.belowFree(c.x, c.y, z)
+                                    : patch.at(c.x, c.y, z);
+    const bool isFree = gain.pass >= 0.5F;
+    if (!known || !isFree) sum += gain.gain;
+    if (!isFree && z <= patch.ground) break;
+    isBelowFree = known && isFree;
   }
   return sum;
 }
