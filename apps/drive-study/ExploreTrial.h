@@ -51,4 +51,9 @@ ExploreTrial explore(const simulated_drive::DriveConfig& config,
                      const synthetic_world::Scene& scene, const colored_graph::ClassOrder& order,
                      const ExploreTask& task, const mrpt::math::TPose2D& start, Exploring how);
 
+/** A line for each look: how much of the relevant ground was known after so many meters. */
+std::string toCsv(const std::vector<ExploreTrial>& trials);
+/** A table of strategies: medians of the meters to 50, 80 and 90 %, and how many came so far. */
+std::string toMarkdown(const std::vector<ExploreTrial>& trials);
+
 }  // namespace drive_study

@@ -1,10 +1,11 @@
 #include "Tasks.h"
 
+#include <synthetic_world/Solids.h>
+
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
-#include "TrueMap.h"
 #include "simulated_drive/DriveLoop.h"
 
 namespace drive_study {
@@ -12,11 +13,57 @@ namespace drive_study {
 using colored_graph::ClassOrder;
 using mrpt::math::TPose2D;
 using namespace semantic_planning;
+using semantic_types::LabeledCloud;
+using synthetic_world::PointTruth;
 using synthetic_world::World;
 
 namespace {
 
 constexpr std::array<std::size_t, 2> kVertices = {2000, 8000};  // of the oracle's graphs
+
+/** The centers of the voxels that something fills, column by column. */
+class TrueVoxels {
+ public:
+  TrueVoxels(const World& world, double voxelSize, double height)
+      : m_world(world),
+        m_voxelSize(voxelSize),
+        m_layers(static_cast<int>(std::ceil(height / voxelSize)) + 1) {}
+
+  LabeledCloud all() {
+    const int half = static_cast<int>(m_world.halfExtent() / m_voxelSize);
+    for (int y = -half; y < half; ++y)
+      for (int x = -half; x < half; ++x) addColumn(center(x), center(y));
+    return std::move(m_cloud);
+  }
+
+ private:
+  double center(int i) const { return (i + 0.5) * m_voxelSize; }
+
+  void add(double x, double y, double z, semantic_types::ClassId id) {
+    m_cloud.points.push_back(Eigen::Vector3d(x, y, z).cast<float>());
+    m_cloud.classes.push_back(id);
+  }
+
+  void addColumn(double x, double y) {
+    const int ground = static_cast<int>(std::floor(m_world.groundHeight(x, y) / m_voxelSize));
+    add(x, y, center(ground), m_world.groundClass(x, y));
+    for (int z = ground + 1; z <= ground + m_layers; ++z) {
+      const PointTruth truth = m_world.at({x, y, center(z)}, m_voxelSize / 2);
+      if (isThing(truth)) add(x, y, center(z), truth.id);
+    }
+  }
+
+  /** The ground is in its own voxel, and not in the one above that it nearly reaches. */
+  static bool isThing(const PointTruth& truth) {
+    return truth.state != PointTruth::State::Free &&
+           (truth.state != PointTruth::State::Surface || truth.id > synthetic_world::kWater);
+  }
+
+  const World& m_world;
+  double m_voxelSize;
+  int m_layers;
+  LabeledCloud m_cloud;
+};
 
 }  // namespace
 
@@ -45,9 +92,7 @@ TaskDraw::TaskDraw(const World& world, const ClassOrder& order, const VehicleOpt
   m_options.validate();
 }
 
-/** \param accepts whether a pose serves as the goal \param goal what it is, in words */
-template <class Accepts>
-Task TaskDraw::draw(Accepts accepts, const char* goal) {
+Task TaskDraw::next() {
   constexpr int kMostTries = 100000;
   for (int i = 0; i < kMostTries; ++i) {
     Task task;
@@ -55,31 +100,11 @@ Task TaskDraw::draw(Accepts accepts, const char* goal) {
     task.goal = anyPose();
     const double distance = std::hypot(task.goal.x - task.start.x, task.goal.y - task.start.y);
     if (distance < m_options.nearest || distance > m_options.farthest) continue;
-    if (isFree(task.start) && accepts(task.goal)) return task;
+    if (isFree(task.start) && isFree(task.goal)) return task;
   }
-  throw std::runtime_error("no start on free ground and goal " + std::string(goal) + ", " +
-                           std::to_string(m_options.nearest) + " to " +
-                           std::to_string(m_options.farthest) + " m apart, in " +
-                           std::to_string(kMostTries) + " draws");
-}
-
-Task TaskDraw::next() {
-  return draw([this](const TPose2D& pose) { return isFree(pose); }, "on free ground");
-}
-
-Task TaskDraw::nextUnfit() {
-  Task task = draw([this](const TPose2D& pose) { return isUnfit(pose); },
-                   "where the robot does not fit, beside free ground");
-  task.unfit = true;
-  task.reason = "the robot does not fit at the goal";
-  return task;
-}
-
-Task TaskDraw::nextEnclosed() {
-  Task task = next();
-  task.enclosed = true;
-  task.reason = "barriers all around the goal";
-  return task;
+  throw std::runtime_error(
+      "no start and goal on free ground, " + std::to_string(m_options.nearest) + " to " +
+      std::to_string(m_options.farthest) + " m apart, in " + std::to_string(kMostTries) + " draws");
 }
 
 TPose2D TaskDraw::anyPose() {
@@ -89,31 +114,25 @@ TPose2D TaskDraw::anyPose() {
   return {x, y, m_random.uniform(-M_PI, M_PI)};
 }
 
-bool TaskDraw::isAllowed(const TPose2D& pose, double clearance) const {
+bool TaskDraw::isFree(const TPose2D& pose) const {
   const auto isAllowedAt = [this](const mrpt::math::TPoint2D& p) {
     return m_order.rank(m_world.groundClass(p.x, p.y)) != colored_graph::kForbidden;
   };
   for (const Eigen::Vector2d& corner : m_footprint.outline) {
-    const Eigen::Vector2d far = corner + clearance * corner.cwiseSign();
+    const Eigen::Vector2d far = corner + m_options.clearance * corner.cwiseSign();
     if (!isAllowedAt(pose.composePoint({far.x(), far.y()}))) return false;
   }
-  return isAllowedAt({pose.x, pose.y});
-}
-
-bool TaskDraw::isFree(const TPose2D& pose) const {
-  return isAllowed(pose, m_options.clearance) &&
+  return isAllowedAt({pose.x, pose.y}) &&
          m_world.clearance(m_footprint, pose.x, pose.y, pose.phi) > m_options.clearance;
 }
 
-bool TaskDraw::isUnfit(const TPose2D& pose) {
-  constexpr int kTries = 20;
-  constexpr double kBeside = 2;  // m
-  if (isAllowed(pose, 0) && m_world.isFree(m_footprint, pose.x, pose.y, pose.phi)) return false;
-  for (int i = 0; i < kTries; ++i)
-    if (isFree({pose.x + m_random.uniform(-kBeside, kBeside),
-                pose.y + m_random.uniform(-kBeside, kBeside), pose.phi}))
-      return true;
-  return false;
+semantic_octree::SemanticOcTree trueMap(const World& world, double voxelSize, double height) {
+  LabeledCloud cloud = TrueVoxels(world, voxelSize, height).all();
+  semantic_octree::SemanticOcTree map(voxelSize, synthetic_world::classTable());
+  semantic_octree::InsertionOptions options;
+  options.carvingMargin = 1e6;  // nothing is carved: what is not filled stays unknown
+  map.insert(cloud, Eigen::Isometry3d::Identity(), options);
+  return map;
 }
 
 Oracle::Oracle(const World& world, const ClassOrder& order, const PlannerOptions& planner,
@@ -135,7 +154,7 @@ SemanticPlanner& Oracle::plannerWith(std::size_t vertices) {
 bool Oracle::accepts(const Task& task) {
   const SemanticPlanner& planner = plannerWith(kVertices.front());
   return planner.check(task.start) == PlanStatus::Found &&
-         (task.unfit || planner.check(task.goal) == PlanStatus::Found);
+         planner.check(task.goal) == PlanStatus::Found;
 }
 
 void Oracle::solve(Task& task) {

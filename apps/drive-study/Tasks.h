@@ -14,8 +14,6 @@ namespace drive_study {
 struct Task {
   mrpt::math::TPose2D start, goal;
   bool hasPath = false;
-  bool enclosed = false;               ///< by barriers around the goal
-  bool unfit = false;                  ///< the robot does not fit at the goal
   std::string reason;                  ///< why not
   double length = 0;                   ///< of the path, meters
   std::vector<double> lengthPerClass;  ///< of the path, meters over the true ground
@@ -31,8 +29,11 @@ struct TaskOptions {
   void validate() const;
 };
 
-/** How far the barriers around an enclosed goal are from it, meters. */
-constexpr double kBarriersAt = 3;
+/** The map that a robot would have that had seen the whole world from everywhere, without noise:
+ * the ground, and what of the things on it is lower than a vehicle.
+ * \param voxelSize meters \param height of the vehicle, meters */
+semantic_octree::SemanticOcTree trueMap(const synthetic_world::World& world, double voxelSize,
+                                        double height);
 
 /** Draws starts and goals on free, allowed ground of the true world. */
 class TaskDraw {
@@ -43,20 +44,10 @@ class TaskDraw {
 
   /** Without a path. \throw std::runtime_error the world has no such places. */
   Task next();
-  /** With barriers all around the goal, and so without a path. \throw std::runtime_error as above
-   */
-  Task nextEnclosed();
-  /** To a goal beside free ground where the robot would touch something, or stand on forbidden
-   * ground, and so without a path. \throw std::runtime_error as above */
-  Task nextUnfit();
 
  private:
   mrpt::math::TPose2D anyPose();
-  template <class Accepts>
-  Task draw(Accepts accepts, const char* goal);
-  bool isAllowed(const mrpt::math::TPose2D& pose, double clearance) const;
   bool isFree(const mrpt::math::TPose2D& pose) const;
-  bool isUnfit(const mrpt::math::TPose2D& pose);
 
   const synthetic_world::World& m_world;
   const colored_graph::ClassOrder& m_order;
@@ -72,8 +63,7 @@ class Oracle {
   Oracle(const synthetic_world::World& world, const colored_graph::ClassOrder& order,
          const semantic_planning::PlannerOptions& planner, double voxelSize);
 
-  /** Whether the robot could stand at start and goal if it knew everything; if the task is unfit,
-   * whether at the start only. */
+  /** Whether the robot could stand at start and goal if it knew everything. */
   bool accepts(const Task& task);
   /** Sets the task's path, or why there is none. */
   void solve(Task& task);

@@ -1,6 +1,10 @@
 #include "Trial.h"
 
+#include <strict_files/TextFile.h>
+
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "measuring/Quantile.h"
@@ -9,33 +13,9 @@
 namespace drive_study {
 
 using namespace simulated_drive;
+using strict_files::csvField;
 
 namespace {
-
-/** Notes when a sensor first saw the goal's place, near enough for the map. */
-class GoalWatch : public DriveObserver {
- public:
-  void onSensed(const DriveLoop& loop, const std::vector<Observation>& seen) override {
-    for (const Observation& o : seen)
-      if (m_seenAt < 0 && shows(o, loop)) m_seenAt = loop.time();
-  }
-  double seenAt() const { return m_seenAt; }
-
- private:
-  static bool shows(const Observation& o, const DriveLoop& loop) {
-    constexpr double kNear = 0.3;  // m
-    const Eigen::Isometry3d T_world_sensor = loop.T_world_robot() * o.T_robot_sensor;
-    const Eigen::Vector2d goal(loop.goal().x, loop.goal().y);
-    const double far = loop.config().insertion.maxRange;
-    return std::any_of(o.cloud.points.begin(), o.cloud.points.end(),
-                       [&](const Eigen::Vector3f& point) {
-                         const Eigen::Vector3d p = T_world_sensor * point.cast<double>();
-                         return point.norm() <= far && (p.head<2>() - goal).norm() < kNear;
-                       });
-  }
-
-  double m_seenAt = -1;
-};
 
 /** Milliseconds from a scan to the path that follows from it. */
 std::vector<double> cyclesOf(const DriveRecord& record) {
@@ -47,16 +27,55 @@ std::vector<double> cyclesOf(const DriveRecord& record) {
   return cycles;
 }
 
+/** A number of each drive. */
+struct Column {
+  const char* name;
+  double (*of)(const Trial&);
+};
+
+double degrees(double radians) { return radians * 180 / M_PI; }
+
+const std::vector<Column>& columns() {
+  using T = const Trial&;
+  static const std::vector<Column> columns = {
+      {"start_x", [](T t) { return t.task.start.x; }},
+      {"start_y", [](T t) { return t.task.start.y; }},
+      {"start_deg", [](T t) { return degrees(t.task.start.phi); }},
+      {"goal_x", [](T t) { return t.task.goal.x; }},
+      {"goal_y", [](T t) { return t.task.goal.y; }},
+      {"goal_deg", [](T t) { return degrees(t.task.goal.phi); }},
+      {"path_length", [](T t) { return t.task.length; }},
+      {"path_worse", [](T t) { return t.badBest; }},
+      {"seconds", [](T t) { return t.seconds; }},
+      {"length", [](T t) { return t.length; }},
+      {"worse", [](T t) { return t.badDriven; }},
+      {"worse_planned", [](T t) { return t.badFollowed; }},
+      {"collisions", [](T t) { return double(t.collisions); }},
+      {"clearance", [](T t) { return t.leastClearance; }},
+      {"replans", [](T t) { return double(t.replans); }},
+      {"explored", [](T t) { return double(t.explored); }},
+      {"jerk", [](T t) { return t.smooth.jerk; }},
+      {"backwards", [](T t) { return t.smooth.backwards; }},
+      {"longest_backwards", [](T t) { return t.smooth.longestBackwards; }},
+      {"gear_changes", [](T t) { return double(t.smooth.gearChanges); }},
+      {"turn_changes", [](T t) { return double(t.smooth.turnChanges); }},
+      {"path_turn_changes", [](T t) { return double(t.smooth.pathTurnChanges); }},
+      {"pose_error", [](T t) { return t.poseErrors.mean; }},
+      {"largest_pose_error", [](T t) { return t.poseErrors.largest; }},
+      {"odometry_error", [](T t) { return t.odometryErrors.mean; }},
+      {"cycle", [](T t) { return t.cycle; }},
+      {"slow_cycle", [](T t) { return t.slowCycle; }},
+      {"leaves", [](T t) { return t.leaves; }},
+      {"processor", [](T t) { return t.processorSeconds; }}};
+  return columns;
+}
+
 }  // namespace
 
 std::string Trial::fault() const {
-  constexpr double kAtOnce = 15;                // s
   constexpr double kMore = 1.05, kVoxel = 0.2;  // m: lengths are no better known
   if (collisions > 0) return "collision";
   if (task.hasPath && end != DriveEnd::Arrived) return "did not arrive";
-  if (task.unfit && end == DriveEnd::Arrived) return "arrived where it does not fit";
-  if (task.unfit && seenAt >= 0 && refusedAt > seenAt + kAtOnce)
-    return "said late that the goal does not fit";
   if (!task.hasPath && end == DriveEnd::TimeLimit) return "did not say that there is no path";
   if (badDriven > kMore * badFollowed + kVoxel) return "left its path for worse classes";
   return {};
@@ -65,19 +84,12 @@ std::string Trial::fault() const {
 Trial runTrial(const DriveConfig& config, synthetic_world::World& world,
                const colored_graph::ClassOrder& order, const Task& task) {
   const measuring::Stopwatch watch(measuring::TimeOf::Thread);
-  Events events;
-  if (task.enclosed) events.roadblocks = barriersAround({task.goal.x, task.goal.y}, kBarriersAt);
-  DriveLoop loop(config, world, order, task.start, task.goal, events);
-  GoalWatch watchGoal;
-  loop.addObserver(watchGoal);
+  DriveLoop loop(config, world, order, task.start, task.goal, {});
   const DriveRecord& record = loop.run();
-  world.setMovables({});
   Trial trial;
   trial.task = task;
   trial.end = record.end;
   trial.reason = record.reason;
-  trial.seenAt = watchGoal.seenAt();
-  if (record.refusal) trial.refusedAt = record.refusal->seconds;
   trial.explored = std::as_const(loop).guide().explored();
   trial.seconds = record.duration();
   trial.length = record.length;
@@ -97,6 +109,21 @@ Trial runTrial(const DriveConfig& config, synthetic_world::World& world,
   if (!record.leaves.empty()) trial.leaves = measuring::quantile(record.leaves, 0.5);
   trial.processorSeconds = watch.milliseconds() / 1e3;
   return trial;
+}
+
+std::string toCsv(const std::vector<Trial>& trials) {
+  std::ostringstream out;
+  out << "scene,number,path,end,fault,why_no_path,reason";
+  for (const Column& column : columns()) out << ',' << column.name;
+  for (const Trial& t : trials) {
+    out << '\n'
+        << t.scene << ',' << t.number << ',' << (t.task.hasPath ? "yes" : "no") << ','
+        << nameOf(t.end) << ',' << t.fault() << ',' << csvField(t.task.reason) << ','
+        << csvField(t.reason);
+    for (const Column& column : columns()) out << ',' << column.of(t);
+  }
+  out << '\n';
+  return out.str();
 }
 
 }  // namespace drive_study

@@ -11,14 +11,13 @@
 
 #include "Application.h"
 #include "Choice.h"
-#include "ExploreFiles.h"
-#include "JsonFile.h"
+#include "ExploreTrial.h"
 #include "NumberChecks.h"
 #include "OptionFlags.h"
 #include "Outputs.h"
 #include "Signals.h"
 #include "StandardOutput.h"
-#include "StudyFiles.h"
+#include "Trial.h"
 
 namespace drive_study {
 namespace {
@@ -27,14 +26,13 @@ namespace fs = std::filesystem;
 
 constexpr int kFaults = 2;              // exit status
 constexpr double kStartsWithin = 0.84;  // of how far exploring goes from the world's middle
-const std::vector<std::string> kFiles = {"study.csv", "study.json", "exploration.csv",
-                                         "exploration.md"};
+const std::vector<std::string> kFiles = {"study.csv", "exploration.csv", "exploration.md"};
 
 struct Cli {
   fs::path classes, config, output, weights;
   std::string solution;
   std::vector<std::string> scenes = synthetic_world::sceneNames();
-  int pairs = 20, enclosed = 0, unfit = 0;
+  int pairs = 20;
   std::vector<int> only;
   bool explore = false;
   std::uint64_t sceneSeed = 1;
@@ -47,12 +45,6 @@ struct Cli {
         ->delimiter(',')
         ->capture_default_str();
     app.add_option("--pairs", pairs, "Drives in each world, from a random start to a random goal")
-        ->check(isNumber(strict_files::atLeast(0)))
-        ->capture_default_str();
-    app.add_option("--enclosed", enclosed, "More drives, with barriers all around the goal")
-        ->check(isNumber(strict_files::atLeast(0)))
-        ->capture_default_str();
-    app.add_option("--unfit", unfit, "More drives, to goals where the robot does not fit")
         ->check(isNumber(strict_files::atLeast(0)))
         ->capture_default_str();
     app.add_option("--only", only, "Numbers of the drives to do (0, 1, ...); without: all")
@@ -93,15 +85,11 @@ void studyScene(const std::string& name, const Cli& cli, const simulated_drive::
   const auto order = semantic_planning::loadClassOrder(cli.classes, synthetic_world::classTable());
   TaskDraw draw(scene.world, order, config.planner.vehicle, cli.tasks);
   Oracle oracle(scene.world, order, config.planner, config.voxelSize);
-  const int fitting = cli.pairs + cli.enclosed;
-  for (int i = 0; i < fitting + cli.unfit && !stop.pending(); ++i) {
-    const auto drawn = [&] {
-      return i < cli.pairs ? draw.next() : i < fitting ? draw.nextEnclosed() : draw.nextUnfit();
-    };
-    Task task = drawn();
-    while (!oracle.accepts(task)) task = drawn();
+  for (int i = 0; i < cli.pairs && !stop.pending(); ++i) {
+    Task task = draw.next();
+    while (!oracle.accepts(task)) task = draw.next();
     if (!cli.wants(i)) continue;
-    if (!task.enclosed && !task.unfit) oracle.solve(task);
+    oracle.solve(task);
     simulated_drive::DriveConfig itsOwn = config;
     itsOwn.sensors.seed = cli.tasks.seed + static_cast<std::uint64_t>(i);
     Trial trial = runTrial(itsOwn, scene.world, order, task);
@@ -175,11 +163,10 @@ int run(const Cli& cli) {
   strict_files::OutputFolder output(cli.output);
   std::vector<Trial> trials;
   for (const std::string& scene : cli.scenes) studyScene(scene, cli, config, stop, trials);
-  const nlohmann::ordered_json study = toJson(trials);
   strict_files::writeText(output.staged("study.csv"), toCsv(trials));
-  writeJson(output.staged("study.json"), study);
   output.commit(kFiles);
-  const int faults = study["all"]["faults"];
+  const auto faults = std::count_if(trials.begin(), trials.end(),
+                                    [](const Trial& t) { return !t.fault().empty(); });
   notes() << faults << " of " << trials.size() << " drives with a fault\n";
   return faults == 0 ? 0 : kFaults;
 }

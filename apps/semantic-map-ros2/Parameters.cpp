@@ -118,7 +118,7 @@ Parameters read(const Source& source) {
   Parameters p;
   auto& n = p.navigation;
   strict_files::checkSections(source, {kNode, "map", "insertion", "abstraction", "slam", "planner",
-                                       "drive", "guide", "obstacles", "movers", "focus"});
+                                       "drive", "guide", "movers", "focus"});
   strict_files::readSection(source, kNode, p.node);
   strict_files::readSection(source, "map", p.map);
   strict_files::readSection(source, "insertion", p.insertion);
@@ -127,7 +127,6 @@ Parameters read(const Source& source) {
   readPlanner(source, n.planner);
   readDrive(source, n);
   strict_files::readSection(source, "guide", n.guide);
-  strict_files::readSection(source, "obstacles", n.obstacles);
   strict_files::readSection(source, "movers", n.movers);
   strict_files::readSection(source, "focus", n.focus);
   if (p.node.drive && (p.node.order.empty() || n.reactive.empty()))

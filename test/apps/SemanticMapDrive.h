@@ -31,8 +31,8 @@ class SemanticMapDrive : public testing::Test {
   std::string configWith(const std::string& lines) const {
     return folder
         .write("drive.ini", "[planner]\nvehicle = " + kConfig +
-                                "vehicles/robot.yaml\nkeepOff = 1\n" + "[drive]\nreactive = " +
-                                kConfig + "reactive/robot.ini\n" + "turningRadius = 0.8\n" + lines)
+                                "vehicles/robot.yaml\nkeepOff = 1\n" +
+                                "[drive]\nreactive = " + kConfig + "reactive/robot.ini\n" + lines)
         .string();
   }
 

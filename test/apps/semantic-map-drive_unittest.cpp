@@ -49,10 +49,11 @@ TEST_F(SemanticMapDrive, WritesARawlogThatBecomesAMap) {
 }
 
 TEST_F(SemanticMapDrive, ArrivesWithObstaclesOfTheCompressedTreeAndLogsWhatTheNavigatorDid) {
-  const std::string config = configWith("alwaysReactive = 1\ncompressedObstacles = 1\n");
-  const ProgramRun run = runProgram(
-      "semantic-map-drive",
-      argumentsWith({"--config", config, "--output", path("drive"), "--no-rawlog", "--navlog"}));
+  const std::string config = configWith("compressedObstacles = 1\n");
+  const ProgramRun run =
+      runProgram("semantic-map-drive",
+                 argumentsWith({"--config", config, "--output", path("drive"), "--no-rawlog",
+                                "--navlog", "--person", "0,-9.5,-18.6,-9.5,-18.6"}));
   ASSERT_EQ(run.status, 0) << run.output << run.errors;
   EXPECT_EQ(jsonIn("drive/drive.json")["collisions"], 0);
   CompressedInput file(path("drive/drive.reactivenavlog"));

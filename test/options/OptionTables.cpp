@@ -127,7 +127,6 @@ std::vector<OptionTable> drivingTables() {
   return {
       table<DriveOptions>("Driving", "`[drive]` of `semantic-map-drive` and `drive-study`."),
       table<GuideOptions>("Which path is driven", "`[guide]`."),
-      table<ObstacleOptions>("Obstacles", "`[obstacles]`."),
       table<MoverOptions>("Those who move", "`[movers]`."),
       table<FocusOptions>("Detail along the path",
                           "`[focus]`. What it brings: "
@@ -141,7 +140,7 @@ std::vector<OptionTable> drivingTables() {
           "ROS 2",
           "Parameters of `semantic-map-ros2`, which takes `map`, `insertion`, `abstraction`, "
           "`slam`, "
-          "`planner`, `drive`, `guide`, `obstacles`, `movers` and `focus` of the above, too: "
+          "`planner`, `drive`, `guide`, `movers` and `focus` of the above, too: "
           "`insertion.max_range`. See [a live map in ROS 2](ros2.md)."),
   };
 }

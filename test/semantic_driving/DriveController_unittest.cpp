@@ -1,12 +1,10 @@
 #include <gtest/gtest.h>
-#include <mrpt/config/CConfigFile.h>
 #include <mrpt/core/Clock.h>
 #include <semantic_driving/DriveController.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "TemporaryFolder.h"
 #include "simulated_drive/SimulatedRobot.h"
 
 using namespace semantic_driving;
@@ -66,14 +64,7 @@ ObstaclePoints seenFrom(const mrpt::math::TPose2D& pose, const ObstaclePoints& o
 
 class Drive {
  public:
-  Drive() : m_robot({0, 0, 0}, onlyAround()) {
-    mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
-  }
-  static DriveOptions onlyAround() {
-    DriveOptions options;
-    options.alwaysReactive = false;
-    return options;
-  }
+  Drive() : m_robot({0, 0, 0}, {}) { mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated); }
 
   const DriveState& state() const { return m_robot.state(); }
   bool collided() const { return m_collided; }
@@ -98,7 +89,7 @@ class Drive {
 }  // namespace
 
 TEST(DriveController, PassesAPersonByTheReactiveNavigatorWithoutANewPath) {
-  DriveController controller(Drive::onlyAround(), robotIni());
+  DriveController controller({}, robotIni());
   controller.setPath(straight());
   Drive drive;
   int reactiveSteps = 0;
@@ -114,32 +105,10 @@ TEST(DriveController, PassesAPersonByTheReactiveNavigatorWithoutANewPath) {
   EXPECT_NEAR(drive.state().pose.y, 0, 0.3);
 }
 
-TEST(DriveController, DrivesAFreeWayOnWhichTheReactiveNavigatorStands) {
-  const TemporaryFolder folder;
-  ReactiveNavigator::Options reactive = robotIni();
-  std::filesystem::copy_file(reactive.config, folder / "stands.ini");
-  reactive.config = folder / "stands.ini";
-  mrpt::config::CConfigFile(reactive.config.string())
-      .write("CHolonomicFullEval", "TOO_CLOSE_OBSTACLE", 2);  // everything is too close
-  DriveController controller({}, reactive);
-  controller.setPath(straight());
-  Drive drive;
-  int reactiveSteps = 0;
-  drive.run(
-      [&](const ObstaclePoints& seen, double seconds) {
-        const DriveCommand command = controller.step(drive.state(), seen, 0, seconds);
-        reactiveSteps += controller.driver() == DriveController::Driver::Reactive ? 1 : 0;
-        return command;
-      },
-      {});
-  EXPECT_TRUE(controller.tracker().finished());
-  EXPECT_NEAR(reactiveSteps, 10, 2);  // for a second
-}
-
 TEST(PathTracker, DoesNotSteerTheOtherWayAfterABend) {
   for (const double speed : {0.6, 0.8, 1.2})
     for (const double angle : {0.3, 0.8, 1.6, 2.5}) {
-      DriveOptions options = Drive::onlyAround();
+      DriveOptions options;
       options.maxSpeed = speed;
       DriveController controller(options, robotIni());
       controller.setPath(bend(1.1, angle));
@@ -160,7 +129,7 @@ TEST(PathTracker, DoesNotSteerTheOtherWayAfterABend) {
 }
 
 TEST(PathTracker, AloneStandsBeforeAPerson) {
-  PathTracker tracker(Drive::onlyAround(), kRobotFootprint);
+  PathTracker tracker({}, kRobotFootprint);
   tracker.setPath(straight());
   Drive drive;
   drive.run([&](const ObstaclePoints& seen, double) {

@@ -107,21 +107,39 @@ TEST(DriveOptions, SpeedsOfClassesFollowTheOrder) {
 TEST(DriveOptions, AreReadFromTheirSections) {
   const auto config = loaded(
       "max_speed = 0.5\ncontrol_period = 0.05\n[guide]\nat_goal = 0.2\n"
-      "frontier_radius = 20\n[obstacles]\nradius = 5\n[pose]\nturn_noise = 2\n[slam]\nmax_range = "
+      "patience = 3\n[pose]\nturn_noise = 2\n[slam]\nmax_range = "
       "20\n");
   EXPECT_EQ(config.drive.maxSpeed, 0.5);
   EXPECT_EQ(config.controlPeriod, 0.05);
   EXPECT_EQ(config.guide.atGoal, 0.2);
-  EXPECT_EQ(config.guide.frontierRadius, 20);
-  EXPECT_EQ(config.obstacles.radius, 5);
+  EXPECT_EQ(config.guide.patience, 3);
   EXPECT_EQ(config.pose.turnNoise, 2);
   EXPECT_EQ(config.slam.maxRange, 20);
 }
 
 TEST(DriveOptions, AreReadInMrptsWayOfWritingToo) {
-  const auto config = loaded("maxSpeed = 0.5\nalwaysReactive = 0\n");
+  const auto config = loaded("maxSpeed = 0.5\ncompressedObstacles = 1\n");
   EXPECT_EQ(config.drive.maxSpeed, 0.5);
-  EXPECT_FALSE(config.drive.alwaysReactive);
+  EXPECT_TRUE(config.compressedObstacles);
+}
+
+TEST(DriveOptions, WhatTheVehicleAndTheMapSayTheyFollow) {
+  DriveOptions options;
+  options.setFor(4, 0.05);
+  EXPECT_LT(options.turningRadius, 4);
+  EXPECT_EQ(options.margin, 0.025);
+  for (const double speed : {0.3, 1.2, 8.0})
+    for (const double acceleration : {0.2, 0.8, 3.0}) {
+      options.maxSpeed = speed, options.maxAcceleration = acceleration;
+      EXPECT_GT(options.lookAhead(), restingWay(speed, options) + speed * options.reactionTime);
+      EXPECT_GT(options.lookAhead(), 2 * options.turningRadius);
+    }
+  semantic_navigation::NavigatorOptions navigation;
+  navigation.drive.maxSpeed = 8;
+  navigation.setFor(0.2);
+  EXPECT_GT(navigation.obstacleRadius(), navigation.drive.lookAhead());
+  EXPECT_GT(navigation.movers.radius, navigation.obstacleRadius());
+  EXPECT_GT(navigation.focus.around, navigation.obstacleRadius());
 }
 
 TEST(DriveOptions, SaysWhatIsWrongInAConfiguration) {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "PlainDrives.h"
-#include "TrueMap.h"
+#include "Tasks.h"
 #include "simulated_drive/DriveFiles.h"
 
 using namespace plain_drives;
@@ -204,7 +204,7 @@ TEST(Drives, GetAroundAPersonWhoStepsInFrontAndStays) {
 TEST(Drives, LeaveAPersonToTheReactiveNavigatorWithoutANewPlan) {
   World world = plain();
   DriveConfig config = smallConfig();
-  config.guide.period = config.guide.patience = config.timeLimit;  // no other plan than the first
+  config.guide.patience = config.timeLimit;  // no other plan than the first
   const TPose2D start(-6, 0, 0), goal(3, 0, 0);
   const auto driveKnowing = [&](const Events& events) {  // the ground, but for the person
     DriveLoop loop(config, world, syntheticOrder(), start, goal, events,
@@ -222,28 +222,6 @@ TEST(Drives, LeaveAPersonToTheReactiveNavigatorWithoutANewPlan) {
   EXPECT_TRUE(std::any_of(record.rows.begin(), record.rows.end(), [](const DriveRow& row) {
     return row.driver == DriveController::Driver::Reactive;
   }));
-}
-
-TEST(Drives, AreSteeredByMrptsNavigatorOnTheSameClassesIfItIsAskedAlways) {
-  auto scene = synthetic_world::makeScene("village", 1);
-  const TPose2D start(-14, -19, 0.17), goal(25, -12, M_PI / 2);
-  DriveConfig config = smallConfig();
-  const DriveRecord tracked = drive(scene.world, start, goal, {}, config);
-  config.drive.alwaysReactive = true;
-  config.drive.exactEnd = 1;
-  const DriveRecord record = drive(scene.world, start, goal, {}, config);
-  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
-  EXPECT_EQ(record.collisions, 0);
-  double forward = 0, reactive = 0;
-  for (const DriveRow& row : record.rows) {
-    forward += std::max(0.0, row.speed);
-    if (row.driver == DriveController::Driver::Reactive) reactive += std::max(0.0, row.speed);
-  }
-  EXPECT_GE(reactive, 0.9 * forward);
-  const auto order = syntheticOrder();
-  constexpr double kVoxel = 0.2;  // m: lengths are no better known
-  EXPECT_LE(badLength(record.drivenPerClass, order),
-            1.05 * badLength(tracked.drivenPerClass, order) + kVoxel);
 }
 
 TEST(Drives, TakeAnotherWayWhenTheRoadIsBlocked) {
@@ -273,7 +251,7 @@ TEST(Drives, KeepJerkAndSteeringWithinTheirLimitsAndGoSlowlyOnGrass) {
     const DriveRow &a = record.rows[i - 1], &b = record.rows[i];
     if (std::abs(a.speed) > 0.3 && a.speed * b.speed > 0) {
       EXPECT_LT(std::abs(b.turn / b.speed - a.turn / a.speed),
-                config.drive.maxSteeringRate * 0.1 * 1.5)
+                config.drive.steeringRate() * 0.1 * 1.5)
           << b.time;
     }
     if (b.classId == synthetic_world::kGrass && std::abs(b.pose.y) > 3.5)

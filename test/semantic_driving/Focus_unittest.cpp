@@ -18,7 +18,7 @@ namespace {
 
 FocusOptions someFocus() {
   FocusOptions focus;
-  focus.corridor = 1.5, focus.around = 4, focus.obstacles = true;
+  focus.corridor = 1.5, focus.around = 4;
   return focus;
 }
 
@@ -52,12 +52,10 @@ double densityAt(const std::vector<Region>& regions, double x, double y) {
 /** Compares the compressed tree with one made of the same map anew, and with one without focus. */
 class FromScratch : public simulated_drive::DriveObserver {
  public:
-  explicit FromScratch(const FocusOptions& focus) : m_focus(focus) {}
-
   void onSensed(const DriveLoop& loop, const std::vector<simulated_drive::Observation>&) override {
     SemanticOcTree anew = loop.mapper().map();
     auto options =
-        semantic_planning::abstractionFor(syntheticOrder(), m_focus.alpha, m_focus.obstacles);
+        semantic_planning::abstractionFor(syntheticOrder(), tree_abstraction::kPlanningAlpha, true);
     options.regions = semantic_octree::Abstraction(anew).options().regions;
     dropAbstraction(anew);
     setAbstraction(anew, options);
@@ -71,9 +69,6 @@ class FromScratch : public simulated_drive::DriveObserver {
 
   int compared = 0, same = 0;
   std::size_t corridors = 0, leaves = 0, leavesWithout = 0;
-
- private:
-  FocusOptions m_focus;
 };
 
 }  // namespace
@@ -113,7 +108,7 @@ TEST(Focus, MovesWithTheDriveAndTheTreeIsThatOfTheMapCompressedAnewToTheLastBit)
   addWall(solids, {0, -6}, {0, -1});
   synthetic_world::World world = plain(solids);
   DriveLoop loop(config, world, syntheticOrder(), {-8, -2, 0}, {8, -2, 0}, {});
-  FromScratch fromScratch(someFocus());
+  FromScratch fromScratch;
   loop.addObserver(fromScratch);
   const auto record = loop.run();
   EXPECT_TRUE(record.arrived()) << record.reason;

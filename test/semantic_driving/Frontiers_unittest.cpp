@@ -195,7 +195,7 @@ TEST_F(Frontiers, AreNotLookedForAgain) {
 TEST_F(Frontiers, FarFromAGoalThatIsReachedAreOfNoUseToWhoWasThere) {
   world.floor(-12, 12, -12, 12, PaintedWorld::Road);
   SemanticPlanner planner = plannerOver(world);
-  Explorer explorer(planner, 80);
+  Explorer explorer(planner);
   const TPose2D goal(0.1, 0.1, 0), far(-11, 0.1, 0), near(2, 0.1, 0);
   EXPECT_FALSE(explorer.places(far, 0, goal).frontiers.empty());
   EXPECT_FALSE(explorer.exhausted());

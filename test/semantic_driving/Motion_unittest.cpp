@@ -20,7 +20,7 @@ TEST(Motion, KeepsToItsLimitsWhateverIsWanted) {
   EXPECT_TRUE(rc::check([] {
     DriveOptions limits;
     limits.maxJerk = between(0.5, 10);
-    limits.maxSteeringRate = between(0.2, 5);
+    limits.turningRadius = between(0.3, 8);
     limits.maxAcceleration = between(0.3, 3);
     Motion motion;
     for (int i = 0; i < 60; ++i) {
@@ -30,7 +30,7 @@ TEST(Motion, KeepsToItsLimitsWhateverIsWanted) {
       RC_ASSERT(std::abs(now.acceleration - motion.acceleration) <=
                 limits.maxJerk * kPeriod + 1e-9);
       RC_ASSERT(std::abs(now.curvature - motion.curvature) <=
-                limits.maxSteeringRate * kPeriod + 1e-9);
+                limits.steeringRate() * kPeriod + 1e-9);
       RC_ASSERT(std::abs(now.speed - motion.speed - now.acceleration * kPeriod) <= 1e-9);
       motion = now;
     }

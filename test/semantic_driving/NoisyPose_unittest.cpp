@@ -13,11 +13,10 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-DriveConfig noisyConfig(bool correct = true) {
+DriveConfig noisyConfig() {
   DriveConfig config = smallConfig();
   config.pose.odometryNoise = 0.1;
   config.pose.turnNoise = 3;
-  config.pose.correct = correct;
   config.sensors.seed = 2;
   return config;
 }
@@ -97,13 +96,6 @@ TEST(NoisyPose, IsInTheFrameOfTheMapWithWhichItBegins) {
   EXPECT_NEAR(last.believed.y - last.pose.y, -0.2, 0.1);
 }
 
-TEST(NoisyPose, WithoutCorrectionIsThatOfOdometry) {
-  const DriveRecord record = drive(noisyConfig(false));
-  const double error = largestError(record, &DriveRow::believed);
-  EXPECT_EQ(error, largestError(record, &DriveRow::odometry));
-  EXPECT_GT(error, 2 * largestError(drive(noisyConfig()), &DriveRow::believed));
-}
-
 TEST(NoisyPose, IsTheSameEachTime) {
   DriveConfig config = noisyConfig();
   config.timeLimit = 5;
@@ -120,8 +112,6 @@ TEST(NoisyPose, WithoutNoiseIsExact) {
   EXPECT_EQ(largestError(exact, &DriveRow::believed), 0);
   EXPECT_EQ(exact.times.count("localize"), 0u);
   EXPECT_FALSE(toJson(exact, syntheticOrder()).contains("poseError"));
-  config.pose.correct = false;
-  EXPECT_EQ(toCsv(exact), toCsv(drive(config)));
 }
 
 TEST(NoisyPose, RefusesBadOptions) {

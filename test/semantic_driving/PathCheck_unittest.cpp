@@ -43,8 +43,7 @@ PathJudgment judged(std::vector<double> perRank) {
 }
 
 bool isBetter(const PathJudgment& path, const PathJudgment& other) {
-  constexpr double kLongBackwards = 4;  // m
-  return path.isClearlyBetterThan(other, kLongBackwards);
+  return path.isClearlyBetterThan(other);
 }
 
 }  // namespace

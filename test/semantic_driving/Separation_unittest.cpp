@@ -78,7 +78,6 @@ struct Outcome {
 DriveOptions options() {
   DriveOptions options;
   options.maxSpeed = 1.2;
-  options.alwaysReactive = false;
   return options;
 }
 

@@ -95,7 +95,8 @@ void setSensor(DriveConfig& config) {
   semantic_driving::ExploreOptions& explore = config.explore;
   explore.sensorHeight = sensors.hasLidar ? kLidarHeight : kCameraHeight;
   if (sensors.hasLidar) {
-    explore.sensor = {sensors.lidar.maxRange, sensors.lidar.lowest, sensors.lidar.highest, 360};
+    const auto& lidar = sensors.lidar;
+    explore.sensor = {lidar.maxRange, lidar.lowest, lidar.highest, 360, lidar.rings, lidar.columns};
   } else {
     const auto& camera = sensors.camera;
     const double half = std::atan(camera.cy() / camera.focalLength()) * 180 / M_PI;
@@ -104,7 +105,6 @@ void setSensor(DriveConfig& config) {
   }
   if (config.insertion.maxRange > 0)
     explore.sensor.range = std::min(explore.sensor.range, config.insertion.maxRange);
-  explore.radius = config.guide.frontierRadius;
 }
 
 void readPlanner(Sections& sections, const fs::path& folder,
@@ -127,8 +127,6 @@ void readDrive(Sections& sections, const fs::path& folder, DriveConfig& config) 
   config.drive.validate();
   if (reactive.empty()) section.fail("reactive: expected MRPT's .ini file");
   config.reactive = (folder / reactive).lexically_normal();
-  if (config.drive.turningRadius > config.planner.vehicle.turningRadius)
-    section.fail("turning_radius is larger than the planner's vehicle's");
 }
 
 }  // namespace
@@ -147,7 +145,7 @@ void SensorConfig::describe(OptionList& list) {
 semantic_slam::MapperOptions DriveConfig::mapping() const {
   semantic_slam::MapperOptions mapping;
   mapping.insertion = insertion;
-  mapping.localize = !pose.isExact() && pose.correct;
+  mapping.localize = !pose.isExact();
   mapping.slam = slam;
   mapping.slam.level = true;
   mapping.insertEvery = 3;  // it may wait for somebody to go away
@@ -171,7 +169,6 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     readPlanner(sections, file.parent_path(), config.planner);
     readDrive(sections, file.parent_path(), config);
     sections.readAll("guide", config.guide);
-    sections.readAll("obstacles", config.obstacles);
     sections.readAll("movers", config.movers);
     sections.readAll("focus", config.focus);
     sections.readAll("explore", config.explore);

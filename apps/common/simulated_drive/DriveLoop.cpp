@@ -81,7 +81,7 @@ DriveLoop::DriveLoop(const DriveConfig& config, synthetic_world::World& world,
       m_map(prepared(std::move(map), config)),
       m_mapper(m_map->tree(), config.mapping()),
       m_navigator(m_mapper, order, withLogs(config, navlogs)),
-      m_robot(start, config.drive),
+      m_robot(start, m_navigator.controller().tracker().options()),
       m_odometry(start, config.pose, config.sensors.seed),
       m_footprint(trueFootprint(config.planner.vehicle)) {
   m_navigator.onStage([this](const auto& stage, double ms) { note(stage, ms); });

@@ -12,7 +12,6 @@ void PoseOptions::describe(strict_files::OptionList& list) {
            "standard deviation of the way after a meter; grows with its square root");
   list.add("turn_noise", turnNoise, "degrees", between(0, 90),
            "of the heading after a meter; grows alike");
-  list.add("correct", correct, "", "by SLAM; or odometry alone");
 }
 
 void PoseOptions::validate() const { strict_files::checkOptions(*this, "PoseOptions"); }

@@ -13,7 +13,6 @@ struct PoseOptions {
    * square root of the way. */
   double odometryNoise = 0;
   double turnNoise = 0;  ///< of the heading, degrees after one meter; grows alike
-  bool correct = true;   ///< by SLAM
 
   void describe(strict_files::OptionList& list);
   bool isExact() const { return odometryNoise == 0 && turnNoise == 0; }

@@ -112,7 +112,6 @@ ObstaclePoints senseCompressedObstacles(const SemanticPlanner& planner,
                                         const Abstraction& compressed,
                                         const mrpt::math::TPose2D& pose, double z,
                                         const ObstacleOptions& options) {
-  options.validate();
   const Ground& ground = planner.ground();
   const int key = ground.keyOf(z);
   const Surroundings surroundings(ground, pose, key, options.radius);

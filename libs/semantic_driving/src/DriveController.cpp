@@ -19,7 +19,8 @@ constexpr double kTrackLength = 10;  // m of the driven track that are kept to g
 // footprint they have, or are left out; m.
 constexpr double kWaypointSpacing = 1.2, kWaypointReach = 0.5, kWaypointMargin = 0.3;
 constexpr double kReactivePause = 2;  // s until it is asked again after it found no way
-constexpr double kReactiveStall = 1;  // s that it may stand before a free way
+// m: stretches and ends of stretches shorter than this follow the path exactly.
+constexpr double kExactEnd = 2;
 
 /** Where a vehicle is after some seconds, from a pose on. */
 TPose2D after(const TPose2D& pose, const DriveCommand& c, double seconds) {
@@ -46,7 +47,7 @@ DriveController::DriveController(const DriveOptions& options,
 
 void DriveController::setPath(DrivePath path) {
   m_tracker.setPath(std::move(path));
-  m_reactiveFrom = m_stalledFrom = -1;
+  m_reactiveFrom = -1;
 }
 
 DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints& obstacles,
@@ -55,7 +56,7 @@ DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints
   m_track.add(state.pose);
   m_tracker.locate(state);
   const double limit = m_tracker.options().speedFor(sensorAge);
-  const bool reactive = seconds >= m_reactiveAgain && wantsReactive(state, obstacles, seconds);
+  const bool reactive = seconds >= m_reactiveAgain && wantsReactive(state, obstacles);
   m_driver = reactive ? Driver::Reactive : Driver::Tracker;
   if (!reactive) m_reactiveFrom = -1;
   DriveCommand wanted = besideMovers(state,
@@ -71,19 +72,14 @@ DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints
   return m_motion.command();
 }
 
-/** Where the planned way is free MRPT's navigator need not be asked: where it does not get on, the
- * rest of the stretch is driven without it. */
-bool DriveController::wantsReactive(const DriveState& state, const ObstaclePoints& obstacles,
-                                    double seconds) {
+/** Something stands in the planned way. */
+bool DriveController::wantsReactive(const DriveState& state,
+                                    const ObstaclePoints& obstacles) const {
   if (m_tracker.finished()) return false;
-  const DriveOptions& options = m_tracker.options();
   const DrivePath& path = m_tracker.path();
-  const double here = m_tracker.progress();
-  const double left = path.stretchEnd(here) - here, begin = path.stretchBegin(here + 1e-3);
-  if (!path.at(here + 1e-3).forward || left < options.exactEnd) return false;
-  if (m_tracker.freeAhead(state, obstacles) < std::min(left, options.lookAhead)) return true;
-  if (m_driver == Driver::Reactive && stoppedFor(seconds) >= kReactiveStall) m_stalledFrom = begin;
-  return options.alwaysReactive && m_stalledFrom != begin;
+  const double here = m_tracker.progress(), left = path.stretchEnd(here) - here;
+  if (!path.at(here + 1e-3).forward || left < kExactEnd) return false;
+  return m_tracker.freeAhead(state, obstacles) < std::min(left, m_tracker.options().lookAhead());
 }
 
 bool DriveController::isOpen(const PathPoint& place, const DriveState& state,
@@ -120,7 +116,7 @@ DriveCommand DriveController::driveReactively(const DriveState& state,
   }
   const double curve = std::sqrt(m_tracker.options().maxSideAcceleration *
                                  std::abs(c.speed / std::max(1e-6, std::abs(c.turn))));
-  const double onPath = m_tracker.speedBefore(m_tracker.options().lookAhead, speedLimit);
+  const double onPath = m_tracker.speedBefore(m_tracker.options().lookAhead(), speedLimit);
   const double speed = std::min({c.speed, onPath, curve});
   if (c.speed > 0) c.turn *= speed / c.speed;
   c.speed = speed;

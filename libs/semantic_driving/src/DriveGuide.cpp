@@ -59,8 +59,8 @@ DriveGuide::DriveGuide(const GuideOptions& options, SemanticPlanner& planner, co
     : m_options(options),
       m_planner(planner),
       m_check(planner),
-      m_turns(planner, options.longestBackwards),
-      m_explorer(planner, options.frontierRadius),
+      m_turns(planner),
+      m_explorer(planner),
       m_goal(goal),
       m_aim(goal) {
   m_options.validate();
@@ -82,7 +82,7 @@ void DriveGuide::update(const DriveState& state, double z, DriveController& driv
 /** Where it fits nothing is looked for, nor where it stands or is about to. */
 std::optional<GoalMisfit> DriveGuide::misfit(const Situation& now) const {
   const double far = distance(now.state.pose, m_aim);
-  if (far < m_options.atGoal || far > m_options.frontierRadius) return {};
+  if (far < m_options.atGoal || far > kFrontierRadius) return {};
   if (m_planner.check(m_aim) == PlanStatus::Found) return {};
   return findMisfit(m_planner, now.state.pose, now.z, m_aim);
 }
@@ -97,9 +97,10 @@ bool DriveGuide::arrived(const DriveState& state, const DriveController& drive) 
          tracker.finished() && std::abs(state.speed) < DriveOptions::kAtRest;
 }
 
-ObstacleOptions DriveGuide::obstacles(ObstacleOptions usual) const {
-  if (target() == Target::Recovery) usual.forbiddenGround = false;
-  return usual;
+ObstacleOptions DriveGuide::obstacles() const {
+  ObstacleOptions options;
+  options.forbiddenGround = target() != Target::Recovery;
+  return options;
 }
 
 Look DriveGuide::look(const Situation& now) const {
@@ -199,7 +200,7 @@ bool DriveGuide::improves(const Departure& from, const Situation& now) {
 bool DriveGuide::isEarly(const Situation& now) const {
   const PathTracker& tracker = now.drive.tracker();
   return tracker.path().length() - tracker.progress() >
-         std::abs(now.state.speed) * m_options.period;
+         std::abs(now.state.speed) * GuideOptions::kPeriod;
 }
 
 /** What was found than the present path. */
@@ -207,8 +208,7 @@ bool DriveGuide::isBetter(const Situation& now) const {
   if (!m_found || m_found->empty()) return false;
   const PathTracker& tracker = now.drive.tracker();
   return m_check.judge(*m_found, 0)
-      .isClearlyBetterThan(m_check.judge(tracker.path(), tracker.progress()),
-                           m_options.longestBackwards);
+      .isClearlyBetterThan(m_check.judge(tracker.path(), tracker.progress()));
 }
 
 std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
@@ -249,8 +249,7 @@ std::optional<DrivePath> DriveGuide::recovery(const Situation& now, bool blind) 
 /** Says that the goal does not fit, and offers the nearest pose that does, unless that is as good.
  * \return whether it drives there from now on */
 bool DriveGuide::aimsElsewhere(const Situation& now) {
-  const auto nearest = nearestFit(m_planner, now.state.pose, now.z, m_goal, kNearestWithin,
-                                  m_options.frontierRadius);
+  const auto nearest = nearestFit(m_planner, now.state.pose, now.z, m_goal, kNearestWithin);
   const bool asGood = nearest && m_options.isAsGood(*nearest, m_goal);
   if (nearest && *nearest == m_aim) return false;  // there it was, and found no way
   if (!asGood) {

@@ -1,4 +1,5 @@
 #include <semantic_driving/DriveOptions.h>
+#include <semantic_driving/Motion.h>
 #include <semantic_types/ClassTable.h>
 
 #include <algorithm>
@@ -15,28 +16,31 @@ void DriveOptions::describe(OptionList& list) {
            "along the way; stops are planned with 0.8 of it");
   list.add("max_side_acceleration", maxSideAcceleration, "m/s^2", above(0), "in curves");
   list.add("max_jerk", maxJerk, "m/s^3", above(0).orInfinite(), "along the way; inf: no limit");
-  list.add("max_steering_rate", maxSteeringRate, "1/(m s)", above(0).orInfinite(),
-           "how fast the steering changes the path's curvature");
   list.add("slow_rank", slowRank, "", atLeast(0),
            "on classes of this rank (0: the best) and worse ones slow_rank_speed holds");
   list.add("slow_rank_speed", slowRankSpeed, "m/s", above(0).orInfinite(),
            "highest speed there; inf: no limit");
-  list.add("turning_radius", turningRadius, "m", above(0),
-           "least radius that the vehicle can drive, less than the planner's");
-  list.add("margin", margin, "m", atLeast(0),
-           "kept free around the footprint where the way ahead is looked at");
-  list.add("look_ahead", lookAhead, "m", above(0), "how far ahead the way is looked at");
   list.add("max_sensor_age", maxSensorAge, "s", above(0),
            "older observations make the vehicle slow down, and stop when three times as old");
   list.add("reaction_time", reactionTime, "s", atLeast(0), "until a command has an effect");
-  list.add("mover_margin", moverMargin, "m", atLeast(0), "kept from those who walk");
-  list.add("always_reactive", alwaysReactive, "",
-           "MRPT's navigator drives all forward stretches, not only around what is in the way");
-  list.add("exact_end", exactEnd, "m", atLeast(0),
-           "stretches and ends of stretches shorter than this follow the path exactly");
 }
 
 void DriveOptions::validate() const { strict_files::checkOptions(*this, "DriveOptions"); }
+
+void DriveOptions::setFor(double plannedRadius, double voxelSize) {
+  constexpr double kTighter = 0.75;
+  turningRadius = kTighter * plannedRadius;
+  margin = voxelSize / 2;
+}
+
+double DriveOptions::steeringRate() const {
+  constexpr double kFromLockToLock = 1.25;  // s
+  return 2 / turningRadius / kFromLockToLock;
+}
+
+double DriveOptions::lookAhead() const {
+  return restingWay(maxSpeed, *this) + reactionTime * maxSpeed + 2 * turningRadius;
+}
 
 double DriveOptions::speedFor(double sensorAge) const {
   const double blindAt = 3 * maxSensorAge;

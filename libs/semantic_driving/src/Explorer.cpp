@@ -10,9 +10,6 @@ using mrpt::math::TPose2D;
 using semantic_planning::PlanResult;
 using semantic_planning::SemanticPlanner;
 
-Explorer::Explorer(SemanticPlanner& planner, double radius)
-    : m_planner(planner), m_radius(radius) {}
-
 void Explorer::moveTo(const TPose2D& pose, double z) {
   const TPose2D before = std::exchange(m_pose, pose).value_or(pose);
   const auto ground = m_planner.ground().find(pose.x, pose.y, z);
@@ -27,7 +24,7 @@ Exploration Explorer::places(const TPose2D& from, double z, const TPose2D& goal)
   const auto isThere = [&](const TPose2D& pose) {
     return std::hypot(pose.x - goal.x, pose.y - goal.y) < kAround;
   };
-  Exploration found = findFrontiers(m_planner, from, z, goal, m_seen, m_effort, m_radius);
+  Exploration found = findFrontiers(m_planner, from, z, goal, m_seen, m_effort);
   std::vector<Frontier>& frontiers = found.frontiers;
   m_wasThere = m_wasThere || isThere(from);
   if (m_wasThere && found.goalReached)

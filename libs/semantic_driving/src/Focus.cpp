@@ -5,8 +5,6 @@
 namespace semantic_driving {
 
 using semantic_octree::Region;
-using strict_files::above;
-using strict_files::atLeast;
 
 namespace {
 
@@ -21,12 +19,8 @@ Eigen::Vector3d placeAt(const DrivePath& path, double s) {
 }  // namespace
 
 void FocusOptions::describe(strict_files::OptionList& list) {
-  list.add("corridor", corridor, "m", atLeast(0),
+  list.add("corridor", corridor, "m", strict_files::atLeast(0),
            "on both sides of the path ahead, where the compressed tree has detail; 0: everywhere");
-  list.add("around", around, "m", above(0),
-           "around the vehicle; more than obstacles are looked for");
-  list.add("alpha", alpha, "", atLeast(0), "price of detail");
-  list.add("obstacles", obstacles, "", "keeps what tells obstacles from air, too");
 }
 
 void FocusOptions::validate() const { strict_files::checkOptions(*this, "FocusOptions"); }

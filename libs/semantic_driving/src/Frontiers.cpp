@@ -150,10 +150,10 @@ double Effort::doubt(double left) const {
 
 Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, double z,
                           const TPose2D& goal, const std::vector<TPose2D>& avoid,
-                          const Effort& effort, double radius) {
+                          const Effort& effort) {
   const double voxel = planner.ground().voxelSize();
   const int key = planner.ground().keyOf(z);
-  const GroundFlood flood(planner, from, key, radius);
+  const GroundFlood flood(planner, from, key, kFrontierRadius);
   const GoalRegion region(planner, flood.columns(), flood.reached(), from, z, goal);
   Exploration found;
   found.enclosed = region.isEnclosed();

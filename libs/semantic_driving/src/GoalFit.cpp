@@ -1,4 +1,5 @@
 #include <mrpt/math/wrap2pi.h>
+#include <semantic_driving/Explorer.h>
 #include <semantic_driving/GoalFit.h>
 #include <semantic_planning/roadmap/CollisionChecker.h>
 
@@ -129,12 +130,12 @@ std::optional<GoalMisfit> findMisfit(const SemanticPlanner& planner, const TPose
 }
 
 std::optional<TPose2D> nearestFit(const SemanticPlanner& planner, const TPose2D& from, double z,
-                                  const TPose2D& goal, double within, double radius) {
+                                  const TPose2D& goal, double within) {
   constexpr double kTurn = 1.5 / M_PI;  // m/rad
   constexpr int kHeadings = 16;
   const Ground& ground = planner.ground();
   const double step = ground.voxelSize();
-  const GroundFlood flood(planner, from, ground.keyOf(z), radius);
+  const GroundFlood flood(planner, from, ground.keyOf(z), kFrontierRadius);
   std::optional<TPose2D> found;
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](double r, const TPose2D& pose) {

@@ -56,7 +56,7 @@ bool isStuck(const GuideState& state, const Look& look, const GuideOptions& opti
 bool goalMisfits(GuideState& state, const Look& look, const GuideOptions& options) {
   if (!look.goalMisfits) state.misfitSince.reset();
   if (look.goalMisfits && !state.misfitSince) state.misfitSince = look.seconds;
-  return state.misfitSince && look.seconds - *state.misfitSince >= options.goalPatience;
+  return state.misfitSince && look.seconds - *state.misfitSince >= options.goalPatience();
 }
 
 /** The path is at its end, leads where the vehicle need not go any more, or was blocked for long.
@@ -194,7 +194,7 @@ Transition transition(GuideState state, const Look& look, const GuideOptions& op
   if (goalMisfits(state, look, options)) return {state, SeekNearest{}};
   if (does<Idle>(state) || mustChange(state, look, options)) return choose(state, look);
   const auto* blocked = blockedSince(state.activity);
-  const bool soon = look.seconds - state.plannedAt < options.period;
+  const bool soon = look.seconds - state.plannedAt < GuideOptions::kPeriod;
   if (does<GoingBack>(state) || soon || (blocked && *blocked)) return {state, GoOn{}};
   return improve(state, look);
 }

@@ -24,7 +24,7 @@ double bendOf(const DriveCommand& wanted, const Motion& motion) {
 double speedFor(double curvature, double off, const DriveOptions& limits) {
   constexpr double kWay = 0.2;  // m
   double most = std::sqrt(limits.maxSideAcceleration / std::max(1e-9, std::abs(curvature)));
-  if (off > 0) most = std::min(most, kWay * limits.maxSteeringRate / off);
+  if (off > 0) most = std::min(most, kWay * limits.steeringRate() / off);
   return std::max(most, DriveOptions::kSlowest);
 }
 
@@ -46,7 +46,7 @@ Motion next(const Motion& last, const DriveCommand& wanted, double speed, double
   motion.speed = speed;
   if (!(seconds > 0)) return motion;
   const double bend = bendOf(wanted, last);
-  motion.curvature = towards(last.curvature, bend, limits.maxSteeringRate * seconds);
+  motion.curvature = towards(last.curvature, bend, limits.steeringRate() * seconds);
   const double most = speedFor(motion.curvature, std::abs(bend - motion.curvature), limits);
   const double change = std::clamp(wanted.speed, -most, most) - speed;
   motion.acceleration = towards(last.acceleration, accelerationFor(change, seconds, limits),
@@ -59,7 +59,7 @@ Motion steered(const Motion& motion, const DriveCommand& wanted, double seconds,
                const DriveOptions& limits) {
   Motion later = motion;
   later.curvature =
-      towards(motion.curvature, bendOf(wanted, motion), limits.maxSteeringRate * seconds);
+      towards(motion.curvature, bendOf(wanted, motion), limits.steeringRate() * seconds);
   return later;
 }
 

@@ -44,8 +44,6 @@ std::vector<bool> classesIn(const std::string& names, const semantic_types::Clas
 
 void MoverOptions::describe(strict_files::OptionList& list) {
   list.add("classes", classes, "", "of those who move, with commas between; empty: none");
-  list.add("radius", radius, "m", strict_files::above(0),
-           "how far from the sensor they are followed");
 }
 
 void MoverOptions::validate() const { strict_files::checkOptions(*this, "MoverOptions"); }

@@ -1,3 +1,5 @@
+#include <semantic_driving/Explorer.h>
+
 #include "ViewPlaces.h"
 
 namespace semantic_driving {
@@ -17,7 +19,7 @@ class NearestFrontier : public ViewStrategy {
 
   std::optional<View> next(const TPose2D& from, double z) override {
     const Ground& ground = m_planner.ground();
-    const GroundFlood flood(m_planner, from, ground.keyOf(z), m_options.radius);
+    const GroundFlood flood(m_planner, from, ground.keyOf(z), kFrontierRadius);
     std::optional<View> nearest;
     for (const ViewPlace& place : placesOf(flood, ground, m_options.area)) {
       if (nearest && place.length >= nearest->way) break;

@@ -12,19 +12,12 @@ using semantic_planning::Ground;
 using semantic_planning::SemanticPlanner;
 using semantic_planning::Surface;
 
-void ObstacleOptions::describe(strict_files::OptionList& list) {
-  list.add("radius", radius, "m", strict_files::above(0), "how far obstacles are looked for");
-}
-
-void ObstacleOptions::validate() const { strict_files::checkOptions(*this, "ObstacleOptions"); }
-
 namespace {
 
 /** f(finder, column, height, surface, place in the vehicle's frame) for all obstacles. */
 template <class F>
 void forObstacles(const SemanticPlanner& planner, const mrpt::math::TPose2D& pose, double z,
                   const ObstacleOptions& options, F f) {
-  options.validate();
   const Ground& ground = planner.ground();
   const ObstacleFinder finder(planner, options);
   const int key = ground.keyOf(z);

@@ -71,7 +71,7 @@ bool PathTracker::approaches(const DriveCommand& command, const ObstaclePoints& 
 }
 
 double PathTracker::freeAhead(const DriveState& state, const ObstaclePoints& obstacles) const {
-  const double most = std::min(m_options.lookAhead, m_path.stretchEnd(m_progress) - m_progress);
+  const double most = std::min(m_options.lookAhead(), m_path.stretchEnd(m_progress) - m_progress);
   if (most <= 0) return 0;
   // What is within the margin already does not keep the vehicle from driving away from it.
   const double margin = isFree({}, obstacles, m_options.margin) ? m_options.margin : 0;
@@ -105,7 +105,7 @@ double PathTracker::speedAt(double s) const {
       place.classId < m_classSpeeds.size() ? m_classSpeeds[place.classId] : m_options.maxSpeed;
   return std::max(DriveOptions::kSlowest,
                   std::min({onClass, std::sqrt(m_options.maxSideAcceleration / curve),
-                            m_options.maxSteeringRate / change}));
+                            m_options.steeringRate() / change}));
 }
 
 double PathTracker::speedBefore(double free, double limit) const {
@@ -113,7 +113,7 @@ double PathTracker::speedBefore(double free, double limit) const {
   const double braking = m_options.braking();
   const double left = m_path.stretchEnd(m_progress) - m_progress;
   double speed = std::min(limit, std::max(DriveOptions::kSlowest, std::sqrt(2 * braking * left)));
-  if (free < m_options.lookAhead && free < left)
+  if (free < m_options.lookAhead() && free < left)
     speed = std::min(speed, std::sqrt(2 * braking * std::max(0.0, free - kStandoff)));
   for (double ahead = 0; ahead < left && 2 * braking * ahead < speed * speed; ahead += kStep) {
     const double there = speedAt(m_progress + ahead + 1e-3);

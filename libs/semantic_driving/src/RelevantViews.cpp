@@ -1,3 +1,5 @@
+#include <semantic_driving/Explorer.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -215,7 +217,7 @@ const View& RelevantViews::firstOf(const std::vector<Candidate>& stops,
 
 std::optional<View> RelevantViews::next(const TPose2D& from, double z) {
   follow(from, z);
-  const GroundFlood flood(m_planner, from, m_ground.keyOf(z), m_options.radius);
+  const GroundFlood flood(m_planner, from, m_ground.keyOf(z), kFrontierRadius);
   const std::vector<Candidate> all = candidates(flood, from.phi);
   const std::vector<Candidate> stops = centers(all);
   m_left = 0;
@@ -243,21 +245,24 @@ std::string RelevantViews::conclusion() const {
   return text;
 }
 
-/** What is left to see of a column: the ground and what stands on it where it is unknown, else its
- * surfaces. */
+/** What is left to see of a column: what may stand there, and the first ground from above, as far
+ * as these are unknown; of known surfaces, what another look tells. */
 double RelevantViews::left(Column c) {
-  constexpr int kBelow = 2;  // voxels
+  constexpr int kBelow = 10;  // voxels
   constexpr int kEdge = UnknownPatch::kEdge;
   if (!m_learned) return 0;
   const UnknownPatch& patch = m_learned->patch(c.x / kEdge, c.y / kEdge);
   double sum = 0;
-  for (int z = patch.ground - kBelow; z <= patch.top; ++z) {
-    const auto key = semantic_octree::octomapKey(c.x, c.y, z);
-    const auto known = m_field.at(key);
-    if (!known)
-      sum += patch.at(c.x, c.y, z).gain;
-    else if (known->pass < 0.5F)
-      sum += known->gain;
+  bool isBelowFree = false;
+  for (int z = patch.top; z >= patch.ground - kBelow; --z) {
+    const auto known = m_field.at(semantic_octree::octomapKey(c.x, c.y, z));
+    const Gain gain = known         ? *known
+                      : isBelowFree ? patch.belowFree(c.x, c.y, z)
+                                    : patch.at(c.x, c.y, z);
+    const bool isFree = gain.pass >= 0.5F;
+    if (!known || !isFree) sum += gain.gain;
+    if (!isFree && z <= patch.ground) break;
+    isBelowFree = known && isFree;
   }
   return sum;
 }
@@ -272,12 +277,8 @@ std::unique_ptr<ViewStrategy> relevantViews(const SemanticPlanner& planner,
 }
 
 void ExploreOptions::describe(strict_files::OptionList& list) {
-  using strict_files::above;
-  list.add("budget", budget, "m", above(0).orInfinite(),
+  list.add("budget", budget, "m", strict_files::above(0).orInfinite(),
            "that it drives at most, looking around; inf: no limit");
-  list.add("left_share", leftShare, "", strict_files::between(0, 1),
-           "exploring ends when what is left within reach promises less than this share of what "
-           "was found and is left");
 }
 
 void ExploreOptions::validate() const { strict_files::checkOptions(*this, "ExploreOptions"); }

@@ -69,7 +69,7 @@ class Forecast {
   bool touches(const Mover& mover, double way, double seconds, double spread) const {
     const Eigen::Vector2d place = mover.placeAfter(seconds);
     const auto p = m_poseAfter(way).inverseComposePoint({place.x(), place.y()});
-    const double margin = mover.stands() ? 0 : m_options.moverMargin;
+    const double margin = mover.stands() ? 0 : DriveOptions::kMoverMargin;
     return m_footprint.distance({p.x, p.y}) < mover.size + margin + spread;
   }
 

@@ -42,7 +42,7 @@ class WaysOut {
   /** How near anybody comes, meters, at most the margin for them; less than nothing if something is
    * in the way. */
   double distance(const WayOut& way) const {
-    double least = m_options.moverMargin;
+    double least = DriveOptions::kMoverMargin;
     Motion motion = m_motion;
     mrpt::math::TPose2D pose;
     double speed = m_state.speed;
@@ -89,7 +89,7 @@ std::optional<DriveCommand> stepAside(const DriveState& state, const Motion& mot
   const WaysOut ways(state, motion, room, movers, footprint, options);
   if (!ways.isSomebodyWalking()) return {};
   double best = ways.distance({}) + kGain;
-  if (best >= options.moverMargin) return {};
+  if (best >= DriveOptions::kMoverMargin) return {};
   std::optional<DriveCommand> command;
   const double tightest = 1 / options.turningRadius;
   for (const double seconds : {0.5, 1.0, 1.5, 2.0, kSoon})

@@ -36,10 +36,16 @@ ReactiveNavigator::Options reactiveOf(const NavigatorOptions& options) {
   return reactive;
 }
 
+NavigatorOptions completed(NavigatorOptions options, double voxelSize) {
+  options.setFor(voxelSize);
+  return options;
+}
+
+/** Where leaves of the compressed tree are obstacles, it keeps what tells these from air. */
 SemanticPlanner plannerOn(semantic_octree::SemanticOcTree& map,
                           const colored_graph::ClassOrder& order, const NavigatorOptions& options) {
-  setAbstraction(
-      map, semantic_planning::abstractionFor(order, options.focus.alpha, options.focus.obstacles));
+  setAbstraction(map, semantic_planning::abstractionFor(order, tree_abstraction::kPlanningAlpha,
+                                                        options.compressedObstacles));
   return SemanticPlanner(map, order, options.planner);
 }
 
@@ -99,18 +105,32 @@ bool isAnythingWithin(const semantic_octree::SemanticOcTree& map,
 
 }  // namespace
 
+void NavigatorOptions::setFor(double voxelSize) {
+  constexpr double kBeyond = 1;  // m
+  drive.setFor(planner.vehicle.turningRadius, voxelSize);
+  movers.radius = std::max(movers.radius, 2 * obstacleRadius());
+  if (focus.around == 0) focus.around = obstacleRadius() + kBeyond;
+}
+
+double NavigatorOptions::obstacleRadius() const {
+  double reach = 0;  // of the vehicle
+  for (const Eigen::Vector2d& corner : planner.vehicle.footprint)
+    reach = std::max(reach, corner.norm());
+  return 1.5 * drive.lookAhead() + reach;
+}
+
 Navigator::Navigator(Mapper& mapper, const colored_graph::ClassOrder& order,
                      const NavigatorOptions& options)
-    : m_options(options),
+    : m_options(completed(options, mapper.map().getResolution())),
       m_mapper(mapper),
-      m_planner(plannerOn(mapper.map(), order, options)),
+      m_planner(plannerOn(mapper.map(), order, m_options)),
       m_leaves(mapper.map()),
-      m_controller(options.drive, reactiveOf(options)),
-      m_movers(options.movers, mapper.map().classes()),
+      m_controller(m_options.drive, reactiveOf(m_options)),
+      m_movers(m_options.movers, mapper.map().classes()),
       m_fineUntil(kNever),
       m_mappedAt(kNever) {
   m_mapper.setMovers(m_movers.isMover());
-  m_controller.setClassSpeeds(options.drive.classSpeeds(order));
+  m_controller.setClassSpeeds(m_options.drive.classSpeeds(order));
 }
 
 void Navigator::setGoal(const TPose2D& goal) {
@@ -179,7 +199,7 @@ void Navigator::insert(const std::vector<SensorScan>& seen, double seconds) {
     return finish();
   }
   const double drivenMeanwhile = m_options.drive.maxSpeed * m_options.mappingLatency;
-  m_before = knownObstacles(m_options.obstacles.radius + drivenMeanwhile, seconds);
+  m_before = knownObstacles(m_options.obstacleRadius() + drivenMeanwhile, seconds);
   m_roomBefore = knownRoom(kRoom + drivenMeanwhile);
   m_beforeAt = m_state.pose;
   m_inserting = std::async(std::launch::async, std::move(fillMap));
@@ -329,7 +349,7 @@ bool Navigator::wantsFineObstacles(double seconds) {
 
 /** What of the map is in the way, in the robot's frame. */
 ObstaclePoints Navigator::knownObstacles(double radius, double seconds) {
-  ObstacleOptions options = m_guide ? m_guide->obstacles(m_options.obstacles) : m_options.obstacles;
+  ObstacleOptions options = m_guide ? m_guide->obstacles() : ObstacleOptions();
   options.radius = radius;
   if (wantsFineObstacles(seconds)) return senseObstacles(m_planner, m_state.pose, m_z, options);
   return senseCompressedObstacles(m_planner, Abstraction(m_mapper.map()), m_state.pose, m_z,
@@ -346,7 +366,7 @@ ObstaclePoints Navigator::knownRoom(double radius) const {
 
 /** The same; while a scan is inserted, as it was known before. */
 ObstaclePoints Navigator::obstacles(double seconds) {
-  const double radius = m_options.obstacles.radius;
+  const double radius = m_options.obstacleRadius();
   return isInserting() ? seenFrom(m_before, m_beforeAt, m_state.pose, radius)
                        : knownObstacles(radius, seconds);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace view_information {
 
@@ -13,14 +14,19 @@ namespace {
 
 constexpr std::uint16_t kUnknown = 65535;
 constexpr float kPassUnits = 65534;
-constexpr std::int32_t kNowhere = -1;
-constexpr float kLeastReach = 1e-3F;  // beyond it what a beam tells does not count
+constexpr std::uint16_t kFree = 32767;  // pass: more is free
+constexpr int kHalf = 256;              // voxels
+constexpr int kNumbers = 64;            // values that hold the numbers of these, byte by byte
+constexpr float kLeastReach = 1e-3F;    // beyond it what a beam tells does not count
 
 std::uint16_t upperHalf(float value) {
   std::uint32_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
   return static_cast<std::uint16_t>((bits + 0x8000U) >> 16);
 }
+
+/** In half a tile. */
+int indexOf(int x, int y, int z) { return (x & 3) << 6 | (y & 7) << 3 | (z & 7); }
 
 float ofUpperHalf(std::uint16_t half) {
   const std::uint32_t bits = std::uint32_t{half} << 16;
@@ -31,50 +37,72 @@ float ofUpperHalf(std::uint16_t half) {
 
 }  // namespace
 
-/** The tiles and the patches of the prior around a place, each looked up once. */
+/** Inline functions are made part of the sweep, others of a shared library are not. */
+inline Gain GainField::unpacked(const Voxel& voxel) {
+  return {static_cast<float>(voxel.pass) * (1 / kPassUnits), ofUpperHalf(voxel.gain)};
+}
+
+inline const GainField::Voxel& GainField::voxelIn(const Half& half, int i) {
+  if (half.size() == 1) return half.front();
+  return half[kNumbers + reinterpret_cast<const unsigned char*>(half.data())[i]];
+}
+
+/** The tiles and the patches of the prior around a place, each looked up when it is needed. */
 class GainField::Surroundings {
  public:
   Surroundings(const GainField& field, UnknownPrior& prior, const octomap::OcTreeKey& from,
-               int reach)
-      : m_prior(prior), m_knowsAir(prior.knowsAir()) {
+               const ViewTemplate& view)
+      : m_field(field), m_prior(prior), m_knowsAir(prior.knowsAir()) {
+    const int reach = view.reach();
+    const std::array<int, 3> low{from[0] - reach, from[1] - reach, from[2] + view.lowest()},
+        high{from[0] + reach, from[1] + reach, from[2] + view.highest() + 1};
     for (std::size_t a = 0; a < 3; ++a) {
-      m_low[a] = (from[static_cast<unsigned>(a)] - reach) >> 3;
-      m_size[a] = ((from[static_cast<unsigned>(a)] + reach) >> 3) - m_low[a] + 1;
+      m_low[a] = low[a] >> 3;
+      m_size[a] = (high[a] >> 3) - m_low[a] + 1;
     }
-    for (int x = 0; x < m_size[0]; ++x)
-      for (int y = 0; y < m_size[1]; ++y)
-        for (int z = 0; z < m_size[2]; ++z)
-          m_tiles.push_back(field.find(m_low[0] + x, m_low[1] + y, m_low[2] + z));
+    m_tiles.resize(static_cast<std::size_t>(m_size[0] * m_size[1] * m_size[2]));
     m_patches.resize(static_cast<std::size_t>(4 * m_size[0] * m_size[1]));
   }
 
   Gain at(int x, int y, int z) {
-    const Tile* tile = m_tiles[indexOf(x >> 3, y >> 3, z >> 3)];
-    if (!tile) return unknown(x, y, z);
-    const Voxel& v = (*tile)[static_cast<std::size_t>((x & 7) << 6 | (y & 7) << 3 | (z & 7))];
-    if (v.pass == kUnknown) return unknown(x, y, z);
-    Gain gain = unpacked(v);
+    const Voxel* v = known(x, y, z);
+    if (!v) return unknown(x, y, z);
+    Gain gain = unpacked(*v);
     if (m_knowsAir && std::signbit(gain.gain)) gain.gain = 0;
     gain.gain = std::abs(gain.gain);
     return gain;
   }
 
  private:
-  std::size_t indexOf(int x, int y, int z) const {
-    return static_cast<std::size_t>(((x - m_low[0]) * m_size[1] + y - m_low[1]) * m_size[2] + z -
-                                    m_low[2]);
+  struct Place {
+    const Stored* tile = nullptr;
+    bool isKnown = false;  ///< whether there is a tile
+  };
+  /** Null: nothing is known. */
+  const Voxel* known(int x, int y, int z) {
+    Place& place = m_tiles[static_cast<std::size_t>(
+        (((x >> 3) - m_low[0]) * m_size[1] + (y >> 3) - m_low[1]) * m_size[2] + (z >> 3) -
+        m_low[2])];
+    if (!std::exchange(place.isKnown, true)) place.tile = m_field.find(x >> 3, y >> 3, z >> 3);
+    if (!place.tile) return nullptr;
+    const Voxel& v = voxelIn((*place.tile)[x >> 2 & 1], indexOf(x, y, z));
+    return v.pass == kUnknown ? nullptr : &v;
   }
   Gain unknown(int x, int y, int z) {
     const int px = (x >> 2) - 2 * m_low[0], py = (y >> 2) - 2 * m_low[1];
     const UnknownPatch*& patch = m_patches[static_cast<std::size_t>(px * 2 * m_size[1] + py)];
     if (!patch) patch = &m_prior.patch(x >> 2, y >> 2);
-    return patch->at(x, y, z);
+    if (z >= patch->ground) return patch->at(x, y, z);
+    const Voxel* above = known(x, y, z + 1);
+    const bool isBelowFree = above && above->pass > kFree;
+    return isBelowFree ? patch->belowFree(x, y, z) : patch->at(x, y, z);
   }
 
+  const GainField& m_field;
   UnknownPrior& m_prior;
   bool m_knowsAir;
   std::array<int, 3> m_low{}, m_size{};  ///< tiles
-  std::vector<const Tile*> m_tiles;
+  std::vector<Place> m_tiles;
   std::vector<const UnknownPatch*> m_patches;
 };
 
@@ -89,15 +117,14 @@ GainField::Voxel GainField::packed(const Gain& gain) {
   return {static_cast<std::uint16_t>(std::lround(gain.pass * kPassUnits)), upperHalf(gain.gain)};
 }
 
-Gain GainField::unpacked(const Voxel& voxel) {
-  return {static_cast<float>(voxel.pass) * (1 / kPassUnits), ofUpperHalf(voxel.gain)};
-}
-
 TileChange GainField::update() {
   TileChange change = m_follower.tiles();
-  if (change.all) m_tiles.clear(), m_stored.clear(), m_unused.clear();
-  for (const octomap::OcTreeKey& low : change.tiles)
-    put(keyOf(low[0] >> 3, low[1] >> 3, low[2] >> 3), read(low));
+  if (change.all) m_tiles.clear();
+  for (const octomap::OcTreeKey& low : change.tiles) {
+    const Tile tile = read(low);
+    m_tiles[keyOf(low[0] >> 3, low[1] >> 3, low[2] >> 3)] = {stored(tile.data()),
+                                                             stored(tile.data() + kHalf)};
+  }
   return change;
 }
 
@@ -141,50 +168,33 @@ GainField::Tile GainField::read(const octomap::OcTreeKey& low) {
   return tile;
 }
 
-void GainField::put(std::uint64_t key, const Tile& tile) {
-  std::int32_t& place = m_tiles.try_emplace(key, kNowhere).first->second;
-  const bool isSame =
-      std::all_of(tile.begin(), tile.end(), [&](const Voxel& v) { return v == tile[0]; });
-  if (isSame) {
-    if (place >= 0) m_unused.push_back(place);
-    place = ~numberOfSame(tile);
-    return;
-  }
-  if (place < 0) place = unusedPlace();
-  m_stored[static_cast<std::size_t>(place)] = tile;
+/** There are no more values than voxels: a byte numbers them. */
+GainField::Half GainField::stored(const Voxel* voxels) {
+  std::vector<Voxel> values(voxels, voxels + kHalf);
+  const auto isBefore = [](const Voxel& a, const Voxel& b) {
+    return a.pass != b.pass ? a.pass < b.pass : a.gain < b.gain;
+  };
+  std::sort(values.begin(), values.end(), isBefore);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  if (values.size() == 1) return values;
+  Half half(kNumbers + values.size());
+  std::copy(values.begin(), values.end(), half.begin() + kNumbers);
+  auto* numbers = reinterpret_cast<unsigned char*>(half.data());
+  for (int i = 0; i < kHalf; ++i)
+    numbers[i] = static_cast<unsigned char>(
+        std::lower_bound(values.begin(), values.end(), voxels[i], isBefore) - values.begin());
+  return half;
 }
 
-std::int32_t GainField::numberOfSame(const Tile& tile) {
-  const std::uint32_t voxel = std::uint32_t{tile[0].pass} << 16 | tile[0].gain;
-  const auto next = static_cast<std::int32_t>(m_same.size());
-  const auto [found, isNew] = m_sameByVoxel.try_emplace(voxel, next);
-  if (isNew) m_same.push_back(tile);
-  return found->second;
-}
-
-std::int32_t GainField::unusedPlace() {
-  if (m_unused.empty()) {
-    m_stored.emplace_back();
-    return static_cast<std::int32_t>(m_stored.size() - 1);
-  }
-  const std::int32_t place = m_unused.back();
-  m_unused.pop_back();
-  return place;
-}
-
-const GainField::Tile* GainField::find(int x, int y, int z) const {
+const GainField::Stored* GainField::find(int x, int y, int z) const {
   const auto found = m_tiles.find(keyOf(x, y, z));
-  if (found == m_tiles.end()) return nullptr;
-  const std::int32_t place = found->second;
-  return place >= 0 ? &m_stored[static_cast<std::size_t>(place)]
-                    : &m_same[static_cast<std::size_t>(~place)];
+  return found == m_tiles.end() ? nullptr : &found->second;
 }
 
 std::optional<Gain> GainField::at(const octomap::OcTreeKey& key) const {
-  const Tile* tile = find(key[0] >> 3, key[1] >> 3, key[2] >> 3);
+  const Stored* tile = find(key[0] >> 3, key[1] >> 3, key[2] >> 3);
   if (!tile) return {};
-  const Voxel& v =
-      (*tile)[static_cast<std::size_t>((key[0] & 7) << 6 | (key[1] & 7) << 3 | (key[2] & 7))];
+  const Voxel& v = voxelIn((*tile)[key[0] >> 2 & 1], indexOf(key[0], key[1], key[2]));
   if (v.pass == kUnknown) return {};
   const Gain gain = unpacked(v);
   return Gain{gain.pass, std::abs(gain.gain)};
@@ -192,28 +202,30 @@ std::optional<Gain> GainField::at(const octomap::OcTreeKey& key) const {
 
 SectorGains GainField::sweep(const ViewTemplate& view, UnknownPrior& prior,
                              const octomap::OcTreeKey& from) {
-  Surroundings around(*this, prior, from, view.reach());
+  Surroundings around(*this, prior, from, view);
   SectorGains gains{};
   const auto& voxels = view.voxels();
   m_leaves.resize(voxels.size());
   m_leaves[0] = 1;
-  for (std::size_t i = 1; i < voxels.size(); ++i) {
+  for (std::size_t i = 1; i < voxels.size();) {
     const ViewTemplate::Voxel& v = voxels[i];
     const float reached = m_leaves[static_cast<std::size_t>(v.parent)];
-    m_leaves[i] = 0;
-    if (reached < kLeastReach) continue;
     const Gain gain = around.at(from[0] + v.x, from[1] + v.y, from[2] + v.z);
     gains[v.heading] += reached * gain.gain;
     m_leaves[i] = reached * gain.pass;
+    i = m_leaves[i] < kLeastReach ? static_cast<std::size_t>(v.next) : i + 1;
   }
   return gains;
 }
 
 std::size_t GainField::memoryUsage() const {
+  constexpr std::size_t kOfBlock = 2 * sizeof(void*);  // of the heap
   constexpr std::size_t kOfEntry =
-      sizeof(std::uint64_t) + sizeof(std::uint32_t) + 3 * sizeof(void*);
-  return (m_stored.size() + m_same.capacity()) * sizeof(Tile) + m_tiles.size() * kOfEntry +
-         m_leaves.capacity() * sizeof(float);
+      sizeof(std::uint64_t) + sizeof(Stored) + 2 * sizeof(void*) + kOfBlock;
+  std::size_t bytes = m_tiles.size() * kOfEntry + m_leaves.capacity() * sizeof(float);
+  for (const auto& [key, tile] : m_tiles)
+    for (const Half& half : tile) bytes += half.capacity() * sizeof(Voxel) + kOfBlock;
+  return bytes;
 }
 
 }  // namespace view_information

@@ -26,14 +26,6 @@ double passThrough(double occupied, double floor) {
   return 1 - kStops * std::max(0.0, (occupied - floor) / (1 - floor));
 }
 
-Gain UnknownPatch::at(int x, int y, int z) const {
-  const int h = z - ground;
-  const int column = (x & (kEdge - 1)) * kEdge + (y & (kEdge - 1));
-  if (h < 0 || (h <= 1 && (grounded >> column & 1))) return {0, 0};
-  if (h == 0) return onGround;
-  return z <= top ? above : Gain{};
-}
-
 std::vector<double> nothingKnown(int numClasses) {
   std::vector<double> p(static_cast<std::size_t>(numClasses) + 1, 0.5 / numClasses);
   p[0] = 0.5;
@@ -65,7 +57,7 @@ LearnedPrior::LearnedPrior(const semantic_octree::SemanticOcTree& map, const Que
 void LearnedPrior::learn(int x, int y, int z, ClassId ground) {
   constexpr int kEdge = UnknownPatch::kEdge;
   const int px = x / kEdge, py = y / kEdge, column = x % kEdge * kEdge + y % kEdge;
-  Patch& patch = m_patches[keyOf(px, py)];
+  Patch& patch = at(px, py);
   Ground& known = patch.columns[static_cast<std::size_t>(column)];
   const Ground now{ground, static_cast<std::uint16_t>(z)};
   if (known.z == now.z && known.id == now.id) return;
@@ -75,15 +67,52 @@ void LearnedPrior::learn(int x, int y, int z, ClassId ground) {
   if (!std::exchange(patch.hasChanged, true)) m_changed.push_back({px, py});
 }
 
+LearnedPrior::Patch& LearnedPrior::at(int x, int y) {
+  std::unique_ptr<Block>& block = m_blocks[keyOf(x / kBlock, y / kBlock)];
+  if (!block) block = std::make_unique<Block>();
+  return (*block)[static_cast<std::size_t>(x % kBlock * kBlock + y % kBlock)];
+}
+
+/** f(patch, squared distance in patches) within reach. */
+template <class F>
+void LearnedPrior::forNear(int x, int y, F f) const {
+  const int low = y - m_reach, high = y + m_reach;
+  for (int bx = (x - m_reach) / kBlock; bx <= (x + m_reach) / kBlock; ++bx)
+    for (int by = low / kBlock; by <= high / kBlock; ++by) {
+      const auto block = m_blocks.find(keyOf(bx, by));
+      if (block == m_blocks.end()) continue;
+      const int fromX = std::max(x - m_reach, bx * kBlock), fromY = std::max(low, by * kBlock);
+      const int toX = std::min(x + m_reach, bx * kBlock + kBlock - 1);
+      const int toY = std::min(high, by * kBlock + kBlock - 1);
+      for (int i = fromX; i <= toX; ++i)
+        for (int j = fromY; j <= toY; ++j)
+          f((*block->second)[static_cast<std::size_t>(i % kBlock * kBlock + j % kBlock)],
+            static_cast<std::size_t>((i - x) * (i - x) + (j - y) * (j - y)));
+    }
+}
+
+void LearnedPrior::count(Patch& patch) {
+  patch.hasChanged = false;
+  patch.known = 0, patch.heights = 0;
+  patch.classes.clear();
+  for (const Ground& g : patch.columns) {
+    if (g.z == 0) continue;
+    ++patch.known, patch.heights += g.z;
+    if (g.id == semantic_octree::kNoClass) continue;
+    const auto isIt = [&](const auto& one) { return one.first == g.id; };
+    const auto found = std::find_if(patch.classes.begin(), patch.classes.end(), isIt);
+    if (found == patch.classes.end())
+      patch.classes.emplace_back(g.id, 1);
+    else
+      ++found->second;
+  }
+}
+
 /** All around what changed is to be predicted anew. */
 void LearnedPrior::spread() {
   for (const auto& [x, y] : m_changed) {
-    m_patches[keyOf(x, y)].hasChanged = false;
-    for (int i = -m_reach; i <= m_reach; ++i)
-      for (int j = -m_reach; j <= m_reach; ++j) {
-        const auto other = m_patches.find(keyOf(x + i, y + j));
-        if (other != m_patches.end()) other->second.isStale = true;
-      }
+    count(at(x, y));
+    forNear(x, y, [](Patch& patch, std::size_t) { patch.isStale = true; });
   }
   m_changed.clear();
 }
@@ -102,7 +131,7 @@ void LearnedPrior::learnAbove(int x, int y, int z, ClassId ground) {
 
 const UnknownPatch& LearnedPrior::patch(int x, int y) {
   if (!m_changed.empty()) spread();
-  Patch& patch = m_patches[keyOf(x, y)];
+  Patch& patch = at(x, y);
   if (patch.isStale) predict(x, y, patch);
   patch.isStale = false;
   return patch.prior;
@@ -110,18 +139,13 @@ const UnknownPatch& LearnedPrior::patch(int x, int y) {
 
 LearnedPrior::Near LearnedPrior::near(int x, int y) const {
   Near near{Distribution(m_standsOn.size(), 0)};
-  for (int i = -m_reach; i <= m_reach; ++i)
-    for (int j = -m_reach; j <= m_reach; ++j) {
-      const auto other = m_patches.find(keyOf(x + i, y + j));
-      if (other == m_patches.end() || other->second.prior.grounded == 0) continue;
-      const double weight = m_columnArea * m_kernel[static_cast<std::size_t>(i * i + j * j)];
-      for (const Ground& g : other->second.columns) {
-        if (g.z == 0) continue;
-        near.height += weight * g.z, near.heights += weight;
-        if (g.id == semantic_octree::kNoClass) continue;
-        near.ground[g.id] += weight, near.classes += weight;
-      }
-    }
+  forNear(x, y, [&](const Patch& patch, std::size_t distance2) {
+    if (patch.known == 0) return;
+    const double weight = m_columnArea * m_kernel[distance2];
+    near.height += weight * patch.heights, near.heights += weight * patch.known;
+    for (const auto& [id, columns] : patch.classes)
+      near.ground[id] += weight * columns, near.classes += weight * columns;
+  });
   return near;
 }
 
@@ -181,8 +205,8 @@ void LearnedPrior::predict(int x, int y, Patch& patch) const {
 }
 
 std::size_t LearnedPrior::memoryUsage() const {
-  constexpr std::size_t kOfEntry = 4 * sizeof(void*);  // of the table
-  return m_patches.size() * (sizeof(Patch) + kOfEntry);
+  constexpr std::size_t kOfEntry = 6 * sizeof(void*);  // of the table, and of the heap
+  return m_blocks.size() * (sizeof(Block) + kOfEntry);
 }
 
 }  // namespace view_information

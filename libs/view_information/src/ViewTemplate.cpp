@@ -53,23 +53,47 @@ class OffsetTable {
   std::vector<int> m_numbers;
 };
 
-/** Those of the shape and all through which they are seen; the sensor's too. Marked in the table.
- */
-std::vector<Offset> offsetsOf(const ViewShape& shape, int reach, double voxelSize,
-                              OffsetTable& marked) {
-  std::vector<Offset> all{{0, 0, 0}};
-  marked.at(all.front()) = 0;
-  const double far = shape.range / voxelSize;
+/** f(offset) for the farthest voxel of each beam. */
+template <class F>
+void forBeams(const ViewShape& shape, double far, F f) {
+  for (int ring = 0; ring < shape.rings; ++ring)
+    for (int column = 0; column < shape.columns; ++column) {
+      const double share = shape.rings > 1 ? static_cast<double>(ring) / (shape.rings - 1) : 0;
+      const double up = (shape.lowest + share * (shape.highest - shape.lowest)) * M_PI / 180;
+      const double around = 2 * M_PI * column / shape.columns;
+      f(Offset{static_cast<int>(std::lround(far * std::cos(up) * std::cos(around))),
+               static_cast<int>(std::lround(far * std::cos(up) * std::sin(around))),
+               static_cast<int>(std::lround(far * std::sin(up)))});
+    }
+}
+
+/** f(offset) for all voxels between the elevations. */
+template <class F>
+void forVoxels(const ViewShape& shape, int reach, double far, F f) {
   for (int x = -reach; x <= reach; ++x)
     for (int y = -reach; y <= reach; ++y)
       for (int z = -reach; z <= reach; ++z) {
         const double flat = std::hypot(x, y);
         if (flat * flat + z * z > far * far) continue;
         const double up = std::atan2(z, flat) * 180 / M_PI;
-        if (up < shape.lowest || up > shape.highest) continue;
-        for (Offset v{x, y, z}; marked.at(v) < 0; v = parentOf(v))
-          marked.at(v) = 0, all.push_back(v);
+        if (up >= shape.lowest && up <= shape.highest) f(Offset{x, y, z});
       }
+}
+
+/** Those of the shape and all through which they are seen; the sensor's too. Marked in the table.
+ */
+std::vector<Offset> offsetsOf(const ViewShape& shape, int reach, double voxelSize,
+                              OffsetTable& marked) {
+  std::vector<Offset> all{{0, 0, 0}};
+  marked.at(all.front()) = 0;
+  const auto add = [&](const Offset& farthest) {
+    for (Offset v = farthest; marked.at(v) < 0; v = parentOf(v)) marked.at(v) = 0, all.push_back(v);
+  };
+  const double far = shape.range / voxelSize;
+  if (shape.rings > 0)
+    forBeams(shape, std::min<double>(far, reach), add);
+  else
+    forVoxels(shape, reach, far, add);
   return all;
 }
 
@@ -86,11 +110,27 @@ ViewTemplate::ViewTemplate(const ViewShape& shape, double voxelSize) : m_shape(s
   std::sort(order.begin(), order.end(), [](const Offset& a, const Offset& b) {
     return std::make_pair(shellOf(a), a) < std::make_pair(shellOf(b), b);
   });
-  for (const Offset& v : order) {
-    numbers.at(v) = static_cast<int>(m_voxels.size());
-    m_voxels.push_back({static_cast<std::int16_t>(v[0]), static_cast<std::int16_t>(v[1]),
-                        static_cast<std::int16_t>(v[2]), static_cast<std::uint8_t>(sectorOf(v)),
-                        shellOf(v) == 0 ? 0 : numbers.at(parentOf(v))});
+  for (std::size_t i = 0; i < order.size(); ++i) numbers.at(order[i]) = static_cast<int>(i);
+  std::vector<std::int32_t> parents(order.size(), 0), sizes(order.size(), 1);  // with all behind it
+  for (std::size_t i = order.size() - 1; i > 0; --i) {
+    parents[i] = numbers.at(parentOf(order[i]));
+    sizes[static_cast<std::size_t>(parents[i])] += sizes[i];
+  }
+  // A voxel, then one after the other with all that is seen through it.
+  std::vector<std::int32_t> places(order.size(), 0), free(order.size(), 1);
+  m_voxels.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto parent = static_cast<std::size_t>(parents[i]);
+    if (i > 0) places[i] = std::exchange(free[parent], free[parent] + sizes[i]);
+    free[i] = places[i] + 1;
+    const auto& [x, y, z] = order[i];
+    m_voxels[static_cast<std::size_t>(places[i])] = {static_cast<std::int16_t>(x),
+                                                     static_cast<std::int16_t>(y),
+                                                     static_cast<std::int16_t>(z),
+                                                     static_cast<std::uint8_t>(sectorOf(order[i])),
+                                                     places[parent],
+                                                     places[i] + sizes[i]};
+    m_lowest = std::min(m_lowest, z), m_highest = std::max(m_highest, z);
   }
 }
 

@@ -9,9 +9,9 @@
 
 namespace semantic_driving {
 
-/** Drives a path: MRPT's reactive navigator where that can (forward, and not to an exact pose), the
- * tracker where the path goes backwards, shunts or ends. Whatever either of them wants, the vehicle
- * does not go where it could not stop before an obstacle, lets those who move pass
+/** Drives a path: MRPT's reactive navigator around what stands in the way where that can (forward,
+ * and not to an exact pose), the tracker everywhere else. Whatever either of them wants, the
+ * vehicle does not go where it could not stop before an obstacle, lets those who move pass
  * (separationSpeed()), steps aside where somebody walks into it as it stands, and changes neither
  * its acceleration nor its steering faster than DriveOptions say. */
 class DriveController {
@@ -40,7 +40,7 @@ class DriveController {
   double stoppedFor(double seconds) const { return seconds - m_movedAt; }
 
  private:
-  bool wantsReactive(const DriveState& state, const ObstaclePoints& obstacles, double seconds);
+  bool wantsReactive(const DriveState& state, const ObstaclePoints& obstacles) const;
   void setWaypoints(const DriveState& state, const ObstaclePoints& obstacles);
   bool isOpen(const semantic_planning::PathPoint& place, const DriveState& state,
               const ObstaclePoints& obstacles) const;
@@ -62,7 +62,6 @@ class DriveController {
   std::optional<double> m_steppedAt;  ///< seconds
   double m_movedAt = 0;
   double m_reactiveFrom = -1;  ///< beginning of the stretch that the reactive navigator drives
-  double m_stalledFrom = -1;   ///< beginning of a stretch on which it stood before a free way
   std::vector<semantic_planning::PathPoint> m_waypoints;
   double m_reactiveAgain = 0;  ///< seconds: it is not asked before, as it found no way
 };

@@ -58,8 +58,8 @@ class DriveGuide {
   /** Why the last plan to the goal, or the recovery, was not found. */
   const std::string& reason() const { return m_reason; }
   /** What counts as an obstacle on the way that the vehicle is on: on the way out of forbidden
-   * ground that ground does not. \param usual options for all other ways */
-  ObstacleOptions obstacles(ObstacleOptions usual = {}) const;
+   * ground that ground does not. */
+  ObstacleOptions obstacles() const;
 
   std::size_t explored() const { return m_explorer.explored(); }
   /** Paths that were given up for another one, before their end. */

@@ -15,40 +15,39 @@ struct DriveOptions {
   double maxAcceleration = 0.8;      ///< m/s^2, along the way; brakes, too
   double maxSideAcceleration = 0.8;  ///< m/s^2, in curves
   double maxJerk = 3;                ///< m/s^3, along the way; infinite: no limit
-  /** How fast the steering turns: change of the path's curvature, 1/m per second. */
-  double maxSteeringRate = 2;
   /** On ground of this rank and worse ones (0: the best), and unknown or forbidden ground, no
    * faster than this, m/s: walking pace. Infinite: no limit. */
   int slowRank = 3;
   double slowRankSpeed = std::numeric_limits<double>::infinity();
-  /** Least radius that the vehicle can drive, meters. Less than the planner's
-   * (VehicleOptions::turningRadius), or there is nothing left to correct with. */
-  double turningRadius = 0.8;
-  /** Kept free around the footprint where the way ahead is looked at, meters: half a voxel, as
-   * obstacles are the centers of columns. */
-  double margin = 0.1;
-  double lookAhead = 4;  ///< how far ahead the way is looked at, meters
-  /** Whether MRPT's reactive navigator drives all forward stretches, or only around obstacles that
-   * stand in the planned way. */
-  bool alwaysReactive = true;
-  /** Stretches and ends of stretches shorter than this follow the path exactly, meters. */
-  double exactEnd = 2;
   /** Observations older than this (seconds) make the vehicle slow down; it stands when they are
    * three times as old. A vehicle that takes longer to brake begins earlier. */
   double maxSensorAge = 0.8;
 
   double reactionTime = 0.3;  ///< seconds until a command has an effect
-  double moverMargin = 0.25;  ///< meters between the vehicle and those who walk
+
+  /** Of the vehicle and the map, see setFor(): the least radius that it drives, meters; and what is
+   * kept free around the footprint where the way ahead is looked at, meters. */
+  double turningRadius = 0.8, margin = 0.1;
 
   static constexpr double kSlowest = 0.1;       ///< m/s, as long as there is way left
   static constexpr double kAtRest = 0.05;       ///< m/s; a slower vehicle stands
   static constexpr double kBrakingShare = 0.8;  ///< of maxAcceleration, that stops are planned with
+  static constexpr double kMoverMargin = 0.25;  ///< meters between the vehicle and those who walk
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
+  /** The vehicle drives tighter than the planner plans, or there is nothing left to correct with;
+   * obstacles are the centers of columns, so that half a voxel around them is not free.
+   * \param plannedRadius VehicleOptions::turningRadius \param voxelSize both in meters */
+  void setFor(double plannedRadius, double voxelSize);
   /** What stops are planned with, m/s^2. */
   double braking() const { return kBrakingShare * maxAcceleration; }
+  /** How fast the steering turns: change of the path's curvature, 1/m per second. */
+  double steeringRate() const;
+  /** How far ahead the way is looked at, meters: it can still stop before what it sees there, after
+   * it had room to drive around it. */
+  double lookAhead() const;
   /** Highest speed with observations of an age, m/s. */
   double speedFor(double sensorAge) const;
   /** Highest speed on each class, m/s. */

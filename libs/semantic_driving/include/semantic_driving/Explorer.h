@@ -9,6 +9,10 @@
 
 namespace semantic_driving {
 
+/** How far over known ground places to drive to are looked for, meters; a wall beyond is
+ * forgotten. */
+constexpr double kFrontierRadius = 80;
+
 /** A place at the border of what is known. */
 struct Frontier {
   mrpt::math::TPose2D pose;  ///< headed as one comes there
@@ -57,20 +61,18 @@ struct Exploration {
  * \param from where the vehicle is and heads, on ground of height z (meters)
  * \param avoid places that are not looked for again, nor others within 3 m of them
  * \param effort until now: a meter through the unknown counts two on rank 0, times its doubt()
- * \param radius how far over known ground, meters; a wall beyond is forgotten
  * \return at most six, 3 m apart */
 Exploration findFrontiers(const semantic_planning::SemanticPlanner& planner,
                           const mrpt::math::TPose2D& from, double z,
                           const mrpt::math::TPose2D& goal,
-                          const std::vector<mrpt::math::TPose2D>& avoid, const Effort& effort = {},
-                          double radius = 80);
+                          const std::vector<mrpt::math::TPose2D>& avoid, const Effort& effort = {});
 
 /** Chooses places at the border of what is known to drive to, each once, and keeps account of what
  * that costs: where ways through the unknown were hoped for in vain, it hopes for less. */
 class Explorer {
  public:
-  /** \param planner must outlive this. \param radius of findFrontiers(), meters */
-  Explorer(semantic_planning::SemanticPlanner& planner, double radius);
+  /** \param planner must outlive this. */
+  explicit Explorer(semantic_planning::SemanticPlanner& planner) : m_planner(planner) {}
 
   /** Counts the way that the vehicle drove since the last call. \param z of the ground, meters */
   void moveTo(const mrpt::math::TPose2D& pose, double z);
@@ -103,7 +105,6 @@ class Explorer {
   using Poses = std::vector<mrpt::math::TPose2D>;
 
   semantic_planning::SemanticPlanner& m_planner;
-  const double m_radius;
   Effort m_effort;
   bool m_wasThere = false, m_exhausted = false;
   std::optional<mrpt::math::TPose2D> m_pose;  ///< where the vehicle was last

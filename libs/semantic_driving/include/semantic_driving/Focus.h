@@ -8,10 +8,7 @@ namespace semantic_driving {
  * vehicle and along the path ahead, and 0 elsewhere. */
 struct FocusOptions {
   double corridor = 0;  ///< on both sides of the path ahead, meters; 0: p(x) is 1 everywhere
-  double around = 7;    ///< around the vehicle, meters; more than ObstacleOptions::radius
-  double alpha =
-      tree_abstraction::kPlanningAlpha;  ///< as semantic_planning::abstractionFor() has it
-  bool obstacles = false;                ///< the same
+  double around = 0;    ///< around the vehicle, meters; 0: a Navigator takes where obstacles matter
 
   bool isOn() const { return corridor > 0; }
   void describe(strict_files::OptionList& list);

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_driving/DrivePath.h>
+#include <semantic_driving/PathCheck.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <optional>
@@ -13,7 +13,8 @@ namespace semantic_driving {
 class ForwardTurns {
  public:
   /** \param planner must outlive this \param longest stretch backwards that is not too long, m */
-  ForwardTurns(const semantic_planning::SemanticPlanner& planner, double longest);
+  explicit ForwardTurns(const semantic_planning::SemanticPlanner& planner,
+                        double longest = PathJudgment::kLongestBackwards);
 
   /** The path with a shortest curve that only goes forward (ReedsShepp::connectForward()) between
    * two of its places with changes of gear between them, of the least MotionCost. The curve goes

@@ -25,12 +25,10 @@ std::optional<GoalMisfit> findMisfit(const semantic_planning::SemanticPlanner& p
 
 /** The pose nearest to a goal where the vehicle fits and can get to over known ground: least
  * distance, a half turn counting as 1.5 m. Nothing if there is none within a distance (meters).
- * \param from where the vehicle is, on ground of height z (meters)
- * \param radius how far ground is followed, meters */
+ * \param from where the vehicle is, on ground of height z (meters) */
 std::optional<mrpt::math::TPose2D> nearestFit(const semantic_planning::SemanticPlanner& planner,
                                               const mrpt::math::TPose2D& from, double z,
-                                              const mrpt::math::TPose2D& goal, double within,
-                                              double radius = 80);
+                                              const mrpt::math::TPose2D& goal, double within);
 
 /** A sentence on what is in the goal's way. */
 std::string describe(const GoalMisfit& misfit, const mrpt::math::TPose2D& goal,

@@ -18,7 +18,7 @@ namespace semantic_driving {
 /** How those who move are told from the points of scans, and followed. */
 struct MoverOptions {
   std::string classes = "person";  ///< names, with commas between; empty: nobody is followed
-  double radius = 12;              ///< how far from the sensor, meters
+  double radius = 12;  ///< how far from the sensor, meters; Navigator sets it by the vehicle
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */

@@ -13,10 +13,6 @@ struct ObstacleOptions {
   bool forbiddenGround = true;
   /** Whatever is not known to be ground. */
   bool unknown = false;
-
-  void describe(strict_files::OptionList& list);
-  /** \throw std::invalid_argument naming the option and its value. */
-  void validate() const;
 };
 
 /** The obstacles around a vehicle, in its frame (x ahead, y left, meters): centers of columns where

@@ -19,10 +19,13 @@ struct PathJudgment {
   bool isFree() const { return freeFor == std::numeric_limits<double>::infinity(); }
   static constexpr double kSameLength = 0.5;  ///< paths that differ by less are as good, meters
   static constexpr double kSameShare = 0.1;   ///< or by less of the other path's length, or price
+  /** Nobody backs up farther at a stretch if it can be helped, meters. */
+  static constexpr double kLongestBackwards = 4;
 
   /** No long stretch backwards before classes before the price of driving.
    * \param mostBackwards longer stretches are long, meters */
-  bool isClearlyBetterThan(const PathJudgment& other, double mostBackwards) const;
+  bool isClearlyBetterThan(const PathJudgment& other,
+                           double mostBackwards = kLongestBackwards) const;
 };
 
 /** Looks at paths again, on the planner's ground as it is now. */

@@ -25,7 +25,6 @@ struct ExploreOptions {
   view_information::ViewShape sensor;
   double sensorHeight = 1.2;                                ///< above the ground, meters
   double budget = std::numeric_limits<double>::infinity();  ///< meters that it drives at most
-  double radius = 80;  ///< how far over known ground views are looked for, meters
   /** Where views may be, map frame, meters; empty: everywhere. */
   Eigen::AlignedBox2d area;
   /** It is enough when what is left within reach promises less than this share of all that was

@@ -19,7 +19,6 @@ struct NavigatorOptions {
   semantic_planning::PlannerOptions planner;  ///< keepOff and shorten are on
   semantic_driving::DriveOptions drive;
   semantic_driving::GuideOptions guide;
-  semantic_driving::ObstacleOptions obstacles;
   semantic_driving::MoverOptions movers;
   semantic_driving::FocusOptions focus;
   semantic_driving::ExploreOptions explore;  ///< its sensor has to be set
@@ -31,6 +30,12 @@ struct NavigatorOptions {
   std::filesystem::path logFolder;  ///< of that navigator's logs; empty: none
 
   NavigatorOptions() { planner.ground.keepOff = planner.shorten = true; }
+  /** What follows from the vehicle, its speed and the map: DriveOptions::setFor(), and how far it
+   * looks for people and has detail. \param voxelSize meters */
+  void setFor(double voxelSize);
+  /** How far obstacles are looked for: all along the look-ahead, and beyond, where MRPT's navigator
+   * chooses between ways; meters. */
+  double obstacleRadius() const;
 };
 
 /** Where odometry has the robot, and how it moves. */

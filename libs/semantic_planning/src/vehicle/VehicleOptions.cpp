@@ -9,7 +9,8 @@ void VehicleOptions::describe(strict_files::OptionList& list) {
   strict_files::Range weights = atLeast(1);
   weights.withInfinity = true;
   list.add("height", height, "m", above(0), "from the ground to the top");
-  list.add("turning_radius", turningRadius, "m", above(0), "least radius of the origin's path");
+  list.add("turning_radius", turningRadius, "m", above(0),
+           "least radius of the origin's planned path; drives correct with down to 0.75 of it");
   list.add("clearance", clearance, "m", atLeast(0), "kept free around the footprint");
   list.add("step_height", stepHeight, "m", atLeast(0), "highest step that the wheels take");
   list.add("max_slope", maxSlope, "degrees", strict_files::between(0, 89), "steepest ground");

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -17,6 +16,8 @@ struct ViewShape {
   double range = 10;                  ///< meters
   double lowest = -45, highest = 15;  ///< elevations, degrees
   double width = 80;  ///< field of view around the heading, degrees; 360: all around
+  /** A LiDAR's beams above each other, and all around; 0: no voxel lies between beams. */
+  int rings = 0, columns = 0;
 };
 
 /** The voxels of a ViewShape in all headings, each with the one through which it is seen. */
@@ -32,13 +33,16 @@ class ViewTemplate {
     std::int16_t x, y, z;  ///< from the sensor's
     std::uint8_t heading;  ///< in which of kHeadings sectors, from -180 degrees on
     std::int32_t parent;   ///< comes before; of the first one, the sensor's: 0
+    std::int32_t next;     ///< behind all that are seen through it, which follow it
   };
   const std::vector<Voxel>& voxels() const { return m_voxels; }
-  int reach() const { return m_reach; }  ///< largest difference along an axis
+  int reach() const { return m_reach; }    ///< largest difference along an axis
+  int lowest() const { return m_lowest; }  ///< difference in z
+  int highest() const { return m_highest; }
 
  private:
   ViewShape m_shape;
-  int m_reach = 0;
+  int m_reach = 0, m_lowest = 0, m_highest = 0;
   std::vector<Voxel> m_voxels;
 };
 
@@ -49,9 +53,10 @@ double gainOfHeading(const SectorGains& gains, int sector, double width);
 /** The heading of a sector's middle, radians. */
 double headingOf(int sector);
 
-/** What observing each known voxel of a map gains once more, and how far beams get through it:
- * four bytes a voxel, in tiles of 8 x 8 x 8 that follow the map's changes. Tiles that are the same
- * throughout are kept once. Not thread safe; the map must not change during a call. */
+/** What observing each known voxel of a map gains once more, and how far beams get through it, in
+ * tiles of 8 x 8 x 8 that follow the map's changes. Half a tile is a byte a voxel and the values
+ * that are in it, or one value: less than four bytes a known voxel. Not thread safe; the map must
+ * not change during a call. */
 class GainField {
  public:
   /** \param map must outlive this. */
@@ -76,6 +81,10 @@ class GainField {
     bool operator==(const Voxel& o) const { return pass == o.pass && gain == o.gain; }
   };
   using Tile = std::array<Voxel, kVoxels>;
+  /** Numbers of values, byte by byte, and the values; or one value, if it is the same throughout.
+   */
+  using Half = std::vector<Voxel>;
+  using Stored = std::array<Half, 2>;
   class Surroundings;
 
   static Voxel packed(const Gain& gain);
@@ -86,10 +95,9 @@ class GainField {
   }
   Tile read(const octomap::OcTreeKey& low);
   Voxel voxelOf(const semantic_octree::SemanticOcTreeNode& leaf);
-  void put(std::uint64_t key, const Tile& tile);
-  std::int32_t numberOfSame(const Tile& tile);
-  std::int32_t unusedPlace();
-  const Tile* find(int x, int y, int z) const;
+  static Half stored(const Voxel* voxels);
+  static const Voxel& voxelIn(const Half& half, int i);
+  const Stored* find(int x, int y, int z) const;
 
   semantic_octree::SemanticOcTree& m_map;
   const Question& m_question;
@@ -97,12 +105,7 @@ class GainField {
   semantic_octree::ClassFilter<float> m_filter;
   semantic_octree::MapFollower m_follower;
   std::unordered_map<float, Voxel> m_uniform;  ///< by log-odds: voxels without a class record
-  /** Where a tile is: in m_stored, or (~place) in m_same. */
-  std::unordered_map<std::uint64_t, std::int32_t> m_tiles;
-  std::deque<Tile> m_stored;
-  std::vector<std::int32_t> m_unused;  ///< places in m_stored
-  std::vector<Tile> m_same;            ///< tiles that are the same throughout
-  std::unordered_map<std::uint32_t, std::int32_t> m_sameByVoxel;
+  std::unordered_map<std::uint64_t, Stored> m_tiles;
   std::vector<float> m_leaves;  ///< of a sweep: P(a beam leaves)
 };
 

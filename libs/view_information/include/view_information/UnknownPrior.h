@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace view_information {
@@ -31,7 +32,15 @@ struct UnknownPatch {
   std::uint16_t grounded = 0;  ///< one bit a column, x * kEdge + y: its ground is known
 
   /** \param x, y, z keys */
-  Gain at(int x, int y, int z) const;
+  Gain at(int x, int y, int z) const {
+    const int h = z - ground, column = (x & (kEdge - 1)) * kEdge + (y & (kEdge - 1));
+    if (h < 0 || (h <= 1 && (grounded >> column & 1))) return {0, 0};
+    if (h == 0) return onGround;
+    return z <= top ? above : Gain{};
+  }
+  /** Of the voxel below one that is known to be free: where the ground is lower than it was
+   * expected, it is there. */
+  Gain belowFree(int x, int y, int z) const { return at(x, y, z < ground ? ground : z); }
 };
 
 /** What space is of which the map knows nothing. Weights say which classes matter; only a prior
@@ -87,15 +96,24 @@ class LearnedPrior : public UnknownPrior {
   };
   struct Patch {
     std::array<Ground, kColumns> columns{};
-    bool isStale = true;      ///< the prior
-    bool hasChanged = false;  ///< what is known, and it is among m_changed
+    bool isStale = true;        ///< the prior
+    bool hasChanged = false;    ///< what is known, and it is among m_changed
+    std::uint16_t known = 0;    ///< columns
+    std::uint32_t heights = 0;  ///< their sum
+    std::vector<std::pair<ClassId, std::uint16_t>> classes;  ///< columns of each
     UnknownPatch prior;
   };
+  static constexpr int kBlock = 16;  ///< patches; blocks are looked up, patches are not
+  using Block = std::array<Patch, kBlock * kBlock>;
   using Distribution = std::vector<double>;
 
   static std::uint64_t keyOf(int x, int y) {
     return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(y);
   }
+  Patch& at(int x, int y);
+  template <class F>
+  void forNear(int x, int y, F f) const;
+  void count(Patch& patch);
   void spread();
   void learnAbove(int x, int y, int z, ClassId ground);
   void predict(int x, int y, Patch& patch) const;
@@ -116,7 +134,7 @@ class LearnedPrior : public UnknownPrior {
   int m_reach;  ///< patches
   double m_columnArea;
   int m_usualHeight = semantic_octree::kKeyOfOrigin;  ///< where nothing near is known
-  std::unordered_map<std::uint64_t, Patch> m_patches;
+  std::unordered_map<std::uint64_t, std::unique_ptr<Block>> m_blocks;
   std::vector<std::array<int, 2>> m_changed;
   std::vector<double> m_kernel;          ///< by squared distance in patches
   Distribution m_worthOfGround;          ///< of each outcome
