@@ -2,10 +2,12 @@
 #include <semantic_abstraction/Abstraction.h>
 
 #include <algorithm>
+#include <random>
 #include <set>
 
 #include "FollowedTree.h"
 #include "OctreeAsTree.h"
+#include "RowKernel.h"
 #include "SmallScans.h"
 #include "TemporaryFolder.h"
 #include "ThreeTerms.h"
@@ -71,6 +73,21 @@ TEST(Abstraction, agreesWithThePlainSearchOnTheSameTree) {
         EXPECT_NEAR(measures.full.information[t], oracle.full.information[t], 1e-10);
         EXPECT_NEAR(measures.compressed.information[t], oracle.optimal.information[t], 1e-10);
       }
+    }
+  }
+}
+
+TEST(RowKernel, sortsTheValuesOfEachOctant) {
+  std::mt19937 random(4);
+  for (const int numValues : {2, 5, 100, 65536}) {
+    std::uniform_int_distribution<int> value(0, numValues - 1);
+    for (int repeat = 0; repeat < 1000; ++repeat) {
+      Units values[64], sorted[64];
+      for (Units& v : values) v = static_cast<Units>(kUnknown + value(random));
+      sortOctants(values, sorted);
+      for (int octant = 0; octant < 64; octant += 8)
+        std::sort(values + octant, values + octant + 8);
+      ASSERT_TRUE(std::equal(values, values + 64, sorted)) << numValues;
     }
   }
 }

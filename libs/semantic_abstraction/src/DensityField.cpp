@@ -44,7 +44,7 @@ DensityField::Overlap DensityField::overlap(const Region& region, const Cell& ce
   return distance - halfDiagonal > region.radius ? Overlap::None : Overlap::Part;
 }
 
-std::optional<double> DensityField::constantIn(const Cell& cell) const {
+std::optional<double> DensityField::constantInRegions(const Cell& cell) const {
   double inAll = -1, inPart = -1;  // largest weights
   for (const Region& region : m_regions) {
     const Overlap overlap = this->overlap(region, cell);
@@ -57,7 +57,7 @@ std::optional<double> DensityField::constantIn(const Cell& cell) const {
 }
 
 double DensityField::meanInRegions(const Cell& cell) const {
-  if (const auto density = constantIn(cell)) return *density;  // as in all voxels
+  if (const auto density = constantInRegions(cell)) return *density;  // as in all voxels
   double d[8];
   for (int i = 0; i < 8; ++i) d[i] = meanInRegions(cell.child(i));
   return (((d[0] + d[1]) + (d[2] + d[3])) + ((d[4] + d[5]) + (d[6] + d[7]))) * 0.125;

@@ -15,12 +15,15 @@ class DensityField {
 
   double mean(const Cell& cell) const { return m_regions.empty() ? 1.0 : meanInRegions(cell); }
   /** The density of all of the cell, unless a border between densities may cross it. */
-  std::optional<double> constantIn(const Cell& cell) const;
+  std::optional<double> constantIn(const Cell& cell) const {
+    return m_regions.empty() ? 1.0 : constantInRegions(cell);
+  }
 
  private:
   friend class DensityChange;
   enum class Overlap { None, Part, Full };
   Overlap overlap(const Region& region, const Cell& cell) const;
+  std::optional<double> constantInRegions(const Cell& cell) const;
   double meanInRegions(const Cell& cell) const;
 
   std::vector<Region> m_regions;

@@ -102,9 +102,9 @@ GTree::Worker::Worker(const GTree& gTree)
     : m_gTree(gTree),
       m_valueRows(gTree.layout().rowSize()),
       m_recordRows(gTree.layout().rowSize()),
-      m_bufferSize(gTree.layout().rowSize() + gTree.layout().sizes().terms + 3),
-      m_buffers((kOwn + 1) * m_bufferSize),
-      m_patterns(m_bufferSize) {}
+      m_patterns(gTree.layout().rowSize() + 2),
+      m_buffers((kOwn + 1) * gTree.layout().rowSize()),
+      m_divergences(gTree.layout().sizes().terms) {}
 
 const double* GTree::Worker::rowOf(const ClassRecord& record) {
   return m_recordRows.row(
@@ -120,17 +120,11 @@ const double* GTree::Worker::rowOf(Units value) {
   });
 }
 
-InnerNode GTree::Worker::compute(const Children& children, const Cell& cell, double* buffer) {
+NodeSummary GTree::Worker::compute(const Children& children, const EqualDensity& equalDensity,
+                                   int depth, double* row) {
   const GTree& g = m_gTree;
-  double* const row = buffer;
-  double* const js = row + g.layout().rowSize();
-  InnerNode n;
-  n.cell = cell;
-  n.numChildren = children.number;
-  n.row = row;
-  n.divergences = js;
+  NodeSummary n;
   double shares[8];
-  const std::optional<double> equalDensity = g.equalDensity(cell);
   bool equalShares = equalDensity.has_value();
   if (equalShares) {
     n.density = *equalDensity;
@@ -138,31 +132,31 @@ InnerNode GTree::Worker::compute(const Children& children, const Cell& cell, dou
     equalShares = sharesOf(children.densities, shares);
     n.density = sumOfEight(children.densities) * 0.125;
   }
-  g.layout().mix(children.rows, equalShares ? nullptr : shares, row, js);
-  if (n.density == 0)
-    std::fill(js, js + g.layout().sizes().terms, 0.0);
-  else
-    n.splitEntropy = equalShares ? kLogEight : entropyOfShares(shares);
   const double childrensG = equalShares ? sumOfEight(children.gValues) * 0.125
                                         : weightedSumOfEight(shares, children.gValues);
-  for (std::size_t t = 0; t < g.m_weights.size(); ++t)
-    n.weightedDivergence += g.m_weights[t] * js[t];
+  n.weightedDivergence = g.layout().mix(children.rows, equalShares ? nullptr : shares,
+                                        g.m_weights.data(), row, m_divergences.data());
+  if (n.density == 0) {
+    std::fill(m_divergences.begin(), m_divergences.end(), 0.0);
+    n.weightedDivergence = 0;
+  } else {
+    n.splitEntropy = equalShares ? kLogEight : entropyOfShares(shares);
+  }
   const double v = childrensG - g.m_options.weights.alpha * n.splitEntropy + n.weightedDivergence;
-  const bool isFree = g.isFreeFrame(cell.depth);
+  const bool isFree = g.isFreeFrame(depth);
   n.gValue = isFree ? childrensG : std::max(v, 0.0);
   n.isExpanded = isFree || v > g.m_eps;
   return n;
 }
 
-auto GTree::Worker::childrenOf(const NodeStore& store, const Slot& inner, const Cell& cell)
-    -> Children {
+NodeSummary GTree::Worker::computeOctant(const NodeStore& store, const Slot& inner,
+                                         const Cell& cell, double* row) {
   const Octant& octant = store.octant(inner);
-  const bool needDensities = !m_gTree.equalDensity(cell);
+  const EqualDensity equalDensity = m_gTree.equalDensity(cell);
   m_recordRows.release();
   Children c;
   for (int i = 0; i < 8; ++i) {
     const Slot& child = octant.slots[i];
-    c.number += child.isKnown();
     if (child.isInner()) {
       const InnerState& s = *store.state<InnerState>(child);
       c.rows[i] = s.row();
@@ -173,85 +167,110 @@ auto GTree::Worker::childrenOf(const NodeStore& store, const Slot& inner, const 
     c.rows[i] = child.kind == Slot::Kind::LeafWithRecord ? rowOf(store.record(child))
                 : child.isKnown()                        ? rowOf(child.value)
                                                          : m_gTree.layout().unknownRow();
-    if (needDensities) c.densities[i] = m_gTree.densityOf(child.isKnown(), cell.child(i));
+    if (!equalDensity) c.densities[i] = m_gTree.densityOf(child.isKnown(), cell.child(i));
   }
-  return c;
+  return compute(c, equalDensity, cell.depth, row);
 }
 
-InnerNode GTree::Worker::computeOctant(const NodeStore& store, const Slot& inner,
-                                       const Cell& cell) {
-  return compute(childrenOf(store, inner, cell), cell, buffer(kOwn));
+NodeSummary GTree::Worker::computePattern(const OctantPattern& pattern, double density,
+                                          double* row) {
+  Children c;
+  for (int i = 0; i < 8; ++i) c.rows[i] = rowOf(pattern.values[i]);
+  return compute(c, density, Block::kDepth + 1, row);
 }
 
-InnerNode GTree::Worker::computeOctantOfBlock(const NodeStore& store, const Block& block,
-                                              int octant, const Cell& cell, double* buffer) {
+NodeSummary GTree::Worker::computeOctantOfBlock(const Block& block, int octant,
+                                                const ClassRecord* records, const Cell& cell,
+                                                const EqualDensity& blocksDensity, double* row) {
+  // In a cell of equal density, its children's is the same.
+  const EqualDensity density = blocksDensity ? blocksDensity : m_gTree.equalDensity(cell);
+  const Units* const values = block.values + 8 * octant;
+  const unsigned recorded = octantOf(block.recorded, octant);
+  if (!recorded && density) {
+    OctantPattern pattern;
+    std::copy_n(values, 8, pattern.values);
+    std::sort(pattern.values, pattern.values + 8);
+    return computePattern(pattern, *density, row);
+  }
   m_recordRows.release();
   Children c;
-  c.number = countOf(block.knownIn(octant));
-  const ClassRecord* record =
-      block.recorded ? store.recordsOf(block) + block.rankOfRecord(8 * octant) : nullptr;
-  for (int i = 0; i < 8; ++i) {
-    const int voxel = 8 * octant + i;
-    c.rows[i] = block.recorded >> voxel & 1 ? rowOf(*record++) : rowOf(block.values[voxel]);
-  }
-  if (!m_gTree.equalDensity(cell))
+  for (int i = 0; i < 8; ++i) c.rows[i] = recorded >> i & 1 ? rowOf(*records++) : rowOf(values[i]);
+  if (!density)
     for (int i = 0; i < 8; ++i)
-      c.densities[i] = m_gTree.densityOf(block.knownIn(octant) >> i & 1, cell.child(i));
-  const InnerNode n = compute(c, cell, buffer);
-  buffer[m_bufferSize - 3] = n.gValue;
-  buffer[m_bufferSize - 2] = n.density;
-  buffer[m_bufferSize - 1] = n.isExpanded;
-  return n;
+      c.densities[i] = m_gTree.densityOf(values[i] != kUnknown, cell.child(i));
+  return compute(c, density, cell.depth, row);
 }
 
-const double* GTree::Worker::bufferOf(const NodeStore& store, const Block& block, int octant,
-                                      const Cell& cell) {
-  if (octantOf(block.recorded, octant) == 0 && m_gTree.equalDensity(cell) == 1.0)
-    return m_patterns.row(OctantPattern(block.values + 8 * octant),
-                          [&](const OctantPattern&, double* row) {
-                            computeOctantOfBlock(store, block, octant, cell, row);
-                          });
-  computeOctantOfBlock(store, block, octant, cell, buffer(octant));
-  return buffer(octant);
+void GTree::Worker::addPattern(const OctantPattern& pattern, double density, int octant,
+                               Children& c) {
+  const std::size_t rowSize = m_gTree.layout().rowSize();
+  const double* const row = m_patterns.row(pattern, [&](const OctantPattern& p, double* r) {
+    const NodeSummary n = computePattern(p, density, r);
+    r[rowSize] = n.gValue;
+    r[rowSize + 1] = n.isExpanded;
+  });
+  c.rows[octant] = row;
+  c.gValues[octant] = row[rowSize];
+  m_expandedOctants |= static_cast<unsigned>(row[rowSize + 1]) << octant;
 }
 
-InnerNode GTree::Worker::computeBlock(const NodeStore& store, const Slot& inner, const Cell& cell) {
+void GTree::Worker::addOctant(const Block& block, int octant, const ClassRecord* records,
+                              const Cell& cell, const EqualDensity& blocksDensity, Children& c) {
+  const bool isKnown = block.knownIn(octant);
+  if (isKnown && !block.isLeafOctant(octant)) {
+    const NodeSummary n =
+        computeOctantOfBlock(block, octant, records, cell, blocksDensity, buffer(octant));
+    c.rows[octant] = buffer(octant);
+    c.gValues[octant] = n.gValue;
+    c.densities[octant] = n.density;
+    m_expandedOctants |= static_cast<unsigned>(n.isExpanded) << octant;
+    return;
+  }
+  if (octantOf(block.recorded, octant)) {
+    m_recordRows.release();  // so that the next octant's rows may take its place
+    std::copy_n(rowOf(*records), m_gTree.layout().rowSize(), buffer(octant));
+    c.rows[octant] = buffer(octant);
+  } else {
+    c.rows[octant] = rowOf(block.values[8 * octant]);
+  }
+  if (!blocksDensity) c.densities[octant] = m_gTree.densityOf(isKnown, cell);
+}
+
+NodeSummary GTree::Worker::computeBlock(const NodeStore& store, const Slot& inner, const Cell& cell,
+                                        double* row) {
   const Block& block = store.block(inner);
-  const bool needDensities = !m_gTree.equalDensity(cell);
+  const EqualDensity density = m_gTree.equalDensity(cell);
+  const bool hasPatterns = density && *density > 0;
+  OctantPattern patterns[8];
+  if (hasPatterns) sortOctants(block.values, patterns[0].values);
   m_patterns.release();
   m_expandedOctants = 0;
   Children c;
+  const ClassRecord* records = block.recorded ? store.recordsOf(block) : nullptr;
   for (int o = 0; o < 8; ++o) {
-    const bool isKnown = block.knownIn(o);
-    c.number += isKnown;
-    if (isKnown && !block.isLeafOctant(o)) {
-      c.rows[o] = bufferOf(store, block, o, cell.child(o));
-      c.gValues[o] = c.rows[o][m_bufferSize - 3];
-      c.densities[o] = c.rows[o][m_bufferSize - 2];
-      m_expandedOctants |= static_cast<unsigned>(c.rows[o][m_bufferSize - 1]) << o;
-      continue;
-    }
-    if (block.hasRecord(8 * o)) {
-      // A row of the cache lasts until the next octant's are asked for.
-      const double* row = rowOf(store.record(block, 8 * o));
-      c.rows[o] =
-          std::copy_n(row, m_gTree.layout().rowSize(), buffer(o)) - m_gTree.layout().rowSize();
+    const std::uint8_t recorded = octantOf(block.recorded, o);
+    if (recorded == 0 && hasPatterns) {
+      addPattern(patterns[o], *density, o, c);
     } else {
-      c.rows[o] = rowOf(block.values[8 * o]);
+      addOctant(block, o, records, cell.child(o), density, c);
+      records += countOf(recorded);
     }
-    if (needDensities) c.densities[o] = m_gTree.densityOf(isKnown, cell.child(o));
   }
-  return compute(c, cell, buffer(kOwn));
+  return compute(c, density, cell.depth, row);
+}
+
+InnerNode GTree::Worker::inspected(const NodeSummary& summary, const Cell& cell, int numChildren,
+                                   const double* row) const {
+  return {summary, cell, numChildren, row, m_divergences.data()};
 }
 
 void GTree::Worker::recompute(NodeStore& store, Slot& inner, const Cell& cell, bool reshaped) {
   const bool isBlock = inner.kind == Slot::Kind::Block;
-  const InnerNode n =
-      isBlock ? computeBlock(store, inner, cell) : computeOctant(store, inner, cell);
   InnerState& s = *store.state<InnerState>(inner);
+  const NodeSummary n = isBlock ? computeBlock(store, inner, cell, s.row())
+                                : computeOctant(store, inner, cell, s.row());
   s.density = n.density;
   s.gValue = n.gValue;
-  std::copy_n(n.row, m_gTree.layout().rowSize(), s.row());
   s.changedBelow |= reshaped || s.isExpanded != n.isExpanded;
   s.isExpanded = n.isExpanded;
   isBlock ? noteOctants(s) : noteChildren(store, inner, s);

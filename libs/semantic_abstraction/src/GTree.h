@@ -3,6 +3,7 @@
 #include <semantic_octree/store/Cell.h>
 #include <semantic_octree/store/NodeObserver.h>
 
+#include <algorithm>
 #include <deque>
 
 #include "DensityField.h"
@@ -26,14 +27,18 @@ struct InnerState {
   const double* row() const { return reinterpret_cast<const double*>(this + 1); }
 };
 
-/** What is computed of an inner node, but not kept. */
-struct InnerNode {
-  Cell cell;
-  int numChildren = 0;
+/** What is computed of an inner node beside its row and divergences. */
+struct NodeSummary {
   double density = 0, gValue = 0;
   double splitEntropy = 0;        ///< H(Pi), nats
   double weightedDivergence = 0;  ///< sum_t weight_t JS_t
   bool isExpanded = false;
+};
+
+/** An inner node that is inspected. */
+struct InnerNode : NodeSummary {
+  Cell cell;
+  int numChildren = 0;
   const double* row = nullptr;
   const double* divergences = nullptr;  ///< JS_t, nats, in the layout's order
 };
@@ -104,36 +109,48 @@ class GTree final : public NodeObserver {
     /** What a node needs of its eight children. */
     struct Children {
       const double* rows[8];
-      double gValues[8] = {}, densities[8];
-      int number = 0;  ///< of those that exist
+      double gValues[8] = {};
+      double densities[8];  ///< unless the node's cell has an equal density
     };
+    /** Density of a cell whose children weigh the same (see equalDensity()). */
+    using EqualDensity = std::optional<double>;
+
     /** Note in the state whether the children's part in the compressed tree changed. */
     void noteOctants(InnerState& s) const;
     static void noteChildren(const NodeStore& store, const Slot& inner, InnerState& s);
-    Children childrenOf(const NodeStore& store, const Slot& inner, const Cell& cell);
-    InnerNode computeOctant(const NodeStore& store, const Slot& inner, const Cell& cell);
+    NodeSummary computeOctant(const NodeStore& store, const Slot& inner, const Cell& cell,
+                              double* row);
     /** The block's own node, and m_expandedOctants. */
-    InnerNode computeBlock(const NodeStore& store, const Slot& inner, const Cell& cell);
-    /** \param buffer where row and divergences go, and what computeBlock() wants to know */
-    InnerNode computeOctantOfBlock(const NodeStore& store, const Block& block, int octant,
-                                   const Cell& cell, double* buffer);
-    InnerNode compute(const Children& children, const Cell& cell, double* buffer);
-    /** Row and the like of an octant that is an inner node: kept, if it follows from its pattern.
-     */
-    const double* bufferOf(const NodeStore& store, const Block& block, int octant,
-                           const Cell& cell);
-    double* buffer(int i) { return &m_buffers[i * m_bufferSize]; }
+    NodeSummary computeBlock(const NodeStore& store, const Slot& inner, const Cell& cell,
+                             double* row);
+    /** An octant of a block without class records, where the density is equal: its values count,
+     * and not where they stand. \param pattern its values in ascending order */
+    NodeSummary computePattern(const OctantPattern& pattern, double density, double* row);
+    /** An octant of a block that is an inner node. \param records the octant's
+     * \param blocksDensity if the block has an equal one */
+    NodeSummary computeOctantOfBlock(const Block& block, int octant, const ClassRecord* records,
+                                     const Cell& cell, const EqualDensity& blocksDensity,
+                                     double* row);
+    /** What a block's node needs of an octant: of one that is a pattern, of any. */
+    void addPattern(const OctantPattern& pattern, double density, int octant, Children& c);
+    void addOctant(const Block& block, int octant, const ClassRecord* records, const Cell& cell,
+                   const EqualDensity& blocksDensity, Children& c);
+    /** Row, divergences (m_divergences), and the rest. */
+    NodeSummary compute(const Children& children, const EqualDensity& equalDensity, int depth,
+                        double* row);
+    InnerNode inspected(const NodeSummary& summary, const Cell& cell, int numChildren,
+                        const double* row) const;
     const double* rowOf(const ClassRecord& record);
     const double* rowOf(Units value);
+    double* buffer(int i) { return &m_buffers[i * m_gTree.layout().rowSize()]; }
 
     const GTree& m_gTree;
     ValueRows m_valueRows;  ///< of leaves without a class record
     RowCache<ClassRecord> m_recordRows;
-    /** A buffer holds row, divergences, G-value, density, and whether it is expanded, for each of a
-     * block's octants and for the node itself. */
-    std::size_t m_bufferSize;
-    std::vector<double> m_buffers;
-    RowCache<OctantPattern> m_patterns;  ///< such buffers of octants without class records
+    /** Of octants without class records: row, G-value, and whether it is expanded. */
+    RowCache<OctantPattern> m_patterns;
+    std::vector<double> m_buffers;  ///< rows of a block's octants, and of a node that is inspected
+    std::vector<double> m_divergences;  ///< JS_t of the node that was computed last
     unsigned m_expandedOctants = 0;
     static constexpr int kOwn = 8;
   };
@@ -157,12 +174,26 @@ class GTree final : public NodeObserver {
 template <typename F>
 void GTree::Worker::inspect(const NodeStore& store, const Slot& inner, const Cell& cell,
                             const F& f) {
-  if (inner.kind == Slot::Kind::Octant) return f(computeOctant(store, inner, cell));
-  f(computeBlock(store, inner, cell));
+  double* const row = buffer(kOwn);
+  if (inner.kind == Slot::Kind::Octant) {
+    const NodeSummary summary = computeOctant(store, inner, cell, row);
+    const Slot* const slots = store.octant(inner).slots;
+    const auto known = std::count_if(slots, slots + 8, [](const Slot& s) { return s.isKnown(); });
+    return f(inspected(summary, cell, static_cast<int>(known), row));
+  }
   const Block& block = store.block(inner);
-  for (int o = 0; o < 8; ++o)
-    if (block.knownIn(o) && !block.isLeafOctant(o))
-      f(computeOctantOfBlock(store, block, o, cell.child(o), buffer(kOwn)));
+  int known = 0;
+  for (int o = 0; o < 8; ++o) known += block.knownIn(o) != 0;
+  f(inspected(computeBlock(store, inner, cell, row), cell, known, row));
+  const EqualDensity density = m_gTree.equalDensity(cell);
+  for (int o = 0; o < 8; ++o) {
+    if (!block.knownIn(o) || block.isLeafOctant(o)) continue;
+    const ClassRecord* records =
+        block.recorded ? store.recordsOf(block) + block.rankOfRecord(8 * o) : nullptr;
+    const Cell octant = cell.child(o);
+    f(inspected(computeOctantOfBlock(block, o, records, octant, density, row), octant,
+                countOf(block.knownIn(o)), row));
+  }
 }
 
 }  // namespace semantic_octree

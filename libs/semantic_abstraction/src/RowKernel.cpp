@@ -25,29 +25,70 @@ MSO_INLINE Lanes binaryEntropy(const Lanes& p) { return 0.0 - xLogX(p) - xLogX(1
 
 /** \param mix gives the mixture of the children's values from an index on */
 template <typename Mix>
-MSO_INLINE void mixRow(const RowSizes& sizes, double* row, double* js, const Mix& mix) {
+MSO_INLINE double mixRow(const RowSizes& sizes, const double* weights, double* row, double* js,
+                         const Mix& mix) {
   double* const h = row + sizes.width;
+  Lanes weighted = {};
   for (int t = 0; t < sizes.binary; t += kNumLanes) {
     const Lanes p = mix(t), entropy = binaryEntropy(p);
     store(p, row + t);
     store(entropy, h + t);
-    store(positivePart(entropy - mix(sizes.width + t)), js + t);
+    const Lanes divergence = positivePart(entropy - mix(sizes.width + t));
+    store(divergence, js + t);
+    weighted += load(weights + t) * divergence;
   }
   for (int i = sizes.binary; i < sizes.width; i += kNumLanes) store(mix(i), row + i);
   for (int t = sizes.binary; t < sizes.terms; t += kNumLanes) store(mix(sizes.width + t), js + t);
+  return (weighted[0] + weighted[1]) + (weighted[2] + weighted[3]);
+}
+
+/** A value of each octant. */
+using UnitVector = Units __attribute__((vector_size(16)));
+
+/** Rows become columns. */
+MSO_INLINE void transpose(UnitVector (&v)[8]) {
+  // Twice eight values become one row of pairs; after three times, 8 x 8 are transposed.
+  for (int step = 0; step < 3; ++step) {
+    UnitVector w[8];
+    for (int i = 0; i < 4; ++i) {
+      w[2 * i] = __builtin_shufflevector(v[i], v[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
+      w[2 * i + 1] = __builtin_shufflevector(v[i], v[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
+    }
+    for (int i = 0; i < 8; ++i) v[i] = w[i];
+  }
 }
 
 }  // namespace
 
-MSO_VECTORIZED void mixEqualShares(const double* const children[8], const RowSizes& sizes,
-                                   double* row, double* js) {
-  mixRow(sizes, row, js, [children](int i) MSO_ALWAYS_INLINE { return meanOfEight(children, i); });
+MSO_VECTORIZED void sortOctants(const Units* values, Units* sorted) {
+  // A sorting network of 19 comparisons; each is of all octants at once.
+  static constexpr int kCompared[19][2] = {{0, 2}, {1, 3}, {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6},
+                                           {3, 7}, {0, 1}, {2, 3}, {4, 5}, {6, 7}, {2, 4}, {3, 5},
+                                           {1, 4}, {3, 6}, {1, 2}, {3, 4}, {5, 6}};
+  UnitVector v[8];
+  std::memcpy(v, values, sizeof v);
+  transpose(v);
+  for (const auto& [i, j] : kCompared) {
+    const UnitVector low = v[i] < v[j] ? v[i] : v[j];
+    v[j] = v[i] < v[j] ? v[j] : v[i];
+    v[i] = low;
+  }
+  transpose(v);
+  std::memcpy(sorted, v, sizeof v);
 }
 
-MSO_VECTORIZED void mixShares(const double* const children[8], const double shares[8],
-                              const RowSizes& sizes, double* row, double* js) {
-  mixRow(sizes, row, js,
-         [children, shares](int i) MSO_ALWAYS_INLINE { return sumOfShares(children, shares, i); });
+MSO_VECTORIZED double mixEqualShares(const double* const children[8], const RowSizes& sizes,
+                                     const double* weights, double* row, double* js) {
+  return mixRow(sizes, weights, row, js,
+                [children](int i) MSO_ALWAYS_INLINE { return meanOfEight(children, i); });
+}
+
+MSO_VECTORIZED double mixShares(const double* const children[8], const double shares[8],
+                                const RowSizes& sizes, const double* weights, double* row,
+                                double* js) {
+  return mixRow(sizes, weights, row, js, [children, shares](int i) MSO_ALWAYS_INLINE {
+    return sumOfShares(children, shares, i);
+  });
 }
 
 MSO_VECTORIZED void binaryEntropies(const double* p, int n, double* h) {

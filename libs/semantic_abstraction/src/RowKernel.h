@@ -1,4 +1,5 @@
 #pragma once
+#include <semantic_octree/store/ClassRecord.h>
 
 namespace semantic_octree {
 
@@ -18,13 +19,17 @@ struct RowSizes {
 };
 
 /** The row of a node from its eight children's, probabilities and entropies of yes-or-no terms, and
- * all divergences (of terms with more outcomes: so far the mean of the children's entropies). */
-void mixEqualShares(const double* const children[8], const RowSizes& sizes, double* row,
-                    double* js);
-void mixShares(const double* const children[8], const double shares[8], const RowSizes& sizes,
-               double* row, double* js);
+ * all divergences (of terms with more outcomes: so far the mean of the children's entropies).
+ * \return the weighted sum of yes-or-no terms' divergences */
+double mixEqualShares(const double* const children[8], const RowSizes& sizes, const double* weights,
+                      double* row, double* js);
+double mixShares(const double* const children[8], const double shares[8], const RowSizes& sizes,
+                 const double* weights, double* row, double* js);
 
 /** Entropies of yes-or-no variables, nats; n a multiple of RowSizes::kLanes. */
 void binaryEntropies(const double* p, int n, double* h);
+
+/** Sorts 64 values eight by eight, in ascending order. */
+void sortOctants(const Units* values, Units* sorted);
 
 }  // namespace semantic_octree

@@ -78,16 +78,18 @@ void RowLayout::rowOf(const Belief& belief, double* row) const {
   fillEntropies(row);
 }
 
-void RowLayout::mix(const double* const children[8], const double* shares, double* row,
-                    double* js) const {
-  if (shares)
-    mixShares(children, shares, m_sizes, row, js);
-  else
-    mixEqualShares(children, m_sizes, row, js);
-  if (m_wideTerms.empty()) return;
+double RowLayout::mix(const double* const children[8], const double* shares, const double* weights,
+                      double* row, double* js) const {
+  double weighted = shares ? mixShares(children, shares, m_sizes, weights, row, js)
+                           : mixEqualShares(children, m_sizes, weights, row, js);
+  if (m_wideTerms.empty()) return weighted;
   fillWideEntropies(row);
   const double* const h = row + m_sizes.width;
-  for (int t = m_sizes.binary; t < m_sizes.terms; ++t) js[t] = std::max(0.0, h[t] - js[t]);
+  for (int t = m_sizes.binary; t < m_sizes.terms; ++t) {
+    js[t] = std::max(0.0, h[t] - js[t]);
+    weighted += weights[t] * js[t];
+  }
+  return weighted;
 }
 
 void RowLayout::fillEntropies(double* row) const {

@@ -30,8 +30,10 @@ class RowLayout {
   /** Row of a cell. */
   void rowOf(const Belief& belief, double* row) const;
   const double* unknownRow() const { return m_unknownRow.data(); }
-  /** Row and divergences of a node from its children's rows and shares (null: each is 1/8). */
-  void mix(const double* const children[8], const double* shares, double* row, double* js) const;
+  /** Row and divergences of a node from its children's rows and shares (null: each is 1/8).
+   * \return the weighted sum of the divergences */
+  double mix(const double* const children[8], const double* shares, const double* weights,
+             double* row, double* js) const;
 
  private:
   /** Entry of a row = p(free) * free + number of classes * p(rest) + what named classes exceed it
@@ -65,19 +67,16 @@ inline std::size_t hashOf(const ClassRecord& record) {
   return hash ^ hash << 32;
 }
 
-/** An octant's eight values. */
+/** An octant's eight values, in ascending order. */
 struct OctantPattern {
-  std::uint64_t low = 0, high = 0;
-  OctantPattern() = default;
-  explicit OctantPattern(const Units* values) {
-    std::memcpy(&low, values, sizeof low);
-    std::memcpy(&high, values + 4, sizeof high);
-  }
-  bool operator==(const OctantPattern& o) const { return low == o.low && high == o.high; }
+  Units values[8];
+  bool operator==(const OctantPattern& o) const { return std::memcmp(this, &o, sizeof o) == 0; }
 };
 
 inline std::size_t hashOf(const OctantPattern& p) {
-  const std::size_t hash = (p.low * 0x9e3779b97f4a7c15u ^ p.high) * 0xd6e8feb86659fd93u;
+  std::uint64_t bits[2];
+  std::memcpy(bits, &p, sizeof bits);
+  const std::size_t hash = (bits[0] * 0x9e3779b97f4a7c15u ^ bits[1]) * 0xd6e8feb86659fd93u;
   return hash ^ hash << 32;
 }
 

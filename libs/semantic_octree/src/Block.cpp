@@ -4,7 +4,11 @@
 
 namespace semantic_octree {
 
-Units Block::highestValue() const { return *std::max_element(values, values + 64); }
+Units Block::highestValue() const {
+  Units highest = kUnknown;  // not std::max_element(), which looks at one value after the other
+  for (const Units value : values) highest = std::max(highest, value);
+  return highest;
+}
 
 Block::Count Block::count() const {
   constexpr VoxelBits kFirsts = 0x0101010101010101;
