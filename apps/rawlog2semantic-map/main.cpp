@@ -242,6 +242,7 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
   labeled_cloud::LabelModel& labels = config.insertion.conversion.labels;
   if (cli.estimatesConfusion()) labels.kind = labeled_cloud::LabelModel::Kind::Hard;
   labels.confusion = confusionOf(cli, table, config, trajectory, stop);
+  if (labels.confusion) map.tree().setClassPrior(labels.confusion->classShares());
   Scans scans(cli, table, config, trajectory);
   SideOutputs outputs(cli, table);
   MapBuilder builder(map, [&](const auto& scan, const auto& T) {

@@ -91,6 +91,14 @@ TEST(ConfusionMatrices, doNotLetAClassWinThatWasNeverSeen) {
   }
 }
 
+TEST(ConfusionMatrices, tellHowFrequentClassesAre) {
+  const auto shares = ConfusionMatrix({{500, 100, 0}, {100, 300, 0}, {0, 0, 0}}).classShares();
+  EXPECT_NEAR(shares[0], 0.6, 1e-3);
+  EXPECT_NEAR(shares[1], 0.4, 1e-3);
+  EXPECT_GT(shares[2], 0);
+  EXPECT_NEAR(shares[0] + shares[1] + shares[2], 1, 1e-6);
+}
+
 TEST(ConfusionMatrices, areReadByTheNamesOfTheirClasses) {
   const TemporaryFolder folder;
   const auto matrix = loadConfusionMatrix(

@@ -34,6 +34,11 @@ class CountedLabels {
   void add(const Voxel& voxel, ClassId id) {
     if (id != kNoClass) ++m_counts[voxel][id];
   }
+  std::vector<Voxel> voxels() const {
+    std::vector<Voxel> all;
+    for (const auto& [voxel, counts] : m_counts) all.push_back(voxel);
+    return all;
+  }
   bool has(const Voxel& voxel) const { return m_counts.count(voxel) > 0; }
   /** The most frequent one, the lowest id on a tie; kNoClass where there is none. Labels of voxels
    * across a face count `neighborWeight`. */

@@ -73,6 +73,7 @@ struct Result {
 Result judgeModel(const std::vector<LabeledFrame>& truth, const std::vector<LabeledCloud>& clouds,
                   const LabelModel& model) {
   SemanticOcTree map(kResolution, kittiTable());
+  if (model.confusion) map.setClassPrior(model.confusion->classShares());
   LabelModel hard;
   hard.kind = LabelModel::Kind::Hard;
   std::vector<std::vector<ClassId>> answers;

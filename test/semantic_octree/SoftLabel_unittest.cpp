@@ -44,6 +44,25 @@ TEST(SoftLabel, thatIsTheClassifiersRowEqualsTheHardLabel) {
                 1e-6);
 }
 
+TEST(SoftLabel, thatIsTheFirstOfACellMeetsThePriorAndLaterOnesDoNot) {
+  constexpr int K = 3;
+  FilterParameters p = wideLimits();
+  const ClassFilter<double> without(K, p);
+  p.classPrior = {0.6f, 0.3f, 0.1f};
+  const ClassFilter<double> with(K, p);
+  const std::vector<std::vector<float>> rows = {{0.2f, 0.3f, 0.5f}, {0.4f, 0.2f, 0.4f}};
+  ClassBelief<double> plain = without.uniform(0), informed = plain;
+  for (const std::vector<float>& row : rows) {
+    without.hit(plain, row.data());
+    with.hit(informed, row.data());
+    for (ClassId k = 2; k <= K; ++k)
+      EXPECT_NEAR(
+          informed.logOddsOf(k) - informed.logOddsOf(1),
+          plain.logOddsOf(k) - plain.logOddsOf(1) + std::log(p.classPrior[k - 1] / p.classPrior[0]),
+          1e-6);
+  }
+}
+
 TEST(SoftLabel, oneHotApproachesTheHardLabelOfAPerfectClassifier) {
   constexpr int K = 5;
   for (const double floor : {0.01, 0.001, 0.0001}) {

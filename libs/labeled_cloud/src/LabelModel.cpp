@@ -16,6 +16,9 @@ namespace {
 
 using Counts = std::vector<std::vector<double>>;
 
+/** A class that was not met where the matrix was measured may be met here. */
+constexpr double kLeastShare = 1e-4;
+
 double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
@@ -51,6 +54,11 @@ std::vector<double> answerShares(const Counts& counts) {
 ConfusionMatrix::ConfusionMatrix(const Counts& counts)
     : m_size(static_cast<int>(counts.size())), m_rows(counts.size() * counts.size()) {
   check(counts);
+  double total = 0;
+  for (const auto& row : counts) total += sum(row);
+  for (const auto& row : counts)
+    m_classShares.push_back(
+        static_cast<float>((sum(row) / total + kLeastShare) / (1 + kLeastShare * m_size)));
   const auto shares = answerShares(counts);
   for (int answered = 0; answered < m_size; ++answered) {
     std::vector<double> likelihoods;

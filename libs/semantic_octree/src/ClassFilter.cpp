@@ -211,10 +211,16 @@ void ClassFilter<Real, Named>::hitOfSeveral(Belief& b, const ClassVotes* votes,
 template <typename Real, int Named>
 void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
   const double K = m_numClasses;
+  std::vector<double> p(q, q + m_numClasses);
+  if (const auto& prior = m_parameters.classPrior; b.count == 0 && !prior.empty()) {
+    const double all = std::inner_product(p.begin(), p.end(), prior.begin(), 0.0);
+    std::transform(p.begin(), p.end(), prior.begin(), p.begin(),
+                   [all](double likelihood, double before) { return likelihood * before / all; });
+  }
   std::vector<Real> h(m_numClasses + 1);
   for (int k = 1; k <= m_numClasses; ++k)
     h[k] = rounded<Real>(b.logOddsOf(static_cast<ClassId>(k)) + m_unlabeled +
-                         std::log(K * std::max<double>(q[k - 1], m_parameters.softLabelFloor)));
+                         std::log(K * std::max(p[k - 1], m_parameters.softLabelFloor)));
   const Real excess = std::max(Real(0), *std::max_element(h.begin() + 1, h.end()) - m_max);
   for (Real& x : h) x = std::max(m_min, x - excess);
   std::vector<ClassId> order(m_numClasses);

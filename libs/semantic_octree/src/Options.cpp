@@ -80,6 +80,10 @@ void FilterParameters::validate(int numClasses) const {
   checkAll(all, "FilterParameters");
   require(numClasses >= 1 && numClasses <= semantic_types::kMaxClasses, "number of classes",
           numClasses, "1 to 254");
+  require(classPrior.empty() || classPrior.size() == static_cast<std::size_t>(numClasses),
+          "FilterParameters::class_prior", classPrior.size(), "a number for each class, or none");
+  for (const float p : classPrior)
+    require(p > 0 && p <= 1, "FilterParameters::class_prior", p, "above 0, up to 1");
   require(falseAlarmProbability < hitProbability, "FilterParameters::false_alarm_probability",
           falseAlarmProbability, "less than hit_probability");
   require(numClasses == 1 || accuracy * numClasses > 1, "FilterParameters::accuracy", accuracy,

@@ -135,8 +135,18 @@ void SemanticOcTree::setHalfLives(const ClassTable& table) {
 void SemanticOcTree::setCalibration(const Calibration& calibration) {
   FilterParameters parameters = m_parameters;
   parameters.calibration = calibration;
+  setFilter(std::move(parameters));
+}
+
+void SemanticOcTree::setClassPrior(std::vector<float> prior) {
+  FilterParameters parameters = m_parameters;
+  parameters.classPrior = std::move(prior);
+  setFilter(std::move(parameters));
+}
+
+void SemanticOcTree::setFilter(FilterParameters parameters) {
   m_filter = ClassFilter<float>(numClasses(), parameters);
-  m_parameters = parameters;
+  m_parameters = std::move(parameters);
 }
 
 SemanticOcTree emptyLike(const SemanticOcTree& map) {

@@ -20,6 +20,8 @@ class ConfusionMatrix {
   explicit ConfusionMatrix(const std::vector<std::vector<double>>& counts);
 
   int size() const { return m_size; }
+  /** K shares of the true classes among all counts, each above 0: FilterParameters::classPrior. */
+  const std::vector<float>& classShares() const { return m_classShares; }
   /** K values that sum to 1, proportional to p(this class is answered | class k is true). */
   const float* given(semantic_types::ClassId answered) const {
     return &m_rows[std::size_t(answered - 1) * m_size];
@@ -27,7 +29,7 @@ class ConfusionMatrix {
 
  private:
   int m_size;
-  std::vector<float> m_rows;
+  std::vector<float> m_rows, m_classShares;
 };
 
 /** Reads a confusion matrix from a YAML (or JSON) file:

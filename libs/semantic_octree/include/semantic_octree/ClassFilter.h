@@ -61,7 +61,8 @@ class ClassFilter {
   void hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const;
   /** A return without a label ended in the cell: every class gains equally. */
   void hit(Belief& b) const { addToAll(b, m_hitUnlabeled); }
-  /** A return with a soft label ended in the cell. \param q K probabilities of classes 1..K. */
+  /** A return with a soft label ended in the cell. The first one meets the parameters' prior.
+   * \param q K probabilities of classes 1..K. */
   void hit(Belief& b, const float* q) const;
   /** A beam passed through the cell. */
   void miss(Belief& b) const { addToAll(b, m_miss); }

@@ -1,6 +1,8 @@
 #pragma once
 #include <strict_files/OptionList.h>
 
+#include <vector>
+
 namespace semantic_octree {
 
 /** How what a map states of a voxel's classes follows from what its filter believes of them: with
@@ -50,12 +52,16 @@ struct FilterParameters {
   double softLabelFloor = 0.001;
   /** Set by whoever measures it (Calibrator); files keep it. */
   Calibration calibration;
+  /** p(class k) of voxels before the first row of probabilities of theirs, K numbers; empty: all
+   * are alike. For rows that are likelihoods, as those of a confusion matrix. Files do not keep it.
+   */
+  std::vector<float> classPrior;
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the parameter and its value. */
   void validate(int numClasses) const;
-  /** Whether beliefs come about in the same way; the calibration, which follows from scans, does
-   * not matter. */
+  /** Whether beliefs come about in the same way; the calibration, which follows from scans, and
+   * the prior, which files do not keep, do not matter. */
   bool operator==(const FilterParameters& o) const;
 };
 

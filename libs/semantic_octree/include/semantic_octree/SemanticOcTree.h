@@ -192,6 +192,9 @@ class SemanticOcTree {
   void setHalfLives(const ClassTable& table);
   /** Beliefs stay as they are. \throw std::invalid_argument naming the value. */
   void setCalibration(const Calibration& calibration);
+  /** For soft labels to come: FilterParameters::classPrior.
+   * \throw std::invalid_argument naming the value. */
+  void setClassPrior(std::vector<float> prior);
   /** Memory ran out, or a tile's file failed (MapFolder), while it changed. */
   bool isBroken() const { return m_store == nullptr; }
   /** Removes all nodes; the clock begins anew.
@@ -209,6 +212,7 @@ class SemanticOcTree {
   friend class MapAccess;
   /** \throw std::logic_error the map is broken. */
   NodeStore& store() const;
+  void setFilter(FilterParameters parameters);
 
   double m_resolution;
   ClassTable m_classes;
