@@ -10,9 +10,7 @@
 #include <ostream>
 
 #include "Application.h"
-#include "Figures.h"
 #include "JsonFile.h"
-#include "MapSheet.h"
 #include "MemoryOption.h"
 #include "NumberChecks.h"
 #include "Outputs.h"

@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
 #include <rapidcheck.h>
+#include <semantic_octree/ClassFilter.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <type_traits>
 
 #include "FilterStreams.h"
@@ -277,4 +281,97 @@ TEST(ClassFilter, distributionsAddUpToOne) {
       ASSERT_NEAR(sigmoid(-belief.occupancyLogOdds(K)), p[0], 1e-6);
     }
   }
+}
+
+using namespace semantic_octree;
+
+namespace {
+
+// The numbers of vectors.json were computed by an independent script from the filter's formulas.
+
+nlohmann::json vectors() {
+  std::ifstream in(MSO_SOURCE_DIR "/test/semantic_octree/vectors.json");
+  return nlohmann::json::parse(in);
+}
+
+}  // namespace
+
+TEST(Vectors, likelihoodConsistentIncrementsAreTheTabulatedOnes) {
+  const auto v = vectors()["likelihood_increments"];
+  const int K = v["K"];
+  FilterParameters parameters = wideLimits(v["accuracy"]);
+  parameters.hitProbability = v["p_hit"];
+  parameters.falseAlarmProbability = v["p_fa"];
+  const ClassFilter<double> filter(K, parameters);
+  const ClassBelief<double> prior = filter.uniform(0);
+  ClassBelief<double> hit = prior, missed = prior, unlabeled = prior;
+  filter.hit(hit, 7);
+  filter.miss(missed);
+  filter.hit(unlabeled);
+  EXPECT_NEAR(hit.logOddsOf(7) - prior.rest, v["psi"].get<double>(), 1e-12);
+  EXPECT_NEAR(hit.rest - prior.rest, v["phi_hit_other"].get<double>(), 1e-12);
+  EXPECT_NEAR(missed.rest - prior.rest, v["phi_miss"].get<double>(), 1e-12);
+  EXPECT_NEAR(std::exp(unlabeled.rest - prior.rest),
+              v["mean_uniform_exp_increment_equals_phit_over_pfa"].get<double>(), 1e-12);
+  const auto& expected = v["one_hit_from_occ_prior_0.5"];
+  const std::vector<double> p = distributionOf(hit, K);
+  EXPECT_NEAR(p[0], expected["p_free"].get<double>(), 1e-12);
+  EXPECT_NEAR(p[7], expected["p_hit_class"].get<double>(), 1e-12);
+  EXPECT_NEAR(p[1], expected["p_each_other"].get<double>(), 1e-12);
+}
+
+using namespace semantic_octree;
+
+TEST(FilterParameters, thatMakeNoSenseAreRefusedByName) {
+  const auto refusal = [](int K, void (*change)(FilterParameters&)) -> std::string {
+    FilterParameters p;
+    change(p);
+    try {
+      ClassFilter<float> filter(K, p);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "accepted";
+  };
+  const auto names = [](const std::string& what, const char* name) {
+    return what.find(name) != std::string::npos;
+  };
+  const auto unchanged = [](FilterParameters&) {};
+  EXPECT_PRED2(names, refusal(0, unchanged), "number of classes is 0");
+  EXPECT_PRED2(names, refusal(255, unchanged), "number of classes is 255");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.accuracy = 0.2; }), "accuracy is 0.2");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.accuracy = 1; }), "accuracy");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.accuracy = NAN; }), "accuracy");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.labelCorrelation = -0.01; }),
+               "label_correlation");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.labelCorrelation = 1.01; }),
+               "label_correlation");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.labelCorrelation = NAN; }),
+               "label_correlation");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.hitProbability = 1; }),
+               "hit_probability");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.falseAlarmProbability = 0.6; }),
+               "false_alarm_probability");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.falseAlarmProbability = 0; }),
+               "false_alarm_probability");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.minOccupancy = 0.5; }),
+               "min_occupancy");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.minOccupancy = 0; }), "min_occupancy");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.maxProbability = 0.5; }),
+               "max_probability");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.softLabelFloor = 0; }),
+               "soft_label_floor");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.hitProbability = 1 - 0.99e-9; }),
+               "hit_probability");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.minOccupancy = 0.99e-9; }),
+               "min_occupancy");
+  EXPECT_PRED2(names, refusal(5, [](FilterParameters& p) { p.maxProbability = 1 - 0.99e-9; }),
+               "max_probability");
+  EXPECT_EQ(refusal(1, [](FilterParameters& p) { p.accuracy = 0.5; }), "accepted");
+  EXPECT_EQ(refusal(254, unchanged), "accepted");
+  EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.labelCorrelation = 0; }), "accepted");
+  EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.labelCorrelation = 1; }), "accepted");
+  EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.minOccupancy = 1e-9; }), "accepted");
+  EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.hitProbability = 1 - 1e-9; }), "accepted");
+  EXPECT_EQ(refusal(254, [](FilterParameters& p) { p.maxProbability = 1 - 1e-9; }), "accepted");
 }

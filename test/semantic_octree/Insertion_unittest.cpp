@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "PlainMap.h"
 #include "RandomScans.h"
+#include "TemporaryFolder.h"
 
 using namespace semantic_octree;
 
@@ -78,4 +81,207 @@ TEST(Insertion, ofAnyScansGivesThePlainMapToTheLastBit) {
     scans.classes = c.classes, scans.softLabels = c.softLabels;
     expectPlainResult(severalScans(seed, scans), options, c.classes);
   }
+}
+
+using namespace semantic_octree;
+
+namespace {
+
+/** Expects that an insertion is refused, saying so, and that the map is what it was. */
+void expectRefused(const std::string& words, const LabeledCloud& cloud,
+                   const Eigen::Isometry3d& T_map_sensor = Eigen::Isometry3d::Identity(),
+                   const InsertionOptions& options = {}) {
+  SemanticOcTree tree(0.1, numberedClasses(3));
+  LabeledCloud good;
+  good.points = {{1.f, 2.f, 0.3f}};
+  good.classes = {2};
+  tree.insert(good, Eigen::Isometry3d::Identity());
+  SemanticOcTree before = tree;
+  const std::string error = errorOf([&] { tree.insert(cloud, T_map_sensor, options); });
+  EXPECT_TRUE(contains(error, words)) << error;
+  EXPECT_TRUE(tree == before);
+  // Nothing of the refused scan may come up with the next one.
+  tree.insert(good, Eigen::Isometry3d::Identity());
+  before.insert(good, Eigen::Isometry3d::Identity());
+  EXPECT_TRUE(tree == before);
+}
+
+LabeledCloud threePoints() {
+  LabeledCloud cloud;
+  cloud.points = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  return cloud;
+}
+
+Eigen::Isometry3d at(double x, double y, double z) {
+  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+  T_map_sensor.translation() << x, y, z;
+  return T_map_sensor;
+}
+
+}  // namespace
+
+TEST(BadInput, sensorOutsideTheMapIsRefused) {
+  expectRefused("sensor at (4000, 0, 0) m", threePoints(), at(4000, 0, 0));
+  expectRefused("outside the map", threePoints(), at(0, -3277, 0));
+  expectRefused("outside the map", threePoints(), at(0, 0, 3276.8));
+  expectRefused("not finite", threePoints(), at(0, 0, NAN));
+  Eigen::Isometry3d twisted = at(0, 0, 0);
+  twisted.linear()(0, 0) = INFINITY;
+  expectRefused("the sensor's pose has numbers that are not finite", threePoints(), twisted);
+}
+
+TEST(BadInput, labelsThatCannotBeAreRefused) {
+  LabeledCloud cloud = threePoints();
+  cloud.classes = {1, 2};
+  expectRefused("2 classes, expected 3", cloud);
+  cloud.classes = {1, 3, 4};
+  expectRefused("class 4", cloud);
+  cloud.classes.clear();
+  cloud.probabilities.assign(8, 0.1f);
+  expectRefused("8 probabilities, expected 9", cloud);
+  cloud.probabilities.push_back(0.1f);
+  for (const float bad : {-0.1f, 1.5f, NAN}) {
+    cloud.probabilities[7] = bad;
+    expectRefused("probability", cloud);
+  }
+}
+
+TEST(BadInput, scansThatNeedMoreMemoryThanThereIsOrThanAllowedAreRefused) {
+  LabeledCloud cloud;
+  cloud.points = {{3276, 3276, 3276}, {-3276, -3276, -3276}};
+  expectRefused("too large", cloud);
+  cloud.points = {{60, 60, 20}, {-60, -60, 0}};
+  InsertionOptions options;
+  options.maxScanMemory = 1;
+  expectRefused("set max_range", cloud, at(0, 0, 0), options);
+}
+
+TEST(BadInput, insertionOptionsAreRefusedByName) {
+  using O = InsertionOptions;
+  const std::pair<void (*)(O&), const char*> faults[] = {
+      {[](O& o) { o.maxRange = -1; }, "max_range is -1"},
+      {[](O& o) { o.maxRange = NAN; }, "max_range"},
+      {[](O& o) { o.minRange = 1e30; }, "min_range"},
+      {[](O& o) { o.minRange = 5, o.maxRange = 4; }, "less than max_range"},
+      {[](O& o) { o.carvingMargin = HUGE_VAL; }, "carving_margin"},
+      {[](O& o) { o.threads = 0; }, "threads is 0"},
+      {[](O& o) { o.threads = 257; }, "threads"}};
+  EXPECT_EQ(errorOf([] { O().validate(); }), "");
+  for (const auto& [change, words] : faults) {
+    O options;
+    change(options);
+    expectRefused(words, threePoints(), at(0, 0, 0), options);
+  }
+}
+
+TEST(BadInput, treesThatCannotBeAreRefused) {
+  for (const double resolution : {0.0, -0.1, static_cast<double>(NAN), HUGE_VAL})
+    EXPECT_TRUE(
+        contains(errorOf([&] { SemanticOcTree(resolution, numberedClasses(2)); }), "resolution"))
+        << resolution;
+  EXPECT_TRUE(
+      contains(errorOf([] { SemanticOcTree(0.1, ClassTable()); }), "number of classes is 0"));
+}
+
+using namespace semantic_octree;
+
+namespace {
+
+// What single scans do that can be told by hand.
+
+constexpr double kScanResolution = 0.2;
+
+}  // namespace
+
+TEST(SingleScans, countsAVoxelOnceForEachScanForever) {
+  // A voxel seen again exactly n scans later for every n up to ten, and 300 scans in a row.
+  SemanticOcTree tree(kScanResolution, numberedClasses(2));
+  PlainMap plain(kScanResolution, 2);
+  PosedCloud here, elsewhere;
+  here.cloud.points = {{1.1f, 0.1f, 0.1f}, {1.12f, 0.1f, 0.1f}, {3.1f, 0.1f, 0.1f}};
+  elsewhere.cloud.points = {{-1.1f, 0.1f, 0.1f}};
+  const auto insert = [&](const PosedCloud& scan) {
+    tree.insert(scan.cloud, scan.T_map_sensor);
+    plain.insert(scan, {});
+    expectSame(tree, plain);
+  };
+  for (int pause = 0; pause < 10; ++pause) {
+    insert(here);
+    for (int i = 0; i < pause; ++i) insert(elsewhere);
+  }
+  for (int i = 0; i < 300; ++i) insert(i % 3 ? elsewhere : here);
+}
+
+TEST(SingleScans, ofBeamsAlongVoxelBordersStaysInTheBeamsNeighborhood) {
+  std::mt19937 random(8);
+  for (int i = 0; i < 300; ++i) {
+    SemanticOcTree tree(1.0, numberedClasses(1));
+    LabeledCloud cloud;
+    const auto whole = [&] { return static_cast<float>(static_cast<int>(random() % 13) - 6); };
+    cloud.points = {{whole(), whole(), whole()}};
+    Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+    T_map_sensor.translation() << whole(), whole(), whole();
+    tree.insert(cloud, T_map_sensor);
+    const Eigen::Vector3d begin = T_map_sensor.translation(), beam = cloud.points[0].cast<double>();
+    for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+      const Eigen::Vector3d center(leaf.getX(), leaf.getY(), leaf.getZ());
+      const double t = beam.squaredNorm() > 0
+                           ? std::clamp((center - begin).dot(beam) / beam.squaredNorm(), 0.0, 1.0)
+                           : 0.0;
+      ASSERT_LE((center - begin - t * beam).norm(), std::sqrt(3.0) / 2 + 1e-9);
+    }
+    const Eigen::Vector3d end = begin + beam;
+    ASSERT_EQ(tree.query(end.x(), end.y(), end.z()).status, CellState::Status::Occupied);
+  }
+}
+
+TEST(SingleScans, reportsWhatBecameOfEachPoint) {
+  SemanticOcTree tree(0.1, numberedClasses(2));
+  LabeledCloud cloud;
+  cloud.points = {{NAN, 0, 0}, {0, INFINITY, 0}, {0.1f, 0, 0},
+                  {1, 0, 0},   {50, 0, 0},       {1e30f, 0, 0}};
+  InsertionOptions options;
+  options.maxRange = 10;
+  options.minRange = 0.5;
+  const InsertionReport report = tree.insert(cloud, Eigen::Isometry3d::Identity(), options);
+  EXPECT_EQ(report.points, 6u);
+  EXPECT_EQ(report.skippedNotFinite, 2u);
+  EXPECT_EQ(report.skippedNear, 1u);
+  EXPECT_EQ(report.beyondRange, 2u);
+  EXPECT_EQ(report.hitVoxels, 1u);
+  EXPECT_EQ(report.freeVoxels, 99u);
+}
+
+TEST(SingleScans, skipsReturnsOutsideTheMap) {
+  SemanticOcTree tree(0.001, numberedClasses(2));  // reaches 32.768 m
+  LabeledCloud cloud;
+  cloud.points = {{40, 0, 0}, {0, -40, 0}, {32.7f, 0, 0}};
+  EXPECT_EQ(tree.insert(cloud, Eigen::Isometry3d::Identity()).skippedOutside, 2u);
+  EXPECT_EQ(tree.query(32.7, 0, 0).status, CellState::Status::Occupied);
+}
+
+TEST(SingleScans, worksInTheOutermostVoxels) {
+  for (const double corner : {-double{kKeyOfOrigin}, kKeyOfOrigin - 0.5}) {
+    SemanticOcTree tree(1.0, numberedClasses(2));
+    Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+    T_map_sensor.translation().setConstant(corner);
+    LabeledCloud cloud;
+    const float inwards = corner < 0 ? 5.f : -5.f;
+    cloud.points = {{inwards, 0, 0}, {0, inwards, 0}, {0, 0, inwards}, {-inwards, 0, 0}};
+    const InsertionReport report = tree.insert(cloud, T_map_sensor);
+    EXPECT_EQ(report.hitVoxels, 3u);
+    EXPECT_EQ(report.skippedOutside, 1u);
+    EXPECT_EQ(tree.query(corner, corner, corner).status, CellState::Status::Free);
+    EXPECT_EQ(tree.query(corner + inwards, corner, corner).status, CellState::Status::Occupied);
+  }
+}
+
+TEST(SingleScans, ofAnEmptyCloudChangesNothing) {
+  SemanticOcTree tree(0.1, numberedClasses(2));
+  EXPECT_EQ(tree.insert({}, Eigen::Isometry3d::Identity()).points, 0u);
+  EXPECT_TRUE(tree.empty());
+  LabeledCloud onlyNan;
+  onlyNan.points = {{NAN, NAN, NAN}};
+  tree.insert(onlyNan, Eigen::Isometry3d::Identity());
+  EXPECT_TRUE(tree.empty());
 }

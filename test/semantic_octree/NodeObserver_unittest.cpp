@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 #include <map_correction/KeyframeMap.h>
 #include <semantic_abstraction/Abstraction.h>
+#include <semantic_octree/store/BlockUpdate.h>
 #include <semantic_octree/store/MapAccess.h>
 
+#include <algorithm>
 #include <deque>
 
+#include "PlainMap.h"
 #include "RandomScans.h"
 
 using namespace semantic_octree;
@@ -125,4 +128,117 @@ TEST(NodeObserver, isTheOnlyOneOfItsMapAndComparedWithItsKindAlone) {
   EXPECT_FALSE(hasAbstraction(other));
   EXPECT_THROW(Abstraction{other}, std::logic_error);
   expectUpToDate(other);
+}
+
+using namespace semantic_octree;
+
+namespace {
+
+// Another rule than the class filter, of which nothing else knows.
+
+constexpr int kClasses = 5;
+constexpr float kSure = 4;
+const float kLogClasses = onGrid(std::log(kClasses));
+
+/** A voxel is what the last scan that met it saw there: free, occupied, or the class that most of
+ * its labels name (of several, the lowest id). */
+class LastSeen {
+ public:
+  LastSeen trusting(const LabelReliability&) const { return *this; }
+
+  Belief uniform(float occupancy) const {
+    Belief b;
+    b.rest = occupancy - kLogClasses;
+    return b;
+  }
+  float occupancyOf(const Belief& b) const { return onGrid(b.occupancyLogOdds(kClasses)); }
+  float occupancyOfUniform(float rest) const { return rest + kLogClasses; }
+
+  void miss(Belief& b) const { b = uniform(-kSure); }
+  void hit(Belief& b) const { b = uniform(kSure); }
+  void hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const {
+    const auto fewer = [](const ClassVotes& x, const ClassVotes& y) { return x.count < y.count; };
+    b = uniform(-kSure);
+    b.count = 1;
+    b.ids[0] = std::max_element(votes, votes + numVoted, fewer)->id;
+    b.logOdds[0] = kSure;
+  }
+  void hit(Belief& b, const float* q) const {
+    const ClassVotes most{static_cast<ClassId>(1 + (std::max_element(q, q + kClasses) - q)), 1};
+    hit(b, &most, 1);
+  }
+
+  float lowestOccupancy() const { return -kSure; }
+  float highestOccupancy() const { return kSure; }
+  float missIncrement() const { return -2 * kSure; }
+  float occupancyAfterMiss(float) const { return -kSure; }
+  float occupancyAfterUnlabeledHit(float) const { return kSure; }
+};
+
+SemanticOcTree emptyMap() {
+  SemanticOcTree map(0.4, numberedClasses(kClasses));
+  MapAccess::setRule(map, std::make_shared<FilterRule<LastSeen>>(LastSeen()));
+  return map;
+}
+
+std::vector<PosedCloud> someScans() {
+  std::mt19937 random(3);
+  std::vector<PosedCloud> scans;
+  for (int i = 0; i < 8; ++i) scans.push_back(randomScan(random));
+  return scans;
+}
+
+/** By class id, how many points of a scan name it. */
+std::array<int, kClasses + 1> votesOf(const std::vector<std::size_t>& points,
+                                      const semantic_types::LabeledCloud& cloud) {
+  std::array<int, kClasses + 1> votes{};
+  for (const std::size_t i : points) ++votes[cloud.classes[i]];
+  votes[kNoClass] = 0;
+  return votes;
+}
+
+}  // namespace
+
+TEST(FusionRule, ofOthersIsUsedForAllThatScansSee) {
+  SemanticOcTree map = emptyMap();
+  std::map<VoxelId, ClassId> expected;  // 0: free, kClasses + 1: occupied
+  for (const PosedCloud& scan : someScans()) {
+    map.insert(scan.cloud, scan.T_map_sensor);
+    const PlainScan seen = plainScan(scan, 0.4, {});
+    for (const VoxelId& voxel : seen.free) expected[voxel] = kNoClass;
+    for (const auto& [voxel, points] : seen.hits) {
+      const auto votes = votesOf(points, scan.cloud);
+      const auto most = std::max_element(votes.begin(), votes.end());
+      expected[voxel] = static_cast<ClassId>(*most ? most - votes.begin() : kClasses + 1);
+    }
+  }
+  std::array<int, kClasses + 2> found{};
+  for (const auto& [voxel, id] : expected) {
+    const CellState state = map.query(keyOf(voxel));
+    ASSERT_EQ(state.status, id ? CellState::Status::Occupied : CellState::Status::Free);
+    if (id >= 1 && id <= kClasses) {
+      ASSERT_EQ(state.likeliestClass, id);
+    }
+    ++found[id];
+  }
+  for (const int n : found) EXPECT_GT(n, 20);
+}
+
+TEST(FusionRule, goesWithCopiesAndCorrections) {
+  const auto scans = someScans();
+  SemanticOcTree map = emptyMap(), expected = map;
+  KeyframeMap keyframes(map);
+  for (const PosedCloud& scan : scans) {
+    keyframes.begin(Eigen::Isometry3d::Identity());
+    keyframes.insert(scan.cloud, scan.T_map_sensor);
+  }
+  const Eigen::Isometry3d T(Eigen::Translation3d(0.7, 0.2, -0.3));
+  keyframes.move({{2, T}});
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    expected.insert(scans[i].cloud, i == 2 ? T * scans[i].T_map_sensor : scans[i].T_map_sensor);
+  EXPECT_TRUE(map == expected);
+  SemanticOcTree moved = std::move(expected);
+  for (SemanticOcTree* each : {&map, &moved}) each->insert(scans[0].cloud, T);
+  EXPECT_TRUE(map == moved);
+  EXPECT_THROW(MapAccess::setRule(map, nullptr), std::logic_error);
 }

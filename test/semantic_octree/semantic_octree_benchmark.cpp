@@ -9,7 +9,6 @@
 
 #include "FilterStreams.h"
 #include "RandomScans.h"
-#include "RayMarking.h"
 #include "ScanMerger.h"
 
 using namespace semantic_octree;

@@ -1,8 +1,8 @@
 #include "TileIndex.h"
 
 #include <map_folders/MapFolder.h>
-#include <semantic_octree/store/CheckedStream.h>
 #include <semantic_octree/store/TileCodes.h>
+#include <semantic_octree/store/TreeFormat.h>
 #include <strict_files/StrictYaml.h>
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>

@@ -1,6 +1,8 @@
 #include <map_operations/MapOperations.h>
+
 #include <semantic_octree/store/TreeBuilder.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -151,6 +153,128 @@ SemanticOcTree coarsened(const SemanticOcTree& map, int levels) {
   SemanticOcTree coarse = MapAccess::emptyWith(map, map.getResolution() * (1 << levels));
   TreeBuilder::fill(coarse, CoarseCursor(map, levels));
   return coarse;
+}
+
+namespace {
+
+/** Axis-aligned box in voxels of the old map, as keys with fractions. */
+using Bounds = Eigen::AlignedBox3d;
+
+Bounds boundsOf(const Cell& cell) {
+  const Eigen::Vector3d low = cell.lowest().cast<double>();
+  return {low, low + Eigen::Vector3d::Constant(cell.edge())};
+}
+
+/** Whether any known leaf below a node overlaps the bounds. */
+bool anyKnown(const Node& node, const Cell& cell, const Bounds& bounds) {
+  if (!node || !boundsOf(cell).intersects(bounds)) return false;
+  if (node.isLeaf()) return true;
+  for (int i = 0; i < 8; ++i)
+    if (anyKnown(node.child(i), cell.child(i), bounds)) return true;
+  return false;
+}
+
+/** Poses in voxels, as keys, and the map that is moved. */
+struct Move {
+  const SemanticOcTree& map;
+  Eigen::Isometry3d T_old_new;
+  Eigen::Matrix3d absoluteRotation;
+};
+
+/** A cube of the new map, and the smallest node of the old one that holds all of it. */
+class MoveCursor {
+ public:
+  explicit MoveCursor(const Move& move) : MoveCursor(move, Cell(), move.map.root(), Cell()) {}
+
+  bool known() const {
+    return m_cell.depth == kTreeDepth ? static_cast<bool>(m_node)
+                                      : anyKnown(m_node, m_nodeCell, bounds());
+  }
+  bool isLeaf() const { return m_node.isLeaf(); }
+  LeafContent content() const { return contentOf(m_node, m_move.map.numClasses()); }
+  MoveCursor child(int i) const { return {m_move, m_cell.child(i), m_node, m_nodeCell}; }
+
+ private:
+  MoveCursor(const Move& move, const Cell& cell, const Node& node, const Cell& nodeCell)
+      : m_move(move), m_cell(cell), m_node(node), m_nodeCell(nodeCell) {
+    while (m_node && !m_node.isLeaf() && descend()) continue;
+  }
+
+  /** To the child that holds the whole cube, or the center if the cube is a voxel. */
+  bool descend() {
+    const Bounds b = bounds();
+    const Eigen::Vector3d middle = m_nodeCell.lowest().cast<double>().matrix() +
+                                   Eigen::Vector3d::Constant(m_nodeCell.edge() / 2);
+    const auto low = (b.min().array() >= middle.array()).eval();
+    const auto high = (b.max().array() > middle.array()).eval();
+    if (m_nodeCell.depth > 0 || boundsOf(m_nodeCell).contains(b)) {
+      for (int axis = 0; axis < 3; ++axis)
+        if (low[axis] != high[axis]) return false;
+      const int i = low[0] | low[1] << 1 | low[2] << 2;
+      m_node = m_node.child(i);
+      m_nodeCell = m_nodeCell.child(i);
+      return true;
+    }
+    return false;
+  }
+
+  /** Bounds of the cube in the old map; a voxel counts as its center. */
+  Bounds bounds() const {
+    const double half = m_cell.depth == kTreeDepth ? 0 : m_cell.edge() / 2.0;
+    const Eigen::Vector3d center =
+        m_move.T_old_new *
+        (m_cell.lowest().cast<double>().matrix() + Eigen::Vector3d::Constant(m_cell.edge() / 2.0));
+    const Eigen::Vector3d reach = m_move.absoluteRotation * Eigen::Vector3d::Constant(half);
+    return {center - reach, center + reach};
+  }
+
+  const Move& m_move;
+  Cell m_cell;
+  Node m_node;
+  Cell m_nodeCell;
+};
+
+/** A pose in meters as one in keys. */
+Eigen::Isometry3d inVoxels(const Eigen::Isometry3d& T, double resolution) {
+  const Eigen::Vector3d middle = Eigen::Vector3d::Constant(kKeyOfOrigin);
+  Eigen::Isometry3d scaled = T;
+  scaled.translation() = T.translation() / resolution + middle - T.linear() * middle;
+  return scaled;
+}
+
+void checkRigid(const Eigen::Isometry3d& T) {
+  const Eigen::Matrix3d R = T.linear();
+  const double error = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(error < 1e-6) || !(R.determinant() > 0) || !T.translation().allFinite())
+    throw std::invalid_argument("moving a map: the pose is not a rigid transformation");
+}
+
+/** The corners of the known space must stay inside the new map's cube. */
+void checkStaysInside(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_old) {
+  Eigen::Vector3d low, high;
+  map.getMetricMin(low.x(), low.y(), low.z());
+  map.getMetricMax(high.x(), high.y(), high.z());
+  const Eigen::AlignedBox3d known(low, high);
+  const double limit = (kKeyOfOrigin - 1) * map.getResolution();
+  for (int i = 0; i < 8; ++i) {
+    const auto corner = static_cast<Eigen::AlignedBox3d::CornerType>(i);
+    if (((T_new_old * known.corner(corner)).cwiseAbs().array() > limit).any())
+      throw std::out_of_range("moving a map: it would reach beyond " + std::to_string(limit) +
+                              " m, the border of its 16 levels");
+  }
+}
+
+}  // namespace
+
+SemanticOcTree moved(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_old) {
+  checkRigid(T_new_old);
+  SemanticOcTree result = emptyLike(map);
+  if (map.empty()) return result;
+  checkStaysInside(map, T_new_old);
+  const Eigen::Isometry3d T = inVoxels(T_new_old.inverse(), map.getResolution());
+  const Move move{map, T, T.linear().cwiseAbs()};
+  TreeBuilder::fill(result, MoveCursor(move));
+  return result;
 }
 
 }  // namespace semantic_octree

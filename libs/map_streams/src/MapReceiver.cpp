@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "StreamPackets.h"
-#include "StreamReceipt.h"
 
 namespace semantic_octree {
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "StreamPackets.h"
-#include "StreamReceipt.h"
 
 namespace semantic_octree {
 namespace {

@@ -1,5 +1,6 @@
 #include "StreamPackets.h"
 
+#include <map_streams/MapStream.h>
 #include <semantic_octree/TreeFile.h>
 #include <zlib.h>
 
@@ -12,6 +13,45 @@
 #include <streambuf>
 
 namespace semantic_octree {
+namespace {
+
+constexpr std::size_t kMaxBehind = 900;  // bytes
+constexpr std::size_t kFixedBytes = 10;
+
+}  // namespace
+
+StreamReceipt StreamReceipt::of(std::uint16_t revision, std::uint32_t sequence,
+                                const std::vector<bool>& came, std::uint32_t prefix) {
+  StreamReceipt r;
+  r.revision = revision;
+  r.sequence = sequence;
+  r.prefix = prefix;
+  const std::size_t end = std::min(came.size(), prefix + 8 * kMaxBehind);
+  r.behind.assign((end - prefix + 7) / 8, '\0');
+  for (std::size_t i = prefix; i < end; ++i)
+    if (came[i]) r.behind[(i - prefix) / 8] |= static_cast<char>(1 << (i - prefix) % 8);
+  while (!r.behind.empty() && r.behind.back() == 0) r.behind.pop_back();
+  return r;
+}
+
+std::string StreamReceipt::bytes() const {
+  std::string bytes(kFixedBytes, '\0');
+  std::memcpy(&bytes[0], &revision, 2);
+  std::memcpy(&bytes[2], &sequence, 4);
+  std::memcpy(&bytes[6], &prefix, 4);
+  return bytes + behind;
+}
+
+StreamReceipt StreamReceipt::of(const std::string& bytes) {
+  if (bytes.size() < kFixedBytes) throw std::runtime_error("altered: a receipt too short");
+  StreamReceipt r;
+  std::memcpy(&r.revision, &bytes[0], 2);
+  std::memcpy(&r.sequence, &bytes[2], 4);
+  std::memcpy(&r.prefix, &bytes[6], 4);
+  r.behind = bytes.substr(kFixedBytes);
+  return r;
+}
+
 namespace {
 
 /** Appends, or takes from a place on. */
@@ -256,6 +296,53 @@ PartCoder coderFor(const TreeParts& parts, int numClasses, int rootDepth) {
       visit(window.sorted(at, std::min(at + kPerGroup, parts.parts.size())));
   });
   return coder;
+}
+
+namespace {
+
+/** CRC-32 of all that follows (4 bytes), "SO", version, type (1 byte), stream (4 bytes). */
+constexpr char kMark[] = {'S', 'O'};
+constexpr std::uint8_t kStreamVersion = 2;
+constexpr std::size_t kDatagramHeaderBytes = 12;
+
+std::uint32_t crcOf(const std::string& bytes, std::size_t from) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()) + from, bytes.size() - from));
+}
+
+}  // namespace
+
+std::string Datagram::bytes() const {
+  std::string bytes(kDatagramHeaderBytes, '\0');
+  std::memcpy(&bytes[4], kMark, sizeof(kMark));
+  bytes[6] = static_cast<char>(kStreamVersion);
+  bytes[7] = static_cast<char>(type);
+  std::memcpy(&bytes[8], &stream, sizeof(stream));
+  bytes += payload;
+  const std::uint32_t crc = crcOf(bytes, sizeof(crc));
+  std::memcpy(&bytes[0], &crc, sizeof(crc));
+  return bytes;
+}
+
+Datagram Datagram::of(const std::string& bytes) {
+  if (bytes.size() < kDatagramHeaderBytes || bytes.size() > kMaxDatagramBytes ||
+      std::memcmp(&bytes[4], kMark, sizeof(kMark)) != 0)
+    throw std::runtime_error("a datagram of another program");
+  std::uint32_t crc = 0;
+  std::memcpy(&crc, &bytes[0], sizeof(crc));
+  if (crc != crcOf(bytes, sizeof(crc)))
+    throw std::runtime_error("altered: a datagram whose checksum does not match");
+  if (const auto version = static_cast<std::uint8_t>(bytes[6]); version != kStreamVersion)
+    throw std::runtime_error("a datagram of version " + std::to_string(version) +
+                             " of the protocol, expected " + std::to_string(kStreamVersion));
+  Datagram d;
+  d.type = static_cast<Type>(bytes[7]);
+  if (d.type < Type::Request || d.type > Type::Cookie)
+    throw std::runtime_error("altered: a datagram of type " +
+                             std::to_string(static_cast<std::uint8_t>(bytes[7])));
+  std::memcpy(&d.stream, &bytes[8], sizeof(d.stream));
+  d.payload = bytes.substr(kDatagramHeaderBytes);
+  return d;
 }
 
 }  // namespace semantic_octree

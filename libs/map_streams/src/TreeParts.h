@@ -2,9 +2,42 @@
 #include <semantic_abstraction/Abstraction.h>
 #include <tree_abstraction/AlphaPath.h>
 
-#include "PartList.h"
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "StreamTree.h"
 
 namespace semantic_octree {
+
+/** Parts in the order of their turns, packed: of a leaf not much more is kept than what it says. */
+class PartList {
+ public:
+  /** \param step when it is its turn \param begins see TreeParts */
+  void add(const TreePart& part, std::size_t step, bool begins);
+  /** By step; those of one step stay in the order in which they were added. */
+  void sort();
+
+  std::size_t size() const { return m_entries.size(); }
+  TreePart part(std::size_t i) const;
+  std::size_t step(std::size_t i) const { return m_entries[i].step; }
+  bool begins(std::size_t i) const { return m_entries[i].begins; }
+
+ private:
+  static constexpr std::size_t kChunk = 1 << 20;  // bytes
+
+  struct Entry {
+    std::uint64_t path;  ///< of the part's cell
+    std::uint32_t step;
+    std::uint32_t chunk, at;  ///< where its leaves are
+    std::uint8_t depth, mask;
+    bool isOctet, begins;
+  };
+
+  std::deque<Entry> m_entries;
+  std::vector<std::unique_ptr<char[]>> m_chunks;  ///< leaves, one behind the other
+  std::size_t m_used = kChunk;                    ///< of the last one
+};
 
 /** What leads from the map that a receiver has to the compressed tree of another map. */
 struct TreeParts {

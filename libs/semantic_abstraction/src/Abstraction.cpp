@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "InnerNodes.h"
+#include "CompressedTree.h"
 #include "LeafLog.h"
 
 namespace semantic_octree {

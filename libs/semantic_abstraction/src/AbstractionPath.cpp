@@ -1,6 +1,14 @@
+#include <semantic_abstraction/AlphaTrees.h>
 #include <tree_abstraction/AlphaPath.h>
 
-#include "InnerNodes.h"
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "CompressedTree.h"
 
 namespace semantic_octree {
 namespace {
@@ -81,6 +89,117 @@ void Abstraction::forEachPathNode(const VisitPathNode& visit) const {
            p * n.splitEntropy, n.numChildren - 1},
           information);
   });
+}
+
+using tree_abstraction::AlphaPath;
+
+namespace {
+
+/** Positive numbers are in the order of their bits. */
+std::uint64_t binOf(double tau) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &tau, sizeof(bits));
+  return bits >> 43;  // leaves 9 bits behind the point
+}
+
+/** The last number for which it is true, as it is for `first`, and not for `end`, by bisection. */
+template <typename F>
+std::size_t lastThat(const F& f, std::size_t first, std::size_t end) {
+  while (end - first > 1) {
+    const std::size_t middle = first + (end - first) / 2;
+    (f(middle) ? first : end) = middle;
+  }
+  return first;
+}
+
+}  // namespace
+
+AlphaTrees::AlphaTrees(Nodes nodes) : m_nodes(std::move(nodes)) {
+  std::map<std::uint64_t, Bin, std::greater<>> bins;
+  AddedToTree all;
+  const AddedToTree roots = m_nodes([&](double tau, const AddedToTree& added) {
+    all += added;
+    if (!(tau > 0)) return;
+    Bin& bin = bins.try_emplace(binOf(tau), Bin{tau, tau, {}}).first->second;
+    bin.highest = std::max(bin.highest, tau);
+    bin.lowest = std::min(bin.lowest, tau);
+    bin.added += added;
+  });
+  for (const auto& [number, bin] : bins) m_bins.push_back(bin);
+  mergeTies();
+  m_trees = {roots};
+  for (const Bin& bin : m_bins) m_trees.push_back(AddedToTree(m_trees.back()) += bin.added);
+  m_full = roots;
+  m_full += all;
+}
+
+AlphaTrees::AlphaTrees(const Abstraction& abstraction)
+    : AlphaTrees([&abstraction](const Visit& visit) {
+        AddedToTree roots =
+            abstraction.forEachTau([&](const Abstraction::NodeTau& n) { visit(n.tau, n.added); });
+        roots.leaves += 1;  // all trees begin with one
+        return roots;
+      }) {}
+
+/** Bins that agree but for rounding come in together. */
+void AlphaTrees::mergeTies() {
+  std::vector<Bin> merged;
+  for (const Bin& bin : m_bins) {
+    if (merged.empty() || !tree_abstraction::isTie(merged.back().lowest, bin.highest)) {
+      merged.push_back(bin);
+      continue;
+    }
+    merged.back().lowest = bin.lowest;
+    merged.back().added += bin.added;
+  }
+  m_bins = std::move(merged);
+}
+
+double AlphaTrees::alpha(std::size_t k) const {
+  return tree_abstraction::alphaBetween(
+      k < m_bins.size() ? m_bins[k].highest : 0.0,
+      k > 0 ? m_bins[k - 1].lowest : std::numeric_limits<double>::infinity());
+}
+
+AlphaTrees::Path AlphaTrees::within(std::size_t k) const {
+  const Bin& bin = m_bins.at(k);
+  std::vector<double> taus, leaves;
+  const auto add = [&](double tau, double addedLeaves) {
+    taus.push_back(tau);
+    leaves.push_back(addedLeaves);
+  };
+  if (k > 0) add(m_bins[k - 1].lowest, 0);
+  if (k + 1 < m_bins.size()) add(m_bins[k + 1].highest, 0);
+  m_nodes([&](double tau, const AddedToTree& added) {
+    if (tau <= bin.highest && tau >= bin.lowest) add(tau, added.leaves);
+  });
+  AlphaPath path(std::move(taus));
+  const std::size_t last = path.numTrees() - (k + 1 < m_bins.size() ? 2 : 1);
+  return {std::move(path), k > 0 ? std::size_t(1) : 0, last, std::move(leaves)};
+}
+
+double AlphaTrees::alphaForLeaves(std::size_t wanted) const {
+  const auto most = static_cast<double>(wanted);
+  if (most < m_trees.front().leaves)
+    throw std::invalid_argument(std::to_string(wanted) + " leaves wanted, but the map has " +
+                                std::to_string(static_cast<std::size_t>(m_trees.front().leaves)) +
+                                " blocks, each of which is a leaf at least (see block_size)");
+  if (most > m_full.leaves)
+    throw std::invalid_argument(std::to_string(wanted) + " leaves wanted, but the map has only " +
+                                std::to_string(static_cast<std::size_t>(m_full.leaves)));
+  const std::size_t k =
+      lastThat([&](std::size_t i) { return m_trees[i].leaves <= most; }, 0, numTrees());
+  if (k + 1 == numTrees()) return alpha(k);
+  const Path path = within(k);
+  return path.trees.alpha(path.trees.largestWithin(most - m_trees[k].leaves, path.addedLeaves, 0));
+}
+
+double AlphaTrees::largestThat(const std::function<bool(double)>& fits) const {
+  const std::size_t k = lastThat([&](std::size_t i) { return fits(alpha(i)); }, 0, numTrees());
+  if (k + 1 == numTrees()) return alpha(k);
+  const Path path = within(k);
+  return path.trees.alpha(
+      lastThat([&](std::size_t i) { return fits(path.trees.alpha(i)); }, path.first, path.last));
 }
 
 }  // namespace semantic_octree

@@ -1,6 +1,7 @@
 #include <tree_abstraction/AlphaPath.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <stdexcept>
@@ -8,7 +9,6 @@
 #include <utility>
 
 namespace tree_abstraction {
-
 namespace {
 
 void requireSize(const std::string& field, std::size_t size, std::size_t expected) {
@@ -123,6 +123,107 @@ double AlphaSteps::highestAlpha(std::size_t step) const {
 
 double AlphaSteps::alpha(std::size_t step) const {
   return alphaBetween(step == 0 ? m_highest : m_next.at(step - 1), highestAlpha(step));
+}
+
+namespace {
+
+constexpr std::int32_t kNone = -1;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+void requireForest(const std::vector<std::int32_t>& parents, const std::vector<double>& gains,
+                   const std::vector<double>& prices) {
+  const auto reject = [](std::size_t i, const std::string& field, const std::string& value,
+                         const std::string& expected) {
+    throw std::invalid_argument("collapseAlphas: " + field + " of node " + std::to_string(i) +
+                                " is " + value + ", expected " + expected);
+  };
+  if (gains.size() != parents.size() || prices.size() != parents.size()) {
+    throw std::invalid_argument("collapseAlphas: " + std::to_string(parents.size()) + " parents, " +
+                                std::to_string(gains.size()) + " gains and " +
+                                std::to_string(prices.size()) +
+                                " prices, expected as many of each");
+  }
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    const std::int32_t parent = parents[i];
+    if (parent < kNone || parent >= static_cast<std::int64_t>(i)) {
+      reject(i, "parent", std::to_string(parent), "-1 or an index below the node's");
+    }
+    if (!std::isfinite(gains[i])) reject(i, "gain", std::to_string(gains[i]), "a finite number");
+    if (!(prices[i] >= 0 && std::isfinite(prices[i]))) {
+      reject(i, "price", std::to_string(prices[i]), "a finite number >= 0");
+    }
+  }
+}
+
+/** Leftist heaps of bundles, largest ratio on top, over one array for all. A bundle is a node with
+ * the descendants that collapse with it, under the node's index. */
+class BundleHeaps {
+ public:
+  explicit BundleHeaps(std::size_t size) : m_ratio(size), m_links(size, Links{kNone, kNone, 1}) {}
+
+  double& ratio(std::int32_t i) { return m_ratio[at(i)]; }
+
+  std::int32_t merge(std::int32_t a, std::int32_t b) {
+    if (a == kNone) return b;
+    if (b == kNone) return a;
+    if (m_ratio[at(a)] < m_ratio[at(b)]) std::swap(a, b);
+    Links& top = m_links[at(a)];
+    top.right = merge(top.right, b);  // as deep as the ranks: at most 2 log2(N)
+    if (rank(top.left) < rank(top.right)) std::swap(top.left, top.right);
+    top.rank = rank(top.right) + 1;
+    return a;
+  }
+  std::int32_t withoutTop(std::int32_t a) {
+    return merge(m_links[at(a)].left, m_links[at(a)].right);
+  }
+
+ private:
+  struct Links {
+    std::int32_t left, right, rank;
+  };
+  std::int32_t rank(std::int32_t a) const { return a == kNone ? 0 : m_links[at(a)].rank; }
+
+  std::vector<double> m_ratio;
+  std::vector<Links> m_links;
+};
+
+/** The alpha where gain - alpha * price is 0. A node without both is worth what is below it. */
+double breakEven(double gain, double price) {
+  if (price > 0) return gain / price;
+  return gain > 0 ? kInfinity : -kInfinity;
+}
+
+}  // namespace
+
+std::vector<double> collapseAlphas(const std::vector<std::int32_t>& parents,
+                                   const std::vector<double>& gains,
+                                   const std::vector<double>& prices) {
+  requireForest(parents, gains, prices);
+  BundleHeaps heaps(parents.size());
+  std::vector<std::int32_t> below(parents.size(), kNone);  // heap of the bundles under each node
+  std::vector<double> tau(parents.size()), gain = gains, price = prices;
+  for (std::size_t i = parents.size(); i-- > 0;) {
+    double ratio = breakEven(gain[i], price[i]);
+    std::int32_t heap = below[i];
+    while (heap != kNone && heaps.ratio(heap) > ratio) {
+      gain[i] += gain[at(heap)];
+      price[i] += price[at(heap)];
+      ratio = breakEven(gain[i], price[i]);
+      heap = heaps.withoutTop(heap);
+    }
+    tau[i] = ratio;
+    if (!(ratio > 0) || parents[i] == kNone) continue;  // nothing here is ever expanded, or done
+    const auto self = static_cast<std::int32_t>(i);
+    heaps.ratio(self) = ratio;
+    std::int32_t& above = below[at(parents[i])];
+    above = heaps.merge(above, heaps.merge(heap, self));
+  }
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    if (parents[i] != kNone) tau[i] = std::min(tau[i], tau[at(parents[i])]);
+  }
+  return tau;
 }
 
 }  // namespace tree_abstraction

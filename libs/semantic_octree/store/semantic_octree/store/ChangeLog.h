@@ -1,4 +1,8 @@
 #pragma once
+#include <semantic_octree/MapFollower.h>
+#include <semantic_octree/SemanticOcTreeNode.h>
+#include <semantic_octree/store/TileCodes.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <deque>
@@ -6,6 +10,21 @@
 #include <vector>
 
 namespace semantic_octree {
+
+/** Tiles in cubes, or in a map. */
+class TileList {
+ public:
+  /** Those in a cube of a TileLog. */
+  void add(std::uint64_t cube);
+  /** Those that a node's leaves are in. */
+  void add(const SemanticOcTreeNode& node, const Cell& cell);
+  /** Each once, sorted. */
+  std::vector<octomap::OcTreeKey> keys();
+
+ private:
+  void addAll(const Cell& cube);
+  std::vector<std::uint64_t> m_tiles;
+};
 
 /** What changed, oldest first and numbered, for readers that each have a place of their own. What
  * all of them have read is dropped. When the log has grown long, its older half is dropped: a
@@ -104,5 +123,11 @@ typename Log::Place& placeIn(std::unique_ptr<typename Log::Place>& place,
   if (!place || !place->isIn(*log)) place = std::make_unique<typename Log::Place>(log);
   return *place;
 }
+
+/** The cubes in which a map changed, each a tile of 8 x 8 x 8 voxels or larger. */
+class TileLog : public ChangeLog<std::uint64_t> {
+ public:
+  void add(const Cell& cube);
+};
 
 }  // namespace semantic_octree

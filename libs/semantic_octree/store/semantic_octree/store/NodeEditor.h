@@ -1,6 +1,6 @@
 #pragma once
+#include <semantic_octree/store/ChangeLog.h>
 #include <semantic_octree/store/NodeObserver.h>
-#include <semantic_octree/store/TileLog.h>
 
 namespace semantic_octree {
 

@@ -1,12 +1,115 @@
 #pragma once
-#include <semantic_octree/store/HitTiles.h>
 #include <semantic_octree/store/HitVotes.h>
-#include <semantic_octree/store/ScanBeams.h>
+#include <semantic_octree/store/NodeStore.h>
 #include <semantic_octree/store/ScanGrid.h>
-#include <semantic_octree/store/ScanPyramid.h>
 #include <semantic_octree/store/TileCodes.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
 namespace semantic_octree {
+
+/** Voxels of a scan in which something ended: tiles of bits as in ScanGrid, but only those that
+ * have any. Tiles are known by their number (see ScanGrid::numberOf()), voxels by their place. */
+class HitTiles {
+ public:
+  struct Tile {
+    VoxelBits words[ScanGrid::kWords];  ///< a block each
+    /** Each word's first voxel has this rank among all; the others follow in Morton order. */
+    std::uint32_t ranks[ScanGrid::kWords];
+  };
+
+  /** Forgets all voxels. */
+  void cover(std::size_t numTiles);
+
+  /** Adds a voxel. \return whether it was there before */
+  bool testAndSet(const ScanGrid::Place& voxel);
+  /** Adds a tile's voxels; it has none yet. */
+  void add(std::size_t tile, const VoxelBits* words) {
+    m_indices[tile] = static_cast<std::uint32_t>(m_tiles.size());
+    std::copy_n(words, ScanGrid::kWords, m_tiles.emplace_back().words);
+  }
+  /** Ranks voxels. \return their number */
+  std::uint32_t rank();
+
+  bool has(std::size_t tile) const { return m_indices[tile] != 0; }
+  /** Without bits if nothing ended there. */
+  const Tile& tile(std::size_t number) const { return m_tiles[m_indices[number]]; }
+  std::uint32_t rankOf(const ScanGrid::Place& voxel) const {
+    const Tile& t = tile(voxel.tile);
+    const unsigned word = voxel.bit >> 6;
+    const VoxelBits below = (VoxelBits(1) << (voxel.bit & 63)) - 1;
+    return t.ranks[word] + static_cast<std::uint32_t>(countOf(t.words[word] & below));
+  }
+
+  std::size_t bytes() const;
+
+ private:
+  std::vector<std::uint32_t> m_indices;  ///< among m_tiles
+  std::vector<Tile> m_tiles;             ///< the first one is empty
+};
+
+inline bool HitTiles::testAndSet(const ScanGrid::Place& voxel) {
+  std::uint32_t& index = m_indices[voxel.tile];
+  if (index == 0) {
+    index = static_cast<std::uint32_t>(m_tiles.size());
+    m_tiles.emplace_back();
+  }
+  VoxelBits& word = m_tiles[index].words[voxel.bit >> 6];
+  const VoxelBits mask = VoxelBits(1) << (voxel.bit & 63);
+  const bool before = word & mask;
+  word |= mask;
+  return before;
+}
+
+/** What a cube of space holds of a scan. */
+struct CubeContent {
+  static constexpr std::uint8_t kAny = 1, kHit = 2, kNotAllFree = 4;
+  std::uint8_t flags = 0;
+  bool any() const { return flags & kAny; }
+  bool hit() const { return flags & kHit; }
+  /** Every voxel was seen free, none was hit. */
+  bool allFree() const { return flags == kAny; }
+  /** Joins what a part of the cube holds. */
+  void add(CubeContent part) { flags |= part.any() ? part.flags : kNotAllFree; }
+};
+
+/** Summary of a scan's tiles at every level of the tree above them: level 0 are the tiles, a cube
+ * of level l has a side of 8 * 2^l voxels, level 13 is the whole map. */
+class ScanPyramid {
+ public:
+  static constexpr int kTopLevel = 13;
+
+  /** Starts anew for the tiles of this grid: nothing seen. */
+  void cover(const ScanGrid& grid);
+  /** \param tile its number in the grid */
+  void set(std::size_t tile, CubeContent content) { m_levels[0].cubes[tile] = content; }
+  CubeContent tile(std::size_t tile) const { return m_levels[0].cubes[tile]; }
+  /** Fills the levels above the tiles. */
+  void build();
+
+  /** Cube at absolute coordinates (key / (8 * 2^level)); nothing outside the grid. */
+  CubeContent at(int level, const VoxelIndex& cube) const {
+    const Level& l = m_levels[level];
+    const VoxelIndex i = cube - l.first;
+    if ((i < 0).any() || (i >= l.size).any()) return {};
+    return l.cubes[l.indexOf(i)];
+  }
+  std::size_t bytes() const;
+
+ private:
+  struct Level {
+    VoxelIndex first, size;
+    std::vector<CubeContent> cubes;
+    std::size_t indexOf(const VoxelIndex& i) const {
+      return (std::size_t(i.z()) * size.y() + i.y()) * size.x() + i.x();
+    }
+  };
+  void buildLevel(int level);
+
+  Level m_levels[kTopLevel + 1];
+};
 
 /** One scan turned into voxels: which were seen free, which were hit and with what class. Its
  * buffers are reused from scan to scan; their size is bounded by the box that the scan's beams
