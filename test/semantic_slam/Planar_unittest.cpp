@@ -39,14 +39,29 @@ LabeledCloud wall(float climb) {
   return cloud;
 }
 
+std::string warningsOf(const Slam& slam) {
+  std::string all;
+  for (const std::string& warning : slam.report().warnings()) all += warning + "\n";
+  return all;
+}
+
 /** What the program says in the end. */
 std::string warningsOf(const Recording& r) {
   Slam slam({});
   for (std::size_t i = 0; i < r.clouds.size(); ++i)
     slam.add(r.clouds[i], kRobotLaser, r.odometry[i]);
-  std::string all;
-  for (const std::string& warning : slam.report().warnings()) all += warning + "\n";
-  return all;
+  slam.finish();
+  return warningsOf(slam);
+}
+
+/** A part of a recording goes on at the end of another one, as if the robot had not moved. */
+void append(Recording& r, const Recording& part, std::size_t from, std::size_t to) {
+  const Eigen::Isometry3d T = r.odometry.back() * part.odometry[from].inverse();
+  for (std::size_t i = from; i < to; ++i) {
+    r.clouds.push_back(part.clouds[i]);
+    r.truth.push_back(part.truth[i]);
+    r.odometry.push_back(T * part.odometry[i]);
+  }
 }
 
 }  // namespace
@@ -143,6 +158,42 @@ TEST(Planar, odometryThatStandsStillWhileTheRobotDrivesIsNoticed) {
     r.odometry[i] = i < 55 ? T_stopped : T_on * r.odometry[i];
   EXPECT_NE(warningsOf(r).find("odometry stood still while the robot drove 1"), std::string::npos)
       << warningsOf(r);
+}
+
+TEST(Planar, aRobotThatWasCarriedIsFoundAgain) {
+  const Recording whole = recordingOf("village", 1, laserOf(), 120, kFlat);
+  Recording r = whole;
+  append(r, whole, 20, 60);  // from 120 m back to 20 m
+  Slam slam({});
+  addAll(slam, r, kRobotLaser);
+  slam.finish();
+  EXPECT_LT(errorsOf(slam.poses(), r).largest, 0.3);
+  EXPECT_EQ(slam.report().torn, 1u);
+  EXPECT_EQ(slam.report().joined, 1u);
+  EXPECT_NE(warningsOf(slam).find("the robot was found again up to "), std::string::npos)
+      << warningsOf(slam);
+}
+
+TEST(Planar, logsOfTwoPlacesAreSaidToBeApart) {
+  Recording r = recordingOf("village", 1, laserOf(), kDriven, kFlat);
+  append(r, recordingOf("park", 4, laserOf(), kDriven, kFlat), 0, 60);
+  EXPECT_NE(warningsOf(r).find("at 1 places scans fit nothing that was seen before, and only "
+                               "odometry leads across"),
+            std::string::npos)
+      << warningsOf(r);
+}
+
+TEST(Planar, aScannerThatIsBlindForAMomentTearsNothing) {
+  Recording r = recordingOf("village", 1, laserOf(), kDriven, kFlat);
+  std::mt19937 random(1);
+  for (const std::size_t i : {30, 31, 60})
+    for (Eigen::Vector3f& p : r.clouds[i].points) p.head<2>() *= 0.1f + random() % 100 * 0.01f;
+  Slam slam({});
+  addAll(slam, r, kRobotLaser);
+  slam.finish();
+  EXPECT_GE(slam.report().lost, 1u);
+  EXPECT_EQ(warningsOf(slam), "");
+  EXPECT_LT(errorsOf(slam.poses(), r).largest, 0.3);
 }
 
 TEST(Planar, aDriveIsInTheFrameOfALaserScannersMap) {

@@ -8,7 +8,10 @@
 
 namespace semantic_slam {
 
-/** What Slam does: tracking (SlamTracking.cpp), loops and the reference (SlamLoops.cpp). */
+LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T);
+
+/** What Slam does: tracking (SlamTracking.cpp), loops and the reference
+ * (SlamLoops.cpp), pieces (SlamPieces.cpp). */
 class SlamEngine {
  public:
   using Pose = Eigen::Isometry3d;
@@ -71,11 +74,29 @@ class SlamEngine {
   Registration match(const std::vector<Submap>& submaps, const Seen& seen,
                      const Pose& T_submap_guess, const Matrix6& prior) const;
 
+  // --- Pieces: where scans were lost, the robot may have been carried, or a part of the log is
+  // missing (SlamPieces.cpp) ---
+  /** So that a scan that fits nothing is an event, in a plane. Where many fit nothing, something
+   * else is wrong. */
+  bool lossIsRare() const;
+  /** Looks whether what follows a loss fits what was before it; if not, searches it everywhere.
+   * \return whether poses moved */
+  bool mendPieces(bool isLast = false);
+  bool holdsAcross(std::size_t first) const;
+  /** A piece begins, which nothing but odometry connects to what was before. */
+  void tearAt(std::size_t first);
+  bool joinPiece();
+  /** Where the newest stretch fits best of all places before the piece. */
+  std::optional<PoseEdge> findPiece() const;
+
   // --- Loops and the reference ---
   bool closeLoops();
   /** Keyframes of before that the newest may be near, one of each visit; the nearest first. */
   std::vector<std::size_t> placesWithin(double radius) const;
   std::optional<PoseEdge> edgeTo(std::size_t place, const Seen& stretch) const;
+  /** Registers the newest keyframe's stretch to what was seen at a place, from a guess. */
+  std::optional<PoseEdge> edgeAt(std::size_t place, const Seen& then, const Seen& stretch,
+                                 const Pose& T_place_guess, double leastMatched) const;
   /** Where the robot may be off, relative to where it was: what it has driven since, or since the
    * last loop. \param then m of the way */
   PlaneSearch::Window windowSince(double then) const;
@@ -87,7 +108,6 @@ class SlamEngine {
   /** That a keyframe was found in the reference. */
   PoseEdge lookOf(std::size_t keyframe, const Registration& found) const;
   bool followReference();
-  bool fits(const Registration& r) const;
   /** Takes an edge of the newest keyframe, and those before it that say the same of where the robot
    * is; one alone has to wait. \return whether poses moved */
   bool confirm(std::vector<PoseEdge>& pending, const PoseEdge& edge);
@@ -123,6 +143,9 @@ class SlamEngine {
   double m_lostWay = 0;                                         ///< m since the last loop
   std::vector<PoseEdge> m_pendingLoops, m_pendingReferences;    ///< they may be wrong
   bool m_isOptimized = true;
+  std::optional<std::size_t> m_doubted, m_piece;  ///< first keyframes: after a loss; of the piece
+  std::optional<PoseEdge> m_pendingPiece;
+  double m_nextJoin = 0;                        ///< m of the piece's way
   Reference m_reference;                        ///< none: there is no map
   Matrix6 m_mostOfReference = Matrix6::Zero();  ///< information, at most
 };

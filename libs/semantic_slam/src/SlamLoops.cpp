@@ -92,6 +92,10 @@ bool SlamEngine::closeLoops() {
       const std::size_t before = m_edges.size();
       moved |= confirm(m_pendingLoops, *edge);
       if (m_edges.size() == before) continue;
+      if (m_piece && place < *m_piece) {  // it is where odometry has it
+        m_piece.reset();
+        --m_report.torn;
+      }
       m_report.loops += m_edges.size() - before;
       m_lastLoop = way;
       m_lostWay = 0;
@@ -109,8 +113,9 @@ PlaneSearch::Window SlamEngine::windowSince(double then) const {
 std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch) const {
   const std::size_t newest = m_keyframes.size() - 1;
   const auto beside = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
+  const std::size_t end = m_piece && place < *m_piece ? *m_piece : newest;
   std::size_t last = place;
-  while (last < place + beside &&
+  while (last < place + beside && last + 1 < end &&
          m_keyframes[newest].way - m_keyframes[last + 1].way > m_scale.loopLength / 2)
     ++last;
   const Seen then = pointsOf(place - std::min(place, beside), last, place);
@@ -131,6 +136,12 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
   Pose T_found(Eigen::Translation3d((*found)[0], (*found)[1], T_guess(2, 3)));
   T_found.rotate(Eigen::AngleAxisd((*found)[2], Eigen::Vector3d::UnitZ()));
   T_found.rotate(T_turn.linear().transpose() * T_guess.linear());
+  return edgeAt(place, then, stretch, T_found, m_scale.leastMatched);
+}
+
+std::optional<PoseEdge> SlamEngine::edgeAt(std::size_t place, const Seen& then, const Seen& stretch,
+                                           const Pose& T_place_guess, double leastMatched) const {
+  const std::size_t newest = m_keyframes.size() - 1;
   std::vector<Submap> submaps;
   const double finest = m_scale.cells.back();
   for (double size = (m_scale.isPlanar ? m_scale.cells.front() / finest : kCoarsest) * finest;
@@ -139,14 +150,10 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
     submaps.back().add(then.cloud, Pose::Identity());
     submaps.back().finish();
   }
-  const Registration r = match(submaps, stretch, T_found, Matrix6::Zero());
-  if (!fits(r)) return std::nullopt;
+  const Registration r = match(submaps, stretch, T_place_guess, Matrix6::Zero());
+  if (r.coveredShare < kCovered || r.matchedShare < leastMatched) return std::nullopt;
   return PoseEdge{place, newest, r.T_submap_scan,
                   bothErrors(informationOf(kLoopMeters, kLoopAngle), r, newest), true};
-}
-
-bool SlamEngine::fits(const Registration& r) const {
-  return r.coveredShare >= kCovered && r.matchedShare >= m_scale.leastMatched;
 }
 
 Eigen::Isometry3d SlamEngine::T_map_b(const PoseEdge& edge) const {
@@ -210,7 +217,8 @@ void SlamEngine::optimizePoses() {
 }
 
 bool SlamEngine::finish() {
-  if (m_isOptimized) return false;
+  const bool mended = mendPieces(true);
+  if (m_isOptimized) return mended;
   optimizePoses();
   return true;
 }

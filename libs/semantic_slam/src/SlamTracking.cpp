@@ -26,11 +26,6 @@ constexpr double kTrackedScore = 0.4;
 /** Without odometry, after so many scans in a row that fit nothing, what follows begins anew. */
 constexpr int kMostLost = 3;
 
-LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T) {
-  for (Eigen::Vector3f& p : cloud.points) p = (T * p.cast<double>()).cast<float>();
-  return cloud;
-}
-
 /** x, y and heading of a pose. */
 Eigen::Isometry3d planar(const Eigen::Isometry3d& T) {
   Eigen::Isometry3d result(Eigen::Translation3d(T.translation().x(), T.translation().y(), 0));
@@ -48,6 +43,11 @@ bool isBeyond(const Vector6& off, const Matrix6& information) {
 }
 
 }  // namespace
+
+LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T) {
+  for (Eigen::Vector3f& p : cloud.points) p = (T * p.cast<double>()).cast<float>();
+  return cloud;
+}
 
 Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_sensor,
                             const std::optional<Pose>& T_odometry_robot) {
@@ -82,8 +82,8 @@ Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_senso
       {last, last + 1, T_last_robot, registered ? registered->information : guessed(T_last_robot)});
   if (isTorn()) m_local.clear();
   begin(std::move(now), rigid(m_poses.back() * T_last_robot), T_last_robot);
-  const bool followed = followReference();
-  return {last + 1, Pose::Identity(), true, closeLoops() || followed};
+  const bool mended = mendPieces(), followed = followReference();
+  return {last + 1, Pose::Identity(), true, closeLoops() || followed || mended};
 }
 
 void SlamEngine::setScale(const LabeledCloud& cloud, const Pose& T_robot_sensor) {
@@ -128,10 +128,11 @@ void SlamEngine::noteFound(const Pose& T_step, const Pose& T_last_robot,
 
 void SlamEngine::noteLost(const Pose& T_step) {
   ++m_report.lost;
+  if (!m_doubted && lossIsRare()) m_doubted = m_keyframes.size();
   m_lostWay += wayOf(T_step);
   // Nobody knows whether it goes on so: half way between that and standing.
   m_T_step = poseOf(0.5 * vectorOf(T_step));
-  if (++m_lostInRow > kMostLost && !m_hasOdometry) ++m_report.torn;
+  if (++m_lostInRow > kMostLost && !m_hasOdometry && !m_scale.isPlanar) ++m_report.torn;
 }
 
 void SlamEngine::noteStanding(const Pose& T_moved) {
@@ -140,10 +141,17 @@ void SlamEngine::noteStanding(const Pose& T_moved) {
   m_report.standing = std::max(m_report.standing, wayOf(m_T_standing));
 }
 
+bool SlamEngine::lossIsRare() const {
+  constexpr std::size_t kAny = 3, kOneIn = 20;
+  return m_scale.isPlanar && m_report.lost <= kAny + m_report.scans / kOneIn;
+}
+
 bool SlamEngine::isTorn() const { return !m_hasOdometry && m_lostInRow > kMostLost; }
 
 bool SlamEngine::beginsKeyframe(const Pose& T_last_robot) const {
   if (!m_hasOdometry && m_lostInRow > 0) return isTorn();
+  // If the robot was carried, what it sees now belongs to nothing that was seen before.
+  if (m_lostInRow == 1 && lossIsRare()) return true;
   return wayOf(T_last_robot) >= m_scale.keyframeDistance ||
          turnOf(T_last_robot) >= m_scale.keyframeAngle;
 }

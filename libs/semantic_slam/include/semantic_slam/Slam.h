@@ -17,12 +17,14 @@ using semantic_types::LabeledCloud;
 struct SlamReport {
   std::size_t scans = 0, keyframes = 0;
   std::size_t lost = 0;        ///< scans that fit nothing: they are where odometry has them
-  std::size_t torn = 0;        ///< places that nothing but a guess leads across, without odometry
+  std::size_t torn = 0;        ///< places that nothing but a guess leads across
+  std::size_t joined = 0;      ///< of these, those after which the robot was found again
   std::size_t loops = 0;       ///< edges to places of before
   std::size_t undone = 0;      ///< loops that contradicted the trajectory between their ends
   std::size_t referenced = 0;  ///< keyframes that were found in the reference
   double way = 0;              ///< m
-  double standing = 0;         ///< m that scans moved at most while odometry stood still as if off
+  double carried = 0;   ///< m, at most, from where odometry had the robot to where it was found
+  double standing = 0;  ///< m that scans moved at most while odometry stood still as if off
   /** By how much odometry says more than the scans: of the way (0.1: 10 % too far), and of turns.
    */
   double wayError = 0, turnError = 0;

@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <cmath>
+
+#include "SlamEngine.h"
+
+namespace semantic_slam {
+namespace {
+
+/** Share of a stretch's points after a loss that fit what was seen before it. Stretches that follow
+ * each other have .6 to 1 (1 in 20 less than .7), places that do not .1 to .6. */
+constexpr double kHolds = 0.55, kHoldsMeters = 0.3;
+/** Share of the highest score of a place that is searched everywhere. */
+constexpr double kFoundScore = 0.5;
+/** A piece is searched when it is so long, m, and each time that it grew by this factor. */
+constexpr double kFirstLook = 4, kNextLook = 1.4;
+/** Keyframes that are searched at most; points of them; edge of the search's cells, of a loop's. */
+constexpr std::size_t kSearched = 40, kMostPoints = 400;
+constexpr double kCells = 2;
+/** Share of points that fit where a piece is found; two looks have to agree. */
+constexpr double kFoundMatched = 0.7;
+/** By so many m, and m for each of the piece's way, odometry may err. */
+constexpr double kErr = 0.5, kErrWay = 0.03;
+/** Information of the step that leads to a piece. */
+const Matrix6 kUnknown = informationOf(100, 10);
+
+}  // namespace
+
+bool SlamEngine::mendPieces(bool isLast) {
+  const auto beside = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
+  if (m_doubted && *m_doubted + (isLast ? 1 : beside) <= m_keyframes.size()) {
+    const std::size_t first = *m_doubted;
+    m_doubted.reset();
+    if (first > 0 && !holdsAcross(first)) tearAt(first);
+  }
+  if (isLast) m_nextJoin = 0;
+  return m_piece && joinPiece();
+}
+
+bool SlamEngine::holdsAcross(std::size_t first) const {
+  const std::size_t newest = m_keyframes.size() - 1, place = first - 1;
+  const auto before = static_cast<std::size_t>(m_scale.submapKeyframes);
+  const Seen then = pointsOf(first - std::min(first, before), place, place);
+  const Pose T_guess = m_poses[place].inverse() * m_poses[newest];
+  std::vector<Submap> submaps;
+  for (const double size : m_scale.cells) {
+    submaps.emplace_back(size, m_options.useClasses, m_scale.isPlanar);
+    submaps.back().add(then.cloud, Pose::Identity());
+    submaps.back().finish();
+  }
+  const Registration r = match(submaps, pointsOf(first, newest, newest), T_guess, Matrix6::Zero());
+  return r.coveredShare >= 0.3 && r.matchedShare >= kHolds &&
+         (T_guess.inverse() * r.T_submap_scan).translation().norm() < kHoldsMeters;
+}
+
+void SlamEngine::tearAt(std::size_t first) {
+  ++m_report.torn;
+  m_piece = first;
+  m_nextJoin = kFirstLook;
+  m_pendingPiece.reset();
+  m_pendingLoops.clear();
+  const auto leadsAcross = [first](const PoseEdge& e) {
+    return e.isDoubtful && e.a != PoseEdge::kMap && e.a < first && e.b >= first;
+  };
+  m_edges.erase(std::remove_if(m_edges.begin(), m_edges.end(), leadsAcross), m_edges.end());
+  // What was registered to the wrong place is registered anew, to the piece alone.
+  m_local.clear();
+  for (std::size_t k = first; k < m_keyframes.size(); ++k) {
+    const auto edge = std::find_if(m_edges.begin(), m_edges.end(),
+                                   [k](const PoseEdge& e) { return !e.isDoubtful && e.b == k; });
+    if (k == first) {
+      edge->information = kUnknown;
+    } else {
+      const Pose T_guess = m_local.T_local_last() * edge->T_a_b;
+      const Registration r =
+          match(m_local.submaps(), m_keyframes[k].seen, T_guess, guessed(edge->T_a_b));
+      edge->T_a_b = rigid(m_local.T_local_last().inverse() * r.T_submap_scan);
+      m_poses[k] = levelled(m_poses[k - 1] * edge->T_a_b, m_keyframes[k].seen.T_odometry_robot);
+    }
+    m_local.add(m_keyframes[k].seen.cloud, k == first ? Pose::Identity() : edge->T_a_b, m_scale,
+                m_options.useClasses);
+  }
+}
+
+bool SlamEngine::joinPiece() {
+  const std::size_t newest = m_keyframes.size() - 1;
+  const double way = m_keyframes[newest].way - m_keyframes[*m_piece].way;
+  if (way < m_nextJoin) return false;
+  m_nextJoin = kNextLook * way;
+  const auto found = findPiece();
+  if (!found) return false;
+  const Pose T_moved = T_map_b(*found) * m_poses[newest].inverse();
+  const double carried =
+      (T_moved * m_poses[newest].translation() - m_poses[newest].translation()).norm();
+  const bool isWhereItIs = carried < kErr + kErrWay * way;
+  const auto before = m_pendingPiece;
+  m_pendingPiece = found;
+  if (!isWhereItIs && !(before && agree(*before, *found))) return false;
+  if (isWhereItIs) {
+    --m_report.torn;
+  } else {
+    ++m_report.joined;
+    m_report.carried = std::max(m_report.carried, carried);
+    for (std::size_t k = *m_piece; k <= newest; ++k)
+      m_poses[k] = levelled(rigid(T_moved * m_poses[k]), m_keyframes[k].seen.T_odometry_robot);
+    m_edges.push_back(*before);
+  }
+  m_edges.push_back(*found);
+  ++m_report.loops;
+  m_lastLoop = m_keyframes[newest].way;
+  m_lostWay = 0;
+  m_piece.reset();
+  optimizePoses();
+  return true;
+}
+
+std::optional<PoseEdge> SlamEngine::findPiece() const {
+  const std::size_t newest = m_keyframes.size() - 1, first = *m_piece;
+  const double cell = kCells * m_scale.gridCell;
+  const std::size_t length = std::min(newest - first, kSearched);
+  const Seen stretch = pointsOf(newest - length, newest, newest);
+  PlanePoints all;
+  for (std::size_t k = 0; k < first; ++k)
+    for (const Eigen::Vector2d& p :
+         uprightPoints(moved(m_keyframes[k].seen.cloud, m_poses[k]), m_scale.isPlanar, cell))
+      all.push_back(p);
+  PlanePoints some;
+  const PlanePoints searched = uprightPoints(stretch.cloud, m_scale.isPlanar, cell);
+  const std::size_t every = 1 + searched.size() / kMostPoints;
+  for (std::size_t i = 0; i < searched.size(); i += every) some.push_back(searched[i]);
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& p : all) box.extend(p);
+  const Eigen::Vector2d middle = box.center();
+  const auto found = PlaneSearch(all, cell).find(some, {middle.x(), middle.y(), 0},
+                                                 {box.sizes().maxCoeff() / 2, M_PI}, kFoundScore);
+  if (!found) return std::nullopt;
+  Pose T_found(Eigen::Translation3d((*found)[0], (*found)[1], 0));
+  T_found.rotate(Eigen::AngleAxisd((*found)[2], Eigen::Vector3d::UnitZ()));
+  const auto distance = [&](std::size_t k) {
+    return (m_poses[k].translation() - T_found.translation()).head<2>().norm();
+  };
+  std::size_t place = 0;
+  for (std::size_t k = 1; k < first; ++k)
+    if (distance(k) < distance(place)) place = k;
+  const Seen then = pointsOf(place - std::min(place, kSearched / 2),
+                             std::min(first - 1, place + kSearched / 2), place);
+  return edgeAt(place, then, stretch, m_poses[place].inverse() * T_found, kFoundMatched);
+}
+
+}  // namespace semantic_slam
