@@ -11,6 +11,7 @@
 #include "MappingNode.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
+#include "inputs/Inputs.h"
 
 namespace semantic_map_ros2 {
 namespace {
@@ -27,15 +28,14 @@ struct Cli {
         .add(app, output, "FILE",
              "The map (.semantic), written after Ctrl-C, and when somebody publishes to ~/save")
         ->required();
-    app.add_option("--map", map,
-                   "Map to go on with (.semantic); its frame is the frame of all poses");
+    app.add_option("--map", map, "Map to go on with; its frame is the frame of all poses");
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of each scan");
     app.footer("As ROS has it: --ros-args -r FROM:=TO -p NAME:=VALUE --params-file FILE (YAML)");
   }
 };
 
 SemanticOcTree beginning(const Cli& cli, const Parameters& parameters) {
-  if (!cli.map.empty()) return semantic_octree::loadTree(cli.map.string());
+  if (!cli.map.empty()) return inputs::loadMap(cli.map);
   const std::string& file = parameters.map.classes;
   const auto table = file.empty() ? semantic_map::CSemanticOctoMap::occupancyOnly()
                                   : semantic_types::loadClassTable(file);
