@@ -33,7 +33,7 @@ endfunction()
 set(mso_once_options $<$<CONFIG:Release>:-O1>)
 
 # mso_add_app(NAME [STUDY] SOURCES ... [DEPENDS ...]): an executable of apps/NAME. A STUDY, which measures this project
-# rather than using it, is not installed; others are, with their manual page if help2man is there to make it.
+# rather than using it, is not installed; others are, with their manual page.
 function(mso_add_app name)
   cmake_parse_arguments(ARG "STUDY" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -53,15 +53,11 @@ function(mso_add_app name)
 endfunction()
 
 # mso_add_manual(NAME): the program's page of the manual, from what it says of itself.
-find_program(HELP2MAN help2man)
 function(mso_add_manual name)
-  if(NOT HELP2MAN)
-    return()
-  endif()
+  set(script ${PROJECT_SOURCE_DIR}/cmake/Manual.cmake)
   set(page ${CMAKE_BINARY_DIR}/man/${name}.1)
-  add_custom_command(OUTPUT ${page} DEPENDS ${name} VERBATIM
-    COMMAND ${HELP2MAN} --no-info --no-discard-stderr --version-string=${PROJECT_VERSION}
-      --name "${PROJECT_DESCRIPTION}" --output ${page} $<TARGET_FILE:${name}>)
+  add_custom_command(OUTPUT ${page} DEPENDS ${name} ${script} VERBATIM
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${name}> -DVERSION=${PROJECT_VERSION} -DPAGE=${page} -P ${script})
   add_custom_target(${name}-manual ALL DEPENDS ${page})
   install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools)
 endfunction()

@@ -2,8 +2,10 @@
 
 #include <strict_files/Words.h>
 
+#include <algorithm>
 #include <memory>
 #include <regex>
+#include <utility>
 
 namespace {
 
@@ -34,11 +36,15 @@ std::vector<std::string> commandsOf(const CLI::App& app) {
 /** Names an argument that was left over; empty if there is none. */
 std::string unexpected(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining(true);
-  for (const std::string& word : words)
-    if (isOption(word))
-      return strict_files::unknownWord("option", word.substr(0, word.find('=')), namesOf(app));
+  const std::vector<std::string> commands = commandsOf(app), known = namesOf(app);
+  for (const std::string& word : words) {
+    if (!isOption(word)) continue;
+    const std::string name = word.substr(0, word.find('='));
+    if (std::find(known.begin(), known.end(), name) != known.end())
+      return name + " belongs behind the command";
+    return "unknown option '" + name + "'" + strict_files::didYouMean(name, known);
+  }
   if (words.empty()) return "";
-  const std::vector<std::string> commands = commandsOf(app);
   if (!commands.empty() && app.get_subcommands().empty())
     return strict_files::unknownWord("command", words.front(), commands);
   const bool writes = app.get_option_no_throw("--output") || !app.get_subcommands().empty();
@@ -57,9 +63,17 @@ std::string readableType(const std::string& type) {
 
 /** What CLI11 says, in the words of our own messages. */
 std::string readableMessage(const std::string& message) {
-  const std::string text = std::regex_replace(message, std::regex("^(--?[a-z-]+): (is )"), "$1 $2",
-                                              std::regex_constants::format_first_only);
-  return std::regex_replace(text, std::regex(": [0-9]+ required .* missing$"), " lacks its value");
+  static const std::pair<std::regex, std::string> ours[] = {
+      {std::regex("^(--?[a-z-]+): \\1:"), "$1:"},
+      {std::regex("^(--?[a-z-]+): (is )"), "$1 $2"},
+      {std::regex(": 1 required .* missing$"), " lacks its value"},
+      {std::regex(": ([0-9]+) required .* missing$"), " needs $1 values"},
+      {std::regex(": At Most 1 required but received ([0-9]+)$"), " is given $1 times"},
+      {std::regex("^A subcommand is required$"), "a command is missing"}};
+  std::string text = message;
+  for (const auto& [theirs, words] : ours)
+    text = std::regex_replace(text, theirs, words, std::regex_constants::format_first_only);
+  return text;
 }
 
 class HelpFormatter : public CLI::Formatter {

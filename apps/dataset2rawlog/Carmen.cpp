@@ -182,7 +182,7 @@ class Log {
   }
   void writeScan(const Words& words, const std::vector<double>& ranges, const Beams& beams,
                  const TPose2D& T_robot_laser, mrpt::Clock::time_point time) {
-    if (!m_conversion.wants(m_frame++)) return;
+    if (!m_output.wants(m_frame++)) return;
     if (ranges.size() < 2) words.fail("has fewer than two ranges");
     const double aperture = beams.step * static_cast<double>(ranges.size() - 1);
     if (!(aperture <= 2 * M_PI)) words.fail("has beams of more than 360 degrees");

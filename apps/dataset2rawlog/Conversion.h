@@ -30,10 +30,6 @@ struct Conversion {
   bool images = false;
   /** Asks to stop early. */
   const StopRequest* stop = nullptr;
-
-  bool wants(std::size_t frame) const {
-    return frames.contains(frame) && !(stop && stop->pending());
-  }
 };
 
 /** What went into the rawlog. */

@@ -11,10 +11,18 @@ namespace dataset2rawlog {
 using semantic_types::kNoClass;
 
 Output::Output(const Conversion& conversion, const semantic_types::ClassTable& table)
-    : m_writer(conversion.output),
-      m_noise(conversion.labelNoise, conversion.labelNoiseKind, conversion.seed, table.size()),
-      m_file(conversion.output) {
+    : m_conversion(conversion),
+      m_writer(conversion.output),
+      m_noise(conversion.labelNoise, conversion.labelNoiseKind, conversion.seed, table.size()) {
   for (int id = 1; id <= table.size(); ++id) m_classNames.push_back(table.name(id));
+}
+
+bool Output::wants(std::size_t frame, std::size_t numFrames) {
+  const FrameRange& range = m_conversion.frames;
+  const std::size_t end = numFrames == 0 ? 0 : std::min(numFrames - 1, range.last) + 1;
+  if (!m_progress) m_progress.emplace("Converting", end);
+  m_progress->update(frame, std::to_string(m_summary.scans) + " scans");
+  return range.contains(frame) && !(m_conversion.stop && m_conversion.stop->pending());
 }
 
 void Output::writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D& T_map_robot) {
@@ -49,7 +57,8 @@ void Output::writeScan(const mrpt::obs::CObservation& observation, std::size_t p
 
 Summary Output::finish() {
   if (m_summary.scans == 0)
-    throw std::runtime_error(m_file.string() + ": not written, no frame was selected");
+    throw std::runtime_error(m_conversion.output.string() + ": not written, no frame was selected");
+  m_progress.reset();
   m_writer.finish();
   return m_summary;
 }

@@ -2,7 +2,10 @@
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/Rawlogs.h>
 
+#include <optional>
+
 #include "Conversion.h"
+#include "Progress.h"
 #include "label_noise/LabelNoise.h"
 
 namespace dataset2rawlog {
@@ -10,7 +13,12 @@ namespace dataset2rawlog {
 /** The rawlog being written: poses and labeled clouds, with the label noise applied. */
 class Output {
  public:
+  /** The conversion must outlive it. */
   Output(const Conversion& conversion, const semantic_types::ClassTable& table);
+
+  /** Whether a frame is to be converted; says on the way how far that is.
+   * \param numFrames of the data set, wanted or not; 0: nobody knows */
+  bool wants(std::size_t frame, std::size_t numFrames = 0);
 
   /** Adds the robot's pose at a time. */
   void writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D& T_map_robot);
@@ -33,12 +41,13 @@ class Output {
   Summary finish();
 
  private:
+  const Conversion& m_conversion;
   labeled_cloud::RawlogWriter m_writer;
   LabelNoise m_noise;
   Eigen::Isometry3d m_T_map_sensor = Eigen::Isometry3d::Identity();  ///< of the last pose
   std::vector<std::string> m_classNames;
-  std::filesystem::path m_file;
   Summary m_summary;
+  std::optional<Progress> m_progress;
 };
 
 }  // namespace dataset2rawlog

@@ -49,7 +49,7 @@ Summary convertPointFiles(const std::vector<fs::path>& files, const std::string&
                                : semantic_types::loadClassTable(conversion.classes);
   Output output(conversion, table);
   for (std::size_t i = 0; i < files.size(); ++i) {
-    if (!conversion.wants(i)) continue;
+    if (!output.wants(i, files.size())) continue;
     const auto points = labeled_cloud::readPointFile(files[i], conversion.labels ? labelField : "");
     const auto time = mrpt::Clock::fromDouble(static_cast<double>(i));
     const mrpt::math::CMatrixDouble44 pose(points.T_file_sensor.matrix());

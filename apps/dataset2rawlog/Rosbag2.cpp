@@ -69,7 +69,8 @@ class BagScans {
         m_labelField(conversion.labels ? labelField : ""),
         m_output(conversion, m_table) {}
 
-  void add(const BagTopic& topic, std::string_view message) {
+  void add(std::size_t frame, const BagTopic& topic, std::string_view message) {
+    if (!m_output.wants(frame)) return;
     const bags::BagCloud cloud = bags::cloudOfMessage(message);
     labeled_cloud::CObservationLabeledCloud scan;
     scan.timestamp = labeled_cloud::timeOfSeconds(static_cast<double>(cloud.stamp) * 1e-9);
@@ -119,7 +120,7 @@ Summary convertRosbag2(const fs::path& bag, const std::vector<std::string>& topi
   };
   bags::readBag(bag, isWanted, [&](const BagTopic& topic, std::string_view message) {
     try {
-      if (conversion.wants(frame)) scans.add(topic, message);
+      scans.add(frame, topic, message);
     } catch (const std::exception& e) {
       throw std::runtime_error("message " + std::to_string(frame) + " of " + topic.name + ": " +
                                e.what());

@@ -10,6 +10,7 @@
 #include "Conversion.h"
 #include "KittiCamera.h"
 #include "Output.h"
+#include "poses/Poses.h"
 
 namespace dataset2rawlog {
 
@@ -23,21 +24,6 @@ using semantic_types::LabeledCloud;
 
 namespace {
 
-using Matrix34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
-
-/** A rigid motion from the twelve numbers of a 3x4 row-major matrix. */
-Eigen::Isometry3d poseOf(const TextLine& line) {
-  const auto numbers = numbersOf(line, 12);
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.affine() = Eigen::Map<const Matrix34>(numbers.data());
-  const Eigen::Matrix3d R = T.linear();
-  if (!(R * R.transpose()).isIdentity(1e-3) || R.determinant() < 0)
-    throw std::runtime_error(line.where + ": the first three columns are no rotation");
-  // The files round to six digits: the nearest rotation keeps inverse and product rigid.
-  T.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
-  return T;
-}
-
 mrpt::Clock::time_point timeOf(const TextLine& line) {
   const double seconds = numbersOf(line, 1)[0];
   try {
@@ -50,7 +36,7 @@ mrpt::Clock::time_point timeOf(const TextLine& line) {
 /** `Tr` of calib.txt: T_camera_lidar. */
 Eigen::Isometry3d readLidarToCamera(const fs::path& file) {
   for (const TextLine& line : readLines(file))
-    if (line.text.rfind("Tr:", 0) == 0) return poseOf(line);
+    if (line.text.rfind("Tr:", 0) == 0) return poses::poseOfMatrix(line);
   throw std::runtime_error(file.string() + ": no line 'Tr:'");
 }
 
@@ -100,19 +86,19 @@ Summary convertSemanticKitti(const fs::path& sequence, const Conversion& convers
   const ClassTable table =
       conversion.labels ? semantic_types::loadClassTable(conversion.classes) : ClassTable();
   const Eigen::Isometry3d Tr = readLidarToCamera(sequence / "calib.txt");
-  const auto poses = readLines(sequence / "poses.txt");
+  const auto lines = readLines(sequence / "poses.txt");
   const auto times = readLines(sequence / "times.txt");
-  if (poses.size() != times.size())
+  if (lines.size() != times.size())
     throw std::runtime_error((sequence / "times.txt").string() + ": " +
                              std::to_string(times.size()) + " times for " +
-                             std::to_string(poses.size()) + " poses");
+                             std::to_string(lines.size()) + " poses");
   Output output(conversion, table);
   std::optional<KittiCamera> camera;
   if (conversion.images) camera.emplace(sequence, Tr, conversion.output);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!conversion.wants(i)) continue;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (!output.wants(i, lines.size())) continue;
     const auto time = timeOf(times[i]);
-    const Eigen::Isometry3d T_map_lidar = Tr.inverse() * poseOf(poses[i]) * Tr;
+    const Eigen::Isometry3d T_map_lidar = Tr.inverse() * poses::poseOfMatrix(lines[i]) * Tr;
     const std::string name = sixDigits(i);
     output.writePose(time, mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_map_lidar.matrix())));
     if (camera) output.writeOther(camera->observe(name, time));

@@ -74,7 +74,7 @@ class TumConverter {
     Output output(m_conversion, m_table);
     std::size_t frame = 0;
     for (const auto& [time, file] : m_depth)
-      if (m_conversion.wants(frame++)) writeFrame(time, file, output);
+      if (output.wants(frame++, m_depth.size())) writeFrame(time, file, output);
     return output.finish();
   }
 

@@ -29,7 +29,7 @@ constexpr double kStartsWithin = 0.84;  // of how far exploring goes from the wo
 const std::vector<std::string> kFiles = {"study.csv", "exploration.csv", "exploration.md"};
 
 struct Cli {
-  fs::path classes, config, output, weights;
+  fs::path order, config, output, weights;
   std::string solution;
   std::vector<std::string> scenes = synthetic_world::sceneNames();
   int pairs = 20;
@@ -43,7 +43,7 @@ struct Cli {
     addWords(app.add_option("--scenes", scenes, "Which synthetic worlds, separated by commas"),
              synthetic_world::sceneNames())
         ->delimiter(',')
-        ->capture_default_str();
+        ->default_str("all");
     app.add_option("--pairs", pairs, "Drives in each world, from a random start to a random goal")
         ->check(isNumber(strict_files::atLeast(0)))
         ->capture_default_str();
@@ -54,12 +54,14 @@ struct Cli {
     CLI::Option* file =
         app.add_option("--weights", weights, "What is looked for (YAML, see config/weights)");
     exploring->needs(file), file->needs(exploring);
-    app.add_option("--solution", solution, "Of the weights; without: the first")->needs(file);
+    app.add_option("--solution", solution,
+                   "Name of one solution in the weights; without: the first")
+        ->needs(file);
     app.add_option("--scene-seed", sceneSeed, "Seed of the worlds")->capture_default_str();
     strict_files::OptionList pairsDrawn;
     tasks.describe(pairsDrawn);
     addOptions(app, pairsDrawn, "Start and goal");
-    app.add_option("--classes", classes, "Classes from best to worst (YAML)")->required();
+    app.add_option("--order", order, "Classes from best to worst (YAML)")->required();
     app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drives)")
         ->required();
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
@@ -82,7 +84,7 @@ void print(const Trial& trial) {
 void studyScene(const std::string& name, const Cli& cli, const simulated_drive::DriveConfig& config,
                 const StopRequest& stop, std::vector<Trial>& trials) {
   synthetic_world::Scene scene = synthetic_world::makeScene(name, cli.sceneSeed);
-  const auto order = semantic_planning::loadClassOrder(cli.classes, synthetic_world::classTable());
+  const auto order = semantic_planning::loadClassOrder(cli.order, synthetic_world::classTable());
   TaskDraw draw(scene.world, order, config.planner.vehicle, cli.tasks);
   Oracle oracle(scene.world, order, config.planner, config.voxelSize);
   for (int i = 0; i < cli.pairs && !stop.pending(); ++i) {
@@ -124,7 +126,7 @@ void exploreScene(const std::string& name, const Cli& cli,
                   const simulated_drive::DriveConfig& config, const StopRequest& stop,
                   std::vector<ExploreTrial>& trials) {
   const synthetic_world::Scene scene = synthetic_world::makeScene(name, cli.sceneSeed);
-  const auto order = semantic_planning::loadClassOrder(cli.classes, synthetic_world::classTable());
+  const auto order = semantic_planning::loadClassOrder(cli.order, synthetic_world::classTable());
   const ExploreTask task = exploreTask(cli);
   TaskDraw draw(scene.world, order, config.planner.vehicle, cli.tasks);
   for (int i = 0; i < cli.pairs; ++i) {

@@ -30,7 +30,7 @@ constexpr EdgeModel kJudgments[] = {EdgeModel::Profile, EdgeModel::Endpoint};
 constexpr std::size_t kEdgesPerVertex = 5;
 
 struct Cli {
-  std::filesystem::path map, classes, weights, output;
+  std::filesystem::path map, order, weights, output;
   std::string solution;
   std::size_t instances = 50, vertices = 500;
   std::uint64_t seed = 1;
@@ -39,7 +39,7 @@ struct Cli {
 
   explicit Cli(CLI::App& app) : outputs(app) {
     app.add_option("MAP", map, "A map's own file (.semantic)")->required();
-    app.add_option("--classes", classes, "Classes from best to worst (YAML)")->required();
+    app.add_option("--order", order, "Classes from best to worst (YAML)")->required();
     app.add_option("--weights", weights, "What the compressed tree keeps (YAML)")->required();
     app.add_option("--solution", solution, "Which of the weights; none: the first");
     outputs.add(app, output, "FILE", "Table of all searches (CSV)")->required();
@@ -183,7 +183,7 @@ int run(const Cli& cli) {
   const StopRequest stop("after this instance");
   cli.outputs.check({cli.output});
   SemanticOcTree map = semantic_octree::loadMap(cli.map);
-  const auto order = loadClassOrder(cli.classes, map.classes());
+  const auto order = loadClassOrder(cli.order, map.classes());
   setAbstraction(map, abstractionOf(cli.weights, cli.solution, map.classes()));
   std::vector<SemanticPlanner> planners = plannersOf(cli, map, order);
   const auto instances = drawInstances(planners[0], cli);

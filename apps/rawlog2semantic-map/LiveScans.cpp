@@ -3,7 +3,9 @@
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt_compat/Drawing.h>
 
+#include <cstdint>
 #include <cstdio>
+#include <map>
 
 #include "label_overlay/LabelOverlay.h"
 
@@ -14,7 +16,17 @@ using labeled_cloud::LabeledScan;
 namespace {
 
 constexpr float kPointSize = 2;  // pixels
-constexpr mrpt::img::TColor kPointColor{255, 120, 0};
+
+/** For points of a class, halfway from its color to white: they show upon its voxels. */
+mrpt_compat::drawing::CPointCloud::Ptr pointsOf(semantic_types::ClassId id,
+                                                const semantic_types::ClassTable& classes) {
+  const auto points = mrpt_compat::drawing::CPointCloud::Create();
+  points->setPointSize(kPointSize);
+  const auto c = semantic_types::colorOf(id, classes);
+  const auto pale = [](int x) { return std::uint8_t((x + 255) / 2); };
+  points->setColor_u8({pale(c.r), pale(c.g), pale(c.b)});
+  return points;
+}
 
 std::string text(const char* format, double number) {
   char line[80];
@@ -51,16 +63,17 @@ void LiveScans::show(const LabeledScan& scan, const mrpt::poses::CPose3D& T_map_
                      const Summary& summary) {
   const Eigen::Isometry3d T_map_sensor = labeled_cloud::toEigen(T_map_robot + scan.T_robot_sensor);
   Eigen::AlignedBox3d seen(T_map_sensor.translation());
-  const auto points = mrpt_compat::drawing::CPointCloud::Create();
-  points->setPointSize(kPointSize);
-  points->setColor_u8(kPointColor);
-  for (const auto& p : scan.cloud.points) {
-    const Eigen::Vector3d place = T_map_sensor * p.cast<double>();
+  std::map<semantic_types::ClassId, mrpt_compat::drawing::CPointCloud::Ptr> points;
+  for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
+    const Eigen::Vector3d place = T_map_sensor * scan.cloud.points[i].cast<double>();
     seen.extend(place);
-    points->insertPoint(float(place.x()), float(place.y()), float(place.z()));
+    const auto id = scan.cloud.classes.empty() ? semantic_types::kNoClass : scan.cloud.classes[i];
+    auto& ofClass = points[id];
+    if (!ofClass) ofClass = pointsOf(id, m_map.classes());
+    ofClass->insertPoint(float(place.x()), float(place.y()), float(place.z()));
   }
   m_window.marks().clear();
-  m_window.marks().insert(points);
+  for (const auto& [id, ofClass] : points) m_window.marks().insert(ofClass);
   if (!scan.pictures.empty()) {
     const labeled_cloud::LabeledPicture& picture = scan.pictures.front();
     m_window.showPicture(label_overlay::labeledImage(picture, m_map.classes()));

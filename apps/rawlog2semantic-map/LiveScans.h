@@ -17,6 +17,8 @@ class LiveScans {
   /** A scan was inserted. \param summary of the scans up to it */
   void show(const labeled_cloud::LabeledScan& scan, const mrpt::poses::CPose3D& T_map_robot,
             const Summary& summary);
+  /** Until the window is closed. */
+  void stay() { m_window.stay(); }
 
  private:
   const semantic_octree::SemanticOcTree& m_map;

@@ -13,6 +13,7 @@
 
 #include "Progress.h"
 #include "StandardOutput.h"
+#include "inputs/Inputs.h"
 #include "measuring/Stopwatch.h"
 
 namespace rawlog2semantic_map {
@@ -70,7 +71,7 @@ void MapBuilder::correctPoses(const semantic_slam::SlamOptions& options, const f
     m_mapper.emplace(m_map.tree(), mapping);
     return;
   }
-  const semantic_octree::SemanticOcTree map = semantic_octree::loadMap(reference.string());
+  const semantic_octree::SemanticOcTree map = inputs::loadMap(reference);
   if (options.useClasses && map.classes() != m_map.tree().classes())
     throw std::runtime_error(reference.string() +
                              ": its class table is another one than that of the scans");
@@ -80,21 +81,21 @@ void MapBuilder::correctPoses(const semantic_slam::SlamOptions& options, const f
 void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::ScanStream& stream,
                         const StopRequest& stop) {
   for (const fs::path& file : rawlogs) m_summary.rawlogs.push_back(file.string());
-  Progress progress("Mapping", totalSize(rawlogs));
+  std::optional<Progress> progress(std::in_place, "Mapping", totalSize(rawlogs));
   labeled_cloud::ReadAhead<StreamedObservation> ahead([&stream] { return stream.next(); },
                                                       kScansAhead);
   while (const auto observation = ahead.next()) {
     add(*observation);
     if ((m_summary.stopped = stop.pending())) break;
-    progress.update(observation->bytesRead, std::to_string(m_summary.inserted) + " scans");
+    progress->update(observation->bytesRead, std::to_string(m_summary.inserted) + " scans");
   }
   if (m_mapper)
     m_mapper->finish();
   else
     m_map.tree().setCalibration(m_calibrator.fit(m_map.tree()));
-  progress.finish((m_summary.stopped ? "stopped early, " : "") +
-                  std::to_string(m_summary.inserted) + " scans inserted, " +
-                  m_summary.skippedText());
+  progress.reset();
+  notes() << "Mapping: " << (m_summary.stopped ? "stopped early, " : "") << m_summary.inserted
+          << " scans inserted, " << m_summary.skippedText() << std::endl;
   if (m_mapper) noteSlam();
   if (m_mapper && m_hadContent) checkFoundInMap();
   noteLabels();

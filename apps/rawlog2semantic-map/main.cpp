@@ -25,6 +25,8 @@
 #include "ScanLog.h"
 #include "Signals.h"
 #include "StandardOutput.h"
+#include "Trajectories.h"
+#include "inputs/Inputs.h"
 
 namespace rawlog2semantic_map {
 namespace {
@@ -64,8 +66,10 @@ struct Cli {
                    "Options (.ini); without it, defaults, and the classes that the labels name");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     addLabelsTo(app);
-    auto* poses = app.add_option("--trajectory", trajectory,
-                                 "Poses of the robot (TUM format), instead of those in the rawlog");
+    auto* poses =
+        app.add_option("--trajectory", trajectory,
+                       "Poses of the robot, instead of those in the rawlog: TUM format, or "
+                       "KITTI's (12 numbers a line, one line a scan)");
     auto* rest = app.add_flag("--static-pose", staticPose,
                               "The robot never moved: for rawlogs without poses")
                      ->excludes(poses);
@@ -84,11 +88,13 @@ struct Cli {
                                    "for LiDARs, RGB-D cameras, laser scanners")
                           ->excludes(upkeep)
                           ->excludes(rest);
-    app.add_option("--reference", reference,
-                   "Existing map (.semantic, or a folder of tiles): poses are "
-                   "corrected into its frame")
+    app.add_option(
+           "--reference", reference,
+           std::string("Existing map (") + inputs::kMap + "): poses are corrected into its frame")
         ->needs(corrected);
-    auto* window = app.add_flag("--live", live, "Show the map in a window while it grows");
+    auto* window = app.add_flag(
+        "--live", live,
+        "Show the map in a window while it grows, and then until the window is closed");
     addTilesTo(app)->excludes(upkeep)->excludes(window);
     app.add_flag("--pause", pause, "Begin paused, before the first scan")->needs(window);
     app.add_option("INPUT.rawlog", rawlogs, "Rawlogs, parts of one log in order")->required();
@@ -145,15 +151,6 @@ ClassTable classesOf(const Cli& cli, const Config& config) {
   return table.empty() ? CSemanticOctoMap::occupancyOnly() : table;
 }
 
-/** Holds at all times. */
-labeled_cloud::Trajectory restAtOrigin() {
-  labeled_cloud::TrajectoryOptions always;
-  always.tolerance = HUGE_VAL;
-  labeled_cloud::Trajectory trajectory(always);
-  trajectory.insert({}, {});
-  return trajectory;
-}
-
 /** \throw std::runtime_error naming the file of options and what is wrong. */
 void setAbstraction(CSemanticOctoMap& map, const Cli& cli, const Config& config) try {
   map.setAbstraction(config.abstraction);
@@ -166,10 +163,9 @@ void setAbstraction(CSemanticOctoMap& map, const Cli& cli, const Config& config)
 /** Empty with --slam, if the rawlogs have none. */
 labeled_cloud::Trajectory trajectoryOf(const Cli& cli) {
   if (cli.staticPose) return restAtOrigin();
-  if (!cli.trajectory.empty()) return labeled_cloud::loadTumTrajectory(cli.trajectory);
+  if (!cli.trajectory.empty()) return loadTrajectory(cli.trajectory, cli.rawlogs);
   notes() << "Reading the robot's poses" << std::endl;
-  if (cli.slam) return labeled_cloud::findTrajectory(cli.rawlogs);
-  return labeled_cloud::readTrajectory(cli.rawlogs);
+  return ownTrajectory(cli.rawlogs, !cli.slam);
 }
 
 /** Where scans go beside the map. */
@@ -296,6 +292,7 @@ int run(const Cli& cli) {
   const StopRequest stop("after this observation");
   const Config config = configOf(cli);
   cli.checkOutputs(config);
+  inputs::checkRawlogs(cli.rawlogs);
   const ClassTable table = classesOf(cli, config);
   CSemanticOctoMap map(config.map.resolution, table, config.insertion.filter);
   map.insertionOptions = config.insertion;
@@ -318,6 +315,7 @@ int run(const Cli& cli) {
   output.commit(kFiles);
   if (!problem.empty()) throw std::runtime_error(problem);
   notes() << cli.output.string() << ": " << map.asString() << std::endl;
+  if (live) live->stay();
   return 0;
 }
 

@@ -54,6 +54,11 @@ void Compressor::addKept(const AbstractionMeasures& measures,
 
 double Compressor::alphaFor(const Solution& solution, const Target& target) {
   if (target.leaves) return alphaForLeaves(solution, *target.leaves);
+  if (target.share) {
+    weigh(solution, 0);
+    const double all = static_cast<double>(abstraction().measures().full.numKnownLeaves);
+    return alphaForLeaves(solution, static_cast<std::size_t>(*target.share * all));
+  }
   if (target.bytes) return alphaForBytes(solution, *target.bytes);
   if (target.alpha) return *target.alpha;
   if (!solution.alpha) refuse(solution, "no alpha: expected `alpha`, --alpha, --leaves or --bytes");

@@ -18,6 +18,7 @@ using semantic_octree::TermCatalog;
 struct Target {
   std::optional<double> alpha;
   std::optional<std::size_t> leaves;  ///< known leaves
+  std::optional<double> share;        ///< of the known leaves
   std::optional<std::size_t> bytes;   ///< of the file
 };
 

@@ -1,5 +1,4 @@
 // Compresses a semantic octree map to its optimal trees for given weights of the classes.
-#include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
 #include <map_pictures/MapPictures.h>
 #include <semantic_octree/TreeFile.h>
@@ -7,15 +6,20 @@
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
+#include <iomanip>
+#include <optional>
 #include <ostream>
+#include <utility>
 
 #include "Application.h"
 #include "JsonFile.h"
 #include "MemoryOption.h"
 #include "NumberChecks.h"
 #include "Outputs.h"
+#include "Progress.h"
 #include "Report.h"
 #include "StandardOutput.h"
+#include "inputs/Inputs.h"
 
 namespace semantic_map_compress {
 namespace {
@@ -32,14 +36,18 @@ struct Cli {
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAP", map, "A map's own file (.semantic), or a folder of tiles")->required();
-    app.add_option("--weights", weights, "Solutions: weights of classes (YAML)")->required();
+    inputs::addMap(app, map);
+    app.add_option("--weights", weights,
+                   "Solutions: weights of classes (YAML); without: every class counts alike");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     auto* group = app.add_option_group("size", "Instead of each solution's own alpha");
     group->add_option("--alpha", target.alpha, "Price of detail (alpha)")
         ->check(isNumber(strict_files::atLeast(0)));
-    group->add_option("--leaves", target.leaves, "The largest tree with at most this many leaves")
-        ->check(isNumber(strict_files::above(0)));
+    group
+        ->add_option_function<std::string>(
+            "--leaves", [this](const std::string& text) { readLeaves(text); },
+            "The largest tree with at most this many leaves, or this share of them: 10%")
+        ->type_name("NUMBER[%]");
     group
         ->add_option("--bytes", target.bytes,
                      "The largest tree whose file has at most this many bytes")
@@ -47,7 +55,31 @@ struct Cli {
     group->require_option(0, 1);
     addMemoryOption(app, memory);
   }
+
+ private:
+  /** "500" or "10%" */
+  void readLeaves(const std::string& text) {
+    const bool isShare = !text.empty() && text.back() == '%';
+    double number = 0;
+    try {
+      number = strict_files::numberOf(isShare ? text.substr(0, text.size() - 1) : text);
+    } catch (const std::invalid_argument&) {
+    }
+    if (!(number > 0) || number > (isShare ? 100 : 1e15))
+      throw CLI::ValidationError(
+          "--leaves", "is '" + text + "', expected a number above 0, or a share up to 100%");
+    if (isShare)
+      target.share = number / 100;
+    else
+      target.leaves = static_cast<std::size_t>(number);
+  }
 };
+
+WeightsFile weightsOf(const Cli& cli, const semantic_types::ClassTable& classes) {
+  if (!cli.weights.empty()) return semantic_octree::loadWeights(cli.weights, classes);
+  return semantic_octree::weightsOfText("{name: all-classes, everything: 1}", "without --weights",
+                                        classes);
+}
 
 /** Puts everything about one solution into the folder. */
 class SolutionWriter {
@@ -97,8 +129,10 @@ class SolutionWriter {
 };
 
 /** The classes that did not fit into the first batch. */
-void measureOtherBatches(Compressor& compressor, std::vector<Compression>& compressions) {
+void measureOtherBatches(Compressor& compressor, std::vector<Compression>& compressions,
+                         Progress& progress) {
   for (std::size_t b = 1; b < compressor.numBatches(); ++b) {
+    progress.update(compressions.size() + 2 * b, "other classes");
     compressor.useBatch(b);
     for (Compression& c : compressions) {
       compressor.weigh(c.solution, c.alpha);
@@ -131,35 +165,43 @@ void printSummary(const std::vector<Compression>& compressions) {
   for (const Compression& c : compressions)
     notes() << c.solution.name << ": alpha " << c.alpha << ", "
             << c.measures.compressed.numKnownLeaves << " of " << c.measures.full.numKnownLeaves
-            << " leaves (" << 100 * c.leafRatio() << " %), " << strict_files::sizeText(c.bytes)
-            << '\n';
+            << " leaves (" << std::setprecision(3) << 100 * c.leafRatio() << std::setprecision(6)
+            << " %), " << strict_files::sizeText(c.bytes) << '\n';
 }
 
 int run(const Cli& cli) {
   StageTimer times;
   const double memory = cli.memory / 2;  // the other half is for compressed maps
-  semantic_octree::StoredMap stored(cli.map, memory);
-  SemanticOcTree& map = stored.tree();
-  const FullMap full{cli.map.string(), map.getResolution(), map.size(), stored.bytesOnDisk(),
+  const auto stored = inputs::openMap(cli.map, memory);
+  SemanticOcTree& map = stored->tree();
+  const FullMap full{cli.map.string(), map.getResolution(), map.size(),
+                     stored->folder() ? stored->bytesOnDisk() : fs::file_size(cli.map),
                      contentsOf(map).voxelsOfClass};
-  const WeightsFile weights = semantic_octree::loadWeights(cli.weights, map.classes());
+  const WeightsFile weights = weightsOf(cli, map.classes());
   cli.outputs.checkFolder(cli.output, fileNames(weights.solutions));
   times.add("load");
   const TermCatalog catalog(map.classes(), weights.solutions);
   OutputFolder output(cli.output);
   CompressedPlace place;
-  if (stored.folder()) place.tiles = {memory, stored.folder()->contents().tileSize};
+  if (stored->folder()) place.tiles = {memory, stored->folder()->contents().tileSize};
   place.scratch = output.staged("tiles");
+  const std::size_t numSolutions = weights.solutions.size();
+  std::optional<Progress> progress(std::in_place, "Compressing",
+                                   numSolutions + 2 * catalog.numBatches());
+  progress->update(0, "information of the classes");
   Compressor compressor(map, catalog, weights.space, place);
   times.add("computeInformation");
 
   MapSheet sheet(1 + weights.solutions.size());
   sheet.add(map, "full map: " + std::to_string(map.getNumLeafNodes()) + " leaves");
   std::vector<Compression> compressions;
-  for (const Solution& solution : weights.solutions)
+  for (const Solution& solution : weights.solutions) {
+    progress->update(2 + compressions.size(), solution.name);
     compressions.push_back(SolutionWriter(compressor, cli.target, output, sheet).write(solution));
+  }
   times.add("solutions");
-  measureOtherBatches(compressor, compressions);
+  measureOtherBatches(compressor, compressions, *progress);
+  progress.reset();
   times.add("measureOtherClasses");
 
   map_pictures::savePicture(sheet.picture(), output.staged("maps.png"));

@@ -52,8 +52,9 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   where->require_option(1);
   app.add_option("--weights", weights, "What is looked for (YAML, see config/weights)")
       ->needs(exploring);
-  app.add_option("--solution", solution, "Of the weights; without: the first")->needs("--weights");
-  app.add_option("--classes", classes,
+  app.add_option("--solution", solution, "Name of one solution in the weights; without: the first")
+      ->needs("--weights");
+  app.add_option("--order", order,
                  "Classes from best to worst (YAML); a second file makes a second drive to compare")
       ->required()
       ->expected(1, 2);
@@ -66,7 +67,8 @@ Cli::Cli(CLI::App& app) : outputs(app) {
       ->check(isNumber(strict_files::above(0)));
   app.add_flag("!--no-rawlog", rawlog, "Write no rawlog");
   app.add_flag("--navlog", navlog, "Write drive.reactivenavlog, for MRPT's navlog-viewer");
-  app.add_flag("--live", live, "Show the drive in a window, no faster than real time");
+  app.add_flag("--live", live,
+               "Show the drive in a window, no faster than real time, until the window is closed");
   app.add_flag("--compressed-pictures", compressed, "Show the compressed tree in pictures");
   app.add_flag("!--no-pictures", pictures, "Write no animation");
 }

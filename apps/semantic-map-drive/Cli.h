@@ -20,7 +20,7 @@ struct Cli {
   std::filesystem::path map, config, output;
   std::filesystem::path weights;  ///< of what is explored for; empty: for whatever is unknown
   std::string solution;
-  std::vector<std::filesystem::path> classes;
+  std::vector<std::filesystem::path> order;
   std::string scene = "village";
   std::uint64_t seed = 1;
   double hills = 1, pictureEvery = 0;

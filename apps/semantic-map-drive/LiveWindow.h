@@ -18,6 +18,8 @@ class LiveWindow : public DriveObserver {
              const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal);
 
   void stopWhen(const std::function<bool()>& isToEnd) { m_window.stopWhen(isToEnd); }
+  /** Until the window is closed. */
+  void stay() { m_window.stay(); }
   void onSensed(const DriveLoop& loop, const std::vector<Observation>& seen) override;
   void onDriven(const DriveLoop& loop) override;
 

@@ -20,6 +20,7 @@
 #include "Recorder.h"
 #include "Signals.h"
 #include "StandardOutput.h"
+#include "inputs/Inputs.h"
 #include "simulated_drive/DriveFiles.h"
 #include "simulated_drive/DriveLoop.h"
 
@@ -60,17 +61,18 @@ class DriveProgram {
   }
 
   int run() {
-    const DriveRecord first = drive(m_cli.classes[0], "drive");
+    const DriveRecord first = drive(m_cli.order[0], "drive");
     if (m_cli.navlog)
       fs::rename(navlogs() / "log_000.reactivenavlog", m_output.staged("drive.reactivenavlog"));
-    if (m_cli.classes.size() > 1 && !m_stop.pending()) {
-      const DriveRecord second = drive(m_cli.classes[1], "drive2");
+    if (m_cli.order.size() > 1 && !m_stop.pending()) {
+      const DriveRecord second = drive(m_cli.order[1], "drive2");
       addOtherTrack(*m_last, first);
       map_pictures::savePicture(m_last->sheet("both drives"), m_output.staged("both.png"));
     }
     std::vector<std::string> names = kFiles;
     names.insert(names.end(), m_onTheWay.begin(), m_onTheWay.end());
     m_output.commit(names);
+    if (m_window) m_window->stay();
     return first.arrived() || first.end == DriveEnd::Explored ? 0 : kNotArrived;
   }
 
@@ -82,6 +84,8 @@ class DriveProgram {
    * kept apart. */
   std::unique_ptr<semantic_octree::StoredMap> known(const std::string& name) const {
     if (m_cli.map.empty()) return nullptr;
+    if (auto octomap = inputs::octomapIn(m_cli.map))
+      return std::make_unique<semantic_octree::StoredMap>(std::move(*octomap));
     semantic_octree::MapFolderOptions options;
     options.memory = m_cli.memory;
     options.draft = m_output.staged(name + "-tiles");
@@ -90,8 +94,10 @@ class DriveProgram {
 
   DriveRecord drive(const fs::path& classes, const std::string& name) {
     const auto order = semantic_planning::loadClassOrder(classes, synthetic_world::classTable());
-    DriveLoop loop(m_config, m_scene.world, order, m_cli.start, goalOf(m_cli), m_cli.events,
-                   known(name), m_cli.navlog && name == "drive" ? navlogs() : fs::path());
+    m_window.reset();
+    DriveLoop& loop =
+        m_loop.emplace(m_config, m_scene.world, order, m_cli.start, goalOf(m_cli), m_cli.events,
+                       known(name), m_cli.navlog && name == "drive" ? navlogs() : fs::path());
     if (m_cli.explore) loop.explore(m_weights);
     loop.stopWhen([this] { return m_stop.pending(); });
     std::optional<Recorder> recorder;
@@ -111,11 +117,10 @@ class DriveProgram {
       loop.addObserver(onTheWay.emplace(m_picture, m_cli.pictureEvery, [&](const cv::Mat& picture) {
         map_pictures::savePicture(picture, m_output.staged(numbered(name, numOnTheWay++)));
       }));
-    std::optional<LiveWindow> window;
     if (m_cli.live) {
       loop.keepOriginals();
-      loop.addObserver(window.emplace(loop, m_scene.world, m_cli.start, goalOf(m_cli)));
-      window->stopWhen([this] { return m_stop.pending(); });
+      loop.addObserver(m_window.emplace(loop, m_scene.world, m_cli.start, goalOf(m_cli)));
+      m_window->stopWhen([this] { return m_stop.pending(); });
     }
     const DriveRecord record = loop.run();
     strict_files::writeText(m_output.staged(name + ".csv"), toCsv(record));
@@ -131,6 +136,7 @@ class DriveProgram {
     if (gif) gif->close();
     listOnTheWay(name, numOnTheWay);
     printSummary(record);
+    if (!m_window) m_loop.reset();
     return record;
   }
 
@@ -174,6 +180,8 @@ class DriveProgram {
   DrivePicture m_picture;  ///< on the way
   DrivePicture m_whole;    ///< of all that was driven
   std::optional<map_pictures::MapCanvas> m_last;
+  std::optional<DriveLoop> m_loop;  ///< of the last drive, as long as the window shows it
+  std::optional<LiveWindow> m_window;
   std::vector<std::string> m_onTheWay;  ///< names of pictures
 };
 

@@ -2,13 +2,14 @@
 // OctoMap's.
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
-#include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MapFiles.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_types/ClassTable.h>
+#include <strict_files/Words.h>
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <ostream>
 
@@ -17,13 +18,13 @@
 #include "NumberChecks.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
+#include "inputs/Inputs.h"
 #include "poses/Poses.h"
 
 namespace semantic_map_edit {
 namespace {
 
 namespace fs = std::filesystem;
-using semantic_map::CSemanticOctoMap;
 using semantic_octree::MapFolder;
 using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
@@ -36,15 +37,15 @@ struct Cli {
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAP", in,
-                   "A map's own file (.semantic), a folder of tiles, or OctoMap's (.ot, .bt)")
-        ->required();
+    inputs::addMap(app, in);
     outputs.add(app, out, "FILE|FOLDER", "The map to write (.semantic); with --tiles, its folder")
         ->required();
-    app.add_option("--pose", pose,
-                   "Where the map's origin is in the new map: x y z (m) yaw pitch roll (degrees)")
-        ->type_name("X Y Z YAW PITCH ROLL");
-    app.add_option("--box", box, "Keep what is in this box, m")->type_name("X0 Y0 Z0 X1 Y1 Z1");
+    app.add_option("--pose", pose, "Where the map's origin is in the new map, m and degrees")
+        ->type_name("X,Y,Z,YAW,PITCH,ROLL")
+        ->delimiter(',');
+    app.add_option("--box", box, "Keep what is in this box, m")
+        ->type_name("X,Y,Z,X2,Y2,Z2")
+        ->delimiter(',');
     app.add_option("--resolution", resolution,
                    "Coarser voxels, m: 2, 4, 8 ... times those of the map")
         ->check(isNumber(strict_files::above(0)));
@@ -59,21 +60,13 @@ struct Cli {
   }
 };
 
-SemanticOcTree import(const fs::path& file, const fs::path& like) {
-  const auto occupancy = semantic_map::readOctomapFile(file);
-  if (like.empty())
-    return semantic_octree::fromOcTree(*occupancy, CSemanticOctoMap::occupancyOnly());
-  const SemanticOcTree model = semantic_octree::loadMap(like.string());
-  return semantic_octree::fromOcTree(*occupancy, model.classes(), model.filterParameters());
-}
-
-StoredMap load(const Cli& cli) {
-  if (cli.in.extension() == ".ot" || cli.in.extension() == ".bt")
-    return StoredMap(import(cli.in, cli.like));
-  if (!cli.like.empty())
+std::unique_ptr<StoredMap> load(const Cli& cli) {
+  if (cli.like.empty()) return inputs::openMap(cli.in, cli.tiles ? cli.memory / 2 : cli.memory);
+  if (!inputs::isOctomaps(cli.in))
     throw std::runtime_error("--like is for OctoMap's files (.ot, .bt), not for " +
                              cli.in.string());
-  return StoredMap(cli.in, cli.tiles ? cli.memory / 2 : cli.memory);
+  const SemanticOcTree like = inputs::loadMap(cli.like);
+  return std::make_unique<StoredMap>(semantic_map::importOctomapFile(cli.in, &like));
 }
 
 Eigen::AlignedBox3d boxOf(const std::array<double, 6>& v) {
@@ -84,9 +77,9 @@ Eigen::AlignedBox3d boxOf(const std::array<double, 6>& v) {
 int levelsTo(double edge, double voxelSize, int highest, const std::string& option) {
   const double levels = std::log2(edge / voxelSize);
   if (!(std::fabs(levels - std::round(levels)) < 1e-6) || levels < 0 || levels > highest)
-    throw std::runtime_error(option + " " + std::to_string(edge) + ": expected 1, 2, 4, 8 ... " +
-                             std::to_string(1 << highest) + " times the map's voxels, " +
-                             std::to_string(voxelSize) + " m");
+    throw std::runtime_error(option + " is " + strict_files::textOf(edge) +
+                             ", expected 1, 2, 4, 8 ... " + std::to_string(1 << highest) +
+                             " times the map's voxels, " + strict_files::textOf(voxelSize) + " m");
   return static_cast<int>(std::lround(levels));
 }
 
@@ -112,9 +105,9 @@ SemanticOcTree aged(SemanticOcTree map, const Cli& cli) {
 int run(const Cli& cli) {
   cli.tiles ? cli.outputs.checkFolder(cli.out, {MapFolder::kIndexFile})
             : cli.outputs.check({cli.out});
-  StoredMap stored = load(cli);
+  const auto stored = load(cli);
   std::optional<SemanticOcTree> edited;
-  const auto map = [&]() -> const SemanticOcTree& { return edited ? *edited : stored.tree(); };
+  const auto map = [&]() -> const SemanticOcTree& { return edited ? *edited : stored->tree(); };
   if (cli.pose) edited = moved(map(), poses::poseOfNumbers(*cli.pose));
   if (cli.box) edited = cropped(map(), boxOf(*cli.box));
   if (cli.resolution)

@@ -1,13 +1,13 @@
 // Asks maps for the classes of labeled points that they were not made from.
 #include <labeled_cloud/ScanStream.h>
 #include <labeled_cloud/Trajectory.h>
-#include <map_folders/MapFolder.h>
 #include <strict_files/OutputFiles.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <list>
+#include <memory>
 #include <ostream>
 #include <set>
 #include <sstream>
@@ -20,7 +20,9 @@
 #include "NumberChecks.h"
 #include "OptionFlags.h"
 #include "Outputs.h"
+#include "Progress.h"
 #include "StandardOutput.h"
+#include "inputs/Inputs.h"
 
 namespace semantic_map_evaluate {
 namespace {
@@ -41,14 +43,14 @@ struct Cli {
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAPS", maps,
-                   "Maps' own files (.semantic), compressed or not, or folders of tiles")
+    app.add_option("MAPS", maps, std::string("Maps, compressed or not: ") + inputs::kMap)
         ->required();
     app.add_option("--scans", rawlogs, "Rawlogs of labeled scans that the maps were not made from")
         ->required();
     app.add_option(
         "--made-from", madeFrom,
-        "Rawlogs that the maps were made from: their labels are counted, and asked, too");
+        "Rawlogs that the maps were made from: two more rows tell what plain counting of their "
+        "labels knows");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     app.add_option("--max-range", maxRange, "Points farther from the sensor are not asked for, m")
         ->check(isNumber(strict_files::above(0)));
@@ -61,14 +63,16 @@ struct Cli {
 
 /** A map and what came of its questions. */
 struct Asked {
-  Asked(const fs::path& file, double memory, const semantic_octree::SmoothingOptions& smoothing)
-      : stored(file, memory),
-        view(stored.tree(), smoothing),
-        result{file.stem().string(), Evaluation(stored.tree().numClasses())} {}
+  Asked(const fs::path& map, double memory, const semantic_octree::SmoothingOptions& smoothing)
+      : file(map),
+        stored(inputs::openMap(map, memory)),
+        view(stored->tree(), smoothing),
+        result{map.stem().string(), Evaluation(stored->tree().numClasses())} {}
 
-  const ClassTable& classes() { return stored.tree().classes(); }
+  const ClassTable& classes() { return stored->tree().classes(); }
 
-  semantic_octree::StoredMap stored;
+  fs::path file;
+  std::unique_ptr<semantic_octree::StoredMap> stored;
   SmoothedView view;
   NamedEvaluation result;
 };
@@ -93,15 +97,19 @@ void ask(const labeled_cloud::LabeledScan& scan, const mrpt::poses::CPose3D& T_m
   }
 }
 
-/** \throw std::runtime_error maps of other classes, or of one name. */
+/** Maps whose files have one name are called by their paths. \throw std::runtime_error maps of
+ * other classes, or one map twice. */
 void requireComparable(std::list<Asked>& maps) {
+  std::multiset<std::string> stems;
+  for (const Asked& asked : maps) stems.insert(asked.file.stem());
   std::set<std::string> names;
   for (Asked& asked : maps) {
-    const std::string& name = asked.result.name;
+    std::string& name = asked.result.name;
+    if (stems.count(name) > 1) name = fs::path(asked.file).replace_extension();
     if (asked.classes() != maps.front().classes())
       throw std::runtime_error("maps of different classes: " + maps.front().result.name + ", " +
                                name);
-    if (!names.insert(name).second) throw std::runtime_error("two maps by the name of " + name);
+    if (!names.insert(name).second) throw std::runtime_error(name + " is given twice");
   }
 }
 
@@ -170,33 +178,56 @@ std::string tableOf(const std::vector<NamedEvaluation>& results) {
   return text.str();
 }
 
-/** Calls f(scan, T_map_robot) for each scan of rawlogs. */
+/** What to think of when most points are where a map has nothing. */
+std::string doubtsOf(const std::vector<NamedEvaluation>& results) {
+  constexpr double kSamePlace = 0.5;
+  std::ostringstream text;
+  for (const auto& [name, e] : results)
+    if (e.coverage() < kSamePlace)
+      text << name << ": only " << std::lround(100 * e.coverage())
+           << " % of the points are in the map: is it of the same place, in the same frame?\n";
+  return text.str();
+}
+
+/** Calls f(scan, T_map_robot) for each scan of rawlogs. \param task what that does, for people */
 template <typename F>
-void forEachScan(const std::vector<fs::path>& rawlogs, const ClassTable& classes, const F& f) {
+void forEachScan(const std::string& task, const std::vector<fs::path>& rawlogs,
+                 const ClassTable& classes, const F& f) {
   const auto trajectory = labeled_cloud::readTrajectory(rawlogs);
   labeled_cloud::ScanConverter converter(classes);
   labeled_cloud::ScanStream stream(rawlogs, converter, trajectory, nullptr);
-  while (const auto observation = stream.next())
-    if (observation->scan) f(*observation->scan, observation->T_map_robot);
+  std::uint64_t bytes = 0;
+  for (const fs::path& file : rawlogs) bytes += fs::file_size(file);
+  Progress progress(task, bytes);
+  std::size_t scans = 0;
+  while (const auto observation = stream.next()) {
+    if (!observation->scan) continue;
+    f(*observation->scan, observation->T_map_robot);
+    progress.update(observation->bytesRead, std::to_string(++scans) + " scans");
+  }
 }
 
 /** Labels that the maps were made from, counted in the first map's voxels. */
 std::list<Counting> countLabels(const Cli& cli, Asked& first) {
   std::list<Counting> peers;
   if (cli.madeFrom.empty()) return peers;
-  const semantic_octree::SemanticOcTree& map = first.stored.tree();
+  const semantic_octree::SemanticOcTree& map = first.stored->tree();
   const Evaluation none(map.numClasses());
   peers.push_back({{map, LabelCounts::Counted::Labels}, {"labels counted", none}});
   peers.push_back({{map, LabelCounts::Counted::Scans}, {"scans counted", none}});
-  forEachScan(cli.madeFrom, first.classes(), [&](const auto& scan, const auto& T_map_robot) {
-    const Eigen::Isometry3d T = labeled_cloud::toEigen(T_map_robot + scan.T_robot_sensor);
-    for (Counting& peer : peers) peer.counts.add(scan.cloud, T);
-  });
+  forEachScan("Counting labels", cli.madeFrom, first.classes(),
+              [&](const auto& scan, const auto& T_map_robot) {
+                const Eigen::Isometry3d T =
+                    labeled_cloud::toEigen(T_map_robot + scan.T_robot_sensor);
+                for (Counting& peer : peers) peer.counts.add(scan.cloud, T);
+              });
   return peers;
 }
 
 int run(const Cli& cli) {
   cli.outputs.checkFolder(cli.output, kFiles);
+  inputs::checkRawlogs(cli.madeFrom);
+  inputs::checkRawlogs(cli.rawlogs);
   std::list<Asked> maps;
   for (const fs::path& file : cli.maps) {
     const double memory = cli.memory / static_cast<double>(cli.maps.size());
@@ -204,16 +235,17 @@ int run(const Cli& cli) {
   }
   requireComparable(maps);
   std::list<Counting> peers = countLabels(cli, maps.front());
-  forEachScan(cli.rawlogs, maps.front().classes(), [&](const auto& scan, const auto& T_map_robot) {
-    ask(scan, T_map_robot, cli.maxRange, maps, peers);
-  });
+  forEachScan("Asking", cli.rawlogs, maps.front().classes(),
+              [&](const auto& scan, const auto& T_map_robot) {
+                ask(scan, T_map_robot, cli.maxRange, maps, peers);
+              });
   std::vector<NamedEvaluation> results;
   for (const Asked& asked : maps) results.push_back(asked.result);
   for (const Counting& peer : peers) results.push_back(peer.result);
   if (results.front().evaluation.points() == 0)
     throw std::runtime_error("no point of the scans has a class");
   writeResults(cli, results, maps.front().classes());
-  notes() << tableOf(results);
+  notes() << tableOf(results) << doubtsOf(results);
   return 0;
 }
 

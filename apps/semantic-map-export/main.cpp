@@ -1,23 +1,246 @@
 // Writes a semantic octree map into files that other programs read.
-#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
+#include <map_pictures/MapPictures.h>
+#include <mrpt_compat/Drawing.h>
+#include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_map/MapFiles.h>
+#include <semantic_planning/planner/OrderFile.h>
+#include <strict_files/OutputFiles.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <list>
+#include <optional>
 #include <ostream>
+#include <stdexcept>
+#include <string>
 
 #include "Application.h"
 #include "Choice.h"
-#include "Exporter.h"
+#include "CostGrid.h"
 #include "MemoryOption.h"
 #include "OptionFlags.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
+#include "inputs/Inputs.h"
 
 namespace semantic_map_export {
 namespace {
 
 namespace fs = std::filesystem;
-using semantic_octree::StoredMap;
 using semantic_types::ClassTable;
+
+/** Makes .yaml files costs of driving, not occupancy. */
+struct CostOptions {
+  std::filesystem::path order,
+      vehicle;  ///< an empty order: occupancy; an empty vehicle: a small robot
+  CostMode mode = CostMode::Trinary;
+};
+
+struct ExportOptions {
+  bool colors = true;  ///< in .ot files
+  semantic_map::PointOptions points;
+  semantic_map::GridOptions grid;
+  std::optional<double> maxHeight;  ///< of pictures, m
+  CostOptions costs;
+};
+
+/** Writes a map into files of other formats. They take their names together, in commit(): what was
+ * there stays if any of them fails. */
+class Exporter {
+ public:
+  /** The map must outlive the exporter. */
+  Exporter(const semantic_octree::SemanticOcTree& map, ExportOptions options)
+      : m_map(map), m_options(std::move(options)) {}
+
+  /** What can be written: endings with a few words. */
+  static std::string formats();
+  /** The file and what is written beside it.
+   * \throw std::runtime_error naming the file: no format has its ending. */
+  static std::vector<std::filesystem::path> filesOf(const std::filesystem::path& file,
+                                                    const ExportOptions& options);
+
+  /** Writes a file, and what belongs beside it, in the format that its ending says.
+   * \throw std::exception naming the file. */
+  void write(const std::filesystem::path& file);
+  /** \return the files. \throw std::runtime_error naming a file. */
+  std::vector<std::filesystem::path> commit();
+
+ private:
+  using Writer = std::function<void(std::ostream&)>;
+  using Filler = std::function<void(const std::filesystem::path&)>;
+  struct Format;
+  static const std::vector<Format>& allFormats();
+  static const Format& formatOf(const std::filesystem::path& file);
+
+  void stage(const std::filesystem::path& file, const Writer& writer);
+  void stageFile(const std::filesystem::path& file, const Filler& fill);
+  void writeOctree(const std::filesystem::path& file);
+  void writeClassMap(const std::filesystem::path& file);
+  void writeMapServer(const std::filesystem::path& file);
+  void writeCosts(const std::filesystem::path& file);
+  void writeScene(const std::filesystem::path& file);
+
+  struct Staged {
+    explicit Staged(const std::filesystem::path& path) : target(path), file(path) {}
+    std::filesystem::path target;
+    strict_files::StagedFile file;
+  };
+
+  const semantic_octree::SemanticOcTree& m_map;
+  ExportOptions m_options;
+  std::list<Staged> m_staged;
+};
+
+namespace fs = std::filesystem;
+
+struct Exporter::Format {
+  const char* ending;
+  const char* description;
+  std::function<void(Exporter&, const fs::path&)> write;
+  const char* beside = nullptr;  ///< ending of a second file
+};
+
+const std::vector<Exporter::Format>& Exporter::allFormats() {
+  static const std::vector<Format> formats = {
+      {".ot", "OctoMap's tree, with colors of classes", &Exporter::writeOctree},
+      {".bt", "OctoMap's binary tree",
+       [](Exporter& e, const fs::path& file) {
+         e.stage(file, [&e](std::ostream& out) { writeBinaryOcTree(out, e.m_map); });
+       }},
+      {".ply", "points with class, probability and color",
+       [](Exporter& e, const fs::path& file) {
+         e.stage(file, [&e](std::ostream& out) {
+           semantic_map::writePly(out, e.m_map, e.m_options.points);
+         });
+       }},
+      {".csv", "those points as a table",
+       [](Exporter& e, const fs::path& file) {
+         e.stage(file, [&e](std::ostream& out) {
+           semantic_map::writeCsv(out, e.m_map, e.m_options.points);
+         });
+       }},
+      {".gridmap", "MRPT's 2D occupancy grid",
+       [](Exporter& e, const fs::path& file) {
+         e.stage(file, [&e](std::ostream& out) {
+           semantic_map::writeGridMap(out, semantic_map::gridOf(e.m_map, e.m_options.grid));
+         });
+       }},
+      {".yaml", "such a grid for ROS's map_server, with its picture beside",
+       &Exporter::writeMapServer, ".png"},
+      {".png", "classes from above, with a world file (.pgw) beside", &Exporter::writeClassMap,
+       ".pgw"},
+      {".3Dscene", "MRPT's scene", &Exporter::writeScene}};
+  return formats;
+}
+
+std::string Exporter::formats() {
+  std::string text;
+  for (const Format& format : allFormats())
+    text += std::string(text.empty() ? "" : "; ") + format.ending + ": " + format.description;
+  return text;
+}
+
+const Exporter::Format& Exporter::formatOf(const fs::path& file) {
+  std::string endings;
+  for (const Format& format : allFormats()) {
+    if (file.extension() == format.ending) return format;
+    endings += std::string(" ") + format.ending;
+  }
+  throw std::runtime_error(file.string() + ": the ending says no format, expected one of" +
+                           endings);
+}
+
+std::vector<fs::path> Exporter::filesOf(const fs::path& file, const ExportOptions& options) {
+  std::vector<fs::path> files = {file};
+  const char* beside = formatOf(file).beside;
+  if (file.extension() == ".yaml" && !options.costs.order.empty())
+    beside = endingOf(options.costs.mode);
+  if (beside) files.push_back(fs::path(file).replace_extension(beside));
+  return files;
+}
+
+void Exporter::write(const fs::path& file) {
+  try {
+    formatOf(file).write(*this, file);
+  } catch (const std::exception& e) {
+    const std::string message = e.what();
+    const bool named = message.find(file.stem().string() + ".") != std::string::npos;
+    throw std::runtime_error(named ? message : file.string() + ": " + message);
+  }
+}
+
+std::vector<fs::path> Exporter::commit() {
+  std::vector<fs::path> files;
+  for (Staged& staged : m_staged) {
+    staged.file.commit();
+    files.push_back(staged.target);
+  }
+  m_staged.clear();
+  return files;
+}
+
+void Exporter::stageFile(const fs::path& file, const Filler& fill) {
+  fill(m_staged.emplace_back(file.lexically_normal()).file.path());
+}
+
+void Exporter::stage(const fs::path& file, const Writer& writer) {
+  stageFile(file, [&](const fs::path& staged) {
+    std::ofstream out(staged, std::ios::binary);
+    writer(out);
+    out.close();
+    if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+  });
+}
+
+void Exporter::writeOctree(const fs::path& file) {
+  stage(file, [this](std::ostream& out) {
+    m_options.colors ? writeColorOcTree(out, m_map) : writeOcTree(out, m_map);
+  });
+}
+
+void Exporter::writeClassMap(const fs::path& file) {
+  const auto drawn = map_pictures::drawClassMap(m_map, m_options.maxHeight);
+  stageFile(file,
+            [&drawn](const fs::path& staged) { map_pictures::savePicture(drawn.picture, staged); });
+  stage(fs::path(file).replace_extension(".pgw"),
+        [&drawn](std::ostream& out) { out << drawn.worldFile; });
+}
+
+void Exporter::writeCosts(const fs::path& file) {
+  const CostOptions& costs = m_options.costs;
+  const auto order = semantic_planning::loadClassOrder(costs.order, m_map.classes());
+  const auto vehicle = costs.vehicle.empty() ? semantic_planning::VehicleOptions()
+                                             : semantic_planning::loadVehicle(costs.vehicle);
+  const fs::path picture = fs::path(file).replace_extension(endingOf(costs.mode));
+  const CostFiles files = semantic_map_export::filesOf(costGridOf(m_map, order, vehicle),
+                                                       costs.mode, picture.filename().string());
+  stage(file, [&files](std::ostream& out) { out << files.yaml; });
+  stage(picture, [&files](std::ostream& out) { out << files.picture; });
+}
+
+void Exporter::writeMapServer(const fs::path& file) {
+  if (!m_options.costs.order.empty()) return writeCosts(file);
+  const fs::path picture = fs::path(file).replace_extension(".png");
+  const auto files = semantic_map::mapServerFiles(semantic_map::gridOf(m_map, m_options.grid),
+                                                  picture.filename().string());
+  stage(file, [&files](std::ostream& out) { out << files.yaml; });
+  stage(picture, [&files](std::ostream& out) { out << files.png; });
+}
+
+void Exporter::writeScene(const fs::path& file) {
+  semantic_octree::SemanticOcTree copy = semantic_octree::emptyLike(m_map);
+  copyTo(copy, m_map);
+  semantic_map::CSemanticOctoMap map(std::move(copy));
+  if (m_options.maxHeight) map.renderingOptions.maxHeight = *m_options.maxHeight;
+  const auto objects = mrpt_compat::drawing::CSetOfObjects::Create();
+  map.getVisualizationInto(*objects);
+  mrpt_compat::Scene scene;
+  scene.insert(objects);
+  stageFile(file, [&scene](const fs::path& staged) { semantic_map::writeScene(scene, staged); });
+}
 
 struct Cli {
   fs::path map;
@@ -28,9 +251,7 @@ struct Cli {
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAP", map,
-                   "A map's own file (.semantic), compressed or not, or a folder of tiles")
-        ->required();
+    inputs::addMap(app, map);
     addMemoryOption(app, memory);
     outputs
         .add(app, files, "FILE",
@@ -106,17 +327,18 @@ void prepare(semantic_octree::MapFolder& folder, const Cli& cli) {
 
 int run(const Cli& cli) {
   cli.outputs.check(allFiles(cli.files, cli.options));
-  StoredMap map(cli.map, cli.memory);
-  if (map.folder()) prepare(*map.folder(), cli);
+  const auto map = inputs::openMap(cli.map, cli.memory);
+  if (map->folder()) prepare(*map->folder(), cli);
   ExportOptions options = cli.options;
-  options.grid.ground = classesNamed(cli.ground, map.tree().classes());
-  Exporter exporter(map.tree(), options);
+  options.grid.ground = classesNamed(cli.ground, map->tree().classes());
+  Exporter exporter(map->tree(), options);
   for (const fs::path& file : cli.files) exporter.write(file);
   for (const fs::path& file : exporter.commit()) notes() << file.string() << '\n';
   return 0;
 }
 
 }  // namespace
+
 }  // namespace semantic_map_export
 
 int main(int argc, char** argv) {

@@ -3,8 +3,11 @@
 #include <map_operations/MapOperations.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_octree/TreeFile.h>
+#include <strict_files/Words.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <deque>
 #include <optional>
 #include <ostream>
@@ -14,6 +17,7 @@
 #include "MemoryOption.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
+#include "inputs/Inputs.h"
 
 namespace semantic_map_merge {
 namespace {
@@ -34,15 +38,16 @@ struct Cli {
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAP", maps, "Maps' own files (.semantic), or folders of tiles")->required();
+    app.add_option("MAP", maps, std::string("Maps: ") + inputs::kMap)->required();
     outputs.add(app, out, "FILE|FOLDER", "The sum to write (.semantic); with --tiles, its folder")
         ->required();
     app.add_option("--poses", poses, "File of lines `MAP x y z yaw pitch roll` (m, degrees)");
     app.add_flag("--partial", partial,
-                 "The sum is part of a larger one: limit certainty there, not here");
+                 "The sum will be added to others: the filter's limits hold in the last sum only");
     app.add_option("--box", box,
                    "Add up only what is in this box, m; `inf` and `-inf` are no limit")
-        ->type_name("X0 Y0 Z0 X1 Y1 Z1");
+        ->type_name("X,Y,Z,X2,Y2,Z2")
+        ->delimiter(',');
     addTilesOption(app, tiles);
     addMemoryOption(app, memory);
   }
@@ -62,14 +67,31 @@ void load(const Cli& cli, const fs::path& file, const std::map<fs::path, Eigen::
   const auto pose = poses.find(file);
   const double memory = cli.memoryOfMap();
   if (pose != poses.end()) {
-    SemanticOcTree map = moved(StoredMap(file, memory).tree(), pose->second);
+    SemanticOcTree map = moved(inputs::openMap(file, memory)->tree(), pose->second);
     maps.emplace_back(cli.box ? inBox(map, *cli.box) : std::move(map));
   } else if (cli.box) {
-    maps.emplace_back(inBox(StoredMap(file, memory).tree(), *cli.box));
+    maps.emplace_back(inBox(inputs::openMap(file, memory)->tree(), *cli.box));
   } else {
-    maps.emplace_back(file, memory);
+    inputs::appendMap(maps, file, memory);
   }
   notes() << file.string() << ": " << maps.back().tree().getNumLeafNodes() << " leaves\n";
+}
+
+/** What to say of voxels that differ, with the command that makes them alike if there is one. */
+std::string voxelsOf(const fs::path& first, const SemanticOcTree& a, const fs::path& second,
+                     const SemanticOcTree& b) {
+  using strict_files::textOf;
+  const bool isFirstFiner = a.getResolution() < b.getResolution();
+  const fs::path& finer = isFirstFiner ? first : second;
+  const double fine = std::min(a.getResolution(), b.getResolution());
+  const double coarse = std::max(a.getResolution(), b.getResolution());
+  std::string text =
+      "voxels: " + textOf(a.getResolution()) + " m and " + textOf(b.getResolution()) + " m";
+  const double doublings = std::log2(coarse / fine);
+  if (std::abs(doublings - std::round(doublings)) < 1e-6)
+    text += "; semantic-map-edit " + finer.string() + " --resolution " + textOf(coarse) +
+            " -o coarse.semantic makes them alike";
+  return text;
 }
 
 void checkAlike(const fs::path& first, const SemanticOcTree& a, const fs::path& second,
@@ -78,7 +100,7 @@ void checkAlike(const fs::path& first, const SemanticOcTree& a, const fs::path& 
     throw std::runtime_error(first.string() + " and " + second.string() + " have different " +
                              what);
   };
-  if (a.getResolution() != b.getResolution()) differ("resolutions");
+  if (a.getResolution() != b.getResolution()) differ(voxelsOf(first, a, second, b));
   if (a.classes() != b.classes()) differ("classes");
   if (!(a.filterParameters() == b.filterParameters())) differ("filter parameters");
 }

@@ -2,6 +2,7 @@
 
 #include "MemoryOption.h"
 #include "OptionFlags.h"
+#include "inputs/Inputs.h"
 #include "poses/Poses.h"
 
 namespace semantic_map_plan {
@@ -18,17 +19,17 @@ std::string moreThanZero(const std::string& text) {
 }  // namespace
 
 Cli::Cli(CLI::App& app) : outputs(app) {
-  app.add_option("MAP", map, "A map's own file (.semantic), or a folder of tiles")->required();
+  inputs::addMap(app, map);
   addMemoryOption(app, memory);
   poses::addPose(app, "--start", start, "Where the vehicle is")->required();
   poses::addPose(app, "--goal", goal, "Where the vehicle shall go")->required();
   app.add_option("--start-z", startZ, "Height, where the ground has several levels, m");
   app.add_option("--goal-z", goalZ, "Height of the goal, m");
-  app.add_option("--classes", classes, "Classes from best to worst (YAML)")->required();
+  app.add_option("--order", order, "Classes from best to worst (YAML)")->required();
   app.add_option("--vehicle", vehicle, "The vehicle (YAML); without: a small robot");
   app.add_option("--weights", weights,
                  "Weights of classes for the compressed tree (YAML, as for semantic-map-compress); "
-                 "without: what tells the ranks of --classes apart");
+                 "without: what tells the ranks of --order apart");
   app.add_option("--solution", solution, "Name of one solution in the weights; without: the first")
       ->needs("--weights");
   app.add_option("--corridor", corridor,

@@ -13,7 +13,7 @@ namespace semantic_map_plan {
 
 /** What the command line says. */
 struct Cli {
-  std::filesystem::path map, classes, vehicle, weights, output;
+  std::filesystem::path map, order, vehicle, weights, output;
   double memory = semantic_octree::MapFolderOptions().memory;
   std::string solution;
   mrpt::math::TPose2D start, goal;

@@ -22,6 +22,7 @@
 #include "PlanPicture.h"
 #include "PlanScene.h"
 #include "StandardOutput.h"
+#include "inputs/Inputs.h"
 #include "measuring/Stopwatch.h"
 
 namespace semantic_map_plan {
@@ -80,15 +81,15 @@ std::optional<Corridor> corridorOf(const Cli& cli, StoredMap& stored,
 
 /** What of a folder's map a plan in the corridor needs. */
 std::unique_ptr<StoredMap> mapOf(const Cli& cli, const Corridor& corridor) {
-  return std::make_unique<StoredMap>(cli.map, cli.memory, [&](const Eigen::AlignedBox3d& cube) {
+  return inputs::openMap(cli.map, cli.memory, [&](const Eigen::AlignedBox3d& cube) {
     return corridor.mayNeed({cube.min().x(), cube.min().y()}, {cube.max().x(), cube.max().y()});
   });
 }
 
 int run(Cli& cli) {
   cli.outputs.checkFolder(cli.output, kFiles);
-  auto stored = std::make_unique<StoredMap>(cli.map, cli.memory);
-  const auto order = loadClassOrder(cli.classes, stored->tree().classes());
+  auto stored = inputs::openMap(cli.map, cli.memory);
+  const auto order = loadClassOrder(cli.order, stored->tree().classes());
   if (!cli.vehicle.empty()) cli.planner.vehicle = loadVehicle(cli.vehicle);
   measuring::Stopwatch watch;
   const auto corridor = corridorOf(cli, *stored, order);

@@ -1,22 +1,174 @@
 // Receives a map from semantic-map-send, over a radio that may lose, exchange and repeat datagrams.
-#include <map_folders/MapFolder.h>
+#include <map_streams/MapStream.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/TextFile.h>
 
+#include <chrono>
 #include <filesystem>
 #include <ostream>
 
 #include "Application.h"
 #include "NumberChecks.h"
 #include "Outputs.h"
-#include "Reception.h"
+#include "Signals.h"
 #include "StandardOutput.h"
+#include "inputs/Inputs.h"
+#include "radio/Seal.h"
+#include "radio/UdpSocket.h"
+#include "radio/Wish.h"
 
 namespace semantic_map_receive {
 namespace {
+using std::chrono::milliseconds;
 
 namespace fs = std::filesystem;
 using semantic_octree::SemanticOcTree;
+
+struct ReceptionOptions {
+  double timeout = 60;    ///< seconds without a word from the sender
+  std::size_t bytes = 0;  ///< enough, see semantic_octree::StreamPrefix; 0: all
+  double loss = 0;        ///< see radio::BadRadio
+  unsigned seed = 2;
+};
+
+/** Receives one map. */
+class Reception {
+ public:
+  /** \throw std::runtime_error the wish is too long. */
+  Reception(const radio::Peer& sender, const radio::Wish& wish, const radio::Seal& seal,
+            const ReceptionOptions& options);
+
+  /** Until it is there, or enough of it, or the user stops it.
+   * \param check is called with the empty map once it is known which classes it has
+   * \throw std::runtime_error the sender is not there, refuses, or falls silent; what came is in
+   * receiver() nevertheless. */
+  template <typename Check>
+  void receive(const StopRequest& stop, const Check& check);
+  /** Tells the sender that this is all; it may say so too. */
+  void end();
+  const semantic_octree::MapReceiver& receiver() const { return m_receiver; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Datagram = semantic_octree::Datagram;
+  bool isEnough() const;
+  /** Waits for a datagram and takes it. \return whether one came */
+  bool listen(std::chrono::milliseconds timeout);
+  void take(const Datagram& datagram);
+  void ask();
+  void send(const Datagram& datagram) { m_radio.send(m_sender, m_seal.sealed(datagram.bytes())); }
+  [[noreturn]] void failSilent() const;
+
+  radio::Peer m_sender;
+  radio::Seal m_seal;
+  ReceptionOptions m_options;
+  std::uint32_t m_stream;
+  std::string m_cookie, m_wish;  ///< of a request
+  radio::UdpSocket m_socket;
+  radio::BadRadio m_radio;
+  semantic_octree::MapReceiver m_receiver;
+  bool m_isEnded = false;
+  std::size_t m_numUnacknowledged = 0;
+  Clock::time_point m_lastHeard, m_lastSent;
+};
+
+template <typename Check>
+void Reception::receive(const StopRequest& stop, const Check& check) {
+  bool isChecked = false;
+  while (!stop.pending() && !m_isEnded && !isEnough()) {
+    ask();
+    listen(std::chrono::milliseconds(50));
+    if (!isChecked && m_receiver.hasMap()) {
+      check(m_receiver.map());
+      isChecked = true;
+    }
+    if (Clock::now() - m_lastHeard > std::chrono::duration<double>(m_options.timeout)) failSilent();
+  }
+}
+
+/** The silence before a request or a receipt goes out again. */
+constexpr milliseconds kPatience(200);
+constexpr std::size_t kPacketsPerReceipt = 16;
+/** So often the sender is told that all is there, unless it says so, too. */
+constexpr int kFarewells = 10;
+
+Reception::Reception(const radio::Peer& sender, const radio::Wish& wish, const radio::Seal& seal,
+                     const ReceptionOptions& options)
+    : m_sender(sender),
+      m_seal(seal),
+      m_options(options),
+      m_stream(std::random_device()()),
+      m_cookie(radio::Cookies::kBytes, '\0'),
+      m_wish(wish.packed()),
+      m_socket(0),
+      m_radio(m_socket, options.loss, options.seed),
+      m_receiver(m_stream),
+      m_lastHeard(Clock::now()),
+      m_lastSent(m_lastHeard - std::chrono::hours(1)) {}
+
+bool Reception::isEnough() const {
+  return m_receiver.isFinished() ||
+         (m_options.bytes > 0 && m_receiver.prefix().bytes >= m_options.bytes);
+}
+
+void Reception::ask() {
+  const bool isDue = Clock::now() - m_lastSent > kPatience;
+  const bool isAnswered = m_receiver.numExpected() > 0;
+  if (!isDue && !(isAnswered && m_numUnacknowledged >= kPacketsPerReceipt)) return;
+  send(isAnswered ? m_receiver.receipt()
+                  : Datagram{Datagram::Type::Request, m_stream, m_cookie + m_wish});
+  m_numUnacknowledged = 0;
+  m_lastSent = Clock::now();
+}
+
+bool Reception::listen(milliseconds timeout) {
+  radio::Peer from;
+  const auto bytes = m_socket.receive(from, timeout);
+  if (!bytes || !(from == m_sender)) return false;
+  std::optional<Datagram> datagram;
+  try {
+    datagram = Datagram::of(m_seal.opened(*bytes));
+    if (datagram->stream != m_stream) return false;
+  } catch (const std::runtime_error& e) {
+    details() << from.text() << ": " << e.what() << std::endl;
+    return false;
+  }
+  m_lastHeard = Clock::now();
+  take(*datagram);
+  return true;
+}
+
+void Reception::take(const Datagram& datagram) {
+  if (datagram.type == Datagram::Type::Refusal)
+    throw std::runtime_error("the sender " + m_sender.text() + " refuses: " + datagram.payload);
+  if (datagram.type == Datagram::Type::End) m_isEnded = true;
+  if (datagram.type == Datagram::Type::Cookie && datagram.payload != m_cookie) {
+    m_cookie = datagram.payload;
+    m_lastSent = {};  // asks at once
+  }
+  if (datagram.type != Datagram::Type::Data) return;
+  const bool wasComplete = m_receiver.isComplete();
+  m_receiver.accept(datagram);
+  ++m_numUnacknowledged;
+  if (m_receiver.isComplete() && !wasComplete) send(m_receiver.receipt());
+}
+
+void Reception::end() {
+  for (int i = 0; i < kFarewells && !m_isEnded; ++i) {
+    send(m_receiver.isFinished() ? m_receiver.receipt()
+                                 : Datagram{Datagram::Type::End, m_stream, ""});
+    for (const auto until = Clock::now() + kPatience; Clock::now() < until && !m_isEnded;)
+      listen(milliseconds(20));
+  }
+}
+
+void Reception::failSilent() const {
+  if (m_receiver.numExpected() == 0)
+    throw std::runtime_error("nobody answers at " + m_sender.text());
+  throw std::runtime_error("the sender " + m_sender.text() + " fell silent after " +
+                           std::to_string(m_receiver.numPackets()) + " of " +
+                           std::to_string(m_receiver.numExpected()) + " packets");
+}
 
 struct Cli {
   std::string sender;
@@ -31,7 +183,8 @@ struct Cli {
         ->required();
     outputs.add(app, output, "FILE", "The map to write (.semantic)")->required();
     app.add_option("--weights", weights, "Weights of classes (YAML); without: the sender's");
-    app.add_option("--solution", wish.solution, "Name of one solution in the weights (the first)");
+    app.add_option("--solution", wish.solution,
+                   "Name of one solution in the weights; without: the first");
     app.add_option("--alpha", wish.alpha, "The price of detail, instead of the weights' own")
         ->check(isNumber(strict_files::atLeast(0)));
     app.add_option("--bytes", reception.bytes, "End when this many bytes came without a gap")
@@ -41,13 +194,14 @@ struct Cli {
         "--key", key,
         "Listen only to a sender with this key: a file of 16 bytes or more, the same on both "
         "sides");
-    app.add_option("--timeout", reception.timeout,
-                   "End when the sender is silent for this long, s (60)")
-        ->check(isNumber(strict_files::above(0)));
+    app.add_option("--timeout", reception.timeout, "End when the sender is silent for this long, s")
+        ->check(isNumber(strict_files::above(0)))
+        ->capture_default_str();
     app.add_option("--lose", reception.loss,
-                   "Try a bad radio: lose this share of what goes to the sender (0)")
-        ->check(isNumber(strict_files::between(0, 0.99)));
-    app.add_option("--seed", reception.seed, "Seed of the losses (2)");
+                   "Try a bad radio: lose this share of what goes to the sender")
+        ->check(isNumber(strict_files::between(0, 0.99)))
+        ->capture_default_str();
+    app.add_option("--seed", reception.seed, "Seed of the losses")->capture_default_str();
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of foreign datagrams");
   }
 };
@@ -85,7 +239,7 @@ int run(Cli& cli) {
   cli.outputs.check({cli.output});
   if (!cli.weights.empty()) cli.wish.weights = strict_files::readText(cli.weights);
   std::optional<SemanticOcTree> own;
-  if (!cli.like.empty()) own = semantic_octree::loadMap(cli.like.string());
+  if (!cli.like.empty()) own = inputs::loadMap(cli.like);
   const StopRequest stop("after this packet");
   Reception reception(peerOf(cli.sender), cli.wish,
                       cli.key.empty() ? radio::Seal() : radio::Seal(cli.key), cli.reception);
@@ -105,6 +259,7 @@ int run(Cli& cli) {
 }
 
 }  // namespace
+
 }  // namespace semantic_map_receive
 
 int main(int argc, char** argv) {

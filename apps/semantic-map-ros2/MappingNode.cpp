@@ -21,6 +21,8 @@ namespace {
 
 constexpr auto kStep = 100ms, kLook = 50ms, kWait = 20ms;
 constexpr std::size_t kMostLatencies = 10'000;
+/** Of scans that wait; beyond it the oldest goes. */
+constexpr std::size_t kQueueBytes = 500'000'000;
 constexpr double kTransformsAge = 1;  // s: with an older one it is not known where the robot is
 
 bool passed(steady_clock::time_point& since, steady_clock::duration period) {
@@ -38,7 +40,7 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
       m_world(parameters.node.slam ? parameters.node.odomFrame : parameters.node.mapFrame),
       m_node("semantic_map", arguments),
       m_clock(parameters.node.useSimTime),
-      m_queue(std::size_t(parameters.node.queueMemory) * 1'000'000),
+      m_queue(kQueueBytes),
       m_mapper(map, parameters.mapping()),
       m_messages(m_node, map, parameters.node.mapFrame),
       m_writesTransforms(m_node, "/tf", {true, false, 100}),

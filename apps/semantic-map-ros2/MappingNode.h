@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "Driving.h"
-#include "GroundGrid.h"
 #include "MapMessages.h"
 #include "Sensors.h"
 #include "Signals.h"

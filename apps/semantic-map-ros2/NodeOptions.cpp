@@ -24,8 +24,6 @@ void NodeOptions::describe(strict_files::OptionList& list) {
   list.add("drive", drive, "", "the robot drives to goals: `cmd_vel`");
   list.add("transform_timeout", transformTimeout, "s", atLeast(0),
            "how long a scan waits for its transforms and labels until it is left out");
-  list.add("queue_memory", queueMemory, "MB", atLeast(1),
-           "scans that wait; beyond it the oldest goes");
   list.add("publish_period", publishPeriod, "s", atLeast(0),
            "the map is published no more often; 0: after each scan");
   list.add("order", order, "", "order of classes (YAML), for `map` and `plan`; empty: neither");

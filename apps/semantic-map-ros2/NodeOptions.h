@@ -14,7 +14,6 @@ struct NodeOptions {
   bool slam = false;              ///< scans are registered to each other
   bool drive = false;             ///< the robot drives to goals
   double transformTimeout = 0.5;  ///< s
-  int queueMemory = 500;          ///< MB
   double publishPeriod = 1;       ///< s
   std::string order;              ///< file of the order of classes; empty: no grid, no paths
   std::string costs;              ///< by rank, with commas between; empty: evenly from 0 to 90

@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "Complaints.h"
-#include "NodeOptions.h"
+#include "Parameters.h"
 #include "ScanQueue.h"
 #include "Transforms.h"
 #include "ros2/Node.h"

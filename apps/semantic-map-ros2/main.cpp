@@ -8,6 +8,7 @@
 #include "MappingNode.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
+#include "inputs/Inputs.h"
 
 namespace semantic_map_ros2 {
 namespace {
@@ -24,8 +25,7 @@ struct Cli {
         .add(app, output, "FILE",
              "The map (.semantic), written after Ctrl-C, and when somebody publishes to ~/save")
         ->required();
-    app.add_option("--map", map,
-                   "Map to go on with (.semantic); its frame is the frame of all poses");
+    app.add_option("--map", map, "Map to go on with; its frame is the frame of all poses");
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of each scan");
     app.footer("As ROS has it: --ros-args -r FROM:=TO -p NAME:=VALUE --params-file FILE (YAML)");
   }
@@ -38,7 +38,7 @@ int run(const Cli& cli, const ros2::Arguments& arguments) {
   const Parameters parameters = readParameters(files, arguments.parameters);
   cli.outputs.check({cli.output}, files);
   SemanticOcTree map =
-      cli.map.empty() ? parameters.newMap() : semantic_octree::loadTree(cli.map.string());
+      cli.map.empty() ? parameters.newMap() : inputs::loadMap(cli.map);
   MappingNode node(parameters, arguments, map, [&] {
     saveTree(map, cli.output.string());
     notes() << cli.output.string() << ": saved" << std::endl;

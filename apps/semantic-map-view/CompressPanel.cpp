@@ -57,7 +57,11 @@ void CompressPanel::attempt(const F& f) {
 void CompressPanel::begin() {
   auto& map = m_viewer.layer().ownMap();
   if (m_weights.empty()) {
-    m_live.emplace(map, LiveCompression::allClasses(map), semantic_octree::AbstractionOptions());
+    // Blocks of 3.2 m in streets would be larger than rooms in flats.
+    constexpr double kBlock = 16;  // voxels
+    semantic_octree::AbstractionOptions space;
+    space.blockSize = kBlock * map.getResolution();
+    m_live.emplace(map, LiveCompression::allClasses(map), space);
     m_live->setLeaves(map.getNumLeafNodes() / kShare);
   } else {
     const auto file = semantic_octree::loadWeights(m_weights, map.classes());
@@ -119,6 +123,13 @@ void CompressPanel::addWanted() {
   m_wantedKilobytes->setUnits("kB");
 }
 
+/** Whether a slider is worth its place: not for classes that the map does not have. */
+bool CompressPanel::isThere(std::size_t term) const {
+  const Layer& layer = m_viewer.layer();
+  const auto id = layer.map().classes().find(m_live->name(term));
+  return !id || layer.leavesOfClass()[*id] > 0 || m_live->weight(term) != 0;
+}
+
 void CompressPanel::addTerms() {
   auto* scroll = m_controls->add<nanogui::VScrollPanel>();
   scroll->setFixedSize({kWidth, 206});
@@ -126,9 +137,11 @@ void CompressPanel::addTerms() {
   m_terms->setLayout(
       new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 2, 0));
   for (std::size_t term = 0; term < m_live->numTerms(); ++term) {
+    m_lines.emplace_back();
+    if (!isThere(term)) continue;
     auto* row = addRow(m_terms, 4);
     addText(row, m_live->name(term), 92);
-    TermLine line;
+    TermLine& line = m_lines.back();
     line.slider = addSlider(row, 80, m_live->mayBeIrrelevant(term) ? -2.f : 0.f, 2,
                             float(m_live->weight(term)), [this, term](float w) {
                               const double weight = std::round(w * 20) / 20;
@@ -137,7 +150,6 @@ void CompressPanel::addTerms() {
                             });
     line.weight = addText(row, "", 36);
     line.kept = addText(row, "", 46);
-    m_lines.push_back(line);
   }
 }
 
@@ -199,7 +211,7 @@ void CompressPanel::follow() {
   m_leaves->setCaption(std::to_string(m_live->numLeaves()) + " leaves");
   m_wantedLeaves->setValue(int(m_live->numLeaves()));
   for (std::size_t term = 0; term < m_lines.size(); ++term)
-    m_lines[term].weight->setCaption(rounded(m_live->weight(term), 3));
+    if (m_lines[term].weight) m_lines[term].weight->setCaption(rounded(m_live->weight(term), 3));
   m_measureAt = glfwGetTime() + kRest;
   m_onFollowed();
 }
@@ -213,7 +225,8 @@ void CompressPanel::measure() {
   const auto retained = m_live->retained();
   for (std::size_t term = 0; term < m_lines.size(); ++term) {
     const auto& share = retained[term];
-    m_lines[term].kept->setCaption(share ? rounded(100 * *share, 3) + " %" : "-");
+    if (m_lines[term].kept)
+      m_lines[term].kept->setCaption(share ? rounded(100 * *share, 3) + " %" : "-");
   }
   const std::size_t bytes =
       semantic_octree::fileSize(m_live->compressedMap(m_viewer.layer().map()));

@@ -38,8 +38,8 @@ class CompressPanel {
 
  private:
   struct TermLine {
-    nanogui::Slider* slider;
-    nanogui::Label *weight, *kept;
+    nanogui::Slider* slider = nullptr;
+    nanogui::Label *weight = nullptr, *kept = nullptr;
   };
   void begin();
   void forget();
@@ -50,6 +50,7 @@ class CompressPanel {
   void addControls();
   void addAlpha();
   void addWanted();
+  bool isThere(std::size_t term) const;
   void addTerms();
   void addSave();
   void follow();

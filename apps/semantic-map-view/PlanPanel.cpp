@@ -8,8 +8,8 @@
 #include <cmath>
 #include <ostream>
 
-#include "Band.h"
 #include "StandardOutput.h"
+#include "TrackScene.h"
 #include "map_window/Widgets.h"
 #include "measuring/Stopwatch.h"
 
@@ -64,12 +64,15 @@ mrpt_compat::drawing::CCylinder::Ptr postAt(const Eigen::Vector3d& place,
 
 }  // namespace
 
-PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path classes)
-    : m_viewer(viewer), m_classes(std::move(classes)) {
-  auto* window =
-      addWindow(&viewer.window(), "Path", {8, viewer.window().height() - 120}, kPlanWidth + 16);
-  if (!m_classes.empty()) {
-    auto* row = addRow(window);
+PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path orderFile,
+                     semantic_planning::VehicleOptions vehicle)
+    : m_viewer(viewer),
+      m_orderFile(std::move(orderFile)),
+      m_vehicle(std::move(vehicle)),
+      m_window(addWindow(&viewer.window(), "Path", {8, viewer.window().height() - 120},
+                         kPlanWidth + 16)) {
+  if (!m_orderFile.empty()) {
+    auto* row = addRow(m_window);
     m_startButton = row->add<nanogui::Button>("start");
     m_goalButton = row->add<nanogui::Button>("goal");
     for (auto* button : {m_startButton, m_goalButton}) button->setFixedSize({90, 22});
@@ -80,8 +83,9 @@ PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path classes)
     readOrder();
     m_order->setFixedSize({kOrderWidth, m_order->preferredSize(nullptr).y()});
   }
-  for (auto& line : m_lines) line = addText(window, "", kPlanWidth);
-  if (m_classes.empty()) m_lines[0]->setCaption("needs --classes, an order of classes");
+  for (auto& line : m_lines) line = addText(m_window, "", kPlanWidth);
+  m_lines[1]->setFixedHeight(0);  // as many lines as it takes
+  if (m_orderFile.empty()) m_lines[0]->setCaption("needs --order");
   viewer.window().marks()->insert(m_marks);
   viewer.onActivated([this] { forget(); });
 }
@@ -90,6 +94,10 @@ void PlanPanel::say(const std::string& first, const std::string& second) {
   m_lines[0]->setCaption(first);
   m_lines[1]->setCaption(second);
   if (!first.empty()) notes() << first << ' ' << second << std::endl;
+  m_viewer.window().performLayout();
+  // What grows has to end above the lower border.
+  m_window->setPosition({8, std::min(m_viewer.window().height() - 120,
+                                     m_viewer.window().height() - m_window->height() - 8)});
   m_viewer.window().redraw();
 }
 
@@ -106,7 +114,7 @@ void PlanPanel::readOrder() {
   const auto& classes = m_viewer.layer().map().classes();
   m_ranks.clear();
   try {
-    const auto order = semantic_planning::loadClassOrder(m_classes, classes);
+    const auto order = semantic_planning::loadClassOrder(m_orderFile, classes);
     m_numClasses = order.classes();
     m_ranks.resize(std::size_t(order.ranks()));
     for (int id = 0; id < m_numClasses; ++id) {
@@ -200,6 +208,7 @@ void PlanPanel::begin() {
   setAbstraction(*m_map, semantic_planning::abstractionFor(order));
   semantic_planning::PlannerOptions options;
   options.shorten = true;
+  options.vehicle = m_vehicle;
   m_planner.emplace(*m_map, order, options);
 }
 

@@ -16,8 +16,8 @@ using namespace map_window;
 /** Start, goal and the path between them. */
 class PlanPanel {
  public:
-  /** \param classes order of classes (YAML); empty: no paths */
-  PlanPanel(Viewer& viewer, std::filesystem::path classes);
+  /** \param order of classes (YAML); empty: no paths */
+  PlanPanel(Viewer& viewer, std::filesystem::path order, semantic_planning::VehicleOptions vehicle);
   PlanPanel(const PlanPanel&) = delete;
   PlanPanel& operator=(const PlanPanel&) = delete;
 
@@ -45,7 +45,9 @@ class PlanPanel {
   void say(const std::string& first, const std::string& second = {});
 
   Viewer& m_viewer;
-  std::filesystem::path m_classes;
+  std::filesystem::path m_orderFile;
+  semantic_planning::VehicleOptions m_vehicle;
+  nanogui::Window* m_window;
   Awaited m_awaited = Awaited::Nothing;
   std::optional<Pose> m_start, m_goal;
   /** Planning keeps an abstraction of its own, and so a map of its own. */

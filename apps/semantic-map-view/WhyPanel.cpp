@@ -14,7 +14,7 @@ using Balance = map_view::InformationTree::Balance;
 
 namespace {
 
-constexpr int kLeft = 262, kNames = 116, kColumn = 52, kLine = 17;
+constexpr int kLeft = 262, kNames = 116, kColumn = 66, kLine = 17;
 constexpr std::size_t kMostNodes = 4, kMostTerms = 6;
 
 std::string rounded(double number) {

@@ -1,20 +1,160 @@
 // Shows semantic octree maps in a window.
+#include <map_pictures/MapCanvas.h>
 #include <map_pictures/MapPictures.h>
+#include <map_pictures/PictureFiles.h>
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_planning/planner/OrderFile.h>
+#include <semantic_planning/vehicle/VehicleOptions.h>
 
-#include "Animation.h"
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
 #include "Application.h"
-#include "Cli.h"
+#include "Choice.h"
 #include "CompressPanel.h"
 #include "FilesPanel.h"
+#include "MemoryOption.h"
+#include "NumberChecks.h"
+#include "Outputs.h"
 #include "PlanPanel.h"
 #include "WhyPanel.h"
 #include "map_window/AskPanel.h"
 #include "map_window/ShowPanel.h"
+#include "map_window/Viewer.h"
 
 namespace semantic_map_view {
 namespace {
+using namespace map_window;
+
+struct Cli {
+  std::vector<std::filesystem::path> files;
+  std::filesystem::path picture, animation, weights, order, vehicle;
+  double memory = semantic_octree::MapFolderOptions().memory;
+  int width = 1280, height = 720;
+  Beginning view;
+  bool panels = true, compress = false;
+  Outputs outputs;
+
+  explicit Cli(CLI::App& app);
+  WantedTiles wantedTiles() const { return {memory, view.style.clip}; }
+};
+
+/** Smaller windows have no room for their panels; larger ones no graphics card can draw. */
+constexpr int kLeast = 320, kMost = 8192;
+
+void readSize(const std::string& text, Cli& cli) {
+  std::istringstream in(text);
+  char by = 0;
+  int width = 0, height = 0;
+  in >> width >> by >> height;
+  const auto fits = [](int pixels) { return pixels >= kLeast && pixels <= kMost; };
+  if (!in || by != 'x' || !in.eof() || !fits(width) || !fits(height))
+    throw CLI::ValidationError("--size is '" + text + "', expected WIDTHxHEIGHT of 320 to 8192");
+  cli.width = width, cli.height = height;
+}
+
+void readCamera(const std::string& text, Cli& cli) {
+  try {
+    cli.view.camera = map_view::OrbitCamera::ofText(text);
+  } catch (const std::invalid_argument& e) {
+    throw CLI::ValidationError(std::string("--camera ") + e.what());
+  }
+}
+
+void readClip(const std::string& text, Cli& cli) {
+  std::istringstream in(text);
+  std::array<double, 6> numbers{};
+  char comma = ',';
+  for (std::size_t i = 0; i < numbers.size() && comma == ','; ++i) {
+    if (i > 0) in >> comma;
+    in >> numbers[i];
+  }
+  const Eigen::Vector3d low(numbers[0], numbers[1], numbers[2]),
+      high(numbers[3], numbers[4], numbers[5]);
+  if (!in || comma != ',' || !(in >> std::ws).eof() || !(low.array() < high.array()).all())
+    throw CLI::ValidationError("--clip is '" + text +
+                               "', expected X,Y,Z,X2,Y2,Z2, the lowest corner first");
+  cli.view.style.clip = {low, high};
+}
+
+Cli::Cli(CLI::App& app) : outputs(app) {
+  app.add_option("FILE", files,
+                 "Maps (.semantic, folders of tiles, OctoMap's .ot and .bt), shown together, and "
+                 "what lies upon them: trajectories (.tum, .txt), paths (path.csv, drive.csv)")
+      ->required();
+  addMemoryOption(app, memory);
+  outputs.add(app, picture, "FILE", "Draw once, write the window's picture (PNG), and end");
+  auto* animated = app.add_option("--animation", animation,
+                                  "Turn once around the map while it is compressed more and less, "
+                                  "write that (GIF), and end");
+  outputs.addOther(animated);
+  app.add_option_function<std::string>(
+         "--size", [this](const std::string& text) { readSize(text, *this); },
+         "Size of the window, pixels")
+      ->type_name("WIDTHxHEIGHT");
+  auto* from = app.add_option_function<std::string>(
+      "--camera", [this](const std::string& text) { readCamera(text, *this); },
+      "Point looked at, distance (m), azimuth, elevation (degrees), as the window says them");
+  from->type_name("X,Y,Z,DISTANCE,AZIMUTH,ELEVATION");
+  app.add_flag("--top", view.top, "From above, north up")->excludes(from);
+  std::map<std::string, map_view::ViewColoring> colorings;
+  for (const auto& [name, value] : choicesOf(map_view::ViewColoring())) colorings[name] = value;
+  addChoice(app.add_option("--color", view.style.coloring, "What the colors of cells mean"),
+            colorings);
+  auto* clip = app.add_option_function<std::string>(
+      "--clip", [this](const std::string& text) { readClip(text, *this); },
+      "Show only cells with their centers in this box, m");
+  clip->type_name("X,Y,Z,X2,Y2,Z2");
+  app.add_option("--max-height", view.style.clip.max().z(),
+                 "Show no cells with their centers above this height, m")
+      ->check(isNumber({}))
+      ->excludes(clip);
+  app.add_flag("--free", view.style.freeSpace, "Show free space");
+  app.add_flag("--unknown", view.style.unknownSpace,
+               "Show unknown space within the map's bounding box, or the box of --clip");
+  app.add_option("--weights", weights,
+                 "Where the sliders of the compression begin: the first solution of such a file "
+                 "(YAML, as for semantic-map-compress)");
+  app.add_option("--order", order,
+                 "Classes from best to worst, for paths (YAML, as for semantic-map-plan)");
+  app.add_option("--vehicle", vehicle, "The vehicle (YAML), for paths; without: a small robot");
+  app.add_flag("--compress", compress, "Begin with the compressed tree");
+  app.add_flag("!--no-panels", panels, "Hide the panels")->excludes(animated);
+}
+
+constexpr int kPictures = 72;
+constexpr double kPeriod = 0.28;  // s a frame: 20 s in all
+/** A share of the leaves that the tree has at first. */
+constexpr double kFewest = 0.004;
+
+cv::Mat restingPicture(ViewWindow& window) {
+  while (window.drawFrame()) {
+  }
+  return window.drawPicture();
+}
+
+/** Once around the map while its compressed tree goes from nearly all leaves to few and back, as a
+ * GIF with a scale that holds in the middle of the picture. \throw std::runtime_error naming the
+ * file: it cannot be written */
+void animate(ViewWindow& window, CompressPanel& panel, const std::filesystem::path& file) {
+  map_pictures::GifFile gif(file, kPeriod);
+  panel.switchOn(true);
+  panel.setAlpha(0);
+  const double most = double(panel.compression()->numLeaves());
+  map_view::OrbitCamera camera = window.orbitCamera();
+  for (int i = 0; i < kPictures; ++i) {
+    const double turned = 2 * M_PI * i / kPictures;
+    panel.setLeaves(std::size_t(most * std::pow(kFewest, (1 - std::cos(turned)) / 2)));
+    panel.measure();
+    window.setOrbitCamera(camera);
+    cv::Mat picture = restingPicture(window);
+    map_pictures::drawScaleBar(picture, camera.focalLength(window.pixelHeight()) / camera.distance);
+    gif.add(picture);
+    camera.azimuth += 360.0 / kPictures;
+  }
+  gif.close();
+}
 
 /** What was named on the command line. */
 struct Opened {
@@ -35,7 +175,13 @@ struct Opened {
 /** What is wrong with them should be said before a window opens. */
 void checkSettings(const Cli& cli, const semantic_types::ClassTable& classes) {
   if (!cli.weights.empty()) semantic_octree::loadWeights(cli.weights, classes);
-  if (!cli.classes.empty()) semantic_planning::loadClassOrder(cli.classes, classes);
+  if (!cli.order.empty()) semantic_planning::loadClassOrder(cli.order, classes);
+  if (!cli.vehicle.empty()) semantic_planning::loadVehicle(cli.vehicle);
+}
+
+semantic_planning::VehicleOptions vehicleOf(const Cli& cli) {
+  if (cli.vehicle.empty()) return {};
+  return semantic_planning::loadVehicle(cli.vehicle);
 }
 
 struct Panels {
@@ -51,7 +197,7 @@ struct Panels {
         ask(viewer),
         compress(viewer, cli.weights),
         why(viewer, compress),
-        plan(viewer, cli.classes),
+        plan(viewer, cli.order, vehicleOf(cli)),
         files(viewer, tracks, cli.wantedTiles()) {
     viewer.window().onClick([this](const map_view::Ray& ray) { why.show(ask.ask(ray)); });
     viewer.window().onGrab([this](const map_view::Ray& ray) { return plan.place(ray); });
@@ -93,6 +239,7 @@ int run(const Cli& cli) {
 }
 
 }  // namespace
+
 }  // namespace semantic_map_view
 
 int main(int argc, char** argv) {

@@ -1,12 +1,17 @@
 // What the applications share.
 #include <gtest/gtest.h>
+#include <strict_files/Words.h>
+#include <Eigen/Dense>
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <thread>
 
 #include "JsonFile.h"
+#include "ShellCommand.h"
 #include "TemporaryFolder.h"
+#include "figures/FigureScript.h"
 #include "measuring/Quantile.h"
 #include "measuring/Stopwatch.h"
 #include "poses/Poses.h"
@@ -88,4 +93,141 @@ TEST(Poses, ofACommandLineNameTheOptionThatIsWrong) {
 TEST(Poses, ofSixNumbersTurnByYawFirst) {
   const Eigen::Isometry3d pose = poses::poseOfNumbers({1, 2, 3, 90, 0, 0});
   EXPECT_TRUE((pose * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(1, 3, 3), 1e-12));
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kTexts = {"road\n!touch x\n",
+                                         "'\n!touch x\n",
+                                         "a', system('touch x'), '",
+                                         "a'' . system(\"touch x\") #",
+                                         "a\" . system('touch x') #",
+                                         "`touch x`",
+                                         "$(touch x)",
+                                         "@touch",
+                                         "100 %s of %g%%",
+                                         "a_b^c{/Bold d}~e&f",
+                                         "\"q\" 'q' \\n \\",
+                                         "# no comment",
+                                         "Stra\xC3\x9F"
+                                         "e\x1b[2J"};
+
+/** As gnuplot writes it into an SVG file. */
+std::string inSvg(const std::string& text) {
+  std::string result;
+  for (const char c : strict_files::printable(text))
+    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : std::string(1, c);
+  return ">" + result + "<";
+}
+
+/** Draws in a folder of its own, which the test is in for that time. */
+class FigureTexts : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (runCommand("gnuplot --version").status != 0) GTEST_SKIP() << "gnuplot is not installed";
+    fs::current_path(folder.path());
+  }
+  void TearDown() override { fs::current_path(m_before); }
+  std::string drawn(const std::string& commands) const {
+    figures::drawWithGnuplot(
+        "set terminal svg noenhanced size 3000,600\nset macros\ntouch = 'x'\n" + commands +
+            "\nplot [0:20] 1 notitle\n",
+        "drawn.svg");
+    return folder.read("drawn.svg");
+  }
+
+  TemporaryFolder folder;
+
+ private:
+  const fs::path m_before = fs::current_path();
+};
+
+}  // namespace
+
+TEST_F(FigureTexts, areDrawnAsTheyAreAndRunNothing) {
+  for (const std::string& text : kTexts) {
+    const std::string word = figures::gnuplotText(text);
+    const std::string tics = figures::tics(1, [&](std::size_t) { return text; });
+    for (const std::string& command :
+         {"set title " + word, "set label " + word + " at 1,1", "set xlabel " + word,
+          "set xtics " + tics, "plot [0:20] 2 title " + word})
+      EXPECT_TRUE(contains(drawn(command), inSvg(text))) << command;
+  }
+  EXPECT_FALSE(fs::exists("x"));
+}
+
+TEST(FigureText, showsWhatIsNoText) {
+  EXPECT_EQ(figures::gnuplotText("it's\n"), "\"it\\047s\\134x0a\"");
+  EXPECT_EQ(figures::ticText("5 %"), "\"5 \\045\\045\"");
+}
+
+TEST_F(FigureTexts, namesOfFilesAreNoPartOfAScript) {
+  for (const char* name : {"|touch x", "a'\n!touch x\n'.png", "`touch x`", " > x"}) {
+    figures::drawWithGnuplot(figures::scriptFor(200, 100).str() + "plot [0:1] 1\n", name);
+    EXPECT_EQ(folder.read(name).substr(1, 3), "PNG") << name;
+  }
+  EXPECT_FALSE(fs::exists("x"));
+}
+
+TEST_F(FigureTexts, aScriptThatCannotBeDrawnLeavesNoFile) {
+  EXPECT_EQ(errorOf([] { figures::drawWithGnuplot("plot nothing\n", "a.png"); }),
+            "gnuplot could not draw");
+  EXPECT_FALSE(fs::exists("a.png"));
+}
+
+namespace {
+
+using Eigen::Vector3d;
+
+/** Linear RGB of "#rrggbb". */
+Vector3d linearRgb(const std::string& color) {
+  Vector3d rgb;
+  for (int i = 0; i < 3; ++i) {
+    const double c = std::stoi(color.substr(std::size_t(1 + 2 * i), 2), nullptr, 16) / 255.0;
+    rgb[i] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  }
+  return rgb;
+}
+
+/** What somebody without M cones sees: G. Machado, M. Oliveira, L. Fernandes, "A Physiologically-
+ * based Model for Simulation of Color Vision Deficiency", 2009, table 1. */
+Vector3d withDeuteranopia(const Vector3d& rgb) {
+  Eigen::Matrix3d machado;
+  machado << 0.367322, 0.860646, -0.227968, 0.280085, 0.672501, 0.047413, -0.011820, 0.042940,
+      0.968881;
+  return (machado * rgb).cwiseMax(0).cwiseMin(1);
+}
+
+/** CIE 1976 L*a*b*, of the white D65. */
+Vector3d labOf(const Vector3d& rgb) {
+  const auto f = [](double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116; };
+  const double x = f(rgb.dot(Vector3d(0.4124, 0.3576, 0.1805)) / 0.9505),
+               y = f(rgb.dot(Vector3d(0.2126, 0.7152, 0.0722))),
+               z = f(rgb.dot(Vector3d(0.0193, 0.1192, 0.9505)) / 1.089);
+  return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+}
+
+double difference(std::size_t a, std::size_t b) {
+  const auto seen = [](std::size_t i) {
+    return labOf(withDeuteranopia(linearRgb(figures::colorOf(i))));
+  };
+  return (seen(a) - seen(b)).norm();
+}
+
+}  // namespace
+
+TEST(FigureColors, AreToldApartWithDeuteranopia) {
+  for (std::size_t a = 0; a < 8; ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      EXPECT_GT(difference(a, b), a < 5 ? 20 : 15) << figures::colorOf(a) << figures::colorOf(b);
+}
+
+TEST(FigureColors, ComeWithDashesAndPointsOfTheirOwn) {
+  for (std::size_t a = 0; a < 5; ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      EXPECT_NE(std::string(figures::dashOf(a)), figures::dashOf(b));
+      EXPECT_NE(figures::pointOf(a), figures::pointOf(b));
+    }
 }

@@ -13,8 +13,8 @@ class SemanticMapDrive : public testing::Test {
  protected:
   std::vector<std::string> argumentsWith(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments = {
-        "--world",          "village",   "--start=-14,-19,10",
-        "--goal=-6,-17,20", "--classes", kConfig + "orders/synthetic.yaml",
+        "--world",          "village", "--start=-14,-19,10",
+        "--goal=-6,-17,20", "--order", kConfig + "orders/synthetic.yaml",
         "--no-pictures",    "-f"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;

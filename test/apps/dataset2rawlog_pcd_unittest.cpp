@@ -3,6 +3,7 @@
 
 #include "ConvertedScans.h"
 #include "SharedData.h"
+#include "ShellCommand.h"
 #include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
@@ -120,4 +121,17 @@ TEST(Pcd, realOnesKeepTheirWorldCoordinates) {
   ASSERT_EQ(scans.at(0).scan.counts.labeled, 3394u);
   EXPECT_LT((scans[0].inMap(0) - Vector3d(1.3917038, 1.4300275, 0.19733357)).norm(), 1e-5);
   EXPECT_NEAR(scans[0].T_map_robot.x(), 0.999984, 1e-6);
+}
+
+TEST(Pcd, onATerminalABarSaysHowFarTheConversionIs) {
+  if (runCommand("command -v script").status != 0) GTEST_SKIP() << "needs bsdutils";
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.pcd", std::string(kPcdHead) + "9 5 6 7 3 0\n9 1 2 3.5 0\n");
+  const std::string command = MSO_BIN_DIR "/dataset2rawlog pcd " + file.string() + " -f -o " +
+                              (folder / "out.rawlog").string();
+  const std::string shown = runCommand("script -qec '" + command + "' /dev/null").output;
+  EXPECT_TRUE(contains(shown, "Converting: [.....")) << shown;
+  EXPECT_TRUE(contains(shown, "\r\033[K" + (folder / "out.rawlog").string() + ": 1 scans"))
+      << shown;
+  EXPECT_FALSE(contains(runCommand(command).output, "Converting"));
 }

@@ -1,11 +1,12 @@
 // drop-files WINDOW FILE...: drops files onto an X window, as a file manager does (XDND, version
-// 5).
+// 5). drop-files WINDOW: closes it, as a window manager does.
 #include <X11/Xatom.h>
 #include <X11/Xlib.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 #include <string>
 
 namespace {
@@ -22,6 +23,7 @@ class Drop {
     send("XdndPosition", 0, x << 16 | y, CurrentTime, long(atom("XdndActionCopy")));
   }
   void letGo() { send("XdndDrop", 0, CurrentTime); }
+  void close() { send("WM_PROTOCOLS", 0, 0, 0, 0, atom("WM_DELETE_WINDOW")); }
 
   /** Gives the list when it is asked for, until the window has answered. */
   void await(const char* answer) {
@@ -35,13 +37,14 @@ class Drop {
  private:
   Atom atom(const char* name) const { return XInternAtom(m_display, name, False); }
 
-  void send(const char* type, long l1, long l2 = 0, long l3 = 0, long l4 = 0) {
+  void send(const char* type, long l1, long l2 = 0, long l3 = 0, long l4 = 0,
+            std::optional<Atom> first = {}) {
     XEvent event = {};
     event.xclient.type = ClientMessage;
     event.xclient.window = m_target;
     event.xclient.message_type = atom(type);
     event.xclient.format = 32;
-    const long data[] = {long(m_source), l1, l2, l3, l4};
+    const long data[] = {long(first.value_or(m_source)), l1, l2, l3, l4};
     std::copy(data, data + 5, event.xclient.data.l);
     XSendEvent(m_display, m_target, False, NoEventMask, &event);
     XFlush(m_display);
@@ -71,13 +74,17 @@ class Drop {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::cerr << "drop-files WINDOW FILE...\n";
+  if (argc < 2) {
+    std::cerr << "drop-files WINDOW [FILE...]\n";
     return 64;
   }
   std::string list;
   for (int i = 2; i < argc; ++i) list += "file://" + std::string(argv[i]) + "\r\n";
   Drop drop(std::strtoul(argv[1], nullptr, 0), list);
+  if (argc == 2) {
+    drop.close();
+    return 0;
+  }
   drop.enter();
   drop.move(400, 300);
   drop.await("XdndStatus");

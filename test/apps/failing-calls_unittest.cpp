@@ -125,7 +125,7 @@ const std::vector<std::string> kJobs = {
     "semantic-map-export @map.semantic -f -o @out/a.csv -o @out/a.ply -o @out/a.yaml -o @out/a.ot "
     "-o @out/a.3Dscene",
     "semantic-map-compress @map.semantic --weights @weights.yaml -f -o @out",
-    "semantic-map-plan @world.semantic --classes @order.yaml --start=-8,0,0 --goal=8,0,0 -f -o "
+    "semantic-map-plan @world.semantic --order @order.yaml --start=-8,0,0 --goal=8,0,0 -f -o "
     "@out",
     "rawlog2semantic-map --config @small.ini -f -o @out --save-labeled @out/a.rawlog @small.rawlog",
     "rawlog2semantic-map --config @small.ini -f -o @out --tiles @out/tiles --tile-size 4 "

@@ -103,11 +103,17 @@ TEST(UsageErrors, offerTheValueThatWasMeant) {
   EXPECT_TRUE(contains(usageErrorOf("synth-rawlog -o a.rawlog --scene vilage"), "'village'?"));
   EXPECT_TRUE(contains(usageErrorOf("synth-rawlog -o a.rawlog --sensor lidr"), "'lidar'?"));
   EXPECT_TRUE(contains(usageErrorOf("insertion-benchmark --rays al x"), "'all'?"));
-  EXPECT_TRUE(
-      contains(usageErrorOf("semantic-map-plan m --start=0,0,0 --goal=1,1,0 --classes c -o p "
-                            "--graph compresed"),
-               "'compressed'?"));
+  EXPECT_TRUE(contains(usageErrorOf("semantic-map-plan m --start=0,0,0 --goal=1,1,0 --order c -o p "
+                                    "--graph compresed"),
+                       "'compressed'?"));
   EXPECT_TRUE(contains(usageErrorOf("dataset2rawlog semantic-kiti x"), "'semantic-kitti'?"));
+  EXPECT_TRUE(contains(usageErrorOf("dataset2rawlog -q tum x -o y"), ": -q belongs behind the "));
+}
+
+TEST(UsageErrors, nameAnOptionOnce) {
+  EXPECT_TRUE(contains(usageErrorOf("semantic-map-info a --at 1,2"), "info: --at: expected X,Y,Z"));
+  EXPECT_TRUE(contains(usageErrorOf("semantic-map-edit a -o b --decay 1 --decay 2"),
+                       "edit: --decay is given 2 times"));
 }
 
 TEST(UsageErrors, sayWhatIsMissingOrTooMuch) {
@@ -120,4 +126,6 @@ TEST(UsageErrors, sayWhatIsMissingOrTooMuch) {
   EXPECT_TRUE(contains(usageErrorOf("semantic-map-edit a -o b --resolution -1"),
                        "--resolution is -1, expected a number above 0"));
   EXPECT_TRUE(contains(usageErrorOf("semantic-map-edit a --output"), "--output lacks its value"));
+  EXPECT_TRUE(
+      contains(usageErrorOf("semantic-map-edit a -o b --box 1,2,3"), "--box needs 6 values"));
 }

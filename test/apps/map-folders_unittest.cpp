@@ -114,7 +114,7 @@ TEST_F(MapFolders, areAskedAndPlannedOnAsMapsInOnePiece) {
     const std::string name = map.substr(0, 5);
     run("semantic-map-evaluate", {path(map), "--scans", path("scans.rawlog"), "-o",
                                   path("quality-" + name), "--memory", "0.1"});
-    run("semantic-map-plan", {path(map), "--start=-14,-19,10", "--goal=25,-12,90", "--classes",
+    run("semantic-map-plan", {path(map), "--start=-14,-19,10", "--goal=25,-12,90", "--order",
                               kSources + "/config/orders/synthetic.yaml", "-o",
                               path("plan-" + name), "--memory", "0.1", "--corridor", "inf"});
   }
@@ -134,7 +134,7 @@ TEST_F(MapFolders, arePlannedOnInACorridorAsMapsInOnePiece) {
     std::vector<std::string> arguments = {path(map),
                                           "--start=-14,-19,10",
                                           "--goal=25,-12,90",
-                                          "--classes",
+                                          "--order",
                                           kSources + "/config/orders/synthetic.yaml",
                                           "-o",
                                           path("way-" + map.substr(0, 5)),
@@ -230,7 +230,7 @@ TEST_F(MapFolders, withAnIndexThatIsNotOfTheirFilesAreRefusedByEveryProgram) {
       {"semantic-map-merge", path("plain/map.semantic"), "-o", path("never.semantic")},
       {"semantic-map-compress", "-o", path("never"), "--weights", weights},
       {"semantic-map-export", "-o", path("never.csv")},
-      {"semantic-map-plan", "--start=-14,-19,10", "--goal=25,-12,90", "--classes", order, "-o",
+      {"semantic-map-plan", "--start=-14,-19,10", "--goal=25,-12,90", "--order", order, "-o",
        path("never")},
       {"semantic-map-edit", path("plain/map.semantic"), "-o", bad.string(), "--tiles", "12.8",
        "-f"},

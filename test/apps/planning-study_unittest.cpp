@@ -31,7 +31,7 @@ class PlanningStudy : public testing::Test {
   ProgramRun study(const std::vector<std::string>& more, const std::string& output = "study.csv",
                    const std::string& order = "order.yaml") const {
     std::vector<std::string> arguments = {
-        path("map.semantic"), "-f",       "--classes",  path(order),   "--weights",
+        path("map.semantic"), "-f",       "--order",    path(order),   "--weights",
         path("weights.yaml"), "--output", path(output), "--instances", "4",
         "--vertices",         "120"};
     arguments.insert(arguments.end(), more.begin(), more.end());

@@ -30,13 +30,40 @@ TEST_F(Rawlog2SemanticMap, aRawlogThatCannotBeMappedIsRefused) {
       {"corrupt.rawlog", {"corrupt.rawlog"}},
       {"text.rawlog", {"text.rawlog: ", "object 1"}},
       {"calibration.rawlog", {"calibration.rawlog", "object 2"}},
-      {"lost.rawlog", {"lost.rawlog", "no robot poses"}},
+      {"lost.rawlog", {"lost.rawlog", "no robot poses", "or --static-pose if"}},
       {"late.rawlog", {"nothing to map", "1 outside the trajectory"}},
       {"far.rawlog", {"far.rawlog: observation 2", "outside the map"}}};
   for (const auto& [rawlog, parts] : cases) expectRefusal(parts, rawlog);
   EXPECT_LT(run("calibration.rawlog").peakKilobytes, 500'000);
   folder.write("classes.yaml", "classes:\n  - {id: 1, name: road, color: [1, 2, 3]}\n");
   expectRefusal({"small.rawlog: observation 2", "lidar", "car"});
+}
+
+TEST_F(Rawlog2SemanticMap, whatIsNoRawlogIsCalledByItsNameWithTheCommandThatMakesOne) {
+  folder.write("00/velodyne/000000.bin", "x");
+  expectRefusal({"00: is no rawlog, but a KITTI sequence; dataset2rawlog semantic-kitti"}, "00");
+  folder.write("desk/depth.txt", "x");
+  expectRefusal({"desk: is no rawlog, but a TUM RGB-D sequence; dataset2rawlog tum"}, "desk");
+  folder.write("bag/a.mcap", "x");
+  expectRefusal({"bag: is no rawlog, but a bag of ROS 2; dataset2rawlog rosbag2"}, "bag");
+  expectRefusal({"a.mcap: is no rawlog, but a bag of ROS 2"}, "bag/a.mcap");
+  folder.write("intel.log", "# CARMEN\nPARAM x y\nFLASER 180 1.0\n");
+  expectRefusal({"intel.log: is no rawlog, but a log of CARMEN; dataset2rawlog carmen"},
+                "intel.log");
+  folder.write("logs/b.rawlog", "x");
+  expectRefusal({"logs: is no rawlog, but a folder; did you mean '", "logs/b.rawlog'?"}, "logs");
+}
+
+TEST_F(Rawlog2SemanticMap, posesOfKittiThatDoNotFitTheScansAreRefused) {
+  const auto refuse = [&](const std::string& poses, const std::vector<std::string>& parts) {
+    folder.write("poses.txt", poses);
+    expectRefusal(parts, "small.rawlog", {"--trajectory", (folder / "poses.txt").string()});
+  };
+  const std::string here = "1 0 0 0 0 1 0 0 0 0 1 0\n", forward = "1 0 0 2 0 1 0 0 0 0 1 0\n";
+  refuse(here + forward, {"poses.txt: 2 poses for 1 scans"});
+  refuse(here + "1 0 0 0 0 1 0 0 0 0 1 2\n", {"poses.txt: these are poses of a camera"});
+  refuse("2 0 0 0 0 1 0 0 0 0 1 0\n", {"poses.txt:1", "no rotation"});
+  refuse(here + "1 0 0 2 0 1 0 0 0 0 1\n", {"poses.txt:2", "expected 12 numbers, found 11"});
 }
 
 TEST_F(Rawlog2SemanticMap, aRawlogThatBreaksOffWhileItIsMappedLeavesNothing) {

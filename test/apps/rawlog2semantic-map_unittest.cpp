@@ -152,6 +152,15 @@ TEST_F(Rawlog2SemanticMap, aTrajectoryFileGoesBeforeTheRawlogsPoses) {
   EXPECT_EQ(map().query(2.2, 0.2, 0.2).status, CellState::Status::Unknown);
 }
 
+TEST_F(Rawlog2SemanticMap, posesOfKittiBelongToTheScansInTheirOrder) {
+  writeSmallRawlog(folder / "two.rawlog", smallScan(10), smallScan(11));
+  folder.write("poses.txt", "1 0 0 4.1 0 1 0 0 0 0 1 0\n0 -1 0 6.1 1 0 0 0 0 0 1 0\n");
+  ASSERT_EQ(run("two.rawlog", {"--trajectory", (folder / "poses.txt").string()}).status, 0);
+  EXPECT_EQ(map().query(5.2, 0.2, 0.2).likeliestClass, 1);
+  EXPECT_EQ(map().query(5.9, 1.1, 0.2).likeliestClass, 1) << "turned to the left";
+  EXPECT_EQ(map().query(2.2, 0.2, 0.2).status, CellState::Status::Unknown);
+}
+
 TEST_F(Rawlog2SemanticMap, depthImagesTakeTheirLabelsFromAFolder) {
   writeSmallRawlog(folder / "depth.rawlog", robotPose(10, 0), depthImage(10, 40, 40),
                    robotPose(11, 0), depthImage(11, 40, 40));

@@ -33,6 +33,24 @@ SemanticOcTree withTheseWeights(SemanticOcTree map) {
 
 }  // namespace
 
+TEST_F(SemanticMapCompress, takesAShareOfTheLeavesAndNeedsNoWeights) {
+  const ProgramRun run =
+      runProgram("semantic-map-compress", {mapFile(), "-o", output().string(), "--leaves", "10%"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const json report = json::parse(folder.read("out/report.json"));
+  const json& all = report["solutions"][0];
+  EXPECT_EQ(all["name"], "all-classes");
+  const double share = all["leafRatio"]["known"];
+  EXPECT_LE(share, 0.1);
+  EXPECT_GT(share, 0.08);
+  for (const char* wrong : {"0%", "101%", "%", "10%%", "-1%"}) {
+    const ProgramRun refused =
+        runProgram("semantic-map-compress", {mapFile(), "-o", "x", "--leaves", wrong});
+    EXPECT_EQ(refused.status, 64);
+    EXPECT_TRUE(contains(refused.errors, "--leaves is ")) << refused.errors;
+  }
+}
+
 TEST_F(SemanticMapCompress, writesTheOptimalTreesOfItsSolutions) {
   ASSERT_EQ(compress(kTwoSolutions).status, 0);
   SemanticOcTree map = loadTree(mapFile());

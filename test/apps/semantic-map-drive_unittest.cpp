@@ -76,7 +76,7 @@ TEST_F(SemanticMapDrive, ArrivesWithObstaclesOfTheCompressedTreeAndLogsWhatTheNa
 
 TEST_F(SemanticMapDrive, SaysWhatIsMissing) {
   const ProgramRun run =
-      runProgram("semantic-map-drive", {"--classes", kConfig + "orders/synthetic.yaml", "--config",
+      runProgram("semantic-map-drive", {"--order", kConfig + "orders/synthetic.yaml", "--config",
                                         kConfig + "drives/synthetic.ini", "--output", path("x")});
   EXPECT_EQ(run.status, 64);
   EXPECT_NE(run.errors.find("--start is required"), std::string::npos) << run.errors;

@@ -6,6 +6,7 @@
 #include <strict_files/StrictYaml.h>
 
 #include <yaml-cpp/yaml.h>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -65,11 +66,11 @@ TEST_F(SemanticMapEdit, timePassesForWhatHasAHalfLife) {
 TEST_F(SemanticMapEdit, doesWhatTheLibraryDoes) {
   Eigen::Isometry3d pose(Eigen::Translation3d(1, 2, 0.4));
   pose.rotate(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
-  EXPECT_TRUE(edited({"--pose", "1", "2", "0.4", "90", "0", "0"}) ==
-              semantic_octree::moved(map, pose));
-  EXPECT_TRUE(
-      edited({"--box", "-3", "-2", "-1", "4", "1", "2"}) ==
-      semantic_octree::cropped(map, {Eigen::Vector3d(-3, -2, -1), Eigen::Vector3d(4, 1, 2)}));
+  EXPECT_TRUE(edited({"--pose", "1,2,0.4,90,0,0"}) == semantic_octree::moved(map, pose));
+  const SemanticOcTree corner =
+      semantic_octree::cropped(map, {Eigen::Vector3d(-3, -2, -1), Eigen::Vector3d(4, 1, 2)});
+  EXPECT_TRUE(edited({"--box", "-3,-2,-1,4,1,2"}) == corner);
+  EXPECT_TRUE(edited({"--box", "-3", "-2", "-1", "4", "1", "2"}) == corner);
 }
 
 TEST_F(SemanticMapEdit, tilesAreAFolderWithTheMapInIt) {
@@ -114,10 +115,32 @@ TEST_F(SemanticMapEdit, tilesAreNotWrittenOverUnlessThatIsWanted) {
               semantic_octree::loadMap(path("corner.semantic")));
 }
 
+TEST_F(SemanticMapEdit, colorsOfOurOwnOctreesBecomeClassesAgain) {
+  ASSERT_EQ(exportTo({"color.ot"}).status, 0);
+  const SemanticOcTree imported = edited({}, "color.ot");
+  EXPECT_EQ(imported.classes(), map.classes());
+  int withClass = 0;
+  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+    const CellState before = map.query(*leaf), after = imported.query(leaf.getKey());
+    ASSERT_EQ(after.status, before.status);
+    // A single class is not believed more than that.
+    const double most = map.filterParameters().maxProbability;
+    ASSERT_NEAR(std::min(after.occupancy, most), std::min(before.occupancy, most), 1e-3);
+    if (before.status != CellState::Status::Occupied) continue;
+    ASSERT_EQ(after.likeliestClass, before.likeliestClass);
+    withClass += before.likeliestClass != 0;
+  }
+  EXPECT_GT(withClass, 100);
+  // Every program that reads maps reads it.
+  const ProgramRun asked = runProgram(
+      "semantic-map-merge", {path("color.ot"), path("out.semantic"), "-o", path("sum.semantic")});
+  EXPECT_EQ(asked.status, 0) << asked.errors;
+}
+
 TEST_F(SemanticMapEdit, octomapsFilesBecomeOccupancy) {
   ASSERT_EQ(exportTo({"plain.ot"}, {"--no-colors"}).status, 0);
-  ASSERT_EQ(exportTo({"color.ot", "binary.bt"}).status, 0);
-  for (const char* name : {"plain.ot", "color.ot", "binary.bt"}) {
+  ASSERT_EQ(exportTo({"binary.bt"}).status, 0);
+  for (const char* name : {"plain.ot", "binary.bt"}) {
     const SemanticOcTree imported = edited({}, name);
     EXPECT_EQ(imported.numClasses(), 1);
     for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf)
@@ -143,6 +166,7 @@ TEST_F(SemanticMapEdit, filesThatAreNoMapsOfOctomapsAreRefused) {
     refuse("bad.ot", bytes);
   const std::size_t type = ot.find("ColorOcTree");
   refuse("bad.ot", std::string(ot).replace(type, 11, "OcTreeStamp"));
+  refuse("bad.ot", std::string(ot).replace(ot.find("road"), 4, "post"));
   expectRefusal(edit("none.bt", "out.semantic"), {"none.bt"});
 }
 

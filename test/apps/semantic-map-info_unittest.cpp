@@ -166,7 +166,7 @@ TEST_F(SemanticMapInfo, missingFilesAreRefusedByName) {
   expectRefusal(runProgram("semantic-map-info", {(folder / "none.semantic").string()}),
                 {"none.semantic"});
   expectRefusal(runProgram("semantic-map-info", {folder.path().string()}),
-                {folder.path().string()});
+                {folder.path().string() + ": is a folder of results; did you mean '" + map()});
   expectRefusal(runProgram("semantic-map-info", {map(), "--query", (folder / "none.txt").string()}),
                 {"none.txt"});
 }

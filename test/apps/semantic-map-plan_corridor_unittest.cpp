@@ -42,7 +42,7 @@ class PlanOfALongRoad : public testing::Test {
   double plan(const std::string& map, const std::string& start, const std::string& goal,
               const std::vector<std::string>& more) const {
     std::vector<std::string> arguments = {
-        path(map),          "--start=" + start, "--goal=" + goal, "--classes",
+        path(map),          "--start=" + start, "--goal=" + goal, "--order",
         path("order.yaml"), "--output",         path("out"),      "-f"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ProgramRun run = runProgram("semantic-map-plan", arguments);

@@ -31,7 +31,7 @@ class SemanticMapPlan : public testing::Test {
     std::vector<std::string> arguments = {(folder / "map.semantic").string(),
                                           "--start=" + start,
                                           "--goal=" + goal,
-                                          "--classes",
+                                          "--order",
                                           (folder / order).string(),
                                           "--output",
                                           (folder / "out").string(),
@@ -139,6 +139,8 @@ TEST_F(SemanticMapPlan, badInputIsAnErrorThatNamesIt) {
   expectError(run("-8,0,0", "8,0,0", {"--headings", "0"}), "--headings is 0");
   folder.write("lava.yaml", "best_to_worst: [road, lava]\n");
   expectError(run("-8,0,0", "8,0,0", {}, "lava.yaml"), "no class 'lava'");
+  folder.write("table.yaml", "classes:\n - {id: 1, name: road, color: [1, 2, 3]}\n");
+  expectError(run("-8,0,0", "8,0,0", {}, "table.yaml"), "table.yaml:1: this is a class table; ");
   const auto vehicle = folder.write("vehicle.yaml", "turning_radius: 0\n");
   expectError(run("-8,0,0", "8,0,0", {"--vehicle", vehicle.string()}), "turning_radius is 0");
   folder.write("map.semantic", "no map");

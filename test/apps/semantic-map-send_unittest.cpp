@@ -11,7 +11,6 @@
 #include "../semantic_planning/PaintedWorld.h"
 #include "SemanticMapCompress.h"
 #include "ShellCommand.h"
-#include "radio/Cookies.h"
 #include "radio/Seal.h"
 #include "radio/UdpSocket.h"
 #include "radio/Wish.h"

@@ -1,3 +1,5 @@
+#include <regex>
+
 #include "ViewFixture.h"
 
 TEST_F(SemanticMapView, ShowsClassesInTheirColorsWhereTheyAre) {
@@ -61,7 +63,7 @@ TEST_F(SemanticMapView, SaysWhatIsMissingInsteadOfFailing) {
   EXPECT_TRUE(contains(without({path("none.semantic")}).errors, "none.semantic"));
   folder.write("bad.semantic", "nothing of the kind");
   EXPECT_TRUE(contains(without({path("bad.semantic")}).errors, "bad.semantic"));
-  for (const char* option : {"--weights", "--classes"}) {
+  for (const char* option : {"--weights", "--order"}) {
     const ProgramRun run = without({path("map.semantic"), option, path("none.yaml")});
     EXPECT_EQ(run.status, 1);
     EXPECT_TRUE(contains(run.errors, "none.yaml")) << run.errors;
@@ -84,4 +86,165 @@ TEST_F(SemanticMapView, RefusesWrongCommandLines) {
     EXPECT_EQ(run.status, 64) << option << ' ' << value << run.errors;
     EXPECT_TRUE(contains(run.errors, option) && contains(run.errors, value)) << run.errors;
   }
+}
+
+TEST_F(SemanticMapView, AnswersAClickOnACell) {
+  SKIP_WITHOUT_WINDOWS();
+  const auto click = [](const cv::Point& at, const std::string& words) {
+    return std::to_string(at.x) + " " + std::to_string(at.y) + " " + words;
+  };
+  const ProgramRun run = runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"),
+                                 kViewer, path("map.semantic"), "--size", size(), "--camera", kTop,
+                                 "--", click(pixelOf(-1.1, -2.1, 0.2), "key 32762 32757 32768"),
+                                 click(pixelOf(5.1, 0.1, 2), "occupied, wall")});
+  EXPECT_EQ(run.status, 0) << run.output << run.errors;
+  const std::string said = folder.read("said.txt");
+  EXPECT_TRUE(contains(said, "occupied, road")) << said;
+}
+
+TEST_F(SemanticMapView, SaysWhyACellIsExpandedOrNot) {
+  SKIP_WITHOUT_WINDOWS();
+  // A voxel of the wall, which is expanded down to voxels, and one amid the grass, which is not.
+  int lines = 0, open = 0;
+  for (const cv::Point& pixel : {pixelOf(4.1, 0.9, 2), pixelOf(3.1, 3.1, 0.2)}) {
+    const ProgramRun run =
+        runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer,
+                path("map.semantic"), "--size", size(), "--camera", kTop, "--compress", "--",
+                std::to_string(pixel.x) + " " + std::to_string(pixel.y) + " expanded, G"});
+    ASSERT_EQ(run.status, 0) << run.output << run.errors;
+    const std::string said = folder.read("said.txt");
+    std::smatch alpha, key;
+    ASSERT_TRUE(std::regex_search(said, alpha, std::regex("leaves, alpha ([0-9.e-]+)"))) << said;
+    ASSERT_TRUE(std::regex_search(said, key, std::regex("key (\\d+) (\\d+) (\\d+), edge"))) << said;
+    const auto expected = expandedAround({std::stoi(key[1]), std::stoi(key[2]), std::stoi(key[3])},
+                                         std::stod(alpha[1]));
+    const std::regex line(
+        "([0-9.]+ m): (not )?expanded, G (\\S+) = max\\(0, (\\S+) - (\\S+) \\* (\\S+) \\+ "
+        "(\\S+)\\), "
+        "road 1 \\* (\\S+), grass 1 \\* (\\S+), wall 1 \\* (\\S+), free_space 0 \\* \\S+\n");
+    bool aboveIs = true;
+    for (std::sregex_iterator found(said.begin(), said.end(), line), end; found != end; ++found) {
+      const auto number = [&](std::size_t i) { return std::stod((*found)[i]); };
+      const bool isExpanded = !(*found)[2].matched;
+      ASSERT_EQ(expected.count((*found)[1]), 1u) << said;
+      EXPECT_EQ(isExpanded, aboveIs && expected.at((*found)[1])) << found->str();
+      EXPECT_EQ(isExpanded, aboveIs && number(3) > 0) << found->str();
+      aboveIs = isExpanded;
+      const double gain = number(8) + number(9) + number(10);
+      EXPECT_NEAR(number(4), gain, 0.02 * gain + 1e-4) << "three digits";
+      EXPECT_NEAR(number(3), std::max(0.0, number(4) - number(5) * number(6) + number(7)),
+                  0.02 * number(4) + 1e-3)
+          << found->str();
+      ++lines, open += isExpanded;
+    }
+  }
+  EXPECT_GE(lines, 5) << "four of the voxel in a block of 3.2 m";
+  EXPECT_GE(open, 4);
+  EXPECT_LT(open, lines);
+}
+
+TEST_F(SemanticMapView, SavesWeightsFromWhichTheSameLeavesFollow) {
+  SKIP_WITHOUT_WINDOWS();
+  // In the panel at the right: a place on the slider of alpha, and the button below.
+  const std::string slider = std::to_string(kWidth - 170) + " 272 leaves, alpha",
+                    save = std::to_string(kWidth - 230) + " 555 wrote ./weights-1.yaml";
+  const ProgramRun run =
+      runInX({"/usr/bin/env", "-C", folder.path().string(),
+              MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer,
+              path("map.semantic"), "--size", size(), "--compress", "--", slider, save});
+  ASSERT_EQ(run.status, 0) << run.output << run.errors;
+  const std::string said = folder.read("said.txt");
+  std::smatch view, compress, begin;
+  ASSERT_TRUE(std::regex_search(said, view, std::regex("weights-1.yaml: ([0-9]+) leaves"))) << said;
+  ASSERT_TRUE(std::regex_search(said, begin, std::regex("([0-9]+) leaves, alpha"))) << said;
+  EXPECT_NE(view[1], begin[1]) << "the slider did nothing:\n" << said;
+  const ProgramRun other = runProgram(
+      "semantic-map-compress",
+      {path("map.semantic"), "--weights", path("weights-1.yaml"), "-o", path("compressed")});
+  EXPECT_EQ(other.status, 0) << other.errors;
+  ASSERT_TRUE(std::regex_search(other.output, compress, std::regex("([0-9]+) of [0-9]+ leaves")))
+      << other.output;
+  EXPECT_EQ(view[1], compress[1]);
+}
+
+/** The window with an order of classes; the panel at the lower left has the buttons "start" and
+ * "goal". */
+class SemanticMapViewPlans : public SemanticMapView {
+ protected:
+  SemanticMapViewPlans() { folder.write("order.yaml", "best_to_worst: [road, grass]\n"); }
+
+  /** Runs the window: how the start is set, how the goal, what comes then. */
+  void plan(const std::string& start, const std::string& goal,
+            const std::vector<std::string>& then = {}) {
+    const std::string y = std::to_string(kHeight - 76);
+    std::vector<std::string> command{MSO_SOURCE_DIR "/test/apps/view-window.sh",
+                                     path("said.txt"),
+                                     kViewer,
+                                     path("map.semantic"),
+                                     "--size",
+                                     size(),
+                                     "--camera",
+                                     kTop,
+                                     "--order",
+                                     path("order.yaml"),
+                                     "--",
+                                     "60 " + y + " click where the vehicle is",
+                                     start,
+                                     "156 " + y + " click where it is to go",
+                                     goal};
+    command.insert(command.end(), then.begin(), then.end());
+    const ProgramRun run = runInX(command);
+    EXPECT_EQ(run.status, 0) << run.output << run.errors;
+    said = folder.read("said.txt");
+  }
+
+  static std::string at(const cv::Point& p) {
+    return std::to_string(p.x) + " " + std::to_string(p.y);
+  }
+
+  /** The lengths of all paths that the window told, m. */
+  std::vector<double> lengths() const {
+    const std::regex path("path of ([0-9.]+) m");
+    std::vector<double> found;
+    for (std::sregex_iterator i(said.begin(), said.end(), path), end; i != end; ++i)
+      found.push_back(std::stod((*i)[1]));
+    return found;
+  }
+
+  std::string said;
+};
+
+TEST_F(SemanticMapViewPlans, BetweenTwoClicks) {
+  SKIP_WITHOUT_WINDOWS();
+  plan(at(pixelOf(-3, -2, 0.2)) + " start at -3", at(pixelOf(3, 3, 0.2)) + " path of");
+  ASSERT_FALSE(lengths().empty()) << said;
+  EXPECT_GE(lengths()[0], std::hypot(6, 5) - 0.5);
+  EXPECT_LT(lengths()[0], 15);
+}
+
+TEST_F(SemanticMapViewPlans, FromAndToHeadingsThatAreDragged) {
+  SKIP_WITHOUT_WINDOWS();
+  const auto drag = [](const cv::Point& from, const cv::Point& to, const std::string& words) {
+    return "drag " + at(from) + ' ' + at(to) + ' ' + words;
+  };
+  plan(drag(pixelOf(-4, -2, 0.2), pixelOf(-6, -2, 0.2), "start at -4"),
+       drag(pixelOf(3, 2, 0.2), pixelOf(3, 4, 0.2), "path of"));
+  const auto heading = [&](const std::string& of) {
+    std::smatch found;
+    const bool is = std::regex_search(said, found, std::regex(of + " at.*heading (-?[0-9]+) deg"));
+    return is ? std::stod(found[1]) : 1000;
+  };
+  EXPECT_NEAR(std::abs(heading("start")), 180, 3) << said;
+  EXPECT_NEAR(heading("goal"), 90, 3) << said;
+  ASSERT_FALSE(lengths().empty()) << said;
+  EXPECT_GE(lengths()[0], std::hypot(7, 4) + 0.5) << "it has to turn";
+}
+
+TEST_F(SemanticMapViewPlans, AnewAfterTheOrderOfClassesWasDragged) {
+  SKIP_WITHOUT_WINDOWS();
+  // Along the road's border: straight on, or by the grass, if that is better.
+  plan(at(pixelOf(-1, -2.5, 0.2)) + " start at -1", at(pixelOf(-1, 2.5, 0.2)) + " path of",
+       {"drag 300 54 300 80 order: grass > road", at(pixelOf(3.1, 3.1, 0.2)) + " occupied, grass"});
+  ASSERT_EQ(lengths().size(), 2u) << said;
+  EXPECT_GT(lengths()[1], lengths()[0] + 0.2) << said;
 }

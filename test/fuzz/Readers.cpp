@@ -12,7 +12,6 @@
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
-#include <octomap/OcTree.h>
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MapFiles.h>
@@ -30,8 +29,9 @@ namespace fs = std::filesystem;
 using semantic_types::ClassTable;
 
 void readOctomap(const fs::path& file) {
-  const auto tree = semantic_map::readOctomapFile(file);
-  if (tree->size() > 0) semantic_octree::fromOcTree(*tree, fuzzedClasses());
+  semantic_map::importOctomapFile(file);
+  const semantic_octree::SemanticOcTree like(0.1, fuzzedClasses());
+  semantic_map::importOctomapFile(file, &like);
 }
 
 /** From an MRPT archive, and what was taken back into one. */

@@ -66,22 +66,6 @@ TEST(TopView, showsEachPlaceInItsClassesColor) {
   EXPECT_EQ(picture.at<cv::Vec3b>(2, 2), kPaper);
 }
 
-TEST(TopView, showsVoxelsTogetherWithTheirNeighborsIfAsked) {
-  SemanticOcTree map(0.2, paintedClasses());
-  semantic_types::LabeledCloud cloud;
-  for (int x = 0; x < 20; ++x)
-    for (int y = 0; y < 20; ++y) {
-      cloud.points.emplace_back(0.2f * x + 0.1f, 0.2f * y + 0.1f, -0.9f);
-      cloud.classes.push_back(x == 10 && y == 10 ? 2 : 1);
-    }
-  map.insert(cloud, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1)));
-  PictureStyle style = plain();
-  EXPECT_GT(count(renderTopView(map, style), pixelOf(kTree)), 100);
-  style.neighborWeight = 0.4;
-  EXPECT_EQ(count(renderTopView(map, style), pixelOf(kTree)), 0);
-  EXPECT_GT(count(renderTopView(map, style), pixelOf(kRoad)), 10000);
-}
-
 TEST(TopView, theHighestCellCoversTheOthersUnlessItIsCutOff) {
   const SemanticOcTree tree = paintedField({0, 0}, 0.8f);
   PictureStyle style = plain();

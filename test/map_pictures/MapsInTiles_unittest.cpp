@@ -69,8 +69,6 @@ TEST(MapsInTiles, haveThePicturesOfTheMapInOnePiece) {
     expectSame(renderTopView(tiles.map(), style), renderTopView(field, style));
     style.maxAboveGround = 2;
     expectSame(renderTopView(tiles.map(), style), renderTopView(field, style));
-    style.neighborWeight = 0.4;
-    expectSame(renderTopView(tiles.map(), style), renderTopView(field, style));
     const ClassMap map = drawClassMap(tiles.map()), expected = drawClassMap(field);
     expectSame(map.picture, expected.picture);
     EXPECT_EQ(map.worldFile, expected.worldFile);

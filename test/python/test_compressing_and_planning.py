@@ -68,7 +68,7 @@ def test_a_plan_is_that_of_the_program(tmp_path):
     file = saved(grown, tmp_path)
     (tmp_path / "order.yaml").write_text("best_to_worst: [road, [grass, unknown]]\nrates: [5]\n")
     (tmp_path / "vehicle.yaml").write_text("footprint: [[-0.3, -0.3], [0.4, -0.3], [0.4, 0.3], [-0.3, 0.3]]\nturning_radius: 0.8\n")
-    program("semantic-map-plan", file, "--start=-6,0,0", "--goal=6,-6,-90", "--classes", tmp_path / "order.yaml", "--vehicle",
+    program("semantic-map-plan", file, "--start=-6,0,0", "--goal=6,-6,-90", "--order", tmp_path / "order.yaml", "--vehicle",
             tmp_path / "vehicle.yaml", "--output", tmp_path / "out")
     theirs = np.genfromtxt(tmp_path / "out" / "path.csv", delimiter=",", names=True, dtype=None, encoding=None)
     vehicle = {"footprint": [[-0.3, -0.3], [0.4, -0.3], [0.4, 0.3], [-0.3, 0.3]], "turning_radius": 0.8}

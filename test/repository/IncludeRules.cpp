@@ -36,7 +36,7 @@ const IncludeTable& includeTable() {
         "semantic_types", "strict_files", "tree_abstraction"}},
       {"map_pictures",
        {"Eigen", "ft2build.h", "gif_lib.h", "mrpt", "octomap", "opencv2", "mrpt_compat",
-        "map_operations", "semantic_octree", "semantic_types", "strict_files"}},
+        "semantic_octree", "semantic_types", "strict_files"}},
       {"map_view",
        {"Eigen", "yaml-cpp", "semantic_abstraction", "semantic_octree", "semantic_types",
         "strict_files", "tree_abstraction"}},

@@ -52,7 +52,7 @@ class Viewers : public StockApps {
     const CommandRun drive =
         run(MSO_BIN_DIR
             "/semantic-map-drive --start=-14,-19,10 --goal=-6,-17,20 "
-            "--classes config/orders/synthetic.yaml --config drive.ini --output drive "
+            "--order config/orders/synthetic.yaml --config drive.ini --output drive "
             "--no-pictures");
     ASSERT_EQ(drive.status, 2) << drive.output;  // not arrived in so short a time
   }

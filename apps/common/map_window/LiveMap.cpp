@@ -3,6 +3,7 @@
 #include <nanogui/opengl.h>
 #include <strict_files/Words.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -119,6 +120,12 @@ class LiveMap::Window {
     } while (true);
   }
 
+  void stay() {
+    m_pace.say({"done: close the window to end"});
+    while (m_isOpen && !m_changed.isEmpty() && !isToEnd()) show(0);
+    if (m_isOpen && !isToEnd()) show(HUGE_VAL);
+  }
+
   std::function<bool()> isToEnd = [] { return false; };
   const mrpt_compat::drawing::CSetOfObjects::Ptr marks =
       mrpt_compat::drawing::CSetOfObjects::Create();
@@ -179,5 +186,6 @@ bool LiveMap::isOpen() const { return m_window->isOpen(); }
 void LiveMap::stopWhen(const std::function<bool()>& isToEnd) { m_window->isToEnd = isToEnd; }
 void LiveMap::pause() { m_window->pause(); }
 void LiveMap::show(double seconds) { m_window->show(seconds); }
+void LiveMap::stay() { m_window->stay(); }
 
 }  // namespace map_window

@@ -41,6 +41,8 @@ class LiveMap {
   /** Draws, and returns after some time (s), or when the hand on the window lets it go on; at once
    * if the window was closed. */
   void show(double seconds);
+  /** Returns when the window was closed: the work is done. */
+  void stay();
 
  private:
   class Window;

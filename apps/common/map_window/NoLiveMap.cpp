@@ -21,5 +21,6 @@ bool LiveMap::isOpen() const { return false; }
 void LiveMap::stopWhen(const std::function<bool()>&) {}
 void LiveMap::pause() {}
 void LiveMap::show(double) {}
+void LiveMap::stay() {}
 
 }  // namespace map_window

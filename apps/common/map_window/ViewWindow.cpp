@@ -2,6 +2,7 @@
 
 #include <map_pictures/MapCanvas.h>
 #include <mrpt_compat/Drawing.h>
+#include <nanogui/nanogui.h>
 #include <nanogui/opengl.h>
 
 #include <clocale>
@@ -22,6 +23,11 @@ constexpr int kPictureBorder = 8;
 const std::string kInstead =
     "; `semantic-map-export MAP -o map.png` draws a map without a window, xvfb-run gives programs "
     "a display";
+
+void closeMenus(nanogui::Widget& widget) {
+  if (auto* button = dynamic_cast<nanogui::PopupButton*>(&widget)) button->setPushed(false);
+  for (nanogui::Widget* child : widget.children()) closeMenus(*child);
+}
 
 /** Its name; empty: there is none. */
 std::string displayName() {
@@ -191,11 +197,22 @@ bool ViewWindow::mouseButtonEvent(const Vector2i& p, int button, bool down, int 
 
 bool ViewWindow::scrollEvent(const Vector2i& p, const nanogui::Vector2f& rel) {
   redraw();
-  return CDisplayWindowGUI::scrollEvent(p, rel);
+  const map_view::OrbitCamera before = orbitCamera();
+  const bool used = CDisplayWindowGUI::scrollEvent(p, rel);
+  map_view::OrbitCamera after = orbitCamera();
+  if (after.distance == before.distance) return used;
+  // What is under the pointer, as far away as the target, stays there.
+  const map_view::Ray ray = before.rayThrough(p.x(), p.y(), mSize.x(), mSize.y());
+  const Eigen::Vector3d place =
+      ray.origin + before.distance / ray.direction.dot(before.forward()) * ray.direction;
+  after.target = place + after.distance / before.distance * (before.target - place);
+  setOrbitCamera(after);
+  return used;
 }
 
 bool ViewWindow::keyboardEvent(int key, int scancode, int action, int modifiers) {
   redraw();
+  if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) closeMenus(*this);
   return CDisplayWindowGUI::keyboardEvent(key, scancode, action, modifiers);
 }
 

@@ -56,4 +56,16 @@ Eigen::Isometry3d poseOfNumbers(const std::array<double, 6>& v) {
   return Eigen::Isometry3d(pose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen());
 }
 
+Eigen::Isometry3d poseOfMatrix(const strict_files::TextLine& line) {
+  const auto numbers = numbersOf(line, 12);
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.affine() = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(numbers.data());
+  const Eigen::Matrix3d R = T.linear();
+  if (!(R * R.transpose()).isIdentity(1e-3) || R.determinant() < 0)
+    throw std::runtime_error(line.where + ": the first three columns are no rotation");
+  // The files round to six digits: the nearest rotation keeps inverse and product rigid.
+  T.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  return T;
+}
+
 }  // namespace poses

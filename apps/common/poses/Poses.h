@@ -1,5 +1,6 @@
 #pragma once
 #include <mrpt/math/TPose2D.h>
+#include <strict_files/TextFile.h>
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
@@ -23,5 +24,9 @@ CLI::Option* addPose(CLI::App& app, const std::string& name, mrpt::math::TPose2D
 
 /** \param v x, y, z (m), yaw, pitch, roll (degrees), as MRPT's CPose3D. */
 Eigen::Isometry3d poseOfNumbers(const std::array<double, 6>& v);
+
+/** A pose as KITTI's files have it: the twelve numbers of a 3x4 row-major matrix [R|t], m.
+ * \throw std::runtime_error naming the line: others, or R is no rotation. */
+Eigen::Isometry3d poseOfMatrix(const strict_files::TextLine& line);
 
 }  // namespace poses

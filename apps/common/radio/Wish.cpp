@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "Cookies.h"
+#include "Seal.h"
 
 namespace radio {
 

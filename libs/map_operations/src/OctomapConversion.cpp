@@ -49,36 +49,75 @@ class Copy : public Tree {
   const SemanticOcTree& m_source;
 };
 
+/** The class that a node's color names. */
+ClassId classOf(const octomap::ColorOcTreeNode& node, const ClassTable& classes) {
+  const octomap::ColorOcTreeNode::Color& c = node.getColor();
+  return node.isColorSet() ? classes.find(Color{c.r, c.g, c.b}).value_or(kNoClass) : kNoClass;
+}
+ClassId classOf(const octomap::OcTreeNode&, const ClassTable&) { return kNoClass; }
+
+template <class Tree>
 class OctomapCursor {
  public:
-  OctomapCursor(const octomap::OcTree& map, const ClassFilter<float>& filter,
-                const octomap::OcTreeNode* node)
-      : m_map(map), m_filter(filter), m_node(node) {}
+  using NodeOfTree = typename Tree::NodeType;
+
+  OctomapCursor(const Tree& map, const ClassTable& classes, const ClassFilter<float>& filter,
+                const NodeOfTree* node)
+      : m_map(map), m_classes(classes), m_filter(filter), m_node(node) {}
 
   bool known() const { return m_node; }
   bool isLeaf() const { return !m_map.nodeHasChildren(m_node); }
   LeafContent content() const {
-    return {toUnits(onGrid(m_filter.limitedOccupancy(m_node->getLogOdds()))), {}};
+    const float occupancy = onGrid(m_filter.limitedOccupancy(m_node->getLogOdds()));
+    const ClassId id = classOf(*m_node, m_classes);
+    if (id == kNoClass || occupancy <= 0) return {toUnits(occupancy), {}};
+    // One label, which leaves the occupancy as it is, within the limits.
+    auto belief = m_filter.uniform(occupancy);
+    m_filter.hit(belief, id);
+    const float surplus = m_filter.occupancyOf(belief) - occupancy;
+    for (int i = 0; i < belief.count; ++i) belief.logOdds[i] -= surplus;
+    belief.rest -= surplus;
+    m_filter.limit(belief);
+    return {toUnits(m_filter.occupancyOf(belief)), ClassRecord::of(belief)};
   }
   OctomapCursor child(int i) const {
-    const octomap::OcTreeNode* node = m_node;
+    const NodeOfTree* node = m_node;
     if (!isLeaf())
       node = m_map.nodeChildExists(m_node, i) ? m_map.getNodeChild(m_node, i) : nullptr;
-    return {m_map, m_filter, node};
+    return {m_map, m_classes, m_filter, node};
   }
 
  private:
-  const octomap::OcTree& m_map;
+  const Tree& m_map;
+  const ClassTable& m_classes;
   const ClassFilter<float>& m_filter;
-  const octomap::OcTreeNode* m_node;
+  const NodeOfTree* m_node;
 };
 
+template <class Tree>
+SemanticOcTree imported(const Tree& map, const ClassTable& classes,
+                        const FilterParameters& filter) {
+  if (map.getTreeDepth() != kTreeDepth)
+    throw std::invalid_argument("importing an octree: " + std::to_string(map.getTreeDepth()) +
+                                " levels, expected 16");
+  SemanticOcTree result(map.getResolution(), classes, filter);
+  const ClassFilter<float> limits(classes.size(), filter);
+  TreeBuilder::fill(result, OctomapCursor<Tree>(map, classes, limits, map.getRoot()));
+  return result;
+}
+
+/** \param classes comments name them, by which readers know what colors mean */
 void writeHeader(std::ostream& out, const std::string& firstLine,
-                 const octomap::AbstractOcTree& tree) {
+                 const octomap::AbstractOcTree& tree, const ClassTable& classes = {}) {
   const strict_files::ClassicNumbers classic(out);
   out << firstLine << "\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
-      << std::setprecision(std::numeric_limits<double>::digits10) << tree.getResolution()
-      << "\ndata\n";
+      << std::setprecision(std::numeric_limits<double>::digits10) << tree.getResolution() << '\n';
+  for (int id = 1; id <= classes.size(); ++id) {
+    const Color c = classes.color(static_cast<ClassId>(id));
+    out << "# class " << int{c.r} << ' ' << int{c.g} << ' ' << int{c.b} << ' '
+        << classes.name(static_cast<ClassId>(id)) << '\n';
+  }
+  out << "data\n";
 }
 
 void checkWritten(const std::ostream& out) {
@@ -86,8 +125,8 @@ void checkWritten(const std::ostream& out) {
 }
 
 template <class Tree>
-void writeFull(std::ostream& out, const Tree& tree) {
-  writeHeader(out, "# Octomap OcTree file", tree);
+void writeFull(std::ostream& out, const Tree& tree, const ClassTable& classes = {}) {
+  writeHeader(out, "# Octomap OcTree file", tree, classes);
   tree.writeData(out);
   checkWritten(out);
 }
@@ -105,7 +144,7 @@ std::unique_ptr<octomap::ColorOcTree> toColorOcTree(const SemanticOcTree& map) {
 }
 
 void writeColorOcTree(std::ostream& out, const SemanticOcTree& map) {
-  writeFull(out, *toColorOcTree(map));
+  writeFull(out, *toColorOcTree(map), map.classes());
 }
 
 void writeOcTree(std::ostream& out, const SemanticOcTree& map) { writeFull(out, *toOcTree(map)); }
@@ -121,13 +160,12 @@ void writeBinaryOcTree(std::ostream& out, const SemanticOcTree& map) {
 
 SemanticOcTree fromOcTree(const octomap::OcTree& map, const ClassTable& classes,
                           const FilterParameters& filter) {
-  if (map.getTreeDepth() != kTreeDepth)
-    throw std::invalid_argument("importing an octree: " + std::to_string(map.getTreeDepth()) +
-                                " levels, expected 16");
-  SemanticOcTree result(map.getResolution(), classes, filter);
-  const ClassFilter<float> limits(classes.size(), filter);
-  TreeBuilder::fill(result, OctomapCursor(map, limits, map.getRoot()));
-  return result;
+  return imported(map, classes, filter);
+}
+
+SemanticOcTree fromOcTree(const octomap::ColorOcTree& map, const ClassTable& classes,
+                          const FilterParameters& filter) {
+  return imported(map, classes, filter);
 }
 
 }  // namespace semantic_octree

@@ -12,7 +12,6 @@
 
 #include "HighestCells.h"
 #include "MapCells.h"
-#include "NodeWalk.h"
 
 namespace map_pictures {
 

@@ -1,12 +1,16 @@
 #include <ft2build.h>
 #include <map_pictures/MapCanvas.h>
-#include FT_FREETYPE_H
+#include <semantic_types/ClassTable.h>
+#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include FT_FREETYPE_H
 #include <memory>
-#include <opencv2/imgproc.hpp>
+#include <numeric>
 #include <optional>
+
+#include "HighestCells.h"
 
 namespace map_pictures {
 namespace {
@@ -145,6 +149,173 @@ void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftM
       return;
     }
   cv::putText(picture, text, baseline, kFont, kTextSize, bgr(kInk), 1, cv::LINE_AA);
+}
+
+using semantic_types::ClassId;
+
+namespace {
+
+constexpr int kMargin = 20, kRow = 28, kSwatch = 18;
+
+/** Upper left corner of a place of that size in the corner of the picture with least in it.
+ * \param taken keeps clear of that, if there is another corner */
+cv::Point emptiestCorner(const cv::Mat& picture, cv::Size size, const cv::Rect& taken) {
+  const int right = picture.cols - size.width, bottom = picture.rows - size.height;
+  cv::Point best(0, bottom);
+  int least = size.area() + 1;
+  for (const cv::Point corner : {cv::Point(0, bottom), {right, bottom}, {right, 0}, {0, 0}}) {
+    const cv::Rect place = cv::Rect(corner, size) & cv::Rect({0, 0}, picture.size());
+    if (!(place & taken).empty()) continue;
+    cv::Mat empty;
+    cv::inRange(picture(place), bgr(kPaper), bgr(kPaper), empty);
+    const int filled = place.area() - cv::countNonZero(empty);
+    if (filled < least) best = corner, least = filled;
+  }
+  return best;
+}
+
+/** Text and lines stay readable on any class's color. */
+void brighten(cv::Mat& picture, cv::Rect area) {
+  area &= cv::Rect({0, 0}, picture.size());
+  cv::Mat part = picture(area);
+  cv::addWeighted(part, 0.25, cv::Mat(part.size(), part.type(), bgr(kPaper)), 0.75, 0, part);
+}
+
+std::string lengthName(double meters) {
+  if (meters >= 1000) return cv::format("%g km", meters / 1000);
+  return meters >= 1 ? cv::format("%g m", meters) : cv::format("%g cm", meters * 100);
+}
+
+/** The largest 1, 2 or 5 times a power of ten that is not above. */
+double roundLength(double meters) {
+  const double power = std::pow(10.0, std::floor(std::log10(meters)));
+  for (const double factor : {5.0, 2.0})
+    if (factor * power <= meters) return factor * power;
+  return power;
+}
+
+/** Draws an entry's sample. \param place of it */
+struct Sample {
+  cv::Mat& sheet;
+  cv::Rect place;
+
+  void operator()(const Color& color) const {
+    cv::rectangle(sheet, place, bgr(color), cv::FILLED);
+    cv::rectangle(sheet, place, bgr(kInk), 1, cv::LINE_AA);
+  }
+  void operator()(const Hatch& hatch) const {
+    constexpr int kStripes = 8;
+    const cv::Vec3b color(hatch.color.b, hatch.color.g, hatch.color.r);
+    for (int y = 0; y < place.height; ++y)
+      for (int x = 0; x < place.width; ++x)
+        sheet.at<cv::Vec3b>(place.tl() + cv::Point(x, y)) = hatched(color, x, y, kStripes);
+    cv::rectangle(sheet, place, bgr(kInk), 1, cv::LINE_AA);
+  }
+  void operator()(const Stroke& stroke) const {
+    const double middle = place.y + place.height / 2.0;
+    drawLine(sheet, {{double(place.x), middle}, {double(place.br().x), middle}}, stroke);
+  }
+  void operator()(const Arrow& arrow) const {
+    Arrow fitting = arrow;
+    fitting.length = std::min(arrow.length, 0.75 * place.width);
+    const double radius = 0.27 * fitting.length;
+    drawArrow(sheet, {place.x + radius, place.y + place.height / 2.0}, 0, fitting);
+  }
+};
+
+}  // namespace
+
+std::vector<LegendEntry> classLegend(const semantic_types::ClassTable& classes,
+                                     const std::vector<std::size_t>& counts) {
+  std::vector<std::size_t> order(counts.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin() + 1, order.end(),
+                   [&counts](std::size_t a, std::size_t b) { return counts[a] > counts[b]; });
+  std::rotate(order.begin(), order.begin() + 1, order.end());
+  std::vector<LegendEntry> entries;
+  for (const std::size_t i : order) {
+    if (counts[i] == 0) continue;
+    const auto id = static_cast<ClassId>(i);
+    entries.push_back({i == 0 ? "no class" : classes.name(id), colorOf(id, classes)});
+  }
+  return entries;
+}
+
+LegendEntry coarseCellEntry() {
+  return {"coarse cell with some of it", Hatch{semantic_types::kColorWithoutClass}};
+}
+
+int legendHeight(std::size_t entries) { return int(entries) * kRow + 2 * kMargin; }
+
+cv::Mat withLegend(const cv::Mat& picture, const std::string& title,
+                   const std::vector<LegendEntry>& entries) {
+  constexpr int kFewestRows = 8, kTextLeft = kSwatch + kMargin / 2;
+  const int top = title.empty() ? kMargin : kMargin + kRow, numEntries = int(entries.size());
+  const int rows = std::max(kFewestRows, (picture.rows - top - kMargin) / kRow);
+  const int columns = std::max(1, (numEntries + rows - 1) / rows);
+  const Font font = fontFor(std::accumulate(
+      entries.begin(), entries.end(), title,
+      [](const std::string& text, const LegendEntry& entry) { return text + entry.name; }));
+  int width = 0;
+  for (const auto& entry : entries)
+    width = std::max(width, kTextLeft + textWidth(entry.name, font));
+
+  const int left = picture.cols + kMargin;
+  const int inside = std::max(textWidth(title, font), columns * (width + kMargin) - kMargin);
+  const int height = std::max(picture.rows, top + std::min(rows, numEntries) * kRow + kMargin);
+  cv::Mat sheet(height, left + inside + kMargin, CV_8UC3, bgr(kPaper));
+  picture.copyTo(sheet(cv::Rect({0, 0}, picture.size())));
+  if (!title.empty()) writeText(sheet, title, {left, kMargin + kRow / 4}, font);
+  for (int i = 0; i < numEntries; ++i) {
+    const cv::Point at(left + i / rows * (width + kMargin), top + i % rows * kRow);
+    std::visit(Sample{sheet, {at, cv::Size(kSwatch, kSwatch)}}, entries[i].look);
+    writeText(sheet, entries[i].name, at + cv::Point(kTextLeft, kSwatch / 2), font);
+  }
+  return sheet;
+}
+
+cv::Mat withTitle(const cv::Mat& picture, const std::string& title) {
+  constexpr int kHeight = 34;
+  cv::Mat sheet;
+  cv::copyMakeBorder(picture, sheet, kHeight, 0, 0, 0, cv::BORDER_CONSTANT, bgr(kPaper));
+  writeText(sheet, title, {kMargin, kHeight / 2}, fontFor(title));
+  return sheet;
+}
+
+void drawScaleBar(cv::Mat& picture, double pixelsPerMeter, const cv::Rect& taken) {
+  const double meters = roundLength(picture.cols / pixelsPerMeter / 5);
+  const int length = std::max(1, int(std::lround(meters * pixelsPerMeter)));
+  const std::string text = lengthName(meters);
+  const int width = std::max(length, textWidth(text, Font::Strokes));
+  const cv::Size size(width + 2 * kMargin, 2 * kRow + 4);
+  const cv::Point corner = emptiestCorner(picture, size, taken);
+  brighten(picture, {corner, size});
+  const cv::Point left = corner + cv::Point(kMargin + (width - length) / 2, size.height - kMargin);
+  cv::rectangle(picture, {left.x, left.y - 4, length, 4}, bgr(kInk), cv::FILLED);
+  for (const int x : {left.x, left.x + length - 2})
+    cv::rectangle(picture, {x, left.y - 9, 2, 9}, bgr(kInk), cv::FILLED);
+  writeText(picture, text, {left.x + (length - textWidth(text, Font::Strokes)) / 2, left.y - 20},
+            Font::Strokes);
+}
+
+cv::Rect drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions) {
+  constexpr double kLength = 46;
+  constexpr int kSize = 132;
+  const cv::Point corner = emptiestCorner(picture, {kSize, kSize}, {});
+  const cv::Rect place(corner, cv::Size(kSize, kSize));
+  brighten(picture, place);
+  const cv::Point2d origin = cv::Point2d(corner) + cv::Point2d(kSize / 2.0, kSize / 2.0);
+  const std::array<cv::Scalar, 3> colors = {cv::Scalar(40, 40, 200), cv::Scalar(40, 140, 40),
+                                            cv::Scalar(200, 80, 30)};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (cv::norm(directions[axis]) < 0.1) continue;
+    const cv::Point2d tip = origin + kLength * directions[axis];
+    const cv::Point2d letter = origin + (kLength + 11) * directions[axis];
+    cv::arrowedLine(picture, origin, tip, colors[axis], 2, cv::LINE_AA, 0, 0.2);
+    writeText(picture, std::string(1, char('x' + axis)), cv::Point(letter) - cv::Point(5, 0),
+              Font::Strokes);
+  }
+  return place;
 }
 
 }  // namespace map_pictures

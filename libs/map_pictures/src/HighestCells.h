@@ -1,10 +1,22 @@
 #pragma once
+#include <map_pictures/MapCanvas.h>
 #include <semantic_types/ClassTable.h>
-
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace map_pictures {
+
+/** The color of a pixel in stripes along a diagonal: those of the color, and paler ones.
+ * \param x, y of the pixel, not negative \param period from one stripe to the next, pixels */
+inline cv::Vec3b hatched(const cv::Vec3b& color, int x, int y, int period) {
+  constexpr double kColor = 0.35;
+  if (2 * ((x + y) % period) < period) return color;
+  const cv::Scalar paper = bgr(kPaper);
+  cv::Vec3b pale;
+  for (int i = 0; i < 3; ++i)
+    pale[i] = cv::saturate_cast<std::uint8_t>(kColor * color[i] + (1 - kColor) * paper[i]);
+  return pale;
+}
 
 /** The columns of that edge that a cell covers, counted from the map's origin; y counts up. */
 cv::Rect columnsUnder(const Eigen::Vector2d& center, double size, double edge);

@@ -1,15 +1,18 @@
 #include <map_pictures/MapCanvas.h>
+
+#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <fstream>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 
 #include "HighestCells.h"
 #include "MapCells.h"
-#include "NodeWalk.h"
 
 namespace map_pictures {
 
@@ -195,6 +198,46 @@ cv::Mat MapCanvas::withScale() const {
       drawAxes(picture, {cv::Point2d(1, 0), cv::Point2d(0, -1), cv::Point2d(0, 0)});
   drawScaleBar(picture, m_pixelsPerMeter, axes);
   return picture;
+}
+
+using strict_files::above;
+using strict_files::between;
+using strict_files::checkOptions;
+using strict_files::OptionList;
+
+void PictureStyle::describe(OptionList& list) {
+  constexpr int kMost = 16384;
+  list.add("width", width, "pixels", between(200, kMost), "of the picture without its legend");
+  list.add("height", height, "pixels", between(200, kMost), "of the picture");
+  list.add("max_height", maxHeight, "m", strict_files::Range().orInfinite(),
+           "higher cells are not drawn; none: all but the ceiling of an indoor map");
+}
+
+void PictureStyle::validate() const { checkOptions(*this, "PictureStyle"); }
+
+void Viewpoint::describe(OptionList& list) {
+  list.add("heading", heading, "degrees",
+           "direction in which the perspective looks, from +x towards +y");
+  list.add("tilt", tilt, "degrees", above(0).upTo(90), "how far it looks down");
+}
+
+void Viewpoint::validate() const { checkOptions(*this, "Viewpoint"); }
+
+cv::Mat renderTopView(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style) {
+  const MapCanvas canvas = MapCanvas::ofMap(tree, style);
+  return style.legend ? canvas.sheet(style.title) : canvas.withScale();
+}
+
+void savePicture(const cv::Mat& picture, const std::filesystem::path& file) {
+  std::vector<std::uint8_t> png;
+  if (!cv::imencode(".png", picture, png))
+    throw std::runtime_error("cannot encode the picture for '" + file.string() + "'");
+  strict_files::StagedFile staged(file);
+  std::ofstream out(staged.path(), std::ios::binary);
+  out.write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
+  out.close();
+  if (!out) throw std::runtime_error("cannot write '" + file.string() + "'");
+  staged.commit();
 }
 
 }  // namespace map_pictures

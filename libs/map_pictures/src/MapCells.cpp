@@ -1,16 +1,12 @@
 #include "MapCells.h"
 
-#include <map_operations/SmoothedView.h>
-
 #include <algorithm>
 #include <array>
-
-#include "NodeWalk.h"
+#include <unordered_map>
 
 namespace map_pictures {
 
 using semantic_octree::SemanticOcTree;
-using semantic_octree::SmoothedView;
 
 namespace {
 
@@ -90,18 +86,14 @@ MapCells collectCells(const SemanticOcTree& tree, const PictureStyle& style,
   const Drawn drawn = depthToDraw(tree, filter);
   map.depth = drawn.depth;
   map.cells.reserve(drawn.cells);
-  const bool smooth = style.neighborWeight > 0 && map.depth == tree.getTreeDepth();
-  const SmoothedView view(tree, {style.neighborWeight});
   forEachNode(tree, [&](const SemanticOcTree::Node& node, const Cube& cube) {
     if (!filter.takes(node, cube)) return false;
     if (!node.isLeaf() && cube.depth < static_cast<int>(map.depth)) return true;
     MapCell cell = cellOf(cube, tree.getResolution());
-    if (!smooth) cell.id = tree.query(node).likeliestClass;
+    cell.id = tree.query(node).likeliestClass;
     map.cells.push_back(cell);
     return false;
   });
-  if (smooth)  // later, for nodes may be gone when neighbors in other tiles come in
-    for (MapCell& cell : map.cells) cell.id = view.query(cell.key).likeliestClass;
   cutOff(map, style);
   return map;
 }
@@ -119,6 +111,55 @@ Extent extentOf(const std::vector<MapCell>& cells) {
     edges(+1), extent.high[axis] = quantile(values, 1 - kFar);
   }
   return extent;
+}
+
+namespace {
+
+/** Room below a ceiling, m. */
+constexpr float kRoom = 1.2f;
+/** Ceilings are that flat: most of it within these, m. */
+constexpr float kFlat = 0.4f;
+
+/** The two uppermost surfaces of one column, m: centers of their highest cells. */
+struct Column {
+  float top = -std::numeric_limits<float>::infinity(), next = top;
+
+  void add(float z) {
+    if (z > top) std::swap(z, top);
+    if (top - z > kRoom) next = std::max(next, z);
+  }
+};
+
+/** Heights of what hangs over something with room between. */
+std::vector<float> hangingSurfaces(const std::vector<MapCell>& cells, std::size_t& columns) {
+  std::unordered_map<std::uint32_t, Column> byPlace;
+  for (const MapCell& cell : cells)
+    byPlace[std::uint32_t(cell.key[0]) << 16 | cell.key[1]].add(cell.center.z());
+  columns = byPlace.size();
+  std::vector<float> heights;
+  for (const auto& [place, column] : byPlace)
+    if (column.next > -std::numeric_limits<float>::infinity()) heights.push_back(column.top);
+  return heights;
+}
+
+/** The lowest height at which a flat surface of a room's size begins; heights are sorted. */
+float lowestFlatSurface(const std::vector<float>& heights, std::size_t size) {
+  for (std::size_t i = 0; i + size <= heights.size(); ++i)
+    if (heights[i + size - 1] - heights[i] < kFlat / 2) return heights[i];
+  return heights.front();
+}
+
+}  // namespace
+
+double heightUnderCeiling(const std::vector<MapCell>& cells) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::size_t columns = 0;
+  std::vector<float> heights = hangingSurfaces(cells, columns);
+  if (columns == 0 || heights.size() * 2 < columns) return kNone;
+  std::sort(heights.begin(), heights.end());
+  const float lower = heights[heights.size() / 5], upper = heights[heights.size() * 4 / 5];
+  if (upper - lower > kFlat) return kNone;
+  return lowestFlatSurface(heights, std::max<std::size_t>(1, columns / 20)) - kFlat / 2;
 }
 
 }  // namespace map_pictures

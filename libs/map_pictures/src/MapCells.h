@@ -1,17 +1,77 @@
 #pragma once
 #include <map_pictures/MapPictures.h>
-
+#include <semantic_octree/Cube.h>
+#include <semantic_octree/SemanticOcTree.h>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
-#include "LowestCells.h"
-
 namespace map_pictures {
+
+using semantic_octree::Cube;
+
+/** Calls visit(node, cube) for a map's nodes, in OctoMap's order; goes below a node only if it is
+ * told to. (OctoMap's iterators go everywhere.) */
+template <class Visit>
+void forEachNode(const semantic_octree::SemanticOcTree& tree, const Visit& visit) {
+  const auto walk = [&visit](const auto& self, const semantic_octree::SemanticOcTreeNode& node,
+                             const Cube& cube) -> void {
+    if (!visit(node, cube) || node.isLeaf()) return;
+    for (int i = 0; i < 8; ++i)
+      if (const auto child = node.child(i)) self(self, child, cube.child(i));
+  };
+  if (!tree.empty()) walk(walk, tree.root(), Cube());
+}
+
+/** How low a map is around each place: its ground, where that was seen. */
+class LowestCells {
+ public:
+  /** \param center, edge of a cell, m */
+  void add(const Eigen::Vector3f& center, float edge) {
+    const int left = squareOf(center.x() - edge / 2), right = squareOf(center.x() + edge / 2);
+    const int below = squareOf(center.y() - edge / 2), above = squareOf(center.y() + edge / 2);
+    for (int y = below; y <= above; ++y)
+      for (int x = left; x <= right; ++x)
+        if (lower(m_own, x, y, center.z())) addAround(x, y, center.z());
+  }
+
+  /** In the square of 1.5 m where a place is, or in one next to it; infinite if there is none. m */
+  float around(float x, float y) const {
+    const auto found = m_around.find(keyOf(squareOf(x), squareOf(y)));
+    return found == m_around.end() ? std::numeric_limits<float>::infinity() : found->second;
+  }
+
+ private:
+  using Squares = std::unordered_map<std::int64_t, float>;
+
+  static int squareOf(float meters) {
+    constexpr float kEdge = 1.5f;
+    return static_cast<int>(std::floor(meters / kEdge));
+  }
+  static std::int64_t keyOf(int x, int y) {
+    return std::int64_t(x) * (std::int64_t(1) << 32) + std::uint32_t(y);
+  }
+  static bool lower(Squares& squares, int x, int y, float z) {
+    const auto [square, isNew] = squares.emplace(keyOf(x, y), z);
+    if (!isNew && square->second <= z) return false;
+    square->second = z;
+    return true;
+  }
+  void addAround(int x, int y, float z) {
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) lower(m_around, x + dx, y + dy, z);
+  }
+
+  Squares m_own, m_around;
+};
 
 /** A cell that a picture shows: an occupied leaf, or an occupied inner node of the drawn depth. */
 struct MapCell {

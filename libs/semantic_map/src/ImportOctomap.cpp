@@ -1,6 +1,11 @@
+#include <map_operations/MapOperations.h>
+#include <octomap/ColorOcTree.h>
+#include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MapFiles.h>
+#include <semantic_types/ClassTable.h>
 #include <strict_files/TextFile.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -17,7 +22,20 @@ struct Header {
   std::string type;
   std::size_t size = 0;
   double resolution = 0;
+  semantic_types::ClassTable classes;
+
+  bool isColored() const { return type == "ColorOcTree"; }
 };
+
+/** What follows `#` in a header. */
+void readComment(std::istream& words, semantic_types::ClassTable& classes) {
+  std::string key, name;
+  int r = 0, g = 0, b = 0;
+  if (!(words >> key >> r >> g >> b && std::getline(words >> std::ws, name)) || key != "class")
+    return;
+  const auto byte = [](int x) { return static_cast<std::uint8_t>(std::clamp(x, 0, 255)); };
+  classes.add(name, {byte(r), byte(g), byte(b)});
+}
 
 Header readHeader(std::istream& in) {
   Header header;
@@ -31,6 +49,7 @@ Header readHeader(std::istream& in) {
     const strict_files::ClassicNumbers classic(words);
     std::string key;
     words >> key;
+    if (key == "#") readComment(words, header.classes);
     if (key == "id") words >> header.type;
     if (key == "size") words >> header.size;
     if (key == "res") words >> header.resolution;
@@ -92,37 +111,72 @@ std::string withoutColors(const std::string& bytes) {
   return plain;
 }
 
-std::unique_ptr<octomap::OcTree> readFrom(std::istream& in) {
-  const Header header = readHeader(in);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  auto tree = std::make_unique<octomap::OcTree>(header.resolution);
-  if (header.size == 0) return tree;
-  const bool colored = header.type == "ColorOcTree";
-  if (!colored && header.type != "OcTree")
+/** A file whose nodes were followed. */
+struct Checked {
+  Header header;
+  std::string nodes;
+
+  template <class Tree>
+  std::unique_ptr<Tree> tree(const std::string& bytes) const {
+    auto tree = std::make_unique<Tree>(header.resolution);
+    std::istringstream in(bytes);
+    if (header.size > 0) header.binary ? tree->readBinaryData(in) : tree->readData(in);
+    return tree;
+  }
+  std::unique_ptr<octomap::OcTree> occupancy() const {
+    return tree<octomap::OcTree>(header.isColored() && !header.binary ? withoutColors(nodes)
+                                                                      : nodes);
+  }
+};
+
+Checked checked(std::istream& in) {
+  Checked file{readHeader(in), {std::istreambuf_iterator<char>(in), {}}};
+  const Header& header = file.header;
+  if (header.size == 0) return file;
+  if (!header.isColored() && header.type != "OcTree")
     throw std::runtime_error("holds a map of type '" + header.type +
                              "', expected OcTree or ColorOcTree");
-  const std::size_t count = Nodes(bytes, header.binary ? 0 : colored ? 7 : 4).count();
+  const std::size_t payload = header.binary ? 0 : header.isColored() ? 7 : 4;
+  const std::size_t count = Nodes(file.nodes, payload).count();
   if (count != header.size)
     throw std::runtime_error("has " + std::to_string(count) + " nodes, its header says " +
                              std::to_string(header.size));
-  std::istringstream nodes(colored ? withoutColors(bytes) : bytes);
-  header.binary ? tree->readBinaryData(nodes) : tree->readData(nodes);
-  return tree;
+  return file;
 }
 
-}  // namespace
-
-std::unique_ptr<octomap::OcTree> readOctomapFile(const std::filesystem::path& file) {
+/** What `make` makes of a file's content; what goes wrong names the file. */
+template <class Make>
+auto readFile(const std::filesystem::path& file, const Make& make) {
   if (std::filesystem::is_fifo(file) || std::filesystem::is_character_file(file))
     throw std::runtime_error(file.string() + ": it is no file, but a device or a pipe");
   std::ifstream in(file, std::ios::binary);
   if (!in || std::filesystem::is_directory(file))
     throw std::runtime_error(file.string() + ": cannot be read");
   try {
-    return readFrom(in);
+    return make(checked(in));
   } catch (const std::exception& e) {
     throw std::runtime_error(file.string() + ": " + e.what());
   }
+}
+
+}  // namespace
+
+std::unique_ptr<octomap::OcTree> readOctomapFile(const std::filesystem::path& file) {
+  return readFile(file, [](const Checked& content) { return content.occupancy(); });
+}
+
+semantic_octree::SemanticOcTree importOctomapFile(const std::filesystem::path& file,
+                                                  const semantic_octree::SemanticOcTree* like) {
+  return readFile(file, [like](const Checked& content) {
+    const Header& header = content.header;
+    const auto filter = like ? like->filterParameters() : semantic_octree::FilterParameters();
+    const auto& classes = like                     ? like->classes()
+                          : header.classes.empty() ? CSemanticOctoMap::occupancyOnly()
+                                                   : header.classes;
+    if (header.isColored() && !header.binary && (like || !header.classes.empty()))
+      return fromOcTree(*content.tree<octomap::ColorOcTree>(content.nodes), classes, filter);
+    return fromOcTree(*content.occupancy(), classes, filter);
+  });
 }
 
 }  // namespace semantic_map

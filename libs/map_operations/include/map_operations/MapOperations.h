@@ -93,8 +93,8 @@ std::unique_ptr<octomap::ColorOcTree> toColorOcTree(const SemanticOcTree& map);
 
 // Their files. OctoMap's own functions print what they do.
 
-/** Writes an .ot file that holds a ColorOcTree. \throw std::runtime_error the stream does not take
- * it. */
+/** Writes an .ot file that holds a ColorOcTree; comments in its header, "# class R G B NAME", say
+ * what the colors mean. \throw std::runtime_error the stream does not take it. */
 void writeColorOcTree(std::ostream& out, const SemanticOcTree& map);
 /** Writes an .ot file that holds an OcTree. \throw std::runtime_error as above. */
 void writeOcTree(std::ostream& out, const SemanticOcTree& map);
@@ -105,6 +105,10 @@ void writeBinaryOcTree(std::ostream& out, const SemanticOcTree& map);
 /** Occupancy, put into the filter's limits; no voxel has a class.
  * \throw std::invalid_argument a map of another number of levels than 16, bad parameters. */
 SemanticOcTree fromOcTree(const octomap::OcTree& map, const ClassTable& classes,
+                          const FilterParameters& filter = {});
+/** An occupied leaf in exactly the color of a class is one in which a label of that class was seen;
+ * its occupancy ends at the filter's limit for a class. \throw std::invalid_argument as above. */
+SemanticOcTree fromOcTree(const octomap::ColorOcTree& map, const ClassTable& classes,
                           const FilterParameters& filter = {});
 
 }  // namespace semantic_octree

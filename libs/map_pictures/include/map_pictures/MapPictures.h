@@ -19,16 +19,12 @@ struct PictureStyle {
   /** Cells with their center above are not drawn, m. Without: nothing is cut off, except the
    * ceiling of a map that lies under one (an indoor map). */
   std::optional<double> maxHeight;
+
+  // For programs, without a name in files.
   /** Cells with their center more than that above the ground are not drawn, m: above the lowest
    * occupied cell within about 1.5 m to 3 m. On hills one height would be too high here and too low
    * there. Without: nothing is cut off so. */
   std::optional<double> maxAboveGround;
-  /** Above 0: voxels have the class that they have together with their neighbors, see
-   * semantic_octree::SmoothingOptions. Where a picture is too small for voxels, they have their
-   * own. */
-  double neighborWeight = 0;
-
-  // For programs, without a name in files.
   bool legend = true;  ///< names and colors of the classes that the picture shows
   std::string title;   ///< written above the legend
 

@@ -1,0 +1,109 @@
+#include "Inputs.h"
+
+#include <semantic_map/MapFiles.h>
+
+#include <algorithm>
+#include <fstream>
+
+namespace inputs {
+
+namespace fs = std::filesystem;
+using semantic_octree::MapFolder;
+using semantic_octree::SemanticOcTree;
+using semantic_octree::StoredMap;
+
+namespace {
+
+/** The first file of a folder, by name, with one of these endings. */
+std::optional<fs::path> fileIn(const fs::path& folder, const std::vector<std::string>& endings) {
+  std::optional<fs::path> first;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (std::find(endings.begin(), endings.end(), entry.path().extension()) != endings.end() &&
+        (!first || entry.path() < *first))
+      first = entry.path();
+  return first;
+}
+
+/** Programs write maps into folders of results. */
+void checkNoResults(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored) || MapFolder::isAt(path)) return;
+  std::optional<fs::path> meant = fileIn(path, {".semantic"});
+  if (fs::exists(path / "map.semantic")) meant = path / "map.semantic";
+  if (MapFolder::isAt(path / "tiles")) meant = path / "tiles";
+  if (meant)
+    throw std::runtime_error(path.string() + ": is a folder of results; did you mean '" +
+                             meant->string() + "'?");
+}
+
+std::string makesOne(const std::string& what, const std::string& command) {
+  return what + "; dataset2rawlog " + command + " makes a rawlog of it";
+}
+
+/** Empty: may be a rawlog. */
+std::string kindOfFolder(const fs::path& folder) {
+  if (fs::exists(folder / "velodyne")) return makesOne("a KITTI sequence", "semantic-kitti");
+  if (fs::exists(folder / "depth.txt")) return makesOne("a TUM RGB-D sequence", "tum");
+  if (fileIn(folder, {".mcap", ".db3"})) return makesOne("a bag of ROS 2", "rosbag2");
+  if (fileIn(folder, {".pcd", ".ply"})) return makesOne("a folder of point clouds", "pcd");
+  if (MapFolder::isAt(folder)) return "a map";
+  const auto rawlog = fileIn(folder, {".rawlog"});
+  return "a folder" + (rawlog ? "; did you mean '" + rawlog->string() + "'?" : "");
+}
+
+bool isCarmens(const fs::path& file) {
+  std::ifstream in(file);
+  std::string begin(1 << 16, '\0');
+  in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin.find("\nFLASER ") != std::string::npos ||
+         begin.find("\nROBOTLASER1 ") != std::string::npos;
+}
+
+std::string kindOfFile(const fs::path& file) {
+  const std::string ending = file.extension();
+  if (ending == ".mcap" || ending == ".db3") return makesOne("a bag of ROS 2", "rosbag2");
+  if (ending == ".pcd" || ending == ".ply") return makesOne("a point cloud", "pcd");
+  if (ending == ".semantic") return "a map";
+  if ((ending == ".log" || ending == ".clf") && isCarmens(file))
+    return makesOne("a log of CARMEN", "carmen");
+  return {};
+}
+
+}  // namespace
+
+CLI::Option* addMap(CLI::App& app, fs::path& map) {
+  return app.add_option("MAP", map, std::string("Map: ") + kMap)->required();
+}
+
+bool isOctomaps(const fs::path& file) {
+  return file.extension() == ".ot" || file.extension() == ".bt";
+}
+
+std::optional<SemanticOcTree> octomapIn(const fs::path& file) {
+  checkNoResults(file);
+  if (!isOctomaps(file)) return std::nullopt;
+  return semantic_map::importOctomapFile(file);
+}
+
+std::unique_ptr<StoredMap> openMap(const fs::path& path, double memory,
+                                   decltype(semantic_octree::MapFolderOptions::wanted) wanted) {
+  if (auto octomap = octomapIn(path)) return std::make_unique<StoredMap>(std::move(*octomap));
+  return std::make_unique<StoredMap>(path, memory, std::move(wanted));
+}
+
+SemanticOcTree loadMap(const fs::path& path) {
+  if (auto octomap = octomapIn(path)) return std::move(*octomap);
+  return semantic_octree::loadMap(path);
+}
+
+void checkRawlogs(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
+    std::error_code ignored;
+    const bool isFolder = fs::is_directory(file, ignored);
+    const std::string kind = isFolder ? kindOfFolder(file) : kindOfFile(file);
+    if (!kind.empty()) throw std::runtime_error(file.string() + ": is no rawlog, but " + kind);
+  }
+}
+
+}  // namespace inputs
