@@ -37,8 +37,7 @@ int run(const Cli& cli, const ros2::Arguments& arguments) {
   const std::vector<fs::path> files(arguments.files.begin(), arguments.files.end());
   const Parameters parameters = readParameters(files, arguments.parameters);
   cli.outputs.check({cli.output}, files);
-  SemanticOcTree map =
-      cli.map.empty() ? parameters.newMap() : inputs::loadMap(cli.map);
+  SemanticOcTree map = cli.map.empty() ? parameters.newMap() : inputs::loadMap(cli.map);
   MappingNode node(parameters, arguments, map, [&] {
     saveTree(map, cli.output.string());
     notes() << cli.output.string() << ": saved" << std::endl;
