@@ -6,7 +6,6 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "Evaluation.h"
-#include "LabelCounts.h"
 #include "RunProgram.h"
 #include "SmallRawlogs.h"
 #include "TemporaryFolder.h"
