@@ -12,7 +12,6 @@
 #include <stdexcept>
 
 #include "Conversion.h"
-#include "Output.h"
 
 namespace dataset2rawlog {
 namespace {

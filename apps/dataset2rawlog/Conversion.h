@@ -1,16 +1,33 @@
 #pragma once
+#include <labeled_cloud/CObservationLabeledCloud.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <semantic_types/ClassTable.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "FrameRange.h"
+#include "Progress.h"
 #include "Signals.h"
 #include "label_noise/LabelNoise.h"
 
 namespace dataset2rawlog {
+
+/** Which frames of a sequence to take: FIRST, FIRST + STEP, ... up to LAST, counted from 0. */
+struct FrameRange {
+  std::size_t first = 0, step = 1, last = static_cast<std::size_t>(-1);
+
+  bool contains(std::size_t frame) const {
+    return frame >= first && frame <= last && (frame - first) % step == 0;
+  }
+};
+
+/** Parses "FIRST:STEP:LAST"; LAST may be left out ("1:2:" is all odd frames).
+ * \throw std::invalid_argument naming the text. */
+FrameRange parseFrameRange(const std::string& text);
 
 using label_noise::LabelNoise;
 
@@ -38,6 +55,49 @@ struct Summary {
   /** Frames that had no pose or no labels at their time. */
   std::size_t skipped = 0;
 };
+
+/** The rawlog being written: poses and labeled clouds, with the label noise applied. */
+class Output {
+ public:
+  /** The conversion must outlive it. */
+  Output(const Conversion& conversion, const semantic_types::ClassTable& table);
+
+  /** Whether a frame is to be converted; says on the way how far that is.
+   * \param numFrames of the data set, wanted or not; 0: nobody knows */
+  bool wants(std::size_t frame, std::size_t numFrames = 0);
+
+  /** Adds the robot's pose at a time. */
+  void writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D& T_map_robot);
+
+  /** Adds a cloud seen from the robot's origin, after its labels took the noise. */
+  void writeCloud(mrpt::Clock::time_point time, const std::string& sensorLabel,
+                  semantic_types::LabeledCloud cloud);
+
+  /** Adds another observation of so many points, whose labels took the noise already. */
+  void writeScan(const mrpt::obs::CObservation& observation, std::size_t points,
+                 std::size_t labeled);
+
+  /** Adds what is no scan, as a picture. */
+  void writeOther(const mrpt::obs::CObservation& observation) { m_writer.write(observation); }
+
+  void skip() { ++m_summary.skipped; }
+  LabelNoise& noise() { return m_noise; }
+
+  /** Completes the file. \throw std::runtime_error not a single scan was written. */
+  Summary finish();
+
+ private:
+  const Conversion& m_conversion;
+  labeled_cloud::RawlogWriter m_writer;
+  LabelNoise m_noise;
+  Eigen::Isometry3d m_T_map_sensor = Eigen::Isometry3d::Identity();  ///< of the last pose
+  std::vector<std::string> m_classNames;
+  Summary m_summary;
+  std::optional<Progress> m_progress;
+};
+
+/** The folder of the images of a rawlog: X_Images for X.rawlog. */
+std::filesystem::path imagesOf(const std::filesystem::path& rawlog);
 
 /** A sequence in SemanticKITTI's layout: velodyne/, labels/, calib.txt, poses.txt, times.txt.
  * Each scan becomes a CObservationRobotPose (the LiDAR's pose inv(Tr) * P * Tr), with

@@ -5,9 +5,8 @@
 #include <stdexcept>
 
 #include "Conversion.h"
-#include "Output.h"
 #include "bags/Bag.h"
-#include "bags/BagFrames.h"
+#include "bags/BagMessages.h"
 
 namespace dataset2rawlog {
 namespace {

@@ -4,7 +4,6 @@
 
 #include "Application.h"
 #include "Conversion.h"
-#include "KittiCamera.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
 

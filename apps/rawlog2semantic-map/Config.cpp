@@ -81,7 +81,6 @@ void readLabelConfig(const CConfigFileBase& ini, Config& config) {
   readLabels(ini, config);
   readCameras(ini, config);
   config.cameras.skipProblems = config.stream.onProblem == ScanStreamOptions::OnProblem::Skip;
-  config.insertion.conversion.occlusionParallax = config.cameras.occlusionParallax;
 }
 
 Config readConfig(const fs::path& file) {

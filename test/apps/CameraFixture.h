@@ -48,9 +48,9 @@ class CameraMapping : public Rawlog2SemanticMap {
   }
 
   std::vector<std::string> labels() const { return {"--labels", (folder / "labels").string()}; }
-  std::vector<std::string> network(const std::string& kind = "softmax") const {
+  std::vector<std::string> network() const {
     const auto table = semantic_types::loadClassTable(folder / "classes.yaml");
-    folder.write("net.yaml", nearestColorConfig(40, 40, table, kind));
+    folder.write("net.yaml", nearestColorConfig(40, 40, table));
     return {"--network", saveNearestColorNetwork(folder / "net.onnx", 40, 40, table).string(),
             "--network-config", (folder / "net.yaml").string()};
   }

@@ -62,9 +62,10 @@ TEST(SampleNetwork, labelsTheVillageAsItsColorsSayHardAndSoft) {
   const int rows = int(frames[0]->cameraParams.nrows), cols = int(frames[0]->cameraParams.ncols);
   const TemporaryFolder folder;
   saveNearestColorNetwork(folder / "net.onnx", rows, cols, table);
-  folder.write("plain.ini", "[map]\nresolution = 0.4\n");
-  for (const char* kind : {"softmax", "argmax"}) {
-    folder.write("net.yaml", nearestColorConfig(rows, cols, table, kind));
+  folder.write("net.yaml", nearestColorConfig(rows, cols, table));
+  for (const char* kind : {"soft", "hard"}) {
+    folder.write("plain.ini",
+                 std::string("[map]\nresolution = 0.4\n[labels]\nkind = ") + kind + "\n");
     const ProgramRun run = runProgram(
         "rawlog2semantic-map",
         {"--config", (folder / "plain.ini").string(), "--classes", classes.string(), "--output",

@@ -24,8 +24,9 @@ TEST_F(CameraMapping, aFolderMayBelongToOneCamera) {
 }
 
 TEST_F(CameraMapping, aNetworkLabelsPicturesHardAndSoft) {
-  for (const char* kind : {"softmax", "argmax"}) {
-    const ProgramRun result = run("camera.rawlog", network(kind));
+  for (const char* kind : {"soft", "hard"}) {
+    configure(std::string("[labels]\nkind = ") + kind + "\n");
+    const ProgramRun result = run("camera.rawlog", network());
     ASSERT_EQ(result.status, 0) << result.errors;
     expectLabeledMap();
   }

@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "Evaluation.h"
-#include "LabelCounts.h"
 #include "RunProgram.h"
 #include "SmallRawlogs.h"
 #include "TemporaryFolder.h"

@@ -7,7 +7,6 @@
 #include "Outputs.h"
 #include "Readers.h"
 #include "dataset2rawlog/Conversion.h"
-#include "dataset2rawlog/TumFiles.h"
 #include "point_fields/PointFields.h"
 #include "poses/Poses.h"
 #include "rawlog2semantic-map/Config.h"

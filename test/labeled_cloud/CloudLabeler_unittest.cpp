@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/CloudLabeler.h>
+#include <labeled_cloud/Pictures.h>
 #include <mrpt/obs/CObservationImage.h>
 
+#include <cmath>
 #include <map>
+#include <random>
 
 #include "TemporaryFolder.h"
 
@@ -172,7 +175,126 @@ TEST_F(CloudLabelers, refuseBadOptionsByName) {
   CloudLabelerOptions options;
   options.tolerance = -1;
   EXPECT_TRUE(contains(errorOf([&] { make({}, options); }), "tolerance is -1"));
-  options = {};
-  options.occlusionParallax = NAN;
-  EXPECT_TRUE(contains(errorOf([&] { make({}, options); }), "occlusion_parallax"));
+}
+
+using namespace labeled_cloud;
+using Eigen::Isometry3d;
+using Eigen::Vector3f;
+
+namespace {
+
+mrpt::img::TCamera camera(int cols = 320, int rows = 240, double f = 200) {
+  mrpt::img::TCamera c;
+  c.ncols = cols, c.nrows = rows;
+  c.setIntrinsicParamsFromValues(f, f, cols / 2.0, rows / 2.0);
+  return c;
+}
+
+/** The textbook's formulas: of radial and tangential distortion, and of a fisheye. */
+Eigen::Vector2d pixelOf(const mrpt::img::TCamera& c, double x, double y) {
+  const double r2 = x * x + y * y;
+  if (c.distortion == mrpt::img::DistortionModel::kannala_brandt) {
+    const double r = std::sqrt(r2), t = std::atan(r);
+    const double scale = (t + c.k1() * std::pow(t, 3) + c.k2() * std::pow(t, 5) +
+                          c.k3() * std::pow(t, 7) + c.k4() * std::pow(t, 9)) /
+                         r;
+    return {c.fx() * scale * x + c.cx(), c.fy() * scale * y + c.cy()};
+  }
+  const double radial = 1 + c.k1() * r2 + c.k2() * r2 * r2;
+  const double u = x * radial + 2 * c.p1() * x * y + c.p2() * (r2 + 2 * x * x);
+  const double v = y * radial + c.p1() * (r2 + 2 * y * y) + 2 * c.p2() * x * y;
+  return {c.fx() * u + c.cx(), c.fy() * v + c.cy()};
+}
+
+/** A wall at 4 m, and a board at 2 m before its middle, as the origin sees them. */
+struct BoardBeforeWall {
+  std::vector<Vector3f> points;
+  std::vector<bool> onBoard;
+  BoardBeforeWall() {
+    for (float x = -1; x <= 1; x += 0.004f)
+      for (float y = -0.5f; y <= 0.5f; y += 0.004f) {
+        const bool board = std::abs(x) < 0.2f;
+        points.push_back(Vector3f(x, y, 1) * (board ? 2 : 4));
+        onBoard.push_back(board);
+      }
+  }
+};
+
+void expectPixelsWhereTheLensSays(const mrpt::img::TCamera& c) {
+  Isometry3d T = Isometry3d::Identity();
+  T.rotate(Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 3).normalized()));
+  T.translation() = Eigen::Vector3d(0.3, -0.1, 0.2);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(-5, 5);
+  std::vector<Vector3f> points(5000);
+  for (auto& p : points) p = {uniform(random), uniform(random), uniform(random)};
+  const auto pixels = visiblePixels(points, T, c, 0);
+  int seen = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d p = T * points[i].cast<double>();
+    const double x = p.x() / p.z(), y = p.y() / p.z();
+    const Eigen::Vector2d expected = pixelOf(c, x, y);
+    const bool inside = p.z() > 0.01 && expected.x() >= -0.5 && expected.x() < 319.5 &&
+                        expected.y() >= -0.5 && expected.y() < 239.5;
+    ASSERT_EQ(pixels[i].allFinite(), inside) << p.transpose();
+    if (!inside) continue;
+    ++seen;
+    EXPECT_LT((pixels[i].cast<double>() - expected).norm(), 0.01);
+  }
+  EXPECT_GT(seen, 200);
+}
+
+}  // namespace
+
+TEST(VisiblePixels, lieWhereLensAndPoseSay) {
+  auto c = camera();
+  c.dist = {-0.2, 0.05, 0.001, -0.002, 0, 0, 0, 0};
+  c.distortion = mrpt::img::DistortionModel::plumb_bob;
+  expectPixelsWhereTheLensSays(c);
+  c.setDistortionKannalaBrandt(0.03, -0.01, 0.002, -0.0005);
+  expectPixelsWhereTheLensSays(c);
+}
+
+TEST(VisiblePixels, doNotSeeWhatADisplacedCameraCannotSee) {
+  const BoardBeforeWall scene;
+  Isometry3d T_camera_points = Isometry3d::Identity();
+  T_camera_points.translation().x() = -0.3;  // the camera is to the right: the board moves left
+  const auto pixels = visiblePixels(scene.points, T_camera_points, camera(), 1.5);
+  int hidden = 0, wronglyHidden = 0, wronglySeen = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Vector3f& p = scene.points[i];
+    const double x = (p.x() - 0.3) / p.z();  // the board fills -0.35 .. 0.05 there
+    if (std::abs(x) > 0.79) continue;        // outside of the image
+    const double edge = 0.05;
+    const bool behind = !scene.onBoard[i] && x > -0.35 && x < 0.05;
+    const bool clearlyBehind = behind && x > -0.35 + edge && x < 0.05 - edge;
+    const bool clearlySeen = scene.onBoard[i] || x < -0.35 - edge || x > 0.05 + edge;
+    hidden += !pixels[i].allFinite();
+    wronglySeen += clearlyBehind && pixels[i].allFinite();
+    wronglyHidden += clearlySeen && !pixels[i].allFinite();
+  }
+  EXPECT_GT(hidden, 3000);
+  EXPECT_EQ(wronglySeen, 0);
+  EXPECT_EQ(wronglyHidden, 0);
+}
+
+TEST(VisiblePixels, seeGroundAtGrazingAnglesFromBesideTheSensor) {
+  std::vector<Vector3f> ground;  // as a LiDAR of 64 rings at 1.7 m sees it, y down
+  for (double down = 3; down < 25; down += 0.4)
+    for (double turn = -30; turn < 30; turn += 0.2) {
+      const double range = 1.7 / std::tan(down * M_PI / 180), a = turn * M_PI / 180;
+      ground.emplace_back(range * std::sin(a), 1.7, range * std::cos(a));
+    }
+  Isometry3d T_camera_points = Isometry3d::Identity();
+  T_camera_points.translation() = Eigen::Vector3d(0, -0.3, -0.3);
+  const auto c = camera(1240, 376, 720);
+  const auto all = visiblePixels(ground, T_camera_points, c, 0);
+  const auto seen = visiblePixels(ground, T_camera_points, c, 1.5);
+  std::size_t inImage = 0, hidden = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    inImage += all[i].allFinite();
+    hidden += all[i].allFinite() && !seen[i].allFinite();
+  }
+  EXPECT_GT(inImage, 3000u);
+  EXPECT_EQ(hidden, 0u);
 }

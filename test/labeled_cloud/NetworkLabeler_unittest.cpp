@@ -65,13 +65,6 @@ TEST_F(NetworkLabelers, answerProbabilitiesThatAreTheSoftmaxOfTheScores) {
   }
 }
 
-TEST_F(NetworkLabelers, answerClassesWithArgmax) {
-  const auto image = labeler(nearestColorConfig(4, 8, table, "argmax")).label(halves(4, 8));
-  EXPECT_TRUE(image->probabilities.empty());
-  EXPECT_EQ(image->classes[3], 1);
-  EXPECT_EQ(image->classes[4], 2);
-}
-
 TEST_F(NetworkLabelers, confuseTheColorsIfTheOrderOfChannelsIsWrong) {
   const std::string yaml = "input: {width: 8, height: 4, channels: bgr}\nclasses: [red, blue]\n";
   EXPECT_EQ(labeler(yaml).label(halves(4, 8))->classOf(0), 2);
@@ -97,32 +90,12 @@ TEST_F(NetworkLabelers, cutTopRowsOffOrRepeatTheLastOneToKeepTheAspect) {
   EXPECT_EQ(wide->classOf(*wide->cellAt(9, 3)), 2);
 }
 
-TEST_F(NetworkLabelers, leaveUnsurePixelsWithoutAClassAndFoldNames) {
-  cv::Mat3b purple(4, 8, cv::Vec3b(130, 0, 125));  // hardly more blue than red
+TEST_F(NetworkLabelers, foldNames) {
   const std::string input = "input: {width: 8, height: 4}\n";
-  const std::string floor = input + "output: {min_confidence: 0.9}\nclasses: [red, blue]\n";
-  EXPECT_EQ(labeler(floor).label(picture(purple))->classOf(0), 0);
-  EXPECT_EQ(labeler(floor).label(halves(4, 8))->classOf(0), 1);
   const std::string folded = input + "classes: [rot, blue]\nfold: {rot: red, blue: no_class}\n";
   const auto image = labeler(folded).label(halves(4, 8));
   EXPECT_EQ(image->classOf(0), 1);
   EXPECT_EQ(image->classOf(7), 0);
-}
-
-TEST_F(NetworkLabelers, labelSeveralPicturesAtOnceAsOneByOne) {
-  SmallOnnx net;  // of any number of images: a ReLU is the score of red, green and blue
-  net.node("Relu", {"image"}, "scores");
-  const auto file = net.save(folder / "relu.onnx", {2, 3, 4, 8}, {2, 3, 4, 8});
-  table.add("green", {0, 255, 0});
-  NetworkLabeler labeler(file, 3,
-                         options("input: {width: 8, height: 4}\nbatch: 2\n"
-                                 "classes: [red, green, blue]\n"));
-  EXPECT_EQ(labeler.batch(), 2u);
-  const auto a = halves(4, 8), b = picture(cv::Mat3b(4, 8, cv::Vec3b(0, 200, 0)));
-  const auto images = labeler.label(std::vector<const mrpt::obs::CObservation*>{&a, &b});
-  EXPECT_EQ(images[0]->classOf(0), 1);
-  EXPECT_EQ(images[0]->classOf(7), 2);
-  EXPECT_EQ(images[1]->classOf(5), 3);
 }
 
 TEST_F(NetworkLabelers, sayWhatIsWrong) {

@@ -1,13 +1,16 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/Rawlogs.h>
+#include <labeled_cloud/ScanStream.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <zstd.h>
 
+#include <atomic>
 #include <random>
+#include <stdexcept>
 
 #include "RawlogFile.h"
 #include "TemporaryFolder.h"
@@ -84,7 +87,7 @@ std::vector<std::string> compressedBothWays(const TemporaryFolder& folder) {
   return {folder.read("gz.rawlog"), zstd(piecesOf(folder))};
 }
 
-std::string errorReading(const std::filesystem::path& file) {
+std::string errorReadingRawlog(const std::filesystem::path& file) {
   return errorOf([&] { countEntries(file); });
 }
 
@@ -135,11 +138,11 @@ TEST(RawlogReader, readsTheRawlogsThatMrptShips) {
 
 TEST(RawlogReader, missingFilesFoldersAndEmptyRawlogsAreNamed) {
   const TemporaryFolder folder;
-  EXPECT_EQ(errorReading("/nowhere/a.rawlog"), "/nowhere/a.rawlog: there is no such file");
-  EXPECT_TRUE(contains(errorReading(folder.path()), "there is no such file"));
+  EXPECT_EQ(errorReadingRawlog("/nowhere/a.rawlog"), "/nowhere/a.rawlog: there is no such file");
+  EXPECT_TRUE(contains(errorReadingRawlog(folder.path()), "there is no such file"));
   const std::string empty = folder.write("empty.rawlog", "").string();
-  EXPECT_EQ(errorReading(empty), empty + ": the rawlog is empty (object 1, near byte 0)");
-  EXPECT_TRUE(contains(errorReading(writeRawlog(folder / "none.rawlog", {})), "empty"));
+  EXPECT_EQ(errorReadingRawlog(empty), empty + ": the rawlog is empty (object 1, near byte 0)");
+  EXPECT_TRUE(contains(errorReadingRawlog(writeRawlog(folder / "none.rawlog", {})), "empty"));
 }
 
 TEST(RawlogReader, everyTruncationOfACompressedRawlogIsNoticed) {
@@ -148,7 +151,8 @@ TEST(RawlogReader, everyTruncationOfACompressedRawlogIsNoticed) {
     for (std::size_t size = 0; size < whole.size();
          size += 1 + (size > 30 && size + 30 < whole.size()) * 97) {
       const auto file = folder.write("cut.rawlog", whole.substr(0, size));
-      EXPECT_TRUE(contains(errorReading(file), "cut.rawlog: ")) << size << " of " << whole.size();
+      EXPECT_TRUE(contains(errorReadingRawlog(file), "cut.rawlog: "))
+          << size << " of " << whole.size();
     }
 }
 
@@ -158,7 +162,7 @@ TEST(RawlogReader, aPlainRawlogThatEndsWithinAnObjectIsNoticed) {
   const std::string one = folder.read("one.rawlog");
   for (std::size_t size = 1; size < one.size(); ++size) {
     const auto file = folder.write("cut.rawlog", one + one.substr(0, size));
-    EXPECT_TRUE(contains(errorReading(file), "(object 2, near byte ")) << size;
+    EXPECT_TRUE(contains(errorReadingRawlog(file), "(object 2, near byte ")) << size;
   }
 }
 
@@ -170,7 +174,7 @@ TEST(RawlogReader, alteredBytesAreNoticed) {
     for (int i = 0; i < 200; ++i) {
       std::string altered = whole;
       altered[10 + random() % (whole.size() - 10)] ^= 1 << random() % 8;
-      const std::string error = errorReading(folder.write("bad.rawlog", altered));
+      const std::string error = errorReadingRawlog(folder.write("bad.rawlog", altered));
       if (error.empty()) {  // Zstandard has bits that mean nothing
         EXPECT_EQ(unzstd(altered), pieces[0] + pieces[1] + pieces[2]) << i;
       } else {
@@ -182,11 +186,12 @@ TEST(RawlogReader, alteredBytesAreNoticed) {
 TEST(RawlogReader, somethingElseThanARawlogIsRefusedWithoutACallStack) {
   const TemporaryFolder folder;
   const auto text = folder.write("text.rawlog", "This is no rawlog, but a text of some length.");
-  EXPECT_TRUE(contains(errorReading(text), "text.rawlog: ")) << errorReading(text);
-  EXPECT_FALSE(contains(errorReading(text), "stack")) << errorReading(text);
+  EXPECT_TRUE(contains(errorReadingRawlog(text), "text.rawlog: ")) << errorReadingRawlog(text);
+  EXPECT_FALSE(contains(errorReadingRawlog(text), "stack")) << errorReadingRawlog(text);
   const auto pose = std::make_shared<mrpt::poses::CPose3DPDFGaussian>();
   const auto other = writeRawlog(folder / "pose.rawlog", {pose});
-  EXPECT_TRUE(contains(errorReading(other), "CPose3DPDFGaussian does not belong in a rawlog"));
+  EXPECT_TRUE(
+      contains(errorReadingRawlog(other), "CPose3DPDFGaussian does not belong in a rawlog"));
 }
 
 TEST(RawlogReader, aClassThatIsNotRegisteredIsNamed) {
@@ -194,6 +199,70 @@ TEST(RawlogReader, aClassThatIsNotRegisteredIsNamed) {
   writeRawlog<CFileOutputStream>(folder / "a.rawlog", {cloudAt(1, 4)});
   std::string bytes = folder.read("a.rawlog");
   bytes.replace(bytes.find("Labeled"), 7, "Unheard");
-  const std::string error = errorReading(folder.write("b.rawlog", bytes));
+  const std::string error = errorReadingRawlog(folder.write("b.rawlog", bytes));
   EXPECT_TRUE(contains(error, "CObservationUnheardCloud' which is not registered")) << error;
+}
+
+using labeled_cloud::ReadAhead;
+
+TEST(ReadAhead, handsThingsOverInTheirOrder) {
+  int made = 0;
+  ReadAhead<int> ahead(
+      [&]() -> std::optional<int> {
+        return made < 1000 ? std::optional<int>(made++) : std::nullopt;
+      },
+      3);
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(ahead.next(), i);
+  EXPECT_FALSE(ahead.next());
+  EXPECT_FALSE(ahead.next());
+}
+
+TEST(ReadAhead, makesNoMoreThanMayWait) {
+  std::atomic<int> made = 0;
+  ReadAhead<int> ahead([&] { return std::optional<int>(++made); }, 3);
+  for (int taken = 1; taken < 100; ++taken) {
+    ahead.next();
+    ASSERT_LE(made, taken + 3 + 1);  // one more is in the maker's hands
+  }
+}
+
+TEST(ReadAhead, throwsWhatTheMakerThrewAfterWhatCameBefore) {
+  int made = 0;
+  ReadAhead<int> ahead(
+      [&]() -> std::optional<int> {
+        if (made == 2) throw std::runtime_error("the third");
+        return made++;
+      },
+      10);
+  EXPECT_EQ(ahead.next(), 0);
+  EXPECT_EQ(ahead.next(), 1);
+  EXPECT_THROW(ahead.next(), std::runtime_error);
+  EXPECT_FALSE(ahead.next());
+}
+
+using namespace labeled_cloud;
+
+TEST(RawlogWriter, theFileAppearsWhenItIsCompleteAndReplacesTheOldOne) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.rawlog", "old");
+  {
+    RawlogWriter writer(file);
+    writer.write(CObservationLabeledCloud());
+    EXPECT_EQ(folder.read("a.rawlog"), "old");
+    writer.finish();
+  }
+  RawlogReader reader(file);
+  EXPECT_TRUE(reader.next());
+  EXPECT_FALSE(reader.next());
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(RawlogWriter, whatWasThereStaysIfItIsNotFinished) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.rawlog", "old");
+  CObservationLabeledCloud bad;
+  bad.cloud.classes = {1};
+  EXPECT_ANY_THROW(RawlogWriter(file).write(bad));
+  EXPECT_EQ(folder.read("a.rawlog"), "old");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }

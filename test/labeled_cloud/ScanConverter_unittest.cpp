@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/Rawlogs.h>
+#include <mrpt/maps/CColouredPointsMap.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationComment.h>
@@ -66,6 +67,26 @@ TEST(UnlabeledClouds, countForOccupancyOnly) {
   EXPECT_EQ(scan.counts.invalid, 2u);
   EXPECT_EQ(scan.counts.labeled, 0u);
   EXPECT_EQ(scan.T_robot_sensor.x(), 5);
+}
+
+TEST(ColoredClouds, haveTheClassesOfTheTablesColorsUnlessTheyAreAPhotographs) {
+  semantic_types::ClassTable table;
+  table.add("road", {128, 64, 129});
+  table.add("car", {245, 150, 100});
+  auto map = mrpt::maps::CColouredPointsMap::Create();
+  const auto add = [&map](float x, float r, float g, float b) {
+    map->insertPointRGB(x, 0, 0, r / 255, g / 255, b / 255);
+  };
+  add(1, 245, 150, 100);
+  add(2, 0, 0, 0);
+  add(NAN, 245, 150, 100);
+  add(3, 128, 64, 129);
+  mrpt::obs::CObservationPointCloud obs;
+  obs.pointcloud = map;
+  const auto classes = [&] { return ScanConverter(table).convert(obs)->cloud.classes; };
+  EXPECT_EQ(classes(), (std::vector<semantic_types::ClassId>{2, 0, 1}));
+  add(4, 128, 64, 130);
+  EXPECT_EQ(classes(), std::vector<semantic_types::ClassId>());
 }
 
 TEST(UnlabeledClouds, withoutAllTheirCoordinatesAreRefused) {

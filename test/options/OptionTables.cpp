@@ -82,8 +82,6 @@ std::vector<OptionTable> mapTables() {
 
 std::vector<OptionTable> labelTables() {
   using namespace labeled_cloud;
-  OptionTable network{"Networks", "`batch` stands outside of both sections.", {}, {}};
-  add<NetworkOptions>(network, [](auto& o, OptionList& list) { o.describe(list); });
   OptionTable input{"Networks: input", "Section `input` of a network's configuration.", {}, {}};
   add<NetworkOptions>(input, [](auto& o, OptionList& list) { o.describeInput(list); });
   OptionTable output{"Networks: output", "Section `output` of a network's configuration.", {}, {}};
@@ -99,7 +97,6 @@ std::vector<OptionTable> labelTables() {
           "optics or the pose may be left out as a whole."),
       input,
       output,
-      network,
   };
 }
 

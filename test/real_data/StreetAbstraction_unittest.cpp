@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
+#include <map_correction/KeyframeMap.h>
 #include <semantic_abstraction/Abstraction.h>
+#include <semantic_map/MapFiles.h>
 #include <semantic_types/ClassTable.h>
+
+#include <random>
 
 #include "DataSets.h"
 #include "SharedData.h"
@@ -46,4 +50,103 @@ TEST(StreetAbstraction, incrementalEqualsBatchAfterEveryScanAndPrunedEqualsUnpru
   for (std::size_t t = 0; t < options.weights.terms.size(); ++t)
     EXPECT_NEAR(full.information[t], unprunedFull.information[t], 1e-12);
   EXPECT_LT(a.leaves().size(), pruned.getNumLeafNodes() / 5);
+}
+
+
+namespace {
+
+class CorrectedStreet : public testing::TestWithParam<const char*> {};
+
+/** Up to 0.5 m along each axis, and 2 degrees. */
+Eigen::Isometry3d perturbed(Eigen::Isometry3d T, std::mt19937& random) {
+  const auto uniform = [&random] { return static_cast<double>(random()) / 2147483648.0 - 1; };
+  const double angle = uniform() * 2 * M_PI / 180;
+  T.translation() += 0.5 * Eigen::Vector3d(uniform(), uniform(), uniform());
+  T.linear() *= Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return T;
+}
+
+}  // namespace
+
+TEST_P(CorrectedStreet, isTheMapOfTheTruePosesToTheBit) {
+  const std::string sequence = std::string("semantic_kitti/") + GetParam();
+  SKIP_WITHOUT_DATA(sequence);
+  const auto table = semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
+                                                    "config/classes/semantic_kitti.yaml");
+  const auto frames = readSemanticKitti(sharedDataDir() / sequence, table);
+  SemanticOcTree map(0.2, table), expected(0.2, table);
+  AbstractionOptions abstraction;
+  abstraction.weights.terms = {tree_abstraction::relevant("1", 1, {1})};
+  abstraction.weights.alpha = 0.002;
+  setAbstraction(map, abstraction);
+  setAbstraction(expected, abstraction);
+  KeyframeMap keyframes(map);
+  InsertionOptions options;
+  options.maxRange = 30;
+  std::mt19937 random(2);
+  std::vector<KeyframePose> truth;
+  for (const LabeledFrame& frame : frames) {
+    truth.push_back({keyframes.begin(perturbed(frame.T_map_sensor, random)), frame.T_map_sensor});
+    keyframes.insert(frame.cloud, Eigen::Isometry3d::Identity(), options);
+    expected.insert(frame.cloud, frame.T_map_sensor, options);
+  }
+  EXPECT_FALSE(map == expected);
+  keyframes.move({truth.begin(), truth.begin() + 3});
+  EXPECT_FALSE(map == expected);
+  keyframes.move(truth);
+  EXPECT_TRUE(map == expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sequences, CorrectedStreet, testing::Values("00", "07"));
+
+using mrpt::maps::COccupancyGridMap2D;
+using semantic_types::ClassTable;
+
+namespace {
+
+struct RightPoints {
+  int points = 0, right = 0;
+  void add(bool isRight) { ++points, right += isRight; }
+  double value() const { return double(right) / points; }
+};
+
+/** Counts points near the sensor, which is 1.73 m above the street: the road's in free cells, and
+ * in occupied ones those of what stands there, half a meter to one and a half above it. */
+void judge(const COccupancyGridMap2D& grid, const LabeledFrame& frame, const ClassTable& classes,
+           RightPoints& road, RightPoints& standing) {
+  for (std::size_t i = 0; i < frame.cloud.size(); ++i) {
+    const Eigen::Vector3f& p = frame.cloud.points[i];
+    const auto id = frame.cloud.classes[i];
+    if (frame.isMoving(i) || id == 0 || p.norm() > 12) continue;
+    const Eigen::Vector3d q = frame.T_map_sensor * p.cast<double>();
+    const float free = grid.getPos(float(q.x()), float(q.y()));
+    const std::string& name = classes.name(id);
+    if (name == "road") road.add(free > 0.5f);
+    if ((name == "car" || name == "building") && p.z() > -1.2f && p.z() < -0.3f)
+      standing.add(free < 0.5f);
+  }
+}
+
+}  // namespace
+
+TEST(StreetGrid, theRoadIsFreeAndCarsAndWallsAreOccupied) {
+  SKIP_WITHOUT_DATA("semantic_kitti");
+  const ClassTable classes = semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
+                                                            "config/classes/semantic_kitti.yaml");
+  const auto frames = readSemanticKitti(sharedDataDir() / "semantic_kitti/00", classes);
+  semantic_octree::SemanticOcTree map(0.2, classes);
+  for (const LabeledFrame& frame : frames) map.insert(frame.cloud, frame.T_map_sensor);
+
+  semantic_map::GridOptions byClass;
+  for (const char* name : {"road", "sidewalk", "parking", "terrain"})
+    byClass.ground.push_back(*classes.find(name));
+  for (const auto& options : {semantic_map::GridOptions(), byClass}) {
+    const COccupancyGridMap2D grid = gridOf(map, options);
+    RightPoints road, standing;
+    for (const LabeledFrame& frame : frames) judge(grid, frame, classes, road, standing);
+    EXPECT_GT(road.points, 10000);
+    EXPECT_GT(standing.points, 1000);
+    EXPECT_GT(road.value(), 0.98);
+    EXPECT_GT(standing.value(), 0.9);
+  }
 }

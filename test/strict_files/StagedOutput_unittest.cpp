@@ -8,11 +8,25 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "FullDisk.h"
-#include "StagedText.h"
 #include "TemporaryFolder.h"
+
+namespace {
+
+inline void write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file) << text;
+}
+
+inline std::size_t entriesOf(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder),
+                                                std::filesystem::directory_iterator()));
+}
+
+}  // namespace
 
 namespace fs = std::filesystem;
 using strict_files::OutputFolder;
@@ -250,4 +264,141 @@ TEST(OutputFolder, ofTwoProcessesAtOnceTheFilesAreOfOne) {
   EXPECT_EQ(statusOf(fast), 0);
   for (const std::string& name : names) EXPECT_EQ(folder.read(name), "fast") << name;
   EXPECT_EQ(entriesOf(folder.path()), names.size());
+}
+
+using strict_files::ScratchFile;
+
+namespace {
+
+std::string readAt(const ScratchFile& file, std::uint64_t place, std::size_t size) {
+  std::string bytes(size, '\0');
+  file.read(place, bytes.data(), size);
+  return bytes;
+}
+
+}  // namespace
+
+TEST(ScratchFile, givesBackWhatWasWrittenAndLeavesNothingBehind) {
+  const TemporaryFolder folder;
+  {
+    ScratchFile file(folder.path());
+    const std::string first(100000, 'a'), second(300, 'b');
+    const auto a = file.append(first.data(), first.size());
+    const auto b = file.append(second.data(), second.size());
+    EXPECT_EQ(readAt(file, a, first.size()), first);
+    file.discard(a, first.size());
+    EXPECT_EQ(readAt(file, b, second.size()), second);
+    const auto c = file.append(first.data(), 10);
+    EXPECT_EQ(readAt(file, b, 310), second + first.substr(0, 10));
+    EXPECT_EQ(c, first.size() + second.size());
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(ScratchFile, givesBackToTheDiskWhatIsDiscarded) {
+  const TemporaryFolder folder;
+  ScratchFile file(folder.path());
+  const std::string much(1 << 20, 'a');
+  const auto a = file.append(much.data(), much.size());
+  const auto bytesOnDisk = [&] {
+    struct stat status;
+    EXPECT_EQ(stat(fs::directory_iterator(folder.path())->path().c_str(), &status), 0);
+    return 512 * static_cast<std::size_t>(status.st_blocks);
+  };
+  if (bytesOnDisk() < much.size())
+    GTEST_SKIP() << "a file system that stores less than it is given";
+  file.discard(a, much.size());
+  EXPECT_LT(bytesOnDisk(), much.size() / 2);
+}
+
+TEST(ScratchFile, saysWhereItCannotBe) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(contains(errorOf([&] { ScratchFile(folder / "absent"); }), folder / "absent"));
+}
+
+TEST(ScratchFile, doesNotReadBeyondItsEnd) {
+  const TemporaryFolder folder;
+  ScratchFile file(folder.path());
+  file.append("abc", 3);
+  char bytes[10];
+  EXPECT_THROW(file.read(0, bytes, 10), std::runtime_error);
+}
+
+using strict_files::FileLock;
+using Kind = FileLock::Kind;
+
+TEST(FileLock, isHeldByManyReadersOrOneWriter) {
+  const TemporaryFolder folder;
+  const auto file = folder / "lock";
+  {
+    const FileLock one(file, Kind::Shared), another(file, Kind::Shared);
+    EXPECT_TRUE(FileLock::tryTo(file, Kind::Shared));
+    EXPECT_FALSE(FileLock::tryTo(file, Kind::Exclusive));
+  }
+  auto writer = FileLock::tryTo(file, Kind::Exclusive);
+  EXPECT_TRUE(writer);
+  EXPECT_FALSE(FileLock::tryTo(file, Kind::Shared));
+  const FileLock moved = std::move(*writer);
+  writer.reset();
+  EXPECT_FALSE(FileLock::tryTo(file, Kind::Exclusive));
+}
+
+TEST(FileLock, isEverybodysWhereItCannotBeMade) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(FileLock::tryTo(folder / "nowhere/lock", Kind::Exclusive));
+  EXPECT_TRUE(FileLock::tryTo(folder / "nowhere/lock", Kind::Exclusive));
+}
+
+TEST(StagedFile, mayComeToTheDiskLater) {
+  const TemporaryFolder folder;
+  strict_files::StagedFile file(folder / "later.txt");
+  std::ofstream(file.path()) << "content";
+  file.commit(strict_files::StagedFile::Disk::Later);
+  EXPECT_EQ(folder.read("later.txt"), "content");
+}
+
+TEST(OutputFolder, nothingTakesItsPlaceWhereOneOfThemCannot) {
+  const TemporaryFolder folder;
+  folder.write("a", "before");
+  fs::create_directory(folder / "b");
+  OutputFolder output(folder.path());
+  for (const char* name : {"a", "b"}) write(output.staged(name), "after");
+  EXPECT_TRUE(contains(errorOf([&] { output.commit({"a", "b"}); }), "b: cannot be written: it is"));
+  EXPECT_EQ(folder.read("a"), "before");
+}
+
+TEST(OutputFolder, filesTakeTheirPlaceTogether) {
+  const TemporaryFolder folder;
+  folder.write("out/a", "before");
+  folder.write("out/b", "before");
+  folder.write("out/other", "before");
+  {
+    OutputFolder output(folder / "out");
+    write(output.staged("a"), "after");
+    EXPECT_EQ(folder.read("out/a"), "before");
+    output.commit({"a", "b"});
+  }
+  EXPECT_EQ(folder.read("out/a"), "after");
+  EXPECT_FALSE(fs::exists(folder / "out/b"));  // it was not written: of another map
+  EXPECT_EQ(folder.read("out/other"), "before");
+  EXPECT_EQ(entriesOf(folder / "out"), 2u);
+}
+
+TEST(OutputFolder, withoutCommitIsAsBefore) {
+  const TemporaryFolder folder;
+  folder.write("out/a", "before");
+  {
+    OutputFolder output(folder / "out"), created(folder / "new/below");
+    write(output.staged("a"), "half");
+  }
+  EXPECT_EQ(folder.read("out/a"), "before");
+  EXPECT_EQ(entriesOf(folder / "out"), 1u);
+  EXPECT_FALSE(fs::exists(folder / "new/below"));
+}
+
+TEST(OutputFolder, namesAFolderThatCannotBeWritten) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("file", "");
+  EXPECT_TRUE(
+      contains(errorOf([&] { OutputFolder output(file); }), file.string() + ": cannot write"));
 }

@@ -34,11 +34,10 @@ inline std::filesystem::path saveNearestColorNetwork(const std::filesystem::path
 }
 
 /** The configuration that goes with it. */
-inline std::string nearestColorConfig(int rows, int cols, const semantic_types::ClassTable& table,
-                                      const std::string& labels = "softmax") {
+inline std::string nearestColorConfig(int rows, int cols, const semantic_types::ClassTable& table) {
   std::string names;
   for (int id = 1; id <= table.size(); ++id)
     names += (id > 1 ? ", " : "") + table.name(static_cast<semantic_types::ClassId>(id));
   return "input: {width: " + std::to_string(cols) + ", height: " + std::to_string(rows) +
-         "}\noutput: {labels: " + labels + "}\nclasses: [" + names + "]\n";
+         "}\nclasses: [" + names + "]\n";
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <set>
@@ -7,6 +8,9 @@
 #include <vector>
 
 namespace bags {
+
+/** Bytes of a chunk, or a message, that is larger are refused. */
+constexpr std::uint64_t kMostChunkBytes = std::uint64_t{1} << 30;
 
 /** A topic of a bag. */
 struct BagTopic {

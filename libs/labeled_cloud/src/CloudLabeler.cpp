@@ -1,28 +1,31 @@
 #include <labeled_cloud/CloudLabeler.h>
-#include <strict_files/Words.h>
-
-#include <algorithm>
-#include <stdexcept>
 
 #include <labeled_cloud/Pictures.h>
 #include <labeled_cloud/Trajectory.h>
-#include "ObservationName.h"
+#include <mrpt/core/bits_math.h>
+#include <mrpt/math/TPose3D.h>
+#include <strict_files/TextFile.h>
+#include <strict_files/Words.h>
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
 #include "PointLabels.h"
 
 namespace labeled_cloud {
 
+using mrpt::DEG2RAD;
 using mrpt::obs::CObservation;
 using mrpt::poses::CPose3D;
+using strict_files::above;
+using strict_files::atLeast;
 using Time = Trajectory::Time;
 
 void CloudLabelerOptions::describe(strict_files::OptionList& list) {
   using strict_files::atLeast;
   list.add("tolerance", tolerance, "s", atLeast(0).orInfinite(),
            "largest time between a scan and the picture that labels it");
-  list.add(
-      "occlusion_parallax", occlusionParallax, "pixels", atLeast(0),
-      "how far a point in front must shift against one behind it, between the sensor's and the "
-      "camera's view, to hide it; 0: nothing is hidden");
 }
 
 void CloudLabelerOptions::validate() const {
@@ -101,34 +104,15 @@ std::vector<CloudLabeler::Picture*> CloudLabeler::nearestPictures(Time time) {
   return nearest;
 }
 
-std::vector<CloudLabeler::Picture*> CloudLabeler::waitingWith(Picture& picture) {
-  std::vector<Picture*> waiting = {&picture};
-  for (auto& [camera, pictures] : m_pictures)
-    for (Picture& p : pictures)
-      if (waiting.size() < m_labeler->batch() && !p.loaded && p.time() >= picture.time() &&
-          &p != &picture)
-        waiting.push_back(&p);
-  return waiting;
-}
-
 void CloudLabeler::load(Picture& picture) {
-  const auto pictures = waitingWith(picture);
-  std::vector<const CObservation*> observations;
-  for (Picture* p : pictures) {
-    p->loaded = true;
-    observations.push_back(p->observation.get());
-  }
-  auto labels = m_labeler->label(observations);
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    Picture& p = *pictures[i];
-    const auto known = m_options.calibrations.find(p.observation->sensorLabel);
-    const CameraCalibration own =
-        known == m_options.calibrations.end() ? CameraCalibration() : known->second;
-    const ColorImage color = colorImageOf(*p.observation);
-    p.camera = own.intrinsics.value_or(color.camera);
-    p.T_robot_camera = own.T_robot_camera.value_or(color.T_robot_camera);
-    p.labels = std::move(labels[i]);
-  }
+  picture.loaded = true;
+  picture.labels = m_labeler->label(*picture.observation);
+  const auto known = m_options.calibrations.find(picture.observation->sensorLabel);
+  const CameraCalibration own =
+      known == m_options.calibrations.end() ? CameraCalibration() : known->second;
+  const ColorImage color = colorImageOf(*picture.observation);
+  picture.camera = own.intrinsics.value_or(color.camera);
+  picture.T_robot_camera = own.T_robot_camera.value_or(color.T_robot_camera);
 }
 
 namespace {
@@ -179,7 +163,7 @@ void CloudLabeler::label(LabeledScan& scan, const CPose3D& T_map_robot, bool kee
     scan.labelsMissing = false;
     LabeledPicture seen = seenFrom(*picture, scan, T_map_robot);
     const auto pixels = visiblePixels(scan.cloud.points, toEigen(seen.T_sensor_camera).inverse(),
-                                      seen.camera, m_options.occlusionParallax);
+                                      seen.camera, kOcclusionParallax);
     for (std::size_t i = 0; i < n; ++i) {
       const auto cell =
           done[i] ? std::nullopt : picture->labels->cellAt(pixels[i].x(), pixels[i].y());
@@ -193,6 +177,78 @@ void CloudLabeler::label(LabeledScan& scan, const CPose3D& T_map_robot, bool kee
   const auto confidences = labels.moveTo(scan.cloud);
   m_model.apply(m_numClasses, confidences, scan.cloud);
   scan.countLabels();
+}
+
+namespace {
+
+struct Named {
+  const char* name;
+  const std::optional<double>& value;
+};
+
+/** Whether these values are given. \throw std::invalid_argument some are, some are not. */
+bool areGiven(const std::vector<Named>& values) {
+  const auto isGiven = [](const Named& n) { return n.value.has_value(); };
+  const auto missing = std::find_if_not(values.begin(), values.end(), isGiven);
+  if (missing == values.end()) return true;
+  if (std::none_of(values.begin(), values.end(), isGiven)) return false;
+  throw std::invalid_argument(std::string(missing->name) + " is missing");
+}
+
+}  // namespace
+
+const strict_files::Choices<CameraDescription::Distortion>& choicesOf(
+    CameraDescription::Distortion) {
+  using Distortion = CameraDescription::Distortion;
+  static const strict_files::Choices<Distortion> choices = {
+      {"plumb_bob", Distortion::PlumbBob}, {"kannala_brandt", Distortion::KannalaBrandt}};
+  return choices;
+}
+
+void CameraDescription::describe(strict_files::OptionList& list) {
+  list.add("cols", cols, "pixels", atLeast(1), "size of the images");
+  list.add("rows", rows, "pixels", atLeast(1), "size of the images");
+  list.add("fx", fx, "pixels", above(0), "focal length");
+  list.add("fy", fy, "pixels", above(0), "focal length");
+  list.add("cx", cx, "pixels", "principal point");
+  list.add("cy", cy, "pixels", "principal point");
+  list.add("distortion", distortion, "", "model of the lens");
+  list.add("dist", dist, "", "its coefficients in MRPT's order, separated by spaces");
+  list.add("pose_x", x, "m", "place of the camera on the robot");
+  list.add("pose_y", y, "m", "place of the camera on the robot");
+  list.add("pose_z", z, "m", "place of the camera on the robot");
+  list.add("pose_yaw", yaw, "degrees", "of the optical frame: x right, y down, z forward");
+  list.add("pose_pitch", pitch, "degrees", "of the optical frame");
+  list.add("pose_roll", roll, "degrees", "of the optical frame");
+}
+
+CameraCalibration CameraDescription::calibration() const {
+  CameraCalibration calibration;
+  mrpt::img::TCamera camera;
+  camera.distortion = distortion == Distortion::PlumbBob
+                          ? mrpt::img::DistortionModel::plumb_bob
+                          : mrpt::img::DistortionModel::kannala_brandt;
+  std::istringstream stream(dist);
+  const strict_files::ClassicNumbers classic(stream);
+  std::size_t count = 0;
+  for (double k; stream >> k && count < camera.dist.size();) camera.dist[count++] = k;
+  if (!stream.eof() && !dist.empty())
+    throw std::invalid_argument("dist is '" + dist + "', expected numbers");
+  if (areGiven({{"cols", cols}, {"rows", rows}, {"fx", fx}, {"fy", fy}, {"cx", cx}, {"cy", cy}})) {
+    camera.ncols = static_cast<unsigned>(*cols);
+    camera.nrows = static_cast<unsigned>(*rows);
+    camera.setIntrinsicParamsFromValues(*fx, *fy, *cx, *cy);
+    calibration.intrinsics = camera;
+  }
+  if (areGiven({{"pose_x", x},
+                {"pose_y", y},
+                {"pose_z", z},
+                {"pose_yaw", yaw},
+                {"pose_pitch", pitch},
+                {"pose_roll", roll}}))
+    calibration.T_robot_camera =
+        mrpt::poses::CPose3D(*x, *y, *z, DEG2RAD(*yaw), DEG2RAD(*pitch), DEG2RAD(*roll));
+  return calibration;
 }
 
 }  // namespace labeled_cloud

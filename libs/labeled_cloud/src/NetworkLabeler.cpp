@@ -1,18 +1,57 @@
 #include <labeled_cloud/NetworkLabeler.h>
+
 #include <labeled_cloud/Pictures.h>
 #include <mrpt_compat/Images.h>
-
-#include <algorithm>
-#include <numeric>
+#include <opencv2/core.hpp>
 #include <opencv2/dnn.hpp>
 #include <opencv2/imgproc.hpp>
-#include <stdexcept>
 
-#include "NetworkAnswer.h"
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 namespace labeled_cloud {
 
 using mrpt::obs::CObservation;
+using semantic_types::ClassId;
+using semantic_types::kNoClass;
+
+namespace {
+
+std::string shapeOf(const cv::Mat& m) {
+  std::string text;
+  for (int i = 0; i < m.dims; ++i) text += (i ? " x " : "") + std::to_string(m.size[i]);
+  return text;
+}
+
+/** Turns each column of scores into probabilities. */
+void softmax(cv::Mat planes) {
+  cv::Mat1f most, sum;
+  cv::reduce(planes, most, 0, cv::REDUCE_MAX);
+  for (int k = 0; k < planes.rows; ++k) planes.row(k) -= most;
+  cv::exp(planes, planes);
+  cv::reduce(planes, sum, 0, cv::REDUCE_SUM);
+  for (int k = 0; k < planes.rows; ++k) planes.row(k) /= sum;
+}
+
+/** Sums the channels of each class; what the rest of them says is shared out. */
+cv::Mat1f folded(const cv::Mat1f& planes, const std::vector<ClassId>& classes, int numClasses) {
+  cv::Mat1f result = cv::Mat1f::zeros(numClasses, planes.cols);
+  for (int k = 0; k < planes.rows; ++k)
+    if (classes[k] != kNoClass) result.row(classes[k] - 1) += planes.row(k);
+  return result;
+}
+
+/** Leaves pixels without a class where one that is not in the table is likelier than all of its
+ * classes together. */
+void dropOthers(cv::Mat1f& planes) {
+  cv::Mat1f sum;
+  cv::reduce(planes, sum, 0, cv::REDUCE_SUM);
+  for (int i = 0; i < planes.cols; ++i)
+    if (sum(i) <= 0.9999f) planes.col(i) *= sum(i) >= 0.5f ? 1 / sum(i) : 0.f;
+}
+
+}  // namespace
 
 struct NetworkLabeler::Network {
   std::filesystem::path file;
@@ -20,15 +59,55 @@ struct NetworkLabeler::Network {
   NetworkOptions options;
   cv::dnn::Net net;
 
-  /** The output for these inputs: images x channels x rows x columns. */
-  cv::Mat run(const std::vector<cv::Mat>& inputs) try {
-    const cv::Mat blob = cv::dnn::blobFromImages(inputs);
-    net.setInput(blob, options.input);
+  /** The output for one image. */
+  cv::Mat run(const cv::Mat& input) try {
+    net.setInput(cv::dnn::blobFromImage(input));
     return options.output.empty() ? net.forward() : net.forward(options.output);
   } catch (const cv::Exception& e) {
     throw std::runtime_error(file.string() + ": the network cannot be run: " + e.err);
   }
+  /** \throw std::runtime_error naming the network: the output is not what the options say. */
+  LabelImage labelsOf(const cv::Mat& output) const;
+  std::vector<ClassId> classesOfIds(const cv::Mat1f& ids) const;
 };
+
+LabelImage NetworkLabeler::Network::labelsOf(const cv::Mat& output) const {
+  const bool ids = options.content == NetworkOptions::Content::Ids;
+  const bool flat = ids && output.dims == 3;
+  const int channels = flat ? 1 : output.dims == 4 ? output.size[1] : 0;
+  if (channels == 0 || output.size[0] != 1)
+    throw std::runtime_error(file.string() + ": the network answers " + shapeOf(output) +
+                             ", expected 1 x classes x rows x columns");
+  const int expected = ids ? 1 : int(options.classes.size());
+  if (channels != expected)
+    throw std::runtime_error(file.string() + ": the network answers " + std::to_string(channels) +
+                             " channels, but its configuration names " + std::to_string(expected) +
+                             (ids ? " of ids" : " classes"));
+  LabelImage labels;
+  labels.rows = output.size[flat ? 1 : 2], labels.cols = output.size[flat ? 2 : 3];
+  cv::Mat planes;
+  output.reshape(1, {channels, labels.rows * labels.cols}).convertTo(planes, CV_32F);
+  if (ids) {
+    labels.classes = classesOfIds(planes);
+    return labels;
+  }
+  if (options.content == NetworkOptions::Content::Scores) softmax(planes);
+  cv::Mat1f classes = folded(planes, options.classes, numClasses);
+  dropOthers(classes);
+  labels.probabilities.assign(classes.begin(), classes.end());
+  return labels;
+}
+
+std::vector<ClassId> NetworkLabeler::Network::classesOfIds(const cv::Mat1f& ids) const {
+  std::vector<ClassId> classes;
+  for (const float id : ids) {
+    if (!(id >= 0 && id < float(options.classes.size())))
+      throw std::runtime_error(file.string() + ": the network answers class " + std::to_string(id) +
+                               " of " + std::to_string(options.classes.size()));
+    classes.push_back(options.classes[std::size_t(id)]);
+  }
+  return classes;
+}
 
 NetworkLabeler::NetworkLabeler(const std::filesystem::path& model, int numClasses,
                                const NetworkOptions& options) {
@@ -44,12 +123,6 @@ NetworkLabeler::NetworkLabeler(const std::filesystem::path& model, int numClasse
 }
 
 NetworkLabeler::~NetworkLabeler() = default;
-
-std::size_t NetworkLabeler::batch() const { return m_network->options.batch; }
-
-std::optional<LabelImage> NetworkLabeler::label(const CObservation& observation) {
-  return std::move(label(std::vector<const CObservation*>{&observation}).front());
-}
 
 namespace {
 
@@ -97,24 +170,16 @@ void rescale(LabelImage::Cells& cells, const LabelImage& labels, const NetworkOp
 
 }  // namespace
 
-std::vector<std::optional<LabelImage>> NetworkLabeler::label(
-    const std::vector<const CObservation*>& observations) {
+std::optional<LabelImage> NetworkLabeler::label(const CObservation& observation) {
   const NetworkOptions& options = m_network->options;
-  std::vector<cv::Mat> inputs;
-  std::vector<LabelImage::Cells> cells(observations.size());
-  for (std::size_t i = 0; i < observations.size(); ++i)
-    inputs.push_back(normalized(fit(readBgr(*observations[i]), options, cells[i]), options));
-  const NetworkAnswer answer(m_network->run(inputs), observations.size(), options, m_network->file);
-  std::vector<std::optional<LabelImage>> images;
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    LabelImage image = answer.labels(i, m_network->numClasses);
-    image.origin = m_network->file.string() + " on '" + observations[i]->sensorLabel + "'";
-    image.view = LabelImage::View::Color;
-    rescale(cells[i], image, options);
-    image.cells = cells[i];
-    images.push_back(std::move(image));
-  }
-  return images;
+  LabelImage::Cells cells;
+  LabelImage image = m_network->labelsOf(
+      m_network->run(normalized(fit(readBgr(observation), options, cells), options)));
+  image.origin = m_network->file.string() + " on '" + observation.sensorLabel + "'";
+  image.view = LabelImage::View::Color;
+  rescale(cells, image, options);
+  image.cells = cells;
+  return image;
 }
 
 }  // namespace labeled_cloud

@@ -7,8 +7,11 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "Lzf.h"
 #include "PointFields.h"
+
+#ifdef MSO_WITH_LZF
+#include <lzf.h>
+#endif
 
 namespace labeled_cloud {
 
@@ -125,6 +128,28 @@ void requireBytes(const PointFields& fields, std::size_t bytes) {
     throw std::runtime_error(fields.file + ": " + std::to_string(bytes) + " bytes of data for " +
                              std::to_string(fields.points) + " points of " + std::to_string(each) +
                              " bytes");
+}
+
+/** LZF as in liblzf. \param size bytes of the result \throw std::runtime_error the data is damaged
+ * or becomes more or less, its size is none that such data can have, or this was built without
+ * liblzf.
+ */
+std::string decompressLzf(std::string_view data, std::size_t size, const std::string& name) {
+#ifdef MSO_WITH_LZF
+  constexpr std::size_t kMostPerByte = 88;  // three bytes repeat at most 264
+  std::string bytes(size <= data.size() * kMostPerByte ? size : 0, '\0');
+  if (bytes.size() != size || lzf_decompress(data.data(), static_cast<unsigned int>(data.size()),
+                                             bytes.data(), static_cast<unsigned int>(size)) != size)
+    throw std::runtime_error(name + ": " + std::to_string(data.size()) +
+                             " bytes of compressed data do not become the " + std::to_string(size) +
+                             " that were announced");
+  return bytes;
+#else
+  static_cast<void>(data), static_cast<void>(size);
+  throw std::runtime_error(name +
+                           ": compressed, and this was built without liblzf; write it as"
+                           " DATA binary");
+#endif
 }
 
 /** Two sizes of 4 bytes, compressed and not; then the fields one after the other, compressed. */

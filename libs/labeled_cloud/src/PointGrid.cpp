@@ -1,12 +1,143 @@
 #include "PointGrid.h"
 
-#include <stdexcept>
+#include <labeled_cloud/Pictures.h>
+#include <mrpt/img/TCamera.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
-#include "Lens.h"
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace labeled_cloud {
 
+using mrpt::img::DistortionModel;
 using mrpt::obs::CObservation3DRangeScan;
+
+namespace {
+
+/** Pixels of a camera and where they look: x right, y down at depth 1 (the optical frame). Lenses
+ * are as OpenCV and MRPT describe them: plumb_bob with radial coefficients k1 to k6 and tangential
+ * ones p1 and p2, or kannala_brandt with k1 to k4. */
+class Lens {
+ public:
+  /** \throw std::invalid_argument the camera is not calibrated. */
+  explicit Lens(const mrpt::img::TCamera& camera);
+
+  std::vector<cv::Point2d> undistort(const std::vector<cv::Point2d>& pixels) const;
+  /** For rays that the camera sees: models of lenses say nothing about others. */
+  std::vector<cv::Point2d> distort(const std::vector<cv::Point2d>& rays) const;
+
+  /** A rectangle that holds all rays of the image's pixels. */
+  cv::Rect2d field() const;
+
+ private:
+  /** Between a ray without a lens and behind it, both at depth 1. */
+  cv::Point2d bent(const cv::Point2d& ray) const;
+  cv::Point2d straightened(const cv::Point2d& ray) const;
+  double radial(double r2) const;
+  cv::Point2d tangential(const cv::Point2d& ray) const;
+  /** The angle behind a fisheye lens of a ray that comes in at an angle theta, radians. */
+  double fisheyeAngle(double theta) const;
+
+  mrpt::img::TCamera m_camera;
+};
+
+using ImagePoints = std::vector<cv::Point2d>;
+
+Lens::Lens(const mrpt::img::TCamera& camera) : m_camera(camera) {
+  if (!(camera.fx() > 0 && camera.fy() > 0))
+    throw std::invalid_argument(
+        "the camera is not calibrated: fx = " + std::to_string(camera.fx()) +
+        ", fy = " + std::to_string(camera.fy()));
+}
+
+double Lens::radial(double r2) const {
+  const auto& c = m_camera;
+  return (1 + ((c.k3() * r2 + c.k2()) * r2 + c.k1()) * r2) /
+         (1 + ((c.k6() * r2 + c.k5()) * r2 + c.k4()) * r2);
+}
+
+cv::Point2d Lens::tangential(const cv::Point2d& ray) const {
+  const double r2 = ray.dot(ray), xy2 = 2 * ray.x * ray.y;
+  return {m_camera.p1() * xy2 + m_camera.p2() * (r2 + 2 * ray.x * ray.x),
+          m_camera.p1() * (r2 + 2 * ray.y * ray.y) + m_camera.p2() * xy2};
+}
+
+double Lens::fisheyeAngle(double theta) const {
+  const double t2 = theta * theta;
+  const auto& c = m_camera;
+  return theta * (1 + (((c.k4() * t2 + c.k3()) * t2 + c.k2()) * t2 + c.k1()) * t2);
+}
+
+cv::Point2d Lens::bent(const cv::Point2d& ray) const {
+  if (m_camera.distortion == DistortionModel::plumb_bob)
+    return ray * radial(ray.dot(ray)) + tangential(ray);
+  const double r = std::hypot(ray.x, ray.y);
+  if (m_camera.distortion != DistortionModel::kannala_brandt || r == 0) return ray;
+  return ray * (fisheyeAngle(std::atan(r)) / r);
+}
+
+/** By fixed-point iteration, and for a fisheye by bisection of the angle, which grows with that
+ * behind the lens. */
+cv::Point2d Lens::straightened(const cv::Point2d& ray) const {
+  if (m_camera.distortion == DistortionModel::plumb_bob) {
+    constexpr int kMostSteps = 50;
+    constexpr double kExact = 1e-9;  // of a pixel
+    cv::Point2d straight = ray;
+    for (int i = 0; i < kMostSteps; ++i) {
+      straight = (ray - tangential(straight)) / radial(straight.dot(straight));
+      const cv::Point2d left = bent(straight) - ray;
+      if (std::hypot(left.x * m_camera.fx(), left.y * m_camera.fy()) < kExact) break;
+    }
+    return straight;
+  }
+  const double r = std::hypot(ray.x, ray.y);
+  if (m_camera.distortion != DistortionModel::kannala_brandt || r == 0) return ray;
+  double low = 0, high = M_PI / 2;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (fisheyeAngle(middle) < r ? low : high) = middle;
+  }
+  return ray * (std::tan(low) / r);
+}
+
+ImagePoints Lens::undistort(const ImagePoints& pixels) const {
+  const double perX = 1 / m_camera.fx(), perY = 1 / m_camera.fy();
+  ImagePoints rays;
+  rays.reserve(pixels.size());
+  for (const cv::Point2d& p : pixels)
+    rays.push_back(straightened({(p.x - m_camera.cx()) * perX, (p.y - m_camera.cy()) * perY}));
+  return rays;
+}
+
+ImagePoints Lens::distort(const ImagePoints& rays) const {
+  ImagePoints pixels;
+  pixels.reserve(rays.size());
+  for (const cv::Point2d& ray : rays) {
+    const cv::Point2d p = bent(ray);
+    pixels.emplace_back(m_camera.fx() * p.x + m_camera.cx(), m_camera.fy() * p.y + m_camera.cy());
+  }
+  return pixels;
+}
+
+cv::Rect2d Lens::field() const {
+  ImagePoints border;
+  const double right = m_camera.ncols - 0.5, bottom = m_camera.nrows - 0.5;
+  for (double u = -0.5; u <= right; u += 1) border.insert(border.end(), {{u, -0.5}, {u, bottom}});
+  for (double v = -0.5; v <= bottom; v += 1) border.insert(border.end(), {{-0.5, v}, {right, v}});
+  cv::Point2d low(HUGE_VAL, HUGE_VAL), high = -low;
+  for (const cv::Point2d& ray : undistort(border)) {
+    low = {std::min(low.x, ray.x), std::min(low.y, ray.y)};
+    high = {std::max(high.x, ray.x), std::max(high.y, ray.y)};
+  }
+  return {low, high};
+}
+
+}  // namespace
 
 PixelRays::PixelRays(const mrpt::img::TCamera& camera) : m_camera(camera) {
   std::vector<cv::Point2d> pixels;
@@ -20,7 +151,7 @@ PixelRays::PixelRays(const mrpt::img::TCamera& camera) : m_camera(camera) {
 
 namespace {
 
-std::string size(long rows, long cols) {
+std::string sizeText(long rows, long cols) {
   return std::to_string(cols) + " x " + std::to_string(rows);
 }
 
@@ -30,9 +161,9 @@ void checkSize(const CObservation3DRangeScan& scan) {
   const auto& image = scan.rangeImage;
   const mrpt::img::TCamera& camera = scan.cameraParams;
   if (std::size_t(image.rows()) != camera.nrows || std::size_t(image.cols()) != camera.ncols)
-    throw std::invalid_argument("the range image has " + size(image.rows(), image.cols()) +
+    throw std::invalid_argument("the range image has " + sizeText(image.rows(), image.cols()) +
                                 " pixels, but its camera is calibrated for " +
-                                size(camera.nrows, camera.ncols));
+                                sizeText(camera.nrows, camera.ncols));
 }
 
 PointGrid unproject(const CObservation3DRangeScan& scan, const PixelRays& rays) {
@@ -72,7 +203,8 @@ PointGrid gridOfPoints(const CObservation3DRangeScan& scan) {
       const int row = scan.points3D_idxs_y[i], col = scan.points3D_idxs_x[i];
       if (row >= rows || col >= cols)
         throw std::invalid_argument("a 3D point at pixel row " + std::to_string(row) + ", column " +
-                                    std::to_string(col) + " of an image of " + size(rows, cols));
+                                    std::to_string(col) + " of an image of " +
+                                    sizeText(rows, cols));
       pixel = std::size_t(row) * cols + col;
     }
     grid.points[pixel] = {scan.points3D_x[i], scan.points3D_y[i], scan.points3D_z[i]};
@@ -129,6 +261,108 @@ std::size_t removeFlyingPixels(PointGrid& grid, double threshold) {
       ++removed;
     }
   return removed;
+}
+
+namespace {
+
+/** Surfaces are taken to pass the camera no nearer than this, m. */
+constexpr double kClearance = 1.0;
+/** Nearer points are not projected, m. */
+constexpr float kNearest = 0.01f;
+
+/** A point within the image. */
+struct Candidate {
+  std::uint32_t point;
+  cv::Point2f pixel;
+  float inverseDepth;
+};
+
+std::vector<Candidate> inImage(const std::vector<Eigen::Vector3f>& points,
+                               const Eigen::Isometry3d& T_camera_points,
+                               const mrpt::img::TCamera& camera) {
+  const Lens lens(camera);
+  const cv::Rect2d field = lens.field();
+  const Eigen::Isometry3f T = T_camera_points.cast<float>();
+  std::vector<cv::Point2d> rays;
+  std::vector<Candidate> candidates;
+  rays.reserve(points.size()), candidates.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f p = T * points[i];
+    if (!(p.z() > kNearest)) continue;
+    const cv::Point2d ray(p.x() / p.z(), p.y() / p.z());
+    if (!field.contains(ray)) continue;
+    rays.push_back(ray);
+    candidates.push_back({static_cast<std::uint32_t>(i), {}, 1 / p.z()});
+  }
+  const auto pixels = lens.distort(rays);
+  for (std::size_t i = 0; i < pixels.size(); ++i) candidates[i].pixel = pixels[i];
+  const cv::Rect2f image(-0.5f, -0.5f, float(camera.ncols), float(camera.nrows));
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                  [&](const Candidate& c) { return !image.contains(c.pixel); }),
+                   candidates.end());
+  return candidates;
+}
+
+/** Cells of an image, each with the greatest inverse depth of the points around it. */
+class DepthBuffer {
+ public:
+  DepthBuffer(const std::vector<Candidate>& candidates, const mrpt::img::TCamera& camera)
+      : m_edge(spacing(candidates, camera)) {
+    m_nearest = cv::Mat1f::zeros(int(camera.nrows / m_edge) + 1, int(camera.ncols / m_edge) + 1);
+    for (const Candidate& c : candidates) {
+      float& nearest = m_nearest(cell(c));
+      nearest = std::max(nearest, c.inverseDepth);
+    }
+    cv::dilate(m_nearest, m_nearest, cv::Mat());
+  }
+
+  /** How far from a point those may be that it is compared with, pixels. */
+  double reach() const { return 2.0 * m_edge; }
+  float nearestAround(const Candidate& c) const { return m_nearest(cell(c)); }
+
+ private:
+  /** Mean distance of the points in the part of the image that they cover, in whole pixels. */
+  static float spacing(const std::vector<Candidate>& candidates, const mrpt::img::TCamera& camera) {
+    constexpr int kBlock = 16;
+    cv::Mat1b covered =
+        cv::Mat1b::zeros(int(camera.nrows) / kBlock + 1, int(camera.ncols) / kBlock + 1);
+    for (const Candidate& c : candidates)
+      covered(int(c.pixel.y + 0.5) / kBlock, int(c.pixel.x + 0.5) / kBlock) = 1;
+    const double pixels = double(kBlock) * kBlock * cv::countNonZero(covered);
+    return std::max(1.f, std::round(float(std::sqrt(pixels / double(candidates.size())))));
+  }
+
+  cv::Point cell(const Candidate& c) const {
+    return {int((c.pixel.x + 0.5f) / m_edge), int((c.pixel.y + 0.5f) / m_edge)};
+  }
+
+  float m_edge;
+  cv::Mat1f m_nearest;
+};
+
+void removeHidden(const mrpt::img::TCamera& camera, double baseline, double parallax,
+                  std::vector<Candidate>& candidates) {
+  const DepthBuffer buffer(candidates, camera);
+  const double step = std::max(parallax / baseline, buffer.reach() / kClearance) /
+                      std::min(camera.fx(), camera.fy());
+  const auto hidden = [&](const Candidate& c) {
+    return buffer.nearestAround(c) > c.inverseDepth + step;
+  };
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(), hidden), candidates.end());
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2f> visiblePixels(const std::vector<Eigen::Vector3f>& points,
+                                           const Eigen::Isometry3d& T_camera_points,
+                                           const mrpt::img::TCamera& camera, double parallax) {
+  auto candidates = inImage(points, T_camera_points, camera);
+  const double baseline = T_camera_points.translation().norm();
+  if (parallax > 0 && baseline > 0 && !candidates.empty())
+    removeHidden(camera, baseline, parallax, candidates);
+  std::vector<Eigen::Vector2f> pixels(points.size(), Eigen::Vector2f::Constant(NAN));
+  for (const Candidate& c : candidates) pixels[c.point] = {c.pixel.x, c.pixel.y};
+  return pixels;
 }
 
 }  // namespace labeled_cloud

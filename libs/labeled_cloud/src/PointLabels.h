@@ -1,7 +1,9 @@
 #pragma once
 #include <labeled_cloud/LabelImage.h>
+#include <mrpt/obs/CObservation.h>
 #include <semantic_types/LabeledCloud.h>
 
+#include <string>
 #include <vector>
 
 namespace labeled_cloud {
@@ -22,5 +24,11 @@ class PointLabels {
   std::vector<semantic_types::ClassId> m_classes;
   std::vector<float> m_confidences, m_probabilities;
 };
+
+/** What messages call an observation: class, sensor, time. */
+inline std::string nameOf(const mrpt::obs::CObservation& o) {
+  return std::string(o.GetRuntimeClass()->className) + " '" + o.sensorLabel + "' at " +
+         std::to_string(mrpt::Clock::toDouble(o.timestamp)) + " s";
+}
 
 }  // namespace labeled_cloud

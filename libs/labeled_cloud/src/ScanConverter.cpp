@@ -1,19 +1,25 @@
-#include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/ScanConverter.h>
+
+#include <labeled_cloud/LabelImage.h>
+#include <labeled_cloud/Pictures.h>
+#include <labeled_cloud/Trajectory.h>
+#include <mrpt/core/bits_math.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
-#include "ObservationName.h"
 #include "PointGrid.h"
+#include "PointLabels.h"
 #include "PointSources.h"
 
 namespace labeled_cloud {
 
+using mrpt::img::TCamera;
 using mrpt::obs::CObservation;
 using mrpt::obs::CObservation3DRangeScan;
+using mrpt::poses::CPose3D;
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
 using semantic_types::kNoClass;
@@ -115,10 +121,14 @@ std::optional<LabeledScan> ScanConverter::convert(const CObservation& observatio
   observation.getSensorPose(scan.T_robot_sensor);
   scan.timestamp = observation.timestamp;
   scan.sensorLabel = observation.sensorLabel;
-  if (source)
-    addNamedCloud(source->read(observation), scan);
-  else
+  if (source) {
+    NamedCloud named = source->read(observation);
+    if (named.cloud.classes.empty() && named.cloud.probabilities.empty())
+      named.cloud.classes = classesByColor(observation, m_table);
+    addNamedCloud(std::move(named), scan);
+  } else {
     addRangeScan(*range, scan);
+  }
   scan.counts.points = scan.cloud.size();
   scan.countLabels();
   return scan;
@@ -159,6 +169,145 @@ void LabeledScan::countLabels() {
   const std::size_t k = cloud.probabilities.size() / cloud.size();
   for (auto row = cloud.probabilities.begin(); row != cloud.probabilities.end(); row += k)
     counts.labeled += std::any_of(row, row + k, [](float p) { return p > 0; });
+}
+
+namespace {
+
+/** Class of the table for each class of an observation. */
+class ClassTranslation {
+ public:
+  ClassTranslation(const ClassTable& table, const std::vector<std::string>& names)
+      : m_table(table), m_names(names) {}
+
+  /** \throw std::invalid_argument the table lacks the class, and takes that for an error. */
+  ClassId operator()(ClassId id) {
+    if (id == kNoClass) return kNoClass;
+    auto& known = m_known[id];
+    if (!known) known = lookUp(id);
+    return *known;
+  }
+
+ private:
+  ClassId lookUp(ClassId id) const {
+    const bool named = !m_names.empty();
+    if (named && id > m_names.size())
+      throw std::invalid_argument("its class " + std::to_string(id) + " has no name");
+    if (!named && m_table.contains(id)) return id;
+    if (named)
+      if (const auto found = m_table.find(m_names[id - 1])) return *found;
+    if (m_table.unknownRawId() == ClassTable::UnknownRawId::NoClass) return kNoClass;
+    throw std::invalid_argument(named ? "its class '" + m_names[id - 1] + "' is not in the table"
+                                      : "its class " + std::to_string(id) + " is not one of 1.." +
+                                            std::to_string(m_table.size()));
+  }
+
+  const ClassTable& m_table;
+  const std::vector<std::string>& m_names;
+  std::optional<ClassId> m_known[256];
+};
+
+/** Appends one point's class probabilities in the order of the table. */
+void appendTranslated(const float* from, std::size_t classes, ClassTranslation& translate,
+                      std::size_t tableSize, std::vector<float>& to) {
+  const std::size_t row = to.size();
+  to.resize(row + tableSize, 0.f);
+  for (std::size_t k = 0; k < classes; ++k) {
+    const ClassId id = from[k] > 0 ? translate(static_cast<ClassId>(k + 1)) : kNoClass;
+    if (id != kNoClass) to[row + id - 1] += from[k];
+  }
+}
+
+}  // namespace
+
+void ScanConverter::addNamedCloud(NamedCloud named, LabeledScan& scan) const {
+  const auto& from = named.cloud;
+  auto& to = scan.cloud;
+  ClassTranslation translate(m_table, named.classNames);
+  const std::size_t classes = from.empty() ? 0 : from.probabilities.size() / from.size();
+  if (!named.classNames.empty() && classes > named.classNames.size())
+    throw std::invalid_argument("probabilities of " + std::to_string(classes) +
+                                " classes, but names of " +
+                                std::to_string(named.classNames.size()));
+  to.points.reserve(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (!PointGrid::isReturn(from.points[i])) continue;
+    to.points.push_back(from.points[i]);
+    if (!from.classes.empty()) to.classes.push_back(translate(from.classes.at(i)));
+    if (classes > 0)
+      appendTranslated(&from.probabilities[i * classes], classes, translate, m_table.size(),
+                       to.probabilities);
+  }
+  scan.counts.invalid = from.size() - to.size();
+  if (!from.classes.empty() || classes > 0) m_options.labels.apply(m_table.size(), {}, to);
+}
+
+namespace {
+
+/** Looking along x with z up becomes looking along z with y down. */
+CPose3D opticalFrame() {
+  using mrpt::DEG2RAD;
+  return {0, 0, 0, DEG2RAD(-90.0), 0, DEG2RAD(-90.0)};
+}
+
+std::string size(int cols, int rows) { return std::to_string(cols) + " x " + std::to_string(rows); }
+
+void checkSize(const LabelImage& labels, int rows, int cols, const char* what) {
+  if (labels.pictureRows() == rows && labels.pictureCols() == cols) return;
+  throw std::invalid_argument(labels.origin + ": the label image has " +
+                              size(labels.pictureCols(), labels.pictureRows()) + " pixels, " +
+                              what + " " + size(cols, rows));
+}
+
+bool isAligned(const CObservation3DRangeScan& o) {
+  return o.doDepthAndIntensityCamerasCoincide() && o.cameraParams == o.cameraParamsIntensity;
+}
+
+/** Each point takes the label of the pixel it was made of. */
+void labelInPlace(const PointGrid& grid, const std::vector<std::size_t>& pixels,
+                  const LabelImage& labels, PointLabels& to) {
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const auto cell = labels.cellAt(pixels[i] % grid.cols, pixels[i] / grid.cols);
+    if (cell) to.take(i, labels, *cell);
+  }
+}
+
+/** Each point takes the label of the pixel at which the camera sees it. */
+void labelByProjection(const PointGrid& grid, const std::vector<std::size_t>& pixels,
+                       const LabeledPicture& picture, double parallax, PointLabels& to) {
+  const auto T_camera_sensor = toEigen(picture.T_sensor_camera).inverse();
+  const auto seen = visiblePixels(grid.points, T_camera_sensor, picture.camera, parallax);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Eigen::Vector2f& pixel = seen[pixels[i]];
+    if (const auto cell = picture.labels.cellAt(pixel.x(), pixel.y()))
+      to.take(i, picture.labels, *cell);
+  }
+}
+
+}  // namespace
+
+void ScanConverter::addLabels(const CObservation3DRangeScan& observation, const PointGrid& grid,
+                              const std::vector<std::size_t>& pixels, LabelImage labels,
+                              LabeledScan& scan) {
+  const bool ofColor = labels.view == LabelImage::View::Color && !isAligned(observation);
+  LabeledPicture picture;
+  picture.camera = ofColor ? observation.cameraParamsIntensity : observation.cameraParams;
+  picture.T_sensor_camera = ofColor ? observation.relativePoseIntensityWRTDepth : opticalFrame();
+  picture.labels = std::move(labels);
+  PointLabels taken(pixels.size());
+  if (ofColor) {
+    checkSize(picture.labels, int(picture.camera.nrows), int(picture.camera.ncols),
+              "the color camera is calibrated for");
+    labelByProjection(grid, pixels, picture, m_options.occlusionParallax, taken);
+  } else {
+    checkSize(picture.labels, grid.rows, grid.cols, "the depth image");
+    labelInPlace(grid, pixels, picture.labels, taken);
+  }
+  const auto confidences = taken.moveTo(scan.cloud);
+  m_options.labels.apply(m_table.size(), confidences, scan.cloud);
+  if (!m_keepPictures) return;
+  if (observation.hasIntensityImage && (ofColor || isAligned(observation)))
+    picture.image = observation.intensityImage.makeDeepCopy();
+  scan.pictures.push_back(std::move(picture));
 }
 
 }  // namespace labeled_cloud

@@ -9,7 +9,6 @@
 #include <system_error>
 #include <utility>
 
-#include "Placing.h"
 #include "Unfinished.h"
 
 namespace strict_files {
@@ -75,8 +74,6 @@ void StagedFile::commit(Disk when) {
   }
 }
 
-namespace fs = std::filesystem;
-
 namespace {
 
 /** \throw std::runtime_error something else than a file is there. */
@@ -139,8 +136,6 @@ void OutputFolder::commit(const std::vector<std::string>& names) {
     throw std::runtime_error(m_folder.string() + ": cannot be written: " + e.what());
   }
 }
-
-namespace fs = std::filesystem;
 
 namespace {
 

@@ -45,9 +45,6 @@ const strict_files::Choices<CameraDescription::Distortion>& choicesOf(
 struct CloudLabelerOptions {
   /** Largest time between a scan and the picture that labels it, s. */
   double tolerance = 0.06;
-  /** How many pixels a point in front must shift against one behind it, between the sensor's and
-   * the camera's view, to hide it. 0: nothing is hidden. */
-  double occlusionParallax = 1.5;
   /** By the cameras' sensor labels. */
   std::map<std::string, CameraCalibration> calibrations;
   /** A picture that cannot be used is left out and reported, instead of being an error. */
@@ -95,7 +92,6 @@ class CloudLabeler {
   /** Whether the picture has labels and a calibration that fits them. */
   bool prepare(Picture& picture);
   void load(Picture& picture);
-  std::vector<Picture*> waitingWith(Picture& picture);
   LabeledPicture seenFrom(const Picture& picture, const LabeledScan& scan,
                           const mrpt::poses::CPose3D& T_map_robot) const;
 

@@ -60,16 +60,6 @@ class ImageLabeler {
   /** The label image of an observation that has an image, or nothing if there is none for it.
    * \throw std::runtime_error the label image is there but cannot be used: names it and why. */
   virtual std::optional<LabelImage> label(const mrpt::obs::CObservation& observation) = 0;
-
-  /** How many observations are better labeled at once than one by one. */
-  virtual std::size_t batch() const { return 1; }
-  /** The label images of up to batch() observations. \throw std::runtime_error as above. */
-  virtual std::vector<std::optional<LabelImage>> label(
-      const std::vector<const mrpt::obs::CObservation*>& observations) {
-    std::vector<std::optional<LabelImage>> images;
-    for (const auto* observation : observations) images.push_back(label(*observation));
-    return images;
-  }
 };
 
 /** The labels in CObservation3DRangeScan::pixelLabels, which holds at most 64 classes.

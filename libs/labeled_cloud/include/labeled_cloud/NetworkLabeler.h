@@ -24,10 +24,6 @@ struct NetworkOptions {
     Probabilities,  ///< a plane for each class
     Ids             ///< one plane, numbers of `classes` from 0
   };
-  enum class Labels {
-    Softmax,  ///< class probabilities (soft labels)
-    Argmax    ///< the likeliest class (hard labels)
-  };
 
   /** The input in pixels. */
   int width = 0, height = 0;
@@ -37,29 +33,22 @@ struct NetworkOptions {
    * `channels`. */
   double scale = 1 / 255.0;
   Eigen::Vector3d mean{0, 0, 0}, deviation{1, 1, 1};
-  /** Names of the layers; may be empty if there is only one. */
-  std::string input, output;
+  /** Name of the layer that answers; may be empty if there is only one. */
+  std::string output;
   Content content = Content::Scores;
-  Labels labels = Labels::Softmax;
   /** The class of each of the network's channels, kNoClass for those that mean none. Several may
    * have the same class. */
   std::vector<semantic_types::ClassId> classes;
-  /** Pixels whose likeliest class is less probable than this have no class, [0, 1]. */
-  double minConfidence = 0;
-  /** Images that go through the network at once, where so many are waiting. */
-  int batch = 1;
 
-  /** The options of the file's sections `input` and `output`, and those outside of both. */
+  /** The options of the file's sections `input` and `output`. */
   void describeInput(strict_files::OptionList& list);
   void describeOutput(strict_files::OptionList& list);
-  void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };
 const strict_files::Choices<NetworkOptions::Fit>& choicesOf(NetworkOptions::Fit);
 const strict_files::Choices<NetworkOptions::Channels>& choicesOf(NetworkOptions::Channels);
 const strict_files::Choices<NetworkOptions::Content>& choicesOf(NetworkOptions::Content);
-const strict_files::Choices<NetworkOptions::Labels>& choicesOf(NetworkOptions::Labels);
 
 /** Reads options from a YAML file, see doc/handbook/labels.md and config/networks/.
  * \throw std::runtime_error naming file, line and what was expected; a class that the table lacks
@@ -67,7 +56,8 @@ const strict_files::Choices<NetworkOptions::Labels>& choicesOf(NetworkOptions::L
 NetworkOptions loadNetworkOptions(const std::filesystem::path& file,
                                   const semantic_types::ClassTable& table);
 
-/** A segmentation network (ONNX) that labels the color images of observations. */
+/** A segmentation network (ONNX) that labels the color images of observations: with class
+ * probabilities, or with classes if it answers ids. */
 class NetworkLabeler : public ImageLabeler {
  public:
   /** \param numClasses Of the class table.
@@ -78,9 +68,6 @@ class NetworkLabeler : public ImageLabeler {
   /** \throw std::runtime_error the observation's image cannot be read; or naming the network: it
    * answers something else than the options say, as another number of classes. */
   std::optional<LabelImage> label(const mrpt::obs::CObservation& observation) override;
-  std::vector<std::optional<LabelImage>> label(
-      const std::vector<const mrpt::obs::CObservation*>& observations) override;
-  std::size_t batch() const override;
 
  private:
   struct Network;

@@ -48,6 +48,10 @@ bool isPicture(const mrpt::obs::CObservation& observation);
  * \throw std::invalid_argument the observation has none. */
 ColorImage colorImageOf(const mrpt::obs::CObservation& observation);
 
+/** How many pixels a point in front must shift against one behind it, between the sensor's and the
+ * camera's view, to hide it. */
+constexpr double kOcclusionParallax = 1.5;
+
 /** The pixel (column, row) at which a camera sees each point; NaN for points that it does not see:
  * outside of the image, behind the camera, not finite, or hidden.
  *

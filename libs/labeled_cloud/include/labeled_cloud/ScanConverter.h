@@ -1,6 +1,7 @@
 #pragma once
 #include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/LabelModel.h>
+#include <labeled_cloud/Pictures.h>
 #include <mrpt/core/Clock.h>
 #include <mrpt/img/CImage.h>
 #include <mrpt/img/TCamera.h>
@@ -89,9 +90,9 @@ struct ScanConverterOptions {
   /** Depth images: leave out pixels between a surface in front and one behind that lie on neither,
    * farther from both than this share of their depth. 0: keep all. */
   double flyingPixelThreshold = 0;
-  /** Depth images with labels in a color image of another camera: how many pixels a point in front
-   * must shift against one behind it, between the two views, to hide it. 0: nothing is hidden. */
-  double occlusionParallax = 1.5;
+  /** Depth images with labels in a color image of another camera, see visiblePixels(). Without a
+   * name in files. */
+  double occlusionParallax = kOcclusionParallax;
   /** What the labels say. */
   LabelModel labels;
 
@@ -109,8 +110,8 @@ struct ScanConverterOptions {
  *   those of the depth image.
  * - CObservationLabeledCloud: as it is. Where it names its classes, they are found by name in the
  *   class table; otherwise its class ids are those of the table.
- * - CObservationPointCloud, CObservationVelodyneScan, CObservation2DRangeScan: points without a
- *   class, which count for occupancy only.
+ * - CObservationPointCloud (with classes if its colors are theirs), CObservationVelodyneScan,
+ *   CObservation2DRangeScan: points without a class, which count for occupancy only.
  * - What a PointSource that was added accepts.
  *
  * Externally stored data is loaded, and unloaded at the end. */

@@ -1,0 +1,140 @@
+#include "Conversion.h"
+
+#include <labeled_cloud/PointFile.h>
+#include <labeled_cloud/Trajectory.h>
+#include <mrpt/obs/CObservationRobotPose.h>
+#include <semantic_types/ClassTable.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <regex>
+#include <stdexcept>
+
+namespace dataset2rawlog {
+
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::kMaxClasses;
+using semantic_types::kNoClass;
+using semantic_types::LabeledCloud;
+
+std::filesystem::path imagesOf(const std::filesystem::path& rawlog) {
+  return std::filesystem::absolute(rawlog).parent_path() / (rawlog.stem().string() + "_Images");
+}
+
+Output::Output(const Conversion& conversion, const semantic_types::ClassTable& table)
+    : m_conversion(conversion),
+      m_writer(conversion.output),
+      m_noise(conversion.labelNoise, conversion.labelNoiseKind, conversion.seed, table.size()) {
+  for (int id = 1; id <= table.size(); ++id) m_classNames.push_back(table.name(id));
+}
+
+bool Output::wants(std::size_t frame, std::size_t numFrames) {
+  const FrameRange& range = m_conversion.frames;
+  const std::size_t end = numFrames == 0 ? 0 : std::min(numFrames - 1, range.last) + 1;
+  if (!m_progress) m_progress.emplace("Converting", end);
+  m_progress->update(frame, std::to_string(m_summary.scans) + " scans");
+  return range.contains(frame) && !(m_conversion.stop && m_conversion.stop->pending());
+}
+
+void Output::writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D& T_map_robot) {
+  mrpt::obs::CObservationRobotPose pose;
+  pose.timestamp = time;
+  pose.sensorLabel = "ground truth";
+  pose.pose.mean = T_map_robot;
+  m_T_map_sensor = labeled_cloud::toEigen(T_map_robot);
+  m_writer.write(pose);
+}
+
+void Output::writeCloud(mrpt::Clock::time_point time, const std::string& sensorLabel,
+                        semantic_types::LabeledCloud cloud) {
+  labeled_cloud::CObservationLabeledCloud observation;
+  observation.timestamp = time;
+  observation.sensorLabel = sensorLabel;
+  observation.classNames = m_classNames;
+  observation.cloud = std::move(cloud);
+  m_noise.apply(observation.cloud, m_T_map_sensor);
+  const auto& classes = observation.cloud.classes;
+  const auto unlabeled = std::count(classes.begin(), classes.end(), kNoClass);
+  writeScan(observation, observation.cloud.size(), classes.size() - unlabeled);
+}
+
+void Output::writeScan(const mrpt::obs::CObservation& observation, std::size_t points,
+                       std::size_t labeled) {
+  m_writer.write(observation);
+  ++m_summary.scans;
+  m_summary.points += points;
+  m_summary.labeled += labeled;
+}
+
+Summary Output::finish() {
+  if (m_summary.scans == 0)
+    throw std::runtime_error(m_conversion.output.string() + ": not written, no frame was selected");
+  m_progress.reset();
+  m_writer.finish();
+  return m_summary;
+}
+
+FrameRange parseFrameRange(const std::string& text) {
+  static const std::regex kForm("(\\d{1,9}):(\\d{1,9}):(\\d{1,9})?");
+  std::smatch part;
+  if (!std::regex_match(text, part, kForm))
+    throw std::invalid_argument("--frames " + text +
+                                ": expected FIRST:STEP:LAST, for example 0:2:9");
+  FrameRange range;
+  range.first = std::stoul(part[1]);
+  range.step = std::stoul(part[2]);
+  if (part[3].matched) range.last = std::stoul(part[3]);
+  if (range.step == 0) throw std::invalid_argument("--frames " + text + ": STEP must be 1 or more");
+  if (range.last < range.first)
+    throw std::invalid_argument("--frames " + text + ": LAST is before FIRST");
+  return range;
+}
+
+namespace fs = std::filesystem;
+
+namespace {
+
+ClassId classOf(std::uint32_t label, const ClassTable& table) {
+  if (!table.empty()) return table.fromRaw(label);
+  if (label > static_cast<std::uint32_t>(kMaxClasses))
+    throw std::invalid_argument("label " + std::to_string(label) + " is not one of 0..254");
+  return static_cast<ClassId>(label);
+}
+
+/** As the sensor saw them. */
+LabeledCloud cloudOf(const labeled_cloud::PointFile& points, const fs::path& file,
+                     const ClassTable& table) {
+  LabeledCloud cloud;
+  const Eigen::Isometry3d T_sensor_file = points.T_file_sensor.inverse();
+  for (const Eigen::Vector3d& p_file : points.points)
+    cloud.points.push_back((T_sensor_file * p_file).cast<float>());
+  for (const std::uint32_t label : points.labels) try {
+      cloud.classes.push_back(classOf(label, table));
+    } catch (const std::invalid_argument& e) {
+      throw std::runtime_error(file.string() + ": point " + std::to_string(cloud.classes.size()) +
+                               ": " + e.what());
+    }
+  return cloud;
+}
+
+}  // namespace
+
+Summary convertPointFiles(const std::vector<fs::path>& files, const std::string& labelField,
+                          const Conversion& conversion) {
+  const ClassTable table = conversion.classes.empty()
+                               ? ClassTable()
+                               : semantic_types::loadClassTable(conversion.classes);
+  Output output(conversion, table);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!output.wants(i, files.size())) continue;
+    const auto points = labeled_cloud::readPointFile(files[i], conversion.labels ? labelField : "");
+    const auto time = mrpt::Clock::fromDouble(static_cast<double>(i));
+    const mrpt::math::CMatrixDouble44 pose(points.T_file_sensor.matrix());
+    output.writePose(time, mrpt::poses::CPose3D(pose));
+    output.writeCloud(time, "pcd", cloudOf(points, files[i], table));
+  }
+  return output.finish();
+}
+
+}  // namespace dataset2rawlog
