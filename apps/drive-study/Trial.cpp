@@ -108,9 +108,10 @@ Task TaskDraw::next() {
     if (distance < m_options.nearest || distance > m_options.farthest) continue;
     if (isFree(task.start) && isFree(task.goal)) return task;
   }
-  throw std::runtime_error(
-      "no start and goal on free ground, " + std::to_string(m_options.nearest) + " to " +
-      std::to_string(m_options.farthest) + " m apart, in " + std::to_string(kMostTries) + " draws");
+  throw std::runtime_error("no start on free ground and goal on free ground, " +
+                           std::to_string(m_options.nearest) + " to " +
+                           std::to_string(m_options.farthest) + " m apart, in " +
+                           std::to_string(kMostTries) + " draws");
 }
 
 TPose2D TaskDraw::anyPose() {
