@@ -183,14 +183,20 @@ using strict_files::csvField;
 
 namespace {
 
-/** Milliseconds from a scan to the path that follows from it. */
-std::vector<double> cyclesOf(const DriveRecord& record) {
+/** 0 of none. */
+double quantileOf(const std::vector<double>& values, double share) {
+  return values.empty() ? 0 : measuring::quantile(values, share);
+}
+
+/** Milliseconds of the processor to localize, insert, update and replan, from a scan to the path
+ * that follows from it. */
+double cycleOf(const DriveRecord& record, double share) {
   std::vector<double> cycles;
   if (record.times.count("insert+update+replan")) cycles = record.times.at("insert+update+replan");
   if (const auto localize = record.times.find("localize"); localize != record.times.end())
     for (std::size_t i = 0; i < std::min(cycles.size(), localize->second.size()); ++i)
       cycles[i] += localize->second[i];
-  return cycles;
+  return quantileOf(cycles, share);
 }
 
 /** A number of each drive. */
@@ -212,26 +218,27 @@ const std::vector<Column>& columns() {
       {"goal_deg", [](T t) { return degrees(t.task.goal.phi); }},
       {"path_length", [](T t) { return t.task.length; }},
       {"path_worse", [](T t) { return t.badBest; }},
-      {"seconds", [](T t) { return t.seconds; }},
-      {"length", [](T t) { return t.length; }},
+      {"seconds", [](T t) { return t.record.duration(); }},
+      {"length", [](T t) { return t.record.length; }},
       {"worse", [](T t) { return t.badDriven; }},
       {"worse_planned", [](T t) { return t.badFollowed; }},
-      {"collisions", [](T t) { return double(t.collisions); }},
-      {"clearance", [](T t) { return t.leastClearance; }},
-      {"replans", [](T t) { return double(t.replans); }},
+      {"collisions", [](T t) { return double(t.record.collisions); }},
+      {"clearance", [](T t) { return t.record.leastClearance; }},
+      {"replans", [](T t) { return double(t.record.replans); }},
       {"explored", [](T t) { return double(t.explored); }},
-      {"jerk", [](T t) { return t.smooth.jerk; }},
-      {"backwards", [](T t) { return t.smooth.backwards; }},
-      {"longest_backwards", [](T t) { return t.smooth.longestBackwards; }},
-      {"gear_changes", [](T t) { return double(t.smooth.gearChanges); }},
-      {"turn_changes", [](T t) { return double(t.smooth.turnChanges); }},
-      {"path_turn_changes", [](T t) { return double(t.smooth.pathTurnChanges); }},
-      {"pose_error", [](T t) { return t.poseErrors.mean; }},
-      {"largest_pose_error", [](T t) { return t.poseErrors.largest; }},
-      {"odometry_error", [](T t) { return t.odometryErrors.mean; }},
-      {"cycle", [](T t) { return t.cycle; }},
-      {"slow_cycle", [](T t) { return t.slowCycle; }},
-      {"leaves", [](T t) { return t.leaves; }},
+      {"jerk", [](T t) { return smoothnessOf(t.record).jerk; }},
+      {"backwards", [](T t) { return smoothnessOf(t.record).backwards; }},
+      {"longest_backwards", [](T t) { return smoothnessOf(t.record).longestBackwards; }},
+      {"gear_changes", [](T t) { return double(smoothnessOf(t.record).gearChanges); }},
+      {"turn_changes", [](T t) { return double(smoothnessOf(t.record).turnChanges); }},
+      {"path_turn_changes", [](T t) { return double(smoothnessOf(t.record).pathTurnChanges); }},
+      {"pose_error", [](T t) { return poseErrorsOf(t.record, &DriveRow::believed).mean; }},
+      {"largest_pose_error",
+       [](T t) { return poseErrorsOf(t.record, &DriveRow::believed).largest; }},
+      {"odometry_error", [](T t) { return poseErrorsOf(t.record, &DriveRow::odometry).mean; }},
+      {"cycle", [](T t) { return cycleOf(t.record, 0.5); }},
+      {"slow_cycle", [](T t) { return cycleOf(t.record, 0.95); }},
+      {"leaves", [](T t) { return quantileOf(t.record.leaves, 0.5); }},
       {"processor", [](T t) { return t.processorSeconds; }}};
   return columns;
 }
@@ -240,9 +247,10 @@ const std::vector<Column>& columns() {
 
 std::string Trial::fault() const {
   constexpr double kMore = 1.05, kVoxel = 0.2;  // m: lengths are no better known
-  if (collisions > 0) return "collision";
-  if (task.hasPath && end != DriveEnd::Arrived) return "did not arrive";
-  if (!task.hasPath && end == DriveEnd::TimeLimit) return "did not say that there is no path";
+  if (record.collisions > 0) return "collision";
+  if (task.hasPath && record.end != DriveEnd::Arrived) return "did not arrive";
+  if (!task.hasPath && record.end == DriveEnd::TimeLimit)
+    return "did not say that there is no path";
   if (badDriven > kMore * badFollowed + kVoxel) return "left its path for worse classes";
   return {};
 }
@@ -254,25 +262,11 @@ Trial runTrial(const DriveConfig& config, synthetic_world::World& world,
   const DriveRecord& record = loop.run();
   Trial trial;
   trial.task = task;
-  trial.end = record.end;
-  trial.reason = record.reason;
+  trial.record = record;
   trial.explored = std::as_const(loop).guide().explored();
-  trial.seconds = record.duration();
-  trial.length = record.length;
   trial.badDriven = badLength(record.drivenPerClass, order);
   trial.badFollowed = badLength(record.plannedPerClass, order);
   trial.badBest = badLength(task.lengthPerClass, order);
-  trial.leastClearance = record.leastClearance;
-  trial.collisions = record.collisions;
-  trial.replans = record.replans;
-  trial.smooth = smoothnessOf(record);
-  trial.poseErrors = poseErrorsOf(record, &DriveRow::believed);
-  trial.odometryErrors = poseErrorsOf(record, &DriveRow::odometry);
-  if (const std::vector<double> cycles = cyclesOf(record); !cycles.empty()) {
-    trial.cycle = measuring::quantile(cycles, 0.5);
-    trial.slowCycle = measuring::quantile(cycles, 0.95);
-  }
-  if (!record.leaves.empty()) trial.leaves = measuring::quantile(record.leaves, 0.5);
   trial.processorSeconds = watch.milliseconds() / 1e3;
   return trial;
 }
@@ -284,8 +278,8 @@ std::string toCsv(const std::vector<Trial>& trials) {
   for (const Trial& t : trials) {
     out << '\n'
         << t.scene << ',' << t.number << ',' << (t.task.hasPath ? "yes" : "no") << ','
-        << nameOf(t.end) << ',' << t.fault() << ',' << csvField(t.task.reason) << ','
-        << csvField(t.reason);
+        << nameOf(t.record.end) << ',' << t.fault() << ',' << csvField(t.task.reason) << ','
+        << csvField(t.record.reason);
     for (const Column& column : columns()) out << ',' << column.of(t);
   }
   out << '\n';

@@ -86,19 +86,10 @@ struct Trial {
   std::string scene;
   int number = 0;
   Task task;
-  simulated_drive::DriveEnd end = simulated_drive::DriveEnd::TimeLimit;
-  std::string reason;                     ///< why it did not arrive
+  simulated_drive::DriveRecord record;
   std::size_t explored = 0;               ///< frontiers
-  double seconds = 0, length = 0;         ///< of the drive, m
   double badDriven = 0, badFollowed = 0;  ///< m off the best class: driven, and along its paths
   double badBest = 0;                     ///< m off the best class along the task's path
-  double leastClearance = 0;              ///< m
-  int collisions = 0, replans = 0;
-  simulated_drive::Smoothness smooth;
-  simulated_drive::PoseErrors poseErrors, odometryErrors;
-  /** Milliseconds of the processor to localize, insert, update and replan: median, 95 %. */
-  double cycle = 0, slowCycle = 0;
-  double leaves = 0;  ///< of the compressed tree, median
   double processorSeconds = 0;
 
   /** What is not as it has to be; empty: nothing. */

@@ -71,11 +71,11 @@ struct Cli {
 
 void print(const Trial& trial) {
   const std::string fault = trial.fault();
-  notes() << trial.scene << ' ' << trial.number << ": " << nameOf(trial.end) << " after "
-          << trial.seconds << " s and " << trial.length << " m; "
+  notes() << trial.scene << ' ' << trial.number << ": " << nameOf(trial.record.end) << " after "
+          << trial.record.duration() << " s and " << trial.record.length << " m; "
           << (trial.task.hasPath ? "there is a path" : "there is no path")
           << (fault.empty() ? "" : "; FAULT: " + fault) << std::endl;
-  for (const std::string& reason : {trial.task.reason, trial.reason})
+  for (const std::string& reason : {trial.task.reason, trial.record.reason})
     if (!reason.empty()) notes() << "  " << reason << std::endl;
 }
 
