@@ -1,30 +1,202 @@
 #include "Trial.h"
 
 #include <strict_files/TextFile.h>
+#include <synthetic_world/Solids.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "measuring/Quantile.h"
 #include "measuring/Stopwatch.h"
+#include "simulated_drive/DriveLoop.h"
 
 namespace drive_study {
+
+using colored_graph::ClassOrder;
+using mrpt::math::TPose2D;
+using namespace semantic_planning;
+using semantic_types::LabeledCloud;
+using synthetic_world::PointTruth;
+using synthetic_world::World;
+
+namespace {
+
+constexpr std::array<std::size_t, 2> kVertices = {2000, 8000};  // of the oracle's graphs
+
+/** The centers of the voxels that something fills, column by column. */
+class TrueVoxels {
+ public:
+  TrueVoxels(const World& world, double voxelSize, double height)
+      : m_world(world),
+        m_voxelSize(voxelSize),
+        m_layers(static_cast<int>(std::ceil(height / voxelSize)) + 1) {}
+
+  LabeledCloud all() {
+    const int half = static_cast<int>(m_world.halfExtent() / m_voxelSize);
+    for (int y = -half; y < half; ++y)
+      for (int x = -half; x < half; ++x) addColumn(center(x), center(y));
+    return std::move(m_cloud);
+  }
+
+ private:
+  double center(int i) const { return (i + 0.5) * m_voxelSize; }
+
+  void add(double x, double y, double z, semantic_types::ClassId id) {
+    m_cloud.points.push_back(Eigen::Vector3d(x, y, z).cast<float>());
+    m_cloud.classes.push_back(id);
+  }
+
+  void addColumn(double x, double y) {
+    const int ground = static_cast<int>(std::floor(m_world.groundHeight(x, y) / m_voxelSize));
+    add(x, y, center(ground), m_world.groundClass(x, y));
+    for (int z = ground + 1; z <= ground + m_layers; ++z) {
+      const PointTruth truth = m_world.at({x, y, center(z)}, m_voxelSize / 2);
+      if (isThing(truth)) add(x, y, center(z), truth.id);
+    }
+  }
+
+  /** The ground is in its own voxel, and not in the one above that it nearly reaches. */
+  static bool isThing(const PointTruth& truth) {
+    return truth.state != PointTruth::State::Free &&
+           (truth.state != PointTruth::State::Surface || truth.id > synthetic_world::kWater);
+  }
+
+  const World& m_world;
+  double m_voxelSize;
+  int m_layers;
+  LabeledCloud m_cloud;
+};
+
+}  // namespace
+
+void TaskOptions::describe(strict_files::OptionList& list) {
+  list.add("nearest", nearest, "m", strict_files::above(0), "from start to goal, at least");
+  list.add("farthest", farthest, "m", strict_files::above(0), "from start to goal, at most");
+  list.add("clearance", clearance, "m", strict_files::atLeast(0),
+           "around the footprint at start and goal");
+  list.add("seed", seed, "", "another one makes other pairs");
+}
+
+void TaskOptions::validate() const {
+  strict_files::checkOptions(*this, "TaskOptions");
+  if (!(farthest > nearest))
+    throw std::invalid_argument("TaskOptions: distances from " + std::to_string(nearest) + " to " +
+                                std::to_string(farthest) + " m");
+}
+
+TaskDraw::TaskDraw(const World& world, const ClassOrder& order, const VehicleOptions& vehicle,
+                   const TaskOptions& options)
+    : m_world(world),
+      m_order(order),
+      m_footprint(simulated_drive::trueFootprint(vehicle)),
+      m_options(options),
+      m_random(options.seed) {
+  m_options.validate();
+}
+
+Task TaskDraw::next() {
+  constexpr int kMostTries = 100000;
+  for (int i = 0; i < kMostTries; ++i) {
+    Task task;
+    task.start = anyPose();
+    task.goal = anyPose();
+    const double distance = std::hypot(task.goal.x - task.start.x, task.goal.y - task.start.y);
+    if (distance < m_options.nearest || distance > m_options.farthest) continue;
+    if (isFree(task.start) && isFree(task.goal)) return task;
+  }
+  throw std::runtime_error("no start on free ground and goal on free ground, " +
+                           std::to_string(m_options.nearest) + " to " +
+                           std::to_string(m_options.farthest) + " m apart, in " +
+                           std::to_string(kMostTries) + " draws");
+}
+
+TPose2D TaskDraw::anyPose() {
+  constexpr double kRim = 5;  // m
+  const double far = m_world.halfExtent() - kRim;
+  const double x = m_random.uniform(-far, far), y = m_random.uniform(-far, far);
+  return {x, y, m_random.uniform(-M_PI, M_PI)};
+}
+
+bool TaskDraw::isFree(const TPose2D& pose) const {
+  const auto isAllowedAt = [this](const mrpt::math::TPoint2D& p) {
+    return m_order.rank(m_world.groundClass(p.x, p.y)) != colored_graph::kForbidden;
+  };
+  for (const Eigen::Vector2d& corner : m_footprint.outline) {
+    const Eigen::Vector2d far = corner + m_options.clearance * corner.cwiseSign();
+    if (!isAllowedAt(pose.composePoint({far.x(), far.y()}))) return false;
+  }
+  return isAllowedAt({pose.x, pose.y}) &&
+         m_world.clearance(m_footprint, pose.x, pose.y, pose.phi) > m_options.clearance;
+}
+
+semantic_octree::SemanticOcTree trueMap(const World& world, double voxelSize, double height) {
+  LabeledCloud cloud = TrueVoxels(world, voxelSize, height).all();
+  semantic_octree::SemanticOcTree map(voxelSize, synthetic_world::classTable());
+  semantic_octree::InsertionOptions options;
+  options.carvingMargin = 1e6;  // nothing is carved: what is not filled stays unknown
+  map.insert(cloud, Eigen::Isometry3d::Identity(), options);
+  return map;
+}
+
+Oracle::Oracle(const World& world, const ClassOrder& order, const PlannerOptions& planner,
+               double voxelSize)
+    : m_world(world),
+      m_order(order),
+      m_options(planner),
+      m_map(trueMap(world, voxelSize, planner.vehicle.height)) {
+  m_options.roadmap.kind = GraphKind::HaltonDrivable;
+}
+
+SemanticPlanner& Oracle::plannerWith(std::size_t vertices) {
+  const auto found = m_planners.find(vertices);
+  if (found != m_planners.end()) return found->second;
+  m_options.roadmap.vertices = vertices;
+  return m_planners.emplace(vertices, SemanticPlanner(m_map, m_order, m_options)).first->second;
+}
+
+bool Oracle::accepts(const Task& task) {
+  const SemanticPlanner& planner = plannerWith(kVertices.front());
+  return planner.check(task.start) == PlanStatus::Found &&
+         planner.check(task.goal) == PlanStatus::Found;
+}
+
+void Oracle::solve(Task& task) {
+  for (const std::size_t vertices : kVertices) {
+    const PlanResult plan = plannerWith(vertices).plan(task.start, task.goal);
+    task.hasPath = plan.found();
+    task.reason = plan.reason;
+    task.length = plan.length;
+    task.lengthPerClass.assign(synthetic_world::classTable().size() + 1, 0);
+    for (std::size_t i = 1; i < plan.path.size(); ++i)
+      task.lengthPerClass[m_world.groundClass(plan.path[i].x, plan.path[i].y)] +=
+          plan.path[i].arcLength - plan.path[i - 1].arcLength;
+    if (plan.status != PlanStatus::NotConnected) return;
+  }
+}
 
 using namespace simulated_drive;
 using strict_files::csvField;
 
 namespace {
 
-/** Milliseconds from a scan to the path that follows from it. */
-std::vector<double> cyclesOf(const DriveRecord& record) {
+/** 0 of none. */
+double quantileOf(const std::vector<double>& values, double share) {
+  return values.empty() ? 0 : measuring::quantile(values, share);
+}
+
+/** Milliseconds of the processor to localize, insert, update and replan, from a scan to the path
+ * that follows from it. */
+double cycleOf(const DriveRecord& record, double share) {
   std::vector<double> cycles;
   if (record.times.count("insert+update+replan")) cycles = record.times.at("insert+update+replan");
   if (const auto localize = record.times.find("localize"); localize != record.times.end())
     for (std::size_t i = 0; i < std::min(cycles.size(), localize->second.size()); ++i)
       cycles[i] += localize->second[i];
-  return cycles;
+  return quantileOf(cycles, share);
 }
 
 /** A number of each drive. */
@@ -46,26 +218,27 @@ const std::vector<Column>& columns() {
       {"goal_deg", [](T t) { return degrees(t.task.goal.phi); }},
       {"path_length", [](T t) { return t.task.length; }},
       {"path_worse", [](T t) { return t.badBest; }},
-      {"seconds", [](T t) { return t.seconds; }},
-      {"length", [](T t) { return t.length; }},
+      {"seconds", [](T t) { return t.record.duration(); }},
+      {"length", [](T t) { return t.record.length; }},
       {"worse", [](T t) { return t.badDriven; }},
       {"worse_planned", [](T t) { return t.badFollowed; }},
-      {"collisions", [](T t) { return double(t.collisions); }},
-      {"clearance", [](T t) { return t.leastClearance; }},
-      {"replans", [](T t) { return double(t.replans); }},
+      {"collisions", [](T t) { return double(t.record.collisions); }},
+      {"clearance", [](T t) { return t.record.leastClearance; }},
+      {"replans", [](T t) { return double(t.record.replans); }},
       {"explored", [](T t) { return double(t.explored); }},
-      {"jerk", [](T t) { return t.smooth.jerk; }},
-      {"backwards", [](T t) { return t.smooth.backwards; }},
-      {"longest_backwards", [](T t) { return t.smooth.longestBackwards; }},
-      {"gear_changes", [](T t) { return double(t.smooth.gearChanges); }},
-      {"turn_changes", [](T t) { return double(t.smooth.turnChanges); }},
-      {"path_turn_changes", [](T t) { return double(t.smooth.pathTurnChanges); }},
-      {"pose_error", [](T t) { return t.poseErrors.mean; }},
-      {"largest_pose_error", [](T t) { return t.poseErrors.largest; }},
-      {"odometry_error", [](T t) { return t.odometryErrors.mean; }},
-      {"cycle", [](T t) { return t.cycle; }},
-      {"slow_cycle", [](T t) { return t.slowCycle; }},
-      {"leaves", [](T t) { return t.leaves; }},
+      {"jerk", [](T t) { return smoothnessOf(t.record).jerk; }},
+      {"backwards", [](T t) { return smoothnessOf(t.record).backwards; }},
+      {"longest_backwards", [](T t) { return smoothnessOf(t.record).longestBackwards; }},
+      {"gear_changes", [](T t) { return double(smoothnessOf(t.record).gearChanges); }},
+      {"turn_changes", [](T t) { return double(smoothnessOf(t.record).turnChanges); }},
+      {"path_turn_changes", [](T t) { return double(smoothnessOf(t.record).pathTurnChanges); }},
+      {"pose_error", [](T t) { return poseErrorsOf(t.record, &DriveRow::believed).mean; }},
+      {"largest_pose_error",
+       [](T t) { return poseErrorsOf(t.record, &DriveRow::believed).largest; }},
+      {"odometry_error", [](T t) { return poseErrorsOf(t.record, &DriveRow::odometry).mean; }},
+      {"cycle", [](T t) { return cycleOf(t.record, 0.5); }},
+      {"slow_cycle", [](T t) { return cycleOf(t.record, 0.95); }},
+      {"leaves", [](T t) { return quantileOf(t.record.leaves, 0.5); }},
       {"processor", [](T t) { return t.processorSeconds; }}};
   return columns;
 }
@@ -74,9 +247,10 @@ const std::vector<Column>& columns() {
 
 std::string Trial::fault() const {
   constexpr double kMore = 1.05, kVoxel = 0.2;  // m: lengths are no better known
-  if (collisions > 0) return "collision";
-  if (task.hasPath && end != DriveEnd::Arrived) return "did not arrive";
-  if (!task.hasPath && end == DriveEnd::TimeLimit) return "did not say that there is no path";
+  if (record.collisions > 0) return "collision";
+  if (task.hasPath && record.end != DriveEnd::Arrived) return "did not arrive";
+  if (!task.hasPath && record.end == DriveEnd::TimeLimit)
+    return "did not say that there is no path";
   if (badDriven > kMore * badFollowed + kVoxel) return "left its path for worse classes";
   return {};
 }
@@ -88,25 +262,11 @@ Trial runTrial(const DriveConfig& config, synthetic_world::World& world,
   const DriveRecord& record = loop.run();
   Trial trial;
   trial.task = task;
-  trial.end = record.end;
-  trial.reason = record.reason;
+  trial.record = record;
   trial.explored = std::as_const(loop).guide().explored();
-  trial.seconds = record.duration();
-  trial.length = record.length;
   trial.badDriven = badLength(record.drivenPerClass, order);
   trial.badFollowed = badLength(record.plannedPerClass, order);
   trial.badBest = badLength(task.lengthPerClass, order);
-  trial.leastClearance = record.leastClearance;
-  trial.collisions = record.collisions;
-  trial.replans = record.replans;
-  trial.smooth = smoothnessOf(record);
-  trial.poseErrors = poseErrorsOf(record, &DriveRow::believed);
-  trial.odometryErrors = poseErrorsOf(record, &DriveRow::odometry);
-  if (const std::vector<double> cycles = cyclesOf(record); !cycles.empty()) {
-    trial.cycle = measuring::quantile(cycles, 0.5);
-    trial.slowCycle = measuring::quantile(cycles, 0.95);
-  }
-  if (!record.leaves.empty()) trial.leaves = measuring::quantile(record.leaves, 0.5);
   trial.processorSeconds = watch.milliseconds() / 1e3;
   return trial;
 }
@@ -118,8 +278,8 @@ std::string toCsv(const std::vector<Trial>& trials) {
   for (const Trial& t : trials) {
     out << '\n'
         << t.scene << ',' << t.number << ',' << (t.task.hasPath ? "yes" : "no") << ','
-        << nameOf(t.end) << ',' << t.fault() << ',' << csvField(t.task.reason) << ','
-        << csvField(t.reason);
+        << nameOf(t.record.end) << ',' << t.fault() << ',' << csvField(t.task.reason) << ','
+        << csvField(t.record.reason);
     for (const Column& column : columns()) out << ',' << column.of(t);
   }
   out << '\n';

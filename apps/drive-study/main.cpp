@@ -73,11 +73,11 @@ struct Cli {
 
 void print(const Trial& trial) {
   const std::string fault = trial.fault();
-  notes() << trial.scene << ' ' << trial.number << ": " << nameOf(trial.end) << " after "
-          << trial.seconds << " s and " << trial.length << " m; "
+  notes() << trial.scene << ' ' << trial.number << ": " << nameOf(trial.record.end) << " after "
+          << trial.record.duration() << " s and " << trial.record.length << " m; "
           << (trial.task.hasPath ? "there is a path" : "there is no path")
           << (fault.empty() ? "" : "; FAULT: " + fault) << std::endl;
-  for (const std::string& reason : {trial.task.reason, trial.reason})
+  for (const std::string& reason : {trial.task.reason, trial.record.reason})
     if (!reason.empty()) notes() << "  " << reason << std::endl;
 }
 
@@ -129,10 +129,13 @@ void exploreScene(const std::string& name, const Cli& cli,
   const auto order = semantic_planning::loadClassOrder(cli.order, synthetic_world::classTable());
   const ExploreTask task = exploreTask(cli);
   TaskDraw draw(scene.world, order, config.planner.vehicle, cli.tasks);
+  Oracle oracle(scene.world, order, config.planner, config.voxelSize);
   for (int i = 0; i < cli.pairs; ++i) {
-    mrpt::math::TPose2D start;
-    do start = draw.next().start;
-    while (std::hypot(start.x, start.y) > kStartsWithin * task.within);
+    Task drawn;
+    do drawn = draw.next();
+    while (std::hypot(drawn.start.x, drawn.start.y) > kStartsWithin * task.within ||
+           !oracle.accepts(drawn));
+    const mrpt::math::TPose2D& start = drawn.start;
     for (const auto& [strategy, how] : choicesOf(Exploring())) {
       if (stop.pending() || !cli.wants(i)) continue;
       simulated_drive::DriveConfig itsOwn = config;

@@ -1,33 +1,181 @@
 // Drives a robot through a synthetic world: it maps, compresses, plans and drives.
 #include <map_folders/MapFolder.h>
 #include <map_pictures/PictureFiles.h>
+#include <mrpt/math/TPose2D.h>
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
+#include <synthetic_world/Scene.h>
+#include <CLI/CLI.hpp>
 
 #include <cmath>
+#include <filesystem>
+#include <functional>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
+#include <string>
+#include <vector>
 
-#include "Animation.h"
 #include "Application.h"
-#include "Cli.h"
+#include "Choice.h"
+#include "DrivePicture.h"
 #include "JsonFile.h"
 #include "LiveWindow.h"
-#include "Recorder.h"
+#include "MemoryOption.h"
+#include "NumberChecks.h"
+#include "Outputs.h"
 #include "Signals.h"
 #include "StandardOutput.h"
 #include "inputs/Inputs.h"
+#include "poses/Poses.h"
 #include "simulated_drive/DriveFiles.h"
 #include "simulated_drive/DriveLoop.h"
+#include "simulated_drive/Events.h"
+#include "synthetic_rawlog/Observations.h"
 
 namespace semantic_map_drive {
 namespace {
+using namespace simulated_drive;
 
 namespace fs = std::filesystem;
+
+/** What the command line says. */
+struct Cli {
+  std::filesystem::path map, config, output;
+  std::filesystem::path weights;  ///< of what is explored for; empty: for whatever is unknown
+  std::string solution;
+  std::vector<std::filesystem::path> order;
+  std::string scene = "village";
+  std::uint64_t seed = 1;
+  double hills = 1, pictureEvery = 0;
+  double memory = semantic_octree::MapFolderOptions().memory;
+  mrpt::math::TPose2D start, goal;
+  bool rawlog = true, pictures = true, navlog = false, live = false, compressed = false;
+  bool explore = false;
+  Events events;
+  Outputs outputs;
+
+  explicit Cli(CLI::App& app);
+
+ private:
+  void addEvents(CLI::App& app);
+};
+
+/** Hands each text to a function; what it throws is an error of the command line. */
+template <class Take>
+CLI::Option* addParsed(CLI::App& app, const std::string& name, const std::string& type, Take take,
+                       const std::string& description) {
+  return app
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [take, name](const std::vector<std::string>& texts) {
+            try {
+              for (const std::string& text : texts) take(text);
+            } catch (const std::invalid_argument& e) {
+              throw CLI::ValidationError(name, e.what());
+            }
+          },
+          description)
+      ->type_name(type);
+}
+
+Cli::Cli(CLI::App& app) : outputs(app) {
+  addWords(app.add_option("--scene,--world", scene, "Which synthetic world"),
+           synthetic_world::sceneNames())
+      ->capture_default_str();
+  app.add_option("--seed", seed, "Seed of the world and of all noise")->capture_default_str();
+  app.add_option("--hills", hills, "Factor of the ground's heights; 0 is flat")
+      ->check(isNumber(strict_files::between(0.0, 2.0)))
+      ->capture_default_str();
+  app.add_option(
+      "--map", map,
+      "Map that the robot begins with (.semantic, or a folder of tiles, which stays as it "
+      "is); without: none");
+  addMemoryOption(app, memory);
+  poses::addPose(app, "--start", start, "Where the robot is")->required();
+  CLI::Option_group* where = app.add_option_group("Where to");
+  poses::addPose(*where, "--goal", goal, "Where the robot shall go");
+  CLI::Option* exploring =
+      where->add_flag("--explore", explore, "Instead of a goal: look around until that is enough");
+  where->require_option(1);
+  app.add_option("--weights", weights, "What is looked for (YAML, see config/weights)")
+      ->needs(exploring);
+  app.add_option("--solution", solution, "Name of one solution in the weights; without: the first")
+      ->needs("--weights");
+  app.add_option("--order", order,
+                 "Classes from best to worst (YAML); a second file makes a second drive to compare")
+      ->required()
+      ->expected(1, 2);
+  app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drives)")
+      ->required();
+  outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
+  addEvents(app);
+  app.add_option("--picture-every", pictureEvery,
+                 "Write a picture every so many seconds of the drive")
+      ->check(isNumber(strict_files::above(0)));
+  app.add_flag("!--no-rawlog", rawlog, "Write no rawlog");
+  app.add_flag("--navlog", navlog, "Write drive.reactivenavlog, for MRPT's navlog-viewer");
+  app.add_flag("--live", live,
+               "Show the drive in a window, no faster than real time, until the window is closed");
+  app.add_flag("--compressed-pictures", compressed, "Show the compressed tree in pictures");
+  app.add_flag("!--no-pictures", pictures, "Write no animation");
+}
+
+void Cli::addEvents(CLI::App& app) {
+  addParsed(
+      app, "--person", "T,X,Y,X2,Y2[,T2]",
+      [this](auto& t) { events.persons.push_back(parsePerson(t)); },
+      "Somebody walks from one place to another, from second T on, and is gone at T2");
+  addParsed(
+      app, "--roadblock", "T,X,Y,DEG,LENGTH",
+      [this](auto& t) { events.roadblocks.push_back(parseRoadblock(t)); },
+      "A barrier across a way, from second T on");
+  addParsed(
+      app, "--sensor-dropout", "T,T2", [this](auto& t) { events.dropouts.push_back(parseSpan(t)); },
+      "The sensors see nothing from second T to T2");
+}
+
+/** Writes what the robot saw, and its true poses, as a rawlog. */
+class Recorder : public DriveObserver {
+ public:
+  /** \throw std::runtime_error the file cannot be written. */
+  explicit Recorder(const std::filesystem::path& file) : m_log(file, false, 0, 0) {}
+
+  void onSensed(const DriveLoop& loop, const std::vector<Observation>& seen) override {
+    std::vector<mrpt::obs::CObservation::Ptr> originals;
+    for (const Observation& o : seen) originals.push_back(o.original);
+    m_log.write(mrpt::Clock::now(), loop.T_world_robot(), originals);
+  }
+  void onFinished(const DriveLoop&) override { m_log.finish(); }
+
+ private:
+  synthetic_rawlog::DriveLog m_log;
+};
+
+/** Takes pictures along the way, and one at the end. */
+class Animation : public DriveObserver {
+ public:
+  /** \param period s of the drive between pictures \param show gets each of them, BGR */
+  Animation(DrivePicture picture, double period, std::function<void(const cv::Mat&)> show)
+      : m_picture(std::move(picture)), m_period(period), m_show(std::move(show)) {}
+
+  void onSensed(const DriveLoop& loop, const std::vector<Observation>&) override {
+    if (loop.time() < m_next - 1e-6) return;
+    m_next += m_period;
+    shoot(loop);
+  }
+  void onFinished(const DriveLoop& loop) override { shoot(loop); }
+
+ private:
+  void shoot(const DriveLoop& loop) { m_show(m_picture.frame(loop)); }
+
+  DrivePicture m_picture;
+  double m_period, m_next = 0;
+  std::function<void(const cv::Mat&)> m_show;
+};
 
 constexpr int kNotArrived = 2;  // exit status
 const std::vector<std::string> kFiles = {
@@ -186,6 +334,7 @@ class DriveProgram {
 };
 
 }  // namespace
+
 }  // namespace semantic_map_drive
 
 int main(int argc, char** argv) {

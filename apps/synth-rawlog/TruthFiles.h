@@ -1,16 +1,36 @@
 #pragma once
 #include <mrpt/poses/CPose3D.h>
-
-#include <fstream>
-#include <iosfwd>
-
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 #include <synthetic_world/Scene.h>
+#include <synthetic_world/Sensors.h>
+#include <synthetic_world/Solids.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iosfwd>
+
 #include "Cli.h"
-#include "WorldClasses.h"
 
 namespace synth_rawlog {
+
+/** The classes that things of the world have in the rawlog. */
+class WorldClasses {
+ public:
+  /** \param file class table (YAML) whose raw ids are the world's classes; empty: the world's own
+   * \throw std::runtime_error naming the file: it cannot be read, does not know a class of the
+   * world, or has more classes than a camera's labels. */
+  explicit WorldClasses(const std::filesystem::path& file);
+
+  const synthetic_world::ClassTable& table() const { return m_table; }
+  synthetic_world::ClassId of(synthetic_world::ClassId inWorld) const { return m_ids[inWorld]; }
+  synthetic_world::CameraFrame of(synthetic_world::CameraFrame frame) const;
+  synthetic_world::LabeledCloud of(synthetic_world::LabeledCloud cloud) const;
+
+ private:
+  synthetic_world::ClassTable m_table;
+  std::vector<synthetic_world::ClassId> m_ids;  ///< by the world's
+};
 
 /** Writes which world the rawlog shows: scene, seed, hills and classes, in YAML. */
 void writeTruth(const Cli& cli, const WorldClasses& classes, int frames,

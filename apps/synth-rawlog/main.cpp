@@ -12,7 +12,6 @@
 #include "Signals.h"
 #include "StandardOutput.h"
 #include "TruthFiles.h"
-#include "synthetic_rawlog/DriveLog.h"
 #include "synthetic_rawlog/Observations.h"
 
 namespace synth_rawlog {

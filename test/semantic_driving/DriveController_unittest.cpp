@@ -1,10 +1,17 @@
 #include <gtest/gtest.h>
+#include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/core/Clock.h>
+#include <mrpt/nav/reactive/CLogFileRecord.h>
+#include <mrpt/serialization/CArchive.h>
 #include <semantic_driving/DriveController.h>
+#include <semantic_driving/ReactiveNavigator.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "CompressedInput.h"
+#include "ReactiveSystem.h"
 #include "simulated_drive/SimulatedRobot.h"
 
 using namespace semantic_driving;
@@ -139,4 +146,139 @@ TEST(PathTracker, AloneStandsBeforeAPerson) {
   EXPECT_FALSE(drive.collided());
   EXPECT_LT(drive.state().pose.x, 5.9 - 0.55);
   EXPECT_GT(drive.state().pose.x, 4);
+}
+
+using namespace semantic_driving;
+using namespace semantic_planning;
+namespace fs = std::filesystem;
+
+namespace {
+
+ReactiveNavigator::Options optionsOf(double width) {
+  ReactiveNavigator::Options options;
+  options.config = std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini";
+  options.footprint = Footprint::rectangle(0, 0.6, width);
+  return options;
+}
+
+/** A wall across the straight way, 3 m ahead, with a gap of 0.9 m in the middle; map frame. */
+ObstaclePoints3 wallWithGap(double height) {
+  ObstaclePoints3 points;
+  for (double y = 0.45; y < 4; y += 0.2)
+    for (const double side : {-1, 1}) points.emplace_back(3.0, side * y, height);
+  return points;
+}
+
+ObstaclePoints3 seenFrom(const mrpt::math::TPose2D& pose, ObstaclePoints3 points) {
+  for (Eigen::Vector3d& o : points) {
+    const mrpt::math::TPoint2D p = pose.inverseComposePoint({o.x(), o.y()});
+    o.head<2>() << p.x, p.y;
+  }
+  return points;
+}
+
+/** Whether it drives 6 m ahead, through the gap, within a quarter of a minute. */
+bool getsThrough(const ReactiveNavigator::Options& options, double height) {
+  ReactiveNavigator navigator(options);
+  mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
+  simulated_drive::SimulatedRobot robot({0, 0, 0}, {});
+  PathPoint goal;
+  goal.x = 6;
+  navigator.setWaypoints({goal}, 0.4);
+  for (int i = 0; i < 150; ++i) {
+    mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + 0.1 * i));
+    const auto seen = seenFrom(robot.state().pose, wallWithGap(height));
+    robot.drive(navigator.step(robot.state(), seen, 0.1 * i), 0.1);
+    if (navigator.status() == ReactiveNavigator::Status::Arrived) return true;
+  }
+  return false;
+}
+
+/** A folder that is gone after the test. */
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("navlog-" + std::to_string(::getpid()));
+  ~Folder() { fs::remove_all(path); }
+};
+
+}  // namespace
+
+TEST(ReactiveNavigator, GoesThroughAGapWhereItFits) {
+  EXPECT_TRUE(getsThrough(optionsOf(0.2), 0.5));
+  EXPECT_FALSE(getsThrough(optionsOf(0.9), 0.5));
+}
+
+TEST(ReactiveNavigator, GoesAroundABendWithoutAStop) {
+  ReactiveNavigator navigator(optionsOf(0.2));
+  mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
+  simulated_drive::SimulatedRobot robot({0, 0, 0}, {});
+  constexpr double kRadius = 2, kSpacing = 1.2, kTurn = M_PI / 2;  // m, m, rad
+  std::vector<PathPoint> places;
+  for (double way = kSpacing; places.size() < 10; way += kSpacing) {
+    const double angle = std::min(way / kRadius, kTurn);
+    PathPoint place;
+    place.x = kRadius * std::sin(angle);
+    place.y = kRadius * (1 - std::cos(angle)) + way - kRadius * angle;
+    places.push_back(place);
+  }
+  navigator.setWaypoints(places, 0.5);
+  double slowest = 1, seconds = 0;
+  do {
+    mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + seconds));
+    robot.drive(navigator.step(robot.state(), ObstaclePoints3(), seconds), 0.1);
+    seconds += 0.1;
+    if (seconds > 2 && robot.state().pose.y < places.back().y - 2)
+      slowest = std::min(slowest, robot.state().speed);
+  } while (navigator.status() == ReactiveNavigator::Status::Driving && seconds < 30);
+  EXPECT_EQ(navigator.status(), ReactiveNavigator::Status::Arrived);
+  EXPECT_NEAR(robot.state().pose.y, places.back().y, 0.6);
+  EXPECT_GT(slowest, 0.5);
+}
+
+TEST(ReactiveNavigator, CompletesTheFactorsThatNewerReleasesOfMrptWant) {
+  mrpt::config::CConfigFileMemory file(
+      std::string("[CHolonomicFullEval]\nfactorWeights = [0.25, 0.1, 1, 0.05, 0.5, 1, 1]\n"
+                  "factorNormalizeOrNot = [0, 0, 0, 0, 1, 1, 0]\n"));
+  const auto read = [&](const std::string& key) {
+    std::vector<double> values;
+    file.read_vector("CHolonomicFullEval", key, values, values);
+    return values;
+  };
+  completeHolonomicFactors(file, 7);
+  EXPECT_EQ(read("factorWeights").size(), 7u);
+  completeHolonomicFactors(file, 8);
+  EXPECT_EQ(read("factorWeights"), (std::vector<double>{0.25, 0.1, 1, 0.05, 0.5, 1, 1, 0}));
+  EXPECT_EQ(read("factorNormalizeOrNot"), (std::vector<double>{0, 0, 0, 0, 1, 1, 0, 0}));
+  completeHolonomicFactors(file, 8);
+  EXPECT_EQ(read("factorWeights").size(), 8u);
+}
+
+TEST(ReactiveNavigator, WithSlicesGoesThroughAGapWhereItFitsAtThatHeight) {
+  ReactiveNavigator::Options options = optionsOf(0.9);
+  options.slices = {{0.5, Footprint::rectangle(0, 0.6, 0.9)},
+                    {1.0, Footprint::rectangle(0, 0.6, 0.2)}};  // a mast on a base
+  EXPECT_TRUE(getsThrough(options, 1.0));
+  EXPECT_FALSE(getsThrough(options, 0.3));
+}
+
+TEST(ReactiveNavigator, WritesALogThatMrptReads) {
+  const Folder folder;
+  ReactiveNavigator::Options options = optionsOf(0.2);
+  options.logFolder = folder.path;
+  EXPECT_TRUE(getsThrough(options, 0.5));
+  CompressedInput file((folder.path / "log_000.reactivenavlog").string());
+  auto archive = mrpt::serialization::archiveFrom(file);
+  int records = 0;
+  double farthest = 0;
+  try {
+    for (;; ++records) {
+      mrpt::nav::CLogFileRecord record;
+      archive >> record;
+      EXPECT_EQ(record.WS_Obstacles.size(), wallWithGap(0).size());
+      EXPECT_EQ(record.infoPerPTG.size(), 3u);  // two, and going on as before
+      farthest = std::max(farthest, record.robotPoseLocalization.x);
+    }
+  } catch (const std::exception&) {  // the end
+  }
+  EXPECT_GT(records, 30);
+  EXPECT_GT(farthest, 4);
 }

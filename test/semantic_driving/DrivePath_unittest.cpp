@@ -1,7 +1,12 @@
 #include <gtest/gtest.h>
+#include <semantic_driving/DrivePath.h>
+#include <semantic_driving/ForwardTurns.h>
+#include <semantic_driving/PathCheck.h>
 #include <semantic_driving/PathTracker.h>
 
 #include <cmath>
+
+#include "PaintedPlanner.h"
 
 using namespace semantic_driving;
 using namespace semantic_planning;
@@ -81,4 +86,247 @@ TEST(PathTracker, TooNearToAnObstacleOnlyTheWayOutIsNoApproach) {
     EXPECT_FALSE(tracker.approaches({-0.5, 0}, near, 0.05));
   }
   EXPECT_FALSE(tracker.approaches({0.5, 0}, farOff, 0.05));
+}
+
+using namespace semantic_driving;
+using namespace semantic_planning;
+
+namespace {
+
+constexpr double kVoxel = 0.2, kToTheFront = 0.55, kClearance = 0.1;  // m
+
+/** Along x, `length` meters. */
+DrivePath alongX(double length) {
+  std::vector<PathPoint> points;
+  for (double x = 0.1; x <= length + 0.1 + 1e-9; x += 0.1)
+    points.push_back({x, 0.1, 0, 0, 0, true, 0, 0});
+  return DrivePath(points);
+}
+
+/** A road up to x = 5, and grass, on rank 1, from there on. */
+class OfAPath : public testing::Test {
+ protected:
+  OfAPath() {
+    world.floor(-4, 5, -4, 4, PaintedWorld::Road);
+    world.floor(5, 20, -4, 4, PaintedWorld::Grass);
+  }
+  PathJudgment judge(const DrivePath& path, double from = 0) {
+    const SemanticPlanner planner = plannerOver(world);
+    return PathCheck(planner).judge(path, from);
+  }
+  PaintedWorld world;
+};
+
+PathJudgment judged(std::vector<double> perRank) {
+  PathJudgment judgment;
+  for (const double length : perRank) judgment.length += length;
+  judgment.price = judgment.length;
+  judgment.lengthPerRank = std::move(perRank);
+  return judgment;
+}
+
+bool isBetter(const PathJudgment& path, const PathJudgment& other) {
+  return path.isClearlyBetterThan(other);
+}
+
+}  // namespace
+
+TEST_F(OfAPath, TellsTheLengthOnEachRank) {
+  const PathJudgment judgment = judge(alongX(12));
+  EXPECT_TRUE(judgment.isFree());
+  EXPECT_NEAR(judgment.length, 12, 1e-6);
+  EXPECT_NEAR(judgment.lengthPerRank[0], 5 - 0.1, 2 * kVoxel);
+  EXPECT_NEAR(judgment.lengthPerRank[1], 12 - 5 + 0.1, 2 * kVoxel);
+  EXPECT_NEAR(judge(alongX(12), 4).length, 8, 1e-6);
+}
+
+TEST_F(OfAPath, TellsHowFarItIsFree) {
+  const DrivePath path = alongX(12);
+  ASSERT_TRUE(judge(path).isFree());
+  world.box(8, 8.2, -1, 1, 0, 1, PaintedWorld::Wall);
+  EXPECT_NEAR(judge(path).freeFor, 8 - 0.1 - kToTheFront - kClearance, 2 * kVoxel);
+  EXPECT_NEAR(judge(path, 3).freeFor, judge(path).freeFor - 3, kVoxel + 1e-6);
+  EXPECT_TRUE(judge(path, 10).isFree());  // it is behind
+}
+
+TEST_F(OfAPath, ForbiddenGroundIsInTheWay) {
+  world.floor(6, 7, -4, 4, PaintedWorld::Mud);
+  EXPECT_NEAR(judge(alongX(12)).freeFor, 6 - 0.1, kVoxel);  // the wheels come there
+}
+
+TEST_F(OfAPath, TellsThePriceOfDrivingTheRest) {
+  EXPECT_NEAR(judge(alongX(12), 4).price, 8, 1e-6);
+  std::vector<PathPoint> points = alongX(4).points();
+  for (int i = 1; i <= 10; ++i) points.push_back({4.1 - 0.1 * i, 0.1, 0, 0, 0, true, 0, 0});
+  const VehicleOptions vehicle;  // the planner's
+  const double back = vehicle.gearChange + vehicle.reverseWeight;
+  const double piece = 0.1 * (vehicle.reverseWeight - 1);  // before the change counts as backwards
+  EXPECT_NEAR(judge(DrivePath(points), 1).price, 3 + back, piece + 1e-6);
+  EXPECT_NEAR(judge(DrivePath(points), 4.5).price, 0.5 * vehicle.reverseWeight, 1e-6);
+}
+
+TEST(PathJudgment, AChangeOfGearOutweighsSomeMeters) {
+  PathJudgment shunting = judged({8, 0}), ahead = judged({9, 0});
+  shunting.price = 8 + 2.5 + 1.5;
+  EXPECT_TRUE(isBetter(ahead, shunting));
+  EXPECT_FALSE(isBetter(shunting, ahead));
+  ahead.price = 11.4;  // less than a tenth less
+  EXPECT_FALSE(isBetter(ahead, shunting));
+}
+
+TEST(PathJudgment, AFewMetersOfAWorseClassDoNotOutweighALongStretchBackwards) {
+  PathJudgment far = judged({12, 0}), ahead = judged({9, 3});
+  far.longestBackwards = 9;
+  EXPECT_TRUE(isBetter(ahead, far));
+  EXPECT_FALSE(isBetter(far, ahead));
+  ahead.longestBackwards = 5;  // both
+  EXPECT_TRUE(isBetter(far, ahead));
+  EXPECT_TRUE(far.isClearlyBetterThan(judged({9, 3}), 9));
+}
+
+TEST_F(OfAPath, TellsTheLongestStretchBackwardsOfTheRest) {
+  std::vector<PathPoint> points = alongX(4).points();
+  for (int i = 1; i <= 20; ++i) points.push_back({4.1 - 0.1 * i, 0.1, 0, 0, 0, true, 0, 0});
+  for (int i = 1; i <= 10; ++i) points.push_back({2.1 + 0.1 * i, 0.1, 0, 0, 0, true, 0, 0});
+  for (int i = 1; i <= 3; ++i) points.push_back({3.1 - 0.1 * i, 0.1, 0, 0, 0, true, 0, 0});
+  EXPECT_NEAR(judge(DrivePath(points)).longestBackwards, 2, 1e-6);
+  EXPECT_NEAR(judge(DrivePath(points), 5).longestBackwards, 1, 1e-6);
+  EXPECT_NEAR(judge(DrivePath(points), 6.5).longestBackwards, 0.3, 1e-6);
+  EXPECT_EQ(judge(alongX(4)).longestBackwards, 0);
+}
+
+TEST(PathJudgment, IsBetterOnBetterClassesAndThenIfShorter) {
+  struct Row {
+    std::vector<double> path, other;
+    bool better;
+  };
+  for (const Row& row : std::vector<Row>{
+           {{20, 0}, {10, 3}, true},  // longer, but all on the best class
+           {{10, 3}, {20, 0}, false},
+           {{9, 0}, {11, 0}, true},    // shorter by more than a tenth
+           {{9, 0}, {9.9, 0}, false},  // by less
+           {{2, 0}, {2.4, 0}, false},  // by less than half a meter
+           {{2, 0}, {2.6, 0}, true},
+           {{9, 1}, {9, 1.4}, false},  // as long on the worse class, in good approximation
+           {{2, 1.4}, {9, 1}, true}})
+    EXPECT_EQ(isBetter(judged(row.path), judged(row.other)), row.better)
+        << row.path[0] << ", " << row.path[1];
+}
+
+using namespace semantic_driving;
+using namespace semantic_planning;
+
+TEST(DrivenTrack, LeadsBackTheWayTheVehicleCame) {
+  constexpr double kRadius = 2;
+  DrivenTrack track;
+  for (double a = 0; a < 1; a += 0.01)  // ahead on an arc to the left
+    track.add({kRadius * std::sin(a), kRadius * (1 - std::cos(a)), a});
+  const DrivePath back(track.back());
+  EXPECT_NEAR(back.length(), kRadius, 0.2);
+  EXPECT_NEAR(back.stretchEnd(0.1), back.length(), 1e-9);
+  for (double s = 0; s < back.length() - 0.2; s += 0.1) {
+    EXPECT_FALSE(back.at(s).forward);
+    EXPECT_NEAR(back.at(s).curvature, 1 / kRadius, 0.01);
+  }
+  EXPECT_NEAR(std::hypot(back.at(2).x, back.at(2).y), 0, 0.1);
+}
+
+TEST(DrivenTrack, ForgetsWhatTheVehicleWentBackOnAndWhatIsLongAgo) {
+  DrivenTrack track(3);
+  for (double x = 0; x <= 5; x += 0.05) track.add({x, 0, 0});
+  const double kept = DrivePath(track.back()).length();
+  EXPECT_GE(kept, 2.9);
+  EXPECT_LE(kept, 4.5);
+  for (double x = 5; x >= 4; x -= 0.05) track.add({x, 0, 0});
+  const DrivePath back(track.back());
+  EXPECT_NEAR(back.points().front().x, 4, 0.15);
+  EXPECT_NEAR(back.length(), kept - 1, 0.2);
+  EXPECT_NEAR(back.stretchEnd(0), back.length(), 1e-9);
+}
+
+using namespace semantic_driving;
+using namespace semantic_planning;
+
+namespace {
+
+constexpr double kLongest = 8;  // m backwards
+
+/** Ahead along x from 0.1 to 3.1 m, and back to -3.9 m. */
+DrivePath pathThereAndBack(PaintedWorld::Class ground = PaintedWorld::Grass) {
+  std::vector<PathPoint> points;
+  for (int i = 0; i <= 30; ++i) points.push_back({0.1 + 0.1 * i, 0.1, -0.1, 0, 0, true, ground, 0});
+  for (int i = 1; i <= 70; ++i)
+    points.push_back({3.1 - 0.1 * i, 0.1, -0.1, 0, 0, false, ground, 0});
+  return DrivePath(points);
+}
+
+/** The path is over grass. */
+class InPlaceOfBackingUp : public testing::Test {
+ protected:
+  InPlaceOfBackingUp() { world.floor(-12, 12, -8, 8, PaintedWorld::Grass); }
+  std::optional<DrivePath> find(double from = 0, double worth = 0.5,
+                                PaintedWorld::Class ground = PaintedWorld::Grass) {
+    const SemanticPlanner planner = plannerOver(world);
+    const DrivePath path = pathThereAndBack(ground);
+    const auto found = ForwardTurns(planner, kLongest).find(path, from, worth);
+    if (found) {
+      const MotionCost price(planner.options().vehicle);
+      EXPECT_LT(price.of(found->points()), price.of(path.points()) - worth);
+    }
+    return found;
+  }
+  PaintedWorld world;
+};
+
+}  // namespace
+
+TEST_F(InPlaceOfBackingUp, GoesAheadToTheSamePose) {
+  const auto found = find();
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->stretchEnd(0), found->length());  // no change of gear
+  EXPECT_TRUE(found->at(0).forward);
+  const PathPoint begin = found->points().front(), end = found->points().back();
+  EXPECT_NEAR(std::hypot(begin.x - 0.1, begin.y - 0.1), 0, 1e-6);
+  EXPECT_NEAR(std::hypot(end.x + 3.9, end.y - 0.1, std::sin(end.heading)), 0, 1e-6);
+  EXPECT_GT(std::cos(end.heading), 0);
+}
+
+TEST_F(InPlaceOfBackingUp, LeavesTheBeginningAsItIs) {
+  const auto found = find(2);
+  ASSERT_TRUE(found);
+  for (double s = 0; s <= 2; s += 0.1) EXPECT_NEAR(found->at(s).y, 0.1, 1e-6) << s;
+  EXPECT_NEAR(found->at(2).x, 2.1, 1e-6);
+}
+
+TEST_F(InPlaceOfBackingUp, ThereIsNothingWhereItCostsMore) { EXPECT_FALSE(find(0, 50)); }
+
+TEST_F(InPlaceOfBackingUp, ThereIsNothingWhereItDoesNotFit) {
+  world.box(-12, 12, 1, 1.2, 0, 1, PaintedWorld::Wall);
+  world.box(-12, 12, -1, -0.8, 0, 1, PaintedWorld::Wall);
+  EXPECT_FALSE(find());
+}
+
+TEST_F(InPlaceOfBackingUp, ThereIsNothingOverAWorseClass) {
+  world.floor(-12, 12, -1, 1.2, PaintedWorld::Road);
+  EXPECT_FALSE(find(0, 0.5, PaintedWorld::Road));
+  world.floor(-12, 12, -8, 8, PaintedWorld::Road);
+  EXPECT_TRUE(find(0, 0.5, PaintedWorld::Road));
+}
+
+TEST_F(InPlaceOfBackingUp, FarThereMayBeWhatThePathMeetsElsewhere) {
+  world.floor(-12, 12, -1, 1.2, PaintedWorld::Road);
+  std::vector<PathPoint> points = pathThereAndBack(PaintedWorld::Road).points();
+  points.front().classId = PaintedWorld::Grass;
+  const SemanticPlanner planner = plannerOver(world);
+  EXPECT_FALSE(ForwardTurns(planner, 8).find(DrivePath(points), 0.5, 0.5));
+  const auto found = ForwardTurns(planner, 6).find(DrivePath(points), 0.5, 0.5);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->longestBackwards(), 0);
+  EXPECT_FALSE(ForwardTurns(planner, 6).find(pathThereAndBack(PaintedWorld::Road), 0.5, 0.5));
+}
+
+TEST_F(InPlaceOfBackingUp, APathWithoutChangesStays) {
+  const SemanticPlanner planner = plannerOver(world);
+  EXPECT_FALSE(ForwardTurns(planner, kLongest).find(pathThereAndBack().part(0, 3), 0, 0));
+  EXPECT_FALSE(ForwardTurns(planner, kLongest).find({}, 0, 0));
 }

@@ -74,20 +74,20 @@ TEST(DriveStudy, DrawsTasksWithClearanceAroundThem) {
 TEST(DriveStudy, TellsFaults) {
   Trial trial;
   trial.task.hasPath = true;
-  trial.end = DriveEnd::Arrived;
+  trial.record.end = DriveEnd::Arrived;
   trial.badFollowed = 10;
   trial.badDriven = 10.5;
   EXPECT_EQ(trial.fault(), "");
   trial.badDriven = 11;
   EXPECT_NE(trial.fault(), "");
   trial.badDriven = 0;
-  trial.end = DriveEnd::Unreachable;
+  trial.record.end = DriveEnd::Unreachable;
   EXPECT_EQ(trial.fault(), "did not arrive");
   trial.task.hasPath = false;
   EXPECT_EQ(trial.fault(), "");
-  trial.end = DriveEnd::TimeLimit;
+  trial.record.end = DriveEnd::TimeLimit;
   EXPECT_NE(trial.fault(), "");
-  trial.collisions = 1;
+  trial.record.collisions = 1;
   EXPECT_EQ(trial.fault(), "collision");
 }
 
@@ -97,8 +97,8 @@ TEST(DriveStudy, DrivesATaskAndCountsIt) {
       runTrial(smallConfig(), world, syntheticOrder(), solved(world, {-8, 0, 0}, {3, 0, 0}));
   trial.scene = "yard";
   EXPECT_EQ(trial.fault(), "");
-  EXPECT_EQ(trial.end, DriveEnd::Arrived);
-  EXPECT_GE(trial.length, 10.7);
+  EXPECT_EQ(trial.record.end, DriveEnd::Arrived);
+  EXPECT_GE(trial.record.length, 10.7);
   const auto table = csvTable(toCsv({trial}));
   ASSERT_EQ(table.size(), 2u);
   EXPECT_EQ(table[0].size(), table[1].size());

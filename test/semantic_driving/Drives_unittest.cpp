@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "PlainDrives.h"
-#include "Tasks.h"
+#include "Trial.h"
 #include "simulated_drive/DriveFiles.h"
 
 using namespace plain_drives;

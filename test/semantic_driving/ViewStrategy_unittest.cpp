@@ -107,6 +107,30 @@ TEST_F(ViewStrategies, doNotDriveForWhatIsOnlyToBeIgnored) {
       tree_abstraction::irrelevant("ignored", 1, {static_cast<int>(PaintedWorld::Road)}))));
 }
 
+TEST_F(ViewStrategies, lookForGroundBelowWhereItWasExpectedIfThatIsFree) {
+  constexpr double kEdge = 8, kFar = 15, kStep = 0.1;  // m
+  const auto expected = firstView(relevant(PaintedWorld::Road));
+  for (const double side : {0.0, 0.5, 1.0, 1.5}) {     // half turns
+    const Eigen::AngleAxisd turn(side * M_PI, Eigen::Vector3d::UnitZ());
+    for (double y = -kFar; y < kFar; y += kStep)
+      for (const double z : {0.1, -0.1, -0.3}) {
+        if (turn.matrix()(0, 0) * turn.matrix()(0, 0) < 0.5 && std::abs(y) > kEdge) continue;
+        semantic_types::LabeledCloud beyond;
+        beyond.points.emplace_back(kFar - kEdge + 1, 0.F, 0.F);
+        beyond.classes.push_back(PaintedWorld::Grass);
+        Eigen::Isometry3d T(turn);
+        T.translation() = turn * Eigen::Vector3d(kEdge + 0.1, y + 0.05, z);
+        semantic_octree::InsertionOptions carving;
+        carving.maxRange = kFar - kEdge;
+        world.map().insert(beyond, T, carving);
+      }
+  }
+  const auto view = firstView(relevant(PaintedWorld::Road));
+  ASSERT_TRUE(expected && view);
+  EXPECT_GT(view->pose.x, 1);
+  EXPECT_GT(view->promise, expected->promise / 2);
+}
+
 TEST_F(ViewStrategies, neverChooseAViewTwice) {
   const SemanticPlanner over = planner();
   for (const auto& strategy :

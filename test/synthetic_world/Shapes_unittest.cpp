@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 #include <synthetic_world/Objects.h>
 #include <synthetic_world/Solids.h>
-
+#include <synthetic_world/World.h>
 #include <Eigen/Geometry>
+
+#include <cmath>
+
+#include "SmallWorld.h"
 
 namespace {
 
@@ -125,6 +129,121 @@ TEST(Shapes, polyhedraRefuseBadInput) {
   EXPECT_THROW(Polyhedron(kOutline, {{0, 0}, {1, 0}, {0, 1}}, 0, 1), std::invalid_argument);
   EXPECT_THROW(Polyhedron(kOutline, kOutline, 1, 1), std::invalid_argument);
   EXPECT_THROW(Polyhedron::gable({0, 0}, 0, 1, 1, 2, 1), std::invalid_argument);
+}
+
+
+using synthetic_world::Curve;
+using V2 = Eigen::Vector2d;
+
+const std::vector<V2> kRing{{-20, -10}, {25, -14}, {30, 12}, {0, 20}, {-22, 14}};
+
+TEST(Curve, roundedSquareHasTheLengthOfItsStraightsAndArcs) {
+  const Curve curve({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 2, true);
+  EXPECT_NEAR(curve.length(), 4 * 6 + 2 * M_PI * 2, 1e-12);
+}
+
+TEST(Curve, headingIsTheDirectionOfMotionAndHasNoKink) {
+  const Curve curve(kRing, 6, true);
+  const double h = 1e-5;
+  for (double s = 0; s < curve.length(); s += 0.37) {
+    const V2 moved = (curve.at(s + h) - curve.at(s - h)) / (2 * h);
+    EXPECT_NEAR(moved.norm(), 1, 1e-5) << s;
+    EXPECT_NEAR(moved.x(), std::cos(curve.heading(s)), 1e-4) << s;
+    EXPECT_NEAR(moved.y(), std::sin(curve.heading(s)), 1e-4) << s;
+  }
+}
+
+TEST(Curve, closedCurveWrapsAroundAndOpenOneStops) {
+  const Curve ring(kRing, 6, true), open(kRing, 6);
+  EXPECT_NEAR((ring.at(3) - ring.at(3 + ring.length())).norm(), 0, 1e-9);
+  EXPECT_NEAR((ring.at(-2) - ring.at(ring.length() - 2)).norm(), 0, 1e-9);
+  EXPECT_EQ(open.at(-5), kRing.front());
+  EXPECT_NEAR((open.at(1e6) - kRing.back()).norm(), 0, 1e-9);
+}
+
+TEST(Curve, parallelKeepsItsDistanceOnTheAskedSide) {
+  const Curve curve(kRing, 6, true);
+  for (const double left : {-3.0, 2.5}) {
+    const Curve parallel = curve.parallel(left);
+    for (double s = 0; s < parallel.length(); s += 1.3) {
+      double least = 1e9;
+      for (double t = 0; t < curve.length(); t += 0.01)
+        least = std::min(least, (curve.at(t) - parallel.at(s)).norm());
+      EXPECT_NEAR(least, std::abs(left), 1e-4);
+    }
+    EXPECT_EQ(parallel.length() < curve.length(), left > 0);  // the ring turns left
+  }
+}
+
+TEST(Curve, refusesBadInput) {
+  EXPECT_EQ(errorOf([] { Curve({{0, 0}}, 1); }), "curve: 1 corners, at least 2 expected");
+  EXPECT_EQ(errorOf([] {
+              Curve({{0, 0}, {1, 0}}, 1, true);
+            }),
+            "curve: 2 corners, at least 3 expected");
+  EXPECT_EQ(errorOf([] { Curve({{0, 0}, {1, 0}}, 0); }), "curve: the radius must be positive");
+  EXPECT_EQ(errorOf([] {
+              Curve({{0, 0}, {2, 1}, {2, 1}}, 1);
+            }),
+            "curve: corner 1 equals the next one");
+  EXPECT_EQ(errorOf([] {
+              Curve({{0, 0}, {5, 0}, {1, 0}}, 1);
+            }),
+            "curve: a corner turns back on itself");
+  EXPECT_EQ(errorOf([] { Curve(kRing, 6, true).parallel(7); }),
+            "curve: too narrow for this parallel");
+}
+
+
+using namespace synthetic_world;
+using V2 = Eigen::Vector2d;
+
+Polygon randomRectangle(Random& random) {
+  return rectangle({random.uniform(-3, 3), random.uniform(-3, 3)}, random.uniform(-4, 4),
+                   random.uniform(0.5, 4), random.uniform(0.5, 3));
+}
+
+/** Points that fill a rectangle (its first corner, along two edges). */
+std::vector<V2> filling(const Polygon& r) {
+  std::vector<V2> points;
+  for (int i = 0; i <= 40; ++i)
+    for (int j = 0; j <= 40; ++j)
+      points.push_back(r[0] + (r[1] - r[0]) * i / 40.0 + (r[3] - r[0]) * j / 40.0);
+  return points;
+}
+
+TEST(Polygon, distancesEqualThoseOfDenseSamples) {
+  Random random(7);
+  for (int trial = 0; trial < 60; ++trial) {
+    const Polygon a = randomRectangle(random), b = randomRectangle(random);
+    double least = 1e9;
+    for (const V2& p : filling(b)) least = std::min(least, distance(a, p));
+    EXPECT_NEAR(distance(a, b), least, 0.06) << trial;
+    EXPECT_LE(distance(a, b), least + 1e-12);
+    EXPECT_NEAR(distance(a, b), distance(b, a), 1e-12);
+
+    const V2 q(random.uniform(-5, 5), random.uniform(-5, 5));
+    double toPoint = 1e9;
+    for (const V2& p : filling(a)) toPoint = std::min(toPoint, (p - q).norm());
+    EXPECT_NEAR(distance(a, q), toPoint, 0.08) << trial;
+  }
+}
+
+TEST(Polygon, distanceIsZeroInsideAndWhereOneHoldsTheOther) {
+  const Polygon big = rectangle({0, 0}, 0.3, 4, 3), small = rectangle({0.2, 0.1}, 1.0, 1, 0.5);
+  EXPECT_EQ(distance(big, V2(0.3, 0.3)), 0);
+  EXPECT_EQ(distance(big, small), 0);
+  EXPECT_EQ(distance(small, big), 0);
+}
+
+TEST(Polygon, whatIsNotConvexIsRefusedByName) {
+  const Polygon clockwise{{0, 0}, {0, 1}, {1, 1}, {1, 0}},
+      dented{{0, 0}, {2, 0}, {0.2, 0.2}, {0, 2}};
+  const Polygon line{{0, 0}, {1, 0}};
+  const Polygon star{{1, 0}, {-0.8, 0.6}, {0.3, -0.95}, {0.3, 0.95}, {-0.8, -0.6}};
+  for (const Polygon& p : {clockwise, dented, line, star})
+    EXPECT_EQ(errorOf([&] { requireConvex(p, "robot"); }),
+              "robot: three or more corners, convex, counterclockwise expected");
 }
 
 }  // namespace

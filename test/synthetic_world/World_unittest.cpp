@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 #include <synthetic_world/Objects.h>
 #include <synthetic_world/Scene.h>
+#include <synthetic_world/World.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
 
 #include "SmallWorld.h"
 
@@ -132,6 +136,116 @@ TEST(World, footprintsNameTheirBadField) {
   robot.outline.pop_back(), robot.outline.pop_back();
   EXPECT_EQ(errorOf([&] { robot.validate(); }),
             "footprint: outline: three or more corners, convex, counterclockwise expected");
+}
+
+
+using namespace synthetic_world;
+using V2 = Eigen::Vector2d;
+
+TEST(GroundCover, laterStrokesCoverEarlierOnes) {
+  GroundCover cover(20, kGrass);
+  cover.paintDisk(kGravel, {1, -3}, 4);
+  cover.paintStroke(kRoad, {-15, -3}, {15, -3}, 2);
+  cover.paintBand(kLaneMarking, {-1, -3}, {1, -3}, 0.2);
+  EXPECT_EQ(cover.at(1, 3), kGrass);
+  EXPECT_EQ(cover.at(1, -0.5), kGravel);
+  EXPECT_EQ(cover.at(5, -3), kRoad);
+  EXPECT_EQ(cover.at(0.9, -2.95), kLaneMarking);
+  EXPECT_EQ(cover.at(1.05, -3), kRoad);  // a band has square ends
+  EXPECT_EQ(cover.at(-1.05, -3), kRoad);
+  EXPECT_EQ(cover.at(-16.9, -3), kRoad);  // a stroke has round ones
+  EXPECT_EQ(cover.at(-16.9, -2), kGrass);
+}
+
+TEST(GroundCover, stripAroundACurveIsWhatLiesWithinItsHalfWidth) {
+  const Curve curve({{-15, -9}, {0, -12}, {10, 4}, {-8, 13}}, 5);
+  GroundCover cover(20, kGrass);
+  cover.paintCurve(kRoad, curve, 2);
+  Random random(3);
+  int onRoad = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const V2 p(random.uniform(-20, 20), random.uniform(-20, 20));
+    double far = 1e9;
+    for (double s = 0; s <= curve.length(); s += 0.02)
+      far = std::min(far, (curve.at(s) - p).norm());
+    if (std::abs(far - 2) < 0.08) continue;  // the strip is made of straight pieces
+    EXPECT_EQ(cover.at(p), far < 2 ? kRoad : kGrass) << p.transpose();
+    onRoad += far < 2;
+  }
+  EXPECT_GT(onRoad, 200);
+}
+
+TEST(GroundCover, strokesWithoutWidthOrLengthAreRefused) {
+  GroundCover cover(20, kGrass);
+  EXPECT_THROW(cover.paintDisk(kRoad, {0, 0}, 0), std::invalid_argument);
+  EXPECT_THROW(cover.paintBand(kRoad, {1, 1}, {1, 1}, 2), std::invalid_argument);
+}
+
+
+using synthetic_world::Random;
+using synthetic_world::Terrain;
+
+const std::vector<Terrain::Wave> kHills{{2, 40, 0.3, 1}, {0.7, 15, 2.0, 0.2}};
+
+TEST(Terrain, followsItsWaves) {
+  const Terrain terrain(40, kHills);
+  Random random(1);
+  for (int i = 0; i < 500; ++i) {
+    const double x = random.uniform(-40, 40), y = random.uniform(-40, 40);
+    double expected = 0;
+    for (const auto& w : kHills)
+      expected +=
+          w.amplitude *
+          std::sin(2 * M_PI / w.length * (x * std::cos(w.direction) + y * std::sin(w.direction)) +
+                   w.phase);
+    EXPECT_NEAR(terrain.height(x, y), expected, 0.05);
+  }
+}
+
+TEST(Terrain, beyondTheEdgeTheEdgesHeightGoesOn) {
+  const Terrain terrain(40, kHills);
+  EXPECT_EQ(terrain.height(95, 7), terrain.height(40, 7));
+  EXPECT_EQ(terrain.height(3, -41), terrain.height(3, -40));
+}
+
+TEST(Terrain, normalStandsUprightOnTheSlope) {
+  const Terrain flat(10, {});
+  EXPECT_EQ(flat.normal(1, 2), Eigen::Vector3d::UnitZ());
+  const Terrain terrain(40, kHills);
+  const Eigen::Vector3d n = terrain.normal(5.5, -3.5);
+  const Eigen::Vector3d alongX(0.5, 0, terrain.height(5.75, -3.5) - terrain.height(5.25, -3.5));
+  EXPECT_NEAR(n.dot(alongX), 0, 1e-12);
+  EXPECT_NEAR(n.norm(), 1, 1e-12);
+}
+
+TEST(Terrain, raysEnterACellWhereMarchingFindsTheGround) {
+  const Terrain terrain(40, kHills);
+  Random random(5);
+  int met = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d target(random.uniform(10, 11), random.uniform(-7, -6), 0);
+    const Eigen::Vector3d o =
+        target + Eigen::Vector3d(random.uniform(-2, 2), random.uniform(-2, 2), 4);
+    const Eigen::Vector3d d =
+        (target + Eigen::Vector3d(0, 0, random.uniform(-3, 3)) - o).normalized();
+    const auto entry = terrain.enter(50, 33, o, d, 0, 8);
+    if (!entry) continue;
+    const Eigen::Vector3d p = o + *entry * d;
+    if (p.x() < 10 || p.x() > 11 || p.y() < -7 || p.y() > -6)
+      continue;  // the cell's surface goes on
+    ++met;
+    EXPECT_NEAR(p.z(), terrain.height(p.x(), p.y()), 1e-9);
+  }
+  EXPECT_GT(met, 300);
+}
+
+TEST(Terrain, refusesBadInput) {
+  EXPECT_EQ(errorOf([] { Terrain(0, {}); }), "terrain: halfExtent is 0, 1 to 1000 m expected");
+  EXPECT_EQ(errorOf([] {
+              Terrain(10, {{1, 4, 0, 0}});
+            }),
+            "terrain: a wave of 4.000000 m, 8 m or more expected");
+  EXPECT_EQ(errorOf([] { Terrain(10, {{NAN, 40, 0, 0}}); }), "terrain: a wave is not finite");
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <view_information/GainField.h>
 
+#include <cmath>
+
 #include "ThreeClasses.h"
 
 using namespace view_information;
@@ -125,4 +127,150 @@ TEST(UnknownPrior, whatStandsOnGroundIsExpectedOnSuchGround) {
   const float grass = prior.patch((kOrigin - 34) / 4, kOrigin / 4).above.gain;
   const float road = prior.patch((kOrigin + 34) / 4, kOrigin / 4).above.gain;
   EXPECT_GT(grass, 2 * road);
+}
+
+using namespace view_information;
+using semantic_octree::SemanticOcTree;
+using semantic_types::LabeledCloud;
+
+namespace {
+
+tree_abstraction::AbstractionWeights roadMatters() {
+  tree_abstraction::AbstractionWeights weights;
+  weights.terms = {tree_abstraction::relevant("road", 1, {kRoad})};
+  return weights;
+}
+
+/** Returns of a floor at z = 0 around the origin, the sensor 1 m above it. */
+void insertFloor(SemanticOcTree& map, ClassId id, double reach = 2, double turn = 0) {
+  LabeledCloud cloud;
+  for (double x = -reach; x < reach; x += 0.1)
+    for (double y = -reach; y < reach; y += 0.1) {
+      cloud.points.emplace_back(x, y, -1.05F);
+      cloud.classes.push_back(id);
+    }
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() << turn, 0, 1;
+  map.insert(cloud, T);
+}
+
+struct Scene {
+  SemanticOcTree map{kVoxel, threeClasses()};
+  Question question{roadMatters(), 3};
+  BeamModel model{3, map.filterParameters()};
+  GainField field{map, question};
+  UniformPrior prior{question, model};
+};
+
+octomap::OcTreeKey keyAt(const SemanticOcTree& map, double x, double y, double z) {
+  return map.coordToKey(x, y, z);
+}
+
+}  // namespace
+
+TEST(GainField, hasOfEachVoxelWhatTheFilterMakesOfALook) {
+  Scene s;
+  insertFloor(s.map, kRoad);
+  s.field.update();
+  const semantic_octree::ClassFilter<float> filter(3, s.map.filterParameters());
+  std::size_t voxels = 0;
+  for (auto leaf = s.map.begin_leafs(); leaf != s.map.end_leafs(); ++leaf) {
+    const auto gain = s.field.at(leaf.getKey());
+    ASSERT_TRUE(gain);
+    const double fall = s.question.fallThrough(filter, s.model, s.map.belief(*leaf));
+    EXPECT_NEAR(gain->gain, std::max(0.0, fall), 0.004 * std::abs(fall) + 1e-9);
+    EXPECT_NEAR(gain->pass,
+                passThrough(leaf->getOccupancy(), s.map.filterParameters().minOccupancy), 1e-4);
+    ++voxels;
+  }
+  EXPECT_GT(voxels, 500U);
+  EXPECT_FALSE(s.field.at(keyAt(s.map, 0, 0, -3)));
+}
+
+TEST(GainField, thatFollowsIsTheSameAsANewOne) {
+  Scene s;
+  for (int i = 0; i < 4; ++i) {
+    insertFloor(s.map, i % 2 ? kRoad : kGrass, 1.5, i * 0.7);
+    s.field.update();
+  }
+  EXPECT_TRUE(s.field.update().tiles.empty());
+  GainField anew(s.map, s.question);
+  anew.update();
+  EXPECT_EQ(s.field.numTiles(), anew.numTiles());
+  for (auto leaf = s.map.begin_leafs(); leaf != s.map.end_leafs(); ++leaf) {
+    const auto a = s.field.at(leaf.getKey()), b = anew.at(leaf.getKey());
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->gain, b->gain);
+    EXPECT_EQ(a->pass, b->pass);
+  }
+}
+
+TEST(GainField, isEmptyAfterTheMapIs) {
+  Scene s;
+  insertFloor(s.map, kRoad);
+  s.field.update();
+  s.map.clear();
+  EXPECT_TRUE(s.field.update().all);
+  EXPECT_EQ(s.field.numTiles(), 0U);
+}
+
+TEST(GainField, sweepIsTheTreeOfItsVoxels) {
+  Scene s;
+  insertFloor(s.map, kRoad);
+  s.field.update();
+  const ViewTemplate view({3, -60, 20, 360}, kVoxel);
+  const auto from = keyAt(s.map, 0.5, 0.3, 1);
+  const SectorGains gains = s.field.sweep(view, s.prior, from);
+  std::vector<TreeCell> cells;
+  for (const ViewTemplate::Voxel& v : view.voxels()) {
+    const octomap::OcTreeKey key =
+        semantic_octree::octomapKey(from[0] + v.x, from[1] + v.y, from[2] + v.z);
+    const Gain unknown = s.prior.patch(0, 0).at(key[0], key[1], key[2]);
+    const Gain gain = s.field.at(key).value_or(unknown);
+    cells.push_back(cells.empty() ? TreeCell{-1, 1, 0} : TreeCell{v.parent, gain.pass, gain.gain});
+  }
+  const double tree = informationOfTree(cells);
+  EXPECT_GT(tree, 1);
+  EXPECT_NEAR(gainOfHeading(gains, 0, 360), tree, 0.01 * tree);
+}
+
+TEST(GainField, promisesLessTheMoreWasSeen) {
+  Scene s;
+  const ViewTemplate view({3, -60, -25, 360}, kVoxel);
+  const auto promise = [&] {
+    s.field.update();
+    return gainOfHeading(s.field.sweep(view, s.prior, keyAt(s.map, 0, 0, 1)), 0, 360);
+  };
+  insertFloor(s.map, kRoad, 4);
+  const double once = promise();
+  for (int i = 0; i < 6; ++i) insertFloor(s.map, kRoad, 4);
+  EXPECT_GT(once, 3 * promise());
+}
+
+TEST(GainField, keepsTilesThatAreTheSameThroughoutOnce) {
+  Scene s;
+  LabeledCloud cloud;
+  for (int i = 0; i < 400; ++i)
+    for (int j = 0; j < 100; ++j) {
+      cloud.points.emplace_back(20, -10 + 0.05F * static_cast<float>(i),
+                                -5 + 0.1F * static_cast<float>(j));
+      cloud.classes.push_back(kWall);
+    }
+  for (int i = 0; i < 12; ++i) s.map.insert(cloud, Eigen::Isometry3d::Identity());
+  s.field.update();
+  EXPECT_LT(s.field.memoryUsage(), s.field.numTiles() * 4 * 512 * 9 / 10);
+}
+
+TEST(ViewTemplate, hasEachVoxelAfterTheOneThroughWhichItIsSeen) {
+  const ViewTemplate view({4, -30, 10, 80}, kVoxel);
+  const auto& voxels = view.voxels();
+  ASSERT_GT(voxels.size(), 1000U);
+  for (std::size_t i = 1; i < voxels.size(); ++i) {
+    const auto& v = voxels[i];
+    ASSERT_LT(static_cast<std::size_t>(v.parent), i);
+    const auto& p = voxels[static_cast<std::size_t>(v.parent)];
+    ASSERT_LE(std::max({std::abs(v.x - p.x), std::abs(v.y - p.y), std::abs(v.z - p.z)}), 1);
+  }
+  EXPECT_THROW(ViewTemplate({4, 20, 10, 80}, kVoxel), std::invalid_argument);
+  EXPECT_THROW(ViewTemplate({std::nan(""), -20, 10, 80}, kVoxel), std::invalid_argument);
 }

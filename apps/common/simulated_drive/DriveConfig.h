@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "SimulatedOdometry.h"
+#include "SimulatedRobot.h"
 
 namespace simulated_drive {
 

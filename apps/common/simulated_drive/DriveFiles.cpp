@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "DriveRecord.h"
 #include "measuring/Quantile.h"
 
 namespace simulated_drive {
@@ -166,6 +167,28 @@ double badLength(const std::vector<double>& perClass, const colored_graph::Class
   for (std::size_t id = 0; id < perClass.size(); ++id)
     if (order.rank(static_cast<colored_graph::GraphClass>(id)) != 0) sum += perClass[id];
   return sum;
+}
+
+const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd) {
+  static const strict_files::Choices<DriveEnd> choices = {
+      {"arrived", DriveEnd::Arrived},      {"nearest", DriveEnd::Nearest},
+      {"astray", DriveEnd::Astray},        {"unreachable", DriveEnd::Unreachable},
+      {"time_limit", DriveEnd::TimeLimit}, {"stopped", DriveEnd::Stopped},
+      {"explored", DriveEnd::Explored}};
+  return choices;
+}
+
+const char* nameOf(DriveEnd end) { return strict_files::nameIn(choicesOf(end), end); }
+
+void DriveRecord::add(const DriveRow& row, std::optional<semantic_types::ClassId> planned,
+                      double way) {
+  drivenPerClass[row.classId] += way;
+  if (planned) plannedPerClass[*planned] += way;
+  length += way;
+  const bool touchedBefore = !rows.empty() && rows.back().clearance <= 0;
+  if (row.clearance <= 0 && !touchedBefore) ++collisions;
+  leastClearance = std::min(leastClearance, row.clearance);
+  rows.push_back(row);
 }
 
 }  // namespace simulated_drive

@@ -2,13 +2,151 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+#include <vector>
+
+#include "GoalRegion.h"
+#include "GroundFlood.h"
 
 namespace semantic_driving {
 
 using mrpt::math::TPose2D;
+using semantic_planning::Column;
+using semantic_planning::Ground;
 using semantic_planning::PlanResult;
+using semantic_planning::PlanStatus;
 using semantic_planning::SemanticPlanner;
+using semantic_planning::Surface;
+
+namespace {
+
+/** The least way from anywhere on to a goal, if all that is not known to be in the way is not: a
+ * search from the goal, over ground that is reached as its rank counts, else as the unknown does,
+ * with ways in buckets (Dial, "Algorithm 360", 1969) instead of a heap. (The freespace assumption:
+ * Koenig and Likhachev, "D* Lite", 2002.) */
+class WayLeft {
+ public:
+  WayLeft(const semantic_planning::Ground& ground, const GroundFlood& flood,
+          const GoalRegion& region, const mrpt::math::TPose2D& goal, double unknownFactor);
+
+  /** How far the unknown may be from where it is seen, meters. */
+  static constexpr double kSight = 1.4;
+
+  /** Weighted meters; infinite where something is in the way.
+   * \param c in the rectangle, within kSight of what is reached */
+  double from(semantic_planning::Column c) const { return m_ways[m_columns.indexOf(c)]; }
+
+ private:
+  using Open = std::pair<double, std::size_t>;
+
+  void start(const mrpt::math::TPose2D& goal);
+  void search();
+  std::size_t reachedIn(const std::vector<Open>& bucket) const;
+  void expand(const Open& open);
+  void offer(semantic_planning::Column c, double way);
+  void startOutside(const mrpt::math::TPose2D& goal);
+  double costOf(semantic_planning::Column c) const;
+
+  const semantic_planning::Ground& m_ground;
+  const GroundFlood& m_flood;
+  const GoalRegion& m_region;
+  const ColumnRectangle& m_columns;
+  double m_unknown;    ///< what a meter through it counts
+  double m_width;      ///< of a bucket, weighted meters
+  double m_first = 0;  ///< no way is shorter, weighted meters
+  double m_beyond;     ///< the farthest that is reached ways are asked for, weighted meters
+  std::vector<double> m_ways;
+  /** By how often the width fits into what a way is longer than the first. */
+  std::vector<std::vector<Open>> m_open;
+};
+
+WayLeft::WayLeft(const semantic_planning::Ground& ground, const GroundFlood& flood,
+                 const GoalRegion& region, const TPose2D& goal, double unknownFactor)
+    : m_ground(ground),
+      m_flood(flood),
+      m_region(region),
+      m_columns(flood.columns()),
+      m_unknown(unknownFactor),
+      m_width(std::max(1.0, m_unknown) * m_ground.voxelSize()),
+      m_beyond(std::hypot(1, 1) * kSight * m_unknown),
+      m_ways(m_columns.size(), std::numeric_limits<double>::infinity()) {
+  start(goal);
+  search();
+}
+
+void WayLeft::start(const TPose2D& goal) {
+  const Column c = m_ground.columnAt(goal.x, goal.y);
+  if (!m_columns.contains(c)) return startOutside(goal);
+  const double voxel = m_ground.voxelSize();
+  const int reach = m_region.isKept(c) ? static_cast<int>(GoalRegion::kAroundGoal / voxel) : 0;
+  for (int y = -reach; y <= reach; ++y)
+    for (int x = -reach; x <= reach; ++x)
+      if (std::hypot(x, y) <= reach)
+        offer({c.x + x, c.y + y}, m_unknown * voxel * std::hypot(x, y));
+}
+
+/** What lies beyond the rectangle is unknown: by steps in eight directions to where the rim is seen
+ * from the goal, and on along the rim. */
+void WayLeft::startOutside(const TPose2D& goal) {
+  constexpr double kFar = 1e6;  // m: farther columns have no number
+  const Column c =
+      m_ground.columnAt(std::clamp(goal.x, -kFar, kFar), std::clamp(goal.y, -kFar, kFar));
+  std::vector<std::pair<double, Column>> seen;
+  m_columns.forRim([&](Column rim) {
+    if (!m_columns.faces(rim, c)) return;
+    const auto [less, more] = std::minmax(
+        {std::abs(m_ground.centerOf(rim.x) - goal.x), std::abs(m_ground.centerOf(rim.y) - goal.y)});
+    seen.emplace_back(m_unknown * (more + (std::sqrt(2.0) - 1) * less), rim);
+  });
+  m_first = std::min_element(seen.begin(), seen.end())->first;
+  for (const auto& [way, rim] : seen) offer(rim, way);
+}
+
+void WayLeft::offer(Column c, double way) {
+  if (!m_columns.contains(c)) return;
+  const std::size_t i = m_columns.indexOf(c);
+  if (way >= m_ways[i]) return;
+  if (m_region.isKept(c) && !m_region.isReached(c) && !m_columns.isAtRim(c)) return;
+  m_ways[i] = way;
+  const auto bucket = static_cast<std::size_t>(std::max(0.0, way - m_first) / m_width);
+  if (bucket >= m_open.size()) m_open.resize(bucket + 1);
+  m_open[bucket].emplace_back(way, i);
+}
+
+/** What a meter costs. */
+double WayLeft::costOf(Column c) const {
+  return m_region.isReached(c) ? m_flood.at(c).rank + 1 : m_unknown;
+}
+
+/** What is offered meanwhile comes into the same bucket or a later one. Ends where all that is
+ * reached has its way. */
+void WayLeft::search() {
+  std::size_t left = m_region.numReached();
+  std::size_t end = std::numeric_limits<std::size_t>::max();
+  for (std::size_t b = 0; b < std::min(end, m_open.size()); ++b) {
+    for (std::size_t k = 0; k < m_open[b].size(); ++k) expand(Open(m_open[b][k]));
+    if (left == 0) continue;
+    left -= reachedIn(m_open[b]);
+    if (left == 0) end = b + 2 + static_cast<std::size_t>(m_beyond / m_width);
+  }
+}
+
+std::size_t WayLeft::reachedIn(const std::vector<Open>& bucket) const {
+  return std::count_if(bucket.begin(), bucket.end(), [this](const Open& open) {
+    return open.first == m_ways[open.second] && m_region.isReached(m_columns.columnOf(open.second));
+  });
+}
+
+void WayLeft::expand(const Open& open) {
+  const auto [way, i] = open;
+  if (way > m_ways[i]) return;
+  const Column c = m_columns.columnOf(i);
+  const double meter = costOf(c) * m_ground.voxelSize();
+  for (const Column& d : kNeighbors) offer({c.x + d.x, c.y + d.y}, way + meter * lengthOf(d));
+}
+
+}  // namespace
 
 void Explorer::moveTo(const TPose2D& pose, double z) {
   const TPose2D before = std::exchange(m_pose, pose).value_or(pose);
@@ -71,6 +209,162 @@ std::optional<Explorer::Way> Explorer::choose(const Exploration& places, const T
 void Explorer::end(bool drives) {
   if (drives) m_seen.insert(m_seen.end(), m_tried.begin(), m_tried.end());
   m_tried.clear();
+}
+
+namespace {
+
+constexpr double kUnknownFactor = 2;   // what a meter through the unknown counts, of one on rank 0
+constexpr double kFrontiersApart = 3;  // m
+constexpr std::size_t kMostFrontiers = 6;
+
+class FrontierSearch {
+ public:
+  FrontierSearch(const SemanticPlanner& planner, const GroundFlood& flood, const GoalRegion& region,
+                 const TPose2D& from, const TPose2D& goal)
+      : m_planner(planner),
+        m_ground(planner.ground()),
+        m_flood(flood),
+        m_region(region),
+        m_from(from),
+        m_goal(goal) {
+    flood.forEach([&](Column c, const GroundFlood::Place& place) {
+      if ((c.x + c.y) % 2 == 0) lookAround(c, place.z);
+    });
+  }
+
+  /** The best ones that the vehicle can stand at, apart from each other and from those to avoid.
+   * \param unknown what a meter through it counts */
+  std::vector<Frontier> chosen(const WayLeft& wayLeft, double unknown,
+                               const std::vector<TPose2D>& avoid) const {
+    std::vector<Frontier> chosen;
+    for (const auto& [cost, straight, c] : best(wayLeft, unknown)) {
+      const double x = m_ground.centerOf(c.x), y = m_ground.centerOf(c.y);
+      const auto isNear = [&](const TPose2D& p) {
+        return std::hypot(p.x - x, p.y - y) < kFrontiersApart;
+      };
+      if (chosen.size() == kMostFrontiers) break;
+      if (std::any_of(avoid.begin(), avoid.end(), isNear)) continue;
+      if (std::any_of(chosen.begin(), chosen.end(),
+                      [&](const Frontier& other) { return isNear(other.pose); }))
+        continue;
+      const Frontier f{{x, y, headingAt(c)}, m_ground.centerOf(m_flood.at(c).z), cost};
+      if (m_planner.check(f.pose, f.z) == PlanStatus::Found) chosen.push_back(f);
+    }
+    return chosen;
+  }
+
+ private:
+  /** Unknown ground that is seen from a place. */
+  struct View {
+    Column from, unknown;
+    double distance;  ///< meters
+  };
+
+  struct Place {
+    double cost;
+    double straight;  ///< meters from the vehicle by way of it to the goal, whatever is in the way
+    Column column;
+  };
+
+  /** The least cost first. Ways over columns are as long anywhere between two diagonals: of such
+   * places that which leads straight on comes first. */
+  std::vector<Place> best(const WayLeft& wayLeft, double unknown) const {
+    constexpr double kSameCost = 1e-3;  // m
+    std::vector<Place> places;
+    for (const View& view : m_views) {
+      const double cost =
+          m_flood.at(view.from).cost + unknown * view.distance + wayLeft.from(view.unknown);
+      if (!std::isfinite(cost)) continue;
+      if (places.empty() || !(places.back().column == view.from))
+        places.push_back({cost, straightOver(view.from), view.from});
+      places.back().cost = std::min(places.back().cost, cost);
+    }
+    std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+      const double costOfA = std::round(a.cost / kSameCost),
+                   costOfB = std::round(b.cost / kSameCost);
+      return costOfA != costOfB ? costOfA < costOfB : a.straight < b.straight;
+    });
+    return places;
+  }
+
+  double straightOver(Column c) const {
+    const double x = m_ground.centerOf(c.x), y = m_ground.centerOf(c.y);
+    return std::hypot(x - m_from.x, y - m_from.y) + std::hypot(x - m_goal.x, y - m_goal.y);
+  }
+
+  bool isUnknown(Column c, int z) const {
+    if (!m_ground.surfaces(c).empty()) return false;
+    for (int k = z - 1; k <= z; ++k)
+      if (m_ground.map().search(octomap::OcTreeKey(static_cast<octomap::key_type>(c.x),
+                                                   static_cast<octomap::key_type>(c.y),
+                                                   static_cast<octomap::key_type>(k))))
+        return false;
+    return true;
+  }
+
+  /** For the unknown of the goal's region, in each of eight directions. */
+  void lookAround(Column c, int z) {
+    const int far = static_cast<int>(std::lround(WayLeft::kSight / m_ground.voxelSize()));
+    for (const Column& d : kNeighbors)
+      for (int i = 1; i <= far; ++i) {
+        const Column there{c.x + i * d.x, c.y + i * d.y};
+        const double step = m_ground.voxelSize() * lengthOf(d);
+        if (!m_flood.columns().contains(there)) {
+          m_views.push_back({c, {there.x - d.x, there.y - d.y}, (i - 1) * step});
+          break;
+        }
+        if (m_region.isObstacle(there)) break;
+        if (i == 1 || !m_region.contains(there) || !isUnknown(there, z)) continue;
+        m_views.push_back({c, there, i * step});
+        break;
+      }
+  }
+
+  double headingAt(Column c) const {
+    constexpr double kOver = 2;  // m, the last part of the way
+    const auto columns = std::lround(kOver / m_ground.voxelSize());
+    Column before = c;
+    for (long i = 0; i < columns; ++i) before = m_flood.at(before).from;
+    return before == c ? 0 : std::atan2(c.y - before.y, c.x - before.x);
+  }
+
+  const SemanticPlanner& m_planner;
+  const Ground& m_ground;
+  const GroundFlood& m_flood;
+  const GoalRegion& m_region;
+  const TPose2D m_from, m_goal;
+  std::vector<View> m_views;
+};
+
+}  // namespace
+
+double Effort::doubt(double left) const {
+  return expected > 0 ? std::sqrt(std::max(1.0, (spent + left) / expected)) : 1;
+}
+
+Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, double z,
+                          const TPose2D& goal, const std::vector<TPose2D>& avoid,
+                          const Effort& effort) {
+  const double voxel = planner.ground().voxelSize();
+  const int key = planner.ground().keyOf(z);
+  const GroundFlood flood(planner, from, key, kFrontierRadius);
+  const GoalRegion region(planner, flood.columns(), flood.reached(), from, z, goal);
+  Exploration found;
+  found.enclosed = region.isEnclosed();
+  found.goalReached = region.isGoalReached();
+  if (!region.isOpen()) found.goalArea = region.columns() * voxel * voxel;
+  if (found.enclosed) return found;
+  const FrontierSearch places(planner, flood, region, from, goal);
+  const auto search = [&](double unknown) {
+    const WayLeft wayLeft(planner.ground(), flood, region, goal, unknown);
+    return places.chosen(wayLeft, unknown, avoid);
+  };
+  found.frontiers = search(kUnknownFactor);
+  if (found.frontiers.empty()) return found;
+  found.hoped = found.frontiers.front().cost;
+  const double doubt = effort.doubt(found.hoped);
+  if (doubt != 1) found.frontiers = search(kUnknownFactor * doubt);
+  return found;
 }
 
 }  // namespace semantic_driving

@@ -8,7 +8,6 @@
 #include <cstdio>
 
 #include "GroundFlood.h"
-#include "ObstacleFinder.h"
 #include "Surroundings.h"
 
 namespace semantic_driving {

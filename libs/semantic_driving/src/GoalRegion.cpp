@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "ObstacleFinder.h"
 #include "Surroundings.h"
 
 namespace semantic_driving {

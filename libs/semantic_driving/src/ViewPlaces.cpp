@@ -1,5 +1,7 @@
 #include "ViewPlaces.h"
 
+#include <semantic_driving/Explorer.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +12,7 @@ namespace semantic_driving {
 using mrpt::math::TPose2D;
 using semantic_planning::Column;
 using semantic_planning::Ground;
+using semantic_planning::SemanticPlanner;
 
 namespace {
 
@@ -20,11 +23,10 @@ double directionOf(Column from, Column to) { return std::atan2(to.y - from.y, to
 
 double turnBetween(double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); }
 
+/** No surface is known there, and nothing stands there: where the ground goes downhill, what beams
+ * passed at the height of the ground before is free. */
 bool isUnknownColumn(const Ground& ground, Column c, int z) {
-  if (!ground.surfaces(c).empty()) return false;
-  for (int k = z - 1; k <= z + 1; ++k)
-    if (ground.map().search(semantic_octree::octomapKey(c.x, c.y, k))) return false;
-  return true;
+  return ground.surfaces(c).empty() && !ground.isOccupied(c, z - 1, z + 1);
 }
 
 }  // namespace
@@ -130,6 +132,55 @@ std::size_t firstStop(const std::vector<std::vector<double>>& ways,
     for (std::size_t i = 0; i < n; ++i)
       if (set >> i & 1) least[set][i] = next(set, i).first;
   return next(0, n).second;
+}
+
+namespace {
+
+class NearestFrontier : public ViewStrategy {
+ public:
+  NearestFrontier(const SemanticPlanner& planner, const ExploreOptions& options)
+      : m_planner(planner), m_options(options) {
+    m_options.validate();
+  }
+
+  std::optional<View> next(const TPose2D& from, double z) override {
+    const Ground& ground = m_planner.ground();
+    const GroundFlood flood(m_planner, from, ground.keyOf(z), kFrontierRadius);
+    std::optional<View> nearest;
+    for (const ViewPlace& place : placesOf(flood, ground, m_options.area)) {
+      if (nearest && place.length >= nearest->way) break;
+      const auto heading = headingToUnknown(ground, place);
+      if (!heading || place.length < kSeenFromHere) continue;
+      const TPose2D pose{ground.centerOf(place.column.x), ground.centerOf(place.column.y),
+                         *heading};
+      const double way =
+          wayTo(place, from.phi, *heading, m_planner.options().vehicle.turningRadius);
+      const double height = ground.centerOf(place.z);
+      if ((!nearest || way < nearest->way) && !m_done.has(pose, 2 * M_PI) &&
+          m_planner.check(pose, height) == semantic_planning::PlanStatus::Found)
+        nearest = View{pose, height, way, 0};
+    }
+    return nearest;
+  }
+  void done(const View& view) override { m_done.add(view.pose); }
+  std::string conclusion() const override {
+    return "no border of what is known is left within reach; places looked from: " +
+           std::to_string(m_done.size());
+  }
+
+ private:
+  static constexpr double kSeenFromHere = 0.8;  // m
+
+  const SemanticPlanner& m_planner;
+  const ExploreOptions m_options;
+  DoneViews m_done;
+};
+
+}  // namespace
+
+std::unique_ptr<ViewStrategy> nearestFrontier(const SemanticPlanner& planner,
+                                              const ExploreOptions& options) {
+  return std::make_unique<NearestFrontier>(planner, options);
 }
 
 }  // namespace semantic_driving

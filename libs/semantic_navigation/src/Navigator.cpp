@@ -1,13 +1,13 @@
+#include <semantic_navigation/Navigator.h>
+
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/ObstacleSensing.h>
-#include <semantic_navigation/Navigator.h>
 #include <semantic_planning/planner/OrderFile.h>
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <utility>
-
-#include "ThreadClock.h"
 
 namespace semantic_navigation {
 
@@ -20,6 +20,26 @@ using semantic_slam::Mapper;
 using semantic_slam::SensorScan;
 
 namespace {
+
+/** Milliseconds of the processor that a thread takes, stage by stage. */
+class ThreadClock {
+ public:
+  /** Since it began, or since the last lap. */
+  double lap() {
+    const double end = now(), passed = end - m_begin;
+    m_begin = end;
+    return passed;
+  }
+
+ private:
+  static double now() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+  }
+
+  double m_begin = now();
+};
 
 constexpr double kSameTime = 1e-6;  // s
 constexpr double kNever = -1e9;     // s
@@ -41,11 +61,13 @@ NavigatorOptions completed(NavigatorOptions options, double voxelSize) {
   return options;
 }
 
-/** Where leaves of the compressed tree are obstacles, it keeps what tells these from air. */
+/** Where leaves of the compressed tree are obstacles, it keeps what tells these from air;
+ * everywhere that would be too many leaves. */
 SemanticPlanner plannerOn(semantic_octree::SemanticOcTree& map,
                           const colored_graph::ClassOrder& order, const NavigatorOptions& options) {
+  const bool keepsObstacles = options.compressedObstacles && options.focus.isOn();
   setAbstraction(map, semantic_planning::abstractionFor(order, tree_abstraction::kPlanningAlpha,
-                                                        options.compressedObstacles));
+                                                        keepsObstacles));
   return SemanticPlanner(map, order, options.planner);
 }
 

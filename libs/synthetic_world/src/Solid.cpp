@@ -1,7 +1,10 @@
 #include <synthetic_world/Solids.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 namespace synthetic_world {
 namespace {
@@ -77,6 +80,175 @@ Material Solid::materialAt(const Eigen::Vector3d& p, int index) const {
 Material Solid::materialAt(const Eigen::Vector3d& p) const {
   const int face = std::visit([&](const auto& s) { return s.nearestFace(p); }, m_shape);
   return materialAt(p, face);
+}
+
+namespace {
+
+/** Roots of a t^2 + 2 b t + c, the lesser first. */
+std::optional<std::pair<double, double>> roots(double a, double b, double c) {
+  const double discriminant = b * b - a * c;
+  if (discriminant < 0 || a == 0) return std::nullopt;
+  const double root = std::sqrt(discriminant);
+  const double first = (-b - root) / a, second = (-b + root) / a;
+  return std::minmax(first, second);
+}
+
+}  // namespace
+
+double Section::distanceTo(const Polygon& polygon) const {
+  if (!outline.empty()) return distance(polygon, outline);
+  return std::max(0.0, distance(polygon, center) - radius);
+}
+
+std::optional<Entry> Shaft::enter(const Eigen::Vector3d& o, const Eigen::Vector3d& d) const {
+  if (signedDistance(o) <= 0) return Entry{0, Eigen::Vector3d::UnitZ(), 0};
+  const double k = slope(), rz = radiusAt(o.z());
+  const Eigen::Vector2d q = o.head<2>() - center, e = d.head<2>();
+  std::optional<Entry> best;
+  const auto offer = [&](double t, const Eigen::Vector3d& normal) {
+    if (t >= 0 && (!best || t < best->range)) best = Entry{t, normal, 0};
+  };
+  const auto offerSide = [&](double t) {
+    const double z = o.z() + t * d.z();
+    if (z < bottom || z > top) return;
+    const Eigen::Vector2d out = (q + t * e).normalized();
+    offer(t, Eigen::Vector3d(out.x(), out.y(), -k).normalized());
+  };
+  const auto offerEnd = [&](double z, double radius, double up) {
+    const double t = (z - o.z()) / d.z();
+    if (radius > 0 && (q + t * e).squaredNorm() <= radius * radius) offer(t, {0, 0, up});
+  };
+  const double c = q.squaredNorm() - rz * rz;
+  if (const auto t = roots(e.squaredNorm() - k * k * d.z() * d.z(), q.dot(e) - k * rz * d.z(), c)) {
+    offerSide(t->first);
+    offerSide(t->second);
+  }
+  if (d.z() < 0) offerEnd(top, topRadius, 1);
+  if (d.z() > 0) offerEnd(bottom, bottomRadius, -1);
+  return best;
+}
+
+double Shaft::signedDistance(const Eigen::Vector3d& p) const {
+  const double k = slope(), lean = 1 / std::sqrt(1 + k * k);
+  const double side = ((p.head<2>() - center).norm() - radiusAt(p.z())) * lean;
+  return std::max({side, bottom - p.z(), p.z() - top});
+}
+
+std::optional<Section> Shaft::section(double from, double to) const {
+  if (to < bottom || from > top) return std::nullopt;
+  return Section{
+      {}, center, std::max(radiusAt(std::max(from, bottom)), radiusAt(std::min(to, top)))};
+}
+
+std::optional<Entry> Spheroid::enter(const Eigen::Vector3d& o, const Eigen::Vector3d& d) const {
+  // In coordinates in which the spheroid is the unit ball.
+  const Eigen::Vector3d scale(1 / radius, 1 / radius, 1 / halfHeight);
+  const Eigen::Vector3d q = (o - center).cwiseProduct(scale), e = d.cwiseProduct(scale);
+  const double c = q.squaredNorm() - 1;
+  if (c <= 0) return Entry{0, Eigen::Vector3d::UnitZ(), 0};
+  const auto t = roots(e.squaredNorm(), q.dot(e), c);
+  if (!t || t->first < 0) return std::nullopt;
+  return Entry{t->first, (q + t->first * e).cwiseProduct(scale).normalized(), 0};
+}
+
+double Spheroid::signedDistance(const Eigen::Vector3d& p) const {
+  const Eigen::Vector3d scale(1 / radius, 1 / radius, 1 / halfHeight);
+  const Eigen::Vector3d q = (p - center).cwiseProduct(scale);
+  const double slope = q.cwiseProduct(scale).norm(), norm = q.norm();
+  if (slope == 0) return -std::min(radius, halfHeight);
+  return (norm - 1) * norm / slope;
+}
+
+std::optional<Section> Spheroid::section(double from, double to) const {
+  if (to < low() || from > high()) return std::nullopt;
+  const double nearest = std::clamp(center.z(), from, to), h = (nearest - center.z()) / halfHeight;
+  return Section{{}, center.head<2>(), radius * std::sqrt(std::max(0.0, 1 - h * h))};
+}
+
+namespace {
+
+Eigen::Vector3d lifted(const Eigen::Vector2d& p, double z) { return {p.x(), p.y(), z}; }
+
+}  // namespace
+
+Polyhedron::Polyhedron(const Polygon& bottom, const Polygon& top, double low, double high)
+    : m_outline(bottom), m_low(low), m_high(high) {
+  requireConvex(bottom, "polyhedron");
+  if (top.size() != bottom.size())
+    throw std::invalid_argument("polyhedron: top and bottom differ in their number of corners");
+  if (!(low < high)) throw std::invalid_argument("polyhedron: its top is not above its bottom");
+  for (std::size_t i = 0; i < bottom.size(); ++i) {
+    const std::size_t j = (i + 1) % bottom.size();
+    addSide(lifted(bottom[i], low), lifted(bottom[j], low), lifted(top[i], high));
+  }
+  m_faces.push_back({Eigen::Vector3d::UnitZ(), high, 0, 0});
+  m_faces.push_back({-Eigen::Vector3d::UnitZ(), -low, 0, 0});
+}
+
+Polyhedron Polyhedron::gable(const Eigen::Vector2d& center, double yaw, double length, double width,
+                             double low, double high) {
+  if (!(low < high)) throw std::invalid_argument("gable: its ridge is not above its eaves");
+  Polyhedron p;
+  p.m_outline = rectangle(center, yaw, length, width);
+  p.m_low = low, p.m_high = high;
+  const Polygon& o = p.m_outline;
+  const Eigen::Vector3d back = lifted((o[0] + o[3]) / 2, high),
+                        front = lifted((o[1] + o[2]) / 2, high);
+  p.addSide(lifted(o[0], low), lifted(o[1], low), back);
+  p.addSide(lifted(o[1], low), lifted(o[2], low), front);
+  p.addSide(lifted(o[2], low), lifted(o[3], low), front);
+  p.addSide(lifted(o[3], low), lifted(o[0], low), back);
+  p.m_faces.push_back({-Eigen::Vector3d::UnitZ(), -low, 0, 0});
+  return p;
+}
+
+void Polyhedron::addSide(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                         const Eigen::Vector3d& above) {
+  const Eigen::Vector3d normal = (b - a).cross(above - a).normalized();
+  const Eigen::Vector3d along = (b - a).normalized();
+  m_faces.push_back({normal, normal.dot(a), along.dot(a), (b - a).norm()});
+}
+
+std::optional<Entry> Polyhedron::enter(const Eigen::Vector3d& o, const Eigen::Vector3d& d) const {
+  double in = 0, out = std::numeric_limits<double>::infinity();
+  int face = -1;
+  for (int i = 0; i < static_cast<int>(m_faces.size()); ++i) {
+    const double toward = m_faces[i].normal.dot(d),
+                 gap = m_faces[i].offset - m_faces[i].normal.dot(o);
+    if (toward == 0) {
+      if (gap < 0) return std::nullopt;
+      continue;
+    }
+    const double range = gap / toward;
+    if (toward > 0) {
+      out = std::min(out, range);
+    } else if (range > in) {
+      in = range, face = i;
+    }
+    if (in > out) return std::nullopt;
+  }
+  if (face < 0) face = nearestFace(o);
+  return Entry{in, m_faces[face].normal, face};
+}
+
+int Polyhedron::nearestFace(const Eigen::Vector3d& p) const {
+  int nearest = 0;
+  double greatest = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < static_cast<int>(m_faces.size()); ++i) {
+    const double outside = m_faces[i].normal.dot(p) - m_faces[i].offset;
+    if (outside > greatest) greatest = outside, nearest = i;
+  }
+  return nearest;
+}
+
+double Polyhedron::signedDistance(const Eigen::Vector3d& p) const {
+  const Face& f = m_faces[nearestFace(p)];
+  return f.normal.dot(p) - f.offset;
+}
+
+std::optional<Section> Polyhedron::section(double low, double high) const {
+  if (high < m_low || low > m_high) return std::nullopt;
+  return Section{m_outline, Eigen::Vector2d::Zero(), 0};
 }
 
 }  // namespace synthetic_world
