@@ -8,6 +8,9 @@
 #include <semantic_slam/SlamOptions.h>
 
 #include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace rawlog2semantic_map {
 
@@ -28,5 +31,18 @@ struct Config {
  * \throw std::runtime_error naming the file, and section, key and value where they are to blame:
  * unreadable, an unknown section or key, a value that cannot be read or is out of range. */
 Config loadConfig(const std::filesystem::path& file);
+
+/** Where labels come from, if not from the observations themselves. */
+struct LabelSources {
+  /** Folders of label images: "FOLDER" for all sensors, "SENSOR=FOLDER" for one. */
+  std::vector<std::string> folders;
+  std::filesystem::path network, networkConfig;
+};
+
+/** What finds the label images; null without any source.
+ * \throw std::runtime_error naming what is missing or wrong: an option, a folder, a file. */
+std::shared_ptr<labeled_cloud::ImageLabeler> makeLabeler(const LabelSources& sources,
+                                                         const semantic_types::ClassTable& table,
+                                                         const Config& config);
 
 }  // namespace rawlog2semantic_map

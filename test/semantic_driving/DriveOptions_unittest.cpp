@@ -108,14 +108,13 @@ TEST(DriveOptions, SpeedsOfClassesFollowTheOrder) {
 TEST(DriveOptions, AreReadFromTheirSections) {
   const auto config = loaded(
       "max_speed = 0.5\ncontrol_period = 0.05\n[guide]\nat_goal = 0.2\n"
-      "patience = 3\n[pose]\nturn_noise = 2\n[slam]\nmax_range = "
-      "20\n");
+      "patience = 3\n[pose]\nturn_noise = 2\n[slam]\nlevel = true\n");
   EXPECT_EQ(config.drive.maxSpeed, 0.5);
   EXPECT_EQ(config.controlPeriod, 0.05);
   EXPECT_EQ(config.guide.atGoal, 0.2);
   EXPECT_EQ(config.guide.patience, 3);
   EXPECT_EQ(config.pose.turnNoise, 2);
-  EXPECT_EQ(config.slam.maxRange, 20);
+  EXPECT_TRUE(config.slam.level);
 }
 
 TEST(DriveOptions, AreReadInMrptsWayOfWritingToo) {

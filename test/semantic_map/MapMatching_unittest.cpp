@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
+#include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "SmallMaps.h"
 #include "TemporaryFolder.h"
@@ -10,6 +12,7 @@
 using mrpt::maps::CSimplePointsMap;
 using mrpt::maps::TMatchingExtraResults;
 using mrpt::maps::TMatchingParams;
+using mrpt::maps::TMatchingRatioParams;
 using mrpt::poses::CPose2D;
 using mrpt::poses::CPose3D;
 using mrpt::tfest::TMatchingPairList;
@@ -112,10 +115,32 @@ TEST(MapMatching, eachVoxelOnceWhereAsked) {
   EXPECT_GT(pairs.size(), 10u);
 }
 
+TEST(MapMatching, isAPointsMapOfItsOccupiedVoxels) {
+  CSemanticOctoMap map = filledMap();
+  const auto matchesItself = [&map] {
+    TMatchingRatioParams near;
+    near.maxDistForCorr = 1e-3f;
+    const CSimplePointsMap* points = std::as_const(map).getAsSimplePointsMap();
+    return points && points->size() == voxelCenters(map).size() &&
+           map.compute3DMatchingRatio(points, CPose3D(), near) == 1.f;
+  };
+  EXPECT_TRUE(matchesItself());
+  EXPECT_EQ(map.compute3DMatchingRatio(&map, CPose3D(), {}), 1.f) << "a semantic map is one, too";
+  const std::size_t before = map.getAsSimplePointsMap()->size();
+  semantic_types::LabeledCloud more;
+  for (int i = 0; i < 8; ++i) more.points.emplace_back(3.f, 0.3f * float(i), 1.f);
+  for (int scan = 0; scan < 5; ++scan) map.tree().insert(more, Eigen::Isometry3d::Identity(), {});
+  EXPECT_GT(map.getAsSimplePointsMap()->size(), before) << "as it is now";
+  EXPECT_TRUE(matchesItself());
+  map.clear();
+  EXPECT_EQ(map.getAsSimplePointsMap()->size(), 0u);
+}
+
 TEST(MapMatching, whatCannotBeMatchedIsRefused) {
   const CSemanticOctoMap map = filledMap();
-  EXPECT_TRUE(contains(errorOf([&] { map.compute3DMatchingRatio(&map, CPose3D(), {}); }),
-                       "CSemanticOctoMap"));
+  const mrpt::maps::COccupancyGridMap2D grid;
+  EXPECT_TRUE(contains(errorOf([&] { map.compute3DMatchingRatio(&grid, CPose3D(), {}); }),
+                       "COccupancyGridMap2D"));
   EXPECT_THROW(map.compute3DMatchingRatio(nullptr, CPose3D(), {}), std::invalid_argument);
   EXPECT_THROW(CSemanticOctoMap().squareDistanceToClosestCorrespondence(0, 0), std::logic_error);
   const CSimplePointsMap none;

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
+#include <semantic_slam/Reference.h>
 #include <semantic_slam/Registration.h>
+#include <semantic_slam/Slam.h>
 #include <semantic_types/ClassTable.h>
 
 #include <random>
@@ -7,6 +9,8 @@
 #include <tuple>
 
 #include "DataSets.h"
+#include "Recordings.h"
+#include "SensorScale.h"
 #include "SharedData.h"
 
 using namespace semantic_slam;
@@ -149,4 +153,120 @@ TEST(Registration, thinnedPointsAreAnyOfTheirCubes) {
   EXPECT_EQ(drawn, cubes);
   EXPECT_NEAR(height, 0, 0.001);
   EXPECT_EQ(thin.points, again.points);
+}
+
+// A trajectory in the frame of a map that is there already.
+
+using namespace recordings;
+using semantic_octree::SemanticOcTree;
+
+namespace {
+
+/** Of classes, a tenth of them wrong. */
+SemanticOcTree mapOf(const std::string& scene, std::uint64_t seed, double meters) {
+  return recordings::mapOf(scene, seed, {lidarOf(0.1), kRobotLidar, meters});
+}
+
+}  // namespace
+
+TEST(Reference, aDriveIsInTheFrameOfAMapThatIsThere) {
+  Recording r = recordingOf("village", 1, lidarOf(0.1), 90);
+  Vector6 off;
+  off << 1, -0.8, 0.2, 0, 0, 0.08;
+  moveOdometry(r, off);
+  const SemanticOcTree map = mapOf("village", 1, 100);
+  for (const bool useClasses : {false, true}) {
+    SlamOptions options;
+    options.useClasses = useClasses;
+    Slam alone(options), slam(options);
+    addAll(alone, r, kRobotLidar);
+    slam.setReference(map);
+    addAll(slam, r, kRobotLidar);
+    const PathErrors without = errorsOf(alone.poses(), r), with = errorsOf(slam.poses(), r);
+    EXPECT_GT(without.last, 1) << useClasses;
+    EXPECT_LT(with.first, 0.06) << useClasses;
+    EXPECT_LT(with.largest, 0.06) << useClasses;
+    EXPECT_LT(with.degrees, 0.2) << useClasses;
+    EXPECT_EQ(slam.report().loops, 0u);
+    EXPECT_GT(slam.report().referenced, 25u) << useClasses;
+  }
+}
+
+TEST(Reference, aCameraFindsItselfInTheMapOfALidar) {
+  Recording r = recordingOf("campus", 1, cameraOf(20), 70);
+  Slam slam({});
+  slam.setReference(mapOf("campus", 1, 80));
+  addAll(slam, r, kRobotCamera);
+  const PathErrors with = errorsOf(slam.poses(), r);
+  EXPECT_LT(with.largest, 0.12);
+  EXPECT_GT(slam.report().referenced, 20u);
+}
+
+TEST(Reference, beyondItsEndScansAreRegisteredToEachOther) {
+  const Recording r = recordingOf("village", 1, lidarOf(0.1), 90);
+  Slam slam({});
+  slam.setReference(mapOf("village", 1, 40));
+  addAll(slam, r, kRobotLidar);
+  EXPECT_LT(slam.report().referenced, 25u);
+  EXPECT_EQ(slam.report().lost, 0u);
+  EXPECT_LT(errorsOf(slam.poses(), r).largest, 0.15);
+}
+
+TEST(Reference, theMapOfAnotherPlaceMovesNothing) {
+  const Recording r = recordingOf("village", 1, lidarOf(0.1), 30);
+  Slam alone({}), slam({});
+  addAll(alone, r, kRobotLidar);
+  slam.setReference(mapOf("campus", 1, 60));
+  addAll(slam, r, kRobotLidar);
+  EXPECT_EQ(slam.report().referenced, 0u);
+  for (std::size_t k = 0; k < r.truth.size(); ++k)
+    EXPECT_TRUE(slam.poses()[k].isApprox(alone.poses()[k], 0)) << k;
+}
+
+TEST(Reference, comesBeforeTheFirstScan) {
+  const Recording r = recordingOf("village", 1, lidarOf(0), 1);
+  Slam slam({});
+  slam.add(r.clouds[0], kRobotLidar, r.odometry[0]);
+  EXPECT_THROW(slam.setReference(SemanticOcTree(0.2, synthetic_world::classTable())),
+               std::logic_error);
+}
+
+namespace {
+
+/** Returns from all sides, half of them nearer than a distance, m. */
+LabeledCloud cloudOf(double median) {
+  std::mt19937 random(1);
+  const auto uniform = [&random] { return static_cast<float>(random()) / 2147483648.f - 1; };
+  LabeledCloud cloud;
+  for (int i = 1; i < 1000; ++i) {
+    const Eigen::Vector3f direction = Eigen::Vector3f(uniform(), uniform(), uniform()).normalized();
+    cloud.points.push_back(direction * static_cast<float>(median * i / 500));
+  }
+  return cloud;
+}
+
+}  // namespace
+
+TEST(SensorScale, aSceneOfHalfTheSizeHasHalfTheLengths) {
+  for (const double factor : {0.8, 1., 1.3})
+    for (const double smaller : {0.5, 0.25}) {
+      const SensorScale street = SensorScale::of(cloudOf(8 * factor), false),
+                        s = SensorScale::of(cloudOf(8 * factor * smaller), false);
+      EXPECT_DOUBLE_EQ(s.keyframeDistance, smaller * street.keyframeDistance);
+      EXPECT_DOUBLE_EQ(s.cube, smaller * street.cube);
+      EXPECT_DOUBLE_EQ(s.registeredCube, smaller * street.registeredCube);
+      EXPECT_DOUBLE_EQ(s.gridCell, smaller * street.gridCell);
+      EXPECT_DOUBLE_EQ(s.loopLength, smaller * street.loopLength);
+      ASSERT_EQ(s.cells.size(), street.cells.size());
+      for (std::size_t i = 0; i < s.cells.size(); ++i)
+        EXPECT_DOUBLE_EQ(s.cells[i], smaller * street.cells[i]);
+      EXPECT_EQ(s.keyframeAngle, street.keyframeAngle);
+      EXPECT_EQ(s.submapKeyframes, street.submapKeyframes);
+    }
+}
+
+TEST(SensorScale, isOfStreetsAtMostAndOfRoomsAtLeast) {
+  EXPECT_EQ(SensorScale::of(cloudOf(40), false).cube, SensorScale::of(cloudOf(8), false).cube);
+  EXPECT_EQ(SensorScale::of(cloudOf(0.3), false).cube, SensorScale::of(cloudOf(2), false).cube);
+  EXPECT_EQ(SensorScale::of({}, false).cube, SensorScale::of(cloudOf(2), false).cube);
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <gtest/gtest.h>
+#include <mrpt/maps/CSimpleMap.h>
 #include <mrpt_compat/Release.h>
 #include <semantic_octree/SemanticOcTree.h>
 
@@ -52,3 +53,19 @@ inline const char* const kLaserRawlog = "2006-01ENE-21-SENA_Telecom Faculty_one_
 /** Skips the running test, saying so, where a program or file of a Debian package is absent. */
 #define SKIP_WITHOUT(PATH, PACKAGE) \
   if (!std::filesystem::exists(PATH)) GTEST_SKIP() << "needs " << (PATH) << " (package " PACKAGE ")"
+
+/** A semantic octree of a laser scanner beside a points map of the same scans (as MRPT saves it, a
+ * line "x y z" a point) and the path of the robot ("step x y phi" or more). */
+struct LaserMapCheck {
+  double pointsInOccupied = 0;  ///< share of the points that lie in an occupied voxel or beside one
+  double occupiedAtPoints = 0;  ///< share of occupied voxels with such a point
+  double pathInFree = 0;        ///< share of the scanner's places that are free
+};
+
+/** \param scanner height of the scanner above the robot, and ahead of it, m */
+LaserMapCheck checkLaserMap(const semantic_octree::SemanticOcTree& map,
+                            const std::filesystem::path& points, const std::filesystem::path& path);
+
+/** The first frames of rawlog-samples/village.rawlog with their true poses: in each a labeled depth
+ * image and a labeled LiDAR scan. */
+mrpt::maps::CSimpleMap villageFrames(std::size_t count);

@@ -6,7 +6,6 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "StockApps.h"
-#include "VillageFrames.h"
 
 namespace {
 

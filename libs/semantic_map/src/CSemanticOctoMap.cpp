@@ -4,21 +4,30 @@
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
+#include <chrono>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
-#include "CachedConverter.h"
 #include "FolderOfMap.h"
 #include "LikelihoodCache.h"
-#include "SensorPose.h"
 
 namespace semantic_map {
 
 using labeled_cloud::LabeledScan;
 using labeled_cloud::ScanConverter;
+using mrpt::Clock;
 using mrpt::poses::CPose3D;
 using semantic_octree::SemanticOcTree;
 using semantic_types::ClassTable;
+
+namespace {
+
+double secondsBetween(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+}  // namespace
 
 CSemanticOctoMap::CSemanticOctoMap()
     : CSemanticOctoMap(TCreationOptions().resolution, occupancyOnly()) {}
@@ -156,6 +165,50 @@ void CSemanticOctoMap::useFilterOfOptions() {
   if (m_abstractionOptions.isSet())
     semantic_octree::setAbstraction(tree, m_abstractionOptions.forClasses(tree.classes()));
   m_tree = std::move(tree);
+}
+
+void CSemanticOctoMap::openFolder(const TFolderOptions& options) {
+  checkMayBecomeAnother();
+  useFilterOfOptions();
+  m_folder = std::make_unique<Folder>(m_tree, options);
+}
+
+semantic_octree::MapFolder* CSemanticOctoMap::folder() const {
+  return m_folder ? &m_folder->tiles : nullptr;
+}
+
+std::unique_lock<std::mutex> CSemanticOctoMap::reading() const {
+  return m_folder ? std::unique_lock(m_folder->mutex) : std::unique_lock<std::mutex>();
+}
+
+bool CSemanticOctoMap::isEmpty() const {
+  const auto lock = reading();
+  return m_tree.empty();
+}
+
+SemanticOcTree CSemanticOctoMap::wholeTree() const {
+  const auto lock = reading();
+  return m_tree;
+}
+
+void CSemanticOctoMap::checkMayBecomeAnother() const {
+  if (m_folder)
+    throw std::logic_error(
+        "a map in a folder of tiles cannot become another one, by assignment or from an archive");
+}
+
+bool ObservationClock::beginsRecording(Clock::time_point stamp) const {
+  return !m_latest || (m_maxGap > 0 && std::fabs(secondsBetween(*m_latest, stamp)) > m_maxGap);
+}
+
+double ObservationClock::secondsUntil(Clock::time_point stamp) const {
+  if (stamp == Clock::time_point() || beginsRecording(stamp) || stamp <= *m_latest) return 0;
+  return secondsBetween(*m_latest, stamp);
+}
+
+void ObservationClock::note(Clock::time_point stamp) {
+  if (stamp == Clock::time_point()) return;
+  if (beginsRecording(stamp) || stamp > *m_latest) m_latest = stamp;
 }
 
 }  // namespace semantic_map

@@ -1,13 +1,14 @@
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_octree/SemanticOcTree.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
-
-#include "NearestOccupied.h"
 
 namespace semantic_map {
 
@@ -20,6 +21,97 @@ using mrpt::tfest::TMatchingPairList;
 using semantic_octree::SemanticOcTree;
 
 namespace {
+
+/** Finds the occupied voxel whose center is nearest to a point: a descent of the tree that leaves
+ * out what is free and what is too far. */
+class NearestOccupied {
+ public:
+  enum class Distance { InSpace, FromAbove };
+
+  struct Voxel {
+    Eigen::Vector3d center;  ///< m
+    double squaredDistance;  ///< m^2
+  };
+
+  /** \param distance FromAbove: heights do not count */
+  NearestOccupied(const SemanticOcTree& tree, Distance distance)
+      : m_tree(tree), m_weights(1, 1, distance == Distance::InSpace ? 1 : 0) {}
+
+  /** Nothing if all are at this distance (m) or farther. */
+  std::optional<Voxel> operator()(const Eigen::Vector3d& point, double within) const;
+
+ private:
+  /** A node of the tree and its cube. */
+  struct Cube {
+    semantic_octree::SemanticOcTreeNode node;
+    Eigen::Vector3d low;  ///< corner, m
+    double size;          ///< edge, m
+  };
+  Voxel nearestIn(const Cube& cube, const Eigen::Vector3d& point) const;
+  void descend(const Cube& cube, const Eigen::Vector3d& point, double& bound,
+               std::optional<Voxel>& best) const;
+
+  const SemanticOcTree& m_tree;
+  Eigen::Vector3d m_weights;
+};
+
+std::optional<NearestOccupied::Voxel> NearestOccupied::operator()(const Eigen::Vector3d& point,
+                                                                  double within) const {
+  std::optional<Voxel> best;
+  if (m_tree.empty()) return best;
+  const double size = m_tree.getNodeSize(0);
+  double bound = within * within;
+  descend({m_tree.root(), Eigen::Vector3d::Constant(-size / 2), size}, point, bound, best);
+  return best;
+}
+
+NearestOccupied::Voxel NearestOccupied::nearestIn(const Cube& cube,
+                                                  const Eigen::Vector3d& point) const {
+  const double voxel = m_tree.getResolution();
+  const double last = std::round(cube.size / voxel) - 1;
+  const auto index = [&](double offset) {
+    return std::clamp(std::floor(offset / voxel), 0.0, last) + 0.5;
+  };
+  const Eigen::Vector3d center = cube.low + voxel * (point - cube.low).unaryExpr(index);
+  return {center, (center - point).cwiseAbs2().dot(m_weights)};
+}
+
+void NearestOccupied::descend(const Cube& cube, const Eigen::Vector3d& point, double& bound,
+                              std::optional<Voxel>& best) const {
+  const Voxel voxel = nearestIn(cube, point);
+  if (!m_tree.isNodeOccupied(cube.node) || !(voxel.squaredDistance < bound)) return;
+  if (cube.node.isLeaf()) {
+    best = voxel;
+    bound = voxel.squaredDistance;
+    return;
+  }
+  using Child = std::pair<double, Cube>;
+  std::array<Child, 8> children;
+  const auto nearer = [](const Child& a, const Child& b) { return a.first < b.first; };
+  auto end = children.begin();
+  for (int i = 0; i < 8; ++i) {
+    const auto node = cube.node.child(i);
+    if (!node) continue;
+    const double half = cube.size / 2;
+    const Cube child{node, cube.low + half * Eigen::Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), half};
+    *end = {nearestIn(child, point).squaredDistance, child};
+    std::rotate(std::upper_bound(children.begin(), end, *end, nearer), end, end + 1);
+    ++end;
+  }
+  for (auto child = children.begin(); child != end; ++child)
+    descend(child->second, point, bound, best);
+}
+
+/** Of each voxel in a leaf. */
+void addCenters(const SemanticOcTree::leaf_iterator& leaf, double voxel, CPointsMap& points) {
+  const int n = static_cast<int>(std::lround(leaf.getSize() / voxel));
+  const auto at = [&](double center, int i) {
+    return static_cast<float>(center + (i + 0.5 - 0.5 * n) * voxel);
+  };
+  for (int i = 0; i < n * n * n; ++i)
+    points.insertPoint(at(leaf.getX(), i % n), at(leaf.getY(), i / n % n),
+                       at(leaf.getZ(), i / n / n));
+}
 
 const CPointsMap& pointsOf(const CMetricMap* map) {
   if (!map) throw std::invalid_argument("matching: no map to match with");
@@ -103,6 +195,18 @@ class Matcher {
 };
 
 }  // namespace
+
+const mrpt::maps::CSimplePointsMap* CSemanticOctoMap::getAsSimplePointsMap() const {
+  const std::lock_guard lock(m_centersMutex);
+  const auto folder = reading();
+  if (!m_changes) m_changes = const_cast<SemanticOcTree&>(m_tree).follow();
+  const semantic_octree::TileChange change = m_changes->tiles();
+  if (m_centers && !change.all && change.tiles.empty()) return m_centers.get();
+  m_centers = std::make_shared<mrpt::maps::CSimplePointsMap>();
+  for (auto leaf = m_tree.begin_leafs(), end = m_tree.end_leafs(); leaf != end; ++leaf)
+    if (m_tree.isNodeOccupied(*leaf)) addCenters(leaf, m_tree.getResolution(), *m_centers);
+  return m_centers.get();
+}
 
 void CSemanticOctoMap::determineMatching2D(const CMetricMap* other,
                                            const mrpt::poses::CPose2D& T_this_other,

@@ -1,13 +1,19 @@
+#include <mrpt/img/TColor.h>
 #include <mrpt_compat/Drawing.h>
+#include <mrpt_compat/Images.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MapFiles.h>
+#include <semantic_map/MapOptions.h>
+#include <semantic_octree/SemanticOcTree.h>
 #include <semantic_octree/TreeFile.h>
+#include <semantic_types/ClassTable.h>
 #include <strict_files/OutputFiles.h>
+#include <tree_abstraction/Information.h>
 
+#include <algorithm>
 #include <stdexcept>
 
-#include "CellColors.h"
 #include "FolderOfMap.h"
 
 namespace semantic_map {
@@ -15,8 +21,54 @@ namespace semantic_map {
 using mrpt_compat::drawing::COctoMapVoxels;
 using semantic_octree::CellState;
 using semantic_octree::SemanticOcTree;
+using semantic_types::trafficLight;
+using tree_abstraction::relativeEntropy;
 
 namespace {
+
+/** Colors of occupied cells in a scene. */
+class CellColors {
+ public:
+  CellColors(const semantic_octree::SemanticOcTree& tree, const TRenderingOptions& options);
+  /** \param height of the cell's center, m */
+  mrpt::img::TColor operator()(const semantic_octree::SemanticOcTree::Node& node,
+                               double height) const;
+
+ private:
+  const semantic_octree::SemanticOcTree& m_tree;
+  TRenderingOptions::Coloring m_coloring;
+  double m_lowest = 0, m_highest = 0;
+};
+
+mrpt::img::TColor mrptColor(const semantic_types::Color& c) { return {c.r, c.g, c.b}; }
+
+CellColors::CellColors(const semantic_octree::SemanticOcTree& tree,
+                       const TRenderingOptions& options)
+    : m_tree(tree), m_coloring(options.coloring) {
+  double x, y;
+  tree.getMetricMin(x, y, m_lowest);
+  tree.getMetricMax(x, y, m_highest);
+  m_lowest = std::max(m_lowest, options.minHeight);
+  m_highest = std::min(m_highest, options.maxHeight);
+}
+
+mrpt::img::TColor CellColors::operator()(const semantic_octree::SemanticOcTree::Node& node,
+                                         double height) const {
+  switch (m_coloring) {
+    case TRenderingOptions::Coloring::Probability:
+      return mrptColor(trafficLight(m_tree.query(node).probability));
+    case TRenderingOptions::Coloring::Height: {
+      const double range = std::max(m_highest - m_lowest, 1e-6);
+      return mrpt_compat::colorAt(mrpt::img::cmJET,
+                                  std::clamp((height - m_lowest) / range, 0.0, 1.0));
+    }
+    case TRenderingOptions::Coloring::Entropy:
+      return mrptColor(trafficLight(1 - relativeEntropy(m_tree.distribution(node))));
+    case TRenderingOptions::Coloring::Class:
+      break;
+  }
+  return mrptColor(semantic_types::colorOf(m_tree.query(node).likeliestClass, m_tree.classes()));
+}
 
 /** Fills a set of boxes with the cells that the options ask for. */
 class VoxelSets {

@@ -181,8 +181,14 @@ void optimize(Poses& poses, const std::vector<PoseEdge>& edges) {
                                   std::to_string(poses.size()));
     if (edge.isDoubtful) doubt = std::max(doubt, squaredError(edge, poses));
   }
-  for (; doubt > kDoubt; doubt /= kStage) descend(poses, edges, doubt);
+  // Stages find right loops that are far off, where the way between is well known. Where it is not,
+  // wrong ones bend it before doubt sets in, and going there directly is better.
+  Poses staged = poses;
   descend(poses, edges, kDoubt);
+  if (doubt == kDoubt) return;
+  for (; doubt > kDoubt; doubt /= kStage) descend(staged, edges, doubt);
+  descend(staged, edges, kDoubt);
+  if (costOf(edges, staged, kDoubt) < costOf(edges, poses, kDoubt)) poses.swap(staged);
 }
 
 }  // namespace semantic_slam

@@ -1,5 +1,7 @@
 #include <semantic_slam/Slam.h>
 
+#include <semantic_slam/SlamOptions.h>
+
 #include <cmath>
 
 #include "SlamEngine.h"
@@ -17,8 +19,8 @@ std::string meters(double way) {
 
 /** Scans turn by less if their beams are said to be nearer to each other than they are. */
 std::string asOfBeams(double turnError) {
-  constexpr double kLeast = 0.4;  // no wheels are that wrong
-  if (turnError < kLeast) return {};
+  constexpr double kLeastError = 0.4;  // no wheels are that wrong
+  if (turnError < kLeastError) return {};
   const std::string tenths = std::to_string(std::lround(10 * (1 + turnError)));
   return ", as if the scanner's aperture were " + tenths.substr(0, tenths.size() - 1) + "." +
          tenths.back() + " times what the rawlog says";
@@ -98,5 +100,13 @@ bool Slam::finish() { return m->finish(); }
 const std::vector<Eigen::Isometry3d>& Slam::poses() const { return m->poses(); }
 const std::vector<PoseEdge>& Slam::edges() const { return m->edges(); }
 SlamReport Slam::report() const { return m->report(); }
+
+void SlamOptions::describe(strict_files::OptionList& list) {
+  list.add("use_classes", useClasses, "", "a point fits only points of its class");
+  list.add("level", level, "",
+           "odometry knows height, roll and pitch, as with an IMU; always so of horizontal beams");
+}
+
+void SlamOptions::validate() const { strict_files::checkOptions(*this, "SlamOptions"); }
 
 }  // namespace semantic_slam

@@ -2,9 +2,9 @@
 #include <semantic_slam/Reference.h>
 #include <semantic_slam/Slam.h>
 
-#include "LocalMap.h"
 #include "MotionNoise.h"
 #include "PlaneSearch.h"
+#include "SensorScale.h"
 
 namespace semantic_slam {
 

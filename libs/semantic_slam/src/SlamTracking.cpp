@@ -12,6 +12,8 @@ constexpr double kOwnInformation = 0.5;
 constexpr double kLevel = 1e12;
 /** Shares of a scan's points that fit: too few say nothing, most say more than wheels do. */
 constexpr double kFits = 0.5, kFitsWell = 0.8;
+/** Points beyond it, m, are not registered: there beams are far apart, and thin surfaces too. */
+constexpr double kFarthest = 30;
 /** Share of a scan's points where the last keyframes have some. */
 constexpr double kTracked = 0.3;
 /** Robots whose sensors see space have better odometry than those of laser scanners. */
@@ -62,7 +64,7 @@ Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_senso
                                               : T_odometry_robot.value_or(m_poses[last] * T_guess);
   const bool stands = m_hasOdometry && isSmall(T_step) && isSmall(goingOn());
   if (!m_keyframes.empty() && stands && ++m_numSmall < kMostSmall) return {last, T_guess};
-  Seen now{moved(thinned(cloud, m_scale.cube, m_options.maxRange), T_robot_sensor), T_odometry};
+  Seen now{moved(thinned(cloud, m_scale.cube, kFarthest), T_robot_sensor), T_odometry};
   if (!m_options.useClasses)
     std::fill(now.cloud.classes.begin(), now.cloud.classes.end(), semantic_types::kNoClass);
   if (m_keyframes.empty()) return beginFirst(std::move(now));
@@ -292,7 +294,7 @@ Registration SlamEngine::match(const std::vector<Submap>& submaps, const Seen& s
   for (const Submap& submap : submaps) pointers.push_back(&submap);
   const Matrix6 known = prior + levelOf(seen.T_odometry_robot);
   if (m_scale.registeredCube == 0) return registerScan(pointers, seen.cloud, T_submap_guess, known);
-  return registerScan(pointers, thinned(seen.cloud, m_scale.registeredCube, m_options.maxRange),
+  return registerScan(pointers, thinned(seen.cloud, m_scale.registeredCube, kFarthest),
                       T_submap_guess, known);
 }
 

@@ -6,6 +6,7 @@
 #include <mrpt_compat/Maps.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/MapOptions.h>
+#include <semantic_octree/MapFollower.h>
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <memory>
@@ -177,6 +178,12 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   /** m^2, from above, to the center of an occupied voxel. \throw std::logic_error there is none. */
   float squareDistanceToClosestCorrespondence(float x, float y) const override;
 
+  using CMetricMap::getAsSimplePointsMap;
+  /** The centers of all occupied voxels, for who knows points maps alone (MRPT's map server, ICP
+   * and filters of mp2p_icp). They are made at the first call after the map changed, and stay until
+   * the next one that finds it changed. */
+  const mrpt::maps::CSimplePointsMap* getAsSimplePointsMap() const override;
+
   /** Forgets the scan of the last observation whose likelihood was asked for. */
   void auxParticleFilterCleanUp() override;
   /** Writes PREFIX.semantic, the map's own file, and PREFIX.3Dscene. A map in a folder saves what
@@ -233,6 +240,9 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap {
   mutable mrpt::system::COutputLogger m_logger{"CSemanticOctoMap"};
   std::unique_ptr<CachedConverter> m_converter;
   std::unique_ptr<LikelihoodCache> m_likelihoodCache;
+  mutable std::mutex m_centersMutex;
+  mutable std::optional<semantic_octree::MapFollower> m_changes;  ///< since the centers were made
+  mutable std::shared_ptr<mrpt::maps::CSimplePointsMap> m_centers;
 };
 
 /** Registers the map and labeled_cloud's observation with MRPT's factories. Called when the library

@@ -8,7 +8,6 @@ namespace semantic_slam {
 struct SlamOptions {
   bool useClasses = true;  // a point fits only what is of its class
   bool level = false;      // odometry knows height, roll and pitch; so if beams are horizontal
-  double maxRange = 30;    // m; points beyond it are not registered
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */

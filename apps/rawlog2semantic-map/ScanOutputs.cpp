@@ -1,15 +1,97 @@
-#include "LiveScans.h"
+#include "ScanOutputs.h"
 
+#include <labeled_cloud/CObservationLabeledCloud.h>
+#include <labeled_cloud/LabelModel.h>
+#include <labeled_cloud/Pictures.h>
 #include <labeled_cloud/Trajectory.h>
+#include <map_pictures/MapPictures.h>
+#include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt_compat/Drawing.h>
+#include <opencv2/imgproc.hpp>
 
 #include <cstdint>
 #include <cstdio>
 #include <map>
+#include <stdexcept>
 
 #include "label_overlay/LabelOverlay.h"
 
 namespace rawlog2semantic_map {
+
+ScanLog::ScanLog(const std::filesystem::path& file, const semantic_types::ClassTable& classes)
+    : m_writer(file) {
+  for (int id = 1; id <= classes.size(); ++id)
+    m_classNames.push_back(classes.name(static_cast<semantic_types::ClassId>(id)));
+}
+
+void ScanLog::write(const labeled_cloud::LabeledScan& scan,
+                    const mrpt::poses::CPose3D& T_map_robot) {
+  mrpt::obs::CObservationRobotPose pose;
+  pose.timestamp = scan.timestamp;
+  pose.sensorLabel = "robot";
+  pose.pose.mean = T_map_robot;
+  m_writer.write(pose);
+  labeled_cloud::CObservationLabeledCloud cloud;
+  cloud.timestamp = scan.timestamp;
+  cloud.sensorLabel = scan.sensorLabel;
+  cloud.sensorPose = scan.T_robot_sensor;
+  cloud.classNames = m_classNames;
+  cloud.cloud = scan.cloud;
+  m_writer.write(cloud);
+}
+
+using labeled_cloud::LabeledPicture;
+using labeled_cloud::LabeledScan;
+using semantic_types::ClassId;
+using semantic_types::ClassTable;
+using semantic_types::kNoClass;
+
+namespace {
+
+cv::Mat3b withPoints(cv::Mat3b image, const LabeledPicture& picture,
+                     const semantic_types::LabeledCloud& cloud, const ClassTable& classes) {
+  image = image / 2;
+  const auto T_camera_sensor = labeled_cloud::toEigen(picture.T_sensor_camera).inverse();
+  const auto pixels =
+      labeled_cloud::visiblePixels(cloud.points, T_camera_sensor, picture.camera, 0);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!pixels[i].allFinite()) continue;
+    const ClassId id = cloud.classes.empty() ? kNoClass : cloud.classes[i];
+    cv::circle(image, cv::Point(cvRound(pixels[i].x()), cvRound(pixels[i].y())),
+               id == kNoClass ? 0 : 1, cv::Scalar(label_overlay::pixelOf(id, classes)), cv::FILLED);
+  }
+  return image;
+}
+
+}  // namespace
+
+Preview::Preview(const std::filesystem::path& folder, const ClassTable& classes)
+    : m_folder(folder), m_classes(classes) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw std::runtime_error(folder.string() + ": cannot be created: " + error.message());
+}
+
+std::string Preview::nameOf(std::size_t i) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06zu.png", i);
+  return name;
+}
+
+void Preview::write(const LabeledScan& scan) {
+  if (scan.pictures.empty()) return;
+  auto cloud = scan.cloud;
+  labeled_cloud::LabelModel hard;
+  hard.kind = labeled_cloud::LabelModel::Kind::Hard;
+  hard.apply(m_classes.size(), {}, cloud);
+  for (const LabeledPicture& picture : scan.pictures) {
+    const cv::Mat3b image = label_overlay::photograph(picture);
+    cv::Mat sheet;
+    cv::vconcat(label_overlay::withLabels(image.clone(), picture, m_classes),
+                withPoints(image.clone(), picture, cloud, m_classes), sheet);
+    map_pictures::savePicture(sheet, m_folder / nameOf(m_written++));
+  }
+}
 
 using labeled_cloud::LabeledScan;
 

@@ -1,0 +1,266 @@
+#include <labeled_cloud/CObservationLabeledCloud.h>
+#include <labeled_cloud/Rawlogs.h>
+#include <mrpt_compat/Drawing.h>
+#include <semantic_map/CSemanticOctoMap.h>
+#include <semantic_types/ClassTable.h>
+
+#include <cmath>
+#include <regex>
+
+#include "StockApps.h"
+
+namespace {
+
+class IcpSlam : public StockApps {
+ protected:
+  void SetUp() override {
+    SKIP_WITHOUT_APP("icp-slam");
+    SKIP_WITHOUT(std::string("/usr/share/mrpt/datasets/") + kLaserRawlog, "mrpt-common");
+    rawlog = shortRawlog(kLaserRawlog, 60);
+  }
+  CommandRun slam(const std::string& ini, Plugin plugin) const {
+    return run("icp-slam '" + ini + "' '" + rawlog + "'", plugin);
+  }
+  std::string rawlog;
+};
+
+}  // namespace
+
+TEST_F(IcpSlam, aRealLaserScannerMakesASemanticOctree) {
+  const CommandRun slammed = slam("config/stock-apps/icp-slam.ini", Plugin::Preloaded);
+  ASSERT_EQ(slammed.status, 0) << slammed.output;
+  const auto map = mapIn("icp-slam-output");
+  ASSERT_TRUE(map) << slammed.output;
+  EXPECT_EQ(map->getResolution(), 0.1);
+  const auto check = checkLaserMap(
+      *map, folder / "icp-slam-output/_finalmaps_.txt_mrpt__maps__CSimplePointsMap_00.txt",
+      folder / "icp-slam-output/log_estimated_path.txt");
+  EXPECT_GT(check.pointsInOccupied, 0.8);
+  EXPECT_GT(check.occupiedAtPoints, 0.98);
+  EXPECT_GT(check.pathInFree, 0.98);
+  // The robot drives 11 m down the corridor (as MRPT's own test of this rawlog knows).
+  EXPECT_EQ(map->query(4, -5, 0.3).status, semantic_octree::CellState::Status::Free);
+}
+
+TEST_F(IcpSlam, withoutThePluginThereIsNoSuchMapWhichOnlyNewerReleasesSay) {
+  const CommandRun slammed = slam("config/stock-apps/icp-slam.ini", Plugin::Absent);
+  EXPECT_EQ(slammed.status != 0, kMrptRefusesUnknownMaps) << slammed.output;
+  EXPECT_EQ(contains(slammed.output, "semanticOctoMap_count"), kMrptRefusesUnknownMaps);
+  EXPECT_FALSE(mapIn("icp-slam-output"));
+  EXPECT_NE(std::filesystem::exists(folder / "icp-slam-output/_finalmap_.simplemap"),
+            kMrptRefusesUnknownMaps);
+}
+
+TEST_F(IcpSlam, aMisspelledOptionStopsItWithTheReason) {
+  const std::string ini =
+      configWith("icp-slam.ini", "MappingApplication_semanticOctoMap_00_insertOpts", "maxRnage=9");
+  const CommandRun slammed = slam(ini, Plugin::Preloaded);
+  EXPECT_NE(slammed.status, 0);
+  EXPECT_TRUE(contains(slammed.output, "maxRnage")) << slammed.output;
+}
+
+namespace {
+
+class RbpfSlam : public StockApps {
+ protected:
+  void SetUp() override {
+    SKIP_WITHOUT_APP("rbpf-slam");
+    SKIP_WITHOUT(std::string("/usr/share/mrpt/datasets/") + kLaserRawlog, "mrpt-common");
+  }
+  CommandRun slam() const {
+    return run("rbpf-slam config/stock-apps/rbpf-slam.ini '" + shortRawlog(kLaserRawlog, 60) + "'",
+               Plugin::Preloaded);
+  }
+};
+
+}  // namespace
+
+TEST_F(RbpfSlam, eachParticleBuildsWeighsAndCopiesASemanticOctree) {
+  const CommandRun slammed = slam();
+  ASSERT_EQ(slammed.status, 0) << slammed.output;
+  const auto map = mapIn("rbpf-slam-output");
+  ASSERT_TRUE(map) << slammed.output;
+  const auto check =
+      checkLaserMap(*map, folder / "rbpf-slam-output/finalMap_mrpt__maps__CSimplePointsMap_00.txt",
+                    folder / "rbpf-slam-output/log_odometry_path.txt");
+  EXPECT_GT(check.pointsInOccupied, 0.8);
+  EXPECT_GT(check.occupiedAtPoints, 0.98);
+}
+
+namespace {
+
+class PfLocalization : public StockApps {
+ protected:
+  void SetUp() override {
+    SKIP_WITHOUT_APP("pf-localization");
+    SKIP_WITHOUT("/usr/share/mrpt/datasets/localization_demo.simplemap.gz", "mrpt-common");
+  }
+  CommandRun localize() const {
+    return run("pf-localization config/stock-apps/pf-localization.ini", Plugin::Preloaded);
+  }
+};
+
+struct Estimate {
+  double x = NAN, y = NAN, degrees = NAN;
+};
+
+/** The last one that the application told. */
+Estimate lastEstimate(const std::string& output) {
+  static const std::regex pattern(R"(PDF estimation: \(([-\d.]+),([-\d.]+),([-\d.]+)deg\))");
+  Estimate last;
+  for (std::sregex_iterator it(output.begin(), output.end(), pattern), end; it != end; ++it)
+    last = {std::stod((*it)[1]), std::stod((*it)[2]), std::stod((*it)[3])};
+  return last;
+}
+
+/** The end of the path, which MRPT's own tests know: (15.904, -10.010) m, 4.93 degrees. */
+double distanceToEnd(const Estimate& e) { return std::hypot(e.x - 15.904, e.y + 10.010); }
+
+}  // namespace
+
+TEST_F(PfLocalization, theParticlesFindTheRobotInASemanticOctreeOfARealBuilding) {
+  const CommandRun localized = localize();
+  ASSERT_EQ(localized.status, 0) << localized.output;
+  ASSERT_TRUE(mapIn("pf-localization-output_000_0005000"));
+  const Estimate end = lastEstimate(localized.output);
+  EXPECT_LT(distanceToEnd(end), 0.3);
+  EXPECT_NEAR(end.degrees, 4.93, 2);
+}
+
+namespace {
+
+class Observations2Map : public StockApps {
+ protected:
+  void SetUp() override {
+    SKIP_WITHOUT_APP("observations2map");
+    ASSERT_TRUE(villageFrames(2).saveToFile((folder / "village.simplemap").string()));
+    std::filesystem::create_directory(folder / "out");
+  }
+  CommandRun make() const {
+    return run("observations2map config/stock-apps/observations2map.ini village.simplemap out/map",
+               Plugin::Preloaded);
+  }
+};
+
+/** The map that the application makes, made without it. */
+semantic_octree::SemanticOcTree expectedMap() {
+  semantic_map::CSemanticOctoMap map(
+      0.2, semantic_types::loadClassTable(MSO_SOURCE_DIR "/config/classes/synthetic.yaml"));
+  map.insertionOptions.scan.maxRange = 30;
+  map.insertionOptions.conversion.flyingPixelThreshold = 0.02;
+  map.loadFromSimpleMap(villageFrames(2));
+  return map.tree();
+}
+
+/** Share of the first scan's labels that the map says too, at the places of their points. */
+double shareOfLabelsIn(const semantic_octree::SemanticOcTree& map) {
+  const auto frames = villageFrames(1);
+  const auto cloud =
+      frames.begin()->sf->getObservationByClass<labeled_cloud::CObservationLabeledCloud>();
+  const auto T_map_sensor = frames.begin()->pose->getMeanVal() + cloud->sensorPose;
+  double same = 0, all = 0;
+  for (std::size_t i = 0; i < cloud->cloud.size(); ++i) {
+    const auto& p = cloud->cloud.points[i];
+    const auto at = T_map_sensor.composePoint({p.x(), p.y(), p.z()});
+    if (p.norm() > 29 || cloud->cloud.classes[i] == semantic_types::kNoClass) continue;
+    ++all;
+    same += map.query(at.x, at.y, at.z).likeliestClass == cloud->cloud.classes[i];
+  }
+  return all > 1000 ? same / all : 0;
+}
+
+}  // namespace
+
+TEST_F(Observations2Map, theMapIsThatOfTheLibraryBitForBit) {
+  const CommandRun made = make();
+  ASSERT_EQ(made.status, 0) << made.output;
+  const auto map = mapIn("out");
+  ASSERT_TRUE(map) << made.output;
+  EXPECT_TRUE(*map == expectedMap());
+  EXPECT_GT(map->getNumLeafNodes(), 10000u);
+  EXPECT_GT(shareOfLabelsIn(*map), 0.9);
+}
+
+TEST_F(Observations2Map, theSceneShowsTheClasses) {
+  ASSERT_EQ(make().status, 0);
+  mrpt_compat::Scene scene;
+  ASSERT_TRUE(
+      scene.loadFromFile((folder / "out/map_semantic_map__CSemanticOctoMap_00.3Dscene").string()));
+  const auto voxels = scene.getByClass<mrpt_compat::drawing::CSetOfObjects>()
+                          ->getByClass<mrpt_compat::drawing::COctoMapVoxels>();
+  ASSERT_TRUE(voxels);
+  EXPECT_GT(voxels->getVoxelCount(mrpt_compat::drawing::VOXEL_SET_OCCUPIED), 1000u);
+}
+
+using labeled_cloud::CObservationLabeledCloud;
+
+namespace {
+
+class RawlogEdit : public StockApps {
+ protected:
+  void SetUp() override { SKIP_WITHOUT_APP("rawlog-edit"); }
+  CommandRun edit(const std::string& arguments) const { return run("rawlog-edit " + arguments); }
+};
+
+std::vector<mrpt::obs::CObservation::Ptr> observationsOf(const std::filesystem::path& file) {
+  std::vector<mrpt::obs::CObservation::Ptr> all;
+  labeled_cloud::RawlogReader reader(file);
+  while (const auto entry = reader.next())
+    all.insert(all.end(), entry->observations.begin(), entry->observations.end());
+  return all;
+}
+
+const char* const kVillage = "rawlog-samples/village.rawlog";
+
+}  // namespace
+
+TEST_F(RawlogEdit, listsRawlogsWithLabeledClouds) {
+  const CommandRun listed = edit(std::string("-p ") + kPlugin + " --info -i " + kVillage);
+  EXPECT_EQ(listed.status, 0);
+  EXPECT_TRUE(contains(listed.output, "Overall number of objects         : 72"));
+  EXPECT_TRUE(contains(listed.output, "LIDAR /     24")) << listed.output;
+}
+
+TEST_F(RawlogEdit, describesTheClouds) {
+  const CommandRun cut = edit(std::string("-p ") + kPlugin + " --describe -i " + kVillage);
+  EXPECT_TRUE(contains(cut.output, "labeled_cloud::CObservationLabeledCloud"));
+  EXPECT_TRUE(contains(cut.output, "road: ")) << cut.output.substr(0, 3000);
+}
+
+TEST_F(RawlogEdit, cutsThemWithoutChangingABit) {
+  if (!kRawlogEditDrops) GTEST_SKIP() << "rawlog-edit of this MRPT drops nothing";
+  const CommandRun cut =
+      edit(std::string("-p ") + kPlugin + " --cut --from-index 3 --to-index 8 -i " + kVillage +
+           " -o cut.rawlog");
+  ASSERT_EQ(cut.status, 0) << cut.output;
+  const auto before = observationsOf(folder / kVillage),
+             after = observationsOf(folder / "cut.rawlog");
+  ASSERT_EQ(after.size(), 6u);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    ASSERT_EQ(after[i]->GetRuntimeClass(), before[i + 3]->GetRuntimeClass());
+    const auto a = std::dynamic_pointer_cast<CObservationLabeledCloud>(after[i]);
+    const auto b = std::dynamic_pointer_cast<CObservationLabeledCloud>(before[i + 3]);
+    if (!a) continue;
+    EXPECT_EQ(a->cloud.points, b->cloud.points);
+    EXPECT_EQ(a->cloud.classes, b->cloud.classes);
+    EXPECT_EQ(a->classNames, b->classNames);
+  }
+}
+
+TEST_F(RawlogEdit, picksThemByTheirSensorsLabel) {
+  if (!kRawlogEditDrops) GTEST_SKIP() << "rawlog-edit of this MRPT drops nothing";
+  const CommandRun kept = edit(std::string("-p ") + kPlugin + " --keep-label LIDAR -i " + kVillage +
+                               " -o lidar.rawlog");
+  ASSERT_EQ(kept.status, 0) << kept.output;
+  const auto clouds = observationsOf(folder / "lidar.rawlog");
+  EXPECT_EQ(clouds.size(), 24u);
+  for (const auto& cloud : clouds)
+    EXPECT_TRUE(std::dynamic_pointer_cast<CObservationLabeledCloud>(cloud));
+}
+
+TEST_F(RawlogEdit, withoutThePluginTheRawlogEndsAtTheFirstCloudAndTheStatusIsZero) {
+  const CommandRun listed = edit(std::string("--info -i ") + kVillage);
+  EXPECT_EQ(listed.status, 0);
+  EXPECT_TRUE(contains(listed.output, "which is not registered"));
+  EXPECT_TRUE(contains(listed.output, "Overall number of objects         : 2"));
+}
