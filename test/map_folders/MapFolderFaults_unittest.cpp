@@ -175,8 +175,6 @@ TEST(MapFolderFaults, killedAtAnyMomentItIsWhatWasSavedLast) {
   }
 }
 
-using namespace folder_drive;
-
 namespace fs = std::filesystem;
 
 namespace {

@@ -229,10 +229,7 @@ TEST(LiveCompression, RefusesContradictionsAndStaysAsItWas) {
 }
 
 namespace {
-
-using semantic_octree::AbstractionOptions;
 using semantic_octree::Region;
-using semantic_octree::Solution;
 using semantic_octree::WeightsFile;
 
 WeightsFile readAgain(const Solution& solution, const AbstractionOptions& space) {

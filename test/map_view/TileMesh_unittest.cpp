@@ -219,8 +219,6 @@ TEST(TileMesh, SidesThatLookAwayFromAPlaceAreNotSeenFromThere) {
 
 namespace {
 
-using namespace map_view;
-
 View viewFrom(double distance, double azimuth = -60) {
   View view;
   view.camera.distance = distance;

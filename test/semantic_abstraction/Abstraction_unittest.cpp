@@ -164,8 +164,6 @@ TEST(Abstraction, refusesBadOptionsAndNamesThem) {
 
 }  // namespace
 
-using namespace semantic_octree;
-
 namespace {
 
 // Classes of cells that stand for many voxels, free ones among them.

@@ -117,8 +117,6 @@ TEST(AlphaTrees, areOneTreeWhereNothingIsKnownOrCounts) {
   EXPECT_EQ(trees.full().leaves, static_cast<double>(map.getNumLeafNodes()));
 }
 
-using namespace semantic_octree;
-
 namespace {
 
 constexpr int kLeafClasses = 3;

@@ -95,6 +95,11 @@ TEST(WeightsFile, aClassCannotBeBothKeptAndDropped) {
   text.irrelevant = "wall+road: 1";
   EXPECT_TRUE(contains(errorOf([&] { text.forClasses(roadTreeWall()); }),
                        "class 'road' is both relevant ('road') and irrelevant ('wall+road')"));
+  text.irrelevant = "road: 1";
+  EXPECT_TRUE(contains(errorOf([&] { text.forClasses(roadTreeWall()); }),
+                       "irrelevant: 'road' is both relevant and irrelevant"));
+  text.irrelevant = "wall: 1, wall: 2";
+  EXPECT_TRUE(contains(errorOf([&] { text.forClasses(roadTreeWall()); }), "'wall' twice"));
 }
 
 TEST(WeightsFile, badFilesAreRefusedWithTheirLine) {

@@ -283,8 +283,6 @@ TEST(ClassFilter, distributionsAddUpToOne) {
   }
 }
 
-using namespace semantic_octree;
-
 namespace {
 
 // The numbers of vectors.json were computed by an independent script from the filter's formulas.
@@ -319,8 +317,6 @@ TEST(Vectors, likelihoodConsistentIncrementsAreTheTabulatedOnes) {
   EXPECT_NEAR(p[7], expected["p_hit_class"].get<double>(), 1e-12);
   EXPECT_NEAR(p[1], expected["p_each_other"].get<double>(), 1e-12);
 }
-
-using namespace semantic_octree;
 
 TEST(FilterParameters, thatMakeNoSenseAreRefusedByName) {
   const auto refusal = [](int K, void (*change)(FilterParameters&)) -> std::string {

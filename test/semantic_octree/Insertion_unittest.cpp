@@ -83,8 +83,6 @@ TEST(Insertion, ofAnyScansGivesThePlainMapToTheLastBit) {
   }
 }
 
-using namespace semantic_octree;
-
 namespace {
 
 /** Expects that an insertion is refused, saying so, and that the map is what it was. */
@@ -182,8 +180,6 @@ TEST(BadInput, treesThatCannotBeAreRefused) {
   EXPECT_TRUE(
       contains(errorOf([] { SemanticOcTree(0.1, ClassTable()); }), "number of classes is 0"));
 }
-
-using namespace semantic_octree;
 
 namespace {
 

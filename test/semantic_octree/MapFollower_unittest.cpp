@@ -237,8 +237,6 @@ TEST(MapFollower, tilesAreAllThoseInALargerCubeThatChangesAsAWhole) {
   }
 }
 
-using namespace semantic_octree;
-
 namespace {
 
 /** RapidCheck draws the same cases in every run, unless told otherwise. */

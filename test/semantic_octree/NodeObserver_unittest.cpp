@@ -130,8 +130,6 @@ TEST(NodeObserver, isTheOnlyOneOfItsMapAndComparedWithItsKindAlone) {
   expectUpToDate(other);
 }
 
-using namespace semantic_octree;
-
 namespace {
 
 // Another rule than the class filter, of which nothing else knows.

@@ -215,8 +215,6 @@ TEST(Queries, callAVoxelOfEvenOddsFree) {
   EXPECT_EQ(tree.castRay({0.5f, 0.5f, 0.5f}, {1, 0, 0})->key, tree.coordToKey(5.5, 0.5, 0.5));
 }
 
-using namespace semantic_octree;
-
 namespace {
 
 // Extent of a map, and the voxels along a line.

@@ -207,8 +207,6 @@ TEST(TreeFile, streamThatTakesNothingIsNoticed) {
   EXPECT_THROW(writeTree(out, someTree()), std::runtime_error);
 }
 
-using namespace semantic_octree;
-
 namespace {
 
 using u8 = std::uint8_t;

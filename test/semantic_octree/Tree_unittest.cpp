@@ -126,8 +126,6 @@ TEST(Tree, pruningIsChosenWhileTheTreeIsEmpty) {
   EXPECT_FALSE(SemanticOcTree(tree).pruning());
 }
 
-using namespace semantic_octree;
-
 namespace {
 
 /** RapidCheck draws the same cases in every run. */
@@ -218,8 +216,6 @@ TEST(Keys, ofAnyCoordinateAreThoseThatScansFind) {
       ASSERT_EQ(keyOfReturn(voxel, x, 0), keyOf(x, voxel)) << x << " at " << voxel;
     });
 }
-
-using namespace semantic_octree;
 
 namespace {
 

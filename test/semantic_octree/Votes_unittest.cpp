@@ -258,8 +258,6 @@ TEST(Votes, seeThroughThirtyPercentOfWrongLabelsAsCountingDoes) {
       << sum.right << " and " << sum.rightCounted << " of " << sum.asked;
 }
 
-using namespace semantic_octree;
-
 namespace {
 
 /** Compares the filter with the exact one after each of some random soft labels of K <= 3 classes.

@@ -120,8 +120,6 @@ TEST(AlphaPath, aTreeThatNeverPaysIsItsRoot) {
   EXPECT_EQ(count(path.expanded(0)), 0u);
 }
 
-using namespace path_examples;
-
 namespace {
 
 /** Distinct positive taus, ascending. */

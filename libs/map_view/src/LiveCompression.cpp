@@ -162,7 +162,6 @@ using semantic_octree::AbstractionOptions;
 using semantic_octree::Region;
 using semantic_types::ClassTable;
 using strict_files::textOf;
-using tree_abstraction::InformationTerm;
 
 namespace {
 

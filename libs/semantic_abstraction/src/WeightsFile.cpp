@@ -17,67 +17,71 @@ namespace semantic_octree {
 
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
+using strict_files::numberOf;
 using strict_files::OptionList;
 using strict_files::StrictYaml;
+using strict_files::trimmed;
 using tree_abstraction::InformationTerm;
+using NamedNumbers = std::vector<std::pair<std::string, double>>;
 
 namespace {
 
-/** Makes terms of the names of classes, for every form in which weights are written. All functions
- * throw std::invalid_argument saying what is wrong. */
-class TermsByName {
+/** The terms of a solution by the names of classes, for every form in which weights are written.
+ * All functions throw std::invalid_argument saying what is wrong. */
+class TermList {
  public:
-  explicit TermsByName(const semantic_types::ClassTable& classes) : m_classes(classes) {}
+  explicit TermList(const ClassTable& classes) : m_classes(classes) {}
 
-  /** The class with this name, 0 for free space. */
-  int idOf(const std::string& name) const;
-  std::string nameOf(int id) const;
   /** Several members count as one. \param weight below 0 where they are irrelevant */
-  tree_abstraction::InformationTerm term(const std::string& name,
-                                         const std::vector<std::string>& members,
-                                         double weight) const;
-  /** Groups may bring a class in a second time, with the other sign. */
-  void checkContradictions(const std::vector<tree_abstraction::InformationTerm>& terms) const;
+  void add(const std::string& name, const std::vector<std::string>& members, double weight) {
+    std::set<int> ids;
+    for (const std::string& member : members)
+      if (!ids.insert(idOf(member)).second)
+        throw std::invalid_argument("'" + member + "' twice in '" + name + "'");
+    for (const InformationTerm& other : m_terms)
+      if (other.name == name)
+        throw std::invalid_argument(
+            "'" + name + "' " +
+            (other.weight * weight < 0 ? "is both relevant and irrelevant" : "twice"));
+    m_terms.push_back({name, weight, {{ids.begin(), ids.end()}}});
+  }
+  void addEverything(double weight) {
+    m_terms.push_back(tree_abstraction::wholeClassVariable("everything", weight, m_classes.size()));
+  }
+  /** All of them. Groups may bring a class in a second time, with the other sign. */
+  std::vector<InformationTerm> checked() const {
+    std::map<int, std::string> relevant;
+    for (const InformationTerm& term : m_terms)
+      if (term.groups.size() == 1 && term.weight > 0)
+        for (const int id : term.groups.front()) relevant[id] = term.name;
+    for (const InformationTerm& term : m_terms) {
+      if (term.groups.size() != 1 || !(term.weight < 0)) continue;
+      for (const int id : term.groups.front())
+        if (relevant.count(id))
+          throw std::invalid_argument("class '" + nameOf(id) + "' is both relevant ('" +
+                                      relevant[id] + "') and irrelevant ('" + term.name + "')");
+    }
+    return m_terms;
+  }
 
  private:
-  const semantic_types::ClassTable& m_classes;
-};
-
-int TermsByName::idOf(const std::string& name) const {
-  if (const auto id = m_classes.find(name)) return *id;
-  if (name == kFreeSpace) return 0;
-  std::vector<std::string> known = {kFreeSpace};
-  for (int id = 1; id <= m_classes.size(); ++id) known.push_back(nameOf(id));
-  throw std::invalid_argument("unknown class '" + name + "'; known are " +
-                              strict_files::joined(known) + strict_files::didYouMean(name, known));
-}
-
-std::string TermsByName::nameOf(int id) const {
-  return id == 0 ? kFreeSpace : m_classes.name(static_cast<ClassId>(id));
-}
-
-InformationTerm TermsByName::term(const std::string& name, const std::vector<std::string>& members,
-                                  double weight) const {
-  std::set<int> ids;
-  for (const std::string& member : members)
-    if (!ids.insert(idOf(member)).second)
-      throw std::invalid_argument("'" + member + "' twice in '" + name + "'");
-  return {name, weight, {{ids.begin(), ids.end()}}};
-}
-
-void TermsByName::checkContradictions(const std::vector<InformationTerm>& terms) const {
-  std::map<int, const InformationTerm*> relevant;
-  for (const InformationTerm& term : terms)
-    if (term.groups.size() == 1 && term.weight > 0)
-      for (const int id : term.groups.front()) relevant[id] = &term;
-  for (const InformationTerm& term : terms) {
-    if (term.groups.size() != 1 || !(term.weight < 0)) continue;
-    for (const int id : term.groups.front())
-      if (relevant.count(id))
-        throw std::invalid_argument("class '" + nameOf(id) + "' is both relevant ('" +
-                                    relevant[id]->name + "') and irrelevant ('" + term.name + "')");
+  /** The class with this name, 0 for free space. */
+  int idOf(const std::string& name) const {
+    if (const auto id = m_classes.find(name)) return *id;
+    if (name == kFreeSpace) return 0;
+    std::vector<std::string> known;
+    for (int id = 0; id <= m_classes.size(); ++id) known.push_back(nameOf(id));
+    throw std::invalid_argument("unknown class '" + name + "'; known are " +
+                                strict_files::joined(known) +
+                                strict_files::didYouMean(name, known));
   }
-}
+  std::string nameOf(int id) const {
+    return id == 0 ? kFreeSpace : m_classes.name(static_cast<ClassId>(id));
+  }
+
+  const ClassTable& m_classes;
+  std::vector<InformationTerm> m_terms;
+};
 
 const std::set<std::string> kSolutionKeys = {"name", "relevant", "irrelevant", "everything",
                                              "alpha"};
@@ -90,7 +94,7 @@ std::set<std::string> with(std::set<std::string> keys, const std::set<std::strin
 class Reader {
  public:
   Reader(StrictYaml yaml, const ClassTable& classes)
-      : m_yaml(std::move(yaml)), m_classes(classes), m_terms(classes) {}
+      : m_yaml(std::move(yaml)), m_classes(classes) {}
 
   WeightsFile read(const std::string& name) const {
     const YAML::Node& root = m_yaml.root();
@@ -132,15 +136,15 @@ class Reader {
   Solution readSolution(const YAML::Node& node) const {
     Solution solution;
     solution.name = readName(m_yaml.required(node, "name"));
-    addTerms(node["relevant"], 1, solution.terms);
-    addTerms(node["irrelevant"], -1, solution.terms);
+    TermList terms(m_classes);
+    addTerms(node["relevant"], 1, terms);
+    addTerms(node["irrelevant"], -1, terms);
     if (const YAML::Node weight = node["everything"])
-      solution.terms.push_back(tree_abstraction::wholeClassVariable(
-          "everything", m_yaml.notNegative(weight, "everything"), m_classes.size()));
+      terms.addEverything(m_yaml.notNegative(weight, "everything"));
+    solution.terms = at(node, [&] { return terms.checked(); });
     if (solution.terms.empty())
       m_yaml.fail(node, "solution '" + solution.name +
                             "' weighs nothing: expected relevant, irrelevant or everything");
-    at(node, [&] { m_terms.checkContradictions(solution.terms); });
     if (const YAML::Node alpha = node["alpha"]) solution.alpha = m_yaml.notNegative(alpha, "alpha");
     return solution;
   }
@@ -155,26 +159,18 @@ class Reader {
     return name;
   }
 
-  void addTerms(const YAML::Node& node, double sign, std::vector<InformationTerm>& terms) const {
+  void addTerms(const YAML::Node& node, double sign, TermList& terms) const {
     if (!node) return;
     m_yaml.checkMap(node);
-    for (const auto& entry : node) {
-      InformationTerm term = readTerm(entry.first.Scalar(), entry.first, entry.second);
-      term.weight *= sign;
-      for (const InformationTerm& other : terms)
-        if (other.name == term.name)
-          m_yaml.fail(entry.first, "'" + term.name + "' is both relevant and irrelevant");
-      terms.push_back(std::move(term));
-    }
+    for (const auto& entry : node) addTerm(entry.first, entry.second, sign, terms);
   }
 
   /** `class: weight` or `group: {classes: [...], weight: ...}` */
-  InformationTerm readTerm(const std::string& name, const YAML::Node& key,
-                           const YAML::Node& value) const {
-    const std::string what = "weight of '" + name + "'";
+  void addTerm(const YAML::Node& key, const YAML::Node& value, double sign, TermList& terms) const {
+    const std::string name = key.Scalar(), what = "weight of '" + name + "'";
     if (!value.IsMap()) {
       const double weight = m_yaml.notNegative(value, what);
-      return at(key, [&] { return m_terms.term(name, {name}, weight); });
+      return at(key, [&] { terms.add(name, {name}, sign * weight); });
     }
     m_yaml.checkKeys(value, {"classes", "weight"});
     if (name == "everything" || name == kFreeSpace || m_classes.find(name))
@@ -184,7 +180,7 @@ class Reader {
     std::vector<std::string> members;
     for (const auto& member : list) members.push_back(m_yaml.text(member, "a class"));
     const double weight = m_yaml.notNegative(m_yaml.required(value, "weight"), what);
-    return at(list, [&] { return m_terms.term(name, members, weight); });
+    at(list, [&] { terms.add(name, members, sign * weight); });
   }
 
   /** \return the keys about it */
@@ -205,35 +201,7 @@ class Reader {
 
   const StrictYaml m_yaml;
   const ClassTable& m_classes;
-  const TermsByName m_terms;
 };
-
-}  // namespace
-
-const Solution& WeightsFile::solution(const std::string& wanted) const {
-  std::vector<std::string> names;
-  for (const Solution& s : solutions) {
-    if (wanted.empty() || s.name == wanted) return s;
-    names.push_back(s.name);
-  }
-  throw std::runtime_error(name + ": " + strict_files::unknownWord("solution", wanted, names));
-}
-
-WeightsFile loadWeights(const std::filesystem::path& file, const ClassTable& classes) {
-  return Reader(StrictYaml(file), classes).read(file.string());
-}
-
-WeightsFile weightsOfText(const std::string& text, const std::string& name,
-                          const ClassTable& classes) {
-  return Reader(StrictYaml(text, name), classes).read(name);
-}
-
-using semantic_types::ClassTable;
-using strict_files::numberOf;
-using strict_files::trimmed;
-using NamedNumbers = std::vector<std::pair<std::string, double>>;
-
-namespace {
 
 /** The parts of a text between separators, without the spaces around them; no empty ones. */
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -280,6 +248,24 @@ NamedNumbers numbersIn(const std::string& option, const std::string& text) {
 
 }  // namespace
 
+const Solution& WeightsFile::solution(const std::string& wanted) const {
+  std::vector<std::string> names;
+  for (const Solution& s : solutions) {
+    if (wanted.empty() || s.name == wanted) return s;
+    names.push_back(s.name);
+  }
+  throw std::runtime_error(name + ": " + strict_files::unknownWord("solution", wanted, names));
+}
+
+WeightsFile loadWeights(const std::filesystem::path& file, const ClassTable& classes) {
+  return Reader(StrictYaml(file), classes).read(file.string());
+}
+
+WeightsFile weightsOfText(const std::string& text, const std::string& name,
+                          const ClassTable& classes) {
+  return Reader(StrictYaml(text, name), classes).read(name);
+}
+
 void AbstractionText::describe(strict_files::OptionList& list) {
   list.add(
       "relevant", relevant, "",
@@ -298,19 +284,17 @@ void AbstractionText::describe(strict_files::OptionList& list) {
 AbstractionOptions AbstractionText::forClasses(const ClassTable& classes) const {
   AbstractionOptions o;
   static_cast<AbstractionSpace&>(o) = *this;
-  const TermsByName terms(classes);
+  TermList terms(classes);
   const auto add = [&](const std::string& option, const std::string& text, double sign) {
     for (const auto& [name, weight] : numbersIn(option, text))
-      o.weights.terms.push_back(named(option, [&, &name = name, &weight = weight] {
-        return terms.term(name, split(name, '+'), sign * weight);
-      }));
+      named(option, [&, &name = name, &weight = weight] {
+        terms.add(name, split(name, '+'), sign * weight);
+      });
   };
   add("relevant", relevant, 1);
   add("irrelevant", irrelevant, -1);
-  terms.checkContradictions(o.weights.terms);
-  if (everything != 0)
-    o.weights.terms.push_back(
-        tree_abstraction::wholeClassVariable("everything", everything, classes.size()));
+  if (everything != 0) terms.addEverything(everything);
+  o.weights.terms = terms.checked();
   o.weights.alpha = alpha;
   for (const std::string& text : split(regions, ';'))
     o.regions.push_back(named("regions", [&] { return Region::ofText(text); }));
