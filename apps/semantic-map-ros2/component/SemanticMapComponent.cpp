@@ -23,6 +23,8 @@ namespace semantic_map_ros2 {
 
 using sensor_msgs::msg::PointCloud2;
 
+constexpr std::size_t kMostBytes = 500'000'000;  // of clouds that wait
+
 /** Maps the clouds of `points`, whose poses tf2 knows, by the runtime of semantic-map-ros2, and
  * publishes `~/occupied` (x, y, z, rgb, label, probability of each occupied leaf) and, with `slam`,
  * the transform from map to odom. `~/save` writes the file that `output` names, and so does the
@@ -113,7 +115,7 @@ class SemanticMapComponent : public rclcpp::Node {
   void wait(PointCloud2::ConstSharedPtr cloud) {
     m_bytes += cloud->data.size();
     m_waiting.push_back(std::move(cloud));
-    while (m_bytes > std::size_t(m_parameters.node.queueMemory) * 1'000'000 && !m_waiting.empty()) {
+    while (m_bytes > kMostBytes && !m_waiting.empty()) {
       warn("clouds come faster than they are inserted; the oldest are left out");
       dropFirst();
     }
