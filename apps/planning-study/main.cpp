@@ -129,9 +129,7 @@ PlannerOptions optionsOf(const Cli& cli, GraphKind kind, EdgeModel judgment) {
   options.roadmap.kind = kind;
   options.roadmap.vertices = cli.vertices;
   options.roadmap.maxEdges = kEdgesPerVertex * cli.vertices;
-  options.roadmap.headings = 1;  // as in the paper: random ones, and costs that count edges
-  options.roadmap.alignHeadings = false;
-  options.cost = colored_graph::CostKind::Count;
+  options.cost = colored_graph::CostKind::Count;  // as in the paper
   options.edges = judgment;
   options.vehicle.reverseWeight = 1;  // direction costs nothing, as in the paper
   options.vehicle.gearChange = options.vehicle.steeringChange = 0;
@@ -162,9 +160,9 @@ void writeRow(std::ostream& out, std::size_t number, const Instance& task,
   const measuring::Stopwatch processor(measuring::TimeOf::Process), wall;
   const PlanResult plan = planner.plan(task.start, task.goal);
   const double share = processor.milliseconds() / wall.milliseconds();
-  out << number << ',' << nameOf(planner.options().edges) << ','
-      << nameOf(planner.options().roadmap.kind) << ',' << plan.found() << ',' << plan.numVertices
-      << ',' << plan.numEdges << ',' << plan.search.edgesEvaluated << ','
+  out << number << ',' << (planner.options().edges == EdgeModel::Profile ? "profile" : "endpoint")
+      << ',' << nameOf(planner.options().roadmap.kind) << ',' << plan.found() << ','
+      << plan.numVertices << ',' << plan.numEdges << ',' << plan.search.edgesEvaluated << ','
       << offTheBest(plan, planner.order()) << ',' << plan.length << ','
       << share * milliseconds(plan, "evaluateEdges") << ',' << share * milliseconds(plan, "search")
       << '\n';

@@ -102,7 +102,9 @@ int run(Cli& cli) {
   // Now, for what that takes is free again before the ground needs it.
   MapCanvas canvas = MapCanvas::ofMap(map, {});
   watch.lap();
-  if (isOfTree(cli.planner.roadmap.kind))
+  const bool mayHaveGraph = !cli.planner.shorten || cli.planner.strict;
+  const bool hasGraph = mayHaveGraph && isOfTree(cli.planner.roadmap.kind);
+  if (hasGraph || !cli.weights.empty())
     setAbstraction(map, cli.weights.empty()
                             ? abstractionFor(order)
                             : abstractionOf(cli.weights, cli.solution, map.classes()));

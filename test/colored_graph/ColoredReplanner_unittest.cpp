@@ -55,18 +55,6 @@ void change(PlaneGraph& plane, VertexId start, VertexId goal, bool tolled = fals
   }
 }
 
-SearchOptions boundedBy(const PlaneGraph& plane) {
-  SearchOptions options;
-  options.lengthBound = [&plane](VertexId a, VertexId b) { return plane.bound(a, b); };
-  return options;
-}
-
-ColoredAStarOptions fromScratch(const SearchOptions& options) {
-  ColoredAStarOptions scratch;
-  static_cast<SearchOptions&>(scratch) = options;
-  return scratch;
-}
-
 struct Tally {
   std::size_t incremental = 0, scratch = 0, found = 0;
 };
@@ -83,8 +71,7 @@ void compare(unsigned seed, const CostModel& model, int changes, bool moving, Ta
   for (int i = 0; i < changes; ++i) {
     change(plane, start, goal, model.tolls);
     const PathResult result = replanner.solve();
-    const PathResult scratch =
-        findColoredPath(plane.graph, start, goal, model, fromScratch(options));
+    const PathResult scratch = findColoredPath(plane.graph, start, goal, model, options);
     ASSERT_EQ(costOf(result), oracles::tupleDijkstra(plane.graph, model, start, goal))
         << "seed " << seed << ", change " << i;
     ASSERT_EQ(result.status, scratch.status);
@@ -138,7 +125,7 @@ TEST(ColoredReplanner, savesExpansionsEvenWhenManyEdgesChangeAtOnce) {
                                plane.randomProfile(plane.graph.edge(e).a, plane.graph.edge(e).b));
       }
       const PathResult result = replanner.solve();
-      const PathResult scratch = findColoredPath(plane.graph, 0, 1, model, fromScratch(options));
+      const PathResult scratch = findColoredPath(plane.graph, 0, 1, model, options);
       ASSERT_EQ(result.edges, scratch.edges) << "seed " << seed << ", round " << round;
       tally.incremental += result.statistics.expansions;
       tally.scratch += scratch.statistics.expansions;

@@ -45,7 +45,7 @@ struct LazyWorld {
   ColoredGraph graph;
   ColoredGraph truth;
   std::map<EdgeId, int> calls;
-  ColoredAStarOptions options;
+  SearchOptions options;
 };
 
 bool allEvaluated(const ColoredGraph& graph, const PathResult& result) {
@@ -63,7 +63,6 @@ TEST(LazyEdges, searchFindsTheOptimumOfTheTruth) {
     const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
     for (const CostModel& model : allModels(plane.randomOrder())) {
       LazyWorld world(plane);
-      world.options.boundWorstRank = seed % 4 > 1;
       const PathResult result = findColoredPath(world.graph, start, goal, model, world.options);
       ASSERT_EQ(costOf(result), oracles::tupleDijkstra(plane.graph, model, start, goal))
           << "seed " << seed;
@@ -118,7 +117,7 @@ TEST(LazyEdges, anEdgeThatHasBecomeUselessIsNotEvaluated) {
   const EdgeId detour =
       graph.addUnevaluatedEdge(3, 1, 10);  // queued before 1 is reached by way of 2
   graph.addUnevaluatedEdge(1, 0, 100);
-  ColoredAStarOptions options;
+  SearchOptions options;
   options.evaluate = [&](EdgeId e) { return EdgeProfile{{0, graph.edge(e).length}}; };
   const CostModel model{ClassOrder(1, {{0}})};
   EXPECT_EQ(findColoredPath(graph, 0, 3, model, options).statistics.edgesEvaluated, 3u);
@@ -152,7 +151,7 @@ TEST(LazyEdges, anEvaluationThatContradictsTheBoundIsRefused) {
   graph.addVertex(0);
   graph.addUnevaluatedEdge(0, 1, 5);
   const CostModel model{ClassOrder(1, {{0}})};
-  ColoredAStarOptions options;
+  SearchOptions options;
   options.evaluate = [](EdgeId) { return EdgeProfile{{0, 4}}; };
   EXPECT_THROW(findColoredPath(graph, 0, 1, model, options), std::invalid_argument);
   EXPECT_THROW(ColoredReplanner(graph, 0, 1, model, options).solve(), std::invalid_argument);

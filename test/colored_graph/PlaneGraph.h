@@ -132,11 +132,10 @@ inline std::vector<colored_graph::CostModel> allModels(const colored_graph::Clas
 }
 
 /** With the plane's bound of lengths. */
-inline colored_graph::ColoredAStarOptions boundedBy(const PlaneGraph& plane, bool worstRank) {
-  colored_graph::ColoredAStarOptions options;
+inline colored_graph::SearchOptions boundedBy(const PlaneGraph& plane) {
+  colored_graph::SearchOptions options;
   options.lengthBound = [&plane](colored_graph::VertexId a, colored_graph::VertexId b) {
     return plane.bound(a, b);
   };
-  options.boundWorstRank = worstRank;
   return options;
 }

@@ -28,8 +28,7 @@ CostVector<3> vectorOf(unsigned high, unsigned low) {
 template <class MakeKey>
 void comparesWithASortedMap(MakeKey makeKey) {
   using Key = decltype(makeKey(0, 0));
-  const auto ignore = [](const QueueEntry<Key>&, std::size_t) {};
-  RadixQueue<Key, decltype(ignore)> queue(ignore);
+  RadixQueue<Key> queue;
   using Place = std::tuple<unsigned, unsigned, bool, VertexId, EdgeId>;
   std::map<Place, int> sorted;
   unsigned lastHigh = 0, lastLow = 0;
@@ -66,8 +65,7 @@ TEST(RadixQueue, hasTheOrderOfASortedMapWithVectors) {
 }
 
 TEST(RadixQueue, takesAKeyBelowTheLastForAnEqualOne) {
-  const auto ignore = [](const QueueEntry<PackedCost>&, std::size_t) {};
-  RadixQueue<PackedCost, decltype(ignore)> queue(ignore);
+  RadixQueue<PackedCost> queue;
   queue.push({packed(1, 0), 7, kNoEdge});
   queue.pop();
   queue.push({packed(2, 0), 8, kNoEdge});

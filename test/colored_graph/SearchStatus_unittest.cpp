@@ -2,13 +2,10 @@
 #include <colored_graph/ColoredReplanner.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <cmath>
 #include <functional>
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "EdgeChanges.h"
 #include "Oracles.h"
@@ -26,9 +23,7 @@ struct Problem {
 };
 
 PathResult searchOnce(const Problem& p) {
-  ColoredAStarOptions options;
-  static_cast<SearchOptions&>(options) = p.options;
-  return findColoredPath(p.graph, p.start, p.goal, p.model, options);
+  return findColoredPath(p.graph, p.start, p.goal, p.model, p.options);
 }
 
 PathResult replanOnce(const Problem& p) {
@@ -127,59 +122,14 @@ TEST_P(SearchStatusOf, cancelStopsTheSearch) {
   EXPECT_LT(result.statistics.expansions, 500u);
 }
 
-TEST_P(SearchStatusOf, timeLimitStopsTheSearchBetweenSlowEvaluations) {
-  chain(1000);
-  for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) setUnevaluated(graph, e, 10);
-  options.timeLimit = 0.03;
-  options.evaluate = [](EdgeId) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return EdgeProfile{{0, 10}};
-  };
-  const PathResult result = solve(0, 999);
-  EXPECT_EQ(result.status, SearchStatus::TimeLimit);
-  EXPECT_GT(result.statistics.edgesEvaluated, 0u);
-  EXPECT_LT(result.statistics.edgesEvaluated, 8u);
-}
-
-TEST_P(SearchStatusOf, noTimeIsATimeLimit) {
-  chain(3);
-  options.timeLimit = 0;
-  EXPECT_EQ(solve(0, 2).status, SearchStatus::TimeLimit);
-}
-
-TEST_P(SearchStatusOf, badOptionsAreRefused) {
+TEST_P(SearchStatusOf, anOrderOfOtherClassesIsRefused) {
   chain(2);
-  for (const double limit : {-1.0, std::nan("")}) {
-    options.timeLimit = limit;
-    EXPECT_THROW(solve(0, 1), std::invalid_argument);
-  }
-  options.timeLimit = 1;
   model.order = ClassOrder(2, {{0}, {1}});
   EXPECT_THROW(solve(0, 1), std::invalid_argument);
 }
 
 INSTANTIATE_TEST_SUITE_P(BothSearches, SearchStatusOf, ::testing::Values(&searchOnce, &replanOnce),
                          [](const auto& p) { return p.index == 0 ? "scratch" : "replanner"; });
-
-TEST(SearchStatus, aBoundOfTheWorstRankTellsSoonThatThereIsNoPath) {
-  constexpr VertexId kVertices = 2000;
-  const CostModel model{ClassOrder(3, {{0}, {1}}), EdgeModel::Profile, CostKind::ArcLength};
-  ColoredGraph graph{3};
-  for (VertexId v = 0; v < kVertices; ++v) graph.addVertex(0);
-  for (VertexId v = 0; v + 11 < kVertices; ++v)  // the last one stays alone
-    for (const VertexId step : {1u, 7u, 10u})
-      graph.addEdge(v, v + step, {{static_cast<GraphClass>(v % 3 ? 0 : 1), 5}});
-  ColoredAStarOptions options;
-  for (const bool bounded : {false, true}) {
-    options.boundWorstRank = bounded;
-    const PathResult result = findColoredPath(graph, 0, kVertices - 1, model, options);
-    EXPECT_EQ(result.status, SearchStatus::NotConnected);
-    EXPECT_LE(result.statistics.expansions, kVertices);
-    const PathResult back = findColoredPath(graph, kVertices - 1, 0, model, options);
-    EXPECT_EQ(back.status, SearchStatus::NotConnected);
-    EXPECT_LE(back.statistics.expansions, kVertices);
-  }
-}
 
 TEST(SearchStatus, replannerGoesOnAfterACancel) {
   PlaneGraph plane = randomPlaneGraph(11, 300, 9000, 30, 4);
@@ -246,7 +196,7 @@ TEST(SearchStatus, vertexThatABoundMadeTooLateIsExpandedAgain) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     PlaneGraph plane = randomPlaneGraph(seed, 40, 60, 8);
     const CostModel model{ClassOrder(PlaneGraph::kClasses, {{0, 1, 2, 3, 4}})};
-    ColoredAStarOptions options;
+    SearchOptions options;
     options.lengthBound = [&](VertexId a, VertexId b) { return b % 11 * plane.bound(a, b); };
     const PathResult result = findColoredPath(plane.graph, 0, 1, model, options);
     if (!result.found()) continue;
@@ -277,8 +227,8 @@ TEST(SearchStatus, replannerNoticesThatAnEndWentAndCameBack) {
 
 TEST(SearchStatus, everyStatusHasItsOwnWords) {
   std::set<std::string> words;
-  for (int s = 0; s <= static_cast<int>(SearchStatus::TimeLimit); ++s)
+  for (int s = 0; s <= static_cast<int>(SearchStatus::Cancelled); ++s)
     words.insert(describe(static_cast<SearchStatus>(s)));
-  EXPECT_EQ(words.size(), 8u);
+  EXPECT_EQ(words.size(), 7u);
   EXPECT_EQ(words.count("unknown status"), 0u);
 }

@@ -21,12 +21,7 @@ class TollsIn : public ::testing::TestWithParam<bool> {
   }
   PathResult solve(VertexId start, VertexId goal) {
     return GetParam() ? ColoredReplanner(graph, start, goal, model, options).solve()
-                      : findColoredPath(graph, start, goal, model, scratchOptions());
-  }
-  ColoredAStarOptions scratchOptions() const {
-    ColoredAStarOptions scratch;
-    static_cast<SearchOptions&>(scratch) = options;
-    return scratch;
+                      : findColoredPath(graph, start, goal, model, options);
   }
 
   ColoredGraph graph{2};

@@ -77,7 +77,7 @@ class Town {
 
   ColoredGraph graph{kClasses};
   std::vector<Point> points;
-  ColoredAStarOptions options;
+  SearchOptions options;
 
  private:
   void joinToNearest(VertexId v) {
@@ -115,12 +115,11 @@ void report(benchmark::State& state, std::size_t expansions) {
       benchmark::Counter(static_cast<double>(expansions), benchmark::Counter::kAvgIterations);
 }
 
-void search(benchmark::State& state, int ranks, bool bounded, bool boundWorstRank) {
+void search(benchmark::State& state, int ranks, bool bounded) {
   Town town(static_cast<int>(state.range(0)));
   const CostModel model = town.model(ranks);
-  ColoredAStarOptions options = town.options;
+  SearchOptions options = town.options;
   if (!bounded) options.lengthBound = nullptr;
-  options.boundWorstRank = boundWorstRank;
   std::size_t expansions = 0;
   for (auto _ : state) {
     const auto [start, goal] = town.ends();
@@ -165,11 +164,10 @@ void sizes(benchmark::internal::Benchmark* b) {
   b->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
 }
 
-BENCHMARK_CAPTURE(search, coaStar, 4, true, false)->Apply(sizes);
-BENCHMARK_CAPTURE(search, coaStarVectorsFor8Ranks, 8, true, false)->Apply(sizes);
-BENCHMARK_CAPTURE(search, coaStarVectorsFor16Ranks, 16, true, false)->Apply(sizes);
-BENCHMARK_CAPTURE(search, coaStarWorstRankBounded, 4, true, true)->Apply(sizes);
-BENCHMARK_CAPTURE(search, dijkstraWithTheSameQueue, 4, false, false)->Apply(sizes);
+BENCHMARK_CAPTURE(search, coaStar, 4, true)->Apply(sizes);
+BENCHMARK_CAPTURE(search, coaStarVectorsFor8Ranks, 8, true)->Apply(sizes);
+BENCHMARK_CAPTURE(search, coaStarVectorsFor16Ranks, 16, true)->Apply(sizes);
+BENCHMARK_CAPTURE(search, dijkstraWithTheSameQueue, 4, false)->Apply(sizes);
 BENCHMARK(textbookDijkstra)->Apply(sizes);
 BENCHMARK_CAPTURE(afterRecoloring, scatteredScratch, true, false)->Apply(sizes);
 BENCHMARK_CAPTURE(afterRecoloring, scatteredIncremental, true, true)->Apply(sizes);

@@ -92,7 +92,7 @@ TEST_F(PlannerTest, dijkstraOfMrptFindsTheSameFewestEdgesOfEachClassInTheNetwork
   const mrpt::graphs::CDijkstra<ClassNetwork> dijkstra(network, nodeAt(network, start), weight);
   double expected = 0;
   for (std::size_t rank = 1; rank < 4; ++rank)
-    expected += static_cast<double>(plan.roadmapCost.at(3 - rank)) * std::pow(kOfAWorseRank, rank);
+    expected += static_cast<double>(plan.cost.at(3 - rank)) * std::pow(kOfAWorseRank, rank);
   EXPECT_EQ(dijkstra.getNodeDistanceToRoot(nodeAt(network, goal)).value(), expected);
-  EXPECT_GT(plan.roadmapCost.at(2), 0);
+  EXPECT_GT(plan.cost.at(2), 0);
 }

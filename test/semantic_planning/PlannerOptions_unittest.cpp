@@ -34,18 +34,11 @@ TEST(PlannerOptions, areSetByTheirNames) {
   const auto set = [&](const char* name, const char* text) { list.find(name)->set(text); };
   set("graph", "full");
   set("vertices", "700");
-  set("least-probability", "0.2");
-  set("edges", "sweep");
-  set("cost", "count");
   set("reading", "cautious");
   set("fillGap", "0.3");
   set("keep_off", "true");
-  set("time_limit", "inf");
   EXPECT_EQ(options.roadmap.kind, GraphKind::Full);
   EXPECT_EQ(options.roadmap.vertices, 700u);
-  EXPECT_EQ(options.reading.leastProbability, 0.2);
-  EXPECT_EQ(options.edges, colored_graph::EdgeModel::Sweep);
-  EXPECT_EQ(options.cost, colored_graph::CostKind::Count);
   EXPECT_EQ(options.reading.kind, ClassReading::Kind::Cautious);
   EXPECT_EQ(options.ground.fillGap, 0.3);
   EXPECT_TRUE(options.ground.keepOff);
@@ -55,5 +48,5 @@ TEST(PlannerOptions, areSetByTheirNames) {
 TEST(PlannerOptions, choicesHaveNamesOfTheirOwn) {
   expectNames<GraphKind>(5);
   expectNames<ClassReading::Kind>(3);
-  expectNames<PlanStatus>(11);
+  expectNames<PlanStatus>(10);
 }

@@ -44,18 +44,24 @@ TEST_F(PlannerTest, saysThatAllWaysAreForbidden) {
   world.floor(-1, 1, -15, 15, PaintedWorld::Wall);
   start = {-10, 0, 0};
   goal = {10, 0, 0};
-  EXPECT_EQ(plan().status, PlanStatus::OnlyForbidden);
-  options.ground.keepOff = true;
-  EXPECT_EQ(plan().status, PlanStatus::NotConnected);
+  for (const bool shorten : {false, true}) {
+    options.shorten = shorten;
+    options.ground.keepOff = false;
+    EXPECT_EQ(plan().status, PlanStatus::OnlyForbidden) << shorten;
+    options.ground.keepOff = true;
+    EXPECT_EQ(plan().status, PlanStatus::NotConnected) << shorten;
+  }
 }
 
-TEST_F(PlannerTest, stopsWhenCancelledOrOutOfTime) {
+TEST_F(PlannerTest, stopsWhenCancelled) {
   paintCorner();
   options.cancelled = [] { return true; };
-  EXPECT_EQ(plan().status, PlanStatus::Cancelled);
-  options.cancelled = nullptr;
-  options.timeLimit = 0;
-  EXPECT_EQ(plan().status, PlanStatus::TimeLimit);
+  for (const bool shorten : {false, true}) {
+    options.shorten = shorten;
+    const PlanResult result = plan();
+    EXPECT_EQ(result.status, PlanStatus::Cancelled) << shorten;
+    EXPECT_TRUE(contains(result.reason, "cancelled")) << result.reason;
+  }
 }
 
 TEST_F(PlannerTest, onAnEmptyMapTheStartIsOffGround) {
@@ -79,17 +85,16 @@ TEST_F(PlannerTest, refusesBadOptionsNamingThem) {
     return errorOf([&] { SemanticPlanner(map(), order, spoiled); });
   };
   EXPECT_TRUE(contains(refusal([](auto& o) { o.vehicle.turningRadius = 0; }), "turning_radius"));
-  EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.headings = 0; }), "headings is 0"));
   EXPECT_TRUE(contains(refusal([](auto& o) { o.roadmap.buffer = NAN; }), "buffer"));
   EXPECT_TRUE(contains(refusal([](auto& o) { o.ground.fillGap = -1; }), "fill_gap is -1"));
-  EXPECT_TRUE(
-      contains(refusal([](auto& o) { o.reading.leastProbability = 2; }), "least_probability is 2"));
-  EXPECT_TRUE(contains(refusal([](auto& o) { o.timeLimit = NAN; }), "time_limit"));
 }
 
 TEST_F(PlannerTest, aCompressedGraphNeedsAMapWithGValues) {
   paintCorner();
   EXPECT_THROW(SemanticPlanner(world.map(), order, options), std::logic_error);
+  options.shorten = true;
+  EXPECT_NO_THROW(SemanticPlanner(world.map(), order, options)) << "there is no graph";
+  options.shorten = false;
   options.roadmap.kind = GraphKind::Full;
   EXPECT_NO_THROW(SemanticPlanner(world.map(), order, options));
 }

@@ -102,7 +102,6 @@ TEST_F(PlannerTest, leavesAsPublishedHaveOnePointInTheirMiddleAtMost) {
   paintCorner();
   options.roadmap.kind = GraphKind::Leaves;
   options.roadmap.vertices = 0;  // all
-  options.roadmap.headings = 1;
   SemanticPlanner p = planner();
   p.plan(start, goal);
   const Ground& ground = p.ground();

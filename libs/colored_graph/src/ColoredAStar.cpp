@@ -9,7 +9,7 @@ struct Task {
   ColoredGraph& graph;
   VertexId start, goal;
   const CostModel& model;
-  const ColoredAStarOptions& options;
+  const SearchOptions& options;
 };
 
 template <class Layout>
@@ -34,9 +34,8 @@ PathResult search(const Task& task) {
 }  // namespace
 
 PathResult findColoredPath(ColoredGraph& graph, VertexId start, VertexId goal,
-                           const CostModel& model, const ColoredAStarOptions& options) {
+                           const CostModel& model, const SearchOptions& options) {
   model.validate(graph);
-  options.validate();
   if (const auto missing = missingEnd(graph, start, goal)) {
     PathResult result;
     result.status = *missing;

@@ -31,21 +31,6 @@ void checkTolls(const Tolls& tolls) {
   checkToll(tolls.toB);
 }
 
-/** Whether half edges have room for it. */
-bool isNarrow(const WideEdge& edge) {
-  const auto isFree = [](Length toll) { return toll == 0 || toll == kClosed; };
-  constexpr unsigned kNarrowClasses = HalfEdge::kKinds - HalfEdge::kFirstClass;
-  return edge.length <= HalfEdge::kLongest && isFree(edge.tolls.toA) && isFree(edge.tolls.toB) &&
-         (edge.state != EdgeState::Usable ||
-          (edge.profile.size() == 1 && edge.profile.front().classId < kNarrowClasses));
-}
-
-unsigned kindOf(const WideEdge& narrow) {
-  if (narrow.state == EdgeState::Unevaluated) return HalfEdge::kUnevaluated;
-  if (narrow.state == EdgeState::Blocked) return HalfEdge::kBlocked;
-  return HalfEdge::kFirstClass + narrow.profile.front().classId;
-}
-
 /** An id that was removed before, or a new one at the end of `storage`. */
 template <class Id, class Storage>
 Id takeId(std::vector<Id>& freeIds, Storage& storage) {
@@ -76,8 +61,7 @@ VertexId ColoredGraph::addVertex(GraphClass id) {
 
 void ColoredGraph::removeVertex(VertexId v) {
   Vertex& vertex = m_vertices[checked(v)];
-  while (vertex.size > 0) removeEdge(row(v).edges[vertex.size - 1]);
-  m_rows.release(vertex.edges());
+  while (!vertex.incident.empty()) removeEdge(vertex.incident.back().edge);
   vertex.present = false;
   --m_vertexCount;
   m_freeVertices.push_back(v);
@@ -95,120 +79,61 @@ void ColoredGraph::setVertexClass(VertexId v, GraphClass id) {
 
 EdgeId ColoredGraph::addEdge(VertexId a, VertexId b, EdgeProfile profile, Tolls tolls) {
   const Length length = checkedLength(profile);
-  return insert(b, {a, EdgeState::Usable, length, tolls, std::move(profile)});
+  return insert({a, b, length, EdgeState::Usable, tolls, std::move(profile)});
 }
 
 EdgeId ColoredGraph::addUnevaluatedEdge(VertexId a, VertexId b, Length minLength, Tolls tolls) {
   checkLength(minLength);
-  return insert(b, {a, EdgeState::Unevaluated, minLength, tolls, {}});
+  return insert({a, b, minLength, EdgeState::Unevaluated, tolls, {}});
 }
 
-EdgeId ColoredGraph::insert(VertexId b, WideEdge content) {
-  const VertexId a = content.a;
-  Vertex& atA = m_vertices[checked(a)];
-  Vertex& atB = m_vertices[checked(b)];
+EdgeId ColoredGraph::insert(Edge edge) {
+  const VertexId a = checked(edge.a), b = checked(edge.b);
   if (a == b) reject("an edge from vertex " + std::to_string(a) + " to itself");
-  checkTolls(content.tolls);
-  const EdgeId e = takeId(m_freeEdges, m_firstEnds);
-  m_firstEnds[e] = a;
-  const Halves halves = store(b, std::move(content));
-  m_rows.push(atA.edges(), halves.first, e);
-  m_rows.push(atB.edges(), halves.second, e);
+  checkTolls(edge.tolls);
+  const EdgeId e = takeId(m_freeEdges, m_edges);
+  m_edges[e] = std::move(edge);
+  m_vertices[a].incident.push_back({b, e});
+  m_vertices[b].incident.push_back({a, e});
   ++m_edgeCount;
   logVertex(a);
   logVertex(b);
   return e;
 }
 
-ColoredGraph::Halves ColoredGraph::store(VertexId b, WideEdge content) {
-  const VertexId a = content.a;
-  if (isNarrow(content)) {
-    const unsigned kind = kindOf(content);
-    const bool toA = content.tolls.toA != kClosed, toB = content.tolls.toB != kClosed;
-    return {HalfEdge::narrow(b, kind, content.length, toB, toA),
-            HalfEdge::narrow(a, kind, content.length, toA, toB)};
-  }
-  const std::uint32_t place = takeId(m_freeWide, m_wide);
-  m_wide[place] = std::move(content);
-  return {HalfEdge::wide(b, place), HalfEdge::wide(a, place)};
-}
-
-void ColoredGraph::releaseWide(const HalfEdge& half) {
-  if (!half.isWide()) return;
-  m_wide[half.place()] = WideEdge();
-  m_freeWide.push_back(half.place());
-}
-
 void ColoredGraph::removeEdge(EdgeId e) {
-  const VertexId a = m_firstEnds[checkedEdge(e)], b = half(e, a).neighbor;
-  releaseWide(half(e, a));
+  const VertexId a = edge(e).a, b = edge(e).b;
   for (const VertexId v : {a, b}) {
-    EdgeRows::Row& edges = m_vertices[v].edges();
-    m_rows.remove(edges, m_rows.find(edges, e));
+    Incidences& at = m_vertices[v].incident;
+    *std::find_if(at.begin(), at.end(), [e](const Incidence& i) { return i.edge == e; }) =
+        at.back();
+    at.pop_back();
     logVertex(v);
   }
-  m_firstEnds[e] = kNoVertex;
+  m_edges[e] = Edge();
   m_freeEdges.push_back(e);
   --m_edgeCount;
 }
 
-void ColoredGraph::setContent(EdgeId e, VertexId b, WideEdge content) {
-  const VertexId a = content.a;
-  releaseWide(half(e, a));
-  const Halves halves = store(b, std::move(content));
-  const auto set = [&](VertexId v, const HalfEdge& half) {
-    const EdgeRows::Row& edges = m_vertices[v].edges();
-    m_rows.half(edges, m_rows.find(edges, e)) = half;
-    logVertex(v);
-  };
-  set(a, halves.first);
-  set(b, halves.second);
+void ColoredGraph::setContent(EdgeId e, EdgeState state, Length length, EdgeProfile profile) {
+  Edge& edge = m_edges[checkedEdge(e)];
+  edge.state = state;
+  edge.length = length;
+  edge.profile = std::move(profile);
+  logVertex(edge.a);
+  logVertex(edge.b);
 }
 
 void ColoredGraph::setProfile(EdgeId e, EdgeProfile profile) {
-  const Edge before = edge(e);
+  const Edge& before = edge(e);
   const Length length = checkedLength(profile);
   if (before.state == EdgeState::Unevaluated && length < before.length)
     reject("edge " + std::to_string(e) + " is " + std::to_string(length) +
            " long, but was said to be at least " + std::to_string(before.length));
-  setContent(e, before.b, {before.a, EdgeState::Usable, length, before.tolls, std::move(profile)});
+  setContent(e, EdgeState::Usable, length, std::move(profile));
 }
 
-void ColoredGraph::setBlocked(EdgeId e) {
-  const Edge before = edge(e);
-  setContent(e, before.b, {before.a, EdgeState::Blocked, before.length, before.tolls, {}});
-}
-
-HalfEdge ColoredGraph::half(EdgeId e, VertexId v) const {
-  return row(v).halves[m_rows.find(m_vertices[v].edges(), e)];
-}
-
-EdgeState ColoredGraph::state(const HalfEdge& half) const {
-  if (half.isWide()) return wide(half).state;
-  if (half.kind() == HalfEdge::kUnevaluated) return EdgeState::Unevaluated;
-  return half.kind() == HalfEdge::kBlocked ? EdgeState::Blocked : EdgeState::Usable;
-}
-
-Edge ColoredGraph::edge(EdgeId e) const {
-  const VertexId a = m_firstEnds[checkedEdge(e)];
-  return asEdge(a, half(e, a));
-}
-
-Edge ColoredGraph::asEdge(VertexId a, const HalfEdge& half) const {
-  if (half.isWide()) {
-    const WideEdge& content = wide(half);
-    return {
-        a, half.neighbor, content.length, content.state, content.tolls, Stretches(content.profile)};
-  }
-  Edge edge{a, half.neighbor, half.length(), state(half), {}, {}};
-  if (!half.leads(Way::Out)) edge.tolls.toB = kClosed;
-  if (!half.leads(Way::In)) edge.tolls.toA = kClosed;
-  if (edge.state == EdgeState::Usable) {
-    const unsigned id = half.kind() - HalfEdge::kFirstClass;
-    edge.profile = Stretches(Stretch{static_cast<GraphClass>(id), edge.length});
-  }
-  return edge;
-}
+void ColoredGraph::setBlocked(EdgeId e) { setContent(e, EdgeState::Blocked, edge(e).length, {}); }
 
 void ColoredGraph::refuseVertex(VertexId v) {
   throw std::out_of_range("ColoredGraph: vertex " + std::to_string(v) + " is not in the graph");

@@ -27,7 +27,6 @@ class ColoredReplanner::Search : public Impl {
 ColoredReplanner::ColoredReplanner(ColoredGraph& graph, VertexId start, VertexId goal,
                                    const CostModel& model, const SearchOptions& options) {
   model.validate(graph);
-  options.validate();
   m_impl = withVectorSize(model, [&](auto size) -> std::unique_ptr<Impl> {
     return std::make_unique<Search<size()>>(graph, start, goal, model, options);
   });

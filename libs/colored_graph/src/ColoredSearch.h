@@ -3,62 +3,36 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
-#include <memory>
-#include <new>
 #include <stdexcept>
 #include <tuple>
-#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "EdgeCosts.h"
 #include "RadixQueue.h"
 #include "SearchParts.h"
-#include "WorstRankBound.h"
 
 namespace colored_graph {
-
-/** Zeros that take no memory before they are looked at. */
-template <class T>
-class ZeroedArray {
- public:
-  static_assert(std::is_trivially_copyable_v<T>);
-  explicit ZeroedArray(std::size_t size) : m_data(static_cast<T*>(std::calloc(size, sizeof(T)))) {
-    if (!m_data && size > 0) throw std::bad_alloc();
-  }
-  T& operator[](std::size_t i) { return m_data.get()[i]; }
-  const T& operator[](std::size_t i) const { return m_data.get()[i]; }
-
- private:
-  struct Free {
-    void operator()(T* data) const { std::free(data); }
-  };
-  std::unique_ptr<T, Free> m_data;
-};
 
 /** One search of COA*, from the goal towards the start. */
 template <class Layout>
 class ColoredSearch {
  public:
   ColoredSearch(ColoredGraph& graph, VertexId start, VertexId goal, const CostModel& model,
-                const ColoredAStarOptions& options, StopCheck& stop)
+                const SearchOptions& options, StopCheck& stop)
       : m_graph(graph),
         m_start(start),
         m_goal(goal),
-        m_model(model),
         m_options(options),
         m_costs(graph, model),
         m_stop(stop),
         m_toGoal(graph.vertexIdEnd()),
-        m_expanded(graph.vertexIdEnd()),
-        m_queue(Soon{graph, m_toGoal}) {}
+        m_expanded(graph.vertexIdEnd()) {}
 
   /** Nothing if the layout has not enough bits for the costs that were met.
    * \param statistics is counted up. */
   std::optional<PathResult> run(SearchStatistics& statistics) {
-    if (m_options.boundWorstRank && m_model.order.ranks() > 1)
-      m_worstBound = worstRankBound(m_graph, m_costs, m_model.order.ranks() - 1, m_start);
     const SearchStatus status = search(statistics);
     if (m_costs.layout().overflowed()) return std::nullopt;
     PathResult result;
@@ -70,29 +44,7 @@ class ColoredSearch {
  private:
   using Cost = typename Layout::Cost;
 
-  /** The processor fetches what will soon be asked for: first the vertex, then its edges, then what
-   * is known of its neighbors. (In a function that is not inlined, the compiler takes this for
-   * nothing and drops it.) */
-  struct Soon {
-    const ColoredGraph& graph;
-    const ZeroedArray<Cost>& toGoal;
-    [[gnu::always_inline]] void operator()(const QueueEntry<Cost>& entry, std::size_t turns) const {
-      if (turns > 256) return;
-      if (turns > 64) return graph.prefetch(entry.vertex);
-      const EdgeRow row = graph.row(entry.vertex);
-      if (turns <= 4) return neighbors(row);
-      __builtin_prefetch(&toGoal[entry.vertex]);
-      __builtin_prefetch(row.halves);
-      if (row.size > 0) __builtin_prefetch(row.halves + row.size - 1);
-    }
-    [[gnu::always_inline]] void neighbors(const EdgeRow& row) const {
-      for (std::size_t i = 0; i < row.size; ++i)
-        __builtin_prefetch(&toGoal[row.halves[i].neighbor]);
-    }
-  };
-
   SearchStatus search(SearchStatistics& statistics) {
-    if (isHopeless(m_goal)) return reasonForNoPath();
     reach(m_goal, m_costs.layout().edge(0, 0));
     while (!m_queue.empty() && !m_costs.layout().overflowed()) {
       if (const auto stopped = m_stop.inLoop()) return *stopped;
@@ -110,27 +62,24 @@ class ColoredSearch {
   }
 
   SearchStatus reasonForNoPath() const {
-    return diagnose(m_graph, m_start, m_goal, [this](VertexId v, const HalfEdge& half) {
-      return !m_costs(v, half, Way::Out).isInfinite();
+    return diagnose(m_graph, m_start, m_goal, [this](const Incidence& i) {
+      return !m_costs(i.edge, i.neighbor).isInfinite();
     });
   }
 
   void expand(VertexId from) {
     const Cost before = m_toGoal[from];
-    const EdgeRow row = m_graph.row(from);
-    m_queue.soon().neighbors(row);
-    for (std::size_t i = 0; i < row.size; ++i) {
-      const HalfEdge half = row.halves[i];
-      const Cost& known = m_toGoal[half.neighbor];
+    for (const Incidence& i : m_graph.incident(from)) {
+      const Cost& known = m_toGoal[i.neighbor];
       if (isReached(known) && known < before) continue;  // most are on the way back
-      const Cost step = m_costs(from, half, Way::In);
+      const Cost step = m_costs(i.edge, from);
       if (step.isInfinite()) continue;
       const Cost cost = before + step;
-      if (!improves(cost, known) || isHopeless(half.neighbor)) continue;
-      if (m_graph.state(half) == EdgeState::Unevaluated)
-        m_queue.push({estimate(half.neighbor, cost), half.neighbor, row.edges[i]});
+      if (!improves(cost, known)) continue;
+      if (m_graph.edge(i.edge).state == EdgeState::Unevaluated)
+        m_queue.push({estimate(i.neighbor, cost), i.neighbor, i.edge});
       else
-        reach(half.neighbor, cost);
+        reach(i.neighbor, cost);
     }
   }
 
@@ -160,23 +109,13 @@ class ColoredSearch {
     m_costs.layout().check(cost);
     m_toGoal[v] = cost;
     m_expanded[v] = false;
-    m_graph.prefetch(v);
     m_queue.push({estimate(v, cost), v, kNoEdge});
-  }
-
-  /** Whether no way leads from the start to v, as far as the bound of the worst rank knows. */
-  bool isHopeless(VertexId v) const {
-    return !m_worstBound.empty() && m_worstBound[v] == kUnreachable;
   }
 
   /** Lower bound of the cost of a path through v, given the cost from there: consistent in every
    * component. */
   Cost estimate(VertexId v, const Cost& cost) const {
-    const Cost whole = cost + m_costs.layout().ofLength(distance(v));
-    if (m_worstBound.empty()) return whole;
-    Cost bound{};
-    m_costs.layout().addToRank(bound, m_model.order.ranks() - 1, m_worstBound[v]);
-    return whole + bound;
+    return cost + m_costs.layout().ofLength(distance(v));
   }
 
   Length distance(VertexId v) const {
@@ -188,16 +127,13 @@ class ColoredSearch {
   /** The next edge of a path from v, by which its cost came about; of several the one to the
    * smallest vertex, then that of the smallest id. Each edge counts one, so this makes no cycle. */
   Incidence nextStep(VertexId v) const {
-    const EdgeRow row = m_graph.row(v);
     Incidence best{kNoVertex, kNoEdge};
-    for (std::size_t i = 0; i < row.size; ++i) {
-      const HalfEdge& half = row.halves[i];
-      const Cost& after = m_toGoal[half.neighbor];
-      if (!isReached(after) || m_graph.state(half) != EdgeState::Usable) continue;
-      const Cost step = m_costs(v, half, Way::Out);
+    for (const Incidence& i : m_graph.incident(v)) {
+      const Cost& after = m_toGoal[i.neighbor];
+      if (!isReached(after) || m_graph.edge(i.edge).state != EdgeState::Usable) continue;
+      const Cost step = m_costs(i.edge, i.neighbor);
       if (step.isInfinite() || !(after + step == m_toGoal[v])) continue;
-      if (std::tie(half.neighbor, row.edges[i]) < std::tie(best.neighbor, best.edge))
-        best = {half.neighbor, row.edges[i]};
+      if (std::tie(i.neighbor, i.edge) < std::tie(best.neighbor, best.edge)) best = i;
     }
     if (best.edge == kNoEdge)
       throw std::invalid_argument("SearchOptions: lengthBound is not consistent");
@@ -218,14 +154,12 @@ class ColoredSearch {
 
   ColoredGraph& m_graph;
   const VertexId m_start, m_goal;
-  const CostModel& m_model;
-  const ColoredAStarOptions& m_options;
+  const SearchOptions& m_options;
   const EdgeCosts<Layout> m_costs;
   StopCheck& m_stop;
-  ZeroedArray<Cost> m_toGoal;  // and an edge more, so that 0 stands for not reached
+  std::vector<Cost> m_toGoal;  // and an edge more, so that 0 stands for not reached
   std::vector<bool> m_expanded;
-  std::vector<std::int64_t> m_worstBound;  // empty unless asked for
-  RadixQueue<Cost, Soon> m_queue;
+  RadixQueue<Cost> m_queue;
 };
 
 }  // namespace colored_graph

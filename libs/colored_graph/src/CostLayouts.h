@@ -33,12 +33,6 @@ class VectorLayout {
     if (m_rankZeroAt < kLengthAt) cost[m_rankZeroAt] += toll;
     return cost;
   }
-  /** The cost of an edge that a half edge has room for, in one rank. */
-  Cost narrow(Length length, Rank rank, Length counted) const {
-    Cost cost = edge(length, 0);
-    addToRank(cost, rank, counted);
-    return cost;
-  }
   void addToRank(Cost& cost, Rank rank, Length amount) const {
     if (rank > 0) cost[m_rankZeroAt - rank] += amount;
   }
@@ -48,7 +42,6 @@ class VectorLayout {
     for (int i = m_rankZeroAt; i <= kLengthAt; ++i) cost[i] = length;
     return cost;
   }
-  Length inRank(const Cost& cost, Rank rank) const { return cost[m_rankZeroAt - rank]; }
   /** The components that the model has, without the number of edges. */
   std::vector<std::int64_t> parts(const Cost& cost) const {
     std::vector<std::int64_t> parts;
@@ -90,18 +83,12 @@ class PackedLayout {
   Cost edge(Length length, Length toll) const {
     return Cost(held(length) * m_lengths + held(toll) * m_toll + 1);
   }
-  Cost narrow(Length length, Rank rank, Length counted) const {
-    static_assert(HalfEdge::kLongest < Length{1} << (kLeastWidth - 1));
-    return Cost(static_cast<std::uint64_t>(length) * m_lengths + held(counted) * m_rankUnits[rank] +
-                1);
-  }
   void addToRank(Cost& cost, Rank rank, Length amount) const {
     cost = Cost(cost.bits() + held(amount) * m_rankUnits[rank]);
   }
   Cost ofLength(Length length) const {
     return Cost(static_cast<std::uint64_t>(std::min(length, limit() - 1)) * m_lengths);
   }
-  Length inRank(const Cost& cost, Rank rank) const { return part(cost, m_ranks - 1 - rank); }
   std::vector<std::int64_t> parts(const Cost& cost) const {
     std::vector<std::int64_t> parts;
     for (int i = 0; i < m_components; ++i) parts.push_back(part(cost, i));

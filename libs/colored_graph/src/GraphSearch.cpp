@@ -5,9 +5,7 @@ namespace colored_graph {
 
 PathResult ColoredGraphSearch::search(ColoredGraph& graph, VertexId start, VertexId goal,
                                       const CostModel& model, const SearchOptions& options) {
-  ColoredAStarOptions all;
-  static_cast<SearchOptions&>(all) = options;
-  return findColoredPath(graph, start, goal, model, all);
+  return findColoredPath(graph, start, goal, model, options);
 }
 
 PathResult ColoredGraphSearch::replan(ColoredGraph& graph, VertexId start, VertexId goal,

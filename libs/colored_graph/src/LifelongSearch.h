@@ -90,8 +90,8 @@ class LifelongSearch {
     while (again) {
       if (const auto stopped = computeShortestPath(stop)) return *stopped;
       if (m_nodes[m_start].g.isInfinite())
-        return diagnose(m_graph, m_start, m_goal, [this](VertexId v, const HalfEdge& half) {
-          return !m_costs(v, half, Way::Out).isInfinite();
+        return diagnose(m_graph, m_start, m_goal, [this](const Incidence& i) {
+          return !m_costs(i.edge, i.neighbor).isInfinite();
         });
       if (const auto stopped = evaluateAlongPath(stop, again)) return *stopped;
     }
@@ -167,8 +167,7 @@ class LifelongSearch {
     if (node.rhs < node.g) {
       node.g = node.rhs;
       m_queue.remove(v);
-      const EdgeRow row = m_graph.row(v);
-      for (std::size_t i = 0; i < row.size; ++i) lowerRhs(row.halves[i], v);
+      for (const Incidence& i : m_graph.incident(v)) lowerRhs(i, v);
     } else {
       node.g = Cost::infinite();
       enqueue(v);
@@ -178,15 +177,15 @@ class LifelongSearch {
   }
 
   /** A vertex whose g fell offers itself to a neighbor. */
-  void lowerRhs(const HalfEdge& half, VertexId next) {
-    Node& node = m_nodes[half.neighbor];
+  void lowerRhs(const Incidence& i, VertexId next) {
+    Node& node = m_nodes[i.neighbor];
     const Cost& before = m_nodes[next].g;
     if (node.rhs < before) return;  // whatever the edge costs
-    const Cost cost = before + m_costs(next, half, Way::In);
+    const Cost cost = before + m_costs(i.edge, next);
     if (!(cost < node.rhs)) return;
     node.rhs = cost;
     node.next = next;
-    enqueue(half.neighbor);
+    enqueue(i.neighbor);
   }
 
   void repairRhs(VertexId v) {
@@ -201,12 +200,10 @@ class LifelongSearch {
   /** The edge with the least cost + g, and that cost; ties to the smaller vertex, then edge. */
   std::pair<Cost, Incidence> bestStep(VertexId v) const {
     std::pair<Cost, Incidence> best{Cost::infinite(), {kNoVertex, kNoEdge}};
-    const EdgeRow row = m_graph.row(v);
-    for (std::size_t at = 0; at < row.size; ++at) {
-      const Incidence i{row.halves[at].neighbor, row.edges[at]};
+    for (const Incidence& i : m_graph.incident(v)) {
       const Cost& after = m_nodes[i.neighbor].g;
       if (best.first < after || after.isInfinite()) continue;  // whatever the edge costs
-      const Cost cost = after + m_costs(v, row.halves[at], Way::Out);
+      const Cost cost = after + m_costs(i.edge, i.neighbor);
       const bool tie =
           cost == best.first && !cost.isInfinite() &&
           std::tie(i.neighbor, i.edge) < std::tie(best.second.neighbor, best.second.edge);

@@ -25,16 +25,12 @@ struct QueueEntry {
  *
  * A radix heap (Ahuja, Mehlhorn, Orlin, Tarjan 1990): no key is smaller than the last one taken
  * out, and an entry lies in the bucket of the highest bit in which its key differs from that. A key
- * that is smaller nevertheless counts as equal. \tparam Soon is called with entries, and how many
- * they are, that will come out within as many turns. */
-template <class Cost, class Soon>
+ * that is smaller nevertheless counts as equal. */
+template <class Cost>
 class RadixQueue {
  public:
   using Entry = QueueEntry<Cost>;
 
-  explicit RadixQueue(const Soon& soon) : m_soon(soon) {}
-
-  const Soon& soon() const { return m_soon; }
   bool empty() const { return m_size == 0; }
 
   void push(const Entry& entry) {
@@ -93,10 +89,7 @@ class RadixQueue {
     m_last = bucket.front().key;
     for (const Entry& entry : bucket)
       if (entry.key < m_last) m_last = entry.key;
-    for (const Entry& entry : bucket) {
-      m_soon(entry, bucket.size());
-      put(highestDifference(entry.key, m_last), entry);
-    }
+    for (const Entry& entry : bucket) put(highestDifference(entry.key, m_last), entry);
     if (bucket.size() > kLarge)
       std::vector<Entry>().swap(bucket);
     else
@@ -104,7 +97,6 @@ class RadixQueue {
     std::make_heap(m_buckets[0].begin(), m_buckets[0].end(), comesLater);
   }
 
-  const Soon m_soon;
   Cost m_last{};
   std::size_t m_size = 0;
   std::array<std::vector<Entry>, kBuckets> m_buckets;

@@ -16,23 +16,16 @@ bool reaches(const ColoredGraph& graph, VertexId from, VertexId to, const Passab
     const VertexId v = open.back();
     open.pop_back();
     if (v == to) return true;
-    const EdgeRow row = graph.row(v);
-    for (const HalfEdge* half = row.halves; half != row.halves + row.size; ++half) {
-      if (seen[half->neighbor] || !passable(v, *half)) continue;
-      seen[half->neighbor] = true;
-      open.push_back(half->neighbor);
+    for (const Incidence& i : graph.incident(v)) {
+      if (seen[i.neighbor] || !passable(i)) continue;
+      seen[i.neighbor] = true;
+      open.push_back(i.neighbor);
     }
   }
   return false;
 }
 
 }  // namespace
-
-void SearchOptions::validate() const {
-  if (!(timeLimit >= 0))
-    throw std::invalid_argument("SearchOptions: timeLimit " + std::to_string(timeLimit) +
-                                " s, expected 0 or more");
-}
 
 const char* describe(SearchStatus status) {
   switch (status) {
@@ -50,8 +43,6 @@ const char* describe(SearchStatus status) {
       return "the cost of every path is too large to be represented";
     case SearchStatus::Cancelled:
       return "the search was cancelled";
-    case SearchStatus::TimeLimit:
-      return "the search ran into its time limit";
   }
   throw std::out_of_range("a search status without a sentence");
 }
@@ -77,10 +68,11 @@ PathResult assemblePath(const ColoredGraph& graph, VertexId start, std::vector<E
 }
 
 SearchStatus diagnose(const ColoredGraph& graph, VertexId start, VertexId goal,
-                      const std::function<bool(VertexId, const HalfEdge&)>& allowed) {
+                      const std::function<bool(const Incidence&)>& allowed) {
   if (reaches(graph, start, goal, allowed)) return SearchStatus::CostOverflow;
-  const auto notBlocked = [&](VertexId v, const HalfEdge& half) {
-    return graph.state(half) != EdgeState::Blocked && graph.leads(v, half, Way::Out);
+  const auto notBlocked = [&](const Incidence& i) {
+    const Edge& edge = graph.edge(i.edge);
+    return edge.state != EdgeState::Blocked && edge.leadsTo(i.neighbor);
   };
   return reaches(graph, start, goal, notBlocked) ? SearchStatus::OnlyForbidden
                                                  : SearchStatus::NotConnected;

@@ -1,9 +1,7 @@
 #pragma once
 #include <colored_graph/ColoredAStar.h>
 
-#include <chrono>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,7 +9,7 @@
 
 namespace colored_graph {
 
-/** Whether a search that began when this was made should stop. */
+/** Whether a search should stop. */
 class StopCheck {
  public:
   explicit StopCheck(const SearchOptions& options) : m_options(options) {}
@@ -19,9 +17,6 @@ class StopCheck {
   /** Before something that may take long. */
   std::optional<SearchStatus> now() const {
     if (m_options.cancelled && m_options.cancelled()) return SearchStatus::Cancelled;
-    if (m_options.timeLimit == std::numeric_limits<double>::infinity()) return std::nullopt;
-    const std::chrono::duration<double> passed = Clock::now() - m_begin;
-    if (passed.count() >= m_options.timeLimit) return SearchStatus::TimeLimit;
     return std::nullopt;
   }
 
@@ -29,10 +24,7 @@ class StopCheck {
   std::optional<SearchStatus> inLoop() { return m_turns++ % 32 == 0 ? now() : std::nullopt; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   const SearchOptions& m_options;
-  Clock::time_point m_begin = Clock::now();
   unsigned m_turns = 0;
 };
 
@@ -45,7 +37,7 @@ PathResult assemblePath(const ColoredGraph& graph, VertexId start, std::vector<E
 
 /** Why there is no path, given whether the cost model lets a vertex be left along an edge. */
 SearchStatus diagnose(const ColoredGraph& graph, VertexId start, VertexId goal,
-                      const std::function<bool(VertexId, const HalfEdge&)>& allowed);
+                      const std::function<bool(const Incidence&)>& allowed);
 
 /** Evaluates an edge and lets the graph keep the answer.
  * \throw std::invalid_argument no function given. */

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -23,10 +22,6 @@ struct SearchOptions {
   std::function<std::optional<EdgeProfile>(EdgeId)> evaluate;
   /** Asked often; the search stops when it answers true. */
   std::function<bool()> cancelled;
-  double timeLimit = std::numeric_limits<double>::infinity();  ///< s
-
-  /** \throw std::invalid_argument time limit negative or not a number. */
-  void validate() const;
 };
 
 /** How a search ended; everything but Found says why there is no path. */
@@ -37,8 +32,7 @@ enum class SearchStatus {
   NotConnected,   ///< blocked edges left out, no path leads from start to goal
   OnlyForbidden,  ///< paths exist, and all go through a forbidden class
   CostOverflow,   ///< paths exist whose cost is above 2^63 - 1 in a component
-  Cancelled,
-  TimeLimit
+  Cancelled
 };
 
 /** A sentence for people. */
@@ -63,12 +57,6 @@ struct PathResult {
   bool found() const { return status == SearchStatus::Found; }
 };
 
-struct ColoredAStarOptions : SearchOptions {
-  /** Bound the cost in the worst rank exactly before the search, by one scalar pass over the
-   * graph. It pays where a barrier of the worst class lies between start and goal. */
-  bool boundWorstRank = false;
-};
-
 /** COA*: the path from start to goal of the least cost vector.
  *
  * A* over cost vectors with lazy edges: an unevaluated edge waits in the queue under its lower
@@ -76,10 +64,10 @@ struct ColoredAStarOptions : SearchOptions {
  * and most never are. The search runs from the goal. Among paths of equal cost and as many edges,
  * it takes the smaller vertex id at each step from the start; among unevaluated edges that could
  * only tie it does not look. \param graph keeps the profiles of the edges that were evaluated.
- * \throw std::invalid_argument options or model invalid, an unevaluated edge without
+ * \throw std::invalid_argument model invalid, an unevaluated edge without
  * options.evaluate, an evaluation that contradicts the edge's least length, or a lower bound of
  * lengths that turns out not to be consistent. */
 PathResult findColoredPath(ColoredGraph& graph, VertexId start, VertexId goal,
-                           const CostModel& model, const ColoredAStarOptions& options = {});
+                           const CostModel& model, const SearchOptions& options = {});
 
 }  // namespace colored_graph

@@ -18,7 +18,7 @@ namespace colored_graph {
 class ColoredReplanner {
  public:
   /** \param graph must outlive the replanner.
-   * \throw std::invalid_argument model or options invalid. */
+   * \throw std::invalid_argument model invalid. */
   ColoredReplanner(ColoredGraph& graph, VertexId start, VertexId goal, const CostModel& model,
                    const SearchOptions& options = {});
   ~ColoredReplanner();
@@ -26,7 +26,7 @@ class ColoredReplanner {
   ColoredReplanner& operator=(ColoredReplanner&&) noexcept;
 
   /** The optimal path in the graph as it is now, equal to findColoredPath()'s in cost and number of
-   * edges. After Cancelled or TimeLimit the next call goes on where this one stopped.
+   * edges. After Cancelled the next call goes on where this one stopped.
    * \throw std::invalid_argument as findColoredPath(), and where it is noticed that the lower bound
    * of lengths is not consistent. After any exception the next call starts over. */
   PathResult solve();

@@ -2,9 +2,6 @@
 #include <colored_graph/ClassOrder.h>
 #include <colored_graph/ColoredGraph.h>
 
-#include <utility>
-#include <vector>
-
 namespace colored_graph {
 
 /** Which classes an edge counts for.
@@ -21,17 +18,6 @@ enum class EdgeModel { Endpoint, Sweep, Profile };
  * place of the length in rank 0 gives the same order, since the other lengths are equal when it
  * decides, and is what a lower bound of the distance can bound. */
 enum class CostKind { Count, ArcLength };
-
-/** The names of an enumeration's values in files and on command lines. (The same type as
- * strict_files::Choices, so that options of these kinds can be listed; this library needs no
- * other.)
- */
-template <class E>
-using Choices = std::vector<std::pair<const char*, E>>;
-const Choices<EdgeModel>& choicesOf(EdgeModel);
-const Choices<CostKind>& choicesOf(CostKind);
-const char* nameOf(EdgeModel model);
-const char* nameOf(CostKind kind);
 
 /** How a path is judged. Among paths of equal cost the one with fewer edges is taken, then the one
  * that goes on, from the start, to the smaller vertex id. */

@@ -1,7 +1,6 @@
 #pragma once
 #include <colored_graph/ClassOrder.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -51,86 +50,17 @@ struct Tolls {
   Length toB = 0, toA = 0;
 };
 
-/** The stretches of an edge; valid until the graph changes. */
-class Stretches {
- public:
-  Stretches() = default;
-  explicit Stretches(const Stretch& only) : m_only(only), m_size(1) {}
-  explicit Stretches(const EdgeProfile& profile) : m_many(profile.data()), m_size(profile.size()) {}
-
-  const Stretch* begin() const { return m_many ? m_many : &m_only; }
-  const Stretch* end() const { return begin() + m_size; }
-  std::size_t size() const { return m_size; }
-  bool empty() const { return m_size == 0; }
-  const Stretch& operator[](std::size_t i) const { return begin()[i]; }
-  /** A copy that outlives a change. */
-  operator EdgeProfile() const { return {begin(), end()}; }
-
- private:
-  Stretch m_only{};
-  const Stretch* m_many = nullptr;
-  std::size_t m_size = 0;
-};
-
 /** What a graph knows of an edge. */
 struct Edge {
   VertexId a = kNoVertex, b = kNoVertex;
   Length length = 0;  ///< of the profile; while unevaluated a lower bound of it
   EdgeState state = EdgeState::Unevaluated;
   Tolls tolls;
-  Stretches profile;  ///< empty unless usable; a class may appear more than once
+  EdgeProfile profile;  ///< empty unless usable; a class may appear more than once
 
   VertexId other(VertexId v) const { return v == a ? b : a; }
   Length tollTo(VertexId v) const { return v == b ? tolls.toB : tolls.toA; }
   bool leadsTo(VertexId v) const { return tollTo(v) != kClosed; }
-};
-
-/** Which way an edge is driven, as seen from one of its ends. */
-enum class Way : std::uint8_t { Out, In };
-
-/** An edge as one of its ends keeps it, in 8 bytes: most edges are short, have no toll and lie in
- * one class of small number. What is said of others stands elsewhere (WideEdge). */
-struct HalfEdge {
-  static constexpr unsigned kUnevaluated = 0, kBlocked = 1, kFirstClass = 2, kKinds = 32;
-  static constexpr Length kLongest = (1 << 24) - 1;  // 1.6 km
-
-  VertexId neighbor = kNoVertex;
-  std::uint32_t bits = 0;  // wide: 1 and the place; else: 0, closed in, closed out, kind, length
-
-  static HalfEdge narrow(VertexId neighbor, unsigned kind, Length length, bool out, bool in) {
-    return {neighbor, (in ? 0u : 1u << 30) | (out ? 0u : 1u << 29) | kind << 24 |
-                          static_cast<std::uint32_t>(length)};
-  }
-  static HalfEdge wide(VertexId neighbor, std::uint32_t place) {
-    return {neighbor, 1u << 31 | place};
-  }
-
-  bool isWide() const { return bits >> 31; }
-  std::uint32_t place() const { return bits & ~(1u << 31); }
-  /** What an edge that is not wide is: kUnevaluated, kBlocked, or a class above kFirstClass. */
-  unsigned kind() const { return bits >> 24 & (kKinds - 1); }
-  Length length() const { return bits & kLongest; }
-  bool leads(Way way) const { return !(bits >> (way == Way::Out ? 29 : 30) & 1); }
-};
-
-/** What a half edge has no room for. */
-struct WideEdge {
-  VertexId a = kNoVertex;
-  EdgeState state = EdgeState::Unevaluated;
-  Length length = 0;
-  Tolls tolls;
-  EdgeProfile profile;
-
-  Length toll(VertexId at, Way way) const {
-    return (at == a) == (way == Way::Out) ? tolls.toB : tolls.toA;
-  }
-};
-
-/** The edges at a vertex, in no particular order; valid until the graph changes. */
-struct EdgeRow {
-  const HalfEdge* halves;
-  const EdgeId* edges;
-  std::size_t size;
 };
 
 }  // namespace colored_graph

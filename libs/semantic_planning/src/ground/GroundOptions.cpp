@@ -6,9 +6,6 @@ void GroundOptions::describe(strict_files::OptionList& list) {
   const strict_files::Range gap = strict_files::between(0, 20);
   list.add("fill_gap", fillGap, "m", gap,
            "holes in the ground up to this get their border's class");
-  list.add(
-      "unknown_gap", unknownGap, "m", gap,
-      "wider holes up to this, if their borders have one rank, otherwise they are unknown ground");
   list.add("keep_off", keepOff, "",
            "the whole footprint keeps off forbidden classes, not only the wheels");
 }

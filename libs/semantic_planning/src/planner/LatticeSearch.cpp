@@ -11,12 +11,11 @@ using colored_graph::Length;
 using colored_graph::lengthDown;
 
 LatticeSearch::LatticeSearch(const std::vector<Station>& stations, const CollisionChecker& checker,
-                             const ClassPrices& prices, std::size_t span, double reach)
+                             const ClassPrices& prices, std::size_t span)
     : m_checker(checker),
       m_cost(checker.motionCost()),
       m_prices(prices),
       m_span(span),
-      m_reach(reach),
       m_gearChange(lengthDown(m_cost.gearChange())),
       m_budget{prices.perMeter()} {
   for (const Station& station : stations) {
@@ -66,7 +65,7 @@ void LatticeSearch::addOrigin(const Place& from, const Place& to) {
   const auto &a = from.pose.pose, &b = to.pose.pose;
   const double dx = b.x - a.x, dy = b.y - a.y, distance = std::hypot(dx, dy);
   const Label* label = from.best();
-  if (!label || distance > m_reach) return;
+  if (!label || distance > kLongest) return;
   const double fromAhead = from.heading.x * dx + from.heading.y * dy;
   const double toAhead = to.heading.x * dx + to.heading.y * dy;
   constexpr double kLeastAhead = 0.3;  // of the distance
@@ -89,7 +88,7 @@ Length LatticeSearch::limit(const Place& to, bool forward) const {
 
 void LatticeSearch::connect(const Place& from, Place& to) {
   for (const ReedsSheppCurve& curve : m_cost.curves(from.pose.pose, to.pose.pose))
-    if (curve.length() <= m_reach) connect(from, to, curve);
+    if (curve.length() <= kLongest) connect(from, to, curve);
 }
 
 void LatticeSearch::connect(const Place& from, Place& to, const ReedsSheppCurve& curve) {

@@ -30,16 +30,18 @@ struct Leg {
  * them. */
 class LatticeSearch {
  public:
-  /** \param span a curve goes on by so many stations at most \param reach and is so long at most,
-   * meters \param prices, checker must outlive the search */
+  /** \param span a curve goes on by so many stations at most \param prices, checker must outlive
+   * the search */
   LatticeSearch(const std::vector<Station>& stations, const CollisionChecker& checker,
-                const ClassPrices& prices, std::size_t span, double reach);
+                const ClassPrices& prices, std::size_t span);
 
   /** Nothing if no way is free. */
   std::optional<std::vector<Leg>> run();
 
  private:
   using Length = colored_graph::Length;
+  static constexpr double kLongest = 15;  ///< curve, meters
+
   /** The best way that is known to a pose, arriving in one gear: its last curve. */
   struct Label {
     Length cost = 0;
@@ -77,7 +79,6 @@ class LatticeSearch {
   const MotionCost& m_cost;
   const ClassPrices& m_prices;
   const std::size_t m_span;
-  const double m_reach;
   const Length m_gearChange;
   std::vector<std::vector<Place>> m_places;
   std::deque<Leg> m_legs;

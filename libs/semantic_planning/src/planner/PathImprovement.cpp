@@ -6,7 +6,7 @@
 #include "PathSmoothing.h"
 #include "PathStations.h"
 #include "PathTracing.h"
-#include "TurnSearch.h"
+#include "PoseSearch.h"
 
 namespace semantic_planning {
 
@@ -39,11 +39,20 @@ bool changesGear(const std::vector<PathPoint>& path) {
 /** Makes one path cheaper, step by step. */
 class Improvement {
  public:
-  Improvement(PlanResult& result, const CollisionChecker& checker, const ClassPrices& prices,
-              double reach)
-      : m_result(result), m_checker(checker), m_prices(prices), m_reach(reach) {}
+  Improvement(const CollisionChecker& checker, const ClassPrices& prices)
+      : m_checker(checker), m_prices(prices) {}
 
-  void run(const std::vector<PathPoint>& way) {
+  PlanResult run(const std::vector<PathPoint>& way, bool isDrivable) {
+    if (isDrivable) offer(legsAlong(way, m_checker, m_prices));
+    improve(way);
+    return m_result;
+  }
+
+ private:
+  static constexpr double kTurn = 20 * M_PI / 180;
+  static constexpr std::size_t kSpanBeside = 2, kSpanOn = 8;  // stations that a curve goes on by
+
+  void improve(const std::vector<PathPoint>& way) {
     offer(search(stationsBeside(way, m_checker, {0.6, kTurn, false}), kSpanBeside));
     if (!m_result.found()) return;
     changeGearLess();
@@ -53,14 +62,8 @@ class Improvement {
     smooth();
   }
 
- private:
-  static constexpr double kTurn = 20 * M_PI / 180;
-  static constexpr std::size_t kSpanBeside = 2, kSpanOn = 8;  // stations that a curve goes on by
-
   std::vector<Leg> search(const std::vector<Station>& stations, std::size_t span) const {
-    return LatticeSearch(stations, m_checker, m_prices, span, m_reach)
-        .run()
-        .value_or(std::vector<Leg>());
+    return LatticeSearch(stations, m_checker, m_prices, span).run().value_or(std::vector<Leg>());
   }
 
   void changeGearLess() {
@@ -93,10 +96,8 @@ class Improvement {
   }
 
   PlanResult withLegs(const std::vector<Leg>& legs) const {
-    PlanResult after = m_result;
+    PlanResult after;
     after.status = PlanStatus::Found;
-    after.reason.clear();
-    after.path.clear();
     after.vertices = {legs.front().curve.from()};
     colored_graph::PathResult lengths;
     lengths.lengthPerClass.resize(static_cast<std::size_t>(m_checker.order().classes()));
@@ -112,10 +113,9 @@ class Improvement {
     return after;
   }
 
-  PlanResult& m_result;
   const CollisionChecker& m_checker;
   const ClassPrices& m_prices;
-  const double m_reach;
+  PlanResult m_result;
 };
 
 }  // namespace
@@ -151,11 +151,14 @@ void setLengths(PlanResult& plan, const CollisionChecker& checker, const ClassPr
   plan.price = priceOf(plan, checker, prices);
 }
 
-PlanResult pathBeside(const std::vector<PathPoint>& way, const CollisionChecker& checker,
-                      const ClassPrices& prices, double reach, const PlanResult& before) {
-  PlanResult result = before;
-  result.status = PlanStatus::NotConnected;
-  if (way.size() > 2) Improvement(result, checker, prices, reach).run(way);
+PlanResult pathBeside(const std::vector<PathPoint>& way, bool isDrivable,
+                      const CollisionChecker& checker, const ClassPrices& prices) {
+  if (way.size() > 2) return Improvement(checker, prices).run(way, isDrivable);
+  PlanResult result;
+  if (!isDrivable || way.empty()) return result;
+  result.status = PlanStatus::Found;
+  result.path = way;
+  setLengths(result, checker, prices);
   return result;
 }
 

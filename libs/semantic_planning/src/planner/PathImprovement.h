@@ -15,9 +15,9 @@ double priceOf(const PlanResult& plan, const CollisionChecker& checker, const Cl
  * where its curves meet. */
 void setLengths(PlanResult& plan, const CollisionChecker& checker, const ClassPrices& prices);
 
-/** The path of least price that is found beside a way, or not found. \param before what the result
- * has beside the path \param reach longest curve, meters */
-PlanResult pathBeside(const std::vector<PathPoint>& way, const CollisionChecker& checker,
-                      const ClassPrices& prices, double reach, const PlanResult& before);
+/** The path of least price that is found beside a way, or not found. \param isDrivable whether the
+ * vehicle can drive the way itself */
+PlanResult pathBeside(const std::vector<PathPoint>& way, bool isDrivable,
+                      const CollisionChecker& checker, const ClassPrices& prices);
 
 }  // namespace semantic_planning

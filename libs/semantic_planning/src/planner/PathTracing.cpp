@@ -15,8 +15,6 @@ PlanStatus statusOf(SearchStatus status) {
       return PlanStatus::OnlyForbidden;
     case SearchStatus::Cancelled:
       return PlanStatus::Cancelled;
-    case SearchStatus::TimeLimit:
-      return PlanStatus::TimeLimit;
     default:
       return PlanStatus::NotConnected;
   }
@@ -61,7 +59,6 @@ void describePath(const PathResult& path, const Roadmap& roadmap, const Collisio
     return;
   }
   setLengths(path, result);
-  result.roadmapCost = result.cost;
   for (const auto v : path.vertices) result.vertices.push_back(roadmap.pose(v).pose);
   result.path = tracePath(path, roadmap, checker);
 }

@@ -13,8 +13,7 @@ const strict_files::Choices<PlanStatus>& choicesOf(PlanStatus) {
       {"goal forbidden", PlanStatus::GoalForbidden},
       {"not connected", PlanStatus::NotConnected},
       {"only forbidden", PlanStatus::OnlyForbidden},
-      {"cancelled", PlanStatus::Cancelled},
-      {"time limit", PlanStatus::TimeLimit}};
+      {"cancelled", PlanStatus::Cancelled}};
   return choices;
 }
 

@@ -26,7 +26,7 @@ namespace {
 PlannerOptions validated(const PlannerOptions& options,
                          const semantic_octree::SemanticOcTree& map) {
   options.validate();
-  if (isOfTree(options.roadmap.kind) && !hasAbstraction(map))
+  if (mayNeedRoadmap(options) && isOfTree(options.roadmap.kind) && !hasAbstraction(map))
     throw std::logic_error("SemanticPlanner: the map keeps no G-values (setAbstraction)");
   return options;
 }
@@ -81,11 +81,11 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
                 options.reading),
       m_prices(m_checker.order()),
       m_kept(m_checker, m_prices),
-      m_candidates(map, m_ground, options.roadmap),
       m_model{order, options.edges, options.cost, true},
       m_search(options.graphSearch ? options.graphSearch()
                                    : std::make_unique<colored_graph::ColoredGraphSearch>()) {
   m_follower.skipTiles();  // the ground began with the whole map
+  if (mayNeedRoadmap(options)) m_candidates.emplace(map, m_ground, options.roadmap);
 }
 
 void PlannerCore::checkFinite(const char* what, const Place& place) {
@@ -154,7 +154,6 @@ colored_graph::SearchOptions PlannerCore::searchOptions(const Roadmap& map) {
   search.lengthBound = [&map](VertexId a, VertexId b) { return map.lengthBound(a, b); };
   search.evaluate = [this, &map](colored_graph::EdgeId e) { return evaluateTimed(map, e); };
   search.cancelled = m_options.cancelled;
-  search.timeLimit = m_options.timeLimit;
   return search;
 }
 
@@ -190,9 +189,10 @@ PathResult PlannerCore::search(Roadmap& map, VertexId start, VertexId goal) {
 
 void PlannerCore::makeRoadmap() {
   m_search->forget();
-  m_roadmap = std::make_unique<MapRoadmap>(m_candidates, m_checker, m_options.roadmap, *m_startPose,
-                                           region());
-  if (m_corridor) m_candidates.forget();  // of a map that is too large: they take as much as ground
+  m_roadmap = std::make_unique<MapRoadmap>(*m_candidates, m_checker, m_options.roadmap,
+                                           *m_startPose, region());
+  if (m_corridor)
+    m_candidates->forget();  // of a map that is too large: they take as much as ground
   m_start = m_roadmap->roadmap().addQueryVertex(*m_startPose);
   m_goal = m_roadmap->roadmap().addQueryVertex(*m_goalPose);
 }
@@ -218,39 +218,37 @@ PlanResult PlannerCore::searchRoadmap(StageClock& clock) {
   return result;
 }
 
-bool PlannerCore::mayShorten() const {
-  return m_options.shorten && m_model.edges == colored_graph::EdgeModel::Profile &&
-         m_model.kind == colored_graph::CostKind::ArcLength &&
-         !(m_options.cancelled && m_options.cancelled());
-}
-
 /** Where the ground does not connect them, that is known before any search. */
 RelaxedPath PlannerCore::relaxedPath() const {
   return searchRelaxed(m_checker, *m_startPose, *m_goalPose);
 }
 
-PlanResult PlannerCore::beside(const std::vector<PathPoint>& way, const PlanResult& before) const {
-  return pathBeside(way, m_checker, m_prices, RoadmapOptions::kLongestEdge, before);
-}
-
 /** "...; what can be reached ends at (3.1, 2.9), 4.2 m from the goal" */
-void PlannerCore::sayWhere(const RelaxedPath& relaxed, PlanResult& result) const {
-  if (!relaxed.nearest) return;
+PlanResult PlannerCore::noPath(const RelaxedPath& relaxed) const {
+  PlanResult result;
+  result.reason = "from pose to pose no way was found";
+  if (!relaxed.nearest) return result;
+  const bool overForbidden =
+      !searchRelaxed(m_checker, *m_startPose, *m_goalPose, true).path.empty();
+  if (overForbidden) result.status = PlanStatus::OnlyForbidden;
   result.obstacle = relaxed.nearest;
   const mrpt::math::TPoint2D& place = *relaxed.nearest;
   const mrpt::math::TPose2D& goal = m_goalPose->pose;
   std::ostringstream text;
   const strict_files::ClassicNumbers classic(text);
-  text << std::fixed << std::setprecision(1) << "; what can be reached ends at (" << place.x << ", "
+  text << describe(overForbidden ? colored_graph::SearchStatus::OnlyForbidden
+                                 : colored_graph::SearchStatus::NotConnected)
+       << std::fixed << std::setprecision(1) << "; what can be reached ends at (" << place.x << ", "
        << place.y << "), " << std::hypot(place.x - goal.x, place.y - goal.y) << " m from the goal";
-  result.reason += text.str();
+  result.reason = text.str();
+  return result;
 }
 
 void PlannerCore::forget() {
   const Change change(*this);
   m_search->forget();
   m_roadmap.reset();
-  m_candidates.forget();
+  if (m_candidates) m_candidates->forget();
   m_kept.drop();
   m_hasPlanned = false;
 }
@@ -268,7 +266,7 @@ PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
   }
   clock.end("ground");
   m_kept.groundChanged(change.tiles);
-  change.points = m_candidates.update(touched, change.tiles);
+  if (m_candidates) change.points = m_candidates->update(touched, change.tiles);
   return change;
 }
 

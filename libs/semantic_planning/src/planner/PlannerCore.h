@@ -15,6 +15,17 @@
 
 namespace semantic_planning {
 
+/** Whether paths are those of a roadmap: their costs are vectors, which no price can stand for. */
+inline bool needsRoadmap(const PlannerOptions& options) {
+  return !options.shorten || options.edges != colored_graph::EdgeModel::Profile ||
+         options.cost != colored_graph::CostKind::ArcLength;
+}
+
+/** Whether one may be made. */
+inline bool mayNeedRoadmap(const PlannerOptions& options) {
+  return needsRoadmap(options) || options.strict;
+}
+
 /** What SemanticPlanner is made of. */
 class PlannerCore {
  public:
@@ -79,14 +90,13 @@ class PlannerCore {
   void makeRoadmap();
   /** Puts start and goal where they are now. */
   void moveEnds(Roadmap& map);
-  bool mayShorten() const;
+  bool isCancelled() const { return m_options.cancelled && m_options.cancelled(); }
   PlanResult solve(StageClock& clock);
   PlanResult solve(const RelaxedPath& relaxed, StageClock& clock);
   PlanResult keepOrSolve(StageClock& clock);
   PlanResult searchRoadmap(StageClock& clock);
   RelaxedPath relaxedPath() const;
-  PlanResult beside(const std::vector<PathPoint>& way, const PlanResult& before) const;
-  void sayWhere(const RelaxedPath& relaxed, PlanResult& result) const;
+  PlanResult noPath(const RelaxedPath& relaxed) const;
   /** Between start and goal. */
   PlanningRegion region() const;
 
@@ -97,7 +107,7 @@ class PlannerCore {
   CollisionChecker m_checker;
   const ClassPrices m_prices;
   KeptPath m_kept;
-  CandidateStore m_candidates;
+  std::optional<CandidateStore> m_candidates;  ///< if a roadmap is what it plans with
   colored_graph::CostModel m_model;
   std::unique_ptr<MapRoadmap> m_roadmap;
   std::optional<GroundPose> m_startPose, m_goalPose;

@@ -46,8 +46,9 @@ Column operator+(Column a, Column b) { return {a.x + b.x, a.y + b.y}; }
 
 class RelaxedSearch {
  public:
-  explicit RelaxedSearch(const CollisionChecker& checker)
+  RelaxedSearch(const CollisionChecker& checker, bool overForbidden)
       : m_checker(checker),
+        m_overForbidden(overForbidden),
         m_field(checker.ground()),
         m_steps(stepsOf(checker)),
         m_weights(weightsOfRanks(checker.order())) {}
@@ -93,7 +94,8 @@ class RelaxedSearch {
     const Cost before = m_field.label(from.cell).cost;
     const Label& known = m_field.label(to.cell);
     if (known.done || before + step.length >= known.cost) return;
-    const colored_graph::Rank rank = rankAt(step, to);
+    colored_graph::Rank rank = rankAt(step, to);
+    if (rank == colored_graph::kForbidden && m_overForbidden) rank = m_checker.order().ranks() - 1;
     if (rank == colored_graph::kForbidden) return;
     const Cost cost = before + step.length * m_weights[static_cast<std::size_t>(rank)];
     if (cost < known.cost && (to.cell == m_goal.cell || fits(step, to)))
@@ -155,6 +157,7 @@ class RelaxedSearch {
   }
 
   const CollisionChecker& m_checker;
+  const bool m_overForbidden;
   RelaxedField m_field;
   const std::array<Step, 8> m_steps;
   const std::vector<Cost> m_weights;  ///< of a length, by rank
@@ -174,10 +177,10 @@ std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order)
 }
 
 RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& start,
-                          const GroundPose& goal) {
+                          const GroundPose& goal, bool overForbidden) {
   RelaxedPath guide;
   std::vector<PathPoint>& path = guide.path;
-  RelaxedSearch(checker).run(start, goal, guide);
+  RelaxedSearch(checker, overForbidden).run(start, goal, guide);
   if (path.size() < 2) path.clear();
   if (path.empty()) return guide;
   for (std::size_t i = 1; i < path.size(); ++i) {

@@ -8,15 +8,10 @@ namespace semantic_planning {
 using semantic_octree::ReadLock;
 
 void PlannerOptions::describe(strict_files::OptionList& list) {
-  strict_files::Range limits = strict_files::atLeast(0);
-  limits.withInfinity = true;
   roadmap.describe(list);
-  list.add("cost", cost, "", "what is least, worst class first");
-  list.add("edges", edges, "", "which of the classes along an edge it counts for");
-  reading.describe(list);
+  list.add("reading", reading.kind, "", "what of a voxel's classes counts");
   list.add("shorten", shorten, "", "look for the path of least price, not in the graph only");
   list.add("strict", strict, "", "classes come before length, whatever the order's rates");
-  list.add("time_limit", timeLimit, "s", limits, "of a search in the roadmap");
   ground.describe(list);
 }
 

@@ -53,14 +53,16 @@ std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const Collisio
                                      const RoadmapOptions& options) {
   const double random = unitHash(static_cast<std::uint32_t>(point.column.x),
                                  static_cast<std::uint32_t>(point.column.y), options.seed);
-  double first = 2 * M_PI * random / options.headings;
-  if (const auto axis = options.alignHeadings ? axisAt(point, checker) : std::nullopt)
+  const bool aligned = hasAlignedHeadings(options.kind);
+  const int headings = aligned ? 2 : 1;
+  double first = 2 * M_PI * random / headings;
+  if (const auto axis = aligned ? axisAt(point, checker) : std::nullopt)
     first = *axis + (random < 0.5 ? 0 : M_PI);
   const Ground& ground = checker.ground();
   const double x = ground.centerOf(point.column.x), y = ground.centerOf(point.column.y);
   std::vector<GroundPose> candidates;
-  for (int i = 0; i < options.headings; ++i) {
-    const double heading = std::remainder(first + 2 * M_PI * i / options.headings, 2 * M_PI);
+  for (int i = 0; i < headings; ++i) {
+    const double heading = std::remainder(first + 2 * M_PI * i / headings, 2 * M_PI);
     candidates.push_back({{x, y, heading}, point.z});
   }
   return candidates;

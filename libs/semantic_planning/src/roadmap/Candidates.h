@@ -35,11 +35,13 @@ std::vector<CandidatePoint> compressedPoints(Column tile,
 std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
                                        const RoadmapOptions& options);
 
-/** A point's poses, in evenly spaced headings: from the direction in which the free space around
- * runs, or one that looks random. They depend on ground within kHeadingReach meters. */
+/** A point's poses: two in the directions in which the free space around of its class and better
+ * ones runs, or one in a direction that looks random (of leaves as published). They depend on
+ * ground within kHeadingReach meters. */
 std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const CollisionChecker& checker,
                                      const RoadmapOptions& options);
 constexpr double kHeadingReach = 5;
+inline bool hasAlignedHeadings(GraphKind kind) { return kind != GraphKind::Leaves; }
 
 /** Where a Halton sequence is laid. */
 struct HaltonSearch {

@@ -149,7 +149,6 @@ CollisionChecker::CollisionChecker(const Ground& ground, const VehicleOptions& v
       m_reedsShepp(vehicle.turningRadius),
       m_motionCost(vehicle) {
   vehicle.validate();
-  reading.validate();
   const double voxel = ground.voxelSize(), rise = std::tan(vehicle.maxSlope * M_PI / 180);
   const auto tolerance = [&](double distance) {
     return ground.step() + static_cast<int>(std::ceil(rise * distance / voxel));

@@ -83,7 +83,7 @@ void MapRoadmap::takeByPriority(CandidateStore& store) {
 
 /** Points around which the ground changed so that they have other headings now. */
 std::vector<CandidatePoint> MapRoadmap::turnedPoints(const std::vector<Column>& tiles) const {
-  if (!m_options.alignHeadings) return {};
+  if (!hasAlignedHeadings(m_options.kind)) return {};
   return m_pool.turnedPoints(tiles, kHeadingReach, [this](const CandidatePoint& point) {
     return candidatesAt(point, m_checker, m_options).front().pose.phi;
   });

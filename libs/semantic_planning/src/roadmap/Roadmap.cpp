@@ -18,7 +18,7 @@ using colored_graph::Length;
 
 namespace {
 
-bool isSame(const EdgeProfile& l, const colored_graph::Stretches& r) {
+bool isSame(const EdgeProfile& l, const EdgeProfile& r) {
   return std::equal(l.begin(), l.end(), r.begin(), r.end(), [](const auto& a, const auto& b) {
     return a.classId == b.classId && a.length == b.length;
   });
@@ -147,8 +147,7 @@ void Roadmap::reconcileQueryVertex(VertexId query) {
     if (other != query &&
         PosePair(pose(query), pose(other)).distance(m_checker.reedsShepp()) <= m_radius)
       wanted.insert(other);
-  const colored_graph::Incidences at = m_graph.incident(query);
-  const std::vector<Incidence> present(at.begin(), at.end());  // the graph changes below
+  const colored_graph::Incidences present = m_graph.incident(query);  // the graph changes below
   for (const Incidence& i : present)
     if (!wanted.count(i.neighbor)) setLinked(query, i.neighbor, false);
   for (const VertexId other : wanted) setLinked(query, other, true);

@@ -3,7 +3,6 @@
 namespace semantic_planning {
 
 using strict_files::atLeast;
-using strict_files::between;
 using strict_files::Choices;
 
 const Choices<GraphKind>& choicesOf(GraphKind) {
@@ -25,10 +24,6 @@ void RoadmapOptions::describe(strict_files::OptionList& list) {
   list.add("graph", kind, "", "where the graph's vertices come from");
   list.add("vertices", vertices, "",
            "how many; more: better paths, more time; of halton, draws; 0: all that the map offers");
-  list.add("headings", headings, "", between(1, 360), "at each point (compressed, leaves, full)");
-  list.add(
-      "align_headings", alignHeadings, "",
-      "headings follow roads and free space; false: they look random (compressed, leaves, full)");
   list.add("buffer", buffer, "m", buffers, "vertices lie this near to the line from start to goal");
 }
 
@@ -40,13 +35,5 @@ const Choices<ClassReading::Kind>& choicesOf(ClassReading::Kind) {
       {"likeliest", Kind::Likeliest}, {"expected", Kind::Expected}, {"cautious", Kind::Cautious}};
   return choices;
 }
-
-void ClassReading::describe(strict_files::OptionList& list) {
-  list.add("reading", kind, "", "what of a voxel's classes counts");
-  list.add("least_probability", leastProbability, "", between(0, 1),
-           "less probable classes do not count (expected, cautious)");
-}
-
-void ClassReading::validate() const { strict_files::checkOptions(*this, "ClassReading"); }
 
 }  // namespace semantic_planning

@@ -12,7 +12,8 @@ struct GroundOptions {
   double fillGap = 0.8;
   /** Wider holes up to this (meters) are filled too: the vehicle's own shadow at the start, what
    * parked cars hid. Between borders of one
-   * rank they have the class of the nearer one, too, otherwise their ground is of unknown class. */
+   * rank they have the class of the nearer one, too, otherwise their ground is of unknown class.
+   * For tests; it has no name in files. */
   double unknownGap = 4.0;
   /** Whether ground of a forbidden class keeps the whole footprint off, or the wheels only. */
   bool keepOff = false;

@@ -25,8 +25,7 @@ enum class PlanStatus {
   GoalForbidden,
   NotConnected,   ///< by ground, or by the roadmap
   OnlyForbidden,  ///< all paths go through forbidden classes
-  Cancelled,
-  TimeLimit
+  Cancelled
 };
 /** In words for files and people: "found", "start off ground", ... */
 const strict_files::Choices<PlanStatus>& choicesOf(PlanStatus);
@@ -42,15 +41,12 @@ struct PlanResult {
    * reached comes nearest to the goal; map frame, meters. */
   std::optional<mrpt::math::TPoint2D> obstacle;
   /** Worst rank first: one number for each rank but rank 0, then the price of driving (MotionCost),
-   * then the total length, in colored_graph's units (0.1 mm) or edges. */
+   * then the total length, in colored_graph's units (0.1 mm) or edges. A roadmap's motion cost
+   * leaves out what changes where edges meet. */
   std::vector<std::int64_t> cost;
   /** Meters: MotionCost, and each rank's rate (ClassOrder) for each of its meters. An infinite rate
    * counts as a large one. */
   double price = 0;
-  /** The cost of the roadmap's best path, before a better one was looked for
-   * (PlannerOptions::shorten); empty if the roadmap has none, or was not needed. Its motion cost
-   * leaves out what changes where edges meet. */
-  std::vector<std::int64_t> roadmapCost;
   std::vector<double> lengthPerClass;         ///< meters by class id; [0]: unknown ground
   double length = 0;                          ///< meters
   std::vector<PathPoint> path;                ///< at most half a voxel apart

@@ -9,7 +9,6 @@
 #include <semantic_planning/roadmap/RoadmapOptions.h>
 
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -20,17 +19,16 @@ struct PlannerOptions {
   GroundOptions ground;
   RoadmapOptions roadmap;
   ClassReading reading;
+  // For studies and tests, without a name in files: how a roadmap's paths are judged.
   colored_graph::EdgeModel edges = colored_graph::EdgeModel::Profile;
   colored_graph::CostKind cost = colored_graph::CostKind::ArcLength;
   /** Looks for the path of least price (PlanResult::price) beside the way that a vehicle would take
-   * which turns on the spot. A roadmap is made only if there is none, or one that costs much more
-   * than that way. With EdgeModel::Profile and CostKind::ArcLength only; otherwise, and without,
-   * the roadmap's best path is the result, classes before length. */
+   * which turns on the spot, without a roadmap unless `strict`. With EdgeModel::Profile and
+   * CostKind::ArcLength only; otherwise, and without, a roadmap's best path is the result, classes
+   * before length. */
   bool shorten = false;
   /** With `shorten`: classes come before length, whatever the order's rates (ClassOrder). */
   bool strict = false;
-  /** A search in the roadmap takes so long at most, seconds. */
-  double timeLimit = std::numeric_limits<double>::infinity();
   /** Asked often during a search, which stops when it answers true. */
   std::function<bool()> cancelled;
   /** Makes a planner's search of the roadmap's graph; none: COA* (colored_graph::GraphSearch). */
@@ -63,7 +61,7 @@ class PlannerCore;
  * and other readers of its changes (MapFollower). */
 class SemanticPlanner {
  public:
-  /** \param map must outlive the planner. With a graph of the tree (isOfTree) it has to keep
+  /** \param map must outlive the planner. With a roadmap of the tree (isOfTree) it has to keep
    * G-values (setAbstraction()). \param order over the map's class ids, 0 = unknown
    * ground (loadClassOrder) \param corridor where ground is looked at, of a map that does not
    * change (findCorridor()); vertices lie within RoadmapOptions::buffer from its way. Without: all

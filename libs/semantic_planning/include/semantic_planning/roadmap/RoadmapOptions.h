@@ -9,7 +9,7 @@ namespace semantic_planning {
 enum class GraphKind {
   Compressed,      ///< ground in the leaves of the map's compressed tree
                    ///< (setAbstraction()); large ones have several points
-  Leaves,          ///< the same, one point a leaf, as published
+  Leaves,          ///< the same, one point a leaf and one heading that looks random, as published
   Halton,          ///< a Halton sequence; samples off the ground or in the way are dropped
   HaltonDrivable,  ///< the same, and goes on until there are as many drivable vertices as asked for
   Full             ///< the ground of the finest map, on a grid
@@ -27,11 +27,6 @@ struct RoadmapOptions {
   /** Vertices, start and goal not counted; of Halton, samples. 0: all that Compressed, Leaves
    * and Full have, 1000 for the others. */
   std::size_t vertices = 1000;
-  /** Compressed, Leaves, Full: headings at each point, evenly spaced. */
-  int headings = 2;
-  /** Compressed, Leaves, Full: the first heading follows the free space of the point's class and
-   * better ones; otherwise it looks random. */
-  bool alignHeadings = true;
   /** Vertices lie within this distance from the line between start and goal, meters. */
   double buffer = 30;
 
@@ -60,12 +55,8 @@ struct ClassReading {
     Cautious    ///< the worst class whose probability exceeds `leastProbability`
   };
   Kind kind = Kind::Likeliest;
-  /** Cautious, Expected: less probable classes do not count. */
+  /** Cautious, Expected: less probable classes do not count. For tests; it has no name in files. */
   double leastProbability = 0.1;
-
-  void describe(strict_files::OptionList& list);
-  /** \throw std::invalid_argument naming the option and its value. */
-  void validate() const;
 };
 /** "likeliest", "expected", "cautious". */
 const strict_files::Choices<ClassReading::Kind>& choicesOf(ClassReading::Kind);

@@ -1,4 +1,4 @@
-#include "planner/TurnSearch.h"
+#include "planner/PoseSearch.h"
 
 #include "PathFixture.h"
 
@@ -8,11 +8,11 @@ namespace {
 
 /** A road of 3 m along y = 0 in the grass: wide enough to turn around on in several moves, too
  * narrow for a turn of 1 m to both sides of which there are wheels. */
-class TurnSearchTest : public PathTest {
+class PoseSearchTest : public PathTest {
  protected:
   static constexpr double kTolerance = 0.2, kHalfWidth = 1.5;
 
-  TurnSearchTest() {
+  PoseSearchTest() {
     world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
     world.floor(-15, 15, -kHalfWidth, kHalfWidth, PaintedWorld::Road);
   }
@@ -44,7 +44,7 @@ class TurnSearchTest : public PathTest {
 
 }  // namespace
 
-TEST_F(TurnSearchTest, whereAVehicleTurnsOverGrassAWayToTurnOnTheRoadIsFound) {
+TEST_F(PoseSearchTest, whereAVehicleTurnsOverGrassAWayToTurnOnTheRoadIsFound) {
   for (const bool atBegin : {true, false}) {
     const auto before = atBegin ? turnAtBegin() : turnAtEnd();
     ASSERT_GT(metersOnGrass(before), 1.5);
@@ -60,7 +60,7 @@ TEST_F(TurnSearchTest, whereAVehicleTurnsOverGrassAWayToTurnOnTheRoadIsFound) {
   }
 }
 
-TEST_F(TurnSearchTest, whatHasNoMoreThanItMustIsLeftAsItIs) {
+TEST_F(PoseSearchTest, whatHasNoMoreThanItMustIsLeftAsItIs) {
   const auto onRoad = drive({-12, 0, 0}, {{10, 0}, {0.5, 1}, {0.5, -1}, {8, 0}});
   EXPECT_FALSE(withBetterBegin(onRoad, checker(), ClassPrices(checker().order())));
   EXPECT_FALSE(withBetterEnd(onRoad, checker(), ClassPrices(checker().order())));
@@ -68,7 +68,7 @@ TEST_F(TurnSearchTest, whatHasNoMoreThanItMustIsLeftAsItIs) {
   EXPECT_FALSE(withBetterBegin(straightOffTheGrass, checker(), ClassPrices(checker().order())));
 }
 
-TEST_F(TurnSearchTest, aVehicleThatOnlyDrivesForwardIsGivenNoWayBackwards) {
+TEST_F(PoseSearchTest, aVehicleThatOnlyDrivesForwardIsGivenNoWayBackwards) {
   options.vehicle.reverseWeight = std::numeric_limits<double>::infinity();
   const auto detour = drive({0, 1, 0}, {{2 * M_PI, 1}, {12, 0}});  // a circle for nothing
   const auto after = withBetterBegin(detour, checker(), ClassPrices(checker().order()));

@@ -1,0 +1,279 @@
+#include "PoseSearch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "PathTracing.h"
+
+namespace semantic_planning {
+
+using colored_graph::kForbidden;
+using colored_graph::Length;
+using colored_graph::lengthDown;
+using mrpt::math::TPose2D;
+
+namespace {
+
+constexpr double kTurns[] = {0, 1, -1, 0.5, -0.5};  // of the tightest curvature
+constexpr int kHeadings = 36;                       // that are not the same
+/** What a good way may cost: so much of what a vehicle pays that turns on the spot, and meters to
+ * turn at both ends. */
+constexpr double kGood = 1.2, kTurning = 20;
+
+double stepFor(const CollisionChecker& checker) {
+  constexpr double kVoxels = 2, kInTurningRadii = 0.2;
+  return std::max(kVoxels * checker.ground().voxelSize(),
+                  kInTurningRadii * checker.reedsShepp().turningRadius());
+}
+
+std::uint64_t bits(double number, double size, int count) {
+  const auto whole = static_cast<std::int64_t>(std::floor(number / size));
+  return static_cast<std::uint64_t>(whole) & ((std::uint64_t{1} << count) - 1);
+}
+
+}  // namespace
+
+PoseSearch::PoseSearch(const Task& task, const CollisionChecker& checker, const ClassPrices& prices)
+    : m_task(task),
+      m_checker(checker),
+      m_prices(prices),
+      m_step(stepFor(checker)),
+      m_field(task.start, task.radius, checker, prices),
+      m_budget{prices.perMeter()},
+      m_left(task.poses) {}
+
+Length PoseSearch::ofWay(double length, bool forward) const {
+  return lengthDown(m_checker.motionCost().ofWay(length, forward != m_task.isReversed));
+}
+
+Length PoseSearch::ofChange(const Node& from, const CurveState& to) const {
+  return from.before < 0 ? 0 : lengthDown(m_checker.motionCost().ofChange(from.state(), to));
+}
+
+Length PoseSearch::excess(Length cost) {
+  m_field.spread(cost, &m_task.start);
+  return cost - std::min(cost, m_field.at(m_task.start));
+}
+
+std::optional<PoseSearch::Way> PoseSearch::run(Length most) {
+  m_most = most;
+  m_field.spread(most, nullptr);
+  const Length rest = m_field.at(m_task.start);
+  if (rest == CostField::kUnreached) return std::nullopt;
+  m_good = static_cast<Length>(kGood * static_cast<double>(rest)) + lengthDown(kTurning);
+  reach({m_task.start, 0, -1, ReedsSheppCurve({}, 1, {})}, rest);
+  for (; !m_queue.empty() && m_left > 0; --m_left) {
+    const Entry entry = m_queue.top();
+    if (m_task.weight == 1 && entry.estimate >= m_most) break;
+    m_queue.pop();
+    join(entry.node);
+    goOn(entry.node);
+  }
+  if (!m_joint) return std::nullopt;
+  return Way{joined(), m_targets[m_joint->target].number};
+}
+
+void PoseSearch::reach(const Node& node, Length rest) {
+  const auto weighted = static_cast<Length>(m_task.weight * static_cast<double>(rest));
+  m_queue.push({node.cost + weighted, static_cast<int>(m_nodes.size())});
+  m_nodes.push_back(node);
+}
+
+void PoseSearch::goOn(int from) {
+  for (const double turn : kTurns)
+    for (const bool forward : {true, false})
+      if (forward != m_task.isReversed || m_checker.motionCost().canReverse())
+        step(from, turn, forward);
+}
+
+void PoseSearch::step(int from, double turn, bool forward) {
+  const double tightest = m_checker.reedsShepp().turningRadius();
+  const double radius = turn == 0 ? tightest : tightest / std::abs(turn);
+  const int side = turn > 0 ? 1 : turn < 0 ? -1 : 0;
+  const ReedsSheppCurve curve(node(from).pose.pose, radius, {{{forward ? m_step : -m_step, side}}});
+  GroundPose to{curve.at(m_step).pose, node(from).pose.z};
+  const Length rest = m_field.at(to);
+  Length cost = node(from).cost + ofWay(m_step, forward) + ofChange(node(from), beginOf(curve));
+  if (rest == CostField::kUnreached || cost + rest >= m_most) return;
+  const std::uint64_t key = (bits(to.pose.x, m_step / 2, 24) << 32) |
+                            (bits(to.pose.y, m_step / 2, 24) << 8) |
+                            (bits(to.pose.phi + M_PI, 2 * M_PI / kHeadings, 7) << 1) | forward;
+  const auto [least, isNew] = m_least.try_emplace(key, CostField::kUnreached);
+  if (least->second <= cost) return;
+  const Surface* s = m_checker.ground().near(m_checker.ground().columnAt(to.pose.x, to.pose.y),
+                                             to.z, 2 * m_checker.ground().step());
+  if (!s) return;
+  to.z = s->z;
+  const auto whole = costOver(curve, node(from).pose.z, to.z, cost, rest);
+  if (!whole || *whole >= least->second) return;
+  least->second = *whole;
+  reach({to, *whole, from, curve}, rest);
+}
+
+std::optional<Length> PoseSearch::costOver(const ReedsSheppCurve& curve, int from, int to,
+                                           Length cost, Length rest) {
+  if (cost + rest >= m_most) return std::nullopt;
+  m_budget.left = colored_graph::toMeters(m_most - cost - rest);
+  const auto profile = m_checker.profile(curve, from, to, &m_budget);
+  if (!profile) return std::nullopt;
+  cost += m_prices.of(*profile);
+  return cost + rest < m_most ? std::optional(cost) : std::nullopt;
+}
+
+/** Each time others of the targets have their turn. */
+void PoseSearch::join(int from) {
+  for (std::size_t i = m_targets.size(); i-- > 0;) {
+    const Target& target = m_targets[i];
+    if (from > 0 && (static_cast<int>(i) + m_left) % m_task.shareOfTargets) continue;
+    const TPose2D &a = node(from).pose.pose, &b = target.pose.pose;
+    const double distance = std::hypot(b.x - a.x, b.y - a.y);
+    if (distance < m_task.reach && node(from).cost + lengthDown(distance) + target.rest < m_most)
+      join(from, target);
+  }
+}
+
+void PoseSearch::join(int from, const Target& target) {
+  const MotionCost& price = m_checker.motionCost();
+  for (const ReedsSheppCurve& curve : curves(node(from).pose, target.pose)) {
+    if (curve.length() > m_task.longestCurve) continue;
+    Length cost = node(from).cost + ofChange(node(from), beginOf(curve)) +
+                  lengthDown(price.of(m_task.isReversed ? curve.reversed() : curve));
+    if (target.state) cost += lengthDown(price.ofChange(endOf(curve), *target.state));
+    const auto whole = costOver(curve, node(from).pose.z, target.pose.z, cost, target.rest);
+    if (!whole) continue;
+    m_most = *whole + target.rest;
+    if (m_most <= m_good) m_left = std::min(m_left, m_task.posesAfter);
+    m_joint = Joint{from, curve, static_cast<std::size_t>(&target - m_targets.data())};
+  }
+}
+
+std::vector<ReedsSheppCurve> PoseSearch::curves(const GroundPose& from,
+                                                const GroundPose& to) const {
+  if (!m_task.isReversed) return m_checker.motionCost().curves(from.pose, to.pose);
+  std::vector<ReedsSheppCurve> curves = m_checker.motionCost().curves(to.pose, from.pose);
+  for (ReedsSheppCurve& curve : curves) curve = curve.reversed();
+  return curves;
+}
+
+std::vector<PathPoint> PoseSearch::joined() const {
+  std::vector<int> way;
+  for (int i = m_joint->node; node(i).before >= 0; i = node(i).before) way.push_back(i);
+  std::vector<PathPoint> path;
+  for (auto i = way.rbegin(); i != way.rend(); ++i)
+    appendCurve(m_checker.trace(node(*i).curve, node(node(*i).before).pose.z), path);
+  appendCurve(m_checker.trace(m_joint->curve, node(m_joint->node).pose.z), path);
+  return path;
+}
+
+std::vector<PathPoint> wayBetween(const GroundPose& start, const GroundPose& goal,
+                                  const CollisionChecker& checker, const ClassPrices& prices) {
+  constexpr double kBeside = 20, kReach = 15, kWeight = 2.4;  // m, m
+  constexpr int kPoses = 6000, kPosesAfter = 300, kShare = 3;
+  constexpr Length kMost = Length{1} << 62;
+  const double turn = checker.reedsShepp().turningRadius(),
+               distance = std::hypot(goal.pose.x - start.pose.x, goal.pose.y - start.pose.y);
+  PoseSearch search({start, distance + kBeside, kReach + 2 * turn, kReach + 3 * turn + distance,
+                     kWeight, kPoses, kPosesAfter, kShare},
+                    checker, prices);
+  search.addRest(goal, 0);
+  search.add({goal, std::nullopt, 0, 0});
+  const auto way = search.run(kMost);
+  return way ? way->path : std::vector<PathPoint>();
+}
+
+namespace {
+
+/** To turn around costs as much anywhere: that is no reason to look for another way. */
+double costOfTurning(const CollisionChecker& checker) {
+  return M_PI * checker.reedsShepp().turningRadius() + checker.motionCost().gearChange();
+}
+
+/** As if driven from its end to its begin. */
+std::vector<PathPoint> reversed(const std::vector<PathPoint>& path) {
+  std::vector<PathPoint> back(path.rbegin(), path.rend());
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    // Gear and curvature are those of the way to a point: here from the one after it.
+    const PathPoint& way = path[path.size() - std::max<std::size_t>(1, i)];
+    back[i].forward = !way.forward;
+    back[i].curvature = way.curvature;
+    back[i].arcLength = path.back().arcLength - back[i].arcLength;
+  }
+  return back;
+}
+
+CurveState stateAt(const PathPoint& p) { return {p.forward, p.curvature}; }
+
+GroundPose poseAt(const PathPoint& p, const Ground& ground) {
+  return {{p.x, p.y, p.heading}, ground.keyOf(p.z)};
+}
+
+/** What the rest of a path costs from each point on. Between places that were looked at the path
+ * may touch what is forbidden: that is left out. */
+std::vector<Length> costsToGo(const std::vector<PathPoint>& path, bool isReversed,
+                              const CollisionChecker& checker, const ClassPrices& prices) {
+  const MotionCost& price = checker.motionCost();
+  std::vector<Length> toGo(path.size());
+  for (std::size_t i = path.size() - 1; i > 0; --i) {
+    const PathPoint& p = path[i];
+    const double length = p.arcLength - path[i - 1].arcLength;
+    Length cost = toGo[i] + lengthDown(price.ofWay(length, p.forward != isReversed));
+    if (i + 1 < path.size()) cost += lengthDown(price.ofChange(stateAt(p), stateAt(path[i + 1])));
+    if (checker.order().rank(p.classId) != kForbidden)
+      cost += prices.of(p.classId, lengthDown(length));
+    toGo[i - 1] = cost;
+  }
+  return toGo;
+}
+
+/** A cheaper way to turn around near a path's first point, which leads to the path some meters on.
+ */
+std::optional<std::vector<PathPoint>> better(const std::vector<PathPoint>& path, bool isReversed,
+                                             const CollisionChecker& checker,
+                                             const ClassPrices& prices) {
+  constexpr double kLeast = 8, kInTurningRadii = 2.5, kSpacing = 0.5, kMargin = 0.3;  // m
+  constexpr double kAlong = 1.5, kReach = 0.6, kLongestCurve = 1.25;  // of the radius
+  constexpr double kLeastGain = 0.2;                                  // m
+  constexpr int kPoses = 500, kShare = 6;
+  const Ground& ground = checker.ground();
+  const double radius = std::max(kLeast, kInTurningRadii * checker.reedsShepp().turningRadius());
+  PoseSearch search({poseAt(path.front(), ground), radius, kReach * radius, kLongestCurve * radius,
+                     1, kPoses, kPoses, kShare, isReversed},
+                    checker, prices);
+  const std::vector<Length> toGo = costsToGo(path, isReversed, checker, prices);
+  double last = 0;
+  for (std::size_t i = 1; i < path.size() && path[i].arcLength < kAlong * radius; ++i) {
+    const PathPoint& p = path[i];
+    if (std::hypot(p.x - path[0].x, p.y - path[0].y) > radius - kMargin) continue;
+    search.addRest(poseAt(p, ground), toGo[i]);
+    if (p.arcLength < last + kSpacing && i + 1 < path.size()) continue;
+    last = p.arcLength;
+    search.add({poseAt(p, ground), stateAt(path[std::min(i + 1, path.size() - 1)]), toGo[i], i});
+  }
+  if (search.excess(toGo.front()) <= lengthDown(costOfTurning(checker))) return std::nullopt;
+  auto way = search.run(toGo.front() - lengthDown(kLeastGain));
+  if (!way) return std::nullopt;
+  const double more = way->path.back().arcLength - path[way->target].arcLength;
+  for (std::size_t i = way->target + 1; i < path.size(); ++i) {
+    way->path.push_back(path[i]);
+    way->path.back().arcLength += more;
+  }
+  return std::move(way->path);
+}
+
+}  // namespace
+
+std::optional<std::vector<PathPoint>> withBetterBegin(const std::vector<PathPoint>& path,
+                                                      const CollisionChecker& checker,
+                                                      const ClassPrices& prices) {
+  return better(path, false, checker, prices);
+}
+
+std::optional<std::vector<PathPoint>> withBetterEnd(const std::vector<PathPoint>& path,
+                                                    const CollisionChecker& checker,
+                                                    const ClassPrices& prices) {
+  auto found = better(reversed(path), true, checker, prices);
+  if (found) *found = reversed(*found);
+  return found;
+}
+
+}  // namespace semantic_planning
