@@ -52,7 +52,6 @@ TEST(StreetAbstraction, incrementalEqualsBatchAfterEveryScanAndPrunedEqualsUnpru
   EXPECT_LT(a.leaves().size(), pruned.getNumLeafNodes() / 5);
 }
 
-
 namespace {
 
 class CorrectedStreet : public testing::TestWithParam<const char*> {};

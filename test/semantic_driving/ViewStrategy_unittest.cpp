@@ -110,7 +110,7 @@ TEST_F(ViewStrategies, doNotDriveForWhatIsOnlyToBeIgnored) {
 TEST_F(ViewStrategies, lookForGroundBelowWhereItWasExpectedIfThatIsFree) {
   constexpr double kEdge = 8, kFar = 15, kStep = 0.1;  // m
   const auto expected = firstView(relevant(PaintedWorld::Road));
-  for (const double side : {0.0, 0.5, 1.0, 1.5}) {     // half turns
+  for (const double side : {0.0, 0.5, 1.0, 1.5}) {  // half turns
     const Eigen::AngleAxisd turn(side * M_PI, Eigen::Vector3d::UnitZ());
     for (double y = -kFar; y < kFar; y += kStep)
       for (const double z : {0.1, -0.1, -0.3}) {

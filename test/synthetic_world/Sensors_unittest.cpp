@@ -104,7 +104,6 @@ TEST(Lidar, badOptionsAreNamed) {
   }
 }
 
-
 using namespace synthetic_world;
 
 TEST(Random, isTheSameEverywhere) {
@@ -203,7 +202,6 @@ TEST(SensorNoise, lidarScattersAlongItsBeams) {
   EXPECT_NEAR(std::sqrt(square / cloud.size()), 0.03, 0.003);
   EXPECT_NEAR(wrong / double(cloud.size()), 0.2, 0.03);
 }
-
 
 using namespace synthetic_world;
 using State = PointTruth::State;

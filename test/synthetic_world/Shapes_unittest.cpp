@@ -131,7 +131,6 @@ TEST(Shapes, polyhedraRefuseBadInput) {
   EXPECT_THROW(Polyhedron::gable({0, 0}, 0, 1, 1, 2, 1), std::invalid_argument);
 }
 
-
 using synthetic_world::Curve;
 using V2 = Eigen::Vector2d;
 
@@ -193,7 +192,6 @@ TEST(Curve, refusesBadInput) {
   EXPECT_EQ(errorOf([] { Curve(kRing, 6, true).parallel(7); }),
             "curve: too narrow for this parallel");
 }
-
 
 using namespace synthetic_world;
 using V2 = Eigen::Vector2d;

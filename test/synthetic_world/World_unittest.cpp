@@ -138,7 +138,6 @@ TEST(World, footprintsNameTheirBadField) {
             "footprint: outline: three or more corners, convex, counterclockwise expected");
 }
 
-
 using namespace synthetic_world;
 using V2 = Eigen::Vector2d;
 
@@ -180,7 +179,6 @@ TEST(GroundCover, strokesWithoutWidthOrLengthAreRefused) {
   EXPECT_THROW(cover.paintDisk(kRoad, {0, 0}, 0), std::invalid_argument);
   EXPECT_THROW(cover.paintBand(kRoad, {1, 1}, {1, 1}, 2), std::invalid_argument);
 }
-
 
 using synthetic_world::Random;
 using synthetic_world::Terrain;
