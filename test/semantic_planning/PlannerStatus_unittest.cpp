@@ -105,3 +105,67 @@ TEST_F(PlannerTest, thereIsNothingToReplanBeforeAPlan) {
   EXPECT_THROW(p.replan(start), std::logic_error);
   EXPECT_THROW(p.roadmap(), std::logic_error);
 }
+
+namespace {
+
+/** A road of 24 x 24 m, of which nothing is known in the middle. */
+void paintAround(PaintedWorld& world, double hole) {
+  world.floor(-12, -hole, -12, 12, PaintedWorld::Road);
+  world.floor(hole, 12, -12, 12, PaintedWorld::Road);
+  world.floor(-hole, hole, -12, -hole, PaintedWorld::Road);
+  world.floor(-hole, hole, hole, 12, PaintedWorld::Road);
+}
+
+}  // namespace
+
+TEST_F(PlannerTest, aVehicleStandsOnTheGroundThatIsAroundItWhereTheMapKnowsNone) {
+  paintAround(world, 3);
+  SemanticPlanner p = planner();
+  const TPose2D middle{0, 0, 0.3}, seen{-8, -8, 0}, ahead{8, 0, 0};
+  const auto isKnown = [&] {
+    return !p.ground().surfaces(p.ground().columnAt(middle.x, middle.y)).empty();
+  };
+  EXPECT_FALSE(isKnown());
+  for (int i = 0; i < 2; ++i) {
+    const PlanResult plan = p.plan(middle, ahead);
+    ASSERT_TRUE(plan.found()) << plan.reason;
+    EXPECT_NEAR(meters(plan, PaintedWorld::Road), plan.length, 0.01);
+    EXPECT_LT(plan.length, 9);
+    EXPECT_TRUE(p.replan(middle).found());
+    const auto below = p.ground().find(middle.x, middle.y);
+    ASSERT_TRUE(below);
+    EXPECT_NEAR(p.ground().centerOf(below->surface.z), -0.1, 1e-6);
+    ASSERT_TRUE(p.plan(seen, ahead).found());
+    EXPECT_FALSE(isKnown()) << "of an earlier start nothing is left";
+    EXPECT_EQ(p.plan(seen, middle).status, PlanStatus::GoalOffGround);
+  }
+}
+
+TEST_F(PlannerTest, aVehicleStandsOnASlopeAsTheGroundAroundItDoes) {
+  constexpr double kSlope = 0.1;
+  for (double x = -12; x < 12; x += 0.2)
+    for (double y = -12; y < 12; y += 0.2)
+      if (std::abs(x) > 3 || std::abs(y) > 3)
+        world.box(x, x + 0.2, y, y + 0.2, kSlope * x - 0.1, kSlope * x + 0.1, PaintedWorld::Road);
+  SemanticPlanner p = planner();
+  const PlanResult plan = p.plan({-1.5, 0.5, 0}, {8, 0, 0});
+  ASSERT_TRUE(plan.found()) << plan.reason;
+  for (const double x : {-1.9, -1.1})
+    EXPECT_NEAR(p.ground().centerOf(p.ground().find(x, 0.5)->surface.z), kSlope * x, 0.2);
+}
+
+TEST_F(PlannerTest, beyondTheBorderOfWhatIsKnownAVehicleStandsOnNothing) {
+  paintAround(world, 3);
+  const PlanResult plan = planner().plan({-13.5, 0, 0}, {8, 0, 0});
+  EXPECT_EQ(plan.status, PlanStatus::StartOffGround);
+  EXPECT_TRUE(contains(plan.reason, "ground not known")) << plan.reason;
+}
+
+TEST_F(PlannerTest, whereAllGroundAroundIsForbiddenAVehicleStandsOnNothing) {
+  order = colored_graph::ClassOrder(5, {{1}, {2}, {4}});  // unknown ground, too
+  world.floor(-12, 12, -12, -3, PaintedWorld::Wall);
+  world.floor(-12, 12, 3, 12, PaintedWorld::Wall);
+  world.floor(-12, -3, -3, 3, PaintedWorld::Wall);
+  world.floor(3, 12, -3, 3, PaintedWorld::Wall);
+  EXPECT_EQ(planner().plan({0, 0, 0}, {8, 0, 0}).status, PlanStatus::StartOffGround);
+}

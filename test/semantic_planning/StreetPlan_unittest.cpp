@@ -1,4 +1,4 @@
-// Planning over ten scans of SemanticKITTI 00.
+// Planning over ten scans of SemanticKITTI 00, and of 07.
 #include <gtest/gtest.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
@@ -33,17 +33,26 @@ class StreetPlan : public testing::Test {
 
   static void TearDownTestSuite() { s_street.reset(); }
 
-  static void readStreet() {
+  static void readStreet() { s_street = mapOf("00", s_driven); }
+
+  static semantic_octree::SemanticOcTree mapOf(const std::string& sequence,
+                                               std::vector<Eigen::Isometry3d>& driven) {
     const auto table = semantic_types::loadClassTable(kConfig / "classes/semantic_kitti.yaml");
-    s_street.emplace(0.2, table);
+    semantic_octree::SemanticOcTree street(0.2, table);
     semantic_octree::InsertionOptions insertion;
     insertion.maxRange = 50;
     insertion.minRange = 3;
     for (const LabeledFrame& frame :
-         readSemanticKitti(sharedDataDir() / "semantic_kitti/00", table)) {
-      s_street->insert(frame.cloud, frame.T_map_sensor, insertion);
-      s_driven.push_back(frame.T_map_sensor);
+         readSemanticKitti(sharedDataDir() / "semantic_kitti" / sequence, table)) {
+      street.insert(frame.cloud, frame.T_map_sensor, insertion);
+      driven.push_back(frame.T_map_sensor);
     }
+    return street;
+  }
+
+  static TPose2D planarPose(const Eigen::Isometry3d& T_map_sensor) {
+    const Eigen::Vector3d at = T_map_sensor.translation(), ahead = T_map_sensor.linear().col(0);
+    return {at.x(), at.y(), std::atan2(ahead.y(), ahead.x())};
   }
 
   double meters(const PlanResult& plan, const std::string& name) const {
@@ -93,9 +102,25 @@ TEST_F(StreetPlan, theWayThatTheCarDroveIsFreeForIt) {
   options.vehicle = loadVehicle(kConfig / "vehicles/car.yaml");
   const SemanticPlanner planner(*map, *order, options);
   for (const Eigen::Isometry3d& T_map_sensor : s_driven) {
-    const Eigen::Vector3d at = T_map_sensor.translation(), ahead = T_map_sensor.linear().col(0);
-    const TPose2D pose(at.x(), at.y(), std::atan2(ahead.y(), ahead.x()));
-    EXPECT_EQ(planner.check(pose), PlanStatus::Found) << at.transpose();
+    const TPose2D pose = planarPose(T_map_sensor);
+    EXPECT_EQ(planner.check(pose), PlanStatus::Found) << pose.asString();
+  }
+}
+
+TEST_F(StreetPlan, aCarStartsWhereTheRecordingCarStoodThoughItsLidarDidNotSeeTheRoadThere) {
+  options.vehicle = loadVehicle(kConfig / "vehicles/car.yaml");
+  std::vector<Eigen::Isometry3d> driven;
+  semantic_octree::SemanticOcTree crossing = mapOf("07", driven);
+  setAbstraction(crossing, abstractionFor(*order));
+  SemanticPlanner planner(crossing, *order, options);
+  for (const Eigen::Isometry3d& T_map_sensor : driven)
+    EXPECT_NE(planner.check(planarPose(T_map_sensor)), PlanStatus::Found) << "it is known";
+  for (const Eigen::Isometry3d& T_map_sensor : driven) {
+    const TPose2D pose = planarPose(T_map_sensor);
+    const TPose2D goal = pose + TPose2D(10, 0, 0);
+    const PlanResult plan = planner.plan(pose, goal);
+    ASSERT_TRUE(plan.found()) << pose.asString() << plan.reason;
+    EXPECT_LT(plan.length, 10.5);
   }
 }
 

@@ -1,7 +1,9 @@
 #include <semantic_planning/ground/Ground.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -122,6 +124,20 @@ std::vector<Column> Ground::update(const semantic_octree::TileChange& change) {
   if (m_isLimited && (change.all || !change.tiles.empty()))
     throw std::logic_error("Ground: a part of a map's ground does not follow changes");
   return m_tiles->update(touchedBy(change));
+}
+
+std::vector<Column> Ground::assume(const std::vector<GroundPoint>& points) {
+  std::map<Column, std::array<std::optional<Surface>, kTileColumns>> tiles;
+  for (const GroundPoint& p : points) tiles[tileOf(p.column)][indexInTile(p.column)] = p.surface;
+  SurfaceGrid ground;
+  for (const auto& [tile, columns] : tiles) {
+    SurfaceTile& surfaces = ground.at(tile);
+    for (int column = 0; column < kTileColumns; ++column) {
+      if (columns[column]) surfaces.surfaces.push_back(*columns[column]);
+      surfaces.first[column + 1] = static_cast<std::uint16_t>(surfaces.surfaces.size());
+    }
+  }
+  return m_tiles->assume(std::move(ground));
 }
 
 std::vector<Column> Ground::touchedBy(const semantic_octree::TileChange& change) const {

@@ -53,6 +53,20 @@ void addCrossed(const GapFill& fill, std::vector<Column>& tiles) {
   }
 }
 
+/** The surfaces of a tile, and in columns without any those that are assumed, but over drops. */
+SurfaceTile withAssumed(const SurfaceTile& measured, const SurfaceTile& assumed,
+                        const ColumnTile& columns, const GroundShape& shape) {
+  SurfaceTile all;
+  for (int column = 0; column < kTileColumns; ++column) {
+    const bool isMeasured = !measured.column(column).empty();
+    for (const Surface& s : (isMeasured ? measured : assumed).column(column))
+      if (isMeasured || !columns.isOverDrop(column, s.z, s.z, shape.step, shape.height))
+        all.surfaces.push_back(s);
+    all.first[column + 1] = static_cast<std::uint16_t>(all.surfaces.size());
+  }
+  return all;
+}
+
 /** Lets surfaces that stay keep what later stages found out about them. */
 void keepMarks(const SurfaceTile& before, SurfaceTile& tile) {
   for (int column = 0; column < kTileColumns; ++column) {
@@ -82,6 +96,21 @@ std::vector<Column> GroundTiles::update(const std::vector<Column>& tiles) {
   std::vector<ColumnBox> changed = updateSurfaces(tiles);
   m_keepsColumns = !m_map.isReadOnly();
   if (!m_keepsColumns) forgetWhatChangesNeed();
+  return finished(std::move(changed));
+}
+
+std::vector<Column> GroundTiles::assume(SurfaceGrid ground) {
+  if (!m_keepsColumns) return {};
+  std::vector<ColumnBox> boxes;
+  for (const SurfaceGrid* grid : {&m_assumed, &ground})
+    grid->forEach([&](Column tile, const SurfaceTile&) {
+      boxes.push_back({firstColumnOf(tile), lastColumnOf(tile)});
+    });
+  m_assumed = std::move(ground);
+  return finished(updateSurfaces(boxes, {}));
+}
+
+std::vector<Column> GroundTiles::finished(std::vector<ColumnBox> changed) {
   append(changed, updateClearance(changed));
   if (!changed.empty()) m_components.reset();
   return tilesOf(changed);
@@ -125,6 +154,11 @@ void GroundTiles::readWithin(const std::vector<Column>& tiles) {
 std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles) {
   std::vector<Column> refilled;
   auto scanned = changedBy(inMortonOrder(tiles), [&](Column t) { return scan(t, refilled); });
+  return updateSurfaces(std::move(scanned), std::move(refilled));
+}
+
+std::vector<ColumnBox> GroundTiles::updateSurfaces(std::vector<ColumnBox> scanned,
+                                                   std::vector<Column> refilled) {
   append(scanned, changedBy(tilesWithin(scanned, kReachOfClasses),
                             [&](Column t) { return measure(t, refilled); }));
   const int reach = reachOfGapFills(m_shape);
@@ -155,7 +189,12 @@ ColumnBox GroundTiles::scan(Column tile, std::vector<Column>& refilled) {
 }
 
 ColumnBox GroundTiles::measure(Column tile, std::vector<Column>& refilled) {
-  const ColumnBox changed = replace(m_measured, tile, measuredSurfaces(m_columns, tile, m_shape));
+  SurfaceTile measured = measuredSurfaces(m_columns, tile, m_shape);
+  if (const SurfaceTile* assumed = m_assumed.find(tile)) {
+    const ColumnTile* columns = m_columns.find(tile);
+    measured = withAssumed(measured, *assumed, columns ? *columns : ColumnTile(), m_shape);
+  }
+  const ColumnBox changed = replace(m_measured, tile, std::move(measured));
   if (!changed.empty()) refilled.push_back(tile);
   return changed;
 }

@@ -32,6 +32,11 @@ class GroundTiles {
   /** \param tiles whose voxels may have changed \return tiles whose surfaces changed, sorted. */
   std::vector<Column> update(const std::vector<Column>& tiles);
 
+  /** Somebody knows ground that the map does not: it counts in columns without a surface, where the
+   * map saw no drop. What was assumed before is forgotten. A map that cannot change has none.
+   * \return tiles whose surfaces changed, sorted. */
+  std::vector<Column> assume(SurfaceGrid ground);
+
   /** Instead of update(): has surfaces in these tiles only, those of the whole map. The stages
    * before are made square by square and forgotten. */
   void readWithin(const std::vector<Column>& tiles);
@@ -52,6 +57,10 @@ class GroundTiles {
   void forgetWhatChangesNeed();
   /** Where surfaces are, and which of them are drivable. */
   std::vector<ColumnBox> updateSurfaces(const std::vector<Column>& tiles);
+  /** \param changed columns, in the stages up to measure() \param refilled their tiles */
+  std::vector<ColumnBox> updateSurfaces(std::vector<ColumnBox> changed,
+                                        std::vector<Column> refilled);
+  std::vector<Column> finished(std::vector<ColumnBox> changed);
   /** How much clearance they have, and which are connected. */
   std::vector<ColumnBox> updateClearance(const std::vector<ColumnBox>& changed);
 
@@ -72,7 +81,7 @@ class GroundTiles {
   const ClearanceMeter m_clearanceMeter;
   const semantic_octree::ColumnScanner m_scanner;
   ScanGrid m_columns;  ///< empty if they are forgotten
-  SurfaceGrid m_measured;
+  SurfaceGrid m_measured, m_assumed;
   GapFillGrid m_fills;
   SurfaceGrid m_surfaces;  ///< measured ones and gap fills; the stages after that fill in the rest
   ObstacleGrid m_obstacles;

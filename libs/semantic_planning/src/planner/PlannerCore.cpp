@@ -13,6 +13,7 @@
 #include "PathImprovement.h"
 #include "PathTracing.h"
 #include "Refusal.h"
+#include "StartGround.h"
 #include "ground/ColumnBox.h"
 
 namespace semantic_planning {
@@ -176,11 +177,23 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   m_kept.drop();
   m_goalPlace = goal;
   followMap(clock);
+  standAt(start);
   m_hasPlanned = !refuse(start, goal, result);
   if (!m_hasPlanned) return result;
   result = solve(clock);
   result.times = clock.take();
   return result;
+}
+
+void PlannerCore::standAt(const Place& start) {
+  const auto assume = [this](const std::vector<GroundPoint>& points) {
+    const std::vector<Column> tiles = m_ground.assume(points);
+    if (m_candidates && !tiles.empty()) m_candidates->update({}, tiles);
+  };
+  assume({});
+  const PlanStatus status = placed(start, m_startPose);
+  if (status != PlanStatus::StartOffGround && status != PlanStatus::StartBlocked) return;
+  assume(groundBelow(m_ground, m_options.vehicle, order(), start.pose, start.z));
 }
 
 PathResult PlannerCore::search(Roadmap& map, VertexId start, VertexId goal) {

@@ -77,6 +77,8 @@ class PlannerCore {
     CandidateStore::Change points;
   };
   MapChange followMap(StageClock& clock);
+  /** The vehicle stands at the start: where the map knows no ground below it, there is some. */
+  void standAt(const Place& start);
   PlanStatus placed(const Place& place, std::optional<GroundPose>& pose) const;
   /** Status, reason and obstacle if a vehicle cannot stand there. \param what "start" or "goal" */
   bool isRefused(const char* what, const Place& place, std::optional<GroundPose>& pose,

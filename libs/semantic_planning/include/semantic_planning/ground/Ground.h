@@ -27,7 +27,8 @@ struct GroundPoint {
  * A surface is an occupied voxel with the vehicle's height free of occupied voxels above it; holes
  * between surfaces are filled (GroundOptions). Neighboring surfaces are connected if they differ
  * by at most the step height. Everything is a function of the map alone: after update() the ground
- * is the same as if it were read anew, and so are its classes and distances. */
+ * is the same as if it were read anew, and so are its classes and distances. Only what somebody
+ * knows better (assume()) comes on top. */
 class Ground {
  public:
   /** \param map must outlive the ground.
@@ -45,6 +46,10 @@ class Ground {
    * changed in anything.
    * \throw std::logic_error something changed, and the ground was made within some tiles only */
   std::vector<Column> update(const semantic_octree::TileChange& change);
+  /** Takes it that there is ground in these columns where the map knows none and saw no drop, in
+   * place of what was assumed before. Not in a ground that was made within some tiles only, nor in
+   * that of a map that is read only. \return as update() */
+  std::vector<Column> assume(const std::vector<GroundPoint>& points);
   /** The tiles in which the map changed, sorted; those that the ground knows are among them if all
    * did. */
   std::vector<Column> touchedBy(const semantic_octree::TileChange& change) const;
