@@ -8,6 +8,7 @@
 #include <strict_files/OutputFiles.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -77,6 +78,7 @@ class Exporter {
 
   void stage(const std::filesystem::path& file, const Writer& writer);
   void stageFile(const std::filesystem::path& file, const Filler& fill);
+  mrpt::maps::COccupancyGridMap2D grid() const;
   void writeOctree(const std::filesystem::path& file);
   void writeClassMap(const std::filesystem::path& file);
   void writeMapServer(const std::filesystem::path& file);
@@ -124,9 +126,7 @@ const std::vector<Exporter::Format>& Exporter::allFormats() {
        }},
       {".gridmap", "MRPT's 2D occupancy grid",
        [](Exporter& e, const fs::path& file) {
-         e.stage(file, [&e](std::ostream& out) {
-           semantic_map::writeGridMap(out, semantic_map::gridOf(e.m_map, e.m_options.grid));
-         });
+         e.stage(file, [&e](std::ostream& out) { semantic_map::writeGridMap(out, e.grid()); });
        }},
       {".yaml", "such a grid for ROS's map_server, with its picture beside",
        &Exporter::writeMapServer, ".png"},
@@ -195,6 +195,23 @@ void Exporter::stage(const fs::path& file, const Writer& writer) {
   });
 }
 
+/** A floor at a wrong height makes obstacles of nearly everything: that is said. */
+mrpt::maps::COccupancyGridMap2D Exporter::grid() const {
+  auto grid = semantic_map::gridOf(m_map, m_options.grid);
+  constexpr double kFew = 0.1;
+  double free = 0, occupied = 0;
+  for (int y = 0; y < int(grid.getSizeY()); ++y)
+    for (int x = 0; x < int(grid.getSizeX()); ++x) {
+      const float p = grid.getCell(x, y);
+      (p > 0.5f ? free : occupied) += p == 0.5f ? 0 : 1;
+    }
+  if (m_options.grid.floor && free < kFew * occupied)
+    notes() << "Warning: " << std::lround(100 * occupied / (free + occupied))
+            << " % of the grid's known cells are obstacles. Is the ground at "
+            << *m_options.grid.floor << " m? Without --floor it is found in the map." << std::endl;
+  return grid;
+}
+
 void Exporter::writeOctree(const fs::path& file) {
   stage(file, [this](std::ostream& out) {
     m_options.colors ? writeColorOcTree(out, m_map) : writeOcTree(out, m_map);
@@ -224,8 +241,7 @@ void Exporter::writeCosts(const fs::path& file) {
 void Exporter::writeMapServer(const fs::path& file) {
   if (!m_options.costs.order.empty()) return writeCosts(file);
   const fs::path picture = fs::path(file).replace_extension(".png");
-  const auto files = semantic_map::mapServerFiles(semantic_map::gridOf(m_map, m_options.grid),
-                                                  picture.filename().string());
+  const auto files = semantic_map::mapServerFiles(grid(), picture.filename().string());
   stage(file, [&files](std::ostream& out) { out << files.yaml; });
   stage(picture, [&files](std::ostream& out) { out << files.png; });
 }

@@ -157,6 +157,14 @@ TEST_F(SemanticMapExport, groundThatIsNamedNeverObstructs) {
   EXPECT_LT(obstacles(readGrid("none.gridmap")), 10);  // voxels where no class was seen
 }
 
+TEST_F(SemanticMapExport, aFloorAtAWrongHeightIsNoticed) {
+  const auto said = [this](const char* floor) {
+    return exportTo({"grid.yaml"}, {"-f", "--floor", floor}).output;
+  };
+  EXPECT_TRUE(contains(said("-1"), "% of the grid's known cells are obstacles")) << said("-1");
+  EXPECT_FALSE(contains(said("0"), "Warning")) << said("0");
+}
+
 TEST_F(SemanticMapExport, mrptLoadsTheMapServersGrid) {
   ASSERT_EQ(exportTo({"map.gridmap", "ros.yaml"}).status, 0);
   const auto grid = readGrid("map.gridmap");
