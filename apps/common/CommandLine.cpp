@@ -42,7 +42,11 @@ std::string unexpected(const CLI::App& app) {
     const std::string name = word.substr(0, word.find('='));
     if (std::find(known.begin(), known.end(), name) != known.end())
       return name + " belongs behind the command";
-    return "unknown option '" + name + "'" + strict_files::didYouMean(name, known);
+    const bool meansOrder =
+        name == "--classes" && std::find(known.begin(), known.end(), "--order") != known.end();
+    return "unknown option '" + name + "'" +
+           (meansOrder ? "; an order of classes is --order"
+                       : strict_files::didYouMean(name, known));
   }
   if (words.empty()) return "";
   if (!commands.empty() && app.get_subcommands().empty())

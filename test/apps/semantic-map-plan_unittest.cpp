@@ -135,6 +135,8 @@ TEST_F(SemanticMapPlan, badInputIsAnErrorThatNamesIt) {
   expectError(run("-8,0,0", "8,0,0", {}, "lava.yaml"), "no class 'lava'");
   folder.write("table.yaml", "classes:\n - {id: 1, name: road, color: [1, 2, 3]}\n");
   expectError(run("-8,0,0", "8,0,0", {}, "table.yaml"), "table.yaml:1: this is a class table; ");
+  EXPECT_TRUE(contains(run("-8,0,0", "8,0,0", {"--classes", "order.yaml"}).errors,
+                       "unknown option '--classes'; an order of classes is --order"));
   const auto vehicle = folder.write("vehicle.yaml", "turning_radius: 0\n");
   expectError(run("-8,0,0", "8,0,0", {"--vehicle", vehicle.string()}), "turning_radius is 0");
   folder.write("map.semantic", "no map");

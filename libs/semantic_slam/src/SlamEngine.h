@@ -8,6 +8,9 @@
 
 namespace semantic_slam {
 
+/** Share of a stretch's points where the place that it is compared with has some, at least. */
+constexpr double kCovered = 0.3;
+
 LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T);
 
 /** What Slam does: tracking (SlamTracking.cpp), loops and the reference

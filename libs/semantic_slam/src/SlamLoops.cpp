@@ -21,8 +21,6 @@ constexpr double kAngle = 8 * kDegree, kAngleDrift = 0.3 * kDegree, kLargestAngl
 constexpr double kLostDrift = 0.3;
 constexpr std::size_t kMostPlaces = 3;
 constexpr double kLeastScore = 0.5;
-/** Share of a stretch's points where the loop's other end has some. */
-constexpr double kCovered = 0.3;
 /** Two loops agree up to so much, more for each meter between; farther apart they are not compared.
  */
 constexpr double kAgree = 0.2, kAgreeWay = 0.03, kAgreeAngle = 2 * kDegree,

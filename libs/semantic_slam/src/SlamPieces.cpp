@@ -48,7 +48,7 @@ bool SlamEngine::holdsAcross(std::size_t first) const {
     submaps.back().finish();
   }
   const Registration r = match(submaps, pointsOf(first, newest, newest), T_guess, Matrix6::Zero());
-  return r.coveredShare >= 0.3 && r.matchedShare >= kHolds &&
+  return r.coveredShare >= kCovered && r.matchedShare >= kHolds &&
          (T_guess.inverse() * r.T_submap_scan).translation().norm() < kHoldsMeters;
 }
 
