@@ -1,5 +1,5 @@
 #pragma once
-#include "ColumnBox.h"
+#include "ColumnGrid.h"
 #include "GroundShape.h"
 #include "SurfaceTile.h"
 

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "Clearance.h"
-#include "ColumnBox.h"
-#include "GapFilling.h"
+#include "ColumnGrid.h"
+#include "GapFills.h"
 #include "GroundComponents.h"
 #include "GroundShape.h"
 #include "SurfaceTile.h"

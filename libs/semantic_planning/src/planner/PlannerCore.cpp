@@ -13,8 +13,7 @@
 #include "PathImprovement.h"
 #include "PathTracing.h"
 #include "Refusal.h"
-#include "StartGround.h"
-#include "ground/ColumnBox.h"
+#include "ground/ColumnGrid.h"
 
 namespace semantic_planning {
 

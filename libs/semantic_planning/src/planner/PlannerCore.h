@@ -9,7 +9,6 @@
 #include "ClassPrices.h"
 #include "KeptPath.h"
 #include "RelaxedSearch.h"
-#include "StageClock.h"
 #include "roadmap/CandidateStore.h"
 #include "roadmap/MapRoadmap.h"
 

@@ -1,5 +1,7 @@
-#include <colored_graph/CostModel.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
+
+#include <colored_graph/CostModel.h>
+#include <semantic_planning/planner/PlanResult.h>
 
 #include "PlannerCore.h"
 
@@ -60,5 +62,22 @@ const Roadmap& SemanticPlanner::roadmap() const { return m_core->roadmap(); }
 PlanStatus SemanticPlanner::check(const mrpt::math::TPose2D& pose, std::optional<double> z) const {
   return m_core->check({pose, z});
 }
+
+const strict_files::Choices<PlanStatus>& choicesOf(PlanStatus) {
+  static const strict_files::Choices<PlanStatus> choices = {
+      {"found", PlanStatus::Found},
+      {"start off ground", PlanStatus::StartOffGround},
+      {"start blocked", PlanStatus::StartBlocked},
+      {"start forbidden", PlanStatus::StartForbidden},
+      {"goal off ground", PlanStatus::GoalOffGround},
+      {"goal blocked", PlanStatus::GoalBlocked},
+      {"goal forbidden", PlanStatus::GoalForbidden},
+      {"not connected", PlanStatus::NotConnected},
+      {"only forbidden", PlanStatus::OnlyForbidden},
+      {"cancelled", PlanStatus::Cancelled}};
+  return choices;
+}
+
+const char* nameOf(PlanStatus status) { return strict_files::nameIn(choicesOf(status), status); }
 
 }  // namespace semantic_planning

@@ -1,5 +1,8 @@
 #include <semantic_planning/roadmap/Roadmap.h>
 
+#include <semantic_planning/roadmap/MrptGraph.h>
+#include <semantic_planning/roadmap/RoadmapOptions.h>
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -211,5 +214,62 @@ Length Roadmap::lengthBound(VertexId a, VertexId b) const {
 }
 
 Roadmap::Counts Roadmap::takeCounts() { return std::exchange(m_counts, {}); }
+
+using colored_graph::EdgeId;
+using colored_graph::EdgeState;
+using colored_graph::VertexId;
+using mrpt::poses::CPose2D;
+
+ClassNetwork toNetwork(const Roadmap& roadmap, const std::vector<std::string>& classNames) {
+  const colored_graph::ColoredGraph& graph = roadmap.graph();
+  ClassNetwork network;
+  for (VertexId v = 0; v < graph.vertexIdEnd(); ++v) {
+    if (!graph.containsVertex(v)) continue;
+    auto& node = network.nodes[v];
+    static_cast<CPose2D&>(node) = CPose2D(roadmap.pose(v).pose);
+    node.name = classNames.at(graph.vertexClass(v));
+  }
+  for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) {
+    if (!graph.containsEdge(e) || graph.edge(e).state == EdgeState::Blocked) continue;
+    const VertexId a = graph.edge(e).a, b = graph.edge(e).b;
+    network.insertEdge(a, b, CPose2D(roadmap.pose(b).pose) - CPose2D(roadmap.pose(a).pose));
+  }
+  if (!network.nodes.empty()) network.root = network.nodes.begin()->first;
+  return network;
+}
+
+using strict_files::atLeast;
+using strict_files::Choices;
+
+const Choices<GraphKind>& choicesOf(GraphKind) {
+  static const Choices<GraphKind> choices = {{"compressed", GraphKind::Compressed},
+                                             {"leaves", GraphKind::Leaves},
+                                             {"halton", GraphKind::Halton},
+                                             {"halton_drivable", GraphKind::HaltonDrivable},
+                                             {"full", GraphKind::Full}};
+  return choices;
+}
+
+const char* nameOf(GraphKind kind) { return strict_files::nameIn(choicesOf(kind), kind); }
+
+bool isOfTree(GraphKind kind) { return kind == GraphKind::Compressed || kind == GraphKind::Leaves; }
+
+void RoadmapOptions::describe(strict_files::OptionList& list) {
+  strict_files::Range buffers = atLeast(0);
+  buffers.withInfinity = true;
+  list.add("graph", kind, "", "where the graph's vertices come from");
+  list.add("vertices", vertices, "",
+           "how many; more: better paths, more time; of halton, draws; 0: all that the map offers");
+  list.add("buffer", buffer, "m", buffers, "vertices lie this near to the line from start to goal");
+}
+
+void RoadmapOptions::validate() const { strict_files::checkOptions(*this, "RoadmapOptions"); }
+
+const Choices<ClassReading::Kind>& choicesOf(ClassReading::Kind) {
+  using Kind = ClassReading::Kind;
+  static const Choices<Kind> choices = {
+      {"likeliest", Kind::Likeliest}, {"expected", Kind::Expected}, {"cautious", Kind::Cautious}};
+  return choices;
+}
 
 }  // namespace semantic_planning
