@@ -56,10 +56,11 @@ endfunction()
 function(mso_add_manual name)
   set(script ${PROJECT_SOURCE_DIR}/cmake/Manual.cmake)
   set(page ${CMAKE_BINARY_DIR}/man/${name}.1)
-  add_custom_command(OUTPUT ${page} DEPENDS ${name} ${script} VERBATIM
-    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${name}> -DVERSION=${PROJECT_VERSION} -DPAGE=${page} -P ${script})
-  add_custom_target(${name}-manual ALL DEPENDS ${page})
-  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools)
+  add_custom_command(OUTPUT ${page}.gz DEPENDS ${name} ${script} VERBATIM
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${name}> -DVERSION=${PROJECT_VERSION} -DPAGE=${page} -P ${script}
+    COMMAND gzip -9nf ${page})  # as Debian wants it
+  add_custom_target(${name}-manual ALL DEPENDS ${page}.gz)
+  install(FILES ${page}.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools)
 endfunction()
 
 # What all tests are built with. Their own code is compiled once and runs for moments: it is optimized little.
