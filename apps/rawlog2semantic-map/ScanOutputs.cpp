@@ -93,8 +93,6 @@ void Preview::write(const LabeledScan& scan) {
   }
 }
 
-using labeled_cloud::LabeledScan;
-
 namespace {
 
 constexpr float kPointSize = 2;  // pixels

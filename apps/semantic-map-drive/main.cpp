@@ -90,10 +90,9 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_option("--hills", hills, "Factor of the ground's heights; 0 is flat")
       ->check(isNumber(strict_files::between(0.0, 2.0)))
       ->capture_default_str();
-  app.add_option(
-      "--map", map,
-      "Map that the robot begins with (.semantic, or a folder of tiles, which stays as it "
-      "is); without: none");
+  app.add_option("--map", map,
+                 std::string("Map that the robot begins with, which stays as it is (") +
+                     inputs::kMap + "); without: none");
   addMemoryOption(app, memory);
   poses::addPose(app, "--start", start, "Where the robot is")->required();
   CLI::Option_group* where = app.add_option_group("Where to");

@@ -21,7 +21,7 @@ namespace {
 
 constexpr auto kStep = 100ms, kLook = 50ms, kWait = 20ms;
 constexpr std::size_t kMostLatencies = 10'000;
-/** Of scans that wait; beyond it the oldest goes. */
+/** Scans that wait take no more; the oldest goes. */
 constexpr std::size_t kQueueBytes = 500'000'000;
 constexpr double kTransformsAge = 1;  // s: with an older one it is not known where the robot is
 

@@ -217,9 +217,6 @@ TEST_F(SemanticMapEvaluate, refusesMapsOfOtherClassesOrOneNameAndScansWithoutLab
                 "no point of the scans has a class");
 }
 
-using namespace semantic_octree;
-using semantic_map_evaluate::Evaluation;
-
 namespace {
 
 constexpr int kScans = 40;

@@ -262,8 +262,6 @@ TEST_F(SemanticMapExport, whatWasThereStaysIfAnythingFails) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
 }
 
-using semantic_octree::SemanticOcTree;
-
 namespace {
 
 class ExportedOctrees : public MapTool {

@@ -177,7 +177,6 @@ TEST_F(CloudLabelers, refuseBadOptionsByName) {
   EXPECT_TRUE(contains(errorOf([&] { make({}, options); }), "tolerance is -1"));
 }
 
-using namespace labeled_cloud;
 using Eigen::Isometry3d;
 using Eigen::Vector3f;
 

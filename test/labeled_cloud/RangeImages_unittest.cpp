@@ -250,8 +250,6 @@ TEST(Points3d, withoutPixelsCannotBeLabeledButCountForOccupancy) {
   EXPECT_EQ(convert(*obs).counts.points, 2u);
 }
 
-using namespace labeled_cloud;
-
 namespace {
 
 /** Points whose class is not that of the surface at their depth. */

@@ -148,8 +148,6 @@ TEST(PathTracker, AloneStandsBeforeAPerson) {
   EXPECT_GT(drive.state().pose.x, 4);
 }
 
-using namespace semantic_driving;
-using namespace semantic_planning;
 namespace fs = std::filesystem;
 
 namespace {

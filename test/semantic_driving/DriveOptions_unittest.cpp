@@ -152,8 +152,6 @@ TEST(DriveOptions, SaysWhatIsWrongInAConfiguration) {
   EXPECT_NE(faultOf("[sensors]\ncamera = no\nlidar = no\n").find("both off"), std::string::npos);
 }
 
-using namespace semantic_driving;
-
 namespace {
 
 constexpr double kPeriod = 0.1;  // s

@@ -88,9 +88,6 @@ TEST(PathTracker, TooNearToAnObstacleOnlyTheWayOutIsNoApproach) {
   EXPECT_FALSE(tracker.approaches({0.5, 0}, farOff, 0.05));
 }
 
-using namespace semantic_driving;
-using namespace semantic_planning;
-
 namespace {
 
 constexpr double kVoxel = 0.2, kToTheFront = 0.55, kClearance = 0.1;  // m
@@ -213,9 +210,6 @@ TEST(PathJudgment, IsBetterOnBetterClassesAndThenIfShorter) {
         << row.path[0] << ", " << row.path[1];
 }
 
-using namespace semantic_driving;
-using namespace semantic_planning;
-
 TEST(DrivenTrack, LeadsBackTheWayTheVehicleCame) {
   constexpr double kRadius = 2;
   DrivenTrack track;
@@ -243,9 +237,6 @@ TEST(DrivenTrack, ForgetsWhatTheVehicleWentBackOnAndWhatIsLongAgo) {
   EXPECT_NEAR(back.length(), kept - 1, 0.2);
   EXPECT_NEAR(back.stretchEnd(0), back.length(), 1e-9);
 }
-
-using namespace semantic_driving;
-using namespace semantic_planning;
 
 namespace {
 

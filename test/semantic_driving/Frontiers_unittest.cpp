@@ -233,7 +233,6 @@ TEST_F(Frontiers, AGoalWithinWallsIsEnclosedOnAnAreaOfTheirs) {
 
 using namespace drive_study;
 using Eigen::Vector2d;
-using mrpt::math::TPose2D;
 
 namespace {
 

@@ -207,10 +207,6 @@ TEST(Separation, TheSlowerTheNearerOneStands) {
   EXPECT_EQ(before, 1.2);
 }
 
-using namespace semantic_driving;
-using Eigen::Vector2d;
-using mrpt::math::TPose2D;
-
 namespace {
 
 constexpr double kAsideStep = 0.1;  // s

@@ -104,8 +104,6 @@ TEST(Lidar, badOptionsAreNamed) {
   }
 }
 
-using namespace synthetic_world;
-
 TEST(Random, isTheSameEverywhere) {
   Random random(1);  // SplitMix64 of a scrambled seed
   const std::uint64_t first = random.next(), second = random.next();
@@ -203,19 +201,11 @@ TEST(SensorNoise, lidarScattersAlongItsBeams) {
   EXPECT_NEAR(wrong / double(cloud.size()), 0.2, 0.03);
 }
 
-using namespace synthetic_world;
 using State = PointTruth::State;
-using V = Eigen::Vector3d;
-
-Eigen::Isometry3d lookingAhead(double height) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation().z() = height;
-  return T;
-}
 
 TEST(Camera, depthOfFlatGroundFollowsFromTheRow) {
   const CameraOptions options;
-  const CameraFrame frame = renderCamera(small_world::flat(), lookingAhead(1.5), options);
+  const CameraFrame frame = renderCamera(small_world::flat(), raised(1.5), options);
   for (int row = 0; row < options.height; ++row) {
     const double down = (row - options.cy()) / options.focalLength(), depth = 1.5 / down;
     for (const int column : {0, 100, 319}) {
@@ -290,7 +280,7 @@ TEST(Camera, badOptionsAreNamed) {
     O options;
     change(options);
     const auto error =
-        errorOf([&, &o = options] { renderCamera(small_world::flat(), lookingAhead(1), o); });
+        errorOf([&, &o = options] { renderCamera(small_world::flat(), raised(1), o); });
     EXPECT_TRUE(contains(error, words)) << error;
   }
 }

@@ -193,9 +193,6 @@ TEST(Curve, refusesBadInput) {
             "curve: too narrow for this parallel");
 }
 
-using namespace synthetic_world;
-using V2 = Eigen::Vector2d;
-
 Polygon randomRectangle(Random& random) {
   return rectangle({random.uniform(-3, 3), random.uniform(-3, 3)}, random.uniform(-4, 4),
                    random.uniform(0.5, 4), random.uniform(0.5, 3));

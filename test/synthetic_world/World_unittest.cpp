@@ -138,7 +138,6 @@ TEST(World, footprintsNameTheirBadField) {
             "footprint: outline: three or more corners, convex, counterclockwise expected");
 }
 
-using namespace synthetic_world;
 using V2 = Eigen::Vector2d;
 
 TEST(GroundCover, laterStrokesCoverEarlierOnes) {

@@ -129,8 +129,6 @@ TEST(UnknownPrior, whatStandsOnGroundIsExpectedOnSuchGround) {
   EXPECT_GT(grass, 2 * road);
 }
 
-using namespace view_information;
-using semantic_octree::SemanticOcTree;
 using semantic_types::LabeledCloud;
 
 namespace {

@@ -28,7 +28,7 @@ std::optional<semantic_octree::SemanticOcTree> octomapIn(const std::filesystem::
 std::unique_ptr<semantic_octree::StoredMap> openMap(
     const std::filesystem::path& path, double memory,
     decltype(semantic_octree::MapFolderOptions::wanted) wanted = {});
-/** The same, as the last of some maps. */
+/** Opens any map behind those that are open. */
 template <typename Maps>
 void appendMap(Maps& maps, const std::filesystem::path& path, double memory) {
   if (auto octomap = octomapIn(path))

@@ -73,8 +73,6 @@ OpenedMap openMap(const fs::path& file, const WantedTiles& wanted) {
   return {inputs::loadMap(file), {}};
 }
 
-using semantic_octree::SemanticOcTree;
-
 namespace {
 
 /** The name of a file or of a folder. */

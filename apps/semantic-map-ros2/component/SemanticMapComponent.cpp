@@ -24,6 +24,7 @@ namespace semantic_map_ros2 {
 using sensor_msgs::msg::PointCloud2;
 
 constexpr std::size_t kMostBytes = 500'000'000;  // of clouds that wait
+constexpr std::chrono::milliseconds kStep{20};   // between looks at them
 
 /** Maps the clouds of `points`, whose poses tf2 knows, by the runtime of semantic-map-ros2, and
  * publishes `~/occupied` (x, y, z, rgb, label, probability of each occupied leaf) and, with `slam`,
@@ -51,13 +52,12 @@ class SemanticMapComponent : public rclcpp::Node {
           response->message = save();
           response->success = response->message.empty();
         });
-    m_inserts = create_wall_timer(std::chrono::milliseconds(20), [this] { insertWaiting(); });
-    m_publishes = create_wall_timer(std::chrono::duration<double>(m_parameters.node.publishPeriod),
-                                    [this] { publish(); });
+    m_inserts = create_wall_timer(kStep, [this] { insertWaiting(); });
+    const double period = std::max(m_parameters.node.publishPeriod, kStep.count() * 1e-3);
+    m_publishes = create_wall_timer(std::chrono::duration<double>(period), [this] { publish(); });
   }
 
   ~SemanticMapComponent() override {
-    m_mapper.finish();
     const std::string problem = m_scans == 0 || m_output.empty() ? "" : save();
     if (!problem.empty()) RCLCPP_ERROR(get_logger(), "%s", problem.c_str());
   }
@@ -101,6 +101,7 @@ class SemanticMapComponent : public rclcpp::Node {
   }
 
   std::string save() try {
+    if (m_output.empty()) return "the parameter output names no file";
     m_mapper.finish();
     saveTree(m_map, m_output);
     return "";
@@ -114,7 +115,7 @@ class SemanticMapComponent : public rclcpp::Node {
 
   void wait(PointCloud2::ConstSharedPtr cloud) {
     m_bytes += cloud->data.size();
-    m_waiting.push_back(std::move(cloud));
+    m_waiting.push_back({std::move(cloud), now()});
     while (m_bytes > kMostBytes && !m_waiting.empty()) {
       warn("clouds come faster than they are inserted; the oldest are left out");
       dropFirst();
@@ -122,19 +123,20 @@ class SemanticMapComponent : public rclcpp::Node {
   }
 
   void dropFirst() {
-    m_bytes -= m_waiting.front()->data.size();
+    m_bytes -= m_waiting.front().cloud->data.size();
     m_waiting.pop_front();
   }
 
   /** Clouds wait for their transforms, as long as `transform_timeout` says. */
   void insertWaiting() {
     while (!m_waiting.empty()) {
-      const PointCloud2& cloud = *m_waiting.front();
+      const PointCloud2& cloud = *m_waiting.front().cloud;
       const rclcpp::Time stamp(cloud.header.stamp, get_clock()->get_clock_type());
       try {
         insert(cloud, stamp);
       } catch (const tf2::TransformException& e) {
-        if ((now() - stamp).seconds() < m_parameters.node.transformTimeout) return;
+        const double waited = (now() - m_waiting.front().came).seconds();  // < 0: a bag began anew
+        if (waited >= 0 && waited < m_parameters.node.transformTimeout) return;
         warn(std::string("a cloud is left out: ") + e.what());
       } catch (const std::exception& e) {
         warn("a cloud is left out: " + strict_files::messageOf(e));
@@ -223,7 +225,11 @@ class SemanticMapComponent : public rclcpp::Node {
   semantic_octree::SemanticOcTree m_map;
   semantic_slam::Mapper m_mapper;
   semantic_map::ObservationClock m_clock;
-  std::deque<PointCloud2::ConstSharedPtr> m_waiting;
+  struct Waiting {
+    PointCloud2::ConstSharedPtr cloud;
+    rclcpp::Time came;
+  };
+  std::deque<Waiting> m_waiting;
   std::size_t m_bytes = 0;  ///< of those that wait
   double m_seconds = 0;     ///< that passed, by the clouds
   std::size_t m_scans = 0, m_published = 0;

@@ -188,7 +188,7 @@ class GTree final : public NodeObserver {
     const GTree& m_gTree;
     ValueRows m_valueRows;  ///< of leaves without a class record
     RowCache<ClassRecord> m_recordRows;
-    /** Of octants without class records: row, G-value, and whether it is expanded. */
+    /** Row, G-value and expansion of octants without class records. */
     RowCache<OctantPattern> m_patterns;
     std::vector<double> m_buffers;  ///< rows of a block's octants, and of a node that is inspected
     std::vector<double> m_divergences;  ///< JS_t of the node that was computed last

@@ -188,7 +188,6 @@ double CSemanticOctoMap::internal_computeObservationLikelihood(
 }
 
 using labeled_cloud::CObservationLabeledCloud;
-using labeled_cloud::LabeledScan;
 using mrpt::obs::CObservation;
 using mrpt::obs::CObservation3DRangeScan;
 using mrpt::obs::TPixelLabelInfo;

@@ -102,7 +102,7 @@ void NearestOccupied::descend(const Cube& cube, const Eigen::Vector3d& point, do
     descend(child->second, point, bound, best);
 }
 
-/** Of each voxel in a leaf. */
+/** Adds the center of each voxel in a leaf. */
 void addCenters(const SemanticOcTree::leaf_iterator& leaf, double voxel, CPointsMap& points) {
   const int n = static_cast<int>(std::lround(leaf.getSize() / voxel));
   const auto at = [&](double center, int i) {

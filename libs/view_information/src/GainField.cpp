@@ -301,8 +301,7 @@ void forVoxels(const ViewShape& shape, int reach, double far, F f) {
       }
 }
 
-/** Those of the shape and all through which they are seen; the sensor's too. Marked in the table.
- */
+/** The voxels of the shape, those through which they are seen, and the sensor's; all are marked. */
 std::vector<Offset> offsetsOf(const ViewShape& shape, int reach, double voxelSize,
                               OffsetTable& marked) {
   std::vector<Offset> all{{0, 0, 0}};

@@ -25,8 +25,8 @@ struct DriveOptions {
 
   double reactionTime = 0.3;  ///< seconds until a command has an effect
 
-  /** Of the vehicle and the map, see setFor(): the least radius that it drives, meters; and what is
-   * kept free around the footprint where the way ahead is looked at, meters. */
+  /** The least radius that the vehicle drives, and what is kept free around its footprint on the
+   * way ahead, meters: setFor() takes both from vehicle and map. */
   double turningRadius = 0.8, margin = 0.1;
 
   static constexpr double kSlowest = 0.1;       ///< m/s, as long as there is way left

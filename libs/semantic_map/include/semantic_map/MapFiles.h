@@ -93,10 +93,10 @@ void writeCsv(std::ostream& out, const semantic_octree::SemanticOcTree& tree,
  * damaged. */
 std::unique_ptr<octomap::OcTree> readOctomapFile(const std::filesystem::path& file);
 
-/** The same as a map of ours. In .ot files that semantic_octree::writeColorOcTree() wrote, colors
- * are classes again; other files hold occupancy only (CSemanticOctoMap::occupancyOnly()).
- * \param like A map whose classes (by their colors) and filter are taken instead; may be null.
- * \throw std::runtime_error as above. */
+/** Reads a map of OctoMap's into one of ours. In .ot files that semantic_octree::writeColorOcTree()
+ * wrote, colors are classes again; other files hold occupancy only
+ * (CSemanticOctoMap::occupancyOnly()). \param like A map whose classes (by their colors) and filter
+ * are taken instead; may be null. \throw std::runtime_error as readOctomapFile(). */
 semantic_octree::SemanticOcTree importOctomapFile(
     const std::filesystem::path& file, const semantic_octree::SemanticOcTree* like = nullptr);
 

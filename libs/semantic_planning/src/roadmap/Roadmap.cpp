@@ -216,7 +216,6 @@ Length Roadmap::lengthBound(VertexId a, VertexId b) const {
 Roadmap::Counts Roadmap::takeCounts() { return std::exchange(m_counts, {}); }
 
 using colored_graph::EdgeId;
-using colored_graph::EdgeState;
 using colored_graph::VertexId;
 using mrpt::poses::CPose2D;
 

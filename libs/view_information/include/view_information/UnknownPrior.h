@@ -38,7 +38,7 @@ struct UnknownPatch {
     if (h == 0) return onGround;
     return z <= top ? above : Gain{};
   }
-  /** Of the voxel below one that is known to be free: where the ground is lower than it was
+  /** What seeing the voxel below a free one tells: where the ground is lower than it was
    * expected, it is there. */
   Gain belowFree(int x, int y, int z) const { return at(x, y, z < ground ? ground : z); }
 };

@@ -14,9 +14,9 @@ namespace semantic_octree {
 /** Tiles in cubes, or in a map. */
 class TileList {
  public:
-  /** Those in a cube of a TileLog. */
+  /** Adds the tiles in a cube of a TileLog. */
   void add(std::uint64_t cube);
-  /** Those that a node's leaves are in. */
+  /** Adds the tiles that a node's leaves are in. */
   void add(const SemanticOcTreeNode& node, const Cell& cell);
   /** Each once, sorted. */
   std::vector<octomap::OcTreeKey> keys();
