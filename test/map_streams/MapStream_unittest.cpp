@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,6 +27,26 @@ TEST(MapStream, arrivesToTheLastBit) {
         EXPECT_TRUE(fileOf(receiver.map()) == fileOf(Abstraction(map).compressedMap())) << alpha;
         EXPECT_EQ(receiver.numLeaves(), Abstraction(map).compressedMap().getNumLeafNodes());
       }
+}
+
+std::size_t heap() {
+  const struct mallinfo2 use = mallinfo2();
+  return use.uordblks + use.hblkhd;
+}
+
+TEST(MapStream, aReceiverTakesLittleMoreMemoryThanItsMap) {
+  AbstractionOptions options = someOptions(0);
+  options.blockSize = 0.4;  // nearly all of the map is sent
+  SemanticOcTree map = mapOf(scansOfSmallPlace(12, 20000, K, 7), options);
+  MapSender sender(kStream);
+  sender.setMap(map);
+  const std::vector<Datagram> packets = packetsOf(sender);
+  const SemanticOcTree sent = Abstraction(map).compressedMap();
+  const std::size_t before = heap();
+  MapReceiver receiver(kStream);
+  for (const Datagram& packet : packets) receiver.accept(packet);
+  const std::size_t taken = heap() - before;
+  EXPECT_LT(taken, 2 * sent.memoryUsage());
 }
 
 TEST(MapStream, eachPrefixIsTheCompressedTreeOfItsAlpha) {

@@ -24,8 +24,8 @@ struct MapReceiver::State {
   std::unique_ptr<SemanticOcTree> kind;
   std::unique_ptr<PartCoder> coder;
   StreamTree tree;
-  /** Octets whose cubes are not there yet, by the cube. */
-  std::map<CellPath, std::vector<TreePart>> waiting;
+  /** Mask and leaves of octets whose cubes are not there yet, by the cube. */
+  std::multimap<CellPath, std::pair<std::uint8_t, std::string>> waiting;
 
   bool begin(const PacketHeader& h);
   /** If it fails, the packet has not come: what was placed is placed again, to no effect. */
@@ -33,7 +33,9 @@ struct MapReceiver::State {
   /** A part of it. */
   void describe(std::size_t number, const std::string& content);
   void apply(const std::string& content);
-  void place(TreePart part);
+  void place(const TreePart& part);
+  /** What waits for a cube, if that is there now. */
+  void release(const CellPath& cell);
   void finish();
 };
 
@@ -116,23 +118,31 @@ void MapReceiver::State::describe(std::size_t number, const std::string& content
 }
 
 void MapReceiver::State::apply(const std::string& content) {
-  for (TreePart& part : coder->decode(content)) place(std::move(part));
+  for (const TreePart& part : coder->decode(content)) place(part);
 }
 
-void MapReceiver::State::place(TreePart part) {
+void MapReceiver::State::place(const TreePart& part) {
   if (!tree.apply(part, header.revision)) {
-    waiting[part.cell].push_back(std::move(part));
-    return;
+    char leaves[kMostLeafBytes];
+    waiting.emplace(part.cell, std::pair(part.mask, std::string(leaves, putLeaves(leaves, part))));
+  } else if (!part.isOctet) {
+    release(part.cell);
+  } else {
+    for (int i = 0; i < 8; ++i)
+      if (part.mask >> i & 1) release(part.cell.child(i));
   }
-  const auto release = [&](const CellPath& cell) {
-    const auto found = waiting.find(cell);
-    if (found == waiting.end()) return;
-    for (const TreePart& below : std::vector<TreePart>(found->second)) place(below);
-    waiting.erase(cell);
-  };
-  if (!part.isOctet) return release(part.cell);
-  for (int i = 0; i < 8; ++i)
-    if (part.mask >> i & 1) release(part.cell.child(i));
+}
+
+void MapReceiver::State::release(const CellPath& cell) {
+  std::size_t n = waiting.count(cell);
+  if (n > 0 && !tree.has(cell)) return;
+  for (; n > 0; --n) {
+    const auto first = waiting.find(cell);
+    TreePart octet{cell, true, first->second.first, {}};
+    getLeaves(first->second.second.data(), octet);
+    place(octet);
+    waiting.erase(first);
+  }
 }
 
 void MapReceiver::State::finish() {

@@ -2,22 +2,55 @@
 
 #include <semantic_octree/store/TreeBuilder.h>
 
+#include <algorithm>
+#include <cstring>
+
 namespace semantic_octree {
 namespace {
 
-/** A stream's tree for TreeBuilder. */
-class StreamCursor {
- public:
-  StreamCursor(const StreamTree& tree, const StreamTree::Node& node) : m_tree(tree), m_node(node) {}
-  bool known() const { return m_node.isKnown(); }
-  bool isLeaf() const { return !m_node.isInner(); }
-  LeafContent content() const { return m_node.leaf.content(); }
-  StreamCursor child(int i) const { return {m_tree, isLeaf() ? m_node : m_tree.child(m_node, i)}; }
+/** A node for TreeBuilder. */
+struct StreamCursor {
+  Node node;
 
- private:
-  const StreamTree& m_tree;
-  const StreamTree::Node& m_node;
+  bool known() const { return bool(node); }
+  bool isLeaf() const { return node.isLeaf(); }
+  LeafContent content() const { return contentOf(node, 0); }  // a leaf's needs no classes
+  StreamCursor child(int i) const { return {isLeaf() ? node : node.child(i)}; }
 };
+
+template <typename T>
+char* put(char* to, const T& value) {
+  std::memcpy(to, &value, sizeof(T));
+  return to + sizeof(T);
+}
+
+template <typename T>
+const char* get(const char* from, T& value) {
+  std::memcpy(&value, from, sizeof(T));
+  return from + sizeof(T);
+}
+
+bool isInnerOctant(const BlockContent& block, int octant) {
+  return octantOf(block.known, octant) != 0 && !(block.leafOctants >> octant & 1);
+}
+
+void clearOctant(BlockContent& block, int octant) {
+  const VoxelBits others = ~(VoxelBits(0xff) << 8 * octant);
+  block.known &= others;
+  block.recorded &= others;
+  block.leafOctants &= static_cast<std::uint8_t>(~(1u << octant));
+  std::fill_n(block.values + 8 * octant, 8, kUnknown);
+}
+
+/** A leaf octant becomes eight voxels that say the same. */
+void splitOctant(BlockContent& block, int octant) {
+  const int first = 8 * octant;
+  const Units value = block.values[first];
+  const ClassRecord record = block.records[first];
+  const bool hasRecord = block.recorded >> first & 1;
+  block.leafOctants &= static_cast<std::uint8_t>(~(1u << octant));
+  for (int i = 0; i < 8; ++i) block.setVoxel(first + i, value, hasRecord ? &record : nullptr);
+}
 
 }  // namespace
 
@@ -46,83 +79,144 @@ LeafContent StreamLeaf::content() const {
   return c;
 }
 
-StreamTree::StreamTree() : m_octets(1) {}
-
-StreamTree::Node* StreamTree::find(const CellPath& cell) {
-  Node* node = &m_root;
-  for (int depth = 1; depth <= cell.depth; ++depth) {
-    if (!node->isInner()) return nullptr;
-    node = &m_octets[node->octet].nodes[cell.childAt(depth)];
+char* putLeaves(char* to, const TreePart& part) {
+  for (int i = 0; i < 8; ++i) {
+    if (!(part.mask >> i & 1)) continue;
+    const StreamLeaf& leaf = part.leaves[i];
+    to = put(to, leaf.kind);
+    if (leaf.kind != StreamLeaf::Kind::None) to = put(to, leaf.value);
+    if (leaf.kind == StreamLeaf::Kind::WithRecord) to = put(to, leaf.record);
   }
-  return node->isKnown() ? node : nullptr;
+  return to;
 }
 
-void StreamTree::reserve() {
-  constexpr std::size_t kMost = kTreeDepth + 1;  // octets that a part makes
-  if (m_octets.capacity() - m_octets.size() >= kMost) return;
-  m_octets.reserve(2 * m_octets.size() + kMost);
-  m_free.reserve(m_octets.capacity());
-}
-
-StreamTree::Node& StreamTree::makePlace(const CellPath& cell, std::uint16_t revision) {
-  Node* node = &m_root;
-  for (int depth = 1; depth <= cell.depth; ++depth) {
-    if (!node->isInner()) makeInner(*node, StreamLeaf(node->leaf), revision);
-    node = &m_octets[node->octet].nodes[cell.childAt(depth)];
+void getLeaves(const char* from, TreePart& part) {
+  for (int i = 0; i < 8; ++i) {
+    if (!(part.mask >> i & 1)) continue;
+    StreamLeaf& leaf = part.leaves[i];
+    from = get(from, leaf.kind);
+    if (leaf.kind != StreamLeaf::Kind::None) from = get(from, leaf.value);
+    if (leaf.kind == StreamLeaf::Kind::WithRecord) from = get(from, leaf.record);
   }
-  return *node;
 }
 
-std::uint32_t StreamTree::makeInner(Node& leaf, const StreamLeaf& children,
-                                    std::uint16_t revision) {
-  std::uint32_t octet = static_cast<std::uint32_t>(m_octets.size());
-  if (m_free.empty()) {
-    m_octets.emplace_back();
+Slot* StreamTree::find(const CellPath& cell) {
+  Slot* slot = &m_store->root();
+  for (int depth = 1; depth <= std::min(cell.depth, Block::kDepth); ++depth) {
+    if (slot->kind != Slot::Kind::Octant) return nullptr;
+    slot = &m_store->octant(*slot).slots[cell.childAt(depth)];
+  }
+  return slot;
+}
+
+bool StreamTree::has(const CellPath& cell) {
+  const Slot* slot = find(cell);
+  if (!slot || cell.depth <= Block::kDepth) return slot && slot->isKnown();
+  if (slot->kind != Slot::Kind::Block) return false;
+  const Block& block = m_store->block(*slot);
+  const int octant = cell.childAt(Block::kDepth + 1);
+  if (cell.depth == Block::kDepth + 1) return block.knownIn(octant) != 0;
+  return !block.isLeafOctant(octant) && block.knownIn(octant) >> cell.childAt(kTreeDepth) & 1;
+}
+
+/** What may fail is done before the slot changes. */
+void StreamTree::replace(Slot& slot, Slot by) {
+  std::swap(slot, by);
+  if (by.isKnown()) arena().remove(by);
+}
+
+Slot& StreamTree::makePlace(const CellPath& cell) {
+  Slot* slot = &m_store->root();
+  for (int depth = 0; depth < cell.depth && depth <= Block::kDepth; ++depth) {
+    if (!slot->isInner()) {
+      Slot inner = *slot;
+      if (depth == Block::kDepth)
+        inner.isKnown() ? arena().expandToBlock(inner) : arena().createBlock(inner);
+      else
+        inner.isKnown() ? arena().expandToOctant(inner) : arena().createOctant(inner);
+      *slot = inner;
+    }
+    if (depth < Block::kDepth) slot = &m_store->octant(*slot).slots[cell.childAt(depth + 1)];
+  }
+  return *slot;
+}
+
+void StreamTree::setLeaf(Slot& slot, const CellPath& cell, const StreamLeaf& leaf) {
+  if (slot.isInner() && isNewInner(cell)) return;
+  Slot fresh;
+  if (leaf.kind != StreamLeaf::Kind::None) leaf.content().write(arena(), fresh);
+  replace(slot, fresh);
+}
+
+void StreamTree::setLeafInBlock(BlockContent& block, const CellPath& cell, const StreamLeaf& leaf) {
+  const LeafContent content = leaf.content();
+  const bool isKnown = leaf.kind != StreamLeaf::Kind::None;
+  const int octant = cell.childAt(Block::kDepth + 1);
+  if (cell.depth == Block::kDepth + 1) {
+    if (isInnerOctant(block, octant) && isNewInner(cell)) return;
+    clearOctant(block, octant);
+    if (isKnown) block.setLeafOctant(octant, content.value, content.recordOrNull());
+    return;
+  }
+  if (block.leafOctants >> octant & 1) splitOctant(block, octant);
+  const int voxel = 8 * octant + cell.childAt(kTreeDepth);
+  block.known &= ~(VoxelBits(1) << voxel);
+  block.recorded &= ~(VoxelBits(1) << voxel);
+  block.values[voxel] = kUnknown;
+  if (isKnown) block.setVoxel(voxel, content.value, content.recordOrNull());
+}
+
+void StreamTree::changeBlock(Slot& slot, const TreePart& part) {
+  BlockContent content;
+  if (slot.kind == Slot::Kind::Block) content = m_store->contentOf(m_store->block(slot));
+  const CellPath& cell = part.cell;
+  if (!part.isOctet) {
+    setLeafInBlock(content, cell, part.leaves[0]);
   } else {
-    octet = m_free.back();
-    m_free.pop_back();
+    if (slot.kind != Slot::Kind::Block) noteInner(cell);
+    const int octant = cell.depth > Block::kDepth ? cell.childAt(Block::kDepth + 1) : 0;
+    if (cell.depth > Block::kDepth && !isInnerOctant(content, octant)) {
+      noteInner(cell);
+      clearOctant(content, octant);
+    }
+    for (int i = 0; i < 8; ++i)
+      if (part.mask >> i & 1) setLeafInBlock(content, cell.child(i), part.leaves[i]);
   }
-  count(leaf.leaf, -1);
-  count(children, 8);
-  m_octets[octet].revision = revision;
-  m_octets[octet].nodes.fill(Node{children, 0});
-  leaf.octet = octet;
-  return octet;
+  Slot fresh;
+  if (content.known) arena().createBlock(fresh, content);
+  replace(slot, fresh);
 }
 
-void StreamTree::removeBelow(Node& node) {
-  if (!node.isInner()) return count(node.leaf, -1);
-  for (Node& below : m_octets[node.octet].nodes) removeBelow(below);
-  m_free.push_back(node.octet);
-  node.octet = 0;
-}
-
-void StreamTree::setLeaf(Node& node, const StreamLeaf& leaf, std::uint16_t revision) {
-  if (node.isInner() && m_octets[node.octet].revision == revision) return;
-  removeBelow(node);
-  node.leaf = leaf;
-  count(leaf, 1);
+void StreamTree::setChildren(Slot& inner, const TreePart& octet) {
+  if (inner.kind != Slot::Kind::Octant) {
+    noteInner(octet.cell);
+    Slot fresh;
+    arena().createOctant(fresh);
+    replace(inner, fresh);
+  }
+  for (int i = 0; i < 8; ++i)
+    if (octet.mask >> i & 1)
+      setLeaf(m_store->octant(inner).slots[i], octet.cell.child(i), octet.leaves[i]);
 }
 
 bool StreamTree::apply(const TreePart& part, std::uint16_t revision) {
-  reserve();
-  if (!part.isOctet) {
-    setLeaf(makePlace(part.cell, revision), part.leaves[0], revision);
-    return true;
-  }
-  Node* inner = find(part.cell);
-  if (!inner) return false;
-  const std::uint32_t octet =
-      inner->isInner() ? inner->octet : makeInner(*inner, StreamLeaf(), revision);
-  for (int i = 0; i < 8; ++i)
-    if (part.mask >> i & 1) setLeaf(m_octets[octet].nodes[i], part.leaves[i], revision);
+  if (revision != m_revision) m_newInner.clear();
+  m_revision = revision;
+  if (part.isOctet && !has(part.cell)) return false;
+  Slot& slot = part.isOctet ? *find(part.cell) : makePlace(part.cell);
+  if (part.cell.depth > Block::kDepth || (part.isOctet && part.cell.depth == Block::kDepth))
+    changeBlock(slot, part);
+  else if (part.isOctet)
+    setChildren(slot, part);
+  else
+    setLeaf(slot, part.cell, part.leaves[0]);
   return true;
 }
 
 SemanticOcTree StreamTree::map(const SemanticOcTree& empty) const {
   SemanticOcTree map(empty);
-  if (m_root.isKnown())
-    TreeBuilder::fill(map, StreamCursor(*this, m_root), TreeBuilder::Merge::Never);
+  if (!m_store->empty())
+    TreeBuilder::fill(map, StreamCursor{m_store->rootNode()}, TreeBuilder::Merge::Never);
   return map;
 }
 

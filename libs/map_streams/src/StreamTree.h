@@ -4,8 +4,8 @@
 #include <semantic_octree/store/LeafContent.h>
 
 #include <array>
-#include <unordered_map>
-#include <vector>
+#include <memory>
+#include <set>
 
 namespace semantic_octree {
 
@@ -54,50 +54,49 @@ struct TreePart {
   std::array<StreamLeaf, 8> leaves;
 };
 
-/** A tree of which more and more becomes known: what a receiver has, and what a sender knows that
- * it will have. */
+/** The leaves that a part's mask names, one behind the other: not much more than what they say.
+ * \return where they end, at most kMostLeafBytes on */
+char* putLeaves(char* to, const TreePart& part);
+void getLeaves(const char* from, TreePart& part);
+constexpr std::size_t kMostLeafBytes = 8 * (1 + sizeof(Units) + sizeof(ClassRecord));
+
+/** A tree of which more and more becomes known: what a receiver has. It is kept as a map is. */
 class StreamTree {
  public:
-  struct Node {
-    StreamLeaf leaf;          ///< of an inner node: what it was before
-    std::uint32_t octet = 0;  ///< of an inner node: its children's
-    bool isInner() const { return octet != 0; }
-    bool isKnown() const { return isInner() || leaf.kind != StreamLeaf::Kind::None; }
-  };
-
-  StreamTree();
-  const Node& root() const { return m_root; }
-  const Node& child(const Node& inner, int i) const { return m_octets[inner.octet].nodes[i]; }
-  std::size_t numLeaves() const { return m_numLeaves; }
+  std::size_t numLeaves() const { return m_store->numNodes() - m_store->numInnerNodes(); }
+  /** Whether the cube is a leaf or an inner node. */
+  bool has(const CellPath& cell);
 
   /** An octet needs its cube to be there, as a leaf or an inner node; a leaf makes its place (a
    * larger leaf becomes eight that say the same), but does not replace an inner node of the same
-   * revision: what made it one is younger. \return whether the part found its place */
+   * revision: what made it one is younger. If it fails, what it has done is done again to no
+   * effect. \return whether the part found its place */
   bool apply(const TreePart& part, std::uint16_t revision);
   /** The tree as a map. \param empty a map of the same kind */
   SemanticOcTree map(const SemanticOcTree& empty) const;
 
  private:
-  struct Octet {
-    std::array<Node, 8> nodes;
-    std::uint16_t revision = 0;  ///< when it came to be
-  };
-  /** None: the cube is not a node. */
-  Node* find(const CellPath& cell);
-  /** From here on nothing moves, and nothing fails, until the part is in its place. */
-  void reserve();
-  Node& makePlace(const CellPath& cell, std::uint16_t revision);
-  void setLeaf(Node& node, const StreamLeaf& leaf, std::uint16_t revision);
-  std::uint32_t makeInner(Node& leaf, const StreamLeaf& children, std::uint16_t revision);
-  void removeBelow(Node& node);
-  void count(const StreamLeaf& leaf, int times) {
-    m_numLeaves += leaf.kind == StreamLeaf::Kind::None ? 0 : static_cast<std::size_t>(times);
+  NodeArena& arena() { return m_store->arena(0); }
+  /** The cube's slot, or that of the block that it is in; null: there is none. */
+  Slot* find(const CellPath& cell);
+  /** The same, which is made if need be. */
+  Slot& makePlace(const CellPath& cell);
+  void replace(Slot& slot, Slot by);
+  void setLeaf(Slot& slot, const CellPath& cell, const StreamLeaf& leaf);
+  void setLeafInBlock(BlockContent& block, const CellPath& cell, const StreamLeaf& leaf);
+  void setChildren(Slot& inner, const TreePart& octet);
+  /** \param slot of the block \param part in there */
+  void changeBlock(Slot& slot, const TreePart& part);
+  void noteInner(const CellPath& cell) {
+    if (m_revision > 1) m_newInner.insert(cell);
+  }
+  bool isNewInner(const CellPath& cell) const {
+    return m_revision <= 1 || m_newInner.count(cell) > 0;
   }
 
-  Node m_root;
-  std::vector<Octet> m_octets;
-  std::vector<std::uint32_t> m_free;
-  std::size_t m_numLeaves = 0;
+  std::unique_ptr<NodeStore> m_store = std::make_unique<NodeStore>(0);
+  std::uint16_t m_revision = 0;
+  std::set<CellPath> m_newInner;  ///< of this revision; of the first, all are
 };
 
 }  // namespace semantic_octree
