@@ -64,7 +64,7 @@ void StreamTree::reserve() {
   m_free.reserve(m_octets.capacity());
 }
 
-StreamTree::Node& StreamTree::makePlace(const CellPath& cell, std::uint16_t revision) {
+StreamTree::Node& StreamTree::makePlace(const CellPath& cell, std::uint32_t revision) {
   Node* node = &m_root;
   for (int depth = 1; depth <= cell.depth; ++depth) {
     if (!node->isInner()) makeInner(*node, StreamLeaf(node->leaf), revision);
@@ -74,7 +74,7 @@ StreamTree::Node& StreamTree::makePlace(const CellPath& cell, std::uint16_t revi
 }
 
 std::uint32_t StreamTree::makeInner(Node& leaf, const StreamLeaf& children,
-                                    std::uint16_t revision) {
+                                    std::uint32_t revision) {
   std::uint32_t octet = static_cast<std::uint32_t>(m_octets.size());
   if (m_free.empty()) {
     m_octets.emplace_back();
@@ -97,14 +97,14 @@ void StreamTree::removeBelow(Node& node) {
   node.octet = 0;
 }
 
-void StreamTree::setLeaf(Node& node, const StreamLeaf& leaf, std::uint16_t revision) {
+void StreamTree::setLeaf(Node& node, const StreamLeaf& leaf, std::uint32_t revision) {
   if (node.isInner() && m_octets[node.octet].revision == revision) return;
   removeBelow(node);
   node.leaf = leaf;
   count(leaf, 1);
 }
 
-bool StreamTree::apply(const TreePart& part, std::uint16_t revision) {
+bool StreamTree::apply(const TreePart& part, std::uint32_t revision) {
   reserve();
   if (!part.isOctet) {
     setLeaf(makePlace(part.cell, revision), part.leaves[0], revision);

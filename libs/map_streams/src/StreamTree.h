@@ -22,6 +22,8 @@ struct CellPath {
   int childAt(int atDepth) const { return static_cast<int>(path >> 3 * (depth - atDepth) & 7); }
   /** The first voxel's path, depth first. */
   std::uint64_t first() const { return path << 3 * (kTreeDepth - depth); }
+  /** Voxels in it. */
+  std::uint64_t size() const { return std::uint64_t{1} << 3 * (kTreeDepth - depth); }
   bool operator==(const CellPath& o) const { return path == o.path && depth == o.depth; }
   /** Depth first, parents before their children. */
   bool operator<(const CellPath& o) const {
@@ -73,22 +75,22 @@ class StreamTree {
   /** An octet needs its cube to be there, as a leaf or an inner node; a leaf makes its place (a
    * larger leaf becomes eight that say the same), but does not replace an inner node of the same
    * revision: what made it one is younger. \return whether the part found its place */
-  bool apply(const TreePart& part, std::uint16_t revision);
+  bool apply(const TreePart& part, std::uint32_t revision);
   /** The tree as a map. \param empty a map of the same kind */
   SemanticOcTree map(const SemanticOcTree& empty) const;
 
  private:
   struct Octet {
     std::array<Node, 8> nodes;
-    std::uint16_t revision = 0;  ///< when it came to be
+    std::uint32_t revision = 0;  ///< when it came to be
   };
   /** None: the cube is not a node. */
   Node* find(const CellPath& cell);
   /** From here on nothing moves, and nothing fails, until the part is in its place. */
   void reserve();
-  Node& makePlace(const CellPath& cell, std::uint16_t revision);
-  void setLeaf(Node& node, const StreamLeaf& leaf, std::uint16_t revision);
-  std::uint32_t makeInner(Node& leaf, const StreamLeaf& children, std::uint16_t revision);
+  Node& makePlace(const CellPath& cell, std::uint32_t revision);
+  void setLeaf(Node& node, const StreamLeaf& leaf, std::uint32_t revision);
+  std::uint32_t makeInner(Node& leaf, const StreamLeaf& children, std::uint32_t revision);
   void removeBelow(Node& node);
   void count(const StreamLeaf& leaf, int times) {
     m_numLeaves += leaf.kind == StreamLeaf::Kind::None ? 0 : static_cast<std::size_t>(times);
