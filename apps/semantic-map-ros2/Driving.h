@@ -17,7 +17,7 @@ namespace semantic_map_ros2 {
 
 /** `map`: what driving over the ground that the robot can reach costs, as nav2's static layer takes
  * it: a rank's cost, 100 where there is another thing or a forbidden class, -1 where the map knows
- * nothing. */
+ * nothing. Who reads `map_updates`, too, is told what changed. */
 class GroundGrid {
  public:
   /** Node and map must outlive it. \param costs by rank */
@@ -26,19 +26,38 @@ class GroundGrid {
              const semantic_planning::PlannerOptions& options, std::vector<int> costs,
              std::string frame);
 
-  /** If anybody reads it. */
+  /** Somebody came who has nothing yet. */
+  bool isAsked() { return m_writes.hasNewReader(); }
+  /** If anybody reads it, and it changed. */
   void publish(ros2::Stamp stamp, const Eigen::Isometry3d& T_map_robot);
 
  private:
-  int costAt(semantic_planning::Column column,
-             const std::optional<semantic_planning::GroundPoint>& robot) const;
+  using Column = semantic_planning::Column;
+  /** Columns from the lowest to the highest. */
+  struct Box {
+    Column low, high;
+    int width() const { return high.x - low.x + 1; }
+    int height() const { return high.y - low.y + 1; }
+  };
+  int costAt(Column column, const std::optional<semantic_planning::GroundPoint>& robot) const;
+  bool grow(const std::vector<Column>& tiles);
+  std::optional<Box> compute(const std::vector<Column>& tiles,
+                             const Eigen::Isometry3d& T_map_robot);
+  std::uint8_t& cell(Column column) {
+    return m_cells[std::size_t(column.y - m_box->low.y) * m_box->width() + column.x - m_box->low.x];
+  }
+  void publishAll(const ros2::Header& header);
+  void publishUpdate(const ros2::Header& header, const Box& changed);
 
   colored_graph::ClassOrder m_order;
   semantic_octree::MapFollower m_follower;
   semantic_planning::Ground m_ground;
   std::vector<int> m_costs;
   std::string m_frame;
+  std::optional<Box> m_box;  ///< of the cells
+  std::vector<std::uint8_t> m_cells;
   ros2::Publication<ros2::OccupancyGrid> m_writes;
+  ros2::Publication<ros2::OccupancyGridUpdate> m_writesUpdates;
 };
 
 /** What becomes of goals: paths (`plan`) and, if the robot drives, commands (`cmd_vel`). */

@@ -1,5 +1,6 @@
 #include "MappingNode.h"
 
+#include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <strict_files/Words.h>
 
@@ -25,6 +26,12 @@ constexpr std::size_t kMostLatencies = 10'000;
 constexpr std::size_t kQueueBytes = 500'000'000;
 constexpr double kTransformsAge = 1;  // s: with an older one it is not known where the robot is
 
+/** x, y and heading of a pose. */
+Isometry3d upright(const Isometry3d& T) {
+  const auto p = planar(T);
+  return Eigen::Translation3d(p.x, p.y, 0) * Eigen::AngleAxisd(p.phi, Eigen::Vector3d::UnitZ());
+}
+
 bool passed(steady_clock::time_point& since, steady_clock::duration period) {
   const auto now = steady_clock::now();
   if (now - since < period) return false;
@@ -43,6 +50,7 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
       m_queue(kQueueBytes),
       m_mapper(map, parameters.mapping()),
       m_messages(m_node, map, parameters.node.mapFrame),
+      m_tree(m_node, map, parameters.node.mapFrame),
       m_writesTransforms(m_node, "/tf", {true, false, 100}),
       m_save(std::move(save)),
       m_scanClock(parameters.insertion.maxGap),
@@ -53,6 +61,11 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
                     const std::lock_guard<std::mutex> lock(m_mutex);
                     m_newGoal = message;
                   }),
+      m_hearsInitialPose(m_node, "initialpose", {true, false, 1},
+                         [this](auto message) {
+                           const std::lock_guard<std::mutex> lock(m_mutex);
+                           m_newPose = message;
+                         }),
       m_hearsSave(m_node, "~/save", {true, false, 1}, [this](auto) {
         const std::lock_guard<std::mutex> lock(m_mutex);
         m_isToSave = true;
@@ -103,13 +116,16 @@ void MappingNode::look() {
 
 void MappingNode::hear() {
   std::shared_ptr<const ros2::PoseStamped> goal;
+  std::shared_ptr<const ros2::PoseWithCovarianceStamped> pose;
   bool isToSave;
   {
     const std::lock_guard<std::mutex> lock(m_mutex);
     goal = std::exchange(m_newGoal, nullptr);
+    pose = std::exchange(m_newPose, nullptr);
     isToSave = std::exchange(m_isToSave, false);
   }
   if (goal) onGoal(*goal);
+  if (pose) onInitialPose(*pose);
   if (isToSave) try {
       if (m_driving && m_driving->navigator()) m_driving->navigator()->finish();
       m_save();
@@ -120,17 +136,44 @@ void MappingNode::hear() {
 
 void MappingNode::onGoal(const ros2::PoseStamped& message) {
   if (!m_driving) return m_complaints.say("a goal came, but no order says what to drive on");
-  const Isometry3d T_frame_goal = isometryOf(message.pose);
-  const std::string frame = ros2::textOf(message.header.frame_id);
-  Transforms::Answer T_map_frame{Isometry3d::Identity(), {}};
-  if (frame != m_parameters.node.mapFrame) {
-    const auto latest = m_transforms.latest(m_parameters.node.mapFrame, frame);
-    T_map_frame = m_transforms.find(m_parameters.node.mapFrame, frame, latest.value_or(0));
-  }
-  if (!T_map_frame.T_target_source || !T_frame_goal.matrix().allFinite())
-    return m_complaints.say("a goal cannot be understood", T_map_frame.problem);
-  m_driving->setGoal(planar(*T_map_frame.T_target_source * T_frame_goal));
+  const auto T_map_goal = inMap(message.header, message.pose, "a goal");
+  if (!T_map_goal) return;
+  m_driving->setGoal(planar(*T_map_goal));
   if (m_T_world_robot) m_driving->plan(m_mapper.T_map_odometry() * *m_T_world_robot, m_stamp);
+}
+
+/** RViz says x, y and heading; height and tilt stay. */
+void MappingNode::onInitialPose(const ros2::PoseWithCovarianceStamped& message) {
+  if (!m_parameters.node.slam)
+    return m_complaints.say("an initial pose came, but without slam /tf says where the robot is");
+  const auto T_map_robot = inMap(message.header, message.pose.pose, "an initial pose");
+  const auto latest = m_transforms.latest(m_world, m_parameters.node.baseFrame);
+  const auto T_odometry_robot =
+      m_transforms.find(m_world, m_parameters.node.baseFrame, latest.value_or(m_stamp));
+  if (!T_map_robot) return;
+  if (!T_odometry_robot.T_target_source)
+    return m_complaints.say("an initial pose came before odometry", T_odometry_robot.problem);
+  if (m_driving && m_driving->navigator()) m_driving->navigator()->mapper();  // waits
+  const Isometry3d T_odometry = *T_odometry_robot.T_target_source;
+  const Isometry3d T_before = m_mapper.T_map_odometry() * T_odometry;
+  const Isometry3d T_map_now = upright(*T_map_robot) * upright(T_before).inverse() * T_before;
+  m_mapper.relocalize(T_map_now * T_odometry.inverse());
+  m_correctedAt.reset();
+  notes() << "The robot is where an initial pose has it" << std::endl;
+}
+
+std::optional<Isometry3d> MappingNode::inMap(const ros2::Header& header,
+                                             const geometry_msgs_msg_dds__Pose_& pose,
+                                             const std::string& what) {
+  const std::string frame = ros2::textOf(header.frame_id), &map = m_parameters.node.mapFrame;
+  const Isometry3d T_frame_pose = isometryOf(pose);
+  Transforms::Answer T_map_frame{Isometry3d::Identity(), {}};
+  if (frame != map)
+    T_map_frame = m_transforms.find(map, frame, m_transforms.latest(map, frame).value_or(0));
+  if (T_map_frame.T_target_source && T_frame_pose.matrix().allFinite())
+    return *T_map_frame.T_target_source * T_frame_pose;
+  m_complaints.say(what + " cannot be understood", T_map_frame.problem);
+  return std::nullopt;
 }
 
 auto MappingNode::placeOf(const WaitingScan& scan, std::string& problem, bool& isLost) const
@@ -199,12 +242,17 @@ std::optional<semantic_navigation::RobotState> MappingNode::robotAt(Stamp stamp)
 }
 
 void MappingNode::publish() {
-  if (!m_isNew) return;
+  const bool isAsked = m_tree.isAsked() || (m_grid && m_grid->isAsked());
+  if (!m_isNew && !(isAsked && m_scans > 0)) return;
   const auto period = std::chrono::duration<double>(m_parameters.node.publishPeriod);
   if (!passed(m_publishedAt, std::chrono::duration_cast<steady_clock::duration>(period))) return;
   m_isNew = false;
   if (m_driving && m_driving->navigator()) m_driving->navigator()->mapper();  // waits
   m_messages.publish(m_stamp);
+  if (hasAbstraction(m_mapper.map()))
+    m_tree.publish(m_stamp);
+  else if (m_tree.isRead())
+    m_complaints.say("~/compressed: the map has no abstraction; abstraction.relevant gives it one");
   const Isometry3d T_map_robot = m_mapper.T_map_odometry() * *m_T_world_robot;
   publishCorrection();
   if (m_grid) m_grid->publish(m_stamp, T_map_robot);
@@ -219,7 +267,8 @@ void MappingNode::publish() {
 
 /** What SLAM says holds until the next scan: for as long as odometry's transforms are known. */
 void MappingNode::publishCorrection() {
-  if (!m_parameters.node.slam || m_scans == 0) return;
+  const bool isKnown = m_scans > 0 || !m_mapper.T_map_odometry().isApprox(Isometry3d::Identity());
+  if (!m_parameters.node.slam || !isKnown) return;
   const auto latest = m_transforms.latest(m_world, m_parameters.node.baseFrame);
   const Stamp stamp = std::max(latest.value_or(m_stamp), m_stamp);
   if (m_correctedAt && *m_correctedAt == stamp) return;

@@ -11,6 +11,7 @@
 #include "MapMessages.h"
 #include "Sensors.h"
 #include "Signals.h"
+#include "TreeMessages.h"
 
 namespace semantic_map_ros2 {
 
@@ -42,6 +43,10 @@ class MappingNode {
   void publish();
   void publishCorrection();
   void onGoal(const ros2::PoseStamped& message);
+  void onInitialPose(const ros2::PoseWithCovarianceStamped& message);
+  std::optional<Eigen::Isometry3d> inMap(const ros2::Header& header,
+                                         const geometry_msgs_msg_dds__Pose_& pose,
+                                         const std::string& what);
 
   Parameters m_parameters;
   std::string m_world;  ///< the frame in which /tf has the robot
@@ -52,6 +57,7 @@ class MappingNode {
   ScanQueue m_queue;
   semantic_slam::Mapper m_mapper;
   MapMessages m_messages;
+  TreeMessages m_tree;
   std::optional<Driving> m_driving;  ///< with an order
   std::optional<GroundGrid> m_grid;  ///< with an order
   ros2::Publication<ros2::TFMessage> m_writesTransforms;
@@ -71,9 +77,11 @@ class MappingNode {
 
   std::mutex m_mutex;  ///< of what DDS's threads leave here
   std::shared_ptr<const ros2::PoseStamped> m_newGoal;
+  std::shared_ptr<const ros2::PoseWithCovarianceStamped> m_newPose;
   bool m_isToSave = false;
   Sensors m_sensors;
   ros2::Subscription<ros2::PoseStamped> m_hearsGoal;
+  ros2::Subscription<ros2::PoseWithCovarianceStamped> m_hearsInitialPose;
   ros2::Subscription<ros2::Empty> m_hearsSave;
 };
 

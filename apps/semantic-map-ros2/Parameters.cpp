@@ -149,8 +149,12 @@ semantic_octree::SemanticOcTree Parameters::newMap() const {
   const auto table = map.classes.empty() ? semantic_map::CSemanticOctoMap::occupancyOnly()
                                          : semantic_types::loadClassTable(map.classes);
   semantic_octree::SemanticOcTree tree(map.resolution, table, insertion.filter);
-  if (abstraction.isSet()) setAbstraction(tree, abstraction.forClasses(tree.classes()));
+  abstract(tree);
   return tree;
+}
+
+void Parameters::abstract(semantic_octree::SemanticOcTree& tree) const {
+  if (abstraction.isSet()) setAbstraction(tree, abstraction.forClasses(tree.classes()));
 }
 
 Parameters readParameters(const std::vector<fs::path>& files,

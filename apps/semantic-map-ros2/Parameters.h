@@ -25,6 +25,8 @@ struct Parameters {
   semantic_slam::MapperOptions mapping() const;
   /** An empty map. \throw std::runtime_error naming the file of classes that cannot be read. */
   semantic_octree::SemanticOcTree newMap() const;
+  /** Has a map keep the abstraction that they ask for, if any. */
+  void abstract(semantic_octree::SemanticOcTree& map) const;
 };
 
 /** \param files of parameters (YAML), below `ros__parameters` as ROS has them, or plain; files that

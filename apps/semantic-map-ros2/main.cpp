@@ -1,13 +1,17 @@
 // Makes a semantic octree map in a live ROS 2 system, without ROS.
 #include <semantic_octree/TreeFile.h>
 
+#include <chrono>
 #include <ostream>
 #include <stdexcept>
+#include <thread>
+#include <utility>
 
 #include "Application.h"
 #include "MappingNode.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
+#include "TreeMessages.h"
 #include "inputs/Inputs.h"
 
 namespace semantic_map_ros2 {
@@ -18,6 +22,7 @@ using semantic_octree::SemanticOcTree;
 
 struct Cli {
   fs::path output, map;
+  std::string copy;
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
@@ -26,10 +31,35 @@ struct Cli {
              "The map (.semantic), written after Ctrl-C, and when somebody publishes to ~/save")
         ->required();
     app.add_option("--map", map, "Map to go on with; its frame is the frame of all poses");
+    app.add_option("--copy", copy,
+                   "Makes no map, but keeps a copy of another node's compressed tree; that one's "
+                   "name: /semantic_map");
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of each scan");
     app.footer("As ROS has it: --ros-args -r FROM:=TO -p NAME:=VALUE --params-file FILE (YAML)");
   }
 };
+
+int keepCopy(const Cli& cli, const ros2::Arguments& arguments, const StopRequest& stop) {
+  constexpr std::chrono::milliseconds kLook(50);
+  ros2::Node node("semantic_map_copy", arguments);
+  TreeReader reader(node, cli.copy);
+  Complaints complaints;
+  notes() << "Waiting for a tree; Ctrl-C ends and saves" << std::endl;
+  for (bool isThere = false; !stop.pending(); std::this_thread::sleep_for(kLook)) {
+    for (const std::string& problem : node.look()) complaints.say(problem);
+    if (const auto problem = reader.look(); !problem.empty())
+      complaints.say(cli.copy + ": " + problem);
+    if (!std::exchange(isThere, isThere || reader.isCurrent()) && reader.isCurrent())
+      notes() << "The tree has come" << std::endl;
+  }
+  complaints.sum();
+  const auto map = reader.map();
+  if (!map)
+    throw std::runtime_error(cli.copy + ": no compressed tree came: there is no map to save");
+  if (!reader.isCurrent()) notes() << "The last changes did not come" << std::endl;
+  saveTree(*map, cli.output.string());
+  return 0;
+}
 
 int run(const Cli& cli, const ros2::Arguments& arguments) {
   if (!arguments.problem.empty()) throw CLI::ValidationError(arguments.problem);
@@ -37,7 +67,9 @@ int run(const Cli& cli, const ros2::Arguments& arguments) {
   const std::vector<fs::path> files(arguments.files.begin(), arguments.files.end());
   const Parameters parameters = readParameters(files, arguments.parameters);
   cli.outputs.check({cli.output}, files);
+  if (!cli.copy.empty()) return keepCopy(cli, arguments, stop);
   SemanticOcTree map = cli.map.empty() ? parameters.newMap() : inputs::loadMap(cli.map);
+  if (!cli.map.empty()) parameters.abstract(map);
   MappingNode node(parameters, arguments, map, [&] {
     saveTree(map, cli.output.string());
     notes() << cli.output.string() << ": saved" << std::endl;

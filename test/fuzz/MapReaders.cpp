@@ -105,7 +105,8 @@ std::vector<std::string> recordsOf(const std::string& bytes) {
 }
 
 /** Packets of a map, and of its changes behind each empty record. The first record is the depth of
- * the trees' roots (1 byte), and what is frequent. All checksums but the map's own are right. */
+ * the trees' roots (1 byte), and what is frequent. All checksums but the map's own are right. A
+ * copy takes them, too, as messages. */
 void receivePackets(const std::string& bytes) {
   std::vector<std::string> records = recordsOf(bytes);
   if (records.empty() || records[0].empty()) return;
@@ -114,11 +115,20 @@ void receivePackets(const std::string& bytes) {
   description.coding = records[0].substr(1);
   description.kind = semantic_octree::fileOf(emptyMap());
   semantic_octree::MapReceiver receiver(kStream);
+  semantic_octree::TreeCopy copy;
   semantic_octree::PacketHeader header;
   for (auto at = records.begin(); at != records.end();) {
     auto end = std::find(at + 1, records.end(), "");
     std::vector<std::string> contents(at + 1, end);
     const std::string text = description.compressed();
+    const bool isFirst = at == records.begin();
+    try {
+      copy.accept(semantic_octree::TreeMessage{kStream, header.revision + 1u, isFirst,
+                                               isFirst ? text : "", contents}
+                      .bytes());
+      expectSound(copy.map());
+    } catch (const std::exception&) {
+    }
     constexpr std::size_t kPart = semantic_octree::kMaxContent;
     header.numDescription = static_cast<std::uint8_t>((text.size() + kPart - 1) / kPart);
     for (std::size_t i = header.numDescription; i > 0; --i)

@@ -113,17 +113,20 @@ TEST_F(RoadInGrass, isDrivenToAGoal) {
   EXPECT_EQ(live->end(), kStopped) << live->said();
 }
 
+/** The last transform from map to odom. */
+const ros2::TransformStamped* correctionIn(const Heard<ros2::TFMessage>& transforms) {
+  const ros2::TransformStamped* last = nullptr;
+  for (const auto& message : transforms.all())
+    for (std::uint32_t i = 0; i < message->transforms._length; ++i)
+      if (ros2::textOf(message->transforms._buffer[i].child_frame_id) == "odom")
+        last = &message->transforms._buffer[i];
+  return last;
+}
+
 TEST_F(RoadInGrass, correctsOdometry) {
   start({"-p", "slam:=true", "-p", "slam.level:=true"});
   Heard<ros2::TFMessage> transforms(*live, "/tf");
-  const auto correction = [&]() -> const ros2::TransformStamped* {
-    const ros2::TransformStamped* last = nullptr;
-    for (const auto& message : transforms.all())
-      for (std::uint32_t i = 0; i < message->transforms._length; ++i)
-        if (ros2::textOf(message->transforms._buffer[i].child_frame_id) == "odom")
-          last = &message->transforms._buffer[i];
-    return last;
-  };
+  const auto correction = [&] { return correctionIn(transforms); };
   for (int i = 1; i <= 6; ++i) {  // odometry drifts, the robot stands
     const ros2::Stamp stamp = i * kSecond;
     live->place("odom", "base_link", Isometry3d(Translation3d(0.03 * (i - 1), 0, 0)), stamp);
@@ -136,4 +139,56 @@ TEST_F(RoadInGrass, correctsOdometry) {
   EXPECT_EQ(ros2::textOf(correction()->header.frame_id), "map");
   EXPECT_NEAR(correction()->transform.translation.x, -0.15, 0.06);
   EXPECT_EQ(live->end(), kStopped) << live->said();
+}
+
+/** The robot is carried, and a person says roughly where it is. */
+TEST_F(RoadInGrass, isWhereAnInitialPoseHasIt) {
+  start({"-p", "slam:=true", "-p", "slam.level:=true"});
+  Heard<ros2::TFMessage> transforms(*live, "/tf");
+  ros2::Publication<ros2::PoseWithCovarianceStamped> poses(live->node(), "initialpose", {});
+  const auto poseAt = [](double x, double y, double heading) {
+    return Isometry3d(Translation3d(x, y, 0) * AngleAxisd(heading, Vector3d::UnitZ()));
+  };
+  // Walls are then in the middle of voxels, which are what the map says of them.
+  const Isometry3d T_map_room = poseAt(0.1, 0.1, 0), T_odometry_robot = T_map_room,
+                   T_room_carried = poseAt(2, 1, M_PI / 4);
+  const auto seeFrom = [&](const Isometry3d& T_room_robot, int number) {
+    auto cloud = room();
+    for (auto& p : cloud.points) p = (T_room_robot.inverse() * p.cast<double>()).cast<float>();
+    live->place("odom", "base_link", T_odometry_robot, number * kSecond);
+    live->send(*points, PointMessage(cloud, "base_link", number * kSecond).message());
+    ASSERT_TRUE(live->waitForScans(std::size_t(number)));
+  };
+  for (int i = 1; i <= 3; ++i) seeFrom(Isometry3d::Identity(), i);
+  const std::string map = "map";
+  ros2::PoseWithCovarianceStamped near{};
+  near.header = ros2::headerOf(0, map);
+  const double heading = M_PI / 4 + 0.08;
+  near.pose.pose = {{2.3, 0.95, 0}, {0, 0, std::sin(heading / 2), std::cos(heading / 2)}};
+  auto nowhere = near;
+  nowhere.pose.pose.position.x = NAN;
+  live->send(poses, nowhere);
+  ASSERT_TRUE(live->waitFor(
+      [&] { return contains(live->said(), "an initial pose cannot be understood"); }));
+  live->send(poses, near);
+  ASSERT_TRUE(
+      live->waitFor([&] { return contains(live->said(), "where an initial pose has it"); }));
+  for (int i = 4; i <= 6; ++i) seeFrom(T_room_carried, i);
+  ASSERT_TRUE(live->waitFor([&] {
+    const auto* last = correctionIn(transforms);
+    return last && ros2::stampOf(last->header.stamp) >= 6 * kSecond;
+  }));
+  const auto& T = correctionIn(transforms)->transform;
+  const Isometry3d expected = T_map_room * T_room_carried * T_odometry_robot.inverse();
+  EXPECT_NEAR(T.translation.x, expected(0, 3), 0.06);
+  EXPECT_NEAR(T.translation.y, expected(1, 3), 0.06);
+  EXPECT_NEAR(2 * std::atan2(T.rotation.z, T.rotation.w), M_PI / 4, 0.02);
+  EXPECT_EQ(live->end(), kStopped) << live->said();
+}
+
+TEST_F(RoadInGrass, needsSlamForAnInitialPose) {
+  start({});
+  ros2::Publication<ros2::PoseWithCovarianceStamped> poses(live->node(), "initialpose", {});
+  for (int i = 0; i < 2; ++i) live->send(poses, {});
+  EXPECT_TRUE(live->waitFor([&] { return contains(live->said(), "an initial pose came, but"); }));
 }

@@ -43,7 +43,8 @@ DomainOfItsOwn::DomainOfItsOwn() : m_lock(socket(AF_UNIX, SOCK_STREAM | SOCK_CLO
 DomainOfItsOwn::~DomainOfItsOwn() { close(m_lock); }
 
 LiveMap::LiveMap(const std::vector<std::string>& parameters,
-                 const std::vector<std::string>& arguments) {
+                 const std::vector<std::string>& arguments, const LiveMap* beside) {
+  if (!beside) m_domain.emplace();
   std::vector<std::string> words = {MSO_BIN_DIR "/semantic-map-ros2", "-v", "-o",
                                     (folder / "map.semantic").string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -65,7 +66,7 @@ LiveMap::LiveMap(const std::vector<std::string>& parameters,
                                                                       ros2::Qos{true, false, 100});
   m_static = std::make_unique<ros2::Publication<ros2::TFMessage>>(*m_node, "/tf_static",
                                                                   ros2::Qos{true, true, 1});
-  waitFor([this] { return contains(said(), "Waiting for scans") || !isRunning(); });
+  waitFor([this] { return contains(said(), "Waiting for ") || !isRunning(); });
 }
 
 LiveMap::~LiveMap() {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,10 @@ constexpr int kStopped = 130;
 /** semantic-map-ros2 as a process, and a node that speaks to it. */
 class LiveMap {
  public:
-  /** Waits until it hears. \param parameters behind --ros-args */
+  /** Waits until it hears. \param parameters behind --ros-args \param beside whose domain it is in;
+   * null: one of its own */
   explicit LiveMap(const std::vector<std::string>& parameters,
-                   const std::vector<std::string>& arguments = {});
+                   const std::vector<std::string>& arguments = {}, const LiveMap* beside = nullptr);
   ~LiveMap();
 
   ros2::Node& node() { return *m_node; }
@@ -59,7 +61,7 @@ class LiveMap {
   TemporaryFolder folder;
 
  private:
-  DomainOfItsOwn m_domain;
+  std::optional<DomainOfItsOwn> m_domain;
   int m_process = -1;
   std::unique_ptr<ros2::Node> m_node;
   std::unique_ptr<ros2::Publication<ros2::TFMessage>> m_transforms, m_static;

@@ -110,6 +110,77 @@ TEST_F(RoadInGrass, isAGridOfCosts) {
   EXPECT_EQ(live->end(), kStopped) << live->said();
 }
 
+/** A grid as nav2's static layer keeps it: the last whole one, and what changed since. */
+class KeptGrid {
+ public:
+  explicit KeptGrid(LiveMap& live)
+      : m_grids(live, "/map", {true, true, 1}), m_updates(live, "/map_updates") {}
+  std::size_t grids() const { return m_grids.all().size(); }
+  std::size_t updates() const { return m_updates.all().size(); }
+  std::shared_ptr<const ros2::OccupancyGridUpdate> update() const { return m_updates.last(); }
+  /** -2: there is no such cell. */
+  int at(double x, double y) const {
+    const auto grid = m_grids.last();
+    if (!grid) return -2;
+    const auto& info = grid->info;
+    const auto column = int(std::floor((x - info.origin.position.x) / double(info.resolution)));
+    const auto row = int(std::floor((y - info.origin.position.y) / double(info.resolution)));
+    if (column < 0 || row < 0 || column >= int(info.width) || row >= int(info.height)) return -2;
+    int cost = std::int8_t(grid->data._buffer[std::size_t(row) * info.width + column]);
+    for (const auto& update : m_updates.all()) {
+      const int i = column - update->x, j = row - update->y;
+      const bool isLater = ros2::stampOf(update->header.stamp) > ros2::stampOf(grid->header.stamp);
+      if (isLater && i >= 0 && j >= 0 && i < int(update->width) && j < int(update->height))
+        cost = std::int8_t(update->data._buffer[std::size_t(j) * update->width + i]);
+    }
+    return cost;
+  }
+
+ private:
+  Heard<ros2::OccupancyGrid> m_grids;
+  Heard<ros2::OccupancyGridUpdate> m_updates;
+};
+
+TEST_F(RoadInGrass, tellsWhatChangedInItsGrid) {
+  start({"-p", "order:=" + order(), "-p", "costs:=10,60"});
+  KeptGrid kept(*live);
+  see(1);
+  ASSERT_TRUE(live->waitFor([&] { return kept.at(3.1, 0.1) == 10; }));
+  EXPECT_EQ(kept.updates(), 0u);
+  const std::size_t grids = kept.grids();
+  auto box = scan();  // a thing on the road, 2 m wide
+  for (std::size_t i = 0; i < box.size(); ++i)
+    if ((box.points[i].head<2>() - Eigen::Vector2f(3, 0)).cwiseAbs().maxCoeff() < 1) {
+      box.points[i].z() += 0.6f;
+      box.classes[i] = 3;
+    }
+  std::size_t number = 2;
+  ASSERT_TRUE(live->waitFor([&] { return see(number++, box), kept.at(3.1, 0.1) == 100; }));
+  EXPECT_EQ(kept.at(3.1, 3.1), 60);
+  EXPECT_EQ(kept.grids(), grids) << "no whole grid";
+  EXPECT_LE(kept.update()->width, 16u);
+  EXPECT_LE(kept.update()->height, 16u);
+  {
+    KeptGrid late(*live);  // which nothing is missing
+    ASSERT_TRUE(live->waitFor([&] { return late.at(3.1, 0.1) == 100; }));
+  }
+  // Somebody who does not hear updates gets all of it, and so does who needs a larger grid.
+  const std::size_t updates = kept.updates();
+  {
+    Heard<ros2::OccupancyGrid> all(*live, "/map", {true, true, 1});
+    ASSERT_TRUE(live->waitFor([&] { return all.last() != nullptr; }));
+    const std::size_t before = all.all().size();
+    ASSERT_TRUE(live->waitFor([&] { return see(number++), all.all().size() > before; }));
+    EXPECT_EQ(kept.updates(), updates);
+  }
+  semantic_types::LabeledCloud far = scan();
+  for (Eigen::Vector3f& p : far.points) p.x() += 10;
+  const std::size_t whole = kept.grids();
+  ASSERT_TRUE(live->waitFor([&] { return see(number++, far), kept.at(16.1, 0.1) == 10; }));
+  EXPECT_EQ(kept.grids(), whole + 1);
+  EXPECT_EQ(live->end(), kStopped) << live->said();
+}
+
 TEST_F(RoadInGrass, isSavedByAMessage) {
   start({});
   ros2::Publication<ros2::Empty> save(live->node(), "/semantic_map/save", {});

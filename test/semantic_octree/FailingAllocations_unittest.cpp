@@ -273,3 +273,25 @@ TEST(FailingAllocations, aReceiverTakesAPacketThatFailedAgain) {
   });
   EXPECT_GT(failures, 30);
 }
+
+TEST(FailingAllocations, aBroadcastTellsEverythingAfterAFailureAndACopyTakesIt) {
+  SemanticOcTree map = mapOf(2, 6, true);
+  const SemanticOcTree before(map);
+  const SemanticOcTree other = mapOf(3, 7, true);
+  std::optional<TreeBroadcast> sender;
+  std::optional<TreeCopy> copy;
+  const auto prepare = [&] {
+    map = before;
+    sender.emplace(map, 1);
+    copy.emplace();
+    copy->accept(sender->change());
+    map = other;
+  };
+  const auto tell = [&] { copy->accept(sender->change()); };
+  const int failures = failEachAllocation(prepare, tell, [&] {
+    if (const std::string change = sender->change(); !change.empty()) copy->accept(change);
+    EXPECT_TRUE(copy->accept(sender->all()));
+    EXPECT_TRUE(copy->map() == Abstraction(map).compressedMap());
+  });
+  EXPECT_GT(failures, 30);
+}

@@ -256,6 +256,28 @@ TEST(Mapper, aMapWithContentIsTheFrameAndIsNotMoved) {
       << mapper.T_map_odometry().matrix();
 }
 
+TEST(Mapper, isFoundAgainWhereAPersonSaysThatItIs) {
+  SemanticOcTree map(0.2, wallsAndCars());
+  Mapper mapper(map, localizing());
+  const auto see = [&](const Eigen::Isometry3d& T_yard_robot) {
+    return mapper.insert(yardFrom(T_yard_robot), Eigen::Isometry3d::Identity(), planar(0, 0, 0), 0)
+        .place.T_map_robot;
+  };
+  const auto T_map_yard = planar(0.1, 0.1, 0), T_begin = planar(-2, 1, 0.2);
+  mapper.relocalize(T_map_yard * T_begin);  // before the first scan, odometry begins there
+  EXPECT_LT((see(T_begin).translation() - (T_map_yard * T_begin).translation()).norm(), 1e-9);
+  const SemanticOcTree before(map);
+  const auto T_carried = planar(2, -1.5, 1);
+  mapper.relocalize(T_map_yard * planar(2.3, -1.7, 0.9));
+  EXPECT_TRUE(map == before);
+  const auto T = see(T_carried), off = (T_map_yard * T_carried).inverse() * T;
+  EXPECT_LT(off.translation().norm(), 0.05);
+  EXPECT_LT(Eigen::AngleAxisd(off.linear()).angle(), 0.01);
+  EXPECT_LT((mapper.T_map_odometry().translation() - T.translation()).norm(), 1e-9);
+  SemanticOcTree other(0.2, wallsAndCars());
+  EXPECT_THROW(Mapper(other, {}).relocalize(T), std::logic_error);
+}
+
 TEST(Mapper, whatTheRobotStandsOnCarvesNothing) {
   for (const bool localize : {false, true}) {
     YardSeen yard(localize);

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <regex>
 #include <stdexcept>
+#include <utility>
 
 namespace ros2 {
 
@@ -250,17 +251,23 @@ Writer::~Writer() {
   dds_delete(m_topic);
 }
 
-bool Writer::write(const void* message) { return dds_write(m_writer, message) == DDS_RETCODE_OK; }
+bool Writer::write(const void* message) {
+  if (dds_write(m_writer, message) != DDS_RETCODE_OK) return false;
+  m_hasNewReader = false;
+  return true;
+}
 
-bool Writer::isRead() const {
+std::uint32_t Writer::readers() const {
   dds_publication_matched_status_t status;
-  return dds_get_publication_matched_status(m_writer, &status) == 0 && status.current_count > 0;
+  const bool isKnown = dds_get_publication_matched_status(m_writer, &status) == 0;
+  return isKnown ? status.current_count : 0;
 }
 
 bool Writer::hasNewReader() {
   dds_publication_matched_status_t status;
-  if (dds_get_publication_matched_status(m_writer, &status) != 0) return false;
-  return std::exchange(m_readers, status.total_count) != status.total_count;
+  if (dds_get_publication_matched_status(m_writer, &status) == 0)
+    m_hasNewReader |= std::exchange(m_readers, status.total_count) != status.total_count;
+  return m_hasNewReader;
 }
 
 }  // namespace ros2

@@ -112,14 +112,16 @@ class Writer {
 
   /** Waits a moment at most for readers that do not follow. \return whether it was written */
   bool write(const void* message);
-  /** Whether anybody reads it now. */
-  bool isRead() const;
-  /** Whether a reader came since the last call. */
+  /** How many read it now. */
+  std::uint32_t readers() const;
+  bool isRead() const { return readers() > 0; }
+  /** Whether a reader came for whom nothing was written yet. */
   bool hasNewReader();
 
  private:
   dds_entity_t m_topic = 0, m_writer = 0;
   std::uint32_t m_readers = 0;  ///< that ever came
+  bool m_hasNewReader = false;
 };
 
 /** Writes messages of a topic. */

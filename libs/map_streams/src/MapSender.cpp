@@ -36,7 +36,7 @@ std::vector<Packet> packetsOf(const TreeParts& parts, const PartCoder& coder) {
 struct MapSender::State {
   std::uint32_t stream;
   PacketHeader header;                   ///< of the present revision
-  std::unique_ptr<SemanticOcTree> told;  ///< what the receiver will have; null: nothing, or all
+  StreamTree told;                       ///< what the receiver will have; of the last map: nothing
   std::unique_ptr<SemanticOcTree> kind;  ///< an empty map
   std::unique_ptr<PartCoder> coder;
   std::vector<Packet> packets;
@@ -74,16 +74,17 @@ void MapSender::setMap(SemanticOcTree& map, bool isLast) {
   if (!isComplete()) throw std::logic_error("the receiver does not have the map before yet");
   if (s.header.isLast) throw std::logic_error("a map behind the last one");
   const Abstraction abstraction(map);
-  auto kind =
-      std::make_unique<SemanticOcTree>(map.getResolution(), map.classes(), map.filterParameters());
+  auto kind = std::make_unique<SemanticOcTree>(abstraction.emptyCompressedMap());
   s.checkNext(*kind, abstraction.rootDepth());
-  auto parts = std::make_unique<TreeParts>(partsOfChange(map, s.told.get()));
+  auto parts = std::make_unique<TreeParts>(partsOfChange(map, s.told));
   auto coder = std::make_unique<PartCoder>(
       s.coder ? *s.coder : coderFor(*parts, map.numClasses(), abstraction.rootDepth()));
   std::vector<Packet> data = packetsOf(*parts, *coder);
+  StreamTree told = isLast ? StreamTree() : s.told;
+  for (std::size_t i = 0; !isLast && i < parts->parts.size(); ++i)
+    told.apply(parts->parts.part(i), s.header.revision + 1u);
   parts = nullptr;
-  auto compressed = std::make_unique<SemanticOcTree>(abstraction.compressedMap());
-  std::vector<Packet> all = s.description(checksumOf(*compressed), *coder, *kind);
+  std::vector<Packet> all = s.description(checksumOf(abstraction.compressedMap()), *coder, *kind);
   const std::size_t numDescription = all.size();
   std::move(data.begin(), data.end(), std::back_inserter(all));
   if (all.size() > kMaxPackets)
@@ -91,7 +92,7 @@ void MapSender::setMap(SemanticOcTree& map, bool isLast) {
                                 " packets is too large to be sent");
   s.kind = std::move(kind);
   s.coder = std::move(coder);
-  s.told = isLast ? nullptr : std::move(compressed);
+  s.told = std::move(told);
   s.header.isLast = isLast;
   s.take(std::move(all), numDescription);
 }

@@ -345,4 +345,42 @@ Datagram Datagram::of(const std::string& bytes) {
   return d;
 }
 
+namespace {
+constexpr char kTreeMark[] = {'S', 'O', 'T', 1};  // the last one is the version
+}
+
+std::string TreeMessage::bytes() const {
+  std::string bytes(sizeof(std::uint32_t), '\0');
+  bytes.append(kTreeMark, sizeof(kTreeMark));
+  Fields fields(bytes);
+  fields.put(stream);
+  fields.put(number);
+  fields.put(static_cast<std::uint8_t>(isAll));
+  fields.putText(description);
+  fields.put(static_cast<std::uint32_t>(parts.size()));
+  for (const std::string& group : parts) fields.putText(group);
+  const std::uint32_t crc = crcOf(bytes, sizeof(crc));
+  std::memcpy(&bytes[0], &crc, sizeof(crc));
+  return bytes;
+}
+
+TreeMessage TreeMessage::of(const std::string& bytes) {
+  std::string text = bytes;
+  Fields fields(text);
+  const auto crc = fields.get<std::uint32_t>();
+  for (const char c : kTreeMark)
+    if (fields.get<char>() != c)
+      throw std::runtime_error("no change of a compressed tree, or one of another version");
+  if (crc != crcOf(text, sizeof(crc)))
+    throw std::runtime_error("altered: a change whose checksum does not match");
+  TreeMessage m;
+  m.stream = fields.get<std::uint32_t>();
+  m.number = fields.get<std::uint32_t>();
+  m.isAll = fields.get<std::uint8_t>() != 0;
+  m.description = fields.getText();
+  for (auto groups = fields.get<std::uint32_t>(); groups > 0; --groups)
+    m.parts.push_back(fields.getText());
+  return m;
+}
+
 }  // namespace semantic_octree

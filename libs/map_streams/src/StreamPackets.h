@@ -66,6 +66,18 @@ struct StreamDescription {
   static StreamDescription of(const std::string& compressed);
 };
 
+/** What TreeBroadcast tells at once. */
+struct TreeMessage {
+  std::uint32_t stream = 0, number = 0;  ///< the tree is then that of so many changes
+  bool isAll = false;                    ///< what it tells is all that there is
+  std::string description;               ///< from here on; empty: the one before
+  std::vector<std::string> parts;        ///< as a PartCoder writes them
+
+  std::string bytes() const;
+  /** \throw std::runtime_error of another program, or altered. */
+  static TreeMessage of(const std::string& bytes);
+};
+
 /** CRC-32 of a map's file. */
 std::uint32_t checksumOf(const SemanticOcTree& map);
 std::string fileOf(const SemanticOcTree& map);

@@ -199,7 +199,7 @@ void StreamTree::setChildren(Slot& inner, const TreePart& octet) {
       setLeaf(m_store->octant(inner).slots[i], octet.cell.child(i), octet.leaves[i]);
 }
 
-bool StreamTree::apply(const TreePart& part, std::uint16_t revision) {
+bool StreamTree::apply(const TreePart& part, std::uint32_t revision) {
   if (revision != m_revision) m_newInner.clear();
   m_revision = revision;
   if (part.isOctet && !has(part.cell)) return false;

@@ -22,6 +22,8 @@ struct CellPath {
   int childAt(int atDepth) const { return static_cast<int>(path >> 3 * (depth - atDepth) & 7); }
   /** The first voxel's path, depth first. */
   std::uint64_t first() const { return path << 3 * (kTreeDepth - depth); }
+  /** Voxels in it. */
+  std::uint64_t size() const { return std::uint64_t{1} << 3 * (kTreeDepth - depth); }
   bool operator==(const CellPath& o) const { return path == o.path && depth == o.depth; }
   /** Depth first, parents before their children. */
   bool operator<(const CellPath& o) const {
@@ -60,9 +62,20 @@ char* putLeaves(char* to, const TreePart& part);
 void getLeaves(const char* from, TreePart& part);
 constexpr std::size_t kMostLeafBytes = 8 * (1 + sizeof(Units) + sizeof(ClassRecord));
 
-/** A tree of which more and more becomes known: what a receiver has. It is kept as a map is. */
+/** A tree of which more and more becomes known: what a receiver has, and what a sender knows that
+ * it will have. It is kept as a map is. */
 class StreamTree {
  public:
+  StreamTree() = default;
+  StreamTree(const StreamTree& o)
+      : m_store(std::make_unique<NodeStore>(*o.m_store, 0)),
+        m_revision(o.m_revision),
+        m_newInner(o.m_newInner) {}
+  StreamTree(StreamTree&&) = default;
+  StreamTree& operator=(StreamTree&&) = default;
+
+  /** None: the tree is empty. */
+  Node root() const { return m_store->rootNode(); }
   std::size_t numLeaves() const { return m_store->numNodes() - m_store->numInnerNodes(); }
   /** Whether the cube is a leaf or an inner node. */
   bool has(const CellPath& cell);
@@ -71,7 +84,7 @@ class StreamTree {
    * larger leaf becomes eight that say the same), but does not replace an inner node of the same
    * revision: what made it one is younger. If it fails, what it has done is done again to no
    * effect. \return whether the part found its place */
-  bool apply(const TreePart& part, std::uint16_t revision);
+  bool apply(const TreePart& part, std::uint32_t revision);
   /** The tree as a map. \param empty a map of the same kind */
   SemanticOcTree map(const SemanticOcTree& empty) const;
 
@@ -95,7 +108,7 @@ class StreamTree {
   }
 
   std::unique_ptr<NodeStore> m_store = std::make_unique<NodeStore>(0);
-  std::uint16_t m_revision = 0;
+  std::uint32_t m_revision = 0;
   std::set<CellPath> m_newInner;  ///< of this revision; of the first, all are
 };
 

@@ -4,6 +4,7 @@
 #include <tuple>
 
 namespace semantic_octree {
+
 void PartList::add(const TreePart& part, std::size_t step, bool begins) {
   if (m_used + kMostLeafBytes > kChunk) {
     m_chunks.push_back(std::make_unique<char[]>(kChunk));
@@ -72,6 +73,9 @@ class Steps {
   tree_abstraction::AlphaSteps m_steps;
 };
 
+/** A leaf's needs no classes. */
+StreamLeaf leafOf(const Node& leaf) { return StreamLeaf::of(contentOf(leaf, 0)); }
+
 /** What a receiver has of a cube. */
 struct Before {
   /** Part: of a larger leaf. */
@@ -88,35 +92,34 @@ struct Before {
     return {kind == Kind::None ? Kind::None : Kind::Part, {}};
   }
   bool isNode() const { return kind == Kind::Leaf || kind == Kind::Inner; }
+  bool is(const StreamLeaf& leaf) const { return kind == Kind::Leaf && leafOf(node) == leaf; }
 };
 
 class Comparison {
  public:
-  Comparison(const SemanticOcTree& map, const Abstraction& abstraction,
-             const SemanticOcTree* before, Steps& steps, PartList& parts)
+  /** \param steps null: all parts are of one \param changed null: anywhere */
+  Comparison(const SemanticOcTree& map, const Abstraction& abstraction, const StreamTree& before,
+             Steps* steps, const ChangedCells* changed, PartList& parts)
       : m_map(map),
         m_abstraction(abstraction),
         m_before(before),
         m_steps(steps),
+        m_changed(changed),
         m_rootDepth(abstraction.rootDepth()),
         m_parts(parts) {}
 
-  void run() {
-    compare(m_map.root(), CellPath(), Before::of(m_before ? m_before->root() : Node()));
-  }
+  void run() { compare(m_map.root(), CellPath(), Before::of(m_before.root())); }
 
  private:
   bool isInner(const Node& node) const { return node && m_abstraction.isExpanded(node); }
   StreamLeaf leafOf(const Node& node) const {
     return node ? StreamLeaf::of(contentOf(node, m_map.numClasses())) : StreamLeaf();
   }
-  bool isLeafOf(const Before& before, const StreamLeaf& leaf) const {
-    return before.kind == Before::Kind::Leaf &&
-           StreamLeaf::of(contentOf(before.node, m_map.numClasses())) == leaf;
-  }
+  bool mayDiffer(const CellPath& cell) const { return !m_changed || m_changed->touch(cell); }
 
   /** At the depth of the roots and above. */
   void compare(const Node& node, const CellPath& cell, const Before& before) {
+    if (!mayDiffer(cell)) return;
     const bool inner = isInner(node);
     if (inner && cell.depth < m_rootDepth) {
       for (int i = 0; i < 8; ++i) compare(node.child(i), cell.child(i), before.child(i));
@@ -125,7 +128,7 @@ class Comparison {
       compareOctet(node, cell, before, 0);
     } else if (node || before.kind != Before::Kind::None) {
       const StreamLeaf leaf = leafOf(node);
-      if (!isLeafOf(before, leaf)) addLeaf(cell, leaf);
+      if (!before.is(leaf)) addLeaf(cell, leaf);
     }
   }
 
@@ -143,33 +146,54 @@ class Comparison {
     part.cell = cell;
     part.isOctet = true;
     part.mask = 0;
-    const std::size_t step = m_steps.of(cell);
+    const std::size_t step = m_steps ? m_steps->of(cell) : 0;
     const bool wasInner = before.kind == Before::Kind::Inner;
     for (int i = 0; i < 8; ++i) {
       const Node child = node.child(i);
+      if (wasInner && !mayDiffer(cell.child(i))) continue;
       const Before was = wasInner ? before.child(i) : Before();
       if (isInner(child) ? was.isNode() : !child && was.kind == Before::Kind::None) continue;
       part.leaves[i] = leafOf(child);
-      const bool isSame = !isInner(child) && isLeafOf(was, part.leaves[i]);
+      const bool isSame = !isInner(child) && was.is(part.leaves[i]);
       part.mask |= static_cast<std::uint8_t>(!isSame << i);
     }
     if (part.mask != 0) m_parts.add(part, step, stepAbove < step);
     for (int i = 0; i < 8; ++i)
-      if (const Node child = node.child(i); isInner(child))
+      if (const Node child = node.child(i);
+          isInner(child) && !(wasInner && !mayDiffer(cell.child(i))))
         compareOctet(child, cell.child(i), wasInner ? before.child(i) : Before(), step);
   }
 
   const SemanticOcTree& m_map;
   const Abstraction& m_abstraction;
-  const SemanticOcTree* m_before;
-  Steps& m_steps;
+  const StreamTree& m_before;
+  Steps* m_steps;
+  const ChangedCells* m_changed;
   int m_rootDepth;
   PartList& m_parts;
 };
 
 }  // namespace
 
-TreeParts partsOfChange(SemanticOcTree& map, const SemanticOcTree* before) {
+ChangedCells::ChangedCells(std::vector<CellPath> cells) {
+  std::sort(cells.begin(), cells.end());
+  for (const CellPath& cell : cells) {
+    const std::uint64_t begin = cell.first(), end = begin + cell.size();
+    if (!m_ranges.empty() && begin <= m_ranges.back().second)
+      m_ranges.back().second = std::max(m_ranges.back().second, end);
+    else
+      m_ranges.emplace_back(begin, end);
+  }
+}
+
+bool ChangedCells::touch(const CellPath& cell) const {
+  const std::uint64_t begin = cell.first();
+  const auto endsLater = std::partition_point(m_ranges.begin(), m_ranges.end(),
+                                              [&](const auto& r) { return r.second <= begin; });
+  return endsLater != m_ranges.end() && endsLater->first < begin + cell.size();
+}
+
+TreeParts partsOfChange(SemanticOcTree& map, const StreamTree& before) {
   const Abstraction abstraction(map);
   Steps steps(abstraction);
   TreeParts result;
@@ -180,8 +204,72 @@ TreeParts partsOfChange(SemanticOcTree& map, const SemanticOcTree* before) {
   // Also of what rounding alone expands.
   result.alphas.push_back(abstraction.options().weights.alpha);
   result.ties.push_back(result.alphas.back());
-  Comparison(map, abstraction, before, steps, result.parts).run();
+  Comparison(map, abstraction, before, &steps, nullptr, result.parts).run();
   result.parts.sort();
+  return result;
+}
+
+TreeParts unorderedPartsOfChange(SemanticOcTree& map, const StreamTree& before,
+                                 const ChangedCells* changed) {
+  TreeParts result;
+  Comparison(map, Abstraction(map), before, nullptr, changed, result.parts).run();
+  return result;
+}
+
+namespace {
+
+class Telling {
+ public:
+  Telling(int rootDepth, PartList& parts) : m_rootDepth(rootDepth), m_parts(parts) {}
+
+  /** What is said of a node that is no octet's child, or lies at the roots. */
+  void tell(const Node& node, const CellPath& cell) {
+    if (!node) return;
+    if (node.isLeaf() || cell.depth == m_rootDepth) {
+      TreePart part;
+      part.cell = cell;
+      part.leaves[0] = leafOrPlace(node);
+      m_parts.add(part, 0, true);
+    }
+    if (node.isLeaf()) return;
+    if (cell.depth == m_rootDepth) return tellBelow(node, cell);
+    for (int i = 0; i < 8; ++i) tell(node.child(i), cell.child(i));
+  }
+
+ private:
+  /** Where an inner node will be there is any leaf before. */
+  static StreamLeaf leafOrPlace(const Node& node) {
+    StreamLeaf place;
+    place.kind = StreamLeaf::Kind::Plain;
+    return node.isLeaf() ? leafOf(node) : place;
+  }
+
+  void tellBelow(const Node& inner, const CellPath& cell) {
+    TreePart part;
+    part.cell = cell;
+    part.isOctet = true;
+    part.mask = 0;
+    for (int i = 0; i < 8; ++i) {
+      const Node child = inner.child(i);
+      if (!child) continue;
+      part.leaves[i] = leafOrPlace(child);
+      part.mask |= static_cast<std::uint8_t>(1u << i);
+    }
+    m_parts.add(part, 0, true);
+    for (int i = 0; i < 8; ++i)
+      if (const Node child = inner.child(i); child && !child.isLeaf())
+        tellBelow(child, cell.child(i));
+  }
+
+  int m_rootDepth;
+  PartList& m_parts;
+};
+
+}  // namespace
+
+TreeParts partsOf(const StreamTree& tree, int rootDepth) {
+  TreeParts result;
+  Telling(rootDepth, result.parts).tell(tree.root(), CellPath());
   return result;
 }
 

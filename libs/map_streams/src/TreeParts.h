@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "StreamTree.h"
@@ -49,7 +50,25 @@ struct TreeParts {
    * its price. The last is the map's own. */
   std::vector<double> alphas, ties;
 };
-/** \param before what the receiver has; null: nothing */
-TreeParts partsOfChange(SemanticOcTree& map, const SemanticOcTree* before);
+/** Cubes in which a tree may have changed. */
+class ChangedCells {
+ public:
+  explicit ChangedCells(std::vector<CellPath> cells);
+  /** Whether a cube holds, or is held by, one of them. */
+  bool touch(const CellPath& cell) const;
+
+ private:
+  /** Paths of first voxels, from the first to behind the last: in order, apart from each other. */
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> m_ranges;
+};
+
+/** \param before what the receiver has */
+TreeParts partsOfChange(SemanticOcTree& map, const StreamTree& before);
+/** The same without the order of the alphas: all parts are of one step.
+ * \param changed elsewhere the tree is what it was before; null: anywhere */
+TreeParts unorderedPartsOfChange(SemanticOcTree& map, const StreamTree& before,
+                                 const ChangedCells* changed);
+/** What tells a receiver who has nothing of a tree. */
+TreeParts partsOf(const StreamTree& tree, int rootDepth);
 
 }  // namespace semantic_octree

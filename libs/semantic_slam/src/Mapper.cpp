@@ -27,10 +27,22 @@ auto Mapper::locate(const std::vector<SensorScan>& seen,
   if (!m_slam && !T_odometry_robot)
     throw std::invalid_argument("Mapper: scans without a pose of odometry need localize");
   if (!m_slam) return {*T_odometry_robot, {}};
-  const Slam::Added added = addToSlam(seen, T_odometry_robot);
+  std::optional<Eigen::Isometry3d> T_start_robot;
+  if (T_odometry_robot) T_start_robot = m_T_start_odometry * *T_odometry_robot;
+  const Slam::Added added = addToSlam(seen, T_start_robot);
   const Eigen::Isometry3d T_map_robot = m_slam->poses().back() * added.T_keyframe_robot;
   if (T_odometry_robot) m_T_map_odometry = T_map_robot * T_odometry_robot->inverse();
   return {T_map_robot, added};
+}
+
+void Mapper::relocalize(const Eigen::Isometry3d& T_map_odometry) {
+  if (!m_slam) throw std::logic_error("Mapper: to relocalize needs localize");
+  m_T_map_odometry = m_T_start_odometry = T_map_odometry;
+  if (m_slam->poses().empty()) return;
+  finish();
+  m_keyframes = nullptr;
+  m_slam.emplace(m_options.slam);
+  m_slam->setReference(m_map);
 }
 
 Slam::Added Mapper::addToSlam(const std::vector<SensorScan>& seen,

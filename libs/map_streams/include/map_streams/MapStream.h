@@ -122,4 +122,50 @@ class MapReceiver {
   std::unique_ptr<State> m_state;
 };
 
+/** Tells what becomes of a map's compressed tree, to any number of copies, by messages of any size
+ * that arrive in order or are lost, as those of topics. */
+class TreeBroadcast {
+ public:
+  /** \param map keeps G-values (setAbstraction()) before the first call, and outlives this
+   * \param stream another one each time that one begins */
+  TreeBroadcast(SemanticOcTree& map, std::uint32_t stream);
+  ~TreeBroadcast();
+  TreeBroadcast(TreeBroadcast&&) noexcept;
+
+  /** What changed since the last call; the first time, after another abstraction, and of another
+   * kind of map all of it. Takes time for what changed. Empty: nothing did.
+   * \throw std::logic_error the map keeps no G-values. Then, and if memory is short, the next call
+   * tells everything. */
+  std::string change();
+  /** All that was told up to now: for who comes late, or lost a change. */
+  std::string all() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> m_state;
+};
+
+/** A copy of the compressed tree that a TreeBroadcast tells of. */
+class TreeCopy {
+ public:
+  TreeCopy();
+  ~TreeCopy();
+  TreeCopy(TreeCopy&&) noexcept;
+
+  /** Takes a change(), or all(). What is known already is ignored; what lacks something before it
+   * waits for that, or for all(). \return isCurrent()
+   * \throw std::runtime_error altered; if it was a change, all() is needed. */
+  bool accept(const std::string& message);
+  /** Nothing that was heard of is missing. Otherwise a message with all() is needed, and the map is
+   * that of some time before. */
+  bool isCurrent() const;
+  /** \throw std::logic_error nothing came yet. */
+  SemanticOcTree map() const;
+  std::size_t numLeaves() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> m_state;
+};
+
 }  // namespace semantic_octree

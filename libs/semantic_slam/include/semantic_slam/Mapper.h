@@ -72,6 +72,11 @@ class Mapper {
    * \throw std::invalid_argument there is none, and no `localize` */
   Place locate(const std::vector<SensorScan>& seen,
                const std::optional<Eigen::Isometry3d>& T_odometry_robot);
+  /** The robot is elsewhere than it was found to be, as a person says, or before the first scan
+   * somewhere else than where odometry begins. The next scan is registered to the map from there.
+   * What was inserted until now moves no more: it is the map in whose frame poses are.
+   * \throw std::logic_error without `localize` */
+  void relocalize(const Eigen::Isometry3d& T_map_odometry);
   /** Inserts what was seen at once, or leaves it out; moves keyframes, if a loop was closed. The
    * map ages by the time since the last scan. Another thread may do it, as long as none reads the
    * map.
@@ -117,6 +122,8 @@ class Mapper {
   std::optional<Slam> m_slam;
   std::unique_ptr<semantic_octree::KeyframeMap> m_keyframes;  ///< if the map may be corrected
   Eigen::Isometry3d m_T_map_odometry = Eigen::Isometry3d::Identity();
+  /** What Slam takes for odometry's frame. */
+  Eigen::Isometry3d m_T_start_odometry = Eigen::Isometry3d::Identity();
   int m_leftOut = 0;  ///< scans since the last that was inserted
   semantic_octree::Calibrator m_calibrator;
   std::size_t m_numScans = 0, m_calibrateAt = 4;
