@@ -32,42 +32,60 @@ std::vector<VoxelId> voxelsIn(const SemanticOcTree& map) {
   return ids;
 }
 
-/** What the map says of a voxel's classes by itself: ln p(class | occupied); none without a label.
- */
-std::optional<std::vector<double>> ownLogs(const SemanticOcTree& map, const VoxelId& id) {
-  if (map.query(keyOf(id)).likeliestClass == kNoClass) return std::nullopt;
-  std::vector<double> logs = map.distribution(*map.search(keyOf(id)));
-  for (int k = 1; k <= kViewClasses; ++k) logs[k] = std::log(logs[k] / (1 - logs[0]));
-  return logs;
+/** The record of a voxel, if it has one. */
+std::optional<SemanticOcTree::Belief> beliefAt(const SemanticOcTree& map, const VoxelId& id) {
+  const auto leaf = map.search(keyOf(id));
+  if (!leaf || !leaf.hasClassRecord()) return std::nullopt;
+  return map.belief(leaf);
 }
 
-/** The sum of the documentation, term by term: kViewClasses + 1 probabilities; none where no voxel
- * has a label. */
-std::optional<std::vector<double>> expectedClasses(const SemanticOcTree& map, const VoxelId& id,
-                                                   double weight) {
-  const auto own = ownLogs(map, id);
-  std::vector<double> sum = own.value_or(std::vector<double>(kViewClasses + 1));
-  double weights = own ? 1 : 0;
+/** Of neighbors that agree on a class and name a second one, how many name the same; 20 that do
+ * come first. */
+double shareRepeatedIn(const SemanticOcTree& map) {
+  double pairs = 20, same = 20;
+  for (const auto& [id, p] : voxelsOf(map))
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      VoxelId next = id;
+      ++next[axis];
+      const auto a = beliefAt(map, id), b = beliefAt(map, next);
+      if (!a || !b || a->count < 2 || b->count < 2 || a->ids[0] != b->ids[0]) continue;
+      const auto isOccupied = [&](const VoxelId& v) { return map.query(keyOf(v)).occupancy > 0.5; };
+      if (!isOccupied(id) || !isOccupied(next)) continue;
+      pairs += 2;
+      same += a->ids[1] == b->ids[1] ? 2 : 0;
+    }
+  return same / pairs;
+}
+
+/** The formulas of the documentation, term by term: kViewClasses + 1 probabilities; none where no
+ * voxel has a label. */
+std::optional<std::vector<double>> expectedClasses(const SemanticOcTree& map, double repeated,
+                                                   const VoxelId& id, double weight) {
+  const auto own = beliefAt(map, id);
+  std::vector<double> sum(kViewClasses + 1, 0.0);
+  double weights = 0;
   for (int x = -1; x <= 1; ++x)
     for (int y = -1; y <= 1; ++y)
       for (int z = -1; z <= 1; ++z) {
         const int axes = std::abs(x) + std::abs(y) + std::abs(z);
-        if (axes == 0 || (own && axes > 1)) continue;
-        const auto logs = ownLogs(map, {id[0] + x, id[1] + y, id[2] + z});
-        if (!logs) continue;
-        const double share = weight / (axes == 1 ? 1 : axes == 2 ? 2 : 4);
-        for (int k = 1; k <= kViewClasses; ++k) sum[k] += share * (*logs)[k];
+        const auto belief = beliefAt(map, {id[0] + x, id[1] + y, id[2] + z});
+        if (!belief || (own && axes > 1)) continue;
+        const double share = axes == 0 ? 1 : weight / (axes == 1 ? 1 : axes == 2 ? 2 : 4);
+        for (int k = 1; k <= kViewClasses; ++k)
+          sum[k] += share * belief->logOddsOf(static_cast<ClassId>(k));
         weights += share;
       }
   if (weights == 0) return std::nullopt;
-  for (double& x : sum) x /= std::sqrt(std::max(1.0, weights));
+  for (double& x : sum) x /= 1 + repeated * (std::max(1.0, weights) - 1);
   const FilterParameters& f = map.filterParameters();
   const double lowest = *std::max_element(sum.begin() + 1, sum.end()) +
                         std::log(f.minOccupancy / (1 - f.minOccupancy) / kViewClasses) -
                         std::log(f.maxProbability / (1 - f.maxProbability));
   double total = 0;
-  for (int k = 1; k <= kViewClasses; ++k) total += sum[k] = std::exp(std::max(sum[k], lowest));
-  for (int k = 1; k <= kViewClasses; ++k) sum[k] /= total;
+  for (int k = 1; k <= kViewClasses; ++k)
+    total += sum[k] = std::exp(f.calibration.power * std::max(sum[k], lowest));
+  for (int k = 1; k <= kViewClasses; ++k) sum[k] *= (own ? 1 - f.calibration.shared : 1) / total;
+  for (int i = 0; own && i < own->count; ++i) sum[own->ids[i]] += f.calibration.shared / own->count;
   return sum;
 }
 
@@ -100,12 +118,16 @@ SemanticOcTree mapOfLabels(const std::vector<Label>& labels) {
 
 TEST(SmoothedView, addsWhatNeighborsTellAsDocumented) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
-    const SemanticOcTree map = mapOfScans(seed);
+    SemanticOcTree map = mapOfScans(seed);
+    const double repeated = shareRepeatedIn(map);
+    EXPECT_GT(repeated, 0.05);
+    EXPECT_LT(repeated, 0.95);
     for (const double weight : {0.1, 0.4, 1.0}) {
+      map.setCalibration(weight == 0.1 ? Calibration() : Calibration{0.7, 0.2});
       const SmoothedView view(map, {weight});
       int answered = 0, changed = 0;
       for (const VoxelId& id : voxelsIn(map)) {
-        const auto expected = expectedClasses(map, id, weight);
+        const auto expected = expectedClasses(map, repeated, id, weight);
         const CellState own = map.query(keyOf(id)), state = view.query(keyOf(id));
         EXPECT_EQ(state.status, own.status);
         EXPECT_EQ(state.occupancy, own.occupancy);
@@ -126,6 +148,40 @@ TEST(SmoothedView, addsWhatNeighborsTellAsDocumented) {
       EXPECT_GT(changed, answered / 10);
     }
   }
+}
+
+TEST(SmoothedView, statesWhatTheMapDoesWhereNoNeighborHasALabel) {
+  std::vector<Label> labels;
+  for (int x = -9; x <= 9; x += 2) labels.push_back({{x, 0, 0}, ClassId(1 + (x + 9) % 5), 3});
+  SemanticOcTree map = mapOfLabels(labels);
+  map.setCalibration({0.6, 0.2});
+  const SmoothedView view(map, {1.0});
+  for (const Label& label : labels) {
+    const auto own = map.distribution(map.search(keyOf(label.voxel)));
+    const auto smoothed = view.distribution(keyOf(label.voxel));
+    for (std::size_t k = 0; k < own.size(); ++k) EXPECT_NEAR(smoothed[k], own[k], 1e-3);
+  }
+}
+
+// Whether what speaks against a class is one thing in a whole patch, or another in each voxel.
+TEST(SmoothedView, isMadeSureByNeighborsThatErrByThemselvesAndNotByOthers) {
+  const auto surest = [](bool inPatches) {
+    std::vector<Label> labels;
+    for (int x = -8; x <= 8; ++x)
+      for (int y = -8; y <= 8; ++y) {
+        const int patch = inPatches ? 0 : (x + 8) * 5 + (y + 8) * 3 + x * y;
+        labels.push_back({{x, y, 0}, ClassId(2 + std::abs(patch) % 4), 1});
+        labels.push_back({{x, y, 0}, 1, 2});
+      }
+    SemanticOcTree map = mapOfLabels(labels);
+    map.setCalibration({0.2, 0});
+    const auto own = map.query(keyOf({0, 0, 0})),
+               smoothed = SmoothedView(map).query(keyOf({0, 0, 0}));
+    EXPECT_EQ(smoothed.likeliestClass, 1);
+    return (smoothed.probability - own.probability) / own.occupancy;
+  };
+  EXPECT_NEAR(surest(true), 0, 0.01);
+  EXPECT_GT(surest(false), 0.05);
 }
 
 // Two classes on either side of a line, at any angle and place, whatever the weight.

@@ -40,8 +40,8 @@ struct Street {
     map.setCalibration(calibrator.fit(map));
   }
 
-  Evaluation evaluate(const SemanticOcTree& asked) const {
-    const SmoothedView view(asked, {0.0});
+  Evaluation evaluate(const SemanticOcTree& asked, double neighborWeight = 0) const {
+    const SmoothedView view(asked, {neighborWeight});
     Evaluation evaluation(table.size());
     for (std::size_t i = 1; i < frames.size(); i += 2)
       for (std::size_t k = 0; k < frames[i].cloud.size(); ++k)
@@ -81,6 +81,26 @@ TEST(StreetCalibration, makesTheTruthLikelierInAMapOfWrongLabels) {
       EXPECT_LT(stated.logLoss(), believed.logLoss()) << sequence << ' ' << share;
       EXPECT_LT(stated.calibrationError(), 0.07) << sequence << ' ' << share;
     }
+}
+
+TEST(StreetCalibration, isNotWorseWithNeighborsWhateverIsWrongWithTheLabels) {
+  SKIP_WITHOUT_DATA("semantic_kitti");
+  using Kind = LabelNoise::Kind;
+  const struct {
+    const char* sequence;
+    double share;
+    Kind kind;
+  } wrong[] = {{"07", 0, Kind::Points},       {"00", 0.15, Kind::Points}, {"07", 0.3, Kind::Points},
+               {"00", 0.17, Kind::Blobs},     {"07", 0.17, Kind::Blobs},  {"00", 0.31, Kind::Blobs},
+               {"07", 0.17, Kind::Persistent}};
+  for (const auto& [sequence, share, kind] : wrong) {
+    const Street street(sequence, 0.2, {}, {share, kind, 31, 19});
+    const Evaluation own = street.evaluate(street.map), seen = street.evaluate(street.map, 0.4);
+    const auto name = std::string(sequence) + ' ' + std::to_string(share);
+    EXPECT_LE(seen.calibrationError(), own.calibrationError() + 0.002) << name;
+    EXPECT_LE(seen.logLoss(), own.logLoss()) << name;
+    EXPECT_GE(seen.accuracy(), own.accuracy() - 0.001) << name;
+  }
 }
 
 namespace {

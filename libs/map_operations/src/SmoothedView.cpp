@@ -38,6 +38,47 @@ const std::vector<Neighbor>& neighbors() {
 
 constexpr int kFaces = 6;
 
+/** A leaf that holds a voxel in which labels were seen, or none. */
+SemanticOcTreeNode labeledLeaf(const SemanticOcTree& map, const Eigen::Array3i& voxel) {
+  if (map.empty() || (voxel < 0).any() || (voxel >= kNumKeys).any()) return {};
+  const SemanticOcTreeNode leaf = map.search(octomapKey(voxel.x(), voxel.y(), voxel.z()));
+  return leaf && leaf.hasClassRecord() ? leaf : SemanticOcTreeNode();
+}
+
+/** So many pairs count as seen that tell the same, and about so many leaves are looked at. */
+constexpr double kPairsBefore = 20;
+constexpr std::size_t kMostLeaves = 1 << 18;
+
+/** Of voxels across a face that agree on the likeliest class and name a second one, the share of
+ * those whose second class is the same. */
+double shareRepeated(const SemanticOcTree& map) {
+  double pairs = kPairsBefore, same = kPairsBefore;
+  const std::size_t oneIn = 1 + map.getNumLeafNodes() / kMostLeaves;
+  std::size_t number = 0;
+  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+    if (number++ % oneIn != 0 || leaf.getDepth() != map.getTreeDepth()) continue;
+    if (!leaf->hasClassRecord() || !map.isNodeOccupied(*leaf)) continue;
+    const SemanticOcTree::Belief own = map.belief(*leaf);
+    const octomap::OcTreeKey key = leaf.getKey();
+    for (int face = 0; own.count > 1 && face < kFaces; ++face) {
+      const SemanticOcTreeNode next = labeledLeaf(
+          map, Eigen::Array3i(key[0], key[1], key[2]) + neighbors()[std::size_t(face)].offset);
+      if (!next || !map.isNodeOccupied(next)) continue;
+      const SemanticOcTree::Belief other = map.belief(next);
+      if (other.count < 2 || other.ids[0] != own.ids[0]) continue;
+      ++pairs;
+      same += other.ids[1] == own.ids[1];
+    }
+  }
+  return same / pairs;
+}
+
+void add(const SemanticOcTree::Belief& belief, double weight, std::vector<double>& logs) {
+  for (double& x : logs) x += weight * belief.rest;
+  for (int i = 0; i < belief.count; ++i)
+    logs[belief.ids[i] - 1] += weight * (belief.logOdds[i] - belief.rest);
+}
+
 }  // namespace
 
 void SmoothingOptions::describe(strict_files::OptionList& list) {
@@ -53,6 +94,7 @@ SmoothedView::SmoothedView(const SemanticOcTree& map, const SmoothingOptions& op
       m_options(options),
       m_mostBehind(mostBehind(map.filterParameters(), map.numClasses())) {
   options.validate();
+  if (options.neighborWeight > 0) m_repeated = shareRepeated(map);
 }
 
 CellState SmoothedView::query(const octomap::OcTreeKey& key) const {
@@ -87,44 +129,28 @@ std::vector<double> SmoothedView::distribution(double x, double y, double z) con
 }
 
 std::vector<double> SmoothedView::classes(const octomap::OcTreeKey& key) const {
-  std::vector<double> p = logClasses(key);
-  if (p.empty()) return p;
+  std::vector<double> p(m_map.numClasses(), 0.0);
+  const Eigen::Array3i voxel(key[0], key[1], key[2]);
+  const SemanticOcTreeNode leaf = labeledLeaf(m_map, voxel);
+  const SemanticOcTree::Belief own = leaf ? m_map.belief(leaf) : SemanticOcTree::Belief();
+  double heard = leaf ? 1 : 0;
+  if (leaf) add(own, 1, p);
+  const auto end = leaf ? neighbors().begin() + kFaces : neighbors().end();
+  for (auto n = neighbors().begin(); m_options.neighborWeight > 0 && n != end; ++n)
+    if (const SemanticOcTreeNode next = labeledLeaf(m_map, voxel + n->offset)) {
+      const double weight = m_options.neighborWeight * n->share;
+      add(m_map.belief(next), weight, p);
+      heard += weight;
+    }
+  if (heard == 0) return {};
+  const auto [power, shared] = m_map.filterParameters().calibration;
+  const double repeats = 1 + m_repeated * std::max(0.0, heard - 1);
   const double highest = *std::max_element(p.begin(), p.end());
   double sum = 0;
-  for (double& x : p) sum += x = std::exp(x - highest);
-  for (double& x : p) x /= sum;
+  for (double& x : p) sum += x = std::exp(power * std::max((x - highest) / repeats, -m_mostBehind));
+  for (double& x : p) x *= (own.count > 0 ? 1 - shared : 1) / sum;
+  for (int i = 0; i < own.count; ++i) p[own.ids[i] - 1] += shared / own.count;
   return p;
-}
-
-std::vector<double> SmoothedView::logClasses(const octomap::OcTreeKey& key) const {
-  std::vector<double> logs(m_map.numClasses(), 0.0);
-  const Eigen::Array3i voxel(key[0], key[1], key[2]);
-  const bool own = add(voxel, 1, logs);
-  double ofOthers = 0;
-  if (m_options.neighborWeight > 0) {
-    const auto begin = neighbors().begin(), end = own ? begin + kFaces : neighbors().end();
-    for (auto n = begin; n != end; ++n)
-      if (const double weight = m_options.neighborWeight * n->share;
-          add(voxel + n->offset, weight, logs))
-        ofOthers += weight;
-  }
-  if (ofOthers == 0) return own ? logs : std::vector<double>();
-  const double heard = ofOthers + own;
-  const double spread = std::sqrt(std::max(1.0, heard));
-  const double lowest = *std::max_element(logs.begin(), logs.end()) / spread - m_mostBehind;
-  for (double& x : logs) x = std::max(x / spread, lowest);
-  return logs;
-}
-
-bool SmoothedView::add(const Eigen::Array3i& voxel, double weight,
-                       std::vector<double>& logs) const {
-  if (m_map.empty() || (voxel < 0).any() || (voxel >= kNumKeys).any()) return false;
-  const SemanticOcTreeNode leaf = m_map.search(octomapKey(voxel.x(), voxel.y(), voxel.z()));
-  if (!leaf || !leaf.hasClassRecord()) return false;
-  const SemanticOcTree::Belief b = m_map.statedBelief(leaf);
-  for (double& x : logs) x += weight * b.rest;
-  for (int i = 0; i < b.count; ++i) logs[b.ids[i] - 1] += weight * (b.logOdds[i] - b.rest);
-  return true;
 }
 
 }  // namespace semantic_octree

@@ -24,19 +24,23 @@ struct SmoothingOptions {
  * Gan et al., "Bayesian Spatial Kernel Smoothing for Scalable Dense Semantic Mapping", and ConvBKI,
  * but at the query: the map stays the exact filter of its scans, and the weight can change).
  *
- * With h_k the log-odds of a voxel's classes,
+ * With h_k the log-odds that the filter believes of a voxel's classes,
  *
- *     ln p(class k | occupied) = (h_k(voxel) + weight sum_n h_k(neighbor n)) / sqrt(W)
- *                              + constant,
+ *     g_k = (h_k(voxel) + weight sum_n h_k(neighbor n)) / (1 + repeated (W - 1)),
  *
- * where W is the sum of the weights, 1 for the voxel; below 1 it counts as 1. A sum would be right
- * if neighbors erred by themselves, a mean (W instead of its root) if they all erred alike. Voxels
- * without a label tell nothing and have no weight. No class falls farther behind the likeliest than
- * the filter's limits let it in one voxel. Occupancy and status are the voxel's own.
+ * where W is the sum of the weights, 1 for the voxel; below 1 it counts as 1. Voxels without a
+ * label tell nothing and have no weight. No class falls farther behind the likeliest than the
+ * filter's limits let it in one voxel. What is stated follows from g as the map's own follows from
+ * h, with the map's Calibration: classes share what the voxel's own record names.
+ *
+ * A sum is right if neighbors err by themselves (repeated = 0), a mean if they all err alike
+ * (repeated = 1). The map tells which it is: among neighbors that agree on the likeliest class,
+ * and name a second one, `repeated` is the share of those whose second class is the same. Occupancy
+ * and status are the voxel's own.
  *
  * For maps of voxels: in a leaf of a compressed map, which is larger, the same mixture would count
- * several times. The map must outlive the view. Safe from several threads while the map does not
- * change. */
+ * several times. The map must outlive the view, and is looked at once, when the view is made, for
+ * `repeated`. Safe from several threads while the map does not change. */
 class SmoothedView {
  public:
   /** \throw std::invalid_argument bad options. */
@@ -55,15 +59,14 @@ class SmoothedView {
   std::vector<double> distribution(double x, double y, double z) const;
 
  private:
-  /** K numbers ln p(class | occupied) + constant; empty: no voxel of those asked has a label. */
-  std::vector<double> logClasses(const octomap::OcTreeKey& key) const;
-  /** K probabilities, given that the voxel is occupied; empty as above. */
+  /** K probabilities, given that the voxel is occupied; empty: no voxel of those asked has a label.
+   */
   std::vector<double> classes(const octomap::OcTreeKey& key) const;
-  bool add(const Eigen::Array3i& voxel, double weight, std::vector<double>& logs) const;
 
   const SemanticOcTree& m_map;
   SmoothingOptions m_options;
-  double m_mostBehind;  ///< the likeliest class
+  double m_mostBehind;    ///< the likeliest class
+  double m_repeated = 1;  ///< of what one voxel tells by its neighbors
 };
 
 }  // namespace semantic_octree
