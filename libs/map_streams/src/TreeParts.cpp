@@ -237,11 +237,10 @@ class Telling {
   }
 
  private:
-  /** Where an inner node will be there is any leaf before. */
-  static StreamLeaf leafOrPlace(const Node& node) {
-    StreamLeaf place;
-    place.kind = StreamLeaf::Kind::Plain;
-    return node.isLeaf() ? leafOf(node) : place;
+  /** Where an inner node will be there is any leaf before; the last one again takes least. */
+  const StreamLeaf& leafOrPlace(const Node& node) {
+    if (node.isLeaf()) m_last = leafOf(node);
+    return m_last;
   }
 
   void tellBelow(const Node& inner, const CellPath& cell) {
@@ -263,6 +262,7 @@ class Telling {
 
   int m_rootDepth;
   PartList& m_parts;
+  StreamLeaf m_last{{}, 0, StreamLeaf::Kind::Plain};
 };
 
 }  // namespace
