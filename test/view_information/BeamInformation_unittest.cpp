@@ -312,6 +312,100 @@ TEST(BeamInformation, isTheMeanSurpriseOfAllOutcomes) {
   }
 }
 
+namespace {
+
+/** Weights times I_Y of the tree with these leaves: sum of shares of H(mean) - H(cell). */
+double objectiveOf(const Question& question, const Cells& cells) {
+  Distribution mean(cells[0].size(), 0);
+  double left = 0;
+  for (const Distribution& p : cells) {
+    for (std::size_t k = 0; k < p.size(); ++k) mean[k] += p[k] / static_cast<double>(cells.size());
+    left += question.entropy(p.data()) / static_cast<double>(cells.size());
+  }
+  return question.entropy(mean.data()) - left;
+}
+
+/** Cells that are seen one through the other, by a beam. */
+struct Looking {
+  const BeamModel& model;
+  const Question& question;
+  Cells cells;
+
+  std::vector<double> reached(std::size_t count) const {
+    std::vector<double> reached(cells.size(), 0);
+    double now = 1;
+    for (std::size_t i = 0; i < count; ++i)
+      reached[i] = std::exchange(now, now * model.pass(cells[i].data()));
+    return reached;
+  }
+  /** Expected objective after all that a beam through cells i, i + 1, ... may find. */
+  double expectedAfter(std::size_t i, std::size_t end) {
+    if (i == end) return objectiveOf(question, cells);
+    double sum = 0;
+    const Distribution before = cells[i];
+    for (int w = 0; w <= model.numClasses(); ++w) {
+      cells[i] = model.after(w, before.data());
+      sum += model.probability(w, before.data()) * expectedAfter(w == 0 ? i + 1 : end, end);
+    }
+    cells[i] = before;
+    return sum;
+  }
+  /** The objective after what a beam happened to find in a world that is drawn. */
+  double drawnAfter(Draw& draw, std::size_t end) const {
+    Cells now = cells;
+    int outcome = 0;
+    for (std::size_t i = 0; i < end && outcome == 0; ++i) {
+      const auto drawn = [&](const auto& probability) {
+        double left = draw.number();
+        int k = 0;
+        while (k < model.numClasses() && (left -= probability(k)) > 0) ++k;
+        return k;
+      };
+      const int cell = drawn([&](int k) { return cells[i][static_cast<std::size_t>(k)]; });
+      outcome = drawn([&](int w) { return model.probability(w, cell); });
+      now[i] = model.after(outcome, cells[i].data());
+    }
+    return objectiveOf(question, now);
+  }
+};
+
+}  // namespace
+
+TEST(GrowthOfTree, liesBetweenItsBounds) {
+  Draw draw(11);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const int K = 1 + draw.below(3);
+    const BeamModel model = draw.model(K);
+    const Question question(weightsOf({draw.term(K, draw.number() - 0.5)}), K);
+    Looking looking{model, question, draw.cells(2 + draw.below(5), K)};
+    const std::size_t seen = 1 + static_cast<std::size_t>(draw.below(3)) % looking.cells.size();
+    const double growth = looking.expectedAfter(0, seen) - objectiveOf(question, looking.cells);
+    const Bounds bounds = growthOfTree(question, model, looking.cells, looking.reached(seen));
+    ASSERT_GE(growth, bounds.lower - 1e-12) << "trial " << trial;
+    ASSERT_LE(growth, bounds.upper + 1e-12) << "trial " << trial;
+  }
+}
+
+TEST(GrowthOfTree, isTheMeanOverSimulatedMeasurements) {
+  constexpr int kTimes = 20000, K = 3;
+  Draw draw(12);
+  const BeamModel model = draw.model(K);
+  const Question question(weightsOf({tree_abstraction::relevant("a", 1, {1, 2})}), K);
+  const Looking looking{model, question, draw.cells(200, K)};
+  const Bounds bounds = growthOfTree(question, model, looking.cells, looking.reached(12));
+  EXPECT_LT(bounds.upper - bounds.lower, 0.05 * bounds.upper);
+  const double before = objectiveOf(question, looking.cells);
+  double sum = 0, squares = 0;
+  for (int i = 0; i < kTimes; ++i) {
+    const double grown = looking.drawnAfter(draw, 12) - before;
+    sum += grown, squares += grown * grown;
+  }
+  const double mean = sum / kTimes, error = std::sqrt((squares / kTimes - mean * mean) / kTimes);
+  EXPECT_LT(error, 0.05 * bounds.upper);
+  EXPECT_GT(mean, bounds.lower - 4 * error);
+  EXPECT_LT(mean, bounds.upper + 4 * error);
+}
+
 TEST(BeamInformation, ofWhatIsIrrelevantIsALoss) {
   const int K = 3;
   const Question question(weightsOf({tree_abstraction::relevant("a", 1, {1}),

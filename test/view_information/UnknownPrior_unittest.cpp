@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <view_information/GainField.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ThreeClasses.h"
@@ -160,6 +162,16 @@ struct Scene {
   UniformPrior prior{question, model};
 };
 
+/** Of each voxel of a template, the one through which it is seen: the last in the shell before. */
+std::vector<int> parentsOf(const ViewTemplate& view) {
+  std::vector<int> parents, lastOf(static_cast<std::size_t>(view.reach()) + 1, -1);
+  for (const ViewTemplate::Voxel& v : view.voxels()) {
+    parents.push_back(v.shell > 0 ? lastOf[v.shell - 1U] : -1);
+    lastOf[v.shell] = static_cast<int>(parents.size()) - 1;
+  }
+  return parents;
+}
+
 octomap::OcTreeKey keyAt(const SemanticOcTree& map, double x, double y, double z) {
   return map.coordToKey(x, y, z);
 }
@@ -220,16 +232,77 @@ TEST(GainField, sweepIsTheTreeOfItsVoxels) {
   const auto from = keyAt(s.map, 0.5, 0.3, 1);
   const SectorGains gains = s.field.sweep(view, s.prior, from);
   std::vector<TreeCell> cells;
+  const std::vector<int> parents = parentsOf(view);
   for (const ViewTemplate::Voxel& v : view.voxels()) {
     const octomap::OcTreeKey key =
         semantic_octree::octomapKey(from[0] + v.x, from[1] + v.y, from[2] + v.z);
     const Gain unknown = s.prior.patch(0, 0).at(key[0], key[1], key[2]);
     const Gain gain = s.field.at(key).value_or(unknown);
-    cells.push_back(cells.empty() ? TreeCell{-1, 1, 0} : TreeCell{v.parent, gain.pass, gain.gain});
+    cells.push_back(cells.empty() ? TreeCell{-1, 1, 0}
+                                  : TreeCell{parents[cells.size()], gain.pass, gain.gain});
   }
   const double tree = informationOfTree(cells);
   EXPECT_GT(tree, 1);
   EXPECT_NEAR(gainOfHeading(gains, 0, 360), tree, 0.01 * tree);
+}
+
+/** The farther half of a view's reach has fewer voxels, which stand for all. */
+TEST(GainField, sweepOfAFarViewIsNearTheTreeOfAllVoxels) {
+  Scene s;
+  insertFloor(s.map, kRoad, 9);
+  s.field.update();
+  const ViewTemplate view({10, -60, 5, 360}, kVoxel);
+  const auto from = keyAt(s.map, 0.5, 0.3, 1);
+  const auto gainAt = [&](int x, int y, int z) {
+    const Gain unknown = s.prior.patch(0, 0).at(from[0] + x, from[1] + y, from[2] + z);
+    return s.field.at(semantic_octree::octomapKey(from[0] + x, from[1] + y, from[2] + z))
+        .value_or(unknown);
+  };
+  const int reach = view.reach();
+  double all = 0, count = 0, weights = 0;
+  for (int x = -reach; x <= reach; ++x)
+    for (int y = -reach; y <= reach; ++y)
+      for (int z = -reach; z <= reach; ++z) {
+        const double flat = std::hypot(x, y), up = std::atan2(z, flat) * 180 / M_PI;
+        const int shell = std::max({std::abs(x), std::abs(y), std::abs(z)});
+        if (shell == 0 || std::hypot(flat, z) * kVoxel > 10 || up < -60 || up > 5) continue;
+        double reached = 1;
+        std::array<int, 3> v{x, y, z};
+        for (int i = shell; i > 1; --i) {
+          for (int& a : v) a = static_cast<int>(std::lround(a * (i - 1.0) / i));
+          reached *= gainAt(v[0], v[1], v[2]).pass;
+        }
+        all += reached * gainAt(x, y, z).gain, ++count;
+      }
+  for (const auto& v : view.voxels()) weights += v.shell > 0 ? view.weight(v) : 0;
+  EXPECT_NEAR(weights, count, 0.03 * count);
+  EXPECT_LT(view.voxels().size(), 0.6 * count);
+  EXPECT_NEAR(gainOfHeading(s.field.sweep(view, s.prior, from), 0, 360), all, 0.15 * all);
+}
+
+TEST(GainField, knowsAsMuchAsTheOccupiedVoxelsTell) {
+  Scene s;
+  EXPECT_EQ(s.field.known(), 0);
+  double before = 0;
+  for (const ClassId id : {kGrass, kRoad, kRoad}) {
+    insertFloor(s.map, id, 1.5);
+    s.field.update();
+    double sum = 0;
+    const auto nothing = nothingKnown(3);
+    for (auto leaf = s.map.begin_leafs(); leaf != s.map.end_leafs(); ++leaf) {
+      std::vector<double> p(4);
+      s.map.belief(*leaf).distribution(3, p.data());
+      const int edge = semantic_octree::edgeAtDepth(static_cast<int>(leaf.getDepth()));
+      if (s.map.isNodeOccupied(*leaf))
+        sum += edge * edge * edge * s.question.divergence(p.data(), nothing.data());
+    }
+    EXPECT_NEAR(s.field.known(), sum, 1e-4 * sum);
+    EXPECT_GT(std::abs(sum - before), 1);
+    before = sum;
+  }
+  s.map.clear();
+  s.field.update();
+  EXPECT_EQ(s.field.known(), 0);
 }
 
 TEST(GainField, promisesLessTheMoreWasSeen) {
@@ -263,10 +336,13 @@ TEST(ViewTemplate, hasEachVoxelAfterTheOneThroughWhichItIsSeen) {
   const ViewTemplate view({4, -30, 10, 80}, kVoxel);
   const auto& voxels = view.voxels();
   ASSERT_GT(voxels.size(), 1000U);
+  const std::vector<int> parents = parentsOf(view);
   for (std::size_t i = 1; i < voxels.size(); ++i) {
     const auto& v = voxels[i];
-    ASSERT_LT(static_cast<std::size_t>(v.parent), i);
-    const auto& p = voxels[static_cast<std::size_t>(v.parent)];
+    ASSERT_EQ(v.shell, std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
+    ASSERT_GE(parents[i], 0);
+    ASSERT_LT(parents[i], static_cast<int>(i));
+    const auto& p = voxels[static_cast<std::size_t>(parents[i])];
     ASSERT_LE(std::max({std::abs(v.x - p.x), std::abs(v.y - p.y), std::abs(v.z - p.z)}), 1);
   }
   EXPECT_THROW(ViewTemplate({4, 20, 10, 80}, kVoxel), std::invalid_argument);

@@ -72,7 +72,6 @@ bool GroundFlood::fitsHeaded(Column c, int z, double x, double y) const {
 
 void GroundFlood::offer(const Place& offered, Column c) {
   const std::size_t i = m_columns.indexOf(c);
-  if (m_places[i].done || offered.cost >= m_places[i].cost) return;
   m_places[i] = offered;
   m_open.emplace(offered.cost, i);
 }
@@ -107,10 +106,11 @@ void GroundFlood::expand(Column c, const Place& place) {
     const Surface* s = m_ground.near(next, place.z, m_ground.step());
     if (!s || !s->drivable) continue;
     const colored_graph::Rank rank = m_planner.order().rank(s->classId);
-    if (rank == colored_graph::kForbidden || !(fits(next, *s, d) || isNear(next, kLenient)))
-      continue;
+    if (rank == colored_graph::kForbidden) continue;
     const double way = lengthOf(d) * m_ground.voxelSize();
-    offer({place.cost + way * (rank + 1) + turningOf(next, d), c, rank, s->z, false}, next);
+    const double cost = place.cost + way * (rank + 1) + turningOf(next, d);
+    if (cost < at(next).cost && (fits(next, *s, d) || isNear(next, kLenient)))
+      offer({cost, c, rank, s->z, false}, next);
   }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <deque>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -28,38 +30,30 @@ constexpr int kTile = 8;  // voxels, of the map's changes
 /** The sweeps that were made, as long as nothing changed in their reach. */
 class SweepMemory {
  public:
-  explicit SweepMemory(int reach) : m_reach(reach) {}
+  /** \param reach voxels */
+  explicit SweepMemory(int reach) : m_reach(reach + kTile) {}
   void changed(const semantic_octree::TileChange& change) {
-    ++m_now;
-    for (const auto& tile : change.tiles) m_changed[{tile[0] / kBlock, tile[1] / kBlock}] = m_now;
+    std::set<Column> middles;
+    for (const auto& tile : change.tiles)
+      middles.insert({tile[0] + kTile / 2, tile[1] + kTile / 2});
+    for (auto sweep = m_sweeps.begin(); sweep != m_sweeps.end();) {
+      const bool isStale = std::any_of(middles.begin(), middles.end(), [&](Column c) {
+        const int x = c.x - sweep->first.x, y = c.y - sweep->first.y;
+        return x * x + y * y < m_reach * m_reach;
+      });
+      sweep = isStale ? m_sweeps.erase(sweep) : std::next(sweep);
+    }
   }
   /** \param sweep makes it anew */
   template <class Sweep>
   const SectorGains& of(Column c, Sweep sweep) {
-    Entry& entry = m_entries[c];
-    if (entry.made == 0 || changedAt(c) > entry.made) entry = {sweep(), m_now};
-    return entry.gains;
+    const auto found = m_sweeps.find(c);
+    return found != m_sweeps.end() ? found->second : m_sweeps.emplace(c, sweep()).first->second;
   }
 
  private:
-  static constexpr int kBlock = 32;  // voxels
-  struct Entry {
-    SectorGains gains;
-    int made = 0;
-  };
-  int changedAt(Column c) const {
-    int last = 0;
-    for (int x = (c.x - m_reach) / kBlock; x <= (c.x + m_reach) / kBlock; ++x)
-      for (int y = (c.y - m_reach) / kBlock; y <= (c.y + m_reach) / kBlock; ++y) {
-        const auto found = m_changed.find({x, y});
-        if (found != m_changed.end()) last = std::max(last, found->second);
-      }
-    return last;
-  }
-
-  int m_reach, m_now = 0;
-  std::map<Column, int> m_changed;
-  std::map<Column, Entry> m_entries;
+  int m_reach;
+  std::map<Column, SectorGains> m_sweeps;
 };
 
 class RelevantViews : public ViewStrategy {
@@ -100,6 +94,12 @@ class RelevantViews : public ViewStrategy {
   std::vector<Candidate> candidates(const GroundFlood& flood, double heading);
   void addBest(const ViewPlace& place, double heading, std::vector<Candidate>& candidates);
   std::vector<Candidate> centers(std::vector<Candidate> candidates) const;
+  struct Account {
+    double meters, promised, known;  ///< nats
+  };
+  void takeAccount(const TPose2D& from);
+  Account lately() const;
+  double shareLeft() const;
   const View& firstOf(const std::vector<Candidate>& stops, const GroundFlood& flood) const;
 
   const SemanticPlanner& m_planner;
@@ -112,8 +112,12 @@ class RelevantViews : public ViewStrategy {
   LearnedPrior* m_learned = nullptr;  ///< the prior, if it is one
   SweepMemory m_sweeps;
   DoneViews m_done;
-  std::set<Column> m_toLearn;      ///< first columns of tiles whose ground may not be connected yet
-  double m_found = 0, m_left = 0;  ///< nats
+  std::set<Column> m_toLearn;  ///< first columns of tiles whose ground may not be connected yet
+  std::optional<View> m_chosen;
+  TPose2D m_from;  ///< where it was chosen
+  /** Of the last choices: the way, what it promised until then, and what the map told. */
+  std::deque<Account> m_accounts{{0, 0, 0}};
+  double m_left = 0;  ///< nats that are promised within reach
 };
 
 double distanceOf(const View& a, const View& b) {
@@ -183,7 +187,7 @@ std::vector<RelevantViews::Candidate> RelevantViews::candidates(const GroundFloo
   return all;
 }
 
-/** The best views that are apart from each other. */
+/** All best views that are apart from each other, best first. */
 std::vector<RelevantViews::Candidate> RelevantViews::centers(
     std::vector<Candidate> candidates) const {
   std::stable_sort(
@@ -191,7 +195,6 @@ std::vector<RelevantViews::Candidate> RelevantViews::centers(
       [](const Candidate& a, const Candidate& b) { return a.view.promise > b.view.promise; });
   std::vector<Candidate> centers;
   for (const Candidate& c : candidates) {
-    if (centers.size() == kMostClusters) break;
     const auto isNear = [&](const Candidate& o) {
       return distanceOf(o.view, c.view) < kClustersApart;
     };
@@ -215,33 +218,63 @@ const View& RelevantViews::firstOf(const std::vector<Candidate>& stops,
   return stops[firstStop(ways, worth)].view;
 }
 
+/** What the way since the last choice promised and brought; and, as m_left says how far back one
+ * has to look, the way that promised as much as is left. */
+void RelevantViews::takeAccount(const TPose2D& from) {
+  Account now = m_accounts.back();
+  if (m_chosen) {
+    const double driven = std::hypot(from.x - m_from.x, from.y - m_from.y);
+    now.meters += driven, now.promised += scoreOf(*m_chosen) * driven;
+  }
+  now.known = m_field.known();
+  m_accounts.push_back(now);
+  while (m_accounts.size() > 2 && now.promised - m_accounts[1].promised >= m_left)
+    m_accounts.pop_front();
+}
+
+/** What is left is expected to bring as much as the same promise brought last, whatever a promise
+ * is worth. */
+RelevantViews::Account RelevantViews::lately() const {
+  const Account &then = m_accounts.front(), &now = m_accounts.back();
+  return {now.meters - then.meters, now.promised - then.promised, now.known - then.known};
+}
+
+double RelevantViews::shareLeft() const {
+  const Account last = lately();
+  const double left = std::max(0.0, last.known) * m_left / std::max(1e-9, last.promised);
+  return left / std::max(1e-9, left + m_accounts.back().known);
+}
+
 std::optional<View> RelevantViews::next(const TPose2D& from, double z) {
   follow(from, z);
   const GroundFlood flood(m_planner, from, m_ground.keyOf(z), kFrontierRadius);
   const std::vector<Candidate> all = candidates(flood, from.phi);
-  const std::vector<Candidate> stops = centers(all);
+  std::vector<Candidate> stops = centers(all);
   m_left = 0;
   for (const Candidate& stop : stops) m_left += stop.view.promise;
-  if (stops.empty() || m_left < m_options.leftShare * (m_found + m_left)) return {};
+  takeAccount(from);
+  if (stops.empty() || (lately().promised >= m_left && shareLeft() < m_options.leftShare))
+    return {};
+  stops.resize(std::min(stops.size(), kMostClusters));
   const View& stop = firstOf(stops, flood);
   const View* best = &stop;
   for (const Candidate& c : all)
     if (distanceOf(c.view, stop) < kClustersApart && scoreOf(c.view) > scoreOf(*best))
       best = &c.view;
-  return *best;
+  m_chosen = *best, m_from = from;
+  return m_chosen;
 }
 
-void RelevantViews::done(const View& view) {
-  m_done.add(view.pose);
-  m_found += view.promise;
-}
+void RelevantViews::done(const View& view) { m_done.add(view.pose); }
 
 std::string RelevantViews::conclusion() const {
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "what is left within reach promises %.1f nat, %.1f %% of what was found and is "
-                "left; places looked from: %zu",
-                m_left, 100 * m_left / std::max(1e-9, m_left + m_found), m_done.size());
+  const Account last = lately();
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "what is left within reach promises %.1f nat; the last %.0f m promised %.1f nat and "
+      "brought %.1f: %.0f %% of the relevant information is known; places looked from: %zu",
+      m_left, last.meters, last.promised, last.known, 100 * (1 - shareLeft()), m_done.size());
   return text;
 }
 

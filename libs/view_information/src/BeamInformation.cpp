@@ -35,6 +35,14 @@ double BeamModel::probability(int outcome, const double* p) const {
          m_hit * (m_accuracy * p[outcome] + other * (occupied - p[outcome]));
 }
 
+std::vector<double> BeamModel::after(int outcome, const double* p) const {
+  const double pw = probability(outcome, p);
+  std::vector<double> after(p, p + m_numClasses + 1);
+  for (int k = 0; k <= m_numClasses; ++k)
+    after[static_cast<std::size_t>(k)] *= probability(outcome, k) / pw;
+  return after;
+}
+
 double informationOfBeam(const std::vector<CellRun>& runs) {
   double reached = 1, sum = 0;
   for (const CellRun& run : runs) {
@@ -89,6 +97,30 @@ Bounds informationOfViews(const std::vector<std::vector<double>>& reached,
   return bounds;
 }
 
+/** What is told of each cell grows by its information. That is counted from the mean over all
+ * cells, which moves: the expected divergence of the mean is at most its expected chi-square
+ * distance, a sum over cells, as what moves them is not correlated. */
+Bounds growthOfTree(const Question& question, const BeamModel& model,
+                    const std::vector<std::vector<double>>& beliefs,
+                    const std::vector<double>& reached) {
+  const double share = 1.0 / static_cast<double>(beliefs.size());
+  std::vector<double> mean(static_cast<std::size_t>(question.numClasses()) + 1, 0);
+  for (const std::vector<double>& p : beliefs)
+    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += share * p[k];
+  double told = 0;
+  Bounds moved;
+  for (std::size_t i = 0; i < beliefs.size(); ++i) {
+    const double* p = beliefs[i].data();
+    told += share * reached[i] * question.information(model, p);
+    for (int w = 0; w <= question.numClasses(); ++w) {
+      const Bounds far = question.distance(model.after(w, p).data(), p, mean.data());
+      const double weight = share * share * reached[i] * model.probability(w, p);
+      moved.lower += weight * far.lower, moved.upper += weight * far.upper;
+    }
+  }
+  return {told - moved.upper, told - moved.lower};
+}
+
 Question::Question(const tree_abstraction::AbstractionWeights& weights, int numClasses)
     : m_terms(weights, numClasses),
       m_entries(static_cast<std::size_t>(numClasses) + 1),
@@ -104,16 +136,23 @@ Question::Question(const tree_abstraction::AbstractionWeights& weights, int numC
     m_kinds[k] = first.emplace(m_entries[k], static_cast<int>(k)).first->second;
 }
 
-double Question::entropyOfRow(const std::vector<double>& row) const {
+/** Weighted sum over the terms' outcomes. \param of, ofRest (entry of a row): of the outcome that
+ * it has, and of the rest of a term that has one entry only */
+template <class Of, class OfRest>
+double Question::sumOverTerms(Of of, OfRest ofRest) const {
   double sum = 0;
   for (std::size_t t = 0; t < m_terms.size(); ++t) {
     const auto slot = m_terms.slot(t);
-    const double* p = row.data() + slot.offset;
-    const double h =
-        slot.isBinary() ? -xLogX(*p) - xLogX(1 - *p) : tree_abstraction::entropy(p, slot.width);
-    sum += m_weights[t] * h;
+    double ofTerm = slot.isBinary() ? ofRest(slot.offset) : 0;
+    for (std::size_t e = slot.offset; e < slot.offset + slot.width; ++e) ofTerm += of(e);
+    sum += m_weights[t] * ofTerm;
   }
   return sum;
+}
+
+double Question::entropyOfRow(const std::vector<double>& row) const {
+  return -sumOverTerms([&](std::size_t e) { return xLogX(row[e]); },
+                       [&](std::size_t e) { return xLogX(1 - row[e]); });
 }
 
 std::vector<double> Question::rowOf(const double* p) const {
@@ -124,23 +163,30 @@ std::vector<double> Question::rowOf(const double* p) const {
 
 double Question::entropy(const double* p) const { return entropyOfRow(rowOf(p)); }
 
-double Question::surprise(const BeamModel& model, const double* p, int outcome) const {
-  const double pw = model.probability(outcome, p);
-  std::vector<double> after(m_entries.size());
-  for (std::size_t k = 0; k < after.size(); ++k)
-    after[k] = p[k] * model.probability(outcome, static_cast<int>(k)) / pw;
-  const std::vector<double> before = rowOf(p), now = rowOf(after.data());
+double Question::divergence(const double* p, const double* q) const {
+  const std::vector<double> now = rowOf(p), before = rowOf(q);
   const auto part = [](double a, double b) { return a > 0 && b > 0 ? a * std::log(a / b) : 0.0; };
-  double sum = 0;
+  return sumOverTerms([&](std::size_t e) { return part(now[e], before[e]); },
+                      [&](std::size_t e) { return part(1 - now[e], 1 - before[e]); });
+}
+
+Bounds Question::distance(const double* p, const double* q, const double* mean) const {
+  const std::vector<double> a = rowOf(p), b = rowOf(q), m = rowOf(mean);
+  Bounds sum;
   for (std::size_t t = 0; t < m_terms.size(); ++t) {
     const auto slot = m_terms.slot(t);
-    double divergence = 0;
-    for (std::size_t e = slot.offset; e < slot.offset + slot.width; ++e)
-      divergence += part(now[e], before[e]);
-    if (slot.isBinary()) divergence += part(1 - now[slot.offset], 1 - before[slot.offset]);
-    sum += m_weights[t] * divergence;
+    for (std::size_t e = slot.offset; e < slot.offset + slot.width; ++e) {
+      const double far = (a[e] - b[e]) * (a[e] - b[e]);
+      const double ofRest = slot.isBinary() && m[e] < 1 ? far / (1 - m[e]) : 0;
+      const double ofTerm = m_weights[t] * ((m[e] > 0 ? far / m[e] : 0) + ofRest);
+      (ofTerm > 0 ? sum.upper : sum.lower) += ofTerm;
+    }
   }
   return sum;
+}
+
+double Question::surprise(const BeamModel& model, const double* p, int outcome) const {
+  return divergence(model.after(outcome, p).data(), p);
 }
 
 double Question::entropy(const ClassBelief<float>& belief) const {
@@ -154,15 +200,10 @@ double Question::entropy(const ClassBelief<float>& belief) const {
 }
 
 double Question::information(const BeamModel& model, const double* p) const {
-  const int K = numClasses();
-  std::vector<double> after(m_entries.size());
   double left = 0;
-  for (int w = 0; w <= K; ++w) {
+  for (int w = 0; w <= numClasses(); ++w) {
     const double pw = model.probability(w, p);
-    if (pw <= 0) continue;
-    for (int k = 0; k <= K; ++k)
-      after[static_cast<std::size_t>(k)] = p[k] * model.probability(w, k) / pw;
-    left += pw * entropy(after.data());
+    if (pw > 0) left += pw * entropy(model.after(w, p).data());
   }
   return entropy(p) - left;
 }

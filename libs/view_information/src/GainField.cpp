@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -14,6 +16,10 @@ using semantic_octree::TileChange;
 using Offset = std::array<int, 3>;
 
 namespace {
+
+/** Up to here a shape without beams has all its voxels. Beyond, it has one beam through each that
+ * is there, for unknown space is predicted more coarsely than that. */
+constexpr double kAll = 5;  // m
 
 constexpr std::uint16_t kUnknown = 65535;
 constexpr float kPassUnits = 65534;
@@ -27,9 +33,6 @@ std::uint16_t upperHalf(float value) {
   std::memcpy(&bits, &value, sizeof bits);
   return static_cast<std::uint16_t>((bits + 0x8000U) >> 16);
 }
-
-/** In half a tile. */
-int indexOf(int x, int y, int z) { return (x & 3) << 6 | (y & 7) << 3 | (z & 7); }
 
 float ofUpperHalf(std::uint16_t half) {
   const std::uint32_t bits = std::uint32_t{half} << 16;
@@ -45,10 +48,21 @@ inline Gain GainField::unpacked(const Voxel& voxel) {
   return {static_cast<float>(voxel.pass) * (1 / kPassUnits), ofUpperHalf(voxel.gain)};
 }
 
-inline const GainField::Voxel& GainField::voxelIn(const Half& half, int i) {
-  if (half.size() == 1) return half.front();
-  return half[kNumbers + reinterpret_cast<const unsigned char*>(half.data())[i]];
-}
+/** The numbers of half a tile's values, and the values: no numbers, if it is not looked up yet. */
+struct GainField::View {
+  const unsigned char* numbers = nullptr;
+  const Voxel* values = nullptr;
+
+  const Voxel& at(int i) const { return values[numbers[i]]; }
+  /** Null: nothing is known. */
+  static View of(const Half* half) {
+    static constexpr unsigned char kFirst[kHalf] = {};
+    static constexpr Voxel kNothing{kUnknown, 0};
+    if (!half) return {kFirst, &kNothing};
+    if (half->size() == 1) return {kFirst, half->data()};
+    return {reinterpret_cast<const unsigned char*>(half->data()), half->data() + kNumbers};
+  }
+};
 
 /** The tiles and the patches of the prior around a place, each looked up when it is needed. */
 class GainField::Surroundings {
@@ -57,55 +71,61 @@ class GainField::Surroundings {
                const ViewTemplate& view)
       : m_field(field), m_prior(prior), m_knowsAir(prior.knowsAir()) {
     const int reach = view.reach();
-    const std::array<int, 3> low{from[0] - reach, from[1] - reach, from[2] + view.lowest()},
-        high{from[0] + reach, from[1] + reach, from[2] + view.highest() + 1};
+    m_from = {from[0] - reach, from[1] - reach, from[2] + view.lowest()};
+    const std::array<int, 3> to{from[0] + reach, from[1] + reach, from[2] + view.highest() + 1};
     for (std::size_t a = 0; a < 3; ++a) {
-      m_low[a] = low[a] >> 3;
-      m_size[a] = (high[a] >> 3) - m_low[a] + 1;
+      m_low[a] = m_from[a] >> 3;
+      m_size[a] = (to[a] >> 3) - m_low[a] + 1;
     }
-    m_tiles.resize(static_cast<std::size_t>(m_size[0] * m_size[1] * m_size[2]));
+    const int ofX = m_size[1] * m_size[2], ofY = m_size[2];
+    for (int x = m_from[0]; x <= to[0]; ++x)
+      m_steps[0].push_back({((x >> 2) - 2 * m_low[0]) * ofX, (x & 3) << 6});
+    for (int y = m_from[1]; y <= to[1]; ++y)
+      m_steps[1].push_back({((y >> 3) - m_low[1]) * ofY, (y & 7) << 3});
+    for (int z = m_from[2]; z <= to[2]; ++z) m_steps[2].push_back({(z >> 3) - m_low[2], z & 7});
+    m_halves.resize(static_cast<std::size_t>(2 * m_size[0] * ofX));
     m_patches.resize(static_cast<std::size_t>(4 * m_size[0] * m_size[1]));
   }
 
   Gain at(int x, int y, int z) {
-    const Voxel* v = known(x, y, z);
-    if (!v) return unknown(x, y, z);
-    Gain gain = unpacked(*v);
+    const Voxel& v = stored(x, y, z);
+    if (v.pass == kUnknown) return unknown(x, y, z);
+    Gain gain = unpacked(v);
     if (m_knowsAir && std::signbit(gain.gain)) gain.gain = 0;
     gain.gain = std::abs(gain.gain);
     return gain;
   }
 
  private:
-  struct Place {
-    const Stored* tile = nullptr;
-    bool isKnown = false;  ///< whether there is a tile
+  /** Along one axis: what a key adds to the number of a half, and to that of a voxel in it. */
+  struct Step {
+    int half, voxel;
   };
-  /** Null: nothing is known. */
-  const Voxel* known(int x, int y, int z) {
-    Place& place = m_tiles[static_cast<std::size_t>(
-        (((x >> 3) - m_low[0]) * m_size[1] + (y >> 3) - m_low[1]) * m_size[2] + (z >> 3) -
-        m_low[2])];
-    if (!std::exchange(place.isKnown, true)) place.tile = m_field.find(x >> 3, y >> 3, z >> 3);
-    if (!place.tile) return nullptr;
-    const Voxel& v = voxelIn((*place.tile)[x >> 2 & 1], indexOf(x, y, z));
-    return v.pass == kUnknown ? nullptr : &v;
+  const Step& step(std::size_t axis, int key) const {
+    return m_steps[axis][static_cast<std::size_t>(key - m_from[axis])];
+  }
+  const Voxel& stored(int x, int y, int z) {
+    const Step &a = step(0, x), &b = step(1, y), &c = step(2, z);
+    View& half = m_halves[static_cast<std::size_t>(a.half + b.half + c.half)];
+    if (!half.numbers) half = View::of(m_field.find(x, y, z));
+    return half.at(a.voxel + b.voxel + c.voxel);
   }
   Gain unknown(int x, int y, int z) {
     const int px = (x >> 2) - 2 * m_low[0], py = (y >> 2) - 2 * m_low[1];
     const UnknownPatch*& patch = m_patches[static_cast<std::size_t>(px * 2 * m_size[1] + py)];
     if (!patch) patch = &m_prior.patch(x >> 2, y >> 2);
     if (z >= patch->ground) return patch->at(x, y, z);
-    const Voxel* above = known(x, y, z + 1);
-    const bool isBelowFree = above && above->pass > kFree;
+    const Voxel& above = stored(x, y, z + 1);
+    const bool isBelowFree = above.pass != kUnknown && above.pass > kFree;
     return isBelowFree ? patch->belowFree(x, y, z) : patch->at(x, y, z);
   }
 
   const GainField& m_field;
   UnknownPrior& m_prior;
   bool m_knowsAir;
-  std::array<int, 3> m_low{}, m_size{};  ///< tiles
-  std::vector<Place> m_tiles;
+  std::array<int, 3> m_from{}, m_low{}, m_size{};  ///< first keys; first tiles, and how many
+  std::array<std::vector<Step>, 3> m_steps;
+  std::vector<View> m_halves;
   std::vector<const UnknownPatch*> m_patches;
 };
 
@@ -114,7 +134,9 @@ GainField::GainField(semantic_octree::SemanticOcTree& map, const Question& quest
       m_question(question),
       m_model(map.numClasses(), map.filterParameters()),
       m_filter(map.numClasses(), map.filterParameters()),
-      m_follower(map.follow()) {}
+      m_follower(map.follow()),
+      m_computed(kComputed),
+      m_nothingKnown(nothingKnown(map.numClasses())) {}
 
 GainField::Voxel GainField::packed(const Gain& gain) {
   return {static_cast<std::uint16_t>(std::lround(gain.pass * kPassUnits)), upperHalf(gain.gain)};
@@ -122,40 +144,52 @@ GainField::Voxel GainField::packed(const Gain& gain) {
 
 TileChange GainField::update() {
   TileChange change = m_follower.tiles();
-  if (change.all) m_tiles.clear();
+  if (change.all) m_tiles.clear(), m_known = 0;
   for (const octomap::OcTreeKey& low : change.tiles) {
-    const Tile tile = read(low);
-    m_tiles[keyOf(low[0] >> 3, low[1] >> 3, low[2] >> 3)] = {stored(tile.data()),
-                                                             stored(tile.data() + kHalf)};
+    Stored& tile = m_tiles[keyOf(low[0] >> 3, low[1] >> 3, low[2] >> 3)];
+    m_known -= static_cast<double>(tile.known);
+    tile = read(low);
+    m_known += static_cast<double>(tile.known);
   }
   return change;
 }
 
-/** The gain of what has no class record is stored with a minus: who knows that it is air asks no
- * more of it. */
-GainField::Voxel GainField::voxelOf(const SemanticOcTreeNode& leaf) {
-  const double floor = m_map.filterParameters().minOccupancy;
-  const auto gainOf = [&](const semantic_octree::ClassBelief<float>& belief) {
-    const double fall = std::max(0.0, m_question.fallThrough(m_filter, m_model, belief));
-    return Gain{static_cast<float>(passThrough(leaf.getOccupancy(), floor)),
-                static_cast<float>(fall)};
-  };
-  if (leaf.hasClassRecord()) return packed(gainOf(m_map.belief(leaf)));
-  const auto [found, isNew] = m_uniform.try_emplace(leaf.getLogOdds());
-  if (isNew) {
-    Gain gain = gainOf(m_filter.uniform(leaf.getLogOdds()));
-    if (!m_map.isNodeOccupied(leaf)) gain.gain = -gain.gain;
-    found->second = packed(gain);
+/** Most voxels have one of few beliefs: what was computed last for one with the same hash is kept.
+ * Classes of one kind are alike. */
+const GainField::Computed& GainField::computed(const SemanticOcTreeNode& leaf) {
+  const semantic_octree::ClassBelief<float> belief = m_map.belief(leaf);
+  Computed now{belief, leaf.getLogOdds(), {}};
+  const std::hash<float> hashOf;
+  std::size_t hash = hashOf(now.logOdds);
+  for (int i = 0; i < belief.count; ++i) {
+    now.belief.ids[i] = static_cast<ClassId>(m_question.kinds()[belief.ids[i]]);
+    hash = (hash ^ hashOf(belief.logOdds[i]) ^ now.belief.ids[i]) * 0x9E3779B97F4A7C15U;
   }
-  return found->second;
+  Computed& last = m_computed[(hash ^ hash >> 32) % kComputed];
+  if (last.logOdds == now.logOdds && last.belief == now.belief) return last;
+  const double fall = std::max(0.0, m_question.fallThrough(m_filter, m_model, belief));
+  const double pass = passThrough(leaf.getOccupancy(), m_map.filterParameters().minOccupancy);
+  now.voxel = packed({static_cast<float>(pass), static_cast<float>(fall)});
+  if (m_map.isNodeOccupied(leaf)) {
+    std::vector<double> p(m_nothingKnown.size());
+    belief.distribution(m_map.numClasses(), p.data());
+    now.known = static_cast<float>(m_question.divergence(p.data(), m_nothingKnown.data()));
+  }
+  return last = now;
 }
 
-GainField::Tile GainField::read(const octomap::OcTreeKey& low) {
-  Tile tile;
-  tile.fill({kUnknown, 0});
+/** The gain of what has no class record is stored with a minus: who knows that it is air asks no
+ * more of it. */
+GainField::Stored GainField::read(const octomap::OcTreeKey& low) {
+  constexpr std::uint16_t kMinus = 0x8000;
+  std::array<Voxel, kVoxels> voxels;
+  voxels.fill({kUnknown, 0});
+  Stored tile;
   const octomap::OcTreeKey high = semantic_octree::octomapKey(low[0] + 7, low[1] + 7, low[2] + 7);
   for (auto leaf = m_map.begin_leafs_bbx(low, high); leaf != m_map.end_leafs_bbx(); ++leaf) {
-    const Voxel voxel = voxelOf(*leaf);
+    const Computed& of = computed(*leaf);
+    Voxel voxel = of.voxel;
+    if (!leaf->hasClassRecord() && !m_map.isNodeOccupied(*leaf)) voxel.gain |= kMinus;
     const octomap::OcTreeKey first = leaf.getIndexKey();
     const int edge = semantic_octree::edgeAtDepth(static_cast<int>(leaf.getDepth()));
     std::array<int, 3> from{}, to{};
@@ -165,15 +199,17 @@ GainField::Tile GainField::read(const octomap::OcTreeKey& low) {
     }
     for (int x = from[0]; x < to[0]; ++x)
       for (int y = from[1]; y < to[1]; ++y)
-        for (int z = from[2]; z < to[2]; ++z)
-          tile[static_cast<std::size_t>(x << 6 | y << 3 | z)] = voxel;
+        for (int z = from[2]; z < to[2]; ++z, tile.known += of.known)
+          voxels[static_cast<std::size_t>(x << 6 | y << 3 | z)] = voxel;
   }
+  tile.halves = {stored(voxels.data()), stored(voxels.data() + kHalf)};
   return tile;
 }
 
 /** There are no more values than voxels: a byte numbers them. */
 GainField::Half GainField::stored(const Voxel* voxels) {
-  std::vector<Voxel> values(voxels, voxels + kHalf);
+  std::vector<Voxel> values;
+  std::unique_copy(voxels, voxels + kHalf, std::back_inserter(values));
   const auto isBefore = [](const Voxel& a, const Voxel& b) {
     return a.pass != b.pass ? a.pass < b.pass : a.gain < b.gain;
   };
@@ -189,15 +225,14 @@ GainField::Half GainField::stored(const Voxel* voxels) {
   return half;
 }
 
-const GainField::Stored* GainField::find(int x, int y, int z) const {
-  const auto found = m_tiles.find(keyOf(x, y, z));
-  return found == m_tiles.end() ? nullptr : &found->second;
+const GainField::Half* GainField::find(int x, int y, int z) const {
+  const auto found = m_tiles.find(keyOf(x >> 3, y >> 3, z >> 3));
+  return found == m_tiles.end() ? nullptr : &found->second.halves[x >> 2 & 1];
 }
 
 std::optional<Gain> GainField::at(const octomap::OcTreeKey& key) const {
-  const Stored* tile = find(key[0] >> 3, key[1] >> 3, key[2] >> 3);
-  if (!tile) return {};
-  const Voxel& v = voxelIn((*tile)[key[0] >> 2 & 1], indexOf(key[0], key[1], key[2]));
+  const int inHalf = (key[0] & 3) << 6 | (key[1] & 7) << 3 | (key[2] & 7);
+  const Voxel& v = View::of(find(key[0], key[1], key[2])).at(inHalf);
   if (v.pass == kUnknown) return {};
   const Gain gain = unpacked(v);
   return Gain{gain.pass, std::abs(gain.gain)};
@@ -208,15 +243,14 @@ SectorGains GainField::sweep(const ViewTemplate& view, UnknownPrior& prior,
   Surroundings around(*this, prior, from, view);
   SectorGains gains{};
   const auto& voxels = view.voxels();
-  m_leaves.resize(voxels.size());
-  m_leaves[0] = 1;
+  std::vector<float> leaves(static_cast<std::size_t>(view.reach()) + 1, 1);  // by shell
   for (std::size_t i = 1; i < voxels.size();) {
     const ViewTemplate::Voxel& v = voxels[i];
-    const float reached = m_leaves[static_cast<std::size_t>(v.parent)];
+    const float reached = leaves[v.shell - 1U];
     const Gain gain = around.at(from[0] + v.x, from[1] + v.y, from[2] + v.z);
-    gains[v.heading] += reached * gain.gain;
-    m_leaves[i] = reached * gain.pass;
-    i = m_leaves[i] < kLeastReach ? static_cast<std::size_t>(v.next) : i + 1;
+    gains[v.heading] += view.weight(v) * reached * gain.gain;
+    leaves[v.shell] = reached * gain.pass;
+    i = leaves[v.shell] < kLeastReach ? static_cast<std::size_t>(v.next) : i + 1;
   }
   return gains;
 }
@@ -225,9 +259,9 @@ std::size_t GainField::memoryUsage() const {
   constexpr std::size_t kOfBlock = 2 * sizeof(void*);  // of the heap
   constexpr std::size_t kOfEntry =
       sizeof(std::uint64_t) + sizeof(Stored) + 2 * sizeof(void*) + kOfBlock;
-  std::size_t bytes = m_tiles.size() * kOfEntry + m_leaves.capacity() * sizeof(float);
+  std::size_t bytes = m_tiles.size() * kOfEntry;
   for (const auto& [key, tile] : m_tiles)
-    for (const Half& half : tile) bytes += half.capacity() * sizeof(Voxel) + kOfBlock;
+    for (const Half& half : tile.halves) bytes += half.capacity() * sizeof(Voxel) + kOfBlock;
   return bytes;
 }
 
@@ -301,19 +335,30 @@ void forVoxels(const ViewShape& shape, int reach, double far, F f) {
       }
 }
 
-/** The voxels of the shape, those through which they are seen, and the sensor's; all are marked. */
+/** The voxels of the shape, those through which they are seen, and the sensor's; all are marked.
+ * \param counts by shell: voxels of the shape */
 std::vector<Offset> offsetsOf(const ViewShape& shape, int reach, double voxelSize,
-                              OffsetTable& marked) {
+                              OffsetTable& marked, std::vector<int>& counts) {
   std::vector<Offset> all{{0, 0, 0}};
   marked.at(all.front()) = 0;
   const auto add = [&](const Offset& farthest) {
     for (Offset v = farthest; marked.at(v) < 0; v = parentOf(v)) marked.at(v) = 0, all.push_back(v);
   };
-  const double far = shape.range / voxelSize;
+  const double far = std::min(shape.range / voxelSize, static_cast<double>(reach));
+  const int last = static_cast<int>(kAll / voxelSize);
   if (shape.rings > 0)
-    forBeams(shape, std::min<double>(far, reach), add);
+    forBeams(shape, far, add);
   else
-    forVoxels(shape, reach, far, add);
+    forVoxels(shape, reach, shape.range / voxelSize, [&](const Offset& v) {
+      const int shell = shellOf(v);
+      ++counts[static_cast<std::size_t>(shell)];
+      if (shell <= last) add(v);
+      if (shell != last) return;
+      const double factor = far / std::hypot(v[0], v[1], v[2]);
+      Offset end;
+      for (std::size_t a = 0; a < 3; ++a) end[a] = static_cast<int>(std::lround(factor * v[a]));
+      if (factor > 1) add(end);
+    });
   return all;
 }
 
@@ -326,32 +371,39 @@ ViewTemplate::ViewTemplate(const ViewShape& shape, double voxelSize) : m_shape(s
   requireWithin("width", shape.width, 1, 360);
   m_reach = static_cast<int>(shape.range / voxelSize);
   OffsetTable numbers(m_reach);
-  std::vector<Offset> order = offsetsOf(shape, m_reach, voxelSize, numbers);
+  std::vector<int> counts(static_cast<std::size_t>(m_reach) + 1, 0), kept = counts;
+  std::vector<Offset> order = offsetsOf(shape, m_reach, voxelSize, numbers, counts);
   std::sort(order.begin(), order.end(), [](const Offset& a, const Offset& b) {
     return std::make_pair(shellOf(a), a) < std::make_pair(shellOf(b), b);
   });
   for (std::size_t i = 0; i < order.size(); ++i) numbers.at(order[i]) = static_cast<int>(i);
-  std::vector<std::int32_t> parents(order.size(), 0), sizes(order.size(), 1);  // with all behind it
+  std::vector<std::size_t> parents(order.size(), 0);
+  std::vector<std::int32_t> sizes(order.size(), 1);  // with all behind it
   for (std::size_t i = order.size() - 1; i > 0; --i) {
-    parents[i] = numbers.at(parentOf(order[i]));
-    sizes[static_cast<std::size_t>(parents[i])] += sizes[i];
+    parents[i] = static_cast<std::size_t>(numbers.at(parentOf(order[i])));
+    sizes[parents[i]] += sizes[i];
   }
   // A voxel, then one after the other with all that is seen through it.
-  std::vector<std::int32_t> places(order.size(), 0), free(order.size(), 1);
+  std::vector<std::int32_t> free(order.size(), 1);
   m_voxels.resize(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const auto parent = static_cast<std::size_t>(parents[i]);
-    if (i > 0) places[i] = std::exchange(free[parent], free[parent] + sizes[i]);
-    free[i] = places[i] + 1;
+    const std::int32_t place =
+        i > 0 ? std::exchange(free[parents[i]], free[parents[i]] + sizes[i]) : 0;
+    free[i] = place + 1;
     const auto& [x, y, z] = order[i];
-    m_voxels[static_cast<std::size_t>(places[i])] = {static_cast<std::int16_t>(x),
-                                                     static_cast<std::int16_t>(y),
-                                                     static_cast<std::int16_t>(z),
-                                                     static_cast<std::uint8_t>(sectorOf(order[i])),
-                                                     places[parent],
-                                                     places[i] + sizes[i]};
+    ++kept[static_cast<std::size_t>(shellOf(order[i]))];
+    m_voxels[static_cast<std::size_t>(place)] = {static_cast<std::int16_t>(x),
+                                                 static_cast<std::int16_t>(y),
+                                                 static_cast<std::int16_t>(z),
+                                                 static_cast<std::uint16_t>(shellOf(order[i])),
+                                                 static_cast<std::uint16_t>(sectorOf(order[i])),
+                                                 place + sizes[i]};
     m_lowest = std::min(m_lowest, z), m_highest = std::max(m_highest, z);
   }
+  for (std::size_t shell = 0; shell < kept.size(); ++shell)
+    m_weights.push_back(counts[shell] > kept[shell]
+                            ? static_cast<float>(counts[shell]) / static_cast<float>(kept[shell])
+                            : 1);
 }
 
 double headingOf(int sector) { return -M_PI + (sector + 0.5) * 2 * M_PI / ViewTemplate::kHeadings; }

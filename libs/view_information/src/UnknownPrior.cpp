@@ -52,6 +52,7 @@ LearnedPrior::LearnedPrior(const semantic_octree::SemanticOcTree& map, const Que
   const auto classes = static_cast<std::size_t>(map.numClasses()) + 1;
   m_worthOfGround = worthOf(nothingKnown(map.numClasses()));
   m_standsOn.assign(classes, Distribution(classes, 0));
+  spread();
 }
 
 void LearnedPrior::learn(int x, int y, int z, ClassId ground) {
@@ -115,6 +116,7 @@ void LearnedPrior::spread() {
     forNear(x, y, [](Patch& patch, std::size_t) { patch.isStale = true; });
   }
   m_changed.clear();
+  m_worthAbove = worthOf(above(ground({Distribution(m_standsOn.size(), 0)})));
 }
 
 /** Some heights of the column, as far as they are known. */
@@ -199,9 +201,8 @@ void LearnedPrior::predict(int x, int y, Patch& patch) const {
   prior.ground = around.heights > 0 ? static_cast<int>(std::lround(around.height / around.heights))
                                     : m_usualHeight;
   prior.top = prior.ground + static_cast<int>(kHighest / m_map.getResolution());
-  const Distribution usual = ground({Distribution(m_standsOn.size(), 0)});
   prior.onGround = gainOf(g, m_worthOfGround);
-  prior.above = gainOf(above(g), worthOf(above(usual)));
+  prior.above = gainOf(above(g), m_worthAbove);
 }
 
 std::size_t LearnedPrior::memoryUsage() const {

@@ -27,9 +27,9 @@ struct ExploreOptions {
   double budget = std::numeric_limits<double>::infinity();  ///< meters that it drives at most
   /** Where views may be, map frame, meters; empty: everywhere. */
   Eigen::AlignedBox2d area;
-  /** It is enough when what is left within reach promises less than this share of all that was
-   * found and is left. */
-  double leftShare = 0.02;
+  /** It is enough when what is left within reach is expected to tell less than this share of all
+   * that is known and left: as much as the last stretch of the way that promised as much. */
+  double leftShare = 0.05;
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */

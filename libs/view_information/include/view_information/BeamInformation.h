@@ -13,6 +13,10 @@ namespace view_information {
 
 using semantic_octree::ClassId;
 
+/** Where a number lies. */
+struct Bounds {
+  double lower = 0, upper = 0;
+};
 /** The sensor model of the class filter. A cell is free (0) or of a class (1..K); a beam that
  * reaches it passes on (outcome 0) or returns with a label (outcome 1..K). */
 class BeamModel {
@@ -25,6 +29,8 @@ class BeamModel {
   double probability(int outcome, int cell) const;
   /** P(outcome) of a cell with K + 1 probabilities p, p[0] = free. */
   double probability(int outcome, const double* p) const;
+  /** What is believed of the cell after an outcome, which is possible. */
+  std::vector<double> after(int outcome, const double* p) const;
   /** P(a beam that reaches the cell passes on). */
   double pass(const double* p) const { return probability(0, p); }
 
@@ -47,6 +53,12 @@ class Question {
   /** (c): what the outcome of a beam that reaches the cell tells. It may be negative: looking is no
    * loss then, but worth nothing. */
   double information(const BeamModel& model, const double* p) const;
+  /** Weighted divergence of the terms of p from q, K + 1 probabilities each: below 0 where what is
+   * to be ignored moved more. */
+  double divergence(const double* p, const double* q) const;
+  /** How far a mean over many moves when what is believed of one moves from q to p: chi-square
+   * distance of the terms, weighted, those to be ignored (lower) and those relevant (upper). */
+  Bounds distance(const double* p, const double* q, const double* mean) const;
   /** (g): how far an outcome moves what is believed of a cell, the weighted divergence of the terms
    * after it from before. Its mean over the outcomes as the belief predicts them is information().
    */
@@ -62,6 +74,8 @@ class Question {
  private:
   std::vector<double> rowOf(const double* p) const;
   double entropyOfRow(const std::vector<double>& row) const;
+  template <class Of, class OfRest>
+  double sumOverTerms(Of of, OfRest ofRest) const;
 
   std::vector<double> m_weights;
   tree_abstraction::TermSet m_terms;
@@ -87,15 +101,20 @@ struct TreeCell {
 /** (e): what a view tells if each cell is observed once, as a scan is inserted. */
 double informationOfTree(const std::vector<TreeCell>& cells);
 
-/** Where a number lies. */
-struct Bounds {
-  double lower = 0, upper = 0;
-};
 /** (e): what a view of beams that cross tells, each cell observed once. A cell is reached at least
  * as surely as by its best beam, and at most as if the beams were independent (Harris).
  * \param cells without regard to their parents \param beams indices of cells in order */
 Bounds informationOfNet(const std::vector<TreeCell>& cells,
                         const std::vector<std::vector<int>>& beams);
+/** (h): what a view is expected to add to the objective of the tree that has the cells as leaves,
+ * as equal shares of its space, but for the price of leaves: sum of weights times I_Y(T). The upper
+ * bound has what is told of each cell; how far the mean over all cells moves, which is less, is not
+ * taken off.
+ * \param beliefs K + 1 probabilities of each cell, as the map has them \param reached P(reached) of
+ * each */
+Bounds growthOfTree(const Question& question, const BeamModel& model,
+                    const std::vector<std::vector<double>>& beliefs,
+                    const std::vector<double>& reached);
 /** (f): what several views tell together. \param reached P(reached) by view and cell
  * \param values of each cell */
 Bounds informationOfViews(const std::vector<std::vector<double>>& reached,

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -20,7 +21,8 @@ struct ViewShape {
   int rings = 0, columns = 0;
 };
 
-/** The voxels of a ViewShape in all headings, each with the one through which it is seen. */
+/** The voxels of a ViewShape in all headings. Each is seen through the last one before it that is
+ * in the next smaller shell; the first is the sensor's. */
 class ViewTemplate {
  public:
   static constexpr int kHeadings = 36;
@@ -30,12 +32,14 @@ class ViewTemplate {
 
   const ViewShape& shape() const { return m_shape; }
   struct Voxel {
-    std::int16_t x, y, z;  ///< from the sensor's
-    std::uint8_t heading;  ///< in which of kHeadings sectors, from -180 degrees on
-    std::int32_t parent;   ///< comes before; of the first one, the sensor's: 0
-    std::int32_t next;     ///< behind all that are seen through it, which follow it
+    std::int16_t x, y, z;       ///< from the sensor's
+    std::uint16_t shell : 10;   ///< the largest difference of these
+    std::uint16_t heading : 6;  ///< in which of kHeadings sectors, from -180 degrees on
+    std::int32_t next;          ///< behind all that are seen through it, which follow it
   };
   const std::vector<Voxel>& voxels() const { return m_voxels; }
+  /** For how many voxels of its shell it stands: far ones are not all in the template. */
+  float weight(const Voxel& voxel) const { return m_weights[voxel.shell]; }
   int reach() const { return m_reach; }    ///< largest difference along an axis
   int lowest() const { return m_lowest; }  ///< difference in z
   int highest() const { return m_highest; }
@@ -44,6 +48,7 @@ class ViewTemplate {
   ViewShape m_shape;
   int m_reach = 0, m_lowest = 0, m_highest = 0;
   std::vector<Voxel> m_voxels;
+  std::vector<float> m_weights;  ///< by shell
 };
 
 /** What is gained by sector of ViewTemplate::kHeadings, nats. */
@@ -69,6 +74,10 @@ class GainField {
   /** What views from a voxel gain: each voxel counts once, as surely as it is reached. */
   SectorGains sweep(const ViewTemplate& view, UnknownPrior& prior, const octomap::OcTreeKey& from);
 
+  /** What the map tells: how far it is believed of each occupied voxel that it is something else
+   * than of space of which nothing is known, nats. */
+  double known() const { return m_known; }
+
   const Question& question() const { return m_question; }
   std::size_t numTiles() const { return m_tiles.size(); }
   /** Bytes. */
@@ -80,11 +89,21 @@ class GainField {
     std::uint16_t pass, gain;  ///< pass in 65534ths, 65535: not known; gain: a float's upper half
     bool operator==(const Voxel& o) const { return pass == o.pass && gain == o.gain; }
   };
-  using Tile = std::array<Voxel, kVoxels>;
   /** Numbers of values, byte by byte, and the values; or one value, if it is the same throughout.
    */
   using Half = std::vector<Voxel>;
-  using Stored = std::array<Half, 2>;
+  struct Stored {
+    std::array<Half, 2> halves;
+    float known = 0;  ///< nats
+  };
+  struct Computed {
+    semantic_octree::ClassBelief<float> belief;
+    float logOdds = std::numeric_limits<float>::quiet_NaN();
+    Voxel voxel{};
+    float known = 0;  ///< nats
+  };
+  static constexpr std::size_t kComputed = 4096;
+  struct View;
   class Surroundings;
 
   static Voxel packed(const Gain& gain);
@@ -93,20 +112,21 @@ class GainField {
     return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 |
            std::uint64_t{static_cast<std::uint32_t>(y)} << 16 | static_cast<std::uint32_t>(z);
   }
-  Tile read(const octomap::OcTreeKey& low);
-  Voxel voxelOf(const semantic_octree::SemanticOcTreeNode& leaf);
+  Stored read(const octomap::OcTreeKey& low);
+  const Computed& computed(const semantic_octree::SemanticOcTreeNode& leaf);
   static Half stored(const Voxel* voxels);
-  static const Voxel& voxelIn(const Half& half, int i);
-  const Stored* find(int x, int y, int z) const;
+  /** The half that a voxel is in; null: nothing is known there. */
+  const Half* find(int x, int y, int z) const;
 
   semantic_octree::SemanticOcTree& m_map;
   const Question& m_question;
   BeamModel m_model;
   semantic_octree::ClassFilter<float> m_filter;
   semantic_octree::MapFollower m_follower;
-  std::unordered_map<float, Voxel> m_uniform;  ///< by log-odds: voxels without a class record
+  std::vector<Computed> m_computed;
+  std::vector<double> m_nothingKnown;
+  double m_known = 0;
   std::unordered_map<std::uint64_t, Stored> m_tiles;
-  std::vector<float> m_leaves;  ///< of a sweep: P(a beam leaves)
 };
 
 }  // namespace view_information

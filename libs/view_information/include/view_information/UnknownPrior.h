@@ -138,6 +138,7 @@ class LearnedPrior : public UnknownPrior {
   std::vector<std::array<int, 2>> m_changed;
   std::vector<double> m_kernel;          ///< by squared distance in patches
   Distribution m_worthOfGround;          ///< of each outcome
+  Distribution m_worthAbove;             ///< the same, above it
   std::vector<Distribution> m_standsOn;  ///< by class of ground: air and classes that were seen
 };
 
