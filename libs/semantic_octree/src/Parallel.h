@@ -1,4 +1,6 @@
 #pragma once
+#include <atomic>
+#include <cstddef>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -33,6 +35,16 @@ void inParallel(int n, const F& work) {
   for (; started < n; ++started) guarded(started);
   for (std::thread& helper : helpers) helper.join();
   if (failure) std::rethrow_exception(failure);
+}
+
+/** Calls work(thread, i) for all i below numTasks: each thread takes the next when it is done with
+ * one. */
+template <typename F>
+void shareOut(int threads, std::size_t numTasks, const F& work) {
+  std::atomic<std::size_t> next{0};
+  inParallel(threads, [&](int thread) {
+    for (std::size_t i; (i = next++) < numTasks;) work(thread, i);
+  });
 }
 
 }  // namespace semantic_octree

@@ -1,6 +1,7 @@
 #include <semantic_octree/store/Scan.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -33,8 +34,9 @@ void checkSizes(const LabeledCloud& cloud, int numClasses) {
       throw std::invalid_argument("labeled cloud: a class probability of " + std::to_string(q));
 }
 
-/** As many ray ends as stay near the processor. */
-constexpr std::size_t kRaysInCache = 8192;
+/** Beams that a thread follows at a time: their ends stay near the processor. Rays of one ring are
+ * long where those of another are short, so that halves of a scan would not take equally long. */
+constexpr std::size_t kBeamsAtATime = 2048;
 
 /** Where a beam stops carving; nothing if it carves nothing. \param begin, end relative to the grid
  */
@@ -75,8 +77,7 @@ void Scan::set(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
   m_free[0].cover(beams.lowest(), beams.highest(), maxTiles(options));
   markHits(beams, options);
   markFree(beams, options, options.carvingMargin / resolution);
-  summarize();
-  m_votes.count(cloud, m_endRanks, m_report.hitVoxels, numClasses);
+  summarize([&] { m_votes.count(cloud, m_endRanks, m_report.hitVoxels, numClasses); });
   m_report.labels = m_votes.agreement().explain(filter.parameters(), numClasses);
 }
 
@@ -100,40 +101,51 @@ void Scan::markHits(const ScanBeams& beams, const InsertionOptions& options) {
 void Scan::markFree(const ScanBeams& beams, const InsertionOptions& options, double margin) {
   for (int i = 1; i < options.threads; ++i) m_free[i].coverLike(m_free[0]);
   m_endRanks.resize(beams.size());
-  inParallel(options.threads, [&](int i) { markFreePart(beams, i, options, margin); });
+  const std::size_t parts = (beams.size() + kBeamsAtATime - 1) / kBeamsAtATime;
+  shareOut(options.threads, parts, [&](int thread, std::size_t i) {
+    markFreePart(beams, i * kBeamsAtATime, m_free[thread], options, margin);
+  });
 }
 
-void Scan::markFreePart(const ScanBeams& beams, int part, const InsertionOptions& options,
-                        double margin) {
-  ScanGrid& grid = m_free[part];
+void Scan::markFreePart(const ScanBeams& beams, std::size_t first, ScanGrid& grid,
+                        const InsertionOptions& options, double margin) {
   const Eigen::Array3d gridOrigin = grid.origin(), begin = beams.origin() - gridOrigin;
-  const std::size_t last = beams.size() * (part + 1) / options.threads;
+  const std::size_t last = std::min(first + kBeamsAtATime, beams.size());
   std::vector<Eigen::Array3d> ends;
-  ends.reserve(kRaysInCache);
-  const auto follow = [&] {
-    markRays(grid, begin, ends.data(), ends.size());
-    ends.clear();
-  };
-  for (std::size_t i = beams.size() * part / options.threads; i < last; ++i) {
+  ends.reserve(last - first);
+  for (std::size_t i = first; i < last; ++i) {
     const Beam beam = beams.beam(i);
     m_endRanks[i] = beam.isReturn() ? m_hits.rankOf(placeOf(beam)) : HitVotes::kNowhere;
     if (!beam.isUsed() || (!m_carves.empty() && !m_carves[i])) continue;
     if (const auto end = endOfFree(beam.isReturn(), begin, beam.end - gridOrigin, options, margin))
       ends.push_back(*end);
-    if (ends.size() == kRaysInCache) follow();
   }
-  follow();
+  markRays(grid, begin, ends.data(), ends.size());
 }
 
-void Scan::summarize() {
+void Scan::summarize(const std::function<void()>& beside) {
   m_pyramid.cover(m_free[0]);
-  m_free[0].forEachTile([&](const VoxelIndex& tile, std::size_t number) {
-    m_pyramid.set(number, summarizeTile(tile, number));
+  std::atomic<std::size_t> freeVoxels{0};
+  const VoxelIndex numTiles = m_free[0].numTiles();
+  const auto rows = static_cast<std::size_t>(numTiles.y()) * numTiles.z();
+  shareOut(static_cast<int>(m_free.size()), rows + 1, [&](int, std::size_t i) {
+    i == 0 ? beside() : void(freeVoxels += summarizeRow(i - 1));
   });
+  m_report.freeVoxels += freeVoxels;
   m_pyramid.build();
 }
 
-CubeContent Scan::summarizeTile(const VoxelIndex& tile, std::size_t number) {
+std::size_t Scan::summarizeRow(std::size_t row) {
+  const VoxelIndex numTiles = m_free[0].numTiles();
+  std::size_t freeVoxels = 0, number = row * numTiles.x();
+  VoxelIndex tile(0, static_cast<int>(row) % numTiles.y(), static_cast<int>(row) / numTiles.y());
+  for (; tile.x() < numTiles.x(); ++tile.x(), ++number)
+    m_pyramid.set(number, summarizeTile(tile, number, freeVoxels));
+  return freeVoxels;
+}
+
+CubeContent Scan::summarizeTile(const VoxelIndex& tile, std::size_t number,
+                                std::size_t& freeVoxels) {
   std::uint64_t* const free = m_free[0].words(tile);
   for (std::size_t i = 1; i < m_free.size(); ++i) moveBits(m_free[i].words(tile), free);
   CubeContent content;
@@ -149,7 +161,7 @@ CubeContent Scan::summarizeTile(const VoxelIndex& tile, std::size_t number) {
   }
   if (anyFree) content.flags |= CubeContent::kAny;
   if (~allFree) content.flags |= CubeContent::kNotAllFree;
-  if (anyFree) m_report.freeVoxels += countBits(free, ScanGrid::kWords);
+  if (anyFree) freeVoxels += countBits(free, ScanGrid::kWords);
   return content;
 }
 
@@ -174,7 +186,7 @@ void Scan::addTile(const VoxelIndex& tile, const VoxelBits* free, const VoxelBit
 
 void Scan::finish() {
   m_report.hitVoxels = m_hits.rank();
-  summarize();
+  summarize([] {});
 }
 
 std::vector<VoxelIndex> Scan::tiles() const {

@@ -185,6 +185,7 @@ class RayLanes {
 
   struct Part {
     const Eigen::Array3d *next = nullptr, *end = nullptr;
+    std::ptrdiff_t size() const { return end - next; }
   };
 
   /** \return whether every lane has a ray */
@@ -197,13 +198,26 @@ class RayLanes {
 
   MSO_INLINE bool startNext(int lane) {
     Part& part = m_parts[lane];
-    if (part.next == part.end) {
-      if (m_next == m_last) return false;
-      part.next = m_next;
-      part.end = m_next += std::min(kRaysAtATime, m_last - m_next);
-    }
+    if (part.size() == 0) part = m_next == m_last ? halfOfAnother() : nextPart();
+    if (part.size() == 0) return false;
     start(lane, *part.next++);
     return true;
+  }
+
+  MSO_INLINE Part nextPart() {
+    const Part part{m_next, m_next + std::min(kRaysAtATime, m_last - m_next)};
+    m_next = part.end;
+    return part;
+  }
+
+  /** In the end lanes help each other, so that few rays are followed alone. */
+  MSO_INLINE Part halfOfAnother() {
+    Part& longest = *std::max_element(m_parts, m_parts + kNumLanes,
+                                      [](const Part& a, const Part& b)
+                                          MSO_ALWAYS_INLINE { return a.size() < b.size(); });
+    const Part half{longest.end - (longest.size() + 1) / 2, longest.end};
+    longest.end = half.next;
+    return half;
   }
 
   /** Follows the rays that are left to a lane. */

@@ -2,8 +2,6 @@
 
 #include <semantic_octree/store/BlockUpdate.h>
 
-#include <atomic>
-
 #include "Parallel.h"
 
 namespace semantic_octree {
@@ -111,11 +109,8 @@ void mergeScan(const MergeTarget& target, const Scan& scan, int threads) {
   mergers[0].collect(whole, parts);
 
   std::vector<char> changed(parts.size());
-  std::atomic<std::size_t> nextPart{0};
-  const auto work = [&](ScanMerger& merger) {
-    for (std::size_t i; (i = nextPart++) < parts.size();) changed[i] = merger.merge(parts[i]);
-  };
-  inParallel(threads, [&](int i) { work(mergers[i]); });
+  shareOut(threads, parts.size(),
+           [&](int thread, std::size_t i) { changed[i] = mergers[thread].merge(parts[i]); });
 
   for (ScanMerger& merger : mergers) merger.m_nodes.tellNoted();
   std::size_t next = 0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace semantic_octree {
@@ -164,11 +165,14 @@ class Scan {
   static std::size_t maxTiles(const InsertionOptions& options);
   void markHits(const ScanBeams& beams, const InsertionOptions& options);
   void markFree(const ScanBeams& beams, const InsertionOptions& options, double margin);
-  /** Follows a part's beams, and notes in which voxels they end. */
-  void markFreePart(const ScanBeams& beams, int part, const InsertionOptions& options,
-                    double margin);
-  void summarize();
-  CubeContent summarizeTile(const VoxelIndex& tile, std::size_t number);
+  /** Follows some beams, and notes in which voxels they end. */
+  void markFreePart(const ScanBeams& beams, std::size_t first, ScanGrid& grid,
+                    const InsertionOptions& options, double margin);
+  /** \param beside what another thread may do meanwhile, which does not touch tiles' bits */
+  void summarize(const std::function<void()>& beside);
+  /** \return the voxels of a row of tiles that were seen free */
+  std::size_t summarizeRow(std::size_t row);
+  CubeContent summarizeTile(const VoxelIndex& tile, std::size_t number, std::size_t& freeVoxels);
   ScanGrid::Place placeOf(const Beam& beam) const {
     return m_free[0].placeOf(ScanBeams::voxelOf(beam.end) - m_free[0].firstVoxel());
   }
