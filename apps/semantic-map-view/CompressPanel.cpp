@@ -19,7 +19,7 @@ using map_view::LiveCompression;
 
 namespace {
 
-constexpr int kWidth = 280, kWindow = kWidth + 16;
+constexpr int kWidth = 280;
 constexpr double kRest = 0.25;  // s
 /** One leaf in so many: a start from which sliders lead to both sides. */
 constexpr std::size_t kShare = 10;
@@ -34,13 +34,10 @@ std::string rounded(double number, int digits) {
 
 CompressPanel::CompressPanel(Viewer& viewer, fs::path weights)
     : m_viewer(viewer), m_weights(std::move(weights)) {
-  auto* window = addWindow(&viewer.window(), "Compress",
-                           {viewer.window().width() - kWindow - 8, 206}, kWindow);
-  m_on = window->add<nanogui::CheckBox>("show the compressed tree");
+  auto* content = viewer.window().addPanel(ViewWindow::Side::Right, "Compress", kWidth)->content();
+  m_on = content->add<nanogui::CheckBox>("show the compressed tree");
   m_on->setCallback([this](bool on) { attempt([&] { switchOn(on); }); });
-  m_controls = window->add<nanogui::Widget>();
-  m_controls->setLayout(
-      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 0, 4));
+  m_controls = addColumn(content, 0, 4);
   viewer.onActivated([this] { forget(); });
   viewer.onFrame([this] { update(); });
 }
@@ -75,7 +72,6 @@ void CompressPanel::forget() {
   m_lines.clear();
   m_on->setChecked(false);
   removeChildren(m_controls);
-  m_viewer.window().performLayout();
   m_onFollowed();
 }
 
@@ -95,7 +91,6 @@ void CompressPanel::addControls() {
   addWanted();
   addTerms();
   addSave();
-  m_viewer.window().performLayout();
 }
 
 void CompressPanel::addAlpha() {
@@ -131,15 +126,11 @@ bool CompressPanel::isThere(std::size_t term) const {
 }
 
 void CompressPanel::addTerms() {
-  auto* scroll = m_controls->add<nanogui::VScrollPanel>();
-  scroll->setFixedSize({kWidth, 206});
-  m_terms = scroll->add<nanogui::Widget>();
-  m_terms->setLayout(
-      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 2, 0));
+  auto* terms = addScroll(m_controls, kWidth, 150);
   for (std::size_t term = 0; term < m_live->numTerms(); ++term) {
     m_lines.emplace_back();
     if (!isThere(term)) continue;
-    auto* row = addRow(m_terms, 4);
+    auto* row = addRow(terms, 4);
     addText(row, m_live->name(term), 92);
     TermLine& line = m_lines.back();
     line.slider = addSlider(row, 80, m_live->mayBeIrrelevant(term) ? -2.f : 0.f, 2,
@@ -154,16 +145,13 @@ void CompressPanel::addTerms() {
 }
 
 void CompressPanel::addSave() {
-  auto* save = m_controls->add<nanogui::Button>("save the weights");
-  save->setFixedHeight(22);
-  save->setFontSize(15);
-  save->setTooltip("As YAML into the working folder, for semantic-map-compress");
-  save->setCallback([this] {
+  auto* save = addButton(m_controls, "save the weights", 120, [this] {
     attempt([&] {
       m_viewer.say("wrote " + this->save(".").string() + ": " +
                    std::to_string(m_live->numLeaves()) + " leaves");
     });
   });
+  save->setTooltip("As YAML into the working folder, for semantic-map-compress");
 }
 
 /** Logarithmic: 0 and 1 are where the tree begins and ends to change. */

@@ -68,7 +68,6 @@ class CompressPanel {
   nanogui::Slider* m_alpha = nullptr;
   nanogui::Label *m_alphaText = nullptr, *m_leaves = nullptr, *m_bytes = nullptr;
   nanogui::IntBox<int>*m_wantedLeaves = nullptr, *m_wantedKilobytes = nullptr;
-  nanogui::Widget* m_terms = nullptr;
   std::vector<TermLine> m_lines;
   std::function<void()> m_onFollowed = [] {};
   std::string m_told;

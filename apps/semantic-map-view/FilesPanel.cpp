@@ -10,16 +10,14 @@
 namespace semantic_map_view {
 
 namespace {
-constexpr int kFilesWidth = 280, kFilesWindow = kFilesWidth + 16, kFilesHeight = 128;
+constexpr int kFilesWidth = 230;
 }
 
-FilesPanel::FilesPanel(Viewer& viewer, TrackScene& tracks, const WantedTiles& wanted)
-    : m_viewer(viewer), m_tracks(tracks), m_wantedTiles(wanted) {
-  auto* window = addWindow(
-      &viewer.window(), "Files",
-      {viewer.window().width() - kFilesWindow - 8, viewer.window().height() - kFilesHeight - 8},
-      kFilesWindow);
-  auto* row = addRow(window);
+FilesPanel::FilesPanel(Viewer& viewer, TrackScene& tracks, PlanPanel& plan,
+                       const WantedTiles& wanted)
+    : m_viewer(viewer), m_tracks(tracks), m_plan(plan), m_wantedTiles(wanted) {
+  auto* content = viewer.window().addPanel(ViewWindow::Side::Left, "Files", kFilesWidth)->content();
+  auto* row = addRow(content);
   addText(row, "open", 40);
   m_field = row->add<nanogui::TextBox>("");
   m_field->setEditable(true);
@@ -27,16 +25,13 @@ FilesPanel::FilesPanel(Viewer& viewer, TrackScene& tracks, const WantedTiles& wa
   m_field->setFixedSize({kFilesWidth - 46, 22});
   m_field->setFontSize(15);
   m_field->setPlaceholder("a name, or drop files here");
-  m_field->setTooltip("Maps; trajectories (.tum, .txt) and paths (.csv)");
+  m_field->setTooltip(
+      "Maps; trajectories (.tum, .txt) and paths (.csv); an order of classes, a vehicle (.yaml)");
   m_field->setCallback([this](const std::string& file) {
     if (!file.empty()) want(file);
     return false;  // empty again
   });
-  m_scroll = window->add<nanogui::VScrollPanel>();
-  m_scroll->setFixedSize({kFilesWidth, 40});
-  m_list = m_scroll->add<nanogui::Widget>();
-  m_list->setLayout(
-      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 2, 1));
+  m_list = addScroll(content, kFilesWidth, 40);
   listTracks();
   viewer.window().addDropFilesCallback([this](const std::vector<std::string>& files) {
     for (const auto& file : files) want(file);
@@ -62,7 +57,9 @@ void FilesPanel::openWanted() {
 
 void FilesPanel::open(const std::string& file) {
   std::string text = "opened " + file + ": ";
-  if (isTrack(file)) {
+  if (std::filesystem::path(file).extension() == ".yaml") {
+    text += m_plan.open(file);
+  } else if (isTrack(file)) {
     m_tracks.add(readTrack(file));
     listTracks();
     text +=
@@ -88,8 +85,7 @@ void FilesPanel::listTracks() {
       m_viewer.say((on ? "shows " : "hides ") + m_tracks.track(i).name);
     });
   }
-  m_scroll->setVisible(m_tracks.size() > 0);
-  m_viewer.window().performLayout();
+  m_list->parent()->setVisible(m_tracks.size() > 0);
 }
 
 }  // namespace semantic_map_view

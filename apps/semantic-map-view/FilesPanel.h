@@ -1,12 +1,14 @@
 #pragma once
+#include "PlanPanel.h"
 #include "TrackScene.h"
 
 namespace semantic_map_view {
 
-/** Opens what is dropped onto the window or named in a field: maps, and what lies upon them. */
+/** Opens what is dropped onto the window or named in a field: maps, what lies upon them, and
+ * what paths are planned by. */
 class FilesPanel {
  public:
-  FilesPanel(Viewer& viewer, TrackScene& tracks, const WantedTiles& wanted);
+  FilesPanel(Viewer& viewer, TrackScene& tracks, PlanPanel& plan, const WantedTiles& wanted);
   FilesPanel(const FilesPanel&) = delete;
   FilesPanel& operator=(const FilesPanel&) = delete;
 
@@ -19,9 +21,9 @@ class FilesPanel {
 
   Viewer& m_viewer;
   TrackScene& m_tracks;
+  PlanPanel& m_plan;
   const WantedTiles m_wantedTiles;
   nanogui::TextBox* m_field;
-  nanogui::VScrollPanel* m_scroll;
   nanogui::Widget* m_list;
   std::vector<std::string> m_wanted;
 };

@@ -4,9 +4,11 @@
 #include <mrpt_compat/Drawing.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
+#include <strict_files/TextFile.h>
 
 #include <cmath>
 #include <ostream>
+#include <utility>
 
 #include "StandardOutput.h"
 #include "TrackScene.h"
@@ -23,7 +25,7 @@ using semantic_planning::PlanResult;
 
 namespace {
 
-constexpr int kPlanWidth = 230, kOrderWidth = 160;
+constexpr int kPlanWidth = 280;
 constexpr double kTurn = 0.5;  // m from the place, at least, where the hand gives a heading
 constexpr mrpt::img::TColor kStartColor{40, 90, 220}, kGoalColor{220, 40, 40};
 
@@ -65,91 +67,137 @@ mrpt_compat::drawing::CCylinder::Ptr postAt(const Eigen::Vector3d& place,
 }  // namespace
 
 PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path orderFile,
-                     semantic_planning::VehicleOptions vehicle)
-    : m_viewer(viewer),
-      m_orderFile(std::move(orderFile)),
-      m_vehicle(std::move(vehicle)),
-      m_window(addWindow(&viewer.window(), "Path", {8, viewer.window().height() - 120},
-                         kPlanWidth + 16)) {
-  if (!m_orderFile.empty()) {
-    auto* row = addRow(m_window);
-    m_startButton = row->add<nanogui::Button>("start");
-    m_goalButton = row->add<nanogui::Button>("goal");
-    for (auto* button : {m_startButton, m_goalButton}) button->setFixedSize({90, 22});
-    m_startButton->setCallback([this] { await(Awaited::Start); });
-    m_goalButton->setCallback([this] { await(Awaited::Goal); });
-    auto* order = addWindow(&viewer.window(), "Best class first: drag", {262, 8}, kOrderWidth + 16);
-    m_order = order->add<OrderList>([this](const auto& ranks) { reorder(ranks); });
-    readOrder();
-    m_order->setFixedSize({kOrderWidth, m_order->preferredSize(nullptr).y()});
-  }
-  for (auto& line : m_lines) line = addText(m_window, "", kPlanWidth);
-  m_lines[1]->setFixedHeight(0);  // as many lines as it takes
-  if (m_orderFile.empty()) m_lines[0]->setCaption("needs --order");
+                     const std::filesystem::path& vehicle)
+    : m_viewer(viewer), m_orderFile(std::move(orderFile)) {
+  auto* content = viewer.window()
+                      .addPanel(ViewWindow::Side::Right, "Path", kPlanWidth, !m_orderFile.empty())
+                      ->content();
+  auto* row = addRow(content);
+  addButton(row, "start", 90, [this] { await(Awaited::Start); });
+  addButton(row, "goal", 90, [this] { await(Awaited::Goal); });
+  addText(content, "may drive on, best first:", kPlanWidth);
+  m_list = addScroll(content, kPlanWidth, 110);
+  m_vehicleName = addText(content, "vehicle: small robot", kPlanWidth);
+  for (auto& line : m_lines) line = addLines(content, kPlanWidth);
+  if (!vehicle.empty()) open(vehicle);
+  readOrder();
   viewer.window().marks()->insert(m_marks);
   viewer.onActivated([this] { forget(); });
+  viewer.onFrame([this] {
+    if (!m_change) return;
+    std::exchange(m_change, nullptr)(m_ranks);
+    m_order.reset();
+    listClasses();
+    notes() << "order:";
+    for (const auto& rank : m_ranks)
+      notes() << (&rank == &m_ranks[0] ? " " : " > ") << nameOf(rank);
+    notes() << std::endl;
+    planAnew();
+  });
 }
 
 void PlanPanel::say(const std::string& first, const std::string& second) {
   m_lines[0]->setCaption(first);
   m_lines[1]->setCaption(second);
   if (!first.empty()) notes() << first << ' ' << second << std::endl;
-  m_viewer.window().performLayout();
-  // What grows has to end above the lower border.
-  m_window->setPosition({8, std::min(m_viewer.window().height() - 120,
-                                     m_viewer.window().height() - m_window->height() - 8)});
   m_viewer.window().redraw();
 }
 
 void PlanPanel::forget() {
-  m_planner.reset();
-  m_map.reset();
   m_start.reset(), m_goal.reset();
   m_marks->clear();
   say("");
-  if (m_order) readOrder();
+  readOrder();
+}
+
+std::string PlanPanel::open(const std::filesystem::path& file) {
+  if (strict_files::readText(file).find("best_to_worst") == std::string::npos) {
+    m_vehicle = semantic_planning::loadVehicle(file);
+    m_vehicleName->setCaption("vehicle: " + file.filename().string());
+    planAnew();
+    return "the vehicle";
+  }
+  semantic_planning::loadClassOrder(file, m_viewer.layer().map().classes());
+  m_orderFile = file;
+  readOrder();
+  return "an order of classes";
 }
 
 void PlanPanel::readOrder() {
   const auto& classes = m_viewer.layer().map().classes();
   m_ranks.clear();
+  m_order.reset();
   try {
-    const auto order = semantic_planning::loadClassOrder(m_orderFile, classes);
-    m_numClasses = order.classes();
-    m_ranks.resize(std::size_t(order.ranks()));
-    for (int id = 0; id < m_numClasses; ++id) {
-      const auto graphClass = static_cast<colored_graph::GraphClass>(id);
-      if (const auto rank = order.rank(graphClass); rank != colored_graph::kForbidden)
-        m_ranks[std::size_t(rank)].push_back(graphClass);
-    }
+    if (!m_orderFile.empty())
+      m_order.emplace(semantic_planning::loadClassOrder(m_orderFile, classes));
   } catch (const std::exception& e) {
     say("no paths here:", e.what());  // another map has other classes
   }
-  m_order->setNames(rankNames());
+  if (m_order) m_ranks.resize(std::size_t(m_order->ranks()));
+  for (int id = 0; m_order && id < m_order->classes(); ++id) {
+    const auto graphClass = static_cast<colored_graph::GraphClass>(id);
+    if (const auto rank = m_order->rank(graphClass); rank != colored_graph::kForbidden)
+      m_ranks[std::size_t(rank)].push_back(graphClass);
+  }
+  listClasses();
+  planAnew();
 }
 
-std::vector<std::string> PlanPanel::rankNames() const {
-  std::vector<std::string> names;
-  for (const auto& rank : m_ranks) {
-    names.emplace_back();
-    for (const auto id : rank) {
-      if (!names.back().empty()) names.back() += ", ";
-      names.back() += id == semantic_types::kNoClass
-                          ? semantic_planning::kUnknownGround
-                          : m_viewer.layer().map().classes().name(semantic_types::ClassId(id));
-    }
+void PlanPanel::listClasses() {
+  removeChildren(m_list);
+  const auto& leaves = m_viewer.layer().leavesOfClass();
+  std::vector<bool> isAllowed(leaves.size());
+  for (std::size_t rank = 0; rank < m_ranks.size(); ++rank) {
+    addLine(nameOf(m_ranks[rank]), true, rank, {});
+    for (const auto id : m_ranks[rank]) isAllowed[id] = true;
   }
+  for (std::size_t id = 0; id < leaves.size(); ++id)
+    if (!isAllowed[id] && (leaves[id] > 0 || id == semantic_types::kNoClass))
+      addLine(nameOf(colored_graph::GraphClass(id)), false, m_ranks.size(),
+              colored_graph::GraphClass(id));
+}
+
+void PlanPanel::addLine(const std::string& name, bool isAllowed, std::size_t rank,
+                        colored_graph::GraphClass id) {
+  constexpr std::size_t kMostLetters = 32;
+  auto* row = addRow(m_list);
+  auto* box = addCheckBox(row, name.substr(0, kMostLetters), kPlanWidth - 50);
+  box->setChecked(isAllowed);
+  box->setCallback([this, rank, id](bool on) {
+    change([=](Ranks& ranks) {
+      if (on)
+        ranks.push_back({id});
+      else
+        ranks.erase(ranks.begin() + std::ptrdiff_t(rank));
+    });
+  });
+  if (!isAllowed || rank == 0) return;
+  auto* up = row->add<nanogui::ToolButton>(ENTYPO_ICON_ARROW_UP);
+  up->setFlags(nanogui::Button::NormalButton);
+  up->setFixedSize({22, 17});
+  up->setTooltip("better");
+  up->setCallback(
+      [this, rank] { change([=](Ranks& ranks) { std::swap(ranks[rank - 1], ranks[rank]); }); });
+}
+
+void PlanPanel::change(const std::function<void(Ranks&)>& f) {
+  m_change = f;
+  m_viewer.window().redraw();
+}
+
+std::string PlanPanel::nameOf(colored_graph::GraphClass id) const {
+  if (id == semantic_types::kNoClass) return semantic_planning::kUnknownGround;
+  return m_viewer.layer().map().classes().name(semantic_types::ClassId(id));
+}
+
+std::string PlanPanel::nameOf(const std::vector<colored_graph::GraphClass>& rank) const {
+  std::string names;
+  for (const auto id : rank) names += (names.empty() ? "" : ", ") + nameOf(id);
   return names;
 }
 
-void PlanPanel::reorder(const std::vector<std::size_t>& ranks) {
-  const auto before = m_ranks;
-  for (std::size_t i = 0; i < ranks.size(); ++i) m_ranks[i] = before[ranks[i]];
-  const std::vector<std::string> names = rankNames();
-  m_order->setNames(names);
-  std::string text = "order: " + names.front();
-  for (std::size_t i = 1; i < names.size(); ++i) text += " > " + names[i];
-  notes() << text << std::endl;
+/** With what has changed, if there is something to plan. */
+void PlanPanel::planAnew() {
   m_planner.reset();
   m_map.reset();
   if (m_start && m_goal) plan();
@@ -204,17 +252,18 @@ void PlanPanel::turn(const map_view::Ray& ray, bool letsGo) {
 
 void PlanPanel::begin() {
   m_map = std::make_unique<semantic_octree::SemanticOcTree>(m_viewer.layer().map());
-  const colored_graph::ClassOrder order(m_numClasses, m_ranks);
-  setAbstraction(*m_map, semantic_planning::abstractionFor(order));
+  if (!m_order) m_order.emplace(m_map->numClasses() + 1, m_ranks);
+  setAbstraction(*m_map, semantic_planning::abstractionFor(*m_order));
   semantic_planning::PlannerOptions options;
   options.shorten = true;
   options.vehicle = m_vehicle;
-  m_planner.emplace(*m_map, order, options);
+  m_planner.emplace(*m_map, *m_order, options);
 }
 
 void PlanPanel::plan() {
   try {
     const measuring::Stopwatch watch;
+    if (m_ranks.empty()) return say("no path:", "no class is allowed: check some below");
     if (!m_planner) begin();
     const Eigen::Vector3d way = m_goal->place - m_start->place;
     const auto poseOf = [&](const Pose& p) {

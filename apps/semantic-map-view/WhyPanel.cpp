@@ -14,12 +14,18 @@ using Balance = map_view::InformationTree::Balance;
 
 namespace {
 
-constexpr int kLeft = 262, kNames = 116, kColumn = 66, kLine = 17;
-constexpr std::size_t kMostNodes = 4, kMostTerms = 6;
+constexpr int kTableWidth = 280;
 
 std::string rounded(double number) {
   char text[40];
   std::snprintf(text, sizeof text, "%.3g", number);
+  return text;
+}
+
+/** Thousandths of a nat: numbers that can be compared in columns. */
+std::string thousandths(double nats) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.1f", 1000 * nats);
   return text;
 }
 
@@ -51,7 +57,8 @@ std::vector<std::size_t> largestTerms(const std::vector<Balance>& balances,
   };
   std::stable_sort(terms.begin(), terms.end(),
                    [&](std::size_t a, std::size_t b) { return most(a) > most(b); });
-  terms.resize(std::min(terms.size(), kMostTerms));
+  terms.resize(std::min(terms.size(), WhyPanel::kMostTerms));
+  while (!terms.empty() && most(terms.back()) == 0) terms.pop_back();
   std::sort(terms.begin(), terms.end());
   return terms;
 }
@@ -66,26 +73,34 @@ std::vector<std::vector<std::string>> rowsOf(const std::vector<Balance>& balance
   add("edge", [&](const Balance& b) { return edgeOf(b, live, voxelSize); });
   add("expanded", [&](const Balance& b) { return live.isExpanded(b.node) ? "yes" : "no"; });
   for (const std::size_t t : largestTerms(balances, live))
-    add(rounded(live.weight(t)) + " x " + live.name(t),
-        [t](const Balance& b) { return rounded(b.divergences[t]); });
-  add("sum of all", [](const Balance& b) { return rounded(b.gain); });
-  add("- alpha x H", [&](const Balance& b) { return rounded(-live.alpha() * b.splitEntropy); });
-  add("+ children's G", [](const Balance& b) { return rounded(b.ofChildren); });
-  add("G, at least 0", [](const Balance& b) { return rounded(b.gValue); });
+    add((rounded(live.weight(t)) + " x " + live.name(t)).substr(0, 17),
+        [t](const Balance& b) { return thousandths(b.divergences[t]); });
+  add("sum of all", [](const Balance& b) { return thousandths(b.gain); });
+  add("- alpha x H", [&](const Balance& b) { return thousandths(-live.alpha() * b.splitEntropy); });
+  add("+ children's G", [](const Balance& b) { return thousandths(b.ofChildren); });
+  add("G, at least 0", [](const Balance& b) { return thousandths(b.gValue); });
   return rows;
 }
 
 }  // namespace
 
 WhyPanel::WhyPanel(Viewer& viewer, CompressPanel& compress)
-    : m_viewer(viewer), m_compress(compress) {
-  const int width = kNames + kColumn * int(kMostNodes);
-  const int height = kLine * (int(kMostTerms) + 6);
-  m_window = addWindow(&viewer.window(), "Why it is expanded, or not (nats)",
-                       {kLeft, viewer.window().height() - height - 56}, width + 16);
-  m_table = m_window->add<Table>(kNames, kColumn);
-  m_table->setFixedSize({width, height});
-  m_window->setVisible(false);
+    : m_viewer(viewer),
+      m_compress(compress),
+      m_panel(viewer.window().addPanel(ViewWindow::Side::Left, "Why this size (0.001 nat)",
+                                       kTableWidth, false)) {
+  auto* table = m_panel->content()->add<nanogui::Widget>();
+  auto* grid = new nanogui::GridLayout(nanogui::Orientation::Horizontal, WhyPanel::kMostNodes + 1,
+                                       nanogui::Alignment::Maximum, 0, 6);
+  grid->setColAlignment({nanogui::Alignment::Minimum, nanogui::Alignment::Maximum});
+  grid->setSpacing(1, 2);
+  table->setLayout(grid);
+  for (auto& row : m_cells)
+    for (auto& cell : row) {
+      cell = table->add<nanogui::Label>("");
+      cell->setFontSize(15);
+    }
+  m_panel->setVisible(false);
   viewer.onActivated([this] { show({}); });
   compress.onFollowed([this] { update(); });
 }
@@ -98,7 +113,7 @@ void WhyPanel::show(const std::optional<map_view::ViewCell>& cell) {
 
 void WhyPanel::update() {
   const LiveCompression* live = m_compress.compression();
-  m_window->setVisible(m_cell && live);
+  m_panel->setVisible(m_cell && live);
   if (!m_cell || !live) return;
   const double voxelSize = m_viewer.layer().map().getResolution();
   std::vector<Balance> balances = live->balancesAround(m_cell->lowest);
@@ -112,9 +127,12 @@ void WhyPanel::update() {
     told += edgeOf(balance, *live, voxelSize) + ": " + textOf(balance, *live) + "\n";
   if (told != m_told) notes() << told << std::flush;
   m_told = told;
-  if (balances.size() > kMostNodes)
-    balances.erase(balances.begin(), balances.end() - std::ptrdiff_t(kMostNodes));
-  m_table->setRows(rowsOf(balances, *live, voxelSize));
+  if (balances.size() > WhyPanel::kMostNodes)
+    balances.erase(balances.begin(), balances.end() - std::ptrdiff_t(WhyPanel::kMostNodes));
+  const auto rows = rowsOf(balances, *live, voxelSize);
+  for (std::size_t r = 0; r < m_cells.size(); ++r)
+    for (std::size_t c = 0; c < m_cells[r].size(); ++c)
+      m_cells[r][c]->setCaption(r < rows.size() && c < rows[r].size() ? rows[r][c] : "");
 }
 
 }  // namespace semantic_map_view

@@ -1,10 +1,6 @@
 #pragma once
 #include "CompressPanel.h"
 
-namespace map_window {
-class Table;
-}
-
 namespace semantic_map_view {
 
 /** Why the compressed tree expands the cell that was clicked and its ancestors, or does not: what
@@ -18,13 +14,16 @@ class WhyPanel {
   /** \param cell none: nothing was clicked */
   void show(const std::optional<map_view::ViewCell>& cell);
 
+  /** More have no place. */
+  static constexpr std::size_t kMostNodes = 4, kMostTerms = 6;
+
  private:
   void update();
 
   Viewer& m_viewer;
   const CompressPanel& m_compress;
-  nanogui::Window* m_window;
-  Table* m_table;
+  Panel* m_panel;
+  std::array<std::array<nanogui::Label*, kMostNodes + 1>, kMostTerms + 6> m_cells{};
   std::optional<map_view::ViewCell> m_cell;
   std::string m_told;
 };

@@ -179,11 +179,6 @@ void checkSettings(const Cli& cli, const semantic_types::ClassTable& classes) {
   if (!cli.vehicle.empty()) semantic_planning::loadVehicle(cli.vehicle);
 }
 
-semantic_planning::VehicleOptions vehicleOf(const Cli& cli) {
-  if (cli.vehicle.empty()) return {};
-  return semantic_planning::loadVehicle(cli.vehicle);
-}
-
 struct Panels {
   ShowPanel show;
   AskPanel ask;
@@ -197,8 +192,8 @@ struct Panels {
         ask(viewer),
         compress(viewer, cli.weights),
         why(viewer, compress),
-        plan(viewer, cli.order, vehicleOf(cli)),
-        files(viewer, tracks, cli.wantedTiles()) {
+        plan(viewer, cli.order, cli.vehicle),
+        files(viewer, tracks, plan, cli.wantedTiles()) {
     viewer.window().onClick([this](const map_view::Ray& ray) { why.show(ask.ask(ray)); });
     viewer.window().onGrab([this](const map_view::Ray& ray) { return plan.place(ray); });
     viewer.window().onMoved(
@@ -206,11 +201,6 @@ struct Panels {
     if (cli.compress) compress.switchOn(true);
   }
 };
-
-void finishFrame(ViewWindow& window) {
-  while (window.drawFrame()) {
-  }
-}
 
 int run(const Cli& cli) {
   for (const auto& file : {cli.picture, cli.animation})
@@ -226,11 +216,10 @@ int run(const Cli& cli) {
   for (Track& track : opened.tracks) tracks.add(std::move(track));
   std::optional<Panels> panels;
   if (cli.panels) panels.emplace(viewer, tracks, cli);
-  window->performLayout();
   window->setVisible(true);
   if (!cli.picture.empty() || !cli.animation.empty()) {
-    finishFrame(*window);
-    if (!cli.picture.empty()) map_pictures::savePicture(window->drawPicture(), cli.picture);
+    const cv::Mat picture = restingPicture(*window);
+    if (!cli.picture.empty()) map_pictures::savePicture(picture, cli.picture);
     if (panels && !cli.animation.empty()) animate(*window, panels->compress, cli.animation);
     return 0;
   }

@@ -67,6 +67,28 @@ class SemanticMapView : public testing::Test {
     return picture;
   }
 
+  /** Works with the window from above, in steps of view-window.sh. \return what it said */
+  std::string work(const std::vector<std::string>& arguments,
+                   const std::vector<std::string>& steps) const {
+    std::vector<std::string> command{MSO_SOURCE_DIR "/test/apps/view-window.sh",
+                                     path("said.txt"),
+                                     kViewer,
+                                     path("map.semantic"),
+                                     "--size",
+                                     size(),
+                                     "--camera",
+                                     kTop};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    command.push_back("--");
+    command.insert(command.end(), steps.begin(), steps.end());
+    const ProgramRun run = runInX(command);
+    EXPECT_EQ(run.status, 0) << run.output << run.errors;
+    return folder.read("said.txt");
+  }
+  static std::string at(const cv::Point& p) {
+    return std::to_string(p.x) + " " + std::to_string(p.y);
+  }
+
   /** By what the window calls their edges: whether the map's own G-values expand the nodes around a
    * voxel, with weight 1 for each class. */
   std::map<std::string, bool> expandedAround(const std::array<int, 3>& key, double alpha) const {

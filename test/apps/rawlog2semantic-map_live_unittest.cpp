@@ -51,10 +51,10 @@ TEST_F(LiveMapping, ShowsTheMapScanByScanAndMakesTheSame) {
                                       "--pause",
                                       "-v"};
   for (const std::string& argument : arguments("live")) command.push_back(argument);
-  // In the panel at the lower left: "step", twice, and "pause", which lets it go on.
+  // In the panel at the upper left: "step", twice, and "pause", which lets it go on.
   for (const std::string& step :
-       {std::string("--"), std::string("140 573 inserted"), std::string("140 573 inserted"),
-        "picture " + path("screen.png"), std::string("25 573 CSemanticOctoMap")})
+       {std::string("--"), std::string("140 53 inserted"), std::string("140 53 inserted"),
+        "picture " + path("screen.png"), std::string("25 53 CSemanticOctoMap")})
     command.push_back(step);
   const ProgramRun live = runInX(command);
   ASSERT_EQ(live.status, 0) << live.output << live.errors;
@@ -80,8 +80,8 @@ TEST_F(LiveMapping, ShowsTheCamerasPictureWithItsLabels) {
   const ProgramRun live = runInX(
       {MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kProgram, "--live", "--pause",
        "-v", "--config", MSO_SOURCE_DIR "/config/maps/synthetic.ini", "-o", path("live"),
-       MSO_SOURCE_DIR "/rawlog-samples/village.rawlog", "--", "140 573 'CAMERA'): inserted",
-       "140 573 'LIDAR'): inserted", "picture " + path("screen.png")});
+       MSO_SOURCE_DIR "/rawlog-samples/village.rawlog", "--", "140 53 'CAMERA'): inserted",
+       "140 53 'LIDAR'): inserted", "picture " + path("screen.png")});
   ASSERT_EQ(live.status, 0) << live.output << live.errors;
   const cv::Mat screen = cv::imread(path("screen.png"));
   ASSERT_FALSE(screen.empty());

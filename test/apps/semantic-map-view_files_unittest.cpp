@@ -11,9 +11,9 @@
 
 namespace {
 
-/** The panel at the lower right: its field, and its list of what lies upon the map. */
-constexpr int kFieldX = kWidth - 130, kFieldY = kHeight - 90, kListX = kWidth - 284,
-              kListY = kHeight - 65;
+/** The lowest panel at the left: its field, and its list of what lies upon the map; and how much
+ * lower it is for a second map. */
+constexpr int kFieldX = 150, kFieldY = 504, kListX = 28, kListY = 531, kSecondMap = 57;
 
 SemanticOcTree part(double from, double to) {
   return semantic_octree::cropped(smallMap(),
@@ -62,9 +62,9 @@ class SemanticMapViewFiles : public SemanticMapView {
     return folder.read("said.txt");
   }
 
-  std::string type(const std::string& file, const std::string& words) const {
-    return "type " + std::to_string(kFieldX) + ' ' + std::to_string(kFieldY) + ' ' + path(file) +
-           ' ' + words;
+  std::string type(const std::string& file, const std::string& words, int lower = 0) const {
+    return "type " + std::to_string(kFieldX) + ' ' + std::to_string(kFieldY + lower) + ' ' +
+           path(file) + ' ' + words;
   }
   std::string drop(const std::string& file, const std::string& words) const {
     return "drop " + path(file) + ' ' + words;
@@ -100,7 +100,7 @@ TEST_F(SemanticMapViewFiles, AreOpenedWhenTheyAreTyped) {
       work({"road.semantic"},
            {type("none.semantic", "none.semantic'"), type("bad.semantic", "bad.semantic'"),
             type("grass.bt", "opened .*grass.bt: [0-9]* leaves"),
-            type("path.csv", "opened .*path.csv: 17 m"),
+            type("path.csv", "opened .*path.csv: 17 m", kSecondMap),
             click(pixelOf(-3.1, 2.1, 0.2), "occupied, road"), "picture " + path("screen.png")});
   EXPECT_TRUE(contains(said, "semantic-map-view: cannot load map '" + path("bad.semantic")))
       << said;
@@ -123,7 +123,7 @@ TEST_F(SemanticMapViewFiles, AreOpenedWhenTheyAreDropped) {
       {drop("bad.semantic", "bad.semantic'"), drop("grass.bt", "opened .*grass.bt: [0-9]* leaves"),
        drop("robot.tum", "opened .*robot.tum: 16 m"),
        click(pixelOf(-3.1, 2.1, 0.2), "occupied, road"), "picture " + path("screen.png"),
-       click({kListX, kListY}, "hides robot.tum"), click({24, 69}, "hides grass.bt"),
+       click({kListX, kListY + kSecondMap}, "hides robot.tum"), click({24, 71}, "hides grass.bt"),
        click(pixelOf(-3.1, 2.1, 0.2), "occupied, road"), "picture " + path("hidden.png")});
   const cv::Mat screen = cv::imread(path("screen.png")), hidden = cv::imread(path("hidden.png"));
   ASSERT_FALSE(screen.empty() || hidden.empty());

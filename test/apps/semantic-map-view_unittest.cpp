@@ -146,8 +146,8 @@ TEST_F(SemanticMapView, SaysWhyACellIsExpandedOrNot) {
 TEST_F(SemanticMapView, SavesWeightsFromWhichTheSameLeavesFollow) {
   SKIP_WITHOUT_WINDOWS();
   // In the panel at the right: a place on the slider of alpha, and the button below.
-  const std::string slider = std::to_string(kWidth - 170) + " 272 leaves, alpha",
-                    save = std::to_string(kWidth - 230) + " 555 wrote ./weights-1.yaml";
+  const std::string slider = std::to_string(kWidth - 170) + " 190 leaves, alpha",
+                    save = std::to_string(kWidth - 230) + " 418 wrote ./weights-1.yaml";
   const ProgramRun run =
       runInX({"/usr/bin/env", "-C", folder.path().string(),
               MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer,
@@ -167,8 +167,8 @@ TEST_F(SemanticMapView, SavesWeightsFromWhichTheSameLeavesFollow) {
   EXPECT_EQ(view[1], compress[1]);
 }
 
-/** The window with an order of classes; the panel at the lower left has the buttons "start" and
- * "goal". */
+/** The window with an order of classes; the panel at the right has the buttons "start" and "goal".
+ */
 class SemanticMapViewPlans : public SemanticMapView {
  protected:
   SemanticMapViewPlans() { folder.write("order.yaml", "best_to_worst: [road, grass]\n"); }
@@ -176,30 +176,10 @@ class SemanticMapViewPlans : public SemanticMapView {
   /** Runs the window: how the start is set, how the goal, what comes then. */
   void plan(const std::string& start, const std::string& goal,
             const std::vector<std::string>& then = {}) {
-    const std::string y = std::to_string(kHeight - 76);
-    std::vector<std::string> command{MSO_SOURCE_DIR "/test/apps/view-window.sh",
-                                     path("said.txt"),
-                                     kViewer,
-                                     path("map.semantic"),
-                                     "--size",
-                                     size(),
-                                     "--camera",
-                                     kTop,
-                                     "--order",
-                                     path("order.yaml"),
-                                     "--",
-                                     "60 " + y + " click where the vehicle is",
-                                     start,
-                                     "156 " + y + " click where it is to go",
-                                     goal};
-    command.insert(command.end(), then.begin(), then.end());
-    const ProgramRun run = runInX(command);
-    EXPECT_EQ(run.status, 0) << run.output << run.errors;
-    said = folder.read("said.txt");
-  }
-
-  static std::string at(const cv::Point& p) {
-    return std::to_string(p.x) + " " + std::to_string(p.y);
+    std::vector<std::string> steps{"650 244 click where the vehicle is", start,
+                                   "745 244 click where it is to go", goal};
+    steps.insert(steps.end(), then.begin(), then.end());
+    said = work({"--order", path("order.yaml")}, steps);
   }
 
   /** The lengths of all paths that the window told, m. */
@@ -242,9 +222,139 @@ TEST_F(SemanticMapViewPlans, FromAndToHeadingsThatAreDragged) {
 
 TEST_F(SemanticMapViewPlans, AnewAfterTheOrderOfClassesWasDragged) {
   SKIP_WITHOUT_WINDOWS();
-  // Along the road's border: straight on, or by the grass, if that is better.
+  // Along the road's border: straight on, or by the grass, if that is better. The arrow beside it.
   plan(at(pixelOf(-1, -2.5, 0.2)) + " start at -1", at(pixelOf(-1, 2.5, 0.2)) + " path of",
-       {"drag 300 54 300 80 order: grass > road", at(pixelOf(3.1, 3.1, 0.2)) + " occupied, grass"});
+       {"852 310 order: grass > road", at(pixelOf(3.1, 3.1, 0.2)) + " occupied, grass"});
   ASSERT_EQ(lengths().size(), 2u) << said;
   EXPECT_GT(lengths()[1], lengths()[0] + 0.2) << said;
+}
+
+TEST_F(SemanticMapViewPlans, WithClassesAndAVehicleThatAreChosenInTheWindow) {
+  SKIP_WITHOUT_WINDOWS();
+  folder.write("wide.yaml", "footprint: [[-4, -4], [4, -4], [4, 4], [-4, 4]]\n");
+  folder.write("other.yaml", "best_to_worst: [grass]\n");
+  const std::string field = "type 150 504 ";
+  said = work({}, {"touch 745 214", "650 244 click where the vehicle is",
+                   at(pixelOf(-3, -2, 0.2)) + " start at -3", "745 244 click where it is to go",
+                   at(pixelOf(-3, 3, 0.2)) + " no path: no class is allowed", "616 310 order: road",
+                   at(pixelOf(-1.1, -2.1, 0.2)) + " occupied, road",
+                   field + path("wide.yaml") + " opened .*wide.yaml: the vehicle",
+                   field + path("other.yaml") + " opened .*other.yaml: an order of classes"});
+  const std::size_t chosen = said.find("order: road"), wide = said.find("no path:", chosen);
+  ASSERT_EQ(lengths().size(), 1u) << said;
+  const std::size_t found = said.find("path of");
+  EXPECT_GT(found, chosen) << said;
+  EXPECT_LT(found, wide) << said;
+  EXPECT_NE(wide, std::string::npos) << "the wide one has no room\n" << said;
+  EXPECT_NE(said.find("no path:", wide + 1), std::string::npos) << "nor on grass\n" << said;
+}
+
+/** Gaps between panels, along a column of pixels that is in their borders. */
+int gapsAlong(const cv::Mat& picture, int column) {
+  int gaps = 0;
+  bool inPanel = false;
+  for (int row = 0; row < picture.rows; ++row) {
+    const bool is = picture.at<cv::Vec3b>(row, column)[1] < 100;
+    gaps += inPanel && !is;
+    inPanel = is;
+  }
+  return gaps;
+}
+
+TEST_F(SemanticMapView, HasPanelsBesideEachOtherAndTheMapsMiddle) {
+  SKIP_WITHOUT_WINDOWS();
+  folder.write("robot.tum", "0 -8 -7 0 0 0 0 1\n1 8 -7 0 0 0 0 1\n");
+  const std::vector<std::string> files = {path("map.semantic"), path("robot.tum")};
+  for (const cv::Size window : {cv::Size(1280, 720), cv::Size(1000, 600)}) {
+    const auto picture = [&](const std::vector<std::string>& more) {
+      std::vector<std::string> command = {
+          kViewer,
+          "--size",
+          std::to_string(window.width) + "x" + std::to_string(window.height),
+          "--camera",
+          "0,0,0,90,-90,90",
+          "-f",
+          "-o",
+          path("view.png")};
+      command.insert(command.end(), files.begin(), files.end());
+      command.insert(command.end(), more.begin(), more.end());
+      const ProgramRun run = runInX(command);
+      EXPECT_EQ(run.status, 0) << run.errors;
+      return cv::imread(path("view.png"));
+    };
+    const cv::Mat with = picture({}), without = picture({"--no-panels"});
+    ASSERT_EQ(with.size(), window);
+    const cv::Rect middle(270, 0, window.width - 270 - 320, window.height);
+    EXPECT_EQ(cv::norm(with(middle), without(middle), cv::NORM_INF), 0);
+    const cv::Mat most = picture({"--compress"});
+    EXPECT_EQ(gapsAlong(most, 11), 3) << "map, clip, files";
+    EXPECT_EQ(gapsAlong(most, window.width - 11), 3) << "cell, compress, path";
+  }
+}
+
+TEST_F(SemanticMapView, SaysWhatColorsMean) {
+  SKIP_WITHOUT_WINDOWS();
+  const auto hasYellow = [&](const std::string& coloring) {
+    const cv::Mat all =
+        draw({path("map.semantic"), "--camera", "0,0,0,200,-90,90", "--color", coloring});
+    const cv::Mat panel = all(cv::Rect(0, 0, 254, kHeight));
+    return std::any_of(panel.begin<cv::Vec3b>(), panel.end<cv::Vec3b>(),
+                       [](const cv::Vec3b& c) { return c[2] > 240 && c[1] > 220 && c[0] < 60; });
+  };
+  EXPECT_TRUE(hasYellow("height")) << "at the upper end of the scale";
+  EXPECT_FALSE(hasYellow("class"));
+}
+
+TEST_F(SemanticMapView, IsCutWhereNumbersSay) {
+  SKIP_WITHOUT_WINDOWS();
+  // The panel "Clip" unfolds; the second field is the highest x.
+  work({}, {"touch 130 437", "enter 205 491 2", "picture " + path("cut.png")});
+  const cv::Mat cut = cv::imread(path("cut.png"));
+  ASSERT_FALSE(cut.empty());
+  EXPECT_EQ(classAt(cut, pixelOf(-2, 2, 0.2)), 'r');
+  EXPECT_EQ(classAt(cut, pixelOf(1, 2, 0.2)), 'g');
+  EXPECT_EQ(classAt(cut, pixelOf(3, 2, 0.2)), ' ');
+}
+
+TEST_F(SemanticMapView, PutsARingAroundTheCellThatWasPicked) {
+  SKIP_WITHOUT_WINDOWS();
+  const cv::Point cell = pixelOf(-1.1, -2.1, 0.2);
+  work({}, {at(cell) + " occupied, road", "key Shift_L", "picture " + path("picked.png")});
+  const cv::Mat picked = cv::imread(path("picked.png"));
+  ASSERT_FALSE(picked.empty());
+  for (const cv::Point& way : {cv::Point(16, 0), cv::Point(-16, 0), cv::Point(0, 16)}) {
+    int yellow = 0;
+    for (int i = -3; i <= 3; ++i) {
+      const cv::Vec3b c = picked.at<cv::Vec3b>(cell + way + way * i / 16);
+      yellow += c[2] > 200 && c[1] > 170 && c[0] < 80;
+    }
+    EXPECT_GT(yellow, 0) << way;
+  }
+}
+
+TEST_F(SemanticMapView, ComesNearerToThePointer) {
+  SKIP_WITHOUT_WINDOWS();
+  const cv::Point p = pixelOf(-3.1, 3.1, 0.1), q = pixelOf(2.1, -3.1, 0.1);
+  const std::string said =
+      work({}, {at(p) + " occupied", at(q) + " occupied", "wheel " + at(p) + " 8",
+                at(p) + " occupied", at(q) + " occupied"});
+  std::vector<std::string> keys;
+  const std::regex key("key \\d+ \\d+ \\d+");
+  for (std::sregex_iterator i(said.begin(), said.end(), key), end; i != end; ++i)
+    if (keys.empty() || i->str() != keys.back()) keys.push_back(i->str());
+  ASSERT_EQ(keys.size(), 4u) << said;
+  EXPECT_EQ(keys[0], keys[2]) << "it stays below the pointer";
+  EXPECT_NE(keys[1], keys[3]) << "all else moves away";
+}
+
+TEST_F(SemanticMapView, ClosesMenusWithEscape) {
+  SKIP_WITHOUT_WINDOWS();
+  const auto picture = [this](const std::string& name) { return "picture " + path(name); };
+  // The menu of colors, which unfolds to the right. The pointer rests elsewhere.
+  work({}, {"touch 450 680", picture("closed.png"), "touch 158 78", "touch 450 22",
+            picture("open.png"), "key Escape", "touch 450 680", picture("again.png")});
+  const cv::Rect beside(262, 8, 120, 200);
+  const auto part = [&](const std::string& name) { return cv::imread(path(name))(beside).clone(); };
+  EXPECT_GT(cv::norm(part("closed.png"), part("open.png"), cv::NORM_INF), 100);
+  EXPECT_EQ(cv::norm(part("closed.png"), part("again.png"), cv::NORM_INF), 0);
 }

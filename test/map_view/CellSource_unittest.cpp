@@ -251,6 +251,7 @@ TEST(CellLook, ColorsSayWhatTheyShould) {
     look.setStyle(style);
     const Color c = look.colorOf(road);
     EXPECT_GT(c.g, c.b) << int(coloring);  // red, yellow or green
+    EXPECT_TRUE(look.scale());
   }
   style.coloring = ViewColoring::Height;
   look.setStyle(style);
@@ -258,6 +259,25 @@ TEST(CellLook, ColorsSayWhatTheyShould) {
     return look.colorOf({Eigen::Array3i(32768, 32768, z), kTreeDepth, road.node});
   };
   EXPECT_LT(colorAt(32768 - 10).g, colorAt(32768 + 10).g) << "higher is brighter";
+  const auto scale = look.scale();
+  ASSERT_TRUE(scale);
+  Eigen::Vector3d low, high;
+  map.getMetricMin(low.x(), low.y(), low.z());
+  map.getMetricMax(high.x(), high.y(), high.z());
+  EXPECT_NEAR(std::stod(scale->low), low.z(), 0.05);
+  EXPECT_NEAR(std::stod(scale->high), high.z(), 0.05);
+  for (const int z : {32768 - 9, 32768, 32768 + 13}) {
+    const double height = (z - 32768 + 0.5) * map.getResolution();
+    const Color expected = scale->colorAt((height - low.z()) / (high.z() - low.z()));
+    EXPECT_EQ(colorAt(z).g, expected.g);
+    EXPECT_EQ(colorAt(z).b, expected.b);
+  }
+  style.clip.max().z() = 0.5;
+  look.setStyle(style);
+  EXPECT_EQ(look.scale()->high, "0.5");
+  style.coloring = ViewColoring::Class;
+  look.setStyle(style);
+  EXPECT_FALSE(look.scale()) << "the list of classes says it";
 }
 
 TEST(CellAnswer, SaysWhatTheMapSays) {

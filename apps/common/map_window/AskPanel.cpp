@@ -19,7 +19,7 @@ using mrpt_compat::drawing::CBox;
 
 namespace {
 
-constexpr int kWidth = 280, kWindow = kWidth + 16;
+constexpr int kWidth = 280;
 constexpr semantic_types::Color kFreeColor{120, 180, 235};
 constexpr std::size_t kMostBars = 5;
 
@@ -49,18 +49,17 @@ CBox::Ptr boxAround(const CellAnswer& answer) {
 }  // namespace
 
 AskPanel::AskPanel(Viewer& viewer) : m_viewer(viewer) {
-  auto* window =
-      addWindow(&viewer.window(), "Cell", {viewer.window().width() - kWindow - 8, 8}, kWindow);
-  for (auto& line : m_lines) line = addText(window, "", kWidth);
+  auto* content = viewer.window().addPanel(ViewWindow::Side::Right, "Cell", kWidth)->content();
+  for (auto& line : m_lines) line = addText(content, "", kWidth);
   m_lines[0]->setCaption("click a cell");
-  m_shares = window->add<BarChart>();
-  m_shares->setFixedSize({kWidth, 17 * int(kMostBars)});
+  m_shares = content->add<BarChart>();
   viewer.window().marks()->insert(m_mark);
   viewer.onActivated([this] { clear(); });
 }
 
 void AskPanel::clear() {
   m_mark->clear();
+  m_viewer.window().setRing({});
   m_shares->setBars({});
   for (auto* line : m_lines) line->setCaption("");
 }
@@ -97,6 +96,7 @@ void AskPanel::show(const map_view::ViewCell& cell) {
   if (bars.size() > kMostBars) bars.resize(kMostBars);
   m_shares->setBars(std::move(bars));
   m_mark->insert(boxAround(answer));
+  m_viewer.window().setRing(answer.center);
 }
 
 }  // namespace map_window

@@ -36,13 +36,11 @@ std::vector<std::unique_ptr<Layer>> layersOf(const semantic_octree::SemanticOcTr
 class PacePanel {
  public:
   explicit PacePanel(ViewWindow& window) : m_window(window) {
-    auto* panel = addWindow(&window, "Live", {8, window.height() - 190}, kPanel + 16);
+    auto* panel = window.addPanel(ViewWindow::Side::Left, "Live", kPanel)->content();
     auto* row = addRow(panel);
     m_pause = row->add<nanogui::CheckBox>("pause");
     m_pause->setFixedSize({90, 20});
-    auto* step = row->add<nanogui::Button>("step");
-    step->setFixedSize({60, 20});
-    step->setCallback([this] {
+    addButton(row, "step", 60, [this] {
       pause();
       m_steps = true;
     });
@@ -78,12 +76,11 @@ class LiveMap::Window {
          const Beginning& beginning)
       : m_window(ViewWindow::open(title, kWidth, kHeight)),
         m_viewer(*m_window, layersOf(map), beginning),
+        m_pace(*m_window),
         m_show(m_viewer),
-        m_ask(m_viewer),
-        m_pace(*m_window) {
+        m_ask(m_viewer) {
     m_window->onClick([this](const map_view::Ray& ray) { m_ask.ask(ray); });
     m_window->marks()->insert(marks);
-    m_window->performLayout();
     m_window->setVisible(true);
     m_isOpen = m_window->attend();
     if (!beginning.camera) m_camera = m_window->orbitCamera().text();
@@ -160,9 +157,9 @@ class LiveMap::Window {
   const WindowSystem m_system;
   std::unique_ptr<ViewWindow> m_window;
   Viewer m_viewer;
+  PacePanel m_pace;
   ShowPanel m_show;
   AskPanel m_ask;
-  PacePanel m_pace;
   bool m_isOpen = true, m_isComplete = true;
   Eigen::AlignedBox3d m_changed;
   std::string m_camera;  ///< as it followed last

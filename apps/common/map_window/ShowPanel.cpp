@@ -13,7 +13,7 @@ using nanogui::Widget;
 
 namespace {
 
-constexpr int kShowWidth = 230;
+constexpr int kShowWidth = 230, kSaidWidth = 400;
 
 /** 1234567 -> "1.23 M" */
 std::string shortNumber(double number) {
@@ -34,20 +34,22 @@ std::string captionOf(const Layer& layer) {
 }  // namespace
 
 ShowPanel::ShowPanel(Viewer& viewer)
-    : m_viewer(viewer), m_window(addWindow(&viewer.window(), "Map", {8, 8}, kShowWidth + 16)) {
+    : m_viewer(viewer),
+      m_content(viewer.window().addPanel(ViewWindow::Side::Left, "Map", kShowWidth)->content()) {
   addLayers();
-  addColoring(m_window);
-  addClasses(m_window);
-  addClip(m_window);
-  addCameras(m_window);
-  m_camera = addText(m_window, "", kShowWidth);
-  m_said = addText(m_window, "", kShowWidth);
-  m_said->setFixedHeight(0);  // as many lines as it takes
+  addColoring(m_content);
+  addClasses(m_content);
+  addCameras(m_content);
+  m_camera = addLines(m_content, kShowWidth);
+  m_said = new nanogui::Window(&viewer.window(), "");
+  m_said->setLayout(
+      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 6));
+  addLines(m_said, kSaidWidth);
+  addClip();
   viewer.onActivated([this] { listClasses(); });
   viewer.onAdded([this] {
     listLayers();
     fitClip();
-    m_viewer.window().performLayout();
   });
   viewer.onFrame([this] { update(); });
 }
@@ -60,16 +62,19 @@ void ShowPanel::refresh() {
 
 void ShowPanel::update() {
   m_camera->setCaption("--camera " + m_viewer.window().orbitCamera().text());
-  if (m_said->caption() == m_viewer.said()) return;
-  m_said->setCaption(m_viewer.said());
-  m_viewer.window().performLayout();
+  static_cast<nanogui::Label*>(m_said->childAt(0))->setCaption(m_viewer.said());
+  m_said->setVisible(!m_viewer.said().empty());
+  const ViewWindow& window = m_viewer.window();
+  m_said->setPosition(
+      {(window.width() - m_said->width()) / 2, window.height() - m_said->height() - 8});
+  const auto scale = m_viewer.layer().look().scale();
+  m_scale->setVisible(scale.has_value());
+  if (scale) m_scale->setScale(*scale);
 }
 
 void ShowPanel::addLayers() {
-  m_layers = m_window->add<Widget>();
-  m_layers->setLayout(
-      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 0, 5));
-  m_activeRow = addRow(m_window);
+  m_layers = addColumn(m_content, 0, 5);
+  m_activeRow = addRow(m_content);
   addText(m_activeRow, "active", 50);
   m_active = m_activeRow->add<nanogui::ComboBox>();
   m_active->setFixedWidth(kShowWidth - 56);
@@ -121,14 +126,12 @@ void ShowPanel::addColoring(Widget* parent) {
     style.coloring = choices[std::size_t(i)].second;
     m_viewer.setStyle(style);
   });
+  m_scale = parent->add<ScaleBar>();
+  m_scale->setFixedSize({kShowWidth, 36});
 }
 
 void ShowPanel::addClasses(Widget* parent) {
-  auto* scroll = parent->add<nanogui::VScrollPanel>();
-  scroll->setFixedSize({kShowWidth, 250});
-  m_classes = scroll->add<Widget>();
-  m_classes->setLayout(
-      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 2, 1));
+  m_classes = addScroll(parent, kShowWidth, 230);
   listClasses();
   auto* row = addRow(parent);
   addSpace(row, "free space", &map_view::ViewStyle::freeSpace);
@@ -167,7 +170,6 @@ void ShowPanel::listClasses() {
     box->setCallback([this, id](bool on) { hide(id, !on); });
     addText(row, shortNumber(double(leaves[id])), 50);
   }
-  m_viewer.window().performLayout();
 }
 
 void ShowPanel::hide(std::size_t id, bool hidden) {
@@ -177,27 +179,37 @@ void ShowPanel::hide(std::size_t id, bool hidden) {
   m_viewer.setStyle(style);
 }
 
-void ShowPanel::addClip(Widget* parent) {
-  for (int axis = 0; axis < 3; ++axis) {
-    ClipLine& line = m_clip[std::size_t(axis)];
-    auto* row = addRow(parent, 4);
-    addText(row, std::string(1, char('x' + axis)), 10);
-    for (nanogui::Slider** slider : {&line.from, &line.to})
-      *slider = addSlider(row, 58, 0, 1, 0, [this, axis](float) { clip(axis); });
-    line.text = addText(row, "", 88);
-  }
+void ShowPanel::addClip() {
+  auto* content =
+      m_viewer.window().addPanel(ViewWindow::Side::Left, "Clip", kShowWidth, false)->content();
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool isHigh : {false, true}) {
+      ClipLine& line = m_clip[std::size_t(axis)][isHigh];
+      auto* row = addRow(content, 4);
+      addText(row, isHigh ? "" : std::string(1, char('x' + axis)), 10);
+      line.slider = addSlider(row, 138, 0, 1, 0, [=](float to) { clip(axis, isHigh, double(to)); });
+      line.number = row->add<nanogui::FloatBox<double>>();
+      line.number->setFixedSize({74, 20});
+      line.number->setFontSize(15);
+      line.number->setEditable(true);
+      line.number->setUnits("m");
+      line.number->numberFormat("%.1f");
+      line.number->setCallback([=](double to) { clip(axis, isHigh, to); });
+    }
   fitClip();
 }
 
-/** The sliders' ends do not cut. */
-void ShowPanel::clip(int axis) {
+/** The sliders' ends do not cut, and no side passes the other. */
+void ShowPanel::clip(int axis, bool isHigh, double to) {
   map_view::ViewStyle style = m_viewer.style();
   const Eigen::AlignedBox3d all = map_view::ViewStyle::everywhere();
-  const ClipLine& line = m_clip[std::size_t(axis)];
-  const auto [low, high] = line.from->range();
-  const float from = line.from->value(), to = line.to->value();
-  style.clip.min()[axis] = from > low ? double(from) : all.min()[axis];
-  style.clip.max()[axis] = to < high ? double(to) : all.max()[axis];
+  const auto [low, high] = m_clip[std::size_t(axis)][isHigh].slider->range();
+  if (isHigh)
+    style.clip.max()[axis] =
+        to < double(high) ? std::max(to, style.clip.min()[axis]) : all.max()[axis];
+  else
+    style.clip.min()[axis] =
+        to > double(low) ? std::min(to, style.clip.max()[axis]) : all.min()[axis];
   m_viewer.setStyle(style);
   fitClip();
 }
@@ -210,17 +222,16 @@ void ShowPanel::fitClip() {
     m_viewer.layer(i).map().getMetricMax(high.x(), high.y(), high.z());
     known.extend(Eigen::AlignedBox3d(low, high));
   }
-  const auto rounded = [](double m) { return strict_files::textOf(std::round(m * 10) / 10); };
-  for (int axis = 0; axis < 3; ++axis) {
-    const ClipLine& line = m_clip[std::size_t(axis)];
-    const double low = known.min()[axis], high = known.max()[axis],
-                 from = std::clamp(m_viewer.style().clip.min()[axis], low, high),
-                 to = std::clamp(m_viewer.style().clip.max()[axis], low, high);
-    for (auto* slider : {line.from, line.to}) slider->setRange({float(low), float(high)});
-    line.from->setValue(float(from));
-    line.to->setValue(float(to));
-    line.text->setCaption(rounded(from) + " to " + rounded(to) + " m");
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool isHigh : {false, true}) {
+      const ClipLine& line = m_clip[std::size_t(axis)][isHigh];
+      const double low = known.min()[axis], high = known.max()[axis];
+      const auto& clip = m_viewer.style().clip;
+      const double at = std::clamp((isHigh ? clip.max() : clip.min())[axis], low, high);
+      line.slider->setRange({float(low), float(high)});
+      line.slider->setValue(float(at));
+      line.number->setValue(at);
+    }
 }
 
 void ShowPanel::addCameras(Widget* parent) {
@@ -231,22 +242,17 @@ void ShowPanel::addCameras(Widget* parent) {
   };
   for (const Preset& preset : {Preset{"top", -90, 90}, Preset{"south", -90, 20},
                                Preset{"east", 0, 20}, Preset{"all", -120, 35}}) {
-    auto* button = row->add<nanogui::Button>(preset.name);
-    button->setFixedSize({44, 22});
-    button->setFontSize(15);
-    button->setCallback([this, preset] { m_viewer.lookFrom(preset.azimuth, preset.elevation); });
+    addButton(row, preset.name, 44,
+              [this, preset] { m_viewer.lookFrom(preset.azimuth, preset.elevation); });
   }
-  auto* picture = row->add<nanogui::Button>("PNG");
-  picture->setFixedSize({38, 22});
-  picture->setFontSize(15);
-  picture->setTooltip("Writes this picture into the working folder");
-  picture->setCallback([this] {
+  auto* picture = addButton(row, "PNG", 38, [this] {
     try {
       m_viewer.say("wrote " + m_viewer.savePicture(".").string());
     } catch (const std::exception& e) {
       m_viewer.complain(e);
     }
   });
+  picture->setTooltip("Writes this picture into the working folder");
 }
 
 }  // namespace map_window

@@ -22,27 +22,30 @@ class ShowPanel {
   void addClasses(nanogui::Widget* parent);
   void addSpace(nanogui::Widget* parent, const std::string& name,
                 bool map_view::ViewStyle::*isShown);
-  void addClip(nanogui::Widget* parent);
+  void addClip();
   void addCameras(nanogui::Widget* parent);
   void listClasses();
   /** Sliders lead from the lowest to the highest of what is known. */
   void fitClip();
-  void clip(int axis);
+  void clip(int axis, bool isHigh, double to);
   void hide(std::size_t id, bool hidden);
 
   Viewer& m_viewer;
-  nanogui::Window* m_window;
+  nanogui::Widget* m_content;
   nanogui::Widget* m_classes = nullptr;
-  /** A side, along x, y or z, of the box outside of which nothing is shown. */
+  ScaleBar* m_scale = nullptr;
+  /** The lower and the higher side, along x, y or z, of the box outside of which nothing is shown.
+   */
   struct ClipLine {
-    nanogui::Slider *from, *to;
-    nanogui::Label* text;
+    nanogui::Slider* slider;
+    nanogui::FloatBox<double>* number;
   };
-  std::array<ClipLine, 3> m_clip{};
+  std::array<std::array<ClipLine, 2>, 3> m_clip{};
   nanogui::Widget *m_layers = nullptr, *m_activeRow = nullptr;
   nanogui::ComboBox* m_active = nullptr;
   std::vector<nanogui::CheckBox*> m_shown;  ///< one for each layer, if there are several
-  nanogui::Label *m_name = nullptr, *m_camera = nullptr, *m_said = nullptr;
+  nanogui::Label *m_name = nullptr, *m_camera = nullptr;
+  nanogui::Window* m_said = nullptr;  ///< at the lower border
 };
 
 }  // namespace map_window

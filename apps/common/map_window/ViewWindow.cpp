@@ -5,6 +5,7 @@
 #include <nanogui/nanogui.h>
 #include <nanogui/opengl.h>
 
+#include <algorithm>
 #include <clocale>
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
@@ -18,7 +19,8 @@ namespace {
 
 constexpr double kIdle = 0.5;  // s between frames without a reason
 constexpr int kClick = 3;      // pixels that the mouse may move between press and release
-constexpr int kPictureBorder = 8;
+constexpr int kPictureBorder = 8, kBetweenPanels = 8;
+constexpr float kRing = 16;  // pixels, radius
 
 const std::string kInstead =
     "; `semantic-map-export MAP -o map.png` draws a map without a window, xvfb-run gives programs "
@@ -70,6 +72,57 @@ ViewWindow::ViewWindow(const std::string& title, int width, int height)
   scene->insert(m_maps);
   background_scene = scene;
   glfwMakeContextCurrent(mGLFWWindow);
+}
+
+Panel* ViewWindow::addPanel(Side side, const std::string& title, int width, bool isOpen) {
+  auto* panel = new Panel(this, title, width);
+  panel->open(isOpen);
+  const std::size_t i = m_panels.size();
+  m_panels.push_back({panel, side, -int(i)});
+  panel->onOpened([this, i] { m_panels[i].opened = ++m_opened; });
+  return panel;
+}
+
+void ViewWindow::arrangePanels() {
+  performLayout();
+  for (const Side side : {Side::Left, Side::Right}) {
+    std::vector<Placed*> open;
+    int bottom = kBetweenPanels;
+    for (Placed& placed : m_panels) {
+      if (placed.side != side || !placed.panel->visible()) continue;
+      bottom += placed.panel->height() + kBetweenPanels;
+      if (placed.panel->isOpen()) open.push_back(&placed);
+    }
+    const auto isOlder = [](const Placed* a, const Placed* b) { return a->opened < b->opened; };
+    std::sort(open.begin(), open.end(), isOlder);
+    for (std::size_t i = 0; i + 1 < open.size() && bottom > height(); ++i) {
+      bottom -= open[i]->panel->height();
+      open[i]->panel->open(false);
+      bottom += open[i]->panel->preferredSize(mNVGContext).y();
+    }
+    int y = kBetweenPanels;
+    for (const auto& [panel, at, opened] : m_panels) {
+      if (at != side || !panel->visible()) continue;
+      if (!panel->isOpen()) panel->setHeight(panel->preferredSize(mNVGContext).y());
+      const int right = width() - panel->width() - kBetweenPanels;
+      panel->setPosition({side == Side::Left ? kBetweenPanels : right, y});
+      y += panel->height() + kBetweenPanels;
+    }
+  }
+}
+
+/** Below the panels. */
+void ViewWindow::draw(NVGcontext* context) {
+  const auto pixel = m_ring ? orbitCamera().pixelOf(*m_ring, mSize.x(), mSize.y()) : std::nullopt;
+  for (const float width : {6.f, 3.f}) {
+    if (!pixel) break;
+    nvgBeginPath(context);
+    nvgCircle(context, float(pixel->x()), float(pixel->y()), kRing);
+    nvgStrokeWidth(context, width);
+    nvgStrokeColor(context, width > 3 ? nanogui::Color(0, 255) : nanogui::Color(255, 215, 0, 255));
+    nvgStroke(context);
+  }
+  CDisplayWindowGUI::draw(context);
 }
 
 void ViewWindow::showPicture(const mrpt::img::CImage& picture, int width) {
@@ -139,6 +192,7 @@ void ViewWindow::run(const std::function<bool()>& done) {
 /** As nanogui does it; but what was drawn is kept before it goes to the screen, where other windows
  * may cover it. */
 void ViewWindow::drawAll() {
+  arrangePanels();
   const float far = float(orbitCamera().distance);
   background_scene->getViewport()->setViewportClipDistances(std::max(0.02f, far / 200), far * 50);
   glClearColor(0, 0, 0, 1);

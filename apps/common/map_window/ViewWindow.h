@@ -5,6 +5,9 @@
 
 #include <functional>
 #include <opencv2/core.hpp>
+#include <optional>
+
+#include "Widgets.h"
 
 namespace map_window {
 
@@ -29,6 +32,14 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   const mrpt_compat::drawing::CSetOfObjects::Ptr& maps() const { return m_maps; }
   /** What lies upon them. */
   const mrpt_compat::drawing::CSetOfObjects::Ptr& marks() const { return m_marks; }
+  /** Panels stand below each other at the left or the right. Where the window is too low for them,
+   * those fold that were opened longest ago; before a hand did, the last ones.
+   * \param width of what is in it, pixels */
+  enum class Side { Left, Right };
+  Panel* addPanel(Side side, const std::string& title, int width, bool isOpen = true);
+
+  /** A ring around a place (m, map frame), whatever hides it; none: no place. */
+  void setRing(const std::optional<Eigen::Vector3d>& place) { m_ring = place; }
   /** In the lower right corner, so many pixels wide. */
   void showPicture(const mrpt::img::CImage& picture, int width);
 
@@ -71,11 +82,21 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
 
  private:
   void drawAll() override;
+  void draw(NVGcontext* context) override;
+  void arrangePanels();
   map_view::Ray rayThrough(const nanogui::Vector2i& p) const;
   void takePicture();
 
   mrpt_compat::drawing::CSetOfObjects::Ptr m_maps = mrpt_compat::drawing::CSetOfObjects::Create();
   mrpt_compat::drawing::CSetOfObjects::Ptr m_marks = mrpt_compat::drawing::CSetOfObjects::Create();
+  struct Placed {
+    Panel* panel;
+    Side side;
+    int opened;  ///< the larger, the later
+  };
+  std::vector<Placed> m_panels;
+  int m_opened = 0;
+  std::optional<Eigen::Vector3d> m_ring;
   std::function<void(const map_view::Ray&)> m_onClick;
   std::function<bool(const map_view::Ray&)> m_onGrab;
   OnMoved m_onMoved;

@@ -3,7 +3,6 @@
 #include <nanogui/opengl.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace map_window {
 
@@ -12,7 +11,8 @@ using nanogui::Widget;
 
 namespace {
 
-constexpr int kFont = 15, kLine = 17, kNameWidth = 105, kBarWidth = 105, kValueWidth = 60;
+constexpr int kMargin = 8, kFont = 15, kLine = 17, kNameWidth = 105, kBarWidth = 105,
+              kValueWidth = 60;
 
 void drawText(NVGcontext* context, float x, float y, int align, const std::string& text) {
   nvgTextAlign(context, align | NVG_ALIGN_MIDDLE);
@@ -33,8 +33,40 @@ nanogui::Color colorOf(const semantic_types::Color& c) {
   return nanogui::Color(Eigen::Vector3i(c.r, c.g, c.b), 255);
 }
 
+Panel::Panel(Widget* parent, const std::string& title, int width)
+    : nanogui::Window(parent, title), m_content(addColumn(this, 0, 5)) {
+  setFixedWidth(width + 2 * kMargin);
+  setLayout(
+      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, kMargin));
+}
+
+Vector2i Panel::preferredSize(NVGcontext* context) const {
+  if (isOpen()) return nanogui::Window::preferredSize(context);
+  return {fixedWidth(), theme()->mWindowHeaderHeight};
+}
+
+void Panel::draw(NVGcontext* context) {
+  nanogui::Window::draw(context);
+  nvgFontSize(context, kLine + 3);
+  nvgFontFace(context, "icons");
+  nvgFillColor(context, nanogui::Color(190, 255));
+  const int icon = isOpen() ? ENTYPO_ICON_CHEVRON_DOWN : ENTYPO_ICON_CHEVRON_RIGHT;
+  drawText(context, float(mPos.x() + kMargin),
+           float(mPos.y()) + float(theme()->mWindowHeaderHeight) / 2, NVG_ALIGN_LEFT,
+           nanogui::utf8(icon).data());
+}
+
+bool Panel::mouseButtonEvent(const Vector2i& p, int button, bool down, int modifiers) {
+  const bool onTitle = p.y() - mPos.y() < theme()->mWindowHeaderHeight;
+  if (!onTitle || !down || button != GLFW_MOUSE_BUTTON_LEFT)
+    return nanogui::Window::mouseButtonEvent(p, button, down, modifiers);
+  open(!isOpen());
+  if (isOpen()) m_onOpened();
+  return true;
+}
+
 Vector2i BarChart::preferredSize(NVGcontext*) const {
-  return {kNameWidth + kBarWidth + kValueWidth, kLine * std::max<int>(1, int(m_bars.size()))};
+  return {kNameWidth + kBarWidth + kValueWidth, kLine * int(m_bars.size())};
 }
 
 void BarChart::draw(NVGcontext* context) {
@@ -53,74 +85,21 @@ void BarChart::draw(NVGcontext* context) {
   }
 }
 
-void Table::draw(NVGcontext* context) {
-  Widget::draw(context);
+Vector2i ScaleBar::preferredSize(NVGcontext*) const { return mFixedSize; }
+
+void ScaleBar::draw(NVGcontext* context) {
+  constexpr int kSteps = 46;
+  const float x = float(mPos.x()), y = float(mPos.y()), width = float(mSize.x()),
+              step = width / kSteps, below = y + kLine * 1.5f;
+  for (int i = 0; i < kSteps; ++i)
+    fillBox(context, x + float(i) * step, y + 2, step + 0.5f, kLine - 4,
+            colorOf(m_scale.colorAt((i + 0.5) / kSteps)));
   nvgFontSize(context, kFont);
   nvgFontFace(context, "sans");
   nvgFillColor(context, nanogui::Color(230, 255));
-  float y = float(mPos.y()) + kLine / 2.f;
-  for (const auto& row : m_rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const float right = float(mPos.x() + m_nameWidth + int(i) * m_columnWidth);
-      if (i == 0)
-        drawText(context, float(mPos.x()), y, NVG_ALIGN_LEFT, row[i].substr(0, 17));
-      else
-        drawText(context, right, y, NVG_ALIGN_RIGHT, row[i]);
-    }
-    y += kLine;
-  }
-}
-
-void OrderList::setNames(std::vector<std::string> names) {
-  m_names = std::move(names);
-  m_order.resize(m_names.size());
-  std::iota(m_order.begin(), m_order.end(), 0);
-  m_held.reset();
-}
-
-Vector2i OrderList::preferredSize(NVGcontext*) const {
-  return {kNameWidth + kBarWidth, kLine * int(m_names.size())};
-}
-
-void OrderList::draw(NVGcontext* context) {
-  Widget::draw(context);
-  nvgFontSize(context, kFont);
-  nvgFontFace(context, "sans");
-  float y = float(mPos.y());
-  for (std::size_t line = 0; line < m_order.size(); ++line) {
-    if (line == m_held)
-      fillBox(context, float(mPos.x()), y, float(mSize.x()), kLine, nanogui::Color(90, 255));
-    nvgFillColor(context, nanogui::Color(230, 255));
-    drawText(context, float(mPos.x()) + 4, y + kLine / 2.f, NVG_ALIGN_LEFT,
-             std::to_string(line + 1) + "  " + m_names[m_order[line]]);
-    y += kLine;
-  }
-}
-
-std::size_t OrderList::lineAt(const Vector2i& p) const {
-  return std::size_t(std::clamp((p.y() - mPos.y()) / kLine, 0, int(m_order.size()) - 1));
-}
-
-bool OrderList::mouseButtonEvent(const Vector2i& p, int button, bool down, int) {
-  if (button != GLFW_MOUSE_BUTTON_LEFT || m_order.empty()) return false;
-  if (down) {
-    m_held = lineAt(p);
-    m_before = m_order;
-  } else if (m_held) {
-    m_held.reset();
-    if (m_order != m_before) m_moved(m_order);
-  }
-  return true;
-}
-
-bool OrderList::mouseDragEvent(const Vector2i& p, const Vector2i&, int, int) {
-  if (!m_held) return false;
-  const std::size_t line = lineAt(p);
-  const auto name = m_order.begin() + std::ptrdiff_t(*m_held);
-  if (line < *m_held) std::rotate(m_order.begin() + std::ptrdiff_t(line), name, name + 1);
-  if (line > *m_held) std::rotate(name, name + 1, m_order.begin() + std::ptrdiff_t(line) + 1);
-  m_held = line;
-  return true;
+  drawText(context, x, below, NVG_ALIGN_LEFT, m_scale.low);
+  drawText(context, x + width / 2, below, NVG_ALIGN_CENTER, m_scale.what);
+  drawText(context, x + width, below, NVG_ALIGN_RIGHT, m_scale.high);
 }
 
 Swatch::Swatch(Widget* parent, const semantic_types::Color& color)
@@ -139,11 +118,39 @@ Widget* addRow(Widget* parent, int spacing) {
   return row;
 }
 
+Widget* addColumn(Widget* parent, int margin, int spacing) {
+  auto* column = parent->add<Widget>();
+  column->setLayout(new nanogui::BoxLayout(nanogui::Orientation::Vertical,
+                                           nanogui::Alignment::Minimum, margin, spacing));
+  return column;
+}
+
+Widget* addScroll(Widget* parent, int width, int height) {
+  auto* scroll = parent->add<nanogui::VScrollPanel>();
+  scroll->setFixedSize({width, height});
+  return addColumn(scroll, 2, 1);
+}
+
 nanogui::Label* addText(Widget* parent, const std::string& text, int width) {
   auto* label = parent->add<nanogui::Label>(text);
   label->setFixedSize({width, kLine});
   label->setFontSize(kFont);
   return label;
+}
+
+nanogui::Label* addLines(Widget* parent, int width) {
+  auto* label = addText(parent, "", width);
+  label->setFixedHeight(0);
+  return label;
+}
+
+nanogui::Button* addButton(Widget* parent, const std::string& text, int width,
+                           const std::function<void()>& pressed) {
+  auto* button = parent->add<nanogui::Button>(text);
+  button->setFixedSize({width, 22});
+  button->setFontSize(kFont);
+  button->setCallback(pressed);
+  return button;
 }
 
 nanogui::CheckBox* addCheckBox(Widget* parent, const std::string& text, int width) {
@@ -156,16 +163,6 @@ nanogui::CheckBox* addCheckBox(Widget* parent, const std::string& text, int widt
 void removeChildren(Widget* parent) {
   parent->screen()->updateFocus(nullptr);
   while (parent->childCount() > 0) parent->removeChild(parent->childCount() - 1);
-}
-
-nanogui::Window* addWindow(Widget* parent, const std::string& title, const Vector2i& place,
-                           int width) {
-  auto* window = new nanogui::Window(parent, title);
-  window->setPosition(place);
-  window->setFixedWidth(width);
-  window->setLayout(
-      new nanogui::BoxLayout(nanogui::Orientation::Vertical, nanogui::Alignment::Minimum, 8, 5));
-  return window;
 }
 
 nanogui::Slider* addSlider(Widget* parent, int width, float low, float high, float value,

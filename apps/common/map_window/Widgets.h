@@ -1,15 +1,34 @@
 #pragma once
+#include <map_view/CellSource.h>
 #include <nanogui/nanogui.h>
 #include <semantic_types/ClassTable.h>
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace map_window {
 
 nanogui::Color colorOf(const semantic_types::Color& color);
+
+/** Widgets below each other under a title. A click on the title folds them. */
+class Panel : public nanogui::Window {
+ public:
+  Panel(nanogui::Widget* parent, const std::string& title, int width);
+  /** To put widgets into. */
+  nanogui::Widget* content() { return m_content; }
+  bool isOpen() const { return m_content->visible(); }
+  void open(bool isOpen) { m_content->setVisible(isOpen); }
+  /** Called when a hand has opened it. */
+  void onOpened(const std::function<void()>& f) { m_onOpened = f; }
+  nanogui::Vector2i preferredSize(NVGcontext* context) const override;
+  void draw(NVGcontext* context) override;
+  bool mouseButtonEvent(const nanogui::Vector2i& p, int button, bool down, int modifiers) override;
+
+ private:
+  nanogui::Widget* m_content;
+  std::function<void()> m_onOpened = [] {};
+};
 
 /** A line of a bar chart. */
 struct Bar {
@@ -30,40 +49,16 @@ class BarChart : public nanogui::Widget {
   std::vector<Bar> m_bars;
 };
 
-/** Rows of a name and of numbers below each other. */
-class Table : public nanogui::Widget {
+/** What the colors of a map mean, from one end to the other. */
+class ScaleBar : public nanogui::Widget {
  public:
-  /** \param nameWidth, columnWidth pixels */
-  Table(nanogui::Widget* parent, int nameWidth, int columnWidth)
-      : nanogui::Widget(parent), m_nameWidth(nameWidth), m_columnWidth(columnWidth) {}
-  void setRows(std::vector<std::vector<std::string>> rows) { m_rows = std::move(rows); }
-  void draw(NVGcontext* context) override;
-
- private:
-  int m_nameWidth, m_columnWidth;
-  std::vector<std::vector<std::string>> m_rows;
-};
-
-/** Names below each other, which the hand puts into another order. */
-class OrderList : public nanogui::Widget {
- public:
-  /** \param moved called with the indices of the names of setNames(), in their new order */
-  using Moved = std::function<void(const std::vector<std::size_t>&)>;
-  OrderList(nanogui::Widget* parent, const Moved& moved)
-      : nanogui::Widget(parent), m_moved(moved) {}
-  void setNames(std::vector<std::string> names);
+  explicit ScaleBar(nanogui::Widget* parent) : nanogui::Widget(parent) {}
+  void setScale(const map_view::ColorScale& scale) { m_scale = scale; }
   nanogui::Vector2i preferredSize(NVGcontext*) const override;
   void draw(NVGcontext* context) override;
-  bool mouseButtonEvent(const nanogui::Vector2i& p, int button, bool down, int) override;
-  bool mouseDragEvent(const nanogui::Vector2i& p, const nanogui::Vector2i&, int, int) override;
 
  private:
-  std::size_t lineAt(const nanogui::Vector2i& p) const;
-
-  Moved m_moved;
-  std::vector<std::string> m_names;
-  std::vector<std::size_t> m_order, m_before;
-  std::optional<std::size_t> m_held;  ///< line
+  map_view::ColorScale m_scale;
 };
 
 /** A square of one color. */
@@ -79,17 +74,25 @@ class Swatch : public nanogui::Widget {
 /** A widget whose children stand beside each other. */
 nanogui::Widget* addRow(nanogui::Widget* parent, int spacing = 6);
 
+/** A widget whose children stand below each other. */
+nanogui::Widget* addColumn(nanogui::Widget* parent, int margin, int spacing);
+
+/** The same in a part of a panel that scrolls. */
+nanogui::Widget* addScroll(nanogui::Widget* parent, int width, int height);
+
 /** A line of text of a fixed width. */
 nanogui::Label* addText(nanogui::Widget* parent, const std::string& text, int width);
+
+/** As many lines as it takes. */
+nanogui::Label* addLines(nanogui::Widget* parent, int width);
+
+nanogui::Button* addButton(nanogui::Widget* parent, const std::string& text, int width,
+                           const std::function<void()>& pressed);
 
 nanogui::CheckBox* addCheckBox(nanogui::Widget* parent, const std::string& text, int width);
 
 /** Takes out all children; none of them keeps the keyboard. */
 void removeChildren(nanogui::Widget* parent);
-
-/** A window whose children stand below each other. */
-nanogui::Window* addWindow(nanogui::Widget* parent, const std::string& title,
-                           const nanogui::Vector2i& place, int width);
 
 nanogui::Slider* addSlider(nanogui::Widget* parent, int width, float low, float high, float value,
                            const std::function<void(float)>& moved);

@@ -271,10 +271,28 @@ KeyBox CellLook::bounds() const {
           (voxels(box.max()) + kRounding).floor().cast<int>()};
 }
 
-Color CellLook::heightColor(const ViewCell& cell) const {
-  const double low = std::max(m_known.min().z(), m_style.clip.min().z()),
-               high = std::min(m_known.max().z(), m_style.clip.max().z());
-  return ramp((cell.center(m_map.getResolution()).z() - low) / std::max(high - low, 1e-6));
+std::pair<double, double> CellLook::heights() const {
+  return {std::max(m_known.min().z(), m_style.clip.min().z()),
+          std::min(m_known.max().z(), m_style.clip.max().z())};
+}
+
+std::optional<ColorScale> CellLook::scale() const {
+  const auto meters = [](double z) { return strict_files::textOf(std::round(z * 10) / 10); };
+  switch (m_style.coloring) {
+    case ViewColoring::Probability:
+      return ColorScale{"of the likeliest class", "0", "1"};
+    case ViewColoring::Entropy:
+      return ColorScale{"share of the highest", "1", "0"};
+    case ViewColoring::Occupancy:
+      return ColorScale{"p(occupied)", "0.5", "1"};
+    case ViewColoring::Height:
+      return ColorScale{"height, m", meters(heights().first), meters(heights().second), ramp};
+    case ViewColoring::Retained:
+      return ColorScale{"retained of its block", "0 %", "100 %"};
+    case ViewColoring::Class:
+      break;
+  }
+  return {};
 }
 
 Color CellLook::colorOf(const ViewCell& cell) const {
@@ -288,7 +306,8 @@ Color CellLook::colorOf(const ViewCell& cell) const {
     case ViewColoring::Occupancy:
       return trafficLight(2 * cell.node.getOccupancy() - 1);
     case ViewColoring::Height:
-      return heightColor(cell);
+      return ramp((cell.center(m_map.getResolution()).z() - heights().first) /
+                  std::max(heights().second - heights().first, 1e-6));
     case ViewColoring::Retained:
       return trafficLight(m_compression ? m_compression->retainedAround(cell.around) : 1);
     case ViewColoring::Class:

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -20,6 +21,13 @@ using semantic_types::Color;
 /** What the color of an occupied cell says. */
 enum class ViewColoring { Class, Probability, Entropy, Occupancy, Height, Retained };
 const strict_files::Choices<ViewColoring>& choicesOf(ViewColoring);
+
+/** The colors of a coloring from one end of its scale to the other. */
+struct ColorScale {
+  std::string what;                                         ///< "height, m"
+  std::string low, high;                                    ///< what the ends mean
+  Color (*colorAt)(double) = semantic_types::trafficLight;  ///< of 0 (low) to 1 (high)
+};
 
 /** What a view shows of a map, and how. */
 struct ViewStyle {
@@ -63,6 +71,8 @@ class CellLook {
    * violet (lowest) over green to yellow (highest). Retained of what is worth telling in the cell's
    * block: from red (nothing) to green (all). */
   Color colorOf(const ViewCell& cell) const;
+  /** What these colors mean; none: the classes. */
+  std::optional<ColorScale> scale() const;
   /** Likeliest class of an occupied cell. */
   ClassId classOf(const ViewCell& cell) const { return stateOf(cell).likeliestClass; }
 
@@ -73,7 +83,8 @@ class CellLook {
   };
   State stateOf(const ViewCell& cell) const;
   State newState(const ViewCell& cell) const;
-  Color heightColor(const ViewCell& cell) const;
+  /** Lowest and highest of what is known and not cut off, m. */
+  std::pair<double, double> heights() const;
 
   const SemanticOcTree& m_map;
   const LiveCompression* m_compression = nullptr;
