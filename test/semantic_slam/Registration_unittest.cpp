@@ -270,3 +270,9 @@ TEST(SensorScale, isOfStreetsAtMostAndOfRoomsAtLeast) {
   EXPECT_EQ(SensorScale::of(cloudOf(0.3), false).cube, SensorScale::of(cloudOf(2), false).cube);
   EXPECT_EQ(SensorScale::of({}, false).cube, SensorScale::of(cloudOf(2), false).cube);
 }
+
+TEST(SensorScale, isOfTheSurroundingsNotOfTheGroundBeforeACamera) {
+  LabeledCloud cloud = cloudOf(8);
+  for (int i = 0; i < 3000; ++i) cloud.points.emplace_back(1 + 1e-3f * i, 0, -1);
+  EXPECT_EQ(SensorScale::of(cloud, false).cube, SensorScale::of(cloudOf(8), false).cube);
+}

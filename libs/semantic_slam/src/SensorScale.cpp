@@ -2,26 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace semantic_slam {
 namespace {
 
-/** Median distance of points from the robot, m; 0 of none. */
+/** From the robot, m: half of the surface that a scan sees is nearer; 0 of none. Beams diverge, so
+ * each stands for the more surface the farther it goes: the ground before a camera has most of its
+ * pixels, but is not its surroundings. */
 double medianDistance(const LabeledCloud& cloud) {
-  std::vector<float> distances;
-  for (const Eigen::Vector3f& p : cloud.points) distances.push_back(p.norm());
-  if (distances.empty()) return 0;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  std::vector<double> squares;
+  for (const Eigen::Vector3f& p : cloud.points) squares.push_back(p.squaredNorm());
+  std::sort(squares.begin(), squares.end());
+  double left = std::accumulate(squares.begin(), squares.end(), 0.0) / 2;
+  for (const double square : squares)
+    if ((left -= square) <= 0) return std::sqrt(square);
+  return 0;
 }
 
 }  // namespace
 
 SensorScale SensorScale::of(const LabeledCloud& cloud, bool isPlanar) {
   if (isPlanar) return {true, 0.4, 8 * kDegree, 20, 0.05, 0, {2, 1, 0.5}, 0.1, 10, 0.8};
-  // Streets have a median of some 8 m, rooms of 2 m. Powers of two: nearby medians act alike.
-  constexpr double kStreet = 8;
+  // Streets have a median of 11 m and more, rooms of 3 m. Powers of two: nearby medians act alike.
+  constexpr double kStreet = 12;
   const double octaves = std::round(std::log2(std::max(medianDistance(cloud), 1e-3) / kStreet));
   const double size = std::exp2(std::clamp(octaves, -2., 0.));
   return {false,      0.8 * size,       15 * kDegree, 10,        0.25 * size,
