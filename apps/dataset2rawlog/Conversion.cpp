@@ -1,17 +1,22 @@
 #include "Conversion.h"
 
 #include <labeled_cloud/PointFile.h>
+#include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 #include <semantic_types/ClassTable.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <memory>
 #include <regex>
 #include <stdexcept>
 
 namespace dataset2rawlog {
 
+using labeled_cloud::LabelImage;
+using mrpt::obs::CObservation3DRangeScan;
+using mrpt::obs::TPixelLabelInfo;
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
 using semantic_types::kMaxClasses;
@@ -22,8 +27,43 @@ std::filesystem::path imagesOf(const std::filesystem::path& rawlog) {
   return std::filesystem::absolute(rawlog).parent_path() / (rawlog.stem().string() + "_Images");
 }
 
+namespace {
+
+constexpr int kMaxPixelLabels = 64;
+
+/** Bit c - 1 stands for class c, by its name. */
+template <unsigned BYTES>
+void setPixelLabels(const LabelImage& labels, const ClassTable& table,
+                    CObservation3DRangeScan& scan) {
+  auto info = std::make_shared<TPixelLabelInfo<BYTES>>();
+  info->setSize(labels.rows, labels.cols);
+  for (int id = 1; id <= table.size(); ++id) info->setLabelName(id - 1, table.name(id));
+  for (int row = 0, i = 0; row < labels.rows; ++row)
+    for (int col = 0; col < labels.cols; ++col, ++i)
+      if (labels.classes[i] != kNoClass) info->setLabel(row, col, labels.classes[i] - 1);
+  scan.pixelLabels = info;
+}
+
+/** Gives the same label image to every scan. */
+class OneImage : public labeled_cloud::ImageLabeler {
+ public:
+  explicit OneImage(const LabelImage& image) : m_image(image) {}
+  std::optional<LabelImage> label(const mrpt::obs::CObservation&) override { return m_image; }
+
+ private:
+  LabelImage m_image;
+};
+
+std::size_t pointsOf(const CObservation3DRangeScan& scan) {
+  const auto* pixels = scan.rangeImage.data();
+  return scan.rangeImage.size() - std::count(pixels, pixels + scan.rangeImage.size(), 0);
+}
+
+}  // namespace
+
 Output::Output(const Conversion& conversion, const semantic_types::ClassTable& table)
     : m_conversion(conversion),
+      m_table(table),
       m_writer(conversion.output),
       m_noise(conversion.labelNoise, conversion.labelNoiseKind, conversion.seed, table.size()) {
   for (int id = 1; id <= table.size(); ++id) m_classNames.push_back(table.name(id));
@@ -42,18 +82,20 @@ void Output::writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D&
   pose.timestamp = time;
   pose.sensorLabel = "ground truth";
   pose.pose.mean = T_map_robot;
-  m_T_map_sensor = labeled_cloud::toEigen(T_map_robot);
+  m_T_map_robot = labeled_cloud::toEigen(T_map_robot);
   m_writer.write(pose);
 }
 
 void Output::writeCloud(mrpt::Clock::time_point time, const std::string& sensorLabel,
-                        semantic_types::LabeledCloud cloud) {
+                        semantic_types::LabeledCloud cloud,
+                        const mrpt::poses::CPose3D& T_robot_sensor) {
   labeled_cloud::CObservationLabeledCloud observation;
   observation.timestamp = time;
   observation.sensorLabel = sensorLabel;
+  observation.sensorPose = T_robot_sensor;
   observation.classNames = m_classNames;
   observation.cloud = std::move(cloud);
-  m_noise.apply(observation.cloud, m_T_map_sensor);
+  m_noise.apply(observation.cloud, m_T_map_robot * labeled_cloud::toEigen(T_robot_sensor));
   const auto& classes = observation.cloud.classes;
   const auto unlabeled = std::count(classes.begin(), classes.end(), kNoClass);
   writeScan(observation, observation.cloud.size(), classes.size() - unlabeled);
@@ -65,6 +107,27 @@ void Output::writeScan(const mrpt::obs::CObservation& observation, std::size_t p
   ++m_summary.scans;
   m_summary.points += points;
   m_summary.labeled += labeled;
+}
+
+void Output::writeDepth(CObservation3DRangeScan& scan, std::optional<LabelImage> labels) {
+  if (!labels) return writeScan(scan, pointsOf(scan), 0);
+  if (m_table.size() > kMaxPixelLabels) {
+    labeled_cloud::ScanConverter converter(m_table, {}, std::make_shared<OneImage>(*labels));
+    return writeCloud(scan.timestamp, scan.sensorLabel, converter.convert(scan)->cloud,
+                      scan.sensorPose);
+  }
+  m_noise.apply(labels->classes);
+  const int bytes = (m_table.size() + 7) / 8;
+  if (bytes == 1)
+    setPixelLabels<1>(*labels, m_table, scan);
+  else if (bytes == 2)
+    setPixelLabels<2>(*labels, m_table, scan);
+  else if (bytes <= 4)
+    setPixelLabels<4>(*labels, m_table, scan);
+  else
+    setPixelLabels<8>(*labels, m_table, scan);
+  const auto counts = labeled_cloud::ScanConverter(m_table).convert(scan)->counts;
+  writeScan(scan, counts.points, counts.labeled);
 }
 
 Summary Output::finish() {

@@ -1,6 +1,8 @@
 #pragma once
 #include <labeled_cloud/CObservationLabeledCloud.h>
+#include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/Rawlogs.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semantic_types/ClassTable.h>
 
 #include <cstddef>
@@ -69,13 +71,19 @@ class Output {
   /** Adds the robot's pose at a time. */
   void writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D& T_map_robot);
 
-  /** Adds a cloud seen from the robot's origin, after its labels took the noise. */
+  /** Adds a cloud, after its labels took the noise. */
   void writeCloud(mrpt::Clock::time_point time, const std::string& sensorLabel,
-                  semantic_types::LabeledCloud cloud);
+                  semantic_types::LabeledCloud cloud,
+                  const mrpt::poses::CPose3D& T_robot_sensor = {});
 
   /** Adds another observation of so many points, whose labels took the noise already. */
   void writeScan(const mrpt::obs::CObservation& observation, std::size_t points,
                  std::size_t labeled);
+
+  /** Adds a depth image with the labels of its pixels, if there are any: as pixelLabels if these
+   * can hold all classes (64), else as a labeled cloud. */
+  void writeDepth(mrpt::obs::CObservation3DRangeScan& scan,
+                  std::optional<labeled_cloud::LabelImage> labels);
 
   /** Adds what is no scan, as a picture. */
   void writeOther(const mrpt::obs::CObservation& observation) { m_writer.write(observation); }
@@ -88,9 +96,10 @@ class Output {
 
  private:
   const Conversion& m_conversion;
+  semantic_types::ClassTable m_table;
   labeled_cloud::RawlogWriter m_writer;
   LabelNoise m_noise;
-  Eigen::Isometry3d m_T_map_sensor = Eigen::Isometry3d::Identity();  ///< of the last pose
+  Eigen::Isometry3d m_T_map_robot = Eigen::Isometry3d::Identity();  ///< the last pose
   std::vector<std::string> m_classNames;
   Summary m_summary;
   std::optional<Progress> m_progress;
@@ -128,14 +137,24 @@ Summary convertPointFiles(const std::vector<std::filesystem::path>& files,
  * \throw std::runtime_error naming file and line of whatever is malformed. */
 Summary convertCarmen(const std::filesystem::path& log, const Conversion& conversion);
 
+/** What to take of a bag. */
+struct BagChoice {
+  /** Of points: clouds, depth images, laser scans. None: the only one of the first kind that there
+   * is. */
+  std::vector<std::string> topics;
+  std::string labelField = "label";  ///< of clouds: raw ids of the class table; "rgb": its colors
+  /** Topic of label images for depth images; empty: the only one with "label" in its name. */
+  std::string labelImages;
+};
+
 /** A bag of ROS 2: .mcap, .db3, or a folder of these. Clouds (sensor_msgs/PointCloud2) become
- * CObservationLabeledCloud, each behind a CObservationRobotPose. The robot is the frame that moves,
- * from the cloud's upwards; the map's frame is the highest that /tf knows, or that of odometry
+ * CObservationLabeledCloud, depth images (sensor_msgs/Image with the CameraInfo beside them, and
+ * label images of their stamp) CObservation3DRangeScan, laser scans (sensor_msgs/LaserScan)
+ * CObservation2DRangeScan, each behind a CObservationRobotPose. The robot is the frame that moves,
+ * from the sensor's upwards; the map's frame is the highest that /tf knows, or that of odometry
  * (nav_msgs/Odometry) where /tf does not tell. Where nothing moves there are no poses.
- * \param topics of clouds; none: the only one that the bag has \param labelField the points' field
- * with raw ids of the class table, or "rgb" \throw std::runtime_error naming the file, the number
- * of the message and its topic. */
-Summary convertRosbag2(const std::filesystem::path& bag, const std::vector<std::string>& topics,
-                       const std::string& labelField, const Conversion& conversion);
+ * \throw std::runtime_error naming the file, the number of the message and its topic. */
+Summary convertRosbag2(const std::filesystem::path& bag, const BagChoice& choice,
+                       const Conversion& conversion);
 
 }  // namespace dataset2rawlog

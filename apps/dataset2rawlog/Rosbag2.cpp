@@ -1,8 +1,13 @@
 #include <labeled_cloud/Trajectory.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "Conversion.h"
 #include "bags/Bag.h"
@@ -14,117 +19,273 @@ namespace {
 namespace fs = std::filesystem;
 using bags::BagTopic;
 using semantic_types::ClassTable;
-using semantic_types::kNoClass;
+using Names = std::vector<std::string>;
 
-/** The topics of points that were asked for, or the only one that there is. */
-std::vector<std::string> topicsOfPoints(const fs::path& bag,
-                                        const std::vector<std::string>& asked) {
-  std::vector<std::string> there;
-  for (const BagTopic& topic : bags::topicsOfBag(bag))
-    if (topic.type == bags::kPointCloud2) there.push_back(topic.name);
-  const std::string list = there.empty() ? "none" : strict_files::joined(there);
-  for (const std::string& name : asked)
-    if (std::find(there.begin(), there.end(), name) == there.end())
-      throw std::runtime_error(bag.string() + ": no topic '" + name +
-                               "' of points is in this bag; there are: " + list);
-  if (!asked.empty()) return asked;
-  if (there.size() != 1)
-    throw std::runtime_error(bag.string() +
+bool isIn(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/** What a bag has, by a look at all of it. */
+class BagContents {
+ public:
+  explicit BagContents(const fs::path& bag) : m_bag(bag) {
+    const auto isOfUse = [this](const BagTopic& topic) { return note(topic); };
+    bags::readBag(bag, isOfUse, [this](const BagTopic& topic, std::string_view message) {
+      try {
+        look(topic, message);
+      } catch (const std::exception& e) {
+        throw std::runtime_error("a message of " + topic.name + ": " + e.what());
+      }
+      return true;
+    });
+    for (const auto& pose : m_odometry) frames.addOdometry(pose);
+    for (const auto& [name, encoding] : m_encodings)
+      if (point_fields::mayBeDepth(encoding) && name.find("label") == std::string::npos)
+        depths.push_back(name);
+  }
+
+  /** The topics that were asked for, or the only one of the first kind that there is. */
+  Names topicsOfPoints(const Names& asked) const {
+    Names there;
+    for (const Names* kind : {&clouds, &depths, &lasers})
+      there.insert(there.end(), kind->begin(), kind->end());
+    const std::string list = there.empty() ? "none" : strict_files::joined(there);
+    for (const std::string& name : asked)
+      if (!isIn(there, name))
+        throw std::runtime_error(m_bag.string() + ": no topic '" + name +
+                                 "' of points is in this bag; there are: " + list);
+    if (!asked.empty()) return asked;
+    const Names& first = !clouds.empty() ? clouds : !depths.empty() ? depths : lasers;
+    if (first.size() == 1) return first;
+    throw std::runtime_error(m_bag.string() +
                              ": --topics has to choose the topics of points; there are: " + list);
-  return there;
-}
+  }
+  /** The topic of label images that was asked for, or the only one that has "label" in its name;
+   * none: empty. */
+  std::string topicOfLabels(const std::string& asked) const {
+    Names found;
+    for (const auto& [name, encoding] : m_encodings)
+      if (asked.empty() ? name.find("label") != std::string::npos : name == asked)
+        found.push_back(name);
+    if (found.size() > 1)
+      throw std::runtime_error(m_bag.string() + ": --label-images has to choose one of " +
+                               strict_files::joined(found));
+    if (!asked.empty() && found.empty())
+      throw std::runtime_error(m_bag.string() + ": no topic '" + asked +
+                               "' of images is in this bag");
+    return found.empty() ? "" : found[0];
+  }
+  /** The calibration beside an image, or the only one. */
+  const point_fields::RawCamera& cameraOf(const std::string& image) const {
+    const auto beside = m_cameras.find(image.substr(0, image.rfind('/')) + "/camera_info");
+    if (beside != m_cameras.end()) return beside->second;
+    if (m_cameras.size() == 1) return m_cameras.begin()->second;
+    throw std::runtime_error("there is no " + image.substr(0, image.rfind('/')) + "/camera_info");
+  }
 
-bags::BagFrames framesOf(const fs::path& bag) {
+  Names clouds, depths, lasers;
   bags::BagFrames frames;
-  const auto isOf = [](const char* type) {
-    return [type](const BagTopic& topic) { return topic.type == type; };
-  };
-  bags::readBag(bag, isOf(bags::kTransforms), [&](const BagTopic& topic, std::string_view message) {
-    const std::string& name = topic.name;
-    const std::string kStatic = "tf_static";
-    const bool isStatic = name.size() >= kStatic.size() &&
-                          name.compare(name.size() - kStatic.size(), kStatic.size(), kStatic) == 0;
-    for (const auto& pose : bags::transformsOfMessage(message)) frames.add(pose, isStatic);
-    return true;
-  });
-  bags::readBag(bag, isOf(bags::kOdometry), [&](const BagTopic&, std::string_view message) {
-    frames.addOdometry(bags::odometryOfMessage(message));
-    return true;
-  });
-  return frames;
-}
+
+ private:
+  bool note(const BagTopic& topic) {
+    Names* const kind = topic.type == bags::kPointCloud2 ? &clouds
+                        : topic.type == bags::kLaserScan ? &lasers
+                                                         : nullptr;
+    if (kind && !isIn(*kind, topic.name))
+      kind->insert(std::upper_bound(kind->begin(), kind->end(), topic.name), topic.name);
+    return topic.type == bags::kTransforms || topic.type == bags::kOdometry ||
+           topic.type == bags::kImage || topic.type == bags::kCameraInfo;
+  }
+  void look(const BagTopic& topic, std::string_view message) {
+    if (topic.type == bags::kTransforms)
+      for (const auto& pose : bags::transformsOfMessage(message))
+        frames.add(pose, endsWith(topic.name, "tf_static"));
+    else if (topic.type == bags::kOdometry)
+      m_odometry.push_back(bags::odometryOfMessage(message));
+    else if (topic.type == bags::kCameraInfo && m_cameras.count(topic.name) == 0)
+      m_cameras[topic.name] = bags::cameraOfMessage(message);
+    else if (topic.type == bags::kImage && m_encodings.count(topic.name) == 0)
+      m_encodings[topic.name] = bags::imageOfMessage(message).pixels.encoding;
+  }
+
+  fs::path m_bag;
+  std::vector<bags::FramePose> m_odometry;
+  std::map<std::string, point_fields::RawCamera> m_cameras;
+  std::map<std::string, std::string> m_encodings;  ///< of images' topics
+};
 
 mrpt::poses::CPose3D poseOf(const Eigen::Isometry3d& T) {
   return mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T.matrix()));
 }
 
+/** Its beams lie evenly around the frame's x axis, which ROS's do not. */
+mrpt::obs::CObservation2DRangeScan laserScanOf(const bags::BagLaserScan& laser) {
+  const auto steps = static_cast<float>(laser.ranges.size()) - 1;
+  if (laser.ranges.empty() || !std::isfinite(laser.firstAngle + laser.angleStep * steps))
+    throw std::runtime_error("a laser scan without beams, or with angles that are no numbers");
+  mrpt::obs::CObservation2DRangeScan scan;
+  scan.aperture = std::abs(laser.angleStep) * steps;
+  scan.rightToLeft = laser.angleStep >= 0;
+  scan.maxRange = laser.mostRange;
+  scan.resizeScan(laser.ranges.size());
+  for (std::size_t i = 0; i < laser.ranges.size(); ++i) {
+    const float range = laser.ranges[i];
+    const bool isValid = range >= laser.leastRange && range <= laser.mostRange;
+    scan.setScanRange(i, isValid ? range : 0);
+    scan.setScanRangeValidity(i, isValid && std::isfinite(range));
+  }
+  return scan;
+}
+
 /** Writes the scans of a bag. */
 class BagScans {
  public:
-  BagScans(const fs::path& bag, const std::string& labelField, const Conversion& conversion)
-      : m_table(conversion.classes.empty() ? ClassTable()
+  /** \param labelImages their topic; empty: depth images come without labels */
+  BagScans(const BagContents& contents, const std::string& labelField, std::string labelImages,
+           const Conversion& conversion)
+      : m_contents(contents),
+        m_table(conversion.classes.empty() ? ClassTable()
                                            : semantic_types::loadClassTable(conversion.classes)),
-        m_frames(framesOf(bag)),
         m_labelField(conversion.labels ? labelField : ""),
+        m_labelTopic(std::move(labelImages)),
         m_output(conversion, m_table) {}
 
-  void add(std::size_t frame, const BagTopic& topic, std::string_view message) {
-    if (!m_output.wants(frame)) return;
-    const bags::BagCloud cloud = bags::cloudOfMessage(message);
-    labeled_cloud::CObservationLabeledCloud scan;
-    scan.timestamp = labeled_cloud::timeOfSeconds(static_cast<double>(cloud.stamp) * 1e-9);
-    scan.sensorLabel = topic.name;
-    if (!place(cloud, scan)) return m_output.skip();
-    std::string problem;
-    scan.cloud = point_fields::cloudOf(cloud.points, m_labelField, m_table, problem);
-    if (!m_labelField.empty() && !problem.empty()) throw std::runtime_error(problem);
-    if (m_labelField.empty()) scan.cloud.classes.clear();
-    for (int id = 1; id <= m_table.size(); ++id)
-      scan.classNames.push_back(m_table.name(static_cast<semantic_types::ClassId>(id)));
-    const auto& classes = scan.cloud.classes;
-    const auto unlabeled = std::count(classes.begin(), classes.end(), kNoClass);
-    m_output.writeScan(scan, scan.cloud.size(),
-                       classes.size() - static_cast<std::size_t>(unlabeled));
+  /** Label images are those of the depth images with their stamp, which wait for them. */
+  void add(const BagTopic& topic, std::string_view message) {
+    constexpr std::size_t kMostWaiting = 100;
+    if (topic.name == m_labelTopic) {
+      m_labels[bags::headerOfMessage(message).stamp] = message;
+      if (m_labels.size() > kMostWaiting) m_labels.erase(m_labels.begin());
+    } else {
+      m_waiting.push_back({m_number++, topic, std::string(message)});
+    }
+    while (!m_waiting.empty() && (m_waiting.size() > kMostWaiting || isComplete(m_waiting.front())))
+      writeFirst();
   }
-  Summary finish() { return m_output.finish(); }
+  Summary finish() {
+    while (!m_waiting.empty()) writeFirst();
+    return m_output.finish();
+  }
 
  private:
-  /** Writes where the robot is, if anything moves. \return whether that is known */
-  bool place(const bags::BagCloud& cloud, labeled_cloud::CObservationLabeledCloud& scan) {
-    const std::string robot = m_frames.robotOf(cloud.frame);
-    if (robot.empty()) return true;
-    const auto T_map_robot = m_frames.find(robot, cloud.stamp);
-    if (!T_map_robot) return false;
-    m_output.writePose(scan.timestamp, poseOf(*T_map_robot));
-    scan.sensorPose = poseOf(m_frames.find(cloud.frame, cloud.stamp, robot).value());
-    return true;
+  struct Waiting {
+    std::size_t number;
+    BagTopic topic;
+    std::string message;
+  };
+  bool takesLabels(const Waiting& scan) const {
+    return scan.topic.type == bags::kImage && !m_labelTopic.empty();
+  }
+  bool isComplete(const Waiting& scan) const try {
+    return !takesLabels(scan) || m_labels.count(bags::headerOfMessage(scan.message).stamp) > 0;
+  } catch (const std::exception&) {
+    return true;  // it is refused
   }
 
+  void writeFirst() {
+    const Waiting scan = std::move(m_waiting.front());
+    m_waiting.pop_front();
+    if (!m_output.wants(scan.number)) return;
+    try {
+      if (scan.topic.type == bags::kPointCloud2) writeCloud(scan);
+      if (scan.topic.type == bags::kLaserScan) writeLaserScan(scan);
+      if (scan.topic.type == bags::kImage) writeDepth(scan);
+    } catch (const std::exception& e) {
+      throw std::runtime_error("message " + std::to_string(scan.number) + " of " + scan.topic.name +
+                               ": " + e.what());
+    }
+  }
+
+  void writeCloud(const Waiting& waiting) {
+    const bags::BagCloud message = bags::cloudOfMessage(waiting.message);
+    const auto T_robot_sensor = place(message);
+    if (!T_robot_sensor) return m_output.skip();
+    std::string problem;
+    auto cloud = point_fields::cloudOf(message.points, m_labelField, m_table, problem);
+    if (!m_labelField.empty() && !problem.empty()) throw std::runtime_error(problem);
+    if (m_labelField.empty()) cloud.classes.clear();
+    m_output.writeCloud(timeOf(message), waiting.topic.name, std::move(cloud),
+                        poseOf(*T_robot_sensor));
+  }
+
+  void writeLaserScan(const Waiting& waiting) {
+    const bags::BagLaserScan message = bags::laserScanOfMessage(waiting.message);
+    auto scan = laserScanOf(message);
+    const auto T_robot_sensor = place(message);
+    if (!T_robot_sensor) return m_output.skip();
+    const auto steps = static_cast<double>(message.ranges.size()) - 1;
+    const double middle = double(message.firstAngle) + double(message.angleStep) * steps / 2;
+    scan.timestamp = timeOf(message);
+    scan.sensorLabel = waiting.topic.name;
+    scan.sensorPose = poseOf(*T_robot_sensor) + mrpt::poses::CPose3D(0, 0, 0, middle, 0, 0);
+    m_output.writeScan(scan, scan.getScanSize(), 0);
+  }
+
+  void writeDepth(const Waiting& waiting) {
+    const bags::BagImage message = bags::imageOfMessage(waiting.message);
+    auto scan = point_fields::depthOf(message.pixels, m_contents.cameraOf(waiting.topic.name));
+    const auto labels = m_labels.find(message.stamp);
+    if (takesLabels(waiting) && labels == m_labels.end()) return m_output.skip();
+    const auto T_robot_optical = place(message);
+    if (!T_robot_optical) return m_output.skip();
+    scan.timestamp = timeOf(message);
+    scan.sensorLabel = waiting.topic.name;
+    scan.sensorPose = poseOf(*T_robot_optical * point_fields::T_optical_camera());
+    std::optional<labeled_cloud::LabelImage> classes;
+    std::string problem;
+    if (takesLabels(waiting))
+      classes =
+          point_fields::labelsOf(bags::imageOfMessage(labels->second).pixels, m_table, problem);
+    if (!problem.empty()) throw std::runtime_error(m_labelTopic + ": " + problem);
+    m_labels.erase(m_labels.begin(), m_labels.upper_bound(message.stamp));
+    m_output.writeDepth(scan, std::move(classes));
+  }
+
+  static mrpt::Clock::time_point timeOf(const bags::BagHeader& header) {
+    return labeled_cloud::timeOfSeconds(static_cast<double>(header.stamp) * 1e-9);
+  }
+
+  /** Writes where the robot is, if anything moves.
+   * \return T_robot_sensor; none: where the robot is, or its sensor on it, is not known */
+  std::optional<Eigen::Isometry3d> place(const bags::BagHeader& seen) {
+    const bags::BagFrames& frames = m_contents.frames;
+    const std::string robot = frames.robotOf(seen.frame);
+    if (robot.empty()) return Eigen::Isometry3d::Identity();
+    const auto T_map_robot = frames.find(robot, seen.stamp);
+    const auto T_robot_sensor = frames.find(seen.frame, seen.stamp, robot);
+    if (T_map_robot && T_robot_sensor) m_output.writePose(timeOf(seen), poseOf(*T_map_robot));
+    return T_map_robot ? T_robot_sensor : std::nullopt;
+  }
+
+  const BagContents& m_contents;
   ClassTable m_table;
-  bags::BagFrames m_frames;
-  std::string m_labelField;
+  std::string m_labelField, m_labelTopic;
+  std::map<bags::Stamp, std::string> m_labels;  ///< messages
+  std::deque<Waiting> m_waiting;
+  std::size_t m_number = 0;
   Output m_output;
 };
 
 }  // namespace
 
-Summary convertRosbag2(const fs::path& bag, const std::vector<std::string>& topics,
-                       const std::string& labelField, const Conversion& conversion) {
-  const std::vector<std::string> wanted = topicsOfPoints(bag, topics);
-  BagScans scans(bag, labelField, conversion);
-  std::size_t frame = 0;
+Summary convertRosbag2(const fs::path& bag, const BagChoice& choice, const Conversion& conversion) {
+  const BagContents contents(bag);
+  const Names wanted = contents.topicsOfPoints(choice.topics);
+  const bool hasDepth = std::any_of(wanted.begin(), wanted.end(), [&](const std::string& name) {
+    return isIn(contents.depths, name);
+  });
+  const std::string labels =
+      conversion.labels && hasDepth ? contents.topicOfLabels(choice.labelImages) : "";
+  BagScans scans(contents, choice.labelField, labels, conversion);
   const auto isWanted = [&](const BagTopic& topic) {
-    return topic.type == bags::kPointCloud2 &&
-           std::find(wanted.begin(), wanted.end(), topic.name) != wanted.end();
+    return (topic.name == labels && topic.type == bags::kImage) || isIn(wanted, topic.name);
   };
   bags::readBag(bag, isWanted, [&](const BagTopic& topic, std::string_view message) {
-    try {
-      scans.add(frame, topic, message);
-    } catch (const std::exception& e) {
-      throw std::runtime_error("message " + std::to_string(frame) + " of " + topic.name + ": " +
-                               e.what());
-    }
-    ++frame;
+    scans.add(topic, message);
     return !(conversion.stop && conversion.stop->pending());
   });
   return scans.finish();

@@ -1,6 +1,5 @@
 #include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/Pictures.h>
-#include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/config/CConfigFile.h>
 #include <mrpt/img/TCamera.h>
@@ -17,6 +16,7 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "Conversion.h"
 
@@ -27,10 +27,8 @@ using labeled_cloud::ImageKinds;
 using labeled_cloud::LabelImage;
 using labeled_cloud::readImageFile;
 using mrpt::obs::CObservation3DRangeScan;
-using mrpt::obs::TPixelLabelInfo;
 using mrpt::poses::CPose3D;
 using semantic_types::ClassTable;
-using semantic_types::kNoClass;
 using strict_files::readLines;
 using strict_files::TextLine;
 
@@ -125,31 +123,6 @@ void addColor(const fs::path& file, CObservation3DRangeScan& scan) {
   scan.hasIntensityImage = true;
 }
 
-constexpr int kMaxPixelLabels = 64;
-
-/** Bit c - 1 stands for class c, by its name. */
-template <unsigned BYTES>
-void setPixelLabels(const LabelImage& labels, const ClassTable& table,
-                    CObservation3DRangeScan& scan) {
-  auto info = std::make_shared<TPixelLabelInfo<BYTES>>();
-  info->setSize(labels.rows, labels.cols);
-  for (int id = 1; id <= table.size(); ++id) info->setLabelName(id - 1, table.name(id));
-  for (int row = 0, i = 0; row < labels.rows; ++row)
-    for (int col = 0; col < labels.cols; ++col, ++i)
-      if (labels.classes[i] != kNoClass) info->setLabel(row, col, labels.classes[i] - 1);
-  scan.pixelLabels = info;
-}
-
-/** Gives the same label image to every scan. */
-class OneImage : public labeled_cloud::ImageLabeler {
- public:
-  explicit OneImage(const LabelImage& image) : m_image(image) {}
-  std::optional<LabelImage> label(const mrpt::obs::CObservation&) override { return m_image; }
-
- private:
-  LabelImage m_image;
-};
-
 /** The camera's frame with x forward, y left, z up, in the optical one (x right, y down, z
  * forward). */
 CPose3D opticalFromForward() {
@@ -192,34 +165,9 @@ class TumConverter {
     scan.timestamp = time;
     if (const auto color = nearest(m_color, seconds)) addColor(*color, scan);
     output.writePose(time, *T_world_optical + opticalFromForward());
-    if (labelFile)
-      writeLabeled(scan, labeled_cloud::readLabelImage(*labelFile, m_table), output);
-    else
-      output.writeScan(scan, pointsOf(scan), 0);
-  }
-
-  void writeLabeled(CObservation3DRangeScan& scan, LabelImage labels, Output& output) {
-    if (m_table.size() > kMaxPixelLabels) {
-      labeled_cloud::ScanConverter converter(m_table, {}, std::make_shared<OneImage>(labels));
-      return output.writeCloud(scan.timestamp, scan.sensorLabel, converter.convert(scan)->cloud);
-    }
-    output.noise().apply(labels.classes);
-    const int bytes = (m_table.size() + 7) / 8;
-    if (bytes == 1)
-      setPixelLabels<1>(labels, m_table, scan);
-    else if (bytes == 2)
-      setPixelLabels<2>(labels, m_table, scan);
-    else if (bytes <= 4)
-      setPixelLabels<4>(labels, m_table, scan);
-    else
-      setPixelLabels<8>(labels, m_table, scan);
-    const auto counts = labeled_cloud::ScanConverter(m_table).convert(scan)->counts;
-    output.writeScan(scan, counts.points, counts.labeled);
-  }
-
-  static std::size_t pointsOf(const CObservation3DRangeScan& scan) {
-    const auto* pixels = scan.rangeImage.data();
-    return scan.rangeImage.size() - std::count(pixels, pixels + scan.rangeImage.size(), 0);
+    std::optional<LabelImage> labels;
+    if (labelFile) labels = labeled_cloud::readLabelImage(*labelFile, m_table);
+    output.writeDepth(scan, std::move(labels));
   }
 
   const Conversion& m_conversion;

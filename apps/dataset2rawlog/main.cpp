@@ -19,7 +19,7 @@ struct Cli {
   std::filesystem::path source;
   std::vector<std::filesystem::path> pointFiles;
   std::string labelField = "label";
-  std::vector<std::string> topics;
+  BagChoice bag;
   std::function<Summary()> convert;
 
   Cli() {
@@ -110,19 +110,25 @@ struct Cli {
 #ifdef MSO_BAGS
   void addRosbag2() {
     CLI::App* command =
-        add("rosbag2", "A bag of ROS 2: clouds of points, and where the robot is", [this] {
-          requireClasses();
-          return convertRosbag2(source, topics, labelField, conversion);
-        });
+        add("rosbag2", "A bag of ROS 2: clouds, depth images, laser scans, and where the robot is",
+            [this] {
+              requireClasses();
+              return convertRosbag2(source, bag, conversion);
+            });
     command->add_option("--classes", conversion.classes, "Class table (YAML)");
     addNoLabels(command, "x, y and z only");
     command
-        ->add_option("--label-field", labelField, "The points' field with the labels; rgb: colors")
+        ->add_option("--label-field", bag.labelField,
+                     "The points' field with the labels; rgb: colors")
         ->type_name("NAME")
         ->capture_default_str();
     command
-        ->add_option("--topics", topics,
-                     "Topics of points (sensor_msgs/PointCloud2), if there are several")
+        ->add_option("--topics", bag.topics,
+                     "Topics of clouds, depth images, laser scans, if there are several")
+        ->type_name("NAME");
+    command
+        ->add_option("--label-images", bag.labelImages,
+                     "Topic of the depth images' labels, if none has 'label' in its name")
         ->type_name("NAME");
     command->add_option("BAG", source, "A file (.mcap, .db3), or a folder of these")->required();
   }

@@ -2,19 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 
+#include "point_fields/ImageFields.h"
 #include "point_fields/PointFields.h"
 
 namespace semantic_map_ros2 {
 
 using labeled_cloud::LabelImage;
-using mrpt::obs::CObservation3DRangeScan;
 using point_fields::cloudOf;
-using point_fields::NumberedClasses;
+using point_fields::RawCamera;
 using point_fields::RawCloud;
+using point_fields::RawImage;
 using ros2::Stamp;
 using ros2::textOf;
 using semantic_types::ClassTable;
@@ -52,125 +52,22 @@ LabeledCloud read(const ros2::LaserScan& message) {
   return cloud;
 }
 
-/** Pixels of an image as they came; rows may have a rest. */
-class Pixels {
- public:
-  /** \throw std::runtime_error the data are too short */
-  Pixels(const ros2::Image& image, std::size_t bytes) : m_image(image), m_bytes(bytes) {
-    const std::uint64_t row = std::uint64_t(image.width) * bytes;
-    constexpr std::uint64_t kMost = 40'000'000;
-    const bool fits = image.height > 0 && image.width > 0 && image.step >= row &&
-                      std::uint64_t(image.width) * image.height <= kMost &&
-                      std::uint64_t(image.step) * (image.height - 1) + row <= image.data._length;
-    if (!fits)
-      throw std::runtime_error(std::to_string(image.data._length) + " bytes are no image of " +
-                               std::to_string(image.width) + " x " + std::to_string(image.height) +
-                               " pixels of " + std::to_string(bytes) + " bytes");
-    const std::uint16_t one = 1;
-    std::uint8_t first;
-    std::memcpy(&first, &one, 1);
-    m_swaps = image.is_bigendian == (first == 1);
-  }
-  template <class T>
-  T at(std::uint32_t row, std::uint32_t column) const {
-    std::uint8_t bytes[sizeof(T)];
-    std::memcpy(bytes, begin(row, column), sizeof(T));
-    if (m_swaps) std::reverse(bytes, bytes + sizeof(T));
-    T value;
-    std::memcpy(&value, bytes, sizeof(T));
-    return value;
-  }
-  const std::uint8_t* begin(std::uint32_t row, std::uint32_t column) const {
-    return m_image.data._buffer + std::size_t(row) * m_image.step + column * m_bytes;
-  }
-
- private:
-  const ros2::Image& m_image;
-  std::size_t m_bytes;
-  bool m_swaps;
-};
-
-[[noreturn]] void refuseEncoding(const ros2::Image& image, const std::string& expected) {
-  throw std::runtime_error("encoding '" + textOf(image.encoding) + "', expected " + expected);
+RawImage rawOf(const ros2::Image& message) {
+  return {message.width,
+          message.height,
+          message.step,
+          textOf(message.encoding),
+          message.is_bigendian != 0,
+          message.data._buffer,
+          message.data._length};
 }
 
-/** What a pixel is known by: a raw id, or a color 0xRRGGBB.
- * \throw std::runtime_error it is no label image */
-std::function<double(std::uint32_t, std::uint32_t)> numberReader(const ros2::Image& image) {
-  const std::string encoding = textOf(image.encoding);
-  if (encoding == "mono8" || encoding == "8UC1")
-    return [p = Pixels(image, 1)](auto r, auto c) { return *p.begin(r, c); };
-  if (encoding == "mono16" || encoding == "16UC1")
-    return [p = Pixels(image, 2)](auto r, auto c) { return p.template at<std::uint16_t>(r, c); };
-  if (encoding != "rgb8" && encoding != "bgr8")
-    refuseEncoding(image, "mono8, mono16, 8UC1, 16UC1 (raw ids), rgb8 or bgr8 (colors)");
-  const int red = encoding[0] == 'r' ? 0 : 2;
-  return [red, p = Pixels(image, 3)](auto r, auto c) {
-    const std::uint8_t* pixel = p.begin(r, c);
-    return pixel[red] << 16 | pixel[1] << 8 | pixel[2 - red];
-  };
-}
-
-LabelImage labelsOf(const ros2::Image& image, const ClassTable& table, std::string& problem) {
-  const auto numberAt = numberReader(image);
-  NumberedClasses classes(table, textOf(image.encoding).find('g') != std::string::npos);
-  LabelImage labels;
-  labels.rows = static_cast<int>(image.height), labels.cols = static_cast<int>(image.width);
-  labels.classes.reserve(std::size_t(image.width) * image.height);
-  for (std::uint32_t row = 0; row < image.height; ++row)
-    for (std::uint32_t column = 0; column < image.width; ++column)
-      labels.classes.push_back(classes.at(numberAt(row, column)));
-  labels.origin = "the label image";
-  problem = classes.problem();
-  return labels;
-}
-
-/** Millimeters, as MRPT's range images have them; 0: no return. */
-void setRanges(const ros2::Image& image, CObservation3DRangeScan& scan) {
-  const std::string encoding = textOf(image.encoding);
-  const bool areMeters = encoding == "32FC1";
-  if (!areMeters && encoding != "16UC1" && encoding != "mono16")
-    refuseEncoding(image, "16UC1 (mm) or 32FC1 (m)");
-  const Pixels pixels(image, areMeters ? 4 : 2);
-  const auto rows = static_cast<int>(image.height), cols = static_cast<int>(image.width);
-  scan.hasRangeImage = true;
-  scan.range_is_depth = true;
-  scan.rangeUnits = 0.001f;
-  scan.rangeImage_setSize(rows, cols);
-  for (int row = 0; row < rows; ++row)
-    for (int col = 0; col < cols; ++col) {
-      const double mm = areMeters
-                            ? std::round(1000.0 * static_cast<double>(pixels.at<float>(row, col)))
-                            : pixels.at<std::uint16_t>(row, col);
-      scan.rangeImage(row, col) = mm > 0 && mm <= 65535 ? static_cast<std::uint16_t>(mm) : 0;
-    }
-}
-
-/** \throw std::runtime_error it is of another image, or has no calibration that is known here */
-mrpt::img::TCamera cameraOf(const ros2::CameraInfo& info, const ros2::Image& image) {
-  if (info.width != image.width || info.height != image.height)
-    throw std::runtime_error("the camera's calibration is for " + std::to_string(info.width) +
-                             " x " + std::to_string(info.height) + " pixels, the image has " +
-                             std::to_string(image.width) + " x " + std::to_string(image.height));
-  if (!(info.k[0] > 0) || !(info.k[4] > 0))
-    throw std::runtime_error("the camera is not calibrated");
-  mrpt::img::TCamera camera;
-  camera.ncols = info.width, camera.nrows = info.height;
-  camera.setIntrinsicParamsFromValues(info.k[0], info.k[4], info.k[2], info.k[5]);
-  const std::string model = textOf(info.distortion_model);
-  if (info.d._length == 0) return camera;
-  if (model != "plumb_bob" || info.d._length != 5)
-    throw std::runtime_error("distortion model '" + model + "', expected plumb_bob of 5 numbers");
-  camera.distortion = mrpt::img::DistortionModel::plumb_bob;
-  for (std::size_t i = 0; i < 5; ++i) camera.dist[i] = info.d._buffer[i];
-  return camera;
-}
-
-/** MRPT's cameras look along x, ROS's optical frames along z. */
-Eigen::Isometry3d T_optical_camera() {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-  return T;
+RawCamera rawOf(const ros2::CameraInfo& message) {
+  RawCamera raw{message.width, message.height, textOf(message.distortion_model), {}, {}};
+  if (message.d._length > 0)
+    raw.distortion.assign(message.d._buffer, message.d._buffer + message.d._length);
+  std::copy_n(message.k, raw.matrix.size(), raw.matrix.begin());
+  return raw;
 }
 
 }  // namespace
@@ -268,7 +165,7 @@ void Sensors::addLaser(std::shared_ptr<const ros2::LaserScan> message) {
 void Sensors::addDepth(Depth message) {
   WaitingScan scan;
   scan.topic = m_hearsDepth.name();
-  scan.T_frame_points = T_optical_camera();
+  scan.T_frame_points = point_fields::T_optical_camera();
   scan.isComplete = [this, stamp = ros2::stampOf(message->header.stamp)] {
     return hasLabels(stamp);
   };
@@ -308,16 +205,14 @@ LabeledCloud Sensors::read(const ros2::Image& depth) {
     m_labels.erase(m_labels.begin(), m_labels.upper_bound(ros2::stampOf(depth.header.stamp)));
   }
   if (!camera) throw std::runtime_error("no " + m_hearsCamera.name() + " came");
-  CObservation3DRangeScan scan;
-  scan.cameraParams = cameraOf(*camera, depth);
-  setRanges(depth, scan);
+  const auto scan = point_fields::depthOf(rawOf(depth), rawOf(*camera));
   m_labeler->next.reset();
   if (!labels)
     m_complaints.say(m_hearsLabels.name() + ": nothing came with the stamp of a depth image");
   else
     try {
       std::string problem;
-      m_labeler->next = labelsOf(*labels, m_classes, problem);
+      m_labeler->next = point_fields::labelsOf(rawOf(*labels), m_classes, problem);
       if (!problem.empty()) m_complaints.say(m_hearsLabels.name() + ": " + problem);
     } catch (const std::exception& e) {
       m_complaints.say(m_hearsLabels.name() + ": points are without classes", e.what());

@@ -1,7 +1,8 @@
 // Bags of ROS 2, written by the tests, become rawlogs.
 #include <gtest/gtest.h>
 
-#include <random>
+#include <array>
+#include <cmath>
 
 #include "BagWriter.h"
 #include "ConvertedScans.h"
@@ -133,6 +134,149 @@ TEST(Rosbag2, topicsAreChosenWhereThereAreSeveral) {
   ASSERT_EQ(other.size(), 1u);
   EXPECT_EQ(other[0].scan.cloud.size(), 2u);
   EXPECT_LT((other[0].inMap(0) - at(11, 0, 0, M_PI / 4) * Vector3d(1, 0, 0)).norm(), 1e-5);
+}
+
+namespace {
+
+constexpr std::uint32_t kWidth = 4;
+
+/** A camera 1 m up that looks ahead, on a robot that drives 1 m a second. */
+std::vector<BagMessage> cameraDrive() {
+  Isometry3d T_base_optical = at(0, 0, 1);
+  T_base_optical.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return {transformMessage("/tf_static", 100, "base_link", "optical", T_base_optical),
+          transformMessage("/tf", 100, "odom", "base_link", at(0, 0, 0)),
+          transformMessage("/tf", 110, "odom", "base_link", at(10, 0, 0)),
+          cameraMessage("/cam/depth/camera_info", 100, kWidth, 2, 2),
+          cameraMessage("/cam/color/camera_info", 100, 640, 480, 500)};
+}
+
+/** Pixels of 2 m, one without a return. */
+template <class Pixel>
+std::vector<Pixel> depths(Pixel twoMeters) {
+  std::vector<Pixel> pixels(2 * kWidth, twoMeters);
+  pixels[3] = 0;
+  return pixels;
+}
+
+BagMessage depthImage(double seconds, const std::string& topic = "/cam/depth/image") {
+  return imageMessage(topic, seconds, "optical", "16UC1", kWidth, depths<std::uint16_t>(2000));
+}
+
+/** Raw ids of road, but the first pixel, which is grass. */
+BagMessage labelImage(double seconds, const std::string& topic = "/net/labels") {
+  std::vector<std::uint8_t> ids(2 * kWidth, 40);
+  ids[0] = 70;
+  return imageMessage(topic, seconds, "optical", "mono8", kWidth, ids);
+}
+
+void expectDepth(const PosedScan& scan, double x) {
+  ASSERT_EQ(scan.scan.cloud.size(), 7u);
+  EXPECT_LT((scan.inMap(0) - Vector3d(x + 2, 1.5, 1.5)).norm(), 1e-4);
+  EXPECT_LT((scan.inMap(6) - Vector3d(x + 2, -1.5, 0.5)).norm(), 1e-4);
+  EXPECT_EQ(scan.scan.cloud.classes, (std::vector<ClassId>{2, 1, 1, 1, 1, 1, 1}));
+}
+
+}  // namespace
+
+TEST(Rosbag2, depthImagesHaveTheLabelsOfTheirStampThoughTheseComeLater) {
+  const TemporaryFolder folder;
+  auto bag = cameraDrive();
+  bag.push_back(imageMessage("/cam/color/image", 101, "optical", "rgb8", 1,
+                             std::vector<std::array<std::uint8_t, 3>>(4)));
+  for (const double seconds : {101., 102., 103.}) bag.push_back(depthImage(seconds));
+  bag.push_back(labelImage(103));
+  bag.push_back(labelImage(101));
+  for (const bool isSqlite : {false, true}) {
+    const fs::path file = folder / (isSqlite ? "a.db3" : "a.mcap");
+    isSqlite ? writeSqliteBag(file, bag) : void(folder.write("a.mcap", mcapOf(bag, "zstd")));
+    const auto scans = scansOf(quoted(file), folder);
+    ASSERT_EQ(scans.size(), 2u);  // nothing says what was seen after 102 s
+    expectDepth(scans[0], 1);
+    expectDepth(scans[1], 3);
+    EXPECT_EQ(scans[0].scan.sensorLabel, "/cam/depth/image");
+  }
+}
+
+TEST(Rosbag2, depthImagesMayBeMetersAndComeWithoutLabels) {
+  const TemporaryFolder folder;
+  auto bag = cameraDrive();
+  auto meters = depths(2.f);
+  meters[4] = NAN;
+  bag.push_back(imageMessage("/cam/depth/image", 101, "optical", "32FC1", kWidth, meters));
+  bag.push_back(labelImage(101));
+  const std::string file = quoted(folder.write("a.mcap", mcapOf(bag, "lz4")));
+  const auto unlabeled = scansOf("--no-labels " + file, folder);
+  ASSERT_EQ(unlabeled.size(), 1u);
+  EXPECT_EQ(unlabeled[0].scan.cloud.size(), 6u);
+  EXPECT_EQ(unlabeled[0].scan.counts.labeled, 0u);
+  EXPECT_EQ(scansOf("--label-images /net/labels " + file, folder).at(0).scan.counts.labeled, 6u);
+}
+
+TEST(Rosbag2, laserScansAreSeenFromTheirBeams) {
+  const TemporaryFolder folder;
+  std::vector<BagMessage> bag = {
+      transformMessage("/tf_static", 0, "base_link", "laser", at(0.5, 0, 1, M_PI / 2)),
+      transformMessage("/tf", 100, "odom", "base_link", at(0, 0, 0)),
+      transformMessage("/tf", 102, "odom", "base_link", at(2, 0, 0))};
+  const auto quarter = float(M_PI / 2);
+  bag.push_back(laserMessage("/scan", 101, "laser", 0, quarter, {2, INFINITY, 3}));
+  bag.push_back(laserMessage("/scan", 102, "laser", quarter, -quarter, {NAN, 4, 0.01f, 5, 30}));
+  const auto scans = scansOf(quoted(folder.write("a.mcap", mcapOf(bag, ""))), folder);
+  ASSERT_EQ(scans.size(), 2u);
+  const auto points = [&](int i) {
+    std::vector<Vector3d> all;
+    for (std::size_t p = 0; p < scans[i].scan.cloud.size(); ++p) all.push_back(scans[i].inMap(p));
+    return all;
+  };
+  ASSERT_EQ(points(0).size(), 2u);
+  EXPECT_LT((points(0)[0] - Vector3d(1.5, 2, 1)).norm(), 1e-4);
+  EXPECT_LT((points(0)[1] - Vector3d(1.5, -3, 1)).norm(), 1e-4);
+  ASSERT_EQ(points(1).size(), 2u);
+  EXPECT_LT((points(1)[0] - Vector3d(2.5, 4, 1)).norm(), 1e-4);
+  EXPECT_LT((points(1)[1] - Vector3d(2.5, -5, 1)).norm(), 1e-4);
+}
+
+TEST(Rosbag2, whatIsWrongWithImagesIsNamed) {
+  const TemporaryFolder folder;
+  tableIn(folder);
+  const auto failureWith = [&](const std::vector<BagMessage>& more,
+                               const std::string& arguments = "") {
+    auto bag = cameraDrive();
+    bag.insert(bag.end(), more.begin(), more.end());
+    return messageOf("--classes " + quoted(folder / "classes.yaml") + " " + arguments + " " +
+                         quoted(folder.write("a.mcap", mcapOf(bag, ""))),
+                     folder);
+  };
+  const auto has = [](const std::string& message, const std::string& part) {
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  auto tooShort = depthImage(101);
+  tooShort.bytes.resize(tooShort.bytes.size() - 3);
+  has(failureWith({tooShort}), "a message of /cam/depth/image: ends too early");
+  auto otherSize = labelImage(101);
+  otherSize =
+      imageMessage("/net/labels", 101, "optical", "mono8", 2, std::vector<std::uint8_t>(4, 40));
+  has(failureWith({depthImage(101), otherSize}),
+      "the label image has 2 x 2 pixels, the depth image 4 x 2");
+  auto unknown = labelImage(101);
+  unknown.bytes[unknown.bytes.size() - 3] = 41;
+  has(failureWith({depthImage(101), unknown}), "/net/labels: raw class id 41");
+  has(failureWith({depthImage(101), labelImage(101), labelImage(101, "/b/labels")}),
+      "--label-images has to choose one of /b/labels, /net/labels");
+  has(failureWith({depthImage(101)}, "--label-images /gone"), "no topic '/gone' of images");
+  has(failureWith({depthImage(101, "/other/image")}), "there is no /other/camera_info");
+  has(failureWith({depthImage(101), depthImage(101, "/b/image")}),
+      "--topics has to choose the topics of points; there are: /b/image, /cam/depth/image");
+  has(failureWith({laserMessage("/scan", 101, "laser", NAN, 1, {1})}),
+      "angles that are no numbers");
+  has(failureWith({laserMessage("/scan", 101, "laser", 0, 1, {})}), "without beams");
+  auto camera = cameraMessage("/cam/depth/camera_info", 100, 8, 8, 2);
+  auto bag = cameraDrive();
+  bag[3] = camera;
+  bag.push_back(depthImage(101));
+  has(messageOf("--no-labels " + quoted(folder.write("b.mcap", mcapOf(bag, ""))), folder),
+      "the camera's calibration is for 8 x 8 pixels, the image has 4 x 2");
 }
 
 TEST(Rosbag2, whatIsWrongIsNamed) {

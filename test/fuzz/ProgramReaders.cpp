@@ -54,7 +54,7 @@ void readBag(const fs::path& bag) {
   fs::create_directories(folder.path());
   dataset2rawlog::Conversion conversion = conversionTo(folder.path());
   conversion.labels = false;
-  dataset2rawlog::convertRosbag2(bag, {}, "", conversion);
+  dataset2rawlog::convertRosbag2(bag, {}, conversion);
 }
 #endif
 

@@ -83,6 +83,47 @@ inline BagMessage cloudMessage(const std::string& topic, double seconds, const s
   return {topic, "sensor_msgs/msg/PointCloud2", seconds, cdr.bytes};
 }
 
+/** Pixels row by row, with two bytes of something else behind each row. */
+template <class Pixel>
+BagMessage imageMessage(const std::string& topic, double seconds, const std::string& frame,
+                        const std::string& encoding, std::uint32_t width,
+                        const std::vector<Pixel>& pixels) {
+  const auto height = static_cast<std::uint32_t>(pixels.size()) / width;
+  const auto row = static_cast<std::uint32_t>(width * sizeof(Pixel));
+  Cdr cdr;
+  cdr.header(seconds, frame).number(height).number(width).text(encoding);
+  cdr.number(std::uint8_t(0)).number(row + 2).number((row + 2) * height);
+  for (std::uint32_t y = 0; y < height; ++y)
+    cdr.bytes += std::string(reinterpret_cast<const char*>(&pixels[y * width]), row) + "xx";
+  return {topic, "sensor_msgs/msg/Image", seconds, cdr.bytes};
+}
+
+/** Without distortion, looking through the middle of the image. */
+inline BagMessage cameraMessage(const std::string& topic, double seconds, std::uint32_t width,
+                                std::uint32_t height, double focalLength) {
+  Cdr cdr;
+  cdr.header(seconds, "").number(height).number(width).text("plumb_bob").number(std::uint32_t(0));
+  for (const double k :
+       {focalLength, 0., (width - 1) / 2., 0., focalLength, (height - 1) / 2., 0., 0., 1.})
+    cdr.number(k);
+  for (int i = 0; i < 9 + 12; ++i) cdr.number(0.0);
+  for (int i = 0; i < 2 + 4; ++i) cdr.number(std::uint32_t(0));
+  cdr.number(std::uint8_t(0));
+  return {topic, "sensor_msgs/msg/CameraInfo", seconds, cdr.bytes};
+}
+
+/** Ranges from 0.1 to 20 m count. */
+inline BagMessage laserMessage(const std::string& topic, double seconds, const std::string& frame,
+                               float first, float step, const std::vector<float>& ranges) {
+  Cdr cdr;
+  cdr.header(seconds, frame);
+  for (const float value : {first, 0.f, step, 0.f, 0.f, 0.1f, 20.f}) cdr.number(value);
+  cdr.number(std::uint32_t(ranges.size()));
+  for (const float range : ranges) cdr.number(range);
+  cdr.number(std::uint32_t(0));
+  return {topic, "sensor_msgs/msg/LaserScan", seconds, cdr.bytes};
+}
+
 inline BagMessage transformMessage(const std::string& topic, double seconds,
                                    const std::string& parent, const std::string& child,
                                    const Eigen::Isometry3d& T) {

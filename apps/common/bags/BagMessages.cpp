@@ -44,6 +44,16 @@ class CdrReader {
     const auto seconds = number<std::int32_t>();
     return seconds * Stamp{1000000000} + number<std::uint32_t>();
   }
+  BagHeader header() {
+    const Stamp at = stamp();
+    return {at, text()};
+  }
+  template <class T>
+  std::vector<T> numbers() {
+    std::vector<T> numbers(count(sizeof(T)));
+    for (T& value : numbers) value = number<T>();
+    return numbers;
+  }
   Eigen::Vector3d vector() {
     const auto x = number<double>(), y = number<double>();
     return {x, y, number<double>()};
@@ -60,8 +70,9 @@ class CdrReader {
 
 FramePose poseOf(CdrReader& cdr) {
   FramePose pose;
-  pose.stamp = cdr.stamp();
-  pose.parent = cdr.text();
+  const BagHeader header = cdr.header();
+  pose.stamp = header.stamp;
+  pose.parent = header.frame;
   pose.child = cdr.text();
   pose.translation = cdr.vector();
   pose.rotation = cdr.rotation();
@@ -70,11 +81,52 @@ FramePose poseOf(CdrReader& cdr) {
 
 }  // namespace
 
+BagHeader headerOfMessage(std::string_view message) { return CdrReader(message).header(); }
+
+BagImage imageOfMessage(std::string_view message) {
+  CdrReader cdr(message);
+  BagImage image{cdr.header(), {}};
+  auto& pixels = image.pixels;
+  pixels.height = cdr.number<std::uint32_t>();
+  pixels.width = cdr.number<std::uint32_t>();
+  pixels.encoding = cdr.text();
+  pixels.isBigEndian = cdr.number<std::uint8_t>() != 0;
+  pixels.step = cdr.number<std::uint32_t>();
+  const std::string_view data = cdr.sequenceOfBytes();
+  pixels.data = reinterpret_cast<const std::uint8_t*>(data.data());
+  pixels.size = data.size();
+  return image;
+}
+
+point_fields::RawCamera cameraOfMessage(std::string_view message) {
+  CdrReader cdr(message);
+  cdr.header();
+  point_fields::RawCamera camera;
+  camera.height = cdr.number<std::uint32_t>();
+  camera.width = cdr.number<std::uint32_t>();
+  camera.model = cdr.text();
+  camera.distortion = cdr.numbers<double>();
+  for (double& value : camera.matrix) value = cdr.number<double>();
+  return camera;
+}
+
+BagLaserScan laserScanOfMessage(std::string_view message) {
+  CdrReader cdr(message);
+  BagLaserScan scan{cdr.header(), 0, 0, 0, 0, {}};
+  scan.firstAngle = cdr.number<float>();
+  cdr.number<float>();  // last angle
+  scan.angleStep = cdr.number<float>();
+  cdr.number<float>();  // times
+  cdr.number<float>();
+  scan.leastRange = cdr.number<float>();
+  scan.mostRange = cdr.number<float>();
+  scan.ranges = cdr.numbers<float>();
+  return scan;
+}
+
 BagCloud cloudOfMessage(std::string_view message) {
   CdrReader cdr(message);
-  BagCloud cloud;
-  cloud.stamp = cdr.stamp();
-  cloud.frame = cdr.text();
+  BagCloud cloud{cdr.header(), {}};
   auto& points = cloud.points;
   points.height = cdr.number<std::uint32_t>();
   points.width = cdr.number<std::uint32_t>();
