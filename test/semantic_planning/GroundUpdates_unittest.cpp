@@ -1,5 +1,6 @@
 // Ground that follows its map, and ground of parts of a map, against ground that is read anew.
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <map_correction/KeyframeMap.h>
 
 #include <algorithm>
@@ -10,9 +11,9 @@ using namespace painted_ground;
 
 namespace {
 
-void expectSame(const Ground& a, const Ground& b) {
-  for (int x = -60; x < 60; ++x)
-    for (int y = -60; y < 60; ++y) {
+void expectSame(const Ground& a, const Ground& b, int reach = 60) {
+  for (int x = -reach; x < reach; ++x)
+    for (int y = -reach; y < reach; ++y) {
       const Column c{kOrigin + x, kOrigin + y};
       const SurfaceRange s = a.surfaces(c), t = b.surfaces(c);
       ASSERT_TRUE(std::equal(s.begin(), s.end(), t.begin(), t.end())) << x << ' ' << y;
@@ -35,6 +36,38 @@ TEST(Ground, afterUpdatesItIsTheGroundReadAnew) {
     world.map({0.05 + 0.3 * round, 0.05, 20});
     ground.update(follower.tiles());
     expectSame(ground, groundOf(map, VehicleOptions(), filling));
+  }
+}
+
+TEST(Ground, keepsLittleOfAMapThatMayChange) {
+  const auto heap = [] {
+    const struct mallinfo2 use = mallinfo2();
+    return use.uordblks + use.hblkhd;
+  };
+  PaintedWorld world;
+  const SemanticOcTree& map = world.floor(-30, 30, -30, 30, PaintedWorld::Road).map();
+  const std::size_t before = heap();
+  const Ground ground = groundOf(map);
+  EXPECT_LT(heap() - before, 16u * 300 * 300);  // bytes, columns
+}
+
+TEST(Ground, ofALargeMapFollowsChangesHereAndThere) {
+  PaintedWorld world;
+  for (int x = -110; x < 110; x += 10)
+    for (int y = -110; y < 110; y += 10) {
+      world.floor(x, x + 2, y, y + 2, PaintedWorld::Road);
+      world.floor(x + 3, x + 4, y, y + 1, PaintedWorld::Mud);  // a hole between
+    }
+  SemanticOcTree& map = world.map();
+  semantic_octree::MapFollower follower = map.follow();
+  follower.skipTiles();
+  Ground ground = groundOf(map, VehicleOptions(), {});
+  for (int round = 0; round < 6; ++round) {
+    const double x = -100 + 40 * round, y = round % 2 == 0 ? x : -x;
+    world.floor(x - 4, x + 1, y - 4, y + 4, PaintedWorld::Mud);
+    world.box(x, x + 0.3, y, y + 0.3, 0, 0.5, PaintedWorld::Wall).map({x + 0.05, y + 0.05, 3});
+    EXPECT_FALSE(ground.update(follower.tiles()).empty());
+    expectSame(ground, groundOf(map, VehicleOptions(), {}), 600);
   }
 }
 

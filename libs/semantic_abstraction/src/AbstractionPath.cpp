@@ -22,7 +22,7 @@ class WholeTrees {
   WholeTrees(int rootDepth, const Visit& visit) : m_rootDepth(rootDepth), m_visit(visit) {}
 
   void add(const NodeTau& node, double price) {
-    constexpr std::size_t kEnough = 1 << 18;
+    constexpr std::size_t kEnough = 1 << 15;
     const bool isRoot = node.depth == m_rootDepth;
     if (isRoot && m_nodes.size() > kEnough) finish();
     m_lastAtDepth[node.depth] = static_cast<std::int32_t>(m_nodes.size());

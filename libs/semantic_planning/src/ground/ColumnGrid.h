@@ -117,15 +117,21 @@ inline void sortOut(std::vector<Column>& tiles) {
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
 }
 
-/** The tiles that boxes with a margin overlap, sorted. */
-inline std::vector<Column> tilesWithin(const std::vector<ColumnBox>& boxes, const Margin& margin) {
-  std::vector<Column> tiles;
+/** f(tile) for the tiles that boxes with a margin overlap; for some more than once. */
+template <class F>
+void forTilesWithin(const std::vector<ColumnBox>& boxes, const Margin& margin, F f) {
   for (const ColumnBox& box : boxes) {
     const Column low = tileOf({box.low.x - margin.left, box.low.y - margin.down});
     const Column high = tileOf({box.high.x + margin.right, box.high.y + margin.up});
     for (int x = low.x; x <= high.x; ++x)
-      for (int y = low.y; y <= high.y; ++y) tiles.push_back({x, y});
+      for (int y = low.y; y <= high.y; ++y) f(Column{x, y});
   }
+}
+
+/** The same tiles, sorted. */
+inline std::vector<Column> tilesWithin(const std::vector<ColumnBox>& boxes, const Margin& margin) {
+  std::vector<Column> tiles;
+  forTilesWithin(boxes, margin, [&](Column tile) { tiles.push_back(tile); });
   sortOut(tiles);
   return tiles;
 }

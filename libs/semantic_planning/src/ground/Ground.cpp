@@ -113,9 +113,7 @@ Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions&
   if (within) {
     m_tiles->readWithin(*within);
   } else {
-    const auto tiles = TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find();
-    m_tiles->cover(tiles);
-    m_tiles->update(tiles);
+    m_tiles->read(TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find());
   }
 }
 
@@ -129,6 +127,7 @@ std::vector<Column> Ground::update(const semantic_octree::TileChange& change) {
 }
 
 std::vector<Column> Ground::assume(const std::vector<GroundPoint>& points) {
+  if (m_isLimited || m_map.isReadOnly()) return {};
   std::map<Column, std::array<std::optional<Surface>, kTileColumns>> tiles;
   for (const GroundPoint& p : points) tiles[tileOf(p.column)][indexInTile(p.column)] = p.surface;
   SurfaceGrid ground;
@@ -143,7 +142,7 @@ std::vector<Column> Ground::assume(const std::vector<GroundPoint>& points) {
 }
 
 std::vector<Column> Ground::touchedBy(const semantic_octree::TileChange& change) const {
-  std::vector<Column> tiles = change.all ? m_tiles->scanned() : std::vector<Column>();
+  std::vector<Column> tiles = change.all ? m_tiles->known() : std::vector<Column>();
   for (const octomap::OcTreeKey& key : change.tiles) tiles.push_back(tileOf({key[0], key[1]}));
   sortOut(tiles);
   return tiles;

@@ -95,6 +95,12 @@ void append(std::vector<ColumnBox>& boxes, const std::vector<ColumnBox>& more) {
 
 std::vector<Column> tilesOf(const std::vector<ColumnBox>& boxes) { return tilesWithin(boxes, 0); }
 
+std::vector<ColumnBox> boxesOf(const std::vector<Column>& tiles) {
+  std::vector<ColumnBox> boxes;
+  for (const Column& tile : tiles) boxes.push_back({firstColumnOf(tile), lastColumnOf(tile)});
+  return boxes;
+}
+
 /** The tiles that a fill's hole crosses, with repetitions. */
 void addCrossed(const GapFill& fill, std::vector<Column>& tiles) {
   for (int i = 1; i < fill.columns; ++i) {
@@ -142,22 +148,36 @@ void GroundTiles::cover(const std::vector<Column>& tiles) {
   m_obstacles.cover(low, high);
 }
 
+void GroundTiles::read(const std::vector<Column>& tiles) {
+  constexpr std::size_t kManyTiles = 4 * kSquareEdge * kSquareEdge;
+  cover(tiles);
+  if (tiles.size() < kManyTiles) {
+    finished(updateSurfaces(tiles));
+  } else {
+    readWithin(tiles);
+    for (const Column& tile : tiles) findObstacles(tile);
+  }
+  forgetStages();
+}
+
 std::vector<Column> GroundTiles::update(const std::vector<Column>& tiles) {
-  std::vector<ColumnBox> changed = updateSurfaces(tiles);
-  m_keepsColumns = !m_map.isReadOnly();
-  if (!m_keepsColumns) forgetWhatChangesNeed();
-  return finished(std::move(changed));
+  if (tiles.empty()) return {};
+  const std::vector<Column> unknownBefore = forgotten(tiles);
+  recallStages(tiles);
+  std::vector<Column> changed = finished(updateSurfaces(
+      tiles, tilesWithin(boxesOf(unknownBefore), kReachOfClasses + 2 * reachOfGapFills(m_shape))));
+  if (m_numRead > 4 * m_mostNeeded) forgetStages();
+  return changed;
 }
 
 std::vector<Column> GroundTiles::assume(SurfaceGrid ground) {
-  if (!m_keepsColumns) return {};
-  std::vector<ColumnBox> boxes;
+  std::vector<Column> tiles;
   for (const SurfaceGrid* grid : {&m_assumed, &ground})
-    grid->forEach([&](Column tile, const SurfaceTile&) {
-      boxes.push_back({firstColumnOf(tile), lastColumnOf(tile)});
-    });
+    grid->forEach([&](Column tile, const SurfaceTile&) { tiles.push_back(tile); });
+  if (tiles.empty()) return {};
+  recallStages(tiles);
   m_assumed = std::move(ground);
-  return finished(updateSurfaces(boxes, {}));
+  return finished(updateSurfaces(boxesOf(tiles), {}));
 }
 
 std::vector<Column> GroundTiles::finished(std::vector<ColumnBox> changed) {
@@ -166,25 +186,70 @@ std::vector<Column> GroundTiles::finished(std::vector<ColumnBox> changed) {
   return tilesOf(changed);
 }
 
-std::vector<Column> GroundTiles::scanned() const {
+std::vector<Column> GroundTiles::known() const {
   std::vector<Column> tiles;
   m_columns.forEach([&](Column tile, const ColumnTile&) { tiles.push_back(tile); });
+  m_surfaces.forEach([&](Column tile, const SurfaceTile&) { tiles.push_back(tile); });
   return tiles;
 }
 
 bool GroundTiles::isOccupied(Column c, int low, int high) const {
-  const ColumnTile* tile = m_columns.find(tileOf(c));
-  if (!tile && m_keepsColumns) return false;
-  const ColumnTile read = tile ? ColumnTile() : m_scanner.scan(tileOf(c));
-  const semantic_octree::ByColumn<Run>& runs = (tile ? *tile : read).runs;
-  return std::any_of(runs.begin(indexInTile(c)), runs.end(indexInTile(c)),
-                     [&](const Run& run) { return run.top >= low && run.bottom <= high; });
+  if (const ColumnTile* tile = m_columns.find(tileOf(c))) {
+    const semantic_octree::ByColumn<Run>& runs = tile->runs;
+    return std::any_of(runs.begin(indexInTile(c)), runs.end(indexInTile(c)),
+                       [&](const Run& run) { return run.top >= low && run.bottom <= high; });
+  }
+  if (std::min(c.x, c.y) < 0 || std::max(c.x, c.y) >= semantic_octree::kNumKeys) return false;
+  for (int z = std::max(low, 0); z <= std::min(high, semantic_octree::kNumKeys - 1); ++z) {
+    const auto node = m_map.search(octomap::OcTreeKey(c.x, c.y, z));
+    if (node && node.getLogOdds() > 0) return true;
+  }
+  return false;
 }
 
-void GroundTiles::forgetWhatChangesNeed() {
+void GroundTiles::forgetStages() {
   m_columns = {};
   m_measured = {};
   m_fills = {};
+  m_numRead = 0;
+}
+
+std::vector<Column> GroundTiles::forgotten(const std::vector<Column>& tiles) const {
+  std::vector<Column> missing;
+  for (const Column& tile : tiles)
+    if (!m_columns.find(tile)) missing.push_back(tile);
+  return missing;
+}
+
+void GroundTiles::recallStages(const std::vector<Column>& tiles) {
+  std::map<Column, ColumnBox> squares;
+  for (const ColumnBox& box : boxesOf(tiles)) squares[squareOf(box.tile())].add(box);
+  std::vector<ColumnBox> boxes;
+  for (const auto& [square, box] : squares) boxes.push_back(box);
+  const int reach = reachOfGapFills(m_shape);
+  const auto forTiles = [&boxes](int margin, const auto& f) {
+    forTilesWithin(boxes, {margin, margin, margin, margin}, f);
+  };
+  // Fills come and go as far as surfaces are measured; what they cross is filled again, for which
+  // fills from farther count, and these end still farther.
+  const int fills = kReachOfClasses + 3 * reach, surfaces = fills + reach;
+  const auto make = [](auto& grid, Column tile, const auto& stage) {
+    if (grid.find(tile)) return false;
+    grid.at(tile) = stage(tile);
+    return true;
+  };
+  std::size_t needed = 0;
+  forTiles(surfaces + kReachOfClasses, [&](Column t) {
+    ++needed;
+    m_numRead += make(m_columns, t, [this](Column tile) { return m_scanner.scan(tile); });
+  });
+  m_mostNeeded = std::max(m_mostNeeded, needed);
+  forTiles(surfaces,
+           [&](Column t) { make(m_measured, t, [this](Column tile) { return measured(tile); }); });
+  forTiles(fills, [&](Column t) {
+    make(m_fills, t,
+         [this](Column tile) { return gapFillsFrom(m_columns, m_measured, tile, m_shape); });
+  });
 }
 
 void GroundTiles::readWithin(const std::vector<Column>& tiles) {
@@ -192,17 +257,15 @@ void GroundTiles::readWithin(const std::vector<Column>& tiles) {
   for (const Column& tile : tiles) squares[squareOf(tile)].push_back(tile);
   for (const auto& [square, within] : squares) {
     GroundTiles part(m_map, m_shape);
-    std::vector<ColumnBox> boxes;
-    for (const Column& tile : within) boxes.push_back({firstColumnOf(tile), lastColumnOf(tile)});
-    part.update(tilesWithin(boxes, reachOfGround(m_shape)));
+    part.finished(part.updateSurfaces(tilesWithin(boxesOf(within), reachOfGround(m_shape))));
     for (const Column& tile : within)
       if (SurfaceTile* surfaces = part.m_surfaces.find(tile))
         m_surfaces.at(tile) = std::move(*surfaces);
   }
 }
 
-std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles) {
-  std::vector<Column> refilled;
+std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles,
+                                                   std::vector<Column> refilled) {
   auto scanned = changedBy(inMortonOrder(tiles), [&](Column t) { return scan(t, refilled); });
   return updateSurfaces(std::move(scanned), std::move(refilled));
 }
@@ -238,13 +301,16 @@ ColumnBox GroundTiles::scan(Column tile, std::vector<Column>& refilled) {
   return changed;
 }
 
-ColumnBox GroundTiles::measure(Column tile, std::vector<Column>& refilled) {
+SurfaceTile GroundTiles::measured(Column tile) const {
   SurfaceTile measured = measuredSurfaces(m_columns, tile, m_shape);
-  if (const SurfaceTile* assumed = m_assumed.find(tile)) {
-    const ColumnTile* columns = m_columns.find(tile);
-    measured = withAssumed(measured, *assumed, columns ? *columns : ColumnTile(), m_shape);
-  }
-  const ColumnBox changed = replace(m_measured, tile, std::move(measured));
+  const SurfaceTile* assumed = m_assumed.find(tile);
+  if (!assumed) return measured;
+  const ColumnTile* columns = m_columns.find(tile);
+  return withAssumed(measured, *assumed, columns ? *columns : ColumnTile(), m_shape);
+}
+
+ColumnBox GroundTiles::measure(Column tile, std::vector<Column>& refilled) {
+  const ColumnBox changed = replace(m_measured, tile, measured(tile));
   if (!changed.empty()) refilled.push_back(tile);
   return changed;
 }

@@ -21,28 +21,31 @@ inline int reachOfGround(const GroundShape& shape) {
 }
 
 /** The stages from the map to the ground, each tile by tile; what a column becomes depends only on
- * the stage before within a fixed distance, and tiles are computed again only if that changed. */
+ * the stage before within a fixed distance, and tiles are computed again only if that changed.
+ *
+ * The stages before the surfaces take more memory than these. They are kept around what changed of
+ * late, and made again elsewhere when something changes there. */
 class GroundTiles {
  public:
   GroundTiles(const semantic_octree::SemanticOcTree& map, const GroundShape& shape)
       : m_map(map), m_shape(shape), m_clearanceMeter(shape), m_scanner(map) {}
 
-  /** Makes room for tiles, before there are any. */
-  void cover(const std::vector<Column>& tiles);
+  /** In the beginning. \param tiles all in which there may be ground */
+  void read(const std::vector<Column>& tiles);
   /** \param tiles whose voxels may have changed \return tiles whose surfaces changed, sorted. */
   std::vector<Column> update(const std::vector<Column>& tiles);
 
   /** Somebody knows ground that the map does not: it counts in columns without a surface, where the
-   * map saw no drop. What was assumed before is forgotten. A map that cannot change has none.
+   * map saw no drop. What was assumed before is forgotten.
    * \return tiles whose surfaces changed, sorted. */
   std::vector<Column> assume(SurfaceGrid ground);
 
-  /** Instead of update(): has surfaces in these tiles only, those of the whole map. The stages
-   * before are made square by square and forgotten. */
+  /** Instead of read(): has surfaces in these tiles only, those of the whole map. The stages before
+   * are made square by square and forgotten. */
   void readWithin(const std::vector<Column>& tiles);
 
-  /** Tiles in which the map has been read, and has something. */
-  std::vector<Column> scanned() const;
+  /** Tiles that may have surfaces, or stages before. */
+  std::vector<Column> known() const;
 
   const GroundShape& shape() const { return m_shape; }
   const SurfaceGrid& surfaces() const { return m_surfaces; }
@@ -53,10 +56,18 @@ class GroundTiles {
   const GroundComponents& components() const;
 
  private:
-  /** The stages before the surfaces, of a map that does not change: they take more than these. */
-  void forgetWhatChangesNeed();
-  /** Where surfaces are, and which of them are drivable. */
-  std::vector<ColumnBox> updateSurfaces(const std::vector<Column>& tiles);
+  /** Makes room for tiles, before there are any. */
+  void cover(const std::vector<Column>& tiles);
+  /** The stages before the surfaces. */
+  void forgetStages();
+  /** Makes them again, before an update, where it needs them. */
+  void recallStages(const std::vector<Column>& tiles);
+  /** Those of these tiles that are not there. */
+  std::vector<Column> forgotten(const std::vector<Column>& tiles) const;
+  /** Where surfaces are, and which of them are drivable. \param refilled tiles that are filled
+   * again in any case */
+  std::vector<ColumnBox> updateSurfaces(const std::vector<Column>& tiles,
+                                        std::vector<Column> refilled = {});
   /** \param changed columns, in the stages up to measure() \param refilled their tiles */
   std::vector<ColumnBox> updateSurfaces(std::vector<ColumnBox> changed,
                                         std::vector<Column> refilled);
@@ -68,6 +79,7 @@ class GroundTiles {
    * \param refilled gets the tile if anything changed */
   ColumnBox scan(Column tile, std::vector<Column>& refilled);
   ColumnBox measure(Column tile, std::vector<Column>& refilled);
+  SurfaceTile measured(Column tile) const;
   /** \param refilled gets the tiles that fills cross which came or went */
   void findFills(Column tile, std::vector<Column>& refilled);
   ColumnBox fill(Column tile);
@@ -80,12 +92,13 @@ class GroundTiles {
   const GroundShape m_shape;
   const ClearanceMeter m_clearanceMeter;
   const semantic_octree::ColumnScanner m_scanner;
-  ScanGrid m_columns;  ///< empty if they are forgotten
+  ScanGrid m_columns;
   SurfaceGrid m_measured, m_assumed;
   GapFillGrid m_fills;
   SurfaceGrid m_surfaces;  ///< measured ones and gap fills; the stages after that fill in the rest
   ObstacleGrid m_obstacles;
-  bool m_keepsColumns = false;
+  /** Tiles that were read since the stages were forgotten; the most that an update needed. */
+  std::size_t m_numRead = 0, m_mostNeeded = 0;
   mutable std::unique_ptr<GroundComponents> m_components;
 };
 
