@@ -73,40 +73,16 @@ TEST(LazyEdges, searchFindsTheOptimumOfTheTruth) {
   }
 }
 
-TEST(LazyEdges, replannerFindsTheOptimumOfTheTruth) {
-  for (unsigned seed = 0; seed < 3000; ++seed) {
-    PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 23, seed % 67, 2 + seed % 5);
-    if (seed % 2) plane.addTolls();
-    const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
-    for (const CostModel& model : allModels(plane.randomOrder())) {
-      LazyWorld world(plane);
-      ColoredReplanner replanner(world.graph, start, goal, model, world.options);
-      const PathResult result = replanner.solve();
-      ASSERT_EQ(costOf(result), oracles::tupleDijkstra(plane.graph, model, start, goal))
-          << "seed " << seed;
-      ASSERT_TRUE(allEvaluated(world.graph, result)) << "seed " << seed;
-      ASSERT_FALSE(world.anyTwice()) << "seed " << seed;
-    }
-  }
-}
-
 TEST(LazyEdges, fewAreEvaluated) {
-  std::size_t edges = 0, search = 0, replanner = 0;
+  std::size_t edges = 0, evaluated = 0;
   for (unsigned seed = 0; seed < 20; ++seed) {
     PlaneGraph plane = randomPlaneGraph(seed, 200, 6000, 30, 6);
     const CostModel model{ClassOrder(5, {{0}, {1}, {2}, {3}, {4}})};
-    LazyWorld forSearch(plane), forReplanner(plane);
+    LazyWorld world(plane);
     edges += plane.graph.edgeCount();
-    search +=
-        findColoredPath(forSearch.graph, 0, 1, model, forSearch.options).statistics.edgesEvaluated;
-    replanner += ColoredReplanner(forReplanner.graph, 0, 1, model, forReplanner.options)
-                     .solve()
-                     .statistics.edgesEvaluated;
+    evaluated += findColoredPath(world.graph, 0, 1, model, world.options).statistics.edgesEvaluated;
   }
-  RecordProperty("evaluatedBySearch", std::to_string(double(search) / double(edges)));
-  RecordProperty("evaluatedByReplanner", std::to_string(double(replanner) / double(edges)));
-  EXPECT_LT(search, edges / 2);
-  EXPECT_LT(replanner, search);
+  EXPECT_LT(evaluated, edges / 3);  // a search that evaluates what it expands needs more
 }
 
 TEST(LazyEdges, anEdgeThatHasBecomeUselessIsNotEvaluated) {

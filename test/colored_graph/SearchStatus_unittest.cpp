@@ -15,26 +15,10 @@ using namespace colored_graph;
 
 namespace {
 
-struct Problem {
-  ColoredGraph& graph;
-  VertexId start, goal;
-  CostModel model;
-  SearchOptions options;
-};
-
-PathResult searchOnce(const Problem& p) {
-  return findColoredPath(p.graph, p.start, p.goal, p.model, p.options);
-}
-
-PathResult replanOnce(const Problem& p) {
-  return ColoredReplanner(p.graph, p.start, p.goal, p.model, p.options).solve();
-}
-
-/** What holds for the search from scratch and for the incremental one alike. */
-class SearchStatusOf : public ::testing::TestWithParam<PathResult (*)(const Problem&)> {
+class SearchStatusOf : public ::testing::Test {
  protected:
   PathResult solve(VertexId start, VertexId goal) {
-    return GetParam()({graph, start, goal, model, options});
+    return findColoredPath(graph, start, goal, model, options);
   }
 
   /** A chain of n vertices. */
@@ -50,7 +34,7 @@ class SearchStatusOf : public ::testing::TestWithParam<PathResult (*)(const Prob
 
 }  // namespace
 
-TEST_P(SearchStatusOf, missingEndsAreNamed) {
+TEST_F(SearchStatusOf, missingEndsAreNamed) {
   chain(3);
   EXPECT_EQ(solve(7, 0).status, SearchStatus::StartNotInGraph);
   EXPECT_EQ(solve(0, 7).status, SearchStatus::GoalNotInGraph);
@@ -59,7 +43,7 @@ TEST_P(SearchStatusOf, missingEndsAreNamed) {
   EXPECT_EQ(solve(0, kNoVertex).status, SearchStatus::GoalNotInGraph);
 }
 
-TEST_P(SearchStatusOf, startAtTheGoalIsAPathWithoutEdges) {
+TEST_F(SearchStatusOf, startAtTheGoalIsAPathWithoutEdges) {
   chain(2);
   const PathResult result = solve(1, 1);
   EXPECT_EQ(result.status, SearchStatus::Found);
@@ -69,7 +53,7 @@ TEST_P(SearchStatusOf, startAtTheGoalIsAPathWithoutEdges) {
   EXPECT_EQ(result.lengthPerClass, (std::vector<Length>{0, 0, 0}));
 }
 
-TEST_P(SearchStatusOf, separatePartsAreNotConnected) {
+TEST_F(SearchStatusOf, separatePartsAreNotConnected) {
   chain(3);
   const VertexId lonely = graph.addVertex(0);
   EXPECT_EQ(solve(0, lonely).status, SearchStatus::NotConnected);
@@ -80,7 +64,7 @@ TEST_P(SearchStatusOf, separatePartsAreNotConnected) {
   EXPECT_TRUE(result.cost.empty());
 }
 
-TEST_P(SearchStatusOf, aForbiddenClassInTheWayIsNamed) {
+TEST_F(SearchStatusOf, aForbiddenClassInTheWayIsNamed) {
   chain(3);
   graph.setProfile(1, {{2, 10}});
   EXPECT_EQ(solve(0, 2).status, SearchStatus::OnlyForbidden);
@@ -91,7 +75,7 @@ TEST_P(SearchStatusOf, aForbiddenClassInTheWayIsNamed) {
   EXPECT_EQ(solve(0, 2).status, SearchStatus::Found);
 }
 
-TEST_P(SearchStatusOf, aForbiddenClassInTheWayOfAnUnevaluatedEdgeIsNamed) {
+TEST_F(SearchStatusOf, aForbiddenClassInTheWayOfAnUnevaluatedEdgeIsNamed) {
   chain(2);
   setUnevaluated(graph, 0, 5);
   options.evaluate = [](EdgeId) { return EdgeProfile{{2, 10}}; };
@@ -101,7 +85,7 @@ TEST_P(SearchStatusOf, aForbiddenClassInTheWayOfAnUnevaluatedEdgeIsNamed) {
   EXPECT_EQ(solve(0, 1).status, SearchStatus::NotConnected);
 }
 
-TEST_P(SearchStatusOf, overflowIsNoPathAndSaysSo) {
+TEST_F(SearchStatusOf, overflowIsNoPathAndSaysSo) {
   chain(4);
   const Length huge = Length{1} << 62;
   graph.setProfile(0, {{1, huge}});
@@ -111,7 +95,7 @@ TEST_P(SearchStatusOf, overflowIsNoPathAndSaysSo) {
   EXPECT_EQ(solve(0, 3).status, SearchStatus::CostOverflow);
 }
 
-TEST_P(SearchStatusOf, cancelStopsTheSearch) {
+TEST_F(SearchStatusOf, cancelStopsTheSearch) {
   chain(1000);
   int asked = 0;
   options.cancelled = [&] { return ++asked > 3; };
@@ -122,14 +106,11 @@ TEST_P(SearchStatusOf, cancelStopsTheSearch) {
   EXPECT_LT(result.statistics.expansions, 500u);
 }
 
-TEST_P(SearchStatusOf, anOrderOfOtherClassesIsRefused) {
+TEST_F(SearchStatusOf, anOrderOfOtherClassesIsRefused) {
   chain(2);
   model.order = ClassOrder(2, {{0}, {1}});
   EXPECT_THROW(solve(0, 1), std::invalid_argument);
 }
-
-INSTANTIATE_TEST_SUITE_P(BothSearches, SearchStatusOf, ::testing::Values(&searchOnce, &replanOnce),
-                         [](const auto& p) { return p.index == 0 ? "scratch" : "replanner"; });
 
 TEST(SearchStatus, replannerGoesOnAfterACancel) {
   PlaneGraph plane = randomPlaneGraph(11, 300, 9000, 30, 4);

@@ -13,15 +13,13 @@ using oracles::Tuple;
 
 namespace {
 
-/** What holds for the search from scratch and for the incremental one alike. */
-class TollsIn : public ::testing::TestWithParam<bool> {
+class TollsIn : public ::testing::Test {
  protected:
   void SetUp() override {
     for (int v = 0; v < 4; ++v) graph.addVertex(0);
   }
   PathResult solve(VertexId start, VertexId goal) {
-    return GetParam() ? ColoredReplanner(graph, start, goal, model, options).solve()
-                      : findColoredPath(graph, start, goal, model, options);
+    return findColoredPath(graph, start, goal, model, options);
   }
 
   ColoredGraph graph{2};
@@ -50,7 +48,7 @@ struct Street {
 
 }  // namespace
 
-TEST_P(TollsIn, anEdgeThatLeadsOneWayIsDrivenOneWay) {
+TEST_F(TollsIn, anEdgeThatLeadsOneWayIsDrivenOneWay) {
   graph.addEdge(0, 1, {{0, 10}}, {0, kClosed});
   EXPECT_EQ(solve(0, 1).cost, (Tuple{0, 10, 10}));
   EXPECT_EQ(solve(1, 0).status, SearchStatus::NotConnected);
@@ -59,7 +57,7 @@ TEST_P(TollsIn, anEdgeThatLeadsOneWayIsDrivenOneWay) {
   EXPECT_EQ(solve(1, 0).status, SearchStatus::NotConnected);
 }
 
-TEST_P(TollsIn, eachWayHasItsOwnToll) {
+TEST_F(TollsIn, eachWayHasItsOwnToll) {
   const EdgeId e = graph.addEdge(0, 1, {{0, 10}}, {3, 50});
   EXPECT_EQ(solve(0, 1).cost, (Tuple{0, 13, 10}));
   EXPECT_EQ(solve(1, 0).cost, (Tuple{0, 60, 10}));
@@ -67,7 +65,7 @@ TEST_P(TollsIn, eachWayHasItsOwnToll) {
   EXPECT_EQ(solve(1, 0).cost, (Tuple{0, 11, 10}));
 }
 
-TEST_P(TollsIn, decideAfterTheClassesAndBeforeLength) {
+TEST_F(TollsIn, decideAfterTheClassesAndBeforeLength) {
   const EdgeId grass = graph.addEdge(0, 1, {{0, 5}, {1, 1}});
   const EdgeId dear = graph.addEdge(0, 1, {{0, 10}}, {100, 100});
   const EdgeId detour = graph.addEdge(0, 1, {{0, 109}});
@@ -79,13 +77,13 @@ TEST_P(TollsIn, decideAfterTheClassesAndBeforeLength) {
   EXPECT_EQ(solve(0, 1).edges, std::vector<EdgeId>{grass});
 }
 
-TEST_P(TollsIn, ofEqualSumsTheShorterWayIsTaken) {
+TEST_F(TollsIn, ofEqualSumsTheShorterWayIsTaken) {
   graph.addEdge(0, 1, {{0, 20}});
   const EdgeId shorter = graph.addEdge(0, 1, {{0, 10}}, {10, 10});
   EXPECT_EQ(solve(0, 1).edges, std::vector<EdgeId>{shorter});
 }
 
-TEST_P(TollsIn, evaluationLeavesThemAsTheyAre) {
+TEST_F(TollsIn, evaluationLeavesThemAsTheyAre) {
   const EdgeId e = graph.addUnevaluatedEdge(0, 1, 5, {7, kClosed});
   options.evaluate = [](EdgeId) { return EdgeProfile{{0, 6}, {1, 2}}; };
   EXPECT_EQ(solve(0, 1).cost, (Tuple{2, 15, 8}));
@@ -93,7 +91,7 @@ TEST_P(TollsIn, evaluationLeavesThemAsTheyAre) {
   EXPECT_EQ(solve(1, 0).status, SearchStatus::NotConnected);
 }
 
-TEST_P(TollsIn, theLargestAreNoOverflow) {
+TEST_F(TollsIn, theLargestAreNoOverflow) {
   const Length large = (Length{1} << 62) - 1;
   graph.addEdge(0, 1, {{0, large + 1}}, {large, large});
   graph.addEdge(1, 2, {{0, 1}});
@@ -101,15 +99,12 @@ TEST_P(TollsIn, theLargestAreNoOverflow) {
   EXPECT_EQ(solve(0, 2).status, SearchStatus::CostOverflow);
 }
 
-TEST_P(TollsIn, aForbiddenClassBehindAClosedWayIsNotNamed) {
+TEST_F(TollsIn, aForbiddenClassBehindAClosedWayIsNotNamed) {
   model.order = ClassOrder(2, {{0}});
   graph.addEdge(0, 1, {{1, 10}}, {0, kClosed});
   EXPECT_EQ(solve(0, 1).status, SearchStatus::OnlyForbidden);
   EXPECT_EQ(solve(1, 0).status, SearchStatus::NotConnected);
 }
-
-INSTANTIATE_TEST_SUITE_P(BothSearches, TollsIn, ::testing::Values(false, true),
-                         [](const auto& p) { return p.param ? "replanner" : "scratch"; });
 
 TEST(Tolls, priceGearChangesAndMetersBackwardsOfPosesWithAGear) {
   Street street(4);

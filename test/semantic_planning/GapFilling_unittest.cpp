@@ -70,6 +70,18 @@ TEST_F(SlitFloor, aSlitWiderThanAllGapsStaysOpen) {
   EXPECT_FALSE(g.connected(*g.find(0, -1), *g.find(0, 4)));
 }
 
+TEST_F(SlitFloor, aWideFillLeavesNoFloorAboveANarrowOne) {
+  paint(0.8);
+  for (const double x : {-1.6, 1.2})  // their tops are joined along the slit, 0.4 m above its fill
+    world.box(x, x + 0.4, 0, 0.8, 0, 0.4, PaintedWorld::Mud);
+  const Ground g = ground(1, 3);
+  const SurfaceRange surfaces = g.surfaces(g.columnAt(0, 0.3));
+  ASSERT_EQ(surfaces.end() - surfaces.begin(), 1);
+  EXPECT_TRUE(surfaces.begin()->filled);
+  EXPECT_LT(g.centerOf(surfaces.begin()->z), 0);
+  EXPECT_EQ(surfaces.begin()->clearance2, g.largestClearance() * g.largestClearance());
+}
+
 TEST_F(SlitFloor, whatStandsInTheSlitIsNotFilled) {
   paint(0.8);
   world.box(-6, 6, 0.4, 0.6, 0, 1, PaintedWorld::Wall);

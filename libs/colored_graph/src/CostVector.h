@@ -13,8 +13,6 @@ namespace colored_graph {
 template <int N>
 class CostVector {
  public:
-  static constexpr int kBits = 64 * N;
-
   constexpr CostVector() : m_parts{} {}
 
   static constexpr CostVector infinite() {
@@ -39,15 +37,6 @@ class CostVector {
   friend bool operator>(const CostVector& l, const CostVector& r) { return compare(l, r) > 0; }
   friend bool operator<=(const CostVector& l, const CostVector& r) { return compare(l, r) <= 0; }
   friend bool operator>=(const CostVector& l, const CostVector& r) { return compare(l, r) >= 0; }
-
-  /** One above the place of the highest bit in which they differ, if the last component holds bits
-   * 0 to 63, the one before it 64 to 127, ...; 0 if they are equal. */
-  friend int highestDifference(const CostVector& l, const CostVector& r) {
-    for (int i = 0; i < N; ++i)
-      if (const auto bits = static_cast<unsigned long long>(l.m_parts[i] ^ r.m_parts[i]))
-        return 64 * (N - i) - __builtin_clzll(bits);
-    return 0;
-  }
 
   friend CostVector operator+(const CostVector& l, const CostVector& r) {
     CostVector sum;

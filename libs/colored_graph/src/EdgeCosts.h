@@ -10,15 +10,15 @@
 namespace colored_graph {
 
 /** What the edges of a graph cost. */
-template <class Layout>
+template <int N>
 class EdgeCosts {
  public:
-  using Cost = typename Layout::Cost;
+  using Cost = CostVector<N>;
 
   EdgeCosts(const ColoredGraph& graph, const CostModel& model)
       : m_graph(graph), m_model(model), m_layout(model) {}
 
-  const Layout& layout() const { return m_layout; }
+  const VectorLayout<N>& layout() const { return m_layout; }
 
   /** The cost of an edge that is driven to its end `to`: infinite if that cannot be; of an
    * unevaluated edge a lower bound, from its end points and least length. */
@@ -58,7 +58,7 @@ class EdgeCosts {
 
   const ColoredGraph& m_graph;
   const CostModel& m_model;
-  const Layout m_layout;
+  const VectorLayout<N> m_layout;
 };
 
 /** Calls f with the smallest of the vector sizes that holds the model's costs. Short vectors make a

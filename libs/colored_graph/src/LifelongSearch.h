@@ -1,4 +1,6 @@
 #pragma once
+#include <colored_graph/ColoredReplanner.h>
+
 #include "EdgeCosts.h"
 #include "SearchParts.h"
 #include "VertexHeap.h"
@@ -10,31 +12,39 @@
 
 namespace colored_graph {
 
+/** For cost vectors of any size. */
+class ColoredReplanner::Impl {
+ public:
+  virtual ~Impl() = default;
+  virtual PathResult solve() = 0;
+  virtual void moveStart(VertexId start) = 0;
+};
+
 /** LPA* over cost vectors, from the goal towards the start. The names g and rhs are the paper's.
  *
  * Invariants between calls: rhs(v) = min over edges (v,w) of cost + g(w), 0 at the goal; node.next
  * is a w that gives this minimum; v is queued exactly if g(v) != rhs(v). */
 template <int N>
-class LifelongSearch {
+class ColoredReplanner::Search : public Impl {
  public:
-  LifelongSearch(ColoredGraph& graph, VertexId start, VertexId goal, const CostModel& model,
-                 const SearchOptions& options)
+  Search(ColoredGraph& graph, VertexId start, VertexId goal, const CostModel& model,
+         const SearchOptions& options)
       : m_graph(graph),
         m_start(start),
         m_goal(goal),
         m_model(model),
         m_options(options),
         m_costs(m_graph, m_model) {}
-  LifelongSearch(const LifelongSearch&) = delete;
-  LifelongSearch& operator=(const LifelongSearch&) = delete;
+  Search(const Search&) = delete;
+  Search& operator=(const Search&) = delete;
 
-  void moveStart(VertexId start) {
+  void moveStart(VertexId start) override {
     if (start == m_start) return;
     m_start = start;
     m_startMoved = true;
   }
 
-  PathResult solve() {
+  PathResult solve() override {
     m_statistics = {};
     PathResult result;
     const auto missing = missingEnd(m_graph, m_start, m_goal);
@@ -49,8 +59,7 @@ class LifelongSearch {
   }
 
  private:
-  using Layout = VectorLayout<N>;
-  using Cost = typename Layout::Cost;
+  using Cost = CostVector<N>;
 
   struct Node {
     Cost g = Cost::infinite();
@@ -272,7 +281,7 @@ class LifelongSearch {
   const VertexId m_goal;
   const CostModel m_model;
   const SearchOptions m_options;
-  const EdgeCosts<Layout> m_costs;
+  const EdgeCosts<N> m_costs;
   std::vector<Node> m_nodes;
   VertexHeap<Key> m_queue;
   std::uint64_t m_seen = 0;

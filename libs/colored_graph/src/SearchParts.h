@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-/** \file What both searches, from scratch and incremental, have in common. */
+/** \file What a search does with a graph, whatever its costs are. */
 
 namespace colored_graph {
 

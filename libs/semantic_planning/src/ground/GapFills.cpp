@@ -209,8 +209,9 @@ auto narrowestFirst(const Offer& o) {
   return std::tie(o.column, o.width, o.z, o.from.y, o.from.x, o.direction);
 }
 
-/** The narrowest offer at each height of a column, about. Sorted by column, then height. */
-std::vector<Offer> bestOffers(std::vector<Offer> offers, int step) {
+/** The narrowest offer at each level of a column: between two surfaces there is room for the
+ * vehicle, or one is an error. Sorted by column, then height. */
+std::vector<Offer> bestOffers(std::vector<Offer> offers, int height) {
   std::stable_sort(offers.begin(), offers.end(), [](const Offer& l, const Offer& r) {
     return narrowestFirst(l) < narrowestFirst(r);
   });
@@ -219,7 +220,7 @@ std::vector<Offer> bestOffers(std::vector<Offer> offers, int step) {
   for (const Offer& offer : offers) {
     if (!best.empty() && best.back().column != offer.column) columnBegin = best.size();
     const bool taken = std::any_of(best.begin() + columnBegin, best.end(), [&](const Offer& b) {
-      return b.column == offer.column && std::abs(b.z - offer.z) <= step;
+      return b.column == offer.column && std::abs(b.z - offer.z) <= height;
     });
     if (!taken) best.push_back(offer);
   }
@@ -280,7 +281,7 @@ SurfaceTile filledSurfaces(const GapFillGrid& fills, const SurfaceGrid& measured
                            const ScanGrid& columns, Column tile, const GroundShape& shape) {
   const SurfaceTile* own = measured.find(tile);
   const ColumnTile* scanned = columns.find(tile);
-  const std::vector<Offer> offers = bestOffers(offersTo(tile, fills, shape), shape.step);
+  const std::vector<Offer> offers = bestOffers(offersTo(tile, fills, shape), shape.height);
   if (own && offers.empty() && !hasLevels(*own)) return *own;
   return merged(own ? *own : SurfaceTile(), offers, scanned ? *scanned : ColumnTile());
 }

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "PathTracing.h"
 #include "vehicle/TangentArc.h"
 
 namespace semantic_planning {
@@ -225,18 +226,9 @@ class Smoothing {
     return price;
   }
 
-  /** Few places tell most arcs that do not fit. */
-  bool mayFit(const Arc& arc, double z) const {
-    constexpr std::array<double, 3> kShares = {0.5, 0.25, 0.75};
-    return std::all_of(kShares.begin(), kShares.end(), [&](double share) {
-      const auto placed = m_checker.place(arc.at(share * arc.length), z);
-      return placed && m_checker.fit(*placed) == Fit::Free;
-    });
-  }
-
   bool evaluate(const Replacement& r, std::vector<Part>& parts) const {
     double z = m_checker.ground().centerOf(m_parts[r.before].z);
-    if (!mayFit(r.tangent.arc, z)) return false;
+    if (!mayFit(curveOf(r.tangent.arc), z, m_checker)) return false;
     for (Part& part : parts) {
       const auto begin = m_checker.place(part.arc.begin, z);
       if (!begin) return false;

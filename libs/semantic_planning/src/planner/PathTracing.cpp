@@ -1,5 +1,8 @@
 #include "PathTracing.h"
 
+#include <algorithm>
+#include <array>
+
 namespace semantic_planning {
 
 using colored_graph::PathResult;
@@ -28,6 +31,15 @@ void appendCurve(const std::vector<PathPoint>& curve, std::vector<PathPoint>& pa
     path.push_back(curve[i]);
     path.back().arcLength += begin;
   }
+}
+
+bool mayFit(const ReedsSheppCurve& curve, double z, const CollisionChecker& checker) {
+  // Near its end first: goals are where there is little room.
+  constexpr std::array<double, 4> kShares = {0.9, 0.5, 0.25, 0.75};
+  return std::all_of(kShares.begin(), kShares.end(), [&](double share) {
+    const auto placed = checker.place(curve.at(share * curve.length()).pose, z);
+    return placed && checker.fit(*placed) == Fit::Free;
+  });
 }
 
 std::vector<PathPoint> tracePath(const PathResult& path, const Roadmap& roadmap,

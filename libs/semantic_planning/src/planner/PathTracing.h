@@ -12,6 +12,10 @@ std::vector<PathPoint> tracePath(const colored_graph::PathResult& path, const Ro
  * gear. */
 void appendCurve(const std::vector<PathPoint>& curve, std::vector<PathPoint>& path);
 
+/** Few places tell most curves that do not fit, sooner than profiles do. \param z of the ground,
+ * meters */
+bool mayFit(const ReedsSheppCurve& curve, double z, const CollisionChecker& checker);
+
 /** Cost and lengths of a path that was found. */
 void setLengths(const colored_graph::PathResult& path, PlanResult& result);
 

@@ -139,7 +139,10 @@ void PoseSearch::join(int from, const Target& target) {
     Length cost = node(from).cost + ofChange(node(from), beginOf(curve)) +
                   lengthDown(price.of(m_task.isReversed ? curve.reversed() : curve));
     if (target.state) cost += lengthDown(price.ofChange(endOf(curve), *target.state));
-    const auto whole = costOver(curve, node(from).pose.z, target.pose.z, cost, target.rest);
+    const int z = node(from).pose.z;
+    if (cost + target.rest >= m_most || !mayFit(curve, m_checker.ground().centerOf(z), m_checker))
+      continue;
+    const auto whole = costOver(curve, z, target.pose.z, cost, target.rest);
     if (!whole) continue;
     m_most = *whole + target.rest;
     if (m_most <= m_good) m_left = std::min(m_left, m_task.posesAfter);
