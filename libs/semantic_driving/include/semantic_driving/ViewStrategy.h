@@ -29,7 +29,7 @@ struct ExploreOptions {
   Eigen::AlignedBox2d area;
   /** It is enough when what is left within reach is expected to tell less than this share of all
    * that is known and left: as much as the last stretch of the way that promised as much. */
-  double leftShare = 0.05;
+  double leftShare = 0.03;
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */

@@ -103,7 +103,7 @@ class LearnedPrior : public UnknownPrior {
     std::vector<std::pair<ClassId, std::uint16_t>> classes;  ///< columns of each
     UnknownPatch prior;
   };
-  static constexpr int kBlock = 16;  ///< patches; blocks are looked up, patches are not
+  static constexpr int kBlock = 8;  ///< patches; blocks are looked up, patches are not
   using Block = std::array<Patch, kBlock * kBlock>;
   using Distribution = std::vector<double>;
 
