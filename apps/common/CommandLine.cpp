@@ -56,13 +56,14 @@ std::string unexpected(const CLI::App& app) {
          (writes ? " (what is written is named by -o)" : "");
 }
 
-/** "NUMBER", "{one,other}", "1 to 8", whatever CLI11 calls it. */
+/** "NUMBER", "{one,other}", "1 to 8", whatever CLI11 calls it. Texts are names of files, where
+ * options do not say something else. */
 std::string readableType(const std::string& type) {
   static const std::regex theirs("(INT|UINT|FLOAT|TEXT|ENUM|BOOLEAN)(:(.*))?");
   std::smatch parts;
   if (!std::regex_match(type, parts, theirs)) return type;
   if (parts[3].length() > 0) return parts[3];
-  return parts[1] == "TEXT" ? "TEXT" : "NUMBER";
+  return parts[1] == "TEXT" ? "FILE" : "NUMBER";
 }
 
 /** What CLI11 says, in the words of our own messages. */
@@ -87,7 +88,8 @@ class HelpFormatter : public CLI::Formatter {
     return std::regex_replace(name, std::regex(R"(\{[^}]*\})"), "");
   }
   std::string make_option_opts(const CLI::Option* option) const override {
-    const std::string type = option->get_type_name(), readable = readableType(type);
+    const std::string type = option->get_type_name(),
+                      readable = option->get_positional() ? "" : readableType(type);
     std::string text = Formatter::make_option_opts(option);
     const std::size_t at = type.empty() ? std::string::npos : text.find(type);
     return at == std::string::npos ? text : text.replace(at, type.size(), readable);

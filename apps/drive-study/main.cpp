@@ -56,6 +56,7 @@ struct Cli {
     exploring->needs(file), file->needs(exploring);
     app.add_option("--solution", solution,
                    "Name of one solution in the weights; without: the first")
+        ->type_name("NAME")
         ->needs(file);
     app.add_option("--scene-seed", sceneSeed, "Seed of the worlds")->capture_default_str();
     strict_files::OptionList pairsDrawn;

@@ -67,7 +67,8 @@ struct Cli {
     addNumber(app, "--repeats", repeats, "Measurements of each runner",
               strict_files::between(1, 1000));
     app.add_option("--only", only,
-                   "Measure only runners whose names contain this, and the bare traversal");
+                   "Measure only runners whose names contain this, and the bare traversal")
+        ->type_name("TEXT");
   }
 
  private:

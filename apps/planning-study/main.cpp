@@ -41,7 +41,8 @@ struct Cli {
     app.add_option("MAP", map, "A map's own file (.semantic)")->required();
     app.add_option("--order", order, "Classes from best to worst (YAML)")->required();
     app.add_option("--weights", weights, "What the compressed tree keeps (YAML)")->required();
-    app.add_option("--solution", solution, "Which of the weights; none: the first");
+    app.add_option("--solution", solution, "Which of the weights; none: the first")
+        ->type_name("NAME");
     outputs.add(app, output, "FILE", "Table of all searches (CSV)")->required();
     addNumber(app, "--instances", instances, "Pairs of start and goal");
     addNumber(app, "--vertices", vertices, "Of each graph; of halton, draws");

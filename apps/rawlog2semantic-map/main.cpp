@@ -105,6 +105,7 @@ struct Cli {
         .add_option("--tiles", folder.folder,
                     "Folder of tiles for the map, added to what is there; "
                     "semantic-map-export draws it")
+        ->type_name("FOLDER")
         ->group("Maps larger than memory");
   }
 
@@ -123,7 +124,8 @@ struct Cli {
     outputs.addOther(
         app.add_option("--save-labeled", saveLabeled, "Rawlog of the scans with their labels"));
     outputs.addOther(app.add_option("--preview", preview,
-                                    "Folder for pictures: images with their labels and points"));
+                                    "Folder for pictures: images with their labels and points")
+                         ->type_name("FOLDER"));
     app.add_option("--preview-every", previewEvery, "Make pictures of every N-th scan")
         ->check(isNumber(strict_files::above(0)));
   }

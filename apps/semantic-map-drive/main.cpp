@@ -98,11 +98,13 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   CLI::Option_group* where = app.add_option_group("Where to");
   poses::addPose(*where, "--goal", goal, "Where the robot shall go");
   CLI::Option* exploring =
-      where->add_flag("--explore", explore, "Instead of a goal: look around until that is enough");
+      where->add_flag("--explore", explore,
+                      "Instead of a goal: look around until what is left is not worth the way");
   where->require_option(1);
   app.add_option("--weights", weights, "What is looked for (YAML, see config/weights)")
       ->needs(exploring);
   app.add_option("--solution", solution, "Name of one solution in the weights; without: the first")
+      ->type_name("NAME")
       ->needs("--weights");
   app.add_option("--order", order,
                  "Classes from best to worst (YAML); a second file makes a second drive to compare")

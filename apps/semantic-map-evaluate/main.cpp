@@ -99,8 +99,8 @@ struct Cli {
         ->required();
     app.add_option(
         "--made-from", madeFrom,
-        "Rawlogs that the maps were made from: two more rows tell what plain counting of their "
-        "labels knows");
+        "Rawlogs that the maps were made from: two more rows tell how good mere counts of their "
+        "labels are");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     app.add_option("--max-range", maxRange, "Points farther from the sensor are not asked for, m")
         ->check(isNumber(strict_files::above(0)));

@@ -289,6 +289,7 @@ struct Cli {
     app.add_option("--ground", ground,
                    "A class that is ground; may be given several times. "
                    "Without: the lowest voxel of each column is ground")
+        ->type_name("CLASS")
         ->allow_extra_args(false)
         ->group(kGrids);
     addCosts(app);

@@ -142,9 +142,9 @@ void printText(const std::string& name, const ordered_json& d, std::ostream& out
     if (!value.is_object())
       out << " " << key << " " << (value.is_string() ? value.get<std::string>() : value.dump());
   const ordered_json& calibration = d["filter"]["calibration"];
-  out << std::setprecision(3) << "\n  stated        beliefs to the power of "
+  out << std::setprecision(3) << "\n  calibration   probabilities of classes to the power of "
       << calibration["power"].get<double>() << ", " << 100 * calibration["shared"].get<double>()
-      << " % shared by the classes of a voxel's record" << std::setprecision(6);
+      << " % of them shared by the voxel's classes" << std::setprecision(6);
   if (d.contains("folder")) printFolder(d["folder"], out);
   if (d.contains("clock")) printTime(d, out);
   out << "\n  occupied voxels by likeliest class (of " << d["classes"].size() << " classes)\n";

@@ -1,4 +1,4 @@
-// Adds semantic octree maps up.
+// Adds up semantic octree maps, each at its pose.
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
 #include <semantic_map/CSemanticOctoMap.h>
@@ -141,7 +141,7 @@ int run(const Cli& cli) {
 }  // namespace semantic_map_merge
 
 int main(int argc, char** argv) {
-  CLI::App app("Adds semantic octree maps up");
+  CLI::App app("Adds up semantic octree maps, each at its pose");
   const semantic_map_merge::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_merge::run(cli); });
 }

@@ -31,6 +31,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
                  "Weights of classes for the compressed tree (YAML, as for semantic-map-compress); "
                  "without: what tells the ranks of --order apart");
   app.add_option("--solution", solution, "Name of one solution in the weights; without: the first")
+      ->type_name("NAME")
       ->needs("--weights");
   app.add_option("--corridor", corridor,
                  "Distance from a coarse way within which ground is looked at, m; inf: all ground. "

@@ -184,7 +184,8 @@ struct Cli {
     outputs.add(app, output, "FILE", "The map to write (.semantic)")->required();
     app.add_option("--weights", weights, "Weights of classes (YAML); without: the sender's");
     app.add_option("--solution", wish.solution,
-                   "Name of one solution in the weights; without: the first");
+                   "Name of one solution in the weights; without: the first")
+        ->type_name("NAME");
     app.add_option("--alpha", wish.alpha, "The price of detail, instead of the weights' own")
         ->check(isNumber(strict_files::atLeast(0)));
     app.add_option("--bytes", reception.bytes, "End when this many bytes came without a gap")

@@ -38,7 +38,8 @@ struct Cli {
         ->capture_default_str();
     app.add_option("--weights", weights, "Weights for receivers that send none (YAML)");
     app.add_option("--solution", own.solution,
-                   "Name of one solution in the weights; without: the first");
+                   "Name of one solution in the weights; without: the first")
+        ->type_name("NAME");
     app.add_option(
         "--key", key,
         "Serve only receivers with this key: a file of 16 bytes or more, the same on both sides");

@@ -274,8 +274,8 @@ void PlanPanel::plan() {
     draw(&plan);
     if (!plan.found()) return say("no path:", plan.reason);
     char text[60];
-    std::snprintf(text, sizeof text, "path of %.1f m, in %.0f ms", plan.length,
-                  watch.milliseconds());
+    std::snprintf(text, sizeof text, "path of %.1f m, in %.1f s", plan.length,
+                  watch.milliseconds() / 1000);
     say(text);
   } catch (const std::exception& e) {
     say("no path:", e.what());

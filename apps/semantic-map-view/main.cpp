@@ -117,7 +117,8 @@ Cli::Cli(CLI::App& app) : outputs(app) {
                  "Where the sliders of the compression begin: the first solution of such a file "
                  "(YAML, as for semantic-map-compress)");
   app.add_option("--order", order,
-                 "Classes from best to worst, for paths (YAML, as for semantic-map-plan)");
+                 "Classes from best to worst, for paths (YAML, as for semantic-map-plan); without: "
+                 "those that are checked in the window");
   app.add_option("--vehicle", vehicle, "The vehicle (YAML), for paths; without: a small robot");
   app.add_flag("--compress", compress, "Begin with the compressed tree");
   app.add_flag("!--no-panels", panels, "Hide the panels")->excludes(animated);

@@ -74,9 +74,9 @@ void addSensors(CLI::App& app, Cli& cli) {
   label_noise::addLabelNoiseKind(app, cli.labelNoiseKind);
   app.add_option("--dropout", cli.noise.dropout, "Share of rays without a return")
       ->capture_default_str();
-  app.add_option(
-      "--classes", cli.classes,
-      "Class table (YAML) whose raw ids are the world's classes; without: these classes");
+  app.add_option("--classes", cli.classes,
+                 "Class table (YAML) for the labels; its raw ids name the world's classes. "
+                 "Without: the world's own table");
 }
 
 void addTruth(CLI::App& app, Cli& cli) {

@@ -57,7 +57,8 @@ std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPos
                      const Refusal& refusal) {
   std::ostringstream reason;
   const strict_files::ClassicNumbers classic(reason);
-  reason << "the " << what << " (" << pose.x << ", " << pose.y << ") is "
+  const auto rounded = [](double m) { return std::round(100 * m) / 100; };
+  reason << "the " << what << " (" << rounded(pose.x) << ", " << rounded(pose.y) << ") is "
          << (status == PlanStatus::StartOffGround ? "off the ground"
              : status == PlanStatus::StartBlocked ? "blocked"
                                                   : "on forbidden ground")
