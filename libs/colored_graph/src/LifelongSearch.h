@@ -51,7 +51,7 @@ class ColoredReplanner::Search : public Impl {
     const SearchStatus status = missing ? *missing : repairOrForget();
     if (status == SearchStatus::Found) {
       result = assemblePath(m_graph, m_start, bestEdges());
-      result.cost = m_costs.layout().parts(m_nodes[m_start].g);
+      result.cost = m_costs.parts(m_nodes[m_start].g);
     }
     result.status = status;
     result.statistics = m_statistics;
@@ -235,7 +235,7 @@ class ColoredReplanner::Search : public Impl {
       node.distanceOf = m_startNumber;
       node.distance = m_options.lengthBound ? m_options.lengthBound(m_start, v) : 0;
     }
-    return {node.least() + m_costs.layout().ofLength(node.distance), node.distance};
+    return {node.least() + m_costs.ofLength(node.distance), node.distance};
   }
 
   // --- The path
