@@ -71,12 +71,14 @@ struct Equations {
   Eigen::SparseMatrix<double> H;
   Eigen::VectorXd b;
 
-  Equations(const std::vector<PoseEdge>& edges, const Poses& poses, std::size_t first, double doubt)
-      : m_doubt(doubt),
-        m_first(first),
-        b(Eigen::VectorXd::Zero(6 * static_cast<int>(poses.size() - first))) {
-    for (const PoseEdge& edge : edges) add(edge, poses);
+  Equations(std::size_t numPoses, std::size_t first, double doubt)
+      : m_doubt(doubt), m_first(first), b(6 * static_cast<int>(numPoses - first)) {
     H.resize(b.size(), b.size());
+  }
+  void update(const std::vector<PoseEdge>& edges, const Poses& poses) {
+    m_entries.clear();
+    b.setZero();
+    for (const PoseEdge& edge : edges) add(edge, poses);
     H.setFromTriplets(m_entries.begin(), m_entries.end());
   }
 
@@ -112,9 +114,10 @@ void descend(Poses& poses, const std::vector<PoseEdge>& edges, double doubt) {
   const std::size_t first = isInMap ? 0 : 1;
   if (poses.size() <= first) return;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+  Equations equations(poses.size(), first, doubt);
   double cost = costOf(edges, poses, doubt), damping = 1e-6;
   for (int i = 0; i < kMostSteps && damping < 1e12; ++i) {
-    Equations equations(edges, poses, first, doubt);
+    equations.update(edges, poses);
     for (int k = 0; k < equations.H.rows(); ++k) equations.H.coeffRef(k, k) *= 1 + damping;
     if (i == 0) solver.analyzePattern(equations.H);
     solver.factorize(equations.H);

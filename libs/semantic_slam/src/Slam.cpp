@@ -11,19 +11,17 @@ namespace {
 
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
-std::string meters(double way) {
-  const std::string tenths = std::to_string(std::lround(10 * way));
-  return (tenths.size() > 1 ? tenths.substr(0, tenths.size() - 1) : "0") + "." + tenths.back() +
-         " m";
+std::string tenths(double x) {
+  const long n = std::lround(10 * x);
+  return std::to_string(n / 10) + "." + std::to_string(n % 10);
 }
 
 /** Scans turn by less if their beams are said to be nearer to each other than they are. */
 std::string asOfBeams(double turnError) {
   constexpr double kLeastError = 0.4;  // no wheels are that wrong
   if (turnError < kLeastError) return {};
-  const std::string tenths = std::to_string(std::lround(10 * (1 + turnError)));
-  return ", as if the scanner's aperture were " + tenths.substr(0, tenths.size() - 1) + "." +
-         tenths.back() + " times what the rawlog says";
+  return ", as if the scanner's aperture were " + tenths(1 + turnError) +
+         " times what the rawlog says";
 }
 
 }  // namespace
@@ -53,15 +51,15 @@ std::vector<std::string> SlamReport::warnings() const {
     warnings.push_back("at " + std::to_string(joined) +
                        " places scans fit nothing that was seen before, and the robot was found "
                        "again up to " +
-                       meters(carried) +
-                       " from where odometry has it: it was "
+                       tenths(carried) +
+                       " m from where odometry has it: it was "
                        "carried, a part of the log is missing, or odometry erred");
   if (undone > loops)
     warnings.push_back("more places seem to be seen again than fit together (" +
                        std::to_string(undone) + " loops were undone): the map may be torn");
   if (standing > kMostStanding)
-    warnings.push_back("odometry stood still while the robot drove " + meters(standing) +
-                       " by its scans: the map may be wrong there");
+    warnings.push_back("odometry stood still while the robot drove " + tenths(standing) +
+                       " m by its scans: the map may be wrong there");
   if (hasOdometry && way > kLeastWay && std::abs(wayError) > kMostWrong)
     warnings.push_back("odometry says " + percent(std::abs(wayError)) +
                        (wayError > 0 ? " more" : " less") + " way than the scans do");

@@ -46,8 +46,8 @@ class SlamEngine {
   bool isSmall(const Pose& T_step) const;
   /** From the last scan to this one, if the robot goes on as before. */
   Pose goingOn() const;
-  Slam::Added beginFirst(Seen seen);
-  void begin(Seen seen, const Pose& T_map_robot, const Pose& T_last_keyframe);
+  Slam::Added beginFirst(const Seen& seen);
+  void begin(const Seen& seen, const Pose& T_map_robot, const Pose& T_last_keyframe);
   bool beginsKeyframe(const Pose& T_last_robot) const;
   void noteFound(const Pose& T_step, const Pose& T_last_robot, const Registration& registered);
   void noteLost(const Pose& T_step);

@@ -67,7 +67,7 @@ Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_senso
   Seen now{moved(thinned(cloud, m_scale.cube, kFarthest), T_robot_sensor), T_odometry};
   if (!m_options.useClasses)
     std::fill(now.cloud.classes.begin(), now.cloud.classes.end(), semantic_types::kNoClass);
-  if (m_keyframes.empty()) return beginFirst(std::move(now));
+  if (m_keyframes.empty()) return beginFirst(now);
 
   const auto registered = track(now, T_step);
   const Pose T_last_robot = registered ? registered->T_submap_scan : T_guess;
@@ -83,7 +83,7 @@ Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_senso
   m_edges.push_back(
       {last, last + 1, T_last_robot, registered ? registered->information : guessed(T_last_robot)});
   if (isTorn()) m_local.clear();
-  begin(std::move(now), rigid(m_poses.back() * T_last_robot), T_last_robot);
+  begin(now, rigid(m_poses.back() * T_last_robot), T_last_robot);
   const bool mended = mendPieces(), followed = followReference();
   return {last + 1, Pose::Identity(), true, closeLoops() || followed || mended};
 }
@@ -162,22 +162,22 @@ Matrix6 SlamEngine::guessed(const Pose& T_step) const {
   return m_hasOdometry ? m_noise.information(T_step) : MotionNoise(true).information(T_step);
 }
 
-Slam::Added SlamEngine::beginFirst(Seen seen) {
+Slam::Added SlamEngine::beginFirst(const Seen& seen) {
   const auto found = findInReference(seen, seen.T_odometry_robot);
   m_report.referenced += found.has_value();
   const Pose T_map_robot = found ? found->T_submap_scan : seen.T_odometry_robot;
   m_T_odometry_last = seen.T_odometry_robot;
-  begin(std::move(seen), T_map_robot, Pose::Identity());
+  begin(seen, T_map_robot, Pose::Identity());
   if (found) m_edges.push_back(lookOf(0, *found));
   return {0, Pose::Identity(), true, false};
 }
 
-void SlamEngine::begin(Seen seen, const Pose& T_map_robot, const Pose& T_last_keyframe) {
+void SlamEngine::begin(const Seen& seen, const Pose& T_map_robot, const Pose& T_last_keyframe) {
   m_T_keyframe_last = m_T_keyframe_found = Pose::Identity();
   if (isTorn()) m_lostInRow = 0;
   m_poses.push_back(levelled(T_map_robot, seen.T_odometry_robot));
   m_local.add(seen.cloud, T_last_keyframe, m_scale, m_options.useClasses);
-  m_keyframes.push_back({std::move(seen), m_report.way});
+  m_keyframes.push_back({seen, m_report.way});  // a copy has no room to grow
 }
 
 std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_step) {
