@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace labeled_cloud {
@@ -19,133 +20,108 @@ using mrpt::obs::CObservation3DRangeScan;
 
 namespace {
 
+using ImagePoints = std::vector<cv::Point2d>;
+
 /** Pixels of a camera and where they look: x right, y down at depth 1 (the optical frame). Lenses
  * are as OpenCV and MRPT describe them: plumb_bob with radial coefficients k1 to k6 and tangential
  * ones p1 and p2, or kannala_brandt with k1 to k4. */
 class Lens {
  public:
   /** \throw std::invalid_argument the camera is not calibrated. */
-  explicit Lens(const mrpt::img::TCamera& camera);
+  explicit Lens(const mrpt::img::TCamera& camera) : m_camera(camera) {
+    if (!(camera.fx() > 0 && camera.fy() > 0))
+      throw std::invalid_argument(
+          "the camera is not calibrated: fx = " + std::to_string(camera.fx()) +
+          ", fy = " + std::to_string(camera.fy()));
+  }
 
-  std::vector<cv::Point2d> undistort(const std::vector<cv::Point2d>& pixels) const;
+  ImagePoints undistort(ImagePoints pixels) const {
+    const double perX = 1 / m_camera.fx(), perY = 1 / m_camera.fy();
+    for (cv::Point2d& p : pixels)
+      p = straightened({(p.x - m_camera.cx()) * perX, (p.y - m_camera.cy()) * perY});
+    return pixels;
+  }
   /** For rays that the camera sees: models of lenses say nothing about others. */
-  std::vector<cv::Point2d> distort(const std::vector<cv::Point2d>& rays) const;
+  cv::Point2d pixelOf(const cv::Point2d& ray) const {
+    const cv::Point2d p = bent(ray);
+    return {m_camera.fx() * p.x + m_camera.cx(), m_camera.fy() * p.y + m_camera.cy()};
+  }
 
   /** A rectangle that holds all rays of the image's pixels. */
-  cv::Rect2d field() const;
+  cv::Rect2d field() const {
+    ImagePoints border;
+    const double right = m_camera.ncols - 0.5, bottom = m_camera.nrows - 0.5;
+    for (double u = -0.5; u <= right; u += 1) border.insert(border.end(), {{u, -0.5}, {u, bottom}});
+    for (double v = -0.5; v <= bottom; v += 1) border.insert(border.end(), {{-0.5, v}, {right, v}});
+    cv::Point2d low(HUGE_VAL, HUGE_VAL), high = -low;
+    for (const cv::Point2d& ray : undistort(std::move(border))) {
+      low = {std::min(low.x, ray.x), std::min(low.y, ray.y)};
+      high = {std::max(high.x, ray.x), std::max(high.y, ray.y)};
+    }
+    return {low, high};
+  }
 
  private:
   /** Between a ray without a lens and behind it, both at depth 1. */
-  cv::Point2d bent(const cv::Point2d& ray) const;
-  cv::Point2d straightened(const cv::Point2d& ray) const;
-  double radial(double r2) const;
-  cv::Point2d tangential(const cv::Point2d& ray) const;
+  cv::Point2d bent(const cv::Point2d& ray) const {
+    if (m_camera.distortion == DistortionModel::plumb_bob)
+      return ray * radial(ray.dot(ray)) + tangential(ray);
+    const double r = std::hypot(ray.x, ray.y);
+    if (m_camera.distortion != DistortionModel::kannala_brandt || r == 0) return ray;
+    return ray * (fisheyeAngle(std::atan(r)) / r);
+  }
+  /** By fixed-point iteration, and for a fisheye by bisection of the angle, which grows with that
+   * behind the lens. */
+  cv::Point2d straightened(const cv::Point2d& ray) const {
+    if (m_camera.distortion == DistortionModel::plumb_bob) {
+      constexpr int kMostSteps = 50;
+      constexpr double kExact = 1e-9;  // of a pixel
+      cv::Point2d straight = ray;
+      for (int i = 0; i < kMostSteps; ++i) {
+        straight = (ray - tangential(straight)) / radial(straight.dot(straight));
+        const cv::Point2d left = bent(straight) - ray;
+        if (std::hypot(left.x * m_camera.fx(), left.y * m_camera.fy()) < kExact) break;
+      }
+      return straight;
+    }
+    const double r = std::hypot(ray.x, ray.y);
+    if (m_camera.distortion != DistortionModel::kannala_brandt || r == 0) return ray;
+    double low = 0, high = M_PI / 2;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = (low + high) / 2;
+      (fisheyeAngle(middle) < r ? low : high) = middle;
+    }
+    return ray * (std::tan(low) / r);
+  }
+  double radial(double r2) const {
+    const auto& c = m_camera;
+    return (1 + ((c.k3() * r2 + c.k2()) * r2 + c.k1()) * r2) /
+           (1 + ((c.k6() * r2 + c.k5()) * r2 + c.k4()) * r2);
+  }
+  cv::Point2d tangential(const cv::Point2d& ray) const {
+    const double r2 = ray.dot(ray), xy2 = 2 * ray.x * ray.y;
+    return {m_camera.p1() * xy2 + m_camera.p2() * (r2 + 2 * ray.x * ray.x),
+            m_camera.p1() * (r2 + 2 * ray.y * ray.y) + m_camera.p2() * xy2};
+  }
   /** The angle behind a fisheye lens of a ray that comes in at an angle theta, radians. */
-  double fisheyeAngle(double theta) const;
+  double fisheyeAngle(double theta) const {
+    const double t2 = theta * theta;
+    const auto& c = m_camera;
+    return theta * (1 + (((c.k4() * t2 + c.k3()) * t2 + c.k2()) * t2 + c.k1()) * t2);
+  }
 
   mrpt::img::TCamera m_camera;
 };
 
-using ImagePoints = std::vector<cv::Point2d>;
-
-Lens::Lens(const mrpt::img::TCamera& camera) : m_camera(camera) {
-  if (!(camera.fx() > 0 && camera.fy() > 0))
-    throw std::invalid_argument(
-        "the camera is not calibrated: fx = " + std::to_string(camera.fx()) +
-        ", fy = " + std::to_string(camera.fy()));
-}
-
-double Lens::radial(double r2) const {
-  const auto& c = m_camera;
-  return (1 + ((c.k3() * r2 + c.k2()) * r2 + c.k1()) * r2) /
-         (1 + ((c.k6() * r2 + c.k5()) * r2 + c.k4()) * r2);
-}
-
-cv::Point2d Lens::tangential(const cv::Point2d& ray) const {
-  const double r2 = ray.dot(ray), xy2 = 2 * ray.x * ray.y;
-  return {m_camera.p1() * xy2 + m_camera.p2() * (r2 + 2 * ray.x * ray.x),
-          m_camera.p1() * (r2 + 2 * ray.y * ray.y) + m_camera.p2() * xy2};
-}
-
-double Lens::fisheyeAngle(double theta) const {
-  const double t2 = theta * theta;
-  const auto& c = m_camera;
-  return theta * (1 + (((c.k4() * t2 + c.k3()) * t2 + c.k2()) * t2 + c.k1()) * t2);
-}
-
-cv::Point2d Lens::bent(const cv::Point2d& ray) const {
-  if (m_camera.distortion == DistortionModel::plumb_bob)
-    return ray * radial(ray.dot(ray)) + tangential(ray);
-  const double r = std::hypot(ray.x, ray.y);
-  if (m_camera.distortion != DistortionModel::kannala_brandt || r == 0) return ray;
-  return ray * (fisheyeAngle(std::atan(r)) / r);
-}
-
-/** By fixed-point iteration, and for a fisheye by bisection of the angle, which grows with that
- * behind the lens. */
-cv::Point2d Lens::straightened(const cv::Point2d& ray) const {
-  if (m_camera.distortion == DistortionModel::plumb_bob) {
-    constexpr int kMostSteps = 50;
-    constexpr double kExact = 1e-9;  // of a pixel
-    cv::Point2d straight = ray;
-    for (int i = 0; i < kMostSteps; ++i) {
-      straight = (ray - tangential(straight)) / radial(straight.dot(straight));
-      const cv::Point2d left = bent(straight) - ray;
-      if (std::hypot(left.x * m_camera.fx(), left.y * m_camera.fy()) < kExact) break;
-    }
-    return straight;
-  }
-  const double r = std::hypot(ray.x, ray.y);
-  if (m_camera.distortion != DistortionModel::kannala_brandt || r == 0) return ray;
-  double low = 0, high = M_PI / 2;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = (low + high) / 2;
-    (fisheyeAngle(middle) < r ? low : high) = middle;
-  }
-  return ray * (std::tan(low) / r);
-}
-
-ImagePoints Lens::undistort(const ImagePoints& pixels) const {
-  const double perX = 1 / m_camera.fx(), perY = 1 / m_camera.fy();
-  ImagePoints rays;
-  rays.reserve(pixels.size());
-  for (const cv::Point2d& p : pixels)
-    rays.push_back(straightened({(p.x - m_camera.cx()) * perX, (p.y - m_camera.cy()) * perY}));
-  return rays;
-}
-
-ImagePoints Lens::distort(const ImagePoints& rays) const {
-  ImagePoints pixels;
-  pixels.reserve(rays.size());
-  for (const cv::Point2d& ray : rays) {
-    const cv::Point2d p = bent(ray);
-    pixels.emplace_back(m_camera.fx() * p.x + m_camera.cx(), m_camera.fy() * p.y + m_camera.cy());
-  }
-  return pixels;
-}
-
-cv::Rect2d Lens::field() const {
-  ImagePoints border;
-  const double right = m_camera.ncols - 0.5, bottom = m_camera.nrows - 0.5;
-  for (double u = -0.5; u <= right; u += 1) border.insert(border.end(), {{u, -0.5}, {u, bottom}});
-  for (double v = -0.5; v <= bottom; v += 1) border.insert(border.end(), {{-0.5, v}, {right, v}});
-  cv::Point2d low(HUGE_VAL, HUGE_VAL), high = -low;
-  for (const cv::Point2d& ray : undistort(border)) {
-    low = {std::min(low.x, ray.x), std::min(low.y, ray.y)};
-    high = {std::max(high.x, ray.x), std::max(high.y, ray.y)};
-  }
-  return {low, high};
-}
-
 }  // namespace
 
 PixelRays::PixelRays(const mrpt::img::TCamera& camera) : m_camera(camera) {
-  std::vector<cv::Point2d> pixels;
+  ImagePoints pixels;
   pixels.reserve(std::size_t(camera.nrows) * camera.ncols);
   for (unsigned row = 0; row < camera.nrows; ++row)
     for (unsigned col = 0; col < camera.ncols; ++col) pixels.emplace_back(col, row);
-  m_rays.reserve(pixels.size());
-  for (const cv::Point2d& ray : Lens(camera).undistort(pixels))
+  m_rays.reserve(pixels.capacity());
+  for (const cv::Point2d& ray : Lens(camera).undistort(std::move(pixels)))
     m_rays.emplace_back(static_cast<float>(-ray.x), static_cast<float>(-ray.y));
 }
 
@@ -283,23 +259,18 @@ std::vector<Candidate> inImage(const std::vector<Eigen::Vector3f>& points,
   const Lens lens(camera);
   const cv::Rect2d field = lens.field();
   const Eigen::Isometry3f T = T_camera_points.cast<float>();
-  std::vector<cv::Point2d> rays;
+  const cv::Rect2f image(-0.5f, -0.5f, float(camera.ncols), float(camera.nrows));
   std::vector<Candidate> candidates;
-  rays.reserve(points.size()), candidates.reserve(points.size());
+  candidates.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f p = T * points[i];
     if (!(p.z() > kNearest)) continue;
     const cv::Point2d ray(p.x() / p.z(), p.y() / p.z());
     if (!field.contains(ray)) continue;
-    rays.push_back(ray);
-    candidates.push_back({static_cast<std::uint32_t>(i), {}, 1 / p.z()});
+    const cv::Point2f pixel = lens.pixelOf(ray);
+    if (image.contains(pixel))
+      candidates.push_back({static_cast<std::uint32_t>(i), pixel, 1 / p.z()});
   }
-  const auto pixels = lens.distort(rays);
-  for (std::size_t i = 0; i < pixels.size(); ++i) candidates[i].pixel = pixels[i];
-  const cv::Rect2f image(-0.5f, -0.5f, float(camera.ncols), float(camera.nrows));
-  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
-                                  [&](const Candidate& c) { return !image.contains(c.pixel); }),
-                   candidates.end());
   return candidates;
 }
 

@@ -17,8 +17,6 @@ using mrpt::obs::CObservation;
 using mrpt::obs::CObservation2DRangeScan;
 using mrpt::obs::CObservationPointCloud;
 using mrpt::obs::CObservationVelodyneScan;
-using semantic_types::ClassId;
-using semantic_types::ClassTable;
 using semantic_types::Color;
 
 namespace {
@@ -66,17 +64,33 @@ Points pointsOf(const CObservation2DRangeScan& scan) {
   return points;
 }
 
-/** An observation that says where something is, but not what. */
+std::vector<Color> colorsOf(const CObservation&) { return {}; }
+
+std::vector<Color> colorsOf(const CObservationPointCloud& observation) {
+  std::vector<Color> colors;
+  const auto* cloud =
+      dynamic_cast<const mrpt::maps::CColouredPointsMap*>(observation.pointcloud.get());
+  const auto byte = [](float share) { return static_cast<std::uint8_t>(std::lround(255 * share)); };
+  for (std::size_t i = 0; cloud && i < cloud->size(); ++i) {
+    float r = 0, g = 0, b = 0;
+    cloud->getPointColor(i, r, g, b);
+    colors.push_back({byte(r), byte(g), byte(b)});
+  }
+  return colors;
+}
+
+/** An observation that says where something is, and perhaps in which color. */
 template <typename Observation>
 NamedCloud cloudOf(const Observation& observation) {
   NamedCloud named;
   named.cloud.points = pointsOf(observation);
+  named.colors = colorsOf(observation);
   return named;
 }
 
 NamedCloud cloudOf(const CObservationLabeledCloud& observation) {
   observation.validate();
-  return {observation.cloud, observation.classNames};
+  return {observation.cloud, observation.classNames, {}};
 }
 
 template <typename Observation>
@@ -120,26 +134,6 @@ std::shared_ptr<const PointSource> pointSourceOf(const CObservation& observation
   for (auto source = sources.rbegin(); source != sources.rend(); ++source)
     if ((*source)->accepts(observation)) return *source;
   return nullptr;
-}
-
-std::vector<ClassId> classesByColor(const CObservation& observation, const ClassTable& table) {
-  const auto* of = dynamic_cast<const CObservationPointCloud*>(&observation);
-  const auto* cloud =
-      of ? dynamic_cast<const mrpt::maps::CColouredPointsMap*>(of->pointcloud.get()) : nullptr;
-  if (!cloud) return {};
-  std::vector<ClassId> classes;
-  bool anyClass = false;
-  const auto byte = [](float share) { return static_cast<std::uint8_t>(std::lround(255 * share)); };
-  for (std::size_t i = 0; i < cloud->size(); ++i) {
-    float r = 0, g = 0, b = 0;
-    cloud->getPointColor(i, r, g, b);
-    const Color color{byte(r), byte(g), byte(b)};
-    const auto id = table.find(color);
-    if (!id && !(color == Color{0, 0, 0})) return {};
-    classes.push_back(id.value_or(semantic_types::kNoClass));
-    anyClass = anyClass || id;
-  }
-  return anyClass ? classes : std::vector<ClassId>();
 }
 
 }  // namespace labeled_cloud

@@ -122,10 +122,7 @@ std::optional<LabeledScan> ScanConverter::convert(const CObservation& observatio
   scan.timestamp = observation.timestamp;
   scan.sensorLabel = observation.sensorLabel;
   if (source) {
-    NamedCloud named = source->read(observation);
-    if (named.cloud.classes.empty() && named.cloud.probabilities.empty())
-      named.cloud.classes = classesByColor(observation, m_table);
-    addNamedCloud(std::move(named), scan);
+    addNamedCloud(source->read(observation), scan);
   } else {
     addRangeScan(*range, scan);
   }
@@ -217,9 +214,25 @@ void appendTranslated(const float* from, std::size_t classes, ClassTranslation& 
   }
 }
 
+/** None: there are no colors, or they are those of a photograph. */
+std::vector<ClassId> classesOf(const std::vector<semantic_types::Color>& colors,
+                               const ClassTable& table) {
+  std::vector<ClassId> classes;
+  bool anyClass = false;
+  for (const semantic_types::Color& color : colors) {
+    const auto id = table.find(color);
+    if (!id && !(color == semantic_types::Color{0, 0, 0})) return {};
+    classes.push_back(id.value_or(kNoClass));
+    anyClass = anyClass || id;
+  }
+  return anyClass ? classes : std::vector<ClassId>();
+}
+
 }  // namespace
 
 void ScanConverter::addNamedCloud(NamedCloud named, LabeledScan& scan) const {
+  if (named.cloud.classes.empty() && named.cloud.probabilities.empty())
+    named.cloud.classes = classesOf(named.colors, m_table);
   const auto& from = named.cloud;
   auto& to = scan.cloud;
   ClassTranslation translate(m_table, named.classNames);

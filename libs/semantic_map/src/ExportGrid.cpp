@@ -28,31 +28,6 @@ using semantic_types::ClassId;
 
 namespace {
 
-/** The vertical columns of voxels over (or under) the leaves of a map: the pixels of what is made
- * of it from above. Pixel (0, 0) is at the least x and the largest y. */
-class ExportColumns {
- public:
-  /** Columns of all leaves.
-   * \throw std::runtime_error there are none, or more than a grid can hold. */
-  explicit ExportColumns(const SemanticOcTree& tree);
-
-  cv::Size size() const { return m_keys.size(); }
-  /** Edge of a column, m. */
-  double resolution() const { return m_resolution; }
-  /** Outer corner of pixel (0, 0), m. */
-  cv::Point2d upperLeft() const;
-  /** Keys of a pixel's column. */
-  semantic_octree::Column columnAt(int row, int col) const {
-    return {m_keys.x + col, m_keys.br().y - 1 - row};
-  }
-  /** The columns that a leaf covers, at least in part in the picture. */
-  cv::Rect under(const SemanticOcTree::leaf_iterator& leaf) const;
-
- private:
-  double m_resolution;
-  cv::Rect m_keys;  ///< x and y keys of the columns
-};
-
 constexpr double kMostColumns = 2e8;
 
 /** x and y keys of the voxels in a leaf. */
@@ -62,26 +37,45 @@ cv::Rect keysOf(const SemanticOcTree::leaf_iterator& leaf) {
   return {lowest[0], lowest[1], edge, edge};
 }
 
-ExportColumns::ExportColumns(const SemanticOcTree& tree) : m_resolution(tree.getResolution()) {
-  for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf)
-    m_keys |= keysOf(leaf);
-  if (m_keys.empty()) throw std::runtime_error("the map is empty");
-  if (double(m_keys.width) * m_keys.height > kMostColumns)
-    throw std::runtime_error("the map is too wide for a grid, " + std::to_string(m_keys.width) +
-                             " x " + std::to_string(m_keys.height) +
-                             " voxels: crop it, or make it coarser");
-}
+/** The vertical columns of voxels over (or under) the leaves of a map: the pixels of what is made
+ * of it from above. Pixel (0, 0) is at the least x and the largest y. */
+class ExportColumns {
+ public:
+  /** Columns of all leaves.
+   * \throw std::runtime_error there are none, or more than a grid can hold. */
+  explicit ExportColumns(const SemanticOcTree& tree) : m_resolution(tree.getResolution()) {
+    for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf)
+      m_keys |= keysOf(leaf);
+    if (m_keys.empty()) throw std::runtime_error("the map is empty");
+    if (double(m_keys.width) * m_keys.height > kMostColumns)
+      throw std::runtime_error("the map is too wide for a grid, " + std::to_string(m_keys.width) +
+                               " x " + std::to_string(m_keys.height) +
+                               " voxels: crop it, or make it coarser");
+  }
 
-cv::Point2d ExportColumns::upperLeft() const {
-  return {semantic_octree::lowerBorderOf(m_keys.x, m_resolution),
-          semantic_octree::lowerBorderOf(m_keys.br().y, m_resolution)};
-}
+  cv::Size size() const { return m_keys.size(); }
+  /** Edge of a column, m. */
+  double resolution() const { return m_resolution; }
+  /** Outer corner of pixel (0, 0), m. */
+  cv::Point2d upperLeft() const {
+    return {semantic_octree::lowerBorderOf(m_keys.x, m_resolution),
+            semantic_octree::lowerBorderOf(m_keys.br().y, m_resolution)};
+  }
+  /** Keys of a pixel's column. */
+  semantic_octree::Column columnAt(int row, int col) const {
+    return {m_keys.x + col, m_keys.br().y - 1 - row};
+  }
+  /** The columns that a leaf covers, at least in part in the picture. */
+  cv::Rect under(const SemanticOcTree::leaf_iterator& leaf) const {
+    const cv::Rect keys = keysOf(leaf);
+    const cv::Rect pixels(keys.x - m_keys.x, m_keys.br().y - keys.br().y, keys.width, keys.height);
+    return pixels & cv::Rect({0, 0}, size());
+  }
 
-cv::Rect ExportColumns::under(const SemanticOcTree::leaf_iterator& leaf) const {
-  const cv::Rect keys = keysOf(leaf);
-  const cv::Rect pixels(keys.x - m_keys.x, m_keys.br().y - keys.br().y, keys.width, keys.height);
-  return pixels & cv::Rect({0, 0}, size());
-}
+ private:
+  double m_resolution;
+  cv::Rect m_keys;  ///< x and y keys of the columns
+};
 
 /** Whether a leaf is occupied and of one of these classes (any, if there are none). */
 bool isOccupiedBy(const std::vector<ClassId>& classes, const SemanticOcTree& tree,

@@ -27,89 +27,57 @@ namespace {
  * sensor model of the map's filter; see TLikelihoodOptions for the equations. */
 class PointLikelihood {
  public:
-  explicit PointLikelihood(const semantic_octree::SemanticOcTree& tree);
+  explicit PointLikelihood(const SemanticOcTree& tree)
+      : m_tree(tree),
+        m_hit(tree.filterParameters().hitProbability),
+        m_falseAlarm(tree.filterParameters().falseAlarmProbability),
+        m_accuracy(tree.numClasses() == 1 ? 1 : tree.filterParameters().accuracy) {}
 
   /** \param point map frame, m */
-  double operator()(const Eigen::Vector3d& point) const;
-  double operator()(const Eigen::Vector3d& point, semantic_types::ClassId label) const;
+  double operator()(const Eigen::Vector3d& point) const { return unlabeled(find(point)); }
+  double operator()(const Eigen::Vector3d& point, ClassId label) const {
+    const auto node = find(point);
+    return label == kNoClass ? unlabeled(node) : labeled(node, label);
+  }
   /** \param label K probabilities; all zero: no label */
-  double operator()(const Eigen::Vector3d& point, const float* label) const;
+  double operator()(const Eigen::Vector3d& point, const float* label) const {
+    const auto node = find(point);
+    double sum = 0, total = 0;
+    for (int k = 1; k <= m_tree.numClasses(); ++k) {
+      if (label[k - 1] <= 0) continue;
+      total += label[k - 1];
+      sum += label[k - 1] * labeled(node, static_cast<ClassId>(k));
+    }
+    return total > 0 ? sum / total : unlabeled(node);
+  }
   /** Likelihood that the beam passes. */
-  double passing(const Eigen::Vector3d& point) const;
+  double passing(const Eigen::Vector3d& point) const { return 1 - (*this)(point); }
 
  private:
-  /** Probabilities of free space and of one class. */
-  struct Cell {
-    double free, ofClass;
-  };
-  Cell cell(const semantic_octree::SemanticOcTreeNode& node, semantic_types::ClassId id) const;
-  semantic_octree::SemanticOcTreeNode find(const Eigen::Vector3d& point) const;
-  double labeled(const Cell& cell) const;
-  double occupancy(const Eigen::Vector3d& point) const;
-  double unlabeled(double occupancy) const {
-    return m_falseAlarm + occupancy * (m_hit - m_falseAlarm);
+  SemanticOcTree::Node find(const Eigen::Vector3d& point) const {
+    octomap::OcTreeKey key;
+    if (!m_tree.coordToKeyChecked(point.x(), point.y(), point.z(), key)) return {};
+    return m_tree.search(key);
+  }
+  double unlabeled(const SemanticOcTree::Node& node) const {
+    return m_falseAlarm + (node ? node.getOccupancy() : 0.5) * (m_hit - m_falseAlarm);
+  }
+  double labeled(const SemanticOcTree::Node& node, ClassId id) const {
+    const int K = m_tree.numClasses();
+    double free = 0.5, ofClass = 0.5 / K;
+    if (node) {
+      const auto belief = m_tree.belief(node);
+      const auto p = belief.probabilities(K);
+      const int named = belief.indexOf(id);
+      free = p.free, ofClass = named < 0 ? p.rest : p.named[named];
+    }
+    const double wrong = K == 1 ? 0 : (1 - m_accuracy) / (K - 1);
+    return free * m_falseAlarm + m_hit * K * (m_accuracy * ofClass + wrong * (1 - free - ofClass));
   }
 
-  const semantic_octree::SemanticOcTree& m_tree;
+  const SemanticOcTree& m_tree;
   double m_hit, m_falseAlarm, m_accuracy;
 };
-
-PointLikelihood::PointLikelihood(const SemanticOcTree& tree)
-    : m_tree(tree),
-      m_hit(tree.filterParameters().hitProbability),
-      m_falseAlarm(tree.filterParameters().falseAlarmProbability),
-      m_accuracy(tree.numClasses() == 1 ? 1 : tree.filterParameters().accuracy) {}
-
-semantic_octree::SemanticOcTreeNode PointLikelihood::find(const Eigen::Vector3d& point) const {
-  octomap::OcTreeKey key;
-  if (!m_tree.coordToKeyChecked(point.x(), point.y(), point.z(), key)) return {};
-  return m_tree.search(key);
-}
-
-double PointLikelihood::occupancy(const Eigen::Vector3d& point) const {
-  const auto node = find(point);
-  return node ? node->getOccupancy() : 0.5;
-}
-
-PointLikelihood::Cell PointLikelihood::cell(const SemanticOcTree::Node& node, ClassId id) const {
-  const int K = m_tree.numClasses();
-  if (!node) return {0.5, 0.5 / K};
-  const auto belief = m_tree.belief(node);
-  const auto p = belief.probabilities(K);
-  const int named = belief.indexOf(id);
-  return {p.free, named < 0 ? p.rest : p.named[named]};
-}
-
-double PointLikelihood::labeled(const Cell& cell) const {
-  const int K = m_tree.numClasses();
-  const double ofOthers = 1 - cell.free - cell.ofClass;
-  const double wrong = K == 1 ? 0 : (1 - m_accuracy) / (K - 1);
-  return cell.free * m_falseAlarm + m_hit * K * (m_accuracy * cell.ofClass + wrong * ofOthers);
-}
-
-double PointLikelihood::operator()(const Eigen::Vector3d& point) const {
-  return unlabeled(occupancy(point));
-}
-
-double PointLikelihood::passing(const Eigen::Vector3d& point) const {
-  return 1 - unlabeled(occupancy(point));
-}
-
-double PointLikelihood::operator()(const Eigen::Vector3d& point, ClassId label) const {
-  if (label == kNoClass) return (*this)(point);
-  return labeled(cell(find(point), label));
-}
-
-double PointLikelihood::operator()(const Eigen::Vector3d& point, const float* label) const {
-  const auto node = find(point);
-  double sum = 0, total = 0;
-  for (int k = 1; k <= m_tree.numClasses(); ++k) {
-    if (label[k - 1] <= 0) continue;
-    total += label[k - 1];
-    sum += label[k - 1] * labeled(cell(node, static_cast<ClassId>(k)));
-  }
-  return total > 0 ? sum / total : unlabeled(occupancy(point));
-}
 
 /** The log-likelihood of single points of a scan at a pose. */
 class BeamLikelihood {

@@ -38,7 +38,14 @@ class NearestOccupied {
       : m_tree(tree), m_weights(1, 1, distance == Distance::InSpace ? 1 : 0) {}
 
   /** Nothing if all are at this distance (m) or farther. */
-  std::optional<Voxel> operator()(const Eigen::Vector3d& point, double within) const;
+  std::optional<Voxel> operator()(const Eigen::Vector3d& point, double within) const {
+    std::optional<Voxel> best;
+    if (m_tree.empty()) return best;
+    const double size = m_tree.getNodeSize(0);
+    double bound = within * within;
+    descend({m_tree.root(), Eigen::Vector3d::Constant(-size / 2), size}, point, bound, best);
+    return best;
+  }
 
  private:
   /** A node of the tree and its cube. */
@@ -47,60 +54,45 @@ class NearestOccupied {
     Eigen::Vector3d low;  ///< corner, m
     double size;          ///< edge, m
   };
-  Voxel nearestIn(const Cube& cube, const Eigen::Vector3d& point) const;
+  Voxel nearestIn(const Cube& cube, const Eigen::Vector3d& point) const {
+    const double voxel = m_tree.getResolution();
+    const double last = std::round(cube.size / voxel) - 1;
+    const auto index = [&](double offset) {
+      return std::clamp(std::floor(offset / voxel), 0.0, last) + 0.5;
+    };
+    const Eigen::Vector3d center = cube.low + voxel * (point - cube.low).unaryExpr(index);
+    return {center, (center - point).cwiseAbs2().dot(m_weights)};
+  }
   void descend(const Cube& cube, const Eigen::Vector3d& point, double& bound,
-               std::optional<Voxel>& best) const;
+               std::optional<Voxel>& best) const {
+    const Voxel voxel = nearestIn(cube, point);
+    if (!m_tree.isNodeOccupied(cube.node) || !(voxel.squaredDistance < bound)) return;
+    if (cube.node.isLeaf()) {
+      best = voxel;
+      bound = voxel.squaredDistance;
+      return;
+    }
+    using Child = std::pair<double, Cube>;
+    std::array<Child, 8> children;
+    const auto nearer = [](const Child& a, const Child& b) { return a.first < b.first; };
+    auto end = children.begin();
+    for (int i = 0; i < 8; ++i) {
+      const auto node = cube.node.child(i);
+      if (!node) continue;
+      const double half = cube.size / 2;
+      const Cube child{node, cube.low + half * Eigen::Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1),
+                       half};
+      *end = {nearestIn(child, point).squaredDistance, child};
+      std::rotate(std::upper_bound(children.begin(), end, *end, nearer), end, end + 1);
+      ++end;
+    }
+    for (auto child = children.begin(); child != end; ++child)
+      descend(child->second, point, bound, best);
+  }
 
   const SemanticOcTree& m_tree;
   Eigen::Vector3d m_weights;
 };
-
-std::optional<NearestOccupied::Voxel> NearestOccupied::operator()(const Eigen::Vector3d& point,
-                                                                  double within) const {
-  std::optional<Voxel> best;
-  if (m_tree.empty()) return best;
-  const double size = m_tree.getNodeSize(0);
-  double bound = within * within;
-  descend({m_tree.root(), Eigen::Vector3d::Constant(-size / 2), size}, point, bound, best);
-  return best;
-}
-
-NearestOccupied::Voxel NearestOccupied::nearestIn(const Cube& cube,
-                                                  const Eigen::Vector3d& point) const {
-  const double voxel = m_tree.getResolution();
-  const double last = std::round(cube.size / voxel) - 1;
-  const auto index = [&](double offset) {
-    return std::clamp(std::floor(offset / voxel), 0.0, last) + 0.5;
-  };
-  const Eigen::Vector3d center = cube.low + voxel * (point - cube.low).unaryExpr(index);
-  return {center, (center - point).cwiseAbs2().dot(m_weights)};
-}
-
-void NearestOccupied::descend(const Cube& cube, const Eigen::Vector3d& point, double& bound,
-                              std::optional<Voxel>& best) const {
-  const Voxel voxel = nearestIn(cube, point);
-  if (!m_tree.isNodeOccupied(cube.node) || !(voxel.squaredDistance < bound)) return;
-  if (cube.node.isLeaf()) {
-    best = voxel;
-    bound = voxel.squaredDistance;
-    return;
-  }
-  using Child = std::pair<double, Cube>;
-  std::array<Child, 8> children;
-  const auto nearer = [](const Child& a, const Child& b) { return a.first < b.first; };
-  auto end = children.begin();
-  for (int i = 0; i < 8; ++i) {
-    const auto node = cube.node.child(i);
-    if (!node) continue;
-    const double half = cube.size / 2;
-    const Cube child{node, cube.low + half * Eigen::Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), half};
-    *end = {nearestIn(child, point).squaredDistance, child};
-    std::rotate(std::upper_bound(children.begin(), end, *end, nearer), end, end + 1);
-    ++end;
-  }
-  for (auto child = children.begin(); child != end; ++child)
-    descend(child->second, point, bound, best);
-}
 
 /** Adds the center of each voxel in a leaf. */
 void addCenters(const SemanticOcTree::leaf_iterator& leaf, double voxel, CPointsMap& points) {
@@ -138,22 +130,20 @@ class Matcher {
       throw std::invalid_argument("matching: onlyUniqueRobust needs onlyKeepTheClosest");
   }
 
-  void match(const CPointsMap& points, const mrpt::poses::CPose3D& T_this_other) {
+  void match(const CPointsMap& points, const mrpt::poses::CPose3D& T_this_other,
+             TMatchingPairList& pairs, TMatchingExtraResults& extra) {
     for (std::size_t i = m_params.offset_other_map_points; i < points.size();
          i += m_params.decimation_other_map_points) {
       TPoint3D local;
       points.getPoint(i, local.x, local.y, local.z);
       add(i, local, T_this_other.composePoint(local));
     }
-  }
-
-  void results(std::size_t numPoints, TMatchingPairList& pairs, TMatchingExtraResults& extra) {
     extra = {};
     const auto found = double(m_pairs.size());
     if (found > 0) extra.sumSqrDist = float(m_sumOfSquares / found);
-    if (numPoints > 0)
+    if (points.size() > 0)
       extra.correspondencesRatio =
-          float(double(m_params.decimation_other_map_points) * found / double(numPoints));
+          float(double(m_params.decimation_other_map_points) * found / double(points.size()));
     pairs.clear();
     if (m_params.onlyUniqueRobust)
       m_pairs.filterUniqueRobustPairs(m_voxels.size(), pairs);
@@ -214,9 +204,8 @@ void CSemanticOctoMap::determineMatching2D(const CMetricMap* other,
                                            TMatchingExtraResults& extra) const {
   const CPointsMap& points = pointsOf(other);
   const auto lock = reading();
-  Matcher matcher(m_tree, NearestOccupied::Distance::FromAbove, params);
-  matcher.match(points, mrpt::poses::CPose3D(T_this_other));
-  matcher.results(points.size(), pairs, extra);
+  Matcher(m_tree, NearestOccupied::Distance::FromAbove, params)
+      .match(points, mrpt::poses::CPose3D(T_this_other), pairs, extra);
 }
 
 void CSemanticOctoMap::determineMatching3D(const CMetricMap* other,
@@ -225,9 +214,8 @@ void CSemanticOctoMap::determineMatching3D(const CMetricMap* other,
                                            TMatchingExtraResults& extra) const {
   const CPointsMap& points = pointsOf(other);
   const auto lock = reading();
-  Matcher matcher(m_tree, NearestOccupied::Distance::InSpace, params);
-  matcher.match(points, T_this_other);
-  matcher.results(points.size(), pairs, extra);
+  Matcher(m_tree, NearestOccupied::Distance::InSpace, params)
+      .match(points, T_this_other, pairs, extra);
 }
 
 float CSemanticOctoMap::compute3DMatchingRatio(

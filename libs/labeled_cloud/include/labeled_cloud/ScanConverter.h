@@ -62,6 +62,9 @@ struct LabeledScan {
 struct NamedCloud {
   semantic_types::LabeledCloud cloud;
   std::vector<std::string> classNames;
+  /** Of points without classes, one for each or none: if each color is that of a class of the
+   * user's table, or black, which is none, these are their classes. */
+  std::vector<semantic_types::Color> colors;
 };
 
 /** Reads the points of some classes of observations. ScanConverter knows labeled clouds, point
