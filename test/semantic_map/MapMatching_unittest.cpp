@@ -2,9 +2,12 @@
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "SmallMaps.h"
 #include "TemporaryFolder.h"
@@ -135,6 +138,35 @@ TEST(MapMatching, isAPointsMapOfItsOccupiedVoxels) {
   map.clear();
   EXPECT_EQ(map.getAsSimplePointsMap()->size(), 0u);
 }
+
+#if MSO_MRPT_AT_LEAST(2, 11, 3)
+TEST(MapMatching, tellsNearestVoxelsAsPointsMapsDo) {
+  CSemanticOctoMap map = filledMap();
+  const auto* nearest = dynamic_cast<const mrpt::maps::NearestNeighborsCapable*>(&map);
+  ASSERT_NE(nearest, nullptr);
+  const std::size_t count = nearest->nn_index_count();
+  EXPECT_EQ(count, voxelCenters(map).size());
+  const mrpt::math::TPoint3Df query(1.f, 0.5f, 0.2f);
+  mrpt::math::TPoint3Df found;
+  float squared = 0;
+  std::uint64_t index = 0;
+  ASSERT_TRUE(nearest->nn_single_search(query, found, squared, index));
+  EXPECT_NEAR((found - query).sqrNorm(), squared, 1e-4f);
+  std::vector<mrpt::math::TPoint3Df> all;
+  std::vector<float> distances;
+  std::vector<std::uint64_t> indices;
+  nearest->nn_multiple_search(query, count, all, distances, indices);
+  ASSERT_EQ(all.size(), count);
+  EXPECT_EQ(*std::min_element(distances.begin(), distances.end()), squared);
+  nearest->nn_radius_search(query, 4 * squared, all, distances, indices, 0);
+  EXPECT_GE(all.size(), 1u);
+  EXPECT_LE(*std::max_element(distances.begin(), distances.end()), 4 * squared);
+  map.clear();
+  EXPECT_FALSE(nearest->nn_single_search(query, found, squared, index));
+  nearest->nn_multiple_search(query, 3, all, distances, indices);
+  EXPECT_TRUE(all.empty() && distances.empty() && indices.empty());
+}
+#endif
 
 TEST(MapMatching, whatCannotBeMatchedIsRefused) {
   const CSemanticOctoMap map = filledMap();

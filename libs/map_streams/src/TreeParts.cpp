@@ -150,7 +150,7 @@ class Comparison {
     const bool wasInner = before.kind == Before::Kind::Inner;
     for (int i = 0; i < 8; ++i) {
       const Node child = node.child(i);
-      if (wasInner && !mayDiffer(cell.child(i))) continue;
+      if (!mayDiffer(cell.child(i))) continue;
       const Before was = wasInner ? before.child(i) : Before();
       if (isInner(child) ? was.isNode() : !child && was.kind == Before::Kind::None) continue;
       part.leaves[i] = leafOf(child);
@@ -159,8 +159,7 @@ class Comparison {
     }
     if (part.mask != 0) m_parts.add(part, step, stepAbove < step);
     for (int i = 0; i < 8; ++i)
-      if (const Node child = node.child(i);
-          isInner(child) && !(wasInner && !mayDiffer(cell.child(i))))
+      if (const Node child = node.child(i); isInner(child) && mayDiffer(cell.child(i)))
         compareOctet(child, cell.child(i), wasInner ? before.child(i) : Before(), step);
   }
 

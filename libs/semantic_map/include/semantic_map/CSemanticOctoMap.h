@@ -92,7 +92,8 @@ struct InsertionResult {
  *   std::logic_error, so that nothing is lost by them;
  * - threads that read it wait for each other; tree() is for one at a time;
  * - what is drawn of it is in memory, as a whole. */
-class CSemanticOctoMap : public mrpt::maps::CMetricMap {
+class CSemanticOctoMap : public mrpt::maps::CMetricMap,
+                         public mrpt_compat::NearestByPoints<CSemanticOctoMap> {
   DEFINE_SERIALIZABLE(CSemanticOctoMap, semantic_map)
  public:
   /** A map of one class, "occupied", with voxels of 0.1 m. */
