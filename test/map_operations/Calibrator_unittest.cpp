@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 #include <map_operations/Calibrator.h>
 #include <map_operations/MapOperations.h>
+#include <semantic_octree/store/CalibrationFit.h>
 
 #include <cmath>
 #include <numeric>
 #include <random>
 
-#include "ExactExponential.h"
 #include "LabelProcess.h"
 
 using namespace semantic_octree;

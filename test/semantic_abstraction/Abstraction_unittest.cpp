@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <map_operations/Calibrator.h>
 #include <map_operations/MapOperations.h>
 #include <semantic_abstraction/Abstraction.h>
 
@@ -252,5 +253,75 @@ TEST(CompressedClasses, areThoseThatAreBelievedWhateverIsStated) {
   EXPECT_TRUE(again == before);  // its G-values, too
   const SemanticOcTree compressed = Abstraction(map).compressedMap();
   EXPECT_TRUE(compressed == Abstraction(before).compressedMap());
-  EXPECT_TRUE(compressed.filterParameters().calibration.isIdentity());
+  EXPECT_TRUE(Abstraction(before).compressedMap().filterParameters().calibration.isIdentity());
+}
+
+namespace {
+
+/** A floor of one class in whole cells of 8 voxels' edge, and what a scan of it says: some labels
+ * are wrong, one by one. */
+class FloorOfCells {
+ public:
+  explicit FloorOfCells(unsigned seed) : m_random(seed) {}
+  PosedCloud scan(double wrong) {
+    std::uniform_real_distribution<> share(0, 1);
+    PosedCloud scan{{}, Eigen::Isometry3d::Identity()};
+    scan.T_map_sensor.translation().z() = 3;
+    for (int x = -kEdge; x < kEdge; ++x)
+      for (int y = -kEdge; y < kEdge; ++y) {
+        scan.cloud.points.emplace_back(kTreeResolution * (x + 0.5), kTreeResolution * (y + 0.5),
+                                       kTreeResolution / 2 - 3);
+        const int truth = classAt(x, y), other = 1 + static_cast<int>(m_random() % 5);
+        scan.cloud.classes.push_back(
+            static_cast<ClassId>(share(m_random) < wrong ? 1 + (truth - 1 + other) % 6 : truth));
+      }
+    return scan;
+  }
+  /** Mean of what is stated of the likeliest class less how often it is right. */
+  static double gap(const SemanticOcTree& map) {
+    double sum = 0;
+    for (int x = -kEdge; x < kEdge; ++x)
+      for (int y = -kEdge; y < kEdge; ++y) {
+        const CellState state = map.query(keyOf({x, y, 0}));
+        sum += state.probability / state.occupancy - (state.likeliestClass == classAt(x, y));
+      }
+    return sum / (4.0 * kEdge * kEdge);
+  }
+
+ private:
+  static constexpr int kEdge = 40;
+  static int classAt(int x, int y) { return 1 + ((x + kEdge) / 8 + (y + kEdge) / 8 * 2) % 5; }
+  std::mt19937 m_random;
+};
+
+}  // namespace
+
+// Mixtures of voxels that err one by one state what voxels are right, and cells are right more
+// often.
+TEST(CompressedClasses, areStatedAsOftenAsTheyAreRight) {
+  for (const double wrong : {0.1, 0.2, 0.3}) {
+    FloorOfCells floor(7);
+    SemanticOcTree map(kTreeResolution, numberedClasses(kTreeClasses)), grown = map;
+    AbstractionOptions options = someOptions(10);
+    options.blockSize = 8 * kTreeResolution;
+    setAbstraction(grown, options);
+    Calibrator calibrator(kTreeResolution, kTreeClasses);
+    for (int i = 0; i < 6; ++i) {
+      const PosedCloud scan = floor.scan(wrong);
+      calibrator.add(scan.cloud, scan.T_map_sensor);
+      map.insert(scan.cloud, scan.T_map_sensor);
+      grown.insert(scan.cloud, scan.T_map_sensor);
+    }
+    for (SemanticOcTree* m : {&map, &grown}) m->setCalibration(calibrator.fit(map));
+    setAbstraction(map, options);
+    SemanticOcTree compressed = Abstraction(map).compressedMap();
+    const SemanticOcTree step = Abstraction(grown).compressedMap();
+    EXPECT_TRUE(compressed == step);
+    EXPECT_EQ(compressed.filterParameters().calibration.power,
+              step.filterParameters().calibration.power);
+    const double gap = FloorOfCells::gap(compressed);
+    EXPECT_NEAR(gap, 0, 0.03) << wrong;
+    compressed.setCalibration({});
+    EXPECT_LT(FloorOfCells::gap(compressed), gap - 0.008) << wrong;
+  }
 }

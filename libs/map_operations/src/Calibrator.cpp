@@ -1,13 +1,12 @@
 #include <map_operations/Calibrator.h>
+#include <semantic_octree/store/CalibrationFit.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 #include <utility>
 
-#include "ExactExponential.h"
 #include "LabelProcess.h"
 
 namespace semantic_octree {
@@ -26,8 +25,6 @@ constexpr double kLabelsOfMatrix = 1000, kLabelsOfFit = 20;
 /** So many labels of a voxel cannot outvote each other. */
 constexpr std::size_t kFew = 2;
 constexpr double kSteps = 256;
-constexpr int kRounds = 60;
-constexpr double kLeastPower = 1.0 / 64, kMostPower = 4, kMostShared = 0.9, kLargestStep = 0.1;
 
 /** Voxels on each side of the map's origin. */
 constexpr int kHalf = 1 << 15;
@@ -49,79 +46,6 @@ void check(const LabeledCloud& cloud, std::size_t numClasses) {
   if (cloud.probabilities.empty() ? !cloud.classes.empty() && cloud.classes.size() != cloud.size()
                                   : cloud.probabilities.size() != numClasses * cloud.size())
     throw std::invalid_argument("calibration: labels of another number of points");
-}
-
-/** What the map believes of a voxel's classes, and what its labels say. */
-struct Question {
-  int named, unnamed;              ///< how many
-  std::array<double, 4> ahead{};   ///< log-odds of the named less the largest; last: of others
-  std::array<double, 4> target{};  ///< p(class), last: of all others together
-  double labels;
-};
-
-Question questionOf(const SemanticOcTree::Belief& belief, int numClasses,
-                    const std::vector<double>& classes, std::size_t labels) {
-  Question question{belief.count, belief.unnamed(numClasses), {}, {}, static_cast<double>(labels)};
-  const double most = std::max(belief.logOdds[0], belief.rest);
-  question.ahead[3] = belief.rest - most;
-  question.target[3] = 1;
-  for (int i = 0; i < belief.count; ++i) {
-    question.ahead[i] = belief.logOdds[i] - most;
-    question.target[i] = classes[belief.ids[i] - 1];
-    question.target[3] -= question.target[i];
-  }
-  return question;
-}
-
-/** Sums over questions of what a step of the fit needs. */
-struct Step {
-  double slope = 0, curvature = 0, ofShared = 0, all = 0;
-
-  /** Expectation: of each class that was named, which part is due to what is shared. The rest is a
-   * power's, whose logarithm's slope and curvature follow. */
-  void add(const Question& question, const Calibration& now) {
-    std::array<double, 4> odds{};
-    double sum = 0, mean = 0, square = 0;
-    const auto classes = [&](auto visit) {
-      for (int i = 0; i < question.named; ++i) visit(i, 1);
-      visit(3, question.unnamed);
-    };
-    classes([&](int i, int number) {
-      odds[i] = exactExponential(now.power * question.ahead[i]);
-      sum += number * odds[i];
-      mean += number * odds[i] * question.ahead[i];
-      square += number * odds[i] * question.ahead[i] * question.ahead[i];
-    });
-    mean /= sum;
-    double own = 0, target = 0;
-    classes([&](int i, int) {
-      const double shared = i < 3 ? now.shared / question.named : 0;
-      const double share = shared / ((1 - now.shared) * odds[i] / sum + shared);
-      own += question.target[i] * (1 - share);
-      target += question.target[i] * (1 - share) * question.ahead[i];
-    });
-    slope += question.labels * (target - own * mean);
-    curvature += question.labels * own * (square / sum - mean * mean);
-    ofShared += question.labels * (1 - own);
-    all += question.labels;
-  }
-  /** Maximization, one step of Newton's for the power. */
-  Calibration after(const Calibration& now) const {
-    const double step = curvature > 0 ? slope / curvature : 0;
-    return {std::clamp(now.power + std::clamp(step, -kLargestStep, kLargestStep), kLeastPower,
-                       kMostPower),
-            std::clamp(ofShared / all, 0.0, kMostShared)};
-  }
-};
-
-Calibration fitted(const std::vector<Question>& questions) {
-  Calibration calibration{0.7, 0.1};
-  for (int round = 0; round < kRounds; ++round) {
-    Step step;
-    for (const Question& question : questions) step.add(question, calibration);
-    calibration = step.after(calibration);
-  }
-  return calibration;
 }
 
 }  // namespace
@@ -195,15 +119,14 @@ Calibration Calibrator::fit(const SemanticOcTree& map) const {
     numLabels += labels.size() - std::min(kFew, labels.size());
   if (numLabels == 0) return has;
   const LabelProcess process = this->process(map.filterParameters().accuracy, kLabelsOfFit);
-  std::vector<Question> questions;
+  CalibrationFit fit;
   for (const auto& [voxel, labels] : std::map(m_voxels.begin(), m_voxels.end())) {
     const SemanticOcTreeNode leaf = map.search(keyOf(voxel));
     if (!leaf || !leaf.hasClassRecord() || leaf.getLogOdds() <= 0) continue;
-    questions.push_back(
-        questionOf(map.belief(leaf), m_numClasses, process.classesOf(labels), labels.size()));
+    fit.add(map.belief(leaf), process.classesOf(labels), static_cast<double>(labels.size()));
   }
-  if (questions.empty()) return has;
-  const Calibration found = fitted(questions);
+  if (fit.empty()) return has;
+  const Calibration found = fit.fit({0.7, 0.1});
   const auto together = [numLabels](double had, double fits) {
     const double mean = (kLabelsBefore * had + numLabels * fits) / (kLabelsBefore + numLabels);
     return std::round(kSteps * mean) / kSteps;

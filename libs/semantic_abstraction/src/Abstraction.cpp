@@ -1,5 +1,8 @@
+#include <semantic_octree/store/CalibrationFit.h>
 #include <semantic_octree/store/TreeBuilder.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "CompressedTree.h"
@@ -17,12 +20,51 @@ GTree& neededGTreeOf(const SemanticOcTree& map) {
 
 using IsExpanded = std::function<bool(const Node&)>;
 
-/** Without the map's calibration, which is of voxels: cells name classes that few of their voxels
- * name. */
+/** Without the map's calibration, which is of voxels. */
 SemanticOcTree emptyFor(const SemanticOcTree& map) {
   FilterParameters parameters = map.filterParameters();
   parameters.calibration = {};
   return {map.getResolution(), map.classes(), parameters};
+}
+
+/** p(class | occupied), K numbers. */
+std::vector<double> classesOf(const SemanticOcTree::Belief& belief, int numClasses) {
+  std::vector<double> p(static_cast<std::size_t>(numClasses) + 1);
+  belief.distribution(numClasses, p.data());
+  for (double& x : p) x /= 1 - p.front();
+  return {p.begin() + 1, p.end()};
+}
+
+/** About so many leaves are asked, and steps in which a power is told. */
+constexpr std::size_t kAskedLeaves = 1 << 14;
+constexpr double kPowerSteps = 256;
+
+/** Mixtures state too little: voxels of a cell err in different ways, so that the class of most of
+ * them is right more often than each. What a voxel is follows from its own statement and from what
+ * its cell says before, and the compressed map's power makes that likely. The map's power is taken
+ * twice of the cell: its voxels state that much less than it believes, and repeat each other as
+ * scans do. A map that is not calibrated has compressed maps that are not. */
+void calibrate(const SemanticOcTree& map, SemanticOcTree& compressed) {
+  const Calibration& own = map.filterParameters().calibration;
+  if (own.isIdentity()) return;
+  const int numClasses = map.numClasses();
+  const double ofCell = std::pow(std::min(1.0, own.power), 2);
+  const std::size_t oneIn = 1 + map.getNumLeafNodes() / kAskedLeaves;
+  std::size_t number = 0;
+  CalibrationFit fit;
+  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+    if (!leaf->hasClassRecord() || !map.isNodeOccupied(*leaf) || number++ % oneIn != 0) continue;
+    const Node cell = compressed.search(leaf.getKey());
+    std::vector<double> is = classesOf(map.statedBelief(*leaf), numClasses);
+    const std::vector<double> before = classesOf(compressed.belief(cell), numClasses);
+    double sum = 0;
+    for (std::size_t k = 0; k < is.size(); ++k) sum += is[k] *= std::pow(before[k], ofCell);
+    for (double& x : is) x /= sum;
+    fit.add(compressed.belief(cell), is, 1);
+  }
+  if (fit.empty()) return;
+  const double power = std::round(kPowerSteps * fit.fit({1, 0}).power) / kPowerSteps;
+  compressed.setCalibration({power, 0});
 }
 
 /** A map's nodes, down to the compressed tree's leaves (see TreeBuilder). */
@@ -154,6 +196,7 @@ void Abstraction::compressTo(SemanticOcTree& compressed) const {
   const IsExpanded isExpanded = [&tree](const Node& node) { return tree.isExpanded(node); };
   TreeBuilder::fill(compressed, CompressedCursor(m_map.numClasses(), isExpanded, m_map.root()),
                     TreeBuilder::Merge::Never);
+  calibrate(m_map, compressed);
 }
 
 std::shared_ptr<LeafLog> Abstraction::leafLog() const {
@@ -201,6 +244,7 @@ SemanticOcTree compressedMap(const SemanticOcTree& map, const IsExpanded& isExpa
   if (map.empty()) return compressed;
   TreeBuilder::fill(compressed, CompressedCursor(map.numClasses(), isExpanded, map.root()),
                     TreeBuilder::Merge::Never);
+  calibrate(map, compressed);
   return compressed;
 }
 

@@ -110,12 +110,13 @@ class Abstraction {
    *     p(class k | occupied) = sum_v p_k(v) / sum_j sum_v p_j(v),
    *
    * truncated as everywhere. (distribution() and the G-values have the mixture of all known
-   * voxels.) */
+   * voxels.) What it states of them has a power of its own where the map is calibrated: mixtures
+   * state too little. */
   SemanticOcTree compressedMap() const;
   /** \param compressed to be filled, see MapOperations.h; like an emptyCompressedMap()
    * \throw std::invalid_argument it is not empty, or of another kind. */
   void compressTo(SemanticOcTree& compressed) const;
-  /** An empty map of the same resolution, classes and filter parameters. */
+  /** An empty map of the same resolution, classes and filter parameters, not calibrated. */
   SemanticOcTree emptyCompressedMap() const;
 
   /** New alpha: computes all inner nodes anew. \throw std::invalid_argument */

@@ -1,5 +1,10 @@
 #pragma once
+#include <semantic_octree/ClassBelief.h>
+#include <semantic_octree/FilterParameters.h>
+
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace semantic_octree {
 
@@ -13,5 +18,29 @@ inline double exactExponential(double x) {
   for (int i = 13; i > 0; --i) sum = 1 + sum * rest / i;
   return std::ldexp(sum, static_cast<int>(power));
 }
+
+/** Finds the Calibration of beliefs from what they are about. Only additions, multiplications and
+ * divisions are made: results are the same bits everywhere. */
+class CalibrationFit {
+ public:
+  /** A cell of which the filter believes this.
+   * \param classes K probabilities of what it is */
+  void add(const ClassBelief<float>& belief, const std::vector<double>& classes, double weight);
+  bool empty() const { return m_questions.empty(); }
+  /** What makes -sum weight sum_k p_k ln(stated p(class k | occupied)) least, p_k what cells are.
+   * \param calibration where the search begins; where nothing is shared, nothing will be */
+  Calibration fit(Calibration calibration) const;
+
+ private:
+  struct Question {
+    int named, unnamed;              ///< how many classes
+    std::array<double, 4> ahead{};   ///< log-odds of the named less the largest; last: of others
+    std::array<double, 4> target{};  ///< p(class), last: of all others together
+    double weight;
+  };
+  struct Step;
+
+  std::vector<Question> m_questions;
+};
 
 }  // namespace semantic_octree
