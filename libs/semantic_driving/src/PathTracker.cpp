@@ -104,7 +104,7 @@ double PathTracker::speedAt(double s) const {
   const double onClass =
       place.classId < m_classSpeeds.size() ? m_classSpeeds[place.classId] : m_options.maxSpeed;
   return std::max(DriveOptions::kSlowest,
-                  std::min({onClass, std::sqrt(m_options.maxSideAcceleration / curve),
+                  std::min({onClass, std::sqrt(m_options.maxAcceleration / curve),
                             m_options.steeringRate() / change}));
 }
 

@@ -1,8 +1,6 @@
 #include <synthetic_world/Sensors.h>
 
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 namespace synthetic_world {
 namespace {
@@ -35,13 +33,12 @@ void LidarOptions::describe(strict_files::OptionList& list) {
   list.add("lowest", lowest, "degrees", above(-90).below(90), "elevation of the lowest ring");
   list.add("highest", highest, "degrees", above(-90).below(90), "elevation of the highest ring");
   list.add("max_range", maxRange, "m", above(kMinRange), "of returns");
-  list.add("ghosts", ghosts, "", between(0, 1),
-           "share of the beams on windows, cars, water and signs that return by way of what these "
-           "mirror: from behind them, often from below the ground");
 }
 
 void LidarOptions::validate() const {
   strict_files::checkOptions(*this, "LidarOptions");
+  strict_files::require(ghosts >= 0 && ghosts <= 1, "LidarOptions::ghosts", ghosts,
+                        "a number from 0 to 1");
   noise.validate();
   strict_files::require(lowest <= highest, "LidarOptions::lowest", lowest, "at most highest");
 }
@@ -84,10 +81,13 @@ void SensorNoise::describe(strict_files::OptionList& list) {
   list.add("range_noise", range, "m", strict_files::atLeast(0),
            "standard deviation of ranges and depths");
   list.add("label_noise", label, "", between(0, 1), "share of labels that are of another class");
-  list.add("dropout", dropout, "", between(0, 1), "share of rays without a return");
 }
 
-void SensorNoise::validate() const { strict_files::checkOptions(*this, "SensorNoise"); }
+void SensorNoise::validate() const {
+  strict_files::checkOptions(*this, "SensorNoise");
+  strict_files::require(dropout >= 0 && dropout <= 1, "SensorNoise::dropout", dropout,
+                        "a number from 0 to 1");
+}
 
 ClassId SensorNoise::disturbed(ClassId id, Random& random) const {
   if (id == kNoClass || label == 0 || !random.chance(label)) return id;
