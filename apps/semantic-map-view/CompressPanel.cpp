@@ -2,11 +2,14 @@
 
 #include <GLFW/glfw3.h>
 #include <map_view/LiveCompression.h>
+#include <mrpt/core/format.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <ostream>
 
 #include "StandardOutput.h"
@@ -23,12 +26,6 @@ constexpr int kWidth = 280, kWindow = kWidth + 16;
 constexpr double kRest = 0.25;  // s
 /** One leaf in so many: a start from which sliders lead to both sides. */
 constexpr std::size_t kShare = 10;
-
-std::string rounded(double number, int digits) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", digits, number);
-  return text;
-}
 
 }  // namespace
 
@@ -207,11 +204,12 @@ void CompressPanel::follow() {
   if (m_viewer.style().coloring == map_view::ViewColoring::Retained)
     boxes = {map_view::KeyBox::everything()};  // colors change where leaves do not
   m_viewer.changed(boxes);
-  m_alphaText->setCaption(rounded(m_live->alpha(), 3));
+  m_alphaText->setCaption(mrpt::format("%.3g", m_live->alpha()));
   m_leaves->setCaption(std::to_string(m_live->numLeaves()) + " leaves");
   m_wantedLeaves->setValue(int(m_live->numLeaves()));
   for (std::size_t term = 0; term < m_lines.size(); ++term)
-    if (m_lines[term].weight) m_lines[term].weight->setCaption(rounded(m_live->weight(term), 3));
+    if (m_lines[term].weight)
+      m_lines[term].weight->setCaption(mrpt::format("%.3g", m_live->weight(term)));
   m_measureAt = glfwGetTime() + kRest;
   m_onFollowed();
 }
@@ -226,7 +224,7 @@ void CompressPanel::measure() {
   for (std::size_t term = 0; term < m_lines.size(); ++term) {
     const auto& share = retained[term];
     if (m_lines[term].kept)
-      m_lines[term].kept->setCaption(share ? rounded(100 * *share, 3) + " %" : "-");
+      m_lines[term].kept->setCaption(share ? mrpt::format("%.3g", 100 * *share) + " %" : "-");
   }
   const std::size_t bytes =
       semantic_octree::fileSize(m_live->compressedMap(m_viewer.layer().map()));
@@ -248,6 +246,110 @@ fs::path CompressPanel::save(const fs::path& folder) const {
   strict_files::writeText(file, map_view::weightsText(m_live->solution(), m_live->space(),
                                                       m_viewer.layer().map().classes()));
   return file;
+}
+
+using map_view::LiveCompression;
+using Balance = map_view::InformationTree::Balance;
+
+namespace {
+
+constexpr int kLeft = 262, kNames = 116, kColumn = 66, kLine = 17;
+constexpr std::size_t kMostNodes = 4, kMostTerms = 6;
+
+std::string edgeOf(const Balance& balance, const LiveCompression& live, double voxelSize) {
+  return mrpt::format("%.3g", live.tree().cube(balance.node).edge() * voxelSize) + " m";
+}
+
+std::string textOf(const Balance& balance, const LiveCompression& live) {
+  std::string text = live.isExpanded(balance.node) ? "expanded" : "not expanded";
+  text += ", G " + mrpt::format("%.3g", balance.gValue) + " = max(0, " +
+          mrpt::format("%.3g", balance.gain) + " - " + mrpt::format("%.3g", live.alpha()) + " * " +
+          mrpt::format("%.3g", balance.splitEntropy) + " + " +
+          mrpt::format("%.3g", balance.ofChildren) + ")";
+  for (std::size_t t = 0; t < live.numTerms(); ++t)
+    text += ", " + live.name(t) + " " + mrpt::format("%.3g", live.weight(t)) + " * " +
+            mrpt::format("%.3g", balance.divergences[t]);
+  return text;
+}
+
+/** The terms that weigh most in one of the nodes, in their own order. */
+std::vector<std::size_t> largestTerms(const std::vector<Balance>& balances,
+                                      const LiveCompression& live) {
+  std::vector<std::size_t> terms(live.numTerms());
+  std::iota(terms.begin(), terms.end(), 0);
+  const auto most = [&](std::size_t t) {
+    double value = 0;
+    for (const Balance& b : balances)
+      value = std::max(value, std::abs(live.weight(t)) * b.divergences[t]);
+    return value;
+  };
+  std::stable_sort(terms.begin(), terms.end(),
+                   [&](std::size_t a, std::size_t b) { return most(a) > most(b); });
+  terms.resize(std::min(terms.size(), kMostTerms));
+  std::sort(terms.begin(), terms.end());
+  return terms;
+}
+
+std::vector<std::vector<std::string>> rowsOf(const std::vector<Balance>& balances,
+                                             const LiveCompression& live, double voxelSize) {
+  std::vector<std::vector<std::string>> rows;
+  const auto add = [&](const std::string& name, const auto& value) {
+    rows.push_back({name});
+    for (const Balance& balance : balances) rows.back().push_back(value(balance));
+  };
+  add("edge", [&](const Balance& b) { return edgeOf(b, live, voxelSize); });
+  add("expanded", [&](const Balance& b) { return live.isExpanded(b.node) ? "yes" : "no"; });
+  for (const std::size_t t : largestTerms(balances, live))
+    add(mrpt::format("%.3g", live.weight(t)) + " x " + live.name(t),
+        [t](const Balance& b) { return mrpt::format("%.3g", b.divergences[t]); });
+  add("sum of all", [](const Balance& b) { return mrpt::format("%.3g", b.gain); });
+  add("- alpha x H",
+      [&](const Balance& b) { return mrpt::format("%.3g", -live.alpha() * b.splitEntropy); });
+  add("+ children's G", [](const Balance& b) { return mrpt::format("%.3g", b.ofChildren); });
+  add("G, at least 0", [](const Balance& b) { return mrpt::format("%.3g", b.gValue); });
+  return rows;
+}
+
+}  // namespace
+
+WhyPanel::WhyPanel(Viewer& viewer, CompressPanel& compress)
+    : m_viewer(viewer), m_compress(compress) {
+  const int width = kNames + kColumn * int(kMostNodes);
+  const int height = kLine * (int(kMostTerms) + 6);
+  m_window = addWindow(&viewer.window(), "Why it is expanded, or not (nats)",
+                       {kLeft, viewer.window().height() - height - 56}, width + 16);
+  m_table = m_window->add<Table>(kNames, kColumn);
+  m_table->setFixedSize({width, height});
+  m_window->setVisible(false);
+  viewer.onActivated([this] { show({}); });
+  compress.onFollowed([this] { update(); });
+}
+
+void WhyPanel::show(const std::optional<map_view::ViewCell>& cell) {
+  m_cell = cell;
+  m_told.clear();
+  update();
+}
+
+void WhyPanel::update() {
+  const LiveCompression* live = m_compress.compression();
+  m_window->setVisible(m_cell && live);
+  if (!m_cell || !live) return;
+  const double voxelSize = m_viewer.layer().map().getResolution();
+  std::vector<Balance> balances = live->balancesAround(m_cell->lowest);
+  // What is below the cell would not say why it is as large as it is.
+  const auto isBelow = [&](const Balance& b) {
+    return live->tree().cube(b.node).edge() < m_cell->edge();
+  };
+  balances.erase(std::remove_if(balances.begin(), balances.end(), isBelow), balances.end());
+  std::string told;
+  for (const Balance& balance : balances)
+    told += edgeOf(balance, *live, voxelSize) + ": " + textOf(balance, *live) + "\n";
+  if (told != m_told) notes() << told << std::flush;
+  m_told = told;
+  if (balances.size() > kMostNodes)
+    balances.erase(balances.begin(), balances.end() - std::ptrdiff_t(kMostNodes));
+  m_table->setRows(rowsOf(balances, *live, voxelSize));
 }
 
 }  // namespace semantic_map_view

@@ -12,8 +12,7 @@
 #include "ShellCommand.h"
 #include "TemporaryFolder.h"
 #include "figures/FigureScript.h"
-#include "measuring/Quantile.h"
-#include "measuring/Stopwatch.h"
+#include "measuring/Measuring.h"
 #include "poses/Poses.h"
 
 using measuring::quantile;

@@ -11,7 +11,6 @@ using namespace semantic_types;
 using Eigen::Vector3d;
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
-namespace fs = std::filesystem;
 
 namespace {
 

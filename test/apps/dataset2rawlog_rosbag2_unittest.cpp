@@ -1,13 +1,10 @@
 // Bags of ROS 2, written by the tests, become rawlogs.
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "BagWriter.h"
 #include "ConvertedScans.h"
 #include "TemporaryFolder.h"
 
-namespace fs = std::filesystem;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using semantic_types::ClassId;

@@ -16,7 +16,6 @@
 using namespace labeled_cloud;
 using namespace semantic_types;
 using Eigen::Vector3d;
-using semantic_types::ClassId;
 using semantic_types::ClassTable;
 namespace fs = std::filesystem;
 

@@ -1,7 +1,6 @@
 // Programs and folders of tiles: what comes out is what comes of the map in one piece.
 #include <gtest/gtest.h>
 #include <map_folders/MapFolder.h>
-#include <map_operations/MapOperations.h>
 #include <strict_files/TextFile.h>
 
 #include <nlohmann/json.hpp>

@@ -1,7 +1,6 @@
 // Labels from images and networks, through the whole application.
 #include <labeled_cloud/Rawlogs.h>
 
-#include <fstream>
 #include <random>
 
 #include "CameraFixture.h"

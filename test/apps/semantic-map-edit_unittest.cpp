@@ -8,7 +8,6 @@
 #include <yaml-cpp/yaml.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <array>
 #include <filesystem>
@@ -18,7 +17,6 @@
 
 using semantic_octree::CellState;
 using semantic_octree::SemanticOcTree;
-using semantic_types::ClassTable;
 
 namespace {
 

@@ -11,9 +11,7 @@
 #include "../semantic_planning/PaintedWorld.h"
 #include "SemanticMapCompress.h"
 #include "ShellCommand.h"
-#include "radio/Seal.h"
-#include "radio/UdpSocket.h"
-#include "radio/Wish.h"
+#include "radio/Radio.h"
 
 namespace {
 

@@ -1,6 +1,5 @@
 // What becomes of outputs when a program is told to end.
 #include <gtest/gtest.h>
-#include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/Rawlogs.h>
 #include <semantic_octree/TreeFile.h>
 #include <nlohmann/json.hpp>
@@ -145,8 +144,6 @@ TEST(WrittenMeanwhile, byOthersStaysAndTheResultIsKeptBesideIt) {
   EXPECT_EQ(stopEarly(folder, command + " -f", "echo theirs >a.rawlog").status, 130);
   EXPECT_TRUE(labeled_cloud::RawlogReader(folder / "a.rawlog").next());
 }
-
-namespace fs = std::filesystem;
 
 namespace {
 

@@ -4,7 +4,6 @@
 #include <semantic_octree/store/LeafContent.h>
 
 #include <array>
-#include <unordered_map>
 #include <vector>
 
 namespace semantic_octree {
